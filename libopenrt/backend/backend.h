@@ -1,0 +1,48 @@
+// backend.h: the waist between the API and whoever renders: local, record and null today, cluster later.
+// Called on the application's thread only, except cancel() and progress().
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "openrt/openrt.h"
+#include "scene/commit.h"
+
+namespace openrt {
+
+class ShaderRegistry;
+
+struct BackendOptions {
+  uint32_t threads = 0; // 0: as many as the process may use
+  std::string file;     // recording
+  const ShaderRegistry* shaders = nullptr;
+  RTlogCallback log = nullptr;
+  void* logUser = nullptr;
+};
+
+class Backend {
+ public:
+  virtual ~Backend() = default;
+  // Takes the edits over; they hold from the next start() on. Never called while a frame is in flight.
+  virtual void apply(std::shared_ptr<const Commit> commit) = 0;
+  // Starts a frame of the committed scene; returns at once.
+  virtual void start() = 0;
+  // Waits for the frame in flight, which then is the one that read() reads.
+  virtual void wait() = 0;
+  virtual void cancel() = 0;         // [any]
+  virtual float progress() const = 0; // [any] 0..1
+  // One channel of the finished frame, first row at the top; false if there is no such channel or frame.
+  virtual bool read(RTenum channel, std::span<float> out) const = 0;
+  virtual void stats(RTstats& stats) const = 0;
+  virtual void castRays(std::span<const RTray> rays, std::span<RThit> hits) = 0;
+  virtual void occludedRays(std::span<const RTray> rays, std::span<uint8_t> occluded) = 0;
+};
+
+// Throws std::runtime_error with a message for people when the backend cannot start.
+std::unique_ptr<Backend> makeLocalBackend(const BackendOptions& options);
+std::unique_ptr<Backend> makeRecordBackend(const BackendOptions& options);
+std::unique_ptr<Backend> makeNullBackend(const BackendOptions& options);
+
+} // namespace openrt

@@ -1,0 +1,41 @@
+// diagnostics.h: messages with a place: file:line:column: severity: what, and what was expected.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "xvrml/node.h"
+
+namespace xvrml {
+
+enum class Severity : uint8_t { note, warning, error };
+
+struct Diagnostic {
+  Severity severity = Severity::error;
+  std::string file;
+  uint32_t line = 0, column = 0; // 0: the whole file
+  std::string message;
+  std::string sourceLine; // the line it speaks of, cut to a readable length; empty if unknown
+  // "file:line:column: error: message", then the source line and a caret.
+  std::string text() const;
+};
+
+// Collects messages in order; at most `limit` are kept, the others counted.
+class Diagnostics {
+ public:
+  void add(Diagnostic diagnostic);
+  void warn(const SourcePosition& where, std::string message);
+  void error(const SourcePosition& where, std::string message);
+  const std::vector<Diagnostic>& list() const { return list_; }
+  uint64_t errors() const { return errors_; }
+  uint64_t warnings() const { return warnings_; }
+  uint64_t dropped() const { return dropped_; }
+  size_t limit = 1000;
+
+ private:
+  std::vector<Diagnostic> list_;
+  uint64_t errors_ = 0, warnings_ = 0, dropped_ = 0;
+};
+
+} // namespace xvrml

@@ -1,0 +1,108 @@
+// node.h: nodes and the constant tables that describe them. nodegen writes one struct and one table per node from
+// libxvrml/nodes/*.node; prototypes and scripts make their tables at run time. Everything generic (parser, writer, router,
+// PROTO instancer, Python, --list-nodes) works through these tables.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "xvrml/types.h"
+
+namespace xvrml {
+
+enum class Access : uint8_t { field, exposedField, eventIn, eventOut };
+
+// What a write to a field invalidates (architecture.md section 2).
+enum class Change : uint8_t { none, transform, geometry, appearance, shader, children, light, view, time };
+
+// Where something stands in a file. `file` is shared by all nodes of a file.
+struct SourcePosition {
+  std::shared_ptr<const std::string> file;
+  uint32_t line = 0, column = 0; // from 1; 0: made by a program
+};
+
+struct FieldRange {
+  double minimum, maximum; // -inf, inf where open
+  bool minimumOpen, maximumOpen;
+};
+
+struct FieldInfo {
+  std::string name;
+  FieldType type;
+  Access access;
+  Change change;
+  uint32_t offset;       // static nodes: bytes from the Node; dynamic nodes: index of the value; events: unused
+  Value defaultValue;    // fields and exposedFields
+  FieldRange range;      // per number
+  std::string nodeTypes; // SFNode, MFNode: blank-separated abstract or concrete types accepted; empty: any
+  std::string text;      // one line of documentation
+};
+
+// A table row per field; how to make a node. Immutable and alive as long as any node of the type.
+struct NodeType {
+  std::string name;
+  int index;                         // position in the registry's list of static types; -1 for prototypes and scripts
+  std::vector<std::string> abstract; // what it may stand for: child, grouping, geometry, appearance, ... (models of SFNode constraints)
+  std::string component;             // file it comes from: grouping, geometry, lighting ...
+  std::string text;
+  std::vector<FieldInfo> fields;
+  Node* (*create)(const NodeType& type);
+
+  const FieldInfo* find(std::string_view fieldName) const; // exact name
+  // Also finds set_x and x_changed of an exposedField x (clause 4.7); wantInput: looked up as the target of a route.
+  const FieldInfo* findEventIn(std::string_view name) const;
+  const FieldInfo* findEventOut(std::string_view name) const;
+};
+using NodeTypePtr = std::shared_ptr<const NodeType>;
+
+class Node {
+ public:
+  explicit Node(const NodeType& type) : type_(&type) {}
+  virtual ~Node() = default;
+  Node(const Node&) = delete;
+  Node& operator=(const Node&) = delete;
+
+  const NodeType& type() const { return *type_; }
+  // Storage of a field or exposedField; its C++ type is the alternative of Value with index field.type.
+  virtual void* storage(const FieldInfo& field) { return reinterpret_cast<char*>(this) + field.offset; }
+  const void* storage(const FieldInfo& field) const { return const_cast<Node*>(this)->storage(field); }
+  Value get(const FieldInfo& field) const;
+  // The value's type must be the field's; false (and no change) otherwise.
+  bool set(const FieldInfo& field, Value value);
+
+  std::string name;      // DEF, empty if none
+  SourcePosition source;
+
+ private:
+  friend class NodeRef;
+  const NodeType* type_;
+  std::atomic<uint32_t> references_{0};
+};
+
+inline NodeRef::NodeRef(Node* node) : node_(node) { if (node_) node_->references_.fetch_add(1, std::memory_order_relaxed); }
+inline NodeRef::NodeRef(const NodeRef& other) : NodeRef(other.node_) {}
+inline NodeRef::~NodeRef() { if (node_ && node_->references_.fetch_sub(1, std::memory_order_acq_rel) == 1) delete node_; }
+
+// The concrete type if node is exactly of it: nodeCast<nodes::Box>(ref). Generated structs have a static `typeIndex`.
+template <class T> T* nodeCast(Node* node) { return node && node->type().index == T::typeIndex ? static_cast<T*>(node) : nullptr; }
+template <class T> T* nodeCast(const NodeRef& ref) { return nodeCast<T>(ref.get()); }
+
+// A node whose fields are described at run time: Script nodes and PROTO instances keep their interface's values here.
+class DynamicNode : public Node {
+ public:
+  explicit DynamicNode(NodeTypePtr type);
+  void* storage(const FieldInfo& field) override;
+  std::vector<Value> values; // by FieldInfo::offset
+  const NodeTypePtr typePtr;
+};
+
+// Built-in and plug-in types. Iteration order is the order of the .node files and is stable.
+std::span<const NodeType* const> nodeTypes();
+const NodeType* findNodeType(std::string_view name);
+
+} // namespace xvrml

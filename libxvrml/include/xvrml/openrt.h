@@ -1,0 +1,68 @@
+// openrt.h: draws a world through the OpenRT API: the mapper of scene-graph nodes to rt* calls (library xvrml_openrt).
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "xvrml/world.h"
+
+namespace xvrml {
+
+struct ViewpointInfo {
+  std::string name;        // DEF, may be empty
+  std::string description;
+  NodeRef node;
+  double matrix[16];       // local to world, column-major
+};
+
+struct CameraSettings {
+  double matrix[16];       // camera to world
+  double fovy = 0.785398;  // radians, vertical; 0: orthographic
+  double height = 0;       // orthographic: world units
+};
+
+struct Bounds {
+  double minimum[3], maximum[3];
+  bool empty = true;
+};
+
+struct MapOptions {
+  bool linearColor = true;  // decode sRGB (vv-cli.md "Colour"); false: the standard's equation on the numbers as written
+  enum class Headlight : uint8_t { automatic, on, off } headlight = Headlight::automatic;
+  double aspect = 4.0 / 3.0; // width / height: the smaller angle of view is the Viewpoint's fieldOfView (clause 6.53)
+};
+
+struct MapStats {
+  uint64_t shapes = 0, triangles = 0, lights = 0, textures = 0, objects = 0, instances = 0;
+};
+
+// Maps a world into the current OpenRT context. One mapper per context; every call on the context's thread.
+class OpenRTMapper {
+ public:
+  OpenRTMapper(World& world, const MapOptions& options);
+  ~OpenRTMapper();
+
+  // Viewpoints in the order of the file (prototypes and Inlines expanded).
+  const std::vector<ViewpointInfo>& viewpoints() const;
+  // Camera of a viewpoint (index into viewpoints()); of the standard's default (0 0 10) if there is none.
+  CameraSettings viewpointCamera(size_t index) const;
+  // A camera along -z of the first viewpoint (or the world) that shows all of it.
+  CameraSettings fitCamera(double fovy) const;
+  Bounds bounds() const;
+
+  // Makes all rt* calls for this camera: geometry once, then lights, environment, headlight, billboards and LODs for the camera.
+  void map(const CameraSettings& camera);
+  MapStats stats() const;
+  // DEF name (or type name) for a number of the name channel; names()[0] is "".
+  const std::vector<std::string>& names() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+} // namespace xvrml
