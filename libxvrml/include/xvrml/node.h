@@ -75,7 +75,7 @@ class Node {
   // The value's type must be the field's; false (and no change) otherwise.
   bool set(const FieldInfo& field, Value value);
 
-  std::string name;      // DEF, empty if none
+  std::string defName;   // DEF, empty if none (not `name`: nodes may have a field of that name)
   SourcePosition source;
 
  private:
