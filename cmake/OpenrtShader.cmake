@@ -1,11 +1,18 @@
-# openrt_add_shader(NAME SOURCE...): a shader plug-in NAME.so in the shader folder; links against nothing of OpenRT.
+# openrt_add_shader(NAME SOURCE...): a shader plug-in NAME.so in <build>/lib/openrt/shaders. A plug-in sees the SDK's headers
+# (openrt/openrts.h, openrts.hpp) and links against nothing of OpenRT. Part of the project and of the installed CMake package.
+include_guard(GLOBAL)
 function(openrt_add_shader name)
   add_library(shader_${name} MODULE ${ARGN})
   set_target_properties(shader_${name} PROPERTIES PREFIX "" OUTPUT_NAME ${name} CXX_VISIBILITY_PRESET hidden
                         C_VISIBILITY_PRESET hidden LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib/openrt/shaders)
-  if(TARGET openrt_headers)
-    target_link_libraries(shader_${name} PRIVATE openrt_headers project_options)
-  else()
-    target_link_libraries(shader_${name} PRIVATE openrt::openrt)
+  target_compile_features(shader_${name} PRIVATE cxx_std_20)
+  target_link_libraries(shader_${name} PRIVATE openrt::headers)
+  if(TARGET project_options)
+    target_link_libraries(shader_${name} PRIVATE project_options)
   endif()
+  if(NOT TARGET shaders)
+    add_custom_target(shaders) # all shader plug-ins of a project
+  endif()
+  add_dependencies(shaders shader_${name})
+  set_property(GLOBAL APPEND PROPERTY OPENRT_SHADERS shader_${name})
 endfunction()

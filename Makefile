@@ -1,0 +1,85 @@
+# The front door. `make demo` and `make test` need nothing but Debian 12 with make: the packages come by themselves.
+# Everything is built by CMake (presets: release, dev, asan-ubsan, tsan, fuzz, coverage) into build/<preset>.
+JOBS ?= $(shell nproc)
+PREFIX ?= /usr/local
+PYTHON ?= $(firstword $(wildcard /usr/bin/python3) python3)
+CLANG ?= 14
+FUZZ_SECONDS ?= 60
+CORPUS ?= $(or $(OPENRT_CORPUS),../shared/corpus)
+CONFIGURE = cmake --log-level=NOTICE -DPython_EXECUTABLE=$(PYTHON) -DPython3_EXECUTABLE=$(PYTHON) --preset
+R = build/release
+SOURCES = $(shell git ls-files '*.cpp' '*.h' '*.hpp' '*.c')
+export CTEST_OUTPUT_ON_FAILURE = 1
+
+.PHONY: build demo test install bench corpus fuzz asan tsan coverage format format-check tidy packages clean help
+
+help:
+	@sed -n 's/^## //p' Makefile
+
+## make demo          install the packages, build, and render examples/scenes/still_life.wrl to demo.png
+demo: packages
+	@$(CONFIGURE) release
+	@cmake --build $(R) -j $(JOBS) --target vv shaders
+	$(R)/bin/vv examples/scenes/still_life.wrl -o demo.png --size 960x640 --spp 64
+	@echo "demo.png: examples/scenes/still_life.wrl, ray traced"
+
+## make test          install the packages, build everything, run all tests
+test: packages build
+	@status=0; \
+	ctest --test-dir $(R) --no-tests=error -j $(JOBS) || status=1; \
+	PYTHONPATH=$(R)/python $(PYTHON) -m pytest -q -p no:cacheprovider tests/python || status=1; \
+	exit $$status
+
+## make build         libraries, programs and tests into build/release (bin/, lib/, python/)
+build:
+	@$(CONFIGURE) release
+	@cmake --build $(R) -j $(JOBS)
+
+## make install       into PREFIX (default /usr/local), DESTDIR is honoured
+install: build
+	@cmake --install $(R) --prefix $(PREFIX)
+
+## make bench         benchmarks, JSON into build/bench
+bench: build
+	@mkdir -p build/bench
+	@for b in $(R)/bin/bench_*; do [ -x $$b ] || continue; \
+	  $$b --benchmark_out=build/bench/$$(basename $$b).json --benchmark_out_format=json || exit 1; done
+
+## make corpus        table and contact sheets of a folder of VRML files (CORPUS=...) into build/corpus
+corpus: build
+	@$(PYTHON) tests/corpus/corpus.py --vv $(R)/bin/vv --corpus $(CORPUS) --out build/corpus
+
+## make fuzz          every fuzz target for FUZZ_SECONDS (default 60) each
+fuzz:
+	@tools/install-packages.sh dev
+	@$(CONFIGURE) fuzz && cmake --build build/fuzz -j $(JOBS)
+	@tools/run-fuzz.sh build/fuzz/bin $(FUZZ_SECONDS)
+
+## make asan, tsan    all tests under the sanitizers
+asan: packages
+	@$(CONFIGURE) asan-ubsan && cmake --build build/asan-ubsan -j $(JOBS) && ctest --preset asan-ubsan -j $(JOBS)
+tsan: packages
+	@$(CONFIGURE) tsan && cmake --build build/tsan -j $(JOBS) && ctest --preset tsan -j $(JOBS)
+
+## make coverage      line coverage of the tests, summary into build/coverage/coverage.txt
+coverage: packages
+	@$(CONFIGURE) coverage && cmake --build build/coverage -j $(JOBS) && ctest --preset coverage -j $(JOBS)
+	@tools/coverage.sh build/coverage
+
+## make format, tidy  clang-format in place; clang-tidy on the release build's commands
+format:
+	@tools/install-packages.sh dev
+	@clang-format-$(CLANG) -i $(SOURCES)
+format-check:
+	@clang-format-$(CLANG) --dry-run --Werror $(SOURCES)
+tidy:
+	@tools/install-packages.sh dev
+	@$(CONFIGURE) release && cmake --build $(R) -j $(JOBS)
+	@tools/run-tidy.sh $(R) $(JOBS)
+
+packages:
+	@tools/install-packages.sh
+
+## make clean         remove build/
+clean:
+	@rm -rf build

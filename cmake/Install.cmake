@@ -1,0 +1,48 @@
+# What `cmake --install` lays down: libraries, headers (the generated xvrml/nodes.h too), vv, openrt-replay, nodegen, shader
+# plug-ins, the Python package, CMake packages `openrt` and `xvrml`, pkg-config files. The installed tree can be moved.
+include(CMakePackageConfigHelpers)
+set(openrt_cmake_dir ${CMAKE_INSTALL_LIBDIR}/cmake/openrt)
+set(xvrml_cmake_dir ${CMAKE_INSTALL_LIBDIR}/cmake/xvrml)
+
+install(TARGETS openrt openrt_headers EXPORT openrt_targets)
+install(DIRECTORY libopenrt/include/openrt DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h" PATTERN "*.hpp")
+install(TARGETS openrt-replay)
+get_property(shaders GLOBAL PROPERTY OPENRT_SHADERS)
+install(TARGETS ${shaders} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/openrt/shaders)
+
+set_target_properties(xvrml_openrt PROPERTIES EXPORT_NAME openrt)
+install(TARGETS xvrml xvrml_openrt EXPORT xvrml_targets)
+install(DIRECTORY libxvrml/include/xvrml DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h")
+get_target_property(xvrml_includes xvrml INTERFACE_INCLUDE_DIRECTORIES)
+foreach(folder ${xvrml_includes}) # the folder of generated headers is the one in the build tree
+  if(folder MATCHES "^\\$<BUILD_INTERFACE:(${CMAKE_BINARY_DIR}.*)>$")
+    install(DIRECTORY ${CMAKE_MATCH_1}/xvrml DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h")
+  endif()
+endforeach()
+install(TARGETS nodegen)
+if(TARGET vv)
+  install(TARGETS vv)
+endif()
+if(OPENRT_PYTHON)
+  install(DIRECTORY ${CMAKE_BINARY_DIR}/python/ DESTINATION ${CMAKE_INSTALL_LIBDIR}/openrt/python OPTIONAL
+          PATTERN "__pycache__" EXCLUDE)
+endif()
+install(FILES README.md LICENSE CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+foreach(package openrt xvrml)
+  install(EXPORT ${package}_targets NAMESPACE ${package}:: DESTINATION ${${package}_cmake_dir} FILE ${package}-targets.cmake)
+  configure_package_config_file(cmake/${package}-config.cmake.in ${CMAKE_BINARY_DIR}/package/${package}-config.cmake
+                                INSTALL_DESTINATION ${${package}_cmake_dir})
+  write_basic_package_version_file(${CMAKE_BINARY_DIR}/package/${package}-config-version.cmake COMPATIBILITY SameMinorVersion)
+  install(FILES ${CMAKE_BINARY_DIR}/package/${package}-config.cmake ${CMAKE_BINARY_DIR}/package/${package}-config-version.cmake
+          DESTINATION ${${package}_cmake_dir})
+endforeach()
+install(FILES cmake/OpenrtShader.cmake DESTINATION ${openrt_cmake_dir})
+
+# From lib/pkgconfig to the prefix, so that the tree can be moved: pkg-config knows where its file lies.
+file(RELATIVE_PATH pkgconfig_to_prefix /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
+string(REGEX REPLACE "/$" "" pkgconfig_to_prefix ${pkgconfig_to_prefix})
+foreach(package openrt xvrml)
+  configure_file(cmake/${package}.pc.in ${CMAKE_BINARY_DIR}/package/${package}.pc @ONLY)
+  install(FILES ${CMAKE_BINARY_DIR}/package/${package}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+endforeach()

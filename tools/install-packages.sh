@@ -1,0 +1,53 @@
+#!/bin/bash
+# Installs the Debian packages that the project needs: `tools/install-packages.sh` for building, testing and the demo,
+# `tools/install-packages.sh dev` also what `make fuzz`, `make tidy` and `make format` use. Does nothing, quickly and
+# without a network, when all of them are there. Runs as root or through sudo.
+set -euo pipefail
+
+build=(
+  g++ make cmake ninja-build ccache pkg-config git ca-certificates
+  libembree-dev libtbb-dev                                      # ray kernels, threads
+  libimath-dev libopenexr-dev libpng-dev libjpeg-dev libgif-dev # small maths, pictures
+  zlib1g-dev libzstd-dev libxxhash-dev                          # compression, hashes
+  libflatbuffers-dev flatbuffers-compiler # scene edits
+  libfast-float-dev libfmt-dev libspdlog-dev libcli11-dev nlohmann-json3-dev
+  libfreetype-dev libharfbuzz-dev libfontconfig-dev fonts-dejavu-core libglu1-mesa-dev # text, polygons
+  python3 python3-dev python3-numpy pybind11-dev
+)
+tests=(libgtest-dev librapidcheck-dev libbenchmark-dev python3-pytest python3-hypothesis python3-pil)
+dev=(clang-14 clang-format-14 clang-tidy-14 libclang-rt-14-dev llvm-14)
+
+wanted=("${build[@]}" "${tests[@]}")
+[ "${1:-}" = dev ] && wanted+=("${dev[@]}")
+
+if ! command -v apt-get >/dev/null; then
+  echo "install-packages: no apt-get here; install the counterparts of these packages yourself:" "${wanted[@]}" >&2
+  exit 0
+fi
+
+installed=$(dpkg-query -W -f '${db:Status-Abbrev} ${Package}\n' "${wanted[@]}" 2>/dev/null | sed -n 's/^ii  *//p' || true)
+missing=()
+for package in "${wanted[@]}"; do
+  grep -qx -- "$package" <<<"$installed" || missing+=("$package")
+done
+[ ${#missing[@]} -eq 0 ] && exit 0
+
+as_root=()
+if [ "$(id -u)" -ne 0 ]; then
+  command -v sudo >/dev/null || { echo "install-packages: needs root or sudo to install:" "${missing[@]}" >&2; exit 1; }
+  as_root=(sudo)
+fi
+echo "Installing ${#missing[@]} system packages: ${missing[*]}"
+log=$(mktemp)
+trap 'rm -f "$log"' EXIT
+install() {
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -qq -y -o Dpkg::Use-Pty=0 -o DPkg::Lock::Timeout=300 \
+    install --no-install-recommends "${missing[@]}" </dev/null >"$log" 2>&1
+}
+# The package lists may be old or absent: fetch them first, and try with what is there if that fails.
+"${as_root[@]}" apt-get -qq -o DPkg::Lock::Timeout=300 update </dev/null >"$log" 2>&1 || cat "$log" >&2
+if ! install; then
+  cat "$log" >&2
+  echo "install-packages: apt-get could not install the packages above" >&2
+  exit 1
+fi

@@ -1,0 +1,25 @@
+#!/bin/bash
+# run-fuzz.sh FOLDER SECONDS: runs every fuzz target of FOLDER for SECONDS, from the seeds in tests/ and the corpus of earlier
+# runs (build/fuzz-corpus). A finding ends the run with its file in build/fuzz-findings.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+folder=$1 seconds=$2
+mkdir -p build/fuzz-findings
+found=0
+for target in "$folder"/fuzz_*; do
+  [ -x "$target" ] || continue
+  name=$(basename "$target")
+  corpus=build/fuzz-corpus/$name
+  mkdir -p "$corpus"
+  seeds=()
+  for dir in "tests/fuzz/seeds/$name" tests/conformance/good tests/conformance/bad; do
+    if [ -d "$dir" ]; then seeds+=("$dir"); fi
+  done
+  dictionary=()
+  if [ -f "tests/fuzz/$name.dict" ]; then dictionary=("-dict=tests/fuzz/$name.dict"); fi
+  echo "$name: $seconds s"
+  "$target" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -print_final_stats=1 "${dictionary[@]}" \
+    -artifact_prefix="build/fuzz-findings/$name-" "$corpus" "${seeds[@]}" 2>&1 | grep -E '^(stat::|==|SUMMARY|Test unit|artifact)|ERROR|runtime error' || true
+  if [ "${PIPESTATUS[0]}" -ne 0 ]; then found=1; fi
+done
+exit $found
