@@ -17,6 +17,7 @@ struct Diagnostic {
   uint32_t line = 0, column = 0; // 0: the whole file
   std::string message;
   std::string sourceLine; // the line it speaks of, cut to a readable length; empty if unknown
+  uint32_t caret = 0;     // the place as a column of sourceLine
   // "file:line:column: error: message", then the source line and a caret.
   std::string text() const;
 };

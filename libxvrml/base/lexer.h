@@ -1,0 +1,111 @@
+// lexer.h: the tokens of VRML97 text (ISO/IEC 14772-1 Annex A.3) as views over the bytes; nothing is copied or stored.
+// Used by the value parser, the file parser and nodegen. One lexer per text, on one thread. The bytes must outlive it.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "xvrml/diagnostics.h"
+
+namespace xvrml {
+
+enum class TokenKind : uint8_t {
+  end,
+  identifier,
+  number,
+  string,
+  braceOpen,
+  braceClose,
+  bracketOpen,
+  bracketClose,
+  period,
+  invalid
+};
+
+struct Token {
+  TokenKind kind = TokenKind::end;
+  std::string_view text; // strings with their quotes; empty but placed at the end of the text
+  const char* at() const { return text.data(); }
+  bool is(TokenKind k) const { return kind == k; }
+  bool is(std::string_view keyword) const { return kind == TokenKind::identifier && text == keyword; }
+};
+
+// Bytes that separate tokens: white space, comma, the start of a comment.
+constexpr bool isVrmlSpace(char c) {
+  return c == ' ' || c == '\n' || c == '\t' || c == '\r' || c == ',' || c == '\f' || c == '\v';
+}
+// Bytes at which a number or a word ends.
+constexpr bool isVrmlSeparator(char c) {
+  return isVrmlSpace(c) || c == '[' || c == ']' || c == '{' || c == '}' || c == '"' || c == '#';
+}
+bool isIdentifierStart(unsigned char c); // IdFirstChar
+bool isIdentifierRest(unsigned char c); // IdRestChars
+bool isIdentifier(std::string_view text);
+
+class Lexer {
+ public:
+  Lexer(std::string_view bytes, std::shared_ptr<const std::string> file, Diagnostics& diagnostics);
+
+  const Token& peek() {
+    if (!peeked_) lex();
+    return token_;
+  }
+  Token next() {
+    Token token = peek();
+    peeked_ = false;
+    return token;
+  }
+  bool accept(TokenKind kind) {
+    if (peek().kind != kind) return false;
+    peeked_ = false;
+    return true;
+  }
+  // The next token read as a name where the grammar wants one: takes what real files write (1stRoom, a.b, it's), which the
+  // grammar forbids; such a token is of kind invalid. Structure ({ } [ ] " and the end) is returned as it is.
+  Token nextName();
+  // The last comment skipped before the next token, without its #; empty if there was none before it.
+  std::string_view comment() {
+    peek();
+    return comment_;
+  }
+
+  // Raw access for loops over big arrays: the first byte not yet consumed.
+  const char* cursor() const { return peeked_ ? token_.at() : position_; }
+  const char* end() const { return end_; }
+  void seek(const char* position) {
+    position_ = position;
+    peeked_ = false;
+  }
+  // Skips white space, commas and comments from p.
+  const char* skipSpace(const char* p);
+
+  // Line and column (in bytes, from 1) of a place in the text. Costs the distance from the place asked for before.
+  SourcePosition place(const char* at);
+  void error(const char* at, std::string message) { report(Severity::error, at, std::move(message)); }
+  void warn(const char* at, std::string message) { report(Severity::warning, at, std::move(message)); }
+  Diagnostics& diagnostics() { return diagnostics_; }
+
+ private:
+  void lex();
+  const char* lexNumber(const char* p, bool& valid) const;
+  const char* lexString(const char* p, bool& valid) const;
+  void report(Severity severity, const char* at, std::string message);
+
+  const char* const begin_;
+  const char* const end_;
+  const char* position_;
+  Token token_;
+  bool peeked_ = false;
+  std::string_view comment_;
+  std::shared_ptr<const std::string> file_;
+  Diagnostics& diagnostics_;
+  const char* mark_; // where lines were last counted to, and what they were there
+  uint32_t line_ = 1, column_ = 1;
+};
+
+// What a message says was found: 'word', "string…", end of file.
+std::string describe(const Token& token);
+
+} // namespace xvrml

@@ -1,0 +1,287 @@
+// value_parser.cpp: field values from text. See value_parser.h.
+#include "base/value_parser.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "base/number.h"
+
+namespace xvrml {
+namespace {
+
+// The numbers of a tuple in the order they are written, and the field type messages name.
+template <class T> struct Tuple;
+template <> struct Tuple<float> {
+  static constexpr int size = 1;
+  static constexpr auto type = FieldType::SFFloat;
+};
+template <> struct Tuple<double> {
+  static constexpr int size = 1;
+  static constexpr auto type = FieldType::SFTime;
+};
+template <> struct Tuple<int32_t> {
+  static constexpr int size = 1;
+  static constexpr auto type = FieldType::SFInt32;
+};
+template <> struct Tuple<Vec2f> {
+  static constexpr int size = 2;
+  static constexpr auto type = FieldType::SFVec2f;
+};
+template <> struct Tuple<Vec3f> {
+  static constexpr int size = 3;
+  static constexpr auto type = FieldType::SFVec3f;
+};
+template <> struct Tuple<Color> {
+  static constexpr int size = 3;
+  static constexpr auto type = FieldType::SFColor;
+};
+template <> struct Tuple<Rotation> {
+  static constexpr int size = 4;
+  static constexpr auto type = FieldType::SFRotation;
+};
+
+template <class T>
+concept HasTuple = requires {
+  Tuple<T>::size;
+};
+
+template <class T> auto* numbers(T& value) {
+  if constexpr (Tuple<T>::size == 1) {
+    return &value;
+  } else {
+    static_assert(sizeof(T) == Tuple<T>::size * sizeof(float));
+    return reinterpret_cast<float*>(&value);
+  }
+}
+
+inline bool endsNumber(const char* p, const char* end) { return p == end || isVrmlSeparator(*p) || *p == '+' || *p == '-'; }
+
+} // namespace
+
+bool ValueParser::fail(const char* at, std::string message) {
+  lexer_.error(at, std::move(message));
+  return false;
+}
+
+bool ValueParser::failFound(const Token& found, std::string_view expected) {
+  return fail(found.at(), fmt::format("expected {}, found {}", expected, describe(found)));
+}
+
+// One number at p, which is not white space. Moves p behind it.
+template <class Scalar> bool ValueParser::scalar(const char*& p, Scalar& out, FieldType type) {
+  const char* start = p;
+  const NumberError error = readNumber(p, lexer_.end(), out);
+  if (error == NumberError::none && endsNumber(p, lexer_.end())) return true;
+  const std::string_view name = fieldTypeName(type);
+  lexer_.seek(start);
+  const Token found = lexer_.peek();
+  if (error == NumberError::outOfRange) {
+    lexer_.next();
+    return fail(start, fmt::format("number {} is out of range for {}", describe(found), name));
+  }
+  if constexpr (std::is_integral_v<Scalar>) {
+    // Some writers put 1.0 where an integer belongs.
+    float real = 0;
+    p = start;
+    if (readNumber(p, lexer_.end(), real) == NumberError::none && endsNumber(p, lexer_.end()) && std::trunc(real) == real &&
+        std::abs(real) < 16777216.0f) {
+      lexer_.warn(start, fmt::format("{} is not an integer as {} wants; read as {}", describe(found), name, real));
+      out = static_cast<Scalar>(real);
+      return true;
+    }
+  }
+  const bool whole = isMultiple(type) || type == FieldType::SFFloat || type == FieldType::SFInt32 || type == FieldType::SFTime;
+  return failFound(found, fmt::format("a{} {} of {}", std::is_integral_v<Scalar> ? "n" : "",
+                                      std::is_integral_v<Scalar> ? "integer"
+                                      : whole                    ? "number"
+                                                                 : "component",
+                                      name));
+}
+
+// SFFloat, SFInt32, SFTime, SFVec2f, SFVec3f, SFColor, SFRotation: one to four numbers
+template <class T> bool ValueParser::single(T& out) {
+  const char* p = lexer_.cursor();
+  auto* components = numbers(out);
+  for (int i = 0; i < Tuple<T>::size; ++i) {
+    p = lexer_.skipSpace(p);
+    if (!scalar(p, components[i], Tuple<T>::type)) return false;
+  }
+  lexer_.seek(p);
+  return true;
+}
+
+// sfboolValue ::= TRUE | FALSE
+bool ValueParser::single(bool& out) {
+  const Token token = lexer_.peek();
+  if (token.is("TRUE") || token.is("FALSE")) {
+    out = token.text == "TRUE";
+  } else if (token.is("true") || token.is("false")) {
+    out = token.text == "true";
+    lexer_.warn(token.at(), fmt::format("SFBool is written {} in VRML97", out ? "TRUE" : "FALSE"));
+  } else {
+    return failFound(token, "TRUE or FALSE of SFBool");
+  }
+  lexer_.next();
+  return true;
+}
+
+// sfstringValue ::= string
+bool ValueParser::single(std::string& out) {
+  const Token token = lexer_.peek();
+  if (!token.is(TokenKind::string)) return failFound(token, "a string in double quotes");
+  lexer_.next();
+  if (token.text.size() > limits_.stringBytes) {
+    return fail(token.at(),
+                fmt::format("string of {} bytes: more than limit stringBytes={}", token.text.size(), limits_.stringBytes));
+  }
+  out = unescape(token.text);
+  return true;
+}
+
+// sfimageValue ::= int32 int32 int32 ... (clause 5.5: width, height, components, then one number a pixel)
+bool ValueParser::single(Image& out) {
+  const char* start = lexer_.skipSpace(lexer_.cursor());
+  int32_t header[3];
+  const char* p = start;
+  for (int32_t& number : header) {
+    p = lexer_.skipSpace(p);
+    if (!scalar(p, number, FieldType::SFImage)) return false;
+  }
+  lexer_.seek(p);
+  const auto [width, height, components] = header;
+  if (width < 0 || height < 0)
+    return fail(start, fmt::format("SFImage of {} x {} pixels: sizes are not negative", width, height));
+  if (components < 0 || components > 4) return fail(start, fmt::format("SFImage of {} components: expected 0 to 4", components));
+  const uint64_t pixels = components > 0 ? uint64_t(width) * uint64_t(height) : 0;
+  if (pixels > limits_.imagePixels) {
+    return fail(start,
+                fmt::format("SFImage of {} x {} pixels: more than limit imagePixels={}", width, height, limits_.imagePixels));
+  }
+  out = {width, height, components, {}};
+  // A pixel takes two bytes of text at least: a header alone reserves nothing.
+  out.pixels.reserve(std::min<uint64_t>(pixels, (lexer_.end() - p) / 2 + 1) * uint64_t(components));
+  for (uint64_t i = 0; i < pixels; ++i) {
+    p = lexer_.skipSpace(p);
+    const char* at = p;
+    int32_t number = 0;
+    if (readNumber(p, lexer_.end(), number) == NumberError::outOfRange && *at != '-') { // a 32-bit pixel in decimal
+      double real = 0;
+      p = at;
+      if (readNumber(p, lexer_.end(), real) == NumberError::none && real < 4294967296.0)
+        number = static_cast<int32_t>(static_cast<uint32_t>(real));
+      else
+        p = at;
+    }
+    if (p == at || !endsNumber(p, lexer_.end())) {
+      p = at;
+      if (!scalar(p, number, FieldType::SFImage)) return false;
+    }
+    for (int c = components - 1; c >= 0; --c)
+      out.pixels.push_back(static_cast<uint8_t>(static_cast<uint32_t>(number) >> (8 * c)));
+  }
+  lexer_.seek(p);
+  return true;
+}
+
+bool ValueParser::single(NodeRef& out) {
+  const Token token = lexer_.peek();
+  if (!token.is("NULL")) return failFound(token, "NULL");
+  lexer_.next();
+  out = {};
+  return true;
+}
+
+// Capacity from the density of the first elements, so that a big array is not copied while it grows.
+template <class T> void ValueParser::reserve(std::vector<T>& out, const char* from, const char* to) {
+  const char* close = static_cast<const char*>(std::memchr(to, ']', lexer_.end() - to));
+  if (!close) close = lexer_.end();
+  const double perByte = static_cast<double>(out.size()) / static_cast<double>(std::max<ptrdiff_t>(to - from, 1));
+  const double rest = perByte * static_cast<double>(close - to) * 1.05;
+  out.reserve(out.size() + static_cast<size_t>(std::min(rest, static_cast<double>(limits_.arrayElements))) + 16);
+}
+
+// mfXValue ::= sfXValue | [ ] | [ sfXValues ]
+template <class T> bool ValueParser::multiple(std::vector<T>& out) {
+  out.clear();
+  if (!lexer_.accept(TokenKind::bracketOpen)) return single(out.emplace_back());
+  constexpr size_t sample = 1024;
+  const char* const first = lexer_.cursor();
+  const char* p = lexer_.skipSpace(first);
+  for (; p < lexer_.end() && *p != ']'; p = lexer_.skipSpace(p)) {
+    T value{};
+    const char* start = p;
+    if constexpr (HasTuple<T>) {
+      auto* components = numbers(value);
+      for (int i = 0; i < Tuple<T>::size; ++i) {
+        if (i > 0 && (p = lexer_.skipSpace(p)) < lexer_.end() && *p == ']') {
+          lexer_.seek(p);
+          return fail(start, fmt::format("{} number{} left over: {} takes {} each", i, i > 1 ? "s" : "",
+                                         fieldTypeName(Tuple<T>::type), Tuple<T>::size));
+        }
+        if (!scalar(p, components[i], Tuple<T>::type)) return false;
+      }
+      if (out.size() * Tuple<T>::size >= limits_.arrayElements) {
+        lexer_.seek(p);
+        return fail(start, fmt::format("more numbers in one field than limit arrayElements={}", limits_.arrayElements));
+      }
+    } else {
+      lexer_.seek(p);
+      if (!single(value)) return false;
+      p = lexer_.cursor();
+      if (out.size() >= limits_.arrayElements) {
+        return fail(start, fmt::format("more values in one field than limit arrayElements={}", limits_.arrayElements));
+      }
+    }
+    out.push_back(std::move(value));
+    if (out.size() == sample) reserve(out, first, p);
+  }
+  lexer_.seek(p);
+  if (!lexer_.accept(TokenKind::bracketClose)) return failFound(lexer_.peek(), "a value or ]");
+  return true;
+}
+
+bool ValueParser::parse(FieldType type, void* storage) {
+  switch (type) {
+  case FieldType::SFBool: return single(*static_cast<SFBool*>(storage));
+  case FieldType::SFColor: return single(*static_cast<SFColor*>(storage));
+  case FieldType::SFFloat: return single(*static_cast<SFFloat*>(storage));
+  case FieldType::SFImage: return single(*static_cast<SFImage*>(storage));
+  case FieldType::SFInt32: return single(*static_cast<SFInt32*>(storage));
+  case FieldType::SFNode: return single(*static_cast<SFNode*>(storage));
+  case FieldType::SFRotation: return single(*static_cast<SFRotation*>(storage));
+  case FieldType::SFString: return single(*static_cast<SFString*>(storage));
+  case FieldType::SFTime: return single(*static_cast<SFTime*>(storage));
+  case FieldType::SFVec2f: return single(*static_cast<SFVec2f*>(storage));
+  case FieldType::SFVec3f: return single(*static_cast<SFVec3f*>(storage));
+  case FieldType::MFColor: return multiple(*static_cast<MFColor*>(storage));
+  case FieldType::MFFloat: return multiple(*static_cast<MFFloat*>(storage));
+  case FieldType::MFInt32: return multiple(*static_cast<MFInt32*>(storage));
+  case FieldType::MFNode: return multiple(*static_cast<MFNode*>(storage));
+  case FieldType::MFRotation: return multiple(*static_cast<MFRotation*>(storage));
+  case FieldType::MFString: return multiple(*static_cast<MFString*>(storage));
+  case FieldType::MFTime: return multiple(*static_cast<MFTime*>(storage));
+  case FieldType::MFVec2f: return multiple(*static_cast<MFVec2f*>(storage));
+  case FieldType::MFVec3f: return multiple(*static_cast<MFVec3f*>(storage));
+  }
+  return false;
+}
+
+bool ValueParser::parse(FieldType type, Value& value) {
+  value = defaultValue(type);
+  return parse(type, std::visit([](auto& storage) -> void* { return &storage; }, value));
+}
+
+std::string unescape(std::string_view token) {
+  if (token.size() < 2) return {};
+  token = token.substr(1, token.size() - 2);
+  std::string text;
+  text.reserve(token.size());
+  for (size_t i = 0; i < token.size(); ++i) {
+    if (token[i] == '\\' && i + 1 < token.size() && (token[i + 1] == '"' || token[i + 1] == '\\')) ++i;
+    text += token[i];
+  }
+  return text;
+}
+
+} // namespace xvrml

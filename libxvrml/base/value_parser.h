@@ -1,0 +1,38 @@
+// value_parser.h: field values of ISO/IEC 14772-1 clause 5 from text into typed storage. Used by the file parser (big arrays are
+// read straight into a node's vectors) and by nodegen (defaults). On the lexer's thread.
+#pragma once
+
+#include "base/lexer.h"
+#include "xvrml/limits.h"
+
+namespace xvrml {
+
+class ValueParser {
+ public:
+  ValueParser(Lexer& lexer, const Limits& limits) : lexer_(lexer), limits_(limits) {}
+
+  // Reads a value into *storage, which is of the C++ type of `type`. SFNode takes NULL and MFNode [ ] only: nodes are the file
+  // parser's. False after an error was reported; the lexer then stands at or behind what was wrong, the storage is unspecified.
+  bool parse(FieldType type, void* storage);
+  bool parse(FieldType type, Value& value);
+
+ private:
+  template <class T> bool multiple(std::vector<T>& out);
+  template <class T> void reserve(std::vector<T>& out, const char* from, const char* to);
+  bool single(bool& out);
+  bool single(std::string& out);
+  bool single(Image& out);
+  bool single(NodeRef& out);
+  template <class T> bool single(T& out); // numbers and tuples of them
+  template <class Scalar> bool scalar(const char*& p, Scalar& out, FieldType type);
+  bool fail(const char* at, std::string message);
+  bool failFound(const Token& found, std::string_view expected);
+
+  Lexer& lexer_;
+  const Limits& limits_;
+};
+
+// The characters a string token stands for: \" and \\ are undone, other backslashes stay (clause 5.9).
+std::string unescape(std::string_view token);
+
+} // namespace xvrml
