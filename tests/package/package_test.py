@@ -1,0 +1,73 @@
+#!/usr/bin/env python3
+"""Installs the build into a scratch prefix, moves it, and builds and runs a stranger's project on nothing else.
+
+package_test.py SOURCE BUILD CMAKE CC
+"""
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+
+source, build, cmake, cc = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]), sys.argv[3], sys.argv[4]
+env = {k: v for k, v in os.environ.items() if not k.startswith(("OPENRT_", "CMAKE_", "LD_", "PKG_", "PYTHONPATH", "DESTDIR"))}
+
+
+def run(*command, **more):
+    done = subprocess.run([str(c) for c in command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=600,
+                          env={**env, **more.pop("env", {})}, **more)
+    if done.returncode:
+        sys.exit(f"failed ({done.returncode}): {' '.join(map(str, command))}\n{done.stdout}")
+    return done.stdout
+
+
+def foreign_libraries(program, prefix):
+    """Our own libraries that `program` would load from anywhere but the prefix."""
+    ours = ("libopenrt", "libxvrml")
+    return [line for line in run("ldd", program).splitlines() if any(o in line for o in ours) and str(prefix) not in line]
+
+
+with tempfile.TemporaryDirectory() as scratch:
+    scratch = pathlib.Path(scratch).resolve()
+    first, prefix, out = scratch / "first place", scratch / "prefix", scratch / "build"
+    run(cmake, "--install", build, "--prefix", first)
+    first.rename(prefix)  # an installed tree may be moved
+    project = scratch / "project"
+    shutil.copytree(source / "tests/package", project)
+
+    # CMake
+    run(cmake, "-S", project, "-B", out, "-G", "Ninja", f"-DCMAKE_PREFIX_PATH={prefix}", "-DCMAKE_BUILD_TYPE=Release",
+        f"-DCMAKE_C_COMPILER={cc}")
+    run(cmake, "--build", out)
+    for program in ("triangle", "world", "graph"):
+        if wrong := foreign_libraries(out / program, prefix):
+            sys.exit(f"{program} does not use the installed libraries: {wrong}")
+    plugin = run("ldd", out / "lib/openrt/shaders/flat.so")
+    if "openrt" in plugin:
+        sys.exit(f"the plug-in links against the host: {plugin}")
+    print(run(out / "triangle"), run(out / "triangle", out / "lib/openrt/shaders"), run(out / "graph"), run(out / "world"), sep="", end="")
+
+    # pkg-config
+    libs = next(p.parent for p in prefix.rglob("openrt.pc"))
+    flags = run("pkg-config", "--cflags", "--libs", "openrt", env={"PKG_CONFIG_PATH": str(libs)}).split()
+    rpath = f"-Wl,-rpath,{libs.parent}"
+    run(cc, "-std=c99", "-Wall", "-Wextra", "-Werror", project / "triangle.c", "-o", scratch / "by_pkg_config", *flags, "-lm", rpath)
+    print(run(scratch / "by_pkg_config"), end="")
+    flags = run("pkg-config", "--cflags", "--libs", "xvrml", env={"PKG_CONFIG_PATH": str(libs)}).split()
+    run(cc, "-x", "c++", "-std=c++20", project / "world.cpp", "-o", scratch / "world_by_pkg_config", *flags, "-lstdc++", "-lm", rpath)
+    print(run(scratch / "world_by_pkg_config"), end="")
+
+    # Programs
+    (scratch / "box.wrl").write_text("#VRML V2.0 utf8\nShape { appearance Appearance { material Material { } } geometry Box { } }\n")
+    run(prefix / "bin/vv", "box.wrl", "-o", "box.png", "--size", "32x24", "--spp", "1", cwd=scratch)
+    if not (scratch / "box.png").read_bytes().startswith(b"\x89PNG"):
+        sys.exit("vv wrote no PNG")
+    for program in ("openrt-replay", "nodegen"):
+        if not os.access(prefix / "bin" / program, os.X_OK):
+            sys.exit(f"{program} is not installed")
+    for folder in prefix.rglob("python"):
+        code = "import xvrml; w = xvrml.load('box.wrl'); print('python: as it must be', w.render(size=(8, 6), spp=1).shape)"
+        python = "/usr/bin/python3" if os.path.exists("/usr/bin/python3") else sys.executable
+        print(run(python, "-c", code, cwd=scratch, env={"PYTHONPATH": str(folder)}), end="")
+        break
