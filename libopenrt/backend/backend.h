@@ -31,7 +31,7 @@ class Backend {
   virtual void start() = 0;
   // Waits for the frame in flight, which then is the one that read() reads.
   virtual void wait() = 0;
-  virtual void cancel() = 0;         // [any]
+  virtual void cancel() = 0;          // [any]
   virtual float progress() const = 0; // [any] 0..1
   // One channel of the finished frame, first row at the top; false if there is no such channel or frame.
   virtual bool read(RTenum channel, std::span<float> out) const = 0;

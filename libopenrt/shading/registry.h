@@ -29,7 +29,7 @@ class ShaderRegistry {
  private:
   struct Library;
   const Library* load(const std::string& bareName) const; // null: in no folder
-  std::string searched() const; // the folders, for messages
+  std::string searched() const;                           // the folders, for messages
   std::vector<std::string> folders_;
   mutable std::mutex mutex_;
   mutable std::vector<std::unique_ptr<Library>> libraries_;

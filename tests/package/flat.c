@@ -20,8 +20,11 @@ static void shade(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, Rts
   }
 }
 
-static const RtsParam params[] = {
-    {.name = "color", .type = RTS_COLOR, .offset = offsetof(Flat, color), .defaultValue = {1, 1, 1}, .text = "radiance in every direction"}};
+static const RtsParam params[] = {{.name = "color",
+                                   .type = RTS_COLOR,
+                                   .offset = offsetof(Flat, color),
+                                   .defaultValue = {1, 1, 1},
+                                   .text = "radiance in every direction"}};
 static const RtsClass flat = {.size = sizeof(RtsClass),
                               .kind = RTS_SURFACE,
                               .name = "Flat",

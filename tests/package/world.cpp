@@ -6,7 +6,8 @@
 #include <xvrml/openrt.h>
 
 int main() {
-  auto world = xvrml::loadWorldFromMemory("#VRML V2.0 utf8\nViewpoint { position 0 0 6 }\nShape { geometry Box { } }\n", "memory");
+  auto world =
+      xvrml::loadWorldFromMemory("#VRML V2.0 utf8\nViewpoint { position 0 0 6 }\nShape { geometry Box { } }\n", "memory");
   const RTcontext context = rtNewContext("threads=1");
   if (!context) return 1;
   const int width = 32, height = 24;

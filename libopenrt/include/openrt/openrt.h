@@ -82,7 +82,8 @@ RT_API void rtExit(void);
 
 /* Primitives: inside rtBeginObject ... rtEndObject ------------------------------------------------------------------ */
 
-enum { /* GL's numbers */
+/* GL's numbers */
+enum {
   RT_POINTS = 0x0000,
   RT_LINES = 0x0001,
   RT_LINE_STRIP = 0x0003,
@@ -212,8 +213,16 @@ RT_API void rtParameterTexture(int handle, RTid texture);
 
 enum { RT_SURFACE = 1, RT_LIGHT = 2, RT_CAMERA = 3, RT_ENVIRONMENT = 4 };
 enum {
-  RT_PARAM_INT = 1, RT_PARAM_FLOAT, RT_PARAM_VEC2, RT_PARAM_VEC3, RT_PARAM_VEC4, RT_PARAM_COLOR, RT_PARAM_MATRIX,
-  RT_PARAM_FLOATS, RT_PARAM_STRING, RT_PARAM_TEXTURE
+  RT_PARAM_INT = 1,
+  RT_PARAM_FLOAT,
+  RT_PARAM_VEC2,
+  RT_PARAM_VEC3,
+  RT_PARAM_VEC4,
+  RT_PARAM_COLOR,
+  RT_PARAM_MATRIX,
+  RT_PARAM_FLOATS,
+  RT_PARAM_STRING,
+  RT_PARAM_TEXTURE
 };
 typedef struct RTparameterInfo {
   const char* name; /* owned by the library, valid as long as the class */
@@ -241,7 +250,8 @@ RT_API void rtUseEnvironment(RTid shader);
 /* Surface shader of geometry that has none; 0: the stock class VRML97 with its defaults. */
 RT_API void rtDefaultShader(RTid shader);
 /* Multiply the current matrix by the camera-to-world matrix of gluLookAt's arguments (for rtUseCamera). */
-RT_API void rtLookAt(double eyeX, double eyeY, double eyeZ, double atX, double atY, double atZ, double upX, double upY, double upZ);
+RT_API void rtLookAt(double eyeX, double eyeY, double eyeZ, double atX, double atY, double atZ, double upX, double upY,
+                     double upZ);
 /* Use the stock perspective camera under the current matrix. Vertical field of view in degrees, 0 < f < 180. */
 RT_API void rtPerspective(double fovyDegrees);
 /* Use the stock orthographic camera under the current matrix: height of the view in world units. */
@@ -263,15 +273,16 @@ RT_API void rtTexParameteri(RTenum name, int value);
 
 /* Frames ------------------------------------------------------------------------------------------------------------------ */
 
-enum { /* channels, or'ed; floats per pixel */
-  RT_RGBA = 1,        /* 4: mean radiance, alpha (1 where the environment shows or a surface is opaque) */
-  RT_DEPTH = 2,       /* 1: distance along the view axis, infinite where nothing is hit; of the pixel's first sample */
-  RT_NORMAL = 4,      /* 3: mean world-space shading normal facing the camera, 0 0 0 where nothing is hit */
-  RT_ALBEDO = 8,      /* 3: mean surface colour as the shader reports it */
-  RT_POSITION = 16,   /* 3: world-space position of the first sample's hit */
-  RT_NAME = 32,       /* 1: name (rtLoadName) of the first sample's hit, 0 where nothing is hit */
-  RT_SAMPLES = 64,    /* 1: samples taken */
-  RT_VARIANCE = 128   /* 3: sample variance of radiance (divide by the samples for the variance of the mean) */
+/* Channels, or'ed; floats per pixel */
+enum {
+  RT_RGBA = 1,      /* 4: mean radiance, alpha (1 where the environment shows or a surface is opaque) */
+  RT_DEPTH = 2,     /* 1: distance along the view axis, infinite where nothing is hit; of the pixel's first sample */
+  RT_NORMAL = 4,    /* 3: mean world-space shading normal facing the camera, 0 0 0 where nothing is hit */
+  RT_ALBEDO = 8,    /* 3: mean surface colour as the shader reports it */
+  RT_POSITION = 16, /* 3: world-space position of the first sample's hit */
+  RT_NAME = 32,     /* 1: name (rtLoadName) of the first sample's hit, 0 where nothing is hit */
+  RT_SAMPLES = 64,  /* 1: samples taken */
+  RT_VARIANCE = 128 /* 3: sample variance of radiance (divide by the samples for the variance of the mean) */
 };
 enum {
   RT_SAMPLES_PER_PIXEL = 1, /* 1 .. 65536, default 16 */
@@ -297,8 +308,8 @@ RT_API void rtReadPixels(RTenum channel, float* out, size_t count);
 typedef struct RTstats {
   size_t size; /* set it to sizeof(RTstats) before the call */
   uint64_t triangles, uniqueTriangles, objects, instances, lights, textures;
-  uint64_t degenerate;   /* primitives dropped */
-  uint64_t rejectedRays; /* rays that were not finite */
+  uint64_t degenerate;        /* primitives dropped */
+  uint64_t rejectedRays;      /* rays that were not finite */
   uint64_t rejectedInstances; /* instances with a matrix that is singular or out of range */
   uint64_t cameraRays, shadowRays, secondaryRays;
   double commitSeconds, buildSeconds, renderSeconds;
@@ -311,13 +322,18 @@ RT_API void rtGetStats(RTstats* stats);
 
 /* Queries on the last committed scene ---------------------------------------------------------------------------------- */
 
-typedef struct RTray { float origin[3]; float tnear; float direction[3]; float tfar; } RTray;
+typedef struct RTray {
+  float origin[3];
+  float tnear;
+  float direction[3];
+  float tfar;
+} RTray;
 typedef struct RThit {
-  float t;          /* along direction as given; infinity: nothing hit */
-  float u, v;       /* barycentrics */
-  float normal[3];  /* unit geometric normal, not turned towards the ray */
-  RTid instance;    /* outermost, 0 where nothing is hit */
-  uint32_t name;    /* rtLoadName */
+  float t;            /* along direction as given; infinity: nothing hit */
+  float u, v;         /* barycentrics */
+  float normal[3];    /* unit geometric normal, not turned towards the ray */
+  RTid instance;      /* outermost, 0 where nothing is hit */
+  uint32_t name;      /* rtLoadName */
   uint32_t primitive; /* within its rtBegin or draw call */
   uint64_t userData;
 } RThit;

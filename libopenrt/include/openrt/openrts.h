@@ -19,8 +19,8 @@
 #include <stdint.h>
 
 #define RTS_MAGIC 0x5352544fu /* "OTRS" */
-#define RTS_ABI_MAJOR 1 /* a host refuses another major number */
-#define RTS_ABI_MINOR 0 /* grows with every field appended; a host accepts minors up to its own */
+#define RTS_ABI_MAJOR 1       /* a host refuses another major number */
+#define RTS_ABI_MINOR 0       /* grows with every field appended; a host accepts minors up to its own */
 #define RTS_LANES 16
 
 #ifdef __cplusplus
@@ -33,7 +33,8 @@ typedef uint32_t RtsTexture;      /* 0: none */
 
 /* Parameters: a class declares a C struct; the host fills one per shader ------------------------------------------------ */
 
-typedef enum RtsType { /* C type in the parameter struct */
+/* C type in the parameter struct */
+typedef enum RtsType {
   RTS_INT = 1, /* int32_t */
   RTS_FLOAT,   /* float */
   RTS_VEC2,    /* float[2] */
@@ -46,7 +47,10 @@ typedef enum RtsType { /* C type in the parameter struct */
   RTS_TEXTURE  /* RtsTexture */
 } RtsType;
 
-typedef struct RtsFloats { const float* data; uint32_t count; } RtsFloats;
+typedef struct RtsFloats {
+  const float* data;
+  uint32_t count;
+} RtsFloats;
 
 typedef struct RtsParam {
   const char* name;
@@ -59,7 +63,8 @@ typedef struct RtsParam {
 
 /* Batches ------------------------------------------------------------------------------------------------------------------ */
 
-enum { /* RtsHits.flags */
+/* RtsHits.flags */
+enum {
   RTS_HIT_BACK = 1,     /* the ray meets the side that the geometric normal, before it was turned, faces away from */
   RTS_HIT_COLOR = 2,    /* the geometry has colours; `color` holds the interpolated one (else 1 1 1 1) */
   RTS_HIT_TEXCOORD = 4, /* the geometry has texture coordinates (else uv is 0) */
@@ -73,8 +78,8 @@ typedef struct RtsHits {
   const float* geometric[3]; /* unit geometric normal, turned towards the ray's origin */
   const float* normal[3];    /* unit shading normal, on the same side as the geometric one */
   const float* uv[2];
-  const float* color[4];     /* rgba */
-  const float* distance;     /* along the path from the camera */
+  const float* color[4]; /* rgba */
+  const float* distance; /* along the path from the camera */
   const uint32_t* flags;
   const void* const* params; /* the shader's parameter struct, by lane */
 } RtsHits;
@@ -88,13 +93,16 @@ typedef struct RtsShading {
 
 /* Light arriving at the points of a batch from one light. */
 typedef struct RtsIllumination {
-  float* toLight[3]; /* a light's function: vector to the light in its local space, any length; to a surface shader: unit, render space */
-  float* color[3];   /* radiance scale of the direct part: light colour x intensity x attenuation x cone; 0 where it does not reach */
+  /* Of a light's function: vector to the light in its local space, any length; to a surface shader: unit, render space. */
+  float* toLight[3];
+  /* Radiance scale of the direct part: light colour x intensity x attenuation x cone; 0 where it does not reach. */
+  float* color[3];
   float* ambient[3]; /* the same for the ambient part */
   int directional;   /* set by the light: toLight has no end point (shadow rays run to infinity) */
 } RtsIllumination;
 
-typedef struct RtsRays { /* of a camera; render space comes later: these are in the camera's local space */
+/* Of a camera; render space comes later: these are in the camera's local space */
+typedef struct RtsRays {
   float* origin[3];
   float* direction[3]; /* unit */
 } RtsRays;
@@ -103,7 +111,8 @@ typedef struct RtsRays { /* of a camera; render space comes later: these are in 
 
 typedef enum RtsKind { RTS_SURFACE = 1, RTS_LIGHT = 2, RTS_CAMERA = 3, RTS_ENVIRONMENT = 4 } RtsKind;
 
-enum { /* answered by RtsClass.traits for one set of parameters */
+/* Answered by RtsClass.traits for one set of parameters */
+enum {
   RTS_TRANSPARENT = 1, /* surface: transmission may be above 0; shadow rays then ask `transmit` */
   RTS_UNLIT = 2,       /* surface: never asks for lights */
   RTS_NO_SHADOW = 4    /* light: casts no shadows */
@@ -146,7 +155,7 @@ typedef struct RtsPlugin {
   const RtsClass* const* classes;
 } RtsPlugin;
 
-/* Host: what a shader may call ------------------------------------------------------------------------------------------------ */
+/* Host: what a shader may call ---------------------------------------------------------------------------------------- */
 
 struct RtsHost {
   uint32_t size;
@@ -173,7 +182,8 @@ struct RtsHost {
 #else
 #define RTS_EXPORT __attribute__((visibility("default")))
 #endif
-/* The one symbol of a plug-in: RTS_EXPORT const RtsPlugin rtsPlugin = { RTS_MAGIC, RTS_ABI_MAJOR, RTS_ABI_MINOR, sizeof(RtsPlugin), n, classes }; */
+/* The one symbol of a plug-in:
+ *   RTS_EXPORT const RtsPlugin rtsPlugin = {RTS_MAGIC, RTS_ABI_MAJOR, RTS_ABI_MINOR, sizeof(RtsPlugin), n, classes}; */
 #define RTS_ENTRY_NAME "rtsPlugin"
 
 #ifdef __cplusplus
