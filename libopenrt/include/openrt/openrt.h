@@ -126,7 +126,8 @@ enum {
 RT_API void rtEnable(RTenum capability);
 RT_API void rtDisable(RTenum capability);
 
-/* A number given to the following primitives; the id channel and ray queries report it (as GL's selection names). Default 0. */
+/* A number given to the following primitives; the id channel and ray queries report it (as GL's selection names). Default 0.
+ * Latched by instances too: a primitive whose own name is 0 has the name of the innermost instance that has one. */
 RT_API void rtLoadName(uint32_t name);
 
 /* An exact sphere of the given radius (> 0) about the current origin. Texture coordinates run as on VRML's Sphere:
