@@ -67,6 +67,13 @@ def vv(program, world, picture, *options):
     return {"code": code, "seconds": time.monotonic() - start, "mib": usage.ru_maxrss / 1024, "log": text}
 
 
+def without_viewpoint(corpus, row):
+    """True if neither the file nor what it names can hold a Viewpoint, and X_ITE has drawn it."""
+    nodes = row["standard_nodes"].split(",")
+    return not ({"Viewpoint", "Inline"} & set(nodes) or "EXTERNPROTO" in row["features"]
+                or not (corpus / "pictures/x_ite" / (row["file"] + ".png")).exists())
+
+
 def draw(args, row, out):
     """One file: the runs, and what they say about its promise."""
     world = args.corpus / row["file"]
@@ -75,9 +82,12 @@ def draw(args, row, out):
     if args.quick:
         runs = [vv(args.vv, world, picture, "--size", "32x24", "--spp", "1")]
     else:
+        # Where a file has no Viewpoint vv fits a camera of its own; X_ITE draws from the standard's place (clause 6.53), so do we.
+        place = ["--camera", "0,0,10:0,0,0:0,1,0"] if without_viewpoint(args.corpus, row) else []
         plain = picture.with_suffix(".default.png")
         runs = [vv(args.vv, world, plain, "--size", "160x120", "--spp", "1"),
-                vv(args.vv, world, picture, "--size", "240x180", "--spp", str(args.spp), "--colour", "vrml97", "--shadows", "off")]
+                vv(args.vv, world, picture, "--size", "240x180", "--spp", str(args.spp), "--colour", "vrml97", "--shadows", "off",
+                   *place)]
         plain.unlink(missing_ok=True)
     log = runs[-1]["log"]
     row.update(code=runs[-1]["code"], seconds=max(r["seconds"] for r in runs), mib=max(r["mib"] for r in runs), log=log,
