@@ -18,8 +18,12 @@ for target in "$folder"/fuzz_*; do
   dictionary=()
   if [ -f "tests/fuzz/$name.dict" ]; then dictionary=("-dict=tests/fuzz/$name.dict"); fi
   echo "$name: $seconds s"
-  "$target" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -print_final_stats=1 "${dictionary[@]}" \
-    -artifact_prefix="build/fuzz-findings/$name-" "$corpus" "${seeds[@]}" 2>&1 | grep -E '^(stat::|==|SUMMARY|Test unit|artifact)|ERROR|runtime error' || true
-  if [ "${PIPESTATUS[0]}" -ne 0 ]; then found=1; fi
+  log=build/fuzz-findings/$name.log
+  if ! "$target" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -print_final_stats=1 "${dictionary[@]}" \
+    -artifact_prefix="build/fuzz-findings/$name-" "$corpus" "${seeds[@]}" >"$log" 2>&1; then
+    found=1
+    tail -n 60 "$log"
+  fi
+  grep -E '^stat::(number_of_executed_units|average_exec_per_sec|peak_rss_mb)' "$log" || true
 done
 exit $found
