@@ -48,6 +48,8 @@ class OpenRTMapper {
 
   // Viewpoints in the order of the file (prototypes and Inlines expanded).
   const std::vector<ViewpointInfo>& viewpoints() const;
+  // The viewpoint that is bound first: of the file itself, not of its Inlines (clause 4.6.10); -1 if there is none.
+  int boundViewpoint() const;
   // Camera of a viewpoint (index into viewpoints()); of the standard's default (0 0 10) if there is none.
   CameraSettings viewpointCamera(size_t index) const;
   // A camera along -z of the first viewpoint (or the world) that shows all of it.

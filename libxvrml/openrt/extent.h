@@ -1,0 +1,12 @@
+// extent.h: the bounds of what is drawn, in double. Pure; called by the mapper once.
+#pragma once
+
+#include "openrt/places.h"
+#include "xvrml/openrt.h"
+
+namespace xvrml::mapping {
+
+// World bounds with every billboard and level of detail as the places now have it; for LODs the highest level.
+Bounds boundsOf(Graph& graph, const Places& places);
+
+} // namespace xvrml::mapping

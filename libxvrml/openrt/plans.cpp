@@ -1,0 +1,116 @@
+// plans.cpp: what each node type means for the picture: the dispatch table by type index, one small function a type. Called
+// while the render graph is built, on the mapper's thread.
+#include <algorithm>
+#include <span>
+
+#include "openrt/graph.h"
+#include "xvrml/nodes.h"
+
+namespace xvrml::mapping {
+namespace {
+
+void group(Plan& plan, const MFNode& children) {
+  plan.kind = Kind::group;
+  plan.add(children);
+}
+
+void planGroup(PlanContext&, Node& node, Plan& plan) { group(plan, static_cast<nodes::Group&>(node).children); }
+void planAnchor(PlanContext&, Node& node, Plan& plan) { group(plan, static_cast<nodes::Anchor&>(node).children); }
+// The proxy is for collision detection only (clause 6.8).
+void planCollision(PlanContext&, Node& node, Plan& plan) { group(plan, static_cast<nodes::Collision&>(node).children); }
+
+void planTransform(PlanContext&, Node& node, Plan& plan) {
+  auto& t = static_cast<nodes::Transform&>(node);
+  group(plan, t.children);
+  plan.matrix = transformMatrix({t.center, t.translation, t.scale, t.rotation, t.scaleOrientation});
+  plan.moves = plan.matrix != Matrix();
+}
+
+// Clause 6.46: whichChoice below 0 or beyond the last choice draws nothing.
+void planSwitch(PlanContext&, Node& node, Plan& plan) {
+  auto& s = static_cast<nodes::Switch&>(node);
+  plan.kind = Kind::group;
+  if (s.whichChoice >= 0 && size_t(s.whichChoice) < s.choice.size())
+    plan.children.push_back(s.choice[size_t(s.whichChoice)].get());
+}
+
+void planLod(PlanContext&, Node& node, Plan& plan) {
+  plan.kind = Kind::lod;
+  plan.keepEmpty = true;
+  plan.add(static_cast<nodes::LOD&>(node).level);
+}
+
+void planBillboard(PlanContext&, Node& node, Plan& plan) {
+  plan.kind = Kind::billboard;
+  plan.add(static_cast<nodes::Billboard&>(node).children);
+}
+
+void planInline(PlanContext&, Node& node, Plan& plan) {
+  plan.kind = Kind::group;
+  plan.isInline = true;
+  if (const Scope* scope = inlineScope(node)) plan.add(scope->roots);
+}
+
+void planShape(PlanContext&, Node& node, Plan& plan) {
+  if (renderedNode(static_cast<nodes::Shape&>(node).geometry.get())) plan.kind = Kind::shape;
+}
+
+// A light that is off lights nothing (clause 4.6.6); it is not there until it is turned on.
+void planDirectionalLight(PlanContext&, Node& node, Plan& plan) {
+  if (static_cast<nodes::DirectionalLight&>(node).on) plan.kind = Kind::directionalLight;
+}
+void planPointLight(PlanContext&, Node& node, Plan& plan) {
+  if (static_cast<nodes::PointLight&>(node).on) plan.kind = Kind::localLight;
+}
+void planSpotLight(PlanContext&, Node& node, Plan& plan) {
+  if (static_cast<nodes::SpotLight&>(node).on) plan.kind = Kind::localLight;
+}
+
+void planViewpoint(PlanContext&, Node&, Plan& plan) { plan.kind = Kind::viewpoint; }
+void planBackground(PlanContext&, Node&, Plan& plan) { plan.kind = Kind::background; }
+void planFog(PlanContext&, Node&, Plan& plan) { plan.kind = Kind::fog; }
+void planNavigationInfo(PlanContext&, Node&, Plan& plan) { plan.kind = Kind::navigationInfo; }
+
+std::vector<PlanFunction>& table() {
+  static std::vector<PlanFunction> plans = [] {
+    std::vector<PlanFunction> t(nodeTypes().size(), nullptr);
+    auto set = [&](int index, PlanFunction plan) {
+      if (size_t(index) >= t.size()) t.resize(size_t(index) + 1, nullptr);
+      t[size_t(index)] = plan;
+    };
+    set(nodes::Group::typeIndex, planGroup);
+    set(nodes::Anchor::typeIndex, planAnchor);
+    set(nodes::Collision::typeIndex, planCollision);
+    set(nodes::Transform::typeIndex, planTransform);
+    set(nodes::Switch::typeIndex, planSwitch);
+    set(nodes::LOD::typeIndex, planLod);
+    set(nodes::Billboard::typeIndex, planBillboard);
+    set(nodes::Inline::typeIndex, planInline);
+    set(nodes::Shape::typeIndex, planShape);
+    set(nodes::DirectionalLight::typeIndex, planDirectionalLight);
+    set(nodes::PointLight::typeIndex, planPointLight);
+    set(nodes::SpotLight::typeIndex, planSpotLight);
+    set(nodes::Viewpoint::typeIndex, planViewpoint);
+    set(nodes::Background::typeIndex, planBackground);
+    set(nodes::Fog::typeIndex, planFog);
+    set(nodes::NavigationInfo::typeIndex, planNavigationInfo);
+    return t;
+  }();
+  return plans;
+}
+
+} // namespace
+
+PlanFunction planOf(const NodeType& type) {
+  const std::vector<PlanFunction>& plans = table();
+  return type.index >= 0 && size_t(type.index) < plans.size() ? plans[size_t(type.index)] : nullptr;
+}
+
+void setPlan(const NodeType& type, PlanFunction plan) {
+  if (type.index < 0) return;
+  std::vector<PlanFunction>& plans = table();
+  if (size_t(type.index) >= plans.size()) plans.resize(size_t(type.index) + 1, nullptr);
+  plans[size_t(type.index)] = plan;
+}
+
+} // namespace xvrml::mapping

@@ -1,0 +1,59 @@
+// rt.h: the mapper's side of OpenRT calls: errors become diagnostics with a place, parameters are set by name. On the thread
+// that holds the context.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <utility>
+
+#include "openrt/matrix.h"
+#include "openrt/openrt.h"
+#include "xvrml/diagnostics.h"
+
+namespace xvrml::mapping {
+
+// Turns everything rtGetError holds into errors at `where`; true if there was none.
+bool report(Diagnostics& diagnostics, const SourcePosition& where, std::string_view what);
+
+inline void load(const Matrix& m) { rtLoadMatrixd(data(m)); }
+
+// A colour of a world as the renderer wants it: linear (IEC 61966-2-1), or as written.
+Color convert(Color c, bool linear);
+
+// Shader classes by name, made when first used.
+class ShaderClasses {
+ public:
+  RTid get(const std::string& name, const std::string& library);
+
+ private:
+  std::unordered_map<std::string, RTid> classes_;
+};
+
+// A shader being set up: bound for the life of the object; every setter names a parameter its class declares.
+class ShaderSetup {
+ public:
+  explicit ShaderSetup(RTid shaderClass) : shader_(rtNewShader(shaderClass)) { rtBindShader(shader_); }
+  ~ShaderSetup() { rtBindShader(0); }
+  ShaderSetup(const ShaderSetup&) = delete;
+  ShaderSetup& operator=(const ShaderSetup&) = delete;
+  RTid id() const { return shader_; }
+
+  void integer(const char* name, int v) { rtParameter1i(rtParameterHandle(name), v); }
+  void number(const char* name, float v) { rtParameter1f(rtParameterHandle(name), v); }
+  void vector(const char* name, Vec3f v) { rtParameter3f(rtParameterHandle(name), v.x, v.y, v.z); }
+  void color(const char* name, Color c) { rtParameter3f(rtParameterHandle(name), c.r, c.g, c.b); }
+  void floats(const char* name, std::span<const float> v) { rtParameterfv(rtParameterHandle(name), v.size(), v.data()); }
+  void texture(const char* name, RTid texture) { rtParameterTexture(rtParameterHandle(name), texture); }
+  void matrix(const char* name, const Matrix& m) {
+    float f[16];
+    for (int i = 0; i < 16; ++i) f[i] = float(data(m)[i]);
+    rtParameter16f(rtParameterHandle(name), f);
+  }
+
+ private:
+  RTid shader_;
+};
+
+} // namespace xvrml::mapping

@@ -1,0 +1,24 @@
+// shader_options.h: the options of an ORTShader node: "3f reflectance .9 .9 .9", one or several in a string. Pure, any thread.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "xvrml/types.h"
+
+namespace xvrml::mapping {
+
+struct ShaderOption {
+  enum class Type { integer, floats, boolean, color, text, texture } type = Type::floats;
+  std::string name;
+  std::vector<float> numbers; // 1f 2f 3f 4f 16f color; 1i and bool: integer below
+  int integer = 0;
+  std::string text; // string, texture
+};
+
+// What could be read, in order; what could not, in errors, one sentence each. Types: 1i 1f 2f 3f 4f 16f bool color string
+// texture. A string or a URL runs to the next blank, or stands in 'single quotes'.
+std::vector<ShaderOption> parseShaderOptions(const MFString& options, std::vector<std::string>& errors);
+
+} // namespace xvrml::mapping

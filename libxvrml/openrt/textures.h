@@ -1,0 +1,36 @@
+// textures.h: the pictures of a world as OpenRT textures, one per node and one per file and way of repeating. Made by the
+// mapper's thread when first used.
+#pragma once
+
+#include <map>
+#include <string>
+#include <tuple>
+#include <unordered_map>
+
+#include "openrt/rt.h"
+#include "xvrml/world.h"
+
+namespace xvrml::mapping {
+
+class Textures {
+ public:
+  Textures(World& world, bool linearColor) : world_(world), srgb_(linearColor) {}
+
+  // Of an ImageTexture, PixelTexture or MovieTexture node (or null); 0: there is none, or it could not be had (said once).
+  RTid ofNode(Node* texture);
+  // The first URL of a list that leads to a picture. node: for messages and as the file that relative URLs mean.
+  RTid ofUrls(const MFString& urls, const Node& node, bool repeatS, bool repeatT);
+  uint64_t count() const { return count_; }
+
+ private:
+  RTid ofFile(const std::string& path, bool repeatS, bool repeatT, std::string& error);
+  RTid make(const Image& image, bool repeatS, bool repeatT);
+
+  World& world_;
+  bool srgb_;
+  uint64_t count_ = 0;
+  std::unordered_map<const Node*, RTid> nodes_;
+  std::map<std::tuple<std::string, bool, bool>, std::pair<RTid, std::string>> files_; // texture, or why there is none
+};
+
+} // namespace xvrml::mapping
