@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
@@ -26,9 +27,13 @@ struct SourcePosition {
   uint32_t line = 0, column = 0; // from 1; 0: made by a program
 };
 
+// The interval a number must lie in, as the standard prints it: (0,inf), [0,1]. SFRotation: of the axis; its angle is free.
 struct FieldRange {
-  double minimum, maximum; // -inf, inf where open
-  bool minimumOpen, maximumOpen;
+  double minimum = -std::numeric_limits<double>::infinity(), maximum = std::numeric_limits<double>::infinity();
+  bool minimumOpen = true, maximumOpen = true;
+  double also = std::numeric_limits<double>::quiet_NaN(); // allowed besides when every number has it (bboxSize -1 -1 -1); NaN: none
+
+  bool bounded() const { return minimum > -std::numeric_limits<double>::infinity() || maximum < std::numeric_limits<double>::infinity(); }
 };
 
 struct FieldInfo {
@@ -38,7 +43,7 @@ struct FieldInfo {
   Change change;
   uint32_t offset;       // static nodes: bytes from the Node; dynamic nodes: index of the value; events: unused
   Value defaultValue;    // fields and exposedFields
-  FieldRange range;      // per number
+  FieldRange range;      // per number; finite ends are rounded to float for float fields
   std::string nodeTypes; // SFNode, MFNode: blank-separated abstract or concrete types accepted; empty: any
   std::string text;      // one line of documentation
 };
@@ -52,12 +57,17 @@ struct NodeType {
   std::string text;
   std::vector<FieldInfo> fields;
   Node* (*create)(const NodeType& type);
+  std::string clause;                // of ISO/IEC 14772-1, "6.6"; empty: not a standard node
 
+  bool is(std::string_view abstractName) const; // one of `abstract`
   const FieldInfo* find(std::string_view fieldName) const; // exact name
   // Also finds set_x and x_changed of an exposedField x (clause 4.7); wantInput: looked up as the target of a route.
   const FieldInfo* findEventIn(std::string_view name) const;
   const FieldInfo* findEventOut(std::string_view name) const;
 };
+// False if a number of the value lies outside the field's range (or is NaN and the field has one).
+bool inRange(const FieldInfo& field, const Value& value);
+
 using NodeTypePtr = std::shared_ptr<const NodeType>;
 
 class Node {
@@ -80,13 +90,14 @@ class Node {
 
  private:
   friend class NodeRef;
+  static void destroy(Node* node) noexcept; // without recursion, however deep the graph below is
   const NodeType* type_;
   std::atomic<uint32_t> references_{0};
 };
 
 inline NodeRef::NodeRef(Node* node) : node_(node) { if (node_) node_->references_.fetch_add(1, std::memory_order_relaxed); }
 inline NodeRef::NodeRef(const NodeRef& other) : NodeRef(other.node_) {}
-inline NodeRef::~NodeRef() { if (node_ && node_->references_.fetch_sub(1, std::memory_order_acq_rel) == 1) delete node_; }
+inline NodeRef::~NodeRef() { if (node_ && node_->references_.fetch_sub(1, std::memory_order_acq_rel) == 1) Node::destroy(node_); }
 
 // The concrete type if node is exactly of it: nodeCast<nodes::Box>(ref). Generated structs have a static `typeIndex`.
 template <class T> T* nodeCast(Node* node) { return node && node->type().index == T::typeIndex ? static_cast<T*>(node) : nullptr; }

@@ -1,0 +1,68 @@
+// diagnostics.cpp: messages with a place. A Diagnostics object belongs to the thread that loads its world.
+#include "xvrml/diagnostics.h"
+
+#include <string_view>
+#include <utility>
+
+namespace xvrml {
+namespace {
+
+std::string_view severityName(Severity severity) {
+  switch (severity) {
+  case Severity::note: return "note";
+  case Severity::warning: return "warning";
+  case Severity::error: break;
+  }
+  return "error";
+}
+
+// Blanks up to the character `column` (from 1): tabs stay tabs and UTF-8 continuation bytes take no room, so that the caret
+// stands below its character on a terminal.
+std::string caretIndent(std::string_view line, size_t column) {
+  std::string indent;
+  for (const char c : line) {
+    if ((static_cast<unsigned char>(c) & 0xc0) == 0x80) continue;
+    if (indent.size() + 1 >= column) break;
+    indent += c == '\t' ? '\t' : ' ';
+  }
+  return indent;
+}
+
+Diagnostic at(Severity severity, const SourcePosition& where, std::string message) {
+  return {severity, where.file ? *where.file : std::string(), where.line, where.column, std::move(message), {}};
+}
+
+} // namespace
+
+std::string Diagnostic::text() const {
+  std::string result = file;
+  if (line > 0) {
+    if (!result.empty()) result += ':';
+    result += std::to_string(line);
+    if (column > 0) result += ':' + std::to_string(column);
+  }
+  if (!result.empty()) result += ": ";
+  result += severityName(severity);
+  result += ": " + message;
+  if (sourceLine.empty()) return result;
+  result += '\n' + sourceLine;
+  if (column > 0 && column <= sourceLine.size() + 1) result += '\n' + caretIndent(sourceLine, column) + '^';
+  return result;
+}
+
+void Diagnostics::add(Diagnostic diagnostic) {
+  if (diagnostic.severity == Severity::error) ++errors_;
+  if (diagnostic.severity == Severity::warning) ++warnings_;
+  if (list_.size() < limit)
+    list_.push_back(std::move(diagnostic));
+  else
+    ++dropped_;
+}
+
+void Diagnostics::warn(const SourcePosition& where, std::string message) {
+  add(at(Severity::warning, where, std::move(message)));
+}
+
+void Diagnostics::error(const SourcePosition& where, std::string message) { add(at(Severity::error, where, std::move(message))); }
+
+} // namespace xvrml

@@ -1,0 +1,160 @@
+// node.cpp: generic access to nodes through their tables. Everybody who does not know a node's struct reads and writes its
+// fields here: parser, writer, router, prototypes, bindings. A node is used by one thread at a time.
+#include "xvrml/node.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace xvrml {
+namespace {
+
+// One function per field type, found by FieldType's number.
+template <size_t I> using ValueType = std::variant_alternative_t<I, Value>;
+template <size_t I> Value load(const void* storage) {
+  return Value(std::in_place_index<I>, *static_cast<const ValueType<I>*>(storage));
+}
+template <size_t I> void store(void* storage, Value&& value) {
+  *static_cast<ValueType<I>*>(storage) = std::get<I>(std::move(value));
+}
+
+template <size_t... I> Value loadByType(size_t type, const void* storage, std::index_sequence<I...>) {
+  using Function = Value (*)(const void*);
+  static constexpr Function functions[] = {&load<I>...};
+  return functions[type](storage);
+}
+
+template <size_t... I> void storeByType(size_t type, void* storage, Value&& value, std::index_sequence<I...>) {
+  using Function = void (*)(void*, Value&&);
+  static constexpr Function functions[] = {&store<I>...};
+  functions[type](storage, std::move(value));
+}
+
+constexpr auto allTypes = std::make_index_sequence<fieldTypeCount>();
+
+bool hasStorage(const FieldInfo& field) { return field.access == Access::field || field.access == Access::exposedField; }
+
+const FieldInfo* findWith(const NodeType& type, std::string_view name, Access access) {
+  const FieldInfo* field = type.find(name);
+  return field && field->access == access ? field : nullptr;
+}
+
+// Looks numbers up in a range; float fields compare with the range's ends as floats, so that 1.5707964 is within pi/2.
+class RangeCheck {
+ public:
+  explicit RangeCheck(const FieldRange& range) : range_(range) {}
+
+  bool operator()(float number) const { return contains<float>(number); }
+  bool operator()(double number) const { return contains<double>(number); }
+  bool operator()(int32_t number) const { return contains<double>(number); }
+  bool operator()(const Vec2f& v) const { return all({v.x, v.y}); }
+  bool operator()(const Vec3f& v) const { return all({v.x, v.y, v.z}); }
+  bool operator()(const Color& c) const { return all({c.r, c.g, c.b}); }
+  bool operator()(const Rotation& r) const { return all({r.x, r.y, r.z}); }
+  template <class T> bool operator()(const std::vector<T>& values) const {
+    return std::all_of(values.begin(), values.end(), [this](const T& value) { return (*this)(value); });
+  }
+  bool operator()(bool) const { return true; }
+  bool operator()(const std::string&) const { return true; }
+  bool operator()(const Image&) const { return true; }
+  bool operator()(const NodeRef&) const { return true; }
+
+ private:
+  template <class T> bool contains(T number) const {
+    const T minimum = T(range_.minimum), maximum = T(range_.maximum);
+    const bool above = range_.minimumOpen ? number > minimum : number >= minimum;
+    const bool below = range_.maximumOpen ? number < maximum : number <= maximum;
+    return (above && below) || number == T(range_.also);
+  }
+  // The exceptional number counts only where all have it: bboxSize -1 -1 -1.
+  bool all(std::initializer_list<float> numbers) const {
+    const auto exceptional = [this](float number) { return number == float(range_.also); };
+    if (std::any_of(numbers.begin(), numbers.end(), exceptional)) return std::all_of(numbers.begin(), numbers.end(), exceptional);
+    return std::all_of(numbers.begin(), numbers.end(), [this](float number) { return contains<float>(number); });
+  }
+
+  const FieldRange& range_;
+};
+
+constexpr std::string_view setPrefix = "set_", changedSuffix = "_changed";
+
+} // namespace
+
+bool inRange(const FieldInfo& field, const Value& value) {
+  return !field.range.bounded() || std::visit(RangeCheck(field.range), value);
+}
+
+bool NodeType::is(std::string_view abstractName) const {
+  return std::find(abstract.begin(), abstract.end(), abstractName) != abstract.end();
+}
+
+const FieldInfo* NodeType::find(std::string_view fieldName) const {
+  for (const FieldInfo& field : fields)
+    if (field.name == fieldName) return &field;
+  return nullptr;
+}
+
+// Clause 4.7: an exposedField x takes events as x and as set_x. Clause 4.10.2: in a route the set_ of an eventIn may be left
+// out. The exact name comes first, so a node may have both `x` and `set_x`.
+const FieldInfo* NodeType::findEventIn(std::string_view eventName) const {
+  if (const FieldInfo* field = findWith(*this, eventName, Access::eventIn)) return field;
+  if (const FieldInfo* field = findWith(*this, eventName, Access::exposedField)) return field;
+  if (eventName.starts_with(setPrefix)) return findWith(*this, eventName.substr(setPrefix.size()), Access::exposedField);
+  return findWith(*this, std::string(setPrefix).append(eventName), Access::eventIn);
+}
+
+const FieldInfo* NodeType::findEventOut(std::string_view eventName) const {
+  if (const FieldInfo* field = findWith(*this, eventName, Access::eventOut)) return field;
+  if (const FieldInfo* field = findWith(*this, eventName, Access::exposedField)) return field;
+  if (eventName.ends_with(changedSuffix))
+    return findWith(*this, eventName.substr(0, eventName.size() - changedSuffix.size()), Access::exposedField);
+  return findWith(*this, std::string(eventName).append(changedSuffix), Access::eventOut);
+}
+
+Value Node::get(const FieldInfo& field) const {
+  if (!hasStorage(field)) return xvrml::defaultValue(field.type);
+  return loadByType(size_t(field.type), storage(field), allTypes);
+}
+
+bool Node::set(const FieldInfo& field, Value value) {
+  if (!hasStorage(field) || value.index() != size_t(field.type)) return false;
+  storeByType(size_t(field.type), storage(field), std::move(value), allTypes);
+  return true;
+}
+
+// A node's destructor releases its children. Those whose last reference goes meanwhile wait in a list until it returns: a
+// chain of a million nodes would otherwise need a million stack frames.
+void Node::destroy(Node* node) noexcept {
+  thread_local std::vector<Node*>* waiting = nullptr;
+  if (waiting) {
+    try {
+      waiting->push_back(node);
+    } catch (...) {
+      delete node; // no memory for the list: the stack has to do
+    }
+    return;
+  }
+  std::vector<Node*> list;
+  waiting = &list;
+  delete node;
+  while (!list.empty()) {
+    Node* next = list.back();
+    list.pop_back();
+    delete next;
+  }
+  waiting = nullptr;
+}
+
+DynamicNode::DynamicNode(NodeTypePtr type) : Node(*type), typePtr(std::move(type)) {
+  for (const FieldInfo& field : typePtr->fields) {
+    if (!hasStorage(field)) continue;
+    if (values.size() <= field.offset) values.resize(field.offset + 1);
+    values[field.offset] = field.defaultValue;
+  }
+}
+
+void* DynamicNode::storage(const FieldInfo& field) {
+  return std::visit([](auto& value) -> void* { return &value; }, values[field.offset]);
+}
+
+} // namespace xvrml
