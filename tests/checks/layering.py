@@ -34,6 +34,7 @@ PARTS = {
     "libxvrml/openrt/": "mapper",
     "plugins/shaders/": "shader-plugin",
     "apps/": "app",
+    "apps/picture/": "picture",
     "bindings/": "binding",
     "examples/": "example",
     "common/": "common",
@@ -63,8 +64,9 @@ ARROWS = {
     "mapper-h": {"xvrml-h"},
     "mapper": {"mapper-h", "xvrml-h", "xvrml-base", "xvrml-geometry", "xvrml-image", "api-h", "common"},
     "shader-plugin": {"shader-sdk"},
-    "app": PUBLIC - {"shader-sdk"},
-    "binding": PUBLIC - {"shader-sdk"},
+    "picture": PUBLIC - {"shader-sdk"},
+    "app": PUBLIC - {"shader-sdk"} | {"picture"},
+    "binding": PUBLIC - {"shader-sdk"} | {"picture"},
     "example": PUBLIC,
     "common": set(),
     "test": set(PARTS.values()),
@@ -74,14 +76,14 @@ FOREIGN = [
     (re.compile(r"embree\d/"), {"backend-local", "test"}, "Embree"),
     (re.compile(r"(sys/socket|netinet/|arpa/|netdb|zmq)"), {"backend-cluster"}, "sockets"),
     (re.compile(r"(png|jpeglib|turbojpeg|gif_lib|ft2build|freetype|hb|hb-ft|fontconfig/.*|GL/glu)(\.h)?$"),
-     {"xvrml-geometry", "xvrml-image", "app", "test"}, "picture and font libraries"),
-    (re.compile(r"(OpenEXR/|Imf)"), {"app", "binding", "test"}, "OpenEXR"),
+     {"xvrml-geometry", "xvrml-image", "picture", "test"}, "picture and font libraries"),
+    (re.compile(r"(OpenEXR/|Imf)"), {"picture", "test"}, "OpenEXR"),
     (re.compile(r"(CLI/|CLI11)"), {"app", "openrt-tools"}, "CLI11"),
     (re.compile(r"pybind11/"), {"binding"}, "pybind11"),
 ]
 # A public header includes the language's own headers and nothing else of others.
 STANDARD = re.compile(r"[a-z_0-9]+(\.h)?$")
-SEARCH = ["libopenrt/include", "libxvrml/include", "libopenrt", "libxvrml", "tests", "common"]
+SEARCH = ["libopenrt/include", "libxvrml/include", "libopenrt", "libxvrml", "plugins/shaders", "apps", "tests", "common"]
 # Made at build time -> the part that they belong to.
 GENERATED = [(re.compile(r"edits_generated\.h$"), "openrt-scene"), (re.compile(r"xvrml/nodes\.h$"), "xvrml-h")]
 SUFFIXES = {".c", ".cpp", ".h", ".hpp"}
