@@ -44,5 +44,7 @@ class Backend {
 std::unique_ptr<Backend> makeLocalBackend(const BackendOptions& options);
 std::unique_ptr<Backend> makeRecordBackend(const BackendOptions& options);
 std::unique_ptr<Backend> makeNullBackend(const BackendOptions& options);
+// Writes the recording options.file and passes everything on to the backend that renders.
+std::unique_ptr<Backend> makeTeeBackend(const BackendOptions& options, std::unique_ptr<Backend> renderer);
 
 } // namespace openrt

@@ -1,0 +1,177 @@
+// commit.cpp: turns the state of the scene into the edits of one commit, in the order that scene_state.h fixes. All memory is
+// taken in make(), before settle() marks the edits as sent: a commit that fails leaves the scene as it was.
+#include <algorithm>
+
+#include "api/scene_state.h"
+
+namespace openrt {
+namespace {
+
+std::unique_ptr<edit::Matrix> toEdit(const Matrix4d& matrix) {
+  return std::make_unique<edit::Matrix>(flatbuffers::span<const double, 16>(matrix.m));
+}
+
+} // namespace
+
+class CommitMaker {
+ public:
+  explicit CommitMaker(SceneState& scene) : scene_(scene), commit_(std::make_shared<Commit>()) {}
+
+  std::shared_ptr<const Commit> make(bool render) {
+    commit_->edits.render = render;
+    addDeletions<edit::DeleteLightT>(scene_.lights);
+    addDeletions<edit::DeleteInstanceT>(scene_.instances);
+    addTextures();
+    addShaders();
+    addObjects();
+    addInstances();
+    addLights();
+    addRoles();
+    addDeletions<edit::DeleteObjectT>(scene_.objects);
+    addDeletions<edit::DeleteShaderT>(scene_.shaders);
+    addDeletions<edit::DeleteTextureT>(scene_.textures);
+    settle();
+    return commit_;
+  }
+
+ private:
+  template <class T> void add(T edit) {
+    auto entry = std::make_unique<edit::EditT>();
+    entry->any.Set(std::move(edit));
+    commit_->edits.edits.push_back(std::move(entry));
+  }
+
+  template <class Deletion, class State> void addDeletions(const Table<State>& table) {
+    for (RTid id : table.deleted) {
+      Deletion deletion;
+      deletion.id = id;
+      add(std::move(deletion));
+    }
+  }
+
+  // The changed things of a table that still exist.
+  template <class State, class F> void forEachDirty(Table<State>& table, const F& f) {
+    for (RTid id : table.dirty)
+      if (State* state = table.find(id)) f(id, *state);
+  }
+
+  ArrayId addArray(const ArrayPtr& array) {
+    if (!array) return 0;
+    commit_->arrays.emplace(scene_.nextArray_, array);
+    return scene_.nextArray_++;
+  }
+
+  void addTextures() {
+    forEachDirty(scene_.textures, [&](RTid, TextureState& state) {
+      if (state.texels) state.description.texels = addArray(state.texels);
+      add(edit::TextureT(state.description));
+    });
+  }
+
+  void addShaders() {
+    forEachDirty(scene_.classes, [&](RTid id, ShaderClassState& state) {
+      edit::ShaderClassT e;
+      e.id = id, e.name = state.name, e.library = state.library;
+      add(std::move(e));
+    });
+    forEachDirty(scene_.shaders, [&](RTid id, ShaderState& state) {
+      if (!state.committed) {
+        edit::ShaderT e;
+        e.id = id, e.shaderClass = state.shaderClass;
+        add(std::move(e));
+      }
+      for (const auto& [index, parameter] : state.parameters) add(edit::ParameterT(parameter));
+    });
+  }
+
+  std::unique_ptr<edit::GeometryT> toEditGeometry(const BuiltGeometry& built) {
+    auto e = std::make_unique<edit::GeometryT>();
+    e->primitive = built.primitive;
+    e->shader = built.state.shader;
+    e->name = built.state.name;
+    e->matrix = toEdit(built.state.matrix);
+    e->cull = built.state.cull;
+    e->clockwise = built.state.clockwise;
+    e->width = built.state.width;
+    e->points = addArray(built.points);
+    e->indices = addArray(built.indices);
+    e->normals = addArray(built.normals);
+    e->texCoords = addArray(built.texCoords);
+    e->colors = addArray(built.colors);
+    return e;
+  }
+
+  void addObjects() {
+    forEachDirty(scene_.objects, [&](RTid id, ObjectState& state) {
+      edit::ObjectT e;
+      e.id = id;
+      for (const BuiltGeometry& built : state.geometries) e.geometries.push_back(toEditGeometry(built));
+      add(std::move(e));
+    });
+  }
+
+  void addInstances() {
+    forEachDirty(scene_.instances, [&](RTid id, InstanceState& state) {
+      edit::InstanceT e;
+      e.id = id, e.parent = state.parent, e.object = state.object, e.shader = state.shader;
+      e.matrix = toEdit(state.matrix);
+      e.visible = state.visible, e.userData = state.userData, e.name = state.name;
+      add(std::move(e));
+    });
+  }
+
+  void addLights() {
+    forEachDirty(scene_.lights, [&](RTid id, LightState& state) {
+      edit::LightT e;
+      e.id = id, e.shader = state.shader, e.scope = state.scope;
+      e.matrix = toEdit(state.matrix);
+      add(std::move(e));
+    });
+  }
+
+  template <class T> void addRole(const RoleState& role) {
+    if (!role.dirty) return;
+    T e;
+    e.shader = role.shader;
+    e.matrix = toEdit(role.matrix);
+    add(std::move(e));
+  }
+
+  void addRoles() {
+    addRole<edit::CameraT>(scene_.camera);
+    addRole<edit::EnvironmentT>(scene_.environment);
+    if (scene_.defaultShader.dirty) {
+      edit::DefaultShaderT e;
+      e.shader = scene_.defaultShader.shader;
+      add(std::move(e));
+    }
+    if (scene_.frameDirty) add(edit::FrameSettingsT(scene_.frame));
+  }
+
+  template <class State, class F> void settleTable(Table<State>& table, const F& release) noexcept {
+    forEachDirty(table, [&](RTid, State& state) {
+      release(state);
+      state.dirty = false;
+      state.committed = true;
+    });
+    table.dirty.clear();
+    table.deleted.clear();
+  }
+
+  void settle() noexcept {
+    settleTable(scene_.objects, [](ObjectState& s) { std::vector<BuiltGeometry>().swap(s.geometries); });
+    settleTable(scene_.instances, [](InstanceState&) {});
+    settleTable(scene_.classes, [](ShaderClassState&) {});
+    settleTable(scene_.shaders, [](ShaderState& s) { s.parameters.clear(); });
+    settleTable(scene_.textures, [](TextureState& s) { s.texels.reset(); });
+    settleTable(scene_.lights, [](LightState&) {});
+    scene_.camera.dirty = scene_.environment.dirty = scene_.defaultShader.dirty = scene_.frameDirty = false;
+  }
+
+  SceneState& scene_;
+  std::shared_ptr<Commit> commit_;
+};
+
+std::shared_ptr<const Commit> SceneState::takeCommit(bool render) { return CommitMaker(*this).make(render); }
+
+} // namespace openrt

@@ -1,0 +1,156 @@
+// context.cpp: construction of a context, what primitives latch, and the course of frames. Application thread but for
+// cancel, progress and the log sink.
+#include "api/context.h"
+
+#include "api/transform.h"
+
+namespace openrt {
+
+void LogSink::set(RTlogCallback callback, void* user) {
+  const std::lock_guard lock(mutex_);
+  callback_ = callback, user_ = user;
+}
+
+void LogSink::forward(int level, const char* message, void* self) {
+  LogSink& sink = *static_cast<LogSink*>(self);
+  const std::lock_guard lock(sink.mutex_);
+  if (!sink.callback_) return;
+  try {
+    sink.callback_(level, message, sink.user_);
+  } catch (...) { // the application's exception must not run through render threads
+  }
+}
+
+Context::Context(const ContextConfig& config) : Context(config, nullptr) { makeBackend(config); }
+
+Context::Context(const ContextConfig& config, std::unique_ptr<Backend> backend)
+    : registry_(std::make_unique<ShaderRegistry>(shaderFolders(config.shaderPath))), backend_(std::move(backend)) {}
+
+Context::~Context() { close(); }
+
+void Context::makeBackend(const ContextConfig& config) {
+  BackendOptions options;
+  options.threads = config.threads;
+  options.file = config.backend == BackendKind::Record ? config.file : config.record;
+  options.shaders = registry_.get();
+  options.log = LogSink::forward;
+  options.logUser = &log;
+  switch (config.backend) {
+  case BackendKind::Local: backend_ = makeLocalBackend(options); break;
+  case BackendKind::Null: backend_ = makeNullBackend(options); break;
+  case BackendKind::Record: backend_ = makeRecordBackend(options); break;
+  }
+  if (!config.record.empty()) backend_ = makeTeeBackend(options, std::move(backend_));
+}
+
+void Context::close() noexcept {
+  if (!open_) return;
+  try {
+    if (inFlight_) backend_->cancel(), backend_->wait();
+  } catch (...) { // the backend goes whatever became of its frame
+  }
+  const std::lock_guard lock(backendMutex_);
+  open_ = inFlight_ = false;
+  backend_.reset();
+  unsent_.clear();
+  definition.reset();
+  scene = SceneState();
+  registry_.reset();
+}
+
+Definition& Context::openDefinition() {
+  require(definition.has_value(), RT_INVALID_OPERATION, "not between rtBeginObject and rtEndObject");
+  return *definition;
+}
+
+void Context::requireOutsideList() const {
+  require(!definition || !definition->builder.inList(), RT_INVALID_OPERATION, "between rtBegin and rtEnd");
+}
+
+void Context::requireOutsideDefinition() const {
+  require(!definition, RT_INVALID_OPERATION, "between rtBeginObject and rtEndObject");
+}
+
+GeometryState Context::latch(edit::Primitive primitive) {
+  scene.requireKind(boundShader, RTS_SURFACE);
+  GeometryState state{boundShader, name, matrices.top(), cull, clockwise, 1};
+  if (primitive == edit::Primitive::Lines) state.width = lineWidth;
+  if (primitive == edit::Primitive::Points) state.width = pointSize;
+  return state;
+}
+
+const RtsClass& Context::findClass(std::string_view className, std::string_view library) const {
+  try {
+    return registry_->find(className, library);
+  } catch (const std::bad_alloc&) { throw; } catch (const std::exception& e) {
+    fail(RT_PLUGIN_ERROR, e.what());
+  }
+}
+
+RTid Context::stockCamera(const char* className, RTid& cached) {
+  if (cached && scene.shaders.find(cached)) return cached;
+  const RtsClass& table = findClass(className, "");
+  if (table.kind != RTS_CAMERA) fail(RT_PLUGIN_ERROR, std::string("the stock class ") + className + " is no camera class");
+  return cached = scene.newShader(scene.newShaderClass(table, className, ""));
+}
+
+// Hands the edits over. A backend that fails to take them is offered the same edits again by the next commit.
+void Context::commit() {
+  unsent_.reserve(unsent_.size() + 1);
+  unsent_.push_back(scene.takeCommit(true));
+  while (!unsent_.empty()) {
+    backend_->apply(unsent_.front());
+    unsent_.erase(unsent_.begin());
+    everCommitted_ = true;
+  }
+}
+
+void Context::start() {
+  edit::FrameSettingsT settings = scene.frame;
+  backend_->start();
+  flying_ = std::move(settings);
+  inFlight_ = true;
+}
+
+void Context::swapBuffers() {
+  require(scene.frame.width > 0, RT_INVALID_OPERATION, "no frame buffer: call rtFrameBuffer first");
+  if (inFlight_) {
+    inFlight_ = false;
+    backend_->wait();
+    finished_ = std::move(flying_);
+  }
+  commit();
+  start();
+}
+
+void Context::render() {
+  require(scene.frame.width > 0, RT_INVALID_OPERATION, "no frame buffer: call rtFrameBuffer first");
+  if (inFlight_) { // nobody will see this frame
+    backend_->cancel();
+    inFlight_ = false;
+    backend_->wait();
+    finished_ = std::move(flying_);
+  }
+  commit();
+  start();
+  inFlight_ = false;
+  backend_->wait();
+  finished_ = std::move(flying_);
+}
+
+void Context::cancel() {
+  const std::lock_guard lock(backendMutex_);
+  if (backend_) backend_->cancel();
+}
+
+float Context::progress() {
+  const std::lock_guard lock(backendMutex_);
+  return backend_ ? backend_->progress() : 0;
+}
+
+const edit::FrameSettingsT& Context::finishedFrame() const {
+  require(finished_.has_value(), RT_INVALID_OPERATION, "no frame is finished yet");
+  return *finished_;
+}
+
+} // namespace openrt

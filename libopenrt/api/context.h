@@ -1,0 +1,108 @@
+// context.h: everything behind one RTcontext. Used on the application's thread; rtCancel and rtProgress reach the backend from
+// any thread under backendMutex_, and the log sink is called by render threads.
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "api/config.h"
+#include "api/errors.h"
+#include "api/matrix_stack.h"
+#include "api/object_builder.h"
+#include "api/scene_state.h"
+#include "backend/backend.h"
+#include "shading/registry.h"
+
+namespace openrt {
+
+// Where the library's messages go; may be changed while render threads are talking.
+class LogSink {
+ public:
+  void set(RTlogCallback callback, void* user);
+  static void forward(int level, const char* message, void* sink); // an RTlogCallback
+
+ private:
+  std::recursive_mutex mutex_; // the callback may set another one
+  RTlogCallback callback_ = nullptr;
+  void* user_ = nullptr;
+};
+
+// The object being defined.
+struct Definition {
+  RTid object = 0;
+  ObjectBuilder builder;
+  std::vector<RTid> children;
+};
+
+class Context {
+ public:
+  explicit Context(const ContextConfig& config);
+  // For tests: renders with a backend of theirs.
+  Context(const ContextConfig& config, std::unique_ptr<Backend> backend);
+  ~Context();
+  Context(const Context&) = delete;
+  Context& operator=(const Context&) = delete;
+
+  // Frees everything; the context answers no call afterwards.
+  void close() noexcept;
+  bool open() const { return open_; }
+
+  ErrorState errors;
+  LogSink log;
+  MatrixStack matrices;
+  SceneState scene;
+  std::optional<Definition> definition;
+
+  // Bound state.
+  RTid boundShader = 0, boundTexture = 0;
+  uint32_t name = 0;
+  float lineWidth = 1, pointSize = 1;
+  bool cull = false, clockwise = false;
+  VertexState attributes; // outside definitions, forgotten by rtBeginObject
+  AttributeSource vertexArray, normalArray, texCoordArray, colorArray;
+
+  Definition& openDefinition();
+  VertexState& currentAttributes() { return definition ? definition->builder.current : attributes; }
+  std::vector<RTid>* openChildren() { return definition ? &definition->children : nullptr; }
+  void requireOutsideList() const;
+  void requireOutsideDefinition() const;
+  // What a primitive of this mode latches now; RT_INVALID_OPERATION if the bound shader is no surface shader.
+  GeometryState latch(edit::Primitive primitive);
+  // The stock camera class's shader, made when it is first asked for.
+  RTid stockCamera(const char* className, RTid& cached);
+  const RtsClass& findClass(std::string_view className, std::string_view library) const;
+
+  // Frames.
+  void swapBuffers();
+  void render();
+  void cancel();
+  float progress();
+  const edit::FrameSettingsT& finishedFrame() const;
+  Backend& backend() { return *backend_; }
+  bool everCommitted() const { return everCommitted_; }
+  uint64_t degenerate = 0;
+  RTid perspectiveCamera = 0, orthographicCamera = 0;
+
+ private:
+  void makeBackend(const ContextConfig& config);
+  void commit();
+  void start();
+
+  std::unique_ptr<ShaderRegistry> registry_;
+  std::unique_ptr<Backend> backend_;
+  std::mutex backendMutex_;                           // cancel and progress against close
+  std::vector<std::shared_ptr<const Commit>> unsent_; // made, but the backend could not take them yet
+  bool everCommitted_ = false, inFlight_ = false, open_ = true;
+  std::optional<edit::FrameSettingsT> flying_, finished_;
+};
+
+// The context of this thread: raw for speed, kept alive by a handle beside it (life.cpp).
+extern constinit thread_local Context* currentContext;
+
+// Makes a context known, current and owned by the table of live contexts. (life.cpp)
+RTcontext adoptContext(std::shared_ptr<Context> context);
+
+} // namespace openrt

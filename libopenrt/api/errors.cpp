@@ -1,0 +1,56 @@
+// errors.cpp: the sticky error and the translation of exceptions into error numbers. Application thread.
+#include "api/errors.h"
+
+#include <cstdio>
+#include <cstring>
+#include <new>
+#include <stdexcept>
+#include <system_error>
+
+namespace openrt {
+namespace {
+thread_local char lastMessage[512] = "";
+}
+
+void ErrorState::record(RTenum code, const char* function, const char* text) noexcept {
+  char message[sizeof(text_)];
+  std::snprintf(message, sizeof(message), "%s: %s", function, text);
+  if (first_ == RT_NO_ERROR) {
+    first_ = code;
+    std::memcpy(text_, message, sizeof(message));
+  }
+  if (!callback_) return;
+  try {
+    callback_(code, message, user_);
+  } catch (...) { // an application's exception has no way through a C interface
+  }
+}
+
+RTenum ErrorState::take() noexcept {
+  const RTenum code = first_;
+  std::memcpy(lastMessage, text_, sizeof(text_));
+  first_ = RT_NO_ERROR;
+  text_[0] = '\0';
+  return code;
+}
+
+ErrorState& threadErrors() noexcept {
+  thread_local ErrorState errors;
+  return errors;
+}
+
+const char* lastErrorMessage() noexcept { return lastMessage; }
+
+void recordCurrentException(ErrorState& errors, const char* function) noexcept {
+  try {
+    throw;
+  } catch (const ApiError& e) { errors.record(e.code(), function, e.what()); } catch (const std::bad_alloc&) {
+    errors.record(RT_OUT_OF_MEMORY, function, "out of memory");
+  } catch (const std::length_error&) {
+    errors.record(RT_OUT_OF_MEMORY, function, "more elements than an array can hold");
+  } catch (const std::system_error& e) { errors.record(RT_IO_ERROR, function, e.what()); } catch (const std::exception& e) {
+    errors.record(RT_INVALID_OPERATION, function, e.what());
+  } catch (...) { errors.record(RT_INVALID_OPERATION, function, "an unknown exception"); }
+}
+
+} // namespace openrt

@@ -1,0 +1,152 @@
+// frames.cpp: the frame buffer, frames, statistics and ray queries. Application thread.
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "api/guard.h"
+
+using namespace openrt;
+
+namespace {
+
+constexpr uint32_t allChannels = RT_RGBA | RT_DEPTH | RT_NORMAL | RT_ALBEDO | RT_POSITION | RT_NAME | RT_SAMPLES | RT_VARIANCE;
+
+size_t componentsOf(RTenum channel) {
+  switch (channel) {
+  case RT_RGBA: return 4;
+  case RT_NORMAL:
+  case RT_ALBEDO:
+  case RT_POSITION:
+  case RT_VARIANCE: return 3;
+  case RT_DEPTH:
+  case RT_NAME:
+  case RT_SAMPLES: return 1;
+  default: fail(RT_INVALID_ENUM, "unknown channel " + std::to_string(channel));
+  }
+}
+
+void setFrameBuffer(Context& c, int width, int height, uint32_t channels) {
+  constexpr int maxSide = 65536;
+  constexpr size_t maxPixels = size_t(1) << 28;
+  require(width >= 1 && height >= 1 && width <= maxSide && height <= maxSide &&
+              static_cast<size_t>(width) * static_cast<size_t>(height) <= maxPixels,
+          RT_INVALID_VALUE, "a frame has 1 to 65536 pixels a side and at most 2^28 in all");
+  require(channels != 0 && (channels & ~allChannels) == 0, RT_INVALID_VALUE, "no channel, or one that is unknown");
+  c.scene.frame.width = static_cast<uint32_t>(width);
+  c.scene.frame.height = static_cast<uint32_t>(height);
+  c.scene.frame.channels = channels;
+  c.scene.frameDirty = true;
+}
+
+void setQuality(Context& c, RTenum name, int value) {
+  edit::FrameSettingsT& frame = c.scene.frame;
+  const auto within = [value](int low, int high) { require(value >= low && value <= high, RT_INVALID_VALUE, "out of range"); };
+  switch (name) {
+  case RT_SAMPLES_PER_PIXEL:
+    within(1, 65536);
+    frame.samples = static_cast<uint32_t>(value);
+    break;
+  case RT_MAX_DEPTH:
+    within(0, 10000);
+    frame.depth = static_cast<uint32_t>(value);
+    break;
+  case RT_SEED: frame.seed = static_cast<uint32_t>(value); break;
+  case RT_SHADOWS:
+    within(0, 1);
+    frame.shadows = value == 1;
+    break;
+  default: fail(RT_INVALID_ENUM, "unknown quality " + std::to_string(name));
+  }
+  c.scene.frameDirty = true;
+}
+
+void readPixels(Context& c, RTenum channel, float* out, size_t count) {
+  const size_t components = componentsOf(channel);
+  const edit::FrameSettingsT& frame = c.finishedFrame();
+  require((frame.channels & channel) != 0, RT_INVALID_OPERATION, "the frame was rendered without this channel");
+  const size_t needed = components * frame.width * frame.height;
+  require(out != nullptr, RT_INVALID_VALUE, "the pointer is NULL");
+  if (count < needed)
+    fail(RT_INVALID_VALUE, "room for " + std::to_string(count) + " floats; the channel has " + std::to_string(needed));
+  require(c.backend().read(channel, {out, needed}), RT_INVALID_OPERATION, "the backend has no such channel");
+}
+
+void getStats(Context& c, RTstats* out) {
+  require(out != nullptr, RT_INVALID_VALUE, "the pointer is NULL");
+  const size_t size = out->size;
+  require(size >= sizeof(size_t), RT_INVALID_VALUE, "set size to sizeof(RTstats) before the call");
+  RTstats stats{};
+  stats.size = sizeof(stats);
+  c.backend().stats(stats);
+  stats.objects = c.scene.objects.entries.size();
+  stats.instances = c.scene.instances.entries.size();
+  stats.lights = c.scene.lights.entries.size();
+  stats.textures = c.scene.textures.entries.size();
+  stats.degenerate += c.degenerate;
+  stats.size = size; // an older program's structure ends earlier
+  std::memcpy(out, &stats, std::min(size, sizeof(stats)));
+}
+
+void castRays(Context& c, size_t count, const RTray* rays, RThit* hits) {
+  require((rays && hits) || count == 0, RT_INVALID_VALUE, "a pointer is NULL");
+  if (c.everCommitted()) {
+    c.backend().castRays({rays, count}, {hits, count});
+    return;
+  }
+  RThit nothing{};
+  nothing.t = std::numeric_limits<float>::infinity();
+  std::fill_n(hits, count, nothing);
+}
+
+void occludedRays(Context& c, size_t count, const RTray* rays, uint8_t* occluded) {
+  require((rays && occluded) || count == 0, RT_INVALID_VALUE, "a pointer is NULL");
+  if (c.everCommitted())
+    c.backend().occludedRays({rays, count}, {occluded, count});
+  else
+    std::fill_n(occluded, count, uint8_t(0));
+}
+
+void requireNoDefinition(Context& c) {
+  c.requireOutsideDefinition(); // a scene is committed whole
+}
+
+} // namespace
+
+void rtFrameBuffer(int width, int height, uint32_t channels) {
+  guarded("rtFrameBuffer", [&](Context& c) { setFrameBuffer(c, width, height, channels); });
+}
+
+void rtQuality(RTenum name, int value) {
+  guarded("rtQuality", [&](Context& c) { setQuality(c, name, value); });
+}
+
+void rtSwapBuffers(void) {
+  guarded("rtSwapBuffers", [](Context& c) {
+    requireNoDefinition(c);
+    c.swapBuffers();
+  });
+}
+
+void rtRender(void) {
+  guarded("rtRender", [](Context& c) {
+    requireNoDefinition(c);
+    c.render();
+  });
+}
+
+void rtReadPixels(RTenum channel, float* out, size_t count) {
+  guarded("rtReadPixels", [&](Context& c) { readPixels(c, channel, out, count); });
+}
+
+void rtGetStats(RTstats* stats) {
+  guarded("rtGetStats", [&](Context& c) { getStats(c, stats); });
+}
+
+void rtCastRays(size_t count, const RTray* rays, RThit* hits) {
+  guarded("rtCastRays", [&](Context& c) { castRays(c, count, rays, hits); });
+}
+
+void rtOccludedRays(size_t count, const RTray* rays, uint8_t* occluded) {
+  guarded("rtOccludedRays", [&](Context& c) { occludedRays(c, count, rays, occluded); });
+}

@@ -1,0 +1,36 @@
+// guard.h: the one way into the library from C: finds the current context, and lets no exception out.
+#pragma once
+
+#include <utility>
+
+#include "api/context.h"
+
+namespace openrt {
+
+void reportNoContext(const char* function) noexcept;
+
+// Runs body(context). Where that throws, or no context is current, records the error and returns `failure`.
+template <class Result, class Body> Result guarded(const char* function, Result failure, Body&& body) noexcept {
+  Context* const context = currentContext;
+  if (!context || !context->open()) [[unlikely]] {
+    reportNoContext(function);
+    return failure;
+  }
+  try {
+    return body(*context);
+  } catch (...) { recordCurrentException(context->errors, function); }
+  return failure;
+}
+
+template <class Body> void guarded(const char* function, Body&& body) noexcept {
+  Context* const context = currentContext;
+  if (!context || !context->open()) [[unlikely]] {
+    reportNoContext(function);
+    return;
+  }
+  try {
+    body(*context);
+  } catch (...) { recordCurrentException(context->errors, function); }
+}
+
+} // namespace openrt

@@ -1,0 +1,105 @@
+// primitives.h: GL's vertex modes as triangles, segments and points, and what counts as degenerate. Pure functions.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "api/errors.h"
+#include "edits_generated.h"
+
+namespace openrt {
+
+inline edit::Primitive primitiveOf(RTenum mode) {
+  switch (mode) {
+  case RT_POINTS: return edit::Primitive::Points;
+  case RT_LINES:
+  case RT_LINE_STRIP: return edit::Primitive::Lines;
+  case RT_TRIANGLES:
+  case RT_TRIANGLE_STRIP:
+  case RT_TRIANGLE_FAN:
+  case RT_QUADS:
+  case RT_QUAD_STRIP:
+  case RT_POLYGON: return edit::Primitive::Triangles;
+  default: fail(RT_INVALID_ENUM, "unknown mode " + std::to_string(mode));
+  }
+}
+
+// Indices that count vertices of a mode make at most. Vertices that complete no primitive are ignored, as in OpenGL.
+inline size_t indexCount(RTenum mode, size_t count) {
+  switch (mode) {
+  case RT_POINTS: return count;
+  case RT_LINES: return count / 2 * 2;
+  case RT_LINE_STRIP: return count < 2 ? 0 : 2 * (count - 1);
+  case RT_TRIANGLES: return count / 3 * 3;
+  case RT_QUADS: return count / 4 * 6;
+  case RT_QUAD_STRIP: return count < 4 ? 0 : (count / 2 - 1) * 6;
+  default: return count < 3 ? 0 : 3 * (count - 2); // strips, fans, polygons
+  }
+}
+
+// No area: two corners in one place, or the cross product of the edges is not above its own rounding error in double.
+inline bool degenerateTriangle(const float* a, const float* b, const float* c) {
+  const double ux = double(b[0]) - a[0], uy = double(b[1]) - a[1], uz = double(b[2]) - a[2];
+  const double vx = double(c[0]) - a[0], vy = double(c[1]) - a[1], vz = double(c[2]) - a[2];
+  constexpr double bound = 4 * 0x1p-53;
+  const auto vanishes = [](double p, double q) { return std::fabs(p - q) <= bound * (std::fabs(p) + std::fabs(q)); };
+  return vanishes(uy * vz, uz * vy) && vanishes(uz * vx, ux * vz) && vanishes(ux * vy, uy * vx);
+}
+
+inline bool samePoint(const float* a, const float* b) { return a[0] == b[0] && a[1] == b[1] && a[2] == b[2]; }
+
+// Writes the indices of the primitives that count vertices of a mode make; vertexOf(i) is the i-th vertex's index into points.
+// Degenerate ones are left out and counted. out has room for indexCount(mode, count). Returns the end of what was written.
+template <class VertexOf> uint32_t* writeIndices(RTenum mode, size_t count, const float* points, const VertexOf& vertexOf,
+                                                 uint32_t* out, uint64_t& degenerate) {
+  const auto triangle = [&](size_t i, size_t j, size_t k) {
+    const uint32_t a = vertexOf(i), b = vertexOf(j), c = vertexOf(k);
+    if (degenerateTriangle(points + 3 * size_t(a), points + 3 * size_t(b), points + 3 * size_t(c))) {
+      degenerate++;
+      return;
+    }
+    out[0] = a, out[1] = b, out[2] = c;
+    out += 3;
+  };
+  const auto segment = [&](size_t i, size_t j) {
+    const uint32_t a = vertexOf(i), b = vertexOf(j);
+    if (samePoint(points + 3 * size_t(a), points + 3 * size_t(b))) {
+      degenerate++;
+      return;
+    }
+    out[0] = a, out[1] = b;
+    out += 2;
+  };
+  switch (mode) {
+  case RT_POINTS:
+    for (size_t i = 0; i < count; i++) *out++ = vertexOf(i);
+    break;
+  case RT_LINES:
+    for (size_t i = 0; i + 1 < count; i += 2) segment(i, i + 1);
+    break;
+  case RT_LINE_STRIP:
+    for (size_t i = 0; i + 1 < count; i++) segment(i, i + 1);
+    break;
+  case RT_TRIANGLES:
+    for (size_t i = 0; i + 2 < count; i += 3) triangle(i, i + 1, i + 2);
+    break;
+  case RT_TRIANGLE_STRIP: // every second triangle is turned, so that all face the same way
+    for (size_t i = 0; i + 2 < count; i++) triangle(i + (i & 1), i + 1 - (i & 1), i + 2);
+    break;
+  case RT_TRIANGLE_FAN:
+  case RT_POLYGON:
+    for (size_t i = 1; i + 1 < count; i++) triangle(0, i, i + 1);
+    break;
+  case RT_QUADS:
+    for (size_t i = 0; i + 3 < count; i += 4) triangle(i, i + 1, i + 2), triangle(i, i + 2, i + 3);
+    break;
+  case RT_QUAD_STRIP: // the quad is 0 1 3 2
+    for (size_t i = 0; i + 3 < count; i += 2) triangle(i, i + 1, i + 3), triangle(i, i + 3, i + 2);
+    break;
+  default: break;
+  }
+  return out;
+}
+
+} // namespace openrt

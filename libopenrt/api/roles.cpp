@@ -1,0 +1,103 @@
+// roles.cpp: what shaders are used for: lights, the camera, the environment, the default surface. Application thread.
+#include <cmath>
+
+#include "api/guard.h"
+#include "api/transform.h"
+
+using namespace openrt;
+
+namespace {
+
+template <class Change> void changeLight(Context& c, RTid id, const Change& change) {
+  LightState& state = c.scene.light(id);
+  c.scene.lights.touch(id, state);
+  change(state);
+}
+
+// A camera's frame must be one: a view cannot be flat.
+void requireFrame(const Matrix4d& matrix) {
+  require(matrix.determinant() != 0, RT_INVALID_VALUE, "the current matrix is singular");
+}
+
+void useStockCamera(Context& c, const char* className, RTid& cached, const char* parameterName, double value) {
+  c.requireOutsideDefinition();
+  requireFrame(c.matrices.top());
+  const RTid shader = c.stockCamera(className, cached);
+  const RtsClass& table = c.scene.classOf(c.scene.shader(shader));
+  uint32_t index = 0;
+  while (index < table.paramCount && std::string_view(table.params[index].name) != parameterName) index++;
+  if (index == table.paramCount || table.params[index].type != RTS_FLOAT)
+    fail(RT_PLUGIN_ERROR, std::string("the stock class ") + className + " has no float parameter " + parameterName);
+  edit::ParameterT e;
+  e.index = index;
+  e.floats = {static_cast<float>(value)};
+  c.scene.setParameter(shader, std::move(e));
+  c.scene.setRole(c.scene.camera, shader, c.matrices.top());
+}
+
+} // namespace
+
+RTid rtUseLight(RTid shader) {
+  return guarded("rtUseLight", RTid(0), [&](Context& c) {
+    c.scene.shader(shader);
+    c.scene.requireKind(shader, RTS_LIGHT);
+    c.requireOutsideDefinition();
+    return c.scene.newLight(shader, c.matrices.top());
+  });
+}
+
+void rtLightMatrix(RTid light, const double m[16]) {
+  guarded("rtLightMatrix", [&](Context& c) {
+    const Matrix4d matrix = checkedMatrix(m);
+    changeLight(c, light, [&](LightState& s) { s.matrix = matrix; });
+  });
+}
+
+void rtLightScope(RTid light, RTid instance) {
+  guarded("rtLightScope", [&](Context& c) {
+    if (instance != 0) c.scene.instance(instance);
+    changeLight(c, light, [&](LightState& s) { s.scope = instance; });
+  });
+}
+
+void rtRemoveLight(RTid light) {
+  guarded("rtRemoveLight", [&](Context& c) { c.scene.deleteLight(light); });
+}
+
+void rtUseCamera(RTid shader) {
+  guarded("rtUseCamera", [&](Context& c) {
+    c.scene.requireKind(shader, RTS_CAMERA);
+    c.requireOutsideDefinition();
+    requireFrame(c.matrices.top());
+    c.scene.setRole(c.scene.camera, shader, c.matrices.top());
+  });
+}
+
+void rtUseEnvironment(RTid shader) {
+  guarded("rtUseEnvironment", [&](Context& c) {
+    c.scene.requireKind(shader, RTS_ENVIRONMENT);
+    c.requireOutsideDefinition();
+    c.scene.setRole(c.scene.environment, shader, c.matrices.top());
+  });
+}
+
+void rtDefaultShader(RTid shader) {
+  guarded("rtDefaultShader", [&](Context& c) {
+    c.scene.requireKind(shader, RTS_SURFACE);
+    c.scene.setRole(c.scene.defaultShader, shader, Matrix4d());
+  });
+}
+
+void rtPerspective(double fovyDegrees) {
+  guarded("rtPerspective", [&](Context& c) {
+    require(fovyDegrees > 0 && fovyDegrees < 180, RT_INVALID_VALUE, "the field of view must lie between 0 and 180 degrees");
+    useStockCamera(c, "PerspectiveCamera", c.perspectiveCamera, "fovy", fovyDegrees);
+  });
+}
+
+void rtOrtho(double height) {
+  guarded("rtOrtho", [&](Context& c) {
+    require(std::isfinite(static_cast<float>(height)) && height > 0, RT_INVALID_VALUE, "the height must be positive and finite");
+    useStockCamera(c, "OrthographicCamera", c.orthographicCamera, "height", height);
+  });
+}

@@ -1,0 +1,193 @@
+// scene_state.cpp: making, finding and deleting things; every function reserves what it needs before it changes anything.
+#include "api/scene_state.h"
+
+#include <limits>
+
+namespace openrt {
+namespace {
+
+template <class State> State& lookup(Table<State>& table, RTid id, const char* kind) {
+  State* state = table.find(id);
+  if (!state) fail(RT_INVALID_ID, std::to_string(id) + " is not " + kind);
+  return *state;
+}
+
+// Makes the next push_back infallible, with amortised growth.
+void makeRoom(std::vector<RTid>& ids, size_t more = 1) {
+  if (ids.capacity() - ids.size() < more) ids.reserve(std::max(ids.size() + more, 2 * ids.capacity()));
+}
+
+template <class State> State& insert(Table<State>& table, RTid id) {
+  makeRoom(table.dirty);
+  return table.entries[id];
+}
+
+} // namespace
+
+SceneState::SceneState() {
+  frame.samples = 16;
+  frame.depth = 25;
+}
+
+ObjectState& SceneState::object(RTid id) { return lookup(objects, id, "an object"); }
+InstanceState& SceneState::instance(RTid id) { return lookup(instances, id, "an instance"); }
+ShaderClassState& SceneState::shaderClass(RTid id) { return lookup(classes, id, "a shader class"); }
+ShaderState& SceneState::shader(RTid id) { return lookup(shaders, id, "a shader"); }
+TextureState& SceneState::texture(RTid id) { return lookup(textures, id, "a texture"); }
+LightState& SceneState::light(RTid id) { return lookup(lights, id, "a light"); }
+
+void SceneState::requireKind(RTid id, RtsKind kind) {
+  static const char* const names[] = {"", "surface", "light", "camera", "environment"};
+  if (id == 0) return;
+  const RtsClass& table = classOf(shader(id));
+  if (table.kind != kind)
+    fail(RT_INVALID_OPERATION, std::string("the shader's class ") + table.name + " is a " + names[table.kind] + " class, not a " +
+                                   names[kind] + " class");
+}
+
+RTid SceneState::newId() {
+  if (nextId_ == std::numeric_limits<RTid>::max()) fail(RT_OUT_OF_MEMORY, "all 2^32 ids are used up");
+  return nextId_++;
+}
+
+RTid SceneState::newObject() {
+  const RTid id = newId();
+  objects.touch(id, insert(objects, id));
+  return id;
+}
+
+// Enters the object's list of users; the caller enters it into the parent's list of children.
+RTid SceneState::newInstance(const InstanceState& fresh) {
+  ObjectState& target = object(fresh.object);
+  makeRoom(target.users);
+  const RTid id = newId();
+  InstanceState& state = insert(instances, id);
+  state = fresh;
+  state.userSlot = target.users.size();
+  target.users.push_back(id);
+  instances.touch(id, state);
+  return id;
+}
+
+RTid SceneState::newShaderClass(const RtsClass& table, std::string_view name, std::string_view library) {
+  for (const auto& [id, state] : classes.entries)
+    if (state.name == name && state.library == library) return id;
+  ShaderClassState fresh{&table, std::string(name), std::string(library)};
+  const RTid id = newId();
+  ShaderClassState& state = insert(classes, id);
+  state = std::move(fresh);
+  classes.touch(id, state);
+  return id;
+}
+
+RTid SceneState::newShader(RTid classId) {
+  shaderClass(classId);
+  const RTid id = newId();
+  ShaderState& state = insert(shaders, id);
+  state.shaderClass = classId;
+  shaders.touch(id, state);
+  return id;
+}
+
+RTid SceneState::newTexture() {
+  const RTid id = newId();
+  insert(textures, id).description.id = id;
+  return id;
+}
+
+RTid SceneState::newLight(RTid shaderId, const Matrix4d& matrix) {
+  const RTid id = newId();
+  LightState& state = insert(lights, id);
+  state.shader = shaderId;
+  state.matrix = matrix;
+  lights.touch(id, state);
+  return id;
+}
+
+void SceneState::defineObject(RTid id, std::vector<BuiltGeometry> geometries, const std::vector<RTid>& children) {
+  ObjectState& state = object(id);
+  std::vector<RTid> fresh = children;
+  makeRoom(instances.deleted, state.children.size());
+  objects.touch(id, state);
+  while (!state.children.empty()) deleteInstance(state.children.back(), nullptr);
+  state.geometries = std::move(geometries);
+  state.children = std::move(fresh);
+  for (RTid child : state.children) instances.find(child)->inDefinition = false;
+}
+
+bool SceneState::contains(RTid inner, RTid outer) {
+  if (inner == outer) return true;
+  if (object(outer).users.empty() || object(inner).children.empty()) return false;
+  std::vector<RTid> open{inner};
+  std::unordered_map<RTid, bool> seen{{inner, true}};
+  while (!open.empty()) {
+    const RTid id = open.back();
+    open.pop_back();
+    for (RTid child : object(id).children) {
+      const RTid below = instance(child).object;
+      if (below == outer) return true;
+      if (seen.emplace(below, true).second) open.push_back(below);
+    }
+  }
+  return false;
+}
+
+// openChildren: the children of the definition that is open, whose list is not yet its object's.
+void SceneState::deleteInstance(RTid id, std::vector<RTid>* openChildren) {
+  InstanceState& state = instance(id);
+  makeRoom(instances.deleted);
+  const auto leave = [this](std::vector<RTid>& list, size_t slot, size_t InstanceState::*place) {
+    list[slot] = list.back();
+    instances.find(list[slot])->*place = slot;
+    list.pop_back();
+  };
+  leave(object(state.object).users, state.userSlot, &InstanceState::userSlot);
+  if (state.inDefinition)
+    leave(*openChildren, state.childSlot, &InstanceState::childSlot);
+  else if (state.parent != 0)
+    leave(object(state.parent).children, state.childSlot, &InstanceState::childSlot);
+  instances.erase(id, state);
+}
+
+void SceneState::deleteObject(RTid id, std::vector<RTid>* openChildren) {
+  ObjectState& state = object(id);
+  makeRoom(objects.deleted);
+  makeRoom(instances.deleted, state.children.size() + state.users.size());
+  while (!state.children.empty()) deleteInstance(state.children.back(), openChildren);
+  while (!state.users.empty()) deleteInstance(state.users.back(), openChildren);
+  objects.erase(id, state);
+}
+
+void SceneState::deleteShader(RTid id) {
+  ShaderState& state = shader(id);
+  std::vector<RTid> itsLights, itsInstances;
+  for (const auto& [lightId, light] : lights.entries)
+    if (light.shader == id) itsLights.push_back(lightId);
+  for (const auto& [instanceId, instance] : instances.entries)
+    if (instance.shader == id) itsInstances.push_back(instanceId);
+  makeRoom(lights.deleted, itsLights.size());
+  makeRoom(instances.dirty, itsInstances.size());
+  makeRoom(shaders.deleted);
+  for (RTid lightId : itsLights) lights.erase(lightId, lights.entries[lightId]);
+  for (RTid instanceId : itsInstances) {
+    InstanceState& instance = instances.entries[instanceId];
+    instance.shader = 0;
+    instances.touch(instanceId, instance);
+  }
+  for (RoleState* role : {&camera, &environment, &defaultShader})
+    if (role->shader == id) *role = {0, Matrix4d(), true};
+  shaders.erase(id, state);
+}
+
+void SceneState::deleteTexture(RTid id) { textures.erase(id, texture(id)); }
+void SceneState::deleteLight(RTid id) { lights.erase(id, light(id)); }
+
+void SceneState::setParameter(RTid id, edit::ParameterT parameter) {
+  ShaderState& state = shader(id);
+  shaders.touch(id, state);
+  parameter.shader = id;
+  const uint32_t index = parameter.index;
+  state.parameters.insert_or_assign(index, std::move(parameter));
+}
+
+} // namespace openrt

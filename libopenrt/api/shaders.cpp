@@ -1,0 +1,186 @@
+// shaders.cpp: shader classes, shaders and their parameters, by the tables that the classes publish. Application thread.
+#include <cfloat>
+#include <cmath>
+#include <cstring>
+#include <initializer_list>
+#include <span>
+
+#include "api/guard.h"
+
+using namespace openrt;
+
+static_assert(RT_PARAM_INT == int(RTS_INT) && RT_PARAM_TEXTURE == int(RTS_TEXTURE) && RT_PARAM_FLOATS == int(RTS_FLOATS) &&
+              RT_PARAM_COLOR == int(RTS_COLOR) && RT_SURFACE == int(RTS_SURFACE) && RT_ENVIRONMENT == int(RTS_ENVIRONMENT));
+
+namespace {
+
+constexpr size_t maxListLength = size_t(1) << 24, maxStringLength = size_t(1) << 24;
+
+ShaderState& bound(Context& c) {
+  require(c.boundShader != 0, RT_INVALID_OPERATION, "no shader is bound");
+  return c.scene.shader(c.boundShader);
+}
+
+// The bound shader's parameter with this handle, which must be of one of these types.
+const RtsParam& parameter(Context& c, int handle, std::initializer_list<RtsType> types) {
+  const RtsClass& table = c.scene.classOf(bound(c));
+  if (handle < 0 || static_cast<uint32_t>(handle) >= table.paramCount)
+    fail(RT_INVALID_PARAMETER,
+         "the class " + std::string(table.name) + " has no parameter with handle " + std::to_string(handle));
+  const RtsParam& param = table.params[handle];
+  for (RtsType type : types)
+    if (param.type == type) return param;
+  fail(RT_INVALID_PARAMETER, std::string("parameter ") + param.name + " of the class " + table.name + " is of another type");
+}
+
+void checkRange(const RtsParam& param, double value) {
+  if (!std::isfinite(value)) fail(RT_INVALID_VALUE, std::string("parameter ") + param.name + ": not finite");
+  if (param.minimum == 0 && param.maximum == 0) return;
+  if (value < param.minimum || value > param.maximum)
+    fail(RT_INVALID_VALUE, std::string("parameter ") + param.name + ": " + std::to_string(value) + " is outside " +
+                               std::to_string(param.minimum) + " .. " + std::to_string(param.maximum));
+}
+
+edit::ParameterT edited(int handle) {
+  edit::ParameterT e;
+  e.index = static_cast<uint32_t>(handle);
+  return e;
+}
+
+void setFloats(Context& c, int handle, std::initializer_list<RtsType> types, std::span<const float> values) {
+  const RtsParam& param = parameter(c, handle, types);
+  for (float v : values) checkRange(param, v);
+  edit::ParameterT e = edited(handle);
+  e.floats.assign(values.begin(), values.end());
+  c.scene.setParameter(c.boundShader, std::move(e));
+}
+
+int parameterHandle(Context& c, const char* name) {
+  const RtsClass& table = c.scene.classOf(bound(c));
+  require(name != nullptr, RT_INVALID_VALUE, "the name is NULL");
+  for (uint32_t i = 0; i < table.paramCount; i++)
+    if (std::strcmp(table.params[i].name, name) == 0) return static_cast<int>(i);
+  fail(RT_INVALID_PARAMETER, std::string("the class ") + table.name + " has no parameter \"" + name + "\"");
+}
+
+} // namespace
+
+RTid rtNewShaderClass(const char* name, const char* library) {
+  return guarded("rtNewShaderClass", RTid(0), [&](Context& c) {
+    require(name && *name, RT_INVALID_VALUE, "the name is NULL or empty");
+    const char* const from = library ? library : "";
+    return c.scene.newShaderClass(c.findClass(name, from), name, from);
+  });
+}
+
+RTid rtNewShader(RTid shaderClass) {
+  return guarded("rtNewShader", RTid(0), [&](Context& c) { return c.scene.newShader(shaderClass); });
+}
+
+void rtBindShader(RTid shader) {
+  guarded("rtBindShader", [&](Context& c) {
+    if (shader != 0) c.scene.shader(shader);
+    c.boundShader = shader;
+  });
+}
+
+void rtDeleteShader(RTid shader) {
+  guarded("rtDeleteShader", [&](Context& c) {
+    c.scene.deleteShader(shader);
+    if (c.boundShader == shader) c.boundShader = 0;
+  });
+}
+
+int rtParameterHandle(const char* name) {
+  return guarded("rtParameterHandle", -1, [&](Context& c) { return parameterHandle(c, name); });
+}
+
+void rtParameter1i(int handle, int value) {
+  guarded("rtParameter1i", [&](Context& c) {
+    checkRange(parameter(c, handle, {RTS_INT}), value);
+    edit::ParameterT e = edited(handle);
+    e.integer = value;
+    c.scene.setParameter(c.boundShader, std::move(e));
+  });
+}
+
+void rtParameter1f(int handle, float x) {
+  guarded("rtParameter1f", [&](Context& c) { setFloats(c, handle, {RTS_FLOAT}, {{x}}); });
+}
+
+void rtParameter2f(int handle, float x, float y) {
+  guarded("rtParameter2f", [&](Context& c) { setFloats(c, handle, {RTS_VEC2}, {{x, y}}); });
+}
+
+void rtParameter3f(int handle, float x, float y, float z) {
+  guarded("rtParameter3f", [&](Context& c) { setFloats(c, handle, {RTS_VEC3, RTS_COLOR}, {{x, y, z}}); });
+}
+
+void rtParameter4f(int handle, float x, float y, float z, float w) {
+  guarded("rtParameter4f", [&](Context& c) { setFloats(c, handle, {RTS_VEC4}, {{x, y, z, w}}); });
+}
+
+void rtParameter16f(int handle, const float m[16]) {
+  guarded("rtParameter16f", [&](Context& c) {
+    parameter(c, handle, {RTS_MATRIX});
+    require(m != nullptr, RT_INVALID_VALUE, "the matrix is NULL");
+    setFloats(c, handle, {RTS_MATRIX}, {m, 16});
+  });
+}
+
+void rtParameterfv(int handle, size_t count, const float* values) {
+  guarded("rtParameterfv", [&](Context& c) {
+    parameter(c, handle, {RTS_FLOATS});
+    require(values || count == 0, RT_INVALID_VALUE, "the values are NULL");
+    require(count <= maxListLength, RT_INVALID_VALUE, "more than 2^24 values");
+    setFloats(c, handle, {RTS_FLOATS}, {values, count});
+  });
+}
+
+void rtParameterString(int handle, const char* utf8) {
+  guarded("rtParameterString", [&](Context& c) {
+    parameter(c, handle, {RTS_STRING});
+    require(utf8 != nullptr, RT_INVALID_VALUE, "the text is NULL");
+    edit::ParameterT e = edited(handle);
+    e.text = utf8;
+    require(e.text.size() <= maxStringLength, RT_INVALID_VALUE, "a text of more than 2^24 bytes");
+    c.scene.setParameter(c.boundShader, std::move(e));
+  });
+}
+
+void rtParameterTexture(int handle, RTid texture) {
+  guarded("rtParameterTexture", [&](Context& c) {
+    parameter(c, handle, {RTS_TEXTURE});
+    if (texture != 0) c.scene.texture(texture);
+    edit::ParameterT e = edited(handle);
+    e.texture = texture;
+    c.scene.setParameter(c.boundShader, std::move(e));
+  });
+}
+
+void rtGetShaderClass(RTid shaderClass, RTenum* kind, int* parameters) {
+  guarded("rtGetShaderClass", [&](Context& c) {
+    const RtsClass& table = *c.scene.shaderClass(shaderClass).table;
+    if (kind) *kind = table.kind;
+    if (parameters) *parameters = static_cast<int>(table.paramCount);
+  });
+}
+
+void rtGetParameterInfo(RTid shaderClass, int handle, RTparameterInfo* info) {
+  guarded("rtGetParameterInfo", [&](Context& c) {
+    const RtsClass& table = *c.scene.shaderClass(shaderClass).table;
+    require(info != nullptr, RT_INVALID_VALUE, "the pointer is NULL");
+    require(handle >= 0 && static_cast<uint32_t>(handle) < table.paramCount, RT_INVALID_PARAMETER,
+            "no parameter with this handle");
+    const RtsParam& param = table.params[handle];
+    const bool unlimited = param.minimum == 0 && param.maximum == 0;
+    RTparameterInfo result{};
+    result.name = param.name;
+    result.type = param.type;
+    std::copy(std::begin(param.defaultValue), std::end(param.defaultValue), result.defaultValue);
+    result.minimum = unlimited ? -FLT_MAX : param.minimum;
+    result.maximum = unlimited ? FLT_MAX : param.maximum;
+    result.text = param.text ? param.text : "";
+    *info = result;
+  });
+}

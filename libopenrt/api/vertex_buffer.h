@@ -1,0 +1,78 @@
+// vertex_buffer.h: the growing vertices of begin/end: one capacity for all attributes, so that appending a vertex is one
+// comparison and a few stores. Application thread.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "scene/commit.h"
+
+namespace openrt {
+
+enum Attribute : uint8_t { HasNormal = 1, HasTexCoord = 2, HasColor = 4 };
+
+// The attributes that the next vertex takes along; present: those that the object being defined has set.
+struct VertexState {
+  float normal[3] = {0, 0, 0}; // 0 0 0: the face's own normal
+  float texCoord[2] = {0, 0};
+  float color[4] = {1, 1, 1, 1};
+  uint8_t present = 0;
+};
+
+class VertexBuffer {
+ public:
+  size_t count() const { return count_; }
+  uint8_t attributes() const { return attributes_; }
+  const float* points() const { return points_.get(); }
+  float* points() { return points_.get(); }
+
+  // Appends a vertex; state.present must be attributes(). Throws std::bad_alloc and then changes nothing.
+  void append(float x, float y, float z, const VertexState& state) {
+    if (count_ == capacity_) [[unlikely]]
+      reserve(capacity_ ? 2 * capacity_ : 256);
+    float* p = points_.get() + 3 * count_;
+    p[0] = x, p[1] = y, p[2] = z;
+    if (attributes_) appendAttributes(state);
+    count_++;
+  }
+
+  // Gives every vertex so far the state that a vertex has before the attribute is first set.
+  void addAttributes(uint8_t attributes);
+  // Starts anew with these attributes; keeps the storage.
+  void restart(uint8_t attributes);
+  // Removes the first n vertices.
+  void dropFront(size_t n);
+  void truncate(size_t n) { count_ = n; }
+
+  // Copies of the first n vertices; null where the attribute is absent.
+  ArrayPtr copyPoints(size_t n) const { return copy(points_.get(), 3 * n); }
+  ArrayPtr copyNormals(size_t n) const { return attributes_ & HasNormal ? copy(normals_.get(), 3 * n) : nullptr; }
+  ArrayPtr copyTexCoords(size_t n) const { return attributes_ & HasTexCoord ? copy(texCoords_.get(), 2 * n) : nullptr; }
+  ArrayPtr copyColors(size_t n) const { return attributes_ & HasColor ? copy(colors_.get(), 4 * n) : nullptr; }
+
+ private:
+  using Floats = std::unique_ptr<float[]>;
+  void appendAttributes(const VertexState& state) {
+    if (attributes_ & HasNormal) {
+      float* n = normals_.get() + 3 * count_;
+      n[0] = state.normal[0], n[1] = state.normal[1], n[2] = state.normal[2];
+    }
+    if (attributes_ & HasTexCoord) {
+      float* t = texCoords_.get() + 2 * count_;
+      t[0] = state.texCoord[0], t[1] = state.texCoord[1];
+    }
+    if (attributes_ & HasColor) {
+      float* c = colors_.get() + 4 * count_;
+      c[0] = state.color[0], c[1] = state.color[1], c[2] = state.color[2], c[3] = state.color[3];
+    }
+  }
+  void reserve(size_t capacity);
+  Floats grown(const Floats& old, size_t components, size_t capacity) const;
+  static ArrayPtr copy(const float* data, size_t floats);
+
+  size_t count_ = 0, capacity_ = 0;
+  uint8_t attributes_ = 0;
+  Floats points_, normals_, texCoords_, colors_;
+};
+
+} // namespace openrt
