@@ -1,0 +1,63 @@
+// texture_groups.cpp: see texture_groups.h. Most batches have one texture and are sampled in place; others are sorted by
+// texture, in scratch memory, so that the cost does not grow with the number of textures.
+#include "vrml97/texture_groups.h"
+
+#include <algorithm>
+
+#include "vrml97/batch.h"
+
+namespace vrml97 {
+namespace {
+
+bool sameEverywhere(const RtsTexture* texture, uint32_t count) {
+  uint32_t different = 0;
+  for (uint32_t i = 0; i < count; i++) different |= texture[i] ^ texture[0];
+  return different == 0;
+}
+
+// Lanes with a texture, ordered by texture, then by lane.
+uint32_t sortedKeys(const TexturePlaces& places, uint64_t* keys) {
+  uint32_t n = 0;
+  for (uint32_t i = 0; i < places.count; i++)
+    if (places.texture[i] != 0) keys[n++] = uint64_t(places.texture[i]) << 32 | i;
+  std::sort(keys, keys + n);
+  return n;
+}
+
+} // namespace
+
+void sampleGroups(const RtsHost* host, RtsBatch* batch, const TexturePlaces& places, float* const rgba[4], uint32_t* components) {
+  if (places.count == 0) return;
+  if (sameEverywhere(places.texture, places.count)) {
+    if (places.texture[0] == 0) return;
+    host->sample(batch, places.texture[0], places.count, places.uv, rgba);
+    std::fill_n(components, places.count, host->components(host, places.texture[0]));
+    return;
+  }
+  auto* keys = reinterpret_cast<uint64_t*>(host->scratch(batch, 2 * wholeLanes(places.count)));
+  const uint32_t n = sortedKeys(places, keys);
+  float* packed[6];
+  for (float*& p : packed) p = host->scratch(batch, wholeLanes(places.count));
+  const float* const uv[2] = {packed[0], packed[1]};
+  for (uint32_t begin = 0, end; begin < n; begin = end) {
+    const auto texture = static_cast<RtsTexture>(keys[begin] >> 32);
+    for (end = begin; end < n && keys[end] >> 32 == texture; end++) {
+      packed[0][end - begin] = places.uv[0][uint32_t(keys[end])];
+      packed[1][end - begin] = places.uv[1][uint32_t(keys[end])];
+    }
+    const uint32_t size = end - begin;
+    for (uint32_t k = size; k < wholeLanes(size); k++) { // the padding repeats the last lane
+      packed[0][k] = packed[0][size - 1];
+      packed[1][k] = packed[1][size - 1];
+    }
+    host->sample(batch, texture, size, uv, packed + 2);
+    const uint32_t parts = host->components(host, texture);
+    for (uint32_t k = 0; k < size; k++) {
+      const auto lane = uint32_t(keys[begin + k]);
+      for (int c = 0; c < 4; c++) rgba[c][lane] = packed[2 + c][k];
+      components[lane] = parts;
+    }
+  }
+}
+
+} // namespace vrml97
