@@ -1,0 +1,103 @@
+// embree_parts.cpp: see embree_parts.h.
+#include "backend/local/embree_parts.h"
+
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace openrt {
+namespace {
+
+// A triangle hit again in double (Moeller and Trumbore's test); false where Embree's single precision was wrong about a sliver.
+bool confirm(const Part& part, uint32_t primitive, const Vec3d& org, const Vec3d& dir, double t) {
+  const auto vertex = [&](int k) {
+    const float* v = part.vertices.data() + 3 * size_t(part.indices[3 * size_t(primitive) + k]);
+    return Vec3d{v[0], v[1], v[2]};
+  };
+  const Vec3d a = vertex(0), e1 = vertex(1) - a, e2 = vertex(2) - a;
+  const Vec3d p = cross(dir, e2);
+  const double det = dot(e1, p);
+  if (det == 0) return false;
+  const Vec3d s = org - a, q = cross(s, e1);
+  const double u = dot(s, p) / det, v = dot(dir, q) / det, exact = dot(e2, q) / det;
+  const double size = std::max(length(e1), length(e2)), reach = length(dir) * std::fabs(t);
+  return u >= -1e-5 && v >= -1e-5 && u + v <= 1 + 1e-5 && std::fabs(exact - t) * length(dir) <= 1e-5 * (size + reach);
+}
+
+void confirmSlivers(const RTCFilterFunctionNArguments* a) {
+  const Part& part = *static_cast<const Part*>(a->geometryUserPtr);
+  for (unsigned i = 0; i < a->N; i++) {
+    if (a->valid[i] != -1) continue;
+    const Vec3d org{RTCRayN_org_x(a->ray, a->N, i), RTCRayN_org_y(a->ray, a->N, i), RTCRayN_org_z(a->ray, a->N, i)};
+    const Vec3d dir{RTCRayN_dir_x(a->ray, a->N, i), RTCRayN_dir_y(a->ray, a->N, i), RTCRayN_dir_z(a->ray, a->N, i)};
+    if (!confirm(part, RTCHitN_primID(a->hit, a->N, i), org, dir, RTCRayN_tfar(a->ray, a->N, i))) a->valid[i] = 0;
+  }
+}
+
+void attach(PartScene& to, RTCGeometry geometry, std::unique_ptr<Part> part, uint32_t mask) {
+  rtcSetGeometryMask(geometry, mask);
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometryByID(to.scene, geometry, unsigned(to.parts.size()));
+  rtcReleaseGeometry(geometry);
+  to.parts.push_back(std::move(part));
+}
+
+} // namespace
+
+EmbreeDevice::EmbreeDevice(uint32_t threads) {
+  const std::string config = "threads=" + std::to_string(threads);
+  device = rtcNewDevice(config.c_str());
+  if (!device) throw std::runtime_error("the ray kernels (Embree) do not start: error " + std::to_string(rtcGetDeviceError(nullptr)));
+  rtcSetDeviceMemoryMonitorFunction(
+      device,
+      [](void* counter, ssize_t change, bool) {
+        *static_cast<std::atomic<int64_t>*>(counter) += change;
+        return true;
+      },
+      &bytes);
+  wide = rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED);
+}
+
+RTCScene newScene(const EmbreeDevice& device) {
+  RTCScene scene = rtcNewScene(device.device);
+  if (!scene) throw std::bad_alloc();
+  rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+  return scene;
+}
+
+void attachTriangles(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part, uint32_t mask, bool filtered) {
+  RTCGeometry geometry = rtcNewGeometry(device.device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  const size_t points = part->vertices.size() / 3;
+  part->vertices.resize(part->vertices.size() + 4); // kernels read past the end
+  part->indices.reserve(part->indices.size() + 4);
+  const size_t corners = part->sharedIndices ? part->sharedIndices->count<uint32_t>() : part->indices.size();
+  const uint32_t* indices = part->sharedIndices ? part->sharedIndices->as<uint32_t>() : part->indices.data();
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, part->vertices.data(), 0, 12, points);
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, indices, 0, 12, corners / 3);
+  if (filtered) {
+    rtcSetGeometryUserData(geometry, part.get());
+    rtcSetGeometryIntersectFilterFunction(geometry, confirmSlivers);
+    rtcSetGeometryOccludedFilterFunction(geometry, confirmSlivers);
+  }
+  attach(to, geometry, std::move(part), mask);
+}
+
+void attachRound(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part, uint32_t mask, RTCGeometryType type) {
+  RTCGeometry geometry = rtcNewGeometry(device.device, type);
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, part->vertices.data(), 0, 16, part->vertices.size() / 4);
+  if (type == RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE)
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT, part->indices.data(), 0, 4, part->indices.size());
+  attach(to, geometry, std::move(part), mask);
+}
+
+void attachInstance(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part, const PartScene& object, const Matrix4d& matrix) {
+  RTCGeometry geometry = rtcNewGeometry(device.device, RTC_GEOMETRY_TYPE_INSTANCE);
+  rtcSetGeometryInstancedScene(geometry, object.scene);
+  float m[12];
+  for (int column = 0; column < 4; column++)
+    for (int row = 0; row < 3; row++) m[3 * column + row] = float(matrix.m[4 * column + row]);
+  rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, m);
+  attach(to, geometry, std::move(part), maskAll);
+}
+
+} // namespace openrt

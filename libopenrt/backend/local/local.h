@@ -1,0 +1,50 @@
+// local.h: the backend that renders in this process: applies commits to its scene, builds what they changed, renders frames.
+#pragma once
+
+#include <memory>
+
+#include "backend/backend.h"
+#include "backend/local/accel.h"
+#include "render/renderer.h"
+
+namespace openrt {
+
+class LocalBackend final : public Backend {
+ public:
+  explicit LocalBackend(const BackendOptions& options);
+  ~LocalBackend() override;
+  void apply(std::shared_ptr<const Commit> commit) override;
+  void start() override;
+  void wait() override;
+  void cancel() override;
+  float progress() const override;
+  bool read(RTenum channel, std::span<float> out) const override;
+  void stats(RTstats& stats) const override;
+  void castRays(std::span<const RTray> rays, std::span<RThit> hits) override;
+  void occludedRays(std::span<const RTray> rays, std::span<uint8_t> occluded) override;
+
+ private:
+  void prepare(); // the snapshot of the committed scene, if anything changed since the last
+  void makeShaders(RenderScene& next);
+  void makeLights(RenderScene& next, const Flattened& flat, const Vec3d& origin) const;
+  void makeCamera(RenderScene& next, const Vec3d& origin) const;
+  PixelFootprint footprint(const RenderScene& next) const;
+  Vec3d chooseOrigin() const;
+  void loadRays(std::span<const RTray> rays, size_t first, Rays& to) const;
+
+  BackendOptions options_;
+  uint32_t threads_;
+  std::shared_ptr<EmbreeDevice> device_;
+  Scene scene_;
+  SceneChanges changes_; // since the last prepare()
+  std::shared_ptr<RenderScene> snapshot_;
+  std::shared_ptr<Accel> accel_;
+  Flattened flat_;
+  PixelFootprint footprint_;
+  bool scopedLights_ = false;
+  mutable std::mutex mutex_; // frame_ as seen by cancel() and progress()
+  std::shared_ptr<Frame> frame_, finished_;
+  double commitSeconds_ = 0, buildSeconds_ = 0;
+};
+
+} // namespace openrt

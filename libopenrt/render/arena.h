@@ -1,0 +1,82 @@
+// arena.h: structure-of-arrays storage of one render thread: aligned blocks cut from large chunks, released in reverse order.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <new>
+#include <vector>
+
+namespace openrt {
+
+inline constexpr uint32_t lanes = 16;
+inline uint32_t padded(uint32_t n) { return (n + lanes - 1) / lanes * lanes; }
+
+// Bump allocator in chunks. Blocks stay where they are until release() to an earlier mark().
+class Arena {
+ public:
+  Arena() = default;
+  Arena(const Arena&) = delete;
+  Arena& operator=(const Arena&) = delete;
+  ~Arena() {
+    for (auto& c : chunks_) std::free(c.data);
+  }
+
+  template <class T> T* take(size_t count) {
+    const size_t bytes = (count * sizeof(T) + 63) / 64 * 64;
+    while (current_ < chunks_.size() && chunks_[current_].used + bytes > chunks_[current_].size) {
+      current_++;
+      if (current_ < chunks_.size()) chunks_[current_].used = 0;
+    }
+    if (current_ == chunks_.size()) grow(bytes);
+    Chunk& chunk = chunks_[current_];
+    T* result = reinterpret_cast<T*>(chunk.data + chunk.used);
+    chunk.used += bytes;
+    return result;
+  }
+  template <class T> T* takeZero(size_t count) {
+    T* result = take<T>(count);
+    std::memset(result, 0, count * sizeof(T));
+    return result;
+  }
+
+  struct Mark {
+    size_t chunk, used;
+  };
+  Mark mark() const { return {current_, current_ < chunks_.size() ? chunks_[current_].used : 0}; }
+  void release(Mark mark) {
+    current_ = mark.chunk;
+    if (current_ < chunks_.size()) chunks_[current_].used = mark.used;
+  }
+
+ private:
+  static constexpr size_t chunkBytes = 1 << 20;
+  struct Chunk {
+    std::byte* data;
+    size_t size, used;
+  };
+  void grow(size_t bytes) {
+    const size_t size = bytes > chunkBytes ? bytes : chunkBytes;
+    void* data = std::aligned_alloc(64, size);
+    if (!data) throw std::bad_alloc();
+    chunks_.push_back({static_cast<std::byte*>(data), size, 0});
+  }
+  std::vector<Chunk> chunks_;
+  size_t current_ = 0;
+};
+
+// Releases what was taken within a block of code.
+class ArenaScope {
+ public:
+  explicit ArenaScope(Arena& arena) : arena_(arena), mark_(arena.mark()) {}
+  ~ArenaScope() { arena_.release(mark_); }
+  ArenaScope(const ArenaScope&) = delete;
+  ArenaScope& operator=(const ArenaScope&) = delete;
+
+ private:
+  Arena& arena_;
+  Arena::Mark mark_;
+};
+
+} // namespace openrt

@@ -1,0 +1,28 @@
+// batch.h: the host's side of one batch of shading points: what the functions of RtsHost work on. [render]
+#pragma once
+
+#include "render/points.h"
+
+namespace openrt {
+
+struct RayCounters {
+  uint64_t camera = 0, shadow = 0, secondary = 0;
+};
+
+} // namespace openrt
+
+struct RtsBatch {
+  const openrt::RenderScene* scene = nullptr;
+  openrt::Arena* arena = nullptr;
+  openrt::RayCounters* counters = nullptr;
+  const openrt::Points* points = nullptr;
+  uint32_t lightSet = 0;
+  // Light being looked at (illuminate): arrays of the host, made with the first light.
+  float* local[3] = {};
+  float* toLight[3] = {};
+  float* color[3] = {};
+  float* ambient[3] = {};
+  float* reach = nullptr; // distance to the light; 0 where there is no direction
+  uint32_t current = ~0u; // index into the batch's lights
+  bool directional = false;
+};

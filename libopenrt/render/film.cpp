@@ -1,0 +1,71 @@
+// film.cpp: sums of samples to mean and sample variance, and the planes of the channels.
+#include "render/film.h"
+
+#include <algorithm>
+#include <bit>
+#include <limits>
+
+namespace openrt {
+
+uint32_t channelComponents(uint32_t channel) {
+  switch (channel) {
+  case RT_RGBA: return 4;
+  case RT_NORMAL:
+  case RT_ALBEDO:
+  case RT_POSITION:
+  case RT_VARIANCE: return 3;
+  case RT_DEPTH:
+  case RT_NAME:
+  case RT_SAMPLES: return 1;
+  }
+  return 0;
+}
+
+void PixelSums::add(const float radiance[3], float alpha) {
+  for (int k = 0; k < 3; k++) {
+    if (samples == 0) first[k] = radiance[k];
+    const double d = radiance[k] - first[k];
+    delta[k] += d;
+    delta2[k] += d * d;
+    rgba[k] += radiance[k];
+  }
+  rgba[3] += alpha;
+  samples++;
+}
+
+Film::Film(uint32_t width, uint32_t height, uint32_t channels) : width_(width), height_(height), channels_(channels) {
+  for (uint32_t bit = 0; bit < 8; bit++)
+    if (channels & (1u << bit)) planes_[bit].assign(size_t(width) * height * channelComponents(1u << bit), 0.0f);
+  if (has(RT_DEPTH)) std::fill(plane(RT_DEPTH).begin(), plane(RT_DEPTH).end(), std::numeric_limits<float>::infinity());
+}
+
+std::vector<float>& Film::plane(uint32_t channel) { return planes_[std::countr_zero(channel)]; }
+
+void Film::store(uint32_t x, uint32_t y, const PixelSums& s) {
+  const size_t pixel = size_t(y) * width_ + x;
+  const double n = s.samples ? s.samples : 1;
+  if (has(RT_RGBA))
+    for (int k = 0; k < 4; k++) plane(RT_RGBA)[4 * pixel + k] = float(s.rgba[k] / n);
+  for (int k = 0; k < 3; k++) {
+    if (has(RT_NORMAL)) plane(RT_NORMAL)[3 * pixel + k] = float(s.normal[k] / n);
+    if (has(RT_ALBEDO)) plane(RT_ALBEDO)[3 * pixel + k] = float(s.albedo[k] / n);
+    if (has(RT_POSITION)) plane(RT_POSITION)[3 * pixel + k] = s.position[k];
+    if (has(RT_VARIANCE)) {
+      const double sum2 = s.delta2[k] - s.delta[k] * s.delta[k] / n;
+      plane(RT_VARIANCE)[3 * pixel + k] = s.samples > 1 ? float(std::max(sum2, 0.0) / (n - 1)) : 0.0f;
+    }
+  }
+  if (has(RT_DEPTH)) plane(RT_DEPTH)[pixel] = s.depth;
+  if (has(RT_NAME)) plane(RT_NAME)[pixel] = s.name;
+  if (has(RT_SAMPLES)) plane(RT_SAMPLES)[pixel] = float(s.samples);
+}
+
+bool Film::read(uint32_t channel, std::span<float> out) const {
+  if (!std::has_single_bit(channel) || !has(channel)) return false;
+  const auto& source = planes_[std::countr_zero(channel)];
+  if (out.size() < source.size()) return false;
+  std::copy(source.begin(), source.end(), out.begin());
+  return true;
+}
+
+} // namespace openrt

@@ -1,0 +1,40 @@
+// film.h: the picture being made: channels as floats, rows from the top. Render threads write disjoint tiles. Statistics of a
+// pixel are gathered in double while its tile renders (PixelSums) and rounded once.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "openrt/openrt.h"
+
+namespace openrt {
+
+uint32_t channelComponents(uint32_t channel); // 0: no such channel
+
+struct PixelSums { // of one pixel, samples added in their order
+  double rgba[4] = {}, normal[3] = {}, albedo[3] = {};
+  double first[3] = {}, delta[3] = {}, delta2[3] = {}; // sums of (x - first) and its square: no cancellation
+  float depth = 0, position[3] = {}, name = 0;
+  uint32_t samples = 0;
+
+  void add(const float radiance[3], float alpha);
+};
+
+class Film {
+ public:
+  Film() = default;
+  Film(uint32_t width, uint32_t height, uint32_t channels);
+  uint32_t width() const { return width_; }
+  uint32_t height() const { return height_; }
+  bool has(uint32_t channel) const { return channels_ & channel; }
+  void store(uint32_t x, uint32_t y, const PixelSums& sums); // [render] each pixel by one thread
+  bool read(uint32_t channel, std::span<float> out) const;
+
+ private:
+  std::vector<float>& plane(uint32_t channel);
+  uint32_t width_ = 0, height_ = 0, channels_ = 0;
+  std::vector<float> planes_[8];
+};
+
+} // namespace openrt

@@ -1,0 +1,47 @@
+// points.h: hits become shading points, sorted into buckets of one shader class and one set of lights. [render]
+#pragma once
+
+#include <vector>
+
+#include "render/render_scene.h"
+
+namespace openrt {
+
+struct BucketRange {
+  uint32_t bucket, begin, end; // in the sorted order
+};
+
+// Shading points of one bucket, with what the host keeps beside.
+struct Points {
+  RtsHits hits;
+  const float* error;     // bound of the position's rounding error along the geometric normal
+  const uint32_t* record; // Record of each
+};
+
+// Stable counting sort of n ray lanes by the bucket of the record each has hit: order gets the lanes, the result the ranges.
+// counts is working storage kept between calls.
+void sortByBucket(const RenderScene& scene, const RayHits& hits, const uint32_t* rayLanes, uint32_t n, uint32_t* order,
+                  std::vector<uint32_t>& counts, std::vector<BucketRange>& ranges);
+
+// travelled: path length up to the ray's origin, by ray lane.
+Points makePoints(const RenderScene& scene, const Rays& rays, const RayHits& hits, const uint32_t* order, uint32_t n,
+                  const float* travelled, Arena& arena);
+
+// Whether the ray has met the back of a surface whose back is not there.
+inline bool culled(const RenderScene& scene, const Rays& rays, const RayHits& hits, uint32_t lane) {
+  const Record& r = scene.records[hits.record[lane]];
+  if (!r.cull) return false;
+  float n[3] = {hits.ng[0][lane], hits.ng[1][lane], hits.ng[2][lane]};
+  if (r.instanced) {
+    const float k[3] = {n[0], n[1], n[2]};
+    for (int i = 0; i < 3; i++) n[i] = r.kernelNormal[i][0] * k[0] + r.kernelNormal[i][1] * k[1] + r.kernelNormal[i][2] * k[2];
+  }
+  const float d = n[0] * rays.dir[0][lane] + n[1] * rays.dir[1][lane] + n[2] * rays.dir[2][lane];
+  return r.flip ? d < 0 : d > 0;
+}
+
+// p moved along n (unit) out of the error bound, then one float further on every axis: M. Pharr, W. Jakob, G. Humphreys,
+// "Physically Based Rendering", 3rd ed., 3.9.5.
+void offsetPoint(const float p[3], const float n[3], float error, float out[3]);
+
+} // namespace openrt

@@ -1,0 +1,48 @@
+// records.h: what the renderer needs to know of one placed geometry to turn a hit into a shading point. Made by a backend
+// when it builds a scene, immutable while a frame renders.
+#pragma once
+
+#include <cstdint>
+
+#include "openrt/openrts.h"
+#include "scene/scene.h"
+
+namespace openrt {
+
+struct Affine { // 3x4: x' = r[0][0..2] . p + r[0][3]
+  float r[3][4];
+  static Affine from(const Matrix4d& m) {
+    Affine a;
+    for (int i = 0; i < 3; i++)
+      for (int j = 0; j < 4; j++) a.r[i][j] = float(m.m[4 * j + i]);
+    return a;
+  }
+};
+
+struct Record {
+  edit::Primitive primitive = edit::Primitive::Triangles;
+  bool instanced = false; // vertices are in the kernel's object frame and `toRender` applies; else in render space times `scale`
+  bool cull = false;
+  bool flip = false;    // the kernel's geometric normal points to the back
+  uint32_t shader = 0;  // index into ShaderTable
+  uint32_t bucket = 0;  // (class, light set): hits of a bucket are shaded together
+  uint32_t name = 0, instance = 0;
+  uint64_t userData = 0;
+  const float* vertices = nullptr;   // stride 3, as the kernel sees them
+  const uint32_t* indices = nullptr; // into vertices and attributes
+  const float* normals = nullptr;    // stride 3, in the geometry's local frame
+  const float* texCoords = nullptr;  // stride 2
+  const float* colors = nullptr;     // stride 4
+  float scale = 1;                   // not instanced: vertices x scale = render space
+  Affine toRender;          // instanced: kernel's frame -> render space; sphere: unit-sphere frame -> render space
+  Affine fromRender;        // sphere: its inverse
+  float normalMatrix[3][3]; // normals of the geometry -> render space (inverse transpose), not normalised
+  float kernelNormal[3][3]; // instanced: the kernel's geometric normal -> render space
+};
+
+struct Bucket {
+  const RtsClass* shaderClass = nullptr;
+  uint32_t lightSet = 0;
+};
+
+} // namespace openrt

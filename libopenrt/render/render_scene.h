@@ -1,0 +1,88 @@
+// render_scene.h: the immutable snapshot that a frame renders: records, shaders with their parameters, lights, camera and
+// environment in render space. Made between frames by the local backend, read by all render threads.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "openrt/openrt.h"
+#include "render/rays.h"
+#include "render/records.h"
+#include "shading/texture.h"
+
+namespace openrt {
+
+class ShaderRegistry;
+
+struct ShaderSlot {
+  const RtsClass* shaderClass = nullptr;
+  const void* params = nullptr;
+  uint32_t traits = 0;
+};
+
+struct LightSlot {
+  ShaderSlot shader;
+  Affine toLocal;   // render space -> light's space
+  Affine fromLocal; // vectors: light's space -> render space
+};
+
+struct RoleSlot {
+  ShaderSlot shader; // shaderClass null: none
+  Affine toLocal, fromLocal;
+};
+
+// The host table that shaders see, with what its functions need behind it.
+struct RenderHost : RtsHost {
+  const std::vector<Texture>* textures = nullptr;
+  RTlogCallback logCallback = nullptr;
+  void* logUser = nullptr;
+};
+
+// Shaders of the scene with their parameter blocks. Slot 0 is the default surface shader.
+class ShaderTable {
+ public:
+  ShaderTable(const Scene& scene, const ShaderRegistry& registry, const std::map<uint32_t, uint32_t>& textureIndex,
+              const RtsHost& host);
+  uint32_t slotOf(uint32_t shaderId) const; // surface shaders; unknown ids: slot 0
+  const ShaderSlot& operator[](uint32_t slot) const { return slots_[slot]; }
+  // Same classes and traits in every slot: records made for one serve the other.
+  bool sameLayout(const ShaderTable& other) const;
+  // The slot of a light, camera or environment shader; shaderClass null if it is none of that kind.
+  ShaderSlot role(uint32_t shaderId, RtsKind kind) const;
+
+ private:
+  struct Block { // parameter struct and what it points to
+    std::unique_ptr<std::byte[]> bytes;
+    std::vector<std::vector<float>> lists;
+    std::vector<std::unique_ptr<std::string>> strings;
+  };
+  ShaderSlot make(const RtsClass& shaderClass, const ShaderValues* values, const std::map<uint32_t, uint32_t>& textureIndex,
+                  const RtsHost& host);
+  std::vector<ShaderSlot> slots_;
+  std::map<uint32_t, uint32_t> slotOf_;
+  std::vector<Block> blocks_;
+};
+
+struct RenderScene {
+  std::shared_ptr<const Intersector> kernel;
+  std::span<const Record> records; // of the kernel
+  std::span<const Bucket> buckets;
+  std::vector<std::vector<uint32_t>> lightSets; // indices into lights
+  std::vector<LightSlot> lights;
+  std::vector<Texture> textures; // [0] is the missing one
+  std::unique_ptr<ShaderTable> shaders;
+  RoleSlot camera, environment;
+  float eye[3] = {0, 0, 0}, viewAxis[3] = {0, 0, -1}; // render space; unit
+  double origin[3] = {0, 0, 0};   // of render space, in the world
+  bool transparentShadows = false; // something transparent may stand before a light
+  RenderHost host;
+  edit::FrameSettingsT frame;
+};
+
+// Fills the host table's functions (render/host.cpp).
+void fillHost(RtsHost& host);
+
+} // namespace openrt

@@ -1,0 +1,47 @@
+// renderer.h: a frame in flight: threads that take tiles from a counter until none is left or the frame is cancelled.
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "render/film.h"
+#include "render/render_scene.h"
+#include "render/tile.h"
+
+namespace openrt {
+
+// Threads the process may use: affinity and, where there is one, the control group's quota.
+uint32_t availableThreads();
+
+class Frame {
+ public:
+  // Starts at once. The scene must stay as it is until the frame is waited for.
+  Frame(std::shared_ptr<const RenderScene> scene, uint32_t threads);
+  ~Frame(); // cancels and waits
+  void wait();
+  void cancel() { cancelled_ = true; } // [any]
+  float progress() const;              // [any]
+  const Film& film() const { return film_; }
+  const RayCounters& counters() const { return counters_; } // after wait()
+  double seconds() const { return seconds_; }
+  const std::string& failure() const { return failure_; } // empty: none
+
+ private:
+  void work();
+  std::shared_ptr<const RenderScene> scene_;
+  Film film_;
+  uint32_t edge_, columns_, tiles_;
+  std::atomic<uint32_t> next_{0}, done_{0};
+  std::atomic<bool> cancelled_{false};
+  std::vector<std::thread> threads_;
+  std::mutex mutex_; // counters_, failure_, seconds_
+  RayCounters counters_;
+  std::string failure_;
+  double seconds_ = 0, started_ = 0;
+};
+
+} // namespace openrt

@@ -1,0 +1,59 @@
+// sampler.h: the points of a pixel's samples: a pure function of (pixel, sample, pair of dimensions, seed). A pair is a
+// (0,2)-sequence in base 2: Sobol's first two dimensions, Owen-scrambled by hashing as in B. Burley, "Practical Hash-based
+// Owen Scrambling", JCGT 9(4), 2020 (hash constants: N. Vegdahl's search).
+#pragma once
+
+#include <cstdint>
+
+namespace openrt {
+
+inline uint32_t reverseBits(uint32_t x) {
+  x = (x << 16) | (x >> 16);
+  x = ((x & 0x00ff00ffu) << 8) | ((x & 0xff00ff00u) >> 8);
+  x = ((x & 0x0f0f0f0fu) << 4) | ((x & 0xf0f0f0f0u) >> 4);
+  x = ((x & 0x33333333u) << 2) | ((x & 0xccccccccu) >> 2);
+  return ((x & 0x55555555u) << 1) | ((x & 0xaaaaaaaau) >> 1);
+}
+
+inline uint32_t hash(uint32_t x) { // full avalanche
+  x ^= x >> 16;
+  x *= 0x7feb352du;
+  x ^= x >> 15;
+  x *= 0x846ca68bu;
+  return x ^ (x >> 16);
+}
+inline uint32_t hash(uint32_t a, uint32_t b) { return hash(a ^ (hash(b) + 0x9e3779b9u + (a << 6) + (a >> 2))); }
+
+// Owen scrambling of a number in reversed bit order: every bit is flipped by a hash of the bits below it.
+inline uint32_t scrambleReversed(uint32_t x, uint32_t seed) {
+  x ^= x * 0x3d20adeau;
+  x += seed;
+  x *= (seed >> 16) | 1;
+  x ^= x * 0x05526c56u;
+  x ^= x * 0x53a22864u;
+  return x;
+}
+
+// Second Sobol dimension of an index, in reversed bit order. Its direction numbers, reversed, are the polynomials (1+x)^i
+// over GF(2): the sum over the index's bits is the index as a polynomial taken at 1+x, half by half.
+inline uint32_t sobol1Reversed(uint32_t x) {
+  x ^= x >> 16;
+  x ^= (x & 0xff00ff00u) >> 8;
+  x ^= (x & 0xf0f0f0f0u) >> 4;
+  x ^= (x & 0xccccccccu) >> 2;
+  x ^= (x & 0xaaaaaaaau) >> 1;
+  return x;
+}
+
+inline float toUnit(uint32_t x) { return float(x >> 8) * 0x1p-24f; } // [0, 1)
+
+// Sample `index` of a pair of dimensions in a pixel. Any first 2^k samples are a (0,k,2)-net.
+inline void samplePair(uint32_t pixel, uint32_t index, uint32_t pair, uint32_t seed, float& x, float& y) {
+  const uint32_t key = hash(hash(pixel, seed), pair);
+  // A scrambled order of the indices decorrelates the pairs of one pixel from each other.
+  const uint32_t shuffled = reverseBits(scrambleReversed(reverseBits(index), hash(key, 0x68bc21ebu)));
+  x = toUnit(reverseBits(scrambleReversed(shuffled, hash(key, 0x02e5be93u))));
+  y = toUnit(reverseBits(scrambleReversed(sobol1Reversed(shuffled), hash(key, 0x967a889bu))));
+}
+
+} // namespace openrt

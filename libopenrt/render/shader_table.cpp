@@ -1,0 +1,101 @@
+// shader_table.cpp: parameter blocks of shaders: defaults of the class, then what the scene set.
+#include <algorithm>
+#include <cstring>
+
+#include "render/render_scene.h"
+#include "shading/registry.h"
+
+namespace openrt {
+namespace {
+
+uint32_t floatsOf(RtsType type) {
+  switch (type) {
+  case RTS_FLOAT: return 1;
+  case RTS_VEC2: return 2;
+  case RTS_VEC3:
+  case RTS_COLOR: return 3;
+  case RTS_VEC4: return 4;
+  case RTS_MATRIX: return 16;
+  default: return 0;
+  }
+}
+
+} // namespace
+
+ShaderTable::ShaderTable(const Scene& scene, const ShaderRegistry& registry, const std::map<uint32_t, uint32_t>& textureIndex,
+                         const RtsHost& host) {
+  const auto fallback = scene.shaders.find(scene.defaultShader);
+  const RtsClass* base = nullptr;
+  if (fallback != scene.shaders.end()) {
+    const auto name = scene.classes.find(fallback->second.shaderClass);
+    if (name != scene.classes.end()) base = &registry.find(name->second.name, name->second.library);
+    if (base && base->kind != RTS_SURFACE) base = nullptr;
+  }
+  slots_.push_back(base ? make(*base, &fallback->second, textureIndex, host) : make(registry.find("VRML97", ""), nullptr, textureIndex, host));
+  for (const auto& [id, values] : scene.shaders) {
+    const auto name = scene.classes.find(values.shaderClass);
+    if (name == scene.classes.end()) continue;
+    slotOf_[id] = uint32_t(slots_.size());
+    slots_.push_back(make(registry.find(name->second.name, name->second.library), &values, textureIndex, host));
+  }
+}
+
+uint32_t ShaderTable::slotOf(uint32_t shaderId) const {
+  const auto found = slotOf_.find(shaderId);
+  return found != slotOf_.end() && slots_[found->second].shaderClass->kind == RTS_SURFACE ? found->second : 0;
+}
+
+ShaderSlot ShaderTable::role(uint32_t shaderId, RtsKind kind) const {
+  const auto found = slotOf_.find(shaderId);
+  if (found == slotOf_.end() || slots_[found->second].shaderClass->kind != kind) return {};
+  return slots_[found->second];
+}
+
+bool ShaderTable::sameLayout(const ShaderTable& other) const {
+  return slotOf_ == other.slotOf_ && std::equal(slots_.begin(), slots_.end(), other.slots_.begin(), other.slots_.end(),
+                                                [](const ShaderSlot& a, const ShaderSlot& b) {
+                                                  return a.shaderClass == b.shaderClass && a.traits == b.traits;
+                                                });
+}
+
+ShaderSlot ShaderTable::make(const RtsClass& shaderClass, const ShaderValues* values,
+                             const std::map<uint32_t, uint32_t>& textureIndex, const RtsHost& host) {
+  Block block;
+  block.bytes = std::make_unique<std::byte[]>(shaderClass.paramSize ? shaderClass.paramSize : 1);
+  for (uint32_t i = 0; i < shaderClass.paramCount; i++) {
+    const RtsParam& param = shaderClass.params[i];
+    std::byte* at = block.bytes.get() + param.offset;
+    const edit::ParameterT* value = nullptr;
+    if (values)
+      if (auto found = values->parameters.find(i); found != values->parameters.end()) value = &found->second;
+    if (const uint32_t n = floatsOf(param.type)) {
+      float numbers[16];
+      std::memcpy(numbers, param.defaultValue, sizeof numbers);
+      if (value)
+        for (uint32_t k = 0; k < n && k < value->floats.size(); k++) numbers[k] = value->floats[k];
+      std::memcpy(at, numbers, n * sizeof(float));
+    } else if (param.type == RTS_INT) {
+      const int32_t number = value ? value->integer : int32_t(param.defaultValue[0]);
+      std::memcpy(at, &number, sizeof number);
+    } else if (param.type == RTS_FLOATS) {
+      block.lists.push_back(value ? value->floats : std::vector<float>());
+      const RtsFloats list{block.lists.back().data(), uint32_t(block.lists.back().size())};
+      std::memcpy(at, &list, sizeof list);
+    } else if (param.type == RTS_STRING) {
+      block.strings.push_back(std::make_unique<std::string>(value ? value->text : std::string()));
+      const char* text = block.strings.back()->c_str();
+      std::memcpy(at, &text, sizeof text);
+    } else if (param.type == RTS_TEXTURE) {
+      RtsTexture texture = 0;
+      if (value)
+        if (auto found = textureIndex.find(value->texture); found != textureIndex.end()) texture = found->second;
+      std::memcpy(at, &texture, sizeof texture);
+    }
+  }
+  ShaderSlot slot{&shaderClass, block.bytes.get(), 0};
+  if (shaderClass.traits) slot.traits = shaderClass.traits(&host, slot.params);
+  blocks_.push_back(std::move(block)); // the bytes, the lists' data and the strings stay where they are
+  return slot;
+}
+
+} // namespace openrt

@@ -1,0 +1,308 @@
+// tile.cpp: see tile.h. Every sum has a fixed order, so a tile's pixels do not depend on who renders it.
+#include "render/tile.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "render/sampler.h"
+
+namespace openrt {
+
+namespace {
+constexpr uint32_t pathsInFlight = 4096;
+}
+
+uint32_t tileEdge(uint32_t samplesPerPixel) { return samplesPerPixel >= 16 ? 16 : samplesPerPixel >= 4 ? 32 : 64; }
+
+struct TileRenderer::Paths {
+  Rays rays;             // of the living paths, compacted
+  uint32_t* path;        // path of a ray lane
+  float* throughput[3];  // by ray lane
+  float* travelled;      // length up to the ray's origin, by ray lane
+  float* radiance[3];    // by path, from here on
+  float* alpha;
+  uint8_t* first;        // nothing was shaded on the path yet
+  float *normal[3], *albedo[3], *position[3], *depth; // null where nobody asks
+  uint32_t* name;
+  // next wave, written behind the lanes already read
+  uint32_t next = 0;
+  Rays nextRays;
+  uint32_t* nextPath;
+  float* nextThroughput[3];
+  float* nextTravelled;
+
+  void swapWaves() {
+    std::swap(rays, nextRays);
+    std::swap(path, nextPath);
+    std::swap(throughput, nextThroughput);
+    std::swap(travelled, nextTravelled);
+    rays.count = next;
+    next = 0;
+  }
+  void pushRay(uint32_t from, const float origin[3], float length, const float weight[3]) {
+    for (int k = 0; k < 3; k++) {
+      nextRays.org[k][next] = origin[k];
+      nextRays.dir[k][next] = rays.dir[k][from];
+      nextThroughput[k][next] = weight[k];
+    }
+    nextRays.tnear[next] = 0;
+    nextRays.tfar[next] = std::numeric_limits<float>::infinity();
+    nextTravelled[next] = travelled[from] + length;
+    nextPath[next++] = path[from];
+  }
+};
+
+TileRenderer::TileRenderer(const RenderScene& scene, Film& film) : scene_(scene), film_(film) {}
+
+void TileRenderer::render(const Tile& tile) {
+  pixels_.clear();
+  for (uint32_t by = tile.y0; by < tile.y1; by += 4)
+    for (uint32_t bx = tile.x0; bx < tile.x1; bx += 4)
+      for (uint32_t y = by; y < std::min(by + 4, tile.y1); y++)
+        for (uint32_t x = bx; x < std::min(bx + 4, tile.x1); x++) pixels_.push_back(y * film_.width() + x);
+  sums_.assign(pixels_.size(), {});
+  const uint32_t spp = scene_.frame.samples;
+  const uint32_t perWave = std::clamp(pathsInFlight / uint32_t(pixels_.size()), 1u, spp);
+  for (uint32_t s = 0; s < spp; s += perWave) wave(s, std::min(perWave, spp - s));
+  for (size_t i = 0; i < pixels_.size(); i++) film_.store(pixels_[i] % film_.width(), pixels_[i] / film_.width(), sums_[i]);
+}
+
+void TileRenderer::wave(uint32_t firstSample, uint32_t samples) {
+  ArenaScope scope(arena_);
+  const uint32_t n = uint32_t(pixels_.size()) * samples, size = padded(n);
+  Paths paths;
+  for (Rays* rays : {&paths.rays, &paths.nextRays}) rays->allocate(arena_, n);
+  paths.path = arena_.take<uint32_t>(size), paths.nextPath = arena_.take<uint32_t>(size);
+  paths.travelled = arena_.takeZero<float>(size), paths.nextTravelled = arena_.take<float>(size);
+  const auto optional = [&](uint32_t channel) { return film_.has(channel) ? arena_.takeZero<float>(size) : nullptr; };
+  for (int k = 0; k < 3; k++) {
+    paths.throughput[k] = arena_.take<float>(size), paths.nextThroughput[k] = arena_.take<float>(size);
+    std::fill_n(paths.throughput[k], size, 1.0f);
+    paths.radiance[k] = arena_.takeZero<float>(size);
+    paths.normal[k] = optional(RT_NORMAL), paths.albedo[k] = optional(RT_ALBEDO), paths.position[k] = optional(RT_POSITION);
+  }
+  paths.alpha = arena_.takeZero<float>(size);
+  paths.depth = optional(RT_DEPTH);
+  if (paths.depth) std::fill_n(paths.depth, size, std::numeric_limits<float>::infinity());
+  paths.name = arena_.takeZero<uint32_t>(size);
+  paths.first = arena_.take<uint8_t>(size);
+  std::fill_n(paths.first, size, uint8_t(1));
+  makeCameraRays(paths, firstSample);
+
+  RayHits hits;
+  hits.allocate(arena_, n);
+  auto* missed = arena_.take<uint32_t>(size);
+  auto* met = arena_.take<uint32_t>(size);
+  auto* through = arena_.take<uint32_t>(size);
+  auto* order = arena_.take<uint32_t>(size);
+  // Culled faces cost no depth, yet a path passes no more than a bounded number of them.
+  uint32_t surfaces = 0, faces = 0;
+  while (paths.rays.count && surfaces <= scene_.frame.depth && faces < 100000) {
+    (faces == 0 ? counters_.camera : counters_.secondary) += paths.rays.count;
+    scene_.kernel->intersect(paths.rays, maskAll, Coherence::coherent, hits);
+    uint32_t misses = 0, mets = 0, throughs = 0;
+    for (uint32_t i = 0; i < paths.rays.count; i++) {
+      if (hits.record[i] == noHit) missed[misses++] = i;
+      else if (culled(scene_, paths.rays, hits, i)) through[throughs++] = i;
+      else met[mets++] = i;
+    }
+    background(paths, missed, misses);
+    passCulled(paths, hits, through, throughs);
+    sortByBucket(scene_, hits, met, mets, order, counts_, ranges_);
+    for (const BucketRange& range : ranges_) shadeRange(paths, hits, range, order + range.begin);
+    paths.swapWaves();
+    faces++;
+    if (mets) surfaces++;
+  }
+  addToPixels(paths, firstSample, samples);
+}
+
+void TileRenderer::makeCameraRays(Paths& paths, uint32_t firstSample) {
+  const uint32_t n = paths.rays.count, size = padded(n);
+  const uint32_t samples = n / uint32_t(pixels_.size());
+  ArenaScope scope(arena_);
+  float* xy[2] = {arena_.take<float>(size), arena_.take<float>(size)};
+  RtsRays local;
+  for (int k = 0; k < 3; k++) local.origin[k] = arena_.takeZero<float>(size), local.direction[k] = arena_.takeZero<float>(size);
+  for (uint32_t i = 0; i < size; i++) {
+    const uint32_t lane = std::min(i, n - 1), pixel = pixels_[lane / samples];
+    float dx = 0.5f, dy = 0.5f; // one sample: the pixel's centre
+    if (scene_.frame.samples > 1) samplePair(pixel, firstSample + lane % samples, 0, scene_.frame.seed, dx, dy);
+    xy[0][i] = float(pixel % film_.width()) + dx;
+    xy[1][i] = float(pixel / film_.width()) + dy;
+    paths.path[i] = lane;
+    paths.rays.tnear[i] = 0;
+    paths.rays.tfar[i] = std::numeric_limits<float>::infinity();
+  }
+  const float* points[2] = {xy[0], xy[1]};
+  const float extent[2] = {float(film_.width()), float(film_.height())};
+  RtsBatch batch;
+  batch.scene = &scene_, batch.arena = &arena_, batch.counters = &counters_;
+  const ShaderSlot& camera = scene_.camera.shader;
+  camera.shaderClass->generate(&scene_.host, &batch, camera.params, n, points, extent, &local);
+  const Affine& m = scene_.camera.fromLocal;
+  for (uint32_t i = 0; i < size; i++) {
+    const float ox = local.origin[0][i], oy = local.origin[1][i], oz = local.origin[2][i];
+    const float dx = local.direction[0][i], dy = local.direction[1][i], dz = local.direction[2][i];
+    float d[3];
+    for (int k = 0; k < 3; k++) {
+      paths.rays.org[k][i] = m.r[k][0] * ox + m.r[k][1] * oy + m.r[k][2] * oz + m.r[k][3];
+      d[k] = m.r[k][0] * dx + m.r[k][1] * dy + m.r[k][2] * dz;
+    }
+    const float s = 1 / std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+    for (int k = 0; k < 3; k++) paths.rays.dir[k][i] = d[k] * s;
+  }
+}
+
+void TileRenderer::background(Paths& paths, const uint32_t* missed, uint32_t n) {
+  const ShaderSlot& environment = scene_.environment.shader;
+  if (n == 0 || !environment.shaderClass || !environment.shaderClass->miss) return;
+  ArenaScope scope(arena_);
+  const uint32_t size = padded(n);
+  float *direction[3], *rgba[4];
+  for (auto& a : direction) a = arena_.take<float>(size);
+  for (auto& a : rgba) a = arena_.takeZero<float>(size);
+  const Affine& m = scene_.environment.toLocal;
+  for (uint32_t i = 0; i < size; i++) {
+    const uint32_t lane = missed[std::min(i, n - 1)];
+    const float x = paths.rays.dir[0][lane], y = paths.rays.dir[1][lane], z = paths.rays.dir[2][lane];
+    float d[3];
+    for (int k = 0; k < 3; k++) d[k] = m.r[k][0] * x + m.r[k][1] * y + m.r[k][2] * z;
+    const float s = 1 / std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+    for (int k = 0; k < 3; k++) direction[k][i] = d[k] * s;
+  }
+  RtsBatch batch;
+  batch.scene = &scene_, batch.arena = &arena_, batch.counters = &counters_;
+  const float* directions[3] = {direction[0], direction[1], direction[2]};
+  environment.shaderClass->miss(&scene_.host, &batch, environment.params, n, directions, rgba);
+  for (uint32_t i = 0; i < n; i++) {
+    const uint32_t lane = missed[i], path = paths.path[lane];
+    float weight = 0;
+    for (int k = 0; k < 3; k++) {
+      if (std::isfinite(rgba[k][i])) paths.radiance[k][path] += paths.throughput[k][lane] * rgba[k][i];
+      weight += paths.throughput[k][lane];
+    }
+    paths.alpha[path] += weight / 3 * rgba[3][i];
+  }
+}
+
+// Rays that have met a back that is not there go on behind it.
+void TileRenderer::passCulled(Paths& paths, const RayHits& hits, const uint32_t* lanes, uint32_t n) {
+  if (n == 0) return;
+  ArenaScope scope(arena_);
+  const Points points = makePoints(scene_, paths.rays, hits, lanes, n, paths.travelled, arena_);
+  for (uint32_t i = 0; i < n; i++) {
+    const RtsHits& h = points.hits;
+    const float p[3] = {h.position[0][i], h.position[1][i], h.position[2][i]};
+    const float behind[3] = {-h.geometric[0][i], -h.geometric[1][i], -h.geometric[2][i]};
+    const float weight[3] = {paths.throughput[0][lanes[i]], paths.throughput[1][lanes[i]], paths.throughput[2][lanes[i]]};
+    float origin[3];
+    offsetPoint(p, behind, points.error[i], origin);
+    paths.pushRay(lanes[i], origin, hits.t[lanes[i]], weight);
+  }
+}
+
+void TileRenderer::attenuate(const Points& points, float* fog[4]) {
+  const ShaderSlot& environment = scene_.environment.shader;
+  fog[3] = nullptr;
+  if (!environment.shaderClass || !environment.shaderClass->attenuate) return;
+  const uint32_t n = points.hits.count, size = padded(n);
+  float* fromEye[3];
+  for (auto& a : fromEye) a = arena_.take<float>(size);
+  const Affine& m = scene_.environment.toLocal;
+  for (int k = 0; k < 3; k++)
+    for (uint32_t i = 0; i < size; i++) {
+      fromEye[k][i] = 0;
+      for (int j = 0; j < 3; j++) fromEye[k][i] += m.r[k][j] * (points.hits.position[j][i] - scene_.eye[j]);
+    }
+  for (int k = 0; k < 4; k++) fog[k] = arena_.takeZero<float>(size);
+  RtsBatch batch;
+  batch.scene = &scene_, batch.arena = &arena_, batch.counters = &counters_;
+  const float* vectors[3] = {fromEye[0], fromEye[1], fromEye[2]};
+  environment.shaderClass->attenuate(&scene_.host, &batch, environment.params, n, vectors, fog, fog[3]);
+}
+
+void TileRenderer::shadeRange(Paths& paths, const RayHits& hits, const BucketRange& range, const uint32_t* order) {
+  ArenaScope scope(arena_);
+  const uint32_t n = range.end - range.begin, size = padded(n);
+  const Points points = makePoints(scene_, paths.rays, hits, order, n, paths.travelled, arena_);
+  const Bucket& bucket = scene_.buckets[range.bucket];
+  RtsShading shaded;
+  for (int k = 0; k < 3; k++) {
+    shaded.radiance[k] = arena_.takeZero<float>(size);
+    shaded.transmission[k] = arena_.takeZero<float>(size);
+    shaded.albedo[k] = film_.has(RT_ALBEDO) ? arena_.takeZero<float>(size) : nullptr;
+  }
+  {
+    ArenaScope inner(arena_);
+    RtsBatch batch;
+    batch.scene = &scene_, batch.arena = &arena_, batch.counters = &counters_, batch.points = &points;
+    batch.lightSet = bucket.lightSet;
+    bucket.shaderClass->shade(&scene_.host, &batch, &points.hits, &shaded);
+  }
+  float* fog[4];
+  attenuate(points, fog);
+  const float* airlight[4] = {fog[0], fog[1], fog[2], fog[3]};
+  gather(points, shaded, order, paths, airlight);
+}
+
+// Adds what was shaded to the paths and sends on those that something lets through.
+void TileRenderer::gather(const Points& points, const RtsShading& shaded, const uint32_t* order, Paths& paths, const float* fog[4]) {
+  const RtsHits& h = points.hits;
+  for (uint32_t i = 0; i < h.count; i++) {
+    const uint32_t lane = order[i], path = paths.path[lane];
+    float on[3], weight = 0, through = 0;
+    for (int k = 0; k < 3; k++) {
+      const float t = shaded.transmission[k][i];
+      const float transmission = t > 0 ? std::min(t, 1.0f) : 0.0f;
+      float radiance = std::isfinite(shaded.radiance[k][i]) ? shaded.radiance[k][i] : 0.0f;
+      if (fog[3]) radiance = fog[3][i] * radiance + (1 - fog[3][i]) * fog[k][i] * (1 - transmission);
+      paths.radiance[k][path] += paths.throughput[k][lane] * radiance;
+      on[k] = paths.throughput[k][lane] * transmission;
+      weight += paths.throughput[k][lane];
+      through += on[k];
+    }
+    paths.alpha[path] += (weight - through) / 3;
+    if (paths.first[path]) {
+      paths.first[path] = 0;
+      paths.name[path] = scene_.records[points.record[i]].name;
+      float along = 0;
+      for (int k = 0; k < 3; k++) {
+        along += (h.position[k][i] - scene_.eye[k]) * scene_.viewAxis[k];
+        if (paths.normal[k]) paths.normal[k][path] = h.normal[k][i];
+        if (paths.albedo[k]) paths.albedo[k][path] = shaded.albedo[k][i];
+        if (paths.position[k]) paths.position[k][path] = float(h.position[k][i] + scene_.origin[k]);
+      }
+      if (paths.depth) paths.depth[path] = along;
+    }
+    if (through <= 1e-6f) continue;
+    const float p[3] = {h.position[0][i], h.position[1][i], h.position[2][i]};
+    const float behind[3] = {-h.geometric[0][i], -h.geometric[1][i], -h.geometric[2][i]};
+    float origin[3];
+    offsetPoint(p, behind, points.error[i], origin);
+    paths.pushRay(lane, origin, h.distance[i] - paths.travelled[lane], on);
+  }
+}
+
+void TileRenderer::addToPixels(const Paths& paths, uint32_t firstSample, uint32_t samples) {
+  for (size_t pixel = 0; pixel < pixels_.size(); pixel++) {
+    PixelSums& sums = sums_[pixel];
+    for (uint32_t s = 0; s < samples; s++) {
+      const size_t i = pixel * samples + s;
+      const float radiance[3] = {paths.radiance[0][i], paths.radiance[1][i], paths.radiance[2][i]};
+      sums.add(radiance, paths.alpha[i]);
+      for (int k = 0; k < 3; k++) {
+        if (paths.normal[k]) sums.normal[k] += paths.normal[k][i];
+        if (paths.albedo[k]) sums.albedo[k] += paths.albedo[k][i];
+      }
+      if (firstSample + s) continue;
+      if (paths.depth) sums.depth = paths.depth[i];
+      if (paths.position[0])
+        for (int k = 0; k < 3; k++) sums.position[k] = paths.position[k][i];
+      sums.name = float(paths.name[i]);
+    }
+  }
+}
+
+} // namespace openrt

@@ -1,0 +1,46 @@
+// tile.h: the wavefront: renders one tile of the picture on one thread. A tile's samples go through intersection, sorting by
+// shader, shading and shadow rays in batches; paths that go on are compacted and make the next wave. [render]
+#pragma once
+
+#include <vector>
+
+#include "render/batch.h"
+#include "render/film.h"
+
+namespace openrt {
+
+struct Tile {
+  uint32_t x0, y0, x1, y1; // pixels, end exclusive
+};
+
+// Edge of the square tiles for a number of samples a pixel: a few thousand paths are in flight.
+uint32_t tileEdge(uint32_t samplesPerPixel);
+
+class TileRenderer {
+ public:
+  TileRenderer(const RenderScene& scene, Film& film);
+  void render(const Tile& tile);
+  const RayCounters& counters() const { return counters_; }
+
+ private:
+  struct Paths; // structure of arrays, one entry a path
+
+  void wave(uint32_t firstSample, uint32_t samples);
+  void makeCameraRays(Paths& paths, uint32_t firstSample);
+  void background(Paths& paths, const uint32_t* missed, uint32_t n);
+  void shadeRange(Paths& paths, const RayHits& hits, const BucketRange& range, const uint32_t* order);
+  void gather(const Points& points, const RtsShading& shaded, const uint32_t* order, Paths& paths, const float* fog[4]);
+  void passCulled(Paths& paths, const RayHits& hits, const uint32_t* lanes, uint32_t n);
+  void attenuate(const Points& points, float* fog[4]);
+  void addToPixels(const Paths& paths, uint32_t firstSample, uint32_t samples);
+
+  const RenderScene& scene_;
+  Film& film_;
+  Arena arena_;
+  RayCounters counters_;
+  std::vector<uint32_t> counts_, pixels_; // pixels_: y * width + x, in blocks of 4x4
+  std::vector<BucketRange> ranges_;
+  std::vector<PixelSums> sums_;
+};
+
+} // namespace openrt

@@ -1,0 +1,97 @@
+// scene.h: the committed scene as tables by id: what commits (scene/commit.h) add up to. A backend owns one and applies
+// commits between frames; the renderer reads it while nobody writes. Maps are ordered, so every walk has one order.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "scene/commit.h"
+#include "scene/matrix.h"
+
+namespace openrt {
+
+struct Geometry {
+  edit::Primitive primitive = edit::Primitive::Triangles;
+  uint32_t shader = 0, name = 0;
+  Matrix4d matrix;
+  bool cull = false, clockwise = false;
+  float width = 1; // pixels; sphere: radius
+  ArrayPtr points, indices, normals, texCoords, colors;
+
+  size_t primitives() const; // triangles, segments, points; 1 for a sphere
+};
+
+struct Object {
+  std::vector<Geometry> geometries;
+};
+
+struct Instance {
+  uint32_t parent = 0, object = 0, shader = 0;
+  Matrix4d matrix;
+  bool visible = true;
+  uint64_t userData = 0;
+};
+
+struct Light {
+  uint32_t shader = 0, scope = 0;
+  Matrix4d matrix;
+};
+
+struct Role { // camera, environment
+  uint32_t shader = 0;
+  Matrix4d matrix;
+};
+
+struct ShaderValues {
+  uint32_t shaderClass = 0;
+  std::map<uint32_t, edit::ParameterT> parameters; // by index in the class's table; those that were set
+};
+
+struct TextureImage {
+  edit::TextureT description;
+  ArrayPtr texels;
+};
+
+struct ShaderClassName {
+  std::string name, library;
+};
+
+// What a commit touched: decides what a backend makes anew.
+struct SceneChanges {
+  bool geometry = false, instances = false, shaders = false, textures = false, lights = false, camera = false, frame = false;
+};
+
+class Scene {
+ public:
+  // Applies a commit; edits that name unknown ids are ignored (the front end and the reader of recordings check them).
+  SceneChanges apply(const Commit& commit);
+
+  std::map<uint32_t, TextureImage> textures;
+  std::map<uint32_t, ShaderClassName> classes;
+  std::map<uint32_t, ShaderValues> shaders;
+  std::map<uint32_t, Object> objects;
+  std::map<uint32_t, Instance> instances;
+  std::map<uint32_t, Light> lights;
+  Role camera, environment;
+  uint32_t defaultShader = 0;
+  edit::FrameSettingsT frame;
+
+  // Ids of the instances placed in an object (0: in the scene), in order.
+  const std::vector<uint32_t>& childrenOf(uint32_t object) const;
+
+ private:
+  ArrayPtr array(ArrayId id) const;
+  void applyEdit(const edit::AnyUnion& any, SceneChanges& changes);
+  void replaceObject(const edit::ObjectT& object);
+  void deleteObject(uint32_t id);
+  void dropChildren(uint32_t object);
+  void sortChildren();
+  std::map<ArrayId, std::weak_ptr<const Array>> arrays_; // alive as long as something of the scene uses them
+  std::map<ArrayId, ArrayPtr> arriving_;                 // of the commit being applied
+  std::map<uint32_t, std::vector<uint32_t>> children_;
+};
+
+} // namespace openrt
