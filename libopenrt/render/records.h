@@ -23,9 +23,9 @@ struct Record {
   edit::Primitive primitive = edit::Primitive::Triangles;
   bool instanced = false; // vertices are in the kernel's object frame and `toRender` applies; else in render space times `scale`
   bool cull = false;
-  bool flip = false;    // the kernel's geometric normal points to the back
-  uint32_t shader = 0;  // index into ShaderTable
-  uint32_t bucket = 0;  // (class, light set): hits of a bucket are shaded together
+  bool flip = false;   // the kernel's geometric normal points to the back
+  uint32_t shader = 0; // index into ShaderTable
+  uint32_t bucket = 0; // (class, light set): hits of a bucket are shaded together
   uint32_t name = 0, instance = 0;
   uint64_t userData = 0;
   const float* vertices = nullptr;   // stride 3, as the kernel sees them
@@ -34,10 +34,10 @@ struct Record {
   const float* texCoords = nullptr;  // stride 2
   const float* colors = nullptr;     // stride 4
   float scale = 1;                   // not instanced: vertices x scale = render space
-  Affine toRender;          // instanced: kernel's frame -> render space; sphere: unit-sphere frame -> render space
-  Affine fromRender;        // sphere: its inverse
-  float normalMatrix[3][3]; // normals of the geometry -> render space (inverse transpose), not normalised
-  float kernelNormal[3][3]; // instanced: the kernel's geometric normal -> render space
+  Affine toRender;                   // instanced: kernel's frame -> render space; sphere: unit-sphere frame -> render space
+  Affine fromRender;                 // sphere: its inverse
+  float normalMatrix[3][3];          // normals of the geometry -> render space (inverse transpose), not normalised
+  float kernelNormal[3][3];          // instanced: the kernel's geometric normal -> render space
 };
 
 struct Bucket {

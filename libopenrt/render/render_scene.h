@@ -76,8 +76,8 @@ struct RenderScene {
   std::unique_ptr<ShaderTable> shaders;
   RoleSlot camera, environment;
   float eye[3] = {0, 0, 0}, viewAxis[3] = {0, 0, -1}; // render space; unit
-  double origin[3] = {0, 0, 0};   // of render space, in the world
-  bool transparentShadows = false; // something transparent may stand before a light
+  double origin[3] = {0, 0, 0};                       // of render space, in the world
+  bool transparentShadows = false;                    // something transparent may stand before a light
   RenderHost host;
   edit::FrameSettingsT frame;
 };

@@ -31,7 +31,8 @@ ShaderTable::ShaderTable(const Scene& scene, const ShaderRegistry& registry, con
     if (name != scene.classes.end()) base = &registry.find(name->second.name, name->second.library);
     if (base && base->kind != RTS_SURFACE) base = nullptr;
   }
-  slots_.push_back(base ? make(*base, &fallback->second, textureIndex, host) : make(registry.find("VRML97", ""), nullptr, textureIndex, host));
+  slots_.push_back(base ? make(*base, &fallback->second, textureIndex, host)
+                        : make(registry.find("VRML97", ""), nullptr, textureIndex, host));
   for (const auto& [id, values] : scene.shaders) {
     const auto name = scene.classes.find(values.shaderClass);
     if (name == scene.classes.end()) continue;

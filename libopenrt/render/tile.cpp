@@ -16,13 +16,13 @@ constexpr uint32_t pathsInFlight = 4096;
 uint32_t tileEdge(uint32_t samplesPerPixel) { return samplesPerPixel >= 16 ? 16 : samplesPerPixel >= 4 ? 32 : 64; }
 
 struct TileRenderer::Paths {
-  Rays rays;             // of the living paths, compacted
-  uint32_t* path;        // path of a ray lane
-  float* throughput[3];  // by ray lane
-  float* travelled;      // length up to the ray's origin, by ray lane
-  float* radiance[3];    // by path, from here on
+  Rays rays;            // of the living paths, compacted
+  uint32_t* path;       // path of a ray lane
+  float* throughput[3]; // by ray lane
+  float* travelled;     // length up to the ray's origin, by ray lane
+  float* radiance[3];   // by path, from here on
   float* alpha;
-  uint8_t* first;        // nothing was shaded on the path yet
+  uint8_t* first;                                     // nothing was shaded on the path yet
   float *normal[3], *albedo[3], *position[3], *depth; // null where nobody asks
   uint32_t* name;
   // next wave, written behind the lanes already read
@@ -103,9 +103,12 @@ void TileRenderer::wave(uint32_t firstSample, uint32_t samples) {
     scene_.kernel->intersect(paths.rays, maskAll, Coherence::coherent, hits);
     uint32_t misses = 0, mets = 0, throughs = 0;
     for (uint32_t i = 0; i < paths.rays.count; i++) {
-      if (hits.record[i] == noHit) missed[misses++] = i;
-      else if (culled(scene_, paths.rays, hits, i)) through[throughs++] = i;
-      else met[mets++] = i;
+      if (hits.record[i] == noHit)
+        missed[misses++] = i;
+      else if (culled(scene_, paths.rays, hits, i))
+        through[throughs++] = i;
+      else
+        met[mets++] = i;
     }
     background(paths, missed, misses);
     passCulled(paths, hits, through, throughs);
@@ -248,7 +251,8 @@ void TileRenderer::shadeRange(Paths& paths, const RayHits& hits, const BucketRan
 }
 
 // Adds what was shaded to the paths and sends on those that something lets through.
-void TileRenderer::gather(const Points& points, const RtsShading& shaded, const uint32_t* order, Paths& paths, const float* fog[4]) {
+void TileRenderer::gather(const Points& points, const RtsShading& shaded, const uint32_t* order, Paths& paths,
+                          const float* fog[4]) {
   const RtsHits& h = points.hits;
   for (uint32_t i = 0; i < h.count; i++) {
     const uint32_t lane = order[i], path = paths.path[lane];

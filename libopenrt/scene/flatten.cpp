@@ -13,8 +13,10 @@ class Flattener {
  public:
   explicit Flattener(const Scene& scene) : scene_(scene) {
     for (const auto& [id, light] : scene.lights) {
-      if (light.scope) scoped_[light.scope].push_back(id);
-      else unscoped_.push_back(id);
+      if (light.scope)
+        scoped_[light.scope].push_back(id);
+      else
+        unscoped_.push_back(id);
     }
     result_.lightSets.push_back(unscoped_);
     setOf_[unscoped_] = 0;
@@ -51,7 +53,8 @@ class Flattener {
       for (uint32_t child : scene_.childrenOf(id)) {
         if (result) break;
         const uint8_t below = drawable_[scene_.instances.at(child).object];
-        if (below == yes) result = true;
+        if (below == yes)
+          result = true;
         else if (below == unknown && state != open) {
           todo.push_back(scene_.instances.at(child).object);
           wait = true;

@@ -1,7 +1,6 @@
 // scene.cpp: applies edits to the tables of the scene, one small function a kind of edit.
 #include "scene/scene.h"
 
-
 namespace openrt {
 namespace {
 

@@ -21,19 +21,19 @@ struct EmbreeDevice {
   EmbreeDevice(const EmbreeDevice&) = delete;
   EmbreeDevice& operator=(const EmbreeDevice&) = delete;
   RTCDevice device;
-  bool wide = true;                // packets of 16 are native
-  std::atomic<int64_t> bytes{0};   // held by acceleration structures
+  bool wide = true;              // packets of 16 are native
+  std::atomic<int64_t> bytes{0}; // held by acceleration structures
 };
 
 // How one Embree geometry's primitives lead to records and primitives of ours.
 struct Part {
-  uint32_t record = 0;              // of every primitive, or
-  std::vector<uint32_t> recordOf;   // one a primitive (merged geometries)
+  uint32_t record = 0;            // of every primitive, or
+  std::vector<uint32_t> recordOf; // one a primitive (merged geometries)
   std::vector<uint32_t> primitiveOf;
-  std::vector<float> vertices;      // as Embree reads them
+  std::vector<float> vertices; // as Embree reads them
   std::vector<uint32_t> indices;
   ArrayPtr sharedIndices;
-  uint32_t objectScene = ~0u;       // an instance: index of its object scene; record is the placement's first
+  uint32_t objectScene = ~0u; // an instance: index of its object scene; record is the placement's first
 };
 
 // An Embree scene with its parts by geometry id.

@@ -23,8 +23,8 @@ Matrix4d scaling(double s) {
 bool similarity(const Matrix4d& m) {
   const Vec3d a = m.column(0), b = m.column(1), c = m.column(2);
   const double l = dot(a, a), e = 1e-6 * l;
-  return std::fabs(dot(b, b) - l) <= e && std::fabs(dot(c, c) - l) <= e && std::fabs(dot(a, b)) <= e && std::fabs(dot(a, c)) <= e &&
-         std::fabs(dot(b, c)) <= e;
+  return std::fabs(dot(b, b) - l) <= e && std::fabs(dot(c, c) - l) <= e && std::fabs(dot(a, b)) <= e &&
+         std::fabs(dot(a, c)) <= e && std::fabs(dot(b, c)) <= e;
 }
 
 // Inverse transpose up to a positive factor, its largest element 1: directions only.
@@ -39,8 +39,8 @@ void normalMatrixOf(const Matrix4d& m, float out[3][3]) {
 
 } // namespace
 
-AccelBuilder::AccelBuilder(Accel& accel, const Scene& scene, const Flattened& flat, const ShaderTable& shaders, const Vec3d& origin,
-                           const PixelFootprint& footprint)
+AccelBuilder::AccelBuilder(Accel& accel, const Scene& scene, const Flattened& flat, const ShaderTable& shaders,
+                           const Vec3d& origin, const PixelFootprint& footprint)
     : accel_(accel), scene_(scene), flat_(flat), shaders_(shaders), origin_(origin), footprint_(footprint) {
   worldToRender_.translate(origin * -1.0);
 }
@@ -87,7 +87,9 @@ void AccelBuilder::chooseScale() {
   if (far > 0 && (far < 1e-4 || far > 1e8)) accel_.scale_ = float(std::exp2(-std::floor(std::log2(far))));
 }
 
-uint32_t AccelBuilder::maskOf(uint32_t slot) const { return shaders_[slot].traits & RTS_TRANSPARENT ? maskTransparent : maskOpaque; }
+uint32_t AccelBuilder::maskOf(uint32_t slot) const {
+  return shaders_[slot].traits & RTS_TRANSPARENT ? maskTransparent : maskOpaque;
+}
 
 uint32_t AccelBuilder::bucketOf(uint32_t slot, uint32_t lightSet) {
   const auto key = std::make_pair(shaders_[slot].shaderClass, lightSet);
@@ -177,7 +179,8 @@ uint32_t AccelBuilder::objectScene(const Placement& placement, Matrix4d& fromKer
   for (size_t i = 0; i < geometries.size(); i++) {
     const Matrix4d matrix = toKernel * geometries[i].matrix;
     if (!consistent(geometries[i]) || !matrix.usable()) continue;
-    addGeometry(*scene, geometries[i], matrix, uint32_t(i), over ? uint32_t(over) : maskOf(shaders_.slotOf(geometries[i].shader)));
+    addGeometry(*scene, geometries[i], matrix, uint32_t(i),
+                over ? uint32_t(over) : maskOf(shaders_.slotOf(geometries[i].shader)));
   }
   objectVertices_.emplace_back(geometries.size(), nullptr);
   finish(*scene, true);
@@ -225,8 +228,8 @@ void AccelBuilder::addTriangles(PartScene& to, const Geometry& g, const Matrix4d
 }
 
 // Triangles of `which` (null: the first count) join the merged geometry of their kind.
-void AccelBuilder::merge(PartScene& to, const std::vector<float>& vertices, const uint32_t* index, const std::vector<uint32_t>* which,
-                         size_t count, uint32_t record, uint32_t mask, bool filtered) {
+void AccelBuilder::merge(PartScene& to, const std::vector<float>& vertices, const uint32_t* index,
+                         const std::vector<uint32_t>* which, size_t count, uint32_t record, uint32_t mask, bool filtered) {
   auto& part = merged_[{mask, filtered}];
   if (part && part->vertices.size() / 3 > mergedVertices) attachTriangles(to, *accel_.device_, std::move(part), mask, filtered);
   if (!part) part = std::make_unique<Part>();
@@ -314,8 +317,10 @@ void AccelBuilder::finish(PartScene& to, bool last) {
   const bool root = &to == &accel_.root_;
   for (const VertexOf& v : vertexOf_) {
     const float* vertices = v.part->vertices.data() + v.offset;
-    if (root) accel_.records[v.record].vertices = vertices;
-    else objectVertices_.back()[v.record] = vertices;
+    if (root)
+      accel_.records[v.record].vertices = vertices;
+    else
+      objectVertices_.back()[v.record] = vertices;
   }
   vertexOf_.clear();
   if (last) rtcCommitScene(to.scene);

@@ -30,8 +30,8 @@ class AccelBuilder {
   uint32_t unitSphere(uint32_t mask);
   void addGeometry(PartScene& to, const Geometry& geometry, const Matrix4d& toKernel, uint32_t record, uint32_t mask);
   void addTriangles(PartScene& to, const Geometry& geometry, const Matrix4d& toKernel, uint32_t record, uint32_t mask);
-  void merge(PartScene& to, const std::vector<float>& vertices, const uint32_t* index, const std::vector<uint32_t>* which, size_t count,
-             uint32_t record, uint32_t mask, bool filtered);
+  void merge(PartScene& to, const std::vector<float>& vertices, const uint32_t* index, const std::vector<uint32_t>* which,
+             size_t count, uint32_t record, uint32_t mask, bool filtered);
   void addThin(const Geometry& geometry, const Matrix4d& toKernel, uint32_t record);
   void addSphere(PartScene& to, const Geometry& geometry, const Matrix4d& toKernel, uint32_t record, uint32_t mask);
   void finish(PartScene& to, bool last);
@@ -48,8 +48,9 @@ class AccelBuilder {
   PixelFootprint footprint_;
   std::map<uint32_t, Use> uses_;
   std::map<std::pair<const RtsClass*, uint32_t>, uint32_t> buckets_;
-  std::map<std::pair<uint32_t, int>, std::pair<uint32_t, Matrix4d>> objectScenes_; // (object, mask of an override); (0, mask): unit sphere
-  std::vector<std::vector<const float*>> objectVertices_;                          // by object scene and geometry
+  std::map<std::pair<uint32_t, int>, std::pair<uint32_t, Matrix4d>>
+      objectScenes_;                                      // (object, mask of an override); (0, mask): unit sphere
+  std::vector<std::vector<const float*>> objectVertices_; // by object scene and geometry
   // Of the scene being filled:
   std::map<std::pair<uint32_t, bool>, std::unique_ptr<Part>> merged_; // triangles of small geometries, by (mask, filtered)
   std::map<uint32_t, std::unique_ptr<Part>> spheres_;                 // by mask

@@ -24,7 +24,8 @@ struct Packet8 {
 };
 
 // Fills a packet from lane `first` on; returns how many of its rays were refused. Refused and absent rays are made harmless.
-template <uint32_t W, class Ray> uint32_t load(const Rays& rays, uint32_t first, float scale, uint32_t mask, int* valid, Ray& to) {
+template <uint32_t W, class Ray>
+uint32_t load(const Rays& rays, uint32_t first, float scale, uint32_t mask, int* valid, Ray& to) {
   const float limit = 1e18f / scale;
   uint32_t refused = 0;
   for (uint32_t i = 0; i < W; i++) {
@@ -110,14 +111,18 @@ template <class Packet> void Accel::occludedPackets(const Rays& rays, uint32_t m
 
 void Accel::intersect(const Rays& rays, uint32_t mask, Coherence coherence, RayHits& hits) const {
   const bool coherent = coherence == Coherence::coherent;
-  if (device_->wide && !hasInstances) intersectPackets<Packet16>(rays, mask, coherent, hits);
-  else intersectPackets<Packet8>(rays, mask, coherent && !hasInstances, hits);
+  if (device_->wide && !hasInstances)
+    intersectPackets<Packet16>(rays, mask, coherent, hits);
+  else
+    intersectPackets<Packet8>(rays, mask, coherent && !hasInstances, hits);
 }
 
 void Accel::occluded(const Rays& rays, uint32_t mask, Coherence coherence, uint8_t* blocked) const {
   const bool coherent = coherence == Coherence::coherent;
-  if (device_->wide && !hasInstances) occludedPackets<Packet16>(rays, mask, coherent, blocked);
-  else occludedPackets<Packet8>(rays, mask, coherent && !hasInstances, blocked);
+  if (device_->wide && !hasInstances)
+    occludedPackets<Packet16>(rays, mask, coherent, blocked);
+  else
+    occludedPackets<Packet8>(rays, mask, coherent && !hasInstances, blocked);
 }
 
 } // namespace openrt

@@ -36,7 +36,8 @@ void Box::add(const Vec3d& p) {
 void Box::add(const Box& box, const Matrix4d& matrix) {
   if (box.empty()) return;
   for (int corner = 0; corner < 8; corner++)
-    add(matrix.point({corner & 1 ? box.high.x : box.low.x, corner & 2 ? box.high.y : box.low.y, corner & 4 ? box.high.z : box.low.z}));
+    add(matrix.point(
+        {corner & 1 ? box.high.x : box.low.x, corner & 2 ? box.high.y : box.low.y, corner & 4 ? box.high.z : box.low.z}));
 }
 
 Box boundsOf(const Geometry& geometry) {

@@ -47,7 +47,8 @@ void attach(PartScene& to, RTCGeometry geometry, std::unique_ptr<Part> part, uin
 EmbreeDevice::EmbreeDevice(uint32_t threads) {
   const std::string config = "threads=" + std::to_string(threads);
   device = rtcNewDevice(config.c_str());
-  if (!device) throw std::runtime_error("the ray kernels (Embree) do not start: error " + std::to_string(rtcGetDeviceError(nullptr)));
+  if (!device)
+    throw std::runtime_error("the ray kernels (Embree) do not start: error " + std::to_string(rtcGetDeviceError(nullptr)));
   rtcSetDeviceMemoryMonitorFunction(
       device,
       [](void* counter, ssize_t change, bool) {
@@ -84,13 +85,16 @@ void attachTriangles(PartScene& to, const EmbreeDevice& device, std::unique_ptr<
 
 void attachRound(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part, uint32_t mask, RTCGeometryType type) {
   RTCGeometry geometry = rtcNewGeometry(device.device, type);
-  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, part->vertices.data(), 0, 16, part->vertices.size() / 4);
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, part->vertices.data(), 0, 16,
+                             part->vertices.size() / 4);
   if (type == RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE)
-    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT, part->indices.data(), 0, 4, part->indices.size());
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT, part->indices.data(), 0, 4,
+                               part->indices.size());
   attach(to, geometry, std::move(part), mask);
 }
 
-void attachInstance(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part, const PartScene& object, const Matrix4d& matrix) {
+void attachInstance(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part, const PartScene& object,
+                    const Matrix4d& matrix) {
   RTCGeometry geometry = rtcNewGeometry(device.device, RTC_GEOMETRY_TYPE_INSTANCE);
   rtcSetGeometryInstancedScene(geometry, object.scene);
   float m[12];

@@ -11,6 +11,7 @@ RTCScene newScene(const EmbreeDevice& device); // robust mode
 void attachTriangles(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part, uint32_t mask, bool filtered);
 // Spheres or round linear curves; part.vertices have stride 4: centre and radius.
 void attachRound(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part, uint32_t mask, RTCGeometryType type);
-void attachInstance(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part, const PartScene& object, const Matrix4d& matrix);
+void attachInstance(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part, const PartScene& object,
+                    const Matrix4d& matrix);
 
 } // namespace openrt

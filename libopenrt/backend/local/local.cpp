@@ -28,7 +28,8 @@ bool different(const PixelFootprint& a, const PixelFootprint& b) {
 } // namespace
 
 LocalBackend::LocalBackend(const BackendOptions& options)
-    : options_(options), threads_(options.threads ? options.threads : availableThreads()), device_(std::make_shared<EmbreeDevice>(threads_)) {
+    : options_(options), threads_(options.threads ? options.threads : availableThreads()),
+      device_(std::make_shared<EmbreeDevice>(threads_)) {
   changes_.geometry = true;
 }
 
@@ -64,7 +65,8 @@ void LocalBackend::prepare() {
   for (const auto& [id, light] : scene_.lights) scoped |= light.scope != 0;
   const bool moved = snapshot_ && std::memcmp(snapshot_->origin, next->origin, sizeof next->origin) != 0;
   const bool rebuild = !accel_ || c.geometry || c.instances || moved || (c.lights && (scoped || scopedLights_)) ||
-                       (c.shaders && !next->shaders->sameLayout(*snapshot_->shaders)) || (accel_->hasThin && different(pixel, footprint_));
+                       (c.shaders && !next->shaders->sameLayout(*snapshot_->shaders)) ||
+                       (accel_->hasThin && different(pixel, footprint_));
   if (rebuild) {
     flat_ = flatten(scene_);
     if (flat_.truncated && options_.log)

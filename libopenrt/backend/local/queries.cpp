@@ -19,7 +19,8 @@ void worldNormal(const Record& r, const RayHits& hits, uint32_t i, float out[3])
   const float k[3] = {hits.ng[0][i], hits.ng[1][i], hits.ng[2][i]};
   double n[3] = {k[0], k[1], k[2]};
   if (r.instanced)
-    for (int j = 0; j < 3; j++) n[j] = double(r.kernelNormal[j][0]) * k[0] + double(r.kernelNormal[j][1]) * k[1] + double(r.kernelNormal[j][2]) * k[2];
+    for (int j = 0; j < 3; j++)
+      n[j] = double(r.kernelNormal[j][0]) * k[0] + double(r.kernelNormal[j][1]) * k[1] + double(r.kernelNormal[j][2]) * k[2];
   const double l = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
   const double s = l > 0 ? (r.flip ? -1 : 1) / l : 0;
   for (int j = 0; j < 3; j++) out[j] = float(n[j] * s);

@@ -1,0 +1,56 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "render/film.h"
+
+using namespace openrt;
+
+TEST(Film, meanAndVarianceOfLargeNumbersWithSmallDifferences) {
+  PixelSums sums;
+  for (int i = 0; i < 1000; i++) {
+    const float x = 1e6f + float(i % 2); // variance 0.25 * 1000 / 999
+    const float radiance[3] = {x, 1, float(i)};
+    sums.add(radiance, 1);
+  }
+  Film film(1, 1, RT_RGBA | RT_VARIANCE | RT_SAMPLES);
+  film.store(0, 0, sums);
+  float rgba[4], variance[3], samples[1];
+  ASSERT_TRUE(film.read(RT_RGBA, rgba));
+  ASSERT_TRUE(film.read(RT_VARIANCE, variance));
+  ASSERT_TRUE(film.read(RT_SAMPLES, samples));
+  EXPECT_FLOAT_EQ(rgba[0], 1000000.5f);
+  EXPECT_NEAR(variance[0], 0.25 * 1000 / 999, 1e-6);
+  EXPECT_EQ(variance[1], 0);
+  EXPECT_NEAR(variance[2], 1000.0 * 1001 / 12, 1e-1);
+  EXPECT_EQ(samples[0], 1000);
+}
+
+TEST(Film, aMillionSmallSamplesAndOneLarge) { // N20
+  PixelSums sums;
+  const float small[3] = {1e-3f, 0, 0}, large[3] = {1e6f, 0, 0};
+  for (int i = 0; i < 1000000; i++) sums.add(small, 1);
+  sums.add(large, 1);
+  Film film(1, 1, RT_RGBA);
+  film.store(0, 0, sums);
+  float rgba[4];
+  ASSERT_TRUE(film.read(RT_RGBA, rgba));
+  const double expected = (1e6 * double(1e-3f) + 1e6) / 1000001;
+  EXPECT_NEAR(rgba[0] / expected, 1, 1e-6);
+}
+
+TEST(Film, channelsThatWereNotAskedForAreNotThere) {
+  Film film(2, 2, RT_RGBA);
+  float out[16];
+  EXPECT_TRUE(film.read(RT_RGBA, out));
+  EXPECT_FALSE(film.read(RT_DEPTH, out));
+  EXPECT_FALSE(film.read(RT_RGBA | RT_DEPTH, out));
+  EXPECT_FALSE(film.read(RT_RGBA, std::span(out, 15)));
+}
+
+TEST(Film, depthIsInfiniteWhereNothingIsHit) {
+  Film film(1, 1, RT_DEPTH);
+  float depth[1];
+  ASSERT_TRUE(film.read(RT_DEPTH, depth));
+  EXPECT_TRUE(std::isinf(depth[0]));
+}
