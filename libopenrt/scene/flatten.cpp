@@ -30,7 +30,7 @@ class Flattener {
 
  private:
   struct Frame { // an object being walked, with what its path inherits
-    uint32_t object = 0, instance = 0, shader = 0, lightSet = 0;
+    uint32_t object = 0, instance = 0, shader = 0, lightSet = 0, name = 0;
     uint64_t userData = 0;
     Matrix4d matrix;
     size_t next = 0; // child to visit
@@ -81,7 +81,7 @@ class Flattener {
         result_.truncated = true;
         return;
       } else {
-        result_.placements.push_back({object, frame.instance, frame.shader, frame.lightSet, frame.userData, frame.matrix});
+        result_.placements.push_back({object, frame.instance, frame.shader, frame.lightSet, frame.name, frame.userData, frame.matrix});
       }
     }
     if (!scene_.childrenOf(object).empty()) stack_.push_back(frame);
@@ -106,6 +106,7 @@ class Flattener {
     below.instance = top.instance ? top.instance : id;
     below.shader = top.shader ? top.shader : instance.shader;
     below.userData = instance.userData ? instance.userData : top.userData;
+    below.name = instance.name ? instance.name : top.name;
     below.lightSet = scoped_.count(id) ? widen(top.lightSet, scoped_[id]) : top.lightSet;
     push(instance.object, below);
   }

@@ -14,6 +14,7 @@ struct Placement {
   uint32_t instance = 0; // outermost
   uint32_t shader = 0;   // override: the outermost one on the path
   uint32_t lightSet = 0; // index into Flattened::lightSets
+  uint32_t name = 0;     // of the innermost instance that has one
   uint64_t userData = 0; // of the innermost instance that has any
   Matrix4d matrix;       // object to world
 };

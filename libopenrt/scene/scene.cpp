@@ -89,7 +89,7 @@ void Scene::applyEdit(const edit::AnyUnion& any, SceneChanges& changes) {
     break;
   case Any::Instance: {
     const auto& i = *any.AsInstance();
-    instances[i.id] = {i.parent, i.object, i.shader, toMatrix(i.matrix.get()), i.visible, i.userData};
+    instances[i.id] = {i.parent, i.object, i.shader, toMatrix(i.matrix.get()), i.visible, i.userData, i.name};
     changes.instances = true;
     break;
   }

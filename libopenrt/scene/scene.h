@@ -33,6 +33,7 @@ struct Instance {
   Matrix4d matrix;
   bool visible = true;
   uint64_t userData = 0;
+  uint32_t name = 0;
 };
 
 struct Light {

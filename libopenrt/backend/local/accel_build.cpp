@@ -107,7 +107,7 @@ uint32_t AccelBuilder::addRecord(const Placement& placement, const Geometry& g, 
   r.cull = g.cull;
   r.shader = shaders_.slotOf(placement.shader ? placement.shader : g.shader);
   r.bucket = bucketOf(r.shader, placement.lightSet);
-  r.name = g.name, r.instance = placement.instance, r.userData = placement.userData;
+  r.name = g.name ? g.name : placement.name, r.instance = placement.instance, r.userData = placement.userData;
   r.indices = g.indices ? g.indices->as<uint32_t>() : nullptr;
   r.normals = g.normals ? g.normals->as<float>() : nullptr;
   r.texCoords = g.texCoords ? g.texCoords->as<float>() : nullptr;
