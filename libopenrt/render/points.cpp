@@ -219,7 +219,35 @@ Points makePoints(const RenderScene& scene, const Rays& rays, const RayHits& hit
   for (int k = 0; k < 4; k++) to.color[k] = out.color[k];
   to.distance = out.distance, to.flags = out.flags, to.params = out.params;
   points.error = out.error, points.record = out.record;
+  points.rayHits = &hits, points.order = order;
   return points;
+}
+
+bool liftToSmooth(const RenderScene& scene, const Points& points, uint32_t i, float out[3]) {
+  const Record& r = scene.records[points.record[i]];
+  if (!r.normals || r.primitive != edit::Primitive::Triangles) return false;
+  const uint32_t lane = points.order[i];
+  const uint32_t* corner = r.indices + 3 * size_t(points.rayHits->primitive[lane]);
+  const float u = points.rayHits->u[lane], v = points.rayHits->v[lane], w[3] = {1 - u - v, u, v};
+  const float sign = points.hits.flags[i] & RTS_HIT_BACK ? -1.0f : 1.0f;
+  float p[3], lift[3] = {0, 0, 0};
+  for (int k = 0; k < 3; k++) p[k] = points.hits.position[k][i];
+  for (int c = 0; c < 3; c++) {
+    const float* at = r.vertices + 3 * size_t(corner[c]);
+    float n[3], vertex[3];
+    apply(r.normalMatrix, r.normals + 3 * size_t(corner[c]), n);
+    if (!normalize(n)) return false;
+    for (int k = 0; k < 3; k++) {
+      const float* m = r.toRender.r[k];
+      vertex[k] = r.instanced ? m[0] * at[0] + m[1] * at[1] + m[2] * at[2] + m[3] : at[k] * r.scale;
+    }
+    float below = 0; // depth of the point under the tangent plane of the vertex
+    for (int k = 0; k < 3; k++) below += (p[k] - vertex[k]) * n[k] * sign;
+    below = std::min(below, 0.0f);
+    for (int k = 0; k < 3; k++) lift[k] -= w[c] * below * n[k] * sign;
+  }
+  for (int k = 0; k < 3; k++) out[k] = p[k] + lift[k];
+  return true;
 }
 
 } // namespace openrt

@@ -16,6 +16,8 @@ struct Points {
   RtsHits hits;
   const float* error;     // bound of the position's rounding error along the geometric normal
   const uint32_t* record; // Record of each
+  const RayHits* rayHits; // where they come from, and
+  const uint32_t* order;  // their lanes there
 };
 
 // Stable counting sort of n ray lanes by the bucket of the record each has hit: order gets the lanes, the result the ranges.
@@ -39,6 +41,11 @@ inline bool culled(const RenderScene& scene, const Rays& rays, const RayHits& hi
   const float d = n[0] * rays.dir[0][lane] + n[1] * rays.dir[1][lane] + n[2] * rays.dir[2][lane];
   return r.flip ? d < 0 : d > 0;
 }
+
+// The point of hit i lifted from its flat triangle to the smooth surface that the vertex normals describe, on the
+// side that the shading normal is on: J. Hanika, "Hacking the Shadow Terminator", Ray Tracing Gems II, ch. 4.
+// False, and nothing written, where the surface is flat.
+bool liftToSmooth(const RenderScene& scene, const Points& points, uint32_t i, float out[3]);
 
 // p moved along n (unit) out of the error bound, then one float further on every axis: M. Pharr, W. Jakob, G. Humphreys,
 // "Physically Based Rendering", 3rd ed., 3.9.5.

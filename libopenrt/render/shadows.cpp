@@ -25,9 +25,10 @@ ShadowRays makeRays(RtsBatch& batch, const uint8_t* wanted, const RtsIlluminatio
     if (!(light.color[0][i] != 0 || light.color[1][i] != 0 || light.color[2][i] != 0)) continue;
     const float l[3] = {light.toLight[0][i], light.toLight[1][i], light.toLight[2][i]};
     float g[3] = {hits.geometric[0][i], hits.geometric[1][i], hits.geometric[2][i]};
-    if (g[0] * l[0] + g[1] * l[1] + g[2] * l[2] < 0) g[0] = -g[0], g[1] = -g[1], g[2] = -g[2];
-    const float p[3] = {hits.position[0][i], hits.position[1][i], hits.position[2][i]};
-    float origin[3];
+    float p[3] = {hits.position[0][i], hits.position[1][i], hits.position[2][i]}, origin[3];
+    // The facet faces away, the smooth surface does not: the ray starts on the smooth surface, or behind where it is flat.
+    const bool away = g[0] * l[0] + g[1] * l[1] + g[2] * l[2] < 0;
+    if (away && !liftToSmooth(*batch.scene, *batch.points, i, p)) g[0] = -g[0], g[1] = -g[1], g[2] = -g[2];
     offsetPoint(p, g, batch.points->error[i], origin);
     for (int k = 0; k < 3; k++) s.rays.org[k][n] = origin[k], s.rays.dir[k][n] = l[k];
     s.rays.tnear[n] = 0;
