@@ -11,8 +11,8 @@ namespace xvrml {
 namespace {
 
 constexpr std::array<std::string_view, fieldTypeCount> typeNames = {
-    "SFBool",  "SFColor", "SFFloat", "SFImage", "SFInt32",    "SFNode",   "SFRotation", "SFString", "SFTime",  "SFVec2f",
-    "SFVec3f", "MFColor", "MFFloat", "MFInt32", "MFNode",     "MFRotation", "MFString", "MFTime",   "MFVec2f", "MFVec3f"};
+    "SFBool",  "SFColor", "SFFloat", "SFImage", "SFInt32", "SFNode",     "SFRotation", "SFString", "SFTime",  "SFVec2f",
+    "SFVec3f", "MFColor", "MFFloat", "MFInt32", "MFNode",  "MFRotation", "MFString",   "MFTime",   "MFVec2f", "MFVec3f"};
 
 static_assert(std::variant_size_v<Value> == fieldTypeCount);
 static_assert(std::is_same_v<std::variant_alternative_t<size_t(FieldType::SFNode), Value>, SFNode>);

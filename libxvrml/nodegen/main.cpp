@@ -1,0 +1,111 @@
+// main.cpp: nodegen, the generator of node code. Reads .node files and writes what it is asked for; see docs/nodegen.md.
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <system_error>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "nodegen/writers.h"
+
+namespace {
+
+using namespace xvrml::nodegen;
+
+enum ExitCode { success = 0, usage = 2, unreadable = 3, badSpecification = 4, unwritable = 5 };
+
+struct Options {
+  std::vector<std::string> specifications, imports;
+  std::string output, reference, stub, skeleton, skeletonFile;
+};
+
+int fail(ExitCode code, const std::string& message) {
+  fmt::print(stderr, "nodegen: {}\n", message);
+  return code;
+}
+
+void describe(CLI::App& app, Options& options) {
+  app.description("Writes the code, reference and Python stub of the nodes described in .node files.");
+  app.add_option("specification", options.specifications, "files to generate from, in this order")->required();
+  app.add_option("--import", options.imports, "a file read for its abstract types alone; may be given several times")
+      ->allow_extra_args(false);
+  app.add_option("-o,--output", options.output, "folder for xvrml/nodes.h, nodes_<component>.cpp and nodes_list.cpp");
+  app.add_option("--reference", options.reference, "file for the node reference, in Markdown");
+  app.add_option("--stub", options.stub, "file for the Python stub of the node classes");
+  auto* skeleton = app.add_option("--skeleton", options.skeleton, "node to write a first source of its behaviour for");
+  app.add_option("--skeleton-file", options.skeletonFile, "file for the skeleton, which must not exist; default: <node>.cpp")
+      ->needs(skeleton);
+  app.footer("Exit codes: 0 done, 2 wrong use, 3 a file cannot be read, 4 a specification is wrong, 5 a file cannot be written.");
+}
+
+// A half-written file would be compiled: it is written beside its place and moved there.
+bool writeFile(const std::filesystem::path& path, const std::string& text) {
+  std::error_code error;
+  if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path(), error);
+  const std::filesystem::path part = path.string() + ".part";
+  {
+    std::ofstream stream(part, std::ios::binary);
+    stream << text;
+    if (!stream.flush()) return false;
+  }
+  std::filesystem::rename(part, path, error);
+  return !error;
+}
+
+bool writeCode(const Model& model, const std::filesystem::path& folder) {
+  bool good =
+      writeFile(folder / "xvrml" / "nodes.h", writeHeader(model)) && writeFile(folder / "nodes_list.cpp", writeList(model));
+  for (const Component& component : model.components) {
+    if (component.imported) continue;
+    good = good && writeFile(folder / fmt::format("nodes_{}.cpp", component.name), writeTables(model, component));
+  }
+  return good;
+}
+
+int writeSkeletonFile(const Model& model, const Options& options) {
+  const TypeSpec* type = model.find(options.skeleton);
+  if (!type || type->isAbstract) return fail(usage, fmt::format("--skeleton: there is no node {}", options.skeleton));
+  const std::string path = options.skeletonFile.empty() ? options.skeleton + ".cpp" : options.skeletonFile;
+  if (std::filesystem::exists(path)) return fail(unwritable, fmt::format("{} exists: a skeleton is written once", path));
+  return writeFile(path, writeSkeleton(*type)) ? success : fail(unwritable, fmt::format("cannot write {}", path));
+}
+
+int run(const Options& options) {
+  Model model;
+  const auto readAll = [&model](const std::vector<std::string>& paths, bool imported) {
+    for (const std::string& path : paths) {
+      if (!readSpecification(path, imported, model)) {
+        fail(unreadable, fmt::format("cannot read {}", path));
+        return false;
+      }
+    }
+    return true;
+  };
+  if (!readAll(options.imports, true) || !readAll(options.specifications, false)) return unreadable;
+  if (model.diagnostics.errors() == 0) check(model);
+  for (const xvrml::Diagnostic& diagnostic : model.diagnostics.list()) fmt::print(stderr, "{}\n", diagnostic.text());
+  if (model.diagnostics.errors() > 0) return badSpecification;
+
+  if (!options.output.empty() && !writeCode(model, options.output))
+    return fail(unwritable, fmt::format("cannot write into {}", options.output));
+  if (!options.reference.empty() && !writeFile(options.reference, writeReference(model)))
+    return fail(unwritable, fmt::format("cannot write {}", options.reference));
+  if (!options.stub.empty() && !writeFile(options.stub, writeStub(model)))
+    return fail(unwritable, fmt::format("cannot write {}", options.stub));
+  return options.skeleton.empty() ? success : writeSkeletonFile(model, options);
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  CLI::App app;
+  describe(app, options);
+  try {
+    app.parse(argc, argv);
+    return run(options);
+  } catch (const CLI::ParseError& error) { return app.exit(error) == 0 ? success : usage; } catch (const std::exception& error) {
+    return fail(unwritable, error.what());
+  }
+}

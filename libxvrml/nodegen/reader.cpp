@@ -1,0 +1,288 @@
+// reader.cpp: .node files into a Model. The words, numbers, strings and values are those of VRML97, so the library's lexer and
+// value parser read them; the notation is explained in docs/nodegen.md. Called by main once per file.
+#include <fstream>
+#include <iterator>
+
+#include <fmt/format.h>
+
+#include "base/value_parser.h"
+#include "nodegen/model.h"
+#include "nodegen/range.h"
+
+namespace xvrml::nodegen {
+namespace {
+
+struct Failed {}; // thrown after an error was reported; caught at the next stanza
+
+std::string stem(const std::string& path) {
+  const size_t slash = path.find_last_of('/');
+  const std::string name = slash == std::string::npos ? path : path.substr(slash + 1);
+  return name.substr(0, name.find_last_of('.'));
+}
+
+// White space and comments between the words of a value as single blanks.
+std::string squeeze(std::string_view text) {
+  std::string result;
+  for (const char c : text) {
+    const bool space = c == ' ' || c == '\t' || c == '\n' || c == '\r';
+    if (!space)
+      result += c;
+    else if (!result.empty() && result.back() != ' ')
+      result += ' ';
+  }
+  while (!result.empty() && result.back() == ' ') result.pop_back();
+  return result;
+}
+
+class Reader {
+ public:
+  Reader(std::string_view text, std::shared_ptr<const std::string> file, Model& model, Component& component)
+      : lexer_(text, file, model.diagnostics), values_(lexer_, limits_), gap_(text.data()), component_(component) {}
+
+  // file ::= "component" string { stanza }
+  void read() {
+    try {
+      expectWord("component", "the component that the file describes");
+      component_.title = readText("its title");
+    } catch (const Failed&) {} // the stanzas may be good
+    while (!lexer_.peek().is(TokenKind::end)) {
+      try {
+        readStanza();
+      } catch (const Failed&) { skipStanza(); }
+    }
+    take(); // looks at the comments at the end of the file
+  }
+
+ private:
+  // stanza ::= "abstract" name [ ":" { name } ] string [ "{" { field } "}" ]
+  //          | name ":" name { name } "{" [ "clause" number ] string { field } "}"
+  void readStanza() {
+    TypeSpec type;
+    type.component = component_.name;
+    type.isAbstract = acceptWord("abstract");
+    readName(type.name, type.source, type.isAbstract ? "the name of an abstract type" : "the name of a node, or abstract");
+    if (acceptWord(":")) {
+      do readName(type.parents.emplace_back(), "an abstract type");
+      while (lexer_.peek().is(TokenKind::identifier));
+    } else if (!type.isAbstract) {
+      fail(lexer_.peek(), fmt::format("expected : and the abstract types of {}, found {}", type.name, describe(lexer_.peek())));
+    }
+    if (type.isAbstract) type.text = readText("what the abstract type stands for");
+    if (!type.isAbstract || lexer_.peek().is(TokenKind::braceOpen)) readBody(type);
+    component_.types.push_back(std::move(type));
+  }
+
+  void readBody(TypeSpec& type) {
+    expect(TokenKind::braceOpen, "{");
+    if (!type.isAbstract) {
+      if (acceptWord("clause")) type.clause = take(TokenKind::number, "the number of a clause").text;
+      type.text = readText("what the node is");
+    }
+    while (!lexer_.peek().is(TokenKind::braceClose)) type.fields.push_back(readField(type.isAbstract));
+    take();
+  }
+
+  // field ::= access type name [ value ] [ "#" range ] { attribute }
+  FieldSpec readField(bool isAbstract) {
+    FieldSpec field;
+    const Token access = take();
+    if (!accessFromName(access.text, field.access))
+      fail(access, fmt::format("expected field, exposedField, eventIn, eventOut or }}, found {}", describe(access)));
+    const Token type = take();
+    if (!fieldTypeFromName(type.text, field.type))
+      fail(type, fmt::format("expected a field type, SFBool to MFVec3f, found {}", describe(type)));
+    readName(field.name, field.source, "the name of the field");
+    if (!isAbstract && field.hasStorage()) readValue(field);
+    readRange(field, isAbstract);
+    while (readAttribute(field)) {}
+    return field;
+  }
+
+  void readValue(FieldSpec& field) {
+    const char* const start = lexer_.peek().at();
+    field.valueSource = lexer_.place(start);
+    if (isWord(lexer_.peek()) || lexer_.peek().is(TokenKind::braceClose))
+      fail(lexer_.peek(), fmt::format("expected the default of {}, found {}", field.name, describe(lexer_.peek())));
+    lookAtComments(start);
+    if (!values_.parse(field.type, field.value)) throw Failed();
+    gap_ = lexer_.cursor();
+    field.valueText = squeeze(std::string_view(start, size_t(gap_ - start)));
+  }
+
+  // The range stands in the comment of the field's line, where the standard prints it.
+  void readRange(FieldSpec& field, bool isAbstract) {
+    const char* p = gap_;
+    while (p < lexer_.end() && (*p == ' ' || *p == '\t' || *p == ',')) ++p;
+    if (p == lexer_.end() || *p != '#') return;
+    const char* const start = ++p;
+    while (p < lexer_.end() && *p != '\n' && *p != '\r') ++p;
+    const std::string_view comment(start, size_t(p - start));
+    if (!looksLikeRange(comment)) return;
+    gap_ = p;
+    const char* const range = start + comment.find_first_not_of(" \t");
+    if (isAbstract) failAt(range, "ranges stand with the defaults, in the nodes of the abstract type");
+    if (!takesRange(field.type)) failAt(range, fmt::format("a field of type {} has no range", fieldTypeName(field.type)));
+    size_t offset = 0;
+    const bool rotation = field.type == FieldType::SFRotation || field.type == FieldType::MFRotation;
+    const std::string problem = parseRange(comment, rotation, field.range.emplace(), offset);
+    if (!problem.empty()) failAt(start + offset, problem);
+    field.rangeText = squeeze(comment);
+    while (field.rangeText.front() == ' ') field.rangeText.erase(0, 1);
+  }
+
+  static bool takesRange(FieldType type) {
+    switch (type) {
+    case FieldType::SFBool:
+    case FieldType::SFImage:
+    case FieldType::SFNode:
+    case FieldType::SFString:
+    case FieldType::MFNode:
+    case FieldType::MFString: return false;
+    default: return true;
+    }
+  }
+
+  // attribute ::= "change" kind | "accepts" name { name } | string
+  bool readAttribute(FieldSpec& field) {
+    const Token token = lexer_.peek();
+    if (token.is(TokenKind::string)) {
+      if (!field.text.empty()) fail(token, fmt::format("{} is described twice", field.name));
+      field.text = readText("what the field is");
+      return true;
+    }
+    if (token.is("change")) {
+      if (field.change) fail(token, fmt::format("{} says twice what it changes", field.name));
+      take();
+      readChange(field);
+      return true;
+    }
+    if (!token.is("accepts")) return false;
+    if (!field.accepts.empty()) fail(token, fmt::format("{} says twice what it accepts", field.name));
+    take();
+    do readName(field.accepts.emplace_back(), "a node or an abstract type");
+    while (lexer_.peek().is(TokenKind::identifier) && !isWord(lexer_.peek()));
+    return true;
+  }
+
+  void readChange(FieldSpec& field) {
+    const Token kind = take();
+    Change change;
+    if (!changeFromName(kind.text, change)) {
+      fail(kind, fmt::format("expected none, transform, geometry, appearance, shader, children, light, view or time, found {}",
+                             describe(kind)));
+    }
+    field.change = change;
+    field.changeSource = lexer_.place(kind.at());
+  }
+
+  static bool isWord(const Token& token) {
+    Access access;
+    return token.is(TokenKind::identifier) &&
+           (token.text == "change" || token.text == "accepts" || accessFromName(token.text, access));
+  }
+
+  // Names become names of C++ and Python: letters, digits and underscores.
+  void readName(std::string& name, SourcePosition& source, std::string_view what) {
+    const Token token = take(TokenKind::identifier, what);
+    for (const char c : token.text) {
+      const bool fits = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+      if (!fits) fail(token, fmt::format("expected {} of letters, digits and _, found {}", what, describe(token)));
+    }
+    name = token.text;
+    source = lexer_.place(token.at());
+  }
+  void readName(Reference& reference, std::string_view what) { readName(reference.name, reference.source, what); }
+
+  std::string readText(std::string_view what) {
+    const Token token = take(TokenKind::string, fmt::format("a string: {}", what));
+    std::string text = unescape(token.text);
+    if (text.empty()) fail(token, fmt::format("expected {}, found an empty string", what));
+    if (text.find('\n') != std::string::npos) fail(token, "a description is one line");
+    return text;
+  }
+
+  Token take() {
+    const Token token = lexer_.peek();
+    lookAtComments(token.at());
+    lexer_.next();
+    gap_ = token.at() + token.text.size();
+    if (token.is(TokenKind::braceOpen)) ++depth_;
+    if (token.is(TokenKind::braceClose)) --depth_;
+    return token;
+  }
+
+  Token take(TokenKind kind, std::string_view what) {
+    const Token token = lexer_.peek();
+    if (!token.is(kind)) fail(token, fmt::format("expected {}, found {}", what, describe(token)));
+    return take();
+  }
+
+  void expect(TokenKind kind, std::string_view what) { take(kind, what); }
+  void expectWord(std::string_view word, std::string_view what) {
+    if (!acceptWord(word)) fail(lexer_.peek(), fmt::format("expected {}: {}, found {}", word, what, describe(lexer_.peek())));
+  }
+  bool acceptWord(std::string_view word) {
+    if (!lexer_.peek().is(word)) return false;
+    take();
+    return true;
+  }
+
+  // A range in a comment that belongs to no field would be lost without a word: between two tokens there is none.
+  void lookAtComments(const char* to) {
+    for (const char* p = gap_; p < to; ++p) {
+      if (*p != '#') continue;
+      const char* const start = ++p;
+      while (p < to && *p != '\n' && *p != '\r') ++p;
+      gap_ = p;
+      if (looksLikeRange({start, size_t(p - start)})) failAt(start, "a range stands on the line of its field's default");
+    }
+    gap_ = to;
+  }
+
+  [[noreturn]] void fail(const Token& token, std::string message) {
+    if (!token.is(TokenKind::invalid)) lexer_.error(token.at(), std::move(message)); // the lexer has reported invalid ones
+    throw Failed();
+  }
+  [[noreturn]] void failAt(const char* at, std::string message) {
+    lexer_.error(at, std::move(message));
+    throw Failed();
+  }
+
+  // After an error: on behind the brace that closes the stanza, or the next one.
+  void skipStanza() {
+    const bool inside = depth_ > 0;
+    for (Token token = lexer_.peek(); !token.is(TokenKind::end); token = lexer_.peek()) {
+      lexer_.next();
+      gap_ = token.at() + token.text.size();
+      if (token.is(TokenKind::braceOpen)) ++depth_;
+      if (token.is(TokenKind::braceClose) && --depth_ <= 0) break;
+      if (!inside && depth_ == 0 && lexer_.peek().is("abstract")) break;
+    }
+    gap_ = lexer_.peek().at();
+    depth_ = 0;
+  }
+
+  const Limits limits_;
+  Lexer lexer_;
+  ValueParser values_;
+  const char* gap_; // end of what has been taken: comments from here on have not been looked at
+  int depth_ = 0;
+  Component& component_;
+};
+
+} // namespace
+
+bool readSpecification(const std::string& path, bool imported, Model& model) {
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) return false;
+  std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+  if (stream.bad()) return false;
+  const std::string& kept = model.texts[path] = std::move(text);
+  Component& component = model.components.emplace_back();
+  component.name = stem(path);
+  component.imported = imported;
+  Reader(kept, std::make_shared<const std::string>(path), model, component).read();
+  return true;
+}
+
+} // namespace xvrml::nodegen

@@ -1,0 +1,116 @@
+// write_cpp.cpp: the generated C++: a header of structs, a source of constant tables per component, and the list of types.
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "nodegen/writers.h"
+
+namespace xvrml::nodegen {
+namespace {
+
+constexpr std::string_view notice = "// Written by nodegen from the .node files: change those, not this.\n";
+
+std::string clauseText(const TypeSpec& type) {
+  return type.clause.empty() ? std::string() : fmt::format(" ISO/IEC 14772-1 clause {}.", type.clause);
+}
+
+std::string writeMember(const FieldSpec& field) {
+  const std::string initializer = cppInitializer(field.value);
+  const std::string declaration = fmt::format("{} {}{};", fieldTypeName(field.type), cppMember(field),
+                                              initializer.empty() ? std::string() : '{' + initializer + '}');
+  const std::string range = field.rangeText.empty() || !field.range->bounded() ? std::string() : ' ' + field.rangeText;
+  return fmt::format("  {} ///< {}{}: {}\n", declaration, accessName(field.access), range, field.text);
+}
+
+std::string writeStruct(const TypeSpec& type, int index) {
+  std::string text = fmt::format("/// {}{}\nstruct {} : Node {{\n", type.text, clauseText(type), type.name);
+  text += fmt::format("  static constexpr int typeIndex = {};\n  static const NodeType& nodeType();\n", index);
+  text += fmt::format("  {0}() : Node(nodeType()) {{}}\n  explicit {0}(const NodeType& t) : Node(t) {{}}\n", type.name);
+  std::string members;
+  for (const FieldSpec& field : type.fields)
+    if (field.hasStorage()) members += writeMember(field);
+  return text + (members.empty() ? "" : "\n") + members + "};\n\n";
+}
+
+std::string number(double value) {
+  if (std::isinf(value)) return value < 0 ? "-inf" : "inf";
+  return fmt::format("{}", value);
+}
+
+std::string writeRange(const std::optional<FieldRange>& range) {
+  if (!range || !range->bounded()) return "{}";
+  const std::string also = std::isnan(range->also) ? std::string() : ", " + number(range->also);
+  return fmt::format("{{{}, {}, {}, {}{}}}", number(range->minimum), number(range->maximum), range->minimumOpen,
+                     range->maximumOpen, also);
+}
+
+std::string writeRow(const TypeSpec& type, const FieldSpec& field) {
+  const std::string offset = field.hasStorage() ? fmt::format("offsetof({}, {})", type.name, cppMember(field)) : "0";
+  return fmt::format("    {{{}, FieldType::{}, Access::{}, Change::{}, {}, {}, {}, {}}},\n", cppString(field.name),
+                     fieldTypeName(field.type), accessName(field.access), changeName(*field.change), offset,
+                     writeRange(field.range), cppString(joinNames(field.accepts)), cppString(field.text));
+}
+
+std::string writeTable(const TypeSpec& type) {
+  std::string fields = "{}", rows;
+  if (!type.fields.empty()) {
+    fields = fmt::format("fieldsOf{}", type.name);
+    rows = fmt::format("constexpr FieldRow {}[] = {{\n", fields);
+    for (const FieldSpec& field : type.fields) rows += writeRow(type, field);
+    rows += "};\n";
+  }
+  rows += fmt::format("constexpr NodeRow rowOf{0} = {{{1}, {2}, {3}, {4}, {5}, {6}, createNode<{0}>}};\n\n", type.name,
+                      cppString(type.name), cppString(fmt::format("{}", fmt::join(type.roles, " "))), cppString(type.component),
+                      cppString(type.clause), cppString(type.text), fields);
+  return rows;
+}
+
+template <class Function> void eachNode(const Component& component, Function function) {
+  for (const TypeSpec& type : component.types)
+    if (!type.isAbstract) function(type);
+}
+
+template <class Function> void eachNode(const Model& model, Function function) {
+  for (const Component& component : model.components)
+    if (!component.imported) eachNode(component, function);
+}
+
+} // namespace
+
+std::string writeHeader(const Model& model) {
+  std::string text(notice);
+  text += "// A struct per node, with a member per field and exposedField. Use nodeCast<nodes::Box>(node) to get at them.\n"
+          "#pragma once\n\n#include \"xvrml/node.h\"\n\nnamespace xvrml::nodes {\n\n";
+  int index = 0;
+  eachNode(model, [&](const TypeSpec& type) { text += writeStruct(type, index++); });
+  return text + "} // namespace xvrml::nodes\n";
+}
+
+std::string writeTables(const Model&, const Component& component) {
+  std::string text(notice);
+  text += fmt::format("// {}: the constant tables of its nodes.\n", component.title);
+  text += "#include <cstddef>\n\n#include \"xvrml/node_table.h\"\n#include \"xvrml/nodes.h\"\n\n"
+          "#pragma GCC diagnostic ignored \"-Winvalid-offsetof\" // one base, not virtual: GCC and Clang define it\n\n"
+          "namespace xvrml::nodes {\nnamespace {\n\n"
+          "[[maybe_unused]] constexpr double inf = std::numeric_limits<double>::infinity();\n\n";
+  std::string functions;
+  eachNode(component, [&](const TypeSpec& type) {
+    text += writeTable(type);
+    functions +=
+        fmt::format("const NodeType& {0}::nodeType() {{\n  static const NodeType type = makeNodeType(rowOf{0}, typeIndex);\n"
+                    "  return type;\n}}\n\n",
+                    type.name);
+  });
+  return text + "} // namespace\n\n" + functions + "} // namespace xvrml::nodes\n";
+}
+
+std::string writeList(const Model& model) {
+  std::string text(notice);
+  text += "// All node types, in the order of their typeIndex.\n#include <span>\n\n#include \"xvrml/nodes.h\"\n\n"
+          "namespace xvrml::nodes {\n\nstd::span<const NodeType* const> builtinNodeTypes();\n\n"
+          "std::span<const NodeType* const> builtinNodeTypes() {\n  static const NodeType* const types[] = {\n";
+  eachNode(model, [&](const TypeSpec& type) { text += fmt::format("      &{}::nodeType(),\n", type.name); });
+  return text + "  };\n  return types;\n}\n\n} // namespace xvrml::nodes\n";
+}
+
+} // namespace xvrml::nodegen

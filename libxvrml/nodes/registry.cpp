@@ -1,0 +1,87 @@
+// registry.cpp: node types by name and by number. The tables come from generated code; later ones, of plug-ins, go the same
+// way. Types are added before they are used and never removed, so what nodeTypes() returned stays valid.  [any thread]
+#include "nodes/registry.h"
+
+#include <atomic>
+#include <mutex>
+#include <unordered_map>
+
+#include "xvrml/node_table.h"
+
+namespace xvrml {
+namespace {
+
+// Never changed once published: readers need no lock.
+struct Snapshot {
+  std::vector<const NodeType*> types;
+  std::unordered_map<std::string_view, const NodeType*> byName;
+};
+
+class Registry {
+ public:
+  static Registry& instance() {
+    static Registry& registry = *new Registry(); // never destroyed: worlds may outlive static objects
+    return registry;
+  }
+
+  const Snapshot& current() const { return *current_.load(std::memory_order_acquire); }
+
+  bool add(std::span<const NodeType* const> types) {
+    const std::scoped_lock lock(mutex_);
+    auto next = std::make_unique<Snapshot>(current());
+    for (const NodeType* type : types) {
+      if (type->index != int(next->types.size()) || !next->byName.emplace(type->name, type).second) return false;
+      next->types.push_back(type);
+    }
+    current_.store(next.get(), std::memory_order_release);
+    snapshots_.push_back(std::move(next));
+    return true;
+  }
+
+ private:
+  Registry() {
+    snapshots_.push_back(std::make_unique<Snapshot>());
+    current_ = snapshots_.back().get();
+    add(nodes::builtinNodeTypes());
+  }
+
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<const Snapshot>> snapshots_; // earlier ones are kept for those who read them
+  std::atomic<const Snapshot*> current_;
+};
+
+std::vector<std::string> splitWords(std::string_view words) {
+  std::vector<std::string> result;
+  while (!words.empty()) {
+    const size_t end = std::min(words.find(' '), words.size());
+    if (end > 0) result.emplace_back(words.substr(0, end));
+    words.remove_prefix(std::min(end + 1, words.size()));
+  }
+  return result;
+}
+
+} // namespace
+
+NodeType makeNodeType(const NodeRow& row, int index) {
+  NodeType type{row.name, index, splitWords(row.roles), row.component, row.text, {}, row.create, row.clause};
+  type.fields.reserve(row.fields.size());
+  for (const FieldRow& field : row.fields) {
+    type.fields.push_back(
+        {field.name, field.type, field.access, field.change, field.offset, {}, field.range, field.nodeTypes, field.text});
+  }
+  const std::unique_ptr<Node> fresh(row.create(type));
+  for (FieldInfo& field : type.fields) field.defaultValue = fresh->get(field);
+  return type;
+}
+
+bool addNodeTypes(std::span<const NodeType* const> types) { return Registry::instance().add(types); }
+
+std::span<const NodeType* const> nodeTypes() { return Registry::instance().current().types; }
+
+const NodeType* findNodeType(std::string_view name) {
+  const Snapshot& snapshot = Registry::instance().current();
+  const auto found = snapshot.byName.find(name);
+  return found == snapshot.byName.end() ? nullptr : found->second;
+}
+
+} // namespace xvrml
