@@ -1,0 +1,125 @@
+// atomic_file.cpp: see atomic_file.h.
+#include "picture/atomic_file.h"
+
+#include <atomic>
+#include <cerrno>
+#include <climits>
+#include <cstdlib>
+#include <cstring>
+#include <stdexcept>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace picture {
+
+namespace {
+
+char temporaryName[PATH_MAX];
+std::atomic<bool> temporaryExists{false};
+
+[[noreturn]] void fail(const std::string& path, int reason) {
+  throw std::runtime_error("cannot write " + path + ": " + std::strerror(reason));
+}
+
+std::string folderOf(const std::string& path) {
+  size_t slash = path.rfind('/');
+  if (slash == path.npos) return ".";
+  return slash == 0 ? "/" : path.substr(0, slash);
+}
+
+// A link stays a link: the file it leads to is replaced.
+std::string followLinks(const std::string& path) {
+  char* real = ::realpath(path.c_str(), nullptr);
+  if (!real) return path;
+  std::string result(real);
+  std::free(real);
+  return result;
+}
+
+void writeDirectly(const std::string& path, std::string_view bytes) {
+  int descriptor = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
+  if (descriptor < 0) fail(path, errno);
+  try {
+    writeDescriptor(descriptor, bytes, path);
+  } catch (...) {
+    ::close(descriptor);
+    throw;
+  }
+  if (::close(descriptor) != 0) fail(path, errno);
+}
+
+int makeTemporary(const std::string& path, const std::string& target, mode_t mode) {
+  const std::string base = folderOf(target) + "/.vv-" + std::to_string(::getpid()) + "-";
+  for (int i = 0; i < 1000; ++i) {
+    const std::string name = base + std::to_string(i);
+    if (name.size() >= sizeof temporaryName) fail(path, ENAMETOOLONG);
+    std::memcpy(temporaryName, name.c_str(), name.size() + 1);
+    int descriptor = ::open(temporaryName, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
+    if (descriptor >= 0) {
+      temporaryExists = true;
+      return descriptor;
+    }
+    if (errno != EEXIST) fail(path, errno);
+  }
+  fail(path, EEXIST);
+}
+
+} // namespace
+
+void writeDescriptor(int descriptor, std::string_view bytes, const std::string& name) {
+  while (!bytes.empty()) {
+    // Linux writes at most 2 GiB at once.
+    ssize_t done = ::write(descriptor, bytes.data(), std::min<size_t>(bytes.size(), 1u << 30));
+    if (done < 0 && errno == EINTR) continue;
+    if (done < 0) fail(name, errno);
+    bytes.remove_prefix(size_t(done));
+  }
+}
+
+void writeFile(const std::string& path, std::string_view bytes) {
+  const std::string target = followLinks(path);
+  struct stat info;
+  const bool exists = ::stat(target.c_str(), &info) == 0;
+  if (exists && S_ISDIR(info.st_mode)) fail(path, EISDIR);
+  if (exists && !S_ISREG(info.st_mode)) return writeDirectly(path, bytes);
+  if (exists && ::access(target.c_str(), W_OK) != 0) fail(path, errno);
+
+  int descriptor = makeTemporary(path, target, 0666);
+  if (exists) (void)!::fchmod(descriptor, info.st_mode & 0777);
+  int reason = 0;
+  try {
+    writeDescriptor(descriptor, bytes, path);
+  } catch (...) {
+    ::close(descriptor);
+    removeTemporary();
+    throw;
+  }
+  if (::close(descriptor) != 0) reason = errno;
+  if (!reason && ::rename(temporaryName, target.c_str()) != 0) reason = errno;
+  if (reason) {
+    removeTemporary();
+    fail(path, reason);
+  }
+  temporaryExists = false;
+}
+
+std::string whyNotWritable(const std::string& path) {
+  const std::string target = followLinks(path);
+  struct stat info;
+  int reason = 0;
+  if (::stat(target.c_str(), &info) == 0) {
+    if (S_ISDIR(info.st_mode)) reason = EISDIR;
+    else if (::access(target.c_str(), W_OK) != 0) reason = errno;
+    if (!reason && !S_ISREG(info.st_mode)) return "";
+  }
+  if (!reason && ::access(folderOf(target).c_str(), W_OK | X_OK) != 0) reason = errno;
+  return reason ? "cannot write " + path + ": " + std::strerror(reason) : "";
+}
+
+void removeTemporary() noexcept {
+  if (temporaryExists.exchange(false)) ::unlink(temporaryName);
+}
+
+} // namespace picture

@@ -1,0 +1,110 @@
+// picture.cpp: the table of channels, display colours, and the two formats that need no library (PPM, PFM).
+#include "picture/picture.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <stdexcept>
+
+#include "openrt/openrt.h"
+
+namespace picture {
+
+namespace {
+
+constexpr Channel table[] = {
+    {"rgba", RT_RGBA, 4, {"R", "G", "B", "A"}, "mean radiance and coverage"},
+    {"z", RT_DEPTH, 1, {"Z"}, "distance along the view axis, infinite where nothing is hit"},
+    {"normal", RT_NORMAL, 3, {"N.X", "N.Y", "N.Z"}, "mean shading normal in world space"},
+    {"albedo", RT_ALBEDO, 3, {"albedo.R", "albedo.G", "albedo.B"}, "mean surface colour"},
+    {"position", RT_POSITION, 3, {"P.X", "P.Y", "P.Z"}, "world-space position of the first hit"},
+    {"id", RT_NAME, 1, {"id"}, "number of the shape hit; the table of names is in the attribute idNames"},
+    {"samples", RT_SAMPLES, 1, {"samples"}, "samples taken"},
+    {"variance", RT_VARIANCE, 3, {"variance.R", "variance.G", "variance.B"}, "sample variance of the radiance"},
+};
+
+// The curve of IEC 61966-2-1, from linear to display values.
+float srgb(float v) { return v <= 0.0031308f ? 12.92f * v : 1.055f * std::pow(v, 1 / 2.4f) - 0.055f; }
+
+uint8_t displayByte(float v, bool linear) {
+  if (!(v > 0)) return 0; // also NaN
+  if (v >= 1) return 255;
+  return uint8_t((linear ? srgb(v) : v) * 255 + 0.5f);
+}
+
+const std::vector<float>& colours(const Picture& picture) {
+  auto found = picture.planes.find(RT_RGBA);
+  if (found == picture.planes.end()) throw std::runtime_error("the picture has no channel rgba");
+  return found->second;
+}
+
+std::string encodePpm(const Picture& picture) {
+  std::string out = "P6\n" + std::to_string(picture.width) + " " + std::to_string(picture.height) + "\n255\n";
+  std::vector<uint8_t> bytes = displayBytes(picture);
+  out.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  return out;
+}
+
+// Portable float map: rows from the bottom up; the sign of the third number says little-endian.
+std::string encodePfm(const Picture& picture) {
+  static_assert(std::endian::native == std::endian::little);
+  std::string out = "PF\n" + std::to_string(picture.width) + " " + std::to_string(picture.height) + "\n-1.0\n";
+  const std::vector<float>& rgba = colours(picture);
+  const size_t width = size_t(picture.width);
+  std::vector<float> row(width * 3);
+  for (int y = picture.height; y-- > 0;) {
+    const float* from = rgba.data() + size_t(y) * width * 4;
+    for (size_t x = 0; x < width; ++x) std::copy_n(from + 4 * x, 3, row.data() + 3 * x);
+    out.append(reinterpret_cast<const char*>(row.data()), row.size() * sizeof(float));
+  }
+  return out;
+}
+
+} // namespace
+
+std::span<const Channel> channelTable() { return table; }
+
+const Channel* findChannel(std::string_view name) {
+  for (const Channel& channel : table)
+    if (channel.name == name) return &channel;
+  return nullptr;
+}
+
+std::optional<Format> formatNamed(std::string_view name) {
+  std::string lower(name);
+  std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return c < 128 ? char(std::tolower(c)) : char(c); });
+  if (lower == "png") return Format::png;
+  if (lower == "jpg" || lower == "jpeg") return Format::jpeg;
+  if (lower == "exr") return Format::exr;
+  if (lower == "ppm") return Format::ppm;
+  if (lower == "pfm") return Format::pfm;
+  return {};
+}
+
+std::optional<Format> formatOf(std::string_view path) {
+  size_t dot = path.rfind('.');
+  if (dot == path.npos || path.find('/', dot) != path.npos) return {};
+  return formatNamed(path.substr(dot + 1));
+}
+
+std::vector<uint8_t> displayBytes(const Picture& picture) {
+  const std::vector<float>& rgba = colours(picture);
+  std::vector<uint8_t> bytes(rgba.size() / 4 * 3);
+  for (size_t i = 0; i < rgba.size() / 4; ++i)
+    for (size_t c = 0; c < 3; ++c) bytes[3 * i + c] = displayByte(rgba[4 * i + c], picture.linear);
+  return bytes;
+}
+
+std::string encode(const Picture& picture, Format format) {
+  switch (format) {
+  case Format::png: return encodePng(picture);
+  case Format::jpeg: return encodeJpeg(picture);
+  case Format::exr: return encodeExr(picture);
+  case Format::ppm: return encodePpm(picture);
+  case Format::pfm: return encodePfm(picture);
+  }
+  throw std::runtime_error("unknown picture format");
+}
+
+} // namespace picture

@@ -1,0 +1,225 @@
+// renderer.cpp: see renderer.h.
+#include "picture/renderer.h"
+
+#include <atomic>
+#include <charconv>
+#include <chrono>
+#include <condition_variable>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace picture {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+constexpr size_t keptMessages = 100;
+
+// A configuration value of rtNewContext.
+std::string quoted(const std::string& key, const std::string& value) {
+  if (value.find('"') != value.npos) throw RenderError(fmt::format("{}: a double quote is not possible in {}", key, value));
+  return fmt::format(" {}=\"{}\"", key, value);
+}
+
+std::string contextConfiguration(const RenderSettings& settings) {
+  std::string config = fmt::format("backend={} threads={}", settings.backend, settings.threads);
+  if (!settings.record.empty()) config += quoted("record", settings.record);
+  if (!settings.shaderPath.empty()) config += quoted("shaderpath", settings.shaderPath);
+  return config;
+}
+
+void throwOnError(const char* doing) {
+  if (rtGetError() != RT_NO_ERROR) throw RenderError(fmt::format("{}: {}", doing, rtGetErrorMessage()));
+}
+
+} // namespace
+
+struct Renderer::Impl {
+  xvrml::World& world;
+  const RenderSettings settings;
+  const Watch watch;
+
+  // On the render thread.
+  std::unique_ptr<xvrml::OpenRTMapper> mapper;
+  std::vector<RenderMessage> messages;
+
+  // Between the threads. `task` is set by the caller and cleared by the render thread when it is done.
+  std::mutex mutex;
+  std::condition_variable changed;
+  std::function<void()> task;
+  std::exception_ptr failure;
+  bool ending = false;
+  RTcontext context = nullptr;
+  std::atomic<bool> cancelled{false};
+  std::thread thread;
+
+  Impl(xvrml::World& w, const RenderSettings& s, Watch x) : world(w), settings(s), watch(std::move(x)) {}
+
+  static void note(RTenum error, const char* message, void* user) {
+    auto& list = static_cast<Impl*>(user)->messages;
+    if (list.size() < keptMessages) list.push_back({error, message ? message : ""});
+  }
+
+  void loop() {
+    std::unique_lock lock(mutex);
+    for (;;) {
+      changed.wait(lock, [&] { return task || ending; });
+      if (!task) break;
+      lock.unlock();
+      try {
+        task();
+      } catch (...) { failure = std::current_exception(); }
+      lock.lock();
+      task = nullptr;
+      changed.notify_all();
+    }
+    lock.unlock();
+    mapper.reset();
+    rtDeleteContext(context);
+  }
+
+  // Runs `work` on the render thread; meanwhile calls the watch.
+  void run(std::function<void()> work) {
+    std::exception_ptr stopped;
+    std::unique_lock lock(mutex);
+    failure = nullptr;
+    task = std::move(work);
+    changed.notify_all();
+    while (!changed.wait_for(lock, std::chrono::milliseconds(50), [&] { return !task; })) {
+      // Again and again: a cancellation before the frame has started would be lost.
+      if (cancelled && context) rtCancel(context);
+      if (!watch || stopped) continue;
+      const float progress = context ? rtProgress(context) : 0;
+      lock.unlock();
+      try {
+        if (watch(progress)) cancelled = true;
+      } catch (...) {
+        stopped = std::current_exception();
+        cancelled = true;
+      }
+      lock.lock();
+    }
+    if (stopped) std::rethrow_exception(stopped);
+    if (failure) std::rethrow_exception(std::exchange(failure, nullptr));
+  }
+
+  void start() {
+    const std::string config = contextConfiguration(settings);
+    RTcontext made = rtNewContext(config.c_str());
+    if (!made) {
+      rtGetError();
+      throw RenderError(fmt::format("no ray tracing context: {}", rtGetErrorMessage()));
+    }
+    {
+      std::lock_guard lock(mutex);
+      context = made;
+    }
+    rtErrorCallback(note, this);
+    xvrml::MapOptions options;
+    options.linearColor = settings.linear;
+    options.headlight = settings.headlight;
+    options.aspect = double(settings.width) / settings.height;
+    mapper = std::make_unique<xvrml::OpenRTMapper>(world, options);
+  }
+
+  void setUpFrame() {
+    rtFrameBuffer(settings.width, settings.height, settings.channels);
+    rtQuality(RT_SAMPLES_PER_PIXEL, settings.samples);
+    rtQuality(RT_MAX_DEPTH, settings.depth);
+    rtQuality(RT_SEED, settings.seed);
+    rtQuality(RT_SHADOWS, settings.shadows ? 1 : 0);
+    throwOnError("frame");
+  }
+
+  void readChannels(Picture& picture) {
+    picture.width = settings.width;
+    picture.height = settings.height;
+    picture.linear = settings.linear;
+    if (settings.channels & RT_NAME) picture.names = mapper->names();
+    for (const Channel& channel : channelTable()) {
+      if (!(settings.channels & channel.bit)) continue;
+      std::vector<float>& plane = picture.planes[channel.bit];
+      plane.resize(size_t(settings.width) * size_t(settings.height) * size_t(channel.components));
+      rtReadPixels(channel.bit, plane.data(), plane.size());
+      throwOnError("reading the picture");
+    }
+  }
+
+  void render(const View& view, RenderResult& result) {
+    auto start = Clock::now();
+    messages.clear();
+    mapper->map(chooseCamera(*mapper, view, double(settings.width) / settings.height));
+    result.messages = messages;
+    const RTenum error = rtGetError();
+    if (error == RT_OUT_OF_MEMORY) throw RenderError("out of memory while the scene was made");
+    result.mapSeconds = secondsSince(start);
+    setUpFrame();
+    start = Clock::now();
+    rtRender();
+    throwOnError("rendering");
+    result.renderSeconds = secondsSince(start);
+    result.interrupted = cancelled;
+    readChannels(result.picture);
+    result.map = mapper->stats();
+    result.stats.size = sizeof result.stats;
+    rtGetStats(&result.stats);
+  }
+};
+
+Renderer::Renderer(xvrml::World& world, const RenderSettings& settings, Watch watch)
+    : impl_(std::make_unique<Impl>(world, settings, std::move(watch))) {
+  impl_->thread = std::thread([impl = impl_.get()] { impl->loop(); });
+  try {
+    impl_->run([this] { impl_->start(); });
+  } catch (...) {
+    end();
+    throw;
+  }
+}
+
+Renderer::~Renderer() { end(); }
+
+void Renderer::end() {
+  {
+    std::lock_guard lock(impl_->mutex);
+    impl_->ending = true;
+  }
+  impl_->changed.notify_all();
+  if (impl_->thread.joinable()) impl_->thread.join();
+}
+
+const std::vector<xvrml::ViewpointInfo>& Renderer::viewpoints() const { return impl_->mapper->viewpoints(); }
+
+xvrml::Bounds Renderer::bounds() {
+  xvrml::Bounds bounds;
+  impl_->run([&] { bounds = impl_->mapper->bounds(); });
+  return bounds;
+}
+
+RenderResult Renderer::render(const View& view) {
+  if (view.viewpoint && *view.viewpoint >= viewpoints().size())
+    throw RenderError(fmt::format("there is no viewpoint {}: the world has {}", *view.viewpoint, viewpoints().size()));
+  RenderResult result{};
+  impl_->cancelled = false;
+  impl_->run([&] { impl_->render(view, result); });
+  return result;
+}
+
+int findViewpoint(const std::vector<xvrml::ViewpointInfo>& viewpoints, const std::string& name) {
+  for (size_t i = 0; i < viewpoints.size(); ++i)
+    if (!name.empty() && viewpoints[i].name == name) return int(i);
+  for (size_t i = 0; i < viewpoints.size(); ++i)
+    if (!name.empty() && viewpoints[i].description == name) return int(i);
+  size_t number = 0;
+  auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
+  if (error == std::errc() && end == name.data() + name.size() && number < viewpoints.size()) return int(number);
+  return -1;
+}
+
+} // namespace picture

@@ -1,0 +1,79 @@
+// renderer.h: renders a world to pictures. It keeps one OpenRT context and one mapper on a thread of its own, so that the
+// calling thread stays free for a progress bar, signals or Python's interrupts. Called by vv and the Python binding, by one
+// thread at a time.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "openrt/openrt.h"
+#include "picture/camera.h"
+#include "picture/picture.h"
+#include "xvrml/openrt.h"
+
+namespace picture {
+
+struct RenderSettings {
+  int width = 800, height = 600;
+  int samples = 16;
+  int depth = 25;
+  bool shadows = true;
+  int seed = 0;
+  int threads = 0; // 0: as many as the process may use
+  bool linear = true;
+  xvrml::MapOptions::Headlight headlight = xvrml::MapOptions::Headlight::automatic;
+  uint32_t channels = RT_RGBA;
+  std::string backend = "local";
+  std::string record;     // file that keeps the scene edits
+  std::string shaderPath; // folders, separated by colons
+};
+
+struct RenderError : std::runtime_error {
+  using runtime_error::runtime_error;
+};
+
+// What OpenRT complained about while the world was mapped: the picture lacks something, but there is one.
+struct RenderMessage {
+  RTenum error;
+  std::string text;
+};
+
+struct RenderResult {
+  Picture picture;
+  xvrml::MapStats map;
+  RTstats stats;
+  std::vector<RenderMessage> messages;
+  bool interrupted = false; // the picture holds what was finished until then
+  double mapSeconds = 0, renderSeconds = 0;
+};
+
+// Called on the calling thread about 20 times a second with the fraction done; true ends the picture early.
+using Watch = std::function<bool(float progress)>;
+
+class Renderer {
+ public:
+  // Throws RenderError. The world must live and stay unchanged as long as the renderer.
+  Renderer(xvrml::World& world, const RenderSettings& settings, Watch watch = {});
+  ~Renderer();
+  Renderer(const Renderer&) = delete;
+  Renderer& operator=(const Renderer&) = delete;
+
+  const std::vector<xvrml::ViewpointInfo>& viewpoints() const;
+  xvrml::Bounds bounds();
+  // Throws RenderError. An exception of the watch ends the picture and is passed on.
+  RenderResult render(const View& view);
+
+ private:
+  void end();
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+// Index of the viewpoint with this DEF name, description or number from 0; -1 if there is none.
+int findViewpoint(const std::vector<xvrml::ViewpointInfo>& viewpoints, const std::string& name);
+
+} // namespace picture

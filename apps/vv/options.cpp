@@ -1,0 +1,148 @@
+// options.cpp: reads the command line with CLI11 as the table of options says. The only file that includes CLI11.
+#include "options.h"
+
+#include <algorithm>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+namespace vv {
+
+namespace {
+
+std::string longName(const OptionInfo& option) {
+  std::string_view names = option.names;
+  return std::string(names.substr(names.find("--"), names.find(',', names.find("--")) - names.find("--")));
+}
+
+void apply(const OptionInfo& option, Options& options, const std::string& value) {
+  try {
+    option.apply(options, value);
+  } catch (const UsageError& error) { throw UsageError(longName(option) + ": " + error.what()); }
+}
+
+std::vector<std::string> allNames() {
+  std::vector<std::string> names;
+  for (const OptionInfo& option : optionTable())
+    for (std::string_view name : split(option.names, ',')) names.emplace_back(name);
+  return names;
+}
+
+std::string unknownOption(std::string option) {
+  option = option.substr(0, option.find('='));
+  const std::string near = nearest(option, allNames());
+  if (near.empty()) return fmt::format("there is no option {}; vv --help lists them", option);
+  return fmt::format("there is no option {}; did you mean {}?", option, near);
+}
+
+// The value of an option is missing only at the end of the command line.
+std::string missingValue(std::string_view last) {
+  for (const OptionInfo& option : optionTable())
+    for (std::string_view name : split(option.names, ','))
+      if (name == last) return fmt::format("{}: a value was expected: {}", last, option.argument);
+  return fmt::format("{}: a value was expected", last);
+}
+
+// What the options ask for together.
+void checkTogether(Options& options) {
+  const int views = !options.viewpoint.empty() + options.view.lookAt.has_value() + options.view.fit;
+  if (views > 1) throw UsageError("only one of --viewpoint, --camera and --fit can be used");
+  if (options.quiet && options.verbose) throw UsageError("only one of --quiet and --verbose can be used");
+  int toStandardOutput = (options.stats == "-") + (options.write == "-");
+  for (const Output& output : options.outputs) toStandardOutput += output.path == "-";
+  toStandardOutput += options.info || options.listNodes || options.listViewpoints;
+  if (toStandardOutput > 1) throw UsageError("only one thing can go to standard output");
+  if (options.json && !options.info && !options.listNodes && !options.listViewpoints)
+    throw UsageError("--json goes with --info, --list-nodes or --list-viewpoints");
+  if (options.info + options.listNodes + options.listViewpoints > 1)
+    throw UsageError("only one of --info, --list-nodes and --list-viewpoints can be used");
+  if (options.stats.size() && !options.makesPictures()) throw UsageError("--stats goes with -o");
+  if (options.render.record.size() && !options.makesPictures()) throw UsageError("--record goes with -o");
+  if (options.render.record.size() && options.allViewpoints()) throw UsageError("--record keeps one picture's scene: not with --viewpoint all");
+  if (options.check && options.makesPictures()) throw UsageError("--check makes no picture: not with -o");
+  if (options.makesPictures() && options.allViewpoints())
+    for (const Output& output : options.outputs)
+      if (output.path == "-") throw UsageError("--viewpoint all needs file names, not standard output");
+  const bool needsWorld = !options.listNodes && !options.help && !options.version;
+  if (needsWorld && options.input.empty()) throw UsageError("a world (a .wrl file, or - for standard input) was expected; vv --help tells more");
+}
+
+} // namespace
+
+Options readCommandLine(int argc, char** argv) {
+  Options options;
+  CLI::App app;
+  app.set_help_flag();
+  app.allow_extras();
+  std::vector<std::string> inputs;
+  app.add_option("FILE", inputs);
+  std::vector<std::vector<std::string>> values(optionTable().size());
+  std::vector<CLI::Option*> added;
+  for (const OptionInfo& option : optionTable()) {
+    CLI::Option* one = *option.argument ? app.add_option(option.names, values[added.size()])->allow_extra_args(false)
+                                        : app.add_flag(option.names);
+    added.push_back(one);
+  }
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ArgumentMismatch&) { throw UsageError(missingValue(argv[argc - 1]));
+  } catch (const CLI::ParseError& error) { throw UsageError(error.what()); }
+  for (const std::string& extra : app.remaining())
+    if (extra.size() > 1 && extra[0] == '-') throw UsageError(unknownOption(extra));
+  if (inputs.size() > 1) throw UsageError(fmt::format("one world at a time: \"{}\" is one too many", inputs[1]));
+  if (!app.remaining().empty()) throw UsageError(fmt::format("\"{}\" was not expected", app.remaining()[0]));
+  if (!inputs.empty()) options.input = inputs[0];
+  for (size_t i = 0; i < added.size(); ++i) {
+    const OptionInfo& option = optionTable()[i];
+    if (added[i]->count() == 0) continue;
+    if (!*option.argument) apply(option, options, "");
+    // Of an option that holds one value the last counts.
+    const size_t first = option.repeatable || values[i].empty() ? 0 : values[i].size() - 1;
+    for (size_t k = first; k < values[i].size(); ++k) apply(option, options, values[i][k]);
+  }
+  checkTogether(options);
+  return options;
+}
+
+namespace {
+
+// `text` in lines of at most `width`, each but the first after `indent` blanks.
+std::string wrapped(std::string_view text, size_t indent, size_t width) {
+  std::string out;
+  size_t column = 0;
+  for (std::string_view word : split(text, ' ')) {
+    if (column && column + 1 + word.size() > width) {
+      out += "\n" + std::string(indent, ' ');
+      column = 0;
+    }
+    if (column) out += ' ', ++column;
+    out += word;
+    column += word.size();
+  }
+  return out;
+}
+
+} // namespace
+
+std::string helpText() {
+  constexpr size_t indent = 26, width = 100;
+  std::string out = "vv: renders VRML97 worlds.\n\n"
+                    "  vv world.wrl -o picture.png     first viewpoint, or the whole world in view; shadows; 16 samples a pixel\n"
+                    "  vv world.wrl --check            say what is wrong with the world\n\n"
+                    "FILE is .wrl, .wrz or .wrl.gz; - is standard input.\n";
+  const char* group = "";
+  for (const OptionInfo& option : optionTable()) {
+    if (std::string_view(group) != option.group) out += fmt::format("\n{}\n", group = option.group);
+    std::string head = "  ";
+    for (std::string_view name : split(option.names, ',')) head += fmt::format("{}{}", head.size() > 2 ? ", " : "", name);
+    if (*option.argument) head += fmt::format(" {}", option.argument);
+    out += head;
+    out += head.size() + 1 < indent ? std::string(indent - head.size(), ' ') : "\n" + std::string(indent, ' ');
+    out += wrapped(option.text, indent, width - indent) + "\n";
+  }
+  return out + "\nExit codes: 0 done, 1 the picture failed, 2 usage, 3 the world is missing or unusable, 4 problems found by --check or\n"
+               "--strict, 5 a plug-in or a texture is missing under --strict, 75 try again, 130 interrupted (what was finished is saved;\n"
+               "a second interrupt ends at once; SIGUSR1 saves and goes on).\n";
+}
+
+} // namespace vv

@@ -1,0 +1,54 @@
+// options.h: what the command line asks for, and the one table of options that reads it and writes --help.
+// Called by main() once. [one thread]
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "picture/renderer.h"
+#include "values.h"
+#include "xvrml/world.h"
+
+namespace vv {
+
+struct Output {
+  std::string path; // "-": standard output
+  picture::Format format;
+};
+
+struct Options {
+  std::string input; // "-": standard input; empty: none given
+  std::vector<Output> outputs;
+  picture::RenderSettings render;
+  picture::View view;
+  std::string viewpoint; // as asked for: a name, a number or "all"
+  bool check = false, strict = false;
+  bool info = false, listNodes = false, listViewpoints = false, json = false;
+  std::string write, stats;
+  xvrml::LoadOptions load;
+  bool quiet = false, verbose = false;
+  bool help = false, version = false;
+
+  bool allViewpoints() const { return viewpoint == "all"; }
+  bool makesPictures() const { return !outputs.empty(); }
+};
+
+// A row of the table. `argument` is empty for a switch. `apply` throws UsageError.
+struct OptionInfo {
+  const char* names; // "-o,--output"
+  const char* argument;
+  const char* group;
+  const char* text;
+  void (*apply)(Options& options, const std::string& value);
+  bool repeatable = false;
+};
+std::span<const OptionInfo> optionTable();
+
+// Throws UsageError with one line that names the option and what was expected.
+Options readCommandLine(int argc, char** argv);
+
+std::string helpText();
+
+} // namespace vv

@@ -1,0 +1,28 @@
+// progress.h: how far a picture is: a bar on a terminal, elsewhere a line every few seconds. [main thread]
+#pragma once
+
+#include <chrono>
+#include <string>
+
+namespace vv {
+
+class Progress {
+ public:
+  // what: shown in front, e.g. the viewpoint; quiet: nothing at all.
+  Progress(std::string what, bool quiet);
+  ~Progress();
+  void show(float fraction);
+
+ private:
+  void clear();
+
+  std::string what_;
+  bool quiet_, terminal_, colour_;
+  bool shown_ = false;
+  std::chrono::steady_clock::time_point start_, next_;
+};
+
+// 83.4 -> "1:23", 7.25 -> "7.2 s"
+std::string duration(double seconds);
+
+} // namespace vv

@@ -1,0 +1,26 @@
+// report.h: what vv tells about a world and about a picture it made, for people and as JSON. [main thread]
+#pragma once
+
+#include <string>
+
+#include "options.h"
+#include "picture/renderer.h"
+#include "xvrml/world.h"
+
+namespace vv {
+
+struct RunTimes {
+  double write = 0, total = 0; // seconds
+};
+
+// The statistics of a picture as JSON, schema 1.
+std::string statsJson(const Options& options, const std::string& commandLine, const xvrml::World& world,
+                      const picture::RenderResult& result, const RunTimes& times);
+
+// world may be null: the node types alone.
+std::string listNodes(const xvrml::World* world, bool json);
+std::string listViewpoints(const std::vector<xvrml::ViewpointInfo>& viewpoints, bool json);
+std::string describeWorld(const xvrml::World& world, const std::vector<xvrml::ViewpointInfo>& viewpoints, const xvrml::Bounds& bounds,
+                          bool json);
+
+} // namespace vv

@@ -1,0 +1,16 @@
+// signals.h: SIGINT and SIGTERM end a picture early and keep what there is, a second one ends at once; SIGUSR1 asks for a copy
+// of the picture so far. Installed by main(); the handlers only set flags.
+#pragma once
+
+namespace vv {
+
+void installSignals();
+
+// While `on`, the first SIGINT is noted for interrupted(); otherwise it ends the process with exit code 130 at once.
+void deferInterrupt(bool on);
+bool interrupted();
+
+// True once for each SIGUSR1.
+bool takeSaveRequest();
+
+} // namespace vv

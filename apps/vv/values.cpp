@@ -1,0 +1,133 @@
+// values.cpp: see values.h.
+#include "values.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include <fmt/format.h>
+
+namespace vv {
+
+namespace {
+
+// The whole text as a number; no blanks, no sign `+`, no locale.
+template <class T> bool whole(std::string_view text, T& value) {
+  auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && end == text.data() + text.size() && !text.empty();
+}
+
+size_t editDistance(std::string_view a, std::string_view b) {
+  std::vector<size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), size_t(0));
+  for (size_t i = 0; i < a.size(); ++i) {
+    size_t diagonal = row[0];
+    row[0] = i + 1;
+    for (size_t j = 0; j < b.size(); ++j) {
+      const size_t change = diagonal + (a[i] != b[j]);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({change, row[j] + 1, row[j + 1] + 1});
+    }
+  }
+  return row.back();
+}
+
+void readTriple(std::string_view text, double out[3]) {
+  std::vector<std::string_view> parts = split(text, ',');
+  if (parts.size() != 3) throw UsageError("");
+  for (size_t i = 0; i < 3; ++i)
+    if (!whole(parts[i], out[i]) || !(std::abs(out[i]) < 1e30)) throw UsageError("");
+}
+
+} // namespace
+
+std::vector<std::string_view> split(std::string_view text, char separator) {
+  std::vector<std::string_view> parts;
+  for (size_t start = 0;;) {
+    size_t end = text.find(separator, start);
+    parts.push_back(text.substr(start, end - start));
+    if (end == text.npos) return parts;
+    start = end + 1;
+  }
+}
+
+long long readInteger(std::string_view text, long long minimum, long long maximum) {
+  long long value = 0;
+  if (!whole(text, value) || value < minimum || value > maximum)
+    throw UsageError(fmt::format("a whole number from {} to {} was expected, not \"{}\"", minimum, maximum, text));
+  return value;
+}
+
+double readNumber(std::string_view text, double minimum, double maximum) {
+  double value = 0;
+  if (!whole(text, value) || !(value > minimum && value < maximum))
+    throw UsageError(fmt::format("a number between {} and {} was expected, not \"{}\"", minimum, maximum, text));
+  return value;
+}
+
+uint64_t readCount(std::string_view text) {
+  int shift = 0;
+  std::string_view digits = text;
+  if (!digits.empty()) {
+    switch (digits.back()) {
+    case 'k': shift = 10; break;
+    case 'M': shift = 20; break;
+    case 'G': shift = 30; break;
+    default: break;
+    }
+    if (shift) digits.remove_suffix(1);
+  }
+  uint64_t value = 0;
+  if (!whole(digits, value) || value > (std::numeric_limits<uint64_t>::max() >> shift))
+    throw UsageError(fmt::format("a count was expected (digits, then k, M or G if wanted), not \"{}\"", text));
+  return value << shift;
+}
+
+bool readSwitch(std::string_view text) {
+  if (text == "on") return true;
+  if (text == "off") return false;
+  throw UsageError(fmt::format("on or off was expected, not \"{}\"", text));
+}
+
+void readSize(std::string_view text, int& width, int& height) {
+  std::vector<std::string_view> parts = split(text, 'x');
+  int w = 0, h = 0;
+  const bool read = parts.size() == 2 && whole(parts[0], w) && whole(parts[1], h);
+  if (!read || w < 1 || h < 1 || w > 65536 || h > 65536 || int64_t(w) * h > (int64_t(1) << 28))
+    throw UsageError(fmt::format("a size such as 640x480 was expected (each side 1 to 65536, at most 2^28 pixels), not \"{}\"", text));
+  width = w;
+  height = h;
+}
+
+picture::LookAt readCamera(std::string_view text) {
+  picture::LookAt camera;
+  double matrix[16];
+  try {
+    std::vector<std::string_view> parts = split(text, ':');
+    if (parts.size() != 2 && parts.size() != 3) throw UsageError("");
+    readTriple(parts[0], camera.position);
+    readTriple(parts[1], camera.target);
+    if (parts.size() == 3) readTriple(parts[2], camera.up);
+  } catch (const UsageError&) {
+    throw UsageError(fmt::format("position, target and, if wanted, up vector as px,py,pz:tx,ty,tz:ux,uy,uz were expected, not \"{}\"", text));
+  }
+  if (!picture::lookAtMatrix(camera, matrix)) throw UsageError("position and target are the same point");
+  return camera;
+}
+
+std::string nearest(std::string_view word, const std::vector<std::string>& words) {
+  std::string best;
+  size_t least = std::max<size_t>(2, word.size() / 3) + 1;
+  for (const std::string& candidate : words) {
+    size_t distance = editDistance(word, candidate);
+    if (distance < least) {
+      least = distance;
+      best = candidate;
+    }
+  }
+  return best;
+}
+
+} // namespace vv
