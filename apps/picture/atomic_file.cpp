@@ -110,8 +110,10 @@ std::string whyNotWritable(const std::string& path) {
   struct stat info;
   int reason = 0;
   if (::stat(target.c_str(), &info) == 0) {
-    if (S_ISDIR(info.st_mode)) reason = EISDIR;
-    else if (::access(target.c_str(), W_OK) != 0) reason = errno;
+    if (S_ISDIR(info.st_mode))
+      reason = EISDIR;
+    else if (::access(target.c_str(), W_OK) != 0)
+      reason = errno;
     if (!reason && !S_ISREG(info.st_mode)) return "";
   }
   if (!reason && ::access(folderOf(target).c_str(), W_OK | X_OK) != 0) reason = errno;

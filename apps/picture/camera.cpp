@@ -42,7 +42,9 @@ bool lookAtMatrix(const LookAt& view, double matrix[16]) {
   return true;
 }
 
-double verticalAngle(double smaller, double aspect) { return aspect >= 1 ? smaller : 2 * std::atan(std::tan(smaller / 2) / aspect); }
+double verticalAngle(double smaller, double aspect) {
+  return aspect >= 1 ? smaller : 2 * std::atan(std::tan(smaller / 2) / aspect);
+}
 
 xvrml::CameraSettings chooseCamera(const xvrml::OpenRTMapper& mapper, const View& view, double aspect) {
   constexpr double radians = std::numbers::pi / 180;
@@ -52,8 +54,8 @@ xvrml::CameraSettings chooseCamera(const xvrml::OpenRTMapper& mapper, const View
   if (view.lookAt) {
     lookAtMatrix(*view.lookAt, camera.matrix);
     camera.fovy = fovy;
-  } else if (view.viewpoint || (!view.fit && !mapper.viewpoints().empty())) {
-    camera = mapper.viewpointCamera(view.viewpoint.value_or(0));
+  } else if (view.viewpoint || (!view.fit && mapper.boundViewpoint() >= 0)) {
+    camera = mapper.viewpointCamera(view.viewpoint.value_or(size_t(std::max(0, mapper.boundViewpoint()))));
     if (view.fov) camera.fovy = fovy;
   } else {
     camera = mapper.fitCamera(fovy);

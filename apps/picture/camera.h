@@ -19,7 +19,7 @@ struct View {
   std::optional<size_t> viewpoint; // index into OpenRTMapper::viewpoints()
   std::optional<LookAt> lookAt;
   bool fit = false;
-  std::optional<double> fov;       // degrees; the smaller of the two angles of view, as a Viewpoint's fieldOfView
+  std::optional<double> fov; // degrees; the smaller of the two angles of view, as a Viewpoint's fieldOfView
 };
 
 // False where position and target coincide; an up vector along the view is replaced by one across it.

@@ -56,7 +56,8 @@ std::string nameTable(const std::vector<std::string>& names) {
 Imf::Header makeHeader(const Picture& picture) {
   Imf::Header header(picture.width, picture.height);
   header.compression() = Imf::ZIP_COMPRESSION;
-  header.insert("software", Imf::StringAttribute(fmt::format("vv {}.{}.{}", OPENRT_VERSION_MAJOR, OPENRT_VERSION_MINOR, OPENRT_VERSION_PATCH)));
+  header.insert("software", Imf::StringAttribute(
+                                fmt::format("vv {}.{}.{}", OPENRT_VERSION_MAJOR, OPENRT_VERSION_MINOR, OPENRT_VERSION_PATCH)));
   header.insert("colour", Imf::StringAttribute(picture.linear ? "linear" : "vrml97"));
   if (picture.linear) Imf::addChromaticities(header, Imf::Chromaticities()); // Rec. 709
   if (picture.planes.count(RT_NAME)) header.insert("idNames", Imf::StringAttribute(nameTable(picture.names)));

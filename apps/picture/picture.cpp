@@ -73,7 +73,8 @@ const Channel* findChannel(std::string_view name) {
 
 std::optional<Format> formatNamed(std::string_view name) {
   std::string lower(name);
-  std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return c < 128 ? char(std::tolower(c)) : char(c); });
+  std::transform(lower.begin(), lower.end(), lower.begin(),
+                 [](unsigned char c) { return c < 128 ? char(std::tolower(c)) : char(c); });
   if (lower == "png") return Format::png;
   if (lower == "jpg" || lower == "jpeg") return Format::jpeg;
   if (lower == "exr") return Format::exr;

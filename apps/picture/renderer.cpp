@@ -7,6 +7,7 @@
 #include <condition_variable>
 #include <exception>
 #include <mutex>
+#include <new>
 #include <thread>
 #include <utility>
 
@@ -18,8 +19,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
-
-constexpr size_t keptMessages = 100;
 
 // A configuration value of rtNewContext.
 std::string quoted(const std::string& key, const std::string& value) {
@@ -47,7 +46,7 @@ struct Renderer::Impl {
 
   // On the render thread.
   std::unique_ptr<xvrml::OpenRTMapper> mapper;
-  std::vector<RenderMessage> messages;
+  bool pluginMissing = false, memoryExhausted = false;
 
   // Between the threads. `task` is set by the caller and cleared by the render thread when it is done.
   std::mutex mutex;
@@ -61,9 +60,11 @@ struct Renderer::Impl {
 
   Impl(xvrml::World& w, const RenderSettings& s, Watch x) : world(w), settings(s), watch(std::move(x)) {}
 
-  static void note(RTenum error, const char* message, void* user) {
-    auto& list = static_cast<Impl*>(user)->messages;
-    if (list.size() < keptMessages) list.push_back({error, message ? message : ""});
+  // Errors of calls become diagnostics in the mapper; here only what the exit code depends on.
+  static void note(RTenum error, const char*, void* user) {
+    auto& impl = *static_cast<Impl*>(user);
+    impl.pluginMissing |= error == RT_PLUGIN_ERROR;
+    impl.memoryExhausted |= error == RT_OUT_OF_MEMORY;
   }
 
   void loop() {
@@ -151,13 +152,14 @@ struct Renderer::Impl {
     }
   }
 
+  void prepare(const View& view) {
+    mapper->map(chooseCamera(*mapper, view, double(settings.width) / settings.height));
+    if (memoryExhausted) throw std::bad_alloc();
+  }
+
   void render(const View& view, RenderResult& result) {
     auto start = Clock::now();
-    messages.clear();
-    mapper->map(chooseCamera(*mapper, view, double(settings.width) / settings.height));
-    result.messages = messages;
-    const RTenum error = rtGetError();
-    if (error == RT_OUT_OF_MEMORY) throw RenderError("out of memory while the scene was made");
+    prepare(view);
     result.mapSeconds = secondsSince(start);
     setUpFrame();
     start = Clock::now();
@@ -167,6 +169,7 @@ struct Renderer::Impl {
     result.interrupted = cancelled;
     readChannels(result.picture);
     result.map = mapper->stats();
+    result.missing = pluginMissing || result.map.missingTextures > 0;
     result.stats.size = sizeof result.stats;
     rtGetStats(&result.stats);
   }
@@ -200,6 +203,10 @@ xvrml::Bounds Renderer::bounds() {
   xvrml::Bounds bounds;
   impl_->run([&] { bounds = impl_->mapper->bounds(); });
   return bounds;
+}
+
+void Renderer::prepare(const View& view) {
+  impl_->run([&] { impl_->prepare(view); });
 }
 
 RenderResult Renderer::render(const View& view) {

@@ -36,17 +36,11 @@ struct RenderError : std::runtime_error {
   using runtime_error::runtime_error;
 };
 
-// What OpenRT complained about while the world was mapped: the picture lacks something, but there is one.
-struct RenderMessage {
-  RTenum error;
-  std::string text;
-};
-
 struct RenderResult {
   Picture picture;
   xvrml::MapStats map;
   RTstats stats;
-  std::vector<RenderMessage> messages;
+  bool missing = false;     // a shader plug-in or a texture could not be found; the world's diagnostics say which
   bool interrupted = false; // the picture holds what was finished until then
   double mapSeconds = 0, renderSeconds = 0;
 };
@@ -64,6 +58,8 @@ class Renderer {
 
   const std::vector<xvrml::ViewpointInfo>& viewpoints() const;
   xvrml::Bounds bounds();
+  // Maps the world for a view without making a picture; problems are in the world's diagnostics.
+  void prepare(const View& view);
   // Throws RenderError. An exception of the watch ends the picture and is passed on.
   RenderResult render(const View& view);
 

@@ -48,7 +48,8 @@ void sayDiagnostics(const xvrml::Diagnostics& diagnostics, size_t limit, bool qu
     ++said;
   }
   left += diagnostics.dropped();
-  if (left) say(fmt::format("vv: and {} more (errors: {}, warnings: {} in all)", left, diagnostics.errors(), diagnostics.warnings()));
+  if (left)
+    say(fmt::format("vv: and {} more (errors: {}, warnings: {} in all)", left, diagnostics.errors(), diagnostics.warnings()));
 }
 
 void writeOut(const std::string& text) {

@@ -15,7 +15,9 @@ void addOutput(Options& o, const std::string& value) {
     if (auto format = picture::formatNamed(value.substr(0, value.size() - 2))) return o.outputs.push_back({"-", *format});
   }
   auto format = picture::formatOf(value);
-  if (!format) throw UsageError(fmt::format("a file name with one of the suffixes {} was expected, not \"{}\"", picture::formatNames, value));
+  if (!format)
+    throw UsageError(
+        fmt::format("a file name with one of the suffixes {} was expected, not \"{}\"", picture::formatNames, value));
   o.outputs.push_back({value, *format});
 }
 
@@ -58,7 +60,8 @@ void setLimit(Options& o, const std::string& value) {
   const uint64_t count = readCount(std::string_view(value).substr(equals + 1));
   if (xvrml::setLimit(o.load.limits, name, count)) return;
   const std::string near = nearest(name, names);
-  throw UsageError(fmt::format("there is no limit \"{}\"{}; the limits are {}", name, near.empty() ? "" : fmt::format(" (did you mean {}?)", near), known));
+  throw UsageError(fmt::format("there is no limit \"{}\"{}; the limits are {}", name,
+                               near.empty() ? "" : fmt::format(" (did you mean {}?)", near), known));
 }
 
 void notEmpty(const std::string& value, const char* what) {
@@ -66,13 +69,25 @@ void notEmpty(const std::string& value, const char* what) {
 }
 
 const OptionInfo table[] = {
-    {"-o,--output", "FILE", "Picture", "Picture to write; the format is that of the suffix (exr, png, jpg, ppm, pfm). - is standard output (PNG; exr:- and so on for another format). May be given several times.", addOutput, true},
+    {"-o,--output", "FILE", "Picture",
+     "Picture to write; the format is that of the suffix (exr, png, jpg, ppm, pfm). - is standard output (PNG; exr:- and so on "
+     "for another format). May be given several times.",
+     addOutput, true},
     {"--size", "WxH", "Picture", "Size in pixels (default 800x600).",
      [](Options& o, const std::string& v) { readSize(v, o.render.width, o.render.height); }},
-    {"--channels", "LIST", "Picture", "Channels of an EXR file, out of rgba, z, normal, albedo, position, id, samples, variance (default rgba).", setChannels},
-    {"--colour,--color", "linear|vrml97", "Picture", "linear (default): colours of the file are decoded from sRGB, light adds up linearly, PNG, JPEG and PPM get the sRGB curve. vrml97: the standard's equation on the numbers as written, no curve anywhere.", setColour},
-    {"--viewpoint", "NAME|N|all", "View", "Look from this viewpoint: DEF name, description or number from 0 (default: the first). all: a picture each; {viewpoint} in the file name, or else a suffix, tells them apart.",
-     [](Options& o, const std::string& v) { notEmpty(v, "a name, a number or all"); o.viewpoint = v; }},
+    {"--channels", "LIST", "Picture",
+     "Channels of an EXR file, out of rgba, z, normal, albedo, position, id, samples, variance (default rgba).", setChannels},
+    {"--colour,--color", "linear|vrml97", "Picture",
+     "linear (default): colours of the file are decoded from sRGB, light adds up linearly, PNG, JPEG and PPM get the sRGB curve. "
+     "vrml97: the standard's equation on the numbers as written, no curve anywhere.",
+     setColour},
+    {"--viewpoint", "NAME|N|all", "View",
+     "Look from this viewpoint: DEF name, description or number from 0 (default: the first). all: a picture each; {viewpoint} in "
+     "the file name, or else a suffix, tells them apart.",
+     [](Options& o, const std::string& v) {
+       notEmpty(v, "a name, a number or all");
+       o.viewpoint = v;
+     }},
     {"--camera", "PX,PY,PZ:TX,TY,TZ[:UX,UY,UZ]", "View", "Look from a position at a target, with this up vector (default 0,1,0).",
      [](Options& o, const std::string& v) { o.view.lookAt = readCamera(v); }},
     {"--fit", "", "View", "Place the camera so that the whole world is seen (default in a world without Viewpoint).",
@@ -88,28 +103,44 @@ const OptionInfo table[] = {
      [](Options& o, const std::string& v) { o.render.shadows = readSwitch(v); }},
     {"--seed", "N", "Quality", "Another set of sample positions (default 0).",
      [](Options& o, const std::string& v) { o.render.seed = int(readInteger(v, 0, 2147483647)); }},
-    {"--threads", "N", "Quality", "Render threads; 0 (default): as many as the process may use. The picture does not depend on it.",
+    {"--threads", "N", "Quality",
+     "Render threads; 0 (default): as many as the process may use. The picture does not depend on it.",
      [](Options& o, const std::string& v) { o.render.threads = int(readInteger(v, 0, 1024)); }},
     {"--check", "", "Inspect", "Read the world, report every problem, make no picture; exit code 4 if there is any.",
      [](Options& o, const std::string&) { o.check = true; }},
-    {"--strict", "", "Inspect", "Any problem of the world ends the program: exit code 4, or 5 for a plug-in or a texture that is missing.",
+    {"--strict", "", "Inspect",
+     "Any problem of the world ends the program: exit code 4, or 5 for a plug-in or a texture that is missing.",
      [](Options& o, const std::string&) { o.strict = true; }},
     {"--info", "", "Inspect", "Say what the world holds.", [](Options& o, const std::string&) { o.info = true; }},
     {"--list-nodes", "", "Inspect", "List the node types with their fields; with a FILE also the prototypes it declares.",
      [](Options& o, const std::string&) { o.listNodes = true; }},
-    {"--list-viewpoints", "", "Inspect", "List the viewpoints of the world.", [](Options& o, const std::string&) { o.listViewpoints = true; }},
+    {"--list-viewpoints", "", "Inspect", "List the viewpoints of the world.",
+     [](Options& o, const std::string&) { o.listViewpoints = true; }},
     {"--json", "", "Inspect", "--info and the lists as JSON.", [](Options& o, const std::string&) { o.json = true; }},
     {"--stats", "FILE", "Inspect", "Write statistics as JSON; - is standard output.",
-     [](Options& o, const std::string& v) { notEmpty(v, "a file name"); o.stats = v; }},
+     [](Options& o, const std::string& v) {
+       notEmpty(v, "a file name");
+       o.stats = v;
+     }},
     {"--write", "FILE", "Write", "Write the world as VRML97; - is standard output.",
-     [](Options& o, const std::string& v) { notEmpty(v, "a file name"); o.write = v; }},
+     [](Options& o, const std::string& v) {
+       notEmpty(v, "a file name");
+       o.write = v;
+     }},
     {"--record", "FILE", "Write", "Keep the scene as OpenRT edits, for openrt-replay.",
-     [](Options& o, const std::string& v) { notEmpty(v, "a file name"); o.render.record = v; }},
-    {"--limit", "NAME=VALUE", "Trust", "Raise or lower a limit on what a world may cost; a wrong name lists them. May be given several times.", setLimit, true},
+     [](Options& o, const std::string& v) {
+       notEmpty(v, "a file name");
+       o.render.record = v;
+     }},
+    {"--limit", "NAME=VALUE", "Trust",
+     "Raise or lower a limit on what a world may cost; a wrong name lists them. May be given several times.", setLimit, true},
     {"--allow-absolute", "", "Trust", "Follow absolute paths and file: URLs named inside a world.",
      [](Options& o, const std::string&) { o.load.allowAbsolute = true; }},
     {"--shader-path", "DIR[:DIR...]", "Trust", "Folders where shader plug-ins are looked up first.",
-     [](Options& o, const std::string& v) { notEmpty(v, "a folder"); o.render.shaderPath = v; }},
+     [](Options& o, const std::string& v) {
+       notEmpty(v, "a folder");
+       o.render.shaderPath = v;
+     }},
     {"-q,--quiet", "", "Talk", "Errors only.", [](Options& o, const std::string&) { o.quiet = true; }},
     {"-v,--verbose", "", "Talk", "Every warning, and times.", [](Options& o, const std::string&) { o.verbose = true; }},
     {"--version", "", "Talk", "The version.", [](Options& o, const std::string&) { o.version = true; }},

@@ -58,13 +58,15 @@ void checkTogether(Options& options) {
     throw UsageError("only one of --info, --list-nodes and --list-viewpoints can be used");
   if (options.stats.size() && !options.makesPictures()) throw UsageError("--stats goes with -o");
   if (options.render.record.size() && !options.makesPictures()) throw UsageError("--record goes with -o");
-  if (options.render.record.size() && options.allViewpoints()) throw UsageError("--record keeps one picture's scene: not with --viewpoint all");
+  if (options.render.record.size() && options.allViewpoints())
+    throw UsageError("--record keeps one picture's scene: not with --viewpoint all");
   if (options.check && options.makesPictures()) throw UsageError("--check makes no picture: not with -o");
   if (options.makesPictures() && options.allViewpoints())
     for (const Output& output : options.outputs)
       if (output.path == "-") throw UsageError("--viewpoint all needs file names, not standard output");
   const bool needsWorld = !options.listNodes && !options.help && !options.version;
-  if (needsWorld && options.input.empty()) throw UsageError("a world (a .wrl file, or - for standard input) was expected; vv --help tells more");
+  if (needsWorld && options.input.empty())
+    throw UsageError("a world (a .wrl file, or - for standard input) was expected; vv --help tells more");
 }
 
 } // namespace
@@ -85,7 +87,8 @@ Options readCommandLine(int argc, char** argv) {
   }
   try {
     app.parse(argc, argv);
-  } catch (const CLI::ArgumentMismatch&) { throw UsageError(missingValue(argv[argc - 1]));
+  } catch (const CLI::ArgumentMismatch&) {
+    throw UsageError(missingValue(argv[argc - 1]));
   } catch (const CLI::ParseError& error) { throw UsageError(error.what()); }
   for (const std::string& extra : app.remaining())
     if (extra.size() > 1 && extra[0] == '-') throw UsageError(unknownOption(extra));
@@ -140,8 +143,10 @@ std::string helpText() {
     out += head.size() + 1 < indent ? std::string(indent - head.size(), ' ') : "\n" + std::string(indent, ' ');
     out += wrapped(option.text, indent, width - indent) + "\n";
   }
-  return out + "\nExit codes: 0 done, 1 the picture failed, 2 usage, 3 the world is missing or unusable, 4 problems found by --check or\n"
-               "--strict, 5 a plug-in or a texture is missing under --strict, 75 try again, 130 interrupted (what was finished is saved;\n"
+  return out + "\nExit codes: 0 done, 1 the picture failed, 2 usage, 3 the world is missing or unusable, 4 problems found by "
+               "--check or\n"
+               "--strict, 5 a plug-in or a texture is missing under --strict, 75 try again, 130 interrupted (what was finished "
+               "is saved;\n"
                "a second interrupt ends at once; SIGUSR1 saves and goes on).\n";
 }
 

@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "picture/atomic_file.h"
 #include "messages.h"
+#include "picture/atomic_file.h"
 
 namespace vv {
 

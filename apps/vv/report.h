@@ -20,7 +20,7 @@ std::string statsJson(const Options& options, const std::string& commandLine, co
 // world may be null: the node types alone.
 std::string listNodes(const xvrml::World* world, bool json);
 std::string listViewpoints(const std::vector<xvrml::ViewpointInfo>& viewpoints, bool json);
-std::string describeWorld(const xvrml::World& world, const std::vector<xvrml::ViewpointInfo>& viewpoints, const xvrml::Bounds& bounds,
-                          bool json);
+std::string describeWorld(const xvrml::World& world, const std::vector<xvrml::ViewpointInfo>& viewpoints,
+                          const xvrml::Bounds& bounds, bool json);
 
 } // namespace vv

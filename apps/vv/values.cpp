@@ -96,7 +96,8 @@ void readSize(std::string_view text, int& width, int& height) {
   int w = 0, h = 0;
   const bool read = parts.size() == 2 && whole(parts[0], w) && whole(parts[1], h);
   if (!read || w < 1 || h < 1 || w > 65536 || h > 65536 || int64_t(w) * h > (int64_t(1) << 28))
-    throw UsageError(fmt::format("a size such as 640x480 was expected (each side 1 to 65536, at most 2^28 pixels), not \"{}\"", text));
+    throw UsageError(
+        fmt::format("a size such as 640x480 was expected (each side 1 to 65536, at most 2^28 pixels), not \"{}\"", text));
   width = w;
   height = h;
 }
@@ -111,7 +112,8 @@ picture::LookAt readCamera(std::string_view text) {
     readTriple(parts[1], camera.target);
     if (parts.size() == 3) readTriple(parts[2], camera.up);
   } catch (const UsageError&) {
-    throw UsageError(fmt::format("position, target and, if wanted, up vector as px,py,pz:tx,ty,tz:ux,uy,uz were expected, not \"{}\"", text));
+    throw UsageError(
+        fmt::format("position, target and, if wanted, up vector as px,py,pz:tx,ty,tz:ux,uy,uz were expected, not \"{}\"", text));
   }
   if (!picture::lookAtMatrix(camera, matrix)) throw UsageError("position and target are the same point");
   return camera;

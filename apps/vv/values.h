@@ -14,12 +14,12 @@ namespace vv {
 // Exit codes of the program (docs: vv --help).
 enum ExitCode {
   exitDone = 0,
-  exitRender = 1,      // the picture could not be made or written
-  exitUsage = 2,       // the command line
-  exitInput = 3,       // the world is missing or unusable
-  exitProblems = 4,    // --check or --strict found problems
-  exitMissing = 5,     // a plug-in or a texture is missing under --strict
-  exitTryAgain = 75,   // out of memory or of another resource
+  exitRender = 1,    // the picture could not be made or written
+  exitUsage = 2,     // the command line
+  exitInput = 3,     // the world is missing or unusable
+  exitProblems = 4,  // --check or --strict found problems
+  exitMissing = 5,   // a plug-in or a texture is missing under --strict
+  exitTryAgain = 75, // out of memory or of another resource
   exitInterrupted = 130
 };
 

@@ -103,7 +103,8 @@ void OpenRTMapper::map(const CameraSettings& camera) {
 MapStats OpenRTMapper::stats() const {
   const Impl& m = *impl_;
   const Item& root = m.graph.items[m.graph.root];
-  return {root.shapes, root.triangles, m.lights.count(), m.textures.count(), m.objects.objects(), m.objects.instances()};
+  return {root.shapes,         root.triangles,        m.lights.count(),    m.textures.count(),
+          m.objects.objects(), m.objects.instances(), m.textures.missing()};
 }
 
 const std::vector<std::string>& OpenRTMapper::names() const { return impl_->graph.names; }

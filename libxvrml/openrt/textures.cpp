@@ -37,7 +37,9 @@ RTid Textures::ofUrls(const MFString& urls, const Node& node, bool repeatS, bool
       if (const RTid id = ofFile(resolved.path, repeatS, repeatT, why)) return id;
     if (error.empty()) error = why.find(url) == std::string::npos ? url + ": " + why : why;
   }
-  if (!urls.empty()) world_.diagnostics.warn(node.source, node.type().name + ": no picture: " + error);
+  if (urls.empty()) return 0;
+  ++missing_;
+  world_.diagnostics.warn(node.source, node.type().name + ": no picture: " + error);
   return 0;
 }
 

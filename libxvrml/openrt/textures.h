@@ -21,6 +21,7 @@ class Textures {
   // The first URL of a list that leads to a picture. node: for messages and as the file that relative URLs mean.
   RTid ofUrls(const MFString& urls, const Node& node, bool repeatS, bool repeatT);
   uint64_t count() const { return count_; }
+  uint64_t missing() const { return missing_; }
 
  private:
   RTid ofFile(const std::string& path, bool repeatS, bool repeatT, std::string& error);
@@ -28,7 +29,7 @@ class Textures {
 
   World& world_;
   bool srgb_;
-  uint64_t count_ = 0;
+  uint64_t count_ = 0, missing_ = 0;
   std::unordered_map<const Node*, RTid> nodes_;
   std::map<std::tuple<std::string, bool, bool>, std::pair<RTid, std::string>> files_; // texture, or why there is none
 };

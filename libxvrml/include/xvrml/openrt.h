@@ -38,6 +38,7 @@ struct MapOptions {
 
 struct MapStats {
   uint64_t shapes = 0, triangles = 0, lights = 0, textures = 0, objects = 0, instances = 0;
+  uint64_t missingTextures = 0; // ImageTextures and panoramas without a picture that could be read
 };
 
 // Maps a world into the current OpenRT context. One mapper per context; every call on the context's thread.

@@ -1,0 +1,103 @@
+// describe.cpp: see describe.h.
+#include "describe.h"
+
+#include <unordered_set>
+
+#include <fmt/format.h>
+
+#include "openrt/openrt.h"
+
+namespace vv {
+
+namespace {
+
+using namespace xvrml;
+
+std::string text(bool v) { return v ? "TRUE" : "FALSE"; }
+std::string text(float v) { return fmt::format("{}", v); }
+std::string text(double v) { return fmt::format("{}", v); }
+std::string text(int32_t v) { return fmt::format("{}", v); }
+std::string text(const Vec2f& v) { return fmt::format("{} {}", v.x, v.y); }
+std::string text(const Vec3f& v) { return fmt::format("{} {} {}", v.x, v.y, v.z); }
+std::string text(const Color& v) { return fmt::format("{} {} {}", v.r, v.g, v.b); }
+std::string text(const Rotation& v) { return fmt::format("{} {} {} {}", v.x, v.y, v.z, v.angle); }
+std::string text(const NodeRef& v) { return v ? v->type().name + " { }" : "NULL"; }
+std::string text(const Image& v) {
+  std::string out = fmt::format("{} {} {}", v.width, v.height, v.components);
+  for (size_t i = 0; v.components > 0 && i + size_t(v.components) <= v.pixels.size(); i += size_t(v.components)) {
+    out += " 0x";
+    for (size_t c = 0; c < size_t(v.components); ++c) out += fmt::format("{:02X}", v.pixels[i + c]);
+  }
+  return out;
+}
+std::string text(const std::string& v) {
+  std::string out = "\"";
+  for (char c : v) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += c;
+  }
+  return out + "\"";
+}
+template <class T> std::string text(const std::vector<T>& list) {
+  std::string out = "[";
+  for (const T& v : list) out += (out.size() > 1 ? ", " : "") + text(v);
+  return out + "]";
+}
+
+class Counter {
+ public:
+  explicit Counter(WorldCounts& counts) : counts_(counts) {}
+
+  // Without recursion: a hostile world may be a thousand nodes deep.
+  void count(const Scope& scope) {
+    add(scope);
+    while (!todo_.empty()) {
+      const Node* node = todo_.back();
+      todo_.pop_back();
+      if (!node || !seen_.insert(node).second) continue;
+      ++counts_.types[node->type().name];
+      for (const FieldInfo& field : node->type().fields) {
+        if (field.access != Access::field && field.access != Access::exposedField) continue;
+        if (field.type == FieldType::SFNode) todo_.push_back(static_cast<const SFNode*>(node->storage(field))->get());
+        if (field.type == FieldType::MFNode)
+          for (const NodeRef& child : *static_cast<const MFNode*>(node->storage(field))) todo_.push_back(child.get());
+      }
+      if (auto* instance = dynamic_cast<const ProtoInstance*>(node)) add(instance->body);
+      if (const Scope* content = node->type().name == "Inline" ? inlineScope(*node) : nullptr) add(*content);
+    }
+  }
+
+ private:
+  void add(const Scope& scope) {
+    counts_.routes += scope.routes.size();
+    for (const NodeRef& root : scope.roots) todo_.push_back(root.get());
+  }
+
+  WorldCounts& counts_;
+  std::vector<const Node*> todo_;
+  std::unordered_set<const Node*> seen_;
+};
+
+} // namespace
+
+std::string version() { return fmt::format("{}.{}.{}", OPENRT_VERSION_MAJOR, OPENRT_VERSION_MINOR, OPENRT_VERSION_PATCH); }
+
+std::string valueText(const Value& value) {
+  return std::visit([](const auto& v) { return text(v); }, value);
+}
+
+std::string oneLine(std::string text) {
+  for (char& c : text)
+    if (c == '\n' || c == '\t' || c == '\r') c = ' ';
+  return text;
+}
+
+WorldCounts countWorld(const World& world) {
+  WorldCounts counts;
+  Counter(counts).count(world.scope);
+  for (const ProtoPtr& prototype : world.scope.prototypes) counts.prototypes.push_back(prototype->type->name);
+  for (const auto& [name, node] : world.scope.names) counts.names.push_back(name);
+  return counts;
+}
+
+} // namespace vv

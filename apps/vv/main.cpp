@@ -1,0 +1,46 @@
+// main.cpp: the program vv: options, then the job.
+#include <cstdio>
+#include <exception>
+#include <new>
+
+#include "describe.h"
+#include "headless.h"
+#include "messages.h"
+#include "options.h"
+#include "signals.h"
+
+namespace {
+
+std::string quoted(int argc, char** argv) {
+  std::string line;
+  for (int i = 0; i < argc; ++i) line += (i ? " " : "") + std::string(argv[i]);
+  return line;
+}
+
+int run(int argc, char** argv) {
+  const vv::Options options = vv::readCommandLine(argc, argv);
+  if (options.help) return vv::writeOut(vv::helpText()), vv::exitDone;
+  if (options.version) return vv::writeOut("vv " + vv::version() + "\n"), vv::exitDone;
+  const bool job = options.makesPictures() || options.check || options.info || options.listNodes || options.listViewpoints ||
+                   !options.write.empty();
+  if (!job) throw vv::UsageError("there is no window yet; vv " + options.input + " -o picture.png makes a picture");
+  return vv::runHeadless(options, quoted(argc, argv));
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+  vv::installSignals();
+  try {
+    return run(argc, argv);
+  } catch (const vv::UsageError& error) {
+    vv::sayError(error.what());
+    return vv::exitUsage;
+  } catch (const std::bad_alloc&) {
+    vv::sayError("out of memory");
+    return vv::exitTryAgain;
+  } catch (const std::exception& error) {
+    vv::sayError(error.what());
+    return vv::exitRender;
+  }
+}

@@ -1,0 +1,227 @@
+// report.cpp: see report.h. The only file of vv that includes nlohmann/json.
+#include "report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <sys/resource.h>
+
+#include "describe.h"
+
+namespace vv {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Names may hold bytes that are not UTF-8: JSON gets the replacement character for them.
+std::string dump(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; }
+
+// The 95 % interval of each pixel's mean from its sample variance, relative to the mean, over the pixels that are not black.
+// Samples are taken as independent; stratified ones do better.
+Json errorEstimate(const picture::Picture& picture) {
+  Json error = {
+      {"mean_rel", nullptr}, {"p99", nullptr}, {"pixels_trusted", nullptr}, {"level", 0.95}, {"method", "sample variance"}};
+  auto colours = picture.planes.find(RT_RGBA), variance = picture.planes.find(RT_VARIANCE),
+       samples = picture.planes.find(RT_SAMPLES);
+  const auto none = picture.planes.end();
+  if (colours == none || variance == none || samples == none) return error;
+  constexpr double quantile = 1.959964, trusted = 0.1;
+  std::vector<double> errors;
+  size_t good = 0;
+  const size_t pixels = samples->second.size();
+  for (size_t i = 0; i < pixels; ++i) {
+    double mean = 0, spread = 0;
+    for (size_t c = 0; c < 3; ++c) {
+      mean += double(colours->second[4 * i + c]) / 3;
+      spread += double(variance->second[3 * i + c]) / 3;
+    }
+    const double n = double(samples->second[i]);
+    if (!(n > 1)) continue;
+    if (!(mean > 0)) {
+      good += spread == 0;
+      continue;
+    }
+    const double half = quantile * std::sqrt(std::max(0.0, spread) / n) / mean;
+    if (!std::isfinite(half)) continue;
+    good += half <= trusted;
+    errors.push_back(half);
+  }
+  if (pixels) error["pixels_trusted"] = double(good) / double(pixels);
+  if (errors.empty()) return error;
+  double sum = 0;
+  for (double e : errors) sum += e;
+  error["mean_rel"] = sum / double(errors.size());
+  auto at = errors.begin() + std::ptrdiff_t(double(errors.size() - 1) * 0.99);
+  std::nth_element(errors.begin(), at, errors.end());
+  error["p99"] = *at;
+  return error;
+}
+
+uint64_t peakMemory() {
+  rusage usage{};
+  ::getrusage(RUSAGE_SELF, &usage);
+  return uint64_t(usage.ru_maxrss) * 1024;
+}
+
+Json channelNames(uint32_t channels) {
+  Json names = Json::array();
+  for (const picture::Channel& channel : picture::channelTable())
+    if (channels & channel.bit) names.push_back(channel.name);
+  return names;
+}
+
+std::string_view accessName(xvrml::Access access) {
+  switch (access) {
+  case xvrml::Access::field: return "field";
+  case xvrml::Access::exposedField: return "exposedField";
+  case xvrml::Access::eventIn: return "eventIn";
+  case xvrml::Access::eventOut: return "eventOut";
+  }
+  return "";
+}
+
+bool holdsValue(const xvrml::FieldInfo& field) {
+  return field.access == xvrml::Access::field || field.access == xvrml::Access::exposedField;
+}
+
+Json typeJson(const xvrml::NodeType& type) {
+  Json fields = Json::array();
+  for (const xvrml::FieldInfo& field : type.fields) {
+    Json one = {{"name", field.name}, {"type", fieldTypeName(field.type)}, {"access", accessName(field.access)}};
+    if (holdsValue(field)) one["default"] = valueText(field.defaultValue);
+    if (!field.nodeTypes.empty()) one["accepts"] = field.nodeTypes;
+    if (!field.text.empty()) one["text"] = field.text;
+    fields.push_back(std::move(one));
+  }
+  return {{"name", type.name}, {"component", type.component}, {"text", type.text}, {"fields", std::move(fields)}};
+}
+
+std::string typeText(const xvrml::NodeType& type, std::string_view comment) {
+  std::string out = fmt::format("{} {{{}{}\n", type.name, comment.empty() ? "" : " # ", comment);
+  for (const xvrml::FieldInfo& field : type.fields) {
+    std::string line = fmt::format("  {:<12} {:<10} {}", accessName(field.access), fieldTypeName(field.type), field.name);
+    if (holdsValue(field)) line = fmt::format("{:<46} {}", line, valueText(field.defaultValue));
+    out += line + "\n";
+  }
+  return out + "}\n";
+}
+
+Json viewpointsJson(const std::vector<xvrml::ViewpointInfo>& viewpoints) {
+  Json list = Json::array();
+  for (size_t i = 0; i < viewpoints.size(); ++i) {
+    const xvrml::ViewpointInfo& v = viewpoints[i];
+    list.push_back({{"index", i}, {"name", v.name}, {"description", v.description}, {"matrix", Json(v.matrix)}});
+  }
+  return list;
+}
+
+} // namespace
+
+std::string statsJson(const Options& options, const std::string& commandLine, const xvrml::World& world,
+                      const picture::RenderResult& result, const RunTimes& times) {
+  const RTstats& s = result.stats;
+  const picture::RenderSettings& r = options.render;
+  const uint64_t rays = s.cameraRays + s.shadowRays + s.secondaryRays;
+  Json json;
+  json["schema"] = 1;
+  json["version"] = version();
+  json["command"] = commandLine;
+  json["interrupted"] = result.interrupted;
+  json["scene"] = {{"path", world.path},
+                   {"nodes", world.nodeCount},
+                   {"shapes", result.map.shapes},
+                   {"triangles", s.triangles},
+                   {"unique_triangles", s.uniqueTriangles},
+                   {"objects", s.objects},
+                   {"instances", s.instances},
+                   {"textures", s.textures},
+                   {"lights", s.lights},
+                   {"warnings", world.diagnostics.warnings() + world.diagnostics.errors()}};
+  json["image"] = {{"width", r.width}, {"height", r.height}, {"spp", r.samples}, {"channels", channelNames(r.channels)}};
+  // One pass makes the whole picture.
+  json["time"] = {{"parse", world.times.parse},
+                  {"graph", world.times.load},
+                  {"map", result.mapSeconds},
+                  {"build", s.commitSeconds + s.buildSeconds},
+                  {"first_pass", result.renderSeconds},
+                  {"render", result.renderSeconds},
+                  {"write", times.write},
+                  {"total", times.total}};
+  json["rays"] = {{"camera", s.cameraRays},
+                  {"shadow", s.shadowRays},
+                  {"secondary", s.secondaryRays},
+                  {"per_second", s.renderSeconds > 0 ? double(rays) / s.renderSeconds : 0.0}};
+  json["transport"] = {{"chosen", "direct"},
+                       {"reason", "every surface is shaded by itself: light from the lamps, shadows, transparency"},
+                       {"claim", r.shadows ? "direct light with shadows" : "direct light without shadows"}};
+  json["error"] = errorEstimate(result.picture);
+  json["memory"] = {{"peak_rss", peakMemory()}, {"bvh", s.bvhBytes}, {"scene", nullptr}};
+  json["cluster"] = {{"workers", 0}, {"tiles", 0}, {"retries", 0}, {"bytes", 0}};
+  json["machine"] = {{"isa", s.isa}, {"threads", s.threads}, {"embree", s.kernel}};
+  return dump(json);
+}
+
+std::string listNodes(const xvrml::World* world, bool json) {
+  Json list = Json::array(), prototypes = Json::array();
+  std::string text;
+  for (const xvrml::NodeType* type : xvrml::nodeTypes()) {
+    if (json)
+      list.push_back(typeJson(*type));
+    else
+      text += typeText(*type, type->text);
+  }
+  if (world) {
+    for (const xvrml::ProtoPtr& prototype : world->scope.prototypes) {
+      if (json)
+        prototypes.push_back(typeJson(*prototype->type));
+      else
+        text += typeText(*prototype->type, prototype->isExtern ? "EXTERNPROTO of " + world->path : "PROTO of " + world->path);
+    }
+  }
+  if (!json) return text;
+  Json all = {{"nodes", std::move(list)}};
+  if (world) all["prototypes"] = std::move(prototypes);
+  return dump(all);
+}
+
+std::string listViewpoints(const std::vector<xvrml::ViewpointInfo>& viewpoints, bool json) {
+  if (json) return dump(viewpointsJson(viewpoints));
+  std::string text;
+  for (size_t i = 0; i < viewpoints.size(); ++i)
+    text +=
+        fmt::format("{}\t{}\t{}\n", i, viewpoints[i].name.empty() ? "-" : viewpoints[i].name, oneLine(viewpoints[i].description));
+  return text;
+}
+
+std::string describeWorld(const xvrml::World& world, const std::vector<xvrml::ViewpointInfo>& viewpoints,
+                          const xvrml::Bounds& bounds, bool json) {
+  const WorldCounts counts = countWorld(world);
+  if (json) {
+    Json all = {{"path", world.path}, {"nodes", world.nodeCount}, {"types", Json(counts.types)}, {"routes", counts.routes}};
+    all["prototypes"] = counts.prototypes;
+    all["names"] = counts.names;
+    all["viewpoints"] = viewpointsJson(viewpoints);
+    all["bounds"] = nullptr;
+    if (!bounds.empty) all["bounds"] = {{"minimum", Json(bounds.minimum)}, {"maximum", Json(bounds.maximum)}};
+    all["errors"] = world.diagnostics.errors();
+    all["warnings"] = world.diagnostics.warnings();
+    return dump(all);
+  }
+  std::string text = fmt::format("world       {}\nnodes       {}\nroutes      {}\nprototypes  {}\nviewpoints  {}\n", world.path,
+                                 world.nodeCount, counts.routes, counts.prototypes.size(), viewpoints.size());
+  if (bounds.empty)
+    text += "bounds      nothing to see\n";
+  else
+    text += fmt::format("bounds      {:.6g} {:.6g} {:.6g}  to  {:.6g} {:.6g} {:.6g}\n", bounds.minimum[0], bounds.minimum[1],
+                        bounds.minimum[2], bounds.maximum[0], bounds.maximum[1], bounds.maximum[2]);
+  text += fmt::format("problems    {} errors, {} warnings\n", world.diagnostics.errors(), world.diagnostics.warnings());
+  for (const auto& [type, count] : counts.types) text += fmt::format("  {:>8}  {}\n", count, type);
+  return text;
+}
+
+} // namespace vv
