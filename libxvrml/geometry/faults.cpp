@@ -1,0 +1,39 @@
+// faults.cpp: the wording of the one warning a geometry node may give.
+#include "geometry/faults.h"
+
+#include <fmt/format.h>
+
+namespace xvrml {
+
+static constexpr const char* faultTexts[] = {
+    "dropped for too few different vertices",
+    "dropped for an index without a point",
+    "dropped for coordinates that are not finite",
+    "dropped for having no area",
+    "dropped for crossing itself too often",
+    "dropped beyond the limit 'triangles'",
+    "without a colour, drawn white",
+    "without a usable normal, drawn with the face's own",
+    "without texture coordinates",
+};
+static_assert(std::size(faultTexts) == size_t(Fault::count));
+
+bool Faults::any() const {
+  for (const Entry& entry : entries_)
+    if (entry.count) return true;
+  return !notes_.empty();
+}
+
+void Faults::report(const Node& node, Diagnostics* diagnostics) const {
+  if (!diagnostics || !any()) return;
+  std::string text;
+  auto append = [&](const std::string& part) { text += (text.empty() ? "" : "; ") + part; };
+  for (size_t i = 0; i < entries_.size(); i++) {
+    const Entry& entry = entries_[i];
+    if (entry.count) append(fmt::format("{} {} (first at index {})", entry.count, faultTexts[i], entry.first));
+  }
+  for (const std::string& note : notes_) append(note);
+  diagnostics->warn(node.source, node.type().name + ": " + text);
+}
+
+} // namespace xvrml

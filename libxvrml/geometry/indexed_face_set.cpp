@@ -1,0 +1,190 @@
+// indexed_face_set.cpp: IndexedFaceSet (clause 6.23): faces and attribute indices out of the lists of the node, with a direct
+// way for large sets of triangles.
+#include <algorithm>
+
+#include "geometry/builders.h"
+#include "geometry/face_set.h"
+#include "geometry/texture_mapping.h"
+
+namespace xvrml {
+namespace {
+
+// How an index list, a value list and a flag give each face or corner its value (colorIndex, color, colorPerVertex and so on).
+struct Binding {
+  bool perVertex = true;
+  std::span<const int32_t> index; // empty: coordIndex (a vertex), or the faces in order
+  size_t values = 0;
+  Fault fault = Fault::colorMissing;
+
+  uint32_t check(int64_t value, uint64_t place, Faults& faults) const {
+    if (value >= 0 && uint64_t(value) < values) return uint32_t(value);
+    faults.add(fault, place);
+    return noValue;
+  }
+  uint32_t ofFace(uint64_t face, Faults& faults) const {
+    if (index.empty()) return check(int64_t(face), face, faults);
+    return check(face < index.size() ? index[face] : -1, face, faults);
+  }
+  uint32_t ofCorner(uint64_t place, int32_t point, Faults& faults) const {
+    if (index.empty()) return check(point, place, faults);
+    return check(place < index.size() ? index[place] : -1, place, faults);
+  }
+};
+
+template <class T> struct Bound {
+  Attribute<T>& attribute;
+  Binding binding;
+
+  // Values that lie beside the points one to one need no index.
+  void start(size_t points) {
+    using Per = typename Attribute<T>::Per;
+    if (attribute.values.empty())
+      attribute.per = Per::none;
+    else if (!binding.perVertex)
+      attribute.per = Per::face;
+    else
+      attribute.per = binding.index.empty() && attribute.values.size() >= points ? Per::point : Per::corner;
+    binding.values = attribute.values.size();
+  }
+  void corner(uint64_t place, int32_t point, Faults& faults) {
+    if (attribute.per == Attribute<T>::Per::corner) attribute.index.push_back(binding.ofCorner(place, point, faults));
+  }
+  void face(uint64_t face, Faults& faults) {
+    if (attribute.per == Attribute<T>::Per::face) attribute.index.push_back(binding.ofFace(face, faults));
+  }
+};
+
+class FaceReader {
+ public:
+  FaceReader(const nodes::IndexedFaceSet& node, FaceSet& set, Faults& faults)
+      : node_(node), set_(set), faults_(faults),
+        colors_{set.colors, {node.colorPerVertex, node.colorIndex, 0, Fault::colorMissing}},
+        normals_{set.normals, {node.normalPerVertex, node.normalIndex, 0, Fault::normalMissing}},
+        texCoords_{set.texCoords, {true, node.texCoordIndex, 0, Fault::texCoordMissing}} {
+    colors_.start(set.points.size());
+    normals_.start(set.points.size());
+    texCoords_.start(set.points.size());
+  }
+
+  void run() {
+    const auto& index = node_.coordIndex;
+    set_.corners.reserve(index.size());
+    set_.faceStart.reserve(index.size() / 4 + 2);
+    set_.faceStart.push_back(0);
+    uint64_t face = 0;
+    for (size_t begin = 0; begin < index.size(); face++) {
+      size_t end = begin;
+      while (end < index.size() && index[end] != -1) end++;
+      if (end > begin) readFace(begin, end, face);
+      begin = end + 1; // the last -1 may be missing
+    }
+  }
+
+ private:
+  void readFace(size_t begin, size_t end, uint64_t face) {
+    const auto& index = node_.coordIndex;
+    for (size_t i = begin; i < end; i++) {
+      if (uint32_t(index[i]) >= set_.points.size()) { // negative ones too
+        faults_.add(Fault::indexRange, i);
+        return;
+      }
+    }
+    // A vertex given twice in a row, or closing the face again, is one.
+    places_.clear();
+    for (size_t i = begin; i < end; i++)
+      if (places_.empty() || index[places_.back()] != index[i]) places_.push_back(i);
+    while (places_.size() > 1 && index[places_.back()] == index[places_.front()]) places_.pop_back();
+    if (places_.size() < 3) {
+      faults_.add(Fault::fewVertices, begin);
+      return;
+    }
+    for (size_t place : places_) {
+      set_.corners.push_back(uint32_t(index[place]));
+      colors_.corner(place, index[place], faults_);
+      normals_.corner(place, index[place], faults_);
+      texCoords_.corner(place, index[place], faults_);
+    }
+    colors_.face(face, faults_);
+    normals_.face(face, faults_);
+    set_.faceStart.push_back(uint32_t(set_.corners.size()));
+    set_.faceName.push_back(uint32_t(begin));
+  }
+
+  const nodes::IndexedFaceSet& node_;
+  FaceSet& set_;
+  Faults& faults_;
+  Bound<Color> colors_;
+  Bound<Vec3f> normals_;
+  Bound<Vec2f> texCoords_;
+  std::vector<size_t> places_;
+};
+
+// Triangles only, all sound: their indices. False at the first thing that needs a closer look.
+bool plainTriangles(std::span<const int32_t> index, std::span<const Vec3f> points, std::vector<uint32_t>& out) {
+  size_t n = index.size();
+  if (n == 0 || (n % 4 != 0 && n % 4 != 3)) return false;
+  size_t triangles = (n + 1) / 4;
+  uint32_t limit = uint32_t(std::min<size_t>(points.size(), INT32_MAX));
+  out.resize(3 * triangles);
+  for (size_t t = 0; t < triangles; t++) {
+    uint32_t a = uint32_t(index[4 * t]), b = uint32_t(index[4 * t + 1]), c = uint32_t(index[4 * t + 2]);
+    bool ended = 4 * t + 3 == n || index[4 * t + 3] == -1;
+    if (!ended || a >= limit || b >= limit || c >= limit || !hasArea(points[a], points[b], points[c])) return false;
+    out[3 * t] = a;
+    out[3 * t + 1] = b;
+    out[3 * t + 2] = c;
+  }
+  return true;
+}
+
+// Points as they are in the node, for flat triangles without colours or texture coordinates of their own.
+bool buildInPlace(const nodes::IndexedFaceSet& node, std::span<const Vec3f> points, const MeshOptions& options, Mesh& mesh) {
+  if (node.coordIndex.size() / 4 + 1 > triangleLimit(options) || points.size() / 4 > node.coordIndex.size()) return false;
+  if (!allFinite(points) || !plainTriangles(node.coordIndex, points, mesh.ownIndices)) {
+    mesh.ownIndices.clear();
+    return false;
+  }
+  mesh.kind = Mesh::Kind::triangles;
+  mesh.points = points;
+  mesh.indices = mesh.ownIndices;
+  mesh.solid = node.solid;
+  mesh.ccw = node.ccw;
+  if (options.needTexCoords) {
+    mesh.ownTexCoords = defaultTextureMapping(mesh.points, mesh.indices);
+    mesh.texCoords = mesh.ownTexCoords;
+  }
+  return true;
+}
+
+} // namespace
+
+Mesh buildIndexedFaceSet(const nodes::IndexedFaceSet& node, const MeshOptions& options, Faults& faults) {
+  FaceSet set;
+  set.points = coordinates(node.coord);
+  if (node.coordIndex.empty()) return {};
+  if (set.points.size() >= noValue / 2 || node.coordIndex.size() >= noValue / 2) {
+    faults.note("too many points or indices");
+    return {};
+  }
+  set.colors.values = colorValues(node.color);
+  set.normals.values = normalVectors(node.normal);
+  set.texCoords.values = textureCoordinates(node.texCoord);
+  bool flat = set.normals.values.empty() && !(node.creaseAngle > 0);
+  Mesh mesh;
+  if (flat && set.colors.values.empty() && set.texCoords.values.empty() && buildInPlace(node, set.points, options, mesh))
+    return mesh;
+
+  set.solid = node.solid;
+  set.ccw = node.ccw;
+  set.convex = node.convex;
+  set.creaseAngle = node.creaseAngle;
+  FaceReader(node, set, faults).run();
+  if (options.needTexCoords && set.texCoords.values.empty()) {
+    set.texCoords.own = defaultTextureMapping(set.points, set.corners);
+    set.texCoords.values = set.texCoords.own;
+    set.texCoords.per = Attribute<Vec2f>::Per::point;
+  }
+  return buildFaceMesh(std::move(set), options, faults);
+}
+
+} // namespace xvrml

@@ -1,0 +1,58 @@
+// mesh.cpp: from a geometry node to the function that knows it, and the views of a Mesh on its own arrays.
+#include "geometry/mesh.h"
+
+#include "geometry/builders.h"
+#include "xvrml/world.h"
+
+namespace xvrml {
+
+void Mesh::viewOwn() {
+  points = ownPoints;
+  indices = ownIndices;
+  normals = ownNormals;
+  texCoords = ownTexCoords;
+  colors = ownColors;
+}
+
+std::span<const Vec3f> coordinates(const NodeRef& node) {
+  auto* coordinate = nodeCast<nodes::Coordinate>(renderedNode(node.get()));
+  return coordinate ? std::span<const Vec3f>(coordinate->point) : std::span<const Vec3f>();
+}
+
+std::span<const Vec3f> normalVectors(const NodeRef& node) {
+  auto* normal = nodeCast<nodes::Normal>(renderedNode(node.get()));
+  return normal ? std::span<const Vec3f>(normal->vector) : std::span<const Vec3f>();
+}
+
+std::span<const Color> colorValues(const NodeRef& node) {
+  auto* color = nodeCast<nodes::Color>(renderedNode(node.get()));
+  return color ? std::span<const Color>(color->color) : std::span<const Color>();
+}
+
+std::span<const Vec2f> textureCoordinates(const NodeRef& node) {
+  auto* coordinate = nodeCast<nodes::TextureCoordinate>(renderedNode(node.get()));
+  return coordinate ? std::span<const Vec2f>(coordinate->point) : std::span<const Vec2f>();
+}
+
+template <class T> static bool tryBuild(Node* node, Mesh (*build)(const T&, const MeshOptions&, Faults&), const MeshOptions& options,
+                                        Mesh& mesh, Faults& faults) {
+  auto* typed = nodeCast<T>(node);
+  if (typed) mesh = build(*typed, options, faults);
+  return typed != nullptr;
+}
+
+Mesh buildMesh(Node& geometry, const MeshOptions& options) {
+  Mesh mesh;
+  Node* node = renderedNode(&geometry);
+  if (!node) return mesh;
+  Faults faults;
+  tryBuild(node, buildIndexedFaceSet, options, mesh, faults) || tryBuild(node, buildBox, options, mesh, faults) ||
+      tryBuild(node, buildCone, options, mesh, faults) || tryBuild(node, buildCylinder, options, mesh, faults) ||
+      tryBuild(node, buildSphere, options, mesh, faults) || tryBuild(node, buildIndexedLineSet, options, mesh, faults) ||
+      tryBuild(node, buildPointSet, options, mesh, faults) || tryBuild(node, buildElevationGrid, options, mesh, faults) ||
+      tryBuild(node, buildExtrusion, options, mesh, faults) || tryBuild(node, buildText, options, mesh, faults);
+  faults.report(*node, options.diagnostics);
+  return mesh;
+}
+
+} // namespace xvrml

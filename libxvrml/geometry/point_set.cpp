@@ -1,0 +1,50 @@
+// point_set.cpp: PointSet (clause 6.36).
+#include <numeric>
+
+#include "geometry/builders.h"
+#include "geometry/vector_math.h"
+
+namespace xvrml {
+
+Mesh buildPointSet(const nodes::PointSet& node, const MeshOptions&, Faults& faults) {
+  Mesh mesh;
+  std::span<const Vec3f> points = coordinates(node.coord);
+  std::span<const Color> colors = colorValues(node.color);
+  if (points.empty() || points.size() >= UINT32_MAX) return mesh;
+  for (uint32_t i = 0; i < points.size(); i++) {
+    if (isFinite(points[i]))
+      mesh.ownIndices.push_back(i);
+    else
+      faults.add(Fault::notFinite, i);
+  }
+  if (mesh.ownIndices.size() < points.size()) { // only what can be drawn
+    for (uint32_t& index : mesh.ownIndices) {
+      mesh.ownPoints.push_back(points[index]);
+      if (!colors.empty()) mesh.ownColors.push_back(index < colors.size() ? colors[index] : Color{1, 1, 1});
+    }
+    std::iota(mesh.ownIndices.begin(), mesh.ownIndices.end(), 0);
+    mesh.viewOwn();
+  } else {
+    mesh.points = points;
+    mesh.indices = mesh.ownIndices;
+    if (!colors.empty() && colors.size() < points.size()) {
+      mesh.ownColors.assign(colors.begin(), colors.end());
+      mesh.ownColors.resize(points.size(), Color{1, 1, 1});
+      mesh.colors = mesh.ownColors;
+    } else if (!colors.empty())
+      mesh.colors = colors.first(points.size());
+  }
+  if (!colors.empty() && colors.size() < points.size()) faults.add(Fault::colorMissing, colors.size());
+  if (!allFinite(mesh.colors)) {
+    mesh.ownColors.assign(mesh.colors.begin(), mesh.colors.end());
+    for (Color& color : mesh.ownColors)
+      if (!isFinite(color)) color = {};
+    mesh.colors = mesh.ownColors;
+  }
+  if (mesh.indices.empty()) return Mesh();
+  mesh.kind = Mesh::Kind::points;
+  mesh.solid = false;
+  return mesh;
+}
+
+} // namespace xvrml

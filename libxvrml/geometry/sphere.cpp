@@ -1,0 +1,20 @@
+// sphere.cpp: Sphere (clause 6.42). The ray tracer meets it exactly, so there is only a radius.
+#include "geometry/builders.h"
+#include "geometry/vector_math.h"
+
+namespace xvrml {
+
+Mesh buildSphere(const nodes::Sphere& node, const MeshOptions&, Faults& faults) {
+  Mesh mesh;
+  float radius = std::abs(node.radius);
+  if (!(radius > 0) || !isFinite(radius)) {
+    faults.note("radius must be positive; nothing is drawn");
+    return mesh;
+  }
+  if (node.radius < 0) faults.note("negative radius taken as positive");
+  mesh.kind = Mesh::Kind::sphere;
+  mesh.radius = radius;
+  return mesh;
+}
+
+} // namespace xvrml

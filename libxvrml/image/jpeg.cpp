@@ -1,0 +1,134 @@
+// jpeg.cpp: JPEG by libjpeg. Its errors return by longjmp, so nothing with a destructor lives in the function that may be left so.
+#include <cstddef>
+#include <cstdio>
+
+#include <jpeglib.h>
+// after jpeglib.h
+#include <jerror.h>
+
+#include <csetjmp>
+
+#include "image/decoders.h"
+
+namespace xvrml {
+namespace {
+
+struct JpegReader {
+  jpeg_decompress_struct jpeg{};
+  jpeg_error_mgr errors{};
+  jpeg_progress_mgr progress{};
+  std::jmp_buf escape;
+  char message[JMSG_LENGTH_MAX] = "";
+  Image image;
+  std::vector<uint8_t> row;
+  bool tooLarge = false;
+  bool cmyk = false;
+
+  ~JpegReader() { jpeg_destroy_decompress(&jpeg); }
+};
+
+JpegReader* readerOf(j_common_ptr jpeg) { return static_cast<JpegReader*>(jpeg->client_data); }
+
+[[noreturn]] void onError(j_common_ptr jpeg) {
+  JpegReader* reader = readerOf(jpeg);
+  jpeg->err->format_message(jpeg, reader->message);
+  std::longjmp(reader->escape, 1);
+}
+
+// The library goes on with grey where data is missing; a damaged picture is refused instead.
+void onMessage(j_common_ptr jpeg, int level) {
+  if (level >= 0) return;
+  int code = jpeg->err->msg_code;
+  if (code == JWRN_JPEG_EOF || code == JWRN_HIT_MARKER || code == JWRN_HUFF_BAD_CODE || code == JWRN_ARITH_BAD_CODE ||
+      code == JWRN_BOGUS_PROGRESSION)
+    onError(jpeg);
+}
+
+// A small file can hold a picture of very many scans, each of them as slow as the whole.
+void onProgress(j_common_ptr jpeg) {
+  if (jpeg->is_decompressor && reinterpret_cast<j_decompress_ptr>(jpeg)->input_scan_number > 500) {
+    JpegReader* reader = readerOf(jpeg);
+    std::snprintf(reader->message, sizeof reader->message, "too many scans");
+    std::longjmp(reader->escape, 1);
+  }
+}
+
+bool readHeader(JpegReader& reader, std::span<const uint8_t> bytes) {
+  if (setjmp(reader.escape)) return false;
+  jpeg_create_decompress(&reader.jpeg);
+  jpeg_mem_src(&reader.jpeg, bytes.data(), bytes.size());
+  jpeg_read_header(&reader.jpeg, TRUE);
+  switch (reader.jpeg.jpeg_color_space) {
+  case JCS_GRAYSCALE: reader.jpeg.out_color_space = JCS_GRAYSCALE; break;
+  case JCS_CMYK:
+  case JCS_YCCK:
+    reader.jpeg.out_color_space = JCS_CMYK;
+    reader.cmyk = true;
+    break;
+  default: reader.jpeg.out_color_space = JCS_RGB;
+  }
+  return true;
+}
+
+bool start(JpegReader& reader) {
+  if (setjmp(reader.escape)) return false;
+  reader.progress.progress_monitor = onProgress;
+  reader.jpeg.progress = &reader.progress;
+  jpeg_start_decompress(&reader.jpeg);
+  return true;
+}
+
+// One row into reader.row.
+bool readRow(JpegReader& reader) {
+  if (setjmp(reader.escape)) return false;
+  JSAMPROW row = reader.row.data();
+  if (jpeg_read_scanlines(&reader.jpeg, &row, 1) != 1) {
+    std::snprintf(reader.message, sizeof reader.message, "the file ends early");
+    return false;
+  }
+  return true;
+}
+
+void appendRow(JpegReader& reader) {
+  auto& pixels = reader.image.pixels;
+  if (!reader.cmyk) {
+    pixels.insert(pixels.end(), reader.row.begin(), reader.row.end());
+    return;
+  }
+  // Ink to light; programs by Adobe write it the other way round and say so.
+  bool inverted = reader.jpeg.saw_Adobe_marker;
+  for (size_t x = 0; x + 3 < reader.row.size(); x += 4) {
+    auto light = [&](size_t i) { return unsigned(inverted ? reader.row[x + i] : 255 - reader.row[x + i]); };
+    for (size_t i = 0; i < 3; i++) pixels.push_back(uint8_t((light(i) * light(3) + 127) / 255));
+  }
+}
+
+} // namespace
+
+Image decodeJpeg(std::span<const uint8_t> bytes, const Limits& limits) {
+  JpegReader reader;
+  reader.jpeg.err = jpeg_std_error(&reader.errors);
+  reader.errors.error_exit = onError;
+  reader.errors.emit_message = onMessage;
+  reader.jpeg.client_data = &reader; // kept by jpeg_create_decompress
+  auto check = [&](bool fine) {
+    if (!fine) throw std::runtime_error(std::string("damaged JPEG picture: ") + reader.message);
+  };
+  check(readHeader(reader, bytes));
+  checkImageSize(reader.jpeg.image_width, reader.jpeg.image_height, limits, "JPEG");
+  check(start(reader));
+  Image& image = reader.image;
+  image.width = int32_t(reader.jpeg.output_width);
+  image.height = int32_t(reader.jpeg.output_height);
+  image.components = reader.cmyk ? 3 : reader.jpeg.output_components;
+  reader.row.resize(size_t(image.width) * size_t(reader.jpeg.output_components));
+  for (int32_t y = 0; y < image.height; y++) {
+    check(readRow(reader));
+    appendRow(reader);
+  }
+  jpeg_abort_decompress(&reader.jpeg); // an end mark is not needed
+  flipRows(image);
+  return std::move(image);
+}
+
+} // namespace xvrml

@@ -1,0 +1,90 @@
+// png.cpp: PNG by libpng. Its errors return by longjmp, so nothing with a destructor lives in the function that may be left so.
+#include <png.h>
+
+#include <algorithm>
+#include <csetjmp>
+#include <cstring>
+
+#include "image/decoders.h"
+
+namespace xvrml {
+namespace {
+
+struct PngReader {
+  std::span<const uint8_t> bytes;
+  size_t position = 0;
+  char message[200] = "";
+  std::jmp_buf escape;
+  png_structp png = nullptr;
+  png_infop info = nullptr;
+  Image image;
+
+  ~PngReader() { png_destroy_read_struct(&png, &info, nullptr); }
+};
+
+[[noreturn]] void onError(png_structp png, png_const_charp text) {
+  auto* reader = static_cast<PngReader*>(png_get_error_ptr(png));
+  std::snprintf(reader->message, sizeof reader->message, "%s", text);
+  std::longjmp(reader->escape, 1);
+}
+
+void onWarning(png_structp, png_const_charp) {} // a bad text chunk does no harm
+
+void readBytes(png_structp png, png_bytep to, size_t count) {
+  auto* reader = static_cast<PngReader*>(png_get_io_ptr(png));
+  if (count > reader->bytes.size() - reader->position) png_error(png, "the file ends early");
+  std::memcpy(to, reader->bytes.data() + reader->position, count);
+  reader->position += count;
+}
+
+bool readHeader(PngReader& reader) {
+  if (setjmp(reader.escape)) return false;
+  png_structp png = reader.png;
+  png_set_read_fn(png, &reader, readBytes);
+  png_set_user_limits(png, 0x7fffffff, 0x7fffffff); // checked by the caller
+  png_set_chunk_malloc_max(png, 16 << 20);
+  png_set_chunk_cache_max(png, 100);
+  png_read_info(png, reader.info);
+  if (png_get_bit_depth(png, reader.info) == 16) png_set_scale_16(png);
+  png_set_expand(png); // palettes to RGB, fewer than 8 bits to 8, tRNS to alpha
+  png_set_interlace_handling(png);
+  png_read_update_info(png, reader.info);
+  return true;
+}
+
+bool readRows(PngReader& reader, png_bytepp rows) {
+  if (setjmp(reader.escape)) return false;
+  png_read_image(reader.png, rows);
+  return true; // what follows the pixels does not matter
+}
+
+} // namespace
+
+Image decodePng(std::span<const uint8_t> bytes, const Limits& limits) {
+  PngReader reader;
+  reader.bytes = bytes;
+  reader.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &reader, onError, onWarning);
+  reader.info = reader.png ? png_create_info_struct(reader.png) : nullptr;
+  if (!reader.info) throw std::bad_alloc();
+  auto check = [&](bool fine) {
+    if (!fine) throw std::runtime_error(std::string("damaged PNG picture: ") + reader.message);
+  };
+  check(readHeader(reader));
+  uint64_t width = png_get_image_width(reader.png, reader.info), height = png_get_image_height(reader.png, reader.info);
+  checkImageSize(width, height, limits, "PNG");
+  // Deflate packs 1032 to 1 at best: more rows than that cannot be in the file. (A sample has one bit at least.)
+  if (width * height / 8 / 1032 > bytes.size()) throw std::runtime_error("damaged PNG picture: too short for its size");
+  Image& image = reader.image;
+  image.width = int32_t(width);
+  image.height = int32_t(height);
+  image.components = png_get_channels(reader.png, reader.info);
+  size_t rowBytes = size_t(width) * size_t(image.components);
+  if (png_get_rowbytes(reader.png, reader.info) != rowBytes) throw std::runtime_error("PNG picture of an unknown kind");
+  image.pixels.resize(rowBytes * size_t(height));
+  std::vector<png_bytep> rows(height);
+  for (size_t y = 0; y < height; y++) rows[y] = image.pixels.data() + (size_t(height) - 1 - y) * rowBytes;
+  check(readRows(reader, rows.data()));
+  return std::move(image);
+}
+
+} // namespace xvrml
