@@ -1,4 +1,4 @@
-// box.cpp: Box (clause 6.6): six flat rectangles, each with the whole texture.
+// box.cpp: Box (clause 6.7): six flat rectangles, each with the whole texture.
 #include "geometry/builders.h"
 #include "geometry/vector_math.h"
 
@@ -6,14 +6,16 @@ namespace xvrml {
 namespace {
 
 // A side by its lower left corner and its edges to the right and up, as seen from outside with the texture upright.
-struct Side { V3f corner, right, up; };
+struct Side {
+  V3f corner, right, up;
+};
 const Side sides[] = {
-    {{-1, -1, 1}, {2, 0, 0}, {0, 2, 0}},   // front
-    {{1, -1, -1}, {-2, 0, 0}, {0, 2, 0}},  // back
-    {{1, -1, 1}, {0, 0, -2}, {0, 2, 0}},   // right
-    {{-1, -1, -1}, {0, 0, 2}, {0, 2, 0}},  // left
-    {{-1, 1, 1}, {2, 0, 0}, {0, 0, -2}},   // top, seen from above with -z up
-    {{-1, -1, -1}, {2, 0, 0}, {0, 0, 2}},  // bottom, seen from below with +z up
+    {{-1, -1, 1}, {2, 0, 0}, {0, 2, 0}},  // front
+    {{1, -1, -1}, {-2, 0, 0}, {0, 2, 0}}, // back
+    {{1, -1, 1}, {0, 0, -2}, {0, 2, 0}},  // right
+    {{-1, -1, -1}, {0, 0, 2}, {0, 2, 0}}, // left
+    {{-1, 1, 1}, {2, 0, 0}, {0, 0, -2}},  // top, seen from above with -z up
+    {{-1, -1, -1}, {2, 0, 0}, {0, 0, 2}}, // bottom, seen from below with +z up
 };
 
 } // namespace

@@ -24,6 +24,8 @@ std::span<const Vec3f> normalVectors(const NodeRef& node);
 std::span<const Color> colorValues(const NodeRef& node);
 std::span<const Vec2f> textureCoordinates(const NodeRef& node);
 
-inline uint64_t triangleLimit(const MeshOptions& options) { return options.limits ? options.limits->triangles : Limits().triangles; }
+inline uint64_t triangleLimit(const MeshOptions& options) {
+  return options.limits ? options.limits->triangles : Limits().triangles;
+}
 
 } // namespace xvrml

@@ -121,12 +121,18 @@ class PointCrease {
   // Very many faces at one point: directions in cells of a cube map stand for them, so that the cost stays linear.
   void binned(const std::vector<Member>& members) {
     constexpr int resolution = 8, cells = 6 * resolution * resolution;
-    struct Cell { V3f sum{0, 0, 0}, direction{0, 0, 0}; uint32_t normal = noValue; bool used = false; };
+    struct Cell {
+      V3f sum{0, 0, 0}, direction{0, 0, 0};
+      uint32_t normal = noValue;
+      bool used = false;
+    };
     std::vector<Cell> table(cells);
     auto cellOf = [&](const V3f& n) {
       float size[3] = {std::abs(n.x), std::abs(n.y), std::abs(n.z)};
       int axis = int(std::max_element(size, size + 3) - size);
-      auto place = [&](float v) { return std::clamp(int((v / std::max(size[axis], 1e-6f) + 1) / 2 * resolution), 0, resolution - 1); };
+      auto place = [&](float v) {
+        return std::clamp(int((v / std::max(size[axis], 1e-6f) + 1) / 2 * resolution), 0, resolution - 1);
+      };
       return ((axis * 2 + (n[axis] < 0)) * resolution + place(n[(axis + 1) % 3])) * resolution + place(n[(axis + 2) % 3]);
     };
     for (const Member& m : members) {

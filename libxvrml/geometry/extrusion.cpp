@@ -123,8 +123,9 @@ class Sweep {
       }
       double size = std::max(double(high.x) - low.x, double(high.y) - low.y);
       for (size_t j = 0; j < count; j++)
-        set_.texCoords.own.push_back(size > 0 ? Vec2f{float((double(section_[j].x) - low.x) / size), float((double(section_[j].y) - low.y) / size)}
-                                              : Vec2f{});
+        set_.texCoords.own.push_back(
+            size > 0 ? Vec2f{float((double(section_[j].x) - low.x) / size), float((double(section_[j].y) - low.y) / size)}
+                     : Vec2f{});
     }
     size_t before = set_.corners.size();
     for (size_t j = 0; j < count; j++) {
@@ -149,6 +150,8 @@ class Sweep {
 
 } // namespace
 
-Mesh buildExtrusion(const nodes::Extrusion& node, const MeshOptions& options, Faults& faults) { return Sweep(node, options, faults).run(); }
+Mesh buildExtrusion(const nodes::Extrusion& node, const MeshOptions& options, Faults& faults) {
+  return Sweep(node, options, faults).run();
+}
 
 } // namespace xvrml

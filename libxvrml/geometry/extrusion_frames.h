@@ -9,7 +9,9 @@
 namespace xvrml {
 
 // Unit axes at right angles: the cross-section's x and z lie along x and z, y points along the spine.
-struct SpineFrame { V3d x, y, z; };
+struct SpineFrame {
+  V3d x, y, z;
+};
 
 // One frame a spine point. `closed`: the first and last points are the same place.
 std::vector<SpineFrame> spineFrames(std::span<const Vec3f> spine, bool closed);

@@ -52,10 +52,10 @@ struct FaceSet {
   Attribute<Vec2f> texCoords;
   Attribute<Color> colors;
   bool solid = true, ccw = true;
-  bool convex = true;         // a promise that is checked
-  uint32_t plainFaces = 0;    // the first so many faces are split without looking (strips of quadrilaterals)
-  bool quietNoArea = false;   // faces without area are no mistake of the author
-  float creaseAngle = 0;      // radians; 0: flat
+  bool convex = true;       // a promise that is checked
+  uint32_t plainFaces = 0;  // the first so many faces are split without looking (strips of quadrilaterals)
+  bool quietNoArea = false; // faces without area are no mistake of the author
+  float creaseAngle = 0;    // radians; 0: flat
 
   std::vector<uint32_t> extraFaces; // faces of the corners that were added where edges cross (behind faceStart.back())
 

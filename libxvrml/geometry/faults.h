@@ -38,7 +38,9 @@ class Faults {
   void report(const Node& node, Diagnostics* diagnostics) const;
 
  private:
-  struct Entry { uint64_t count = 0, first = 0; };
+  struct Entry {
+    uint64_t count = 0, first = 0;
+  };
   std::array<Entry, size_t(Fault::count)> entries_;
   std::vector<std::string> notes_;
 };

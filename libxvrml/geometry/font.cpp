@@ -89,7 +89,8 @@ GlyphMesh tessellate(Flattener& flat) {
   const auto& t = tessellator.triangles();
   auto point = [&](uint32_t i) { return Vec3f{mesh.points[i].x, mesh.points[i].y, 0}; };
   for (size_t i = 0; i + 2 < t.size(); i += 3)
-    if (hasArea(point(t[i]), point(t[i + 1]), point(t[i + 2]))) mesh.indices.insert(mesh.indices.end(), {t[i], t[i + 1], t[i + 2]});
+    if (hasArea(point(t[i]), point(t[i + 1]), point(t[i + 2])))
+      mesh.indices.insert(mesh.indices.end(), {t[i], t[i + 1], t[i + 2]});
   return mesh;
 }
 
@@ -156,7 +157,8 @@ const GlyphMesh& Font::glyph(uint32_t id) {
   if (found != impl_->glyphs.end()) return found->second;
   if (impl_->glyphs.size() > 20000) impl_->glyphs.clear();
   GlyphMesh mesh;
-  if (!FT_Load_Glyph(impl_->face, id, FT_LOAD_NO_SCALE | FT_LOAD_NO_BITMAP) && impl_->face->glyph->format == FT_GLYPH_FORMAT_OUTLINE) {
+  if (!FT_Load_Glyph(impl_->face, id, FT_LOAD_NO_SCALE | FT_LOAD_NO_BITMAP) &&
+      impl_->face->glyph->format == FT_GLYPH_FORMAT_OUTLINE) {
     FT_Outline& outline = impl_->face->glyph->outline;
     if (impl_->embolden) FT_Outline_Embolden(&outline, impl_->face->units_per_EM / 24);
     Flattener flat{impl_->scale, impl_->slant ? 0.2 : 0, {}, {0, 0}};

@@ -48,7 +48,8 @@ bool match(const std::string& name, bool bold, bool italic, const std::string& l
   if (FcPatternGetString(found.get(), FC_FILE, 0, &file) != FcResultMatch) return false;
   if (FcPatternGetBool(found.get(), FC_OUTLINE, 0, &outline) != FcResultMatch || !outline) return false;
   result.file = reinterpret_cast<const char*>(file);
-  if (FcPatternGetString(found.get(), FC_FAMILY, 0, &family) == FcResultMatch) result.family = reinterpret_cast<const char*>(family);
+  if (FcPatternGetString(found.get(), FC_FAMILY, 0, &family) == FcResultMatch)
+    result.family = reinterpret_cast<const char*>(family);
   FcPatternGetInteger(found.get(), FC_INDEX, 0, &result.index);
   int weight = FC_WEIGHT_NORMAL, slant = FC_SLANT_ROMAN;
   FcPatternGetInteger(found.get(), FC_WEIGHT, 0, &weight);

@@ -57,8 +57,8 @@ template <class T> struct Bound {
 class FaceReader {
  public:
   FaceReader(const nodes::IndexedFaceSet& node, FaceSet& set, Faults& faults)
-      : node_(node), set_(set), faults_(faults),
-        colors_{set.colors, {node.colorPerVertex, node.colorIndex, 0, Fault::colorMissing}},
+      : node_(node), set_(set),
+        faults_(faults), colors_{set.colors, {node.colorPerVertex, node.colorIndex, 0, Fault::colorMissing}},
         normals_{set.normals, {node.normalPerVertex, node.normalIndex, 0, Fault::normalMissing}},
         texCoords_{set.texCoords, {true, node.texCoordIndex, 0, Fault::texCoordMissing}} {
     colors_.start(set.points.size());

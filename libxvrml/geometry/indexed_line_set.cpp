@@ -103,6 +103,8 @@ class LineReader {
 
 } // namespace
 
-Mesh buildIndexedLineSet(const nodes::IndexedLineSet& node, const MeshOptions&, Faults& faults) { return LineReader(node, faults).run(); }
+Mesh buildIndexedLineSet(const nodes::IndexedLineSet& node, const MeshOptions&, Faults& faults) {
+  return LineReader(node, faults).run();
+}
 
 } // namespace xvrml

@@ -34,8 +34,8 @@ std::span<const Vec2f> textureCoordinates(const NodeRef& node) {
   return coordinate ? std::span<const Vec2f>(coordinate->point) : std::span<const Vec2f>();
 }
 
-template <class T> static bool tryBuild(Node* node, Mesh (*build)(const T&, const MeshOptions&, Faults&), const MeshOptions& options,
-                                        Mesh& mesh, Faults& faults) {
+template <class T> static bool tryBuild(Node* node, Mesh (*build)(const T&, const MeshOptions&, Faults&),
+                                        const MeshOptions& options, Mesh& mesh, Faults& faults) {
   auto* typed = nodeCast<T>(node);
   if (typed) mesh = build(*typed, options, faults);
   return typed != nullptr;

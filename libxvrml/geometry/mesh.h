@@ -12,7 +12,9 @@
 
 namespace xvrml {
 
-struct Color4 { float r = 1, g = 1, b = 1, a = 1; };
+struct Color4 {
+  float r = 1, g = 1, b = 1, a = 1;
+};
 
 struct Mesh {
   enum class Kind : uint8_t { empty, triangles, lines, points, sphere };
@@ -26,7 +28,7 @@ struct Mesh {
   std::span<const Color> colors;
   bool solid = true; // back faces are not drawn
   bool ccw = true;
-  float radius = 0;  // sphere
+  float radius = 0; // sphere
 
   std::vector<Vec3f> ownPoints, ownNormals;
   std::vector<uint32_t> ownIndices;

@@ -1,4 +1,4 @@
-// sphere.cpp: Sphere (clause 6.42). The ray tracer meets it exactly, so there is only a radius.
+// sphere.cpp: Sphere (clause 6.43). The ray tracer meets it exactly, so there is only a radius.
 #include "geometry/builders.h"
 #include "geometry/vector_math.h"
 

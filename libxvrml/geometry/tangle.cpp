@@ -7,7 +7,9 @@
 namespace xvrml {
 namespace {
 
-struct Edge { V2d a, b; };
+struct Edge {
+  V2d a, b;
+};
 
 double side(const V2d& a, const V2d& b, const V2d& p) { return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x); }
 

@@ -15,7 +15,8 @@ class Triangulation {
       : set_(set), normals_(normals), faults_(faults), limit_(options.limits ? options.limits->triangles : Limits().triangles) {}
 
   std::vector<uint32_t> run() {
-    triangles_.reserve(set_.corners.size() > 2 * size_t(set_.faceCount()) ? 3 * (set_.corners.size() - 2 * size_t(set_.faceCount())) : 0);
+    triangles_.reserve(
+        set_.corners.size() > 2 * size_t(set_.faceCount()) ? 3 * (set_.corners.size() - 2 * size_t(set_.faceCount())) : 0);
     crossingBudget_ = 4 * set_.corners.size() + 1'000'000;
     for (uint32_t face = 0; face < set_.faceCount(); face++) {
       const Vec3f& n = normals_[face];
@@ -121,7 +122,8 @@ class Triangulation {
     for (size_t i = 0; i + 2 < t.size(); i += 3) add(corner(t[i]), corner(t[i + 1]), corner(t[i + 2]));
   }
 
-  void addCorner(uint32_t face, uint32_t first, uint32_t count, uint32_t added, const V3d& origin, const Tessellator::Crossing& c) {
+  void addCorner(uint32_t face, uint32_t first, uint32_t count, uint32_t added, const V3d& origin,
+                 const Tessellator::Crossing& c) {
     uint32_t from[4];
     for (uint32_t i = 0; i < c.count; i++) from[i] = c.from[i] < count ? first + c.from[i] : added + (c.from[i] - count);
     auto mean = [&](auto& attribute, auto valueOf, auto finish) {
@@ -153,7 +155,9 @@ class Triangulation {
             if (at[i] != noValue) sum += V2d(values[at[i]].x, values[at[i]].y) * c.weight[i];
           return sum;
         },
-        [](const V2d& sum) { return Vec2f{float(sum.x), float(sum.y)}; });
+        [](const V2d& sum) {
+          return Vec2f{float(sum.x), float(sum.y)};
+        });
     mean(
         set_.colors,
         [&](auto values, const uint32_t* at) {
@@ -164,7 +168,9 @@ class Triangulation {
           }
           return sum;
         },
-        [](const V3d& sum) { return Color{float(sum.x), float(sum.y), float(sum.z)}; });
+        [](const V3d& sum) {
+          return Color{float(sum.x), float(sum.y), float(sum.z)};
+        });
     if (set_.points.data() != set_.ownPoints.data()) set_.ownPoints.assign(set_.points.begin(), set_.points.end());
     set_.ownPoints.push_back(toVec3f(c.point + origin));
     set_.points = set_.ownPoints;

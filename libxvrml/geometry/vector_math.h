@@ -49,7 +49,8 @@ inline V3d unit(const V3d& v) {
 inline bool hasArea(const Vec3f& a, const Vec3f& b, const Vec3f& c) {
   V3f u = toV3f(b) - toV3f(a), v = toV3f(c) - toV3f(a);
   V3f quick = u.cross(v);
-  if ((std::abs(quick.x) > 1e-30f || std::abs(quick.y) > 1e-30f || std::abs(quick.z) > 1e-30f) && std::isfinite(quick.x + quick.y + quick.z))
+  if ((std::abs(quick.x) > 1e-30f || std::abs(quick.y) > 1e-30f || std::abs(quick.z) > 1e-30f) &&
+      std::isfinite(quick.x + quick.y + quick.z))
     return true;
   V3d exact = (toV3d(b) - toV3d(a)).cross(toV3d(c) - toV3d(a));
   return exact.x != 0 || exact.y != 0 || exact.z != 0;

@@ -18,7 +18,8 @@ Image decodeGif(std::span<const uint8_t> bytes, const Limits& limits);
 // Refuses sizes of no pixels or more than limits.imagePixels, before anything is allocated for them.
 void checkImageSize(uint64_t width, uint64_t height, const Limits& limits, const char* format);
 
-// Rows arrive from the top; the pixels grow with them, so that a header that promises much and a file that holds little cost little.
+// Rows arrive from the top; the pixels grow with them, so that a header that promises much and a file that holds little cost
+// little.
 void flipRows(Image& image);
 
 } // namespace xvrml

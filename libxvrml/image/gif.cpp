@@ -28,7 +28,9 @@ struct Closer {
 };
 using Gif = std::unique_ptr<GifFileType, Closer>;
 
-[[noreturn]] void damaged(const char* what) { throw std::runtime_error(std::string("damaged GIF picture: ") + (what ? what : "unreadable")); }
+[[noreturn]] void damaged(const char* what) {
+  throw std::runtime_error(std::string("damaged GIF picture: ") + (what ? what : "unreadable"));
+}
 
 void check(GifFileType* gif, int result) {
   if (result == GIF_ERROR) damaged(GifErrorString(gif->Error));

@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <memory>
@@ -16,8 +17,8 @@ namespace xvrml {
 void checkImageSize(uint64_t width, uint64_t height, const Limits& limits, const char* format) {
   if (width == 0 || height == 0) throw std::runtime_error(fmt::format("{} picture without pixels", format));
   if (width > INT32_MAX || height > INT32_MAX || width * height > limits.imagePixels)
-    throw std::runtime_error(
-        fmt::format("{} picture of {} x {} pixels is beyond the limit 'imagePixels' ({})", format, width, height, limits.imagePixels));
+    throw std::runtime_error(fmt::format("{} picture of {} x {} pixels is beyond the limit 'imagePixels' ({})", format, width,
+                                         height, limits.imagePixels));
 }
 
 void flipRows(Image& image) {
@@ -30,7 +31,9 @@ void flipRows(Image& image) {
 
 Image decodeImage(const uint8_t* bytes, size_t size, const Limits& limits) {
   std::span<const uint8_t> content(bytes, size);
-  auto startsWith = [&](std::string_view magic) { return size >= magic.size() && std::memcmp(bytes, magic.data(), magic.size()) == 0; };
+  auto startsWith = [&](std::string_view magic) {
+    return size >= magic.size() && std::memcmp(bytes, magic.data(), magic.size()) == 0;
+  };
   if (startsWith("\x89PNG\r\n\x1a\n")) return decodePng(content, limits);
   if (startsWith("\xff\xd8\xff")) return decodeJpeg(content, limits);
   if (startsWith("GIF87a") || startsWith("GIF89a")) return decodeGif(content, limits);

@@ -1,4 +1,5 @@
-// jpeg.cpp: JPEG by libjpeg. Its errors return by longjmp, so nothing with a destructor lives in the function that may be left so.
+// jpeg.cpp: JPEG by libjpeg. Its errors return by longjmp, so nothing with a destructor lives in the function that may be left
+// so.
 #include <cstddef>
 #include <cstdio>
 
