@@ -57,7 +57,7 @@ void Lights::follow(const Graph& graph, Places& places) {
   for (Place& place : places.all) {
     const Item& item = graph.items[place.item];
     if (!isLight(item.kind)) continue;
-    if (!place.active) {
+    if (!place.active || !finite(place.world)) {
       if (place.light != 0) rtRemoveLight(place.light);
       place.light = 0;
       continue;
