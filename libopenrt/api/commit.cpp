@@ -87,7 +87,7 @@ class CommitMaker {
   std::unique_ptr<edit::GeometryT> toEditGeometry(const BuiltGeometry& built) {
     auto e = std::make_unique<edit::GeometryT>();
     e->primitive = built.primitive;
-    e->shader = built.state.shader;
+    e->shader = scene_.shaders.find(built.state.shader) ? built.state.shader : 0; // may be deleted since it was latched
     e->name = built.state.name;
     e->matrix = toEdit(built.state.matrix);
     e->cull = built.state.cull;

@@ -1,11 +1,11 @@
 // shaders.cpp: shader classes, shaders and their parameters, by the tables that the classes publish. Application thread.
 #include <cfloat>
-#include <cmath>
 #include <cstring>
 #include <initializer_list>
 #include <span>
 
 #include "api/guard.h"
+#include "shading/parameters.h"
 
 using namespace openrt;
 
@@ -33,12 +33,9 @@ const RtsParam& parameter(Context& c, int handle, std::initializer_list<RtsType>
   fail(RT_INVALID_PARAMETER, std::string("parameter ") + param.name + " of the class " + table.name + " is of another type");
 }
 
-void checkRange(const RtsParam& param, double value) {
-  if (!std::isfinite(value)) fail(RT_INVALID_VALUE, std::string("parameter ") + param.name + ": not finite");
-  if (param.minimum == 0 && param.maximum == 0) return;
-  if (value < param.minimum || value > param.maximum)
-    fail(RT_INVALID_VALUE, std::string("parameter ") + param.name + ": " + std::to_string(value) + " is outside " +
-                               std::to_string(param.minimum) + " .. " + std::to_string(param.maximum));
+// Raises what valueProblem found.
+void refuse(const std::string& problem) {
+  if (!problem.empty()) fail(RT_INVALID_VALUE, problem);
 }
 
 edit::ParameterT edited(int handle) {
@@ -49,7 +46,7 @@ edit::ParameterT edited(int handle) {
 
 void setFloats(Context& c, int handle, std::initializer_list<RtsType> types, std::span<const float> values) {
   const RtsParam& param = parameter(c, handle, types);
-  for (float v : values) checkRange(param, v);
+  refuse(valueProblem(param, values));
   edit::ParameterT e = edited(handle);
   e.floats.assign(values.begin(), values.end());
   c.scene.setParameter(c.boundShader, std::move(e));
@@ -97,7 +94,7 @@ int rtParameterHandle(const char* name) {
 
 void rtParameter1i(int handle, int value) {
   guarded("rtParameter1i", [&](Context& c) {
-    checkRange(parameter(c, handle, {RTS_INT}), value);
+    refuse(valueProblem(parameter(c, handle, {RTS_INT}), value));
     edit::ParameterT e = edited(handle);
     e.integer = value;
     c.scene.setParameter(c.boundShader, std::move(e));

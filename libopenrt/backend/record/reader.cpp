@@ -1,0 +1,139 @@
+// reader.cpp: chunks of a recording, decompressed and verified. Called by openrt-replay, tests and the fuzz target; one thread.
+#include "backend/record/reader.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+#include <xxhash.h>
+#include <zstd.h>
+
+#include "backend/record/format.h"
+
+namespace openrt {
+namespace {
+
+using namespace recording;
+
+// Bytes that the edits take once unpacked, at least. A table may be named from many places in a flatbuffer, so a small file could
+// otherwise grow without bounds; what the writer makes is never larger than its buffer by this count.
+uint64_t unpackedBytes(const edit::Edits& edits) {
+  constexpr uint64_t perTable = 8;
+  uint64_t bytes = 0;
+  if (!edits.edits()) return 0;
+  for (const edit::Edit* entry : *edits.edits()) {
+    bytes += perTable;
+    if (!entry->any()) continue;
+    if (const auto* parameter = entry->any_as_Parameter()) {
+      if (parameter->floats()) bytes += sizeof(float) * uint64_t(parameter->floats()->size());
+      if (parameter->text()) bytes += parameter->text()->size();
+    } else if (const auto* shaderClass = entry->any_as_ShaderClass()) {
+      if (shaderClass->name()) bytes += shaderClass->name()->size();
+      if (shaderClass->library()) bytes += shaderClass->library()->size();
+    } else if (const auto* object = entry->any_as_Object()) {
+      if (object->geometries()) bytes += sizeof(edit::Matrix) * uint64_t(object->geometries()->size());
+    }
+  }
+  return bytes;
+}
+
+} // namespace
+
+RecordingReader::RecordingReader(std::FILE* file, std::string name, const ShaderRegistry* shaders, const RecordingLimits& limits)
+    : file_(file), name_(std::move(name)), limits_(limits), validator_(shaders) {
+  FileHeader header;
+  read(&header, sizeof(header), false);
+  if (std::memcmp(header.magic, magic, sizeof(magic)) != 0) fail("not a recording");
+  if (header.version != version)
+    fail("a recording of version " + std::to_string(header.version) + "; this program reads version " + std::to_string(version));
+  if (header.reserved != 0) fail("a reserved field is not 0");
+}
+
+void RecordingReader::fail(const std::string& what) const {
+  throw BadRecording(name_ + ": byte " + std::to_string(offset_) + ": " + what);
+}
+
+// False only at the end of the file, where that is allowed.
+bool RecordingReader::read(void* out, size_t bytes, bool mayEnd) {
+  const size_t got = std::fread(out, 1, bytes, file_.get());
+  if (got == 0 && mayEnd && std::feof(file_.get())) return false;
+  if (got != bytes) fail(std::ferror(file_.get()) ? std::strerror(errno) : "the file ends in the middle");
+  offset_ += bytes;
+  return true;
+}
+
+void RecordingReader::account(uint64_t bytes) {
+  total_ += bytes;
+  if (total_ > limits_.totalBytes) fail("more than " + std::to_string(limits_.totalBytes) + " bytes of data");
+}
+
+// Piece by piece: a size that the file does not have is noticed before memory is taken for it.
+std::vector<uint8_t> RecordingReader::readPayload(uint64_t bytes) {
+  constexpr uint64_t piece = 1 << 20;
+  std::vector<uint8_t> payload;
+  while (payload.size() < bytes) {
+    const size_t before = payload.size();
+    payload.resize(before + static_cast<size_t>(std::min(piece, bytes - before)));
+    read(payload.data() + before, payload.size() - before, false);
+  }
+  return payload;
+}
+
+void RecordingReader::readArray(uint64_t id, uint64_t bytes, uint64_t stored, uint64_t hash, Commit& commit) {
+  constexpr uint64_t bestRatio = 1 << 16; // zstd makes 4 bytes of a block of 128 KiB at best
+  if (id == 0 || commit.arrays.contains(id)) fail("array " + std::to_string(id) + " twice, or without a number");
+  if (bytes > limits_.arrayBytes || stored > ZSTD_compressBound(bytes) || bytes > bestRatio * stored)
+    fail("an array of " + std::to_string(bytes) + " bytes in " + std::to_string(stored));
+  account(bytes);
+  const std::vector<uint8_t> packed = readPayload(stored);
+  auto array = std::make_shared<Array>(bytes);
+  const size_t size = ZSTD_decompress(array->data(), bytes, packed.data(), packed.size());
+  if (ZSTD_isError(size)) fail(std::string("zstd: ") + ZSTD_getErrorName(size));
+  if (size != bytes) fail("an array that is shorter than it claims");
+  if (XXH3_64bits(array->data(), bytes) != hash) fail("an array with a wrong checksum");
+  commit.arrays.emplace(id, std::move(array));
+}
+
+void RecordingReader::readEdits(uint64_t bytes, uint64_t stored, uint64_t hash, Commit& commit) {
+  if (bytes != stored || bytes > limits_.editBytes) fail("edits of " + std::to_string(bytes) + " bytes");
+  account(bytes);
+  const std::vector<uint8_t> buffer = readPayload(bytes);
+  if (XXH3_64bits(buffer.data(), buffer.size()) != hash) fail("edits with a wrong checksum");
+  constexpr flatbuffers::uoffset_t depth = 8, bytesPerTable = 8;
+  flatbuffers::Verifier verifier(buffer.data(), buffer.size(), depth,
+                                 static_cast<flatbuffers::uoffset_t>(bytes / bytesPerTable + 1));
+  if (!edit::VerifyEditsBuffer(verifier)) fail("edits that are no valid flatbuffer");
+  const edit::Edits& edits = *edit::GetEdits(buffer.data());
+  if (unpackedBytes(edits) > bytes) fail("edits that share their parts");
+  edits.UnPackTo(&commit.edits);
+}
+
+std::shared_ptr<const Commit> RecordingReader::next() {
+  auto commit = std::make_shared<Commit>();
+  ChunkHeader header;
+  bool begun = false;
+  while (read(&header, sizeof(header), !begun)) {
+    begun = true;
+    if (header.reserved != 0) fail("a reserved field is not 0");
+    if (header.kind == ChunkKind::Array) {
+      readArray(header.id, header.bytes, header.stored, header.hash, *commit);
+      continue;
+    }
+    if (header.kind != ChunkKind::Edits) fail("an unknown kind of chunk");
+    if (++commits_ > limits_.commits) fail("more than " + std::to_string(limits_.commits) + " commits");
+    readEdits(header.bytes, header.stored, header.hash, *commit);
+    try {
+      validator_.check(*commit);
+    } catch (const std::runtime_error& e) { fail(e.what()); }
+    return commit;
+  }
+  return nullptr;
+}
+
+std::unique_ptr<RecordingReader> openRecording(const std::string& path, const ShaderRegistry* shaders) {
+  std::FILE* file = std::fopen(path.c_str(), "rbe");
+  if (!file) throw BadRecording(path + ": " + std::strerror(errno));
+  return std::make_unique<RecordingReader>(file, path, shaders);
+}
+
+} // namespace openrt

@@ -1,0 +1,152 @@
+// record.cpp: the backend that writes commits to a file, alone or beside one that renders. Application thread; cancel and
+// progress from any.
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <limits>
+#include <stdexcept>
+#include <system_error>
+#include <vector>
+
+#include <xxhash.h>
+#include <zstd.h>
+
+#include "backend/backend.h"
+#include "backend/record/format.h"
+
+namespace openrt {
+namespace {
+
+using namespace recording;
+
+// Writes the file; any failure is a std::system_error that names it.
+class RecordingWriter {
+ public:
+  explicit RecordingWriter(std::string path) : path_(std::move(path)), file_(std::fopen(path_.c_str(), "wbe")) {
+    if (!file_) failed("cannot be made");
+    FileHeader header{};
+    std::memcpy(header.magic, magic, sizeof(magic));
+    header.version = version;
+    put(&header, sizeof(header));
+    flush();
+  }
+  ~RecordingWriter() { std::fclose(file_); }
+  RecordingWriter(const RecordingWriter&) = delete;
+  RecordingWriter& operator=(const RecordingWriter&) = delete;
+
+  void write(const Commit& commit) {
+    std::vector<ArrayId> ids; // in one order, so that equal scenes make equal files
+    for (const auto& [id, array] : commit.arrays) ids.push_back(id);
+    std::sort(ids.begin(), ids.end());
+    for (ArrayId id : ids) writeArray(id, *commit.arrays.at(id));
+    writeEdits(commit.edits);
+    flush();
+  }
+
+ private:
+  void writeArray(ArrayId id, const Array& array) {
+    constexpr int fastest = 1;
+    packed_.resize(ZSTD_compressBound(array.size()));
+    const size_t stored = ZSTD_compress(packed_.data(), packed_.size(), array.data(), array.size(), fastest);
+    if (ZSTD_isError(stored)) throw std::runtime_error(std::string("zstd: ") + ZSTD_getErrorName(stored));
+    const ChunkHeader header{ChunkKind::Array, 0, id, array.size(), stored, XXH3_64bits(array.data(), array.size())};
+    put(&header, sizeof(header));
+    put(packed_.data(), stored);
+  }
+
+  void writeEdits(const edit::EditsT& edits) {
+    flatbuffers::FlatBufferBuilder builder;
+    edit::FinishEditsBuffer(builder, edit::Edits::Pack(builder, &edits));
+    const size_t bytes = builder.GetSize();
+    const ChunkHeader header{ChunkKind::Edits, 0, 0, bytes, bytes, XXH3_64bits(builder.GetBufferPointer(), bytes)};
+    put(&header, sizeof(header));
+    put(builder.GetBufferPointer(), bytes);
+  }
+
+  void put(const void* data, size_t bytes) {
+    if (bytes > 0 && std::fwrite(data, 1, bytes, file_) != bytes) failed("cannot be written");
+  }
+  void flush() {
+    if (std::fflush(file_) != 0) failed("cannot be written");
+  }
+  [[noreturn]] void failed(const char* what) const {
+    throw std::system_error(errno, std::generic_category(), "recording " + path_ + " " + what);
+  }
+
+  std::string path_;
+  std::FILE* file_;
+  std::vector<char> packed_;
+};
+
+// Records; what renders, if anything does, sees everything that it would see alone.
+class RecordBackend final : public Backend {
+ public:
+  RecordBackend(const BackendOptions& options, std::unique_ptr<Backend> renderer)
+      : writer_(std::make_unique<RecordingWriter>(options.file)), renderer_(std::move(renderer)) {}
+
+  // After a failed write the file is of no use: the recording ends, rendering goes on with the next call.
+  void apply(std::shared_ptr<const Commit> commit) override {
+    if (writer_) {
+      try {
+        writer_->write(*commit);
+      } catch (...) {
+        writer_.reset();
+        throw;
+      }
+    } else if (!renderer_) {
+      throw std::system_error(std::make_error_code(std::errc::io_error), "the recording has ended with an error");
+    }
+    for (const auto& entry : commit->edits.edits)
+      if (const auto* frame = entry ? entry->any.AsFrameSettings() : nullptr) channels_ = frame->channels;
+    if (renderer_) renderer_->apply(std::move(commit));
+  }
+
+  void start() override {
+    if (renderer_) renderer_->start();
+  }
+  void wait() override {
+    if (renderer_) renderer_->wait();
+  }
+  void cancel() override {
+    if (renderer_) renderer_->cancel();
+  }
+  float progress() const override { return renderer_ ? renderer_->progress() : 1; }
+
+  bool read(RTenum channel, std::span<float> out) const override {
+    if (renderer_) return renderer_->read(channel, out);
+    if (!(channels_ & channel)) return false;
+    std::fill(out.begin(), out.end(), 0.0f);
+    return true;
+  }
+  void stats(RTstats& stats) const override {
+    if (renderer_) renderer_->stats(stats);
+  }
+  void castRays(std::span<const RTray> rays, std::span<RThit> hits) override {
+    if (renderer_) return renderer_->castRays(rays, hits);
+    RThit nothing{};
+    nothing.t = std::numeric_limits<float>::infinity();
+    std::fill(hits.begin(), hits.end(), nothing);
+  }
+  void occludedRays(std::span<const RTray> rays, std::span<uint8_t> occluded) override {
+    if (renderer_) return renderer_->occludedRays(rays, occluded);
+    std::fill(occluded.begin(), occluded.end(), uint8_t(0));
+  }
+
+ private:
+  std::unique_ptr<RecordingWriter> writer_;
+  std::unique_ptr<Backend> renderer_;
+  uint32_t channels_ = 0;
+};
+
+} // namespace
+
+std::unique_ptr<Backend> makeRecordBackend(const BackendOptions& options) {
+  return std::make_unique<RecordBackend>(options, nullptr);
+}
+
+std::unique_ptr<Backend> makeTeeBackend(const BackendOptions& options, std::unique_ptr<Backend> renderer) {
+  return std::make_unique<RecordBackend>(options, std::move(renderer));
+}
+
+} // namespace openrt

@@ -1,0 +1,85 @@
+// validate_arrays.cpp: sizes, indices and numbers of vertices and texels. Pure functions.
+#include "backend/record/validate_arrays.h"
+
+#include <cmath>
+#include <stdexcept>
+
+namespace openrt {
+namespace {
+
+void demand(bool condition, const char* what) {
+  if (!condition) throw std::runtime_error(what);
+}
+
+const Array* arriving(const Commit& commit, ArrayId id) {
+  if (id == 0) return nullptr;
+  const auto found = commit.arrays.find(id);
+  demand(found != commit.arrays.end() && found->second, "an array that did not arrive with its edit");
+  return found->second.get();
+}
+
+void checkFinite(const Array& array, const char* what) {
+  const float* values = array.as<float>();
+  for (size_t i = 0; i < array.count<float>(); i++) demand(std::isfinite(values[i]), what);
+}
+
+void checkAttribute(const Commit& commit, ArrayId id, size_t vertices, size_t components, const char* what) {
+  const Array* array = arriving(commit, id);
+  if (!array) return;
+  demand(array->size() == vertices * components * sizeof(float), what);
+  checkFinite(*array, what);
+}
+
+size_t cornersOf(edit::Primitive primitive) {
+  switch (primitive) {
+  case edit::Primitive::Triangles: return 3;
+  case edit::Primitive::Lines: return 2;
+  case edit::Primitive::Points: return 1;
+  case edit::Primitive::Sphere: break;
+  }
+  throw std::runtime_error("an unknown primitive");
+}
+
+} // namespace
+
+void checkGeometryArrays(const edit::GeometryT& g, const Commit& commit) {
+  if (g.primitive == edit::Primitive::Sphere) {
+    demand(!g.points && !g.indices && !g.normals && !g.texCoords && !g.colors, "a sphere with vertices");
+    return;
+  }
+  const size_t corners = cornersOf(g.primitive);
+  const Array* points = arriving(commit, g.points);
+  const Array* indices = arriving(commit, g.indices);
+  demand(points && indices, "a geometry without vertices");
+  demand(points->size() % (3 * sizeof(float)) == 0, "points of a wrong size");
+  demand(indices->size() % (corners * sizeof(uint32_t)) == 0, "indices of a wrong size");
+  const size_t vertices = points->count<float>() / 3;
+  checkFinite(*points, "a point that is not finite");
+  for (size_t i = 0; i < indices->count<uint32_t>(); i++)
+    demand(indices->as<uint32_t>()[i] < vertices, "an index beyond the points");
+  checkAttribute(commit, g.normals, vertices, 3, "normals that are wrong in size or not finite");
+  checkAttribute(commit, g.texCoords, vertices, 2, "texture coordinates that are wrong in size or not finite");
+  checkAttribute(commit, g.colors, vertices, 4, "colours that are wrong in size or not finite");
+}
+
+void checkTexture(const edit::TextureT& t, const Commit& commit, const edit::TextureT* current) {
+  constexpr uint32_t maxSide = 65536;
+  demand(t.components >= 1 && t.components <= 4 && t.width >= 1 && t.height >= 1 && t.width <= maxSide && t.height <= maxSide &&
+             uint64_t(t.width) * t.height <= uint64_t(1) << 28,
+         "a texture of an impossible size");
+  demand(t.wrapS <= edit::Wrap::MAX && t.wrapT <= edit::Wrap::MAX, "an unknown wrap");
+  demand(t.texels != 0, "a texture without texels");
+  const auto found = commit.arrays.find(t.texels);
+  if (found == commit.arrays.end()) {
+    demand(current && t.texels == current->texels, "texels that did not arrive with their edit");
+    demand(t.width == current->width && t.height == current->height && t.components == current->components &&
+               t.isFloat == current->isFloat,
+           "texels of a wrong size");
+    return;
+  }
+  const uint64_t values = uint64_t(t.width) * t.height * t.components;
+  demand(found->second->size() == values * (t.isFloat ? sizeof(float) : 1), "texels of a wrong size");
+  if (t.isFloat) checkFinite(*found->second, "a texel that is not finite");
+}
+
+} // namespace openrt

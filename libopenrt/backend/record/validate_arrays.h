@@ -1,0 +1,15 @@
+// validate_arrays.h: checks of the bulk data that edits name. Used by the validator; pure functions that throw
+// std::runtime_error.
+#pragma once
+
+#include "scene/commit.h"
+
+namespace openrt {
+
+// Arrays of a geometry must travel with its commit, fit each other and hold finite numbers and indices within the points.
+void checkGeometryArrays(const edit::GeometryT& geometry, const Commit& commit);
+
+// Texels travel with the commit, or are the ones that the texture has already (current: its last edit; null: none).
+void checkTexture(const edit::TextureT& texture, const Commit& commit, const edit::TextureT* current);
+
+} // namespace openrt

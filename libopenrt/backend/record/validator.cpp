@@ -1,0 +1,212 @@
+// validator.cpp: ids, references and roles of edits. Arrays are checked in validate_arrays.cpp.
+#include "backend/record/validator.h"
+
+#include <cmath>
+#include <stdexcept>
+
+#include "backend/record/validate_arrays.h"
+#include "openrt/openrt.h"
+#include "shading/parameters.h"
+#include "shading/registry.h"
+
+namespace openrt {
+namespace {
+
+[[noreturn]] void refuse(const std::string& what) { throw std::runtime_error(what); }
+void demand(bool condition, const char* what) {
+  if (!condition) refuse(what);
+}
+
+void checkMatrix(const edit::Matrix* matrix) {
+  demand(matrix != nullptr, "a matrix is missing");
+  const auto& m = *matrix->m();
+  for (int i = 0; i < 16; i++) demand(std::isfinite(m.Get(i)), "a matrix that is not finite");
+  demand(m.Get(3) == 0 && m.Get(7) == 0 && m.Get(11) == 0 && m.Get(15) == 1, "a matrix that is not affine");
+}
+
+} // namespace
+
+void CommitValidator::enter(uint32_t id, Kind kind) {
+  demand(id != 0, "an edit without an id");
+  const auto [place, fresh] = live_.emplace(id, kind);
+  demand(fresh || place->second == kind, "an id that names two kinds of things");
+  demand(!dead_.contains(id), "an id that was deleted before");
+}
+
+void CommitValidator::leave(uint32_t id, Kind kind) {
+  need(id, kind);
+  live_.erase(id);
+  dead_.insert(id);
+}
+
+void CommitValidator::need(uint32_t id, Kind kind) const {
+  const auto found = live_.find(id);
+  if (found == live_.end() || found->second != kind) refuse("unknown id " + std::to_string(id));
+}
+
+void CommitValidator::needShader(uint32_t shader, RtsKind kind) const {
+  need(shader, Kind::Shader);
+  const RtsClass* table = classes_.at(shaderClasses_.at(shader));
+  demand(!table || table->kind == kind, "a shader in a role of another kind");
+}
+
+void CommitValidator::check(const edit::TextureT& texture, const Commit& commit) {
+  enter(texture.id, Kind::Texture);
+  const auto known = textures_.find(texture.id);
+  checkTexture(texture, commit, known == textures_.end() ? nullptr : &known->second);
+  textures_.insert_or_assign(texture.id, texture);
+}
+
+void CommitValidator::check(const edit::ShaderClassT& shaderClass) {
+  demand(!live_.contains(shaderClass.id), "a shader class made twice");
+  enter(shaderClass.id, Kind::ShaderClass);
+  classes_[shaderClass.id] = shaders_ ? &shaders_->find(shaderClass.name, shaderClass.library) : nullptr;
+}
+
+void CommitValidator::check(const edit::ShaderT& shader) {
+  demand(!live_.contains(shader.id), "a shader made twice");
+  enter(shader.id, Kind::Shader);
+  need(shader.shaderClass, Kind::ShaderClass);
+  shaderClasses_[shader.id] = shader.shaderClass;
+}
+
+void CommitValidator::check(const edit::ParameterT& parameter) const {
+  need(parameter.shader, Kind::Shader);
+  const RtsClass* table = classes_.at(shaderClasses_.at(parameter.shader));
+  if (!table) return;
+  demand(parameter.index < table->paramCount, "a parameter that its class does not have");
+  const RtsParam& param = table->params[parameter.index];
+  const bool list = param.type == RTS_FLOATS;
+  demand(list || parameter.floats.size() == parameterFloats(param.type), "a parameter with a wrong number of values");
+  const std::string problem = param.type == RTS_INT ? valueProblem(param, parameter.integer)
+                                                    : valueProblem(param, std::span<const float>(parameter.floats));
+  if (!problem.empty()) refuse(problem);
+}
+
+void CommitValidator::check(const edit::GeometryT& geometry, const Commit& commit) const {
+  checkMatrix(geometry.matrix.get());
+  demand(std::isfinite(geometry.width) && geometry.width > 0, "a width that is not positive");
+  if (geometry.shader != 0) needShader(geometry.shader, RTS_SURFACE);
+  checkGeometryArrays(geometry, commit);
+}
+
+void CommitValidator::check(const edit::ObjectT& object, const Commit& commit) {
+  enter(object.id, Kind::Object);
+  demand(objects_[object.id].children == 0, "an object replaced before its instances were deleted");
+  for (const auto& geometry : object.geometries) {
+    demand(geometry != nullptr, "an empty geometry");
+    check(*geometry, commit);
+  }
+}
+
+void CommitValidator::check(const edit::InstanceT& instance) {
+  const bool fresh = !live_.contains(instance.id);
+  enter(instance.id, Kind::Instance);
+  need(instance.object, Kind::Object);
+  if (instance.parent != 0) need(instance.parent, Kind::Object);
+  if (instance.shader != 0) needShader(instance.shader, RTS_SURFACE);
+  checkMatrix(instance.matrix.get());
+  Placing& placing = instances_[instance.id];
+  if (!fresh) {
+    demand(placing.parent == instance.parent && placing.object == instance.object, "an instance that changes its object");
+    return;
+  }
+  placing = {instance.parent, instance.object};
+  objects_[instance.object].users++;
+  if (instance.parent == 0) return;
+  objects_[instance.parent].children++;
+  nestingChanged_ = true;
+}
+
+void CommitValidator::check(const edit::LightT& light) {
+  enter(light.id, Kind::Light);
+  needShader(light.shader, RTS_LIGHT);
+  checkMatrix(light.matrix.get());
+}
+
+void CommitValidator::check(const edit::FrameSettingsT& frame) {
+  constexpr uint32_t channels = 2 * RT_VARIANCE - 1, maxSide = 65536;
+  demand(frame.width >= 1 && frame.height >= 1 && frame.width <= maxSide && frame.height <= maxSide &&
+             uint64_t(frame.width) * frame.height <= uint64_t(1) << 28,
+         "a frame of an impossible size");
+  demand(frame.channels != 0 && (frame.channels & ~channels) == 0, "a frame with unknown channels");
+  demand(frame.samples >= 1 && frame.samples <= 65536 && frame.depth <= 10000, "a frame of an impossible quality");
+  hasFrame_ = true;
+}
+
+void CommitValidator::deleteObject(uint32_t id) {
+  leave(id, Kind::Object);
+  demand(objects_[id].children == 0 && objects_[id].users == 0, "an object deleted before its instances");
+  objects_.erase(id);
+}
+
+void CommitValidator::deleteInstance(uint32_t id) {
+  leave(id, Kind::Instance);
+  const Placing placing = instances_.at(id);
+  objects_[placing.object].users--;
+  if (placing.parent != 0) objects_[placing.parent].children--;
+  instances_.erase(id);
+}
+
+void CommitValidator::checkEdit(const edit::AnyUnion& any, const Commit& commit) {
+  using edit::Any;
+  demand(any.value != nullptr, "an empty edit");
+  const auto role = [&](const auto& edit, RtsKind kind) {
+    if (edit.shader != 0) needShader(edit.shader, kind);
+    checkMatrix(edit.matrix.get());
+  };
+  switch (any.type) {
+  case Any::Texture: return check(*any.AsTexture(), commit);
+  case Any::DeleteTexture: return leave(any.AsDeleteTexture()->id, Kind::Texture);
+  case Any::ShaderClass: return check(*any.AsShaderClass());
+  case Any::Shader: return check(*any.AsShader());
+  case Any::Parameter: return check(*any.AsParameter());
+  case Any::DeleteShader: return leave(any.AsDeleteShader()->id, Kind::Shader);
+  case Any::Object: return check(*any.AsObject(), commit);
+  case Any::DeleteObject: return deleteObject(any.AsDeleteObject()->id);
+  case Any::Instance: return check(*any.AsInstance());
+  case Any::DeleteInstance: return deleteInstance(any.AsDeleteInstance()->id);
+  case Any::Light: return check(*any.AsLight());
+  case Any::DeleteLight: return leave(any.AsDeleteLight()->id, Kind::Light);
+  case Any::Camera: return role(*any.AsCamera(), RTS_CAMERA);
+  case Any::Environment: return role(*any.AsEnvironment(), RTS_ENVIRONMENT);
+  case Any::DefaultShader:
+    if (any.AsDefaultShader()->shader != 0) needShader(any.AsDefaultShader()->shader, RTS_SURFACE);
+    return;
+  case Any::FrameSettings: return check(*any.AsFrameSettings());
+  case Any::NONE: break;
+  }
+  refuse("an unknown kind of edit");
+}
+
+// No object contains itself: every object comes off once nothing that is left contains it.
+void CommitValidator::checkNesting() const {
+  std::unordered_map<uint32_t, uint64_t> containers;
+  std::unordered_map<uint32_t, std::vector<uint32_t>> contents;
+  for (const auto& [id, placing] : instances_) {
+    if (placing.parent == 0) continue;
+    contents[placing.parent].push_back(placing.object);
+    containers[placing.object]++;
+    containers[placing.parent];
+  }
+  std::vector<uint32_t> free;
+  for (const auto& [id, count] : containers)
+    if (count == 0) free.push_back(id);
+  size_t removed = 0;
+  for (; removed < free.size(); removed++)
+    for (uint32_t inner : contents[free[removed]])
+      if (--containers[inner] == 0) free.push_back(inner);
+  demand(removed == containers.size(), "an object that contains itself");
+}
+
+void CommitValidator::check(const Commit& commit) {
+  for (const auto& entry : commit.edits.edits) {
+    demand(entry != nullptr, "an empty edit");
+    checkEdit(entry->any, commit);
+  }
+  if (nestingChanged_) checkNesting();
+  nestingChanged_ = false;
+  demand(hasFrame_ || !commit.edits.render, "a frame before its size is known");
+}
+
+} // namespace openrt

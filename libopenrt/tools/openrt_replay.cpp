@@ -1,0 +1,166 @@
+// openrt_replay.cpp: the program openrt-replay: renders a recording again and writes one of its frames. Reads the file on the
+// main thread; the local backend brings its own.
+// Exit codes: 0 done, 1 render failed or picture not written, 2 usage, 3 recording missing or unusable.
+#include <cstdio>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "backend/backend.h"
+#include "backend/record/reader.h"
+#include "shading/registry.h"
+
+namespace {
+
+using namespace openrt;
+
+enum ExitCode { Done = 0, RenderFailed = 1, Usage = 2, InputUnusable = 3 };
+
+struct Options {
+  std::string recording, output, shaderPath;
+  uint32_t threads = 0;
+  uint64_t frame = 0; // from 1; 0: the last
+  bool stats = false;
+};
+
+struct Picture {
+  uint32_t width = 0, height = 0;
+  std::vector<float> rgba; // first row at the top
+};
+
+void log(int level, const char* message, void*) {
+  static const char* const names[] = {"debug", "info", "warning", "error"};
+  if (level >= 2) std::fprintf(stderr, "openrt-replay: %s: %s\n", names[level > 3 ? 3 : level], message);
+}
+
+// Colour PFM: three floats a pixel, little-endian, rows from the bottom up. Written beside its name and renamed.
+bool writePfm(const Picture& picture, const std::string& path) {
+  const std::string partial = path + ".partial";
+  std::FILE* file = std::fopen(partial.c_str(), "wbe");
+  if (!file) return false;
+  bool good = std::fprintf(file, "PF\n%u %u\n-1.0\n", picture.width, picture.height) > 0;
+  std::vector<float> row(size_t(picture.width) * 3);
+  for (uint32_t y = picture.height; y-- > 0 && good;) {
+    const float* in = picture.rgba.data() + size_t(y) * picture.width * 4;
+    for (size_t x = 0; x < picture.width; x++)
+      for (size_t k = 0; k < 3; k++) row[3 * x + k] = in[4 * x + k];
+    good = std::fwrite(row.data(), sizeof(float), row.size(), file) == row.size();
+  }
+  good = std::fclose(file) == 0 && good;
+  std::error_code error;
+  if (good) std::filesystem::rename(partial, path, error);
+  if (!good || error) std::filesystem::remove(partial, error);
+  return good && !error;
+}
+
+void printStats(const Backend& backend, uint64_t frames) {
+  RTstats s{};
+  s.size = sizeof(s);
+  backend.stats(s);
+  std::printf("{\"frames\": %llu, \"triangles\": %llu, \"cameraRays\": %llu, \"shadowRays\": %llu, \"secondaryRays\": %llu,\n"
+              " \"commitSeconds\": %g, \"buildSeconds\": %g, \"renderSeconds\": %g, \"threads\": %u, \"isa\": \"%s\", "
+              "\"kernel\": \"%s\"}\n",
+              static_cast<unsigned long long>(frames), static_cast<unsigned long long>(s.triangles),
+              static_cast<unsigned long long>(s.cameraRays), static_cast<unsigned long long>(s.shadowRays),
+              static_cast<unsigned long long>(s.secondaryRays), s.commitSeconds, s.buildSeconds, s.renderSeconds, s.threads,
+              s.isa, s.kernel);
+}
+
+int complain(ExitCode code, const std::string& message) {
+  std::fprintf(stderr, "openrt-replay: error: %s\n", message.c_str());
+  return code;
+}
+
+std::optional<Options> parseOptions(int argc, char** argv, int& exitCode) {
+  Options options;
+  CLI::App app("Renders a recording made with backend=record or record=PATH and writes a frame as PFM.", "openrt-replay");
+  app.add_option("recording", options.recording, "the file to replay")->required();
+  app.add_option("-o,--output", options.output, "the picture to write (.pfm)");
+  app.add_option("--frame", options.frame, "which frame, from 1 (default: the last)")->check(CLI::PositiveNumber);
+  app.add_option("--threads", options.threads, "render threads (default: as many as the process may use)")
+      ->check(CLI::Range(0, 1024));
+  app.add_option("--shader-path", options.shaderPath, "folders with shader libraries, separated by colons");
+  app.add_flag("--stats", options.stats, "print counts and times as JSON");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    exitCode = app.exit(e, std::cout, std::cerr) == 0 ? Done : Usage;
+    return std::nullopt;
+  }
+  return options;
+}
+
+// Applies commits and renders their frames, up to the one asked for. Messages of the reader leave as they are thrown.
+class Replay {
+ public:
+  Replay(RecordingReader& reader, Backend& backend) : reader_(reader), backend_(backend) {}
+
+  // Returns false when the recording has no further frame.
+  bool renderNext() {
+    while (std::shared_ptr<const Commit> commit = reader_.next()) {
+      for (const auto& entry : commit->edits.edits)
+        if (const auto* frame = entry->any.AsFrameSettings()) settings_ = *frame;
+      const bool render = commit->edits.render;
+      backend_.apply(std::move(commit));
+      if (!render) continue;
+      backend_.start();
+      backend_.wait();
+      frames_++;
+      return true;
+    }
+    return false;
+  }
+  uint64_t frames() const { return frames_; }
+
+  std::optional<Picture> picture() const {
+    Picture picture{settings_.width, settings_.height, {}};
+    picture.rgba.resize(size_t(settings_.width) * settings_.height * 4);
+    if (!(settings_.channels & RT_RGBA) || !backend_.read(RT_RGBA, picture.rgba)) return std::nullopt;
+    return picture;
+  }
+
+ private:
+  RecordingReader& reader_;
+  Backend& backend_;
+  edit::FrameSettingsT settings_;
+  uint64_t frames_ = 0;
+};
+
+int run(const Options& options) {
+  const ShaderRegistry shaders(shaderFolders(options.shaderPath));
+  std::unique_ptr<RecordingReader> reader;
+  try {
+    reader = openRecording(options.recording, &shaders);
+  } catch (const std::exception& e) { return complain(InputUnusable, e.what()); }
+  BackendOptions backendOptions;
+  backendOptions.threads = options.threads;
+  backendOptions.shaders = &shaders;
+  backendOptions.log = log;
+  const std::unique_ptr<Backend> backend = makeLocalBackend(backendOptions);
+  Replay replay(*reader, *backend);
+  bool more = true;
+  try {
+    while (more && (options.frame == 0 || replay.frames() < options.frame)) more = replay.renderNext();
+  } catch (const BadRecording& e) { return complain(InputUnusable, e.what()); }
+  if (options.stats) printStats(*backend, replay.frames());
+  if (replay.frames() < std::max<uint64_t>(options.frame, 1))
+    return complain(InputUnusable, options.recording + ": has " + std::to_string(replay.frames()) + " frames");
+  if (options.output.empty()) return Done;
+  const std::optional<Picture> picture = replay.picture();
+  if (!picture) return complain(RenderFailed, "the frame has no colour channel");
+  if (!writePfm(*picture, options.output)) return complain(RenderFailed, options.output + ": cannot be written");
+  return Done;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+  int exitCode = Done;
+  try {
+    const std::optional<Options> options = parseOptions(argc, argv, exitCode);
+    return options ? run(*options) : exitCode;
+  } catch (const std::exception& e) { return complain(RenderFailed, e.what()); }
+}
