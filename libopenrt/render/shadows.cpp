@@ -111,7 +111,7 @@ void castShadows(RtsBatch& batch, const uint8_t* wanted, RtsIllumination& light)
   if (s.rays.count == 0) return;
   const RenderScene& scene = *batch.scene;
   auto* blocked = batch.arena->take<uint8_t>(s.rays.count);
-  scene.kernel->occluded(s.rays, maskOpaque, Coherence::incoherent, blocked);
+  scene.kernel->occluded(s.rays, maskOpaque, Coherence::coherent, blocked);
   for (uint32_t i = 0; i < s.rays.count; i++)
     if (blocked[i]) scaleColor(light, s.lane[i], 0, 0, 0);
   if (!scene.transparentShadows) return;
