@@ -3,20 +3,12 @@
 #include "render/points.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 namespace openrt {
 namespace {
 
 constexpr float gammaOf(int n) { return n * 0x1p-24f / (1 - n * 0x1p-24f); }
-
-float nextUp(float x) {
-  if (x == 0) return 0x1p-149f;
-  const int32_t bits = std::bit_cast<int32_t>(x);
-  return std::bit_cast<float>(x > 0 ? bits + 1 : bits - 1);
-}
-float nextDown(float x) { return -nextUp(-x); }
 
 struct Out { // arrays being filled for one lane
   float *position[3], *direction[3], *geometric[3], *normal[3], *uv[2], *color[4], *distance, *error;
@@ -151,14 +143,6 @@ void store(const Record& r, const Rays& rays, uint32_t lane, Local& h, const Out
 }
 
 } // namespace
-
-void offsetPoint(const float p[3], const float n[3], float error, float out[3]) {
-  for (int k = 0; k < 3; k++) {
-    const float step = n[k] * error;
-    const float moved = p[k] + step;
-    out[k] = step > 0 ? nextUp(moved) : step < 0 ? nextDown(moved) : moved;
-  }
-}
 
 void sortByBucket(const RenderScene& scene, const RayHits& hits, const uint32_t* rayLanes, uint32_t n, uint32_t* order,
                   std::vector<uint32_t>& counts, std::vector<BucketRange>& ranges) {

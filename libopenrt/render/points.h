@@ -1,6 +1,7 @@
 // points.h: hits become shading points, sorted into buckets of one shader class and one set of lights. [render]
 #pragma once
 
+#include <bit>
 #include <vector>
 
 #include "render/render_scene.h"
@@ -49,6 +50,14 @@ bool liftToSmooth(const RenderScene& scene, const Points& points, uint32_t i, fl
 
 // p moved along n (unit) out of the error bound, then one float further on every axis: M. Pharr, W. Jakob, G. Humphreys,
 // "Physically Based Rendering", 3rd ed., 3.9.5.
-void offsetPoint(const float p[3], const float n[3], float error, float out[3]);
+inline void offsetPoint(const float p[3], const float n[3], float error, float out[3]) {
+  for (int k = 0; k < 3; k++) {
+    const float step = n[k] * error, moved = p[k] + step;
+    const int32_t bits = std::bit_cast<int32_t>(moved);
+    const int32_t outward = (step > 0) == (moved > 0) ? bits + 1 : bits - 1; // away from or towards zero
+    const float next = moved != 0 ? std::bit_cast<float>(outward) : step;
+    out[k] = step != 0 ? next : moved;
+  }
+}
 
 } // namespace openrt

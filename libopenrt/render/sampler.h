@@ -47,13 +47,21 @@ inline uint32_t sobol1Reversed(uint32_t x) {
 
 inline float toUnit(uint32_t x) { return float(x >> 8) * 0x1p-24f; } // [0, 1)
 
-// Sample `index` of a pair of dimensions in a pixel. Any first 2^k samples are a (0,k,2)-net.
-inline void samplePair(uint32_t pixel, uint32_t index, uint32_t pair, uint32_t seed, float& x, float& y) {
-  const uint32_t key = hash(hash(pixel, seed), pair);
-  // A scrambled order of the indices decorrelates the pairs of one pixel from each other.
-  const uint32_t shuffled = reverseBits(scrambleReversed(reverseBits(index), hash(key, 0x68bc21ebu)));
-  x = toUnit(reverseBits(scrambleReversed(shuffled, hash(key, 0x02e5be93u))));
-  y = toUnit(reverseBits(scrambleReversed(sobol1Reversed(shuffled), hash(key, 0x967a889bu))));
-}
+// The samples of one pair of dimensions in one pixel. Any first 2^k of them are a (0,k,2)-net.
+class PairSampler {
+ public:
+  PairSampler(uint32_t pixel, uint32_t pair, uint32_t seed) {
+    const uint32_t key = hash(hash(pixel, seed), pair);
+    order_ = hash(key, 0x68bc21ebu), x_ = hash(key, 0x02e5be93u), y_ = hash(key, 0x967a889bu);
+  }
+  void operator()(uint32_t index, float& x, float& y) const {
+    const uint32_t shuffled = reverseBits(scrambleReversed(reverseBits(index), order_)); // decorrelates the pairs of a pixel
+    x = toUnit(reverseBits(scrambleReversed(shuffled, x_)));
+    y = toUnit(reverseBits(scrambleReversed(sobol1Reversed(shuffled), y_)));
+  }
+
+ private:
+  uint32_t order_, x_, y_;
+};
 
 } // namespace openrt

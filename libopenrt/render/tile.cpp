@@ -128,13 +128,19 @@ void TileRenderer::makeCameraRays(Paths& paths, uint32_t firstSample) {
   float* xy[2] = {arena_.take<float>(size), arena_.take<float>(size)};
   RtsRays local;
   for (int k = 0; k < 3; k++) local.origin[k] = arena_.takeZero<float>(size), local.direction[k] = arena_.takeZero<float>(size);
+  uint32_t lane = 0;
+  for (uint32_t pixel : pixels_) {
+    const PairSampler sampler(pixel, 0, scene_.frame.seed);
+    const float x = float(pixel % film_.width()), y = float(pixel / film_.width());
+    for (uint32_t sample = 0; sample < samples; sample++, lane++) {
+      float dx = 0.5f, dy = 0.5f; // one sample: the pixel's centre
+      if (scene_.frame.samples > 1) sampler(firstSample + sample, dx, dy);
+      xy[0][lane] = x + dx, xy[1][lane] = y + dy;
+    }
+  }
+  for (; lane < size; lane++) xy[0][lane] = xy[0][n - 1], xy[1][lane] = xy[1][n - 1];
   for (uint32_t i = 0; i < size; i++) {
-    const uint32_t lane = std::min(i, n - 1), pixel = pixels_[lane / samples];
-    float dx = 0.5f, dy = 0.5f; // one sample: the pixel's centre
-    if (scene_.frame.samples > 1) samplePair(pixel, firstSample + lane % samples, 0, scene_.frame.seed, dx, dy);
-    xy[0][i] = float(pixel % film_.width()) + dx;
-    xy[1][i] = float(pixel / film_.width()) + dy;
-    paths.path[i] = lane;
+    paths.path[i] = i;
     paths.rays.tnear[i] = 0;
     paths.rays.tfar[i] = std::numeric_limits<float>::infinity();
   }

@@ -68,7 +68,7 @@ struct Raw {
     float sum = 0;
     for (uint32_t s = 0; s < spp; s++) {
       float dx, dy;
-      openrt::samplePair(y * width + x, s, 0, 0, dx, dy);
+      openrt::PairSampler(y * width + x, 0, 0)(s, dx, dy);
       const float a = (float(x) + dx - width / 2) * scale, b = -(float(y) + dy - height / 2) * scale;
       float d[3] = {a, f[1] + b * up[1], f[2] + b * up[2]};
       const float l = 1 / std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);

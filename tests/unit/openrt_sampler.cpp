@@ -16,7 +16,7 @@ bool isNet(uint32_t pixel, uint32_t pair, uint32_t seed, int m, uint32_t first) 
     std::set<int> cells;
     for (uint32_t i = 0; i < (1u << m); i++) {
       float x, y;
-      samplePair(pixel, first + i, pair, seed, x, y);
+      PairSampler(pixel, pair, seed)(first + i, x, y);
       cells.insert((int(x * float(1 << a)) << (m - a)) + int(y * float(1 << (m - a))));
     }
     if (cells.size() != size_t(1) << m) return false;
@@ -38,7 +38,7 @@ TEST(Sampler, everyAlignedBlockIsANet) {
 TEST(Sampler, valuesAreInTheUnitInterval) {
   for (uint32_t i = 0; i < 100000; i++) {
     float x, y;
-    samplePair(i * 2654435761u, i, 0, 1, x, y);
+    PairSampler(i * 2654435761u, 0, 1)(i, x, y);
     ASSERT_TRUE(x >= 0 && x < 1 && y >= 0 && y < 1);
   }
 }
@@ -49,7 +49,7 @@ TEST(Sampler, pixelsAndSeedsAndPairsDiffer) {
     for (uint32_t seed = 0; seed < 20; seed++)
       for (uint32_t pair = 0; pair < 4; pair++) {
         float x, y;
-        samplePair(pixel, 0, pair, seed, x, y);
+        PairSampler(pixel, pair, seed)(0, x, y);
         seen.insert({x, y});
       }
   EXPECT_GT(seen.size(), 3990u);
@@ -61,7 +61,7 @@ TEST(Sampler, integratesASmoothFunctionFasterThanRandomPoints) {
     double sum = 0;
     for (uint32_t i = 0; i < 256; i++) {
       float x, y;
-      samplePair(pixel, i, 0, 3, x, y);
+      PairSampler(pixel, 0, 3)(i, x, y);
       sum += double(x) * y;
     }
     worst = std::max(worst, std::abs(sum / 256 - 0.25));
