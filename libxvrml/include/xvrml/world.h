@@ -59,6 +59,13 @@ class ProtoInstance : public DynamicNode {
   const ProtoPtr declaration;
   Scope body;                    // body.roots[0] stands for the instance (clause 4.8.3); empty if it could not be expanded
   std::vector<IsConnection> is;  // in terms of body's nodes
+  std::vector<bool> given;       // by FieldInfo::offset: has a value of its own, not the prototype's default; may be short
+
+  bool isGiven(const FieldInfo& field) const { return field.offset < given.size() && given[field.offset]; }
+  void give(const FieldInfo& field) {
+    if (given.size() <= field.offset) given.resize(field.offset + 1);
+    given[field.offset] = true;
+  }
 };
 
 // A Script node: fields url, directOutput, mustEvaluate and those it declares.
@@ -93,6 +100,7 @@ class World {
   LoadOptions options;
   struct Times { double parse = 0, load = 0; } times; // seconds: this file's parse; Inlines, prototypes
   uint64_t nodeCount = 0; // nodes made, expansions included
+  std::vector<NodeRef> cyclic; // Scripts and prototype instances whose fields may hold a node they are part of
 };
 
 // Thrown when nothing of a file can be used: missing, unreadable, not VRML97, VRML 1.0.

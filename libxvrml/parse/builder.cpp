@@ -1,0 +1,224 @@
+// builder.cpp: nodes and their fields. See builder.h; names, routes and IS are in builder_names.cpp, prototypes in
+// builder_proto.cpp.
+#include "parse/builder.h"
+
+#include <fmt/format.h>
+
+#include "parse/field_access.h"
+#include "parse/inline_node.h"
+#include "parse/nearest.h"
+
+namespace xvrml {
+
+const NodeType* effectiveType(const Node& node) {
+  const Node* current = &node;
+  // Instances of instances; their number is bounded by the depth of prototypes declared before one another.
+  while (const auto* instance = dynamic_cast<const ProtoInstance*>(current)) {
+    const ProtoDeclaration* declaration = instance->declaration.get();
+    if (declaration->isExtern) declaration = declaration->resolved.get();
+    if (!declaration || declaration->body.roots.empty() || !declaration->body.roots[0]) return nullptr;
+    current = declaration->body.roots[0].get();
+  }
+  return &current->type();
+}
+
+bool typeAccepted(std::string_view nodeTypes, const NodeType& type) {
+  while (!nodeTypes.empty()) {
+    const size_t end = std::min(nodeTypes.find(' '), nodeTypes.size());
+    const std::string_view name = nodeTypes.substr(0, end);
+    if (!name.empty() && (type.name == name || type.is(name))) return true;
+    nodeTypes.remove_prefix(std::min(end + 1, nodeTypes.size()));
+  }
+  return false;
+}
+
+Builder::Builder(Lexer& lexer, LoadState& state, ParsedFile& file) : lexer_(lexer), state_(state), file_(file) {
+  pushScope(&file.scope, nullptr, nullptr);
+}
+
+Builder::Mark Builder::mark() const {
+  const ScopeFrame& frame = scopes_.back();
+  return {file_.instances.size(), file_.inlines.size(), frame.defined.size(), frame.scope->routes.size(),
+          frame.proto ? frame.proto->is.size() : 0};
+}
+
+void Builder::rollBack(const Mark& mark) {
+  ScopeFrame& frame = scope();
+  file_.instances.resize(mark.instances);
+  file_.inlines.resize(mark.inlines);
+  for (size_t i = mark.names; i < frame.defined.size(); ++i) {
+    frame.lost.insert(frame.defined[i]);
+    const auto name = frame.scope->names.find(frame.defined[i]);
+    if (name != frame.scope->names.end()) frame.scope->names.erase(name);
+  }
+  frame.defined.resize(mark.names);
+  frame.scope->routes.resize(mark.routes);
+  if (frame.proto) frame.proto->is.resize(mark.connections);
+}
+
+bool Builder::isScript() const { return nodes_.size() > scopes_.back().outerNodes && nodes_.back().scriptType; }
+
+// Makes the node of a type, or says why it cannot.
+bool Builder::makeNode(const Token& type, NodeFrame& frame) {
+  if (isBeingDeclared(type.text)) {
+    lexer_.error(type.at(), fmt::format("prototype {} contains an instance of itself (4.8.3)", describe(type)));
+    return false;
+  }
+  if (ProtoPtr proto = findPrototype(type.text)) {
+    frame.node = NodeRef(new ProtoInstance(proto->type, proto));
+    return true;
+  }
+  const NodeType* known = findNodeType(type.text);
+  if (!known) {
+    if (isLost(type.text)) {
+      lexer_.warn(type.at(), fmt::format("no node: prototype {} was left out", describe(type)));
+    } else {
+      lexer_.error(type.at(), fmt::format("{} is not a known node type{}", describe(type), suggestion(type.text, nodeTypes())));
+    }
+    return false;
+  }
+  if (known->name == "Script") {
+    frame.scriptType = scriptType(*known);
+    frame.node = NodeRef(new ScriptNode(frame.scriptType));
+  } else {
+    frame.node = makeStaticNode(*known);
+  }
+  return true;
+}
+
+bool Builder::openNode(const Token& type, const Token* def) {
+  NodeFrame frame{{}, type, {}, mark(), 1, {}, nullptr, nullptr};
+  const uint64_t limit = state_.options.limits.expandedNodes;
+  bool made = false;
+  if (state_.world.nodeCount >= limit) {
+    lexer_.error(type.at(), fmt::format("more nodes than limit expandedNodes={}; {} is left out", limit, describe(type)));
+  } else {
+    made = makeNode(type, frame);
+  }
+  if (!made) {
+    if (def) lostName(*def);
+    return false;
+  }
+  ++state_.world.nodeCount;
+  Node& node = *frame.node;
+  node.source = lexer_.place(type.at());
+  if (!inTemplate()) {
+    if (dynamic_cast<ProtoInstance*>(&node)) file_.instances.push_back(frame.node);
+    if (dynamic_cast<InlineNode*>(&node)) file_.inlines.push_back(frame.node);
+  }
+  if (def) {
+    node.defName = def->text;
+    scope().scope->names.insert_or_assign(node.defName, frame.node);
+    scope().defined.push_back(def->text);
+  }
+  nodes_.push_back(std::move(frame));
+  return true;
+}
+
+void Builder::closeNode(bool good) {
+  NodeFrame frame = std::move(nodes_.back());
+  nodes_.pop_back();
+  const uint64_t limit = state_.options.limits.expandedNodes;
+  if (good && frame.expanded > limit) {
+    lexer_.error(frame.type.at(), fmt::format("{} stands for {} nodes with all that is USEd in it: more than limit expandedNodes={}",
+                                              describe(frame.type), frame.expanded, limit));
+    good = false;
+  }
+  if (!good) return rollBack(frame.mark);
+  if (frame.expanded > 1) expanded_.emplace(frame.node.get(), frame.expanded);
+  deliver(frame.type, frame.node, frame.expanded);
+}
+
+uint64_t Builder::expandedCount(const Node* node) const {
+  const auto found = expanded_.find(node);
+  return found == expanded_.end() ? 1 : found->second;
+}
+
+bool Builder::accepts(const Receiver& receiver, const Token& at, const Node& node) {
+  const NodeType* type = effectiveType(node);
+  if (!type) return true; // an EXTERNPROTO: known when it is loaded
+  const bool root = receiver.kind == Receiver::Kind::roots;
+  if (root && inTemplate()) return true;
+  const std::string_view wanted = root ? "child" : receiver.field ? std::string_view(receiver.field->nodeTypes) : "";
+  if (wanted.empty() || typeAccepted(wanted, *type)) return true;
+  const std::string stands = type == &node.type() ? "" : fmt::format(" ({})", type->name);
+  if (root) {
+    lexer_.error(at.at(), fmt::format("{}{} cannot stand at the root of a file: expected a child node (4.6.5)", describe(at), stands));
+  } else {
+    lexer_.error(at.at(), fmt::format("{}{} cannot be in field {} of {}: expected {}", describe(at), stands, receiver.field->name,
+                                      receiver.holder->type().name, wanted));
+  }
+  return false;
+}
+
+void Builder::deliver(const Token& at, const NodeRef& node, uint64_t expanded) {
+  Receiver& receiver = receivers_.back();
+  if (!accepts(receiver, at, *node)) return;
+  const bool root = receiver.kind == Receiver::Kind::roots;
+  uint64_t& sum = root || nodes_.empty() || receiver.holder == nullptr ? scope().expanded : nodes_.back().expanded;
+  const uint64_t limit = state_.options.limits.expandedNodes;
+  if (root && saturatingAdd(sum, expanded) > limit) {
+    lexer_.error(at.at(), fmt::format("more nodes, shared ones counted at each use, than limit expandedNodes={}; {} is left out", limit,
+                                      describe(at)));
+    return;
+  }
+  sum = saturatingAdd(sum, expanded);
+  switch (receiver.kind) {
+  case Receiver::Kind::roots: scope().scope->roots.push_back(node); break;
+  case Receiver::Kind::single: *static_cast<NodeRef*>(receiver.storage) = node; break;
+  case Receiver::Kind::multiple: static_cast<MFNode*>(receiver.storage)->push_back(node); break;
+  }
+}
+
+void Builder::nullNode(const Token& token) {
+  const Receiver& receiver = receivers_.back();
+  if (receiver.kind == Receiver::Kind::single) *static_cast<NodeRef*>(receiver.storage) = {};
+  else lexer_.warn(token.at(), "NULL is no node of a list; it is left out");
+}
+
+bool Builder::hasField(std::string_view name) const {
+  return !nodes_.empty() && nodes_.back().node->type().find(name) != nullptr;
+}
+
+FieldTarget Builder::openField(const Token& name) {
+  NodeFrame& frame = nodes_.back();
+  Node& node = *frame.node;
+  const FieldInfo* field = node.type().find(name.text);
+  if (!field) {
+    lexer_.error(name.at(), fmt::format("{} has no field {}{}", node.type().name, describe(name), suggestion(name.text, node.type().fields)));
+    return {};
+  }
+  if (!holdsValue(*field)) {
+    lexer_.error(name.at(), fmt::format("{} is an {} of {}: it has no value in a file", describe(name),
+                                        field->access == Access::eventIn ? "eventIn" : "eventOut", node.type().name));
+    return {};
+  }
+  if (std::find(frame.given.begin(), frame.given.end(), name.text) != frame.given.end()) {
+    lexer_.warn(name.at(), fmt::format("field {} is given twice; the last one counts", describe(name)));
+  } else {
+    frame.given.push_back(name.text);
+  }
+  frame.field = field, frame.fieldAt = name.at();
+  if (auto* instance = dynamic_cast<ProtoInstance*>(&node)) instance->give(*field);
+  void* storage = node.storage(*field);
+  if (field->type == FieldType::SFNode) {
+    *static_cast<NodeRef*>(storage) = {};
+    receivers_.push_back({Receiver::Kind::single, storage, field, &node});
+  } else if (field->type == FieldType::MFNode) {
+    static_cast<MFNode*>(storage)->clear();
+    receivers_.push_back({Receiver::Kind::multiple, storage, field, &node});
+  }
+  return {true, field->type, storage};
+}
+
+void Builder::closeField(bool good) {
+  NodeFrame& frame = nodes_.back();
+  const FieldInfo& field = *frame.field;
+  if (holdsNodes(field)) {
+    receivers_.pop_back();
+  } else if (good && field.range.bounded() && !enforceRange(field, frame.node->storage(field))) {
+    lexer_.warn(frame.fieldAt, fmt::format("{} of {} is outside of its range {}", field.name, frame.node->type().name, describe(field.range)));
+  }
+}
+
+} // namespace xvrml

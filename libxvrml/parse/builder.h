@@ -1,0 +1,117 @@
+// builder.h: makes the scene graph from what the parser reports: nodes, names, prototypes, routes, with all checks that need to
+// know node types. One builder per file, on the thread that loads.
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <unordered_map>
+#include <unordered_set>
+
+#include "parse/load_state.h"
+#include "parse/sink.h"
+
+namespace xvrml {
+
+class Builder : public ParseSink {
+ public:
+  Builder(Lexer& lexer, LoadState& state, ParsedFile& file);
+  bool openNode(const Token& type, const Token* def) override;
+  void closeNode(bool good) override;
+  bool isScript() const override;
+  void useNode(const Token& name) override;
+  void nullNode(const Token& token) override;
+  void lostName(const Token& name) override;
+  FieldTarget openField(const Token& name) override;
+  bool hasField(std::string_view name) const override;
+  void closeField(bool good) override;
+  void connect(const Token& field, const Token& interfaceName) override;
+  FieldTarget openDeclaration(Access access, FieldType type, const Token& name, bool hasValue) override;
+  void closeDeclaration(bool good) override;
+  void openProto(const Token& name) override;
+  void openProtoBody() override;
+  void closeProto(bool good) override;
+  void openExternProto(const Token& name) override;
+  std::vector<std::string>& externUrls() override;
+  void closeExternProto(bool good) override;
+  void route(const Token& keyword, const RouteNames& names) override;
+
+ private:
+  // Sizes of the lists that grow while a node is read: what came in since is taken back if the node is lost.
+  struct Mark { size_t instances, inlines, names, routes, connections; };
+  struct NodeFrame {
+    NodeRef node;
+    Token type;
+    std::shared_ptr<NodeType> scriptType; // a Script's own table grows while it is read
+    Mark mark;
+    uint64_t expanded = 1; // nodes in it, shared ones counted at each use
+    std::vector<std::string_view> given; // fields read so far
+    const FieldInfo* field = nullptr;    // the one being read
+    const char* fieldAt = nullptr;
+  };
+  // Where complete nodes go.
+  struct Receiver {
+    enum class Kind : uint8_t { roots, single, multiple } kind;
+    void* storage;
+    const FieldInfo* field; // null: not a field of a node type
+    Node* holder;           // the node that has the field
+    const char* at;
+  };
+  struct Declaration {
+    FieldInfo field;
+    const char* at;
+    bool accepted; // no other declaration has its names
+    bool scoped;   // a prototype's default that is made of nodes: these have names of their own
+    bool hasValue;
+  };
+  struct ScopeFrame {
+    Scope* scope;
+    ProtoPtr proto;                      // null: the file, or a default value
+    std::shared_ptr<NodeType> protoType; // its interface, growing
+    std::unique_ptr<Scope> own;          // a default value's names
+    std::unordered_map<std::string_view, ProtoPtr> types;
+    std::unordered_set<std::string_view> lost;
+    std::vector<std::string_view> defined;
+    uint64_t expanded = 0;
+    size_t outerNodes = 0; // nodes that were open when the scope began
+  };
+
+  Mark mark() const;
+  void rollBack(const Mark& mark);
+  ScopeFrame& scope() { return scopes_.back(); }
+  ScopeFrame* protoFrame();
+  bool inTemplate() const { return scopes_.size() > 1; }
+  void pushScope(Scope* scope, ProtoPtr proto, std::shared_ptr<NodeType> type);
+  void popScope();
+  bool makeNode(const Token& type, NodeFrame& frame);
+  void checkChild(const NodeFrame& frame);
+  void deliver(const Token& at, const NodeRef& node, uint64_t expanded);
+  bool accepts(const Receiver& receiver, const Token& at, const Node& node);
+  uint64_t expandedCount(const Node* node) const;
+  ProtoPtr findPrototype(std::string_view name) const;
+  bool isBeingDeclared(std::string_view name) const;
+  bool isLost(std::string_view name) const;
+  bool declarationConflicts(const NodeType& type, const FieldInfo& field, const Token& name);
+  NodeType* declaringType();
+  NodeRef findName(const Token& name);
+  bool isOpen(const Node* node) const;
+
+  Lexer& lexer_;
+  LoadState& state_;
+  ParsedFile& file_;
+  std::deque<ScopeFrame> scopes_; // deques: what they hold stays where it is
+  std::deque<Declaration> declarations_;
+  std::vector<NodeFrame> nodes_;
+  std::vector<Receiver> receivers_;
+  std::unordered_map<const Node*, uint64_t> expanded_; // where more than 1
+};
+
+// The type that decides where a node may stand: a prototype instance stands for the first node of its body (4.8.3). Null if not
+// known (EXTERNPROTO not loaded).
+const NodeType* effectiveType(const Node& node);
+// Does a type suit a field's nodeTypes?
+bool typeAccepted(std::string_view nodeTypes, const NodeType& type);
+// Brings numbers outside of a field's range back: to a closed end of the range; a single number beyond an open end to the
+// default. Other values beyond an open end stay for those who draw them. False if something was outside.
+bool enforceRange(const FieldInfo& field, void* storage);
+
+} // namespace xvrml

@@ -1,0 +1,155 @@
+// builder_names.cpp: name spaces of files and prototypes: DEF and USE, routes, IS (ISO/IEC 14772-1 4.4.3, 4.6.2, 4.8.2, 4.10.2).
+// See builder.h.
+#include <fmt/format.h>
+
+#include "parse/builder.h"
+#include "parse/field_access.h"
+#include "parse/nearest.h"
+
+namespace xvrml {
+namespace {
+
+std::string_view accessName(Access access) {
+  switch (access) {
+  case Access::field: return "field";
+  case Access::exposedField: return "exposedField";
+  case Access::eventIn: return "eventIn";
+  case Access::eventOut: break;
+  }
+  return "eventOut";
+}
+
+// Table 4.4: which declarations of a prototype's interface a node's field or event may be connected to.
+bool mayConnect(Access ofNode, Access ofInterface) { return ofNode == Access::exposedField || ofNode == ofInterface; }
+
+std::vector<std::string> namesOf(const Scope& scope) {
+  std::vector<std::string> names;
+  for (const auto& [name, node] : scope.names) {
+    if (names.size() == 200) break;
+    names.push_back(name);
+  }
+  return names;
+}
+
+} // namespace
+
+void Builder::pushScope(Scope* target, ProtoPtr proto, std::shared_ptr<NodeType> type) {
+  ScopeFrame& frame = scopes_.emplace_back();
+  if (!target) {
+    frame.own = std::make_unique<Scope>();
+    target = frame.own.get();
+  }
+  frame.scope = target;
+  frame.proto = std::move(proto);
+  frame.protoType = std::move(type);
+  frame.outerNodes = nodes_.size();
+  receivers_.push_back({Receiver::Kind::roots, nullptr, nullptr, nullptr});
+}
+
+void Builder::popScope() {
+  receivers_.pop_back();
+  scopes_.pop_back();
+}
+
+void Builder::lostName(const Token& name) { scope().lost.insert(name.text); }
+
+bool Builder::isLost(std::string_view name) const {
+  return std::any_of(scopes_.begin(), scopes_.end(), [&](const ScopeFrame& frame) { return frame.lost.contains(name); });
+}
+
+bool Builder::isOpen(const Node* node) const {
+  return std::any_of(nodes_.rbegin(), nodes_.rend(), [&](const NodeFrame& frame) { return frame.node.get() == node; });
+}
+
+// The node that a name means here, or null after a message.
+NodeRef Builder::findName(const Token& name) {
+  const auto& names = scope().scope->names;
+  const auto found = names.find(name.text);
+  if (found != names.end()) return found->second;
+  if (scope().lost.contains(name.text)) {
+    lexer_.warn(name.at(), fmt::format("{} was left out above", describe(name)));
+    return {};
+  }
+  std::string hint = suggestion(name.text, namesOf(*scope().scope));
+  if (inTemplate() && scopes_.front().scope->names.contains(name.text)) hint = "; a prototype has names of its own (4.4.3)";
+  lexer_.error(name.at(), fmt::format("no node is named {} by a DEF above{}", describe(name), hint));
+  return {};
+}
+
+// USE nodeNameId. A node may be used within itself by a Script or a prototype instance only (4.6.2: a node is not its own
+// descendant); these do not draw what their fields hold.
+void Builder::useNode(const Token& name) {
+  const NodeRef node = findName(name);
+  if (!node) return;
+  if (!isOpen(node.get())) return deliver(name, node, expandedCount(node.get()));
+  Node* holder = receivers_.back().holder;
+  if (!holder || !dynamic_cast<DynamicNode*>(holder)) {
+    lexer_.error(name.at(), fmt::format("{} is USEd inside itself: a node cannot be its own descendant (4.6.2)", describe(name)));
+    return;
+  }
+  state_.entered.insert(node.get());
+  state_.world.cyclic.emplace_back(holder);
+  deliver(name, node, 0);
+}
+
+void Builder::route(const Token& keyword, const RouteNames& names) {
+  const NodeRef from = findName(names.from);
+  const NodeRef to = findName(names.to);
+  if (!from || !to) return;
+  const FieldInfo* out = from->type().findEventOut(names.fromField.text);
+  if (!out) {
+    lexer_.error(names.fromField.at(), fmt::format("{} has no eventOut {}", from->type().name, describe(names.fromField)));
+  }
+  const FieldInfo* in = to->type().findEventIn(names.toField.text);
+  if (!in) lexer_.error(names.toField.at(), fmt::format("{} has no eventIn {}", to->type().name, describe(names.toField)));
+  if (!out || !in) return;
+  if (out->type != in->type) {
+    lexer_.error(names.toField.at(), fmt::format("a route joins events of one type: {} is {}, {} is {}", describe(names.fromField),
+                                                 fieldTypeName(out->type), describe(names.toField), fieldTypeName(in->type)));
+    return;
+  }
+  scope().scope->routes.push_back(
+      {from, std::string(names.fromField.text), to, std::string(names.toField.text), lexer_.place(keyword.at())});
+}
+
+Builder::ScopeFrame* Builder::protoFrame() { return scope().proto && !scope().proto->isExtern ? &scope() : nullptr; }
+
+void Builder::connect(const Token& name, const Token& interfaceName) {
+  NodeFrame& frame = nodes_.back();
+  Node& node = *frame.node;
+  const NodeType& type = node.type();
+  const FieldInfo* field = type.find(name.text);
+  Access access = field ? field->access : Access::eventIn;
+  if (!field) { // set_x and x_changed of an exposedField x stand for its events
+    if ((field = type.findEventIn(name.text))) access = Access::eventIn;
+    else if ((field = type.findEventOut(name.text))) access = Access::eventOut;
+  }
+  if (!field) {
+    lexer_.error(name.at(), fmt::format("{} has no field or event {}{}", type.name, describe(name), suggestion(name.text, type.fields)));
+    return;
+  }
+  ScopeFrame* proto = protoFrame();
+  if (!proto) {
+    lexer_.error(name.at(), fmt::format("{} IS {}: IS stands in the body of a prototype only (4.8.2)", describe(name), describe(interfaceName)));
+    return;
+  }
+  const FieldInfo* declared = proto->protoType->find(interfaceName.text);
+  if (!declared) {
+    lexer_.error(interfaceName.at(), fmt::format("prototype {} declares no {}{}", proto->protoType->name, describe(interfaceName),
+                                                 suggestion(interfaceName.text, proto->protoType->fields)));
+    return;
+  }
+  if (declared->type != field->type) {
+    lexer_.error(interfaceName.at(), fmt::format("IS joins one type: {} of {} is {}, {} of the interface is {}", describe(name), type.name,
+                                                 fieldTypeName(field->type), describe(interfaceName), fieldTypeName(declared->type)));
+    return;
+  }
+  if (!mayConnect(access, declared->access)) {
+    lexer_.error(interfaceName.at(), fmt::format("{} {} of {} cannot be {} {} of the interface (4.8.2)", accessName(access), describe(name),
+                                                 type.name, accessName(declared->access), describe(interfaceName)));
+    return;
+  }
+  proto->proto->is.push_back({frame.node, std::string(name.text), std::string(interfaceName.text)});
+}
+
+} // namespace xvrml

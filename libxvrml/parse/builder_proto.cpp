@@ -1,0 +1,128 @@
+// builder_proto.cpp: PROTO and EXTERNPROTO declarations and the interfaces of Scripts (ISO/IEC 14772-1 4.8, 4.9, 6.40). See builder.h.
+#include <fmt/format.h>
+
+#include "parse/builder.h"
+#include "parse/field_access.h"
+#include "parse/inline_node.h"
+
+namespace xvrml {
+
+// A prototype's name is known from the end of its declaration to the end of the scope that holds it, prototypes within included.
+ProtoPtr Builder::findPrototype(std::string_view name) const {
+  for (auto frame = scopes_.rbegin(); frame != scopes_.rend(); ++frame) {
+    const auto found = frame->types.find(name);
+    if (found != frame->types.end()) return found->second;
+  }
+  return nullptr;
+}
+
+bool Builder::isBeingDeclared(std::string_view name) const {
+  return std::any_of(scopes_.begin(), scopes_.end(),
+                     [&](const ScopeFrame& frame) { return frame.protoType && frame.protoType->name == name; });
+}
+
+// Where interface declarations go: the Script or the prototype that is open, whichever is inner.
+NodeType* Builder::declaringType() {
+  if (isScript()) return nodes_.back().scriptType.get();
+  return scope().protoType.get();
+}
+
+// Names of an interface differ, and an exposedField x takes set_x and x_changed as well (4.7).
+bool Builder::declarationConflicts(const NodeType& type, const FieldInfo& field, const Token& name) {
+  const auto taken = [&](const std::string& other) { return type.find(other) != nullptr; };
+  const auto exposed = [&](std::string_view other) {
+    const FieldInfo* found = type.find(other);
+    return found && found->access == Access::exposedField;
+  };
+  bool conflict = taken(field.name);
+  if (field.access == Access::exposedField) conflict = conflict || taken("set_" + field.name) || taken(field.name + "_changed");
+  const std::string_view text = field.name;
+  if (field.access == Access::eventIn && text.starts_with("set_")) conflict = conflict || exposed(text.substr(4));
+  if (field.access == Access::eventOut && text.ends_with("_changed")) conflict = conflict || exposed(text.substr(0, text.size() - 8));
+  if (conflict) lexer_.error(name.at(), fmt::format("{} is declared already in the interface of {} (4.7)", describe(name), type.name));
+  return conflict;
+}
+
+FieldTarget Builder::openDeclaration(Access access, FieldType type, const Token& name, bool hasValue) {
+  NodeType& target = *declaringType();
+  Declaration& declaration = declarations_.emplace_back();
+  declaration.at = name.at();
+  declaration.hasValue = hasValue;
+  declaration.scoped = false;
+  FieldInfo& field = declaration.field;
+  field.name = name.text, field.type = type, field.access = access, field.change = Change::none, field.offset = 0;
+  field.defaultValue = defaultValue(type);
+  declaration.accepted = !declarationConflicts(target, field, name);
+  const uint64_t limit = state_.options.limits.interfaceFields;
+  if (declaration.accepted && target.fields.size() >= limit) {
+    lexer_.error(name.at(), fmt::format("{} declares more than limit interfaceFields={}", target.name, limit));
+    declaration.accepted = false;
+  }
+  void* storage = std::visit([](auto& value) -> void* { return &value; }, field.defaultValue);
+  const bool nodeValue = type == FieldType::SFNode || type == FieldType::MFNode;
+  const auto kind = type == FieldType::SFNode ? Receiver::Kind::single : Receiver::Kind::multiple;
+  if (isScript()) {
+    auto& script = static_cast<ScriptNode&>(*nodes_.back().node);
+    if (declaration.accepted) {
+      const FieldInfo& added = addField(target, field);
+      if (holdsValue(added)) {
+        script.values.push_back(defaultValue(type));
+        storage = script.storage(added);
+      }
+    }
+    if (hasValue && nodeValue) receivers_.push_back({kind, storage, nullptr, &script});
+  } else if (hasValue && nodeValue) {
+    declaration.scoped = true;
+    pushScope(nullptr, nullptr, nullptr);
+    receivers_.push_back({kind, storage, nullptr, nullptr});
+  }
+  return {true, type, storage};
+}
+
+void Builder::closeDeclaration(bool good) {
+  Declaration declaration = std::move(declarations_.back());
+  declarations_.pop_back();
+  const bool nodeValue = declaration.field.type == FieldType::SFNode || declaration.field.type == FieldType::MFNode;
+  if (declaration.hasValue && nodeValue) receivers_.pop_back();
+  if (declaration.scoped) popScope();
+  if (good && declaration.accepted && !isScript()) addField(*scope().protoType, std::move(declaration.field));
+}
+
+void Builder::openProto(const Token& name) {
+  auto proto = std::make_shared<ProtoDeclaration>();
+  auto type = std::make_shared<NodeType>();
+  type->name = name.text;
+  type->index = -1;
+  type->create = nullptr;
+  proto->type = type;
+  proto->source = lexer_.place(name.at());
+  if (proto->source.file) proto->baseUrl = *proto->source.file;
+  Scope* body = &proto->body;
+  pushScope(body, std::move(proto), std::move(type));
+}
+
+void Builder::openProtoBody() {}
+
+void Builder::closeProto(bool good) {
+  const ProtoPtr proto = scope().proto;
+  popScope();
+  if (!good) return;
+  if (!proto->isExtern && proto->body.roots.empty()) {
+    state_.diagnostics.warn(proto->source, fmt::format("the body of prototype '{}' has no node (4.8.3)", proto->type->name));
+  }
+  scope().scope->prototypes.push_back(proto);
+  // The key is a view of the type's own name, which lives as long as the frame's pointer to it.
+  scope().types.erase(proto->type->name);
+  scope().types.emplace(proto->type->name, proto);
+}
+
+void Builder::openExternProto(const Token& name) {
+  openProto(name);
+  scope().proto->isExtern = true;
+}
+
+std::vector<std::string>& Builder::externUrls() { return scope().proto->urls; }
+
+void Builder::closeExternProto(bool good) { closeProto(good); }
+
+} // namespace xvrml

@@ -1,0 +1,28 @@
+// load_state.h: what the files of one world share while it is loaded: options, counters, and lists of what is still to be done.
+#pragma once
+
+#include <unordered_map>
+#include <unordered_set>
+
+#include "xvrml/world.h"
+
+namespace xvrml {
+
+struct LoadState {
+  World& world;
+  const LoadOptions& options;
+  Diagnostics& diagnostics;
+  // Nodes USEd within their own DEF, which only Scripts and prototype instances may (4.6.2); a connection must not let them
+  // become their own descendants.
+  std::unordered_set<const Node*> entered;
+};
+
+// A file's graph, and those of its nodes that are not complete when it has been parsed. Prototype bodies are not among them:
+// their copies will be.
+struct ParsedFile {
+  Scope scope;
+  std::vector<NodeRef> instances; // prototype instances to expand
+  std::vector<NodeRef> inlines;   // Inline nodes to load
+};
+
+} // namespace xvrml

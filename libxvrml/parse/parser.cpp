@@ -1,0 +1,184 @@
+// parser.cpp: nodes, fields and routes of the VRML97 grammar (ISO/IEC 14772-1 Annex A.2). See parser.h; prototypes and recovery
+// are in parser_proto.cpp and parser_recovery.cpp.
+#include "parse/parser.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace xvrml {
+
+Parser::Parser(Lexer& lexer, const Limits& limits, ParseSink& sink)
+    : lexer_(lexer), values_(lexer, limits), sink_(sink), nesting_(std::min(limits.nesting, maximumNesting)) {}
+
+// vrmlScene ::= statements
+void Parser::vrmlScene() { statements(TokenKind::end); }
+
+// statements ::= statement | statement statements | empty
+void Parser::statements(TokenKind end) {
+  while (!lexer_.peek().is(end) && !lexer_.peek().is(TokenKind::end)) {
+    if (!statement()) skipToStatement(end);
+  }
+}
+
+// statement ::= nodeStatement | protoStatement | routeStatement
+bool Parser::statement() {
+  const Token token = lexer_.peek();
+  if (token.is("PROTO") || token.is("EXTERNPROTO")) return protoStatement();
+  if (token.is("ROUTE")) return routeStatement();
+  if (token.is(TokenKind::identifier)) return nodeStatement();
+  return fail(token, "a node, DEF, USE, PROTO, EXTERNPROTO or ROUTE");
+}
+
+// nodeStatement ::= node | DEF nodeNameId node | USE nodeNameId
+bool Parser::nodeStatement() {
+  const Token token = lexer_.peek();
+  if (token.is("DEF")) {
+    lexer_.next();
+    Token def;
+    return name(def, "a name after DEF") && node(&def);
+  }
+  if (token.is("USE")) {
+    lexer_.next();
+    Token use;
+    if (!name(use, "a name after USE")) return false;
+    sink_.useNode(use);
+    return true;
+  }
+  return node(nullptr);
+}
+
+// node ::= nodeTypeId { nodeBody } | Script { scriptBody }
+bool Parser::node(const Token* def) {
+  const Token type = lexer_.peek();
+  if (!type.is(TokenKind::identifier)) return fail(type, "a node");
+  lexer_.next();
+  if (!lexer_.peek().is(TokenKind::braceOpen)) return fail(lexer_.peek(), fmt::format("{{ after {}", describe(type)));
+  if (depth_ >= nesting_) {
+    lexer_.error(type.at(), fmt::format("nodes nested deeper than limit nesting={}{}; {} is left out", nesting_,
+                                        nesting_ == maximumNesting ? " (the most there can be)" : "", describe(type)));
+    if (def) sink_.lostName(*def);
+    lexer_.next();
+    skipBlock();
+    return true;
+  }
+  const bool known = sink_.openNode(type, def);
+  lexer_.next();
+  if (!known) {
+    skipBlock();
+    return true;
+  }
+  ++depth_;
+  const bool good = nodeBody(type);
+  if (!good) skipBlock();
+  --depth_;
+  sink_.closeNode(good);
+  return true;
+}
+
+// nodeBody ::= nodeBodyElement | nodeBodyElement nodeBody | empty      (up to and with the closing brace)
+// A text that ends early keeps what was read of its open nodes.
+bool Parser::nodeBody(const Token& type) {
+  while (!lexer_.accept(TokenKind::braceClose)) {
+    if (lexer_.peek().is(TokenKind::end)) return failAtEnd(type), true;
+    if (!nodeBodyElement()) return false;
+  }
+  return true;
+}
+
+// nodeBodyElement ::= fieldId fieldValue | fieldId IS fieldId | eventInId IS eventInId | eventOutId IS eventOutId
+//                   | routeStatement | protoStatement
+bool Parser::nodeBodyElement() {
+  const Token token = lexer_.peek();
+  if (!token.is(TokenKind::identifier)) return fail(token, "a field or }");
+  if (token.text == "ROUTE") return routeStatement();
+  if (token.text == "PROTO" || token.text == "EXTERNPROTO") return protoStatement();
+  if (sink_.isScript() &&
+      (token.text == "field" || token.text == "eventIn" || token.text == "eventOut" || token.text == "exposedField")) {
+    return scriptBodyElement();
+  }
+  return field();
+}
+
+bool Parser::field() {
+  const Token id = lexer_.next();
+  if (lexer_.peek().is("IS")) {
+    lexer_.next();
+    Token interfaceName;
+    if (!name(interfaceName, "a name of the prototype's interface after IS")) return false;
+    sink_.connect(id, interfaceName);
+    return true;
+  }
+  const FieldTarget target = sink_.openField(id);
+  if (!target.known) {
+    skipField();
+    return true;
+  }
+  const bool good = fieldValue(target);
+  sink_.closeField(good);
+  return good;
+}
+
+// fieldValue ::= sfboolValue | sfcolorValue | ... | mfvec3fValue
+bool Parser::fieldValue(const FieldTarget& target) {
+  if (target.type == FieldType::SFNode) return nodeValue();
+  if (target.type == FieldType::MFNode) return nodeValues();
+  return values_.parse(target.type, target.storage);
+}
+
+// sfnodeValue ::= nodeStatement | NULL
+bool Parser::nodeValue() {
+  if (!lexer_.peek().is("NULL")) return nodeStatement();
+  sink_.nullNode(lexer_.next());
+  return true;
+}
+
+// mfnodeValue ::= nodeStatement | [ ] | [ nodeStatements ]
+bool Parser::nodeValues() {
+  if (!lexer_.accept(TokenKind::bracketOpen)) return nodeValue();
+  while (!lexer_.accept(TokenKind::bracketClose)) {
+    const Token token = lexer_.peek();
+    if (token.is(TokenKind::end)) return true; // the node's body reports it
+    if (!token.is(TokenKind::identifier)) return fail(token, "a node or ]");
+    if (!nodeValue()) return false;
+  }
+  return true;
+}
+
+// routeStatement ::= ROUTE nodeNameId . eventOutId TO nodeNameId . eventInId
+bool Parser::routeStatement() {
+  const Token keyword = lexer_.next();
+  ParseSink::RouteNames names;
+  if (!routeEnd(names.from, names.fromField)) return false;
+  if (!lexer_.peek().is("TO")) return fail(lexer_.peek(), "TO");
+  lexer_.next();
+  if (!routeEnd(names.to, names.toField)) return false;
+  sink_.route(keyword, names);
+  return true;
+}
+
+// nodeNameId . eventId; a name with periods of its own (which DEF lets pass with a warning) ends at the last one.
+bool Parser::routeEnd(Token& node, Token& field) {
+  const Token token = lexer_.nextName();
+  if (!token.is(TokenKind::identifier) && !token.is(TokenKind::invalid)) return fail(token, "NODE.event");
+  const size_t period = token.text.rfind('.');
+  if (period == std::string_view::npos) { // white space around the period
+    node = token;
+    if (!lexer_.accept(TokenKind::period)) {
+      field = lexer_.peek(); // the period may be glued to what follows
+      if (!field.is(TokenKind::invalid) || field.text.size() < 2 || field.text[0] != '.')
+        return fail(lexer_.peek(), "a period and an event");
+      lexer_.nextName();
+      field.text.remove_prefix(1);
+      return true;
+    }
+    return name(field, "an event after the period");
+  }
+  node = {TokenKind::identifier, token.text.substr(0, period)};
+  field = {TokenKind::identifier, token.text.substr(period + 1)};
+  if (node.text.empty()) return fail(token, "a node's name before the period");
+  if (field.text.empty()) return name(field, "an event after the period");
+  return true;
+}
+
+} // namespace xvrml

@@ -1,0 +1,135 @@
+// parser_proto.cpp: prototypes and interface declarations of the VRML97 grammar (Annex A.2), and Script bodies. See parser.h.
+#include <fmt/format.h>
+
+#include "parse/parser.h"
+
+namespace xvrml {
+
+// protoStatement ::= proto | externproto
+bool Parser::protoStatement() {
+  const Token keyword = lexer_.next();
+  if (depth_ >= nesting_) {
+    lexer_.error(keyword.at(), fmt::format("prototypes nested deeper than limit nesting={}", nesting_));
+    return false;
+  }
+  ++depth_;
+  const bool good = keyword.text == "PROTO" ? proto() : externproto();
+  --depth_;
+  return good;
+}
+
+// proto ::= PROTO nodeTypeId [ interfaceDeclarations ] { protoBody }
+bool Parser::proto() {
+  Token id;
+  if (!name(id, "a name after PROTO")) return false;
+  sink_.openProto(id);
+  bool good = interfaceDeclarations(false);
+  if (good && !lexer_.peek().is(TokenKind::braceOpen)) good = fail(lexer_.peek(), "{ and the prototype's body");
+  if (!good) {
+    sink_.closeProto(false);
+    sink_.lostName(id);
+    skipProto();
+    return true;
+  }
+  // protoBody ::= protoStatements rootNodeStatement statements
+  lexer_.next();
+  sink_.openProtoBody();
+  statements(TokenKind::braceClose);
+  if (!lexer_.accept(TokenKind::braceClose)) failAtEnd(id);
+  sink_.closeProto(true);
+  return true;
+}
+
+// externproto ::= EXTERNPROTO nodeTypeId [ externInterfaceDeclarations ] URLList
+bool Parser::externproto() {
+  Token id;
+  if (!name(id, "a name after EXTERNPROTO")) return false;
+  sink_.openExternProto(id);
+  bool good = interfaceDeclarations(true);
+  if (good) good = values_.parse(FieldType::MFString, &sink_.externUrls());
+  sink_.closeExternProto(good);
+  if (!good) sink_.lostName(id);
+  return good;
+}
+
+// interfaceDeclarations ::= interfaceDeclaration | interfaceDeclaration interfaceDeclarations | empty      (with its brackets)
+bool Parser::interfaceDeclarations(bool isExtern) {
+  if (!lexer_.accept(TokenKind::bracketOpen)) return fail(lexer_.peek(), "[ and the interface");
+  while (!lexer_.accept(TokenKind::bracketClose)) {
+    if (!interfaceDeclaration(isExtern)) return false;
+  }
+  return true;
+}
+
+namespace {
+
+bool accessFromName(std::string_view text, Access& access) {
+  if (text == "eventIn")
+    access = Access::eventIn;
+  else if (text == "eventOut")
+    access = Access::eventOut;
+  else if (text == "field")
+    access = Access::field;
+  else if (text == "exposedField")
+    access = Access::exposedField;
+  else
+    return false;
+  return true;
+}
+
+} // namespace
+
+// interfaceDeclaration ::= restrictedInterfaceDeclaration | exposedField fieldType fieldId fieldValue
+// restrictedInterfaceDeclaration ::= eventIn fieldType eventInId | eventOut fieldType eventOutId | field fieldType fieldId
+// fieldValue externInterfaceDeclaration: the same without values
+bool Parser::interfaceDeclaration(bool isExtern) {
+  const Token keyword = lexer_.peek();
+  Access access;
+  if (!keyword.is(TokenKind::identifier) || !accessFromName(keyword.text, access)) {
+    return fail(keyword, "eventIn, eventOut, field, exposedField or ]");
+  }
+  lexer_.next();
+  FieldType type;
+  const Token typeName = lexer_.peek();
+  if (!typeName.is(TokenKind::identifier) || !fieldTypeFromName(typeName.text, type)) return fail(typeName, "a field type");
+  lexer_.next();
+  Token id;
+  if (!name(id, "a name for the interface")) return false;
+  const bool hasValue = !isExtern && (access == Access::field || access == Access::exposedField);
+  const FieldTarget target = sink_.openDeclaration(access, type, id, hasValue);
+  const bool good = !hasValue || fieldValue(target);
+  sink_.closeDeclaration(good);
+  return good;
+}
+
+// scriptBodyElement ::= nodeBodyElement | restrictedInterfaceDeclaration | eventIn fieldType eventInId IS eventInId
+//                     | eventOut fieldType eventOutId IS eventOutId | field fieldType fieldId IS fieldId
+bool Parser::scriptBodyElement() {
+  const Token keyword = lexer_.next();
+  Access access;
+  accessFromName(keyword.text, access);
+  if (access == Access::exposedField) {
+    lexer_.error(keyword.at(), "a Script declares field, eventIn and eventOut, not exposedField (6.40)");
+    return false;
+  }
+  FieldType type;
+  const Token typeName = lexer_.peek();
+  if (!typeName.is(TokenKind::identifier) || !fieldTypeFromName(typeName.text, type)) return fail(typeName, "a field type");
+  lexer_.next();
+  Token id;
+  if (!name(id, "a name for the interface")) return false;
+  const bool isConnection = lexer_.peek().is("IS");
+  const bool hasValue = access == Access::field && !isConnection;
+  const FieldTarget target = sink_.openDeclaration(access, type, id, hasValue);
+  const bool good = !hasValue || fieldValue(target);
+  sink_.closeDeclaration(good);
+  if (good && isConnection) {
+    lexer_.next();
+    Token interfaceName;
+    if (!name(interfaceName, "a name of the prototype's interface after IS")) return false;
+    sink_.connect(id, interfaceName);
+  }
+  return good;
+}
+
+} // namespace xvrml

@@ -1,0 +1,195 @@
+// source.cpp: see source.h.
+#include "parse/source.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <zlib.h>
+
+#include "base/lexer.h"
+
+namespace xvrml {
+namespace {
+
+[[noreturn]] void refuse(const std::string& name, std::string message, uint32_t line = 0) {
+  throw LoadError{{Severity::error, name, line, line, std::move(message), {}, 0}};
+}
+
+struct Descriptor {
+  int number = -1;
+  ~Descriptor() {
+    if (number >= 0) ::close(number);
+  }
+};
+
+std::string readAll(int descriptor, const std::string& name, const Limits& limits) {
+  std::string bytes;
+  for (;;) {
+    const size_t had = bytes.size();
+    constexpr size_t step = 1 << 20;
+    bytes.resize(had + step);
+    const ssize_t got = ::read(descriptor, bytes.data() + had, step);
+    if (got < 0 && errno == EINTR) {
+      bytes.resize(had);
+      continue;
+    }
+    if (got < 0) refuse(name, fmt::format("cannot be read: {}", std::strerror(errno)));
+    bytes.resize(had + static_cast<size_t>(got));
+    if (bytes.size() > limits.fileBytes) refuse(name, fmt::format("longer than limit fileBytes={}", limits.fileBytes));
+    if (got == 0) return bytes;
+  }
+}
+
+// Inflates all gzip members; throws on damage only if nothing came out, so that a cut file shows what it has.
+std::string inflateAll(std::string_view packed, const std::string& name, const Limits& limits) {
+  z_stream stream{};
+  if (inflateInit2(&stream, 15 + 16) != Z_OK) refuse(name, "no memory to unpack it");
+  struct End {
+    z_stream* stream;
+    ~End() { inflateEnd(stream); }
+  } end{&stream};
+  constexpr uint64_t freeBytes = 1 << 20; // small files may have any ratio
+  const uint64_t byRatio = std::max<uint64_t>(freeBytes, limits.inflateRatio * packed.size());
+  const uint64_t most = std::min({limits.inflateBytes, limits.fileBytes, byRatio});
+  std::string out;
+  size_t used = 0;
+  int status = Z_OK;
+  while (status != Z_STREAM_END || used < packed.size()) {
+    if (status == Z_STREAM_END) { // another member, or padding
+      if (packed.size() - used < 2 || packed.substr(used, 2) != "\x1f\x8b" || inflateReset(&stream) != Z_OK) break;
+    }
+    const size_t had = out.size();
+    const size_t step = std::min<size_t>(std::max<size_t>(1 << 16, had), 64 << 20);
+    out.resize(had + step);
+    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(packed.data() + used));
+    stream.avail_in = static_cast<uInt>(std::min<size_t>(packed.size() - used, 1u << 30));
+    const uInt offered = stream.avail_in;
+    stream.next_out = reinterpret_cast<Bytef*>(out.data() + had);
+    stream.avail_out = static_cast<uInt>(step);
+    status = inflate(&stream, Z_NO_FLUSH);
+    used += offered - stream.avail_in;
+    out.resize(had + step - stream.avail_out);
+    if (out.size() > most) {
+      const char* limit = most == limits.inflateBytes ? "inflateBytes" : most == limits.fileBytes ? "fileBytes" : "inflateRatio";
+      const uint64_t value = most == limits.inflateBytes ? limits.inflateBytes : most == limits.fileBytes ? limits.fileBytes : limits.inflateRatio;
+      refuse(name, fmt::format("unpacks to more than limit {}={} allows", limit, value));
+    }
+    if (status != Z_OK && status != Z_STREAM_END) {
+      refuse(name, status == Z_BUF_ERROR ? "the gzip data ends early" : fmt::format("damaged gzip data: {}", stream.msg ? stream.msg : "unknown"));
+    }
+  }
+  return out;
+}
+
+bool isGzip(std::string_view bytes) { return bytes.starts_with("\x1f\x8b"); }
+
+std::string_view firstLine(std::string_view text) { return text.substr(0, text.find_first_of("\r\n")); }
+
+// Does a text without a header look like VRML97? A node, or one of the statements' keywords.
+bool looksLikeVrml(std::string_view text) {
+  Diagnostics none;
+  none.limit = 0;
+  Lexer lexer(text, nullptr, none);
+  const Token first = lexer.next();
+  if (!first.is(TokenKind::identifier)) return false;
+  if (first.text == "DEF" || first.text == "PROTO" || first.text == "EXTERNPROTO") return lexer.peek().is(TokenKind::identifier);
+  return lexer.peek().is(TokenKind::braceOpen);
+}
+
+} // namespace
+
+Source Source::open(const std::string& path, const Limits& limits) {
+  Source source;
+  if (path == "-") {
+    source.owned_ = readAll(STDIN_FILENO, "-", limits);
+    source.text_ = source.owned_;
+  } else {
+    Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
+    if (file.number < 0) refuse(path, fmt::format("cannot be opened: {}", std::strerror(errno)));
+    struct stat status {};
+    if (fstat(file.number, &status) != 0) refuse(path, fmt::format("cannot be read: {}", std::strerror(errno)));
+    if (S_ISDIR(status.st_mode)) refuse(path, "is a folder, not a world");
+    if (!S_ISREG(status.st_mode)) refuse(path, "is not a regular file");
+    const auto size = static_cast<uint64_t>(status.st_size);
+    if (size > limits.fileBytes) refuse(path, fmt::format("has {} bytes: more than limit fileBytes={}", size, limits.fileBytes));
+    if (size > 0) {
+      void* mapping = mmap(nullptr, size, PROT_READ, MAP_PRIVATE, file.number, 0);
+      if (mapping != MAP_FAILED) {
+        source.mapping_ = mapping, source.mappedBytes_ = size;
+        madvise(mapping, size, MADV_SEQUENTIAL);
+        source.text_ = {static_cast<const char*>(mapping), size};
+      } else {
+        source.owned_ = readAll(file.number, path, limits);
+        source.text_ = source.owned_;
+      }
+    }
+  }
+  source.unpack(path, limits);
+  return source;
+}
+
+Source Source::fromMemory(std::string_view bytes, const std::string& name, const Limits& limits) {
+  if (bytes.size() > limits.fileBytes) refuse(name, fmt::format("has {} bytes: more than limit fileBytes={}", bytes.size(), limits.fileBytes));
+  Source source;
+  source.text_ = bytes;
+  source.unpack(name, limits);
+  return source;
+}
+
+void Source::unpack(const std::string& name, const Limits& limits) {
+  if (isGzip(text_)) {
+    owned_ = inflateAll(text_, name, limits);
+    text_ = owned_;
+  }
+  if (text_.starts_with("\xef\xbb\xbf")) text_.remove_prefix(3);
+}
+
+Source::Source(Source&& other) noexcept
+    : text_(other.text_), mapping_(std::exchange(other.mapping_, nullptr)), mappedBytes_(other.mappedBytes_) {
+  const size_t offset = other.owned_.empty() ? 0 : static_cast<size_t>(text_.data() - other.owned_.data());
+  owned_ = std::move(other.owned_);
+  if (!owned_.empty()) text_ = std::string_view(owned_).substr(offset, text_.size()); // short strings move their bytes
+}
+
+Source::~Source() {
+  if (mapping_) munmap(mapping_, mappedBytes_);
+}
+
+// "#VRML V2.0 utf8 [optional comment] <line terminator>"
+void Source::checkHeader(const std::shared_ptr<const std::string>& file, Diagnostics& diagnostics) const {
+  constexpr std::string_view exact = "#VRML V2.0 utf8";
+  const auto ends = [](std::string_view rest) { return rest.empty() || rest[0] == ' ' || rest[0] == '\t' || rest[0] == '\n' || rest[0] == '\r'; };
+  if (text_.starts_with(exact) && ends(text_.substr(exact.size()))) return;
+  const auto warn = [&](std::string message) { diagnostics.warn({file, 1, 1}, std::move(message)); };
+  // The first lines that say something: blank lines and other comments before the header happen.
+  std::string_view rest = text_;
+  for (int line = 1; line <= 10 && !rest.empty(); ++line) {
+    const std::string_view current = firstLine(rest);
+    const bool comment = current.starts_with('#');
+    if (comment && current.find("VRML") != current.npos) {
+      if (current.find("V1.0") != current.npos) {
+        refuse(*file, "is a VRML 1.0 file; this browser reads VRML97 (#VRML V2.0 utf8). A converter such as vrml1tovrml2 makes one of it", 1);
+      }
+      if (current.find("2.0") != current.npos) {
+        return warn(fmt::format("the file does not begin with exactly '{}'; read as VRML97 all the same", exact));
+      }
+      refuse(*file, fmt::format("is not VRML97: expected '{}', found '{}'", exact, current.substr(0, 60)), 1);
+    }
+    if (comment && (current.starts_with("#X3D") || current.starts_with("#Inventor"))) {
+      refuse(*file, fmt::format("is not VRML97: its header is '{}', expected '{}'", current.substr(0, 60), exact), 1);
+    }
+    if (!comment && current.find_first_not_of(" \t,") != current.npos) break;
+    rest.remove_prefix(std::min(rest.size(), current.size() + 1));
+  }
+  if (looksLikeVrml(text_)) return warn(fmt::format("the header '{}' is missing; read as VRML97 all the same", exact));
+  if (text_.empty()) refuse(*file, fmt::format("is empty: expected '{}'", exact));
+  refuse(*file, fmt::format("is not a VRML97 world: expected it to begin with '{}'", exact), 1);
+}
+
+} // namespace xvrml

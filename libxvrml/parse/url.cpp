@@ -1,0 +1,106 @@
+// url.cpp: where the URLs of a world lead: relative ones to files beside the file that holds them (ISO/IEC 14772-1 4.5.2), absolute
+// ones only if asked for, the network nowhere. Pure but for a look at the disk; any thread; used by the loader and the mapper.
+#include <algorithm>
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "xvrml/world.h"
+
+namespace xvrml {
+namespace {
+
+int hexDigit(char c) {
+  if (c >= '0' && c <= '9') return c - '0';
+  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+  return -1;
+}
+
+// RFC 3986 2.1. False for %00, which no file name can hold.
+bool percentDecode(std::string_view text, std::string& out) {
+  out.clear();
+  for (size_t i = 0; i < text.size(); ++i) {
+    const int high = text[i] == '%' && i + 2 < text.size() ? hexDigit(text[i + 1]) : -1;
+    const int low = high >= 0 ? hexDigit(text[i + 2]) : -1;
+    if (low >= 0) i += 2;
+    out += low >= 0 ? static_cast<char>(high * 16 + low) : text[i];
+    if (out.back() == '\0') return false;
+  }
+  return true;
+}
+
+// The scheme of "scheme:rest" in lower case, empty if there is none. One letter is a drive of old Windows paths.
+std::string scheme(std::string_view url) {
+  const size_t colon = url.find(':');
+  if (colon == url.npos || colon == 0 || url.find_first_of("/\\?#") < colon) return {};
+  std::string name(url.substr(0, colon));
+  for (char& c : name) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c + 32);
+    if (!((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '+' || c == '-' || c == '.')) return {};
+  }
+  return name;
+}
+
+bool exists(const std::string& path) {
+  std::error_code error;
+  return std::filesystem::is_regular_file(path, error);
+}
+
+} // namespace
+
+ResolvedUrl resolveUrl(std::string_view url, std::string_view baseFile, const LoadOptions& options) {
+  const auto refuse = [&](std::string_view why) { return ResolvedUrl{{}, {}, fmt::format("'{}': {}", url.substr(0, 100), why)}; };
+  constexpr std::string_view blanks = " \t\r\n";
+  const size_t first = url.find_first_not_of(blanks);
+  if (first == url.npos) return refuse("the URL is empty");
+  url = url.substr(first, url.find_last_not_of(blanks) + 1 - first);
+
+  std::string kind = scheme(url);
+  bool absolute = false;
+  std::string_view path = url;
+  if (kind == "file") {
+    absolute = true;
+    path.remove_prefix(5);
+    if (path.starts_with("//")) path.remove_prefix(2);
+    if (path.starts_with("localhost/")) path.remove_prefix(9);
+    if (!options.allowAbsolute) return refuse("file: URLs are not followed unless absolute paths are allowed");
+  } else if (kind.size() == 1) {
+    return refuse("paths with a drive letter are not followed");
+  } else if (kind == "urn") {
+    return refuse("a urn: names no file");
+  } else if (!kind.empty()) {
+    return refuse(fmt::format("{}: URLs are not fetched", kind));
+  } else if (path.starts_with("//") || path.starts_with("\\\\")) {
+    return refuse("nothing is fetched from a network");
+  }
+
+  ResolvedUrl result;
+  const size_t hash = path.find('#');
+  if (hash != path.npos) {
+    if (!percentDecode(path.substr(hash + 1), result.fragment)) return refuse("%00 in a name");
+    path = path.substr(0, hash);
+  }
+  std::string decoded;
+  if (!percentDecode(path, decoded) || path.find('\0') != path.npos) return refuse("%00 in a path");
+  std::string literal(path);
+  std::replace(decoded.begin(), decoded.end(), '\\', '/'); // written on Windows
+  if (decoded.starts_with('/')) absolute = true;
+  if (absolute && !options.allowAbsolute) return refuse("absolute paths are not followed unless allowed");
+  if (decoded.empty()) { // "#name": the file itself
+    result.path = baseFile;
+    return result;
+  }
+  const size_t slash = baseFile.rfind('/');
+  const std::string folder = absolute || slash == baseFile.npos ? "" : std::string(baseFile.substr(0, slash + 1));
+  result.path = folder + decoded;
+  if (exists(result.path)) return result;
+  // A file whose very name holds %20 or a backslash, or one with a query.
+  if (exists(folder + literal)) result.path = folder + literal;
+  else if (const size_t query = decoded.find('?'); query != decoded.npos && exists(folder + decoded.substr(0, query))) {
+    result.path = folder + decoded.substr(0, query);
+  }
+  return result;
+}
+
+} // namespace xvrml
