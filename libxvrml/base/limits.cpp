@@ -11,6 +11,8 @@ constexpr std::array<LimitInfo, 11> table = {{
     {"protoDepth", &Limits::protoDepth, "depth of prototypes that instantiate prototypes"},
     {"inlineDepth", &Limits::inlineDepth, "depth of files within files"},
     {"expandedNodes", &Limits::expandedNodes, "nodes after all prototypes and USEs are expanded"},
+    {"copyBytes", &Limits::copyBytes, "estimated memory of prototype instances and of Inlines read more than once"},
+    {"interfaceFields", &Limits::interfaceFields, "declarations of one PROTO, EXTERNPROTO or Script"},
     {"stringBytes", &Limits::stringBytes, "bytes of one string"},
     {"arrayElements", &Limits::arrayElements, "numbers in one multiple-valued field"},
     {"fileBytes", &Limits::fileBytes, "bytes of one file, unpacked"},

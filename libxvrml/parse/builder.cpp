@@ -78,6 +78,7 @@ bool Builder::makeNode(const Token& type, NodeFrame& frame) {
     return false;
   }
   if (known->name == "Script") {
+    ++state_.scripts;
     frame.scriptType = scriptType(*known);
     frame.node = NodeRef(new ScriptNode(frame.scriptType));
   } else {
@@ -120,8 +121,9 @@ void Builder::closeNode(bool good) {
   nodes_.pop_back();
   const uint64_t limit = state_.options.limits.expandedNodes;
   if (good && frame.expanded > limit) {
-    lexer_.error(frame.type.at(), fmt::format("{} stands for {} nodes with all that is USEd in it: more than limit expandedNodes={}",
-                                              describe(frame.type), frame.expanded, limit));
+    lexer_.error(frame.type.at(),
+                 fmt::format("{} stands for {} nodes with all that is USEd in it: more than limit expandedNodes={}",
+                             describe(frame.type), frame.expanded, limit));
     good = false;
   }
   if (!good) return rollBack(frame.mark);
@@ -143,7 +145,8 @@ bool Builder::accepts(const Receiver& receiver, const Token& at, const Node& nod
   if (wanted.empty() || typeAccepted(wanted, *type)) return true;
   const std::string stands = type == &node.type() ? "" : fmt::format(" ({})", type->name);
   if (root) {
-    lexer_.error(at.at(), fmt::format("{}{} cannot stand at the root of a file: expected a child node (4.6.5)", describe(at), stands));
+    lexer_.error(at.at(),
+                 fmt::format("{}{} cannot stand at the root of a file: expected a child node (4.6.5)", describe(at), stands));
   } else {
     lexer_.error(at.at(), fmt::format("{}{} cannot be in field {} of {}: expected {}", describe(at), stands, receiver.field->name,
                                       receiver.holder->type().name, wanted));
@@ -158,8 +161,8 @@ void Builder::deliver(const Token& at, const NodeRef& node, uint64_t expanded) {
   uint64_t& sum = root || nodes_.empty() || receiver.holder == nullptr ? scope().expanded : nodes_.back().expanded;
   const uint64_t limit = state_.options.limits.expandedNodes;
   if (root && saturatingAdd(sum, expanded) > limit) {
-    lexer_.error(at.at(), fmt::format("more nodes, shared ones counted at each use, than limit expandedNodes={}; {} is left out", limit,
-                                      describe(at)));
+    lexer_.error(at.at(), fmt::format("more nodes, shared ones counted at each use, than limit expandedNodes={}; {} is left out",
+                                      limit, describe(at)));
     return;
   }
   sum = saturatingAdd(sum, expanded);
@@ -172,8 +175,10 @@ void Builder::deliver(const Token& at, const NodeRef& node, uint64_t expanded) {
 
 void Builder::nullNode(const Token& token) {
   const Receiver& receiver = receivers_.back();
-  if (receiver.kind == Receiver::Kind::single) *static_cast<NodeRef*>(receiver.storage) = {};
-  else lexer_.warn(token.at(), "NULL is no node of a list; it is left out");
+  if (receiver.kind == Receiver::Kind::single)
+    *static_cast<NodeRef*>(receiver.storage) = {};
+  else
+    lexer_.warn(token.at(), "NULL is no node of a list; it is left out");
 }
 
 bool Builder::hasField(std::string_view name) const {
@@ -185,7 +190,8 @@ FieldTarget Builder::openField(const Token& name) {
   Node& node = *frame.node;
   const FieldInfo* field = node.type().find(name.text);
   if (!field) {
-    lexer_.error(name.at(), fmt::format("{} has no field {}{}", node.type().name, describe(name), suggestion(name.text, node.type().fields)));
+    lexer_.error(name.at(), fmt::format("{} has no field {}{}", node.type().name, describe(name),
+                                        suggestion(name.text, node.type().fields)));
     return {};
   }
   if (!holdsValue(*field)) {
@@ -217,7 +223,8 @@ void Builder::closeField(bool good) {
   if (holdsNodes(field)) {
     receivers_.pop_back();
   } else if (good && field.range.bounded() && !enforceRange(field, frame.node->storage(field))) {
-    lexer_.warn(frame.fieldAt, fmt::format("{} of {} is outside of its range {}", field.name, frame.node->type().name, describe(field.range)));
+    lexer_.warn(frame.fieldAt,
+                fmt::format("{} of {} is outside of its range {}", field.name, frame.node->type().name, describe(field.range)));
   }
 }
 

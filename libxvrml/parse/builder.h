@@ -37,13 +37,15 @@ class Builder : public ParseSink {
 
  private:
   // Sizes of the lists that grow while a node is read: what came in since is taken back if the node is lost.
-  struct Mark { size_t instances, inlines, names, routes, connections; };
+  struct Mark {
+    size_t instances, inlines, names, routes, connections;
+  };
   struct NodeFrame {
     NodeRef node;
     Token type;
     std::shared_ptr<NodeType> scriptType; // a Script's own table grows while it is read
     Mark mark;
-    uint64_t expanded = 1; // nodes in it, shared ones counted at each use
+    uint64_t expanded = 1;               // nodes in it, shared ones counted at each use
     std::vector<std::string_view> given; // fields read so far
     const FieldInfo* field = nullptr;    // the one being read
     const char* fieldAt = nullptr;
@@ -113,5 +115,6 @@ bool typeAccepted(std::string_view nodeTypes, const NodeType& type);
 // Brings numbers outside of a field's range back: to a closed end of the range; a single number beyond an open end to the
 // default. Other values beyond an open end stay for those who draw them. False if something was outside.
 bool enforceRange(const FieldInfo& field, void* storage);
+std::string describe(const FieldRange& range); // "[0,1]", "(0,inf) or -1"
 
 } // namespace xvrml

@@ -104,10 +104,12 @@ void Builder::route(const Token& keyword, const RouteNames& names) {
   if (!in) lexer_.error(names.toField.at(), fmt::format("{} has no eventIn {}", to->type().name, describe(names.toField)));
   if (!out || !in) return;
   if (out->type != in->type) {
-    lexer_.error(names.toField.at(), fmt::format("a route joins events of one type: {} is {}, {} is {}", describe(names.fromField),
-                                                 fieldTypeName(out->type), describe(names.toField), fieldTypeName(in->type)));
+    lexer_.error(names.toField.at(),
+                 fmt::format("a route joins events of one type: {} is {}, {} is {}", describe(names.fromField),
+                             fieldTypeName(out->type), describe(names.toField), fieldTypeName(in->type)));
     return;
   }
+  ++state_.routes;
   scope().scope->routes.push_back(
       {from, std::string(names.fromField.text), to, std::string(names.toField.text), lexer_.place(keyword.at())});
 }
@@ -121,16 +123,20 @@ void Builder::connect(const Token& name, const Token& interfaceName) {
   const FieldInfo* field = type.find(name.text);
   Access access = field ? field->access : Access::eventIn;
   if (!field) { // set_x and x_changed of an exposedField x stand for its events
-    if ((field = type.findEventIn(name.text))) access = Access::eventIn;
-    else if ((field = type.findEventOut(name.text))) access = Access::eventOut;
+    if ((field = type.findEventIn(name.text)))
+      access = Access::eventIn;
+    else if ((field = type.findEventOut(name.text)))
+      access = Access::eventOut;
   }
   if (!field) {
-    lexer_.error(name.at(), fmt::format("{} has no field or event {}{}", type.name, describe(name), suggestion(name.text, type.fields)));
+    lexer_.error(name.at(),
+                 fmt::format("{} has no field or event {}{}", type.name, describe(name), suggestion(name.text, type.fields)));
     return;
   }
   ScopeFrame* proto = protoFrame();
   if (!proto) {
-    lexer_.error(name.at(), fmt::format("{} IS {}: IS stands in the body of a prototype only (4.8.2)", describe(name), describe(interfaceName)));
+    lexer_.error(name.at(), fmt::format("{} IS {}: IS stands in the body of a prototype only (4.8.2)", describe(name),
+                                        describe(interfaceName)));
     return;
   }
   const FieldInfo* declared = proto->protoType->find(interfaceName.text);
@@ -140,13 +146,15 @@ void Builder::connect(const Token& name, const Token& interfaceName) {
     return;
   }
   if (declared->type != field->type) {
-    lexer_.error(interfaceName.at(), fmt::format("IS joins one type: {} of {} is {}, {} of the interface is {}", describe(name), type.name,
-                                                 fieldTypeName(field->type), describe(interfaceName), fieldTypeName(declared->type)));
+    lexer_.error(interfaceName.at(),
+                 fmt::format("IS joins one type: {} of {} is {}, {} of the interface is {}", describe(name), type.name,
+                             fieldTypeName(field->type), describe(interfaceName), fieldTypeName(declared->type)));
     return;
   }
   if (!mayConnect(access, declared->access)) {
-    lexer_.error(interfaceName.at(), fmt::format("{} {} of {} cannot be {} {} of the interface (4.8.2)", accessName(access), describe(name),
-                                                 type.name, accessName(declared->access), describe(interfaceName)));
+    lexer_.error(interfaceName.at(),
+                 fmt::format("{} {} of {} cannot be {} {} of the interface (4.8.2)", accessName(access), describe(name),
+                             type.name, accessName(declared->access), describe(interfaceName)));
     return;
   }
   proto->proto->is.push_back({frame.node, std::string(name.text), std::string(interfaceName.text)});

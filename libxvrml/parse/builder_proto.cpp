@@ -1,4 +1,5 @@
-// builder_proto.cpp: PROTO and EXTERNPROTO declarations and the interfaces of Scripts (ISO/IEC 14772-1 4.8, 4.9, 6.40). See builder.h.
+// builder_proto.cpp: PROTO and EXTERNPROTO declarations and the interfaces of Scripts (ISO/IEC 14772-1 4.8, 4.9, 6.40). See
+// builder.h.
 #include <fmt/format.h>
 
 #include "parse/builder.h"
@@ -38,8 +39,10 @@ bool Builder::declarationConflicts(const NodeType& type, const FieldInfo& field,
   if (field.access == Access::exposedField) conflict = conflict || taken("set_" + field.name) || taken(field.name + "_changed");
   const std::string_view text = field.name;
   if (field.access == Access::eventIn && text.starts_with("set_")) conflict = conflict || exposed(text.substr(4));
-  if (field.access == Access::eventOut && text.ends_with("_changed")) conflict = conflict || exposed(text.substr(0, text.size() - 8));
-  if (conflict) lexer_.error(name.at(), fmt::format("{} is declared already in the interface of {} (4.7)", describe(name), type.name));
+  if (field.access == Access::eventOut && text.ends_with("_changed"))
+    conflict = conflict || exposed(text.substr(0, text.size() - 8));
+  if (conflict)
+    lexer_.error(name.at(), fmt::format("{} is declared already in the interface of {} (4.7)", describe(name), type.name));
   return conflict;
 }
 

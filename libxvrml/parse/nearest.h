@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace xvrml {
@@ -26,8 +27,10 @@ inline size_t editDistance(std::string_view a, std::string_view b) {
 
 inline const std::string& nameOf(const std::string& name) { return name; }
 template <class T> const std::string& nameOf(const T& item) {
-  if constexpr (std::is_pointer_v<T>) return item->name;
-  else return item.name;
+  if constexpr (std::is_pointer_v<T>)
+    return item->name;
+  else
+    return item.name;
 }
 
 // "; did you mean 'x'?" or nothing.

@@ -10,7 +10,7 @@ namespace xvrml {
 class Parser {
  public:
   // Nodes within nodes that no option can raise: what the thread's stack bears.
-  static constexpr uint64_t maximumNesting = 4000;
+  static constexpr uint64_t maximumNesting = 2500;
 
   Parser(Lexer& lexer, const Limits& limits, ParseSink& sink);
   // Reads the whole text (the header is a comment to the lexer).

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <utility>
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -77,11 +78,14 @@ std::string inflateAll(std::string_view packed, const std::string& name, const L
     out.resize(had + step - stream.avail_out);
     if (out.size() > most) {
       const char* limit = most == limits.inflateBytes ? "inflateBytes" : most == limits.fileBytes ? "fileBytes" : "inflateRatio";
-      const uint64_t value = most == limits.inflateBytes ? limits.inflateBytes : most == limits.fileBytes ? limits.fileBytes : limits.inflateRatio;
+      const uint64_t value = most == limits.inflateBytes ? limits.inflateBytes
+                             : most == limits.fileBytes  ? limits.fileBytes
+                                                         : limits.inflateRatio;
       refuse(name, fmt::format("unpacks to more than limit {}={} allows", limit, value));
     }
     if (status != Z_OK && status != Z_STREAM_END) {
-      refuse(name, status == Z_BUF_ERROR ? "the gzip data ends early" : fmt::format("damaged gzip data: {}", stream.msg ? stream.msg : "unknown"));
+      refuse(name, status == Z_BUF_ERROR ? "the gzip data ends early"
+                                         : fmt::format("damaged gzip data: {}", stream.msg ? stream.msg : "unknown"));
     }
   }
   return out;
@@ -135,7 +139,8 @@ Source Source::open(const std::string& path, const Limits& limits) {
 }
 
 Source Source::fromMemory(std::string_view bytes, const std::string& name, const Limits& limits) {
-  if (bytes.size() > limits.fileBytes) refuse(name, fmt::format("has {} bytes: more than limit fileBytes={}", bytes.size(), limits.fileBytes));
+  if (bytes.size() > limits.fileBytes)
+    refuse(name, fmt::format("has {} bytes: more than limit fileBytes={}", bytes.size(), limits.fileBytes));
   Source source;
   source.text_ = bytes;
   source.unpack(name, limits);
@@ -164,7 +169,9 @@ Source::~Source() {
 // "#VRML V2.0 utf8 [optional comment] <line terminator>"
 void Source::checkHeader(const std::shared_ptr<const std::string>& file, Diagnostics& diagnostics) const {
   constexpr std::string_view exact = "#VRML V2.0 utf8";
-  const auto ends = [](std::string_view rest) { return rest.empty() || rest[0] == ' ' || rest[0] == '\t' || rest[0] == '\n' || rest[0] == '\r'; };
+  const auto ends = [](std::string_view rest) {
+    return rest.empty() || rest[0] == ' ' || rest[0] == '\t' || rest[0] == '\n' || rest[0] == '\r';
+  };
   if (text_.starts_with(exact) && ends(text_.substr(exact.size()))) return;
   const auto warn = [&](std::string message) { diagnostics.warn({file, 1, 1}, std::move(message)); };
   // The first lines that say something: blank lines and other comments before the header happen.
@@ -174,7 +181,10 @@ void Source::checkHeader(const std::shared_ptr<const std::string>& file, Diagnos
     const bool comment = current.starts_with('#');
     if (comment && current.find("VRML") != current.npos) {
       if (current.find("V1.0") != current.npos) {
-        refuse(*file, "is a VRML 1.0 file; this browser reads VRML97 (#VRML V2.0 utf8). A converter such as vrml1tovrml2 makes one of it", 1);
+        refuse(
+            *file,
+            "is a VRML 1.0 file; this browser reads VRML97 (#VRML V2.0 utf8). A converter such as vrml1tovrml2 makes one of it",
+            1);
       }
       if (current.find("2.0") != current.npos) {
         return warn(fmt::format("the file does not begin with exactly '{}'; read as VRML97 all the same", exact));

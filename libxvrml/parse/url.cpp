@@ -1,5 +1,6 @@
-// url.cpp: where the URLs of a world lead: relative ones to files beside the file that holds them (ISO/IEC 14772-1 4.5.2), absolute
-// ones only if asked for, the network nowhere. Pure but for a look at the disk; any thread; used by the loader and the mapper.
+// url.cpp: where the URLs of a world lead: relative ones to files beside the file that holds them (ISO/IEC 14772-1 4.5.2),
+// absolute ones only if asked for, the network nowhere. Pure but for a look at the disk; any thread; used by the loader and the
+// mapper.
 #include <algorithm>
 #include <filesystem>
 
@@ -88,15 +89,18 @@ ResolvedUrl resolveUrl(std::string_view url, std::string_view baseFile, const Lo
   if (decoded.starts_with('/')) absolute = true;
   if (absolute && !options.allowAbsolute) return refuse("absolute paths are not followed unless allowed");
   if (decoded.empty()) { // "#name": the file itself
+    if (baseFile == "-") return refuse("standard input cannot be read twice");
     result.path = baseFile;
     return result;
   }
   const size_t slash = baseFile.rfind('/');
   const std::string folder = absolute || slash == baseFile.npos ? "" : std::string(baseFile.substr(0, slash + 1));
   result.path = folder + decoded;
+  if (result.path == "-") result.path = "./-"; // a file, not standard input
   if (exists(result.path)) return result;
   // A file whose very name holds %20 or a backslash, or one with a query.
-  if (exists(folder + literal)) result.path = folder + literal;
+  if (exists(folder + literal))
+    result.path = folder + literal;
   else if (const size_t query = decoded.find('?'); query != decoded.npos && exists(folder + decoded.substr(0, query))) {
     result.path = folder + decoded.substr(0, query);
   }

@@ -1,0 +1,360 @@
+// expander.cpp: see expander.h.
+#include "parse/expander.h"
+
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "parse/builder.h"
+#include "parse/field_access.h"
+#include "parse/inline_node.h"
+
+namespace xvrml {
+namespace {
+
+// Nodes that events, names and the viewer never single out: what is drawn, and how it is placed. If no connection, route or
+// Script reaches them they are the same in every copy.
+bool isPassive(const Node& node) {
+  const NodeType& type = node.type();
+  if (type.index < 0) return false;
+  if (!type.is("child")) return true;
+  return type.name == "Shape" || type.name == "Group" || type.name == "Transform";
+}
+
+void appendNodes(const Value& value, std::vector<Node*>& nodes) {
+  if (const auto* single = std::get_if<NodeRef>(&value)) nodes.push_back(single->get());
+  if (const auto* many = std::get_if<MFNode>(&value)) {
+    for (const NodeRef& node : *many) nodes.push_back(node.get());
+  }
+}
+
+} // namespace
+
+uint64_t nodeBytes(Node& node) {
+  uint64_t bytes = node.type().index < 0 ? 600 : 300;
+  for (const FieldInfo& field : node.type().fields) {
+    if (!isMultiple(field.type) || !holdsValue(field)) continue;
+    bytes += visitStorage(field.type, node.storage(field), [](auto& value) -> uint64_t {
+      if constexpr (requires { value.front(); })
+        return value.size() * sizeof(value.front());
+      else
+        return 0;
+    });
+  }
+  return bytes;
+}
+
+void collectNodes(std::vector<Node*> roots, std::vector<Node*>& nodes, std::unordered_map<const Node*, uint32_t>& index) {
+  const auto add = [&](Node* node) {
+    if (node && index.try_emplace(node, static_cast<uint32_t>(nodes.size())).second) nodes.push_back(node);
+  };
+  for (size_t i = nodes.size(); Node * root : roots) {
+    add(root);
+    for (; i < nodes.size(); ++i) forEachChild(*nodes[i], [&](NodeRef& child, const FieldInfo&) { add(child.get()); });
+  }
+}
+
+// The declaration that has the body, or null.
+ProtoPtr Expander::definition(ProtoInstance& instance) {
+  return instance.declaration->isExtern ? resolve_(*instance.declaration) : instance.declaration;
+}
+
+bool Expander::addNested(Plan& plan, ProtoInstance& nested, const SourcePosition& where) {
+  const ProtoPtr inner = definition(nested);
+  if (!inner) return true; // stands for nothing
+  const PlanPtr innerPlan = this->plan(inner, where);
+  if (!innerPlan->usable) {
+    if (innerPlan->computing && nested.declaration->isExtern) nested.declaration->resolved = nullptr; // no cycle of owners
+    return false;
+  }
+  plan.expandedNodes = saturatingAdd(plan.expandedNodes, innerPlan->expandedNodes);
+  plan.bytes = saturatingAdd(plan.bytes, innerPlan->bytes);
+  return true;
+}
+
+Expander::PlanPtr Expander::plan(const ProtoPtr& declaration, const SourcePosition& where) {
+  PlanPtr& known = plans_[declaration.get()];
+  const std::string& name = declaration->type->name;
+  if (known) {
+    if (known->computing) {
+      state_.diagnostics.error(where, fmt::format("prototype '{}' contains an instance of itself (4.8.3)", name));
+    }
+    return known;
+  }
+  known = std::make_shared<Plan>();
+  const PlanPtr plan = known; // the table may move
+  plan->declaration = declaration;
+  plan->computing = true;
+  std::vector<Node*> roots;
+  for (const NodeRef& root : declaration->body.roots) roots.push_back(root.get());
+  for (const Route& route : declaration->body.routes) roots.push_back(route.from.get()), roots.push_back(route.to.get());
+  collectNodes(roots, plan->nodes, plan->index);
+  markShared(*plan, *declaration);
+  plan->expandedNodes = plan->nodes.size();
+  bool good = true;
+  const uint64_t limit = state_.options.limits.protoDepth;
+  if (++depth_ > limit) {
+    state_.diagnostics.error(where, fmt::format("prototypes within prototypes deeper than limit protoDepth={}", limit));
+    good = false;
+  }
+  for (size_t i = 0; i < plan->nodes.size(); ++i) plan->ownBytes += plan->shared[i] ? 0 : nodeBytes(*plan->nodes[i]);
+  plan->bytes = plan->ownBytes;
+  for (size_t i = 0; good && i < plan->nodes.size(); ++i) {
+    if (auto* nested = dynamic_cast<ProtoInstance*>(plan->nodes[i])) good = addNested(*plan, *nested, where);
+  }
+  good = good && addDefaults(*plan, where);
+  --depth_;
+  plan->usable = good;
+  plan->computing = false;
+  return plan;
+}
+
+// The nodes an interface has as defaults are copied for each instance too.
+bool Expander::addDefaults(Plan& plan, const SourcePosition& where) {
+  std::vector<Node*> roots, nodes;
+  for (const FieldInfo& field : plan.declaration->type->fields) appendNodes(field.defaultValue, roots);
+  std::unordered_map<const Node*, uint32_t> index;
+  collectNodes(roots, nodes, index);
+  plan.expandedNodes = saturatingAdd(plan.expandedNodes, nodes.size());
+  for (Node* node : nodes) {
+    plan.bytes = saturatingAdd(plan.bytes, nodeBytes(*node));
+    if (auto* nested = dynamic_cast<ProtoInstance*>(node); nested && !addNested(plan, *nested, where)) return false;
+  }
+  return true;
+}
+
+void Expander::markShared(Plan& plan, const ProtoDeclaration& declaration) const {
+  std::unordered_map<const Node*, uint32_t> reached;
+  std::vector<Node*> script; // and what is held by Scripts or passed to prototypes
+  for (Node* node : plan.nodes) {
+    if (node->type().index < 0) script.push_back(node);
+  }
+  std::vector<Node*> byScript;
+  collectNodes(script, byScript, reached);
+  plan.shared.resize(plan.nodes.size());
+  for (size_t i = 0; i < plan.nodes.size(); ++i) plan.shared[i] = isPassive(*plan.nodes[i]) && !reached.contains(plan.nodes[i]);
+  const auto exclude = [&](const NodeRef& node) {
+    if (const auto found = plan.index.find(node.get()); found != plan.index.end()) plan.shared[found->second] = false;
+  };
+  for (const IsConnection& connection : declaration.is) exclude(connection.node);
+  for (const Route& route : declaration.body.routes) exclude(route.from), exclude(route.to);
+  // What holds something that is not shared is not shared either.
+  std::vector<std::vector<uint32_t>> holders(plan.nodes.size());
+  std::vector<uint32_t> changed;
+  for (uint32_t i = 0; i < plan.nodes.size(); ++i) {
+    if (!plan.shared[i]) changed.push_back(i);
+    forEachChild(*plan.nodes[i], [&](NodeRef& child, const FieldInfo&) { holders[plan.index.at(child.get())].push_back(i); });
+  }
+  while (!changed.empty()) {
+    const uint32_t node = changed.back();
+    changed.pop_back();
+    for (const uint32_t holder : holders[node]) {
+      if (plan.shared[holder]) plan.shared[holder] = false, changed.push_back(holder);
+    }
+  }
+}
+
+NodeRef Expander::copyNode(Node& original) {
+  NodeRef copy;
+  if (auto* instance = dynamic_cast<ProtoInstance*>(&original)) {
+    auto* made = new ProtoInstance(instance->typePtr, instance->declaration);
+    copy = NodeRef(made);
+    made->given = instance->given;
+  } else if (auto* script = dynamic_cast<ScriptNode*>(&original)) {
+    copy = NodeRef(new ScriptNode(script->typePtr));
+  } else {
+    copy = makeStaticNode(original.type());
+  }
+  copy->defName = original.defName;
+  copy->source = original.source;
+  ++state_.world.nodeCount;
+  return copy;
+}
+
+void Expander::copyFields(const Node& original, Node& copy, const std::unordered_map<const Node*, uint32_t>& index,
+                          const std::vector<NodeRef>& copies) {
+  const auto mapped = [&](const NodeRef& node) {
+    const auto found = index.find(node.get());
+    return found == index.end() ? node : copies[found->second];
+  };
+  for (const FieldInfo& field : original.type().fields) {
+    if (!holdsValue(field)) continue;
+    visitStorage(field.type, copy.storage(field), [&](auto& target) {
+      using T = std::remove_reference_t<decltype(target)>;
+      const T& source = *static_cast<const T*>(original.storage(field));
+      if constexpr (std::is_same_v<T, NodeRef>) {
+        target = mapped(source);
+      } else if constexpr (std::is_same_v<T, MFNode>) {
+        target.clear();
+        for (const NodeRef& node : source) target.push_back(mapped(node));
+      } else {
+        target = source;
+      }
+    });
+  }
+}
+
+std::vector<NodeRef> Expander::copyAll(const std::vector<Node*>& nodes, const std::unordered_map<const Node*, uint32_t>& index,
+                                       const std::vector<bool>& shared, std::vector<NodeRef>& inlines) {
+  std::vector<NodeRef> copies;
+  copies.reserve(nodes.size());
+  for (size_t i = 0; i < nodes.size(); ++i)
+    copies.push_back(!shared.empty() && shared[i] ? NodeRef(nodes[i]) : copyNode(*nodes[i]));
+  for (size_t i = 0; i < nodes.size(); ++i) {
+    if (copies[i].get() == nodes[i]) continue;
+    copyFields(*nodes[i], *copies[i], index, copies);
+    if (state_.entered.contains(nodes[i])) state_.entered.insert(copies[i].get());
+    if (dynamic_cast<ProtoInstance*>(copies[i].get())) todo_.push_back(copies[i]);
+    if (dynamic_cast<InlineNode*>(copies[i].get())) inlines.push_back(copies[i]);
+    // A copy of a node that may hold itself may do so too.
+    if (copies[i]->type().index >= 0) continue;
+    forEachChild(*copies[i], [&](NodeRef& child, const FieldInfo&) {
+      if (state_.entered.contains(child.get()) || child.get() == copies[i].get()) state_.world.cyclic.push_back(copies[i]);
+    });
+  }
+  return copies;
+}
+
+// Values the instance does not give come from the declaration: nodes in a copy of their own (and all for an EXTERNPROTO, whose
+// interface has no values).
+void Expander::completeFields(ProtoInstance& instance, const ProtoDeclaration& definition, std::vector<NodeRef>& inlines) {
+  for (const FieldInfo& field : instance.type().fields) {
+    if (!holdsValue(field) || instance.isGiven(field)) continue;
+    const FieldInfo* declared = definition.type->find(field.name);
+    if (!declared || declared->type != field.type || !holdsValue(*declared)) continue;
+    Value& value = instance.values[field.offset];
+    value = declared->defaultValue;
+    if (!holdsNodes(field)) continue;
+    std::vector<Node*> roots, nodes;
+    appendNodes(value, roots);
+    std::unordered_map<const Node*, uint32_t> index;
+    collectNodes(roots, nodes, index);
+    const std::vector<NodeRef> copies = copyAll(nodes, index, {}, inlines);
+    const auto map = [&](NodeRef& node) {
+      if (node) node = copies[index.at(node.get())];
+    };
+    if (auto* single = std::get_if<NodeRef>(&value)) map(*single);
+    if (auto* many = std::get_if<MFNode>(&value)) {
+      for (NodeRef& node : *many) map(node);
+    }
+  }
+}
+
+void Expander::expandOne(ProtoInstance& instance, std::vector<NodeRef>& inlines) {
+  const ProtoPtr definition = this->definition(instance);
+  if (!definition) return;
+  const PlanPtr plan = this->plan(definition, instance.source);
+  if (!plan->usable) return;
+  const Limits& limits = state_.options.limits;
+  const std::string& name = definition->type->name;
+  if (saturatingAdd(state_.world.nodeCount, plan->expandedNodes) > limits.expandedNodes) {
+    state_.diagnostics.error(instance.source,
+                             fmt::format("prototype '{}' expands to {} nodes: more than limit expandedNodes={}; not expanded",
+                                         name, plan->expandedNodes, limits.expandedNodes));
+    return;
+  }
+  if (saturatingAdd(bytes_, plan->bytes) > limits.copyBytes) {
+    state_.diagnostics.error(
+        instance.source,
+        fmt::format("copies of prototype '{}' take more memory than limit copyBytes={}; not expanded", name, limits.copyBytes));
+    return;
+  }
+  bytes_ += plan->ownBytes;
+  completeFields(instance, *definition, inlines);
+  const std::vector<NodeRef> copies = copyAll(plan->nodes, plan->index, plan->shared, inlines);
+  const auto map = [&](const NodeRef& node) {
+    const auto found = plan->index.find(node.get());
+    return found == plan->index.end() ? node : copies[found->second];
+  };
+  Scope& body = instance.body;
+  body.prototypes = definition->body.prototypes;
+  for (const NodeRef& root : definition->body.roots) body.roots.push_back(map(root));
+  for (const Route& route : definition->body.routes) {
+    body.routes.push_back({map(route.from), route.fromField, map(route.to), route.toField, route.source});
+    ++state_.routes;
+  }
+  for (const auto& [key, node] : definition->body.names) body.names.emplace(key, map(node));
+  for (const IsConnection& connection : definition->is) {
+    instance.is.push_back({map(connection.node), connection.field, connection.interfaceName});
+  }
+  applyConnections(instance);
+}
+
+void Expander::expand(const std::vector<NodeRef>& instances, std::vector<NodeRef>& inlines) {
+  // A stack in the order of the file.
+  todo_.assign(instances.rbegin(), instances.rend());
+  while (!todo_.empty()) {
+    const NodeRef next = std::move(todo_.back());
+    todo_.pop_back();
+    auto& instance = static_cast<ProtoInstance&>(*next);
+    if (instance.body.roots.empty()) expandOne(instance, inlines);
+  }
+}
+
+namespace {
+
+bool isUrlField(const FieldInfo& field) {
+  return field.type == FieldType::MFString && (field.name == "url" || field.name.ends_with("Url"));
+}
+
+// A relative URL written in the file of the instance, for a node that stands in another file (4.9.3).
+void rebaseUrls(MFString& urls, const std::string& from, const std::string& to) {
+  namespace fs = std::filesystem;
+  const fs::path fromFolder = fs::path(from).parent_path(), toFolder = fs::path(to).parent_path();
+  if (fromFolder == toFolder) return;
+  const fs::path step = fromFolder.lexically_relative(toFolder);
+  if (step.empty() || step == ".") return;
+  for (std::string& url : urls) {
+    const size_t colon = url.find(':');
+    const bool relative = !url.empty() && url[0] != '/' && url[0] != '#' && (colon == url.npos || url.find('/') < colon);
+    if (relative) url = (step / url).string();
+  }
+}
+
+} // namespace
+
+// "field IS name": the instance's value becomes that of the node in its body (4.8.2).
+void Expander::applyConnections(ProtoInstance& instance) {
+  for (const IsConnection& connection : instance.is) {
+    const FieldInfo* from = instance.type().find(connection.interfaceName);
+    Node& node = *connection.node;
+    const FieldInfo* to = node.type().find(connection.field);
+    if (!from || !to || !holdsValue(*from) || !holdsValue(*to) || from->type != to->type) continue;
+    auto* inner = dynamic_cast<ProtoInstance*>(&node);
+    if (inner) inner->give(*to);
+    visitStorage(to->type, node.storage(*to), [&](auto& target) {
+      using T = std::remove_reference_t<decltype(target)>;
+      target = *static_cast<const T*>(instance.storage(*from));
+      if constexpr (std::is_same_v<T, MFString>) {
+        if (isUrlField(*to) && instance.isGiven(*from) && instance.source.file && node.source.file) {
+          rebaseUrls(target, *instance.source.file, *node.source.file);
+        }
+      }
+      const auto acceptable = [&](const NodeRef& value) {
+        if (!value) return true;
+        if (state_.entered.contains(value.get())) {
+          if (node.type().index < 0) {
+            state_.world.cyclic.push_back(connection.node);
+            return true;
+          }
+          state_.diagnostics.error(instance.source,
+                                   fmt::format("the value of {} would make a node its own descendant (4.6.2)", from->name));
+          return false;
+        }
+        const NodeType* type = effectiveType(*value);
+        if (!type || to->nodeTypes.empty() || typeAccepted(to->nodeTypes, *type)) return true;
+        state_.diagnostics.error(value->source, fmt::format("'{}' cannot be in field {} of {} that {} stands for: expected {}",
+                                                            type->name, to->name, node.type().name, from->name, to->nodeTypes));
+        return false;
+      };
+      if constexpr (std::is_same_v<T, NodeRef>) {
+        if (!acceptable(target)) target = {};
+      } else if constexpr (std::is_same_v<T, MFNode>) {
+        std::erase_if(target, [&](const NodeRef& value) { return !acceptable(value); });
+      }
+    });
+    if (!holdsNodes(*to) && to->range.bounded()) enforceRange(*to, node.storage(*to));
+  }
+}
+
+} // namespace xvrml

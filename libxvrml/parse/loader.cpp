@@ -1,0 +1,282 @@
+// loader.cpp: see loader.h.
+#include "parse/loader.h"
+
+#include <filesystem>
+#include <new>
+
+#include <fmt/format.h>
+
+#include "parse/builder.h"
+#include "parse/field_access.h"
+#include "parse/inline_node.h"
+#include "parse/parser.h"
+
+namespace xvrml {
+namespace {
+
+std::string canonical(const std::string& path) {
+  std::error_code error;
+  const auto result = std::filesystem::weakly_canonical(path, error);
+  return error ? path : result.string();
+}
+
+void addReason(std::string& reasons, const std::string& reason) {
+  if (reasons.size() > 400) return; // a list of URLs can be long
+  if (!reasons.empty()) reasons += "; ";
+  reasons += reason;
+}
+
+double secondsSince(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+} // namespace
+
+Loader::Loader(World& world, const LoadOptions& options)
+    : world_(world), state_{world, options, world.diagnostics, {}, 0, 0},
+      expander_(state_, [this](ProtoDeclaration& declaration) { return resolveExtern(declaration); }) {}
+
+void Loader::load(const Source& source, const std::string& name) {
+  const auto start = std::chrono::steady_clock::now();
+  ParsedFile file;
+  const auto sharedName = std::make_shared<const std::string>(name);
+  source.checkHeader(sharedName, state_.diagnostics);
+  parse(source, sharedName, file);
+  world_.times.parse = secondsSince(start);
+  const std::string key = canonical(name);
+  inlined_[key].reading = true;
+  complete(file, 0);
+  world_.scope = std::move(file.scope);
+  if (composed_) checkSize(world_.scope);
+  world_.times.load = secondsSince(start) - world_.times.parse;
+}
+
+void Loader::parse(const Source& source, const std::shared_ptr<const std::string>& name, ParsedFile& file) {
+  Lexer lexer(source.text(), name, state_.diagnostics);
+  Builder builder(lexer, state_, file);
+  Parser(lexer, state_.options.limits, builder).vrmlScene();
+}
+
+void Loader::complete(ParsedFile& file, uint64_t depth) {
+  composed_ = composed_ || !file.instances.empty() || !file.inlines.empty();
+  expander_.expand(file.instances, file.inlines);
+  if (!state_.options.loadInlines) return;
+  for (const NodeRef& node : file.inlines) loadInline(static_cast<InlineNode&>(*node), depth + 1);
+}
+
+void Loader::loadInline(InlineNode& node, uint64_t depth) {
+  if (node.url.empty() || node.content) return;
+  std::string reasons;
+  for (const std::string& url : node.url) {
+    const ResolvedUrl resolved = resolveUrl(url, node.source.file ? *node.source.file : "", state_.options);
+    std::string reason = resolved.error;
+    if (reason.empty() && loadInlineFrom(node, resolved.path, depth, reason)) return;
+    if (!reason.empty()) addReason(reasons, reason);
+  }
+  if (!reasons.empty()) state_.diagnostics.warn(node.source, fmt::format("Inline is empty: {}", reasons));
+}
+
+// True if it is settled: loaded, or refused with a message.
+bool Loader::loadInlineFrom(InlineNode& node, const std::string& path, uint64_t depth, std::string& reason) {
+  const Limits& limits = state_.options.limits;
+  const std::string key = canonical(path);
+  InlinedFile& known = inlined_[key];
+  if (known.reading) {
+    state_.diagnostics.error(node.source, fmt::format("Inline of '{}', which contains this Inline itself", path));
+    return true;
+  }
+  if (depth > limits.inlineDepth) {
+    state_.diagnostics.error(node.source,
+                             fmt::format("Inlines within Inlines deeper than limit inlineDepth={}", limits.inlineDepth));
+    return true;
+  }
+  if (known.content) {
+    const bool copy = known.changing && copyBytes_ + known.bytes <= limits.copyBytes;
+    if (!copy) {
+      node.content = known.content;
+      return true;
+    }
+    copyBytes_ += known.bytes;
+  }
+  try {
+    const Source source = Source::open(path, limits);
+    const auto name = std::make_shared<const std::string>(path);
+    source.checkHeader(name, state_.diagnostics);
+    const uint64_t nodes = world_.nodeCount, routes = state_.routes, scripts = state_.scripts;
+    known.reading = true;
+    ParsedFile file;
+    parse(source, name, file);
+    complete(file, depth);
+    InlinedFile& entry = inlined_[key]; // the table may have moved
+    entry.reading = false;
+    entry.bytes = source.text().size() + 400 * (world_.nodeCount - nodes);
+    entry.changing = state_.routes > routes || state_.scripts > scripts;
+    entry.content = std::make_shared<const Scope>(std::move(file.scope));
+    node.content = entry.content;
+    return true;
+  } catch (const LoadError& error) {
+    reason = error.diagnostic.text();
+    return false;
+  }
+}
+
+// EXTERNPROTO: the first of its URLs that can be read and has the prototype (4.9.2). Null, with one message, if there is none.
+ProtoPtr Loader::resolveExtern(ProtoDeclaration& declaration) {
+  if (declaration.resolved || !tried_.insert(&declaration).second) return declaration.resolved;
+  const std::string& name = declaration.type->name;
+  if (resolving_ >= state_.options.limits.inlineDepth) {
+    state_.diagnostics.error(declaration.source, fmt::format("files of prototypes deeper than limit inlineDepth={}",
+                                                             state_.options.limits.inlineDepth));
+    return nullptr;
+  }
+  std::string reasons;
+  for (const std::string& url : declaration.urls) {
+    const ResolvedUrl resolved = resolveUrl(url, declaration.baseUrl, state_.options);
+    std::string reason = resolved.error;
+    if (reason.empty()) {
+      ++resolving_;
+      ProtoPtr found = findIn(resolved.path, resolved.fragment, reason);
+      if (found && found->isExtern) {
+        found = resolveExtern(*found);
+        if (!found) reason = fmt::format("'{}' leads to an EXTERNPROTO that cannot be loaded", url);
+      }
+      --resolving_;
+      if (found) {
+        if (!interfaceFits(declaration, *found)) return nullptr;
+        return declaration.resolved = found;
+      }
+    }
+    addReason(reasons, reason);
+  }
+  if (declaration.urls.empty()) reasons = "it names no URL";
+  state_.diagnostics.warn(declaration.source, fmt::format("EXTERNPROTO '{}' is not loaded: {}", name, reasons));
+  return nullptr;
+}
+
+ProtoPtr Loader::findIn(const std::string& path, const std::string& name, std::string& reason) {
+  auto& library = libraries_[canonical(path)];
+  if (!library) {
+    try {
+      const Source source = Source::open(path, state_.options.limits);
+      const auto sharedName = std::make_shared<const std::string>(path);
+      source.checkHeader(sharedName, state_.diagnostics);
+      library = std::make_unique<ParsedFile>();
+      parse(source, sharedName, *library);
+    } catch (const LoadError& error) {
+      reason = error.diagnostic.text();
+      library.reset();
+      return nullptr;
+    }
+  }
+  for (const ProtoPtr& proto : library->scope.prototypes) {
+    if (name.empty() || proto->type->name == name) return proto;
+  }
+  reason =
+      name.empty() ? fmt::format("'{}' declares no prototype", path) : fmt::format("'{}' declares no prototype '{}'", path, name);
+  return nullptr;
+}
+
+// 4.9.1: the interface of an EXTERNPROTO is a subset of the PROTO's.
+bool Loader::interfaceFits(const ProtoDeclaration& wanted, const ProtoDeclaration& found) {
+  for (const FieldInfo& field : wanted.type->fields) {
+    const FieldInfo* declared = found.type->find(field.name);
+    if (declared && declared->type == field.type && declared->access == field.access) continue;
+    const std::string place = found.source.file ? fmt::format("{}:{}", *found.source.file, found.source.line) : "";
+    state_.diagnostics.error(wanted.source,
+                             fmt::format("EXTERNPROTO '{}' declares '{}' {} the prototype in {}", wanted.type->name, field.name,
+                                         declared ? "otherwise than" : ", which is not in", place));
+    return false;
+  }
+  return true;
+}
+
+// With all prototypes and Inlines in place: no root may stand for more nodes than the limit, counting shared ones at each use,
+// nor nest deeper than those who walk the graph can bear. A loop over a stack of its own.
+void Loader::checkSize(Scope& scope) {
+  struct Size {
+    uint64_t nodes = 1, depth = 1;
+    bool done = false;
+  };
+  std::unordered_map<Node*, Size> sizes;
+  const auto children = [](Node* node, std::vector<Node*>& out) {
+    // What Scripts and instances hold in fields is drawn where a body holds it.
+    if (node->type().index >= 0) forEachChild(*node, [&](NodeRef& child, const FieldInfo&) { out.push_back(child.get()); });
+    if (const auto* instance = dynamic_cast<ProtoInstance*>(node)) {
+      for (const NodeRef& root : instance->body.roots) out.push_back(root.get());
+    }
+    if (const Scope* content = inlineScope(*node)) {
+      for (const NodeRef& root : content->roots) out.push_back(root.get());
+    }
+  };
+  const auto measure = [&](Node* root) {
+    std::vector<Node*> stack{root}, below;
+    while (!stack.empty()) {
+      Node* node = stack.back();
+      Size& size = sizes[node];
+      below.clear();
+      if (!size.done) children(node, below);
+      bool ready = true;
+      if (!size.done && size.nodes == 1 && !below.empty()) {
+        size.nodes = 0; // its children have been asked for
+        for (Node* child : below) {
+          if (!sizes[child].done && child != node) stack.push_back(child), ready = false;
+        }
+      }
+      if (!ready) continue;
+      stack.pop_back();
+      Size& result = sizes[node];
+      if (result.done) continue;
+      result = {1, 1, true};
+      for (Node* child : below) {
+        const Size& inner = sizes[child];
+        result.nodes = saturatingAdd(result.nodes, inner.nodes);
+        result.depth = std::max(result.depth, inner.depth + 1);
+      }
+      sizes[node] = result;
+    }
+    return sizes[root];
+  };
+  uint64_t sum = 0;
+  const uint64_t limit = state_.options.limits.expandedNodes;
+  std::erase_if(scope.roots, [&](const NodeRef& root) {
+    const Size size = measure(root.get());
+    const bool large = saturatingAdd(sum, size.nodes) > limit, deep = size.depth > Parser::maximumNesting;
+    if (large)
+      state_.diagnostics.error(
+          root->source, fmt::format("more nodes with all prototypes and Inlines than limit expandedNodes={}; {} is left out",
+                                    limit, root->type().name));
+    else if (deep)
+      state_.diagnostics.error(
+          root->source, fmt::format("nodes nested {} deep with all prototypes and Inlines, {} at most can be; {} is left out",
+                                    size.depth, Parser::maximumNesting, root->type().name));
+    else
+      sum += size.nodes;
+    return large || deep;
+  });
+}
+
+namespace {
+
+template <class MakeSource>
+std::unique_ptr<World> loadFrom(const std::string& name, const LoadOptions& options, MakeSource makeSource) {
+  try {
+    auto world = std::make_unique<World>();
+    world->path = name;
+    world->options = options;
+    const Source source = makeSource();
+    Loader(*world, world->options).load(source, name);
+    return world;
+  } catch (const std::bad_alloc&) { throw LoadError{{Severity::error, name, 0, 0, "not enough memory", {}, 0}}; }
+}
+
+} // namespace
+
+std::unique_ptr<World> loadWorld(const std::string& path, const LoadOptions& options) {
+  return loadFrom(path, options, [&] { return Source::open(path, options.limits); });
+}
+
+std::unique_ptr<World> loadWorldFromMemory(std::string_view bytes, const std::string& name, const LoadOptions& options) {
+  return loadFrom(name, options, [&] { return Source::fromMemory(bytes, name, options.limits); });
+}
+
+} // namespace xvrml

@@ -1,0 +1,49 @@
+// loader.h: brings a world together from its files: parses, expands prototypes, loads EXTERNPROTOs and Inlines. One loader per
+// world, on the thread that called loadWorld.
+#pragma once
+
+#include <chrono>
+
+#include "parse/expander.h"
+#include "parse/source.h"
+
+namespace xvrml {
+
+struct InlineNode;
+
+class Loader {
+ public:
+  Loader(World& world, const LoadOptions& options);
+  // Throws LoadError if nothing of the file can be used.
+  void load(const Source& source, const std::string& name);
+
+ private:
+  // A file that Inlines name. `content` is null while it is being read.
+  struct InlinedFile {
+    std::shared_ptr<const Scope> content;
+    uint64_t bytes = 0;    // rough size in memory
+    bool changing = false; // has routes or scripts: each Inline needs its own
+    bool reading = false;
+  };
+
+  void parse(const Source& source, const std::shared_ptr<const std::string>& name, ParsedFile& file);
+  void complete(ParsedFile& file, uint64_t depth);
+  void loadInline(InlineNode& node, uint64_t depth);
+  bool loadInlineFrom(InlineNode& node, const std::string& path, uint64_t depth, std::string& reason);
+  ProtoPtr resolveExtern(ProtoDeclaration& declaration);
+  ProtoPtr findIn(const std::string& path, const std::string& name, std::string& reason);
+  bool interfaceFits(const ProtoDeclaration& wanted, const ProtoDeclaration& found);
+  void checkSize(Scope& scope);
+
+  World& world_;
+  LoadState state_;
+  Expander expander_;
+  std::unordered_map<std::string, InlinedFile> inlined_;                   // by canonical path
+  std::unordered_map<std::string, std::unique_ptr<ParsedFile>> libraries_; // files that EXTERNPROTOs name
+  std::unordered_set<const ProtoDeclaration*> tried_;
+  uint64_t resolving_ = 0;
+  uint64_t copyBytes_ = 0;
+  bool composed_ = false; // prototypes or Inlines came in: sizes are not what the parser added up
+};
+
+} // namespace xvrml

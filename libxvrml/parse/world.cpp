@@ -1,0 +1,25 @@
+// world.cpp: what a loaded world can be asked, and its end. See xvrml/world.h.
+#include "xvrml/world.h"
+
+#include "parse/field_access.h"
+
+namespace xvrml {
+
+Node* renderedNode(Node* node) {
+  while (auto* instance = dynamic_cast<ProtoInstance*>(node)) {
+    node = instance->body.roots.empty() ? nullptr : instance->body.roots[0].get();
+  }
+  return node;
+}
+
+// A Script's field may hold a node that contains the Script: such owners of themselves are let go by hand.
+World::~World() {
+  for (const NodeRef& node : cyclic) {
+    for (const FieldInfo& field : node->type().fields) {
+      if (!holdsNodes(field)) continue;
+      visitStorage(field.type, node->storage(field), [](auto& value) { value = {}; });
+    }
+  }
+}
+
+} // namespace xvrml
