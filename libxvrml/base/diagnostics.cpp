@@ -46,7 +46,8 @@ std::string Diagnostic::text() const {
   result += ": " + message;
   if (sourceLine.empty()) return result;
   result += '\n' + sourceLine;
-  if (column > 0 && column <= sourceLine.size() + 1) result += '\n' + caretIndent(sourceLine, column) + '^';
+  const size_t place = caret > 0 ? caret : column; // a long line is shown in part
+  if (place > 0 && place <= sourceLine.size() + 1) result += '\n' + caretIndent(sourceLine, place) + '^';
   return result;
 }
 

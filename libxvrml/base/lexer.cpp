@@ -23,6 +23,10 @@ constexpr bool isDigit(char c) { return c >= '0' && c <= '9'; }
 constexpr bool isHexDigit(char c) { return isDigit(c) || (c >= 'a' && c <= 'f') || (c >= 'A' && c <= 'F'); }
 constexpr bool isContinuationByte(char c) { return (static_cast<unsigned char>(c) & 0xc0) == 0x80; }
 
+uint32_t countCharacters(const char* from, const char* to) {
+  return static_cast<uint32_t>(std::count_if(from, to, [](char c) { return !isContinuationByte(c); }));
+}
+
 // Ends of lines (LF, CR or CR LF) in [from, to), by blocks small enough for byte sums so that compilers vectorise it.
 uint32_t countLines(const char* from, const char* to, const char* end) {
   if (from < to && to == end) return countLines(from, to - 1, end) + (to[-1] == '\n' || to[-1] == '\r'); // no byte after it
@@ -171,9 +175,10 @@ SourcePosition Lexer::place(const char* at) {
   const uint32_t lines = countLines(from, to, end_);
   line_ = at >= mark_ ? line_ + lines : line_ - lines;
   if (lines > 0) {
-    column_ = static_cast<uint32_t>(at - startOfLine(at, begin_, end_)) + 1;
+    column_ = countCharacters(startOfLine(at, begin_, end_), at) + 1;
   } else {
-    column_ += static_cast<uint32_t>(at - mark_); // modulo 2^32, so the way back subtracts
+    const uint32_t characters = countCharacters(from, to);
+    column_ = at >= mark_ ? column_ + characters : column_ - characters;
   }
   mark_ = at;
   return {file_, line_, column_};
@@ -192,7 +197,7 @@ void Lexer::report(Severity severity, const char* at, std::string message) {
   const char* to = endOfLine(at, end_ - from > window ? std::max(at, from + window) : end_);
   while (to < end_ && to > at && isContinuationByte(*to)) --to;
   diagnostics_.add({severity, file_ ? *file_ : std::string(), where.line, where.column, std::move(message), std::string(from, to),
-                    static_cast<uint32_t>(at - from) + 1});
+                    countCharacters(from, at) + 1});
 }
 
 std::string describe(const Token& token) {

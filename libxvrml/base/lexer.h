@@ -41,7 +41,7 @@ constexpr bool isVrmlSeparator(char c) {
   return isVrmlSpace(c) || c == '[' || c == ']' || c == '{' || c == '}' || c == '"' || c == '#';
 }
 bool isIdentifierStart(unsigned char c); // IdFirstChar
-bool isIdentifierRest(unsigned char c); // IdRestChars
+bool isIdentifierRest(unsigned char c);  // IdRestChars
 bool isIdentifier(std::string_view text);
 
 class Lexer {
@@ -81,7 +81,7 @@ class Lexer {
   // Skips white space, commas and comments from p.
   const char* skipSpace(const char* p);
 
-  // Line and column (in bytes, from 1) of a place in the text. Costs the distance from the place asked for before.
+  // Line and column (in characters, from 1) of a place in the text. Costs the distance from the place asked for before.
   SourcePosition place(const char* at);
   void error(const char* at, std::string message) { report(Severity::error, at, std::move(message)); }
   void warn(const char* at, std::string message) { report(Severity::warning, at, std::move(message)); }

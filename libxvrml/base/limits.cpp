@@ -6,7 +6,7 @@
 namespace xvrml {
 namespace {
 
-constexpr std::array<LimitInfo, 11> table = {{
+constexpr std::array<LimitInfo, 13> table = {{
     {"nesting", &Limits::nesting, "depth of nodes within nodes and of statements"},
     {"protoDepth", &Limits::protoDepth, "depth of prototypes that instantiate prototypes"},
     {"inlineDepth", &Limits::inlineDepth, "depth of files within files"},

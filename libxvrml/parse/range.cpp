@@ -34,11 +34,16 @@ template <> struct Numbers<Vec2f> { static constexpr int count = 2; };
 template <> struct Numbers<Vec3f> { static constexpr int count = 3; };
 template <> struct Numbers<Color> { static constexpr int count = 3; };
 template <> struct Numbers<Rotation> { static constexpr int count = 3; };
-template <class T> concept Numeric = requires { Numbers<T>::count; };
+template <class T>
+concept Numeric = requires {
+  Numbers<T>::count;
+};
 
 template <Numeric T> auto* first(T& value) {
-  if constexpr (Numbers<T>::count == 1) return &value;
-  else return &reinterpret_cast<float&>(value);
+  if constexpr (Numbers<T>::count == 1)
+    return &value;
+  else
+    return &reinterpret_cast<float&>(value);
 }
 
 template <Numeric T> bool enforce(T& value, const FieldRange& range) {
@@ -73,7 +78,8 @@ bool enforceRange(const FieldInfo& field, void* storage) {
 
 std::string describe(const FieldRange& range) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
-  const std::string low = range.minimum == -infinity ? "(-inf" : fmt::format("{}{}", range.minimumOpen ? '(' : '[', range.minimum);
+  const std::string low =
+      range.minimum == -infinity ? "(-inf" : fmt::format("{}{}", range.minimumOpen ? '(' : '[', range.minimum);
   const std::string high = range.maximum == infinity ? "inf)" : fmt::format("{}{}", range.maximum, range.maximumOpen ? ')' : ']');
   return low + "," + high + (range.also == range.also ? fmt::format(" or {}", range.also) : "");
 }
