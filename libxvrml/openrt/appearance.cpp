@@ -15,15 +15,20 @@ struct Parts {
   nodes::ORTShader* shader = nullptr;
 };
 
+template <class T> void surfaceParts(const T& appearance, Parts& parts) {
+  parts.material = nodeCast<nodes::Material>(renderedNode(appearance.material.get()));
+  parts.texture = renderedNode(appearance.texture.get());
+  parts.textureTransform = nodeCast<nodes::TextureTransform>(renderedNode(appearance.textureTransform.get()));
+}
+
 Parts partsOf(Node* appearance) {
   Parts parts;
   Node* node = renderedNode(appearance);
-  if (auto* a = nodeCast<nodes::Appearance>(node)) {
-    parts.material = nodeCast<nodes::Material>(renderedNode(a->material.get()));
-    parts.texture = renderedNode(a->texture.get());
-    parts.textureTransform = nodeCast<nodes::TextureTransform>(renderedNode(a->textureTransform.get()));
-  } else if (auto* o = nodeCast<nodes::ORTAppearance>(node)) {
-    parts.shader = nodeCast<nodes::ORTShader>(renderedNode(o->shader.get()));
+  if (auto* plain = nodeCast<nodes::Appearance>(node)) {
+    surfaceParts(*plain, parts);
+  } else if (auto* custom = nodeCast<nodes::ORTAppearance>(node)) {
+    surfaceParts(*custom, parts);
+    parts.shader = nodeCast<nodes::ORTShader>(renderedNode(custom->shader.get()));
   }
   return parts;
 }
@@ -93,9 +98,9 @@ RTid Surfaces::makeSurface(Node* appearance) {
     shader.color("diffuseColor", convert(m->diffuseColor, linear_));
     shader.color("emissiveColor", convert(m->emissiveColor, linear_));
     shader.color("specularColor", convert(m->specularColor, linear_));
-    shader.number("ambientIntensity", m->ambientIntensity);
-    shader.number("shininess", m->shininess);
-    shader.number("transparency", m->transparency);
+    shader.number("ambientIntensity", m->ambientIntensity, 0, 1);
+    shader.number("shininess", m->shininess, 0, 1);
+    shader.number("transparency", m->transparency, 0, 1);
   }
   if (texture != 0) shader.texture("texture", texture);
   if (const nodes::TextureTransform* t = parts.textureTransform; t && texture != 0)

@@ -1,40 +1,45 @@
 // lights.cpp: see lights.h. Clauses 4.6.6 (lights and their scope), 6.14, 6.34 and 6.44.
 #include "openrt/lights.h"
 
+#include <algorithm>
+
 #include "xvrml/nodes.h"
 
 namespace xvrml::mapping {
+namespace {
+Vec3f notNegative(Vec3f v) { return {std::max(v.x, 0.0f), std::max(v.y, 0.0f), std::max(v.z, 0.0f)}; }
+} // namespace
 
 RTid Lights::makeShader(Node& node) {
   if (auto* d = nodeCast<nodes::DirectionalLight>(&node)) {
     ShaderSetup s(classes_.get("VRML97DirectionalLight", ""));
     s.color("color", convert(d->color, linear_));
-    s.number("intensity", d->intensity);
-    s.number("ambientIntensity", d->ambientIntensity);
+    s.number("intensity", d->intensity, 0);
+    s.number("ambientIntensity", d->ambientIntensity, 0);
     s.vector("direction", d->direction);
     return s.id();
   }
   if (auto* p = nodeCast<nodes::PointLight>(&node)) {
     ShaderSetup s(classes_.get("VRML97PointLight", ""));
     s.color("color", convert(p->color, linear_));
-    s.number("intensity", p->intensity);
-    s.number("ambientIntensity", p->ambientIntensity);
+    s.number("intensity", p->intensity, 0);
+    s.number("ambientIntensity", p->ambientIntensity, 0);
     s.vector("location", p->location);
-    s.vector("attenuation", p->attenuation);
-    s.number("radius", p->radius);
+    s.vector("attenuation", notNegative(p->attenuation));
+    s.number("radius", p->radius, 0);
     return s.id();
   }
   auto& spot = static_cast<nodes::SpotLight&>(node);
   ShaderSetup s(classes_.get("VRML97SpotLight", ""));
   s.color("color", convert(spot.color, linear_));
-  s.number("intensity", spot.intensity);
-  s.number("ambientIntensity", spot.ambientIntensity);
+  s.number("intensity", spot.intensity, 0);
+  s.number("ambientIntensity", spot.ambientIntensity, 0);
   s.vector("location", spot.location);
   s.vector("direction", spot.direction);
-  s.vector("attenuation", spot.attenuation);
-  s.number("radius", spot.radius);
-  s.number("beamWidth", spot.beamWidth);
-  s.number("cutOffAngle", spot.cutOffAngle);
+  s.vector("attenuation", notNegative(spot.attenuation));
+  s.number("radius", spot.radius, 0);
+  s.number("beamWidth", spot.beamWidth, 0, 3.1415927f);
+  s.number("cutOffAngle", spot.cutOffAngle, 0, 3.1415927f);
   return s.id();
 }
 
@@ -52,7 +57,7 @@ void Lights::follow(const Graph& graph, Places& places) {
   for (Place& place : places.all) {
     const Item& item = graph.items[place.item];
     if (!isLight(item.kind)) continue;
-    if (!place.active) {
+    if (!place.active || !finite(place.world)) {
       if (place.light != 0) rtRemoveLight(place.light);
       place.light = 0;
       continue;

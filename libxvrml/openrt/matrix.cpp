@@ -83,14 +83,14 @@ Vector transformPoint(const Matrix& m, const Vector& p) {
   return transformDirection(m, p) + Vector(m.x[3][0], m.x[3][1], m.x[3][2]);
 }
 
-namespace {
-Vector row(const Matrix& m, int i) { return {m.x[i][0], m.x[i][1], m.x[i][2]}; }
-
 bool finite(const Matrix& m) {
   for (int i = 0; i < 16; ++i)
     if (!std::isfinite(data(m)[i])) return false;
   return true;
 }
+
+namespace {
+Vector row(const Matrix& m, int i) { return {m.x[i][0], m.x[i][1], m.x[i][2]}; }
 
 Matrix frame(const Vector& x, const Vector& y, const Vector& z, const Vector& origin) {
   return {x.x, x.y, x.z, 0, y.x, y.y, y.z, 0, z.x, z.y, z.z, 0, origin.x, origin.y, origin.z, 1};

@@ -38,6 +38,7 @@ Matrix textureMatrix(Vec2f center, float rotation, Vec2f scale, Vec2f translatio
 
 Vector transformPoint(const Matrix& m, const Vector& p);
 Vector transformDirection(const Matrix& m, const Vector& v);
+bool finite(const Matrix& m);
 // 0 where the linear part has no inverse or is not finite.
 double determinant(const Matrix& m);
 // The affine inverse; false if there is none.

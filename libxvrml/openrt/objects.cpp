@@ -23,6 +23,7 @@ void Objects::follow() {
       definePlace(i);
     if (kind == Kind::billboard && place.instance != 0) {
       const Matrix matrix = compose(place.base, places_.turns[i]);
+      if (!finite(matrix)) continue;
       rtInstanceMatrix(place.instance, data(matrix));
       report(world_.diagnostics, graph_.items[place.item].node->source, "Billboard");
     }

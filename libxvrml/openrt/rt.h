@@ -2,6 +2,8 @@
 // that holds the context.
 #pragma once
 
+#include <algorithm>
+#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
@@ -42,6 +44,10 @@ class ShaderSetup {
 
   void integer(const char* name, int v) { rtParameter1i(rtParameterHandle(name), v); }
   void number(const char* name, float v) { rtParameter1f(rtParameterHandle(name), v); }
+  // The nearest value in the field's range: parsers warn of others.
+  void number(const char* name, float v, float low, float high = std::numeric_limits<float>::max()) {
+    number(name, std::clamp(v, low, high));
+  }
   void vector(const char* name, Vec3f v) { rtParameter3f(rtParameterHandle(name), v.x, v.y, v.z); }
   void color(const char* name, Color c) { rtParameter3f(rtParameterHandle(name), c.r, c.g, c.b); }
   void floats(const char* name, std::span<const float> v) { rtParameterfv(rtParameterHandle(name), v.size(), v.data()); }

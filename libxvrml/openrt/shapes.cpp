@@ -20,6 +20,7 @@ RTid Objects::begin() {
 }
 
 RTid Objects::instantiate(RTid object, const Matrix& matrix, uint32_t name) {
+  if (!finite(matrix)) return 0; // scales that multiply beyond all numbers: out of sight
   ++instances_;
   rtLoadName(name);
   load(matrix);
@@ -43,7 +44,7 @@ uint32_t Objects::givenName(const Item& item, uint32_t name) {
 
 void Objects::writeShape(const Item& item, const Matrix& matrix, uint32_t name) {
   const Meshes::Extent extent = graph_.meshes.extent(item.mesh);
-  if (extent.primitives == 0) return;
+  if (extent.primitives == 0 || !finite(matrix)) return;
   Node* appearance = static_cast<nodes::Shape&>(*item.node).appearance.get();
   const Surface surface = surfaces_.of(appearance, item.lines);
   if (sharesGeometry(item.mesh)) {

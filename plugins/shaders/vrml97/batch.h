@@ -55,9 +55,14 @@ VRML97_INLINE float logOneMinus(float s) {
   return (p * x * z - 0.5f * z + e * -2.12194440e-4f) + x + e * 0.693359375f;
 }
 
-// e to the power x for x <= 0; 0 below -87. Polynomial of Cephes' expf (Moshier).
+// expNegative of this and of anything below is 0. Choose among exponents, not results: a choice among results becomes a
+// branch around the work, and the loop stays scalar.
+inline constexpr float vanishing = -88.0f;
+
+// e to the power x for x <= 0; 0 where that is below the smallest normal number, and for NaN: the power of two is then all
+// zero bits. Polynomial of Cephes' expf (Moshier).
 VRML97_INLINE float expNegative(float x) {
-  const float safe = larger(x, -87.0f);
+  const float safe = larger(x, vanishing);
   const float k = safe * 1.44269504088896341f - 0.5f;
   const int32_t whole = static_cast<int32_t>(k); // towards zero: rounds the value before the subtraction, as it is negative
   const float e = static_cast<float>(whole);
@@ -70,7 +75,7 @@ VRML97_INLINE float expNegative(float x) {
   p = p * r + 5.0000001201e-1f;
   const float m = p * (r * r) + r + 1.0f;
   const float power = floatOf(static_cast<uint32_t>(whole + 127) << 23);
-  return x >= -87.0f ? m * power : 0.0f; // 0 for NaN too
+  return m * power;
 }
 
 // Angle 0..pi of the vector (x, y) with y >= 0 to the x axis; 0 for the zero vector. Polynomial of Cephes' atanf (Moshier).

@@ -217,8 +217,8 @@ VRML97_CLONES void linearFraction(float range, uint32_t n, const float* __restri
 VRML97_CLONES void exponentialFraction(float range, uint32_t n, const float* __restrict distance, float* __restrict fraction) {
   for (uint32_t i = 0; i < n; i++) {
     const float left = range - distance[i];
-    const float f = expNegative(-distance[i] / larger(left, 1e-37f));
-    fraction[i] = left > 0.0f ? f : 0.0f;
+    const float power = -distance[i] / larger(left, 1e-37f);
+    fraction[i] = expNegative(left > 0.0f ? power : vanishing);
   }
 }
 

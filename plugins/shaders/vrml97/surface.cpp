@@ -235,10 +235,10 @@ VRML97_CLONES void highlights(uint32_t n, const float* const* normalIn, const fl
     const float length2 = larger(hx * hx + hy * hy + hz * hz, 1e-30f);
     const float sine2 = smaller((cx * cx + cy * cy + cz * cz) / length2, 1.0f);
     const float nh = nx[i] * hx + ny[i] * hy + nz[i] * hz;
-    const float power = expNegative(exponent[i] * logOneMinus(sine2));
-    const float lobe = nh > 0.0f ? power : 0.0f;
-    const float bounded = exponent[i] > 0.0f ? lobe : 1.0f;
-    factor[i] = cosine[i] > 0.0f ? bounded : 0.0f;
+    const float power = exponent[i] * logOneMinus(sine2); // 0 for exponent 0, whatever the angle
+    const float back = nh > 0.0f ? 0.0f : larger(-exponent[i] * 1e30f, vanishing);
+    const float dark = cosine[i] > 0.0f ? 0.0f : vanishing;
+    factor[i] = expNegative(power + back + dark);
   }
 }
 
