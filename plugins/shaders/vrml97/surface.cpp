@@ -235,7 +235,7 @@ VRML97_CLONES void highlights(uint32_t n, const float* const* normalIn, const fl
     const float length2 = larger(hx * hx + hy * hy + hz * hz, 1e-30f);
     const float sine2 = smaller((cx * cx + cy * cy + cz * cz) / length2, 1.0f);
     const float nh = nx[i] * hx + ny[i] * hy + nz[i] * hz;
-    const float power = exponent[i] * logOneMinus(sine2); // 0 for exponent 0, whatever the angle
+    const float power = 0.5f * exponent[i] * logOneMinus(sine2); // of cos^2; 0 for exponent 0, whatever the angle
     const float back = nh > 0.0f ? 0.0f : larger(-exponent[i] * 1e30f, vanishing);
     const float dark = cosine[i] > 0.0f ? 0.0f : vanishing;
     factor[i] = expNegative(power + back + dark);
