@@ -30,3 +30,7 @@ if(OPENRT_SANITIZE)
   add_compile_options(-fsanitize=${OPENRT_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   add_link_options(-fsanitize=${OPENRT_SANITIZE})
 endif()
+if(OPENRT_FUZZ) # the libraries report coverage to libFuzzer, the targets in tests/fuzz bring its main
+  add_compile_options(-fsanitize=fuzzer-no-link)
+  add_link_options(-fsanitize=fuzzer-no-link)
+endif()
