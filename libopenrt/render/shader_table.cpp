@@ -3,25 +3,10 @@
 #include <cstring>
 
 #include "render/render_scene.h"
+#include "shading/parameters.h"
 #include "shading/registry.h"
 
 namespace openrt {
-namespace {
-
-uint32_t floatsOf(RtsType type) {
-  switch (type) {
-  case RTS_FLOAT: return 1;
-  case RTS_VEC2: return 2;
-  case RTS_VEC3:
-  case RTS_COLOR: return 3;
-  case RTS_VEC4: return 4;
-  case RTS_MATRIX: return 16;
-  default: return 0;
-  }
-}
-
-} // namespace
-
 ShaderTable::ShaderTable(const Scene& scene, const ShaderRegistry& registry, const std::map<uint32_t, uint32_t>& textureIndex,
                          const RtsHost& host) {
   const auto fallback = scene.shaders.find(scene.defaultShader);
@@ -69,11 +54,11 @@ ShaderSlot ShaderTable::make(const RtsClass& shaderClass, const ShaderValues* va
     const edit::ParameterT* value = nullptr;
     if (values)
       if (auto found = values->parameters.find(i); found != values->parameters.end()) value = &found->second;
-    if (const uint32_t n = floatsOf(param.type)) {
+    if (const size_t n = parameterFloats(param.type)) {
       float numbers[16];
       std::memcpy(numbers, param.defaultValue, sizeof numbers);
       if (value)
-        for (uint32_t k = 0; k < n && k < value->floats.size(); k++) numbers[k] = value->floats[k];
+        for (size_t k = 0; k < n && k < value->floats.size(); k++) numbers[k] = value->floats[k];
       std::memcpy(at, numbers, n * sizeof(float));
     } else if (param.type == RTS_INT) {
       const int32_t number = value ? value->integer : int32_t(param.defaultValue[0]);

@@ -95,7 +95,7 @@ void LocalBackend::makeShaders(RenderScene& next) {
   next.host.logCallback = options_.log;
   next.host.logUser = options_.logUser;
   std::map<uint32_t, uint32_t> index;
-  next.textures.emplace_back();
+  next.textures.emplace_back(edit::TextureT(), nullptr); // number 0: none, white
   for (const auto& [id, image] : scene_.textures) {
     index[id] = uint32_t(next.textures.size());
     next.textures.emplace_back(image.description, image.texels);
