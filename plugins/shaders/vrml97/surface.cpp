@@ -113,32 +113,42 @@ struct Summary {
   bool lit = false, specular = false, textured = false, special = false;
 };
 
-// One parameter set for count lanes from first on.
-void spread(const SurfaceParams& p, uint32_t first, uint32_t count, const Terms& t, Summary& summary) {
-  const auto fill = [&](float* array, float value) { std::fill_n(array + first, count, value); };
+// Parameters of one lane, or the same ones of a block of lanes.
+template <uint32_t count> VRML97_INLINE void spread(const SurfaceParams& p, uint32_t first, const Terms& t, Summary& summary) {
+  const auto fill = [first](float* array, float value) {
+    for (uint32_t k = 0; k < count; k++) array[first + k] = value;
+  };
+  const bool lit = p.lit != 0;
   for (int c = 0; c < 3; c++) {
-    fill(t.glow[c], p.lit ? p.emissiveColor[c] : 1.0f);
-    fill(t.diffuse[c], p.lit ? p.diffuseColor[c] : 0.0f);
-    fill(t.specular[c], p.lit ? p.specularColor[c] : 0.0f);
-    summary.specular |= p.lit && p.specularColor[c] != 0.0f;
+    fill(t.glow[c], lit ? p.emissiveColor[c] : 1.0f);
+    fill(t.diffuse[c], lit ? p.diffuseColor[c] : 0.0f);
+    fill(t.specular[c], lit ? p.specularColor[c] : 0.0f);
+    summary.specular |= lit & (p.specularColor[c] != 0.0f);
   }
   fill(t.ambient, p.ambientIntensity);
   fill(t.exponent, 128.0f * p.shininess);
-  fill(t.alpha, p.lit ? 1.0f - p.transparency : 1.0f);
-  summary.lit |= p.lit != 0;
+  fill(t.alpha, lit ? 1.0f - p.transparency : 1.0f);
+  summary.lit |= lit;
   summary.textured |= p.texture != 0;
 }
 
-// Lanes of the same parameters usually lie side by side; the host's padding lanes go with the last one.
+// Lanes of the same parameters usually lie side by side: most blocks are filled from one set.
 Summary materials(const RtsHits* hits, uint32_t lanes, const Terms& t) {
   Summary summary;
-  for (uint32_t first = 0, end; first < hits->count; first = end) {
-    for (end = first + 1; end < hits->count && hits->params[end] == hits->params[first]; end++) {}
-    if (end == hits->count) end = lanes;
-    spread(paramsOf(hits, first), first, end - first, t, summary);
-  }
   uint32_t flags = 0;
-  for (uint32_t i = 0; i < hits->count; i++) flags |= hits->flags[i];
+  for (uint32_t first = 0; first < lanes; first += RTS_LANES) {
+    const void* const* params = hits->params + first;
+    const uint32_t used = std::min<uint32_t>(hits->count - first, RTS_LANES);
+    bool same = true;
+    for (uint32_t k = 0; k < used; k++) {
+      same &= params[k] == params[0];
+      flags |= hits->flags[first + k];
+    }
+    if (same)
+      spread<RTS_LANES>(paramsOf(hits, first), first, t, summary);
+    else
+      for (uint32_t k = 0; k < RTS_LANES; k++) spread<1>(paramsOf(hits, first + std::min(k, used - 1)), first + k, t, summary);
+  }
   summary.special = summary.textured || (flags & (RTS_HIT_COLOR | RTS_HIT_LINE)) != 0;
   return summary;
 }
