@@ -128,7 +128,7 @@ void Builder::closeNode(bool good) {
   }
   if (!good) return rollBack(frame.mark);
   if (frame.expanded > 1) expanded_.emplace(frame.node.get(), frame.expanded);
-  deliver(frame.type, frame.node, frame.expanded);
+  if (!deliver(frame.type, frame.node, frame.expanded)) rollBack(frame.mark);
 }
 
 uint64_t Builder::expandedCount(const Node* node) const {
@@ -154,16 +154,17 @@ bool Builder::accepts(const Receiver& receiver, const Token& at, const Node& nod
   return false;
 }
 
-void Builder::deliver(const Token& at, const NodeRef& node, uint64_t expanded) {
+// False, after a message, if the node cannot stand where it is written.
+bool Builder::deliver(const Token& at, const NodeRef& node, uint64_t expanded) {
   Receiver& receiver = receivers_.back();
-  if (!accepts(receiver, at, *node)) return;
+  if (!accepts(receiver, at, *node)) return false;
   const bool root = receiver.kind == Receiver::Kind::roots;
   uint64_t& sum = root || nodes_.empty() || receiver.holder == nullptr ? scope().expanded : nodes_.back().expanded;
   const uint64_t limit = state_.options.limits.expandedNodes;
   if (root && saturatingAdd(sum, expanded) > limit) {
     lexer_.error(at.at(), fmt::format("more nodes, shared ones counted at each use, than limit expandedNodes={}; {} is left out",
                                       limit, describe(at)));
-    return;
+    return false;
   }
   sum = saturatingAdd(sum, expanded);
   switch (receiver.kind) {
@@ -171,6 +172,7 @@ void Builder::deliver(const Token& at, const NodeRef& node, uint64_t expanded) {
   case Receiver::Kind::single: *static_cast<NodeRef*>(receiver.storage) = node; break;
   case Receiver::Kind::multiple: static_cast<MFNode*>(receiver.storage)->push_back(node); break;
   }
+  return true;
 }
 
 void Builder::nullNode(const Token& token) {

@@ -86,7 +86,7 @@ class Builder : public ParseSink {
   void popScope();
   bool makeNode(const Token& type, NodeFrame& frame);
   void checkChild(const NodeFrame& frame);
-  void deliver(const Token& at, const NodeRef& node, uint64_t expanded);
+  bool deliver(const Token& at, const NodeRef& node, uint64_t expanded);
   bool accepts(const Receiver& receiver, const Token& at, const Node& node);
   uint64_t expandedCount(const Node* node) const;
   ProtoPtr findPrototype(std::string_view name) const;

@@ -9,16 +9,6 @@
 namespace xvrml {
 namespace {
 
-std::string_view accessName(Access access) {
-  switch (access) {
-  case Access::field: return "field";
-  case Access::exposedField: return "exposedField";
-  case Access::eventIn: return "eventIn";
-  case Access::eventOut: break;
-  }
-  return "eventOut";
-}
-
 // Table 4.4: which declarations of a prototype's interface a node's field or event may be connected to.
 bool mayConnect(Access ofNode, Access ofInterface) { return ofNode == Access::exposedField || ofNode == ofInterface; }
 
@@ -81,7 +71,10 @@ NodeRef Builder::findName(const Token& name) {
 void Builder::useNode(const Token& name) {
   const NodeRef node = findName(name);
   if (!node) return;
-  if (!isOpen(node.get())) return deliver(name, node, expandedCount(node.get()));
+  if (!isOpen(node.get())) {
+    deliver(name, node, expandedCount(node.get()));
+    return;
+  }
   Node* holder = receivers_.back().holder;
   if (!holder || !dynamic_cast<DynamicNode*>(holder)) {
     lexer_.error(name.at(), fmt::format("{} is USEd inside itself: a node cannot be its own descendant (4.6.2)", describe(name)));

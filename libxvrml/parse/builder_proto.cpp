@@ -28,22 +28,36 @@ NodeType* Builder::declaringType() {
   return scope().protoType.get();
 }
 
-// Names of an interface differ, and an exposedField x takes set_x and x_changed as well (4.7).
+// Names of an interface differ, and an exposedField x takes set_x and x_changed as well (4.7). Writers that spell these out
+// beside it mean no harm if the types agree.
 bool Builder::declarationConflicts(const NodeType& type, const FieldInfo& field, const Token& name) {
-  const auto taken = [&](const std::string& other) { return type.find(other) != nullptr; };
-  const auto exposed = [&](std::string_view other) {
+  const auto report = [&] {
+    lexer_.error(name.at(), fmt::format("{} is declared already in the interface of {} (4.7)", describe(name), type.name));
+    return true;
+  };
+  if (type.find(field.name)) return report();
+  const FieldInfo* implied = nullptr;
+  const auto imply = [&](const std::string& other, bool wanted) {
+    const FieldInfo* found = type.find(other);
+    if (found && wanted && !implied) implied = found;
+  };
+  const auto exposed = [&](const std::string& other) {
     const FieldInfo* found = type.find(other);
     return found && found->access == Access::exposedField;
   };
-  bool conflict = taken(field.name);
-  if (field.access == Access::exposedField) conflict = conflict || taken("set_" + field.name) || taken(field.name + "_changed");
-  const std::string_view text = field.name;
-  if (field.access == Access::eventIn && text.starts_with("set_")) conflict = conflict || exposed(text.substr(4));
-  if (field.access == Access::eventOut && text.ends_with("_changed"))
-    conflict = conflict || exposed(text.substr(0, text.size() - 8));
-  if (conflict)
-    lexer_.error(name.at(), fmt::format("{} is declared already in the interface of {} (4.7)", describe(name), type.name));
-  return conflict;
+  const std::string& text = field.name;
+  imply("set_" + text, field.access == Access::exposedField);
+  imply(text + "_changed", field.access == Access::exposedField);
+  if (text.starts_with("set_")) imply(text.substr(4), field.access == Access::eventIn && exposed(text.substr(4)));
+  if (text.ends_with("_changed")) {
+    const std::string stem = text.substr(0, text.size() - 8);
+    imply(stem, field.access == Access::eventOut && exposed(stem));
+  }
+  if (!implied) return false;
+  if (implied->type != field.type) return report();
+  lexer_.warn(name.at(),
+              fmt::format("{} and {} of {} declare the same event twice (4.7)", describe(name), implied->name, type.name));
+  return false;
 }
 
 FieldTarget Builder::openDeclaration(Access access, FieldType type, const Token& name, bool hasValue) {
@@ -87,7 +101,13 @@ void Builder::closeDeclaration(bool good) {
   declarations_.pop_back();
   const bool nodeValue = declaration.field.type == FieldType::SFNode || declaration.field.type == FieldType::MFNode;
   if (declaration.hasValue && nodeValue) receivers_.pop_back();
-  if (declaration.scoped) popScope();
+  if (declaration.scoped) {
+    // Prototypes declared within a default value live with the declaration that has it; their names stay in the value.
+    std::vector<ProtoPtr> local = std::move(scope().scope->prototypes);
+    popScope();
+    std::vector<ProtoPtr>& outer = scopes_[scopes_.size() - 2].scope->prototypes;
+    outer.insert(outer.end(), local.begin(), local.end());
+  }
   if (good && declaration.accepted && !isScript()) addField(*scope().protoType, std::move(declaration.field));
 }
 

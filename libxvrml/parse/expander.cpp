@@ -215,28 +215,30 @@ std::vector<NodeRef> Expander::copyAll(const std::vector<Node*>& nodes, const st
   return copies;
 }
 
-// Values the instance does not give come from the declaration: nodes in a copy of their own (and all for an EXTERNPROTO, whose
-// interface has no values).
+// An interface's default; nodes in a copy of their own.
+Value Expander::copyDefault(const FieldInfo& declared, std::vector<NodeRef>& inlines) {
+  Value value = declared.defaultValue;
+  if (!holdsNodes(declared)) return value;
+  std::vector<Node*> roots, nodes;
+  appendNodes(value, roots);
+  std::unordered_map<const Node*, uint32_t> index;
+  collectNodes(roots, nodes, index);
+  const std::vector<NodeRef> copies = copyAll(nodes, index, {}, inlines);
+  const auto map = [&](NodeRef& node) {
+    if (node) node = copies[index.at(node.get())];
+  };
+  if (auto* single = std::get_if<NodeRef>(&value)) map(*single);
+  if (auto* many = std::get_if<MFNode>(&value)) std::for_each(many->begin(), many->end(), map);
+  return value;
+}
+
+// Values the instance does not give come from the declaration (all of them for an EXTERNPROTO, whose interface has none).
 void Expander::completeFields(ProtoInstance& instance, const ProtoDeclaration& definition, std::vector<NodeRef>& inlines) {
   for (const FieldInfo& field : instance.type().fields) {
     if (!holdsValue(field) || instance.isGiven(field)) continue;
     const FieldInfo* declared = definition.type->find(field.name);
-    if (!declared || declared->type != field.type || !holdsValue(*declared)) continue;
-    Value& value = instance.values[field.offset];
-    value = declared->defaultValue;
-    if (!holdsNodes(field)) continue;
-    std::vector<Node*> roots, nodes;
-    appendNodes(value, roots);
-    std::unordered_map<const Node*, uint32_t> index;
-    collectNodes(roots, nodes, index);
-    const std::vector<NodeRef> copies = copyAll(nodes, index, {}, inlines);
-    const auto map = [&](NodeRef& node) {
-      if (node) node = copies[index.at(node.get())];
-    };
-    if (auto* single = std::get_if<NodeRef>(&value)) map(*single);
-    if (auto* many = std::get_if<MFNode>(&value)) {
-      for (NodeRef& node : *many) map(node);
-    }
+    if (declared && declared->type == field.type && holdsValue(*declared))
+      instance.values[field.offset] = copyDefault(*declared, inlines);
   }
 }
 
@@ -277,7 +279,7 @@ void Expander::expandOne(ProtoInstance& instance, std::vector<NodeRef>& inlines)
   for (const IsConnection& connection : definition->is) {
     instance.is.push_back({map(connection.node), connection.field, connection.interfaceName});
   }
-  applyConnections(instance);
+  applyConnections(instance, *definition, inlines);
 }
 
 void Expander::expand(const std::vector<NodeRef>& instances, std::vector<NodeRef>& inlines) {
@@ -314,47 +316,58 @@ void rebaseUrls(MFString& urls, const std::string& from, const std::string& to) 
 } // namespace
 
 // "field IS name": the instance's value becomes that of the node in its body (4.8.2).
-void Expander::applyConnections(ProtoInstance& instance) {
+void Expander::applyConnections(ProtoInstance& instance, const ProtoDeclaration& definition, std::vector<NodeRef>& inlines) {
+  std::unordered_map<std::string_view, Value> undeclared; // what an EXTERNPROTO's interface leaves out has its default
   for (const IsConnection& connection : instance.is) {
+    const FieldInfo* to = connection.node->type().find(connection.field);
+    if (!to || !holdsValue(*to)) continue;
     const FieldInfo* from = instance.type().find(connection.interfaceName);
-    Node& node = *connection.node;
-    const FieldInfo* to = node.type().find(connection.field);
-    if (!from || !to || !holdsValue(*from) || !holdsValue(*to) || from->type != to->type) continue;
-    auto* inner = dynamic_cast<ProtoInstance*>(&node);
-    if (inner) inner->give(*to);
-    visitStorage(to->type, node.storage(*to), [&](auto& target) {
-      using T = std::remove_reference_t<decltype(target)>;
-      target = *static_cast<const T*>(instance.storage(*from));
-      if constexpr (std::is_same_v<T, MFString>) {
-        if (isUrlField(*to) && instance.isGiven(*from) && instance.source.file && node.source.file) {
-          rebaseUrls(target, *instance.source.file, *node.source.file);
-        }
-      }
-      const auto acceptable = [&](const NodeRef& value) {
-        if (!value) return true;
-        if (state_.entered.contains(value.get())) {
-          if (node.type().index < 0) {
-            state_.world.cyclic.push_back(connection.node);
-            return true;
-          }
-          state_.diagnostics.error(instance.source,
-                                   fmt::format("the value of {} would make a node its own descendant (4.6.2)", from->name));
-          return false;
-        }
-        const NodeType* type = effectiveType(*value);
-        if (!type || to->nodeTypes.empty() || typeAccepted(to->nodeTypes, *type)) return true;
-        state_.diagnostics.error(value->source, fmt::format("'{}' cannot be in field {} of {} that {} stands for: expected {}",
-                                                            type->name, to->name, node.type().name, from->name, to->nodeTypes));
-        return false;
-      };
-      if constexpr (std::is_same_v<T, NodeRef>) {
-        if (!acceptable(target)) target = {};
-      } else if constexpr (std::is_same_v<T, MFNode>) {
-        std::erase_if(target, [&](const NodeRef& value) { return !acceptable(value); });
-      }
-    });
-    if (!holdsNodes(*to) && to->range.bounded()) enforceRange(*to, node.storage(*to));
+    if (from && holdsValue(*from) && from->type == to->type) {
+      connect(instance, *from, instance.values[from->offset], connection);
+      continue;
+    }
+    const FieldInfo* declared = definition.type->find(connection.interfaceName);
+    if (!declared || !holdsValue(*declared) || declared->type != to->type || &definition == instance.declaration.get()) continue;
+    auto found = undeclared.find(declared->name);
+    if (found == undeclared.end()) found = undeclared.emplace(declared->name, copyDefault(*declared, inlines)).first;
+    connect(instance, *declared, found->second, connection);
   }
+}
+
+void Expander::connect(const ProtoInstance& instance, const FieldInfo& from, const Value& value, const IsConnection& connection) {
+  Node& node = *connection.node;
+  const FieldInfo& to = *node.type().find(connection.field);
+  if (auto* inner = dynamic_cast<ProtoInstance*>(&node)) inner->give(to);
+  const auto acceptable = [&](const NodeRef& child) {
+    if (!child) return true;
+    if (state_.entered.contains(child.get())) {
+      if (node.type().index < 0) {
+        state_.world.cyclic.push_back(connection.node);
+        return true;
+      }
+      state_.diagnostics.error(instance.source,
+                               fmt::format("the value of {} would make a node its own descendant (4.6.2)", from.name));
+      return false;
+    }
+    const NodeType* type = effectiveType(*child);
+    if (!type || to.nodeTypes.empty() || typeAccepted(to.nodeTypes, *type)) return true;
+    state_.diagnostics.error(child->source, fmt::format("'{}' cannot be in field {} of {} that {} stands for: expected {}",
+                                                        type->name, to.name, node.type().name, from.name, to.nodeTypes));
+    return false;
+  };
+  visitStorage(to.type, node.storage(to), [&](auto& target) {
+    using T = std::remove_reference_t<decltype(target)>;
+    target = std::get<T>(value);
+    if constexpr (std::is_same_v<T, MFString>) {
+      const bool foreign = isUrlField(to) && instance.isGiven(from) && instance.source.file && node.source.file;
+      if (foreign) rebaseUrls(target, *instance.source.file, *node.source.file);
+    } else if constexpr (std::is_same_v<T, NodeRef>) {
+      if (!acceptable(target)) target = {};
+    } else if constexpr (std::is_same_v<T, MFNode>) {
+      std::erase_if(target, [&](const NodeRef& child) { return !acceptable(child); });
+    }
+  });
+  if (!holdsNodes(to) && to.range.bounded()) enforceRange(to, node.storage(to));
 }
 
 } // namespace xvrml

@@ -43,7 +43,9 @@ class Expander {
                   const std::vector<NodeRef>& copies);
   std::vector<NodeRef> copyAll(const std::vector<Node*>& nodes, const std::unordered_map<const Node*, uint32_t>& index,
                                const std::vector<bool>& shared, std::vector<NodeRef>& inlines);
-  void applyConnections(ProtoInstance& instance);
+  Value copyDefault(const FieldInfo& declared, std::vector<NodeRef>& inlines);
+  void applyConnections(ProtoInstance& instance, const ProtoDeclaration& definition, std::vector<NodeRef>& inlines);
+  void connect(const ProtoInstance& instance, const FieldInfo& from, const Value& value, const IsConnection& connection);
 
   LoadState& state_;
   Resolve resolve_;

@@ -142,7 +142,7 @@ ProtoPtr Loader::resolveExtern(ProtoDeclaration& declaration) {
       }
       --resolving_;
       if (found) {
-        if (!interfaceFits(declaration, *found)) return nullptr;
+        checkInterface(declaration, *found);
         return declaration.resolved = found;
       }
     }
@@ -176,18 +176,16 @@ ProtoPtr Loader::findIn(const std::string& path, const std::string& name, std::s
   return nullptr;
 }
 
-// 4.9.1: the interface of an EXTERNPROTO is a subset of the PROTO's.
-bool Loader::interfaceFits(const ProtoDeclaration& wanted, const ProtoDeclaration& found) {
+// 4.9.1: the interface of an EXTERNPROTO is a subset of the PROTO's. What is not in it leads nowhere; the rest works.
+void Loader::checkInterface(const ProtoDeclaration& wanted, const ProtoDeclaration& found) {
   for (const FieldInfo& field : wanted.type->fields) {
     const FieldInfo* declared = found.type->find(field.name);
     if (declared && declared->type == field.type && declared->access == field.access) continue;
     const std::string place = found.source.file ? fmt::format("{}:{}", *found.source.file, found.source.line) : "";
-    state_.diagnostics.error(wanted.source,
-                             fmt::format("EXTERNPROTO '{}' declares '{}' {} the prototype in {}", wanted.type->name, field.name,
-                                         declared ? "otherwise than" : ", which is not in", place));
-    return false;
+    state_.diagnostics.error(wanted.source, fmt::format("EXTERNPROTO '{}' declares {} {} '{}' {} the prototype in {}",
+                                                        wanted.type->name, accessName(field.access), fieldTypeName(field.type),
+                                                        field.name, declared ? "otherwise than" : "that is not in", place));
   }
-  return true;
 }
 
 // With all prototypes and Inlines in place: no root may stand for more nodes than the limit, counting shared ones at each use,

@@ -32,7 +32,7 @@ class Loader {
   bool loadInlineFrom(InlineNode& node, const std::string& path, uint64_t depth, std::string& reason);
   ProtoPtr resolveExtern(ProtoDeclaration& declaration);
   ProtoPtr findIn(const std::string& path, const std::string& name, std::string& reason);
-  bool interfaceFits(const ProtoDeclaration& wanted, const ProtoDeclaration& found);
+  void checkInterface(const ProtoDeclaration& wanted, const ProtoDeclaration& found);
   void checkSize(Scope& scope);
 
   World& world_;

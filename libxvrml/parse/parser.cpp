@@ -36,7 +36,11 @@ bool Parser::nodeStatement() {
   if (token.is("DEF")) {
     lexer_.next();
     Token def;
-    return name(def, "a name after DEF") && node(&def);
+    if (!name(def, "a name after DEF")) return false;
+    if (!lexer_.peek().is(TokenKind::braceOpen)) return node(&def);
+    lexer_.error(def.at(), fmt::format("expected a name after DEF before {}", describe(def)));
+    lexer_.seek(def.at()); // the node is there, only its name is not
+    return node(nullptr);
   }
   if (token.is("USE")) {
     lexer_.next();

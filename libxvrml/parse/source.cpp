@@ -47,8 +47,8 @@ std::string readAll(int descriptor, const std::string& name, const Limits& limit
   }
 }
 
-// Inflates all gzip members; throws on damage only if nothing came out, so that a cut file shows what it has.
-std::string inflateAll(std::string_view packed, const std::string& name, const Limits& limits) {
+// Inflates all gzip members; refuses damage only if nothing came out: a cut file shows what it has.
+std::string inflateAll(std::string_view packed, const std::string& name, const Limits& limits, std::string& damage) {
   z_stream stream{};
   if (inflateInit2(&stream, 15 + 16) != Z_OK) refuse(name, "no memory to unpack it");
   struct End {
@@ -84,8 +84,10 @@ std::string inflateAll(std::string_view packed, const std::string& name, const L
       refuse(name, fmt::format("unpacks to more than limit {}={} allows", limit, value));
     }
     if (status != Z_OK && status != Z_STREAM_END) {
-      refuse(name, status == Z_BUF_ERROR ? "the gzip data ends early"
-                                         : fmt::format("damaged gzip data: {}", stream.msg ? stream.msg : "unknown"));
+      damage = status == Z_BUF_ERROR ? "the gzip data ends early"
+                                     : fmt::format("damaged gzip data: {}", stream.msg ? stream.msg : "unknown");
+      if (out.empty()) refuse(name, damage);
+      break;
     }
   }
   return out;
@@ -149,7 +151,7 @@ Source Source::fromMemory(std::string_view bytes, const std::string& name, const
 
 void Source::unpack(const std::string& name, const Limits& limits) {
   if (isGzip(text_)) {
-    owned_ = inflateAll(text_, name, limits);
+    owned_ = inflateAll(text_, name, limits, damage_);
     text_ = owned_;
   }
   if (text_.starts_with("\xef\xbb\xbf")) text_.remove_prefix(3);
@@ -159,6 +161,7 @@ Source::Source(Source&& other) noexcept
     : text_(other.text_), mapping_(std::exchange(other.mapping_, nullptr)), mappedBytes_(other.mappedBytes_) {
   const size_t offset = other.owned_.empty() ? 0 : static_cast<size_t>(text_.data() - other.owned_.data());
   owned_ = std::move(other.owned_);
+  damage_ = std::move(other.damage_);
   if (!owned_.empty()) text_ = std::string_view(owned_).substr(offset, text_.size()); // short strings move their bytes
 }
 
@@ -172,6 +175,7 @@ void Source::checkHeader(const std::shared_ptr<const std::string>& file, Diagnos
   const auto ends = [](std::string_view rest) {
     return rest.empty() || rest[0] == ' ' || rest[0] == '\t' || rest[0] == '\n' || rest[0] == '\r';
   };
+  if (!damage_.empty()) diagnostics.warn({file, 0, 0}, damage_);
   if (text_.starts_with(exact) && ends(text_.substr(exact.size()))) return;
   const auto warn = [&](std::string message) { diagnostics.warn({file, 1, 1}, std::move(message)); };
   // The first lines that say something: blank lines and other comments before the header happen.

@@ -30,6 +30,7 @@ class Source {
 
   std::string_view text_;
   std::string owned_;
+  std::string damage_; // what is wrong with gzip data of which something could be read
   void* mapping_ = nullptr;
   size_t mappedBytes_ = 0;
 };
