@@ -58,7 +58,7 @@ bool writeCode(const Model& model, const std::filesystem::path& folder) {
       writeFile(folder / "xvrml" / "nodes.h", writeHeader(model)) && writeFile(folder / "nodes_list.cpp", writeList(model));
   for (const Component& component : model.components) {
     if (component.imported) continue;
-    good = good && writeFile(folder / fmt::format("nodes_{}.cpp", component.name), writeTables(model, component));
+    good = good && writeFile(folder / fmt::format("nodes_{}.cpp", component.name), writeTables(component));
   }
   return good;
 }

@@ -1,5 +1,6 @@
 // reader.cpp: .node files into a Model. The words, numbers, strings and values are those of VRML97, so the library's lexer and
 // value parser read them; the notation is explained in docs/nodegen.md. Called by main once per file.
+#include <algorithm>
 #include <fstream>
 #include <iterator>
 
@@ -13,6 +14,15 @@ namespace xvrml::nodegen {
 namespace {
 
 struct Failed {}; // thrown after an error was reported; caught at the next stanza
+
+bool readFile(const std::string& path, std::string& text) {
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) return false;
+  try {
+    text.assign(std::istreambuf_iterator<char>(stream), {});
+  } catch (const std::ios_base::failure&) { return false; } // a folder, or a bad disk
+  return true;
+}
 
 std::string stem(const std::string& path) {
   const size_t slash = path.find_last_of('/');
@@ -186,7 +196,7 @@ class Reader {
     const Token token = take(TokenKind::identifier, what);
     for (const char c : token.text) {
       const bool fits = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
-      if (!fits) fail(token, fmt::format("expected {} of letters, digits and _, found {}", what, describe(token)));
+      if (!fits) fail(token, fmt::format("a name is made of letters, digits and _, unlike {}", describe(token)));
     }
     name = token.text;
     source = lexer_.place(token.at());
@@ -197,7 +207,9 @@ class Reader {
     const Token token = take(TokenKind::string, fmt::format("a string: {}", what));
     std::string text = unescape(token.text);
     if (text.empty()) fail(token, fmt::format("expected {}, found an empty string", what));
-    if (text.find('\n') != std::string::npos) fail(token, "a description is one line");
+    // It becomes a comment in C++ and Python.
+    const bool control = std::any_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < ' '; });
+    if (control || text.back() == '\\') fail(token, "a description is one line of text that does not end with a backslash");
     return text;
   }
 
@@ -234,7 +246,9 @@ class Reader {
       const char* const start = ++p;
       while (p < to && *p != '\n' && *p != '\r') ++p;
       gap_ = p;
-      if (looksLikeRange({start, size_t(p - start)})) failAt(start, "a range stands on the line of its field's default");
+      const std::string_view comment(start, size_t(p - start));
+      if (looksLikeRange(comment))
+        failAt(start + comment.find_first_not_of(" \t"), "a range stands on the line of its field's default");
     }
     gap_ = to;
   }
@@ -273,10 +287,8 @@ class Reader {
 } // namespace
 
 bool readSpecification(const std::string& path, bool imported, Model& model) {
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) return false;
-  std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
-  if (stream.bad()) return false;
+  std::string text;
+  if (!readFile(path, text)) return false;
   const std::string& kept = model.texts[path] = std::move(text);
   Component& component = model.components.emplace_back();
   component.name = stem(path);

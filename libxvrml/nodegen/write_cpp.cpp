@@ -86,7 +86,7 @@ std::string writeHeader(const Model& model) {
   return text + "} // namespace xvrml::nodes\n";
 }
 
-std::string writeTables(const Model&, const Component& component) {
+std::string writeTables(const Component& component) {
   std::string text(notice);
   text += fmt::format("// {}: the constant tables of its nodes.\n", component.title);
   text += "#include <cstddef>\n\n#include \"xvrml/node_table.h\"\n#include \"xvrml/nodes.h\"\n\n"

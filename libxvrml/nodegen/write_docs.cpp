@@ -1,4 +1,7 @@
 // write_docs.cpp: the node reference page (Markdown) and the Python stub of the node classes.
+#include <algorithm>
+#include <array>
+
 #include <fmt/format.h>
 
 #include "nodegen/writers.h"
@@ -36,7 +39,7 @@ std::string referenceOf(const TypeSpec& type) {
 // What the binding takes and returns for each field type.
 constexpr std::string_view stubPrologue =
     R"("""Node classes of xvrml, for type checkers and editors. Written by nodegen from the .node files."""
-from typing import List, Optional, Sequence, Tuple, Union
+from typing import List, Optional, Tuple
 
 class Node: ...
 
@@ -62,10 +65,31 @@ MFVec2f = List[SFVec2f]
 MFVec3f = List[SFVec3f]
 )";
 
+// A field whose name Python keeps for itself has no attribute: it is named in a comment.
+bool isPythonKeyword(std::string_view name) {
+  constexpr auto keywords = std::to_array<std::string_view>(
+      {"False",  "None",     "True", "and",    "as",      "assert", "async",  "await",  "break", "class",  "continue", "def",
+       "del",    "elif",     "else", "except", "finally", "for",    "from",   "global", "if",    "import", "in",       "is",
+       "lambda", "nonlocal", "not",  "or",     "pass",    "raise",  "return", "try",    "while", "with",   "yield"});
+  return std::find(keywords.begin(), keywords.end(), name) != keywords.end();
+}
+
+std::string docString(std::string_view text) {
+  std::string result;
+  for (const char c : text) {
+    if (c == '"' || c == '\\') result += '\\';
+    result += c;
+  }
+  return result;
+}
+
 std::string stubOf(const TypeSpec& type) {
-  std::string text = fmt::format("\nclass {}(Node):\n    \"\"\"{}\"\"\"\n", type.name, type.text);
-  for (const FieldSpec& field : type.fields)
-    if (field.hasStorage()) text += fmt::format("    {}: {}  # {}\n", field.name, fieldTypeName(field.type), field.text);
+  std::string text = fmt::format("\nclass {}(Node):\n    \"\"\"{}\"\"\"\n", type.name, docString(type.text));
+  for (const FieldSpec& field : type.fields) {
+    if (!field.hasStorage()) continue;
+    text += fmt::format("    {}{}: {}  # {}\n", isPythonKeyword(field.name) ? "# " : "", field.name, fieldTypeName(field.type),
+                        field.text);
+  }
   return text;
 }
 

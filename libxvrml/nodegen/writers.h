@@ -8,12 +8,12 @@
 
 namespace xvrml::nodegen {
 
-std::string writeHeader(const Model& model);                             // xvrml/nodes.h: a struct per node
-std::string writeTables(const Model& model, const Component& component); // nodes_<component>.cpp: its constant tables
-std::string writeList(const Model& model);                               // nodes_list.cpp: builtinNodeTypes()
-std::string writeReference(const Model& model);                          // Markdown page of all nodes
-std::string writeStub(const Model& model);                               // Python stub of the node classes
-std::string writeSkeleton(const TypeSpec& type);                         // first source of a node's behaviour
+std::string writeHeader(const Model& model);         // xvrml/nodes.h: a struct per node
+std::string writeTables(const Component& component); // nodes_<component>.cpp: its constant tables
+std::string writeList(const Model& model);           // nodes_list.cpp: builtinNodeTypes()
+std::string writeReference(const Model& model);      // Markdown page of all nodes
+std::string writeStub(const Model& model);           // Python stub of the node classes
+std::string writeSkeleton(const TypeSpec& type);     // first source of a node's behaviour
 
 // Names and values in C++.
 std::string cppMember(const FieldSpec& field);  // the field's name, with _ behind if C++ keeps it

@@ -1,0 +1,17 @@
+#!/bin/sh
+# usage: tests/nodegen/update.sh NODEGEN: writes tests/nodegen/expected anew. Read the differences before you commit them.
+set -eu
+cd "$(dirname "$0")"
+for name in tiny roles; do
+  out=$(mktemp -d)
+  "$1" --output "$out" --reference "$out/nodes.md" --stub "$out/nodes.pyi" "$name.node"
+  mkdir -p "expected/$name"
+  for file in xvrml/nodes.h "nodes_$name.cpp" nodes_list.cpp nodes.md nodes.pyi; do
+    cp "$out/$file" "expected/$name/$(basename "$file").expected"
+  done
+  rm -r "$out"
+done
+out=$(mktemp -d)
+"$1" tiny.node --skeleton Everything --skeleton-file "$out/skeleton.cpp"
+cp "$out/skeleton.cpp" expected/tiny/skeleton.cpp.expected
+rm -r "$out"
