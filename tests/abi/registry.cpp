@@ -1,0 +1,156 @@
+// registry.cpp: what the shader registry finds, loads and refuses. The libraries come from tests/abi/plugins.
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include "shading/plugin_check.h"
+#include "shading/registry.h"
+
+namespace {
+
+using namespace openrt;
+namespace fs = std::filesystem;
+
+const std::string plugins = OPENRT_TEST_PLUGINS;
+
+std::string refusal(const ShaderRegistry& registry, const std::string& name, const std::string& library) {
+  try {
+    registry.find(name, library);
+  } catch (const std::runtime_error& e) {
+    return e.what();
+  }
+  return {};
+}
+
+struct Refused {
+  const char* library;
+  const char* reason;
+};
+
+class RefusedPlugin : public testing::TestWithParam<Refused> {};
+
+TEST_P(RefusedPlugin, SaysWhy) {
+  const ShaderRegistry registry({plugins});
+  const std::string text = refusal(registry, "Example", GetParam().library);
+  EXPECT_NE(text.find(GetParam().reason), text.npos) << text;
+  EXPECT_NE(text.find(GetParam().library), text.npos) << text;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Abi, RefusedPlugin,
+    testing::Values(Refused{"missing_symbol", "exports no rtsPlugin"}, Refused{"small_symbol", "has 4 bytes"},
+                    Refused{"wrong_magic", "wrong magic number"}, Refused{"other_major", "made for shader ABI 2.0; this library has 1.0"},
+                    Refused{"newer_minor", "made for shader ABI 1.1; this library has 1.0"},
+                    Refused{"plugin_size", "claims a plug-in structure of"}, Refused{"no_classes", "claims 0 shader classes"},
+                    Refused{"many_classes", "claims 4294967295 shader classes"}, Refused{"class_table", "claims 1 shader classes"},
+                    Refused{"class_empty", "an empty entry"}, Refused{"class_twice", "two classes called Example"},
+                    Refused{"class_kind", "unknown kind 7"}, Refused{"class_unnamed", "a class without a name"},
+                    Refused{"class_too_small", "claims a class structure of"}, Refused{"class_too_large", "claims a class structure of"},
+                    Refused{"class_without_shade", "lacks the function shade"}, Refused{"parameter_count", "claims 1000000 parameters"},
+                    Refused{"parameter_table", "claims 2 parameters"},
+                    Refused{"parameter_outside", "parameter b: lies outside"}, Refused{"parameter_far_outside", "parameter b: lies outside"},
+                    Refused{"parameter_twice", "two parameters called a"}, Refused{"parameter_overlap", "two parameters share bytes"},
+                    Refused{"parameter_unaligned", "parameter b: badly aligned"}, Refused{"parameter_type", "unknown type 99"},
+                    Refused{"parameter_unnamed", "a parameter without a name"}, Refused{"parameter_default", "default that is not finite"},
+                    Refused{"parameter_range", "its range is empty"}),
+    [](const auto& info) { return std::string(info.param.library); });
+
+TEST(Registry, LoadsAGoodPluginOnce) {
+  const ShaderRegistry registry({plugins});
+  const RtsClass& everything = registry.find("Everything", "everything");
+  EXPECT_EQ(everything.kind, RTS_SURFACE);
+  EXPECT_EQ(everything.paramCount, 10u);
+  EXPECT_STREQ(everything.params[1].name, "strength");
+  EXPECT_EQ(&everything, &registry.find("Everything", "everything"));
+  EXPECT_EQ(registry.find("Lamp", "everything").kind, RTS_LIGHT);
+}
+
+TEST(Registry, AnOlderClassLacksTheNewerFunctions) {
+  const ShaderRegistry registry({plugins});
+  const RtsClass& example = registry.find("Example", "older_class");
+  EXPECT_EQ(example.size, sizeof(RtsClass));
+  EXPECT_NE(example.traits, nullptr);
+  EXPECT_NE(example.shade, nullptr);
+  EXPECT_EQ(example.transmit, nullptr); // there in the plug-in's memory, but beyond the size it states
+  EXPECT_EQ(example.generate, nullptr);
+}
+
+TEST(Registry, PrefixAndSuffixDoNotMatter) {
+  const ShaderRegistry registry({plugins});
+  const RtsClass* everything = &registry.find("Everything", "everything");
+  for (const char* spelling : {"libeverything", "everything.so", "libeverything.so"})
+    EXPECT_EQ(&registry.find("Everything", spelling), everything) << spelling;
+  EXPECT_EQ(registry.find("Everything", "prefixed").paramCount, 10u);
+}
+
+TEST(Registry, TakesNoPaths) {
+  const ShaderRegistry registry({plugins + "/stock"});
+  for (const char* name : {"../everything", "/tmp/x", "a/b", "..", ".hidden", "a\\b", "x..so"})
+    EXPECT_NE(refusal(registry, "Everything", name).find("only a bare name is allowed"), std::string::npos) << name;
+  EXPECT_NE(refusal(registry, "Everything", std::string("a\0b", 3)).find("only a bare name"), std::string::npos);
+  EXPECT_NE(refusal(registry, "Everything", std::string(1000, 'x')).find("only a bare name"), std::string::npos);
+}
+
+TEST(Registry, SaysWhereItLooked) {
+  const ShaderRegistry registry({"/nonexistent/one", plugins});
+  const std::string text = refusal(registry, "Everything", "absent");
+  EXPECT_NE(text.find("\"absent\""), text.npos) << text;
+  EXPECT_NE(text.find("/nonexistent/one"), text.npos) << text;
+  EXPECT_NE(text.find(plugins), text.npos) << text;
+  const std::string noClass = refusal(registry, "Nothing", "everything");
+  EXPECT_NE(noClass.find("has no class \"Nothing\"; it has: Everything, Plain, Lamp, Eye, Sky"), noClass.npos) << noClass;
+}
+
+TEST(Registry, StockClassesComeFromTheirOwnLibraryOrVrml97) {
+  const ShaderRegistry registry({plugins + "/stock", plugins});
+  EXPECT_EQ(registry.find("PerspectiveCamera", "").kind, RTS_CAMERA);
+  EXPECT_EQ(registry.find("Everything", "").kind, RTS_SURFACE); // the library `everything`
+  EXPECT_NE(refusal(registry, "NoSuchClass", "").find("no stock shader class \"NoSuchClass\""), std::string::npos);
+  const ShaderRegistry without({plugins});
+  EXPECT_NE(refusal(without, "PerspectiveCamera", "").find("vrml97 is missing"), std::string::npos);
+}
+
+TEST(Registry, EarlierFoldersWin) {
+  const ShaderRegistry stockFirst({plugins + "/stock", plugins});
+  EXPECT_EQ(refusal(stockFirst, "OrthographicCamera", "vrml97"), "");
+}
+
+TEST(Registry, RefusesFoldersThatAnybodyMayWriteTo) {
+  const fs::path folder = fs::temp_directory_path() / ("openrt_registry_" + std::to_string(::getpid()));
+  fs::create_directory(folder);
+  fs::copy_file(plugins + "/everything.so", folder / "everything.so", fs::copy_options::overwrite_existing);
+  const ShaderRegistry registry({folder.string()});
+  ASSERT_EQ(::chmod(folder.c_str(), 0777), 0);
+  const std::string text = refusal(registry, "Everything", "everything");
+  EXPECT_NE(text.find("refused: others may write to it"), text.npos) << text;
+  ASSERT_EQ(::chmod(folder.c_str(), 0755), 0);
+  EXPECT_EQ(refusal(registry, "Everything", "everything"), "");
+  fs::remove_all(folder);
+}
+
+TEST(Registry, AFileThatIsNoLibraryIsRefused) {
+  const fs::path folder = fs::temp_directory_path() / ("openrt_nolibrary_" + std::to_string(::getpid()));
+  fs::create_directory(folder);
+  ASSERT_EQ(::chmod(folder.c_str(), 0755), 0);
+  std::ofstream(folder / "text.so") << "this is no shared library\n";
+  const ShaderRegistry registry({folder.string()});
+  EXPECT_NE(refusal(registry, "Everything", "text").find("text.so"), std::string::npos);
+  fs::remove_all(folder);
+}
+
+TEST(ShaderFolders, ConfiguredThenEnvironment) {
+  ::setenv("OPENRT_SHADER_PATH", "/from/environment::/second", 1);
+  const std::vector<std::string> folders = shaderFolders("/one:/two:");
+  ::unsetenv("OPENRT_SHADER_PATH");
+  ASSERT_GE(folders.size(), 4u);
+  EXPECT_EQ(folders[0], "/one");
+  EXPECT_EQ(folders[1], "/two");
+  EXPECT_EQ(folders[2], "/from/environment");
+  EXPECT_EQ(folders[3], "/second");
+}
+
+} // namespace

@@ -1,0 +1,175 @@
+// openrt_api_frames.cpp: frame settings, the course of frames, reading, statistics and queries; order of the edits.
+#include <cmath>
+#include <cstring>
+
+#include "unit/openrt_api_support.h"
+
+namespace {
+
+using namespace openrt;
+using namespace openrt::test;
+
+class Frames : public ApiTest {};
+
+TEST_F(Frames, SettingsTravelWhenTheyChange) {
+  rtFrameBuffer(320, 240, RT_RGBA | RT_DEPTH);
+  rtQuality(RT_SEED, 7);
+  rtQuality(RT_SHADOWS, 0);
+  const auto found = edits<edit::FrameSettingsT>(commit());
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_TRUE(found[0]->width == 320 && found[0]->height == 240 && found[0]->channels == (RT_RGBA | RT_DEPTH));
+  EXPECT_TRUE(found[0]->samples == 16 && found[0]->depth == 25 && found[0]->seed == 7 && !found[0]->shadows);
+  EXPECT_TRUE(commit().edits.edits.empty());
+  rtQuality(RT_SAMPLES_PER_PIXEL, 1);
+  rtQuality(RT_MAX_DEPTH, 0);
+  EXPECT_EQ(edits<edit::FrameSettingsT>(commit()).at(0)->samples, 1u);
+}
+
+TEST_F(Frames, BadSettingsAreErrorsAndChangeNothing) {
+  commit();
+  for (int bad : {0, -1, 65537}) {
+    EXPECT_FAILS(RT_INVALID_VALUE, rtFrameBuffer(bad, 1, RT_RGBA));
+    EXPECT_FAILS(RT_INVALID_VALUE, rtFrameBuffer(1, bad, RT_RGBA));
+    EXPECT_FAILS(RT_INVALID_VALUE, rtQuality(RT_SAMPLES_PER_PIXEL, bad));
+  }
+  EXPECT_FAILS(RT_INVALID_VALUE, rtFrameBuffer(65536, 65536, RT_RGBA));
+  EXPECT_FAILS(RT_INVALID_VALUE, rtFrameBuffer(1, 1, 0));
+  EXPECT_FAILS(RT_INVALID_VALUE, rtFrameBuffer(1, 1, 1 << 20));
+  EXPECT_FAILS(RT_INVALID_VALUE, rtQuality(RT_MAX_DEPTH, -1));
+  EXPECT_FAILS(RT_INVALID_VALUE, rtQuality(RT_MAX_DEPTH, 10001));
+  EXPECT_FAILS(RT_INVALID_VALUE, rtQuality(RT_SHADOWS, 2));
+  EXPECT_FAILS(RT_INVALID_ENUM, rtQuality(99, 1));
+  EXPECT_TRUE(commit().edits.edits.empty());
+}
+
+TEST(FramesWithoutBuffer, AFrameNeedsASize) {
+  const RTcontext context = rtNewContext("backend=null");
+  EXPECT_FAILS(RT_INVALID_OPERATION, rtRender());
+  EXPECT_FAILS(RT_INVALID_OPERATION, rtSwapBuffers());
+  rtDeleteContext(context);
+}
+
+TEST_F(Frames, SwapHasOneFrameOfLatency) {
+  float pixels[32];
+  rtSwapBuffers();
+  EXPECT_EQ(captured->starts, 1);
+  EXPECT_EQ(captured->waits, 0);
+  EXPECT_FAILS(RT_INVALID_OPERATION, rtReadPixels(RT_RGBA, pixels, 32));
+  rtFrameBuffer(2, 2, RT_DEPTH);
+  rtSwapBuffers();
+  EXPECT_EQ(captured->starts, 2);
+  EXPECT_EQ(captured->waits, 1);
+  rtReadPixels(RT_RGBA, pixels, 32); // the first frame: 4x2, colour
+  EXPECT_FAILS(RT_INVALID_OPERATION, rtReadPixels(RT_DEPTH, pixels, 32));
+  rtSwapBuffers();
+  rtReadPixels(RT_DEPTH, pixels, 4);
+  EXPECT_EQ(pixels[3], float(RT_DEPTH));
+  EXPECT_FAILS(RT_INVALID_OPERATION, rtReadPixels(RT_RGBA, pixels, 32));
+}
+
+TEST_F(Frames, RenderDropsTheFrameInFlight) {
+  rtSwapBuffers();
+  rtRender();
+  EXPECT_EQ(captured->cancels, 1);
+  EXPECT_EQ(captured->starts, 2);
+  EXPECT_EQ(captured->waits, 2);
+  EXPECT_TRUE(captured->commits.back()->edits.render);
+}
+
+TEST_F(Frames, ReadingIsChecked) {
+  float pixels[32];
+  EXPECT_FAILS(RT_INVALID_OPERATION, rtReadPixels(RT_RGBA, pixels, 32));
+  rtRender();
+  EXPECT_FAILS(RT_INVALID_ENUM, rtReadPixels(0, pixels, 32));
+  EXPECT_FAILS(RT_INVALID_ENUM, rtReadPixels(RT_RGBA | RT_DEPTH, pixels, 32));
+  EXPECT_FAILS(RT_INVALID_OPERATION, rtReadPixels(RT_NORMAL, pixels, 32));
+  EXPECT_FAILS(RT_INVALID_VALUE, rtReadPixels(RT_RGBA, pixels, 31));
+  EXPECT_FAILS(RT_INVALID_VALUE, rtReadPixels(RT_RGBA, nullptr, 32));
+  rtReadPixels(RT_RGBA, pixels, 32);
+}
+
+TEST_F(Frames, StatisticsMergeBothSides) {
+  const RTid object = triangleObject();
+  rtInstantiateObject(object), rtInstantiateObject(object);
+  RTid textures[3];
+  rtGenTextures(3, textures);
+  RTstats stats;
+  std::memset(&stats, 0xff, sizeof(stats));
+  stats.size = sizeof(stats);
+  rtGetStats(&stats);
+  EXPECT_TRUE(stats.objects == 1 && stats.instances == 2 && stats.textures == 3 && stats.lights == 0);
+  EXPECT_EQ(stats.cameraRays, 42u);
+  EXPECT_EQ(stats.degenerate, 1u);
+  EXPECT_EQ(stats.size, sizeof(stats));
+}
+
+TEST_F(Frames, StatisticsRespectAnOlderStructure) {
+  RTstats stats;
+  std::memset(&stats, 0xff, sizeof(stats));
+  stats.size = offsetof(RTstats, lights);
+  rtGetStats(&stats);
+  EXPECT_EQ(stats.instances, 0u);
+  EXPECT_EQ(stats.lights, ~uint64_t(0));
+  EXPECT_FAILS(RT_INVALID_VALUE, rtGetStats(nullptr));
+  stats.size = 1;
+  EXPECT_FAILS(RT_INVALID_VALUE, rtGetStats(&stats));
+}
+
+TEST_F(Frames, QueriesAskTheLastCommittedScene) {
+  const RTray ray = {{0, 0, 0}, 0, {0, 0, -1}, 1};
+  RThit hit;
+  uint8_t occluded = 9;
+  rtCastRays(1, &ray, &hit);
+  rtOccludedRays(1, &ray, &occluded);
+  EXPECT_TRUE(std::isinf(hit.t) && hit.instance == 0 && occluded == 0); // nothing is committed
+  rtRender();
+  rtCastRays(1, &ray, &hit);
+  rtOccludedRays(1, &ray, &occluded);
+  EXPECT_TRUE(hit.t == 7 && occluded == 1);
+  rtCastRays(0, nullptr, nullptr);
+  EXPECT_FAILS(RT_INVALID_VALUE, rtCastRays(1, nullptr, &hit));
+  EXPECT_FAILS(RT_INVALID_VALUE, rtCastRays(1, &ray, nullptr));
+  EXPECT_FAILS(RT_INVALID_VALUE, rtOccludedRays(1, &ray, nullptr));
+}
+
+// The order that scene_state.h promises, whatever the order of the calls.
+TEST_F(Frames, EditsComeInTheirOrder) {
+  const RTid classes[2] = {rtNewShaderClass("Lamp", "everything"), rtNewShaderClass("Plain", "everything")};
+  const RTid oldLight = rtUseLight(rtNewShader(classes[0])), oldObject = triangleObject(), oldInstance = rtInstantiateObject(oldObject);
+  const RTid oldShader = rtNewShader(classes[1]);
+  const unsigned char texel = 1;
+  RTid textures[2];
+  rtGenTextures(2, textures);
+  rtBindTexture(textures[0]);
+  rtTexImage2D(1, 1, 1, RT_UNSIGNED_BYTE, &texel);
+  commit();
+
+  rtQuality(RT_SEED, 1);
+  rtUseEnvironment(rtNewShader(rtNewShaderClass("Sky", "everything")));
+  rtUseCamera(rtNewShader(rtNewShaderClass("Eye", "everything")));
+  const RTid surface = rtNewShader(rtNewShaderClass("Everything", "everything"));
+  rtDefaultShader(surface);
+  rtUseLight(rtNewShader(classes[0]));
+  rtInstantiateObject(triangleObject());
+  rtBindShader(surface);
+  rtParameter1i(0, 1);
+  rtBindTexture(textures[1]);
+  rtTexImage2D(1, 1, 1, RT_UNSIGNED_BYTE, &texel);
+  rtDeleteTexture(textures[0]), rtDeleteShader(oldShader), rtDeleteObject(oldObject), rtRemoveLight(oldLight);
+  EXPECT_FAILS(RT_INVALID_ID, rtDeleteInstance(oldInstance)); // went with its object
+
+  using edit::Any;
+  const std::vector<Any> rank = {Any::DeleteLight, Any::DeleteInstance, Any::Texture, Any::ShaderClass, Any::Shader, Any::Object, Any::Instance,
+                                 Any::Light, Any::Camera, Any::Environment, Any::DefaultShader, Any::FrameSettings, Any::DeleteObject,
+                                 Any::DeleteShader, Any::DeleteTexture};
+  std::vector<size_t> seen;
+  for (const auto& entry : commit().edits.edits) {
+    const Any type = entry->any.type == Any::Parameter ? Any::Shader : entry->any.type; // follow their shader
+    seen.push_back(size_t(std::find(rank.begin(), rank.end(), type) - rank.begin()));
+  }
+  EXPECT_TRUE(std::is_sorted(seen.begin(), seen.end()));
+  seen.erase(std::unique(seen.begin(), seen.end()), seen.end());
+  EXPECT_EQ(seen.size(), rank.size()); // each kind is there
+}
+
+} // namespace

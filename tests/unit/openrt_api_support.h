@@ -1,0 +1,136 @@
+// openrt_api_support.h: a backend that keeps the commits it gets, and checks each as the reader of recordings would; a fixture
+// with a context on it; small helpers to look into commits. Used by the tests of the C API.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "api/context.h"
+#include "backend/record/validator.h"
+#include "openrt/openrt.h"
+
+namespace openrt::test {
+
+struct Captured {
+  explicit Captured(const std::string& plugins) : shaders({plugins + "/stock", plugins}), validator(&shaders) {}
+  ShaderRegistry shaders;
+  CommitValidator validator;
+  std::vector<std::shared_ptr<const Commit>> commits;
+  int starts = 0, waits = 0, cancels = 0;
+  bool failNextApply = false;
+};
+
+class CaptureBackend final : public Backend {
+ public:
+  explicit CaptureBackend(std::shared_ptr<Captured> captured) : captured_(std::move(captured)) {}
+  void apply(std::shared_ptr<const Commit> commit) override {
+    if (captured_->failNextApply) {
+      captured_->failNextApply = false;
+      throw std::bad_alloc();
+    }
+    captured_->validator.check(*commit);
+    captured_->commits.push_back(std::move(commit));
+  }
+  void start() override { captured_->starts++; }
+  void wait() override { captured_->waits++; }
+  void cancel() override { captured_->cancels++; }
+  float progress() const override { return 0.25f; }
+  bool read(RTenum channel, std::span<float> out) const override {
+    for (size_t i = 0; i < out.size(); i++) out[i] = static_cast<float>(channel);
+    return true;
+  }
+  void stats(RTstats& stats) const override { stats.cameraRays = 42, stats.degenerate = 1; }
+  void castRays(std::span<const RTray>, std::span<RThit> hits) override {
+    for (RThit& hit : hits) hit.t = 7;
+  }
+  void occludedRays(std::span<const RTray>, std::span<uint8_t> occluded) override {
+    for (uint8_t& o : occluded) o = 1;
+  }
+
+ private:
+  std::shared_ptr<Captured> captured_;
+};
+
+// A context whose commits can be looked at. At the end no error may be left over.
+class ApiTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    const std::string plugins = OPENRT_TEST_PLUGINS;
+    captured = std::make_shared<Captured>(plugins);
+    ContextConfig config;
+    config.shaderPath = plugins + "/stock:" + plugins;
+    handle = adoptContext(std::make_shared<Context>(config, std::make_unique<CaptureBackend>(captured)));
+    rtFrameBuffer(4, 2, RT_RGBA);
+  }
+  void TearDown() override {
+    EXPECT_EQ(rtGetError(), RTenum(RT_NO_ERROR)) << rtGetErrorMessage();
+    rtDeleteContext(handle);
+    EXPECT_EQ(rtGetError(), RTenum(RT_NO_ERROR)) << rtGetErrorMessage();
+  }
+
+  // Commits and returns what the backend got.
+  const Commit& commit() {
+    const size_t before = captured->commits.size();
+    rtRender();
+    EXPECT_EQ(captured->commits.size(), before + 1);
+    static const Commit none;
+    return captured->commits.size() > before ? *captured->commits.back() : none;
+  }
+
+  std::shared_ptr<Captured> captured;
+  RTcontext handle = nullptr;
+};
+
+// The edits of one kind in a commit, in order: edits<edit::InstanceT>(commit).
+template <class T> std::vector<const T*> edits(const Commit& commit) {
+  std::vector<const T*> result;
+  for (const auto& entry : commit.edits.edits)
+    if (entry->any.type == edit::AnyUnionTraits<T>::enum_value) result.push_back(static_cast<const T*>(entry->any.value));
+  return result;
+}
+
+template <class T> std::vector<T> contents(const Commit& commit, ArrayId id) {
+  if (id == 0) return {};
+  const Array& array = *commit.arrays.at(id);
+  return std::vector<T>(array.as<T>(), array.as<T>() + array.count<T>());
+}
+
+inline std::vector<double> matrixOf(const edit::Matrix& m) {
+  std::vector<double> values;
+  for (int i = 0; i < 16; i++) values.push_back(m.m()->Get(i));
+  return values;
+}
+
+inline std::vector<double> currentMatrix() {
+  std::vector<double> m(16);
+  rtGetMatrixd(m.data());
+  return m;
+}
+
+// The error now pending, and its text without the number of digits that a test should not depend on.
+#define EXPECT_RT_ERROR(code)                                                                                                    \
+  do {                                                                                                                           \
+    EXPECT_EQ(rtGetError(), RTenum(code)) << rtGetErrorMessage();                                                                \
+  } while (0)
+
+// A call that must fail with this error.
+#define EXPECT_FAILS(code, call)                                                                                                 \
+  do {                                                                                                                           \
+    EXPECT_EQ(rtGetError(), RTenum(RT_NO_ERROR)) << "before " #call ": " << rtGetErrorMessage();                                 \
+    call;                                                                                                                        \
+    EXPECT_EQ(rtGetError(), RTenum(code)) << #call ": " << rtGetErrorMessage();                                                  \
+  } while (0)
+
+inline RTid triangleObject() {
+  const RTid object = rtBeginObject(0);
+  rtBegin(RT_TRIANGLES);
+  rtVertex3f(0, 0, 0), rtVertex3f(1, 0, 0), rtVertex3f(0, 1, 0);
+  rtEnd();
+  rtEndObject();
+  return object;
+}
+
+} // namespace openrt::test
