@@ -44,9 +44,10 @@ std::string bareLibraryName(std::string_view name) {
   constexpr size_t maxLength = 200;
   const bool plain = !name.empty() && name.size() <= maxLength && name.front() != '.' &&
                      name.find_first_of(std::string_view("/\\\0", 3)) == name.npos && name.find("..") == name.npos;
-  if (!plain)
-    throw std::runtime_error("shader library \"" + std::string(name.substr(0, maxLength)) +
-                             "\": only a bare name is allowed, no path");
+  if (!plain) {
+    const std::string_view shown = name.substr(0, std::min(maxLength, name.find('\0')));
+    throw std::runtime_error("shader library \"" + std::string(shown) + "\": only a bare name is allowed, no path");
+  }
   if (name.ends_with(".so")) name.remove_suffix(3);
   if (name.starts_with("lib") && name.size() > 3) name.remove_prefix(3);
   return std::string(name);

@@ -20,9 +20,7 @@ const std::string plugins = OPENRT_TEST_PLUGINS;
 std::string refusal(const ShaderRegistry& registry, const std::string& name, const std::string& library) {
   try {
     registry.find(name, library);
-  } catch (const std::runtime_error& e) {
-    return e.what();
-  }
+  } catch (const std::runtime_error& e) { return e.what(); }
   return {};
 }
 
@@ -42,21 +40,21 @@ TEST_P(RefusedPlugin, SaysWhy) {
 
 INSTANTIATE_TEST_SUITE_P(
     Abi, RefusedPlugin,
-    testing::Values(Refused{"missing_symbol", "exports no rtsPlugin"}, Refused{"small_symbol", "has 4 bytes"},
-                    Refused{"wrong_magic", "wrong magic number"}, Refused{"other_major", "made for shader ABI 2.0; this library has 1.0"},
-                    Refused{"newer_minor", "made for shader ABI 1.1; this library has 1.0"},
-                    Refused{"plugin_size", "claims a plug-in structure of"}, Refused{"no_classes", "claims 0 shader classes"},
-                    Refused{"many_classes", "claims 4294967295 shader classes"}, Refused{"class_table", "claims 1 shader classes"},
-                    Refused{"class_empty", "an empty entry"}, Refused{"class_twice", "two classes called Example"},
-                    Refused{"class_kind", "unknown kind 7"}, Refused{"class_unnamed", "a class without a name"},
-                    Refused{"class_too_small", "claims a class structure of"}, Refused{"class_too_large", "claims a class structure of"},
-                    Refused{"class_without_shade", "lacks the function shade"}, Refused{"parameter_count", "claims 1000000 parameters"},
-                    Refused{"parameter_table", "claims 2 parameters"},
-                    Refused{"parameter_outside", "parameter b: lies outside"}, Refused{"parameter_far_outside", "parameter b: lies outside"},
-                    Refused{"parameter_twice", "two parameters called a"}, Refused{"parameter_overlap", "two parameters share bytes"},
-                    Refused{"parameter_unaligned", "parameter b: badly aligned"}, Refused{"parameter_type", "unknown type 99"},
-                    Refused{"parameter_unnamed", "a parameter without a name"}, Refused{"parameter_default", "default that is not finite"},
-                    Refused{"parameter_range", "its range is empty"}),
+    testing::Values(
+        Refused{"missing_symbol", "exports no rtsPlugin"}, Refused{"small_symbol", "has 4 bytes"},
+        Refused{"wrong_magic", "wrong magic number"}, Refused{"other_major", "made for shader ABI 2.0; this library has 1.0"},
+        Refused{"newer_minor", "made for shader ABI 1.1; this library has 1.0"},
+        Refused{"plugin_size", "claims a plug-in structure of"}, Refused{"no_classes", "claims 0 shader classes"},
+        Refused{"many_classes", "claims 4294967295 shader classes"}, Refused{"class_table", "claims 1 shader classes"},
+        Refused{"class_empty", "an empty entry"}, Refused{"class_twice", "two classes called Example"},
+        Refused{"class_kind", "unknown kind 7"}, Refused{"class_unnamed", "a class without a name"},
+        Refused{"class_too_small", "claims a class structure of"}, Refused{"class_too_large", "claims a class structure of"},
+        Refused{"class_without_shade", "lacks the function shade"}, Refused{"parameter_count", "claims 1000000 parameters"},
+        Refused{"parameter_table", "claims 2 parameters"}, Refused{"parameter_outside", "parameter b: lies outside"},
+        Refused{"parameter_far_outside", "parameter b: lies outside"}, Refused{"parameter_twice", "two parameters called a"},
+        Refused{"parameter_overlap", "two parameters share bytes"}, Refused{"parameter_unaligned", "parameter b: badly aligned"},
+        Refused{"parameter_type", "unknown type 99"}, Refused{"parameter_unnamed", "a parameter without a name"},
+        Refused{"parameter_default", "default that is not finite"}, Refused{"parameter_range", "its range is empty"}),
     [](const auto& info) { return std::string(info.param.library); });
 
 TEST(Registry, LoadsAGoodPluginOnce) {

@@ -135,7 +135,8 @@ TEST_F(Frames, QueriesAskTheLastCommittedScene) {
 // The order that scene_state.h promises, whatever the order of the calls.
 TEST_F(Frames, EditsComeInTheirOrder) {
   const RTid classes[2] = {rtNewShaderClass("Lamp", "everything"), rtNewShaderClass("Plain", "everything")};
-  const RTid oldLight = rtUseLight(rtNewShader(classes[0])), oldObject = triangleObject(), oldInstance = rtInstantiateObject(oldObject);
+  const RTid oldLight = rtUseLight(rtNewShader(classes[0])), oldObject = triangleObject(),
+             oldInstance = rtInstantiateObject(oldObject);
   const RTid oldShader = rtNewShader(classes[1]);
   const unsigned char texel = 1;
   RTid textures[2];
@@ -159,9 +160,10 @@ TEST_F(Frames, EditsComeInTheirOrder) {
   EXPECT_FAILS(RT_INVALID_ID, rtDeleteInstance(oldInstance)); // went with its object
 
   using edit::Any;
-  const std::vector<Any> rank = {Any::DeleteLight, Any::DeleteInstance, Any::Texture, Any::ShaderClass, Any::Shader, Any::Object, Any::Instance,
-                                 Any::Light, Any::Camera, Any::Environment, Any::DefaultShader, Any::FrameSettings, Any::DeleteObject,
-                                 Any::DeleteShader, Any::DeleteTexture};
+  const std::vector<Any> rank = {Any::DeleteLight,  Any::DeleteInstance, Any::Texture,       Any::ShaderClass,
+                                 Any::Shader,       Any::Object,         Any::Instance,      Any::Light,
+                                 Any::Camera,       Any::Environment,    Any::DefaultShader, Any::FrameSettings,
+                                 Any::DeleteObject, Any::DeleteShader,   Any::DeleteTexture};
   std::vector<size_t> seen;
   for (const auto& entry : commit().edits.edits) {
     const Any type = entry->any.type == Any::Parameter ? Any::Shader : entry->any.type; // follow their shader

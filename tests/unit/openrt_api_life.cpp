@@ -20,8 +20,9 @@ TEST(ApiConfig, ReadsPairsAndQuotes) {
 }
 
 TEST(ApiConfig, RefusesNonsense) {
-  for (const char* text : {"backend=gpu", "threads=-1", "threads=", "threads=2x", "threads=5000", "nonsense=1", "backend", "=1", "file=\"open",
-                           "file=\"a\"b backend=record", "backend=record", "backend=record file=a record=b", "file=a", "backend =local"}) {
+  for (const char* text :
+       {"backend=gpu", "threads=-1", "threads=", "threads=2x", "threads=5000", "nonsense=1", "backend", "=1", "file=\"open",
+        "file=\"a\"b backend=record", "backend=record", "backend=record file=a record=b", "file=a", "backend =local"}) {
     EXPECT_EQ(rtNewContext(text), nullptr) << text;
     EXPECT_RT_ERROR(RT_INVALID_VALUE);
     EXPECT_EQ(rtGetCurrent(), nullptr);
@@ -96,7 +97,8 @@ TEST(ApiLife, ContextsDoNotShareIds) {
 }
 
 TEST(ApiLife, InitTakesItsOptionsOutOfTheArguments) {
-  char program[] = "program", backend[] = "--rt-backend=null", other[] = "--other", threads[] = "--rt-threads=1", file[] = "a.wrl";
+  char program[] = "program", backend[] = "--rt-backend=null", other[] = "--other", threads[] = "--rt-threads=1",
+       file[] = "a.wrl";
   char* argv[] = {program, backend, other, threads, file, nullptr};
   int argc = 5;
   rtInit(&argc, argv);

@@ -59,21 +59,22 @@ TEST_P(Modes, MakeTheseIndices) {
   EXPECT_EQ(contents<uint32_t>(*last, g.indices), GetParam().indices);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Api, Modes,
-    testing::Values(ModeCase{RT_POINTS, 3, edit::Primitive::Points, {0, 1, 2}},
-                    ModeCase{RT_LINES, 5, edit::Primitive::Lines, {0, 1, 2, 3}}, // the fifth has no partner
-                    ModeCase{RT_LINE_STRIP, 4, edit::Primitive::Lines, {0, 1, 1, 2, 2, 3}},
-                    ModeCase{RT_TRIANGLES, 7, edit::Primitive::Triangles, {0, 1, 2, 3, 4, 5}},
-                    ModeCase{RT_TRIANGLE_STRIP, 5, edit::Primitive::Triangles, {0, 1, 2, 2, 1, 3, 2, 3, 4}},
-                    ModeCase{RT_TRIANGLE_FAN, 5, edit::Primitive::Triangles, {0, 1, 2, 0, 2, 3, 0, 3, 4}},
-                    ModeCase{RT_QUADS, 9, edit::Primitive::Triangles, {0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 7}},
-                    ModeCase{RT_QUAD_STRIP, 7, edit::Primitive::Triangles, {0, 1, 3, 0, 3, 2, 2, 3, 5, 2, 5, 4}},
-                    ModeCase{RT_POLYGON, 5, edit::Primitive::Triangles, {0, 1, 2, 0, 2, 3, 0, 3, 4}}));
+INSTANTIATE_TEST_SUITE_P(Api, Modes,
+                         testing::Values(ModeCase{RT_POINTS, 3, edit::Primitive::Points, {0, 1, 2}},
+                                         ModeCase{RT_LINES, 5, edit::Primitive::Lines, {0, 1, 2, 3}}, // the fifth has no partner
+                                         ModeCase{RT_LINE_STRIP, 4, edit::Primitive::Lines, {0, 1, 1, 2, 2, 3}},
+                                         ModeCase{RT_TRIANGLES, 7, edit::Primitive::Triangles, {0, 1, 2, 3, 4, 5}},
+                                         ModeCase{RT_TRIANGLE_STRIP, 5, edit::Primitive::Triangles, {0, 1, 2, 2, 1, 3, 2, 3, 4}},
+                                         ModeCase{RT_TRIANGLE_FAN, 5, edit::Primitive::Triangles, {0, 1, 2, 0, 2, 3, 0, 3, 4}},
+                                         ModeCase{RT_QUADS, 9, edit::Primitive::Triangles, {0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 7}},
+                                         ModeCase{
+                                             RT_QUAD_STRIP, 7, edit::Primitive::Triangles, {0, 1, 3, 0, 3, 2, 2, 3, 5, 2, 5, 4}},
+                                         ModeCase{RT_POLYGON, 5, edit::Primitive::Triangles, {0, 1, 2, 0, 2, 3, 0, 3, 4}}));
 
 TEST_F(Primitives, TooFewVerticesMakeNothing) {
   rtBeginObject(0);
-  for (RTenum mode : {RT_LINES, RT_LINE_STRIP, RT_TRIANGLES, RT_TRIANGLE_STRIP, RT_TRIANGLE_FAN, RT_QUADS, RT_QUAD_STRIP, RT_POLYGON, RT_POINTS}) {
+  for (RTenum mode : {RT_LINES, RT_LINE_STRIP, RT_TRIANGLES, RT_TRIANGLE_STRIP, RT_TRIANGLE_FAN, RT_QUADS, RT_QUAD_STRIP,
+                      RT_POLYGON, RT_POINTS}) {
     rtBegin(mode);
     if (mode != RT_POINTS) curve(1);
     rtEnd();
@@ -198,10 +199,10 @@ TEST_F(Primitives, EachChangeOfStateStartsAGeometry) {
 TEST_F(Primitives, DegenerateOnesAreDroppedAndCounted) {
   rtBeginObject(0);
   rtBegin(RT_TRIANGLES);
-  rtVertex3f(0, 0, 0), rtVertex3f(1, 0, 0), rtVertex3f(1, 0, 0);          // two corners in one place
-  rtVertex3f(0, 0, 0), rtVertex3f(1, 2, 3), rtVertex3f(3, 6, 9);          // collinear
+  rtVertex3f(0, 0, 0), rtVertex3f(1, 0, 0), rtVertex3f(1, 0, 0); // two corners in one place
+  rtVertex3f(0, 0, 0), rtVertex3f(1, 2, 3), rtVertex3f(3, 6, 9); // collinear
   rtVertex3f(0.1f, 0.1f, 0.1f), rtVertex3f(0.2f, 0.2f, 0.2f), rtVertex3f(0.7f, 0.7f, 0.7f);
-  rtVertex3f(0, 0, 0), rtVertex3f(1, 0, 0), rtVertex3f(0.5f, 1e-30f, 0);  // thin, but there
+  rtVertex3f(0, 0, 0), rtVertex3f(1, 0, 0), rtVertex3f(0.5f, 1e-30f, 0); // thin, but there
   rtVertex3f(5, 5, 5), rtVertex3f(5, 5, 5), rtVertex3f(5, 5, 5);
   rtEnd();
   rtBegin(RT_LINES);

@@ -112,9 +112,7 @@ inline std::vector<double> currentMatrix() {
 
 // The error now pending, and its text without the number of digits that a test should not depend on.
 #define EXPECT_RT_ERROR(code)                                                                                                    \
-  do {                                                                                                                           \
-    EXPECT_EQ(rtGetError(), RTenum(code)) << rtGetErrorMessage();                                                                \
-  } while (0)
+  do { EXPECT_EQ(rtGetError(), RTenum(code)) << rtGetErrorMessage(); } while (0)
 
 // A call that must fail with this error.
 #define EXPECT_FAILS(code, call)                                                                                                 \

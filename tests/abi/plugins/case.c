@@ -16,34 +16,48 @@ typedef struct Parameters {
 } Parameters;
 
 #if defined(CASE_parameter_outside)
-#define SECOND {"b", RTS_VEC3, offsetof(Parameters, b), {0}, 0, 0, ""}
+#define SECOND                                                                                                                   \
+  { "b", RTS_VEC3, offsetof(Parameters, b), {0}, 0, 0, "" }
 #elif defined(CASE_parameter_far_outside)
-#define SECOND {"b", RTS_FLOAT, 0xfffffffcu, {0}, 0, 0, ""}
+#define SECOND                                                                                                                   \
+  { "b", RTS_FLOAT, 0xfffffffcu, {0}, 0, 0, "" }
 #elif defined(CASE_parameter_twice)
-#define SECOND {"a", RTS_FLOAT, offsetof(Parameters, b), {0}, 0, 0, ""}
+#define SECOND                                                                                                                   \
+  { "a", RTS_FLOAT, offsetof(Parameters, b), {0}, 0, 0, "" }
 #elif defined(CASE_parameter_overlap)
-#define SECOND {"b", RTS_FLOAT, offsetof(Parameters, a), {0}, 0, 0, ""}
+#define SECOND                                                                                                                   \
+  { "b", RTS_FLOAT, offsetof(Parameters, a), {0}, 0, 0, "" }
 #elif defined(CASE_parameter_unaligned)
-#define SECOND {"b", RTS_FLOAT, offsetof(Parameters, b) - 2, {0}, 0, 0, ""}
+#define SECOND                                                                                                                   \
+  { "b", RTS_FLOAT, offsetof(Parameters, b) - 2, {0}, 0, 0, "" }
 #elif defined(CASE_parameter_type)
-#define SECOND {"b", (RtsType)99, offsetof(Parameters, b), {0}, 0, 0, ""}
+#define SECOND                                                                                                                   \
+  { "b", (RtsType)99, offsetof(Parameters, b), {0}, 0, 0, "" }
 #elif defined(CASE_parameter_unnamed)
-#define SECOND {"", RTS_FLOAT, offsetof(Parameters, b), {0}, 0, 0, ""}
+#define SECOND                                                                                                                   \
+  { "", RTS_FLOAT, offsetof(Parameters, b), {0}, 0, 0, "" }
 #elif defined(CASE_parameter_default)
-#define SECOND {"b", RTS_FLOAT, offsetof(Parameters, b), {HUGE_VALF}, 0, 0, ""}
+#define SECOND                                                                                                                   \
+  { "b", RTS_FLOAT, offsetof(Parameters, b), {HUGE_VALF}, 0, 0, "" }
 #elif defined(CASE_parameter_range)
-#define SECOND {"b", RTS_FLOAT, offsetof(Parameters, b), {0}, 2, 1, ""}
+#define SECOND                                                                                                                   \
+  { "b", RTS_FLOAT, offsetof(Parameters, b), {0}, 2, 1, "" }
 #else
-#define SECOND {"b", RTS_FLOAT, offsetof(Parameters, b), {0}, 0, 0, ""}
+#define SECOND                                                                                                                   \
+  { "b", RTS_FLOAT, offsetof(Parameters, b), {0}, 0, 0, "" }
 #endif
+#if !defined(CASE_parameter_table)
 static const RtsParam parameters[] = {{"a", RTS_FLOAT, offsetof(Parameters, a), {0}, 0, 0, ""}, SECOND};
+#endif
 
+#if !defined(CASE_class_without_shade)
 static void shade(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, RtsShading* out) {
   (void)host;
   (void)batch;
   (void)hits;
   (void)out;
 }
+#endif
 static uint32_t traits(const RtsHost* host, const void* params) {
   (void)host;
   (void)params;

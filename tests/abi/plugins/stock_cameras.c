@@ -22,9 +22,19 @@ static void generate(const RtsHost* host, RtsBatch* batch, const void* params, u
     }
 }
 
-static const RtsClass perspective = {.size = sizeof(RtsClass), .kind = RTS_CAMERA, .name = "PerspectiveCamera",
-                                     .paramSize = sizeof(Parameters), .paramCount = 1, .params = fovy, .generate = generate};
-static const RtsClass orthographic = {.size = sizeof(RtsClass), .kind = RTS_CAMERA, .name = "OrthographicCamera",
-                                      .paramSize = sizeof(Parameters), .paramCount = 1, .params = height, .generate = generate};
+static const RtsClass perspective = {.size = sizeof(RtsClass),
+                                     .kind = RTS_CAMERA,
+                                     .name = "PerspectiveCamera",
+                                     .paramSize = sizeof(Parameters),
+                                     .paramCount = 1,
+                                     .params = fovy,
+                                     .generate = generate};
+static const RtsClass orthographic = {.size = sizeof(RtsClass),
+                                      .kind = RTS_CAMERA,
+                                      .name = "OrthographicCamera",
+                                      .paramSize = sizeof(Parameters),
+                                      .paramCount = 1,
+                                      .params = height,
+                                      .generate = generate};
 static const RtsClass* const classes[] = {&perspective, &orthographic};
 RTS_EXPORT const RtsPlugin rtsPlugin = {RTS_MAGIC, RTS_ABI_MAJOR, RTS_ABI_MINOR, sizeof(RtsPlugin), 2, classes};
