@@ -1,0 +1,188 @@
+// support.h: scenes for tests against closed forms, through the public C API only. Class D of the accuracy catalogue: one
+// sample, no randomness in the value, relative tolerance 1e-5.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <initializer_list>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "openrt/openrt.h"
+
+namespace numeric {
+
+inline constexpr double pi = 3.14159265358979323846;
+
+struct Vec {
+  double x = 0, y = 0, z = 0;
+};
+
+struct Rgba {
+  float r = 0, g = 0, b = 0, a = 0;
+};
+
+// |got - expected| / max(expected, floor) as the catalogue asks.
+inline void expectClose(double got, double expected, double relative = 1e-5, double floor = 1e-2) {
+  EXPECT_NEAR(got, expected, relative * std::max(std::fabs(expected), floor));
+}
+inline void expectGrey(const Rgba& got, double expected, double relative = 1e-5) {
+  expectClose(got.r, expected, relative);
+  expectClose(got.g, expected, relative);
+  expectClose(got.b, expected, relative);
+}
+inline void expectColor(const Rgba& got, Vec expected, double relative = 1e-5) {
+  expectClose(got.r, expected.x, relative);
+  expectClose(got.g, expected.y, relative);
+  expectClose(got.b, expected.z, relative);
+}
+
+// A shader of a stock class, or of a library, with parameters.
+class Shader {
+ public:
+  explicit Shader(const char* name, const char* library = nullptr) : id_(rtNewShader(rtNewShaderClass(name, library))) {
+    EXPECT_NE(id_, 0u) << name;
+  }
+  Shader& set(const char* name, std::initializer_list<double> values) {
+    const int handle = bind(name);
+    std::vector<float> v;
+    for (double x : values) v.push_back(static_cast<float>(x));
+    switch (v.size()) {
+    case 1: rtParameter1f(handle, v[0]); break;
+    case 2: rtParameter2f(handle, v[0], v[1]); break;
+    case 3: rtParameter3f(handle, v[0], v[1], v[2]); break;
+    case 4: rtParameter4f(handle, v[0], v[1], v[2], v[3]); break;
+    case 16: rtParameter16f(handle, v.data()); break;
+    default: ADD_FAILURE() << name << ": " << v.size() << " numbers";
+    }
+    rtBindShader(0);
+    return *this;
+  }
+  Shader& setList(const char* name, const std::vector<float>& values) {
+    rtParameterfv(bind(name), values.size(), values.data());
+    rtBindShader(0);
+    return *this;
+  }
+  Shader& setInt(const char* name, int value) {
+    rtParameter1i(bind(name), value);
+    rtBindShader(0);
+    return *this;
+  }
+  Shader& setTexture(const char* name, RTid texture) {
+    rtParameterTexture(bind(name), texture);
+    rtBindShader(0);
+    return *this;
+  }
+  operator RTid() const { return id_; }
+
+ private:
+  int bind(const char* name) {
+    rtBindShader(id_);
+    const int handle = rtParameterHandle(name);
+    EXPECT_GE(handle, 0) << name;
+    return handle;
+  }
+  RTid id_;
+};
+
+// A fixture with a context of its own that must stay free of errors.
+class Scene : public testing::Test {
+ protected:
+  void SetUp() override {
+    context_ = rtNewContext("threads=1");
+    ASSERT_NE(context_, nullptr) << (rtGetError(), rtGetErrorMessage());
+    rtQuality(RT_SAMPLES_PER_PIXEL, 1);
+    rtLoadIdentity();
+  }
+  void TearDown() override {
+    const RTenum error = rtGetError();
+    EXPECT_EQ(error, RTenum(RT_NO_ERROR)) << rtGetErrorMessage();
+    rtDeleteContext(context_);
+  }
+
+  // A square in the plane z = 0 that faces +z; with a colour for every vertex if one is given.
+  static RTid square(RTid shader, double half = 10, const Vec* color = nullptr) {
+    const RTid object = rtBeginObject(0);
+    rtBindShader(shader);
+    rtBegin(RT_QUADS);
+    rtNormal3f(0, 0, 1);
+    if (color) rtColor3f(float(color->x), float(color->y), float(color->z));
+    const double corners[4][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
+    for (const auto& c : corners) {
+      rtTexCoord2f(float(0.5 + 0.5 * c[0]), float(0.5 + 0.5 * c[1]));
+      rtVertex3d(half * c[0], half * c[1], 0);
+    }
+    rtEnd();
+    rtEndObject();
+    rtBindShader(0);
+    return object;
+  }
+  // The object in the scene, under the current matrix.
+  static RTid place(RTid object) { return rtInstantiateObject(object); }
+
+  static RTid use(const Shader& light) { return rtUseLight(light); }
+  static Shader directional(Vec direction) {
+    Shader s("VRML97DirectionalLight");
+    s.set("direction", {direction.x, direction.y, direction.z});
+    return s;
+  }
+  // White light whose direction makes an angle with the axis -z, in the plane y = 0, coming from +x.
+  static Shader tilted(double degrees) {
+    const double t = degrees * pi / 180;
+    return directional({-std::sin(t), 0, -std::cos(t)});
+  }
+  static Shader point(Vec location, std::initializer_list<double> attenuation) {
+    Shader s("VRML97PointLight");
+    s.set("location", {location.x, location.y, location.z}).set("attenuation", attenuation);
+    return s;
+  }
+
+  // What one ray straight down -z sees that passes through (x, y); the view is too narrow for its place to matter.
+  static Rgba look(double x = 0, double y = 0, double height = 20) {
+    static constexpr double narrow = 1e-6;
+    rtPushMatrix();
+    rtLoadIdentity();
+    rtTranslated(x, y, height);
+    rtOrtho(narrow);
+    rtPopMatrix();
+    return render();
+  }
+  // The same from a point at a distance above (0, 0, 0).
+  static Rgba lookFrom(double distance) {
+    rtPushMatrix();
+    rtLoadIdentity();
+    rtTranslated(0, 0, distance);
+    rtPerspective(1e-4);
+    rtPopMatrix();
+    return render();
+  }
+  static Rgba render(uint32_t channels = RT_RGBA) {
+    rtFrameBuffer(1, 1, channels);
+    rtRender();
+    Rgba pixel;
+    rtReadPixels(RT_RGBA, &pixel.r, 4);
+    return pixel;
+  }
+
+  static RTid texture(int components, std::initializer_list<float> texel) {
+    RTid id = 0;
+    rtGenTextures(1, &id);
+    rtBindTexture(id);
+    rtTexImage2D(components, 1, 1, RT_FLOAT, texel.begin());
+    return id;
+  }
+
+  static RTstats stats() {
+    RTstats s{};
+    s.size = sizeof s;
+    rtGetStats(&s);
+    return s;
+  }
+
+ private:
+  RTcontext context_ = nullptr;
+};
+
+} // namespace numeric
