@@ -306,14 +306,38 @@ TEST_F(Rays, LightsUnderSingularMatricesAreHarmless) {
   EXPECT_TRUE(std::isfinite(look().r));
 }
 
-TEST_F(Rays, DegenerateAndHugeVerticesAreDropped) {
+TEST_F(Rays, OneThingFarAwayLeavesTheOthersAlone) {
+  use(tilted(0));
+  const RTid plane = square(Shader("VRML97"));
+  place(plane);
+  for (const double far : {1e6, 1e9, 1e12, 1e15, 1e17}) {
+    rtPushMatrix();
+    rtTranslated(0, -far, 0);
+    const RTid instance = place(plane);
+    rtPopMatrix();
+    expectGrey(look(3, 4), .8);
+    rtDeleteInstance(instance);
+  }
+  for (const double far : {1e9, 1e15, 1e18, 1e19, 1e30, 1e38}) {
+    const RTid object = rtBeginObject(0);
+    rtBegin(RT_TRIANGLES);
+    rtVertex3d(0, -far, 0);
+    rtVertex3d(1, -far, 0);
+    rtVertex3d(0, -far, far);
+    rtEnd();
+    rtEndObject();
+    const RTid instance = place(object);
+    expectGrey(look(3, 4), .8);
+    rtDeleteInstance(instance);
+  }
+}
+
+TEST_F(Rays, DegenerateTrianglesAreDropped) {
   const RTid object = rtBeginObject(0);
   rtBegin(RT_TRIANGLES);
-  for (const double z : {0., 1e19, 1e38}) {
-    rtVertex3d(-1, -1, z);
-    rtVertex3d(1, -1, z);
-    rtVertex3d(0, 1, z);
-  }
+  rtVertex3d(-1, -1, 0);
+  rtVertex3d(1, -1, 0);
+  rtVertex3d(0, 1, 0);
   for (int k = 0; k < 3; k++) rtVertex3f(1, 2, 3); // a point
   rtVertex3f(0, 0, 5);                             // and a line
   rtVertex3f(1, 0, 5);
@@ -323,6 +347,8 @@ TEST_F(Rays, DegenerateAndHugeVerticesAreDropped) {
   place(object);
   use(tilted(0));
   expectGrey(look(0, -.5), .8);
+  EXPECT_EQ(stats().degenerate, 2u);
+  EXPECT_EQ(stats().triangles, 1u);
 }
 
 } // namespace

@@ -94,6 +94,7 @@ class Scene : public testing::Test {
     context_ = rtNewContext("threads=1");
     ASSERT_NE(context_, nullptr) << (rtGetError(), rtGetErrorMessage());
     rtQuality(RT_SAMPLES_PER_PIXEL, 1);
+    rtFrameBuffer(1, 1, RT_RGBA);
     rtLoadIdentity();
   }
   void TearDown() override {

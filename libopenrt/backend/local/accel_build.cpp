@@ -84,7 +84,11 @@ void AccelBuilder::chooseScale() {
   accel_.radius = length(world.high - world.low) / 2;
   const Vec3d a = world.low - origin_, b = world.high - origin_;
   const double far = std::max({std::fabs(a.x), std::fabs(a.y), std::fabs(a.z), std::fabs(b.x), std::fabs(b.y), std::fabs(b.z)});
-  if (far > 0 && (far < 1e-4 || far > 1e8)) accel_.scale_ = float(std::exp2(-std::floor(std::log2(far))));
+  // Small scenes grow to about 1. Large ones shrink to the upper end of what the kernels do well (sizes of 1e-10 to 1e12), no
+  // further: one thing put out of sight must not make everything else too small. Beyond 1e20 things are not drawn at all.
+  const double target = far < 1e-4 ? 1.0 : 1e10;
+  if (far > 0 && (far < 1e-4 || far > target))
+    accel_.scale_ = float(std::exp2(std::floor(std::log2(target / std::min(far, 1e20)))));
 }
 
 uint32_t AccelBuilder::maskOf(uint32_t slot) const {
