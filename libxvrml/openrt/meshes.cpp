@@ -78,11 +78,38 @@ void Meshes::grow(Bounds& bounds, int32_t mesh, const Matrix& matrix) {
     growByPoint(bounds, center + reach);
     return;
   }
-  std::vector<uint8_t> used(m.points.size()); // a Coordinate node may hold points that this geometry does not use
+  // A Coordinate node may hold points, perhaps very many, that this geometry does not use.
+  if (m.indices.size() < m.points.size()) {
+    for (const uint32_t index : m.indices)
+      if (index < m.points.size()) growByPoint(bounds, transformPoint(matrix, vector(m.points[index])));
+    return;
+  }
+  std::vector<uint8_t> used(m.points.size());
   for (const uint32_t index : m.indices)
     if (index < used.size()) used[index] = 1;
   for (size_t i = 0; i < used.size(); ++i)
     if (used[i]) growByPoint(bounds, transformPoint(matrix, vector(m.points[i])));
+}
+
+void compact(const Mesh& mesh, Mesh& out) {
+  std::vector<uint32_t> used(mesh.indices.begin(), mesh.indices.end());
+  std::sort(used.begin(), used.end());
+  used.erase(std::unique(used.begin(), used.end()), used.end());
+  while (!used.empty() && used.back() >= mesh.points.size()) used.pop_back();
+  out = Mesh();
+  out.kind = mesh.kind;
+  out.solid = mesh.solid;
+  out.ccw = mesh.ccw;
+  for (const uint32_t i : used) {
+    out.ownPoints.push_back(mesh.points[i]);
+    if (!mesh.normals.empty()) out.ownNormals.push_back(mesh.normals[i]);
+    if (!mesh.texCoords.empty()) out.ownTexCoords.push_back(mesh.texCoords[i]);
+    if (!mesh.colors.empty()) out.ownColors.push_back(mesh.colors[i]);
+  }
+  out.ownIndices.reserve(mesh.indices.size());
+  for (const uint32_t i : mesh.indices)
+    out.ownIndices.push_back(uint32_t(std::lower_bound(used.begin(), used.end(), i) - used.begin()));
+  out.viewOwn();
 }
 
 } // namespace xvrml::mapping

@@ -44,6 +44,9 @@ class Meshes {
   std::unordered_map<const Node*, int32_t> index_;
 };
 
+// The mesh with only the vertices that its indices use, in their order.
+void compact(const Mesh& mesh, Mesh& out);
+
 void growByPoint(Bounds& bounds, const Vector& point);
 void growByBox(Bounds& bounds, const Bounds& box, const Matrix& matrix);
 

@@ -63,10 +63,15 @@ void Objects::draw(int32_t mesh, const Surface& surface, bool textured) {
   rtBindShader(surface.shader);
   (m.solid ? rtEnable : rtDisable)(RT_CULL_FACE);
   (m.ccw ? rtDisable : rtEnable)(RT_CW_FRONT);
-  if (m.kind == Mesh::Kind::sphere)
+  if (m.kind == Mesh::Kind::sphere) {
     rtSphere(m.radius);
-  else
+  } else if (m.indices.size() < m.points.size()) { // a Coordinate that several geometries share: each takes its part
+    Mesh part;
+    compact(m, part);
+    drawArrays(part, surface, textured);
+  } else {
     drawArrays(m, surface, textured);
+  }
   rtBindShader(0);
 }
 
