@@ -182,7 +182,9 @@ TEST(VrmlGroups, SolidFacesAndWinding) {
   EXPECT_TRUE(seen("ccw FALSE solid FALSE"));
   EXPECT_FALSE(seen("", "rotation 0 1 0 3.14159265"));
   EXPECT_TRUE(seen("solid FALSE", "rotation 0 1 0 3.14159265"));
-  EXPECT_TRUE(seen("", "scale -1 1 1")) << "a mirrored front is a front";
+  Scene mirrored("Transform { scale -1 1 1 children " + plain + " }"); // outside of the field's range: said, and drawn
+  EXPECT_NEAR(redAt(mirrored, 0), 0.8, 1e-5) << "a mirrored front is a front";
+  EXPECT_EQ(mirrored.world->diagnostics.warnings(), 1u);
 }
 
 TEST(VrmlGroups, SpheresAreTexturedFromTheBackCounterClockwise) {

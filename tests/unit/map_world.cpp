@@ -1,4 +1,4 @@
-// What the mapper makes of worlds, seen through its results and the null backend: viewpoints, bounds, names, sharing, levels.
+// What the mapper makes of worlds, seen through its results and the engine: viewpoints, bounds, names, sharing, levels.
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -15,7 +15,7 @@ namespace {
 class MapWorld : public testing::Test {
  protected:
   void SetUp() override {
-    context_ = rtNewContext("backend=null");
+    context_ = rtNewContext("threads=1");
     ASSERT_NE(context_, nullptr) << (rtGetError(), rtGetErrorMessage());
   }
   void TearDown() override {
@@ -37,6 +37,7 @@ class MapWorld : public testing::Test {
     return mapper.stats();
   }
   RTstats engine() {
+    rtFrameBuffer(1, 1, RT_RGBA);
     rtRender();
     RTstats stats{};
     stats.size = sizeof stats;
@@ -221,7 +222,6 @@ TEST_F(MapWorld, DoublingChainsAreNotExpanded) {
 TEST_F(MapWorld, DeepNestingIsSafe) {
   const int depth = 20000;
   LoadOptions options;
-  options.limits.nesting = 1000;
   const std::string shallow =
       repeat("Transform { translation 0 0 1 children ", 490) + "Shape { geometry Box { } }" + repeat("} ", 490);
   world_ = loadWorldFromMemory("#VRML V2.0 utf8\n" + shallow, "test.wrl", options);
