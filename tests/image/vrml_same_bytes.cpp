@@ -67,6 +67,35 @@ TEST(VrmlSameBytes, ForAnyNumberOfThreads) {
   EXPECT_TRUE(equal(one, rendered("threads=5")));
 }
 
+// The colours of a PFM, first row at the top.
+std::vector<float> readPfm(const std::filesystem::path& path, size_t width, size_t height) {
+  std::ifstream file(path, std::ios::binary);
+  std::string magic, w, h, scale;
+  file >> magic >> w >> h >> scale;
+  file.get();
+  EXPECT_EQ(magic + w + h, "PF" + std::to_string(width) + std::to_string(height));
+  std::vector<float> rows(3 * width * height), picture;
+  file.read(reinterpret_cast<char*>(rows.data()), std::streamsize(rows.size() * sizeof(float)));
+  EXPECT_TRUE(file.good());
+  for (size_t y = height; y-- > 0;) picture.insert(picture.end(), &rows[3 * width * y], &rows[3 * width * y] + 3 * width);
+  return picture;
+}
+
+TEST(VrmlSameBytes, ForARecordingReplayed) {
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "vrml_replay";
+  std::filesystem::create_directories(folder);
+  const std::string recording = (folder / "everything.orec").string(), output = (folder / "replayed.pfm").string();
+  const std::vector<Pixel> drawn = rendered("threads=1 record=\"" + recording + "\"");
+  const std::string command = std::string(OPENRT_REPLAY) + " '" + recording + "' -o '" + output + "' --threads 2";
+  ASSERT_EQ(std::system(command.c_str()), 0) << command;
+  const std::vector<float> replayed = readPfm(output, 96, 72);
+  ASSERT_EQ(replayed.size(), 3 * drawn.size());
+  size_t different = 0;
+  for (size_t i = 0; i < drawn.size(); ++i) different += std::memcmp(&drawn[i].r, &replayed[3 * i], 3 * sizeof(float)) != 0;
+  EXPECT_EQ(different, 0u);
+  std::filesystem::remove_all(folder);
+}
+
 TEST(VrmlSameBytes, ForASecondCameraAndBack) {
   Scene scene(everything(), picture("threads=2"));
   const std::vector<Pixel> first = scene.render();
