@@ -31,9 +31,12 @@ struct SourcePosition {
 struct FieldRange {
   double minimum = -std::numeric_limits<double>::infinity(), maximum = std::numeric_limits<double>::infinity();
   bool minimumOpen = true, maximumOpen = true;
-  double also = std::numeric_limits<double>::quiet_NaN(); // allowed besides when every number has it (bboxSize -1 -1 -1); NaN: none
+  double also =
+      std::numeric_limits<double>::quiet_NaN(); // allowed besides when every number has it (bboxSize -1 -1 -1); NaN: none
 
-  bool bounded() const { return minimum > -std::numeric_limits<double>::infinity() || maximum < std::numeric_limits<double>::infinity(); }
+  bool bounded() const {
+    return minimum > -std::numeric_limits<double>::infinity() || maximum < std::numeric_limits<double>::infinity();
+  }
 };
 
 struct FieldInfo {
@@ -51,15 +54,16 @@ struct FieldInfo {
 // A table row per field; how to make a node. Immutable and alive as long as any node of the type.
 struct NodeType {
   std::string name;
-  int index;                         // position in the registry's list of static types; -1 for prototypes and scripts
-  std::vector<std::string> abstract; // what it may stand for: child, grouping, geometry, appearance, ... (models of SFNode constraints)
-  std::string component;             // file it comes from: grouping, geometry, lighting ...
+  int index; // position in the registry's list of static types; -1 for prototypes and scripts
+  std::vector<std::string>
+      abstract;          // what it may stand for: child, grouping, geometry, appearance, ... (models of SFNode constraints)
+  std::string component; // file it comes from: grouping, geometry, lighting ...
   std::string text;
   std::vector<FieldInfo> fields;
   Node* (*create)(const NodeType& type);
-  std::string clause;                // of ISO/IEC 14772-1, "6.6"; empty: not a standard node
+  std::string clause; // of ISO/IEC 14772-1, "6.6"; empty: not a standard node
 
-  bool is(std::string_view abstractName) const; // one of `abstract`
+  bool is(std::string_view abstractName) const;            // one of `abstract`
   const FieldInfo* find(std::string_view fieldName) const; // exact name
   // Also finds set_x and x_changed of an exposedField x (clause 4.7); wantInput: looked up as the target of a route.
   const FieldInfo* findEventIn(std::string_view name) const;
@@ -85,7 +89,7 @@ class Node {
   // The value's type must be the field's; false (and no change) otherwise.
   bool set(const FieldInfo& field, Value value);
 
-  std::string defName;   // DEF, empty if none (not `name`: nodes may have a field of that name)
+  std::string defName; // DEF, empty if none (not `name`: nodes may have a field of that name)
   SourcePosition source;
 
  private:
@@ -95,12 +99,18 @@ class Node {
   std::atomic<uint32_t> references_{0};
 };
 
-inline NodeRef::NodeRef(Node* node) : node_(node) { if (node_) node_->references_.fetch_add(1, std::memory_order_relaxed); }
+inline NodeRef::NodeRef(Node* node) : node_(node) {
+  if (node_) node_->references_.fetch_add(1, std::memory_order_relaxed);
+}
 inline NodeRef::NodeRef(const NodeRef& other) : NodeRef(other.node_) {}
-inline NodeRef::~NodeRef() { if (node_ && node_->references_.fetch_sub(1, std::memory_order_acq_rel) == 1) Node::destroy(node_); }
+inline NodeRef::~NodeRef() {
+  if (node_ && node_->references_.fetch_sub(1, std::memory_order_acq_rel) == 1) Node::destroy(node_);
+}
 
 // The concrete type if node is exactly of it: nodeCast<nodes::Box>(ref). Generated structs have a static `typeIndex`.
-template <class T> T* nodeCast(Node* node) { return node && node->type().index == T::typeIndex ? static_cast<T*>(node) : nullptr; }
+template <class T> T* nodeCast(Node* node) {
+  return node && node->type().index == T::typeIndex ? static_cast<T*>(node) : nullptr;
+}
 template <class T> T* nodeCast(const NodeRef& ref) { return nodeCast<T>(ref.get()); }
 
 // A node whose fields are described at run time: Script nodes and PROTO instances keep their interface's values here.
