@@ -68,6 +68,7 @@ RT_API void rtLogCallback(RTlogCallback callback, void* user);
  *   backend=local|null|record   who renders (default local)
  *   threads=N                   render threads; 0 (default): as many as the process may use
  *   file=PATH                   the recording to write (backend=record); a value with blanks stands in "double quotes"
+ *   record=PATH                 a recording written while another backend renders; openrt-replay makes the same bytes of it
  *   shaderpath=DIR[:DIR...]     where shader libraries are looked up, before $OPENRT_SHADER_PATH and the installed folder
  * Returns NULL on failure. Delete it with rtDeleteContext. */
 RT_API RTcontext rtNewContext(const char* config);
@@ -96,8 +97,10 @@ enum {
 };
 
 /* rtBegin opens, rtEnd closes a list of vertices of one mode. Normal, texture coordinate, colour, shader, name and the
- * matrix are latched: the shader, the name and the matrix at rtBegin, the others at each vertex. Degenerate primitives
- * are dropped and counted (RTstats.degenerate). */
+ * matrix are latched: the shader, the name and the matrix at rtBegin, the others at each vertex. An object begins without
+ * normals, texture coordinates and colours: vertices have those that were set since rtBeginObject; a normal of 0 0 0 stands
+ * for the face's own. Positions in double keep their precision wherever they lie (up to 1e38). Degenerate primitives are dropped
+ * and counted (RTstats.degenerate). */
 RT_API void rtBegin(RTenum mode);
 RT_API void rtEnd(void);
 RT_API void rtVertex2f(float x, float y);
@@ -152,6 +155,7 @@ RT_API void rtDrawElements(RTenum mode, size_t count, const uint32_t* indices, s
 
 /* Matrices: composed in double ---------------------------------------------------------------------------------------- */
 
+/* The stack holds 4096 matrices; an object's definition has one of its own. Matrices are affine: bottom row 0 0 0 1. */
 RT_API void rtPushMatrix(void);
 RT_API void rtPopMatrix(void);
 RT_API void rtLoadIdentity(void);
@@ -197,7 +201,8 @@ RT_API RTid rtNewShaderClass(const char* name, const char* library);
 RT_API RTid rtNewShader(RTid shaderClass);
 /* Latched by the primitives that follow, and the target of rtParameter*. 0: the default surface shader. */
 RT_API void rtBindShader(RTid shader);
-/* Takes effect when nothing uses it: geometry bound to it falls back to the default surface shader. */
+/* Geometry bound to it falls back to the default surface shader, overrides by it end, its lights go out, and a camera,
+ * environment or default made of it is removed, all with the next commit. */
 RT_API void rtDeleteShader(RTid shader);
 /* Handle of a parameter of the bound shader's class, valid for every shader of the class. -1: no such parameter. */
 RT_API int rtParameterHandle(const char* name);
@@ -241,7 +246,8 @@ RT_API void rtGetParameterInfo(RTid shaderClass, int handle, RTparameterInfo* in
 /* Turns a light shader on and returns the light's id. */
 RT_API RTid rtUseLight(RTid shader);
 RT_API void rtLightMatrix(RTid light, const double m[16]);
-/* The light shines only on what lies below this instance; 0: on everything (default). */
+/* The light shines only on what lies below this instance; 0: on everything (default). It shines on nothing once the instance
+ * is deleted. */
 RT_API void rtLightScope(RTid light, RTid instance);
 RT_API void rtRemoveLight(RTid light);
 /* The one camera. Its local frame looks down -z with +y up. 0 removes it. */
@@ -294,7 +300,8 @@ enum {
 /* Size in pixels (1 .. 65536 each, at most 2^28 in all) and channels of the following frames. */
 RT_API void rtFrameBuffer(int width, int height, uint32_t channels);
 RT_API void rtQuality(RTenum name, int value);
-/* Commits the edits, waits for the frame in flight, makes it the one rtReadPixels reads and starts the next. */
+/* Commits the edits, waits for the frame in flight, makes it the one rtReadPixels reads and starts the next. Like rtRender it
+ * needs a frame buffer and no definition open (else RT_INVALID_OPERATION). */
 RT_API void rtSwapBuffers(void);
 /* Commits, renders and waits; rtReadPixels then reads this frame. */
 RT_API void rtRender(void);
@@ -335,7 +342,8 @@ typedef struct RThit {
   float normal[3];    /* unit geometric normal, not turned towards the ray */
   RTid instance;      /* outermost, 0 where nothing is hit */
   uint32_t name;      /* rtLoadName */
-  uint32_t primitive; /* within its rtBegin or draw call */
+  uint32_t primitive; /* triangle, segment or point of its draw call, or of the run of rtBegin ... rtEnd lists with one state that
+                         it belongs to; degenerate ones do not count */
   uint64_t userData;
 } RThit;
 /* Nearest hits of count rays. A ray that is not finite hits nothing and is counted. Rays are in world coordinates. */

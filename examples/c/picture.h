@@ -1,0 +1,24 @@
+/* picture.h: writes a rendered frame as a PPM file: linear colour to the sRGB curve, 8 bits. Used by the C examples. */
+#ifndef EXAMPLES_PICTURE_H
+#define EXAMPLES_PICTURE_H
+
+#include <math.h>
+#include <stdio.h>
+
+static unsigned char toByte(float linear) {
+  float c = linear < 0 ? 0 : linear > 1 ? 1 : linear;
+  c = c <= 0.0031308f ? 12.92f * c : 1.055f * powf(c, 1 / 2.4f) - 0.055f;
+  return (unsigned char)(255 * c + 0.5f);
+}
+
+/* rgba: four floats a pixel, first row at the top. Returns 0 if the file cannot be written. */
+static int writePicture(const char* path, int width, int height, const float* rgba) {
+  FILE* file = fopen(path, "wb");
+  if (!file) return 0;
+  fprintf(file, "P6\n%d %d\n255\n", width, height);
+  for (int i = 0; i < width * height; i++)
+    for (int k = 0; k < 3; k++) fputc(toByte(rgba[4 * i + k]), file);
+  return fclose(file) == 0;
+}
+
+#endif
