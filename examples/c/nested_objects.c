@@ -59,7 +59,7 @@ int main(int argc, char** argv) {
 
   rtLoadIdentity();
   rtLookAt(7, 5, 9, 0, 0, 0, 0, 1, 0);
-  rtUseLight(rtNewShader(rtNewShaderClass("DirectionalLight", NULL))); /* shines where the camera looks */
+  rtUseLight(rtNewShader(rtNewShaderClass("VRML97DirectionalLight", NULL))); /* shines where the camera looks */
   rtPerspective(35);
   rtFrameBuffer(width, height, RT_RGBA);
 

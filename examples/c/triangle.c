@@ -29,8 +29,8 @@ int main(int argc, char** argv) {
   rtEndObject();
   rtInstantiateObject(triangle);
 
-  /* A lamp that shines along -z, of the stock class DirectionalLight. */
-  rtUseLight(rtNewShader(rtNewShaderClass("DirectionalLight", NULL)));
+  /* A lamp that shines along -z, of the stock class VRML97DirectionalLight. */
+  rtUseLight(rtNewShader(rtNewShaderClass("VRML97DirectionalLight", NULL)));
 
   /* The camera stands at z = 4 and looks at the origin. */
   rtLookAt(0, 0, 4, 0, 0, 0, 0, 1, 0);
