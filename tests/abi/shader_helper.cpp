@@ -190,7 +190,8 @@ TEST(ShaderHelper, LightsCamerasAndEnvironments) {
   EXPECT_EQ(light.directional, 1);
   EXPECT_EQ(out[1][2], 1);
   EXPECT_EQ(out[5][1], 8);
-  helperClass("Lamp").illuminate(&host, host.batch(), nullptr, 3, in, &light);
+  const ParamBlock lamp(helperClass("Lamp")), pixel(helperClass("Pixel")), haze(helperClass("Haze"));
+  helperClass("Lamp").illuminate(&host, host.batch(), lamp.get(), 3, in, &light);
   EXPECT_EQ(light.directional, 0);
   EXPECT_EQ(out[2][2], -9);
 
@@ -200,16 +201,16 @@ TEST(ShaderHelper, LightsCamerasAndEnvironments) {
     rays.direction[c] = out[3 + c].data();
   }
   const float size[2] = {2, 4};
-  helperClass("Pixel").generate(&host, host.batch(), nullptr, 3, in, size, &rays);
+  helperClass("Pixel").generate(&host, host.batch(), pixel.get(), 3, in, size, &rays);
   EXPECT_EQ(out[0][2], 1.5f);
   EXPECT_EQ(out[1][0], 1);
   EXPECT_EQ(out[5][1], -1);
 
   float* rgba[4] = {out[0].data(), out[1].data(), out[2].data(), out[3].data()};
-  helperClass("Haze").miss(&host, host.batch(), nullptr, 3, in, rgba);
+  helperClass("Haze").miss(&host, host.batch(), haze.get(), 3, in, rgba);
   EXPECT_EQ(out[2][1], 8);
   EXPECT_EQ(out[3][1], .5f);
-  helperClass("Haze").attenuate(&host, host.batch(), nullptr, 3, in, rgba, out[3].data());
+  helperClass("Haze").attenuate(&host, host.batch(), haze.get(), 3, in, rgba, out[3].data());
   EXPECT_EQ(out[1][2], .2f);
   EXPECT_FLOAT_EQ(out[3][0], 1 / (1 + std::sqrt(66.0f)));
 }

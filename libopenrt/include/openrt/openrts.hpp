@@ -374,7 +374,7 @@ template <class T> const RtsClass* classOf(std::string name) {
     table.text = T::text;
   else
     table.text = "";
-  table.paramSize = params.params.empty() ? 0 : static_cast<uint32_t>(sizeof(T));
+  table.paramSize = static_cast<uint32_t>(sizeof(T)); // never 0: functions are called on what lies there
   table.paramCount = static_cast<uint32_t>(params.params.size());
   table.params = params.params.data();
   fillFunctions<T>(table);
