@@ -36,33 +36,46 @@ std::string referenceOf(const TypeSpec& type) {
   return text + '\n';
 }
 
-// What the binding takes and returns for each field type.
+// What the binding returns when a field is read and what it takes: any array of the shape, list of rows and so on.
 constexpr std::string_view stubPrologue =
-    R"("""Node classes of xvrml, for type checkers and editors. Written by nodegen from the .node files."""
-from typing import List, Optional, Tuple
+    R"("""Node classes of xvrml, for type checkers and editors only: there is no such module at run time.
 
-class Node: ...
+Written by nodegen from the .node files. Import it under typing.TYPE_CHECKING and cast nodes to these classes.
+"""
+from typing import Any, Generic, Optional, Sequence, Tuple, TypeVar
 
-SFBool = bool
-SFColor = Tuple[float, float, float]
-SFFloat = float
-SFImage = Tuple[int, int, int, bytes]
-SFInt32 = int
-SFNode = Optional[Node]
-SFRotation = Tuple[float, float, float, float]
-SFString = str
-SFTime = float
-SFVec2f = Tuple[float, float]
-SFVec3f = Tuple[float, float, float]
-MFColor = List[SFColor]
-MFFloat = List[float]
-MFInt32 = List[int]
-MFNode = List[Node]
-MFRotation = List[SFRotation]
-MFString = List[str]
-MFTime = List[float]
-MFVec2f = List[SFVec2f]
-MFVec3f = List[SFVec3f]
+import numpy as np
+import numpy.typing as npt
+
+from xvrml import Node
+
+_Read = TypeVar("_Read", covariant=True)
+_Write = TypeVar("_Write", contravariant=True)
+
+class Field(Generic[_Read, _Write]):
+    def __get__(self, node: Any, owner: Any = ...) -> _Read: ...
+    def __set__(self, node: Any, value: _Write) -> None: ...
+
+SFBool = Field[bool, bool]
+SFColor = Field[Tuple[float, float, float], npt.ArrayLike]
+SFFloat = Field[float, float]
+SFImage = Field[npt.NDArray[np.uint8], npt.ArrayLike]
+SFInt32 = Field[int, int]
+SFNode = Field[Optional[Node], Optional[Node]]
+SFRotation = Field[Tuple[float, float, float, float], npt.ArrayLike]
+SFString = Field[str, str]
+SFTime = Field[float, float]
+SFVec2f = Field[Tuple[float, float], npt.ArrayLike]
+SFVec3f = Field[Tuple[float, float, float], npt.ArrayLike]
+MFColor = Field[npt.NDArray[np.float32], npt.ArrayLike]
+MFFloat = Field[npt.NDArray[np.float32], npt.ArrayLike]
+MFInt32 = Field[npt.NDArray[np.int32], npt.ArrayLike]
+MFNode = Field[Tuple[Node, ...], Sequence[Node]]
+MFRotation = Field[npt.NDArray[np.float32], npt.ArrayLike]
+MFString = Field[Tuple[str, ...], Sequence[str]]
+MFTime = Field[npt.NDArray[np.float64], npt.ArrayLike]
+MFVec2f = Field[npt.NDArray[np.float32], npt.ArrayLike]
+MFVec3f = Field[npt.NDArray[np.float32], npt.ArrayLike]
 )";
 
 // A field whose name Python keeps for itself has no attribute: it is named in a comment.
