@@ -44,7 +44,7 @@ void LocalBackend::apply(std::shared_ptr<const Commit> commit) {
 // The camera's place, unless it is still near the old origin in terms of the scene's size: then nothing need be rounded anew.
 Vec3d LocalBackend::chooseOrigin() const {
   const Vec3d eye = scene_.camera.shader && scene_.camera.matrix.usable() ? scene_.camera.matrix.translation() : Vec3d{};
-  if (!snapshot_ || !accel_) return eye;
+  if (!snapshot_ || !accel_ || changes_.geometry || changes_.instances) return eye; // built anew in any case
   const Vec3d old{snapshot_->origin[0], snapshot_->origin[1], snapshot_->origin[2]};
   return length(eye - old) <= accel_->radius ? old : eye;
 }
