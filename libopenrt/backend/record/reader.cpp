@@ -119,7 +119,7 @@ std::shared_ptr<const Commit> RecordingReader::next() {
       readArray(header.id, header.bytes, header.stored, header.hash, *commit);
       continue;
     }
-    if (header.kind != ChunkKind::Edits) fail("an unknown kind of chunk");
+    if (header.kind != ChunkKind::Edits || header.id != 0) fail("an unknown kind of chunk");
     if (++commits_ > limits_.commits) fail("more than " + std::to_string(limits_.commits) + " commits");
     readEdits(header.bytes, header.stored, header.hash, *commit);
     try {
