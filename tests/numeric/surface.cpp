@@ -219,5 +219,36 @@ TEST_F(Surface, LinesAreNeitherLitNorTextured) {
   expectColor(look(), {.2, .4, .6});
 }
 
+TEST_F(Surface, PlugInsAreFoundByTheNameOfTheirClass) {
+  for (const char* library : {static_cast<const char*>(nullptr), "debug"}) {
+    const RTid instance = place(square(Shader("Debug", library).setInt("show", 2)));
+    use(tilted(0)); // no matter
+    expectColor(look(-5, 2.5), {.25, .625, 0});
+    rtDeleteInstance(instance);
+  }
+}
+
+TEST_F(Surface, InstancesMayOverrideTheShader) {
+  const RTid instance = place(square(Shader("VRML97").setInt("lit", 0)));
+  expectGrey(look(), 1);
+  rtInstanceShader(instance, Shader("Debug").setInt("show", 1));
+  expectColor(look(), {.5, .5, 1});
+  rtInstanceShader(instance, 0);
+  expectGrey(look(), 1);
+}
+
+TEST_F(Surface, ParametersActOnWhatIsAlreadyThere) {
+  Shader s("VRML97");
+  place(square(s));
+  use(tilted(0));
+  expectGrey(look(), .8);
+  s.set("diffuseColor", {.1, .2, .3});
+  expectColor(look(), {.1, .2, .3});
+  s.set("transparency", {.5}); // now it needs another kind of shadow ray, and the path goes on behind it
+  Rgba pixel = look();
+  expectColor(pixel, {.05, .1, .15});
+  expectClose(pixel.a, .5);
+}
+
 } // namespace
 } // namespace numeric
