@@ -64,7 +64,7 @@ Lexer::Lexer(std::string_view bytes, std::shared_ptr<const std::string> file, Di
     : begin_(bytes.data()), end_(bytes.data() + bytes.size()), position_(begin_), file_(std::move(file)),
       diagnostics_(diagnostics), mark_(begin_) {}
 
-const char* Lexer::skipSpace(const char* p) {
+const char* Lexer::skipComments(const char* p) {
   for (; p < end_; ++p) {
     if (isVrmlSpace(*p)) continue;
     if (*p != '#') break;

@@ -2,6 +2,7 @@
 // Used by the value parser, the file parser and nodegen. One lexer per text, on one thread. The bytes must outlive it.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -32,14 +33,21 @@ struct Token {
   bool is(std::string_view keyword) const { return kind == TokenKind::identifier && text == keyword; }
 };
 
-// Bytes that separate tokens: white space, comma, the start of a comment.
-constexpr bool isVrmlSpace(char c) {
-  return c == ' ' || c == '\n' || c == '\t' || c == '\r' || c == ',' || c == '\f' || c == '\v';
+namespace lexer_detail {
+enum : uint8_t { space = 1, separator = 2 };
+constexpr std::array<uint8_t, 256> makeClasses() {
+  std::array<uint8_t, 256> classes{};
+  for (const unsigned char c : {' ', '\n', '\t', '\r', ',', '\f', '\v'}) classes[c] = space | separator;
+  for (const unsigned char c : {'[', ']', '{', '}', '"', '#'}) classes[c] = separator;
+  return classes;
 }
+inline constexpr auto classes = makeClasses();
+} // namespace lexer_detail
+
+// White space and commas.
+constexpr bool isVrmlSpace(char c) { return lexer_detail::classes[static_cast<unsigned char>(c)] & lexer_detail::space; }
 // Bytes at which a number or a word ends.
-constexpr bool isVrmlSeparator(char c) {
-  return isVrmlSpace(c) || c == '[' || c == ']' || c == '{' || c == '}' || c == '"' || c == '#';
-}
+constexpr bool isVrmlSeparator(char c) { return lexer_detail::classes[static_cast<unsigned char>(c)] & lexer_detail::separator; }
 bool isIdentifierStart(unsigned char c); // IdFirstChar
 bool isIdentifierRest(unsigned char c);  // IdRestChars
 bool isIdentifier(std::string_view text);
@@ -79,7 +87,10 @@ class Lexer {
     peeked_ = false;
   }
   // Skips white space, commas and comments from p.
-  const char* skipSpace(const char* p);
+  const char* skipSpace(const char* p) {
+    while (p < end_ && isVrmlSpace(*p)) ++p;
+    return p < end_ && *p == '#' ? skipComments(p) : p;
+  }
 
   // Line and column (in characters, from 1) of a place in the text. Costs the distance from the place asked for before.
   SourcePosition place(const char* at);
@@ -89,6 +100,7 @@ class Lexer {
 
  private:
   void lex();
+  const char* skipComments(const char* p);
   const char* lexNumber(const char* p, bool& valid) const;
   const char* lexString(const char* p, bool& valid) const;
   void report(Severity severity, const char* at, std::string message);

@@ -37,7 +37,7 @@ template <class T> const std::string& nameOf(const T& item) {
 template <class Range> std::string suggestion(std::string_view name, const Range& known) {
   if (name.size() > 64) return {};
   const std::string* best = nullptr;
-  size_t distance = 2 * std::max<size_t>(1, name.size() / 3) + 1;
+  size_t distance = 2 * (name.size() / 3) + 1; // none for a name of one or two letters, but for their case
   for (const auto& item : known) {
     const std::string& candidate = nameOf(item);
     const size_t d = editDistance(name, candidate);

@@ -1,0 +1,102 @@
+// files.cpp: the files of good/ load without a word and survive writing; those of bad/ give the messages their second line says:
+// "# expect LINE:COLUMN SEVERITY MESSAGE | ...". The names of the files say which rule they are about.
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include <gtest/gtest.h>
+
+#include "xvrml/world.h"
+
+namespace {
+
+using namespace xvrml;
+
+std::vector<std::string> filesOf(const std::string& folder) {
+  std::vector<std::string> paths;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.path().extension() == ".wrl") paths.push_back(entry.path().string());
+  }
+  std::sort(paths.begin(), paths.end());
+  return paths;
+}
+
+std::string testName(const testing::TestParamInfo<std::string>& info) {
+  std::string name = std::filesystem::path(info.param).stem().string();
+  std::replace_if(name.begin(), name.end(), [](unsigned char c) { return !std::isalnum(c); }, '_');
+  return name;
+}
+
+std::string messages(const World& world) {
+  std::string text;
+  for (const Diagnostic& diagnostic : world.diagnostics.list()) text += diagnostic.text() + '\n';
+  return text;
+}
+
+class Good : public testing::TestWithParam<std::string> {};
+class Bad : public testing::TestWithParam<std::string> {};
+
+TEST_P(Good, LoadsSilentlyAndRoundTrips) {
+  const auto world = loadWorld(GetParam());
+  EXPECT_EQ(messages(*world), "");
+  const std::string text = writeWorld(*world);
+  const auto again = loadWorldFromMemory(text, GetParam());
+  EXPECT_EQ(messages(*again), "") << text;
+  std::string difference;
+  EXPECT_TRUE(equalScopes(world->scope, again->scope, &difference)) << difference << '\n' << text;
+  EXPECT_EQ(writeWorld(*again), text);
+}
+
+struct Expected {
+  uint32_t line = 0, column = 0;
+  std::string severity, message;
+};
+
+std::vector<Expected> expectations(const std::string& path) {
+  std::ifstream file(path);
+  std::string line;
+  std::getline(file, line);
+  std::getline(file, line);
+  const std::string mark = "# expect ";
+  std::vector<Expected> all;
+  if (!line.starts_with(mark)) return all;
+  line.erase(0, mark.size());
+  for (size_t at = 0; at < line.size();) {
+    const size_t end = std::min(line.find(" | ", at), line.size());
+    std::istringstream item(line.substr(at, end - at));
+    Expected expected;
+    char colon = 0;
+    item >> expected.line >> colon >> expected.column >> expected.severity >> std::ws;
+    std::getline(item, expected.message);
+    all.push_back(expected);
+    at = end + 3;
+  }
+  return all;
+}
+
+TEST_P(Bad, SaysWhatIsWrongAndWhere) {
+  const std::vector<Expected> expected = expectations(GetParam());
+  ASSERT_FALSE(expected.empty());
+  const auto world = loadWorld(GetParam());
+  const auto& list = world->diagnostics.list();
+  ASSERT_EQ(list.size(), expected.size()) << messages(*world);
+  for (size_t i = 0; i < expected.size(); ++i) {
+    EXPECT_EQ(list[i].line, expected[i].line) << list[i].text();
+    EXPECT_EQ(list[i].column, expected[i].column) << list[i].text();
+    EXPECT_EQ(list[i].severity == Severity::error ? "error" : "warning", expected[i].severity);
+    EXPECT_NE(list[i].message.find(expected[i].message), std::string::npos) << list[i].text();
+    EXPECT_EQ(list[i].file, GetParam());
+  }
+  EXPECT_GT(world->diagnostics.errors(), 0u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Conformance, Good, testing::ValuesIn(filesOf("tests/conformance/good")), testName);
+INSTANTIATE_TEST_SUITE_P(Conformance, Bad, testing::ValuesIn(filesOf("tests/conformance/bad")), testName);
+
+TEST(ConformanceFiles, ThereAreEnough) {
+  EXPECT_GE(filesOf("tests/conformance/good").size(), 60u);
+  EXPECT_GE(filesOf("tests/conformance/bad").size(), 60u);
+}
+
+} // namespace
