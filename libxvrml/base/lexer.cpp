@@ -191,10 +191,10 @@ void Lexer::report(Severity severity, const char* at, std::string message) {
   }
   const SourcePosition where = place(at);
   // A very long line is shown as a window around the place, cut between characters.
-  constexpr ptrdiff_t window = 140;
-  const char* from = startOfLine(at, at - begin_ > window ? at - window : begin_, end_);
+  constexpr ptrdiff_t before = 100, after = 80;
+  const char* from = startOfLine(at, at - begin_ > before ? at - before : begin_, end_);
   while (from < at && isContinuationByte(*from)) ++from;
-  const char* to = endOfLine(at, end_ - from > window ? std::max(at, from + window) : end_);
+  const char* to = endOfLine(at, end_ - at > after ? at + after : end_);
   while (to < end_ && to > at && isContinuationByte(*to)) --to;
   diagnostics_.add({severity, file_ ? *file_ : std::string(), where.line, where.column, std::move(message), std::string(from, to),
                     countCharacters(from, at) + 1});

@@ -302,7 +302,8 @@ bool isUrlField(const FieldInfo& field) {
 // A relative URL written in the file of the instance, for a node that stands in another file (4.9.3).
 void rebaseUrls(MFString& urls, const std::string& from, const std::string& to) {
   namespace fs = std::filesystem;
-  const fs::path fromFolder = fs::path(from).parent_path(), toFolder = fs::path(to).parent_path();
+  const fs::path fromFolder = fs::path(from).lexically_normal().parent_path();
+  const fs::path toFolder = fs::path(to).lexically_normal().parent_path();
   if (fromFolder == toFolder) return;
   const fs::path step = fromFolder.lexically_relative(toFolder);
   if (step.empty() || step == ".") return;

@@ -1,5 +1,6 @@
 // writer.cpp: a world as VRML97 text. What was loaded from other files stays a reference to them; bodies of prototype instances
 // are not written, their declarations are. Pure function of the world. [the thread that owns the world]
+#include <span>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -14,7 +15,7 @@
 namespace xvrml {
 namespace {
 
-using Connections = std::unordered_multimap<const Node*, const IsConnection*>;
+using Connections = std::unordered_map<const Node*, std::vector<const IsConnection*>>;
 
 // A name that parses; a file's own spelling stays if the parser takes it.
 std::string nameText(const std::string& name) {
@@ -77,49 +78,51 @@ class Writer {
     std::vector<Node*> roots;
     for (const NodeRef& root : scope.roots) roots.push_back(root.get());
     Names names(roots, scope.routes);
+    // Routes stand at the end, but those of repeated names as soon as both nodes do, while the names mean them.
+    std::vector<const Route*> early, late;
+    for (const Route& route : scope.routes) {
+      const bool repeated = names.isRepeated(route.from.get()) || names.isRepeated(route.to.get());
+      (repeated ? early : late).push_back(&route);
+    }
+    std::unordered_map<const ProtoDeclaration*, size_t> prototypes;
+    for (size_t i = 0; i < scope.prototypes.size(); ++i) prototypes.emplace(scope.prototypes[i].get(), i + 1);
     size_t declared = 0;
-    std::vector<bool> routed(scope.routes.size());
     for (Node* root : roots) {
-      declareFor(scope, root, declared);
+      const size_t needed = lastPrototypeOf(root, prototypes);
+      for (; declared < needed; ++declared) prototype(*scope.prototypes[declared]);
       line();
       node(root, names, connections);
-      routes(scope, names, routed, false);
+      std::erase_if(early, [&](const Route* written) { return route(*written, names); });
     }
     for (; declared < scope.prototypes.size(); ++declared) prototype(*scope.prototypes[declared]);
-    routes(scope, names, routed, true);
+    for (const Route* written : late) route(*written, names);
   }
 
  private:
   void line() { text += '\n', text.append(indent_, ' '); }
 
   // Prototypes stand before the first node that is one of theirs, in their order: a name may be declared again later.
-  void declareFor(const Scope& scope, Node* root, size_t& declared) {
-    if (declared == scope.prototypes.size()) return;
+  static size_t lastPrototypeOf(Node* root, const std::unordered_map<const ProtoDeclaration*, size_t>& prototypes) {
+    size_t last = 0;
+    if (prototypes.empty()) return last;
     std::vector<Node*> nodes;
     std::unordered_map<const Node*, uint32_t> index;
     collectNodes({root}, nodes, index);
-    std::unordered_set<const ProtoDeclaration*> used;
     for (Node* node : nodes) {
-      if (const auto* instance = dynamic_cast<ProtoInstance*>(node)) used.insert(instance->declaration.get());
+      const auto* instance = dynamic_cast<ProtoInstance*>(node);
+      const auto found = instance ? prototypes.find(instance->declaration.get()) : prototypes.end();
+      if (found != prototypes.end()) last = std::max(last, found->second);
     }
-    size_t last = declared;
-    for (size_t i = declared; i < scope.prototypes.size(); ++i) {
-      if (used.contains(scope.prototypes[i].get())) last = i + 1;
-    }
-    for (; declared < last; ++declared) prototype(*scope.prototypes[declared]);
+    return last;
   }
 
-  // At the end of the scope; those of repeated names as soon as both nodes are there, while the names mean them.
-  void routes(const Scope& scope, const Names& names, std::vector<bool>& routed, bool end) {
-    for (size_t i = 0; i < scope.routes.size(); ++i) {
-      const Route& route = scope.routes[i];
-      const Node *from = route.from.get(), *to = route.to.get();
-      if (routed[i] || !names.isWritten(from) || !names.isWritten(to)) continue;
-      if (!end && !names.isRepeated(from) && !names.isRepeated(to)) continue;
-      routed[i] = true;
-      line();
-      text += fmt::format("ROUTE {}.{} TO {}.{}", *names.find(from), route.fromField, *names.find(to), route.toField);
-    }
+  // False if its nodes are not both there yet.
+  bool route(const Route& route, const Names& names) {
+    const Node *from = route.from.get(), *to = route.to.get();
+    if (!names.isWritten(from) || !names.isWritten(to)) return false;
+    line();
+    text += fmt::format("ROUTE {}.{} TO {}.{}", *names.find(from), route.fromField, *names.find(to), route.toField);
+    return true;
   }
 
   void node(Node* node, Names& names, const Connections* connections) {
@@ -137,7 +140,7 @@ class Writer {
     const size_t before = text.size();
     indent_ += 2;
     for (const FieldInfo& field : node->type().fields) fieldOf(*node, field, names, connections);
-    if (connections) otherConnections(*node, *connections);
+    otherConnections(*node, connections);
     indent_ -= 2;
     if (text.size() > before) line();
     text += text.size() > before ? "}" : " }";
@@ -145,35 +148,38 @@ class Writer {
 
   void fieldOf(Node& node, const FieldInfo& field, Names& names, const Connections* connections) {
     const bool declared = isDeclared(node, field);
-    const IsConnection* connection = nullptr;
-    if (connections) {
-      const auto [first, last] = connections->equal_range(&node);
-      for (auto i = first; i != last && !connection; ++i) {
-        if (i->second->field == field.name) connection = i->second;
-      }
+    std::vector<const IsConnection*> own;
+    for (const IsConnection* connection : connectionsOf(node, connections)) {
+      if (connection->field == field.name) own.push_back(connection);
     }
-    const bool value = holdsValue(field) && (declared ? !connection : hasOwnValue(node, field));
+    const bool value = holdsValue(field) && (declared ? own.empty() : hasOwnValue(node, field));
     if (value || declared) {
       line();
       if (declared) text += fmt::format("{} {} ", accessName(field.access), fieldTypeName(field.type));
       text += field.name;
       if (value) fieldValue(node.storage(field), field.type, names, connections);
     }
-    if (!connection) return;
-    if (value || !declared) {
-      line();
-      text += field.name;
+    for (size_t i = 0; i < own.size(); ++i) {
+      if (i > 0 || !declared) {
+        line();
+        text += field.name;
+      }
+      text += " IS " + own[i]->interfaceName;
     }
-    text += " IS " + connection->interfaceName;
+  }
+
+  static std::span<const IsConnection* const> connectionsOf(const Node& node, const Connections* connections) {
+    if (!connections) return {};
+    const auto found = connections->find(&node);
+    return found == connections->end() ? std::span<const IsConnection* const>() : found->second;
   }
 
   // set_x IS y: connections that do not bear a field's own name.
-  void otherConnections(Node& node, const Connections& connections) {
-    const auto [first, last] = connections.equal_range(&node);
-    for (auto i = first; i != last; ++i) {
-      if (node.type().find(i->second->field)) continue;
+  void otherConnections(const Node& node, const Connections* connections) {
+    for (const IsConnection* connection : connectionsOf(node, connections)) {
+      if (node.type().find(connection->field)) continue;
       line();
-      text += i->second->field + " IS " + i->second->interfaceName;
+      text += connection->field + " IS " + connection->interfaceName;
     }
   }
 
@@ -247,7 +253,7 @@ class Writer {
       return;
     }
     Connections connections;
-    for (const IsConnection& connection : declaration.is) connections.emplace(connection.node.get(), &connection);
+    for (const IsConnection& connection : declaration.is) connections[connection.node.get()].push_back(&connection);
     text += " {";
     indent_ += 2;
     scope(declaration.body, &connections);
