@@ -42,7 +42,7 @@ void throwOnError(const char* doing) {
 struct Renderer::Impl {
   xvrml::World& world;
   const RenderSettings settings;
-  const Watch watch;
+  Watch watch;
 
   // On the render thread.
   std::unique_ptr<xvrml::OpenRTMapper> mapper;
@@ -196,6 +196,8 @@ void Renderer::end() {
   impl_->changed.notify_all();
   if (impl_->thread.joinable()) impl_->thread.join();
 }
+
+void Renderer::setWatch(Watch watch) { impl_->watch = std::move(watch); }
 
 const std::vector<xvrml::ViewpointInfo>& Renderer::viewpoints() const { return impl_->mapper->viewpoints(); }
 

@@ -56,6 +56,7 @@ class Renderer {
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
+  void setWatch(Watch watch);
   const std::vector<xvrml::ViewpointInfo>& viewpoints() const;
   xvrml::Bounds bounds();
   // Maps the world for a view without making a picture; problems are in the world's diagnostics.

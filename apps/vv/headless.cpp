@@ -14,6 +14,7 @@
 #include "describe.h"
 #include "messages.h"
 #include "picture/atomic_file.h"
+#include "picture/nearest.h"
 #include "progress.h"
 #include "report.h"
 #include "signals.h"
@@ -88,7 +89,7 @@ std::vector<Job> chooseJobs(const Options& options, const std::vector<xvrml::Vie
       names.push_back(viewpoints[i].name.empty() ? viewpoints[i].description : viewpoints[i].name);
       if (i < 20) known += fmt::format("{}{}{}", i ? ", " : "", i, names[i].empty() ? "" : " " + oneLine(names[i]));
     }
-    const std::string near = nearest(options.viewpoint, names);
+    const std::string near = picture::nearest(options.viewpoint, names);
     throw Failure{exitUsage, fmt::format("--viewpoint: the world has no \"{}\"{}; {}", options.viewpoint,
                                          near.empty() ? "" : fmt::format(" (did you mean {}?)", near),
                                          viewpoints.empty() ? "it has no viewpoints" : "its viewpoints are " + known)};

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "picture/nearest.h"
+
 namespace vv {
 
 namespace {
@@ -59,7 +61,7 @@ void setLimit(Options& o, const std::string& value) {
   if (equals == value.npos) throw UsageError(fmt::format("NAME=VALUE was expected, not \"{}\"; the limits are {}", value, known));
   const uint64_t count = readCount(std::string_view(value).substr(equals + 1));
   if (xvrml::setLimit(o.load.limits, name, count)) return;
-  const std::string near = nearest(name, names);
+  const std::string near = picture::nearest(name, names);
   throw UsageError(fmt::format("there is no limit \"{}\"{}; the limits are {}", name,
                                near.empty() ? "" : fmt::format(" (did you mean {}?)", near), known));
 }

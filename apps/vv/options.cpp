@@ -6,6 +6,8 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "picture/nearest.h"
+
 namespace vv {
 
 namespace {
@@ -30,7 +32,7 @@ std::vector<std::string> allNames() {
 
 std::string unknownOption(std::string option) {
   option = option.substr(0, option.find('='));
-  const std::string near = nearest(option, allNames());
+  const std::string near = picture::nearest(option, allNames());
   if (near.empty()) return fmt::format("there is no option {}; vv --help lists them", option);
   return fmt::format("there is no option {}; did you mean {}?", option, near);
 }

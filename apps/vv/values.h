@@ -36,7 +36,4 @@ void readSize(std::string_view text, int& width, int& height);
 picture::LookAt readCamera(std::string_view text);
 std::vector<std::string_view> split(std::string_view text, char separator);
 
-// The word of `words` that `word` most likely meant; empty if none is near.
-std::string nearest(std::string_view word, const std::vector<std::string>& words);
-
 } // namespace vv

@@ -1,0 +1,342 @@
+// convert.cpp: the 20 field types to and from Python. Called with the GIL held.
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "objects.h"
+
+using namespace xvrml;
+
+namespace {
+
+// Floats (doubles) that one value consists of, and what Python calls it.
+template <class T> constexpr size_t width = sizeof(T) / sizeof(float);
+static_assert(width<Vec2f> == 2 && width<Vec3f> == 3 && width<Color> == 3 && width<Rotation> == 4);
+
+std::string expectation(FieldType type) {
+  switch (type) {
+  case FieldType::SFBool: return "True or False";
+  case FieldType::SFColor: return "3 numbers (red, green, blue)";
+  case FieldType::SFFloat:
+  case FieldType::SFTime: return "a number";
+  case FieldType::SFImage: return "an array of bytes of shape (height, width, components)";
+  case FieldType::SFInt32: return "a whole number of 32 bits";
+  case FieldType::SFNode: return "a Node or None";
+  case FieldType::SFRotation: return "4 numbers (axis x, y, z and angle in radians)";
+  case FieldType::SFString: return "a str";
+  case FieldType::SFVec2f: return "2 numbers";
+  case FieldType::SFVec3f: return "3 numbers";
+  case FieldType::MFColor:
+  case FieldType::MFVec3f: return "numbers of shape (n, 3)";
+  case FieldType::MFFloat:
+  case FieldType::MFTime: return "numbers of shape (n,)";
+  case FieldType::MFInt32: return "whole numbers of 32 bits of shape (n,)";
+  case FieldType::MFNode: return "a sequence of Nodes";
+  case FieldType::MFRotation: return "numbers of shape (n, 4)";
+  case FieldType::MFString: return "a sequence of str";
+  case FieldType::MFVec2f: return "numbers of shape (n, 2)";
+  }
+  return "";
+}
+
+// Who is to blame, for messages.
+struct Target {
+  const FieldInfo& field;
+  const NodeObject& owner;
+
+  std::string text() const {
+    return fmt::format("{}.{} ({}): {} expected", owner.node->type().name, field.name, fieldTypeName(field.type),
+                       expectation(field.type));
+  }
+  [[noreturn]] void wrongType(const py::handle& got) const {
+    throw py::type_error(fmt::format("{}, not {}", text(), std::string(py::str(py::type::handle_of(got).attr("__name__")))));
+  }
+  [[noreturn]] void wrongValue(const std::string& why) const { throw py::value_error(text() + ", " + why); }
+
+  void checkRange(double v) const {
+    const FieldRange& r = field.range;
+    if (!std::isfinite(v)) wrongValue("not infinity or NaN");
+    const bool low = r.minimumOpen ? v <= r.minimum : v < r.minimum, high = r.maximumOpen ? v >= r.maximum : v > r.maximum;
+    if (low || high)
+      wrongValue(fmt::format("from {} to {}{}, not {}", r.minimum, r.maximum,
+                             r.minimumOpen || r.maximumOpen ? " (bounds excluded)" : "", v));
+  }
+};
+
+std::string shapeText(const py::array& array) { return "not of shape " + std::string(py::str(array.attr("shape"))); }
+
+// Any array-like of numbers; text, objects and complex numbers are of the wrong type.
+py::array numbersOf(const py::handle& object, const Target& target, const char* kinds) {
+  if (py::isinstance<py::str>(object) || py::isinstance<py::bytes>(object) || object.is_none()) target.wrongType(object);
+  py::array array;
+  try {
+    array = py::array(py::module_::import("numpy").attr("asarray")(object));
+  } catch (py::error_already_set& error) {
+    if (!error.matches(PyExc_ValueError) && !error.matches(PyExc_TypeError)) throw;
+    target.wrongValue("not rows of different lengths");
+  }
+  const char kind = std::string(py::str(array.dtype().attr("kind")))[0];
+  if (array.size() > 0 && !std::strchr(kinds, kind)) {
+    if (kind == 'O') target.wrongValue("not something else");
+    throw py::type_error(fmt::format("{}, not an array of {}", target.text(), std::string(py::str(array.dtype()))));
+  }
+  return array;
+}
+
+template <class T> using Dense = py::array_t<T, py::array::c_style | py::array::forcecast>;
+
+// One float32 from a double, checked.
+float single(double v, const Target& target) {
+  target.checkRange(v);
+  const float f = float(v);
+  if (!std::isfinite(f)) target.wrongValue("within the range of 32 bit floats");
+  return f;
+}
+
+template <class T> T fixed(const py::handle& object, const Target& target) {
+  Dense<double> array(numbersOf(object, target, "fiu"));
+  if (array.ndim() != 1 || size_t(array.size()) != width<T>) target.wrongValue(shapeText(array));
+  float numbers[width<T>];
+  for (size_t i = 0; i < width<T>; ++i) numbers[i] = single(array.data()[i], target);
+  T value;
+  std::memcpy(static_cast<void*>(&value), numbers, sizeof value);
+  return value;
+}
+
+template <class T> std::vector<T> rows(const py::handle& object, const Target& target) {
+  Dense<double> array(numbersOf(object, target, "fiu"));
+  if (array.size() == 0) return {};
+  const bool fits = array.ndim() == 2 && size_t(array.shape(1)) == width<T>;
+  if (!fits) target.wrongValue(shapeText(array));
+  std::vector<T> list(size_t(array.shape(0)));
+  float* out = reinterpret_cast<float*>(list.data());
+  for (size_t i = 0; i < size_t(array.size()); ++i) out[i] = single(array.data()[i], target);
+  return list;
+}
+
+template <class T> std::vector<T> numberList(const py::handle& object, const Target& target) {
+  Dense<double> array(numbersOf(object, target, "fiu"));
+  if (array.size() == 0) return {};
+  if (array.ndim() != 1) target.wrongValue(shapeText(array));
+  std::vector<T> list(size_t(array.size()));
+  for (size_t i = 0; i < list.size(); ++i) {
+    if constexpr (std::is_same_v<T, float>)
+      list[i] = single(array.data()[i], target);
+    else
+      target.checkRange(list[i] = array.data()[i]);
+  }
+  return list;
+}
+
+int32_t wholeNumber(long long v, const Target& target) {
+  if (v < std::numeric_limits<int32_t>::min() || v > std::numeric_limits<int32_t>::max())
+    target.wrongValue(fmt::format("not {}", v));
+  target.checkRange(double(v));
+  return int32_t(v);
+}
+
+std::vector<int32_t> integerList(const py::handle& object, const Target& target) {
+  py::array any = numbersOf(object, target, "iu");
+  if (any.size() == 0) return {};
+  if (any.ndim() != 1) target.wrongValue(shapeText(any));
+  Dense<int64_t> array(any);
+  std::vector<int32_t> list(size_t(array.size()));
+  for (size_t i = 0; i < list.size(); ++i) list[i] = wholeNumber(array.data()[i], target);
+  return list;
+}
+
+int32_t integer(const py::handle& object, const Target& target) {
+  if (PyBool_Check(object.ptr()) || !PyIndex_Check(object.ptr())) target.wrongType(object);
+  auto number = py::reinterpret_steal<py::object>(PyNumber_Index(object.ptr()));
+  if (!number) throw py::error_already_set();
+  int overflow = 0;
+  const long long v = PyLong_AsLongLongAndOverflow(number.ptr(), &overflow);
+  if (overflow) target.wrongValue("not " + std::string(py::str(number)));
+  return wholeNumber(v, target);
+}
+
+double number(const py::handle& object, const Target& target) {
+  if (PyBool_Check(object.ptr()) || !PyNumber_Check(object.ptr()) || PyComplex_Check(object.ptr())) target.wrongType(object);
+  const double v = PyFloat_AsDouble(object.ptr());
+  if (v == -1 && PyErr_Occurred()) {
+    PyErr_Clear();
+    target.wrongType(object);
+  }
+  return v;
+}
+
+bool boolean(const py::handle& object, const Target& target) {
+  if (PyBool_Check(object.ptr())) return object.ptr() == Py_True;
+  if (std::string(py::str(py::type::handle_of(object).attr("__name__"))) == "bool_")
+    return py::bool_(py::reinterpret_borrow<py::object>(object));
+  target.wrongType(object);
+}
+
+std::string text(const py::handle& object, const Target& target) {
+  if (!py::isinstance<py::str>(object)) target.wrongType(object);
+  return fromText(object);
+}
+
+// Rows run from the top in Python, as in every other picture there, and from the bottom in VRML.
+Image image(const py::handle& object, const Target& target) {
+  py::array any = numbersOf(object, target, "iu");
+  if (any.size() == 0) return {};
+  if (any.ndim() != 2 && any.ndim() != 3) target.wrongValue(shapeText(any));
+  const py::ssize_t components = any.ndim() == 3 ? any.shape(2) : 1;
+  const bool fits = components >= 1 && components <= 4 && any.shape(0) <= 65536 && any.shape(1) <= 65536;
+  if (!fits) target.wrongValue(shapeText(any));
+  Dense<int64_t> array(any);
+  Image result{int32_t(any.shape(1)), int32_t(any.shape(0)), int32_t(components), {}};
+  result.pixels.resize(size_t(array.size()));
+  const size_t row = size_t(result.width) * size_t(components);
+  for (size_t i = 0; i < result.pixels.size(); ++i) {
+    const int64_t v = array.data()[i];
+    if (v < 0 || v > 255) target.wrongValue(fmt::format("from 0 to 255, not {}", v));
+    result.pixels[(size_t(result.height) - 1 - i / row) * row + i % row] = uint8_t(v);
+  }
+  return result;
+}
+
+// True if a field of these node types (names and abstract types, blank-separated; empty: any) takes the node.
+bool accepts(const std::string& nodeTypes, const Node& node) {
+  if (nodeTypes.empty()) return true;
+  const std::string padded = " " + nodeTypes + " ";
+  auto listed = [&](const std::string& name) { return padded.find(" " + name + " ") != padded.npos; };
+  Node* rendered = renderedNode(const_cast<Node*>(&node));
+  for (const Node* one : {&node, static_cast<const Node*>(rendered)}) {
+    if (!one) continue;
+    if (listed(one->type().name)) return true;
+    for (const std::string& kind : one->type().abstract)
+      if (listed(kind)) return true;
+  }
+  return false;
+}
+
+NodeRef nodeOf(const py::handle& object, const Target& target) {
+  if (!py::isinstance<NodeObject>(object)) target.wrongType(object);
+  const auto& given = object.cast<const NodeObject&>();
+  if (given.world != target.owner.world) target.wrongValue("of the same world");
+  if (!accepts(target.field.nodeTypes, *given.node))
+    target.wrongValue(fmt::format("one of {}, not {}", target.field.nodeTypes, given.node->type().name));
+  return given.node;
+}
+
+py::sequence sequenceOf(const py::handle& object, const Target& target) {
+  if (py::isinstance<py::str>(object) || !PySequence_Check(object.ptr())) target.wrongType(object);
+  return py::reinterpret_borrow<py::sequence>(object);
+}
+
+// A copy that cannot be written to: `node.point[0] = ...` must fail, it would change nothing.
+template <class T> py::object readOnly(const T* data, std::vector<py::ssize_t> shape) {
+  py::array_t<T> array(std::move(shape));
+  if (array.size()) std::memcpy(array.mutable_data(), data, size_t(array.nbytes()));
+  array.attr("setflags")(py::arg("write") = false);
+  return array;
+}
+
+template <class T> py::object rowsToPython(const std::vector<T>& list) {
+  return readOnly(reinterpret_cast<const float*>(list.data()), {py::ssize_t(list.size()), py::ssize_t(width<T>)});
+}
+
+struct ToPython {
+  const WorldPtr& world;
+
+  py::object operator()(bool v) const { return py::bool_(v); }
+  py::object operator()(float v) const { return py::float_(double(v)); }
+  py::object operator()(double v) const { return py::float_(v); }
+  py::object operator()(int32_t v) const { return py::int_(v); }
+  py::object operator()(const std::string& v) const { return toText(v); }
+  py::object operator()(const Color& v) const { return py::make_tuple(v.r, v.g, v.b); }
+  py::object operator()(const Vec2f& v) const { return py::make_tuple(v.x, v.y); }
+  py::object operator()(const Vec3f& v) const { return py::make_tuple(v.x, v.y, v.z); }
+  py::object operator()(const Rotation& v) const { return py::make_tuple(v.x, v.y, v.z, v.angle); }
+  py::object operator()(const NodeRef& v) const { return v ? py::cast(NodeObject{world, v}) : py::object(py::none()); }
+  py::object operator()(const Image& v) const {
+    const size_t row = size_t(v.width) * size_t(v.components);
+    std::vector<uint8_t> flipped;
+    for (size_t y = size_t(v.height); y-- > 0 && row;)
+      flipped.insert(flipped.end(), v.pixels.begin() + std::ptrdiff_t(y * row), v.pixels.begin() + std::ptrdiff_t((y + 1) * row));
+    if (flipped.empty()) return readOnly(flipped.data(), {0, 0, 0});
+    return readOnly(flipped.data(), {v.height, v.width, v.components});
+  }
+  py::object operator()(const MFColor& v) const { return rowsToPython(v); }
+  py::object operator()(const MFVec2f& v) const { return rowsToPython(v); }
+  py::object operator()(const MFVec3f& v) const { return rowsToPython(v); }
+  py::object operator()(const MFRotation& v) const { return rowsToPython(v); }
+  py::object operator()(const MFFloat& v) const { return readOnly(v.data(), {py::ssize_t(v.size())}); }
+  py::object operator()(const MFTime& v) const { return readOnly(v.data(), {py::ssize_t(v.size())}); }
+  py::object operator()(const MFInt32& v) const { return readOnly(v.data(), {py::ssize_t(v.size())}); }
+  py::object operator()(const MFString& v) const {
+    py::tuple out(v.size());
+    for (size_t i = 0; i < v.size(); ++i) out[i] = toText(v[i]);
+    return out;
+  }
+  py::object operator()(const MFNode& v) const {
+    py::tuple out(v.size());
+    for (size_t i = 0; i < v.size(); ++i) out[i] = (*this)(v[i]);
+    return out;
+  }
+};
+
+} // namespace
+
+py::str toText(const std::string& bytes) {
+  PyObject* text = PyUnicode_DecodeUTF8(bytes.data(), py::ssize_t(bytes.size()), "surrogateescape");
+  if (!text) throw py::error_already_set();
+  return py::reinterpret_steal<py::str>(text);
+}
+
+std::string fromText(const py::handle& text) {
+  auto bytes = py::reinterpret_steal<py::bytes>(PyUnicode_AsEncodedString(text.ptr(), "utf-8", "surrogateescape"));
+  if (!bytes) throw py::error_already_set();
+  return std::string(bytes);
+}
+
+std::string toPath(const py::handle& path) {
+  auto text = py::reinterpret_steal<py::object>(PyOS_FSPath(path.ptr()));
+  if (!text) throw py::error_already_set();
+  return py::isinstance<py::bytes>(text) ? std::string(py::bytes(text)) : fromText(text);
+}
+
+py::object toPython(const Value& value, const WorldPtr& world) { return std::visit(ToPython{world}, value); }
+
+Value fromPython(const py::handle& object, const FieldInfo& field, const NodeObject& owner) {
+  const Target target{field, owner};
+  switch (field.type) {
+  case FieldType::SFBool: return boolean(object, target);
+  case FieldType::SFColor: return fixed<Color>(object, target);
+  case FieldType::SFFloat: return single(number(object, target), target);
+  case FieldType::SFImage: return image(object, target);
+  case FieldType::SFInt32: return integer(object, target);
+  case FieldType::SFNode: return object.is_none() ? NodeRef() : nodeOf(object, target);
+  case FieldType::SFRotation: return fixed<Rotation>(object, target);
+  case FieldType::SFString: return text(object, target);
+  case FieldType::SFTime: {
+    const double v = number(object, target);
+    target.checkRange(v);
+    return v;
+  }
+  case FieldType::SFVec2f: return fixed<Vec2f>(object, target);
+  case FieldType::SFVec3f: return fixed<Vec3f>(object, target);
+  case FieldType::MFColor: return rows<Color>(object, target);
+  case FieldType::MFFloat: return numberList<float>(object, target);
+  case FieldType::MFInt32: return integerList(object, target);
+  case FieldType::MFNode: {
+    MFNode list;
+    for (const py::handle one : sequenceOf(object, target)) list.push_back(nodeOf(one, target));
+    return list;
+  }
+  case FieldType::MFRotation: return rows<Rotation>(object, target);
+  case FieldType::MFString: {
+    MFString list;
+    for (const py::handle one : sequenceOf(object, target)) list.push_back(text(one, target));
+    return list;
+  }
+  case FieldType::MFTime: return numberList<double>(object, target);
+  case FieldType::MFVec2f: return rows<Vec2f>(object, target);
+  case FieldType::MFVec3f: return rows<Vec3f>(object, target);
+  }
+  throw py::type_error("unknown field type");
+}

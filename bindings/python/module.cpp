@@ -1,0 +1,104 @@
+// module.cpp: the extension module xvrml._xvrml: load() and the exceptions.
+#include <cerrno>
+#include <cstring>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "objects.h"
+#include "openrt/openrt.h"
+#include "picture/nearest.h"
+#include "picture/renderer.h"
+
+using namespace xvrml;
+
+namespace {
+
+// Owned by the module for the life of the interpreter.
+PyObject* parseError = nullptr;
+
+[[noreturn]] void raise(const Diagnostic& d) {
+  py::object error = py::reinterpret_borrow<py::object>(parseError)(toText(d.text()));
+  error.attr("file") = toText(d.file);
+  error.attr("line") = d.line;
+  error.attr("column") = d.column;
+  PyErr_SetObject(parseError, error.ptr());
+  throw py::error_already_set();
+}
+
+void setLimits(Limits& limits, const py::dict& given) {
+  for (const auto& [key, value] : given) {
+    const std::string name = py::str(key);
+    if (!py::isinstance<py::int_>(value) || value.cast<long long>() < 0)
+      throw py::value_error("limits: " + name + ": a whole number expected");
+    if (setLimit(limits, name, value.cast<uint64_t>())) continue;
+    std::vector<std::string> names;
+    for (const LimitInfo& limit : limitTable()) names.emplace_back(limit.name);
+    const std::string near = picture::nearest(name, names);
+    throw py::value_error(
+        fmt::format("limits: there is no {}{}", name, near.empty() ? "" : fmt::format("; did you mean {}?", near)));
+  }
+}
+
+// Bytes of bytes, bytearray, memoryview, and of what read() returns.
+bool bytesOf(const py::object& source, std::string& bytes) {
+  if (py::isinstance<py::str>(source) || !PyObject_CheckBuffer(source.ptr())) return false;
+  Py_buffer buffer;
+  if (PyObject_GetBuffer(source.ptr(), &buffer, PyBUF_SIMPLE) != 0) throw py::error_already_set();
+  bytes.assign(static_cast<const char*>(buffer.buf), size_t(buffer.len));
+  PyBuffer_Release(&buffer);
+  return true;
+}
+
+template <class Load> WorldPtr loadWith(Load load) {
+  auto made = std::make_shared<WorldObject>();
+  try {
+    py::gil_scoped_release release;
+    made->world = load();
+  } catch (const LoadError& error) { raise(error.diagnostic); }
+  return made;
+}
+
+WorldPtr load(const py::object& source, const py::object& limits, bool allowAbsolute) {
+  LoadOptions options;
+  options.allowAbsolute = allowAbsolute;
+  if (!limits.is_none()) setLimits(options.limits, limits.cast<py::dict>());
+  std::string bytes, name = "<memory>";
+  bool inMemory = bytesOf(source, bytes);
+  if (!inMemory && py::hasattr(source, "read")) {
+    py::object content = source.attr("read")();
+    if (py::isinstance<py::str>(content))
+      bytes = fromText(content);
+    else if (!bytesOf(content, bytes))
+      throw py::type_error("load: read() of the file object must return bytes or str");
+    py::object given = py::getattr(source, "name", py::none());
+    if (py::isinstance<py::str>(given)) name = fromText(given);
+    inMemory = true;
+  }
+  if (inMemory) return loadWith([&] { return loadWorldFromMemory(bytes, name, options); });
+  const std::string path = toPath(source);
+  if (::access(path.c_str(), R_OK) != 0) {
+    errno = errno ? errno : ENOENT;
+    PyErr_SetFromErrnoWithFilename(PyExc_OSError, path.c_str());
+    throw py::error_already_set();
+  }
+  return loadWith([&] { return loadWorld(path, options); });
+}
+
+} // namespace
+
+PYBIND11_MODULE(_xvrml, module) {
+  parseError = PyErr_NewExceptionWithDoc("xvrml.ParseError", "Nothing of a world can be used; file, line and column say where.",
+                                         PyExc_ValueError, nullptr);
+  if (!parseError) throw py::error_already_set();
+  module.add_object("ParseError", parseError);
+  py::register_exception<picture::RenderError>(module, "RenderError", PyExc_RuntimeError);
+  defineNode(module);
+  definePicture(module);
+  defineWorld(module);
+  module.attr("__version__") = fmt::format("{}.{}.{}", OPENRT_VERSION_MAJOR, OPENRT_VERSION_MINOR, OPENRT_VERSION_PATCH);
+  module.def(
+      "load", load, py::arg("source"), py::kw_only(), py::arg("limits") = py::none(), py::arg("allow_absolute") = false,
+      "Loads a world from a file name, bytes or a file object. Raises ParseError or OSError; problems of single nodes are in "
+      "World.warnings.");
+}

@@ -1,0 +1,106 @@
+// picture.cpp: the Python class Picture: planes as numpy arrays that share the picture's memory. Called with the GIL held.
+#include <cstring>
+
+#include <fmt/format.h>
+
+#include "objects.h"
+#include "picture/atomic_file.h"
+#include "picture_object.h"
+
+namespace {
+
+// The plane without a copy; it keeps the picture alive, and what is written into it is saved by save().
+py::array floats(const py::object& self, const picture::Channel& channel) {
+  picture::Picture& p = self.cast<PictureObject&>().picture;
+  std::vector<py::ssize_t> shape{p.height, p.width};
+  if (channel.components > 1) shape.push_back(channel.components);
+  return py::array_t<float>(shape, p.planes.at(channel.bit).data(), self);
+}
+
+py::array counts(const picture::Picture& p, const picture::Channel& channel) {
+  const std::vector<float>& plane = p.planes.at(channel.bit);
+  py::array_t<uint32_t> array({p.height, p.width});
+  for (size_t i = 0; i < plane.size(); ++i) array.mutable_data()[i] = plane[i] > 0 ? uint32_t(plane[i]) : 0;
+  return array;
+}
+
+py::object rgba(const py::object& self) { return floats(self, *picture::findChannel("rgba")); }
+
+py::object item(const py::object& self, const py::object& key) {
+  if (!py::isinstance<py::str>(key)) return rgba(self)[key];
+  const picture::Picture& p = self.cast<const PictureObject&>().picture;
+  const std::string name = fromText(key);
+  const picture::Channel* channel = picture::findChannel(name);
+  if (!channel || !p.planes.count(channel->bit)) {
+    std::string known;
+    for (const picture::Channel& one : picture::channelTable())
+      if (p.planes.count(one.bit)) known += (known.empty() ? "" : ", ") + std::string(one.name);
+    throw py::key_error(fmt::format("no channel {}; the picture has {}", name, known));
+  }
+  if (channel->bit == RT_NAME || channel->bit == RT_SAMPLES) return counts(p, *channel);
+  return floats(self, *channel);
+}
+
+py::object asArray(const py::object& self, const py::object& type, const py::object& copy) {
+  py::object array = rgba(self);
+  if (!type.is_none() && !type.equal(array.attr("dtype"))) return array.attr("astype")(type);
+  return !copy.is_none() && copy.cast<bool>() ? array.attr("copy")() : array;
+}
+
+py::array display(const PictureObject& self) {
+  std::vector<uint8_t> bytes = picture::displayBytes(self.picture);
+  py::array_t<uint8_t> array({self.picture.height, self.picture.width, 3});
+  std::memcpy(array.mutable_data(), bytes.data(), bytes.size());
+  return array;
+}
+
+void save(const PictureObject& self, const py::object& file) {
+  const std::string path = toPath(file);
+  const auto format = picture::formatOf(path);
+  if (!format)
+    throw py::value_error(fmt::format("a file name with one of the suffixes {} expected, not {}", picture::formatNames, path));
+  std::string failure;
+  {
+    py::gil_scoped_release release;
+    const std::string bytes = picture::encode(self.picture, *format);
+    try {
+      picture::writeFile(path, bytes);
+    } catch (const std::runtime_error& error) { failure = error.what(); }
+  }
+  if (failure.empty()) return;
+  PyErr_SetString(PyExc_OSError, failure.c_str());
+  throw py::error_already_set();
+}
+
+py::tuple names(const PictureObject& self) {
+  py::tuple out(self.picture.names.size());
+  for (size_t i = 0; i < self.picture.names.size(); ++i) out[i] = toText(self.picture.names[i]);
+  return out;
+}
+
+py::tuple channels(const PictureObject& self) {
+  py::list out;
+  for (const picture::Channel& channel : picture::channelTable())
+    if (self.picture.planes.count(channel.bit)) out.append(py::str(std::string(channel.name)));
+  return py::tuple(out);
+}
+
+} // namespace
+
+void definePicture(py::module_& module) {
+  py::class_<PictureObject>(module, "Picture", "A rendered picture. picture['z'] is a channel, picture[...] indexes the colours.")
+      .def_property_readonly("array", rgba, "Red, green, blue, alpha: float32 of shape (height, width, 4), first row at the top.")
+      .def_property_readonly("display", display, "What a screen shows: uint8 of shape (height, width, 3).")
+      .def_property_readonly("shape",
+                             [](const PictureObject& self) { return py::make_tuple(self.picture.height, self.picture.width, 4); })
+      .def_property_readonly("channels", channels, "Names of the channels.")
+      .def_property_readonly("names", names, "What the numbers of channel 'id' stand for.")
+      .def_readonly("stats", &PictureObject::stats, "Counts and seconds of this render.")
+      .def_property_readonly("colour", [](const PictureObject& self) { return self.picture.linear ? "linear" : "vrml97"; })
+      .def("__getitem__", item)
+      .def("__array__", asArray, py::arg("dtype") = py::none(), py::arg("copy") = py::none())
+      .def("save", save, py::arg("path"), "Writes a file; the suffix (exr, png, jpg, ppm, pfm) says the format.")
+      .def("_repr_png_", [](const PictureObject& self) { return py::bytes(picture::encode(self.picture, picture::Format::png)); })
+      .def("__repr__",
+           [](const PictureObject& self) { return fmt::format("<Picture {}x{}>", self.picture.width, self.picture.height); });
+}

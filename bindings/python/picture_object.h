@@ -1,0 +1,11 @@
+// picture_object.h: the C++ side of the Python class Picture.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include "picture/renderer.h"
+
+struct PictureObject {
+  picture::Picture picture;
+  pybind11::dict stats;
+};
