@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <fstream>
 #include <iterator>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -47,7 +48,7 @@ std::string squeeze(std::string_view text) {
 class Reader {
  public:
   Reader(std::string_view text, std::shared_ptr<const std::string> file, Model& model, Component& component)
-      : lexer_(text, file, model.diagnostics), values_(lexer_, limits_), gap_(text.data()), component_(component) {}
+      : lexer_(text, std::move(file), model.diagnostics), values_(lexer_, limits_), gap_(text.data()), component_(component) {}
 
   // file ::= "component" string { stanza }
   void read() {
@@ -176,7 +177,7 @@ class Reader {
 
   void readChange(FieldSpec& field) {
     const Token kind = take();
-    Change change;
+    Change change = Change::none;
     if (!changeFromName(kind.text, change)) {
       fail(kind, fmt::format("expected none, transform, geometry, appearance, shader, children, light, view or time, found {}",
                              describe(kind)));
@@ -186,7 +187,7 @@ class Reader {
   }
 
   static bool isWord(const Token& token) {
-    Access access;
+    Access access = Access::field;
     return token.is(TokenKind::identifier) &&
            (token.text == "change" || token.text == "accepts" || accessFromName(token.text, access));
   }

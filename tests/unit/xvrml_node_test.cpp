@@ -130,13 +130,13 @@ TEST(Registry, RefusesWhatDoesNotFit) {
 
 TEST(FieldTypes, HaveNamesAndNeutralValues) {
   for (int i = 0; i < fieldTypeCount; ++i) {
-    FieldType type;
+    FieldType type = FieldType::SFBool;
     ASSERT_TRUE(fieldTypeFromName(fieldTypeName(FieldType(i)), type));
     EXPECT_EQ(int(type), i);
     EXPECT_EQ(defaultValue(type).index(), size_t(i));
     EXPECT_EQ(isMultiple(type), fieldTypeName(type).starts_with("MF"));
   }
-  FieldType type;
+  FieldType type = FieldType::SFBool;
   for (const char* name : {"", "SF", "sfbool", "SFBoolean", "MFBool", "SFVec4f"})
     EXPECT_FALSE(fieldTypeFromName(name, type)) << name;
   EXPECT_TRUE(defaultValue(FieldType::SFRotation) == Value(SFRotation{0, 0, 1, 0}));

@@ -325,8 +325,9 @@ size_t sizeOf(const FieldInfo& field) {
 }
 
 TEST(Nodes, StorageDoesNotOverlap) {
+  constexpr size_t padding = alignof(Node); // a member may begin in the padding of its base
   for (const NodeType* type : nodeTypes()) {
-    size_t end = sizeof(Node) - alignof(Node); // a member may begin in the padding of its base
+    size_t end = sizeof(Node) - padding;
     for (const FieldInfo& field : type->fields) {
       if (!stored(field)) continue;
       EXPECT_GE(field.offset, end) << type->name << '.' << field.name;
