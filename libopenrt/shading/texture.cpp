@@ -2,8 +2,11 @@
 // are mixed: mixing encoded values would darken every edge. See texture.h.
 #include "shading/texture.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <type_traits>
 #include <utility>
 
 namespace openrt {
@@ -25,33 +28,53 @@ const Decoding& decoding(bool srgb) {
   return srgb ? encoded : linear;
 }
 
-// Coordinate in texels, 0..size.
-float place(float u, const Texture::Axis& axis) {
-  if (!std::isfinite(u)) u = 0;
-  if (axis.clamp)
-    u = u < 0 ? 0 : u > 1 ? 1 : u;
-  else
-    u -= std::floor(u);
-  return u * static_cast<float>(axis.size);
-}
-
-struct Pair { // the two texels that a place lies between, and the share of the second
-  int32_t first, second;
-  float share;
+// Where the lanes of a small piece of a batch lie along one axis: the two texels around them and the share of the second. Worked
+// out for all lanes at once, without calls, so that the loops go into vector lanes.
+constexpr uint32_t piece = 64;
+struct Places {
+  int32_t first[piece], second[piece];
+  float share[piece];
 };
 
-Pair between(float u, const Texture::Axis& axis) {
-  const float x = place(u, axis) - 0.5f, whole = std::floor(x);
-  Pair p{static_cast<int32_t>(whole), static_cast<int32_t>(whole) + 1, x - whole};
-  const int32_t last = axis.size - 1;
-  if (p.first < 0) p.first = axis.clamp ? 0 : last;
-  if (p.second > last) p.second = axis.clamp ? last : 0;
-  return p;
+// Coordinates in texels, 0..size. Whole numbers are taken off by conversion; beyond 2^23 a float has no fraction to keep.
+void place(uint32_t n, const float* u, const Texture::Axis& axis, float* out) {
+  const auto size = static_cast<float>(axis.size);
+  if (axis.clamp) {
+    for (uint32_t i = 0; i < n; i++) {
+      const float finite = std::fabs(u[i]) <= std::numeric_limits<float>::max() ? u[i] : 0.0f;
+      const float positive = finite > 0.0f ? finite : 0.0f;
+      out[i] = (positive < 1.0f ? positive : 1.0f) * size;
+    }
+    return;
+  }
+  for (uint32_t i = 0; i < n; i++) {
+    const float small = std::fabs(u[i]) < 8388608.0f ? u[i] : 0.0f; // false for NaN
+    const float fraction = small - static_cast<float>(static_cast<int32_t>(small));
+    out[i] = (fraction < 0.0f ? fraction + 1.0f : fraction) * size;
+  }
 }
 
-int32_t nearestTexel(float u, const Texture::Axis& axis) {
-  const auto i = static_cast<int32_t>(place(u, axis));
-  return i < axis.size ? i : axis.size - 1;
+void between(uint32_t n, const float* u, const Texture::Axis& axis, Places& p) {
+  float texels[piece];
+  place(n, u, axis, texels);
+  const int32_t last = axis.size - 1, before = axis.clamp ? 0 : last, after = axis.clamp ? last : 0;
+  for (uint32_t i = 0; i < n; i++) {
+    const float x = texels[i] + 0.5f; // half a texel left of the place, plus one: never negative
+    const auto whole = static_cast<int32_t>(x);
+    p.share[i] = x - static_cast<float>(whole);
+    p.first[i] = whole > 0 ? whole - 1 : before;
+    p.second[i] = whole > last ? after : whole;
+  }
+}
+
+void nearest(uint32_t n, const float* u, const Texture::Axis& axis, Places& p) {
+  float texels[piece];
+  place(n, u, axis, texels);
+  const int32_t last = axis.size - 1;
+  for (uint32_t i = 0; i < n; i++) {
+    const auto whole = static_cast<int32_t>(texels[i]);
+    p.first[i] = whole < last ? whole : last;
+  }
 }
 
 void sampleNothing(const Texture&, uint32_t n, const float* const[2], float* const rgba[4]) {
@@ -70,7 +93,7 @@ template <int components> void spread(const float* value, uint32_t i, float* con
 }
 
 bool fits(const edit::TextureT& d, const ArrayPtr& texels) {
-  constexpr uint32_t maxSide = 1u << 24; // sides are exact in float
+  constexpr uint32_t maxSide = 1u << 23; // halves of texels are exact in float
   if (!texels || d.components < 1 || d.components > 4 || d.width < 1 || d.height < 1 || d.width > maxSide || d.height > maxSide)
     return false;
   const uint64_t bytes = uint64_t(d.width) * d.height * d.components * (d.isFloat ? sizeof(float) : 1);
@@ -79,7 +102,7 @@ bool fits(const edit::TextureT& d, const ArrayPtr& texels) {
 
 } // namespace
 
-template <class Texel, int components, bool nearest>
+template <class Texel, int components, bool single>
 void Texture::sampleAs(const Texture& texture, uint32_t n, const float* const uv[2], float* const rgba[4]) {
   const Texel* texels = texture.texels_->as<Texel>();
   const float* decode = texture.decode_;
@@ -92,22 +115,27 @@ void Texture::sampleAs(const Texture& texture, uint32_t n, const float* const uv
       return (isAlpha(c, components) ? alpha : decode)[static_cast<size_t>(texels[index + static_cast<size_t>(c)])];
   };
   const auto index = [&](int32_t x, int32_t y) { return (static_cast<size_t>(y) * width + static_cast<size_t>(x)) * components; };
-  for (uint32_t i = 0; i < n; i++) {
-    float value[components];
-    if constexpr (nearest) {
-      const size_t k = index(nearestTexel(uv[0][i], texture.axis_[0]), nearestTexel(uv[1][i], texture.axis_[1]));
-      for (int c = 0; c < components; c++) value[c] = at(k, c);
-    } else {
-      const Pair s = between(uv[0][i], texture.axis_[0]), t = between(uv[1][i], texture.axis_[1]);
-      const size_t k00 = index(s.first, t.first), k10 = index(s.second, t.first);
-      const size_t k01 = index(s.first, t.second), k11 = index(s.second, t.second);
-      for (int c = 0; c < components; c++) {
-        const float below = at(k00, c) * (1 - s.share) + at(k10, c) * s.share;
-        const float above = at(k01, c) * (1 - s.share) + at(k11, c) * s.share;
-        value[c] = below * (1 - t.share) + above * t.share;
+  Places s, t;
+  for (uint32_t begin = 0; begin < n; begin += piece) {
+    const uint32_t count = std::min(piece, n - begin);
+    (single ? nearest : between)(count, uv[0] + begin, texture.axis_[0], s);
+    (single ? nearest : between)(count, uv[1] + begin, texture.axis_[1], t);
+    for (uint32_t i = 0; i < count; i++) {
+      float value[components];
+      const size_t k00 = index(s.first[i], t.first[i]);
+      if constexpr (single) {
+        for (int c = 0; c < components; c++) value[c] = at(k00, c);
+      } else {
+        const size_t k10 = index(s.second[i], t.first[i]), k01 = index(s.first[i], t.second[i]);
+        const size_t k11 = index(s.second[i], t.second[i]);
+        for (int c = 0; c < components; c++) {
+          const float below = at(k00, c) * (1 - s.share[i]) + at(k10, c) * s.share[i];
+          const float above = at(k01, c) * (1 - s.share[i]) + at(k11, c) * s.share[i];
+          value[c] = below * (1 - t.share[i]) + above * t.share[i];
+        }
       }
+      spread<components>(value, begin + i, rgba);
     }
-    spread<components>(value, i, rgba);
   }
 }
 

@@ -27,7 +27,7 @@ class Texture {
   };
 
  private:
-  template <class Texel, int components, bool nearest>
+  template <class Texel, int components, bool single>
   static void sampleAs(const Texture& texture, uint32_t n, const float* const uv[2], float* const rgba[4]);
   template <class Texel> void choose(bool nearest);
   using Sampler = void (*)(const Texture&, uint32_t, const float* const[2], float* const[4]);
