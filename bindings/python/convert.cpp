@@ -55,11 +55,20 @@ struct Target {
   }
   [[noreturn]] void wrongValue(const std::string& why) const { throw py::value_error(text() + ", " + why); }
 
+  void checkFinite(double v) const {
+    if (!std::isfinite(v)) wrongValue("not infinity or NaN");
+  }
+  // The ends of a range of floats are floats: what was read from a node can be written back.
   void checkRange(double v) const {
     const FieldRange& r = field.range;
-    if (!std::isfinite(v)) wrongValue("not infinity or NaN");
-    const bool low = r.minimumOpen ? v <= r.minimum : v < r.minimum, high = r.maximumOpen ? v >= r.maximum : v > r.maximum;
-    if (low || high)
+    checkFinite(v);
+    const bool wide = field.type == FieldType::SFTime || field.type == FieldType::MFTime || field.type == FieldType::SFInt32 ||
+                      field.type == FieldType::MFInt32;
+    const auto rounded = [wide](double number) { return wide ? number : double(float(number)); };
+    const double number = rounded(v), minimum = rounded(r.minimum), maximum = rounded(r.maximum);
+    const bool low = r.minimumOpen ? number <= minimum : number < minimum;
+    const bool high = r.maximumOpen ? number >= maximum : number > maximum;
+    if ((low || high) && number != r.also)
       wrongValue(fmt::format("from {} to {}{}, not {}", r.minimum, r.maximum,
                              r.minimumOpen || r.maximumOpen ? " (bounds excluded)" : "", v));
   }
@@ -87,19 +96,21 @@ py::array numbersOf(const py::handle& object, const Target& target, const char* 
 
 template <class T> using Dense = py::array_t<T, py::array::c_style | py::array::forcecast>;
 
-// One float32 from a double, checked.
-float single(double v, const Target& target) {
-  target.checkRange(v);
+// One float32 from a double, checked. The range of a rotation is that of its axis: the angle is free.
+float single(double v, const Target& target, bool free = false) {
+  free ? target.checkFinite(v) : target.checkRange(v);
   const float f = float(v);
   if (!std::isfinite(f)) target.wrongValue("within the range of 32 bit floats");
   return f;
 }
 
+template <class T> bool isAngle(size_t i) { return std::is_same_v<T, Rotation> && i % width<Rotation> == 3; }
+
 template <class T> T fixed(const py::handle& object, const Target& target) {
   Dense<double> array(numbersOf(object, target, "fiu"));
   if (array.ndim() != 1 || size_t(array.size()) != width<T>) target.wrongValue(shapeText(array));
   float numbers[width<T>];
-  for (size_t i = 0; i < width<T>; ++i) numbers[i] = single(array.data()[i], target);
+  for (size_t i = 0; i < width<T>; ++i) numbers[i] = single(array.data()[i], target, isAngle<T>(i));
   T value;
   std::memcpy(static_cast<void*>(&value), numbers, sizeof value);
   return value;
@@ -112,7 +123,7 @@ template <class T> std::vector<T> rows(const py::handle& object, const Target& t
   if (!fits) target.wrongValue(shapeText(array));
   std::vector<T> list(size_t(array.shape(0)));
   float* out = reinterpret_cast<float*>(list.data());
-  for (size_t i = 0; i < size_t(array.size()); ++i) out[i] = single(array.data()[i], target);
+  for (size_t i = 0; i < size_t(array.size()); ++i) out[i] = single(array.data()[i], target, isAngle<T>(i));
   return list;
 }
 
