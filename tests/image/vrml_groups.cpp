@@ -187,6 +187,39 @@ TEST(VrmlGroups, SolidFacesAndWinding) {
   EXPECT_EQ(mirrored.world->diagnostics.warnings(), 1u);
 }
 
+// A group that is shared is seen as one that is written out, also under a mirror.
+TEST(VrmlGroups, InstancesLookLikeCopies) {
+  std::string heights;
+  for (int i = 0; i < 60 * 60; ++i) heights += std::to_string(0.1 * std::sin(i % 60 * 0.3) * std::cos(i / 60 * 0.2)) + " ";
+  const auto grid = [&](const std::string& name) {
+    return "DEF " + name + " Transform { rotation 1 0.1 0 1.4 translation -1.5 -0.2 0 children Shape { appearance " +
+           material("specularColor 1 1 1") +
+           " geometry ElevationGrid { xDimension 60 zDimension 60 xSpacing 0.05 zSpacing 0.05 creaseAngle 1 height [ " + heights +
+           "] } } }\n";
+  };
+  const auto world = [&](bool shared) {
+    std::string body = dark + "PointLight { location 3 4 6 }\n" + grid("A");
+    for (const char* field : {"translation 3 0 0", "translation -3 0 0 rotation 0 0 1 2", "scale -1 1 1 translation 0 -3 0",
+                              "scale 1 -0.5 2 translation 0 3 0"})
+      body += std::string("Transform { ") + field + " children " + (shared ? "USE A" : grid("B")) + " }\n";
+    return body;
+  };
+  SceneOptions options;
+  options.width = 64, options.height = 48;
+  Scene shared(world(true), options), copied(world(false), options);
+  const CameraSettings camera = Scene::at(0, 0, 12, 0.8);
+  const std::vector<Pixel> a = shared.render(camera), b = copied.render(camera);
+  EXPECT_EQ(shared.mapper->stats().objects, 2u);
+  EXPECT_EQ(copied.mapper->stats().objects, 1u);
+  size_t different = 0, lit = 0;
+  for (size_t i = 0; i < a.size(); ++i) {
+    lit += a[i].r > 0.1f;
+    different += std::abs(a[i].r - b[i].r) > 1e-3f;
+  }
+  EXPECT_GT(lit, a.size() / 8);
+  EXPECT_LE(different, a.size() / 100) << "but for a few pixels at edges and in the shadows of edges";
+}
+
 TEST(VrmlGroups, SpheresAreTexturedFromTheBackCounterClockwise) {
   const std::string ball =
       dark + "Shape { appearance Appearance { texture PixelTexture { image 4 1 3 0xFF0000 0x00FF00 0x0000FF 0xFFFFFF } } "

@@ -40,6 +40,7 @@ class Scene {
     rtQuality(RT_SHADOWS, options.shadows);
   }
   ~Scene() {
+    rtMakeCurrent(context_);
     mapper.reset();
     rtDeleteContext(context_);
   }
@@ -57,6 +58,7 @@ class Scene {
   }
 
   std::vector<Pixel> render(const CameraSettings& camera) {
+    rtMakeCurrent(context_);
     mapper->map(camera);
     rtRender();
     std::vector<Pixel> picture(size_t(options_.width) * size_t(options_.height));
@@ -67,6 +69,7 @@ class Scene {
   std::vector<Pixel> render() { return render(mapper->viewpointCamera(0)); }
   std::vector<float> channel(RTenum name, size_t components) {
     std::vector<float> values(size_t(options_.width) * size_t(options_.height) * components);
+    rtMakeCurrent(context_);
     rtReadPixels(name, values.data(), values.size());
     return values;
   }
