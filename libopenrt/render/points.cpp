@@ -138,7 +138,8 @@ void store(const Record& r, const Rays& rays, uint32_t lane, Local& h, const Out
   out.color[3][to] = h.color[3];
   out.uv[0][to] = h.uv[0];
   out.uv[1][to] = h.uv[1];
-  out.error[to] = error;
+  // A face within a plane through the origin of an axis has no error along it; the step off it must still be one.
+  out.error[to] = std::max(error, 0x1p-6f * std::max({h.bound[0], h.bound[1], h.bound[2]}));
   out.flags[to] = h.flags;
 }
 

@@ -11,7 +11,10 @@ namespace openrt {
 
 namespace {
 constexpr uint32_t pathsInFlight = 4096;
-}
+// Backs that a path looks through before the rest of them count as not there either: a ray within the plane of a face may
+// meet it again and again.
+constexpr uint32_t maxCulled = 256;
+} // namespace
 
 uint32_t tileEdge(uint32_t samplesPerPixel) { return samplesPerPixel >= 16 ? 16 : samplesPerPixel >= 4 ? 32 : 64; }
 
@@ -96,17 +99,16 @@ void TileRenderer::wave(uint32_t firstSample, uint32_t samples) {
   auto* met = arena_.take<uint32_t>(size);
   auto* through = arena_.take<uint32_t>(size);
   auto* order = arena_.take<uint32_t>(size);
-  // Culled faces cost no depth, yet a path passes no more than a bounded number of them.
-  uint32_t surfaces = 0, faces = 0;
-  while (paths.rays.count && surfaces <= scene_.frame.depth && faces < 100000) {
-    (faces == 0 ? counters_.camera : counters_.secondary) += paths.rays.count;
+  uint32_t surfaces = 0, waves = 0; // backs that are not there cost no depth
+  while (paths.rays.count && surfaces <= scene_.frame.depth) {
+    (waves == 0 ? counters_.camera : counters_.secondary) += paths.rays.count;
     scene_.kernel->intersect(paths.rays, maskAll, Coherence::coherent, hits);
     uint32_t misses = 0, mets = 0, throughs = 0;
     for (uint32_t i = 0; i < paths.rays.count; i++) {
       if (hits.record[i] == noHit)
         missed[misses++] = i;
       else if (culled(scene_, paths.rays, hits, i))
-        through[throughs++] = i;
+        (waves < maxCulled ? through[throughs++] : missed[misses++]) = i;
       else
         met[mets++] = i;
     }
@@ -115,7 +117,7 @@ void TileRenderer::wave(uint32_t firstSample, uint32_t samples) {
     sortByBucket(scene_, hits, met, mets, order, counts_, ranges_);
     for (const BucketRange& range : ranges_) shadeRange(paths, hits, range, order + range.begin);
     paths.swapWaves();
-    faces++;
+    waves++;
     if (mets) surfaces++;
   }
   addToPixels(paths, firstSample, samples);
