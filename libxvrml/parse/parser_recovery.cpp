@@ -1,5 +1,6 @@
 // parser_recovery.cpp: what the parser does after an error: where it goes on, and which names are lost. All loops, no recursion:
 // a million open braces are skipped like any other text. See parser.h.
+#include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
@@ -25,7 +26,8 @@ bool Parser::name(Token& out, const char* what) {
   const Token token = lexer_.peek();
   out = lexer_.nextName();
   if (out.is(TokenKind::identifier)) return true;
-  if (!out.is(TokenKind::invalid) || (!out.text.empty() && out.text[0] == '"')) {
+  const bool control = std::any_of(out.text.begin(), out.text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; });
+  if (!out.is(TokenKind::invalid) || control || (!out.text.empty() && out.text[0] == '"')) {
     lexer_.seek(token.at()); // a brace belongs to whoever counts them
     return fail(token, what);
   }
