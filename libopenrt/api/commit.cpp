@@ -1,6 +1,10 @@
 // commit.cpp: turns the state of the scene into the edits of one commit, in the order that scene_state.h fixes. All memory is
 // taken in make(), before settle() marks the edits as sent: a commit that fails leaves the scene as it was.
 #include <algorithm>
+#include <cstring>
+#include <unordered_map>
+
+#include <xxhash.h>
 
 #include "api/scene_state.h"
 
@@ -55,9 +59,17 @@ class CommitMaker {
       if (State* state = table.find(id)) f(id, *state);
   }
 
+  // Arrays with the same bytes travel once: a coordinate list that several geometries share, the corners of equal boxes.
   ArrayId addArray(const ArrayPtr& array) {
     if (!array) return 0;
+    const uint64_t hash = XXH3_64bits(array->data(), array->size());
+    const auto [first, last] = known_.equal_range(hash);
+    for (auto it = first; it != last; ++it) {
+      const Array& known = *commit_->arrays.at(it->second);
+      if (known.size() == array->size() && std::memcmp(known.data(), array->data(), array->size()) == 0) return it->second;
+    }
     commit_->arrays.emplace(scene_.nextArray_, array);
+    known_.emplace(hash, scene_.nextArray_);
     return scene_.nextArray_++;
   }
 
@@ -170,6 +182,7 @@ class CommitMaker {
 
   SceneState& scene_;
   std::shared_ptr<Commit> commit_;
+  std::unordered_multimap<uint64_t, ArrayId> known_; // of this commit, by hash
 };
 
 std::shared_ptr<const Commit> SceneState::takeCommit(bool render) { return CommitMaker(*this).make(render); }

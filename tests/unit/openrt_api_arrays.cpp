@@ -206,6 +206,31 @@ TEST_F(Arrays, PointersAreChecked) {
   rtEndObject();
 }
 
+TEST_F(Arrays, EqualArraysTravelOnce) {
+  const uint32_t left[] = {0, 1, 2}, right[] = {0, 2, 3};
+  float copy[12];
+  std::memcpy(copy, square, sizeof(copy));
+  rtBeginObject(0);
+  rtVertexPointer(3, RT_FLOAT, 0, square);
+  rtDrawElements(RT_TRIANGLES, 3, left, 4);
+  rtLoadName(1);
+  rtDrawElements(RT_TRIANGLES, 3, right, 4);
+  rtVertexPointer(3, RT_FLOAT, 0, copy);
+  rtLoadName(2);
+  rtDrawElements(RT_TRIANGLES, 3, left, 4);
+  copy[0] = 0.5f;
+  rtLoadName(3);
+  rtDrawElements(RT_TRIANGLES, 3, left, 4);
+  EXPECT_EQ(geometries(), 4u);
+  const auto& g = edits<edit::ObjectT>(*last).at(0)->geometries;
+  EXPECT_EQ(g[0]->points, g[1]->points);
+  EXPECT_EQ(g[0]->points, g[2]->points);
+  EXPECT_EQ(g[0]->indices, g[2]->indices);
+  EXPECT_NE(g[0]->indices, g[1]->indices);
+  EXPECT_NE(g[0]->points, g[3]->points);
+  EXPECT_EQ(last->arrays.size(), 4u);
+}
+
 TEST_F(Arrays, AMillionVerticesArriveWhole) {
   constexpr size_t count = 999999;
   Floats points(3 * count);
