@@ -1,0 +1,112 @@
+"""What the tests of vv and of the Python package share: where the program is, small worlds, readers of picture files."""
+import os
+import pathlib
+import shutil
+import struct
+import subprocess
+
+import pytest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+
+BOX = """#VRML V2.0 utf8
+Viewpoint { position 0 0 5 description "front" }
+DEF Back Viewpoint { position 0 0 -5 orientation 0 1 0 3.14159265 description "from behind" }
+DEF Place Transform {
+  children DEF Thing Shape {
+    appearance Appearance { material DEF Paint Material { diffuseColor 0.8 0.2 0.1 } }
+    geometry DEF Cube Box { size 2 2 2 }
+  }
+}
+"""
+
+
+def find_vv():
+    """$OPENRT_VV, else the program beside the package on PYTHONPATH, else that of the release build."""
+    if "OPENRT_VV" in os.environ:
+        return pathlib.Path(os.environ["OPENRT_VV"])
+    for folder in os.environ.get("PYTHONPATH", "").split(os.pathsep):
+        if folder and (pathlib.Path(folder).resolve().parent / "bin/vv").exists():
+            return pathlib.Path(folder).resolve().parent / "bin/vv"
+    return ROOT / "build/release/bin/vv"
+
+
+class Vv:
+    """Runs vv in a folder of its own."""
+
+    def __init__(self, folder):
+        self.program = find_vv()
+        self.folder = folder
+
+    def __call__(self, *arguments, stdin=b"", env=None, timeout=120):
+        done = subprocess.run([self.program, *map(str, arguments)], cwd=self.folder, input=stdin, capture_output=True, timeout=timeout,
+                              env={**os.environ, **(env or {})})
+        done.text = done.stdout.decode(errors="replace")
+        done.talk = done.stderr.decode(errors="replace")
+        return done
+
+    def start(self, *arguments):
+        return subprocess.Popen([self.program, *map(str, arguments)], cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+
+
+@pytest.fixture
+def vv(tmp_path):
+    if not find_vv().exists():
+        pytest.skip("vv is not built")
+    (tmp_path / "box.wrl").write_text(BOX)
+    return Vv(tmp_path)
+
+
+@pytest.fixture
+def box(tmp_path):
+    path = tmp_path / "box.wrl"
+    path.write_text(BOX)
+    return path
+
+
+def read_pfm(data):
+    """Width, height and rows from the top of (r, g, b) tuples."""
+    kind, size, scale, pixels = data.split(b"\n", 3)
+    assert kind == b"PF" and float(scale) < 0
+    width, height = map(int, size.split())
+    numbers = struct.unpack(f"<{3 * width * height}f", pixels)
+    rows = [[numbers[3 * (y * width + x):3 * (y * width + x) + 3] for x in range(width)] for y in range(height)]
+    return width, height, rows[::-1]
+
+
+def read_ppm(data):
+    kind, size, maximum, pixels = data.split(b"\n", 3)
+    assert kind == b"P6" and maximum == b"255"
+    width, height = map(int, size.split())
+    assert len(pixels) == 3 * width * height
+    return width, height, [[tuple(pixels[3 * (y * width + x):3 * (y * width + x) + 3]) for x in range(width)] for y in range(height)]
+
+
+def exr_header(data):
+    """Attributes of a single-part OpenEXR file: name -> (type, bytes)."""
+    assert data[:4] == b"\x76\x2f\x31\x01"
+    at, attributes = 8, {}
+    while data[at]:
+        end = data.index(b"\0", at)
+        name = data[at:end].decode()
+        at = end + 1
+        end = data.index(b"\0", at)
+        kind = data[at:end].decode()
+        size = struct.unpack_from("<i", data, end + 1)[0]
+        attributes[name] = (kind, data[end + 5:end + 5 + size])
+        at = end + 5 + size
+    return attributes
+
+
+def exr_channels(data):
+    """Channel names of an OpenEXR file and their types (2: 32 bit float)."""
+    block, at, channels = exr_header(data)["channels"][1], 0, {}
+    while block[at]:
+        end = block.index(b"\0", at)
+        channels[block[at:end].decode()] = struct.unpack_from("<i", block, end + 1)[0]
+        at = end + 17
+    return channels
+
+
+def has_tool(name):
+    return shutil.which(name) is not None

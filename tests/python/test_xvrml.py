@@ -1,0 +1,453 @@
+"""The Python package: worlds, nodes through the field tables, pictures."""
+import io
+import os
+import pathlib
+import re
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+import pytest
+
+np = pytest.importorskip("numpy")
+xvrml = pytest.importorskip("xvrml")
+
+HEADER = "#VRML V2.0 utf8\n"
+EVERYTHING = HEADER + """
+PROTO Everything [
+  exposedField SFBool aBool TRUE
+  exposedField SFColor aColor 0.25 0.5 0.75
+  exposedField SFFloat aFloat 1.5
+  exposedField SFImage anImage 2 2 3 0xFF0000 0x00FF00 0x0000FF 0xFFFFFF
+  exposedField SFInt32 anInt -7
+  exposedField SFNode aNode NULL
+  exposedField SFRotation aRotation 0 1 0 0.5
+  exposedField SFString aString "text"
+  exposedField SFTime aTime 12.25
+  exposedField SFVec2f aVec2f 1 2
+  exposedField SFVec3f aVec3f 1 2 3
+  exposedField MFColor colors [ 1 0 0, 0 1 0 ]
+  exposedField MFFloat floats [ 1, 2.5 ]
+  exposedField MFInt32 ints [ 1, -2, 3 ]
+  exposedField MFNode nodes [ ]
+  exposedField MFRotation rotations [ 1 0 0 0.5 ]
+  exposedField MFString strings [ "a", "b" ]
+  exposedField MFTime times [ 1, 2 ]
+  exposedField MFVec2f points2 [ 1 2, 3 4 ]
+  exposedField MFVec3f points3 [ 1 2 3, 4 5 6 ]
+  eventIn SFBool anEvent
+] { Group { } }
+DEF All Everything { }
+DEF Other Group { }
+"""
+
+
+def world(text=EVERYTHING):
+    return xvrml.load((text if text.startswith("#") else HEADER + text).encode())
+
+
+# Loading ----------------------------------------------------------------------------------------------------------------
+
+
+def test_sources(box):
+    data = box.read_bytes()
+    for source in (box, str(box), os.fsencode(box).decode(), data, bytearray(data), memoryview(data), io.BytesIO(data),
+                   io.StringIO(data.decode()), open(box, "rb"), open(box)):
+        w = xvrml.load(source)
+        assert w.names == ("Back", "Cube", "Paint", "Place", "Thing")
+        if hasattr(source, "close"):
+            source.close()
+    assert xvrml.load(box).path == str(box)
+
+
+def test_sources_that_are_none(tmp_path):
+    with pytest.raises(FileNotFoundError):
+        xvrml.load(tmp_path / "missing.wrl")
+    for source in (None, 5, ["a"]):
+        with pytest.raises(TypeError):
+            xvrml.load(source)
+
+
+def test_parse_error(tmp_path):
+    path = tmp_path / "old.wrl"
+    path.write_text("#VRML V1.0 ascii\nSeparator { }\n")
+    with pytest.raises(xvrml.ParseError, match="VRML 1.0") as caught:
+        xvrml.load(path)
+    assert caught.value.file == str(path) and caught.value.line == 1 and caught.value.column >= 1
+    assert isinstance(caught.value, ValueError)
+    with pytest.raises(xvrml.ParseError):
+        xvrml.load(b"")
+
+
+def test_warnings():
+    w = world("Shape {\n  geometry Box { sise 1 2 3 }\n}\n")
+    (problem,) = w.warnings
+    assert (problem.severity, problem.line, problem.column) == ("error", 3, 18)
+    assert "sise" in problem.message and ":3:18: error: " in str(problem)
+
+
+def test_limits():
+    deep = "Group { children " * 50 + "Shape { }" + " }" * 50
+    assert not world(deep).warnings
+    limited = None
+    try:
+        limited = xvrml.load((HEADER + deep).encode(), limits={"nesting": 10}).warnings
+    except xvrml.ParseError as error:
+        limited = [error]
+    assert "nesting" in str(limited[0])
+    with pytest.raises(ValueError, match="did you mean nesting"):
+        xvrml.load(HEADER.encode(), limits={"nestin": 10})
+    with pytest.raises(ValueError, match="whole number"):
+        xvrml.load(HEADER.encode(), limits={"nesting": -1})
+
+
+def test_names():
+    w = world()
+    assert set(w) == {"All", "Other"} and len(w) == 2 and "All" in w and "Any" not in w and 5 not in w
+    with pytest.raises(KeyError, match="did you mean Other"):
+        w["Othr"]
+    with pytest.raises(TypeError):
+        w[0]
+    assert w["All"] == w["All"] and w["All"] != w["Other"] and hash(w["All"]) == hash(w["All"])
+    assert [n.node_type for n in w.roots] == ["Everything", "Group"]
+
+
+# Fields -----------------------------------------------------------------------------------------------------------------
+
+
+def test_get_every_type():
+    n = world()["All"]
+    assert n.aBool is True
+    assert n.aColor == (0.25, 0.5, 0.75)
+    assert n.aFloat == 1.5
+    assert n.anImage.tolist() == [[[0, 0, 255], [255, 255, 255]], [[255, 0, 0], [0, 255, 0]]], "first row at the top"
+    assert n.anInt == -7
+    assert n.aNode is None
+    assert n.aRotation == (0, 1, 0, 0.5)
+    assert n.aString == "text"
+    assert n.aTime == 12.25
+    assert n.aVec2f == (1, 2)
+    assert n.aVec3f == (1, 2, 3)
+    assert n.colors.tolist() == [[1, 0, 0], [0, 1, 0]] and n.colors.dtype == np.float32
+    assert n.floats.tolist() == [1, 2.5]
+    assert n.ints.tolist() == [1, -2, 3] and n.ints.dtype == np.int32
+    assert n.nodes == ()
+    assert n.rotations.tolist() == [[1, 0, 0, 0.5]]
+    assert n.strings == ("a", "b")
+    assert n.times.tolist() == [1, 2] and n.times.dtype == np.float64
+    assert n.points2.tolist() == [[1, 2], [3, 4]]
+    assert n.points3.tolist() == [[1, 2, 3], [4, 5, 6]]
+
+
+VALUES = {
+    "aBool": [False, np.bool_(False)],
+    "aColor": [(1, 0, 0.5), [0, 1, 0], np.array([0.5, 0.5, 0.5])],
+    "aFloat": [2, 2.5, np.float32(3), np.int64(4)],
+    "anImage": [np.zeros((2, 3, 4), np.uint8), [[1, 2], [3, 4]], np.arange(6).reshape(3, 2, 1)],
+    "anInt": [5, -(2**31), 2**31 - 1, np.int8(3)],
+    "aRotation": [(1, 0, 0, 3.0)],
+    "aString": ["", "ä€𝄞", 'quote " and \\'],
+    "aTime": [0, 1e9 + 0.125],
+    "aVec2f": [(3, 4)],
+    "aVec3f": [(3, 4, 5), np.arange(3)],
+    "colors": [[(1, 1, 1)], np.zeros((0, 3)), []],
+    "floats": [[1, 2, 3], np.linspace(0, 1, 5), []],
+    "ints": [[1, 2], np.arange(3, dtype=np.uint8), range(4), []],
+    "rotations": [[(0, 0, 1, 1)], []],
+    "strings": [["x"], ("y", "z"), []],
+    "times": [[0.5], []],
+    "points2": [np.ones((4, 2)), []],
+    "points3": [np.ones((1000, 3)), np.ones((6, 3))[::2], np.ones((3, 3), order="F"), []],
+}
+
+
+@pytest.mark.parametrize("field", VALUES)
+def test_set(field):
+    n = world()["All"]
+    for value in VALUES[field]:
+        setattr(n, field, value)
+        got = getattr(n, field)
+        if isinstance(got, np.ndarray):
+            expected = np.asarray(value)
+            if field == "anImage" and expected.ndim == 2:
+                expected = expected[:, :, None]
+            assert got.size == expected.size and (got.size == 0 or np.array_equal(got, expected.astype(got.dtype)))
+        elif isinstance(got, tuple):
+            assert got == tuple(value)
+        else:
+            assert got == value
+
+
+WRONG = [
+    ("aBool", 1, TypeError), ("aBool", "TRUE", TypeError), ("aBool", None, TypeError),
+    ("aColor", (1, 2), ValueError), ("aColor", "red", TypeError), ("aColor", 1, ValueError), ("aColor", (1, float("nan"), 0), ValueError),
+    ("aFloat", "1", TypeError), ("aFloat", None, TypeError), ("aFloat", True, TypeError), ("aFloat", float("inf"), ValueError),
+    ("aFloat", 1e300, ValueError), ("aFloat", 1j, TypeError), ("aFloat", (1,), TypeError),
+    ("anImage", np.zeros((2, 2, 5), np.uint8), ValueError), ("anImage", np.full((1, 1), 256), ValueError),
+    ("anImage", np.zeros((2, 2)), TypeError), ("anImage", "x", TypeError),
+    ("anInt", 1.0, TypeError), ("anInt", 2**31, ValueError), ("anInt", 10**30, ValueError), ("anInt", True, TypeError),
+    ("aNode", "Group", TypeError), ("aNode", 0, TypeError),
+    ("aRotation", (0, 1, 0), ValueError),
+    ("aString", b"bytes", TypeError), ("aString", 5, TypeError), ("aString", None, TypeError),
+    ("aTime", "now", TypeError), ("aTime", float("nan"), ValueError),
+    ("aVec2f", (1, 2, 3), ValueError), ("aVec3f", (1, 2), ValueError), ("aVec3f", (1, 2, "x"), TypeError),
+    ("aVec3f", [(1, 2, 3)], ValueError), ("aVec3f", (1, (2, 3), 4), (ValueError, TypeError)),
+    ("colors", (1, 0, 0), ValueError), ("colors", [(1, 2)], ValueError), ("colors", [(1, 2, 3), (1, 2)], (ValueError, TypeError)),
+    ("floats", [[1, 2]], ValueError), ("floats", 1, ValueError), ("floats", ["a"], TypeError), ("floats", None, TypeError),
+    ("ints", [1.5], TypeError), ("ints", [2**31], ValueError), ("ints", [[1]], ValueError), ("ints", np.uint64([2**63]), ValueError),
+    ("nodes", [None], TypeError), ("nodes", 5, TypeError), ("nodes", "ab", TypeError),
+    ("strings", "word", TypeError), ("strings", [1], TypeError), ("strings", None, TypeError),
+    ("points3", np.ones((3, 2)), ValueError), ("points3", np.ones((2, 3, 1)), ValueError), ("points3", [[1, 2, np.inf]], ValueError),
+    ("points3", {"a": 1}, TypeError), ("points3", object(), TypeError),
+]
+
+
+@pytest.mark.parametrize("field, value, error", WRONG, ids=[f"{f}-{i}" for i, (f, _, _) in enumerate(WRONG)])
+def test_wrong_values_change_nothing(field, value, error):
+    n = world()["All"]
+    before = getattr(n, field)
+    with pytest.raises(error, match=rf"Everything\.{field} \({n.fields[field]}\): .* expected"):
+        setattr(n, field, value)
+    after = getattr(n, field)
+    assert np.array_equal(before, after) if isinstance(before, np.ndarray) else before == after
+
+
+def test_ranges():
+    w = world("Shape { appearance Appearance { material DEF M Material { } } geometry DEF S Sphere { } }")
+    for value in (-0.1, 1.1):
+        with pytest.raises(ValueError, match="transparency.*0 to 1"):
+            w["M"].transparency = value
+    with pytest.raises(ValueError, match="diffuseColor"):
+        w["M"].diffuseColor = (2, 0, 0)
+    with pytest.raises(ValueError):
+        w["S"].radius = 0
+
+
+def test_nodes_as_values():
+    w = world()
+    n, other = w["All"], w["Other"]
+    n.aNode = other
+    assert n.aNode == other
+    n.nodes = [other, other]
+    assert n.nodes == (other, other)
+    n.aNode = None
+    assert n.aNode is None
+    with pytest.raises(ValueError, match="same world"):
+        n.aNode = world()["Other"]
+    shapes = world("DEF S Shape { geometry DEF B Box { } } DEF M Material { }")
+    with pytest.raises(ValueError, match="geometry.*Material"):
+        shapes["S"].geometry = world("DEF M Material { }")["M"] if "M" not in shapes else shapes["M"]
+
+
+def test_arrays_are_read_only():
+    n = world()["All"]
+    with pytest.raises(ValueError, match="read-only"):
+        n.points3[0, 0] = 5
+    with pytest.raises(TypeError):
+        n.aVec3f[0] = 5
+
+
+def test_fields_that_are_not():
+    n = world()["All"]
+    with pytest.raises(AttributeError, match="did you mean aFloat"):
+        n.aFlot
+    with pytest.raises(AttributeError):
+        n.aFlot = 1
+    for event in ("anEvent", "set_aFloat"):
+        with pytest.raises(AttributeError):
+            setattr(n, event, True)
+    assert not hasattr(n, "nothing")
+
+
+def test_node_description():
+    w = world()
+    n = w["All"]
+    assert n.node_type == n.type == "Everything" and n.def_name == "All"
+    assert n.fields["points3"] == "MFVec3f" and len(n.fields) == 20 and "anEvent" not in n.fields
+    assert set(n.fields) < set(dir(n))
+    assert repr(n).startswith("<DEF All Everything")
+    info = world("DEF N NavigationInfo { }")["N"]
+    assert info.type == ("WALK", "ANY"), "a field called type is the field"
+    assert info.node_type == "NavigationInfo"
+
+
+def test_a_node_keeps_its_world():
+    n = world()["All"]
+    assert n.strings == ("a", "b")
+    n.strings = ["c"]
+    assert n.strings == ("c",)
+
+
+def test_text_that_is_not_utf8():
+    w = xvrml.load(HEADER.encode() + b'DEF T Text { string "\xff\xfe" }')
+    if "T" in w:
+        w["T"].string = w["T"].string
+        assert w["T"].string == ("\udcff\udcfe",)
+
+
+def test_writing(tmp_path):
+    w = world()
+    w["All"].aVec3f = (7, 8, 9)
+    w.write(tmp_path / "out.wrl")
+    again = xvrml.load(tmp_path / "out.wrl")
+    assert again["All"].aVec3f == (7, 8, 9) and again.to_vrml() == w.to_vrml()
+    with pytest.raises(OSError):
+        w.write(tmp_path / "no/such/folder.wrl")
+
+
+# Pictures ---------------------------------------------------------------------------------------------------------------
+
+
+def test_render(box):
+    w = xvrml.load(box)
+    p = w.render(size=(40, 30), spp=2)
+    assert p.shape == (30, 40, 4) and p.array.shape == p.shape and p.array.dtype == np.float32
+    assert np.asarray(p).shape == p.shape and np.array(p, dtype=np.float64).dtype == np.float64
+    assert p[15, 20].tolist() == p.array[15, 20].tolist()
+    assert p.array[15, 20, 0] > 3 * p.array[15, 20, 1] > 0, "a red box in the middle"
+    assert not p.array[0, 0, :3].any(), "nothing in the corner"
+    assert p.channels == ("rgba",) and p.stats["camera_rays"] == 40 * 30 * 2 and p.stats["triangles"] == 12
+    assert p.display.shape == (30, 40, 3) and p.display.dtype == np.uint8
+    with pytest.raises(KeyError, match="rgba"):
+        p["z"]
+
+
+def test_channels(box):
+    w = xvrml.load(box)
+    p = w.render(size=(40, 30), spp=1, channels=("z", "normal", "albedo", "position", "id", "samples"), colour="vrml97")
+    assert p["z"][15, 20] == pytest.approx(4, abs=1e-4) and np.isinf(p["z"][0, 0])
+    assert p["normal"][15, 20] == pytest.approx([0, 0, 1], abs=1e-5)
+    assert p["albedo"][15, 20] == pytest.approx([0.8, 0.2, 0.1], abs=1e-5)
+    assert p["position"][15, 20, 2] == pytest.approx(1, abs=1e-4)
+    assert p["samples"].min() == p["samples"].max() == 1
+    assert p["id"][0, 0] == 0 and p.names[p["id"][15, 20]] in ("Thing", "Cube", "Place")
+    assert w.render(size=(4, 3), spp=1, channels="z")["z"].shape == (3, 4)
+
+
+def test_changes_show(box):
+    w = xvrml.load(box)
+    before = w.render(size=(40, 30), spp=1).array
+    w["Paint"].diffuseColor = (0, 0, 1)
+    blue = w.render(size=(40, 30), spp=1).array
+    assert blue[15, 20, 2] > blue[15, 20, 0] == 0
+    w["Place"].translation = (100, 0, 0)
+    assert not w.render(size=(40, 30), spp=1).array[..., :3].any()
+    w["Place"].translation = (0, 0, 0)
+    w["Paint"].diffuseColor = (0.8, 0.2, 0.1)
+    assert np.array_equal(w.render(size=(40, 30), spp=1).array, before)
+    w["Cube"].size = (0.2, 0.2, 0.2)
+    assert 0 < (w.render(size=(40, 30), spp=1).array[..., 0] > 0).sum() < (before[..., 0] > 0).sum() / 20
+    w["Place"].children = []
+    assert not w.render(size=(40, 30), spp=1).array[..., :3].any()
+
+
+def test_views(box):
+    w = xvrml.load(box)
+    assert [(v.name, v.description) for v in w.viewpoints] == [("", "front"), ("Back", "from behind")]
+    assert w.viewpoints[0].matrix.shape == (4, 4)
+    z = lambda **more: w.render(size=(8, 6), spp=1, channels="position", **more)["position"][3, 4, 2]
+    assert z() == pytest.approx(1, abs=1e-4) and z(viewpoint=0) == z(viewpoint="front") == z()
+    assert z(viewpoint="Back") == z(viewpoint=1) == z(viewpoint=-1) == pytest.approx(-1, abs=1e-4)
+    assert z(camera=((0, 0, -9), (0, 0, 0))) == pytest.approx(-1, abs=1e-4)
+    assert z(camera=[(0, 0, 9), (0, 0, 0), (1, 0, 0)]) == pytest.approx(1, abs=1e-4)
+    assert z(fit=True) == pytest.approx(1, abs=1e-4)
+
+
+@pytest.mark.parametrize("wrong, error", [
+    ({"size": (0, 5)}, ValueError), ({"size": (5,)}, ValueError), ({"size": (65536, 65536)}, ValueError), ({"size": "big"}, Exception),
+    ({"spp": 0}, ValueError), ({"spp": 2.5}, TypeError), ({"seed": -1}, ValueError), ({"depth": -1}, ValueError), ({"threads": -1}, ValueError),
+    ({"viewpoint": "Bck"}, KeyError), ({"viewpoint": 2}, IndexError), ({"viewpoint": 1.5}, TypeError), ({"colour": "srgb"}, ValueError),
+    ({"headlight": "dim"}, ValueError), ({"channels": ("depth",)}, ValueError), ({"camera": (1, 2)}, ValueError),
+    ({"camera": ((0, 0, 0), (0, 0, 0))}, ValueError), ({"fit": True, "viewpoint": 0}, ValueError), ({"fov": 0}, ValueError),
+    ({"nonsense": 1}, TypeError),
+])
+def test_wrong_options(box, wrong, error):
+    with pytest.raises(error):
+        xvrml.load(box).render(**wrong)
+
+
+def test_headlight(box):
+    w = xvrml.load(box)
+    r = lambda value: w.render(size=(8, 6), spp=1, headlight=value).array[..., :3].any()
+    assert r(True) and r("on") and r("auto") and not r(False) and not r("off")
+
+
+def test_same_bytes_as_vv(box, vv):
+    assert vv("box.wrl", "-o", "vv.exr", "--size", "40x30", "--spp", "3", "--threads", "1").returncode == 0
+    w = xvrml.load(box)
+    pictures = [w.render(size=(40, 30), spp=3, threads=t) for t in (1, 2)]
+    assert np.array_equal(pictures[0].array, pictures[1].array)
+    pictures[0].save(vv.folder / "python.exr")
+    assert (vv.folder / "python.exr").read_bytes() == (vv.folder / "vv.exr").read_bytes()
+
+
+def test_save(box, tmp_path):
+    p = xvrml.load(box).render(size=(16, 12), spp=1)
+    for name, start in (("a.png", b"\x89PNG"), ("a.jpg", b"\xff\xd8"), ("a.exr", b"\x76\x2f\x31\x01"), ("a.ppm", b"P6"), ("a.pfm", b"PF")):
+        p.save(tmp_path / name)
+        assert (tmp_path / name).read_bytes().startswith(start)
+    assert p._repr_png_() == (tmp_path / "a.png").read_bytes()
+    with pytest.raises(ValueError, match="suffix"):
+        p.save(tmp_path / "a.bmp")
+    with pytest.raises(OSError):
+        p.save(tmp_path / "no/such/a.png")
+
+
+def test_a_picture_outlives_its_object(box):
+    array = xvrml.load(box).render(size=(16, 12), spp=1).array
+    assert array[6, 8, 0] > 0
+
+
+def test_other_threads_run_meanwhile(box):
+    w = xvrml.load(box)
+    counted, stop = [0], threading.Event()
+
+    def count():
+        while not stop.is_set():
+            counted[0] += 1
+            time.sleep(0.001)
+
+    counter = threading.Thread(target=count)
+    counter.start()
+    w.render(size=(400, 300), spp=16, threads=1)
+    stop.set()
+    counter.join()
+    assert counted[0] > 3
+
+
+def test_changes_wait_for_the_picture(box):
+    w = xvrml.load(box)
+    expected = w.render(size=(200, 150), spp=16).array
+    pictures = []
+    worker = threading.Thread(target=lambda: pictures.append(w.render(size=(200, 150), spp=16).array))
+    worker.start()
+    for i in range(200):
+        w["Place"].translation = (0, 0, 0)
+    worker.join()
+    assert np.array_equal(pictures[0], expected)
+
+
+def test_keyboard_interrupt(box):
+    code = f"""
+import os, signal, threading, time, xvrml
+w = xvrml.load({str(box)!r})
+threading.Timer(1.0, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+try:
+    w.render(size=(2000, 2000), spp=65536)
+except KeyboardInterrupt:
+    print("interrupted", w.render(size=(4, 3), spp=1).shape)
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120)
+    assert done.stdout == "interrupted (3, 4, 4)\n", done.stderr
+
+
+def test_package():
+    assert re.fullmatch(r"\d+\.\d+\.\d+", xvrml.__version__)
+    folder = pathlib.Path(xvrml.__file__).parent
+    assert (folder / "py.typed").exists() and (folder / "__init__.pyi").exists()
+    stub = (folder / "__init__.pyi").read_text()
+    for name in xvrml.__all__:
+        assert name in stub
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler, "importing leaves signals alone"
