@@ -116,7 +116,9 @@ std::string whyNotWritable(const std::string& path) {
       reason = errno;
     if (!reason && !S_ISREG(info.st_mode)) return "";
   }
-  if (!reason && ::access(folderOf(target).c_str(), W_OK | X_OK) != 0) reason = errno;
+  const std::string folder = folderOf(target);
+  if (!reason && ::stat(folder.c_str(), &info) == 0 && !S_ISDIR(info.st_mode)) reason = ENOTDIR;
+  if (!reason && ::access(folder.c_str(), W_OK | X_OK) != 0) reason = errno;
   return reason ? "cannot write " + path + ": " + std::strerror(reason) : "";
 }
 

@@ -138,11 +138,26 @@ struct Renderer::Impl {
     throwOnError("frame");
   }
 
-  void readChannels(Picture& picture) {
+  void describe(Picture& picture) {
     picture.width = settings.width;
     picture.height = settings.height;
     picture.linear = settings.linear;
     if (settings.channels & RT_NAME) picture.names = mapper->names();
+  }
+
+  bool snapshot(Picture& picture) {
+    for (const Channel& channel : channelTable()) {
+      if (!(settings.channels & channel.bit)) continue;
+      std::vector<float>& plane = picture.planes[channel.bit];
+      plane.resize(size_t(settings.width) * size_t(settings.height) * size_t(channel.components));
+      if (!rtSnapshot(context, channel.bit, plane.data(), plane.size())) return false;
+    }
+    describe(picture); // a frame is in flight: the render thread waits for it and leaves the mapper alone
+    return true;
+  }
+
+  void readChannels(Picture& picture) {
+    describe(picture);
     for (const Channel& channel : channelTable()) {
       if (!(settings.channels & channel.bit)) continue;
       std::vector<float>& plane = picture.planes[channel.bit];
@@ -210,6 +225,8 @@ xvrml::Bounds Renderer::bounds() {
 void Renderer::prepare(const View& view) {
   impl_->run([&] { impl_->prepare(view); });
 }
+
+bool Renderer::snapshot(Picture& picture) { return impl_->context && impl_->snapshot(picture); }
 
 RenderResult Renderer::render(const View& view) {
   if (view.viewpoint && *view.viewpoint >= viewpoints().size())

@@ -61,6 +61,8 @@ class Renderer {
   xvrml::Bounds bounds();
   // Maps the world for a view without making a picture; problems are in the world's diagnostics.
   void prepare(const View& view);
+  // The picture of the frame in flight as far as it is finished; for the watch to call. False if no frame is in flight.
+  bool snapshot(Picture& picture);
   // Throws RenderError. An exception of the watch ends the picture and is passed on.
   RenderResult render(const View& view);
 

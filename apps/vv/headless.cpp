@@ -86,8 +86,11 @@ std::vector<Job> chooseJobs(const Options& options, const std::vector<xvrml::Vie
     std::string known;
     std::vector<std::string> names;
     for (size_t i = 0; i < viewpoints.size(); ++i) {
-      names.push_back(viewpoints[i].name.empty() ? viewpoints[i].description : viewpoints[i].name);
-      if (i < 20) known += fmt::format("{}{}{}", i ? ", " : "", i, names[i].empty() ? "" : " " + oneLine(names[i]));
+      const xvrml::ViewpointInfo& v = viewpoints[i];
+      names.push_back(v.name);
+      names.push_back(v.description);
+      const std::string& shown = v.name.empty() ? v.description : v.name;
+      if (i < 20) known += fmt::format("{}{}{}", i ? ", " : "", i, shown.empty() ? "" : " " + oneLine(shown));
     }
     const std::string near = picture::nearest(options.viewpoint, names);
     throw Failure{exitUsage, fmt::format("--viewpoint: the world has no \"{}\"{}; {}", options.viewpoint,
@@ -195,12 +198,22 @@ class Headless {
     picture::RenderSettings settings = options_.render;
     if (!options_.stats.empty()) settings.channels |= RT_VARIANCE | RT_SAMPLES;
     std::unique_ptr<Progress> progress;
-    picture::Renderer renderer(*world_, settings, [&](float fraction) {
+    const Job* current = nullptr;
+    bool saveWanted = false;
+    picture::Renderer renderer(*world_, settings);
+    renderer.setWatch([&](float fraction) {
       if (progress) progress->show(fraction);
+      saveWanted |= takeSaveRequest();
+      picture::Picture soFar;
+      if (current && saveWanted && renderer.snapshot(soFar)) {
+        saveWanted = false;
+        savePart(*current, soFar);
+      }
       return interrupted();
     });
     std::vector<Job> jobs = chooseJobs(options_, renderer.viewpoints());
     for (const Job& job : jobs) {
+      current = &job;
       progress = std::make_unique<Progress>(job.name, options_.quiet);
       picture::RenderResult result = renderer.render(job.view);
       progress.reset();
@@ -215,14 +228,14 @@ class Headless {
     return exitDone;
   }
 
-  void finish(const Job& job, picture::RenderResult& result) {
-    const auto start = Clock::now();
+  // The channels that were asked for, without those that only the statistics need.
+  void writePictures(const Job& job, const picture::Picture& made) {
     picture::Picture wanted;
-    wanted.width = result.picture.width;
-    wanted.height = result.picture.height;
-    wanted.linear = result.picture.linear;
-    wanted.names = result.picture.names;
-    for (const auto& [bit, plane] : result.picture.planes)
+    wanted.width = made.width;
+    wanted.height = made.height;
+    wanted.linear = made.linear;
+    wanted.names = made.names;
+    for (const auto& [bit, plane] : made.planes)
       if (options_.render.channels & bit) wanted.planes[bit] = plane;
     for (const Output& output : options_.outputs) {
       const std::string bytes = picture::encode(wanted, output.format);
@@ -231,6 +244,19 @@ class Headless {
       else
         picture::writeFile(outputPath(output.path, job), bytes);
     }
+  }
+
+  // A copy that cannot be written is no reason to give up the picture.
+  void savePart(const Job& job, const picture::Picture& soFar) {
+    try {
+      writePictures(job, soFar);
+      if (!options_.quiet) say("vv: the picture so far is saved");
+    } catch (const std::exception& error) { sayWarning(error.what()); }
+  }
+
+  void finish(const Job& job, const picture::RenderResult& result) {
+    const auto start = Clock::now();
+    writePictures(job, result.picture);
     const double writeSeconds = secondsSince(start);
     if (options_.verbose)
       say(fmt::format("vv: {} triangles, mapped in {}, rendered in {}, written in {}", result.stats.triangles,

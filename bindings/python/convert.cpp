@@ -88,7 +88,7 @@ py::array numbersOf(const py::handle& object, const Target& target, const char* 
   }
   const char kind = std::string(py::str(array.dtype().attr("kind")))[0];
   if (array.size() > 0 && !std::strchr(kinds, kind)) {
-    if (kind == 'O') target.wrongValue("not something else");
+    if (kind == 'O') target.wrongType(object);
     throw py::type_error(fmt::format("{}, not an array of {}", target.text(), std::string(py::str(array.dtype()))));
   }
   return array;

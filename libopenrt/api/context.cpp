@@ -143,6 +143,11 @@ void Context::cancel() {
   if (backend_) backend_->cancel();
 }
 
+bool Context::snapshot(RTenum channel, std::span<float> out) {
+  const std::lock_guard lock(backendMutex_);
+  return backend_ && backend_->snapshot(channel, out);
+}
+
 float Context::progress() {
   const std::lock_guard lock(backendMutex_);
   return backend_ ? backend_->progress() : 0;

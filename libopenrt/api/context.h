@@ -80,6 +80,7 @@ class Context {
   void render();
   void cancel();
   float progress();
+  bool snapshot(RTenum channel, std::span<float> out);
   const edit::FrameSettingsT& finishedFrame() const;
   Backend& backend() { return *backend_; }
   bool everCommitted() const { return everCommitted_; }

@@ -180,6 +180,15 @@ void rtCancel(RTcontext context) {
   });
 }
 
+int rtSnapshot(RTcontext context, RTenum channel, float* out, size_t count) {
+  return guardedAnywhere("rtSnapshot", 0, [&] {
+    const std::shared_ptr<Context> found = lookup(context);
+    if (!found) fail(RT_INVALID_VALUE, "not a context");
+    if (!out) fail(RT_INVALID_VALUE, "the pointer is NULL");
+    return found->snapshot(channel, {out, count}) ? 1 : 0;
+  });
+}
+
 float rtProgress(RTcontext context) {
   return guardedAnywhere("rtProgress", 0.0f, [&] {
     const std::shared_ptr<Context> found = lookup(context);

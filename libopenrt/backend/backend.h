@@ -1,5 +1,5 @@
 // backend.h: the waist between the API and whoever renders: local, record and null today, cluster later.
-// Called on the application's thread only, except cancel() and progress().
+// Called on the application's thread only, except cancel(), progress() and snapshot().
 #pragma once
 
 #include <cstdint>
@@ -33,6 +33,8 @@ class Backend {
   virtual void wait() = 0;
   virtual void cancel() = 0;          // [any]
   virtual float progress() const = 0; // [any] 0..1
+  // One channel of the frame in flight, its finished tiles; false if there is no such channel or frame. [any]
+  virtual bool snapshot(RTenum, std::span<float>) const { return false; }
   // One channel of the finished frame, first row at the top; false if there is no such channel or frame.
   virtual bool read(RTenum channel, std::span<float> out) const = 0;
   virtual void stats(RTstats& stats) const = 0;

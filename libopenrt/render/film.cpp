@@ -68,4 +68,21 @@ bool Film::read(uint32_t channel, std::span<float> out) const {
   return true;
 }
 
+bool Film::clear(uint32_t channel, std::span<float> out) const {
+  if (!std::has_single_bit(channel) || !has(channel)) return false;
+  const size_t size = size_t(width_) * height_ * channelComponents(channel);
+  if (out.size() < size) return false;
+  std::fill_n(out.begin(), size, channel == RT_DEPTH ? std::numeric_limits<float>::infinity() : 0.0f);
+  return true;
+}
+
+void Film::copy(uint32_t channel, const Tile& tile, std::span<float> out) const {
+  const auto& source = planes_[std::countr_zero(channel)];
+  const size_t components = channelComponents(channel);
+  for (uint32_t y = tile.y0; y < tile.y1; y++) {
+    const size_t first = (size_t(y) * width_ + tile.x0) * components;
+    std::copy_n(source.begin() + std::ptrdiff_t(first), (tile.x1 - tile.x0) * components, out.begin() + std::ptrdiff_t(first));
+  }
+}
+
 } // namespace openrt

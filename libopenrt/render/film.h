@@ -21,6 +21,10 @@ struct PixelSums { // of one pixel, samples added in their order
   void add(const float radiance[3], float alpha);
 };
 
+struct Tile {
+  uint32_t x0, y0, x1, y1; // pixels, end exclusive
+};
+
 class Film {
  public:
   Film() = default;
@@ -30,6 +34,10 @@ class Film {
   bool has(uint32_t channel) const { return channels_ & channel; }
   void store(uint32_t x, uint32_t y, const PixelSums& sums); // [render] each pixel by one thread
   bool read(uint32_t channel, std::span<float> out) const;
+  // Of a picture that is still being made: nothing everywhere, then tile by tile those that are finished. false: no such
+  // channel, or no room for it.
+  bool clear(uint32_t channel, std::span<float> out) const;
+  void copy(uint32_t channel, const Tile& tile, std::span<float> out) const;
 
  private:
   std::vector<float>& plane(uint32_t channel);

@@ -40,6 +40,7 @@ Frame::Frame(std::shared_ptr<const RenderScene> scene, uint32_t threads)
       edge_(tileEdge(scene_->frame.samples)), columns_((film_.width() + edge_ - 1) / edge_),
       tiles_(columns_ * ((film_.height() + edge_ - 1) / edge_)), started_(now()) {
   if (!scene_->camera.shader.shaderClass) tiles_ = 0; // nothing is seen without a camera
+  finished_ = std::make_unique<std::atomic<bool>[]>(tiles_);
   for (uint32_t i = 0; i < std::min(threads, std::max(tiles_, 1u)); i++) threads_.emplace_back([this] { work(); });
 }
 
@@ -53,6 +54,18 @@ void Frame::wait() {
   threads_.clear();
 }
 
+Tile Frame::tile(uint32_t number) const {
+  const uint32_t x = number % columns_ * edge_, y = number / columns_ * edge_;
+  return {x, y, std::min(x + edge_, film_.width()), std::min(y + edge_, film_.height())};
+}
+
+bool Frame::snapshot(uint32_t channel, std::span<float> out) const {
+  if (!film_.clear(channel, out)) return false;
+  for (uint32_t i = 0; i < tiles_; i++)
+    if (finished_[i].load(std::memory_order_acquire)) film_.copy(channel, tile(i), out);
+  return true;
+}
+
 float Frame::progress() const { return tiles_ ? float(done_.load()) / float(tiles_) : 1.0f; }
 
 void Frame::work() {
@@ -60,8 +73,8 @@ void Frame::work() {
   try {
     TileRenderer renderer(*scene_, film_);
     for (uint32_t i; !cancelled_ && (i = next_++) < tiles_;) {
-      const uint32_t x = i % columns_ * edge_, y = i / columns_ * edge_;
-      renderer.render({x, y, std::min(x + edge_, film_.width()), std::min(y + edge_, film_.height())});
+      renderer.render(tile(i));
+      finished_[i].store(true, std::memory_order_release);
       done_++;
     }
     std::lock_guard lock(mutex_);

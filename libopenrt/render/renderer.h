@@ -4,6 +4,7 @@
 #include <atomic>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <string>
 #include <thread>
 #include <vector>
@@ -25,6 +26,8 @@ class Frame {
   void wait();
   void cancel() { cancelled_ = true; } // [any]
   float progress() const;              // [any]
+  // The finished tiles of one channel, nothing elsewhere; false if there is no such channel or no room. [any]
+  bool snapshot(uint32_t channel, std::span<float> out) const;
   const Film& film() const { return film_; }
   const RayCounters& counters() const { return counters_; } // after wait()
   double seconds() const { return seconds_; }
@@ -32,11 +35,13 @@ class Frame {
 
  private:
   void work();
+  Tile tile(uint32_t number) const;
   std::shared_ptr<const RenderScene> scene_;
   Film film_;
   uint32_t edge_, columns_, tiles_;
   std::atomic<uint32_t> next_{0}, done_{0};
   std::atomic<bool> cancelled_{false};
+  std::unique_ptr<std::atomic<bool>[]> finished_; // by tile: its pixels may be read
   std::vector<std::thread> threads_;
   std::mutex mutex_; // counters_, failure_, seconds_
   RayCounters counters_;

@@ -9,10 +9,6 @@
 
 namespace openrt {
 
-struct Tile {
-  uint32_t x0, y0, x1, y1; // pixels, end exclusive
-};
-
 // Edge of the square tiles for a number of samples a pixel: a few thousand paths are in flight.
 uint32_t tileEdge(uint32_t samplesPerPixel);
 

@@ -21,6 +21,10 @@ DEF Place Transform {
 """
 
 
+HEADER = "#VRML V2.0 utf8\n"
+SMALL = ("--size", "32x24", "--spp", "1")
+
+
 def find_vv():
     """$OPENRT_VV, else the program beside the package on PYTHONPATH, else that of the release build."""
     if "OPENRT_VV" in os.environ:
@@ -44,6 +48,18 @@ class Vv:
         done.text = done.stdout.decode(errors="replace")
         done.talk = done.stderr.decode(errors="replace")
         return done
+
+    def write(self, name, content):
+        (self.folder / name).write_bytes(content if isinstance(content, bytes) else content.encode())
+
+    def picture(self, *arguments, world="box.wrl"):
+        """Rows of (r, g, b) bytes of a small picture."""
+        done = self(world, "-o", "ppm:-", *SMALL, *arguments)
+        assert done.returncode == 0, done.talk
+        return read_ppm(done.stdout)[2]
+
+    def leftovers(self):
+        return [p.name for p in self.folder.iterdir() if p.name.startswith(".vv-")]
 
     def start(self, *arguments):
         return subprocess.Popen([self.program, *map(str, arguments)], cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE)

@@ -236,9 +236,11 @@ def test_nodes_as_values():
     assert n.aNode is None
     with pytest.raises(ValueError, match="same world"):
         n.aNode = world()["Other"]
-    shapes = world("DEF S Shape { geometry DEF B Box { } } DEF M Material { }")
+    shapes = world("DEF S Shape { appearance Appearance { material DEF M Material { } } geometry DEF B Box { } }")
     with pytest.raises(ValueError, match="geometry.*Material"):
-        shapes["S"].geometry = world("DEF M Material { }")["M"] if "M" not in shapes else shapes["M"]
+        shapes["S"].geometry = shapes["M"]
+    shapes["S"].geometry = None
+    shapes["S"].geometry = shapes["B"]
 
 
 def test_arrays_are_read_only():

@@ -198,6 +198,15 @@ float LocalBackend::progress() const {
   return frame_ ? frame_->progress() : 1.0f;
 }
 
+bool LocalBackend::snapshot(RTenum channel, std::span<float> out) const {
+  std::shared_ptr<const Frame> frame;
+  {
+    std::lock_guard lock(mutex_);
+    frame = frame_;
+  }
+  return frame && frame->snapshot(channel, out);
+}
+
 bool LocalBackend::read(RTenum channel, std::span<float> out) const { return finished_ && finished_->film().read(channel, out); }
 
 void LocalBackend::stats(RTstats& s) const {

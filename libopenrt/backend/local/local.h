@@ -18,6 +18,7 @@ class LocalBackend final : public Backend {
   void wait() override;
   void cancel() override;
   float progress() const override;
+  bool snapshot(RTenum channel, std::span<float> out) const override;
   bool read(RTenum channel, std::span<float> out) const override;
   void stats(RTstats& stats) const override;
   void castRays(std::span<const RTray> rays, std::span<RThit> hits) override;
@@ -42,7 +43,7 @@ class LocalBackend final : public Backend {
   Flattened flat_;
   PixelFootprint footprint_;
   bool scopedLights_ = false;
-  mutable std::mutex mutex_; // frame_ as seen by cancel() and progress()
+  mutable std::mutex mutex_; // frame_ as seen by cancel(), progress() and snapshot()
   std::shared_ptr<Frame> frame_, finished_;
   double commitSeconds_ = 0, buildSeconds_ = 0;
 };

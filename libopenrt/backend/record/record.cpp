@@ -1,5 +1,5 @@
-// record.cpp: the backend that writes commits to a file, alone or beside one that renders. Application thread; cancel and
-// progress from any.
+// record.cpp: the backend that writes commits to a file, alone or beside one that renders. Application thread; cancel,
+// progress and snapshot from any.
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
@@ -112,6 +112,7 @@ class RecordBackend final : public Backend {
     if (renderer_) renderer_->cancel();
   }
   float progress() const override { return renderer_ ? renderer_->progress() : 1; }
+  bool snapshot(RTenum channel, std::span<float> out) const override { return renderer_ && renderer_->snapshot(channel, out); }
 
   bool read(RTenum channel, std::span<float> out) const override {
     if (renderer_) return renderer_->read(channel, out);
