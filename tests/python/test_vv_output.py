@@ -92,7 +92,7 @@ def wait_until_rendering(running):
     assert running.poll() is None
 
 
-def test_interrupt_keeps_the_vv.picture():
+def test_interrupt_keeps_the_picture(vv):
     running = vv.start("box.wrl", "-o", "part.pfm", *LONG)
     wait_until_rendering(running)
     running.send_signal(signal.SIGINT)
