@@ -169,7 +169,7 @@ def test_statistics(vv):
     assert json.loads(vv("box.wrl", "-o", "x.png", "--stats", "-", *SMALL).text)["schema"] == 1
 
 
-def test_statistics_do_not_change_the_vv.picture():
+def test_statistics_do_not_change_the_picture(vv):
     assert vv("box.wrl", "-o", "a.exr", *SMALL).returncode == 0
     assert vv("box.wrl", "-o", "b.exr", "--stats", "s.json", *SMALL).returncode == 0
     assert (vv.folder / "a.exr").read_bytes() == (vv.folder / "b.exr").read_bytes()
@@ -221,7 +221,7 @@ def test_recording(vv):
     assert (vv.folder / "a.png").read_bytes() == (vv.folder / "b.png").read_bytes()
 
 
-def test_empty_world_makes_a_vv.picture():
+def test_empty_world_makes_a_picture(vv):
     vv.write("empty.wrl", HEADER)
     assert vv("empty.wrl", "-o", "x.ppm", *SMALL).returncode == 0
     assert all(p == (0, 0, 0) for row in read_ppm((vv.folder / "x.ppm").read_bytes())[2] for p in row)
