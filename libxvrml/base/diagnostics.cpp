@@ -28,6 +28,20 @@ std::string caretIndent(std::string_view line, size_t column) {
   return indent;
 }
 
+// What a file says goes to a terminal: control characters (C0 but the tab, DEL, C1 in UTF-8) become one question mark each.
+std::string printable(std::string_view text) {
+  std::string result;
+  result.reserve(text.size());
+  for (size_t i = 0; i < text.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(text[i]);
+    const bool c1 = byte == 0xc2 && i + 1 < text.size() && static_cast<unsigned char>(text[i + 1]) < 0xa0;
+    const bool control = (byte < 0x20 && byte != '\t') || byte == 0x7f || c1;
+    result += byte == '\n' ? ' ' : control ? '?' : text[i];
+    i += c1;
+  }
+  return result;
+}
+
 Diagnostic at(Severity severity, const SourcePosition& where, std::string message) {
   return {severity, where.file ? *where.file : std::string(), where.line, where.column, std::move(message), {}};
 }
@@ -43,9 +57,9 @@ std::string Diagnostic::text() const {
   }
   if (!result.empty()) result += ": ";
   result += severityName(severity);
-  result += ": " + message;
+  result += ": " + printable(message);
   if (sourceLine.empty()) return result;
-  result += '\n' + sourceLine;
+  result += '\n' + printable(sourceLine);
   const size_t place = caret > 0 ? caret : column; // a long line is shown in part
   if (place > 0 && place <= sourceLine.size() + 1) result += '\n' + caretIndent(sourceLine, place) + '^';
   return result;

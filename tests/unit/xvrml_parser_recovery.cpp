@@ -1,4 +1,6 @@
 // xvrml_parser_recovery.cpp: what is left of a world after an error in it: all but the node that has the error.
+#include <algorithm>
+
 #include "unit/xvrml_parser_support.h"
 
 namespace {
@@ -105,6 +107,19 @@ TEST(ParserRecovery, OutOfRangeValuesAreBroughtBack) {
   EXPECT_EQ(nodeCast<nodes::Sphere>(shape->geometry)->radius, 1.0f);
   EXPECT_NEAR(nodeCast<nodes::Viewpoint>(world->scope.roots.at(1))->fieldOfView, 0.785398f, 1e-6);
   EXPECT_EQ(nodeCast<nodes::Transform>(world->scope.roots.at(2))->scale, (Vec3f{-1, 1, 1})); // mirrors exist in real files
+}
+
+// A file must not steer the terminal that shows its errors.
+TEST(ParserRecovery, MessagesHoldNoControlCharacters) {
+  const auto world = parse("\x1b[31m\x07 \xc2\x9b"
+                           "31m Bax\x7f { } WorldInfo { title red\x1b } Group { children \"a\nb\x1b\" }");
+  EXPECT_GE(world->diagnostics.errors(), 3u);
+  for (const Diagnostic& diagnostic : world->diagnostics.list()) {
+    const std::string text = diagnostic.text();
+    EXPECT_TRUE(std::none_of(text.begin(), text.end(), [](unsigned char c) { return (c < 0x20 && c != '\n') || c == 0x7f; }))
+        << text;
+    EXPECT_EQ(text.find("\xc2\x9b"), std::string::npos);
+  }
 }
 
 TEST(ParserRecovery, OnlySoManyMessagesAreKept) {
