@@ -24,7 +24,7 @@ endif()
 
 add_library(project_options INTERFACE)
 # No contraction into fused multiply-adds: the same bytes whatever the compiler makes of an expression.
-target_compile_options(project_options INTERFACE -Wall -Wextra -Wno-missing-field-initializers -ffp-contract=off
+target_compile_options(project_options INTERFACE -Wall -Wextra -Wno-missing-field-initializers -ffp-contract=off -fno-math-errno -fno-trapping-math
                        $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict> # false alarms on std::string in GCC 12 (its bug 105651)
                        $<$<BOOL:${OPENRT_WERROR}>:-Werror>)
 if(OPENRT_SANITIZE)

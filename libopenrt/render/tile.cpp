@@ -11,9 +11,6 @@ namespace openrt {
 
 namespace {
 constexpr uint32_t pathsInFlight = 4096;
-// Backs that a path looks through before the rest of them count as not there either: a ray within the plane of a face may
-// meet it again and again.
-constexpr uint32_t maxCulled = 256;
 } // namespace
 
 uint32_t tileEdge(uint32_t samplesPerPixel) { return samplesPerPixel >= 16 ? 16 : samplesPerPixel >= 4 ? 32 : 64; }
@@ -97,28 +94,17 @@ void TileRenderer::wave(uint32_t firstSample, uint32_t samples) {
   hits.allocate(arena_, n);
   auto* missed = arena_.take<uint32_t>(size);
   auto* met = arena_.take<uint32_t>(size);
-  auto* through = arena_.take<uint32_t>(size);
   auto* order = arena_.take<uint32_t>(size);
-  uint32_t surfaces = 0, waves = 0; // backs that are not there cost no depth
-  while (paths.rays.count && surfaces <= scene_.frame.depth) {
-    (waves == 0 ? counters_.camera : counters_.secondary) += paths.rays.count;
+  for (uint32_t surfaces = 0; paths.rays.count && surfaces <= scene_.frame.depth; surfaces++) {
+    (surfaces == 0 ? counters_.camera : counters_.secondary) += paths.rays.count;
     scene_.kernel->intersect(paths.rays, maskAll, Coherence::coherent, hits);
-    uint32_t misses = 0, mets = 0, throughs = 0;
-    for (uint32_t i = 0; i < paths.rays.count; i++) {
-      if (hits.record[i] == noHit)
-        missed[misses++] = i;
-      else if (culled(scene_, paths.rays, hits, i))
-        (waves < maxCulled ? through[throughs++] : missed[misses++]) = i;
-      else
-        met[mets++] = i;
-    }
+    lookThroughBacks(paths.rays, hits);
+    uint32_t misses = 0, mets = 0;
+    for (uint32_t i = 0; i < paths.rays.count; i++) (hits.record[i] == noHit ? missed[misses++] : met[mets++]) = i;
     background(paths, missed, misses);
-    passCulled(paths, hits, through, throughs);
     sortByBucket(scene_, hits, met, mets, order, counts_, ranges_);
     for (const BucketRange& range : ranges_) shadeRange(paths, hits, range, order + range.begin);
     paths.swapWaves();
-    waves++;
-    if (mets) surfaces++;
   }
   addToPixels(paths, firstSample, samples);
 }
@@ -198,19 +184,31 @@ void TileRenderer::background(Paths& paths, const uint32_t* missed, uint32_t n) 
   }
 }
 
-// Rays that have met a back that is not there go on behind it.
-void TileRenderer::passCulled(Paths& paths, const RayHits& hits, const uint32_t* lanes, uint32_t n) {
-  if (n == 0) return;
+// Rays whose nearest hit is a back that is not there are traced again without such backs. From their origin: a face and a back
+// in the same place must not hide each other.
+void TileRenderer::lookThroughBacks(const Rays& rays, RayHits& hits) {
   ArenaScope scope(arena_);
-  const Points points = makePoints(scene_, paths.rays, hits, lanes, n, paths.travelled, arena_);
+  auto* lanes = arena_.take<uint32_t>(rays.count);
+  uint32_t n = 0;
+  for (uint32_t i = 0; i < rays.count; i++)
+    if (hits.record[i] != noHit && culled(scene_, rays, hits, i)) lanes[n++] = i;
+  if (n == 0) return;
+  Rays again;
+  again.allocate(arena_, n);
+  RayHits found;
+  found.allocate(arena_, n);
   for (uint32_t i = 0; i < n; i++) {
-    const RtsHits& h = points.hits;
-    const float p[3] = {h.position[0][i], h.position[1][i], h.position[2][i]};
-    const float behind[3] = {-h.geometric[0][i], -h.geometric[1][i], -h.geometric[2][i]};
-    const float weight[3] = {paths.throughput[0][lanes[i]], paths.throughput[1][lanes[i]], paths.throughput[2][lanes[i]]};
-    float origin[3];
-    offsetPoint(p, behind, points.error[i], origin);
-    paths.pushRay(lanes[i], origin, hits.t[lanes[i]], weight);
+    const uint32_t lane = lanes[i];
+    for (int k = 0; k < 3; k++) again.org[k][i] = rays.org[k][lane], again.dir[k][i] = rays.dir[k][lane];
+    again.tnear[i] = rays.tnear[lane], again.tfar[i] = rays.tfar[lane];
+  }
+  counters_.secondary += n;
+  scene_.kernel->intersectFronts(again, maskAll, found);
+  for (uint32_t i = 0; i < n; i++) {
+    const uint32_t lane = lanes[i];
+    hits.t[lane] = found.t[i], hits.u[lane] = found.u[i], hits.v[lane] = found.v[i];
+    for (int k = 0; k < 3; k++) hits.ng[k][lane] = found.ng[k][i];
+    hits.record[lane] = found.record[i], hits.primitive[lane] = found.primitive[i];
   }
 }
 

@@ -26,7 +26,7 @@ class TileRenderer {
   void background(Paths& paths, const uint32_t* missed, uint32_t n);
   void shadeRange(Paths& paths, const RayHits& hits, const BucketRange& range, const uint32_t* order);
   void gather(const Points& points, const RtsShading& shaded, const uint32_t* order, Paths& paths, const float* fog[4]);
-  void passCulled(Paths& paths, const RayHits& hits, const uint32_t* lanes, uint32_t n);
+  void lookThroughBacks(const Rays& rays, RayHits& hits);
   void attenuate(const Points& points, float* fog[4]);
   void addToPixels(const Paths& paths, uint32_t firstSample, uint32_t samples);
 

@@ -67,11 +67,18 @@ class Accel final : public Intersector {
   mutable std::atomic<uint64_t> rejectedRays{0};
 
   void intersect(const Rays& rays, uint32_t mask, Coherence coherence, RayHits& hits) const override;
+  void intersectFronts(const Rays& rays, uint32_t mask, RayHits& hits) const override;
   void occluded(const Rays& rays, uint32_t mask, Coherence coherence, uint8_t* blocked) const override;
 
  private:
   friend class AccelBuilder;
-  template <class Packet> void intersectPackets(const Rays& rays, uint32_t mask, bool coherent, RayHits& hits) const;
+  template <class Packet>
+  void intersectPackets(const Rays& rays, uint32_t mask, const QueryOptions& options, RayHits& hits) const;
+  struct Found {
+    uint32_t record, primitive;
+  };
+  Found find(uint32_t instance, uint32_t geometry, uint32_t primitive) const; // Embree's numbers to ours
+  static void rejectBacks(const RTCFilterFunctionNArguments* a);
   template <class Packet> void occludedPackets(const Rays& rays, uint32_t mask, bool coherent, uint8_t* blocked) const;
 
   std::shared_ptr<EmbreeDevice> device_;

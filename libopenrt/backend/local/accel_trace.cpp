@@ -12,14 +12,14 @@ struct Packet16 {
   static constexpr uint32_t width = 16;
   using RayHit = RTCRayHit16;
   using Ray = RTCRay16;
-  static void intersect(RTCScene s, const int* v, RayHit& r, bool c) { intersect16(s, v, r, c); }
+  static void intersect(RTCScene s, const int* v, RayHit& r, Query& q) { intersect16(s, v, r, q); }
   static void occluded(RTCScene s, const int* v, Ray& r, bool c) { occluded16(s, v, r, c); }
 };
 struct Packet8 {
   static constexpr uint32_t width = 8;
   using RayHit = RTCRayHit8;
   using Ray = RTCRay8;
-  static void intersect(RTCScene s, const int* v, RayHit& r, bool c) { intersect8(s, v, r, c); }
+  static void intersect(RTCScene s, const int* v, RayHit& r, Query& q) { intersect8(s, v, r, q); }
   static void occluded(RTCScene s, const int* v, Ray& r, bool c) { occluded8(s, v, r, c); }
 };
 
@@ -54,7 +54,37 @@ uint32_t load(const Rays& rays, uint32_t first, float scale, uint32_t mask, int*
 
 } // namespace
 
-template <class Packet> void Accel::intersectPackets(const Rays& rays, uint32_t mask, bool coherent, RayHits& hits) const {
+Accel::Found Accel::find(uint32_t instance, uint32_t geometry, uint32_t primitive) const {
+  uint32_t base = 0;
+  const PartScene* scene = &root_;
+  if (instance != RTC_INVALID_GEOMETRY_ID) {
+    const Part& placed = *root_.parts[instance];
+    base = placed.record;
+    scene = objectScenes_[placed.objectScene].get();
+  }
+  const Part& part = *scene->parts[geometry];
+  if (part.recordOf.empty()) return {base + part.record, primitive};
+  return {base + part.recordOf[primitive], part.primitiveOf[primitive]};
+}
+
+// Ray and normal are both in the frame of the instance that is being met, if any: the sign of their product is the same in all.
+void Accel::rejectBacks(const RTCFilterFunctionNArguments* a) {
+  const Accel& self = *static_cast<const Accel*>(static_cast<const QueryContext*>(a->context)->user);
+  for (unsigned i = 0; i < a->N; i++) {
+    if (a->valid[i] != -1) continue;
+    const Found found =
+        self.find(RTCHitN_instID(a->hit, a->N, i, 0), RTCHitN_geomID(a->hit, a->N, i), RTCHitN_primID(a->hit, a->N, i));
+    const Record& r = self.records[found.record];
+    if (!r.cull) continue;
+    const float along = RTCHitN_Ng_x(a->hit, a->N, i) * RTCRayN_dir_x(a->ray, a->N, i) +
+                        RTCHitN_Ng_y(a->hit, a->N, i) * RTCRayN_dir_y(a->ray, a->N, i) +
+                        RTCHitN_Ng_z(a->hit, a->N, i) * RTCRayN_dir_z(a->ray, a->N, i);
+    if (r.flip ? along < 0 : along > 0) a->valid[i] = 0;
+  }
+}
+
+template <class Packet>
+void Accel::intersectPackets(const Rays& rays, uint32_t mask, const QueryOptions& options, RayHits& hits) const {
   constexpr uint32_t W = Packet::width;
   alignas(64) int valid[W];
   alignas(64) typename Packet::RayHit packet;
@@ -63,29 +93,19 @@ template <class Packet> void Accel::intersectPackets(const Rays& rays, uint32_t 
   for (uint32_t first = 0; first < rays.count; first += W) {
     refused += load<W>(rays, first, scale_, mask, valid, packet.ray);
     for (uint32_t i = 0; i < W; i++) packet.hit.geomID[i] = packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
-    Packet::intersect(root_.scene, valid, packet, coherent);
+    Query query(options);
+    Packet::intersect(root_.scene, valid, packet, query);
     const uint32_t n = std::min(W, rays.count - first);
     for (uint32_t i = 0; i < n; i++) {
       const uint32_t lane = first + i;
-      const uint32_t geometry = packet.hit.geomID[i];
-      if (!valid[i] || geometry == RTC_INVALID_GEOMETRY_ID) {
+      if (!valid[i] || packet.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) {
         hits.record[lane] = noHit;
         hits.t[lane] = std::numeric_limits<float>::infinity();
         continue;
       }
-      const uint32_t instance = packet.hit.instID[0][i], primitive = packet.hit.primID[i];
-      const Part* part;
-      uint32_t base = 0;
-      if (instance != RTC_INVALID_GEOMETRY_ID) {
-        const Part& placed = *root_.parts[instance];
-        base = placed.record;
-        part = objectScenes_[placed.objectScene]->parts[geometry].get();
-      } else {
-        part = root_.parts[geometry].get();
-      }
-      const bool merged = !part->recordOf.empty();
-      hits.record[lane] = base + (merged ? part->recordOf[primitive] : part->record);
-      hits.primitive[lane] = merged ? part->primitiveOf[primitive] : primitive;
+      const Found found = find(packet.hit.instID[0][i], packet.hit.geomID[i], packet.hit.primID[i]);
+      hits.record[lane] = found.record;
+      hits.primitive[lane] = found.primitive;
       hits.t[lane] = packet.ray.tfar[i] * unscale;
       hits.u[lane] = packet.hit.u[i];
       hits.v[lane] = packet.hit.v[i];
@@ -112,9 +132,13 @@ template <class Packet> void Accel::occludedPackets(const Rays& rays, uint32_t m
 void Accel::intersect(const Rays& rays, uint32_t mask, Coherence coherence, RayHits& hits) const {
   const bool coherent = coherence == Coherence::coherent;
   if (device_->wide && !hasInstances)
-    intersectPackets<Packet16>(rays, mask, coherent, hits);
+    intersectPackets<Packet16>(rays, mask, {coherent}, hits);
   else
-    intersectPackets<Packet8>(rays, mask, coherent && !hasInstances, hits);
+    intersectPackets<Packet8>(rays, mask, {coherent && !hasInstances}, hits);
+}
+
+void Accel::intersectFronts(const Rays& rays, uint32_t mask, RayHits& hits) const {
+  intersectPackets<Packet8>(rays, mask, {false, rejectBacks, this}, hits);
 }
 
 void Accel::occluded(const Rays& rays, uint32_t mask, Coherence coherence, uint8_t* blocked) const {

@@ -9,26 +9,42 @@
 
 namespace openrt {
 
+// What an intersection query may ask for: `filter` is called for every candidate hit, with `user` in its context.
+struct QueryOptions {
+  bool coherent = false;
+  RTCFilterFunctionN filter = nullptr;
+  const void* user = nullptr;
+};
+
 #if OPENRT_EMBREE_MAJOR >= 4
-inline RTCIntersectArguments intersectArguments(bool coherent) {
-  RTCIntersectArguments a;
-  rtcInitIntersectArguments(&a);
-  a.flags = coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
-  return a;
-}
+inline const RTCSceneFlags sceneFlags = RTCSceneFlags(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENTS);
+struct QueryContext : RTCRayQueryContext {
+  const void* user;
+};
+struct Query {
+  QueryContext context;
+  RTCIntersectArguments arguments;
+  explicit Query(const QueryOptions& options) {
+    rtcInitRayQueryContext(&context);
+    context.user = options.user;
+    rtcInitIntersectArguments(&arguments);
+    arguments.context = &context;
+    arguments.filter = options.filter;
+    arguments.flags = RTCRayQueryFlags((options.coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT) |
+                                       (options.filter ? RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER : 0));
+  }
+};
 inline RTCOccludedArguments occludedArguments(bool coherent) {
   RTCOccludedArguments a;
   rtcInitOccludedArguments(&a);
   a.flags = coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
   return a;
 }
-inline void intersect16(RTCScene scene, const int* valid, RTCRayHit16& rays, bool coherent) {
-  auto a = intersectArguments(coherent);
-  rtcIntersect16(valid, scene, &rays, &a);
+inline void intersect16(RTCScene scene, const int* valid, RTCRayHit16& rays, Query& query) {
+  rtcIntersect16(valid, scene, &rays, &query.arguments);
 }
-inline void intersect8(RTCScene scene, const int* valid, RTCRayHit8& rays, bool coherent) {
-  auto a = intersectArguments(coherent);
-  rtcIntersect8(valid, scene, &rays, &a);
+inline void intersect8(RTCScene scene, const int* valid, RTCRayHit8& rays, Query& query) {
+  rtcIntersect8(valid, scene, &rays, &query.arguments);
 }
 inline void occluded16(RTCScene scene, const int* valid, RTCRay16& rays, bool coherent) {
   auto a = occludedArguments(coherent);
@@ -39,27 +55,32 @@ inline void occluded8(RTCScene scene, const int* valid, RTCRay8& rays, bool cohe
   rtcOccluded8(valid, scene, &rays, &a);
 }
 #else
-inline RTCIntersectContext intersectContext(bool coherent) {
-  RTCIntersectContext c;
-  rtcInitIntersectContext(&c);
-  c.flags = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
-  return c;
+inline const RTCSceneFlags sceneFlags = RTCSceneFlags(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
+struct QueryContext : RTCIntersectContext {
+  const void* user;
+};
+struct Query {
+  QueryContext context;
+  explicit Query(const QueryOptions& options) {
+    rtcInitIntersectContext(&context);
+    context.user = options.user;
+    context.filter = options.filter;
+    context.flags = options.coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+  }
+};
+inline void intersect16(RTCScene scene, const int* valid, RTCRayHit16& rays, Query& query) {
+  rtcIntersect16(valid, scene, &query.context, &rays);
 }
-inline void intersect16(RTCScene scene, const int* valid, RTCRayHit16& rays, bool coherent) {
-  auto c = intersectContext(coherent);
-  rtcIntersect16(valid, scene, &c, &rays);
-}
-inline void intersect8(RTCScene scene, const int* valid, RTCRayHit8& rays, bool coherent) {
-  auto c = intersectContext(coherent);
-  rtcIntersect8(valid, scene, &c, &rays);
+inline void intersect8(RTCScene scene, const int* valid, RTCRayHit8& rays, Query& query) {
+  rtcIntersect8(valid, scene, &query.context, &rays);
 }
 inline void occluded16(RTCScene scene, const int* valid, RTCRay16& rays, bool coherent) {
-  auto c = intersectContext(coherent);
-  rtcOccluded16(valid, scene, &c, &rays);
+  Query query({coherent});
+  rtcOccluded16(valid, scene, &query.context, &rays);
 }
 inline void occluded8(RTCScene scene, const int* valid, RTCRay8& rays, bool coherent) {
-  auto c = intersectContext(coherent);
-  rtcOccluded8(valid, scene, &c, &rays);
+  Query query({coherent});
+  rtcOccluded8(valid, scene, &query.context, &rays);
 }
 #endif
 

@@ -62,7 +62,7 @@ EmbreeDevice::EmbreeDevice(uint32_t threads) {
 RTCScene newScene(const EmbreeDevice& device) {
   RTCScene scene = rtcNewScene(device.device);
   if (!scene) throw std::bad_alloc();
-  rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+  rtcSetSceneFlags(scene, sceneFlags);
   return scene;
 }
 
