@@ -119,6 +119,7 @@ size_t parameterBytes(RtsType type) {
   case RTS_FLOATS: return sizeof(RtsFloats);
   case RTS_STRING: return sizeof(const char*);
   case RTS_TEXTURE: return sizeof(RtsTexture);
+  case RTS_TYPE_32_BITS: break;
   }
   return 0;
 }

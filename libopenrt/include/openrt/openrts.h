@@ -44,7 +44,8 @@ typedef enum RtsType {
   RTS_MATRIX,  /* float[16], column-major */
   RTS_FLOATS,  /* RtsFloats */
   RTS_STRING,  /* const char*, never NULL */
-  RTS_TEXTURE  /* RtsTexture */
+  RTS_TEXTURE, /* RtsTexture */
+  RTS_TYPE_32_BITS = 0x7fffffff /* no type: fixes the size of the enumeration */
 } RtsType;
 
 typedef struct RtsFloats {
@@ -109,7 +110,7 @@ typedef struct RtsRays {
 
 /* Classes -------------------------------------------------------------------------------------------------------------------- */
 
-typedef enum RtsKind { RTS_SURFACE = 1, RTS_LIGHT = 2, RTS_CAMERA = 3, RTS_ENVIRONMENT = 4 } RtsKind;
+typedef enum RtsKind { RTS_SURFACE = 1, RTS_LIGHT = 2, RTS_CAMERA = 3, RTS_ENVIRONMENT = 4, RTS_KIND_32_BITS = 0x7fffffff } RtsKind;
 
 /* Answered by RtsClass.traits for one set of parameters */
 enum {
