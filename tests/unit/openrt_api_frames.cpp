@@ -49,6 +49,18 @@ TEST(FramesWithoutBuffer, AFrameNeedsASize) {
   rtDeleteContext(context);
 }
 
+TEST(FramesWithoutBuffer, NothingInFlightHasNoSnapshot) {
+  float pixels[4];
+  EXPECT_EQ(rtSnapshot(nullptr, RT_RGBA, pixels, 4), 0);
+  EXPECT_RT_ERROR(RT_INVALID_VALUE);
+  const RTcontext context = rtNewContext("backend=null");
+  EXPECT_EQ(rtSnapshot(context, RT_RGBA, nullptr, 4), 0);
+  EXPECT_RT_ERROR(RT_INVALID_VALUE);
+  EXPECT_EQ(rtSnapshot(context, RT_RGBA, pixels, 4), 0);
+  EXPECT_RT_ERROR(RT_NO_ERROR);
+  rtDeleteContext(context);
+}
+
 TEST_F(Frames, SwapHasOneFrameOfLatency) {
   float pixels[32];
   rtSwapBuffers();

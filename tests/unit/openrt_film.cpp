@@ -1,6 +1,8 @@
+// openrt_film.cpp: sums of samples, channels, and the picture of a frame that is not finished.
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "render/film.h"
 
@@ -53,4 +55,25 @@ TEST(Film, depthIsInfiniteWhereNothingIsHit) {
   float depth[1];
   ASSERT_TRUE(film.read(RT_DEPTH, depth));
   EXPECT_TRUE(std::isinf(depth[0]));
+}
+
+TEST(Film, unfinishedTilesAreNothing) {
+  Film film(3, 2, RT_RGBA | RT_DEPTH);
+  PixelSums sums;
+  const float radiance[3] = {1, 2, 3};
+  sums.add(radiance, 1);
+  sums.depth = 5;
+  for (uint32_t y = 0; y < 2; y++)
+    for (uint32_t x = 0; x < 3; x++) film.store(x, y, sums);
+  std::vector<float> rgba(24, -1.0f), depth(6, -1.0f);
+  ASSERT_TRUE(film.clear(RT_RGBA, rgba));
+  ASSERT_TRUE(film.clear(RT_DEPTH, depth));
+  const Tile finished{1, 0, 3, 1};
+  film.copy(RT_RGBA, finished, rgba);
+  film.copy(RT_DEPTH, finished, depth);
+  EXPECT_EQ(std::vector<float>(rgba.begin(), rgba.begin() + 8), (std::vector<float>{0, 0, 0, 0, 1, 2, 3, 1}));
+  for (size_t i = 12; i < 24; i++) EXPECT_EQ(rgba[i], 0);
+  EXPECT_TRUE(std::isinf(depth[0]) && depth[1] == 5 && depth[2] == 5 && std::isinf(depth[3]) && std::isinf(depth[5]));
+  EXPECT_FALSE(film.clear(RT_NORMAL, rgba));
+  EXPECT_FALSE(film.clear(RT_RGBA, std::span(rgba).first(23)));
 }
