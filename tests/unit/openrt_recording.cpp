@@ -24,7 +24,7 @@ using Bytes = std::vector<uint8_t>;
 std::unique_ptr<RecordingReader> readerOf(const Bytes& bytes, const ShaderRegistry* shaders = nullptr,
                                           RecordingLimits limits = {}) {
   std::FILE* file = std::tmpfile();
-  std::fwrite(bytes.data(), 1, bytes.size(), file);
+  if (!bytes.empty()) std::fwrite(bytes.data(), 1, bytes.size(), file);
   std::rewind(file);
   return std::make_unique<RecordingReader>(file, "recording", shaders, limits);
 }
