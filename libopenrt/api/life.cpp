@@ -27,6 +27,11 @@ LiveContexts& live() {
   return *contexts;
 }
 
+RTcontext initialContext() {
+  const std::lock_guard lock(live().mutex);
+  return live().initial;
+}
+
 RTcontext handleOf(Context* context) { return reinterpret_cast<RTcontext>(context); }
 
 std::shared_ptr<Context> lookup(RTcontext handle) {
@@ -89,8 +94,12 @@ void initialise(int* argc, char** argv) {
   const bool arguments = argc && argv && *argc > 0;
   std::vector<char*> kept;
   const ContextConfig config = arguments ? configFromArguments(*argc, argv, kept) : ContextConfig();
-  if (live().initial) fail(RT_INVALID_OPERATION, "called twice without rtExit");
-  live().initial = newContext(config);
+  if (initialContext()) fail(RT_INVALID_OPERATION, "called twice without rtExit");
+  const RTcontext made = newContext(config);
+  {
+    const std::lock_guard lock(live().mutex);
+    live().initial = made;
+  }
   if (!arguments) return;
   const bool terminated = static_cast<int>(kept.size()) < *argc; // room for the closing NULL of a main's argv
   std::copy(kept.begin(), kept.end(), argv);
@@ -165,8 +174,9 @@ void rtInit(int* argc, char** argv) {
 
 void rtExit(void) {
   guardedAnywhere("rtExit", 0, [&] {
-    if (!live().initial) fail(RT_INVALID_OPERATION, "rtInit was not called");
-    deleteContext(live().initial);
+    const RTcontext initial = initialContext();
+    if (!initial) fail(RT_INVALID_OPERATION, "rtInit was not called");
+    deleteContext(initial);
     return 0;
   });
 }

@@ -1,5 +1,6 @@
 // commit.h: what travels from the API's front end to a backend: a list of edits (edits.fbs) and the bulk arrays they name.
-// Made on the application's thread, immutable afterwards, read by backends on any thread.
+// Made on the application's thread, immutable afterwards, read by backends on any thread. The order of the edits and what they
+// may name: api/scene_state.h; backend/record/validator.h checks both.
 #pragma once
 
 #include <cstddef>
