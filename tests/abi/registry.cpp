@@ -87,7 +87,7 @@ TEST(Registry, PrefixAndSuffixDoNotMatter) {
 
 TEST(Registry, TakesNoPaths) {
   const ShaderRegistry registry({plugins + "/stock"});
-  for (const char* name : {"../everything", "/tmp/x", "a/b", "..", ".hidden", "a\\b", "x..so"})
+  for (const char* name : {"../everything", "/absolute/x", "a/b", "..", ".hidden", "a\\b", "x..so"})
     EXPECT_NE(refusal(registry, "Everything", name).find("only a bare name is allowed"), std::string::npos) << name;
   EXPECT_NE(refusal(registry, "Everything", std::string("a\0b", 3)).find("only a bare name"), std::string::npos);
   EXPECT_NE(refusal(registry, "Everything", std::string(1000, 'x')).find("only a bare name"), std::string::npos);

@@ -50,7 +50,7 @@ ARROWS = {
     "openrt-render": {"api-h", "shader-sdk", "openrt-scene", "openrt-shading", "common"},
     "openrt-backend": {"api-h", "openrt-scene", "common"},
     "backend-local": {"api-h", "shader-sdk", "openrt-scene", "openrt-shading", "openrt-render", "openrt-backend", "common"},
-    "backend-record": {"api-h", "openrt-scene", "openrt-backend", "common"},
+    "backend-record": {"api-h", "shader-sdk", "openrt-scene", "openrt-shading", "openrt-backend", "common"},  # its reader checks against class tables
     "backend-null": {"api-h", "openrt-scene", "openrt-backend", "common"},
     "backend-cluster": {"api-h", "openrt-scene", "openrt-backend", "common"},
     "openrt-tools": {"api-h", "openrt-scene", "openrt-shading", "openrt-backend", "backend-record", "common"},
