@@ -10,7 +10,7 @@ static constexpr const char* faultTexts[] = {
     "dropped for an index without a point",
     "dropped for coordinates that are not finite",
     "dropped for having no area",
-    "dropped for crossing itself too often",
+    "dropped as too large and tangled to be cut into triangles",
     "dropped beyond the limit 'triangles'",
     "without a colour, drawn white",
     "without a usable normal, drawn with the face's own",

@@ -17,7 +17,7 @@ enum class Fault : uint8_t {
   indexRange,      // an index without a point
   notFinite,       // NaN or infinite coordinates
   noArea,          // all vertices on one line
-  tangled,         // crosses itself too often to be tessellated
+  tangled,         // too large, or crosses itself too often, to be tessellated
   overLimit,       // beyond limits.triangles
   colorMissing,    // no colour for a face or vertex: white
   normalMissing,   // no usable normal: the face's own

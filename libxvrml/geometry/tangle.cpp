@@ -1,5 +1,5 @@
-// tangle.cpp: counts the crossings of a polygon's edges up to a budget, by halving the plane until few edges are left, so that
-// a polygon made to have a billion crossings is found before it is tessellated.
+// tangle.cpp: what a polygon will cost the tessellator, found before it starts. Crossings are counted up to a budget by halving
+// the plane until few edges are left, so that a polygon made to have a billion of them is refused.
 #include <algorithm>
 
 #include "geometry/tessellator.h"
@@ -60,24 +60,54 @@ struct Counter {
 
 } // namespace
 
-bool isTangled(std::span<const V3d> polygon, const V3d& normal, uint64_t budget) {
+PlaneAxes::PlaneAxes(const V3d& normal) {
+  V3d size(std::abs(normal.x), std::abs(normal.y), std::abs(normal.z));
+  w_ = size.x > size.y ? (size.x > size.z ? 0 : 2) : (size.y > size.z ? 1 : 2);
+  u_ = (w_ + 1) % 3;
+  v_ = (w_ + 2) % 3;
+  if (normal[w_] < 0) std::swap(u_, v_);
+}
+
+V3d PlaneAxes::outOf(const V3d& p) const {
+  V3d result;
+  result[u_] = turned_ ? -p.y : p.x;
+  result[v_] = turned_ ? p.x : p.y;
+  result[w_] = p.z;
+  return result;
+}
+
+uint64_t sweepWork(std::span<const V3d> flatPolygon, int axis) {
+  size_t n = flatPolygon.size();
+  std::vector<double> events(n);
+  for (size_t i = 0; i < n; i++) events[i] = flatPolygon[i][axis];
+  std::sort(events.begin(), events.end());
+  auto rank = [&](size_t i) {
+    return uint64_t(std::lower_bound(events.begin(), events.end(), flatPolygon[i][axis]) - events.begin());
+  };
+  uint64_t work = 0, previous = rank(n - 1);
+  for (size_t i = 0; i < n; i++) { // an edge is looked at in each event between its ends
+    uint64_t now = rank(i);
+    work += now > previous ? now - previous : previous - now;
+    previous = now;
+  }
+  return work;
+}
+
+bool isTangled(std::span<const V3d> polygon, uint64_t budget) {
   size_t n = polygon.size();
   if (n < 4) return false;
   if (uint64_t(n) * n / 2 <= budget) return false; // cannot have so many
-  V3d size(std::abs(normal.x), std::abs(normal.y), std::abs(normal.z));
-  int dropped = size.x > size.y ? (size.x > size.z ? 0 : 2) : (size.y > size.z ? 1 : 2);
-  int u = dropped == 0 ? 1 : 0, v = dropped == 2 ? 1 : 2;
   Counter counter;
   counter.crossingBudget = budget;
-  counter.workBudget = 400 * uint64_t(n) + 1'000'000;
-  V2d low(polygon[0][u], polygon[0][v]), high = low;
+  counter.workBudget = 1000 * uint64_t(n) + 1'000'000;
+  V2d low(polygon[0].x, polygon[0].y), high = low;
   std::vector<uint32_t> all(n);
   for (size_t i = 0; i < n; i++) {
     const V3d& a = polygon[i];
     const V3d& b = polygon[i + 1 < n ? i + 1 : 0];
-    counter.edges.push_back({{a[u], a[v]}, {b[u], b[v]}});
-    low = {std::min(low.x, a[u]), std::min(low.y, a[v])};
-    high = {std::max(high.x, a[u]), std::max(high.y, a[v])};
+    counter.edges.push_back({{a.x, a.y}, {b.x, b.y}});
+    low = {std::min(low.x, a.x), std::min(low.y, a.y)};
+    high = {std::max(high.x, a.x), std::max(high.y, a.y)};
     all[i] = uint32_t(i);
   }
   counter.visit(all, low, high, 0);

@@ -50,8 +50,26 @@ class Tessellator {
   std::vector<Crossing> crossings_;
 };
 
-// True if a closed polygon crosses itself so often that tessellating it (quadratic in the worst case) would take too long or
+// Polygons are given to the tessellator lying in a plane: x and y in the plane, z across. The tessellator sweeps along x and
+// searches the edges it crosses one by one, so the plane is turned by a quarter where that means less work.
+class PlaneAxes {
+ public:
+  // The coordinate plane that faces `normal` most, counterclockwise about it.
+  explicit PlaneAxes(const V3d& normal);
+  void turn() { turned_ = !turned_; }
+  V3d into(const V3d& p) const { return turned_ ? V3d(p[v_], -p[u_], p[w_]) : V3d(p[u_], p[v_], p[w_]); }
+  V3d outOf(const V3d& p) const;
+
+ private:
+  int u_, v_, w_;
+  bool turned_ = false;
+};
+
+// How many edges the tessellator will look at when it sweeps along x (axis 0) or would along y (axis 1).
+uint64_t sweepWork(std::span<const V3d> flatPolygon, int axis);
+
+// True if a flat polygon crosses itself so often that tessellating it (quadratic in the worst case) would take too long or
 // too much memory: more than `budget` crossings, or too tangled to tell quickly.
-bool isTangled(std::span<const V3d> polygon, const V3d& normal, uint64_t budget);
+bool isTangled(std::span<const V3d> flatPolygon, uint64_t budget);
 
 } // namespace xvrml

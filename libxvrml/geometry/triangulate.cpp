@@ -17,7 +17,7 @@ class Triangulation {
   std::vector<uint32_t> run() {
     triangles_.reserve(
         set_.corners.size() > 2 * size_t(set_.faceCount()) ? 3 * (set_.corners.size() - 2 * size_t(set_.faceCount())) : 0);
-    crossingBudget_ = 4 * set_.corners.size() + 1'000'000;
+    crossingBudget_ = set_.corners.size() / 4 + 200'000;
     for (uint32_t face = 0; face < set_.faceCount(); face++) {
       const Vec3f& n = normals_[face];
       if (n.x == 0 && n.y == 0 && n.z == 0) continue; // counted with the normals
@@ -99,13 +99,15 @@ class Triangulation {
 
   void tessellate(uint32_t face, uint32_t first, uint32_t count, const V3d& normal) {
     contour_.clear();
-    for (uint32_t i = 0; i < count; i++) contour_.push_back(point(first + i) - point(first)); // small numbers far out
-    if (isTangled(contour_, normal, std::min<uint64_t>(crossingBudget_, 4 * uint64_t(count) + 100'000))) {
+    PlaneAxes axes(normal);
+    V3d origin = point(first); // small numbers far out
+    for (uint32_t i = 0; i < count; i++) contour_.push_back(axes.into(point(first + i) - origin));
+    if (!affordable(axes, count)) {
       faults_.add(Fault::tangled, set_.name(face));
       return;
     }
     if (!tessellator_) tessellator_.emplace();
-    tessellator_->begin(normal, Tessellator::Winding::odd);
+    tessellator_->begin({0, 0, 1}, Tessellator::Winding::odd);
     tessellator_->contour(contour_);
     if (!tessellator_->end()) {
       faults_.add(Fault::tangled, set_.name(face));
@@ -115,14 +117,28 @@ class Triangulation {
     crossingBudget_ -= std::min<uint64_t>(crossingBudget_, crossings);
     // Vertices in the tessellator's numbering: the face's corners, then the crossings, made corners here.
     uint32_t added = uint32_t(set_.corners.size());
-    V3d origin = point(first);
-    for (const auto& crossing : tessellator_->crossings()) addCorner(face, first, count, added, origin, crossing);
+    for (const auto& crossing : tessellator_->crossings())
+      addCorner(face, first, count, added, axes.outOf(crossing.point) + origin, crossing);
     auto corner = [&](uint32_t vertex) { return vertex < count ? first + vertex : added + (vertex - count); };
     const auto& t = tessellator_->triangles();
     for (size_t i = 0; i + 2 < t.size(); i += 3) add(corner(t[i]), corner(t[i + 1]), corner(t[i + 2]));
   }
 
-  void addCorner(uint32_t face, uint32_t first, uint32_t count, uint32_t added, const V3d& origin,
+  // Large polygons are looked at first: the tessellator takes time by the square of some of them. Turns the plane if that helps.
+  bool affordable(PlaneAxes& axes, uint32_t count) {
+    if (count < 200) return crossingBudget_ > 0; // quick even if every edge crosses every other
+    uint64_t alongX = sweepWork(contour_, 0), alongY = sweepWork(contour_, 1), work = std::min(alongX, alongY);
+    if (work > sweepBudget_ || isTangled(contour_, std::min<uint64_t>(crossingBudget_, 4 * uint64_t(count) + 20'000)))
+      return false;
+    sweepBudget_ -= work;
+    if (alongY < alongX) {
+      axes.turn();
+      for (V3d& p : contour_) p = {p.y, -p.x, p.z};
+    }
+    return true;
+  }
+
+  void addCorner(uint32_t face, uint32_t first, uint32_t count, uint32_t added, const V3d& place,
                  const Tessellator::Crossing& c) {
     uint32_t from[4];
     for (uint32_t i = 0; i < c.count; i++) from[i] = c.from[i] < count ? first + c.from[i] : added + (c.from[i] - count);
@@ -172,7 +188,7 @@ class Triangulation {
           return Color{float(sum.x), float(sum.y), float(sum.z)};
         });
     if (set_.points.data() != set_.ownPoints.data()) set_.ownPoints.assign(set_.points.begin(), set_.points.end());
-    set_.ownPoints.push_back(toVec3f(c.point + origin));
+    set_.ownPoints.push_back(toVec3f(place));
     set_.points = set_.ownPoints;
     set_.corners.push_back(uint32_t(set_.points.size() - 1));
     set_.extraFaces.push_back(face);
@@ -188,7 +204,7 @@ class Triangulation {
   FaceSet& set_;
   std::span<const Vec3f> normals_;
   Faults& faults_;
-  uint64_t limit_, crossingBudget_ = 0;
+  uint64_t limit_, crossingBudget_ = 0, sweepBudget_ = 20'000'000;
   std::optional<Tessellator> tessellator_;
   std::vector<V3d> contour_;
   std::vector<uint32_t> triangles_;
