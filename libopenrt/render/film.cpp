@@ -39,7 +39,11 @@ Film::Film(uint32_t width, uint32_t height, uint32_t channels) : width_(width), 
   if (has(RT_DEPTH)) std::fill(plane(RT_DEPTH).begin(), plane(RT_DEPTH).end(), std::numeric_limits<float>::infinity());
 }
 
-std::vector<float>& Film::plane(uint32_t channel) { return planes_[std::countr_zero(channel)]; }
+namespace {
+size_t planeOf(uint32_t channel) { return size_t(std::countr_zero(channel)) & 7; } // one of the eight bits
+} // namespace
+
+std::vector<float>& Film::plane(uint32_t channel) { return planes_[planeOf(channel)]; }
 
 void Film::store(uint32_t x, uint32_t y, const PixelSums& s) {
   const size_t pixel = size_t(y) * width_ + x;
@@ -62,7 +66,7 @@ void Film::store(uint32_t x, uint32_t y, const PixelSums& s) {
 
 bool Film::read(uint32_t channel, std::span<float> out) const {
   if (!std::has_single_bit(channel) || !has(channel)) return false;
-  const auto& source = planes_[std::countr_zero(channel)];
+  const auto& source = planes_[planeOf(channel)];
   if (out.size() < source.size()) return false;
   std::copy(source.begin(), source.end(), out.begin());
   return true;
@@ -77,7 +81,7 @@ bool Film::clear(uint32_t channel, std::span<float> out) const {
 }
 
 void Film::copy(uint32_t channel, const Tile& tile, std::span<float> out) const {
-  const auto& source = planes_[std::countr_zero(channel)];
+  const auto& source = planes_[planeOf(channel)];
   const size_t components = channelComponents(channel);
   for (uint32_t y = tile.y0; y < tile.y1; y++) {
     const size_t first = (size_t(y) * width_ + tile.x0) * components;
