@@ -19,14 +19,11 @@ foreach(folder ${xvrml_includes}) # the folder of generated headers is the one i
     install(DIRECTORY ${CMAKE_MATCH_1}/xvrml DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h")
   endif()
 endforeach()
-install(TARGETS nodegen)
+install(TARGETS nodegen vv)
 install(DIRECTORY libxvrml/nodes/ DESTINATION ${CMAKE_INSTALL_DATADIR}/xvrml/nodes FILES_MATCHING PATTERN "*.node")
 install(FILES ${CMAKE_BINARY_DIR}/libxvrml/generated/nodes.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
-if(TARGET vv)
-  install(TARGETS vv)
-endif()
 if(OPENRT_PYTHON)
-  install(DIRECTORY ${CMAKE_BINARY_DIR}/python/ DESTINATION ${CMAKE_INSTALL_LIBDIR}/openrt/python OPTIONAL
+  install(DIRECTORY ${CMAKE_BINARY_DIR}/python/ DESTINATION ${CMAKE_INSTALL_LIBDIR}/openrt/python
           PATTERN "__pycache__" EXCLUDE)
 endif()
 install(FILES README.md LICENSE CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
