@@ -90,7 +90,7 @@ class CommitMaker {
       if (!state.committed) {
         edit::ShaderT e;
         e.id = id, e.shaderClass = state.shaderClass;
-        add(std::move(e));
+        add(e);
       }
       for (const auto& [index, parameter] : state.parameters) add(edit::ParameterT(parameter));
     });
@@ -155,7 +155,7 @@ class CommitMaker {
     if (scene_.defaultShader.dirty) {
       edit::DefaultShaderT e;
       e.shader = scene_.defaultShader.shader;
-      add(std::move(e));
+      add(e);
     }
     if (scene_.frameDirty) add(edit::FrameSettingsT(scene_.frame));
   }

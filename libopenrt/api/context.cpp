@@ -106,9 +106,9 @@ void Context::commit() {
 }
 
 void Context::start() {
-  edit::FrameSettingsT settings = scene.frame;
+  const edit::FrameSettingsT settings = scene.frame;
   backend_->start();
-  flying_ = std::move(settings);
+  flying_ = settings;
   inFlight_ = true;
 }
 
@@ -117,7 +117,7 @@ void Context::swapBuffers() {
   if (inFlight_) {
     inFlight_ = false;
     backend_->wait();
-    finished_ = std::move(flying_);
+    finished_ = flying_;
   }
   commit();
   start();
@@ -129,13 +129,13 @@ void Context::render() {
     backend_->cancel();
     inFlight_ = false;
     backend_->wait();
-    finished_ = std::move(flying_);
+    finished_ = flying_;
   }
   commit();
   start();
   inFlight_ = false;
   backend_->wait();
-  finished_ = std::move(flying_);
+  finished_ = flying_;
 }
 
 void Context::cancel() {

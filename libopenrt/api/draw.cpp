@@ -116,7 +116,7 @@ ArrayPtr collectIndices(const DrawCall& call, const float* points, uint64_t& deg
   const size_t room = indexCount(call.mode, call.count);
   auto array = std::make_shared<Array>(room * sizeof(uint32_t));
   uint32_t* out = reinterpret_cast<uint32_t*>(array->data());
-  const uint32_t* end;
+  const uint32_t* end = nullptr;
   if (call.indices)
     end = writeIndices(
         call.mode, call.count, points, [&](size_t i) { return call.indices[i]; }, out, degenerate);

@@ -76,9 +76,10 @@ std::string lowerCase(std::string_view text) {
 }
 
 std::string libraryFile(const std::string& folder, const std::string& bareName) {
-  for (const std::string& candidate : {folder + "/" + bareName + ".so", folder + "/lib" + bareName + ".so"}) {
+  for (const char* prefix : {"", "lib"}) {
+    const fs::path candidate = fs::path(folder) / (prefix + bareName + ".so");
     std::error_code ignored;
-    if (fs::is_regular_file(candidate, ignored)) return candidate;
+    if (fs::is_regular_file(candidate, ignored)) return candidate.string();
   }
   return {};
 }
