@@ -46,6 +46,7 @@ struct Renderer::Impl {
 
   // On the render thread.
   std::unique_ptr<xvrml::OpenRTMapper> mapper;
+  double meshSeconds = 0;
   bool pluginMissing = false, memoryExhausted = false;
 
   // Between the threads. `task` is set by the caller and cleared by the render thread when it is done.
@@ -122,11 +123,13 @@ struct Renderer::Impl {
       context = made;
     }
     rtErrorCallback(note, this);
+    const auto begin = Clock::now();
     xvrml::MapOptions options;
     options.linearColor = settings.linear;
     options.headlight = settings.headlight;
     options.aspect = double(settings.width) / settings.height;
     mapper = std::make_unique<xvrml::OpenRTMapper>(world, options);
+    meshSeconds = secondsSince(begin);
   }
 
   void setUpFrame() {
@@ -175,7 +178,7 @@ struct Renderer::Impl {
   void render(const View& view, RenderResult& result) {
     auto start = Clock::now();
     prepare(view);
-    result.mapSeconds = secondsSince(start);
+    result.mapSeconds = secondsSince(start) + std::exchange(meshSeconds, 0); // meshes are made once, with the first picture
     setUpFrame();
     start = Clock::now();
     rtRender();

@@ -161,7 +161,10 @@ std::vector<int32_t> integerList(const py::handle& object, const Target& target)
 int32_t integer(const py::handle& object, const Target& target) {
   if (PyBool_Check(object.ptr()) || !PyIndex_Check(object.ptr())) target.wrongType(object);
   auto number = py::reinterpret_steal<py::object>(PyNumber_Index(object.ptr()));
-  if (!number) throw py::error_already_set();
+  if (!number) { // an array with an index method that refuses
+    PyErr_Clear();
+    target.wrongType(object);
+  }
   int overflow = 0;
   const long long v = PyLong_AsLongLongAndOverflow(number.ptr(), &overflow);
   if (overflow) target.wrongValue("not " + std::string(py::str(number)));
@@ -187,7 +190,9 @@ bool boolean(const py::handle& object, const Target& target) {
 
 std::string text(const py::handle& object, const Target& target) {
   if (!py::isinstance<py::str>(object)) target.wrongType(object);
-  return fromText(object);
+  try {
+    return fromText(object);
+  } catch (py::error_already_set&) { target.wrongValue("not half a surrogate pair"); }
 }
 
 // Rows run from the top in Python, as in every other picture there, and from the bottom in VRML.
