@@ -81,7 +81,8 @@ class Flattener {
         result_.truncated = true;
         return;
       } else {
-        result_.placements.push_back({object, frame.instance, frame.shader, frame.lightSet, frame.name, frame.userData, frame.matrix});
+        result_.placements.push_back(
+            {object, frame.instance, frame.shader, frame.lightSet, frame.name, frame.userData, frame.matrix});
       }
     }
     if (!scene_.childrenOf(object).empty()) stack_.push_back(frame);

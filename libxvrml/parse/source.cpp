@@ -154,11 +154,12 @@ void Source::unpack(const std::string& name, const Limits& limits) {
     owned_ = inflateAll(text_, name, limits, damage_);
     text_ = owned_;
   }
-  if (text_.starts_with("\xef\xbb\xbf")) text_.remove_prefix(3);
+  if ((byteOrderMark_ = text_.starts_with("\xef\xbb\xbf"))) text_.remove_prefix(3);
 }
 
 Source::Source(Source&& other) noexcept
-    : text_(other.text_), mapping_(std::exchange(other.mapping_, nullptr)), mappedBytes_(other.mappedBytes_) {
+    : text_(other.text_), mapping_(std::exchange(other.mapping_, nullptr)), mappedBytes_(other.mappedBytes_),
+      byteOrderMark_(other.byteOrderMark_) {
   const size_t offset = other.owned_.empty() ? 0 : static_cast<size_t>(text_.data() - other.owned_.data());
   owned_ = std::move(other.owned_);
   damage_ = std::move(other.damage_);
@@ -176,8 +177,9 @@ void Source::checkHeader(const std::shared_ptr<const std::string>& file, Diagnos
     return rest.empty() || rest[0] == ' ' || rest[0] == '\t' || rest[0] == '\n' || rest[0] == '\r';
   };
   if (!damage_.empty()) diagnostics.warn({file, 0, 0}, damage_);
-  if (text_.starts_with(exact) && ends(text_.substr(exact.size()))) return;
   const auto warn = [&](std::string message) { diagnostics.warn({file, 1, 1}, std::move(message)); };
+  if (byteOrderMark_) warn("the file begins with a byte-order mark, which a VRML97 header does not have; ignored");
+  if (text_.starts_with(exact) && ends(text_.substr(exact.size()))) return;
   // The first lines that say something: blank lines and other comments before the header happen.
   std::string_view rest = text_;
   for (int line = 1; line <= 10 && !rest.empty(); ++line) {

@@ -33,6 +33,7 @@ class Source {
   std::string damage_; // what is wrong with gzip data of which something could be read
   void* mapping_ = nullptr;
   size_t mappedBytes_ = 0;
+  bool byteOrderMark_ = false; // there was one; text_ begins behind it
 };
 
 } // namespace xvrml

@@ -35,16 +35,16 @@ typedef uint32_t RtsTexture;      /* 0: none */
 
 /* C type in the parameter struct */
 typedef enum RtsType {
-  RTS_INT = 1, /* int32_t */
-  RTS_FLOAT,   /* float */
-  RTS_VEC2,    /* float[2] */
-  RTS_VEC3,    /* float[3] */
-  RTS_VEC4,    /* float[4] */
-  RTS_COLOR,   /* float[3], linear */
-  RTS_MATRIX,  /* float[16], column-major */
-  RTS_FLOATS,  /* RtsFloats */
-  RTS_STRING,  /* const char*, never NULL */
-  RTS_TEXTURE, /* RtsTexture */
+  RTS_INT = 1,                  /* int32_t */
+  RTS_FLOAT,                    /* float */
+  RTS_VEC2,                     /* float[2] */
+  RTS_VEC3,                     /* float[3] */
+  RTS_VEC4,                     /* float[4] */
+  RTS_COLOR,                    /* float[3], linear */
+  RTS_MATRIX,                   /* float[16], column-major */
+  RTS_FLOATS,                   /* RtsFloats */
+  RTS_STRING,                   /* const char*, never NULL */
+  RTS_TEXTURE,                  /* RtsTexture */
   RTS_TYPE_32_BITS = 0x7fffffff /* no type: fixes the size of the enumeration */
 } RtsType;
 
@@ -110,7 +110,13 @@ typedef struct RtsRays {
 
 /* Classes -------------------------------------------------------------------------------------------------------------------- */
 
-typedef enum RtsKind { RTS_SURFACE = 1, RTS_LIGHT = 2, RTS_CAMERA = 3, RTS_ENVIRONMENT = 4, RTS_KIND_32_BITS = 0x7fffffff } RtsKind;
+typedef enum RtsKind {
+  RTS_SURFACE = 1,
+  RTS_LIGHT = 2,
+  RTS_CAMERA = 3,
+  RTS_ENVIRONMENT = 4,
+  RTS_KIND_32_BITS = 0x7fffffff /* no kind: fixes the size of the enumeration */
+} RtsKind;
 
 /* Answered by RtsClass.traits for one set of parameters */
 enum {

@@ -119,7 +119,8 @@ const Scope* inlineScope(const Node& inlineNode);
 // VRML97 text of a world that parses to an equal graph. Numbers are the shortest that read back equal.
 std::string writeWorld(const World& world);
 
-// True if both scopes hold equal graphs: same nodes, fields, DEF/USE structure, prototypes, routes. difference, if not null, says where not.
+// True if both scopes hold equal graphs: same nodes, fields, DEF/USE structure, prototypes, routes. difference,
+// if not null, says where not.
 bool equalScopes(const Scope& a, const Scope& b, std::string* difference = nullptr);
 
 } // namespace xvrml
