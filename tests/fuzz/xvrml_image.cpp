@@ -1,0 +1,21 @@
+// xvrml_image.cpp: any bytes as a picture. The first byte chooses the format, so that the fuzzer need not find its magic number.
+// libFuzzer calls this on one thread.
+#include <cstdint>
+#include <cstring>
+#include <stdexcept>
+#include <vector>
+
+#include "image/image.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) try {
+  if (size == 0) return 0;
+  static const char* const magic[] = {"", "\x89PNG\r\n\x1a\n", "\xff\xd8\xff", "GIF89a"};
+  const char* start = magic[data[0] & 3];
+  std::vector<uint8_t> bytes(start, start + std::strlen(start));
+  bytes.insert(bytes.end(), data + 1, data + size);
+  xvrml::Limits limits;
+  limits.imagePixels = 1 << 20;
+  const xvrml::Image image = xvrml::decodeImage(bytes.data(), bytes.size(), limits);
+  if (image.pixels.size() != size_t(image.width) * size_t(image.height) * size_t(image.components)) __builtin_trap();
+  return 0;
+} catch (const std::runtime_error&) { return 0; }
