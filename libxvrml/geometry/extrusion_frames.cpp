@@ -84,6 +84,7 @@ std::vector<SpineFrame> spineFrames(std::span<const Vec3f> spine, bool closed) {
     for (size_t i = 0; i < n; i++) frames[i] = frame(y[i], z[i]);
   }
   std::vector<SpineFrame> result;
+  result.reserve(placeOf.size());
   for (size_t place : placeOf) result.push_back(frames[place]);
   return result;
 }

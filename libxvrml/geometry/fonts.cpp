@@ -40,7 +40,7 @@ bool match(const std::string& name, bool bold, bool italic, const std::string& l
   if (!language.empty()) FcPatternAddString(pattern.get(), FC_LANG, fc(language.c_str()));
   FcConfigSubstitute(nullptr, pattern.get(), FcMatchPattern);
   FcDefaultSubstitute(pattern.get());
-  FcResult outcome;
+  FcResult outcome = FcResultNoMatch;
   Pattern found(FcFontMatch(nullptr, pattern.get(), &outcome));
   if (!found) return false;
   FcChar8 *file = nullptr, *family = nullptr;
