@@ -2,12 +2,16 @@
 import os
 import pathlib
 import shutil
+import signal
 import struct
 import subprocess
 
 import pytest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+
+# A shell that runs the tests in the background has them start with SIGINT ignored, which the programs under test would inherit.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 BOX = """#VRML V2.0 utf8
 Viewpoint { position 0 0 5 description "front" }
