@@ -5,25 +5,16 @@
 #include <limits>
 
 #include "api/guard.h"
+#include "scene/channels.h"
 
 using namespace openrt;
 
 namespace {
 
-constexpr uint32_t allChannels = RT_RGBA | RT_DEPTH | RT_NORMAL | RT_ALBEDO | RT_POSITION | RT_NAME | RT_SAMPLES | RT_VARIANCE;
-
 size_t componentsOf(RTenum channel) {
-  switch (channel) {
-  case RT_RGBA: return 4;
-  case RT_NORMAL:
-  case RT_ALBEDO:
-  case RT_POSITION:
-  case RT_VARIANCE: return 3;
-  case RT_DEPTH:
-  case RT_NAME:
-  case RT_SAMPLES: return 1;
-  default: fail(RT_INVALID_ENUM, "unknown channel " + std::to_string(channel));
-  }
+  const size_t components = channelComponents(channel);
+  if (components == 0) fail(RT_INVALID_ENUM, "unknown channel " + std::to_string(channel));
+  return components;
 }
 
 void setFrameBuffer(Context& c, int width, int height, uint32_t channels) {

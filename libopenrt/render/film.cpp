@@ -7,20 +7,6 @@
 
 namespace openrt {
 
-uint32_t channelComponents(uint32_t channel) {
-  switch (channel) {
-  case RT_RGBA: return 4;
-  case RT_NORMAL:
-  case RT_ALBEDO:
-  case RT_POSITION:
-  case RT_VARIANCE: return 3;
-  case RT_DEPTH:
-  case RT_NAME:
-  case RT_SAMPLES: return 1;
-  }
-  return 0;
-}
-
 void PixelSums::add(const float radiance[3], float alpha) {
   for (int k = 0; k < 3; k++) {
     if (samples == 0) first[k] = radiance[k];

@@ -7,10 +7,9 @@
 #include <vector>
 
 #include "openrt/openrt.h"
+#include "scene/channels.h"
 
 namespace openrt {
-
-uint32_t channelComponents(uint32_t channel); // 0: no such channel
 
 struct PixelSums { // of one pixel, samples added in their order
   double rgba[4] = {}, normal[3] = {}, albedo[3] = {};

@@ -109,6 +109,12 @@ void TileRenderer::wave(uint32_t firstSample, uint32_t samples) {
   addToPixels(paths, firstSample, samples);
 }
 
+RtsBatch TileRenderer::makeBatch() {
+  RtsBatch batch;
+  batch.scene = &scene_, batch.arena = &arena_, batch.counters = &counters_;
+  return batch;
+}
+
 void TileRenderer::makeCameraRays(Paths& paths, uint32_t firstSample) {
   const uint32_t n = paths.rays.count, size = padded(n);
   const uint32_t samples = n / uint32_t(pixels_.size());
@@ -134,8 +140,7 @@ void TileRenderer::makeCameraRays(Paths& paths, uint32_t firstSample) {
   }
   const float* points[2] = {xy[0], xy[1]};
   const float extent[2] = {float(film_.width()), float(film_.height())};
-  RtsBatch batch;
-  batch.scene = &scene_, batch.arena = &arena_, batch.counters = &counters_;
+  RtsBatch batch = makeBatch();
   const ShaderSlot& camera = scene_.camera.shader;
   camera.shaderClass->generate(&scene_.host, &batch, camera.params, n, points, extent, &local);
   const Affine& m = scene_.camera.fromLocal;
@@ -169,8 +174,7 @@ void TileRenderer::background(Paths& paths, const uint32_t* missed, uint32_t n) 
     const float s = 1 / std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
     for (int k = 0; k < 3; k++) direction[k][i] = d[k] * s;
   }
-  RtsBatch batch;
-  batch.scene = &scene_, batch.arena = &arena_, batch.counters = &counters_;
+  RtsBatch batch = makeBatch();
   const float* directions[3] = {direction[0], direction[1], direction[2]};
   environment.shaderClass->miss(&scene_.host, &batch, environment.params, n, directions, rgba);
   for (uint32_t i = 0; i < n; i++) {
@@ -226,8 +230,7 @@ void TileRenderer::attenuate(const Points& points, float* fog[4]) {
       for (int j = 0; j < 3; j++) fromEye[k][i] += m.r[k][j] * (points.hits.position[j][i] - scene_.eye[j]);
     }
   for (int k = 0; k < 4; k++) fog[k] = arena_.takeZero<float>(size);
-  RtsBatch batch;
-  batch.scene = &scene_, batch.arena = &arena_, batch.counters = &counters_;
+  RtsBatch batch = makeBatch();
   const float* vectors[3] = {fromEye[0], fromEye[1], fromEye[2]};
   environment.shaderClass->attenuate(&scene_.host, &batch, environment.params, n, vectors, fog, fog[3]);
 }
@@ -245,8 +248,8 @@ void TileRenderer::shadeRange(Paths& paths, const RayHits& hits, const BucketRan
   }
   {
     ArenaScope inner(arena_);
-    RtsBatch batch;
-    batch.scene = &scene_, batch.arena = &arena_, batch.counters = &counters_, batch.points = &points;
+    RtsBatch batch = makeBatch();
+    batch.points = &points;
     batch.lightSet = bucket.lightSet;
     bucket.shaderClass->shade(&scene_.host, &batch, &points.hits, &shaded);
   }

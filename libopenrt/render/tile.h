@@ -22,6 +22,7 @@ class TileRenderer {
   struct Paths; // structure of arrays, one entry a path
 
   void wave(uint32_t firstSample, uint32_t samples);
+  RtsBatch makeBatch();
   void makeCameraRays(Paths& paths, uint32_t firstSample);
   void background(Paths& paths, const uint32_t* missed, uint32_t n);
   void shadeRange(Paths& paths, const RayHits& hits, const BucketRange& range, const uint32_t* order);

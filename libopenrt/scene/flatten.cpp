@@ -12,14 +12,10 @@ namespace {
 class Flattener {
  public:
   explicit Flattener(const Scene& scene) : scene_(scene) {
-    for (const auto& [id, light] : scene.lights) {
-      if (light.scope)
-        scoped_[light.scope].push_back(id);
-      else
-        unscoped_.push_back(id);
-    }
-    result_.lightSets.push_back(unscoped_);
-    setOf_[unscoped_] = 0;
+    for (const auto& [id, light] : scene.lights)
+      if (light.scope) scoped_[light.scope].push_back(id);
+    result_.lightSets.push_back(unscopedLights(scene));
+    setOf_[result_.lightSets[0]] = 0;
   }
 
   Flattened run() {
@@ -124,13 +120,19 @@ class Flattener {
   const Scene& scene_;
   Flattened result_;
   std::vector<Frame> stack_;
-  std::vector<uint32_t> unscoped_;
   std::unordered_map<uint32_t, std::vector<uint32_t>> scoped_;
   std::map<std::vector<uint32_t>, uint32_t> setOf_;
   std::unordered_map<uint32_t, uint8_t> drawable_;
 };
 
 } // namespace
+
+std::vector<uint32_t> unscopedLights(const Scene& scene) {
+  std::vector<uint32_t> result;
+  for (const auto& [id, light] : scene.lights)
+    if (!light.scope) result.push_back(id);
+  return result;
+}
 
 Flattened flatten(const Scene& scene) { return Flattener(scene).run(); }
 

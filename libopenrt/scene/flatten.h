@@ -28,6 +28,9 @@ struct Flattened {
 
 inline constexpr size_t maxPlacements = 4'000'000;
 
+// Ids of the lights that shine on everything: light set 0.
+std::vector<uint32_t> unscopedLights(const Scene& scene);
+
 Flattened flatten(const Scene& scene);
 
 } // namespace openrt

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstring>
 #include <stdexcept>
+#include <string>
 
 namespace openrt {
 namespace {
@@ -70,7 +71,8 @@ void LocalBackend::prepare() {
   if (rebuild) {
     flat_ = flatten(scene_);
     if (flat_.truncated && options_.log)
-      options_.log(3, "too many placed objects: only the first 4,000,000 are drawn", options_.logUser);
+      options_.log(3, ("too many placed objects: only the first " + std::to_string(maxPlacements) + " are drawn").c_str(),
+                   options_.logUser);
     accel_ = std::make_shared<Accel>(device_, scene_, flat_, *next->shaders, origin, pixel);
     if (const RTCError error = rtcGetDeviceError(device_->device); error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
     flat_.placements = {}; // only the light sets are needed again
@@ -78,7 +80,7 @@ void LocalBackend::prepare() {
     scopedLights_ = scoped;
     buildSeconds_ = now() - begin;
   } else if (c.lights) {
-    flat_.lightSets = flatten(scene_).lightSets;
+    flat_.lightSets = {unscopedLights(scene_)}; // no light is scoped, nor was: there is but this set
   }
   next->kernel = accel_;
   next->records = accel_->records;

@@ -1,0 +1,28 @@
+// channels.h: the channels of a picture (openrt.h) and their floats per pixel; one table for the front end and the film.
+#pragma once
+
+#include <cstdint>
+
+#include "openrt/openrt.h"
+
+namespace openrt {
+
+inline constexpr uint32_t allChannels =
+    RT_RGBA | RT_DEPTH | RT_NORMAL | RT_ALBEDO | RT_POSITION | RT_NAME | RT_SAMPLES | RT_VARIANCE;
+
+// Floats per pixel of one channel; 0: no such channel.
+constexpr uint32_t channelComponents(uint32_t channel) {
+  switch (channel) {
+  case RT_RGBA: return 4;
+  case RT_NORMAL:
+  case RT_ALBEDO:
+  case RT_POSITION:
+  case RT_VARIANCE: return 3;
+  case RT_DEPTH:
+  case RT_NAME:
+  case RT_SAMPLES: return 1;
+  }
+  return 0;
+}
+
+} // namespace openrt
