@@ -27,7 +27,7 @@ struct Digits {
 };
 inline Digits readDigits(const char* p) {
   static_assert(std::endian::native == std::endian::little);
-  uint64_t bytes;
+  uint64_t bytes = 0;
   std::memcpy(&bytes, p, 8);
   bytes ^= 0x3030303030303030; // digits become 0..9
   // A byte above 9 gets its top bit set: either it has a high nibble, or adding 0x76 to it carries into bit 7.

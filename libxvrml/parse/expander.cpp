@@ -44,7 +44,7 @@ uint64_t nodeBytes(Node& node) {
   return bytes;
 }
 
-void collectNodes(std::vector<Node*> roots, std::vector<Node*>& nodes, std::unordered_map<const Node*, uint32_t>& index) {
+void collectNodes(const std::vector<Node*>& roots, std::vector<Node*>& nodes, std::unordered_map<const Node*, uint32_t>& index) {
   const auto add = [&](Node* node) {
     if (node && index.try_emplace(node, static_cast<uint32_t>(nodes.size())).second) nodes.push_back(node);
   };
@@ -82,7 +82,7 @@ Expander::PlanPtr Expander::plan(const ProtoPtr& declaration, const SourcePositi
     return known;
   }
   known = std::make_shared<Plan>();
-  const PlanPtr plan = known; // the table may move
+  PlanPtr plan = known; // the table may move
   plan->declaration = declaration;
   plan->computing = true;
   std::vector<Node*> roots;

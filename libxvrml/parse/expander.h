@@ -55,7 +55,7 @@ class Expander {
 };
 
 // Every node that the given ones hold in their fields, themselves first, each once. A loop: graphs may be deep.
-void collectNodes(std::vector<Node*> roots, std::vector<Node*>& nodes, std::unordered_map<const Node*, uint32_t>& index);
+void collectNodes(const std::vector<Node*>& roots, std::vector<Node*>& nodes, std::unordered_map<const Node*, uint32_t>& index);
 // Rough size of a node in memory.
 uint64_t nodeBytes(Node& node);
 

@@ -52,7 +52,8 @@ struct ProtoDeclaration {
   SourcePosition source;
 };
 
-// An instance of a prototype: the interface's values, and a copy of the body made for it.
+// An instance of a prototype: the interface's values, and a copy of the body made for it. Nodes of the body that neither a
+// connection, a route nor a Script reaches (shapes, geometry, appearances and what holds only such) are one for all instances.
 class ProtoInstance : public DynamicNode {
  public:
   ProtoInstance(NodeTypePtr type, ProtoPtr declaration) : DynamicNode(std::move(type)), declaration(std::move(declaration)) {}
