@@ -116,7 +116,7 @@ class CommitMaker {
   void addObjects() {
     forEachDirty(scene_.objects, [&](RTid id, ObjectState& state) {
       edit::ObjectT e;
-      e.id = id;
+      e.id = id, e.dynamic = state.dynamic;
       for (const BuiltGeometry& built : state.geometries) e.geometries.push_back(toEditGeometry(built));
       add(std::move(e));
     });
@@ -127,7 +127,7 @@ class CommitMaker {
       edit::InstanceT e;
       e.id = id, e.parent = state.parent, e.object = state.object, e.shader = state.shader;
       e.matrix = toEdit(state.matrix);
-      e.visible = state.visible, e.userData = state.userData, e.name = state.name;
+      e.visible = state.visible, e.userData = state.userData, e.name = state.name, e.dynamic = state.dynamic;
       add(std::move(e));
     });
   }

@@ -13,6 +13,11 @@ template <class Change> void changeInstance(Context& c, RTid id, const Change& c
   change(state);
 }
 
+bool isDynamic(RTenum hint) {
+  require(hint == RT_STATIC || hint == RT_DYNAMIC, RT_INVALID_ENUM, "the hint is neither RT_STATIC nor RT_DYNAMIC");
+  return hint == RT_DYNAMIC;
+}
+
 RTid beginObject(Context& c, RTid id) {
   c.requireOutsideDefinition();
   if (id != 0) c.scene.object(id);
@@ -103,6 +108,17 @@ void rtInstanceShader(RTid instance, RTid shader) {
     c.scene.requireKind(shader, RTS_SURFACE);
     changeInstance(c, instance, [&](InstanceState& s) { s.shader = shader; });
   });
+}
+
+void rtInstanceHint(RTid instance, RTenum hint) {
+  guarded("rtInstanceHint", [&](Context& c) {
+    const bool dynamic = isDynamic(hint);
+    changeInstance(c, instance, [&](InstanceState& s) { s.dynamic = dynamic; });
+  });
+}
+
+void rtObjectHint(RTid object, RTenum hint) {
+  guarded("rtObjectHint", [&](Context& c) { c.scene.object(object).dynamic = isDynamic(hint); });
 }
 
 void rtInstanceUserData(RTid instance, uint64_t data) {

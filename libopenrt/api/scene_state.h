@@ -33,6 +33,7 @@ struct ObjectState {
   std::vector<RTid> children;            // instances placed in it
   std::vector<RTid> users;               // instances of it
   std::vector<BuiltGeometry> geometries; // until they are committed
+  bool dynamic = false;
   bool dirty = false, committed = false;
 };
 
@@ -40,7 +41,7 @@ struct InstanceState {
   RTid parent = 0, object = 0, shader = 0;
   uint32_t name = 0;
   Matrix4d matrix;
-  bool visible = true;
+  bool visible = true, dynamic = false;
   uint64_t userData = 0;
   size_t childSlot = 0, userSlot = 0; // places in the parent's and the object's lists
   bool inDefinition = false;          // its parent's definition is still open

@@ -89,7 +89,7 @@ void Scene::applyEdit(const edit::AnyUnion& any, SceneChanges& changes) {
     break;
   case Any::Instance: {
     const auto& i = *any.AsInstance();
-    instances[i.id] = {i.parent, i.object, i.shader, toMatrix(i.matrix.get()), i.visible, i.userData, i.name};
+    instances[i.id] = {i.parent, i.object, i.shader, toMatrix(i.matrix.get()), i.visible, i.userData, i.name, i.dynamic};
     changes.instances = true;
     break;
   }
@@ -132,6 +132,7 @@ void Scene::dropChildren(uint32_t object) {
 
 void Scene::replaceObject(const edit::ObjectT& object) {
   Object& target = objects[object.id];
+  target.dynamic = object.dynamic;
   target.geometries.clear();
   target.geometries.reserve(object.geometries.size());
   for (const auto& g : object.geometries) {

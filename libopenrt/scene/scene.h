@@ -25,6 +25,7 @@ struct Geometry {
 };
 
 struct Object {
+  bool dynamic = false;
   std::vector<Geometry> geometries;
 };
 
@@ -34,6 +35,7 @@ struct Instance {
   bool visible = true;
   uint64_t userData = 0;
   uint32_t name = 0;
+  bool dynamic = false;
 };
 
 struct Light {

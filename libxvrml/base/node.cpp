@@ -125,6 +125,7 @@ bool Node::set(const FieldInfo& field, Value value) {
 // A node's destructor releases its children. Those whose last reference goes meanwhile wait in a list until it returns: a
 // chain of a million nodes would otherwise need a million stack frames.
 void Node::destroy(Node* node) noexcept {
+  if (node->live) node->live->forget(node->live); // its fields are still there
   thread_local std::vector<Node*>* waiting = nullptr;
   if (waiting) {
     try {

@@ -9,7 +9,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "openrt/matrix.h"
+#include "geometry/matrix.h"
 #include "openrt/meshes.h"
 #include "xvrml/node.h"
 #include "xvrml/world.h"

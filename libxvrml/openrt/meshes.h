@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "geometry/mesh.h"
-#include "openrt/matrix.h"
+#include "geometry/matrix.h"
 #include "xvrml/openrt.h"
 
 namespace xvrml::mapping {

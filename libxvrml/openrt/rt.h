@@ -10,7 +10,7 @@
 #include <unordered_map>
 #include <utility>
 
-#include "openrt/matrix.h"
+#include "geometry/matrix.h"
 #include "openrt/openrt.h"
 #include "xvrml/diagnostics.h"
 

@@ -190,6 +190,14 @@ RT_API void rtInstanceMatrix(RTid instance, const double m[16]);
 RT_API void rtInstanceVisible(RTid instance, int visible);
 /* The shader used for everything below this instance instead of its own; 0 removes the override. */
 RT_API void rtInstanceShader(RTid instance, RTid shader);
+/* What to expect of an instance's matrix and visibility, or of an object's definition. RT_STATIC (default): it stays as it is;
+ * changing it may cost as much as building the scene. RT_DYNAMIC: it changes often; a change costs only that instance or that
+ * object and the top level, rays a little more. The first rtInstanceMatrix, rtInstanceVisible or redefinition of something that
+ * has been rendered makes it dynamic by itself. Pictures differ in the last bits between the two, by nothing else. */
+enum { RT_STATIC = 0x88E4, RT_DYNAMIC = 0x88E8 };
+RT_API void rtInstanceHint(RTid instance, RTenum hint);
+/* Holds from the object's next definition on. */
+RT_API void rtObjectHint(RTid object, RTenum hint);
 /* Reported by ray queries for hits below this instance (the innermost that is set); default 0. */
 RT_API void rtInstanceUserData(RTid instance, uint64_t data);
 
@@ -326,6 +334,8 @@ typedef struct RTstats {
   uint64_t cameraRays, shadowRays, secondaryRays;
   double commitSeconds, buildSeconds, renderSeconds;
   uint64_t bvhBytes;
+  uint64_t objectBuilds; /* acceleration structures of objects (or of merged static ones) built since the context was made */
+  uint64_t topLevelBuilds; /* times the top level over them was built or refitted */
   uint32_t threads;
   char isa[16];
   char kernel[32]; /* e.g. "Embree 3.13.5" */

@@ -74,6 +74,11 @@ bool inRange(const FieldInfo& field, const Value& value);
 
 using NodeTypePtr = std::shared_ptr<const NodeType>;
 
+// What a running world knows of a node (event/live.h); plain files have none.
+struct LiveBase {
+  void (*forget)(LiveBase* live) noexcept; // the node is being destroyed
+};
+
 class Node {
  public:
   explicit Node(const NodeType& type) : type_(&type) {}
@@ -91,6 +96,7 @@ class Node {
 
   std::string defName; // DEF, empty if none (not `name`: nodes may have a field of that name)
   SourcePosition source;
+  LiveBase* live = nullptr; // set and read by the browser that the node lives in
 
  private:
   friend class NodeRef;

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "xvrml/camera.h"
+#include "xvrml/change.h"
 #include "xvrml/world.h"
 
 namespace xvrml {
@@ -17,17 +19,6 @@ struct ViewpointInfo {
   std::string description;
   NodeRef node;
   double matrix[16];       // local to world, column-major
-};
-
-struct CameraSettings {
-  double matrix[16];       // camera to world
-  double fovy = 0.785398;  // radians, vertical; 0: orthographic
-  double height = 0;       // orthographic: world units
-};
-
-struct Bounds {
-  double minimum[3], maximum[3];
-  bool empty = true;
 };
 
 struct MapOptions {

@@ -1,12 +1,12 @@
 // matrix.cpp: composition of the standard's transformations. See matrix.h.
-#include "openrt/matrix.h"
+#include "geometry/matrix.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <numbers>
 
-namespace xvrml::mapping {
+namespace xvrml {
 
 Matrix fromArray(const double m[16]) {
   Matrix out;
@@ -158,4 +158,4 @@ double verticalFieldOfView(double fieldOfView, double aspect) {
   return std::min(f, 3.14);
 }
 
-} // namespace xvrml::mapping
+} // namespace xvrml

@@ -1,13 +1,12 @@
-// Matrices of the mapper against closed forms: Transform, TextureTransform, Billboard, angle of view.
+// Matrices of nodes against closed forms: Transform, TextureTransform, Billboard, angle of view.
 #include <cmath>
 #include <numbers>
 
 #include <gtest/gtest.h>
 
-#include "openrt/matrix.h"
+#include "geometry/matrix.h"
 
 using namespace xvrml;
-using namespace xvrml::mapping;
 
 namespace {
 
@@ -19,25 +18,25 @@ void expectNear(const Vector& got, const Vector& want, double tolerance = 1e-12)
   EXPECT_NEAR(got.z, want.z, tolerance);
 }
 
-TEST(MapMatrix, RotationTurnsCounterClockwiseAboutItsAxis) {
+TEST(Matrix, RotationTurnsCounterClockwiseAboutItsAxis) {
   expectNear(transformPoint(rotation(Vector(0, 0, 2), pi / 2), {1, 0, 5}), {0, 1, 5});
   expectNear(transformPoint(rotation(Vector(1, 0, 0), pi / 2), {0, 1, 0}), {0, 0, 1});
   expectNear(transformPoint(rotation(Vector(0, 3, 0), pi / 2), {0, 0, 1}), {1, 0, 0});
   expectNear(transformPoint(rotation(Vector(1, 1, 1), 2 * pi / 3), {1, 2, 3}), {3, 1, 2});
 }
 
-TEST(MapMatrix, RotationWithoutAnAxisDoesNotTurn) {
+TEST(Matrix, RotationWithoutAnAxisDoesNotTurn) {
   EXPECT_EQ(rotation(Vector(0), 1.0), Matrix());
   EXPECT_EQ(rotation(Vector(0, 0, 1), NAN), Matrix());
 }
 
-TEST(MapMatrix, ComposeLetsTheSecondActFirst) {
+TEST(Matrix, ComposeLetsTheSecondActFirst) {
   const Matrix m = compose(translation({10, 0, 0}), scaling({2, 2, 2}));
   expectNear(transformPoint(m, {1, 1, 1}), {12, 2, 2});
 }
 
 // Clause 6.52 gives the closed form P' = T C R SR S -SR -C P; done here step by step on a point.
-TEST(MapMatrix, TransformIsTheStandardsSequence) {
+TEST(Matrix, TransformIsTheStandardsSequence) {
   TransformFields f;
   f.center = {1, -2, 3};
   f.translation = {4, 5, -6};
@@ -54,7 +53,7 @@ TEST(MapMatrix, TransformIsTheStandardsSequence) {
   expectNear(transformPoint(transformMatrix(f), p), q);
 }
 
-TEST(MapMatrix, TransformKeepsItsCentreButForTheTranslation) {
+TEST(Matrix, TransformKeepsItsCentreButForTheTranslation) {
   TransformFields f;
   f.center = {3, 4, 5};
   f.scale = {7, 8, 9};
@@ -63,12 +62,12 @@ TEST(MapMatrix, TransformKeepsItsCentreButForTheTranslation) {
   expectNear(transformPoint(transformMatrix(f), {3, 4, 5}), {4, 5, 6});
 }
 
-TEST(MapMatrix, TransformWithDefaultsIsExactlyTheIdentity) {
+TEST(Matrix, TransformWithDefaultsIsExactlyTheIdentity) {
   TransformFields f;
   EXPECT_EQ(transformMatrix(f), Matrix());
 }
 
-TEST(MapMatrix, InverseUndoes) {
+TEST(Matrix, InverseUndoes) {
   TransformFields f;
   f.translation = {1e6f, 2, 3};
   f.scale = {1e-3f, 2, 5};
@@ -82,7 +81,7 @@ TEST(MapMatrix, InverseUndoes) {
 }
 
 // Clause 6.49 gives Tc' = -C S R C T Tc: the translation acts first, then +C, and -C last.
-TEST(MapMatrix, TextureTransform) {
+TEST(Matrix, TextureTransform) {
   const Matrix scaled = textureMatrix({0.5f, 0.5f}, 0, {2, 4}, {0, 0});
   expectNear(transformPoint(scaled, {-0.5, -0.5, 0}), {-0.5, -0.5, 0});
   expectNear(transformPoint(scaled, {1, 1, 0}), {2.5, 5.5, 0});
@@ -91,7 +90,7 @@ TEST(MapMatrix, TextureTransform) {
   expectNear(transformPoint(all, {0.1f, 0.2f, 0}), {-0.1, 0.95, 0}, 1e-6);
 }
 
-TEST(MapMatrix, BillboardTurnsItsZAxisToTheViewerAboutTheAxis) {
+TEST(Matrix, BillboardTurnsItsZAxisToTheViewerAboutTheAxis) {
   const Matrix m = billboardMatrix({0, 1, 0}, {5, 3, 0}, {0, 1, 0});
   expectNear(transformDirection(m, {0, 0, 1}), {1, 0, 0});
   expectNear(transformDirection(m, {0, 1, 0}), {0, 1, 0});
@@ -101,20 +100,20 @@ TEST(MapMatrix, BillboardTurnsItsZAxisToTheViewerAboutTheAxis) {
   EXPECT_GT(z.dot(Vector(2, -3, 4) - axis * axis.dot(Vector(2, -3, 4))), 0);
 }
 
-TEST(MapMatrix, BillboardWithAxisZeroFacesTheViewerUpright) {
+TEST(Matrix, BillboardWithAxisZeroFacesTheViewerUpright) {
   const Matrix m = billboardMatrix({0, 0, 0}, {0, 0, -7}, {0, 1, 0});
   expectNear(transformDirection(m, {0, 0, 1}), {0, 0, -1});
   expectNear(transformDirection(m, {0, 1, 0}), {0, 1, 0});
   expectNear(transformDirection(m, {1, 0, 0}), {-1, 0, 0});
 }
 
-TEST(MapMatrix, BillboardOnItsOwnAxisOrPlaceStaysAsItIs) {
+TEST(Matrix, BillboardOnItsOwnAxisOrPlaceStaysAsItIs) {
   EXPECT_EQ(billboardMatrix({0, 1, 0}, {0, 4, 0}, {0, 1, 0}), Matrix());
   EXPECT_EQ(billboardMatrix({0, 0, 1}, {1, 0, 0}, {0, 1, 0}), Matrix());
   EXPECT_EQ(billboardMatrix({0, 1, 0}, {0, 0, 0}, {0, 1, 0}), Matrix());
 }
 
-TEST(MapMatrix, FieldOfViewIsForTheSmallerSide) {
+TEST(Matrix, FieldOfViewIsForTheSmallerSide) {
   EXPECT_DOUBLE_EQ(verticalFieldOfView(0.8, 4.0 / 3), 0.8);
   EXPECT_DOUBLE_EQ(verticalFieldOfView(0.8, 1), 0.8);
   EXPECT_NEAR(std::tan(verticalFieldOfView(0.8, 0.5) / 2) * 0.5, std::tan(0.4), 1e-12);
@@ -122,7 +121,7 @@ TEST(MapMatrix, FieldOfViewIsForTheSmallerSide) {
   EXPECT_NEAR(verticalFieldOfView(4, 1), pi / 4, 1e-12);
 }
 
-TEST(MapMatrix, RigidDropsScaleAndKeepsDirections) {
+TEST(Matrix, RigidDropsScaleAndKeepsDirections) {
   const Matrix turn = rotation(Vector(1, 2, 3), 0.6);
   const Matrix m = compose(translation({1, 2, 3}), compose(turn, scaling({2, 3, 4})));
   const Matrix r = rigid(m);

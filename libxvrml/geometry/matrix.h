@@ -9,7 +9,7 @@
 
 #include "xvrml/types.h"
 
-namespace xvrml::mapping {
+namespace xvrml {
 
 using Matrix = Imath::M44d;
 using Vector = Imath::V3d;
@@ -55,4 +55,4 @@ Matrix billboardMatrix(const Vector& axisOfRotation, const Vector& viewer, const
 // Vertical angle of view of a Viewpoint whose fieldOfView is meant for the smaller side of the picture (clause 6.53).
 double verticalFieldOfView(double fieldOfView, double aspect);
 
-} // namespace xvrml::mapping
+} // namespace xvrml

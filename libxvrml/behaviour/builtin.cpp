@@ -1,0 +1,11 @@
+// builtin.cpp: see builtin.h.
+#include "behaviour/builtin.h"
+
+namespace xvrml {
+
+void addBuiltinBehaviours(const AddBehaviour& add) {
+  addGroupingBehaviours(add);
+  addInterpolatorBehaviours(add);
+}
+
+} // namespace xvrml

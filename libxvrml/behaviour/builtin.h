@@ -1,0 +1,17 @@
+// builtin.h: the behaviours of the standard's nodes, one function a file; the list is in builtin.cpp.
+#pragma once
+
+#include <functional>
+
+#include "xvrml/behaviour.h"
+
+namespace xvrml {
+
+using AddBehaviour = std::function<void(const NodeType& type, const Behaviour& behaviour)>;
+
+void addBuiltinBehaviours(const AddBehaviour& add);
+
+void addGroupingBehaviours(const AddBehaviour& add);      // addChildren, removeChildren
+void addInterpolatorBehaviours(const AddBehaviour& add);
+
+} // namespace xvrml

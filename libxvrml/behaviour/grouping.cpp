@@ -1,0 +1,33 @@
+// grouping.cpp: addChildren and removeChildren of all grouping nodes (clause 4.6.5).
+#include <algorithm>
+
+#include "behaviour/builtin.h"
+
+namespace xvrml {
+namespace {
+
+// What is there already is not added again; what is not there cannot be removed. Both make no event.
+void receive(Events& events, Node& node, const FieldInfo& in, const Value& value) {
+  const bool adds = in.name == "addChildren";
+  if (!adds && in.name != "removeChildren") return;
+  const FieldInfo& children = *node.type().find("children");
+  auto list = std::get<MFNode>(node.get(children));
+  const auto holds = [&](const NodeRef& child) { return std::find(list.begin(), list.end(), child) != list.end(); };
+  const auto& named = std::get<MFNode>(value);
+  if (adds) {
+    for (const NodeRef& child : named)
+      if (child && !holds(child)) list.push_back(child);
+  } else {
+    std::erase_if(list, [&](const NodeRef& child) { return std::find(named.begin(), named.end(), child) != named.end(); });
+  }
+  events.store(node, children, std::move(list));
+}
+
+} // namespace
+
+void addGroupingBehaviours(const AddBehaviour& add) {
+  for (const NodeType* type : nodeTypes())
+    if (type->is("parent")) add(*type, {.receive = receive});
+}
+
+} // namespace xvrml

@@ -1,0 +1,101 @@
+// engine.h: the event engine of ISO/IEC 14772-1 4.10: routes, cascades, who is part of the world. One queue, no recursion, no
+// clock of its own: time is an argument. Owned by the Browser; on its thread.
+#pragma once
+
+#include <deque>
+#include <map>
+#include <unordered_set>
+
+#include "event/live.h"
+
+namespace xvrml {
+
+// Runs Script nodes; the engine hands their events over.
+class ScriptRunner {
+ public:
+  virtual ~ScriptRunner() = default;
+  virtual void begin(ScriptNode& script) = 0; // part of the world now; initialize() comes before its first event
+  virtual void receive(ScriptNode& script, const FieldInfo& in, const Value& value) = 0;
+  // Calls eventsProcessed() of all Scripts that received something since; true if there was one.
+  virtual bool eventsProcessed() = 0;
+};
+
+class Engine : public Events {
+ public:
+  explicit Engine(Diagnostics& diagnostics, Browser* browser = nullptr) : Events(diagnostics, browser) {}
+  ~Engine();
+  Engine(const Engine&) = delete;
+  Engine& operator=(const Engine&) = delete;
+
+  uint64_t maximumEvents = 1'000'000; // of one cascade; more are dropped with a message
+  ScriptRunner* scripts = nullptr;    // not owned; null: Scripts do nothing
+
+  // Makes everything in a scope part of the world: nodes, routes, bodies of prototypes, Inlines. roots: its nodes are roots of
+  // the world. Scopes and what they hold must outlive the engine or be taken out.
+  void adoptScope(const Scope& scope, bool roots);
+  void adopt(Node& node); // a node and all below
+  void contentLoaded(Node& inlineNode); // an Inline that is part of the world has got its content
+  // Takes a node out of the roots (its routes stay).
+  void removeRoot(Node& node);
+
+  // False, with a message, if there are no such events or their types differ; adding a route twice is adding it once.
+  bool addRoute(Node& from, std::string_view out, Node& to, std::string_view in);
+  bool deleteRoute(Node& from, std::string_view out, Node& to, std::string_view in);
+  uint64_t routes() const { return routes_; }
+
+  // Everything posted or sent from here on has one time and belongs to one cascade, until it has settled.
+  void beginCascade(double time);
+  void settle();
+  // One event from outside as a cascade of its own at the present time. False if the node has no such eventIn or the type
+  // does not match.
+  bool dispatch(Node& to, std::string_view in, Value value);
+  // Time has come: tick() functions and their cascade, then look() functions and theirs.
+  void tick(double time);
+  bool settling() const { return settling_; }
+
+  uint64_t listen(Node& node, const FieldInfo& out, Listener listener);
+  void unlisten(Node& node, uint64_t number);
+  void markReach(Node& node, const FieldInfo& in, const std::string& reason);
+  FieldChanges takeChanges();
+  uint64_t delivered() const { return delivered_; } // events so far
+
+ private:
+  friend class Events;
+  struct Event {
+    NodeRef node;
+    const FieldInfo* field;
+    Value value;
+    bool arriving; // at an eventIn of node; else it leaves an eventOut
+  };
+  struct Newcomers; // what an adoption has met
+  Live& makeLive(Node& node);
+  Participant& part(Node& node);
+  static void forget(LiveBase* base) noexcept;
+  void enter(Node& node, Newcomers& newcomers);
+  void enterScope(const Scope& scope, Newcomers& newcomers);
+  void complete(Newcomers& newcomers);
+  void connectBody(ProtoInstance& instance);
+  void linkChild(Node& parent, Node& child);
+  void unlinkChild(Node& parent, Node& child);
+  bool wouldLoop(Node& parent, const Value& value);
+  void addLink(Node& from, Link link);
+  void leave(Event& event);
+  void arrive(Node& node, const FieldInfo& in, const Value& value);
+  void arriveAtInstance(ProtoInstance& instance, const FieldInfo& in, const Value& value);
+  void arriveAtStatic(Node& node, const FieldInfo& in, const Value& value);
+  void relay(ProtoInstance& instance, const FieldInfo& out, const Value& value);
+  void sweep();
+  using Watchers = std::map<uint32_t, Node*>; // by order
+  void callAll(const Watchers& watchers, void (*Behaviour::*function)(Events&, Node&));
+
+  std::vector<Live*> lives_;
+  std::deque<Event> queue_;
+  Watchers ticking_, looking_;
+  FieldChanges changes_;
+  std::vector<NodeRef> swept_; // nodes with deleted links
+  uint64_t cascade_ = 0, delivered_ = 0, inCascade_ = 0, routes_ = 0, listeners_ = 0;
+  uint32_t order_ = 0;
+  bool settling_ = false, overflow_ = false;
+};
+
+} // namespace xvrml

@@ -1,0 +1,67 @@
+// hierarchy.cpp: see hierarchy.h.
+#include "event/hierarchy.h"
+
+#include <algorithm>
+
+#include "parse/field_access.h"
+#include "xvrml/nodes.h"
+
+namespace xvrml {
+
+void childrenInHierarchy(Node& node, std::vector<Node*>& out) {
+  if (const auto* instance = dynamic_cast<ProtoInstance*>(&node)) {
+    if (!instance->body.roots.empty()) out.push_back(instance->body.roots[0].get());
+    return;
+  }
+  if (node.type().index < 0) return;
+  forEachChild(node, [&](NodeRef& child, const FieldInfo&) { out.push_back(child.get()); });
+  if (const Scope* content = inlineScope(node))
+    for (const NodeRef& root : content->roots) out.push_back(root.get());
+}
+
+std::vector<Path> pathsTo(const Node& node, size_t limit) {
+  struct Open {
+    Node* node;
+    size_t next; // parent to visit
+  };
+  std::vector<Path> paths;
+  if (!node.live) return paths;
+  std::vector<Open> open{{liveOf(node)->node, 0}};
+  size_t steps = 0;
+  const size_t maximumSteps = 1000 * limit;
+  while (!open.empty() && paths.size() < limit && ++steps < maximumSteps) {
+    Open& top = open.back();
+    const Live& live = *liveOf(*top.node);
+    if (top.next == 0 && live.root) {
+      Path& path = paths.emplace_back();
+      for (size_t i = open.size(); i-- > 0;) path.push_back(open[i].node);
+    }
+    if (top.next == live.parents.size()) {
+      open.pop_back();
+      continue;
+    }
+    Node* parent = live.parents[top.next++];
+    open.push_back({parent, 0});
+  }
+  return paths;
+}
+
+Matrix localToWorld(const Path& path) {
+  Matrix matrix;
+  for (Node* node : path)
+    if (const auto* t = nodeCast<nodes::Transform>(node))
+      matrix = compose(matrix, transformMatrix({t->center, t->translation, t->scale, t->rotation, t->scaleOrientation}));
+  return matrix;
+}
+
+bool isChosen(const Path& path) {
+  for (size_t i = 0; i + 1 < path.size(); ++i) {
+    const auto* choice = nodeCast<nodes::Switch>(path[i]);
+    if (!choice) continue;
+    const bool exists = choice->whichChoice >= 0 && size_t(choice->whichChoice) < choice->choice.size();
+    if (!exists || choice->choice[size_t(choice->whichChoice)].get() != path[i + 1]) return false;
+  }
+  return true;
+}
+
+} // namespace xvrml

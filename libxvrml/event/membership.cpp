@@ -1,0 +1,230 @@
+// membership.cpp: who is part of a running world: adoption of nodes and scopes, parents, and the end of nodes. See engine.h.
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "event/engine.h"
+#include "event/hierarchy.h"
+#include "parse/builder.h"
+#include "parse/field_access.h"
+
+namespace xvrml {
+
+struct Engine::Newcomers {
+  std::vector<NodeRef> nodes; // in the order of the files
+  std::vector<ProtoInstance*> instances;
+  std::vector<const Scope*> scopes;
+};
+
+Live& Engine::makeLive(Node& node) {
+  auto* live = new Live;
+  live->forget = forget;
+  live->engine = this;
+  live->node = &node;
+  live->slot = lives_.size();
+  live->order = order_++;
+  lives_.push_back(live);
+  node.live = live;
+  return *live;
+}
+
+Engine::~Engine() {
+  // Links may hold the last reference to a node: they go when nothing of the engine is left.
+  std::vector<std::unique_ptr<Participant>> parts;
+  for (Live* live : lives_) {
+    live->node->live = nullptr;
+    parts.push_back(std::move(live->part));
+    delete live;
+  }
+  lives_.clear();
+}
+
+// The node is about to be destroyed; what it holds is still there.
+void Engine::forget(LiveBase* base) noexcept {
+  auto* live = static_cast<Live*>(base);
+  Engine& engine = *live->engine;
+  std::vector<Node*> children;
+  childrenInHierarchy(*live->node, children);
+  for (Node* child : children)
+    if (child && child->live) engine.unlinkChild(*live->node, *child);
+  engine.ticking_.erase(live->order);
+  engine.looking_.erase(live->order);
+  engine.lives_[live->slot] = engine.lives_.back();
+  engine.lives_[live->slot]->slot = live->slot;
+  engine.lives_.pop_back();
+  live->node->live = nullptr;
+  delete live;
+}
+
+void Engine::linkChild(Node& parent, Node& child) { liveOf(child)->parents.push_back(&parent); }
+
+void Engine::unlinkChild(Node& parent, Node& child) {
+  std::vector<Node*>& parents = liveOf(child)->parents;
+  const auto found = std::find(parents.rbegin(), parents.rend(), &parent);
+  if (found != parents.rend()) parents.erase(std::next(found).base());
+}
+
+// A node and what it holds, without recursion.
+void Engine::enter(Node& first, Newcomers& newcomers) {
+  std::vector<Node*> open{&first}, below;
+  while (!open.empty()) {
+    Node& node = *open.back();
+    open.pop_back();
+    if (node.live) continue;
+    makeLive(node);
+    newcomers.nodes.emplace_back(&node);
+    below.clear();
+    if (const Scope* content = inlineScope(node)) newcomers.scopes.push_back(content);
+    if (auto* instance = dynamic_cast<ProtoInstance*>(&node)) {
+      newcomers.instances.push_back(instance);
+      newcomers.scopes.push_back(&instance->body);
+      for (size_t i = 1; i < instance->body.roots.size(); ++i) below.push_back(instance->body.roots[i].get());
+      for (const IsConnection& c : instance->is) below.push_back(c.node.get());
+    }
+    if (node.type().index < 0) forEachChild(node, [&](NodeRef& child, const FieldInfo&) { below.push_back(child.get()); });
+    childrenInHierarchy(node, below);
+    std::reverse(below.begin(), below.end());
+    for (Node* child : below)
+      if (child && !child->live) open.push_back(child);
+  }
+}
+
+void Engine::enterScope(const Scope& scope, Newcomers& newcomers) {
+  for (const NodeRef& root : scope.roots)
+    if (root) enter(*root, newcomers);
+  newcomers.scopes.push_back(&scope);
+}
+
+// Parents, prototypes' borders, routes, behaviours, in this order: each needs those before it for all newcomers.
+void Engine::complete(Newcomers& newcomers) {
+  std::vector<Node*> below;
+  for (size_t done = 0, scopes = 0; done < newcomers.nodes.size() || scopes < newcomers.scopes.size();) {
+    for (; done < newcomers.nodes.size(); ++done) {
+      below.clear();
+      childrenInHierarchy(*newcomers.nodes[done], below);
+      for (Node* child : below)
+        if (child) linkChild(*newcomers.nodes[done], *child);
+    }
+    for (; scopes < newcomers.scopes.size(); ++scopes) { // a route may hold nodes that nothing else does
+      for (const Route& route : newcomers.scopes[scopes]->routes) {
+        if (route.from) enter(*route.from, newcomers);
+        if (route.to) enter(*route.to, newcomers);
+      }
+    }
+  }
+  for (ProtoInstance* instance : newcomers.instances) connectBody(*instance);
+  for (const Scope* scope : newcomers.scopes)
+    for (const Route& route : scope->routes)
+      if (route.from && route.to) addRoute(*route.from, route.fromField, *route.to, route.toField);
+  for (const NodeRef& node : newcomers.nodes) {
+    if (auto* script = dynamic_cast<ScriptNode*>(node.get())) {
+      if (scripts) scripts->begin(*script);
+    } else if (const Behaviour* behaviour = behaviourOf(node->type()); behaviour && behaviour->begin) {
+      part(*node).state = behaviour->begin(*this, *node);
+    }
+  }
+}
+
+void Engine::adoptScope(const Scope& scope, bool roots) {
+  Newcomers newcomers;
+  enterScope(scope, newcomers);
+  if (roots)
+    for (const NodeRef& root : scope.roots)
+      if (root) liveOf(*root)->root = true;
+  complete(newcomers);
+}
+
+void Engine::adopt(Node& node) {
+  if (node.live) return;
+  Newcomers newcomers;
+  enter(node, newcomers);
+  complete(newcomers);
+}
+
+void Engine::contentLoaded(Node& inlineNode) {
+  const Scope* content = inlineScope(inlineNode);
+  if (!content || !inlineNode.live) return;
+  adoptScope(*content, false);
+  for (const NodeRef& root : content->roots)
+    if (root) linkChild(inlineNode, *root);
+}
+
+void Engine::removeRoot(Node& node) {
+  if (node.live) liveOf(node)->root = false;
+}
+
+// Would a node that is to be a child of parent hold parent itself?
+bool Engine::wouldLoop(Node& parent, const Value& value) {
+  std::unordered_set<const Node*> above{&parent};
+  std::vector<Node*> open{&parent};
+  while (!open.empty()) {
+    Node* node = open.back();
+    open.pop_back();
+    if (!node->live) continue;
+    for (Node* next : liveOf(*node)->parents)
+      if (above.insert(next).second) open.push_back(next);
+  }
+  const auto inside = [&](const NodeRef& child) { return child && above.contains(child.get()); };
+  if (const auto* one = std::get_if<NodeRef>(&value)) return inside(*one);
+  const auto& many = std::get<MFNode>(value);
+  return std::any_of(many.begin(), many.end(), inside);
+}
+
+bool Events::store(Node& node, const FieldInfo& field, Value value) {
+  auto& engine = static_cast<Engine&>(*this);
+  if (!holdsValue(field) || value.index() != size_t(field.type)) return false;
+  if (holdsNodes(field)) {
+    const bool inHierarchy = node.type().index >= 0;
+    const auto refused = [&](const NodeRef& child) {
+      const NodeType* type = child ? effectiveType(*child) : nullptr;
+      if (!type || field.nodeTypes.empty() || typeAccepted(field.nodeTypes, *type)) return false;
+      diagnostics_.warn(node.source, fmt::format("{} of {} takes {}, not {}", field.name, node.type().name, field.nodeTypes, type->name));
+      return true;
+    };
+    if (auto* one = std::get_if<NodeRef>(&value); one && refused(*one)) return false;
+    if (auto* many = std::get_if<MFNode>(&value)) std::erase_if(*many, refused);
+    if (inHierarchy && engine.wouldLoop(node, value)) {
+      diagnostics_.warn(node.source, fmt::format("{} of {} would hold the node itself (4.6.2)", field.name, node.type().name));
+      return false;
+    }
+    const auto each = [](const Value& nodes, const auto& visit) {
+      if (const auto* one = std::get_if<NodeRef>(&nodes); one && *one) visit(**one);
+      if (const auto* many = std::get_if<MFNode>(&nodes))
+        for (const NodeRef& child : *many)
+          if (child) visit(*child);
+    };
+    each(value, [&](Node& child) { engine.adopt(child); });
+    const Value old = node.get(field);
+    if (inHierarchy && node.live) {
+      each(old, [&](Node& child) { if (child.live) engine.unlinkChild(node, child); });
+      each(value, [&](Node& child) { engine.linkChild(node, child); });
+    }
+    node.set(field, std::move(value));
+  } else {
+    node.set(field, std::move(value));
+  }
+  if (auto* instance = dynamic_cast<ProtoInstance*>(&node)) instance->give(field);
+  changed(node, field);
+  return true;
+}
+
+void Events::changed(Node& node, const FieldInfo& field) {
+  if (field.change == Change::none || !node.live || node.type().index < 0) return;
+  auto& engine = static_cast<Engine&>(*this);
+  Live& live = *liveOf(node);
+  if (!reaches(node, field.change)) engine.markReach(node, field, "it has been changed");
+  const size_t index = size_t(&field - node.type().fields.data());
+  if (index < 64) {
+    if (live.changed >> index & 1) return;
+    live.changed |= uint64_t(1) << index;
+  }
+  engine.changes_.push_back({NodeRef(&node), &field});
+}
+
+FieldChanges Engine::takeChanges() {
+  for (const FieldChange& change : changes_)
+    if (change.node->live) liveOf(*change.node)->changed = 0;
+  return std::exchange(changes_, {});
+}
+
+} // namespace xvrml

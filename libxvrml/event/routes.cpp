@@ -1,0 +1,129 @@
+// routes.cpp: links between nodes: ROUTEs, the borders of prototypes, listeners; what events can reach. See engine.h.
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "event/engine.h"
+#include "parse/field_access.h"
+
+namespace xvrml {
+namespace {
+
+std::string nameOf(const Node& node) { return node.defName.empty() ? node.type().name : node.defName; }
+
+bool isSame(const Link& a, const Link& b) { return a.out == b.out && a.to == b.to && a.in == b.in && a.kind == b.kind; }
+
+} // namespace
+
+Participant::Out& Participant::out(const FieldInfo& field) {
+  for (Out& o : outs)
+    if (o.field == &field) return o;
+  return outs.emplace_back(Out{&field, 0, defaultValue(field.type)});
+}
+
+const Participant::Out* Participant::findOut(const FieldInfo& field) const {
+  for (const Out& o : outs)
+    if (o.field == &field) return &o;
+  return nullptr;
+}
+
+Participant& Engine::part(Node& node) {
+  adopt(node);
+  Live& live = *liveOf(node);
+  if (!live.part) live.part = std::make_unique<Participant>();
+  return *live.part;
+}
+
+void Engine::addLink(Node& from, Link link) { part(from).links.push_back(std::move(link)); }
+
+bool Engine::addRoute(Node& from, std::string_view out, Node& to, std::string_view in) {
+  const FieldInfo* source = from.type().findEventOut(out);
+  const FieldInfo* target = to.type().findEventIn(in);
+  if (!source || !target || source->type != target->type) {
+    const std::string why = !source ? fmt::format("{} has no eventOut '{}'", from.type().name, out)
+                            : !target ? fmt::format("{} has no eventIn '{}'", to.type().name, in)
+                                      : fmt::format("{} is not {}", fieldTypeName(source->type), fieldTypeName(target->type));
+    diagnostics_.warn(from.source, fmt::format("no route from {}.{} to {}.{}: {}", nameOf(from), out, nameOf(to), in, why));
+    return false;
+  }
+  const Link link{source, NodeRef(&to), target, Link::Kind::route};
+  adopt(to);
+  std::vector<Link>& links = part(from).links;
+  if (std::any_of(links.begin(), links.end(), [&](const Link& l) { return isSame(l, link); })) return true;
+  links.push_back(link);
+  ++routes_;
+  markReach(to, *target, fmt::format("ROUTE from {}.{}", nameOf(from), source->name));
+  return true;
+}
+
+bool Engine::deleteRoute(Node& from, std::string_view out, Node& to, std::string_view in) {
+  const FieldInfo* source = from.type().findEventOut(out);
+  const FieldInfo* target = to.type().findEventIn(in);
+  if (!source || !target || !from.live || !liveOf(from)->part) return false;
+  for (Link& link : liveOf(from)->part->links) {
+    if (!isSame(link, {source, NodeRef(&to), target, Link::Kind::route})) continue;
+    link.to = {}; // its links may just be followed
+    swept_.emplace_back(&from);
+    --routes_;
+    if (!settling_) sweep();
+    return true;
+  }
+  return false;
+}
+
+void Engine::sweep() {
+  for (const NodeRef& node : std::exchange(swept_, {}))
+    if (node->live && liveOf(*node)->part) std::erase_if(liveOf(*node)->part->links, [](const Link& l) { return !l.to; });
+}
+
+// Clause 4.8.2: events cross the border where an interface's event IS one of a node in the body.
+void Engine::connectBody(ProtoInstance& instance) {
+  for (const IsConnection& c : instance.is) {
+    const FieldInfo* interface = instance.type().find(c.interfaceName);
+    if (!interface || interface->access == Access::field || !c.node->live) continue;
+    if (interface->access != Access::eventOut)
+      if (const FieldInfo* in = c.node->type().findEventIn(c.field); in && in->type == interface->type)
+        addLink(instance, {interface, c.node, in, Link::Kind::intoBody});
+    if (interface->access != Access::eventIn)
+      if (const FieldInfo* out = c.node->type().findEventOut(c.field); out && out->type == interface->type)
+        addLink(*c.node, {out, NodeRef(&instance), interface, Link::Kind::outOfBody});
+  }
+}
+
+void Engine::markReach(Node& first, const FieldInfo& firstIn, const std::string& reason) {
+  std::vector<std::pair<Node*, const FieldInfo*>> open{{&first, &firstIn}};
+  while (!open.empty()) {
+    const auto [node, in] = open.back();
+    open.pop_back();
+    if (!node->live) continue;
+    Live& live = *liveOf(*node);
+    if (dynamic_cast<ProtoInstance*>(node)) {
+      if (!live.part) continue;
+      for (const Link& link : live.part->links)
+        if (link.kind == Link::Kind::intoBody && link.out == in && link.to) open.emplace_back(link.to.get(), link.in);
+    } else if (in->change != Change::none && !(live.reach >> int(in->change) & 1)) {
+      live.reach |= uint16_t(1 << int(in->change));
+      part(*node).reasons.emplace_back(in->change, reason);
+    }
+  }
+}
+
+uint16_t reachOf(const Node& node) { return node.live ? liveOf(node)->reach : uint16_t(0); }
+
+std::string reachReason(const Node& node, Change kind) {
+  if (!node.live || !liveOf(node)->part) return {};
+  for (const auto& [change, reason] : liveOf(node)->part->reasons)
+    if (change == kind) return reason;
+  return {};
+}
+
+uint64_t Engine::listen(Node& node, const FieldInfo& out, Listener listener) {
+  part(node).listeners.push_back({++listeners_, {&out, std::move(listener)}});
+  return listeners_;
+}
+
+void Engine::unlisten(Node& node, uint64_t number) {
+  if (node.live && liveOf(node)->part) std::erase_if(liveOf(node)->part->listeners, [&](const auto& l) { return l.first == number; });
+}
+
+} // namespace xvrml

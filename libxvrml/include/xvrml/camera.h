@@ -1,0 +1,17 @@
+// camera.h: where a world is looked at from.
+#pragma once
+
+namespace xvrml {
+
+struct CameraSettings {
+  double matrix[16];       // camera to world, column-major, rotation and translation only; looks along -z, +y up
+  double fovy = 0.785398;  // radians, vertical; 0: orthographic
+  double height = 0;       // orthographic: world units
+};
+
+struct Bounds {
+  double minimum[3], maximum[3];
+  bool empty = true;
+};
+
+} // namespace xvrml
