@@ -11,7 +11,7 @@ using AddBehaviour = std::function<void(const NodeType& type, const Behaviour& b
 
 void addBuiltinBehaviours(const AddBehaviour& add);
 
-void addGroupingBehaviours(const AddBehaviour& add);      // addChildren, removeChildren
+void addGroupingBehaviours(const AddBehaviour& add); // addChildren, removeChildren
 void addInterpolatorBehaviours(const AddBehaviour& add);
 
 } // namespace xvrml

@@ -74,7 +74,8 @@ void Engine::settle() {
       Event event = std::move(queue_.front());
       queue_.pop_front();
       if (++inCascade_ > maximumEvents) {
-        if (!overflow_) diagnostics_.warn({}, fmt::format("more than {} events at time {}: the rest is dropped", maximumEvents, now_));
+        if (!overflow_)
+          diagnostics_.warn({}, fmt::format("more than {} events at time {}: the rest is dropped", maximumEvents, now_));
         overflow_ = true;
         queue_.clear();
         break;

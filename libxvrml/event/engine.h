@@ -33,9 +33,10 @@ class Engine : public Events {
   // Makes everything in a scope part of the world: nodes, routes, bodies of prototypes, Inlines. roots: its nodes are roots of
   // the world. Scopes and what they hold must outlive the engine or be taken out.
   void adoptScope(const Scope& scope, bool roots);
-  void adopt(Node& node); // a node and all below
+  void adopt(Node& node);               // a node and all below
   void contentLoaded(Node& inlineNode); // an Inline that is part of the world has got its content
-  // Takes a node out of the roots (its routes stay).
+  // Makes a node a root of the world, or no longer one (its routes stay).
+  void addRoot(Node& node);
   void removeRoot(Node& node);
 
   // False, with a message, if there are no such events or their types differ; adding a route twice is adding it once.
@@ -77,6 +78,7 @@ class Engine : public Events {
   void connectBody(ProtoInstance& instance);
   void linkChild(Node& parent, Node& child);
   void unlinkChild(Node& parent, Node& child);
+  void rootsChanged();
   bool wouldLoop(Node& parent, const Value& value);
   void addLink(Node& from, Link link);
   void leave(Event& event);

@@ -31,8 +31,8 @@ struct Participant {
     uint64_t cascade = 0; // the last one it sent in
     Value last;           // of an eventOut
   };
-  std::vector<Link> links; // by their order of making
-  std::vector<Out> outs;   // those that have sent
+  std::vector<Link> links;                                                           // by their order of making
+  std::vector<Out> outs;                                                             // those that have sent
   std::vector<std::pair<uint64_t, std::pair<const FieldInfo*, Listener>>> listeners; // by number
   std::vector<std::pair<Change, std::string>> reasons;                               // of the bits in Live::reach
   std::unique_ptr<NodeState> state;
@@ -44,11 +44,11 @@ struct Participant {
 struct Live : LiveBase {
   Engine* engine;
   Node* node;
-  size_t slot;              // in Engine's list
-  uint32_t order;           // in which nodes became part of the world
-  uint16_t reach = 0;       // see xvrml/change.h
-  bool root = false;        // of the world
-  uint64_t changed = 0;     // fields already in the list of changes, by index in the type
+  size_t slot;                // in Engine's list
+  uint32_t order;             // in which nodes became part of the world
+  uint16_t reach = 0;         // see xvrml/change.h
+  bool root = false;          // of the world
+  uint64_t changed = 0;       // fields already in the list of changes, by index in the type
   std::vector<Node*> parents; // nodes that have it among their children, once for each time; bodies and Inlines included
   std::unique_ptr<Participant> part;
 };

@@ -149,8 +149,20 @@ void Engine::contentLoaded(Node& inlineNode) {
     if (root) linkChild(inlineNode, *root);
 }
 
+void Engine::addRoot(Node& node) {
+  adopt(node);
+  liveOf(node)->root = true;
+  rootsChanged();
+}
+
 void Engine::removeRoot(Node& node) {
   if (node.live) liveOf(node)->root = false;
+  rootsChanged();
+}
+
+void Engine::rootsChanged() {
+  const bool known = std::any_of(changes_.begin(), changes_.end(), [](const FieldChange& c) { return !c.node; });
+  if (!known) changes_.push_back({NodeRef(), nullptr});
 }
 
 // Would a node that is to be a child of parent hold parent itself?
@@ -178,7 +190,8 @@ bool Events::store(Node& node, const FieldInfo& field, Value value) {
     const auto refused = [&](const NodeRef& child) {
       const NodeType* type = child ? effectiveType(*child) : nullptr;
       if (!type || field.nodeTypes.empty() || typeAccepted(field.nodeTypes, *type)) return false;
-      diagnostics_.warn(node.source, fmt::format("{} of {} takes {}, not {}", field.name, node.type().name, field.nodeTypes, type->name));
+      diagnostics_.warn(node.source,
+                        fmt::format("{} of {} takes {}, not {}", field.name, node.type().name, field.nodeTypes, type->name));
       return true;
     };
     if (auto* one = std::get_if<NodeRef>(&value); one && refused(*one)) return false;
@@ -196,7 +209,9 @@ bool Events::store(Node& node, const FieldInfo& field, Value value) {
     each(value, [&](Node& child) { engine.adopt(child); });
     const Value old = node.get(field);
     if (inHierarchy && node.live) {
-      each(old, [&](Node& child) { if (child.live) engine.unlinkChild(node, child); });
+      each(old, [&](Node& child) {
+        if (child.live) engine.unlinkChild(node, child);
+      });
       each(value, [&](Node& child) { engine.linkChild(node, child); });
     }
     node.set(field, std::move(value));
@@ -223,7 +238,7 @@ void Events::changed(Node& node, const FieldInfo& field) {
 
 FieldChanges Engine::takeChanges() {
   for (const FieldChange& change : changes_)
-    if (change.node->live) liveOf(*change.node)->changed = 0;
+    if (change.node && change.node->live) liveOf(*change.node)->changed = 0;
   return std::exchange(changes_, {});
 }
 

@@ -40,7 +40,7 @@ bool Engine::addRoute(Node& from, std::string_view out, Node& to, std::string_vi
   const FieldInfo* source = from.type().findEventOut(out);
   const FieldInfo* target = to.type().findEventIn(in);
   if (!source || !target || source->type != target->type) {
-    const std::string why = !source ? fmt::format("{} has no eventOut '{}'", from.type().name, out)
+    const std::string why = !source   ? fmt::format("{} has no eventOut '{}'", from.type().name, out)
                             : !target ? fmt::format("{} has no eventIn '{}'", to.type().name, in)
                                       : fmt::format("{} is not {}", fieldTypeName(source->type), fieldTypeName(target->type));
     diagnostics_.warn(from.source, fmt::format("no route from {}.{} to {}.{}: {}", nameOf(from), out, nameOf(to), in, why));
@@ -123,7 +123,8 @@ uint64_t Engine::listen(Node& node, const FieldInfo& out, Listener listener) {
 }
 
 void Engine::unlisten(Node& node, uint64_t number) {
-  if (node.live && liveOf(node)->part) std::erase_if(liveOf(node)->part->listeners, [&](const auto& l) { return l.first == number; });
+  if (node.live && liveOf(node)->part)
+    std::erase_if(liveOf(node)->part->listeners, [&](const auto& l) { return l.first == number; });
 }
 
 } // namespace xvrml

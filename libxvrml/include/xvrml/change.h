@@ -10,6 +10,7 @@ namespace xvrml {
 
 // A field or exposedField has a new value, or a bindable node was bound or unbound (field: its set_bind). The kind of change
 // is field->change; changes of kind `none` are not reported. Several changes of one field between two readings are one.
+// node and field null: the roots of the world are others (world.scope.roots).
 struct FieldChange {
   NodeRef node;
   const FieldInfo* field;

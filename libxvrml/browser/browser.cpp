@@ -1,0 +1,82 @@
+// browser.cpp: see xvrml/browser.h.
+#include <algorithm>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "browser/state.h"
+#include "parse/field_access.h"
+#include "parse/inline_node.h"
+
+namespace xvrml {
+
+Browser::Browser(std::unique_ptr<World> world, BrowserOptions options, double start)
+    : impl_(std::make_unique<Impl>(*this, std::move(world), options)) {
+  impl_->engine->beginCascade(start);
+  impl_->engine->adoptScope(impl_->world->scope, true);
+  impl_->engine->settle();
+}
+
+Browser::~Browser() = default;
+
+World& Browser::world() { return *impl_->world; }
+Events& Browser::events() { return *impl_->engine; }
+double Browser::now() const { return impl_->engine->now(); }
+void Browser::tick(double time) { impl_->engine->tick(time); }
+FieldChanges Browser::takeChanges() { return impl_->engine->takeChanges(); }
+uint64_t Browser::generation() const { return impl_->generation; }
+
+NodeRef Browser::node(std::string_view name) const {
+  const auto& names = impl_->world->scope.names;
+  const auto found = names.find(name);
+  return found == names.end() ? NodeRef() : found->second;
+}
+
+bool Browser::set(Node& node, std::string_view field, Value value) {
+  const FieldInfo* plain = node.type().find(field);
+  if (plain && plain->access == Access::field) return impl_->engine->store(node, *plain, std::move(value));
+  return impl_->engine->dispatch(node, field, std::move(value));
+}
+
+Value Browser::get(const Node& node, std::string_view field) const {
+  if (const FieldInfo* plain = node.type().find(field); plain && holdsValue(*plain)) return node.get(*plain);
+  if (const FieldInfo* out = node.type().findEventOut(field)) return impl_->engine->lastSent(node, *out);
+  throw std::invalid_argument(fmt::format("{} has no field or eventOut '{}'", node.type().name, field));
+}
+
+uint64_t Browser::listen(Node& node, std::string_view out, Callback callback) {
+  const FieldInfo* field = node.type().findEventOut(out);
+  return field ? impl_->engine->listen(node, *field, std::move(callback)) : 0;
+}
+
+void Browser::unlisten(Node& node, uint64_t number) { impl_->engine->unlisten(node, number); }
+
+NodeRef Browser::createNode(std::string_view name) {
+  const NodeType* type = findNodeType(name);
+  if (!type || type->name == "Script") throw std::invalid_argument(fmt::format("'{}' is not a node type that can be made", name));
+  NodeRef node = makeStaticNode(*type);
+  impl_->engine->adopt(*node);
+  return node;
+}
+
+void Browser::addRoot(NodeRef node) {
+  auto& roots = impl_->world->scope.roots;
+  if (!node || std::find(roots.begin(), roots.end(), node) != roots.end()) return;
+  roots.push_back(node);
+  impl_->engine->addRoot(*node);
+}
+
+void Browser::removeRoot(Node& node) {
+  const NodeRef keep(&node);
+  if (std::erase(impl_->world->scope.roots, keep) > 0) impl_->engine->removeRoot(node);
+}
+
+bool Browser::addRoute(Node& from, std::string_view out, Node& to, std::string_view in) {
+  return impl_->engine->addRoute(from, out, to, in);
+}
+
+bool Browser::deleteRoute(Node& from, std::string_view out, Node& to, std::string_view in) {
+  return impl_->engine->deleteRoute(from, out, to, in);
+}
+
+} // namespace xvrml
