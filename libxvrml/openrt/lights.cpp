@@ -83,6 +83,12 @@ void Lights::follow(const Graph& graph, Places& places) {
   }
 }
 
+void Lights::remove(Places& places) {
+  for (Place& place : places.all)
+    if (place.light != 0) rtRemoveLight(place.light);
+  if (headlight_ != 0) rtRemoveLight(headlight_);
+}
+
 void Lights::headlight(bool on, const CameraSettings& camera) {
   if (!on) {
     if (headlight_ != 0) rtRemoveLight(headlight_);

@@ -16,6 +16,7 @@ class Lights {
   void follow(const Graph& graph, Places& places);
   // A directional light along the view that casts no shadows.
   void headlight(bool on, const CameraSettings& camera);
+  void remove(Places& places); // all
   uint64_t count() const { return count_; }
 
  private:

@@ -38,6 +38,7 @@ struct OpenRTMapper::Impl {
   Objects objects;
   Lights lights;
   bool environmentUsed = false;
+  std::optional<BoundNodes> boundNodes;
 
   Impl(World& w, const MapOptions& o)
       : world(w), options(o), graph(w), places(summarised(graph, w)), bound(firstBound(graph, places)),
@@ -85,6 +86,7 @@ Bounds OpenRTMapper::bounds() const { return impl_->bounds; }
 void OpenRTMapper::map(const CameraSettings& camera) {
   Impl& m = *impl_;
   report(m.world.diagnostics, {}, "before the world was mapped");
+  if (!m.environmentUsed) rtUseEnvironment(0);
   if (!m.environmentUsed) useEnvironment(m.world, m.options.linearColor, m.graph, m.places, m.bound, m.classes, m.textures);
   m.environmentUsed = true;
   m.places.follow(m.graph, camera);
@@ -98,6 +100,40 @@ void OpenRTMapper::map(const CameraSettings& camera) {
   else
     rtPerspective(camera.fovy * 180 / std::numbers::pi);
   report(m.world.diagnostics, {}, "camera");
+}
+
+void OpenRTMapper::bind(const BoundNodes& nodes) {
+  Impl& m = *impl_;
+  m.bound = placesOf(m.graph, m.places, nodes);
+  m.boundNodes = nodes;
+  m.environmentUsed = false;
+}
+
+// All anew, for the time being.
+void OpenRTMapper::update(const FieldChanges& changes) {
+  if (changes.empty()) return;
+  Impl& old = *impl_;
+  const auto boundNodes = old.boundNodes;
+  World& world = old.world;
+  const MapOptions options = old.options;
+  old.objects.remove();
+  old.lights.remove(old.places);
+  rtUseEnvironment(0);
+  impl_ = std::make_unique<Impl>(world, options);
+  if (boundNodes) bind(*boundNodes);
+}
+
+std::vector<ExplainedObject> OpenRTMapper::explain() const {
+  const Impl& m = *impl_;
+  const Item& root = m.graph.items[m.graph.root];
+  ExplainedObject world;
+  world.name = "world";
+  world.reason = "merged static geometry of " + std::to_string(root.shapes) + " shapes";
+  world.triangles = root.triangles;
+  world.shapes = root.shapes;
+  world.bytes = 150 * root.triangles;
+  world.instances = 1;
+  return {world};
 }
 
 MapStats OpenRTMapper::stats() const {

@@ -15,6 +15,7 @@ class Objects {
 
   // Writes what is active and not yet there, moves what follows the camera. Places::follow must have run.
   void follow();
+  void remove(); // everything
   uint64_t objects() const { return objects_; }
   uint64_t instances() const { return instances_; }
 
@@ -39,6 +40,7 @@ class Objects {
   void draw(int32_t mesh, const Surface& surface, bool textured);
   void drawArrays(const Mesh& mesh, const Surface& surface, bool textured);
   RTid begin();
+  std::vector<RTid> made_;
   RTid instantiate(RTid object, const Matrix& matrix, uint32_t name);
   bool sharesGeometry(int32_t mesh);
   // The name to give: that of the nearest group, else the type's; none in a shared object, where each instance brings it.

@@ -16,7 +16,12 @@ RTenum modeOf(Mesh::Kind kind) {
 
 RTid Objects::begin() {
   ++objects_;
-  return rtBeginObject(0);
+  return made_.emplace_back(rtBeginObject(0));
+}
+
+void Objects::remove() {
+  for (const RTid object : made_) rtDeleteObject(object);
+  made_.clear();
 }
 
 RTid Objects::instantiate(RTid object, const Matrix& matrix, uint32_t name) {

@@ -26,6 +26,16 @@ Bound firstBound(const Graph& graph, const Places& places) {
   return bound;
 }
 
+Bound placesOf(const Graph& graph, const Places& places, const BoundNodes& nodes) {
+  const auto first = [&](Node* node) {
+    Node* rendered = node ? renderedNode(node) : nullptr;
+    for (size_t i = 0; rendered && i < places.all.size(); ++i)
+      if (graph.items[places.all[i].item].node == rendered) return int32_t(i);
+    return none;
+  };
+  return {first(nodes.viewpoint), first(nodes.background), first(nodes.fog), first(nodes.navigationInfo)};
+}
+
 std::vector<ViewpointInfo> listViewpoints(const Graph& graph, const Places& places, std::vector<int32_t>& place) {
   std::vector<ViewpointInfo> list;
   for (size_t i = 0; i < places.all.size(); ++i) {

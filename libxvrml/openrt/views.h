@@ -16,6 +16,7 @@ struct Bound {
   int32_t viewpoint = none, background = none, fog = none, navigationInfo = none;
 };
 Bound firstBound(const Graph& graph, const Places& places);
+Bound placesOf(const Graph& graph, const Places& places, const BoundNodes& nodes);
 
 // All viewpoints in the order of the file; place: of each, in Places::all.
 std::vector<ViewpointInfo> listViewpoints(const Graph& graph, const Places& places, std::vector<int32_t>& place);

@@ -30,6 +30,31 @@ struct MapOptions {
 struct MapStats {
   uint64_t shapes = 0, triangles = 0, lights = 0, textures = 0, objects = 0, instances = 0;
   uint64_t missingTextures = 0; // ImageTextures and panoramas without a picture that could be read
+  // Work done since the mapper was made.
+  uint64_t objectsDefined = 0;  // definitions of OpenRT objects, redefinitions included
+  uint64_t instancesMoved = 0;  // rtInstanceMatrix
+  uint64_t parametersSet = 0;   // rtParameter* of shaders that were there already
+  uint64_t texturesLoaded = 0;  // pictures handed over
+  uint64_t lightsChanged = 0;   // lights made, moved or removed
+  uint64_t regroupings = 0;     // updates that changed what is grouped with what
+};
+
+// The bound nodes (clause 4.6.10) as whoever runs the world knows them; null: none of that type is bound.
+struct BoundNodes {
+  Node* viewpoint = nullptr;
+  Node* background = nullptr;
+  Node* fog = nullptr;
+  Node* navigationInfo = nullptr;
+};
+
+// One OpenRT object and why it is one.
+struct ExplainedObject {
+  std::string name;       // path of names from the root, "Town/House"; a node without a name: its type and line
+  std::string reason;     // "static geometry of 5312 shapes", "ROUTE from Clock.fraction_changed" ...
+  uint64_t triangles = 0; // of one instance; without those of objects that it instantiates
+  uint64_t shapes = 0;
+  uint64_t bytes = 0;     // estimated: arrays and acceleration structure
+  uint64_t instances = 0; // of this object, in all objects' definitions
 };
 
 // Maps a world into the current OpenRT context. One mapper per context; every call on the context's thread.
@@ -47,6 +72,14 @@ class OpenRTMapper {
   // A camera along -z of the first viewpoint (or the world) that shows all of it.
   CameraSettings fitCamera(double fovy) const;
   Bounds bounds() const;
+
+  // From here on these nodes are bound; without a call those that are first in the file are. Takes effect with the next map().
+  void bind(const BoundNodes& bound);
+  // Between frames, with what the world's takeChanges() returned: does what the changes cost, and no more. A world whose
+  // nodes change without records of it must get a mapper anew.
+  void update(const FieldChanges& changes);
+  // The objects as they now are: those with the most triangles first. After map().
+  std::vector<ExplainedObject> explain() const;
 
   // Makes all rt* calls for this camera: geometry once, then lights, environment, headlight, billboards and LODs for the camera.
   void map(const CameraSettings& camera);
