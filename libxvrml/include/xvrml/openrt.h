@@ -39,14 +39,6 @@ struct MapStats {
   uint64_t regroupings = 0;     // updates that changed what is grouped with what
 };
 
-// The bound nodes (clause 4.6.10) as whoever runs the world knows them; null: none of that type is bound.
-struct BoundNodes {
-  Node* viewpoint = nullptr;
-  Node* background = nullptr;
-  Node* fog = nullptr;
-  Node* navigationInfo = nullptr;
-};
-
 // One OpenRT object and why it is one.
 struct ExplainedObject {
   std::string name;       // path of names from the root, "Town/House"; a node without a name: its type and line
@@ -73,7 +65,8 @@ class OpenRTMapper {
   CameraSettings fitCamera(double fovy) const;
   Bounds bounds() const;
 
-  // From here on these nodes are bound; without a call those that are first in the file are. Takes effect with the next map().
+  // From here on these nodes (camera.h) are bound; without a call those that are first in the file are. Takes effect with the
+  // next map().
   void bind(const BoundNodes& bound);
   // Between frames, with what the world's takeChanges() returned: does what the changes cost, and no more. A world whose
   // nodes change without records of it must get a mapper anew.
