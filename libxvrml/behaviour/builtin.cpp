@@ -4,6 +4,7 @@
 namespace xvrml {
 
 void addBuiltinBehaviours(const AddBehaviour& add) {
+  addBindingBehaviours(add);
   addGroupingBehaviours(add);
   addInterpolatorBehaviours(add);
 }

@@ -11,6 +11,7 @@ using AddBehaviour = std::function<void(const NodeType& type, const Behaviour& b
 
 void addBuiltinBehaviours(const AddBehaviour& add);
 
+void addBindingBehaviours(const AddBehaviour& add);  // Viewpoint, NavigationInfo, Background, Fog
 void addGroupingBehaviours(const AddBehaviour& add); // addChildren, removeChildren
 void addInterpolatorBehaviours(const AddBehaviour& add);
 

@@ -3,9 +3,12 @@
 
 #include <fmt/format.h>
 
+#include "behaviour/interaction.h"
 #include "parse/field_access.h"
 
 namespace xvrml {
+
+Engine::Engine(Diagnostics& diagnostics, Browser* browser) : Events(diagnostics, browser), observer(makeInteraction(*this)) {}
 
 // An eventOut sends once in a cascade (4.10.3, 4.10.4). Without anybody to receive it only its last value is kept.
 void Events::send(Node& from, const FieldInfo& out, Value value) {
@@ -85,7 +88,7 @@ void Engine::settle() {
       else
         leave(event);
     }
-  } while (!overflow_ && scripts && scripts->eventsProcessed());
+  } while (!overflow_ && ((scripts && scripts->eventsProcessed()) || observer->settled()));
   settling_ = false;
   sweep();
 }
@@ -173,6 +176,7 @@ void Engine::callAll(const Watchers& watchers, void (*Behaviour::*function)(Even
 void Engine::tick(double time) {
   if (settling_) return; // a listener or a Script must not move time
   beginCascade(std::max(time, now_));
+  observer->ticked();
   callAll(ticking_, &Behaviour::tick);
   settle();
   beginCascade(now_);

@@ -20,15 +20,27 @@ class ScriptRunner {
   virtual bool eventsProcessed() = 0;
 };
 
+// Told what happens in a running world while it happens: the viewer's part of it (behaviour/interaction.h).
+class EngineObserver {
+ public:
+  virtual ~EngineObserver() = default;
+  virtual void began(const Scope& scope) = 0;                   // the file's own nodes are part of the world now
+  virtual void changed(Node& node, const FieldInfo& field) = 0; // every change that takeChanges would tell, at once
+  virtual void forgotten(const Node& node) = 0;                 // is being destroyed
+  virtual void ticked() = 0;                                    // time has come to now(); before tick() functions
+  virtual bool settled() = 0;                                   // nothing is left to do: true if it has sent something
+};
+
 class Engine : public Events {
  public:
-  explicit Engine(Diagnostics& diagnostics, Browser* browser = nullptr) : Events(diagnostics, browser) {}
+  explicit Engine(Diagnostics& diagnostics, Browser* browser = nullptr);
   ~Engine();
   Engine(const Engine&) = delete;
   Engine& operator=(const Engine&) = delete;
 
   uint64_t maximumEvents = 1'000'000; // of one cascade; more are dropped with a message
   ScriptRunner* scripts = nullptr;    // not owned; null: Scripts do nothing
+  const std::unique_ptr<EngineObserver> observer;
 
   // Makes everything in a scope part of the world: nodes, routes, bodies of prototypes, Inlines. roots: its nodes are roots of
   // the world. Scopes and what they hold must outlive the engine or be taken out.
@@ -59,6 +71,10 @@ class Engine : public Events {
   void markReach(Node& node, const FieldInfo& in, const std::string& reason);
   FieldChanges takeChanges();
   uint64_t delivered() const { return delivered_; } // events so far
+  uint64_t structure() const { return structure_; } // grows whenever nodes get or lose a parent or become roots or no longer
+  uint64_t cascade() const { return cascade_; }
+  // Calls look() of all that want it, within the present cascade.
+  void lookNow() { callAll(looking_, &Behaviour::look); }
 
  private:
   friend class Events;
@@ -95,7 +111,7 @@ class Engine : public Events {
   Watchers ticking_, looking_;
   FieldChanges changes_;
   std::vector<NodeRef> swept_; // nodes with deleted links
-  uint64_t cascade_ = 0, delivered_ = 0, inCascade_ = 0, routes_ = 0, listeners_ = 0;
+  uint64_t structure_ = 0, cascade_ = 0, delivered_ = 0, inCascade_ = 0, routes_ = 0, listeners_ = 0;
   uint32_t order_ = 0;
   bool settling_ = false, overflow_ = false;
 };

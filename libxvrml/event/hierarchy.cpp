@@ -2,6 +2,7 @@
 #include "event/hierarchy.h"
 
 #include <algorithm>
+#include <unordered_set>
 
 #include "parse/field_access.h"
 #include "xvrml/nodes.h"
@@ -44,6 +45,20 @@ std::vector<Path> pathsTo(const Node& node, size_t limit) {
     open.push_back({parent, 0});
   }
   return paths;
+}
+
+bool isInScene(const Node& node) {
+  if (!node.live) return false;
+  std::unordered_set<const Node*> seen;
+  std::vector<const Node*> open{&node};
+  while (!open.empty()) {
+    const Live& live = *liveOf(*open.back());
+    open.pop_back();
+    if (live.root) return true;
+    for (const Node* parent : live.parents)
+      if (seen.insert(parent).second) open.push_back(parent);
+  }
+  return false;
 }
 
 Matrix localToWorld(const Path& path) {

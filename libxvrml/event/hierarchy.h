@@ -17,6 +17,9 @@ using Path = std::vector<Node*>; // from a root of the world to the node, protot
 // the node hangs nowhere.
 std::vector<Path> pathsTo(const Node& node, size_t limit = 1000);
 
+// True if a way leads from a root of the world to the node.
+bool isInScene(const Node& node);
+
 // The coordinate system of a path's last node's children: the product of its Transforms. Billboards are taken as unturned.
 Matrix localToWorld(const Path& path);
 

@@ -49,6 +49,7 @@ void Engine::forget(LiveBase* base) noexcept {
     if (child && child->live) engine.unlinkChild(*live->node, *child);
   engine.ticking_.erase(live->order);
   engine.looking_.erase(live->order);
+  engine.observer->forgotten(*live->node);
   engine.lives_[live->slot] = engine.lives_.back();
   engine.lives_[live->slot]->slot = live->slot;
   engine.lives_.pop_back();
@@ -56,10 +57,14 @@ void Engine::forget(LiveBase* base) noexcept {
   delete live;
 }
 
-void Engine::linkChild(Node& parent, Node& child) { liveOf(child)->parents.push_back(&parent); }
+void Engine::linkChild(Node& parent, Node& child) {
+  liveOf(child)->parents.push_back(&parent);
+  ++structure_;
+}
 
 void Engine::unlinkChild(Node& parent, Node& child) {
   std::vector<Node*>& parents = liveOf(child)->parents;
+  ++structure_;
   const auto found = std::find(parents.rbegin(), parents.rend(), &parent);
   if (found != parents.rend()) parents.erase(std::next(found).base());
 }
@@ -132,6 +137,7 @@ void Engine::adoptScope(const Scope& scope, bool roots) {
     for (const NodeRef& root : scope.roots)
       if (root) liveOf(*root)->root = true;
   complete(newcomers);
+  if (roots) observer->began(scope);
 }
 
 void Engine::adopt(Node& node) {
@@ -161,6 +167,7 @@ void Engine::removeRoot(Node& node) {
 }
 
 void Engine::rootsChanged() {
+  ++structure_;
   const bool known = std::any_of(changes_.begin(), changes_.end(), [](const FieldChange& c) { return !c.node; });
   if (!known) changes_.push_back({NodeRef(), nullptr});
 }
@@ -227,6 +234,7 @@ void Events::changed(Node& node, const FieldInfo& field) {
   if (field.change == Change::none || !node.live || node.type().index < 0) return;
   auto& engine = static_cast<Engine&>(*this);
   Live& live = *liveOf(node);
+  engine.observer->changed(node, field);
   if (!reaches(node, field.change)) engine.markReach(node, field, "it has been changed");
   const size_t index = size_t(&field - node.type().fields.data());
   if (index < 64) {

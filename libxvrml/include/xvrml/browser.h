@@ -53,6 +53,13 @@ class Browser {
   uint64_t listen(Node& node, std::string_view out, Callback callback);
   void unlisten(Node& node, uint64_t number);
 
+  // --- The viewer ---
+  BoundNodes bound() const;
+  // Where the viewer is: the bound Viewpoint, and how far navigation has led away from it. aspect: width / height.
+  CameraSettings camera(double aspect) const;
+  // Seconds of the world's time in which the picture follows when the viewer jumps to another Viewpoint; 0, as at first: at once.
+  void setTransition(double seconds);
+
   // --- Editing ---
   NodeRef createNode(std::string_view type); // with default fields; throws std::invalid_argument for an unknown type
   void addRoot(NodeRef node);

@@ -1,0 +1,33 @@
+// interaction.cpp: what happens in the world, handed to those who keep something of it. See interaction.h.
+#include "behaviour/interaction.h"
+
+namespace xvrml {
+
+std::unique_ptr<EngineObserver> makeInteraction(Engine& engine) { return std::make_unique<Interaction>(engine); }
+
+void Interaction::began(const Scope& scope) { binding.bindFirst(scope); }
+
+void Interaction::changed(Node&, const FieldInfo& field) {
+  moved_ |= field.change == Change::transform || field.change == Change::view || field.change == Change::children;
+}
+
+void Interaction::forgotten(const Node&) {}
+
+void Interaction::ticked() { viewer.ticked(); }
+
+bool Interaction::settled() {
+  bool sent = false;
+  if (structure_ != engine.structure()) {
+    structure_ = engine.structure();
+    sent = binding.dropAbsent();
+  }
+  if (std::exchange(moved_, false)) viewer.settled();
+  // Clause 6.53: regions that a jump leaves or enters say so at the time of the binding.
+  if (viewer.takeJump()) {
+    engine.lookNow();
+    sent = true;
+  }
+  return sent;
+}
+
+} // namespace xvrml
