@@ -221,7 +221,7 @@ TEST(Viewpoints, ATransitionMovesTheEyeOverTimeAndEndsExactly) {
   EXPECT_EQ(eyeOf(r.browser), "0 0 0");
   r.browser.tick(11);
   EXPECT_EQ(eyeOf(r.browser), "4 0 0");
-  EXPECT_EQ(lookOf(r.browser), "-0.707107 0 -0.707107");
+  EXPECT_EQ(lookOf(r.browser), "-0.70711 0 -0.70711");
   r.browser.tick(12);
   EXPECT_EQ(eyeOf(r.browser), "8 0 0");
 }
