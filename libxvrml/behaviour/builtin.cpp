@@ -7,6 +7,7 @@ void addBuiltinBehaviours(const AddBehaviour& add) {
   addBindingBehaviours(add);
   addGroupingBehaviours(add);
   addInterpolatorBehaviours(add);
+  addTimeSensorBehaviours(add);
 }
 
 } // namespace xvrml

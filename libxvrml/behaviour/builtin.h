@@ -14,5 +14,6 @@ void addBuiltinBehaviours(const AddBehaviour& add);
 void addBindingBehaviours(const AddBehaviour& add);  // Viewpoint, NavigationInfo, Background, Fog
 void addGroupingBehaviours(const AddBehaviour& add); // addChildren, removeChildren
 void addInterpolatorBehaviours(const AddBehaviour& add);
+void addTimeSensorBehaviours(const AddBehaviour& add);
 
 } // namespace xvrml

@@ -1,8 +1,110 @@
-// interpolators.cpp: the six interpolators (clause 4.6.8).
+// interpolators.cpp: the six interpolators (clauses 4.6.8, 6.10, 6.13, 6.31, 6.32, 6.37, 6.39): set_fraction makes value_changed.
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "behaviour/blend.h"
 #include "behaviour/builtin.h"
+#include "xvrml/nodes.h"
 
 namespace xvrml {
+namespace {
 
-void addInterpolatorBehaviours(const AddBehaviour&) {}
+struct State : NodeState {
+  bool warned = false; // that key and keyValue do not fit
+};
+
+// Where a fraction lies: between values `left` and `left` + 1, at `t` of the way; t 0: the value itself.
+struct Place {
+  size_t left;
+  float t;
+};
+
+// Clause 4.6.8: below the first key its value, above the last key the last; at a key given several times the last of its
+// values (the limit from the right), except at the ends. Keys that decrease give some value, never an access out of bounds.
+Place locate(const float* keys, size_t count, float fraction) {
+  if (fraction <= keys[0]) return {0, 0};
+  if (fraction >= keys[count - 1]) return {count - 1, 0};
+  const size_t right = size_t(std::upper_bound(keys, keys + count, fraction) - keys);
+  if (right == 0 || right == count) return {right == 0 ? 0 : count - 1, 0};
+  const float from = keys[right - 1], to = keys[right];
+  const float t = float((double(fraction) - from) / (double(to) - from));
+  return {right - 1, t > 0 && t < 1 ? t : 0};
+}
+
+template <class T> T between(const T* values, Place place) {
+  return place.t == 0 ? values[place.left] : blend(values[place.left], values[place.left + 1], place.t);
+}
+
+// How many keys can be used, and how many values belong to each. Nothing if there are none.
+struct Shape {
+  size_t keys = 0, perKey = 0;
+};
+template <class Interpolator> Shape shapeOf(Events& events, Interpolator& node, bool lists) {
+  const size_t keys = node.key.size(), values = node.keyValue.size();
+  if (keys == 0 || values == 0) return {};
+  const bool fits = lists ? values % keys == 0 : values == keys;
+  if (auto* state = static_cast<State*>(events.state(node)); !fits && state && !state->warned) {
+    state->warned = true;
+    events.diagnostics().warn(node.source,
+                              fmt::format("{}: {} keys but {} values: {} (4.6.8)", node.type().name, keys, values,
+                                          lists && values < keys ? "nothing is sent" : "those in excess are ignored"));
+  }
+  if (lists) return values < keys ? Shape{} : Shape{keys, values / keys};
+  return {std::min(keys, values), 1};
+}
+
+template <class Interpolator> void evaluate(Events& events, Interpolator& node, float fraction) {
+  const Shape shape = shapeOf(events, node, false);
+  if (shape.keys == 0) return;
+  static const FieldInfo& out = fieldOf<Interpolator>("value_changed");
+  events.send(node, out, between(node.keyValue.data(), locate(node.key.data(), shape.keys, fraction)));
+}
+
+// CoordinateInterpolator, NormalInterpolator: perKey values for each key, one after the other.
+template <class Interpolator>
+void evaluateLists(Events& events, Interpolator& node, float fraction, Vec3f (*blendOne)(const Vec3f&, const Vec3f&, float)) {
+  const Shape shape = shapeOf(events, node, true);
+  if (shape.keys == 0) return;
+  const Place place = locate(node.key.data(), shape.keys, fraction);
+  const Vec3f* left = node.keyValue.data() + place.left * shape.perKey;
+  MFVec3f result(left, left + shape.perKey);
+  if (place.t != 0)
+    for (size_t i = 0; i < shape.perKey; ++i) result[i] = blendOne(left[i], left[i + shape.perKey], place.t);
+  static const FieldInfo& out = fieldOf<Interpolator>("value_changed");
+  events.send(node, out, std::move(result));
+}
+
+void evaluate(Events& events, nodes::CoordinateInterpolator& node, float fraction) {
+  evaluateLists(events, node, fraction, blend);
+}
+void evaluate(Events& events, nodes::NormalInterpolator& node, float fraction) {
+  evaluateLists(events, node, fraction, blendNormals);
+}
+
+// A new key or keyValue makes no event of its own: only set_fraction does.
+template <class Interpolator> void receive(Events& events, Node& node, const FieldInfo& in, const Value& value) {
+  static const FieldInfo& fraction = fieldOf<Interpolator>("set_fraction");
+  if (&in != &fraction || std::isnan(std::get<SFFloat>(value))) return;
+  evaluate(events, static_cast<Interpolator&>(node), std::get<SFFloat>(value));
+}
+
+std::unique_ptr<NodeState> begin(Events&, Node&) { return std::make_unique<State>(); }
+
+template <class Interpolator> void addOne(const AddBehaviour& add) {
+  add(Interpolator::nodeType(), {.begin = begin, .receive = receive<Interpolator>});
+}
+
+} // namespace
+
+void addInterpolatorBehaviours(const AddBehaviour& add) {
+  addOne<nodes::ColorInterpolator>(add);
+  addOne<nodes::CoordinateInterpolator>(add);
+  addOne<nodes::NormalInterpolator>(add);
+  addOne<nodes::OrientationInterpolator>(add);
+  addOne<nodes::PositionInterpolator>(add);
+  addOne<nodes::ScalarInterpolator>(add);
+}
 
 } // namespace xvrml

@@ -24,6 +24,12 @@ void Events::send(Node& from, const FieldInfo& out, Value value) {
     state.last = std::move(value);
 }
 
+bool Events::hasSent(const Node& from, const FieldInfo& out) const {
+  const Participant* part = from.live ? liveOf(from)->part.get() : nullptr;
+  const Participant::Out* state = part ? part->findOut(out) : nullptr;
+  return state && state->cascade == static_cast<const Engine&>(*this).cascade_;
+}
+
 void Events::send(Node& from, std::string_view out, Value value) {
   if (const FieldInfo* field = from.type().findEventOut(out)) send(from, *field, std::move(value));
 }

@@ -27,6 +27,8 @@ class Events {
   // a second one is dropped, which is what breaks loops (4.10.4). Returns at once; routes are followed later.
   void send(Node& from, const FieldInfo& out, Value value);
   void send(Node& from, std::string_view out, Value value); // by name; nothing happens if there is no such event
+  // Whether an eventOut or exposedField has sent in this cascade already, so that send() would drop another event.
+  bool hasSent(const Node& from, const FieldInfo& out) const;
   // Gives a field or exposedField a new value without an event, and reports the change. False if the type does not match,
   // or nodes would become their own descendants (said in the diagnostics).
   bool store(Node& node, const FieldInfo& field, Value value);

@@ -1,0 +1,108 @@
+// blend.cpp: see blend.h. In double: the arguments are floats of any size.
+#include "behaviour/blend.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/vector_math.h"
+
+namespace xvrml {
+namespace {
+
+struct Hsv {
+  double h = 0, s = 0, v = 0; // hue in sixths of the circle, [0,6)
+};
+
+Hsv toHsv(const Color& c) {
+  const double r = c.r, g = c.g, b = c.b;
+  const double most = std::max({r, g, b}), range = most - std::min({r, g, b});
+  if (!(most > 0) || !(range > 0)) return {0, 0, most};
+  double h = 0;
+  if (most == r)
+    h = (g - b) / range;
+  else if (most == g)
+    h = 2 + (b - r) / range;
+  else
+    h = 4 + (r - g) / range;
+  return {h < 0 ? h + 6 : h, range / most, most};
+}
+
+Color toRgb(const Hsv& c) {
+  const auto channel = [&](double n) { // Smith 1978 in the form of one expression per channel
+    const double k = std::fmod(n + c.h, 6);
+    return float(c.v - c.v * c.s * std::clamp(std::min(k, 4 - k), 0.0, 1.0));
+  };
+  return {channel(5), channel(3), channel(1)};
+}
+
+struct Quaternion {
+  V3d v;
+  double w;
+};
+
+Quaternion toQuaternion(const Rotation& r) {
+  const V3d axis = unit(V3d(r.x, r.y, r.z));
+  if (axis == V3d(0) || !std::isfinite(r.angle)) return {V3d(0), 1};
+  return {axis * std::sin(0.5 * double(r.angle)), std::cos(0.5 * double(r.angle))};
+}
+
+// Weights of the ends of an arc of the given angle, in [0,pi); near 0 those of the chord.
+std::pair<double, double> arcWeights(double angle, double t) {
+  const double sine = std::sin(angle);
+  if (sine < 1e-6) return {1 - t, t};
+  return {std::sin((1 - t) * angle) / sine, std::sin(t * angle) / sine};
+}
+
+// Of two unit vectors; exact also where their product is near 1 or -1 (Kahan).
+double angleBetween(const V3d& a, const V3d& b) { return 2 * std::atan2((a - b).length(), (a + b).length()); }
+
+} // namespace
+
+Color blend(const Color& first, const Color& second, float t) {
+  Hsv a = toHsv(first), b = toHsv(second);
+  if (a.s == 0) a.h = b.h;
+  if (b.s == 0) b.h = a.h;
+  double turn = b.h - a.h;
+  if (turn > 3) turn -= 6;
+  if (turn <= -3) turn += 6;
+  Hsv c{a.h + turn * t, a.s + (b.s - a.s) * t, a.v + (b.v - a.v) * t};
+  if (c.h < 0) c.h += 6;
+  return toRgb(c);
+}
+
+Rotation blend(const Rotation& first, const Rotation& second, float t) {
+  const Quaternion a = toQuaternion(first);
+  Quaternion b = toQuaternion(second);
+  double cosine = a.v.dot(b.v) + a.w * b.w;
+  if (cosine < -1e-3) { // -q is the same rotation as q
+    b = {-b.v, -b.w};
+    cosine = -cosine;
+  }
+  const auto [x, y] = arcWeights(std::acos(std::clamp(cosine, -1.0, 1.0)), t);
+  V3d v = a.v * x + b.v * y;
+  double w = a.w * x + b.w * y;
+  if (w < 0) v = -v, w = -w;
+  const double length = v.length();
+  const V3d axis = unit(v);
+  if (axis == V3d(0)) { // no rotation: any axis, so one of the ends'
+    const V3d kept = unit(V3d(first.x, first.y, first.z));
+    return kept == V3d(0) ? Rotation{0, 0, 1, 0} : Rotation{float(kept.x), float(kept.y), float(kept.z), 0};
+  }
+  return {float(axis.x), float(axis.y), float(axis.z), float(2 * std::atan2(length, w))};
+}
+
+Vec3f blendNormals(const Vec3f& first, const Vec3f& second, float t) {
+  V3d a = unit(toV3d(first)), b = unit(toV3d(second));
+  if (a == V3d(0)) a = b;
+  if (b == V3d(0)) b = a;
+  if (a == V3d(0)) return {0, 0, 0};
+  const double angle = angleBetween(a, b);
+  if (angle > M_PI - 1e-6) { // opposite: half a turn about an axis that depends on a alone
+    const V3d side = unit(std::abs(a.x) < 0.7 ? a.cross(V3d(1, 0, 0)) : a.cross(V3d(0, 1, 0))).cross(a);
+    return toVec3f(a * std::cos(M_PI * t) + side * std::sin(M_PI * t));
+  }
+  const auto [x, y] = arcWeights(angle, t);
+  return toVec3f(unit(a * x + b * y));
+}
+
+} // namespace xvrml

@@ -1,0 +1,78 @@
+// time_sensor.cpp: TimeSensor (clause 6.50) over the state machine of all time-dependent nodes.
+#include "behaviour/builtin.h"
+#include "behaviour/time_dependent.h"
+#include "xvrml/nodes.h"
+
+namespace xvrml {
+namespace {
+
+struct State : NodeState {
+  TimeDependent time;
+};
+
+// The rows of TimeSensor that are sent, looked up once.
+struct Rows {
+  const FieldInfo &isActive = row("isActive"), &cycleTime = row("cycleTime"), &fraction = row("fraction_changed"),
+                  &time = row("time"), &startTime = row("startTime");
+  static const FieldInfo& row(std::string_view name) { return fieldOf<nodes::TimeSensor>(name); }
+};
+const Rows& rows() {
+  static const Rows all;
+  return all;
+}
+
+TimeFields fieldsOf(const Node& node) {
+  const auto& sensor = static_cast<const nodes::TimeSensor&>(node);
+  return {sensor.startTime, sensor.stopTime, sensor.cycleInterval, sensor.loop, sensor.enabled};
+}
+
+TimeDependent& machine(Events& events, Node& node) { return static_cast<State*>(events.state(node))->time; }
+
+// In the order of 6.50: active first and inactive last, the events of the moment between.
+void send(Events& events, Node& node, const TimeStep& step) {
+  const Rows& out = rows();
+  if (step.running) {
+    if (step.begins) events.send(node, out.isActive, true);
+    if (step.newCycle) events.send(node, out.cycleTime, step.cycleStart);
+    events.send(node, out.fraction, float(step.fraction));
+    events.send(node, out.time, step.time);
+    if (step.ends) events.send(node, out.isActive, false);
+  }
+}
+
+std::unique_ptr<NodeState> begin(Events& events, Node& node) {
+  auto state = std::make_unique<State>();
+  const TimeFields fields = fieldsOf(node);
+  state->time.begin(fields, events.now());
+  if (state->time.wantsTicks(fields, events.now())) events.wantTicks(node, true);
+  return state;
+}
+
+bool accept(Events& events, Node& node, const FieldInfo& field, const Value& value) {
+  const TimeDependent& time = machine(events, node);
+  if (field.name == "cycleInterval") return !time.active() && std::get<SFTime>(value) > 0;
+  return time.accepts(fieldsOf(node), field, value);
+}
+
+void receive(Events& events, Node& node, const FieldInfo& in, const Value&) {
+  const TimeFields fields = fieldsOf(node);
+  TimeDependent& time = machine(events, node);
+  const bool mayTurn = !events.hasSent(node, rows().isActive);
+  send(events, node, time.fieldChanged(fields, events.now(), mayTurn, &in == &rows().startTime));
+  events.wantTicks(node, time.wantsTicks(fields, events.now()));
+}
+
+void tick(Events& events, Node& node) {
+  const TimeFields fields = fieldsOf(node);
+  TimeDependent& time = machine(events, node);
+  send(events, node, time.tick(fields, events.now(), !events.hasSent(node, rows().isActive)));
+  if (!time.wantsTicks(fields, events.now())) events.wantTicks(node, false);
+}
+
+} // namespace
+
+void addTimeSensorBehaviours(const AddBehaviour& add) {
+  add(nodes::TimeSensor::nodeType(), {.begin = begin, .accept = accept, .receive = receive, .tick = tick});
+}
+
+} // namespace xvrml
