@@ -13,6 +13,15 @@ template <class Change> void changeInstance(Context& c, RTid id, const Change& c
   change(state);
 }
 
+// A change of where an instance is, or whether. One that has been committed is dynamic from then on (openrt.h, rtInstanceHint):
+// the flag travels in its edit, so that every backend and every recording builds the same structure.
+template <class T> void placeInstance(Context& c, RTid id, T InstanceState::*member, const T& value) {
+  InstanceState& state = c.scene.instance(id);
+  c.scene.instances.touch(id, state);
+  if (state.committed) state.dynamic = true;
+  state.*member = value;
+}
+
 bool isDynamic(RTenum hint) {
   require(hint == RT_STATIC || hint == RT_DYNAMIC, RT_INVALID_ENUM, "the hint is neither RT_STATIC nor RT_DYNAMIC");
   return hint == RT_DYNAMIC;
@@ -94,13 +103,12 @@ void rtDeleteInstance(RTid instance) {
 void rtInstanceMatrix(RTid instance, const double m[16]) {
   guarded("rtInstanceMatrix", [&](Context& c) {
     const Matrix4d matrix = checkedMatrix(m);
-    changeInstance(c, instance, [&](InstanceState& s) { s.matrix = matrix; });
+    placeInstance(c, instance, &InstanceState::matrix, matrix);
   });
 }
 
 void rtInstanceVisible(RTid instance, int visible) {
-  guarded("rtInstanceVisible",
-          [&](Context& c) { changeInstance(c, instance, [&](InstanceState& s) { s.visible = visible != 0; }); });
+  guarded("rtInstanceVisible", [&](Context& c) { placeInstance(c, instance, &InstanceState::visible, visible != 0); });
 }
 
 void rtInstanceShader(RTid instance, RTid shader) {

@@ -109,6 +109,7 @@ void SceneState::defineObject(RTid id, std::vector<BuiltGeometry> geometries, co
   std::vector<RTid> fresh = children;
   makeRoom(instances.deleted, state.children.size());
   objects.touch(id, state);
+  if (state.committed) state.dynamic = true; // it has been defined before: it will be again
   while (!state.children.empty()) deleteInstance(state.children.back(), nullptr);
   state.geometries = std::move(geometries);
   state.children = std::move(fresh);

@@ -66,6 +66,7 @@ class Accel final : public Intersector {
   double radius = 0; // half the diagonal of the scene's bounds
   mutable std::atomic<uint64_t> rejectedRays{0};
 
+  uint64_t builds() const { return objectScenes_.size() + 1; } // scenes of objects, and what is baked
   void intersect(const Rays& rays, uint32_t mask, Coherence coherence, RayHits& hits) const override;
   void intersectFronts(const Rays& rays, uint32_t mask, RayHits& hits) const override;
   void occluded(const Rays& rays, uint32_t mask, Coherence coherence, uint8_t* blocked) const override;

@@ -79,6 +79,8 @@ void LocalBackend::prepare() {
     footprint_ = pixel;
     scopedLights_ = scoped;
     buildSeconds_ = now() - begin;
+    objectBuilds_ += accel_->builds();
+    topLevelBuilds_++;
   } else if (c.lights) {
     flat_.lightSets = {unscopedLights(scene_)}; // no light is scoped, nor was: there is but this set
   }
@@ -223,6 +225,7 @@ void LocalBackend::stats(RTstats& s) const {
     s.secondaryRays = finished_->counters().secondary;
     s.renderSeconds = finished_->seconds();
   }
+  s.objectBuilds = objectBuilds_, s.topLevelBuilds = topLevelBuilds_;
   s.commitSeconds = commitSeconds_;
   s.buildSeconds = buildSeconds_;
   s.bvhBytes = uint64_t(std::max<int64_t>(device_->bytes, 0));

@@ -45,6 +45,7 @@ class LocalBackend final : public Backend {
   bool scopedLights_ = false;
   mutable std::mutex mutex_; // frame_ as seen by cancel(), progress() and snapshot()
   std::shared_ptr<Frame> frame_, finished_;
+  uint64_t objectBuilds_ = 0, topLevelBuilds_ = 0;
   double commitSeconds_ = 0, buildSeconds_ = 0;
 };
 
