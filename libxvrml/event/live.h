@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <set>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -36,7 +38,10 @@ struct Participant {
   std::vector<std::pair<uint64_t, std::pair<const FieldInfo*, Listener>>> listeners; // by number
   std::vector<std::pair<Change, std::string>> reasons;                               // of the bits in Live::reach
   std::unique_ptr<NodeState> state;
+  std::set<std::tuple<const FieldInfo*, const Node*, const FieldInfo*, Link::Kind>> index; // of links, if there are many
 
+  bool holds(const Link& link) const;
+  void add(Link link);
   Out& out(const FieldInfo& field);
   const Out* findOut(const FieldInfo& field) const;
 };

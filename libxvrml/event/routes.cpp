@@ -13,7 +13,24 @@ std::string nameOf(const Node& node) { return node.defName.empty() ? node.type()
 
 bool isSame(const Link& a, const Link& b) { return a.out == b.out && a.to == b.to && a.in == b.in && a.kind == b.kind; }
 
+// From so many links on a search through all would make a wide fan-out quadratic.
+constexpr size_t manyLinks = 64;
+auto keyOf(const Link& l) { return std::make_tuple(l.out, static_cast<const Node*>(l.to.get()), l.in, l.kind); }
+
 } // namespace
+
+bool Participant::holds(const Link& link) const {
+  if (!index.empty()) return index.contains(keyOf(link));
+  return std::any_of(links.begin(), links.end(), [&](const Link& l) { return isSame(l, link); });
+}
+
+void Participant::add(Link link) {
+  links.push_back(std::move(link));
+  if (!index.empty())
+    index.insert(keyOf(links.back()));
+  else if (links.size() >= manyLinks)
+    for (const Link& l : links) index.insert(keyOf(l));
+}
 
 Participant::Out& Participant::out(const FieldInfo& field) {
   for (Out& o : outs)
@@ -34,7 +51,7 @@ Participant& Engine::part(Node& node) {
   return *live.part;
 }
 
-void Engine::addLink(Node& from, Link link) { part(from).links.push_back(std::move(link)); }
+void Engine::addLink(Node& from, Link link) { part(from).add(std::move(link)); }
 
 bool Engine::addRoute(Node& from, std::string_view out, Node& to, std::string_view in) {
   const FieldInfo* source = from.type().findEventOut(out);
@@ -48,9 +65,8 @@ bool Engine::addRoute(Node& from, std::string_view out, Node& to, std::string_vi
   }
   const Link link{source, NodeRef(&to), target, Link::Kind::route};
   adopt(to);
-  std::vector<Link>& links = part(from).links;
-  if (std::any_of(links.begin(), links.end(), [&](const Link& l) { return isSame(l, link); })) return true;
-  links.push_back(link);
+  if (part(from).holds(link)) return true;
+  part(from).add(link);
   ++routes_;
   markReach(to, *target, fmt::format("ROUTE from {}.{}", nameOf(from), source->name));
   return true;
@@ -62,6 +78,7 @@ bool Engine::deleteRoute(Node& from, std::string_view out, Node& to, std::string
   if (!source || !target || !from.live || !liveOf(from)->part) return false;
   for (Link& link : liveOf(from)->part->links) {
     if (!isSame(link, {source, NodeRef(&to), target, Link::Kind::route})) continue;
+    liveOf(from)->part->index.erase(keyOf(link));
     link.to = {}; // its links may just be followed
     swept_.emplace_back(&from);
     --routes_;

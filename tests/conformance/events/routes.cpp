@@ -49,6 +49,19 @@ TEST(Routes, DuplicateRoutesCountOnce) {
   EXPECT_EQ(r.get("B", "translation"), "0 0 0");
 }
 
+TEST(Routes, AWideFanOutCountsDuplicatesOnceAndForgetsDeletedOnes) {
+  std::string world = "DEF A Transform {}";
+  for (int i = 0; i < 200; ++i) world += fmt::format("DEF B{} Transform {{}} ROUTE A.translation TO B{}.translation ", i, i);
+  Running r(world + "ROUTE A.translation TO B7.translation");
+  EXPECT_TRUE(r.browser.deleteRoute(r.node("A"), "translation", r.node("B7"), "translation"));
+  EXPECT_FALSE(r.browser.deleteRoute(r.node("A"), "translation", r.node("B7"), "translation"));
+  r.set("A", "translation", Vec3f{1, 0, 0});
+  EXPECT_EQ(r.get("B7", "translation"), "0 0 0");
+  EXPECT_TRUE(r.browser.addRoute(r.node("A"), "translation", r.node("B7"), "translation"));
+  r.set("A", "translation", Vec3f{2, 0, 0});
+  EXPECT_EQ(r.get("B7", "translation"), "2 0 0");
+}
+
 TEST(Routes, EventsCrossTheBordersOfPrototypes) {
   Running r(
       "PROTO P [ eventIn SFVec3f in eventOut SFVec3f out ] { DEF T Transform { translation IS in translation_changed IS out } }"
