@@ -47,6 +47,10 @@ void setQuality(Context& c, RTenum name, int value) {
     within(0, 1);
     frame.shadows = value == 1;
     break;
+  case RT_TRANSPORT:
+    within(RT_TRANSPORT_AUTO, RT_TRANSPORT_PATH);
+    frame.transport = static_cast<uint8_t>(value);
+    break;
   default: fail(RT_INVALID_ENUM, "unknown quality " + std::to_string(name));
   }
   c.scene.frameDirty = true;

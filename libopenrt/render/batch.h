@@ -25,4 +25,7 @@ struct RtsBatch {
   float* reach = nullptr; // distance to the light; 0 where there is no direction
   uint32_t current = ~0u; // index into the batch's lights
   bool directional = false;
+  // Lobes that the shader has asked for (surface).
+  RtsLobe lobes[RTS_MAX_LOBES];
+  uint32_t lobeCount = 0;
 };

@@ -79,6 +79,21 @@ uint32_t components(const RtsHost* host, RtsTexture texture) {
 
 float* scratch(RtsBatch* batch, uint32_t n) { return batch->arena->take<float>(padded(n)); }
 
+RtsLobe* lobe(RtsBatch* batch, RtsLobeKind kind) {
+  if (batch->lobeCount == RTS_MAX_LOBES || kind < RTS_LOBE_DIFFUSE || kind >= RTS_LOBE_COUNT) return nullptr;
+  const RtsHits& hits = batch->points->hits;
+  const uint32_t size = padded(hits.count);
+  RtsLobe& lobe = batch->lobes[batch->lobeCount++];
+  lobe.kind = kind;
+  for (int k = 0; k < 3; k++) {
+    lobe.weight[k] = batch->arena->takeZero<float>(size);
+    lobe.normal[k] = batch->arena->take<float>(size);
+    std::copy_n(hits.normal[k], size, lobe.normal[k]);
+  }
+  for (auto& p : lobe.parameter) p = batch->arena->takeZero<float>(size);
+  return &lobe;
+}
+
 void log(const RtsHost* host, int level, const char* text) {
   const auto* self = static_cast<const RenderHost*>(host);
   if (self->logCallback) self->logCallback(level, text, self->logUser);
@@ -97,6 +112,7 @@ void fillHost(RtsHost& host) {
   host.components = components;
   host.scratch = scratch;
   host.log = log;
+  host.lobe = lobe;
 }
 
 } // namespace openrt

@@ -11,7 +11,7 @@ namespace {
 constexpr float gammaOf(int n) { return n * 0x1p-24f / (1 - n * 0x1p-24f); }
 
 struct Out { // arrays being filled for one lane
-  float *position[3], *direction[3], *geometric[3], *normal[3], *uv[2], *color[4], *distance, *error;
+  float *position[3], *direction[3], *geometric[3], *normal[3], *uv[2], *color[4], *distance, *segment, *error;
   uint32_t *flags, *record;
   const void** params;
 };
@@ -175,6 +175,7 @@ Points makePoints(const RenderScene& scene, const Rays& rays, const RayHits& hit
   for (auto& a : out.uv) a = floats();
   for (auto& a : out.color) a = floats();
   out.distance = floats();
+  out.segment = floats();
   out.error = floats();
   out.flags = arena.take<uint32_t>(size);
   out.record = arena.take<uint32_t>(size);
@@ -190,6 +191,7 @@ Points makePoints(const RenderScene& scene, const Rays& rays, const RayHits& hit
     }
     store(r, rays, lane, h, out, i);
     out.distance[i] = travelled[lane] + hits.t[lane];
+    out.segment[i] = hits.t[lane];
     out.record[i] = hits.record[lane];
     out.params[i] = (*scene.shaders)[r.shader].params;
   }
@@ -202,7 +204,7 @@ Points makePoints(const RenderScene& scene, const Rays& rays, const RayHits& hit
   }
   to.uv[0] = out.uv[0], to.uv[1] = out.uv[1];
   for (int k = 0; k < 4; k++) to.color[k] = out.color[k];
-  to.distance = out.distance, to.flags = out.flags, to.params = out.params;
+  to.distance = out.distance, to.segment = out.segment, to.flags = out.flags, to.params = out.params;
   points.error = out.error, points.record = out.record;
   points.rayHits = &hits, points.order = order;
   return points;

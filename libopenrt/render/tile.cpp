@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "render/paths.h"
 #include "render/sampler.h"
 
 namespace openrt {
@@ -14,44 +15,6 @@ constexpr uint32_t pathsInFlight = 4096;
 } // namespace
 
 uint32_t tileEdge(uint32_t samplesPerPixel) { return samplesPerPixel >= 16 ? 16 : samplesPerPixel >= 4 ? 32 : 64; }
-
-struct TileRenderer::Paths {
-  Rays rays;            // of the living paths, compacted
-  uint32_t* path;       // path of a ray lane
-  float* throughput[3]; // by ray lane
-  float* travelled;     // length up to the ray's origin, by ray lane
-  float* radiance[3];   // by path, from here on
-  float* alpha;
-  uint8_t* first;                                     // nothing was shaded on the path yet
-  float *normal[3], *albedo[3], *position[3], *depth; // null where nobody asks
-  uint32_t* name;
-  // next wave, written behind the lanes already read
-  uint32_t next = 0;
-  Rays nextRays;
-  uint32_t* nextPath;
-  float* nextThroughput[3];
-  float* nextTravelled;
-
-  void swapWaves() {
-    std::swap(rays, nextRays);
-    std::swap(path, nextPath);
-    std::swap(throughput, nextThroughput);
-    std::swap(travelled, nextTravelled);
-    rays.count = next;
-    next = 0;
-  }
-  void pushRay(uint32_t from, const float origin[3], float length, const float weight[3]) {
-    for (int k = 0; k < 3; k++) {
-      nextRays.org[k][next] = origin[k];
-      nextRays.dir[k][next] = rays.dir[k][from];
-      nextThroughput[k][next] = weight[k];
-    }
-    nextRays.tnear[next] = 0;
-    nextRays.tfar[next] = std::numeric_limits<float>::infinity();
-    nextTravelled[next] = travelled[from] + length;
-    nextPath[next++] = path[from];
-  }
-};
 
 TileRenderer::TileRenderer(const RenderScene& scene, Film& film) : scene_(scene), film_(film) {}
 
@@ -71,14 +34,13 @@ void TileRenderer::render(const Tile& tile) {
 void TileRenderer::wave(uint32_t firstSample, uint32_t samples) {
   ArenaScope scope(arena_);
   const uint32_t n = uint32_t(pixels_.size()) * samples, size = padded(n);
+  firstSample_ = firstSample, samples_ = samples;
   Paths paths;
-  for (Rays* rays : {&paths.rays, &paths.nextRays}) rays->allocate(arena_, n);
-  paths.path = arena_.take<uint32_t>(size), paths.nextPath = arena_.take<uint32_t>(size);
-  paths.travelled = arena_.takeZero<float>(size), paths.nextTravelled = arena_.take<float>(size);
+  paths.rays.allocate(arena_, n);
+  paths.state = arena_.take<RayState>(size);
+  paths.travelled = arena_.takeZero<float>(size);
   const auto optional = [&](uint32_t channel) { return film_.has(channel) ? arena_.takeZero<float>(size) : nullptr; };
   for (int k = 0; k < 3; k++) {
-    paths.throughput[k] = arena_.take<float>(size), paths.nextThroughput[k] = arena_.take<float>(size);
-    std::fill_n(paths.throughput[k], size, 1.0f);
     paths.radiance[k] = arena_.takeZero<float>(size);
     paths.normal[k] = optional(RT_NORMAL), paths.albedo[k] = optional(RT_ALBEDO), paths.position[k] = optional(RT_POSITION);
   }
@@ -88,25 +50,50 @@ void TileRenderer::wave(uint32_t firstSample, uint32_t samples) {
   paths.name = arena_.takeZero<uint32_t>(size);
   paths.first = arena_.take<uint8_t>(size);
   std::fill_n(paths.first, size, uint8_t(1));
-  makeCameraRays(paths, firstSample);
+  paths.hits.allocate(arena_, n);
+  for (auto* list : {&paths.missed, &paths.met, &paths.order}) *list = arena_.take<uint32_t>(size);
 
-  RayHits hits;
-  hits.allocate(arena_, n);
-  auto* missed = arena_.take<uint32_t>(size);
-  auto* met = arena_.take<uint32_t>(size);
-  auto* order = arena_.take<uint32_t>(size);
-  for (uint32_t surfaces = 0; paths.rays.count && surfaces <= scene_.frame.depth; surfaces++) {
-    (surfaces == 0 ? counters_.camera : counters_.secondary) += paths.rays.count;
-    scene_.kernel->intersect(paths.rays, maskAll, Coherence::coherent, hits);
-    lookThroughBacks(paths.rays, hits);
-    uint32_t misses = 0, mets = 0;
-    for (uint32_t i = 0; i < paths.rays.count; i++) (hits.record[i] == noHit ? missed[misses++] : met[mets++]) = i;
-    background(paths, missed, misses);
-    sortByBucket(scene_, hits, met, mets, order, counts_, ranges_);
-    for (const BucketRange& range : ranges_) shadeRange(paths, hits, range, order + range.begin);
-    paths.swapWaves();
+  makeCameraRays(paths, firstSample);
+  for (uint32_t i = 0; i < n; i++) paths.state[i] = RayState{.path = i};
+  level_ = 0;
+  counters_.camera += n;
+  traceWave(paths);
+  // Then bounce by bounce, each in portions of the same size, so that a path's sums have one order.
+  for (level_ = 1; !next_.empty() && level_ <= scene_.frame.depth; level_++) {
+    queue_.swap(next_);
+    next_.clear();
+    counters_.secondary += queue_.size();
+    for (size_t begin = 0; begin < queue_.size(); begin += n) {
+      loadRays(paths, begin, uint32_t(std::min<size_t>(n, queue_.size() - begin)));
+      traceWave(paths);
+    }
   }
+  next_.clear();
   addToPixels(paths, firstSample, samples);
+}
+
+void TileRenderer::loadRays(Paths& paths, size_t begin, uint32_t n) {
+  paths.rays.count = n;
+  for (uint32_t i = 0; i < padded(n); i++) {
+    const QueuedRay& ray = queue_[begin + std::min(i, n - 1)];
+    for (int k = 0; k < 3; k++) paths.rays.org[k][i] = ray.origin[k], paths.rays.dir[k][i] = ray.direction[k];
+    paths.rays.tnear[i] = 0;
+    paths.rays.tfar[i] = std::numeric_limits<float>::infinity();
+    paths.state[i] = ray.state;
+    paths.travelled[i] = ray.state.travelled;
+  }
+}
+
+void TileRenderer::traceWave(Paths& paths) {
+  const Coherence coherence = level_ == 0 ? Coherence::coherent : Coherence::incoherent;
+  scene_.kernel->intersect(paths.rays, maskAll, coherence, paths.hits);
+  lookThroughBacks(paths.rays, paths.hits);
+  uint32_t misses = 0, mets = 0;
+  for (uint32_t i = 0; i < paths.rays.count; i++)
+    (paths.hits.record[i] == noHit ? paths.missed[misses++] : paths.met[mets++]) = i;
+  background(paths, paths.missed, misses);
+  sortByBucket(scene_, paths.hits, paths.met, mets, paths.order, counts_, ranges_);
+  for (const BucketRange& range : ranges_) shadeRange(paths, paths.hits, range, paths.order + range.begin);
 }
 
 RtsBatch TileRenderer::makeBatch() {
@@ -134,7 +121,6 @@ void TileRenderer::makeCameraRays(Paths& paths, uint32_t firstSample) {
   }
   for (; lane < size; lane++) xy[0][lane] = xy[0][n - 1], xy[1][lane] = xy[1][n - 1];
   for (uint32_t i = 0; i < size; i++) {
-    paths.path[i] = i;
     paths.rays.tnear[i] = 0;
     paths.rays.tfar[i] = std::numeric_limits<float>::infinity();
   }
@@ -178,13 +164,13 @@ void TileRenderer::background(Paths& paths, const uint32_t* missed, uint32_t n) 
   const float* directions[3] = {direction[0], direction[1], direction[2]};
   environment.shaderClass->miss(&scene_.host, &batch, environment.params, n, directions, rgba);
   for (uint32_t i = 0; i < n; i++) {
-    const uint32_t lane = missed[i], path = paths.path[lane];
+    const RayState& ray = paths.state[missed[i]];
     float weight = 0;
     for (int k = 0; k < 3; k++) {
-      if (std::isfinite(rgba[k][i])) paths.radiance[k][path] += paths.throughput[k][lane] * rgba[k][i];
-      weight += paths.throughput[k][lane];
+      if (std::isfinite(rgba[k][i])) paths.radiance[k][ray.path] += ray.throughput[k] * rgba[k][i];
+      weight += ray.throughput[k];
     }
-    paths.alpha[path] += weight / 3 * rgba[3][i];
+    if (!ray.bent) paths.alpha[ray.path] += weight / 3 * rgba[3][i];
   }
 }
 
@@ -216,7 +202,8 @@ void TileRenderer::lookThroughBacks(const Rays& rays, RayHits& hits) {
   }
 }
 
-void TileRenderer::attenuate(const Points& points, float* fog[4]) {
+// Along mirror images and through lenses the length of the path counts, as seen in the ray's direction.
+void TileRenderer::attenuate(const Points& points, const Paths& paths, const uint32_t* order, float* fog[4]) {
   const ShaderSlot& environment = scene_.environment.shader;
   fog[3] = nullptr;
   if (!environment.shaderClass || !environment.shaderClass->attenuate) return;
@@ -224,11 +211,13 @@ void TileRenderer::attenuate(const Points& points, float* fog[4]) {
   float* fromEye[3];
   for (auto& a : fromEye) a = arena_.take<float>(size);
   const Affine& m = scene_.environment.toLocal;
-  for (int k = 0; k < 3; k++)
-    for (uint32_t i = 0; i < size; i++) {
-      fromEye[k][i] = 0;
-      for (int j = 0; j < 3; j++) fromEye[k][i] += m.r[k][j] * (points.hits.position[j][i] - scene_.eye[j]);
-    }
+  const RtsHits& h = points.hits;
+  for (uint32_t i = 0; i < size; i++) {
+    const bool bent = paths.state[order[std::min(i, n - 1)]].bent;
+    float way[3];
+    for (int j = 0; j < 3; j++) way[j] = bent ? h.direction[j][i] * h.distance[i] : h.position[j][i] - scene_.eye[j];
+    for (int k = 0; k < 3; k++) fromEye[k][i] = m.r[k][0] * way[0] + m.r[k][1] * way[1] + m.r[k][2] * way[2];
+  }
   for (int k = 0; k < 4; k++) fog[k] = arena_.takeZero<float>(size);
   RtsBatch batch = makeBatch();
   const float* vectors[3] = {fromEye[0], fromEye[1], fromEye[2]};
@@ -240,6 +229,7 @@ void TileRenderer::shadeRange(Paths& paths, const RayHits& hits, const BucketRan
   const uint32_t n = range.end - range.begin, size = padded(n);
   const Points points = makePoints(scene_, paths.rays, hits, order, n, paths.travelled, arena_);
   const Bucket& bucket = scene_.buckets[range.bucket];
+  if (bucket.shaderClass->surface) return scatterRange(paths, points, bucket, order);
   RtsShading shaded;
   for (int k = 0; k < 3; k++) {
     shaded.radiance[k] = arena_.takeZero<float>(size);
@@ -254,7 +244,7 @@ void TileRenderer::shadeRange(Paths& paths, const RayHits& hits, const BucketRan
     bucket.shaderClass->shade(&scene_.host, &batch, &points.hits, &shaded);
   }
   float* fog[4];
-  attenuate(points, fog);
+  attenuate(points, paths, order, fog);
   const float* airlight[4] = {fog[0], fog[1], fog[2], fog[3]};
   gather(points, shaded, order, paths, airlight);
 }
@@ -262,40 +252,62 @@ void TileRenderer::shadeRange(Paths& paths, const RayHits& hits, const BucketRan
 // Adds what was shaded to the paths and sends on those that something lets through.
 void TileRenderer::gather(const Points& points, const RtsShading& shaded, const uint32_t* order, Paths& paths,
                           const float* fog[4]) {
-  const RtsHits& h = points.hits;
-  for (uint32_t i = 0; i < h.count; i++) {
-    const uint32_t lane = order[i], path = paths.path[lane];
-    float on[3], weight = 0, through = 0;
+  for (uint32_t i = 0; i < points.hits.count; i++) {
+    const RayState& ray = paths.state[order[i]];
+    float transmission[3], covered = 0, through = 0;
     for (int k = 0; k < 3; k++) {
       const float t = shaded.transmission[k][i];
-      const float transmission = t > 0 ? std::min(t, 1.0f) : 0.0f;
+      transmission[k] = t > 0 ? std::min(t, 1.0f) : 0.0f;
       float radiance = std::isfinite(shaded.radiance[k][i]) ? shaded.radiance[k][i] : 0.0f;
-      if (fog[3]) radiance = fog[3][i] * radiance + (1 - fog[3][i]) * fog[k][i] * (1 - transmission);
-      paths.radiance[k][path] += paths.throughput[k][lane] * radiance;
-      on[k] = paths.throughput[k][lane] * transmission;
-      weight += paths.throughput[k][lane];
-      through += on[k];
+      if (fog[3]) radiance = fog[3][i] * radiance + (1 - fog[3][i]) * fog[k][i] * (1 - transmission[k]);
+      paths.radiance[k][ray.path] += ray.throughput[k] * radiance;
+      covered += ray.throughput[k] * (1 - transmission[k]);
+      through += ray.throughput[k] * transmission[k];
     }
-    paths.alpha[path] += (weight - through) / 3;
-    if (paths.first[path]) {
-      paths.first[path] = 0;
-      paths.name[path] = scene_.records[points.record[i]].name;
-      float along = 0;
-      for (int k = 0; k < 3; k++) {
-        along += (h.position[k][i] - scene_.eye[k]) * scene_.viewAxis[k];
-        if (paths.normal[k]) paths.normal[k][path] = h.normal[k][i];
-        if (paths.albedo[k]) paths.albedo[k][path] = shaded.albedo[k][i];
-        if (paths.position[k]) paths.position[k][path] = float(h.position[k][i] + scene_.origin[k]);
-      }
-      if (paths.depth) paths.depth[path] = along;
-    }
+    if (!ray.bent) paths.alpha[ray.path] += covered / 3;
+    if (paths.first[ray.path]) noteFirst(points, i, ray.path, shaded.albedo, paths);
     if (through <= 1e-6f) continue;
-    const float p[3] = {h.position[0][i], h.position[1][i], h.position[2][i]};
-    const float behind[3] = {-h.geometric[0][i], -h.geometric[1][i], -h.geometric[2][i]};
-    float origin[3];
-    offsetPoint(p, behind, points.error[i], origin);
-    paths.pushRay(lane, origin, h.distance[i] - paths.travelled[lane], on);
+    const float d[3] = {points.hits.direction[0][i], points.hits.direction[1][i], points.hits.direction[2][i]};
+    push(points, i, order[i], d, transmission, false, ray.branch, false, paths);
   }
+}
+
+// The auxiliary channels show the first surface.
+void TileRenderer::noteFirst(const Points& points, uint32_t i, uint32_t path, float* const albedo[3], Paths& paths) {
+  const RtsHits& h = points.hits;
+  paths.first[path] = 0;
+  paths.name[path] = scene_.records[points.record[i]].name;
+  float along = 0;
+  for (int k = 0; k < 3; k++) {
+    along += (h.position[k][i] - scene_.eye[k]) * scene_.viewAxis[k];
+    if (paths.normal[k]) paths.normal[k][path] = h.normal[k][i];
+    if (paths.albedo[k]) paths.albedo[k][path] = albedo[k][i];
+    if (paths.position[k]) paths.position[k][path] = float(h.position[k][i] + scene_.origin[k]);
+  }
+  if (paths.depth) paths.depth[path] = along;
+}
+
+// Another ray of the path, from the side of the surface that its direction leads to.
+void TileRenderer::push(const Points& points, uint32_t i, uint32_t lane, const float direction[3], const float weight[3],
+                        bool bent, uint32_t branch, bool split, Paths& paths) {
+  const RtsHits& h = points.hits;
+  const RayState& from = paths.state[lane];
+  float towards = 0;
+  for (int k = 0; k < 3; k++) towards += h.geometric[k][i] * direction[k];
+  const float side = towards > 0 ? 1.0f : -1.0f;
+  const float p[3] = {h.position[0][i], h.position[1][i], h.position[2][i]};
+  const float n[3] = {side * h.geometric[0][i], side * h.geometric[1][i], side * h.geometric[2][i]};
+  QueuedRay& ray = next_.emplace_back();
+  offsetPoint(p, n, points.error[i], ray.origin);
+  ray.state = from;
+  for (int k = 0; k < 3; k++) {
+    ray.direction[k] = direction[k];
+    ray.state.throughput[k] = from.throughput[k] * weight[k];
+  }
+  ray.state.travelled = h.distance[i];
+  ray.state.bent |= bent ? 1 : 0;
+  ray.state.branch = branch;
+  if (split && ray.state.splits < 255) ray.state.splits++;
 }
 
 void TileRenderer::addToPixels(const Paths& paths, uint32_t firstSample, uint32_t samples) {

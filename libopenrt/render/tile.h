@@ -6,6 +6,7 @@
 
 #include "render/batch.h"
 #include "render/film.h"
+#include "render/ray_queue.h"
 
 namespace openrt {
 
@@ -21,14 +22,23 @@ class TileRenderer {
  private:
   struct Paths; // structure of arrays, one entry a path
 
+  void loadRays(Paths& paths, size_t begin, uint32_t n);
+  void traceWave(Paths& paths);
   void wave(uint32_t firstSample, uint32_t samples);
   RtsBatch makeBatch();
   void makeCameraRays(Paths& paths, uint32_t firstSample);
   void background(Paths& paths, const uint32_t* missed, uint32_t n);
   void shadeRange(Paths& paths, const RayHits& hits, const BucketRange& range, const uint32_t* order);
   void gather(const Points& points, const RtsShading& shaded, const uint32_t* order, Paths& paths, const float* fog[4]);
+  void noteFirst(const Points& points, uint32_t i, uint32_t path, float* const albedo[3], Paths& paths);
+  // scatter.cpp: surfaces that are described by lobes.
+  void scatterRange(Paths& paths, const Points& points, const Bucket& bucket, const uint32_t* order);
+  void addLights(RtsBatch& batch, const RtsHits& hits, float* const radiance[3]);
+  void sendOn(const RtsBatch& batch, const Points& points, uint32_t i, uint32_t lane, Paths& paths);
+  void push(const Points& points, uint32_t i, uint32_t lane, const float direction[3], const float weight[3], bool bent,
+            uint32_t branch, bool split, Paths& paths);
   void lookThroughBacks(const Rays& rays, RayHits& hits);
-  void attenuate(const Points& points, float* fog[4]);
+  void attenuate(const Points& points, const Paths& paths, const uint32_t* order, float* fog[4]);
   void addToPixels(const Paths& paths, uint32_t firstSample, uint32_t samples);
 
   const RenderScene& scene_;
@@ -38,6 +48,8 @@ class TileRenderer {
   std::vector<uint32_t> counts_, pixels_; // pixels_: y * width + x, in blocks of 4x4
   std::vector<BucketRange> ranges_;
   std::vector<PixelSums> sums_;
+  RayQueue queue_, next_;                              // rays of the wave being traced, and of the one after it
+  uint32_t level_ = 0, firstSample_ = 0, samples_ = 0; // of the wave
 };
 
 } // namespace openrt

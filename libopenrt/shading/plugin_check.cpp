@@ -79,7 +79,7 @@ void checkParameters(const RtsClass& shaderClass, const std::string& where) {
 void checkFunctions(const RtsClass& shaderClass, const std::string& where) {
   const char* missing = nullptr;
   switch (shaderClass.kind) {
-  case RTS_SURFACE: missing = shaderClass.shade ? nullptr : "shade"; break;
+  case RTS_SURFACE: missing = shaderClass.shade || shaderClass.surface ? nullptr : "shade or surface"; break;
   case RTS_LIGHT: missing = shaderClass.illuminate ? nullptr : "illuminate"; break;
   case RTS_CAMERA: missing = shaderClass.generate ? nullptr : "generate"; break;
   case RTS_ENVIRONMENT: break; // both of its functions may be absent

@@ -130,7 +130,8 @@ void CommitValidator::check(const edit::FrameSettingsT& frame) {
              uint64_t(frame.width) * frame.height <= uint64_t(1) << 28,
          "a frame of an impossible size");
   demand(frame.channels != 0 && (frame.channels & ~channels) == 0, "a frame with unknown channels");
-  demand(frame.samples >= 1 && frame.samples <= 65536 && frame.depth <= 10000, "a frame of an impossible quality");
+  demand(frame.samples >= 1 && frame.samples <= 65536 && frame.depth <= 10000 &&
+             frame.transport <= RT_TRANSPORT_PATH, "a frame of an impossible quality");
   hasFrame_ = true;
 }
 

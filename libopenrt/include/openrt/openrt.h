@@ -303,7 +303,15 @@ enum {
   RT_SAMPLES_PER_PIXEL = 1, /* 1 .. 65536, default 16 */
   RT_MAX_DEPTH = 2,         /* surfaces a path may pass or bounce at, 0 .. 10000, default 25 */
   RT_SEED = 3,              /* default 0 */
-  RT_SHADOWS = 4            /* 1 (default) or 0 */
+  RT_SHADOWS = 4,           /* 1 (default) or 0 */
+  RT_TRANSPORT = 5          /* one of RT_TRANSPORT_* below, default RT_TRANSPORT_AUTO */
+};
+/* How light is followed from a surface whose shader answers in lobes (openrts.h). */
+enum {
+  RT_TRANSPORT_AUTO = 0,    /* whitted */
+  RT_TRANSPORT_DIRECT = 1,  /* light from the lights alone; no mirror images, nothing behind glass */
+  RT_TRANSPORT_WHITTED = 2, /* and the whole tree of reflections and refractions; no randomness */
+  RT_TRANSPORT_PATH = 3     /* and light between diffuse surfaces: path tracing, noisy, unbiased */
 };
 /* Size in pixels (1 .. 65536 each, at most 2^28 in all) and channels of the following frames. */
 RT_API void rtFrameBuffer(int width, int height, uint32_t channels);

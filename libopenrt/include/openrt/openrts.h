@@ -20,7 +20,7 @@
 
 #define RTS_MAGIC 0x5352544fu /* "OTRS" */
 #define RTS_ABI_MAJOR 1       /* a host refuses another major number */
-#define RTS_ABI_MINOR 0       /* grows with every field appended; a host accepts minors up to its own */
+#define RTS_ABI_MINOR 1       /* grows with every field appended; a host accepts minors up to its own */
 #define RTS_LANES 16
 
 #ifdef __cplusplus
@@ -83,6 +83,7 @@ typedef struct RtsHits {
   const float* distance; /* along the path from the camera */
   const uint32_t* flags;
   const void* const* params; /* the shader's parameter struct, by lane */
+  const float* segment;      /* since 1.1: along the ray that met the surface */
 } RtsHits;
 
 /* What a surface shader answers. All arrays are zero on entry. */
@@ -91,6 +92,34 @@ typedef struct RtsShading {
   float* transmission[3]; /* fraction of what lies straight behind that is let through, 0..1 */
   float* albedo[3];       /* surface colour for the albedo channel, or NULL where nobody asks */
 } RtsShading;
+
+/* Lobes (since 1.1): a surface as a sum of ways in which it answers light. The engine's transport asks lights, follows mirror
+ * images and samples directions; the shader only describes. Weights are linear, 0 .. 1; reflectances of one hit should add up to
+ * at most 1. */
+typedef enum RtsLobeKind {
+  RTS_LOBE_DIFFUSE = 1, /* Lambert; weight: albedo */
+  RTS_LOBE_REFLECTION,  /* perfect mirror; weight: reflectance for this direction (Fresnel included) */
+  RTS_LOBE_DIELECTRIC,  /* smooth boundary of a clear medium: Fresnel reflection and refraction, unpolarised; weight: tint of both;
+                           parameter[0]: index of refraction on the ray's side over that behind */
+  RTS_LOBE_TRANSPARENT, /* straight through; weight: transmittance */
+  RTS_LOBE_COUNT,
+  RTS_LOBE_32_BITS = 0x7fffffff
+} RtsLobeKind;
+
+/* A lobe of every hit of a batch. Where the weight is 0 the hit has no such lobe. Made by RtsHost.lobe: weights 0, the normal
+ * that of the hits, parameters 0; a shader writes what differs. */
+typedef struct RtsLobe {
+  RtsLobeKind kind;
+  float* weight[3];
+  float* normal[3]; /* unit, on the side of the hit's geometric normal */
+  float* parameter[2];
+} RtsLobe;
+
+/* What a surface shader that answers in lobes says beside them. All arrays are zero on entry. */
+typedef struct RtsSurface {
+  float* emission[3]; /* radiance of its own towards the ray's origin */
+  float* albedo[3];   /* surface colour for the albedo channel, or NULL where nobody asks */
+} RtsSurface;
 
 /* Light arriving at the points of a batch from one light. */
 typedef struct RtsIllumination {
@@ -152,6 +181,8 @@ typedef struct RtsClass {
    * fraction (0..1) of surface radiance that arrives. NULL: clear air. */
   void (*attenuate)(const RtsHost* host, RtsBatch* batch, const void* params, uint32_t n, const float* const fromEye[3],
                     float* const color[3], float* fraction);
+  /* surface, since 1.1: describes every hit by lobes (RtsHost.lobe) and emission. A class has this or `shade`; with both, this. */
+  void (*surface)(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, RtsSurface* out);
 } RtsClass;
 
 typedef struct RtsPlugin {
@@ -182,7 +213,10 @@ struct RtsHost {
   float* (*scratch)(RtsBatch* batch, uint32_t n);
   /* level 0 debug .. 3 error; the host limits how often the same text is passed on. */
   void (*log)(const RtsHost* host, int level, const char* utf8);
+  /* Since 1.1: another lobe of the batch's hits, for `surface`. At most RTS_MAX_LOBES a batch, NULL beyond. Owned by the host. */
+  RtsLobe* (*lobe)(RtsBatch* batch, RtsLobeKind kind);
 };
+#define RTS_MAX_LOBES 8
 
 #if defined(_WIN32)
 #define RTS_EXPORT __declspec(dllexport)

@@ -14,6 +14,7 @@
 //
 //   Surface<T>      Shaded shade(const Hit&) const
 //                   Color reflect(const Hit&, const Light&) const     optional: the answer to one light; without it: unlit
+//                   void surface(const Hit&, Closures&) const         instead of shade: a sum of lobes that the engine follows
 //                   Color transmit(const Hit&) const                  optional: what shadow rays see; without it the surface is
 //                   opaque
 //   LightSource<T>  Illumination illuminate(Vec3 point) const         point and answer in the light's local space
@@ -154,8 +155,9 @@ struct Hit {
   Vec3 geometric; // unit, turned towards the ray's origin
   Vec3 normal;    // unit, on the same side
   Vec2 uv;
-  Vec4 color; // of the geometry, 1 1 1 1 without
-  float distance = 0;
+  Vec4 color;         // of the geometry, 1 1 1 1 without
+  float distance = 0; // along the path from the camera
+  float segment = 0;  // along the ray that met the surface
   uint32_t flags = 0;
   uint32_t lane = 0;
   const RtsHost* host = nullptr;
@@ -200,6 +202,59 @@ struct Fog {
   float fraction = 1; // of the surface's radiance that arrives
 };
 
+// The lobes of one hit (RtsLobeKind). Several of a kind add up.
+class Closures {
+ public:
+  // The engine's answer to lights and to the light of other surfaces: Lambert's law.
+  void diffuse(Color albedo) { add(RTS_LOBE_DIFFUSE, albedo); }
+  void reflection(Color reflectance) { add(RTS_LOBE_REFLECTION, reflectance); }
+  // eta: index of refraction on the ray's side over that behind.
+  void dielectric(Color tint, float eta) { add(RTS_LOBE_DIELECTRIC, tint, eta); }
+  void transparent(Color transmittance) { add(RTS_LOBE_TRANSPARENT, transmittance); }
+  void emission(Color radiance) {
+    const float c[3] = {radiance.r, radiance.g, radiance.b};
+    for (int k = 0; k < 3; k++) out_->emission[k][lane_] += c[k];
+  }
+  // For the albedo channel.
+  void albedo(Color color) {
+    const float c[3] = {color.r, color.g, color.b};
+    for (int k = 0; out_->albedo[0] && k < 3; k++) out_->albedo[k][lane_] = c[k];
+  }
+
+  Closures(const RtsHost* host, RtsBatch* batch, RtsSurface* out) : host_(host), batch_(batch), out_(out) {}
+  void begin(uint32_t lane) { // the next hit
+    lane_ = lane;
+    for (uint32_t i = 0; i < count_; i++) free_[i] = true;
+  }
+
+ private:
+  void add(RtsLobeKind kind, Color weight, float parameter = 0) {
+    RtsLobe* lobe = slot(kind);
+    if (!lobe) return;
+    const float c[3] = {weight.r, weight.g, weight.b};
+    for (int k = 0; k < 3; k++) lobe->weight[k][lane_] = c[k];
+    lobe->parameter[0][lane_] = parameter;
+  }
+  // A lobe of this kind that the hit has not used yet.
+  RtsLobe* slot(RtsLobeKind kind) {
+    for (uint32_t i = 0; i < count_; i++) {
+      if (!free_[i] || lobes_[i]->kind != kind) continue;
+      free_[i] = false;
+      return lobes_[i];
+    }
+    RtsLobe* made = count_ < RTS_MAX_LOBES ? host_->lobe(batch_, kind) : nullptr;
+    if (made) lobes_[count_] = made, free_[count_++] = false;
+    return made;
+  }
+
+  const RtsHost* host_;
+  RtsBatch* batch_;
+  RtsSurface* out_;
+  uint32_t lane_ = 0, count_ = 0;
+  RtsLobe* lobes_[RTS_MAX_LOBES] = {};
+  bool free_[RTS_MAX_LOBES] = {};
+};
+
 template <class T> struct Surface {};
 template <class T> struct LightSource {};
 template <class T> struct Camera {};
@@ -218,6 +273,11 @@ template <class T> struct HasTransmit<T, std::void_t<decltype(std::declval<const
     : std::true_type {};
 template <class T, class = void> struct HasAttenuate : std::false_type {};
 template <class T> struct HasAttenuate<T, std::void_t<decltype(std::declval<const T&>().attenuate(Vec3()))>> : std::true_type {};
+template <class T, class = void> struct HasSurface : std::false_type {};
+template <class T>
+struct HasSurface<T,
+                  std::void_t<decltype(std::declval<const T&>().surface(std::declval<const Hit&>(), std::declval<Closures&>()))>>
+    : std::true_type {};
 template <class T, class = void> struct HasText : std::false_type {};
 template <class T> struct HasText<T, std::void_t<decltype(T::text)>> : std::true_type {};
 template <class T, class = void> struct IsDirectional : std::false_type {};
@@ -244,6 +304,7 @@ inline Hit hitAt(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, uint
     h.geometric = vec3(hits->geometric, i);
     h.normal = vec3(hits->normal, i);
     h.distance = hits->distance[i];
+    if (host->minor >= 1) h.segment = hits->segment[i];
   }
   h.uv = {hits->uv[0][i], hits->uv[1][i]};
   h.color = {hits->color[0][i], hits->color[1][i], hits->color[2][i], hits->color[3][i]};
@@ -279,6 +340,14 @@ template <class T> void shade(const RtsHost* host, RtsBatch* batch, const RtsHit
     if (out->albedo[0]) put(out->albedo, i, s.albedo);
   }
   if constexpr (HasReflect<T>::value) addLights<T>(host, batch, hits, out);
+}
+
+template <class T> void surface(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, RtsSurface* out) {
+  Closures closures(host, batch, out);
+  for (uint32_t i = 0; i < hits->count; i++) {
+    closures.begin(i);
+    shaderAt<T>(hits, i).surface(hitAt(host, batch, hits, i, false), closures);
+  }
 }
 
 template <class T> void transmit(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, float* const transmission[3]) {
@@ -328,7 +397,7 @@ template <class T> uint32_t traits(const RtsHost*, const void*) {
   uint32_t t = 0;
   if constexpr (std::is_base_of_v<Surface<T>, T>) {
     if (HasTransmit<T>::value) t |= RTS_TRANSPARENT;
-    if (!HasReflect<T>::value) t |= RTS_UNLIT;
+    if (!HasReflect<T>::value && !HasSurface<T>::value) t |= RTS_UNLIT;
   } else {
     if (!CastsShadows<T>::value) t |= RTS_NO_SHADOW;
   }
@@ -339,7 +408,10 @@ template <class T> void fillFunctions(RtsClass& c) {
   if constexpr (std::is_base_of_v<Surface<T>, T>) {
     c.kind = RTS_SURFACE;
     c.traits = traits<T>;
-    c.shade = shade<T>;
+    if constexpr (HasSurface<T>::value)
+      c.surface = surface<T>;
+    else
+      c.shade = shade<T>;
     if constexpr (HasTransmit<T>::value) c.transmit = transmit<T>;
   } else if constexpr (std::is_base_of_v<LightSource<T>, T>) {
     c.kind = RTS_LIGHT;

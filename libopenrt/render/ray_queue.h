@@ -1,0 +1,28 @@
+// ray_queue.h: rays that wait for the next wave of a tile: a path may send on several. Grows with what is pushed; kept by the
+// tile renderer from tile to tile. [render]
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+namespace openrt {
+
+// What a ray knows of the path it belongs to.
+struct RayState {
+  float throughput[3] = {1, 1, 1};
+  float travelled = 0; // length of the path up to the ray's origin
+  uint32_t path = 0;   // sample of the tile
+  uint32_t branch = 0; // tells the branches of one path apart for its random numbers; 0: the one from the camera
+  uint8_t bent = 0;    // no longer the straight line from the camera: alpha is settled
+  uint8_t splits = 0;  // times the path has gone on in several directions
+};
+
+struct QueuedRay {
+  float origin[3], direction[3];
+  RayState state;
+};
+
+using RayQueue = std::vector<QueuedRay>;
+
+} // namespace openrt

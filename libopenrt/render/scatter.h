@@ -1,0 +1,55 @@
+// scatter.h: where light comes from that leaves a surface described by lobes: directions, Fresnel's equations. Pure functions.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+namespace openrt {
+
+inline float dot3(const float a[3], const float b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+// Mirror image of a direction (towards the surface) at a normal.
+inline void reflectAt(const float d[3], const float n[3], float out[3]) {
+  const float twice = 2 * dot3(d, n);
+  for (int k = 0; k < 3; k++) out[k] = d[k] - twice * n[k];
+}
+
+// Fresnel reflectance of unpolarised light at a smooth dielectric boundary. cosine: of the angle of incidence, 0..1; eta: index
+// on the ray's side over that behind; cosineBehind gets the refracted angle's, 0 under total reflection. In double: near the
+// critical angle the root loses half of the digits. M. Born, E. Wolf, "Principles of Optics", 1.5.2.
+inline double fresnel(double cosine, double eta, double& cosineBehind) {
+  const double sineBehind2 = eta * eta * std::max(0.0, 1 - cosine * cosine);
+  if (sineBehind2 >= 1) {
+    cosineBehind = 0;
+    return 1;
+  }
+  cosineBehind = std::sqrt(1 - sineBehind2);
+  const double s = (eta * cosine - cosineBehind) / (eta * cosine + cosineBehind);
+  const double p = (cosine - eta * cosineBehind) / (cosine + eta * cosineBehind);
+  return (s * s + p * p) / 2;
+}
+
+// Snell's law in vectors; d towards the surface, n against it.
+inline void refractAt(const float d[3], const float n[3], double eta, double cosine, double cosineBehind, float out[3]) {
+  double length = 0, r[3];
+  for (int k = 0; k < 3; k++) r[k] = eta * d[k] + (eta * cosine - cosineBehind) * n[k], length += r[k] * r[k];
+  const double s = length > 0 ? 1 / std::sqrt(length) : 0; // unit again: errors of a long chain must not grow
+  for (int k = 0; k < 3; k++) out[k] = float(r[k] * s);
+}
+
+// A direction about n with density cosine / pi from a point of the unit square: the disc of P. Shirley, K. Chiu (1997), lifted
+// to the hemisphere. The frame is that of T. Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017.
+inline void cosineDirection(const float n[3], float u, float v, float out[3]) {
+  const float a = 2 * u - 1, b = 2 * v - 1;
+  float r = 0, phi = 0;
+  if (std::fabs(a) > std::fabs(b))
+    r = a, phi = float(M_PI / 4) * (b / a);
+  else if (b != 0)
+    r = b, phi = float(M_PI / 2) - float(M_PI / 4) * (a / b);
+  const float x = r * std::cos(phi), y = r * std::sin(phi), z = std::sqrt(std::max(0.0f, 1 - x * x - y * y));
+  const float sign = std::copysign(1.0f, n[2]), c = -1 / (sign + n[2]), d = n[0] * n[1] * c;
+  const float s[3] = {1 + sign * n[0] * n[0] * c, sign * d, -sign * n[0]}, t[3] = {d, sign + n[1] * n[1] * c, -n[1]};
+  for (int k = 0; k < 3; k++) out[k] = x * s[k] + y * t[k] + z * n[k];
+}
+
+} // namespace openrt

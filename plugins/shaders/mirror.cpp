@@ -1,0 +1,18 @@
+// mirror.cpp: a mirror of one reflectance whatever the angle.
+#include "openrt/openrts.hpp"
+
+namespace {
+
+struct Mirror : rts::Surface<Mirror> {
+  static constexpr const char* text = "a perfect mirror of one reflectance in all directions";
+  rts::Param<rts::Color> reflectance{"reflectance", {0.9f, 0.9f, 0.9f}, "fraction reflected, 0..1", 0, 1};
+
+  void surface(const rts::Hit&, rts::Closures& out) const {
+    out.reflection(reflectance);
+    out.albedo(reflectance);
+  }
+};
+
+} // namespace
+
+RTS_PLUGIN(Mirror)

@@ -1,0 +1,177 @@
+// lobes.cpp: surfaces described by lobes against closed forms: mirrors, glass, metal, furnaces (accuracy catalogue D1 to D15, G1,
+// G2, G4), through the C API.
+#include "numeric/support.h"
+
+namespace numeric {
+namespace {
+
+class Lobes : public Scene {
+ protected:
+  static Shader glowing(double radiance, double reflectance = 0) {
+    Shader s("Diffuse");
+    s.set("reflectance", {reflectance, reflectance, reflectance}).set("emission", {radiance, radiance, radiance});
+    return s;
+  }
+  // A square at height z that faces up, or down.
+  static void at(double z, RTid object, bool down = false) {
+    rtPushMatrix();
+    rtTranslated(0, 0, z);
+    if (down) rtRotated(180, 1, 0, 0);
+    place(object);
+    rtPopMatrix();
+  }
+  static void slab(double top, double bottom, RTid glass) {
+    at(top, square(glass));
+    at(bottom, square(glass), true);
+  }
+  static void environment(double radiance) {
+    Shader sky("VRML97Environment");
+    const float r = float(radiance);
+    sky.setList("skyColor", {r, r, r});
+    rtUseEnvironment(sky);
+  }
+};
+
+constexpr double R = .04; // of glass, index 1.5, met head on
+
+TEST_F(Lobes, DiffuseAnswersLightsAsLambertSays) {
+  Shader s("Diffuse");
+  s.set("reflectance", {.5, .25, .125});
+  place(square(s));
+  use(tilted(60));
+  expectColor(look(), {.25, .125, .0625});
+}
+
+TEST_F(Lobes, D1ASlabLetsThroughAllInnerReflections) {
+  slab(2, 1, Shader("Glass"));
+  at(0, square(glowing(1)));
+  expectGrey(look(), (1 - R) / (1 + R), 1e-4); // the tree is cut at 1/4096 of the light
+}
+
+TEST_F(Lobes, D1ASlabReflectsTheRest) {
+  slab(2, 1, Shader("Glass"));
+  at(0, square(glowing(0)));
+  rtPushMatrix();
+  at(30, square(glowing(1)), true);
+  rtPopMatrix();
+  expectGrey(look(), 2 * R / (1 + R), 1e-3);
+}
+
+TEST_F(Lobes, D2ASlabThatAbsorbs) {
+  Shader glass("Glass");
+  glass.set("absorption", {1, 2, 0});
+  slab(2, 1, glass);
+  at(0, square(glowing(1)));
+  const auto t = [](double a) { return (1 - R) * (1 - R) * a / (1 - R * R * a * a); };
+  EXPECT_NEAR(t(std::exp(-1)), .339111, 1e-6);
+  expectColor(look(), {t(std::exp(-1)), t(std::exp(-2)), t(1)}, 1e-4);
+}
+
+TEST_F(Lobes, D3FresnelAtFortyFiveDegreesAveragedAtEachBoundary) {
+  rtPushMatrix();
+  rtRotated(45, 0, 1, 0);
+  slab(.5, -.5, Shader("Glass"));
+  rtPopMatrix();
+  at(-30, square(glowing(1), 100));
+  const double r = .050240;
+  expectGrey(look(), (1 - r) / (1 + r), 1e-4);
+}
+
+TEST_F(Lobes, MetalReflectsByItsComplexIndex) {
+  Shader metal("Metal");
+  metal.set("n", {.96, .96, .2}).set("k", {6.69, 6.69, 3.912});
+  const double expected[][3] = {{0, .920984, .952221}, {45, .917204, .950317}, {60, .906746, 0}, {80, .867619, .948525}};
+  for (const auto& row : expected) {
+    rtPushMatrix();
+    rtRotated(row[0], 0, 1, 0);
+    const RTid mirror = place(square(metal));
+    rtPopMatrix();
+    environment(1);
+    const Rgba pixel = look();
+    expectClose(pixel.r, row[1], 2e-6);
+    if (row[2] > 0) expectClose(pixel.b, row[2], 2e-6);
+    rtDeleteInstance(mirror);
+  }
+}
+
+// D13: the eye looks into a corner of 90 / n degrees; here two mirrors face each other and the sky is seen past the edge of the
+// upper one: each image of it is dimmer by the reflectance.
+TEST_F(Lobes, D13EveryImageIsDimmerByTheReflectance) {
+  Shader mirror("Mirror");
+  environment(1);
+  at(0, square(mirror, 1000));
+  rtPushMatrix();
+  rtTranslated(0, 0, 1);
+  rtRotated(180, 1, 0, 0);
+  rtTranslated(-10, 0, 0);
+  place(square(mirror, 10)); // from x = 0 to 20 seen from below: turned about x
+  rtPopMatrix();
+  // Down at 45 degrees: each mirror is met every 2 units of x.
+  rtPushMatrix();
+  rtLoadIdentity();
+  rtLookAt(-.4, 0, .5, -.9, 0, 0, 0, 1, 0);
+  rtOrtho(1e-6);
+  rtPopMatrix();
+  const Rgba pixel = render();
+  expectGrey(pixel, std::pow(.9, 21), 1e-5); // ten pairs, and the lower one once more on the way out
+}
+
+TEST_F(Lobes, AMirrorShowsTheSkyTimesItsReflectance) {
+  Shader mirror("Mirror");
+  mirror.set("reflectance", {.9, .5, .1});
+  place(square(mirror));
+  environment(2);
+  const Rgba pixel = look();
+  expectColor(pixel, {1.8, 1, .2});
+  EXPECT_EQ(pixel.a, 1);
+}
+
+TEST_F(Lobes, AStackOfPanesHasItsClosedForm) { // D15: N boundaries, all orders: T = (1 - R) / (1 + (N - 1) R)
+  rtQuality(RT_MAX_DEPTH, 200);
+  for (int pane = 0; pane < 3; ++pane) slab(2 + pane, 1.5 + pane, Shader("Glass"));
+  at(0, square(glowing(1)));
+  expectGrey(look(), (1 - R) / (1 + 5 * R), 1e-3);
+}
+
+TEST_F(Lobes, GlassIsInvisibleInAFurnace) { // G1: what is reflected and what is refracted add up to all
+  Shader glass("Glass");
+  const RTid ball = rtBeginObject(0);
+  rtBindShader(glass);
+  rtSphere(1);
+  rtEndObject();
+  rtBindShader(0);
+  place(ball);
+  environment(1);
+  for (double x : {0., .3, .6, .9}) expectGrey(look(x), 1, 2e-3);
+}
+
+TEST_F(Lobes, G2AndG4AClosedFurnaceByPathTracing) {
+  const double emission = .5, albedo = .5;
+  const Shader wall = glowing(emission, albedo);
+  const RTid box = rtBeginObject(0);
+  rtBindShader(wall);
+  rtSphere(30);
+  rtEndObject();
+  rtBindShader(0);
+  place(box);
+  rtQuality(RT_TRANSPORT, RT_TRANSPORT_PATH);
+  rtQuality(RT_SAMPLES_PER_PIXEL, 64);
+  for (int bounces : {0, 1, 2}) { // before Russian roulette: every path sees the same
+    rtQuality(RT_MAX_DEPTH, bounces);
+    expectGrey(look(), emission * (1 - std::pow(albedo, bounces + 1)) / (1 - albedo));
+  }
+  rtQuality(RT_MAX_DEPTH, 60);
+  rtQuality(RT_SAMPLES_PER_PIXEL, 4096);
+  expectGrey(look(), emission / (1 - albedo), 5e-3);
+}
+
+TEST_F(Lobes, DirectTransportFollowsNothing) {
+  Shader mirror("Mirror");
+  place(square(mirror));
+  environment(1);
+  rtQuality(RT_TRANSPORT, RT_TRANSPORT_DIRECT);
+  expectGrey(look(), 0);
+}
+
+} // namespace
+} // namespace numeric
