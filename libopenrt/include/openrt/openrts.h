@@ -99,7 +99,7 @@ typedef struct RtsShading {
 typedef enum RtsLobeKind {
   RTS_LOBE_DIFFUSE = 1, /* Lambert; weight: albedo */
   RTS_LOBE_REFLECTION,  /* perfect mirror; weight: reflectance for this direction (Fresnel included) */
-  RTS_LOBE_DIELECTRIC,  /* smooth boundary of a clear medium: Fresnel reflection and refraction, unpolarised; weight: tint of both;
+  RTS_LOBE_DIELECTRIC,  /* smooth boundary of a clear medium: Fresnel reflection and refraction, unpolarised; weight: their tint;
                            parameter[0]: index of refraction on the ray's side over that behind */
   RTS_LOBE_TRANSPARENT, /* straight through; weight: transmittance */
   RTS_LOBE_COUNT,
@@ -181,7 +181,7 @@ typedef struct RtsClass {
    * fraction (0..1) of surface radiance that arrives. NULL: clear air. */
   void (*attenuate)(const RtsHost* host, RtsBatch* batch, const void* params, uint32_t n, const float* const fromEye[3],
                     float* const color[3], float* fraction);
-  /* surface, since 1.1: describes every hit by lobes (RtsHost.lobe) and emission. A class has this or `shade`; with both, this. */
+  /* surface, since 1.1: describes every hit by lobes (RtsHost.lobe) and emission. A class has this or `shade`; of both, this. */
   void (*surface)(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, RtsSurface* out);
 } RtsClass;
 
