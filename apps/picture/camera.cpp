@@ -46,6 +46,24 @@ double verticalAngle(double smaller, double aspect) {
   return aspect >= 1 ? smaller : 2 * std::atan(std::tan(smaller / 2) / aspect);
 }
 
+namespace {
+
+// Turns a camera and its place about the vertical axis through the middle of the bounds.
+void turn(xvrml::CameraSettings& camera, const xvrml::Bounds& bounds, double angle) {
+  if (angle == 0) return;
+  const double cx = bounds.empty ? 0 : (bounds.minimum[0] + bounds.maximum[0]) / 2;
+  const double cz = bounds.empty ? 0 : (bounds.minimum[2] + bounds.maximum[2]) / 2;
+  const double c = std::cos(angle), s = std::sin(angle);
+  for (size_t column = 0; column < 4; ++column) {
+    double* v = camera.matrix + 4 * column;
+    const double x = v[0] - (column == 3 ? cx : 0), z = v[2] - (column == 3 ? cz : 0);
+    v[0] = c * x + s * z + (column == 3 ? cx : 0);
+    v[2] = -s * x + c * z + (column == 3 ? cz : 0);
+  }
+}
+
+} // namespace
+
 xvrml::CameraSettings chooseCamera(const xvrml::OpenRTMapper& mapper, const View& view, double aspect) {
   constexpr double radians = std::numbers::pi / 180;
   const double smaller = view.fov ? *view.fov * radians : std::numbers::pi / 4; // a Viewpoint's default
@@ -60,6 +78,7 @@ xvrml::CameraSettings chooseCamera(const xvrml::OpenRTMapper& mapper, const View
   } else {
     camera = mapper.fitCamera(fovy);
   }
+  turn(camera, mapper.bounds(), view.turn);
   return camera;
 }
 

@@ -39,8 +39,15 @@ void throwOnError(const char* doing) {
 
 } // namespace
 
+// What happened to the world since the last call, handed from the browser's thread to the render thread.
+struct News {
+  bool otherWorld = false;
+  xvrml::FieldChanges changes;
+};
+
 struct Renderer::Impl {
-  xvrml::World& world;
+  xvrml::World* world;     // as it stands; with a browser: the one that it runs
+  xvrml::Browser* browser; // null: the world stands still
   const RenderSettings settings;
   Watch watch;
 
@@ -59,7 +66,10 @@ struct Renderer::Impl {
   std::atomic<bool> cancelled{false};
   std::thread thread;
 
-  Impl(xvrml::World& w, const RenderSettings& s, Watch x) : world(w), settings(s), watch(std::move(x)) {}
+  uint64_t generation = 0; // of the browser's world that the mapper shows
+
+  Impl(xvrml::World* w, xvrml::Browser* b, const RenderSettings& s, Watch x)
+      : world(w), browser(b), settings(s), watch(std::move(x)) {}
 
   // Errors of calls become diagnostics in the mapper; here only what the exit code depends on.
   static void note(RTenum error, const char*, void* user) {
@@ -123,13 +133,35 @@ struct Renderer::Impl {
       context = made;
     }
     rtErrorCallback(note, this);
+    makeMapper();
+  }
+
+  void makeMapper() {
     const auto begin = Clock::now();
     xvrml::MapOptions options;
     options.linearColor = settings.linear;
     options.headlight = settings.headlight;
     options.aspect = double(settings.width) / settings.height;
-    mapper = std::make_unique<xvrml::OpenRTMapper>(world, options);
-    meshSeconds = secondsSince(begin);
+    mapper.reset(); // before the next one: both would own the context's scene
+    mapper = std::make_unique<xvrml::OpenRTMapper>(*world, options);
+    meshSeconds += secondsSince(begin);
+  }
+
+  // On the browser's thread.
+  News collect() {
+    News news;
+    if (!browser) return news;
+    news.changes = browser->takeChanges();
+    news.otherWorld = std::exchange(generation, browser->generation()) != browser->generation();
+    if (news.otherWorld) world = &browser->world();
+    return news;
+  }
+
+  void apply(const News& news) {
+    if (news.otherWorld)
+      makeMapper();
+    else
+      mapper->update(news.changes);
   }
 
   void setUpFrame() {
@@ -194,7 +226,17 @@ struct Renderer::Impl {
 };
 
 Renderer::Renderer(xvrml::World& world, const RenderSettings& settings, Watch watch)
-    : impl_(std::make_unique<Impl>(world, settings, std::move(watch))) {
+    : impl_(std::make_unique<Impl>(&world, nullptr, settings, std::move(watch))) {
+  begin();
+}
+
+Renderer::Renderer(xvrml::Browser& browser, const RenderSettings& settings, Watch watch)
+    : impl_(std::make_unique<Impl>(&browser.world(), &browser, settings, std::move(watch))) {
+  impl_->collect(); // the mapper begins with the world as it is now
+  begin();
+}
+
+void Renderer::begin() {
   impl_->thread = std::thread([impl = impl_.get()] { impl->loop(); });
   try {
     impl_->run([this] { impl_->start(); });
@@ -217,16 +259,33 @@ void Renderer::end() {
 
 void Renderer::setWatch(Watch watch) { impl_->watch = std::move(watch); }
 
-const std::vector<xvrml::ViewpointInfo>& Renderer::viewpoints() const { return impl_->mapper->viewpoints(); }
+const std::vector<xvrml::ViewpointInfo>& Renderer::viewpoints() {
+  if (const News news = impl_->collect(); news.otherWorld || !news.changes.empty()) impl_->run([&] { impl_->apply(news); });
+  return impl_->mapper->viewpoints();
+}
 
 xvrml::Bounds Renderer::bounds() {
   xvrml::Bounds bounds;
-  impl_->run([&] { bounds = impl_->mapper->bounds(); });
+  const News news = impl_->collect();
+  impl_->run([&] {
+    impl_->apply(news);
+    bounds = impl_->mapper->bounds();
+  });
   return bounds;
 }
 
 void Renderer::prepare(const View& view) {
-  impl_->run([&] { impl_->prepare(view); });
+  const News news = impl_->collect();
+  impl_->run([&] {
+    impl_->apply(news);
+    impl_->prepare(view);
+  });
+}
+
+std::vector<xvrml::ExplainedObject> Renderer::explain() {
+  std::vector<xvrml::ExplainedObject> objects;
+  impl_->run([&] { objects = impl_->mapper->explain(); });
+  return objects;
 }
 
 bool Renderer::snapshot(Picture& picture) { return impl_->context && impl_->snapshot(picture); }
@@ -236,7 +295,11 @@ RenderResult Renderer::render(const View& view) {
     throw RenderError(fmt::format("there is no viewpoint {}: the world has {}", *view.viewpoint, viewpoints().size()));
   RenderResult result{};
   impl_->cancelled = false;
-  impl_->run([&] { impl_->render(view, result); });
+  const News news = impl_->collect();
+  impl_->run([&] {
+    impl_->apply(news);
+    impl_->render(view, result);
+  });
   return result;
 }
 

@@ -1,6 +1,7 @@
-// renderer.h: renders a world to pictures. It keeps one OpenRT context and one mapper on a thread of its own, so that the
-// calling thread stays free for a progress bar, signals or Python's interrupts. Called by vv and the Python binding, by one
-// thread at a time.
+// renderer.h: renders a world to pictures: one that stands still, or one that a Browser runs. It keeps one OpenRT context and one
+// mapper on a thread of its own, so that the calling thread stays free for a progress bar, signals or Python's interrupts.
+// Called by vv and the Python binding, by one thread at a time: the browser's. While the render thread reads the world, that
+// thread waits in the call; the browser itself is never used from the render thread.
 #pragma once
 
 #include <cstdint>
@@ -13,6 +14,7 @@
 #include "openrt/openrt.h"
 #include "picture/camera.h"
 #include "picture/picture.h"
+#include "xvrml/browser.h"
 #include "xvrml/openrt.h"
 
 namespace picture {
@@ -30,6 +32,8 @@ struct RenderSettings {
   std::string backend = "local";
   std::string record;     // file that keeps the scene edits
   std::string shaderPath; // folders, separated by colons
+
+  bool operator==(const RenderSettings&) const = default;
 };
 
 struct RenderError : std::runtime_error {
@@ -52,21 +56,27 @@ class Renderer {
  public:
   // Throws RenderError. The world must live and stay unchanged as long as the renderer.
   Renderer(xvrml::World& world, const RenderSettings& settings, Watch watch = {});
+  // The world that the browser runs, with everything that happens to it between two calls: the renderer takes its changes
+  // (Browser::takeChanges), so one renderer a browser. The browser must live as long as the renderer.
+  Renderer(xvrml::Browser& browser, const RenderSettings& settings, Watch watch = {});
   ~Renderer();
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
   void setWatch(Watch watch);
-  const std::vector<xvrml::ViewpointInfo>& viewpoints() const;
+  const std::vector<xvrml::ViewpointInfo>& viewpoints();
   xvrml::Bounds bounds();
   // Maps the world for a view without making a picture; problems are in the world's diagnostics.
   void prepare(const View& view);
+  // What the world is rendered as; after prepare() or render().
+  std::vector<xvrml::ExplainedObject> explain();
   // The picture of the frame in flight as far as it is finished; for the watch to call. False if no frame is in flight.
   bool snapshot(Picture& picture);
   // Throws RenderError. An exception of the watch ends the picture and is passed on.
   RenderResult render(const View& view);
 
  private:
+  void begin();
   void end();
   struct Impl;
   std::unique_ptr<Impl> impl_;

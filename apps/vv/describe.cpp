@@ -44,18 +44,19 @@ template <class T> std::string text(const std::vector<T>& list) {
   return out + "]";
 }
 
-class Counter {
+// Without recursion: a hostile world may be a thousand nodes deep.
+class Walk {
  public:
-  explicit Counter(WorldCounts& counts) : counts_(counts) {}
+  Walk(const std::function<void(const Node&)>& visit, const std::function<void(const Scope&)>& enter)
+      : visit_(visit), enter_(enter) {}
 
-  // Without recursion: a hostile world may be a thousand nodes deep.
-  void count(const Scope& scope) {
+  void through(const Scope& scope) {
     add(scope);
     while (!todo_.empty()) {
       const Node* node = todo_.back();
       todo_.pop_back();
       if (!node || !seen_.insert(node).second) continue;
-      ++counts_.types[node->type().name];
+      visit_(*node);
       for (const FieldInfo& field : node->type().fields) {
         if (field.access != Access::field && field.access != Access::exposedField) continue;
         if (field.type == FieldType::SFNode) todo_.push_back(static_cast<const SFNode*>(node->storage(field))->get());
@@ -69,11 +70,12 @@ class Counter {
 
  private:
   void add(const Scope& scope) {
-    counts_.routes += scope.routes.size();
+    enter_(scope);
     for (const NodeRef& root : scope.roots) todo_.push_back(root.get());
   }
 
-  WorldCounts& counts_;
+  const std::function<void(const Node&)>& visit_;
+  const std::function<void(const Scope&)>& enter_;
   std::vector<const Node*> todo_;
   std::unordered_set<const Node*> seen_;
 };
@@ -92,9 +94,16 @@ std::string oneLine(std::string text) {
   return text;
 }
 
+void forEachNode(const World& world, const std::function<void(const Node& node)>& visit) {
+  const std::function<void(const Scope&)> nothing = [](const Scope&) {};
+  Walk(visit, nothing).through(world.scope);
+}
+
 WorldCounts countWorld(const World& world) {
   WorldCounts counts;
-  Counter(counts).count(world.scope);
+  const std::function<void(const Node&)> count = [&](const Node& node) { ++counts.types[node.type().name]; };
+  const std::function<void(const Scope&)> enter = [&](const Scope& scope) { counts.routes += scope.routes.size(); };
+  Walk(count, enter).through(world.scope);
   for (const ProtoPtr& prototype : world.scope.prototypes) counts.prototypes.push_back(prototype->type->name);
   for (const auto& [name, node] : world.scope.names) counts.names.push_back(name);
   return counts;

@@ -1,6 +1,7 @@
 // describe.h: values and worlds in words, through the field tables alone. [any thread]
 #pragma once
 
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -20,6 +21,8 @@ struct WorldCounts {
   uint64_t routes = 0;
   std::vector<std::string> prototypes, names;
 };
+// Every node of a world once: bodies of prototypes and what Inlines loaded too.
+void forEachNode(const xvrml::World& world, const std::function<void(const xvrml::Node& node)>& visit);
 WorldCounts countWorld(const xvrml::World& world);
 
 } // namespace vv

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "names.h"
 #include "picture/nearest.h"
 
 namespace vv {
@@ -16,10 +17,12 @@ void addOutput(Options& o, const std::string& value) {
   if (value.size() > 2 && value.ends_with(":-")) {
     if (auto format = picture::formatNamed(value.substr(0, value.size() - 2))) return o.outputs.push_back({"-", *format});
   }
+  checkFramePlace(value);
+  if (const Video video = videoOf(value); video != Video::none) return o.outputs.push_back({value, {}, video});
   auto format = picture::formatOf(value);
   if (!format)
-    throw UsageError(
-        fmt::format("a file name with one of the suffixes {} was expected, not \"{}\"", picture::formatNames, value));
+    throw UsageError(fmt::format("a file name with one of the suffixes {}, mp4, webm, gif was expected, not \"{}\"",
+                                 picture::formatNames, value));
   o.outputs.push_back({value, *format});
 }
 
@@ -73,7 +76,8 @@ void notEmpty(const std::string& value, const char* what) {
 const OptionInfo table[] = {
     {"-o,--output", "FILE", "Picture",
      "Picture to write; the format is that of the suffix (exr, png, jpg, ppm, pfm). - is standard output (PNG; exr:- and so on "
-     "for another format). May be given several times.",
+     "for another format). Of a sequence {frame:4} in the name is the number with four digits, and mp4, webm or gif makes a "
+     "video through the program ffmpeg. May be given several times.",
      addOutput, true},
     {"--size", "WxH", "Picture", "Size in pixels (default 800x600).",
      [](Options& o, const std::string& v) { readSize(v, o.render.width, o.render.height); }},
@@ -97,6 +101,29 @@ const OptionInfo table[] = {
     {"--fov", "DEGREES", "View", "The smaller of the two angles of view, instead of the viewpoint's.",
      [](Options& o, const std::string& v) { o.view.fov = readNumber(v, 0, 180); }},
     {"--headlight", "on|off|auto", "View", "Light at the camera; auto (default): as NavigationInfo says.", setHeadlight},
+    {"--time", "SECONDS", "Time",
+     "The world at this time. Its clock starts at 0 when it is loaded and goes in steps of 1/fps up to here, as in a sequence; "
+     "no wall clock is read (default 0).",
+     [](Options& o, const std::string& v) { o.time = v == "0" ? 0 : readNumber(v, -1e-9, 1e6); }},
+    {"--frames", "A-B[/STEP]", "Time",
+     "A picture of each frame from A to B: frame N shows the world at N/fps seconds, and is the same picture in any sequence "
+     "that holds it. The number is put where {frame:4} stands in the file name, or else before its suffix.",
+     [](Options& o, const std::string& v) { o.frames = readFrames(v); }},
+    {"--fps", "F", "Time", "Frames a second, of sequences and videos, and steps of the world's clock (default 30).",
+     [](Options& o, const std::string& v) { o.fps = readNumber(v, 0.001, 100000); }},
+    {"--turntable", "N", "Time", "N pictures, once around the vertical axis through the world's centre, from the chosen view on.",
+     [](Options& o, const std::string& v) { o.turntable = int(readInteger(v, 1, 100000)); }},
+    {"-D,--define", "DEF.FIELD=VALUE", "Change",
+     "Give a field of a node with a DEF name another value before rendering, in VRML's own spelling (Door.translation='0 0 2', "
+     "Sign.string='\"open\"'). May be given several times.",
+     [](Options& o, const std::string& v) {
+       const size_t equals = v.find('=');
+       const size_t dot = v.find('.');
+       if (equals == v.npos || dot == v.npos || dot == 0 || dot + 1 >= equals)
+         throw UsageError(fmt::format("DEF.FIELD=VALUE was expected, not \"{}\"", v));
+       o.definitions.push_back(v);
+     },
+     true},
     {"--spp", "N", "Quality", "Samples per pixel, 1 to 65536 (default 16).",
      [](Options& o, const std::string& v) { o.render.samples = int(readInteger(v, 1, 65536)); }},
     {"--depth", "N", "Quality", "Surfaces a path may pass or bounce at, 0 to 10000 (default 25).",
@@ -118,12 +145,18 @@ const OptionInfo table[] = {
      [](Options& o, const std::string&) { o.listNodes = true; }},
     {"--list-viewpoints", "", "Inspect", "List the viewpoints of the world.",
      [](Options& o, const std::string&) { o.listViewpoints = true; }},
-    {"--json", "", "Inspect", "--info and the lists as JSON.", [](Options& o, const std::string&) { o.json = true; }},
-    {"--stats", "FILE", "Inspect", "Write statistics as JSON; - is standard output.",
+    {"--explain", "", "Inspect",
+     "Say what objects the world is rendered as: each with the reason, its triangles, bytes and instances.",
+     [](Options& o, const std::string&) { o.explain = true; }},
+    {"--json", "", "Inspect", "--info, --explain and the lists as JSON.", [](Options& o, const std::string&) { o.json = true; }},
+    {"--stats", "FILE", "Inspect", "Write statistics as JSON, one file for a whole sequence; - is standard output.",
      [](Options& o, const std::string& v) {
        notEmpty(v, "a file name");
        o.stats = v;
      }},
+    {"--watch", "", "Inspect",
+     "Make the pictures again whenever the world's file, or one that it uses, changes; until interrupted.",
+     [](Options& o, const std::string&) { o.watch = true; }},
     {"--write", "FILE", "Write", "Write the world as VRML97; - is standard output.",
      [](Options& o, const std::string& v) {
        notEmpty(v, "a file name");

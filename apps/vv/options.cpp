@@ -45,6 +45,21 @@ std::string missingValue(std::string_view last) {
   return fmt::format("{}: a value was expected", last);
 }
 
+// Several pictures, one after the other.
+void checkSequence(const Options& options) {
+  if (options.frames && options.time) throw UsageError("only one of --time and --frames can be used");
+  if (options.frames && options.turntable) throw UsageError("only one of --frames and --turntable can be used");
+  if (options.isSequence() && !options.makesPictures() && !options.check)
+    throw UsageError("--frames and --turntable go with -o (or, to try a world out, with --check)");
+  for (const Output& output : options.outputs) {
+    if (options.isSequence() && output.path == "-") throw UsageError("a sequence needs file names, not standard output");
+    if (!options.isSequence() && output.video != Video::none)
+      throw UsageError(output.path + ": a video needs --frames or --turntable");
+  }
+  if (options.watch && !options.makesPictures()) throw UsageError("--watch goes with -o");
+  if (options.watch && options.input == "-") throw UsageError("--watch needs a file, not standard input");
+}
+
 // What the options ask for together.
 void checkTogether(Options& options) {
   const int views = !options.viewpoint.empty() + options.view.lookAt.has_value() + options.view.fit;
@@ -52,16 +67,17 @@ void checkTogether(Options& options) {
   if (options.quiet && options.verbose) throw UsageError("only one of --quiet and --verbose can be used");
   int toStandardOutput = (options.stats == "-") + (options.write == "-");
   for (const Output& output : options.outputs) toStandardOutput += output.path == "-";
-  toStandardOutput += options.info || options.listNodes || options.listViewpoints;
+  toStandardOutput += options.explain || options.info || options.listNodes || options.listViewpoints;
   if (toStandardOutput > 1) throw UsageError("only one thing can go to standard output");
-  if (options.json && !options.info && !options.listNodes && !options.listViewpoints)
-    throw UsageError("--json goes with --info, --list-nodes or --list-viewpoints");
-  if (options.info + options.listNodes + options.listViewpoints > 1)
-    throw UsageError("only one of --info, --list-nodes and --list-viewpoints can be used");
+  if (options.json && !options.info && !options.listNodes && !options.listViewpoints && !options.explain)
+    throw UsageError("--json goes with --info, --explain, --list-nodes or --list-viewpoints");
+  if (options.info + options.listNodes + options.listViewpoints + options.explain > 1)
+    throw UsageError("only one of --info, --explain, --list-nodes and --list-viewpoints can be used");
+  checkSequence(options);
   if (options.stats.size() && !options.makesPictures()) throw UsageError("--stats goes with -o");
   if (options.render.record.size() && !options.makesPictures()) throw UsageError("--record goes with -o");
-  if (options.render.record.size() && options.allViewpoints())
-    throw UsageError("--record keeps one picture's scene: not with --viewpoint all");
+  if (options.render.record.size() && (options.allViewpoints() || options.isSequence()))
+    throw UsageError("--record keeps one picture's scene: not with --viewpoint all, --frames or --turntable");
   if (options.check && options.makesPictures()) throw UsageError("--check makes no picture: not with -o");
   if (options.makesPictures() && options.allViewpoints())
     for (const Output& output : options.outputs)

@@ -9,13 +9,15 @@
 
 #include "picture/renderer.h"
 #include "values.h"
+#include "video.h"
 #include "xvrml/world.h"
 
 namespace vv {
 
 struct Output {
   std::string path; // "-": standard output
-  picture::Format format;
+  picture::Format format = picture::Format::png;
+  Video video = Video::none; // else a file of all pictures of a sequence, and no format
 };
 
 struct Options {
@@ -23,9 +25,15 @@ struct Options {
   std::vector<Output> outputs;
   picture::RenderSettings render;
   picture::View view;
-  std::string viewpoint; // as asked for: a name, a number or "all"
+  std::optional<double> time; // seconds of the world's clock
+  std::optional<FrameRange> frames;
+  double fps = 30;                      // of frames and videos; also the steps of the world's clock
+  int turntable = 0;                    // pictures around the world; 0: none
+  std::vector<std::string> definitions; // DEF.field=value
+  std::string viewpoint;                // as asked for: a name, a number or "all"
   bool check = false, strict = false;
-  bool info = false, listNodes = false, listViewpoints = false, json = false;
+  bool info = false, listNodes = false, listViewpoints = false, explain = false, json = false;
+  bool watch = false;
   std::string write, stats;
   xvrml::LoadOptions load;
   bool quiet = false, verbose = false;
@@ -33,6 +41,7 @@ struct Options {
 
   bool allViewpoints() const { return viewpoint == "all"; }
   bool makesPictures() const { return !outputs.empty(); }
+  bool isSequence() const { return frames || turntable > 0; }
 };
 
 // A row of the table. `argument` is empty for a switch. `apply` throws UsageError.

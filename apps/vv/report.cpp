@@ -122,11 +122,13 @@ Json viewpointsJson(const std::vector<xvrml::ViewpointInfo>& viewpoints) {
 
 } // namespace
 
-std::string statsJson(const Options& options, const std::string& commandLine, const xvrml::World& world,
-                      const picture::RenderResult& result, const RunTimes& times) {
+namespace {
+
+// What the statistics of a picture and of a sequence share; numbers of the last picture.
+Json sceneStats(const Options& options, const std::string& commandLine, const xvrml::World& world,
+                const picture::RenderResult& result) {
   const RTstats& s = result.stats;
   const picture::RenderSettings& r = options.render;
-  const uint64_t rays = s.cameraRays + s.shadowRays + s.secondaryRays;
   Json json;
   json["schema"] = 1;
   json["version"] = version();
@@ -143,6 +145,33 @@ std::string statsJson(const Options& options, const std::string& commandLine, co
                    {"lights", s.lights},
                    {"warnings", world.diagnostics.warnings() + world.diagnostics.errors()}};
   json["image"] = {{"width", r.width}, {"height", r.height}, {"spp", r.samples}, {"channels", channelNames(r.channels)}};
+  return json;
+}
+
+void addMachine(Json& json, const Options& options, const picture::RenderResult& result) {
+  const RTstats& s = result.stats;
+  json["transport"] = {{"chosen", "direct"},
+                       {"reason", "every surface is shaded by itself: light from the lamps, shadows, transparency"},
+                       {"claim", options.render.shadows ? "direct light with shadows" : "direct light without shadows"}};
+  json["error"] = errorEstimate(result.picture);
+  json["memory"] = {{"peak_rss", peakMemory()}, {"bvh", s.bvhBytes}, {"scene", nullptr}};
+  json["cluster"] = {{"workers", 0}, {"tiles", 0}, {"retries", 0}, {"bytes", 0}};
+  json["machine"] = {{"isa", s.isa}, {"threads", s.threads}, {"embree", s.kernel}};
+}
+
+Json rayStats(uint64_t camera, uint64_t shadow, uint64_t secondary, double seconds) {
+  return {{"camera", camera},
+          {"shadow", shadow},
+          {"secondary", secondary},
+          {"per_second", seconds > 0 ? double(camera + shadow + secondary) / seconds : 0.0}};
+}
+
+} // namespace
+
+std::string statsJson(const Options& options, const std::string& commandLine, const xvrml::World& world,
+                      const picture::RenderResult& result, const RunTimes& times) {
+  const RTstats& s = result.stats;
+  Json json = sceneStats(options, commandLine, world, result);
   // One pass makes the whole picture.
   json["time"] = {{"parse", world.times.parse},
                   {"graph", world.times.load},
@@ -152,18 +181,90 @@ std::string statsJson(const Options& options, const std::string& commandLine, co
                   {"render", result.renderSeconds},
                   {"write", times.write},
                   {"total", times.total}};
-  json["rays"] = {{"camera", s.cameraRays},
-                  {"shadow", s.shadowRays},
-                  {"secondary", s.secondaryRays},
-                  {"per_second", s.renderSeconds > 0 ? double(rays) / s.renderSeconds : 0.0}};
-  json["transport"] = {{"chosen", "direct"},
-                       {"reason", "every surface is shaded by itself: light from the lamps, shadows, transparency"},
-                       {"claim", r.shadows ? "direct light with shadows" : "direct light without shadows"}};
-  json["error"] = errorEstimate(result.picture);
-  json["memory"] = {{"peak_rss", peakMemory()}, {"bvh", s.bvhBytes}, {"scene", nullptr}};
-  json["cluster"] = {{"workers", 0}, {"tiles", 0}, {"retries", 0}, {"bytes", 0}};
-  json["machine"] = {{"isa", s.isa}, {"threads", s.threads}, {"embree", s.kernel}};
+  json["rays"] = rayStats(s.cameraRays, s.shadowRays, s.secondaryRays, s.renderSeconds);
+  addMachine(json, options, result);
   return dump(json);
+}
+
+struct SequenceStats::Impl {
+  Json frames = Json::array();
+  picture::RenderResult last{}; // without its picture
+  double map = 0, build = 0, render = 0, write = 0, first = 0, tracing = 0;
+  uint64_t camera = 0, shadow = 0, secondary = 0;
+};
+
+SequenceStats::SequenceStats() : impl_(std::make_unique<Impl>()) {}
+SequenceStats::~SequenceStats() = default;
+
+void SequenceStats::add(const PictureName& name, double worldTime, const picture::RenderResult& result, double writeSeconds) {
+  Impl& sum = *impl_;
+  const RTstats& s = result.stats;
+  const double build = s.commitSeconds + s.buildSeconds;
+  Json frame = {{"frame", name.frame.value_or(0)}, {"world_time", worldTime}};
+  if (!name.viewpoint.empty()) frame["viewpoint"] = name.viewpoint;
+  frame["time"] = {{"map", result.mapSeconds}, {"build", build}, {"render", result.renderSeconds}, {"write", writeSeconds}};
+  if (sum.frames.empty()) sum.first = result.renderSeconds;
+  sum.frames.push_back(std::move(frame));
+  sum.map += result.mapSeconds;
+  sum.build += build;
+  sum.render += result.renderSeconds;
+  sum.write += writeSeconds;
+  sum.tracing += s.renderSeconds;
+  sum.camera += s.cameraRays;
+  sum.shadow += s.shadowRays;
+  sum.secondary += s.secondaryRays;
+  sum.last.map = result.map;
+  sum.last.stats = s;
+  sum.last.interrupted |= result.interrupted;
+}
+
+std::string SequenceStats::json(const Options& options, const std::string& commandLine, const xvrml::World& world,
+                                double totalSeconds) const {
+  const Impl& sum = *impl_;
+  Json json = sceneStats(options, commandLine, world, sum.last);
+  json["time"] = {{"parse", world.times.parse}, {"graph", world.times.load}, {"map", sum.map},     {"build", sum.build},
+                  {"first_pass", sum.first},    {"render", sum.render},      {"write", sum.write}, {"total", totalSeconds}};
+  json["rays"] = rayStats(sum.camera, sum.shadow, sum.secondary, sum.tracing);
+  addMachine(json, options, sum.last);
+  json["fps"] = options.fps;
+  json["frames"] = sum.frames;
+  return dump(json);
+}
+
+std::string explainWorld(const std::vector<xvrml::ExplainedObject>& objects, bool json) {
+  uint64_t triangles = 0, bytes = 0, instances = 0, expanded = 0, shapes = 0;
+  for (const xvrml::ExplainedObject& o : objects) {
+    triangles += o.triangles;
+    bytes += o.bytes;
+    instances += o.instances;
+    shapes += o.shapes;
+    expanded += o.triangles * std::max<uint64_t>(o.instances, 1);
+  }
+  if (json) {
+    Json list = Json::array();
+    for (const xvrml::ExplainedObject& o : objects)
+      list.push_back({{"name", o.name},
+                      {"reason", o.reason},
+                      {"triangles", o.triangles},
+                      {"shapes", o.shapes},
+                      {"bytes", o.bytes},
+                      {"instances", o.instances}});
+    return dump({{"objects", std::move(list)},
+                 {"totals",
+                  {{"objects", objects.size()},
+                   {"shapes", shapes},
+                   {"triangles", triangles},
+                   {"bytes", bytes},
+                   {"instances", instances},
+                   {"instanced_triangles", expanded}}}});
+  }
+  std::string text =
+      fmt::format("{:>10} {:>8} {:>12} {:>9}  {}\n", "triangles", "shapes", "bytes", "instances", "object: reason");
+  for (const xvrml::ExplainedObject& o : objects)
+    text += fmt::format("{:>10} {:>8} {:>12} {:>9}  {}: {}\n", o.triangles, o.shapes, o.bytes, o.instances, oneLine(o.name),
+                        oneLine(o.reason));
+  return text + fmt::format("{:>10} {:>8} {:>12} {:>9}  {} objects, {} triangles with all instances\n", triangles, shapes, bytes,
+                            instances, objects.size(), expanded);
 }
 
 std::string listNodes(const xvrml::World* world, bool json) {

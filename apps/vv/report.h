@@ -1,8 +1,10 @@
 // report.h: what vv tells about a world and about a picture it made, for people and as JSON. [main thread]
 #pragma once
 
+#include <memory>
 #include <string>
 
+#include "names.h"
 #include "options.h"
 #include "picture/renderer.h"
 #include "xvrml/world.h"
@@ -16,6 +18,22 @@ struct RunTimes {
 // The statistics of a picture as JSON, schema 1.
 std::string statsJson(const Options& options, const std::string& commandLine, const xvrml::World& world,
                       const picture::RenderResult& result, const RunTimes& times);
+
+// The statistics of a sequence: sums, and the times of each picture. Also schema 1: `frames` is there besides.
+class SequenceStats {
+ public:
+  SequenceStats();
+  ~SequenceStats();
+  void add(const PictureName& name, double worldTime, const picture::RenderResult& result, double writeSeconds);
+  std::string json(const Options& options, const std::string& commandLine, const xvrml::World& world, double totalSeconds) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+// What a world is rendered as (OpenRTMapper::explain).
+std::string explainWorld(const std::vector<xvrml::ExplainedObject>& objects, bool json);
 
 // world may be null: the node types alone.
 std::string listNodes(const xvrml::World* world, bool json);

@@ -8,6 +8,7 @@
 
 #include "picture/atomic_file.h"
 #include "values.h"
+#include "video.h"
 
 namespace vv {
 
@@ -19,6 +20,7 @@ static_assert(std::atomic<bool>::is_always_lock_free);
 void onInterrupt(int) {
   if (deferred && !interruptSeen.exchange(true)) return;
   picture::removeTemporary();
+  abandonVideos();
   ::_exit(exitInterrupted);
 }
 

@@ -50,6 +50,28 @@ double readNumber(std::string_view text, double minimum, double maximum) {
   return value;
 }
 
+FrameRange readFrames(std::string_view text) {
+  constexpr long long most = 10'000'000;
+  FrameRange range;
+  std::string_view numbers = text;
+  const auto good = [](std::string_view digits, long long least, long long& out) {
+    return whole(digits, out) && out >= least && out <= most;
+  };
+  bool fine = true;
+  if (const size_t slash = numbers.find('/'); slash != numbers.npos) {
+    fine = good(numbers.substr(slash + 1), 1, range.step);
+    numbers = numbers.substr(0, slash);
+  }
+  const size_t dash = numbers.find('-', 1 <= numbers.size() ? 1 : 0);
+  fine = fine && good(numbers.substr(0, dash), 0, range.first);
+  range.last = range.first;
+  if (dash != numbers.npos) fine = fine && good(numbers.substr(dash + 1), range.first, range.last);
+  if (!fine)
+    throw UsageError(
+        fmt::format("FIRST-LAST or FIRST-LAST/STEP was expected, with whole numbers up to {}, not \"{}\"", most, text));
+  return range;
+}
+
 uint64_t readCount(std::string_view text) {
   int shift = 0;
   std::string_view digits = text;

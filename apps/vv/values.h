@@ -27,6 +27,17 @@ struct UsageError : std::runtime_error {
   using runtime_error::runtime_error;
 };
 
+// Ends the program with this code once its text is said.
+struct Failure {
+  int code;
+  std::string text;
+};
+
+// Pictures number first, first + step ... up to last of a sequence.
+struct FrameRange {
+  long long first = 0, last = 0, step = 1;
+};
+
 long long readInteger(std::string_view text, long long minimum, long long maximum);
 double readNumber(std::string_view text, double minimum, double maximum); // both exclusive
 // A byte or item count, also with the suffixes k, M, G (powers of 1024).
@@ -34,6 +45,7 @@ uint64_t readCount(std::string_view text);
 bool readSwitch(std::string_view text); // on, off
 void readSize(std::string_view text, int& width, int& height);
 picture::LookAt readCamera(std::string_view text);
+FrameRange readFrames(std::string_view text); // A-B, A-B/STEP or A
 std::vector<std::string_view> split(std::string_view text, char separator);
 
 } // namespace vv

@@ -11,7 +11,7 @@ from conftest import HEADER, SMALL
     (["box.wrl", "--no-such-thing"], "--no-such-thing"),
     (["box.wrl", "--veiwpoint", "1", "-o", "x.png"], "did you mean --viewpoint?"),
     (["box.wrl", "--sise=3x3", "-o", "x.png"], "did you mean --size?"),
-    (["box.wrl", "-o", "x.gif"], "exr, png, jpg"),
+    (["box.wrl", "-o", "x.tif"], "exr, png, jpg"),
     (["box.wrl", "-o", "x"], "suffix"),
     (["box.wrl", "-o"], "-o: a value was expected"),
     (["box.wrl", "-o", "x.png", "--size", "640"], "640x480"),

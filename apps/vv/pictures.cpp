@@ -1,0 +1,236 @@
+// pictures.cpp: see pictures.h.
+#include "pictures.h"
+
+#include <chrono>
+#include <map>
+#include <set>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "describe.h"
+#include "messages.h"
+#include "names.h"
+#include "picture/atomic_file.h"
+#include "picture/nearest.h"
+#include "progress.h"
+#include "report.h"
+#include "signals.h"
+#include "timeline.h"
+
+namespace vv {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+// One picture to make: where from, and the name that tells it from the others.
+struct Job {
+  picture::View view;
+  PictureName name;
+};
+
+// The views of one moment.
+std::vector<Job> chooseJobs(const Options& options, const std::vector<xvrml::ViewpointInfo>& viewpoints) {
+  if (options.viewpoint.empty() || (options.allViewpoints() && viewpoints.empty())) return {{options.view, {}}};
+  std::vector<Job> jobs;
+  if (options.allViewpoints()) {
+    std::set<std::string> taken;
+    for (size_t i = 0; i < viewpoints.size(); ++i) {
+      const xvrml::ViewpointInfo& v = viewpoints[i];
+      std::string name = fileNamePart(v.name.empty() ? v.description : v.name);
+      if (name.empty() || name.size() > 100 || taken.count(name))
+        name = std::to_string(i) + (name.empty() || name.size() > 100 ? "" : "-" + name);
+      taken.insert(name);
+      jobs.push_back({options.view, {name, {}}});
+      jobs.back().view.viewpoint = i;
+    }
+    return jobs;
+  }
+  const int index = picture::findViewpoint(viewpoints, options.viewpoint);
+  if (index < 0) {
+    std::string known;
+    std::vector<std::string> names;
+    for (size_t i = 0; i < viewpoints.size(); ++i) {
+      const xvrml::ViewpointInfo& v = viewpoints[i];
+      names.push_back(v.name);
+      names.push_back(v.description);
+      const std::string& shown = v.name.empty() ? v.description : v.name;
+      if (i < 20) known += fmt::format("{}{}{}", i ? ", " : "", i, shown.empty() ? "" : " " + oneLine(shown));
+    }
+    const std::string near = picture::nearest(options.viewpoint, names);
+    throw Failure{exitUsage, fmt::format("--viewpoint: the world has no \"{}\"{}; {}", options.viewpoint,
+                                         near.empty() ? "" : fmt::format(" (did you mean {}?)", near),
+                                         viewpoints.empty() ? "it has no viewpoints" : "its viewpoints are " + known)};
+  }
+  jobs.push_back({options.view, {}});
+  jobs.back().view.viewpoint = size_t(index);
+  return jobs;
+}
+
+// The channels that were asked for, without those that only the statistics need.
+picture::Picture wantedPart(const picture::Picture& made, uint32_t channels) {
+  picture::Picture wanted;
+  wanted.width = made.width;
+  wanted.height = made.height;
+  wanted.linear = made.linear;
+  wanted.names = made.names;
+  for (const auto& [bit, plane] : made.planes)
+    if (channels & bit) wanted.planes[bit] = plane;
+  return wanted;
+}
+
+class Pictures {
+ public:
+  Pictures(const Options& options, const std::string& commandLine, xvrml::Browser& browser, Problems& problems)
+      : options_(options), commandLine_(commandLine), browser_(browser), problems_(problems) {}
+
+  int make() {
+    picture::RenderSettings settings = options_.render;
+    if (!options_.stats.empty() && !options_.isSequence()) settings.channels |= RT_VARIANCE | RT_SAMPLES;
+    WorldClock clock(browser_, options_.fps);
+    const Timeline timeline(options_);
+    if (!clock.advance(timeline[0].time)) return stopped("vv: interrupted before the first picture");
+    picture::Renderer renderer(browser_, settings);
+    renderer_ = &renderer;
+    renderer.setWatch([this](float fraction) { return watch(fraction); });
+    for (size_t i = 0; i < timeline.size(); ++i) {
+      const Moment moment = timeline[i];
+      if (!clock.advance(moment.time)) return stopped("vv: interrupted; the pictures so far are saved");
+      for (Job& job : chooseJobs(options_, renderer.viewpoints())) {
+        job.name.frame = moment.frame;
+        job.view.turn = moment.turn;
+        if (const int code = makeOne(job, moment); code != exitDone) return code;
+      }
+    }
+    finishSequence();
+    return exitDone;
+  }
+
+ private:
+  bool watch(float fraction) {
+    if (progress_) progress_->show(fraction);
+    saveWanted_ |= takeSaveRequest();
+    picture::Picture soFar;
+    if (current_ && saveWanted_ && renderer_->snapshot(soFar)) {
+      saveWanted_ = false;
+      savePart(*current_, soFar);
+    }
+    return interrupted();
+  }
+
+  int makeOne(const Job& job, const Moment& moment) {
+    current_ = &job;
+    progress_ = std::make_unique<Progress>(job.name.text(), options_.quiet);
+    const picture::RenderResult result = renderer_->render(job.view);
+    progress_.reset();
+    current_ = nullptr;
+    problems_.tell(browser_.world());
+    if (options_.strict && Problems::any(browser_.world())) return result.missing ? exitMissing : exitProblems;
+    finish(job, moment, result);
+    return interrupted() ? stopped("vv: interrupted; the picture so far is saved") : exitDone;
+  }
+
+  int stopped(const char* text) {
+    finishSequence();
+    say(text);
+    return exitInterrupted;
+  }
+
+  void writePictures(const Job& job, const picture::Picture& made) {
+    const picture::Picture wanted = wantedPart(made, options_.render.channels);
+    for (const Output& output : options_.outputs) {
+      if (output.video != Video::none) continue;
+      const std::string bytes = picture::encode(wanted, output.format);
+      if (output.path == "-")
+        picture::writeDescriptor(STDOUT_FILENO, bytes, "standard output");
+      else
+        picture::writeFile(pathFor(output.path, job.name), bytes);
+    }
+  }
+
+  // A view has a video of its own.
+  void addToVideos(const Job& job, const picture::Picture& made) {
+    for (const Output& output : options_.outputs) {
+      if (output.video == Video::none) continue;
+      const std::string path = pathFor(output.path, {job.name.viewpoint, {}});
+      auto& video = videos_[path];
+      if (!video) video = std::make_unique<VideoFile>(path, output.video, made.width, made.height, options_.fps);
+      video->add(picture::displayBytes(made));
+    }
+  }
+
+  // A copy that cannot be written is no reason to give up the picture.
+  void savePart(const Job& job, const picture::Picture& soFar) {
+    try {
+      writePictures(job, soFar);
+      if (!options_.quiet) say("vv: the picture so far is saved");
+    } catch (const std::exception& error) { sayWarning(error.what()); }
+  }
+
+  void finish(const Job& job, const Moment& moment, const picture::RenderResult& result) {
+    const auto start = Clock::now();
+    writePictures(job, result.picture);
+    if (!result.interrupted) addToVideos(job, result.picture);
+    const double writeSeconds = secondsSince(start);
+    if (options_.verbose)
+      say(fmt::format("vv: {}{}{} triangles, mapped in {}, rendered in {}, written in {}", job.name.text(),
+                      job.name.text().empty() ? "" : ": ", result.stats.triangles, duration(result.mapSeconds),
+                      duration(result.renderSeconds), duration(writeSeconds)));
+    if (options_.stats.empty()) return;
+    if (options_.isSequence())
+      frames_.add(job.name, moment.time, result, writeSeconds);
+    else
+      writeText(options_.stats == "-" ? "-" : pathFor(options_.stats, job.name),
+                statsJson(options_, commandLine_, browser_.world(), result, {writeSeconds, secondsSince(start_)}));
+  }
+
+  void finishSequence() {
+    for (auto& [path, video] : videos_) video->finish();
+    videos_.clear();
+    if (!options_.stats.empty() && options_.isSequence())
+      writeText(options_.stats, frames_.json(options_, commandLine_, browser_.world(), secondsSince(start_)));
+  }
+
+  const Options& options_;
+  const std::string& commandLine_;
+  xvrml::Browser& browser_;
+  Problems& problems_;
+  const Clock::time_point start_ = Clock::now();
+  picture::Renderer* renderer_ = nullptr;
+  std::unique_ptr<Progress> progress_;
+  const Job* current_ = nullptr; // being rendered
+  bool saveWanted_ = false;
+  std::map<std::string, std::unique_ptr<VideoFile>> videos_; // by path
+  SequenceStats frames_;
+};
+
+} // namespace
+
+void checkOutputs(const Options& options) {
+  const std::optional<long long> frame =
+      options.isSequence() ? std::optional(Timeline(options)[0].frame.value_or(0)) : std::nullopt;
+  for (const Output& output : options.outputs) {
+    if (output.path == "-" && ::isatty(STDOUT_FILENO)) throw Failure{exitUsage, "-o -: a picture is not written to a terminal"};
+    const bool video = output.video != Video::none;
+    if (video)
+      if (const std::string why = whyNoVideo(); !why.empty()) throw Failure{exitRender, output.path + ": " + why};
+    if (output.path == "-" || options.allViewpoints()) continue;
+    const std::string path = pathFor(output.path, {"", video ? std::nullopt : frame});
+    if (const std::string why = picture::whyNotWritable(path); !why.empty()) throw Failure{exitRender, why};
+  }
+}
+
+int makePictures(const Options& options, const std::string& commandLine, xvrml::Browser& browser, Problems& problems) {
+  return Pictures(options, commandLine, browser, problems).make();
+}
+
+void writeText(const std::string& path, const std::string& text) {
+  if (path == "-")
+    writeOut(text);
+  else
+    picture::writeFile(path, text);
+}
+
+} // namespace vv

@@ -1,0 +1,18 @@
+// pictures.h: the pictures that the command line asks for: views, frames, turntables, files and videos. [main thread]
+#pragma once
+
+#include "options.h"
+#include "problems.h"
+
+namespace vv {
+
+// Said before the work, not after it: outputs that cannot be written. Throws Failure.
+void checkOutputs(const Options& options);
+
+// Returns an exit code. Throws Failure, picture::RenderError and what writing throws.
+int makePictures(const Options& options, const std::string& commandLine, xvrml::Browser& browser, Problems& problems);
+
+// To a file or ("-") to standard output.
+void writeText(const std::string& path, const std::string& text);
+
+} // namespace vv

@@ -1,0 +1,66 @@
+// watched.cpp: see watched.h.
+#include "watched.h"
+
+#include <chrono>
+#include <set>
+#include <thread>
+
+#include <sys/stat.h>
+
+#include "describe.h"
+
+namespace vv {
+
+std::vector<std::string> usedFiles(const xvrml::World& world) {
+  std::set<std::string> files{world.path};
+  forEachNode(world, [&](const xvrml::Node& node) {
+    const std::string base = node.source.file ? *node.source.file : world.path;
+    files.insert(base);
+    for (const xvrml::FieldInfo& field : node.type().fields) {
+      const bool value = field.access == xvrml::Access::field || field.access == xvrml::Access::exposedField;
+      if (!value || field.type != xvrml::FieldType::MFString) continue;
+      if (!field.name.ends_with("url") && !field.name.ends_with("Url")) continue;
+      for (const std::string& url : *static_cast<const xvrml::MFString*>(node.storage(field)))
+        if (auto resolved = xvrml::resolveUrl(url, base, world.options); resolved.error.empty()) files.insert(resolved.path);
+    }
+  });
+  for (const xvrml::ProtoPtr& prototype : world.scope.prototypes)
+    for (const std::string& url : prototype->urls)
+      if (auto resolved = xvrml::resolveUrl(url, prototype->baseUrl, world.options); resolved.error.empty())
+        files.insert(resolved.path);
+  return {files.begin(), files.end()};
+}
+
+Watched::Stamp Watched::stampOf(const std::string& path) {
+  struct stat info;
+  if (::stat(path.c_str(), &info) != 0) return {};
+  return {info.st_mtim.tv_sec, info.st_mtim.tv_nsec, info.st_size, info.st_ino};
+}
+
+void Watched::add(const std::vector<std::string>& files) {
+  for (const std::string& file : files) files_.try_emplace(file, stampOf(file));
+}
+
+bool Watched::update() {
+  bool changed = false;
+  for (auto& [path, stamp] : files_) {
+    const Stamp now = stampOf(path);
+    changed |= !(now == stamp);
+    stamp = now;
+  }
+  return changed;
+}
+
+bool Watched::waitForChange(bool (*ended)()) {
+  constexpr auto pause = std::chrono::milliseconds(200);
+  bool changed = false;
+  for (;;) {
+    if (ended()) return false;
+    const bool fresh = update();
+    if (changed && !fresh) return true;
+    changed |= fresh;
+    std::this_thread::sleep_for(pause);
+  }
+}
+
+} // namespace vv

@@ -1,0 +1,34 @@
+// watched.h: files that are looked at again and again, for --watch. Their times, sizes and numbers are compared five times a
+// second: that also sees editors that replace a file, and folders of other machines. [main thread]
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "xvrml/world.h"
+
+namespace vv {
+
+// The files that a world was made of, and those that it names in vain: its own, Inlines, prototypes, pictures, sounds, scripts.
+std::vector<std::string> usedFiles(const xvrml::World& world);
+
+class Watched {
+ public:
+  explicit Watched(const std::vector<std::string>& files) { add(files); }
+  void add(const std::vector<std::string>& files);
+  // Comes back when a file has changed and all have been at rest for a moment. False if `ended` said so.
+  bool waitForChange(bool (*ended)());
+
+ private:
+  struct Stamp {
+    long long seconds = -1, nanoseconds = 0, size = 0; // seconds -1: no such file
+    unsigned long long number = 0;
+    bool operator==(const Stamp&) const = default;
+  };
+  static Stamp stampOf(const std::string& path);
+  bool update(); // true if a stamp is another one
+  std::map<std::string, Stamp> files_;
+};
+
+} // namespace vv

@@ -1,0 +1,288 @@
+"""Worlds that move, on vv's command line: --time, --frames, --turntable, videos, -D, --explain, --watch."""
+import json
+import os
+import signal
+import stat
+import time
+
+import pytest
+from conftest import HEADER, SMALL, read_ppm
+
+# A cube on its way from x=-2 to 2 and back in two seconds; a clock with default values, which must stand still (clause 4.6.9).
+MOVING = HEADER + """
+Viewpoint { position 0 0 8 }
+DEF Far Viewpoint { position 0 0 16 }
+DEF Clock TimeSensor { cycleInterval 2 loop TRUE }
+DEF Idle TimeSensor { }
+DEF Way PositionInterpolator { key [0, 0.5, 1] keyValue [-2 0 0, 2 0 0, -2 0 0] }
+DEF Up PositionInterpolator { key [0, 1] keyValue [0 0 0, 0 50 0] }
+DEF Place Transform { children DEF Inner Transform { children Shape {
+  appearance Appearance { material DEF Paint Material { emissiveColor 1 1 1 diffuseColor 0 0 0 } }
+  geometry DEF Cube Box { size 1 1 1 } } } }
+ROUTE Clock.fraction_changed TO Way.set_fraction
+ROUTE Way.value_changed TO Place.set_translation
+ROUTE Idle.fraction_changed TO Up.set_fraction
+ROUTE Up.value_changed TO Inner.set_translation
+PROTO Lamp [ exposedField SFColor tint 0 0 0 field SFFloat size 1 ] { Shape { appearance Appearance {
+  material Material { diffuseColor 0 0 0 emissiveColor IS tint } } geometry Sphere { radius IS size } } }
+DEF Low Transform { translation 0 -2 0 children DEF Light Lamp { } }
+"""
+
+
+@pytest.fixture
+def moving(vv):
+    vv.write("moving.wrl", MOVING)
+    return vv
+
+
+def center(rows):
+    """Column of the white cube's middle; nothing if it is not seen."""
+    columns = [x for row in rows for x, pixel in enumerate(row) if pixel[0] > 200 and pixel[1] > 200]
+    return sum(columns) / len(columns) if columns else None
+
+
+def picture_of(path):
+    return read_ppm(path.read_bytes())[2]
+
+
+# Time ------------------------------------------------------------------------------------------------------------------
+
+
+def test_time_moves_the_world(moving):
+    columns = [center(moving.picture("--time", t, world="moving.wrl")) for t in ("0", "0.25", "0.5", "0.75", "1", "1.5", "2")]
+    assert columns[0] < columns[1] < columns[2] < columns[3] < columns[4]
+    assert columns[5] == columns[2] and columns[6] == columns[0]
+
+
+def test_without_time_it_is_time_zero(moving):
+    assert moving.picture(world="moving.wrl") == moving.picture("--time", "0", world="moving.wrl")
+
+
+def test_a_frame_alone_is_the_frame_of_a_sequence(moving):
+    assert moving("moving.wrl", "--frames", "90-100/5", "-o", "all-{frame:4}.exr", *SMALL).returncode == 0
+    assert moving("moving.wrl", "--frames", "100", "-o", "one.exr", *SMALL).returncode == 0
+    assert moving("moving.wrl", "--frames", "100", "-o", "again.exr", "--threads", "1", *SMALL).returncode == 0
+    one = (moving.folder / "one-0100.exr").read_bytes()
+    assert one == (moving.folder / "all-0100.exr").read_bytes() == (moving.folder / "again-0100.exr").read_bytes()
+    assert one != (moving.folder / "all-0090.exr").read_bytes()
+    assert sorted(p.name for p in moving.folder.glob("all-*")) == ["all-0090.exr", "all-0095.exr", "all-0100.exr"]
+
+
+def test_time_is_where_the_frame_is(moving):
+    assert moving("moving.wrl", "--frames", "15", "-o", "frame.ppm", *SMALL).returncode == 0
+    assert picture_of(moving.folder / "frame-0015.ppm") == moving.picture("--time", "0.5", world="moving.wrl")
+
+
+def test_fps_says_when_a_frame_is(moving):
+    assert moving("moving.wrl", "--frames", "5", "--fps", "10", "-o", "frame.ppm", *SMALL).returncode == 0
+    assert picture_of(moving.folder / "frame-0005.ppm") == moving.picture("--time", "0.5", world="moving.wrl")
+
+
+@pytest.mark.parametrize("name,made", [("a.ppm", "a-0002.ppm"), ("a-{frame}.ppm", "a-2.ppm"), ("{frame:3}/a.ppm", "002/a.ppm"),
+                                       ("a.b{frame:6}.ppm", "a.b000002.ppm")])
+def test_names_of_frames(moving, name, made):
+    (moving.folder / "002").mkdir()
+    done = moving("moving.wrl", "--frames", "2", "-o", name, *SMALL)
+    assert done.returncode == 0, done.talk
+    assert (moving.folder / made).exists()
+
+
+def test_all_viewpoints_of_all_frames(moving):
+    done = moving("moving.wrl", "--frames", "0-1", "--viewpoint", "all", "-o", "{viewpoint}-{frame:2}.ppm", *SMALL)
+    assert done.returncode == 0, done.talk
+    assert sorted(p.name for p in moving.folder.glob("*.ppm")) == ["0-00.ppm", "0-01.ppm", "Far-00.ppm", "Far-01.ppm"]
+    assert moving("moving.wrl", "--frames", "1", "--viewpoint", "Far", "-o", "one.ppm", *SMALL).returncode == 0
+    assert (moving.folder / "one-0001.ppm").read_bytes() == (moving.folder / "Far-01.ppm").read_bytes()
+
+
+def test_turntable_comes_round(vv):
+    vv.write("side.wrl", HEADER + "Viewpoint { position 0 0 8 } Transform { translation 2 0 0 children Shape { appearance Appearance {"
+             " material Material { emissiveColor 1 1 1 } } geometry Box { } } } Transform { translation -2 0 0 children Shape {"
+             " appearance Appearance { material Material { emissiveColor 1 0 0 diffuseColor 0 0 0 } } geometry Box { } } }")
+    assert vv("side.wrl", "--turntable", "4", "-o", "t.ppm", *SMALL).returncode == 0
+    pictures = [picture_of(vv.folder / f"t-{i:04}.ppm") for i in range(4)]
+    middle = len(pictures[0][0]) / 2
+    assert center(pictures[0]) > middle > center(pictures[2])  # seen from behind the white box is on the left
+    assert center(pictures[1]) == pytest.approx(middle, abs=1) and center(pictures[3]) is None  # behind the red one
+    assert pictures[0] == vv.picture(world="side.wrl")
+
+
+def test_stats_of_a_sequence(moving):
+    done = moving("moving.wrl", "--frames", "0-4/2", "--stats", "s.json", "-o", "f.ppm", *SMALL)
+    assert done.returncode == 0, done.talk
+    stats = json.loads((moving.folder / "s.json").read_text())
+    assert [f["frame"] for f in stats["frames"]] == [0, 2, 4]
+    assert [f["world_time"] for f in stats["frames"]] == pytest.approx([0, 2 / 30, 4 / 30])
+    assert stats["schema"] == 1 and stats["rays"]["camera"] == 3 * 32 * 24
+    assert stats["time"]["render"] == pytest.approx(sum(f["time"]["render"] for f in stats["frames"]))
+
+
+def test_check_runs_the_world(vv):
+    vv.write("wide.wrl", HEADER + "DEF T TimeSensor { loop TRUE } DEF I ScalarInterpolator { key [0 1] keyValue [0 1] }\n"
+             "Shape { appearance Appearance { material DEF M Material { } } geometry Box { } } ROUTE T.fraction_changed TO I.set_fraction ROUTE I.value_changed TO M.set_transparency")
+    done = vv("wide.wrl", "--check", "--frames", "0-10")
+    assert done.returncode == 0, done.talk
+
+
+@pytest.mark.parametrize("options", [("--frames", "x"), ("--frames", "5-1"), ("--frames", "1-2/0"), ("--time", "-1"), ("--fps", "0"),
+                                     ("--frames", "1", "--time", "2"), ("--frames", "1", "--turntable", "2"), ("--turntable", "0")])
+def test_wrong_times(moving, options):
+    done = moving("moving.wrl", *options, "-o", "x.ppm", *SMALL)
+    assert done.returncode == 2 and "expected" in done.talk or "only one" in done.talk
+    assert not list(moving.folder.glob("x*"))
+
+
+@pytest.mark.parametrize("output", ["-", "x-{frame:}.ppm", "x-{frame:99}.ppm", "x-{framed}.ppm"])
+def test_wrong_names_of_frames(moving, output):
+    assert moving("moving.wrl", "--frames", "0-1", "-o", output, *SMALL).returncode == 2
+
+
+def test_an_interrupt_ends_a_sequence(moving):
+    running = moving.start("moving.wrl", "--frames", "0-100000", "-o", "f.ppm", *SMALL)
+    while not (moving.folder / "f-0001.ppm").exists():
+        assert running.poll() is None
+        time.sleep(0.01)
+    running.send_signal(signal.SIGINT)
+    talk = running.communicate(timeout=60)[1].decode()
+    assert running.returncode == 130 and "interrupted" in talk
+    assert moving.leftovers() == []
+
+
+# Video -----------------------------------------------------------------------------------------------------------------
+
+# Stands for ffmpeg: keeps its arguments and its input, and makes the file that the last argument names.
+FAKE = """#!/usr/bin/python3
+import os, sys
+data = sys.stdin.buffer.read()
+open("arguments", "w").write("\\n".join(sys.argv[1:]))
+assert sys.argv[-1].startswith("file:")
+open(sys.argv[-1][5:], "wb").write(data)
+sys.exit(int(os.environ.get("FAKE_CODE", "0")))
+"""
+
+
+@pytest.fixture
+def ffmpeg(moving):
+    tools = moving.folder / "tools"
+    tools.mkdir()
+    (tools / "ffmpeg").write_text(FAKE)
+    (tools / "ffmpeg").chmod(stat.S_IRWXU)
+    return {"PATH": f"{tools}:{os.environ['PATH']}"}
+
+
+@pytest.mark.parametrize("suffix", ["mp4", "webm", "gif"])
+def test_a_video_gets_the_frames(moving, ffmpeg, suffix):
+    done = moving("moving.wrl", "--frames", "0-2", "--fps", "25", "-o", f"-v.{suffix}", "-o", "v.ppm", *SMALL, env=ffmpeg)
+    assert done.returncode == 0, done.talk
+    frames = b"".join((moving.folder / f"v-000{i}.ppm").read_bytes().split(b"\n", 3)[3] for i in range(3))
+    assert (moving.folder / f"-v.{suffix}").read_bytes() == frames
+    arguments = (moving.folder / "arguments").read_text().split("\n")
+    assert arguments[arguments.index("-video_size") + 1] == "32x24" and arguments[arguments.index("-framerate") + 1] == "25"
+    assert moving.leftovers() == []
+
+
+def test_a_video_without_ffmpeg(moving):
+    done = moving("moving.wrl", "--frames", "0-2", "-o", "v.mp4", *SMALL, env={"PATH": "/nonexistent"})
+    assert done.returncode == 1 and "ffmpeg" in done.talk and "PATH" in done.talk and "{frame:4}" in done.talk
+
+
+def test_a_video_whose_ffmpeg_fails(moving, ffmpeg):
+    moving.write("v.mp4", "before")
+    done = moving("moving.wrl", "--frames", "0-2", "-o", "v.mp4", *SMALL, env={**ffmpeg, "FAKE_CODE": "3"})
+    assert done.returncode == 1 and "exit code 3" in done.talk
+    assert (moving.folder / "v.mp4").read_text() == "before" and moving.leftovers() == []
+
+
+def test_a_video_needs_a_sequence(moving, ffmpeg):
+    assert moving("moving.wrl", "-o", "v.mp4", *SMALL, env=ffmpeg).returncode == 2
+
+
+def test_a_video_of_an_interrupted_sequence_is_whole(moving, ffmpeg):
+    os.environ["PATH"], before = ffmpeg["PATH"], os.environ["PATH"]
+    try:
+        running = moving.start("moving.wrl", "--frames", "0-100000", "-o", "v.mp4", "-o", "f.ppm", *SMALL)
+    finally:
+        os.environ["PATH"] = before
+    while not (moving.folder / "f-0002.ppm").exists():
+        assert running.poll() is None
+        time.sleep(0.01)
+    running.send_signal(signal.SIGINT)
+    running.communicate(timeout=60)
+    assert running.returncode == 130
+    assert len((moving.folder / "v.mp4").read_bytes()) >= 2 * 3 * 32 * 24 and moving.leftovers() == []
+
+
+# -D --------------------------------------------------------------------------------------------------------------------
+
+
+def test_a_field_gets_another_value(moving):
+    assert center(moving.picture("-D", "Inner.translation=100 0 0", world="moving.wrl")) is None
+    fast = moving.picture("-D", "Clock.cycleInterval=4", "--time", "1", world="moving.wrl")
+    assert fast == moving.picture("--time", "0.5", world="moving.wrl")
+
+
+def test_a_prototype_gets_an_event(moving):
+    rows = moving.picture("-D", "Light.tint=0 1 0", world="moving.wrl")
+    assert any(pixel == (0, 255, 0) for row in rows for pixel in row)
+
+
+def test_changed_fields_are_written(moving):
+    done = moving("moving.wrl", "-D", "Cube.size=3 2 1", "--write", "-")
+    assert done.returncode == 0 and "size 3 2 1" in done.text
+
+
+@pytest.mark.parametrize("definition,told", [
+    ("Plaze.translation=0 0 1", "Place"), ("Place.translatoin=0 0 1", "translation"), ("Place.translation=0 0", "SFVec3f"),
+    ("Place.translation=0 0 1 2", "SFVec3f"), ("Clock.loop=yes", "SFBool"), ("Paint.transparency=2", "range"),
+    ("Clock.fraction_changed=1", "eventOut"), ("Light.size=2", "exposedField"), ("nonsense", "DEF.FIELD=VALUE"),
+    ("Way.keyValue=[0 0 0", "MFVec3f")])
+def test_wrong_definitions(moving, definition, told):
+    done = moving("moving.wrl", "-D", definition, "-o", "x.ppm", *SMALL)
+    assert done.returncode == 2 and told in done.talk
+    assert not (moving.folder / "x.ppm").exists()
+
+
+# --explain -------------------------------------------------------------------------------------------------------------
+
+
+def test_explain_tells_objects_and_reasons(moving):
+    done = moving("moving.wrl", "--explain", "--json")
+    assert done.returncode == 0, done.talk
+    told = json.loads(done.text)
+    assert told["totals"]["objects"] == len(told["objects"]) > 0
+    assert all(o["reason"] and o["name"] for o in told["objects"])
+    assert sum(o["triangles"] for o in told["objects"]) == told["totals"]["triangles"] >= 12
+    table = moving("moving.wrl", "--explain").text.split("\n")
+    assert len(table) == len(told["objects"]) + 3 and told["objects"][0]["reason"] in table[1]
+
+
+# --watch ---------------------------------------------------------------------------------------------------------------
+
+
+def wait_for(condition, running, seconds=60):
+    end = time.monotonic() + seconds
+    while not condition():
+        assert running.poll() is None and time.monotonic() < end
+        time.sleep(0.02)
+
+
+def test_watch_renders_again(vv):
+    vv.write("part.wrl", HEADER + "Shape { geometry Box { } }")
+    vv.write("main.wrl", HEADER + 'Viewpoint { } Inline { url "part.wrl" }')
+    out = vv.folder / "out.ppm"
+    running = vv.start("main.wrl", "--watch", "-o", "out.ppm", *SMALL)
+    try:
+        wait_for(out.exists, running)
+        box = out.read_bytes()
+        vv.write("part.wrl", HEADER + "Shape { geometry Sphere { radius 3 } }")  # a file that the world uses
+        wait_for(lambda: out.read_bytes() != box, running)
+        sphere = out.read_bytes()
+        vv.write("main.wrl", "no world at all")  # is said, and the files watched on
+        time.sleep(0.5)
+        vv.write("main.wrl", HEADER + "Viewpoint { } Shape { geometry Cone { } }")
+        wait_for(lambda: out.read_bytes() != sphere, running)
+    finally:
+        running.send_signal(signal.SIGINT)
+        talk = running.communicate(timeout=60)[1].decode()
+    assert running.returncode == 130, talk
+    assert vv.leftovers() == []
