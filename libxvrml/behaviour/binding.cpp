@@ -85,24 +85,43 @@ bool Binding::dropAbsent() {
   return dropped;
 }
 
-void Binding::bindFirst(const Scope& scope) {
-  std::array<Node*, types> first{};
+namespace {
+
+// Calls visit for each node of a scope in the order of the file; where it returns false what is below is left out.
+template <class Visit> void walkScope(const Scope& scope, Visit&& visit) {
   std::unordered_set<const Node*> seen;
   std::vector<Node*> open, below;
   for (size_t i = scope.roots.size(); i-- > 0;) open.push_back(scope.roots[i].get());
   while (!open.empty()) {
     Node* node = open.back();
     open.pop_back();
-    if (!node || !seen.insert(node).second) continue;
-    if (const size_t type = typeOf(*node); type != types && !first[type]) first[type] = node;
-    if (node->type().index == nodes::Inline::typeIndex) continue;
+    if (!node || !seen.insert(node).second || !visit(*node)) continue;
     below.clear();
     childrenInHierarchy(*node, below);
     open.insert(open.end(), below.rbegin(), below.rend());
   }
+}
+
+} // namespace
+
+void Binding::bindFirst(const Scope& scope) {
+  std::array<Node*, types> first{};
+  walkScope(scope, [&](Node& node) {
+    if (const size_t type = typeOf(node); type != types && !first[type]) first[type] = &node;
+    return node.type().index != nodes::Inline::typeIndex;
+  });
   for (size_t type = 0; type < types; ++type)
     if (first[type] && stacks_[type].empty()) push(type, *first[type]);
   viewer_.begin();
+}
+
+std::vector<Node*> Binding::viewpoints(const Scope& scope) {
+  std::vector<Node*> list;
+  walkScope(scope, [&](Node& node) {
+    if (typeOf(node) == 0) list.push_back(&node);
+    return true;
+  });
+  return list;
 }
 
 BoundNodes Binding::bound() const { return {top(0), top(1), top(2), top(3)}; }

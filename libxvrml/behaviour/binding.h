@@ -22,6 +22,8 @@ class Binding {
   // Nodes that have left the scene leave their stacks, as if they had received set_bind FALSE. True if there was one.
   bool dropAbsent();
   BoundNodes bound() const;
+  // All Viewpoints in the scene in the order of the files, Inlines included.
+  static std::vector<Node*> viewpoints(const Scope& scope);
 
  private:
   static constexpr size_t types = 4;

@@ -5,6 +5,8 @@ namespace xvrml {
 
 void addBuiltinBehaviours(const AddBehaviour& add) {
   addBindingBehaviours(add);
+  addPointingBehaviours(add);
+  addRegionBehaviours(add);
   addGroupingBehaviours(add);
   addInterpolatorBehaviours(add);
   addTimeSensorBehaviours(add);

@@ -12,6 +12,8 @@ using AddBehaviour = std::function<void(const NodeType& type, const Behaviour& b
 void addBuiltinBehaviours(const AddBehaviour& add);
 
 void addBindingBehaviours(const AddBehaviour& add);  // Viewpoint, NavigationInfo, Background, Fog
+void addPointingBehaviours(const AddBehaviour& add); // TouchSensor, PlaneSensor, SphereSensor, CylinderSensor
+void addRegionBehaviours(const AddBehaviour& add);   // ProximitySensor, VisibilitySensor
 void addGroupingBehaviours(const AddBehaviour& add); // addChildren, removeChildren
 void addInterpolatorBehaviours(const AddBehaviour& add);
 void addTimeSensorBehaviours(const AddBehaviour& add);

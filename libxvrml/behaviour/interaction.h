@@ -3,6 +3,9 @@
 #pragma once
 
 #include "behaviour/binding.h"
+#include "behaviour/navigation.h"
+#include "behaviour/pick.h"
+#include "behaviour/pointer.h"
 #include "behaviour/viewer.h"
 #include "event/engine.h"
 
@@ -10,7 +13,8 @@ namespace xvrml {
 
 class Interaction final : public EngineObserver {
  public:
-  explicit Interaction(Engine& engine) : engine(engine), viewer(engine, binding), binding(engine, viewer) {}
+  explicit Interaction(Engine& engine)
+      : engine(engine), viewer(engine, binding), binding(engine, viewer), picker(engine), pointer(*this), navigation(*this) {}
 
   void began(const Scope& scope) override;
   void changed(Node& node, const FieldInfo& field) override;
@@ -21,6 +25,11 @@ class Interaction final : public EngineObserver {
   Engine& engine;
   Viewer viewer;
   Binding binding;
+  Picker picker;
+  Pointer pointer;
+  Navigator navigation;
+  const Scope* scope = nullptr; // the world's; null before it has begun
+  double aspect = 4.0 / 3;      // width / height of the picture
 
  private:
   uint64_t structure_ = 0; // of the engine, when it was last looked at

@@ -35,6 +35,7 @@ class Viewer {
   // Seconds that a jump takes to be shown; 0: none.
   void setTransition(double seconds);
 
+  bool inTransition() const { return moving_.running; }
   void ticked();
   void settled();                                           // the cascade is over; something has moved
   bool takeJump() { return std::exchange(jumped_, false); } // since the last call the viewer has jumped

@@ -16,6 +16,7 @@ struct Browser::Impl {
   std::unique_ptr<World> world;
   std::unique_ptr<Engine> engine; // ends before the world
   uint64_t generation = 1;
+  std::function<void(Node& anchor)> onAnchor;
 };
 
 } // namespace xvrml

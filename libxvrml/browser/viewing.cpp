@@ -1,13 +1,103 @@
-// viewing.cpp: the Browser's members about the viewer: binding, camera, pointer, navigation. See xvrml/browser.h.
+// viewing.cpp: the Browser's members about the viewer: binding, camera, rays, pointer, navigation. See xvrml/browser.h.
+#include <cmath>
+
 #include "behaviour/interaction.h"
 #include "browser/state.h"
+#include "xvrml/nodes.h"
 
 namespace xvrml {
+namespace {
+
+PickRay rayOf(const double origin[3], const double direction[3]) {
+  return {{origin[0], origin[1], origin[2]}, {direction[0], direction[1], direction[2]}};
+}
+
+} // namespace
 
 BoundNodes Browser::bound() const { return interactionOf(*impl_->engine).binding.bound(); }
 
 CameraSettings Browser::camera(double aspect) const { return interactionOf(*impl_->engine).viewer.camera(aspect); }
 
 void Browser::setTransition(double seconds) { interactionOf(*impl_->engine).viewer.setTransition(seconds); }
+
+std::vector<ViewpointName> Browser::viewpoints() const {
+  std::vector<ViewpointName> list;
+  for (Node* node : Binding::viewpoints(impl_->world->scope))
+    list.push_back({NodeRef(node), node->defName, static_cast<nodes::Viewpoint*>(node)->description});
+  return list;
+}
+
+bool Browser::bindViewpoint(std::string_view name) {
+  const std::vector<ViewpointName> list = viewpoints();
+  if (const NodeRef known = node(name); known && nodeCast<nodes::Viewpoint>(renderedNode(known.get())))
+    return set(*renderedNode(known.get()), "set_bind", true);
+  for (const auto member : {&ViewpointName::name, &ViewpointName::description})
+    for (const ViewpointName& viewpoint : list)
+      if (!name.empty() && viewpoint.*member == name) return set(*viewpoint.node, "set_bind", true);
+  return false;
+}
+
+bool Browser::pick(const double origin[3], const double direction[3], const PickOptions& options, PickHit& out) {
+  Interaction& interaction = interactionOf(*impl_->engine);
+  PickRay ray = rayOf(origin, direction);
+  ray.nearest = options.nearest;
+  ray.farthest = options.farthest;
+  Hit hit;
+  if (!interaction.picker.pick(ray, {options.collision, options.bothSides}, interaction.viewer.view(), impl_->world->scope.roots,
+                               hit))
+    return false;
+  out = {hit.t, {hit.point.x, hit.point.y, hit.point.z}, {hit.normal.x, hit.normal.y, hit.normal.z}, hit.texCoord, {}};
+  for (const Hit::Step& step : hit.path)
+    toArray(step.toWorld, out.path.emplace_back(PickHit::Step{NodeRef(step.node), {}}).toWorld.data());
+  return true;
+}
+
+void Browser::pointer(double x, double y, bool button, double aspect) {
+  Interaction& interaction = interactionOf(*impl_->engine);
+  if (std::isfinite(aspect) && aspect > 0) interaction.aspect = aspect;
+  const CameraSettings camera = interaction.viewer.camera(interaction.aspect);
+  const Matrix view = fromArray(camera.matrix);
+  const double size = std::tan(camera.fovy / 2);
+  interaction.pointer.point(
+      {transformPoint(view, Vector(0)), transformDirection(view, {x * size * interaction.aspect, y * size, -1})}, button);
+}
+
+void Browser::pointerRay(const double origin[3], const double direction[3], bool button) {
+  interactionOf(*impl_->engine).pointer.point(rayOf(origin, direction), button);
+}
+
+void Browser::pointerLeave() { interactionOf(*impl_->engine).pointer.leave(); }
+
+std::vector<NodeRef> Browser::sensorsAtPointer() const { return interactionOf(*impl_->engine).pointer.sensors(); }
+
+void Browser::activate(Node& node) {
+  const auto* anchor = nodeCast<nodes::Anchor>(&node);
+  if (!anchor || anchor->url.empty()) return;
+  const std::string& first = anchor->url.front();
+  if (first.starts_with('#') && bindViewpoint(std::string_view(first).substr(1))) return;
+  if (impl_->onAnchor) impl_->onAnchor(node);
+}
+
+void Browser::onAnchor(std::function<void(Node& anchor)> callback) { impl_->onAnchor = std::move(callback); }
+
+void Browser::navigate(const NavigationInput& input, double dt) {
+  Engine& engine = *impl_->engine;
+  if (engine.settling()) return;
+  engine.beginCascade(engine.now());
+  interactionOf(engine).navigation.move(input, dt);
+  engine.settle();
+}
+
+void Browser::key(Key key, bool pressed) {
+  Engine& engine = *impl_->engine;
+  if (engine.settling()) return;
+  engine.beginCascade(engine.now());
+  interactionOf(engine).navigation.key(key, pressed);
+  engine.settle();
+}
+
+Navigation Browser::navigation() const { return interactionOf(*impl_->engine).navigation.type(); }
+
+bool Browser::setNavigation(Navigation type) { return interactionOf(*impl_->engine).navigation.choose(type); }
 
 } // namespace xvrml

@@ -11,6 +11,7 @@
 #include "xvrml/behaviour.h"
 #include "xvrml/camera.h"
 #include "xvrml/change.h"
+#include "xvrml/viewer.h"
 #include "xvrml/world.h"
 
 namespace xvrml {
@@ -59,6 +60,25 @@ class Browser {
   CameraSettings camera(double aspect) const;
   // Seconds of the world's time in which the picture follows when the viewer jumps to another Viewpoint; 0, as at first: at once.
   void setTransition(double seconds);
+  std::vector<ViewpointName> viewpoints() const; // in the order of the files, Inlines and prototypes included
+  bool bindViewpoint(std::string_view name);     // by its DEF name or else its description; false if there is none
+  // The nearest thing along a ray; false if there is none.
+  bool pick(const double origin[3], const double direction[3], const PickOptions& options, PickHit& hit);
+  // The pointer is at (x, y) of the picture, from -1 at the left and bottom to 1 at the right and top; button: it is pressed.
+  // Sensors send at now(). aspect, of the picture, is also what VisibilitySensors see from then on.
+  void pointer(double x, double y, bool button, double aspect = 4.0 / 3);
+  void pointerRay(const double origin[3], const double direction[3], bool button); // in the world
+  void pointerLeave();                                                             // it is outside of the picture, released
+  std::vector<NodeRef> sensorsAtPointer() const; // pointing sensors and Anchors that it is over, or that have grabbed it
+  // Does what a click on an Anchor does (6.2): binds the Viewpoint that its first url names (#name), else calls back.
+  void activate(Node& anchor);
+  void
+  onAnchor(std::function<void(Node& anchor)> callback); // its urls lead elsewhere; [in pointer or activate, outside cascades]
+  // Moves the viewer for a time. Between ticks: what the user does at now(). dt: seconds.
+  void navigate(const NavigationInput& input, double dt);
+  void key(Key key, bool pressed);     // ticks move the viewer while arrows are held
+  Navigation navigation() const;       // the way of moving in use
+  bool setNavigation(Navigation type); // false if the bound NavigationInfo does not allow it; then its first holds
 
   // --- Editing ---
   NodeRef createNode(std::string_view type); // with default fields; throws std::invalid_argument for an unknown type

@@ -1,0 +1,144 @@
+// region.cpp: ProximitySensor and VisibilitySensor (clauses 6.38, 6.54): boxes that the viewer is in, or sees. They look once a
+// tick, after its events, and at jumps. A sensor that is USEd senses the union of its boxes.
+#include <array>
+#include <cmath>
+
+#include <Imath/ImathMatrixAlgo.h>
+#include <Imath/ImathQuat.h>
+
+#include "behaviour/builtin.h"
+#include "behaviour/interaction.h"
+#include "event/hierarchy.h"
+#include "xvrml/nodes.h"
+
+namespace xvrml {
+namespace {
+
+struct RegionState : NodeState {
+  bool active = false;
+  Vec3f position; // last sent
+  Rotation orientation;
+};
+
+struct Region {
+  Vector center, half;
+  bool senses; // clause 6.38: a box without any extent does not
+};
+
+template <class Sensor> Region regionOf(const Sensor& s) {
+  const Vector size = vector(s.size);
+  return {vector(s.center), Vector(std::abs(size.x), std::abs(size.y), std::abs(size.z)) / 2,
+          s.enabled && (size.x != 0 || size.y != 0 || size.z != 0)};
+}
+
+Rotation rotationOf(const Matrix& m) {
+  Imath::Quatd q = Imath::extractQuat(rotationOnly(m));
+  if (q.r < 0) q = -q;
+  if (!(q.v.length() > 1e-9)) return {0, 0, 1, 0};
+  const Vector axis = q.v.normalized();
+  return {float(axis.x), float(axis.y), float(axis.z), float(2 * std::atan2(q.v.length(), q.r))};
+}
+
+void setActive(Events& events, Node& node, bool active) {
+  static_cast<RegionState&>(*events.state(node)).active = active;
+  events.send(node, "isActive", active);
+  events.send(node, active ? "enterTime" : "exitTime", events.now());
+}
+
+// The way to the viewer from the first of the sensor's boxes that he is in.
+bool viewerInside(const Node& node, const Region& region, const Matrix& view, Matrix& viewerToSensor) {
+  for (const Path& path : pathsTo(node)) {
+    Matrix toLocal;
+    if (!invert(Picker::toWorld(path, view), toLocal)) continue;
+    viewerToSensor = compose(toLocal, view);
+    const Vector p = transformPoint(viewerToSensor, Vector(0)) - region.center;
+    if (std::abs(p.x) <= region.half.x && std::abs(p.y) <= region.half.y && std::abs(p.z) <= region.half.z) return true;
+  }
+  return false;
+}
+
+void lookProximity(Events& events, Node& node) {
+  auto& state = static_cast<RegionState&>(*events.state(node));
+  const Region region = regionOf(static_cast<nodes::ProximitySensor&>(node));
+  Matrix viewer;
+  const bool inside = region.senses && viewerInside(node, region, interactionOf(events).viewer.view(), viewer);
+  const bool entered = inside && !state.active;
+  if (inside != state.active) setActive(events, node, inside);
+  if (!inside) return;
+  const Vector p = transformPoint(viewer, Vector(0));
+  const Vec3f position{float(p.x), float(p.y), float(p.z)};
+  const Rotation orientation = rotationOf(viewer);
+  if (entered || position != state.position) events.send(node, "position_changed", position);
+  if (entered || orientation != state.orientation) events.send(node, "orientation_changed", orientation);
+  state.position = position;
+  state.orientation = orientation;
+}
+
+// The part of a convex polygon on the inner side of a plane through the eye (Sutherland and Hodgman 1974).
+void clip(std::vector<Vector>& polygon, const Vector& inwards) {
+  std::vector<Vector> kept;
+  for (size_t i = 0; i < polygon.size(); ++i) {
+    const Vector &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+    const double da = a.dot(inwards), db = b.dot(inwards);
+    if (da >= 0) kept.push_back(a);
+    if ((da >= 0) != (db >= 0)) kept.push_back(a + (b - a) * (da / (da - db)));
+  }
+  polygon = std::move(kept);
+}
+
+// A box is seen if a part of its surface is in the pyramid of view, or the eye is in it.
+bool seen(const Region& region, const Matrix& toCamera, double fovy, double aspect) {
+  std::array<Vector, 8> corner;
+  for (int i = 0; i < 8; ++i)
+    corner[size_t(i)] =
+        transformPoint(toCamera, region.center + Vector(region.half.x * (i & 1 ? 1 : -1), region.half.y * (i & 2 ? 1 : -1),
+                                                        region.half.z * (i & 4 ? 1 : -1)));
+  const double y = std::tan(fovy / 2), x = y * aspect;
+  const std::array<Vector, 5> planes{Vector(1, 0, -x), Vector(-1, 0, -x), Vector(0, 1, -y), Vector(0, -1, -y), Vector(0, 0, -1)};
+  constexpr std::array<std::array<size_t, 4>, 6> faces{
+      {{0, 1, 3, 2}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 3, 7, 5}}};
+  for (const auto& face : faces) {
+    std::vector<Vector> polygon{corner[face[0]], corner[face[1]], corner[face[2]], corner[face[3]]};
+    for (const Vector& plane : planes) clip(polygon, plane);
+    if (!polygon.empty()) return true;
+  }
+  Matrix toBox;
+  if (!invert(toCamera, toBox)) return false;
+  const Vector p = transformPoint(toBox, Vector(0)) - region.center;
+  return std::abs(p.x) <= region.half.x && std::abs(p.y) <= region.half.y && std::abs(p.z) <= region.half.z;
+}
+
+void lookVisibility(Events& events, Node& node) {
+  const Interaction& interaction = interactionOf(events);
+  const Region region = regionOf(static_cast<nodes::VisibilitySensor&>(node));
+  bool visible = false;
+  if (region.senses) {
+    const CameraSettings camera = interaction.viewer.camera(interaction.aspect);
+    const Matrix view = fromArray(camera.matrix);
+    Matrix toCamera;
+    if (invert(view, toCamera))
+      for (const Path& path : pathsTo(node))
+        visible = visible || seen(region, compose(toCamera, Picker::toWorld(path, view)), camera.fovy, interaction.aspect);
+  }
+  if (visible != static_cast<RegionState&>(*events.state(node)).active) setActive(events, node, visible);
+}
+
+std::unique_ptr<NodeState> begin(Events& events, Node& node) {
+  events.wantLooks(node, true);
+  return std::make_unique<RegionState>();
+}
+
+// A sensor that is disabled says so at once (4.6.7.2).
+void receive(Events& events, Node& node, const FieldInfo& in, const Value& value) {
+  if (in.name == "enabled" && !std::get<bool>(value) && static_cast<RegionState&>(*events.state(node)).active)
+    setActive(events, node, false);
+}
+
+} // namespace
+
+void addRegionBehaviours(const AddBehaviour& add) {
+  add(nodes::ProximitySensor::nodeType(), {.begin = begin, .receive = receive, .look = lookProximity});
+  add(nodes::VisibilitySensor::nodeType(), {.begin = begin, .receive = receive, .look = lookVisibility});
+}
+
+} // namespace xvrml
