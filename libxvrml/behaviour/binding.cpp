@@ -110,6 +110,7 @@ void Binding::bindFirst(const Scope& scope) {
     if (const size_t type = typeOf(node); type != types && !first[type]) first[type] = &node;
     return node.type().index != nodes::Inline::typeIndex;
   });
+  if (stacks_[0].empty()) viewer_.restart();
   for (size_t type = 0; type < types; ++type)
     if (first[type] && stacks_[type].empty()) push(type, *first[type]);
   viewer_.begin();
@@ -122,6 +123,13 @@ std::vector<Node*> Binding::viewpoints(const Scope& scope) {
     return true;
   });
   return list;
+}
+
+void Binding::forget(const Node& node) {
+  const size_t type = typeOf(node);
+  if (type == types) return;
+  std::erase_if(stacks_[type], [&](const Entry& entry) { return entry.node.get() == &node; });
+  if (type == 0) viewer_.forget(node);
 }
 
 BoundNodes Binding::bound() const { return {top(0), top(1), top(2), top(3)}; }

@@ -21,6 +21,8 @@ class Binding {
   void set(Node& node, bool bound);
   // Nodes that have left the scene leave their stacks, as if they had received set_bind FALSE. True if there was one.
   bool dropAbsent();
+  // The node is no longer part of the world: it leaves its stack without a word.
+  void forget(const Node& node);
   BoundNodes bound() const;
   // All Viewpoints in the scene in the order of the files, Inlines included.
   static std::vector<Node*> viewpoints(const Scope& scope);

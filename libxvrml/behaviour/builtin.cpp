@@ -7,6 +7,7 @@ void addBuiltinBehaviours(const AddBehaviour& add) {
   addBindingBehaviours(add);
   addPointingBehaviours(add);
   addRegionBehaviours(add);
+  addInlineBehaviours(add);
   addGroupingBehaviours(add);
   addInterpolatorBehaviours(add);
   addTimeSensorBehaviours(add);

@@ -14,6 +14,7 @@ void addBuiltinBehaviours(const AddBehaviour& add);
 void addBindingBehaviours(const AddBehaviour& add);  // Viewpoint, NavigationInfo, Background, Fog
 void addPointingBehaviours(const AddBehaviour& add); // TouchSensor, PlaneSensor, SphereSensor, CylinderSensor
 void addRegionBehaviours(const AddBehaviour& add);   // ProximitySensor, VisibilitySensor
+void addInlineBehaviours(const AddBehaviour& add);   // set_url loads
 void addGroupingBehaviours(const AddBehaviour& add); // addChildren, removeChildren
 void addInterpolatorBehaviours(const AddBehaviour& add);
 void addTimeSensorBehaviours(const AddBehaviour& add);

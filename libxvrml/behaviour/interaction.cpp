@@ -7,6 +7,7 @@ std::unique_ptr<EngineObserver> makeInteraction(Engine& engine) { return std::ma
 
 void Interaction::began(const Scope& scope) {
   this->scope = &scope;
+  navigation.rest();
   binding.bindFirst(scope);
 }
 
@@ -20,7 +21,11 @@ void Interaction::changed(Node& node, const FieldInfo& field) {
   moved_ |= field.change == Change::transform || field.change == Change::view || field.change == Change::children;
 }
 
-void Interaction::forgotten(const Node& node) { picker.forgotten(node); }
+void Interaction::forgotten(const Node& node) {
+  picker.forgotten(node);
+  binding.forget(node);
+  pointer.forget(node);
+}
 
 void Interaction::ticked() {
   navigation.ticked();

@@ -184,6 +184,11 @@ bool Pointer::dropAbsent() {
   return dropped;
 }
 
+void Pointer::forget(const Node& sensor) {
+  std::erase_if(active_, [&](const Active& a) { return a.sensor.get() == &sensor; });
+  std::erase_if(over_, [&](const NodeRef& o) { return o.get() == &sensor; });
+}
+
 std::vector<NodeRef> Pointer::sensors() const {
   if (active_.empty()) return over_;
   std::vector<NodeRef> list;

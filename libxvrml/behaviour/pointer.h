@@ -21,6 +21,7 @@ class Pointer {
   void enabledChanged(Node& sensor);
   // Sensors that have left the scene let go. True if there was one.
   bool dropAbsent();
+  void forget(const Node& sensor); // no longer part of the world
   // Sensors and Anchors under the pointer, or those that have grabbed it.
   std::vector<NodeRef> sensors() const;
 

@@ -127,6 +127,12 @@ void Viewer::unbind(nodes::Viewpoint& from, nodes::Viewpoint* to) {
   saved_.erase(&from);
 }
 
+void Viewer::restart() {
+  offset_ = Matrix();
+  saved_.clear();
+  moving_.running = begun_ = hasLast_ = false;
+}
+
 void Viewer::forget(const Node& viewpoint) { saved_.erase(&viewpoint); }
 
 Matrix Viewer::shown(const Matrix& to) const {

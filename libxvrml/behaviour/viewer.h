@@ -27,6 +27,7 @@ class Viewer {
   void moveTo(const Matrix& view);
   // Back to where the bound Viewpoint is.
   void reset();
+  void restart();                 // a world that has no Viewpoint bound begins
   void begin() { begun_ = true; } // the file's first Viewpoint, if there is one, is bound: somebody looks from now on
   // The bound Viewpoint becomes another; null: the standard's default. Called before the events of the binding.
   void bind(Node* from, nodes::Viewpoint* to);

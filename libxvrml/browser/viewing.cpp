@@ -1,6 +1,7 @@
-// viewing.cpp: the Browser's members about the viewer: binding, camera, rays, pointer, navigation. See xvrml/browser.h.
+// viewing.cpp: the Browser's members about the viewer: binding, camera, rays, pointer, navigation, Inlines. See xvrml/browser.h.
 #include <cmath>
 
+#include "behaviour/inline.h"
 #include "behaviour/interaction.h"
 #include "browser/state.h"
 #include "xvrml/nodes.h"
@@ -99,5 +100,23 @@ void Browser::key(Key key, bool pressed) {
 Navigation Browser::navigation() const { return interactionOf(*impl_->engine).navigation.type(); }
 
 bool Browser::setNavigation(Navigation type) { return interactionOf(*impl_->engine).navigation.choose(type); }
+
+bool Browser::loadInline(Node& inlineNode) {
+  Engine& engine = *impl_->engine;
+  if (engine.settling()) return false;
+  engine.beginCascade(engine.now());
+  const bool loaded = loadInlineContent(engine, inlineNode);
+  engine.settle();
+  return loaded;
+}
+
+uint64_t Browser::loadInlines() {
+  Engine& engine = *impl_->engine;
+  if (engine.settling()) return 0;
+  engine.beginCascade(engine.now());
+  const uint64_t loaded = loadInlinesBelow(engine, impl_->world->scope);
+  engine.settle();
+  return loaded;
+}
 
 } // namespace xvrml

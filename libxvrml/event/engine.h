@@ -47,6 +47,7 @@ class Engine : public Events {
   void adoptScope(const Scope& scope, bool roots);
   void adopt(Node& node);               // a node and all below
   void contentLoaded(Node& inlineNode); // an Inline that is part of the world has got its content
+  void contentLeaves(Node& inlineNode); // is about to lose it: its nodes lose a parent, its routes end
   // Makes a node a root of the world, or no longer one (its routes stay).
   void addRoot(Node& node);
   void removeRoot(Node& node);

@@ -155,6 +155,16 @@ void Engine::contentLoaded(Node& inlineNode) {
     if (root) linkChild(inlineNode, *root);
 }
 
+// Routes hold their nodes: those of content that goes would keep it alive. An Inline that shares its content has none.
+void Engine::contentLeaves(Node& inlineNode) {
+  const Scope* content = inlineScope(inlineNode);
+  if (!content || !inlineNode.live) return;
+  for (const Route& route : content->routes)
+    if (route.from && route.to) deleteRoute(*route.from, route.fromField, *route.to, route.toField);
+  for (const NodeRef& root : content->roots)
+    if (root && root->live) unlinkChild(inlineNode, *root);
+}
+
 void Engine::addRoot(Node& node) {
   adopt(node);
   liveOf(node)->root = true;

@@ -51,6 +51,11 @@ void Loader::load(const Source& source, const std::string& name) {
   world_.times.load = secondsSince(start) - world_.times.parse;
 }
 
+void Loader::loadLate(InlineNode& node, const std::vector<std::string>& enclosing) {
+  for (const std::string& file : enclosing) inlined_[canonical(file)].reading = true;
+  loadInline(node, enclosing.size());
+}
+
 void Loader::parse(const Source& source, const std::shared_ptr<const std::string>& name, ParsedFile& file) {
   Lexer lexer(source.text(), name, state_.diagnostics);
   Builder builder(lexer, state_, file);

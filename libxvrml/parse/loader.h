@@ -16,6 +16,9 @@ class Loader {
   Loader(World& world, const LoadOptions& options);
   // Throws LoadError if nothing of the file can be used.
   void load(const Source& source, const std::string& name);
+  // The content of an Inline of a world that has been loaded. enclosing: the files it is in, the innermost last, as many as
+  // Inlines are around it and itself. node.content stays null if there is none.
+  void loadLate(InlineNode& node, const std::vector<std::string>& enclosing);
 
  private:
   // A file that Inlines name. `content` is null while it is being read.

@@ -84,6 +84,10 @@ class Browser {
   NodeRef createNode(std::string_view type); // with default fields; throws std::invalid_argument for an unknown type
   void addRoot(NodeRef node);
   void removeRoot(Node& node);
+  // Loads the content of an Inline that has none yet (LoadOptions::loadInlines), or of all that are in the world, and what these
+  // bring in. Returns how many got some; what could not be read is in the diagnostics.
+  bool loadInline(Node& inlineNode);
+  uint64_t loadInlines();
   bool addRoute(Node& from, std::string_view out, Node& to, std::string_view in);
   bool deleteRoute(Node& from, std::string_view out, Node& to, std::string_view in);
 

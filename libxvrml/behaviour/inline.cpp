@@ -1,0 +1,66 @@
+// inline.cpp: see inline.h.
+#include "behaviour/inline.h"
+
+#include <unordered_set>
+
+#include "behaviour/builtin.h"
+#include "event/hierarchy.h"
+#include "parse/inline_node.h"
+#include "parse/loader.h"
+#include "xvrml/browser.h"
+
+namespace xvrml {
+namespace {
+
+// Files an Inline stands in, from the outside: none of them may be read into it again.
+std::vector<std::string> enclosingFiles(const Node& node) {
+  std::vector<std::string> files;
+  const std::vector<Path> paths = pathsTo(node, 1);
+  if (paths.empty()) return {node.source.file ? *node.source.file : std::string()};
+  for (const Node* step : paths[0])
+    if (step->type().index == nodes::Inline::typeIndex) files.push_back(step->source.file ? *step->source.file : std::string());
+  return files;
+}
+
+} // namespace
+
+bool loadInlineContent(Engine& engine, Node& node) {
+  auto* inlineNode = dynamic_cast<InlineNode*>(&node);
+  if (!inlineNode || !engine.browser()) return false;
+  World& world = engine.browser()->world();
+  engine.contentLeaves(node);
+  const std::shared_ptr<const Scope> old = std::exchange(inlineNode->content, nullptr); // ends when nothing refers to it here
+  Loader(world, world.options).loadLate(*inlineNode, enclosingFiles(node));
+  engine.contentLoaded(node);
+  engine.changed(node, fieldOf<nodes::Inline>("url"));
+  return inlineNode->content != nullptr;
+}
+
+uint64_t loadInlinesBelow(Engine& engine, const Scope& scope) {
+  uint64_t loaded = 0;
+  std::unordered_set<const Node*> seen;
+  std::vector<Node*> open;
+  for (const NodeRef& root : scope.roots)
+    if (root) open.push_back(root.get());
+  while (!open.empty()) {
+    Node* node = open.back();
+    open.pop_back();
+    if (!node || !seen.insert(node).second) continue;
+    const auto* inlineNode = dynamic_cast<const InlineNode*>(node);
+    if (inlineNode && !inlineNode->content && !inlineNode->url.empty()) loaded += loadInlineContent(engine, *node);
+    childrenInHierarchy(*node, open);
+  }
+  return loaded;
+}
+
+namespace {
+
+void receive(Events& events, Node& node, const FieldInfo& in, const Value&) {
+  if (in.name == "url") loadInlineContent(static_cast<Engine&>(events), node);
+}
+
+} // namespace
+
+void addInlineBehaviours(const AddBehaviour& add) { add(nodes::Inline::nodeType(), {.receive = receive}); }
+
+} // namespace xvrml
