@@ -11,6 +11,7 @@ build=(
   zlib1g-dev libzstd-dev libxxhash-dev                          # compression, hashes
   libflatbuffers-dev flatbuffers-compiler # scene edits
   libfast-float-dev libfmt-dev libspdlog-dev libcli11-dev nlohmann-json3-dev
+  libavcodec-dev libavformat-dev libswscale-dev # films; the build does without, too
   libfreetype-dev libharfbuzz-dev libfontconfig-dev fonts-dejavu-core libglu1-mesa-dev # text, polygons
   python3 python3-dev python3-numpy pybind11-dev
 )

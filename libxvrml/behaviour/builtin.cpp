@@ -11,6 +11,8 @@ void addBuiltinBehaviours(const AddBehaviour& add) {
   addGroupingBehaviours(add);
   addInterpolatorBehaviours(add);
   addTimeSensorBehaviours(add);
+  addAudioClipBehaviours(add);
+  addMovieTextureBehaviours(add);
 }
 
 } // namespace xvrml

@@ -18,5 +18,7 @@ void addInlineBehaviours(const AddBehaviour& add);   // set_url loads
 void addGroupingBehaviours(const AddBehaviour& add); // addChildren, removeChildren
 void addInterpolatorBehaviours(const AddBehaviour& add);
 void addTimeSensorBehaviours(const AddBehaviour& add);
+void addAudioClipBehaviours(const AddBehaviour& add);
+void addMovieTextureBehaviours(const AddBehaviour& add);
 
 } // namespace xvrml

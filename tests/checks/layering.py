@@ -83,6 +83,7 @@ FOREIGN = [
     (re.compile(r"(sys/socket|netinet/|arpa/|netdb|zmq)"), {"backend-cluster"}, "sockets"),
     (re.compile(r"(png|jpeglib|turbojpeg|gif_lib|ft2build|freetype|hb|hb-ft|fontconfig/.*|GL/glu)(\.h)?$"),
      {"xvrml-geometry", "xvrml-image", "picture", "test"}, "picture and font libraries"),
+    (re.compile(r"lib(av|sw)[a-z]+/"), {"xvrml-image", "test"}, "the ffmpeg libraries"),
     (re.compile(r"(OpenEXR/|Imf)"), {"picture", "test"}, "OpenEXR"),
     (re.compile(r"(CLI/|CLI11)"), {"app", "openrt-tools", "nodegen"}, "CLI11"),
     (re.compile(r"pybind11/"), {"binding"}, "pybind11"),

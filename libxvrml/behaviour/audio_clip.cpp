@@ -1,0 +1,56 @@
+// audio_clip.cpp: AudioClip (clause 6.4): duration_changed and isActive; the samples for xvrml/media.h.
+#include <exception>
+
+#include "behaviour/media.h"
+#include "behaviour/wav.h"
+#include "event/live.h"
+
+namespace xvrml {
+namespace {
+
+struct State : Media {
+  double load(Events& events, Node& node) override {
+    clip = nullptr;
+    path.clear();
+    double seconds = -1;
+    readFirst(events, node, static_cast<nodes::AudioClip&>(node).url, [&](const std::string& file) {
+      seconds = readWavInfo(file).duration;
+      path = file;
+      return true;
+    });
+    return seconds;
+  }
+  TimeFields fields(const Node& node) const override {
+    const auto& n = static_cast<const nodes::AudioClip&>(node);
+    return {n.startTime, n.stopTime, duration > 0 && n.pitch > 0 ? duration / n.pitch : 0, n.loop, true};
+  }
+  void play(Events&, Node&, const TimeStep& step) override { position = step.fraction * duration; }
+
+  std::string path; // empty: nothing could be read
+  std::shared_ptr<const Clip> clip;
+  double position = 0; // seconds
+};
+
+std::unique_ptr<NodeState> begin(Events& events, Node& node) { return beginMedia(events, node, std::make_unique<State>()); }
+
+} // namespace
+
+Playing playingOf(const Node& node) {
+  if (node.type().index != nodes::AudioClip::typeIndex || !node.live || !liveOf(node)->part) return {};
+  auto* state = static_cast<State*>(liveOf(node)->part->state.get());
+  if (!state || !state->time.active() || state->path.empty()) return {};
+  if (!state->clip) {
+    try {
+      state->clip = std::make_shared<Clip>(readWav(state->path));
+    } catch (const std::exception&) {
+      state->path.clear(); // its events go on
+      return {};
+    }
+  }
+  const auto& clip = static_cast<const nodes::AudioClip&>(node);
+  return {state->clip, state->position, clip.pitch, clip.loop};
+}
+
+void addAudioClipBehaviours(const AddBehaviour& add) { addMedia(add, nodes::AudioClip::nodeType(), begin); }
+
+} // namespace xvrml

@@ -1,0 +1,105 @@
+// movie_texture.cpp: MovieTexture (clause 6.28): its events, and which picture of the film it shows; decoded when asked for.
+#include <atomic>
+#include <exception>
+
+#include "behaviour/media.h"
+#include "event/live.h"
+#include "image/film.h"
+#include "image/image.h"
+#include "xvrml/media.h"
+
+namespace xvrml {
+namespace {
+
+// Pixels of all films that are being decoded, in this process: a world may not open thousands of large ones.
+std::atomic<uint64_t> openPixels{0};
+
+struct State : Media {
+  ~State() override { close(); }
+
+  double load(Events& events, Node& node) override {
+    close();
+    film = nullptr;
+    image = {};
+    wanted = shown = none;
+    limits = loadOptions(events).limits;
+    readFirst(events, node, static_cast<nodes::MovieTexture&>(node).url, [&](const std::string& path) {
+      if (decodesFilms()) {
+        film = FilmData::read(path, limits);
+      } else { // a picture at least, if it is a GIF
+        image = readImage(path, limits);
+        wanted = shown = 0;
+        events.diagnostics().warn(node.source, "MovieTexture: the first picture only: this build has no decoder of films");
+      }
+      return true;
+    });
+    if (film) wanted = static_cast<nodes::MovieTexture&>(node).speed < 0 ? film->pictures() - 1 : 0;
+    return film ? film->duration() : -1;
+  }
+
+  TimeFields fields(const Node& node) const override {
+    const auto& n = static_cast<const nodes::MovieTexture&>(node);
+    return {n.startTime, n.stopTime, duration > 0 ? duration / std::abs(double(n.speed)) : 0, n.loop, true};
+  }
+
+  void play(Events& events, Node& node, const TimeStep& step) override {
+    if (!film) return;
+    const auto& n = static_cast<const nodes::MovieTexture&>(node);
+    // The end of a cycle is the beginning of the next one; where none follows the last picture stays.
+    const double fraction = step.fraction == 1 && n.loop && !step.ends ? 0 : step.fraction;
+    const size_t picture = n.speed == 0 ? 0 : film->pictureAt(n.speed < 0 ? duration * (1 - fraction) : duration * fraction);
+    if (picture == wanted) return;
+    wanted = picture;
+    events.changed(node, fieldOf<nodes::MovieTexture>("url"));
+  }
+
+  const Image* picture() {
+    if (film && wanted != shown) decode();
+    if (!time.active()) close(); // one picture is all it needs now
+    return image.components > 0 ? &image : nullptr;
+  }
+
+ private:
+  static constexpr size_t none = ~size_t(0);
+
+  void decode() {
+    shown = wanted; // not tried twice
+    try {
+      if (!reader) {
+        if (openPixels.load() > limits.imagePixels) return;
+        reader = std::make_unique<FilmReader>(film, limits);
+      }
+      reader->read(wanted, image);
+    } catch (const std::exception&) { return; } // the picture stays
+    const uint64_t pixels = uint64_t(image.width) * uint64_t(image.height);
+    openPixels += pixels - counted;
+    counted = pixels;
+  }
+
+  void close() {
+    reader = nullptr;
+    openPixels -= counted;
+    counted = 0;
+  }
+
+  Limits limits;
+  std::shared_ptr<const FilmData> film; // null: nothing could be read
+  std::unique_ptr<FilmReader> reader;
+  Image image;
+  size_t wanted = none, shown = none; // numbers of pictures
+  uint64_t counted = 0;               // of openPixels
+};
+
+std::unique_ptr<NodeState> begin(Events& events, Node& node) { return beginMedia(events, node, std::make_unique<State>()); }
+
+} // namespace
+
+const Image* currentImage(const Node& node) {
+  if (node.type().index != nodes::MovieTexture::typeIndex || !node.live || !liveOf(node)->part) return nullptr;
+  auto* state = static_cast<State*>(liveOf(node)->part->state.get());
+  return state ? state->picture() : nullptr;
+}
+
+void addMovieTextureBehaviours(const AddBehaviour& add) { addMedia(add, nodes::MovieTexture::nodeType(), begin); }
+
+} // namespace xvrml
