@@ -11,7 +11,7 @@
 namespace xvrml {
 namespace {
 
-constexpr size_t maximumSteps = 20'000'000; // nodes one ray may visit: what events have built has no limit of its own
+constexpr size_t maximumSteps = 4'000'000; // nodes one ray may visit: what events have built has no limit of its own
 
 // Where children stand, seen from where the node stands. False if nothing of them can be seen.
 bool innerMatrix(const Node& node, const Matrix& toWorld, const Matrix& view, Matrix& inner) {
@@ -155,33 +155,29 @@ PickBox Picker::bounds(const std::vector<NodeRef>& roots) {
 bool Picker::pick(const PickRay& whole, const PickRules& rules, const Matrix& view, const std::vector<NodeRef>& roots, Hit& hit) {
   const double probe = whole.origin.dot(whole.origin) + whole.direction.dot(whole.direction);
   if (!std::isfinite(probe) || !(whole.direction.length() > 0)) return false;
-  constexpr uint32_t none = ~0u;
+  constexpr uint32_t none = ~0u, stale = none - 1;
   struct Visit {
     Node* node;
-    uint32_t parent; // in `visited`
-  };
-  struct Visited {
-    Node* node;
-    uint32_t parent;
-    Matrix toWorld; // of its children
+    uint32_t parent; // in `way`
   };
   PickRay ray = whole;
   std::vector<Visit> open;
-  std::vector<Visited> visited;
+  std::vector<Hit::Step> way; // from a root down to where the walk is
   std::vector<Node*> parts;
-  uint32_t found = none;
+  bool found = false;
   MeshHit best{};
   for (size_t i = roots.size(); i-- > 0;)
     if (roots[i]) open.push_back({roots[i].get(), none});
   // Rays are moved into the coordinate system of a parent once, not once for each of its children.
-  uint32_t movedFor = none;
+  uint32_t movedFor = stale;
   PickRay moved = ray;
   bool movable = true;
   for (size_t steps = 0; !open.empty() && steps < maximumSteps; ++steps) {
     const Visit visit = open.back();
     open.pop_back();
-    const Matrix outside = visit.parent == none ? Matrix() : visited[visit.parent].toWorld;
-    if (visit.parent != movedFor || steps == 0) {
+    way.resize(visit.parent + 1); // what lies beyond has been left; none + 1 is 0
+    const Matrix outside = visit.parent == none ? Matrix() : way[visit.parent].toWorld;
+    if (visit.parent != movedFor) {
       Matrix toLocal;
       movable = invert(outside, toLocal);
       moved = {transformPoint(toLocal, whole.origin), transformDirection(toLocal, whole.direction), whole.nearest,
@@ -194,33 +190,31 @@ bool Picker::pick(const PickRay& whole, const PickRules& rules, const Matrix& vi
     if (visit.node->type().index == nodes::Shape::typeIndex) {
       MeshHit meshHit;
       const PickMesh* mesh = meshOf(*visit.node);
-      if (!mesh || !mesh->intersect(moved, rules.bothSides, meshHit) || (found != none && meshHit.t >= best.t)) continue;
+      if (!mesh || !mesh->intersect(moved, rules.bothSides, meshHit) || (found && meshHit.t >= best.t)) continue;
       best = meshHit;
       ray.farthest = best.t;
-      found = uint32_t(visited.size());
-      visited.push_back({visit.node, visit.parent, outside});
+      found = true;
+      hit.path = way;
+      hit.path.push_back({visit.node, outside});
       continue;
     }
     Matrix inner;
     if (!innerMatrix(*visit.node, outside, view, inner)) continue;
     parts.clear();
     metBelow(*visit.node, rules, outside, view, parts);
-    if (parts.empty()) continue;
-    const uint32_t index = uint32_t(visited.size());
-    visited.push_back({visit.node, visit.parent, inner});
+    const uint32_t index = uint32_t(way.size());
+    way.push_back({visit.node, inner});
+    if (movedFor == index) movedFor = stale; // another node has taken the place
     for (size_t i = parts.size(); i-- > 0;)
       if (parts[i]) open.push_back({parts[i], index});
   }
-  if (found == none) return false;
-  hit.path.clear();
-  for (uint32_t i = found; i != none; i = visited[i].parent) hit.path.push_back({visited[i].node, visited[i].toWorld});
-  std::reverse(hit.path.begin(), hit.path.end());
+  if (!found) return false;
   hit.t = best.t;
   hit.point = whole.at(best.t);
   hit.texCoord = best.texCoord;
   // Normals move by the inverse's transpose.
   Matrix inverse;
-  invert(visited[found].toWorld, inverse);
+  invert(hit.path.back().toWorld, inverse);
   hit.normal = transformDirection(inverse.transposed(), best.normal).normalized();
   return true;
 }

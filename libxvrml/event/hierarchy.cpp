@@ -29,7 +29,7 @@ std::vector<Path> pathsTo(const Node& node, size_t limit) {
   if (!node.live) return paths;
   std::vector<Open> open{{liveOf(node)->node, 0}};
   size_t steps = 0;
-  const size_t maximumSteps = 1000 * limit;
+  const size_t maximumSteps = std::max<size_t>(1000 * limit, 100'000);
   while (!open.empty() && paths.size() < limit && ++steps < maximumSteps) {
     Open& top = open.back();
     const Live& live = *liveOf(*top.node);

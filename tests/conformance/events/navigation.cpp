@@ -1,4 +1,5 @@
 // How the viewer moves: clauses 6.29 (NavigationInfo), 6.8 (Collision), 6.53 (up and down).
+#include "behaviour/interaction.h"
 #include "conformance/events/viewing.h"
 
 namespace xvrml {
@@ -199,6 +200,26 @@ TEST(Navigation, TheOffsetStaysWithTheViewpointAndComesBackWithIt) {
   r.set("B", "set_bind", true);
   r.set("A", "set_bind", true); // bound anew: to its own place
   EXPECT_EQ(eyeOf(r.browser), "5 1.6 10");
+}
+
+// Clause 4.12.10.3: in the coordinate system of the bound Viewpoint.
+TEST(Navigation, TheCurrentSpeedIsThatSinceTheLastTick) {
+  Running r("NavigationInfo { type \"FLY\" speed 3 } Transform { scale 10 10 10 children DEF V Viewpoint {} }");
+  const Viewer& viewer = interactionOf(r.browser.events()).viewer;
+  r.browser.tick(1);
+  EXPECT_EQ(viewer.speed(), 0);
+  r.browser.navigate({.ahead = 1}, 2);
+  r.browser.tick(3);
+  EXPECT_NEAR(viewer.speed(), 3, 1e-9);
+  r.browser.tick(4);
+  EXPECT_EQ(viewer.speed(), 0);
+  r.set("V", "position", Vec3f{9, 9, 9}); // the Viewpoint moves, not the viewer
+  r.browser.tick(5);
+  EXPECT_EQ(viewer.speed(), 0);
+  r.browser.navigate({.ahead = 1}, 2);
+  r.browser.key(Key::home, true); // a jump is no motion
+  r.browser.tick(6);
+  EXPECT_EQ(viewer.speed(), 0);
 }
 
 TEST(Collision, SendsCollideTimeWhenItsChildrenStopTheViewer) {
