@@ -68,7 +68,7 @@ void shadow(RtsBatch* batch, uint32_t i, const RtsHits* hits, const uint8_t* wan
 }
 
 void sample(RtsBatch* batch, RtsTexture texture, uint32_t n, const float* const uv[2], float* const rgba[4]) {
-  const auto& textures = batch->scene->textures;
+  const auto& textures = *batch->scene->textures;
   textures[texture < textures.size() ? texture : 0].sample(padded(n), uv, rgba);
 }
 

@@ -48,8 +48,8 @@ class ShaderTable {
               const RtsHost& host);
   uint32_t slotOf(uint32_t shaderId) const; // surface shaders; unknown ids: slot 0
   const ShaderSlot& operator[](uint32_t slot) const { return slots_[slot]; }
-  // Same classes and traits in every slot: records made for one serve the other.
-  bool sameLayout(const ShaderTable& other) const;
+  // Everything of the other has the same slot, class and traits here: records made for it serve this one.
+  bool extends(const ShaderTable& other) const;
   // The slot of a light, camera or environment shader; shaderClass null if it is none of that kind.
   ShaderSlot role(uint32_t shaderId, RtsKind kind) const;
 
@@ -72,8 +72,8 @@ struct RenderScene {
   std::span<const Bucket> buckets;
   std::vector<std::vector<uint32_t>> lightSets; // indices into lights
   std::vector<LightSlot> lights;
-  std::vector<Texture> textures; // [0] is the missing one
-  std::unique_ptr<ShaderTable> shaders;
+  std::shared_ptr<const std::vector<Texture>> textures; // [0] is the missing one
+  std::shared_ptr<const ShaderTable> shaders;           // like the textures shared by snapshots between which they did not change
   RoleSlot camera, environment;
   float eye[3] = {0, 0, 0}, viewAxis[3] = {0, 0, -1}; // render space; unit
   double origin[3] = {0, 0, 0};                       // of render space, in the world

@@ -37,11 +37,14 @@ ShaderSlot ShaderTable::role(uint32_t shaderId, RtsKind kind) const {
   return slots_[found->second];
 }
 
-bool ShaderTable::sameLayout(const ShaderTable& other) const {
-  return slotOf_ == other.slotOf_ && std::equal(slots_.begin(), slots_.end(), other.slots_.begin(), other.slots_.end(),
-                                                [](const ShaderSlot& a, const ShaderSlot& b) {
-                                                  return a.shaderClass == b.shaderClass && a.traits == b.traits;
-                                                });
+bool ShaderTable::extends(const ShaderTable& other) const {
+  const auto same = [&](uint32_t slot) {
+    return slots_[slot].shaderClass == other.slots_[slot].shaderClass && slots_[slot].traits == other.slots_[slot].traits;
+  };
+  return same(0) && std::all_of(other.slotOf_.begin(), other.slotOf_.end(), [&](const auto& entry) {
+           const auto found = slotOf_.find(entry.first);
+           return found != slotOf_.end() && found->second == entry.second && same(entry.second);
+         });
 }
 
 ShaderSlot ShaderTable::make(const RtsClass& shaderClass, const ShaderValues* values,

@@ -3,7 +3,6 @@
 #include "scene/flatten.h"
 
 #include <algorithm>
-#include <map>
 #include <unordered_map>
 
 namespace openrt {
@@ -15,19 +14,19 @@ class Flattener {
     for (const auto& [id, light] : scene.lights)
       if (light.scope) scoped_[light.scope].push_back(id);
     result_.lightSets.push_back(unscopedLights(scene));
-    setOf_[result_.lightSets[0]] = 0;
   }
 
   Flattened run() {
-    push(0, Frame{});
-    while (!stack_.empty() && !result_.truncated) step();
+    partOf(0);
+    for (size_t part = 0; part < result_.parts.size() && !result_.truncated; part++) walk(uint32_t(part));
+    placeAll();
     return std::move(result_);
   }
 
  private:
   struct Frame { // an object being walked, with what its path inherits
-    uint32_t object = 0, instance = 0, shader = 0, lightSet = 0, name = 0;
-    uint64_t userData = 0;
+    uint32_t object = 0;
+    Inherited path;
     Matrix4d matrix;
     size_t next = 0; // child to visit
   };
@@ -66,22 +65,32 @@ class Flattener {
     return drawable_[root] == yes;
   }
 
-  void push(uint32_t object, Frame frame) {
-    frame.object = object;
-    frame.next = 0;
-    const auto found = scene_.objects.find(object);
+  uint32_t partOf(uint32_t object) {
+    const auto [found, fresh] = partOf_.try_emplace(object, uint32_t(result_.parts.size()));
+    if (fresh) result_.parts.push_back({object, {}, {}});
+    return found->second;
+  }
+
+  void walk(uint32_t part) {
+    part_ = part;
+    push({result_.parts[part].object, {}, {}, 0});
+    while (!stack_.empty() && !result_.truncated) step();
+  }
+
+  void push(const Frame& frame) {
+    const auto found = scene_.objects.find(frame.object);
     if (found != scene_.objects.end() && !found->second.geometries.empty()) {
       if (!frame.matrix.usable()) {
         result_.rejected++;
-      } else if (result_.placements.size() >= maxPlacements) {
+      } else if (items_ >= maxPlacements) {
         result_.truncated = true;
         return;
       } else {
-        result_.placements.push_back(
-            {object, frame.instance, frame.shader, frame.lightSet, frame.name, frame.userData, frame.matrix});
+        items_++;
+        result_.parts[part_].items.push_back({frame.object, frame.path, frame.matrix});
       }
     }
-    if (!scene_.childrenOf(object).empty()) stack_.push_back(frame);
+    if (!scene_.childrenOf(frame.object).empty()) stack_.push_back(frame);
   }
 
   void step() {
@@ -93,39 +102,109 @@ class Flattener {
     }
     const uint32_t id = children[top.next++];
     const Instance& instance = scene_.instances.at(id);
-    if (!instance.visible || !drawable(instance.object)) return;
-    Frame below;
-    below.matrix = top.matrix * instance.matrix;
-    if (!below.matrix.finite()) {
-      result_.rejected++;
+    if (!(instance.visible || instance.dynamic) || !drawable(instance.object)) return;
+    const Inherited path = result_.inherit(top.path, {id, instance.shader, lightSetOf(id), instance.name, instance.userData});
+    const auto object = scene_.objects.find(instance.object);
+    if (instance.dynamic || (object != scene_.objects.end() && object->second.dynamic)) {
+      const uint32_t part = partOf(instance.object);
+      result_.parts[part_].sockets.push_back({id, part, path, top.matrix});
       return;
     }
-    below.instance = top.instance ? top.instance : id;
-    below.shader = top.shader ? top.shader : instance.shader;
-    below.userData = instance.userData ? instance.userData : top.userData;
-    below.name = instance.name ? instance.name : top.name;
-    below.lightSet = scoped_.count(id) ? widen(top.lightSet, scoped_[id]) : top.lightSet;
-    push(instance.object, below);
+    const Frame below{instance.object, path, top.matrix * instance.matrix, 0};
+    if (below.matrix.finite())
+      push(below);
+    else
+      result_.rejected++;
   }
 
-  uint32_t widen(uint32_t set, const std::vector<uint32_t>& lights) {
-    std::vector<uint32_t> all = result_.lightSets[set];
-    all.insert(all.end(), lights.begin(), lights.end());
-    std::sort(all.begin(), all.end());
-    const auto [found, fresh] = setOf_.try_emplace(all, uint32_t(result_.lightSets.size()));
-    if (fresh) result_.lightSets.push_back(all);
-    return found->second;
+  uint32_t lightSetOf(uint32_t instance) {
+    const auto found = scoped_.find(instance);
+    if (found == scoped_.end()) return 0;
+    const auto [set, fresh] = setOf_.try_emplace(instance, 0);
+    if (fresh) {
+      std::vector<uint32_t> all = result_.lightSets[0];
+      all.insert(all.end(), found->second.begin(), found->second.end());
+      std::sort(all.begin(), all.end());
+      const auto known = std::find(result_.lightSets.begin(), result_.lightSets.end(), all);
+      set->second = uint32_t(known - result_.lightSets.begin());
+      if (known == result_.lightSets.end()) result_.lightSets.push_back(std::move(all));
+    }
+    return set->second;
   }
 
+  // Clusters breadth first: the children of one stand in a row, behind it.
+  void placeAll() {
+    result_.clusters.push_back({});
+    size_t placed = result_.parts[0].items.size();
+    for (uint32_t c = 0; c < result_.clusters.size(); c++) {
+      const std::vector<Socket>& sockets = result_.parts[result_.clusters[c].part].sockets;
+      result_.clusters[c].firstChild = uint32_t(result_.clusters.size());
+      for (uint32_t s = 0; s < sockets.size(); s++) {
+        placed += 1 + result_.parts[sockets[s].part].items.size();
+        if (placed > maxPlacements) {
+          truncate(c);
+          return;
+        }
+        const Inherited path = result_.inherit(result_.clusters[c].path, sockets[s].path);
+        result_.clusters.push_back({sockets[s].part, c, s, 0, path, {}, true});
+        place(scene_, result_, uint32_t(result_.clusters.size() - 1));
+        result_.clustersOf.emplace_back(sockets[s].instance, uint32_t(result_.clusters.size() - 1));
+      }
+    }
+    std::sort(result_.clustersOf.begin(), result_.clustersOf.end());
+  }
+
+  // Too many: what has been placed below cluster c and after it goes, so that every cluster has all its children or none.
+  void truncate(uint32_t c) {
+    result_.truncated = true;
+    const uint32_t kept = result_.clusters[c].firstChild;
+    result_.clusters.resize(kept);
+    for (uint32_t i = c; i < kept; i++) result_.clusters[i].firstChild = none;
+    std::erase_if(result_.clustersOf, [kept](const auto& entry) { return entry.second >= kept; });
+    std::sort(result_.clustersOf.begin(), result_.clustersOf.end());
+  }
+
+ public:
+  static constexpr uint32_t none = ~0u; // firstChild of a cluster whose children were too many
+
+  static void place(const Scene& scene, Flattened& flat, uint32_t c) {
+    Cluster& cluster = flat.clusters[c];
+    const Cluster& parent = flat.clusters[cluster.parent];
+    const Socket& socket = flat.parts[parent.part].sockets[cluster.socket];
+    const Instance& instance = scene.instances.at(socket.instance);
+    cluster.world = parent.world * socket.above * instance.matrix;
+    cluster.visible = parent.visible && instance.visible;
+  }
+
+ private:
   const Scene& scene_;
   Flattened result_;
+  uint32_t part_ = 0;
+  size_t items_ = 0;
   std::vector<Frame> stack_;
   std::unordered_map<uint32_t, std::vector<uint32_t>> scoped_;
-  std::map<std::vector<uint32_t>, uint32_t> setOf_;
+  std::unordered_map<uint32_t, uint32_t> setOf_, partOf_; // by instance; by object
   std::unordered_map<uint32_t, uint8_t> drawable_;
 };
 
 } // namespace
+
+uint32_t Flattened::unite(uint32_t a, uint32_t b) {
+  if (a == b || b == 0) return a;
+  if (a == 0) return b;
+  std::vector<uint32_t> all;
+  std::set_union(lightSets[a].begin(), lightSets[a].end(), lightSets[b].begin(), lightSets[b].end(), std::back_inserter(all));
+  const auto known = std::find(lightSets.begin(), lightSets.end(), all);
+  const auto index = uint32_t(known - lightSets.begin());
+  if (known == lightSets.end()) lightSets.push_back(std::move(all));
+  return index;
+}
+
+Inherited Flattened::inherit(const Inherited& outer, const Inherited& inner) {
+  return {outer.instance ? outer.instance : inner.instance, outer.shader ? outer.shader : inner.shader,
+          unite(outer.lightSet, inner.lightSet), inner.name ? inner.name : outer.name,
+          inner.userData ? inner.userData : outer.userData};
+}
 
 std::vector<uint32_t> unscopedLights(const Scene& scene) {
   std::vector<uint32_t> result;
@@ -135,5 +214,32 @@ std::vector<uint32_t> unscopedLights(const Scene& scene) {
 }
 
 Flattened flatten(const Scene& scene) { return Flattener(scene).run(); }
+
+std::vector<uint32_t> replace(const Scene& scene, Flattened& flat, const std::vector<uint32_t>& instances) {
+  std::vector<uint32_t> found;
+  for (uint32_t id : instances) {
+    auto it = std::lower_bound(flat.clustersOf.begin(), flat.clustersOf.end(), std::make_pair(id, 0u));
+    for (; it != flat.clustersOf.end() && it->first == id; ++it) found.push_back(it->second);
+  }
+  std::sort(found.begin(), found.end());
+  std::vector<uint32_t> all, open;
+  std::vector<bool> seen(flat.clusters.size());
+  for (uint32_t first : found) {
+    open.push_back(first);
+    while (!open.empty()) {
+      const uint32_t c = open.back();
+      open.pop_back();
+      if (seen[c]) continue;
+      seen[c] = true;
+      all.push_back(c);
+      const Cluster& cluster = flat.clusters[c];
+      if (cluster.firstChild == Flattener::none) continue;
+      for (size_t s = 0; s < flat.parts[cluster.part].sockets.size(); s++) open.push_back(cluster.firstChild + uint32_t(s));
+    }
+  }
+  std::sort(all.begin(), all.end());
+  for (uint32_t c : all) Flattener::place(scene, flat, c);
+  return all;
+}
 
 } // namespace openrt

@@ -1,6 +1,8 @@
 // scene.cpp: applies edits to the tables of the scene, one small function a kind of edit.
 #include "scene/scene.h"
 
+#include <algorithm>
+
 namespace openrt {
 namespace {
 
@@ -12,6 +14,13 @@ Matrix4d toMatrix(const edit::Matrix* matrix) {
 }
 
 } // namespace
+
+void SceneChanges::add(const SceneChanges& more) {
+  structure |= more.structure, shaders |= more.shaders, textures |= more.textures;
+  lights |= more.lights, camera |= more.camera, frame |= more.frame;
+  moved.insert(moved.end(), more.moved.begin(), more.moved.end());
+  redefined.insert(redefined.end(), more.redefined.begin(), more.redefined.end());
+}
 
 size_t Geometry::primitives() const {
   const size_t count = indices ? indices->count<uint32_t>() : 0;
@@ -32,7 +41,10 @@ ArrayPtr Scene::array(ArrayId id) const {
 }
 
 SceneChanges Scene::apply(const Commit& commit) {
-  std::erase_if(arrays_, [](const auto& entry) { return entry.second.expired(); });
+  if (arrays_.size() > 2 * arraysSwept_ + 64) { // now and then: a commit costs what it changes
+    std::erase_if(arrays_, [](const auto& entry) { return entry.second.expired(); });
+    arraysSwept_ = arrays_.size();
+  }
   for (const auto& [id, data] : commit.arrays) {
     arriving_[id] = data;
     arrays_[id] = data;
@@ -40,7 +52,7 @@ SceneChanges Scene::apply(const Commit& commit) {
   SceneChanges changes;
   for (const auto& edit : commit.edits.edits)
     if (edit) applyEdit(edit->any, changes);
-  if (changes.instances || changes.geometry) sortChildren();
+  sortChildren();
   arriving_.clear();
   return changes;
 }
@@ -79,23 +91,15 @@ void Scene::applyEdit(const edit::AnyUnion& any, SceneChanges& changes) {
     shaders.erase(any.AsDeleteShader()->id);
     changes.shaders = true;
     break;
-  case Any::Object:
-    replaceObject(*any.AsObject());
-    changes.geometry = true;
-    break;
+  case Any::Object: replaceObject(*any.AsObject(), changes); break;
   case Any::DeleteObject:
     deleteObject(any.AsDeleteObject()->id);
-    changes.geometry = changes.instances = true;
+    changes.structure = true;
     break;
-  case Any::Instance: {
-    const auto& i = *any.AsInstance();
-    instances[i.id] = {i.parent, i.object, i.shader, toMatrix(i.matrix.get()), i.visible, i.userData, i.name, i.dynamic};
-    changes.instances = true;
-    break;
-  }
+  case Any::Instance: placeInstance(*any.AsInstance(), changes); break;
   case Any::DeleteInstance:
-    instances.erase(any.AsDeleteInstance()->id);
-    changes.instances = true;
+    deleteInstance(any.AsDeleteInstance()->id);
+    changes.structure = true;
     break;
   case Any::Light: {
     const auto& l = *any.AsLight();
@@ -126,12 +130,55 @@ void Scene::applyEdit(const edit::AnyUnion& any, SceneChanges& changes) {
   }
 }
 
-void Scene::dropChildren(uint32_t object) {
-  std::erase_if(instances, [object](const auto& entry) { return entry.second.parent == object; });
+void Scene::placeInstance(const edit::InstanceT& edit, SceneChanges& changes) {
+  Instance next{edit.parent,  edit.object,   edit.shader, toMatrix(edit.matrix.get()),
+                edit.visible, edit.userData, edit.name,   edit.dynamic};
+  const auto [found, fresh] = instances.try_emplace(edit.id, next);
+  if (fresh) {
+    children_[edit.parent].push_back(edit.id);
+    unsorted_.push_back(edit.parent);
+    changes.structure = true;
+    return;
+  }
+  Instance& known = found->second;
+  const bool placeOnly = known.dynamic && next.dynamic && known.parent == next.parent && known.object == next.object &&
+                         known.shader == next.shader && known.userData == next.userData && known.name == next.name;
+  if (placeOnly)
+    changes.moved.push_back(edit.id);
+  else
+    changes.structure = true;
+  if (known.parent != next.parent) { // no front end does that
+    children_[next.parent].push_back(edit.id);
+    unsorted_.insert(unsorted_.end(), {known.parent, next.parent});
+  }
+  known = next;
 }
 
-void Scene::replaceObject(const edit::ObjectT& object) {
-  Object& target = objects[object.id];
+void Scene::deleteInstance(uint32_t id) {
+  const auto found = instances.find(id);
+  if (found == instances.end()) return;
+  unsorted_.push_back(found->second.parent);
+  instances.erase(found);
+}
+
+void Scene::dropChildren(uint32_t object) {
+  const auto list = children_.find(object);
+  if (list == children_.end()) return;
+  for (uint32_t id : list->second)
+    if (const auto found = instances.find(id); found != instances.end() && found->second.parent == object) instances.erase(found);
+  children_.erase(list);
+}
+
+void Scene::replaceObject(const edit::ObjectT& object, SceneChanges& changes) {
+  const auto children = children_.find(object.id);
+  const bool leaf = children == children_.end() || children->second.empty();
+  const auto [found, fresh] = objects.try_emplace(object.id);
+  Object& target = found->second;
+  if (!fresh && leaf && target.dynamic && object.dynamic)
+    changes.redefined.push_back(object.id);
+  else
+    changes.structure = true;
+  target.version = ++version_;
   target.dynamic = object.dynamic;
   target.geometries.clear();
   target.geometries.reserve(object.geometries.size());
@@ -140,17 +187,30 @@ void Scene::replaceObject(const edit::ObjectT& object) {
     target.geometries.push_back({g->primitive, g->shader, g->name, toMatrix(g->matrix.get()), g->cull, g->clockwise, g->width,
                                  array(g->points), array(g->indices), array(g->normals), array(g->texCoords), array(g->colors)});
   }
-  if (auto found = children_.find(object.id); found != children_.end() && !found->second.empty()) dropChildren(object.id);
+  dropChildren(object.id);
 }
 
+// Its instances were deleted before; one that was not draws nothing.
 void Scene::deleteObject(uint32_t id) {
   objects.erase(id);
-  std::erase_if(instances, [id](const auto& entry) { return entry.second.parent == id || entry.second.object == id; });
+  dropChildren(id);
 }
 
+// Brings the lists that changed up to date: ids ascend, each is there once, and its instance is.
 void Scene::sortChildren() {
-  children_.clear();
-  for (const auto& [id, instance] : instances) children_[instance.parent].push_back(id); // ids ascend: map order
+  std::sort(unsorted_.begin(), unsorted_.end());
+  unsorted_.erase(std::unique(unsorted_.begin(), unsorted_.end()), unsorted_.end());
+  for (uint32_t parent : unsorted_) {
+    const auto list = children_.find(parent);
+    if (list == children_.end()) continue;
+    std::erase_if(list->second, [&](uint32_t id) {
+      const auto found = instances.find(id);
+      return found == instances.end() || found->second.parent != parent;
+    });
+    std::sort(list->second.begin(), list->second.end());
+    list->second.erase(std::unique(list->second.begin(), list->second.end()), list->second.end());
+  }
+  unsorted_.clear();
 }
 
 const std::vector<uint32_t>& Scene::childrenOf(uint32_t object) const {

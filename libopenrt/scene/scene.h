@@ -25,6 +25,7 @@ struct Geometry {
 };
 
 struct Object {
+  uint64_t version = 0; // another number each time any object is defined
   bool dynamic = false;
   std::vector<Geometry> geometries;
 };
@@ -64,7 +65,14 @@ struct ShaderClassName {
 
 // What a commit touched: decides what a backend makes anew.
 struct SceneChanges {
-  bool geometry = false, instances = false, shaders = false, textures = false, lights = false, camera = false, frame = false;
+  bool structure = false; // instances made, deleted, or changed in more than their place; objects made or deleted
+  bool shaders = false, textures = false, lights = false, camera = false, frame = false;
+  std::vector<uint32_t> moved;     // dynamic instances whose matrix or visibility changed, and nothing else
+  std::vector<uint32_t> redefined; // dynamic objects that were defined before, without instances in them
+  bool any() const {
+    return structure || shaders || textures || lights || camera || frame || !moved.empty() || !redefined.empty();
+  }
+  void add(const SceneChanges& more);
 };
 
 class Scene {
@@ -88,13 +96,18 @@ class Scene {
  private:
   ArrayPtr array(ArrayId id) const;
   void applyEdit(const edit::AnyUnion& any, SceneChanges& changes);
-  void replaceObject(const edit::ObjectT& object);
+  void replaceObject(const edit::ObjectT& object, SceneChanges& changes);
+  void placeInstance(const edit::InstanceT& edit, SceneChanges& changes);
+  void deleteInstance(uint32_t id);
   void deleteObject(uint32_t id);
   void dropChildren(uint32_t object);
   void sortChildren();
   std::map<ArrayId, std::weak_ptr<const Array>> arrays_; // alive as long as something of the scene uses them
-  std::map<ArrayId, ArrayPtr> arriving_;                 // of the commit being applied
+  size_t arraysSwept_ = 0;                               // how many there were after the last sweep
+  uint64_t version_ = 0;
+  std::map<ArrayId, ArrayPtr> arriving_; // of the commit being applied
   std::map<uint32_t, std::vector<uint32_t>> children_;
+  std::vector<uint32_t> unsorted_; // objects whose lists of children are out of date
 };
 
 } // namespace openrt

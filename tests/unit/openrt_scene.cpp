@@ -44,10 +44,10 @@ TEST(Flatten, nestedMatricesMultiplyFromTheOutside) {
   Scene scene;
   scene.apply(commit);
   const Flattened flat = flatten(scene);
-  ASSERT_EQ(flat.placements.size(), 1u);
-  EXPECT_EQ(flat.placements[0].instance, 11u);
-  EXPECT_DOUBLE_EQ(flat.placements[0].matrix.m[12], 5 + 2 * 3);
-  EXPECT_DOUBLE_EQ(flat.placements[0].matrix.m[0], 2);
+  ASSERT_EQ(flat.parts[0].items.size(), 1u);
+  EXPECT_EQ(flat.parts[0].items[0].path.instance, 11u);
+  EXPECT_DOUBLE_EQ(flat.parts[0].items[0].matrix.m[12], 5 + 2 * 3);
+  EXPECT_DOUBLE_EQ(flat.parts[0].items[0].matrix.m[0], 2);
 }
 
 TEST(Flatten, singularPlacementsAreCountedAndDrawNothing) {
@@ -59,7 +59,7 @@ TEST(Flatten, singularPlacementsAreCountedAndDrawNothing) {
   Scene scene;
   scene.apply(commit);
   const Flattened flat = flatten(scene);
-  EXPECT_EQ(flat.placements.size(), 1u);
+  EXPECT_EQ(flat.parts[0].items.size(), 1u);
   EXPECT_EQ(flat.rejected, 2u);
 }
 
@@ -75,9 +75,9 @@ TEST(Flatten, outermostShaderAndInnermostUserData) {
   Scene scene;
   scene.apply(commit);
   const Flattened flat = flatten(scene);
-  ASSERT_EQ(flat.placements.size(), 1u);
-  EXPECT_EQ(flat.placements[0].shader, 8u);
-  EXPECT_EQ(flat.placements[0].userData, 70u);
+  ASSERT_EQ(flat.parts[0].items.size(), 1u);
+  EXPECT_EQ(flat.parts[0].items[0].path.shader, 8u);
+  EXPECT_EQ(flat.parts[0].items[0].path.userData, 70u);
 }
 
 TEST(Flatten, aTowerOfEmptyDoublingsCostsNothing) {
@@ -90,7 +90,7 @@ TEST(Flatten, aTowerOfEmptyDoublingsCostsNothing) {
   put(commit, instance(500, 0, 1));
   Scene scene;
   scene.apply(commit);
-  EXPECT_TRUE(flatten(scene).placements.empty());
+  EXPECT_TRUE(flatten(scene).parts[0].items.empty());
 }
 
 TEST(Flatten, nestingDeepCostsNoCallStack) {
@@ -102,8 +102,8 @@ TEST(Flatten, nestingDeepCostsNoCallStack) {
   Scene scene;
   scene.apply(commit);
   const Flattened flat = flatten(scene);
-  ASSERT_EQ(flat.placements.size(), 1u);
-  EXPECT_DOUBLE_EQ(flat.placements[0].matrix.m[12], depth - 1);
+  ASSERT_EQ(flat.parts[0].items.size(), 1u);
+  EXPECT_DOUBLE_EQ(flat.parts[0].items[0].matrix.m[12], depth - 1);
 }
 
 TEST(Flatten, scopedLightsShineBelowTheirInstanceOnly) {
@@ -119,9 +119,9 @@ TEST(Flatten, scopedLightsShineBelowTheirInstanceOnly) {
   Scene scene;
   scene.apply(commit);
   const Flattened flat = flatten(scene);
-  ASSERT_EQ(flat.placements.size(), 2u);
-  EXPECT_EQ(flat.lightSets[flat.placements[0].lightSet], std::vector<uint32_t>{20});
-  EXPECT_EQ(flat.lightSets[flat.placements[1].lightSet], (std::vector<uint32_t>{20, 21}));
+  ASSERT_EQ(flat.parts[0].items.size(), 2u);
+  EXPECT_EQ(flat.lightSets[flat.parts[0].items[0].path.lightSet], std::vector<uint32_t>{20});
+  EXPECT_EQ(flat.lightSets[flat.parts[0].items[1].path.lightSet], (std::vector<uint32_t>{20, 21}));
 }
 
 TEST(Scene, redefiningAnObjectDropsItsChildren) {
@@ -132,9 +132,9 @@ TEST(Scene, redefiningAnObjectDropsItsChildren) {
   put(first, instance(11, 0, 2));
   Scene scene;
   scene.apply(first);
-  EXPECT_EQ(flatten(scene).placements.size(), 1u);
+  EXPECT_EQ(flatten(scene).parts[0].items.size(), 1u);
   put(second, object(2, false));
   scene.apply(second);
-  EXPECT_EQ(flatten(scene).placements.size(), 0u);
+  EXPECT_EQ(flatten(scene).parts[0].items.size(), 0u);
   EXPECT_EQ(scene.instances.size(), 1u);
 }

@@ -24,15 +24,16 @@ struct Packet8 {
 };
 
 // Fills a packet from lane `first` on; returns how many of its rays were refused. Refused and absent rays are made harmless.
+// ends: where the rays end, from that lane on.
 template <uint32_t W, class Ray>
-uint32_t load(const Rays& rays, uint32_t first, float scale, uint32_t mask, int* valid, Ray& to) {
+uint32_t load(const Rays& rays, const float* ends, uint32_t first, float scale, uint32_t mask, int* valid, Ray& to) {
   const float limit = 1e18f / scale;
   uint32_t refused = 0;
   for (uint32_t i = 0; i < W; i++) {
     const uint32_t lane = first + i;
     const float ox = rays.org[0][lane], oy = rays.org[1][lane], oz = rays.org[2][lane];
     const float dx = rays.dir[0][lane], dy = rays.dir[1][lane], dz = rays.dir[2][lane];
-    const float near = rays.tnear[lane], far = rays.tfar[lane];
+    const float near = rays.tnear[lane], far = ends[i];
     const float d = std::fabs(dx) + std::fabs(dy) + std::fabs(dz);
     // Comparisons are false for NaN: whatever is not a number is refused.
     const bool good = (std::fabs(ox) <= limit) & (std::fabs(oy) <= limit) & (std::fabs(oz) <= limit) & (d > 0) & (d <= 1e18f) &
@@ -54,13 +55,13 @@ uint32_t load(const Rays& rays, uint32_t first, float scale, uint32_t mask, int*
 
 } // namespace
 
-Accel::Found Accel::find(uint32_t instance, uint32_t geometry, uint32_t primitive) const {
+Accel::Found Accel::find(const PartScene& root, uint32_t instance, uint32_t geometry, uint32_t primitive) {
   uint32_t base = 0;
-  const PartScene* scene = &root_;
+  const PartScene* scene = &root;
   if (instance != RTC_INVALID_GEOMETRY_ID) {
-    const Part& placed = *root_.parts[instance];
+    const Part& placed = *root.parts[instance];
     base = placed.record;
-    scene = objectScenes_[placed.objectScene].get();
+    scene = placed.object.get();
   }
   const Part& part = *scene->parts[geometry];
   if (part.recordOf.empty()) return {base + part.record, primitive};
@@ -69,12 +70,12 @@ Accel::Found Accel::find(uint32_t instance, uint32_t geometry, uint32_t primitiv
 
 // Ray and normal are both in the frame of the instance that is being met, if any: the sign of their product is the same in all.
 void Accel::rejectBacks(const RTCFilterFunctionNArguments* a) {
-  const Accel& self = *static_cast<const Accel*>(static_cast<const QueryContext*>(a->context)->user);
+  const Filtered& self = *static_cast<const Filtered*>(static_cast<const QueryContext*>(a->context)->user);
   for (unsigned i = 0; i < a->N; i++) {
     if (a->valid[i] != -1) continue;
-    const Found found =
-        self.find(RTCHitN_instID(a->hit, a->N, i, 0), RTCHitN_geomID(a->hit, a->N, i), RTCHitN_primID(a->hit, a->N, i));
-    const Record& r = self.records[found.record];
+    const Found found = find(*self.level->scene, RTCHitN_instID(a->hit, a->N, i, 0), RTCHitN_geomID(a->hit, a->N, i),
+                             RTCHitN_primID(a->hit, a->N, i));
+    const Record& r = self.accel->records[found.record];
     if (!r.cull) continue;
     const float along = RTCHitN_Ng_x(a->hit, a->N, i) * RTCRayN_dir_x(a->ray, a->N, i) +
                         RTCHitN_Ng_y(a->hit, a->N, i) * RTCRayN_dir_y(a->ray, a->N, i) +
@@ -83,27 +84,33 @@ void Accel::rejectBacks(const RTCFilterFunctionNArguments* a) {
   }
 }
 
-template <class Packet>
-void Accel::intersectPackets(const Rays& rays, uint32_t mask, const QueryOptions& options, RayHits& hits) const {
+// first: the hits are written; else they hold what the other level found, which ends the rays.
+template <class Packet> void Accel::intersectPackets(const Level& level, const Rays& rays, uint32_t mask,
+                                                     const QueryOptions& options, bool first, RayHits& hits) const {
   constexpr uint32_t W = Packet::width;
   alignas(64) int valid[W];
   alignas(64) typename Packet::RayHit packet;
+  alignas(64) float ends[W] = {};
   const float unscale = 1 / scale_;
   uint64_t refused = 0;
-  for (uint32_t first = 0; first < rays.count; first += W) {
-    refused += load<W>(rays, first, scale_, mask, valid, packet.ray);
+  for (uint32_t begin = 0; begin < rays.count; begin += W) {
+    const uint32_t n = std::min(W, rays.count - begin);
+    if (!first)
+      for (uint32_t i = 0; i < n; i++) ends[i] = std::min(rays.tfar[begin + i], hits.t[begin + i]);
+    const uint32_t bad = load<W>(rays, first ? rays.tfar + begin : ends, begin, scale_, mask, valid, packet.ray);
+    if (first) refused += bad;
     for (uint32_t i = 0; i < W; i++) packet.hit.geomID[i] = packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
     Query query(options);
-    Packet::intersect(root_.scene, valid, packet, query);
-    const uint32_t n = std::min(W, rays.count - first);
+    Packet::intersect(level.scene->scene, valid, packet, query);
     for (uint32_t i = 0; i < n; i++) {
-      const uint32_t lane = first + i;
+      const uint32_t lane = begin + i;
       if (!valid[i] || packet.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) {
+        if (!first) continue;
         hits.record[lane] = noHit;
         hits.t[lane] = std::numeric_limits<float>::infinity();
         continue;
       }
-      const Found found = find(packet.hit.instID[0][i], packet.hit.geomID[i], packet.hit.primID[i]);
+      const Found found = find(*level.scene, packet.hit.instID[0][i], packet.hit.geomID[i], packet.hit.primID[i]);
       hits.record[lane] = found.record;
       hits.primitive[lane] = found.primitive;
       hits.t[lane] = packet.ray.tfar[i] * unscale;
@@ -115,38 +122,65 @@ void Accel::intersectPackets(const Rays& rays, uint32_t mask, const QueryOptions
   if (refused) rejectedRays += refused;
 }
 
-template <class Packet> void Accel::occludedPackets(const Rays& rays, uint32_t mask, bool coherent, uint8_t* blocked) const {
+template <class Packet> void Accel::occludedPackets(const Level& level, const Rays& rays, uint32_t mask, bool coherent,
+                                                    bool first, uint8_t* blocked) const {
   constexpr uint32_t W = Packet::width;
   alignas(64) int valid[W];
   alignas(64) typename Packet::Ray packet;
   uint64_t refused = 0;
-  for (uint32_t first = 0; first < rays.count; first += W) {
-    refused += load<W>(rays, first, scale_, mask, valid, packet);
-    Packet::occluded(root_.scene, valid, packet, coherent);
-    const uint32_t n = std::min(W, rays.count - first);
-    for (uint32_t i = 0; i < n; i++) blocked[first + i] = valid[i] && packet.tfar[i] < 0; // Embree writes -infinity
+  for (uint32_t begin = 0; begin < rays.count; begin += W) {
+    const uint32_t n = std::min(W, rays.count - begin);
+    const uint32_t bad = load<W>(rays, rays.tfar + begin, begin, scale_, mask, valid, packet);
+    if (first)
+      refused += bad;
+    else
+      for (uint32_t i = 0; i < n; i++) valid[i] = blocked[begin + i] ? 0 : valid[i];
+    Packet::occluded(level.scene->scene, valid, packet, coherent);
+    for (uint32_t i = 0; i < n; i++) {
+      const bool met = valid[i] && packet.tfar[i] < 0; // Embree writes -infinity
+      blocked[begin + i] = first ? met : blocked[begin + i] | met;
+    }
   }
   if (refused) rejectedRays += refused;
 }
 
-void Accel::intersect(const Rays& rays, uint32_t mask, Coherence coherence, RayHits& hits) const {
-  const bool coherent = coherence == Coherence::coherent;
-  if (device_->wide && !hasInstances)
-    intersectPackets<Packet16>(rays, mask, {coherent}, hits);
+void Accel::intersectLevel(const Level& level, const Rays& rays, uint32_t mask, bool coherent, bool first, RayHits& hits) const {
+  if (device_->wide && !level.instances)
+    intersectPackets<Packet16>(level, rays, mask, {coherent}, first, hits);
   else
-    intersectPackets<Packet8>(rays, mask, {coherent && !hasInstances}, hits);
+    intersectPackets<Packet8>(level, rays, mask, {coherent && !level.instances}, first, hits);
+}
+
+void Accel::occludedLevel(const Level& level, const Rays& rays, uint32_t mask, bool coherent, bool first,
+                          uint8_t* blocked) const {
+  if (device_->wide && !level.instances)
+    occludedPackets<Packet16>(level, rays, mask, coherent, first, blocked);
+  else
+    occludedPackets<Packet8>(level, rays, mask, coherent && !level.instances, first, blocked);
+}
+
+void Accel::intersect(const Rays& rays, uint32_t mask, Coherence coherence, RayHits& hits) const {
+  const bool coherent = coherence == Coherence::coherent, top = topLevel_.masks & mask;
+  const bool first = staticLevel_.masks || !top;
+  if (first) intersectLevel(staticLevel_, rays, mask, coherent, true, hits);
+  if (top) intersectLevel(topLevel_, rays, mask, coherent, !first, hits);
 }
 
 void Accel::intersectFronts(const Rays& rays, uint32_t mask, RayHits& hits) const {
-  intersectPackets<Packet8>(rays, mask, {false, rejectBacks, this}, hits);
+  bool first = true;
+  for (const Level* level : {&staticLevel_, &topLevel_}) {
+    if (level == &topLevel_ && !(level->masks & mask)) continue;
+    const Filtered filtered{this, level};
+    intersectPackets<Packet8>(*level, rays, mask, {false, rejectBacks, &filtered}, first, hits);
+    first = false;
+  }
 }
 
 void Accel::occluded(const Rays& rays, uint32_t mask, Coherence coherence, uint8_t* blocked) const {
-  const bool coherent = coherence == Coherence::coherent;
-  if (device_->wide && !hasInstances)
-    occludedPackets<Packet16>(rays, mask, coherent, blocked);
-  else
-    occludedPackets<Packet8>(rays, mask, coherent && !hasInstances, blocked);
+  const bool coherent = coherence == Coherence::coherent, top = topLevel_.masks & mask;
+  const bool first = staticLevel_.masks || !top;
+  if (first) occludedLevel(staticLevel_, rays, mask, coherent, true, blocked);
+  if (top) occludedLevel(topLevel_, rays, mask, coherent, !first, blocked);
 }
 
 } // namespace openrt

@@ -1,5 +1,6 @@
 // embree_parts.cpp: see embree_parts.h.
-#include "backend/local/embree_parts.h"
+#include "backend/local/body.h"
+#include "render/rays.h"
 
 #include <cmath>
 #include <stdexcept>
@@ -34,12 +35,24 @@ void confirmSlivers(const RTCFilterFunctionNArguments* a) {
   }
 }
 
-void attach(PartScene& to, RTCGeometry geometry, std::unique_ptr<Part> part, uint32_t mask) {
+void attach(PartScene& to, RTCGeometry geometry, std::unique_ptr<Part> part, uint32_t mask, uint32_t slot = nextSlot) {
   rtcSetGeometryMask(geometry, mask);
   rtcCommitGeometry(geometry);
-  rtcAttachGeometryByID(to.scene, geometry, unsigned(to.parts.size()));
+  if (slot == nextSlot) {
+    slot = uint32_t(to.parts.size());
+    to.parts.emplace_back();
+  }
+  detach(to, slot);
+  rtcAttachGeometryByID(to.scene, geometry, slot);
   rtcReleaseGeometry(geometry);
-  to.parts.push_back(std::move(part));
+  to.parts[slot] = std::move(part);
+}
+
+void transform(RTCGeometry geometry, const Matrix4d& matrix) {
+  float m[12];
+  for (int column = 0; column < 4; column++)
+    for (int row = 0; row < 3; row++) m[3 * column + row] = float(matrix.m[4 * column + row]);
+  rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, m);
 }
 
 } // namespace
@@ -83,25 +96,43 @@ void attachTriangles(PartScene& to, const EmbreeDevice& device, std::unique_ptr<
   attach(to, geometry, std::move(part), mask);
 }
 
-void attachRound(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part, uint32_t mask, RTCGeometryType type) {
+void attachRound(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part, uint32_t mask, RTCGeometryType type,
+                 uint32_t slot) {
   RTCGeometry geometry = rtcNewGeometry(device.device, type);
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, part->vertices.data(), 0, 16,
                              part->vertices.size() / 4);
   if (type == RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE)
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT, part->indices.data(), 0, 4,
                                part->indices.size());
-  attach(to, geometry, std::move(part), mask);
+  attach(to, geometry, std::move(part), mask, slot);
 }
 
-void attachInstance(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part, const PartScene& object,
-                    const Matrix4d& matrix) {
+void attachInstance(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part, const Matrix4d& matrix,
+                    uint32_t slot) {
   RTCGeometry geometry = rtcNewGeometry(device.device, RTC_GEOMETRY_TYPE_INSTANCE);
-  rtcSetGeometryInstancedScene(geometry, object.scene);
-  float m[12];
-  for (int column = 0; column < 4; column++)
-    for (int row = 0; row < 3; row++) m[3 * column + row] = float(matrix.m[4 * column + row]);
-  rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, m);
-  attach(to, geometry, std::move(part), maskAll);
+  rtcSetGeometryInstancedScene(geometry, part->object->scene);
+  transform(geometry, matrix);
+  attach(to, geometry, std::move(part), maskAll, slot);
+}
+
+void detach(PartScene& from, uint32_t slot) {
+  if (!from.parts[slot]) return;
+  rtcDetachGeometry(from.scene, slot);
+  from.parts[slot].reset();
+}
+
+void setTransform(PartScene& in, uint32_t slot, const Matrix4d& matrix) {
+  RTCGeometry geometry = rtcGetGeometry(in.scene, slot);
+  transform(geometry, matrix);
+  rtcCommitGeometry(geometry);
+}
+
+void setEnabled(PartScene& in, uint32_t slot, bool enabled) {
+  RTCGeometry geometry = rtcGetGeometry(in.scene, slot);
+  if (enabled)
+    rtcEnableGeometry(geometry);
+  else
+    rtcDisableGeometry(geometry);
 }
 
 } // namespace openrt

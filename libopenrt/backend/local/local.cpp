@@ -1,5 +1,6 @@
 // local.cpp: see local.h. What a change costs: parameters, textures, lights and the camera make a new snapshot over the same
-// acceleration structure; geometry and instances build it anew.
+// acceleration structure; moved dynamic instances and redefined dynamic objects change it in place; all else lays it out anew
+// from the parts that did not change.
 #include "backend/local/local.h"
 
 #include <chrono>
@@ -14,97 +15,101 @@ namespace {
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
-void merge(SceneChanges& all, const SceneChanges& more) {
-  all.geometry |= more.geometry, all.instances |= more.instances, all.shaders |= more.shaders, all.textures |= more.textures;
-  all.lights |= more.lights, all.camera |= more.camera, all.frame |= more.frame;
-}
-
-bool different(const PixelFootprint& a, const PixelFootprint& b) {
-  if (a.constant != b.constant || a.slope != b.slope) return true;
-  for (int k = 0; k < 3; k++)
-    if (a.eye[k] != b.eye[k] || a.axis[k] != b.axis[k]) return true;
-  return false;
-}
-
 } // namespace
 
 LocalBackend::LocalBackend(const BackendOptions& options)
     : options_(options), threads_(options.threads ? options.threads : availableThreads()),
-      device_(std::make_shared<EmbreeDevice>(threads_)) {
-  changes_.geometry = true;
-}
+      device_(std::make_shared<EmbreeDevice>(threads_)), builder_(device_) {}
 
 LocalBackend::~LocalBackend() = default;
 
 void LocalBackend::apply(std::shared_ptr<const Commit> commit) {
   const double begin = now();
-  merge(changes_, scene_.apply(*commit));
+  changes_.add(scene_.apply(*commit));
   commitSeconds_ = now() - begin;
 }
 
-// The camera's place, unless it is still near the old origin in terms of the scene's size: then nothing need be rounded anew.
-Vec3d LocalBackend::chooseOrigin() const {
-  const Vec3d eye = scene_.camera.shader && scene_.camera.matrix.usable() ? scene_.camera.matrix.translation() : Vec3d{};
-  if (!snapshot_ || !accel_ || changes_.geometry || changes_.instances) return eye; // built anew in any case
-  const Vec3d old{snapshot_->origin[0], snapshot_->origin[1], snapshot_->origin[2]};
-  return length(eye - old) <= accel_->radius ? old : eye;
+Vec3d LocalBackend::eye() const {
+  return scene_.camera.shader && scene_.camera.matrix.usable() ? scene_.camera.matrix.translation() : Vec3d{};
 }
 
 void LocalBackend::prepare() {
-  const SceneChanges& c = changes_;
-  if (snapshot_ && !(c.geometry || c.instances || c.shaders || c.textures || c.lights || c.camera || c.frame)) return;
-  const double begin = now();
+  if (snapshot_ && accel_ && !changes_.any()) return;
   auto next = std::make_shared<RenderScene>();
   next->frame = scene_.frame;
   makeShaders(*next);
-  const Vec3d origin = chooseOrigin();
-  next->origin[0] = origin.x, next->origin[1] = origin.y, next->origin[2] = origin.z;
-  makeCamera(*next, origin);
-  const PixelFootprint pixel = footprint(*next);
-
-  bool scoped = false;
-  for (const auto& [id, light] : scene_.lights) scoped |= light.scope != 0;
-  const bool moved = snapshot_ && std::memcmp(snapshot_->origin, next->origin, sizeof next->origin) != 0;
-  const bool rebuild = !accel_ || c.geometry || c.instances || moved || (c.lights && (scoped || scopedLights_)) ||
-                       (c.shaders && !next->shaders->sameLayout(*snapshot_->shaders)) ||
-                       (accel_->hasThin && different(pixel, footprint_));
-  if (rebuild) {
-    flat_ = flatten(scene_);
-    if (flat_.truncated && options_.log)
-      options_.log(3, ("too many placed objects: only the first " + std::to_string(maxPlacements) + " are drawn").c_str(),
-                   options_.logUser);
-    accel_ = std::make_shared<Accel>(device_, scene_, flat_, *next->shaders, origin, pixel);
-    if (const RTCError error = rtcGetDeviceError(device_->device); error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
-    flat_.placements = {}; // only the light sets are needed again
-    footprint_ = pixel;
-    scopedLights_ = scoped;
-    buildSeconds_ = now() - begin;
-    objectBuilds_ += accel_->builds();
-    topLevelBuilds_++;
-  } else if (c.lights) {
-    flat_.lightSets = {unscopedLights(scene_)}; // no light is scoped, nor was: there is but this set
+  try {
+    bringUpToDate(*next);
+  } catch (...) { // half done: the next time builds
+    accel_ = nullptr;
+    throw;
   }
   next->kernel = accel_;
   next->records = accel_->records;
   next->buckets = accel_->buckets;
   next->transparentShadows = accel_->hasTransparent;
-  makeLights(*next, flat_, origin);
   snapshot_ = std::move(next);
   changes_ = {};
 }
 
-void LocalBackend::makeShaders(RenderScene& next) {
+// The acceleration structure of the committed scene, and with its origin the camera and the lights.
+void LocalBackend::bringUpToDate(RenderScene& next) {
+  const double begin = now();
+  const SceneChanges& c = changes_;
+  bool scoped = false;
+  for (const auto& [id, light] : scene_.lights) scoped |= light.scope != 0;
+  bool layOut = !accel_ || c.structure || (c.lights && (scoped || scopedLights_)) ||
+                (next.shaders != snapshot_->shaders && !next.shaders->extends(*snapshot_->shaders));
+  for (size_t i = 0; i < c.redefined.size() && !layOut; i++) layOut = !builder_.survey.retake(scene_, flat_, c.redefined[i]);
+  std::vector<uint32_t> moved;
+  if (layOut) {
+    flat_ = flatten(scene_);
+    builder_.survey.take(scene_, flat_);
+    if (flat_.truncated && options_.log)
+      options_.log(3, ("too many placed objects: only the first " + std::to_string(maxPlacements) + " are drawn").c_str(),
+                   options_.logUser);
+  } else {
+    if (c.lights) flat_.lightSets = {unscopedLights(scene_)}; // no light is scoped, nor was: there is but this set
+    moved = replace(scene_, flat_, c.moved);
+    builder_.survey.place(flat_, moved);
+  }
+  scopedLights_ = scoped;
+
+  const Vec3d origin = builder_.survey.origin(eye());
+  next.origin[0] = origin.x, next.origin[1] = origin.y, next.origin[2] = origin.z;
+  makeCamera(next, origin);
+  const PixelFootprint pixel = footprint(next);
+  const BuildInput input{scene_, flat_, *next.shaders, origin, builder_.survey.scale(origin), pixel};
+  if (layOut || !AccelBuilder::standsAt(*accel_, origin, input.scale))
+    accel_ = builder_.build(input);
+  else
+    builder_.update(*accel_, input, moved, c.redefined, pixel != footprint_);
+  if (rtcGetDeviceError(device_->device) == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
+  footprint_ = pixel;
+  buildSeconds_ = now() - begin;
+  makeLights(next, flat_, origin);
+}
+
+// Shaders and textures are those of the last snapshot if they did not change.
+void LocalBackend::makeShaders(RenderScene& next) const {
   fillHost(next.host);
-  next.host.textures = &next.textures;
   next.host.logCallback = options_.log;
   next.host.logUser = options_.logUser;
-  std::map<uint32_t, uint32_t> index;
-  next.textures.emplace_back(edit::TextureT(), nullptr); // number 0: none, white
-  for (const auto& [id, image] : scene_.textures) {
-    index[id] = uint32_t(next.textures.size());
-    next.textures.emplace_back(image.description, image.texels);
+  if (snapshot_ && !changes_.shaders && !changes_.textures) {
+    next.textures = snapshot_->textures, next.shaders = snapshot_->shaders;
+    next.host.textures = next.textures.get();
+    return;
   }
-  next.shaders = std::make_unique<ShaderTable>(scene_, *options_.shaders, index, next.host);
+  std::map<uint32_t, uint32_t> index;
+  std::vector<Texture> textures;
+  textures.emplace_back(edit::TextureT(), nullptr); // number 0: none, white
+  for (const auto& [id, image] : scene_.textures) {
+    index[id] = uint32_t(textures.size());
+    textures.emplace_back(image.description, image.texels);
+  }
+  next.textures = std::make_shared<const std::vector<Texture>>(std::move(textures));
+  next.host.textures = next.textures.get();
+  next.shaders = std::make_shared<const ShaderTable>(scene_, *options_.shaders, index, next.host);
 }
 
 void LocalBackend::makeCamera(RenderScene& next, const Vec3d& origin) const {
@@ -215,17 +220,18 @@ bool LocalBackend::read(RTenum channel, std::span<float> out) const { return fin
 
 void LocalBackend::stats(RTstats& s) const {
   if (accel_) {
-    s.triangles = accel_->triangles, s.uniqueTriangles = accel_->uniqueTriangles;
-    s.degenerate += accel_->degenerate;
+    const AccelBuilder::Counts counts = builder_.count(*accel_, flat_);
+    s.triangles = counts.triangles, s.uniqueTriangles = counts.uniqueTriangles;
+    s.degenerate += counts.degenerate;
     s.rejectedRays = accel_->rejectedRays;
-    s.rejectedInstances = flat_.rejected;
+    s.rejectedInstances = flat_.rejected + counts.rejectedInstances;
   }
   if (finished_) {
     s.cameraRays = finished_->counters().camera, s.shadowRays = finished_->counters().shadow;
     s.secondaryRays = finished_->counters().secondary;
     s.renderSeconds = finished_->seconds();
   }
-  s.objectBuilds = objectBuilds_, s.topLevelBuilds = topLevelBuilds_;
+  s.objectBuilds = builder_.objectBuilds, s.topLevelBuilds = builder_.topLevelBuilds;
   s.commitSeconds = commitSeconds_;
   s.buildSeconds = buildSeconds_;
   s.bvhBytes = uint64_t(std::max<int64_t>(device_->bytes, 0));

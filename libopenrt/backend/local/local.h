@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "backend/backend.h"
-#include "backend/local/accel.h"
+#include "backend/local/accel_build.h"
 #include "render/renderer.h"
 
 namespace openrt {
@@ -26,16 +26,18 @@ class LocalBackend final : public Backend {
 
  private:
   void prepare(); // the snapshot of the committed scene, if anything changed since the last
-  void makeShaders(RenderScene& next);
+  void bringUpToDate(RenderScene& next);
+  void makeShaders(RenderScene& next) const;
   void makeLights(RenderScene& next, const Flattened& flat, const Vec3d& origin) const;
   void makeCamera(RenderScene& next, const Vec3d& origin) const;
   PixelFootprint footprint(const RenderScene& next) const;
-  Vec3d chooseOrigin() const;
+  Vec3d eye() const;
   void loadRays(std::span<const RTray> rays, size_t first, Rays& to) const;
 
   BackendOptions options_;
   uint32_t threads_;
   std::shared_ptr<EmbreeDevice> device_;
+  AccelBuilder builder_;
   Scene scene_;
   SceneChanges changes_; // since the last prepare()
   std::shared_ptr<RenderScene> snapshot_;
@@ -45,7 +47,6 @@ class LocalBackend final : public Backend {
   bool scopedLights_ = false;
   mutable std::mutex mutex_; // frame_ as seen by cancel(), progress() and snapshot()
   std::shared_ptr<Frame> frame_, finished_;
-  uint64_t objectBuilds_ = 0, topLevelBuilds_ = 0;
   double commitSeconds_ = 0, buildSeconds_ = 0;
 };
 

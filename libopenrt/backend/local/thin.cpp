@@ -1,0 +1,32 @@
+// thin.cpp: see thin.h.
+#include "backend/local/thin.h"
+
+#include <cmath>
+
+#include "backend/local/bake.h"
+
+namespace openrt {
+
+void addThin(Part& part, const Geometry& g, const Matrix4d& toKernel, uint32_t record, const PixelFootprint& footprint,
+             float scale) {
+  if (!consistent(g) || !toKernel.usable()) return;
+  const std::vector<float> points = bakePoints(g, toKernel);
+  const uint32_t* index = g.indices->as<uint32_t>();
+  const bool lines = g.primitive == edit::Primitive::Lines;
+  const auto put = [&](uint32_t i) {
+    const float* p = points.data() + 3 * size_t(i);
+    float depth = 0;
+    for (int k = 0; k < 3; k++) depth += (p[k] / scale - footprint.eye[k]) * footprint.axis[k];
+    const float radius = 0.5f * g.width * (footprint.constant + footprint.slope * std::fabs(depth)) * scale;
+    part.vertices.insert(part.vertices.end(), {p[0], p[1], p[2], radius});
+  };
+  for (size_t i = 0; i < g.primitives(); i++) {
+    if (lines) part.indices.push_back(uint32_t(part.vertices.size() / 4));
+    put(index[lines ? 2 * i : i]);
+    if (lines) put(index[2 * i + 1]);
+    part.recordOf.push_back(record);
+    part.primitiveOf.push_back(uint32_t(i));
+  }
+}
+
+} // namespace openrt
