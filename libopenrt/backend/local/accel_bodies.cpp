@@ -106,7 +106,8 @@ std::shared_ptr<const Body> AccelBuilder::partBody(uint32_t part, uint32_t overr
   };
   if (override) {
     bool differs = false;
-    forEachBaked([&](const Item& item, const Object&, const Geometry& g, uint32_t) { differs |= maskOf(item, g, 0) != override; });
+    forEachBaked(
+        [&](const Item& item, const Object&, const Geometry& g, uint32_t) { differs |= maskOf(item, g, 0) != override; });
     if (!differs) override = 0;
   }
   const auto sign = [&] {
