@@ -49,7 +49,7 @@ void partsOf(Node& node, std::vector<Node*>& parts) {
       parts.push_back(choice->choice[size_t(choice->whichChoice)].get());
     return;
   }
-  if (node.type().index < 0 || node.type().is("grouping")) childrenInHierarchy(node, parts);
+  childrenInHierarchy(node, parts);
 }
 
 // What is met below a node by a ray of these rules.
@@ -89,7 +89,8 @@ const PickMesh* Picker::meshOf(Node& node) {
   Node* geometry = renderedNode(shape.geometry.get());
   if (!geometry) return nullptr;
   Entry& entry = entries_[geometry];
-  if (!entry.mesh) entry.mesh = std::make_unique<PickMesh>(*geometry, nullptr);
+  if (!entry.mesh)
+    entry.mesh = std::make_unique<PickMesh>(*geometry, engine_.browser() ? &engine_.browser()->world().options.limits : nullptr);
   return entry.mesh.get();
 }
 

@@ -53,9 +53,12 @@ bool Browser::pick(const double origin[3], const double direction[3], const Pick
   return true;
 }
 
-void Browser::pointer(double x, double y, bool button, double aspect) {
+void Browser::setAspect(double aspect) {
+  if (std::isfinite(aspect) && aspect > 0) interactionOf(*impl_->engine).aspect = aspect;
+}
+
+void Browser::pointer(double x, double y, bool button) {
   Interaction& interaction = interactionOf(*impl_->engine);
-  if (std::isfinite(aspect) && aspect > 0) interaction.aspect = aspect;
   const CameraSettings camera = interaction.viewer.camera(interaction.aspect);
   const Matrix view = fromArray(camera.matrix);
   const double size = std::tan(camera.fovy / 2);

@@ -65,8 +65,9 @@ class Browser {
   // The nearest thing along a ray; false if there is none.
   bool pick(const double origin[3], const double direction[3], const PickOptions& options, PickHit& hit);
   // The pointer is at (x, y) of the picture, from -1 at the left and bottom to 1 at the right and top; button: it is pressed.
-  // Sensors send at now(). aspect, of the picture, is also what VisibilitySensors see from then on.
-  void pointer(double x, double y, bool button, double aspect = 4.0 / 3);
+  // Sensors send at now().
+  void pointer(double x, double y, bool button);
+  void setAspect(double aspect); // of the picture that pointer and VisibilitySensors mean, width / height; 4/3 at first
   void pointerRay(const double origin[3], const double direction[3], bool button); // in the world
   void pointerLeave();                                                             // it is outside of the picture, released
   std::vector<NodeRef> sensorsAtPointer() const; // pointing sensors and Anchors that it is over, or that have grabbed it

@@ -306,13 +306,14 @@ TEST(PointingSensors, GeometryInFrontHidesThoseBehind) {
 TEST(PointingSensors, ThePictureIsFromMinusOneToOne) {
   Running r("Viewpoint { position 0 0 10 fieldOfView 1.5707963 } Transform { translation 0 9 0 children [ DEF S TouchSensor {}"
             " Shape { geometry Box { size 1 1 0.0001 } } ] }");
-  r.browser.pointer(0, 0.9, false, 2);
+  r.browser.setAspect(2);
+  r.browser.pointer(0, 0.9, false);
   EXPECT_EQ(r.get("S", "isOver"), "TRUE");
-  r.browser.pointer(0, 0.7, false, 2);
+  r.browser.pointer(0, 0.7, false);
   EXPECT_EQ(r.get("S", "isOver"), "FALSE");
-  r.browser.pointer(0.02, 0.9, false, 2); // x reaches twice as far
+  r.browser.pointer(0.02, 0.9, false); // x reaches twice as far
   EXPECT_EQ(r.get("S", "isOver"), "TRUE");
-  r.browser.pointer(0.03, 0.9, false, 2);
+  r.browser.pointer(0.03, 0.9, false);
   EXPECT_EQ(r.get("S", "isOver"), "FALSE");
 }
 

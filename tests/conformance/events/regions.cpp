@@ -146,7 +146,7 @@ TEST(VisibilitySensor, SendsWhenItsBoxComesIntoViewAndLeavesIt) {
 TEST(VisibilitySensor, ThePictureEndsAtItsEdges) {
   // Half a picture is 10 tan(fieldOfView / 2) = 5 high at the origin and, by the aspect of 2, 10 wide.
   Region r("Viewpoint { fieldOfView 0.9272952 } DEF T Transform { children DEF S VisibilitySensor { size 2 2 0.0001 } }");
-  r.browser.pointer(0, 0, false, 2);
+  r.browser.setAspect(2);
   const auto seen = [&](float x, float y) {
     r.set("T", "translation", Vec3f{x, y, 0});
     r.browser.tick(r.browser.now() + 1);
