@@ -1,6 +1,7 @@
 // interpolators.cpp: the six interpolators (clauses 4.6.8, 6.10, 6.13, 6.31, 6.32, 6.37, 6.39): set_fraction makes value_changed.
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 #include <fmt/format.h>
 
@@ -83,17 +84,36 @@ void evaluate(Events& events, nodes::NormalInterpolator& node, float fraction) {
   evaluateLists(events, node, fraction, blendNormals);
 }
 
+// Read before it has sent, value_changed is the first value (4.6.8).
+template <class Interpolator> void presetFirst(Events& events, Interpolator& node) {
+  static const FieldInfo& out = fieldOf<Interpolator>("value_changed");
+  if (node.keyValue.empty()) return;
+  if constexpr (std::is_same_v<Interpolator, nodes::CoordinateInterpolator> ||
+                std::is_same_v<Interpolator, nodes::NormalInterpolator>) {
+    const size_t perKey = node.key.empty() ? 0 : node.keyValue.size() / node.key.size();
+    events.preset(node, out, MFVec3f(node.keyValue.begin(), node.keyValue.begin() + ptrdiff_t(perKey)));
+  } else {
+    events.preset(node, out, node.keyValue[0]);
+  }
+}
+
 // A new key or keyValue makes no event of its own: only set_fraction does.
 template <class Interpolator> void receive(Events& events, Node& node, const FieldInfo& in, const Value& value) {
   static const FieldInfo& fraction = fieldOf<Interpolator>("set_fraction");
-  if (&in != &fraction || std::isnan(std::get<SFFloat>(value))) return;
-  evaluate(events, static_cast<Interpolator&>(node), std::get<SFFloat>(value));
+  auto& interpolator = static_cast<Interpolator&>(node);
+  if (&in != &fraction)
+    presetFirst(events, interpolator);
+  else if (!std::isnan(std::get<SFFloat>(value)))
+    evaluate(events, interpolator, std::get<SFFloat>(value));
 }
 
-std::unique_ptr<NodeState> begin(Events&, Node&) { return std::make_unique<State>(); }
+template <class Interpolator> std::unique_ptr<NodeState> begin(Events& events, Node& node) {
+  presetFirst(events, static_cast<Interpolator&>(node));
+  return std::make_unique<State>();
+}
 
 template <class Interpolator> void addOne(const AddBehaviour& add) {
-  add(Interpolator::nodeType(), {.begin = begin, .receive = receive<Interpolator>});
+  add(Interpolator::nodeType(), {.begin = begin<Interpolator>, .receive = receive<Interpolator>});
 }
 
 } // namespace

@@ -24,6 +24,12 @@ void Events::send(Node& from, const FieldInfo& out, Value value) {
     state.last = std::move(value);
 }
 
+void Events::preset(Node& from, const FieldInfo& out, Value value) {
+  if (value.index() != size_t(out.type) || out.access != Access::eventOut) return;
+  Participant::Out& state = static_cast<Engine&>(*this).part(from).out(out);
+  if (state.cascade == 0) state.last = std::move(value);
+}
+
 bool Events::hasSent(const Node& from, const FieldInfo& out) const {
   const Participant* part = from.live ? liveOf(from)->part.get() : nullptr;
   const Participant::Out* state = part ? part->findOut(out) : nullptr;

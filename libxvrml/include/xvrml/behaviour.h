@@ -29,6 +29,8 @@ class Events {
   void send(Node& from, std::string_view out, Value value); // by name; nothing happens if there is no such event
   // Whether an eventOut or exposedField has sent in this cascade already, so that send() would drop another event.
   bool hasSent(const Node& from, const FieldInfo& out) const;
+  // What an eventOut reads as until it has sent for the first time; nothing happens afterwards.
+  void preset(Node& from, const FieldInfo& out, Value value);
   // Gives a field or exposedField a new value without an event, and reports the change. False if the type does not match,
   // or nodes would become their own descendants (said in the diagnostics).
   bool store(Node& node, const FieldInfo& field, Value value);

@@ -82,6 +82,16 @@ TEST_P(Interpolator, AValueOnlyAfterSetFraction) {
   EXPECT_EQ(r.take(), Log{"1 I.value_changed " + c.half});
 }
 
+TEST_P(Interpolator, ReadBeforeItHasSentItIsTheFirstValue) {
+  const Case& c = GetParam();
+  Running r(node("0 1", c.b + ", " + c.a)), none(node("", ""));
+  EXPECT_EQ(r.get("I", "value_changed"), c.atB);
+  EXPECT_EQ(at(r, 1), c.atA);
+  r.set("I", "set_keyValue", r.browser.get(r.node("I"), "keyValue"));
+  EXPECT_EQ(r.get("I", "value_changed"), c.atA);
+  EXPECT_EQ(none.get("I", "value_changed"), textOf(defaultValue(r.node("I").type().find("value_changed")->type)));
+}
+
 TEST_P(Interpolator, InHierarchies) { // where it stands has no effect (4.6.8): below a Switch that shows nothing, in a PROTO
   const Case& c = GetParam();
   const std::string type = c.type == "CoordinateInterpolator" || c.type == "NormalInterpolator" ? "MFVec3f"
