@@ -14,6 +14,7 @@ struct RayState {
   float travelled = 0; // length of the path up to the ray's origin
   uint32_t path = 0;   // sample of the tile
   uint32_t branch = 0; // tells the branches of one path apart for its random numbers; 0: the one from the camera
+  float density = 0;    // by solid angle, with which a diffuse lobe has chosen the direction; 0: it could not be another
   uint8_t bent = 0;    // no longer the straight line from the camera: alpha is settled
   uint8_t splits = 0;  // times the path has gone on in several directions
 };

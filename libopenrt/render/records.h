@@ -27,6 +27,7 @@ struct Record {
   uint32_t shader = 0; // index into ShaderTable
   uint32_t bucket = 0; // (class, light set): hits of a bucket are shaded together
   uint32_t name = 0, instance = 0;
+  uint32_t primitives = 0; // triangles, segments, points
   uint64_t userData = 0;
   const float* vertices = nullptr;   // stride 3, as the kernel sees them
   const uint32_t* indices = nullptr; // into vertices and attributes

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "openrt/openrt.h"
+#include "render/emitters.h"
 #include "render/rays.h"
 #include "render/records.h"
 #include "shading/texture.h"
@@ -77,6 +78,7 @@ struct RenderScene {
   RoleSlot camera, environment;
   float eye[3] = {0, 0, 0}, viewAxis[3] = {0, 0, -1}; // render space; unit
   double origin[3] = {0, 0, 0};                       // of render space, in the world
+  Emitters emitters;                                  // path tracing: what sends out light besides the lights
   bool transparentShadows = false;                    // something transparent may stand before a light
   RenderHost host;
   edit::FrameSettingsT frame;

@@ -20,8 +20,9 @@ constexpr uint32_t maximumWays = 2 * RTS_MAX_LOBES;
 
 // A direction in which a path may go on.
 struct Way {
-  float direction[3], weight[3];
-  bool bent;
+  float direction[3], weight[3], density;
+  bool bent, lost; // lost: below the facet
+  uint32_t lobe;
 };
 
 float largest(const float v[3]) { return std::max({v[0], v[1], v[2]}); }
@@ -42,9 +43,10 @@ class Ways {
     for (int k = 0; k < 3; k++) d_[k] = hits.direction[k][i], g_[k] = hits.geometric[k][i];
   }
   // u, v: a point of the unit square for the diffuse lobe; below 0: light between diffuse surfaces is not followed.
-  void add(const RtsLobe& lobe, uint32_t i, float u, float v) {
+  void add(uint32_t number, const RtsLobe& lobe, uint32_t i, float u, float v) {
     float w[3];
     if (!weightAt(lobe, i, w)) return;
+    lobe_ = number;
     const float n[3] = {lobe.normal[0][i], lobe.normal[1][i], lobe.normal[2][i]};
     switch (lobe.kind) {
     case RTS_LOBE_DIFFUSE:
@@ -64,13 +66,15 @@ class Ways {
   void put(const float direction[3], const float w[3], float factor, bool bent) {
     Way& way = list[count++];
     for (int k = 0; k < 3; k++) way.direction[k] = direction[k], way.weight[k] = w[k] * factor;
-    way.bent = bent;
+    way.density = 0, way.bent = bent, way.lost = false, way.lobe = lobe_;
   }
-  // Density cosine / pi against a response of albedo / pi: what is left is the albedo. What goes below the facet is lost.
+  // Density cosine / pi against a response of albedo / pi: what is left is the albedo.
   void diffuse(const float n[3], const float w[3], float u, float v) {
     float out[3];
     cosineDirection(n, u, v, out);
-    if (dot3(out, g_) > 0) put(out, w, 1, true);
+    put(out, w, 1, true);
+    list[count - 1].density = std::max(dot3(out, n), 0.0f) * float(M_1_PI);
+    list[count - 1].lost = !(dot3(out, g_) > 0);
   }
   // A bent normal may lead below the facet: then the facet's own is used.
   void mirror(const float n[3], const float w[3], float factor) {
@@ -94,6 +98,7 @@ class Ways {
   }
 
   float d_[3], g_[3];
+  uint32_t lobe_ = 0;
 };
 
 } // namespace
@@ -145,12 +150,21 @@ void TileRenderer::scatterRange(Paths& paths, const Points& points, const Bucket
   batch.points = &points;
   batch.lightSet = bucket.lightSet;
   bucket.shaderClass->surface(&scene_.host, &batch, &hits, &surface);
+  for (uint32_t i = 0; i < hits.count; i++) {
+    const float share = chanceMet(paths.state[order[i]], points, i);
+    for (int k = 0; k < 3; k++) radiance[k][i] *= share;
+  }
   addLights(batch, hits, radiance);
+  float* chance[RTS_MAX_LOBES] = {};
+  const bool emitters = scene_.frame.transport == RT_TRANSPORT_PATH && scene_.emitters.any() && level_ < scene_.frame.depth;
+  for (uint32_t l = 0; emitters && l < batch.lobeCount; l++)
+    if (batch.lobes[l].kind == RTS_LOBE_DIFFUSE) chance[l] = arena_.takeZero<float>(size);
+  for (uint32_t i = 0; i < hits.count; i++) sendOn(batch, points, i, order[i], paths, chance);
+  if (emitters) addEmitters(batch, points, order, paths, chance, radiance);
   float* fog[4];
   attenuate(points, paths, order, fog);
   for (uint32_t i = 0; i < hits.count; i++) {
-    const uint32_t lane = order[i];
-    const RayState& ray = paths.state[lane];
+    const RayState& ray = paths.state[order[i]];
     float clear[3] = {0, 0, 0}, seen[3] = {0, 0, 0}, covered = 0; // straight behind; there, in mirrors and through lenses
     for (uint32_t l = 0; l < batch.lobeCount; l++) {
       float w[3];
@@ -166,60 +180,77 @@ void TileRenderer::scatterRange(Paths& paths, const Points& points, const Bucket
     }
     if (!ray.bent) paths.alpha[ray.path] += covered / 3;
     if (paths.first[ray.path]) noteFirst(points, i, ray.path, surface.albedo, paths);
-    sendOn(batch, points, i, lane, paths);
   }
 }
 
-// The rays that go on from hit i: all of them, or one of them chosen.
-void TileRenderer::sendOn(const RtsBatch& batch, const Points& points, uint32_t i, uint32_t lane, Paths& paths) {
-  if (scene_.frame.transport == RT_TRANSPORT_DIRECT) {
-    for (uint32_t l = 0; l < batch.lobeCount; l++) {
-      float w[3];
-      if (batch.lobes[l].kind != RTS_LOBE_TRANSPARENT || !weightAt(batch.lobes[l], i, w)) continue;
-      const float d[3] = {points.hits.direction[0][i], points.hits.direction[1][i], points.hits.direction[2][i]};
-      push(points, i, lane, d, w, false, paths.state[lane].branch, false, paths);
-    }
-    return;
-  }
+// The share of a surface's own light that belongs to the ray: the rest comes from those who choose places on emitters.
+float TileRenderer::chanceMet(const RayState& ray, const Points& points, uint32_t i) const {
+  if (!(ray.density > 0)) return 1;
+  const uint32_t lane = points.order[i];
+  const Emitters::Triangle* met = scene_.emitters.find(points.rayHits->record[lane], points.rayHits->primitive[lane]);
+  if (!met) return 1;
+  const RtsHits& h = points.hits;
+  float cosine = 0;
+  for (int k = 0; k < 3; k++) cosine -= h.geometric[k][i] * h.direction[k][i];
+  if (!(cosine > 0)) return 1;
+  const float chosen = (1 - scene_.emitters.skyShare()) * met->probability * h.segment[i] * h.segment[i] / (cosine * met->area);
+  return std::isfinite(chosen) ? ray.density / (ray.density + chosen) : 0.0f;
+}
+
+void TileRenderer::sampleAt(uint32_t path, uint32_t pair, float& u, float& v) const {
+  PairSampler(pixels_[path / samples_], pair, scene_.frame.seed)(firstSample_ + path % samples_, u, v);
+}
+
+// The rays that go on from hit i: all of them, or one of them chosen. chance: of each lobe's direction to be followed.
+void TileRenderer::sendOn(const RtsBatch& batch, const Points& points, uint32_t i, uint32_t lane, Paths& paths,
+                          float* const chance[]) {
   const RayState ray = paths.state[lane];
-  const bool path = scene_.frame.transport == RT_TRANSPORT_PATH;
+  const bool path = scene_.frame.transport == RT_TRANSPORT_PATH, direct = scene_.frame.transport == RT_TRANSPORT_DIRECT;
   float u = -1, v = -1, choice = 0, survival = 0;
   if (path) {
-    const uint32_t pixel = pixels_[ray.path / samples_], sample = firstSample_ + ray.path % samples_;
-    PairSampler(pixel, 1 + 2 * level_ + ray.branch, scene_.frame.seed)(sample, u, v);
-    PairSampler(pixel, 2 + 2 * level_ + ray.branch, scene_.frame.seed)(sample, choice, survival);
+    sampleAt(ray.path, pairOf(ray, Draw::direction), u, v);
+    sampleAt(ray.path, pairOf(ray, Draw::choice), choice, survival);
   }
   Ways ways(points.hits, i);
-  for (uint32_t l = 0; l < batch.lobeCount; l++) ways.add(batch.lobes[l], i, u, v);
+  for (uint32_t l = 0; l < batch.lobeCount; l++)
+    if (!direct || batch.lobes[l].kind == RTS_LOBE_TRANSPARENT) ways.add(l, batch.lobes[l], i, u, v);
   float carried[maximumWays], sum = 0;
   for (uint32_t w = 0; w < ways.count; w++) {
-    const float left[3] = {ways.list[w].weight[0] * ray.throughput[0], ways.list[w].weight[1] * ray.throughput[1],
-                           ways.list[w].weight[2] * ray.throughput[2]};
+    const Way& way = ways.list[w];
+    const float left[3] = {way.weight[0] * ray.throughput[0], way.weight[1] * ray.throughput[1],
+                           way.weight[2] * ray.throughput[2]};
     sum += carried[w] = largest(left);
   }
   if (!(sum > 0)) return;
   const bool all = !path || ways.count == 1 || ray.splits == 0;
-  const auto send = [&](uint32_t w, float scale, bool split) {
-    Way& way = ways.list[w];
-    float kept = 1;
+  for (uint32_t w = 0; w < ways.count; w++)
+    if (chance[ways.list[w].lobe]) chance[ways.list[w].lobe][i] = all ? 1 : carried[w] / sum;
+  const auto send = [&](uint32_t w, float probability) {
+    const Way& way = ways.list[w];
+    float kept = probability;
     if (path && level_ >= rouletteFrom) {
-      kept = std::min(1.0f, carried[w] * scale);
-      if (survival >= kept) return;
+      const float stay = std::min(1.0f, carried[w] / probability);
+      if (survival >= stay) return;
+      kept *= stay;
     } else if (!path && carried[w] < energyCut) {
       return;
     }
-    for (float& x : way.weight) x *= scale / kept;
-    push(points, i, lane, way.direction, way.weight, way.bent, w == 0 ? ray.branch : hash(ray.branch + w, level_ + 1), split,
-         paths);
+    if (way.lost) return;
+    Step step{.density = way.density * probability,
+              .bent = way.bent,
+              .split = ways.count > 1,
+              .branch = w == 0 ? ray.branch : hash(ray.branch + w, level_ + 1)};
+    for (int k = 0; k < 3; k++) step.direction[k] = way.direction[k], step.weight[k] = way.weight[k] / kept;
+    push(points, i, lane, step, paths);
   };
   if (all) {
-    for (uint32_t w = 0; w < ways.count; w++) send(w, 1, ways.count > 1);
+    for (uint32_t w = 0; w < ways.count; w++) send(w, 1);
     return;
   }
   float at = choice * sum;
   uint32_t chosen = 0;
   while (chosen + 1 < ways.count && at >= carried[chosen]) at -= carried[chosen++];
-  if (carried[chosen] > 0) send(chosen, sum / carried[chosen], true);
+  if (carried[chosen] > 0) send(chosen, carried[chosen] / sum);
 }
 
 } // namespace openrt

@@ -143,31 +143,41 @@ void TileRenderer::makeCameraRays(Paths& paths, uint32_t firstSample) {
   }
 }
 
-void TileRenderer::background(Paths& paths, const uint32_t* missed, uint32_t n) {
-  const ShaderSlot& environment = scene_.environment.shader;
-  if (n == 0 || !environment.shaderClass || !environment.shaderClass->miss) return;
-  ArenaScope scope(arena_);
+// What the environment shows in the directions of rays: local unit directions and rgba, padded.
+void TileRenderer::skyAt(const Rays& rays, const uint32_t* lanes, uint32_t n, float* direction[3], float* rgba[4]) {
   const uint32_t size = padded(n);
-  float *direction[3], *rgba[4];
-  for (auto& a : direction) a = arena_.take<float>(size);
-  for (auto& a : rgba) a = arena_.takeZero<float>(size);
+  for (int k = 0; k < 3; k++) direction[k] = arena_.take<float>(size);
+  for (int k = 0; k < 4; k++) rgba[k] = arena_.takeZero<float>(size);
   const Affine& m = scene_.environment.toLocal;
   for (uint32_t i = 0; i < size; i++) {
-    const uint32_t lane = missed[std::min(i, n - 1)];
-    const float x = paths.rays.dir[0][lane], y = paths.rays.dir[1][lane], z = paths.rays.dir[2][lane];
+    const uint32_t lane = lanes[std::min(i, n - 1)];
+    const float x = rays.dir[0][lane], y = rays.dir[1][lane], z = rays.dir[2][lane];
     float d[3];
     for (int k = 0; k < 3; k++) d[k] = m.r[k][0] * x + m.r[k][1] * y + m.r[k][2] * z;
     const float s = 1 / std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
     for (int k = 0; k < 3; k++) direction[k][i] = d[k] * s;
   }
+  const ShaderSlot& environment = scene_.environment.shader;
   RtsBatch batch = makeBatch();
   const float* directions[3] = {direction[0], direction[1], direction[2]};
   environment.shaderClass->miss(&scene_.host, &batch, environment.params, n, directions, rgba);
+}
+
+void TileRenderer::background(Paths& paths, const uint32_t* missed, uint32_t n) {
+  const ShaderSlot& environment = scene_.environment.shader;
+  if (n == 0 || !environment.shaderClass || !environment.shaderClass->miss) return;
+  ArenaScope scope(arena_);
+  float *direction[3], *rgba[4];
+  skyAt(paths.rays, missed, n, direction, rgba);
   for (uint32_t i = 0; i < n; i++) {
     const RayState& ray = paths.state[missed[i]];
-    float weight = 0;
+    float weight = 0, share = 1;
+    if (ray.density > 0 && scene_.emitters.any()) { // the sky might have been chosen just so
+      const float d[3] = {direction[0][i], direction[1][i], direction[2][i]};
+      share = ray.density / (ray.density + scene_.emitters.skyShare() * scene_.emitters.sky.density(d));
+    }
     for (int k = 0; k < 3; k++) {
-      if (std::isfinite(rgba[k][i])) paths.radiance[k][ray.path] += ray.throughput[k] * rgba[k][i];
+      if (std::isfinite(rgba[k][i])) paths.radiance[k][ray.path] += ray.throughput[k] * share * rgba[k][i];
       weight += ray.throughput[k];
     }
     if (!ray.bent) paths.alpha[ray.path] += weight / 3 * rgba[3][i];
@@ -267,8 +277,9 @@ void TileRenderer::gather(const Points& points, const RtsShading& shaded, const 
     if (!ray.bent) paths.alpha[ray.path] += covered / 3;
     if (paths.first[ray.path]) noteFirst(points, i, ray.path, shaded.albedo, paths);
     if (through <= 1e-6f) continue;
-    const float d[3] = {points.hits.direction[0][i], points.hits.direction[1][i], points.hits.direction[2][i]};
-    push(points, i, order[i], d, transmission, false, ray.branch, false, paths);
+    Step on{.density = 0, .bent = false, .split = false, .branch = ray.branch};
+    for (int k = 0; k < 3; k++) on.direction[k] = points.hits.direction[k][i], on.weight[k] = transmission[k];
+    push(points, i, order[i], on, paths);
   }
 }
 
@@ -288,12 +299,11 @@ void TileRenderer::noteFirst(const Points& points, uint32_t i, uint32_t path, fl
 }
 
 // Another ray of the path, from the side of the surface that its direction leads to.
-void TileRenderer::push(const Points& points, uint32_t i, uint32_t lane, const float direction[3], const float weight[3],
-                        bool bent, uint32_t branch, bool split, Paths& paths) {
+void TileRenderer::push(const Points& points, uint32_t i, uint32_t lane, const Step& step, Paths& paths) {
   const RtsHits& h = points.hits;
   const RayState& from = paths.state[lane];
   float towards = 0;
-  for (int k = 0; k < 3; k++) towards += h.geometric[k][i] * direction[k];
+  for (int k = 0; k < 3; k++) towards += h.geometric[k][i] * step.direction[k];
   const float side = towards > 0 ? 1.0f : -1.0f;
   const float p[3] = {h.position[0][i], h.position[1][i], h.position[2][i]};
   const float n[3] = {side * h.geometric[0][i], side * h.geometric[1][i], side * h.geometric[2][i]};
@@ -301,13 +311,14 @@ void TileRenderer::push(const Points& points, uint32_t i, uint32_t lane, const f
   offsetPoint(p, n, points.error[i], ray.origin);
   ray.state = from;
   for (int k = 0; k < 3; k++) {
-    ray.direction[k] = direction[k];
-    ray.state.throughput[k] = from.throughput[k] * weight[k];
+    ray.direction[k] = step.direction[k];
+    ray.state.throughput[k] = from.throughput[k] * step.weight[k];
   }
   ray.state.travelled = h.distance[i];
-  ray.state.bent |= bent ? 1 : 0;
-  ray.state.branch = branch;
-  if (split && ray.state.splits < 255) ray.state.splits++;
+  ray.state.density = step.density;
+  ray.state.bent |= step.bent ? 1 : 0;
+  ray.state.branch = step.branch;
+  if (step.split && ray.state.splits < 255) ray.state.splits++;
 }
 
 void TileRenderer::addToPixels(const Paths& paths, uint32_t firstSample, uint32_t samples) {

@@ -27,6 +27,7 @@ class TileRenderer {
   void wave(uint32_t firstSample, uint32_t samples);
   RtsBatch makeBatch();
   void makeCameraRays(Paths& paths, uint32_t firstSample);
+  void skyAt(const Rays& rays, const uint32_t* lanes, uint32_t n, float* direction[3], float* rgba[4]);
   void background(Paths& paths, const uint32_t* missed, uint32_t n);
   void shadeRange(Paths& paths, const RayHits& hits, const BucketRange& range, const uint32_t* order);
   void gather(const Points& points, const RtsShading& shaded, const uint32_t* order, Paths& paths, const float* fog[4]);
@@ -34,9 +35,23 @@ class TileRenderer {
   // scatter.cpp: surfaces that are described by lobes.
   void scatterRange(Paths& paths, const Points& points, const Bucket& bucket, const uint32_t* order);
   void addLights(RtsBatch& batch, const RtsHits& hits, float* const radiance[3]);
-  void sendOn(const RtsBatch& batch, const Points& points, uint32_t i, uint32_t lane, Paths& paths);
-  void push(const Points& points, uint32_t i, uint32_t lane, const float direction[3], const float weight[3], bool bent,
-            uint32_t branch, bool split, Paths& paths);
+  struct Step { // how a ray goes on
+    float direction[3], weight[3], density;
+    bool bent, split;
+    uint32_t branch;
+  };
+  void sendOn(const RtsBatch& batch, const Points& points, uint32_t i, uint32_t lane, Paths& paths, float* const chance[]);
+  void push(const Points& points, uint32_t i, uint32_t lane, const Step& step, Paths& paths);
+  enum class Draw : uint32_t { direction, choice, emitter, place, count };
+  // Pair of dimensions of a random choice at this surface of a path; pair 0 is the place in the pixel.
+  uint32_t pairOf(const RayState& ray, Draw draw) const {
+    return 1 + uint32_t(Draw::count) * level_ + uint32_t(draw) + ray.branch;
+  }
+  void sampleAt(uint32_t path, uint32_t pair, float& u, float& v) const;
+  float chanceMet(const RayState& ray, const Points& points, uint32_t i) const;
+  // emitted.cpp: the light of emitters and of the sky, by choosing places on them.
+  void addEmitters(const RtsBatch& batch, const Points& points, const uint32_t* order, const Paths& paths, float* const chance[],
+                   float* const radiance[3]);
   void lookThroughBacks(const Rays& rays, RayHits& hits);
   void attenuate(const Points& points, const Paths& paths, const uint32_t* order, float* fog[4]);
   void addToPixels(const Paths& paths, uint32_t firstSample, uint32_t samples);

@@ -9,6 +9,7 @@ struct Diffuse : rts::Surface<Diffuse> {
   rts::Param<rts::Color> emission{"emission", {0, 0, 0}, "radiance sent out"};
   rts::Param<rts::Texture> texture{"texture", "multiplies reflectance"};
 
+  bool emits() const { return emission->r > 0 || emission->g > 0 || emission->b > 0; }
   void surface(const rts::Hit& hit, rts::Closures& out) const {
     const rts::Vec4 texel = hit.sample(texture, hit.uv);
     const rts::Color albedo =

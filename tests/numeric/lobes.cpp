@@ -165,6 +165,103 @@ TEST_F(Lobes, G2AndG4AClosedFurnaceByPathTracing) {
   expectGrey(look(), emission / (1 - albedo), 5e-3);
 }
 
+// Radiance of a white surface lit by an area light of radiance 1, over many samples: E / pi.
+class AreaLights : public Lobes {
+ protected:
+  void SetUp() override {
+    Lobes::SetUp();
+    rtQuality(RT_TRANSPORT, RT_TRANSPORT_PATH);
+    rtQuality(RT_MAX_DEPTH, 1);
+    rtQuality(RT_SAMPLES_PER_PIXEL, 65536);
+    Shader white("Diffuse");
+    white.set("reflectance", {1, 1, 1});
+    place(square(white, 100));
+  }
+  static double lit(double x = 0) { return look(x, 0, .001).g; } // from below the light
+};
+
+TEST_F(AreaLights, R10ARectangleAboveThePoint) {
+  at(1, square(glowing(1), .5), true);
+  EXPECT_NEAR(lit(), .75227469 / pi, 2.5e-4); // R7: unit square centred at height 1
+}
+
+TEST_F(AreaLights, R10ARectangleOverItsCorner) {
+  rtPushMatrix();
+  rtTranslated(.5, .5, 0);
+  at(1, square(glowing(1), .5), true);
+  rtPopMatrix();
+  EXPECT_NEAR(lit(), .13853161, 2.5e-4); // a = b = c = 1
+}
+
+TEST_F(AreaLights, R10ALargeSquareVeryNear) {
+  at(.01, square(glowing(1), 1), true);
+  EXPECT_NEAR(lit(), .99991818, 2e-3);
+}
+
+TEST_F(AreaLights, R7ATriangle) {
+  const RTid object = rtBeginObject(0);
+  rtBindShader(glowing(1));
+  rtBegin(RT_TRIANGLES);
+  rtVertex3f(1, 0, 1), rtVertex3f(0, 1, 1), rtVertex3f(-1, -1, 1);
+  rtEnd();
+  rtEndObject();
+  rtBindShader(0);
+  place(object);
+  EXPECT_NEAR(lit(), .94357481 / pi, 2.5e-4);
+}
+
+TEST_F(AreaLights, TwoLightsOfUnequalPowerAddUp) {
+  at(1, square(glowing(1), .5), true);
+  at(2, square(glowing(30), .01), true);
+  const double small = 30 * .02 * .02 / 4; // far away: area over the square of the distance, over pi
+  EXPECT_NEAR(lit(), .75227469 / pi, 1e-3 + small / pi) << "the nearer one hides the other";
+}
+
+TEST_F(AreaLights, R11ALightSeenFromBehindItsCulledBackIsNotThere) {
+  Shader lamp = glowing(1);
+  const RTid object = rtBeginObject(0);
+  rtEnable(RT_CULL_FACE);
+  rtBindShader(lamp);
+  rtBegin(RT_TRIANGLES);
+  rtVertex3f(1, 0, 1), rtVertex3f(0, 1, 1), rtVertex3f(-1, -1, 1); // faces up
+  rtEnd();
+  rtEndObject();
+  rtBindShader(0);
+  place(object);
+  EXPECT_EQ(lit(), 0);
+}
+
+TEST_F(AreaLights, G8HalfOfTheSky) {
+  environment(1);
+  const RTid wall = square(Shader("Diffuse").set("reflectance", {0, 0, 0}), 1e4);
+  rtPushMatrix();
+  rtTranslated(.002, 0, 0);
+  rtRotated(90, 0, 1, 0);
+  place(wall);
+  rtPopMatrix();
+  EXPECT_NEAR(lit(), .5, 5e-3);
+}
+
+TEST_F(AreaLights, G1AWhitePlaneUnderAWhiteSkyIsWhite) {
+  environment(1);
+  EXPECT_NEAR(lit(), 1, 1e-3);
+}
+
+TEST_F(AreaLights, ThePartsThatEitherWayFindsAddUpWhateverTheSize) { // both halves of multiple importance sampling
+  for (const double half : {.05, .5, 5.}) {
+    const RTid lamp = square(glowing(1), half);
+    rtPushMatrix();
+    rtTranslated(0, 0, 1);
+    rtRotated(180, 1, 0, 0);
+    const RTid placed = place(lamp);
+    rtPopMatrix();
+    // Four times the corner of a half x half rectangle at height 1.
+    const double s = std::sqrt(1 + half * half), f = 2 / pi * 2 * (half / s) * std::atan(half / s) / 2;
+    EXPECT_NEAR(lit(), 2 * f, std::max(2.5e-4, 1e-3 * f)) << half;
+    rtDeleteInstance(placed);
+  }
+}
+
 TEST_F(Lobes, DirectTransportFollowsNothing) {
   Shader mirror("Mirror");
   place(square(mirror));

@@ -40,6 +40,7 @@ uint32_t AccelBuilder::bucketOf(uint32_t slot, uint32_t lightSet) {
 Record AccelBuilder::recordOf(const Inherited& path, const Geometry& g, const Matrix4d& toRender) {
   Record r;
   r.primitive = g.primitive;
+  r.primitives = uint32_t(g.primitives());
   r.cull = g.cull;
   r.shader = in_->shaders.slotOf(path.shader ? path.shader : g.shader);
   r.bucket = bucketOf(r.shader, path.lightSet);

@@ -48,6 +48,7 @@ void LocalBackend::prepare() {
   next->records = accel_->records;
   next->buckets = accel_->buckets;
   next->transparentShadows = accel_->hasTransparent;
+  next->emitters.build(*next);
   snapshot_ = std::move(next);
   changes_ = {};
 }

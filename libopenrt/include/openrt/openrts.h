@@ -151,7 +151,8 @@ typedef enum RtsKind {
 enum {
   RTS_TRANSPARENT = 1, /* surface: transmission may be above 0; shadow rays then ask `transmit` */
   RTS_UNLIT = 2,       /* surface: never asks for lights */
-  RTS_NO_SHADOW = 4    /* light: casts no shadows */
+  RTS_NO_SHADOW = 4,   /* light: casts no shadows */
+  RTS_EMISSIVE = 8     /* surface that answers in lobes: emission may be above 0 */
 };
 
 typedef struct RtsClass {

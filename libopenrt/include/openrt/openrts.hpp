@@ -15,6 +15,8 @@
 //   Surface<T>      Shaded shade(const Hit&) const
 //                   Color reflect(const Hit&, const Light&) const     optional: the answer to one light; without it: unlit
 //                   void surface(const Hit&, Closures&) const         instead of shade: a sum of lobes that the engine follows
+//                   bool emits() const                                optional: emission may be above 0; without it path
+//                   tracing meets the light by chance only
 //                   Color transmit(const Hit&) const                  optional: what shadow rays see; without it the surface is
 //                   opaque
 //   LightSource<T>  Illumination illuminate(Vec3 point) const         point and answer in the light's local space
@@ -393,8 +395,13 @@ template <class T> void attenuate(const RtsHost*, RtsBatch*, const void* params,
   }
 }
 
-template <class T> uint32_t traits(const RtsHost*, const void*) {
+template <class T, class = void> struct HasEmits : std::false_type {};
+template <class T> struct HasEmits<T, std::void_t<decltype(std::declval<const T&>().emits())>> : std::true_type {};
+
+template <class T> uint32_t traits(const RtsHost*, const void* params) {
   uint32_t t = 0;
+  (void)params;
+  if constexpr (HasEmits<T>::value) t |= static_cast<const T*>(params)->emits() ? uint32_t(RTS_EMISSIVE) : 0u;
   if constexpr (std::is_base_of_v<Surface<T>, T>) {
     if (HasTransmit<T>::value) t |= RTS_TRANSPARENT;
     if (!HasReflect<T>::value && !HasSurface<T>::value) t |= RTS_UNLIT;
