@@ -170,6 +170,7 @@ struct Renderer::Impl {
     rtQuality(RT_MAX_DEPTH, settings.depth);
     rtQuality(RT_SEED, settings.seed);
     rtQuality(RT_SHADOWS, settings.shadows ? 1 : 0);
+    rtQuality(RT_TRANSPORT, settings.transport);
     throwOnError("frame");
   }
 

@@ -24,6 +24,7 @@ struct RenderSettings {
   int samples = 16;
   int depth = 25;
   bool shadows = true;
+  int transport = RT_TRANSPORT_AUTO;
   int seed = 0;
   int threads = 0; // 0: as many as the process may use
   bool linear = true;

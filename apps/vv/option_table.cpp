@@ -40,6 +40,19 @@ void setColour(Options& o, const std::string& value) {
   o.render.linear = value == "linear";
 }
 
+void setTransport(Options& o, const std::string& value) {
+  constexpr std::pair<const char*, int> known[] = {{"auto", RT_TRANSPORT_AUTO},
+                                                   {"direct", RT_TRANSPORT_DIRECT},
+                                                   {"whitted", RT_TRANSPORT_WHITTED},
+                                                   {"path", RT_TRANSPORT_PATH}};
+  for (const auto& [name, transport] : known)
+    if (value == name) {
+      o.render.transport = transport;
+      return;
+    }
+  throw UsageError(fmt::format("auto, direct, whitted or path was expected, not \"{}\"", value));
+}
+
 void setChannels(Options& o, const std::string& value) {
   uint32_t channels = 0;
   std::string known;
@@ -128,6 +141,10 @@ const OptionInfo table[] = {
      [](Options& o, const std::string& v) { o.render.samples = int(readInteger(v, 1, 65536)); }},
     {"--depth", "N", "Quality", "Surfaces a path may pass or bounce at, 0 to 10000 (default 25).",
      [](Options& o, const std::string& v) { o.render.depth = int(readInteger(v, 0, 10000)); }},
+    {"--transport", "NAME", "Quality",
+     "How light is followed from surfaces that answer in lobes: direct (lights alone), whitted (and mirrors and glass; default), "
+     "path (and light between surfaces).",
+     setTransport},
     {"--shadows", "on|off", "Quality", "Whether lights cast shadows (default on).",
      [](Options& o, const std::string& v) { o.render.shadows = readSwitch(v); }},
     {"--seed", "N", "Quality", "Another set of sample positions (default 0).",
