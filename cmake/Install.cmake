@@ -31,12 +31,13 @@ install(FILES README.md LICENSE CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR}
 foreach(package openrt xvrml)
   install(EXPORT ${package}_targets NAMESPACE ${package}:: DESTINATION ${${package}_cmake_dir} FILE ${package}-targets.cmake)
   configure_package_config_file(cmake/${package}-config.cmake.in ${CMAKE_BINARY_DIR}/package/${package}-config.cmake
-                                INSTALL_DESTINATION ${${package}_cmake_dir})
+                                INSTALL_DESTINATION ${${package}_cmake_dir} PATH_VARS CMAKE_INSTALL_BINDIR CMAKE_INSTALL_DATADIR)
   write_basic_package_version_file(${CMAKE_BINARY_DIR}/package/${package}-config-version.cmake COMPATIBILITY SameMinorVersion)
   install(FILES ${CMAKE_BINARY_DIR}/package/${package}-config.cmake ${CMAKE_BINARY_DIR}/package/${package}-config-version.cmake
           DESTINATION ${${package}_cmake_dir})
 endforeach()
 install(FILES cmake/OpenrtShader.cmake DESTINATION ${openrt_cmake_dir})
+install(FILES cmake/XvrmlNodes.cmake DESTINATION ${xvrml_cmake_dir})
 
 # From lib/pkgconfig to the prefix, so that the tree can be moved: pkg-config knows where its file lies.
 file(RELATIVE_PATH pkgconfig_to_prefix /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)

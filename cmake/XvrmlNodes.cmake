@@ -1,3 +1,4 @@
+include_guard(GLOBAL)
 # xvrml_generate_nodes(PREFIX spec.node...): runs nodegen on node specifications; sets PREFIX_sources and PREFIX_include.
 # The header xvrml/nodes.h, one .cpp per component and the list of types come out, in namespace xvrml::nodes; beside them
 # nodes.md, the node reference, and nodes.pyi, the Python stub. They lie in the build tree and are never committed.
@@ -14,4 +15,45 @@ function(xvrml_generate_nodes prefix)
                      DEPENDS nodegen ${ARGN} COMMENT "Generating nodes" VERBATIM)
   set(${prefix}_include ${out} PARENT_SCOPE)
   set(${prefix}_sources ${sources} ${out}/xvrml/nodes.h PARENT_SCOPE)
+endfunction()
+
+# xvrml_add_nodes(NAME spec.node... source.cpp...): a node plug-in NAME.so in <build>/lib/xvrml/nodes. nodegen writes the header
+# NAME_nodes.h and the tables from the specifications; the sources hold each node's `implementation` (docs/node-plugins.md).
+# Part of the project and of the installed CMake package.
+function(xvrml_add_nodes name)
+  set(out ${CMAKE_CURRENT_BINARY_DIR}/${name}_generated)
+  set(generated ${out}/${name}_nodes.h ${out}/${name}_plugin.cpp)
+  foreach(file ${ARGN})
+    cmake_path(ABSOLUTE_PATH file BASE_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
+    if(file MATCHES "\\.node$")
+      cmake_path(GET file STEM component)
+      list(APPEND generated ${out}/nodes_${component}.cpp)
+      list(APPEND specifications ${file})
+    else()
+      list(APPEND sources ${file})
+    endif()
+  endforeach()
+  if(TARGET nodegen)
+    set(nodegen nodegen)
+    file(GLOB standard ${PROJECT_SOURCE_DIR}/libxvrml/nodes/*.node)
+  else()
+    set(nodegen ${XVRML_NODEGEN})
+    file(GLOB standard ${XVRML_NODE_SPECIFICATIONS}/*.node)
+  endif()
+  list(TRANSFORM standard PREPEND --import= OUTPUT_VARIABLE imports)
+  add_custom_command(OUTPUT ${generated} COMMAND ${nodegen} --plugin ${name} --output ${out} ${imports} ${specifications}
+                     DEPENDS ${nodegen} ${specifications} ${standard} COMMENT "Generating nodes of ${name}" VERBATIM)
+  add_library(nodes_${name} MODULE ${sources} ${generated})
+  set_target_properties(nodes_${name} PROPERTIES PREFIX "" OUTPUT_NAME ${name} CXX_VISIBILITY_PRESET hidden
+                        LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib/xvrml/nodes)
+  target_compile_features(nodes_${name} PRIVATE cxx_std_20)
+  target_include_directories(nodes_${name} PRIVATE ${out})
+  if(TARGET xvrml::xvrml)
+    target_link_libraries(nodes_${name} PRIVATE xvrml::xvrml)
+  else()
+    target_link_libraries(nodes_${name} PRIVATE xvrml)
+  endif()
+  if(NOT OPENRT_SANITIZE) # their functions come with the program
+    target_link_options(nodes_${name} PRIVATE -Wl,--no-undefined)
+  endif()
 endfunction()

@@ -18,6 +18,7 @@
 #include "signals.h"
 #include "timeline.h"
 #include "watched.h"
+#include "xvrml/node_plugin.h"
 
 namespace vv {
 
@@ -159,6 +160,7 @@ int runWatching(const Options& options, const std::string& commandLine) {
 } // namespace
 
 int runHeadless(const Options& options, const std::string& commandLine) {
+  for (const std::string& refused : xvrml::loadNodePlugins(options.nodePath)) sayWarning(refused);
   if (options.watch) return runWatching(options, commandLine);
   Headless job(options, commandLine);
   return runOnce(job);

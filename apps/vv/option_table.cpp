@@ -193,6 +193,12 @@ const OptionInfo table[] = {
        notEmpty(v, "a folder");
        o.render.shaderPath = v;
      }},
+    {"--node-path", "DIR[:DIR...]", "Trust",
+     "Folders where node plug-ins are looked up, before $XVRML_NODE_PATH and the installed ones.",
+     [](Options& o, const std::string& v) {
+       notEmpty(v, "a folder");
+       o.nodePath = v;
+     }},
     {"-q,--quiet", "", "Talk", "Errors only.", [](Options& o, const std::string&) { o.quiet = true; }},
     {"-v,--verbose", "", "Talk", "Every warning, and times.", [](Options& o, const std::string&) { o.verbose = true; }},
     {"--version", "", "Talk", "The version.", [](Options& o, const std::string&) { o.version = true; }},

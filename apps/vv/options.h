@@ -35,6 +35,7 @@ struct Options {
   bool info = false, listNodes = false, listViewpoints = false, explain = false, json = false;
   bool watch = false;
   std::string write, stats;
+  std::string nodePath; // folders, separated by colons
   xvrml::LoadOptions load;
   bool quiet = false, verbose = false;
   bool help = false, version = false;

@@ -119,6 +119,8 @@ Value Node::get(const FieldInfo& field) const {
 bool Node::set(const FieldInfo& field, Value value) {
   if (!hasStorage(field) || value.index() != size_t(field.type)) return false;
   storeByType(size_t(field.type), storage(field), std::move(value), allTypes);
+  if (!live && type_->expand) // in a running world the event engine renews it
+    if (NodeRef* standsFor = expansion()) *standsFor = {};
   return true;
 }
 

@@ -102,6 +102,7 @@ void Engine::settle() {
     }
   } while (!overflow_ && ((scripts && scripts->eventsProcessed()) || observer->settled()));
   settling_ = false;
+  renewExpansions();
   sweep();
 }
 

@@ -104,6 +104,9 @@ class Engine : public Events {
   void arriveAtStatic(Node& node, const FieldInfo& in, const Value& value);
   void relay(ProtoInstance& instance, const FieldInfo& out, const Value& value);
   void sweep();
+  void renewExpansions();
+  void renewExpansion(Node& node);
+  void takeOver(Node& old, Node& fresh);
   using Watchers = std::map<uint32_t, Node*>; // by order
   void callAll(const Watchers& watchers, void (*Behaviour::*function)(Events&, Node&));
 
@@ -111,6 +114,7 @@ class Engine : public Events {
   std::deque<Event> queue_;
   Watchers ticking_, looking_;
   FieldChanges changes_;
+  std::vector<NodeRef> outdated_; // nodes of plug-ins that may stand for something else now
   std::vector<NodeRef> swept_; // nodes with deleted links
   uint64_t structure_ = 0, cascade_ = 0, delivered_ = 0, inCascade_ = 0, routes_ = 0, listeners_ = 0;
   uint32_t order_ = 0;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <unordered_set>
 
+#include "parse/expansion.h"
 #include "parse/field_access.h"
 #include "xvrml/nodes.h"
 
@@ -15,6 +16,10 @@ void childrenInHierarchy(Node& node, std::vector<Node*>& out) {
     return;
   }
   if (node.type().index < 0) return;
+  if (node.type().expand) {
+    if (Node* standsFor = expansionOf(node)) out.push_back(standsFor);
+    return;
+  }
   forEachChild(node, [&](NodeRef& child, const FieldInfo&) { out.push_back(child.get()); });
   if (const Scope* content = inlineScope(node))
     for (const NodeRef& root : content->roots) out.push_back(root.get());

@@ -86,7 +86,8 @@ void Engine::enter(Node& first, Newcomers& newcomers) {
       for (size_t i = 1; i < instance->body.roots.size(); ++i) below.push_back(instance->body.roots[i].get());
       for (const IsConnection& c : instance->is) below.push_back(c.node.get());
     }
-    if (node.type().index < 0) forEachChild(node, [&](NodeRef& child, const FieldInfo&) { below.push_back(child.get()); });
+    if (node.type().index < 0 || node.type().expand)
+      forEachChild(node, [&](NodeRef& child, const FieldInfo&) { below.push_back(child.get()); });
     childrenInHierarchy(node, below);
     std::reverse(below.begin(), below.end());
     for (Node* child : below)
@@ -203,7 +204,7 @@ bool Events::store(Node& node, const FieldInfo& field, Value value) {
   auto& engine = static_cast<Engine&>(*this);
   if (!holdsValue(field) || value.index() != size_t(field.type)) return false;
   if (holdsNodes(field)) {
-    const bool inHierarchy = node.type().index >= 0;
+    const bool inHierarchy = node.type().index >= 0 && !node.type().expand;
     const auto refused = [&](const NodeRef& child) {
       const NodeType* type = child ? effectiveType(*child) : nullptr;
       if (!type || field.nodeTypes.empty() || typeAccepted(field.nodeTypes, *type)) return false;
@@ -241,8 +242,9 @@ bool Events::store(Node& node, const FieldInfo& field, Value value) {
 }
 
 void Events::changed(Node& node, const FieldInfo& field) {
-  if (field.change == Change::none || !node.live || node.type().index < 0) return;
   auto& engine = static_cast<Engine&>(*this);
+  if (node.type().expand && node.live) engine.outdated_.emplace_back(&node);
+  if (field.change == Change::none || !node.live || node.type().index < 0) return;
   Live& live = *liveOf(node);
   engine.observer->changed(node, field);
   if (!reaches(node, field.change)) engine.markReach(node, field, "it has been changed");
@@ -255,6 +257,7 @@ void Events::changed(Node& node, const FieldInfo& field) {
 }
 
 FieldChanges Engine::takeChanges() {
+  renewExpansions();
   for (const FieldChange& change : changes_)
     if (change.node && change.node->live) liveOf(*change.node)->changed = 0;
   return std::exchange(changes_, {});

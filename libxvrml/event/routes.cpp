@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "event/engine.h"
+#include "parse/expansion.h"
 #include "parse/field_access.h"
 
 namespace xvrml {
@@ -109,6 +110,7 @@ void Engine::connectBody(ProtoInstance& instance) {
 
 void Engine::markReach(Node& first, const FieldInfo& firstIn, const std::string& reason) {
   std::vector<std::pair<Node*, const FieldInfo*>> open{{&first, &firstIn}};
+  std::unordered_set<const Node*> expansions;
   while (!open.empty()) {
     const auto [node, in] = open.back();
     open.pop_back();
@@ -121,6 +123,18 @@ void Engine::markReach(Node& first, const FieldInfo& firstIn, const std::string&
     } else if (in->change != Change::none && !(live.reach >> int(in->change) & 1)) {
       live.reach |= uint16_t(1 << int(in->change));
       part(*node).reasons.emplace_back(in->change, reason);
+    }
+    // A node of a plug-in that can change may stand for anything else then.
+    if (Node* standsFor = node->type().expand ? expansionOf(*node) : nullptr) {
+      std::vector<Node*> made{standsFor};
+      while (!made.empty()) {
+        Node* one = made.back();
+        made.pop_back();
+        if (!isMadeByPlugin(*one) || !one->live || !expansions.insert(one).second) continue;
+        for (const FieldInfo& field : one->type().fields)
+          if (holdsValue(field) && field.change != Change::none) open.emplace_back(one, &field);
+        forEachChild(*one, [&](NodeRef& child, const FieldInfo&) { made.push_back(child.get()); });
+      }
     }
   }
 }

@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "base/lexer.h"
 #include "nodegen/writers.h"
 
 namespace {
@@ -17,7 +18,7 @@ enum ExitCode { success = 0, usage = 2, unreadable = 3, badSpecification = 4, un
 
 struct Options {
   std::vector<std::string> specifications, imports;
-  std::string output, reference, stub, skeleton, skeletonFile;
+  std::string output, reference, stub, skeleton, skeletonFile, plugin;
 };
 
 int fail(ExitCode code, const std::string& message) {
@@ -36,6 +37,13 @@ void describe(CLI::App& app, Options& options) {
   auto* skeleton = app.add_option("--skeleton", options.skeleton, "node to write a first source of its behaviour for");
   app.add_option("--skeleton-file", options.skeletonFile, "file for the skeleton, which must not exist; default: <node>.cpp")
       ->needs(skeleton);
+  app.add_option("--plugin", options.plugin,
+                 "write for a node plug-in of this name: <plugin>_nodes.h, nodes_<component>.cpp and <plugin>_plugin.cpp")
+      ->check([](const std::string& name) {
+        const bool good = xvrml::isIdentifier(name) &&
+                          name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_") == name.npos;
+        return good ? std::string() : "--plugin: a name of letters, digits and _ was expected, not '" + name + "'";
+      });
   app.footer("Exit codes: 0 done, 2 wrong use, 3 a file cannot be read, 4 a specification is wrong, 5 a file cannot be written.");
 }
 
@@ -53,12 +61,14 @@ bool writeFile(const std::filesystem::path& path, const std::string& text) {
   return !error;
 }
 
-bool writeCode(const Model& model, const std::filesystem::path& folder) {
-  bool good =
-      writeFile(folder / "xvrml" / "nodes.h", writeHeader(model)) && writeFile(folder / "nodes_list.cpp", writeList(model));
+bool writeCode(const Model& model, const std::filesystem::path& folder, const std::string& plugin) {
+  bool good = plugin.empty() ? writeFile(folder / "xvrml" / "nodes.h", writeHeader(model, plugin)) &&
+                                   writeFile(folder / "nodes_list.cpp", writeList(model))
+                             : writeFile(folder / (plugin + "_nodes.h"), writeHeader(model, plugin)) &&
+                                   writeFile(folder / (plugin + "_plugin.cpp"), writePlugin(model, plugin));
   for (const Component& component : model.components) {
     if (component.imported) continue;
-    good = good && writeFile(folder / fmt::format("nodes_{}.cpp", component.name), writeTables(component));
+    good = good && writeFile(folder / fmt::format("nodes_{}.cpp", component.name), writeTables(component, plugin));
   }
   return good;
 }
@@ -68,7 +78,7 @@ int writeSkeletonFile(const Model& model, const Options& options) {
   if (!type || type->isAbstract) return fail(usage, fmt::format("--skeleton: there is no node {}", options.skeleton));
   const std::string path = options.skeletonFile.empty() ? options.skeleton + ".cpp" : options.skeletonFile;
   if (std::filesystem::exists(path)) return fail(unwritable, fmt::format("{} exists: a skeleton is written once", path));
-  return writeFile(path, writeSkeleton(*type)) ? success : fail(unwritable, fmt::format("cannot write {}", path));
+  return writeFile(path, writeSkeleton(*type, options.plugin)) ? success : fail(unwritable, fmt::format("cannot write {}", path));
 }
 
 int run(const Options& options) {
@@ -87,7 +97,7 @@ int run(const Options& options) {
   for (const xvrml::Diagnostic& diagnostic : model.diagnostics.list()) fmt::print(stderr, "{}\n", diagnostic.text());
   if (model.diagnostics.errors() > 0) return badSpecification;
 
-  if (!options.output.empty() && !writeCode(model, options.output))
+  if (!options.output.empty() && !writeCode(model, options.output, options.plugin))
     return fail(unwritable, fmt::format("cannot write into {}", options.output));
   if (!options.reference.empty() && !writeFile(options.reference, writeReference(model)))
     return fail(unwritable, fmt::format("cannot write {}", options.reference));

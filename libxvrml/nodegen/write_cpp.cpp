@@ -22,13 +22,22 @@ std::string writeMember(const FieldSpec& field) {
   return fmt::format("  {} ///< {}{}: {}\n", declaration, accessName(field.access), range, field.text);
 }
 
-std::string writeStruct(const TypeSpec& type, int index) {
+// A plug-in's types get their numbers when it is loaded, and have room for what they stand for.
+constexpr std::string_view pluginMembers = "  static int typeIndex;\n  static const NodeType& nodeType();\n"
+                                           "  static const NodeImplementation implementation; // in the plug-in's own source\n"
+                                           "  NodeRef* expansion() override { return &standsFor_; }\n";
+
+std::string writeStruct(const TypeSpec& type, int index, bool plugin) {
   std::string text = fmt::format("/// {}{}\nstruct {} : Node {{\n", type.text, clauseText(type), type.name);
-  text += fmt::format("  static constexpr int typeIndex = {};\n  static const NodeType& nodeType();\n", index);
+  if (plugin)
+    text += pluginMembers;
+  else
+    text += fmt::format("  static constexpr int typeIndex = {};\n  static const NodeType& nodeType();\n", index);
   text += fmt::format("  {0}() : Node(nodeType()) {{}}\n  explicit {0}(const NodeType& t) : Node(t) {{}}\n", type.name);
   std::string members;
   for (const FieldSpec& field : type.fields)
     if (field.hasStorage()) members += writeMember(field);
+  if (plugin) members += "\n private:\n  NodeRef standsFor_;\n";
   return text + (members.empty() ? "" : "\n") + members + "};\n\n";
 }
 
@@ -65,6 +74,22 @@ std::string writeTable(const TypeSpec& type) {
   return rows;
 }
 
+std::string libraryFunctions(const TypeSpec& type) {
+  return fmt::format("const NodeType& {0}::nodeType() {{\n  static const NodeType type = makeNodeType(rowOf{0}, typeIndex);\n"
+                     "  return type;\n}}\n\n",
+                     type.name);
+}
+
+std::string pluginFunctions(const TypeSpec& type) {
+  return fmt::format(
+      "int {0}::typeIndex = -1;\nstatic const NodeType* typeOf{0} = nullptr;\n"
+      "const NodeType& {0}::nodeType() {{ return *typeOf{0}; }}\n"
+      "static void register{0}(const NodeType& type) {{\n  typeOf{0} = &type;\n  {0}::typeIndex = type.index;\n}}\n"
+      "NodePluginRow pluginRowOf{0}();\n"
+      "NodePluginRow pluginRowOf{0}() {{ return {{&rowOf{0}, &{0}::implementation, register{0}}}; }}\n\n",
+      type.name);
+}
+
 template <class Function> void eachNode(const Component& component, Function function) {
   for (const TypeSpec& type : component.types)
     if (!type.isAbstract) function(type);
@@ -77,29 +102,30 @@ template <class Function> void eachNode(const Model& model, Function function) {
 
 } // namespace
 
-std::string writeHeader(const Model& model) {
+std::string writeHeader(const Model& model, const std::string& plugin) {
   std::string text(notice);
-  text += "// A struct per node, with a member per field and exposedField. Use nodeCast<nodes::Box>(node) to get at them.\n"
-          "#pragma once\n\n#include \"xvrml/node.h\"\n\nnamespace xvrml::nodes {\n\n";
+  text += fmt::format(
+      "// A struct per node, with a member per field and exposedField. Use nodeCast<nodes::Box>(node) to get at them.\n"
+      "#pragma once\n\n#include \"xvrml/{}.h\"\n\nnamespace xvrml::nodes {{\n\n",
+      plugin.empty() ? "node" : "node_plugin");
   int index = 0;
-  eachNode(model, [&](const TypeSpec& type) { text += writeStruct(type, index++); });
+  eachNode(model, [&](const TypeSpec& type) { text += writeStruct(type, index++, !plugin.empty()); });
   return text + "} // namespace xvrml::nodes\n";
 }
 
-std::string writeTables(const Component& component) {
+std::string writeTables(const Component& component, const std::string& plugin) {
   std::string text(notice);
   text += fmt::format("// {}: the constant tables of its nodes.\n", component.title);
-  text += "#include <cstddef>\n\n#include \"xvrml/node_table.h\"\n#include \"xvrml/nodes.h\"\n\n"
-          "#pragma GCC diagnostic ignored \"-Winvalid-offsetof\" // one base, not virtual: GCC and Clang define it\n\n"
+  text += "#include <cstddef>\n\n";
+  text += plugin.empty() ? "#include \"xvrml/node_table.h\"\n#include \"xvrml/nodes.h\"\n\n"
+                         : fmt::format("#include \"{}_nodes.h\"\n\n", plugin);
+  text += "#pragma GCC diagnostic ignored \"-Winvalid-offsetof\" // one base, not virtual: GCC and Clang define it\n\n"
           "namespace xvrml::nodes {\nnamespace {\n\n"
           "[[maybe_unused]] constexpr double inf = std::numeric_limits<double>::infinity();\n\n";
   std::string functions;
   eachNode(component, [&](const TypeSpec& type) {
     text += writeTable(type);
-    functions +=
-        fmt::format("const NodeType& {0}::nodeType() {{\n  static const NodeType type = makeNodeType(rowOf{0}, typeIndex);\n"
-                    "  return type;\n}}\n\n",
-                    type.name);
+    functions += plugin.empty() ? libraryFunctions(type) : pluginFunctions(type);
   });
   return text + "} // namespace\n\n" + functions + "} // namespace xvrml::nodes\n";
 }
@@ -111,6 +137,23 @@ std::string writeList(const Model& model) {
           "std::span<const NodeType* const> builtinNodeTypes() {\n  static const NodeType* const types[] = {\n";
   eachNode(model, [&](const TypeSpec& type) { text += fmt::format("      &{}::nodeType(),\n", type.name); });
   return text + "  };\n  return types;\n}\n\n} // namespace xvrml::nodes\n";
+}
+
+std::string writePlugin(const Model& model, const std::string& plugin) {
+  std::string text(notice), declarations, rows;
+  eachNode(model, [&](const TypeSpec& type) {
+    declarations += fmt::format("NodePluginRow pluginRowOf{}();\n", type.name);
+    rows += fmt::format("    pluginRowOf{}(),\n", type.name);
+  });
+  text += fmt::format("// What the plug-in {0} exports.\n#include \"{0}_nodes.h\"\n\nnamespace xvrml::nodes {{\n{1}}} "
+                      "// namespace xvrml::nodes\n\nnamespace {{\nusing namespace xvrml::nodes;\n"
+                      "const xvrml::NodePluginRow rows[] = {{\n{2}}};\n}} // namespace\n\n",
+                      plugin, declarations, rows);
+  return text + "XVRML_NODE_PLUGIN = {xvrml::nodePluginMagic,\n    xvrml::nodePluginMajor,\n    xvrml::nodePluginMinor,\n"
+                "    sizeof(xvrml::NodePlugin),\n    XVRML_CXX_ABI,\n    {xvrml::nodePluginSizes[0], xvrml::nodePluginSizes[1], "
+                "xvrml::nodePluginSizes[2], xvrml::nodePluginSizes[3],\n     xvrml::nodePluginSizes[4], "
+                "xvrml::nodePluginSizes[5], xvrml::nodePluginSizes[6], xvrml::nodePluginSizes[7]},\n"
+                "    sizeof rows / sizeof rows[0],\n    rows};\n";
 }
 
 } // namespace xvrml::nodegen

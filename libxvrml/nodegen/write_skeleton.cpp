@@ -13,9 +13,32 @@ std::string handler(const TypeSpec& type, const FieldSpec& field) {
       field.text, field.name, type.name, fieldTypeName(field.type), fieldTypeName(field.type));
 }
 
+// What an event does is the engine's business except for what the author adds.
+std::string pluginSkeleton(const TypeSpec& type, const std::string& plugin) {
+  std::string events;
+  for (const FieldSpec& field : type.fields)
+    if (field.access == Access::eventIn || field.access == Access::exposedField)
+      events += fmt::format("  // {}: {} {}\n", field.name, fieldTypeName(field.type), field.text);
+  return fmt::format(
+      "// {0}: {1}\n// Written once by nodegen --skeleton; it is yours from here on.\n"
+      "#include \"{2}_nodes.h\"\n#include \"xvrml/nodes.h\"\n\nnamespace {{\n\nusing namespace xvrml;\nusing "
+      "xvrml::nodes::{0};\n\n"
+      "// An event has reached a node; an exposedField holds the value and has sent it on already. events.send() sends,\n"
+      "// events.store() changes a field, events.now() is the time.\n{3}"
+      "void receive(Events&, Node& node, const FieldInfo&, const Value&) {{\n"
+      "  [[maybe_unused]] auto& self = static_cast<{0}&>(node);\n}}\n\n"
+      "// The standard nodes that the node stands for, made from its fields; null: nothing is drawn.\n"
+      "NodeRef expand(const Node& node) {{\n  [[maybe_unused]] const auto& self = static_cast<const {0}&>(node);\n"
+      "  return {{}};\n}}\n\n}} // namespace\n\n"
+      "const xvrml::NodeImplementation xvrml::nodes::{0}::implementation = {{.behaviour = {{.receive = receive}}, .expand = "
+      "expand}};\n",
+      type.name, type.text, plugin, events);
+}
+
 } // namespace
 
-std::string writeSkeleton(const TypeSpec& type) {
+std::string writeSkeleton(const TypeSpec& type, const std::string& plugin) {
+  if (!plugin.empty()) return pluginSkeleton(type, plugin);
   std::string handlers, rows;
   for (const FieldSpec& field : type.fields) {
     if (field.access != Access::eventIn) continue;

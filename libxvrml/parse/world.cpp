@@ -1,13 +1,21 @@
 // world.cpp: what a loaded world can be asked, and its end. See xvrml/world.h.
 #include "xvrml/world.h"
 
+#include "parse/expansion.h"
 #include "parse/field_access.h"
 
 namespace xvrml {
 
 Node* renderedNode(Node* node) {
-  while (auto* instance = dynamic_cast<ProtoInstance*>(node)) {
-    node = instance->body.roots.empty() ? nullptr : instance->body.roots[0].get();
+  constexpr int deepest = 32; // plug-ins whose nodes stand for nodes of plug-ins
+  for (int expanded = 0; node;) {
+    if (node->type().expand) {
+      node = ++expanded < deepest ? expansionOf(*node) : nullptr;
+    } else if (auto* instance = dynamic_cast<ProtoInstance*>(node)) {
+      node = instance->body.roots.empty() ? nullptr : instance->body.roots[0].get();
+    } else {
+      break;
+    }
   }
   return node;
 }

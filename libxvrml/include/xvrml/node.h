@@ -62,6 +62,7 @@ struct NodeType {
   std::vector<FieldInfo> fields;
   Node* (*create)(const NodeType& type);
   std::string clause; // of ISO/IEC 14772-1, "6.6"; empty: not a standard node
+  NodeRef (*expand)(const Node& node) = nullptr; // what a node of a plug-in stands for (xvrml/node_plugin.h); null: itself
 
   bool is(std::string_view abstractName) const;            // one of `abstract`
   const FieldInfo* find(std::string_view fieldName) const; // exact name
@@ -93,6 +94,9 @@ class Node {
   Value get(const FieldInfo& field) const;
   // The value's type must be the field's; false (and no change) otherwise.
   bool set(const FieldInfo& field, Value value);
+
+  // Where a node that stands for others (NodeType::expand) keeps them; null for all others.
+  virtual NodeRef* expansion() { return nullptr; }
 
   std::string defName; // DEF, empty if none (not `name`: nodes may have a field of that name)
   SourcePosition source;

@@ -75,7 +75,8 @@ class ScriptNode : public DynamicNode {
   using DynamicNode::DynamicNode;
 };
 
-// The node that is rendered for `node`: itself, or for a prototype instance its first body node (however deep); may be null.
+// The node that is rendered for `node`: itself, for a prototype instance its first body node, for a node of a plug-in what it
+// stands for (however deep); may be null.
 Node* renderedNode(Node* node);
 
 struct LoadOptions {

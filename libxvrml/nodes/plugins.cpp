@@ -1,0 +1,127 @@
+// plugins.cpp: see xvrml/node_plugin.h: finds, checks and registers node plug-ins.
+#include "xvrml/node_plugin.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <iterator>
+#include <mutex>
+#include <set>
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+
+#include "nodes/registry.h"
+
+namespace xvrml {
+namespace {
+
+namespace fs = std::filesystem;
+
+void appendFolders(std::vector<std::string>& folders, std::string_view list) {
+  while (!list.empty()) {
+    const size_t end = std::min(list.find(':'), list.size());
+    if (end > 0) folders.emplace_back(list.substr(0, end));
+    list.remove_prefix(std::min(end + 1, list.size()));
+  }
+}
+
+std::string sizesText(const uint32_t (&sizes)[8]) { return fmt::format("{}", fmt::join(sizes, " ")); }
+
+// Why a plug-in cannot be used; empty if nothing speaks against it. Reads nothing behind `size` or a wrong version.
+std::string whyRefused(const NodePlugin& plugin) {
+  if (plugin.magic != nodePluginMagic) return fmt::format("its {} does not begin as one", nodePluginSymbol);
+  if (plugin.major != nodePluginMajor || plugin.minor > nodePluginMinor)
+    return fmt::format("it is made for version {}.{} of the node plug-in interface, this library has {}.{}", plugin.major,
+                       plugin.minor, nodePluginMajor, nodePluginMinor);
+  if (plugin.size < sizeof(NodePlugin))
+    return fmt::format("its description has {} bytes, {} were expected", plugin.size, sizeof(NodePlugin));
+  if (!plugin.abi || std::string_view(plugin.abi) != XVRML_CXX_ABI)
+    return fmt::format("it is built for the C++ library \"{}\", this one for \"{}\"", plugin.abi ? plugin.abi : "",
+                       XVRML_CXX_ABI);
+  if (!std::equal(std::begin(plugin.sizes), std::end(plugin.sizes), std::begin(nodePluginSizes)))
+    return fmt::format("it is built with headers of another version: sizes {}, expected {}", sizesText(plugin.sizes),
+                       sizesText(nodePluginSizes));
+  for (uint32_t i = 0; i < plugin.count; ++i) {
+    const NodePluginRow& one = plugin.rows[i];
+    if (!one.row || !one.row->create || !one.registered) return fmt::format("row {} of its nodes is incomplete", i);
+    if (findNodeType(one.row->name)) return fmt::format("there is a node type {} already", one.row->name);
+  }
+  return "";
+}
+
+// Types live for ever.
+bool registerNodes(const NodePlugin& plugin) {
+  std::vector<const NodeType*> types;
+  for (uint32_t i = 0; i < plugin.count; ++i) {
+    const NodePluginRow& one = plugin.rows[i];
+    auto* type = new NodeType(makeNodeType(*one.row, int(nodeTypes().size() + i)));
+    if (one.implementation) type->expand = one.implementation->expand;
+    types.push_back(type);
+  }
+  if (!addNodeTypes(types)) return false;
+  for (uint32_t i = 0; i < plugin.count; ++i) {
+    const NodePluginRow& one = plugin.rows[i];
+    one.registered(*types[i]);
+    if (one.implementation) setBehaviour(*types[i], one.implementation->behaviour);
+  }
+  return true;
+}
+
+// Empty: loaded.
+std::string loadOne(const std::string& path) {
+  void* handle = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (!handle) {
+    const char* reason = ::dlerror();
+    return fmt::format("node plug-in {}: {}", path, reason ? reason : "cannot be loaded");
+  }
+  const auto* plugin = static_cast<const NodePlugin*>(::dlsym(handle, nodePluginSymbol));
+  std::string reason = plugin ? whyRefused(*plugin) : fmt::format("it exports no {}", nodePluginSymbol);
+  if (reason.empty() && !registerNodes(*plugin)) reason = "two of its nodes have one name";
+  if (reason.empty()) return "";
+  ::dlclose(handle);
+  return fmt::format("node plug-in {} is refused: {}", path, reason);
+}
+
+std::vector<fs::path> librariesOf(const std::string& folder) {
+  std::vector<fs::path> files;
+  std::error_code error;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
+    if (it->path().extension() == ".so") files.push_back(it->path());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+} // namespace
+
+std::vector<std::string> nodePluginFolders(std::string_view first) {
+  std::vector<std::string> folders;
+  appendFolders(folders, first);
+  if (const char* path = std::getenv("XVRML_NODE_PATH")) appendFolders(folders, path);
+  Dl_info info{};
+  static const char here = 0;
+  std::error_code error;
+  if (::dladdr(&here, &info) != 0 && info.dli_fname) {
+    const fs::path library = fs::canonical(info.dli_fname, error);
+    if (!error) folders.push_back((library.parent_path() / "xvrml" / "nodes").string());
+  }
+  return folders;
+}
+
+std::vector<std::string> loadNodePlugins(std::string_view first) {
+  static std::mutex mutex;
+  static std::set<std::string> seen;
+  const std::scoped_lock lock(mutex);
+  std::vector<std::string> refused;
+  for (const std::string& folder : nodePluginFolders(first)) {
+    for (const fs::path& file : librariesOf(folder)) {
+      std::error_code error;
+      const fs::path canonical = fs::canonical(file, error);
+      if (!seen.insert(error ? file.string() : canonical.string()).second) continue;
+      if (std::string reason = loadOne(file.string()); !reason.empty()) refused.push_back(std::move(reason));
+    }
+  }
+  return refused;
+}
+
+} // namespace xvrml
