@@ -1,8 +1,8 @@
 // springs.cpp: the nodes of springs.node. See docs/node-plugins.md.
 #include <cmath>
 
-#include "springs_nodes.h"
 #include "xvrml/nodes.h"
+#include <springs_nodes.h>
 
 namespace {
 
