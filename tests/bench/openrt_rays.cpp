@@ -131,11 +131,29 @@ void drawScene() {
 
 double seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
-void direct(benchmark::State& state, int threads, bool robust) {
+// Small dynamic objects: beside the view, or under the terrain where the rays pass their boxes but do not meet them.
+void drawDynamic(int count, bool inView) {
+  rtBindShader(0);
+  const RTid ball = rtBeginObject(0);
+  rtVertexPointer(3, RT_FLOAT, 0, terrain().points.data());
+  const uint32_t corners[] = {0, 1, 1000, 1, 2000, 1000, 0, 2000, 1};
+  rtDrawElements(RT_TRIANGLES, 9, corners, terrain().points.size() / 3);
+  rtEndObject();
+  for (int i = 0; i < count; i++) {
+    const double s = .02, x = inView ? (i % 100) / 12. - 4 : 50 + i % 100, z = inView ? (i / 100) / 12. - 4 : 50;
+    const double m[16] = {s, 0, 0, 0, 0, s, 0, 0, 0, 0, s, 0, x, -1, z, 1};
+    const RTid instance = rtInstantiateObject(ball);
+    rtInstanceMatrix(instance, m);
+    rtInstanceHint(instance, RT_DYNAMIC);
+  }
+}
+
+void direct(benchmark::State& state, int threads, bool robust, int dynamic = 0, bool inView = false) {
   const Raw raw(robust);
   std::vector<float> image(size_t(width) * height), ours(size_t(width) * height * 4);
   rtNewContext(("threads=" + std::to_string(threads)).c_str());
   drawScene();
+  if (dynamic) drawDynamic(dynamic, inView);
   rtRender(); // builds
   double rawTime = 0, ourTime = 0;
   for (auto _ : state) {
@@ -165,3 +183,12 @@ void direct(benchmark::State& state, int threads, bool robust) {
 BENCHMARK_CAPTURE(direct, one_thread_against_robust, 1, true)->UseManualTime()->Iterations(5)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(direct, one_thread_against_default, 1, false)->UseManualTime()->Iterations(5)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(direct, two_threads_against_robust, 2, true)->UseManualTime()->Iterations(5)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(direct, beside_one_dynamic_object, 1, true, 1)->UseManualTime()->Iterations(5)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(direct, above_100_dynamic_objects, 1, true, 100, true)
+    ->UseManualTime()
+    ->Iterations(5)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(direct, above_10000_dynamic_objects, 1, true, 10000, true)
+    ->UseManualTime()
+    ->Iterations(5)
+    ->Unit(benchmark::kMillisecond);

@@ -29,7 +29,7 @@ struct World {
   std::vector<Thing> things;
   std::vector<Place> places;
   float color = .5f;
-  double eye[3] = {0, 2, 14};
+  double eye[3] = {0, 2, 10};
   std::vector<RTid> shaders;
 };
 
@@ -144,6 +144,12 @@ class EditSequences : public testing::TestWithParam<int> {
       define(w, t, hints);
     }
     for (Place& p : w.places) emit(w, p, hints), emitLight(p);
+    const RTid floor = rtBeginObject(0);
+    rtBegin(RT_QUADS);
+    rtVertex3f(-9, -3, 9), rtVertex3f(9, -3, 9), rtVertex3f(9, -3, -9), rtVertex3f(-9, -3, -9);
+    rtEnd();
+    rtEndObject();
+    rtInstantiateObject(floor);
     look(w);
     return context;
   }
@@ -220,7 +226,7 @@ class EditSequences : public testing::TestWithParam<int> {
       }
       break;
     case 7:
-      w.eye[0] = uniform(-30, 30), w.eye[1] = uniform(0, 10), w.eye[2] = uniform(5, 25);
+      w.eye[0] = uniform(-14, 14), w.eye[1] = uniform(0, 8), w.eye[2] = uniform(4, 14);
       look(w);
       break;
     case 8:

@@ -91,6 +91,15 @@ std::vector<Picture> recordFrames(const fs::path& recording) {
   rtInstantiateObject(floor);
   const RTid instance = rtInstantiateObject(pair);
   rtPushMatrix();
+  rtTranslated(0, 1.4, -1), rtScaled(.4, .3, .4);
+  const RTid lively = rtInstantiateObject(pair);
+  rtInstanceHint(lively, RT_DYNAMIC);
+  rtTranslated(0, -4, 0);
+  const RTid hidden = rtInstantiateObject(ball);
+  rtInstanceHint(hidden, RT_DYNAMIC);
+  rtInstanceVisible(hidden, 0);
+  rtPopMatrix();
+  rtPushMatrix();
   rtRotated(-60, 1, 0.5, 0);
   const RTid light = rtUseLight(rtNewShader(rtNewShaderClass("VRML97DirectionalLight", nullptr)));
   rtPopMatrix();
@@ -102,6 +111,9 @@ std::vector<Picture> recordFrames(const fs::path& recording) {
 
   const double moved[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0.5, 0.25, -1, 1};
   rtInstanceMatrix(instance, moved);
+  const double small[16] = {.5, 0, 0, 0, 0, .5, 0, 0, 0, 0, .5, 0, -1, 1.2, 0, 1};
+  rtInstanceMatrix(lively, small);
+  rtInstanceVisible(hidden, 1);
   frames.push_back(rendered());
 
   rtParameter3f(rtParameterHandle("diffuseColor"), 0.9f, 0.1f, 0.2f);
@@ -112,6 +124,8 @@ std::vector<Picture> recordFrames(const fs::path& recording) {
   rtEndObject();
   frames.push_back(rendered());
 
+  rtInstanceMatrix(lively, moved);
+  rtInstanceVisible(instance, 0);
   rtDeleteShader(surface);
   rtDeleteObject(floor);
   rtRemoveLight(light);

@@ -1,0 +1,189 @@
+// What an edit costs: rtRender of a picture of one pixel after it, in a scene of so many dynamic objects beside a static terrain
+// of 20,000 triangles. The counters say what was built a step. And the memory of a forest of instances.
+#include <cmath>
+#include <cstdio>
+#include <vector>
+
+#include <benchmark/benchmark.h>
+#include <unistd.h>
+
+#include "openrt/openrt.h"
+
+namespace {
+
+RTid grid(RTid object, int n, double size, double phase) {
+  std::vector<float> points;
+  std::vector<uint32_t> indices;
+  for (int y = 0; y <= n; y++)
+    for (int x = 0; x <= n; x++) {
+      const double u = size * (double(x) / n - .5), v = size * (double(y) / n - .5);
+      points.insert(points.end(),
+                    {float(u), float(.02 * size * std::sin(9 * u / size + phase) * std::cos(7 * v / size)), float(v)});
+      const auto i = uint32_t(y * (n + 1) + x), w = uint32_t(n + 1);
+      if (x < n && y < n) indices.insert(indices.end(), {i, i + w, i + 1, i + 1, i + w, i + w + 1});
+    }
+  const RTid id = rtBeginObject(object);
+  rtVertexPointer(3, RT_FLOAT, 0, points.data());
+  rtDrawElements(RT_TRIANGLES, indices.size(), indices.data(), points.size() / 3);
+  rtEndObject();
+  return id;
+}
+
+void place(RTid instance, double x, double y, double z) {
+  const double m[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, x, y, z, 1};
+  rtInstanceMatrix(instance, m);
+}
+
+void look(double x) {
+  rtPushMatrix();
+  rtLookAt(x, 40, 100, 0, 0, 0, 0, 1, 0);
+  rtPerspective(45);
+  rtPopMatrix();
+}
+
+RTstats stats() {
+  RTstats s{};
+  s.size = sizeof s;
+  rtGetStats(&s);
+  return s;
+}
+
+class EditScene {
+ public:
+  // same: all dynamic instances are of one object; else each has its own, of 128 triangles.
+  EditScene(int64_t count, bool same) : context_(rtNewContext("threads=2")) {
+    rtFrameBuffer(1, 1, RT_RGBA);
+    rtQuality(RT_SAMPLES_PER_PIXEL, 1);
+    shader = rtNewShader(rtNewShaderClass("VRML97", nullptr));
+    rtBindShader(shader);
+    diffuse = rtParameterHandle("diffuseColor");
+    rtUseLight(rtNewShader(rtNewShaderClass("VRML97DirectionalLight", nullptr)));
+    rtInstantiateObject(grid(0, 100, 200, 0));
+    RTid object = 0;
+    for (int64_t i = 0; i < count; i++) {
+      if (!same || i == 0) {
+        rtGenObjects(1, &object);
+        if (!same) rtObjectHint(object, RT_DYNAMIC);
+        grid(object, 8, 1, 0);
+        objects.push_back(object);
+      }
+      instances.push_back(rtInstantiateObject(object));
+      rtInstanceHint(instances.back(), RT_DYNAMIC);
+      place(instances.back(), double(i % 100) - 50, 2, double(i / 100) - 50);
+    }
+    look(0);
+    rtRender();
+    before_ = stats();
+  }
+  ~EditScene() { rtDeleteContext(context_); }
+  void report(benchmark::State& state) {
+    const RTstats now = stats();
+    const double n = double(state.iterations());
+    state.counters["objects"] = double(now.objectBuilds - before_.objectBuilds) / n;
+    state.counters["topLevels"] = double(now.topLevelBuilds - before_.topLevelBuilds) / n;
+    if (rtGetError() != RT_NO_ERROR) state.SkipWithError(rtGetErrorMessage());
+  }
+  RTid shader = 0;
+  int diffuse = 0;
+  std::vector<RTid> objects, instances;
+
+ private:
+  RTcontext context_;
+  RTstats before_;
+};
+
+template <class Edit> void edit(benchmark::State& state, bool same, const Edit& change) {
+  EditScene scene(state.range(0), same);
+  int step = 0;
+  for (auto _ : state) {
+    change(scene, ++step);
+    rtRender();
+  }
+  scene.report(state);
+}
+
+void nothing(benchmark::State& state) {
+  edit(state, true, [](EditScene&, int) {});
+}
+void moveOne(benchmark::State& state) {
+  edit(state, true, [](EditScene& s, int i) { place(s.instances[size_t(i * 7) % s.instances.size()], i % 50, 3, i % 31); });
+}
+void moveAll(benchmark::State& state) {
+  edit(state, true, [](EditScene& s, int i) {
+    for (size_t k = 0; k < s.instances.size(); k++) place(s.instances[k], double(k % 100) - 50, 2 + i % 5, double(k / 100) - 50);
+  });
+}
+void hideOne(benchmark::State& state) {
+  edit(state, true, [](EditScene& s, int i) { rtInstanceVisible(s.instances[0], i % 2); });
+}
+void moveOneOfDifferent(benchmark::State& state) {
+  edit(state, false, [](EditScene& s, int i) { place(s.instances[size_t(i * 7) % s.instances.size()], i % 50, 3, i % 31); });
+}
+void redefineOne(benchmark::State& state) {
+  edit(state, false, [](EditScene& s, int i) { grid(s.objects[size_t(i) % s.objects.size()], 8, 1, i); });
+}
+void parameter(benchmark::State& state) {
+  edit(state, true, [](EditScene& s, int i) {
+    rtBindShader(s.shader);
+    rtParameter3f(s.diffuse, float(i % 10) / 10, .5f, .5f);
+  });
+}
+void moveCamera(benchmark::State& state) {
+  edit(state, true, [](EditScene&, int i) { look(i % 20); });
+}
+void addAndDelete(benchmark::State& state) {
+  edit(state, true, [](EditScene& s, int i) {
+    rtDeleteInstance(s.instances.back());
+    s.instances.back() = rtInstantiateObject(s.objects[0]);
+    rtInstanceHint(s.instances.back(), RT_DYNAMIC);
+    place(s.instances.back(), i % 40, 3, 0);
+  });
+}
+void buildAll(benchmark::State& state) { // the camera leaves the cell of the grid of origins: everything static is rounded anew
+  edit(state, true, [](EditScene&, int i) { look(i % 2 ? 3000 : 0); });
+}
+
+BENCHMARK(nothing)->Arg(10)->Arg(10000)->Unit(benchmark::kMillisecond);
+BENCHMARK(moveOne)->RangeMultiplier(10)->Range(10, 10000)->Unit(benchmark::kMillisecond);
+BENCHMARK(moveOneOfDifferent)->Arg(10)->Arg(10000)->Unit(benchmark::kMillisecond);
+BENCHMARK(moveAll)->Arg(10)->Arg(10000)->Unit(benchmark::kMillisecond);
+BENCHMARK(hideOne)->Arg(10)->Arg(10000)->Unit(benchmark::kMillisecond);
+BENCHMARK(redefineOne)->Arg(10)->Arg(10000)->Unit(benchmark::kMillisecond);
+BENCHMARK(parameter)->Arg(10)->Arg(10000)->Unit(benchmark::kMillisecond);
+BENCHMARK(moveCamera)->Arg(10)->Arg(10000)->Unit(benchmark::kMillisecond);
+BENCHMARK(addAndDelete)->Arg(10)->Arg(10000)->Unit(benchmark::kMillisecond);
+BENCHMARK(buildAll)->Arg(10)->Arg(10000)->Unit(benchmark::kMillisecond);
+
+double residentMegabytes() {
+  long pages = 0, resident = 0;
+  if (FILE* file = std::fopen("/proc/self/statm", "re")) {
+    if (std::fscanf(file, "%ld %ld", &pages, &resident) != 2) resident = 0;
+    std::fclose(file);
+  }
+  return double(resident) * double(sysconf(_SC_PAGESIZE)) / 1e6;
+}
+
+// 10,000 instances of 10,000 triangles. Argument: 1 if they are dynamic.
+void forest(benchmark::State& state) {
+  double bytes = 0, resident = 0;
+  for (auto _ : state) {
+    const double before = residentMegabytes();
+    const RTcontext context = rtNewContext("threads=2");
+    rtFrameBuffer(1, 1, RT_RGBA);
+    const RTid tree = grid(0, 71, 1, 0);
+    for (int i = 0; i < 10000; i++) {
+      const RTid instance = rtInstantiateObject(tree);
+      rtInstanceHint(instance, state.range(0) ? RT_DYNAMIC : RT_STATIC);
+      place(instance, i % 100, 0, i / 100);
+    }
+    look(0);
+    rtRender();
+    bytes = double(stats().bvhBytes) / 1e6, resident = residentMegabytes() - before;
+    rtDeleteContext(context);
+  }
+  state.counters["bvhMB"] = bytes;
+  state.counters["residentMB"] = resident;
+}
+BENCHMARK(forest)->Arg(0)->Arg(1)->Iterations(1)->Unit(benchmark::kMillisecond);
+
+} // namespace
