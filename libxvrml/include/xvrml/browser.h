@@ -73,8 +73,8 @@ class Browser {
   std::vector<NodeRef> sensorsAtPointer() const; // pointing sensors and Anchors that it is over, or that have grabbed it
   // Does what a click on an Anchor does (6.2): binds the Viewpoint that its first url names (#name), else calls back.
   void activate(Node& anchor);
-  void
-  onAnchor(std::function<void(Node& anchor)> callback); // its urls lead elsewhere; [in pointer or activate, outside cascades]
+  // Its urls lead elsewhere. [within pointer or activate, outside of cascades]
+  void onAnchor(std::function<void(Node& anchor)> callback);
   // Moves the viewer for a time. Between ticks: what the user does at now(). dt: seconds.
   void navigate(const NavigationInput& input, double dt);
   void key(Key key, bool pressed);     // ticks move the viewer while arrows are held
