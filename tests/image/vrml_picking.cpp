@@ -12,7 +12,8 @@ const std::string everything = R"(
 Viewpoint { position 0 3 16 orientation 1 0 0 -0.15 }
 Transform { translation -6 3 0 rotation 1 1 0 0.7 children Shape { geometry Box { size 2 1 3 } } }
 Transform { translation -3 3 0 scale 1 2 1 children Shape { geometry Sphere {} } }
-Transform { translation 0 3 0 rotation 0 0 1 0.5 scale 1 1 2 scaleOrientation 0 1 1 1 children Shape { geometry Cylinder { top FALSE } } }
+Transform { translation 0 3 0 rotation 0 0 1 0.5 scale 1 1 2 scaleOrientation 0 1 1 1
+  children Shape { geometry Cylinder { top FALSE } } }
 Transform { translation 3 3 0 rotation 1 0 0 0.8 children Shape { geometry Cone { bottom FALSE } } }
 Transform { translation 5 3 0 children Shape { geometry ElevationGrid { xDimension 3 zDimension 3 solid FALSE
   height [ 0 1 0 1 2 0 0 0.5 1 ] } } }
@@ -23,9 +24,11 @@ Transform { translation 1 0 0 rotation 0 1 0 0.4 children Shape { geometry Index
 Transform { translation 3 0 0 children Shape { geometry IndexedFaceSet { ccw FALSE
   coord Coordinate { point [ 0 0 0, 1 0 0, 0 1 0 ] } coordIndex [ 0 1 2 -1 0 2 1 ] } } }
 Transform { translation 5 -1 0 rotation 0 1 0 2 children Billboard { children Shape { geometry Box { size 1 1 0.1 } } } }
-Transform { translation 6 1 0 children LOD { range [ 5 ] level [ Shape { geometry Box {} } Shape { geometry Sphere { radius 0.7 } } ] } }
+Transform { translation 6 1 0 children LOD { range [ 5 ] level [
+  Shape { geometry Box {} } Shape { geometry Sphere { radius 0.7 } } ] } }
 Switch { whichChoice 1 choice [ Transform { translation 0 0 5 children Shape { geometry Box {} } }
-  Transform { translation -1 -2 0 children [ DEF S Shape { geometry Box {} } Transform { translation 3 0 0 scale 0.5 1 1 children USE S } ] } ] }
+  Transform { translation -1 -2 0 children [ DEF S Shape { geometry Box {} }
+    Transform { translation 3 0 0 scale 0.5 1 1 children USE S } ] } ] }
 Collision { proxy Shape { geometry Box { size 9 9 9 } } }
 )";
 
