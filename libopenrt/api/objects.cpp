@@ -17,6 +17,7 @@ template <class Change> void changeInstance(Context& c, RTid id, const Change& c
 // the flag travels in its edit, so that every backend and every recording builds the same structure.
 template <class T> void placeInstance(Context& c, RTid id, T InstanceState::*member, const T& value) {
   InstanceState& state = c.scene.instance(id);
+  if (state.*member == value) return;
   c.scene.instances.touch(id, state);
   if (state.committed) state.dynamic = true;
   state.*member = value;

@@ -13,7 +13,7 @@ class Flattener {
   explicit Flattener(const Scene& scene) : scene_(scene) {
     for (const auto& [id, light] : scene.lights)
       if (light.scope) scoped_[light.scope].push_back(id);
-    result_.lightSets.push_back(unscopedLights(scene));
+    result_.lightSet(unscopedLights(scene));
   }
 
   Flattened run() {
@@ -120,16 +120,10 @@ class Flattener {
   uint32_t lightSetOf(uint32_t instance) {
     const auto found = scoped_.find(instance);
     if (found == scoped_.end()) return 0;
-    const auto [set, fresh] = setOf_.try_emplace(instance, 0);
-    if (fresh) {
-      std::vector<uint32_t> all = result_.lightSets[0];
-      all.insert(all.end(), found->second.begin(), found->second.end());
-      std::sort(all.begin(), all.end());
-      const auto known = std::find(result_.lightSets.begin(), result_.lightSets.end(), all);
-      set->second = uint32_t(known - result_.lightSets.begin());
-      if (known == result_.lightSets.end()) result_.lightSets.push_back(std::move(all));
-    }
-    return set->second;
+    std::vector<uint32_t> all = result_.lightSets[0];
+    all.insert(all.end(), found->second.begin(), found->second.end());
+    std::sort(all.begin(), all.end());
+    return result_.lightSet(all);
   }
 
   // Clusters breadth first: the children of one stand in a row, behind it.
@@ -183,7 +177,7 @@ class Flattener {
   size_t items_ = 0;
   std::vector<Frame> stack_;
   std::unordered_map<uint32_t, std::vector<uint32_t>> scoped_;
-  std::unordered_map<uint32_t, uint32_t> setOf_, partOf_; // by instance; by object
+  std::unordered_map<uint32_t, uint32_t> partOf_; // by object
   std::unordered_map<uint32_t, uint8_t> drawable_;
 };
 
@@ -194,10 +188,13 @@ uint32_t Flattened::unite(uint32_t a, uint32_t b) {
   if (a == 0) return b;
   std::vector<uint32_t> all;
   std::set_union(lightSets[a].begin(), lightSets[a].end(), lightSets[b].begin(), lightSets[b].end(), std::back_inserter(all));
-  const auto known = std::find(lightSets.begin(), lightSets.end(), all);
-  const auto index = uint32_t(known - lightSets.begin());
-  if (known == lightSets.end()) lightSets.push_back(std::move(all));
-  return index;
+  return lightSet(all);
+}
+
+uint32_t Flattened::lightSet(const std::vector<uint32_t>& ids) {
+  const auto [found, fresh] = setNumbers.try_emplace(ids, uint32_t(lightSets.size()));
+  if (fresh) lightSets.push_back(ids);
+  return found->second;
 }
 
 Inherited Flattened::inherit(const Inherited& outer, const Inherited& inner) {

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <utility>
 #include <vector>
 
@@ -56,6 +57,8 @@ struct Flattened {
   std::vector<std::vector<uint32_t>> lightSets;          // ids of the lights that shine on an item; set 0: the unscoped ones
   uint64_t rejected = 0;                                 // items whose matrix within their part is not usable
   bool truncated = false;                                // more than maxPlacements
+  std::map<std::vector<uint32_t>, uint32_t> setNumbers;  // of the light sets
+  uint32_t lightSet(const std::vector<uint32_t>& ids);   // its number
   uint32_t unite(uint32_t a, uint32_t b);                // the light set of both together
   Inherited inherit(const Inherited& outer, const Inherited& inner); // of the two paths, one after the other
 };

@@ -21,6 +21,7 @@ inline double length(const Vec3d& a) { return std::sqrt(dot(a, a)); }
 struct Matrix4d {
   std::array<double, 16> m{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 
+  bool operator==(const Matrix4d&) const = default;
   Vec3d column(int i) const { return {m[4 * i], m[4 * i + 1], m[4 * i + 2]}; }
   Vec3d translation() const { return column(3); }
   Vec3d vector(const Vec3d& v) const { return column(0) * v.x + column(1) * v.y + column(2) * v.z; }

@@ -173,6 +173,30 @@ TEST_F(Placement, AThousandNestedTurns) { // N12
   expectGrey(look(0, half * 1.00001), 0);
 }
 
+// A sphere that scales to an ellipsoid is an instance inside, however it is placed: queries give its normal in the world.
+TEST_F(Placement, NormalsOfEllipsoidsInQueries) {
+  const RTid ball = rtBeginObject(0);
+  rtSphere(1);
+  rtEndObject();
+  for (const RTenum hint : {RT_STATIC, RT_DYNAMIC}) {
+    rtPushMatrix();
+    apply(scaling(1, 2, -1));
+    const RTid instance = place(ball);
+    rtInstanceHint(instance, hint);
+    rtPopMatrix();
+    look();
+    const RTray ray{{0, 1, 5}, 0, {0, 0, -1}, 10};
+    RThit hit;
+    rtCastRays(1, &ray, &hit);
+    const double z = std::sqrt(.75), l = std::sqrt(.0625 + .75);
+    EXPECT_NEAR(hit.t, 5 - z, 1e-5);
+    EXPECT_NEAR(hit.normal[0], 0, 1e-5);
+    EXPECT_NEAR(hit.normal[1], .25 / l, 1e-5);
+    EXPECT_NEAR(hit.normal[2], z / l, 1e-5);
+    rtDeleteInstance(instance);
+  }
+}
+
 TEST_F(Placement, TheNearestOfTwoSquaresIsSeen) {
   place(square(Shader("VRML97").setInt("lit", 0), 10));
   rtPushMatrix();

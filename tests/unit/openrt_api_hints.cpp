@@ -57,6 +57,15 @@ TEST_F(Hints, AHiddenInstanceIsDynamicFromThenOn) {
   EXPECT_EQ(instanceFlags(), Flags{true});
 }
 
+TEST_F(Hints, WhatStaysWhereItIsSendsNothing) {
+  const RTid instance = rtInstantiateObject(triangleObject());
+  rtInstanceMatrix(instance, matrix);
+  commit();
+  rtInstanceMatrix(instance, matrix);
+  rtInstanceVisible(instance, 2);
+  EXPECT_TRUE(commit().edits.edits.empty());
+}
+
 TEST_F(Hints, ShaderAndUserDataMakeNothingDynamic) {
   const RTid instance = rtInstantiateObject(triangleObject());
   commit();

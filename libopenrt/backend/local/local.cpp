@@ -70,7 +70,10 @@ void LocalBackend::bringUpToDate(RenderScene& next) {
       options_.log(3, ("too many placed objects: only the first " + std::to_string(maxPlacements) + " are drawn").c_str(),
                    options_.logUser);
   } else {
-    if (c.lights) flat_.lightSets = {unscopedLights(scene_)}; // no light is scoped, nor was: there is but this set
+    if (c.lights) { // no light is scoped, nor was: there is but this set
+      flat_.lightSets.clear(), flat_.setNumbers.clear();
+      flat_.lightSet(unscopedLights(scene_));
+    }
     moved = replace(scene_, flat_, c.moved);
     builder_.survey.place(flat_, moved);
   }
