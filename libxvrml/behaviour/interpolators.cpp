@@ -48,9 +48,10 @@ template <class Interpolator> Shape shapeOf(Events& events, Interpolator& node, 
   const bool fits = lists ? values % keys == 0 : values == keys;
   if (auto* state = static_cast<State*>(events.state(node)); !fits && state && !state->warned) {
     state->warned = true;
-    events.diagnostics().warn(node.source,
-                              fmt::format("{}: {} keys but {} values: {} (4.6.8)", node.type().name, keys, values,
-                                          lists && values < keys ? "nothing is sent" : "those in excess are ignored"));
+    events.diagnostics().warn(node.source, fmt::format("{}: {} keys but {} values: {} (4.6.8)", node.type().name, keys, values,
+                                                       values > keys ? "values in excess are ignored"
+                                                       : lists       ? "nothing is sent"
+                                                                     : "keys in excess are ignored"));
   }
   if (lists) return values < keys ? Shape{} : Shape{keys, values / keys};
   return {std::min(keys, values), 1};

@@ -27,7 +27,9 @@ struct State : Media {
       if (decodesFilms()) {
         film = FilmData::read(path, limits);
       } else { // a picture at least, if it is a GIF
-        image = readImage(path, limits);
+        try {
+          image = readImage(path, limits);
+        } catch (const std::exception&) { FilmData::read(path, limits); } // says why
         wanted = shown = 0;
         events.diagnostics().warn(node.source, "MovieTexture: the first picture only: this build has no decoder of films");
       }
