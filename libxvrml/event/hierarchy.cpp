@@ -25,6 +25,12 @@ void childrenInHierarchy(Node& node, std::vector<Node*>& out) {
     for (const NodeRef& root : content->roots) out.push_back(root.get());
 }
 
+void holdersOf(const Node& node, std::vector<Node*>& holders) {
+  if (!node.live) return;
+  const std::vector<Node*>& parents = liveOf(node)->parents;
+  holders.insert(holders.end(), parents.begin(), parents.end());
+}
+
 std::vector<Path> pathsTo(const Node& node, size_t limit) {
   struct Open {
     Node* node;

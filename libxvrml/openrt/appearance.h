@@ -26,17 +26,58 @@ class Surfaces {
   // lit nor textured (clauses 6.24, 6.36).
   Surface of(Node* appearance, bool lines);
 
+  // What a change of an appearance node, or of a node it holds, means for shapes that use it.
+  struct Effect {
+    bool other = false;    // they need another shader
+    bool colored = false;  // lines need another colour
+    bool textured = false; // they have a texture, and had none
+  };
+  // Gives the shaders of an appearance (rendered) new parameters. No effect if no shape uses it.
+  Effect update(Node& appearance);
+  // An ORTShader has other fields; update() of the appearances that hold it has to follow.
+  void updateCustom(Node& shader);
+  // Shaders of appearances that no shape uses any more; users: those that are used, rendered.
+  template <class Uses> void forgetUnless(const Uses& uses);
+  void clear(); // deletes everything
+  size_t count() const { return surfaces_.size() + lines_.size(); }
+  uint64_t parametersSet() const { return sets_; }
+
  private:
+  struct Entry {
+    NodeRef appearance;
+    Surface surface;
+    RTid own = 0; // of the class VRML97
+    bool textured = false;
+  };
+  struct Custom {
+    NodeRef node;
+    RTid shader = 0;
+    std::string name, file;
+    std::vector<std::string> options; // names of the parameters it has been given
+  };
+  using Entries = std::unordered_map<const Node*, Entry>;
   Surface makeLines(Node* appearance);
-  RTid makeSurface(Node* appearance);
-  RTid makeCustom(Node& shaderNode);
+  void makeSurface(Entry& entry);
+  Custom makeCustom(Node& shaderNode);
+  void forget(const Entry& entry);
 
   World& world_;
   bool linear_;
   ShaderClasses& classes_;
   Textures& textures_;
-  std::unordered_map<const Node*, Surface> surfaces_, lines_;
-  std::unordered_map<const Node*, RTid> custom_; // by ORTShader
+  Entries surfaces_, lines_;
+  std::unordered_map<const Node*, Custom> custom_; // by ORTShader
+  uint64_t sets_ = 0;
 };
+
+template <class Uses> void Surfaces::forgetUnless(const Uses& uses) {
+  const auto sweep = [&](const auto& known) {
+    if (!known.first || uses(known.first)) return false;
+    forget(known.second);
+    return true;
+  };
+  std::erase_if(surfaces_, sweep);
+  std::erase_if(lines_, sweep);
+}
 
 } // namespace xvrml::mapping

@@ -26,52 +26,73 @@ constexpr Picture pictures[] = {
     {"topTexture", &nodes::Background::topUrl},     {"bottomTexture", &nodes::Background::bottomUrl},
 };
 
-void setBackground(ShaderSetup& shader, const nodes::Background& node, bool linear, const RTid (&textures)[6]) {
-  setColors(shader, "skyColor", node.skyColor, linear);
+} // namespace
+
+void Environment::setBackground(ShaderSetup& shader, const nodes::Background& node, const RTid (&textures)[6]) {
+  setColors(shader, "skyColor", node.skyColor, linear_);
   shader.floats("skyAngle", node.skyAngle);
-  setColors(shader, "groundColor", node.groundColor, linear);
+  setColors(shader, "groundColor", node.groundColor, linear_);
   shader.floats("groundAngle", node.groundAngle);
   for (int i = 0; i < 6; ++i)
-    if (textures[i] != 0) shader.texture(pictures[i].name, textures[i]);
+    if (textures[i] != 0 || !shader.fresh()) shader.texture(pictures[i].name, textures[i]);
 }
 
 // Clause 6.19: distances are measured in the fog's own coordinate system.
-void setFog(World& world, ShaderSetup& shader, const nodes::Fog& fog, const Matrix& fogToWorld, const Matrix& environment,
-            bool linear) {
-  if (!(fog.visibilityRange > 0)) return;
+void Environment::setFog(ShaderSetup& shader) {
+  const auto& fog = static_cast<const nodes::Fog&>(*fog_);
+  Matrix toFog;
+  if (!(fog.visibilityRange > 0) || !invert(fogMatrix_, toFog)) {
+    if (!shader.fresh()) shader.integer("fogType", 0);
+    return;
+  }
   const bool exponential = fog.fogType == "EXPONENTIAL";
   if (!exponential && fog.fogType != "LINEAR")
-    world.diagnostics.warn(fog.source, "Fog: fogType \"" + fog.fogType + "\" is neither LINEAR nor EXPONENTIAL; LINEAR is used");
-  Matrix toFog;
-  if (!invert(fogToWorld, toFog)) return;
+    world_.diagnostics.warn(fog.source, "Fog: fogType \"" + fog.fogType + "\" is neither LINEAR nor EXPONENTIAL; LINEAR is used");
   shader.integer("fogType", exponential ? 2 : 1);
-  shader.color("fogColor", convert(fog.color, linear));
+  shader.color("fogColor", convert(fog.color, linear_));
   shader.number("fogRange", fog.visibilityRange);
-  shader.matrix("fogMatrix", compose(toFog, environment));
+  shader.matrix("fogMatrix", compose(toFog, matrix_));
 }
 
-} // namespace
+void Environment::setAll(ShaderSetup& shader, const RTid (&images)[6]) {
+  if (background_) setBackground(shader, static_cast<const nodes::Background&>(*background_), images);
+  if (fog_) setFog(shader);
+}
 
-void useEnvironment(World& world, bool linearColor, const Graph& graph, const Places& places, const Bound& bound,
-                    ShaderClasses& classes, Textures& textures) {
-  if (bound.background == none && bound.fog == none) return;
-  const auto place = [&](int32_t index) -> const Place& { return places.all[size_t(index)]; };
-  const auto node = [&](int32_t index) { return graph.items[place(index).item].node; };
+void Environment::clear() {
+  if (shader_ != 0) rtDeleteShader(shader_); // and nothing is used in its place
+  shader_ = 0;
+}
+
+void Environment::follow(const Places& places, const Bound& bound) {
+  const auto worldOf = [&](int32_t place) { return place == none ? Matrix() : places.all[size_t(place)].world; };
+  const Matrix matrix = bound.background ? rotationOnly(worldOf(bound.backgroundPlace)) : Matrix();
+  const Matrix fogMatrix = bound.fog ? worldOf(bound.fogPlace) : Matrix();
+  const bool others = bound.background != background_ || bound.fog != fog_, turned = matrix != matrix_;
+  if (!others && !stale_ && !turned && fogMatrix == fogMatrix_) return;
+  background_ = bound.background, fog_ = bound.fog;
+  matrix_ = matrix, fogMatrix_ = fogMatrix;
+  stale_ = false;
+  if (others) clear();
+  if (!background_ && !fog_) return;
   RTid images[6] = {};
-  const nodes::Background* background = bound.background == none ? nullptr : nodeCast<nodes::Background>(node(bound.background));
-  for (int i = 0; background && i < 6; ++i) images[i] = textures.ofUrls(background->*pictures[i].urls, *background, false, false);
-  const Matrix environment = background ? rotationOnly(place(bound.background).world) : Matrix();
-  RTid shader;
-  {
-    ShaderSetup setup(classes.get("VRML97Environment", ""));
-    shader = setup.id();
-    if (background) setBackground(setup, *background, linearColor, images);
-    if (bound.fog != none)
-      setFog(world, setup, static_cast<nodes::Fog&>(*node(bound.fog)), place(bound.fog).world, environment, linearColor);
+  const nodes::Background* background = nodeCast<nodes::Background>(background_);
+  for (int i = 0; background && i < 6; ++i)
+    images[i] = textures_.ofUrls(background->*pictures[i].urls, *background, false, false);
+  const bool fresh = shader_ == 0;
+  if (fresh) {
+    ShaderSetup setup(classes_.get("VRML97Environment", ""));
+    shader_ = setup.id();
+    setAll(setup, images);
+  } else {
+    ShaderSetup setup(shader_, sets_);
+    setAll(setup, images);
   }
-  load(environment);
-  rtUseEnvironment(shader);
-  report(world.diagnostics, background ? background->source : node(bound.fog)->source, "environment");
+  if (fresh || turned) {
+    load(matrix_);
+    rtUseEnvironment(shader_);
+  }
+  report(world_.diagnostics, background_ ? background_->source : fog_->source, "environment");
 }
 
 } // namespace xvrml::mapping

@@ -18,32 +18,36 @@ class Measure {
 
   Bounds all() {
     // Children stand before parents, so a shared item's shared parts have been measured when it is met.
-    for (ItemId id = 1; id < graph_.items.size(); ++id)
-      if (graph_.items[id].shared) boxes_[id] = below({id, none, Matrix()});
-    return below({graph_.root, 0, Matrix()});
+    for (const ItemId id : graph_.order)
+      if (shared(id)) boxes_[id] = below({id, none, Matrix()});
+    return below({Graph::root, 0, Matrix()});
   }
 
  private:
+  bool shared(ItemId id) const {
+    const Item& item = graph_.items[id];
+    return item.own != Own::none && !item.placed && item.parentCount > 1;
+  }
+
+  // Of an item's content, without its own matrix.
   Bounds below(const Step& first) {
     Bounds bounds;
     std::vector<Step> open{first};
-    bool top = true;
     while (!open.empty()) {
       const Step step = open.back();
       open.pop_back();
       const Item& item = graph_.items[step.item];
-      if (item.shared && !top) {
-        growByBox(bounds, boxes_[step.item], step.matrix);
-        continue;
-      }
-      top = false;
-      Matrix inside = item.matrix == none ? step.matrix : compose(step.matrix, graph_.matrixOf(item));
-      if (step.place != none) inside = compose(inside, places_.turns[size_t(step.place)]);
-      if (item.kind == Kind::shape) graph_.meshes.grow(bounds, item.mesh, inside);
-      const uint32_t count = item.kind == Kind::lod ? std::min(item.childCount, 1u) : item.childCount;
-      for (uint32_t c = 0; c < count; ++c) {
+      if (item.kind == Kind::shape) graph_.meshes.grow(bounds, item.mesh, step.matrix);
+      const size_t count = item.kind == Kind::lod ? std::min(item.children.size(), size_t(1)) : item.children.size();
+      for (size_t c = 0; c < count; ++c) {
+        const ItemId child = item.children[c];
+        if (!graph_.items[child].draws) continue;
         const int32_t at = step.place == none ? none : places_.children[places_.all[size_t(step.place)].firstChild + c];
-        open.push_back({graph_.begin(item)[c], at, inside});
+        const Matrix inside = graph_.below(step.matrix, graph_.items[child]);
+        if (at == none && shared(child))
+          growByBox(bounds, boxes_[child], inside);
+        else
+          open.push_back({child, at, at == none ? inside : compose(inside, places_.turns[size_t(at)])});
       }
     }
     return bounds;

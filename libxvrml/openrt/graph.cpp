@@ -1,108 +1,194 @@
-// graph.cpp: builds the render graph: a walk over the scene graph with a stack of its own, one item a node.
+// graph.cpp: builds the render graph and keeps it: one item a node, planned from a list of what is to be planned; then an
+// order for the passes by a walk with a stack of its own.
 #include "openrt/graph.h"
+
+#include <algorithm>
 
 #include "openrt/appearance.h"
 #include "xvrml/nodes.h"
 
 namespace xvrml::mapping {
-namespace {
 
-class Builder {
- public:
-  Builder(Graph& graph, World& world) : graph_(graph), context_{world} {}
+Graph::Graph(World& world) : meshes(world), context_{world} {
+  items.resize(2);
+  items[0].planned = true;
+  names.emplace_back();
+  planRoots();
+  plan(root);
+  settle();
+}
 
-  void build() {
-    graph_.items.emplace_back();
-    graph_.names.emplace_back();
-    Frame root;
-    root.plan.kind = Kind::group;
-    root.plan.add(context_.world.scope.roots);
-    stack_.push_back(std::move(root));
-    while (!stack_.empty()) step();
-    graph_.root = result_;
+ItemId Graph::find(const Node* node) const {
+  const auto found = known_.find(node);
+  return found == known_.end() ? 0 : found->second;
+}
+
+void Graph::plan(ItemId item) {
+  if (item == 0) return;
+  items[item].planned = false;
+  pending_.push_back(item);
+}
+
+bool Graph::planRoots() {
+  const std::vector<NodeRef>& now = context_.world.scope.roots;
+  const auto same = [](const Node* a, const NodeRef& b) { return a == b.get(); };
+  if (std::equal(roots_.begin(), roots_.end(), now.begin(), now.end(), same)) return false;
+  roots_.clear();
+  for (const NodeRef& node : now) roots_.push_back(node.get());
+  plan(root);
+  return true;
+}
+
+bool Graph::readMatrix(ItemId id) {
+  Item& item = items[id];
+  auto* t = nodeCast<nodes::Transform>(item.node);
+  if (!t) return false;
+  const Matrix matrix = transformMatrix({t->center, t->translation, t->scale, t->rotation, t->scaleOrientation});
+  if (item.matrix)
+    *item.matrix = matrix;
+  else
+    item.matrix = std::make_unique<Matrix>(matrix);
+  return true;
+}
+
+void Graph::readLight(ItemId id) {
+  Item& item = items[id];
+  Plan plan;
+  planOf(item.node->type())(context_, *item.node, plan);
+  item.on = plan.on;
+}
+
+ItemId Graph::newItem() {
+  if (free_.empty()) {
+    items.emplace_back();
+    return ItemId(items.size() - 1);
   }
+  const ItemId id = free_.back();
+  free_.pop_back();
+  return id;
+}
 
- private:
-  struct Frame {
-    Node* node = nullptr;    // rendered
-    Node* written = nullptr; // as the file has it: a prototype instance or the node itself
-    Plan plan;
-    size_t next = 0;
-    std::vector<ItemId> done;
+// 0 if nothing is ever drawn for such a node.
+ItemId Graph::itemFor(Node* written) {
+  Node* node = renderedNode(written);
+  if (!node || !planOf(node->type())) return 0;
+  const auto [known, fresh] = known_.try_emplace(node, 0);
+  if (!fresh) return known->second;
+  const ItemId id = known->second = newItem();
+  items[id].node = NodeRef(node);
+  items[id].name = nameId(node->defName.empty() ? written->defName : node->defName);
+  pending_.push_back(id);
+  return id;
+}
+
+void Graph::planItem(ItemId id) {
+  Plan plan;
+  if (id == root) {
+    plan.kind = Kind::group;
+    plan.add(context_.world.scope.roots);
+  } else {
+    Node& node = *items[id].node;
+    planOf(node.type())(context_, node, plan);
+  }
+  std::vector<ItemId> children;
+  children.reserve(plan.children.size());
+  for (Node* written : plan.children)
+    if (const ItemId child = itemFor(written); child != 0 || plan.keepEmpty) children.push_back(child); // items may move
+  Item& item = items[id];
+  item.planned = true;
+  item.kind = plan.kind;
+  item.hint = plan.hint;
+  item.isInline = plan.isInline;
+  item.on = plan.on;
+  item.children = std::move(children);
+  item.matrix = plan.matrix == Matrix() ? nullptr : std::make_unique<Matrix>(plan.matrix);
+  int32_t mesh = none;
+  if (auto* shape = nodeCast<nodes::Shape>(item.node); shape && item.kind == Kind::shape)
+    mesh = meshes.add(*renderedNode(shape->geometry.get()), isTextured(shape->appearance.get()));
+  if (item.mesh != none) meshes.drop(item.mesh);
+  item.mesh = mesh;
+}
+
+void Graph::settle() {
+  for (const ItemId id : dropped_) free_.push_back(id);
+  dropped_.clear();
+  replanned_.clear();
+  while (!pending_.empty()) {
+    const ItemId id = pending_.back();
+    pending_.pop_back();
+    if (items[id].planned) continue;
+    planItem(id);
+    replanned_.push_back(id);
+  }
+  sortItems();
+  linkParents();
+  std::erase_if(replanned_, [&](ItemId id) { return !items[id].planned; });
+}
+
+// A walk from the root, children in their order. An edge back to an item that is being walked would close a circle: it is
+// taken out.
+void Graph::sortItems() {
+  enum : uint8_t { unseen, open, done };
+  struct Open {
+    ItemId item;
+    uint32_t next;
   };
-  static constexpr ItemId inProgress = ~ItemId(0);
-
-  // Looks at the next child of the topmost node, or closes it.
-  void step() {
-    Frame& frame = stack_.back();
-    if (frame.next == frame.plan.children.size()) return close();
-    Node* written = frame.plan.children[frame.next++];
-    Node* node = renderedNode(written);
-    const PlanFunction plan = node ? planOf(node->type()) : nullptr;
-    if (!plan) return deliver(frame, 0);
-    const auto [known, fresh] = made_.try_emplace(node, inProgress);
-    if (!fresh) {
-      if (known->second == inProgress) {
-        context_.world.diagnostics.warn(node->source, "a " + node->type().name + " node that contains itself is drawn once");
-        return deliver(frame, 0);
-      }
-      return deliver(frame, known->second);
+  std::vector<uint8_t> state(items.size(), unseen);
+  std::vector<Open> stack{{root, 0}};
+  order.clear();
+  state[root] = open;
+  while (!stack.empty()) {
+    Open& top = stack.back();
+    Item& item = items[top.item];
+    if (top.next == item.children.size()) {
+      item.position = uint32_t(order.size());
+      order.push_back(top.item);
+      state[top.item] = done;
+      stack.pop_back();
+      continue;
     }
-    Frame child{node, written, {}, 0, {}};
-    plan(context_, *node, child.plan);
-    stack_.push_back(std::move(child));
-  }
-
-  static void deliver(Frame& frame, ItemId item) {
-    if (item != 0 || frame.plan.keepEmpty) frame.done.push_back(item);
-  }
-
-  void close() {
-    Frame frame = std::move(stack_.back());
-    stack_.pop_back();
-    const ItemId id = worthKeeping(frame) ? makeItem(frame) : 0;
-    if (frame.node) made_[frame.node] = id;
-    if (stack_.empty())
-      result_ = id;
-    else
-      deliver(stack_.back(), id);
-  }
-
-  static bool worthKeeping(const Frame& frame) {
-    if (frame.plan.kind == Kind::none) return false;
-    const bool grouping = frame.plan.kind == Kind::group || frame.plan.kind == Kind::billboard || frame.plan.kind == Kind::lod;
-    return !frame.node || !grouping || !frame.done.empty();
-  }
-
-  ItemId makeItem(const Frame& frame) {
-    Item item;
-    item.node = frame.node;
-    item.kind = frame.plan.kind;
-    item.isInline = frame.plan.isInline;
-    if (frame.plan.moves) {
-      item.matrix = int32_t(graph_.matrices.size());
-      graph_.matrices.push_back(frame.plan.matrix);
+    ItemId& child = item.children[top.next++];
+    if (child == 0 || state[child] == done) continue;
+    if (state[child] == unseen) {
+      state[child] = open;
+      stack.push_back({child, 0});
+      continue;
     }
-    item.firstChild = uint32_t(graph_.children.size());
-    item.childCount = uint32_t(frame.done.size());
-    graph_.children.insert(graph_.children.end(), frame.done.begin(), frame.done.end());
-    if (frame.node) item.name = graph_.nameId(frame.node->defName.empty() ? frame.written->defName : frame.node->defName);
-    if (auto* shape = nodeCast<nodes::Shape>(frame.node))
-      item.mesh = graph_.meshes.add(*renderedNode(shape->geometry.get()), isTextured(shape->appearance.get()));
-    graph_.items.push_back(item);
-    return ItemId(graph_.items.size() - 1);
+    const Node& node = *items[child].node;
+    context_.world.diagnostics.warn(node.source, "a " + node.type().name + " node that contains itself is drawn once");
+    child = 0;
   }
+  for (ItemId id = root + 1; id < items.size(); ++id)
+    if (state[id] == unseen && items[id].node) drop(id);
+}
 
-  Graph& graph_;
-  PlanContext context_;
-  std::vector<Frame> stack_;
-  std::unordered_map<const Node*, ItemId> made_;
-  ItemId result_ = 0;
-};
+void Graph::drop(ItemId id) {
+  Item& item = items[id];
+  known_.erase(item.node.get());
+  if (item.mesh != none) meshes.drop(item.mesh);
+  const int32_t part = item.part; // Objects clears it away
+  item = Item();
+  item.part = part;
+  dropped_.push_back(id);
+}
 
-} // namespace
-
-Graph::Graph(World& world) : meshes(world) { Builder(*this, world).build(); }
+void Graph::linkParents() {
+  for (const ItemId id : order) items[id].parentCount = 0;
+  size_t links = 0;
+  for (const ItemId id : order)
+    for (const ItemId child : items[id].children)
+      if (child != 0) ++items[child].parentCount, ++links;
+  parents.resize(links);
+  uint32_t first = 0;
+  for (const ItemId id : order) {
+    items[id].firstParent = first;
+    first += items[id].parentCount;
+    items[id].parentCount = 0;
+  }
+  for (const ItemId id : order)
+    for (const ItemId child : items[id].children)
+      if (child != 0) parents[items[child].firstParent + items[child].parentCount++] = id;
+}
 
 uint32_t Graph::nameId(const std::string& name) {
   if (name.empty()) return 0;

@@ -8,105 +8,151 @@
 namespace xvrml::mapping {
 namespace {
 Vec3f notNegative(Vec3f v) { return {std::max(v.x, 0.0f), std::max(v.y, 0.0f), std::max(v.z, 0.0f)}; }
-} // namespace
 
-RTid Lights::makeShader(Node& node) {
-  if (auto* d = nodeCast<nodes::DirectionalLight>(&node)) {
-    ShaderSetup s(classes_.get("VRML97DirectionalLight", ""));
-    s.color("color", convert(d->color, linear_));
-    s.number("intensity", d->intensity, 0);
-    s.number("ambientIntensity", d->ambientIntensity, 0);
-    s.vector("direction", d->direction);
-    return s.id();
-  }
-  if (auto* p = nodeCast<nodes::PointLight>(&node)) {
-    ShaderSetup s(classes_.get("VRML97PointLight", ""));
-    s.color("color", convert(p->color, linear_));
-    s.number("intensity", p->intensity, 0);
-    s.number("ambientIntensity", p->ambientIntensity, 0);
-    s.vector("location", p->location);
-    s.vector("attenuation", notNegative(p->attenuation));
-    s.number("radius", p->radius, 0);
-    return s.id();
-  }
-  auto& spot = static_cast<nodes::SpotLight&>(node);
-  ShaderSetup s(classes_.get("VRML97SpotLight", ""));
-  s.color("color", convert(spot.color, linear_));
-  s.number("intensity", spot.intensity, 0);
-  s.number("ambientIntensity", spot.ambientIntensity, 0);
-  s.vector("location", spot.location);
+void set(ShaderSetup& s, const nodes::DirectionalLight& light, bool linear) {
+  s.color("color", convert(light.color, linear));
+  s.number("intensity", light.intensity, 0);
+  s.number("ambientIntensity", light.ambientIntensity, 0);
+  s.vector("direction", light.direction);
+}
+
+template <class PlacedLight> void setPlaced(ShaderSetup& s, const PlacedLight& light, bool linear) {
+  s.color("color", convert(light.color, linear));
+  s.number("intensity", light.intensity, 0);
+  s.number("ambientIntensity", light.ambientIntensity, 0);
+  s.vector("location", light.location);
+  s.vector("attenuation", notNegative(light.attenuation));
+  s.number("radius", light.radius, 0);
+}
+
+void set(ShaderSetup& s, const Node& node, bool linear) {
+  if (node.type().index == nodes::DirectionalLight::typeIndex)
+    return set(s, static_cast<const nodes::DirectionalLight&>(node), linear);
+  if (node.type().index == nodes::PointLight::typeIndex) return setPlaced(s, static_cast<const nodes::PointLight&>(node), linear);
+  auto& spot = static_cast<const nodes::SpotLight&>(node);
+  setPlaced(s, spot, linear);
   s.vector("direction", spot.direction);
-  s.vector("attenuation", notNegative(spot.attenuation));
-  s.number("radius", spot.radius, 0);
   s.number("beamWidth", spot.beamWidth, 0, 3.1415927f);
   s.number("cutOffAngle", spot.cutOffAngle, 0, 3.1415927f);
-  return s.id();
 }
+
+const char* classOf(const Node& light) {
+  if (light.type().index == nodes::DirectionalLight::typeIndex) return "VRML97DirectionalLight";
+  return light.type().index == nodes::PointLight::typeIndex ? "VRML97PointLight" : "VRML97SpotLight";
+}
+} // namespace
 
 RTid Lights::shaderOf(Node& light) {
   const auto [it, fresh] = shaders_.try_emplace(&light, 0);
   if (fresh) {
-    it->second = makeShader(light);
+    ShaderSetup setup(classes_.get(classOf(light), ""));
+    set(setup, light, linear_);
+    it->second = setup.id();
     report(world_.diagnostics, light.source, light.type().name);
   }
   return it->second;
 }
 
+void Lights::changed(Node& light) {
+  const auto found = shaders_.find(&light);
+  if (found == shaders_.end()) return; // read when it is turned on
+  ShaderSetup setup(found->second, sets_);
+  set(setup, light, linear_);
+  report(world_.diagnostics, light.source, light.type().name);
+}
+
+void Lights::takeAway(RTid& light) {
+  if (light == 0) return;
+  rtRemoveLight(light);
+  light = 0;
+  ++changes_;
+}
+
+void Lights::remove(const std::vector<Place>& gone) {
+  for (Place place : gone) takeAway(place.light);
+}
+
+void Lights::clear(Places& places) {
+  for (Place& place : places.all) takeAway(place.light);
+  takeAway(headlight_);
+  for (const auto& [node, shader] : shaders_) rtDeleteShader(shader);
+  if (headlightShader_ != 0) rtDeleteShader(headlightShader_);
+}
+
+void Lights::forget(const Graph& graph) {
+  std::erase_if(shaders_, [&](const auto& known) {
+    if (graph.find(known.first) != 0) return false;
+    rtDeleteShader(known.second);
+    return true;
+  });
+}
+
+// The order in which lights are made is that in which they are summed up: it has to be the order of the places, whatever was
+// there before. Lights behind a new one are made again.
 void Lights::follow(const Graph& graph, Places& places) {
   count_ = 0;
+  bool behindNew = false;
   for (Place& place : places.all) {
     const Item& item = graph.items[place.item];
     if (!isLight(item.kind)) continue;
-    if (!place.active || !finite(place.world)) {
-      if (place.light != 0) rtRemoveLight(place.light);
-      place.light = 0;
+    if (!place.active || !item.on || !finite(place.world)) {
+      takeAway(place.light);
       continue;
     }
     ++count_;
-    load(place.world);
-    if (place.light == 0)
-      place.light = rtUseLight(shaderOf(*item.node));
-    else
-      rtLightMatrix(place.light, data(place.world));
+    if (behindNew) takeAway(place.light);
+    behindNew |= place.light == 0;
+    makeOrMove(place, item);
     // A DirectionalLight shines on the descendants of its parent group only. The group's object holds nothing else: see
     // Places. At the top level of the file that is everything.
-    if (item.kind == Kind::directionalLight && place.light != 0 && place.parent != 0) {
-      const RTid scope = places.all[places.splitAbove(place.parent)].instance;
-      if (scope != 0) {
-        rtLightScope(place.light, scope);
-      } else { // the group itself could not be placed: nothing is there to shine on
-        rtRemoveLight(place.light);
-        place.light = 0;
-      }
-    }
-    report(world_.diagnostics, item.node->source, item.node->type().name);
+    if (item.kind == Kind::directionalLight && place.light != 0 && place.parent != 0) scope(place, places);
   }
+  if (behindNew) takeAway(headlight_);
 }
 
-void Lights::remove(Places& places) {
-  for (Place& place : places.all)
-    if (place.light != 0) rtRemoveLight(place.light);
-  if (headlight_ != 0) rtRemoveLight(headlight_);
+void Lights::makeOrMove(Place& place, const Item& item) {
+  if (place.light != 0 && place.lightMatrix == place.world) return;
+  if (place.light == 0) {
+    const RTid shader = shaderOf(*item.node);
+    load(place.world);
+    place.light = rtUseLight(shader);
+    place.lightScope = 0;
+  } else {
+    rtLightMatrix(place.light, data(place.world));
+  }
+  place.lightMatrix = place.world;
+  ++changes_;
+  report(world_.diagnostics, item.node->source, item.node->type().name);
+}
+
+void Lights::scope(Place& place, const Places& places) {
+  const RTid scope = places.all[places.splitAbove(place.parent)].instance;
+  if (scope == 0) return takeAway(place.light); // the group itself could not be placed: nothing is there to shine on
+  if (scope == place.lightScope) return;
+  rtLightScope(place.light, scope);
+  place.lightScope = scope;
+  ++changes_;
 }
 
 void Lights::headlight(bool on, const CameraSettings& camera) {
-  if (!on) {
-    if (headlight_ != 0) rtRemoveLight(headlight_);
-    headlight_ = 0;
-    return;
-  }
+  if (!on) return takeAway(headlight_);
   ++count_;
   const Matrix view = rigid(fromArray(camera.matrix));
-  if (headlight_ != 0) return rtLightMatrix(headlight_, data(view));
-  RTid shader;
-  {
+  if (headlight_ != 0) {
+    if (view != view_) rtLightMatrix(headlight_, data(view));
+    view_ = view;
+    return;
+  }
+  if (headlightShader_ == 0) {
     ShaderSetup s(classes_.get("VRML97DirectionalLight", ""));
     s.vector("direction", {0, 0, -1});
     s.integer("shadows", 0);
-    shader = s.id();
+    headlightShader_ = s.id();
   }
   load(view);
-  headlight_ = rtUseLight(shader);
+  headlight_ = rtUseLight(headlightShader_);
+  ++changes_;
+  view_ = view;
   report(world_.diagnostics, {}, "headlight");
 }
 

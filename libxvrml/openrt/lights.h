@@ -14,21 +14,31 @@ class Lights {
 
   // Makes, moves or removes the lights of all places. Objects and instances of the places must be there: scopes name them.
   void follow(const Graph& graph, Places& places);
+  // The fields of a light node have changed.
+  void changed(Node& light);
+  // Places that are no more, items that are no more.
+  void remove(const std::vector<Place>& gone);
+  void forget(const Graph& graph);
+  void clear(Places& places); // takes everything away
   // A directional light along the view that casts no shadows.
   void headlight(bool on, const CameraSettings& camera);
-  void remove(Places& places); // all
   uint64_t count() const { return count_; }
+  uint64_t changes() const { return changes_; }
+  uint64_t parametersSet() const { return sets_; }
 
  private:
+  void makeOrMove(Place& place, const Item& item);
+  void scope(Place& place, const Places& places);
+  void takeAway(RTid& light);
   RTid shaderOf(Node& light);
-  RTid makeShader(Node& light);
 
   World& world_;
   bool linear_;
   ShaderClasses& classes_;
-  RTid headlight_ = 0;
-  uint64_t count_ = 0;
-  std::unordered_map<const Node*, RTid> shaders_;
+  RTid headlight_ = 0, headlightShader_ = 0;
+  Matrix view_; // of the headlight
+  uint64_t count_ = 0, changes_ = 0, sets_ = 0;
+  std::unordered_map<const Node*, RTid> shaders_; // of nodes that have items
 };
 
 } // namespace xvrml::mapping

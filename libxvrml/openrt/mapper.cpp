@@ -1,95 +1,115 @@
-// mapper.cpp: OpenRTMapper: the order of the steps from a world to rt* calls. See xvrml/openrt.h.
-#include "xvrml/openrt.h"
-
+// mapper.cpp: OpenRTMapper: the order of the steps from a world to rt* calls, frame by frame. See xvrml/openrt.h.
 #include <algorithm>
 #include <numbers>
 
-#include "openrt/appearance.h"
 #include "openrt/extent.h"
-#include "openrt/lights.h"
-#include "openrt/objects.h"
-#include "openrt/places.h"
-#include "openrt/views.h"
+#include "openrt/mapper_impl.h"
 
 namespace xvrml {
 
 using namespace mapping;
 
-namespace {
-// Meshes first: what is shared depends on how much there is to share.
-Graph& summarised(Graph& graph, World& world) {
+OpenRTMapper::Impl::Impl(World& w, const MapOptions& o)
+    : world(w), options(o), graph(w), textures(w, o.linearColor), surfaces(w, o.linearColor, classes, textures),
+      objects(w, o.linearColor, graph, places, surfaces), lights(w, o.linearColor, classes),
+      environment(w, o.linearColor, classes, textures), camera(cameraOf(nullptr, Matrix(), o.aspect)) {
   summarise(graph, world.diagnostics);
-  return graph;
+  std::vector<Place> gone;
+  places.build(graph, gone);
+  places.follow(graph, camera); // what is below billboards: as seen from the default view
+  rebind();
 }
-} // namespace
 
-struct OpenRTMapper::Impl {
-  World& world;
-  MapOptions options;
-  Graph graph;
-  Places places;
-  Bound bound;
-  std::vector<int32_t> viewpointPlaces;
-  std::vector<ViewpointInfo> viewpoints;
-  Bounds bounds;
-  ShaderClasses classes;
-  Textures textures;
-  Surfaces surfaces;
-  Objects objects;
-  Lights lights;
-  bool environmentUsed = false;
-  std::optional<BoundNodes> boundNodes;
+OpenRTMapper::Impl::~Impl() {
+  if (!context || rtGetCurrent() != context) return;
+  lights.clear(places);
+  objects.clear();
+  environment.clear();
+  surfaces.clear();
+  textures.clear();
+}
 
-  Impl(World& w, const MapOptions& o)
-      : world(w), options(o), graph(w), places(summarised(graph, w)), bound(firstBound(graph, places)),
-        textures(w, o.linearColor), surfaces(w, o.linearColor, classes, textures),
-        objects(w, o.linearColor, graph, places, surfaces), lights(w, o.linearColor, classes) {
-    places.follow(graph, cameraOf(nullptr, Matrix(), o.aspect)); // bindables below billboards: as seen from the default view
-    viewpoints = listViewpoints(graph, places, viewpointPlaces);
-    bounds = boundsOf(graph, places);
+void OpenRTMapper::Impl::rebind() {
+  if (!given) {
+    bound = firstBound(graph, places);
+    return;
   }
+  BoundNodes nodes;
+  nodes.viewpoint = given->viewpoint.get(), nodes.background = given->background.get();
+  nodes.fog = given->fog.get(), nodes.navigationInfo = given->navigationInfo.get();
+  bound = boundTo(graph, places, nodes);
+}
 
-  CameraSettings cameraAt(int32_t place) const {
-    if (place == none) return cameraOf(nullptr, Matrix(), options.aspect);
-    const Place& p = places.all[size_t(place)];
-    return cameraOf(graph.items[p.item].node, p.world, options.aspect);
-  }
+CameraSettings OpenRTMapper::Impl::cameraAt(int32_t place) const {
+  if (place == none) return cameraOf(nullptr, Matrix(), options.aspect);
+  const Place& p = places.all[size_t(place)];
+  return cameraOf(graph.items[p.item].node.get(), p.world, options.aspect);
+}
 
-  bool headlight() const {
-    if (options.headlight != MapOptions::Headlight::automatic) return options.headlight == MapOptions::Headlight::on;
-    return hasHeadlight(graph, places, bound);
+bool OpenRTMapper::Impl::headlight() const {
+  if (options.headlight != MapOptions::Headlight::automatic) return options.headlight == MapOptions::Headlight::on;
+  return hasHeadlight(bound);
+}
+
+const std::vector<int32_t>& OpenRTMapper::Impl::viewpointPlaces() {
+  if (!viewsStale) return viewpointPlaces_;
+  viewsStale = false;
+  places.follow(graph, camera);
+  viewpointPlaces_.clear();
+  viewpoints_ = listViewpoints(graph, places, viewpointPlaces_);
+  return viewpointPlaces_;
+}
+
+const std::vector<ViewpointInfo>& OpenRTMapper::Impl::viewpoints() {
+  viewpointPlaces();
+  return viewpoints_;
+}
+
+const Bounds& OpenRTMapper::Impl::bounds() {
+  if (boundsStale) {
+    places.follow(graph, camera);
+    bounds_ = boundsOf(graph, places);
   }
-};
+  boundsStale = false;
+  return bounds_;
+}
 
 OpenRTMapper::OpenRTMapper(World& world, const MapOptions& options) : impl_(std::make_unique<Impl>(world, options)) {}
 OpenRTMapper::~OpenRTMapper() = default;
 
-const std::vector<ViewpointInfo>& OpenRTMapper::viewpoints() const { return impl_->viewpoints; }
+const std::vector<ViewpointInfo>& OpenRTMapper::viewpoints() const { return impl_->viewpoints(); }
 
 int OpenRTMapper::boundViewpoint() const {
-  for (size_t i = 0; i < impl_->viewpointPlaces.size(); ++i)
-    if (impl_->viewpointPlaces[i] == impl_->bound.viewpoint) return int(i);
-  return -1;
+  const std::vector<int32_t>& places = impl_->viewpointPlaces();
+  const auto found = std::find(places.begin(), places.end(), impl_->bound.viewpointPlace);
+  return found == places.end() ? -1 : int(found - places.begin());
 }
 
 CameraSettings OpenRTMapper::viewpointCamera(size_t index) const {
-  return impl_->cameraAt(index < impl_->viewpointPlaces.size() ? impl_->viewpointPlaces[index] : none);
+  const std::vector<int32_t>& places = impl_->viewpointPlaces();
+  return impl_->cameraAt(index < places.size() ? places[index] : none);
 }
 
 CameraSettings OpenRTMapper::fitCamera(double fovy) const {
   const CameraSettings first = viewpointCamera(size_t(std::max(0, boundViewpoint())));
-  return cameraAround(impl_->bounds, fromArray(first.matrix), fovy, impl_->options.aspect);
+  return cameraAround(impl_->bounds(), fromArray(first.matrix), fovy, impl_->options.aspect);
 }
 
-Bounds OpenRTMapper::bounds() const { return impl_->bounds; }
+Bounds OpenRTMapper::bounds() const { return impl_->bounds(); }
+
+void OpenRTMapper::bind(const BoundNodes& nodes) {
+  impl_->given = boundTo(impl_->graph, impl_->places, nodes);
+  impl_->bound = *impl_->given;
+}
+
+void OpenRTMapper::update(const FieldChanges& changes) { impl_->update(changes); }
 
 void OpenRTMapper::map(const CameraSettings& camera) {
   Impl& m = *impl_;
   report(m.world.diagnostics, {}, "before the world was mapped");
-  if (!m.environmentUsed) rtUseEnvironment(0);
-  if (!m.environmentUsed) useEnvironment(m.world, m.options.linearColor, m.graph, m.places, m.bound, m.classes, m.textures);
-  m.environmentUsed = true;
+  m.camera = camera;
   m.places.follow(m.graph, camera);
+  m.environment.follow(m.places, m.bound);
   m.objects.follow();
   m.lights.follow(m.graph, m.places);
   m.lights.headlight(m.headlight(), camera);
@@ -102,45 +122,26 @@ void OpenRTMapper::map(const CameraSettings& camera) {
   report(m.world.diagnostics, {}, "camera");
 }
 
-void OpenRTMapper::bind(const BoundNodes& nodes) {
-  Impl& m = *impl_;
-  m.bound = placesOf(m.graph, m.places, nodes);
-  m.boundNodes = nodes;
-  m.environmentUsed = false;
-}
-
-// All anew, for the time being.
-void OpenRTMapper::update(const FieldChanges& changes) {
-  if (changes.empty()) return;
-  Impl& old = *impl_;
-  const auto boundNodes = old.boundNodes;
-  World& world = old.world;
-  const MapOptions options = old.options;
-  old.objects.remove();
-  old.lights.remove(old.places);
-  rtUseEnvironment(0);
-  impl_ = std::make_unique<Impl>(world, options);
-  if (boundNodes) bind(*boundNodes);
-}
-
-std::vector<ExplainedObject> OpenRTMapper::explain() const {
-  const Impl& m = *impl_;
-  const Item& root = m.graph.items[m.graph.root];
-  ExplainedObject world;
-  world.name = "world";
-  world.reason = "merged static geometry of " + std::to_string(root.shapes) + " shapes";
-  world.triangles = root.triangles;
-  world.shapes = root.shapes;
-  world.bytes = 150 * root.triangles;
-  world.instances = 1;
-  return {world};
-}
-
 MapStats OpenRTMapper::stats() const {
-  const Impl& m = *impl_;
-  const Item& root = m.graph.items[m.graph.root];
-  return {root.shapes,         root.triangles,        m.lights.count(),    m.textures.count(),
-          m.objects.objects(), m.objects.instances(), m.textures.missing()};
+  Impl& m = *impl_;
+  if (m.countsStale) recount(m.graph);
+  m.countsStale = false;
+  const Item& root = m.graph.items[Graph::root];
+  MapStats s;
+  s.shapes = root.shapes;
+  s.triangles = root.triangles;
+  s.lights = m.lights.count();
+  s.textures = m.textures.count();
+  s.objects = m.objects.objects();
+  s.instances = m.objects.instances();
+  s.missingTextures = m.textures.missing();
+  s.objectsDefined = m.objects.definitions();
+  s.instancesMoved = m.objects.moves();
+  s.parametersSet = m.surfaces.parametersSet() + m.lights.parametersSet() + m.environment.parametersSet();
+  s.texturesLoaded = m.textures.loaded();
+  s.lightsChanged = m.lights.changes();
+  s.regroupings = m.regroupings;
+  return s;
 }
 
 const std::vector<std::string>& OpenRTMapper::names() const { return impl_->graph.names; }

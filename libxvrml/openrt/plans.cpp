@@ -23,7 +23,6 @@ void planTransform(PlanContext&, Node& node, Plan& plan) {
   auto& t = static_cast<nodes::Transform&>(node);
   group(plan, t.children);
   plan.matrix = transformMatrix({t.center, t.translation, t.scale, t.rotation, t.scaleOrientation});
-  plan.moves = plan.matrix != Matrix();
 }
 
 // Clause 6.46: whichChoice below 0 or beyond the last choice draws nothing.
@@ -51,20 +50,29 @@ void planInline(PlanContext&, Node& node, Plan& plan) {
   if (const Scope* scope = inlineScope(node)) plan.add(scope->roots);
 }
 
+void planStatic(PlanContext&, Node& node, Plan& plan) {
+  group(plan, static_cast<nodes::ORTStatic&>(node).children);
+  plan.hint = Hint::merge;
+}
+void planInstance(PlanContext&, Node& node, Plan& plan) {
+  group(plan, static_cast<nodes::ORTInstance&>(node).children);
+  plan.hint = Hint::instantiate;
+}
+
 void planShape(PlanContext&, Node& node, Plan& plan) {
   if (renderedNode(static_cast<nodes::Shape&>(node).geometry.get())) plan.kind = Kind::shape;
 }
 
-// A light that is off lights nothing (clause 4.6.6); it is not there until it is turned on.
+// A light that is off lights nothing (clause 4.6.6); it is not there unless events may turn it on (summary.cpp).
+template <class Light> void planLight(Node& node, Kind kind, Plan& plan) {
+  plan.kind = kind;
+  plan.on = static_cast<Light&>(node).on;
+}
 void planDirectionalLight(PlanContext&, Node& node, Plan& plan) {
-  if (static_cast<nodes::DirectionalLight&>(node).on) plan.kind = Kind::directionalLight;
+  planLight<nodes::DirectionalLight>(node, Kind::directionalLight, plan);
 }
-void planPointLight(PlanContext&, Node& node, Plan& plan) {
-  if (static_cast<nodes::PointLight&>(node).on) plan.kind = Kind::localLight;
-}
-void planSpotLight(PlanContext&, Node& node, Plan& plan) {
-  if (static_cast<nodes::SpotLight&>(node).on) plan.kind = Kind::localLight;
-}
+void planPointLight(PlanContext&, Node& node, Plan& plan) { planLight<nodes::PointLight>(node, Kind::localLight, plan); }
+void planSpotLight(PlanContext&, Node& node, Plan& plan) { planLight<nodes::SpotLight>(node, Kind::localLight, plan); }
 
 void planViewpoint(PlanContext&, Node&, Plan& plan) { plan.kind = Kind::viewpoint; }
 void planBackground(PlanContext&, Node&, Plan& plan) { plan.kind = Kind::background; }
@@ -86,6 +94,8 @@ std::vector<PlanFunction>& table() {
     set(nodes::LOD::typeIndex, planLod);
     set(nodes::Billboard::typeIndex, planBillboard);
     set(nodes::Inline::typeIndex, planInline);
+    set(nodes::ORTStatic::typeIndex, planStatic);
+    set(nodes::ORTInstance::typeIndex, planInstance);
     set(nodes::Shape::typeIndex, planShape);
     set(nodes::DirectionalLight::typeIndex, planDirectionalLight);
     set(nodes::PointLight::typeIndex, planPointLight);

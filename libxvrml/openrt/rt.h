@@ -37,29 +37,37 @@ class ShaderClasses {
 class ShaderSetup {
  public:
   explicit ShaderSetup(RTid shaderClass) : shader_(rtNewShader(shaderClass)) { rtBindShader(shader_); }
+  // One that is there already, to be changed. sets: counts the parameters that are set.
+  ShaderSetup(RTid shader, uint64_t& sets) : shader_(shader), sets_(&sets) { rtBindShader(shader_); }
   ~ShaderSetup() { rtBindShader(0); }
   ShaderSetup(const ShaderSetup&) = delete;
   ShaderSetup& operator=(const ShaderSetup&) = delete;
   RTid id() const { return shader_; }
+  bool fresh() const { return !sets_; }
 
-  void integer(const char* name, int v) { rtParameter1i(rtParameterHandle(name), v); }
-  void number(const char* name, float v) { rtParameter1f(rtParameterHandle(name), v); }
+  void integer(const char* name, int v) { rtParameter1i(handle(name), v); }
+  void number(const char* name, float v) { rtParameter1f(handle(name), v); }
   // The nearest value in the field's range: parsers warn of others.
   void number(const char* name, float v, float low, float high = std::numeric_limits<float>::max()) {
     number(name, std::clamp(v, low, high));
   }
-  void vector(const char* name, Vec3f v) { rtParameter3f(rtParameterHandle(name), v.x, v.y, v.z); }
-  void color(const char* name, Color c) { rtParameter3f(rtParameterHandle(name), c.r, c.g, c.b); }
-  void floats(const char* name, std::span<const float> v) { rtParameterfv(rtParameterHandle(name), v.size(), v.data()); }
-  void texture(const char* name, RTid texture) { rtParameterTexture(rtParameterHandle(name), texture); }
+  void vector(const char* name, Vec3f v) { rtParameter3f(handle(name), v.x, v.y, v.z); }
+  void color(const char* name, Color c) { rtParameter3f(handle(name), c.r, c.g, c.b); }
+  void floats(const char* name, std::span<const float> v) { rtParameterfv(handle(name), v.size(), v.data()); }
+  void texture(const char* name, RTid texture) { rtParameterTexture(handle(name), texture); }
   void matrix(const char* name, const Matrix& m) {
     float f[16];
     for (int i = 0; i < 16; ++i) f[i] = float(data(m)[i]);
-    rtParameter16f(rtParameterHandle(name), f);
+    rtParameter16f(handle(name), f);
   }
 
  private:
+  int handle(const char* name) {
+    if (sets_) ++*sets_;
+    return rtParameterHandle(name);
+  }
   RTid shader_;
+  uint64_t* sets_ = nullptr;
 };
 
 } // namespace xvrml::mapping

@@ -1,79 +1,120 @@
-// shapes.cpp: how one shape is handed to OpenRT: arrays as they are, the matrix, the surface. The other half of Objects.
-#include "openrt/objects.h"
+// shapes.cpp: what is written into an open object: instances of the objects below, shapes with their arrays as they are, the
+// matrix, the surface. The other half of Objects.
+#include <algorithm>
 
+#include "openrt/objects.h"
 #include "xvrml/nodes.h"
 
 namespace xvrml::mapping {
 
 namespace {
-// A geometry that several Shape nodes use becomes an object when it is worth it; see summary.cpp for the numbers' meaning.
-constexpr uint64_t smallest = 32, worth = 2048;
-
 RTenum modeOf(Mesh::Kind kind) {
   return kind == Mesh::Kind::lines ? RT_LINES : kind == Mesh::Kind::points ? RT_POINTS : RT_TRIANGLES;
 }
 } // namespace
 
-RTid Objects::begin() {
-  ++objects_;
-  return made_.emplace_back(rtBeginObject(0));
+void Objects::enter(ItemId id, int32_t at, const Matrix& matrix, uint32_t name) {
+  const Item& item = graph_.items[id];
+  if (at == none && !item.draws) return;
+  if (at != none && places_.all[size_t(at)].split) {
+    Place& place = places_.all[size_t(at)];
+    const bool turns = item.kind == Kind::billboard && live_;
+    place.base = matrix;
+    place.instance = instantiate(partOfPlace(size_t(at)), compose(graph_.below(matrix, item), places_.turns[size_t(at)]),
+                                 givenName(item, name), item.moves || turns);
+  } else if (at == none && item.own != Own::none) {
+    const RTid instance = instantiate(partOfItem(id), graph_.below(matrix, item), givenName(item, name), item.moves);
+    if (item.moves) keep(id, instance, matrix);
+  } else {
+    stack_.push_back({id, at, graph_.below(matrix, item), name});
+  }
 }
 
-void Objects::remove() {
-  for (const RTid object : made_) rtDeleteObject(object);
-  made_.clear();
+void Objects::expand(const Step& step) {
+  const Item& item = graph_.items[step.item];
+  const uint32_t name = item.name != 0 ? item.name : step.name;
+  if (item.kind == Kind::shape) return writeShape(step.item, step.matrix, name);
+  const bool oneLevel = item.kind == Kind::lod; // one that has no place of its own: see summarise
+  for (size_t c = oneLevel ? std::min(item.children.size(), size_t(1)) : item.children.size(); c-- > 0;) {
+    const int32_t at = step.place == none ? none : places_.children[places_.all[size_t(step.place)].firstChild + c];
+    enter(item.children[c], at, step.matrix, name);
+  }
 }
 
-RTid Objects::instantiate(RTid object, const Matrix& matrix, uint32_t name) {
-  if (!finite(matrix)) return 0; // scales that multiply beyond all numbers: out of sight
-  ++instances_;
+void Objects::drain() {
+  while (!stack_.empty()) {
+    const Step step = stack_.back();
+    stack_.pop_back();
+    expand(step);
+  }
+}
+
+// dynamic: events or the camera will move it.
+RTid Objects::instantiate(int32_t id, const Matrix& matrix, uint32_t name, bool dynamic) {
+  const bool usable = finite(matrix);
+  if (!usable && !dynamic) return 0; // scales that multiply beyond all numbers: out of sight
   rtLoadName(name);
-  load(matrix);
-  const RTid instance = rtInstantiateObject(object);
-  if (instance == 0) report(world_.diagnostics, {}, "a group cannot be placed");
+  load(usable ? matrix : scaling(Vector(0)));
+  const RTid instance = rtInstantiateObject(parts_[size_t(id)].object);
+  if (instance == 0) {
+    report(world_.diagnostics, {}, "a group cannot be placed");
+    return 0;
+  }
+  if (dynamic) rtInstanceHint(instance, RT_DYNAMIC);
+  parts_[size_t(writing_)].uses.push_back(id);
+  ++parts_[size_t(id)].instances;
+  ++instances_;
   return instance;
 }
 
-bool Objects::sharesGeometry(int32_t mesh) {
-  const uint64_t users = graph_.meshes.users(mesh);
-  if (users < 2) return false;
-  const Meshes::Extent extent = graph_.meshes.extent(mesh);
-  return extent.kind == Mesh::Kind::triangles && extent.primitives >= smallest && extent.primitives * (users - 1) >= worth;
+void Objects::keep(ItemId item, RTid instance, const Matrix& base) {
+  if (instance == 0) return;
+  placed_[item].push_back({instance, writing_, base});
+  parts_[size_t(writing_)].moving.push_back(item);
 }
 
 uint32_t Objects::givenName(const Item& item, uint32_t name) {
   if (item.name != 0) name = item.name;
-  if (name != 0 || inShared_ || !item.node) return name;
-  return graph_.nameId(item.node->type().name);
+  return name != 0 || nameless_ ? name : graph_.nameId("Shape");
 }
 
-void Objects::writeShape(const Item& item, const Matrix& matrix, uint32_t name) {
-  const Meshes::Extent extent = graph_.meshes.extent(item.mesh);
-  if (extent.primitives == 0 || !finite(matrix)) return;
+void Objects::writeShape(ItemId id, const Matrix& matrix, uint32_t name) {
+  const Item& item = graph_.items[id];
   Node* appearance = static_cast<nodes::Shape&>(*item.node).appearance.get();
-  const Surface surface = surfaces_.of(appearance, item.lines);
-  if (sharesGeometry(item.mesh)) {
-    const RTid instance = instantiate(meshObjects_[size_t(item.mesh)], matrix, givenName(item, name));
-    if (instance != 0) rtInstanceShader(instance, surface.shader);
+  if (item.viaMesh) {
+    const int32_t part = partOfMesh(graph_.meshes.equal(item.mesh));
+    const RTid instance = instantiate(part, matrix, givenName(item, name), false);
+    if (instance != 0) rtInstanceShader(instance, surfaces_.of(appearance, false).shader);
+    if (item.recolored) keep(id, instance, matrix);
   } else {
+    const Meshes::Extent extent = graph_.meshes.extent(item.mesh);
+    if (extent.primitives == 0 || !finite(matrix)) return;
+    const Surface surface = surfaces_.of(appearance, item.lines);
     rtLoadName(givenName(item, name));
     load(matrix);
     draw(item.mesh, surface, isTextured(appearance));
   }
+  ++parts_[size_t(writing_)].shapes;
   report(world_.diagnostics, item.node->source, "Shape");
 }
 
 void Objects::draw(int32_t mesh, const Surface& surface, bool textured) {
   const Mesh& m = graph_.meshes.get(mesh);
+  const Meshes::Extent extent = graph_.meshes.extent(mesh);
+  if (extent.primitives == 0) return;
+  Part& part = parts_[size_t(writing_)];
+  part.primitives += extent.primitives;
+  if (m.kind == Mesh::Kind::triangles) part.triangles += extent.primitives;
+  ++part.drawCalls;
   rtBindShader(surface.shader);
   (m.solid ? rtEnable : rtDisable)(RT_CULL_FACE);
   (m.ccw ? rtDisable : rtEnable)(RT_CW_FRONT);
   if (m.kind == Mesh::Kind::sphere) {
     rtSphere(m.radius);
   } else if (m.indices.size() < m.points.size()) { // a Coordinate that several geometries share: each takes its part
-    Mesh part;
-    compact(m, part);
-    drawArrays(part, surface, textured);
+    Mesh used;
+    compact(m, used);
+    drawArrays(used, surface, textured);
   } else {
     drawArrays(m, surface, textured);
   }

@@ -1,6 +1,7 @@
 // textures.cpp: see textures.h.
 #include "openrt/textures.h"
 
+#include <algorithm>
 #include <exception>
 
 #include "image/image.h"
@@ -8,23 +9,82 @@
 
 namespace xvrml::mapping {
 
+namespace {
+
+bool usable(const Image& image) {
+  if (image.width <= 0 || image.height <= 0 || image.components < 1 || image.components > 4) return false;
+  return image.pixels.size() >= size_t(image.width) * size_t(image.height) * size_t(image.components);
+}
+
+// A node that gives its picture itself, now: the picture, or null if it has none at present.
+struct OwnImage {
+  const Image* image = nullptr;
+  bool repeatS = true, repeatT = true;
+};
+bool ownImage(Node& node, OwnImage& own) {
+  if (auto* pixels = nodeCast<nodes::PixelTexture>(&node)) {
+    own = {pixels->image.components > 0 ? &pixels->image : nullptr, pixels->repeatS, pixels->repeatT};
+    return true;
+  }
+  if (auto* movie = nodeCast<nodes::MovieTexture>(&node)) {
+    own = {nullptr, movie->repeatS, movie->repeatT};
+    return true;
+  }
+  return false;
+}
+
+} // namespace
+
 RTid Textures::ofNode(Node* texture) {
   Node* node = renderedNode(texture);
   if (!node) return 0;
-  const auto [it, fresh] = nodes_.try_emplace(node, 0);
-  if (!fresh) return it->second;
+  const auto [it, fresh] = nodes_.try_emplace(node, Known{NodeRef(node), 0});
+  if (!fresh) return it->second.id;
+  const RTid id = makeNode(*node);
+  return nodes_[node].id = id;
+}
+
+RTid Textures::makeNode(Node& node) {
+  if (auto* image = nodeCast<nodes::ImageTexture>(&node)) return ofUrls(image->url, node, image->repeatS, image->repeatT);
   RTid id = 0;
-  if (auto* image = nodeCast<nodes::ImageTexture>(node)) {
-    id = ofUrls(image->url, *node, image->repeatS, image->repeatT);
-  } else if (auto* pixels = nodeCast<nodes::PixelTexture>(node)) {
-    if (pixels->image.components > 0) id = make(pixels->image, pixels->repeatS, pixels->repeatT);
-    report(world_.diagnostics, node->source, "PixelTexture");
-  } else if (nodeCast<nodes::MovieTexture>(node)) {
-    world_.diagnostics.warn(node->source, "MovieTexture: films are not decoded; the surface is drawn without it");
+  if (OwnImage own; ownImage(node, own)) {
+    if (own.image) id = make(*own.image, own.repeatS, own.repeatT);
+    if (!own.image && nodeCast<nodes::MovieTexture>(&node))
+      world_.diagnostics.warn(node.source, "MovieTexture: films are not decoded; the surface is drawn without it");
+    report(world_.diagnostics, node.source, node.type().name);
   } else {
-    world_.diagnostics.warn(node->source, node->type().name + " is not a texture that can be drawn");
+    world_.diagnostics.warn(node.source, node.type().name + " is not a texture that can be drawn");
   }
-  return nodes_[node] = id;
+  return id;
+}
+
+void Textures::clear() {
+  std::vector<RTid> ids;
+  for (const auto& [node, known] : nodes_) ids.push_back(known.id);
+  for (const auto& [file, made] : files_) ids.push_back(made.first);
+  std::sort(ids.begin(), ids.end());
+  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+  for (const RTid id : ids)
+    if (id != 0) rtDeleteTexture(id);
+}
+
+bool Textures::changed(Node& node) {
+  const auto found = nodes_.find(&node);
+  if (found == nodes_.end()) return false; // read when it is first used
+  const RTid before = found->second.id;
+  if (OwnImage own; before != 0 && ownImage(node, own) && own.image && usable(*own.image)) {
+    rtBindTexture(before);
+    upload(*own.image);
+    report(world_.diagnostics, node.source, node.type().name);
+    return false;
+  }
+  if (OwnImage own; before != 0 && ownImage(node, own)) { // it has none any more
+    rtDeleteTexture(before);
+    --count_;
+  }
+  const RTid id = makeNode(node);
+  nodes_[&node].id = id;
+  return id != before;
 }
 
 RTid Textures::ofUrls(const MFString& urls, const Node& node, bool repeatS, bool repeatT) {
@@ -56,14 +116,18 @@ RTid Textures::ofFile(const std::string& path, bool repeatS, bool repeatT, std::
   return id;
 }
 
+void Textures::upload(const Image& image) {
+  rtTexImage2D(image.components, image.width, image.height, RT_UNSIGNED_BYTE, image.pixels.data());
+  ++loaded_;
+}
+
 RTid Textures::make(const Image& image, bool repeatS, bool repeatT) {
-  if (image.width <= 0 || image.height <= 0 || image.components < 1 || image.components > 4) return 0;
-  if (image.pixels.size() < size_t(image.width) * size_t(image.height) * size_t(image.components)) return 0;
+  if (!usable(image)) return 0;
   RTid id = 0;
   rtGenTextures(1, &id);
   if (id == 0) return 0;
   rtBindTexture(id);
-  rtTexImage2D(image.components, image.width, image.height, RT_UNSIGNED_BYTE, image.pixels.data());
+  upload(image);
   rtTexParameteri(RT_TEXTURE_WRAP_S, repeatS ? RT_REPEAT : RT_CLAMP_TO_EDGE);
   rtTexParameteri(RT_TEXTURE_WRAP_T, repeatT ? RT_REPEAT : RT_CLAMP_TO_EDGE);
   rtTexParameteri(RT_TEXTURE_SRGB, srgb_ ? 1 : 0);

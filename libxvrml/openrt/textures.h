@@ -20,17 +20,28 @@ class Textures {
   RTid ofNode(Node* texture);
   // The first URL of a list that leads to a picture. node: for messages and as the file that relative URLs mean.
   RTid ofUrls(const MFString& urls, const Node& node, bool repeatS, bool repeatT);
+  // A texture node has another picture: it is handed over again, under the same id where the picture is the node's own. True
+  // if ofNode() now gives another id.
+  bool changed(Node& texture);
+  void clear(); // deletes everything
+  uint64_t loaded() const { return loaded_; }
   uint64_t count() const { return count_; }
   uint64_t missing() const { return missing_; }
 
  private:
   RTid ofFile(const std::string& path, bool repeatS, bool repeatT, std::string& error);
   RTid make(const Image& image, bool repeatS, bool repeatT);
+  void upload(const Image& image);
+  RTid makeNode(Node& texture);
 
+  struct Known {
+    NodeRef node;
+    RTid id = 0;
+  };
   World& world_;
   bool srgb_;
-  uint64_t count_ = 0, missing_ = 0;
-  std::unordered_map<const Node*, RTid> nodes_;
+  uint64_t count_ = 0, missing_ = 0, loaded_ = 0;
+  std::unordered_map<const Node*, Known> nodes_;
   std::map<std::tuple<std::string, bool, bool>, std::pair<RTid, std::string>> files_; // texture, or why there is none
 };
 

@@ -10,30 +10,42 @@ namespace xvrml::mapping {
 
 Bound firstBound(const Graph& graph, const Places& places) {
   Bound bound;
-  auto take = [](int32_t& slot, size_t place) {
-    if (slot == none) slot = int32_t(place);
-  };
+  int32_t nowhere = none;
   for (size_t i = 0; i < places.all.size(); ++i) {
     if (places.all[i].inlined) continue;
-    switch (graph.items[places.all[i].item].kind) {
-    case Kind::viewpoint: take(bound.viewpoint, i); break;
-    case Kind::background: take(bound.background, i); break;
-    case Kind::fog: take(bound.fog, i); break;
-    case Kind::navigationInfo: take(bound.navigationInfo, i); break;
+    const Item& item = graph.items[places.all[i].item];
+    const auto take = [&](NodeRef& node, int32_t& place) {
+      if (node) return;
+      node = item.node;
+      place = int32_t(i);
+    };
+    switch (item.kind) {
+    case Kind::viewpoint: take(bound.viewpoint, bound.viewpointPlace); break;
+    case Kind::background: take(bound.background, bound.backgroundPlace); break;
+    case Kind::fog: take(bound.fog, bound.fogPlace); break;
+    case Kind::navigationInfo: take(bound.navigationInfo, nowhere); break;
     default: break;
     }
   }
   return bound;
 }
 
-Bound placesOf(const Graph& graph, const Places& places, const BoundNodes& nodes) {
-  const auto first = [&](Node* node) {
-    Node* rendered = node ? renderedNode(node) : nullptr;
-    for (size_t i = 0; rendered && i < places.all.size(); ++i)
-      if (graph.items[places.all[i].item].node == rendered) return int32_t(i);
-    return none;
+Bound boundTo(const Graph& graph, const Places& places, const BoundNodes& nodes) {
+  Bound bound;
+  const auto find = [&](Node* written, int type, NodeRef& node, int32_t* place) {
+    Node* rendered = written ? renderedNode(written) : nullptr;
+    if (!rendered || rendered->type().index != type) return;
+    node = NodeRef(rendered);
+    if (!place) return;
+    places.each(graph.find(rendered), [&](int32_t at) {
+      if (*place == none) *place = at;
+    });
   };
-  return {first(nodes.viewpoint), first(nodes.background), first(nodes.fog), first(nodes.navigationInfo)};
+  find(nodes.viewpoint, nodes::Viewpoint::typeIndex, bound.viewpoint, &bound.viewpointPlace);
+  find(nodes.background, nodes::Background::typeIndex, bound.background, &bound.backgroundPlace);
+  find(nodes.fog, nodes::Fog::typeIndex, bound.fog, &bound.fogPlace);
+  find(nodes.navigationInfo, nodes::NavigationInfo::typeIndex, bound.navigationInfo, nullptr);
+  return bound;
 }
 
 std::vector<ViewpointInfo> listViewpoints(const Graph& graph, const Places& places, std::vector<int32_t>& place) {
@@ -44,7 +56,7 @@ std::vector<ViewpointInfo> listViewpoints(const Graph& graph, const Places& plac
     ViewpointInfo info;
     info.name = graph.names[item.name];
     info.description = static_cast<nodes::Viewpoint&>(*item.node).description;
-    info.node = NodeRef(item.node);
+    info.node = item.node;
     toArray(places.all[i].world, info.matrix);
     list.push_back(std::move(info));
     place.push_back(int32_t(i));
@@ -116,10 +128,9 @@ CameraSettings cameraAround(const Bounds& bounds, const Matrix& view, double fov
   return camera;
 }
 
-bool hasHeadlight(const Graph& graph, const Places& places, const Bound& bound) {
-  if (bound.navigationInfo == none) return true;
-  const Item& item = graph.items[places.all[size_t(bound.navigationInfo)].item];
-  return static_cast<nodes::NavigationInfo&>(*item.node).headlight;
+bool hasHeadlight(const Bound& bound) {
+  const auto* info = nodeCast<nodes::NavigationInfo>(bound.navigationInfo);
+  return !info || info->headlight;
 }
 
 } // namespace xvrml::mapping

@@ -1,4 +1,4 @@
-// views.h: bindable nodes as bound at time 0: viewpoints and cameras, background, fog, navigation. Used by the mapper.
+// views.h: bindable nodes: viewpoints and cameras, background, fog, navigation. Used by the mapper, on its thread.
 #pragma once
 
 #include <vector>
@@ -6,17 +6,19 @@
 #include "openrt/places.h"
 #include "openrt/rt.h"
 #include "openrt/textures.h"
+#include "xvrml/nodes.h"
 #include "xvrml/openrt.h"
 
 namespace xvrml::mapping {
 
-// Places of the bindables that are bound first: of each kind the first in the file, not counting Inlines (clause 4.6.10);
-// `none` where there is none.
+// The nodes that are bound, and the first place of each: `none` where nothing is bound or the node is not drawn at present.
 struct Bound {
-  int32_t viewpoint = none, background = none, fog = none, navigationInfo = none;
+  NodeRef viewpoint, background, fog, navigationInfo;
+  int32_t viewpointPlace = none, backgroundPlace = none, fogPlace = none;
 };
+// Of each kind the first in the file, not counting Inlines (clause 4.6.10).
 Bound firstBound(const Graph& graph, const Places& places);
-Bound placesOf(const Graph& graph, const Places& places, const BoundNodes& nodes);
+Bound boundTo(const Graph& graph, const Places& places, const BoundNodes& nodes);
 
 // All viewpoints in the order of the file; place: of each, in Places::all.
 std::vector<ViewpointInfo> listViewpoints(const Graph& graph, const Places& places, std::vector<int32_t>& place);
@@ -26,10 +28,34 @@ CameraSettings cameraOf(const Node* viewpoint, const Matrix& parent, double aspe
 // A camera that looks along the view's -z from where all of bounds is in the picture.
 CameraSettings cameraAround(const Bounds& bounds, const Matrix& view, double fovy, double aspect);
 // False only if the bound NavigationInfo says so (clause 6.29: the default has a headlight).
-bool hasHeadlight(const Graph& graph, const Places& places, const Bound& bound);
+bool hasHeadlight(const Bound& bound);
 
-// Background and Fog as the scene's environment: one shader of the class VRML97Environment. matrices: the places' world.
-void useEnvironment(World& world, bool linearColor, const Graph& graph, const Places& places, const Bound& bound,
-                    ShaderClasses& classes, Textures& textures);
+// Background and Fog as the scene's environment: one shader of the class VRML97Environment. Clauses 6.5 and 6.19.
+class Environment {
+ public:
+  Environment(World& world, bool linearColor, ShaderClasses& classes, Textures& textures)
+      : world_(world), linear_(linearColor), classes_(classes), textures_(textures) {}
+  // The fields of a node that may be bound have changed.
+  void changed(const Node& node) { stale_ |= &node == background_.get() || &node == fog_.get(); }
+  // Sets what is another than before. The places' world matrices must be those of the frame.
+  void follow(const Places& places, const Bound& bound);
+  void clear(); // removes it
+  uint64_t parametersSet() const { return sets_; }
+
+ private:
+  void setAll(ShaderSetup& shader, const RTid (&pictures)[6]);
+  void setBackground(ShaderSetup& shader, const nodes::Background& node, const RTid (&pictures)[6]);
+  void setFog(ShaderSetup& shader);
+
+  World& world_;
+  bool linear_;
+  ShaderClasses& classes_;
+  Textures& textures_;
+  NodeRef background_, fog_;
+  Matrix matrix_, fogMatrix_; // of the environment; of the fog's coordinate system
+  RTid shader_ = 0;
+  bool stale_ = false;
+  uint64_t sets_ = 0;
+};
 
 } // namespace xvrml::mapping

@@ -190,12 +190,13 @@ TEST(VrmlGroups, SolidFacesAndWinding) {
 // A group that is shared is seen as one that is written out, also under a mirror.
 TEST(VrmlGroups, InstancesLookLikeCopies) {
   std::string heights;
-  for (int i = 0; i < 60 * 60; ++i) heights += std::to_string(0.1 * std::sin(i % 60 * 0.3) * std::cos(i / 60 * 0.2)) + " ";
+  for (int i = 1; i < 60 * 60; ++i) heights += std::to_string(0.1 * std::sin(i % 60 * 0.3) * std::cos(i / 60 * 0.2)) + " ";
+  int made = 0; // a number at the end that nobody sees: equal meshes would be shared
   const auto grid = [&](const std::string& name) {
     return "DEF " + name + " Transform { rotation 1 0.1 0 1.4 translation -1.5 -0.2 0 children Shape { appearance " +
            material("specularColor 1 1 1") +
            " geometry ElevationGrid { xDimension 60 zDimension 60 xSpacing 0.05 zSpacing 0.05 creaseAngle 1 height [ " + heights +
-           "] } } }\n";
+           std::to_string(1e-5 * ++made) + "] } } }\n";
   };
   const auto world = [&](bool shared) {
     std::string body = dark + "PointLight { location 3 4 6 }\n" + grid("A");

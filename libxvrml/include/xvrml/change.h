@@ -25,4 +25,8 @@ inline bool reaches(const Node& node, Change kind) { return reachOf(node) >> int
 // Why a kind is in reachOf, for people: "ROUTE from Clock.fraction_changed"; empty if it is not.
 std::string reachReason(const Node& node, Change kind);
 
+// Appends the nodes of a running world that hold a node among their children (prototype instances hold the nodes of their
+// body, Inlines what they loaded), once for each time they do.
+void holdersOf(const Node& node, std::vector<Node*>& holders);
+
 } // namespace xvrml

@@ -1,0 +1,43 @@
+// cost.h: when is a thing that appears several times worth an object with instances? The one place where memory is weighed
+// against speed. Pure numbers; used by the grouping (summary.cpp).
+//
+// What memory costs, measured with the local backend (tests/bench/map_memory.cpp): a triangle about 150 bytes (arrays, their
+// copy in the kernel's frame, acceleration structure), an instance about 300. What time costs: rays that meet instances run
+// at about a quarter of the speed of rays in one merged mesh, and the smaller the instanced things are the more of them a ray
+// meets. So an instance must replace much more than itself, unless the memory saved is large by any measure.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+
+namespace xvrml::mapping {
+
+inline uint64_t addSaturating(uint64_t a, uint64_t b) {
+  return a > std::numeric_limits<uint64_t>::max() - b ? std::numeric_limits<uint64_t>::max() : a + b;
+}
+inline uint64_t multiplySaturating(uint64_t a, uint64_t b) {
+  return b != 0 && a > std::numeric_limits<uint64_t>::max() / b ? std::numeric_limits<uint64_t>::max() : a * b;
+}
+
+inline constexpr uint64_t bytesOfPrimitive = 150, bytesOfInstance = 300;
+inline constexpr uint64_t replacedMany = 16;               // instances' worth that one instance must replace ...
+inline constexpr uint64_t savedSome = 256 << 10;           // ... if this much is saved in all
+inline constexpr uint64_t replacedFew = 2;                 // or only this many ...
+inline constexpr uint64_t savedMuch = uint64_t(256) << 20; // ... if that much is
+
+// Memory that instances save for a thing of so many primitives that would be written `times` times; 0 if they cost some.
+inline uint64_t savedByInstances(uint64_t primitives, uint64_t times) {
+  if (times < 2) return 0;
+  const uint64_t copies = multiplySaturating(multiplySaturating(primitives, bytesOfPrimitive), times - 1);
+  const uint64_t instances = multiplySaturating(bytesOfInstance, times);
+  return copies > instances ? copies - instances : 0;
+}
+
+// merged: asked to be written out rather than instantiated (ORTStatic): only a large saving counts.
+inline bool worthInstances(uint64_t primitives, uint64_t times, bool merged = false) {
+  const uint64_t saved = savedByInstances(primitives, times), one = multiplySaturating(primitives, bytesOfPrimitive);
+  if (one >= replacedFew * bytesOfInstance && saved >= savedMuch) return true;
+  return !merged && one >= replacedMany * bytesOfInstance && saved >= savedSome;
+}
+
+} // namespace xvrml::mapping

@@ -1,0 +1,63 @@
+// mapper_impl.h: what an OpenRTMapper is made of. Shared by mapper.cpp (frames), update.cpp (changes) and explain.cpp.
+#pragma once
+
+#include <optional>
+
+#include "openrt/appearance.h"
+#include "openrt/lights.h"
+#include "openrt/objects.h"
+#include "openrt/places.h"
+#include "openrt/views.h"
+#include "xvrml/openrt.h"
+
+namespace xvrml {
+
+struct OpenRTMapper::Impl {
+  RTcontext context = rtGetCurrent();
+  World& world;
+  MapOptions options;
+  mapping::Graph graph;
+  mapping::Places places;
+  mapping::ShaderClasses classes;
+  mapping::Textures textures;
+  mapping::Surfaces surfaces;
+  mapping::Objects objects;
+  mapping::Lights lights;
+  mapping::Environment environment;
+  std::optional<mapping::Bound> given; // by bind(); its places may be old
+  mapping::Bound bound;
+  CameraSettings camera; // of the last frame; before the first the standard's
+  uint64_t regroupings = 0;
+
+  Impl(World& world, const MapOptions& options);
+  ~Impl(); // takes everything out of the context again, if that is still the current one
+  CameraSettings cameraAt(int32_t place) const;
+  bool headlight() const;
+  void rebind();
+
+  // Made when asked for, after what they follow from has changed.
+  const std::vector<ViewpointInfo>& viewpoints();
+  const std::vector<int32_t>& viewpointPlaces();
+  const Bounds& bounds();
+  bool viewsStale = true, boundsStale = true, countsStale = false;
+
+  // Between frames: update.cpp.
+  void update(const FieldChanges& changes);
+
+ private:
+  struct Work;
+  void transformed(Work& work, Node& node);
+  void reshaped(Work& work, Node& node);
+  void relooked(Work& work, Node& node);
+  void relit(Work& work, Node& node);
+  void newSurfaces(Work& work);
+  void textured(Work& work, mapping::ItemId shape);
+  void regroup();
+
+  std::vector<ViewpointInfo> viewpoints_;
+  std::vector<int32_t> viewpointPlaces_;
+  Bounds bounds_;
+  size_t surfacesKept_ = 64;
+};
+
+} // namespace xvrml
