@@ -47,6 +47,9 @@ class ShaderTable {
  public:
   ShaderTable(const Scene& scene, const ShaderRegistry& registry, const std::map<uint32_t, uint32_t>& textureIndex,
               const RtsHost& host);
+  // The same scene after parameters of these shaders changed, and nothing else of shaders and textures.
+  ShaderTable(const ShaderTable& before, const std::vector<uint32_t>& changed, const Scene& scene,
+              const std::map<uint32_t, uint32_t>& textureIndex, const RtsHost& host);
   uint32_t slotOf(uint32_t shaderId) const; // surface shaders; unknown ids: slot 0
   const ShaderSlot& operator[](uint32_t slot) const { return slots_[slot]; }
   // Everything of the other has the same slot, class and traits here: records made for it serve this one.
@@ -60,11 +63,13 @@ class ShaderTable {
     std::vector<std::vector<float>> lists;
     std::vector<std::unique_ptr<std::string>> strings;
   };
-  ShaderSlot make(const RtsClass& shaderClass, const ShaderValues* values, const std::map<uint32_t, uint32_t>& textureIndex,
-                  const RtsHost& host);
+  using Slots = std::map<uint32_t, uint32_t>; // by shader id
+  void make(uint32_t slot, const RtsClass& shaderClass, const ShaderValues* values,
+            const std::map<uint32_t, uint32_t>& textureIndex, const RtsHost& host);
   std::vector<ShaderSlot> slots_;
-  std::map<uint32_t, uint32_t> slotOf_;
-  std::vector<Block> blocks_;
+  std::vector<std::shared_ptr<const Block>> blocks_; // by slot; tables share those that did not change
+  std::shared_ptr<const Slots> slotOf_;
+  uint32_t defaultShader_ = 0; // the shader whose values slot 0 has
 };
 
 struct RenderScene {

@@ -7,8 +7,11 @@
 #include "shading/registry.h"
 
 namespace openrt {
+
 ShaderTable::ShaderTable(const Scene& scene, const ShaderRegistry& registry, const std::map<uint32_t, uint32_t>& textureIndex,
                          const RtsHost& host) {
+  slots_.resize(1 + scene.shaders.size());
+  blocks_.resize(slots_.size());
   const auto fallback = scene.shaders.find(scene.defaultShader);
   const RtsClass* base = nullptr;
   if (fallback != scene.shaders.end()) {
@@ -16,40 +19,61 @@ ShaderTable::ShaderTable(const Scene& scene, const ShaderRegistry& registry, con
     if (name != scene.classes.end()) base = &registry.find(name->second.name, name->second.library);
     if (base && base->kind != RTS_SURFACE) base = nullptr;
   }
-  slots_.push_back(base ? make(*base, &fallback->second, textureIndex, host)
-                        : make(registry.find("VRML97", ""), nullptr, textureIndex, host));
+  if (base)
+    make(0, *base, &fallback->second, textureIndex, host), defaultShader_ = scene.defaultShader;
+  else
+    make(0, registry.find("VRML97", ""), nullptr, textureIndex, host);
+  uint32_t slot = 1;
+  auto slots = std::make_shared<Slots>();
   for (const auto& [id, values] : scene.shaders) {
     const auto name = scene.classes.find(values.shaderClass);
     if (name == scene.classes.end()) continue;
-    slotOf_[id] = uint32_t(slots_.size());
-    slots_.push_back(make(registry.find(name->second.name, name->second.library), &values, textureIndex, host));
+    slots->emplace_hint(slots->end(), id, slot);
+    make(slot++, registry.find(name->second.name, name->second.library), &values, textureIndex, host);
+  }
+  slots_.resize(slot), blocks_.resize(slot);
+  slotOf_ = std::move(slots);
+}
+
+ShaderTable::ShaderTable(const ShaderTable& before, const std::vector<uint32_t>& changed, const Scene& scene,
+                         const std::map<uint32_t, uint32_t>& textureIndex, const RtsHost& host)
+    : slots_(before.slots_), blocks_(before.blocks_), slotOf_(before.slotOf_), defaultShader_(before.defaultShader_) {
+  for (uint32_t id : changed) {
+    const auto slot = slotOf_->find(id);
+    const auto values = scene.shaders.find(id);
+    if (slot == slotOf_->end() || values == scene.shaders.end()) continue;
+    make(slot->second, *slots_[slot->second].shaderClass, &values->second, textureIndex, host);
+    if (id == defaultShader_) make(0, *slots_[0].shaderClass, &values->second, textureIndex, host);
   }
 }
 
 uint32_t ShaderTable::slotOf(uint32_t shaderId) const {
-  const auto found = slotOf_.find(shaderId);
-  return found != slotOf_.end() && slots_[found->second].shaderClass->kind == RTS_SURFACE ? found->second : 0;
+  const auto found = slotOf_->find(shaderId);
+  return found != slotOf_->end() && slots_[found->second].shaderClass->kind == RTS_SURFACE ? found->second : 0;
 }
 
 ShaderSlot ShaderTable::role(uint32_t shaderId, RtsKind kind) const {
-  const auto found = slotOf_.find(shaderId);
-  if (found == slotOf_.end() || slots_[found->second].shaderClass->kind != kind) return {};
+  const auto found = slotOf_->find(shaderId);
+  if (found == slotOf_->end() || slots_[found->second].shaderClass->kind != kind) return {};
   return slots_[found->second];
 }
 
 bool ShaderTable::extends(const ShaderTable& other) const {
-  const auto same = [&](uint32_t slot) {
-    return slots_[slot].shaderClass == other.slots_[slot].shaderClass && slots_[slot].traits == other.slots_[slot].traits;
+  const auto same = [](const ShaderSlot& a, const ShaderSlot& b) {
+    return a.shaderClass == b.shaderClass && a.traits == b.traits;
   };
-  return same(0) && std::all_of(other.slotOf_.begin(), other.slotOf_.end(), [&](const auto& entry) {
-           const auto found = slotOf_.find(entry.first);
-           return found != slotOf_.end() && found->second == entry.second && same(entry.second);
+  if (slotOf_ == other.slotOf_) return std::equal(slots_.begin(), slots_.end(), other.slots_.begin(), same);
+  return same(slots_[0], other.slots_[0]) && std::all_of(other.slotOf_->begin(), other.slotOf_->end(), [&](const auto& entry) {
+           const auto found = slotOf_->find(entry.first);
+           return found != slotOf_->end() && found->second == entry.second &&
+                  same(slots_[entry.second], other.slots_[entry.second]);
          });
 }
 
-ShaderSlot ShaderTable::make(const RtsClass& shaderClass, const ShaderValues* values,
-                             const std::map<uint32_t, uint32_t>& textureIndex, const RtsHost& host) {
-  Block block;
+void ShaderTable::make(uint32_t number, const RtsClass& shaderClass, const ShaderValues* values,
+                       const std::map<uint32_t, uint32_t>& textureIndex, const RtsHost& host) {
+  const auto made = std::make_shared<Block>();
+  Block& block = *made;
   block.bytes = std::make_unique<std::byte[]>(shaderClass.paramSize ? shaderClass.paramSize : 1);
   for (uint32_t i = 0; i < shaderClass.paramCount; i++) {
     const RtsParam& param = shaderClass.params[i];
@@ -83,8 +107,8 @@ ShaderSlot ShaderTable::make(const RtsClass& shaderClass, const ShaderValues* va
   }
   ShaderSlot slot{&shaderClass, block.bytes.get(), 0};
   if (shaderClass.traits) slot.traits = shaderClass.traits(&host, slot.params);
-  blocks_.push_back(std::move(block)); // the bytes, the lists' data and the strings stay where they are
-  return slot;
+  slots_[number] = slot;
+  blocks_[number] = made;
 }
 
 } // namespace openrt

@@ -18,6 +18,7 @@ Matrix4d toMatrix(const edit::Matrix* matrix) {
 void SceneChanges::add(const SceneChanges& more) {
   structure |= more.structure, shaders |= more.shaders, textures |= more.textures;
   lights |= more.lights, camera |= more.camera, frame |= more.frame;
+  parameters.insert(parameters.end(), more.parameters.begin(), more.parameters.end());
   moved.insert(moved.end(), more.moved.begin(), more.moved.end());
   redefined.insert(redefined.end(), more.redefined.begin(), more.redefined.end());
 }
@@ -84,7 +85,7 @@ void Scene::applyEdit(const edit::AnyUnion& any, SceneChanges& changes) {
   case Any::Parameter: {
     const auto& p = *any.AsParameter();
     if (auto found = shaders.find(p.shader); found != shaders.end()) found->second.parameters[p.index] = p;
-    changes.shaders = true;
+    if (changes.parameters.empty() || changes.parameters.back() != p.shader) changes.parameters.push_back(p.shader);
     break;
   }
   case Any::DeleteShader:

@@ -66,11 +66,13 @@ struct ShaderClassName {
 // What a commit touched: decides what a backend makes anew.
 struct SceneChanges {
   bool structure = false; // instances made, deleted, or changed in more than their place; objects made or deleted
-  bool shaders = false, textures = false, lights = false, camera = false, frame = false;
+  bool shaders = false; // made, deleted, or another default; not their parameters
+  bool textures = false, lights = false, camera = false, frame = false;
+  std::vector<uint32_t> parameters; // shaders of which some were set
   std::vector<uint32_t> moved;     // dynamic instances whose matrix or visibility changed, and nothing else
   std::vector<uint32_t> redefined; // dynamic objects that were defined before, without instances in them
   bool any() const {
-    return structure || shaders || textures || lights || camera || frame || !moved.empty() || !redefined.empty();
+    return structure || shaders || textures || lights || camera || frame || !parameters.empty() || !moved.empty() || !redefined.empty();
   }
   void add(const SceneChanges& more);
 };

@@ -50,7 +50,7 @@ RTstats stats() {
 
 class EditScene {
  public:
-  // same: all dynamic instances are of one object; else each has its own, of 128 triangles.
+  // same: all dynamic instances are of one object of 128 triangles; else each has its own, with a shader of its own.
   EditScene(int64_t count, bool same) : context_(rtNewContext("threads=2")) {
     rtFrameBuffer(1, 1, RT_RGBA);
     rtQuality(RT_SAMPLES_PER_PIXEL, 1);
@@ -63,7 +63,10 @@ class EditScene {
     for (int64_t i = 0; i < count; i++) {
       if (!same || i == 0) {
         rtGenObjects(1, &object);
-        if (!same) rtObjectHint(object, RT_DYNAMIC);
+        if (!same) {
+          rtObjectHint(object, RT_DYNAMIC);
+          rtBindShader(rtNewShader(rtNewShaderClass("VRML97", nullptr)));
+        }
         grid(object, 8, 1, 0);
         objects.push_back(object);
       }
@@ -128,6 +131,12 @@ void parameter(benchmark::State& state) {
     rtParameter3f(s.diffuse, float(i % 10) / 10, .5f, .5f);
   });
 }
+void parameterOfMany(benchmark::State& state) {
+  edit(state, false, [](EditScene& s, int i) {
+    rtBindShader(s.shader);
+    rtParameter3f(s.diffuse, float(i % 10) / 10, .5f, .5f);
+  });
+}
 void moveCamera(benchmark::State& state) {
   edit(state, true, [](EditScene&, int i) { look(i % 20); });
 }
@@ -150,6 +159,7 @@ BENCHMARK(moveAll)->Arg(10)->Arg(10000)->Unit(benchmark::kMillisecond);
 BENCHMARK(hideOne)->Arg(10)->Arg(10000)->Unit(benchmark::kMillisecond);
 BENCHMARK(redefineOne)->Arg(10)->Arg(10000)->Unit(benchmark::kMillisecond);
 BENCHMARK(parameter)->Arg(10)->Arg(10000)->Unit(benchmark::kMillisecond);
+BENCHMARK(parameterOfMany)->Arg(10)->Arg(10000)->Unit(benchmark::kMillisecond);
 BENCHMARK(moveCamera)->Arg(10)->Arg(10000)->Unit(benchmark::kMillisecond);
 BENCHMARK(addAndDelete)->Arg(10)->Arg(10000)->Unit(benchmark::kMillisecond);
 BENCHMARK(buildAll)->Arg(10)->Arg(10000)->Unit(benchmark::kMillisecond);

@@ -99,7 +99,8 @@ void LocalBackend::makeShaders(RenderScene& next) const {
   fillHost(next.host);
   next.host.logCallback = options_.log;
   next.host.logUser = options_.logUser;
-  if (snapshot_ && !changes_.shaders && !changes_.textures) {
+  const bool kept = snapshot_ && !changes_.shaders && !changes_.textures;
+  if (kept && changes_.parameters.empty()) {
     next.textures = snapshot_->textures, next.shaders = snapshot_->shaders;
     next.host.textures = next.textures.get();
     return;
@@ -108,12 +109,14 @@ void LocalBackend::makeShaders(RenderScene& next) const {
   std::vector<Texture> textures;
   textures.emplace_back(edit::TextureT(), nullptr); // number 0: none, white
   for (const auto& [id, image] : scene_.textures) {
-    index[id] = uint32_t(textures.size());
-    textures.emplace_back(image.description, image.texels);
+    const auto number = uint32_t(index.size() + 1);
+    index[id] = number;
+    if (!kept) textures.emplace_back(image.description, image.texels);
   }
-  next.textures = std::make_shared<const std::vector<Texture>>(std::move(textures));
+  next.textures = kept ? snapshot_->textures : std::make_shared<const std::vector<Texture>>(std::move(textures));
   next.host.textures = next.textures.get();
-  next.shaders = std::make_shared<const ShaderTable>(scene_, *options_.shaders, index, next.host);
+  next.shaders = kept ? std::make_shared<const ShaderTable>(*snapshot_->shaders, changes_.parameters, scene_, index, next.host)
+                      : std::make_shared<const ShaderTable>(scene_, *options_.shaders, index, next.host);
 }
 
 void LocalBackend::makeCamera(RenderScene& next, const Vec3d& origin) const {
