@@ -72,7 +72,8 @@ struct SceneChanges {
   std::vector<uint32_t> moved;     // dynamic instances whose matrix or visibility changed, and nothing else
   std::vector<uint32_t> redefined; // dynamic objects that were defined before, without instances in them
   bool any() const {
-    return structure || shaders || textures || lights || camera || frame || !parameters.empty() || !moved.empty() || !redefined.empty();
+    return structure || shaders || textures || lights || camera || frame || !parameters.empty() || !moved.empty() ||
+           !redefined.empty();
   }
   void add(const SceneChanges& more);
 };
