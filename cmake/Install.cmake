@@ -11,7 +11,7 @@ get_property(shaders GLOBAL PROPERTY OPENRT_SHADERS)
 install(TARGETS ${shaders} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/openrt/shaders)
 
 set_target_properties(xvrml_openrt PROPERTIES EXPORT_NAME openrt)
-install(TARGETS xvrml xvrml_openrt EXPORT xvrml_targets)
+install(TARGETS xvrml xvrml_openrt xvrml_script_headers EXPORT xvrml_targets)
 install(DIRECTORY libxvrml/include/xvrml DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h")
 get_target_property(xvrml_includes xvrml INTERFACE_INCLUDE_DIRECTORIES)
 foreach(folder ${xvrml_includes}) # the folder of generated headers is the one in the build tree
@@ -38,6 +38,11 @@ foreach(package openrt xvrml)
 endforeach()
 install(FILES cmake/OpenrtShader.cmake DESTINATION ${openrt_cmake_dir})
 install(FILES cmake/XvrmlNodes.cmake DESTINATION ${xvrml_cmake_dir})
+install(FILES cmake/XvrmlScript.cmake DESTINATION ${xvrml_cmake_dir})
+get_property(script_engines GLOBAL PROPERTY XVRML_SCRIPT_ENGINES)
+if(script_engines)
+  install(TARGETS ${script_engines} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/xvrml/scripts)
+endif()
 
 # From lib/pkgconfig to the prefix, so that the tree can be moved: pkg-config knows where its file lies.
 file(RELATIVE_PATH pkgconfig_to_prefix /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)

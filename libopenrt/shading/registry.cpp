@@ -4,16 +4,11 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cstdlib>
-#include <filesystem>
 #include <stdexcept>
-#include <system_error>
 
 #include <dlfcn.h>
-#include <link.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
+#include "plugin_files.h"
 #include "shading/plugin_check.h"
 
 namespace openrt {
@@ -37,74 +32,10 @@ struct ShaderRegistry::Library {
 
 namespace {
 
-namespace fs = std::filesystem;
-
-// "libX.so", "X.so", "libX" and "X" all name X.
-std::string bareLibraryName(std::string_view name) {
-  constexpr size_t maxLength = 200;
-  const bool plain = !name.empty() && name.size() <= maxLength && name.front() != '.' &&
-                     name.find_first_of(std::string_view("/\\\0", 3)) == name.npos && name.find("..") == name.npos;
-  if (!plain) {
-    const std::string_view shown = name.substr(0, std::min(maxLength, name.find('\0')));
-    throw std::runtime_error("shader library \"" + std::string(shown) + "\": only a bare name is allowed, no path");
-  }
-  if (name.ends_with(".so")) name.remove_suffix(3);
-  if (name.starts_with("lib") && name.size() > 3) name.remove_prefix(3);
-  return std::string(name);
-}
-
-// A folder that anybody may write to, or that belongs to another user, could hold anybody's code.
-bool trusted(const std::string& folder) {
-  struct stat info {};
-  if (stat(folder.c_str(), &info) != 0 || !S_ISDIR(info.st_mode)) return false;
-  const uid_t user = geteuid();
-  return (info.st_mode & S_IWOTH) == 0 && (user == 0 || info.st_uid == user || info.st_uid == 0);
-}
-
-size_t exportedBytes(void* symbol) {
-  Dl_info info{};
-  ElfW(Sym)* entry = nullptr;
-  if (dladdr1(symbol, &info, reinterpret_cast<void**>(&entry), RTLD_DL_SYMENT) == 0 || !entry || info.dli_saddr != symbol)
-    return 0;
-  return entry->st_size;
-}
-
 std::string lowerCase(std::string_view text) {
   std::string result(text);
   for (char& c : result) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return result;
-}
-
-std::string libraryFile(const std::string& folder, const std::string& bareName) {
-  for (const char* prefix : {"", "lib"}) {
-    const fs::path candidate = fs::path(folder) / (prefix + bareName + ".so");
-    std::error_code ignored;
-    if (fs::is_regular_file(candidate, ignored)) return candidate.string();
-  }
-  return {};
-}
-
-void appendFolders(std::vector<std::string>& folders, std::string_view list) {
-  while (!list.empty()) {
-    const size_t end = std::min(list.find(':'), list.size());
-    if (end > 0) folders.emplace_back(list.substr(0, end));
-    list.remove_prefix(std::min(end + 1, list.size()));
-  }
-}
-
-// Folder of the program, and of the shared library that holds this code; the same when it is linked statically.
-std::vector<fs::path> ownFolders() {
-  std::vector<fs::path> folders;
-  std::error_code error;
-  Dl_info info{};
-  static const char here = 0;
-  if (dladdr(&here, &info) != 0 && info.dli_fname && std::string_view(info.dli_fname).find('/') != std::string_view::npos) {
-    const fs::path file = fs::canonical(info.dli_fname, error);
-    if (!error) folders.push_back(file.parent_path());
-  }
-  const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  if (!error) folders.push_back(program.parent_path());
-  return folders;
 }
 
 } // namespace
@@ -119,7 +50,7 @@ ShaderRegistry::Library::Library(std::string bareName, std::string file) : name(
     void* symbol = dlsym(handle, RTS_ENTRY_NAME);
     if (!symbol)
       throw std::runtime_error("shader library " + path + ": exports no " RTS_ENTRY_NAME ", so it is no shader plug-in");
-    classes = checkPlugin(static_cast<const RtsPlugin*>(symbol), exportedBytes(symbol), path);
+    classes = checkPlugin(static_cast<const RtsPlugin*>(symbol), plugin_files::exportedBytes(symbol), path);
   } catch (...) {
     dlclose(handle);
     throw;
@@ -133,7 +64,7 @@ const ShaderRegistry::Library* ShaderRegistry::load(const std::string& bareName)
   for (const auto& library : libraries_)
     if (library->name == bareName) return library.get();
   for (const std::string& folder : folders_) {
-    const std::string file = trusted(folder) ? libraryFile(folder, bareName) : std::string();
+    const std::string file = plugin_files::trusted(folder) ? plugin_files::file(folder, bareName) : std::string();
     if (file.empty()) continue;
     libraries_.push_back(std::make_unique<Library>(bareName, file));
     return libraries_.back().get();
@@ -141,20 +72,12 @@ const ShaderRegistry::Library* ShaderRegistry::load(const std::string& bareName)
   return nullptr;
 }
 
-std::string ShaderRegistry::searched() const {
-  std::string text;
-  for (const std::string& folder : folders_) {
-    std::error_code ignored;
-    const bool refused = fs::is_directory(folder, ignored) && !trusted(folder);
-    text += (text.empty() ? "" : ", ") + folder + (refused ? " (refused: others may write to it)" : "");
-  }
-  return text.empty() ? "no folder is configured" : text;
-}
+std::string ShaderRegistry::searched() const { return plugin_files::listed(folders_); }
 
 const RtsClass& ShaderRegistry::find(std::string_view name, std::string_view library) const {
   const std::lock_guard lock(mutex_);
   if (!library.empty()) {
-    const Library* found = load(bareLibraryName(library));
+    const Library* found = load(plugin_files::bareName(library, "shader library"));
     if (!found) throw std::runtime_error("shader library \"" + std::string(library) + "\" not found in: " + searched());
     if (const RtsClass* shaderClass = found->find(name)) return *shaderClass;
     std::string has;
@@ -175,17 +98,8 @@ const RtsClass& ShaderRegistry::find(std::string_view name, std::string_view lib
 }
 
 std::vector<std::string> shaderFolders(std::string_view configured) {
-  std::vector<std::string> folders;
-  appendFolders(folders, configured);
-  if (const char* environment = secure_getenv("OPENRT_SHADER_PATH")) appendFolders(folders, environment);
-  for (const fs::path& own : ownFolders())
-    for (const fs::path& candidate : {own / "../lib/openrt/shaders", own / "openrt/shaders"}) {
-      std::error_code error;
-      const fs::path folder = fs::canonical(candidate, error);
-      if (!error && std::find(folders.begin(), folders.end(), folder.string()) == folders.end())
-        folders.push_back(folder.string());
-    }
-  return folders;
+  static const char here = 0;
+  return plugin_files::folders(configured, "OPENRT_SHADER_PATH", "openrt/shaders", &here);
 }
 
 } // namespace openrt

@@ -15,6 +15,7 @@ Browser::Browser(std::unique_ptr<World> world, BrowserOptions options, double st
   impl_->engine->beginCascade(start);
   impl_->engine->adoptScope(impl_->world->scope, true);
   impl_->engine->settle();
+  impl_->workOff();
 }
 
 Browser::~Browser() = default;
@@ -22,7 +23,10 @@ Browser::~Browser() = default;
 World& Browser::world() { return *impl_->world; }
 Events& Browser::events() { return *impl_->engine; }
 double Browser::now() const { return impl_->engine->now(); }
-void Browser::tick(double time) { impl_->engine->tick(time); }
+void Browser::tick(double time) {
+  impl_->engine->tick(time);
+  impl_->workOff();
+}
 FieldChanges Browser::takeChanges() { return impl_->engine->takeChanges(); }
 uint64_t Browser::generation() const { return impl_->generation; }
 
@@ -34,8 +38,14 @@ NodeRef Browser::node(std::string_view name) const {
 
 bool Browser::set(Node& node, std::string_view field, Value value) {
   const FieldInfo* plain = node.type().find(field);
-  if (plain && plain->access == Access::field) return impl_->engine->store(node, *plain, std::move(value));
-  return impl_->engine->dispatch(node, field, std::move(value));
+  if (plain && plain->access == Access::field) {
+    const bool stored = impl_->engine->store(node, *plain, std::move(value));
+    impl_->settle();
+    return stored;
+  }
+  const bool sent = impl_->engine->dispatch(node, field, std::move(value));
+  impl_->workOff();
+  return sent;
 }
 
 Value Browser::get(const Node& node, std::string_view field) const {
@@ -64,6 +74,7 @@ void Browser::addRoot(NodeRef node) {
   if (!node || std::find(roots.begin(), roots.end(), node) != roots.end()) return;
   roots.push_back(node);
   impl_->engine->addRoot(*node);
+  impl_->settle();
 }
 
 void Browser::removeRoot(Node& node) {

@@ -2,21 +2,34 @@
 #pragma once
 
 #include "event/engine.h"
+#include "script/host.h"
 #include "xvrml/browser.h"
 
 namespace xvrml {
 
 struct Browser::Impl {
-  Impl(Browser& browser, std::unique_ptr<World> world, const BrowserOptions& options)
-      : options(options), world(std::move(world)), engine(std::make_unique<Engine>(this->world->diagnostics, &browser)) {
-    engine->maximumEvents = options.maximumEvents;
+  Impl(Browser& browser, std::unique_ptr<World> world, const BrowserOptions& options);
+  void settle() { // what has been made outside of a cascade
+    if (engine->settling()) return;
+    engine->beginCascade(engine->now());
+    engine->settle();
   }
+  // Does what had to wait for the end of a cascade. Much of it waits for the next call: a world may load itself for ever.
+  void workOff();
+  void later(std::function<void()> job);
+  MFNode adopt(World& loaded); // what has been loaded beside the world
+  void become(Scope scope, const std::vector<NodeRef>& kept, std::vector<NodeRef> cyclic); // another world
 
   BrowserOptions options;
   std::unique_ptr<World> world;
-  std::unique_ptr<Engine> engine; // ends before the world
+  std::unique_ptr<Engine> engine;      // ends before the world
+  std::unique_ptr<ScriptHost> scripts; // ends before the engine; null: Scripts do nothing
   uint64_t generation = 1;
   std::function<void(Node& anchor)> onAnchor;
+  std::deque<std::function<void()>> jobs;
+  bool working = false;
+  std::string description;
+  double frameRate = 0;
 };
 
 } // namespace xvrml

@@ -85,16 +85,19 @@ void Engine::settle() {
   if (settling_) return;
   settling_ = true;
   do {
-    while (!queue_.empty()) {
-      Event event = std::move(queue_.front());
-      queue_.pop_front();
+    while (scriptsBegin_ || !queue_.empty()) {
       if (++inCascade_ > maximumEvents) {
         if (!overflow_)
           diagnostics_.warn({}, fmt::format("more than {} events at time {}: the rest is dropped", maximumEvents, now_));
         overflow_ = true;
         queue_.clear();
+        if (scripts) scripts->drop();
         break;
       }
+      if (scriptsBegin_ && (scriptsBegin_ = scripts && scripts->initializeNext())) continue;
+      if (queue_.empty()) break;
+      Event event = std::move(queue_.front());
+      queue_.pop_front();
       if (event.arriving)
         arrive(*event.node, *event.field, event.value);
       else
@@ -104,6 +107,7 @@ void Engine::settle() {
   settling_ = false;
   renewExpansions();
   sweep();
+  if (scripts) scripts->finish();
 }
 
 // Follows the links of an eventOut. Routes added meanwhile are not followed, deleted ones neither.
@@ -190,6 +194,7 @@ void Engine::tick(double time) {
   if (settling_) return; // a listener or a Script must not move time
   beginCascade(std::max(time, now_));
   observer->ticked();
+  if (scripts) scripts->tick();
   callAll(ticking_, &Behaviour::tick);
   settle();
   beginCascade(now_);

@@ -14,10 +14,15 @@ namespace xvrml {
 class ScriptRunner {
  public:
   virtual ~ScriptRunner() = default;
-  virtual void begin(ScriptNode& script) = 0; // part of the world now; initialize() comes before its first event
+  virtual void begin(ScriptNode& script) = 0; // part of the world now
+  virtual bool initializeNext() = 0;          // starts the first of those that have begun; false if there is none
   virtual void receive(ScriptNode& script, const FieldInfo& in, const Value& value) = 0;
   // Calls eventsProcessed() of all Scripts that received something since; true if there was one.
   virtual bool eventsProcessed() = 0;
+  virtual void drop() = 0;                           // events that still wait are dropped
+  virtual void tick() = 0;                           // time has come to now()
+  virtual void end(ScriptNode& script) noexcept = 0; // is being destroyed; called wherever that happens
+  virtual void finish() = 0;                         // a good time to shut down those that have ended
 };
 
 // Told what happens in a running world while it happens: the viewer's part of it (behaviour/interaction.h).
@@ -52,6 +57,11 @@ class Engine : public Events {
   void addRoot(Node& node);
   void removeRoot(Node& node);
 
+  // Another world is to come: of all nodes only these remain, with what hangs below them and what their routes lead to; none is
+  // a root any more. Not while events are under way.
+  void keepOnly(const std::vector<NodeRef>& kept);
+  size_t nodes() const { return lives_.size(); }
+
   // False, with a message, if there are no such events or their types differ; adding a route twice is adding it once.
   bool addRoute(Node& from, std::string_view out, Node& to, std::string_view in);
   bool deleteRoute(Node& from, std::string_view out, Node& to, std::string_view in);
@@ -74,6 +84,8 @@ class Engine : public Events {
   uint64_t delivered() const { return delivered_; } // events so far
   uint64_t structure() const { return structure_; } // grows whenever nodes get or lose a parent or become roots or no longer
   uint64_t cascade() const { return cascade_; }
+  // Some Script is to be started before the next event.
+  void scriptsBegin() { scriptsBegin_ = true; }
   // Calls look() of all that want it, within the present cascade.
   void lookNow() { callAll(looking_, &Behaviour::look); }
 
@@ -118,7 +130,7 @@ class Engine : public Events {
   std::vector<NodeRef> swept_; // nodes with deleted links
   uint64_t structure_ = 0, cascade_ = 0, delivered_ = 0, inCascade_ = 0, routes_ = 0, listeners_ = 0;
   uint32_t order_ = 0;
-  bool settling_ = false, overflow_ = false;
+  bool settling_ = false, overflow_ = false, scriptsBegin_ = false;
 };
 
 } // namespace xvrml

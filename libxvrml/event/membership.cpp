@@ -50,6 +50,8 @@ void Engine::forget(LiveBase* base) noexcept {
   engine.ticking_.erase(live->order);
   engine.looking_.erase(live->order);
   engine.observer->forgotten(*live->node);
+  if (engine.scripts && live->node->type().index < 0)
+    if (auto* script = dynamic_cast<ScriptNode*>(live->node)) engine.scripts->end(*script);
   engine.lives_[live->slot] = engine.lives_.back();
   engine.lives_[live->slot]->slot = live->slot;
   engine.lives_.pop_back();
@@ -124,7 +126,9 @@ void Engine::complete(Newcomers& newcomers) {
       if (route.from && route.to) addRoute(*route.from, route.fromField, *route.to, route.toField);
   for (const NodeRef& node : newcomers.nodes) {
     if (auto* script = dynamic_cast<ScriptNode*>(node.get())) {
-      if (scripts) scripts->begin(*script);
+      if (!scripts) continue;
+      scripts->begin(*script);
+      scriptsBegin_ = true;
     } else if (const Behaviour* behaviour = behaviourOf(node->type()); behaviour && behaviour->begin) {
       part(*node).state = behaviour->begin(*this, *node);
     }
@@ -164,6 +168,41 @@ void Engine::contentLeaves(Node& inlineNode) {
     if (route.from && route.to) deleteRoute(*route.from, route.fromField, *route.to, route.toField);
   for (const NodeRef& root : content->roots)
     if (root && root->live) unlinkChild(inlineNode, *root);
+}
+
+void Engine::keepOnly(const std::vector<NodeRef>& kept) {
+  std::unordered_set<const Node*> marked;
+  std::vector<Node*> open, below;
+  const auto mark = [&](Node* node) {
+    if (node && node->live && marked.insert(node).second) open.push_back(node);
+  };
+  for (const NodeRef& node : kept) mark(node.get());
+  while (!open.empty()) {
+    Node& node = *open.back();
+    open.pop_back();
+    below.clear();
+    childrenInHierarchy(node, below);
+    for (Node* child : below) mark(child);
+    if (node.type().index < 0) forEachChild(node, [&](NodeRef& child, const FieldInfo&) { mark(child.get()); });
+    if (const auto* instance = dynamic_cast<ProtoInstance*>(&node)) {
+      for (const NodeRef& root : instance->body.roots) mark(root.get());
+      for (const IsConnection& c : instance->is) mark(c.node.get());
+    }
+    if (liveOf(node)->part)
+      for (const Link& link : liveOf(node)->part->links) mark(link.to.get());
+  }
+  queue_.clear();
+  std::vector<NodeRef> others;
+  for (Live* live : lives_) {
+    live->root = false;
+    live->changed = 0;
+    if (!marked.contains(live->node)) others.emplace_back(live->node);
+  }
+  for (const NodeRef& node : others)
+    if (node->live) forget(node->live);
+  changes_.clear();
+  ++structure_;
+  if (scripts) scripts->finish();
 }
 
 void Engine::addRoot(Node& node) {

@@ -219,9 +219,24 @@ FieldTarget Builder::openField(const Token& name) {
   return {true, field->type, storage};
 }
 
+// The lines of a list of strings that has just been read, for the messages of programs in it.
+std::vector<uint32_t> Builder::linesOfStrings(const char* from) {
+  std::vector<uint32_t> lines;
+  const char* end = lexer_.cursor();
+  for (const char* p = lexer_.skipSpace(from); p < end; p = lexer_.skipSpace(p + 1)) {
+    if (*p != '"') continue;
+    lines.push_back(lexer_.place(p).line);
+    for (++p; p < end && *p != '"'; ++p)
+      if (*p == '\\') ++p;
+  }
+  return lines;
+}
+
 void Builder::closeField(bool good) {
   NodeFrame& frame = nodes_.back();
   const FieldInfo& field = *frame.field;
+  if (frame.scriptType && field.name == "url" && good)
+    static_cast<ScriptNode&>(*frame.node).urlLines = linesOfStrings(frame.fieldAt + field.name.size());
   if (holdsNodes(field)) {
     receivers_.pop_back();
   } else if (good && field.range.bounded() && !enforceRange(field, frame.node->storage(field))) {

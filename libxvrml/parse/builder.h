@@ -88,6 +88,7 @@ class Builder : public ParseSink {
   void checkChild(const NodeFrame& frame);
   bool deliver(const Token& at, const NodeRef& node, uint64_t expanded);
   bool accepts(const Receiver& receiver, const Token& at, const Node& node);
+  std::vector<uint32_t> linesOfStrings(const char* from);
   uint64_t expandedCount(const Node* node) const;
   ProtoPtr findPrototype(std::string_view name) const;
   bool isBeingDeclared(std::string_view name) const;

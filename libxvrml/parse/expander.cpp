@@ -161,7 +161,9 @@ NodeRef Expander::copyNode(Node& original) {
     copy = NodeRef(made);
     made->given = instance->given;
   } else if (auto* script = dynamic_cast<ScriptNode*>(&original)) {
-    copy = NodeRef(new ScriptNode(script->typePtr));
+    auto* made = new ScriptNode(script->typePtr);
+    copy = NodeRef(made);
+    made->urlLines = script->urlLines;
   } else {
     copy = makeStaticNode(original.type());
   }

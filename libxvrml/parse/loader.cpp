@@ -36,11 +36,11 @@ Loader::Loader(World& world, const LoadOptions& options)
     : world_(world), state_{world, options, world.diagnostics, {}, 0, 0},
       expander_(state_, [this](ProtoDeclaration& declaration) { return resolveExtern(declaration); }) {}
 
-void Loader::load(const Source& source, const std::string& name) {
+void Loader::load(const Source& source, const std::string& name, bool header) {
   const auto start = std::chrono::steady_clock::now();
   ParsedFile file;
   const auto sharedName = std::make_shared<const std::string>(name);
-  source.checkHeader(sharedName, state_.diagnostics);
+  if (header) source.checkHeader(sharedName, state_.diagnostics);
   parse(source, sharedName, file);
   world_.times.parse = secondsSince(start);
   const std::string key = canonical(name);
@@ -261,13 +261,13 @@ void Loader::checkSize(Scope& scope) {
 namespace {
 
 template <class MakeSource>
-std::unique_ptr<World> loadFrom(const std::string& name, const LoadOptions& options, MakeSource makeSource) {
+std::unique_ptr<World> loadFrom(const std::string& name, const LoadOptions& options, MakeSource makeSource, bool header = true) {
   try {
     auto world = std::make_unique<World>();
     world->path = name;
     world->options = options;
     const Source source = makeSource();
-    Loader(*world, world->options).load(source, name);
+    Loader(*world, world->options).load(source, name, header);
     return world;
   } catch (const std::bad_alloc&) { throw LoadError{{Severity::error, name, 0, 0, "not enough memory", {}, 0}}; }
 }
@@ -280,6 +280,11 @@ std::unique_ptr<World> loadWorld(const std::string& path, const LoadOptions& opt
 
 std::unique_ptr<World> loadWorldFromMemory(std::string_view bytes, const std::string& name, const LoadOptions& options) {
   return loadFrom(name, options, [&] { return Source::fromMemory(bytes, name, options.limits); });
+}
+
+std::unique_ptr<World> loadFragment(std::string_view text, const std::string& name, const LoadOptions& options) {
+  return loadFrom(
+      name, options, [&] { return Source::fromMemory(text, name, options.limits); }, false);
 }
 
 } // namespace xvrml

@@ -15,7 +15,7 @@ class Loader {
  public:
   Loader(World& world, const LoadOptions& options);
   // Throws LoadError if nothing of the file can be used.
-  void load(const Source& source, const std::string& name);
+  void load(const Source& source, const std::string& name, bool header = true);
   // The content of an Inline of a world that has been loaded. enclosing: the files it is in, the innermost last, as many as
   // Inlines are around it and itself. node.content stays null if there is none.
   void loadLate(InlineNode& node, const std::vector<std::string>& enclosing);
@@ -48,5 +48,8 @@ class Loader {
   uint64_t copyBytes_ = 0;
   bool composed_ = false; // prototypes or Inlines came in: sizes are not what the parser added up
 };
+
+// A text that needs no header (Browser::createVrmlFromString). name: for messages; relative URLs are relative to its folder.
+std::unique_ptr<World> loadFragment(std::string_view text, const std::string& name, const LoadOptions& options);
 
 } // namespace xvrml

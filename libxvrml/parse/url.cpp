@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "parse/url.h"
 #include "xvrml/world.h"
 
 namespace xvrml {
@@ -31,8 +32,14 @@ bool percentDecode(std::string_view text, std::string& out) {
   return true;
 }
 
-// The scheme of "scheme:rest" in lower case, empty if there is none. One letter is a drive of old Windows paths.
-std::string scheme(std::string_view url) {
+bool exists(const std::string& path) {
+  std::error_code error;
+  return std::filesystem::is_regular_file(path, error);
+}
+
+} // namespace
+
+std::string urlScheme(std::string_view url) {
   const size_t colon = url.find(':');
   if (colon == url.npos || colon == 0 || url.find_first_of("/\\?#") < colon) return {};
   std::string name(url.substr(0, colon));
@@ -43,13 +50,6 @@ std::string scheme(std::string_view url) {
   return name;
 }
 
-bool exists(const std::string& path) {
-  std::error_code error;
-  return std::filesystem::is_regular_file(path, error);
-}
-
-} // namespace
-
 ResolvedUrl resolveUrl(std::string_view url, std::string_view baseFile, const LoadOptions& options) {
   const auto refuse = [&](std::string_view why) { return ResolvedUrl{{}, {}, fmt::format("'{}': {}", url.substr(0, 100), why)}; };
   constexpr std::string_view blanks = " \t\r\n";
@@ -57,7 +57,7 @@ ResolvedUrl resolveUrl(std::string_view url, std::string_view baseFile, const Lo
   if (first == url.npos) return refuse("the URL is empty");
   url = url.substr(first, url.find_last_not_of(blanks) + 1 - first);
 
-  std::string kind = scheme(url);
+  std::string kind = urlScheme(url);
   bool absolute = false;
   std::string_view path = url;
   if (kind == "file") {

@@ -23,6 +23,7 @@ PARTS = {
     "libopenrt/backend/cluster/": "backend-cluster",
     "libopenrt/tools/": "openrt-tools",
     "libxvrml/include/xvrml/openrt.h": "mapper-h",
+    "libxvrml/include/xvrml/xscript.h": "script-sdk",
     "libxvrml/include/xvrml/": "xvrml-h",
     "libxvrml/base/": "xvrml-base",
     "libxvrml/nodegen/": "nodegen",
@@ -36,6 +37,7 @@ PARTS = {
     "libxvrml/image/": "xvrml-image",
     "libxvrml/openrt/": "mapper",
     "plugins/shaders/": "shader-plugin",
+    "plugins/script/": "script-plugin",
     "apps/": "app",
     "apps/picture/": "picture",
     "bindings/": "binding",
@@ -43,10 +45,11 @@ PARTS = {
     "common/": "common",
     "tests/": "test",
 }
-PUBLIC = {"api-h", "shader-sdk", "xvrml-h", "mapper-h"}
+PUBLIC = {"api-h", "shader-sdk", "script-sdk", "xvrml-h", "mapper-h"}
 ARROWS = {
     "api-h": set(),
     "shader-sdk": set(),
+    "script-sdk": set(),
     "openrt-api": {"api-h", "shader-sdk", "openrt-scene", "openrt-shading", "openrt-backend", "common"},
     "openrt-scene": {"api-h", "common"},
     "openrt-shading": {"shader-sdk", "openrt-scene", "common"},
@@ -63,16 +66,17 @@ ARROWS = {
     "xvrml-parse": {"xvrml-h", "xvrml-base", "common"},
     "xvrml-event": {"xvrml-h", "xvrml-base", "xvrml-parse", "xvrml-geometry", "xvrml-behaviour", "common"},
     "xvrml-behaviour": {"xvrml-h", "xvrml-base", "xvrml-parse", "xvrml-geometry", "xvrml-image", "xvrml-event", "common"},
-    "xvrml-script": {"xvrml-h", "xvrml-base", "xvrml-parse", "xvrml-event", "common"},
+    "xvrml-script": {"xvrml-h", "script-sdk", "xvrml-base", "xvrml-parse", "xvrml-event", "common"},
     "xvrml-browser": {"xvrml-h", "xvrml-base", "xvrml-parse", "xvrml-geometry", "xvrml-image", "xvrml-event", "xvrml-behaviour", "xvrml-script", "common"},
     "xvrml-geometry": {"xvrml-h", "xvrml-base", "common"},
     "xvrml-image": {"xvrml-h", "xvrml-base", "common"},
     "mapper-h": {"xvrml-h"},
     "mapper": {"mapper-h", "xvrml-h", "xvrml-base", "xvrml-geometry", "xvrml-image", "api-h", "common"},
     "shader-plugin": {"shader-sdk"},
-    "picture": PUBLIC - {"shader-sdk"},
-    "app": PUBLIC - {"shader-sdk"} | {"picture"},
-    "binding": PUBLIC - {"shader-sdk"} | {"picture"},
+    "script-plugin": {"script-sdk"},
+    "picture": PUBLIC - {"shader-sdk", "script-sdk"},
+    "app": PUBLIC - {"shader-sdk", "script-sdk"} | {"picture"},
+    "binding": PUBLIC - {"shader-sdk", "script-sdk"} | {"picture"},
     "example": PUBLIC,
     "common": set(),
     "test": set(PARTS.values()),
@@ -146,7 +150,7 @@ def check(files):
             for pattern, who, what in FOREIGN:
                 if pattern.match(name) and part not in who:
                     complaints.append(f"{where}: {part} may not know {what} ({name})")
-            if part in PUBLIC | {"shader-plugin"} and not STANDARD.match(name):
+            if part in PUBLIC | {"shader-plugin", "script-plugin"} and not STANDARD.match(name):
                 complaints.append(f"{where}: {part} may include the language's own headers only, not {name}")
     return complaints
 
@@ -165,7 +169,7 @@ def self_test():
     base = {
         "libopenrt/include/openrt/openrt.h": "", "libopenrt/include/openrt/openrts.h": "", "libopenrt/scene/commit.h": "",
         "libopenrt/render/film.h": "", "libopenrt/backend/backend.h": "", "libopenrt/backend/local/embree.h": "",
-        "libxvrml/include/xvrml/world.h": "", "libxvrml/include/xvrml/openrt.h": "", "libxvrml/parse/builder.h": "",
+        "libxvrml/include/xvrml/world.h": "", "libxvrml/include/xvrml/xscript.h": "", "libxvrml/include/xvrml/openrt.h": "", "libxvrml/parse/builder.h": "",
         "libxvrml/geometry/mesh.h": "",
     }
     refused = [
@@ -174,6 +178,7 @@ def self_test():
         ("libopenrt/api/a.cpp", '"xvrml/world.h"'), ("libxvrml/parse/a.cpp", '"openrt/openrt.h"'),
         ("libxvrml/parse/a.cpp", "<openrt/openrt.h>"), ("libxvrml/geometry/a.cpp", '"parse/builder.h"'),
         ("libxvrml/openrt/a.cpp", '"scene/commit.h"'), ("libxvrml/parse/a.cpp", "<png.h>"),
+        ("plugins/script/test/a.c", "<xvrml/world.h>"), ("libxvrml/event/a.cpp", '"xvrml/xscript.h"'),
         ("plugins/shaders/a.cpp", "<openrt/openrt.h>"), ("plugins/shaders/a.cpp", "<fmt/format.h>"),
         ("apps/vv/a.cpp", '"geometry/mesh.h"'), ("apps/vv/a.cpp", '"scene/commit.h"'), ("bindings/python/a.cpp", '"edits_generated.h"'),
         ("libopenrt/include/openrt/openrts.h", "<openrt/openrt.h>"), ("libxvrml/include/xvrml/world.h", "<fmt/format.h>"),
@@ -185,7 +190,7 @@ def self_test():
         ("libopenrt/api/a.cpp", '"scene/commit.h"'), ("libopenrt/api/a.cpp", '"edits_generated.h"'),
         ("libxvrml/openrt/a.cpp", "<openrt/openrt.h>"), ("libxvrml/openrt/a.cpp", '"geometry/mesh.h"'),
         ("libxvrml/geometry/a.cpp", "<xvrml/nodes.h>"), ("plugins/shaders/a.cpp", "<openrt/openrts.h>"),
-        ("plugins/shaders/a.cpp", "<cmath>"), ("apps/vv/a.cpp", '"xvrml/openrt.h"'), ("tests/unit/a.cpp", '"parse/builder.h"'),
+        ("plugins/shaders/a.cpp", "<cmath>"), ("plugins/script/test/a.c", "<xvrml/xscript.h>"), ("apps/vv/a.cpp", '"xvrml/openrt.h"'), ("tests/unit/a.cpp", '"parse/builder.h"'),
     ]
     wrong = []
     for path, name in refused:

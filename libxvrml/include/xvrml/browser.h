@@ -20,6 +20,13 @@ struct BrowserOptions {
   uint64_t maximumEvents = 1'000'000; // of one cascade
   bool runScripts = true;
   std::string scriptPath; // folders of script engines, separated by colons, before $XVRML_SCRIPT_PATH and the installed one
+  bool trustScripts = false;            // Scripts may use engines whose programs can do whatever the user can
+  bool allowNetwork = false;            // tells script engines that their programs may use the network
+  uint64_t scriptSteps = 1'000'000'000; // that one call into a Script may take, as its engine counts them; then it is stopped
+  double scriptSeconds = 2;             // of the clock on the wall, for the same
+  std::function<void(const std::string& text)> print; // what Scripts print; null: notes in world().diagnostics
+  // loadUrl asks here first: true: the application has taken care of it.
+  std::function<bool(const std::vector<std::string>& urls, const std::vector<std::string>& parameters)> loadUrl;
 };
 
 class Browser {
@@ -80,6 +87,28 @@ class Browser {
   void key(Key key, bool pressed);     // ticks move the viewer while arrows are held
   Navigation navigation() const;       // the way of moving in use
   bool setNavigation(Navigation type); // false if the bound NavigationInfo does not allow it; then its first holds
+
+  // --- The Browser object (4.12.10) ---
+  std::string name() const;
+  std::string version() const;
+  double currentSpeed() const;     // metres per second
+  double currentFrameRate() const; // what setFrameRate said last; 0 at first
+  void setFrameRate(double framesPerSecond);
+  std::string worldUrl() const;
+  void setDescription(std::string text);
+  std::string description() const;
+  // Nodes of a text, which has names, prototypes and routes of its own and needs no header. They are part of the world at once,
+  // though nowhere in its scene; routes live as long as the nodes they start from. What is wrong in the text is in
+  // world().diagnostics. Throws LoadError if nothing of it can be used.
+  MFNode createVrmlFromString(std::string_view text);
+  // The three below wait for the end of the cascade if one is under way. base: file that relative URLs are relative to; "": the
+  // world's.
+  // Sends the nodes of the first file that can be read as an MFNode to an eventIn, in a cascade of its own.
+  void createVrmlFromUrl(const std::vector<std::string>& urls, Node& node, std::string_view eventIn, const std::string& base = "");
+  // Another world instead of this one; "#name" and "file#name" bind a viewpoint. If none can be read all stays as it is.
+  void loadUrl(const std::vector<std::string>& urls, const std::vector<std::string>& parameters = {}, const std::string& base = "");
+  // These nodes, with what hangs below them and what their routes lead to, instead of all others.
+  void replaceWorld(const MFNode& nodes);
 
   // --- Editing ---
   NodeRef createNode(std::string_view type); // with default fields; throws std::invalid_argument for an unknown type

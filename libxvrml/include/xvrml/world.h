@@ -73,6 +73,7 @@ class ProtoInstance : public DynamicNode {
 class ScriptNode : public DynamicNode {
  public:
   using DynamicNode::DynamicNode;
+  std::vector<uint32_t> urlLines; // of the file, where the strings of url begin; may be short
 };
 
 // The node that is rendered for `node`: itself, for a prototype instance its first body node, for a node of a plug-in what it

@@ -16,8 +16,8 @@ std::string textOf(const Value& value);
 
 class Running {
  public:
-  explicit Running(const std::string& vrml, double start = 0)
-      : browser(loadWorldFromMemory("#VRML V2.0 utf8\n" + vrml, "test.wrl"), {}, start) {}
+  explicit Running(const std::string& vrml, double start = 0, BrowserOptions options = {})
+      : browser(loadWorldFromMemory("#VRML V2.0 utf8\n" + vrml, "test.wrl"), std::move(options), start) {}
 
   Node& node(std::string_view name) { return *browser.node(name); }
   // From now on every event of name.out is appended to log as "time name.out value".

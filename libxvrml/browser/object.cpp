@@ -1,0 +1,165 @@
+// object.cpp: the Browser object that Scripts and programs see (ISO/IEC 14772-1 4.12.10): what it knows, what it loads, and how
+// one world takes the place of another. See xvrml/browser.h. [the browser's thread]
+#include <fmt/format.h>
+
+#include "behaviour/interaction.h"
+#include "browser/state.h"
+#include "parse/field_access.h"
+#include "parse/loader.h"
+
+namespace xvrml {
+namespace {
+
+std::vector<NodeRef> breakCycles(const std::vector<NodeRef>& cyclic) {
+  std::vector<NodeRef> kept;
+  for (const NodeRef& node : cyclic) {
+    if (node->live) {
+      kept.push_back(node);
+      continue;
+    }
+    for (const FieldInfo& field : node->type().fields)
+      if (holdsNodes(field)) visitStorage(field.type, node->storage(field), [](auto& value) { value = {}; });
+  }
+  return kept;
+}
+
+void append(Diagnostics& to, const Diagnostics& from) {
+  for (const Diagnostic& d : from.list()) to.add(d);
+}
+
+// The first of the URLs that is a world, or null after a warning.
+std::unique_ptr<World> loadFirst(const std::vector<std::string>& urls, const std::string& base, const LoadOptions& options,
+                                 Diagnostics& diagnostics, std::string_view what, std::string* fragment) {
+  std::string reasons;
+  for (const std::string& url : urls) {
+    const ResolvedUrl resolved = resolveUrl(url, base, options);
+    std::string reason = resolved.error;
+    if (reason.empty()) {
+      try {
+        auto loaded = loadWorld(resolved.path, options);
+        if (fragment) *fragment = resolved.fragment;
+        return loaded;
+      } catch (const LoadError& error) { reason = error.diagnostic.text(); }
+    }
+    if (reasons.size() < 400) reasons += (reasons.empty() ? "" : "; ") + reason;
+  }
+  diagnostics.warn({}, fmt::format("{}: {}", what, reasons.empty() ? "it names no URL" : reasons));
+  return nullptr;
+}
+
+} // namespace
+
+Browser::Impl::Impl(Browser& browser, std::unique_ptr<World> world, const BrowserOptions& options)
+    : options(options), world(std::move(world)), engine(std::make_unique<Engine>(this->world->diagnostics, &browser)) {
+  engine->maximumEvents = options.maximumEvents;
+  if (!options.runScripts) return;
+  scripts = std::make_unique<ScriptHost>(browser, *engine, *this->world, this->options);
+  engine->scripts = scripts.get();
+}
+
+void Browser::Impl::later(std::function<void()> job) {
+  constexpr size_t most = 10'000;
+  if (jobs.size() >= most) throw std::runtime_error("too many worlds are waiting to be loaded");
+  jobs.push_back(std::move(job));
+  workOff();
+}
+
+void Browser::Impl::workOff() {
+  if (working || engine->settling()) return;
+  working = true;
+  for (int done = 0; done < 100 && !jobs.empty(); ++done) {
+    const uint64_t before = generation;
+    const std::function<void()> job = std::move(jobs.front());
+    jobs.pop_front();
+    job();
+    if (generation != before) break; // at most one new world a call
+  }
+  working = false;
+}
+
+MFNode Browser::Impl::adopt(World& loaded) {
+  append(world->diagnostics, loaded.diagnostics);
+  world->cyclic.insert(world->cyclic.end(), loaded.cyclic.begin(), loaded.cyclic.end());
+  world->nodeCount += loaded.nodeCount;
+  loaded.cyclic.clear();
+  MFNode nodes;
+  for (const NodeRef& root : loaded.scope.roots)
+    if (root) nodes.push_back(root);
+  engine->adoptScope(loaded.scope, false);
+  return nodes;
+}
+
+void Browser::Impl::become(Scope scope, const std::vector<NodeRef>& kept, std::vector<NodeRef> cyclic) {
+  engine->keepOnly(kept);
+  for (NodeRef& node : breakCycles(world->cyclic)) cyclic.push_back(std::move(node));
+  world->cyclic = std::move(cyclic);
+  world->scope = std::move(scope);
+  ++generation;
+  engine->beginCascade(engine->now());
+  engine->adoptScope(world->scope, true);
+  engine->settle();
+}
+
+std::string Browser::name() const { return "OpenRT XVRML"; }
+std::string Browser::version() const { return XVRML_VERSION; }
+double Browser::currentSpeed() const { return interactionOf(*impl_->engine).viewer.speed(); }
+double Browser::currentFrameRate() const { return impl_->frameRate; }
+void Browser::setFrameRate(double framesPerSecond) { impl_->frameRate = framesPerSecond; }
+std::string Browser::worldUrl() const { return impl_->world->path; }
+void Browser::setDescription(std::string text) { impl_->description = std::move(text); }
+std::string Browser::description() const { return impl_->description; }
+
+MFNode Browser::createVrmlFromString(std::string_view text) {
+  LoadOptions options = impl_->world->options;
+  uint64_t& most = options.limits.expandedNodes;
+  most -= std::min<uint64_t>(most, impl_->engine->nodes());
+  const auto loaded = loadFragment(text, impl_->world->path + " (createVrmlFromString)", options);
+  MFNode nodes = impl_->adopt(*loaded);
+  impl_->settle();
+  return nodes;
+}
+
+void Browser::createVrmlFromUrl(const std::vector<std::string>& urls, Node& node, std::string_view eventIn,
+                                const std::string& base) {
+  impl_->later([this, urls, to = NodeRef(&node), in = std::string(eventIn), base = base.empty() ? impl_->world->path : base] {
+    World& world = *impl_->world;
+    const auto loaded = loadFirst(urls, base, world.options, world.diagnostics, "createVrmlFromURL", nullptr);
+    if (!loaded || !to->live) return;
+    MFNode nodes = impl_->adopt(*loaded);
+    impl_->engine->dispatch(*to, in, std::move(nodes));
+  });
+}
+
+void Browser::loadUrl(const std::vector<std::string>& urls, const std::vector<std::string>& parameters, const std::string& base) {
+  impl_->later([this, urls, parameters, base = base.empty() ? impl_->world->path : base] {
+    if (impl_->options.loadUrl && impl_->options.loadUrl(urls, parameters)) return;
+    const auto bind = [&](const std::string& name) {
+      const NodeRef view = node(name);
+      if (!view || !impl_->engine->dispatch(*view, "set_bind", true))
+        impl_->world->diagnostics.warn({}, fmt::format("loadURL: there is no viewpoint '{}'", name.substr(0, 100)));
+    };
+    World& world = *impl_->world;
+    if (!urls.empty() && urls[0].starts_with('#')) return bind(urls[0].substr(1));
+    std::string fragment;
+    const auto loaded = loadFirst(urls, base, world.options, world.diagnostics, "loadURL", &fragment);
+    if (!loaded) return;
+    append(world.diagnostics, loaded->diagnostics);
+    world.path = loaded->path;
+    world.times = loaded->times;
+    world.nodeCount = loaded->nodeCount;
+    impl_->become(std::move(loaded->scope), {}, std::exchange(loaded->cyclic, {}));
+    if (!fragment.empty()) bind(fragment);
+  });
+}
+
+void Browser::replaceWorld(const MFNode& nodes) {
+  impl_->later([this, nodes] {
+    Scope scope;
+    for (const NodeRef& node : nodes)
+      if (node) scope.roots.push_back(node);
+    const std::vector<NodeRef> kept = scope.roots;
+    impl_->become(std::move(scope), kept, {});
+  });
+}
+
+} // namespace xvrml

@@ -1,0 +1,103 @@
+// engines.cpp: see engines.h.
+#include "script/engines.h"
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <stdexcept>
+#include <utility>
+
+#include <dlfcn.h>
+
+#include "plugin_files.h"
+#include "script/plugin_check.h"
+
+namespace xvrml {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The engines of one file, loaded once in a process and never unloaded: interpreters of languages do not bear it. Throws
+// std::runtime_error if it is no good plug-in.
+const std::vector<XsEngine>& libraryEngines(const std::string& path) {
+  static std::mutex mutex;
+  static auto& libraries = *new std::map<std::string, std::vector<XsEngine>, std::less<>>();
+  const std::scoped_lock lock(mutex);
+  const auto known = libraries.find(path);
+  if (known != libraries.end()) return known->second;
+  void* handle = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (!handle) {
+    const char* reason = dlerror();
+    throw std::runtime_error("script library " + path + ": " + (reason ? reason : "cannot be loaded"));
+  }
+  try {
+    void* symbol = dlsym(handle, XS_ENTRY_NAME);
+    if (!symbol)
+      throw std::runtime_error("script library " + path + ": exports no " XS_ENTRY_NAME ", so it is no script plug-in");
+    auto engines = checkScriptPlugin(static_cast<const XsPlugin*>(symbol), plugin_files::exportedBytes(symbol), path);
+    return libraries.emplace(path, std::move(engines)).first->second;
+  } catch (...) {
+    dlclose(handle);
+    throw;
+  }
+}
+
+} // namespace
+
+std::string ScriptEngines::searched() const { return plugin_files::listed(folders_); }
+
+void ScriptEngines::load(const std::string& path) {
+  if (std::find(tried_.begin(), tried_.end(), path) != tried_.end()) return;
+  tried_.push_back(path);
+  try {
+    loaded_.push_back(&libraryEngines(path));
+  } catch (const std::runtime_error& error) { refusals_.emplace_back(error.what()); }
+}
+
+void ScriptEngines::loadNamed(std::string_view name) {
+  for (const std::string& folder : folders_) {
+    const std::string file = plugin_files::trusted(folder) ? plugin_files::file(folder, std::string(name)) : std::string();
+    if (!file.empty()) return load(file);
+  }
+}
+
+void ScriptEngines::loadAll() {
+  if (std::exchange(all_, true)) return;
+  for (const std::string& folder : folders_) {
+    if (!plugin_files::trusted(folder)) continue;
+    std::vector<std::string> files;
+    std::error_code error;
+    for (fs::directory_iterator i(folder, error), end; !error && i != end; i.increment(error))
+      if (i->path().extension() == ".so" && i->is_regular_file(error)) files.push_back(i->path().string());
+    std::sort(files.begin(), files.end());
+    for (const std::string& file : files) load(file);
+  }
+}
+
+const XsEngine* ScriptEngines::find(Names names, std::string_view wanted, std::string_view libraryName) {
+  const auto known = [&]() -> const XsEngine* {
+    for (const auto* engines : loaded_)
+      for (const XsEngine& engine : *engines)
+        for (const char* const* name = engine.*names; name && *name; ++name)
+          if (wanted == *name) return &engine;
+    return nullptr;
+  };
+  if (const XsEngine* engine = known()) return engine;
+  if (!libraryName.empty()) {
+    loadNamed(libraryName);
+    if (const XsEngine* engine = known()) return engine;
+  }
+  loadAll();
+  return known();
+}
+
+const XsEngine* ScriptEngines::byScheme(std::string_view scheme) { return find(&XsEngine::schemes, scheme, scheme); }
+const XsEngine* ScriptEngines::byMimeType(std::string_view type) { return find(&XsEngine::mimeTypes, type, {}); }
+const XsEngine* ScriptEngines::bySuffix(std::string_view suffix) { return find(&XsEngine::suffixes, suffix, {}); }
+
+std::vector<std::string> scriptFolders(std::string_view configured) {
+  static const char here = 0;
+  return plugin_files::folders(configured, "XVRML_SCRIPT_PATH", "xvrml/scripts", &here);
+}
+
+} // namespace xvrml

@@ -1,0 +1,333 @@
+// host_table.cpp: what Scripts may call: every function of XsHost. Nothing they hand over is believed; nothing throws across the
+// border. See xvrml/xscript.h. [the browser's thread]
+#include "script/host_table.h"
+
+#include <fmt/format.h>
+
+#include "parse/field_access.h"
+
+namespace xvrml {
+
+struct HostTable {
+  using Host = const XsHost*;
+  static constexpr uint64_t stepsOfCall = 100;
+
+  static ScriptHost& hostOf(Host host) { return static_cast<const ScriptHost::Table*>(host)->host; }
+  static XsResult refuse(Script& script, XsResult why, std::string text) {
+    script.error = std::move(text);
+    return why;
+  }
+
+  // The Script whose function is running, within its budget; then what is to be done for it.
+  template <class Body> static XsResult enter(Host table, XsNode self, Body&& body) {
+    try {
+      ScriptHost& host = hostOf(table);
+      Script* script = host.find(self);
+      if (!script) return XS_NO_NODE;
+      if (host.running_ != script) return refuse(*script, XS_NOT_ALLOWED, "no function of this Script is running");
+      if (host.overBudget(*script, stepsOfCall)) return refuse(*script, XS_STOPPED, "the Script's time is up");
+      return body(host, *script);
+    } catch (const std::exception& error) {
+      Script* script = hostOf(table).find(self);
+      return script ? refuse(*script, XS_FAILED, error.what()) : XS_FAILED;
+    }
+  }
+  // The same for functions that change something: not while the Script ends.
+  template <class Body> static XsResult act(Host table, XsNode self, Body&& body) {
+    return enter(table, self, [&](ScriptHost& host, Script& script) {
+      if (host.ending_ || script.ghost) return refuse(script, XS_NOT_ALLOWED, "the Script is being shut down");
+      return body(host, script);
+    });
+  }
+  template <class Body> static XsResult withNode(Script& script, XsNode number, Body&& body) {
+    Node* node = script.handles.find(number);
+    if (!node) return refuse(script, XS_NO_NODE, number ? fmt::format("the Script does not know a node {}", number) : "NULL");
+    return body(*node);
+  }
+  static XsResult noField(Script& script, const Node& node, const char* what, const char* name) {
+    return refuse(script, XS_NO_FIELD, fmt::format("{} has no {} '{}'", node.type().name, what, name ? name : ""));
+  }
+  static XsResult giveText(Script& script, std::string text, XsString* out) {
+    script.lentText = std::move(text);
+    *out = {script.lentText.c_str(), script.lentText.size()};
+    return XS_OK;
+  }
+  static bool take(ScriptHost& host, Script& script, const XsValue* value, FieldType type, Value& out) {
+    return takeValue(value, type, script.handles, host.world_.options.limits, out, script.error);
+  }
+  static std::string text(ScriptHost& host, const XsString& from) {
+    std::string out, why;
+    if (!takeText(from, host.world_.options.limits, out, why)) throw std::runtime_error(why);
+    return out;
+  }
+  static std::vector<std::string> texts(ScriptHost& host, uint32_t count, const XsString* from) {
+    constexpr uint32_t most = 10'000;
+    if (count > most || (count > 0 && !from)) throw std::runtime_error(fmt::format("a list of {} texts", count));
+    std::vector<std::string> out;
+    for (uint32_t i = 0; i < count; ++i) out.push_back(text(host, from[i]));
+    return out;
+  }
+  static std::string baseOf(const Script& script) { return script.node->source.file ? *script.node->source.file : std::string(); }
+
+  // --- Own fields and events ---
+
+  static XsResult send(Host table, XsNode self, const char* name, const XsValue* value) {
+    return act(table, self, [&](ScriptHost& host, Script& script) {
+      const FieldInfo* out = name ? script.node->type().find(name) : nullptr;
+      if (!out || out->access != Access::eventOut) return noField(script, *script.node, "eventOut", name);
+      Value taken;
+      if (!take(host, script, value, out->type, taken))
+        return refuse(script, XS_WRONG_TYPE, fmt::format("{}: {}", name, script.error));
+      for (Script::Output& output : script.outputs)
+        if (!output.to && output.field == out) return output.value = std::move(taken), XS_OK;
+      script.outputs.push_back({{}, out, std::move(taken)});
+      return XS_OK;
+    });
+  }
+
+  static XsResult write(Host table, XsNode self, const char* name, const XsValue* value) {
+    return act(table, self, [&](ScriptHost& host, Script& script) {
+      const FieldInfo* field = name ? script.node->type().find(name) : nullptr;
+      const bool own = field && field->access == Access::field && field->name != "directOutput" && field->name != "mustEvaluate";
+      if (!own) return noField(script, *script.node, "field that it may write,", name);
+      Value taken;
+      if (!take(host, script, value, field->type, taken))
+        return refuse(script, XS_WRONG_TYPE, fmt::format("{}: {}", name, script.error));
+      return host.engine_.store(*script.node, *field, std::move(taken)) ? XS_OK
+                                                                        : refuse(script, XS_FAILED, "not a value it can have");
+    });
+  }
+
+  // --- Nodes ---
+
+  static XsResult readOwn(ScriptHost& host, Script& script, const char* name, XsValue* out) {
+    const Node& node = *script.node;
+    const FieldInfo* field = node.type().find(name);
+    if (!field) field = node.type().findEventOut(name);
+    if (!field || field->access == Access::eventIn) return noField(script, node, "field or eventOut", name);
+    Value value = holdsValue(*field) ? node.get(*field) : host.engine_.lastSent(node, *field);
+    for (const Script::Output& output : script.outputs)
+      if (!output.to && output.field == field) value = output.value;
+    *out = script.lent.lend(std::move(value), script.handles);
+    return XS_OK;
+  }
+
+  static XsResult read(Host table, XsNode self, XsNode number, const char* name, XsValue* out) {
+    return enter(table, self, [&](ScriptHost& host, Script& script) {
+      return withNode(script, number, [&](Node& node) {
+        if (!name || !out) return noField(script, node, "field", name);
+        if (&node == script.node) return readOwn(host, script, name, out);
+        const FieldInfo* field = node.type().findEventOut(name);
+        if (!field) return noField(script, node, "exposedField or eventOut", name);
+        *out = script.lent.lend(host.engine_.lastSent(node, *field), script.handles);
+        return XS_OK;
+      });
+    });
+  }
+
+  static XsResult post(Host table, XsNode self, XsNode number, const char* name, const XsValue* value) {
+    return act(table, self, [&](ScriptHost& host, Script& script) {
+      return withNode(script, number, [&](Node& node) {
+        if (&node != script.node && !script.flag(XS_DIRECT_OUTPUT))
+          return needsDirectOutput(host, script, "an event to another node");
+        const FieldInfo* in = name ? node.type().findEventIn(name) : nullptr;
+        if (!in) return noField(script, node, "eventIn or exposedField", name);
+        Value taken;
+        if (!take(host, script, value, in->type, taken))
+          return refuse(script, XS_WRONG_TYPE, fmt::format("{}: {}", name, script.error));
+        if (script.outputs.size() >= host.engine_.maximumEvents) return refuse(script, XS_FAILED, "too many events");
+        script.outputs.push_back({NodeRef(&node), in, std::move(taken)});
+        return XS_OK;
+      });
+    });
+  }
+
+  static XsResult needsDirectOutput(ScriptHost& host, Script& script, const char* what) {
+    host.log(script, 2, 0, fmt::format("{} needs directOutput TRUE (6.40); ignored", what));
+    return refuse(script, XS_NOT_ALLOWED, fmt::format("{} needs directOutput TRUE", what));
+  }
+
+  static XsResult describe(Host table, XsNode self, XsNode number, XsNodeInfo* out) {
+    return enter(table, self, [&](ScriptHost&, Script& script) {
+      return withNode(script, number, [&](Node& node) {
+        if (!out || out->size < sizeof(XsNodeInfo)) return refuse(script, XS_FAILED, "XsNodeInfo without its size");
+        script.lentText = node.defName;
+        out->fieldCount = uint32_t(node.type().fields.size());
+        out->typeName = node.type().name.c_str();
+        out->defName = script.lentText.c_str();
+        return XS_OK;
+      });
+    });
+  }
+
+  static XsResult giveField(Script& script, const Node& node, const FieldInfo* field, const char* name, XsField* out) {
+    if (!field || !out) return noField(script, node, "field or event", name);
+    *out = {field->name.c_str(), xsType(field->type), xsAccess(field->access)};
+    return XS_OK;
+  }
+  static XsResult field(Host table, XsNode self, XsNode number, uint32_t index, XsField* out) {
+    return enter(table, self, [&](ScriptHost&, Script& script) {
+      return withNode(script, number, [&](Node& node) {
+        const auto& fields = node.type().fields;
+        return giveField(script, node, index < fields.size() ? &fields[index] : nullptr, "of that number", out);
+      });
+    });
+  }
+  static XsResult findField(Host table, XsNode self, XsNode number, const char* name, XsField* out) {
+    return enter(table, self, [&](ScriptHost&, Script& script) {
+      return withNode(script, number, [&](Node& node) {
+        const NodeType& type = node.type();
+        const FieldInfo* found = name ? type.find(name) : nullptr;
+        if (!found && name) found = type.findEventIn(name);
+        if (!found && name) found = type.findEventOut(name);
+        return giveField(script, node, found, name, out);
+      });
+    });
+  }
+
+  static XsResult retain(Host table, XsNode self, XsNode number) {
+    return enter(table, self, [&](ScriptHost&, Script& script) {
+      return script.handles.retain(number) ? XS_OK : refuse(script, XS_NO_NODE, fmt::format("no node {}", number));
+    });
+  }
+  // Also while no function runs: languages with garbage collection let go when they like. What is let go of waits for a call.
+  static XsResult release(Host table, XsNode self, XsNode number) {
+    Script* script = hostOf(table).find(self);
+    return script && script->handles.release(number) ? XS_OK : XS_NO_NODE;
+  }
+
+  // --- The Browser object ---
+
+  static XsResult getName(Host table, XsNode self, XsString* out) {
+    return enter(table, self, [&](ScriptHost& host, Script& script) { return giveText(script, host.browser_.name(), out); });
+  }
+  static XsResult getVersion(Host table, XsNode self, XsString* out) {
+    return enter(table, self, [&](ScriptHost& host, Script& script) { return giveText(script, host.browser_.version(), out); });
+  }
+  static double getCurrentSpeed(Host table, XsNode) { return hostOf(table).browser_.currentSpeed(); }
+  static double getCurrentFrameRate(Host table, XsNode) { return hostOf(table).browser_.currentFrameRate(); }
+  static XsResult getWorldUrl(Host table, XsNode self, XsString* out) {
+    return enter(table, self, [&](ScriptHost& host, Script& script) { return giveText(script, host.browser_.worldUrl(), out); });
+  }
+  static XsResult setDescription(Host table, XsNode self, XsString description) {
+    return act(table, self, [&](ScriptHost& host, Script&) {
+      host.browser_.setDescription(text(host, description));
+      return XS_OK;
+    });
+  }
+
+  static XsResult replaceWorld(Host table, XsNode self, uint32_t count, const XsNode* nodes) {
+    return act(table, self, [&](ScriptHost& host, Script& script) {
+      XsValue value{XS_MFNODE, count, {nullptr}};
+      value.of.nodes = nodes;
+      Value taken;
+      if (!take(host, script, &value, FieldType::MFNode, taken)) return XS_NO_NODE;
+      host.browser_.replaceWorld(std::get<MFNode>(taken));
+      return XS_OK;
+    });
+  }
+  static XsResult loadUrl(Host table, XsNode self, uint32_t urlCount, const XsString* urls, uint32_t parameterCount,
+                          const XsString* parameters) {
+    return act(table, self, [&](ScriptHost& host, Script& script) {
+      host.browser_.loadUrl(texts(host, urlCount, urls), texts(host, parameterCount, parameters), baseOf(script));
+      return XS_OK;
+    });
+  }
+  static XsResult createVrmlFromUrl(Host table, XsNode self, uint32_t urlCount, const XsString* urls, XsNode number,
+                                    const char* eventIn) {
+    return act(table, self, [&](ScriptHost& host, Script& script) {
+      return withNode(script, number, [&](Node& node) {
+        const FieldInfo* in = eventIn ? node.type().findEventIn(eventIn) : nullptr;
+        if (!in || in->type != FieldType::MFNode) return noField(script, node, "eventIn of type MFNode", eventIn);
+        host.browser_.createVrmlFromUrl(texts(host, urlCount, urls), node, eventIn, baseOf(script));
+        return XS_OK;
+      });
+    });
+  }
+  static XsResult createVrmlFromString(Host table, XsNode self, XsString vrml, XsValue* out) {
+    return act(table, self, [&](ScriptHost& host, Script& script) {
+      try {
+        *out = script.lent.lend(host.browser_.createVrmlFromString(text(host, vrml)), script.handles);
+        return XS_OK;
+      } catch (const LoadError& error) { return refuse(script, XS_FAILED, error.diagnostic.text()); }
+    });
+  }
+
+  template <class Change>
+  static XsResult changeRoute(Host table, XsNode self, XsNode from, const char* out, XsNode to, const char* in, Change&& change) {
+    return act(table, self, [&](ScriptHost& host, Script& script) {
+      return withNode(script, from, [&](Node& source) {
+        return withNode(script, to, [&](Node& target) {
+          const bool own = &source == script.node && &target == script.node;
+          if (!own && !script.flag(XS_DIRECT_OUTPUT)) return needsDirectOutput(host, script, "a change of routes");
+          if (!out || !source.type().findEventOut(out)) return noField(script, source, "eventOut", out);
+          if (!in || !target.type().findEventIn(in)) return noField(script, target, "eventIn", in);
+          return change(host.browser_, source, target) ? XS_OK : refuse(script, XS_FAILED, "no such route, or types differ");
+        });
+      });
+    });
+  }
+  static XsResult addRoute(Host table, XsNode self, XsNode from, const char* out, XsNode to, const char* in) {
+    return changeRoute(table, self, from, out, to, in,
+                       [&](Browser& browser, Node& source, Node& target) { return browser.addRoute(source, out, target, in); });
+  }
+  static XsResult deleteRoute(Host table, XsNode self, XsNode from, const char* out, XsNode to, const char* in) {
+    return changeRoute(table, self, from, out, to, in, [&](Browser& browser, Node& source, Node& target) {
+      return browser.deleteRoute(source, out, target, in);
+    });
+  }
+
+  // --- Time, messages ---
+
+  static double now(Host table, XsNode) { return hostOf(table).engine_.now(); }
+  static int32_t shouldStop(Host table, XsNode self, uint64_t steps) {
+    ScriptHost& host = hostOf(table);
+    Script* script = host.find(self);
+    return !script || host.running_ != script || host.overBudget(*script, steps) ? 1 : 0;
+  }
+  static void log(Host table, XsNode self, int32_t severity, uint32_t line, XsString message) {
+    try {
+      ScriptHost& host = hostOf(table);
+      if (Script* script = host.find(self)) host.log(*script, severity, line, text(host, message));
+    } catch (const std::exception&) {} // no text, or no memory for it
+  }
+  static XsResult lastError(Host table, XsNode self, XsString* out) {
+    Script* script = hostOf(table).find(self);
+    if (!script || !out) return XS_NO_NODE;
+    *out = {script->error.c_str(), script->error.size()};
+    return XS_OK;
+  }
+};
+
+ScriptHost::Table::Table(ScriptHost& host)
+    : XsHost{sizeof(XsHost),
+             XS_ABI_MAJOR,
+             XS_ABI_MINOR,
+             HostTable::send,
+             HostTable::write,
+             HostTable::read,
+             HostTable::post,
+             HostTable::describe,
+             HostTable::field,
+             HostTable::findField,
+             HostTable::retain,
+             HostTable::release,
+             HostTable::getName,
+             HostTable::getVersion,
+             HostTable::getCurrentSpeed,
+             HostTable::getCurrentFrameRate,
+             HostTable::getWorldUrl,
+             HostTable::setDescription,
+             HostTable::replaceWorld,
+             HostTable::loadUrl,
+             HostTable::createVrmlFromUrl,
+             HostTable::createVrmlFromString,
+             HostTable::addRoute,
+             HostTable::deleteRoute,
+             HostTable::now,
+             HostTable::shouldStop,
+             HostTable::log,
+             HostTable::lastError},
+      host(host) {}
+
+} // namespace xvrml
