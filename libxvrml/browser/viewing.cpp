@@ -79,7 +79,8 @@ void Browser::activate(Node& node) {
   if (!anchor || anchor->url.empty()) return;
   const std::string& first = anchor->url.front();
   if (first.starts_with('#') && bindViewpoint(std::string_view(first).substr(1))) return;
-  if (impl_->onAnchor) impl_->onAnchor(node);
+  if (impl_->onAnchor) return impl_->onAnchor(node);
+  loadUrl(anchor->url, anchor->parameter, anchor->source.file ? *anchor->source.file : "");
 }
 
 void Browser::onAnchor(std::function<void(Node& anchor)> callback) { impl_->onAnchor = std::move(callback); }

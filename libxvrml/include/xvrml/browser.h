@@ -78,7 +78,8 @@ class Browser {
   void pointerRay(const double origin[3], const double direction[3], bool button); // in the world
   void pointerLeave();                                                             // it is outside of the picture, released
   std::vector<NodeRef> sensorsAtPointer() const; // pointing sensors and Anchors that it is over, or that have grabbed it
-  // Does what a click on an Anchor does (6.2): binds the Viewpoint that its first url names (#name), else calls back.
+  // Does what a click on an Anchor does (6.2): binds the Viewpoint that its first url names (#name), else calls back;
+  // without a callback as loadUrl.
   void activate(Node& anchor);
   // Its urls lead elsewhere. [within pointer or activate, outside of cascades]
   void onAnchor(std::function<void(Node& anchor)> callback);
@@ -104,9 +105,11 @@ class Browser {
   // The three below wait for the end of the cascade if one is under way. base: file that relative URLs are relative to; "": the
   // world's.
   // Sends the nodes of the first file that can be read as an MFNode to an eventIn, in a cascade of its own.
-  void createVrmlFromUrl(const std::vector<std::string>& urls, Node& node, std::string_view eventIn, const std::string& base = "");
+  void createVrmlFromUrl(const std::vector<std::string>& urls, Node& node, std::string_view eventIn,
+                         const std::string& base = "");
   // Another world instead of this one; "#name" and "file#name" bind a viewpoint. If none can be read all stays as it is.
-  void loadUrl(const std::vector<std::string>& urls, const std::vector<std::string>& parameters = {}, const std::string& base = "");
+  void loadUrl(const std::vector<std::string>& urls, const std::vector<std::string>& parameters = {},
+               const std::string& base = "");
   // These nodes, with what hangs below them and what their routes lead to, instead of all others.
   void replaceWorld(const MFNode& nodes);
 
