@@ -134,8 +134,8 @@ class Flattener {
       const std::vector<Socket>& sockets = result_.parts[result_.clusters[c].part].sockets;
       result_.clusters[c].firstChild = uint32_t(result_.clusters.size());
       for (uint32_t s = 0; s < sockets.size(); s++) {
-        placed += 1 + result_.parts[sockets[s].part].items.size();
-        if (placed > maxPlacements) {
+        placed += result_.parts[sockets[s].part].items.size();
+        if (placed > maxPlacements || result_.clusters.size() >= maxClusters) {
           truncate(c);
           return;
         }

@@ -64,6 +64,7 @@ struct Flattened {
 };
 
 inline constexpr size_t maxPlacements = 4'000'000; // of items in clusters
+inline constexpr size_t maxClusters = 1'000'000; // each is an instance of the ray kernels, about 1 KB with all that belongs to it
 
 // Ids of the lights that shine on everything: light set 0.
 std::vector<uint32_t> unscopedLights(const Scene& scene);

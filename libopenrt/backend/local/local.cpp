@@ -67,7 +67,10 @@ void LocalBackend::bringUpToDate(RenderScene& next) {
     flat_ = flatten(scene_);
     builder_.survey.take(scene_, flat_);
     if (flat_.truncated && options_.log)
-      options_.log(3, ("too many placed objects: only the first " + std::to_string(maxPlacements) + " are drawn").c_str(),
+      options_.log(3,
+                   ("too many placed objects: only the first " + std::to_string(maxPlacements) + " are drawn, or " +
+                    std::to_string(maxClusters) + " that move")
+                       .c_str(),
                    options_.logUser);
   } else {
     if (c.lights) { // no light is scoped, nor was: there is but this set
