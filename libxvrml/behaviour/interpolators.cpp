@@ -31,7 +31,8 @@ Place locate(const float* keys, size_t count, float fraction) {
   if (right == 0 || right == count) return {right == 0 ? 0 : count - 1, 0};
   const float from = keys[right - 1], to = keys[right];
   const float t = float((double(fraction) - from) / (double(to) - from));
-  return {right - 1, t > 0 && t < 1 ? t : 0};
+  if (t >= 1) return {right, 0}; // rounded up
+  return {right - 1, t > 0 ? t : 0};
 }
 
 template <class T> T between(const T* values, Place place) {

@@ -37,7 +37,6 @@ TimeStep TimeDependent::tick(const TimeFields& fields, double now, bool mayTurn)
 TimeStep TimeDependent::fieldChanged(const TimeFields& fields, double now, bool mayTurn, bool started) {
   if (started || fields.loop) finished_ = false;
   if (!active_ && mayTurn) waiting_ = false;
-  last_ = std::max(last_, now); // a stopTime in the past stops now
   return step(fields, now, mayTurn);
 }
 
@@ -84,10 +83,11 @@ TimeStep TimeDependent::step(const TimeFields& fields, double now, bool mayTurn)
   } else {
     const double over = fields.enabled ? end(fields) : now;
     step.ends = now >= over && mayTurn;
-    step.time = now >= over ? std::clamp(over, std::min(last_, now), now) : now;
+    step.time = now >= over ? std::clamp(over, std::min(last_, now), now) : now; // a stopTime set into the past stops now
     place(fields, step);
     if (!fields.loop && step.time >= cycleStart_ + fields.cycle) step.fraction = 1;
-    step.newCycle = now < over && fields.loop && step.cycleStart > cycleStart_ + fields.cycle / 2;
+    step.newCycle = fields.loop && step.cycleStart > cycleStart_ + fields.cycle / 2;
+    if (now >= over && step.cycleStart >= step.time) step.newCycle = false; // none begins at the end
     if (!step.newCycle) step.cycleStart = cycleStart_;
     if (step.ends) {
       active_ = false;

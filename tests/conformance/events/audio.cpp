@@ -97,6 +97,14 @@ TEST(AudioClip, ThatCannotBeHadHasDurationMinusOneAndSaysWhy) {
   }
 }
 
+TEST(AudioClip, OfUnknownLengthStartedByAnEventIsOverAtTheNextTick) {
+  Clips c("", "\"none.wav\"");
+  c.ticks({5});
+  c.browser->set(c.clip(), "set_startTime", 5.0);
+  c.ticks({6, 7});
+  EXPECT_EQ(c.take(), (Log{"5 isActive TRUE", "6 isActive FALSE"}));
+}
+
 TEST(AudioClip, PlaysFromTheTimeOfTheWorld) {
   Clips c("startTime 1 pitch 0.5 loop TRUE");
   EXPECT_EQ(playingOf(c.clip()).clip, nullptr);

@@ -153,6 +153,15 @@ std::string valueAt(const std::string& node, float fraction) {
   return r.get("I", "value_changed");
 }
 
+TEST(ScalarInterpolator, ATinyDistanceFromAKeyIsNoStep) {
+  Running r("DEF I ScalarInterpolator { key [ -100 1 ] keyValue [ 0 10 ] }");
+  r.set("I", "set_fraction", std::nextafter(1.0f, 0.0f)); // 1 - 6e-10 of the way
+  EXPECT_EQ(r.get("I", "value_changed"), "10");
+  r.set("I", "set_key", MFFloat{-INFINITY, INFINITY});
+  r.set("I", "set_fraction", 0.5f);
+  EXPECT_EQ(r.get("I", "value_changed"), "0");
+}
+
 TEST(ColorInterpolator, TakesTheShortWayRoundTheHues) {
   EXPECT_EQ(valueAt("ColorInterpolator { key [ 0 1 ] keyValue [ 1 0 0, 0 0 1 ] }", 0.5f), "1 0 1"); // through magenta
   EXPECT_EQ(valueAt("ColorInterpolator { key [ 0 1 ] keyValue [ 1 0 0, 0 1 0 ] }", 0.5f), "1 1 0"); // through yellow
@@ -196,6 +205,18 @@ TEST(OrientationInterpolator, AnAxisOfZeroIsNoRotationAndTheResultHasAUnitAxis) 
   r.set("I", "set_keyValue", MFRotation{{0, 0, 0, 1}, {0, 3, 0, 1}});
   r.set("I", "set_fraction", 0.5f);
   EXPECT_EQ(r.get("I", "value_changed"), "0 1 0 0.5");
+}
+
+TEST(OrientationInterpolator, TheAngleIsAtMostHalfATurn) {
+  Running r("DEF I OrientationInterpolator { key [ 0 1 ] keyValue [ 0 1 0 3, 0 1 0 4 ] }");
+  r.set("I", "set_fraction", 0.5f);
+  const auto v = std::get<Rotation>(r.browser.get(r.node("I"), "value_changed"));
+  EXPECT_EQ(v.y, -1);
+  EXPECT_NEAR(v.angle, 2 * M_PI - 3.5, 1e-6);
+}
+
+TEST(NormalInterpolator, AZeroVectorHasTheOthersDirection) {
+  EXPECT_EQ(valueAt("NormalInterpolator { key [ 0 1 ] keyValue [ 0 0 0, 0 2 0, 0 3 0, 0 0 0 ] }", 0.5f), "[0 1 0, 0 1 0]");
 }
 
 TEST(NormalInterpolator, StaysOnTheUnitSphereAtEqualSpeed) {

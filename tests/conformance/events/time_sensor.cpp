@@ -325,6 +325,63 @@ TEST(TimeSensor, ALongerCycleIntervalDoesNotReviveARunThatIsOver) {
   EXPECT_EQ(s.take(), Log{});
 }
 
+TEST(TimeSensor, LoopSetTrueAfterARunIsOverRunsOn) {
+  Sensor s("startTime 1");
+  s.ticks({1, 2, 3});
+  s.set("T", "set_loop", true);
+  EXPECT_EQ(s.take(), (Log{"1 T.isActive TRUE", "2 T.isActive FALSE", "3 T.isActive TRUE"}));
+}
+
+TEST(TimeSensor, WaitingItDoesNotRunForAStartTimeLongAgo) {
+  Sensor s("startTime 50");
+  s.tick(10);
+  s.set("T", "set_startTime", 5.0);
+  s.ticks({11, 51});
+  EXPECT_EQ(s.take(), Log{});
+}
+
+TEST(TimeSensor, StartedAndDisabledInOneCascadeItEndsAtTheNextTick) {
+  Running r("DEF A TimeSensor { startTime 3 } DEF B TimeSensor { startTime 2 } DEF T TimeSensor { cycleInterval 9 }"
+            "ROUTE A.cycleTime TO T.startTime ROUTE B.isActive TO T.enabled");
+  r.log("T", "isActive");
+  for (double t : {0.0, 2.0, 3.0, 4.0, 5.0}) r.browser.tick(t);
+  EXPECT_EQ(r.take(), (Log{"3 T.isActive TRUE", "4 T.isActive FALSE"}));
+}
+
+TEST(TimeSensor, DisabledAndEnabledAgainWithinItsCycleItRunsTheRest) {
+  Sensor s("startTime 1 cycleInterval 4");
+  s.ticks({1, 2});
+  s.set("T", "set_enabled", false);
+  s.tick(3);
+  s.set("T", "set_enabled", true);
+  s.ticks({4, 5});
+  EXPECT_EQ(s.take(), (Log{"1 T.isActive TRUE", "2 T.isActive FALSE", "3 T.isActive TRUE", "5 T.isActive FALSE"}));
+}
+
+TEST(TimeSensor, ReadDuringItsCycleItIsNotLostIfTheFirstTickComesLate) {
+  Sensor s("startTime 100 cycleInterval 5", 102);
+  s.ticks({110, 111, 112});
+  EXPECT_EQ(s.take(), (Log{"110 T.isActive TRUE", "111 T.isActive FALSE"}));
+}
+
+TEST(TimeSensor, ATickBeyondStopTimeTellsOfACycleThatBeganBefore) {
+  Sensor s("loop TRUE startTime 1 stopTime 5.5 cycleInterval 2"), exact("loop TRUE startTime 1 stopTime 5 cycleInterval 2");
+  for (Sensor* sensor : {&s, &exact}) {
+    sensor->log("T", "cycleTime");
+    sensor->ticks({1, 3});
+    sensor->take();
+    sensor->tick(7);
+  }
+  EXPECT_EQ(s.take(), (Log{"7 T.cycleTime 5", "7 T.isActive FALSE"}));
+  EXPECT_EQ(exact.take(), Log{"7 T.isActive FALSE"}); // at 5 none began
+}
+
+TEST(TimeSensor, TheLastFractionIsOneThoughTheEndIsRounded) { // 1.7e9 + 0.1 - 1.7e9 is less than 0.1
+  Sensor s("startTime 1700000000 cycleInterval 0.1", 1.6e9);
+  s.ticks({1.7e9, 1.7e9 + 1});
+  EXPECT_EQ(s.number("fraction_changed"), 1);
+}
+
 TEST(TimeSensor, InAPrototypeItRunsAsOutside) {
   Running r("PROTO P [ exposedField SFTime start 0 eventOut SFFloat f ] { TimeSensor { startTime IS start cycleInterval 4 "
             "fraction_changed IS f } }"
