@@ -64,13 +64,18 @@ void Browser::pointer(double x, double y, bool button) {
   const double size = std::tan(camera.fovy / 2);
   interaction.pointer.point(
       {transformPoint(view, Vector(0)), transformDirection(view, {x * size * interaction.aspect, y * size, -1})}, button);
+  impl_->workOff(); // a Script may have asked for another world
 }
 
 void Browser::pointerRay(const double origin[3], const double direction[3], bool button) {
   interactionOf(*impl_->engine).pointer.point(rayOf(origin, direction), button);
+  impl_->workOff();
 }
 
-void Browser::pointerLeave() { interactionOf(*impl_->engine).pointer.leave(); }
+void Browser::pointerLeave() {
+  interactionOf(*impl_->engine).pointer.leave();
+  impl_->workOff();
+}
 
 std::vector<NodeRef> Browser::sensorsAtPointer() const { return interactionOf(*impl_->engine).pointer.sensors(); }
 
@@ -91,6 +96,7 @@ void Browser::navigate(const NavigationInput& input, double dt) {
   engine.beginCascade(engine.now());
   interactionOf(engine).navigation.move(input, dt);
   engine.settle();
+  impl_->workOff();
 }
 
 void Browser::key(Key key, bool pressed) {
@@ -99,6 +105,7 @@ void Browser::key(Key key, bool pressed) {
   engine.beginCascade(engine.now());
   interactionOf(engine).navigation.key(key, pressed);
   engine.settle();
+  impl_->workOff();
 }
 
 Navigation Browser::navigation() const { return interactionOf(*impl_->engine).navigation.type(); }
@@ -111,6 +118,7 @@ bool Browser::loadInline(Node& inlineNode) {
   engine.beginCascade(engine.now());
   const bool loaded = loadInlineContent(engine, inlineNode);
   engine.settle();
+  impl_->workOff();
   return loaded;
 }
 
@@ -120,6 +128,7 @@ uint64_t Browser::loadInlines() {
   engine.beginCascade(engine.now());
   const uint64_t loaded = loadInlinesBelow(engine, impl_->world->scope);
   engine.settle();
+  impl_->workOff();
   return loaded;
 }
 

@@ -146,6 +146,29 @@ TEST(Binding, ANodeMayBeBoundBeforeItIsAdded) {
   EXPECT_EQ(view(r), "A");
 }
 
+TEST(Binding, NodesFromAStringAreNotBoundByThemselvesAndCanBe) {
+  Running r("DEF T Transform { translation 0 5 0 }");
+  const MFNode made = r.browser.createVrmlFromString("DEF S Viewpoint { position 0 0 1 } Fog {}");
+  r.set("T", "addChildren", made);
+  EXPECT_EQ(r.browser.bound(), BoundNodes());
+  EXPECT_EQ(eyeOf(r.browser), "0 0 10");
+  r.browser.set(*made[0], "set_bind", true);
+  EXPECT_EQ(view(r), "S");
+  EXPECT_EQ(eyeOf(r.browser), "0 5 1");
+  r.set("T", "removeChildren", MFNode{made[0]});
+  EXPECT_EQ(view(r), "none");
+}
+
+TEST(Binding, OfAWorldThatReplacesAnotherTheFirstAreBound) {
+  Running r("DEF A Viewpoint { position 1 0 0 } DEF F Fog {}");
+  r.browser.navigate({.ahead = 1}, 1);
+  const MFNode made = r.browser.createVrmlFromString("DEF S Viewpoint { jump FALSE position 0 0 1 } DEF U Viewpoint {}");
+  r.browser.replaceWorld(made);
+  EXPECT_EQ(view(r), "S");
+  EXPECT_EQ(r.browser.bound().fog, nullptr);
+  EXPECT_EQ(eyeOf(r.browser), "0 0 1"); // jump FALSE keeps no view of a world that is gone
+}
+
 TEST(Binding, ChangesTellWhatWasBound) {
   Running r("DEF A Background {} DEF B Background {}");
   r.browser.takeChanges();

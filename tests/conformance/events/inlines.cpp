@@ -118,5 +118,34 @@ TEST(Inlines, NoneIsReadIntoItself) {
   EXPECT_EQ(inlineScope(*browser.node("I")), nullptr);
 }
 
+// Other files that come into a running world.
+TEST(OtherFiles, BindablesOfCreateVrmlFromUrlAreNotBoundByThemselves) {
+  const Folder f;
+  f.file("more.wrl", "DEF M Viewpoint { position 0 0 3 description \"more\" }");
+  Browser browser(loadWorld(f.file("a.wrl", "DEF G Group {}")));
+  browser.createVrmlFromUrl({"missing.wrl", "more.wrl"}, *browser.node("G"), "addChildren");
+  ASSERT_EQ(browser.viewpoints().size(), 1u);
+  EXPECT_EQ(browser.bound().viewpoint, nullptr);
+  EXPECT_TRUE(browser.bindViewpoint("more"));
+  EXPECT_EQ(eyeOf(browser), "0 0 3");
+}
+
+TEST(OtherFiles, AClickOnAnAnchorLoadsItsWorldAndBindsTheViewpointNamed) {
+  const Folder f;
+  f.file("b.wrl", "DEF FIRST Viewpoint { position 0 0 3 } DEF SECOND Viewpoint { position 0 0 4 } Shape { geometry Sphere {} }");
+  Browser browser(
+      loadWorld(f.file("a.wrl", "DEF V Viewpoint {} Anchor { url \"b.wrl#SECOND\" children Shape { geometry Box {} } }")));
+  const uint64_t generation = browser.generation();
+  browser.pointer(0, 0, true);
+  browser.pointer(0, 0, false);
+  EXPECT_EQ(browser.generation(), generation + 1);
+  EXPECT_EQ(nameOf(browser.bound().viewpoint), "SECOND");
+  EXPECT_TRUE(browser.sensorsAtPointer().empty());
+  const double origin[3] = {0.9, 0.9, 5}, direction[3] = {0, 0, -1};
+  PickHit hit;
+  EXPECT_FALSE(browser.pick(origin, direction, {}, hit)); // the box is gone
+  browser.tick(1);
+}
+
 } // namespace
 } // namespace xvrml
