@@ -27,10 +27,10 @@ inline constexpr uint64_t savedMuch = uint64_t(256) << 20; // ... if that much i
 
 // Memory that instances save for a thing of so many primitives that would be written `times` times; 0 if they cost some.
 inline uint64_t savedByInstances(uint64_t primitives, uint64_t times) {
-  if (times < 2) return 0;
-  const uint64_t copies = multiplySaturating(multiplySaturating(primitives, bytesOfPrimitive), times - 1);
-  const uint64_t instances = multiplySaturating(bytesOfInstance, times);
-  return copies > instances ? copies - instances : 0;
+  const uint64_t one = multiplySaturating(primitives, bytesOfPrimitive);
+  if (times < 2 || one <= bytesOfInstance) return 0;
+  const uint64_t saved = multiplySaturating(one - bytesOfInstance, times - 1); // by all but the first
+  return saved > bytesOfInstance ? saved - bytesOfInstance : 0;
 }
 
 // merged: asked to be written out rather than instantiated (ORTStatic): only a large saving counts.

@@ -5,6 +5,7 @@
 #include <exception>
 
 #include "image/image.h"
+#include "xvrml/media.h"
 #include "xvrml/nodes.h"
 
 namespace xvrml::mapping {
@@ -27,7 +28,7 @@ bool ownImage(Node& node, OwnImage& own) {
     return true;
   }
   if (auto* movie = nodeCast<nodes::MovieTexture>(&node)) {
-    own = {nullptr, movie->repeatS, movie->repeatT};
+    own = {currentImage(node), movie->repeatS, movie->repeatT};
     return true;
   }
   return false;
@@ -49,8 +50,8 @@ RTid Textures::makeNode(Node& node) {
   RTid id = 0;
   if (OwnImage own; ownImage(node, own)) {
     if (own.image) id = make(*own.image, own.repeatS, own.repeatT);
-    if (!own.image && nodeCast<nodes::MovieTexture>(&node))
-      world_.diagnostics.warn(node.source, "MovieTexture: films are not decoded; the surface is drawn without it");
+    if (!node.live && nodeCast<nodes::MovieTexture>(&node))
+      world_.diagnostics.warn(node.source, "MovieTexture: films play in a running world; the surface is drawn without it");
     report(world_.diagnostics, node.source, node.type().name);
   } else {
     world_.diagnostics.warn(node.source, node.type().name + " is not a texture that can be drawn");
