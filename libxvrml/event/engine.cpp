@@ -116,11 +116,12 @@ void Engine::leave(Event& event) {
   const size_t count = part(node).links.size();
   for (size_t i = 0; i < count; ++i) {
     const Link link = part(node).links[i];
-    if (link.out != event.field || link.kind == Link::Kind::intoBody || !link.to) continue;
-    if (link.kind == Link::Kind::route)
-      arrive(*link.to, *link.in, event.value);
+    if (link.out != event.field || link.kind == Link::Kind::intoBody || !link.leads()) continue;
+    const NodeRef keep(link.instance);
+    if (link.instance)
+      relay(*link.instance, *link.in, event.value);
     else
-      relay(static_cast<ProtoInstance&>(*link.to), *link.in, event.value);
+      arrive(*link.to, *link.in, event.value);
   }
   if (!part(node).listeners.empty()) {
     const auto listeners = part(node).listeners; // one may remove itself

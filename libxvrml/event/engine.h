@@ -105,6 +105,8 @@ class Engine : public Events {
   void enterScope(const Scope& scope, Newcomers& newcomers);
   void complete(Newcomers& newcomers);
   void connectBody(ProtoInstance& instance);
+  void disconnectBody(ProtoInstance& instance);
+  void bury(std::unique_ptr<Participant> part) noexcept;
   void linkChild(Node& parent, Node& child);
   void unlinkChild(Node& parent, Node& child);
   void rootsChanged();
@@ -127,10 +129,11 @@ class Engine : public Events {
   Watchers ticking_, looking_;
   FieldChanges changes_;
   std::vector<NodeRef> outdated_; // nodes of plug-ins that may stand for something else now
-  std::vector<NodeRef> swept_; // nodes with deleted links
+  std::vector<NodeRef> swept_;    // nodes with deleted links
+  std::vector<std::unique_ptr<Participant>> buried_;
   uint64_t structure_ = 0, cascade_ = 0, delivered_ = 0, inCascade_ = 0, routes_ = 0, listeners_ = 0;
   uint32_t order_ = 0;
-  bool settling_ = false, overflow_ = false, scriptsBegin_ = false;
+  bool settling_ = false, overflow_ = false, scriptsBegin_ = false, burying_ = false;
 };
 
 } // namespace xvrml

@@ -23,6 +23,9 @@ struct Link {
   NodeRef to; // null: deleted, swept after the cascade
   const FieldInfo* in;
   Kind kind = Kind::route;
+  ProtoInstance* instance = nullptr; // outOfBody: instead of `to`: it holds its body, which must not hold it
+
+  bool leads() const { return to || instance; }
 };
 
 using Listener = std::function<void(Node& node, const FieldInfo& out, const Value& value)>;

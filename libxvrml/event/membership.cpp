@@ -50,13 +50,31 @@ void Engine::forget(LiveBase* base) noexcept {
   engine.ticking_.erase(live->order);
   engine.looking_.erase(live->order);
   engine.observer->forgotten(*live->node);
-  if (engine.scripts && live->node->type().index < 0)
-    if (auto* script = dynamic_cast<ScriptNode*>(live->node)) engine.scripts->end(*script);
+  if (live->node->type().index < 0) {
+    if (auto* instance = dynamic_cast<ProtoInstance*>(live->node)) engine.disconnectBody(*instance);
+    if (auto* script = dynamic_cast<ScriptNode*>(live->node); script && engine.scripts) engine.scripts->end(*script);
+  }
   engine.lives_[live->slot] = engine.lives_.back();
   engine.lives_[live->slot]->slot = live->slot;
   engine.lives_.pop_back();
   live->node->live = nullptr;
+  std::unique_ptr<Participant> part = std::move(live->part);
   delete live;
+  if (part) engine.bury(std::move(part));
+}
+
+// Links may hold the last reference to the next node, and so on down a long chain of routes: one after the other, not one
+// within the other.
+void Engine::bury(std::unique_ptr<Participant> part) noexcept {
+  try {
+    buried_.push_back(std::move(part));
+  } catch (const std::bad_alloc&) { return; } // the stack has to do
+  if (std::exchange(burying_, true)) return;
+  while (!buried_.empty()) {
+    const std::unique_ptr<Participant> next = std::move(buried_.back());
+    buried_.pop_back();
+  }
+  burying_ = false;
 }
 
 void Engine::linkChild(Node& parent, Node& child) {
@@ -189,7 +207,10 @@ void Engine::keepOnly(const std::vector<NodeRef>& kept) {
       for (const IsConnection& c : instance->is) mark(c.node.get());
     }
     if (liveOf(node)->part)
-      for (const Link& link : liveOf(node)->part->links) mark(link.to.get());
+      for (const Link& link : liveOf(node)->part->links) {
+        mark(link.to.get());
+        mark(link.instance);
+      }
   }
   queue_.clear();
   std::vector<NodeRef> others;
@@ -252,7 +273,9 @@ bool Events::store(Node& node, const FieldInfo& field, Value value) {
       return true;
     };
     if (auto* one = std::get_if<NodeRef>(&value); one && refused(*one)) return false;
-    if (auto* many = std::get_if<MFNode>(&value)) std::erase_if(*many, refused);
+    const bool keeps = keepsNull(field) || !inHierarchy;
+    if (auto* many = std::get_if<MFNode>(&value))
+      std::erase_if(*many, [&](const NodeRef& child) { return child ? refused(child) : !keeps; });
     if (inHierarchy && engine.wouldLoop(node, value)) {
       diagnostics_.warn(node.source, fmt::format("{} of {} would hold the node itself (4.6.2)", field.name, node.type().name));
       return false;

@@ -12,7 +12,9 @@ namespace {
 
 std::string nameOf(const Node& node) { return node.defName.empty() ? node.type().name : node.defName; }
 
-bool isSame(const Link& a, const Link& b) { return a.out == b.out && a.to == b.to && a.in == b.in && a.kind == b.kind; }
+bool isSame(const Link& a, const Link& b) {
+  return a.out == b.out && a.to == b.to && a.in == b.in && a.kind == b.kind && a.instance == b.instance;
+}
 
 // From so many links on a search through all would make a wide fan-out quadratic.
 constexpr size_t manyLinks = 64;
@@ -91,7 +93,7 @@ bool Engine::deleteRoute(Node& from, std::string_view out, Node& to, std::string
 
 void Engine::sweep() {
   for (const NodeRef& node : std::exchange(swept_, {}))
-    if (node->live && liveOf(*node)->part) std::erase_if(liveOf(*node)->part->links, [](const Link& l) { return !l.to; });
+    if (node->live && liveOf(*node)->part) std::erase_if(liveOf(*node)->part->links, [](const Link& l) { return !l.leads(); });
 }
 
 // Clause 4.8.2: events cross the border where an interface's event IS one of a node in the body.
@@ -104,7 +106,24 @@ void Engine::connectBody(ProtoInstance& instance) {
         addLink(instance, {interface, c.node, in, Link::Kind::intoBody});
     if (interface->access != Access::eventIn)
       if (const FieldInfo* out = c.node->type().findEventOut(c.field); out && out->type == interface->type)
-        addLink(*c.node, {out, NodeRef(&instance), interface, Link::Kind::outOfBody});
+        addLink(*c.node, {out, {}, interface, Link::Kind::outOfBody, &instance});
+  }
+}
+
+// The instance is being destroyed; nodes of its body may live on.
+void Engine::disconnectBody(ProtoInstance& instance) {
+  for (const IsConnection& c : instance.is) {
+    if (!c.node->live || !liveOf(*c.node)->part) continue;
+    Participant& part = *liveOf(*c.node)->part;
+    for (Link& link : part.links) {
+      if (link.instance != &instance) continue;
+      part.index.erase(keyOf(link));
+      link.instance = nullptr;
+    }
+    if (settling_) // its links may just be followed
+      swept_.push_back(c.node);
+    else
+      std::erase_if(part.links, [](const Link& l) { return !l.leads(); });
   }
 }
 

@@ -179,6 +179,8 @@ void Builder::nullNode(const Token& token) {
   const Receiver& receiver = receivers_.back();
   if (receiver.kind == Receiver::Kind::single)
     *static_cast<NodeRef*>(receiver.storage) = {};
+  else if (!receiver.field || keepsNull(*receiver.field) || (receiver.holder && receiver.holder->type().index < 0))
+    static_cast<MFNode*>(receiver.storage)->emplace_back(); // an interface's value may become such a list
   else
     lexer_.warn(token.at(), "NULL is no node of a list; it is left out");
 }

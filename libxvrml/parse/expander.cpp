@@ -367,7 +367,8 @@ void Expander::connect(const ProtoInstance& instance, const FieldInfo& from, con
     } else if constexpr (std::is_same_v<T, NodeRef>) {
       if (!acceptable(target)) target = {};
     } else if constexpr (std::is_same_v<T, MFNode>) {
-      std::erase_if(target, [&](const NodeRef& child) { return !acceptable(child); });
+      const bool keeps = keepsNull(to) || node.type().index < 0;
+      std::erase_if(target, [&](const NodeRef& child) { return child ? !acceptable(child) : !keeps; });
     }
   });
   if (!holdsNodes(to) && to.range.bounded()) enforceRange(to, node.storage(to));

@@ -44,6 +44,9 @@ inline bool holdsNodes(const FieldInfo& field) {
   return holdsValue(field) && (field.type == FieldType::SFNode || field.type == FieldType::MFNode);
 }
 
+// Lists in which a node's place counts keep NULL (Switch.choice, LOD.level); in others it stands for nothing.
+inline bool keepsNull(const FieldInfo& field) { return field.name == "choice" || field.name == "level"; }
+
 // Calls visit(NodeRef&, const FieldInfo&) for each node a node's own fields hold, NULL left out.
 template <class Visitor> void forEachChild(Node& node, Visitor&& visit) {
   for (const FieldInfo& field : node.type().fields) {

@@ -10,6 +10,7 @@
 #include "parse/field_access.h"
 #include "parse/inline_node.h"
 #include "parse/parser.h"
+#include "parse/urn.h"
 
 namespace xvrml {
 namespace {
@@ -136,6 +137,10 @@ ProtoPtr Loader::resolveExtern(ProtoDeclaration& declaration) {
   }
   std::string reasons;
   for (const std::string& url : declaration.urls) {
+    if (ProtoPtr known = builtinPrototype(url, *declaration.type)) {
+      checkInterface(declaration, *known);
+      return declaration.resolved = known;
+    }
     const ResolvedUrl resolved = resolveUrl(url, declaration.baseUrl, state_.options);
     std::string reason = resolved.error;
     if (reason.empty()) {
