@@ -98,6 +98,7 @@ void Browser::Impl::become(Scope scope, const std::vector<NodeRef>& kept, std::v
   engine->beginCascade(engine->now());
   engine->adoptScope(world->scope, true);
   engine->settle();
+  engine->takeChanges(); // whoever draws it begins with it as it is now
 }
 
 std::string Browser::name() const { return "OpenRT XVRML"; }

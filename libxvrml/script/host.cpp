@@ -59,6 +59,7 @@ void ScriptHost::start(Script& script) {
     if (makeInterpreter(script, std::move(program))) break;
     if (script.stopped) return;
   }
+  if (script.ghost) return; // the program has let go of the last that held its own node
   if (script.flag(XS_DIRECT_OUTPUT)) markReach(script);
   const Key key = liveOf(*script.node)->order;
   if (script.engine->tick) ticking_.push_back(key);

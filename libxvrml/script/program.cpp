@@ -79,6 +79,16 @@ bool ProgramFinder::fileProgram(const std::string& url, const std::string& base,
   return true;
 }
 
+bool ProgramFinder::dataProgram(std::string_view url, const LoadOptions& options, ScriptProgram& program) {
+  DataUrl data;
+  std::string why;
+  if (!decodeDataUrl(url, options.limits.stringBytes, data, why)) return append(reasons_, why), false;
+  program.engine = data.type.empty() ? nullptr : engines_.byMimeType(data.type);
+  if (!usable(program.engine, "data:" + data.type.substr(0, 100))) return false;
+  program.text = std::move(data.bytes);
+  return true;
+}
+
 void ProgramFinder::tellMissing(const ScriptNode& script) {
   for (const auto& [protocol, message] : missing_)
     if (told_.insert(protocol).second) diagnostics_.warn(script.source, "Script: " + message);
@@ -98,7 +108,10 @@ ScriptProgram ProgramFinder::find(const ScriptNode& script, const LoadOptions& o
     const size_t start = std::min(url.find_first_not_of(" \t\r\n"), url.size());
     const std::string_view trimmed = std::string_view(url).substr(start);
     std::string scheme = urlScheme(trimmed);
-    if (isPlace(scheme)) {
+    if (scheme == "data") {
+      if (!dataProgram(trimmed, options, program)) continue;
+      program.start = {script.source.file, i < script.urlLines.size() ? script.urlLines[i] : script.source.line, 0};
+    } else if (isPlace(scheme)) {
       if (!fileProgram(url, base, options, program)) continue;
     } else {
       program.scheme = std::move(scheme);

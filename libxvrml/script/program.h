@@ -28,6 +28,7 @@ class ProgramFinder {
 
  private:
   bool inlineProgram(const std::string& url, size_t colon, ScriptProgram& program);
+  bool dataProgram(std::string_view url, const LoadOptions& options, ScriptProgram& program);
   bool fileProgram(const std::string& url, const std::string& base, const LoadOptions& options, ScriptProgram& program);
   bool usable(const XsEngine* engine, const std::string& protocol);
   void tellRefusals();

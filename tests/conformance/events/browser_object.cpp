@@ -84,10 +84,14 @@ TEST(BrowserObject, ALongChainOfRoutesEndsWithoutRecursion) {
   }
   MFNode nodes = r.browser.createVrmlFromString(text);
   ASSERT_EQ(nodes.size(), size_t(n));
-  const NodeRef first = nodes[0], last = nodes.back();
+  NodeRef first = nodes[0];
+  const NodeRef last = nodes.back();
   nodes.clear(); // routes hold the rest now
   r.browser.set(*first, "translation", Vec3f{1, 0, 0});
   EXPECT_EQ(textOf(r.browser.get(*last, "translation")), "1 0 0");
+  r.browser.takeChanges();
+  first = {};
+  EXPECT_TRUE(last->live);
 }
 
 TEST(BrowserObject, ReadsNodesFromAFile) {
@@ -132,7 +136,7 @@ TEST(BrowserObject, AnApplicationMayLoadItself) {
 TEST(BrowserObject, AFragmentAloneBindsAViewpoint) {
   Running r("DEF A Viewpoint {} DEF B Viewpoint {}");
   r.browser.loadUrl({"#B"});
-  EXPECT_EQ(r.browser.bound().viewpoint, r.browser.node("B"));
+  EXPECT_EQ(r.browser.bound().viewpoint, r.browser.node("B").get());
   r.browser.loadUrl({"#C"});
   EXPECT_EQ(r.browser.world().diagnostics.warnings(), 1u);
   EXPECT_EQ(r.browser.generation(), 1u);
@@ -155,7 +159,7 @@ TEST(BrowserObject, ReplaceWorldKeepsNodesTheirRoutesAndTheirScripts) {
   r.browser.replaceWorld(nodes);
   EXPECT_EQ(r.printed(), Log{"old"});
   EXPECT_EQ(r.browser.world().scope.roots.size(), 4u);
-  EXPECT_EQ(r.browser.bound().viewpoint, nodes[0]);
+  EXPECT_EQ(r.browser.bound().viewpoint, nodes[0].get());
   r.browser.set(*nodes[1], "translation", Vec3f{4, 0, 0});
   EXPECT_EQ(textOf(r.browser.get(*nodes[2], "translation")), "4 0 0");
 }

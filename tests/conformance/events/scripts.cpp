@@ -292,6 +292,17 @@ TEST(Scripts, BadPluginsAreRefusedWithTheReason) {
   EXPECT_EQ(messages.size(), 9u); // and that there is no engine
 }
 
+TEST(Scripts, AProgramComesFromADataUrl) {
+  Scripted r("Script { url \"data:text/x-test,initialize:%20print%20plain\" } Script { url "
+             "\"data:Text/X-Test;base64,aW5pdGlhbGl6ZTogcHJpbnQgYmFzZTY0\" } Script { url [ \"data:text/x-other,x\" "
+             "\"data:;base64,*\" ] }");
+  EXPECT_EQ(r.printed(), (Log{"plain", "base64"}));
+  const Log messages = r.messages();
+  ASSERT_EQ(messages.size(), 2u);
+  EXPECT_NE(messages[0].find("'data:text/x-other'"), std::string::npos);
+  EXPECT_NE(messages[1].find("not base64"), std::string::npos);
+}
+
 TEST(Scripts, AProgramComesFromAFile) {
   const auto world = loadWorld("tests/conformance/good/script-from-file.wrl");
   EXPECT_EQ(world->diagnostics.warnings(), 0u);
