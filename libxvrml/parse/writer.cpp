@@ -215,7 +215,6 @@ class Writer {
       text += '[';
       indent_ += 2;
       for (const NodeRef& child : list) {
-        if (!child) continue;
         line();
         node(child.get(), names, connections);
       }
