@@ -1,10 +1,11 @@
 // cost.h: when is a thing that appears several times worth an object with instances? The one place where memory is weighed
 // against speed. Pure numbers; used by the grouping (summary.cpp).
 //
-// What memory costs, measured with the local backend (tests/bench/map_memory.cpp): a triangle about 150 bytes (arrays, their
-// copy in the kernel's frame, acceleration structure), an instance about 300. What time costs: rays that meet instances run
-// at about a quarter of the speed of rays in one merged mesh, and the smaller the instanced things are the more of them a ray
-// meets. So an instance must replace much more than itself, unless the memory saved is large by any measure.
+// What memory costs, measured with the local backend: a triangle 100 bytes where triangles share vertices, 150 where they do
+// not (arrays, their copy in the kernel's frame, acceleration structure); an instance 1500 (232 of them in the API). What time
+// costs: rays that meet instances run at a third to a quarter of the speed of rays in one merged mesh (tests/bench/map_memory.cpp
+// and decision 12), and the smaller the instanced things are the more of them a ray meets. So an instance must replace several
+// times itself, unless the memory saved is large by any measure.
 #pragma once
 
 #include <cstdint>
@@ -19,11 +20,10 @@ inline uint64_t multiplySaturating(uint64_t a, uint64_t b) {
   return b != 0 && a > std::numeric_limits<uint64_t>::max() / b ? std::numeric_limits<uint64_t>::max() : a * b;
 }
 
-inline constexpr uint64_t bytesOfPrimitive = 150, bytesOfInstance = 300;
-inline constexpr uint64_t replacedMany = 16;               // instances' worth that one instance must replace ...
+inline constexpr uint64_t bytesOfPrimitive = 150, bytesOfInstance = 1500;
+inline constexpr uint64_t replaced = 3;                    // instances' worth that one instance must replace ...
 inline constexpr uint64_t savedSome = 256 << 10;           // ... if this much is saved in all
-inline constexpr uint64_t replacedFew = 2;                 // or only this many ...
-inline constexpr uint64_t savedMuch = uint64_t(256) << 20; // ... if that much is
+inline constexpr uint64_t savedMuch = uint64_t(256) << 20; // whatever it replaces, if this much is
 
 // Memory that instances save for a thing of so many primitives that would be written `times` times; 0 if they cost some.
 inline uint64_t savedByInstances(uint64_t primitives, uint64_t times) {
@@ -36,8 +36,8 @@ inline uint64_t savedByInstances(uint64_t primitives, uint64_t times) {
 // merged: asked to be written out rather than instantiated (ORTStatic): only a large saving counts.
 inline bool worthInstances(uint64_t primitives, uint64_t times, bool merged = false) {
   const uint64_t saved = savedByInstances(primitives, times), one = multiplySaturating(primitives, bytesOfPrimitive);
-  if (one >= replacedFew * bytesOfInstance && saved >= savedMuch) return true;
-  return !merged && one >= replacedMany * bytesOfInstance && saved >= savedSome;
+  if (saved >= savedMuch) return true;
+  return !merged && one >= replaced * bytesOfInstance && saved >= savedSome;
 }
 
 } // namespace xvrml::mapping

@@ -31,10 +31,8 @@ void Graph::plan(ItemId item) {
 
 bool Graph::planRoots() {
   const std::vector<NodeRef>& now = context_.world.scope.roots;
-  const auto same = [](const Node* a, const NodeRef& b) { return a == b.get(); };
-  if (std::equal(roots_.begin(), roots_.end(), now.begin(), now.end(), same)) return false;
-  roots_.clear();
-  for (const NodeRef& node : now) roots_.push_back(node.get());
+  if (roots_ == now) return false;
+  roots_ = now;
   plan(root);
   return true;
 }

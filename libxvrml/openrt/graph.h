@@ -152,7 +152,7 @@ class Graph {
   std::unordered_map<const Node*, ItemId> known_;
   std::unordered_map<std::string, uint32_t> nameIds_;
   std::vector<ItemId> pending_, free_, dropped_, replanned_;
-  std::vector<const Node*> roots_;
+  std::vector<NodeRef> roots_;
 };
 
 // Fills in what events reach, triangles, placed, own ... of all items. See summary.cpp for the rules. Returns the items for

@@ -49,7 +49,12 @@ void Meshes::drop(int32_t mesh) {
   leave(mesh);
   index_.erase(entry.geometry.get());
   entry = Entry();
-  free_.push_back(mesh);
+  dropped_.push_back(mesh);
+}
+
+void Meshes::recycle() {
+  free_.insert(free_.end(), dropped_.begin(), dropped_.end());
+  dropped_.clear();
 }
 
 void Meshes::count(int32_t mesh, int32_t users) {

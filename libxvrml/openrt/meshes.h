@@ -18,6 +18,9 @@ class Meshes {
   // The number of a geometry node's mesh, with one user more. textured: a shape that uses it has a texture.
   int32_t add(Node& geometry, bool textured);
   void drop(int32_t mesh); // one user less
+  // Numbers that have no user any more. They name nothing else until recycle().
+  const std::vector<int32_t>& dropped() const { return dropped_; }
+  void recycle();
   int32_t find(const Node* geometry) const;
   size_t size() const { return entries_.size(); }
   // Its shapes have a texture from now on. True if the mesh is another because of that.
@@ -69,7 +72,7 @@ class Meshes {
 
   World& world_;
   std::vector<Entry> entries_;
-  std::vector<int32_t> free_, built_;
+  std::vector<int32_t> free_, dropped_, built_;
   std::unordered_map<const Node*, int32_t> index_;
   std::vector<Group> groups_;
   int32_t freeGroup_ = none_;

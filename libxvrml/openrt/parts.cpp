@@ -115,6 +115,9 @@ void Objects::regrouped(const std::vector<Place>& gone) {
       removePart(place.part);
       place.instance = 0;
     }
+  for (const int32_t mesh : graph_.meshes.dropped())
+    if (size_t(mesh) < meshParts_.size()) removePart(meshParts_[size_t(mesh)]);
+  graph_.meshes.recycle();
   std::vector<uint8_t> needed(meshParts_.size());
   for (const ItemId id : graph_.order) {
     Item& item = graph_.items[id];

@@ -2,13 +2,14 @@
 // own; memory of a forest of 10,000 USEs beside what it would be written out.
 #include <cmath>
 #include <fstream>
+#include <malloc.h>
 #include <memory>
 #include <string>
-#include <malloc.h>
 #include <unistd.h>
 
 #include <benchmark/benchmark.h>
 
+#include "event/engine.h"
 #include "openrt/openrt.h"
 #include "xvrml/openrt.h"
 
@@ -27,10 +28,13 @@ double residentBytes() {
 struct Still {
   RTcontext context;
   std::unique_ptr<World> world;
+  std::unique_ptr<Engine> engine; // it runs: what its routes reach stands alone
   std::unique_ptr<OpenRTMapper> mapper;
 
   Still(const std::string& body, const char* config, int width, int height) : context(rtNewContext(config)) {
     world = loadWorldFromMemory("#VRML V2.0 utf8\n" + body, "still.wrl");
+    engine = std::make_unique<Engine>(world->diagnostics);
+    engine->adoptScope(world->scope, true);
     mapper = std::make_unique<OpenRTMapper>(*world, MapOptions());
     mapper->map(mapper->viewpointCamera(0));
     rtFrameBuffer(width, height, RT_RGBA);
@@ -39,34 +43,45 @@ struct Still {
   }
   ~Still() {
     mapper.reset();
+    engine.reset();
     rtDeleteContext(context);
   }
 };
 
-// 20,000 cones in a square; apart: each below an ORTInstance.
-std::string town(bool apart) {
-  std::string body = "Viewpoint { position 0 60 120 orientation 1 0 0 -0.5 }\nPointLight { location 0 100 50 radius 1000 }\n";
+// 20,000 pyramids in a square: merged into one object; each an object of its own (ORTInstance), which the backend may merge
+// again; each moved by a ROUTE, which it may not.
+enum Grouping { merged, objects, moving };
+
+std::string town(int64_t grouping) {
+  std::string body = "Viewpoint { position 0 60 120 orientation 1 0 0 -0.5 }\nPointLight { location 0 100 50 radius 1000 }\n"
+                     "DEF I PositionInterpolator { }\n";
+  std::string routes;
   for (int i = 0; i < 20'000; ++i) {
+    const std::string name = "T" + std::to_string(i);
     const double x = i % 141 - 70, z = i / 141 - 70;
-    body += "Transform { translation " + std::to_string(x) + " 0 " + std::to_string(z) + " children " +
-            (apart ? "ORTInstance { children " : "") + "Shape { appearance Appearance { material Material { diffuseColor " +
-            std::to_string(i % 10 / 10.0) +
+    body += "DEF " + name + " Transform { translation " + std::to_string(x) + " 0 " + std::to_string(z) + " children " +
+            (grouping == objects ? "ORTInstance { children " : "") +
+            "Shape { appearance Appearance { material Material { diffuseColor " + std::to_string(i % 10 / 10.0) +
             " .5 .5 } } geometry IndexedFaceSet { coord Coordinate { point [ -.4 0 -.4, .4 0 -.4, .4 0 .4, -.4 0 .4, 0 " +
             std::to_string(0.5 + i % 13 / 6.0) + " 0 ] } coordIndex [ 0 4 1 -1 1 4 2 -1 2 4 3 -1 3 4 0 -1 ] } }" +
-            (apart ? " }" : "") + " }\n";
+            (grouping == objects ? " }" : "") + " }\n";
+    if (grouping == moving) routes += "ROUTE I.value_changed TO " + name + ".set_scale\n";
   }
-  return body;
+  return body + routes;
 }
 
 void Town(benchmark::State& state) {
   const double before = residentBytes();
-  Still still(town(state.range(0) != 0), "threads=1", 320, 240);
+  Still still(town(state.range(0)), "threads=1", 320, 240);
   const double memory = residentBytes() - before;
   for (auto _ : state) rtRender();
+  RTstats stats{sizeof(RTstats)};
+  rtGetStats(&stats);
+  state.counters["render"] = stats.renderSeconds;
   state.counters["MB"] = memory / 1e6;
   state.SetLabel(std::to_string(still.mapper->stats().objects) + " objects");
 }
-BENCHMARK(Town)->ArgName("apart")->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond);
+BENCHMARK(Town)->ArgName("grouping")->Arg(merged)->Arg(objects)->Arg(moving)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 // A tree of 10,082 triangles; n of them.
 std::string forest(int n) {

@@ -151,7 +151,7 @@ TEST(MapForest, IsOneObjectWithInstances) {
     ASSERT_EQ(list.size(), 2u);
     EXPECT_EQ(list[0].name, "Tree");
     EXPECT_EQ(list[0].instances, 10'000u);
-    EXPECT_LT(list[0].bytes + list[1].bytes, uint64_t(6) << 20);
+    EXPECT_LT(list[0].bytes + list[1].bytes, uint64_t(20) << 20);
   }
   rtDeleteContext(context);
 }

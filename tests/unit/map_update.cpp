@@ -243,6 +243,20 @@ TEST_F(MapUpdate, AShapeWithAnotherGeometry) {
   EXPECT_EQ(last_.triangles, without);
 }
 
+TEST_F(MapUpdate, AGeometryAfterTheOther) {
+  load(rest() + "DEF S Shape { appearance Appearance { material Material { } } geometry Box { } }\n");
+  const uint64_t without = frame().triangles - 12;
+  Node& shape = node("S");
+  EXPECT_TRUE(engine_->dispatch(shape, "set_appearance", NodeRef())); // from here on it is an instance of its geometry
+  EXPECT_EQ(frame().triangles, without + 12);
+  for (int n = 2; n < 9; ++n) {
+    const NodeRef scrap = make("Shape { geometry " + grid(n) + " }");
+    send("S", "set_geometry", static_cast<nodes::Shape&>(*scrap).geometry);
+    scraps_.clear(); // the mesh before is gone for good
+    EXPECT_EQ(frame().triangles, without + 2 * uint64_t(n * n));
+  }
+}
+
 TEST_F(MapUpdate, ALightChangesItsParameters) {
   load(rest() + "DEF L PointLight { }\n");
   send("L", "set_intensity", 0.5f);
