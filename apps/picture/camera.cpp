@@ -72,6 +72,9 @@ xvrml::CameraSettings chooseCamera(const xvrml::OpenRTMapper& mapper, const View
   if (view.lookAt) {
     lookAtMatrix(*view.lookAt, camera.matrix);
     camera.fovy = fovy;
+  } else if (view.viewer && !view.viewpoint && !view.fit) {
+    camera = *view.viewer;
+    if (view.fov) camera.fovy = fovy;
   } else if (view.viewpoint || (!view.fit && mapper.boundViewpoint() >= 0)) {
     camera = mapper.viewpointCamera(view.viewpoint.value_or(size_t(std::max(0, mapper.boundViewpoint()))));
     if (view.fov) camera.fovy = fovy;

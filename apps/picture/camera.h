@@ -19,6 +19,7 @@ struct View {
   std::optional<size_t> viewpoint; // index into OpenRTMapper::viewpoints()
   std::optional<LookAt> lookAt;
   bool fit = false;
+  std::optional<xvrml::CameraSettings> viewer; // of a running world: instead of the first Viewpoint
   double turn = 0;           // radians about the vertical axis through the world's centre, counter-clockwise seen from above
   std::optional<double> fov; // degrees; the smaller of the two angles of view, as a Viewpoint's fieldOfView
 };

@@ -8,6 +8,7 @@
 #include <exception>
 #include <mutex>
 #include <new>
+#include <optional>
 #include <thread>
 #include <utility>
 
@@ -43,6 +44,8 @@ void throwOnError(const char* doing) {
 struct News {
   bool otherWorld = false;
   xvrml::FieldChanges changes;
+  xvrml::BoundNodes bound;
+  xvrml::CameraSettings camera;
 };
 
 struct Renderer::Impl {
@@ -66,7 +69,8 @@ struct Renderer::Impl {
   std::atomic<bool> cancelled{false};
   std::thread thread;
 
-  uint64_t generation = 0; // of the browser's world that the mapper shows
+  std::optional<xvrml::CameraSettings> viewer; // of a running world, where a Viewpoint is bound
+  uint64_t generation = 0;                     // of the browser's world that the mapper shows
 
   Impl(xvrml::World* w, xvrml::Browser* b, const RenderSettings& s, Watch x)
       : world(w), browser(b), settings(s), watch(std::move(x)) {}
@@ -154,14 +158,26 @@ struct Renderer::Impl {
     news.changes = browser->takeChanges();
     news.otherWorld = std::exchange(generation, browser->generation()) != browser->generation();
     if (news.otherWorld) world = &browser->world();
+    news.bound = browser->bound();
+    news.camera = browser->camera(double(settings.width) / settings.height);
     return news;
   }
 
   void apply(const News& news) {
+    if (!browser) return;
     if (news.otherWorld)
       makeMapper();
     else
       mapper->update(news.changes);
+    mapper->bind(news.bound);
+    viewer.reset();
+    if (news.bound.viewpoint) viewer = news.camera;
+  }
+
+  // The viewer of a running world, unless another view is asked for.
+  View seenBy(View view) const {
+    view.viewer = viewer;
+    return view;
   }
 
   void setUpFrame() {
@@ -204,7 +220,7 @@ struct Renderer::Impl {
   }
 
   void prepare(const View& view) {
-    mapper->map(chooseCamera(*mapper, view, double(settings.width) / settings.height));
+    mapper->map(chooseCamera(*mapper, seenBy(view), double(settings.width) / settings.height));
     if (memoryExhausted) throw std::bad_alloc();
   }
 
@@ -261,7 +277,8 @@ void Renderer::end() {
 void Renderer::setWatch(Watch watch) { impl_->watch = std::move(watch); }
 
 const std::vector<xvrml::ViewpointInfo>& Renderer::viewpoints() {
-  if (const News news = impl_->collect(); news.otherWorld || !news.changes.empty()) impl_->run([&] { impl_->apply(news); });
+  const News news = impl_->collect();
+  impl_->run([&] { impl_->apply(news); });
   return impl_->mapper->viewpoints();
 }
 

@@ -1,6 +1,7 @@
 // describe.cpp: see describe.h.
 #include "describe.h"
 
+#include <cctype>
 #include <unordered_set>
 
 #include <fmt/format.h>
@@ -99,11 +100,59 @@ void forEachNode(const World& world, const std::function<void(const Node& node)>
   Walk(visit, nothing).through(world.scope);
 }
 
+std::string scriptProtocol(const std::vector<std::string>& urls) {
+  if (urls.empty()) return "none";
+  const std::string& url = urls[0];
+  size_t start = url.find_first_not_of(" \t\r\n");
+  start = start == url.npos ? url.size() : start;
+  size_t end = start;
+  while (end < url.size() && (std::isalnum(static_cast<unsigned char>(url[end])) || url[end] == '+' || url[end] == '-')) ++end;
+  std::string scheme = url.substr(start, end - start);
+  for (char& c : scheme)
+    if (c >= 'A' && c <= 'Z') c = char(c - 'A' + 'a');
+  const bool place = scheme == "http" || scheme == "https" || scheme == "ftp" || scheme == "file" || scheme == "urn";
+  if (end < url.size() && url[end] == ':' && end > start && !place) return scheme;
+  static const std::pair<std::string_view, const char*> suffixes[] = {
+      {".js", "javascript"}, {".class", "java"}, {".jar", "java"}, {".vs", "vrmlscript"}, {".tcl", "tcl"}, {".py", "python"}};
+  for (const auto& [suffix, protocol] : suffixes)
+    if (url.ends_with(suffix)) return protocol;
+  return "file";
+}
+
+namespace {
+
+void countScript(const Node& node, std::map<std::string, uint64_t>& scripts) {
+  if (!dynamic_cast<const ScriptNode*>(&node)) return;
+  if (const FieldInfo* url = node.type().find("url"))
+    ++scripts[scriptProtocol(*static_cast<const MFString*>(node.storage(*url)))];
+}
+
+// Bodies of prototypes, and of those that are declared in them.
+void countDeclared(const Scope& scope, WorldCounts& counts) {
+  const std::function<void(const Node&)> count = [&](const Node& node) { countScript(node, counts.declaredScripts); };
+  const std::function<void(const Scope&)> nothing = [](const Scope&) {};
+  std::vector<const Scope*> open{&scope};
+  while (!open.empty()) {
+    const Scope& next = *open.back();
+    open.pop_back();
+    for (const ProtoPtr& prototype : next.prototypes) {
+      open.push_back(&prototype->body);
+      Walk(count, nothing).through(prototype->body);
+    }
+  }
+}
+
+} // namespace
+
 WorldCounts countWorld(const World& world) {
   WorldCounts counts;
-  const std::function<void(const Node&)> count = [&](const Node& node) { ++counts.types[node.type().name]; };
+  const std::function<void(const Node&)> count = [&](const Node& node) {
+    ++counts.types[node.type().name];
+    countScript(node, counts.scripts);
+  };
   const std::function<void(const Scope&)> enter = [&](const Scope& scope) { counts.routes += scope.routes.size(); };
   Walk(count, enter).through(world.scope);
+  countDeclared(world.scope, counts);
   for (const ProtoPtr& prototype : world.scope.prototypes) counts.prototypes.push_back(prototype->type->name);
   for (const auto& [name, node] : world.scope.names) counts.names.push_back(name);
   return counts;

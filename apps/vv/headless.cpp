@@ -74,7 +74,7 @@ class Headless {
     const std::vector<Definition> definitions = readDefinitions(options_.definitions, *world);
     for (const Definition& d : definitions)
       if (!d.asEvent) d.node->set(*d.field, d.value);
-    browser_ = std::make_unique<xvrml::Browser>(std::move(world), xvrml::BrowserOptions{}, 0);
+    browser_ = std::make_unique<xvrml::Browser>(std::move(world), options_.running, 0);
     for (const Definition& d : definitions)
       if (d.asEvent) browser_->set(*d.node, d.field->name, d.value);
     problems_.tell(browser_->world());

@@ -193,6 +193,12 @@ const OptionInfo table[] = {
        notEmpty(v, "a folder");
        o.render.shaderPath = v;
      }},
+    {"--script-path", "DIR[:DIR...]", "Trust",
+     "Folders where script engines are looked up, before $XVRML_SCRIPT_PATH and the installed ones.",
+     [](Options& o, const std::string& v) {
+       notEmpty(v, "a folder");
+       o.running.scriptPath = v;
+     }},
     {"--node-path", "DIR[:DIR...]", "Trust",
      "Folders where node plug-ins are looked up, before $XVRML_NODE_PATH and the installed ones.",
      [](Options& o, const std::string& v) {

@@ -37,6 +37,7 @@ struct Options {
   std::string write, stats;
   std::string nodePath; // folders, separated by colons
   xvrml::LoadOptions load;
+  xvrml::BrowserOptions running;
   bool quiet = false, verbose = false;
   bool help = false, version = false;
 

@@ -267,6 +267,19 @@ std::string explainWorld(const std::vector<xvrml::ExplainedObject>& objects, boo
                             instances, objects.size(), expanded);
 }
 
+namespace {
+// Whether Scripts of this protocol can run here.
+bool hasEngine(const std::string&) { return false; }
+
+// Scripts in the world, and in the bodies of its prototypes.
+std::map<std::string, std::pair<uint64_t, uint64_t>> scriptsByProtocol(const WorldCounts& counts) {
+  std::map<std::string, std::pair<uint64_t, uint64_t>> all;
+  for (const auto& [protocol, count] : counts.scripts) all[protocol].first = count;
+  for (const auto& [protocol, count] : counts.declaredScripts) all[protocol].second = count;
+  return all;
+}
+} // namespace
+
 std::string listNodes(const xvrml::World* world, bool json) {
   Json list = Json::array(), prototypes = Json::array();
   std::string text;
@@ -305,6 +318,10 @@ std::string describeWorld(const xvrml::World& world, const std::vector<xvrml::Vi
   if (json) {
     Json all = {{"path", world.path}, {"nodes", world.nodeCount}, {"types", Json(counts.types)}, {"routes", counts.routes}};
     all["prototypes"] = counts.prototypes;
+    all["scripts"] = Json::array();
+    for (const auto& [protocol, count] : scriptsByProtocol(counts))
+      all["scripts"].push_back(
+          {{"protocol", protocol}, {"count", count.first}, {"declared", count.second}, {"engine", hasEngine(protocol)}});
     all["names"] = counts.names;
     all["viewpoints"] = viewpointsJson(viewpoints);
     all["bounds"] = nullptr;
@@ -320,6 +337,10 @@ std::string describeWorld(const xvrml::World& world, const std::vector<xvrml::Vi
   else
     text += fmt::format("bounds      {:.6g} {:.6g} {:.6g}  to  {:.6g} {:.6g} {:.6g}\n", bounds.minimum[0], bounds.minimum[1],
                         bounds.minimum[2], bounds.maximum[0], bounds.maximum[1], bounds.maximum[2]);
+  for (const auto& [protocol, count] : scriptsByProtocol(counts))
+    text += fmt::format("scripts     {} {}{}: {}\n", count.first, protocol,
+                        count.second ? fmt::format(", {} in prototypes", count.second) : "",
+                        hasEngine(protocol) ? "engine there" : "no engine for them");
   text += fmt::format("problems    {} errors, {} warnings\n", world.diagnostics.errors(), world.diagnostics.warnings());
   for (const auto& [type, count] : counts.types) text += fmt::format("  {:>8}  {}\n", count, type);
   return text;

@@ -9,6 +9,7 @@
 #include "openrt/openrt.h"
 #include "picture/nearest.h"
 #include "picture/renderer.h"
+#include "xvrml/node_plugin.h"
 
 using namespace xvrml;
 
@@ -50,16 +51,37 @@ bool bytesOf(const py::object& source, std::string& bytes) {
   return true;
 }
 
-template <class Load> WorldPtr loadWith(Load load) {
-  auto made = std::make_shared<WorldObject>();
+template <class Load> std::unique_ptr<World> loadWith(Load load) {
+  std::unique_ptr<World> made;
   try {
     py::gil_scoped_release release;
-    made->world = load();
+    made = load();
   } catch (const LoadError& error) { raise(error.diagnostic); }
   return made;
 }
 
 WorldPtr load(const py::object& source, const py::object& limits, bool allowAbsolute) {
+  auto made = std::make_shared<WorldObject>();
+  made->world = loadSource(source, limits, allowAbsolute);
+  return made;
+}
+
+// A line for each plug-in that is refused.
+py::list loadPlugins(const py::object& path) {
+  std::vector<std::string> refused;
+  const std::string folders = path.is_none() ? "" : toPath(path);
+  {
+    py::gil_scoped_release release;
+    refused = loadNodePlugins(folders);
+  }
+  py::list lines;
+  for (const std::string& line : refused) lines.append(toText(line));
+  return lines;
+}
+
+} // namespace
+
+std::unique_ptr<World> loadSource(const py::object& source, const py::object& limits, bool allowAbsolute) {
   LoadOptions options;
   options.allowAbsolute = allowAbsolute;
   if (!limits.is_none()) setLimits(options.limits, limits.cast<py::dict>());
@@ -85,8 +107,6 @@ WorldPtr load(const py::object& source, const py::object& limits, bool allowAbso
   return loadWith([&] { return loadWorld(path, options); });
 }
 
-} // namespace
-
 PYBIND11_MODULE(_xvrml, module) {
   parseError = PyErr_NewExceptionWithDoc("xvrml.ParseError", "Nothing of a world can be used; file, line and column say where.",
                                          PyExc_ValueError, nullptr);
@@ -96,7 +116,12 @@ PYBIND11_MODULE(_xvrml, module) {
   defineNode(module);
   definePicture(module);
   defineWorld(module);
+  defineBrowser(module);
   module.attr("__version__") = fmt::format("{}.{}.{}", OPENRT_VERSION_MAJOR, OPENRT_VERSION_MINOR, OPENRT_VERSION_PATCH);
+  module.def(
+      "load_node_plugins", loadPlugins, py::arg("path") = py::none(),
+      "Loads the node plug-ins of these folders (separated by colons), of $XVRML_NODE_PATH and of the installation. Returns a "
+      "line for each that is refused.");
   module.def(
       "load", load, py::arg("source"), py::kw_only(), py::arg("limits") = py::none(), py::arg("allow_absolute") = false,
       "Loads a world from a file name, bytes or a file object. Raises ParseError or OSError; problems of single nodes are in "

@@ -15,10 +15,11 @@ const FieldInfo* findValue(const Node& node, const std::string& name) {
   return field && holdsValue(*field) ? field : nullptr;
 }
 
-[[noreturn]] void noField(const Node& node, const std::string& name) {
+// events: they count as fields, in a running world.
+[[noreturn]] void noField(const Node& node, const std::string& name, bool events) {
   std::vector<std::string> names;
   for (const FieldInfo& field : node.type().fields)
-    if (holdsValue(field)) names.push_back(field.name);
+    if (holdsValue(field) || events) names.push_back(field.name);
   const std::string near = picture::nearest(name, names);
   throw py::attribute_error(
       fmt::format("{} has no field {}{}", node.type().name, name, near.empty() ? "" : fmt::format("; did you mean {}?", near)));
@@ -26,18 +27,28 @@ const FieldInfo* findValue(const Node& node, const std::string& name) {
 
 py::object value(const NodeObject& self, const FieldInfo& field) { return toPython(self.node->get(field), self.world); }
 
+// In a running world an eventOut's value is the last one that it sent.
 py::object getAttribute(const NodeObject& self, const std::string& name) {
-  const FieldInfo* field = findValue(*self.node, name);
-  if (!field) noField(*self.node, name);
-  return value(self, *field);
+  if (const FieldInfo* field = findValue(*self.node, name)) return value(self, *field);
+  Browser* browser = self.world->browser();
+  const FieldInfo* out = browser ? self.node->type().findEventOut(name) : nullptr;
+  if (!out) noField(*self.node, name, browser);
+  auto lock = self.world->lock();
+  return toPython(browser->get(*self.node, name), self.world);
 }
 
+// In a running world exposedFields and eventIns get an event.
 void setAttribute(const NodeObject& self, const std::string& name, const py::handle& object) {
+  Browser* browser = self.world->browser();
   const FieldInfo* field = findValue(*self.node, name);
-  if (!field) noField(*self.node, name);
+  if (!field && browser) field = self.node->type().findEventIn(name);
+  if (!field) noField(*self.node, name, browser);
   Value fresh = fromPython(object, *field, self);
   auto lock = self.world->lock();
-  self.node->set(*field, std::move(fresh));
+  if (browser)
+    self.world->run([&] { browser->set(*self.node, field->name, std::move(fresh)); });
+  else
+    self.node->set(*field, std::move(fresh));
 }
 
 // A property of Node whose name is also a field's (NavigationInfo has a field `type`): the field.

@@ -9,16 +9,28 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
+#include "picture/renderer.h"
+#include "xvrml/browser.h"
 #include "xvrml/world.h"
 
 namespace py = pybind11;
 
 struct WorldObject {
-  std::unique_ptr<xvrml::World> world;
-  // Held while a render reads the graph on another thread, and for every change of it. Wait for it without the GIL.
-  std::mutex mutex;
+  std::unique_ptr<xvrml::World> world; // null where a Browser has taken it over
+  // Held while a render reads the graph on another thread, and for every change of it. Wait for it without the GIL. A thread
+  // may hold it twice: a callback of a tick uses nodes.
+  std::recursive_mutex mutex;
 
-  std::unique_lock<std::mutex> lock() {
+  virtual ~WorldObject() = default;
+  virtual xvrml::World& graph() { return *world; }
+  virtual xvrml::Browser* browser() { return nullptr; } // what runs the world; null: it stands still
+  // Changes of a running world: `work` without the GIL; afterwards the first exception of a callback is raised.
+  virtual void run(const std::function<void()>& work) { work(); }
+  virtual std::shared_ptr<picture::Renderer> renderer(const picture::RenderSettings& settings, picture::Watch watch) {
+    return std::make_shared<picture::Renderer>(*world, settings, std::move(watch));
+  }
+
+  std::unique_lock<std::recursive_mutex> lock() {
     py::gil_scoped_release release;
     return std::unique_lock(mutex);
   }
@@ -41,9 +53,13 @@ py::object toPython(const xvrml::Value& value, const WorldPtr& world);
 // The Python object as a value of the field. Raises TypeError or ValueError naming the field and what it takes.
 xvrml::Value fromPython(const py::handle& object, const xvrml::FieldInfo& field, const NodeObject& owner);
 
+// A world from a file name, bytes or a file object. Raises ParseError or OSError.
+std::unique_ptr<xvrml::World> loadSource(const py::object& source, const py::object& limits, bool allowAbsolute);
+
 // A file name: str or os.PathLike.
 std::string toPath(const py::handle& path);
 
 void defineNode(py::module_& module);
 void defineWorld(py::module_& module);
+void defineBrowser(py::module_& module);
 void definePicture(py::module_& module);

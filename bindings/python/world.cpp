@@ -43,7 +43,7 @@ template <class Work> void interruptible(Work work) {
 }
 
 py::object getNode(const WorldPtr& self, const std::string& name) {
-  const auto& names = self->world->scope.names;
+  const auto& names = self->graph().scope.names;
   auto found = names.find(name);
   if (found != names.end()) return py::cast(NodeObject{self, found->second});
   std::vector<std::string> known;
@@ -54,19 +54,19 @@ py::object getNode(const WorldPtr& self, const std::string& name) {
 
 py::tuple names(const WorldPtr& self) {
   py::list out;
-  for (const auto& [name, node] : self->world->scope.names) out.append(toText(name));
+  for (const auto& [name, node] : self->graph().scope.names) out.append(toText(name));
   return py::tuple(out);
 }
 
 py::tuple roots(const WorldPtr& self) {
   py::list out;
-  for (const NodeRef& root : self->world->scope.roots) out.append(NodeObject{self, root});
+  for (const NodeRef& root : self->graph().scope.roots) out.append(NodeObject{self, root});
   return py::tuple(out);
 }
 
 std::vector<Diagnostic> warnings(const WorldPtr& self) {
   auto lock = self->lock();
-  return self->world->diagnostics.list();
+  return self->graph().diagnostics.list();
 }
 
 picture::RenderSettings withoutPicture() {
@@ -79,13 +79,13 @@ std::vector<ViewpointInfo> viewpoints(const WorldPtr& self) {
   std::vector<ViewpointInfo> list;
   auto lock = self->lock();
   interruptible(
-      [&](picture::Watch watch) { list = picture::Renderer(*self->world, withoutPicture(), std::move(watch)).viewpoints(); });
+      [&](picture::Watch watch) { list = picture::Renderer(self->graph(), withoutPicture(), std::move(watch)).viewpoints(); });
   return list;
 }
 
 py::str toVrml(const WorldPtr& self) {
   auto lock = self->lock();
-  return toText(writeWorld(*self->world));
+  return toText(writeWorld(self->graph()));
 }
 
 void writeTo(const WorldPtr& self, const py::object& file) {
@@ -94,7 +94,7 @@ void writeTo(const WorldPtr& self, const py::object& file) {
   {
     auto lock = self->lock();
     try {
-      picture::writeFile(path, writeWorld(*self->world));
+      picture::writeFile(path, writeWorld(self->graph()));
     } catch (const std::runtime_error& error) { failure = error.what(); }
   }
   if (failure.empty()) return;
@@ -226,17 +226,25 @@ std::unique_ptr<PictureObject> render(const WorldPtr& self, const py::object& si
 
   picture::RenderResult result;
   auto lock = self->lock();
-  std::unique_ptr<picture::Renderer> renderer;
-  interruptible(
-      [&](picture::Watch watch) { renderer = std::make_unique<picture::Renderer>(*self->world, settings, std::move(watch)); });
+  std::shared_ptr<picture::Renderer> renderer;
+  interruptible([&](picture::Watch watch) {
+    renderer = self->renderer(settings, std::move(watch));
+    renderer->setWatch({}); // what it refers to ends here
+  });
   if (!viewpoint.is_none()) view.viewpoint = viewpointIndex(renderer->viewpoints(), viewpoint);
   interruptible([&](picture::Watch watch) {
     renderer->setWatch(std::move(watch));
-    result = renderer->render(view);
+    try {
+      result = renderer->render(view);
+    } catch (...) {
+      renderer->setWatch({});
+      throw;
+    }
+    renderer->setWatch({});
     renderer.reset();
   });
   auto made = std::make_unique<PictureObject>();
-  made->stats = statsOf(*self->world, result);
+  made->stats = statsOf(self->graph(), result);
   made->picture = std::move(result.picture);
   return made;
 }
@@ -266,7 +274,7 @@ void defineWorld(py::module_& module) {
       .def("__repr__",
            [](const ViewpointInfo& v) { return toText("<Viewpoint " + (v.name.empty() ? v.description : v.name) + ">"); });
   py::class_<WorldObject, WorldPtr>(module, "World", "A loaded world. world['NAME'] is the node that DEF NAME names.")
-      .def_property_readonly("path", [](const WorldPtr& self) { return toText(self->world->path); })
+      .def_property_readonly("path", [](const WorldPtr& self) { return toText(self->graph().path); })
       .def_property_readonly("warnings", warnings, "Every problem found so far, in order: errors too.")
       .def_property_readonly("names", names, "DEF names of the file.")
       .def_property_readonly("roots", roots, "Nodes of the file's top level.")
@@ -274,16 +282,18 @@ void defineWorld(py::module_& module) {
       .def("__getitem__", [](const WorldPtr& self, const py::str& name) { return getNode(self, fromText(name)); })
       .def("__contains__",
            [](const WorldPtr& self, const py::object& name) {
-             return py::isinstance<py::str>(name) && self->world->scope.names.count(fromText(name)) > 0;
+             return py::isinstance<py::str>(name) && self->graph().scope.names.count(fromText(name)) > 0;
            })
       .def("__iter__", [](const WorldPtr& self) { return py::iter(names(self)); })
-      .def("__len__", [](const WorldPtr& self) { return self->world->scope.names.size(); })
+      .def("__len__", [](const WorldPtr& self) { return self->graph().scope.names.size(); })
       .def("to_vrml", toVrml, "The world as VRML97 text.")
       .def("write", writeTo, py::arg("path"), "Writes the world as a VRML97 file.")
-      .def("__repr__", [](const WorldPtr& self) { return toText("<World " + self->world->path + ">"); })
+      .def("__repr__", [](const WorldPtr& self) { return toText("<World " + self->graph().path + ">"); })
       .def("render", render, py::arg("size") = py::make_tuple(800, 600), py::arg("spp") = 16, py::arg("viewpoint") = py::none(),
            py::arg("camera") = py::none(), py::arg("fit") = false, py::arg("fov") = py::none(), py::arg("seed") = 0,
            py::arg("threads") = 0, py::arg("shadows") = true, py::arg("colour") = "linear", py::arg("headlight") = "auto",
            py::arg("depth") = 25, py::arg("channels") = py::make_tuple("rgba"),
-           "Renders the world as it is now: the scene is made anew for each picture. Options as those of the program vv.");
+           "Renders the world as it is now: the scene is made anew for each picture, a Browser's is kept from one to the next. "
+           "Options as "
+           "those of the program vv.");
 }

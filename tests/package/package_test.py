@@ -5,6 +5,7 @@ package_test.py SOURCE BUILD CMAKE CC
 """
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -26,6 +27,32 @@ def foreign_libraries(program, prefix):
     """Our own libraries that `program` would load from anywhere but the prefix."""
     ours = ("libopenrt", "libxvrml")
     return [line for line in run("ldd", program).splitlines() if any(o in line for o in ours) and str(prefix) not in line]
+
+
+def follow_tutorial(document, folder, prefix):
+    """Does what docs/node-plugins.md says, in its order: files are written, commands and Python run, on the installed tree."""
+    folder.mkdir()
+    libraries = next(prefix.rglob("libxvrml.so")).parent
+    env = {"PREFIX": str(prefix), "PATH": f"{prefix}/bin:" + os.environ["PATH"], "PWD": str(folder)}
+    packages = [p for p in libraries.rglob("python") if (p / "xvrml").is_dir()]
+    python = "/usr/bin/python3" if os.path.exists("/usr/bin/python3") else sys.executable
+    steps = 0
+    for kind, name, text in re.findall(r"^```(\w+)(?: file=(\S+))?\n(.*?)^```", document.read_text(), re.M | re.S):
+        if name:
+            (folder / name).write_text(text)
+        elif kind == "sh":
+            run("bash", "-euc", text, cwd=folder, env=env)
+        elif kind == "python" and packages:
+            run(python, "-c", text, cwd=folder, env={**env, "PYTHONPATH": str(packages[0])})
+        else:
+            continue
+        steps += 1
+    if wrong := foreign_libraries(folder / "build/lib/xvrml/nodes/rings.so", prefix):
+        sys.exit(f"the node plug-in does not use the installed libraries: {wrong}")
+    pictures = [(folder / f"ring-{i:04}.png").read_bytes() for i in (0, 15, 30)]
+    if len(set(pictures)) != 3:
+        sys.exit("the ring of the tutorial does not grow")
+    print(f"tutorial: {steps} steps, as they must be")
 
 
 with tempfile.TemporaryDirectory() as scratch:
@@ -57,6 +84,16 @@ with tempfile.TemporaryDirectory() as scratch:
     flags = run("pkg-config", "--cflags", "--libs", "xvrml", env={"PKG_CONFIG_PATH": str(libs)}).split()
     run(cc, "-x", "c++", "-std=c++20", project / "world.cpp", "-o", scratch / "world_by_pkg_config", *flags, "-lstdc++", "-lm", rpath)
     print(run(scratch / "world_by_pkg_config"), end="")
+
+    # Node plug-ins
+    follow_tutorial(source / "docs/node-plugins.md", scratch / "tutorial", prefix)
+    example = scratch / "example"
+    shutil.copytree(source / "examples/nodes", example)
+    (example / "CMakeLists.txt").write_text("cmake_minimum_required(VERSION 3.25)\nproject(example LANGUAGES C CXX)\n"
+                                            "find_package(xvrml 0.1 REQUIRED)\nxvrml_add_nodes(springs springs.node springs.cpp)\n")
+    run(cmake, "-S", example, "-B", example / "build", "-G", "Ninja", f"-DCMAKE_PREFIX_PATH={prefix}")
+    run(cmake, "--build", example / "build")
+    run(prefix / "bin/vv", source / "examples/scenes/springs.wrl", "--check", "--node-path", example / "build/lib/xvrml/nodes")
 
     # Programs
     (scratch / "box.wrl").write_text("#VRML V2.0 utf8\nShape { appearance Appearance { material Material { } } geometry Box { } }\n")

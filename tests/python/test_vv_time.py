@@ -1,4 +1,4 @@
-"""Worlds that move, on vv's command line: --time, --frames, --turntable, videos, -D, --explain, --watch."""
+"""Worlds that move, on vv's command line: --time, --frames, --turntable, videos, -D, --explain, --watch; node plug-ins."""
 import json
 import os
 import signal
@@ -6,7 +6,7 @@ import stat
 import time
 
 import pytest
-from conftest import HEADER, SMALL, read_ppm
+from conftest import HEADER, SMALL, find_vv, read_ppm
 
 # A cube on its way from x=-2 to 2 and back in two seconds; a clock with default values, which must stand still (clause 4.6.9).
 MOVING = HEADER + """
@@ -286,3 +286,28 @@ def test_watch_renders_again(vv):
         talk = running.communicate(timeout=60)[1].decode()
     assert running.returncode == 130, talk
     assert vv.leftovers() == []
+
+
+# --node-path -----------------------------------------------------------------------------------------------------------
+
+PLUGINS = find_vv().parent.parent / "examples/nodes"
+SPRING = HEADER + "Viewpoint { position 0 1 6 } Shape { appearance Appearance { material Material { } } geometry Spring { } }"
+
+
+@pytest.mark.skipif(not (PLUGINS / "springs.so").exists(), reason="the example plug-in is not built")
+def test_nodes_of_a_plugin(vv):
+    vv.write("spring.wrl", SPRING)
+    assert vv("spring.wrl", "--check").returncode == 4  # an unknown node
+    assert vv("spring.wrl", "--check", "--node-path", PLUGINS).returncode == 0
+    assert vv("spring.wrl", "--check", env={"XVRML_NODE_PATH": f"/nonexistent:{PLUGINS}"}).returncode == 0
+    assert any(pixel != (0, 0, 0) for row in vv.picture("--node-path", PLUGINS, world="spring.wrl") for pixel in row)
+    assert "Spring {" in vv("--list-nodes", "--node-path", PLUGINS).text
+    written = vv("spring.wrl", "--write", "-", "--node-path", PLUGINS).text
+    assert "Spring {" in written
+
+
+def test_a_file_that_is_no_plugin_is_refused(vv):
+    (vv.folder / "plugins").mkdir()
+    vv.write("plugins/not.so", "text")
+    done = vv("box.wrl", "--check", "--node-path", "plugins")
+    assert done.returncode == 0 and "plugins/not.so" in done.talk

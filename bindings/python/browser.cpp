@@ -1,0 +1,345 @@
+// browser.cpp: the Python class Browser: a World that runs. Time, events, the pointer and the viewer are arguments; callbacks of
+// listeners run on the calling thread. Called with the GIL held; what runs the world releases it.
+#include <array>
+
+#include <fmt/format.h>
+#include <pybind11/functional.h>
+#include <pybind11/stl.h>
+
+#include "objects.h"
+#include "picture/nearest.h"
+
+using namespace xvrml;
+
+namespace {
+
+struct BrowserObject : WorldObject, std::enable_shared_from_this<BrowserObject> {
+  std::unique_ptr<Browser> running;
+  std::shared_ptr<picture::Renderer> drawing; // of the last picture; ends before the browser
+  picture::RenderSettings drawn;
+  int depth = 0;              // calls of run() under way: more than 0 in a callback
+  std::exception_ptr failure; // of a callback
+
+  // Whoever drops a callback may not have the GIL.
+  using Callable = std::shared_ptr<py::function>;
+  static Callable keep(py::function function) {
+    return {new py::function(std::move(function)), [](py::function* held) {
+              py::gil_scoped_acquire acquire;
+              delete held;
+            }};
+  }
+
+  World& graph() override { return running->world(); }
+  Browser* browser() override { return running.get(); }
+
+  void run(const std::function<void()>& work) override {
+    ++depth;
+    {
+      py::gil_scoped_release release;
+      try {
+        work();
+      } catch (...) {
+        if (!failure) failure = std::current_exception();
+      }
+    }
+    if (--depth == 0 && failure) std::rethrow_exception(std::exchange(failure, nullptr));
+  }
+
+  std::shared_ptr<picture::Renderer> renderer(const picture::RenderSettings& settings, picture::Watch watch) override {
+    if (depth > 0) throw picture::RenderError("a callback cannot render: the events are still under way");
+    if (drawing && drawn == settings) {
+      drawing->setWatch(std::move(watch));
+      return drawing;
+    }
+    drawing.reset(); // one renderer a browser: it takes the changes
+    drawing = std::make_shared<picture::Renderer>(*running, settings, std::move(watch));
+    drawn = settings;
+    return drawing;
+  }
+};
+using BrowserPtr = std::shared_ptr<BrowserObject>;
+
+BrowserPtr makeBrowser(const py::object& source, double start, const py::object& limits, bool allowAbsolute) {
+  auto made = std::make_shared<BrowserObject>();
+  std::unique_ptr<World> world = loadSource(source, limits, allowAbsolute);
+  made->run([&] { made->running = std::make_unique<Browser>(std::move(world), BrowserOptions{}, start); });
+  return made;
+}
+
+void tick(const BrowserPtr& self, double time) {
+  if (!(time >= self->running->now())) // also NaN
+    throw py::value_error(fmt::format("tick: a time from {} on expected, not {}", self->running->now(), time));
+  auto lock = self->lock();
+  self->run([&] { self->running->tick(time); });
+}
+
+py::object asNode(const BrowserPtr& self, const NodeRef& node) {
+  return node ? py::cast(NodeObject{self, node}) : py::object(py::none());
+}
+py::object asNode(const BrowserPtr& self, Node* node) { return asNode(self, NodeRef(node)); }
+
+py::object node(const BrowserPtr& self, const std::string& name) { return asNode(self, self->running->node(name)); }
+
+Node& own(const BrowserPtr& self, const NodeObject& node) {
+  if (node.world != WorldPtr(self)) throw py::value_error("a node of this browser expected");
+  return *node.node;
+}
+
+std::string nearestEvent(const Node& node, const std::string& name, bool out) {
+  std::vector<std::string> known;
+  for (const FieldInfo& field : node.type().fields)
+    if (field.access == Access::exposedField || field.access == (out ? Access::eventOut : Access::eventIn))
+      known.push_back(field.name);
+  const std::string near = picture::nearest(name, known);
+  return near.empty() ? "" : fmt::format("; did you mean {}?", near);
+}
+
+// Callbacks get the value and the time. The first exception of one is raised by the call that made the event.
+uint64_t listen(const BrowserPtr& self, const NodeObject& object, const std::string& event, py::function function) {
+  Node& from = own(self, object);
+  if (!from.type().findEventOut(event))
+    throw py::attribute_error(fmt::format("{} has no eventOut {}{}", from.type().name, event, nearestEvent(from, event, true)));
+  BrowserObject* browser = self.get(); // the callback ends with the browser
+  auto lock = self->lock();
+  return self->running->listen(
+      from, event, [browser, callable = BrowserObject::keep(std::move(function))](Node&, const FieldInfo&, const Value& value) {
+        py::gil_scoped_acquire acquire;
+        if (browser->failure) return;
+        try {
+          (*callable)(toPython(value, browser->shared_from_this()), browser->running->now());
+        } catch (...) { browser->failure = std::current_exception(); }
+      });
+}
+
+void unlisten(const BrowserPtr& self, const NodeObject& object, uint64_t number) {
+  auto lock = self->lock();
+  self->running->unlisten(own(self, object), number);
+}
+
+bool route(const BrowserPtr& self, const NodeObject& from, const std::string& out, const NodeObject& to, const std::string& in,
+           bool add) {
+  Node &source = own(self, from), &target = own(self, to);
+  const FieldInfo *sends = source.type().findEventOut(out), *takes = target.type().findEventIn(in);
+  if (!sends)
+    throw py::attribute_error(fmt::format("{} has no eventOut {}{}", source.type().name, out, nearestEvent(source, out, true)));
+  if (!takes)
+    throw py::attribute_error(fmt::format("{} has no eventIn {}{}", target.type().name, in, nearestEvent(target, in, false)));
+  if (sends->type != takes->type)
+    throw py::type_error(fmt::format("{} is {}, {} is {}", out, fieldTypeName(sends->type), in, fieldTypeName(takes->type)));
+  auto lock = self->lock();
+  bool done = false;
+  self->run([&] {
+    done = add ? self->running->addRoute(source, out, target, in) : self->running->deleteRoute(source, out, target, in);
+  });
+  return done;
+}
+
+py::object createNode(const BrowserPtr& self, const std::string& type, const py::kwargs& fields) {
+  NodeRef made;
+  auto lock = self->lock();
+  try {
+    made = self->running->createNode(type);
+  } catch (const std::invalid_argument& error) {
+    std::vector<std::string> known;
+    for (const NodeType* one : nodeTypes()) known.push_back(one->name);
+    const std::string near = picture::nearest(type, known);
+    throw py::value_error(error.what() + (near.empty() ? "" : fmt::format("; did you mean {}?", near)));
+  }
+  py::object object = asNode(self, made);
+  for (const auto& [name, value] : fields) py::setattr(object, name, value);
+  return object;
+}
+
+py::dict bound(const BrowserPtr& self) {
+  const BoundNodes nodes = self->running->bound();
+  py::dict out;
+  out["viewpoint"] = asNode(self, nodes.viewpoint);
+  out["background"] = asNode(self, nodes.background);
+  out["fog"] = asNode(self, nodes.fog);
+  out["navigation_info"] = asNode(self, nodes.navigationInfo);
+  return out;
+}
+
+py::array camera(const BrowserPtr& self, double aspect) {
+  if (!(aspect > 0)) throw py::value_error("camera: aspect: a number above 0 expected");
+  const CameraSettings settings = self->running->camera(aspect);
+  py::array_t<double> matrix({4, 4}); // rows as on paper: column vectors
+  for (size_t i = 0; i < 16; ++i) matrix.mutable_at(py::ssize_t(i % 4), py::ssize_t(i / 4)) = settings.matrix[i];
+  return matrix;
+}
+
+using Triple = std::array<double, 3>;
+
+py::object pick(const BrowserPtr& self, const Triple& origin, const Triple& direction, bool bothSides) {
+  PickOptions options;
+  options.bothSides = bothSides;
+  PickHit hit;
+  auto lock = self->lock();
+  if (!self->running->pick(origin.data(), direction.data(), options, hit)) return py::none();
+  py::dict out;
+  out["distance"] = hit.distance;
+  out["point"] = py::make_tuple(hit.point[0], hit.point[1], hit.point[2]);
+  out["normal"] = py::make_tuple(hit.normal[0], hit.normal[1], hit.normal[2]);
+  out["tex_coord"] = py::make_tuple(hit.texCoord.x, hit.texCoord.y);
+  py::list path;
+  for (const PickHit::Step& step : hit.path) path.append(asNode(self, step.node));
+  out["path"] = py::tuple(path);
+  return out;
+}
+
+template <class Kind>
+Kind named(const char* what, const std::string& name, std::initializer_list<std::pair<const char*, Kind>> all) {
+  std::string known;
+  for (const auto& [one, kind] : all) {
+    if (name == one) return kind;
+    known += (known.empty() ? "" : ", ") + std::string(one);
+  }
+  throw py::value_error(fmt::format("{}: one of {} expected, not {}", what, known, name));
+}
+
+Navigation navigationOf(const std::string& name) {
+  return named<Navigation>(
+      "navigation", name,
+      {{"none", Navigation::none}, {"walk", Navigation::walk}, {"fly", Navigation::fly}, {"examine", Navigation::examine}});
+}
+
+const char* navigationName(Navigation kind) {
+  constexpr const char* names[] = {"none", "walk", "fly", "examine"};
+  return names[size_t(kind)];
+}
+
+Key keyOf(const std::string& name) {
+  return named<Key>("key", name,
+                    {{"left", Key::left},
+                     {"right", Key::right},
+                     {"up", Key::up},
+                     {"down", Key::down},
+                     {"page_up", Key::pageUp},
+                     {"page_down", Key::pageDown},
+                     {"home", Key::home},
+                     {"shift", Key::shift},
+                     {"alt", Key::alt}});
+}
+
+void navigate(const BrowserPtr& self, double dt, double ahead, double right, double up, double turn, double tilt, double roll) {
+  if (!(dt >= 0)) throw py::value_error("navigate: dt: seconds from 0 on expected");
+  auto lock = self->lock();
+  self->run([&] { self->running->navigate({ahead, right, up, turn, tilt, roll}, dt); });
+}
+
+} // namespace
+
+void defineBrowser(py::module_& module) {
+  py::class_<BrowserObject, WorldObject, BrowserPtr>(
+      module, "Browser",
+      "A world that runs: tick(time) moves its clock, assigning a node's field sends an event. It has no clock of its own.")
+      .def(py::init(&makeBrowser), py::arg("source"), py::kw_only(), py::arg("start") = 0.0, py::arg("limits") = py::none(),
+           py::arg("allow_absolute") = false, "source: as of load(). The world comes alive at time `start` (seconds).")
+      .def_property_readonly(
+          "now", [](const BrowserPtr& self) { return self->running->now(); }, "The world's time in seconds.")
+      .def_property_readonly(
+          "generation", [](const BrowserPtr& self) { return self->running->generation(); },
+          "Grows with every world that takes the place of the former.")
+      .def("tick", tick, py::arg("time"), "Time has come to `time`: sensors send, routes carry, until nothing is left to do.")
+      .def("node", node, py::arg("name"), "The node that a DEF name of the file means; None if there is none.")
+      .def("listen", listen, py::arg("node"), py::arg("event"), py::arg("callback"),
+           "Calls callback(value, time) whenever an eventOut or exposedField has sent. Returns a number for unlisten.")
+      .def("unlisten", unlisten, py::arg("node"), py::arg("number"))
+      .def(
+          "add_route",
+          [](const BrowserPtr& self, const NodeObject& from, const std::string& out, const NodeObject& to,
+             const std::string& in) { return route(self, from, out, to, in, true); },
+          py::arg("from_node"), py::arg("out"), py::arg("to_node"), py::arg("in_"), "Adds a route; one that exists stays one.")
+      .def(
+          "delete_route",
+          [](const BrowserPtr& self, const NodeObject& from, const std::string& out, const NodeObject& to,
+             const std::string& in) { return route(self, from, out, to, in, false); },
+          py::arg("from_node"), py::arg("out"), py::arg("to_node"), py::arg("in_"), "False if there was no such route.")
+      .def("create_node", createNode, py::arg("type"), "A new node; keywords are its fields.")
+      .def(
+          "add_root",
+          [](const BrowserPtr& self, const NodeObject& added) {
+            auto lock = self->lock();
+            self->run([&] { self->running->addRoot(NodeRef(&own(self, added))); });
+          },
+          py::arg("node"))
+      .def(
+          "remove_root",
+          [](const BrowserPtr& self, const NodeObject& removed) {
+            auto lock = self->lock();
+            self->run([&] { self->running->removeRoot(own(self, removed)); });
+          },
+          py::arg("node"))
+      .def_property_readonly("bound", bound, "The bound viewpoint, background, fog and navigation_info; None: there is none.")
+      .def(
+          "bind_viewpoint",
+          [](const BrowserPtr& self, const std::string& name) {
+            auto lock = self->lock();
+            bool done = false;
+            self->run([&] { done = self->running->bindViewpoint(name); });
+            return done;
+          },
+          py::arg("name"), "By DEF name or description; False if there is none.")
+      .def("camera", camera, py::arg("aspect") = 4.0 / 3, "Where the viewer is: camera to world, 4x4 for column vectors.")
+      .def(
+          "set_transition", [](const BrowserPtr& self, double seconds) { self->running->setTransition(seconds); },
+          py::arg("seconds"), "World seconds that a jump to another viewpoint takes; 0: none.")
+      .def(
+          "pointer",
+          [](const BrowserPtr& self, double x, double y, bool button, double aspect) {
+            auto lock = self->lock();
+            self->run([&] {
+              self->running->setAspect(aspect);
+              self->running->pointer(x, y, button);
+            });
+          },
+          py::arg("x"), py::arg("y"), py::arg("button") = false, py::arg("aspect") = 4.0 / 3,
+          "The pointer is at (x, y) of the picture, from -1 at the left and bottom to 1 at the right and top.")
+      .def(
+          "pointer_ray",
+          [](const BrowserPtr& self, const Triple& origin, const Triple& direction, bool button) {
+            auto lock = self->lock();
+            self->run([&] { self->running->pointerRay(origin.data(), direction.data(), button); });
+          },
+          py::arg("origin"), py::arg("direction"), py::arg("button") = false, "The pointer as a ray in the world.")
+      .def(
+          "pointer_leave",
+          [](const BrowserPtr& self) {
+            auto lock = self->lock();
+            self->run([&] { self->running->pointerLeave(); });
+          },
+          "The pointer is outside of the picture.")
+      .def_property_readonly("sensors_at_pointer",
+                             [](const BrowserPtr& self) {
+                               py::list list;
+                               for (const NodeRef& sensor : self->running->sensorsAtPointer()) list.append(asNode(self, sensor));
+                               return py::tuple(list);
+                             })
+      .def("pick", pick, py::arg("origin"), py::arg("direction"), py::arg("both_sides") = false,
+           "The nearest thing along a ray, as a dict with distance, point, normal, tex_coord and path; None if there is none.")
+      .def("navigate", navigate, py::arg("dt"), py::kw_only(), py::arg("ahead") = 0.0, py::arg("right") = 0.0,
+           py::arg("up") = 0.0, py::arg("turn") = 0.0, py::arg("tilt") = 0.0, py::arg("roll") = 0.0,
+           "Moves the viewer for dt seconds; numbers from -1 to 1.")
+      .def(
+          "key",
+          [](const BrowserPtr& self, const std::string& name, bool pressed) {
+            const Key which = keyOf(name);
+            auto lock = self->lock();
+            self->run([&] { self->running->key(which, pressed); });
+          },
+          py::arg("name"), py::arg("pressed"))
+      .def_property(
+          "navigation", [](const BrowserPtr& self) { return navigationName(self->running->navigation()); },
+          [](const BrowserPtr& self, const std::string& name) { self->running->setNavigation(navigationOf(name)); },
+          "The way of moving: none, walk, fly or examine.")
+      .def("load_inlines",
+           [](const BrowserPtr& self) {
+             auto lock = self->lock();
+             uint64_t loaded = 0;
+             self->run([&] { loaded = self->running->loadInlines(); });
+             return loaded;
+           })
+      .def("__repr__", [](const BrowserPtr& self) {
+        return toText(fmt::format("<Browser {} at {} s>", self->graph().path, self->running->now()));
+      });
+}

@@ -1,0 +1,111 @@
+#!/usr/bin/env python3
+"""Runs the animated files of a folder of real VRML files for ten seconds of their own time, and says which script engines they
+and the others need.
+
+animated.py --vv build/release/bin/vv [--corpus FOLDER] [--out build/corpus]
+
+Each file whose features hold `animated` runs at 10 Hz, mapped once a second (vv --check: no pictures). A crash, a time-out, an
+error of the program or a runaway cascade fails; problems of the file itself do not. Each file with Scripts
+must have them counted by protocol in vv --info, unless the Script itself is wrong and lost (0 in the table). Writes OUT/scripts.tsv. Exit code 77: there is no such folder.
+"""
+import argparse
+import concurrent.futures
+import json
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+TIMEOUT = 40  # seconds a run
+DONE, PROBLEMS = 0, 4  # exit codes of vv --check
+
+
+def run(*command):
+    """Exit code (None: timed out), output, messages."""
+    try:
+        done = subprocess.run([str(c) for c in command], stdin=subprocess.DEVNULL, capture_output=True, timeout=TIMEOUT)
+    except subprocess.TimeoutExpired:
+        return None, "", ""
+    return done.returncode, done.stdout.decode("utf-8", "replace"), done.stderr.decode("utf-8", "replace")
+
+
+def complaint(code, talk):
+    if code is None:
+        return f"not done in {TIMEOUT} s"
+    if code < 0:
+        return f"ended by signal {-code}"
+    if code not in (DONE, PROBLEMS):
+        return f"exit code {code}"
+    wrong = re.search(r"^vv: error: .*|.*more than \d+ events.*", talk, re.M)
+    return wrong.group(0) if wrong else ""
+
+
+def play(args, row):
+    start = time.monotonic()
+    code, _, talk = run(args.vv, args.corpus / row["file"], "--check", "--frames", "0-100/10", "--fps", "10", "-q")
+    return row["file"], complaint(code, talk), time.monotonic() - start
+
+
+def scripts_of(args, row):
+    """Scripts by protocol, as vv counts them."""
+    code, out, talk = run(args.vv, args.corpus / row["file"], "--info", "--json", "-q")
+    if code != DONE:
+        return row, None, complaint(code, talk)
+    told = json.loads(out)
+    if not told["scripts"] and told["errors"]:  # an error of the file has cost the Script itself
+        lost = sorted(f.removeprefix("script:") for f in row["features"] if f.startswith("script:"))
+        return row, [{"protocol": p, "count": 0, "declared": 0, "engine": False} for p in lost], ""
+    return row, told["scripts"], ""
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("--vv", type=pathlib.Path, required=True)
+    parser.add_argument("--corpus", type=pathlib.Path, default=os.environ.get("OPENRT_CORPUS") or ROOT.parent / "shared/corpus")
+    parser.add_argument("--out", type=pathlib.Path, default=ROOT / "build/corpus")
+    parser.add_argument("--jobs", type=int, default=2)
+    args = parser.parse_args()
+    args.corpus = pathlib.Path(args.corpus).resolve()
+    if not (args.corpus / "FEATURES.tsv").exists():
+        print(f"no corpus at {args.corpus}: skipped")
+        return 77
+    lines = (args.corpus / "FEATURES.tsv").read_text(encoding="utf-8").rstrip("\n").split("\n")
+    rows = [dict(zip(lines[0].split("\t"), line.split("\t"))) for line in lines[1:]]
+    for row in rows:
+        row["file"] = f"{row['folder']}/{row['path']}"
+        row["features"] = row["features"].split(",")
+    animated = [row for row in rows if "animated" in row["features"]]
+    scripted = [row for row in rows if any(f.startswith("script:") for f in row["features"]) and row["class"] not in ("v1", "bad")]
+    start = time.monotonic()
+    with concurrent.futures.ThreadPoolExecutor(args.jobs) as pool:
+        played = list(pool.map(lambda row: play(args, row), animated))
+        counted = list(pool.map(lambda row: scripts_of(args, row), scripted))
+    wall = time.monotonic() - start
+    failed = 0
+    for file, wrong, _ in played:
+        if wrong:
+            failed += 1
+            print(f"{file}: {wrong}")
+    args.out.mkdir(parents=True, exist_ok=True)
+    needed = {}
+    with open(args.out / "scripts.tsv", "w", encoding="utf-8") as table:
+        table.write("file\tprotocol\tscripts\tin prototypes\tengine\n")
+        for row, found, wrong in counted:
+            if found is None or not found:
+                failed += 1
+                print(f"{row['file']}: {wrong or 'no Script is announced'}")
+                continue
+            for one in found:
+                table.write(f"{row['file']}\t{one['protocol']}\t{one['count']}\t{one['declared']}\t{'there' if one['engine'] else 'missing'}\n")
+                needed.setdefault(one["protocol"], set()).add(row["file"])
+    slowest = max(played, key=lambda p: p[2], default=("", "", 0))
+    print(f"{len(played)} animated files and {len(counted)} with scripts in {wall:.0f} s, {failed} failed; slowest {slowest[0]} {slowest[2]:.1f} s")
+    print("engines:", ", ".join(f"{protocol} {len(files)}" for protocol, files in sorted(needed.items())))
+    return 1 if failed or not played else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
