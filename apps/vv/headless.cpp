@@ -115,7 +115,7 @@ class Headless {
     } else if (options_.listViewpoints) {
       writeOut(listViewpoints(renderer.viewpoints(), options_.json));
     } else {
-      writeOut(describeWorld(world, renderer.viewpoints(), renderer.bounds(), options_.json));
+      writeOut(describeWorld(world, renderer.viewpoints(), renderer.bounds(), options_.running.scriptPath, options_.json));
     }
   }
 

@@ -193,6 +193,10 @@ const OptionInfo table[] = {
        notEmpty(v, "a folder");
        o.render.shaderPath = v;
      }},
+    {"--trust", "", "Trust", "Scripts may use engines whose programs can do whatever you can.",
+     [](Options& o, const std::string&) { o.running.trustScripts = true; }},
+    {"--allow-net", "", "Trust", "Scripts may use the network, as far as their engine can.",
+     [](Options& o, const std::string&) { o.running.allowNetwork = true; }},
     {"--script-path", "DIR[:DIR...]", "Trust",
      "Folders where script engines are looked up, before $XVRML_SCRIPT_PATH and the installed ones.",
      [](Options& o, const std::string& v) {

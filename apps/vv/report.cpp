@@ -11,6 +11,7 @@
 #include <sys/resource.h>
 
 #include "describe.h"
+#include "xvrml/script_engines.h"
 
 namespace vv {
 
@@ -268,9 +269,6 @@ std::string explainWorld(const std::vector<xvrml::ExplainedObject>& objects, boo
 }
 
 namespace {
-// Whether Scripts of this protocol can run here.
-bool hasEngine(const std::string&) { return false; }
-
 // Scripts in the world, and in the bodies of its prototypes.
 std::map<std::string, std::pair<uint64_t, uint64_t>> scriptsByProtocol(const WorldCounts& counts) {
   std::map<std::string, std::pair<uint64_t, uint64_t>> all;
@@ -313,15 +311,17 @@ std::string listViewpoints(const std::vector<xvrml::ViewpointInfo>& viewpoints, 
 }
 
 std::string describeWorld(const xvrml::World& world, const std::vector<xvrml::ViewpointInfo>& viewpoints,
-                          const xvrml::Bounds& bounds, bool json) {
+                          const xvrml::Bounds& bounds, const std::string& scriptPath, bool json) {
   const WorldCounts counts = countWorld(world);
   if (json) {
     Json all = {{"path", world.path}, {"nodes", world.nodeCount}, {"types", Json(counts.types)}, {"routes", counts.routes}};
     all["prototypes"] = counts.prototypes;
     all["scripts"] = Json::array();
     for (const auto& [protocol, count] : scriptsByProtocol(counts))
-      all["scripts"].push_back(
-          {{"protocol", protocol}, {"count", count.first}, {"declared", count.second}, {"engine", hasEngine(protocol)}});
+      all["scripts"].push_back({{"protocol", protocol},
+                                {"count", count.first},
+                                {"declared", count.second},
+                                {"engine", xvrml::hasScriptEngine(protocol, scriptPath)}});
     all["names"] = counts.names;
     all["viewpoints"] = viewpointsJson(viewpoints);
     all["bounds"] = nullptr;
@@ -340,7 +340,7 @@ std::string describeWorld(const xvrml::World& world, const std::vector<xvrml::Vi
   for (const auto& [protocol, count] : scriptsByProtocol(counts))
     text += fmt::format("scripts     {} {}{}: {}\n", count.first, protocol,
                         count.second ? fmt::format(", {} in prototypes", count.second) : "",
-                        hasEngine(protocol) ? "engine there" : "no engine for them");
+                        xvrml::hasScriptEngine(protocol, scriptPath) ? "engine there" : "no engine for them");
   text += fmt::format("problems    {} errors, {} warnings\n", world.diagnostics.errors(), world.diagnostics.warnings());
   for (const auto& [type, count] : counts.types) text += fmt::format("  {:>8}  {}\n", count, type);
   return text;

@@ -38,7 +38,8 @@ std::string explainWorld(const std::vector<xvrml::ExplainedObject>& objects, boo
 // world may be null: the node types alone.
 std::string listNodes(const xvrml::World* world, bool json);
 std::string listViewpoints(const std::vector<xvrml::ViewpointInfo>& viewpoints, bool json);
+// scriptPath: where script engines are looked for first.
 std::string describeWorld(const xvrml::World& world, const std::vector<xvrml::ViewpointInfo>& viewpoints,
-                          const xvrml::Bounds& bounds, bool json);
+                          const xvrml::Bounds& bounds, const std::string& scriptPath, bool json);
 
 } // namespace vv

@@ -59,10 +59,14 @@ struct BrowserObject : WorldObject, std::enable_shared_from_this<BrowserObject> 
 };
 using BrowserPtr = std::shared_ptr<BrowserObject>;
 
-BrowserPtr makeBrowser(const py::object& source, double start, const py::object& limits, bool allowAbsolute) {
+BrowserPtr makeBrowser(const py::object& source, double start, const py::object& limits, bool allowAbsolute,
+                       const py::object& scriptPath, bool trust) {
+  BrowserOptions options;
+  if (!scriptPath.is_none()) options.scriptPath = toPath(scriptPath);
+  options.trustScripts = trust;
   auto made = std::make_shared<BrowserObject>();
   std::unique_ptr<World> world = loadSource(source, limits, allowAbsolute);
-  made->run([&] { made->running = std::make_unique<Browser>(std::move(world), BrowserOptions{}, start); });
+  made->run([&] { made->running = std::make_unique<Browser>(std::move(world), options, start); });
   return made;
 }
 
@@ -150,6 +154,28 @@ py::object createNode(const BrowserPtr& self, const std::string& type, const py:
   return object;
 }
 
+py::tuple createFromString(const BrowserPtr& self, const py::str& text) {
+  const std::string bytes = fromText(text);
+  MFNode made;
+  auto lock = self->lock();
+  self->run([&] { made = self->running->createVrmlFromString(bytes); });
+  py::tuple out(made.size());
+  for (size_t i = 0; i < made.size(); ++i) out[i] = asNode(self, made[i]);
+  return out;
+}
+
+void replaceWorld(const BrowserPtr& self, const std::vector<NodeObject>& nodes) {
+  MFNode list;
+  for (const NodeObject& one : nodes) list.emplace_back(&own(self, one));
+  auto lock = self->lock();
+  self->run([&] { self->running->replaceWorld(list); });
+}
+
+void loadUrl(const BrowserPtr& self, const std::vector<std::string>& urls) {
+  auto lock = self->lock();
+  self->run([&] { self->running->loadUrl(urls); });
+}
+
 py::dict bound(const BrowserPtr& self) {
   const BoundNodes nodes = self->running->bound();
   py::dict out;
@@ -234,7 +260,8 @@ void defineBrowser(py::module_& module) {
       module, "Browser",
       "A world that runs: tick(time) moves its clock, assigning a node's field sends an event. It has no clock of its own.")
       .def(py::init(&makeBrowser), py::arg("source"), py::kw_only(), py::arg("start") = 0.0, py::arg("limits") = py::none(),
-           py::arg("allow_absolute") = false, "source: as of load(). The world comes alive at time `start` (seconds).")
+           py::arg("allow_absolute") = false, py::arg("script_path") = py::none(), py::arg("trust") = false,
+           "source: as of load(). The world comes alive at time `start` (seconds).")
       .def_property_readonly(
           "now", [](const BrowserPtr& self) { return self->running->now(); }, "The world's time in seconds.")
       .def_property_readonly(
@@ -270,6 +297,10 @@ void defineBrowser(py::module_& module) {
             self->run([&] { self->running->removeRoot(own(self, removed)); });
           },
           py::arg("node"))
+      .def("create_vrml_from_string", createFromString, py::arg("text"),
+           "Nodes of a VRML text, which needs no header. Raises ParseError if nothing of it can be used.")
+      .def("load_url", loadUrl, py::arg("urls"), "Another world instead of this one; if none can be read all stays as it is.")
+      .def("replace_world", replaceWorld, py::arg("nodes"), "These nodes instead of all others.")
       .def_property_readonly("bound", bound, "The bound viewpoint, background, fog and navigation_info; None: there is none.")
       .def(
           "bind_viewpoint",

@@ -18,12 +18,16 @@ namespace {
 // Owned by the module for the life of the interpreter.
 PyObject* parseError = nullptr;
 
-[[noreturn]] void raise(const Diagnostic& d) {
+void setParseError(const Diagnostic& d) {
   py::object error = py::reinterpret_borrow<py::object>(parseError)(toText(d.text()));
   error.attr("file") = toText(d.file);
   error.attr("line") = d.line;
   error.attr("column") = d.column;
   PyErr_SetObject(parseError, error.ptr());
+}
+
+[[noreturn]] void raise(const Diagnostic& d) {
+  setParseError(d);
   throw py::error_already_set();
 }
 
@@ -112,6 +116,11 @@ PYBIND11_MODULE(_xvrml, module) {
                                          PyExc_ValueError, nullptr);
   if (!parseError) throw py::error_already_set();
   module.add_object("ParseError", parseError);
+  py::register_exception_translator([](std::exception_ptr failure) {
+    try {
+      if (failure) std::rethrow_exception(failure);
+    } catch (const LoadError& error) { setParseError(error.diagnostic); }
+  });
   py::register_exception<picture::RenderError>(module, "RenderError", PyExc_RuntimeError);
   defineNode(module);
   definePicture(module);

@@ -46,7 +46,7 @@ template <class Visit> void eachShape(const Graph& graph, Node& part, const Visi
   climb(part, visited, [&](Node& node) {
     const ItemId item = graph.find(&node);
     if (item != 0 && graph.items[item].kind == Kind::shape) visit(item);
-    return &node == &part || node.type().index < 0;
+    return &node == &part || node.type().index < 0 || node.type().expand;
   });
 }
 
@@ -56,6 +56,7 @@ void OpenRTMapper::Impl::update(const FieldChanges& changes) {
   Work work;
   work.regroup = graph.planRoots();
   for (const FieldChange& change : changes) {
+    if (!change.node || !change.field) continue; // the roots: planRoots() has looked
     Node& node = *change.node;
     switch (change.field->change) {
     case Change::transform: transformed(work, node); break;

@@ -144,6 +144,28 @@ def test_nodes_are_made_and_put_into_the_world(browser):
         browser.create_node("Spere")
 
 
+def test_nodes_come_from_text(browser):
+    made = browser.create_vrml_from_string("Shape { geometry Cone { } } DEF X Group { }")
+    assert [node.node_type for node in made] == ["Shape", "Group"]
+    browser["Place"].children = [*browser["Place"].children, made[0]]
+    assert len(browser["Place"].children) == 3
+    assert browser.create_vrml_from_string("Nothing { }") == ()
+    assert "Nothing" in str(browser.warnings[-1])
+
+
+def test_another_world_takes_the_place(browser, tmp_path):
+    before, generation = browser.render(**SMALL).array.copy(), browser.generation
+    (tmp_path / "other.wrl").write_text("#VRML V2.0 utf8\nViewpoint { position 0 0 5 } DEF New Shape { geometry Sphere { } }")
+    old = browser["Place"]
+    here = xvrml.Browser(tmp_path / "other.wrl")
+    here.load_url(["missing.wrl", "other.wrl#New"])
+    browser.replace_world(browser.create_vrml_from_string("Viewpoint { position 0 0 4 } Shape { geometry Sphere { } }"))
+    assert browser.generation == generation + 1
+    assert not np.array_equal(browser.render(**SMALL).array, before)
+    assert old.translation == (0, 0, 0)
+    browser.tick(1)
+
+
 def test_pictures_follow_the_world(browser):
     columns = []
     for time in (0, 0.5, 1, 1.5):

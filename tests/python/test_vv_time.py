@@ -6,7 +6,7 @@ import stat
 import time
 
 import pytest
-from conftest import HEADER, SMALL, find_vv, read_ppm
+from conftest import HEADER, ROOT, SMALL, find_vv, read_ppm
 
 # A cube on its way from x=-2 to 2 and back in two seconds; a clock with default values, which must stand still (clause 4.6.9).
 MOVING = HEADER + """
@@ -311,3 +311,29 @@ def test_a_file_that_is_no_plugin_is_refused(vv):
     vv.write("plugins/not.so", "text")
     done = vv("box.wrl", "--check", "--node-path", "plugins")
     assert done.returncode == 0 and "plugins/not.so" in done.talk
+
+
+# Scripts and scenes ----------------------------------------------------------------------------------------------------
+
+
+def test_info_announces_scripts(vv):
+    vv.write("scripts.wrl", HEADER + 'Script { url "javascript: function initialize() {}" } Script { url [ "Javascript:x", "a.class" ] }\n'
+             'Script { url "things/Mover.class" } Script { } PROTO P [ ] { Group { } Script { url "nosuch:x" } }')
+    done = vv("scripts.wrl", "--info", "--json", "-q")
+    assert done.returncode == 0, done.talk
+    scripts = {one["protocol"]: one for one in json.loads(done.text)["scripts"]}
+    assert {name: (one["count"], one["declared"]) for name, one in scripts.items()} == {
+        "javascript": (2, 0), "java": (1, 0), "none": (1, 0), "nosuch": (0, 1)}
+    assert scripts["nosuch"]["engine"] is False
+    assert "2 javascript" in vv("scripts.wrl", "--info", "-q").text
+
+
+def test_the_globe_turns_under_the_lamp(vv):
+    scene = ROOT / "examples/scenes/globe.wrl"
+    done = vv(scene, "--check", "--frames", "0-240/80")
+    assert done.returncode == 0, done.talk
+    assert vv(scene, "--frames", "0-240/60", "-o", "g.ppm", *SMALL).returncode == 0
+    pictures = [picture_of(vv.folder / f"g-{i:04}.ppm") for i in (0, 60, 120, 180, 240)]
+    assert len({str(p) for p in pictures[:4]}) == 4
+    differences = [abs(a - b) for one, other in zip(pictures[0], pictures[4]) for p, q in zip(one, other) for a, b in zip(p, q)]
+    assert sum(differences) / len(differences) < 0.5  # eight seconds are one round
