@@ -51,6 +51,27 @@ void setQuality(Context& c, RTenum name, int value) {
     within(RT_TRANSPORT_AUTO, RT_TRANSPORT_PATH);
     frame.transport = static_cast<uint8_t>(value);
     break;
+  case RT_REPLICATES:
+    within(0, maxReplicates);
+    frame.replicates = static_cast<uint32_t>(value);
+    break;
+  default: fail(RT_INVALID_ENUM, "unknown quality " + std::to_string(name));
+  }
+  c.scene.frameDirty = true;
+}
+
+void setQuality(Context& c, RTenum name, double value) {
+  edit::FrameSettingsT& frame = c.scene.frame;
+  const auto within = [value](double high) { require(value >= 0 && value <= high, RT_INVALID_VALUE, "out of range"); };
+  switch (name) {
+  case RT_TARGET_ERROR:
+    within(1);
+    frame.targetError = static_cast<float>(value);
+    break;
+  case RT_TIME_LIMIT:
+    within(maxTimeLimit);
+    frame.timeLimit = static_cast<float>(value);
+    break;
   default: fail(RT_INVALID_ENUM, "unknown quality " + std::to_string(name));
   }
   c.scene.frameDirty = true;
@@ -114,6 +135,10 @@ void rtFrameBuffer(int width, int height, uint32_t channels) {
 
 void rtQuality(RTenum name, int value) {
   guarded("rtQuality", [&](Context& c) { setQuality(c, name, value); });
+}
+
+void rtQualityf(RTenum name, double value) {
+  guarded("rtQualityf", [&](Context& c) { setQuality(c, name, value); });
 }
 
 void rtSwapBuffers(void) {

@@ -19,19 +19,39 @@ void PixelSums::add(const float radiance[3], float alpha) {
   samples++;
 }
 
-Film::Film(uint32_t width, uint32_t height, uint32_t channels) : width_(width), height_(height), channels_(channels) {
-  for (uint32_t bit = 0; bit < 8; bit++)
+void PixelSums::addTails(const float radiance[3]) {
+  double grey1 = 0;
+  for (int k = 0; k < 3; k++) {
+    grey1 += radiance[k] - first[k];
+    largest[k] = std::max(largest[k], radiance[k]);
+  }
+  const double grey2 = grey1 * grey1;
+  grey[0] += grey2, grey[1] += grey2 * grey1, grey[2] += grey2 * grey2;
+}
+
+void PixelSums::closeReplicate() {
+  for (int k = 0; k < 3; k++) {
+    const double sum = delta[k] - closed[k];
+    closed2[k] += sum * sum;
+    closed[k] = delta[k];
+  }
+  replicates++;
+}
+
+Film::Film(uint32_t width, uint32_t height, uint32_t channels, ErrorMap::Kind errors)
+    : width_(width), height_(height), channels_(channels), errors_(width, height, errors) {
+  for (uint32_t bit = 0; bit < channelBits; bit++)
     if (channels & (1u << bit)) planes_[bit].assign(size_t(width) * height * channelComponents(1u << bit), 0.0f);
   if (has(RT_DEPTH)) std::fill(plane(RT_DEPTH).begin(), plane(RT_DEPTH).end(), std::numeric_limits<float>::infinity());
 }
 
 namespace {
-size_t planeOf(uint32_t channel) { return size_t(std::countr_zero(channel)) & 7; } // one of the eight bits
+size_t planeOf(uint32_t channel) { return std::min(size_t(std::countr_zero(channel)), size_t(channelBits - 1)); }
 } // namespace
 
 std::vector<float>& Film::plane(uint32_t channel) { return planes_[planeOf(channel)]; }
 
-void Film::store(uint32_t x, uint32_t y, const PixelSums& s) {
+void Film::store(uint32_t x, uint32_t y, const PixelSums& s, const PixelError* error) {
   const size_t pixel = size_t(y) * width_ + x;
   const double n = s.samples ? s.samples : 1;
   if (has(RT_RGBA))
@@ -47,7 +67,19 @@ void Film::store(uint32_t x, uint32_t y, const PixelSums& s) {
   }
   if (has(RT_DEPTH)) plane(RT_DEPTH)[pixel] = s.depth;
   if (has(RT_NAME)) plane(RT_NAME)[pixel] = s.name;
+  if (has(RT_ERROR))
+    for (int k = 0; k < 3; k++)
+      plane(RT_ERROR)[3 * pixel + k] = error ? error->halfWidth[k] : std::numeric_limits<float>::infinity();
+  if (has(RT_TRUST)) plane(RT_TRUST)[pixel] = error && error->trusted ? 1.0f : 0.0f;
+  if (error) errors_.store(pixel, *error);
   if (has(RT_SAMPLES)) plane(RT_SAMPLES)[pixel] = float(s.samples);
+}
+
+void Film::finishErrors() {
+  errors_.doubtConstants([this](size_t pixel, const float halfWidth[3]) {
+    if (has(RT_ERROR)) std::copy_n(halfWidth, 3, plane(RT_ERROR).begin() + std::ptrdiff_t(3 * pixel));
+    if (has(RT_TRUST)) plane(RT_TRUST)[pixel] = 0;
+  });
 }
 
 bool Film::read(uint32_t channel, std::span<float> out) const {

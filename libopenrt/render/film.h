@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "openrt/openrt.h"
+#include "render/error_map.h"
 #include "scene/channels.h"
 
 namespace openrt {
@@ -14,10 +15,17 @@ namespace openrt {
 struct PixelSums { // of one pixel, samples added in their order
   double rgba[4] = {}, normal[3] = {}, albedo[3] = {};
   double first[3] = {}, delta[3] = {}, delta2[3] = {}; // sums of (x - first) and its square: no cancellation
+  double closed[3] = {}, closed2[3] = {};              // over the complete replicates: sums of their delta and its square
+  double grey[3] = {};                                 // sums of (red + green + blue - first)^2, ^3 and ^4; see addTails()
   float depth = 0, position[3] = {}, name = 0;
-  uint32_t samples = 0;
+  float largest[3] = {};
+  uint32_t samples = 0, replicates = 0; // replicates: complete ones
+  bool random = false;                  // a path has taken a random decision
 
   void add(const float radiance[3], float alpha);
+  // After add(), where somebody asks for the error.
+  void addTails(const float radiance[3]);
+  void closeReplicate();
 };
 
 struct Tile {
@@ -27,11 +35,15 @@ struct Tile {
 class Film {
  public:
   Film() = default;
-  Film(uint32_t width, uint32_t height, uint32_t channels);
+  Film(uint32_t width, uint32_t height, uint32_t channels, ErrorMap::Kind errors = ErrorMap::Kind::none);
   uint32_t width() const { return width_; }
   uint32_t height() const { return height_; }
   bool has(uint32_t channel) const { return channels_ & channel; }
-  void store(uint32_t x, uint32_t y, const PixelSums& sums); // [render] each pixel by one thread
+  // [render] each pixel by one thread; error: null where nothing is known of it
+  void store(uint32_t x, uint32_t y, const PixelSums& sums, const PixelError* error = nullptr);
+  // After the last store(): looks at the neighbours of constant pixels. One thread.
+  void finishErrors();
+  const ErrorMap& errors() const { return errors_; }
   bool read(uint32_t channel, std::span<float> out) const;
   // Of a picture that is still being made: nothing everywhere, then tile by tile those that are finished. false: no such
   // channel, or no room for it.
@@ -41,7 +53,8 @@ class Film {
  private:
   std::vector<float>& plane(uint32_t channel);
   uint32_t width_ = 0, height_ = 0, channels_ = 0;
-  std::vector<float> planes_[8];
+  std::vector<float> planes_[channelBits];
+  ErrorMap errors_;
 };
 
 } // namespace openrt

@@ -5,6 +5,7 @@
 #include <xmmintrin.h>
 
 #include <algorithm>
+#include <bit>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -12,6 +13,11 @@
 
 namespace openrt {
 namespace {
+
+ErrorMap::Kind errorsOf(const edit::FrameSettingsT& frame) {
+  if (frame.samples == 1 && !wantsError(frame)) return ErrorMap::Kind::none;
+  return wantsError(frame) ? ErrorMap::Kind::full : ErrorMap::Kind::summary;
+}
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
@@ -36,12 +42,21 @@ uint32_t availableThreads() {
 }
 
 Frame::Frame(std::shared_ptr<const RenderScene> scene, uint32_t threads)
-    : scene_(std::move(scene)), film_(scene_->frame.width, scene_->frame.height, scene_->frame.channels),
+    : scene_(std::move(scene)), film_(scene_->frame.width, scene_->frame.height, scene_->frame.channels, errorsOf(scene_->frame)),
       edge_(tileEdge(scene_->frame.samples)), columns_((film_.width() + edge_ - 1) / edge_),
       tiles_(columns_ * ((film_.height() + edge_ - 1) / edge_)), started_(now()) {
   if (!scene_->camera.shader.shaderClass) tiles_ = 0; // nothing is seen without a camera
   finished_ = std::make_unique<std::atomic<bool>[]>(tiles_);
-  for (uint32_t i = 0; i < std::min(threads, std::max(tiles_, 1u)); i++) threads_.emplace_back([this] { work(); });
+  if (scene_->frame.timeLimit > 0 && scene_->frame.samples > 1 && tiles_ > 0) {
+    rounds_ = std::make_unique<Rounds>();
+    rounds_->sums.resize(tiles_);
+    rounds_->wanted.resize(tiles_);
+    rounds_->samples = scene_->frame.targetError > 0 ? std::min(32u, scene_->frame.samples) : 1;
+    rounds_->began = started_;
+  }
+  const uint32_t count = std::min(threads, std::max(tiles_, 1u));
+  barrier_ = std::make_unique<std::barrier<EndRound>>(count, EndRound{this});
+  for (uint32_t i = 0; i < count; i++) threads_.emplace_back([this] { work(); });
 }
 
 Frame::~Frame() {
@@ -61,22 +76,76 @@ Tile Frame::tile(uint32_t number) const {
 
 bool Frame::snapshot(uint32_t channel, std::span<float> out) const {
   if (!film_.clear(channel, out)) return false;
+  std::unique_lock<std::mutex> lock;
+  if (rounds_) lock = std::unique_lock(rounds_->film);
   for (uint32_t i = 0; i < tiles_; i++)
     if (finished_[i].load(std::memory_order_acquire)) film_.copy(channel, tile(i), out);
   return true;
 }
 
-float Frame::progress() const { return tiles_ ? float(done_.load()) / float(tiles_) : 1.0f; }
+float Frame::progress() const {
+  if (rounds_) return over_.load() ? 1.0f : std::min(float((now() - started_) / double(scene_->frame.timeLimit)), 0.99f);
+  return tiles_ ? float(done_.load()) / float(tiles_) : 1.0f;
+}
+
+void Frame::renderTile(TileRenderer& renderer, uint32_t number) {
+  if (!rounds_)
+    renderer.render(tile(number));
+  else if (rounds_->pilot)
+    rounds_->wanted[number] = renderer.pilot(tile(number), rounds_->samples);
+  else if (rounds_->wanted[number] > rounds_->first)
+    renderer.renderRound(tile(number), rounds_->sums[number], rounds_->replicates, rounds_->first, rounds_->samples);
+  finished_[number].store(true, std::memory_order_release);
+  done_++;
+}
+
+// Whether there is a further round depends on the time alone and on the pilot, which is no part of the picture.
+void Frame::endRound() noexcept {
+  const edit::FrameSettingsT& settings = scene_->frame;
+  if (!rounds_ || cancelled_) {
+    film_.finishErrors();
+    over_ = true;
+    return;
+  }
+  Rounds& r = *rounds_;
+  const double time = now(), took = time - r.began, left = double(settings.timeLimit) - (time - started_);
+  if (r.pilot) {
+    // About sixteen rounds fill the time that is left.
+    const double samples = left / 16 / std::max(took, 1e-9) * r.samples;
+    const uint32_t most = std::max(settings.samples / 16, 1u);
+    r.replicates = {settings.seed, uint32_t(std::bit_width(uint32_t(std::clamp(samples, 1.0, double(most))))) - 1};
+    r.pilot = false;
+  } else {
+    r.first += r.samples;
+    over_ = left < took / 2; // the next one would end nearer to the limit than this one by going beyond it
+  }
+  const uint32_t wanted = *std::max_element(r.wanted.begin(), r.wanted.end());
+  if (r.first >= wanted) over_ = true;
+  if (over_) return film_.finishErrors();
+  r.samples = std::min(r.replicates.size(), settings.samples - r.first);
+  r.began = time;
+  next_ = 0;
+}
+
+void Frame::describeError(RTstats& stats) const {
+  stats.errorLevel = 0.95;
+  if (film_.errors().empty()) return;
+  const ErrorSummary s = film_.errors().summary();
+  stats.errorMean = s.mean, stats.errorMeanInterval = s.meanInterval;
+  stats.errorHalfWidth = s.halfWidth, stats.errorP99 = s.p99;
+  stats.errorPixels = s.pixels, stats.errorTrusted = s.trusted;
+  const bool many = rounds_ || replicatesOf(scene_->frame, scene_->frame.samples, 0).many();
+  std::snprintf(stats.errorMethod, sizeof stats.errorMethod, "%s", many ? "replicated nets, Student's t" : "sample variance");
+}
 
 void Frame::work() {
   _mm_setcsr(_mm_getcsr() | 0x8040); // flush denormals to zero, as the ray kernels want it
   try {
-    TileRenderer renderer(*scene_, film_);
-    for (uint32_t i; !cancelled_ && (i = next_++) < tiles_;) {
-      renderer.render(tile(i));
-      finished_[i].store(true, std::memory_order_release);
-      done_++;
-    }
+    TileRenderer renderer(*scene_, film_, rounds_ ? &rounds_->film : nullptr);
+    do {
+      for (uint32_t i; !cancelled_ && (i = next_++) < tiles_;) renderTile(renderer, i);
+      barrier_->arrive_and_wait();
+    } while (!over_);
     std::lock_guard lock(mutex_);
     counters_.camera += renderer.counters().camera;
     counters_.shadow += renderer.counters().shadow;
@@ -84,6 +153,7 @@ void Frame::work() {
     seconds_ = std::max(seconds_, now() - started_);
   } catch (const std::exception& e) {
     cancelled_ = true;
+    barrier_->arrive_and_drop();
     std::lock_guard lock(mutex_);
     failure_ = e.what();
   }

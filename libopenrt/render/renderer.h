@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <barrier>
 #include <memory>
 #include <mutex>
 #include <span>
@@ -30,18 +31,39 @@ class Frame {
   bool snapshot(uint32_t channel, std::span<float> out) const;
   const Film& film() const { return film_; }
   const RayCounters& counters() const { return counters_; } // after wait()
+  // The error of the whole picture into its statistics; after wait().
+  void describeError(RTstats& stats) const;
   double seconds() const { return seconds_; }
   const std::string& failure() const { return failure_; } // empty: none
 
  private:
   void work();
+  void renderTile(TileRenderer& renderer, uint32_t number);
+  void endRound() noexcept; // by one thread, while the others wait
   Tile tile(uint32_t number) const;
+  // A frame with a time limit is made in rounds over all tiles: a pilot, then replicates.
+  struct Rounds {
+    std::vector<std::vector<PixelSums>> sums; // by tile
+    std::vector<uint32_t> wanted;             // by tile: samples
+    Replicates replicates;
+    uint32_t first = 0, samples = 1; // of the round
+    bool pilot = true;
+    double began = 0;
+    mutable std::mutex film; // tiles are stored again while snapshot() copies them
+  };
   std::shared_ptr<const RenderScene> scene_;
   Film film_;
+  std::unique_ptr<Rounds> rounds_; // null: one round
+  std::atomic<bool> over_{false};  // written by endRound()
   uint32_t edge_, columns_, tiles_;
   std::atomic<uint32_t> next_{0}, done_{0};
   std::atomic<bool> cancelled_{false};
   std::unique_ptr<std::atomic<bool>[]> finished_; // by tile: its pixels may be read
+  struct EndRound {
+    Frame* frame;
+    void operator()() noexcept { frame->endRound(); }
+  };
+  std::unique_ptr<std::barrier<EndRound>> barrier_;
   std::vector<std::thread> threads_;
   std::mutex mutex_; // counters_, failure_, seconds_
   RayCounters counters_;

@@ -1,4 +1,5 @@
-// sampler.h: the points of a pixel's samples: a pure function of (pixel, sample, pair of dimensions, seed). A pair is a
+// sampler.h: the points of a pixel's samples: a pure function of (pixel, sample, pair of dimensions, seed, size of a replicate). A
+// pair is a
 // (0,2)-sequence in base 2: Sobol's first two dimensions, Owen-scrambled by hashing as in B. Burley, "Practical Hash-based
 // Owen Scrambling", JCGT 9(4), 2020 (hash constants: N. Vegdahl's search).
 #pragma once
@@ -44,6 +45,16 @@ inline uint32_t sobol1Reversed(uint32_t x) {
   x ^= (x & 0xaaaaaaaau) >> 1;
   return x;
 }
+
+// Which point a sample is. The samples of a pixel are consecutive replicates of 2^shift samples, each a net of its own with a
+// seed of its own: independent of the others, so that their means tell their error. The first one has the frame's own seed.
+struct Replicates {
+  uint32_t seed = 0, shift = 31; // 31: one net
+  bool many() const { return shift < 31; }
+  uint32_t size() const { return 1u << shift; }
+  uint32_t indexOf(uint32_t sample) const { return sample & (size() - 1); }
+  uint32_t seedOf(uint32_t sample) const { return sample >> shift ? hash(seed, sample >> shift) : seed; }
+};
 
 inline float toUnit(uint32_t x) { return float(x >> 8) * 0x1p-24f; } // [0, 1)
 

@@ -50,7 +50,7 @@ class Ways {
     const float n[3] = {lobe.normal[0][i], lobe.normal[1][i], lobe.normal[2][i]};
     switch (lobe.kind) {
     case RTS_LOBE_DIFFUSE:
-      if (u >= 0) diffuse(n, w, u, v);
+      if (u >= 0) diffuse(n, w, u, v), random = true;
       break;
     case RTS_LOBE_REFLECTION: mirror(n, w, 1); break;
     case RTS_LOBE_DIELECTRIC: dielectric(n, w, lobe.parameter[0][i]); break;
@@ -61,6 +61,7 @@ class Ways {
 
   Way list[maximumWays];
   uint32_t count = 0;
+  bool random = false;
 
  private:
   void put(const float direction[3], const float w[3], float factor, bool bent) {
@@ -198,7 +199,8 @@ float TileRenderer::chanceMet(const RayState& ray, const Points& points, uint32_
 }
 
 void TileRenderer::sampleAt(uint32_t path, uint32_t pair, float& u, float& v) const {
-  PairSampler(pixels_[path / samples_], pair, scene_.frame.seed)(firstSample_ + path % samples_, u, v);
+  const uint32_t sample = firstSample_ + path % samples_;
+  PairSampler(pixels_[path / samples_], pair, replicates_.seedOf(sample))(replicates_.indexOf(sample), u, v);
 }
 
 // The rays that go on from hit i: all of them, or one of them chosen. chance: of each lobe's direction to be followed.
@@ -214,6 +216,7 @@ void TileRenderer::sendOn(const RtsBatch& batch, const Points& points, uint32_t 
   Ways ways(points.hits, i);
   for (uint32_t l = 0; l < batch.lobeCount; l++)
     if (!direct || batch.lobes[l].kind == RTS_LOBE_TRANSPARENT) ways.add(l, batch.lobes[l], i, u, v);
+  if (ways.random) paths.random[ray.path] = 1;
   float carried[maximumWays], sum = 0;
   for (uint32_t w = 0; w < ways.count; w++) {
     const Way& way = ways.list[w];
@@ -230,6 +233,7 @@ void TileRenderer::sendOn(const RtsBatch& batch, const Points& points, uint32_t 
     float kept = probability;
     if (path && level_ >= rouletteFrom) {
       const float stay = std::min(1.0f, carried[w] / probability);
+      if (stay < 1) paths.random[ray.path] = 1;
       if (survival >= stay) return;
       kept *= stay;
     } else if (!path && carried[w] < energyCut) {
@@ -247,6 +251,7 @@ void TileRenderer::sendOn(const RtsBatch& batch, const Points& points, uint32_t 
     for (uint32_t w = 0; w < ways.count; w++) send(w, 1);
     return;
   }
+  paths.random[ray.path] = 1;
   float at = choice * sum;
   uint32_t chosen = 0;
   while (chosen + 1 < ways.count && at >= carried[chosen]) at -= carried[chosen++];

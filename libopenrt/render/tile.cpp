@@ -12,23 +12,80 @@ namespace openrt {
 
 namespace {
 constexpr uint32_t pathsInFlight = 4096;
+constexpr uint32_t pilotSamples = 32;
 } // namespace
 
 uint32_t tileEdge(uint32_t samplesPerPixel) { return samplesPerPixel >= 16 ? 16 : samplesPerPixel >= 4 ? 32 : 64; }
 
-TileRenderer::TileRenderer(const RenderScene& scene, Film& film) : scene_(scene), film_(film) {}
+TileRenderer::TileRenderer(const RenderScene& scene, Film& film, std::mutex* filmLock)
+    : scene_(scene), film_(film), filmLock_(filmLock), wantsError_(wantsError(scene.frame)) {}
 
 void TileRenderer::render(const Tile& tile) {
+  uint32_t samples = scene_.frame.samples;
+  if (scene_.frame.targetError > 0 && samples > pilotSamples) samples = pilot(tile, pilotSamples);
+  begin(tile);
+  replicates_ = replicatesOf(scene_.frame, samples, scene_.frame.seed);
+  single_ = samples == 1;
+  takeSamples(0, samples);
+  store(tile);
+}
+
+uint32_t TileRenderer::pilot(const Tile& tile, uint32_t samples) {
+  begin(tile);
+  replicates_ = {hash(scene_.frame.seed, 0x70696c6fu), 31};
+  single_ = samples == 1;
+  takeSamples(0, samples);
+  store(tile);
+  const edit::FrameSettingsT& frame = scene_.frame;
+  return frame.targetError > 0 ? samplesFor(frame.targetError, halfWidth_, samples, frame.samples) : frame.samples;
+}
+
+void TileRenderer::renderRound(const Tile& tile, std::vector<PixelSums>& sums, const Replicates& replicates, uint32_t first,
+                               uint32_t samples) {
+  begin(tile);
+  if (!sums.empty()) sums_.swap(sums);
+  replicates_ = replicates;
+  single_ = false;
+  takeSamples(first, samples);
+  store(tile);
+  sums.swap(sums_);
+}
+
+void TileRenderer::begin(const Tile& tile) {
   pixels_.clear();
   for (uint32_t by = tile.y0; by < tile.y1; by += 4)
     for (uint32_t bx = tile.x0; bx < tile.x1; bx += 4)
       for (uint32_t y = by; y < std::min(by + 4, tile.y1); y++)
         for (uint32_t x = bx; x < std::min(bx + 4, tile.x1); x++) pixels_.push_back(y * film_.width() + x);
   sums_.assign(pixels_.size(), {});
-  const uint32_t spp = scene_.frame.samples;
-  const uint32_t perWave = std::clamp(pathsInFlight / uint32_t(pixels_.size()), 1u, spp);
-  for (uint32_t s = 0; s < spp; s += perWave) wave(s, std::min(perWave, spp - s));
-  for (size_t i = 0; i < pixels_.size(); i++) film_.store(pixels_[i] % film_.width(), pixels_[i] / film_.width(), sums_[i]);
+}
+
+void TileRenderer::takeSamples(uint32_t first, uint32_t samples) {
+  const uint32_t perWave = std::clamp(pathsInFlight / uint32_t(pixels_.size()), 1u, samples);
+  for (uint32_t s = 0; s < samples; s += perWave) wave(first + s, std::min(perWave, samples - s));
+}
+
+void TileRenderer::store(const Tile& tile) {
+  const uint32_t width = film_.width();
+  std::unique_lock<std::mutex> lock;
+  if (filmLock_) lock = std::unique_lock(*filmLock_);
+  halfWidth_ = 0;
+  if (single_ && !wantsError_) {
+    for (size_t i = 0; i < pixels_.size(); i++) film_.store(pixels_[i] % width, pixels_[i] / width, sums_[i]);
+    return;
+  }
+  const uint32_t columns = (tile.x1 - tile.x0 + 7) / 8; // tiles begin at multiples of 8
+  const auto block = [&](uint32_t pixel) { return (pixel / width - tile.y0) / 8 * columns + (pixel % width - tile.x0) / 8; };
+  if (wantsError_) {
+    tails_.assign(size_t(columns) * ((tile.y1 - tile.y0 + 7) / 8), {});
+    for (size_t i = 0; i < pixels_.size(); i++) tails_[block(pixels_[i])].add(sums_[i]);
+  }
+  for (size_t i = 0; i < pixels_.size(); i++) {
+    const PixelError error = pixelError(sums_[i], replicates_, wantsError_ ? &tails_[block(pixels_[i])] : nullptr);
+    film_.store(pixels_[i] % width, pixels_[i] / width, sums_[i], &error);
+    halfWidth_ += error.relative;
+  }
+  halfWidth_ /= double(pixels_.size());
 }
 
 void TileRenderer::wave(uint32_t firstSample, uint32_t samples) {
@@ -50,6 +107,7 @@ void TileRenderer::wave(uint32_t firstSample, uint32_t samples) {
   paths.name = arena_.takeZero<uint32_t>(size);
   paths.first = arena_.take<uint8_t>(size);
   std::fill_n(paths.first, size, uint8_t(1));
+  paths.random = arena_.takeZero<uint8_t>(size);
   paths.hits.allocate(arena_, n);
   for (auto* list : {&paths.missed, &paths.met, &paths.order}) *list = arena_.take<uint32_t>(size);
 
@@ -111,11 +169,13 @@ void TileRenderer::makeCameraRays(Paths& paths, uint32_t firstSample) {
   for (int k = 0; k < 3; k++) local.origin[k] = arena_.takeZero<float>(size), local.direction[k] = arena_.takeZero<float>(size);
   uint32_t lane = 0;
   for (uint32_t pixel : pixels_) {
-    const PairSampler sampler(pixel, 0, scene_.frame.seed);
+    PairSampler sampler(pixel, 0, replicates_.seedOf(firstSample));
     const float x = float(pixel % film_.width()), y = float(pixel / film_.width());
-    for (uint32_t sample = 0; sample < samples; sample++, lane++) {
+    for (uint32_t sample = firstSample; sample < firstSample + samples; sample++, lane++) {
       float dx = 0.5f, dy = 0.5f; // one sample: the pixel's centre
-      if (scene_.frame.samples > 1) sampler(firstSample + sample, dx, dy);
+      const uint32_t index = replicates_.indexOf(sample);
+      if (index == 0 && sample > firstSample) sampler = PairSampler(pixel, 0, replicates_.seedOf(sample));
+      if (!single_) sampler(index, dx, dy);
       xy[0][lane] = x + dx, xy[1][lane] = y + dy;
     }
   }
@@ -328,6 +388,11 @@ void TileRenderer::addToPixels(const Paths& paths, uint32_t firstSample, uint32_
       const size_t i = pixel * samples + s;
       const float radiance[3] = {paths.radiance[0][i], paths.radiance[1][i], paths.radiance[2][i]};
       sums.add(radiance, paths.alpha[i]);
+      if (wantsError_) {
+        sums.addTails(radiance);
+        sums.random |= paths.random[i] != 0;
+      }
+      if (replicates_.many() && replicates_.indexOf(firstSample + s + 1) == 0) sums.closeReplicate();
       for (int k = 0; k < 3; k++) {
         if (paths.normal[k]) sums.normal[k] += paths.normal[k][i];
         if (paths.albedo[k]) sums.albedo[k] += paths.albedo[k][i];

@@ -2,9 +2,11 @@
 // shader, shading and shadow rays in batches; paths that go on are compacted and make the next wave. [render]
 #pragma once
 
+#include <mutex>
 #include <vector>
 
 #include "render/batch.h"
+#include "render/error.h"
 #include "render/film.h"
 #include "render/ray_queue.h"
 
@@ -15,11 +17,21 @@ uint32_t tileEdge(uint32_t samplesPerPixel);
 
 class TileRenderer {
  public:
-  TileRenderer(const RenderScene& scene, Film& film);
+  // filmLock: held while pixels are stored, if other threads may read them meanwhile; else null
+  TileRenderer(const RenderScene& scene, Film& film, std::mutex* filmLock = nullptr);
+  // The whole of a tile: a pilot if the frame has a target error, then its samples, then its pixels.
   void render(const Tile& tile);
+  // Some samples more for a tile whose sums are kept from round to round; the first time sums is empty.
+  void renderRound(const Tile& tile, std::vector<PixelSums>& sums, const Replicates& replicates, uint32_t first,
+                   uint32_t samples);
+  // A tile of samples that do not count; how many it needs. Its pixels are stored, to be replaced.
+  uint32_t pilot(const Tile& tile, uint32_t samples);
   const RayCounters& counters() const { return counters_; }
 
  private:
+  void begin(const Tile& tile);
+  void takeSamples(uint32_t first, uint32_t samples);
+  void store(const Tile& tile);
   struct Paths; // structure of arrays, one entry a path
 
   void loadRays(Paths& paths, size_t begin, uint32_t n);
@@ -58,11 +70,16 @@ class TileRenderer {
 
   const RenderScene& scene_;
   Film& film_;
+  std::mutex* filmLock_;
   Arena arena_;
   RayCounters counters_;
   std::vector<uint32_t> counts_, pixels_; // pixels_: y * width + x, in blocks of 4x4
   std::vector<BucketRange> ranges_;
   std::vector<PixelSums> sums_;
+  std::vector<Tails> tails_; // of 8x8 pixels each
+  Replicates replicates_;
+  bool wantsError_, single_ = false;                   // single_: one sample a pixel, at its centre
+  double halfWidth_ = 0;                               // relative, mean over the tile that was stored last
   RayQueue queue_, next_;                              // rays of the wave being traced, and of the one after it
   uint32_t level_ = 0, firstSample_ = 0, samples_ = 0; // of the wave
 };

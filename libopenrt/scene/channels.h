@@ -8,7 +8,12 @@
 namespace openrt {
 
 inline constexpr uint32_t allChannels =
-    RT_RGBA | RT_DEPTH | RT_NORMAL | RT_ALBEDO | RT_POSITION | RT_NAME | RT_SAMPLES | RT_VARIANCE;
+    RT_RGBA | RT_DEPTH | RT_NORMAL | RT_ALBEDO | RT_POSITION | RT_NAME | RT_SAMPLES | RT_VARIANCE | RT_ERROR | RT_TRUST;
+inline constexpr uint32_t channelBits = 10;
+
+// Limits of a frame's quality (openrt.h).
+inline constexpr uint32_t maxReplicates = 1024;
+inline constexpr float maxTimeLimit = 1e6f;
 
 // Floats per pixel of one channel; 0: no such channel.
 constexpr uint32_t channelComponents(uint32_t channel) {
@@ -17,10 +22,12 @@ constexpr uint32_t channelComponents(uint32_t channel) {
   case RT_NORMAL:
   case RT_ALBEDO:
   case RT_POSITION:
-  case RT_VARIANCE: return 3;
+  case RT_VARIANCE:
+  case RT_ERROR: return 3;
   case RT_DEPTH:
   case RT_NAME:
-  case RT_SAMPLES: return 1;
+  case RT_SAMPLES:
+  case RT_TRUST: return 1;
   }
   return 0;
 }

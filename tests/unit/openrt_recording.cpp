@@ -323,7 +323,7 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"TextureHuge", [](Example& e) { e.texture.width = e.texture.height = 65536; }, "impossible size"},
         Fault{"TextureWrap", [](Example& e) { e.texture.wrapS = edit::Wrap(5); }, "unknown wrap"},
         Fault{"FrameSize", [](Example& e) { e.frame.width = 70000; }, "a frame of an impossible size"},
-        Fault{"FrameChannels", [](Example& e) { e.frame.channels = 1 << 9; }, "unknown channels"},
+        Fault{"FrameChannels", [](Example& e) { e.frame.channels = 1 << 10; }, "unknown channels"},
         Fault{"FrameSamples", [](Example& e) { e.frame.samples = 0; }, "impossible quality"},
         Fault{"DeletedUnknown", [](Example& e) { add(e.edits, edit::DeleteLightT()).id = 5; }, "unknown id 5"},
         Fault{"DeletedInUse", [](Example& e) { add(e.edits, edit::DeleteObjectT()).id = 4; }, "deleted before its instances"},

@@ -240,6 +240,7 @@ void LocalBackend::stats(RTstats& s) const {
     s.cameraRays = finished_->counters().camera, s.shadowRays = finished_->counters().shadow;
     s.secondaryRays = finished_->counters().secondary;
     s.renderSeconds = finished_->seconds();
+    finished_->describeError(s);
   }
   s.objectBuilds = builder_.objectBuilds, s.topLevelBuilds = builder_.topLevelBuilds;
   s.commitSeconds = commitSeconds_;

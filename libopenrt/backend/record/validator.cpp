@@ -6,6 +6,7 @@
 
 #include "backend/record/validate_arrays.h"
 #include "openrt/openrt.h"
+#include "scene/channels.h"
 #include "shading/parameters.h"
 #include "shading/registry.h"
 
@@ -125,13 +126,16 @@ void CommitValidator::check(const edit::LightT& light) {
 }
 
 void CommitValidator::check(const edit::FrameSettingsT& frame) {
-  constexpr uint32_t channels = 2 * RT_VARIANCE - 1, maxSide = 65536;
+  constexpr uint32_t maxSide = 65536;
   demand(frame.width >= 1 && frame.height >= 1 && frame.width <= maxSide && frame.height <= maxSide &&
              uint64_t(frame.width) * frame.height <= uint64_t(1) << 28,
          "a frame of an impossible size");
-  demand(frame.channels != 0 && (frame.channels & ~channels) == 0, "a frame with unknown channels");
-  demand(frame.samples >= 1 && frame.samples <= 65536 && frame.depth <= 10000 &&
-             frame.transport <= RT_TRANSPORT_PATH, "a frame of an impossible quality");
+  demand(frame.channels != 0 && (frame.channels & ~allChannels) == 0, "a frame with unknown channels");
+  demand(frame.samples >= 1 && frame.samples <= 65536 && frame.depth <= 10000 && frame.transport <= RT_TRANSPORT_PATH &&
+             frame.replicates <= maxReplicates,
+         "a frame of an impossible quality");
+  demand(frame.targetError >= 0 && frame.targetError <= 1 && frame.timeLimit >= 0 && frame.timeLimit <= maxTimeLimit,
+         "a frame of an impossible error or time limit");
   hasFrame_ = true;
 }
 

@@ -297,14 +297,19 @@ enum {
   RT_POSITION = 16, /* 3: world-space position of the first sample's hit */
   RT_NAME = 32,     /* 1: name (rtLoadName) of the first sample's hit, 0 where nothing is hit */
   RT_SAMPLES = 64,  /* 1: samples taken */
-  RT_VARIANCE = 128 /* 3: sample variance of radiance (divide by the samples for the variance of the mean) */
+  RT_VARIANCE = 128, /* 3: sample variance of radiance (divide by the samples for the variance of the mean) */
+  RT_ERROR = 256,    /* 3: half-width of the 95 % interval of each colour, see below; infinite where nothing is known */
+  RT_TRUST = 512     /* 1: 1 where that interval can be trusted, else 0 */
 };
 enum {
   RT_SAMPLES_PER_PIXEL = 1, /* 1 .. 65536, default 16 */
   RT_MAX_DEPTH = 2,         /* surfaces a path may pass or bounce at, 0 .. 10000, default 25 */
   RT_SEED = 3,              /* default 0 */
   RT_SHADOWS = 4,           /* 1 (default) or 0 */
-  RT_TRANSPORT = 5          /* one of RT_TRANSPORT_* below, default RT_TRANSPORT_AUTO */
+  RT_TRANSPORT = 5,         /* one of RT_TRANSPORT_* below, default RT_TRANSPORT_AUTO */
+  RT_REPLICATES = 6,        /* independent parts of a pixel's samples, 1 .. 1024; 0 (default): as below */
+  RT_TARGET_ERROR = 7,      /* rtQualityf: 0 .. 1, 0 (default): none */
+  RT_TIME_LIMIT = 8         /* rtQualityf: seconds, 0 .. 1e6, 0 (default): none */
 };
 /* How light is followed from a surface whose shader answers in lobes (openrts.h). */
 enum {
@@ -313,9 +318,30 @@ enum {
   RT_TRANSPORT_WHITTED = 2, /* and the whole tree of reflections and refractions; no randomness */
   RT_TRANSPORT_PATH = 3     /* and light between diffuse surfaces: path tracing, noisy, unbiased */
 };
+/* Error bars. The mean over the pixel's area and over all paths lies, with a probability of 95 % for each colour by itself,
+ * within RT_RGBA +- RT_ERROR. Where a transport takes no random decision (direct, whitted) only the mean over the area is
+ * uncertain; what the depth limit and the whitted transport's energy cut leave out is not counted.
+ *
+ * For that the samples are made in independent replicates, whose means are compared: with RT_REPLICATES 0 one replicate, or
+ * 16 to 31 if RT_ERROR, RT_TRUST, a target error or a time limit is asked for and there are at least 32 samples. A picture of
+ * replicates is not the same as one without, and has more noise where neighbouring samples hardly differ. Without replicates
+ * RT_ERROR is what independent samples would have (usually too large), and not trusted.
+ *
+ * RT_TRUST is 0 with fewer than 8 replicates; where paths are random and all samples are equal, as in the dark (RT_ERROR is then
+ * an upper bound: 3/N of the largest sample in the 8x8 pixels around); where few samples carry the sum, in the pixel or in the
+ * 8x8 pixels around it.
+ *
+ * RT_TARGET_ERROR e: sample each part of the picture until the mean over its pixels of (RT_ERROR summed over the colours) /
+ * (colours summed + 0.03), at most 1 a pixel, is about e, with at most RT_SAMPLES_PER_PIXEL samples. How many is decided by a
+ * pilot of 32 samples that are not part of the picture: stopping does not bias it.
+ *
+ * RT_TIME_LIMIT s: rounds over the whole picture, each one replicate, until s seconds have gone by since the frame was started
+ * or RT_SAMPLES_PER_PIXEL are taken. A round is not broken off, so the limit is kept to about a thirtieth; at least one round is
+ * made. Such a picture depends on the machine's speed; a recording of it is replayed under the same limit, not to the same bytes. */
 /* Size in pixels (1 .. 65536 each, at most 2^28 in all) and channels of the following frames. */
 RT_API void rtFrameBuffer(int width, int height, uint32_t channels);
 RT_API void rtQuality(RTenum name, int value);
+RT_API void rtQualityf(RTenum name, double value);
 /* Commits the edits, waits for the frame in flight, makes it the one rtReadPixels reads and starts the next. Like rtRender it
  * needs a frame buffer and no definition open (else RT_INVALID_OPERATION). */
 RT_API void rtSwapBuffers(void);
@@ -347,6 +373,15 @@ typedef struct RTstats {
   uint32_t threads;
   char isa[16];
   char kernel[32]; /* e.g. "Embree 3.13.5" */
+  /* Error of the picture as a whole. Of a pixel it is (errors of the colours summed) / (colours summed + 0.03), at most 1. */
+  double errorMean;         /* expected mean over the pixels of what they are off by */
+  double errorMeanInterval; /* half-width of its 95 % interval */
+  double errorHalfWidth;    /* mean over the pixels of RT_ERROR; what RT_TARGET_ERROR is compared with */
+  double errorP99;          /* 99 % of the pixels have a smaller RT_ERROR */
+  double errorLevel;        /* 0.95 */
+  uint64_t errorPixels;     /* pixels that these numbers are about: those finished, none with one sample a pixel */
+  uint64_t errorTrusted;    /* of them with RT_TRUST 1 */
+  char errorMethod[48];     /* "replicated nets, Student's t", "sample variance", "" */
 } RTstats;
 RT_API void rtGetStats(RTstats* stats);
 

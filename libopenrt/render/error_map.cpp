@@ -1,0 +1,104 @@
+// error_map.cpp: see error_map.h.
+#include "render/error_map.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "render/error.h"
+
+namespace openrt {
+
+float relativeError(double sum, const float colors[3]) {
+  double all = 0.03;
+  for (int k = 0; k < 3; k++) all += std::fabs(colors[k]);
+  const double relative = sum / all;
+  return relative < 1 ? float(relative) : 1.0f;
+}
+
+ErrorMap::ErrorMap(uint32_t width, uint32_t height, Kind kind) : width_(width), height_(height) {
+  const size_t pixels = size_t(width) * height;
+  if (kind == Kind::none) return;
+  relative_.assign(pixels, std::numeric_limits<float>::quiet_NaN());
+  expected_ = relative_;
+  if (kind == Kind::full) seen_.resize(pixels);
+}
+
+void ErrorMap::store(size_t pixel, const PixelError& e) {
+  if (empty()) return;
+  relative_[pixel] = e.trusted ? e.relative : -e.relative;
+  expected_[pixel] = e.expected;
+  if (!seen_.empty()) seen_[pixel] = {{e.mean[0], e.mean[1], e.mean[2]}, e.samples, e.constant};
+}
+
+// Whether one of the eight neighbours differs.
+bool ErrorMap::beside(uint32_t x, uint32_t y) const {
+  const Seen& here = seen_[size_t(y) * width_ + x];
+  for (uint32_t j = y - std::min(y, 1u); j <= std::min(y + 1, height_ - 1); j++)
+    for (uint32_t i = x - std::min(x, 1u); i <= std::min(x + 1, width_ - 1); i++) {
+      const Seen& there = seen_[size_t(j) * width_ + i];
+      if (there.samples == 0) continue;
+      if (!there.constant) return true;
+      for (int k = 0; k < 3; k++)
+        if (there.mean[k] != here.mean[k]) return true;
+    }
+  return false;
+}
+
+// Of the colours within two pixels: an edge that cuts a corner has its other side there.
+void ErrorMap::range(uint32_t x, uint32_t y, float out[3]) const {
+  float low[3], high[3];
+  for (int k = 0; k < 3; k++) low[k] = high[k] = seen_[size_t(y) * width_ + x].mean[k];
+  for (uint32_t j = y - std::min(y, 2u); j <= std::min(y + 2, height_ - 1); j++)
+    for (uint32_t i = x - std::min(x, 2u); i <= std::min(x + 2, width_ - 1); i++) {
+      const Seen& there = seen_[size_t(j) * width_ + i];
+      if (there.samples == 0) continue;
+      for (int k = 0; k < 3; k++) low[k] = std::min(low[k], there.mean[k]), high[k] = std::max(high[k], there.mean[k]);
+    }
+  for (int k = 0; k < 3; k++) out[k] = high[k] - low[k];
+}
+
+void ErrorMap::doubtConstants(const std::function<void(size_t pixel, const float halfWidth[3])>& changed) {
+  if (seen_.empty()) return;
+  for (uint32_t y = 0; y < height_; y++)
+    for (uint32_t x = 0; x < width_; x++) {
+      const size_t pixel = size_t(y) * width_ + x;
+      const Seen& here = seen_[pixel];
+      if (!here.constant || !beside(x, y)) continue;
+      float half[3];
+      range(x, y, half);
+      const double part = std::min(1.0, ruleOfThree / here.samples);
+      double sum = 0;
+      for (float& h : half) h = float(part * h), sum += h;
+      expected_[pixel] = relativeError(sum, here.mean);
+      relative_[pixel] = -expected_[pixel];
+      changed(pixel, half);
+    }
+}
+
+ErrorSummary ErrorMap::summary() const {
+  ErrorSummary s;
+  double sum2 = 0;
+  std::vector<float> halves;
+  halves.reserve(relative_.size());
+  for (size_t i = 0; i < relative_.size(); i++) {
+    if (std::isnan(relative_[i])) continue;
+    const double e = expected_[i], h = std::fabs(relative_[i]);
+    s.pixels++;
+    s.trusted += std::signbit(relative_[i]) ? 0 : 1;
+    s.mean += e, sum2 += e * e, s.halfWidth += h;
+    halves.push_back(float(h));
+  }
+  if (s.pixels == 0) return s;
+  const double n = double(s.pixels);
+  s.mean /= n, s.halfWidth /= n;
+  // Pixels are independent. That they differ from place to place widens the interval a little.
+  if (s.pixels > 1)
+    s.meanInterval = student95(uint32_t(std::min(n - 1, 1e9))) * std::sqrt(std::max(0.0, sum2 / n - s.mean * s.mean) / (n - 1));
+  const auto at = halves.begin() + std::ptrdiff_t(double(halves.size() - 1) * 0.99);
+  std::nth_element(halves.begin(), at, halves.end());
+  s.p99 = *at;
+  return s;
+}
+
+} // namespace openrt

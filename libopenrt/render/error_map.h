@@ -1,0 +1,57 @@
+// error_map.h: the errors of a picture's pixels, for what only the neighbours know of a pixel and for the picture as a whole.
+// store(): [render] each pixel by one thread; the rest by one thread when the picture is finished.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+namespace openrt {
+
+inline constexpr double ruleOfThree = 2.9957; // -ln 0.05: n misses in a row bound a probability by this / n
+
+struct PixelError {
+  float mean[3] = {};
+  float halfWidth[3] = {};          // of the 95 % interval of each colour
+  float relative = 1, expected = 1; // relativeError() of the half-widths, and of what the pixel is expected to be off by
+  uint32_t samples = 0;
+  bool trusted = false;
+  bool constant = false; // nothing random, all samples equal: exact, unless an edge passes through a corner
+};
+
+// A sum over the colours of errors, over the sum of the colours; 0.01 each is added to these: errors of the dark are not blown
+// up. At most 1.
+float relativeError(double sum, const float colors[3]);
+
+struct ErrorSummary { // as in RTstats
+  double mean = 0, meanInterval = 0, halfWidth = 0, p99 = 0;
+  uint64_t pixels = 0, trusted = 0;
+};
+
+class ErrorMap {
+ public:
+  enum class Kind { none, summary, full }; // full: also what doubtConstants() needs
+  ErrorMap() = default;
+  ErrorMap(uint32_t width, uint32_t height, Kind kind);
+  bool empty() const { return relative_.empty(); }
+  void store(size_t pixel, const PixelError& e);
+  // A constant pixel beside pixels that differ from it is not known to be exact: the edge may cut a corner of it that no sample
+  // met. Its interval gets what the rule of three allows for, and it is not trusted. changed is called for each.
+  void doubtConstants(const std::function<void(size_t pixel, const float halfWidth[3])>& changed);
+  ErrorSummary summary() const;
+
+ private:
+  struct Seen {
+    float mean[3];
+    uint32_t samples; // 0: not finished
+    bool constant;
+  };
+  bool beside(uint32_t x, uint32_t y) const;
+  void range(uint32_t x, uint32_t y, float out[3]) const;
+  uint32_t width_ = 0, height_ = 0;
+  std::vector<float> relative_, expected_; // NaN: not finished; relative_ negative: not trusted
+  std::vector<Seen> seen_;
+};
+
+} // namespace openrt

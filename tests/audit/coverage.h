@@ -1,0 +1,39 @@
+// coverage.h: how often the error bars of pictures hold: small scenes of each kind of difficulty, rendered with many seeds and
+// compared with a long render of another seed. Through the public C API only. For the numeric tests (few seeds) and the program
+// `audit` (many). One context, on the calling thread.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace audit {
+
+struct Scenario {
+  std::string name, text;
+  int transport; // RT_TRANSPORT_*
+  int samples;   // a pixel
+  int reference; // samples of the long render; 0: `exact` instead
+  double exact;
+  void (*draw)(); // into the current context
+};
+const std::vector<Scenario>& scenarios();
+
+struct Coverage {
+  uint64_t pixels = 0, trusted = 0;  // over all seeds
+  uint64_t exact = 0, exactHeld = 0; // of the trusted ones, those with no error at all: not counted in the share
+  uint64_t held = 0, heldTrusted = 0;
+  double halfWidth = 0;                                     // mean of the trusted ones
+  double meanError = 0, promised = 0, promisedInterval = 0; // of whole pictures: what they were off by, and RTstats of one
+  // Share of the trusted intervals that held, and the half-width of its own 95 % interval (E. B. Wilson's score).
+  double share() const;
+  double shareInterval() const;
+  uint64_t intervals() const { return trusted - exact; }
+  double trustedShare() const { return pixels ? double(trusted) / double(pixels) : 0; }
+};
+
+// Renders 16x16 pixels with seeds 1 .. seeds. Quality other than samples, transport and seed is left as it is.
+Coverage measure(const Scenario& scenario, int seeds, int edge = 16);
+
+} // namespace audit
