@@ -5,13 +5,14 @@ PREFIX ?= /usr/local
 PYTHON ?= $(firstword $(wildcard /usr/bin/python3) python3)
 CLANG ?= 14
 FUZZ_SECONDS ?= 60
+AUDIT_SEEDS ?= 200
 CORPUS ?= $(or $(OPENRT_CORPUS),../shared/corpus)
 CONFIGURE = cmake --log-level=NOTICE -DPython_EXECUTABLE=$(PYTHON) -DPython3_EXECUTABLE=$(PYTHON) --preset
 R = build/release
 SOURCES = $(shell git ls-files '*.cpp' '*.h' '*.hpp' '*.c')
 export CTEST_OUTPUT_ON_FAILURE = 1
 
-.PHONY: build demo test install bench corpus fuzz asan tsan coverage format format-check tidy packages clean help
+.PHONY: build demo test install bench audit corpus fuzz asan tsan coverage format format-check tidy packages clean help
 
 help:
 	@sed -n 's/^## //p' Makefile
@@ -44,6 +45,11 @@ bench: build
 	@mkdir -p build/bench
 	@for b in $(R)/bin/bench_*; do [ -x $$b ] || continue; \
 	  $$b --benchmark_out=build/bench/$$(basename $$b).json --benchmark_out_format=json || exit 1; done
+
+## make audit         do the error bars hold? coverage over AUDIT_SEEDS (default 200) pictures of each scene
+audit:
+	@$(CONFIGURE) release && cmake --build $(R) -j $(JOBS) --target audit
+	@$(R)/bin/audit $(AUDIT_SEEDS)
 
 ## make corpus        table and contact sheets of a folder of VRML files (CORPUS=...) into build/corpus
 corpus: build

@@ -22,6 +22,8 @@ constexpr Channel table[] = {
     {"id", RT_NAME, 1, {"id"}, "number of the shape hit; the table of names is in the attribute idNames"},
     {"samples", RT_SAMPLES, 1, {"samples"}, "samples taken"},
     {"variance", RT_VARIANCE, 3, {"variance.R", "variance.G", "variance.B"}, "sample variance of the radiance"},
+    {"error", RT_ERROR, 3, {"error.R", "error.G", "error.B"}, "half-width of the 95 % interval of each colour"},
+    {"trust", RT_TRUST, 1, {"trust"}, "1 where that interval can be trusted, else 0"},
 };
 
 // The curve of IEC 61966-2-1, from linear to display values.

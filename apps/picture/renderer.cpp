@@ -187,6 +187,8 @@ struct Renderer::Impl {
     rtQuality(RT_SEED, settings.seed);
     rtQuality(RT_SHADOWS, settings.shadows ? 1 : 0);
     rtQuality(RT_TRANSPORT, settings.transport);
+    rtQualityf(RT_TARGET_ERROR, settings.error);
+    rtQualityf(RT_TIME_LIMIT, settings.timeLimit);
     throwOnError("frame");
   }
 

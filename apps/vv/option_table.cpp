@@ -95,7 +95,11 @@ const OptionInfo table[] = {
     {"--size", "WxH", "Picture", "Size in pixels (default 800x600).",
      [](Options& o, const std::string& v) { readSize(v, o.render.width, o.render.height); }},
     {"--channels", "LIST", "Picture",
-     "Channels of an EXR file, out of rgba, z, normal, albedo, position, id, samples, variance (default rgba).", setChannels},
+     "Channels of an EXR file, out of rgba, z, normal, albedo, position, id, samples, variance, error, trust (default "
+     "rgba). error and trust: the 95 % interval of each colour and whether it can be trusted; asking for them changes how the "
+     "samples "
+     "are made.",
+     setChannels},
     {"--colour,--color", "linear|vrml97", "Picture",
      "linear (default): colours of the file are decoded from sRGB, light adds up linearly, PNG, JPEG and PPM get the sRGB curve. "
      "vrml97: the standard's equation on the numbers as written, no curve anywhere.",
@@ -138,7 +142,16 @@ const OptionInfo table[] = {
      },
      true},
     {"--spp", "N", "Quality", "Samples per pixel, 1 to 65536 (default 16).",
-     [](Options& o, const std::string& v) { o.render.samples = int(readInteger(v, 1, 65536)); }},
+     [](Options& o, const std::string& v) { o.samples = int(readInteger(v, 1, 65536)); }},
+    {"--error", "E|E%", "Quality",
+     "Take as many samples in each part of the picture as it needs for a mean relative half-width E of the 95 % interval, at "
+     "most "
+     "--spp (here by default 4096).",
+     [](Options& o, const std::string& v) { o.render.error = readShare(v); }},
+    {"--time-limit", "SECONDS", "Quality",
+     "Take samples in rounds over the whole picture for about this time, at most --spp (here by default 65536). Such a picture "
+     "depends on the speed of the machine.",
+     [](Options& o, const std::string& v) { o.render.timeLimit = readNumber(v, 0, 1e6); }},
     {"--depth", "N", "Quality", "Surfaces a path may pass or bounce at, 0 to 10000 (default 25).",
      [](Options& o, const std::string& v) { o.render.depth = int(readInteger(v, 0, 10000)); }},
     {"--transport", "NAME", "Quality",

@@ -122,6 +122,8 @@ Options readCommandLine(int argc, char** argv) {
     for (size_t k = first; k < values[i].size(); ++k) apply(option, options, values[i][k]);
   }
   checkTogether(options);
+  const picture::RenderSettings& render = options.render;
+  options.render.samples = options.samples.value_or(render.timeLimit > 0 ? 65536 : render.error > 0 ? 4096 : render.samples);
   return options;
 }
 

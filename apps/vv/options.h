@@ -24,6 +24,7 @@ struct Options {
   std::string input; // "-": standard input; empty: none given
   std::vector<Output> outputs;
   picture::RenderSettings render;
+  std::optional<int> samples; // as asked for; render.samples is what follows
   picture::View view;
   std::optional<double> time; // seconds of the world's clock
   std::optional<FrameRange> frames;

@@ -22,45 +22,17 @@ using Json = nlohmann::ordered_json;
 // Names may hold bytes that are not UTF-8: JSON gets the replacement character for them.
 std::string dump(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; }
 
-// The 95 % interval of each pixel's mean from its sample variance, relative to the mean, over the pixels that are not black.
-// Samples are taken as independent; stratified ones do better.
-Json errorEstimate(const picture::Picture& picture) {
-  Json error = {
-      {"mean_rel", nullptr}, {"p99", nullptr}, {"pixels_trusted", nullptr}, {"level", 0.95}, {"method", "sample variance"}};
-  auto colours = picture.planes.find(RT_RGBA), variance = picture.planes.find(RT_VARIANCE),
-       samples = picture.planes.find(RT_SAMPLES);
-  const auto none = picture.planes.end();
-  if (colours == none || variance == none || samples == none) return error;
-  constexpr double quantile = 1.959964, trusted = 0.1;
-  std::vector<double> errors;
-  size_t good = 0;
-  const size_t pixels = samples->second.size();
-  for (size_t i = 0; i < pixels; ++i) {
-    double mean = 0, spread = 0;
-    for (size_t c = 0; c < 3; ++c) {
-      mean += double(colours->second[4 * i + c]) / 3;
-      spread += double(variance->second[3 * i + c]) / 3;
-    }
-    const double n = double(samples->second[i]);
-    if (!(n > 1)) continue;
-    if (!(mean > 0)) {
-      good += spread == 0;
-      continue;
-    }
-    const double half = quantile * std::sqrt(std::max(0.0, spread) / n) / mean;
-    if (!std::isfinite(half)) continue;
-    good += half <= trusted;
-    errors.push_back(half);
-  }
-  if (pixels) error["pixels_trusted"] = double(good) / double(pixels);
-  if (errors.empty()) return error;
-  double sum = 0;
-  for (double e : errors) sum += e;
-  error["mean_rel"] = sum / double(errors.size());
-  auto at = errors.begin() + std::ptrdiff_t(double(errors.size() - 1) * 0.99);
-  std::nth_element(errors.begin(), at, errors.end());
-  error["p99"] = *at;
-  return error;
+// What is said of the picture's error (openrt.h, RTstats): of the whole picture, relative.
+Json errorEstimate(const RTstats& s) {
+  const bool known = s.errorPixels > 0;
+  const auto value = [known](double x) { return known ? Json(x) : Json(nullptr); };
+  return {{"mean_rel", value(s.errorMean)},
+          {"mean_rel_interval", value(s.errorMeanInterval)},
+          {"half_width", value(s.errorHalfWidth)},
+          {"p99", value(s.errorP99)},
+          {"pixels_trusted", value(known ? double(s.errorTrusted) / double(s.errorPixels) : 0)},
+          {"level", s.errorLevel},
+          {"method", s.errorMethod}};
 }
 
 uint64_t peakMemory() {
@@ -154,7 +126,7 @@ void addMachine(Json& json, const Options& options, const picture::RenderResult&
   json["transport"] = {{"chosen", "direct"},
                        {"reason", "every surface is shaded by itself: light from the lamps, shadows, transparency"},
                        {"claim", options.render.shadows ? "direct light with shadows" : "direct light without shadows"}};
-  json["error"] = errorEstimate(result.picture);
+  json["error"] = errorEstimate(result.stats);
   json["memory"] = {{"peak_rss", peakMemory()}, {"bvh", s.bvhBytes}, {"scene", nullptr}};
   json["cluster"] = {{"workers", 0}, {"tiles", 0}, {"retries", 0}, {"bytes", 0}};
   json["machine"] = {{"isa", s.isa}, {"threads", s.threads}, {"embree", s.kernel}};

@@ -50,6 +50,14 @@ double readNumber(std::string_view text, double minimum, double maximum) {
   return value;
 }
 
+double readShare(std::string_view text) {
+  const bool percent = text.ends_with('%');
+  double value = 0;
+  if (!whole(text.substr(0, text.size() - (percent ? 1 : 0)), value) || !(value > 0 && value <= (percent ? 100 : 1)))
+    throw UsageError(fmt::format("a number above 0 up to 1, or up to 100%, was expected, not \"{}\"", text));
+  return percent ? value / 100 : value;
+}
+
 FrameRange readFrames(std::string_view text) {
   constexpr long long most = 10'000'000;
   FrameRange range;

@@ -22,10 +22,13 @@ Replicates replicatesOf(const edit::FrameSettingsT& frame, uint32_t samples, uin
 // Of 8x8 pixels: what is rare in one of them may be missing from its neighbours.
 struct Tails {
   double square2 = 0, fourth = 0; // sums over the pixels of (sum of squares)^2 / samples and of the sum of fourth powers
+  double skewness = 0;            // sum over the random pixels of |skewness of their replicates' means|
+  uint32_t varying = 0;
   float largest[3] = {};
 
   void add(const PixelSums& sums);
   double kurtosis() const { return square2 > 0 ? fourth / square2 : 0; }
+  double meanSkewness() const { return varying ? skewness / varying : 0; }
 };
 
 // Around: null where no tails were gathered: then there are no replicates either.

@@ -16,6 +16,7 @@ struct PixelSums { // of one pixel, samples added in their order
   double rgba[4] = {}, normal[3] = {}, albedo[3] = {};
   double first[3] = {}, delta[3] = {}, delta2[3] = {}; // sums of (x - first) and its square: no cancellation
   double closed[3] = {}, closed2[3] = {};              // over the complete replicates: sums of their delta and its square
+  double closedGrey[3] = {};                           // the same of red + green + blue: of it, its square, its cube
   double grey[3] = {};                                 // sums of (red + green + blue - first)^2, ^3 and ^4; see addTails()
   float depth = 0, position[3] = {}, name = 0;
   float largest[3] = {};

@@ -1,7 +1,6 @@
-// sampler.h: the points of a pixel's samples: a pure function of (pixel, sample, pair of dimensions, seed, size of a replicate). A
-// pair is a
-// (0,2)-sequence in base 2: Sobol's first two dimensions, Owen-scrambled by hashing as in B. Burley, "Practical Hash-based
-// Owen Scrambling", JCGT 9(4), 2020 (hash constants: N. Vegdahl's search).
+// sampler.h: the points of a pixel's samples: a pure function of (pixel, sample, pair of dimensions, seed, size of a replicate).
+// A pair is a (0,2)-sequence in base 2: Sobol's first two dimensions, Owen-scrambled by hashing as in B. Burley, "Practical
+// Hash-based Owen Scrambling", JCGT 9(4), 2020 (hash constants: N. Vegdahl's search).
 #pragma once
 
 #include <cstdint>

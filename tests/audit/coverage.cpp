@@ -117,10 +117,10 @@ void drawRoom() {
 
 const std::vector<Scenario> table = {
     {"edges", "stripes seen directly: the area's average alone", RT_TRANSPORT_DIRECT, 64, 16384, 0, drawEdges},
-    {"furnace", "a closed box that glows, closed form", RT_TRANSPORT_PATH, 64, 0, 1, drawFurnace},
+    {"furnace", "a closed box that glows, closed form", RT_TRANSPORT_PATH, 256, 0, 1, drawFurnace},
     {"lamp", "a floor under a large lamp", RT_TRANSPORT_PATH, 64, 16384, 0, drawLamp},
-    {"small lamp", "one path in fifty meets the lamp", RT_TRANSPORT_PATH, 256, 65536, 0, drawSmallLamp},
-    {"tiny lamp", "one path in a thousand meets the lamp", RT_TRANSPORT_PATH, 64, 65536, 0, drawTinyLamp},
+    {"small lamp", "a lamp that few directions meet", RT_TRANSPORT_PATH, 64, 65536, 0, drawSmallLamp},
+    {"tiny lamp", "a lamp that one direction in a thousand meets", RT_TRANSPORT_PATH, 64, 65536, 0, drawTinyLamp},
     {"room", "light between walls, edges, soft shadows", RT_TRANSPORT_PATH, 512, 16384, 0, drawRoom},
 };
 

@@ -151,7 +151,7 @@ def test_statistics(vv):
         "time": "parse graph map build first_pass render write total",
         "rays": "camera shadow secondary per_second",
         "transport": "chosen reason claim",
-        "error": "mean_rel p99 pixels_trusted level method",
+        "error": "mean_rel mean_rel_interval half_width p99 pixels_trusted level method",
         "memory": "peak_rss bvh scene",
         "cluster": "workers tiles retries bytes",
         "machine": "isa threads embree",

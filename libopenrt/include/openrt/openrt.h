@@ -328,8 +328,8 @@ enum {
  * RT_ERROR is what independent samples would have (usually too large), and not trusted.
  *
  * RT_TRUST is 0 with fewer than 8 replicates; where paths are random and all samples are equal, as in the dark (RT_ERROR is then
- * an upper bound: 3/N of the largest sample in the 8x8 pixels around); where few samples carry the sum, in the pixel or in the
- * 8x8 pixels around it.
+ * an upper bound: 3/N of the largest sample in the 8x8 pixels around); where few samples carry the sum in the 8x8 pixels around;
+ * where nothing is random and all samples are equal beside pixels that differ (an upper bound again: of a corner cut off).
  *
  * RT_TARGET_ERROR e: sample each part of the picture until the mean over its pixels of (RT_ERROR summed over the colours) /
  * (colours summed + 0.03), at most 1 a pixel, is about e, with at most RT_SAMPLES_PER_PIXEL samples. How many is decided by a

@@ -1,0 +1,191 @@
+// error_coverage.cpp: the promise of the error bars, checked: of the trusted 95 % intervals 93 to 97 % hold. Few seeds and small
+// pictures; `make audit` has many. And what a picture says of itself as a whole, and how frames stop.
+#include <cstring>
+
+#include "audit/coverage.h"
+#include "numeric/support.h"
+
+namespace numeric {
+namespace {
+
+class ErrorBars : public Scene {
+ protected:
+  static const audit::Scenario& scenario(const std::string& name) {
+    for (const audit::Scenario& s : audit::scenarios())
+      if (s.name == name) return s;
+    throw std::runtime_error(name);
+  }
+  // Scenes with a reference of their own are rendered more coarsely than by the audit.
+  static audit::Coverage measure(const std::string& name, int seeds, int reference, int edge) {
+    audit::Scenario s = scenario(name);
+    if (s.reference) s.reference = reference;
+    const audit::Coverage c = audit::measure(s, seeds, edge);
+    printf("%-10s %llu intervals, coverage %.4f +- %.4f, trusted %.3f\n", name.c_str(), (unsigned long long)c.intervals(),
+           c.share(), c.shareInterval(), c.trustedShare());
+    return c;
+  }
+  static void expectTrue(const audit::Coverage& c) {
+    const double slack = 1.5 * c.shareInterval(); // 3 standard errors
+    EXPECT_GT(c.intervals(), 1000u);
+    EXPECT_GT(c.share() + slack, .93);
+    EXPECT_LT(c.share() - slack, .97);
+  }
+  static std::vector<float> read(RTenum channel, size_t floats) {
+    std::vector<float> out(floats);
+    rtReadPixels(channel, out.data(), out.size());
+    return out;
+  }
+};
+
+TEST_F(ErrorBars, HoldUnderALamp) {
+  const audit::Coverage c = measure("lamp", 40, 8192, 8);
+  expectTrue(c);
+  EXPECT_GT(c.trustedShare(), .9);
+  EXPECT_NEAR(c.meanError, c.promised, .1 * c.promised); // of the whole picture
+}
+
+TEST_F(ErrorBars, HoldUnderASmallLamp) { expectTrue(measure("small lamp", 40, 8192, 8)); }
+
+TEST_F(ErrorBars, HoldAtEdges) {
+  const audit::Coverage c = measure("edges", 40, 8192, 8);
+  EXPECT_GT(c.share(), .93);
+  EXPECT_LT(double(c.exact - c.exactHeld), .01 * double(c.pixels));
+}
+
+TEST_F(ErrorBars, WhatOnlySomePathsMeetIsNotTrusted) { // lamps are not aimed at behind glass: paths must find them
+  const Shader floor("Diffuse");
+  place(square(floor));
+  Shader lamp("Diffuse");
+  lamp.set("emission", {1000, 1000, 1000}).set("reflectance", {0, 0, 0});
+  rtPushMatrix();
+  rtTranslated(0, 0, 1);
+  rtRotated(180, 1, 0, 0);
+  place(square(Shader("Glass"), 8));
+  rtTranslated(0, 0, -.1);
+  place(square(lamp, .05));
+  rtPopMatrix();
+  rtPushMatrix();
+  rtTranslated(0, 0, .5);
+  rtPerspective(40);
+  rtPopMatrix();
+  rtFrameBuffer(16, 16, RT_RGBA | RT_ERROR | RT_TRUST);
+  rtQuality(RT_TRANSPORT, RT_TRANSPORT_PATH);
+  rtQuality(RT_SAMPLES_PER_PIXEL, 64);
+  rtRender();
+  const std::vector<float> half = read(RT_ERROR, 3 * 256), trust = read(RT_TRUST, 256);
+  int trusted = 0;
+  for (size_t i = 0; i < 256; i++) {
+    EXPECT_GT(half[3 * i], 0);
+    trusted += trust[i] > 0;
+  }
+  EXPECT_LT(trusted, 26);
+}
+
+TEST_F(ErrorBars, DirectLightIsExactInsideASurface) {
+  Shader grey("Diffuse");
+  grey.set("reflectance", {.5, .5, .5});
+  place(square(grey));
+  use(tilted(30));
+  rtPushMatrix();
+  rtTranslated(0, 0, 10);
+  rtOrtho(1);
+  rtPopMatrix();
+  rtQuality(RT_SAMPLES_PER_PIXEL, 32);
+  rtFrameBuffer(8, 8, RT_RGBA | RT_ERROR | RT_TRUST);
+  rtRender();
+  for (float h : read(RT_ERROR, 3 * 64)) EXPECT_EQ(h, 0);
+  for (float t : read(RT_TRUST, 64)) EXPECT_EQ(t, 1);
+  EXPECT_EQ(stats().errorHalfWidth, 0);
+  EXPECT_EQ(stats().errorTrusted, 64u);
+}
+
+TEST_F(ErrorBars, ATargetIsReachedWithoutBias) {
+  const audit::Scenario& s = scenario("lamp");
+  s.draw();
+  rtQuality(RT_TRANSPORT, s.transport);
+  rtFrameBuffer(16, 16, RT_RGBA | RT_SAMPLES);
+  rtQuality(RT_SEED, 999);
+  rtQuality(RT_SAMPLES_PER_PIXEL, 4096);
+  rtRender();
+  const std::vector<float> truth = read(RT_RGBA, 4 * 256);
+  rtQualityf(RT_TARGET_ERROR, .08);
+  constexpr int seeds = 30;
+  std::vector<double> mean(256);
+  double square = 0, sum = 0, samples = 0;
+  for (int seed = 1; seed <= seeds; seed++) {
+    rtQuality(RT_SEED, seed);
+    rtRender();
+    EXPECT_LT(stats().errorHalfWidth, .1);
+    EXPECT_GT(stats().errorHalfWidth, .02) << "far more samples than needed";
+    const std::vector<float> rgba = read(RT_RGBA, 4 * 256);
+    double off = 0; // of the picture's mean
+    for (size_t i = 0; i < 256; i++) off += (double(rgba[4 * i]) - truth[4 * i]) / 256;
+    sum += off, square += off * off;
+    for (float n : read(RT_SAMPLES, 256)) samples += n / 256 / seeds;
+  }
+  const double m = sum / seeds, error = std::sqrt((square / seeds - m * m) / (seeds - 1));
+  EXPECT_NEAR(m, 0, 4 * error);
+  EXPECT_LT(samples, 4096);
+}
+
+TEST_F(ErrorBars, RoundsUnderATimeLimitAreReplicates) {
+  scenario("lamp").draw();
+  rtQuality(RT_TRANSPORT, RT_TRANSPORT_PATH);
+  rtFrameBuffer(32, 32, RT_RGBA | RT_ERROR | RT_TRUST | RT_SAMPLES);
+  rtQuality(RT_SAMPLES_PER_PIXEL, 65536);
+  rtQualityf(RT_TIME_LIMIT, .3);
+  rtRender();
+  const std::vector<float> samples = read(RT_SAMPLES, 1024), half = read(RT_ERROR, 3 * 1024);
+  for (float n : samples) EXPECT_EQ(n, samples[0]); // whole rounds
+  EXPECT_GE(samples[0], 1);
+  EXPECT_STREQ(stats().errorMethod, "replicated nets, Student's t");
+  rtQuality(RT_SAMPLES_PER_PIXEL, 64); // so many are taken, and no more
+  rtQualityf(RT_TIME_LIMIT, 600);
+  rtRender();
+  for (float n : read(RT_SAMPLES, 1024)) EXPECT_EQ(n, 64);
+  // The rounds are the very replicates of a frame without a limit, where their size is the same.
+  const std::vector<float> inRounds = read(RT_RGBA, 4096), halfInRounds = read(RT_ERROR, 3 * 1024);
+  rtQualityf(RT_TIME_LIMIT, 0);
+  rtRender();
+  EXPECT_EQ(inRounds, read(RT_RGBA, 4096));
+  EXPECT_EQ(halfInRounds, read(RT_ERROR, 3 * 1024));
+}
+
+TEST_F(ErrorBars, OneOrTwoThreadsGiveTheSameBytes) {
+  std::vector<float> first;
+  for (const char* threads : {"threads=1", "threads=2"}) {
+    RTcontext before = rtGetCurrent(), context = rtNewContext(threads);
+    scenario("room").draw();
+    rtQuality(RT_TRANSPORT, RT_TRANSPORT_PATH);
+    rtQuality(RT_SAMPLES_PER_PIXEL, 128);
+    rtQualityf(RT_TARGET_ERROR, .5);
+    rtFrameBuffer(40, 40, RT_RGBA | RT_ERROR | RT_TRUST);
+    rtRender();
+    std::vector<float> all = read(RT_RGBA, 4 * 1600);
+    for (RTenum channel : {RT_ERROR, RT_TRUST}) {
+      const std::vector<float> more = read(channel, channel == RT_ERROR ? 3 * 1600 : 1600);
+      all.insert(all.end(), more.begin(), more.end());
+    }
+    all.push_back(float(stats().errorMean));
+    if (first.empty()) first = all;
+    EXPECT_EQ(std::memcmp(first.data(), all.data(), all.size() * sizeof(float)), 0);
+    rtDeleteContext(context);
+    rtMakeCurrent(before);
+  }
+}
+
+TEST_F(ErrorBars, WrongValuesAreRefused) {
+  rtQualityf(RT_TARGET_ERROR, 1.5);
+  EXPECT_EQ(rtGetError(), RTenum(RT_INVALID_VALUE));
+  rtQualityf(RT_TARGET_ERROR, std::nan(""));
+  EXPECT_EQ(rtGetError(), RTenum(RT_INVALID_VALUE));
+  rtQualityf(RT_TIME_LIMIT, -1);
+  EXPECT_EQ(rtGetError(), RTenum(RT_INVALID_VALUE));
+  rtQualityf(RT_SEED, 1);
+  EXPECT_EQ(rtGetError(), RTenum(RT_INVALID_ENUM));
+  rtQuality(RT_REPLICATES, 1025);
+  EXPECT_EQ(rtGetError(), RTenum(RT_INVALID_VALUE));
+}
+
+} // namespace
+} // namespace numeric
