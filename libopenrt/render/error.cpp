@@ -66,7 +66,9 @@ double student95(uint32_t degreesOfFreedom) {
   if (degreesOfFreedom < std::size(table)) return table[degreesOfFreedom];
   // M. Abramowitz, I. Stegun, "Handbook of Mathematical Functions", 26.7.5
   const double z = 1.959963985, v = degreesOfFreedom, z3 = z * z * z, z5 = z3 * z * z;
-  return z + (z3 + z) / (4 * v) + (5 * z5 + 16 * z3 + 3 * z) / (96 * v * v);
+  const double first = (z3 + z) / 4, second = (5 * z5 + 16 * z3 + 3 * z) / 96;
+  const double third = (3 * z5 * z * z + 19 * z5 + 17 * z3 - 15 * z) / 384;
+  return z + first / v + second / (v * v) + third / (v * v * v);
 }
 
 bool wantsError(const edit::FrameSettingsT& frame) {

@@ -337,7 +337,7 @@ enum {
  *
  * RT_TIME_LIMIT s: rounds over the whole picture, each one replicate, until s seconds have gone by since the frame was started
  * or RT_SAMPLES_PER_PIXEL are taken. A round is not broken off, so the limit is kept to about a thirtieth; at least one round is
- * made. Such a picture depends on the machine's speed; a recording of it is replayed under the same limit, not to the same bytes. */
+ * made. Such a picture depends on the machine's speed; a recording of it is not replayed to the same bytes. */
 /* Size in pixels (1 .. 65536 each, at most 2^28 in all) and channels of the following frames. */
 RT_API void rtFrameBuffer(int width, int height, uint32_t channels);
 RT_API void rtQuality(RTenum name, int value);
