@@ -72,7 +72,9 @@ constexpr Interface interfaces[] = {
     {"6.54", "VisibilitySensor", 0, 3, 0, 3},
     {"6.55", "WorldInfo", 0, 0, 2, 0},
     {"", "ORTAppearance", 0, 4, 0, 0},
+    {"", "ORTInstance", 2, 1, 2, 0},
     {"", "ORTShader", 0, 3, 0, 0},
+    {"", "ORTStatic", 2, 1, 2, 0},
 };
 
 int count(const NodeType& type, Access access) {
@@ -253,8 +255,8 @@ TEST(Nodes, RolesAreThoseOfTheStandard) {
   std::map<std::string, int> roles;
   for (const NodeType* type : nodeTypes())
     for (const std::string& role : type->abstract) ++roles[role];
-  EXPECT_EQ(roles["child"], 32); // 4.6.5
-  EXPECT_EQ(roles["grouping"], 8);
+  EXPECT_EQ(roles["child"], 32 + 2); // 4.6.5; ORTStatic, ORTInstance
+  EXPECT_EQ(roles["grouping"], 8 + 2);
   EXPECT_EQ(roles["geometry"], 10);
   EXPECT_EQ(roles["texture"], 3);
   EXPECT_EQ(roles["light"], 3);
