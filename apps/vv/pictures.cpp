@@ -88,6 +88,7 @@ class Pictures {
 
   int make() {
     picture::RenderSettings settings = options_.render;
+    if (!options_.stats.empty() && !options_.isSequence()) settings.channels |= RT_VARIANCE; // then RTstats has the error
     WorldClock clock(browser_, options_.fps);
     const Timeline timeline(options_);
     if (!clock.advance(timeline[0].time)) return stopped("vv: interrupted before the first picture");

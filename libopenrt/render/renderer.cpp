@@ -15,8 +15,8 @@ namespace openrt {
 namespace {
 
 ErrorMap::Kind errorsOf(const edit::FrameSettingsT& frame) {
-  if (frame.samples == 1 && !wantsError(frame)) return ErrorMap::Kind::none;
-  return wantsError(frame) ? ErrorMap::Kind::full : ErrorMap::Kind::summary;
+  if (wantsError(frame)) return ErrorMap::Kind::full;
+  return frame.samples > 1 && (frame.channels & RT_VARIANCE) ? ErrorMap::Kind::summary : ErrorMap::Kind::none;
 }
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }

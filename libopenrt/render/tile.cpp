@@ -70,7 +70,7 @@ void TileRenderer::store(const Tile& tile) {
   std::unique_lock<std::mutex> lock;
   if (filmLock_) lock = std::unique_lock(*filmLock_);
   halfWidth_ = 0;
-  if (single_ && !wantsError_) {
+  if (film_.errors().empty()) { // nobody asks
     for (size_t i = 0; i < pixels_.size(); i++) film_.store(pixels_[i] % width, pixels_[i] / width, sums_[i]);
     return;
   }

@@ -379,7 +379,7 @@ typedef struct RTstats {
   double errorHalfWidth;    /* mean over the pixels of RT_ERROR; what RT_TARGET_ERROR is compared with */
   double errorP99;          /* 99 % of the pixels have a smaller RT_ERROR */
   double errorLevel;        /* 0.95 */
-  uint64_t errorPixels;     /* pixels that these numbers are about: those finished, none with one sample a pixel */
+  uint64_t errorPixels;     /* pixels that these numbers are about: those finished; 0 without RT_VARIANCE or RT_ERROR */
   uint64_t errorTrusted;    /* of them with RT_TRUST 1 */
   char errorMethod[48];     /* "replicated nets, Student's t", "sample variance", "" */
 } RTstats;
