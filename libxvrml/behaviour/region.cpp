@@ -22,13 +22,11 @@ struct RegionState : NodeState {
 
 struct Region {
   Vector center, half;
-  bool senses; // clause 6.38: a box without any extent does not
 };
 
 template <class Sensor> Region regionOf(const Sensor& s) {
   const Vector size = vector(s.size);
-  return {vector(s.center), Vector(std::abs(size.x), std::abs(size.y), std::abs(size.z)) / 2,
-          s.enabled && (size.x != 0 || size.y != 0 || size.z != 0)};
+  return {vector(s.center), Vector(std::abs(size.x), std::abs(size.y), std::abs(size.z)) / 2};
 }
 
 Rotation rotationOf(const Matrix& m) {
@@ -59,9 +57,11 @@ bool viewerInside(const Node& node, const Region& region, const Matrix& view, Ma
 
 void lookProximity(Events& events, Node& node) {
   auto& state = static_cast<RegionState&>(*events.state(node));
-  const Region region = regionOf(static_cast<nodes::ProximitySensor&>(node));
+  const auto& sensor = static_cast<nodes::ProximitySensor&>(node);
+  const Region region = regionOf(sensor);
+  const bool senses = sensor.enabled && sensor.size != Vec3f(); // 6.38: a box without any extent senses nothing
   Matrix viewer;
-  const bool inside = region.senses && viewerInside(node, region, interactionOf(events).viewer.view(), viewer);
+  const bool inside = senses && viewerInside(node, region, interactionOf(events).viewer.view(), viewer);
   const bool entered = inside && !state.active;
   if (inside != state.active) setActive(events, node, inside);
   if (!inside) return;
@@ -110,9 +110,10 @@ bool seen(const Region& region, const Matrix& toCamera, double fovy, double aspe
 
 void lookVisibility(Events& events, Node& node) {
   const Interaction& interaction = interactionOf(events);
-  const Region region = regionOf(static_cast<nodes::VisibilitySensor&>(node));
+  const auto& sensor = static_cast<nodes::VisibilitySensor&>(node);
+  const Region region = regionOf(sensor);
   bool visible = false;
-  if (region.senses) {
+  if (sensor.enabled) { // 6.54 has no rule on a box without extent: it is a point
     const CameraSettings camera = interaction.viewer.camera(interaction.aspect);
     const Matrix view = fromArray(camera.matrix);
     Matrix toCamera;

@@ -179,11 +179,18 @@ TEST(VisibilitySensor, ABoxThatNoCornerPutsBesideThePictureIsNotSeenFromOutside)
   EXPECT_EQ(r.get("S", "isActive"), "FALSE");
 }
 
-TEST(VisibilitySensor, DisabledOrWithoutSizeItSensesNothing) {
-  Region r("DEF S VisibilitySensor { enabled FALSE size 1 1 1 } DEF O VisibilitySensor {}");
-  r.log("O", "isActive");
+TEST(VisibilitySensor, DisabledItSensesNothing) {
+  Region r("DEF S VisibilitySensor { enabled FALSE size 1 1 1 }");
+  r.log("S", "isActive");
   r.browser.tick(1);
   EXPECT_EQ(r.take(), Log{});
+}
+
+TEST(VisibilitySensor, WithoutSizeItIsAPoint) {
+  Region r("DEF S VisibilitySensor {} DEF B VisibilitySensor { center 0 0 100 }");
+  r.browser.tick(1);
+  EXPECT_EQ(r.get("S", "isActive"), "TRUE");
+  EXPECT_EQ(r.get("B", "isActive"), "FALSE");
 }
 
 } // namespace
