@@ -2,7 +2,6 @@
 #include "xvrml/node_plugin.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <iterator>
 #include <mutex>
@@ -12,19 +11,12 @@
 #include <fmt/format.h>
 
 #include "nodes/registry.h"
+#include "plugin_files.h"
 
 namespace xvrml {
 namespace {
 
 namespace fs = std::filesystem;
-
-void appendFolders(std::vector<std::string>& folders, std::string_view list) {
-  while (!list.empty()) {
-    const size_t end = std::min(list.find(':'), list.size());
-    if (end > 0) folders.emplace_back(list.substr(0, end));
-    list.remove_prefix(std::min(end + 1, list.size()));
-  }
-}
 
 std::string sizesText(const uint32_t (&sizes)[8]) { return fmt::format("{}", fmt::join(sizes, " ")); }
 
@@ -95,17 +87,8 @@ std::vector<fs::path> librariesOf(const std::string& folder) {
 } // namespace
 
 std::vector<std::string> nodePluginFolders(std::string_view first) {
-  std::vector<std::string> folders;
-  appendFolders(folders, first);
-  if (const char* path = std::getenv("XVRML_NODE_PATH")) appendFolders(folders, path);
-  Dl_info info{};
   static const char here = 0;
-  std::error_code error;
-  if (::dladdr(&here, &info) != 0 && info.dli_fname) {
-    const fs::path library = fs::canonical(info.dli_fname, error);
-    if (!error) folders.push_back((library.parent_path() / "xvrml" / "nodes").string());
-  }
-  return folders;
+  return plugin_files::folders(first, "XVRML_NODE_PATH", "xvrml/nodes", &here);
 }
 
 std::vector<std::string> loadNodePlugins(std::string_view first) {
@@ -114,7 +97,12 @@ std::vector<std::string> loadNodePlugins(std::string_view first) {
   const std::scoped_lock lock(mutex);
   std::vector<std::string> refused;
   for (const std::string& folder : nodePluginFolders(first)) {
-    for (const fs::path& file : librariesOf(folder)) {
+    const std::vector<fs::path> files = librariesOf(folder);
+    if (!files.empty() && !plugin_files::trusted(folder)) {
+      refused.push_back(fmt::format("node plug-ins in {} are refused: others may write to the folder", folder));
+      continue;
+    }
+    for (const fs::path& file : files) {
       std::error_code error;
       const fs::path canonical = fs::canonical(file, error);
       if (!seen.insert(error ? file.string() : canonical.string()).second) continue;

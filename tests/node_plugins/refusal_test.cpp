@@ -1,5 +1,8 @@
 // refusal_test.cpp: plug-ins that do not fit are refused with a line that names what they have and what was expected.
+#include <filesystem>
+
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "xvrml/node_plugin.h"
 
@@ -28,5 +31,17 @@ TEST(NodePluginRefusals, EachNamesBothSides) {
 }
 
 TEST(NodePluginRefusals, AMissingFolderIsNone) { EXPECT_TRUE(loadNodePlugins("/nonexistent/folder").empty()); }
+
+TEST(NodePluginRefusals, FoldersThatOthersMayWriteTo) {
+  namespace fs = std::filesystem;
+  const fs::path folder = fs::path(testing::TempDir()) / ("node_plugins_" + std::to_string(::getpid()));
+  fs::create_directories(folder);
+  fs::permissions(folder, fs::perms::all);
+  fs::copy_file(fs::path(BAD_PLUGINS) / "MAGIC.so", folder / "x.so", fs::copy_options::overwrite_existing);
+  const std::vector<std::string> refused = loadNodePlugins(folder.string());
+  fs::remove_all(folder);
+  ASSERT_EQ(refused.size(), 1u);
+  EXPECT_NE(refused[0].find("others may write to the folder"), refused[0].npos) << refused[0];
+}
 
 } // namespace

@@ -60,8 +60,8 @@ inline constexpr const char* nodePluginSymbol = "xvrmlNodePlugin";
 
 // --- For programs ---
 
-// Where plug-ins are looked for: the folders given (separated by colons), those of $XVRML_NODE_PATH, and xvrml/nodes beside the
-// library.
+// Where plug-ins are looked for: the folders given (separated by colons), those of $XVRML_NODE_PATH, then xvrml/nodes beside the
+// library and beside the program, and in ../lib. Folders that others may write to are refused.
 std::vector<std::string> nodePluginFolders(std::string_view first);
 
 // Loads all plug-ins (*.so) of these folders, in the order of the folders and of their names; one that is loaded already is
