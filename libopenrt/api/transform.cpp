@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "api/errors.h"
+#include "rotation.h"
 
 namespace openrt {
 namespace {
@@ -70,24 +71,8 @@ Matrix4d rotation(double degrees, double x, double y, double z) {
   require(allFinite({degrees, x, y, z}), RT_INVALID_VALUE, "angle or axis is not finite");
   const Vec3d a = unit({x, y, z}, "the axis of rotation is 0 0 0");
   const auto [s, c] = sineCosineOfDegrees(degrees);
-  const double d = 1 - c; // Rodrigues: c I + s [a]x + (1 - c) a a^T
   Matrix4d r;
-  r.m = {a.x * a.x * d + c,
-         a.y * a.x * d + a.z * s,
-         a.z * a.x * d - a.y * s,
-         0,
-         a.x * a.y * d - a.z * s,
-         a.y * a.y * d + c,
-         a.z * a.y * d + a.x * s,
-         0,
-         a.x * a.z * d + a.y * s,
-         a.y * a.z * d - a.x * s,
-         a.z * a.z * d + c,
-         0,
-         0,
-         0,
-         0,
-         1};
+  r.m = rotationMatrix<decltype(r.m)>(a, s, c);
   return r;
 }
 

@@ -6,6 +6,8 @@
 #include <cstring>
 #include <numbers>
 
+#include "rotation.h"
+
 namespace xvrml {
 
 Matrix fromArray(const double m[16]) {
@@ -36,24 +38,7 @@ Matrix rotation(const Vector& axis, double angle) {
   const double length = axis.length();
   if (!(length > 0) || !std::isfinite(length) || !std::isfinite(angle) || angle == 0) return {};
   const Vector a = axis / length;
-  const double c = std::cos(angle), s = std::sin(angle), d = 1 - c;
-  // Rodrigues' formula; rows here are the images of the axes.
-  return {a.x * a.x * d + c,
-          a.y * a.x * d + a.z * s,
-          a.z * a.x * d - a.y * s,
-          0,
-          a.x * a.y * d - a.z * s,
-          a.y * a.y * d + c,
-          a.z * a.y * d + a.x * s,
-          0,
-          a.x * a.z * d + a.y * s,
-          a.y * a.z * d - a.x * s,
-          a.z * a.z * d + c,
-          0,
-          0,
-          0,
-          0,
-          1};
+  return rotationMatrix<Matrix>(a, std::sin(angle), std::cos(angle));
 }
 
 Matrix rotation(const Rotation& r) { return rotation(Vector(r.x, r.y, r.z), r.angle); }
