@@ -157,6 +157,11 @@ class CommitMaker {
       e.shader = scene_.defaultShader.shader;
       add(e);
     }
+    if (scene_.transport.dirty) {
+      edit::TransportT e;
+      e.shader = scene_.transport.shader;
+      add(e);
+    }
     if (scene_.frameDirty) add(edit::FrameSettingsT(scene_.frame));
   }
 
@@ -177,7 +182,7 @@ class CommitMaker {
     settleTable(scene_.shaders, [](ShaderState& s) { s.parameters.clear(); });
     settleTable(scene_.textures, [](TextureState& s) { s.texels.reset(); });
     settleTable(scene_.lights, [](LightState&) {});
-    scene_.camera.dirty = scene_.environment.dirty = scene_.defaultShader.dirty = scene_.frameDirty = false;
+    scene_.camera.dirty = scene_.environment.dirty = scene_.defaultShader.dirty = scene_.transport.dirty = scene_.frameDirty = false;
   }
 
   SceneState& scene_;

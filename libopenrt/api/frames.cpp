@@ -48,7 +48,7 @@ void setQuality(Context& c, RTenum name, int value) {
     frame.shadows = value == 1;
     break;
   case RT_TRANSPORT:
-    within(RT_TRANSPORT_AUTO, RT_TRANSPORT_PATH);
+    within(RT_TRANSPORT_AUTO, RT_TRANSPORT_LIGHT);
     frame.transport = static_cast<uint8_t>(value);
     break;
   case RT_REPLICATES:
@@ -71,6 +71,14 @@ void setQuality(Context& c, RTenum name, double value) {
   case RT_TIME_LIMIT:
     within(maxTimeLimit);
     frame.timeLimit = static_cast<float>(value);
+    break;
+  case RT_ENERGY_CUT:
+    within(1);
+    frame.energyCut = static_cast<float>(value);
+    break;
+  case RT_CLAMP:
+    within(std::numeric_limits<float>::max());
+    frame.clamp = static_cast<float>(value);
     break;
   default: fail(RT_INVALID_ENUM, "unknown quality " + std::to_string(name));
   }

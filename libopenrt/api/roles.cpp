@@ -81,6 +81,13 @@ void rtUseEnvironment(RTid shader) {
   });
 }
 
+void rtUseTransport(RTid shader) {
+  guarded("rtUseTransport", [&](Context& c) {
+    c.scene.requireKind(shader, RTS_TRANSPORT);
+    c.scene.setRole(c.scene.transport, shader, Matrix4d());
+  });
+}
+
 void rtDefaultShader(RTid shader) {
   guarded("rtDefaultShader", [&](Context& c) {
     c.scene.requireKind(shader, RTS_SURFACE);

@@ -37,7 +37,7 @@ TextureState& SceneState::texture(RTid id) { return lookup(textures, id, "a text
 LightState& SceneState::light(RTid id) { return lookup(lights, id, "a light"); }
 
 void SceneState::requireKind(RTid id, RtsKind kind) {
-  static const char* const names[] = {"", "surface", "light", "camera", "environment"};
+  static const char* const names[] = {"", "surface", "light", "camera", "environment", "transport"};
   if (id == 0) return;
   const RtsClass& table = classOf(shader(id));
   if (table.kind != kind)
@@ -175,7 +175,7 @@ void SceneState::deleteShader(RTid id) {
     instance.shader = 0;
     instances.touch(instanceId, instance);
   }
-  for (RoleState* role : {&camera, &environment, &defaultShader})
+  for (RoleState* role : {&camera, &environment, &defaultShader, &transport})
     if (role->shader == id) *role = {0, Matrix4d(), true};
   shaders.erase(id, state);
 }

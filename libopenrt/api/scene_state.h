@@ -7,7 +7,7 @@
 //   3. ShaderClass, Shader, Parameter
 //   4. Object                                 (replaces; its former children were deleted in 1)
 //   5. Instance                               new and changed ones, of the scene and of objects
-//   6. Light, Camera, Environment, DefaultShader, FrameSettings
+//   6. Light, Camera, Environment, DefaultShader, Transport, FrameSettings
 //   7. DeleteObject, DeleteShader, DeleteTexture
 // An edit may keep naming a deleted thing: a shader of geometry is then the default one, a texture is texture 0, a light
 // whose scope is gone shines on nothing. A commit carries the arrays that it names for the first time; an array lives in a
@@ -145,7 +145,7 @@ class SceneState {
   Table<ShaderState> shaders;
   Table<TextureState> textures;
   Table<LightState> lights;
-  RoleState camera, environment, defaultShader;
+  RoleState camera, environment, defaultShader, transport;
   edit::FrameSettingsT frame;
   bool frameDirty = false;
 

@@ -124,6 +124,11 @@ void Scene::applyEdit(const edit::AnyUnion& any, SceneChanges& changes) {
     defaultShader = any.AsDefaultShader()->shader;
     changes.shaders = true;
     break;
+  case Any::Transport:
+    transport = any.AsTransport()->shader;
+    changes.frame = true;
+    break;
+  case Any::ReloadShaders: changes.shaders = true; break;
   case Any::FrameSettings:
     frame = *any.AsFrameSettings();
     changes.frame = true;

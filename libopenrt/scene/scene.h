@@ -90,7 +90,7 @@ class Scene {
   std::map<uint32_t, Instance> instances;
   std::map<uint32_t, Light> lights;
   Role camera, environment;
-  uint32_t defaultShader = 0;
+  uint32_t defaultShader = 0, transport = 0;
   edit::FrameSettingsT frame;
 
   // Ids of the instances placed in an object (0: in the scene), in order.

@@ -70,6 +70,10 @@ void checkParameters(const RtsClass& shaderClass, const std::string& where) {
     checkParameter(param, shaderClass.paramSize, where);
     if (!names.insert(param.name).second) throw std::runtime_error(where + ": two parameters called " + param.name);
     ranges.emplace_back(param.offset, param.offset + parameterBytes(param.type));
+    const uint8_t frequency = shaderClass.frequency ? shaderClass.frequency[i] : uint8_t(RTS_PER_SHADER);
+    const bool numbers = param.type >= RTS_FLOAT && param.type <= RTS_MATRIX;
+    if (frequency > RTS_PER_VERTEX || (frequency != RTS_PER_SHADER && !numbers))
+      throw std::runtime_error(where + ": parameter " + param.name + ": cannot change that often");
   }
   std::sort(ranges.begin(), ranges.end());
   for (size_t i = 1; i < ranges.size(); i++)
@@ -83,6 +87,7 @@ void checkFunctions(const RtsClass& shaderClass, const std::string& where) {
   case RTS_LIGHT: missing = shaderClass.illuminate ? nullptr : "illuminate"; break;
   case RTS_CAMERA: missing = shaderClass.generate ? nullptr : "generate"; break;
   case RTS_ENVIRONMENT: break; // both of its functions may be absent
+  case RTS_TRANSPORT: missing = shaderClass.radiance ? nullptr : "radiance"; break;
   default: throw std::runtime_error(where + ": unknown kind " + std::to_string(static_cast<unsigned>(shaderClass.kind)));
   }
   if (missing) throw std::runtime_error(where + ": lacks the function " + missing);

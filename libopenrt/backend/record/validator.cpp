@@ -131,11 +131,13 @@ void CommitValidator::check(const edit::FrameSettingsT& frame) {
              uint64_t(frame.width) * frame.height <= uint64_t(1) << 28,
          "a frame of an impossible size");
   demand(frame.channels != 0 && (frame.channels & ~allChannels) == 0, "a frame with unknown channels");
-  demand(frame.samples >= 1 && frame.samples <= 65536 && frame.depth <= 10000 && frame.transport <= RT_TRANSPORT_PATH &&
+  demand(frame.samples >= 1 && frame.samples <= 65536 && frame.depth <= 10000 && frame.transport <= RT_TRANSPORT_LIGHT &&
              frame.replicates <= maxReplicates,
          "a frame of an impossible quality");
   demand(frame.targetError >= 0 && frame.targetError <= 1 && frame.timeLimit >= 0 && frame.timeLimit <= maxTimeLimit,
          "a frame of an impossible error or time limit");
+  demand(frame.energyCut >= 0 && frame.energyCut <= 1 && frame.clamp >= 0 && std::isfinite(frame.clamp),
+         "a frame of an impossible energy cut or clamp");
   hasFrame_ = true;
 }
 
@@ -179,6 +181,10 @@ void CommitValidator::checkEdit(const edit::AnyUnion& any, const Commit& commit)
     if (any.AsDefaultShader()->shader != 0) needShader(any.AsDefaultShader()->shader, RTS_SURFACE);
     return;
   case Any::FrameSettings: return check(*any.AsFrameSettings());
+  case Any::Transport:
+    if (any.AsTransport()->shader != 0) needShader(any.AsTransport()->shader, RTS_TRANSPORT);
+    return;
+  case Any::ReloadShaders: return;
   case Any::NONE: break;
   }
   refuse("an unknown kind of edit");

@@ -224,8 +224,20 @@ RT_API void rtParameter16f(int handle, const float m[16]);
 RT_API void rtParameterfv(int handle, size_t count, const float* values);
 RT_API void rtParameterString(int handle, const char* utf8);
 RT_API void rtParameterTexture(int handle, RTid texture);
+/* Parameters that a class declares per triangle or per vertex (RTparameterInfo.frequency): between rtBegin and rtEnd the calls
+ * above set the value for the triangles or vertices that follow, of this object alone; the latched shader's class is meant.
+ * Until the first such call, and outside, the shader's own value holds. For arrays: values by vertex (RT_PER_TRIANGLE: by
+ * triangle) for rtDrawArrays and rtDrawElements with the bound shader; floats only; stride in bytes, 0 for tightly packed; NULL
+ * turns it off. */
+RT_API void rtParameterPointer(int handle, size_t stride, const float* pointer);
+/* Loads the libraries of shader classes anew whose files have changed; returns how many. Shaders keep the parameters whose names
+ * and types are still declared. A library that does not load, or lost a class in use, is RT_PLUGIN_ERROR and stays as it was. */
+RT_API int rtReloadShaders(void);
+/* "CLASS of LIBRARY" whose function runs on this thread at this moment, or NULL: for handlers of crashes. Async-signal-safe. */
+RT_API const char* rtRunningShader(void);
 
-enum { RT_SURFACE = 1, RT_LIGHT = 2, RT_CAMERA = 3, RT_ENVIRONMENT = 4 };
+enum { RT_SURFACE = 1, RT_LIGHT = 2, RT_CAMERA = 3, RT_ENVIRONMENT = 4, RT_TRANSPORT_SHADER = 5 };
+enum { RT_PER_SHADER = 0, RT_PER_TRIANGLE = 1, RT_PER_VERTEX = 2 };
 enum {
   RT_PARAM_INT = 1,
   RT_PARAM_FLOAT,
@@ -244,6 +256,7 @@ typedef struct RTparameterInfo {
   float defaultValue[16];
   float minimum, maximum; /* inclusive; -FLT_MAX and FLT_MAX where there is none */
   const char* text;
+  RTenum frequency; /* RT_PER_*: how often its value may change */
 } RTparameterInfo;
 /* Kind (RT_SURFACE ...) and number of parameters of a class; either pointer may be NULL. */
 RT_API void rtGetShaderClass(RTid shaderClass, RTenum* kind, int* parameters);
@@ -262,6 +275,8 @@ RT_API void rtRemoveLight(RTid light);
 RT_API void rtUseCamera(RTid shader);
 /* What rays see that hit nothing, and the medium between the camera and what it sees. 0 removes it. */
 RT_API void rtUseEnvironment(RTid shader);
+/* Who follows light: a transport shader instead of RT_TRANSPORT; 0 removes it. */
+RT_API void rtUseTransport(RTid shader);
 /* Surface shader of geometry that has none; 0: the stock class VRML97 with its defaults. */
 RT_API void rtDefaultShader(RTid shader);
 /* Multiply the current matrix by the camera-to-world matrix of gluLookAt's arguments (for rtUseCamera). */
@@ -309,14 +324,20 @@ enum {
   RT_TRANSPORT = 5,         /* one of RT_TRANSPORT_* below, default RT_TRANSPORT_AUTO */
   RT_REPLICATES = 6,        /* independent parts of a pixel's samples, 1 .. 1024; 0 (default): as below */
   RT_TARGET_ERROR = 7,      /* rtQualityf: 0 .. 1, 0 (default): none */
-  RT_TIME_LIMIT = 8         /* rtQualityf: seconds, 0 .. 1e6, 0 (default): none */
+  RT_TIME_LIMIT = 8,        /* rtQualityf: seconds, 0 .. 1e6, 0 (default): none */
+  RT_ENERGY_CUT = 9,        /* rtQualityf: whitted: branches that carry less of the camera ray end, 0 .. 1, default 1/4096 */
+  RT_CLAMP = 10             /* rtQualityf: a sample's radiance is at most this by colour; 0 (default): no limit. Biased: what is
+                               clipped is counted in RTstats.clipped */
 };
 /* How light is followed from a surface whose shader answers in lobes (openrts.h). */
 enum {
-  RT_TRANSPORT_AUTO = 0,    /* whitted */
+  RT_TRANSPORT_AUTO = 0,    /* what the shaders in the scene ask for, RTstats.transport says which: path where one emits, is glossy
+                               or asks for global light; whitted where one is a mirror or clear; direct without */
   RT_TRANSPORT_DIRECT = 1,  /* light from the lights alone; no mirror images, nothing behind glass */
   RT_TRANSPORT_WHITTED = 2, /* and the whole tree of reflections and refractions; no randomness */
-  RT_TRANSPORT_PATH = 3     /* and light between diffuse surfaces: path tracing, noisy, unbiased */
+  RT_TRANSPORT_PATH = 3,    /* and light between diffuse surfaces: path tracing, noisy, unbiased */
+  RT_TRANSPORT_LIGHT = 4    /* path; what lamps send through mirrors and lenses to surfaces that the camera sees directly is followed
+                               from the lamps: caustics, also of lights without extent */
 };
 /* Error bars. The mean over the pixel's area and over all paths lies, with a probability of 95 % for each colour by itself,
  * within RT_RGBA +- RT_ERROR. Where a transport takes no random decision (direct, whitted) only the mean over the area is
@@ -382,6 +403,16 @@ typedef struct RTstats {
   uint64_t errorPixels;     /* pixels that these numbers are about: those finished; 0 without RT_VARIANCE or RT_ERROR */
   uint64_t errorTrusted;    /* of them with RT_TRUST 1 */
   char errorMethod[48];     /* "replicated nets, Student's t", "sample variance", "" */
+  RTenum transport;         /* RT_TRANSPORT_* that made the last frame */
+  char transportReason[96]; /* why, for people */
+  /* What is left out, mean over the pixels of the sum over the colours: no error bar covers it. */
+  double cutByDepth;        /* throughput of paths that the depth limit ended: times the radiance beyond it is the loss */
+  double cutByEnergy;       /* the same of branches that RT_ENERGY_CUT ended */
+  double clipped;           /* radiance that RT_CLAMP has taken away */
+  uint64_t unreachedLights; /* lights without extent in a path-traced scene with mirrors or glass: what they send by way of these is
+                               seen by RT_TRANSPORT_LIGHT alone; 0 there */
+  uint64_t shaderFaults;    /* hits at which a shader answered with NaN or infinity; taken as 0, the log names the class */
+  uint64_t wrongHits;       /* hits on slivers that a check in double precision rejected */
 } RTstats;
 RT_API void rtGetStats(RTstats* stats);
 
@@ -403,6 +434,10 @@ typedef struct RThit {
                          it belongs to; degenerate ones do not count */
   uint64_t userData;
 } RThit;
+/* What the camera sees at x, y (pixels from the top left corner of the frame buffer), through the middle of its lens. hit as by
+ * rtCastRays, t in world units from the camera ray's origin. Returns 1, or 0 where nothing is hit (t is infinite). Needs a frame
+ * buffer and a camera (else RT_INVALID_OPERATION). */
+RT_API int rtPick(double x, double y, RThit* hit);
 /* Nearest hits of count rays. A ray that is not finite hits nothing and is counted. Rays are in world coordinates. */
 RT_API void rtCastRays(size_t count, const RTray* rays, RThit* hits);
 /* occluded[i] = 1 if anything lies between tnear and tfar. */

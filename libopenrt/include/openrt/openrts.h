@@ -1,10 +1,10 @@
 /* openrts.h: OpenRTS, the shader SDK of OpenRT (C99, needs nothing but itself; C++ authors see openrts.hpp).
  *
  * A plug-in is a shared library that exports one constant, `rtsPlugin`, and links against nothing of OpenRT: what it needs
- * of the host comes as a table of functions. A plug-in has classes: surface shaders, lights, cameras, environments. Every
- * function works on a batch of n points or rays. Arrays are structures of arrays, aligned to 64 bytes and readable and
- * writable up to n rounded up to RTS_LANES, so a loop may run over whole vectors; the values of the padding are harmless
- * copies of lane n-1 on input and ignored on output.
+ * of the host comes as a table of functions. A plug-in has classes: surface shaders, lights, cameras, environments,
+ * transports. Every function works on a batch of n points or rays. Arrays are structures of arrays, aligned to 64 bytes and
+ * readable and writable up to n rounded up to RTS_LANES, so a loop may run over whole vectors; the values of the padding are
+ * harmless copies of lane n-1 on input and ignored on output.
  *
  * Spaces: "render space" has the world's axes and units; its origin is near the camera. Lights and environments also see
  * their local space, the frame of the matrix at rtUseLight / rtUseEnvironment.
@@ -20,7 +20,7 @@
 
 #define RTS_MAGIC 0x5352544fu /* "OTRS" */
 #define RTS_ABI_MAJOR 1       /* a host refuses another major number */
-#define RTS_ABI_MINOR 1       /* grows with every field appended; a host accepts minors up to its own */
+#define RTS_ABI_MINOR 2       /* grows with every field appended; a host accepts minors up to its own */
 #define RTS_LANES 16
 
 #ifdef __cplusplus
@@ -95,25 +95,54 @@ typedef struct RtsShading {
 
 /* Lobes (since 1.1): a surface as a sum of ways in which it answers light. The engine's transport asks lights, follows mirror
  * images and samples directions; the shader only describes. Weights are linear, 0 .. 1; reflectances of one hit should add up to
- * at most 1. */
+ * at most 1. The transports direct and whitted answer lights by every lobe that scatters (all but REFLECTION, DIELECTRIC and
+ * TRANSPARENT) and follow none of these; path tracing samples them. */
 typedef enum RtsLobeKind {
   RTS_LOBE_DIFFUSE = 1, /* Lambert; weight: albedo */
   RTS_LOBE_REFLECTION,  /* perfect mirror; weight: reflectance for this direction (Fresnel included) */
   RTS_LOBE_DIELECTRIC,  /* smooth boundary of a clear medium: Fresnel reflection and refraction, unpolarised; weight: their tint;
-                           parameter[0]: index of refraction on the ray's side over that behind */
+                           parameter[0]: index of refraction on the ray's side over that behind. Where the class has a
+                           `medium` the engine knows the indices on both sides by itself and leaves the parameter alone */
   RTS_LOBE_TRANSPARENT, /* straight through; weight: transmittance */
+  /* Since 1.2. Microfacets after B. Walter et al., "Microfacet Models for Refraction through Rough Surfaces", EGSR 2007 (GGX,
+   * Smith shadowing); alpha 0 .. 1 is the width of the distribution of slopes, below 1e-4 taken as 1e-4. */
+  RTS_LOBE_GLOSSY,           /* reflection; weight: reflectance of a facet; parameter[0]: alpha; parameter[1]: index of refraction
+                                on the ray's side over that behind, whose Fresnel reflectance multiplies, or 0: none does */
+  RTS_LOBE_ROUGH_DIELECTRIC, /* boundary of a clear medium: reflection and refraction at facets; weight: their tint;
+                                parameter[0]: as of DIELECTRIC; parameter[1]: alpha */
+  RTS_LOBE_CUSTOM,           /* functions of the plug-in (RtsHost.customLobe) */
   RTS_LOBE_COUNT,
   RTS_LOBE_32_BITS = 0x7fffffff
 } RtsLobeKind;
 
 /* A lobe of every hit of a batch. Where the weight is 0 the hit has no such lobe. Made by RtsHost.lobe: weights 0, the normal
  * that of the hits, parameters 0; a shader writes what differs. */
+#define RTS_MAX_LOBE_FLOATS 16
+typedef struct RtsLobeFunctions RtsLobeFunctions;
 typedef struct RtsLobe {
   RtsLobeKind kind;
   float* weight[3];
   float* normal[3]; /* unit, on the side of the hit's geometric normal */
   float* parameter[2];
+  /* since 1.2, of RTS_LOBE_CUSTOM */
+  const RtsLobeFunctions* functions;
+  float* data[RTS_MAX_LOBE_FLOATS]; /* as many as were asked for, one value a hit, 0 at first */
 } RtsLobe;
+
+/* A lobe of a plug-in's own (since 1.2): n pairs of a hit of the batch (hit[i] is its number) and a direction. `value` is the
+ * response per radiance times the cosine at the lobe's normal, without the lobe's weight; `density` is that of `sample` by solid
+ * angle, 0 for directions that it never gives. Directions are unit, away from the surface; towards the eye it is minus
+ * hits->direction. A lobe must be reciprocal unless it transmits, and reflect at most what it gets. Nothing is padded to
+ * RTS_LANES here. */
+struct RtsLobeFunctions {
+  uint32_t size;     /* sizeof(RtsLobeFunctions) */
+  uint32_t transmits; /* 1: directions to the other side of the surface may have a value */
+  void (*evaluate)(const RtsLobe* lobe, const RtsHits* hits, uint32_t n, const uint32_t* hit, const float* const direction[3],
+                   float* const value[3], float* density);
+  /* For points of the unit square: a direction, `value` divided by its density, and the density. Density 0: none. */
+  void (*sample)(const RtsLobe* lobe, const RtsHits* hits, uint32_t n, const uint32_t* hit, const float* const square[2],
+                 float* const direction[3], float* const quotient[3], float* density);
+};
 
 /* What a surface shader that answers in lobes says beside them. All arrays are zero on entry. */
 typedef struct RtsSurface {
@@ -137,6 +166,51 @@ typedef struct RtsRays {
   float* direction[3]; /* unit */
 } RtsRays;
 
+/* Since 1.2. The inside of a body whose surface has the shader, by colour: what differs by colour is dispersion. Bodies may
+ * overlap: where they do, the one of the highest priority is there (C. Schmidt, B. Budge, "Simple Nested Dielectrics in Ray
+ * Traced Images", JGT 7(2), 2002). Boundaries of others within it are not seen. Faces point outwards. */
+typedef struct RtsMedium {
+  float index[3];      /* of refraction, > 0 */
+  float absorption[3]; /* per unit of length in the world: exp(-absorption x length) is left */
+  int32_t priority;
+} RtsMedium;
+
+/* Since 1.2. Where a light is and how strong, in its local space: to choose among many, and to follow light from its source. */
+typedef struct RtsExtent {
+  int32_t parallel;  /* 1: light falls along `direction` everywhere; else it comes from `position` */
+  float position[3];
+  float direction[3]; /* unit; axis of the cone that gets light */
+  float cosine;       /* of the cone's half angle; -1: all directions */
+  float power;        /* mean over the colours of the flux; parallel: of the irradiance. Only a guess */
+  float radius;       /* nothing is lit beyond; infinite without */
+} RtsExtent;
+
+/* Since 1.2. Where points are in the picture. */
+typedef struct RtsProjection {
+  float* xy[2];    /* pixels from the top left corner */
+  float* toEye[3]; /* vector from the point to the place on the lens, or, for parallel views, a unit vector towards the eye */
+  float* weight;   /* pixels covered per unit of area, at the point, of a surface that faces the eye; 0: not in the picture */
+  int parallel;    /* set by the camera */
+} RtsProjection;
+
+/* Since 1.2. Rays that a shader sends: from hits of its batch, or from anywhere. */
+typedef struct RtsRequest {
+  uint32_t count;
+  const uint32_t* hit;       /* number of the hit that each ray belongs to (of a transport: of the camera ray) */
+  const float* origin[3];    /* render space; origin[0] NULL: from the hits, lifted off the surface to the side of the direction */
+  const float* direction[3]; /* unit */
+  const float* length;       /* where it ends; NULL: nowhere */
+} RtsRequest;
+
+/* What rays meet first. Arrays may be NULL where nobody asks. */
+typedef struct RtsFound {
+  float* distance;     /* infinite: nothing */
+  float* position[3];  /* render space */
+  float* geometric[3]; /* unit, turned towards the ray's origin */
+  float* normal[3];    /* shading normal, unit */
+  uint32_t* name;      /* rtLoadName */
+} RtsFound;
+
 /* Classes -------------------------------------------------------------------------------------------------------------------- */
 
 typedef enum RtsKind {
@@ -144,6 +218,7 @@ typedef enum RtsKind {
   RTS_LIGHT = 2,
   RTS_CAMERA = 3,
   RTS_ENVIRONMENT = 4,
+  RTS_TRANSPORT = 5, /* since 1.2 */
   RTS_KIND_32_BITS = 0x7fffffff /* no kind: fixes the size of the enumeration */
 } RtsKind;
 
@@ -152,8 +227,15 @@ enum {
   RTS_TRANSPARENT = 1, /* surface: transmission may be above 0; shadow rays then ask `transmit` */
   RTS_UNLIT = 2,       /* surface: never asks for lights */
   RTS_NO_SHADOW = 4,   /* light: casts no shadows */
-  RTS_EMISSIVE = 8     /* surface that answers in lobes: emission may be above 0 */
+  RTS_EMISSIVE = 8,    /* surface that answers in lobes: emission may be above 0 */
+  /* since 1.2; from these the automatic transport is chosen */
+  RTS_SPECULAR = 16, /* surface: may have lobes REFLECTION or DIELECTRIC. Assumed of classes made for 1.1 */
+  RTS_GLOSSY = 32,   /* surface: may have lobes that scatter, other than DIFFUSE */
+  RTS_GLOBAL = 64    /* surface: asks for the light of other surfaces: path tracing */
 };
+
+/* Since 1.2: what may set a parameter's value; whatever it is, functions find it in the parameter struct of the hit. */
+enum { RTS_PER_SHADER = 0, RTS_PER_TRIANGLE = 1, RTS_PER_VERTEX = 2 /* interpolated; numbers other than RTS_INT only */ };
 
 typedef struct RtsClass {
   uint32_t size; /* sizeof(RtsClass) of the plug-in's header; absent functions are NULL */
@@ -182,8 +264,26 @@ typedef struct RtsClass {
    * fraction (0..1) of surface radiance that arrives. NULL: clear air. */
   void (*attenuate)(const RtsHost* host, RtsBatch* batch, const void* params, uint32_t n, const float* const fromEye[3],
                     float* const color[3], float* fraction);
-  /* surface, since 1.1: describes every hit by lobes (RtsHost.lobe) and emission. A class has this or `shade`; of both, this. */
+  /* surface, since 1.1: describes every hit by lobes (RtsHost.lobe) and emission. Of a class that has both this and `shade`
+   * (since 1.2), path tracing asks this and the other transports ask `shade`. */
   void (*surface)(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, RtsSurface* out);
+  /* The rest since 1.2, all optional. */
+  /* RTS_PER_* by parameter: how often its value may change; NULL: all are RTS_PER_SHADER. */
+  const uint8_t* frequency;
+  /* Called once for each new set of parameter values, before any other function sees it, and when it goes. Both may change
+   * parts of the struct that are no parameters (they are zero before `prepare`): tables made from parameters. `prepare` returns
+   * NULL, or a message for people (static, or kept in the struct); the shader is then not rendered. */
+  const char* (*prepare)(const RtsHost* host, void* params);
+  void (*release)(const RtsHost* host, void* params);
+  /* surface: 1 and the inside of the body, 0: it has none. Called at commit. */
+  int (*medium)(const RtsHost* host, const void* params, RtsMedium* out);
+  /* light: 1 and its extent, 0: unknown. Called at commit. */
+  int (*extent)(const RtsHost* host, const void* params, RtsExtent* out);
+  /* camera: the inverse of `generate` for n points in the camera's local space. lens: a point of the unit square for each. */
+  void (*project)(const RtsHost* host, RtsBatch* batch, const void* params, uint32_t n, const float* const local[3],
+                  const float* const lens[2], const float size[2], RtsProjection* out);
+  /* transport: radiance (rgb) and alpha of n camera rays, through RtsHost.trace, findHit, occluded and random. */
+  void (*radiance)(const RtsHost* host, RtsBatch* batch, const void* params, const RtsRequest* rays, float* const rgba[4]);
 } RtsClass;
 
 typedef struct RtsPlugin {
@@ -216,6 +316,29 @@ struct RtsHost {
   void (*log)(const RtsHost* host, int level, const char* utf8);
   /* Since 1.1: another lobe of the batch's hits, for `surface`. At most RTS_MAX_LOBES a batch, NULL beyond. Owned by the host. */
   RtsLobe* (*lobe)(RtsBatch* batch, RtsLobeKind kind);
+  /* The rest since 1.2. */
+  /* A lobe of the plug-in's own with a number of floats (at most RTS_MAX_LOBE_FLOATS) for each hit; NULL as by `lobe`. */
+  RtsLobe* (*customLobe)(RtsBatch* batch, const RtsLobeFunctions* functions, uint32_t floats);
+  /* A point of the unit square for each hit (camera: each point), one sequence for each pair < 4: well spread over the samples of
+   * a pixel, the same for the same picture. Using one turns the pixel's value into an estimate. */
+  void (*random)(RtsBatch* batch, uint32_t pair, float* const square[2]);
+  /* Radiance (and, if rgba[3] is not NULL, alpha) that comes back along rays, shaded by the engine: for `shade` and `radiance`.
+   * Nests as deep as the depth limit allows, at most 64 times; black beyond. */
+  void (*trace)(RtsBatch* batch, const RtsRequest* rays, float* const rgba[4]);
+  void (*findHit)(RtsBatch* batch, const RtsRequest* rays, RtsFound* out);
+  /* Colour that is let through between a ray's origin and its end: 0 where it is blocked. */
+  void (*occluded)(RtsBatch* batch, const RtsRequest* rays, float* const transmission[3]);
+  /* Of the hits: position and geometric normal (not unit) in the frame of the object that was defined (matrices at the definition
+   * undone); NULL pointers are left out. */
+  void (*local)(RtsBatch* batch, float* const position[3], float* const normal[3]);
+  /* Change of position per unit of texture coordinate, render space; 0 without texture coordinates. */
+  void (*derivatives)(RtsBatch* batch, float* const alongS[3], float* const alongT[3]);
+  /* rtLoadName, outermost instance, triangle (as RThit); NULL pointers are left out. */
+  void (*ids)(RtsBatch* batch, uint32_t* name, uint32_t* instance, uint32_t* primitive);
+  /* Of the ray that met the surface: surfaces met before, and the share of the light that reaches the camera. */
+  void (*path)(RtsBatch* batch, uint32_t* depth, float* const throughput[3]);
+  /* Bound of the positions' rounding error along the geometric normal. */
+  void (*error)(RtsBatch* batch, float* error);
 };
 #define RTS_MAX_LOBES 8
 
