@@ -182,7 +182,8 @@ class CommitMaker {
     settleTable(scene_.shaders, [](ShaderState& s) { s.parameters.clear(); });
     settleTable(scene_.textures, [](TextureState& s) { s.texels.reset(); });
     settleTable(scene_.lights, [](LightState&) {});
-    scene_.camera.dirty = scene_.environment.dirty = scene_.defaultShader.dirty = scene_.transport.dirty = scene_.frameDirty = false;
+    scene_.camera.dirty = scene_.environment.dirty = scene_.defaultShader.dirty = scene_.transport.dirty = scene_.frameDirty =
+        false;
   }
 
   SceneState& scene_;

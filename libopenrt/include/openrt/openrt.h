@@ -305,13 +305,13 @@ RT_API void rtTexParameteri(RTenum name, int value);
 
 /* Channels, or'ed; floats per pixel */
 enum {
-  RT_RGBA = 1,      /* 4: mean radiance, alpha (1 where the environment shows or a surface is opaque) */
-  RT_DEPTH = 2,     /* 1: distance along the view axis, infinite where nothing is hit; of the pixel's first sample */
-  RT_NORMAL = 4,    /* 3: mean world-space shading normal facing the camera, 0 0 0 where nothing is hit */
-  RT_ALBEDO = 8,    /* 3: mean surface colour as the shader reports it */
-  RT_POSITION = 16, /* 3: world-space position of the first sample's hit */
-  RT_NAME = 32,     /* 1: name (rtLoadName) of the first sample's hit, 0 where nothing is hit */
-  RT_SAMPLES = 64,  /* 1: samples taken */
+  RT_RGBA = 1,       /* 4: mean radiance, alpha (1 where the environment shows or a surface is opaque) */
+  RT_DEPTH = 2,      /* 1: distance along the view axis, infinite where nothing is hit; of the pixel's first sample */
+  RT_NORMAL = 4,     /* 3: mean world-space shading normal facing the camera, 0 0 0 where nothing is hit */
+  RT_ALBEDO = 8,     /* 3: mean surface colour as the shader reports it */
+  RT_POSITION = 16,  /* 3: world-space position of the first sample's hit */
+  RT_NAME = 32,      /* 1: name (rtLoadName) of the first sample's hit, 0 where nothing is hit */
+  RT_SAMPLES = 64,   /* 1: samples taken */
   RT_VARIANCE = 128, /* 3: sample variance of radiance (divide by the samples for the variance of the mean) */
   RT_ERROR = 256,    /* 3: half-width of the 95 % interval of each colour, see below; infinite where nothing is known */
   RT_TRUST = 512     /* 1: 1 where that interval can be trusted, else 0 */
@@ -331,13 +331,13 @@ enum {
 };
 /* How light is followed from a surface whose shader answers in lobes (openrts.h). */
 enum {
-  RT_TRANSPORT_AUTO = 0,    /* what the shaders in the scene ask for, RTstats.transport says which: path where one emits, is glossy
-                               or asks for global light; whitted where one is a mirror or clear; direct without */
-  RT_TRANSPORT_DIRECT = 1,  /* light from the lights alone; no mirror images, nothing behind glass */
+  RT_TRANSPORT_AUTO = 0,   /* what the shaders in the scene ask for, RTstats.transport says which: path where one emits, is glossy
+                              or asks for global light; whitted where one is a mirror or clear; direct without */
+  RT_TRANSPORT_DIRECT = 1, /* light from the lights alone; no mirror images, nothing behind glass */
   RT_TRANSPORT_WHITTED = 2, /* and the whole tree of reflections and refractions; no randomness */
   RT_TRANSPORT_PATH = 3,    /* and light between diffuse surfaces: path tracing, noisy, unbiased */
-  RT_TRANSPORT_LIGHT = 4    /* path; what lamps send through mirrors and lenses to surfaces that the camera sees directly is followed
-                               from the lamps: caustics, also of lights without extent */
+  RT_TRANSPORT_LIGHT = 4 /* path; what lamps send through mirrors and lenses to surfaces that the camera sees directly is followed
+                            from the lamps: caustics, also of lights without extent */
 };
 /* Error bars. The mean over the pixel's area and over all paths lies, with a probability of 95 % for each colour by itself,
  * within RT_RGBA +- RT_ERROR. Where a transport takes no random decision (direct, whitted) only the mean over the area is
@@ -389,7 +389,7 @@ typedef struct RTstats {
   uint64_t cameraRays, shadowRays, secondaryRays;
   double commitSeconds, buildSeconds, renderSeconds;
   uint64_t bvhBytes;
-  uint64_t objectBuilds; /* acceleration structures of objects (or of merged static ones) built since the context was made */
+  uint64_t objectBuilds;   /* acceleration structures of objects (or of merged static ones) built since the context was made */
   uint64_t topLevelBuilds; /* times the top level over them was built or refitted */
   uint32_t threads;
   char isa[16];
@@ -409,8 +409,8 @@ typedef struct RTstats {
   double cutByDepth;        /* throughput of paths that the depth limit ended: times the radiance beyond it is the loss */
   double cutByEnergy;       /* the same of branches that RT_ENERGY_CUT ended */
   double clipped;           /* radiance that RT_CLAMP has taken away */
-  uint64_t unreachedLights; /* lights without extent in a path-traced scene with mirrors or glass: what they send by way of these is
-                               seen by RT_TRANSPORT_LIGHT alone; 0 there */
+  uint64_t unreachedLights; /* lights without extent in a path-traced scene with mirrors or glass: what they send by way of these
+                               is seen by RT_TRANSPORT_LIGHT alone; 0 there */
   uint64_t shaderFaults;    /* hits at which a shader answered with NaN or infinity; taken as 0, the log names the class */
   uint64_t wrongHits;       /* hits on slivers that a check in double precision rejected */
 } RTstats;

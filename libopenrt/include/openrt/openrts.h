@@ -135,7 +135,7 @@ typedef struct RtsLobe {
  * hits->direction. A lobe must be reciprocal unless it transmits, and reflect at most what it gets. Nothing is padded to
  * RTS_LANES here. */
 struct RtsLobeFunctions {
-  uint32_t size;     /* sizeof(RtsLobeFunctions) */
+  uint32_t size;      /* sizeof(RtsLobeFunctions) */
   uint32_t transmits; /* 1: directions to the other side of the surface may have a value */
   void (*evaluate)(const RtsLobe* lobe, const RtsHits* hits, uint32_t n, const uint32_t* hit, const float* const direction[3],
                    float* const value[3], float* density);
@@ -177,7 +177,7 @@ typedef struct RtsMedium {
 
 /* Since 1.2. Where a light is and how strong, in its local space: to choose among many, and to follow light from its source. */
 typedef struct RtsExtent {
-  int32_t parallel;  /* 1: light falls along `direction` everywhere; else it comes from `position` */
+  int32_t parallel; /* 1: light falls along `direction` everywhere; else it comes from `position` */
   float position[3];
   float direction[3]; /* unit; axis of the cone that gets light */
   float cosine;       /* of the cone's half angle; -1: all directions */
@@ -196,8 +196,8 @@ typedef struct RtsProjection {
 /* Since 1.2. Rays that a shader sends: from hits of its batch, or from anywhere. */
 typedef struct RtsRequest {
   uint32_t count;
-  const uint32_t* hit;       /* number of the hit that each ray belongs to (of a transport: of the camera ray) */
-  const float* origin[3];    /* render space; origin[0] NULL: from the hits, lifted off the surface to the side of the direction */
+  const uint32_t* hit;    /* number of the hit that each ray belongs to (of a transport: of the camera ray) */
+  const float* origin[3]; /* render space; origin[0] NULL: from the hits, lifted off the surface to the side of the direction */
   const float* direction[3]; /* unit */
   const float* length;       /* where it ends; NULL: nowhere */
 } RtsRequest;
@@ -218,7 +218,7 @@ typedef enum RtsKind {
   RTS_LIGHT = 2,
   RTS_CAMERA = 3,
   RTS_ENVIRONMENT = 4,
-  RTS_TRANSPORT = 5, /* since 1.2 */
+  RTS_TRANSPORT = 5,            /* since 1.2 */
   RTS_KIND_32_BITS = 0x7fffffff /* no kind: fixes the size of the enumeration */
 } RtsKind;
 
