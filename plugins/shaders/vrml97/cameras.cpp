@@ -4,6 +4,7 @@
 
 #include "vrml97/batch.h"
 #include "vrml97/classes.h"
+#include "vrml97/film.h"
 
 namespace vrml97 {
 namespace {
@@ -75,8 +76,43 @@ void generateOrthographic(const RtsHost*, RtsBatch*, const void* params, uint32_
                    out->direction[0], out->direction[1], out->direction[2]);
 }
 
-template <class Params, uint32_t count> constexpr RtsClass
-cameraClass(const char* name, const char* text, const RtsParam (&params)[count], decltype(RtsClass::generate) generate) {
+// Where points are in the picture, and pixels per unit of area that faces the eye. A surface of area A at the distance r fills
+// the solid angle A / r^2; on the plane z = -1 a solid angle seen at the angle t to the axis covers its 1 / cos(t)^3.
+void projectPerspective(const RtsHost*, RtsBatch*, const void* params, uint32_t n, const float* const local[3],
+                        const float* const*, const float size[2], RtsProjection* out) {
+  constexpr double halfDegree = 3.14159265358979323846 / 360.0;
+  const double height = 2.0 * std::tan(static_cast<double>(static_cast<const PerspectiveParams*>(params)->fovy) * halfDegree);
+  const double pixels = static_cast<double>(size[1]) / height; // of a unit of the plane
+  for (uint32_t i = 0; i < n; i++) {
+    const double x = local[0][i], y = local[1][i], depth = -static_cast<double>(local[2][i]);
+    const double scale = depth > 0 ? pixels / depth : 0;
+    const double weight = scale * scale * std::sqrt(x * x + y * y + depth * depth) / depth;
+    place(out, i, size, 0.5 * static_cast<double>(size[0]) + x * scale, 0.5 * static_cast<double>(size[1]) - y * scale,
+          depth > 0 ? weight : 0);
+    out->toEye[0][i] = -local[0][i];
+    out->toEye[1][i] = -local[1][i];
+    out->toEye[2][i] = -local[2][i];
+  }
+  out->parallel = 0;
+}
+
+void projectOrthographic(const RtsHost*, RtsBatch*, const void* params, uint32_t n, const float* const local[3],
+                         const float* const*, const float size[2], RtsProjection* out) {
+  const double pixels =
+      static_cast<double>(size[1]) / static_cast<double>(static_cast<const OrthographicParams*>(params)->height);
+  for (uint32_t i = 0; i < n; i++) {
+    const double x = local[0][i], y = local[1][i];
+    place(out, i, size, 0.5 * static_cast<double>(size[0]) + x * pixels, 0.5 * static_cast<double>(size[1]) - y * pixels,
+          local[2][i] < 0 && local[2][i] >= -noLimit ? pixels * pixels : 0);
+    out->toEye[0][i] = out->toEye[1][i] = 0.0f;
+    out->toEye[2][i] = 1.0f;
+  }
+  out->parallel = 1;
+}
+
+template <class Params, uint32_t count>
+constexpr RtsClass cameraClass(const char* name, const char* text, const RtsParam (&params)[count],
+                               decltype(RtsClass::generate) generate, decltype(RtsClass::project) project) {
   RtsClass c{};
   c.size = sizeof(RtsClass);
   c.kind = RTS_CAMERA;
@@ -86,14 +122,15 @@ cameraClass(const char* name, const char* text, const RtsParam (&params)[count],
   c.paramCount = count;
   c.params = params;
   c.generate = generate;
+  c.project = project;
   return c;
 }
 
 } // namespace
 
-const RtsClass perspectiveCameraClass =
-    cameraClass<PerspectiveParams>("PerspectiveCamera", "all rays start in one point", perspectiveParams, generatePerspective);
-const RtsClass orthographicCameraClass =
-    cameraClass<OrthographicParams>("OrthographicCamera", "all rays are parallel", orthographicParams, generateOrthographic);
+const RtsClass perspectiveCameraClass = cameraClass<PerspectiveParams>(
+    "PerspectiveCamera", "all rays start in one point", perspectiveParams, generatePerspective, projectPerspective);
+const RtsClass orthographicCameraClass = cameraClass<OrthographicParams>(
+    "OrthographicCamera", "all rays are parallel", orthographicParams, generateOrthographic, projectOrthographic);
 
 } // namespace vrml97
