@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "render/batch.h"
 #include "render/scatter.h"
@@ -82,7 +83,8 @@ void cornersOf(const Record& r, uint32_t primitive, float out[3][3]) {
 
 void Emitters::build(const RenderScene& scene) {
   if (scene.frame.transport != RT_TRANSPORT_PATH) return;
-  sky.build(scene);
+  scene_ = &scene;
+  sky_.build(scene);
   firstOf_.assign(scene.records.size(), none);
   std::vector<double> emission;
   double total = 0;
@@ -112,17 +114,61 @@ void Emitters::build(const RenderScene& scene) {
   for (Triangle& t : triangles_) t.probability = float(t.probability / total);
 }
 
-const Emitters::Triangle& Emitters::pick(float u) const {
-  const double at = u * cumulative_.back();
-  const auto found = std::upper_bound(cumulative_.begin(), cumulative_.end(), at);
-  return triangles_[size_t(std::min(found - cumulative_.begin(), ptrdiff_t(triangles_.size()) - 1))];
+Sight Emitters::choose(const Receiver& from, float pick, float u, float v) const {
+  Sight sight;
+  const float skyShare = this->skyShare();
+  if (pick < skyShare) {
+    float local[3];
+    sight.distance = std::numeric_limits<float>::infinity();
+    sight.density = skyShare * sky_.sample(u, v, local);
+    const auto& m = scene_->environment.fromLocal.r;
+    for (int k = 0; k < 3; k++) sight.direction[k] = m[k][0] * local[0] + m[k][1] * local[1] + m[k][2] * local[2];
+  } else {
+    const double at = double((pick - skyShare) / (1 - skyShare)) * cumulative_.back();
+    const auto found = std::upper_bound(cumulative_.begin(), cumulative_.end(), at);
+    const Triangle& t = triangles_[size_t(std::min(found - cumulative_.begin(), ptrdiff_t(triangles_.size()) - 1))];
+    sight.record = t.record, sight.primitive = t.primitive;
+    float corner[3][3], way[3], a[3], b[3];
+    cornersOf(scene_->records[t.record], t.primitive, corner);
+    const float root = std::sqrt(u), w[3] = {1 - root, root * (1 - v), root * v}; // uniform on the triangle
+    for (int k = 0; k < 3; k++) {
+      way[k] = w[0] * corner[0][k] + w[1] * corner[1][k] + w[2] * corner[2][k] - from.position[k];
+      a[k] = corner[1][k] - corner[0][k], b[k] = corner[2][k] - corner[0][k];
+    }
+    const float normal[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+    const float square = dot3(way, way), distance = std::sqrt(square);
+    const float projected = std::fabs(dot3(normal, way)) / (2 * distance); // area x cosine
+    for (int k = 0; k < 3; k++) sight.direction[k] = way[k] / distance;
+    sight.distance = distance;
+    sight.density = (1 - skyShare) * t.probability * square / projected;
+    sight.rim = true;
+  }
+  const bool sided = from.normal[0] != 0 || from.normal[1] != 0 || from.normal[2] != 0;
+  if (!(sight.density > 0) || !std::isfinite(sight.density) || (sided && !(dot3(sight.direction, from.normal) > 0)))
+    sight.density = 0;
+  return sight;
 }
 
-const Emitters::Triangle* Emitters::find(uint32_t record, uint32_t primitive) const {
-  if (triangles_.empty() || firstOf_[record] == none) return nullptr;
-  const Triangle& t = triangles_[firstOf_[record] + primitive];
-  return t.probability > 0 && t.area > 0 ? &t : nullptr;
+// At an edge it may be a neighbour of the same surface, at the same distance.
+bool Emitters::sees(const Sight& sight, uint32_t record, uint32_t primitive, float distance) const {
+  if (sight.record != record) return false;
+  return primitive == sight.primitive || (sight.rim && std::fabs(distance - sight.distance) <= 0x1p-16f * sight.distance);
 }
+
+float Emitters::density(const Receiver& from, uint32_t record, uint32_t primitive, const float direction[3],
+                        float distance) const {
+  if (triangles_.empty() || firstOf_[record] == none) return 0;
+  const Triangle& t = triangles_[firstOf_[record] + primitive];
+  if (!(t.probability > 0 && t.area > 0)) return 0;
+  float corner[3][3], normal[3];
+  cornersOf(scene_->records[record], primitive, corner);
+  areaOf(corner, normal);
+  const float cosine = std::fabs(dot3(normal, direction));
+  (void)from;
+  return (1 - skyShare()) * t.probability * distance * distance / (cosine * t.area);
+}
+
+float Emitters::skyDensity(const Receiver&, const float local[3]) const { return skyShare() * sky_.density(local); }
 
 double SkySampler::solidAngle(uint32_t row) const {
   return 2 * M_PI / columns * (std::cos(M_PI * row / rows) - std::cos(M_PI * (row + 1) / rows));

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "render/emitters.h"
+
 namespace openrt {
 
 // What a ray knows of the path it belongs to.
@@ -14,7 +16,8 @@ struct RayState {
   float travelled = 0; // length of the path up to the ray's origin
   uint32_t path = 0;   // sample of the tile
   uint32_t branch = 0; // tells the branches of one path apart for its random numbers; 0: the one from the camera
-  float density = 0;    // by solid angle, with which a diffuse lobe has chosen the direction; 0: it could not be another
+  float density = 0;   // by solid angle, with which a diffuse lobe has chosen the direction; 0: it could not be another
+  Receiver from;       // whose density it is
   uint8_t bent = 0;    // no longer the straight line from the camera: alpha is settled
   uint8_t splits = 0;  // times the path has gone on in several directions
 };

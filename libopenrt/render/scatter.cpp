@@ -188,13 +188,10 @@ void TileRenderer::scatterRange(Paths& paths, const Points& points, const Bucket
 float TileRenderer::chanceMet(const RayState& ray, const Points& points, uint32_t i) const {
   if (!(ray.density > 0)) return 1;
   const uint32_t lane = points.order[i];
-  const Emitters::Triangle* met = scene_.emitters.find(points.rayHits->record[lane], points.rayHits->primitive[lane]);
-  if (!met) return 1;
   const RtsHits& h = points.hits;
-  float cosine = 0;
-  for (int k = 0; k < 3; k++) cosine -= h.geometric[k][i] * h.direction[k][i];
-  if (!(cosine > 0)) return 1;
-  const float chosen = (1 - scene_.emitters.skyShare()) * met->probability * h.segment[i] * h.segment[i] / (cosine * met->area);
+  const float direction[3] = {h.direction[0][i], h.direction[1][i], h.direction[2][i]};
+  const float chosen =
+      scene_.emitters.density(ray.from, points.rayHits->record[lane], points.rayHits->primitive[lane], direction, h.segment[i]);
   return std::isfinite(chosen) ? ray.density / (ray.density + chosen) : 0.0f;
 }
 

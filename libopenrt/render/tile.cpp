@@ -234,7 +234,7 @@ void TileRenderer::background(Paths& paths, const uint32_t* missed, uint32_t n) 
     float weight = 0, share = 1;
     if (ray.density > 0 && scene_.emitters.any()) { // the sky might have been chosen just so
       const float d[3] = {direction[0][i], direction[1][i], direction[2][i]};
-      share = ray.density / (ray.density + scene_.emitters.skyShare() * scene_.emitters.sky.density(d));
+      share = ray.density / (ray.density + scene_.emitters.skyDensity(ray.from, d));
     }
     for (int k = 0; k < 3; k++) {
       if (std::isfinite(rgba[k][i])) paths.radiance[k][ray.path] += ray.throughput[k] * share * rgba[k][i];
@@ -376,6 +376,7 @@ void TileRenderer::push(const Points& points, uint32_t i, uint32_t lane, const S
   }
   ray.state.travelled = h.distance[i];
   ray.state.density = step.density;
+  if (step.density > 0) ray.state.from = receiverOf(points, i);
   ray.state.bent |= step.bent ? 1 : 0;
   ray.state.branch = step.branch;
   if (step.split && ray.state.splits < 255) ray.state.splits++;

@@ -62,6 +62,7 @@ class TileRenderer {
   void sampleAt(uint32_t path, uint32_t pair, float& u, float& v) const;
   float chanceMet(const RayState& ray, const Points& points, uint32_t i) const;
   // emitted.cpp: the light of emitters and of the sky, by choosing places on them.
+  Receiver receiverOf(const Points& points, uint32_t i) const;
   void addEmitters(const RtsBatch& batch, const Points& points, const uint32_t* order, const Paths& paths, float* const chance[],
                    float* const radiance[3]);
   void lookThroughBacks(const Rays& rays, RayHits& hits);
