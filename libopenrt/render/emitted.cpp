@@ -1,5 +1,5 @@
-// emitted.cpp: light of emitters and of the sky at diffuse surfaces: for each hit one place is chosen, looked at by a ray, and
-// weighed against the directions that the surface chooses itself. Part of TileRenderer.
+// emitted.cpp: light of emitters and of the sky at surfaces that scatter: for each hit one place is chosen, looked at by a ray,
+// and weighed against the directions that the surface chooses itself. Part of TileRenderer.
 #include <algorithm>
 #include <cmath>
 
@@ -7,17 +7,50 @@
 #include "render/scatter.h"
 
 namespace openrt {
-// From where, and to which side of it, a surface that does not transmit sees emitters.
-Receiver TileRenderer::receiverOf(const Points& points, uint32_t i) const {
+
+// From where a surface sees emitters; through: also those behind it.
+Receiver TileRenderer::receiverOf(const Points& points, uint32_t i, bool through) const {
   Receiver from;
-  float p[3];
-  for (int k = 0; k < 3; k++) p[k] = points.hits.position[k][i], from.normal[k] = points.hits.geometric[k][i];
-  offsetPoint(p, from.normal, points.error[i], from.position);
+  float p[3], n[3];
+  for (int k = 0; k < 3; k++) p[k] = points.hits.position[k][i], n[k] = points.hits.geometric[k][i];
+  for (int k = 0; k < 3 && !through; k++) from.normal[k] = n[k];
+  offsetPoint(p, n, points.error[i], from.position);
   return from;
 }
 
+// What the hits answer to light from the sights: by the balance heuristic the share that belongs to places chosen on emitters.
+// Sights that no lobe answers to go; how many are left.
+uint32_t TileRenderer::weigh(const RtsBatch& batch, const RtsHits& hits, float* const chance[], Rays& rays, Sight* sights,
+                             uint32_t* hitOf, uint32_t n, float* response[3]) {
+  for (int k = 0; k < 3; k++) response[k] = arena_.takeZero<float>(padded(n));
+  ArenaScope scope(arena_);
+  LobeAnswers answers(arena_, n);
+  for (uint32_t l = 0; l < batch.lobeCount; l++) {
+    if (!chance[l]) continue;
+    answers.evaluate(batch.lobes[l], hits, n, hitOf, rays.dir);
+    for (uint32_t r = 0; r < n; r++) {
+      float w[3];
+      const float followed = chance[l][hitOf[r]];
+      if (!(followed > 0) || !weightAt(batch.lobes[l], hitOf[r], w)) continue;
+      const float scale = 1 / (sights[r].density + followed * answers.density[r]);
+      for (int k = 0; k < 3; k++) response[k][r] += w[k] * answers.value[k][r] * scale;
+    }
+  }
+  uint32_t left = 0;
+  for (uint32_t r = 0; r < n; r++) {
+    if (!(response[0][r] > 0 || response[1][r] > 0 || response[2][r] > 0)) continue;
+    for (int k = 0; k < 3; k++) {
+      rays.org[k][left] = rays.org[k][r], rays.dir[k][left] = rays.dir[k][r];
+      response[k][left] = response[k][r];
+    }
+    rays.tnear[left] = rays.tnear[r], rays.tfar[left] = rays.tfar[r], hitOf[left] = hitOf[r];
+    sights[left++] = sights[r];
+  }
+  return left;
+}
+
 void TileRenderer::addEmitters(const RtsBatch& batch, const Points& points, const uint32_t* order, const Paths& paths,
-                               float* const chance[], float* const radiance[3]) {
+                               float* const chance[], const Crossing* crossing, float* const radiance[3]) {
   ArenaScope scope(arena_);
   const RtsHits& hits = points.hits;
   const Emitters& emitters = scene_.emitters;
@@ -34,15 +67,23 @@ void TileRenderer::addEmitters(const RtsBatch& batch, const Points& points, cons
     float pick, spare, u, v;
     sampleAt(ray.path, pairOf(ray, Draw::emitter), pick, spare);
     sampleAt(ray.path, pairOf(ray, Draw::place), u, v);
-    const Receiver from = receiverOf(points, i);
+    const Receiver from = receiverOf(points, i, transmitsAt(batch, i));
     const Sight sight = emitters.choose(from, pick, u, v);
     if (!(sight.density > 0)) continue;
-    for (int k = 0; k < 3; k++) rays.org[k][n] = from.position[k], rays.dir[k][n] = sight.direction[k];
+    float origin[3], behind[3], towards = 0;
+    for (int k = 0; k < 3; k++) {
+      origin[k] = hits.position[k][i], behind[k] = -hits.geometric[k][i];
+      towards -= behind[k] * sight.direction[k];
+    }
+    if (towards < 0) offsetPoint(origin, behind, points.error[i], origin);
+    for (int k = 0; k < 3; k++) rays.org[k][n] = towards < 0 ? origin[k] : from.position[k], rays.dir[k][n] = sight.direction[k];
     rays.tnear[n] = 0;
     rays.tfar[n] = sight.distance * (1 + 0x1p-10f);
     hitOf[n] = i;
     sights[n++] = sight;
   }
+  float* response[3];
+  n = weigh(batch, hits, chance, rays, sights, hitOf, n, response);
   if (n == 0) return;
   rays.count = n;
   counters_.shadow += n;
@@ -52,19 +93,16 @@ void TileRenderer::addEmitters(const RtsBatch& batch, const Points& points, cons
   lookThroughBacks(rays, found);
 
   const auto add = [&](uint32_t ray, const float light[3]) {
-    const Sight& sight = sights[ray];
-    const uint32_t hit = hitOf[ray];
-    const float direction[3] = {rays.dir[0][ray], rays.dir[1][ray], rays.dir[2][ray]};
-    for (uint32_t l = 0; l < batch.lobeCount; l++) {
-      if (!chance[l] || !(chance[l][hit] > 0)) continue;
-      const RtsLobe& lobe = batch.lobes[l];
-      const float normal[3] = {lobe.normal[0][hit], lobe.normal[1][hit], lobe.normal[2][hit]};
-      const float answer = dot3(normal, direction) * float(M_1_PI);
-      if (!(answer > 0)) continue;
-      const float scale = answer / (sight.density + chance[l][hit] * answer); // balance heuristic over the density
-      for (int k = 0; k < 3; k++)
-        if (std::isfinite(light[k])) radiance[k][hit] += lobe.weight[k][hit] * scale * light[k];
+    const uint32_t i = hitOf[ray];
+    float left[3] = {light[0], light[1], light[2]};
+    if (!scene_.shaders->media().empty()) { // of light on its way through the body between
+      float towards = 0;
+      for (int k = 0; k < 3; k++) towards += hits.geometric[k][i] * rays.dir[k][ray];
+      const MediaStack& media = towards < 0 && crossing ? crossing[i].behind : paths.state[order[i]].media;
+      absorb(mediumOf(media, scene_.shaders->media()), std::min(found.t[ray], 1e30f), scene_.shaders->media(), left);
     }
+    for (int k = 0; k < 3; k++)
+      if (std::isfinite(left[k])) radiance[k][i] += response[k][ray] * left[k];
   };
   auto* lanes = arena_.take<uint32_t>(n);
   auto* sorted = arena_.take<uint32_t>(n);

@@ -80,7 +80,7 @@ uint32_t components(const RtsHost* host, RtsTexture texture) {
 float* scratch(RtsBatch* batch, uint32_t n) { return batch->arena->take<float>(padded(n)); }
 
 RtsLobe* lobe(RtsBatch* batch, RtsLobeKind kind) {
-  if (batch->lobeCount == RTS_MAX_LOBES || kind < RTS_LOBE_DIFFUSE || kind >= RTS_LOBE_COUNT) return nullptr;
+  if (batch->lobeCount == RTS_MAX_LOBES || kind < RTS_LOBE_DIFFUSE || kind >= RTS_LOBE_CUSTOM) return nullptr;
   const RtsHits& hits = batch->points->hits;
   const uint32_t size = padded(hits.count);
   RtsLobe& lobe = batch->lobes[batch->lobeCount++];
@@ -91,7 +91,20 @@ RtsLobe* lobe(RtsBatch* batch, RtsLobeKind kind) {
     std::copy_n(hits.normal[k], size, lobe.normal[k]);
   }
   for (auto& p : lobe.parameter) p = batch->arena->takeZero<float>(size);
+  lobe.functions = nullptr;
   return &lobe;
+}
+
+RtsLobe* customLobe(RtsBatch* batch, const RtsLobeFunctions* functions, uint32_t floats) {
+  if (!functions || functions->size < sizeof(RtsLobeFunctions) || !functions->evaluate || !functions->sample ||
+      floats > RTS_MAX_LOBE_FLOATS)
+    return nullptr;
+  RtsLobe* made = lobe(batch, RTS_LOBE_DIFFUSE);
+  if (!made) return nullptr;
+  made->kind = RTS_LOBE_CUSTOM;
+  made->functions = functions;
+  for (uint32_t i = 0; i < floats; i++) made->data[i] = batch->arena->takeZero<float>(padded(batch->points->hits.count));
+  return made;
 }
 
 void log(const RtsHost* host, int level, const char* text) {
@@ -113,6 +126,7 @@ void fillHost(RtsHost& host) {
   host.scratch = scratch;
   host.log = log;
   host.lobe = lobe;
+  host.customLobe = customLobe;
 }
 
 } // namespace openrt

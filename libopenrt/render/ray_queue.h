@@ -7,19 +7,22 @@
 #include <vector>
 
 #include "render/emitters.h"
+#include "render/media.h"
 
 namespace openrt {
 
 // What a ray knows of the path it belongs to.
 struct RayState {
   float throughput[3] = {1, 1, 1};
-  float travelled = 0; // length of the path up to the ray's origin
-  uint32_t path = 0;   // sample of the tile
-  uint32_t branch = 0; // tells the branches of one path apart for its random numbers; 0: the one from the camera
-  float density = 0;   // by solid angle, with which a diffuse lobe has chosen the direction; 0: it could not be another
-  Receiver from;       // whose density it is
-  uint8_t bent = 0;    // no longer the straight line from the camera: alpha is settled
-  uint8_t splits = 0;  // times the path has gone on in several directions
+  float travelled = 0;   // length of the path up to the ray's origin
+  uint32_t path = 0;     // sample of the tile
+  uint32_t branch = 0;   // tells the branches of one path apart for its random numbers; 0: the one from the camera
+  float density = 0;     // by solid angle, with which a lobe has chosen the direction; 0: it could not be another
+  Receiver from;         // whose density it is
+  MediaStack media = {}; // bodies that the ray is inside of
+  uint8_t bent = 0;      // no longer the straight line from the camera: alpha is settled
+  uint8_t splits = 0;    // times the path has gone on in several directions
+  uint8_t channel = 0;   // 1 + the only colour it carries (dispersion); 0: all
 };
 
 struct QueuedRay {

@@ -22,6 +22,7 @@ struct ShaderSlot {
   const RtsClass* shaderClass = nullptr;
   const void* params = nullptr;
   uint32_t traits = 0;
+  uint16_t medium = 0; // 1 + its place in ShaderTable::media()
 };
 
 struct LightSlot {
@@ -54,6 +55,7 @@ class ShaderTable {
   const ShaderSlot& operator[](uint32_t slot) const { return slots_[slot]; }
   // Everything of the other has the same slot, class and traits here: records made for it serve this one.
   bool extends(const ShaderTable& other) const;
+  std::span<const RtsMedium> media() const { return media_; }
   // The slot of a light, camera or environment shader; shaderClass null if it is none of that kind.
   ShaderSlot role(uint32_t shaderId, RtsKind kind) const;
 
@@ -66,8 +68,10 @@ class ShaderTable {
   using Slots = std::map<uint32_t, uint32_t>; // by shader id
   void make(uint32_t slot, const RtsClass& shaderClass, const ShaderValues* values,
             const std::map<uint32_t, uint32_t>& textureIndex, const RtsHost& host);
+  void setMedium(ShaderSlot& slot, const RtsHost& host);
   std::vector<ShaderSlot> slots_;
   std::vector<std::shared_ptr<const Block>> blocks_; // by slot; tables share those that did not change
+  std::vector<RtsMedium> media_;
   std::shared_ptr<const Slots> slotOf_;
   uint32_t defaultShader_ = 0; // the shader whose values slot 0 has
 };

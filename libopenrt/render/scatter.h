@@ -37,8 +37,16 @@ inline void refractAt(const float d[3], const float n[3], double eta, double cos
   for (int k = 0; k < 3; k++) out[k] = float(r[k] * s);
 }
 
+// Two unit vectors at right angles to n and to each other: T. Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1),
+// 2017.
+inline void basisOf(const float n[3], float s[3], float t[3]) {
+  const float sign = std::copysign(1.0f, n[2]), c = -1 / (sign + n[2]), d = n[0] * n[1] * c;
+  s[0] = 1 + sign * n[0] * n[0] * c, s[1] = sign * d, s[2] = -sign * n[0];
+  t[0] = d, t[1] = sign + n[1] * n[1] * c, t[2] = -n[1];
+}
+
 // A direction about n with density cosine / pi from a point of the unit square: the disc of P. Shirley, K. Chiu (1997), lifted
-// to the hemisphere. The frame is that of T. Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017.
+// to the hemisphere.
 inline void cosineDirection(const float n[3], float u, float v, float out[3]) {
   const float a = 2 * u - 1, b = 2 * v - 1;
   float r = 0, phi = 0;
@@ -47,8 +55,8 @@ inline void cosineDirection(const float n[3], float u, float v, float out[3]) {
   else if (b != 0)
     r = b, phi = float(M_PI / 2) - float(M_PI / 4) * (a / b);
   const float x = r * std::cos(phi), y = r * std::sin(phi), z = std::sqrt(std::max(0.0f, 1 - x * x - y * y));
-  const float sign = std::copysign(1.0f, n[2]), c = -1 / (sign + n[2]), d = n[0] * n[1] * c;
-  const float s[3] = {1 + sign * n[0] * n[0] * c, sign * d, -sign * n[0]}, t[3] = {d, sign + n[1] * n[1] * c, -n[1]};
+  float s[3], t[3];
+  basisOf(n, s, t);
   for (int k = 0; k < 3; k++) out[k] = x * s[k] + y * t[k] + z * n[k];
 }
 

@@ -1,5 +1,6 @@
 // shader_table.cpp: parameter blocks of shaders: defaults of the class, then what the scene set.
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 #include "render/render_scene.h"
@@ -37,7 +38,8 @@ ShaderTable::ShaderTable(const Scene& scene, const ShaderRegistry& registry, con
 
 ShaderTable::ShaderTable(const ShaderTable& before, const std::vector<uint32_t>& changed, const Scene& scene,
                          const std::map<uint32_t, uint32_t>& textureIndex, const RtsHost& host)
-    : slots_(before.slots_), blocks_(before.blocks_), slotOf_(before.slotOf_), defaultShader_(before.defaultShader_) {
+    : slots_(before.slots_), blocks_(before.blocks_), media_(before.media_), slotOf_(before.slotOf_),
+      defaultShader_(before.defaultShader_) {
   for (uint32_t id : changed) {
     const auto slot = slotOf_->find(id);
     const auto values = scene.shaders.find(id);
@@ -105,10 +107,27 @@ void ShaderTable::make(uint32_t number, const RtsClass& shaderClass, const Shade
       std::memcpy(at, &texture, sizeof texture);
     }
   }
-  ShaderSlot slot{&shaderClass, block.bytes.get(), 0};
+  ShaderSlot slot{&shaderClass, block.bytes.get(), 0, slots_[number].medium};
   if (shaderClass.traits) slot.traits = shaderClass.traits(&host, slot.params);
+  if (shaderClass.medium) setMedium(slot, host);
   slots_[number] = slot;
   blocks_[number] = made;
+}
+
+// A medium keeps its number when its values change. What is out of range has no inside.
+void ShaderTable::setMedium(ShaderSlot& slot, const RtsHost& host) {
+  RtsMedium medium{};
+  bool good = slot.shaderClass->medium(&host, slot.params, &medium) != 0;
+  for (int k = 0; k < 3; k++)
+    good = good && medium.index[k] > 0 && std::isfinite(medium.index[k]) && std::isfinite(medium.absorption[k]);
+  if (!good) {
+    slot.medium = 0;
+  } else if (slot.medium) {
+    media_[slot.medium - 1] = medium;
+  } else if (media_.size() < 0xffff) {
+    media_.push_back(medium);
+    slot.medium = uint16_t(media_.size());
+  }
 }
 
 } // namespace openrt

@@ -27,8 +27,9 @@ ShadowRays makeRays(RtsBatch& batch, const uint8_t* wanted, const RtsIlluminatio
     float g[3] = {hits.geometric[0][i], hits.geometric[1][i], hits.geometric[2][i]};
     float p[3] = {hits.position[0][i], hits.position[1][i], hits.position[2][i]}, origin[3];
     // The facet faces away, the smooth surface does not: the ray starts on the smooth surface, or behind where it is flat.
+    // Light that comes through the surface (2) arrives from behind.
     const bool away = g[0] * l[0] + g[1] * l[1] + g[2] * l[2] < 0;
-    if (away && !liftToSmooth(*batch.scene, *batch.points, i, p)) g[0] = -g[0], g[1] = -g[1], g[2] = -g[2];
+    if (away && (wanted[i] == 2 || !liftToSmooth(*batch.scene, *batch.points, i, p))) g[0] = -g[0], g[1] = -g[1], g[2] = -g[2];
     offsetPoint(p, g, batch.points->error[i], origin);
     for (int k = 0; k < 3; k++) s.rays.org[k][n] = origin[k], s.rays.dir[k][n] = l[k];
     s.rays.tnear[n] = 0;

@@ -146,6 +146,10 @@ void TileRenderer::traceWave(Paths& paths) {
   const Coherence coherence = level_ == 0 ? Coherence::coherent : Coherence::incoherent;
   scene_.kernel->intersect(paths.rays, maskAll, coherence, paths.hits);
   lookThroughBacks(paths.rays, paths.hits);
+  if (!scene_.shaders->media().empty())
+    for (uint32_t i = 0; i < paths.rays.count; i++) // nothing is left of light that comes from infinity through what absorbs
+      absorb(mediumOf(paths.state[i].media, scene_.shaders->media()), std::min(paths.hits.t[i], 1e30f), scene_.shaders->media(),
+             paths.state[i].throughput);
   uint32_t misses = 0, mets = 0;
   for (uint32_t i = 0; i < paths.rays.count; i++)
     (paths.hits.record[i] == noHit ? paths.missed[misses++] : paths.met[mets++]) = i;
@@ -299,7 +303,9 @@ void TileRenderer::shadeRange(Paths& paths, const RayHits& hits, const BucketRan
   const uint32_t n = range.end - range.begin, size = padded(n);
   const Points points = makePoints(scene_, paths.rays, hits, order, n, paths.travelled, arena_);
   const Bucket& bucket = scene_.buckets[range.bucket];
-  if (bucket.shaderClass->surface) return scatterRange(paths, points, bucket, order);
+  // Of a class that answers both ways path tracing asks for lobes.
+  if (bucket.shaderClass->surface && (!bucket.shaderClass->shade || scene_.frame.transport >= RT_TRANSPORT_PATH))
+    return scatterRange(paths, points, bucket, order);
   RtsShading shaded;
   for (int k = 0; k < 3; k++) {
     shaded.radiance[k] = arena_.takeZero<float>(size);
@@ -337,7 +343,13 @@ void TileRenderer::gather(const Points& points, const RtsShading& shaded, const 
     if (!ray.bent) paths.alpha[ray.path] += covered / 3;
     if (paths.first[ray.path]) noteFirst(points, i, ray.path, shaded.albedo, paths);
     if (through <= 1e-6f) continue;
-    Step on{.density = 0, .bent = false, .split = false, .branch = ray.branch};
+    Step on{.density = 0,
+            .bent = false,
+            .split = false,
+            .through = false,
+            .channel = ray.channel,
+            .branch = ray.branch,
+            .media = ray.media};
     for (int k = 0; k < 3; k++) on.direction[k] = points.hits.direction[k][i], on.weight[k] = transmission[k];
     push(points, i, order[i], on, paths);
   }
@@ -376,9 +388,11 @@ void TileRenderer::push(const Points& points, uint32_t i, uint32_t lane, const S
   }
   ray.state.travelled = h.distance[i];
   ray.state.density = step.density;
-  if (step.density > 0) ray.state.from = receiverOf(points, i);
+  if (step.density > 0) ray.state.from = receiverOf(points, i, step.through);
   ray.state.bent |= step.bent ? 1 : 0;
   ray.state.branch = step.branch;
+  ray.state.channel = step.channel;
+  ray.state.media = step.media;
   if (step.split && ray.state.splits < 255) ray.state.splits++;
 }
 

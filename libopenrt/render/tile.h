@@ -8,6 +8,7 @@
 #include "render/batch.h"
 #include "render/error.h"
 #include "render/film.h"
+#include "render/lobes.h"
 #include "render/ray_queue.h"
 
 namespace openrt {
@@ -49,10 +50,18 @@ class TileRenderer {
   void addLights(RtsBatch& batch, const RtsHits& hits, float* const radiance[3]);
   struct Step { // how a ray goes on
     float direction[3], weight[3], density;
-    bool bent, split;
+    bool bent, split, through; // through: the lobes of the hit answer to light from both sides
+    uint8_t channel;
     uint32_t branch;
+    MediaStack media;
   };
-  void sendOn(const RtsBatch& batch, const Points& points, uint32_t i, uint32_t lane, Paths& paths, float* const chance[]);
+  struct Boundaries;
+  void meetBoundaries(const Points& points, const uint32_t* order, Paths& paths, RtsBatch& batch, Boundaries& out);
+  const LobeSamples* sampleLobe(const RtsBatch& batch, uint32_t l, const RtsHits& hits, const uint32_t* order,
+                                const Paths& paths);
+  void passOn(const Points& points, uint32_t i, uint32_t lane, const Crossing& crossing, Paths& paths);
+  void sendOn(const RtsBatch& batch, const Points& points, uint32_t i, uint32_t lane, Paths& paths,
+              const LobeSamples* const samples[], const Boundaries& boundaries, float* const chance[]);
   void push(const Points& points, uint32_t i, uint32_t lane, const Step& step, Paths& paths);
   enum class Draw : uint32_t { direction, choice, emitter, place, count };
   // Pair of dimensions of a random choice at this surface of a path; pair 0 is the place in the pixel.
@@ -62,9 +71,11 @@ class TileRenderer {
   void sampleAt(uint32_t path, uint32_t pair, float& u, float& v) const;
   float chanceMet(const RayState& ray, const Points& points, uint32_t i) const;
   // emitted.cpp: the light of emitters and of the sky, by choosing places on them.
-  Receiver receiverOf(const Points& points, uint32_t i) const;
+  Receiver receiverOf(const Points& points, uint32_t i, bool through) const;
+  uint32_t weigh(const RtsBatch& batch, const RtsHits& hits, float* const chance[], Rays& rays, Sight* sights, uint32_t* hitOf,
+                 uint32_t n, float* response[3]);
   void addEmitters(const RtsBatch& batch, const Points& points, const uint32_t* order, const Paths& paths, float* const chance[],
-                   float* const radiance[3]);
+                   const Crossing* crossing, float* const radiance[3]);
   void lookThroughBacks(const Rays& rays, RayHits& hits);
   void attenuate(const Points& points, const Paths& paths, const uint32_t* order, float* fog[4]);
   void addToPixels(const Paths& paths, uint32_t firstSample, uint32_t samples);

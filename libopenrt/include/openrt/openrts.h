@@ -131,9 +131,9 @@ typedef struct RtsLobe {
 
 /* A lobe of a plug-in's own (since 1.2): n pairs of a hit of the batch (hit[i] is its number) and a direction. `value` is the
  * response per radiance times the cosine at the lobe's normal, without the lobe's weight; `density` is that of `sample` by solid
- * angle, 0 for directions that it never gives. Directions are unit, away from the surface; towards the eye it is minus
- * hits->direction. A lobe must be reciprocal unless it transmits, and reflect at most what it gets. Nothing is padded to
- * RTS_LANES here. */
+ * angle, 0 for directions that it never gives. Answers for hits where the lobe's weight is 0 are not used. Directions are unit,
+ * away from the surface; towards the eye it is minus hits->direction. A lobe must be reciprocal unless it transmits, and reflect
+ * at most what it gets. Nothing is padded to RTS_LANES here. */
 struct RtsLobeFunctions {
   uint32_t size;      /* sizeof(RtsLobeFunctions) */
   uint32_t transmits; /* 1: directions to the other side of the surface may have a value */
@@ -304,7 +304,8 @@ struct RtsHost {
   /* Light number i (0 <= i < lights) at the hits; the arrays of out are the host's, valid until the next call for this batch. */
   void (*illuminate)(RtsBatch* batch, uint32_t i, const RtsHits* hits, RtsIllumination* out);
   /* Visibility of light i from the hits: multiplies light->color by the colour let through by what lies between, for the
-   * lanes whose wanted[lane] is not 0. Must follow illuminate(i). Does nothing where shadows are off. */
+   * lanes whose wanted[lane] is not 0 (2: it comes through the surface). Must follow illuminate(i). Does nothing where shadows
+   * are off. */
   void (*shadow)(RtsBatch* batch, uint32_t i, const RtsHits* hits, const uint8_t* wanted, RtsIllumination* light);
   /* Filtered texels (rgba; grey is replicated, missing alpha is 1) at n places. texture 0 gives 1 1 1 1. */
   void (*sample)(RtsBatch* batch, RtsTexture texture, uint32_t n, const float* const uv[2], float* const rgba[4]);
