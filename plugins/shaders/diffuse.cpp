@@ -5,11 +5,13 @@ namespace {
 
 struct Diffuse : rts::Surface<Diffuse> {
   static constexpr const char* text = "scatters light evenly; may send out light of its own";
-  rts::Param<rts::Color> reflectance{"reflectance", {0.8f, 0.8f, 0.8f}, "fraction of light scattered, 0..1", 0, 1};
+  static constexpr uint32_t needs = 0;
+  rts::Param<rts::Color> reflectance{"reflectance", {0.8f, 0.8f, 0.8f}, "fraction of light scattered, 0..1", 0, 1,
+                                     rts::PerVertex};
   rts::Param<rts::Color> emission{"emission", {0, 0, 0}, "radiance sent out"};
   rts::Param<rts::Texture> texture{"texture", "multiplies reflectance"};
 
-  bool emits() const { return emission->r > 0 || emission->g > 0 || emission->b > 0; }
+  bool emits() const { return rts::largest(emission) > 0; }
   void surface(const rts::Hit& hit, rts::Closures& out) const {
     const rts::Vec4 texel = hit.sample(texture, hit.uv);
     const rts::Color albedo =

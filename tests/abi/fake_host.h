@@ -1,8 +1,9 @@
 // fake_host.h: the smallest host a shader can run in, for tests of plug-ins without a renderer: constant textures, lights given
-// as numbers, scratch memory, and a record of what the shader asked for.
+// as numbers, lobes, scratch memory, rays that meet a floor, and a record of what the shader asked for.
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <deque>
 #include <stdexcept>
@@ -42,18 +43,110 @@ struct FakeLight {
   float visible = 1; // what shadow() multiplies with
 };
 
+// A lobe that a shader has asked for, with its memory.
+struct FakeLobe {
+  RtsLobe table{};
+  std::array<Lanes, 8 + RTS_MAX_LOBE_FLOATS> memory;
+};
+
 struct FakeHost : RtsHost {
   std::vector<FakeTexture> textures; // texture k + 1
   std::vector<FakeLight> shining;
   uint32_t shadowCalls = 0, shadowLanes = 0, sampleCalls = 0, messages = 0;
   std::deque<Lanes> memory;
   std::array<Lanes, 9> light;
+  std::deque<FakeLobe> lobes;
+  uint32_t hitCount = 1;         // of the batch; the fake's functions of hits answer for so many
+  float normal[3] = {0, 0, 1};   // of new lobes
+  float floor = -1;              // z of what rays meet: radiance .25 .5 .75 with alpha 1, name 7
+  std::vector<uint32_t> askedBy; // RtsRequest.hit of all rays
+  uint32_t randomCalls = 0;
 
   FakeHost();
+  RtsLobe* newLobe(RtsLobeKind kind, const RtsLobeFunctions* functions, uint32_t floats);
   RtsBatch* batch() { return reinterpret_cast<RtsBatch*>(this); }
 };
 
 inline FakeHost& fake(RtsBatch* batch) { return *reinterpret_cast<FakeHost*>(batch); }
+
+inline RtsLobe* FakeHost::newLobe(RtsLobeKind kind, const RtsLobeFunctions* functions, uint32_t floats) {
+  if (lobes.size() == RTS_MAX_LOBES) return nullptr;
+  FakeLobe& lobe = lobes.emplace_back();
+  for (Lanes& m : lobe.memory) m = Lanes(hitCount);
+  lobe.table.kind = kind;
+  lobe.table.functions = functions;
+  for (size_t k = 0; k < 3; k++) {
+    lobe.memory[3 + k] = Lanes(hitCount, normal[k]);
+    lobe.table.weight[k] = lobe.memory[k].data();
+    lobe.table.normal[k] = lobe.memory[3 + k].data();
+  }
+  for (size_t k = 0; k < 2; k++) lobe.table.parameter[k] = lobe.memory[6 + k].data();
+  for (size_t k = 0; k < floats; k++) lobe.table.data[k] = lobe.memory[8 + k].data();
+  return &lobe.table;
+}
+
+// Rays of a request meet the plane z = floor; from hits they start at the origin.
+inline float fakeDistance(const FakeHost& host, const RtsRequest* rays, uint32_t i) {
+  const float z = rays->origin[0] ? rays->origin[2][i] : 0, d = rays->direction[2][i];
+  const float t = d < 0 ? (host.floor - z) / d : INFINITY;
+  return t > 0 && (!rays->length || t < rays->length[i]) ? t : INFINITY;
+}
+
+inline void addRays(RtsHost& host) {
+  host.trace = [](RtsBatch* b, const RtsRequest* rays, float* const rgba[4]) {
+    for (uint32_t i = 0; i < rays->count; i++) {
+      fake(b).askedBy.push_back(rays->hit[i]);
+      const float met = std::isfinite(fakeDistance(fake(b), rays, i)) ? 1 : 0;
+      for (uint32_t k = 0; k < 3; k++) rgba[k][i] = met * 0.25f * float(k + 1);
+      if (rgba[3]) rgba[3][i] = met;
+    }
+  };
+  host.findHit = [](RtsBatch* b, const RtsRequest* rays, RtsFound* out) {
+    for (uint32_t i = 0; i < rays->count; i++) {
+      fake(b).askedBy.push_back(rays->hit[i]);
+      const float t = fakeDistance(fake(b), rays, i);
+      if (out->distance) out->distance[i] = t;
+      if (!std::isfinite(t)) continue;
+      for (uint32_t k = 0; k < 3; k++) {
+        if (out->position[k]) out->position[k][i] = (rays->origin[0] ? rays->origin[k][i] : 0) + t * rays->direction[k][i];
+        if (out->geometric[k]) out->geometric[k][i] = k == 2;
+        if (out->normal[k]) out->normal[k][i] = k == 2;
+      }
+      if (out->name) out->name[i] = 7;
+    }
+  };
+  host.occluded = [](RtsBatch* b, const RtsRequest* rays, float* const transmission[3]) {
+    for (uint32_t i = 0; i < rays->count; i++)
+      for (uint32_t k = 0; k < 3; k++) transmission[k][i] = std::isfinite(fakeDistance(fake(b), rays, i)) ? 0 : 1;
+  };
+}
+
+// Facts about hits: numbers that tell lanes and arrays apart.
+inline void addFacts(RtsHost& host) {
+  host.random = [](RtsBatch* b, uint32_t pair, float* const square[2]) {
+    fake(b).randomCalls++;
+    for (uint32_t i = 0; i < fake(b).hitCount; i++)
+      for (uint32_t k = 0; k < 2; k++) square[k][i] = 0.1f * float(pair) + 0.01f * float(k) + 0.001f * float(i);
+  };
+  const auto vectors = [](RtsBatch* b, float* const first[3], float* const second[3]) {
+    for (uint32_t i = 0; i < fake(b).hitCount; i++)
+      for (uint32_t k = 0; k < 3; k++) first[k][i] = float(i) + 0.1f * float(k), second[k][i] = 10 + first[k][i];
+  };
+  host.local = vectors;
+  host.derivatives = vectors;
+  host.ids = [](RtsBatch* b, uint32_t* name, uint32_t* instance, uint32_t* primitive) {
+    for (uint32_t i = 0; i < fake(b).hitCount; i++) name[i] = 100 + i, instance[i] = 200 + i, primitive[i] = 300 + i;
+  };
+  host.path = [](RtsBatch* b, uint32_t* depth, float* const throughput[3]) {
+    for (uint32_t i = 0; i < fake(b).hitCount; i++) {
+      depth[i] = i;
+      for (uint32_t k = 0; k < 3; k++) throughput[k][i] = 0.5f / float(k + 1);
+    }
+  };
+  host.error = [](RtsBatch* b, float* error) {
+    for (uint32_t i = 0; i < fake(b).hitCount; i++) error[i] = 1e-6f * float(i + 1);
+  };
+}
 
 inline FakeHost::FakeHost() : RtsHost{} {
   size = sizeof(RtsHost);
@@ -98,6 +191,14 @@ inline FakeHost::FakeHost() : RtsHost{} {
     return fake(b).memory.back().data();
   };
   log = [](const RtsHost* h, int, const char*) { static_cast<FakeHost*>(const_cast<RtsHost*>(h))->messages++; };
+  RtsHost::lobe = [](RtsBatch* b, RtsLobeKind kind) {
+    return kind == RTS_LOBE_CUSTOM ? nullptr : fake(b).newLobe(kind, nullptr, 0);
+  };
+  customLobe = [](RtsBatch* b, const RtsLobeFunctions* functions, uint32_t floats) {
+    return floats > RTS_MAX_LOBE_FLOATS ? nullptr : fake(b).newLobe(RTS_LOBE_CUSTOM, functions, floats);
+  };
+  addRays(*this);
+  addFacts(*this);
 }
 
 // A parameter struct with a class's defaults.
@@ -125,6 +226,7 @@ class ParamBlock {
   }
   void setInt(const char* name, int v) { write<int32_t>(find(name).offset, v); } // integers and textures
   const void* get() const { return bytes_.data(); }
+  void* get() { return bytes_.data(); }
 
  private:
   static size_t floats(RtsType type) {

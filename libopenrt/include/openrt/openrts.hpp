@@ -3,155 +3,106 @@
 // functions of openrts.h instead.
 //
 //   #include <openrt/openrts.hpp>
-//   struct Flat : rts::Surface<Flat> {
-//     rts::Param<rts::Color> color{"color", {0.8f, 0.8f, 0.8f}, "colour in any light"};
-//     rts::Shaded shade(const rts::Hit&) const { return {color}; }
+//   struct Polished : rts::Surface<Polished> {
+//     rts::Param<rts::Color> reflectance{"reflectance", {0.9f, 0.9f, 0.9f}, "fraction reflected, 0..1"};
+//     void surface(const rts::Hit&, rts::Closures& out) const { out.reflection(reflectance); }
 //   };
-//   RTS_PLUGIN(Flat)
+//   RTS_PLUGIN(Polished)
 //
-// A class may say `static constexpr const char* text = "what it is";`. Its members are rts::Param only; its functions are
-// const, must not throw and are called on many threads at once [render].
+// A class may say `static constexpr const char* text = "what it is";`. Its functions are const, must not throw and are called on
+// many threads at once [render]. Its members are rts::Param, and, for what `prepare` makes of them, plain numbers and pointers,
+// which are zero before `prepare` whatever their initialisers say.
 //
-//   Surface<T>      Shaded shade(const Hit&) const
-//                   Color reflect(const Hit&, const Light&) const     optional: the answer to one light; without it: unlit
-//                   void surface(const Hit&, Closures&) const         instead of shade: a sum of lobes that the engine follows
-//                   bool emits() const                                optional: emission may be above 0; without it path
-//                   tracing meets the light by chance only
+//   Surface<T>      void surface(const Hit&, Closures&) const         a sum of lobes that the engine follows
+//                   Shaded shade(const Hit&) const                    instead: radiance; or beside it, for the transports that
+//                                                                     follow no light between surfaces
+//                   Color reflect(const Hit&, const Light&) const     optional, with shade: the answer to one light; without it:
+//                                                                     unlit
 //                   Color transmit(const Hit&) const                  optional: what shadow rays see; without it the surface is
-//                   opaque
+//                                                                     opaque
+//                   bool emits() const                                optional: emission may be above 0; without it path tracing
+//                                                                     meets the light by chance only
+//                   Medium medium() const                             optional: the inside of the body
+//                   static constexpr uint32_t needs = RTS_GLOSSY;     optional, also as a const function: RTS_SPECULAR,
+//                                                                     RTS_GLOSSY, RTS_GLOBAL; without it a class with `surface`
+//                                                                     counts as RTS_SPECULAR
 //   LightSource<T>  Illumination illuminate(Vec3 point) const         point and answer in the light's local space
+//                   Extent extent() const                             optional: where it is and how strong
 //                   static constexpr bool directional = true;         optional: toLight has no end point
 //                   static constexpr bool shadows = false;            optional
 //   Camera<T>       Ray generate(Vec2 pixel, Vec2 size) const         local space
+//                   Projection project(Vec3 point, Vec2 lens, Vec2 size) const     optional: its inverse
+//                   static constexpr bool parallel = true;            optional: all rays have one direction
 //   Environment<T>  Vec4 miss(Vec3 direction) const                   radiance and opacity
 //                   Fog attenuate(Vec3 fromEye) const                 optional
+//   Transport<T>    Vec4 radiance(const CameraRay&) const             radiance and alpha
+//   all             const char* prepare()                             optional, called once for each new set of values: a message
+//                                                                     if they make no sense, else nullptr
+//                   void release()                                    optional: undoes it
 #ifndef OPENRT_OPENRTS_HPP
 #define OPENRT_OPENRTS_HPP
 
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <cstring>
-#include <new>
-#include <string>
+#include <limits>
 #include <type_traits>
-#include <utility>
-#include <vector>
 
 #include "openrts.h"
+#include "openrts_values.hpp"
 
 namespace rts {
 
-// Values ------------------------------------------------------------------------------------------------------------------
-
-struct Vec2 {
-  float x = 0, y = 0;
-};
-struct Vec3 {
-  float x = 0, y = 0, z = 0;
-};
-struct Vec4 {
-  float x = 0, y = 0, z = 0, w = 0;
-};
-struct Color {
-  float r = 0, g = 0, b = 0;
-};
-struct Matrix { // column-major
-  float m[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
-};
-struct Texture {
-  RtsTexture id = 0;
-};
-using Floats = RtsFloats;
-using String = const char*;
-
-inline Vec3 operator+(Vec3 a, Vec3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-inline Vec3 operator-(Vec3 a, Vec3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-inline Vec3 operator-(Vec3 a) { return {-a.x, -a.y, -a.z}; }
-inline Vec3 operator*(Vec3 a, float s) { return {a.x * s, a.y * s, a.z * s}; }
-inline Vec3 operator*(float s, Vec3 a) { return a * s; }
-inline float dot(Vec3 a, Vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-inline Vec3 cross(Vec3 a, Vec3 b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
-inline float length(Vec3 a) { return std::sqrt(dot(a, a)); }
-inline Vec3 normalize(Vec3 a) { // the zero vector stays
-  const float l = length(a);
-  return l > 0 ? a * (1 / l) : a;
-}
-inline Color operator+(Color a, Color b) { return {a.r + b.r, a.g + b.g, a.b + b.b}; }
-inline Color operator*(Color a, Color b) { return {a.r * b.r, a.g * b.g, a.b * b.b}; }
-inline Color operator*(Color a, float s) { return {a.r * s, a.g * s, a.b * s}; }
-inline Color operator*(float s, Color a) { return a * s; }
-
-// Parameters -----------------------------------------------------------------------------------------------------------------
+inline constexpr float infinity = std::numeric_limits<float>::infinity();
 
 namespace detail {
-
-template <class T> struct ParamType;
-template <> struct ParamType<int32_t> { static constexpr RtsType type = RTS_INT; };
-template <> struct ParamType<float> { static constexpr RtsType type = RTS_FLOAT; };
-template <> struct ParamType<Vec2> { static constexpr RtsType type = RTS_VEC2; };
-template <> struct ParamType<Vec3> { static constexpr RtsType type = RTS_VEC3; };
-template <> struct ParamType<Vec4> { static constexpr RtsType type = RTS_VEC4; };
-template <> struct ParamType<Color> { static constexpr RtsType type = RTS_COLOR; };
-template <> struct ParamType<Matrix> { static constexpr RtsType type = RTS_MATRIX; };
-template <> struct ParamType<Floats> { static constexpr RtsType type = RTS_FLOATS; };
-template <> struct ParamType<String> { static constexpr RtsType type = RTS_STRING; };
-template <> struct ParamType<Texture> { static constexpr RtsType type = RTS_TEXTURE; };
-
-// A class's parameters as its prototype is constructed: each Param notes where it lies.
-struct Declaration {
-  std::vector<RtsParam> params;
-  const char* start = nullptr;
+// What the host has told about the hits of a batch, array by array, asked for once.
+struct Asked {
+  float* random[4][2] = {};
+  float *local[6] = {}, *derivatives[6] = {}, *throughput[3] = {}, *error = nullptr;
+  uint32_t *ids[3] = {}, *depth = nullptr;
 };
-inline Declaration*& declaration() {
-  static thread_local Declaration* current = nullptr;
-  return current;
-}
-
-inline void declare(const char* name, RtsType type, const void* place, const void* value, size_t bytes, const char* text,
-                    float minimum, float maximum) {
-  Declaration* d = declaration();
-  if (!d) return;
-  RtsParam p{};
-  p.name = name;
-  p.type = type;
-  p.offset = static_cast<uint32_t>(static_cast<const char*>(place) - d->start);
-  if (type == RTS_INT) {
-    int32_t whole = 0;
-    std::memcpy(&whole, value, sizeof whole);
-    p.defaultValue[0] = static_cast<float>(whole);
-  } else if (type >= RTS_FLOAT && type <= RTS_MATRIX) {
-    std::memcpy(p.defaultValue, value, bytes);
-  }
-  p.minimum = minimum;
-  p.maximum = maximum;
-  p.text = text;
-  d->params.push_back(p);
-}
-
 } // namespace detail
-
-// A parameter with its name, default value, meaning and, if both are given, its range. Reads as its value. Lists, strings and
-// textures start empty.
-template <class T> class Param {
- public:
-  Param(const char* name, T value, const char* text, float minimum = 0, float maximum = 0) : value_(value) {
-    detail::declare(name, detail::ParamType<T>::type, &value_, &value_, sizeof value_, text, minimum, maximum);
-  }
-  Param(const char* name, const char* text) : value_() {
-    detail::declare(name, detail::ParamType<T>::type, &value_, &value_, sizeof value_, text, 0, 0);
-  }
-  operator const T&() const { return value_; }
-  const T& operator*() const { return value_; }
-  const T* operator->() const { return &value_; }
-
- private:
-  T value_; // the only member: the host writes the value here
-};
 
 // What functions see and answer -------------------------------------------------------------------------------------------
 
-struct Hit {
+struct Ray {
+  Vec3 origin, direction; // unit
+};
+// What a ray meets first.
+struct Found {
+  float distance = infinity; // infinite: nothing
+  Vec3 position;             // render space
+  Vec3 geometric, normal;    // unit, turned towards the ray's origin; as shaded
+  uint32_t name = 0;         // rtLoadName
+  bool any() const { return distance < infinity; }
+};
+
+// Something in a batch that can send rays, one at a time: a hit, or a camera ray of a transport. The batch functions of
+// RtsHost do the same for many at once and are several times as fast. Hosts before 1.2 find nothing: black, clear.
+class Tracer {
+ public:
+  const RtsHost* host = nullptr;
+  RtsBatch* batch = nullptr;
+  uint32_t lane = 0;
+  uint32_t count = 0; // of the batch
+  detail::Asked* asked = nullptr;
+
+  // Light that comes back along a ray, shaded by the engine. Black beyond the depth limit.
+  Color trace(const Ray& ray, float length = infinity, float* alpha = nullptr) const {
+    return traceFrom(&ray.origin, ray.direction, length, alpha);
+  }
+  Found findHit(const Ray& ray, float length = infinity) const { return findFrom(&ray.origin, ray.direction, length); }
+  // The colour that is let through between a ray's origin and its end: black where it is blocked.
+  Color occluded(const Ray& ray, float length = infinity) const { return occludedFrom(&ray.origin, ray.direction, length); }
+  // A point of the unit square, for each pair < 4 another: well spread over the samples of a pixel. Using one turns the pixel's
+  // value into an estimate.
+  Vec2 random(uint32_t pair) const;
+
+ protected:
+  Color traceFrom(const Vec3* origin, Vec3 direction, float length, float* alpha) const;
+  Found findFrom(const Vec3* origin, Vec3 direction, float length) const;
+  Color occludedFrom(const Vec3* origin, Vec3 direction, float length) const;
+};
+
+struct Hit : Tracer {
   Vec3 position;  // render space
   Vec3 direction; // unit, of the ray, towards the surface
   Vec3 geometric; // unit, turned towards the ray's origin
@@ -161,24 +112,49 @@ struct Hit {
   float distance = 0; // along the path from the camera
   float segment = 0;  // along the ray that met the surface
   uint32_t flags = 0;
-  uint32_t lane = 0;
-  const RtsHost* host = nullptr;
-  RtsBatch* batch = nullptr;
 
   bool back() const { return (flags & RTS_HIT_BACK) != 0; }
   bool line() const { return (flags & RTS_HIT_LINE) != 0; }
+  // Of the ray that met the surface, at the shading normal: 0..1.
+  float cosine() const { return std::fmin(1.0f, std::fmax(0.0f, -dot(direction, normal))); }
   // Filtered texel; white for no texture.
-  Vec4 sample(Texture texture, Vec2 place) const {
-    alignas(64) float in[2][RTS_LANES], out[4][RTS_LANES];
-    for (int i = 0; i < RTS_LANES; i++) {
-      in[0][i] = place.x;
-      in[1][i] = place.y;
-    }
-    const float* const uvs[2] = {in[0], in[1]};
-    float* const rgba[4] = {out[0], out[1], out[2], out[3]};
-    host->sample(batch, texture.id, 1, uvs, rgba);
-    return {out[0][0], out[1][0], out[2][0], out[3][0]};
-  }
+  Vec4 sample(Texture texture, Vec2 place) const;
+
+  // The rest is the host's since 1.2; with older ones they answer as said.
+  using Tracer::findHit;
+  using Tracer::occluded;
+  using Tracer::trace;
+  // The same from this hit, lifted off the surface to the side of the direction (unit).
+  Color trace(Vec3 towards, float length = infinity) const { return traceFrom(nullptr, towards, length, nullptr); }
+  Found findHit(Vec3 towards, float length = infinity) const { return findFrom(nullptr, towards, length); }
+  Color occluded(Vec3 towards, float length = infinity) const { return occludedFrom(nullptr, towards, length); }
+  // Position and geometric normal (not unit) in the frame of the object: a pattern made from them moves with it. Else render
+  // space.
+  struct Local {
+    Vec3 position, normal;
+  };
+  Local local() const;
+  // Change of the position per unit of texture coordinate, render space; else 0.
+  struct Derivatives {
+    Vec3 alongS, alongT;
+  };
+  Derivatives derivatives() const;
+  // rtLoadName, outermost instance, triangle; else 0.
+  struct Ids {
+    uint32_t name = 0, instance = 0, primitive = 0;
+  };
+  Ids ids() const;
+  uint32_t depth() const;   // surfaces that the path met before; else 0
+  Color throughput() const; // share of the light from here that reaches the camera; else 1
+  float error() const;      // bound of the position's rounding error along the geometric normal; else 0
+};
+
+// Of a transport: the ray of a sample of the picture.
+struct CameraRay : Tracer, Ray {
+  using Tracer::findHit;
+  using Tracer::occluded;
+  using Tracer::trace;
+  float length = infinity;
 };
 
 struct Shaded {
@@ -196,23 +172,65 @@ struct Illumination {
   Vec3 toLight; // any length
   Color color, ambient;
 };
-struct Ray {
-  Vec3 origin, direction; // unit
-};
 struct Fog {
   Color color;
   float fraction = 1; // of the surface's radiance that arrives
 };
+// The inside of a body (RtsMedium): where bodies overlap the one of the highest priority is there. Faces point outwards.
+struct Medium {
+  Color index{1, 1, 1}; // of refraction, by colour
+  Color absorption;     // per unit of length in the world
+  int32_t priority = 0;
+  bool present = true;
+};
+// Where a light is and how strong (RtsExtent), local space.
+struct Extent {
+  Vec3 position, direction{0, 0, -1};
+  float cosine = -1; // of the half angle of the cone about the direction that gets light
+  float power = 1;
+  float radius = infinity; // nothing is lit beyond
+  bool parallel = false, known = true;
+};
+// Where a point is in the picture (RtsProjection).
+struct Projection {
+  Vec2 pixel;
+  Vec3 toEye;
+  float weight = 0; // pixels covered per unit of area that faces the eye; 0: not in the picture
+};
 
-// The lobes of one hit (RtsLobeKind). Several of a kind add up.
+// A direction that a lobe of one's own chooses: its value divided by the density, and the density; 0: none.
+struct Sample {
+  Vec3 direction;
+  Color quotient;
+  float density = 0;
+};
+
+// The functions of a lobe of a plug-in's own: a trivially copyable class of floats (at most RTS_MAX_LOBE_FLOATS), with
+//   Color evaluate(Vec3 toEye, Vec3 direction, Vec3 normal) const    response per radiance times the cosine at the normal
+//   float density(Vec3 toEye, Vec3 direction, Vec3 normal) const     of sample, by solid angle
+//   Sample sample(Vec3 toEye, Vec2 square, Vec3 normal) const        or the direction alone (Vec3): the rest is then worked out
+//   static constexpr bool transmits = true;                          optional: may answer light from the other side
+// Directions are unit, away from the surface. A lobe must be reciprocal unless it transmits, and reflect at most what it gets.
+template <class L> const RtsLobeFunctions* lobeFunctions();
+
+// The lobes of one hit (RtsLobeKind). Several of a kind add up. Weights 0..1; all of a hit should add up to at most 1.
 class Closures {
  public:
-  // The engine's answer to lights and to the light of other surfaces: Lambert's law.
+  // Lambert's law.
   void diffuse(Color albedo) { add(RTS_LOBE_DIFFUSE, albedo); }
+  // Perfect mirror; Fresnel's share is part of the reflectance.
   void reflection(Color reflectance) { add(RTS_LOBE_REFLECTION, reflectance); }
-  // eta: index of refraction on the ray's side over that behind.
+  // Smooth boundary of a clear medium. eta: index of refraction on the ray's side over that behind.
   void dielectric(Color tint, float eta) { add(RTS_LOBE_DIELECTRIC, tint, eta); }
   void transparent(Color transmittance) { add(RTS_LOBE_TRANSPARENT, transmittance); }
+  // Microfacets (GGX) of width alpha, 0..1. With eta Fresnel's share of a clear medium multiplies.
+  void glossy(Color reflectance, float alpha, float eta = 0) { add(RTS_LOBE_GLOSSY, reflectance, alpha, eta); }
+  void roughDielectric(Color tint, float eta, float alpha) { add(RTS_LOBE_ROUGH_DIELECTRIC, tint, eta, alpha); }
+  // A lobe of one's own (see lobeFunctions).
+  template <class L> void custom(Color weight, const L& lobe);
+  // The normal of the lobes that follow for this hit; at first the hit's. Unit, on the side of the geometric one.
+  void normal(Vec3 unit) { normal_ = unit, bent_ = true; }
+
   void emission(Color radiance) {
     const float c[3] = {radiance.r, radiance.g, radiance.b};
     for (int k = 0; k < 3; k++) out_->emission[k][lane_] += c[k];
@@ -226,26 +244,34 @@ class Closures {
   Closures(const RtsHost* host, RtsBatch* batch, RtsSurface* out) : host_(host), batch_(batch), out_(out) {}
   void begin(uint32_t lane) { // the next hit
     lane_ = lane;
+    bent_ = false;
     for (uint32_t i = 0; i < count_; i++) free_[i] = true;
   }
 
  private:
-  void add(RtsLobeKind kind, Color weight, float parameter = 0) {
-    RtsLobe* lobe = slot(kind);
-    if (!lobe) return;
-    const float c[3] = {weight.r, weight.g, weight.b};
+  RtsLobe* add(RtsLobeKind kind, Color weight, float first = 0, float second = 0, const RtsLobeFunctions* functions = nullptr,
+               uint32_t floats = 0) {
+    RtsLobe* lobe = slot(kind, functions, floats);
+    if (!lobe) return nullptr;
+    const float c[3] = {weight.r, weight.g, weight.b}, n[3] = {normal_.x, normal_.y, normal_.z};
     for (int k = 0; k < 3; k++) lobe->weight[k][lane_] = c[k];
-    lobe->parameter[0][lane_] = parameter;
+    for (int k = 0; bent_ && k < 3; k++) lobe->normal[k][lane_] = n[k];
+    if (functions) return lobe;
+    lobe->parameter[0][lane_] = first;
+    lobe->parameter[1][lane_] = second;
+    return lobe;
   }
-  // A lobe of this kind that the hit has not used yet.
-  RtsLobe* slot(RtsLobeKind kind) {
+  // A lobe of this kind that the hit has not used yet. Null beyond RTS_MAX_LOBES and on hosts that do not know the kind.
+  RtsLobe* slot(RtsLobeKind kind, const RtsLobeFunctions* functions, uint32_t floats) {
     for (uint32_t i = 0; i < count_; i++) {
-      if (!free_[i] || lobes_[i]->kind != kind) continue;
+      if (!free_[i] || lobes_[i]->kind != kind || functions_[i] != functions) continue;
       free_[i] = false;
       return lobes_[i];
     }
-    RtsLobe* made = count_ < RTS_MAX_LOBES ? host_->lobe(batch_, kind) : nullptr;
-    if (made) lobes_[count_] = made, free_[count_++] = false;
+    if (count_ == RTS_MAX_LOBES) return nullptr;
+    const bool own = host_->minor >= 2 && host_->customLobe;
+    RtsLobe* made = !functions ? host_->lobe(batch_, kind) : own ? host_->customLobe(batch_, functions, floats) : nullptr;
+    if (made) lobes_[count_] = made, functions_[count_] = functions, free_[count_++] = false;
     return made;
   }
 
@@ -253,7 +279,10 @@ class Closures {
   RtsBatch* batch_;
   RtsSurface* out_;
   uint32_t lane_ = 0, count_ = 0;
+  Vec3 normal_;
+  bool bent_ = false;
   RtsLobe* lobes_[RTS_MAX_LOBES] = {};
+  const RtsLobeFunctions* functions_[RTS_MAX_LOBES] = {};
   bool free_[RTS_MAX_LOBES] = {};
 };
 
@@ -261,223 +290,12 @@ template <class T> struct Surface {};
 template <class T> struct LightSource {};
 template <class T> struct Camera {};
 template <class T> struct Environment {};
+template <class T> struct Transport {};
 
-// Glue ------------------------------------------------------------------------------------------------------------------------
-
-namespace detail {
-
-template <class T, class = void> struct HasReflect : std::false_type {};
-template <class T> struct HasReflect<
-    T, std::void_t<decltype(std::declval<const T&>().reflect(std::declval<const Hit&>(), std::declval<const Light&>()))>>
-    : std::true_type {};
-template <class T, class = void> struct HasTransmit : std::false_type {};
-template <class T> struct HasTransmit<T, std::void_t<decltype(std::declval<const T&>().transmit(std::declval<const Hit&>()))>>
-    : std::true_type {};
-template <class T, class = void> struct HasAttenuate : std::false_type {};
-template <class T> struct HasAttenuate<T, std::void_t<decltype(std::declval<const T&>().attenuate(Vec3()))>> : std::true_type {};
-template <class T, class = void> struct HasSurface : std::false_type {};
-template <class T>
-struct HasSurface<T,
-                  std::void_t<decltype(std::declval<const T&>().surface(std::declval<const Hit&>(), std::declval<Closures&>()))>>
-    : std::true_type {};
-template <class T, class = void> struct HasText : std::false_type {};
-template <class T> struct HasText<T, std::void_t<decltype(T::text)>> : std::true_type {};
-template <class T, class = void> struct IsDirectional : std::false_type {};
-template <class T> struct IsDirectional<T, std::void_t<decltype(T::directional)>> : std::bool_constant<T::directional> {};
-template <class T, class = void> struct CastsShadows : std::true_type {};
-template <class T> struct CastsShadows<T, std::void_t<decltype(T::shadows)>> : std::bool_constant<T::shadows> {};
-
-inline Vec3 vec3(const float* const a[3], uint32_t i) { return {a[0][i], a[1][i], a[2][i]}; }
-inline Color color(float* const a[3], uint32_t i) { return {a[0][i], a[1][i], a[2][i]}; }
-inline void put(float* const a[3], uint32_t i, Vec3 v) {
-  a[0][i] = v.x;
-  a[1][i] = v.y;
-  a[2][i] = v.z;
-}
-inline void put(float* const a[3], uint32_t i, Color c) { put(a, i, Vec3{c.r, c.g, c.b}); }
-inline void add(float* const a[3], uint32_t i, Color c) { put(a, i, color(a, i) + c); }
-
-// shadowRay: only what openrts.h promises to `transmit` is read.
-inline Hit hitAt(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, uint32_t i, bool shadowRay) {
-  Hit h;
-  h.position = vec3(hits->position, i);
-  h.direction = vec3(hits->direction, i);
-  if (!shadowRay) {
-    h.geometric = vec3(hits->geometric, i);
-    h.normal = vec3(hits->normal, i);
-    h.distance = hits->distance[i];
-    if (host->minor >= 1) h.segment = hits->segment[i];
-  }
-  h.uv = {hits->uv[0][i], hits->uv[1][i]};
-  h.color = {hits->color[0][i], hits->color[1][i], hits->color[2][i], hits->color[3][i]};
-  h.flags = hits->flags[i];
-  h.lane = i;
-  h.host = host;
-  h.batch = batch;
-  return h;
-}
-
-template <class T> const T& shaderAt(const RtsHits* hits, uint32_t i) { return *static_cast<const T*>(hits->params[i]); }
-
-template <class T> void addLights(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, RtsShading* out) {
-  const uint32_t count = host->lights(batch);
-  uint8_t* wanted = reinterpret_cast<uint8_t*>(host->scratch(batch, hits->count));
-  std::memset(wanted, 1, hits->count);
-  for (uint32_t k = 0; k < count; k++) {
-    RtsIllumination light{};
-    host->illuminate(batch, k, hits, &light);
-    host->shadow(batch, k, hits, wanted, &light);
-    for (uint32_t i = 0; i < hits->count; i++) {
-      const Light at{vec3(light.toLight, i), color(light.color, i), color(light.ambient, i)};
-      add(out->radiance, i, shaderAt<T>(hits, i).reflect(hitAt(host, batch, hits, i, false), at));
-    }
-  }
-}
-
-template <class T> void shade(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, RtsShading* out) {
-  for (uint32_t i = 0; i < hits->count; i++) {
-    const Shaded s = shaderAt<T>(hits, i).shade(hitAt(host, batch, hits, i, false));
-    put(out->radiance, i, s.radiance);
-    put(out->transmission, i, s.transmission);
-    if (out->albedo[0]) put(out->albedo, i, s.albedo);
-  }
-  if constexpr (HasReflect<T>::value) addLights<T>(host, batch, hits, out);
-}
-
-template <class T> void surface(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, RtsSurface* out) {
-  Closures closures(host, batch, out);
-  for (uint32_t i = 0; i < hits->count; i++) {
-    closures.begin(i);
-    shaderAt<T>(hits, i).surface(hitAt(host, batch, hits, i, false), closures);
-  }
-}
-
-template <class T> void transmit(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, float* const transmission[3]) {
-  for (uint32_t i = 0; i < hits->count; i++)
-    put(transmission, i, shaderAt<T>(hits, i).transmit(hitAt(host, batch, hits, i, true)));
-}
-
-template <class T>
-void illuminate(const RtsHost*, RtsBatch*, const void* params, uint32_t n, const float* const local[3], RtsIllumination* out) {
-  for (uint32_t i = 0; i < n; i++) {
-    const Illumination l = static_cast<const T*>(params)->illuminate(vec3(local, i));
-    put(out->toLight, i, l.toLight);
-    put(out->color, i, l.color);
-    put(out->ambient, i, l.ambient);
-  }
-  out->directional = IsDirectional<T>::value;
-}
-
-template <class T> void generate(const RtsHost*, RtsBatch*, const void* params, uint32_t n, const float* const xy[2],
-                                 const float size[2], RtsRays* out) {
-  for (uint32_t i = 0; i < n; i++) {
-    const Ray ray = static_cast<const T*>(params)->generate(Vec2{xy[0][i], xy[1][i]}, Vec2{size[0], size[1]});
-    put(out->origin, i, ray.origin);
-    put(out->direction, i, ray.direction);
-  }
-}
-
-template <class T>
-void miss(const RtsHost*, RtsBatch*, const void* params, uint32_t n, const float* const direction[3], float* const rgba[4]) {
-  for (uint32_t i = 0; i < n; i++) {
-    const Vec4 c = static_cast<const T*>(params)->miss(vec3(direction, i));
-    put(rgba, i, Vec3{c.x, c.y, c.z});
-    rgba[3][i] = c.w;
-  }
-}
-
-template <class T> void attenuate(const RtsHost*, RtsBatch*, const void* params, uint32_t n, const float* const fromEye[3],
-                                  float* const color[3], float* fraction) {
-  for (uint32_t i = 0; i < n; i++) {
-    const Fog fog = static_cast<const T*>(params)->attenuate(vec3(fromEye, i));
-    put(color, i, fog.color);
-    fraction[i] = fog.fraction;
-  }
-}
-
-template <class T, class = void> struct HasEmits : std::false_type {};
-template <class T> struct HasEmits<T, std::void_t<decltype(std::declval<const T&>().emits())>> : std::true_type {};
-
-template <class T> uint32_t traits(const RtsHost*, const void* params) {
-  uint32_t t = 0;
-  (void)params;
-  if constexpr (HasEmits<T>::value) t |= static_cast<const T*>(params)->emits() ? uint32_t(RTS_EMISSIVE) : 0u;
-  if constexpr (std::is_base_of_v<Surface<T>, T>) {
-    if (HasTransmit<T>::value) t |= RTS_TRANSPARENT;
-    if (!HasReflect<T>::value && !HasSurface<T>::value) t |= RTS_UNLIT;
-  } else {
-    if (!CastsShadows<T>::value) t |= RTS_NO_SHADOW;
-  }
-  return t;
-}
-
-template <class T> void fillFunctions(RtsClass& c) {
-  if constexpr (std::is_base_of_v<Surface<T>, T>) {
-    c.kind = RTS_SURFACE;
-    c.traits = traits<T>;
-    if constexpr (HasSurface<T>::value)
-      c.surface = surface<T>;
-    else
-      c.shade = shade<T>;
-    if constexpr (HasTransmit<T>::value) c.transmit = transmit<T>;
-  } else if constexpr (std::is_base_of_v<LightSource<T>, T>) {
-    c.kind = RTS_LIGHT;
-    c.traits = traits<T>;
-    c.illuminate = illuminate<T>;
-  } else if constexpr (std::is_base_of_v<Camera<T>, T>) {
-    c.kind = RTS_CAMERA;
-    c.generate = generate<T>;
-  } else {
-    static_assert(std::is_base_of_v<Environment<T>, T>, "derive from rts::Surface, LightSource, Camera or Environment");
-    c.kind = RTS_ENVIRONMENT;
-    c.miss = miss<T>;
-    if constexpr (HasAttenuate<T>::value) c.attenuate = attenuate<T>;
-  }
-}
-
-// The tables of one class; they live as long as the plug-in.
-template <class T> const RtsClass* classOf(std::string name) {
-  static_assert(std::is_trivially_destructible_v<T> && !std::is_polymorphic_v<T>, "a shader holds rts::Param and nothing else");
-  static Declaration params;
-  static std::string ownName;
-  static RtsClass table{};
-  ownName = std::move(name);
-  alignas(T) char prototype[sizeof(T)];
-  params.start = prototype;
-  declaration() = &params;
-  new (prototype) T();
-  declaration() = nullptr;
-  table.size = sizeof(RtsClass);
-  table.name = ownName.c_str();
-  if constexpr (HasText<T>::value)
-    table.text = T::text;
-  else
-    table.text = "";
-  table.paramSize = static_cast<uint32_t>(sizeof(T)); // never 0: functions are called on what lies there
-  table.paramCount = static_cast<uint32_t>(params.params.size());
-  table.params = params.params.data();
-  fillFunctions<T>(table);
-  return &table;
-}
-
-// Takes the next of "a::Mirror, Glass" off the list: the class's own name.
-inline std::string nextName(const char*& list) {
-  const char* end = std::strchr(list, ',');
-  std::string name = end ? std::string(list, end) : std::string(list);
-  list = end ? end + 1 : list + name.size();
-  name.erase(0, name.find_first_not_of(" \t\n"));
-  name.erase(name.find_last_not_of(" \t\n") + 1);
-  const size_t scope = name.rfind("::");
-  return scope == std::string::npos ? name : name.substr(scope + 2);
-}
-
-template <class... T> RtsPlugin pluginOf(const char* names) {
-  static const RtsClass* const classes[] = {classOf<T>(nextName(names))...}; // braces: from left to right
-  return {RTS_MAGIC, RTS_ABI_MAJOR, RTS_ABI_MINOR, sizeof(RtsPlugin), sizeof...(T), classes};
-}
-
-} // namespace detail
 } // namespace rts
+
+#include "openrts_ask.hpp"
+#include "openrts_glue.hpp"
 
 // Exports the classes, each under its own name. Once a library, outside any namespace.
 #define RTS_PLUGIN(...)                                                                                                          \

@@ -1,0 +1,182 @@
+// openrts_ask.hpp: what the hits of openrts.hpp ask the host: rays, random numbers, textures, facts. Part of openrts.hpp.
+// [render]
+#ifndef OPENRT_OPENRTS_ASK_HPP
+#define OPENRT_OPENRTS_ASK_HPP
+
+#include "openrts.hpp"
+
+namespace rts {
+namespace detail {
+
+// A function that hosts have since 1.2, or null.
+template <class F> F since12(const RtsHost* host, F RtsHost::*function) { return host->minor >= 2 ? host->*function : nullptr; }
+
+// Whole lanes of one ray: what the host may read of a request of one.
+struct OneRay {
+  OneRay(const Tracer& from, const Vec3* start, Vec3 direction, float end) {
+    for (int i = 0; i < RTS_LANES; i++) {
+      hit[i] = from.lane;
+      length[i] = end;
+      const float d[3] = {direction.x, direction.y, direction.z};
+      for (int k = 0; k < 3; k++) towards[k][i] = d[k];
+      if (!start) continue;
+      const float o[3] = {start->x, start->y, start->z};
+      for (int k = 0; k < 3; k++) origin[k][i] = o[k];
+    }
+    request.count = 1;
+    request.hit = hit;
+    for (int k = 0; k < 3; k++) {
+      request.origin[k] = start ? origin[k] : nullptr;
+      request.direction[k] = towards[k];
+    }
+    request.length = end < infinity ? length : nullptr;
+  }
+  alignas(64) float origin[3][RTS_LANES], towards[3][RTS_LANES], length[RTS_LANES];
+  alignas(64) uint32_t hit[RTS_LANES];
+  RtsRequest request{};
+};
+
+inline float* lanes(const Tracer& t) { return t.host->scratch(t.batch, t.count); }
+inline uint32_t* wholeNumbers(const Tracer& t) { return reinterpret_cast<uint32_t*>(lanes(t)); }
+
+// Six arrays of a host function that fills two vectors.
+template <class F> bool askVectors(const Tracer& t, F RtsHost::*member, float* (&cache)[6]) {
+  if (cache[0]) return true;
+  const F function = t.asked ? since12(t.host, member) : nullptr;
+  if (!function) return false;
+  for (float*& array : cache) array = lanes(t);
+  float* const first[3] = {cache[0], cache[1], cache[2]};
+  float* const second[3] = {cache[3], cache[4], cache[5]};
+  function(t.batch, first, second);
+  return true;
+}
+
+} // namespace detail
+
+inline Color Tracer::traceFrom(const Vec3* origin, Vec3 direction, float length, float* alpha) const {
+  const auto function = detail::since12(host, &RtsHost::trace);
+  if (alpha) *alpha = 0;
+  if (!function) return {};
+  const detail::OneRay ray(*this, origin, direction, length);
+  alignas(64) float out[4][RTS_LANES] = {};
+  float* const rgba[4] = {out[0], out[1], out[2], alpha ? out[3] : nullptr};
+  function(batch, &ray.request, rgba);
+  if (alpha) *alpha = out[3][0];
+  return {out[0][0], out[1][0], out[2][0]};
+}
+
+inline Found Tracer::findFrom(const Vec3* origin, Vec3 direction, float length) const {
+  Found found;
+  const auto function = detail::since12(host, &RtsHost::findHit);
+  if (!function) return found;
+  const detail::OneRay ray(*this, origin, direction, length);
+  alignas(64) float out[10][RTS_LANES] = {};
+  alignas(64) uint32_t name[RTS_LANES] = {};
+  RtsFound table{};
+  table.distance = out[9];
+  for (int k = 0; k < 3; k++) {
+    table.position[k] = out[k];
+    table.geometric[k] = out[3 + k];
+    table.normal[k] = out[6 + k];
+  }
+  table.name = name;
+  function(batch, &ray.request, &table);
+  found.distance = out[9][0];
+  if (!found.any()) return found;
+  found.position = {out[0][0], out[1][0], out[2][0]};
+  found.geometric = {out[3][0], out[4][0], out[5][0]};
+  found.normal = {out[6][0], out[7][0], out[8][0]};
+  found.name = name[0];
+  return found;
+}
+
+inline Color Tracer::occludedFrom(const Vec3* origin, Vec3 direction, float length) const {
+  const auto function = detail::since12(host, &RtsHost::occluded);
+  if (!function) return {1, 1, 1};
+  const detail::OneRay ray(*this, origin, direction, length);
+  alignas(64) float out[3][RTS_LANES] = {};
+  float* const transmission[3] = {out[0], out[1], out[2]};
+  function(batch, &ray.request, transmission);
+  return {out[0][0], out[1][0], out[2][0]};
+}
+
+inline Vec2 Tracer::random(uint32_t pair) const {
+  const auto function = detail::since12(host, &RtsHost::random);
+  if (!function || !asked || pair >= 4) return {0.5f, 0.5f};
+  float*(&square)[2] = asked->random[pair];
+  if (!square[0]) {
+    for (float*& axis : square) axis = detail::lanes(*this);
+    float* const out[2] = {square[0], square[1]};
+    function(batch, pair, out);
+  }
+  return {square[0][lane], square[1][lane]};
+}
+
+inline Vec4 Hit::sample(Texture texture, Vec2 place) const {
+  alignas(64) float in[2][RTS_LANES], out[4][RTS_LANES];
+  for (int i = 0; i < RTS_LANES; i++) {
+    in[0][i] = place.x;
+    in[1][i] = place.y;
+  }
+  const float* const uvs[2] = {in[0], in[1]};
+  float* const rgba[4] = {out[0], out[1], out[2], out[3]};
+  host->sample(batch, texture.id, 1, uvs, rgba);
+  return {out[0][0], out[1][0], out[2][0], out[3][0]};
+}
+
+inline Hit::Local Hit::local() const {
+  if (!detail::askVectors(*this, &RtsHost::local, asked->local)) return {position, geometric};
+  float* const* a = asked->local;
+  return {{a[0][lane], a[1][lane], a[2][lane]}, {a[3][lane], a[4][lane], a[5][lane]}};
+}
+
+inline Hit::Derivatives Hit::derivatives() const {
+  if (!detail::askVectors(*this, &RtsHost::derivatives, asked->derivatives)) return {};
+  float* const* a = asked->derivatives;
+  return {{a[0][lane], a[1][lane], a[2][lane]}, {a[3][lane], a[4][lane], a[5][lane]}};
+}
+
+inline Hit::Ids Hit::ids() const {
+  uint32_t*(&a)[3] = asked->ids;
+  if (!a[0]) {
+    const auto function = detail::since12(host, &RtsHost::ids);
+    if (!function) return {};
+    for (uint32_t*& array : a) array = detail::wholeNumbers(*this);
+    function(batch, a[0], a[1], a[2]);
+  }
+  return {a[0][lane], a[1][lane], a[2][lane]};
+}
+
+namespace detail {
+inline bool askPath(const Tracer& t) {
+  Asked& a = *t.asked;
+  if (a.depth) return true;
+  const auto function = since12(t.host, &RtsHost::path);
+  if (!function) return false;
+  a.depth = wholeNumbers(t);
+  for (float*& array : a.throughput) array = lanes(t);
+  function(t.batch, a.depth, a.throughput);
+  return true;
+}
+} // namespace detail
+
+inline uint32_t Hit::depth() const { return detail::askPath(*this) ? asked->depth[lane] : 0; }
+
+inline Color Hit::throughput() const {
+  if (!detail::askPath(*this)) return {1, 1, 1};
+  return {asked->throughput[0][lane], asked->throughput[1][lane], asked->throughput[2][lane]};
+}
+
+inline float Hit::error() const {
+  if (!asked->error) {
+    const auto function = detail::since12(host, &RtsHost::error);
+    if (!function) return 0;
+    asked->error = detail::lanes(*this);
+    function(batch, asked->error);
+  }
+  return asked->error[lane];
+}
+
+} // namespace rts
+
+#endif
