@@ -119,7 +119,7 @@ struct NumberedHits {
     }
     for (size_t c = 0; c < 2; c++) hits.uv[c] = lanes[12 + c].data();
     for (size_t c = 0; c < 4; c++) hits.color[c] = lanes[14 + c].data();
-    hits.distance = lanes[18].data();
+    hits.distance = hits.segment = lanes[18].data();
     hits.count = n;
     hits.flags = flags.data();
     hits.params = pointers.data();

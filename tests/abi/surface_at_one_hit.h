@@ -1,15 +1,15 @@
-// surface_at_one_hit.h: a surface shader of a plug-in, with parameters, at one hit of the plane z = 0: which lobes it has there, and
-// how these answer light. For tests of energy, reciprocity and sampling that hold for every shader.
+// surface_at_one_hit.h: a surface shader of a plug-in, with parameters, at one hit of the plane z = 0: which lobes it has there,
+// and how these answer light. For tests of energy, reciprocity and sampling that hold for every shader.
 #pragma once
 
 #include <cmath>
-#include <initializer_list>
-#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "abi/fake_host.h"
 #include "openrt/openrts.hpp"
+#include "render/lobes.h"
 #include "shading/registry.h"
 
 namespace openrt::test {
@@ -27,40 +27,32 @@ struct LobeAtHit {
   RtsLobeKind kind() const { return lobe->kind; }
   rts::Color weight() const { return {lobe->weight[0][0], lobe->weight[1][0], lobe->weight[2][0]}; }
   rts::Vec3 normal() const { return {lobe->normal[0][0], lobe->normal[1][0], lobe->normal[2][0]}; }
-  bool scatters() const { return kind() == RTS_LOBE_DIFFUSE || kind() == RTS_LOBE_CUSTOM; }
+  bool scatters() const { return scatteringOf(*lobe) != nullptr; }
 
   // Response times cosine, without the weight, and the density of `sample`.
   rts::Color value(rts::Vec3 direction, float* density = nullptr) const {
-    const float cosine = std::fmax(0.0f, rts::dot(direction, normal()));
-    if (density) *density = cosine / rts::pi;
-    if (kind() == RTS_LOBE_DIFFUSE) return rts::Color{1, 1, 1} * (cosine / rts::pi);
     const uint32_t hit = 0;
     float out[4] = {};
     const float* const d[3] = {&direction.x, &direction.y, &direction.z};
     float* const values[3] = {&out[0], &out[1], &out[2]};
-    lobe->functions->evaluate(lobe, hits, 1, &hit, d, values, &out[3]);
+    scatteringOf(*lobe)->evaluate(lobe, hits, 1, &hit, d, values, &out[3]);
     if (density) *density = out[3];
     return {out[0], out[1], out[2]};
   }
   rts::Sample sample(rts::Vec2 square) const {
-    if (kind() == RTS_LOBE_DIFFUSE) {
-      const float r = std::sqrt(square.x), phi = 2 * rts::pi * square.y, z = std::sqrt(std::fmax(0.0f, 1 - square.x));
-      return {rts::Frame(normal()).toWorld({r * std::cos(phi), r * std::sin(phi), z}), {1, 1, 1}, z / rts::pi};
-    }
     const uint32_t hit = 0;
     float out[7] = {};
     const float* const at[2] = {&square.x, &square.y};
     float* const direction[3] = {&out[0], &out[1], &out[2]};
     float* const quotient[3] = {&out[3], &out[4], &out[5]};
-    lobe->functions->sample(lobe, hits, 1, &hit, at, direction, quotient, &out[6]);
+    scatteringOf(*lobe)->sample(lobe, hits, 1, &hit, at, direction, quotient, &out[6]);
     return {{out[0], out[1], out[2]}, {out[3], out[4], out[5]}, out[6]};
   }
 };
 
 class SurfaceAtOneHit {
  public:
-  SurfaceAtOneHit(const char* name, const std::vector<Setting>& settings)
-      : class_(registry().find(name, "")), params_(class_) {
+  SurfaceAtOneHit(const char* name, const std::vector<Setting>& settings) : class_(registry().find(name, "")), params_(class_) {
     for (const Setting& s : settings) {
       const RtsParam* p = nullptr;
       for (uint32_t i = 0; i < class_.paramCount; i++)

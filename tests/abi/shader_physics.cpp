@@ -1,0 +1,230 @@
+// shader_physics.cpp: what every surface of the stock must keep, whatever its parameters: energy, reciprocity, densities that
+// belong to what is sampled (chi-square), finite numbers everywhere (accuracy catalogue A1, "BRDF checks"). The surfaces run as
+// plug-ins in the fake host; the engine's own kinds of lobes answer through render/lobes.h.
+#include <cfloat>
+#include <cmath>
+#include <numeric>
+#include <ostream>
+
+#include <gtest/gtest.h>
+
+#include "abi/chi_square.h"
+#include "abi/surface_at_one_hit.h"
+
+namespace openrt::test {
+namespace {
+
+struct Case {
+  const char* name;
+  const char* shader;
+  std::vector<Setting> settings;
+  bool white = false; // reflects all light that it gets
+};
+void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
+
+const Setting whiteColor{"color", {1, 1, 1}};
+const std::vector<Case> cases = {
+    {"Diffuse", "Diffuse", {}},
+    {"DiffuseWhite", "Diffuse", {{"reflectance", {1, 1, 1}}}, true},
+    {"Phong", "Phong", {}},
+    {"PhongSharp", "Phong", {{"specularColor", {1, 1, 1}}, {"shininess", {4}}}},
+    {"PhongFlat", "Phong", {{"diffuseColor", {0, 0, 0}}, {"specularColor", {1, 1, 1}}, {"shininess", {0}}}},
+    {"PhongBroad", "Phong", {{"diffuseColor", {0, 0, 0}}, {"specularColor", {1, 1, 1}}, {"shininess", {.02f}}}},
+    {"PhongMiddle", "Phong", {{"diffuseColor", {0, 0, 0}}, {"specularColor", {1, 1, 1}}, {"shininess", {.2f}}}},
+    {"PhongFull", "Phong", {{"diffuseColor", {1, .5f, 0}}, {"specularColor", {1, 1, 1}}}},
+    {"Mirror", "Mirror", {}},
+    {"Metal", "Metal", {}},
+    {"MetalRough05", "Metal", {{"roughness", {.05f}}}},
+    {"MetalRough20", "Metal", {{"roughness", {.2f}}}},
+    {"MetalRough50", "Metal", {{"roughness", {.5f}}}},
+    {"MetalRough100", "Metal", {{"roughness", {1}}}},
+    {"Reflector", "Reflector", {{"dust", {.1f}}}},
+    {"ReflectorRough", "Reflector", {{"roughness", {.1f}}, {"dust", {.2f}}}},
+    {"Plastic", "Plastic", {}},
+    {"PlasticWhite", "Plastic", {whiteColor}, true},
+    {"PlasticDense", "Plastic", {whiteColor, {"index", {2.5f}}}, true},
+    {"PlasticRough10", "Plastic", {whiteColor, {"roughness", {.1f}}}},
+    {"PlasticRough40", "Plastic", {whiteColor, {"roughness", {.4f}}}},
+    {"PlasticRough100", "Plastic", {whiteColor, {"roughness", {1}}}},
+    {"CarPaint", "CarPaint", {{"flakeSize", {.1f}}}},
+    {"CarPaintFlakes", "CarPaint", {{"flakes", {1}}, {"flakeSize", {.1f}}, {"flakeColor", {1, 1, 1}}}},
+    {"CarPaintWhite", "CarPaint", {{"flakes", {0}}, whiteColor}, true},
+    {"Wood", "Wood", {}},
+    {"WoodVarnished", "Wood", {{"varnish", {1.5f}}}},
+    {"Marble", "Marble", {}},
+    {"MarblePolished", "Marble", {{"polish", {1.4f}}}},
+    {"Checker", "Checker", {}},
+    {"CheckerCoated", "Checker", {{"coating", {1.5f}}}},
+    {"Glass", "Glass", {}, true},
+    {"RoughGlass", "RoughGlass", {{"roughness", {.05f}}}},
+    {"RoughGlass40", "RoughGlass", {{"roughness", {.4f}}}},
+    {"RoughGlass100", "RoughGlass", {{"roughness", {1}}}},
+};
+
+const rts::Vec3 places[] = {{.013f, .021f, .003f}, {.37f, 1.21f, .4f}, {-2.3f, .11f, 5.7f}};
+
+class ShaderPhysics : public testing::TestWithParam<Case> {
+ protected:
+  SurfaceAtOneHit surface{GetParam().shader, GetParam().settings};
+};
+
+// All light that a white surrounding sends to the eye: of the lobes that know one direction their weights, of the others the
+// integral of their values, by their own samples. What has crossed the boundary was compressed by eta^2: that is undone.
+rts::Color furnace(const std::vector<LobeAtHit>& lobes, int side) {
+  rts::Color all;
+  for (const LobeAtHit& lobe : lobes) {
+    if (!lobe.scatters()) {
+      all = all + lobe.weight();
+      continue;
+    }
+    double sum[3] = {};
+    const float eta = lobe.kind() == RTS_LOBE_ROUGH_DIELECTRIC ? lobe.lobe->parameter[0][0] : 1;
+    for (int a = 0; a < side; a++)
+      for (int b = 0; b < side; b++) {
+        // Shifted by an irrational part of a cell: a choice by further digits must not meet the grid.
+        const float u = (float(a) + .5f) / float(side),
+                    v = (float(b) + std::fmod(.618034f * float(a * side + b), 1.f)) / float(side);
+        const rts::Sample s = lobe.sample({u, v});
+        if (!(s.density > 0)) continue;
+        const double clear = rts::dot(s.direction, lobe.normal()) < 0 ? 1 / (double(eta) * eta) : 1;
+        sum[0] += clear * s.quotient.r, sum[1] += clear * s.quotient.g, sum[2] += clear * s.quotient.b;
+      }
+    const double n = double(side) * side;
+    all = all + lobe.weight() * rts::Color{float(sum[0] / n), float(sum[1] / n), float(sum[2] / n)};
+  }
+  return all;
+}
+
+TEST_P(ShaderPhysics, ReflectsNoMoreThanItGets) {
+  for (int k = 0; k < 64; k++) {
+    const double angle = k == 63 ? 89.9 : 90.0 * k / 63;
+    const rts::Color all = furnace(surface.lobes(towards(angle, 37 * k), places[k % 3]), 64);
+    const bool white = GetParam().white;
+    for (float c : {all.r, all.g, all.b}) {
+      EXPECT_LE(c, 1 + 1e-3f) << angle << " degrees";
+      if (white) { EXPECT_NEAR(c, 1, 1e-3f) << angle << " degrees"; }
+    }
+  }
+}
+
+// The response f = weight x value / cosine is the same for the way back. Light through boundaries obeys another law (scaled by
+// the square of the index) and is tested where the engine's lobes are.
+TEST_P(ShaderPhysics, TheWayBackIsTheSame) {
+  Random random(7);
+  int compared = 0;
+  for (int k = 0; k < 10000; k++) {
+    const auto direction = [&] {
+      const float z = std::fmax(.02f, random()), phi = 2 * rts::pi * random(), s = std::sqrt(1 - z * z);
+      return rts::Vec3{s * std::cos(phi), s * std::sin(phi), z};
+    };
+    const rts::Vec3 a = direction(), b = direction(), place = places[k % 3];
+    struct Answer {
+      rts::Color f;
+      rts::Vec3 normal;
+    };
+    const auto answers = [&](rts::Vec3 eye, rts::Vec3 light) {
+      std::vector<Answer> all;
+      for (const LobeAtHit& lobe : surface.lobes(eye, place)) {
+        if (!lobe.scatters()) continue;
+        const float cosine = rts::dot(light, lobe.normal());
+        all.push_back({cosine > 0 ? lobe.weight() * lobe.value(light) / cosine : rts::Color{}, lobe.normal()});
+      }
+      return all;
+    };
+    const std::vector<Answer> there = answers(a, b), back = answers(b, a);
+    ASSERT_EQ(there.size(), back.size());
+    for (size_t l = 0; l < there.size(); l++) {
+      const rts::Vec3 n = there[l].normal;
+      if (rts::length(n - back[l].normal) > 0 || rts::dot(a, n) < .01f || rts::dot(b, n) < .01f) continue; // a flake behind
+      compared++;
+      const float f = there[l].f.g, g = back[l].f.g;
+      ASSERT_NEAR(f, g, 1e-5f * std::fmax(std::fmax(f, g), 1e-3f)) << "pair " << k << ", lobe " << l;
+    }
+  }
+  if (compared == 0) GTEST_SKIP() << "no lobe that scatters";
+}
+
+const float viewAngles[] = {0, 35, 70, 85};
+
+TEST_P(ShaderPhysics, SamplesFallAsTheirDensitySays) {                          // chi-square over 80 x 160 bins of the sphere
+  const double level = 1 - std::pow(1 - .01, 1.0 / (double(cases.size()) * 8)); // Sidak: 1 % for all together
+  int tested = 0;
+  for (const float angle : viewAngles) {
+    const std::vector<LobeAtHit> lobes = surface.lobes(towards(angle, 20), places[0]);
+    for (size_t l = 0; l < lobes.size(); l++) {
+      if (!lobes[l].scatters()) continue;
+      tested++;
+      Random random(uint64_t(100 * angle) + l);
+      double lost = 0;
+      SphereHistogram seen(lobes[l].normal());
+      const int n = 100000;
+      for (int k = 0; k < n; k++) {
+        const float u = random(), v = random();
+        const rts::Sample s = lobes[l].sample({u, v});
+        if (s.density > 0)
+          seen.count(s.direction);
+        else
+          lost++;
+      }
+      const auto density = [&](rts::Vec3 d) {
+        float p = 0;
+        lobes[l].value(d, &p);
+        return double(p);
+      };
+      const Expected expected = seen.expect(density);
+      EXPECT_NEAR(expected.total + lost / n, 1, 4 * std::sqrt(lost / n / n) + 2e-3) << "lobe " << l << " at " << angle;
+      const double p = seen.chiSquareTail(expected, n, lost);
+      EXPECT_GT(p, level) << "lobe " << l << " at " << angle << " degrees";
+    }
+  }
+  if (tested == 0) GTEST_SKIP() << "no lobe that scatters";
+}
+
+TEST_P(ShaderPhysics, QuotientsAreValuesOverDensities) {
+  for (const float angle : {0.f, 50.f, 80.f, 89.f}) {
+    const std::vector<LobeAtHit> lobes = surface.lobes(towards(angle, 110), places[1]);
+    for (const LobeAtHit& lobe : lobes) {
+      if (!lobe.scatters()) continue;
+      Random random(3);
+      for (int k = 0; k < 1000; k++) {
+        const float u = random(), v = random();
+        const rts::Sample s = lobe.sample({u, v});
+        if (!(s.density > 0)) continue;
+        EXPECT_NEAR(rts::length(s.direction), 1, 1e-5);
+        if (std::fabs(rts::dot(s.direction, lobe.normal())) < 1e-3f) continue; // the cosine's own rounding
+        float density = 0;
+        const rts::Color value = lobe.value(s.direction, &density);
+        ASSERT_NEAR(density, s.density, 5e-3f * s.density) << angle << " degrees, sample " << k;
+        ASSERT_NEAR(value.g, s.quotient.g * s.density, 5e-3f * std::fmax(value.g, 1e-3f)) << angle << " degrees, sample " << k;
+      }
+    }
+  }
+}
+
+TEST_P(ShaderPhysics, EverythingIsFinite) {
+  const rts::Vec3 extremes[] = {{1, 0, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}, towards(89.9999), towards(90.0001), {0, 0, 0}};
+  const auto finite = [](rts::Color c) { return std::isfinite(c.r) && std::isfinite(c.g) && std::isfinite(c.b); };
+  for (const rts::Vec3 eye : extremes)
+    for (const rts::Vec3 place : {rts::Vec3{0, 0, 0}, rts::Vec3{1e30f, -1e30f, 3e9f}})
+      for (const LobeAtHit& lobe : surface.lobes(eye, place)) {
+        EXPECT_TRUE(finite(lobe.weight()));
+        EXPECT_NEAR(rts::length(lobe.normal()), 1, 1e-5);
+        if (!lobe.scatters()) continue;
+        for (const rts::Vec3 d : extremes) {
+          float density = 0;
+          EXPECT_TRUE(finite(lobe.value(d, &density))) << d.x << " " << d.y << " " << d.z << " from " << eye.x << " " << eye.z;
+          EXPECT_TRUE(std::isfinite(density) && density >= 0);
+        }
+        for (const float u : {0.f, .5f, 1 - 0x1p-24f})
+          for (const float v : {0.f, .5f, 1 - 0x1p-24f}) {
+            const rts::Sample s = lobe.sample({u, v});
+            EXPECT_TRUE(std::isfinite(s.density) && s.density >= 0) << u << " " << v;
+            if (s.density > 0) { EXPECT_TRUE(finite(s.quotient)) << u << " " << v; }
+          }
+      }
+}
+
+INSTANTIATE_TEST_SUITE_P(Stock, ShaderPhysics, testing::ValuesIn(cases), [](const auto& info) { return info.param.name; });
+
+} // namespace
+} // namespace openrt::test
