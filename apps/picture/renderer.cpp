@@ -189,6 +189,8 @@ struct Renderer::Impl {
     rtQuality(RT_TRANSPORT, settings.transport);
     rtQualityf(RT_TARGET_ERROR, settings.error);
     rtQualityf(RT_TIME_LIMIT, settings.timeLimit);
+    if (settings.energyCut >= 0) rtQualityf(RT_ENERGY_CUT, settings.energyCut);
+    rtQualityf(RT_CLAMP, settings.clamp);
     throwOnError("frame");
   }
 

@@ -53,6 +53,15 @@ class Walk {
 
   void through(const Scope& scope) {
     add(scope);
+    go();
+  }
+  void from(const Node& node) {
+    todo_.push_back(&node);
+    go();
+  }
+
+ private:
+  void go() {
     while (!todo_.empty()) {
       const Node* node = todo_.back();
       todo_.pop_back();
@@ -69,7 +78,6 @@ class Walk {
     }
   }
 
- private:
   void add(const Scope& scope) {
     enter_(scope);
     for (const NodeRef& root : scope.roots) todo_.push_back(root.get());
@@ -98,6 +106,11 @@ std::string oneLine(std::string text) {
 void forEachNode(const World& world, const std::function<void(const Node& node)>& visit) {
   const std::function<void(const Scope&)> nothing = [](const Scope&) {};
   Walk(visit, nothing).through(world.scope);
+}
+
+void forEachNodeBelow(const Node& node, const std::function<void(const Node& node)>& visit) {
+  const std::function<void(const Scope&)> nothing = [](const Scope&) {};
+  Walk(visit, nothing).from(node);
 }
 
 std::string scriptProtocol(const std::vector<std::string>& urls) {

@@ -25,6 +25,8 @@ struct WorldCounts {
 };
 // Every node of a world once: bodies of prototypes and what Inlines loaded too.
 void forEachNode(const xvrml::World& world, const std::function<void(const xvrml::Node& node)>& visit);
+// A node and every node below it, once.
+void forEachNodeBelow(const xvrml::Node& node, const std::function<void(const xvrml::Node& node)>& visit);
 // "javascript" of "javascript:...", of "a.js" too; "java" of a .class; "file" for another suffix, "none" without any url.
 std::string scriptProtocol(const std::vector<std::string>& urls);
 WorldCounts countWorld(const xvrml::World& world);

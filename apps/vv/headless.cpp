@@ -15,6 +15,9 @@
 #include "problems.h"
 #include "progress.h"
 #include "report.h"
+#include "shader_changes.h"
+#include "shader_list.h"
+#include "shader_text.h"
 #include "signals.h"
 #include "timeline.h"
 #include "watched.h"
@@ -48,6 +51,7 @@ class Headless {
   Headless(const Options& options, const std::string& commandLine) : options_(options), commandLine_(commandLine) {}
 
   int run() {
+    if (options_.listShaders) return writeOut(listShaders(options_.render.shaderPath, options_.json)), exitDone;
     if (options_.listNodes && options_.input.empty()) return writeOut(listNodes(nullptr, options_.json)), exitDone;
     checkOutputs(options_);
     begin(load(options_));
@@ -74,6 +78,7 @@ class Headless {
     const std::vector<Definition> definitions = readDefinitions(options_.definitions, *world);
     for (const Definition& d : definitions)
       if (!d.asEvent) d.node->set(*d.field, d.value);
+    changeShaders(options_.shaders, options_.render.shaderPath, *world);
     browser_ = std::make_unique<xvrml::Browser>(std::move(world), options_.running, 0);
     for (const Definition& d : definitions)
       if (d.asEvent) browser_->set(*d.node, d.field->name, d.value);
@@ -110,13 +115,24 @@ class Headless {
     if (options_.listNodes) return;
     picture::Renderer renderer(*browser_, withoutPicture());
     if (options_.explain) {
-      renderer.prepare(options_.view);
-      writeOut(explainWorld(renderer.explain(), options_.json));
+      explain();
     } else if (options_.listViewpoints) {
       writeOut(listViewpoints(renderer.viewpoints(), options_.json));
     } else {
       writeOut(describeWorld(world, renderer.viewpoints(), renderer.bounds(), options_.running.scriptPath, options_.json));
     }
+  }
+
+  // The engine chooses the transport when it makes a picture: one of a single pixel.
+  void explain() {
+    picture::RenderSettings settings = options_.render;
+    settings.record.clear();
+    settings.width = settings.height = settings.samples = 1;
+    settings.channels = RT_RGBA;
+    settings.error = settings.timeLimit = 0;
+    picture::Renderer renderer(*browser_, settings);
+    const picture::RenderResult result = renderer.render(options_.view);
+    writeOut(explainWorld(options_, result.stats, renderer.explain()));
   }
 
   const Options& options_;

@@ -22,7 +22,7 @@ int run(int argc, char** argv) {
   if (options.help) return vv::writeOut(vv::helpText()), vv::exitDone;
   if (options.version) return vv::writeOut("vv " + vv::version() + "\n"), vv::exitDone;
   const bool job = options.makesPictures() || options.check || options.info || options.listNodes || options.listViewpoints ||
-                   options.explain || !options.write.empty();
+                   options.listShaders || options.explain || !options.write.empty();
   if (!job) throw vv::UsageError("there is no window yet; vv " + options.input + " -o picture.png makes a picture");
   return vv::runHeadless(options, quoted(argc, argv));
 }

@@ -44,13 +44,14 @@ void setTransport(Options& o, const std::string& value) {
   constexpr std::pair<const char*, int> known[] = {{"auto", RT_TRANSPORT_AUTO},
                                                    {"direct", RT_TRANSPORT_DIRECT},
                                                    {"whitted", RT_TRANSPORT_WHITTED},
-                                                   {"path", RT_TRANSPORT_PATH}};
+                                                   {"path", RT_TRANSPORT_PATH},
+                                                   {"light", RT_TRANSPORT_LIGHT}};
   for (const auto& [name, transport] : known)
     if (value == name) {
       o.render.transport = transport;
       return;
     }
-  throw UsageError(fmt::format("auto, direct, whitted or path was expected, not \"{}\"", value));
+  throw UsageError(fmt::format("auto, direct, whitted, path or light was expected, not \"{}\"", value));
 }
 
 void setChannels(Options& o, const std::string& value) {
@@ -141,6 +142,17 @@ const OptionInfo table[] = {
        o.definitions.push_back(v);
      },
      true},
+    {"--shader", "DEF=CLASS[:PARAM=VALUE...]", "Change",
+     "Give a shape, the shapes of an appearance or all below a group another surface shader: Ball=Glass:index=1.33, "
+     "Wall=Diffuse:reflectance=.8,.1,.1. * stands for all shapes without a shader of their own, LIBRARY/CLASS for a class of a "
+     "plug-in. A texture is a file, @FILE the content of one. May be given several times.",
+     [](Options& o, const std::string& v) {
+       const size_t equals = v.find('=');
+       if (equals == v.npos || equals == 0)
+         throw UsageError(fmt::format("DEF=CLASS[:PARAM=VALUE...] was expected, not \"{}\"", v));
+       o.shaders.push_back(v);
+     },
+     true},
     {"--spp", "N", "Quality", "Samples per pixel, 1 to 65536 (default 16).",
      [](Options& o, const std::string& v) { o.samples = int(readInteger(v, 1, 65536)); }},
     {"--error", "E|E%", "Quality",
@@ -155,9 +167,18 @@ const OptionInfo table[] = {
     {"--depth", "N", "Quality", "Surfaces a path may pass or bounce at, 0 to 10000 (default 25).",
      [](Options& o, const std::string& v) { o.render.depth = int(readInteger(v, 0, 10000)); }},
     {"--transport", "NAME", "Quality",
-     "How light is followed from surfaces that answer in lobes: direct (lights alone), whitted (and mirrors and glass; default), "
-     "path (and light between surfaces).",
+     "How light is followed: auto (default: what the shaders of the world ask for; --explain and --stats say which and why), "
+     "direct "
+     "(lights alone), whitted (and mirrors and glass), path (and light between surfaces), light (and what lamps send through "
+     "mirrors and lenses).",
      setTransport},
+    {"--energy-cut", "E", "Quality",
+     "whitted: branches of reflection and refraction that carry less than this share of a camera ray end, 0 to 1 (default "
+     "1/4096).",
+     [](Options& o, const std::string& v) { o.render.energyCut = v == "0" ? 0 : readShare(v); }},
+    {"--clamp", "RADIANCE", "Quality",
+     "No sample is brighter than this. It takes away fireflies, and light: the statistics say how much (default: no limit).",
+     [](Options& o, const std::string& v) { o.render.clamp = readNumber(v, 0, 1e30); }},
     {"--shadows", "on|off", "Quality", "Whether lights cast shadows (default on).",
      [](Options& o, const std::string& v) { o.render.shadows = readSwitch(v); }},
     {"--seed", "N", "Quality", "Another set of sample positions (default 0).",
@@ -175,8 +196,12 @@ const OptionInfo table[] = {
      [](Options& o, const std::string&) { o.listNodes = true; }},
     {"--list-viewpoints", "", "Inspect", "List the viewpoints of the world.",
      [](Options& o, const std::string&) { o.listViewpoints = true; }},
+    {"--list-shaders", "", "Inspect", "List the classes of all shader plug-ins with their parameters.",
+     [](Options& o, const std::string&) { o.listShaders = true; }},
     {"--explain", "", "Inspect",
-     "Say what objects the world is rendered as: each with the reason, its triangles, bytes and instances.",
+     "Say how light is followed and why, and what objects the world is rendered as: each with the reason, its triangles, bytes "
+     "and "
+     "instances.",
      [](Options& o, const std::string&) { o.explain = true; }},
     {"--json", "", "Inspect", "--info, --explain and the lists as JSON.", [](Options& o, const std::string&) { o.json = true; }},
     {"--stats", "FILE", "Inspect", "Write statistics as JSON, one file for a whole sequence; - is standard output.",

@@ -67,12 +67,13 @@ void checkTogether(Options& options) {
   if (options.quiet && options.verbose) throw UsageError("only one of --quiet and --verbose can be used");
   int toStandardOutput = (options.stats == "-") + (options.write == "-");
   for (const Output& output : options.outputs) toStandardOutput += output.path == "-";
-  toStandardOutput += options.explain || options.info || options.listNodes || options.listViewpoints;
+  toStandardOutput += options.explain || options.info || options.listNodes || options.listViewpoints || options.listShaders;
   if (toStandardOutput > 1) throw UsageError("only one thing can go to standard output");
-  if (options.json && !options.info && !options.listNodes && !options.listViewpoints && !options.explain)
-    throw UsageError("--json goes with --info, --explain, --list-nodes or --list-viewpoints");
-  if (options.info + options.listNodes + options.listViewpoints + options.explain > 1)
-    throw UsageError("only one of --info, --explain, --list-nodes and --list-viewpoints can be used");
+  const int inspections = options.info + options.listNodes + options.listViewpoints + options.listShaders + options.explain;
+  if (options.json && inspections == 0)
+    throw UsageError("--json goes with --info, --explain, --list-nodes, --list-viewpoints or --list-shaders");
+  if (inspections > 1)
+    throw UsageError("only one of --info, --explain, --list-nodes, --list-viewpoints and --list-shaders can be used");
   checkSequence(options);
   if (options.stats.size() && !options.makesPictures()) throw UsageError("--stats goes with -o");
   if (options.render.record.size() && !options.makesPictures()) throw UsageError("--record goes with -o");
@@ -82,7 +83,7 @@ void checkTogether(Options& options) {
   if (options.makesPictures() && options.allViewpoints())
     for (const Output& output : options.outputs)
       if (output.path == "-") throw UsageError("--viewpoint all needs file names, not standard output");
-  const bool needsWorld = !options.listNodes && !options.help && !options.version;
+  const bool needsWorld = !options.listNodes && !options.listShaders && !options.help && !options.version;
   if (needsWorld && options.input.empty())
     throw UsageError("a world (a .wrl file, or - for standard input) was expected; vv --help tells more");
 }

@@ -31,9 +31,10 @@ struct Options {
   double fps = 30;                      // of frames and videos; also the steps of the world's clock
   int turntable = 0;                    // pictures around the world; 0: none
   std::vector<std::string> definitions; // DEF.field=value
+  std::vector<std::string> shaders;     // DEF=Class:param=value
   std::string viewpoint;                // as asked for: a name, a number or "all"
   bool check = false, strict = false;
-  bool info = false, listNodes = false, listViewpoints = false, explain = false, json = false;
+  bool info = false, listNodes = false, listViewpoints = false, listShaders = false, explain = false, json = false;
   bool watch = false;
   std::string write, stats;
   std::string nodePath; // folders, separated by colons

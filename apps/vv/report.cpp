@@ -11,6 +11,7 @@
 #include <sys/resource.h>
 
 #include "describe.h"
+#include "transport_words.h"
 #include "xvrml/script_engines.h"
 
 namespace vv {
@@ -33,6 +34,12 @@ Json errorEstimate(const RTstats& s) {
           {"pixels_trusted", value(known ? double(s.errorTrusted) / double(s.errorPixels) : 0)},
           {"level", s.errorLevel},
           {"method", s.errorMethod}};
+}
+
+Json transportJson(const Options& options, const RTstats& s) {
+  return {{"chosen", transportName(s.transport)},
+          {"reason", s.transportReason},
+          {"claim", transportClaim(s.transport, options.render)}};
 }
 
 uint64_t peakMemory() {
@@ -123,9 +130,7 @@ Json sceneStats(const Options& options, const std::string& commandLine, const xv
 
 void addMachine(Json& json, const Options& options, const picture::RenderResult& result) {
   const RTstats& s = result.stats;
-  json["transport"] = {{"chosen", "direct"},
-                       {"reason", "every surface is shaded by itself: light from the lamps, shadows, transparency"},
-                       {"claim", options.render.shadows ? "direct light with shadows" : "direct light without shadows"}};
+  json["transport"] = transportJson(options, result.stats);
   json["error"] = errorEstimate(result.stats);
   json["memory"] = {{"peak_rss", peakMemory()}, {"bvh", s.bvhBytes}, {"scene", nullptr}};
   json["cluster"] = {{"workers", 0}, {"tiles", 0}, {"retries", 0}, {"bytes", 0}};
@@ -204,7 +209,7 @@ std::string SequenceStats::json(const Options& options, const std::string& comma
   return dump(json);
 }
 
-std::string explainWorld(const std::vector<xvrml::ExplainedObject>& objects, bool json) {
+std::string explainWorld(const Options& options, const RTstats& stats, const std::vector<xvrml::ExplainedObject>& objects) {
   uint64_t triangles = 0, bytes = 0, instances = 0, expanded = 0, shapes = 0;
   for (const xvrml::ExplainedObject& o : objects) {
     triangles += o.triangles;
@@ -213,7 +218,7 @@ std::string explainWorld(const std::vector<xvrml::ExplainedObject>& objects, boo
     shapes += o.shapes;
     expanded += o.triangles * std::max<uint64_t>(o.instances, 1);
   }
-  if (json) {
+  if (options.json) {
     Json list = Json::array();
     for (const xvrml::ExplainedObject& o : objects)
       list.push_back({{"name", o.name},
@@ -222,7 +227,8 @@ std::string explainWorld(const std::vector<xvrml::ExplainedObject>& objects, boo
                       {"shapes", o.shapes},
                       {"bytes", o.bytes},
                       {"instances", o.instances}});
-    return dump({{"objects", std::move(list)},
+    return dump({{"transport", transportJson(options, stats)},
+                 {"objects", std::move(list)},
                  {"totals",
                   {{"objects", objects.size()},
                    {"shapes", shapes},
@@ -231,8 +237,9 @@ std::string explainWorld(const std::vector<xvrml::ExplainedObject>& objects, boo
                    {"instances", instances},
                    {"instanced_triangles", expanded}}}});
   }
-  std::string text =
-      fmt::format("{:>10} {:>8} {:>12} {:>9}  {}\n", "triangles", "shapes", "bytes", "instances", "object: reason");
+  std::string text = fmt::format("transport {}: {}\n  {}\n", transportName(stats.transport), stats.transportReason,
+                                 transportClaim(stats.transport, options.render));
+  text += fmt::format("{:>10} {:>8} {:>12} {:>9}  {}\n", "triangles", "shapes", "bytes", "instances", "object: reason");
   for (const xvrml::ExplainedObject& o : objects)
     text += fmt::format("{:>10} {:>8} {:>12} {:>9}  {}: {}\n", o.triangles, o.shapes, o.bytes, o.instances, oneLine(o.name),
                         oneLine(o.reason));

@@ -32,8 +32,8 @@ class SequenceStats {
   std::unique_ptr<Impl> impl_;
 };
 
-// What a world is rendered as (OpenRTMapper::explain).
-std::string explainWorld(const std::vector<xvrml::ExplainedObject>& objects, bool json);
+// How light is followed in a world, and what it is rendered as (OpenRTMapper::explain). stats: of any picture of it.
+std::string explainWorld(const Options& options, const RTstats& stats, const std::vector<xvrml::ExplainedObject>& objects);
 
 // world may be null: the node types alone.
 std::string listNodes(const xvrml::World* world, bool json);

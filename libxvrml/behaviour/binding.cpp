@@ -7,15 +7,16 @@
 #include "behaviour/builtin.h"
 #include "behaviour/interaction.h"
 #include "event/hierarchy.h"
+#include "nodes/viewpoint.h"
 #include "parse/field_access.h"
-#include "xvrml/nodes.h"
 
 namespace xvrml {
 
 size_t Binding::typeOf(const Node& node) {
   const int index = node.type().index;
-  return index == nodes::Viewpoint::typeIndex        ? 0
+  return isViewpoint(&node)                          ? 0
          : index == nodes::Background::typeIndex     ? 1
+         : index == nodes::ORTBackground::typeIndex  ? 1
          : index == nodes::Fog::typeIndex            ? 2
          : index == nodes::NavigationInfo::typeIndex ? 3
                                                      : types;
@@ -33,7 +34,7 @@ void Binding::push(size_t type, Node& node) {
   NodeRef old(top(type));
   std::erase_if(stack, [&](const Entry& e) { return e.node.get() == &node; });
   stack.push_back({NodeRef(&node), isInScene(node)});
-  if (type == 0) viewer_.bind(old.get(), nodeCast<nodes::Viewpoint>(&node));
+  if (type == 0) viewer_.bind(old.get(), &node);
   if (old) tell(*old, false);
   tell(node, true);
 }
@@ -50,7 +51,7 @@ void Binding::remove(size_t type, size_t index) {
   }
   stack.pop_back();
   const NodeRef next(top(type));
-  if (type == 0) viewer_.unbind(static_cast<nodes::Viewpoint&>(*node), nodeCast<nodes::Viewpoint>(next));
+  if (type == 0) viewer_.unbind(*node, next.get());
   tell(*node, false);
   if (next) tell(*next, true);
 }

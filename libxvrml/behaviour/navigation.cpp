@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "behaviour/interaction.h"
-#include "xvrml/nodes.h"
+#include "nodes/viewpoint.h"
 
 namespace xvrml {
 
@@ -121,7 +121,7 @@ void Navigator::key(Key key, bool pressed) {
   }
   std::vector<Node*> all = interaction_.binding.viewpoints(*interaction_.scope), list;
   for (Node* node : all)
-    if (!static_cast<nodes::Viewpoint*>(node)->description.empty()) list.push_back(node);
+    if (!viewpointFields(node)->description.empty()) list.push_back(node);
   if (list.empty()) list = all;
   if (list.empty()) return;
   const auto at = std::find(list.begin(), list.end(), interaction_.binding.bound().viewpoint);

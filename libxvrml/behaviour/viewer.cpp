@@ -9,6 +9,8 @@
 
 #include "behaviour/binding.h"
 #include "event/hierarchy.h"
+#include "nodes/viewpoint.h"
+#include "xvrml/world.h"
 
 namespace xvrml {
 namespace {
@@ -36,24 +38,25 @@ Matrix above(const Node* node) {
 
 } // namespace
 
-nodes::Viewpoint* Viewer::bound() const { return nodeCast<nodes::Viewpoint>(binding_.bound().viewpoint); }
+Node* Viewer::bound() const { return binding_.bound().viewpoint; }
 
 Matrix Viewer::surroundings() const { return above(bound()); }
 
 // A world that squashes its Viewpoint has no way back from the world to it: the view is then kept in a rigid system.
-Matrix Viewer::placeOf(const nodes::Viewpoint* viewpoint) const {
-  if (!viewpoint) return translation({0, 0, 10}); // the default Viewpoint of 6.53
-  const Matrix m = compose(above(viewpoint), compose(translation(vector(viewpoint->position)), rotation(viewpoint->orientation)));
+Matrix Viewer::placeOf(const Node* viewpoint) const {
+  const auto fields = viewpointFields(viewpoint);
+  if (!fields) return translation({0, 0, 10}); // the default Viewpoint of 6.53
+  const Matrix m = compose(above(viewpoint), compose(translation(vector(fields->position)), rotation(fields->orientation)));
   Matrix inverse;
   return invert(m, inverse) ? m : rigid(m);
 }
 
-Matrix Viewer::leavingPlace(const nodes::Viewpoint* viewpoint) const {
+Matrix Viewer::leavingPlace(const Node* viewpoint) const {
   return viewpoint && !isInScene(*viewpoint) ? lastPlace_ : placeOf(viewpoint);
 }
 
 void Viewer::settled() {
-  if (const nodes::Viewpoint* viewpoint = bound()) lastPlace_ = placeOf(viewpoint);
+  if (const Node* viewpoint = bound()) lastPlace_ = placeOf(viewpoint);
 }
 
 Matrix Viewer::target() const { return rigid(compose(placeOf(bound()), offset_)); }
@@ -63,13 +66,14 @@ Matrix Viewer::view() const { return shown(target()); }
 CameraSettings Viewer::camera(double aspect) const {
   CameraSettings camera;
   toArray(view(), camera.matrix);
-  const nodes::Viewpoint* viewpoint = bound();
-  camera.fovy = verticalFieldOfView(viewpoint ? viewpoint->fieldOfView : 0.785398f, aspect);
+  const auto fields = viewpointFields(bound());
+  camera.fovy = verticalFieldOfView(fields ? fields->fieldOfView : 0.785398f, aspect);
+  if (fields) camera.shader = renderedNode(fields->shader);
   return camera;
 }
 
 // With scale above the Viewpoint the offset is no rotation and translation alone, but what leads back to the very same view.
-void Viewer::keep(const Matrix& view, const nodes::Viewpoint* viewpoint) {
+void Viewer::keep(const Matrix& view, const Node* viewpoint) {
   Matrix inverse;
   offset_ = invert(placeOf(viewpoint), inverse) ? compose(inverse, view) : Matrix();
   hasLast_ = false;
@@ -96,14 +100,13 @@ void Viewer::jump(const Matrix& from) {
 }
 
 // Rule b of 6.53. The caller has put `to` on the stack; the view is still that below `from`.
-void Viewer::bind(Node* from, nodes::Viewpoint* to) {
-  const auto* old = nodeCast<nodes::Viewpoint>(from);
-  const Matrix seen = shown(rigid(compose(leavingPlace(old), offset_)));
+void Viewer::bind(Node* from, Node* to) {
+  const Matrix seen = shown(rigid(compose(leavingPlace(from), offset_)));
   saved_[from] = offset_;
   saved_.erase(to);
   if (!begun_) { // nothing has been seen yet: jump FALSE has no view to keep
     offset_ = Matrix();
-  } else if (to && !to->jump) {
+  } else if (const auto next = viewpointFields(to); next && !next->jump) {
     keep(seen, to);
     moving_.running = false;
   } else {
@@ -113,10 +116,10 @@ void Viewer::bind(Node* from, nodes::Viewpoint* to) {
 }
 
 // Rule c: back to where the viewer was, as seen from the next Viewpoint; if the one that leaves has jump FALSE, no jump.
-void Viewer::unbind(nodes::Viewpoint& from, nodes::Viewpoint* to) {
+void Viewer::unbind(Node& from, Node* to) {
   const Matrix seen = shown(rigid(compose(leavingPlace(&from), offset_)));
   const auto saved = saved_.find(to);
-  if (from.jump) {
+  if (const auto left = viewpointFields(&from); !left || left->jump) {
     offset_ = saved == saved_.end() ? Matrix() : saved->second;
     jump(seen);
   } else {

@@ -7,7 +7,6 @@
 #include "event/engine.h"
 #include "geometry/matrix.h"
 #include "xvrml/camera.h"
-#include "xvrml/nodes.h"
 
 namespace xvrml {
 
@@ -30,8 +29,8 @@ class Viewer {
   void restart();                 // a world that has no Viewpoint bound begins
   void begin() { begun_ = true; } // the file's first Viewpoint, if there is one, is bound: somebody looks from now on
   // The bound Viewpoint becomes another; null: the standard's default. Called before the events of the binding.
-  void bind(Node* from, nodes::Viewpoint* to);
-  void unbind(nodes::Viewpoint& from, nodes::Viewpoint* to);
+  void bind(Node* from, Node* to);
+  void unbind(Node& from, Node* to);
   void forget(const Node& viewpoint); // it has left the stack
   // Seconds that a jump takes to be shown; 0: none.
   void setTransition(double seconds);
@@ -44,12 +43,12 @@ class Viewer {
   double speed() const { return speed_; }
 
  private:
-  Matrix placeOf(const nodes::Viewpoint* viewpoint) const; // the Viewpoint's own coordinate system
-  Matrix leavingPlace(const nodes::Viewpoint* viewpoint) const;
-  nodes::Viewpoint* bound() const;
-  Matrix target() const;                                            // the view without a transition
-  Matrix shown(const Matrix& target) const;                         // with it
-  void keep(const Matrix& view, const nodes::Viewpoint* viewpoint); // the offset that leads to view
+  Matrix placeOf(const Node* viewpoint) const; // the Viewpoint's own coordinate system
+  Matrix leavingPlace(const Node* viewpoint) const;
+  Node* bound() const;
+  Matrix target() const;                                // the view without a transition
+  Matrix shown(const Matrix& target) const;             // with it
+  void keep(const Matrix& view, const Node* viewpoint); // the offset that leads to view
   void jump(const Matrix& from);
 
   Engine& engine_;

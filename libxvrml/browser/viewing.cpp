@@ -4,7 +4,7 @@
 #include "behaviour/inline.h"
 #include "behaviour/interaction.h"
 #include "browser/state.h"
-#include "xvrml/nodes.h"
+#include "nodes/viewpoint.h"
 
 namespace xvrml {
 namespace {
@@ -24,13 +24,13 @@ void Browser::setTransition(double seconds) { interactionOf(*impl_->engine).view
 std::vector<ViewpointName> Browser::viewpoints() const {
   std::vector<ViewpointName> list;
   for (Node* node : Binding::viewpoints(impl_->world->scope))
-    list.push_back({NodeRef(node), node->defName, static_cast<nodes::Viewpoint*>(node)->description});
+    list.push_back({NodeRef(node), node->defName, viewpointFields(node)->description});
   return list;
 }
 
 bool Browser::bindViewpoint(std::string_view name) {
   const std::vector<ViewpointName> list = viewpoints();
-  if (const NodeRef known = node(name); known && nodeCast<nodes::Viewpoint>(renderedNode(known.get())))
+  if (const NodeRef known = node(name); known && isViewpoint(renderedNode(known.get())))
     return set(*renderedNode(known.get()), "set_bind", true);
   for (const auto member : {&ViewpointName::name, &ViewpointName::description})
     for (const ViewpointName& viewpoint : list)

@@ -3,7 +3,6 @@
 
 #include <optional>
 
-#include "openrt/shader_options.h"
 #include "xvrml/nodes.h"
 
 namespace xvrml::mapping {
@@ -35,26 +34,6 @@ Parts partsOf(Node* appearance) {
   return parts;
 }
 
-void setOption(const ShaderOption& option, Textures& textures, const Node& node) {
-  const int handle = rtParameterHandle(option.name.c_str());
-  const std::vector<float>& n = option.numbers;
-  switch (option.type) {
-  case ShaderOption::Type::integer:
-  case ShaderOption::Type::boolean: return rtParameter1i(handle, option.integer);
-  case ShaderOption::Type::text: return rtParameterString(handle, option.text.c_str());
-  case ShaderOption::Type::texture: return rtParameterTexture(handle, textures.ofUrls({option.text}, node, true, true));
-  case ShaderOption::Type::color:
-  case ShaderOption::Type::floats: break;
-  }
-  switch (n.size()) {
-  case 1: return rtParameter1f(handle, n[0]);
-  case 2: return rtParameter2f(handle, n[0], n[1]);
-  case 3: return rtParameter3f(handle, n[0], n[1], n[2]);
-  case 4: return rtParameter4f(handle, n[0], n[1], n[2], n[3]);
-  case 16: return rtParameter16f(handle, n.data());
-  }
-}
-
 } // namespace
 
 bool isTextured(Node* appearance) {
@@ -63,7 +42,7 @@ bool isTextured(Node* appearance) {
 }
 
 namespace {
-// Clause 4.14; a Material that is missing means: not lit. A shader that is made again from its defaults is set in part only.
+// Clause 4.14; a Material that is missing means: not lit.
 void setMaterial(ShaderSetup& shader, const nodes::Material* m, bool linear) {
   shader.integer("lit", m ? 1 : 0);
   if (!m) return;
@@ -102,14 +81,48 @@ Surface Surfaces::makeLines(Node* appearance) {
   return surface;
 }
 
+// The shader of an ORTAppearance. Where the class has parameters that the appearance has fields for, as VRML97 has, it gets
+// their values: texture and textureTransform, those of a Material.
+RTid Surfaces::customSurface(Node& appearance, nodes::ORTShader& node) {
+  const Parts parts = partsOf(&appearance);
+  if (!parts.texture && !parts.textureTransform && !parts.material) return custom_.of(node, RT_SURFACE);
+  const RTid texture = textures_.ofNode(parts.texture);
+  const CustomShaders::Preset preset = [&](ShaderSetup& shader, const ShaderClass& shaderClass) {
+    const auto takes = [&](const char* name, RTenum type) {
+      const auto found = shaderClass.parameters.find(name);
+      return found != shaderClass.parameters.end() && found->second == type;
+    };
+    if (takes("texture", RT_PARAM_TEXTURE))
+      shader.texture("texture", texture);
+    else if (parts.texture && shader.fresh())
+      world_.diagnostics.warn(parts.texture->source,
+                              "the shader " + node.name + " has no parameter texture: the picture is not used");
+    if (const nodes::TextureTransform* t = parts.textureTransform; takes("textureTransform", RT_PARAM_MATRIX))
+      shader.matrix("textureTransform", t ? textureMatrix(t->center, t->rotation, t->scale, t->translation) : Matrix());
+    if (const nodes::Material* m = parts.material) {
+      const auto color = [&](const char* name, const Color& value) {
+        if (takes(name, RT_PARAM_COLOR)) shader.color(name, convert(value, linear_));
+      };
+      const auto number = [&](const char* name, float value) {
+        if (takes(name, RT_PARAM_FLOAT)) shader.number(name, value, 0, 1);
+      };
+      color("diffuseColor", m->diffuseColor);
+      color("emissiveColor", m->emissiveColor);
+      color("specularColor", m->specularColor);
+      number("ambientIntensity", m->ambientIntensity);
+      number("shininess", m->shininess);
+      number("transparency", m->transparency);
+    }
+  };
+  return custom_.of(node, RT_SURFACE, &appearance, preset);
+}
+
 // Makes the surface, or gives the shader that it has its new parameters.
 void Surfaces::makeSurface(Entry& entry) {
   const Parts parts = partsOf(entry.appearance.get());
   if (parts.shader) {
-    const auto [it, fresh] = custom_.try_emplace(parts.shader);
-    if (fresh) it->second = makeCustom(*parts.shader);
-    if (it->second.shader != 0) {
-      entry.surface.shader = it->second.shader;
+    if (const RTid shader = customSurface(*entry.appearance, *parts.shader)) {
+      entry.surface.shader = shader;
       return;
     }
   }
@@ -151,64 +164,14 @@ Surfaces::Effect Surfaces::update(Node& appearance) {
   return effect;
 }
 
-// The same class and the same options: new values. Else a new shader takes its place.
-void Surfaces::updateCustom(Node& node) {
-  const auto it = custom_.find(&node);
-  if (it == custom_.end()) return;
-  auto& ort = static_cast<nodes::ORTShader&>(node);
-  Custom& custom = it->second;
-  std::vector<std::string> errors, names;
-  const std::vector<ShaderOption> options = parseShaderOptions(ort.options, errors);
-  for (const ShaderOption& option : options) names.push_back(option.name);
-  if (custom.shader == 0 || custom.name != ort.name || custom.file != ort.file || names != custom.options || !errors.empty()) {
-    const RTid before = custom.shader;
-    custom = makeCustom(node);
-    if (before != 0) rtDeleteShader(before);
-    return;
-  }
-  ShaderSetup shader(custom.shader, sets_);
-  for (const ShaderOption& option : options) {
-    setOption(option, textures_, node);
-    ++sets_;
-  }
-  report(world_.diagnostics, node.source, "ORTShader " + ort.name);
-}
-
 void Surfaces::clear() {
   for (const Entries* entries : {&surfaces_, &lines_})
     for (const auto& [node, entry] : *entries) forget(entry);
-  for (const auto& [node, custom] : custom_)
-    if (custom.shader != 0) rtDeleteShader(custom.shader);
 }
 
 void Surfaces::forget(const Entry& entry) {
   if (entry.own != 0) rtDeleteShader(entry.own);
-}
-
-// An ORTShader: class `name` of the library `file` (empty: stock), parameters by options. 0 and an error if there is no such
-// class.
-Surfaces::Custom Surfaces::makeCustom(Node& node) {
-  auto& ort = static_cast<nodes::ORTShader&>(node);
-  Custom custom{NodeRef(&node), 0, ort.name, ort.file, {}};
-  const RTid shaderClass = classes_.get(ort.name, ort.file);
-  if (!report(world_.diagnostics, node.source, "ORTShader") || shaderClass == 0) return custom;
-  RTenum kind = 0;
-  rtGetShaderClass(shaderClass, &kind, nullptr);
-  if (kind != RT_SURFACE) {
-    world_.diagnostics.error(node.source, "ORTShader: " + ort.name + " is not a surface shader");
-    return custom;
-  }
-  std::vector<std::string> errors;
-  const std::vector<ShaderOption> options = parseShaderOptions(ort.options, errors);
-  for (const std::string& error : errors) world_.diagnostics.error(node.source, "ORTShader " + ort.name + ": " + error);
-  ShaderSetup shader(shaderClass);
-  custom.shader = shader.id();
-  for (const ShaderOption& option : options) {
-    custom.options.push_back(option.name);
-    setOption(option, textures_, node);
-    report(world_.diagnostics, node.source, "ORTShader " + ort.name + ", option " + option.name);
-  }
-  return custom;
+  if (entry.appearance) custom_.forget(*entry.appearance);
 }
 
 } // namespace xvrml::mapping

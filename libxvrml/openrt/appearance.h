@@ -3,6 +3,7 @@
 
 #include <unordered_map>
 
+#include "openrt/custom_shaders.h"
 #include "openrt/rt.h"
 #include "openrt/textures.h"
 #include "xvrml/world.h"
@@ -19,8 +20,8 @@ struct Surface {
 
 class Surfaces {
  public:
-  Surfaces(World& world, bool linearColor, ShaderClasses& classes, Textures& textures)
-      : world_(world), linear_(linearColor), classes_(classes), textures_(textures) {}
+  Surfaces(World& world, bool linearColor, ShaderClasses& classes, Textures& textures, CustomShaders& custom)
+      : world_(world), linear_(linearColor), classes_(classes), textures_(textures), custom_(custom) {}
 
   // Of a Shape's appearance (may be null or a prototype instance). lines: for IndexedLineSet and PointSet, which are neither
   // lit nor textured (clauses 6.24, 6.36).
@@ -34,8 +35,6 @@ class Surfaces {
   };
   // Gives the shaders of an appearance (rendered) new parameters. No effect if no shape uses it.
   Effect update(Node& appearance);
-  // An ORTShader has other fields; update() of the appearances that hold it has to follow.
-  void updateCustom(Node& shader);
   // Shaders of appearances that no shape uses any more; users: those that are used, rendered.
   template <class Uses> void forgetUnless(const Uses& uses);
   void clear(); // deletes everything
@@ -49,24 +48,18 @@ class Surfaces {
     RTid own = 0; // of the class VRML97
     bool textured = false;
   };
-  struct Custom {
-    NodeRef node;
-    RTid shader = 0;
-    std::string name, file;
-    std::vector<std::string> options; // names of the parameters it has been given
-  };
   using Entries = std::unordered_map<const Node*, Entry>;
   Surface makeLines(Node* appearance);
   void makeSurface(Entry& entry);
-  Custom makeCustom(Node& shaderNode);
+  RTid customSurface(Node& appearance, nodes::ORTShader& shader);
   void forget(const Entry& entry);
 
   World& world_;
   bool linear_;
   ShaderClasses& classes_;
   Textures& textures_;
+  CustomShaders& custom_;
   Entries surfaces_, lines_;
-  std::unordered_map<const Node*, Custom> custom_; // by ORTShader
   uint64_t sets_ = 0;
 };
 

@@ -61,7 +61,16 @@ void Environment::setAll(ShaderSetup& shader, const RTid (&images)[6]) {
 
 void Environment::clear() {
   if (shader_ != 0) rtDeleteShader(shader_); // and nothing is used in its place
-  shader_ = 0;
+  if (used_ != 0 && used_ != shader_) rtUseEnvironment(0);
+  shader_ = used_ = 0;
+}
+
+void Environment::useCustom(nodes::ORTBackground& node) {
+  auto* shader = nodeCast<nodes::ORTShader>(renderedNode(node.shader.get()));
+  used_ = shader ? custom_.of(*shader, RT_ENVIRONMENT) : 0;
+  load(matrix_);
+  rtUseEnvironment(used_);
+  if (fog_) world_.diagnostics.warn(fog_->source, "Fog is not drawn with an ORTBackground");
 }
 
 void Environment::follow(const Places& places, const Bound& bound) {
@@ -75,6 +84,11 @@ void Environment::follow(const Places& places, const Bound& bound) {
   stale_ = false;
   if (others) clear();
   if (!background_ && !fog_) return;
+  if (auto* custom = nodeCast<nodes::ORTBackground>(background_)) {
+    useCustom(*custom);
+    report(world_.diagnostics, custom->source, "ORTBackground");
+    return;
+  }
   RTid images[6] = {};
   const nodes::Background* background = nodeCast<nodes::Background>(background_);
   for (int i = 0; background && i < 6; ++i)
@@ -90,7 +104,7 @@ void Environment::follow(const Places& places, const Bound& bound) {
   }
   if (fresh || turned) {
     load(matrix_);
-    rtUseEnvironment(shader_);
+    rtUseEnvironment(used_ = shader_);
   }
   report(world_.diagnostics, background_ ? background_->source : fog_->source, "environment");
 }

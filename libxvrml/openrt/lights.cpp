@@ -36,6 +36,8 @@ void set(ShaderSetup& s, const Node& node, bool linear) {
   s.number("cutOffAngle", spot.cutOffAngle, 0, 3.1415927f);
 }
 
+bool isCustom(const Node& light) { return light.type().index == nodes::ORTLight::typeIndex; }
+
 const char* classOf(const Node& light) {
   if (light.type().index == nodes::DirectionalLight::typeIndex) return "VRML97DirectionalLight";
   return light.type().index == nodes::PointLight::typeIndex ? "VRML97PointLight" : "VRML97SpotLight";
@@ -43,20 +45,29 @@ const char* classOf(const Node& light) {
 } // namespace
 
 RTid Lights::shaderOf(Node& light) {
-  const auto [it, fresh] = shaders_.try_emplace(&light, 0);
-  if (fresh) {
+  const auto [it, fresh] = shaders_.try_emplace(&light);
+  if (fresh && isCustom(light)) {
+    auto* shader = nodeCast<nodes::ORTShader>(renderedNode(static_cast<nodes::ORTLight&>(light).shader.get()));
+    it->second = {shader ? custom_.of(*shader, RT_LIGHT) : 0, false};
+  } else if (fresh) {
     ShaderSetup setup(classes_.get(classOf(light), ""));
     set(setup, light, linear_);
-    it->second = setup.id();
+    it->second = {setup.id(), true};
     report(world_.diagnostics, light.source, light.type().name);
   }
-  return it->second;
+  return it->second.shader;
 }
 
 void Lights::changed(Node& light) {
   const auto found = shaders_.find(&light);
   if (found == shaders_.end()) return; // read when it is turned on
-  ShaderSetup setup(found->second, sets_);
+  if (isCustom(light)) {
+    const RTid before = found->second.shader;
+    shaders_.erase(found);
+    if (shaderOf(light) != before) remade_.insert(&light);
+    return;
+  }
+  ShaderSetup setup(found->second.shader, sets_);
   set(setup, light, linear_);
   report(world_.diagnostics, light.source, light.type().name);
 }
@@ -75,14 +86,15 @@ void Lights::remove(const std::vector<Place>& gone) {
 void Lights::clear(Places& places) {
   for (Place& place : places.all) takeAway(place.light);
   takeAway(headlight_);
-  for (const auto& [node, shader] : shaders_) rtDeleteShader(shader);
+  for (const auto& [node, known] : shaders_)
+    if (known.own) rtDeleteShader(known.shader);
   if (headlightShader_ != 0) rtDeleteShader(headlightShader_);
 }
 
 void Lights::forget(const Graph& graph) {
   std::erase_if(shaders_, [&](const auto& known) {
     if (graph.find(known.first) != 0) return false;
-    rtDeleteShader(known.second);
+    if (known.second.own) rtDeleteShader(known.second.shader);
     return true;
   });
 }
@@ -100,13 +112,14 @@ void Lights::follow(const Graph& graph, Places& places) {
       continue;
     }
     ++count_;
-    if (behindNew) takeAway(place.light);
+    if (behindNew || remade_.contains(item.node.get())) takeAway(place.light);
     behindNew |= place.light == 0;
     makeOrMove(place, item);
     // A DirectionalLight shines on the descendants of its parent group only. The group's object holds nothing else: see
     // Places. At the top level of the file that is everything.
     if (item.kind == Kind::directionalLight && place.light != 0 && place.parent != 0) scope(place, places);
   }
+  remade_.clear();
   if (behindNew) takeAway(headlight_);
 }
 
@@ -114,6 +127,7 @@ void Lights::makeOrMove(Place& place, const Item& item) {
   if (place.light != 0 && place.lightMatrix == place.world) return;
   if (place.light == 0) {
     const RTid shader = shaderOf(*item.node);
+    if (shader == 0) return; // said when it was made
     load(place.world);
     place.light = rtUseLight(shader);
     place.lightScope = 0;

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <unordered_map>
+#include <unordered_set>
 
+#include "openrt/custom_shaders.h"
 #include "openrt/places.h"
 #include "openrt/rt.h"
 
@@ -10,7 +12,8 @@ namespace xvrml::mapping {
 
 class Lights {
  public:
-  Lights(World& world, bool linearColor, ShaderClasses& classes) : world_(world), linear_(linearColor), classes_(classes) {}
+  Lights(World& world, bool linearColor, ShaderClasses& classes, CustomShaders& custom)
+      : world_(world), linear_(linearColor), classes_(classes), custom_(custom) {}
 
   // Makes, moves or removes the lights of all places. Objects and instances of the places must be there: scopes name them.
   void follow(const Graph& graph, Places& places);
@@ -35,10 +38,16 @@ class Lights {
   World& world_;
   bool linear_;
   ShaderClasses& classes_;
+  CustomShaders& custom_;
   RTid headlight_ = 0, headlightShader_ = 0;
   Matrix view_; // of the headlight
   uint64_t count_ = 0, changes_ = 0, sets_ = 0;
-  std::unordered_map<const Node*, RTid> shaders_; // of nodes that have items
+  struct Known {
+    RTid shader = 0;
+    bool own = true; // not that of an ORTShader
+  };
+  std::unordered_map<const Node*, Known> shaders_; // of nodes that have items
+  std::unordered_set<const Node*> remade_;         // ORTLights that have another shader than before
 };
 
 } // namespace xvrml::mapping

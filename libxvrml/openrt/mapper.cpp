@@ -10,9 +10,10 @@ namespace xvrml {
 using namespace mapping;
 
 OpenRTMapper::Impl::Impl(World& w, const MapOptions& o)
-    : world(w), options(o), graph(w), textures(w, o.linearColor), surfaces(w, o.linearColor, classes, textures),
-      objects(w, o.linearColor, graph, places, surfaces), lights(w, o.linearColor, classes),
-      environment(w, o.linearColor, classes, textures), camera(cameraOf(nullptr, Matrix(), o.aspect)) {
+    : world(w), options(o), graph(w), textures(w, o.linearColor), custom(w, classes, textures),
+      surfaces(w, o.linearColor, classes, textures, custom), objects(w, o.linearColor, graph, places, surfaces),
+      lights(w, o.linearColor, classes, custom), environment(w, o.linearColor, classes, textures, custom),
+      camera(cameraOf(nullptr, Matrix(), o.aspect)) {
   summarise(graph, world.diagnostics);
   std::vector<Place> gone;
   places.build(graph, gone);
@@ -26,6 +27,7 @@ OpenRTMapper::Impl::~Impl() {
   objects.clear();
   environment.clear();
   surfaces.clear();
+  custom.clear();
   textures.clear();
 }
 
@@ -114,12 +116,26 @@ void OpenRTMapper::map(const CameraSettings& camera) {
   m.lights.follow(m.graph, m.places);
   m.lights.headlight(m.headlight(), camera);
   m.graph.meshes.release(); // the context has its own copy
-  rtLoadMatrixd(camera.matrix);
-  if (camera.fovy == 0)
-    rtOrtho(camera.height);
+  m.useCamera(camera);
+  m.custom.sweep();
+}
+
+void OpenRTMapper::Impl::useCamera(const CameraSettings& settings) {
+  const double degrees = settings.fovy * 180 / std::numbers::pi;
+  rtLoadMatrixd(settings.matrix);
+  RTid shader = 0;
+  if (auto* node = nodeCast<nodes::ORTShader>(settings.shader)) // its own: other views may have another angle
+    shader = custom.of(*node, RT_CAMERA, node, [&](ShaderSetup& setup, const ShaderClass& shaderClass) {
+      if (shaderClass.has("fovy") && settings.fovy > 0) setup.number("fovy", float(degrees));
+      if (shaderClass.has("height") && settings.fovy == 0) setup.number("height", float(settings.height));
+    });
+  if (shader != 0)
+    rtUseCamera(shader);
+  else if (settings.fovy == 0)
+    rtOrtho(settings.height);
   else
-    rtPerspective(camera.fovy * 180 / std::numbers::pi);
-  report(m.world.diagnostics, {}, "camera");
+    rtPerspective(degrees);
+  report(world.diagnostics, settings.shader ? settings.shader->source : SourcePosition(), "camera");
 }
 
 MapStats OpenRTMapper::stats() const {
@@ -137,7 +153,8 @@ MapStats OpenRTMapper::stats() const {
   s.missingTextures = m.textures.missing();
   s.objectsDefined = m.objects.definitions();
   s.instancesMoved = m.objects.moves();
-  s.parametersSet = m.surfaces.parametersSet() + m.lights.parametersSet() + m.environment.parametersSet();
+  s.parametersSet =
+      m.surfaces.parametersSet() + m.custom.parametersSet() + m.lights.parametersSet() + m.environment.parametersSet();
   s.texturesLoaded = m.textures.loaded();
   s.lightsChanged = m.lights.changes();
   s.regroupings = m.regroupings;

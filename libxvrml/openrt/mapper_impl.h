@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "openrt/appearance.h"
+#include "openrt/custom_shaders.h"
 #include "openrt/lights.h"
 #include "openrt/objects.h"
 #include "openrt/places.h"
@@ -20,6 +21,7 @@ struct OpenRTMapper::Impl {
   mapping::Places places;
   mapping::ShaderClasses classes;
   mapping::Textures textures;
+  mapping::CustomShaders custom;
   mapping::Surfaces surfaces;
   mapping::Objects objects;
   mapping::Lights lights;
@@ -33,6 +35,7 @@ struct OpenRTMapper::Impl {
   ~Impl(); // takes everything out of the context again, if that is still the current one
   CameraSettings cameraAt(int32_t place) const;
   bool headlight() const;
+  void useCamera(const CameraSettings& settings);
   void rebind();
 
   // Made when asked for, after what they follow from has changed.

@@ -74,6 +74,8 @@ void planDirectionalLight(PlanContext&, Node& node, Plan& plan) {
 void planPointLight(PlanContext&, Node& node, Plan& plan) { planLight<nodes::PointLight>(node, Kind::localLight, plan); }
 void planSpotLight(PlanContext&, Node& node, Plan& plan) { planLight<nodes::SpotLight>(node, Kind::localLight, plan); }
 
+void planOrtLight(PlanContext&, Node& node, Plan& plan) { planLight<nodes::ORTLight>(node, Kind::localLight, plan); }
+
 void planViewpoint(PlanContext&, Node&, Plan& plan) { plan.kind = Kind::viewpoint; }
 void planBackground(PlanContext&, Node&, Plan& plan) { plan.kind = Kind::background; }
 void planFog(PlanContext&, Node&, Plan& plan) { plan.kind = Kind::fog; }
@@ -100,7 +102,10 @@ std::vector<PlanFunction>& table() {
     set(nodes::DirectionalLight::typeIndex, planDirectionalLight);
     set(nodes::PointLight::typeIndex, planPointLight);
     set(nodes::SpotLight::typeIndex, planSpotLight);
+    set(nodes::ORTLight::typeIndex, planOrtLight);
     set(nodes::Viewpoint::typeIndex, planViewpoint);
+    set(nodes::ORTViewpoint::typeIndex, planViewpoint);
+    set(nodes::ORTBackground::typeIndex, planBackground);
     set(nodes::Background::typeIndex, planBackground);
     set(nodes::Fog::typeIndex, planFog);
     set(nodes::NavigationInfo::typeIndex, planNavigationInfo);

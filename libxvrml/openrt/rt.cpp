@@ -20,10 +20,19 @@ float decode(float v) { return v <= 0.04045f ? v / 12.92f : float(std::pow((doub
 
 Color convert(Color c, bool linear) { return linear ? Color{decode(c.r), decode(c.g), decode(c.b)} : c; }
 
-RTid ShaderClasses::get(const std::string& name, const std::string& library) {
-  const auto [it, fresh] = classes_.try_emplace(library + '\n' + name, 0);
-  if (fresh) it->second = rtNewShaderClass(name.c_str(), library.empty() ? nullptr : library.c_str());
-  return it->second;
+const ShaderClass& ShaderClasses::find(const std::string& name, const std::string& library) {
+  const auto [it, fresh] = classes_.try_emplace(library + '\n' + name);
+  ShaderClass& found = it->second;
+  if (!fresh) return found;
+  found.id = rtNewShaderClass(name.c_str(), library.empty() ? nullptr : library.c_str());
+  int count = 0;
+  if (found.id != 0) rtGetShaderClass(found.id, &found.role, &count);
+  for (int i = 0; i < count; ++i) {
+    RTparameterInfo info{};
+    rtGetParameterInfo(found.id, i, &info);
+    if (info.name) found.parameters.emplace(info.name, info.type);
+  }
+  return found;
 }
 
 } // namespace xvrml::mapping

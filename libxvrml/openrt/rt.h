@@ -24,13 +24,21 @@ inline void load(const Matrix& m) { rtLoadMatrixd(data(m)); }
 // A colour of a world as the renderer wants it: linear (IEC 61966-2-1), or as written.
 Color convert(Color c, bool linear);
 
+struct ShaderClass {
+  RTid id = 0;                                        // 0: there is none
+  RTenum role = 0;                                    // RT_SURFACE ...
+  std::unordered_map<std::string, RTenum> parameters; // RT_PARAM_* by name
+  bool has(const char* parameter) const { return parameters.contains(parameter); }
+};
+
 // Shader classes by name, made when first used.
 class ShaderClasses {
  public:
-  RTid get(const std::string& name, const std::string& library);
+  const ShaderClass& find(const std::string& name, const std::string& library);
+  RTid get(const std::string& name, const std::string& library) { return find(name, library).id; }
 
  private:
-  std::unordered_map<std::string, RTid> classes_;
+  std::unordered_map<std::string, ShaderClass> classes_;
 };
 
 // A shader being set up: bound for the life of the object; every setter names a parameter its class declares.

@@ -12,6 +12,7 @@ namespace {
 class Words {
  public:
   explicit Words(std::string_view text) : rest_(text) {}
+  std::optional<std::string_view> peek() const { return Words(*this).next(); }
   std::optional<std::string_view> next() {
     const size_t start = rest_.find_first_not_of(" \t\r\n,");
     if (start == std::string_view::npos) return std::nullopt;
@@ -53,6 +54,15 @@ std::string readValues(Words& words, std::string_view type, ShaderOption& option
     }
     return {};
   }
+  if (type == "floats") {
+    option.type = ShaderOption::Type::list;
+    float value = 0;
+    for (auto word = words.peek(); word && number(*word, value) && std::isfinite(value); word = words.peek()) {
+      option.numbers.push_back(value);
+      words.next();
+    }
+    return {};
+  }
   const auto word = words.next();
   if (!word) return missing();
   if (type == "1i") {
@@ -65,13 +75,16 @@ std::string readValues(Words& words, std::string_view type, ShaderOption& option
     const bool known = option.integer || *word == "false" || *word == "FALSE" || *word == "0";
     return known ? "" : "option " + option.name + ": '" + std::string(*word) + "' is neither true nor false";
   }
-  option.type = type == "string" ? ShaderOption::Type::text : ShaderOption::Type::texture;
+  option.type = type == "string" ? ShaderOption::Type::text
+                : type == "file" ? ShaderOption::Type::file
+                                 : ShaderOption::Type::texture;
   option.text = *word;
   return {};
 }
 
 bool knownType(std::string_view type) {
-  return floatsOf(type) > 0 || type == "1i" || type == "bool" || type == "string" || type == "texture";
+  return floatsOf(type) > 0 || type == "1i" || type == "bool" || type == "string" || type == "texture" || type == "file" ||
+         type == "floats";
 }
 
 } // namespace
@@ -84,7 +97,7 @@ std::vector<ShaderOption> parseShaderOptions(const MFString& options, std::vecto
       const auto name = words.next();
       if (!knownType(*type) || !name) {
         errors.push_back(name ? "option type '" + std::string(*type) +
-                                    "': expected 1i 1f 2f 3f 4f 16f bool color string or texture"
+                                    "': expected 1i 1f 2f 3f 4f 16f bool color string texture file or floats"
                               : "option '" + std::string(*type) + "' has no name");
         break; // the rest of this string cannot be made sense of
       }

@@ -10,15 +10,16 @@
 namespace xvrml::mapping {
 
 struct ShaderOption {
-  enum class Type { integer, floats, boolean, color, text, texture } type = Type::floats;
+  enum class Type { integer, floats, boolean, color, text, texture, list, file } type = Type::floats;
   std::string name;
-  std::vector<float> numbers; // 1f 2f 3f 4f 16f color; 1i and bool: integer below
+  std::vector<float> numbers; // 1f 2f 3f 4f 16f color floats; 1i and bool: integer below
   int integer = 0;
-  std::string text; // string, texture
+  std::string text; // string, texture, file
 };
 
 // What could be read, in order; what could not, in errors, one sentence each. Types: 1i 1f 2f 3f 4f 16f bool color string
-// texture. A string or a URL runs to the next blank, or stands in 'single quotes'.
+// texture file floats. A string or a URL runs to the next blank, or stands in 'single quotes'; a list of floats goes on as long
+// as numbers follow.
 std::vector<ShaderOption> parseShaderOptions(const MFString& options, std::vector<std::string>& errors);
 
 } // namespace xvrml::mapping

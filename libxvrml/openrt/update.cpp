@@ -139,7 +139,9 @@ void OpenRTMapper::Impl::relooked(Work& work, Node& first) {
   }
   if (first.type().is("texture") && !textures.changed(first)) return; // the picture alone
   climb(first, work.visited, [&](Node& node) {
-    if (node.type().index == nodes::ORTShader::typeIndex) surfaces.updateCustom(node);
+    if (node.type().index == nodes::ORTShader::typeIndex) custom.changed(node);
+    if (node.type().index == nodes::ORTLight::typeIndex) lights.changed(node);
+    environment.changed(node); // of an ORTBackground
     if (!isAppearance(node)) return node.type().index < 0 || !planOf(node.type());
     work.appearances.push_back(&node);
     return false;

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "xvrml/nodes.h"
+#include "nodes/viewpoint.h"
 
 namespace xvrml::mapping {
 
@@ -32,19 +32,20 @@ Bound firstBound(const Graph& graph, const Places& places) {
 
 Bound boundTo(const Graph& graph, const Places& places, const BoundNodes& nodes) {
   Bound bound;
-  const auto find = [&](Node* written, int type, NodeRef& node, int32_t* place) {
+  const auto find = [&](Node* written, std::initializer_list<int> types, NodeRef& node, int32_t* place) {
     Node* rendered = written ? renderedNode(written) : nullptr;
-    if (!rendered || rendered->type().index != type) return;
+    if (!rendered || std::find(types.begin(), types.end(), rendered->type().index) == types.end()) return;
     node = NodeRef(rendered);
     if (!place) return;
     places.each(graph.find(rendered), [&](int32_t at) {
       if (*place == none) *place = at;
     });
   };
-  find(nodes.viewpoint, nodes::Viewpoint::typeIndex, bound.viewpoint, &bound.viewpointPlace);
-  find(nodes.background, nodes::Background::typeIndex, bound.background, &bound.backgroundPlace);
-  find(nodes.fog, nodes::Fog::typeIndex, bound.fog, &bound.fogPlace);
-  find(nodes.navigationInfo, nodes::NavigationInfo::typeIndex, bound.navigationInfo, nullptr);
+  find(nodes.viewpoint, {nodes::Viewpoint::typeIndex, nodes::ORTViewpoint::typeIndex}, bound.viewpoint, &bound.viewpointPlace);
+  find(nodes.background, {nodes::Background::typeIndex, nodes::ORTBackground::typeIndex}, bound.background,
+       &bound.backgroundPlace);
+  find(nodes.fog, {nodes::Fog::typeIndex}, bound.fog, &bound.fogPlace);
+  find(nodes.navigationInfo, {nodes::NavigationInfo::typeIndex}, bound.navigationInfo, nullptr);
   return bound;
 }
 
@@ -55,7 +56,7 @@ std::vector<ViewpointInfo> listViewpoints(const Graph& graph, const Places& plac
     if (item.kind != Kind::viewpoint) continue;
     ViewpointInfo info;
     info.name = graph.names[item.name];
-    info.description = static_cast<nodes::Viewpoint&>(*item.node).description;
+    info.description = viewpointFields(item.node.get())->description;
     info.node = item.node;
     toArray(places.all[i].world, info.matrix);
     list.push_back(std::move(info));
@@ -68,13 +69,13 @@ CameraSettings cameraOf(const Node* node, const Matrix& parent, double aspect) {
   Vec3f position{0, 0, 10}; // clause 6.53
   Rotation orientation;
   float fieldOfView = 0.785398f;
-  if (node) {
-    const auto& viewpoint = static_cast<const nodes::Viewpoint&>(*node);
-    position = viewpoint.position;
-    orientation = viewpoint.orientation;
-    fieldOfView = viewpoint.fieldOfView;
-  }
   CameraSettings camera;
+  if (const auto viewpoint = viewpointFields(node)) {
+    position = viewpoint->position;
+    orientation = viewpoint->orientation;
+    fieldOfView = viewpoint->fieldOfView;
+    camera.shader = renderedNode(viewpoint->shader);
+  }
   toArray(rigid(compose(parent, compose(translation(vector(position)), rotation(orientation)))), camera.matrix);
   camera.fovy = verticalFieldOfView(fieldOfView, aspect);
   return camera;

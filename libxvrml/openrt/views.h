@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "openrt/custom_shaders.h"
 #include "openrt/places.h"
 #include "openrt/rt.h"
 #include "openrt/textures.h"
@@ -30,11 +31,12 @@ CameraSettings cameraAround(const Bounds& bounds, const Matrix& view, double fov
 // False only if the bound NavigationInfo says so (clause 6.29: the default has a headlight).
 bool hasHeadlight(const Bound& bound);
 
-// Background and Fog as the scene's environment: one shader of the class VRML97Environment. Clauses 6.5 and 6.19.
+// Background and Fog as the scene's environment: one shader of the class VRML97Environment (clauses 6.5 and 6.19), or that of an
+// ORTBackground.
 class Environment {
  public:
-  Environment(World& world, bool linearColor, ShaderClasses& classes, Textures& textures)
-      : world_(world), linear_(linearColor), classes_(classes), textures_(textures) {}
+  Environment(World& world, bool linearColor, ShaderClasses& classes, Textures& textures, CustomShaders& custom)
+      : world_(world), linear_(linearColor), classes_(classes), textures_(textures), custom_(custom) {}
   // The fields of a node that may be bound have changed.
   void changed(const Node& node) { stale_ |= &node == background_.get() || &node == fog_.get(); }
   // Sets what is another than before. The places' world matrices must be those of the frame.
@@ -46,14 +48,16 @@ class Environment {
   void setAll(ShaderSetup& shader, const RTid (&pictures)[6]);
   void setBackground(ShaderSetup& shader, const nodes::Background& node, const RTid (&pictures)[6]);
   void setFog(ShaderSetup& shader);
+  void useCustom(nodes::ORTBackground& node);
 
   World& world_;
   bool linear_;
   ShaderClasses& classes_;
   Textures& textures_;
+  CustomShaders& custom_;
   NodeRef background_, fog_;
-  Matrix matrix_, fogMatrix_; // of the environment; of the fog's coordinate system
-  RTid shader_ = 0;
+  Matrix matrix_, fogMatrix_;  // of the environment; of the fog's coordinate system
+  RTid shader_ = 0, used_ = 0; // our own; the one that the scene has
   bool stale_ = false;
   uint64_t sets_ = 0;
 };

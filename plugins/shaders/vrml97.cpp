@@ -1,12 +1,13 @@
 // vrml97.cpp: the stock plug-in: the surface of ISO/IEC 14772-1 clause 4.14, its three lights, background with fog, and the
-// two cameras. It sees openrt/openrts.h only; the classes are in the folder vrml97. Loaded by the shader registry.
+// cameras. It sees openrt/openrts.h only; the classes are in the folder vrml97. Loaded by the shader registry.
 #include "vrml97/classes.h"
 
 namespace {
 
 const RtsClass* const classes[] = {
     &vrml97::surfaceClass,     &vrml97::directionalLightClass,  &vrml97::pointLightClass,         &vrml97::spotLightClass,
-    &vrml97::environmentClass, &vrml97::perspectiveCameraClass, &vrml97::orthographicCameraClass,
+    &vrml97::environmentClass, &vrml97::perspectiveCameraClass, &vrml97::orthographicCameraClass, &vrml97::thinLensClass,
+    &vrml97::panoramaClass,
 };
 
 } // namespace

@@ -78,8 +78,9 @@ struct Case {
   const char* number; // a parameter to set
   float value;
 };
-const Case cases[] = {
-    {"PerspectiveCamera", "fovy", 70.0f}, {"PerspectiveCamera", "fovy", 3.0f}, {"OrthographicCamera", "height", 7.0f}};
+const Case cases[] = {{"PerspectiveCamera", "fovy", 70.0f},   {"PerspectiveCamera", "fovy", 3.0f},
+                      {"OrthographicCamera", "height", 7.0f}, {"ThinLens", "radius", 0.2f},
+                      {"ThinLens", "radius", 0.0f},           {"Panorama", "vertical", 170.0f}};
 const double pixels[][2] = {{160, 100}, {0.5, 0.5}, {319.5, 199.5}, {20.25, 170.5}, {300.75, 31}};
 
 ParamBlock parameters(const Case& c) {
@@ -134,9 +135,85 @@ TEST(CameraProjection, NothingOutsideThePictureOrBehind) {
   for (const Case& c : cases) {
     const RtsClass& kind = camera(c.name);
     const ParamBlock p = parameters(c);
+    if (std::string(c.name) == "Panorama") { // nothing is behind it
+      EXPECT_GT(project(kind, p, {0.01, 0, 1}).weight, 0);
+      EXPECT_EQ(project(kind, p, {0, 1, 0}).weight, 0);
+      EXPECT_EQ(project(kind, p, {0, 0, 0}).weight, 0);
+      EXPECT_EQ(project(kind, p, {NAN, 0, 1}).weight, 0);
+      continue;
+    }
     for (const Point at : {Point{0, 0, 1}, Point{0, 0, 0}, Point{1e6, 0, -1}, Point{0, -1e6, -1}, Point{NAN, 0, -1},
                            Point{0, INFINITY, -1}, Point{0, 0, -INFINITY}})
       EXPECT_EQ(project(kind, p, at).weight, 0) << c.name << " " << at.x << " " << at.y << " " << at.z;
+  }
+}
+
+// Rays through a lens meet in the plane that is in focus, and cover the opening evenly.
+TEST(Lens, RaysMeetInThePlaneInFocus) {
+  ParamBlock p(camera("ThinLens"));
+  p.set("focus", {4.0f});
+  for (const float radius : {0.0f, 0.1f, 1.5f}) {
+    p.set("radius", {radius});
+    Point o{}, d{}, pinhole{}, straight{};
+    generate(camera("ThinLens"), p, 70, 20, o, d);
+    generate(camera("PerspectiveCamera"), ParamBlock(camera("PerspectiveCamera")), 70, 20, pinhole, straight);
+    const Point meets = o + d * (4 / -d.z), expected = straight * (4 / -straight.z);
+    EXPECT_NEAR(meets.x, expected.x, 2e-6);
+    EXPECT_NEAR(meets.y, expected.y, 2e-6);
+    EXPECT_LE(length(o), radius * 1.000001);
+    EXPECT_EQ(length(o) > 0, radius > 0);
+  }
+}
+
+TEST(Lens, PolygonsAreFilledEvenly) {
+  struct GridHost : FakeHost {
+    GridHost() {
+      random = [](RtsBatch*, uint32_t, float* const square[2]) {
+        for (int i = 0; i < 4096; i++) {
+          square[0][i] = (static_cast<float>(i % 64) + 0.5f) / 64;
+          square[1][i] = (static_cast<float>(i / 64) + 0.5f) / 64;
+        }
+      };
+    }
+  };
+  for (const int blades : {0, 3, 5, 8}) {
+    GridHost host;
+    ParamBlock p(camera("ThinLens"));
+    p.set("radius", {2.0f});
+    p.setInt("blades", blades);
+    Lanes in[2] = {Lanes(4096, 160.0f), Lanes(4096, 100.0f)};
+    const float* const xy[2] = {in[0].data(), in[1].data()};
+    std::vector<Lanes> lanes(6);
+    RtsRays rays{};
+    for (size_t k = 0; k < 3; k++) {
+      lanes[k] = lanes[3 + k] = Lanes(4096);
+      rays.origin[k] = lanes[k].data();
+      rays.direction[k] = lanes[3 + k].data();
+    }
+    camera("ThinLens").generate(&host, host.batch(), p.get(), 4096, xy, size, &rays);
+    // Second moments of a disk and of a regular polygon with n corners about the middle, radius 2.
+    const double expected = blades == 0 ? 2.0 : 4 * (2 + std::cos(2 * M_PI / blades)) / 6;
+    double sum = 0, middle = 0;
+    for (size_t i = 0; i < 4096; i++) {
+      sum += std::pow(rays.origin[0][i], 2) + std::pow(rays.origin[1][i], 2);
+      middle += static_cast<double>(rays.origin[0][i]);
+    }
+    EXPECT_NEAR(sum / 4096, expected, 0.01 * expected) << blades;
+    EXPECT_NEAR(middle / 4096, 0, 0.02) << blades;
+  }
+}
+
+TEST(Panorama, AxesAndEdges) {
+  const ParamBlock p(camera("Panorama"));
+  Point o{}, d{};
+  const struct {
+    double x, y;
+    Point direction;
+  } looks[] = {{160, 100, {0, 0, -1}}, {240, 100, {1, 0, 0}}, {80, 100, {-1, 0, 0}}, {160, 0, {0, 1, 0}}, {0, 100, {0, 0, 1}}};
+  for (const auto& look : looks) {
+    generate(camera("Panorama"), p, look.x, look.y, o, d);
+    EXPECT_NEAR(length(d + look.direction * -1), 0, 1e-6) << look.x;
+    EXPECT_EQ(length(o), 0);
   }
 }
 

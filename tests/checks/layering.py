@@ -75,7 +75,7 @@ ARROWS = {
     "shader-plugin": {"shader-sdk"},
     "script-plugin": {"script-sdk"},
     "picture": PUBLIC - {"shader-sdk", "script-sdk"},
-    "app": PUBLIC - {"shader-sdk", "script-sdk"} | {"picture"},
+    "app": PUBLIC - {"script-sdk"} | {"picture", "common"},  # vv --list-shaders reads the tables of plug-ins
     "binding": PUBLIC - {"shader-sdk", "script-sdk"} | {"picture"},
     "example": PUBLIC,
     "common": set(),

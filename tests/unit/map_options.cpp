@@ -40,6 +40,17 @@ TEST(MapOptions, EveryType) {
   EXPECT_EQ(options[9].numbers[12], 4);
 }
 
+TEST(MapOptions, ListsGoOnAsLongAsNumbersFollow) {
+  const auto options = parse({"floats angle .5 1, 1.5 1f a 2", "floats none", "file ies 'a lamp.ies'"});
+  ASSERT_EQ(options.size(), 4u);
+  EXPECT_EQ(options[0].type, ShaderOption::Type::list);
+  EXPECT_EQ(options[0].numbers, (std::vector<float>{.5f, 1, 1.5f}));
+  EXPECT_EQ(options[1].numbers, std::vector<float>{2});
+  EXPECT_TRUE(options[2].numbers.empty());
+  EXPECT_EQ(options[3].type, ShaderOption::Type::file);
+  EXPECT_EQ(options[3].text, "a lamp.ies");
+}
+
 TEST(MapOptions, SeveralInOneString) {
   const auto options = parse({"1f a 1 color b 1 1 0 string c x"});
   ASSERT_EQ(options.size(), 3u);

@@ -72,9 +72,12 @@ constexpr Interface interfaces[] = {
     {"6.54", "VisibilitySensor", 0, 3, 0, 3},
     {"6.55", "WorldInfo", 0, 0, 2, 0},
     {"", "ORTAppearance", 0, 4, 0, 0},
+    {"", "ORTBackground", 1, 1, 0, 1},
     {"", "ORTInstance", 2, 1, 2, 0},
+    {"", "ORTLight", 0, 2, 0, 0},
     {"", "ORTShader", 0, 3, 0, 0},
     {"", "ORTStatic", 2, 1, 2, 0},
+    {"", "ORTViewpoint", 1, 5, 1, 2},
 };
 
 int count(const NodeType& type, Access access) {
@@ -255,14 +258,14 @@ TEST(Nodes, RolesAreThoseOfTheStandard) {
   std::map<std::string, int> roles;
   for (const NodeType* type : nodeTypes())
     for (const std::string& role : type->abstract) ++roles[role];
-  EXPECT_EQ(roles["child"], 32 + 2); // 4.6.5; ORTStatic, ORTInstance
+  EXPECT_EQ(roles["child"], 32 + 5); // 4.6.5; ORTStatic, ORTInstance, ORTLight, ORTViewpoint, ORTBackground
   EXPECT_EQ(roles["grouping"], 8 + 2);
   EXPECT_EQ(roles["geometry"], 10);
   EXPECT_EQ(roles["texture"], 3);
   EXPECT_EQ(roles["light"], 3);
   EXPECT_EQ(roles["sensor"], 7);
   EXPECT_EQ(roles["interpolator"], 6);
-  EXPECT_EQ(roles["bindable"], 4);
+  EXPECT_EQ(roles["bindable"], 4 + 2);
   EXPECT_EQ(roles["audio"], 2);
   EXPECT_EQ(roles["appearance"], 2);
   EXPECT_TRUE(findNodeType("Transform")->is("child"));

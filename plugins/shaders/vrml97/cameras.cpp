@@ -110,22 +110,6 @@ void projectOrthographic(const RtsHost*, RtsBatch*, const void* params, uint32_t
   out->parallel = 1;
 }
 
-template <class Params, uint32_t count>
-constexpr RtsClass cameraClass(const char* name, const char* text, const RtsParam (&params)[count],
-                               decltype(RtsClass::generate) generate, decltype(RtsClass::project) project) {
-  RtsClass c{};
-  c.size = sizeof(RtsClass);
-  c.kind = RTS_CAMERA;
-  c.name = name;
-  c.text = text;
-  c.paramSize = sizeof(Params);
-  c.paramCount = count;
-  c.params = params;
-  c.generate = generate;
-  c.project = project;
-  return c;
-}
-
 } // namespace
 
 const RtsClass perspectiveCameraClass = cameraClass<PerspectiveParams>(

@@ -11,7 +11,7 @@ namespace vrml97 {
 extern const RtsClass surfaceClass;
 extern const RtsClass directionalLightClass, pointLightClass, spotLightClass;
 extern const RtsClass environmentClass;
-extern const RtsClass perspectiveCameraClass, orthographicCameraClass;
+extern const RtsClass perspectiveCameraClass, orthographicCameraClass, thinLensClass, panoramaClass;
 
 // The range of a number that may not be negative.
 inline constexpr float noLimit = FLT_MAX;

@@ -1,4 +1,4 @@
-// film.h: what the cameras' projections share. Thread tag [render].
+// film.h: what the cameras share. Thread tag [render].
 #pragma once
 
 #include "openrt/openrts.h"
@@ -12,6 +12,22 @@ inline void place(RtsProjection* out, uint32_t i, const float size[2], double x,
   out->xy[0][i] = seen ? px : 0.0f;
   out->xy[1][i] = seen ? py : 0.0f;
   out->weight[i] = seen ? w : 0.0f;
+}
+
+template <class Params, uint32_t count>
+constexpr RtsClass cameraClass(const char* name, const char* text, const RtsParam (&params)[count],
+                               decltype(RtsClass::generate) generate, decltype(RtsClass::project) project) {
+  RtsClass c{};
+  c.size = sizeof(RtsClass);
+  c.kind = RTS_CAMERA;
+  c.name = name;
+  c.text = text;
+  c.paramSize = sizeof(Params);
+  c.paramCount = count;
+  c.params = params;
+  c.generate = generate;
+  c.project = project;
+  return c;
 }
 
 } // namespace vrml97

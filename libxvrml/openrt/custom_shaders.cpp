@@ -1,0 +1,156 @@
+// custom_shaders.cpp: see custom_shaders.h.
+#include "openrt/custom_shaders.h"
+
+#include <algorithm>
+#include <fstream>
+
+#include <sys/stat.h>
+
+namespace xvrml::mapping {
+namespace {
+
+const char* roleName(RTenum role) {
+  switch (role) {
+  case RT_LIGHT: return "light";
+  case RT_CAMERA: return "camera";
+  case RT_ENVIRONMENT: return "environment";
+  default: return "surface shader";
+  }
+}
+
+// The whole of a regular file of text; why not, if that cannot be.
+std::string readText(const std::string& path, uint64_t limit, std::string& text) {
+  struct stat info {};
+  if (::stat(path.c_str(), &info) != 0) return "there is no file " + path;
+  if (!S_ISREG(info.st_mode)) return path + " is not a file";
+  if (uint64_t(info.st_size) > limit) return path + " is longer than " + std::to_string(limit) + " bytes";
+  std::ifstream in(path, std::ios::binary);
+  text.resize(size_t(info.st_size));
+  in.read(text.data(), std::streamsize(text.size()));
+  if (in.gcount() != std::streamsize(text.size())) return path + " cannot be read";
+  return text.find('\0') == text.npos ? "" : path + " is not a text";
+}
+
+} // namespace
+
+void CustomShaders::setOption(const ShaderOption& option, const Node& node) {
+  const int handle = rtParameterHandle(option.name.c_str());
+  const std::vector<float>& n = option.numbers;
+  switch (option.type) {
+  case ShaderOption::Type::integer:
+  case ShaderOption::Type::boolean: return rtParameter1i(handle, option.integer);
+  case ShaderOption::Type::text: return rtParameterString(handle, option.text.c_str());
+  case ShaderOption::Type::texture: return rtParameterTexture(handle, textures_.ofUrls({option.text}, node, true, true));
+  case ShaderOption::Type::list: return rtParameterfv(handle, n.size(), n.data());
+  case ShaderOption::Type::file: {
+    constexpr uint64_t longest = 1 << 24; // of a text that a parameter holds
+    const std::string& base = node.source.file ? *node.source.file : world_.path;
+    const ResolvedUrl resolved = resolveUrl(option.text, base, world_.options);
+    std::string text, why = resolved.error;
+    if (why.empty()) why = readText(resolved.path, std::min(longest, world_.options.limits.fileBytes), text);
+    if (!why.empty()) return world_.diagnostics.error(node.source, "ORTShader: option " + option.name + ": " + why);
+    return rtParameterString(handle, text.c_str());
+  }
+  case ShaderOption::Type::color:
+  case ShaderOption::Type::floats: break;
+  }
+  switch (n.size()) {
+  case 1: return rtParameter1f(handle, n[0]);
+  case 2: return rtParameter2f(handle, n[0], n[1]);
+  case 3: return rtParameter3f(handle, n[0], n[1], n[2]);
+  case 4: return rtParameter4f(handle, n[0], n[1], n[2], n[3]);
+  case 16: return rtParameter16f(handle, n.data());
+  }
+}
+
+RTid CustomShaders::of(nodes::ORTShader& node, RTenum role, const Node* user, const Preset& preset) {
+  const auto [it, fresh] = made_.try_emplace({&node, user});
+  Made& made = it->second;
+  if (fresh) {
+    made.node = NodeRef(&node);
+    make(made, role, preset);
+  } else if (made.stale || (preset && made.shader != 0)) {
+    refresh(made, role, preset);
+  }
+  made.stale = false;
+  return made.shader;
+}
+
+// Class `name` of the library `file` (empty: stock).
+void CustomShaders::make(Made& made, RTenum role, const Preset& preset) {
+  const auto& node = static_cast<const nodes::ORTShader&>(*made.node);
+  made.shader = 0;
+  made.name = node.name;
+  made.file = node.file;
+  made.options.clear();
+  const ShaderClass& shaderClass = classes_.find(node.name, node.file);
+  if (!report(world_.diagnostics, node.source, "ORTShader") || shaderClass.id == 0) return;
+  if (shaderClass.role != role) {
+    const std::string an = role == RT_ENVIRONMENT ? " is not an " : " is not a ";
+    world_.diagnostics.error(node.source, "ORTShader: " + node.name + an + roleName(role));
+    return;
+  }
+  std::vector<std::string> errors;
+  const std::vector<ShaderOption> options = parseShaderOptions(node.options, errors);
+  if (told_.insert(&node).second)
+    for (const std::string& error : errors) world_.diagnostics.error(node.source, "ORTShader " + node.name + ": " + error);
+  ShaderSetup shader(shaderClass.id);
+  made.shader = shader.id();
+  if (preset) preset(shader, shaderClass);
+  report(world_.diagnostics, node.source, "ORTShader " + node.name);
+  for (const ShaderOption& option : options) {
+    made.options.push_back(option.name);
+    setOption(option, node);
+    report(world_.diagnostics, node.source, "ORTShader " + node.name + ", option " + option.name);
+  }
+}
+
+// The same class and the same options: new values. Else a new shader takes its place.
+void CustomShaders::refresh(Made& made, RTenum role, const Preset& preset) {
+  const auto& node = static_cast<const nodes::ORTShader&>(*made.node);
+  std::vector<std::string> errors, names;
+  const std::vector<ShaderOption> options = parseShaderOptions(node.options, errors);
+  for (const ShaderOption& option : options) names.push_back(option.name);
+  if (made.shader == 0 || made.name != node.name || made.file != node.file || names != made.options || !errors.empty()) {
+    const RTid before = made.shader;
+    make(made, role, preset);
+    if (before != 0) replaced_.push_back(before);
+    return;
+  }
+  const ShaderClass& shaderClass = classes_.find(node.name, node.file);
+  ShaderSetup shader(made.shader, sets_);
+  if (preset) preset(shader, shaderClass);
+  for (const ShaderOption& option : options) {
+    setOption(option, node);
+    ++sets_;
+  }
+  report(world_.diagnostics, node.source, "ORTShader " + node.name);
+}
+
+void CustomShaders::changed(const Node& node) {
+  told_.erase(&node);
+  for (auto it = made_.lower_bound({&node, nullptr}); it != made_.end() && it->first.first == &node; ++it)
+    it->second.stale = true;
+}
+
+void CustomShaders::forget(const Node& user) {
+  std::erase_if(made_, [&](const auto& entry) {
+    if (entry.first.second != &user) return false;
+    if (entry.second.shader != 0) rtDeleteShader(entry.second.shader);
+    return true;
+  });
+}
+
+void CustomShaders::sweep() {
+  for (const RTid shader : replaced_) rtDeleteShader(shader);
+  replaced_.clear();
+}
+
+void CustomShaders::clear() {
+  sweep();
+  for (const auto& [key, made] : made_)
+    if (made.shader != 0) rtDeleteShader(made.shader);
+  made_.clear();
+}
+
+} // namespace xvrml::mapping

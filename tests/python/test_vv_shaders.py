@@ -1,0 +1,121 @@
+"""vv and shaders: --shader, --list-shaders, --transport and what is said about it, HDR emission."""
+import json
+
+import pytest
+
+from conftest import HEADER, SMALL
+
+WORLD = HEADER + """
+NavigationInfo { headlight FALSE }
+Viewpoint { position 0 0 5 }
+DEF Group Transform { children [
+  DEF Wall Shape { appearance DEF Paint Appearance { material DEF M Material { emissiveColor 0 1 0 } }
+    geometry IndexedFaceSet { coord Coordinate { point [ -9 -9 0, 9 -9 0, 9 9 0, -9 9 0 ] } coordIndex [ 0 1 2 3 -1 ] } } ] }
+"""
+
+
+@pytest.fixture
+def wall(vv):
+    vv.write("wall.wrl", WORLD)
+    return vv
+
+
+def middle(rows):
+    return rows[len(rows) // 2][len(rows[0]) // 2]
+
+
+@pytest.mark.parametrize("target", ["Group", "Wall", "Paint", "M", "*"])
+def test_a_shader_for_whatever_shapes_hang_on(wall, target):
+    assert middle(wall.picture(world="wall.wrl")) == (0, 255, 0)
+    assert middle(wall.picture("--shader", target + "=Diffuse:emission=0,0,1", world="wall.wrl")) == (0, 0, 255)
+    # a parameter that the material sets, of a class that knows it
+    assert middle(wall.picture("--shader", target + "=VRML97:diffuseColor=1", world="wall.wrl")) == (0, 255, 0)
+
+
+def test_later_ones_win_and_single_numbers_are_grey(wall):
+    both = ("--shader", "*=Diffuse:emission=0,0,1", "--shader", "Paint=diffuse/Diffuse:emission=1")
+    assert middle(wall.picture(*both, world="wall.wrl")) == (255, 255, 255)
+
+
+def test_it_can_be_written(wall):
+    wall("wall.wrl", "--shader", "Wall=Glass:index=1.25", "--write", "out.wrl")
+    text = (wall.folder / "out.wrl").read_text()
+    assert '"1f index 1.25"' in text and "DEF Paint ORTAppearance" in text
+    assert wall("out.wrl", "--check").returncode == 0
+
+
+@pytest.mark.parametrize("shader, words", [
+    ("Wall", "DEF=CLASS"),
+    ("Wal=Glass", "did you mean Wall?"),
+    ("Wall=", "shader class was expected"),
+    ("Wall=Nothing", "Nothing"),
+    ("Wall=PerspectiveCamera", "PerspectiveCamera is a shader for a camera"),
+    ("Wall=Glass:indx=1", "did you mean index?"),
+    ("Wall=Glass:index", "PARAM=VALUE"),
+    ("Wall=Glass:index=glassy", "numbers"),
+    ("Wall=Glass:index=1,2", "1 number was"),
+    ("Wall=Glass:index=1000", "out of range"),
+    ("Wall=Glass:shadow=.5", "shadow"),
+    ("Wall=../../x/Glass", "bare name"),
+])
+def test_what_is_wrong_with_a_shader(wall, shader, words):
+    done = wall("wall.wrl", "-o", "x.png", "--shader", shader, *SMALL)
+    assert done.returncode == 2 and words in done.talk, done.talk
+    assert len(done.talk.splitlines()) == 1
+
+
+def test_textures_are_files_of_the_users(wall):
+    import struct, zlib
+
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+    red = b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", 1, 1, 8, 2, 0, 0, 0)) + chunk(
+        b"IDAT", zlib.compress(b"\0\xff\0\0")) + chunk(b"IEND", b"")
+    wall.write("50% red.png", red)
+    for path in ("50% red.png", wall.folder / "50% red.png"):
+        rows = wall.picture("--shader", f"*=VRML97:lit=0:texture={path}", world="wall.wrl")
+        assert middle(rows) == (255, 0, 0)
+
+
+def test_light_of_more_than_one(wall):
+    done = wall("wall.wrl", "-o", "x.pfm", "--shader", "*=Diffuse:emission=12.5", *SMALL)
+    assert done.returncode == 0, done.talk
+    import struct
+    data = (wall.folder / "x.pfm").read_bytes()
+    values = struct.unpack("<%df" % (32 * 24 * 3), data[-32 * 24 * 12:])
+    assert max(values) == 12.5
+
+
+def test_list_shaders(vv):
+    text = vv("--list-shaders").text
+    for name in ("VRML97 (surface", "ThinLens (camera", "Panorama (camera", "Glass (surface", "VRML97Environment (environment"):
+        assert name in text
+    classes = {c["name"]: c for c in json.loads(vv("--list-shaders", "--json").text)["shaders"]}
+    glass = classes["Glass"]
+    assert glass["library"] == "glass" and glass["kind"] == "surface" and glass["text"]
+    index = {p["name"]: p for p in glass["parameters"]}["index"]
+    assert index["type"] == "float" and index["default"] == 1.5 and index["minimum"] < 1 < index["maximum"] and index["text"]
+    assert len(classes) >= 14
+
+
+def test_a_bad_plug_in_is_named(vv):
+    (vv.folder / "shaders").mkdir(mode=0o755)
+    (vv.folder / "shaders/bad.so").write_text("no library")
+    done = vv("--list-shaders", "--shader-path", vv.folder / "shaders")
+    assert done.returncode == 0 and "bad.so" in done.talk and "Glass" in done.text
+
+
+@pytest.mark.parametrize("name", ["direct", "whitted", "path"])
+def test_transport_in_the_statistics(wall, name):
+    done = wall("wall.wrl", "-o", "x.png", "--stats", "-", "--transport", name, "--depth", "3", *SMALL)
+    transport = json.loads(done.text)["transport"]
+    assert transport["chosen"] == name and transport["claim"]
+    explained = json.loads(wall("wall.wrl", "--explain", "--json", "--transport", name).text)
+    assert explained["transport"]["chosen"] == name and explained["objects"]
+    assert wall("wall.wrl", "--explain", "--transport", name).text.startswith("transport " + name)
+
+
+def test_a_clamp_is_part_of_the_claim(wall):
+    done = wall("wall.wrl", "-o", "x.pfm", "--stats", "-", "--shader", "*=Diffuse:emission=12.5", "--clamp", "2", *SMALL)
+    assert "cut at 2" in json.loads(done.text)["transport"]["claim"]
