@@ -2,8 +2,11 @@
 #pragma once
 
 #include "render/points.h"
+#include "render/ray_queue.h"
 
 namespace openrt {
+
+class TileRenderer;
 
 struct RayCounters {
   uint64_t camera = 0, shadow = 0, secondary = 0;
@@ -25,6 +28,12 @@ struct RtsBatch {
   float* reach = nullptr; // distance to the light; 0 where there is no direction
   uint32_t current = ~0u; // index into the batch's lights
   bool directional = false;
+  // Who renders: null where shaders are asked outside of a picture. There nothing is traced, and random points are the middle.
+  openrt::TileRenderer* tracer = nullptr;
+  const openrt::RayState* states = nullptr; // rays of the wave, by lane
+  const uint32_t* order = nullptr;          // lanes of the hits; null: the camera's rays, in order
+  uint32_t rays = 0;                        // number of these
+  uint32_t* requests = nullptr;             // by hit: rays that it has sent
   // Lobes that the shader has asked for (surface).
   RtsLobe lobes[RTS_MAX_LOBES];
   uint32_t lobeCount = 0;

@@ -132,6 +132,7 @@ void TileRenderer::addEmitters(const RtsBatch& batch, const Points& points, cons
     RtsSurface surface{};
     for (auto& e : surface.emission) e = arena_.takeZero<float>(padded(m));
     RtsBatch inner = makeBatch();
+    inner.tracer = nullptr; // the answer must be the one that the emitters' choice was made from
     inner.points = &seen;
     shaderClass.surface(&scene_.host, &inner, &seen.hits, &surface);
     for (uint32_t i = 0; i < m; i++) {

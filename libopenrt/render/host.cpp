@@ -1,9 +1,12 @@
 // host.cpp: the functions that shaders call (openrts.h), over one batch at a time. [render]
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "render/batch.h"
+#include "render/hit_info.h"
 #include "render/shadows.h"
+#include "render/tile.h"
 
 namespace openrt {
 namespace {
@@ -107,6 +110,38 @@ RtsLobe* customLobe(RtsBatch* batch, const RtsLobeFunctions* functions, uint32_t
   return made;
 }
 
+void random(RtsBatch* batch, uint32_t pair, float* const square[2]) {
+  if (batch->tracer) return batch->tracer->randomPoints(*batch, pair, square);
+  const uint32_t n = batch->points ? batch->points->hits.count : batch->rays;
+  for (int k = 0; k < 2; k++) std::fill_n(square[k], n, 0.5f);
+}
+
+void trace(RtsBatch* batch, const RtsRequest* rays, float* const rgba[4]) {
+  if (batch->tracer) return batch->tracer->trace(*batch, *rays, rgba);
+  for (int k = 0; k < 4; k++)
+    if (rgba[k]) std::fill_n(rgba[k], rays->count, 0.0f);
+}
+
+void findHit(RtsBatch* batch, const RtsRequest* rays, RtsFound* out) {
+  if (batch->tracer) return batch->tracer->findHit(*batch, *rays, *out);
+  if (out->distance) std::fill_n(out->distance, rays->count, std::numeric_limits<float>::infinity());
+}
+
+void occluded(RtsBatch* batch, const RtsRequest* rays, float* const transmission[3]) {
+  if (batch->tracer) return batch->tracer->occluded(*batch, *rays, transmission);
+  for (int k = 0; k < 3; k++) std::fill_n(transmission[k], rays->count, 1.0f);
+}
+
+void local(RtsBatch* batch, float* const position[3], float* const normal[3]) { localOf(*batch, position, normal); }
+void derivatives(RtsBatch* batch, float* const alongS[3], float* const alongT[3]) { derivativesOf(*batch, alongS, alongT); }
+void ids(RtsBatch* batch, uint32_t* name, uint32_t* instance, uint32_t* primitive) { idsOf(*batch, name, instance, primitive); }
+void path(RtsBatch* batch, uint32_t* depth, float* const throughput[3]) {
+  pathsOf(*batch, batch->tracer ? batch->tracer->level() : 0, depth, throughput);
+}
+void error(RtsBatch* batch, float* out) {
+  if (batch->points) std::copy_n(batch->points->error, batch->points->hits.count, out);
+}
+
 void log(const RtsHost* host, int level, const char* text) {
   const auto* self = static_cast<const RenderHost*>(host);
   if (self->logCallback) self->logCallback(level, text, self->logUser);
@@ -127,6 +162,15 @@ void fillHost(RtsHost& host) {
   host.log = log;
   host.lobe = lobe;
   host.customLobe = customLobe;
+  host.random = random;
+  host.trace = trace;
+  host.findHit = findHit;
+  host.occluded = occluded;
+  host.local = local;
+  host.derivatives = derivatives;
+  host.ids = ids;
+  host.path = path;
+  host.error = error;
 }
 
 } // namespace openrt

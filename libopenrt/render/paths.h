@@ -14,7 +14,6 @@ struct TileRenderer::Paths {
   float* radiance[3]; // by path, from here on
   float* alpha;
   uint8_t* first;                                     // nothing was shaded on the path yet
-  uint8_t* random;                                    // the path has taken a random decision
   float *normal[3], *albedo[3], *position[3], *depth; // null where nobody asks
   uint32_t* name;
   // storage of a wave's intersections

@@ -19,6 +19,23 @@ struct Affine { // 3x4: x' = r[0][0..2] . p + r[0][3]
   }
 };
 
+// Of an invertible map; zero where it is not.
+inline Affine inverseOf(const Affine& m) {
+  const auto& r = m.r;
+  const float c[3][3] = {
+      {r[1][1] * r[2][2] - r[1][2] * r[2][1], r[0][2] * r[2][1] - r[0][1] * r[2][2], r[0][1] * r[1][2] - r[0][2] * r[1][1]},
+      {r[1][2] * r[2][0] - r[1][0] * r[2][2], r[0][0] * r[2][2] - r[0][2] * r[2][0], r[0][2] * r[1][0] - r[0][0] * r[1][2]},
+      {r[1][0] * r[2][1] - r[1][1] * r[2][0], r[0][1] * r[2][0] - r[0][0] * r[2][1], r[0][0] * r[1][1] - r[0][1] * r[1][0]}};
+  const float determinant = r[0][0] * c[0][0] + r[0][1] * c[1][0] + r[0][2] * c[2][0];
+  Affine out{};
+  if (determinant == 0) return out;
+  for (int i = 0; i < 3; i++) {
+    for (int j = 0; j < 3; j++) out.r[i][j] = c[i][j] / determinant;
+    out.r[i][3] = -(out.r[i][0] * r[0][3] + out.r[i][1] * r[1][3] + out.r[i][2] * r[2][3]);
+  }
+  return out;
+}
+
 struct Record {
   edit::Primitive primitive = edit::Primitive::Triangles;
   bool instanced = false; // vertices are in the kernel's object frame and `toRender` applies; else in render space times `scale`
@@ -38,6 +55,7 @@ struct Record {
   Affine toRender;                   // instanced: kernel's frame -> render space; sphere: unit-sphere frame -> render space
   Affine fromRender;                 // sphere: its inverse
   float normalMatrix[3][3];          // normals of the geometry -> render space (inverse transpose), not normalised
+  Affine toObject;                   // render space -> frame in which the geometry was defined
   float kernelNormal[3][3];          // instanced: the kernel's geometric normal -> render space
 };
 

@@ -85,6 +85,7 @@ struct RenderScene {
   std::shared_ptr<const std::vector<Texture>> textures; // [0] is the missing one
   std::shared_ptr<const ShaderTable> shaders;           // like the textures shared by snapshots between which they did not change
   RoleSlot camera, environment;
+  ShaderSlot transport;                               // shaderClass null: the engine's own
   float eye[3] = {0, 0, 0}, viewAxis[3] = {0, 0, -1}; // render space; unit
   double origin[3] = {0, 0, 0};                       // of render space, in the world
   Emitters emitters;                                  // path tracing: what sends out light besides the lights

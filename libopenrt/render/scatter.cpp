@@ -107,8 +107,7 @@ void TileRenderer::scatterRange(Paths& paths, const Points& points, const Bucket
     radiance[k] = surface.emission[k] = arena_.takeZero<float>(size);
     surface.albedo[k] = film_.has(RT_ALBEDO) ? arena_.takeZero<float>(size) : nullptr;
   }
-  RtsBatch batch = makeBatch();
-  batch.points = &points;
+  RtsBatch batch = makeBatch(paths, points, order);
   batch.lightSet = bucket.lightSet;
   bucket.shaderClass->surface(&scene_.host, &batch, &hits, &surface);
   Boundaries boundaries{nullptr, nullptr};
@@ -170,6 +169,7 @@ float TileRenderer::chanceMet(const RayState& ray, const Points& points, uint32_
 }
 
 void TileRenderer::sampleAt(uint32_t path, uint32_t pair, float& u, float& v) const {
+  if (root_) path = root_[path];
   const uint32_t sample = firstSample_ + path % samples_;
   PairSampler(pixels_[path / samples_], pair, replicates_.seedOf(sample))(replicates_.indexOf(sample), u, v);
 }
@@ -214,7 +214,7 @@ void TileRenderer::sendOn(const RtsBatch& batch, const Points& points, uint32_t 
   for (uint32_t l = 0; l < batch.lobeCount; l++) {
     if (direct && batch.lobes[l].kind != RTS_LOBE_TRANSPARENT) continue;
     ways.add(l, batch.lobes[l], samples[l]);
-    if (samples[l]) paths.random[ray.path] = 1;
+    if (samples[l]) noteRandom(ray.path);
   }
   float carried[Ways::maximum], sum = 0;
   for (uint32_t w = 0; w < ways.count; w++) {
@@ -234,7 +234,7 @@ void TileRenderer::sendOn(const RtsBatch& batch, const Points& points, uint32_t 
     float kept = probability;
     if (path && level_ >= rouletteFrom) {
       const float stay = std::min(1.0f, carried[w] / probability);
-      if (stay < 1) paths.random[ray.path] = 1;
+      if (stay < 1) noteRandom(ray.path);
       if (survival >= stay) return;
       kept *= stay;
     } else if (!path && carried[w] < scene_.frame.energyCut) {
@@ -258,7 +258,7 @@ void TileRenderer::sendOn(const RtsBatch& batch, const Points& points, uint32_t 
     for (uint32_t w = 0; w < ways.count; w++) send(w, 1);
     return;
   }
-  paths.random[ray.path] = 1;
+  noteRandom(ray.path);
   float at = choice * sum;
   uint32_t chosen = 0;
   while (chosen + 1 < ways.count && at >= carried[chosen]) at -= carried[chosen++];

@@ -8,11 +8,6 @@
 namespace openrt {
 namespace {
 
-struct ShadowRays {
-  Rays rays;
-  uint32_t* lane; // of the batch, by ray
-};
-
 // A ray for every wanted lane that light can reach at all.
 ShadowRays makeRays(RtsBatch& batch, const uint8_t* wanted, const RtsIllumination& light) {
   const RtsHits& hits = batch.points->hits;
@@ -37,12 +32,11 @@ ShadowRays makeRays(RtsBatch& batch, const uint8_t* wanted, const RtsIlluminatio
     s.lane[n++] = i;
   }
   s.rays.count = n;
-  batch.counters->shadow += n;
   return s;
 }
 
-void scaleColor(RtsIllumination& light, uint32_t lane, float r, float g, float b) {
-  light.color[0][lane] *= r, light.color[1][lane] *= g, light.color[2][lane] *= b;
+void scaleColor(float* const color[3], uint32_t lane, float r, float g, float b) {
+  color[0][lane] *= r, color[1][lane] *= g, color[2][lane] *= b;
 }
 
 // Keeps the rays whose flag is 0.
@@ -58,7 +52,7 @@ void compact(ShadowRays& s, const uint8_t* drop) {
 }
 
 // One transparent surface further along every ray; rays that meet none are done.
-void passSurface(RtsBatch& batch, ShadowRays& s, RayHits& found, uint8_t* done, RtsIllumination& light) {
+void passSurface(const RtsBatch& batch, ShadowRays& s, RayHits& found, uint8_t* done, float* const color[3]) {
   const RenderScene& scene = *batch.scene;
   Arena& arena = *batch.arena;
   ArenaScope scope(arena);
@@ -82,13 +76,14 @@ void passSurface(RtsBatch& batch, ShadowRays& s, RayHits& found, uint8_t* done, 
     for (auto& a : through) a = arena.takeZero<float>(padded(m));
     const RtsClass& shaderClass = *scene.buckets[range.bucket].shaderClass;
     RtsBatch inner = batch;
+    inner.tracer = nullptr;
     inner.points = &points;
     if (shaderClass.transmit) shaderClass.transmit(&scene.host, &inner, &points.hits, through);
     for (uint32_t i = 0; i < m; i++) {
       const uint32_t ray = order[range.begin + i];
       float t[3];
       for (int k = 0; k < 3; k++) t[k] = through[k][i] > 0 ? std::fmin(through[k][i], 1.0f) : 0.0f; // NaN: opaque
-      scaleColor(light, s.lane[ray], t[0], t[1], t[2]);
+      scaleColor(color, s.lane[ray], t[0], t[1], t[2]);
       if (t[0] + t[1] + t[2] < 1e-6f) {
         done[ray] = 1;
         continue;
@@ -106,24 +101,30 @@ void passSurface(RtsBatch& batch, ShadowRays& s, RayHits& found, uint8_t* done, 
 
 } // namespace
 
-void castShadows(RtsBatch& batch, const uint8_t* wanted, RtsIllumination& light) {
-  ArenaScope scope(*batch.arena);
-  ShadowRays s = makeRays(batch, wanted, light);
+void passShadows(const RtsBatch& batch, ShadowRays& s, float* const color[3]) {
   if (s.rays.count == 0) return;
+  ArenaScope scope(*batch.arena);
   const RenderScene& scene = *batch.scene;
+  batch.counters->shadow += s.rays.count;
   auto* blocked = batch.arena->take<uint8_t>(s.rays.count);
   scene.kernel->occluded(s.rays, maskOpaque, Coherence::coherent, blocked);
   for (uint32_t i = 0; i < s.rays.count; i++)
-    if (blocked[i]) scaleColor(light, s.lane[i], 0, 0, 0);
+    if (blocked[i]) scaleColor(color, s.lane[i], 0, 0, 0);
   if (!scene.transparentShadows) return;
   compact(s, blocked);
   RayHits found;
   found.allocate(*batch.arena, s.rays.count);
   for (uint32_t pass = 0; s.rays.count && pass < scene.frame.depth; pass++) {
-    passSurface(batch, s, found, blocked, light);
+    passSurface(batch, s, found, blocked, color);
     compact(s, blocked);
   }
-  for (uint32_t i = 0; i < s.rays.count; i++) scaleColor(light, s.lane[i], 0, 0, 0); // beyond the depth: dark, as documented
+  for (uint32_t i = 0; i < s.rays.count; i++) scaleColor(color, s.lane[i], 0, 0, 0); // beyond the depth: dark, as documented
+}
+
+void castShadows(RtsBatch& batch, const uint8_t* wanted, RtsIllumination& light) {
+  ArenaScope scope(*batch.arena);
+  ShadowRays s = makeRays(batch, wanted, light);
+  passShadows(batch, s, light.color);
 }
 
 } // namespace openrt

@@ -8,4 +8,12 @@ namespace openrt {
 // Multiplies light.color by what is let through between the points and the light last looked at, where wanted.
 void castShadows(RtsBatch& batch, const uint8_t* wanted, RtsIllumination& light);
 
+// Rays towards light, with the place in `color` that each belongs to.
+struct ShadowRays {
+  Rays rays;
+  uint32_t* lane;
+};
+// Multiplies colours by what is let through between the rays' ends. The rays are used up.
+void passShadows(const RtsBatch& batch, ShadowRays& rays, float* const color[3]);
+
 } // namespace openrt

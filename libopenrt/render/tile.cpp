@@ -88,15 +88,12 @@ void TileRenderer::store(const Tile& tile) {
   halfWidth_ /= double(pixels_.size());
 }
 
-void TileRenderer::wave(uint32_t firstSample, uint32_t samples) {
-  ArenaScope scope(arena_);
-  const uint32_t n = uint32_t(pixels_.size()) * samples, size = padded(n);
-  firstSample_ = firstSample, samples_ = samples;
-  Paths paths;
-  paths.rays.allocate(arena_, n);
+// Working storage of n paths; film: with what the film's channels want of their first surfaces.
+void TileRenderer::allocate(Paths& paths, uint32_t n, bool film) {
+  const uint32_t size = padded(n);
   paths.state = arena_.take<RayState>(size);
   paths.travelled = arena_.takeZero<float>(size);
-  const auto optional = [&](uint32_t channel) { return film_.has(channel) ? arena_.takeZero<float>(size) : nullptr; };
+  const auto optional = [&](uint32_t channel) { return film && film_.has(channel) ? arena_.takeZero<float>(size) : nullptr; };
   for (int k = 0; k < 3; k++) {
     paths.radiance[k] = arena_.takeZero<float>(size);
     paths.normal[k] = optional(RT_NORMAL), paths.albedo[k] = optional(RT_ALBEDO), paths.position[k] = optional(RT_POSITION);
@@ -106,18 +103,36 @@ void TileRenderer::wave(uint32_t firstSample, uint32_t samples) {
   if (paths.depth) std::fill_n(paths.depth, size, std::numeric_limits<float>::infinity());
   paths.name = arena_.takeZero<uint32_t>(size);
   paths.first = arena_.take<uint8_t>(size);
-  std::fill_n(paths.first, size, uint8_t(1));
-  paths.random = arena_.takeZero<uint8_t>(size);
+  std::fill_n(paths.first, size, uint8_t(film));
   paths.hits.allocate(arena_, n);
   for (auto* list : {&paths.missed, &paths.met, &paths.order}) *list = arena_.take<uint32_t>(size);
+}
 
+void TileRenderer::wave(uint32_t firstSample, uint32_t samples) {
+  ArenaScope scope(arena_);
+  const uint32_t n = uint32_t(pixels_.size()) * samples;
+  firstSample_ = firstSample, samples_ = samples;
+  Paths paths;
+  paths.rays.allocate(arena_, n);
+  allocate(paths, n, true);
+  random_ = arena_.takeZero<uint8_t>(padded(n));
   makeCameraRays(paths, firstSample);
   for (uint32_t i = 0; i < n; i++) paths.state[i] = RayState{.path = i};
   level_ = 0;
-  counters_.camera += n;
+  if (scene_.transport.shaderClass) {
+    askTransport(paths);
+  } else {
+    counters_.camera += n;
+    follow(paths, n);
+  }
+  addToPixels(paths, firstSample, samples);
+}
+
+// The rays that are loaded, then bounce by bounce what becomes of them, in portions of at most n, so that a path's sums have one
+// order.
+void TileRenderer::follow(Paths& paths, uint32_t n) {
   traceWave(paths);
-  // Then bounce by bounce, each in portions of the same size, so that a path's sums have one order.
-  for (level_ = 1; !next_.empty() && level_ <= scene_.frame.depth; level_++) {
+  for (level_++; !next_.empty() && level_ <= scene_.frame.depth; level_++) {
     queue_.swap(next_);
     next_.clear();
     counters_.secondary += queue_.size();
@@ -127,7 +142,6 @@ void TileRenderer::wave(uint32_t firstSample, uint32_t samples) {
     }
   }
   next_.clear();
-  addToPixels(paths, firstSample, samples);
 }
 
 void TileRenderer::loadRays(Paths& paths, size_t begin, uint32_t n) {
@@ -155,12 +169,24 @@ void TileRenderer::traceWave(Paths& paths) {
     (paths.hits.record[i] == noHit ? paths.missed[misses++] : paths.met[mets++]) = i;
   background(paths, paths.missed, misses);
   sortByBucket(scene_, paths.hits, paths.met, mets, paths.order, counts_, ranges_);
-  for (const BucketRange& range : ranges_) shadeRange(paths, paths.hits, range, paths.order + range.begin);
+  std::vector<BucketRange> ranges;
+  ranges.swap(ranges_); // shaders may trace in their turn
+  for (const BucketRange& range : ranges) shadeRange(paths, paths.hits, range, paths.order + range.begin);
+  ranges.swap(ranges_);
 }
 
 RtsBatch TileRenderer::makeBatch() {
   RtsBatch batch;
   batch.scene = &scene_, batch.arena = &arena_, batch.counters = &counters_;
+  batch.tracer = this;
+  return batch;
+}
+
+RtsBatch TileRenderer::makeBatch(const Paths& paths, const Points& points, const uint32_t* order) {
+  RtsBatch batch = makeBatch();
+  batch.points = &points;
+  batch.states = paths.state, batch.order = order;
+  batch.requests = arena_.takeZero<uint32_t>(points.hits.count);
   return batch;
 }
 
@@ -191,6 +217,7 @@ void TileRenderer::makeCameraRays(Paths& paths, uint32_t firstSample) {
   const float* points[2] = {xy[0], xy[1]};
   const float extent[2] = {float(film_.width()), float(film_.height())};
   RtsBatch batch = makeBatch();
+  batch.rays = n;
   const ShaderSlot& camera = scene_.camera.shader;
   camera.shaderClass->generate(&scene_.host, &batch, camera.params, n, points, extent, &local);
   const Affine& m = scene_.camera.fromLocal;
@@ -314,8 +341,7 @@ void TileRenderer::shadeRange(Paths& paths, const RayHits& hits, const BucketRan
   }
   {
     ArenaScope inner(arena_);
-    RtsBatch batch = makeBatch();
-    batch.points = &points;
+    RtsBatch batch = makeBatch(paths, points, order);
     batch.lightSet = bucket.lightSet;
     bucket.shaderClass->shade(&scene_.host, &batch, &points.hits, &shaded);
   }
@@ -405,7 +431,7 @@ void TileRenderer::addToPixels(const Paths& paths, uint32_t firstSample, uint32_
       sums.add(radiance, paths.alpha[i]);
       if (wantsError_) {
         sums.addTails(radiance);
-        sums.random |= paths.random[i] != 0;
+        sums.random |= random_[i] != 0;
       }
       if (replicates_.many() && replicates_.indexOf(firstSample + s + 1) == 0) sums.closeReplicate();
       for (int k = 0; k < 3; k++) {

@@ -28,17 +28,28 @@ class TileRenderer {
   // A tile of samples that do not count; how many it needs. Its pixels are stored, to be replaced.
   uint32_t pilot(const Tile& tile, uint32_t samples);
   const RayCounters& counters() const { return counters_; }
+  uint32_t level() const { return level_; } // surfaces that the rays of the wave have met before
+  // trace.cpp: what shaders ask of the renderer (RtsHost).
+  void randomPoints(const RtsBatch& batch, uint32_t pair, float* const square[2]);
+  void trace(RtsBatch& batch, const RtsRequest& request, float* const rgba[4]);
+  void findHit(const RtsBatch& batch, const RtsRequest& request, RtsFound& out);
+  void occluded(const RtsBatch& batch, const RtsRequest& request, float* const transmission[3]);
 
  private:
+  struct Paths; // structure of arrays, one entry a path
   void begin(const Tile& tile);
   void takeSamples(uint32_t first, uint32_t samples);
   void store(const Tile& tile);
-  struct Paths; // structure of arrays, one entry a path
+  void askTransport(Paths& paths);
+  void noteRandom(uint32_t path);
 
   void loadRays(Paths& paths, size_t begin, uint32_t n);
   void traceWave(Paths& paths);
   void wave(uint32_t firstSample, uint32_t samples);
+  void allocate(Paths& paths, uint32_t n, bool film);
+  void follow(Paths& paths, uint32_t n);
   RtsBatch makeBatch();
+  RtsBatch makeBatch(const Paths& paths, const Points& points, const uint32_t* order);
   void makeCameraRays(Paths& paths, uint32_t firstSample);
   void skyAt(const Rays& rays, const uint32_t* lanes, uint32_t n, float* direction[3], float* rgba[4]);
   void background(Paths& paths, const uint32_t* missed, uint32_t n);
@@ -92,6 +103,9 @@ class TileRenderer {
   Replicates replicates_;
   bool wantsError_, single_ = false;                   // single_: one sample a pixel, at its centre
   double halfWidth_ = 0;                               // relative, mean over the tile that was stored last
+  uint8_t* random_ = nullptr;                          // by sample of the wave: its path has taken a random decision
+  const uint32_t* root_ = nullptr;                     // within trace(): the sample of the wave that each path belongs to
+  uint32_t nesting_ = 0;                               // of trace()
   RayQueue queue_, next_;                              // rays of the wave being traced, and of the one after it
   uint32_t level_ = 0, firstSample_ = 0, samples_ = 0; // of the wave
 };

@@ -7,6 +7,7 @@ namespace {
 
 class Lobes : public Scene {
  protected:
+  Lobes() { rtQuality(RT_TRANSPORT, RT_TRANSPORT_WHITTED); } // what emits would ask for path tracing
   static Shader glowing(double radiance, double reflectance = 0) {
     Shader s("Diffuse");
     s.set("reflectance", {reflectance, reflectance, reflectance}).set("emission", {radiance, radiance, radiance});

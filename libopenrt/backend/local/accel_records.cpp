@@ -51,6 +51,7 @@ Record AccelBuilder::recordOf(const Inherited& path, const Geometry& g, const Ma
   r.colors = g.colors ? g.colors->as<float>() : nullptr;
   r.scale = 1 / accel_->scale_;
   normalMatrixOf(toRender, r.normalMatrix);
+  r.toObject = Affine::from(inverse(toRender));
   return r;
 }
 

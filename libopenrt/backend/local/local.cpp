@@ -10,6 +10,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "render/transport.h"
+
 namespace openrt {
 namespace {
 
@@ -48,6 +50,9 @@ void LocalBackend::prepare() {
   next->records = accel_->records;
   next->buckets = accel_->buckets;
   next->transparentShadows = accel_->hasTransparent;
+  TransportChoice choice = chooseTransport(*next);
+  next->frame.transport = uint8_t(choice.transport);
+  transportReason_ = std::move(choice.reason);
   next->emitters.build(*next);
   snapshot_ = std::move(next);
   changes_ = {};
@@ -131,6 +136,7 @@ void LocalBackend::makeCamera(RenderScene& next, const Vec3d& origin) const {
     slot.fromLocal = Affine::from(m);
     slot.toLocal = Affine::from(inverse(m));
   };
+  if (scene_.transport) next.transport = next.shaders->role(scene_.transport, RTS_TRANSPORT);
   place(scene_.camera, RTS_CAMERA, next.camera);
   place(scene_.environment, RTS_ENVIRONMENT, next.environment);
   if (!next.camera.shader.shaderClass) return;
@@ -242,6 +248,8 @@ void LocalBackend::stats(RTstats& s) const {
     s.renderSeconds = finished_->seconds();
     finished_->describeError(s);
   }
+  if (snapshot_) s.transport = snapshot_->frame.transport;
+  std::snprintf(s.transportReason, sizeof s.transportReason, "%s", transportReason_.c_str());
   s.objectBuilds = builder_.objectBuilds, s.topLevelBuilds = builder_.topLevelBuilds;
   s.commitSeconds = commitSeconds_;
   s.buildSeconds = buildSeconds_;

@@ -45,6 +45,7 @@ class LocalBackend final : public Backend {
   Flattened flat_;
   PixelFootprint footprint_;
   bool scopedLights_ = false;
+  std::string transportReason_; // of the snapshot
   mutable std::mutex mutex_; // frame_ as seen by cancel(), progress() and snapshot()
   std::shared_ptr<Frame> frame_, finished_;
   double commitSeconds_ = 0, buildSeconds_ = 0;
