@@ -7,7 +7,10 @@ namespace {
 
 class Lobes : public Scene {
  protected:
-  Lobes() { rtQuality(RT_TRANSPORT, RT_TRANSPORT_WHITTED); } // what emits would ask for path tracing
+  void SetUp() override {
+    Scene::SetUp();
+    rtQuality(RT_TRANSPORT, RT_TRANSPORT_WHITTED); // what emits would ask for path tracing
+  }
   static Shader glowing(double radiance, double reflectance = 0) {
     Shader s("Diffuse");
     s.set("reflectance", {reflectance, reflectance, reflectance}).set("emission", {radiance, radiance, radiance});
