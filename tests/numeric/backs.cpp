@@ -122,5 +122,31 @@ TEST_F(Backs, anEyeWithinThePlaneOfAFace) {
   EXPECT_EQ(pixels[4 * (13 * 16 + 8) + 1], 1); // below: the ground
 }
 
+// VRML's solid bodies have culled backs; one of glass has an inside all the same.
+TEST_F(Backs, bodiesOfGlassKeepTheirBacks) {
+  Shader glass("Glass");
+  glass.set("absorption", {0.1, 0.5, 2}).set("index", {1.0});
+  const Shader behind = glowing({1, 1, 1});
+  std::vector<float> pictures[2];
+  for (const bool cull : {false, true}) {
+    const RTid object = rtBeginObject(0);
+    (cull ? rtEnable : rtDisable)(RT_CULL_FACE);
+    rtBindShader(glass);
+    rtBegin(RT_QUADS);
+    for (const float z : {0.5f, -0.5f}) // a slab of thickness 1, wider than the picture
+      for (int i = 0; i < 4; i++) rtVertex3f((i == 0 || i == 3) == (z > 0) ? -9.0f : 9.0f, i < 2 ? -9.0f : 9.0f, z);
+    rtEnd();
+    rtTranslatef(0, 0, -3);
+    rtScalef(4, 4, 1);
+    quad(behind, false);
+    rtEndObject();
+    const RTid instance = rtInstantiateObject(object);
+    pictures[cull] = picture(8);
+    rtDeleteInstance(instance);
+  }
+  EXPECT_EQ(pictures[0], pictures[1]);
+  expectClose(pictures[1][4 * 36 + 1], std::exp(-0.5), 1e-2); // nearly head on, and the ray ends beyond the slab
+}
+
 } // namespace
 } // namespace numeric

@@ -110,10 +110,10 @@ def test_a_bad_plug_in_is_named(vv):
 def test_transport_in_the_statistics(wall, name):
     done = wall("wall.wrl", "-o", "x.png", "--stats", "-", "--transport", name, "--depth", "3", *SMALL)
     transport = json.loads(done.text)["transport"]
-    assert transport["chosen"] in (name, "auto") and transport["claim"]
+    assert transport["chosen"] == name and transport["claim"] and transport["reason"]
     explained = json.loads(wall("wall.wrl", "--explain", "--json", "--transport", name).text)
-    assert explained["transport"]["claim"] and explained["objects"]
-    assert wall("wall.wrl", "--explain", "--transport", name).text.startswith("transport ")
+    assert explained["transport"]["chosen"] == name and explained["objects"]
+    assert wall("wall.wrl", "--explain", "--transport", name).text.startswith("transport " + name)
 
 
 def test_a_clamp_is_part_of_the_claim(wall):

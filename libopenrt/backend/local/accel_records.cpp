@@ -41,8 +41,9 @@ Record AccelBuilder::recordOf(const Inherited& path, const Geometry& g, const Ma
   Record r;
   r.primitive = g.primitive;
   r.primitives = uint32_t(g.primitives());
-  r.cull = g.cull;
   r.shader = in_->shaders.slotOf(path.shader ? path.shader : g.shader);
+  // A body that light passes through has an inside, whatever its maker thought of its backs.
+  r.cull = g.cull && !in_->shaders[r.shader].shaderClass->medium;
   r.bucket = bucketOf(r.shader, path.lightSet);
   r.name = g.name ? g.name : path.name, r.instance = path.instance, r.userData = path.userData;
   r.indices = g.indices ? g.indices->as<uint32_t>() : nullptr;
