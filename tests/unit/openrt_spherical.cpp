@@ -1,0 +1,212 @@
+// Directions spread over triangles and ellipsoids: solid angles against closed forms, even spread (chi-square), densities that
+// integrate to one, hard cases.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "render/sampler.h"
+#include "render/spherical.h"
+
+using namespace openrt;
+
+namespace {
+
+constexpr float origin[3] = {0, 0, 0};
+
+struct Corners {
+  float at[3][3];
+};
+const Corners tilted{{{1, 0, 1}, {0, 1, 1}, {-1, -1, 1}}};
+const Corners octant{{{1, 0, 0}, {0, 2, 0}, {0, 0, 3}}};
+const Corners half{{{100, 0, 1e-6f}, {-100, 100, 1e-6f}, {-100, -100, 1e-6f}}};
+const Corners sliver{{{-5, 0, 1}, {5, 0, 1}, {0, 1e-4f, 1}}};
+const Corners small{{{1e-3f, 0, 10}, {0, 1e-3f, 10}, {-1e-3f, -1e-3f, 10}}};
+
+// Projects a direction to the triangle's plane: its barycentric coordinates.
+void barycentric(const Corners& t, const double d[3], double w[3]) {
+  double m[3][3];
+  for (int c = 0; c < 3; c++)
+    for (int k = 0; k < 3; k++) m[k][c] = t.at[c][k];
+  const auto det = [](double a[3][3]) {
+    return a[0][0] * (a[1][1] * a[2][2] - a[1][2] * a[2][1]) - a[0][1] * (a[1][0] * a[2][2] - a[1][2] * a[2][0]) +
+           a[0][2] * (a[1][0] * a[2][1] - a[1][1] * a[2][0]);
+  };
+  double sum = 0;
+  for (int c = 0; c < 3; c++) {
+    double n[3][3];
+    for (int i = 0; i < 3; i++)
+      for (int j = 0; j < 3; j++) n[i][j] = j == c ? d[i] : m[i][j];
+    sum += w[c] = det(n) / det(m);
+  }
+  for (int c = 0; c < 3; c++) w[c] /= sum;
+}
+
+// Chi-square of counts against expectations; few expected are left out. 4 sigma of the statistic.
+void expectEven(const std::vector<double>& got, const std::vector<double>& expected) {
+  double statistic = 0, cells = 0;
+  for (size_t i = 0; i < got.size(); i++) {
+    if (expected[i] < 5) continue;
+    statistic += (got[i] - expected[i]) * (got[i] - expected[i]) / expected[i];
+    cells++;
+  }
+  ASSERT_GT(cells, 8);
+  EXPECT_LT(statistic, cells + 4 * std::sqrt(2 * cells));
+}
+
+// Counts in 6 x 6 bands of two barycentric coordinates, against the density integrated by a fine grid on the plane.
+void spread(const Corners& t) {
+  const SphericalTriangle s(t.at, origin);
+  constexpr int bands = 6, samples = 40000, fine = 240;
+  std::vector<double> got(bands * bands), expected(bands * bands);
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> unit(0, 1);
+  for (int i = 0; i < samples; i++) {
+    double d[3], distance, w[3];
+    ASSERT_TRUE(s.sample(unit(random), unit(random), d, distance));
+    ASSERT_NEAR(d[0] * d[0] + d[1] * d[1] + d[2] * d[2], 1, 1e-12);
+    barycentric(t, d, w);
+    for (double x : w) ASSERT_GT(x, -1e-6);
+    for (int k = 0; k < 3; k++) {
+      const double place = w[0] * t.at[0][k] + w[1] * t.at[1][k] + w[2] * t.at[2][k];
+      ASSERT_NEAR(d[k] * distance, place, 1e-6 * distance);
+    }
+    const int a = std::min(bands - 1, int(std::max(0.0, w[0]) * bands)),
+              b = std::min(bands - 1, int(std::max(0.0, w[1]) * bands));
+    got[size_t(a * bands + b)]++;
+  }
+  double total = 0;
+  for (int i = 0; i < fine; i++)
+    for (int j = 0; i + j < fine; j++)
+      for (int up = 0; up < (i + j + 1 < fine ? 2 : 1); up++) {
+        const double w[2] = {(i + (up ? 2 : 1) / 3.0) / fine, (j + (up ? 2 : 1) / 3.0) / fine};
+        double p[3], square = 0;
+        for (int k = 0; k < 3; k++) {
+          p[k] = w[0] * t.at[0][k] + w[1] * t.at[1][k] + (1 - w[0] - w[1]) * t.at[2][k];
+          square += p[k] * p[k];
+        }
+        const double weight = 1 / (square * std::sqrt(square)); // the plane's distance and the area are the same everywhere
+        total += weight;
+        const int a = std::min(bands - 1, int(w[0] * bands)), b = std::min(bands - 1, int(w[1] * bands));
+        expected[size_t(a * bands + b)] += weight;
+      }
+  for (double& e : expected) e *= samples / total;
+  expectEven(got, expected);
+}
+
+TEST(Spherical, SolidAnglesHaveTheirClosedForms) {
+  EXPECT_NEAR(SphericalTriangle(octant.at, origin).solidAngle(), M_PI / 2, 1e-14);
+  EXPECT_NEAR(SphericalTriangle(half.at, origin).solidAngle(), 2 * M_PI, 1e-6);
+  for (const double s : {1e-3, 1e-5, 1e-7, 1e-9}) { // far away: area over the square of the distance
+    const float e = float(s);
+    const float corner[3][3] = {{-e, -e, 1}, {2 * e, -e, 1}, {-e, 2 * e, 1}};
+    const double area = 4.5 * double(e) * double(e);
+    EXPECT_NEAR(SphericalTriangle(corner, origin).solidAngle() / area, 1, 4 * s * s + 1e-12) << s;
+  }
+  // Eight octants of a cube's halves make the sphere, whatever the point in it.
+  const float v[8][3] = {{-1, -1, -1}, {1, -1, -1}, {-1, 1, -1}, {1, 1, -1}, {-1, -1, 1}, {1, -1, 1}, {-1, 1, 1}, {1, 1, 1}};
+  const int face[6][4] = {{0, 1, 3, 2}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 3, 7, 5}};
+  const float eye[3] = {.3f, -.9999f, .7f};
+  double sum = 0;
+  for (const auto& f : face)
+    for (int part = 0; part < 2; part++) {
+      float corner[3][3];
+      for (int c = 0; c < 3; c++)
+        for (int k = 0; k < 3; k++) corner[c][k] = v[f[c == 0 ? 0 : c + part]][k];
+      sum += SphericalTriangle(corner, eye).solidAngle();
+    }
+  EXPECT_NEAR(sum, 4 * M_PI, 1e-12);
+}
+
+TEST(Spherical, R11NothingOfTrianglesSeenEdgeOnOrWithoutArea) {
+  const float edgeOn[3][3] = {{1, 0, 0}, {2, 0, 0}, {1, 1, 0}}, line[3][3] = {{0, 0, 1}, {1, 1, 2}, {2, 2, 3}};
+  const float atCorner[3][3] = {{0, 0, 0}, {1, 0, 1}, {0, 1, 1}}, point[3][3] = {{1, 1, 1}, {1, 1, 1}, {1, 1, 1}};
+  for (const auto* corner : {edgeOn, line, atCorner, point}) {
+    const SphericalTriangle t(corner, origin);
+    double d[3], distance;
+    EXPECT_EQ(t.solidAngle(), 0);
+    EXPECT_FALSE(t.sample(.3, .7, d, distance));
+    EXPECT_EQ(t.density(corner == line ? (const double[3]){0, 0, 1} : (const double[3]){1, 0, 0}), 0);
+  }
+}
+
+TEST(Spherical, TrianglesAreCoveredEvenly) {
+  for (const Corners* t : {&tilted, &octant, &sliver, &small}) spread(*t);
+}
+
+TEST(Spherical, AHemisphereIsCoveredEvenly) { // R10: the point lies just below the light
+  const SphericalTriangle t(half.at, origin);
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> unit(0, 1);
+  std::vector<double> got(16 * 4), expected(16 * 4, 50000 / 64.0);
+  for (int i = 0; i < 50000; i++) {
+    double d[3], distance;
+    if (!t.sample(unit(random), unit(random), d, distance)) continue;
+    const int ring = std::min(3, int(d[2] * 4)), turn = int((std::atan2(d[1], d[0]) / (2 * M_PI) + .5) * 16) % 16;
+    got[size_t(16 * ring + turn)]++;
+  }
+  expectEven(got, expected);
+}
+
+TEST(Spherical, TinyTrianglesAreSpreadByArea) {
+  const float e = 1e-6f, corner[3][3] = {{e, 0, 1}, {0, e, 1}, {-e, -e, 1}};
+  const SphericalTriangle t(corner, origin);
+  ASSERT_TRUE(t.flat());
+  double d[3], distance;
+  ASSERT_TRUE(t.sample(.5, .5, d, distance));
+  EXPECT_NEAR(t.density(d) * t.solidAngle(), 1, 1e-5);
+}
+
+// Both ways of seeing a direction agree with the share of directions that meet the ellipsoid.
+void ellipsoid(const float toRender[3][4], const float eye[3], double expectedSolidAngle) {
+  float toLocal[3][4];
+  for (int i = 0; i < 3; i++) { // diagonal maps
+    for (int k = 0; k < 3; k++) toLocal[i][k] = i == k ? 1 / toRender[i][i] : 0;
+    toLocal[i][3] = -toRender[i][3] / toRender[i][i];
+  }
+  const SphericalEllipsoid s(toLocal, toRender, eye, nullptr);
+  double sum = 0, longest = 0;
+  const int n = 1 << 14;
+  for (int i = 0; i < n; i++) {
+    float u, v;
+    PairSampler(1, 2, 3)(uint32_t(i), u, v);
+    double d[3], distance;
+    if (!s.sample(u, v, d, distance)) continue;
+    double onSphere = 0;
+    for (int k = 0; k < 3; k++) {
+      const double x = (eye[k] + distance * d[k] - toRender[k][3]) / toRender[k][k];
+      onSphere += x * x;
+    }
+    longest = std::max(longest, std::fabs(onSphere - 1));
+    sum += 1 / s.density(d) / n; // estimates the solid angle
+  }
+  EXPECT_LT(longest, 1e-3);
+  EXPECT_NEAR(sum / expectedSolidAngle, 1, 1e-3);
+}
+
+TEST(Spherical, SpheresAndEllipsoidsAreCoveredEvenly) {
+  const float unit[3][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
+  const float at3[3] = {0, 0, 3}, inside[3] = {.2f, .1f, .9f}, far[3] = {0, 0, 1e4f};
+  ellipsoid(unit, at3, 2 * M_PI * (1 - std::sqrt(8.0) / 3));
+  ellipsoid(unit, inside, 4 * M_PI);
+  ellipsoid(unit, far, M_PI * 1e-8);
+  // A disc-like ellipsoid seen along its short axis, from far away: the solid angle of a disc with the tangent cone's radius.
+  const float flat[3][4] = {{2, 0, 0, 0}, {0, 2, 0, 0}, {0, 0, .5f, 0}}, above[3] = {0, 0, 3};
+  const double tangent = 2 / std::sqrt(9 - .25); // of the cone's half angle: r / sqrt(h^2 - c^2)
+  ellipsoid(flat, above, 2 * M_PI * (1 - 1 / std::sqrt(1 + tangent * tangent)));
+}
+
+TEST(Spherical, InsideASphereOnlyTheSideOfTheNormalIsSampled) {
+  const float unit[3][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}, eye[3] = {.5f, 0, 0}, normal[3] = {0, 1, 0};
+  const SphericalEllipsoid s(unit, unit, eye, normal);
+  EXPECT_TRUE(s.inside());
+  for (int i = 0; i < 100; i++) {
+    double d[3], distance;
+    ASSERT_TRUE(s.sample(i / 100.0, std::fmod(i * .37, 1), d, distance));
+    EXPECT_GE(d[1], 0);
+    EXPECT_NEAR(s.density(d), 1 / (2 * M_PI), 1e-15);
+  }
+}
+
+} // namespace
