@@ -68,7 +68,7 @@ void TileRenderer::addEmitters(const RtsBatch& batch, const Points& points, cons
     sampleAt(ray.path, pairOf(ray, Draw::emitter), pick, spare);
     sampleAt(ray.path, pairOf(ray, Draw::place), u, v);
     const Receiver from = receiverOf(points, i, transmitsAt(batch, i));
-    const Sight sight = emitters.choose(from, pick, u, v);
+    const Sight sight = emitters.choose(from, double(pick) + double(spare) * 0x1p-24, u, v);
     if (!(sight.density > 0)) continue;
     float origin[3], behind[3], towards = 0;
     for (int k = 0; k < 3; k++) {

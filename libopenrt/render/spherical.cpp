@@ -96,8 +96,19 @@ double SphericalTriangle::density(const double direction[3]) const {
   return 2 * distance * distance / along; // square of the distance over the projected area
 }
 
-SphericalEllipsoid::SphericalEllipsoid(const float toLocal[3][4], const float toRender[3][4], const float eye[3],
-                                       const float* normal) {
+// The direction's distance from the planes of the edges and the eye, against the rounding of a float direction and of the
+// kernel's corners.
+bool SphericalTriangle::atRim(const double direction[3]) const {
+  constexpr double rounding = 0x1p-20;
+  for (int c = 0; c < 3; c++) {
+    double n[3];
+    cross(unit_[c], unit_[(c + 1) % 3], n);
+    if (std::fabs(dot(n, direction)) <= rounding * std::sqrt(dot(n, n))) return true;
+  }
+  return false;
+}
+
+SphericalEllipsoid::SphericalEllipsoid(const float toLocal[3][4], const float toRender[3][4], const float eye[3]) {
   for (int i = 0; i < 3; i++) {
     eye_[i] = toLocal[i][3];
     for (int k = 0; k < 3; k++) {
@@ -110,36 +121,30 @@ SphericalEllipsoid::SphericalEllipsoid(const float toLocal[3][4], const float to
   determinant_ = std::fabs(dot(toLocal_[0], c));
   const double square = dot(eye_, eye_);
   inside_ = !(square > 1);
-  cap_ = inside_ ? 2 : 1 / (square * (1 + std::sqrt(1 - 1 / square)));
-  if (normal && (normal[0] != 0 || normal[1] != 0 || normal[2] != 0)) sided_ = true;
-  for (int k = 0; k < 3; k++) normal_[k] = sided_ ? double(normal[k]) : k == 2;
+  if (!inside_) cap_ = 1 / (square * (1 + std::sqrt(1 - 1 / square)));
 }
 
 // With the density of directions in the sphere's frame: a linear map M takes solid angle there to its |det M| / |M d|^3 here.
 bool SphericalEllipsoid::sample(double u, double v, double direction[3], double& distance) const {
+  if (inside_) return false;
+  const double length = std::sqrt(dot(eye_, eye_)), axis[3] = {-eye_[0] / length, -eye_[1] / length, -eye_[2] / length};
   double local[3];
-  if (inside_) {
-    aboutAxis(normal_, sided_ ? u : 2 * u, v, direction);
-    for (int i = 0; i < 3; i++) local[i] = dot(toLocal_[i], direction);
-  } else {
-    const double length = std::sqrt(dot(eye_, eye_)), axis[3] = {-eye_[0] / length, -eye_[1] / length, -eye_[2] / length};
-    aboutAxis(axis, u * cap_, v, local);
-    for (int i = 0; i < 3; i++) direction[i] = dot(toRender_[i], local);
-    const double scale = std::sqrt(dot(direction, direction));
-    if (!normalize(direction)) return false;
-    for (double& l : local) l /= scale;
-  }
-  // Of the two places along the line the nearer one in front.
+  aboutAxis(axis, u * cap_, v, local);
+  for (int i = 0; i < 3; i++) direction[i] = dot(toRender_[i], local);
+  const double scale = std::sqrt(dot(direction, direction));
+  if (!normalize(direction)) return false;
+  for (double& l : local) l /= scale;
+  // Of the two places along the line the nearer one.
   const double a = dot(local, local), b = dot(eye_, local), c = dot(eye_, eye_) - 1;
   double offset[3]; // from the centre to the line: keeps its digits where the sphere is small and far
   for (int k = 0; k < 3; k++) offset[k] = eye_[k] - b / a * local[k];
   const double root = std::sqrt(std::max(0.0, (1 - dot(offset, offset)) * a));
-  distance = inside_ ? (root - b) / a : c / (root - b);
+  distance = c / (root - b);
   return distance > 0 && std::isfinite(distance);
 }
 
 double SphericalEllipsoid::density(const double direction[3]) const {
-  if (inside_) return sided_ ? 1 / (2 * M_PI) : 1 / (4 * M_PI);
+  if (inside_) return 0;
   double local[3];
   for (int i = 0; i < 3; i++) local[i] = dot(toLocal_[i], direction);
   const double square = dot(local, local);

@@ -23,6 +23,9 @@ class SphericalTriangle {
   bool sample(double u, double v, double direction[3], double& distance) const;
   // By solid angle.
   double density(const double direction[3]) const;
+  bool front() const { return height_ < 0; } // the eye is on the side from which the corners turn counter-clockwise
+  // Whether a ray along the direction, rounded to float, may pass an edge.
+  bool atRim(const double direction[3]) const;
 
  private:
   double distanceAlong(const double direction[3]) const;
@@ -31,20 +34,20 @@ class SphericalTriangle {
   double solidAngle_ = 0, height_ = 0;           // height_: corner_ . normal_, twice the area's times the distance of the plane
 };
 
-// The unit sphere under an affine map seen from a point: from outside the cone that touches it, from inside everything, or all
-// on one side of a normal.
+// The unit sphere under an affine map seen from outside: the cone that touches it. From inside there is nothing to choose: every
+// direction meets it, and a surface's own directions are the better ones.
 class SphericalEllipsoid {
  public:
-  // toLocal: rows of the map into the frame in which it is the unit sphere. normal: null, or light from its side only counts.
-  SphericalEllipsoid(const float toLocal[3][4], const float toRender[3][4], const float eye[3], const float* normal);
+  // toLocal: rows of the map into the frame in which it is the unit sphere; toRender: of its inverse.
+  SphericalEllipsoid(const float toLocal[3][4], const float toRender[3][4], const float eye[3]);
+  bool inside() const { return inside_; }
   bool sample(double u, double v, double direction[3], double& distance) const;
   double density(const double direction[3]) const; // by solid angle, of a direction that meets it
-  bool inside() const { return inside_; }
 
  private:
   double toLocal_[3][3], toRender_[3][3], determinant_; // of toLocal
-  double eye_[3], normal_[3], cap_;                     // eye_ in the sphere's frame; cap_: 1 - cosine of the cone
-  bool inside_, sided_ = false;
+  double eye_[3], cap_ = 0;                             // eye_ in the sphere's frame; cap_: 1 - cosine of the cone
+  bool inside_;
 };
 
 } // namespace openrt

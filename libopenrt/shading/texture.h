@@ -16,6 +16,7 @@ class Texture {
 
   // 1 grey, 2 grey and alpha, 3 rgb, 4 rgba; 0: nothing to sample.
   uint32_t components() const { return components_; }
+  uint32_t width() const { return uint32_t(axis_[0].size); }
 
   // rgba at n places; grey is replicated, missing alpha is 1. Coordinates that are not finite count as 0.
   void sample(uint32_t n, const float* const uv[2], float* const rgba[4]) const { sample_(*this, n, uv, rgba); }

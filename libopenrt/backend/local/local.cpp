@@ -53,7 +53,7 @@ void LocalBackend::prepare() {
   TransportChoice choice = chooseTransport(*next);
   next->frame.transport = uint8_t(choice.transport);
   transportReason_ = std::move(choice.reason);
-  next->emitters.build(*next);
+  next->emitters.build(*next, snapshot_.get(), samePlaces_);
   snapshot_ = std::move(next);
   changes_ = {};
 }
@@ -92,7 +92,9 @@ void LocalBackend::bringUpToDate(RenderScene& next) {
   makeCamera(next, origin);
   const PixelFootprint pixel = footprint(next);
   const BuildInput input{scene_, flat_, *next.shaders, origin, builder_.survey.scale(origin), pixel};
-  if (layOut || !AccelBuilder::standsAt(*accel_, origin, input.scale))
+  const bool builds = layOut || !AccelBuilder::standsAt(*accel_, origin, input.scale);
+  samePlaces_ = !builds && moved.empty() && c.redefined.empty();
+  if (builds)
     accel_ = builder_.build(input);
   else
     builder_.update(*accel_, input, moved, c.redefined, pixel != footprint_);

@@ -44,9 +44,9 @@ class LocalBackend final : public Backend {
   std::shared_ptr<Accel> accel_;
   Flattened flat_;
   PixelFootprint footprint_;
-  bool scopedLights_ = false;
-  std::string transportReason_; // of the snapshot
-  mutable std::mutex mutex_; // frame_ as seen by cancel(), progress() and snapshot()
+  bool scopedLights_ = false, samePlaces_ = false; // samePlaces_: of the records, as in the last snapshot
+  std::string transportReason_;                    // of the snapshot
+  mutable std::mutex mutex_;                       // frame_ as seen by cancel(), progress() and snapshot()
   std::shared_ptr<Frame> frame_, finished_;
   double commitSeconds_ = 0, buildSeconds_ = 0;
 };
