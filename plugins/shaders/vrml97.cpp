@@ -5,9 +5,9 @@
 namespace {
 
 const RtsClass* const classes[] = {
-    &vrml97::surfaceClass,     &vrml97::directionalLightClass,  &vrml97::pointLightClass,         &vrml97::spotLightClass,
-    &vrml97::environmentClass, &vrml97::perspectiveCameraClass, &vrml97::orthographicCameraClass, &vrml97::thinLensClass,
-    &vrml97::panoramaClass,
+    &vrml97::surfaceClass,     &vrml97::directionalLightClass,   &vrml97::pointLightClass,         &vrml97::spotLightClass,
+    &vrml97::environmentClass, &vrml97::perspectiveCameraClass,  &vrml97::orthographicCameraClass, &vrml97::thinLensClass,
+    &vrml97::panoramaClass,    &vrml97::globalIlluminationClass,
 };
 
 } // namespace

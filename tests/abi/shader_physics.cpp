@@ -56,6 +56,12 @@ const std::vector<Case> cases = {
     {"Checker", "Checker", {}},
     {"CheckerCoated", "Checker", {{"coating", {1.5f}}}},
     {"Glass", "Glass", {}, true},
+    {"Vrml97", "VRML97", {}},
+    {"Vrml97Shiny", "VRML97", {{"specularColor", {1, .5f, .2f}}, {"shininess", {.5f}}}},
+    {"Vrml97Overfull", "VRML97", {{"diffuseColor", {1, 1, 1}}, {"specularColor", {5, 5, 5}}, {"shininess", {.05f}}}},
+    {"Vrml97Clear", "VRML97", {{"diffuseColor", {1, 1, 1}}, {"transparency", {.3f}}}, true},
+    {"Vrml97Unlit", "VRML97", {{"lit", {0}}}},
+    {"GlobalIllumination", "GlobalIllumination", {{"specularColor", {.5f, .5f, .5f}}, {"transparency", {.5f}}}},
     {"RoughGlass", "RoughGlass", {{"roughness", {.05f}}}},
     {"RoughGlass40", "RoughGlass", {{"roughness", {.4f}}}},
     {"RoughGlass100", "RoughGlass", {{"roughness", {1}}}},
@@ -222,6 +228,37 @@ TEST_P(ShaderPhysics, EverythingIsFinite) {
             if (s.density > 0) { EXPECT_TRUE(finite(s.quotient)) << u << " " << v; }
           }
       }
+}
+
+// ISO/IEC 14772-1's highlight is kept as it looks: with the light in the mirror direction both give OS, here times N.L.
+TEST(Vrml97Lobes, AHighlightIsAsBrightAsTheStandardSays) {
+  for (const float shininess : {0.f, .02f, .2f, 1.f}) {
+    SurfaceAtOneHit surface("VRML97",
+                            {{"diffuseColor", {0, 0, 0}}, {"specularColor", {.4f, .2f, .1f}}, {"shininess", {shininess}}});
+    for (const float angle : {0.f, 30.f, 60.f}) {
+      rts::Color sum;
+      for (const LobeAtHit& lobe : surface.lobes(towards(angle)))
+        if (lobe.scatters()) sum = sum + lobe.weight() * lobe.value(towards(-angle)) * rts::pi; // a light's colour is radiance
+      const float cosine = std::cos(angle * rts::pi / 180);
+      EXPECT_NEAR(sum.r, .4f * cosine, 1e-4f) << shininess << " at " << angle;
+      EXPECT_NEAR(sum.b, .1f * cosine, 1e-4f) << shininess << " at " << angle;
+    }
+  }
+}
+
+TEST(Vrml97Lobes, EmissionAndOpacity) {
+  SurfaceAtOneHit surface("GlobalIllumination", {{"emissiveColor", {2, 1, 0}}, {"transparency", {.25f}}});
+  const std::vector<LobeAtHit> lobes = surface.lobes({0, 0, 1});
+  EXPECT_FLOAT_EQ(surface.emission().r, 1.5f);
+  EXPECT_FLOAT_EQ(surface.emission().g, .75f);
+  ASSERT_EQ(lobes.size(), 2u);
+  EXPECT_EQ(lobes[0].kind(), RTS_LOBE_DIFFUSE);
+  EXPECT_FLOAT_EQ(lobes[0].weight().r, .6f);
+  EXPECT_EQ(lobes[1].kind(), RTS_LOBE_TRANSPARENT);
+  EXPECT_FLOAT_EQ(lobes[1].weight().r, .25f);
+  const RtsClass& c = surface.shaderClass();
+  EXPECT_EQ(c.traits(&surface.host(), surface.params()), unsigned(RTS_GLOBAL | RTS_TRANSPARENT | RTS_EMISSIVE));
+  EXPECT_EQ(c.shade, nullptr);
 }
 
 INSTANTIATE_TEST_SUITE_P(Stock, ShaderPhysics, testing::ValuesIn(cases), [](const auto& info) { return info.param.name; });
