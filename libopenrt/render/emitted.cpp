@@ -5,6 +5,7 @@
 
 #include "render/paths.h"
 #include "render/scatter.h"
+#include "render/surfaces.h"
 
 namespace openrt {
 
@@ -90,7 +91,7 @@ void TileRenderer::addEmitters(const RtsBatch& batch, const Points& points, cons
   RayHits found;
   found.allocate(arena_, n);
   scene_.kernel->intersect(rays, maskAll, Coherence::incoherent, found);
-  lookThroughBacks(rays, found);
+  lookThroughBacks(scene_, arena_, counters_, rays, found);
 
   const auto add = [&](uint32_t ray, const float light[3]) {
     const uint32_t i = hitOf[ray];

@@ -12,6 +12,7 @@
 #include "render/paths.h"
 #include "render/sampler.h"
 #include "render/shadows.h"
+#include "render/surfaces.h"
 #include "render/ways.h"
 
 namespace openrt {
@@ -28,12 +29,6 @@ const uint32_t* countTo(Arena& arena, uint32_t n) {
 }
 
 } // namespace
-
-// Boundaries of media at the hits of a batch.
-struct TileRenderer::Boundaries {
-  Crossing* crossing; // by hit
-  float (*eta)[3];    // index on the ray's side over that behind, by colour
-};
 
 // A light's colour is the radiance of a white Lambert surface that faces it (openrts.h), so pi of it arrive.
 void TileRenderer::addLights(RtsBatch& batch, const RtsHits& hits, float* const radiance[3]) {
@@ -75,29 +70,6 @@ void TileRenderer::addLights(RtsBatch& batch, const RtsHits& hits, float* const 
   }
 }
 
-// Where the batch's class has a medium: what lies on both sides of each hit. A boundary within a body of higher priority is
-// passed unseen.
-void TileRenderer::meetBoundaries(const Points& points, const uint32_t* order, Paths& paths, RtsBatch& batch, Boundaries& out) {
-  const RtsHits& hits = points.hits;
-  const std::span<const RtsMedium> media = scene_.shaders->media();
-  out.crossing = arena_.take<Crossing>(hits.count);
-  out.eta = arena_.take<float[3]>(hits.count);
-  for (uint32_t i = 0; i < hits.count; i++) {
-    const uint16_t medium = (*scene_.shaders)[scene_.records[points.record[i]].shader].medium;
-    RayState& ray = paths.state[order[i]];
-    Crossing& c = out.crossing[i] = {ray.media, 0, 0, true, false};
-    if (medium) c = cross(ray.media, medium, hits.flags[i] & RTS_HIT_BACK, media);
-    if (c.unknown) absorb(c.from, hits.segment[i], media, ray.throughput);
-    for (int k = 0; k < 3; k++) out.eta[i][k] = indexOf(c.from, k, media) / indexOf(c.to, k, media);
-    for (uint32_t l = 0; l < batch.lobeCount; l++) {
-      if (!c.seen)
-        for (auto* weight : batch.lobes[l].weight) weight[i] = 0;
-      if (batch.lobes[l].kind == RTS_LOBE_ROUGH_DIELECTRIC)
-        batch.lobes[l].parameter[0][i] = out.eta[i][ray.channel ? ray.channel - 1 : 1];
-    }
-  }
-}
-
 void TileRenderer::scatterRange(Paths& paths, const Points& points, const Bucket& bucket, const uint32_t* order) {
   const RtsHits& hits = points.hits;
   const uint32_t size = padded(hits.count);
@@ -111,7 +83,7 @@ void TileRenderer::scatterRange(Paths& paths, const Points& points, const Bucket
   batch.lightSet = bucket.lightSet;
   bucket.shaderClass->surface(&scene_.host, &batch, &hits, &surface);
   Boundaries boundaries{nullptr, nullptr};
-  if (bucket.shaderClass->medium) meetBoundaries(points, order, paths, batch, boundaries);
+  if (bucket.shaderClass->medium) meetBoundaries(batch, paths.state, boundaries);
   for (uint32_t i = 0; i < hits.count; i++) {
     const float share = boundaries.crossing && !boundaries.crossing[i].seen ? 0 : chanceMet(paths.state[order[i]], points, i);
     for (int k = 0; k < 3; k++) radiance[k][i] *= share;

@@ -7,6 +7,7 @@
 
 #include "render/paths.h"
 #include "render/sampler.h"
+#include "render/surfaces.h"
 
 namespace openrt {
 
@@ -159,11 +160,8 @@ void TileRenderer::loadRays(Paths& paths, size_t begin, uint32_t n) {
 void TileRenderer::traceWave(Paths& paths) {
   const Coherence coherence = level_ == 0 ? Coherence::coherent : Coherence::incoherent;
   scene_.kernel->intersect(paths.rays, maskAll, coherence, paths.hits);
-  lookThroughBacks(paths.rays, paths.hits);
-  if (!scene_.shaders->media().empty())
-    for (uint32_t i = 0; i < paths.rays.count; i++) // nothing is left of light that comes from infinity through what absorbs
-      absorb(mediumOf(paths.state[i].media, scene_.shaders->media()), std::min(paths.hits.t[i], 1e30f), scene_.shaders->media(),
-             paths.state[i].throughput);
+  lookThroughBacks(scene_, arena_, counters_, paths.rays, paths.hits);
+  absorbOnTheWay(scene_, paths.rays, paths.hits, paths.state);
   uint32_t misses = 0, mets = 0;
   for (uint32_t i = 0; i < paths.rays.count; i++)
     (paths.hits.record[i] == noHit ? paths.missed[misses++] : paths.met[mets++]) = i;
@@ -272,34 +270,6 @@ void TileRenderer::background(Paths& paths, const uint32_t* missed, uint32_t n) 
       weight += ray.throughput[k];
     }
     if (!ray.bent) paths.alpha[ray.path] += weight / 3 * rgba[3][i];
-  }
-}
-
-// Rays whose nearest hit is a back that is not there are traced again without such backs. From their origin: a face and a back
-// in the same place must not hide each other.
-void TileRenderer::lookThroughBacks(const Rays& rays, RayHits& hits) {
-  ArenaScope scope(arena_);
-  auto* lanes = arena_.take<uint32_t>(rays.count);
-  uint32_t n = 0;
-  for (uint32_t i = 0; i < rays.count; i++)
-    if (hits.record[i] != noHit && culled(scene_, rays, hits, i)) lanes[n++] = i;
-  if (n == 0) return;
-  Rays again;
-  again.allocate(arena_, n);
-  RayHits found;
-  found.allocate(arena_, n);
-  for (uint32_t i = 0; i < n; i++) {
-    const uint32_t lane = lanes[i];
-    for (int k = 0; k < 3; k++) again.org[k][i] = rays.org[k][lane], again.dir[k][i] = rays.dir[k][lane];
-    again.tnear[i] = rays.tnear[lane], again.tfar[i] = rays.tfar[lane];
-  }
-  counters_.secondary += n;
-  scene_.kernel->intersectFronts(again, maskAll, found);
-  for (uint32_t i = 0; i < n; i++) {
-    const uint32_t lane = lanes[i];
-    hits.t[lane] = found.t[i], hits.u[lane] = found.u[i], hits.v[lane] = found.v[i];
-    for (int k = 0; k < 3; k++) hits.ng[k][lane] = found.ng[k][i];
-    hits.record[lane] = found.record[i], hits.primitive[lane] = found.primitive[i];
   }
 }
 

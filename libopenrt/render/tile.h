@@ -16,6 +16,8 @@ namespace openrt {
 // Edge of the square tiles for a number of samples a pixel: a few thousand paths are in flight.
 uint32_t tileEdge(uint32_t samplesPerPixel);
 
+struct Boundaries;
+
 class TileRenderer {
  public:
   // filmLock: held while pixels are stored, if other threads may read them meanwhile; else null
@@ -66,8 +68,6 @@ class TileRenderer {
     uint32_t branch;
     MediaStack media;
   };
-  struct Boundaries;
-  void meetBoundaries(const Points& points, const uint32_t* order, Paths& paths, RtsBatch& batch, Boundaries& out);
   const LobeSamples* sampleLobe(const RtsBatch& batch, uint32_t l, const RtsHits& hits, const uint32_t* order,
                                 const Paths& paths);
   void passOn(const Points& points, uint32_t i, uint32_t lane, const Crossing& crossing, Paths& paths);
@@ -87,7 +87,6 @@ class TileRenderer {
                  uint32_t n, float* response[3]);
   void addEmitters(const RtsBatch& batch, const Points& points, const uint32_t* order, const Paths& paths, float* const chance[],
                    const Crossing* crossing, float* const radiance[3]);
-  void lookThroughBacks(const Rays& rays, RayHits& hits);
   void attenuate(const Points& points, const Paths& paths, const uint32_t* order, float* fog[4]);
   void addToPixels(const Paths& paths, uint32_t firstSample, uint32_t samples);
 

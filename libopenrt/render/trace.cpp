@@ -7,6 +7,7 @@
 #include "render/paths.h"
 #include "render/sampler.h"
 #include "render/shadows.h"
+#include "render/surfaces.h"
 
 namespace openrt {
 namespace {
@@ -111,7 +112,7 @@ void TileRenderer::findHit(const RtsBatch& batch, const RtsRequest& request, Rts
   found.allocate(arena_, rays.count);
   counters_.secondary += rays.count;
   scene_.kernel->intersect(rays, maskAll, Coherence::incoherent, found);
-  lookThroughBacks(rays, found);
+  lookThroughBacks(scene_, arena_, counters_, rays, found);
   auto* met = arena_.take<uint32_t>(rays.count);
   uint32_t n = 0;
   for (uint32_t i = 0; i < rays.count; i++)
