@@ -32,7 +32,16 @@ void draw(Context& c, RTenum mode, size_t first, size_t count, const uint32_t* i
                 advanced(c.vertexArray, first),
                 advanced(c.normalArray, first),
                 advanced(c.texCoordArray, first),
-                advanced(c.colorArray, first)};
+                advanced(c.colorArray, first),
+                {}};
+  if (c.boundShader != 0 && !c.parameterArrays.empty()) {
+    const RTid shaderClass = c.scene.shader(c.boundShader).shaderClass;
+    for (const ParameterArray& array : c.parameterArrays) {
+      if (array.shaderClass != shaderClass) continue;
+      call.parameters.push_back(array.from);
+      if (array.from.parameter.perVertex) call.parameters.back().source = advanced(array.from.source, first);
+    }
+  }
   definition.builder.draw(call, c.latch(primitiveOf(mode)));
 }
 

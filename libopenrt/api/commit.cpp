@@ -81,6 +81,11 @@ class CommitMaker {
   }
 
   void addShaders() {
+    if (scene_.generationDirty) {
+      edit::ReloadShadersT e;
+      e.generation = scene_.shaderGeneration;
+      add(e);
+    }
     forEachDirty(scene_.classes, [&](RTid id, ShaderClassState& state) {
       edit::ShaderClassT e;
       e.id = id, e.name = state.name, e.library = state.library;
@@ -110,6 +115,13 @@ class CommitMaker {
     e->normals = addArray(built.normals);
     e->texCoords = addArray(built.texCoords);
     e->colors = addArray(built.colors);
+    for (size_t i = 0; e->shader != 0 && i < built.parameters.size(); i++) {
+      auto parameter = std::make_unique<edit::GeometryParameterT>();
+      parameter->index = built.parameters[i].index;
+      parameter->perVertex = built.parameters[i].perVertex;
+      parameter->values = addArray(built.parameters[i].values);
+      e->parameters.push_back(std::move(parameter));
+    }
     return e;
   }
 
@@ -182,6 +194,7 @@ class CommitMaker {
     settleTable(scene_.shaders, [](ShaderState& s) { s.parameters.clear(); });
     settleTable(scene_.textures, [](TextureState& s) { s.texels.reset(); });
     settleTable(scene_.lights, [](LightState&) {});
+    scene_.generationDirty = false;
     scene_.camera.dirty = scene_.environment.dirty = scene_.defaultShader.dirty = scene_.transport.dirty = scene_.frameDirty =
         false;
   }

@@ -87,6 +87,16 @@ const RtsClass& Context::findClass(std::string_view className, std::string_view 
   }
 }
 
+int Context::reloadShaders(const char* function) {
+  std::vector<std::string> problems;
+  const int reloaded = registry_->reload(problems);
+  if (reloaded > 0)
+    scene.shadersReloaded([&](const std::string& name, const std::string& library) { return &registry_->find(name, library); });
+  parameterArrays.clear(); // they name the parameters of the former tables
+  for (const std::string& problem : problems) errors.record(RT_PLUGIN_ERROR, function, problem.c_str());
+  return reloaded;
+}
+
 RTid Context::stockCamera(const char* className, RTid& cached) {
   if (cached && scene.shaders.find(cached)) return cached;
   const RtsClass& table = findClass(className, "");

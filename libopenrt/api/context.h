@@ -30,6 +30,12 @@ class LogSink {
   void* user_ = nullptr;
 };
 
+// What rtParameterPointer said: values for geometry whose shader is of a class.
+struct ParameterArray {
+  RTid shaderClass = 0;
+  ParameterSource from;
+};
+
 // The object being defined.
 struct Definition {
   RTid object = 0;
@@ -63,6 +69,7 @@ class Context {
   bool cull = false, clockwise = false;
   VertexState attributes; // outside definitions, forgotten by rtBeginObject
   AttributeSource vertexArray, normalArray, texCoordArray, colorArray;
+  std::vector<ParameterArray> parameterArrays;
 
   Definition& openDefinition();
   VertexState& currentAttributes() { return definition ? definition->builder.current : attributes; }
@@ -74,6 +81,9 @@ class Context {
   // The stock camera class's shader, made when it is first asked for.
   RTid stockCamera(const char* className, RTid& cached);
   const RtsClass& findClass(std::string_view className, std::string_view library) const;
+  // Loads the libraries anew whose files have changed; returns how many. A failure is recorded and does not keep the others from
+  // it.
+  int reloadShaders(const char* function);
 
   // Frames.
   void swapBuffers();

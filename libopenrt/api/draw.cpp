@@ -4,6 +4,7 @@
 
 #include "api/object_builder.h"
 #include "api/transform.h"
+#include "shading/parameters.h"
 
 namespace openrt {
 namespace {
@@ -112,22 +113,43 @@ ArrayPtr widePoints(const DrawCall& call, Matrix4d& matrix) {
   return array;
 }
 
-ArrayPtr collectIndices(const DrawCall& call, const float* points, uint64_t& degenerate) {
+// ordinals: where wanted, the number of each primitive that is kept among all of the call.
+ArrayPtr collectIndices(const DrawCall& call, const float* points, uint64_t& degenerate, std::vector<uint32_t>* ordinals) {
   const size_t room = indexCount(call.mode, call.count);
   auto array = std::make_shared<Array>(room * sizeof(uint32_t));
   uint32_t* out = reinterpret_cast<uint32_t*>(array->data());
   const uint32_t* end = nullptr;
+  const auto kept = [ordinals](size_t ordinal) {
+    if (ordinals) ordinals->push_back(static_cast<uint32_t>(ordinal));
+  };
   if (call.indices)
     end = writeIndices(
-        call.mode, call.count, points, [&](size_t i) { return call.indices[i]; }, out, degenerate);
+        call.mode, call.count, points, [&](size_t i) { return call.indices[i]; }, out, degenerate, kept);
   else
     end = writeIndices(
-        call.mode, call.count, points, [](size_t i) { return static_cast<uint32_t>(i); }, out, degenerate);
+        call.mode, call.count, points, [](size_t i) { return static_cast<uint32_t>(i); }, out, degenerate, kept);
   const size_t written = static_cast<size_t>(end - out);
   if (written == room) return array;
   auto fitting = std::make_shared<Array>(written * sizeof(uint32_t));
   std::memcpy(fitting->data(), out, fitting->size());
   return fitting;
+}
+
+// Values of a shader parameter: those that something uses must be such as the parameter takes, the others become its default.
+BuiltParameter ownValues(const DrawCall& call, const ParameterSource& from, const std::vector<uint32_t>& ordinals) {
+  const UsedVertices used(call);
+  const bool perVertex = from.parameter.perVertex;
+  const size_t count = perVertex ? call.vertexCount : ordinals.size(), n = from.parameter.floats;
+  auto array = std::make_shared<Array>(count * n * sizeof(float));
+  float* out = reinterpret_cast<float*>(array->data());
+  for (size_t i = 0; i < count; i++, out += n) {
+    std::memcpy(out, from.source.data + (perVertex ? i : ordinals[i]) * from.source.stride, n * sizeof(float));
+    const std::string problem = valueProblem(*from.declared, std::span<const float>(out, n));
+    if (problem.empty()) continue;
+    if (!perVertex || used[i]) fail(RT_INVALID_VALUE, problem);
+    std::copy_n(from.declared->defaultValue, n, out);
+  }
+  return {from.parameter.index, perVertex, std::move(array)};
 }
 
 } // namespace
@@ -146,7 +168,9 @@ std::optional<BuiltGeometry> buildDraw(const DrawCall& call, const GeometryState
   built.texCoords =
       attribute(call, call.texCoords, 2, current.present & HasTexCoord, current.texCoord, "a texture coordinate is not finite");
   built.colors = attribute(call, call.colors, 4, current.present & HasColor, current.color, "a colour is not finite");
-  built.indices = collectIndices(call, built.points->as<float>(), degenerate);
+  std::vector<uint32_t> ordinals;
+  built.indices = collectIndices(call, built.points->as<float>(), degenerate, call.parameters.empty() ? nullptr : &ordinals);
+  for (const ParameterSource& parameter : call.parameters) built.parameters.push_back(ownValues(call, parameter, ordinals));
   if (built.indices->size() == 0) return std::nullopt;
   return built;
 }

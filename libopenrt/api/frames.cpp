@@ -131,6 +131,19 @@ void occludedRays(Context& c, size_t count, const RTray* rays, uint8_t* occluded
     std::fill_n(occluded, count, uint8_t(0));
 }
 
+int pick(Context& c, double x, double y, RThit* hit) {
+  require(hit != nullptr, RT_INVALID_VALUE, "the pointer is NULL");
+  require(std::isfinite(x) && std::isfinite(y) && std::fabs(x) <= 1e9 && std::fabs(y) <= 1e9, RT_INVALID_VALUE,
+          "the place is not finite, or far outside any picture");
+  require(c.scene.frame.width > 0, RT_INVALID_OPERATION, "no frame buffer: call rtFrameBuffer first");
+  require(c.scene.camera.shader != 0, RT_INVALID_OPERATION, "no camera: call rtUseCamera, rtPerspective or rtOrtho first");
+  RThit found{};
+  require(c.everCommitted() && c.backend().pick(x, y, found), RT_INVALID_OPERATION,
+          "no frame with a camera was committed yet: call rtRender or rtSwapBuffers first");
+  *hit = found;
+  return std::isfinite(found.t) ? 1 : 0;
+}
+
 void requireNoDefinition(Context& c) {
   c.requireOutsideDefinition(); // a scene is committed whole
 }
@@ -173,6 +186,10 @@ void rtGetStats(RTstats* stats) {
 
 void rtCastRays(size_t count, const RTray* rays, RThit* hits) {
   guarded("rtCastRays", [&](Context& c) { castRays(c, count, rays, hits); });
+}
+
+int rtPick(double x, double y, RThit* hit) {
+  return guarded("rtPick", 0, [&](Context& c) { return pick(c, x, y, hit); });
 }
 
 void rtOccludedRays(size_t count, const RTray* rays, uint8_t* occluded) {

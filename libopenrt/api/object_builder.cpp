@@ -46,17 +46,25 @@ double WideBounds::reach(const Vec3d& from) const {
 void ObjectBuilder::begin(RTenum mode, const GeometryState& state) {
   require(!inList_, RT_INVALID_OPERATION, "already between rtBegin and rtEnd");
   const edit::Primitive primitive = primitiveOf(mode);
-  const bool joins = open_ && primitive == primitive_ && current.present == vertices_.attributes() && state == state_ &&
-                     vertices_.count() < maxMergedVertices;
+  const auto latched = latched_.find(state.shader);
+  const bool parameters = latched != latched_.end();
+  const size_t floats = parameters ? latched->second.values.size() : 0;
+  const uint8_t present = uint8_t((current.present & ~HasParameters) | (parameters ? HasParameters : 0));
+  const bool joins = open_ && primitive == primitive_ && present == vertices_.attributes() && state == state_ &&
+                     vertices_.parameterFloats() == floats && vertices_.count() < maxMergedVertices;
   if (!joins) {
+    std::vector<OwnParameter> layout = parameters ? latched->second.layout : std::vector<OwnParameter>();
     flush(vertices_.count());
-    vertices_.restart(current.present);
+    vertices_.restart(present, floats);
     indices_.clear();
+    layout_ = std::move(layout);
     state_ = state;
     primitive_ = primitive;
     open_ = true;
     local_ = false;
   }
+  current.present = present;
+  current.parameters = parameters ? latched->second.values.data() : nullptr;
   mode_ = mode;
   listStart_ = vertices_.count();
   wideList_ = false;
@@ -72,6 +80,29 @@ void ObjectBuilder::rejectVertex() const {
 void ObjectBuilder::adaptAttributes() {
   if (listStart_ > 0) flush(listStart_);
   vertices_.addAttributes(current.present);
+}
+
+void ObjectBuilder::parameter(const OwnParameter& which, std::span<const float> value, std::span<const float> own) {
+  require(inList_, RT_INVALID_OPERATION, "not between rtBegin and rtEnd");
+  Latched& latched = latched_[state_.shader];
+  size_t at = 0;
+  for (const OwnParameter& known : latched.layout) {
+    if (known.index == which.index) {
+      std::copy(value.begin(), value.end(), latched.values.begin() + ptrdiff_t(at));
+      return;
+    }
+    at += known.floats;
+  }
+  Latched wider = latched;
+  wider.layout.push_back(which);
+  wider.values.insert(wider.values.end(), value.begin(), value.end());
+  std::vector<OwnParameter> layout = wider.layout;
+  if (listStart_ > 0) flush(listStart_); // lists before this one never have it
+  vertices_.addParameters(own.data(), own.size());
+  latched = std::move(wider);
+  layout_ = std::move(layout);
+  current.parameters = latched.values.data();
+  current.present |= HasParameters;
 }
 
 void ObjectBuilder::vertex(double x, double y, double z) {
@@ -146,13 +177,17 @@ void ObjectBuilder::end() {
   const size_t count = vertices_.count() - listStart_;
   const size_t room = indexCount(mode_, count);
   makeRoom(indices_, room);
+  if (!layout_.empty()) makeRoom(completing_, room);
   settleOrigin();
   const size_t before = indices_.size(); // settleOrigin may have handed earlier lists over
   indices_.resize(before + room);
   const uint32_t first = static_cast<uint32_t>(listStart_);
   uint32_t* start = indices_.data() + before;
   const uint32_t* written = writeIndices(
-      mode_, count, vertices_.points(), [first](size_t i) { return first + static_cast<uint32_t>(i); }, start, degenerate_);
+      mode_, count, vertices_.points(), [first](size_t i) { return first + static_cast<uint32_t>(i); }, start, degenerate_,
+      [&](size_t ordinal) {
+        if (!layout_.empty()) completing_.push_back(first + static_cast<uint32_t>(completingVertex(mode_, count, ordinal)));
+      });
   indices_.resize(before + static_cast<size_t>(written - start));
   if (written == start) vertices_.truncate(listStart_); // nothing of the list is left
   inList_ = wideList_ = false;
@@ -171,11 +206,26 @@ void ObjectBuilder::flush(size_t vertexCount) {
     built.normals = vertices_.copyNormals(vertexCount);
     built.texCoords = vertices_.copyTexCoords(vertexCount);
     built.colors = vertices_.copyColors(vertexCount);
+    addParameters(built, vertexCount);
     done_.push_back(std::move(built));
   }
   vertices_.dropFront(vertexCount);
   indices_.clear();
+  completing_.clear();
   listStart_ = 0;
+}
+
+void ObjectBuilder::addParameters(BuiltGeometry& built, size_t vertexCount) const {
+  size_t at = 0;
+  for (const OwnParameter& parameter : layout_) {
+    const size_t count = parameter.perVertex ? vertexCount : completing_.size(), n = parameter.floats;
+    auto values = std::make_shared<Array>(count * n * sizeof(float));
+    float* out = reinterpret_cast<float*>(values->data());
+    for (size_t i = 0; i < count; i++)
+      std::copy_n(vertices_.parameters(parameter.perVertex ? i : completing_[i]) + at, n, out + n * i);
+    built.parameters.push_back({parameter.index, parameter.perVertex, std::move(values)});
+    at += n;
+  }
 }
 
 void ObjectBuilder::draw(const DrawCall& call, const GeometryState& state) {

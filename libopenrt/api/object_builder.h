@@ -7,13 +7,16 @@
 // the rounding of float then stays below 2^-18 of the list's size.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "api/primitives.h"
 #include "api/vertex_buffer.h"
+#include "openrt/openrts.h"
 #include "scene/matrix.h"
 
 namespace openrt {
@@ -38,11 +41,32 @@ struct AttributeSource {
   RTenum type = RT_FLOAT;
 };
 
+// A shader parameter that geometry has values of its own for.
+struct OwnParameter {
+  uint32_t index = 0; // in the class's table
+  size_t floats = 0;
+  bool perVertex = false; // else by triangle, segment or point
+};
+
+// One that a draw call finds in an array.
+struct ParameterSource {
+  OwnParameter parameter;
+  const RtsParam* declared = nullptr;
+  AttributeSource source;
+};
+
 struct DrawCall {
   RTenum mode = RT_TRIANGLES;
   size_t count = 0, vertexCount = 0;
   const uint32_t* indices = nullptr; // null: 0, 1, 2 ...
   AttributeSource points, normals, texCoords, colors;
+  std::vector<ParameterSource> parameters;
+};
+
+struct BuiltParameter {
+  uint32_t index = 0;
+  bool perVertex = false;
+  ArrayPtr values;
 };
 
 // A geometry with its arrays, before they have numbers.
@@ -50,6 +74,7 @@ struct BuiltGeometry {
   GeometryState state;
   edit::Primitive primitive = edit::Primitive::Triangles;
   ArrayPtr points, indices, normals, texCoords, colors;
+  std::vector<BuiltParameter> parameters;
 };
 
 class ObjectBuilder {
@@ -69,6 +94,10 @@ class ObjectBuilder {
   }
   void vertex(double x, double y, double z);
   void end();
+  // Within a list: the value of a parameter of the latched shader for the vertices or triangles that follow, also those of later
+  // lists with that shader. own: the shader's value, which the list's vertices had until now.
+  void parameter(const OwnParameter& which, std::span<const float> value, std::span<const float> own);
+  uint32_t listShader() const { return state_.shader; }
 
   void draw(const DrawCall& call, const GeometryState& state);
   void sphere(float radius, const GeometryState& state);
@@ -85,6 +114,7 @@ class ObjectBuilder {
   void settleOrigin();
   void storeRelative(const Vec3d& origin);
   void flush(size_t vertexCount);
+  void addParameters(BuiltGeometry& built, size_t vertexCount) const;
 
   std::vector<BuiltGeometry> done_;
   // The open geometry: state, vertices and indices of lists that may still grow.
@@ -94,6 +124,14 @@ class ObjectBuilder {
   Vec3d origin_;
   VertexBuffer vertices_;
   std::vector<uint32_t> indices_;
+  // Values that were set for parameters of a shader since the object began: of each parameter in a row.
+  struct Latched {
+    std::vector<OwnParameter> layout;
+    std::vector<float> values;
+  };
+  std::map<uint32_t, Latched> latched_; // by shader
+  std::vector<OwnParameter> layout_;    // of the open geometry
+  std::vector<uint32_t> completing_;    // of the open geometry: vertex that completes each primitive, if layout_ is not empty
   // The list between begin and end.
   bool inList_ = false, wideList_ = false;
   RTenum mode_ = RT_POINTS;

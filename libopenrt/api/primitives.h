@@ -49,31 +49,52 @@ inline bool degenerateTriangle(const float* a, const float* b, const float* c) {
 
 inline bool samePoint(const float* a, const float* b) { return a[0] == b[0] && a[1] == b[1] && a[2] == b[2]; }
 
+// Vertex of a list of count vertices that completes primitive number `ordinal`: whose value a primitive as a whole has.
+inline size_t completingVertex(RTenum mode, size_t count, size_t ordinal) {
+  switch (mode) {
+  case RT_POINTS: return ordinal;
+  case RT_LINES: return 2 * ordinal + 1;
+  case RT_LINE_STRIP: return ordinal + 1;
+  case RT_TRIANGLES: return 3 * ordinal + 2;
+  case RT_QUADS: return ordinal / 2 * 4 + 3;
+  case RT_QUAD_STRIP: return ordinal / 2 * 2 + 3;
+  case RT_POLYGON: return count - 1;
+  default: return ordinal + 2; // strips, fans
+  }
+}
+
 // Writes the indices of the primitives that count vertices of a mode make; vertexOf(i) is the i-th vertex's index into points.
 // Degenerate ones are left out and counted. out has room for indexCount(mode, count). Returns the end of what was written.
-template <class VertexOf> uint32_t* writeIndices(RTenum mode, size_t count, const float* points, const VertexOf& vertexOf,
-                                                 uint32_t* out, uint64_t& degenerate) {
+// kept(ordinal) is called for each that is written, with its number among all.
+template <class VertexOf, class Kept> uint32_t* writeIndices(RTenum mode, size_t count, const float* points,
+                                                             const VertexOf& vertexOf, uint32_t* out, uint64_t& degenerate,
+                                                             const Kept& kept) {
+  size_t ordinal = 0;
   const auto triangle = [&](size_t i, size_t j, size_t k) {
     const uint32_t a = vertexOf(i), b = vertexOf(j), c = vertexOf(k);
+    const size_t number = ordinal++;
     if (degenerateTriangle(points + 3 * size_t(a), points + 3 * size_t(b), points + 3 * size_t(c))) {
       degenerate++;
       return;
     }
     out[0] = a, out[1] = b, out[2] = c;
     out += 3;
+    kept(number);
   };
   const auto segment = [&](size_t i, size_t j) {
     const uint32_t a = vertexOf(i), b = vertexOf(j);
+    const size_t number = ordinal++;
     if (samePoint(points + 3 * size_t(a), points + 3 * size_t(b))) {
       degenerate++;
       return;
     }
     out[0] = a, out[1] = b;
     out += 2;
+    kept(number);
   };
   switch (mode) {
   case RT_POINTS:
-    for (size_t i = 0; i < count; i++) *out++ = vertexOf(i);
+    for (size_t i = 0; i < count; i++) *out++ = vertexOf(i), kept(i);
     break;
   case RT_LINES:
     for (size_t i = 0; i + 1 < count; i += 2) segment(i, i + 1);
@@ -100,6 +121,11 @@ template <class VertexOf> uint32_t* writeIndices(RTenum mode, size_t count, cons
   default: break;
   }
   return out;
+}
+
+template <class VertexOf> uint32_t* writeIndices(RTenum mode, size_t count, const float* points, const VertexOf& vertexOf,
+                                                 uint32_t* out, uint64_t& degenerate) {
+  return writeIndices(mode, count, points, vertexOf, out, degenerate, [](size_t) {});
 }
 
 } // namespace openrt

@@ -183,10 +183,20 @@ void SceneState::deleteShader(RTid id) {
 void SceneState::deleteTexture(RTid id) { textures.erase(id, texture(id)); }
 void SceneState::deleteLight(RTid id) { lights.erase(id, light(id)); }
 
+void SceneState::shadersReloaded(const std::function<const RtsClass*(const std::string&, const std::string&)>& find) {
+  std::vector<std::pair<ShaderClassState*, const RtsClass*>> tables;
+  for (auto& [id, state] : classes.entries) tables.emplace_back(&state, find(state.name, state.library));
+  for (const auto& [state, table] : tables) state->table = table;
+  shaderGeneration++;
+  generationDirty = true;
+}
+
 void SceneState::setParameter(RTid id, edit::ParameterT parameter) {
   ShaderState& state = shader(id);
   shaders.touch(id, state);
   parameter.shader = id;
+  const RtsClass& table = classOf(state);
+  if (table.frequency && table.frequency[parameter.index] != RTS_PER_SHADER) state.values[parameter.index] = parameter.floats;
   const uint32_t index = parameter.index;
   state.parameters.insert_or_assign(index, std::move(parameter));
 }

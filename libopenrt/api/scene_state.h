@@ -4,7 +4,7 @@
 // Order of the edits in a commit, made so that a backend applies them one after the other:
 //   1. DeleteLight, DeleteInstance            nothing but a light's scope refers to them
 //   2. Texture
-//   3. ShaderClass, Shader, Parameter
+//   3. ReloadShaders, ShaderClass, Shader, Parameter
 //   4. Object                                 (replaces; its former children were deleted in 1)
 //   5. Instance                               new and changed ones, of the scene and of objects
 //   6. Light, Camera, Environment, DefaultShader, Transport, FrameSettings
@@ -14,6 +14,7 @@
 // backend as long as an object or a texture there names it.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -57,6 +58,7 @@ struct ShaderClassState {
 struct ShaderState {
   RTid shaderClass = 0;
   std::map<uint32_t, edit::ParameterT> parameters; // set since the last commit, by index
+  std::map<uint32_t, std::vector<float>> values;   // ever set, of parameters that geometry may have values of its own for
   bool dirty = false, committed = false;
 };
 
@@ -135,6 +137,8 @@ class SceneState {
 
   void setRole(RoleState& role, RTid shader, const Matrix4d& matrix) { role = {shader, matrix, true}; }
   void setParameter(RTid shader, edit::ParameterT parameter);
+  // Libraries were loaded anew: looks every class up again and tells the backends with the next commit.
+  void shadersReloaded(const std::function<const RtsClass*(const std::string& name, const std::string& library)>& find);
 
   // All edits since the last one; they count as committed when it returns. (commit.cpp)
   std::shared_ptr<const Commit> takeCommit(bool render);
@@ -148,6 +152,8 @@ class SceneState {
   RoleState camera, environment, defaultShader, transport;
   edit::FrameSettingsT frame;
   bool frameDirty = false;
+  uint32_t shaderGeneration = 0; // how often libraries were loaded anew
+  bool generationDirty = false;
 
  private:
   friend class CommitMaker;

@@ -1,14 +1,19 @@
-// shaders.cpp: shader classes, shaders and their parameters, by the tables that the classes publish. Application thread.
+// shaders.cpp: shader classes, shaders and their parameters, by the tables that the classes publish. Parameters of triangles and
+// vertices: geometry_parameters.cpp. Application thread.
 #include <cfloat>
 #include <cstring>
 #include <initializer_list>
 #include <span>
 
 #include "api/guard.h"
+#include "api/parameters.h"
 #include "shading/parameters.h"
+#include "shading/running.h"
 
 using namespace openrt;
 
+static_assert(RT_PER_TRIANGLE == int(RTS_PER_TRIANGLE) && RT_PER_VERTEX == int(RTS_PER_VERTEX) &&
+              RT_TRANSPORT_SHADER == int(RTS_TRANSPORT));
 static_assert(RT_PARAM_INT == int(RTS_INT) && RT_PARAM_TEXTURE == int(RTS_TEXTURE) && RT_PARAM_FLOATS == int(RTS_FLOATS) &&
               RT_PARAM_COLOR == int(RTS_COLOR) && RT_SURFACE == int(RTS_SURFACE) && RT_ENVIRONMENT == int(RTS_ENVIRONMENT));
 
@@ -21,16 +26,14 @@ ShaderState& bound(Context& c) {
   return c.scene.shader(c.boundShader);
 }
 
-// The bound shader's parameter with this handle, which must be of one of these types.
+// The bound shader's parameter with this handle, which must be of one of these types. It is set outside lists of vertices.
 const RtsParam& parameter(Context& c, int handle, std::initializer_list<RtsType> types) {
   const RtsClass& table = c.scene.classOf(bound(c));
-  if (handle < 0 || static_cast<uint32_t>(handle) >= table.paramCount)
-    fail(RT_INVALID_PARAMETER,
-         "the class " + std::string(table.name) + " has no parameter with handle " + std::to_string(handle));
-  const RtsParam& param = table.params[handle];
-  for (RtsType type : types)
-    if (param.type == type) return param;
-  fail(RT_INVALID_PARAMETER, std::string("parameter ") + param.name + " of the class " + table.name + " is of another type");
+  const RtsParam& param = declaredParameter(table, handle, types);
+  if (inList(c))
+    fail(RT_INVALID_OPERATION, std::string("parameter ") + param.name + " of the class " + table.name +
+                                   " is of the whole shader: not between rtBegin and rtEnd");
+  return param;
 }
 
 // Raises what valueProblem found.
@@ -45,6 +48,7 @@ edit::ParameterT edited(int handle) {
 }
 
 void setFloats(Context& c, int handle, std::initializer_list<RtsType> types, std::span<const float> values) {
+  if (setOwnValue(c, handle, types, values)) return;
   const RtsParam& param = parameter(c, handle, types);
   refuse(valueProblem(param, values));
   edit::ParameterT e = edited(handle);
@@ -54,7 +58,7 @@ void setFloats(Context& c, int handle, std::initializer_list<RtsType> types, std
 
 int parameterHandle(Context& c, const char* name) {
   const RtsClass& table = c.scene.classOf(bound(c));
-  require(name != nullptr, RT_INVALID_VALUE, "the name is NULL");
+  require(name && *name, RT_INVALID_VALUE, "the name is NULL or empty");
   for (uint32_t i = 0; i < table.paramCount; i++)
     if (std::strcmp(table.params[i].name, name) == 0) return static_cast<int>(i);
   fail(RT_INVALID_PARAMETER, std::string("the class ") + table.name + " has no parameter \"" + name + "\"");
@@ -69,6 +73,15 @@ RTid rtNewShaderClass(const char* name, const char* library) {
     return c.scene.newShaderClass(c.findClass(name, from), name, from);
   });
 }
+
+int rtReloadShaders(void) {
+  return guarded("rtReloadShaders", 0, [](Context& c) {
+    c.requireOutsideDefinition();
+    return c.reloadShaders("rtReloadShaders");
+  });
+}
+
+const char* rtRunningShader(void) { return runningShader(); }
 
 RTid rtNewShader(RTid shaderClass) {
   return guarded("rtNewShader", RTid(0), [&](Context& c) { return c.scene.newShader(shaderClass); });
@@ -119,7 +132,6 @@ void rtParameter4f(int handle, float x, float y, float z, float w) {
 
 void rtParameter16f(int handle, const float m[16]) {
   guarded("rtParameter16f", [&](Context& c) {
-    parameter(c, handle, {RTS_MATRIX});
     require(m != nullptr, RT_INVALID_VALUE, "the matrix is NULL");
     setFloats(c, handle, {RTS_MATRIX}, {m, 16});
   });
@@ -178,6 +190,7 @@ void rtGetParameterInfo(RTid shaderClass, int handle, RTparameterInfo* info) {
     result.minimum = unlimited ? -FLT_MAX : param.minimum;
     result.maximum = unlimited ? FLT_MAX : param.maximum;
     result.text = param.text ? param.text : "";
+    result.frequency = frequencyOf(table, static_cast<uint32_t>(handle));
     *info = result;
   });
 }

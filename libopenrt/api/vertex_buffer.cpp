@@ -22,6 +22,8 @@ void VertexBuffer::reserve(size_t capacity) {
   Floats normals = attributes_ & HasNormal ? grown(normals_, 3, capacity) : nullptr;
   Floats texCoords = attributes_ & HasTexCoord ? grown(texCoords_, 2, capacity) : nullptr;
   Floats colors = attributes_ & HasColor ? grown(colors_, 4, capacity) : nullptr;
+  Floats parameters = attributes_ & HasParameters ? grown(parameters_, parameterFloats_, capacity) : nullptr;
+  parameters_ = std::move(parameters);
   points_ = std::move(points), normals_ = std::move(normals), texCoords_ = std::move(texCoords), colors_ = std::move(colors);
   capacity_ = capacity;
 }
@@ -38,7 +40,22 @@ void VertexBuffer::addAttributes(uint8_t attributes) {
   attributes_ |= added;
 }
 
-void VertexBuffer::restart(uint8_t attributes) {
+void VertexBuffer::addParameters(const float* values, size_t count) {
+  const size_t wide = parameterFloats_ + count;
+  Floats parameters = std::make_unique_for_overwrite<float[]>(wide * capacity_);
+  for (size_t i = 0; i < count_; i++) {
+    if (parameterFloats_) std::copy_n(parameters_.get() + parameterFloats_ * i, parameterFloats_, parameters.get() + wide * i);
+    std::copy_n(values, count, parameters.get() + wide * i + parameterFloats_);
+  }
+  parameters_ = std::move(parameters);
+  parameterFloats_ = wide;
+  attributes_ |= HasParameters;
+}
+
+void VertexBuffer::restart(uint8_t attributes, size_t parameterFloats) {
+  Floats parameters = parameterFloats ? std::make_unique_for_overwrite<float[]>(parameterFloats * capacity_) : nullptr;
+  parameters_ = std::move(parameters);
+  parameterFloats_ = parameterFloats;
   count_ = 0;
   addAttributes(attributes);
   attributes_ = attributes;
@@ -52,7 +69,7 @@ void VertexBuffer::dropFront(size_t n) {
   const auto shift = [n, rest](const Floats& data, size_t components) {
     if (data) std::memmove(data.get(), data.get() + components * n, components * rest * sizeof(float));
   };
-  shift(points_, 3), shift(normals_, 3), shift(texCoords_, 2), shift(colors_, 4);
+  shift(points_, 3), shift(normals_, 3), shift(texCoords_, 2), shift(colors_, 4), shift(parameters_, parameterFloats_);
   count_ = rest;
 }
 

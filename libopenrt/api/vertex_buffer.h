@@ -2,6 +2,7 @@
 // comparison and a few stores. Application thread.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 
@@ -9,13 +10,14 @@
 
 namespace openrt {
 
-enum Attribute : uint8_t { HasNormal = 1, HasTexCoord = 2, HasColor = 4 };
+enum Attribute : uint8_t { HasNormal = 1, HasTexCoord = 2, HasColor = 4, HasParameters = 8 };
 
 // The attributes that the next vertex takes along; present: those that the object being defined has set.
 struct VertexState {
   float normal[3] = {0, 0, 0}; // 0 0 0: the face's own normal
   float texCoord[2] = {0, 0};
   float color[4] = {1, 1, 1, 1};
+  const float* parameters = nullptr; // of the latched shader, as many as the buffer's vertices have (HasParameters)
   uint8_t present = 0;
 };
 
@@ -38,8 +40,10 @@ class VertexBuffer {
 
   // Gives every vertex so far the state that a vertex has before the attribute is first set.
   void addAttributes(uint8_t attributes);
-  // Starts anew with these attributes; keeps the storage.
-  void restart(uint8_t attributes);
+  // Widens the floats for shader parameters that every vertex has: the vertices so far get these values behind theirs.
+  void addParameters(const float* values, size_t count);
+  // Starts anew with these attributes and floats for parameters; keeps the storage.
+  void restart(uint8_t attributes, size_t parameterFloats);
   // Removes the first n vertices.
   void dropFront(size_t n);
   void truncate(size_t n) { count_ = n; }
@@ -49,6 +53,8 @@ class VertexBuffer {
   ArrayPtr copyNormals(size_t n) const { return attributes_ & HasNormal ? copy(normals_.get(), 3 * n) : nullptr; }
   ArrayPtr copyTexCoords(size_t n) const { return attributes_ & HasTexCoord ? copy(texCoords_.get(), 2 * n) : nullptr; }
   ArrayPtr copyColors(size_t n) const { return attributes_ & HasColor ? copy(colors_.get(), 4 * n) : nullptr; }
+  size_t parameterFloats() const { return parameterFloats_; }
+  const float* parameters(size_t vertex) const { return parameters_.get() + parameterFloats_ * vertex; }
 
  private:
   using Floats = std::unique_ptr<float[]>;
@@ -65,14 +71,16 @@ class VertexBuffer {
       float* c = colors_.get() + 4 * count_;
       c[0] = state.color[0], c[1] = state.color[1], c[2] = state.color[2], c[3] = state.color[3];
     }
+    if (attributes_ & HasParameters)
+      std::copy_n(state.parameters, parameterFloats_, parameters_.get() + parameterFloats_ * count_);
   }
   void reserve(size_t capacity);
   Floats grown(const Floats& old, size_t components, size_t capacity) const;
   static ArrayPtr copy(const float* data, size_t floats);
 
-  size_t count_ = 0, capacity_ = 0;
+  size_t count_ = 0, capacity_ = 0, parameterFloats_ = 0;
   uint8_t attributes_ = 0;
-  Floats points_, normals_, texCoords_, colors_;
+  Floats points_, normals_, texCoords_, colors_, parameters_;
 };
 
 } // namespace openrt

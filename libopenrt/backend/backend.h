@@ -20,6 +20,7 @@ struct BackendOptions {
   const ShaderRegistry* shaders = nullptr;
   RTlogCallback log = nullptr;
   void* logUser = nullptr;
+  bool diagnose = false; // costs time: looks for misuse while it renders
 };
 
 class Backend {
@@ -40,6 +41,8 @@ class Backend {
   virtual void stats(RTstats& stats) const = 0;
   virtual void castRays(std::span<const RTray> rays, std::span<RThit> hits) = 0;
   virtual void occludedRays(std::span<const RTray> rays, std::span<uint8_t> occluded) = 0;
+  // What the committed camera sees at a place of the picture, as castRays; false if no camera or no frame is committed.
+  virtual bool pick(double x, double y, RThit& hit) = 0;
 };
 
 // Throws std::runtime_error with a message for people when the backend cannot start.

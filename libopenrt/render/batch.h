@@ -1,6 +1,7 @@
 // batch.h: the host's side of one batch of shading points: what the functions of RtsHost work on. [render]
 #pragma once
 
+#include "render/faults.h"
 #include "render/points.h"
 #include "render/ray_queue.h"
 
@@ -10,6 +11,7 @@ class TileRenderer;
 
 struct RayCounters {
   uint64_t camera = 0, shadow = 0, secondary = 0;
+  ShaderFaults faults;
 };
 
 } // namespace openrt

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "render/batch.h"
+#include "shading/running.h"
 
 namespace openrt {
 namespace {
@@ -65,7 +66,10 @@ void ask(const RenderScene& scene, uint32_t record, const Looks& looks, Arena& a
   RayCounters counters;
   RtsBatch batch;
   batch.scene = &scene, batch.arena = &arena, batch.counters = &counters, batch.points = &points;
-  (*scene.shaders)[r.shader].shaderClass->surface(&scene.host, &batch, &points.hits, &surface);
+  {
+    const RunningShader running(*(*scene.shaders)[r.shader].shaderClass);
+    (*scene.shaders)[r.shader].shaderClass->surface(&scene.host, &batch, &points.hits, &surface);
+  }
   for (uint32_t i = 0; i < n; i++) {
     const float c[3] = {surface.emission[0][i], surface.emission[1][i], surface.emission[2][i]};
     out[i] = luminance(c);

@@ -6,6 +6,7 @@
 #include "render/paths.h"
 #include "render/scatter.h"
 #include "render/surfaces.h"
+#include "shading/running.h"
 
 namespace openrt {
 
@@ -135,7 +136,10 @@ void TileRenderer::addEmitters(const RtsBatch& batch, const Points& points, cons
     RtsBatch inner = makeBatch();
     inner.tracer = nullptr; // the answer must be the one that the emitters' choice was made from
     inner.points = &seen;
-    shaderClass.surface(&scene_.host, &inner, &seen.hits, &surface);
+    {
+      const RunningShader running(shaderClass);
+      shaderClass.surface(&scene_.host, &inner, &seen.hits, &surface);
+    }
     for (uint32_t i = 0; i < m; i++) {
       const float light[3] = {surface.emission[0][i], surface.emission[1][i], surface.emission[2][i]};
       add(sorted[range.begin + i], light);

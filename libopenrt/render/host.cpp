@@ -7,6 +7,7 @@
 #include "render/hit_info.h"
 #include "render/shadows.h"
 #include "render/tile.h"
+#include "shading/running.h"
 
 namespace openrt {
 namespace {
@@ -58,7 +59,13 @@ void illuminate(RtsBatch* batch, uint32_t i, const RtsHits* hits, RtsIlluminatio
   }
   out->directional = 0;
   const float* local[3] = {batch->local[0], batch->local[1], batch->local[2]};
-  light.shader.shaderClass->illuminate(&batch->scene->host, batch, light.shader.params, n, local, out);
+  {
+    const RunningShader running(*light.shader.shaderClass);
+    light.shader.shaderClass->illuminate(&batch->scene->host, batch, light.shader.params, n, local, out);
+  }
+  checkAnswer(*light.shader.shaderClass, *batch, hits->count,
+              {out->toLight[0], out->toLight[1], out->toLight[2], out->color[0], out->color[1], out->color[2], out->ambient[0],
+               out->ambient[1], out->ambient[2]});
   directionsToRender(light.fromLocal, n, batch->toLight, batch->reach);
   batch->current = i;
   batch->directional = out->directional != 0;
@@ -87,6 +94,7 @@ RtsLobe* lobe(RtsBatch* batch, RtsLobeKind kind) {
   const RtsHits& hits = batch->points->hits;
   const uint32_t size = padded(hits.count);
   RtsLobe& lobe = batch->lobes[batch->lobeCount++];
+  lobe = {};
   lobe.kind = kind;
   for (int k = 0; k < 3; k++) {
     lobe.weight[k] = batch->arena->takeZero<float>(size);

@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+
+#include "shading/parameters.h"
 
 namespace openrt {
 namespace {
@@ -114,6 +117,34 @@ void thin(const Record& r, const Rays& rays, const RayHits& hits, uint32_t lane,
   h.flags |= RTS_HIT_COLOR;
 }
 
+// The shader's parameters with the hit's values in place of those that the geometry has of its own: a private copy.
+const void* ownParameters(const RenderScene& scene, const Record& r, const RayHits& hits, uint32_t lane, Arena& arena) {
+  const ShaderSlot& shader = (*scene.shaders)[r.shader];
+  auto* block = arena.take<std::byte>(shader.shaderClass->paramSize);
+  std::memcpy(block, shader.params, shader.shaderClass->paramSize);
+  const size_t primitive = hits.primitive[lane];
+  const size_t corners = r.primitive == edit::Primitive::Triangles ? 3 : r.primitive == edit::Primitive::Lines ? 2 : 1;
+  const float u = hits.u[lane], v = corners == 3 ? hits.v[lane] : 0;
+  const float w[3] = {1 - u - v, u, v};
+  for (uint32_t p = 0; p < r.parameterCount; p++) {
+    const GeometryParameter& own = r.parameters[p];
+    const RtsParam& param = shader.shaderClass->params[own.index];
+    const size_t n = parameterFloats(param.type);
+    const float* values = own.values->as<float>();
+    float mixed[16] = {};
+    if (own.perVertex && corners > 1) {
+      for (size_t c = 0; c < corners; c++) {
+        const float* at = values + n * size_t(r.indices[corners * primitive + c]);
+        for (size_t k = 0; k < n; k++) mixed[k] += w[c] * at[k];
+      }
+    } else {
+      std::copy_n(values + n * (own.perVertex ? size_t(r.indices[primitive]) : primitive), n, mixed);
+    }
+    std::memcpy(block + param.offset, mixed, n * sizeof(float));
+  }
+  return block;
+}
+
 void store(const Record& r, const Rays& rays, uint32_t lane, Local& h, const Out& out, uint32_t to) {
   const float d[3] = {rays.dir[0][lane], rays.dir[1][lane], rays.dir[2][lane]};
   if (!normalize(h.ng))
@@ -193,7 +224,7 @@ Points makePoints(const RenderScene& scene, const Rays& rays, const RayHits& hit
     out.distance[i] = travelled[lane] + hits.t[lane];
     out.segment[i] = hits.t[lane];
     out.record[i] = hits.record[lane];
-    out.params[i] = (*scene.shaders)[r.shader].params;
+    out.params[i] = r.parameterCount ? ownParameters(scene, r, hits, lane, arena) : (*scene.shaders)[r.shader].params;
   }
   Points points;
   RtsHits& to = points.hits;

@@ -46,17 +46,19 @@ struct Record {
   uint32_t name = 0, instance = 0;
   uint32_t primitives = 0; // triangles, segments, points
   uint64_t userData = 0;
-  const float* vertices = nullptr;   // stride 3, as the kernel sees them
-  const uint32_t* indices = nullptr; // into vertices and attributes
-  const float* normals = nullptr;    // stride 3, in the geometry's local frame
-  const float* texCoords = nullptr;  // stride 2
-  const float* colors = nullptr;     // stride 4
-  float scale = 1;                   // not instanced: vertices x scale = render space
-  Affine toRender;                   // instanced: kernel's frame -> render space; sphere: unit-sphere frame -> render space
-  Affine fromRender;                 // sphere: its inverse
-  float normalMatrix[3][3];          // normals of the geometry -> render space (inverse transpose), not normalised
-  Affine toObject;                   // render space -> frame in which the geometry was defined
-  float kernelNormal[3][3];          // instanced: the kernel's geometric normal -> render space
+  const float* vertices = nullptr;               // stride 3, as the kernel sees them
+  const uint32_t* indices = nullptr;             // into vertices and attributes
+  const float* normals = nullptr;                // stride 3, in the geometry's local frame
+  const float* texCoords = nullptr;              // stride 2
+  const float* colors = nullptr;                 // stride 4
+  const GeometryParameter* parameters = nullptr; // values of shader parameters of its own; usable as they are
+  uint32_t parameterCount = 0;
+  float scale = 1;          // not instanced: vertices x scale = render space
+  Affine toRender;          // instanced: kernel's frame -> render space; sphere: unit-sphere frame -> render space
+  Affine fromRender;        // sphere: its inverse
+  float normalMatrix[3][3]; // normals of the geometry -> render space (inverse transpose), not normalised
+  Affine toObject;          // render space -> frame in which the geometry was defined
+  float kernelNormal[3][3]; // instanced: the kernel's geometric normal -> render space
 };
 
 struct Bucket {

@@ -41,6 +41,7 @@ struct RenderHost : RtsHost {
   const std::vector<Texture>* textures = nullptr;
   RTlogCallback logCallback = nullptr;
   void* logUser = nullptr;
+  bool diagnose = false; // shaders are held to what their traits say
 };
 
 // Shaders of the scene with their parameter blocks. Slot 0 is the default surface shader.

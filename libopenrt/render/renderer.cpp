@@ -65,8 +65,10 @@ Frame::~Frame() {
 }
 
 void Frame::wait() {
+  if (threads_.empty()) return;
   for (auto& thread : threads_) thread.join();
   threads_.clear();
+  counters_.faults.report(scene_->host.logCallback, scene_->host.logUser);
 }
 
 Tile Frame::tile(uint32_t number) const {
@@ -150,6 +152,7 @@ void Frame::work() {
     counters_.camera += renderer.counters().camera;
     counters_.shadow += renderer.counters().shadow;
     counters_.secondary += renderer.counters().secondary;
+    counters_.faults.add(renderer.counters().faults);
     seconds_ = std::max(seconds_, now() - started_);
   } catch (const std::exception& e) {
     cancelled_ = true;

@@ -14,6 +14,7 @@
 #include "render/shadows.h"
 #include "render/surfaces.h"
 #include "render/ways.h"
+#include "shading/running.h"
 
 namespace openrt {
 namespace {
@@ -81,7 +82,11 @@ void TileRenderer::scatterRange(Paths& paths, const Points& points, const Bucket
   }
   RtsBatch batch = makeBatch(paths, points, order);
   batch.lightSet = bucket.lightSet;
-  bucket.shaderClass->surface(&scene_.host, &batch, &hits, &surface);
+  {
+    const RunningShader running(*bucket.shaderClass);
+    bucket.shaderClass->surface(&scene_.host, &batch, &hits, &surface);
+  }
+  checkAnswer(*bucket.shaderClass, batch, surface);
   Boundaries boundaries{nullptr, nullptr};
   if (bucket.shaderClass->medium) meetBoundaries(batch, paths.state, boundaries);
   for (uint32_t i = 0; i < hits.count; i++) {

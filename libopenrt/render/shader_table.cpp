@@ -6,6 +6,7 @@
 #include "render/render_scene.h"
 #include "shading/parameters.h"
 #include "shading/registry.h"
+#include "shading/running.h"
 
 namespace openrt {
 
@@ -108,8 +109,11 @@ void ShaderTable::make(uint32_t number, const RtsClass& shaderClass, const Shade
     }
   }
   ShaderSlot slot{&shaderClass, block.bytes.get(), 0, slots_[number].medium};
-  if (shaderClass.traits) slot.traits = shaderClass.traits(&host, slot.params);
-  if (shaderClass.medium) setMedium(slot, host);
+  {
+    const RunningShader running(shaderClass);
+    if (shaderClass.traits) slot.traits = shaderClass.traits(&host, slot.params);
+    if (shaderClass.medium) setMedium(slot, host);
+  }
   slots_[number] = slot;
   blocks_[number] = made;
 }

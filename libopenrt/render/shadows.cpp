@@ -1,6 +1,7 @@
 // shadows.cpp: shadow rays of a batch, compacted: first against all that is opaque, then, for the rays that got through and
 // only if the scene has anything transparent, through the transparent surfaces one after the other.
 #include "render/shadows.h"
+#include "shading/running.h"
 
 #include <cmath>
 #include <limits>
@@ -78,7 +79,10 @@ void passSurface(const RtsBatch& batch, ShadowRays& s, RayHits& found, uint8_t* 
     RtsBatch inner = batch;
     inner.tracer = nullptr;
     inner.points = &points;
-    if (shaderClass.transmit) shaderClass.transmit(&scene.host, &inner, &points.hits, through);
+    {
+      const RunningShader running(shaderClass);
+      if (shaderClass.transmit) shaderClass.transmit(&scene.host, &inner, &points.hits, through);
+    }
     for (uint32_t i = 0; i < m; i++) {
       const uint32_t ray = order[range.begin + i];
       float t[3];

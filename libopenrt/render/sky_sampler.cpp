@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "render/batch.h"
+#include "shading/running.h"
 
 namespace openrt {
 namespace {
@@ -64,7 +65,10 @@ void SkySampler::measure(const RenderScene& scene, std::vector<float>& cells) co
       d[0][i] = float(sine[i % 2] * turn[2 * i]), d[1][i] = float(cosine[i % 2]), d[2][i] = float(sine[i % 2] * turn[2 * i + 1]);
     for (auto& a : rgba) std::fill_n(a, n, 0.0f);
     const float* directions[3] = {d[0], d[1], d[2]};
-    environment.shaderClass->miss(&scene.host, &batch, environment.params, n, directions, rgba);
+    {
+      const RunningShader running(*environment.shaderClass);
+      environment.shaderClass->miss(&scene.host, &batch, environment.params, n, directions, rgba);
+    }
     for (uint32_t column = 0; column < columns_; column++) {
       double mean = 0;
       for (uint32_t i = 4 * column; i < 4 * column + 4; i++) {

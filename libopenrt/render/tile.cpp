@@ -8,6 +8,7 @@
 #include "render/paths.h"
 #include "render/sampler.h"
 #include "render/surfaces.h"
+#include "shading/running.h"
 
 namespace openrt {
 
@@ -217,7 +218,10 @@ void TileRenderer::makeCameraRays(Paths& paths, uint32_t firstSample) {
   RtsBatch batch = makeBatch();
   batch.rays = n;
   const ShaderSlot& camera = scene_.camera.shader;
-  camera.shaderClass->generate(&scene_.host, &batch, camera.params, n, points, extent, &local);
+  {
+    const RunningShader running(*camera.shaderClass);
+    camera.shaderClass->generate(&scene_.host, &batch, camera.params, n, points, extent, &local);
+  }
   const Affine& m = scene_.camera.fromLocal;
   for (uint32_t i = 0; i < size; i++) {
     const float ox = local.origin[0][i], oy = local.origin[1][i], oz = local.origin[2][i];
@@ -249,7 +253,9 @@ void TileRenderer::skyAt(const Rays& rays, const uint32_t* lanes, uint32_t n, fl
   const ShaderSlot& environment = scene_.environment.shader;
   RtsBatch batch = makeBatch();
   const float* directions[3] = {direction[0], direction[1], direction[2]};
+  const RunningShader running(*environment.shaderClass);
   environment.shaderClass->miss(&scene_.host, &batch, environment.params, n, directions, rgba);
+  checkAnswer(*environment.shaderClass, batch, n, {rgba[0], rgba[1], rgba[2], rgba[3]});
 }
 
 void TileRenderer::background(Paths& paths, const uint32_t* missed, uint32_t n) {
@@ -292,6 +298,7 @@ void TileRenderer::attenuate(const Points& points, const Paths& paths, const uin
   for (int k = 0; k < 4; k++) fog[k] = arena_.takeZero<float>(size);
   RtsBatch batch = makeBatch();
   const float* vectors[3] = {fromEye[0], fromEye[1], fromEye[2]};
+  const RunningShader running(*environment.shaderClass);
   environment.shaderClass->attenuate(&scene_.host, &batch, environment.params, n, vectors, fog, fog[3]);
 }
 
@@ -313,7 +320,9 @@ void TileRenderer::shadeRange(Paths& paths, const RayHits& hits, const BucketRan
     ArenaScope inner(arena_);
     RtsBatch batch = makeBatch(paths, points, order);
     batch.lightSet = bucket.lightSet;
+    const RunningShader running(*bucket.shaderClass);
     bucket.shaderClass->shade(&scene_.host, &batch, &points.hits, &shaded);
+    checkAnswer(*bucket.shaderClass, batch, shaded);
   }
   float* fog[4];
   attenuate(points, paths, order, fog);

@@ -8,6 +8,7 @@
 #include "render/sampler.h"
 #include "render/shadows.h"
 #include "render/surfaces.h"
+#include "shading/running.h"
 
 namespace openrt {
 namespace {
@@ -156,7 +157,11 @@ void TileRenderer::askTransport(Paths& paths) {
   RtsBatch batch = makeBatch();
   batch.rays = n;
   batch.requests = arena_.takeZero<uint32_t>(n);
-  scene_.transport.shaderClass->radiance(&scene_.host, &batch, scene_.transport.params, &request, rgba);
+  {
+    const RunningShader running(*scene_.transport.shaderClass);
+    scene_.transport.shaderClass->radiance(&scene_.host, &batch, scene_.transport.params, &request, rgba);
+  }
+  checkAnswer(*scene_.transport.shaderClass, batch, n, {rgba[0], rgba[1], rgba[2], rgba[3]});
   for (uint32_t i = 0; i < n; i++) {
     for (int k = 0; k < 3; k++)
       if (std::isfinite(rgba[k][i])) paths.radiance[k][i] = rgba[k][i];

@@ -190,8 +190,21 @@ void Scene::replaceObject(const edit::ObjectT& object, SceneChanges& changes) {
   target.geometries.reserve(object.geometries.size());
   for (const auto& g : object.geometries) {
     if (!g) continue;
-    target.geometries.push_back({g->primitive, g->shader, g->name, toMatrix(g->matrix.get()), g->cull, g->clockwise, g->width,
-                                 array(g->points), array(g->indices), array(g->normals), array(g->texCoords), array(g->colors)});
+    target.geometries.push_back({g->primitive,
+                                 g->shader,
+                                 g->name,
+                                 toMatrix(g->matrix.get()),
+                                 g->cull,
+                                 g->clockwise,
+                                 g->width,
+                                 array(g->points),
+                                 array(g->indices),
+                                 array(g->normals),
+                                 array(g->texCoords),
+                                 array(g->colors),
+                                 {}});
+    for (const auto& p : g->parameters)
+      if (p) target.geometries.back().parameters.push_back({p->index, p->perVertex, array(p->values)});
   }
   dropChildren(object.id);
 }

@@ -13,6 +13,13 @@
 
 namespace openrt {
 
+// Values of a shader parameter of a geometry's own, as many floats as its type has for every vertex or primitive.
+struct GeometryParameter {
+  uint32_t index = 0; // in the class's table
+  bool perVertex = false;
+  ArrayPtr values;
+};
+
 struct Geometry {
   edit::Primitive primitive = edit::Primitive::Triangles;
   uint32_t shader = 0, name = 0;
@@ -20,6 +27,7 @@ struct Geometry {
   bool cull = false, clockwise = false;
   float width = 1; // pixels; sphere: radius
   ArrayPtr points, indices, normals, texCoords, colors;
+  std::vector<GeometryParameter> parameters;
 
   size_t primitives() const; // triangles, segments, points; 1 for a sphere
 };
@@ -66,11 +74,11 @@ struct ShaderClassName {
 // What a commit touched: decides what a backend makes anew.
 struct SceneChanges {
   bool structure = false; // instances made, deleted, or changed in more than their place; objects made or deleted
-  bool shaders = false; // made, deleted, or another default; not their parameters
+  bool shaders = false;   // made, deleted, or another default; not their parameters
   bool textures = false, lights = false, camera = false, frame = false;
   std::vector<uint32_t> parameters; // shaders of which some were set
-  std::vector<uint32_t> moved;     // dynamic instances whose matrix or visibility changed, and nothing else
-  std::vector<uint32_t> redefined; // dynamic objects that were defined before, without instances in them
+  std::vector<uint32_t> moved;      // dynamic instances whose matrix or visibility changed, and nothing else
+  std::vector<uint32_t> redefined;  // dynamic objects that were defined before, without instances in them
   bool any() const {
     return structure || shaders || textures || lights || camera || frame || !parameters.empty() || !moved.empty() ||
            !redefined.empty();

@@ -1,33 +1,19 @@
-// registry.cpp: finds shader libraries by bare name in the configured folders, loads them and keeps them loaded.
+// registry.cpp: finds shader libraries by bare name in the configured folders, and loads them (library.h).
 // Called by the front end on the application's thread and by backends on theirs; one lock.
 #include "shading/registry.h"
 
 #include <algorithm>
 #include <cctype>
 #include <stdexcept>
-
-#include <dlfcn.h>
+#include <utility>
 
 #include "plugin_files.h"
-#include "shading/plugin_check.h"
+#include "shading/library.h"
 
 namespace openrt {
 
-struct ShaderRegistry::Library {
-  std::string name, path;
-  void* handle = nullptr;
-  std::vector<RtsClass> classes; // never grows after construction: references into it stay valid
-
-  Library(std::string bareName, std::string file);
-  ~Library() { dlclose(handle); }
-  Library(const Library&) = delete;
-  Library& operator=(const Library&) = delete;
-
-  const RtsClass* find(std::string_view className) const {
-    for (const RtsClass& c : classes)
-      if (className == c.name) return &c;
-    return nullptr;
-  }
+struct ShaderRegistry::Library : ShaderLibrary {
+  using ShaderLibrary::ShaderLibrary;
 };
 
 namespace {
@@ -40,36 +26,48 @@ std::string lowerCase(std::string_view text) {
 
 } // namespace
 
-ShaderRegistry::Library::Library(std::string bareName, std::string file) : name(std::move(bareName)), path(std::move(file)) {
-  handle = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
-  if (!handle) {
-    const char* reason = dlerror();
-    throw std::runtime_error("shader library " + path + ": " + (reason ? reason : "cannot be loaded"));
-  }
-  try {
-    void* symbol = dlsym(handle, RTS_ENTRY_NAME);
-    if (!symbol)
-      throw std::runtime_error("shader library " + path + ": exports no " RTS_ENTRY_NAME ", so it is no shader plug-in");
-    classes = checkPlugin(static_cast<const RtsPlugin*>(symbol), plugin_files::exportedBytes(symbol), path);
-  } catch (...) {
-    dlclose(handle);
-    throw;
-  }
-}
-
 ShaderRegistry::ShaderRegistry(std::vector<std::string> folders) : folders_(std::move(folders)) {}
 ShaderRegistry::~ShaderRegistry() = default;
 
 const ShaderRegistry::Library* ShaderRegistry::load(const std::string& bareName) const {
   for (const auto& library : libraries_)
     if (library->name == bareName) return library.get();
+  const std::string file = fileOf(bareName);
+  if (file.empty()) return nullptr;
+  libraries_.push_back(std::make_unique<Library>(bareName, file));
+  return libraries_.back().get();
+}
+
+std::string ShaderRegistry::fileOf(const std::string& bareName) const {
   for (const std::string& folder : folders_) {
-    const std::string file = plugin_files::trusted(folder) ? plugin_files::file(folder, bareName) : std::string();
-    if (file.empty()) continue;
-    libraries_.push_back(std::make_unique<Library>(bareName, file));
-    return libraries_.back().get();
+    std::string file = plugin_files::trusted(folder) ? plugin_files::file(folder, bareName) : std::string();
+    if (!file.empty()) return file;
   }
-  return nullptr;
+  return {};
+}
+
+int ShaderRegistry::reload(std::vector<std::string>& problems) {
+  const std::lock_guard lock(mutex_);
+  int count = 0;
+  for (auto& library : libraries_) {
+    const std::string file = fileOf(library->name);
+    if (!file.empty() && FileStamp::of(file) == library->stamp) continue;
+    try {
+      if (file.empty()) throw std::runtime_error("shader library " + library->path + ": its file is gone");
+      auto fresh = std::make_unique<Library>(library->name, file, *library, ++reloads_);
+      replaced_.push_back(nullptr);
+      replaced_.back() = std::exchange(library, std::move(fresh));
+      count++;
+    } catch (const std::runtime_error& e) { problems.emplace_back(e.what()); }
+  }
+  return count;
+}
+
+std::vector<std::string> ShaderRegistry::files() const {
+  const std::lock_guard lock(mutex_);
+  std::vector<std::string> result;
+  for (const auto& library : libraries_) result.push_back(library->path);
+  return result;
 }
 
 std::string ShaderRegistry::searched() const { return plugin_files::listed(folders_); }
@@ -81,7 +79,7 @@ const RtsClass& ShaderRegistry::find(std::string_view name, std::string_view lib
     if (!found) throw std::runtime_error("shader library \"" + std::string(library) + "\" not found in: " + searched());
     if (const RtsClass* shaderClass = found->find(name)) return *shaderClass;
     std::string has;
-    for (const RtsClass& c : found->classes) has += (has.empty() ? "" : ", ") + std::string(c.name);
+    for (const auto& c : found->classes) has += (has.empty() ? "" : ", ") + std::string(c->name);
     throw std::runtime_error("shader library " + found->path + " has no class \"" + std::string(name) + "\"; it has: " + has);
   }
   const std::string own = lowerCase(name);

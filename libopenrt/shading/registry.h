@@ -1,6 +1,7 @@
 // registry.h: shader classes by name and library. Loads plug-ins (dlopen) from the configured folders only, checks their
-// ABI, and keeps them loaded for the life of the registry. Used by the front end (parameter tables) and by the local backend
-// (functions). Thread-safe after construction for lookups of classes already loaded.
+// ABI, and keeps them loaded for the life of the registry, also those that a newer file has replaced: frames in flight, and
+// scenes that have not been committed since, go on with the former functions. Used by the front end (parameter tables) and by the
+// local backend (functions). Thread-safe after construction for lookups of classes already loaded.
 #pragma once
 
 #include <memory>
@@ -26,13 +27,24 @@ class ShaderRegistry {
   // where.
   const RtsClass& find(std::string_view name, std::string_view library) const;
 
+  // Loads the libraries anew whose files are not those that were loaded; find() then answers with the new tables. Handles stay:
+  // a parameter keeps its index as long as its name and type are declared, new ones come behind; one that is gone stays in the
+  // table without a name, behind what the plug-in knows of the structure. Returns how many; the others stay as they were, with a
+  // line in `problems` each.
+  int reload(std::vector<std::string>& problems);
+  // Files of the libraries in use, as they are found now.
+  std::vector<std::string> files() const;
+
  private:
   struct Library;
   const Library* load(const std::string& bareName) const; // null: in no folder
   std::string searched() const;                           // the folders, for messages
+  std::string fileOf(const std::string& bareName) const;  // empty: in no folder
   std::vector<std::string> folders_;
   mutable std::mutex mutex_;
   mutable std::vector<std::unique_ptr<Library>> libraries_;
+  std::vector<std::unique_ptr<Library>> replaced_;
+  uint32_t reloads_ = 0; // names the private copies
 };
 
 // Folders of a process: configured ones (colon-separated), $OPENRT_SHADER_PATH, the folder beside the library

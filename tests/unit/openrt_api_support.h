@@ -49,6 +49,10 @@ class CaptureBackend final : public Backend {
   void occludedRays(std::span<const RTray>, std::span<uint8_t> occluded) override {
     for (uint8_t& o : occluded) o = 1;
   }
+  bool pick(double, double, RThit& hit) override {
+    hit.t = 7;
+    return true;
+  }
 
  private:
   std::shared_ptr<Captured> captured_;

@@ -82,6 +82,7 @@ class AccelBuilder {
 
   // Records. (accel_records.cpp)
   void writeRecords(uint32_t cluster);
+  bool carriesParameters(const Geometry& g, uint32_t slot) const;
   Record recordOf(const Inherited& path, const Geometry& geometry, const Matrix4d& toRender);
   uint32_t bucketOf(uint32_t shaderSlot, uint32_t lightSet);
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "backend/local/accel_build.h"
+#include "shading/parameters.h"
 
 namespace openrt {
 namespace {
@@ -36,6 +37,18 @@ uint32_t AccelBuilder::bucketOf(uint32_t slot, uint32_t lightSet) {
   return found->second;
 }
 
+// Whether the values that a geometry has for parameters hold where it is drawn: with a shader of the class that they are of.
+bool AccelBuilder::carriesParameters(const Geometry& g, uint32_t slot) const {
+  const uint32_t own = in_->shaders.slotOf(g.shader);
+  if (g.parameters.empty() || own == 0 || in_->shaders[own].shaderClass != in_->shaders[slot].shaderClass) return false;
+  const RtsClass& table = *in_->shaders[own].shaderClass;
+  return std::all_of(g.parameters.begin(), g.parameters.end(), [&](const GeometryParameter& p) {
+    const size_t count = p.perVertex ? (g.points ? g.points->count<float>() / 3 : 0) : g.primitives();
+    const size_t floats = p.index < table.paramCount ? parameterFloats(table.params[p.index].type) : 0;
+    return floats > 0 && p.values && p.values->count<float>() >= count * floats;
+  });
+}
+
 // toRender: the geometry's local frame to render space.
 Record AccelBuilder::recordOf(const Inherited& path, const Geometry& g, const Matrix4d& toRender) {
   Record r;
@@ -50,6 +63,7 @@ Record AccelBuilder::recordOf(const Inherited& path, const Geometry& g, const Ma
   r.normals = g.normals ? g.normals->as<float>() : nullptr;
   r.texCoords = g.texCoords ? g.texCoords->as<float>() : nullptr;
   r.colors = g.colors ? g.colors->as<float>() : nullptr;
+  if (carriesParameters(g, r.shader)) r.parameters = g.parameters.data(), r.parameterCount = uint32_t(g.parameters.size());
   r.scale = 1 / accel_->scale_;
   normalMatrixOf(toRender, r.normalMatrix);
   r.toObject = Affine::from(inverse(toRender));

@@ -2,6 +2,7 @@
 // acceleration structure; moved dynamic instances and redefined dynamic objects change it in place; all else lays it out anew
 // from the parts that did not change.
 #include "backend/local/local.h"
+#include "shading/running.h"
 
 #include <chrono>
 #include <cmath>
@@ -109,6 +110,7 @@ void LocalBackend::makeShaders(RenderScene& next) const {
   fillHost(next.host);
   next.host.logCallback = options_.log;
   next.host.logUser = options_.logUser;
+  next.host.diagnose = options_.diagnose;
   const bool kept = snapshot_ && !changes_.shaders && !changes_.textures;
   if (kept && changes_.parameters.empty()) {
     next.textures = snapshot_->textures, next.shaders = snapshot_->shaders;
@@ -166,7 +168,11 @@ PixelFootprint LocalBackend::footprint(const RenderScene& next) const {
   RtsBatch batch;
   RayCounters counters;
   batch.scene = &next, batch.arena = &arena, batch.counters = &counters;
-  camera.shaderClass->generate(&next.host, &batch, camera.params, 2, points, size, &rays);
+  batch.rays = lanes;
+  {
+    const RunningShader running(*camera.shaderClass);
+    camera.shaderClass->generate(&next.host, &batch, camera.params, 2, points, size, &rays);
+  }
   // In local space the view axis is -z: compare where the rays are at depth 0 and at depth 1.
   const auto at = [&](int i, int k, float depth) { return org[k][i] + dir[k][i] * (depth + org[2][i]) / -dir[2][i]; };
   result.constant = std::hypot(at(1, 0, 0) - at(0, 0, 0), at(1, 1, 0) - at(0, 1, 0));
@@ -248,6 +254,7 @@ void LocalBackend::stats(RTstats& s) const {
     s.cameraRays = finished_->counters().camera, s.shadowRays = finished_->counters().shadow;
     s.secondaryRays = finished_->counters().secondary;
     s.renderSeconds = finished_->seconds();
+    s.shaderFaults = finished_->counters().faults.count(Fault::notFinite);
     finished_->describeError(s);
   }
   if (snapshot_) s.transport = snapshot_->frame.transport;
@@ -259,6 +266,38 @@ void LocalBackend::stats(RTstats& s) const {
   s.threads = threads_;
   std::snprintf(s.isa, sizeof s.isa, "%s", device_->wide ? "avx512" : __builtin_cpu_supports("avx2") ? "avx2" : "sse");
   std::snprintf(s.kernel, sizeof s.kernel, "Embree %s", RTC_VERSION_STRING);
+}
+
+// In render space, which has the world's lengths.
+bool LocalBackend::cameraRay(double x, double y, float origin[3], float direction[3]) const {
+  const ShaderSlot& camera = snapshot_->camera.shader;
+  if (!camera.shaderClass || snapshot_->frame.width == 0) return false;
+  Arena arena;
+  RtsRays local;
+  for (int k = 0; k < 3; k++) local.origin[k] = arena.takeZero<float>(lanes), local.direction[k] = arena.takeZero<float>(lanes);
+  float* xy[2] = {arena.take<float>(lanes), arena.take<float>(lanes)};
+  std::fill_n(xy[0], lanes, float(x)), std::fill_n(xy[1], lanes, float(y));
+  const float* points[2] = {xy[0], xy[1]};
+  const float size[2] = {float(snapshot_->frame.width), float(snapshot_->frame.height)};
+  RtsBatch batch;
+  RayCounters counters;
+  batch.scene = snapshot_.get(), batch.arena = &arena, batch.counters = &counters;
+  batch.rays = lanes; // no sampler: random places are in the middle
+  {
+    const RunningShader running(*camera.shaderClass);
+    camera.shaderClass->generate(&snapshot_->host, &batch, camera.params, 1, points, size, &local);
+  }
+  const Affine& m = snapshot_->camera.fromLocal;
+  double d[3], square = 0;
+  for (int k = 0; k < 3; k++) {
+    const float* o[3] = {local.origin[0], local.origin[1], local.origin[2]};
+    const float* v[3] = {local.direction[0], local.direction[1], local.direction[2]};
+    origin[k] = m.r[k][0] * *o[0] + m.r[k][1] * *o[1] + m.r[k][2] * *o[2] + m.r[k][3];
+    d[k] = double(m.r[k][0]) * *v[0] + double(m.r[k][1]) * *v[1] + double(m.r[k][2]) * *v[2];
+    square += d[k] * d[k];
+  }
+  for (int k = 0; k < 3; k++) direction[k] = float(d[k] / std::sqrt(square));
+  return true;
 }
 
 std::unique_ptr<Backend> makeLocalBackend(const BackendOptions& options) { return std::make_unique<LocalBackend>(options); }

@@ -23,6 +23,7 @@ class LocalBackend final : public Backend {
   void stats(RTstats& stats) const override;
   void castRays(std::span<const RTray> rays, std::span<RThit> hits) override;
   void occludedRays(std::span<const RTray> rays, std::span<uint8_t> occluded) override;
+  bool pick(double x, double y, RThit& hit) override;
 
  private:
   void prepare(); // the snapshot of the committed scene, if anything changed since the last
@@ -32,6 +33,8 @@ class LocalBackend final : public Backend {
   void makeCamera(RenderScene& next, const Vec3d& origin) const;
   PixelFootprint footprint(const RenderScene& next) const;
   Vec3d eye() const;
+  bool cameraRay(double x, double y, float origin[3], float direction[3]) const; // of the snapshot
+  RThit hitOf(const RayHits& found, uint32_t i) const;
   void loadRays(std::span<const RTray> rays, size_t first, Rays& to) const;
 
   BackendOptions options_;

@@ -58,17 +58,37 @@ void LocalBackend::castRays(std::span<const RTray> rays, std::span<RThit> hits) 
     found.allocate(arena, uint32_t(n));
     loadRays(rays, first, batch);
     accel_->intersect(batch, maskAll, Coherence::incoherent, found);
-    for (uint32_t i = 0; i < n; i++) {
-      RThit& hit = hits[first + i];
-      hit = {};
-      hit.t = std::numeric_limits<float>::infinity();
-      if (found.record[i] == noHit) continue;
-      const Record& r = accel_->records[found.record[i]];
-      hit.t = found.t[i], hit.u = found.u[i], hit.v = found.v[i];
-      worldNormal(r, found, i, hit.normal);
-      hit.instance = r.instance, hit.name = r.name, hit.primitive = found.primitive[i], hit.userData = r.userData;
-    }
+    for (uint32_t i = 0; i < n; i++) hits[first + i] = hitOf(found, i);
   });
+}
+
+RThit LocalBackend::hitOf(const RayHits& found, uint32_t i) const {
+  RThit hit{};
+  hit.t = std::numeric_limits<float>::infinity();
+  if (found.record[i] == noHit) return hit;
+  const Record& r = accel_->records[found.record[i]];
+  hit.t = found.t[i], hit.u = found.u[i], hit.v = found.v[i];
+  worldNormal(r, found, i, hit.normal);
+  hit.instance = r.instance, hit.name = r.name, hit.primitive = found.primitive[i], hit.userData = r.userData;
+  return hit;
+}
+
+// The camera's own ray in render space: what the picture shows, also where the world's coordinates are too large for float.
+bool LocalBackend::pick(double x, double y, RThit& hit) {
+  prepare();
+  Arena arena;
+  Rays ray;
+  ray.allocate(arena, 1);
+  float origin[3], direction[3];
+  if (!cameraRay(x, y, origin, direction)) return false;
+  for (int k = 0; k < 3; k++) ray.org[k][0] = origin[k], ray.dir[k][0] = direction[k];
+  ray.tnear[0] = 0, ray.tfar[0] = std::numeric_limits<float>::infinity();
+  RayHits found;
+  found.allocate(arena, 1);
+  accel_->intersect(ray, maskAll, Coherence::incoherent, found);
+  if (found.record[0] != noHit && culled(*snapshot_, ray, found, 0)) accel_->intersectFronts(ray, maskAll, found);
+  hit = hitOf(found, 0);
+  return true;
 }
 
 void LocalBackend::occludedRays(std::span<const RTray> rays, std::span<uint8_t> occluded) {

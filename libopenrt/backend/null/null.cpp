@@ -18,6 +18,7 @@ class NullBackend final : public Backend {
       if (const auto* object = entry->any.AsObject()) triangles_[object->id] = triangles(*object);
       if (const auto* deleted = entry->any.AsDeleteObject()) triangles_.erase(deleted->id);
       if (const auto* frame = entry->any.AsFrameSettings()) channels_ = frame->channels;
+      if (const auto* camera = entry->any.AsCamera()) camera_ = camera->shader != 0;
     }
     elements_.clear();
   }
@@ -47,6 +48,12 @@ class NullBackend final : public Backend {
     std::fill(occluded.begin(), occluded.end(), uint8_t(0));
   }
 
+  bool pick(double, double, RThit& hit) override {
+    hit = {};
+    hit.t = std::numeric_limits<float>::infinity();
+    return camera_ && channels_ != 0;
+  }
+
  private:
   uint64_t triangles(const edit::ObjectT& object) const {
     uint64_t count = 0;
@@ -61,6 +68,7 @@ class NullBackend final : public Backend {
   std::unordered_map<ArrayId, uint64_t> elements_; // 32-bit elements of the arrays of the commit at hand
   std::unordered_map<uint32_t, uint64_t> triangles_;
   uint32_t channels_ = 0;
+  bool camera_ = false;
 };
 
 } // namespace

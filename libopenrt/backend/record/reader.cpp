@@ -31,7 +31,10 @@ uint64_t unpackedBytes(const edit::Edits& edits) {
       if (shaderClass->name()) bytes += shaderClass->name()->size();
       if (shaderClass->library()) bytes += shaderClass->library()->size();
     } else if (const auto* object = entry->any_as_Object()) {
-      if (object->geometries()) bytes += sizeof(edit::Matrix) * uint64_t(object->geometries()->size());
+      if (!object->geometries()) continue;
+      bytes += sizeof(edit::Matrix) * uint64_t(object->geometries()->size());
+      for (const edit::Geometry* geometry : *object->geometries())
+        if (geometry && geometry->parameters()) bytes += perTable * uint64_t(geometry->parameters()->size());
     }
   }
   return bytes;

@@ -97,8 +97,10 @@ class RecordBackend final : public Backend {
     } else if (!renderer_) {
       throw std::system_error(std::make_error_code(std::errc::io_error), "the recording has ended with an error");
     }
-    for (const auto& entry : commit->edits.edits)
+    for (const auto& entry : commit->edits.edits) {
       if (const auto* frame = entry ? entry->any.AsFrameSettings() : nullptr) channels_ = frame->channels;
+      if (const auto* camera = entry ? entry->any.AsCamera() : nullptr) camera_ = camera->shader != 0;
+    }
     if (renderer_) renderer_->apply(std::move(commit));
   }
 
@@ -133,11 +135,18 @@ class RecordBackend final : public Backend {
     if (renderer_) return renderer_->occludedRays(rays, occluded);
     std::fill(occluded.begin(), occluded.end(), uint8_t(0));
   }
+  bool pick(double x, double y, RThit& hit) override {
+    if (renderer_) return renderer_->pick(x, y, hit);
+    hit = {};
+    hit.t = std::numeric_limits<float>::infinity();
+    return camera_ && channels_ != 0;
+  }
 
  private:
   std::unique_ptr<RecordingWriter> writer_;
   std::unique_ptr<Backend> renderer_;
   uint32_t channels_ = 0;
+  bool camera_ = false;
 };
 
 } // namespace

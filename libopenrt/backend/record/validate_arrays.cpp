@@ -3,6 +3,9 @@
 
 #include <cmath>
 #include <stdexcept>
+#include <string>
+
+#include "shading/parameters.h"
 
 namespace openrt {
 namespace {
@@ -60,6 +63,23 @@ void checkGeometryArrays(const edit::GeometryT& g, const Commit& commit) {
   checkAttribute(commit, g.normals, vertices, 3, "normals that are wrong in size or not finite");
   checkAttribute(commit, g.texCoords, vertices, 2, "texture coordinates that are wrong in size or not finite");
   checkAttribute(commit, g.colors, vertices, 4, "colours that are wrong in size or not finite");
+}
+
+void checkParameterValues(const edit::GeometryT& g, const edit::GeometryParameterT& own, const Commit& commit,
+                          const RtsParam* param) {
+  demand(g.primitive != edit::Primitive::Sphere, "a sphere with parameters of its own");
+  const Array* values = arriving(commit, own.values);
+  demand(values != nullptr, "a parameter without values");
+  const Array& counted = *arriving(commit, own.perVertex ? g.points : g.indices);
+  const size_t count = own.perVertex ? counted.count<float>() / 3 : counted.count<uint32_t>() / cornersOf(g.primitive);
+  demand(count > 0 && values->size() % (count * sizeof(float)) == 0, "values of a parameter of a wrong size");
+  const size_t floats = values->count<float>() / count;
+  demand(param ? floats == parameterFloats(param->type) : floats >= 1 && floats <= 16, "values of a parameter of a wrong size");
+  checkFinite(*values, "a parameter's value that is not finite");
+  for (size_t i = 0; param && i < count; i++) {
+    const std::string problem = valueProblem(*param, std::span<const float>(values->as<float>() + floats * i, floats));
+    if (!problem.empty()) throw std::runtime_error(problem);
+  }
 }
 
 void checkTexture(const edit::TextureT& t, const Commit& commit, const edit::TextureT* current) {

@@ -62,6 +62,13 @@ void CommitValidator::check(const edit::ShaderClassT& shaderClass) {
   demand(!live_.contains(shaderClass.id), "a shader class made twice");
   enter(shaderClass.id, Kind::ShaderClass);
   classes_[shaderClass.id] = shaders_ ? &shaders_->find(shaderClass.name, shaderClass.library) : nullptr;
+  classNames_[shaderClass.id] = shaderClass;
+}
+
+// Libraries were loaded anew.
+void CommitValidator::findClassesAgain() {
+  if (!shaders_) return;
+  for (auto& [id, table] : classes_) table = &shaders_->find(classNames_.at(id).name, classNames_.at(id).library);
 }
 
 void CommitValidator::check(const edit::ShaderT& shader) {
@@ -89,6 +96,26 @@ void CommitValidator::check(const edit::GeometryT& geometry, const Commit& commi
   demand(std::isfinite(geometry.width) && geometry.width > 0, "a width that is not positive");
   if (geometry.shader != 0) needShader(geometry.shader, RTS_SURFACE);
   checkGeometryArrays(geometry, commit);
+  checkParameters(geometry, commit);
+}
+
+void CommitValidator::checkParameters(const edit::GeometryT& geometry, const Commit& commit) const {
+  if (geometry.parameters.empty()) return;
+  demand(geometry.shader != 0, "parameters of no shader");
+  const RtsClass* table = classes_.at(shaderClasses_.at(geometry.shader));
+  std::unordered_set<uint32_t> seen;
+  for (const auto& own : geometry.parameters) {
+    demand(own && seen.insert(own->index).second, "a parameter of a geometry twice, or empty");
+    const RtsParam* param = nullptr;
+    if (table) {
+      demand(own->index < table->paramCount, "a parameter that its class does not have");
+      const uint8_t frequency = table->frequency ? table->frequency[own->index] : uint8_t(RTS_PER_SHADER);
+      demand(frequency == (own->perVertex ? RTS_PER_VERTEX : RTS_PER_TRIANGLE),
+             "a parameter that a geometry cannot have like that");
+      param = &table->params[own->index];
+    }
+    checkParameterValues(geometry, *own, commit, param);
+  }
 }
 
 void CommitValidator::check(const edit::ObjectT& object, const Commit& commit) {
@@ -184,7 +211,7 @@ void CommitValidator::checkEdit(const edit::AnyUnion& any, const Commit& commit)
   case Any::Transport:
     if (any.AsTransport()->shader != 0) needShader(any.AsTransport()->shader, RTS_TRANSPORT);
     return;
-  case Any::ReloadShaders: return;
+  case Any::ReloadShaders: return findClassesAgain();
   case Any::NONE: break;
   }
   refuse("an unknown kind of edit");

@@ -40,9 +40,11 @@ class CommitValidator {
 
   void check(const edit::TextureT& texture, const Commit& commit);
   void check(const edit::ShaderClassT& shaderClass);
+  void findClassesAgain();
   void check(const edit::ShaderT& shader);
   void check(const edit::ParameterT& parameter) const;
   void check(const edit::GeometryT& geometry, const Commit& commit) const;
+  void checkParameters(const edit::GeometryT& geometry, const Commit& commit) const;
   void check(const edit::ObjectT& object, const Commit& commit);
   void check(const edit::InstanceT& instance);
   void check(const edit::LightT& light);
@@ -56,6 +58,7 @@ class CommitValidator {
   std::unordered_set<uint32_t> dead_; // ids are never used again
   std::unordered_map<uint32_t, edit::TextureT> textures_;
   std::unordered_map<uint32_t, const RtsClass*> classes_; // null: unknown
+  std::unordered_map<uint32_t, edit::ShaderClassT> classNames_;
   std::unordered_map<uint32_t, uint32_t> shaderClasses_;
   std::unordered_map<uint32_t, ObjectUse> objects_;
   std::unordered_map<uint32_t, Placing> instances_;

@@ -1,0 +1,59 @@
+/* faulty.c: shaders that go wrong: one that crashes, one with NaN in its radiance, one with NaN in a lobe, and some whose traits
+ * keep silent about what they do. */
+#include <openrt/openrts.h>
+
+#include <math.h>
+#include <stddef.h>
+
+static void crash(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, RtsShading* out) {
+  volatile uintptr_t place = 16; /* no page is there */
+  volatile float* const nowhere = (volatile float*)place;
+  (void)host, (void)batch, (void)hits, (void)out;
+  *nowhere = 1;
+}
+
+static void notANumber(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, RtsShading* out) {
+  (void)host;
+  (void)batch;
+  for (uint32_t i = 0; i < hits->count; i++) {
+    out->radiance[0][i] = hits->position[0][i] < 0 ? sqrtf(hits->position[0][i]) : 0.5f;
+    out->radiance[1][i] = hits->position[0][i] < 0 ? INFINITY : 0.5f;
+    out->radiance[2][i] = 0.5f;
+  }
+}
+
+static void nanLobe(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, RtsSurface* out) {
+  RtsLobe* const lobe = host->lobe(batch, RTS_LOBE_DIFFUSE);
+  for (uint32_t i = 0; i < hits->count; i++) {
+    for (int k = 0; k < 3; k++) out->emission[k][i] = 0.25f, lobe->weight[k][i] = 0.5f;
+    lobe->normal[1][i] = NAN;
+  }
+}
+
+static void emission(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, RtsSurface* out) {
+  (void)host;
+  (void)batch;
+  for (uint32_t i = 0; i < hits->count; i++) out->emission[0][i] = 1;
+}
+
+static void veil(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, RtsSurface* out) {
+  RtsLobe* const lobe = host->lobe(batch, RTS_LOBE_TRANSPARENT);
+  (void)out;
+  for (uint32_t i = 0; i < hits->count; i++) lobe->weight[0][i] = 0.5f;
+}
+
+static void gloss(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, RtsSurface* out) {
+  RtsLobe* const lobe = host->lobe(batch, RTS_LOBE_GLOSSY);
+  (void)out;
+  for (uint32_t i = 0; i < hits->count; i++) lobe->weight[0][i] = 0.5f, lobe->parameter[0][i] = 0.3f;
+}
+
+#define SURFACE .size = sizeof(RtsClass), .kind = RTS_SURFACE
+static const RtsClass crashes = {SURFACE, .name = "Crash", .shade = crash};
+static const RtsClass nans = {SURFACE, .name = "Nan", .shade = notANumber};
+static const RtsClass nanLobes = {SURFACE, .name = "NanLobe", .surface = nanLobe};
+static const RtsClass lamps = {SURFACE, .name = "SilentLamp", .surface = emission};
+static const RtsClass veils = {SURFACE, .name = "SilentVeil", .surface = veil};
+static const RtsClass glosses = {SURFACE, .name = "SilentGloss", .surface = gloss};
+static const RtsClass* const classes[] = {&crashes, &nans, &nanLobes, &lamps, &veils, &glosses};
+RTS_EXPORT const RtsPlugin rtsPlugin = {RTS_MAGIC, RTS_ABI_MAJOR, RTS_ABI_MINOR, sizeof(RtsPlugin), 6, classes};
