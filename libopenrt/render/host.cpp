@@ -10,19 +10,21 @@
 #include "shading/running.h"
 
 namespace openrt {
+
+void makeRoomForLight(RtsBatch& batch, uint32_t n) {
+  if (batch.reach) return;
+  const uint32_t size = padded(n);
+  for (auto* group : {batch.local, batch.toLight, batch.color, batch.ambient})
+    for (int k = 0; k < 3; k++) group[k] = batch.arena->take<float>(size);
+  batch.reach = batch.arena->take<float>(size);
+}
+
 namespace {
 
 uint32_t lights(RtsBatch* batch) { return uint32_t(batch->scene->lightSets[batch->lightSet].size()); }
 
 const LightSlot& lightOf(const RtsBatch& batch, uint32_t i) {
   return batch.scene->lights[batch.scene->lightSets[batch.lightSet][i]];
-}
-
-void allocate(RtsBatch& batch, uint32_t n) {
-  const uint32_t size = padded(n);
-  for (auto* group : {batch.local, batch.toLight, batch.color, batch.ambient})
-    for (int k = 0; k < 3; k++) group[k] = batch.arena->take<float>(size);
-  batch.reach = batch.arena->take<float>(size);
 }
 
 void pointsToLocal(const Affine& m, uint32_t n, const float* const p[3], float* const out[3]) {
@@ -50,7 +52,7 @@ void directionsToRender(const Affine& m, uint32_t n, float* const v[3], float* r
 
 void illuminate(RtsBatch* batch, uint32_t i, const RtsHits* hits, RtsIllumination* out) {
   const uint32_t n = padded(hits->count);
-  if (!batch->reach) allocate(*batch, n);
+  makeRoomForLight(*batch, n);
   const LightSlot& light = lightOf(*batch, i);
   pointsToLocal(light.toLocal, n, hits->position, batch->local);
   for (int k = 0; k < 3; k++) {

@@ -37,6 +37,7 @@ void TileRenderer::addLights(RtsBatch& batch, const RtsHits& hits, float* const 
   for (uint32_t l = 0; l < batch.lobeCount; l++) scattering += scatteringOf(batch.lobes[l]) != nullptr;
   const uint32_t lights = scattering ? scene_.host.lights(&batch) : 0, n = hits.count;
   if (lights == 0) return;
+  makeRoomForLight(batch, n);
   ArenaScope scope(arena_);
   const uint32_t* all = countTo(arena_, n);
   auto* wanted = arena_.take<uint8_t>(padded(n));

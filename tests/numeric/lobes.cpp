@@ -266,6 +266,16 @@ TEST_F(AreaLights, ThePartsThatEitherWayFindsAddUpWhateverTheSize) { // both hal
   }
 }
 
+TEST_F(Lobes, SeveralLightsAddUpInEveryColour) {
+  place(square(Shader("Diffuse").set("reflectance", {.8, .6, .4})));
+  const double colors[3][3] = {{.1, .2, .3}, {.4, 0, .1}, {0, .3, .2}};
+  for (const auto& c : colors) rtUseLight(Shader("VRML97DirectionalLight").set("color", {c[0], c[1], c[2]}));
+  for (const int transport : {RT_TRANSPORT_DIRECT, RT_TRANSPORT_WHITTED, RT_TRANSPORT_PATH}) {
+    rtQuality(RT_TRANSPORT, transport);
+    expectColor(look(), {.8 * .5, .6 * .5, .4 * .6});
+  }
+}
+
 TEST_F(Lobes, DirectTransportFollowsNothing) {
   Shader mirror("Mirror");
   place(square(mirror));
