@@ -186,7 +186,7 @@ def car_paint():
         "Background { skyColor [ .35 .5 .8, .75 .82 .9, 1 .95 .88 ] skyAngle [ 1.1, 1.5707 ] groundColor [ .2 .2 .2, .3 .28 .26 ] "
         "groundAngle 1.5707 }",
         "DirectionalLight { direction .5 -1 -.6 color 1 .96 .9 intensity .8 }",
-        "DEF Body " + shape(shader("CarPaint", "carpaint", "1f flakeSize .006"), body), *wheels,
+        "DEF Body " + shape(shader("CarPaint", "carpaint", "1f flakeSize .0025", "1f flakes .25"), body), *wheels,
         shape(shader("Diffuse", "diffuse", "color reflectance .35 .35 .36"),
               quad((-40, 0, 40), (40, 0, 40), (40, 0, -40), (-40, 0, -40))))
 
@@ -232,7 +232,7 @@ def interior():
         shape(w, quad((-2, .8, -1.1), (-2, .8, -2), (-2, 2.1, -2), (-2, 2.1, -1.1))),
         at((-.3, .38, -1), shape("DEF Oak " + shader("Diffuse", "diffuse", "color reflectance .45 .27 .13"), box(1.5, .06, .8))),
         *(at((-.3 + x, .175, -1 + z), shape("USE Oak", box(.06, .35, .06))) for x in (-.68, .68) for z in (-.33, .33)),
-        at((-.2, .61, -1), "DEF Vase " + shape(shader("Glass", "glass", "color absorption .2 2 2.5"), "Sphere { radius .2 }")))
+        at((-.2, .61, -1), "DEF Vase " + shape(shader("Glass", "glass", "1f index 1.5"), "Sphere { radius .2 }")))
 
 
 def headlight():

@@ -82,6 +82,7 @@ xvrml::CameraSettings chooseCamera(const xvrml::OpenRTMapper& mapper, const View
     camera = mapper.fitCamera(fovy);
   }
   turn(camera, mapper.bounds(), view.turn);
+  if (view.shader) camera.shader = view.shader.get();
   return camera;
 }
 

@@ -21,6 +21,7 @@ struct View {
   bool fit = false;
   std::optional<xvrml::CameraSettings> viewer; // of a running world: instead of the first Viewpoint
   double turn = 0;           // radians about the vertical axis through the world's centre, counter-clockwise seen from above
+  xvrml::NodeRef shader;     // an ORTShader that makes the rays, instead of the viewpoint's own
   std::optional<double> fov; // degrees; the smaller of the two angles of view, as a Viewpoint's fieldOfView
 };
 

@@ -48,7 +48,10 @@ std::unique_ptr<xvrml::World> load(const Options& options) {
 
 class Headless {
  public:
-  Headless(const Options& options, const std::string& commandLine) : options_(options), commandLine_(commandLine) {}
+  Headless(const Options& options, const std::string& commandLine) : options_(options), commandLine_(commandLine) {
+    if (!options_.cameraShader.empty())
+      options_.view.shader = readShader(options_.cameraShader, "--camera-shader", RT_CAMERA, options_.render.shaderPath);
+  }
 
   int run() {
     if (options_.listShaders) return writeOut(listShaders(options_.render.shaderPath, options_.json)), exitDone;
@@ -135,7 +138,7 @@ class Headless {
     writeOut(explainWorld(options_, result.stats, renderer.explain()));
   }
 
-  const Options& options_;
+  Options options_;
   const std::string& commandLine_;
   Problems problems_{options_};
   std::unique_ptr<xvrml::Browser> browser_;

@@ -118,6 +118,9 @@ const OptionInfo table[] = {
      [](Options& o, const std::string&) { o.view.fit = true; }},
     {"--fov", "DEGREES", "View", "The smaller of the two angles of view, instead of the viewpoint's.",
      [](Options& o, const std::string& v) { o.view.fov = readNumber(v, 0, 180); }},
+    {"--camera-shader", "CLASS[:PARAM=VALUE...]", "View",
+     "Another camera at the same place: ThinLens:radius=.1:focus=5 (depth of field), Panorama (everything around).",
+     [](Options& o, const std::string& v) { o.cameraShader = v; }},
     {"--headlight", "on|off|auto", "View", "Light at the camera; auto (default): as NavigationInfo says.", setHeadlight},
     {"--time", "SECONDS", "Time",
      "The world at this time. Its clock starts at 0 when it is loaded and goes in steps of 1/fps up to here, as in a sequence; "

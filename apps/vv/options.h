@@ -32,6 +32,7 @@ struct Options {
   int turntable = 0;                    // pictures around the world; 0: none
   std::vector<std::string> definitions; // DEF.field=value
   std::vector<std::string> shaders;     // DEF=Class:param=value
+  std::string cameraShader;             // Class:param=value
   std::string viewpoint;                // as asked for: a name, a number or "all"
   bool check = false, strict = false;
   bool info = false, listNodes = false, listViewpoints = false, listShaders = false, explain = false, json = false;

@@ -12,6 +12,7 @@
 #include "backend/backend.h"
 #include "backend/record/reader.h"
 #include "shading/registry.h"
+#include "tools/scene_export.h"
 
 namespace {
 
@@ -20,7 +21,7 @@ using namespace openrt;
 enum ExitCode { Done = 0, RenderFailed = 1, Usage = 2, InputUnusable = 3 };
 
 struct Options {
-  std::string recording, output, shaderPath;
+  std::string recording, output, exported, shaderPath;
   uint32_t threads = 0;
   uint64_t frame = 0; // from 1; 0: the last
   bool stats = false;
@@ -83,6 +84,8 @@ std::optional<Options> parseOptions(int argc, char** argv, int& exitCode) {
   app.add_option("--threads", options.threads, "render threads (default: as many as the process may use)")
       ->check(CLI::Range(0, 1024));
   app.add_option("--shader-path", options.shaderPath, "folders with shader libraries, separated by colons");
+  app.add_option("--export", options.exported,
+                 "write the scene of the frame for other programs (JSON; arrays beside it in FILE.bin), render nothing");
   app.add_flag("--stats", options.stats, "print counts and times as JSON");
   try {
     app.parse(argc, argv);
@@ -129,12 +132,28 @@ class Replay {
   uint64_t frames_ = 0;
 };
 
+int writeScene(const Options& options, RecordingReader& reader, const ShaderRegistry& shaders) {
+  Scene scene;
+  uint64_t frames = 0;
+  try {
+    while (options.frame == 0 || frames < options.frame) {
+      const std::shared_ptr<const Commit> commit = reader.next();
+      if (!commit) break;
+      scene.apply(*commit);
+      frames += commit->edits.render;
+    }
+  } catch (const BadRecording& e) { return complain(InputUnusable, e.what()); }
+  exportScene(scene, shaders, options.exported);
+  return Done;
+}
+
 int run(const Options& options) {
   const ShaderRegistry shaders(shaderFolders(options.shaderPath));
   std::unique_ptr<RecordingReader> reader;
   try {
     reader = openRecording(options.recording, &shaders);
   } catch (const std::exception& e) { return complain(InputUnusable, e.what()); }
+  if (!options.exported.empty()) return writeScene(options, *reader, shaders);
   BackendOptions backendOptions;
   backendOptions.threads = options.threads;
   backendOptions.shaders = &shaders;

@@ -87,6 +87,16 @@ def test_light_of_more_than_one(wall):
     assert max(values) == 12.5
 
 
+def test_another_camera_at_the_same_place(vv):
+    vv.write("sky.wrl", HEADER + "NavigationInfo { headlight FALSE } Viewpoint { }\n"
+             "Background { skyColor [ 0 0 1, 0 0 1, 1 0 0, 1 0 0 ] skyAngle [ 1.5, 1.6, 3.14 ] }")
+    rows = vv.picture("--camera-shader", "Panorama", world="sky.wrl")
+    assert {p for p in rows[0] + rows[8]} == {(0, 0, 255)} and {p for p in rows[-1] + rows[15]} == {(255, 0, 0)}
+    assert vv.picture("--camera-shader", "ThinLens:focus=3", world="sky.wrl") == vv.picture(world="sky.wrl")
+    for wrong in ("Glass", "ThinLense", "ThinLens:radius=-1"):
+        assert vv("sky.wrl", "-o", "x.png", "--camera-shader", wrong).returncode == 2
+
+
 def test_list_shaders(vv):
     text = vv("--list-shaders").text
     for name in ("VRML97 (surface", "ThinLens (camera", "Panorama (camera", "Glass (surface", "VRML97Environment (environment"):

@@ -1,0 +1,160 @@
+// scene_export.cpp: see scene_export.h.
+#include "tools/scene_export.h"
+
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <stdexcept>
+
+#include <nlohmann/json.hpp>
+
+namespace openrt {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const char* kindName(RtsKind kind) {
+  constexpr const char* names[] = {"", "surface", "light", "camera", "environment", "transport"};
+  return kind >= RTS_SURFACE && kind <= RTS_TRANSPORT ? names[kind] : "";
+}
+
+uint32_t floatsOf(RtsType type) {
+  switch (type) {
+  case RTS_VEC2: return 2;
+  case RTS_VEC3:
+  case RTS_COLOR: return 3;
+  case RTS_VEC4: return 4;
+  case RTS_MATRIX: return 16;
+  default: return 1;
+  }
+}
+
+class Export {
+ public:
+  Export(const Scene& scene, const ShaderRegistry& shaders, const std::string& path)
+      : scene_(scene), registry_(shaders), path_(path), bytes_(std::fopen((path + ".bin").c_str(), "wbe"), &std::fclose) {
+    if (!bytes_) throw std::runtime_error(path + ".bin cannot be written");
+  }
+
+  void run() {
+    Json all = {{"format", 1},
+                {"frame",
+                 {{"width", scene_.frame.width},
+                  {"height", scene_.frame.height},
+                  {"samples", scene_.frame.samples},
+                  {"depth", scene_.frame.depth}}}};
+    all["meshes"] = meshes();
+    all["lights"] = Json::array();
+    for (const auto& [id, light] : scene_.lights) all["lights"].push_back(role(light.shader, light.matrix));
+    all["camera"] = role(scene_.camera.shader, scene_.camera.matrix);
+    all["environment"] = role(scene_.environment.shader, scene_.environment.matrix);
+    all["shaders"] = Json::object();
+    for (const auto& [id, values] : scene_.shaders) all["shaders"][std::to_string(id)] = shader(values);
+    all["textures"] = Json::object();
+    for (const auto& [id, texture] : scene_.textures) all["textures"][std::to_string(id)] = image(texture);
+    const std::string text = all.dump(1, ' ', false, Json::error_handler_t::replace);
+    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path_.c_str(), "wbe"), &std::fclose);
+    if (!file || std::fwrite(text.data(), 1, text.size(), file.get()) != text.size() || std::fflush(bytes_.get()) != 0)
+      throw std::runtime_error(path_ + " cannot be written");
+  }
+
+ private:
+  static Json role(uint32_t shader, const Matrix4d& matrix) { return {{"shader", shader}, {"matrix", matrix.m}}; }
+
+  // Where an array lies in the file of arrays; each is written once.
+  Json place(const ArrayPtr& array) {
+    if (!array) return nullptr;
+    const auto [found, fresh] = offsets_.try_emplace(array.get(), end_);
+    if (fresh) {
+      if (std::fwrite(array->data(), 1, array->size(), bytes_.get()) != array->size())
+        throw std::runtime_error(path_ + ".bin cannot be written");
+      end_ += array->size();
+    }
+    return {{"offset", found->second}, {"count", array->size() / 4}};
+  }
+
+  Json mesh(const Geometry& g, const Matrix4d& toWorld, uint32_t shader) {
+    constexpr const char* kinds[] = {"triangles", "lines", "points", "sphere"};
+    Json m = {{"kind", kinds[int(g.primitive)]},
+              {"shader", shader     ? shader
+                         : g.shader ? g.shader
+                                    : scene_.defaultShader},
+              {"matrix", (toWorld * g.matrix).m},
+              {"cull", g.cull},
+              {"clockwise", g.clockwise}};
+    if (g.primitive == edit::Primitive::Sphere) m["radius"] = g.width;
+    m["points"] = place(g.points), m["indices"] = place(g.indices), m["normals"] = place(g.normals);
+    m["texCoords"] = place(g.texCoords), m["colors"] = place(g.colors);
+    return m;
+  }
+
+  // With a stack of its own: instances may be nested deeply.
+  Json meshes() {
+    constexpr size_t limit = 1'000'000;
+    struct Open {
+      uint32_t object, shader;
+      Matrix4d matrix;
+    };
+    Json list = Json::array();
+    std::vector<Open> open{{0, 0, Matrix4d()}};
+    while (!open.empty()) {
+      const Open at = open.back();
+      open.pop_back();
+      if (const auto object = scene_.objects.find(at.object); object != scene_.objects.end())
+        for (const Geometry& g : object->second.geometries) list.push_back(mesh(g, at.matrix, at.shader));
+      if (list.size() > limit) throw std::runtime_error("more than a million placed geometries");
+      const std::vector<uint32_t>& children = scene_.childrenOf(at.object);
+      for (size_t i = children.size(); i-- > 0;) {
+        const Instance& instance = scene_.instances.at(children[i]);
+        const uint32_t shader = at.shader ? at.shader : instance.shader; // the outermost counts
+        if (instance.visible) open.push_back({instance.object, shader, at.matrix * instance.matrix});
+      }
+    }
+    return list;
+  }
+
+  Json shader(const ShaderValues& values) {
+    const ShaderClassName& name = scene_.classes.at(values.shaderClass);
+    const RtsClass& c = registry_.find(name.name, name.library);
+    Json parameters = Json::object();
+    for (uint32_t i = 0; i < c.paramCount; i++) {
+      const auto set = values.parameters.find(i);
+      parameters[c.params[i].name] = value(c.params[i], set == values.parameters.end() ? nullptr : &set->second);
+    }
+    return {{"class", name.name}, {"library", name.library}, {"kind", kindName(c.kind)}, {"parameters", std::move(parameters)}};
+  }
+
+  static Json value(const RtsParam& p, const edit::ParameterT* set) {
+    switch (p.type) {
+    case RTS_STRING: return set ? set->text : "";
+    case RTS_TEXTURE: return set ? set->texture : 0u;
+    case RTS_FLOATS: return set ? Json(set->floats) : Json::array();
+    case RTS_INT: return set ? set->integer : int(p.defaultValue[0]);
+    default: break;
+    }
+    std::vector<float> floats(p.defaultValue, p.defaultValue + floatsOf(p.type));
+    if (set && set->floats.size() == floats.size()) floats = set->floats;
+    return floats.size() == 1 ? Json(floats[0]) : Json(floats);
+  }
+
+  Json image(const TextureImage& texture) {
+    const edit::TextureT& d = texture.description;
+    return {{"width", d.width},   {"height", d.height}, {"components", d.components},
+            {"float", d.isFloat}, {"srgb", d.srgb},     {"texels", place(texture.texels)}};
+  }
+
+  const Scene& scene_;
+  const ShaderRegistry& registry_;
+  const std::string path_;
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> bytes_;
+  std::map<const Array*, size_t> offsets_;
+  size_t end_ = 0;
+};
+
+} // namespace
+
+void exportScene(const Scene& scene, const ShaderRegistry& shaders, const std::string& path) {
+  Export(scene, shaders, path).run();
+}
+
+} // namespace openrt
