@@ -1,0 +1,126 @@
+// faults.cpp: shaders that go wrong are named: NaN in their answers, crashes.
+#include <csignal>
+#include <cstring>
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "small_scene.h"
+
+namespace {
+
+using namespace abi_test;
+
+class Faults : public SmallScene {
+ protected:
+  void square(const char* className) {
+    shader(className, "faulty");
+    const RTid object = rtBeginObject(0);
+    rtBegin(RT_QUADS);
+    squareVertices();
+    rtEnd();
+    rtEndObject();
+    rtInstantiateObject(object);
+  }
+};
+
+TEST_F(Faults, NaNInRadianceIsZeroCountedAndNamedOnceAFrame) {
+  square("Nan");
+  const std::vector<float> pixels = picture(4);
+  for (size_t i = 0; i < 16; i++) {
+    const bool left = i % 4 < 2;
+    for (int k = 0; k < 3; k++) EXPECT_EQ(pixels[4 * i + size_t(k)], left && k < 2 ? 0.0f : 0.5f) << i << " " << k;
+  }
+  EXPECT_EQ(stats().shaderFaults, 8u);
+  EXPECT_EQ(log.count("shader Nan of faulty answered with NaN or infinity"), 1u);
+  EXPECT_TRUE(log.has("(8 points)"));
+  picture(4);
+  EXPECT_EQ(log.count("shader Nan of faulty"), 2u); // once more: another frame
+}
+
+TEST_F(Faults, ALobeThatIsNotFiniteHasNoWeight) {
+  square("NanLobe");
+  rtQuality(RT_TRANSPORT, RT_TRANSPORT_PATH);
+  const std::vector<float> pixels = picture(2);
+  for (size_t i = 0; i < 4; i++)
+    for (int k = 0; k < 3; k++) EXPECT_EQ(pixels[4 * i + size_t(k)], 0.25f);
+  EXPECT_EQ(stats().shaderFaults, 4u);
+  EXPECT_EQ(log.count("shader NanLobe of faulty"), 1u);
+}
+
+TEST_F(Faults, GoodShadersHaveNone) {
+  rtBindShader(0);
+  const RTid object = rtBeginObject(0);
+  rtSphere(0.5f);
+  rtEndObject();
+  rtInstantiateObject(object);
+  picture(8);
+  EXPECT_EQ(stats().shaderFaults, 0u);
+  EXPECT_TRUE(log.lines.empty());
+  EXPECT_EQ(rtRunningShader(), nullptr);
+}
+
+void nameTheShader(int number) {
+  const char* const name = rtRunningShader();
+  if (name && write(STDOUT_FILENO, name, std::strlen(name)) < 0) _exit(3);
+  signal(number, SIG_DFL);
+  raise(number);
+}
+
+TEST_F(Faults, ACrashCanBeNamed) {
+  int ends[2];
+  ASSERT_EQ(pipe(ends), 0);
+  const pid_t child = fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) { // nothing of the test framework runs here
+    dup2(ends[1], STDOUT_FILENO);
+    signal(SIGSEGV, nameTheShader);
+    rtNewContext((config() + " shaderpath=\"" + folders() + "\"").c_str());
+    rtTranslated(0, 0, 10), rtOrtho(2), rtLoadIdentity();
+    rtBindShader(rtNewShader(rtNewShaderClass("Crash", "faulty")));
+    const RTid object = rtBeginObject(0);
+    rtSphere(0.5f);
+    rtEndObject();
+    rtInstantiateObject(object);
+    rtFrameBuffer(4, 4, RT_RGBA);
+    rtRender();
+    _exit(0);
+  }
+  close(ends[1]);
+  std::string text;
+  char buffer[256];
+  for (ssize_t n = 0; (n = ::read(ends[0], buffer, sizeof buffer)) > 0;) text.append(buffer, size_t(n));
+  close(ends[0]);
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGSEGV) << status;
+  EXPECT_EQ(text, "Crash of faulty");
+}
+
+class Diagnosed : public Faults {
+ protected:
+  std::string config() const override { return "backend=debug:local threads=1"; }
+};
+
+TEST_F(Diagnosed, TraitsThatKeepSilent) {
+  rtQuality(RT_TRANSPORT, RT_TRANSPORT_PATH);
+  square("SilentLamp");
+  rtTranslated(0, 0, 1);
+  square("SilentVeil");
+  rtTranslated(0, 0, 1);
+  square("SilentGloss");
+  picture(2);
+  EXPECT_EQ(log.count("shader SilentGloss of faulty has glossy lobes, but its traits lack RTS_GLOSSY"), 1u);
+  EXPECT_FALSE(log.has("SilentLamp of faulty has emission")); // hidden by the others
+}
+
+TEST_F(Diagnosed, EmissionAndTransparencyThatAreNotAnnounced) {
+  square("SilentLamp");
+  rtTranslated(0, 0, 1);
+  square("SilentVeil");
+  picture(2);
+  EXPECT_EQ(log.count("shader SilentVeil of faulty lets light through, but its traits lack RTS_TRANSPARENT"), 1u);
+  EXPECT_EQ(log.count("shader SilentLamp of faulty has emission, but its traits lack RTS_EMISSIVE"), 1u);
+}
+
+} // namespace
