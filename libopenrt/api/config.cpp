@@ -22,7 +22,7 @@ BackendKind parseBackend(std::string_view text) {
   if (text == "local") return BackendKind::Local;
   if (text == "null") return BackendKind::Null;
   if (text == "record") return BackendKind::Record;
-  fail(RT_INVALID_VALUE, "backend=" + std::string(text) + ": expected local, null or record");
+  fail(RT_INVALID_VALUE, "backend=" + std::string(text) + ": expected local, null or record, or debug: and one of these");
 }
 
 // Takes one value off the front of the text.
@@ -45,9 +45,12 @@ std::string_view takeValue(std::string_view& text, std::string_view key) {
 
 void ContextConfig::set(std::string_view key, std::string_view value) {
   if (value.find('\0') != value.npos) fail(RT_INVALID_VALUE, std::string(key) + ": a null character in its value");
-  if (key == "backend")
-    backend = parseBackend(value);
-  else if (key == "threads")
+  constexpr std::string_view debugging = "debug:";
+  if (key == "backend") {
+    const bool wrapped = value.starts_with(debugging);
+    backend = parseBackend(wrapped ? value.substr(debugging.size()) : value);
+    debug = wrapped;
+  } else if (key == "threads")
     threads = parseThreads(value);
   else if (key == "file")
     file = value;

@@ -11,6 +11,7 @@ enum class BackendKind { Local, Null, Record };
 
 struct ContextConfig {
   BackendKind backend = BackendKind::Local;
+  bool debug = false; // debug:NAME
   uint32_t threads = 0;
   std::string file;       // the recording of backend=record
   std::string record;     // a recording made beside another backend

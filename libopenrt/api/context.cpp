@@ -35,11 +35,13 @@ void Context::makeBackend(const ContextConfig& config) {
   options.shaders = registry_.get();
   options.log = LogSink::forward;
   options.logUser = &log;
+  options.diagnose = config.debug;
   switch (config.backend) {
   case BackendKind::Local: backend_ = makeLocalBackend(options); break;
   case BackendKind::Null: backend_ = makeNullBackend(options); break;
   case BackendKind::Record: backend_ = makeRecordBackend(options); break;
   }
+  if (config.debug) backend_ = makeDebugBackend(options, std::move(backend_));
   if (!config.record.empty()) backend_ = makeTeeBackend(options, std::move(backend_));
 }
 

@@ -49,6 +49,8 @@ class Backend {
 std::unique_ptr<Backend> makeLocalBackend(const BackendOptions& options);
 std::unique_ptr<Backend> makeRecordBackend(const BackendOptions& options);
 std::unique_ptr<Backend> makeNullBackend(const BackendOptions& options);
+// Passes everything on to the backend that renders and explains misuse to options.log.
+std::unique_ptr<Backend> makeDebugBackend(const BackendOptions& options, std::unique_ptr<Backend> renderer);
 // Writes the recording options.file and passes everything on to the backend that renders.
 std::unique_ptr<Backend> makeTeeBackend(const BackendOptions& options, std::unique_ptr<Backend> renderer);
 

@@ -20,6 +20,7 @@ PARTS = {
     "libopenrt/backend/local/": "backend-local",
     "libopenrt/backend/record/": "backend-record",
     "libopenrt/backend/null/": "backend-null",
+    "libopenrt/backend/debug/": "backend-debug",
     "libopenrt/backend/cluster/": "backend-cluster",
     "libopenrt/tools/": "openrt-tools",
     "libxvrml/include/xvrml/openrt.h": "mapper-h",
@@ -57,6 +58,7 @@ ARROWS = {
     "openrt-backend": {"api-h", "openrt-scene", "common"},
     "backend-local": {"api-h", "shader-sdk", "openrt-scene", "openrt-shading", "openrt-render", "openrt-backend", "common"},
     "backend-record": {"api-h", "shader-sdk", "openrt-scene", "openrt-shading", "openrt-backend", "common"},  # its reader checks against class tables
+    "backend-debug": {"api-h", "shader-sdk", "openrt-scene", "openrt-shading", "openrt-backend", "common"},  # class tables and names for its messages
     "backend-null": {"api-h", "openrt-scene", "openrt-backend", "common"},
     "backend-cluster": {"api-h", "openrt-scene", "openrt-backend", "common"},
     "openrt-tools": {"api-h", "openrt-scene", "openrt-shading", "openrt-backend", "backend-record", "common"},

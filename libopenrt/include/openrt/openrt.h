@@ -65,7 +65,7 @@ RT_API void rtLogCallback(RTlogCallback callback, void* user);
 /* Life -------------------------------------------------------------------------------------------------------------- */
 
 /* Makes a context and makes it current. config: blank-separated key=value pairs, or NULL.
- *   backend=local|null|record   who renders (default local)
+ *   backend=local|null|record   who renders (default local); debug:NAME: the same, and misuse is explained to rtLogCallback
  *   threads=N                   render threads; 0 (default): as many as the process may use
  *   file=PATH                   the recording to write (backend=record); a value with blanks stands in "double quotes"
  *   record=PATH                 a recording written while another backend renders; openrt-replay makes the same bytes of it
@@ -226,9 +226,9 @@ RT_API void rtParameterString(int handle, const char* utf8);
 RT_API void rtParameterTexture(int handle, RTid texture);
 /* Parameters that a class declares per triangle or per vertex (RTparameterInfo.frequency): between rtBegin and rtEnd the calls
  * above set the value for the triangles or vertices that follow, of this object alone; the latched shader's class is meant.
- * Until the first such call, and outside, the shader's own value holds. For arrays: values by vertex (RT_PER_TRIANGLE: by
- * triangle) for rtDrawArrays and rtDrawElements with the bound shader; floats only; stride in bytes, 0 for tightly packed; NULL
- * turns it off. */
+ * Until the first such call, and outside, the shader's own value holds; a triangle has that of the vertex that completes it.
+ * For arrays: values by vertex (RT_PER_TRIANGLE: by triangle of the call) for rtDrawArrays and rtDrawElements while a shader of
+ * the class of the bound one is bound; stride in bytes, 0 for tightly packed; NULL turns it off. */
 RT_API void rtParameterPointer(int handle, size_t stride, const float* pointer);
 /* Loads the libraries of shader classes anew whose files have changed; returns how many. Shaders keep the parameters whose names
  * and types are still declared. A library that does not load, or lost a class in use, is RT_PLUGIN_ERROR and stays as it was. */
@@ -251,7 +251,7 @@ enum {
   RT_PARAM_TEXTURE
 };
 typedef struct RTparameterInfo {
-  const char* name; /* owned by the library, valid as long as the class */
+  const char* name; /* owned by the library, valid as long as the class; empty: gone since the library was loaded anew */
   RTenum type;      /* RT_PARAM_* */
   float defaultValue[16];
   float minimum, maximum; /* inclusive; -FLT_MAX and FLT_MAX where there is none */

@@ -1,0 +1,99 @@
+// debug.cpp: the backend of backend=debug:NAME: passes everything on to the backend that renders, keeps a scene of its own
+// beside, and explains misuse through the log callback: what, where, what to do. It costs memory for the tables and time for
+// each commit; pictures are those of the other backend. Application thread; cancel, progress and snapshot from any.
+#include <set>
+#include <utility>
+
+#include "backend/backend.h"
+#include "backend/debug/rules.h"
+#include "shading/registry.h"
+
+namespace openrt {
+namespace {
+
+using namespace debug;
+
+class DebugBackend final : public Backend {
+ public:
+  DebugBackend(const BackendOptions& options, std::unique_ptr<Backend> renderer)
+      : options_(options), renderer_(std::move(renderer)) {}
+
+  void apply(std::shared_ptr<const Commit> commit) override {
+    const SceneChanges changes = scene_.apply(*commit);
+    for (const auto& entry : commit->edits.edits) {
+      if (!entry) continue;
+      if (const auto* object = entry->any.AsObject()) {
+        History& history = histories_[object->id];
+        if (history.definitions++ == 0) history.hinted = object->dynamic;
+        fresh_.insert(object->id);
+      }
+      if (const auto* deleted = entry->any.AsDeleteObject()) histories_.erase(deleted->id), fresh_.erase(deleted->id);
+    }
+    changed_ |= changes.any();
+    renderer_->apply(std::move(commit));
+  }
+
+  void start() override {
+    if (changed_) look();
+    changed_ = false;
+    renderer_->start();
+  }
+
+  void wait() override { renderer_->wait(); }
+  void cancel() override { renderer_->cancel(); }
+  float progress() const override { return renderer_->progress(); }
+  bool snapshot(RTenum channel, std::span<float> out) const override { return renderer_->snapshot(channel, out); }
+  bool read(RTenum channel, std::span<float> out) const override { return renderer_->read(channel, out); }
+  void stats(RTstats& stats) const override { renderer_->stats(stats); }
+  void castRays(std::span<const RTray> rays, std::span<RThit> hits) override { renderer_->castRays(rays, hits); }
+  void occludedRays(std::span<const RTray> rays, std::span<uint8_t> occluded) override {
+    renderer_->occludedRays(rays, occluded);
+  }
+  bool pick(double x, double y, RThit& hit) override { return renderer_->pick(x, y, hit); }
+
+ private:
+  const RtsClass* classOf(uint32_t shader) const {
+    const auto values = scene_.shaders.find(shader);
+    if (values == scene_.shaders.end()) return nullptr;
+    const auto name = scene_.classes.find(values->second.shaderClass);
+    if (name == scene_.classes.end() || !options_.shaders) return nullptr;
+    try {
+      return &options_.shaders->find(name->second.name, name->second.library);
+    } catch (const std::exception&) { return nullptr; } // whoever renders says it
+  }
+
+  void look() {
+    if (!options_.log) return;
+    const Facts facts{scene_, [this](uint32_t shader) { return classOf(shader); }, histories_};
+    for (const auto rules : {sceneRules(), shaderRules()})
+      for (const Rule& rule : rules) rule.check(facts, reporter(rule.name));
+    for (uint32_t id : std::exchange(fresh_, {})) {
+      const auto object = scene_.objects.find(id);
+      if (object == scene_.objects.end()) continue;
+      for (const ObjectRule& rule : objectRules()) rule.check(id, object->second, facts, reporter(rule.name));
+    }
+  }
+
+  Report reporter(const char* rule) {
+    return [this, rule](uint32_t id, const std::string& text) {
+      if (!said_.emplace(rule, id).second) return;
+      options_.log(2, ("debug: " + std::string(rule) + ": " + text).c_str(), options_.logUser);
+    };
+  }
+
+  BackendOptions options_;
+  std::unique_ptr<Backend> renderer_;
+  Scene scene_;
+  std::map<uint32_t, History> histories_;
+  std::set<uint32_t> fresh_; // objects defined since they were looked at
+  std::set<std::pair<std::string, uint32_t>> said_;
+  bool changed_ = false;
+};
+
+} // namespace
+
+std::unique_ptr<Backend> makeDebugBackend(const BackendOptions& options, std::unique_ptr<Backend> renderer) {
+  return std::make_unique<DebugBackend>(options, std::move(renderer));
+}
+
+} // namespace openrt

@@ -1,0 +1,84 @@
+// rules_geometry.cpp: rules about the vertices of one object. Application thread.
+#include <algorithm>
+#include <cmath>
+
+#include "backend/debug/rules.h"
+
+namespace openrt::debug {
+namespace {
+
+Vec3d at(const ArrayPtr& array, size_t i) {
+  const float* p = array->as<float>() + 3 * i;
+  return {p[0], p[1], p[2]};
+}
+
+// Coordinates in float whose steps are coarse beside the object's own size. Positions in double never come here like that: they
+// have an origin of their own.
+void farFromOrigin(uint32_t id, const Object& object, const Facts&, const Report& report) {
+  constexpr double steps = 1 << 14; // of float, over the extent of a geometry
+  for (const Geometry& g : object.geometries) {
+    if (!g.points || g.points->count<float>() < 6) continue;
+    double low[3] = {1e300, 1e300, 1e300}, high[3] = {-1e300, -1e300, -1e300}, reach = 0, extent = 0;
+    for (size_t i = 0; i < g.points->count<float>(); i++) {
+      const double v = g.points->as<float>()[i];
+      low[i % 3] = std::min(low[i % 3], v), high[i % 3] = std::max(high[i % 3], v);
+    }
+    for (int k = 0; k < 3; k++)
+      extent = std::max(extent, high[k] - low[k]), reach = std::max({reach, std::fabs(low[k]), std::fabs(high[k])});
+    if (extent > 0 && reach * 0x1p-23 * steps > extent)
+      report(id, nameOf("object", id) + " is " + std::to_string(extent) + " large and " + std::to_string(reach) +
+                     " away from the origin of its coordinates in float, which are too coarse there: give them in double "
+                     "(rtVertex3d, RT_DOUBLE) or about its own middle, and place it with rtTranslated");
+  }
+}
+
+struct Sides {
+  size_t triangles = 0, opposite = 0; // of the given normals to the side that the corners say
+  Vec3d area;                         // sum of area vectors: 0 of a closed surface
+  double total = 0, volume = 0;
+};
+
+Sides sidesOf(const Geometry& g) {
+  Sides s;
+  const uint32_t* index = g.indices->as<uint32_t>();
+  const double turn = g.clockwise ? -1 : 1;
+  const Vec3d middle = at(g.points, index[0]);
+  for (size_t t = 0; t < g.primitives(); t++, index += 3) {
+    const Vec3d a = at(g.points, index[0]), b = at(g.points, index[1]), c = at(g.points, index[2]);
+    const Vec3d n = cross(b - a, c - a) * (0.5 * turn);
+    s.triangles++;
+    s.area = s.area + n;
+    s.total += length(n);
+    s.volume += dot(a - middle, n) / 3;
+    if (!g.normals) continue;
+    bool opposite = true;
+    for (int k = 0; k < 3; k++) opposite = opposite && dot(at(g.normals, index[k]), n) < 0;
+    s.opposite += opposite;
+  }
+  return s;
+}
+
+void wrongSides(uint32_t id, const Object& object, const Facts&, const Report& report) {
+  for (const Geometry& g : object.geometries) {
+    if (g.primitive != edit::Primitive::Triangles || !g.points || !g.indices || g.primitives() == 0) continue;
+    const Sides s = sidesOf(g);
+    if (2 * s.opposite > s.triangles)
+      report(id, std::to_string(s.opposite) + " of " + std::to_string(s.triangles) + " triangles of " + nameOf("object", id) +
+                     " have normals on the other side than the order of their corners says: turn the normals or the order, or "
+                     "rtEnable(RT_CW_FRONT)");
+    const bool closed = s.triangles >= 4 && length(s.area) < 1e-3 * s.total;
+    if (g.cull && closed && s.volume < 0)
+      report(id, nameOf("object", id) +
+                     " is closed, its faces look inwards and RT_CULL_FACE is on: from outside its near side is "
+                     "not there; turn the order of the corners, or RT_CW_FRONT (mirrored matrices are made up "
+                     "for)");
+  }
+}
+
+constexpr ObjectRule table[] = {{"far-from-origin", farFromOrigin}, {"wrong-side", wrongSides}};
+
+} // namespace
+
+std::span<const ObjectRule> objectRules() { return table; }
+
+} // namespace openrt::debug
