@@ -57,7 +57,7 @@ struct Record {
   Affine toRender;          // instanced: kernel's frame -> render space; sphere: unit-sphere frame -> render space
   Affine fromRender;        // sphere: its inverse
   float normalMatrix[3][3]; // normals of the geometry -> render space (inverse transpose), not normalised
-  Affine toObject;          // render space -> frame in which the geometry was defined
+  Affine toObject;          // render space -> frame of the object that has the geometry
   float kernelNormal[3][3]; // instanced: the kernel's geometric normal -> render space
 };
 

@@ -66,7 +66,6 @@ Record AccelBuilder::recordOf(const Inherited& path, const Geometry& g, const Ma
   if (carriesParameters(g, r.shader)) r.parameters = g.parameters.data(), r.parameterCount = uint32_t(g.parameters.size());
   r.scale = 1 / accel_->scale_;
   normalMatrixOf(toRender, r.normalMatrix);
-  r.toObject = Affine::from(inverse(toRender));
   return r;
 }
 
@@ -95,6 +94,7 @@ void AccelBuilder::writeRecords(uint32_t c) {
       const bool sphere = g.primitive == edit::Primitive::Sphere;
       const Matrix4d unit = sphere ? toRender * uniformScale(g.width) : toRender;
       Record r = recordOf(path, g, toRender);
+      r.toObject = Affine::from(inverse(itemToRender));
       switch (info.drawn[entry]) {
       case DrawnAs::baked:
         if (!root)

@@ -329,8 +329,8 @@ struct RtsHost {
   void (*findHit)(RtsBatch* batch, const RtsRequest* rays, RtsFound* out);
   /* Colour that is let through between a ray's origin and its end: 0 where it is blocked. */
   void (*occluded)(RtsBatch* batch, const RtsRequest* rays, float* const transmission[3]);
-  /* Of the hits: position and geometric normal (not unit) in the frame of the object that was defined (matrices at the definition
-   * undone); NULL pointers are left out. */
+  /* Of the hits: position and geometric normal (not unit) in the frame of the object (rtBeginObject) that the surface belongs to:
+   * what rtInstantiateObject places. NULL pointers are left out. */
   void (*local)(RtsBatch* batch, float* const position[3], float* const normal[3]);
   /* Change of position per unit of texture coordinate, render space; 0 without texture coordinates. */
   void (*derivatives)(RtsBatch* batch, float* const alongS[3], float* const alongT[3]);

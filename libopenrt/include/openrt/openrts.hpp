@@ -85,13 +85,13 @@ class Tracer {
   uint32_t count = 0; // of the batch
   detail::Asked* asked = nullptr;
 
-  // Light that comes back along a ray, shaded by the engine. Black beyond the depth limit.
-  Color trace(const Ray& ray, float length = infinity, float* alpha = nullptr) const {
-    return traceFrom(&ray.origin, ray.direction, length, alpha);
+  // Light that comes back along a ray (unit direction) from a place, shaded by the engine. Black beyond the depth limit.
+  Color trace(Vec3 from, Vec3 towards, float length = infinity, float* alpha = nullptr) const {
+    return traceFrom(&from, towards, length, alpha);
   }
-  Found findHit(const Ray& ray, float length = infinity) const { return findFrom(&ray.origin, ray.direction, length); }
+  Found findHit(Vec3 from, Vec3 towards, float length = infinity) const { return findFrom(&from, towards, length); }
   // The colour that is let through between a ray's origin and its end: black where it is blocked.
-  Color occluded(const Ray& ray, float length = infinity) const { return occludedFrom(&ray.origin, ray.direction, length); }
+  Color occluded(Vec3 from, Vec3 towards, float length = infinity) const { return occludedFrom(&from, towards, length); }
   // A point of the unit square, for each pair < 4 another: well spread over the samples of a pixel. Using one turns the pixel's
   // value into an estimate.
   Vec2 random(uint32_t pair) const;
@@ -150,11 +150,15 @@ struct Hit : Tracer {
 };
 
 // Of a transport: the ray of a sample of the picture.
-struct CameraRay : Tracer, Ray {
-  using Tracer::findHit;
-  using Tracer::occluded;
-  using Tracer::trace;
+struct CameraRay : Tracer {
+  Vec3 origin, direction; // render space; unit
   float length = infinity;
+
+  using Tracer::findHit;
+  using Tracer::trace;
+  // What the engine makes of this ray, and what it meets.
+  Color trace(float* alpha = nullptr) const { return traceFrom(&origin, direction, length, alpha); }
+  Found findHit() const { return findFrom(&origin, direction, length); }
 };
 
 struct Shaded {
