@@ -1,7 +1,13 @@
 // error.cpp: see error.h.
 //
 // Replicated randomised quasi-Monte Carlo: A. B. Owen, "Monte Carlo theory, methods and examples", 17.3 (error estimation from
-// independent randomisations). Student's interval over the replicates' means; the last replicate may be shorter.
+// independent randomisations); Student's interval over the means of the replicates.
+//   A pixel's own estimate of that variance is not enough. Samples of light are skewed, and a pixel that has missed what is rare
+// has both too small a mean and too small a variance: of such intervals 89 % held instead of 95 % (scene `room` of the audit).
+// The variance of the 5x5 pixels around does not know what this pixel has missed, and with it 95 % hold. How much each of the two
+// is worth is estimated too: what the variances of the window differ by beyond what chance makes of them is real (H. Bühlmann, E.
+// Straub, "Glaubwürdigkeit für Schadensätze", 1970; for intervals G. K. Smyth, "Linear models and empirical Bayes methods",
+// 2004).
 #include "render/error.h"
 
 #include <algorithm>
@@ -14,58 +20,201 @@ namespace {
 
 constexpr uint32_t fewestSamples = 32, fewestReplicates = 16; // of frames whose error is asked for
 constexpr uint32_t trustedReplicates = 8;
-// A mean of n samples is about normal if skewness^2 / n and kurtosis / n are small (F. Y. Edgeworth's expansion). For a light
-// that a fraction p of the samples meets both are 1 / (n p): one over the number of samples that met it.
-//   Both are judged by the 8x8 pixels together, by two measures that fail in different places: the kurtosis of all samples finds
-// what is rare and bright, unless a brighter edge hides it; the skewness of the replicates' means finds tails of any scale,
-// unless few pixels have met them. A test of the pixel by itself would pick those that have missed what is rare, and make things
-// worse. Where nothing is random only edges are left, of which the first measure is enough. Limits by experiment
-// (docs/accuracy.md); the mean |skewness| of sixteen normal numbers is 0.44.
-constexpr double largestKurtosis = 1.0 / 4, largestSkewness = 0.7; // the former over n
+constexpr uint32_t reach = 2; // the window: so many pixels to each side, within the tile
+constexpr uint32_t windowPixels = (2 * reach + 1) * (2 * reach + 1);
+// Replicates' means that carry the variance of a window, at least; hits by what is rare and bright, in a window, at least.
+constexpr double fewestMeans = 2.5, fewestHits = 4;
+constexpr double negligible = .25; // of a half-width
+constexpr double largestExcess = 4;
 
-struct Moments { // of the grey of the samples about their mean, summed
-  double second, fourth;
+// Of the means of the replicates of one colour of one pixel, about their mean.
+struct Spread {
+  double variance = 0;    // k-statistic
+  double uncertainty = 0; // variance of that, without bias
+  double fourth = 0;      // central sum
 };
 
-Moments moments(const PixelSums& s) {
-  const double n = s.samples, sum = s.delta[0] + s.delta[1] + s.delta[2], m = sum / n;
-  const double second = s.grey[0] - sum * m;
-  const double fourth = s.grey[2] - 4 * m * s.grey[1] + 6 * m * m * s.grey[0] - 3 * n * m * m * m * m;
-  const double noise = 1e-12 * std::fabs(s.grey[0]); // of the subtraction
-  return {second > noise ? second : 0, std::max(fourth, 0.0)};
+Spread spreadOf(const PixelSums& s, int k, double size) {
+  Spread out;
+  const double r = s.replicates, m = s.closed[k] / r;
+  const double second = s.closed2[k] - s.closed[k] * m;
+  if (!(second > 1e-13 * s.closed2[k])) return out; // of the subtraction
+  const double fourth = s.closed4[k] - 4 * m * s.closed3[k] + 6 * m * m * s.closed2[k] - 3 * r * m * m * m * m;
+  const double scale = 1 / (size * size);
+  const double squares = second * scale;
+  out.fourth = std::max(fourth, 0.0) * scale * scale;
+  out.variance = squares / (r - 1);
+  // Fisher's fourth k-statistic; Var(k2) = k4 / r + 2 k2^2 / (r - 1) with k2^2 corrected for its own bias.
+  const double k4 = r < 4 ? 0 : r * ((r + 1) * out.fourth - 3 * (r - 1) / r * squares * squares) / ((r - 1) * (r - 2) * (r - 3));
+  out.uncertainty = k4 / r + 2 / (r + 1) * (out.variance * out.variance - k4 / r);
+  return out;
 }
 
-double skewnessOfMeans(const PixelSums& s) {
-  const double r = s.replicates, mean = s.closedGrey[0] / r, square = s.closedGrey[1] / r, v = square - mean * mean;
-  if (!(v > 1e-12 * square)) return 1; // all alike although the samples vary: a lattice
-  return (s.closedGrey[2] / r - 3 * mean * square + 2 * mean * mean * mean) / (v * std::sqrt(v));
-}
-
-// Variance of the mean of colour k, and the degrees of freedom it was estimated with.
-double varianceOfMean(const PixelSums& s, const Replicates& replicates, int k, uint32_t& freedom) {
-  const double n = s.samples;
-  const uint32_t rest = replicates.many() ? s.samples - s.replicates * replicates.size() : 0;
-  const uint32_t count = s.replicates + (rest ? 1 : 0);
-  if (!replicates.many() || count < 2) {
-    freedom = s.samples - 1;
-    return std::max(0.0, s.delta2[k] - s.delta[k] * s.delta[k] / n) / (n - 1) / n;
+// What the windows sum up.
+struct Cell {
+  double count = 0, variance = 0, variance2 = 0, uncertainty = 0, fourth = 0;
+  void add(const Cell& c) {
+    count += c.count, variance += c.variance, variance2 += c.variance2, uncertainty += c.uncertainty, fourth += c.fourth;
   }
-  // Sum over the replicates of (their sum - their share of the whole)^2: unbiased where all are of one size.
-  const double mean = s.delta[k] / n, size = replicates.size();
-  const double last = (s.delta[k] - s.closed[k]) - rest * mean;
-  const double squares = s.closed2[k] - 2 * size * mean * s.closed[k] + s.replicates * size * size * mean * mean + last * last;
-  freedom = count - 1;
-  const double noise = 1e-13 * s.closed2[k];
-  return squares > noise ? squares / (n * n) * count / (count - 1) : 0;
+};
+
+// Sums over windows, in two passes; each window is summed anew, so that no cell knows of numbers that lie outside of it.
+void sumWindows(std::vector<Cell>& cells, uint32_t width, uint32_t height) {
+  std::vector<Cell> rows(cells.size());
+  const auto pass = [&](const std::vector<Cell>& from, std::vector<Cell>& to, bool across) {
+    for (uint32_t y = 0; y < height; y++)
+      for (uint32_t x = 0; x < width; x++) {
+        Cell& sum = to[size_t(y) * width + x] = {};
+        const uint32_t at = across ? x : y, end = across ? width : height;
+        for (uint32_t i = at - std::min(at, reach); i <= std::min(at + reach, end - 1); i++)
+          sum.add(from[across ? size_t(y) * width + i : size_t(i) * width + x]);
+      }
+  };
+  pass(cells, rows, true);
+  pass(rows, cells, false);
 }
+
+// The variance of a pixel's replicates from its own and its window's, and the degrees of freedom of that.
+double combined(double own, const Cell& window, double replicates, double& freedom) {
+  const double n = window.count, mean = window.variance / n;
+  const double chance = std::max(window.uncertainty / n, 0.0);
+  const double between = n > 1 ? std::max(0.0, window.variance2 / n - mean * mean) * n / (n - 1) : 0;
+  const double real = std::max(0.0, between - chance);
+  const double weight = n > 1 && real + chance > 0 ? real / (real + chance) : 1;
+  freedom = (replicates - 1) / (weight * weight + (1 - weight) * (1 - weight) / n);
+  return mean + weight * (own - mean);
+}
+
+// What is rare and bright in a tile, from the samples' grey: how often pixels that it matters to have met it.
+struct Rare {
+  double square2 = 0, fourth = 0, variance = 0; // sums over the pixels; square2: of (sum of squares)^2 / samples
+  uint32_t pixels = 0;
+  float largest[3] = {};
+
+  void add(const PixelSums& s) {
+    const double n = s.samples, sum = s.delta[0] + s.delta[1] + s.delta[2], m = sum / n;
+    double second = s.grey[0] - sum * m;
+    if (!(second > 1e-12 * std::fabs(s.grey[0]))) second = 0; // of the subtraction
+    const double g4 = s.grey[2] - 4 * m * s.grey[1] + 6 * m * m * s.grey[0] - 3 * n * m * m * m * m;
+    square2 += second * second / n, fourth += std::max(g4, 0.0);
+    variance += n > 1 ? second / (n * (n - 1)) : 0, pixels++;
+    for (int k = 0; k < 3; k++) largest[k] = std::max(largest[k], s.largest[k]);
+  }
+  // For light that a fraction p of n samples meets fourth / square2 is n / (1 + n p).
+  double hits(double samples) const {
+    if (!(fourth > 0)) return std::numeric_limits<double>::infinity();
+    return std::max(samples * square2 / fourth - 1, 1 / double(pixels));
+  }
+  // What it adds to a pixel on average: hits^2 times the variance that one hit makes.
+  double mean(double samples) const { return std::sqrt(variance / pixels * hits(samples)); }
+};
+
+// Mean of |x| of a normal x of estimated variance v, with the bias of the root of a variance taken out (the factor known as c4).
+double meanError(double v, double freedom) { return std::sqrt(2 / M_PI * v) * (4 * freedom + 1) / (4 * freedom); }
+
+// By how much the mean of |error| is more than follows from a pixel's own variance v: with excess kurtosis, q of the mean, the
+// root of v is too small by q / 8 on average, and the mean of |error| is smaller than a normal one's by q / 24.
+double tailFactor(const Cell& window, double replicates) {
+  const double squares = window.variance2 - window.uncertainty; // of the true variances
+  const double q = squares > 0 ? window.uncertainty / squares - 2 / (replicates - 1) : largestExcess;
+  return 1 + std::clamp(q, 0.0, largestExcess) / 12;
+}
+
+void finish(PixelError& e, double expected) {
+  double half = 0;
+  for (float h : e.halfWidth) half += double(h);
+  e.relative = relativeError(half, e.mean), e.expected = relativeError(expected, e.mean);
+}
+
+// The pixels of a tile, colour by colour.
+class TileErrors {
+ public:
+  TileErrors(uint32_t width, std::span<const PixelSums* const> pixels, const Replicates& replicates, std::span<PixelError> out)
+      : width_(width), height_(uint32_t(pixels.size()) / width), pixels_(pixels), replicates_(replicates), out_(out),
+        pooled_(pixels.size()) {}
+
+  void make() {
+    for (size_t i = 0; i < pixels_.size(); i++) {
+      out_[i] = independentError(*pixels_[i]);
+      rare_.add(*pixels_[i]);
+    }
+    if (!replicates_.many()) return;
+    for (const bool random : {false, true})
+      for (int k = 0; k < 3; k++) pool(random, k);
+    for (size_t i = 0; i < pixels_.size(); i++) {
+      const bool enough = pixels_[i]->replicates >= trustedReplicates;
+      if (out_[i].constant)
+        out_[i].trusted = enough;
+      else if (pixels_[i]->replicates >= 2)
+        judge(*pixels_[i], pooled_[i], enough, out_[i]);
+    }
+  }
+
+ private:
+  struct Pooled { // of a pixel
+    double variance[3] = {}, freedom[3] = {}, expected[3] = {};
+    double window = 0; // pixels in it
+    bool few = false;  // few replicates carry the window's variance
+  };
+
+  // Random pixels and others are kept apart: those have nothing to say of each other. Nor have those that are exact.
+  void pool(bool random, int k) {
+    std::vector<Cell> cells(pixels_.size());
+    for (size_t i = 0; i < pixels_.size(); i++) {
+      if (pixels_[i]->random != random || out_[i].constant || pixels_[i]->replicates < 2) continue;
+      const Spread s = spreadOf(*pixels_[i], k, replicates_.size());
+      cells[i] = {1, s.variance, s.variance * s.variance, s.uncertainty, s.fourth};
+    }
+    const std::vector<Cell> own = cells;
+    sumWindows(cells, width_, height_);
+    for (size_t i = 0; i < pixels_.size(); i++) {
+      if (own[i].count == 0) continue;
+      Pooled& p = pooled_[i];
+      const double r = pixels_[i]->replicates, parts = pixels_[i]->samples / double(replicates_.size());
+      p.variance[k] = combined(own[i].variance, cells[i], r, p.freedom[k]) / parts;
+      // For the picture as a whole the pixel's own: where neighbours differ the mean of roots is not the root of the mean.
+      // But where it has met nothing at all, what others have met.
+      p.expected[k] = own[i].variance > 0 ? meanError(own[i].variance / parts, r - 1) * tailFactor(cells[i], r)
+                                          : meanError(p.variance[k], p.freedom[k]);
+      p.window = cells[i].count;
+      const double squares = cells[i].variance * (r - 1);
+      p.few |= random && cells[i].fourth * fewestMeans > squares * squares;
+    }
+  }
+
+  void judge(const PixelSums& s, const Pooled& p, bool enough, PixelError& e) const {
+    const bool dark = s.random && !(p.variance[0] + p.variance[1] + p.variance[2] > 0); // all the same, here and around
+    double half = 0, expected = 0;
+    for (int k = 0; k < 3; k++) {
+      double h = student95(p.freedom[k]) * std::sqrt(p.variance[k]), mean = p.expected[k];
+      if (dark) // no sample has met anything: the rule of three
+        h = mean = rare_.largest[k] > 0 ? ruleOfThree / (s.samples * p.window) * rare_.largest[k]
+                                        : std::numeric_limits<double>::infinity();
+      e.halfWidth[k] = float(h);
+      half += h, expected += mean;
+    }
+    finish(e, expected);
+    e.trusted = enough && !dark && !p.few;
+    // What is so rare that most windows have missed it: its mean is missing there, and no variance tells.
+    const double hits = rare_.hits(s.samples) * std::min(windowPixels, rare_.pixels);
+    if (s.random && hits < fewestHits && rare_.mean(s.samples) > negligible * half) e.trusted = false;
+  }
+
+  uint32_t width_, height_;
+  std::span<const PixelSums* const> pixels_;
+  const Replicates& replicates_;
+  std::span<PixelError> out_;
+  std::vector<Pooled> pooled_;
+  Rare rare_;
+};
 
 } // namespace
 
-double student95(uint32_t degreesOfFreedom) {
+double student95(double v) {
   static constexpr double table[] = {0, 12.7062, 4.30265, 3.18245, 2.77645, 2.57058, 2.44691, 2.36462, 2.30600, 2.26216};
-  if (degreesOfFreedom < std::size(table)) return table[degreesOfFreedom];
+  if (v < std::size(table)) return table[std::max(1, int(v))];
   // M. Abramowitz, I. Stegun, "Handbook of Mathematical Functions", 26.7.5
-  const double z = 1.959963985, v = degreesOfFreedom, z3 = z * z * z, z5 = z3 * z * z;
+  const double z = 1.959963985, z3 = z * z * z, z5 = z3 * z * z;
   const double first = (z3 + z) / 4, second = (5 * z5 + 16 * z3 + 3 * z) / 96;
   const double third = (3 * z5 * z * z + 19 * z5 + 17 * z3 - 15 * z) / 384;
   return z + first / v + second / (v * v) + third / (v * v * v);
@@ -82,42 +231,29 @@ Replicates replicatesOf(const edit::FrameSettingsT& frame, uint32_t samples, uin
   return {seed, uint32_t(std::bit_width(std::max(samples / count, 1u))) - 1};
 }
 
-void Tails::add(const PixelSums& s) {
-  const Moments m = moments(s);
-  square2 += m.second * m.second / s.samples;
-  fourth += m.fourth;
-  if (m.second > 0 && s.random && s.replicates > 2) skewness += std::fabs(skewnessOfMeans(s)), varying++;
-  for (int k = 0; k < 3; k++) largest[k] = std::max(largest[k], s.largest[k]);
-}
-
-PixelError pixelError(const PixelSums& s, const Replicates& replicates, const Tails* around) {
+PixelError independentError(const PixelSums& s) {
   PixelError e;
   if (s.samples == 0) return e;
-  const double infinity = std::numeric_limits<double>::infinity(), n = s.samples;
-  double half = 0, expected = 0;
-  uint32_t freedom = 0;
+  const double n = s.samples;
+  double expected = 0;
   bool varies = false;
   for (int k = 0; k < 3; k++) {
-    const double v = s.samples > 1 ? varianceOfMean(s, replicates, k, freedom) : infinity;
-    double h = s.samples > 1 ? student95(freedom) * std::sqrt(v) : infinity;
-    // Mean of |x| of a normal x, with the bias of the root of a variance taken out (the factor known as c4).
-    double mean = s.samples > 1 ? std::sqrt(2 / M_PI * v) * (4.0 * freedom + 1) / (4.0 * freedom) : infinity;
-    const double spread = s.delta2[k] - s.delta[k] * s.delta[k] / n;
-    if (spread > 1e-12 * s.delta2[k])
-      varies = true;
-    else if (s.random && around)
-      h = mean = around->largest[k] > 0 ? ruleOfThree / n * around->largest[k] : infinity;
-    e.halfWidth[k] = float(h);
+    const double squares = std::max(0.0, s.delta2[k] - s.delta[k] * s.delta[k] / n);
+    varies |= squares > 1e-12 * s.delta2[k];
+    const double v = s.samples > 1 ? squares / (n - 1) / n : std::numeric_limits<double>::infinity();
+    e.halfWidth[k] = s.samples > 1 ? float(student95(n - 1) * std::sqrt(v)) : float(v);
     e.mean[k] = float(s.rgba[k] / n);
-    half += h, expected += mean;
+    expected += s.samples > 1 ? meanError(v, n - 1) : v;
   }
-  e.relative = relativeError(half, e.mean), e.expected = relativeError(expected, e.mean);
   e.samples = s.samples;
   e.constant = s.samples > 1 && !varies && !s.random;
-  e.trusted = around && replicates.many() && freedom + 1 >= trustedReplicates && std::isfinite(half) && (varies || !s.random);
-  if (!e.trusted || !varies) return e;
-  e.trusted = around->kurtosis() <= n * largestKurtosis && (!s.random || around->meanSkewness() <= largestSkewness);
+  finish(e, expected);
   return e;
+}
+
+void tileErrors(uint32_t width, std::span<const PixelSums* const> pixels, const Replicates& replicates,
+                std::span<PixelError> out) {
+  TileErrors(width, pixels, replicates, out).make();
 }
 
 uint32_t samplesFor(double target, double halfWidth, uint32_t samples, uint32_t most) {

@@ -45,8 +45,13 @@ bool ErrorMap::beside(uint32_t x, uint32_t y) const {
   return false;
 }
 
-// Of the colours within two pixels: an edge that cuts a corner has its other side there.
+// Of the colours within two pixels: an edge that cuts a corner has its other side there. At the border of the picture that side
+// may lie outside: there of all its colours.
 void ErrorMap::range(uint32_t x, uint32_t y, float out[3]) const {
+  if (border(x, y)) {
+    std::copy_n(range_, 3, out);
+    return;
+  }
   float low[3], high[3];
   for (int k = 0; k < 3; k++) low[k] = high[k] = seen_[size_t(y) * width_ + x].mean[k];
   for (uint32_t j = y - std::min(y, 2u); j <= std::min(y + 2, height_ - 1); j++)
@@ -60,11 +65,17 @@ void ErrorMap::range(uint32_t x, uint32_t y, float out[3]) const {
 
 void ErrorMap::doubtConstants(const std::function<void(size_t pixel, const float halfWidth[3])>& changed) {
   if (seen_.empty()) return;
+  float low[3], high[3];
+  std::fill_n(low, 3, std::numeric_limits<float>::infinity()), std::fill_n(high, 3, -low[0]);
+  for (const Seen& s : seen_)
+    for (int k = 0; k < 3 && s.samples > 0; k++) low[k] = std::min(low[k], s.mean[k]), high[k] = std::max(high[k], s.mean[k]);
+  for (int k = 0; k < 3; k++) range_[k] = high[k] - low[k];
+  const bool uniform = !(range_[0] > 0 || range_[1] > 0 || range_[2] > 0);
   for (uint32_t y = 0; y < height_; y++)
     for (uint32_t x = 0; x < width_; x++) {
       const size_t pixel = size_t(y) * width_ + x;
       const Seen& here = seen_[pixel];
-      if (!here.constant || !beside(x, y)) continue;
+      if (!here.constant || !((border(x, y) && !uniform) || beside(x, y))) continue;
       float half[3];
       range(x, y, half);
       const double part = std::min(1.0, ruleOfThree / here.samples);

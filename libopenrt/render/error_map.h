@@ -37,7 +37,8 @@ class ErrorMap {
   bool empty() const { return relative_.empty(); }
   void store(size_t pixel, const PixelError& e);
   // A constant pixel beside pixels that differ from it is not known to be exact: the edge may cut a corner of it that no sample
-  // met. Its interval gets what the rule of three allows for, and it is not trusted. changed is called for each.
+  // met. Its interval gets what the rule of three allows for, and it is not trusted. The same at the border of a picture that is
+  // not of one colour. changed is called for each.
   void doubtConstants(const std::function<void(size_t pixel, const float halfWidth[3])>& changed);
   ErrorSummary summary() const;
 
@@ -47,11 +48,13 @@ class ErrorMap {
     uint32_t samples; // 0: not finished
     bool constant;
   };
+  bool border(uint32_t x, uint32_t y) const { return x == 0 || y == 0 || x + 1 == width_ || y + 1 == height_; }
   bool beside(uint32_t x, uint32_t y) const;
   void range(uint32_t x, uint32_t y, float out[3]) const;
   uint32_t width_ = 0, height_ = 0;
   std::vector<float> relative_, expected_; // NaN: not finished; relative_ negative: not trusted
   std::vector<Seen> seen_;
+  float range_[3] = {}; // of all pixels' colours; doubtConstants()
 };
 
 } // namespace openrt

@@ -30,14 +30,11 @@ void PixelSums::addTails(const float radiance[3]) {
 }
 
 void PixelSums::closeReplicate() {
-  double all = 0;
   for (int k = 0; k < 3; k++) {
-    const double sum = delta[k] - closed[k];
-    closed2[k] += sum * sum;
-    all += sum;
+    const double sum = delta[k] - closed[k], square = sum * sum;
+    closed2[k] += square, closed3[k] += square * sum, closed4[k] += square * square;
     closed[k] = delta[k];
   }
-  closedGrey[0] += all, closedGrey[1] += all * all, closedGrey[2] += all * all * all;
   replicates++;
 }
 

@@ -15,8 +15,8 @@ namespace openrt {
 struct PixelSums { // of one pixel, samples added in their order
   double rgba[4] = {}, normal[3] = {}, albedo[3] = {};
   double first[3] = {}, delta[3] = {}, delta2[3] = {}; // sums of (x - first) and its square: no cancellation
-  double closed[3] = {}, closed2[3] = {};              // over the complete replicates: sums of their delta and its square
-  double closedGrey[3] = {};                           // the same of red + green + blue: of it, its square, its cube
+  // Over the complete replicates: sums of their delta, of its square, cube and fourth power.
+  double closed[3] = {}, closed2[3] = {}, closed3[3] = {}, closed4[3] = {};
   double grey[3] = {};                                 // sums of (red + green + blue - first)^2, ^3 and ^4; see addTails()
   float depth = 0, position[3] = {}, name = 0;
   float largest[3] = {};

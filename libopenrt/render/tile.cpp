@@ -34,7 +34,7 @@ void TileRenderer::render(const Tile& tile) {
 
 uint32_t TileRenderer::pilot(const Tile& tile, uint32_t samples) {
   begin(tile);
-  replicates_ = {hash(scene_.frame.seed, 0x70696c6fu), 31};
+  replicates_ = replicatesOf(scene_.frame, samples, hash(scene_.frame.seed, 0x70696c6fu));
   single_ = samples == 1;
   takeSamples(0, samples);
   store(tile);
@@ -76,16 +76,21 @@ void TileRenderer::store(const Tile& tile) {
     for (size_t i = 0; i < pixels_.size(); i++) film_.store(pixels_[i] % width, pixels_[i] / width, sums_[i]);
     return;
   }
-  const uint32_t columns = (tile.x1 - tile.x0 + 7) / 8; // tiles begin at multiples of 8
-  const auto block = [&](uint32_t pixel) { return (pixel / width - tile.y0) / 8 * columns + (pixel % width - tile.x0) / 8; };
+  const uint32_t columns = tile.x1 - tile.x0;
+  errors_.resize(pixels_.size());
   if (wantsError_) {
-    tails_.assign(size_t(columns) * ((tile.y1 - tile.y0 + 7) / 8), {});
-    for (size_t i = 0; i < pixels_.size(); i++) tails_[block(pixels_[i])].add(sums_[i]);
+    std::vector<const PixelSums*> rows(pixels_.size());
+    const auto place = [&](uint32_t pixel) { return size_t(pixel / width - tile.y0) * columns + pixel % width - tile.x0; };
+    for (size_t i = 0; i < pixels_.size(); i++) rows[place(pixels_[i])] = &sums_[i];
+    std::vector<PixelError> errors(pixels_.size());
+    tileErrors(columns, rows, replicates_, errors);
+    for (size_t i = 0; i < pixels_.size(); i++) errors_[i] = errors[place(pixels_[i])];
+  } else {
+    for (size_t i = 0; i < pixels_.size(); i++) errors_[i] = independentError(sums_[i]);
   }
   for (size_t i = 0; i < pixels_.size(); i++) {
-    const PixelError error = pixelError(sums_[i], replicates_, wantsError_ ? &tails_[block(pixels_[i])] : nullptr);
-    film_.store(pixels_[i] % width, pixels_[i] / width, sums_[i], &error);
-    halfWidth_ += error.relative;
+    film_.store(pixels_[i] % width, pixels_[i] / width, sums_[i], &errors_[i]);
+    halfWidth_ += double(errors_[i].relative);
   }
   halfWidth_ /= double(pixels_.size());
 }

@@ -98,7 +98,7 @@ class TileRenderer {
   std::vector<uint32_t> counts_, pixels_; // pixels_: y * width + x, in blocks of 4x4
   std::vector<BucketRange> ranges_;
   std::vector<PixelSums> sums_;
-  std::vector<Tails> tails_; // of 8x8 pixels each
+  std::vector<PixelError> errors_; // of the tile that is stored
   Replicates replicates_;
   bool wantsError_, single_ = false;                   // single_: one sample a pixel, at its centre
   double halfWidth_ = 0;                               // relative, mean over the tile that was stored last

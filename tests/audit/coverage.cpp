@@ -1,6 +1,7 @@
 // coverage.cpp: see coverage.h.
 #include "audit/coverage.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "openrt/openrt.h"
@@ -8,131 +9,111 @@
 namespace audit {
 namespace {
 
-RTid diffuse(float emission, float reflectance) {
-  const RTid shader = rtNewShader(rtNewShaderClass("Diffuse", nullptr));
-  rtBindShader(shader);
-  rtParameter3f(rtParameterHandle("emission"), emission, emission, emission);
-  rtParameter3f(rtParameterHandle("reflectance"), reflectance, reflectance, reflectance);
-  rtBindShader(0);
-  return shader;
-}
-
-// A square in z = 0 that faces +z, under the current matrix.
-void square(RTid shader, double half) {
-  const RTid object = rtBeginObject(0);
-  rtBindShader(shader);
-  rtBegin(RT_QUADS);
-  rtVertex3d(-half, -half, 0), rtVertex3d(half, -half, 0), rtVertex3d(half, half, 0), rtVertex3d(-half, half, 0);
-  rtEnd();
-  rtEndObject();
-  rtBindShader(0);
-  rtInstantiateObject(object);
-}
-
-void lookDown(double height) { // from far above on a square of this height about the origin
-  rtPushMatrix();
-  rtTranslated(0, 0, 40);
-  rtOrtho(height);
-  rtPopMatrix();
-}
-
-// Stripes at an angle, a few pixels wide: pixels with edges, and some without.
-void drawEdges() {
-  const RTid white = diffuse(1, 0), grey = diffuse(.25f, 0);
-  square(grey, 20);
-  for (int i = -8; i <= 8; i++) {
-    rtPushMatrix();
-    rtRotated(23, 0, 0, 1);
-    rtTranslated(.437 * i, 0, .1);
-    rtScaled(.01, 1, 1);
-    square(white, 10);
-    rtPopMatrix();
-  }
-  lookDown(2);
-}
-
-// A closed box that glows: radiance .5 / (1 - .5) = 1 everywhere.
-void drawFurnace() {
-  const RTid wall = diffuse(.5f, .5f);
-  for (int i = 0; i < 6; i++) {
-    rtPushMatrix();
-    if (i < 4)
-      rtRotated(90 * i, 1, 0, 0);
-    else
-      rtRotated(i == 4 ? 90 : -90, 0, 1, 0);
-    rtTranslated(0, 0, -1);
-    square(wall, 1);
-    rtPopMatrix();
-  }
-  rtPushMatrix();
-  rtPerspective(60);
-  rtPopMatrix();
-}
-
-// A lamp that faces a floor; the camera looks past it.
-void lampOver(double half, double height, float radiance) {
-  square(diffuse(0, .5f), 10);
-  rtPushMatrix();
-  rtTranslated(0, 0, height);
-  rtRotated(180, 1, 0, 0);
-  square(diffuse(radiance, 0), half);
-  rtPopMatrix();
-  rtPushMatrix();
-  rtTranslated(-1.5, 0, .5);
-  rtRotated(-60, 0, 1, 0);
-  rtPerspective(50);
-  rtPopMatrix();
-}
-void drawLamp() { lampOver(1, 1, 1); }
-void drawSmallLamp() { lampOver(.15, 1, 40); }
-void drawTinyLamp() { lampOver(.03, 1, 1000); }
-
-// A room with a lamp in its ceiling: light between coloured walls, edges, shadows.
-void drawRoom() {
-  const RTid white = diffuse(0, .7f), dark = diffuse(0, .2f), lamp = diffuse(8, 0);
-  const auto wall = [](double angle, double x, double y, double z, RTid shader) {
-    rtPushMatrix();
-    rtRotated(angle, x, y, z);
-    rtTranslated(0, 0, -1);
-    square(shader, 1);
-    rtPopMatrix();
-  };
-  wall(0, 1, 0, 0, white), wall(-90, 1, 0, 0, white), wall(90, 1, 0, 0, white);
-  wall(90, 0, 1, 0, dark), wall(-90, 0, 1, 0, dark);
-  rtPushMatrix();
-  rtTranslated(0, .99, 0);
-  rtRotated(90, 1, 0, 0);
-  square(lamp, .4);
-  rtPopMatrix();
-  rtPushMatrix();
-  rtTranslated(-.3, -.5, -.2);
-  rtRotated(20, 0, 1, 0);
-  square(white, .4);
-  rtPopMatrix();
-  rtPushMatrix();
-  rtTranslated(0, 0, 2.9);
-  rtPerspective(40);
-  rtPopMatrix();
-}
-
-const std::vector<Scenario> table = {
-    {"edges", "stripes seen directly: the area's average alone", RT_TRANSPORT_DIRECT, 64, 16384, 0, drawEdges},
-    {"furnace", "a closed box that glows, closed form", RT_TRANSPORT_PATH, 256, 0, 1, drawFurnace},
-    {"lamp", "a floor under a large lamp", RT_TRANSPORT_PATH, 64, 16384, 0, drawLamp},
-    {"small lamp", "a lamp that few directions meet", RT_TRANSPORT_PATH, 64, 65536, 0, drawSmallLamp},
-    {"tiny lamp", "a lamp that one direction in a thousand meets", RT_TRANSPORT_PATH, 64, 65536, 0, drawTinyLamp},
-    {"room", "light between walls, edges, soft shadows", RT_TRANSPORT_PATH, 512, 16384, 0, drawRoom},
-};
-
 std::vector<float> read(RTenum channel, size_t floats) {
   std::vector<float> out(floats);
   rtReadPixels(channel, out.data(), out.size());
   return out;
 }
 
-} // namespace
+struct Shot {
+  std::vector<float> rgba, half, trust, variance;
+  RTstats stats{};
+};
 
-const std::vector<Scenario>& scenarios() { return table; }
+Shot shoot(size_t pixels, int seed) {
+  rtQuality(RT_SEED, seed);
+  rtRender();
+  Shot s{read(RT_RGBA, 4 * pixels), read(RT_ERROR, 3 * pixels), read(RT_TRUST, pixels), read(RT_VARIANCE, 3 * pixels), {}};
+  s.stats.size = sizeof s.stats;
+  rtGetStats(&s.stats);
+  return s;
+}
+
+constexpr int tileEdge = 8;
+
+class Count {
+ public:
+  Count(const Scenario& s, int seeds, int edge)
+      : s_(s), seeds_(seeds), edge_(edge), pixels_(size_t(edge) * size_t(edge)), tilesAcross_((edge + tileEdge - 1) / tileEdge),
+        tiles_(size_t(tilesAcross_) * size_t(tilesAcross_)) {}
+
+  // weight: samples of the reference; it and the other pictures are what each picture is compared with.
+  void run(const std::vector<Shot>& shots, const std::vector<double>& reference, double weight) {
+    std::vector<double> sum(3 * pixels_);
+    for (const Shot& shot : shots)
+      for (size_t i = 0; i < 3 * pixels_; i++) sum[i] += colour(shot, i);
+    double square = 0, variance = 0;
+    for (const Shot& shot : shots) {
+      double off = 0;
+      const double others = weight < 0 ? 0 : s_.samples * (seeds_ - 1.0);
+      // Two means compared: the truth has an error of its own.
+      const double wider = others > 0 ? std::sqrt(1 + s_.samples / (weight + others)) : 1;
+      for (size_t i = 0; i < pixels_; i++) {
+        double error = 0, all = .03;
+        for (size_t k = 3 * i; k < 3 * i + 3; k++) {
+          const double mine = colour(shot, k);
+          const double truth =
+              others > 0 ? (reference[k] * weight + (sum[k] - mine) * s_.samples) / (weight + others) : reference[k];
+          if (k == 3 * i) one(shot, i, mine - truth, wider, truth);
+          error += std::fabs(mine - truth) / wider, all += std::fabs(mine);
+          square += (mine - truth) * (mine - truth) / wider / wider, variance += double(shot.variance[k]) / s_.samples;
+        }
+        off += std::min(1.0, error / all) / double(pixels_);
+      }
+      c.meanError += off / seeds_;
+      c.promised += shot.stats.errorMean / seeds_, c.promisedInterval += shot.stats.errorMeanInterval / seeds_;
+    }
+    c.cost = variance > 0 ? square / variance : 0;
+    if (c.intervals()) c.halfWidth /= double(c.intervals());
+    bias(shots, reference);
+    std::vector<double> shares;
+    for (const auto& [held, all] : tiles_)
+      if (all > 0) shares.push_back(double(held) / double(all));
+    std::sort(shares.begin(), shares.end());
+    if (!shares.empty()) c.worstTiles = shares[(shares.size() - 1) / 20];
+  }
+
+  Coverage c;
+
+ private:
+  static double colour(const Shot& shot, size_t k) { return double(shot.rgba[k / 3 * 4 + k % 3]); }
+  void one(const Shot& shot, size_t i, double off, double wider, double truth) {
+    const double half = double(shot.half[3 * i]) * wider;
+    const bool held = std::fabs(off) <= half + 1e-6 * truth; // sums of floats have rounding errors of their own
+    c.pixels++, c.held += held;
+    if (shot.trust[i] == 0) return;
+    c.trusted++;
+    if (half == 0) {
+      c.exact++, c.exactHeld += held;
+      return;
+    }
+    c.heldTrusted += held, c.halfWidth += half;
+    const size_t x = i % size_t(edge_), y = i / size_t(edge_);
+    auto& tile = tiles_[y / tileEdge * size_t(tilesAcross_) + x / tileEdge];
+    tile.first += held, tile.second++;
+  }
+  // Of the mean over the picture: independent from seed to seed.
+  void bias(const std::vector<Shot>& shots, const std::vector<double>& reference) {
+    double all = 0, sum = 0, sum2 = 0;
+    for (double r : reference) all += r;
+    for (const Shot& shot : shots) {
+      double off = 0;
+      for (size_t k = 0; k < 3 * pixels_; k++) off += colour(shot, k) - reference[k];
+      sum += off / all, sum2 += off / all * (off / all);
+    }
+    c.bias = sum / seeds_;
+    const double v = std::max(0.0, sum2 / seeds_ - c.bias * c.bias);
+    c.biasInterval = seeds_ > 1 ? 2.0 * std::sqrt(v / (seeds_ - 1)) : 1;
+  }
+
+  const Scenario& s_;
+  int seeds_, edge_;
+  size_t pixels_;
+  int tilesAcross_;
+  std::vector<std::pair<uint64_t, uint64_t>> tiles_; // held, all
+};
+
+} // namespace
 
 double Coverage::share() const { return intervals() ? double(heldTrusted) / double(intervals()) : 0; }
 double Coverage::shareInterval() const {
@@ -145,41 +126,22 @@ Coverage measure(const Scenario& s, int seeds, int edge) {
   const size_t pixels = size_t(edge) * size_t(edge);
   s.draw();
   rtQuality(RT_TRANSPORT, s.transport);
-  std::vector<float> truth(4 * pixels, float(s.exact));
+  std::vector<double> truth(3 * pixels, s.exact);
   if (s.reference) {
     rtFrameBuffer(edge, edge, RT_RGBA);
     rtQuality(RT_SEED, 1000003);
     rtQuality(RT_SAMPLES_PER_PIXEL, s.reference);
     rtRender();
-    truth = read(RT_RGBA, 4 * pixels);
+    const std::vector<float> rgba = read(RT_RGBA, 4 * pixels);
+    for (size_t i = 0; i < 3 * pixels; i++) truth[i] = double(rgba[i / 3 * 4 + i % 3]);
   }
-  rtFrameBuffer(edge, edge, RT_RGBA | RT_ERROR | RT_TRUST);
+  rtFrameBuffer(edge, edge, RT_RGBA | RT_ERROR | RT_TRUST | RT_VARIANCE);
   rtQuality(RT_SAMPLES_PER_PIXEL, s.samples);
-  Coverage c;
-  for (int seed = 1; seed <= seeds; seed++) {
-    rtQuality(RT_SEED, seed);
-    rtRender();
-    const std::vector<float> rgba = read(RT_RGBA, 4 * pixels), half = read(RT_ERROR, 3 * pixels), trust = read(RT_TRUST, pixels);
-    double off = 0;
-    for (size_t i = 0; i < pixels; i++) {
-      const double error = std::fabs(double(rgba[4 * i]) - truth[4 * i]);
-      const bool held = error <= half[3 * i] + 1e-6 * truth[4 * i]; // sums of floats have rounding errors of their own
-      c.pixels++, c.held += held;
-      off += std::min(1.0, error / (double(rgba[4 * i]) + .01)) / double(pixels);
-      if (trust[i] == 0) continue;
-      c.trusted++;
-      if (half[3 * i] == 0)
-        c.exact++, c.exactHeld += held;
-      else
-        c.heldTrusted += held, c.halfWidth += half[3 * i];
-    }
-    RTstats stats{};
-    stats.size = sizeof stats;
-    rtGetStats(&stats);
-    c.meanError += off / seeds, c.promised += stats.errorMean / seeds, c.promisedInterval += stats.errorMeanInterval / seeds;
-  }
-  if (c.intervals()) c.halfWidth /= double(c.intervals());
-  return c;
+  std::vector<Shot> shots;
+  for (int seed = 1; seed <= seeds; seed++) shots.push_back(shoot(pixels, seed));
+  Count count(s, seeds, edge);
+  count.run(shots, truth, s.reference ? s.reference : -1);
+  return count.c;
 }
 
 } // namespace audit

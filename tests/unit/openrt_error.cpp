@@ -21,10 +21,12 @@ PixelSums sumsOf(const std::vector<float>& samples, const Replicates& replicates
   return sums;
 }
 
-Tails tailsOf(const PixelSums& sums) {
-  Tails tails;
-  tails.add(sums);
-  return tails;
+// One pixel by itself, or the first of a row.
+PixelError errorOf(std::initializer_list<const PixelSums*> row, const Replicates& replicates) {
+  std::vector<PixelError> errors(row.size());
+  const std::vector<const PixelSums*> pixels(row);
+  tileErrors(uint32_t(row.size()), pixels, replicates, errors);
+  return errors[0];
 }
 
 } // namespace
@@ -41,83 +43,106 @@ TEST(Error, studentsQuantiles) { // tables of the t distribution, 0.975
 TEST(Error, intervalOverTheMeansOfReplicates) { // means 1, 2, 3, 4: standard deviation sqrt(5/3)
   const Replicates four{0, 1};
   const PixelSums sums = sumsOf({0, 2, 1, 3, 2, 4, 3, 5}, four);
-  const Tails tails = tailsOf(sums);
-  const PixelError e = pixelError(sums, four, &tails);
+  const PixelError e = errorOf({&sums}, four);
   EXPECT_NEAR(e.halfWidth[0], 3.18245 * std::sqrt(5.0 / 3 / 4), 1e-5);
   EXPECT_NEAR(e.halfWidth[1], 2 * e.halfWidth[0], 1e-5);
   EXPECT_EQ(e.halfWidth[2], 0);
   EXPECT_FALSE(e.trusted); // four are too few
 }
 
-TEST(Error, theLastReplicateMayBeShorter) { // sums 3, 5 and of one sample 4: mean 12/5, weights 2/5, 2/5, 1/5
+TEST(Error,
+     theLastReplicateMayBeShorter) { // sums 3 and 5, and one sample: variance of a sum 2, of the mean of 5 samples 2 / (2 * 5)
   const Replicates two{0, 1};
   const PixelSums sums = sumsOf({1, 2, 2, 3, 4}, two);
-  const double m = 2.4, squares = std::pow(3 - 2 * m, 2) + std::pow(5 - 2 * m, 2) + std::pow(4 - m, 2);
-  EXPECT_NEAR(pixelError(sums, two, nullptr).halfWidth[0], 4.30265 * std::sqrt(squares / 25 * 3 / 2), 1e-5);
+  EXPECT_NEAR(errorOf({&sums}, two).halfWidth[0], 12.7062 * std::sqrt(.5 * 2 / 5), 1e-5);
 }
 
 TEST(Error, largeNumbersWithSmallDifferences) {
   const Replicates two{0, 1};
   const PixelSums sums = sumsOf({1e6f, 1e6f + 2, 1e6f + 1, 1e6f + 3}, two); // means differ by 1
-  EXPECT_NEAR(pixelError(sums, two, nullptr).halfWidth[0], 12.7062 * 0.5, 1e-3);
+  EXPECT_NEAR(errorOf({&sums}, two).halfWidth[0], 12.7062 * 0.5, 1e-3);
 }
 
 TEST(Error, withoutReplicatesItIsThatOfIndependentSamplesAndNotTrusted) {
   const PixelSums sums = sumsOf({0, 1, 0, 1, 0, 1, 0, 1}, {});
-  const Tails tails = tailsOf(sums);
-  const PixelError e = pixelError(sums, {}, &tails);
+  const PixelError e = errorOf({&sums}, {});
   EXPECT_NEAR(e.halfWidth[0], 2.36462 * std::sqrt(2.0 / 7 / 8), 1e-5);
+  EXPECT_EQ(e.halfWidth[0], independentError(sums).halfWidth[0]);
   EXPECT_FALSE(e.trusted);
 }
 
 TEST(Error, oneSampleSaysNothing) {
-  const PixelError e = pixelError(sumsOf({1}, {}), {}, nullptr);
+  const PixelError e = independentError(sumsOf({1}, {}));
   EXPECT_TRUE(std::isinf(e.halfWidth[0]));
   EXPECT_EQ(e.relative, 1);
   EXPECT_FALSE(e.trusted);
 }
 
+// A hundred and twenty-eight samples in sixteen replicates, normal enough; `seed` tells pixels apart.
+std::vector<float> calmSamples(uint32_t seed, float scale = 1) {
+  std::vector<float> samples;
+  for (uint32_t i = 0; i < 128; i++) {
+    float sum = 0;
+    for (uint32_t k = 0; k < 4; k++) sum += toUnit(hash(hash(seed, i), k));
+    samples.push_back(scale * sum);
+  }
+  return samples;
+}
+const Replicates sixteen{0, 3};
+
 TEST(Error, inTheDarkAnUpperBoundFromThePixelsAround) {
-  const Replicates r{0, 2};
-  PixelSums dark = sumsOf(std::vector<float>(64, 0.0f), r), lit = sumsOf({5, 0, 0, 0}, r);
+  PixelSums dark = sumsOf(std::vector<float>(128, 0.0f), sixteen), lit = sumsOf(calmSamples(1), sixteen);
   dark.random = lit.random = true;
-  Tails tails = tailsOf(dark);
-  EXPECT_TRUE(std::isinf(pixelError(dark, r, &tails).halfWidth[0])); // nothing is known
-  tails.add(lit);
-  const PixelError e = pixelError(dark, r, &tails);
-  EXPECT_NEAR(e.halfWidth[0], 5 * 2.9957 / 64, 1e-4);
-  EXPECT_FALSE(e.trusted);
+  EXPECT_TRUE(std::isinf(errorOf({&dark}, sixteen).halfWidth[0])); // nothing is known
+  // Out of the window's reach: 3 / N of the largest sample, N those of the window's three pixels.
+  const PixelError far = errorOf({&dark, &dark, &dark, &lit}, sixteen);
+  EXPECT_NEAR(far.halfWidth[0], lit.largest[0] * 2.9957 / 128 / 3, 1e-4);
+  EXPECT_FALSE(far.trusted);
 }
 
 TEST(Error, whereNothingIsRandomEqualSamplesAreExact) {
-  const Replicates r{0, 2};
-  const PixelSums sums = sumsOf(std::vector<float>(64, 0.3f), r);
-  const Tails tails = tailsOf(sums);
-  const PixelError e = pixelError(sums, r, &tails);
+  const PixelSums sums = sumsOf(std::vector<float>(128, 0.3f), sixteen);
+  const PixelError e = errorOf({&sums}, sixteen);
   EXPECT_EQ(e.halfWidth[0], 0);
   EXPECT_TRUE(e.trusted && e.constant);
 }
 
+TEST(Error, pixelsThatDifferByChanceShareTheirVariance) {
+  std::vector<PixelSums> sums;
+  std::vector<const PixelSums*> pixels;
+  for (uint32_t i = 0; i < 25; i++) sums.push_back(sumsOf(calmSamples(i), sixteen)), sums.back().random = true;
+  for (const PixelSums& s : sums) pixels.push_back(&s);
+  std::vector<PixelError> errors(25);
+  tileErrors(5, pixels, sixteen, errors);
+  // Standard deviation of a sample sqrt(4 / 12); of the middle pixel's interval little is left to chance.
+  EXPECT_NEAR(errors[12].halfWidth[0], 1.96 * std::sqrt(4.0 / 12 / 128), .15 * errors[12].halfWidth[0]);
+  for (const PixelError& e : errors) EXPECT_TRUE(e.trusted);
+}
+
+TEST(Error, pixelsThatReallyDifferKeepTheirOwn) {
+  PixelSums calm = sumsOf(calmSamples(1), sixteen), wild = sumsOf(calmSamples(2, 50), sixteen);
+  calm.random = wild.random = true;
+  const float alone = errorOf({&wild}, sixteen).halfWidth[0];
+  EXPECT_NEAR(errorOf({&wild, &calm, &calm}, sixteen).halfWidth[0], alone, .25 * alone);
+}
+
 TEST(Error, oneBrightSampleIsNotTrusted) {
-  const Replicates r{0, 2};
-  std::vector<float> samples(64);
-  for (size_t i = 0; i < 64; i++) samples[i] = float(i % 7);
-  const PixelSums calm = sumsOf(samples, r);
-  samples[20] = 1000;
-  const PixelSums wild = sumsOf(samples, r);
-  const Tails around = tailsOf(calm);
-  EXPECT_TRUE(pixelError(calm, r, &around).trusted);
-  Tails tails = tailsOf(wild);
-  tails.add(calm);
-  EXPECT_FALSE(pixelError(wild, r, &tails).trusted);
-  EXPECT_FALSE(pixelError(calm, r, &tails).trusted) << "its neighbour may have missed what it met";
+  PixelSums calm = sumsOf(calmSamples(1), sixteen);
+  std::vector<float> samples = calmSamples(2);
+  samples[20] = 10000;
+  PixelSums wild = sumsOf(samples, sixteen);
+  calm.random = wild.random = true;
+  EXPECT_TRUE(errorOf({&calm, &calm}, sixteen).trusted);
+  EXPECT_FALSE(errorOf({&wild, &calm}, sixteen).trusted);
+  EXPECT_FALSE(errorOf({&calm, &wild}, sixteen).trusted) << "its neighbour may have missed what it met";
+  EXPECT_FALSE(errorOf({&calm, &calm, &calm, &wild}, sixteen).trusted) << "also out of the window's reach";
 }
 
 TEST(Error, aConstantPixelBesideAnEdgeIsInDoubt) {
-  ErrorMap map(5, 1, ErrorMap::Kind::full);
-  for (size_t i = 0; i < 5; i++) {
+  ErrorMap map(5, 3, ErrorMap::Kind::full);
+  for (size_t i = 0; i < 15; i++) {
     PixelError e;
-    e.mean[0] = i < 3 ? 0.0f : 1.0f;
+    e.mean[0] = i % 5 < 3 ? 0.0f : 1.0f;
     e.samples = 30, e.trusted = e.constant = true, e.relative = e.expected = 0;
     map.store(i, e);
   }
@@ -127,9 +152,10 @@ TEST(Error, aConstantPixelBesideAnEdgeIsInDoubt) {
     EXPECT_NEAR(half[0], 2.9957 / 30, 1e-6);
     EXPECT_EQ(half[1], 0);
   });
-  EXPECT_EQ(changed, (std::vector<size_t>{2, 3}));
-  EXPECT_EQ(map.summary().trusted, 3u);
-  EXPECT_EQ(map.summary().pixels, 5u);
+  // All but one; also those at the border, whose neighbours are not known.
+  EXPECT_EQ(changed, (std::vector<size_t>{0, 1, 2, 3, 4, 5, 7, 8, 9, 10, 11, 12, 13, 14}));
+  EXPECT_EQ(map.summary().trusted, 1u);
+  EXPECT_EQ(map.summary().pixels, 15u);
 }
 
 TEST(Error, numberOfSamplesForATarget) {

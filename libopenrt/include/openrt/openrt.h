@@ -348,9 +348,9 @@ enum {
  * replicates is not the same as one without, and has more noise where neighbouring samples hardly differ. Without replicates
  * RT_ERROR is what independent samples would have (usually too large), and not trusted.
  *
- * RT_TRUST is 0 with fewer than 8 replicates; where paths are random and all samples are equal, as in the dark (RT_ERROR is then
- * an upper bound: 3/N of the largest sample in the 8x8 pixels around); where few samples carry the sum in the 8x8 pixels around;
- * where nothing is random and all samples are equal beside pixels that differ (an upper bound again: of a corner cut off).
+ * RT_TRUST is 0 with fewer than 8 replicates; where random paths all found the same in 5x5 pixels, as in the dark (RT_ERROR is
+ * then a bound: 3/N of the tile's largest sample); where few samples carry the variance of 5x5 pixels, or bright ones are so rare
+ * that most have missed them; where nothing is random and samples are equal, but not beside or at the border (a bound too).
  *
  * RT_TARGET_ERROR e: sample each part of the picture until the mean over its pixels of (RT_ERROR summed over the colours) /
  * (colours summed + 0.03), at most 1 a pixel, is about e, with at most RT_SAMPLES_PER_PIXEL samples. How many is decided by a
