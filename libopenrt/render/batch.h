@@ -30,6 +30,7 @@ struct RtsBatch {
   float* reach = nullptr; // distance to the light; 0 where there is no direction
   uint32_t current = ~0u; // index into the batch's lights
   bool directional = false;
+  uint32_t* chosen = nullptr; // by hit: the light of the scene that stands for many; null: one light for all hits
   // Who renders: null where shaders are asked outside of a picture. There nothing is traced, and random points are the middle.
   openrt::TileRenderer* tracer = nullptr;
   const openrt::RayState* states = nullptr; // rays of the wave, by lane

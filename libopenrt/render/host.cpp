@@ -5,7 +5,7 @@
 
 #include "render/batch.h"
 #include "render/hit_info.h"
-#include "render/shadows.h"
+#include "render/illumination.h"
 #include "render/tile.h"
 #include "shading/running.h"
 
@@ -21,62 +21,12 @@ void makeRoomForLight(RtsBatch& batch, uint32_t n) {
 
 namespace {
 
-uint32_t lights(RtsBatch* batch) { return uint32_t(batch->scene->lightSets[batch->lightSet].size()); }
-
-const LightSlot& lightOf(const RtsBatch& batch, uint32_t i) {
-  return batch.scene->lights[batch.scene->lightSets[batch.lightSet][i]];
-}
-
-void pointsToLocal(const Affine& m, uint32_t n, const float* const p[3], float* const out[3]) {
-  for (int k = 0; k < 3; k++) {
-    const float a = m.r[k][0], b = m.r[k][1], c = m.r[k][2], d = m.r[k][3];
-    const float *x = p[0], *y = p[1], *z = p[2];
-    float* o = out[k];
-    for (uint32_t i = 0; i < n; i++) o[i] = a * x[i] + b * y[i] + c * z[i] + d;
-  }
-}
-
-// Light-space vectors to unit vectors in render space; reach: their length there.
-void directionsToRender(const Affine& m, uint32_t n, float* const v[3], float* reach) {
-  for (uint32_t i = 0; i < n; i++) {
-    const float x = v[0][i], y = v[1][i], z = v[2][i];
-    const float a = m.r[0][0] * x + m.r[0][1] * y + m.r[0][2] * z;
-    const float b = m.r[1][0] * x + m.r[1][1] * y + m.r[1][2] * z;
-    const float c = m.r[2][0] * x + m.r[2][1] * y + m.r[2][2] * z;
-    const float l = std::sqrt(a * a + b * b + c * c);
-    const float k = l > 0 && l <= 1e30f ? 1 / l : 0.0f;
-    v[0][i] = a * k, v[1][i] = b * k, v[2][i] = c * k;
-    reach[i] = k > 0 ? l : 0.0f;
-  }
-}
-
+uint32_t lights(RtsBatch* batch) { return lightCount(*batch); }
 void illuminate(RtsBatch* batch, uint32_t i, const RtsHits* hits, RtsIllumination* out) {
-  const uint32_t n = padded(hits->count);
-  makeRoomForLight(*batch, n);
-  const LightSlot& light = lightOf(*batch, i);
-  pointsToLocal(light.toLocal, n, hits->position, batch->local);
-  for (int k = 0; k < 3; k++) {
-    out->toLight[k] = batch->toLight[k], out->color[k] = batch->color[k], out->ambient[k] = batch->ambient[k];
-    std::fill_n(batch->ambient[k], n, 0.0f);
-  }
-  out->directional = 0;
-  const float* local[3] = {batch->local[0], batch->local[1], batch->local[2]};
-  {
-    const RunningShader running(*light.shader.shaderClass);
-    light.shader.shaderClass->illuminate(&batch->scene->host, batch, light.shader.params, n, local, out);
-  }
-  checkAnswer(*light.shader.shaderClass, *batch, hits->count,
-              {out->toLight[0], out->toLight[1], out->toLight[2], out->color[0], out->color[1], out->color[2], out->ambient[0],
-               out->ambient[1], out->ambient[2]});
-  directionsToRender(light.fromLocal, n, batch->toLight, batch->reach);
-  batch->current = i;
-  batch->directional = out->directional != 0;
+  illuminateHits(*batch, i, *hits, *out);
 }
-
 void shadow(RtsBatch* batch, uint32_t i, const RtsHits* hits, const uint8_t* wanted, RtsIllumination* light) {
-  if (!batch->scene->frame.shadows || batch->current != i || hits != &batch->points->hits) return;
-  if (lightOf(*batch, i).shader.traits & RTS_NO_SHADOW) return;
-  castShadows(*batch, wanted, *light);
+  shadowHits(*batch, i, *hits, wanted, *light);
 }
 
 void sample(RtsBatch* batch, RtsTexture texture, uint32_t n, const float* const uv[2], float* const rgba[4]) {

@@ -191,7 +191,7 @@ static float sineLess(float sinA, float cosA, float sinB, float cosB) { return c
 static float sineOf(float cosine) { return std::sqrt(std::max(0.0f, 1 - cosine * cosine)); }
 
 // A bound of the irradiance at a place that faces where the light comes from most, up to the nearness of the box.
-float LightTree::measure(const LightBounds& b, const float place[3], const float* normal) {
+float LightTree::measure(const LightBounds& b, const float place[3], const float* normal, Side side) {
   constexpr float slack = 1e-5f; // of cosines: bounds must hold whatever rounds
   float way[3], square = 0, diagonal = 0, axial = 0;
   for (int k = 0; k < 3; k++) {
@@ -226,8 +226,8 @@ float LightTree::measure(const LightBounds& b, const float place[3], const float
       for (int k = 0; k < 3; k++) facing -= way[k] * normal[k];
       const float cosine = std::clamp(facing / distance, -1.0f, 1.0f);
       arriving = cosineLess(sineOf(cosine), cosine, sineOf(cosBox), cosBox);
-      if (arriving < -slack) return 0;
-      arriving = std::max(arriving, slack);
+      if (side == Side::only && arriving < -slack) return 0;
+      arriving = std::max(arriving, side == Side::only ? slack : 0.1f);
     }
   }
   const float nearest = std::max(square, radius2);
@@ -236,14 +236,14 @@ float LightTree::measure(const LightBounds& b, const float place[3], const float
   return leaving * arriving * std::max(strength, 1e-30f);
 }
 
-LightTree::Choice LightTree::choose(const float place[3], const float* normal, double pick) const {
+LightTree::Choice LightTree::choose(const float place[3], const float* normal, double pick, Side side) const {
   if (nodes_.empty()) return {};
   uint32_t at = 0;
   double probability = 1;
-  if (nodes_[0].leaf && !(measure(nodes_[0].bounds, place, normal) > 0)) return {};
+  if (nodes_[0].leaf && !(measure(nodes_[0].bounds, place, normal, side) > 0)) return {};
   while (!nodes_[at].leaf) {
-    const float first = measure(nodes_[at + 1].bounds, place, normal);
-    const float second = measure(nodes_[nodes_[at].next].bounds, place, normal);
+    const float first = measure(nodes_[at + 1].bounds, place, normal, side);
+    const float second = measure(nodes_[nodes_[at].next].bounds, place, normal, side);
     const double sum = double(first) + second;
     if (!(sum > 0)) return {};
     const double share = first / sum;

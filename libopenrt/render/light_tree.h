@@ -30,11 +30,14 @@ class LightTree {
     float probability = 0; // 0: no light reaches the place
   };
 
+  // What a normal says: light counts from its side only, or it mostly does.
+  enum class Side : uint8_t { only, likely };
+
   void build(std::span<const LightBounds> lights);
   bool empty() const { return nodes_.empty(); }
   size_t bytes() const { return nodes_.size() * sizeof(Node) + trails_.size() * sizeof(Trail); }
-  // One of the lights for a place; normal: light counts from its side only, null: from everywhere. pick: of [0, 1).
-  Choice choose(const float place[3], const float* normal, double pick) const;
+  // One of the lights for a place; normal: null: light counts from everywhere. pick: of [0, 1).
+  Choice choose(const float place[3], const float* normal, double pick, Side side = Side::only) const;
   float probability(const float place[3], const float* normal, uint32_t light) const;
   uint32_t depth() const { return depth_; }
 
@@ -48,7 +51,7 @@ class LightTree {
     uint64_t bits = 0;
     uint32_t steps = 0;
   };
-  static float measure(const LightBounds& bounds, const float place[3], const float* normal);
+  static float measure(const LightBounds& bounds, const float place[3], const float* normal, Side side = Side::only);
   std::vector<Node> nodes_;
   std::vector<Trail> trails_; // by light; steps ~0: it sends out nothing
   uint32_t depth_ = 0;

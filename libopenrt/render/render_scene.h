@@ -10,6 +10,7 @@
 
 #include "openrt/openrt.h"
 #include "render/emitters.h"
+#include "render/many_lights.h"
 #include "render/rays.h"
 #include "render/records.h"
 #include "shading/texture.h"
@@ -86,11 +87,12 @@ struct RenderScene {
   std::shared_ptr<const std::vector<Texture>> textures; // [0] is the missing one
   std::shared_ptr<const ShaderTable> shaders;           // like the textures shared by snapshots between which they did not change
   RoleSlot camera, environment;
-  ShaderSlot transport;                               // shaderClass null: the engine's own
-  float eye[3] = {0, 0, 0}, viewAxis[3] = {0, 0, -1}; // render space; unit
-  double origin[3] = {0, 0, 0};                       // of render space, in the world
-  Emitters emitters;                                  // path tracing: what sends out light besides the lights
-  bool transparentShadows = false;                    // something transparent may stand before a light
+  ShaderSlot transport;                                      // shaderClass null: the engine's own
+  float eye[3] = {0, 0, 0}, viewAxis[3] = {0, 0, -1};        // render space; unit
+  double origin[3] = {0, 0, 0};                              // of render space, in the world
+  Emitters emitters;                                         // path tracing: what sends out light besides the lights
+  std::shared_ptr<const std::vector<ManyLights>> manyLights; // by light set; null: all lights are asked everywhere
+  bool transparentShadows = false;                           // something transparent may stand before a light
   RenderHost host;
   edit::FrameSettingsT frame;
 };

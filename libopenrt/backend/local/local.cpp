@@ -55,6 +55,7 @@ void LocalBackend::prepare() {
   next->frame.transport = uint8_t(choice.transport);
   transportReason_ = std::move(choice.reason);
   next->emitters.build(*next, snapshot_.get(), samePlaces_);
+  next->manyLights = makeManyLights(*next, snapshot_.get());
   snapshot_ = std::move(next);
   changes_ = {};
 }

@@ -8,6 +8,8 @@
 namespace vrml97 {
 namespace {
 
+constexpr float pi = 3.14159265358979f;
+
 // What all three lights have; first, so that the traits need not know which light it is.
 struct LightParams {
   float ambientIntensity;
@@ -203,8 +205,57 @@ void illuminateSpot(const RtsHost* host, RtsBatch* batch, const void* params, ui
   colour(p.point.light, wholeLanes(n), factor, out);
 }
 
-template <class Params, uint32_t count> constexpr RtsClass
-lightClass(const char* name, const char* text, const RtsParam (&params)[count], decltype(RtsClass::illuminate) illuminate) {
+float mean(const LightParams& light) { return light.intensity * (light.color[0] + light.color[1] + light.color[2]) / 3.0f; }
+
+void putVector(const float from[3], float to[3]) {
+  for (int c = 0; c < 3; c++) to[c] = from[c];
+}
+
+// A colour is that of a white surface that faces the light: pi of it arrive.
+int directionalExtent(const RtsHost*, const void* params, RtsExtent* out) {
+  const auto& p = *static_cast<const DirectionalParams*>(params);
+  const float* d = p.direction;
+  const double length = std::sqrt(double(d[0]) * d[0] + double(d[1]) * d[1] + double(d[2]) * d[2]);
+  if (!(length > 0)) return 0;
+  out->parallel = 1;
+  for (int c = 0; c < 3; c++) out->direction[c] = static_cast<float>(d[c] / length);
+  out->cosine = 1.0f;
+  out->power = pi * mean(p.light);
+  out->radius = INFINITY;
+  return 1;
+}
+
+// The flux at a distance where the attenuation has begun: of light that falls with the square of the distance, all of it.
+float flux(const PointParams& p, float solidAngle) {
+  const float* a = p.attenuation;
+  const double d = std::fmin(10.0, double(p.radius)), f = std::fmax(a[0] + d * (a[1] + d * a[2]), 1.0);
+  return static_cast<float>(double(pi) * double(mean(p.light)) * d * d / f * double(solidAngle));
+}
+
+int pointExtent(const RtsHost*, const void* params, RtsExtent* out) {
+  const auto& p = *static_cast<const PointParams*>(params);
+  putVector(p.location, out->position);
+  out->direction[2] = -1.0f;
+  out->cosine = -1.0f;
+  out->power = flux(p, 4.0f * pi);
+  out->radius = p.radius;
+  return 1;
+}
+
+int spotExtent(const RtsHost* host, const void* params, RtsExtent* out) {
+  const auto& p = *static_cast<const SpotParams*>(params);
+  pointExtent(host, params, out);
+  const Cone cone = coneOf(p);
+  putVector(cone.axis, out->direction);
+  if (!(cone.axis[0] != 0.0f || cone.axis[1] != 0.0f || cone.axis[2] != 0.0f)) return 0;
+  out->cosine = cone.cosCut;
+  out->power = flux(p.point, 2.0f * pi * (1.0f - cone.cosCut));
+  return 1;
+}
+
+template <class Params, uint32_t count>
+constexpr RtsClass lightClass(const char* name, const char* text, const RtsParam (&params)[count],
+                              decltype(RtsClass::illuminate) illuminate, decltype(RtsClass::extent) extent) {
   RtsClass c{};
   c.size = sizeof(RtsClass);
   c.kind = RTS_LIGHT;
@@ -215,16 +266,18 @@ lightClass(const char* name, const char* text, const RtsParam (&params)[count], 
   c.params = params;
   c.traits = lightTraits;
   c.illuminate = illuminate;
+  c.extent = extent;
   return c;
 }
 
 } // namespace
 
-const RtsClass directionalLightClass = lightClass<DirectionalParams>(
-    "VRML97DirectionalLight", "parallel light from infinitely far away", directionalParams, illuminateDirectional);
-const RtsClass pointLightClass =
-    lightClass<PointParams>("VRML97PointLight", "light from one point into all directions", pointParams, illuminatePoint);
+const RtsClass directionalLightClass =
+    lightClass<DirectionalParams>("VRML97DirectionalLight", "parallel light from infinitely far away", directionalParams,
+                                  illuminateDirectional, directionalExtent);
+const RtsClass pointLightClass = lightClass<PointParams>("VRML97PointLight", "light from one point into all directions",
+                                                         pointParams, illuminatePoint, pointExtent);
 const RtsClass spotLightClass =
-    lightClass<SpotParams>("VRML97SpotLight", "light from one point into a cone", spotParams, illuminateSpot);
+    lightClass<SpotParams>("VRML97SpotLight", "light from one point into a cone", spotParams, illuminateSpot, spotExtent);
 
 } // namespace vrml97
