@@ -26,11 +26,8 @@ static Vertex hill(int column, int row) {
 int main(int argc, char** argv) {
   Vertex* vertices = malloc(sizeof(Vertex) * side * side);
   uint32_t* indices = malloc(sizeof(uint32_t) * 6 * (side - 1) * (side - 1));
-  if (!vertices || !indices || !rtNewContext(NULL)) {
-    rtGetError();
-    fprintf(stderr, "%s\n", rtGetErrorMessage());
-    return 1;
-  }
+  int failed;
+  if (!vertices || !indices || !start(&argc, argv, &failed)) return 1;
   for (int row = 0; row < side; row++)
     for (int column = 0; column < side; column++) vertices[row * side + column] = hill(column, row);
   uint32_t* out = indices;
@@ -70,10 +67,8 @@ int main(int argc, char** argv) {
   rtReadPixels(RT_RGBA, rgba, sizeof(rgba) / sizeof(*rgba));
   float after = depth[height / 2 * width + width / 2];
 
-  RTenum error = rtGetError();
-  if (error != RT_NO_ERROR) fprintf(stderr, "%s\n", rtGetErrorMessage());
-  rtDeleteContext(rtGetCurrent());
+  rtExit();
   if (argc > 1 && !writePicture(argv[1], width, height, rgba)) return 1;
   printf("the surface was %g away, now %g\n", before, after);
-  return error == RT_NO_ERROR && fabsf(after - before - 1) < 0.05f ? 0 : 2;
+  return !failed && fabsf(after - before - 1) < 0.05f ? 0 : 2;
 }

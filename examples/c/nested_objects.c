@@ -42,13 +42,10 @@ static float brightness(void) {
 }
 
 int main(int argc, char** argv) {
-  if (!rtNewContext(NULL)) {
-    rtGetError();
-    fprintf(stderr, "%s\n", rtGetErrorMessage());
-    return 1;
-  }
+  int failed;
+  if (!start(&argc, argv, &failed)) return 1;
   RTid surfaceClass = rtNewShaderClass("VRML97", NULL);
-  RTid small = makeBall(surfaceClass, 0.2f, 0.8f, 0.3f, 0.1f), large = makeBall(surfaceClass, 0.4f, 0.2f, 0.7f, 0.9f);
+  RTid small = makeBall(surfaceClass, 0.2f, 0.8f, 0.3f, 0.1f);
 
   RTid row = rowOf(small, 0, 1, 0, 0);
   RTid square = rowOf(row, 0, 0, 1, 0);
@@ -64,16 +61,15 @@ int main(int argc, char** argv) {
   rtFrameBuffer(width, height, RT_RGBA);
 
   float before = brightness();
+  RTid large = makeBall(surfaceClass, 0.4f, 0.2f, 0.7f, 0.9f);
   rowOf(large, row, 1, 0, 0); /* the same id: the 25 rows are all new */
   float after = brightness();
 
   RTstats stats;
   stats.size = sizeof(stats);
   rtGetStats(&stats);
-  RTenum error = rtGetError();
-  if (error != RT_NO_ERROR) fprintf(stderr, "%s\n", rtGetErrorMessage());
-  rtDeleteContext(rtGetCurrent());
+  rtExit();
   if (argc > 1 && !writePicture(argv[1], width, height, rgba)) return 1;
   printf("%d balls from %d instances\n", side * side * side, (int)stats.instances);
-  return error == RT_NO_ERROR && stats.instances == 3 * side + 1 && after > 1.5f * before ? 0 : 2;
+  return !failed && stats.instances == 3 * side + 1 && after > 1.5f * before ? 0 : 2;
 }

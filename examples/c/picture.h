@@ -1,9 +1,34 @@
-/* picture.h: writes a rendered frame as a PPM file: linear colour to the sRGB curve, 8 bits. Used by the C examples. */
+/* picture.h: what the C examples share: a context with its messages on stderr, and a rendered frame written as a PPM file
+ * (linear colour to the sRGB curve, 8 bits). */
 #ifndef EXAMPLES_PICTURE_H
 #define EXAMPLES_PICTURE_H
 
+#include <openrt/openrt.h>
+
 #include <math.h>
 #include <stdio.h>
+
+static void printMessage(int level, const char* message, void* user) {
+  (void)user;
+  if (level >= 2) fprintf(stderr, "%s\n", message);
+}
+static void printError(RTenum error, const char* message, void* user) {
+  *(int*)user = (int)error;
+  fprintf(stderr, "%s\n", message);
+}
+
+/* A context; options such as --rt-threads=1 or --rt-backend=debug:local are taken out of argv. failed is set by errors. */
+static inline int start(int* argc, char** argv, int* failed) {
+  *failed = 0;
+  rtInit(argc, argv);
+  if (rtGetError() != RT_NO_ERROR) {
+    fprintf(stderr, "%s\n", rtGetErrorMessage());
+    return 0;
+  }
+  rtErrorCallback(printError, failed);
+  rtLogCallback(printMessage, NULL);
+  return 1;
+}
 
 static unsigned char toByte(float linear) {
   float c = linear < 0 ? 0 : linear > 1 ? 1 : linear;

@@ -10,11 +10,8 @@ enum { width = 320, height = 240 };
 static float rgba[width * height * 4];
 
 int main(int argc, char** argv) {
-  if (!rtNewContext(NULL)) {
-    rtGetError();
-    fprintf(stderr, "%s\n", rtGetErrorMessage());
-    return 1;
-  }
+  int failed;
+  if (!start(&argc, argv, &failed)) return 1;
 
   /* What there is: an object, and an instance of it in the scene. */
   RTid triangle = rtBeginObject(0);
@@ -39,14 +36,10 @@ int main(int argc, char** argv) {
   rtFrameBuffer(width, height, RT_RGBA);
   rtRender();
   rtReadPixels(RT_RGBA, rgba, sizeof(rgba) / sizeof(*rgba));
-  if (rtGetError() != RT_NO_ERROR) {
-    fprintf(stderr, "%s\n", rtGetErrorMessage());
-    return 1;
-  }
-  rtDeleteContext(rtGetCurrent());
+  rtExit();
 
   if (argc > 1 && !writePicture(argv[1], width, height, rgba)) return 1;
   /* The middle of the picture is inside the triangle and lit, its corner is empty. */
   const float* middle = rgba + 4 * (height / 2 * width + width / 2);
-  return middle[0] > 0.1f && middle[1] > 0.1f && middle[2] > 0.1f && rgba[0] == 0 ? 0 : 2;
+  return !failed && middle[0] > 0.1f && middle[1] > 0.1f && middle[2] > 0.1f && rgba[0] == 0 ? 0 : 2;
 }

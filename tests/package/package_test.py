@@ -81,6 +81,17 @@ with tempfile.TemporaryDirectory() as scratch:
     rpath = f"-Wl,-rpath,{libs.parent}"
     run(cc, "-std=c99", "-Wall", "-Wextra", "-Werror", project / "triangle.c", "-o", scratch / "by_pkg_config", *flags, "-lm", rpath)
     print(run(scratch / "by_pkg_config"), end="")
+    # The C examples, as their README says
+    examples = scratch / "examples"
+    shutil.copytree(source / "examples/c", examples)
+    run(cc, "-std=c99", "-shared", "-fPIC", examples / "stripes.c", "-o", examples / "stripes.so", *flags, "-lm")
+    for example in sorted(examples.glob("*.c")):
+        if example.stem == "stripes":
+            continue
+        run(cc, "-std=c99", example, "-o", examples / example.stem, *flags, "-lm", rpath)
+        options = [examples / "a.rec"] if example.stem == "recording" else [f"--rt-shaderpath={examples}"]
+        run(examples / example.stem, *options, examples / "a.ppm")
+    print("examples: as they must be")
     flags = run("pkg-config", "--cflags", "--libs", "xvrml", env={"PKG_CONFIG_PATH": str(libs)}).split()
     run(cc, "-x", "c++", "-std=c++20", project / "world.cpp", "-o", scratch / "world_by_pkg_config", *flags, "-lstdc++", "-lm", rpath)
     print(run(scratch / "world_by_pkg_config"), end="")

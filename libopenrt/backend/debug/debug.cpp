@@ -64,7 +64,7 @@ class DebugBackend final : public Backend {
 
   void look() {
     if (!options_.log) return;
-    const Facts facts{scene_, [this](uint32_t shader) { return classOf(shader); }, histories_};
+    const Facts facts{scene_, [this](uint32_t shader) { return classOf(shader); }, histories_, memory_};
     for (const auto rules : {sceneRules(), shaderRules()})
       for (const Rule& rule : rules) rule.check(facts, reporter(rule.name));
     for (uint32_t id : std::exchange(fresh_, {})) {
@@ -85,6 +85,7 @@ class DebugBackend final : public Backend {
   std::unique_ptr<Backend> renderer_;
   Scene scene_;
   std::map<uint32_t, History> histories_;
+  Memory memory_;
   std::set<uint32_t> fresh_; // objects defined since they were looked at
   std::set<std::pair<std::string, uint32_t>> said_;
   bool changed_ = false;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <set>
 #include <span>
 #include <string>
 
@@ -19,10 +20,15 @@ struct History { // of one object
   bool hinted = false; // dynamic with its first definition
 };
 
+struct Memory { // what was in use in any frame
+  std::set<uint32_t> placed, shaders;
+};
+
 struct Facts {
   const Scene& scene;
   std::function<const RtsClass*(uint32_t shader)> classOf; // null: no such shader, or an unknown class
   const std::map<uint32_t, History>& histories;            // by object
+  Memory& memory;
 };
 
 // Says something about the thing with this id (0: about the frame); the same rule says it once for each id.

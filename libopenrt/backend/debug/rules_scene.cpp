@@ -45,7 +45,7 @@ void flatInstances(const Facts& f, const Report& report) {
 }
 
 void neverPlaced(const Facts& f, const Report& report) {
-  std::set<uint32_t> placed;
+  std::set<uint32_t>& placed = f.memory.placed;
   for (const auto& [id, instance] : f.scene.instances) placed.insert(instance.object);
   for (const auto& [id, object] : f.scene.objects)
     if (!object.geometries.empty() && !placed.contains(id))

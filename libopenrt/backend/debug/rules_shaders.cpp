@@ -12,17 +12,17 @@
 namespace openrt::debug {
 namespace {
 
-std::set<uint32_t> usedShaders(const Scene& scene) {
-  std::set<uint32_t> used{scene.camera.shader, scene.environment.shader, scene.defaultShader, scene.transport};
+void noteUse(const Scene& scene, std::set<uint32_t>& used) {
+  used.insert({scene.camera.shader, scene.environment.shader, scene.defaultShader, scene.transport});
   for (const auto& [id, light] : scene.lights) used.insert(light.shader);
   for (const auto& [id, instance] : scene.instances) used.insert(instance.shader);
   for (const auto& [id, object] : scene.objects)
     for (const Geometry& g : object.geometries) used.insert(g.shader);
-  return used;
 }
 
 void unusedShaders(const Facts& f, const Report& report) {
-  const std::set<uint32_t> used = usedShaders(f.scene);
+  std::set<uint32_t>& used = f.memory.shaders;
+  noteUse(f.scene, used);
   for (const auto& [id, values] : f.scene.shaders) {
     const RtsClass* table = f.classOf(id);
     if (!table || used.contains(id)) continue;
