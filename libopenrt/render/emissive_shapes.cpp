@@ -55,8 +55,8 @@ struct Looks {
   }
 };
 
-// Luminance of what n places send towards where they are looked at from.
-void ask(const RenderScene& scene, uint32_t record, const Looks& looks, Arena& arena, double* out) {
+// What n places send towards where they are looked at from.
+RtsSurface answer(const RenderScene& scene, uint32_t record, const Looks& looks, Arena& arena) {
   const Record& r = scene.records[record];
   const uint32_t n = looks.count;
   const auto* travelled = arena.takeZero<float>(padded(n));
@@ -66,14 +66,26 @@ void ask(const RenderScene& scene, uint32_t record, const Looks& looks, Arena& a
   RayCounters counters;
   RtsBatch batch;
   batch.scene = &scene, batch.arena = &arena, batch.counters = &counters, batch.points = &points;
-  {
-    const RunningShader running(*(*scene.shaders)[r.shader].shaderClass);
-    (*scene.shaders)[r.shader].shaderClass->surface(&scene.host, &batch, &points.hits, &surface);
-  }
-  for (uint32_t i = 0; i < n; i++) {
+  const RunningShader running(*(*scene.shaders)[r.shader].shaderClass);
+  (*scene.shaders)[r.shader].shaderClass->surface(&scene.host, &batch, &points.hits, &surface);
+  return surface;
+}
+
+// Its luminance.
+void ask(const RenderScene& scene, uint32_t record, const Looks& looks, Arena& arena, double* out) {
+  const RtsSurface surface = answer(scene, record, looks, arena);
+  for (uint32_t i = 0; i < looks.count; i++) {
     const float c[3] = {surface.emission[0][i], surface.emission[1][i], surface.emission[2][i]};
     out[i] = luminance(c);
   }
+}
+
+// As the kernel gives it: of an instance in its own frame, up to its length the inverse transpose of kernelNormal's map.
+void kernelNormal(const Record& r, const float normal[3], float out[3]) {
+  for (int k = 0; k < 3; k++) out[k] = normal[k];
+  if (!r.instanced) return;
+  for (int k = 0; k < 3; k++)
+    out[k] = r.toRender.r[0][k] * normal[0] + r.toRender.r[1][k] * normal[1] + r.toRender.r[2][k] * normal[2];
 }
 
 // Mean emission of triangles, of either side. Where colours or pictures may vary, of four places.
@@ -88,11 +100,8 @@ void askTriangles(const RenderScene& scene, uint32_t record, std::span<const Emi
   for (const EmissiveShapes::Shape& s : shapes) {
     float normal[3], towards[3], kernel[3];
     areaOf(s.corner, normal);
-    for (int k = 0; k < 3; k++) towards[k] = otherSide ? -normal[k] : normal[k], kernel[k] = normal[k];
-    if (r.instanced) { // the kernel's normal is in its own frame: up to its length the inverse transpose of kernelNormal's map
-      for (int k = 0; k < 3; k++)
-        kernel[k] = r.toRender.r[0][k] * normal[0] + r.toRender.r[1][k] * normal[1] + r.toRender.r[2][k] * normal[2];
-    }
+    for (int k = 0; k < 3; k++) towards[k] = otherSide ? -normal[k] : normal[k];
+    kernelNormal(r, normal, kernel);
     for (uint32_t p = 0; p < places; p++) {
       const uint32_t i = looks.count;
       const float u = at[p][0], v = at[p][1];
@@ -192,8 +201,8 @@ void EmissiveShapes::add(const RenderScene& scene, uint32_t id, std::vector<Ligh
   if (r.primitive == edit::Primitive::Sphere) {
     const double outside = askSphere(scene, id, arena); // inside, a surface's own directions meet it
     firstOf_[id] = uint32_t(shapes_.size());
-    shapes_.push_back({id, 0, uint8_t(outside > 0 ? 1 : 0), true, {}});
     bounds.push_back(sphereBounds(r, outside));
+    shapes_.push_back({id, 0, uint8_t(outside > 0 ? 1 : 0), true, {}, false, 4 * bounds.back().intensity});
     return;
   }
   if (r.primitive != edit::Primitive::Triangles || !r.vertices) return;
@@ -204,7 +213,7 @@ void EmissiveShapes::add(const RenderScene& scene, uint32_t id, std::vector<Ligh
     const uint32_t n = std::min(batchSize, r.primitives - first);
     const size_t begin = shapes_.size();
     for (uint32_t i = 0; i < n; i++) {
-      Shape& s = shapes_.emplace_back(Shape{id, first + i, 0, false, {}});
+      Shape& s = shapes_.emplace_back(Shape{id, first + i, 0, false, {}, mirrored, 0});
       cornersOf(r, s.primitive, s.corner);
       if (mirrored) std::swap(s.corner[1], s.corner[2]);
     }
@@ -217,8 +226,57 @@ void EmissiveShapes::add(const RenderScene& scene, uint32_t id, std::vector<Ligh
       Shape& s = shapes_[begin + i];
       bounds.push_back(triangleBounds(s, front[i], back[i]));
       if (bounds.back().intensity > 0) s.sides = uint8_t((front[i] > 0 ? 1 : 0) | (back[i] > 0 ? 2 : 0));
+      s.power = bounds.back().intensity * (s.sides == 3 ? 2.0f : 1.0f);
     }
   }
+}
+
+EmissiveShapes::Place EmissiveShapes::place(const RenderScene& scene, uint32_t number, float u, float v) const {
+  const Shape& s = shapes_[number];
+  Place p{};
+  if (!s.sphere) {
+    const float root = std::sqrt(u); // uniform on the triangle
+    p.u = root * (1 - v), p.v = root * v;
+    for (int k = 0; k < 3; k++) p.position[k] = (1 - p.u - p.v) * s.corner[0][k] + p.u * s.corner[1][k] + p.v * s.corner[2][k];
+    p.area = areaOf(s.corner, p.normal);
+    return p;
+  }
+  const Record& r = scene.records[s.record];
+  const double z = 1 - 2.0 * u, round = std::sqrt(std::max(0.0, 1 - z * z)), phi = 2 * M_PI * v;
+  const double l[3] = {round * std::cos(phi), round * std::sin(phi), z};
+  double length = 0, n[3], determinant = 0;
+  const auto& m = r.toRender.r;
+  for (int k = 0; k < 3; k++) {
+    p.position[k] = float(m[k][0] * l[0] + m[k][1] * l[1] + m[k][2] * l[2] + m[k][3]);
+    n[k] = r.fromRender.r[0][k] * l[0] + r.fromRender.r[1][k] * l[1] + r.fromRender.r[2][k] * l[2]; // by the inverse transpose
+    length += n[k] * n[k];
+  }
+  determinant = m[0][0] * (double(m[1][1]) * m[2][2] - double(m[1][2]) * m[2][1]) -
+                m[0][1] * (double(m[1][0]) * m[2][2] - double(m[1][2]) * m[2][0]) +
+                m[0][2] * (double(m[1][0]) * m[2][1] - double(m[1][1]) * m[2][0]);
+  length = std::sqrt(length);
+  for (int k = 0; k < 3; k++) p.normal[k] = float(n[k] / length);
+  p.area = 4 * M_PI * std::fabs(determinant) * length; // an element of area grows by |det M| |M^-T n|
+  return p;
+}
+
+void EmissiveShapes::radiance(const RenderScene& scene, uint32_t number, const Place& place, const float towards[3], Arena& arena,
+                              float out[3]) const {
+  const Shape& s = shapes_[number];
+  ArenaScope scope(arena);
+  Looks looks(arena, 1);
+  float kernel[3];
+  if (s.sphere)
+    std::copy_n(place.normal, 3, kernel);
+  else
+    kernelNormal(scene.records[s.record], place.normal, kernel);
+  for (int k = 0; k < 3; k++) looks.hits.ng[k][0] = kernel[k];
+  looks.hits.u[0] = s.swapped ? place.v : place.u, looks.hits.v[0] = s.swapped ? place.u : place.v;
+  looks.hits.record[0] = s.record, looks.hits.primitive[0] = s.primitive;
+  looks.add(place.position, towards);
+  const RtsSurface surface = answer(scene, s.record, looks, arena);
+  for (int k = 0; k < 3; k++)
+    out[k] = surface.emission[k][0] > 0 && std::isfinite(surface.emission[k][0]) ? surface.emission[k][0] : 0;
 }
 
 } // namespace openrt

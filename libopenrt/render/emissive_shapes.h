@@ -11,6 +11,7 @@
 namespace openrt {
 
 struct RenderScene;
+class Arena;
 
 class EmissiveShapes {
  public:
@@ -19,6 +20,8 @@ class EmissiveShapes {
     uint8_t sides; // 1: the side that the corners turn to (of a sphere: outside) emits, 2: the other
     bool sphere;
     float corner[3][3]; // triangle: render space, turning as the kernel's normal tells
+    bool swapped;       // corner 1 and 2 are the record's 2 and 1
+    float power;        // about proportional to the flux
   };
 
   explicit EmissiveShapes(const RenderScene& scene);
@@ -26,6 +29,15 @@ class EmissiveShapes {
   size_t size() const { return shapes_.size(); }
   const Shape& operator[](uint32_t number) const { return shapes_[number]; }
   const LightTree& tree() const { return tree_; }
+  // A place on a shape. u, v: even numbers of the unit square; area: of the whole shape, or what makes up for uneven places.
+  struct Place {
+    float position[3], normal[3], u, v;
+    double area;
+  };
+  Place place(const RenderScene& scene, uint32_t number, float u, float v) const;
+  // What the place sends out in a direction.
+  void radiance(const RenderScene& scene, uint32_t number, const Place& place, const float towards[3], Arena& arena,
+                float out[3]) const;
   // The number of a shape, none if it is not among them.
   uint32_t find(uint32_t record, uint32_t primitive) const {
     const uint32_t first = firstOf_[record];

@@ -139,4 +139,19 @@ float Emitters::skyDensity(const Receiver&, const float local[3]) const {
   return share_ > 0 ? share_ * sky_->density(local) / skyStretch(local) : 0.0f;
 }
 
+bool Emitters::sends(uint32_t record, uint32_t primitive, const float direction[3]) const {
+  const uint32_t number = shapes_ ? shapes_->find(record, primitive) : EmissiveShapes::none;
+  if (number == EmissiveShapes::none) return false;
+  const EmissiveShapes::Shape& s = (*shapes_)[number];
+  if (s.sphere || !(s.power > 0)) return s.power > 0;
+  double n[3], towards = 0;
+  for (int k = 0; k < 3; k++) {
+    const int a = (k + 1) % 3, b = (k + 2) % 3;
+    n[k] = (double(s.corner[1][a]) - s.corner[0][a]) * (double(s.corner[2][b]) - s.corner[0][b]) -
+           (double(s.corner[1][b]) - s.corner[0][b]) * (double(s.corner[2][a]) - s.corner[0][a]);
+    towards -= n[k] * direction[k];
+  }
+  return s.sides & (towards > 0 ? 1 : 2);
+}
+
 } // namespace openrt

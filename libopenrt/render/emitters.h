@@ -45,7 +45,9 @@ class Emitters {
   // The same of the sky in a direction in the environment's local space.
   float skyDensity(const Receiver& from, const float local[3]) const;
 
-  // For tests and statistics.
+  // Whether paths from lamps begin on a surface that is met along a direction (render/light_sources.h).
+  bool sends(uint32_t record, uint32_t primitive, const float direction[3]) const;
+  // For light sources, tests and statistics.
   const EmissiveShapes* shapes() const { return shapes_.get(); }
   const SkySampler* sky() const { return sky_.get(); }
 

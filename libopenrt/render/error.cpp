@@ -15,6 +15,8 @@
 #include <cmath>
 #include <limits>
 
+#include "render/light_image.h"
+
 namespace openrt {
 namespace {
 
@@ -254,6 +256,23 @@ PixelError independentError(const PixelSums& s) {
 void tileErrors(uint32_t width, std::span<const PixelSums* const> pixels, const Replicates& replicates,
                 std::span<PixelError> out) {
   TileErrors(width, pixels, replicates, out).make();
+}
+
+void addLight(const PixelSums& s, PixelError& e) {
+  double was = 3 * .01, squares = 0, half = 0, lamps = 0;
+  bool clear = true;
+  for (int k = 0; k < 3; k++) {
+    was += double(e.mean[k]);
+    const double w = s.lightVariance[k], h = student95(LightImage::parts - 1) * std::sqrt(w);
+    e.mean[k] += float(s.light[k]);
+    e.halfWidth[k] = float(std::hypot(double(e.halfWidth[k]), h));
+    half += double(e.halfWidth[k]), lamps += h, squares += 2 / M_PI * w;
+    clear &= s.light[k] > 4 * std::sqrt(w) || w == 0;
+  }
+  const double expected = std::hypot(double(e.expected) * was, std::sqrt(3 * squares));
+  if (lamps > 0) e.constant = false;
+  if (lamps > negligible * half && !clear) e.trusted = false; // few paths have met the pixel
+  e.relative = relativeError(half, e.mean), e.expected = relativeError(expected, e.mean);
 }
 
 uint32_t samplesFor(double target, double halfWidth, uint32_t samples, uint32_t most) {

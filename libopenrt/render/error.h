@@ -27,6 +27,9 @@ PixelError independentError(const PixelSums& sums);
 void tileErrors(uint32_t width, std::span<const PixelSums* const> pixels, const Replicates& replicates,
                 std::span<PixelError> out);
 
+// What paths from lamps add to a pixel (PixelSums::light), which is an estimate of its own.
+void addLight(const PixelSums& sums, PixelError& error);
+
 // Samples that a part of the picture needs for a relative half-width, from independent ones: rounded up to a power of two.
 uint32_t samplesFor(double target, double halfWidth, uint32_t samples, uint32_t most);
 

@@ -55,7 +55,7 @@ void Film::store(uint32_t x, uint32_t y, const PixelSums& s, const PixelError* e
   const size_t pixel = size_t(y) * width_ + x;
   const double n = s.samples ? s.samples : 1;
   if (has(RT_RGBA))
-    for (int k = 0; k < 4; k++) plane(RT_RGBA)[4 * pixel + k] = float(s.rgba[k] / n);
+    for (int k = 0; k < 4; k++) plane(RT_RGBA)[4 * pixel + k] = float(s.rgba[k] / n + (k < 3 ? s.light[k] : 0));
   for (int k = 0; k < 3; k++) {
     if (has(RT_NORMAL)) plane(RT_NORMAL)[3 * pixel + k] = float(s.normal[k] / n);
     if (has(RT_ALBEDO)) plane(RT_ALBEDO)[3 * pixel + k] = float(s.albedo[k] / n);

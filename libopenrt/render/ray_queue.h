@@ -11,6 +11,14 @@
 
 namespace openrt {
 
+// Which paths from the camera light tracing makes instead: those that are in `through` when they meet a lamp.
+enum class Course : uint8_t {
+  straight,  // nothing has bent it yet
+  scattered, // first a surface that scatters; so did the last one
+  through,   // the same, and since the last one that scatters mirrors or smooth boundaries alone
+  mirrored   // first a mirror or a smooth boundary; of a path from a lamp: what light tracing follows
+};
+
 // What a ray knows of the path it belongs to.
 struct RayState {
   float throughput[3] = {1, 1, 1};
@@ -20,9 +28,10 @@ struct RayState {
   float density = 0;     // by solid angle, with which a lobe has chosen the direction; 0: it could not be another
   Receiver from;         // whose density it is
   MediaStack media = {}; // bodies that the ray is inside of
-  uint8_t bent = 0;      // no longer the straight line from the camera: alpha is settled
-  uint8_t splits = 0;    // times the path has gone on in several directions
-  uint8_t channel = 0;   // 1 + the only colour it carries (dispersion); 0: all
+  Course course = Course::straight;
+  uint8_t bent = 0;    // no longer the straight line from the camera: alpha is settled
+  uint8_t splits = 0;  // times the path has gone on in several directions
+  uint8_t channel = 0; // 1 + the only colour it carries (dispersion); 0: all
 };
 
 struct QueuedRay {

@@ -18,6 +18,7 @@
 namespace openrt {
 
 class ShaderRegistry;
+class LightSources;
 
 struct ShaderSlot {
   const RtsClass* shaderClass = nullptr;
@@ -92,6 +93,7 @@ struct RenderScene {
   double origin[3] = {0, 0, 0};                              // of render space, in the world
   Emitters emitters;                                         // path tracing: what sends out light besides the lights
   std::shared_ptr<const std::vector<ManyLights>> manyLights; // by light set; null: all lights are asked everywhere
+  std::shared_ptr<const LightSources> lightSources;          // light tracing: null where it has nothing to do
   bool transparentShadows = false;                           // something transparent may stand before a light
   RenderHost host;
   edit::FrameSettingsT frame;

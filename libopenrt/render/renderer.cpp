@@ -11,6 +11,8 @@
 #include <cstdio>
 #include <exception>
 
+#include "render/light_tracer.h"
+
 namespace openrt {
 namespace {
 
@@ -56,6 +58,10 @@ Frame::Frame(std::shared_ptr<const RenderScene> scene, uint32_t threads)
   }
   const uint32_t count = std::min(threads, std::max(tiles_, 1u));
   barrier_ = std::make_unique<std::barrier<EndRound>>(count, EndRound{this});
+  if (scene_->lightSources && tiles_ > 0) {
+    light_ = std::make_unique<LightImage>(film_.width(), film_.height());
+    lit_ = std::make_unique<std::barrier<>>(count);
+  }
   for (uint32_t i = 0; i < count; i++) threads_.emplace_back([this] { work(); });
 }
 
@@ -140,10 +146,33 @@ void Frame::describeError(RTstats& stats) const {
   std::snprintf(stats.errorMethod, sizeof stats.errorMethod, "%s", many ? "replicated nets, Student's t" : "sample variance");
 }
 
+// As many paths from lamps as from the camera; where the number of these is open, at most a few for each pixel.
+void Frame::traceLight() {
+  constexpr uint32_t mostOfOpen = 64;
+  const edit::FrameSettingsT& frame = scene_->frame;
+  const bool open = frame.targetError > 0 || frame.timeLimit > 0;
+  const double paths = double(film_.width()) * film_.height() * (open ? std::min(frame.samples, mostOfOpen) : frame.samples);
+  const uint32_t each = uint32_t(std::clamp(std::ceil(paths / LightImage::parts), 1.0, 4e9));
+  LightTracer tracer(*scene_, *scene_->lightSources);
+  for (uint32_t i; !cancelled_ && (i = nextPart_++) < LightImage::parts;) {
+    tracer.trace(each, hash(frame.seed, 0x6c616d70u + i));
+    light_->add(i, tracer.picture(), cancelled_);
+  }
+  std::lock_guard lock(mutex_);
+  counters_.shadow += tracer.counters().shadow;
+  counters_.secondary += tracer.counters().secondary;
+}
+
 void Frame::work() {
   _mm_setcsr(_mm_getcsr() | 0x8040); // flush denormals to zero, as the ray kernels want it
+  bool lit = !light_;
   try {
-    TileRenderer renderer(*scene_, film_, rounds_ ? &rounds_->film : nullptr);
+    if (light_) {
+      traceLight();
+      lit = true;
+      lit_->arrive_and_wait();
+    }
+    TileRenderer renderer(*scene_, film_, rounds_ ? &rounds_->film : nullptr, light_.get());
     do {
       for (uint32_t i; !cancelled_ && (i = next_++) < tiles_;) renderTile(renderer, i);
       barrier_->arrive_and_wait();
@@ -156,6 +185,7 @@ void Frame::work() {
     seconds_ = std::max(seconds_, now() - started_);
   } catch (const std::exception& e) {
     cancelled_ = true;
+    if (!lit) lit_->arrive_and_drop();
     barrier_->arrive_and_drop();
     std::lock_guard lock(mutex_);
     failure_ = e.what();

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "render/film.h"
+#include "render/light_image.h"
 #include "render/render_scene.h"
 #include "render/tile.h"
 
@@ -38,6 +39,7 @@ class Frame {
 
  private:
   void work();
+  void traceLight();
   void renderTile(TileRenderer& renderer, uint32_t number);
   void endRound() noexcept; // by one thread, while the others wait
   Tile tile(uint32_t number) const;
@@ -53,8 +55,11 @@ class Frame {
   };
   std::shared_ptr<const RenderScene> scene_;
   Film film_;
-  std::unique_ptr<Rounds> rounds_; // null: one round
-  std::atomic<bool> over_{false};  // written by endRound()
+  std::unique_ptr<Rounds> rounds_;    // null: one round
+  std::unique_ptr<LightImage> light_; // null: no paths from lamps
+  std::unique_ptr<std::barrier<>> lit_;
+  std::atomic<uint32_t> nextPart_{0};
+  std::atomic<bool> over_{false}; // written by endRound()
   uint32_t edge_, columns_, tiles_;
   std::atomic<uint32_t> next_{0}, done_{0};
   std::atomic<bool> cancelled_{false};

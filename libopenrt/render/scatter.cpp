@@ -137,12 +137,12 @@ void TileRenderer::scatterRange(Paths& paths, const Points& points, const Bucket
 
 // The share of a surface's own light that belongs to the ray: the rest comes from those who choose places on emitters.
 float TileRenderer::chanceMet(const RayState& ray, const Points& points, uint32_t i) const {
-  if (!(ray.density > 0)) return 1;
-  const uint32_t lane = points.order[i];
+  const uint32_t lane = points.order[i], record = points.rayHits->record[lane], primitive = points.rayHits->primitive[lane];
   const RtsHits& h = points.hits;
   const float direction[3] = {h.direction[0][i], h.direction[1][i], h.direction[2][i]};
-  const float chosen =
-      scene_.emitters.density(ray.from, points.rayHits->record[lane], points.rayHits->primitive[lane], direction, h.segment[i]);
+  if (scene_.lightSources && ray.course == Course::through && scene_.emitters.sends(record, primitive, direction)) return 0;
+  if (!(ray.density > 0)) return 1;
+  const float chosen = scene_.emitters.density(ray.from, record, primitive, direction, h.segment[i]);
   return std::isfinite(chosen) ? ray.density / (ray.density + chosen) : 0.0f;
 }
 

@@ -114,6 +114,7 @@ void ShaderTable::make(uint32_t number, const RtsClass& shaderClass, const Shade
     if (shaderClass.traits) slot.traits = shaderClass.traits(&host, slot.params);
     if (shaderClass.medium) setMedium(slot, host);
   }
+  if (shaderClass.surface && shaderClass.size <= offsetof(RtsClass, frequency)) slot.traits |= RTS_SPECULAR; // made for 1.1
   slots_[number] = slot;
   blocks_[number] = made;
 }

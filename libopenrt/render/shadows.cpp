@@ -79,9 +79,10 @@ void passSurface(const RtsBatch& batch, ShadowRays& s, RayHits& found, uint8_t* 
     RtsBatch inner = batch;
     inner.tracer = nullptr;
     inner.points = &points;
-    {
+    // What mirrors and glass do with light is not guessed where it is followed.
+    if (shaderClass.transmit && !(scene.lightSources && shaderClass.surface && shaderClass.medium)) {
       const RunningShader running(shaderClass);
-      if (shaderClass.transmit) shaderClass.transmit(&scene.host, &inner, &points.hits, through);
+      shaderClass.transmit(&scene.host, &inner, &points.hits, through);
     }
     for (uint32_t i = 0; i < m; i++) {
       const uint32_t ray = order[range.begin + i];

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "render/light_image.h"
 #include "render/paths.h"
 #include "render/sampler.h"
 #include "render/surfaces.h"
@@ -19,8 +20,8 @@ constexpr uint32_t pilotSamples = 32;
 
 uint32_t tileEdge(uint32_t samplesPerPixel) { return samplesPerPixel >= 16 ? 16 : samplesPerPixel >= 4 ? 32 : 64; }
 
-TileRenderer::TileRenderer(const RenderScene& scene, Film& film, std::mutex* filmLock)
-    : scene_(scene), film_(film), filmLock_(filmLock), wantsError_(wantsError(scene.frame)) {}
+TileRenderer::TileRenderer(const RenderScene& scene, Film& film, std::mutex* filmLock, const LightImage* light)
+    : scene_(scene), film_(film), filmLock_(filmLock), light_(light), wantsError_(wantsError(scene.frame)) {}
 
 void TileRenderer::render(const Tile& tile) {
   uint32_t samples = scene_.frame.samples;
@@ -68,6 +69,10 @@ void TileRenderer::takeSamples(uint32_t first, uint32_t samples) {
 }
 
 void TileRenderer::store(const Tile& tile) {
+  for (size_t i = 0; light_ && i < pixels_.size(); i++) {
+    const LightImage::Pixel& pixel = light_->at(pixels_[i]);
+    for (int k = 0; k < 3; k++) sums_[i].light[k] = pixel.mean[k], sums_[i].lightVariance[k] = pixel.variance(k);
+  }
   const uint32_t width = film_.width();
   std::unique_lock<std::mutex> lock;
   if (filmLock_) lock = std::unique_lock(*filmLock_);
@@ -89,6 +94,7 @@ void TileRenderer::store(const Tile& tile) {
     for (size_t i = 0; i < pixels_.size(); i++) errors_[i] = independentError(sums_[i]);
   }
   for (size_t i = 0; i < pixels_.size(); i++) {
+    if (light_) addLight(sums_[i], errors_[i]);
     film_.store(pixels_[i] % width, pixels_[i] / width, sums_[i], &errors_[i]);
     halfWidth_ += double(errors_[i].relative);
   }
@@ -399,6 +405,12 @@ void TileRenderer::push(const Points& points, uint32_t i, uint32_t lane, const S
   ray.state.travelled = h.distance[i];
   ray.state.density = step.density;
   if (step.density > 0) ray.state.from = receiverOf(points, i, step.through);
+  if (step.bent) {
+    if (from.course == Course::straight)
+      ray.state.course = step.density > 0 ? Course::scattered : Course::mirrored;
+    else if (from.course != Course::mirrored)
+      ray.state.course = step.density > 0 ? Course::scattered : Course::through;
+  }
   ray.state.bent |= step.bent ? 1 : 0;
   ray.state.branch = step.branch;
   ray.state.channel = step.channel;

@@ -17,11 +17,13 @@ namespace openrt {
 uint32_t tileEdge(uint32_t samplesPerPixel);
 
 struct Boundaries;
+class LightImage;
 
 class TileRenderer {
  public:
   // filmLock: held while pixels are stored, if other threads may read them meanwhile; else null
-  TileRenderer(const RenderScene& scene, Film& film, std::mutex* filmLock = nullptr);
+  // light: what paths from lamps have made, or null
+  TileRenderer(const RenderScene& scene, Film& film, std::mutex* filmLock = nullptr, const LightImage* light = nullptr);
   // The whole of a tile: a pilot if the frame has a target error, then its samples, then its pixels.
   void render(const Tile& tile);
   // Some samples more for a tile whose sums are kept from round to round; the first time sums is empty.
@@ -93,6 +95,7 @@ class TileRenderer {
   const RenderScene& scene_;
   Film& film_;
   std::mutex* filmLock_;
+  const LightImage* light_;
   Arena arena_;
   RayCounters counters_;
   std::vector<uint32_t> counts_, pixels_; // pixels_: y * width + x, in blocks of 4x4

@@ -7,7 +7,8 @@
 
 namespace openrt {
 
-Ways::Ways(const RtsHits& hits, uint32_t hit, const float* eta, uint8_t channel) : hit_(hit), eta_(eta), channel_(channel) {
+Ways::Ways(const RtsHits& hits, uint32_t hit, const float* eta, uint8_t channel, bool fromLamp)
+    : hit_(hit), eta_(eta), channel_(channel), fromLamp_(fromLamp) {
   for (int k = 0; k < 3; k++) d_[k] = hits.direction[k][hit], g_[k] = hits.geometric[k][hit];
 }
 
@@ -55,6 +56,10 @@ void Ways::scatter(const RtsLobe& lobe, const LobeSamples& samples, const float 
   way.density = samples.density[hit_];
   way.lost = !(way.density > 0);
   if (way.lost) return;
+  if (fromLamp_ && lobe.kind == RTS_LOBE_ROUGH_DIELECTRIC && dot3(out, n) < 0) {
+    const float eta = lobe.parameter[0][hit_];
+    for (float& weight : way.weight) weight /= eta * eta;
+  }
   way.lost = dot3(out, n) > 0 ? !(dot3(out, g_) > 0) : !scatteringOf(lobe)->transmits || !(dot3(out, g_) < 0);
 }
 
@@ -77,7 +82,7 @@ void Ways::dielectric(const float n[3], const float w[3], float eta) {
   if (r >= 1) return;
   float out[3];
   refractAt(d_, n, eta, cosine, behind, out);
-  if (dot3(out, g_) < 0) put(out, w, float((1 - r) * eta * eta));
+  if (dot3(out, g_) < 0) put(out, w, float(fromLamp_ ? 1 - r : (1 - r) * eta * eta));
 }
 
 } // namespace openrt

@@ -21,7 +21,8 @@ class Ways {
   static constexpr uint32_t maximum = 6 * RTS_MAX_LOBES;
   // eta: index of refraction on the ray's side over that behind, by colour, where the engine knows it, else null. channel: as in
   // Way, of the ray.
-  Ways(const RtsHits& hits, uint32_t hit, const float* eta, uint8_t channel);
+  // fromLamp: the path comes from a lamp: what it carries is flux, which boundaries do not compress.
+  Ways(const RtsHits& hits, uint32_t hit, const float* eta, uint8_t channel, bool fromLamp = false);
   // samples: null for lobes that do not scatter; those that do are then left out.
   void add(uint32_t number, const RtsLobe& lobe, const LobeSamples* samples);
 
@@ -36,6 +37,7 @@ class Ways {
   uint32_t hit_, lobe_ = 0;
   const float* eta_;
   uint8_t channel_;
+  bool fromLamp_;
   float d_[3], g_[3];
 };
 

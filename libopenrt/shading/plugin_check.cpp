@@ -101,7 +101,7 @@ RtsClass checkClass(const RtsClass* theirs, const std::string& path) {
   RtsClass ours{};
   // Whole pointers only: half a function pointer would be a wild one.
   std::memcpy(&ours, theirs, theirs->size / sizeof(void*) * sizeof(void*));
-  ours.size = sizeof(RtsClass);
+  ours.size = theirs->size;
   if (!ours.name || !*ours.name) refuse(path, "a class without a name");
   const std::string where = "shader library " + path + ": class " + ours.name;
   checkParameters(ours, where);

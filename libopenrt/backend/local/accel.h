@@ -26,6 +26,7 @@ class Accel final : public Intersector {
   void intersect(const Rays& rays, uint32_t mask, Coherence coherence, RayHits& hits) const override;
   void intersectFronts(const Rays& rays, uint32_t mask, RayHits& hits) const override;
   void occluded(const Rays& rays, uint32_t mask, Coherence coherence, uint8_t* blocked) const override;
+  void bounds(float low[3], float high[3]) const override;
 
  private:
   friend class AccelBuilder;

@@ -183,4 +183,16 @@ void Accel::occluded(const Rays& rays, uint32_t mask, Coherence coherence, uint8
   if (top) occludedLevel(topLevel_, rays, mask, coherent, !first, blocked);
 }
 
+void Accel::bounds(float low[3], float high[3]) const {
+  std::fill_n(low, 3, std::numeric_limits<float>::infinity());
+  std::fill_n(high, 3, -std::numeric_limits<float>::infinity());
+  for (const Level* level : {&staticLevel_, &topLevel_}) {
+    if (!level->masks) continue;
+    RTCBounds b;
+    rtcGetSceneBounds(level->scene->scene, &b);
+    const float l[3] = {b.lower_x, b.lower_y, b.lower_z}, h[3] = {b.upper_x, b.upper_y, b.upper_z};
+    for (int k = 0; k < 3; k++) low[k] = std::min(low[k], l[k] / scale_), high[k] = std::max(high[k], h[k] / scale_);
+  }
+}
+
 } // namespace openrt

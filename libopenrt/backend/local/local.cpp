@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "render/light_sources.h"
 #include "render/transport.h"
 
 namespace openrt {
@@ -56,6 +57,10 @@ void LocalBackend::prepare() {
   transportReason_ = std::move(choice.reason);
   next->emitters.build(*next, snapshot_.get(), samePlaces_);
   next->manyLights = makeManyLights(*next, snapshot_.get());
+  if (choice.transport == RT_TRANSPORT_LIGHT && next->camera.shader.shaderClass && next->camera.shader.shaderClass->project) {
+    auto sources = std::make_shared<const LightSources>(*next);
+    if (!sources->empty()) next->lightSources = std::move(sources);
+  }
   snapshot_ = std::move(next);
   changes_ = {};
 }

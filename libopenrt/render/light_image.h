@@ -1,0 +1,36 @@
+// light_image.h: the part of a picture that paths from lamps make. They may fall on any pixel, so the picture is made in a fixed
+// number of parts, each a whole picture by one thread; their mean and its variance are kept. Parts are added in their order: the
+// sums do not depend on threads.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <mutex>
+#include <vector>
+
+namespace openrt {
+
+class LightImage {
+ public:
+  static constexpr uint32_t parts = 16;
+  LightImage(uint32_t width, uint32_t height) : pixels_(size_t(width) * height) {}
+  // part: rgb by pixel; waits until the parts before it are in. False if cancelled before. [render]
+  bool add(uint32_t number, const std::vector<float>& part, const std::atomic<bool>& cancelled);
+
+  // After all parts are in.
+  struct Pixel {
+    double mean[3] = {}, squares[3] = {}; // squares: sum of squared differences from the mean
+    // Variance of the mean.
+    double variance(int k) const { return squares[k] / (parts * (parts - 1.0)); }
+  };
+  const Pixel& at(size_t pixel) const { return pixels_[pixel]; }
+
+ private:
+  std::vector<Pixel> pixels_;
+  std::mutex mutex_;
+  std::condition_variable turn_;
+  uint32_t next_ = 0;
+};
+
+} // namespace openrt

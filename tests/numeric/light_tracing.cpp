@@ -1,0 +1,136 @@
+// light_tracing.cpp: RT_TRANSPORT_LIGHT: what lamps send by way of mirrors and lenses, against closed forms and path tracing.
+#include <cmath>
+#include <vector>
+
+#include "numeric/support.h"
+
+namespace numeric {
+namespace {
+
+class LightTracing : public Scene {
+ protected:
+  void SetUp() override {
+    Scene::SetUp();
+    rtQuality(RT_TRANSPORT, RT_TRANSPORT_LIGHT);
+  }
+  static Shader diffuse(double radiance, double reflectance) {
+    Shader s("Diffuse");
+    s.set("reflectance", {reflectance, reflectance, reflectance}).set("emission", {radiance, radiance, radiance});
+    return s;
+  }
+  static void at(double x, double y, double z, RTid object, bool down = false) {
+    rtPushMatrix();
+    rtTranslated(x, y, z);
+    if (down) rtRotated(180, 1, 0, 0);
+    place(object);
+    rtPopMatrix();
+  }
+  static void cameraAt(double x, double y, double z, double toX, double toY, double toZ, double fovy) {
+    rtPushMatrix();
+    rtLoadIdentity();
+    rtLookAt(x, y, z, toX, toY, toZ, 0, 1, 0);
+    rtPerspective(fovy);
+    rtPopMatrix();
+  }
+  static std::vector<float> picture(int edge, int samples, uint32_t channels = RT_RGBA) {
+    rtFrameBuffer(edge, edge, channels);
+    rtQuality(RT_SAMPLES_PER_PIXEL, samples);
+    rtRender();
+    std::vector<float> out(size_t(4) * size_t(edge) * size_t(edge));
+    rtReadPixels(RT_RGBA, out.data(), out.size());
+    EXPECT_EQ(rtGetError(), RTenum(RT_NO_ERROR)) << rtGetErrorMessage();
+    return out;
+  }
+  static double mean(const std::vector<float>& rgba) {
+    double sum = 0;
+    for (size_t i = 0; i < rgba.size(); i += 4) sum += rgba[i];
+    return sum / (double(rgba.size()) / 4);
+  }
+};
+
+// A lamp over a mirror lights a ceiling as the lamp and its image would. The camera looks at a part of the ceiling, aside of both.
+TEST_F(LightTracing, AMirrorSendsOnTheLightOfItsImage) {
+  const double half = .05, lampAt = 1, ceilingAt = 2, reflectance = .8, radiance = 100, x = .7;
+  Shader mirror("Mirror");
+  mirror.set("reflectance", {reflectance, reflectance, reflectance});
+  at(0, 0, 0, square(mirror, 2));
+  at(0, 0, lampAt, square(diffuse(radiance, 0), half), true);
+  at(0, 0, ceilingAt, square(diffuse(0, .5), 10), true);
+  cameraAt(x, 0, 1.2, x, 0, ceilingAt, 50);
+  rtQuality(RT_MAX_DEPTH, 2); // ceiling, mirror, lamp: no light from ceiling to ceiling
+  // Irradiance of a square source at a height h over (px, py), small against h.
+  const auto from = [&](double px, double py, double h) {
+    const double d2 = px * px + py * py + h * h;
+    return radiance * 4 * half * half * h * h / (d2 * d2);
+  };
+  double direct = 0, mirrored = 0;
+  constexpr int n = 100;
+  for (int i = 0; i < n; i++)
+    for (int j = 0; j < n; j++) {
+      const double seen = .8 * std::tan(25 * pi / 180), px = x + seen * (2 * (i + .5) / n - 1), py = seen * (2 * (j + .5) / n - 1);
+      direct += from(px, py, ceilingAt - lampAt) / (n * n);
+      mirrored += reflectance * from(px, py, ceilingAt + lampAt) / (n * n);
+    }
+  const double light = mean(picture(4, 32768)), before = .5 / pi * direct, expected = .5 / pi * (direct + mirrored);
+  EXPECT_NEAR(light, expected, .02 * (expected - before) + .001 * expected);
+  EXPECT_EQ(stats().transport, RTenum(RT_TRANSPORT_LIGHT));
+}
+
+// Wherever a path goes, one of the two makes it: the picture is that of path tracing.
+TEST_F(LightTracing, ACausticHasTheLightThatPathTracingFinds) {
+  at(0, 0, 0, square(diffuse(0, .7), 3));
+  const RTid ball = rtBeginObject(0);
+  rtBindShader(Shader("Glass"));
+  rtSphere(.5);
+  rtEndObject();
+  rtBindShader(0);
+  at(0, 0, .8, ball);
+  at(-1.6, 0, 1, square(Shader("Mirror"), .3));
+  at(.5, 0, 3, square(diffuse(5, .3), .6), true);
+  rtPushMatrix();
+  rtLoadIdentity();
+  rtLookAt(0, -4, 2.5, 0, 0, .4, 0, 0, 1);
+  rtPerspective(40);
+  rtPopMatrix();
+  constexpr int edge = 16, block = 4;
+  rtQuality(RT_MAX_DEPTH, 12);
+  const std::vector<float> light = picture(edge, 1024);
+  rtQuality(RT_TRANSPORT, RT_TRANSPORT_PATH);
+  rtQuality(RT_SEED, 7);
+  const std::vector<float> path = picture(edge, 8192);
+  for (int by = 0; by < edge / block; by++)
+    for (int bx = 0; bx < edge / block; bx++) {
+      double a = 0, b = 0;
+      for (int y = by * block; y < (by + 1) * block; y++)
+        for (int x = bx * block; x < (bx + 1) * block; x++) {
+          a += light[4 * size_t(y * edge + x)] / (block * block);
+          b += path[4 * size_t(y * edge + x)] / (block * block);
+        }
+      EXPECT_NEAR(a, b, .03 * b + .002) << bx << " " << by;
+    }
+}
+
+TEST_F(LightTracing, ThePictureDoesNotDependOnThreads) {
+  std::vector<std::vector<float>> pictures;
+  const RTcontext own = rtGetCurrent();
+  for (const char* config : {"threads=1", "threads=3"}) {
+    const RTcontext context = rtNewContext(config);
+    rtQuality(RT_TRANSPORT, RT_TRANSPORT_LIGHT);
+    at(0, 0, 0, square(diffuse(0, .7), 3));
+    const RTid ball = rtBeginObject(0);
+    rtBindShader(Shader("Glass"));
+    rtSphere(.5);
+    rtEndObject();
+    rtBindShader(0);
+    at(0, 0, .8, ball);
+    at(.5, 0, 3, square(diffuse(5, .3), .6), true);
+    cameraAt(0, -4, 2.5, 0, 0, .4, 40);
+    pictures.push_back(picture(20, 8));
+    rtDeleteContext(context);
+  }
+  rtMakeCurrent(own);
+  EXPECT_EQ(pictures[0], pictures[1]);
+}
+
+} // namespace
+} // namespace numeric
