@@ -9,6 +9,7 @@
 #include "render/scatter.h"
 #include "render/shadows.h"
 #include "render/ways.h"
+#include "shading/running.h"
 
 namespace openrt {
 namespace {
@@ -127,7 +128,10 @@ void LightTracer::pass(const Points& points, const uint32_t* order, const RtsCla
   batch.scene = &scene_, batch.arena = &arena_, batch.counters = &counters_, batch.points = &points;
   float* through[3];
   for (auto& a : through) a = arena_.takeZero<float>(padded(n));
-  shaderClass.transmit(&scene_.host, &batch, &points.hits, through);
+  {
+    const RunningShader running(shaderClass);
+    shaderClass.transmit(&scene_.host, &batch, &points.hits, through);
+  }
   for (uint32_t i = 0; i < n; i++) {
     RayState state = states_[order[i]];
     const float d[3] = {points.hits.direction[0][i], points.hits.direction[1][i], points.hits.direction[2][i]};
@@ -159,6 +163,7 @@ bool LightTracer::leaveLamp(const Points& points, uint32_t i, RayState& state) {
     RtsBatch batch;
     batch.scene = &scene_, batch.arena = &arena_, batch.counters = &counters_, batch.points = &points;
     const float* at[3] = {local[0], local[1], local[2]};
+    const RunningShader running(*light.shader.shaderClass);
     light.shader.shaderClass->illuminate(&scene_.host, &batch, light.shader.params, 1, at, &out);
     double way = 0;
     for (int k = 0; k < 3; k++) way += std::pow(double(points.hits.position[k][i]) - start.origin[k], 2);
@@ -177,7 +182,10 @@ void LightTracer::scatter(const Points& points, const uint32_t* order, const Rts
   RtsBatch batch;
   batch.scene = &scene_, batch.arena = &arena_, batch.counters = &counters_, batch.points = &points;
   batch.states = states_, batch.order = order;
-  shaderClass.surface(&scene_.host, &batch, &hits, &surface);
+  {
+    const RunningShader running(shaderClass);
+    shaderClass.surface(&scene_.host, &batch, &hits, &surface);
+  }
   Boundaries boundaries{nullptr, nullptr};
   if (shaderClass.medium) meetBoundaries(batch, states_, boundaries);
   auto *all = arena_.take<uint32_t>(n), *connected = arena_.take<uint32_t>(n);
@@ -292,7 +300,10 @@ void LightTracer::connect(const RtsBatch& batch, const uint32_t* hitNumbers, uin
   const float *place[3] = {local[0], local[1], local[2]}, *square[2] = {uv[0], uv[1]};
   const float extent[2] = {float(width_), float(height_)};
   RtsBatch asking = batch;
-  camera.shaderClass->project(&scene_.host, &asking, camera.params, n, place, square, extent, &seen);
+  {
+    const RunningShader running(*camera.shaderClass);
+    camera.shaderClass->project(&scene_.host, &asking, camera.params, n, place, square, extent, &seen);
+  }
   float* distance = arena_.take<float>(size);
   const auto& m = scene_.camera.fromLocal.r;
   for (uint32_t i = 0; i < n; i++) {

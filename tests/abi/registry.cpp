@@ -70,7 +70,7 @@ TEST(Registry, LoadsAGoodPluginOnce) {
 TEST(Registry, AnOlderClassLacksTheNewerFunctions) {
   const ShaderRegistry registry({plugins});
   const RtsClass& example = registry.find("Example", "older_class");
-  EXPECT_EQ(example.size, sizeof(RtsClass));
+  EXPECT_LT(example.size, sizeof(RtsClass)); // as it states, which tells its version
   EXPECT_NE(example.traits, nullptr);
   EXPECT_NE(example.shade, nullptr);
   EXPECT_EQ(example.transmit, nullptr); // there in the plug-in's memory, but beyond the size it states

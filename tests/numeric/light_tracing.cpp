@@ -48,7 +48,8 @@ class LightTracing : public Scene {
   }
 };
 
-// A lamp over a mirror lights a ceiling as the lamp and its image would. The camera looks at a part of the ceiling, aside of both.
+// A lamp over a mirror lights a ceiling as the lamp and its image would. The camera looks at a part of the ceiling, aside of
+// both.
 TEST_F(LightTracing, AMirrorSendsOnTheLightOfItsImage) {
   const double half = .05, lampAt = 1, ceilingAt = 2, reflectance = .8, radiance = 100, x = .7;
   Shader mirror("Mirror");
@@ -67,7 +68,8 @@ TEST_F(LightTracing, AMirrorSendsOnTheLightOfItsImage) {
   constexpr int n = 100;
   for (int i = 0; i < n; i++)
     for (int j = 0; j < n; j++) {
-      const double seen = .8 * std::tan(25 * pi / 180), px = x + seen * (2 * (i + .5) / n - 1), py = seen * (2 * (j + .5) / n - 1);
+      const double seen = .8 * std::tan(25 * pi / 180), px = x + seen * (2 * (i + .5) / n - 1),
+                   py = seen * (2 * (j + .5) / n - 1);
       direct += from(px, py, ceilingAt - lampAt) / (n * n);
       mirrored += reflectance * from(px, py, ceilingAt + lampAt) / (n * n);
     }
