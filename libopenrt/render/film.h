@@ -17,7 +17,7 @@ struct PixelSums { // of one pixel, samples added in their order
   double first[3] = {}, delta[3] = {}, delta2[3] = {}; // sums of (x - first) and its square: no cancellation
   // Over the complete replicates: sums of their delta, of its square, cube and fourth power.
   double closed[3] = {}, closed2[3] = {}, closed3[3] = {}, closed4[3] = {};
-  double grey[3] = {};                                 // sums of (red + green + blue - first)^2, ^3 and ^4; see addTails()
+  double grey[3] = {}; // sums of (red + green + blue - first)^2, ^3 and ^4; see addTails()
   float depth = 0, position[3] = {}, name = 0;
   double light[3] = {}, lightVariance[3] = {}; // what paths from lamps add to the mean, and its variance (light_image.h)
   float largest[3] = {};
