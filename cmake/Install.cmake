@@ -1,5 +1,5 @@
 # What `cmake --install` lays down: libraries, headers (the generated xvrml/nodes.h too), vv, openrt-replay, nodegen, shader
-# plug-ins, the Python package, CMake packages `openrt` and `xvrml`, pkg-config files. The installed tree can be moved.
+# plug-ins, the Python package, manual pages (ManPages.cmake), CMake packages `openrt` and `xvrml`, pkg-config files. The installed tree can be moved.
 include(CMakePackageConfigHelpers)
 set(openrt_cmake_dir ${CMAKE_INSTALL_LIBDIR}/cmake/openrt)
 set(xvrml_cmake_dir ${CMAKE_INSTALL_LIBDIR}/cmake/xvrml)
