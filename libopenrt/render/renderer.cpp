@@ -103,6 +103,7 @@ void Frame::renderTile(TileRenderer& renderer, uint32_t number) {
     rounds_->wanted[number] = renderer.pilot(tile(number), rounds_->samples);
   else if (rounds_->wanted[number] > rounds_->first)
     renderer.renderRound(tile(number), rounds_->sums[number], rounds_->replicates, rounds_->first, rounds_->samples);
+  if (cancelled_) return; // perhaps given up
   finished_[number].store(true, std::memory_order_release);
   done_++;
 }
@@ -173,6 +174,7 @@ void Frame::work() {
       lit_->arrive_and_wait();
     }
     TileRenderer renderer(*scene_, film_, rounds_ ? &rounds_->film : nullptr, light_.get());
+    renderer.stopAt(cancelled_);
     do {
       for (uint32_t i; !cancelled_ && (i = next_++) < tiles_;) renderTile(renderer, i);
       barrier_->arrive_and_wait();

@@ -29,15 +29,14 @@ void TileRenderer::render(const Tile& tile) {
   begin(tile);
   replicates_ = replicatesOf(scene_.frame, samples, scene_.frame.seed);
   single_ = samples == 1;
-  takeSamples(0, samples);
-  store(tile);
+  if (takeSamples(0, samples)) store(tile);
 }
 
 uint32_t TileRenderer::pilot(const Tile& tile, uint32_t samples) {
   begin(tile);
   replicates_ = replicatesOf(scene_.frame, samples, hash(scene_.frame.seed, 0x70696c6fu));
   single_ = samples == 1;
-  takeSamples(0, samples);
+  if (!takeSamples(0, samples)) return samples;
   store(tile);
   const edit::FrameSettingsT& frame = scene_.frame;
   return frame.targetError > 0 ? samplesFor(frame.targetError, halfWidth_, samples, frame.samples) : frame.samples;
@@ -49,7 +48,7 @@ void TileRenderer::renderRound(const Tile& tile, std::vector<PixelSums>& sums, c
   if (!sums.empty()) sums_.swap(sums);
   replicates_ = replicates;
   single_ = false;
-  takeSamples(first, samples);
+  if (!takeSamples(first, samples)) return;
   store(tile);
   sums.swap(sums_);
 }
@@ -63,9 +62,13 @@ void TileRenderer::begin(const Tile& tile) {
   sums_.assign(pixels_.size(), {});
 }
 
-void TileRenderer::takeSamples(uint32_t first, uint32_t samples) {
+bool TileRenderer::takeSamples(uint32_t first, uint32_t samples) {
   const uint32_t perWave = std::clamp(pathsInFlight / uint32_t(pixels_.size()), 1u, samples);
-  for (uint32_t s = 0; s < samples; s += perWave) wave(first + s, std::min(perWave, samples - s));
+  for (uint32_t s = 0; s < samples; s += perWave) {
+    if (stop_ && stop_->load(std::memory_order_relaxed)) return false;
+    wave(first + s, std::min(perWave, samples - s));
+  }
+  return true;
 }
 
 void TileRenderer::store(const Tile& tile) {

@@ -2,6 +2,7 @@
 // shader, shading and shadow rays in batches; paths that go on are compacted and make the next wave. [render]
 #pragma once
 
+#include <atomic>
 #include <mutex>
 #include <vector>
 
@@ -24,6 +25,8 @@ class TileRenderer {
   // filmLock: held while pixels are stored, if other threads may read them meanwhile; else null
   // light: what paths from lamps have made, or null
   TileRenderer(const RenderScene& scene, Film& film, std::mutex* filmLock = nullptr, const LightImage* light = nullptr);
+  // Tiles are given up, and not stored, once the flag is set.
+  void stopAt(const std::atomic<bool>& flag) { stop_ = &flag; }
   // The whole of a tile: a pilot if the frame has a target error, then its samples, then its pixels.
   void render(const Tile& tile);
   // Some samples more for a tile whose sums are kept from round to round; the first time sums is empty.
@@ -42,7 +45,7 @@ class TileRenderer {
  private:
   struct Paths; // structure of arrays, one entry a path
   void begin(const Tile& tile);
-  void takeSamples(uint32_t first, uint32_t samples);
+  bool takeSamples(uint32_t first, uint32_t samples); // false: stopped
   void store(const Tile& tile);
   void askTransport(Paths& paths);
   void noteRandom(uint32_t path);
@@ -95,6 +98,7 @@ class TileRenderer {
   const RenderScene& scene_;
   Film& film_;
   std::mutex* filmLock_;
+  const std::atomic<bool>* stop_ = nullptr;
   const LightImage* light_;
   Arena arena_;
   RayCounters counters_;
