@@ -67,13 +67,19 @@ class ShaderTable {
     std::unique_ptr<std::byte[]> bytes;
     std::vector<std::vector<float>> lists;
     std::vector<std::unique_ptr<std::string>> strings;
+    const RtsClass* prepared = nullptr; // whose `release` is due
+    Block() = default;
+    Block(const Block&) = delete;
+    Block& operator=(const Block&) = delete;
+    ~Block();
   };
   using Slots = std::map<uint32_t, uint32_t>; // by shader id
-  void make(uint32_t slot, const RtsClass& shaderClass, const ShaderValues* values,
+  bool make(uint32_t slot, const RtsClass& shaderClass, const ShaderValues* values,
             const std::map<uint32_t, uint32_t>& textureIndex, const RtsHost& host);
   void setMedium(ShaderSlot& slot, const RtsHost& host);
   std::vector<ShaderSlot> slots_;
   std::vector<std::shared_ptr<const Block>> blocks_; // by slot; tables share those that did not change
+  std::vector<const RtsClass*> classes_;             // by slot, also where another stands for what was refused
   std::vector<RtsMedium> media_;
   std::shared_ptr<const Slots> slotOf_;
   uint32_t defaultShader_ = 0; // the shader whose values slot 0 has

@@ -9,11 +9,31 @@
 #include "shading/running.h"
 
 namespace openrt {
+namespace {
+
+// For `release`, which may come when no picture is made any more: everything is there, nothing is behind it.
+const RtsHost& idleHost() {
+  static const RenderHost host = [] {
+    RenderHost h;
+    fillHost(h);
+    return h;
+  }();
+  return host;
+}
+
+} // namespace
+
+ShaderTable::Block::~Block() {
+  if (!prepared || !prepared->release) return;
+  const RunningShader running(*prepared);
+  prepared->release(&idleHost(), bytes.get());
+}
 
 ShaderTable::ShaderTable(const Scene& scene, const ShaderRegistry& registry, const std::map<uint32_t, uint32_t>& textureIndex,
                          const RtsHost& host) {
   slots_.resize(1 + scene.shaders.size());
   blocks_.resize(slots_.size());
+  classes_.resize(slots_.size());
   const auto fallback = scene.shaders.find(scene.defaultShader);
   const RtsClass* base = nullptr;
   if (fallback != scene.shaders.end()) {
@@ -21,8 +41,8 @@ ShaderTable::ShaderTable(const Scene& scene, const ShaderRegistry& registry, con
     if (name != scene.classes.end()) base = &registry.find(name->second.name, name->second.library);
     if (base && base->kind != RTS_SURFACE) base = nullptr;
   }
-  if (base)
-    make(0, *base, &fallback->second, textureIndex, host), defaultShader_ = scene.defaultShader;
+  if (base && make(0, *base, &fallback->second, textureIndex, host))
+    defaultShader_ = scene.defaultShader;
   else
     make(0, registry.find("VRML97", ""), nullptr, textureIndex, host);
   uint32_t slot = 1;
@@ -33,20 +53,20 @@ ShaderTable::ShaderTable(const Scene& scene, const ShaderRegistry& registry, con
     slots->emplace_hint(slots->end(), id, slot);
     make(slot++, registry.find(name->second.name, name->second.library), &values, textureIndex, host);
   }
-  slots_.resize(slot), blocks_.resize(slot);
+  slots_.resize(slot), blocks_.resize(slot), classes_.resize(slot);
   slotOf_ = std::move(slots);
 }
 
 ShaderTable::ShaderTable(const ShaderTable& before, const std::vector<uint32_t>& changed, const Scene& scene,
                          const std::map<uint32_t, uint32_t>& textureIndex, const RtsHost& host)
-    : slots_(before.slots_), blocks_(before.blocks_), media_(before.media_), slotOf_(before.slotOf_),
+    : slots_(before.slots_), blocks_(before.blocks_), classes_(before.classes_), media_(before.media_), slotOf_(before.slotOf_),
       defaultShader_(before.defaultShader_) {
   for (uint32_t id : changed) {
     const auto slot = slotOf_->find(id);
     const auto values = scene.shaders.find(id);
     if (slot == slotOf_->end() || values == scene.shaders.end()) continue;
-    make(slot->second, *slots_[slot->second].shaderClass, &values->second, textureIndex, host);
-    if (id == defaultShader_) make(0, *slots_[0].shaderClass, &values->second, textureIndex, host);
+    make(slot->second, *classes_[slot->second], &values->second, textureIndex, host);
+    if (id == defaultShader_) make(0, *classes_[0], &values->second, textureIndex, host);
   }
 }
 
@@ -73,7 +93,8 @@ bool ShaderTable::extends(const ShaderTable& other) const {
          });
 }
 
-void ShaderTable::make(uint32_t number, const RtsClass& shaderClass, const ShaderValues* values,
+// False where the class cannot make sense of the values: the default shader then stands for a surface, and nothing for others.
+bool ShaderTable::make(uint32_t number, const RtsClass& shaderClass, const ShaderValues* values,
                        const std::map<uint32_t, uint32_t>& textureIndex, const RtsHost& host) {
   const auto made = std::make_shared<Block>();
   Block& block = *made;
@@ -109,14 +130,24 @@ void ShaderTable::make(uint32_t number, const RtsClass& shaderClass, const Shade
     }
   }
   ShaderSlot slot{&shaderClass, block.bytes.get(), 0, slots_[number].medium};
+  classes_[number] = &shaderClass;
   {
     const RunningShader running(shaderClass);
+    if (shaderClass.prepare) {
+      block.prepared = &shaderClass;
+      if (const char* message = shaderClass.prepare(&host, block.bytes.get())) {
+        if (host.log) host.log(&host, 3, (std::string("shader ") + shaderClass.name + ": " + message).c_str());
+        if (number != 0) slots_[number] = slots_[0], blocks_[number] = blocks_[0];
+        return false;
+      }
+    }
     if (shaderClass.traits) slot.traits = shaderClass.traits(&host, slot.params);
     if (shaderClass.medium) setMedium(slot, host);
   }
   if (shaderClass.surface && shaderClass.size <= offsetof(RtsClass, frequency)) slot.traits |= RTS_SPECULAR; // made for 1.1
   slots_[number] = slot;
   blocks_[number] = made;
+  return true;
 }
 
 // A medium keeps its number when its values change. What is out of range has no inside.

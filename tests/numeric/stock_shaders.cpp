@@ -1,0 +1,141 @@
+// stock_shaders.cpp: the surfaces of the stock in the renderer: white furnaces against closed forms (catalogue G1, G2), VRML97 by
+// path tracing, patterns that are carved from objects, what Debug tells. Through the C API.
+#include <complex>
+
+#include "numeric/support.h"
+
+namespace numeric {
+namespace {
+
+class StockShaders : public Scene {
+ protected:
+  static void whiteSky() {
+    Shader sky("VRML97Environment");
+    sky.setList("skyColor", {1, 1, 1});
+    rtUseEnvironment(sky);
+  }
+  // Radiance that a plane sends straight up under a white sky: its albedo for that direction.
+  static Rgba furnace(RTid shader, int samples = 16384) {
+    const RTid plane = place(square(shader));
+    whiteSky();
+    rtQuality(RT_TRANSPORT, RT_TRANSPORT_PATH);
+    rtQuality(RT_MAX_DEPTH, 4);
+    rtQuality(RT_SAMPLES_PER_PIXEL, samples);
+    const Rgba pixel = look();
+    rtDeleteInstance(plane);
+    return pixel;
+  }
+};
+
+TEST_F(StockShaders, G1WhiteBodiesUnderClearCoatsAreWhite) {
+  expectGrey(furnace(Shader("Plastic").set("color", {1, 1, 1})), 1, 1e-3);
+  expectGrey(furnace(Shader("Plastic").set("color", {1, 1, 1}).set("index", {2.5})), 1, 1e-3);
+  expectGrey(furnace(Shader("CarPaint").set("color", {1, 1, 1}).set("flakes", {0})), 1, 1e-3);
+  expectGrey(furnace(Shader("Wood").set("light", {1, 1, 1}).set("dark", {1, 1, 1}).set("grain", {0}).set("varnish", {1.5})), 1,
+             1e-3);
+  const Rgba rough = furnace(Shader("Plastic").set("color", {1, 1, 1}).set("roughness", {.4}));
+  EXPECT_LE(rough.g, 1 + 1e-3);
+  EXPECT_GE(rough.g, .98) << "prepared: what the rough boundary lets through is known";
+}
+
+TEST_F(StockShaders, G1PhongReflectsBothOfItsParts) {
+  Shader s("Phong");
+  expectGrey(furnace(s.set("diffuseColor", {.3, .3, .3}).set("specularColor", {.4, .4, .4}).set("shininess", {.5})), .7, 2e-3);
+  expectGrey(furnace(s.set("diffuseColor", {.8, .8, .8}).set("specularColor", {.8, .8, .8})), 1, 2e-3); // scaled
+}
+
+// One reflection at GGX facets, seen along the normal: 2 pi times the integral of F D G / 4 sin, Smith's shadowing of light
+// alone.
+TEST_F(StockShaders, G1RoughMetalReflectsWhatItsFacetsDo) {
+  const double n = .96, k = 6.69;
+  for (const double alpha : {.1, .5, 1.}) {
+    double sum = 0;
+    const int steps = 20000;
+    for (int j = 0; j < steps; j++) {
+      const double t = (j + .5) * pi / 2 / steps, half = t / 2, c = std::cos(half), s2 = 1 - c * c;
+      const double distribution = alpha * alpha / (pi * std::pow(s2 + alpha * alpha * c * c, 2));
+      const double shadowing = 2 / (1 + std::sqrt(1 + alpha * alpha * std::pow(std::tan(t), 2)));
+      const std::complex<double> index(n, k), inside = std::sqrt(index * index - s2);
+      const double rs = std::norm((c - inside) / (c + inside));
+      const double rp = std::norm((index * index * c - inside) / (index * index * c + inside));
+      sum += (rs + rp) / 2 * distribution * shadowing / 4 * std::sin(t) * pi / 2 / steps;
+    }
+    const Shader metal = Shader("Metal").set("n", {n, n, n}).set("k", {k, k, k}).set("roughness", {alpha});
+    expectGrey(furnace(metal), 2 * pi * sum, 2e-3);
+  }
+}
+
+TEST_F(StockShaders, RoughGlassLosesOnlyWhatFacetsHide) { // both sides of one boundary, below it the same sky
+  const Rgba pixel = furnace(Shader("RoughGlass").set("index", {1.0001}).set("roughness", {.3}));
+  expectGrey(pixel, 1, 5e-3);
+}
+
+TEST_F(StockShaders, G2AFurnaceOfGlobalIllumination) {
+  const RTid box = rtBeginObject(0);
+  rtBindShader(Shader("GlobalIllumination").set("diffuseColor", {.5, .5, .5}).set("emissiveColor", {.5, .5, .5}));
+  rtSphere(30);
+  rtEndObject();
+  rtBindShader(0);
+  place(box);
+  rtQuality(RT_MAX_DEPTH, 60);
+  rtQuality(RT_SAMPLES_PER_PIXEL, 4096);
+  expectGrey(look(), 1, 5e-3);
+  EXPECT_EQ(stats().transport, RTenum(RT_TRANSPORT_PATH)) << "it asks for path tracing";
+}
+
+TEST_F(StockShaders, Vrml97AnswersLightsTheSameWayWhenPathsAreTraced) {
+  place(square(Shader("VRML97").set("emissiveColor", {.1, .2, .3}).set("ambientIntensity", {0})));
+  use(tilted(60));
+  const Vec expected{.1 + .4, .2 + .4, .3 + .4};
+  expectColor(look(), expected);
+  EXPECT_EQ(stats().transport, RTenum(RT_TRANSPORT_DIRECT)) << "the standard's surface does not ask for more than lights";
+  rtQuality(RT_TRANSPORT, RT_TRANSPORT_PATH);
+  expectColor(look(), expected);
+}
+
+TEST_F(StockShaders, AVrml97HighlightIsTheStandardsTimesTheCosine) {
+  place(square(Shader("VRML97").set("diffuseColor", {0, 0, 0}).set("specularColor", {.8, .4, .2}).set("shininess", {.1})));
+  use(tilted(40));
+  const double power = std::pow(std::cos(20 * pi / 180), 12.8), cosine = std::cos(40 * pi / 180);
+  expectColor(look(), {.8 * power, .4 * power, .2 * power}, 1e-4);
+  rtQuality(RT_TRANSPORT, RT_TRANSPORT_PATH);
+  expectColor(look(), {.8 * power * cosine, .4 * power * cosine, .2 * power * cosine}, 1e-4);
+}
+
+TEST_F(StockShaders, PatternsBelongToTheObject) {
+  Shader cubes("Checker");
+  cubes.set("even", {1, 1, 1}).set("odd", {0, 0, 0});
+  const RTid board = square(cubes, 4);
+  use(tilted(0));
+  rtPushMatrix();
+  rtTranslated(100.5, 0, 0);
+  rtScaled(2, 2, 2);
+  place(board);
+  rtPopMatrix();
+  for (int x = -3; x <= 3; x++)
+    for (int y = -3; y <= 3; y++) { // cubes of two units each; the board lies just within the layer below
+      const double got = look(100.5 + 2 * (x + .5), 2 * (y + .5)).g;
+      EXPECT_EQ(got, (x + y - 1) % 2 == 0 ? 1 : 0) << x << " " << y;
+    }
+}
+
+TEST_F(StockShaders, DebugTellsWhatTheHostKnows) {
+  Shader debug("Debug");
+  const RTid board = square(debug, 4);
+  rtLoadName(5);
+  place(board);
+  const auto show = [&](int what) {
+    debug.setInt("show", what);
+    return look(1.25, .5);
+  };
+  expectColor(show(9), {1, .5, .5});
+  expectColor(show(10), {.5, 1, .5});
+  expectColor(show(11), {.25, .5, 0});
+  EXPECT_GT(show(6).r, 0);
+  EXPECT_EQ(show(8).r, 0);
+  debug.set("scale", {40});
+  expectGrey(show(7), .5);
+}
+
+} // namespace
+} // namespace numeric
