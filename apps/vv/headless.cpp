@@ -171,6 +171,7 @@ int runWatching(const Options& options, const std::string& commandLine) {
     Headless job(options, commandLine);
     runOnce(job);
     watched.add(job.files());
+    watched.add(shaderFiles(options.render.shaderPath));
     if (!options.quiet && !interrupted()) say("vv: waiting for a change of the world's files");
     if (!watched.waitForChange(interrupted)) return exitInterrupted;
   }

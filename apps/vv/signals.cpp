@@ -3,9 +3,11 @@
 
 #include <atomic>
 #include <csignal>
+#include <cstring>
 
 #include <unistd.h>
 
+#include "openrt/openrt.h"
 #include "picture/atomic_file.h"
 #include "values.h"
 #include "video.h"
@@ -26,6 +28,20 @@ void onInterrupt(int) {
 
 void onSave(int) { saveWanted = true; }
 
+void put(const char* text) {
+  if (::write(STDERR_FILENO, text, std::strlen(text)) < 0) return; // nobody left to tell
+}
+
+// Says whose fault it may be, then lets the crash take its course. Only what a signal handler may call.
+void onCrash(int number) {
+  const char* const name = number == SIGSEGV ? "SIGSEGV" : number == SIGBUS ? "SIGBUS" : number == SIGFPE ? "SIGFPE" : "SIGILL";
+  const char* const shader = rtRunningShader();
+  put("vv: crash ("), put(name), put(shader ? ") in the shader " : "), not in a shader"), put(shader ? shader : ""), put("\n");
+  picture::removeTemporary();
+  ::signal(number, SIG_DFL);
+  ::raise(number);
+}
+
 void install(int signal, void (*handler)(int)) {
   struct sigaction action = {};
   action.sa_handler = handler;
@@ -40,6 +56,7 @@ void installSignals() {
   install(SIGINT, onInterrupt);
   install(SIGTERM, onInterrupt);
   install(SIGUSR1, onSave);
+  for (int crash : {SIGSEGV, SIGBUS, SIGFPE, SIGILL}) install(crash, onCrash);
   install(SIGPIPE, SIG_IGN); // a write that fails says so itself
 }
 

@@ -1,5 +1,5 @@
 // signals.h: SIGINT and SIGTERM end a picture early and keep what there is, a second one ends at once; SIGUSR1 asks for a copy
-// of the picture so far. Installed by main(); the handlers only set flags.
+// of the picture so far. A crash says which shader was running. Installed by main(); the handlers only set flags.
 #pragma once
 
 namespace vv {

@@ -2,7 +2,10 @@
 #include "watched.h"
 
 #include <chrono>
+#include <cstdlib>
+#include <filesystem>
 #include <set>
+#include <sstream>
 #include <thread>
 
 #include <sys/stat.h>
@@ -29,6 +32,19 @@ std::vector<std::string> usedFiles(const xvrml::World& world) {
       if (auto resolved = xvrml::resolveUrl(url, prototype->baseUrl, world.options); resolved.error.empty())
         files.insert(resolved.path);
   return {files.begin(), files.end()};
+}
+
+std::vector<std::string> shaderFiles(const std::string& shaderPath) {
+  const char* const environment = std::getenv("OPENRT_SHADER_PATH");
+  std::istringstream folders(shaderPath + ":" + (environment ? environment : ""));
+  std::vector<std::string> files;
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    std::error_code error;
+    if (!folder.empty())
+      for (const auto& entry : std::filesystem::directory_iterator(folder, error))
+        if (entry.path().extension() == ".so") files.push_back(entry.path().string());
+  }
+  return files;
 }
 
 Watched::Stamp Watched::stampOf(const std::string& path) {

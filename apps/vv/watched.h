@@ -13,6 +13,9 @@ namespace vv {
 // The files that a world was made of, and those that it names in vain: its own, Inlines, prototypes, pictures, sounds, scripts.
 std::vector<std::string> usedFiles(const xvrml::World& world);
 
+// Shader libraries in the folders that were asked for: of --shader-path and $OPENRT_SHADER_PATH (colon-separated).
+std::vector<std::string> shaderFiles(const std::string& shaderPath);
+
 class Watched {
  public:
   explicit Watched(const std::vector<std::string>& files) { add(files); }

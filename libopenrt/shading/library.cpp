@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <map>
+#include <mutex>
 #include <stdexcept>
 
 #include <dlfcn.h>
@@ -52,6 +54,15 @@ class PrivateCopy {
   }
   plugin_files::fs::path folder_, file_;
 };
+
+// The loader takes a file for loaded that it knows by its name, even if another one lies there now. In a process with several
+// registries, or after one is gone and its libraries could not be unloaded, that is not seen by this registry alone.
+bool replacedSinceLoaded(const std::string& path, const FileStamp& stamp) {
+  static std::mutex mutex;
+  static std::map<std::string, FileStamp>& loaded = *new std::map<std::string, FileStamp>; // outlives every registry
+  const std::lock_guard lock(mutex);
+  return !(loaded.try_emplace(path, stamp).first->second == stamp);
+}
 
 const std::string& nameOf(const LoadedClass& c, uint32_t i, std::string& storage) {
   if (i < c.mergedNames.size()) return c.mergedNames[i];
@@ -127,7 +138,10 @@ void ShaderLibrary::readClasses() {
 
 ShaderLibrary::ShaderLibrary(std::string bareName, std::string file)
     : name(std::move(bareName)), path(std::move(file)), stamp(FileStamp::of(path)) {
-  open(path);
+  if (replacedSinceLoaded(path, stamp))
+    open(PrivateCopy(path, name).file().string());
+  else
+    open(path);
   try {
     readClasses();
   } catch (...) {

@@ -132,6 +132,19 @@ TEST_F(Reload, AFrameInFlightKeepsTheOldOne) {
   }
 }
 
+TEST_F(Reload, AnotherContextHasTheFileThatIsThere) {
+  EXPECT_NEAR(picture(1)[0], 0.1f, 1e-6);
+  install(2);
+  const RTcontext other = rtNewContext(("threads=1 shaderpath=\"" + folders() + "\"").c_str());
+  rtBindShader(rtNewShader(rtNewShaderClass("Versioned", "version")));
+  EXPECT_EQ(rtReloadShaders(), 0); // it is the newest
+  EXPECT_GE(rtParameterHandle("gain"), 0);
+  rtDeleteContext(other);
+  rtMakeCurrent(context);
+  EXPECT_NEAR(picture(1)[0], 0.1f, 1e-6); // this one goes on with what it has
+  EXPECT_EQ(rtReloadShaders(), 1);
+}
+
 TEST_F(Reload, NotWithinADefinition) {
   rtBeginObject(0);
   EXPECT_EQ(rtReloadShaders(), 0);

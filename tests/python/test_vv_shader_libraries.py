@@ -1,0 +1,58 @@
+"""vv and shader plug-ins: a crash is named, a library that changes is loaded anew under --watch."""
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import time
+
+import pytest
+
+VV = pathlib.Path(os.environ.get("OPENRT_VV", "vv"))
+PLUGINS = VV.parent.parent / "tests/plugins"
+pytestmark = pytest.mark.skipif(not (PLUGINS / "faulty.so").exists(), reason="the test plug-ins were not built")
+
+WORLD = """#VRML V2.0 utf8
+Shape { appearance ORTAppearance { shader ORTShader { name "%s" file "%s" } } geometry Box { } }
+"""
+
+
+def test_a_crash_names_the_shader(tmp_path):
+    (tmp_path / "crash.wrl").write_text(WORLD % ("Crash", "faulty"))
+    done = subprocess.run([VV, "crash.wrl", "-o", "a.png", "--size", "8x6", "--spp", "1", "--shader-path", PLUGINS], cwd=tmp_path,
+                          capture_output=True, text=True, timeout=60, preexec_fn=no_core)
+    assert done.returncode == -signal.SIGSEGV, done.stderr
+    assert "vv: crash (SIGSEGV) in the shader Crash of faulty\n" in done.stderr
+    assert not list(tmp_path.glob("a.png*"))
+
+
+def no_core():
+    import resource
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+
+
+def test_watch_sees_a_shader_library_change(tmp_path):
+    shaders = tmp_path / "shaders"
+    shaders.mkdir(mode=0o755)
+    shutil.copy(PLUGINS / "versions/1/version.so", shaders / "version.so")
+    (tmp_path / "a.wrl").write_text(WORLD % ("Versioned", "version"))
+    command = [VV, "a.wrl", "-o", "a.png", "--size", "8x6", "--spp", "1", "--watch", "--shader-path", shaders]
+    watching = subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True)
+    try:
+        picture = tmp_path / "a.png"
+        before = wait_for(picture, None)
+        shutil.copy(PLUGINS / "versions/2/version.so", shaders / "fresh")
+        os.rename(shaders / "fresh", shaders / "version.so")
+        after = wait_for(picture, before)
+        assert after != before
+    finally:
+        watching.send_signal(signal.SIGINT)
+        watching.communicate(timeout=60)
+
+
+def wait_for(path, former):
+    for _ in range(300):
+        if path.exists() and path.read_bytes() not in (b"", former):
+            return path.read_bytes()
+        time.sleep(0.1)
+    pytest.fail(f"{path} does not change")
