@@ -12,7 +12,7 @@ R = build/release
 SOURCES = $(shell git ls-files '*.cpp' '*.h' '*.hpp' '*.c')
 export CTEST_OUTPUT_ON_FAILURE = 1
 
-.PHONY: build demo test install bench audit corpus fuzz asan tsan coverage format format-check tidy packages clean help
+.PHONY: build demo test install bench bench-render audit corpus fuzz asan tsan coverage format format-check tidy packages clean help
 
 help:
 	@sed -n 's/^## //p' Makefile
@@ -45,6 +45,12 @@ bench: build
 	@mkdir -p build/bench
 	@for b in $(R)/bin/bench_*; do [ -x $$b ] || continue; \
 	  $$b --benchmark_out=build/bench/$$(basename $$b).json --benchmark_out_format=json || exit 1; done
+
+## make bench-render  speed against error of the transports on four worlds (CSV, plots) into build/bench/render; FULL=1 for
+##                   long runs, DOCS=1 also into docs/benchmarks.md, MITSUBA_PYTHON=... a Python that has Mitsuba 3
+bench-render:
+	@$(CONFIGURE) release && cmake --build $(R) -j $(JOBS) --target vv shaders openrt-replay
+	@$(PYTHON) tools/bench_render.py --out build/bench/render $(if $(FULL),--full) $(if $(DOCS),--docs)
 
 ## make audit         do the error bars hold? coverage over AUDIT_SEEDS (default 200) pictures of each scene
 audit:

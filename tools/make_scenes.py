@@ -243,7 +243,7 @@ def headlight():
     # Plano-convex: flat towards the lamp, a paraboloid outside; faces outwards.
     convex = [(radius * i / 10, rim + 3.2 - 2.2 * (i / 10) ** 2) for i in range(11)]
     lens = lathe([(0, rim + .5), (radius, rim + .5)] + list(reversed(convex)), 64, .7)
-    lacquer = shader("Reflector", "reflector")
+    lacquer = shader("Reflector", "reflector", "1f lacquer 1")
     return world(
         "Headlight", viewpoint((34, 17, 4), (2, 1, 26), .82),
         "DEF Filament " + shape(shader("Diffuse", "diffuse", "color reflectance 0 0 0", "color emission 5200 4700 3900"),
