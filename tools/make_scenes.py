@@ -145,7 +145,7 @@ def caustic():
     gold = shader("Metal", "metal", "color n .16 .42 1.35", "color k 3.5 2.4 1.8")
     return world(
         "Caustics", viewpoint((.4, 2.6, 6.8), (.4, .9, -.6), .62),
-        at((-3.2, 4.2, 2.6), "DEF Lamp " + shape(shader("Diffuse", "diffuse", "color reflectance 0 0 0", "color emission 420 400 360"),
+        at((-3.2, 5.4, 2.6), "DEF Lamp " + shape(shader("Diffuse", "diffuse", "color reflectance 0 0 0", "color emission 1500 1430 1290"),
                                                  "Sphere { radius .12 }")),
         shape(matt, quad((-8, 0, 8), (8, 0, 8), (8, 0, -2.4), (-8, 0, -2.4))),
         shape("USE Wall", quad((-8, 0, -2.4), (8, 0, -2.4), (8, 6, -2.4), (-8, 6, -2.4))),
@@ -245,17 +245,17 @@ def headlight():
     lens = lathe([(0, rim + .5), (radius, rim + .5)] + list(reversed(convex)), 64, .7)
     lacquer = shader("Reflector", "reflector", "1f lacquer 1")
     return world(
-        "Headlight", viewpoint((34, 17, 4), (2, 1, 26), .82),
-        "DEF Filament " + shape(shader("Diffuse", "diffuse", "color reflectance 0 0 0", "color emission 5200 4700 3900"),
+        "Headlight", viewpoint((52, 20, 27), (0, 1, 23), .82), "Background { skyColor .1 .12 .17 }",
+        "DEF Filament " + shape(shader("Diffuse", "diffuse", "color reflectance 0 0 0", "color emission 1800 1650 1400"),
                                 "Sphere { radius .25 }"),
         "DEF Reflector " + shape(lacquer, reflector),
         "DEF Lens " + shape(shader("Glass", "glass", "1f index 1.52"), lens),
-        "DEF Housing " + shape(shader("Plastic", "plastic", "color color .05 .05 .06", "1f roughness .2"),
+        "DEF Housing " + shape(shader("Plastic", "plastic", "color color .3 .32 .35", "1f roughness .2"),
                                lathe([(radius + .1, rim + .5), (radius + .1, rim - 1), (4.2, -4.2), (.001, -4.2)], 48, .5)),
         "DEF Wall " + shape(shader("Diffuse", "diffuse", "color reflectance .7 .7 .7"),
-                            quad((40, -11, 50), (-40, -11, 50), (-40, 30, 50), (40, 30, 50))),
+                            quad((60, -11, 50), (-40, -11, 50), (-40, 40, 50), (60, 40, 50))),
         shape(shader("Diffuse", "diffuse", "color reflectance .4 .38 .36"),
-              quad((-40, -11, 50), (40, -11, 50), (40, -11, -20), (-40, -11, -20))))
+              quad((-40, -11, 50), (60, -11, 50), (60, -11, -40), (-40, -11, -40))))
 
 
 def board():

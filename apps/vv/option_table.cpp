@@ -5,6 +5,7 @@
 
 #include "names.h"
 #include "picture/nearest.h"
+#include "picture/transport.h"
 
 namespace vv {
 
@@ -41,17 +42,9 @@ void setColour(Options& o, const std::string& value) {
 }
 
 void setTransport(Options& o, const std::string& value) {
-  constexpr std::pair<const char*, int> known[] = {{"auto", RT_TRANSPORT_AUTO},
-                                                   {"direct", RT_TRANSPORT_DIRECT},
-                                                   {"whitted", RT_TRANSPORT_WHITTED},
-                                                   {"path", RT_TRANSPORT_PATH},
-                                                   {"light", RT_TRANSPORT_LIGHT}};
-  for (const auto& [name, transport] : known)
-    if (value == name) {
-      o.render.transport = transport;
-      return;
-    }
-  throw UsageError(fmt::format("auto, direct, whitted, path or light was expected, not \"{}\"", value));
+  const std::optional<int> transport = picture::transportNamed(value);
+  if (!transport) throw UsageError(fmt::format("{} was expected, not \"{}\"", picture::transportNames, value));
+  o.render.transport = *transport;
 }
 
 void setChannels(Options& o, const std::string& value) {

@@ -11,6 +11,7 @@
 #include <sys/resource.h>
 
 #include "describe.h"
+#include "picture/transport.h"
 #include "transport_words.h"
 #include "xvrml/script_engines.h"
 
@@ -37,7 +38,7 @@ Json errorEstimate(const RTstats& s) {
 }
 
 Json transportJson(const Options& options, const RTstats& s) {
-  return {{"chosen", transportName(s.transport)},
+  return {{"chosen", picture::transportName(s.transport)},
           {"reason", s.transportReason},
           {"claim", transportClaim(s.transport, options.render)}};
 }
@@ -237,7 +238,7 @@ std::string explainWorld(const Options& options, const RTstats& stats, const std
                    {"instances", instances},
                    {"instanced_triangles", expanded}}}});
   }
-  std::string text = fmt::format("transport {}: {}\n  {}\n", transportName(stats.transport), stats.transportReason,
+  std::string text = fmt::format("transport {}: {}\n  {}\n", picture::transportName(stats.transport), stats.transportReason,
                                  transportClaim(stats.transport, options.render));
   text += fmt::format("{:>10} {:>8} {:>12} {:>9}  {}\n", "triangles", "shapes", "bytes", "instances", "object: reason");
   for (const xvrml::ExplainedObject& o : objects)

@@ -5,11 +5,6 @@
 
 namespace vv {
 
-const char* transportName(RTenum transport) {
-  constexpr const char* names[] = {"auto", "direct", "whitted", "path", "light"};
-  return transport <= RT_TRANSPORT_LIGHT ? names[transport] : "plug-in";
-}
-
 namespace {
 
 std::string claimOf(RTenum transport, const picture::RenderSettings& settings) {

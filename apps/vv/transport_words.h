@@ -7,8 +7,6 @@
 
 namespace vv {
 
-// "path" of RT_TRANSPORT_PATH ...
-const char* transportName(RTenum transport);
 // What a picture made by this transport is, and what it leaves out.
 std::string transportClaim(RTenum transport, const picture::RenderSettings& settings);
 

@@ -8,6 +8,7 @@
 #include "objects.h"
 #include "picture/atomic_file.h"
 #include "picture/nearest.h"
+#include "picture/transport.h"
 #include "picture_object.h"
 
 using namespace xvrml;
@@ -192,6 +193,8 @@ py::dict statsOf(const World& world, const picture::RenderResult& result) {
   stats["build_seconds"] = s.commitSeconds + s.buildSeconds;
   stats["render_seconds"] = result.renderSeconds;
   stats["threads"] = s.threads;
+  stats["transport"] = picture::transportName(s.transport);
+  stats["transport_reason"] = s.transportReason;
   if (s.errorPixels > 0) {
     stats["error_mean"] = s.errorMean;
     stats["error_mean_interval"] = s.errorMeanInterval;
@@ -206,7 +209,8 @@ py::dict statsOf(const World& world, const picture::RenderResult& result) {
 std::unique_ptr<PictureObject> render(const WorldPtr& self, const py::object& size, long long spp, const py::object& viewpoint,
                                       const py::object& camera, bool fit, std::optional<double> fov, long long seed,
                                       long long threads, bool shadows, const std::string& colour, const py::object& headlight,
-                                      long long depth, const py::object& channels) {
+                                      long long depth, const py::object& channels, const std::string& transport, double error,
+                                      double timeLimit, double clamp) {
   picture::RenderSettings settings;
   const auto sides = size.cast<std::vector<long long>>();
   if (sides.size() != 2) throw py::value_error("size: (width, height) expected");
@@ -222,6 +226,16 @@ std::unique_ptr<PictureObject> render(const WorldPtr& self, const py::object& si
     throw py::value_error("colour: 'linear' or 'vrml97' expected, not '" + colour + "'");
   settings.linear = colour == "linear";
   settings.headlight = headlightOf(headlight);
+  const std::optional<int> following = picture::transportNamed(transport);
+  if (!following) throw py::value_error(fmt::format("transport: {} expected, not '{}'", picture::transportNames, transport));
+  settings.transport = *following;
+  const auto limited = [](const char* name, double value, double maximum) {
+    if (value >= 0 && value <= maximum) return value;
+    throw py::value_error(fmt::format("{}: a number from 0 to {} expected", name, maximum));
+  };
+  settings.error = limited("error", error, 1);
+  settings.timeLimit = limited("time_limit", timeLimit, 1e6);
+  settings.clamp = limited("clamp", clamp, 1e30);
   settings.channels = channelsOf(channels);
 
   picture::View view;
@@ -300,7 +314,8 @@ void defineWorld(py::module_& module) {
       .def("render", render, py::arg("size") = py::make_tuple(800, 600), py::arg("spp") = 16, py::arg("viewpoint") = py::none(),
            py::arg("camera") = py::none(), py::arg("fit") = false, py::arg("fov") = py::none(), py::arg("seed") = 0,
            py::arg("threads") = 0, py::arg("shadows") = true, py::arg("colour") = "linear", py::arg("headlight") = "auto",
-           py::arg("depth") = 25, py::arg("channels") = py::make_tuple("rgba"),
+           py::arg("depth") = 25, py::arg("channels") = py::make_tuple("rgba"), py::arg("transport") = "auto",
+           py::arg("error") = 0.0, py::arg("time_limit") = 0.0, py::arg("clamp") = 0.0,
            "Renders the world as it is now: the scene is made anew for each picture, a Browser's is kept from one to the next. "
            "Options as "
            "those of the program vv.");

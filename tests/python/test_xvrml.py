@@ -302,6 +302,17 @@ def test_writing(tmp_path):
 # Pictures ---------------------------------------------------------------------------------------------------------------
 
 
+def test_render_by_transport(box):
+    world = xvrml.load(box)
+    assert world.render(size=(8, 6), spp=1).stats["transport"] == "direct"
+    for transport in ("direct", "whitted", "path"):
+        stats = world.render(size=(8, 6), spp=1, transport=transport, clamp=2).stats
+        assert stats["transport"] == transport and stats["transport_reason"]
+    for wrong in ({"transport": "paths"}, {"error": 2}, {"time_limit": -1}, {"clamp": float("nan")}):
+        with pytest.raises(ValueError, match=next(iter(wrong))):
+            world.render(size=(8, 6), **wrong)
+
+
 def test_render(box):
     w = xvrml.load(box)
     p = w.render(size=(40, 30), spp=2)
