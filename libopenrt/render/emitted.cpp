@@ -52,7 +52,7 @@ uint32_t TileRenderer::weigh(const RtsBatch& batch, const RtsHits& hits, float* 
 }
 
 void TileRenderer::addEmitters(const RtsBatch& batch, const Points& points, const uint32_t* order, const Paths& paths,
-                               float* const chance[], const Crossing* crossing, float* const radiance[3]) {
+                               const Random& random, float* const chance[], const Crossing* crossing, float* const radiance[3]) {
   ArenaScope scope(arena_);
   const RtsHits& hits = points.hits;
   const Emitters& emitters = scene_.emitters;
@@ -60,17 +60,16 @@ void TileRenderer::addEmitters(const RtsBatch& batch, const Points& points, cons
   rays.allocate(arena_, hits.count);
   auto* sights = arena_.take<Sight>(hits.count);
   auto* hitOf = arena_.take<uint32_t>(hits.count); // of the batch, by sight
+  float *pick[2], *place[2];
+  draw(random, Draw::emitter, 0, pick);
+  draw(random, Draw::place, 0, place);
   uint32_t n = 0;
   for (uint32_t i = 0; i < hits.count; i++) {
     bool wanted = false;
     for (uint32_t l = 0; l < batch.lobeCount; l++) wanted |= chance[l] && chance[l][i] > 0;
     if (!wanted) continue;
-    const RayState& ray = paths.state[order[i]];
-    float pick, spare, u, v;
-    sampleAt(ray.path, pairOf(ray, Draw::emitter), pick, spare);
-    sampleAt(ray.path, pairOf(ray, Draw::place), u, v);
     const Receiver from = receiverOf(points, i, transmitsAt(batch, i));
-    const Sight sight = emitters.choose(from, double(pick) + double(spare) * 0x1p-24, u, v);
+    const Sight sight = emitters.choose(from, double(pick[0][i]) + double(pick[1][i]) * 0x1p-24, place[0][i], place[1][i]);
     if (!(sight.density > 0)) continue;
     float origin[3], behind[3], towards = 0;
     for (int k = 0; k < 3; k++) {

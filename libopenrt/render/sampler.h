@@ -7,7 +7,7 @@
 
 namespace openrt {
 
-inline uint32_t reverseBits(uint32_t x) {
+[[gnu::always_inline]] inline uint32_t reverseBits(uint32_t x) {
   x = (x << 16) | (x >> 16);
   x = ((x & 0x00ff00ffu) << 8) | ((x & 0xff00ff00u) >> 8);
   x = ((x & 0x0f0f0f0fu) << 4) | ((x & 0xf0f0f0f0u) >> 4);
@@ -15,17 +15,19 @@ inline uint32_t reverseBits(uint32_t x) {
   return ((x & 0x55555555u) << 1) | ((x & 0xaaaaaaaau) >> 1);
 }
 
-inline uint32_t hash(uint32_t x) { // full avalanche
+[[gnu::always_inline]] inline uint32_t hash(uint32_t x) { // full avalanche
   x ^= x >> 16;
   x *= 0x7feb352du;
   x ^= x >> 15;
   x *= 0x846ca68bu;
   return x ^ (x >> 16);
 }
-inline uint32_t hash(uint32_t a, uint32_t b) { return hash(a ^ (hash(b) + 0x9e3779b9u + (a << 6) + (a >> 2))); }
+[[gnu::always_inline]] inline uint32_t hash(uint32_t a, uint32_t b) {
+  return hash(a ^ (hash(b) + 0x9e3779b9u + (a << 6) + (a >> 2)));
+}
 
 // Owen scrambling of a number in reversed bit order: every bit is flipped by a hash of the bits below it.
-inline uint32_t scrambleReversed(uint32_t x, uint32_t seed) {
+[[gnu::always_inline]] inline uint32_t scrambleReversed(uint32_t x, uint32_t seed) {
   x ^= x * 0x3d20adeau;
   x += seed;
   x *= (seed >> 16) | 1;
@@ -36,7 +38,7 @@ inline uint32_t scrambleReversed(uint32_t x, uint32_t seed) {
 
 // Second Sobol dimension of an index, in reversed bit order. Its direction numbers, reversed, are the polynomials (1+x)^i
 // over GF(2): the sum over the index's bits is the index as a polynomial taken at 1+x, half by half.
-inline uint32_t sobol1Reversed(uint32_t x) {
+[[gnu::always_inline]] inline uint32_t sobol1Reversed(uint32_t x) {
   x ^= x >> 16;
   x ^= (x & 0xff00ff00u) >> 8;
   x ^= (x & 0xf0f0f0f0u) >> 4;
@@ -55,7 +57,7 @@ struct Replicates {
   uint32_t seedOf(uint32_t sample) const { return sample >> shift ? hash(seed, sample >> shift) : seed; }
 };
 
-inline float toUnit(uint32_t x) { return float(x >> 8) * 0x1p-24f; } // [0, 1)
+[[gnu::always_inline]] inline float toUnit(uint32_t x) { return float(x >> 8) * 0x1p-24f; } // [0, 1)
 
 // The samples of one pair of dimensions in one pixel. Any first 2^k of them are a (0,k,2)-net.
 class PairSampler {
@@ -73,5 +75,8 @@ class PairSampler {
  private:
   uint32_t order_, x_, y_;
 };
+
+// The same for many at once, vectorised: point number index[i] of pair[i] + draw, where key[i] is hash(pixel, seed).
+void samplePairs(uint32_t n, const uint32_t* key, const uint32_t* pair, uint32_t draw, const uint32_t* index, float* x, float* y);
 
 } // namespace openrt

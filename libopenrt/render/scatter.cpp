@@ -97,20 +97,26 @@ void TileRenderer::scatterRange(Paths& paths, const Points& points, const Bucket
   addLights(batch, hits, radiance);
   const bool path = scene_.frame.transport >= RT_TRANSPORT_PATH;
   const bool emitters = path && scene_.emitters.any() && level_ < scene_.frame.depth;
+  Random random{};
+  float* choices[2] = {};
+  if (path) {
+    random = randomOf(paths, order, hits.count);
+    draw(random, Draw::choice, 0, choices);
+  }
   const LobeSamples* samples[RTS_MAX_LOBES] = {};
   float* chance[RTS_MAX_LOBES] = {};
   for (uint32_t l = 0; path && l < batch.lobeCount; l++) {
     if (!scatteringOf(batch.lobes[l])) continue;
-    samples[l] = sampleLobe(batch, l, hits, order, paths);
+    samples[l] = sampleLobe(batch, l, hits, random);
     if (emitters) chance[l] = arena_.takeZero<float>(size);
   }
   for (uint32_t i = 0; i < hits.count; i++) {
     if (boundaries.crossing && !boundaries.crossing[i].seen)
       passOn(points, i, order[i], boundaries.crossing[i], paths);
     else
-      sendOn(batch, points, i, order[i], paths, samples, boundaries, chance);
+      sendOn(batch, points, i, order[i], paths, samples, boundaries, choices, chance);
   }
-  if (emitters) addEmitters(batch, points, order, paths, chance, boundaries.crossing, radiance);
+  if (emitters) addEmitters(batch, points, order, paths, random, chance, boundaries.crossing, radiance);
   float* fog[4];
   attenuate(points, paths, order, fog);
   for (uint32_t i = 0; i < hits.count; i++) {
@@ -152,17 +158,31 @@ void TileRenderer::sampleAt(uint32_t path, uint32_t pair, float& u, float& v) co
   PairSampler(pixels_[path / samples_], pair, replicates_.seedOf(sample))(replicates_.indexOf(sample), u, v);
 }
 
+TileRenderer::Random TileRenderer::randomOf(const Paths& paths, const uint32_t* order, uint32_t n) {
+  Random random{n, arena_.take<uint32_t>(n), arena_.take<uint32_t>(n), arena_.take<uint32_t>(n)};
+  for (uint32_t i = 0; i < n; i++) {
+    const RayState& ray = paths.state[order[i]];
+    const uint32_t path = root_ ? root_[ray.path] : ray.path, sample = firstSample_ + path % samples_;
+    random.key[i] = hash(pixels_[path / samples_], replicates_.seedOf(sample));
+    random.index[i] = replicates_.indexOf(sample);
+    random.pair[i] = pairOf(ray, Draw::direction);
+  }
+  return random;
+}
+
+void TileRenderer::draw(const Random& random, Draw what, uint32_t apart, float* square[2]) {
+  for (int k = 0; k < 2; k++) square[k] = arena_.take<float>(random.count);
+  samplePairs(random.count, random.key, random.pair, uint32_t(what) - uint32_t(Draw::direction) + apart, random.index, square[0],
+              square[1]);
+}
+
 // A direction for every hit from a lobe that scatters.
-const LobeSamples* TileRenderer::sampleLobe(const RtsBatch& batch, uint32_t l, const RtsHits& hits, const uint32_t* order,
-                                            const Paths& paths) {
+const LobeSamples* TileRenderer::sampleLobe(const RtsBatch& batch, uint32_t l, const RtsHits& hits, const Random& random) {
   auto* samples = new (arena_.take<LobeSamples>(1)) LobeSamples(arena_, hits.count);
   ArenaScope scope(arena_);
   const uint32_t* all = countTo(arena_, hits.count);
-  float* square[2] = {arena_.take<float>(hits.count), arena_.take<float>(hits.count)};
-  for (uint32_t i = 0; i < hits.count; i++) {
-    const RayState& ray = paths.state[order[i]];
-    sampleAt(ray.path, pairOf(ray, Draw::direction) + (l ? hash(l, 0x6c6f6265u) : 0), square[0][i], square[1][i]);
-  }
+  float* square[2];
+  draw(random, Draw::direction, l ? hash(l, 0x6c6f6265u) : 0, square);
   samples->sample(batch.lobes[l], hits, hits.count, all, square);
   return samples;
 }
@@ -185,7 +205,8 @@ void TileRenderer::passOn(const Points& points, uint32_t i, uint32_t lane, const
 // The rays that go on from hit i: all of them, or one of them chosen. chance: of each lobe's direction to be followed; it must
 // not depend on the directions themselves, which light from emitters is weighed against.
 void TileRenderer::sendOn(const RtsBatch& batch, const Points& points, uint32_t i, uint32_t lane, Paths& paths,
-                          const LobeSamples* const samples[], const Boundaries& boundaries, float* const chance[]) {
+                          const LobeSamples* const samples[], const Boundaries& boundaries, float* const choices[2],
+                          float* const chance[]) {
   const RayState ray = paths.state[lane];
   const bool path = scene_.frame.transport >= RT_TRANSPORT_PATH, direct = scene_.frame.transport == RT_TRANSPORT_DIRECT;
   Ways ways(points.hits, i, boundaries.eta ? boundaries.eta[i] : nullptr, ray.channel);
@@ -204,8 +225,7 @@ void TileRenderer::sendOn(const RtsBatch& batch, const Points& points, uint32_t 
   const bool all = !path || ways.count == 1 || ray.splits == 0;
   for (uint32_t w = 0; w < ways.count; w++)
     if (chance[ways.list[w].lobe]) chance[ways.list[w].lobe][i] = all ? 1 : carried[w] / sum;
-  float choice = 0, survival = 0;
-  if (path) sampleAt(ray.path, pairOf(ray, Draw::choice), choice, survival);
+  const float choice = path ? choices[0][i] : 0, survival = path ? choices[1][i] : 0;
   const auto send = [&](uint32_t w, float probability) {
     const Way& way = ways.list[w];
     if (way.lost) return;

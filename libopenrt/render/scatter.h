@@ -45,16 +45,24 @@ inline void basisOf(const float n[3], float s[3], float t[3]) {
   t[0] = d, t[1] = sign + n[1] * n[1] * c, t[2] = -n[1];
 }
 
+// Sine and cosine between -pi/4 and pi/4, to a unit in the last place: their series.
+inline float sineSmall(float x) {
+  const float s = x * x;
+  return x * (1 + s * (-1.0f / 6 + s * (1.0f / 120 + s * (-1.0f / 5040 + s * (1.0f / 362880)))));
+}
+inline float cosineSmall(float x) {
+  const float s = x * x;
+  return 1 + s * (-0.5f + s * (1.0f / 24 + s * (-1.0f / 720 + s * (1.0f / 40320 + s * (-1.0f / 3628800)))));
+}
+
 // A direction about n with density cosine / pi from a point of the unit square: the disc of P. Shirley, K. Chiu (1997), lifted
 // to the hemisphere.
 inline void cosineDirection(const float n[3], float u, float v, float out[3]) {
   const float a = 2 * u - 1, b = 2 * v - 1;
-  float r = 0, phi = 0;
-  if (std::fabs(a) > std::fabs(b))
-    r = a, phi = float(M_PI / 4) * (b / a);
-  else if (b != 0)
-    r = b, phi = float(M_PI / 2) - float(M_PI / 4) * (a / b);
-  const float x = r * std::cos(phi), y = r * std::sin(phi), z = std::sqrt(std::max(0.0f, 1 - x * x - y * y));
+  const bool wide = std::fabs(a) > std::fabs(b); // within an eighth of a turn of the x axis
+  const float r = wide ? a : b, other = wide ? b : a, angle = float(M_PI / 4) * (r != 0 ? other / r : 0.0f);
+  const float along = r * cosineSmall(angle), across = r * sineSmall(angle);
+  const float x = wide ? along : across, y = wide ? across : along, z = std::sqrt(std::max(0.0f, 1 - x * x - y * y));
   float s[3], t[3];
   basisOf(n, s, t);
   for (int k = 0; k < 3; k++) out[k] = x * s[k] + y * t[k] + z * n[k];

@@ -73,25 +73,30 @@ class TileRenderer {
     uint32_t branch;
     MediaStack media;
   };
-  const LobeSamples* sampleLobe(const RtsBatch& batch, uint32_t l, const RtsHits& hits, const uint32_t* order,
-                                const Paths& paths);
-  void passOn(const Points& points, uint32_t i, uint32_t lane, const Crossing& crossing, Paths& paths);
-  void sendOn(const RtsBatch& batch, const Points& points, uint32_t i, uint32_t lane, Paths& paths,
-              const LobeSamples* const samples[], const Boundaries& boundaries, float* const chance[]);
-  void push(const Points& points, uint32_t i, uint32_t lane, const Step& step, Paths& paths);
   enum class Draw : uint32_t { direction, choice, emitter, place, count };
   // Pair of dimensions of a random choice at this surface of a path; pair 0 is the place in the pixel.
   uint32_t pairOf(const RayState& ray, Draw draw) const {
     return 1 + uint32_t(Draw::count) * level_ + uint32_t(draw) + ray.branch;
   }
   void sampleAt(uint32_t path, uint32_t pair, float& u, float& v) const;
+  // Random numbers of the hits of a batch: a point of the unit square for each draw.
+  struct Random {
+    uint32_t count, *key, *index, *pair;
+  };
+  Random randomOf(const Paths& paths, const uint32_t* order, uint32_t n);
+  void draw(const Random& random, Draw what, uint32_t apart, float* square[2]);
+  const LobeSamples* sampleLobe(const RtsBatch& batch, uint32_t l, const RtsHits& hits, const Random& random);
+  void passOn(const Points& points, uint32_t i, uint32_t lane, const Crossing& crossing, Paths& paths);
+  void sendOn(const RtsBatch& batch, const Points& points, uint32_t i, uint32_t lane, Paths& paths,
+              const LobeSamples* const samples[], const Boundaries& boundaries, float* const choices[2], float* const chance[]);
+  void push(const Points& points, uint32_t i, uint32_t lane, const Step& step, Paths& paths);
   float chanceMet(const RayState& ray, const Points& points, uint32_t i) const;
   // emitted.cpp: the light of emitters and of the sky, by choosing places on them.
   Receiver receiverOf(const Points& points, uint32_t i, bool through) const;
   uint32_t weigh(const RtsBatch& batch, const RtsHits& hits, float* const chance[], Rays& rays, Sight* sights, uint32_t* hitOf,
                  uint32_t n, float* response[3]);
-  void addEmitters(const RtsBatch& batch, const Points& points, const uint32_t* order, const Paths& paths, float* const chance[],
-                   const Crossing* crossing, float* const radiance[3]);
+  void addEmitters(const RtsBatch& batch, const Points& points, const uint32_t* order, const Paths& paths, const Random& random,
+                   float* const chance[], const Crossing* crossing, float* const radiance[3]);
   void attenuate(const Points& points, const Paths& paths, const uint32_t* order, float* fog[4]);
   void addToPixels(const Paths& paths, uint32_t firstSample, uint32_t samples);
 

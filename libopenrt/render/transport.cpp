@@ -24,22 +24,42 @@ Wish wishOf(const ShaderSlot& shader) {
 } // namespace
 
 TransportChoice chooseTransport(const RenderScene& scene) {
-  if (scene.transport.shaderClass)
-    return {scene.frame.transport ? RTenum(scene.frame.transport) : RTenum(RT_TRANSPORT_PATH),
-            std::string("the transport shader ") + scene.transport.shaderClass->name};
-  if (scene.frame.transport != RT_TRANSPORT_AUTO) return {scene.frame.transport, "asked for"};
   Wish strongest;
   const char* who = nullptr;
+  bool specular = false, lamps = false;
   uint32_t last = ~0u;
   for (const Record& record : scene.records) {
     if (record.shader == last) continue;
     last = record.shader;
-    const Wish wish = wishOf((*scene.shaders)[last]);
+    const ShaderSlot& shader = (*scene.shaders)[last];
+    specular |= shader.traits & RTS_SPECULAR, lamps |= shader.traits & RTS_EMISSIVE;
+    const Wish wish = wishOf(shader);
     if (wish.transport <= strongest.transport) continue;
-    strongest = wish, who = (*scene.shaders)[last].shaderClass->name;
-    if (wish.transport == RT_TRANSPORT_PATH) break;
+    strongest = wish, who = shader.shaderClass->name;
   }
-  return {strongest.transport, who ? std::string("a surface of class ") + who + " " + strongest.why : strongest.why};
+  uint32_t followed = 0; // lights that paths can begin at
+  for (const LightSlot& light : scene.lights) followed += light.shader.shaderClass->extent != nullptr;
+  const RtsClass* camera = scene.camera.shader.shaderClass;
+  const bool followable = specular && (lamps || followed) && camera && camera->project;
+
+  TransportChoice choice;
+  if (scene.transport.shaderClass) {
+    choice.transport = scene.frame.transport ? RTenum(scene.frame.transport) : RTenum(RT_TRANSPORT_PATH);
+    choice.reason = std::string("the transport shader ") + scene.transport.shaderClass->name;
+  } else if (scene.frame.transport != RT_TRANSPORT_AUTO) {
+    choice.transport = scene.frame.transport, choice.reason = "asked for";
+  } else {
+    choice.transport = strongest.transport;
+    choice.reason = who ? std::string("a surface of class ") + who + " " + strongest.why : strongest.why;
+    if (choice.transport == RT_TRANSPORT_PATH && followable) {
+      choice.transport = RT_TRANSPORT_LIGHT;
+      choice.reason += ", and there are mirrors or glass";
+    }
+  }
+  const auto lights = uint32_t(scene.lights.size());
+  if (specular && choice.transport == RT_TRANSPORT_PATH) choice.unreached = lights;
+  if (specular && choice.transport == RT_TRANSPORT_LIGHT) choice.unreached = followable ? lights - followed : lights;
+  return choice;
 }
 
 } // namespace openrt

@@ -12,6 +12,7 @@ struct RenderScene;
 struct TransportChoice {
   RTenum transport = RT_TRANSPORT_DIRECT; // never RT_TRANSPORT_AUTO
   std::string reason;                     // for people
+  uint32_t unreached = 0;                 // RTstats.unreachedLights
 };
 TransportChoice chooseTransport(const RenderScene& scene);
 

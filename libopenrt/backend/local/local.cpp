@@ -54,6 +54,7 @@ void LocalBackend::prepare() {
   next->transparentShadows = accel_->hasTransparent;
   TransportChoice choice = chooseTransport(*next);
   next->frame.transport = uint8_t(choice.transport);
+  unreachedLights_ = choice.unreached;
   transportReason_ = std::move(choice.reason);
   next->emitters.build(*next, snapshot_.get(), samePlaces_);
   next->manyLights = makeManyLights(*next, snapshot_.get());
@@ -264,6 +265,7 @@ void LocalBackend::stats(RTstats& s) const {
     finished_->describeError(s);
   }
   if (snapshot_) s.transport = snapshot_->frame.transport;
+  s.unreachedLights = unreachedLights_;
   std::snprintf(s.transportReason, sizeof s.transportReason, "%s", transportReason_.c_str());
   s.objectBuilds = builder_.objectBuilds, s.topLevelBuilds = builder_.topLevelBuilds;
   s.commitSeconds = commitSeconds_;
