@@ -5,7 +5,9 @@ make_scenes.py FOLDER     a .wrl for each function below
 """
 import math
 import pathlib
+import struct
 import sys
+import zlib
 
 HEADER = "#VRML V2.0 utf8\n"
 
@@ -293,11 +295,35 @@ def board():
         parts.append(at((-4.6, .01, -2.25 + .5 * n), ("DEF Pad " + shape(gold, "Cylinder { radius .14 height .03 }")) if n == 0 else "USE Pad"))
     led = shader("Diffuse", "diffuse", "color reflectance .3 .05 .05", "color emission 6 .4 .3")
     parts.append(at((4.5, .14, 2.9), "DEF Led " + shape(led, "Sphere { radius .12 }")))
-    sky = ("Background { skyColor [ 1.0 .98 .95, .55 .68 .9, .9 .9 .88 ] skyAngle [ .5, 1.5707 ] groundColor [ .12 .11 .1, .3 .3 .3 ] "
-           "groundAngle 1.5707 }")
+    sky = ('ORTBackground { shader ORTShader { name "EnvironmentMap" file "environmentmap" '
+           'options [ "texture texture studio.png", "1f intensity 4", "1f rotation .6" ] } }')
     table = shape(shader("Diffuse", "diffuse", "color reflectance .55 .5 .45"),
                   quad((-40, -.5, 40), (40, -.5, 40), (40, -.5, -40), (-40, -.5, -40)))
     return world("Circuit board", viewpoint((1.6, 6.6, 9.4), (.1, 0, .2), .62), sky, *parts, table)
+
+
+def studio():
+    """A photographer's studio all around as a picture (PNG): dim walls, three bright panels and a window."""
+    width, height = 128, 64
+    panels = [(.05, .2, .12, .3, (255, 250, 240)), (.38, .53, .06, .2, (255, 255, 255)), (.62, .7, .3, .42, (255, 225, 180)),
+              (.8, .95, .16, .36, (190, 215, 255))]
+    rows = b""
+    for y in range(height):
+        rows += b"\0"
+        for x in range(width):
+            u, v = (x + .5) / width, (y + .5) / height
+            grey = int(70 - 30 * v) if v < .5 else int(48 - 24 * v)
+            colour = (grey, grey, grey + 4)
+            for left, right, top, bottom, bright in panels:
+                if left <= u < right and top <= v < bottom:
+                    colour = bright
+            rows += bytes(colour)
+
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0))
+            + chunk(b"IDAT", zlib.compress(rows, 9)) + chunk(b"IEND", b""))
 
 
 SCENES = [glass_ball, mirror_corridor, cornell, furnace, caustic, car_paint, carved, interior, headlight, board]
@@ -307,6 +333,7 @@ def main():
     folder = pathlib.Path(sys.argv[1])
     for make in SCENES:
         (folder / f"{make.__name__}.wrl").write_text(make())
+    (folder / "studio.png").write_bytes(studio())
 
 
 if __name__ == "__main__":

@@ -9,6 +9,6 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 def test_scenes_are_as_written(tmp_path):
     subprocess.run([sys.executable, ROOT / "tools/make_scenes.py", tmp_path], check=True)
     made = sorted(tmp_path.iterdir())
-    assert len(made) >= 10
-    for world in made:
-        assert world.read_text() == (ROOT / "examples/scenes" / world.name).read_text(), world.name
+    assert len(made) > 10
+    for world in (m for m in made if m.suffix == ".wrl"):
+        assert world.read_bytes() == (ROOT / "examples/scenes" / world.name).read_bytes(), world.name
