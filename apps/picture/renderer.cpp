@@ -14,6 +14,8 @@
 
 #include <fmt/format.h>
 
+#include "picture/radiance.h"
+
 namespace picture {
 
 namespace {
@@ -58,6 +60,7 @@ struct Renderer::Impl {
   std::unique_ptr<xvrml::OpenRTMapper> mapper;
   double meshSeconds = 0;
   bool pluginMissing = false, memoryExhausted = false;
+  RTid environment = 0;
 
   // Between the threads. `task` is set by the caller and cleared by the render thread when it is done.
   std::mutex mutex;
@@ -223,8 +226,30 @@ struct Renderer::Impl {
     }
   }
 
+  // Light from all around that the user gives. The mapper sets its own when that has changed.
+  void useEnvironment() {
+    if (settings.environment.empty()) return;
+    if (environment == 0) {
+      const Radiance around = readRadiance(settings.environment);
+      RTid texture = 0;
+      rtGenTextures(1, &texture);
+      rtBindTexture(texture);
+      rtTexImage2D(3, around.width, around.height, RT_FLOAT, around.rgb.data());
+      rtTexParameteri(RT_TEXTURE_WRAP_T, RT_CLAMP_TO_EDGE);
+      environment = rtNewShader(rtNewShaderClass("EnvironmentMap", nullptr));
+      rtBindShader(environment);
+      rtParameterTexture(rtParameterHandle("texture"), texture);
+      rtParameter1f(rtParameterHandle("intensity"), float(settings.environmentIntensity));
+      rtBindShader(0);
+    }
+    rtLoadIdentity();
+    rtUseEnvironment(environment);
+    throwOnError("environment");
+  }
+
   void prepare(const View& view) {
     mapper->map(chooseCamera(*mapper, seenBy(view), double(settings.width) / settings.height));
+    useEnvironment();
     if (memoryExhausted) throw std::bad_alloc();
   }
 

@@ -35,8 +35,10 @@ struct RenderSettings {
   xvrml::MapOptions::Headlight headlight = xvrml::MapOptions::Headlight::automatic;
   uint32_t channels = RT_RGBA;
   std::string backend = "local";
-  std::string record;     // file that keeps the scene edits
-  std::string shaderPath; // folders, separated by colons
+  std::string record;      // file that keeps the scene edits
+  std::string shaderPath;  // folders, separated by colons
+  std::string environment; // a picture of radiance (radiance.h) all around, instead of the world's Background
+  double environmentIntensity = 1;
 
   bool operator==(const RenderSettings&) const = default;
 };

@@ -149,6 +149,16 @@ const OptionInfo table[] = {
        o.shaders.push_back(v);
      },
      true},
+    {"--environment", "FILE[:INTENSITY]", "Change",
+     "Light from all around instead of the world's Background: a picture of radiance (hdr, pfm), columns of equal longitude, its "
+     "middle towards -z.",
+     [](Options& o, const std::string& v) {
+       const size_t colon = v.rfind(':');
+       const bool factor = colon != v.npos && colon > 0 && v.find('/', colon) == v.npos;
+       o.render.environment = factor ? v.substr(0, colon) : v;
+       if (factor) o.render.environmentIntensity = readNumber(std::string_view(v).substr(colon + 1), 0, 1e9);
+       notEmpty(o.render.environment, "a file name");
+     }},
     {"--spp", "N", "Quality", "Samples per pixel, 1 to 65536 (default 16).",
      [](Options& o, const std::string& v) { o.samples = int(readInteger(v, 1, 65536)); }},
     {"--error", "E|E%", "Quality",

@@ -97,6 +97,42 @@ def test_another_camera_at_the_same_place(vv):
         assert vv("sky.wrl", "-o", "x.png", "--camera-shader", wrong).returncode == 2
 
 
+def environment(width, height, colour):
+    import struct
+    return b"PF\n%d %d\n-1.0\n" % (width, height) + b"".join(struct.pack("<3f", *colour(x, y)) for y in range(height) for x in range(width))
+
+
+def test_light_from_all_around(vv):
+    vv.write("empty.wrl", HEADER + "NavigationInfo { headlight FALSE } Viewpoint { } Background { skyColor 1 0 1 }")
+    vv.write("a.pfm", environment(8, 4, lambda x, y: (0, 1, 0) if 2 <= x < 6 else (0, 0, 1)))  # the middle is straight ahead
+    assert middle(vv.picture("--environment", "a.pfm", world="empty.wrl")) == (0, 255, 0)
+    assert middle(vv.picture("--environment", "a.pfm", "--camera", "0,0,0:0,0,1", world="empty.wrl")) == (0, 0, 255)
+    half = middle(vv.picture("--environment", "a.pfm:0.5", world="empty.wrl"))
+    assert half[1] == 188 and half[0] == half[2] == 0
+    row = lambda bright: bytes([2, 2, 0, 8]) + bytes([136, bright]) + bytes([136, 0]) * 2 + bytes([136, 129])
+    vv.write("a.hdr", b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4 +X 8\n" + row(127) * 4)
+    red = middle(vv.picture("--environment", "a.hdr", world="empty.wrl"))
+    assert red[0] == 255 and red[1] < 20
+    # It lights what is there
+    vv.write("ball.wrl", HEADER + "NavigationInfo { headlight FALSE } Viewpoint { position 0 0 3 } Shape { appearance Appearance { "
+             "material Material { diffuseColor 1 1 1 } } geometry Sphere { } }")
+    vv.write("white.pfm", environment(8, 4, lambda x, y: (.5, .5, .5)))
+    lit = middle(vv.picture("--environment", "white.pfm", "--transport", "path", "--spp", "64", world="ball.wrl"))
+    assert all(abs(c - 188) < 6 for c in lit)
+
+
+@pytest.mark.parametrize("name, content", [
+    ("none.pfm", None), ("empty.pfm", b""), ("short.pfm", b"PF\n8 4\n-1.0\nxxx"), ("huge.pfm", b"PF\n99999 99999\n-1.0\n"),
+    ("nan.pfm", b"PF\n1 1\n-1.0\n\0\0\xc0\x7f" + b"\0" * 8), ("grey.pfm", b"Pf\n1 1\n-1.0\n\0\0\0\0"), ("text.hdr", b"hello\n"),
+    ("short.hdr", b"#?RADIANCE\n\n-Y 4 +X 8\n\2\2\0\x08\x88"), ("run.hdr", b"#?RADIANCE\n\n-Y 1 +X 8\n\2\2\0\x08\xff\1"), ("a.txt", b"x"),
+])
+def test_bad_pictures_of_radiance(vv, name, content):
+    if content is not None:
+        vv.write(name, content)
+    done = vv("box.wrl", "-o", "x.png", "--environment", name, *SMALL)
+    assert done.returncode == 1 and name in done.talk and len(done.talk.splitlines()) == 1, done.talk
+
+
 def test_list_shaders(vv):
     text = vv("--list-shaders").text
     for name in ("VRML97 (surface", "ThinLens (camera", "Panorama (camera", "Glass (surface", "VRML97Environment (environment"):
