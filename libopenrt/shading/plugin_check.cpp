@@ -93,11 +93,19 @@ void checkFunctions(const RtsClass& shaderClass, const std::string& where) {
   if (missing) throw std::runtime_error(where + ": lacks the function " + missing);
 }
 
-RtsClass checkClass(const RtsClass* theirs, const std::string& path) {
+// Bytes of a class structure of ABI 1.minor.
+size_t classBytes(unsigned minor) {
+  return minor == 0 ? offsetof(RtsClass, surface) : minor == 1 ? offsetof(RtsClass, frequency) : sizeof(RtsClass);
+}
+
+RtsClass checkClass(const RtsClass* theirs, unsigned minor, const std::string& path) {
   if (!theirs) refuse(path, "an empty entry in its table of classes");
   if (theirs->size < minClassSize || theirs->size > sizeof(RtsClass))
     refuse(path, "claims a class structure of " + std::to_string(theirs->size) + " bytes; this library knows " +
                      std::to_string(minClassSize) + " to " + std::to_string(sizeof(RtsClass)));
+  if (theirs->size > classBytes(minor))
+    refuse(path, "claims a class structure of " + std::to_string(theirs->size) + " bytes; that of ABI " +
+                     version(RTS_ABI_MAJOR, minor) + " has " + std::to_string(classBytes(minor)));
   RtsClass ours{};
   // Whole pointers only: half a function pointer would be a wild one.
   std::memcpy(&ours, theirs, theirs->size / sizeof(void*) * sizeof(void*));
@@ -134,7 +142,7 @@ std::vector<RtsClass> checkPlugin(const RtsPlugin* plugin, size_t symbolBytes, c
   std::vector<RtsClass> classes;
   std::set<std::string> names;
   for (uint32_t i = 0; i < plugin->classCount; i++) {
-    classes.push_back(checkClass(plugin->classes[i], path));
+    classes.push_back(checkClass(plugin->classes[i], plugin->minor, path));
     if (!names.insert(classes.back().name).second) refuse(path, std::string("two classes called ") + classes.back().name);
   }
   return classes;

@@ -54,6 +54,8 @@ INSTANTIATE_TEST_SUITE_P(
         Refused{"parameter_far_outside", "parameter b: lies outside"}, Refused{"parameter_twice", "two parameters called a"},
         Refused{"parameter_overlap", "two parameters share bytes"}, Refused{"parameter_unaligned", "parameter b: badly aligned"},
         Refused{"parameter_type", "unknown type 99"}, Refused{"parameter_unnamed", "a parameter without a name"},
+        Refused{"minor_0_too_large", "that of ABI 1.0 has"}, Refused{"frequency_value", "parameter b: cannot change that often"},
+        Refused{"frequency_type", "parameter b: cannot change that often"},
         Refused{"parameter_default", "default that is not finite"}, Refused{"parameter_range", "its range is empty"}),
     [](const auto& info) { return std::string(info.param.library); });
 
@@ -75,6 +77,40 @@ TEST(Registry, AnOlderClassLacksTheNewerFunctions) {
   EXPECT_NE(example.shade, nullptr);
   EXPECT_EQ(example.transmit, nullptr); // there in the plug-in's memory, but beyond the size it states
   EXPECT_EQ(example.generate, nullptr);
+}
+
+TEST(Registry, OlderMinorsEndWhereTheirStructuresEnded) {
+  const ShaderRegistry registry({plugins});
+  for (const char* library : {"minor_0", "minor_1"}) {
+    const RtsClass& c = registry.find("Example", library);
+    EXPECT_NE(c.shade, nullptr);
+    EXPECT_NE(c.transmit, nullptr);
+    EXPECT_EQ(c.frequency, nullptr) << library; // there is something in the plug-in's memory
+    EXPECT_EQ(c.prepare, nullptr) << library;
+    EXPECT_EQ(c.radiance, nullptr) << library;
+  }
+}
+
+TEST(Registry, HalfAPointerIsNone) {
+  const ShaderRegistry registry({plugins});
+  const RtsClass& c = registry.find("Example", "class_truncated");
+  EXPECT_NE(c.shade, nullptr);
+  EXPECT_EQ(c.transmit, nullptr);
+}
+
+// The places of what older headers had, in bytes on 64-bit machines: they never move.
+TEST(Abi, StructuresGrowAtTheirEndsAlone) {
+  if (sizeof(void*) != 8) GTEST_SKIP();
+  EXPECT_EQ(offsetof(RtsClass, traits), 40u);
+  EXPECT_EQ(offsetof(RtsClass, surface), 96u);    // the end of 1.0
+  EXPECT_EQ(offsetof(RtsClass, frequency), 104u); // the end of 1.1
+  EXPECT_EQ(sizeof(RtsClass), 160u);              // 1.2
+  EXPECT_EQ(sizeof(RtsParam), 96u);
+  EXPECT_EQ(sizeof(RtsPlugin), 24u);
+  EXPECT_EQ(offsetof(RtsHost, lobe), 64u);
+  EXPECT_EQ(offsetof(RtsHost, customLobe), 72u);
+  EXPECT_EQ(sizeof(RtsHost), 152u);
+  EXPECT_EQ(offsetof(RtsHits, segment) + sizeof(void*), sizeof(RtsHits));
 }
 
 TEST(Registry, PrefixAndSuffixDoNotMatter) {

@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <limits>
+#include <optional>
 
 #include <unistd.h>
 #include <xxhash.h>
@@ -89,6 +91,7 @@ struct Example {
   float points[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
   uint32_t indices[3] = {0, 1, 2};
   uint8_t texels[4] = {1, 2, 3, 4};
+  std::optional<std::vector<float>> extra; // array 4
   edit::EditsT edits;
   edit::TextureT& texture;
   edit::ShaderClassT& surfaceClass;
@@ -123,6 +126,7 @@ struct Example {
     appendArray(bytes, 1, points, sizeof(points));
     appendArray(bytes, 2, indices, sizeof(indices));
     appendArray(bytes, 3, texels, sizeof(texels));
+    if (extra) appendArray(bytes, 4, extra->data(), extra->size() * sizeof(float));
     appendEdits(bytes, edits);
     return bytes;
   }
@@ -356,6 +360,68 @@ INSTANTIATE_TEST_SUITE_P(
               "in a role of another kind"},
         Fault{"EmptyEdit", [](Example& e) { e.edits.edits.push_back(std::make_unique<edit::EditT>()); }, "an empty edit"}),
     [](const auto& info) { return std::string(info.param.name); });
+
+// Parameters of a geometry: the colours of Varying are its points, which lie within 0 .. 1.
+void giveParameter(Example& e, uint32_t index = 2, bool perVertex = true, uint64_t values = 1) {
+  e.surfaceClass.name = "Varying", e.surfaceClass.library = "varying";
+  auto own = std::make_unique<edit::GeometryParameterT>();
+  own->index = index, own->perVertex = perVertex, own->values = values;
+  e.geometry.parameters.push_back(std::move(own));
+}
+
+TEST_F(Recording, ParametersOfGeometryAreChecked) {
+  struct {
+    const char* what;
+    const char* complaint;
+    std::function<void(Example&)> change;
+  } const cases[] = {
+      {"good by vertex", "", [](Example& e) { giveParameter(e); }},
+      {"good by triangle", "",
+       [](Example& e) {
+         giveParameter(e, 5, false, 4), e.extra = {1, 2, 3};
+       }},
+      {"no such parameter", "a parameter that its class does not have", [](Example& e) { giveParameter(e, 99); }},
+      {"another frequency", "cannot have like that", [](Example& e) { giveParameter(e, 2, false); }},
+      {"of the whole shader", "cannot have like that", [](Example& e) { giveParameter(e, 1); }},
+      {"no values", "a parameter without values", [](Example& e) { giveParameter(e, 2, true, 0); }},
+      {"an array that is not there", "did not arrive", [](Example& e) { giveParameter(e, 2, true, 77); }},
+      {"too few", "of a wrong size", [](Example& e) { giveParameter(e, 2, true, 2); }},
+      {"too many", "of a wrong size", [](Example& e) { giveParameter(e, 3); }},
+      {"one float too many", "of a wrong size",
+       [](Example& e) {
+         giveParameter(e, 5, false, 4), e.extra = {1, 2, 3, 4};
+       }},
+      {"nothing in it", "of a wrong size", [](Example& e) { giveParameter(e, 5, false, 4), e.extra.emplace(); }},
+      {"out of range", "is outside", [](Example& e) { giveParameter(e), e.points[3] = 2; }},
+      {"not finite", "not finite",
+       [](Example& e) {
+         giveParameter(e, 5, false, 4), e.extra = {1, std::numeric_limits<float>::infinity(), 3};
+       }},
+      {"twice", "twice", [](Example& e) { giveParameter(e), giveParameter(e); }},
+      {"of no shader", "parameters of no shader", [](Example& e) { giveParameter(e), e.geometry.shader = 0; }},
+      {"of a sphere", "a sphere with parameters",
+       [](Example& e) {
+         giveParameter(e);
+         e.geometry.primitive = edit::Primitive::Sphere, e.geometry.points = e.geometry.indices = 0;
+       }},
+      {"of another class", "cannot have like that",
+       [](Example& e) { giveParameter(e), e.surfaceClass.name = "Everything", e.surfaceClass.library = "everything"; }},
+  };
+  for (const auto& c : cases) {
+    const std::string text = after(c.change);
+    if (*c.complaint)
+      EXPECT_NE(text.find(c.complaint), text.npos) << c.what << ": " << text;
+    else
+      EXPECT_EQ(text, "") << c.what;
+  }
+  Example unknown; // without class tables: sizes and numbers alone
+  giveParameter(unknown);
+  EXPECT_EQ(refusal(unknown.file()), "");
+  unknown.geometry.parameters[0]->values = 2;
+  EXPECT_EQ(refusal(unknown.file()), "");
+  unknown.geometry.parameters[0]->values = 3;
+  EXPECT_NE(refusal(unknown.file()).find("of a wrong size"), std::string::npos);
+}
 
 TEST_F(Recording, OtherFilesAreNamedAsSuch) {
   EXPECT_NE(refusal(Bytes(16, 'x')).find("not a recording"), std::string::npos);

@@ -1,5 +1,5 @@
 /* case.c: one plug-in per macro CASE_...: each differs from a good one in a single point. CASE_older_class is a good one too: its
- * class structure ends where an older header would have ended it. */
+ * class structure ends where an older header would have ended it; so are CASE_minor_0, CASE_minor_1 and CASE_class_truncated. */
 #include <openrt/openrts.h>
 
 #include <math.h>
@@ -30,6 +30,9 @@ typedef struct Parameters {
 #elif defined(CASE_parameter_unaligned)
 #define SECOND                                                                                                                   \
   { "b", RTS_FLOAT, offsetof(Parameters, b) - 2, {0}, 0, 0, "" }
+#elif defined(CASE_frequency_type)
+#define SECOND                                                                                                                   \
+  { "b", RTS_INT, offsetof(Parameters, b), {0}, 0, 0, "" }
 #elif defined(CASE_parameter_type)
 #define SECOND                                                                                                                   \
   { "b", (RtsType)99, offsetof(Parameters, b), {0}, 0, 0, "" }
@@ -54,9 +57,19 @@ static const RtsParam parameters[] = {{"a", RTS_FLOAT, offsetof(Parameters, a), 
 static void shade(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, RtsShading* out) {
   (void)host;
   (void)batch;
-  (void)hits;
-  (void)out;
+  for (uint32_t i = 0; i < hits->count; i++) out->radiance[1][i] = 0.5f;
 }
+#endif
+#if defined(CASE_minor_0) || defined(CASE_minor_1)
+static const char* nonsense(const RtsHost* host, void* params) {
+  (void)host;
+  (void)params;
+  return "must not be called";
+}
+#elif defined(CASE_frequency_value)
+static const uint8_t frequency[] = {RTS_PER_VERTEX, 3};
+#elif defined(CASE_frequency_type)
+static const uint8_t frequency[] = {RTS_PER_VERTEX, RTS_PER_VERTEX};
 #endif
 static uint32_t traits(const RtsHost* host, const void* params) {
   (void)host;
@@ -73,6 +86,12 @@ static void transmit(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, 
 static const RtsClass example = {
 #if defined(CASE_older_class)
     .size = offsetof(RtsClass, transmit),
+#elif defined(CASE_minor_0)
+    .size = offsetof(RtsClass, surface),
+#elif defined(CASE_minor_1)
+    .size = offsetof(RtsClass, frequency),
+#elif defined(CASE_class_truncated)
+    .size = offsetof(RtsClass, transmit) + 3, /* in the middle of a pointer */
 #elif defined(CASE_class_too_small)
     .size = offsetof(RtsClass, params),
 #elif defined(CASE_class_too_large)
@@ -101,7 +120,14 @@ static const RtsClass example = {
 #if !defined(CASE_class_without_shade)
     .shade = shade,
 #endif
-    .transmit = transmit};
+    .transmit = transmit,
+#if defined(CASE_minor_0) || defined(CASE_minor_1)
+    .prepare = nonsense, /* beyond what the older structures hold: must not be looked at */
+    .frequency = (const uint8_t*)1,
+#elif defined(CASE_frequency_value) || defined(CASE_frequency_type)
+    .frequency = frequency,
+#endif
+};
 
 static const RtsClass* const classes[] = {&example,
 #if defined(CASE_class_twice)
@@ -124,6 +150,10 @@ RTS_EXPORT const RtsPlugin rtsPlugin = {
 #endif
 #if defined(CASE_newer_minor)
     RTS_ABI_MINOR + 1,
+#elif defined(CASE_minor_0) || defined(CASE_minor_0_too_large)
+    0,
+#elif defined(CASE_minor_1)
+    1,
 #else
     RTS_ABI_MINOR,
 #endif
