@@ -21,6 +21,14 @@ ErrorMap::Kind errorsOf(const edit::FrameSettingsT& frame) {
   return frame.samples > 1 && (frame.channels & RT_VARIANCE) ? ErrorMap::Kind::summary : ErrorMap::Kind::none;
 }
 
+// As many paths from lamps as from the camera; where the number of these is open, at most a few for each pixel.
+uint32_t lightPathsOf(const edit::FrameSettingsT& frame) {
+  constexpr uint32_t mostOfOpen = 64;
+  const bool open = frame.targetError > 0 || frame.timeLimit > 0;
+  const double paths = double(frame.width) * frame.height * (open ? std::min(frame.samples, mostOfOpen) : frame.samples);
+  return uint32_t(std::min(paths, 4e9));
+}
+
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 // CPUs' worth of time a control group (version 2) grants, 0 if it does not limit.
@@ -60,6 +68,7 @@ Frame::Frame(std::shared_ptr<const RenderScene> scene, uint32_t threads)
   barrier_ = std::make_unique<std::barrier<EndRound>>(count, EndRound{this});
   if (scene_->lightSources && tiles_ > 0) {
     light_ = std::make_unique<LightImage>(film_.width(), film_.height());
+    partPaths_ = lightPathsOf(scene_->frame) / LightImage::parts + 1;
     lit_ = std::make_unique<std::barrier<>>(count);
   }
   for (uint32_t i = 0; i < count; i++) threads_.emplace_back([this] { work(); });
@@ -93,7 +102,10 @@ bool Frame::snapshot(uint32_t channel, std::span<float> out) const {
 
 float Frame::progress() const {
   if (rounds_) return over_.load() ? 1.0f : std::min(float((now() - started_) / double(scene_->frame.timeLimit)), 0.99f);
-  return tiles_ ? float(done_.load()) / float(tiles_) : 1.0f;
+  const float tiles = tiles_ ? float(done_.load()) / float(tiles_) : 1.0f;
+  if (!light_) return tiles;
+  constexpr float lightShare = 0.4f; // of the work, about
+  return lightShare * float(lightPaths_.load()) / (float(partPaths_) * LightImage::parts) + (1 - lightShare) * tiles;
 }
 
 void Frame::renderTile(TileRenderer& renderer, uint32_t number) {
@@ -147,16 +159,11 @@ void Frame::describeError(RTstats& stats) const {
   std::snprintf(stats.errorMethod, sizeof stats.errorMethod, "%s", many ? "replicated nets, Student's t" : "sample variance");
 }
 
-// As many paths from lamps as from the camera; where the number of these is open, at most a few for each pixel.
+// A picture of paths from lamps, part by part.
 void Frame::traceLight() {
-  constexpr uint32_t mostOfOpen = 64;
-  const edit::FrameSettingsT& frame = scene_->frame;
-  const bool open = frame.targetError > 0 || frame.timeLimit > 0;
-  const double paths = double(film_.width()) * film_.height() * (open ? std::min(frame.samples, mostOfOpen) : frame.samples);
-  const uint32_t each = uint32_t(std::clamp(std::ceil(paths / LightImage::parts), 1.0, 4e9));
   LightTracer tracer(*scene_, *scene_->lightSources);
   for (uint32_t i; !cancelled_ && (i = nextPart_++) < LightImage::parts;) {
-    tracer.trace(each, hash(frame.seed, 0x6c616d70u + i));
+    tracer.trace(partPaths_, hash(scene_->frame.seed, 0x6c616d70u + i), lightPaths_, cancelled_);
     light_->add(i, tracer.picture(), cancelled_);
   }
   std::lock_guard lock(mutex_);

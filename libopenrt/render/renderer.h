@@ -59,7 +59,9 @@ class Frame {
   std::unique_ptr<LightImage> light_; // null: no paths from lamps
   std::unique_ptr<std::barrier<>> lit_;
   std::atomic<uint32_t> nextPart_{0};
-  std::atomic<bool> over_{false}; // written by endRound()
+  std::atomic<uint64_t> lightPaths_{0}; // followed so far
+  uint32_t partPaths_ = 0;              // of each part
+  std::atomic<bool> over_{false};       // written by endRound()
   uint32_t edge_, columns_, tiles_;
   std::atomic<uint32_t> next_{0}, done_{0};
   std::atomic<bool> cancelled_{false};
