@@ -20,8 +20,8 @@ namespace openrt {
 class LightTracer {
  public:
   LightTracer(const RenderScene& scene, const LightSources& sources);
-  // A whole picture (rgb by pixel) of a number of paths; seed: another one for each part. done: counts paths; cancelled: looked at
-  // between some thousand of them.
+  // A whole picture (rgb by pixel) of a number of paths; seed: another one for each part. done: counts paths; cancelled: looked
+  // at between some thousand of them.
   void trace(uint32_t paths, uint32_t seed, std::atomic<uint64_t>& done, const std::atomic<bool>& cancelled);
   const std::vector<float>& picture() const { return picture_; }
   const RayCounters& counters() const { return counters_; }
