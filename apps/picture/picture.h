@@ -48,4 +48,7 @@ std::string encodePng(const Picture& picture);
 std::string encodeJpeg(const Picture& picture);
 std::string encodeExr(const Picture& picture);
 
+// rgba of an OpenEXR file, and error and trust if it has them. Throws std::runtime_error that names the file.
+Picture readExr(const std::string& path);
+
 } // namespace picture

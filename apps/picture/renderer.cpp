@@ -53,7 +53,7 @@ struct News {
 struct Renderer::Impl {
   xvrml::World* world;     // as it stands; with a browser: the one that it runs
   xvrml::Browser* browser; // null: the world stands still
-  const RenderSettings settings;
+  RenderSettings settings;
   Watch watch;
 
   // On the render thread.
@@ -302,6 +302,8 @@ void Renderer::end() {
   impl_->changed.notify_all();
   if (impl_->thread.joinable()) impl_->thread.join();
 }
+
+void Renderer::change(const std::function<void(RenderSettings&)>& change) { change(impl_->settings); }
 
 void Renderer::setWatch(Watch watch) { impl_->watch = std::move(watch); }
 

@@ -71,6 +71,8 @@ class Renderer {
   Renderer& operator=(const Renderer&) = delete;
 
   void setWatch(Watch watch);
+  // Samples, seed, error and channels of the following pictures; the rest must stay. Between two calls of render().
+  void change(const std::function<void(RenderSettings&)>& change);
   const std::vector<xvrml::ViewpointInfo>& viewpoints();
   xvrml::Bounds bounds();
   // Maps the world for a view without making a picture; problems are in the world's diagnostics.

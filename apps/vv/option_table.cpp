@@ -215,6 +215,20 @@ const OptionInfo table[] = {
        notEmpty(v, "a file name");
        o.stats = v;
      }},
+    {"--compare", "REF.exr", "Inspect",
+     "Say how far the picture is off another one of the same size and view: RMSE, relMSE, bias with its interval, largest "
+     "difference. -o is not needed.",
+     [](Options& o, const std::string& v) {
+       notEmpty(v, "an OpenEXR file");
+       o.compare = v;
+     }},
+    {"--audit", "[N]", "Inspect",
+     "Do the error bars hold? Renders the picture with N seeds (default 20) and once with many more samples (or takes the "
+     "picture "
+     "of --compare instead), and says how many of the 95 % intervals hold the truth. Exit code 4 if it is not 93 to 97 % of "
+     "those "
+     "that are trusted.",
+     [](Options& o, const std::string& v) { o.audit = v.empty() ? 20 : int(readInteger(v, 2, 10000)); }},
     {"--watch", "", "Inspect",
      "Make the pictures again whenever the world's file, or one that it uses, changes; until interrupted.",
      [](Options& o, const std::string&) { o.watch = true; }},

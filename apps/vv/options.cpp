@@ -79,6 +79,11 @@ void checkTogether(Options& options) {
   if (options.render.record.size() && !options.makesPictures()) throw UsageError("--record goes with -o");
   if (options.render.record.size() && (options.allViewpoints() || options.isSequence()))
     throw UsageError("--record keeps one picture's scene: not with --viewpoint all, --frames or --turntable");
+  if (options.audit && options.isSequence()) throw UsageError("--audit is for one picture: not with --frames or --turntable");
+  if ((options.audit || options.compare.size()) && toStandardOutput)
+    throw UsageError("--audit and --compare write to standard output: nothing else can go there");
+  if (options.audit && options.render.timeLimit > 0)
+    throw UsageError("--audit: not with --time-limit, which makes no picture twice");
   if (options.check && options.makesPictures()) throw UsageError("--check makes no picture: not with -o");
   if (options.makesPictures() && options.allViewpoints())
     for (const Output& output : options.outputs)
@@ -89,6 +94,23 @@ void checkTogether(Options& options) {
 }
 
 } // namespace
+
+// An argument that may be left out is given as NAME=VALUE to the parser: what follows counts only if it begins with a digit.
+std::vector<std::string> withOptionalArguments(int argc, char** argv) {
+  std::vector<std::string> out;
+  for (int i = 1; i < argc; ++i) {
+    out.emplace_back(argv[i]);
+    for (const OptionInfo& option : optionTable()) {
+      if (option.argument[0] != '[' || out.back() != longName(option)) continue;
+      const bool given = i + 1 < argc && argv[i + 1][0] >= '0' && argv[i + 1][0] <= '9' &&
+                         std::string_view(argv[i + 1]).find_first_not_of("0123456789") == std::string_view::npos;
+      out.back() += std::string("=") + (given ? argv[++i] : "-");
+      break;
+    }
+  }
+  std::reverse(out.begin(), out.end()); // as CLI11 takes a vector
+  return out;
+}
 
 Options readCommandLine(int argc, char** argv) {
   Options options;
@@ -105,7 +127,7 @@ Options readCommandLine(int argc, char** argv) {
     added.push_back(one);
   }
   try {
-    app.parse(argc, argv);
+    app.parse(withOptionalArguments(argc, argv));
   } catch (const CLI::ArgumentMismatch&) {
     throw UsageError(missingValue(argv[argc - 1]));
   } catch (const CLI::ParseError& error) { throw UsageError(error.what()); }
@@ -120,7 +142,8 @@ Options readCommandLine(int argc, char** argv) {
     if (!*option.argument) apply(option, options, "");
     // Of an option that holds one value the last counts.
     const size_t first = option.repeatable || values[i].empty() ? 0 : values[i].size() - 1;
-    for (size_t k = first; k < values[i].size(); ++k) apply(option, options, values[i][k]);
+    for (size_t k = first; k < values[i].size(); ++k)
+      apply(option, options, option.argument[0] == '[' && values[i][k] == "-" ? "" : values[i][k]);
   }
   checkTogether(options);
   const picture::RenderSettings& render = options.render;

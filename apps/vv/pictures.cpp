@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "audit.h"
 #include "describe.h"
 #include "messages.h"
 #include "names.h"
@@ -121,6 +122,7 @@ class Pictures {
   }
 
   int makeOne(const Job& job, const Moment& moment) {
+    if (options_.audit) return auditOne(job);
     current_ = &job;
     progress_ = std::make_unique<Progress>(job.name.text(), options_.quiet);
     const picture::RenderResult result = renderer_->render(job.view);
@@ -130,6 +132,21 @@ class Pictures {
     if (options_.strict && Problems::any(browser_.world())) return result.missing ? exitMissing : exitProblems;
     finish(job, moment, result);
     return interrupted() ? stopped("vv: interrupted; the picture so far is saved") : exitDone;
+  }
+
+  int auditOne(const Job& job) {
+    Audit audit(options_, *renderer_);
+    audit.setProgress([this](const std::string& what) {
+      progress_.reset();
+      if (!what.empty()) progress_ = std::make_unique<Progress>(what, options_.quiet);
+    });
+    const bool finished = audit.run(job.view);
+    progress_.reset();
+    problems_.tell(browser_.world());
+    if (!finished) return stopped("vv: interrupted before the audit was finished");
+    writeOut(audit.text());
+    for (const Output& output : options_.outputs) picture::writeFile(pathFor(output.path, job.name), audit.encode(output.format));
+    return audit.good() ? exitDone : exitProblems;
   }
 
   int stopped(const char* text) {
@@ -174,6 +191,7 @@ class Pictures {
     writePictures(job, result.picture);
     if (!result.interrupted) addToVideos(job, result.picture);
     const double writeSeconds = secondsSince(start);
+    if (!options_.compare.empty() && !result.interrupted) writeOut(compareText(result.picture, options_.compare));
     if (options_.verbose)
       say(fmt::format("vv: {}{}{} triangles, mapped in {}, rendered in {}, written in {}", job.name.text(),
                       job.name.text().empty() ? "" : ": ", result.stats.triangles, duration(result.mapSeconds),
