@@ -133,6 +133,9 @@ void addMachine(Json& json, const Options& options, const picture::RenderResult&
   const RTstats& s = result.stats;
   json["transport"] = transportJson(options, result.stats);
   json["error"] = errorEstimate(result.stats);
+  json["left_out"] = {{"cut_by_depth", s.cutByDepth},          {"cut_by_energy", s.cutByEnergy},  {"clipped", s.clipped},
+                      {"unreached_lights", s.unreachedLights}, {"shader_faults", s.shaderFaults}, {"wrong_hits", s.wrongHits},
+                      {"rejected_rays", s.rejectedRays}};
   json["memory"] = {{"peak_rss", peakMemory()}, {"bvh", s.bvhBytes}, {"scene", nullptr}};
   json["cluster"] = {{"workers", 0}, {"tiles", 0}, {"retries", 0}, {"bytes", 0}};
   json["machine"] = {{"isa", s.isa}, {"threads", s.threads}, {"embree", s.kernel}};

@@ -57,6 +57,7 @@ Frame::Frame(std::shared_ptr<const RenderScene> scene, uint32_t threads)
       tiles_(columns_ * ((film_.height() + edge_ - 1) / edge_)), started_(now()) {
   if (!scene_->camera.shader.shaderClass) tiles_ = 0; // nothing is seen without a camera
   finished_ = std::make_unique<std::atomic<bool>[]>(tiles_);
+  ledgers_.resize(tiles_);
   if (scene_->frame.timeLimit > 0 && scene_->frame.samples > 1 && tiles_ > 0) {
     rounds_ = std::make_unique<Rounds>();
     rounds_->sums.resize(tiles_);
@@ -110,11 +111,13 @@ float Frame::progress() const {
 
 void Frame::renderTile(TileRenderer& renderer, uint32_t number) {
   if (!rounds_)
-    renderer.render(tile(number));
+    renderer.render(tile(number)), ledgers_[number].add(renderer.ledger());
   else if (rounds_->pilot)
     rounds_->wanted[number] = renderer.pilot(tile(number), rounds_->samples);
-  else if (rounds_->wanted[number] > rounds_->first)
+  else if (rounds_->wanted[number] > rounds_->first) {
     renderer.renderRound(tile(number), rounds_->sums[number], rounds_->replicates, rounds_->first, rounds_->samples);
+    ledgers_[number].add(renderer.ledger());
+  }
   if (cancelled_) return; // perhaps given up
   finished_[number].store(true, std::memory_order_release);
   done_++;
@@ -157,6 +160,14 @@ void Frame::describeError(RTstats& stats) const {
   stats.errorPixels = s.pixels, stats.errorTrusted = s.trusted;
   const bool many = rounds_ || replicatesOf(scene_->frame, scene_->frame.samples, 0).many();
   std::snprintf(stats.errorMethod, sizeof stats.errorMethod, "%s", many ? "replicated nets, Student's t" : "sample variance");
+}
+
+void Frame::describeLedger(RTstats& stats) const {
+  Ledger all;
+  for (const Ledger& l : ledgers_) all.addMean(l);
+  const double pixels = std::max(double(film_.width()) * film_.height(), 1.0);
+  stats.cutByDepth = all.cutByDepth / pixels, stats.cutByEnergy = all.cutByEnergy / pixels;
+  stats.clipped = all.clipped / pixels;
 }
 
 // A picture of paths from lamps, part by part.

@@ -34,6 +34,8 @@ class Frame {
   const RayCounters& counters() const { return counters_; } // after wait()
   // The error of the whole picture into its statistics; after wait().
   void describeError(RTstats& stats) const;
+  // What the picture leaves out on purpose; after wait().
+  void describeLedger(RTstats& stats) const;
   double seconds() const { return seconds_; }
   const std::string& failure() const { return failure_; } // empty: none
 
@@ -55,6 +57,7 @@ class Frame {
   };
   std::shared_ptr<const RenderScene> scene_;
   Film film_;
+  std::vector<Ledger> ledgers_;       // by tile
   std::unique_ptr<Rounds> rounds_;    // null: one round
   std::unique_ptr<LightImage> light_; // null: no paths from lamps
   std::unique_ptr<std::barrier<>> lit_;

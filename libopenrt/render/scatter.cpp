@@ -236,6 +236,7 @@ void TileRenderer::sendOn(const RtsBatch& batch, const Points& points, uint32_t 
       if (survival >= stay) return;
       kept *= stay;
     } else if (!path && carried[w] < scene_.frame.energyCut) {
+      for (int k = 0; k < 3; k++) ledger_.cutByEnergy += double(way.share[k]) * double(ray.throughput[k]);
       return;
     }
     Step step{.density = way.density * probability,

@@ -54,6 +54,7 @@ void TileRenderer::renderRound(const Tile& tile, std::vector<PixelSums>& sums, c
 }
 
 void TileRenderer::begin(const Tile& tile) {
+  ledger_ = {};
   pixels_.clear();
   for (uint32_t by = tile.y0; by < tile.y1; by += 4)
     for (uint32_t bx = tile.x0; bx < tile.x1; bx += 4)
@@ -63,6 +64,7 @@ void TileRenderer::begin(const Tile& tile) {
 }
 
 bool TileRenderer::takeSamples(uint32_t first, uint32_t samples) {
+  ledger_.samples += samples;
   const uint32_t perWave = std::clamp(pathsInFlight / uint32_t(pixels_.size()), 1u, samples);
   for (uint32_t s = 0; s < samples; s += perWave) {
     if (stop_ && stop_->load(std::memory_order_relaxed)) return false;
@@ -157,6 +159,7 @@ void TileRenderer::follow(Paths& paths, uint32_t n) {
       traceWave(paths);
     }
   }
+  for (const QueuedRay& ray : next_) ledger_.cutByDepth += sumOf(ray.state.throughput);
   next_.clear();
 }
 
@@ -361,7 +364,10 @@ void TileRenderer::gather(const Points& points, const RtsShading& shaded, const 
     }
     if (!ray.bent) paths.alpha[ray.path] += covered / 3;
     if (paths.first[ray.path]) noteFirst(points, i, ray.path, shaded.albedo, paths);
-    if (through <= 1e-6f) continue;
+    if (through <= 1e-6f) {
+      ledger_.cutByEnergy += double(through);
+      continue;
+    }
     Step on{.density = 0,
             .bent = false,
             .split = false,
@@ -422,11 +428,17 @@ void TileRenderer::push(const Points& points, uint32_t i, uint32_t lane, const S
 }
 
 void TileRenderer::addToPixels(const Paths& paths, uint32_t firstSample, uint32_t samples) {
+  const float limit = scene_.frame.clamp;
   for (size_t pixel = 0; pixel < pixels_.size(); pixel++) {
     PixelSums& sums = sums_[pixel];
     for (uint32_t s = 0; s < samples; s++) {
       const size_t i = pixel * samples + s;
-      const float radiance[3] = {paths.radiance[0][i], paths.radiance[1][i], paths.radiance[2][i]};
+      float radiance[3] = {paths.radiance[0][i], paths.radiance[1][i], paths.radiance[2][i]};
+      for (float& r : radiance) {
+        if (!(limit > 0 && r > limit)) continue;
+        ledger_.clipped += double(r) - double(limit);
+        r = limit;
+      }
       sums.add(radiance, paths.alpha[i]);
       if (wantsError_) {
         sums.addTails(radiance);

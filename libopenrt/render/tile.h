@@ -9,6 +9,7 @@
 #include "render/batch.h"
 #include "render/error.h"
 #include "render/film.h"
+#include "render/ledger.h"
 #include "render/lobes.h"
 #include "render/ray_queue.h"
 
@@ -35,6 +36,8 @@ class TileRenderer {
   // A tile of samples that do not count; how many it needs. Its pixels are stored, to be replaced.
   uint32_t pilot(const Tile& tile, uint32_t samples);
   const RayCounters& counters() const { return counters_; }
+  // Of the samples that the last render() or renderRound() has taken.
+  const Ledger& ledger() const { return ledger_; }
   uint32_t level() const { return level_; } // surfaces that the rays of the wave have met before
   // trace.cpp: what shaders ask of the renderer (RtsHost).
   void randomPoints(const RtsBatch& batch, uint32_t pair, float* const square[2]);
@@ -107,6 +110,7 @@ class TileRenderer {
   const LightImage* light_;
   Arena arena_;
   RayCounters counters_;
+  Ledger ledger_;
   std::vector<uint32_t> counts_, pixels_; // pixels_: y * width + x, in blocks of 4x4
   std::vector<BucketRange> ranges_;
   std::vector<PixelSums> sums_;

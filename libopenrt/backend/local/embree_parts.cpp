@@ -27,12 +27,14 @@ bool confirm(const Part& part, uint32_t primitive, const Vec3d& org, const Vec3d
 
 void confirmSlivers(const RTCFilterFunctionNArguments* a) {
   const Part& part = *static_cast<const Part*>(a->geometryUserPtr);
+  uint64_t wrong = 0;
   for (unsigned i = 0; i < a->N; i++) {
     if (a->valid[i] != -1) continue;
     const Vec3d org{RTCRayN_org_x(a->ray, a->N, i), RTCRayN_org_y(a->ray, a->N, i), RTCRayN_org_z(a->ray, a->N, i)};
     const Vec3d dir{RTCRayN_dir_x(a->ray, a->N, i), RTCRayN_dir_y(a->ray, a->N, i), RTCRayN_dir_z(a->ray, a->N, i)};
-    if (!confirm(part, RTCHitN_primID(a->hit, a->N, i), org, dir, RTCRayN_tfar(a->ray, a->N, i))) a->valid[i] = 0;
+    if (!confirm(part, RTCHitN_primID(a->hit, a->N, i), org, dir, RTCRayN_tfar(a->ray, a->N, i))) a->valid[i] = 0, wrong++;
   }
+  if (wrong) *part.wrongHits += wrong;
 }
 
 void attach(PartScene& to, RTCGeometry geometry, std::unique_ptr<Part> part, uint32_t mask, uint32_t slot = nextSlot) {
@@ -89,6 +91,7 @@ void attachTriangles(PartScene& to, const EmbreeDevice& device, std::unique_ptr<
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, part->vertices.data(), 0, 12, points);
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, indices, 0, 12, corners / 3);
   if (filtered) {
+    part->wrongHits = &device.wrongHits;
     rtcSetGeometryUserData(geometry, part.get());
     rtcSetGeometryIntersectFilterFunction(geometry, confirmSlivers);
     rtcSetGeometryOccludedFilterFunction(geometry, confirmSlivers);

@@ -18,8 +18,9 @@ struct EmbreeDevice {
   EmbreeDevice(const EmbreeDevice&) = delete;
   EmbreeDevice& operator=(const EmbreeDevice&) = delete;
   RTCDevice device;
-  bool wide = true;              // packets of 16 are native
-  std::atomic<int64_t> bytes{0}; // held by acceleration structures
+  bool wide = true;                           // packets of 16 are native
+  std::atomic<int64_t> bytes{0};              // held by acceleration structures
+  mutable std::atomic<uint64_t> wrongHits{0}; // on slivers, rejected
 };
 
 struct Body;
@@ -32,7 +33,8 @@ struct Part {
   std::vector<float> vertices; // as Embree reads them
   std::vector<uint32_t> indices;
   ArrayPtr sharedIndices;
-  std::shared_ptr<const Body> object; // an instance of it; record is the first of the place
+  std::atomic<uint64_t>* wrongHits = nullptr; // of the device, which outlives it; where hits are validated
+  std::shared_ptr<const Body> object;         // an instance of it; record is the first of the place
 };
 
 // An Embree scene with its parts by geometry id.

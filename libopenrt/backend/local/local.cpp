@@ -263,6 +263,7 @@ void LocalBackend::stats(RTstats& s) const {
     s.renderSeconds = finished_->seconds();
     s.shaderFaults = finished_->counters().faults.count(Fault::notFinite);
     finished_->describeError(s);
+    finished_->describeLedger(s);
   }
   if (snapshot_) s.transport = snapshot_->frame.transport;
   s.unreachedLights = unreachedLights_;
@@ -270,6 +271,7 @@ void LocalBackend::stats(RTstats& s) const {
   s.objectBuilds = builder_.objectBuilds, s.topLevelBuilds = builder_.topLevelBuilds;
   s.commitSeconds = commitSeconds_;
   s.buildSeconds = buildSeconds_;
+  s.wrongHits = device_->wrongHits;
   s.bvhBytes = uint64_t(std::max<int64_t>(device_->bytes, 0));
   s.threads = threads_;
   std::snprintf(s.isa, sizeof s.isa, "%s", device_->wide ? "avx512" : __builtin_cpu_supports("avx2") ? "avx2" : "sse");
