@@ -38,8 +38,8 @@ struct Options {
   bool info = false, listNodes = false, listViewpoints = false, listShaders = false, explain = false, json = false;
   bool watch = false;
   std::string write, stats;
-  std::string compare; // reference picture; empty: none
-  int audit = 0;       // pictures to check the error bars with; 0: none
+  std::string compare;  // reference picture; empty: none
+  int audit = 0;        // pictures to check the error bars with; 0: none
   std::string nodePath; // folders, separated by colons
   xvrml::LoadOptions load;
   xvrml::BrowserOptions running;
@@ -51,7 +51,8 @@ struct Options {
   bool isSequence() const { return frames || turntable > 0; }
 };
 
-// A row of the table. `argument` is empty for a switch, in brackets if it may be left out: then the value is "". `apply` throws UsageError.
+// A row of the table. `argument` is empty for a switch, in brackets if it may be left out: then the value is "".
+// UsageError.
 struct OptionInfo {
   const char* names; // "-o,--output"
   const char* argument;
