@@ -8,11 +8,23 @@
 
 #include <gtest/gtest.h>
 
+#include "../plugins/shaders/microfacet.h"
 #include "abi/chi_square.h"
 #include "abi/surface_at_one_hit.h"
 
 namespace openrt::test {
 namespace {
+
+// Lobes of the engine that no surface of the stock has.
+struct Glossy : rts::Surface<Glossy> {
+  rts::Param<float> alpha{"alpha", .3f, "width"}, eta{"eta", 0, "index outside over inside; 0: every facet reflects all"};
+  void surface(const rts::Hit&, rts::Closures& out) const { out.glossy({1, .5f, .25f}, alpha, eta); }
+};
+
+const RtsClass& classNamed(const std::string& name) {
+  static const RtsClass* const glossy = rts::detail::classOf<Glossy>("Glossy");
+  return name == "Glossy" ? *glossy : SurfaceAtOneHit::registry().find(name, "");
+}
 
 struct Case {
   const char* name;
@@ -56,6 +68,10 @@ const std::vector<Case> cases = {
     {"Checker", "Checker", {}},
     {"CheckerCoated", "Checker", {{"coating", {1.5f}}}},
     {"Glass", "Glass", {}, true},
+    {"EngineGlossy01", "Glossy", {{"alpha", {.01f}}}},
+    {"EngineGlossy05", "Glossy", {{"alpha", {.05f}}, {"eta", {1 / 1.5f}}}},
+    {"EngineGlossy30", "Glossy", {{"alpha", {.3f}}}},
+    {"EngineGlossy100", "Glossy", {{"alpha", {1}}, {"eta", {1.5f}}}},
     {"Vrml97", "VRML97", {}},
     {"Vrml97Shiny", "VRML97", {{"specularColor", {1, .5f, .2f}}, {"shininess", {.5f}}}},
     {"Vrml97Overfull", "VRML97", {{"diffuseColor", {1, 1, 1}}, {"specularColor", {5, 5, 5}}, {"shininess", {.05f}}}},
@@ -71,7 +87,7 @@ const rts::Vec3 places[] = {{.013f, .021f, .003f}, {.37f, 1.21f, .4f}, {-2.3f, .
 
 class ShaderPhysics : public testing::TestWithParam<Case> {
  protected:
-  SurfaceAtOneHit surface{GetParam().shader, GetParam().settings};
+  SurfaceAtOneHit surface{classNamed(GetParam().shader), GetParam().settings};
 };
 
 // All light that a white surrounding sends to the eye: of the lobes that know one direction their weights, of the others the
@@ -228,6 +244,58 @@ TEST_P(ShaderPhysics, EverythingIsFinite) {
             if (s.density > 0) { EXPECT_TRUE(finite(s.quotient)) << u << " " << v; }
           }
       }
+}
+
+// Light that crosses a rough boundary: f(a, b) / n_a^2 is the same both ways (E. Veach, "Robust Monte Carlo Methods for Light
+// Transport Simulation", 1997, 5.2), whether seen from outside or from inside.
+TEST(RoughBoundary, TheWayBackIsTheSameScaledByTheIndices) {
+  for (const float roughness : {.1f, .4f, 1.f}) {
+    SurfaceAtOneHit surface("RoughGlass", {{"roughness", {roughness}}});
+    Random random(11);
+    int compared = 0;
+    for (int k = 0; k < 3000; k++) {
+      const auto direction = [&] {
+        const float z = std::fmax(.05f, random()), phi = 2 * rts::pi * random(), s = std::sqrt(1 - z * z);
+        return rts::Vec3{s * std::cos(phi), s * std::sin(phi), z};
+      };
+      const rts::Vec3 out = direction(), in = direction(); // each on its own side
+      const auto mirrored = [](rts::Vec3 v) { return rts::Vec3{v.x, v.y, -v.z}; };
+      const float there = surface.lobes(out)[0].value(mirrored(in)).g / in.z;
+      const float back = surface.lobes(in, {}, true)[0].value(mirrored(out)).g / out.z;
+      if (there == 0 && back == 0) continue;
+      compared++;
+      const float f = there, g = back / (1.5f * 1.5f);
+      ASSERT_NEAR(f, g, 1e-5f * std::fmax(std::fmax(f, g), 1e-2f)) << roughness << " pair " << k;
+    }
+    EXPECT_GT(compared, 300) << roughness;
+  }
+}
+
+// The facets that are seen from a direction cover just what is seen of the surface: the weak white furnace of E. Heitz (JCGT
+// 3(2), 2014, eq. 53), with facets that reflect all, before any of their light is hidden: the integral of D G1 / (4 cos o) over
+// all mirror images, also those below the horizon.
+TEST(Facets, WeakWhiteFurnace) {
+  for (const float alpha : {.02f, .1f, .3f, .6f, 1.f})
+    for (const float angle : {0.f, 30.f, 60.f, 80.f, 89.f}) {
+      const microfacet::Ggx ggx{alpha};
+      const rts::Vec3 o = towards(angle);
+      double sum = 0;
+      const int across = 2000, around = 128;
+      for (int i = 0; i < across; i++) { // tangents of the facets' angles by their distribution u, crowded towards steep ones
+        const double w = 1 - (i + .5) / across, tangent = alpha * std::sqrt((1 - w * w) / (w * w));
+        const double c = 1 / std::sqrt(1 + tangent * tangent);
+        const double s = tangent * c;
+        double ring = 0;
+        for (int j = 0; j < around; j++) {
+          const double phi = 2 * M_PI * (j + .5) / around;
+          const rts::Vec3 h{float(s * std::cos(phi)), float(s * std::sin(phi)), float(c)};
+          const double seen = std::max(0.f, rts::dot(o, h));
+          ring += ggx.seen(o, h) * 4 * seen / (ggx.facets(h) * c); // density of the mirror images, over that of these points
+        }
+        sum += ring * 2 * w / around / across;
+      }
+      EXPECT_NEAR(sum, 1, 2e-3) << alpha << " at " << angle;
+    }
 }
 
 // ISO/IEC 14772-1's highlight is kept as it looks: with the light in the mirror direction both give OS, here times N.L.

@@ -52,7 +52,9 @@ struct LobeAtHit {
 
 class SurfaceAtOneHit {
  public:
-  SurfaceAtOneHit(const char* name, const std::vector<Setting>& settings) : class_(registry().find(name, "")), params_(class_) {
+  SurfaceAtOneHit(const char* name, const std::vector<Setting>& settings)
+      : SurfaceAtOneHit(registry().find(name, ""), settings) {}
+  SurfaceAtOneHit(const RtsClass& shaderClass, const std::vector<Setting>& settings) : class_(shaderClass), params_(class_) {
     for (const Setting& s : settings) {
       const RtsParam* p = nullptr;
       for (uint32_t i = 0; i < class_.paramCount; i++)

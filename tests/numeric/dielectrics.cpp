@@ -139,6 +139,19 @@ TEST_F(Dielectrics, D19EverythingIsReflectedOrGoesThrough) {
   }
 }
 
+// A white floor under a clear pane under a white sky is white: what shadow rays find through the pane and what paths find must
+// not both count.
+TEST_F(Dielectrics, G1LightThroughAPaneCountsOnce) {
+  environment(1);
+  slab(1, .5, glass(1.5));
+  Shader white("Diffuse");
+  at(0, square(white.set("reflectance", {1, 1, 1}), 1e3));
+  rtQuality(RT_TRANSPORT, RT_TRANSPORT_PATH);
+  rtQuality(RT_MAX_DEPTH, 200);
+  rtQuality(RT_SAMPLES_PER_PIXEL, 8192);
+  EXPECT_NEAR(look(0, 0, .25).g, 1, .02); // seen from below the pane, whose edges are ten units away
+}
+
 // Where the ray through a prism meets planes far below tells by how much it was turned.
 class Prism : public Dielectrics {
  protected:

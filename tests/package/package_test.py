@@ -30,7 +30,7 @@ def foreign_libraries(program, prefix):
 
 
 def follow_tutorial(document, folder, prefix):
-    """Does what docs/node-plugins.md says, in its order: files are written, commands and Python run, on the installed tree."""
+    """Does what a page of docs/ says, in its order: files are written, commands and Python run, on the installed tree."""
     folder.mkdir()
     libraries = next(prefix.rglob("libxvrml.so")).parent
     env = {"PREFIX": str(prefix), "PATH": f"{prefix}/bin:" + os.environ["PATH"], "PWD": str(folder)}
@@ -47,12 +47,15 @@ def follow_tutorial(document, folder, prefix):
         else:
             continue
         steps += 1
+    print(f"{document.name}: {steps} steps, as they must be")
+
+
+def check_rings(folder, prefix):
     if wrong := foreign_libraries(folder / "build/lib/xvrml/nodes/rings.so", prefix):
         sys.exit(f"the node plug-in does not use the installed libraries: {wrong}")
     pictures = [(folder / f"ring-{i:04}.png").read_bytes() for i in (0, 15, 30)]
     if len(set(pictures)) != 3:
         sys.exit("the ring of the tutorial does not grow")
-    print(f"tutorial: {steps} steps, as they must be")
 
 
 with tempfile.TemporaryDirectory() as scratch:
@@ -98,6 +101,7 @@ with tempfile.TemporaryDirectory() as scratch:
 
     # Node plug-ins
     follow_tutorial(source / "docs/node-plugins.md", scratch / "tutorial", prefix)
+    check_rings(scratch / "tutorial", prefix)
     example = scratch / "example"
     shutil.copytree(source / "examples/nodes", example)
     (example / "CMakeLists.txt").write_text("cmake_minimum_required(VERSION 3.25)\nproject(example LANGUAGES C CXX)\n"
@@ -105,6 +109,14 @@ with tempfile.TemporaryDirectory() as scratch:
     run(cmake, "-S", example, "-B", example / "build", "-G", "Ninja", f"-DCMAKE_PREFIX_PATH={prefix}")
     run(cmake, "--build", example / "build")
     run(prefix / "bin/vv", source / "examples/scenes/springs.wrl", "--check", "--node-path", example / "build/lib/xvrml/nodes")
+
+    # Shader plug-ins
+    follow_tutorial(source / "docs/shaders.md", scratch / "shaders", prefix)
+    if wrong := foreign_libraries(scratch / "shaders/build/follow", prefix):
+        sys.exit(f"the program of the tutorial does not use the installed libraries: {wrong}")
+    pictures = {name: (scratch / f"shaders/{name}.png").read_bytes() for name in ("polished", "velvet", "jelly", "crevices")}
+    if len(set(pictures.values())) != len(pictures):
+        sys.exit("the shaders of the tutorial look the same")
 
     # Programs
     (scratch / "box.wrl").write_text("#VRML V2.0 utf8\nShape { appearance Appearance { material Material { } } geometry Box { } }\n")
