@@ -26,7 +26,7 @@ uint32_t TileRenderer::weigh(const RtsBatch& batch, const RtsHits& hits, float* 
                              uint32_t* hitOf, uint32_t n, float* response[3]) {
   for (int k = 0; k < 3; k++) response[k] = arena_.takeZero<float>(padded(n));
   ArenaScope scope(arena_);
-  LobeAnswers answers(arena_, n);
+  LobeAnswers answers(arena_, n, &batch);
   for (uint32_t l = 0; l < batch.lobeCount; l++) {
     if (!chance[l]) continue;
     answers.evaluate(batch.lobes[l], hits, n, hitOf, rays.dir);

@@ -2,6 +2,7 @@
 #include "render/faults.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <string>
@@ -26,11 +27,12 @@ const char* textOf(Fault fault) {
   return "";
 }
 
-// x - x is 0 for finite x and NaN otherwise.
+// By the bits of the exponent, so that the loop runs over whole vectors.
 bool allFinite(const float* values, uint32_t n) {
-  float sum = 0;
-  for (uint32_t i = 0; i < n; i++) sum += values[i] - values[i];
-  return sum == 0;
+  constexpr uint32_t exponent = 0x7f800000;
+  uint32_t bad = 0;
+  for (uint32_t i = 0; i < n; i++) bad |= uint32_t((std::bit_cast<uint32_t>(values[i]) & exponent) == exponent);
+  return bad == 0;
 }
 
 uint32_t traitsAt(const RtsBatch& batch, uint32_t i) {

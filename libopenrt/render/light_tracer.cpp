@@ -207,7 +207,7 @@ void LightTracer::scatter(const Points& points, const uint32_t* order, const Rts
       sampleAt(states_[order[i]], Pair::first + Pair::perLevel * level_ + Use::direction + (l ? hash(l, 0x6c6f6265u) : 0), uv);
       square[0][i] = uv[0], square[1][i] = uv[1];
     }
-    auto* made = new (arena_.take<LobeSamples>(1)) LobeSamples(arena_, n);
+    auto* made = new (arena_.take<LobeSamples>(1)) LobeSamples(arena_, n, &batch);
     made->sample(batch.lobes[l], hits, n, all, square);
     samples[l] = made;
   }
@@ -318,7 +318,7 @@ void LightTracer::connect(const RtsBatch& batch, const uint32_t* hitNumbers, uin
   }
   float* sent[3];
   for (auto& a : sent) a = arena_.takeZero<float>(size);
-  LobeAnswers answers(arena_, n);
+  LobeAnswers answers(arena_, n, &batch);
   for (uint32_t l = 0; l < batch.lobeCount; l++) {
     const RtsLobe& lobe = batch.lobes[l];
     if (!scatteringOf(lobe)) continue;

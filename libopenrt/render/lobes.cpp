@@ -5,9 +5,12 @@
 #include "render/lobes.h"
 
 #include <cmath>
+#include <initializer_list>
+#include <optional>
 
 #include "render/batch.h"
 #include "render/scatter.h"
+#include "shading/running.h"
 
 namespace openrt {
 namespace {
@@ -253,29 +256,53 @@ bool transmitsAt(const RtsBatch& batch, uint32_t hit) {
   return false;
 }
 
-LobeAnswers::LobeAnswers(Arena& arena, uint32_t n) {
+namespace {
+
+// The class whose lobes a batch has; null: unknown.
+const RtsClass* classOf(const RtsBatch* batch) {
+  if (!batch || !batch->points) return nullptr;
+  return (*batch->scene->shaders)[batch->scene->records[batch->points->record[0]].shader].shaderClass;
+}
+
+// Calls a function of a plug-in's lobe under the name of its class.
+template <class F> void callCustom(const RtsBatch* batch, const F& f) {
+  std::optional<RunningShader> running;
+  if (const RtsClass* shaderClass = classOf(batch)) running.emplace(*shaderClass);
+  f();
+}
+
+// What a plug-in's lobe has answered, made harmless.
+void checkCustom(const RtsBatch* batch, std::initializer_list<float*> arrays, uint32_t n) {
+  uint64_t bad = 0;
+  for (float* a : arrays)
+    for (uint32_t i = 0; i < n; i++) bad += !std::isfinite(a[i]), a[i] = checked(a[i]);
+  const RtsClass* shaderClass = bad ? classOf(batch) : nullptr;
+  if (shaderClass) batch->counters->faults.add(*shaderClass, Fault::notFinite, bad);
+}
+
+} // namespace
+
+LobeAnswers::LobeAnswers(Arena& arena, uint32_t n, const RtsBatch* batch) : batch_(batch) {
   for (auto& a : value) a = arena.take<float>(padded(n));
   density = arena.take<float>(padded(n));
 }
 
 void LobeAnswers::evaluate(const RtsLobe& lobe, const RtsHits& hits, uint32_t n, const uint32_t* hit,
                            const float* const directions[3]) {
-  scatteringOf(lobe)->evaluate(&lobe, &hits, n, hit, directions, value, density);
-  if (lobe.kind != RTS_LOBE_CUSTOM) return;
-  for (float* a : {value[0], value[1], value[2], density})
-    for (uint32_t i = 0; i < n; i++) a[i] = checked(a[i]);
+  if (lobe.kind != RTS_LOBE_CUSTOM) return scatteringOf(lobe)->evaluate(&lobe, &hits, n, hit, directions, value, density);
+  callCustom(batch_, [&] { lobe.functions->evaluate(&lobe, &hits, n, hit, directions, value, density); });
+  checkCustom(batch_, {value[0], value[1], value[2], density}, n);
 }
 
-LobeSamples::LobeSamples(Arena& arena, uint32_t n) : LobeAnswers(arena, n) {
+LobeSamples::LobeSamples(Arena& arena, uint32_t n, const RtsBatch* batch) : LobeAnswers(arena, n, batch) {
   for (auto& a : direction) a = arena.take<float>(padded(n));
 }
 
 void LobeSamples::sample(const RtsLobe& lobe, const RtsHits& hits, uint32_t n, const uint32_t* hit,
                          const float* const square[2]) {
-  scatteringOf(lobe)->sample(&lobe, &hits, n, hit, square, direction, value, density);
-  if (lobe.kind != RTS_LOBE_CUSTOM) return;
-  for (float* a : {value[0], value[1], value[2], density})
-    for (uint32_t i = 0; i < n; i++) a[i] = checked(a[i]);
+  if (lobe.kind != RTS_LOBE_CUSTOM) return scatteringOf(lobe)->sample(&lobe, &hits, n, hit, square, direction, value, density);
+  callCustom(batch_, [&] { lobe.functions->sample(&lobe, &hits, n, hit, square, direction, value, density); });
+  checkCustom(batch_, {value[0], value[1], value[2], density}, n);
   for (uint32_t i = 0; i < n; i++) { // what is no direction leads nowhere
     const float d[3] = {direction[0][i], direction[1][i], direction[2][i]};
     if (!(std::fabs(dot3(d, d) - 1) < 1e-3f)) density[i] = 0;

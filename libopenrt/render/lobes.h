@@ -19,14 +19,18 @@ bool transmitsAt(const RtsBatch& batch, uint32_t hit);
 // A lobe's answers to n pairs of a hit and a direction, checked: what is not finite or negative is 0.
 struct LobeAnswers {
   float *value[3], *density;
-  LobeAnswers(Arena& arena, uint32_t n);
+  // batch: whose lobes; crashes and NaN in functions of a plug-in are then put down to its class
+  LobeAnswers(Arena& arena, uint32_t n, const RtsBatch* batch = nullptr);
   void evaluate(const RtsLobe& lobe, const RtsHits& hits, uint32_t n, const uint32_t* hit, const float* const direction[3]);
+
+ protected:
+  const RtsBatch* batch_;
 };
 
 // Directions that a lobe has chosen, with `value` over density in LobeAnswers::value. Density 0: none.
 struct LobeSamples : LobeAnswers {
   float* direction[3];
-  LobeSamples(Arena& arena, uint32_t n);
+  LobeSamples(Arena& arena, uint32_t n, const RtsBatch* batch = nullptr);
   void sample(const RtsLobe& lobe, const RtsHits& hits, uint32_t n, const uint32_t* hit, const float* const square[2]);
 };
 

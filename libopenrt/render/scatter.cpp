@@ -41,7 +41,7 @@ void TileRenderer::addLights(RtsBatch& batch, const RtsHits& hits, float* const 
   ArenaScope scope(arena_);
   const uint32_t* all = countTo(arena_, n);
   auto* wanted = arena_.take<uint8_t>(padded(n));
-  LobeAnswers answers(arena_, n);
+  LobeAnswers answers(arena_, n, &batch);
   float* response[3];
   for (auto& a : response) a = arena_.take<float>(n);
   for (uint32_t light = 0; light < lights; light++) {
@@ -178,7 +178,7 @@ void TileRenderer::draw(const Random& random, Draw what, uint32_t apart, float* 
 
 // A direction for every hit from a lobe that scatters.
 const LobeSamples* TileRenderer::sampleLobe(const RtsBatch& batch, uint32_t l, const RtsHits& hits, const Random& random) {
-  auto* samples = new (arena_.take<LobeSamples>(1)) LobeSamples(arena_, hits.count);
+  auto* samples = new (arena_.take<LobeSamples>(1)) LobeSamples(arena_, hits.count, &batch);
   ArenaScope scope(arena_);
   const uint32_t* all = countTo(arena_, hits.count);
   float* square[2];

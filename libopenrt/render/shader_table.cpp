@@ -144,7 +144,7 @@ bool ShaderTable::make(uint32_t number, const RtsClass& shaderClass, const Shade
     if (shaderClass.traits) slot.traits = shaderClass.traits(&host, slot.params);
     if (shaderClass.medium) setMedium(slot, host);
   }
-  if (shaderClass.surface && shaderClass.size <= offsetof(RtsClass, frequency)) slot.traits |= RTS_SPECULAR; // made for 1.1
+  if (shaderClass.surface && minorOf(shaderClass) < 2) slot.traits |= RTS_SPECULAR; // openrts.h, RTS_SPECULAR
   slots_[number] = slot;
   blocks_[number] = made;
   return true;

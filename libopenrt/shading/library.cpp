@@ -131,6 +131,7 @@ void ShaderLibrary::readClasses() {
   for (const RtsClass& c : checkPlugin(static_cast<const RtsPlugin*>(symbol), plugin_files::exportedBytes(symbol), path)) {
     auto loaded = std::make_unique<LoadedClass>();
     static_cast<RtsClass&>(*loaded) = c;
+    loaded->minor = static_cast<const RtsPlugin*>(symbol)->minor;
     loaded->label = std::string(c.name) + " of " + name;
     classes.push_back(std::move(loaded));
   }

@@ -12,6 +12,7 @@ namespace openrt {
 
 // A class as the host keeps it: every RtsClass that the registry hands out is one.
 struct LoadedClass : RtsClass {
+  uint16_t minor = RTS_ABI_MINOR;         // of the ABI that its library was made for
   std::string label;                      // "CLASS of LIBRARY"
   mutable std::atomic<bool> found{false}; // somebody asked for it
   // Tables of the host's where a library was loaded anew; empty: the plug-in's own.
@@ -21,6 +22,8 @@ struct LoadedClass : RtsClass {
 };
 
 inline const char* labelOf(const RtsClass& shaderClass) { return static_cast<const LoadedClass&>(shaderClass).label.c_str(); }
+
+inline uint16_t minorOf(const RtsClass& shaderClass) { return static_cast<const LoadedClass&>(shaderClass).minor; }
 
 // No lazy allocation of the thread's storage: a signal handler may come first.
 #if defined(__GNUC__) && !defined(_WIN32)

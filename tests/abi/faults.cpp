@@ -67,7 +67,8 @@ void nameTheShader(int number) {
   raise(number);
 }
 
-TEST_F(Faults, ACrashCanBeNamed) {
+// What a process says that renders with the shader, and how it ends.
+void crashWith(const char* className, int transport, const std::string& config, std::string& text, int& status) {
   int ends[2];
   ASSERT_EQ(pipe(ends), 0);
   const pid_t child = fork();
@@ -75,9 +76,10 @@ TEST_F(Faults, ACrashCanBeNamed) {
   if (child == 0) { // nothing of the test framework runs here
     dup2(ends[1], STDOUT_FILENO);
     signal(SIGSEGV, nameTheShader);
-    rtNewContext((config() + " shaderpath=\"" + folders() + "\"").c_str());
+    rtNewContext(config.c_str());
+    rtQuality(RT_TRANSPORT, transport);
     rtTranslated(0, 0, 10), rtOrtho(2), rtLoadIdentity();
-    rtBindShader(rtNewShader(rtNewShaderClass("Crash", "faulty")));
+    rtBindShader(rtNewShader(rtNewShaderClass(className, "faulty")));
     const RTid object = rtBeginObject(0);
     rtSphere(0.5f);
     rtEndObject();
@@ -87,14 +89,36 @@ TEST_F(Faults, ACrashCanBeNamed) {
     _exit(0);
   }
   close(ends[1]);
-  std::string text;
   char buffer[256];
   for (ssize_t n = 0; (n = ::read(ends[0], buffer, sizeof buffer)) > 0;) text.append(buffer, size_t(n));
   close(ends[0]);
-  int status = 0;
   ASSERT_EQ(waitpid(child, &status, 0), child);
-  EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGSEGV) << status;
-  EXPECT_EQ(text, "Crash of faulty");
+}
+
+TEST_F(Faults, ACrashCanBeNamed) {
+  const struct {
+    const char* name;
+    int transport;
+  } cases[] = {{"Crash", RT_TRANSPORT_DIRECT}, {"BadLobe", RT_TRANSPORT_PATH}};
+  for (const auto& each : cases) {
+    std::string text;
+    int status = 0;
+    crashWith(each.name, each.transport, config() + " shaderpath=\"" + folders() + "\"", text, status);
+    EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGSEGV) << each.name << " " << status;
+    EXPECT_EQ(text, std::string(each.name) + " of faulty");
+  }
+}
+
+TEST_F(Faults, NaNInALobeOfItsOwnIsCounted) {
+  square("BadLobe");
+  rtBindShader(0);
+  rtUseLight(rtNewShader(rtNewShaderClass("VRML97DirectionalLight", nullptr)));
+  rtQuality(RT_TRANSPORT, RT_TRANSPORT_DIRECT);
+  const std::vector<float> pixels = picture(2);
+  EXPECT_EQ(pixels[0], 0.0f);
+  EXPECT_NEAR(pixels[1], 0.5 * 0.25 * 3.14159265, 1e-6); // the light gives white paper a radiance of 1: an irradiance of pi
+  EXPECT_GT(stats().shaderFaults, 0u);
+  EXPECT_EQ(log.count("shader BadLobe of faulty"), 1u);
 }
 
 class Diagnosed : public Faults {

@@ -26,6 +26,27 @@ TEST_P(OlderMinors, DrawAsEver) {
   EXPECT_TRUE(log.lines.empty()) << log.lines.front();
 }
 
+TEST_F(SmallScene, AMirrorOfAbi11IsFollowed) {
+  shader("Mirror11", "mirror11");
+  const RTid object = rtBeginObject(0);
+  rtBegin(RT_QUADS);
+  squareVertices();
+  rtEnd();
+  rtEndObject();
+  rtInstantiateObject(object);
+  rtTranslated(0, 0, 20);
+  shader("Example", "minor_0"); // shines by itself, behind the camera
+  const RTid lamp = rtBeginObject(0);
+  rtBegin(RT_QUADS);
+  squareVertices();
+  rtEnd();
+  rtEndObject();
+  rtInstantiateObject(lamp);
+  rtLoadIdentity();
+  EXPECT_EQ(picture(1)[1], 0.5f);
+  EXPECT_EQ(stats().transport, RTenum(RT_TRANSPORT_WHITTED));
+}
+
 INSTANTIATE_TEST_SUITE_P(Abi, OlderMinors, testing::Values("older_class", "minor_0", "minor_1", "class_truncated"),
                          [](const auto& info) { return std::string(info.param); });
 

@@ -48,6 +48,26 @@ static void gloss(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, Rts
   for (uint32_t i = 0; i < hits->count; i++) lobe->weight[0][i] = 0.5f, lobe->parameter[0][i] = 0.3f;
 }
 
+/* A lobe of its own whose functions go wrong. */
+static void badEvaluate(const RtsLobe* lobe, const RtsHits* hits, uint32_t n, const uint32_t* hit,
+                        const float* const direction[3], float* const value[3], float* density) {
+  (void)lobe, (void)hits, (void)hit, (void)direction;
+  for (uint32_t i = 0; i < n; i++) value[0][i] = NAN, value[1][i] = value[2][i] = 0.25f, density[i] = 1;
+}
+static void badSample(const RtsLobe* lobe, const RtsHits* hits, uint32_t n, const uint32_t* hit, const float* const square[2],
+                      float* const direction[3], float* const quotient[3], float* density) {
+  volatile uintptr_t place = 16;
+  (void)lobe, (void)hits, (void)hit, (void)square, (void)direction, (void)quotient;
+  for (uint32_t i = 0; i < n; i++) density[i] = *(volatile float*)place;
+}
+static const RtsLobeFunctions badFunctions = {sizeof(RtsLobeFunctions), 0, badEvaluate, badSample};
+static void badLobe(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, RtsSurface* out) {
+  RtsLobe* const lobe = host->customLobe(batch, &badFunctions, 0);
+  (void)out;
+  for (uint32_t i = 0; i < hits->count; i++)
+    for (int k = 0; k < 3; k++) lobe->weight[k][i] = 0.5f;
+}
+
 #define SURFACE .size = sizeof(RtsClass), .kind = RTS_SURFACE
 static const RtsClass crashes = {SURFACE, .name = "Crash", .shade = crash};
 static const RtsClass nans = {SURFACE, .name = "Nan", .shade = notANumber};
@@ -55,5 +75,6 @@ static const RtsClass nanLobes = {SURFACE, .name = "NanLobe", .surface = nanLobe
 static const RtsClass lamps = {SURFACE, .name = "SilentLamp", .surface = emission};
 static const RtsClass veils = {SURFACE, .name = "SilentVeil", .surface = veil};
 static const RtsClass glosses = {SURFACE, .name = "SilentGloss", .surface = gloss};
-static const RtsClass* const classes[] = {&crashes, &nans, &nanLobes, &lamps, &veils, &glosses};
-RTS_EXPORT const RtsPlugin rtsPlugin = {RTS_MAGIC, RTS_ABI_MAJOR, RTS_ABI_MINOR, sizeof(RtsPlugin), 6, classes};
+static const RtsClass badLobes = {SURFACE, .name = "BadLobe", .surface = badLobe};
+static const RtsClass* const classes[] = {&crashes, &nans, &nanLobes, &lamps, &veils, &glosses, &badLobes};
+RTS_EXPORT const RtsPlugin rtsPlugin = {RTS_MAGIC, RTS_ABI_MAJOR, RTS_ABI_MINOR, sizeof(RtsPlugin), 7, classes};
