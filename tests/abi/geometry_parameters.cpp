@@ -209,6 +209,68 @@ TEST_F(GeometryParameters, LinesAndNestedAndMovedObjectsHaveThemToo) {
   EXPECT_LE(stats().objectBuilds, before.objectBuilds + 2); // it became dynamic; the parameters cost nothing more
 }
 
+TEST_F(GeometryParameters, EditsCostWhatTheyChange) {
+  const auto define = [&](RTid object, float red) {
+    rtBeginObject(object);
+    rtBegin(RT_QUADS);
+    rtParameter3f(color, red, 0, 0);
+    squareVertices();
+    rtEnd();
+    rtEndObject();
+  };
+  RTid objects[2];
+  rtGenObjects(2, objects);
+  for (int i = 0; i < 2; i++) {
+    rtObjectHint(objects[i], RT_DYNAMIC);
+    define(objects[i], 0.25f);
+    rtTranslated(0, 0, -1);
+    rtInstantiateObject(objects[i]);
+  }
+  EXPECT_EQ(picture(1)[0], 0.25f);
+  const RTstats first = stats();
+  rtParameter3f(color, 1, 1, 1); // the shader's own value: nothing is built, and the geometry keeps its own
+  EXPECT_EQ(picture(1)[0], 0.25f);
+  EXPECT_EQ(stats().objectBuilds, first.objectBuilds);
+  EXPECT_EQ(stats().topLevelBuilds, first.topLevelBuilds);
+  rtParameter1i(show, 1);
+  EXPECT_EQ(picture(1)[0], 0.125f);
+  EXPECT_EQ(stats().objectBuilds, first.objectBuilds);
+  rtParameter1i(show, 0);
+  define(objects[0], 0.75f); // other values: this object alone
+  EXPECT_EQ(picture(1)[0], 0.75f);
+  EXPECT_EQ(stats().objectBuilds, first.objectBuilds + 1);
+}
+
+TEST_F(GeometryParameters, StockClassesHaveThem) {
+  const RTid diffuse = shader("Diffuse", nullptr);
+  int count = 0, vertex = -1;
+  const RTid shaderClass = rtNewShaderClass("Diffuse", nullptr);
+  rtGetShaderClass(shaderClass, nullptr, &count);
+  for (int i = 0; i < count; i++) {
+    RTparameterInfo info{};
+    rtGetParameterInfo(shaderClass, i, &info);
+    if (info.frequency == RT_PER_VERTEX && info.type == RT_PARAM_COLOR) vertex = i;
+  }
+  ASSERT_GE(vertex, 0);
+  rtUseLight(rtNewShader(rtNewShaderClass("VRML97DirectionalLight", nullptr)));
+  for (const int transport : {RT_TRANSPORT_DIRECT, RT_TRANSPORT_PATH}) {
+    rtQuality(RT_TRANSPORT, transport);
+    rtBindShader(diffuse);
+    const RTid object = rtBeginObject(0);
+    rtBegin(RT_QUADS);
+    for (int i = 0; i < 4; i++) {
+      const float x = i == 0 || i == 3 ? -1.0f : 1.0f, y = i < 2 ? -1.0f : 1.0f;
+      rtParameter3f(vertex, x < 0 ? 0.0f : 0.5f, 0, 0);
+      rtVertex3f(x, y, float(transport) * 1e-3f);
+    }
+    rtEnd();
+    rtEndObject();
+    rtInstantiateObject(object);
+    const std::vector<float> pixels = picture(4);
+    for (int x = 0; x < 4; x++) EXPECT_NEAR(pixels[size_t(4) * (4 + x)], 0.5 * (x + 0.5) / 4, 1e-5) << transport << " " << x;
+  }
+}
+
 TEST_F(GeometryParameters, ARecordingReplaysToTheSameBytes) {
   rtDeleteContext(context);
   const std::string path = std::string(::testing::TempDir()) + "openrt_parameters_" + std::to_string(::getpid());
