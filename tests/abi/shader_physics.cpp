@@ -246,6 +246,22 @@ TEST_P(ShaderPhysics, EverythingIsFinite) {
       }
 }
 
+// Between polished and rough, where densities are of the order of 1e7.
+TEST(Facets, NearlyPolishedIsFinite) {
+  for (const char* shader : {"Metal", "Plastic", "Reflector", "RoughGlass"})
+    for (const float roughness : {0.f, 1e-30f, 1e-4f, 1.01e-4f, 1e-3f}) {
+      SurfaceAtOneHit surface(shader, {{"roughness", {roughness}}});
+      for (const float angle : {0.f, 45.f, 89.99f, 90.f}) {
+        const rts::Color all = furnace(surface.lobes(towards(angle)), 16);
+        EXPECT_TRUE(all.g >= 0 && all.g <= 1 + 1e-3f) << shader << " " << roughness << " at " << angle << ": " << all.g;
+      }
+      // As good as polished: what a polished one reflects.
+      SurfaceAtOneHit polished(shader, {{"roughness", {0}}});
+      const float smooth = furnace(polished.lobes(towards(45)), 16).g, nearly = furnace(surface.lobes(towards(45)), 16).g;
+      EXPECT_NEAR(nearly, smooth, 6e-3f) << shader << " " << roughness;
+    }
+}
+
 // Light that crosses a rough boundary: f(a, b) / n_a^2 is the same both ways (E. Veach, "Robust Monte Carlo Methods for Light
 // Transport Simulation", 1997, 5.2), whether seen from outside or from inside.
 TEST(RoughBoundary, TheWayBackIsTheSameScaledByTheIndices) {
