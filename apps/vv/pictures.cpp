@@ -196,6 +196,11 @@ class Pictures {
       say(fmt::format("vv: {}{}{} triangles, mapped in {}, rendered in {}, written in {}", job.name.text(),
                       job.name.text().empty() ? "" : ": ", result.stats.triangles, duration(result.mapSeconds),
                       duration(result.renderSeconds), duration(writeSeconds)));
+    const RTstats& s = result.stats;
+    if (options_.render.error > 0 && !result.interrupted && s.errorPixels > 0 && s.errorHalfWidth > 1.1 * options_.render.error)
+      sayWarning(fmt::format("{}{}the error is {:.2g} %, not {:.2g} %: {} samples a pixel were not enough; --spp allows more",
+                             job.name.text(), job.name.text().empty() ? "" : ": ", 100 * s.errorHalfWidth,
+                             100 * options_.render.error, options_.render.samples));
     if (options_.stats.empty()) return;
     if (options_.isSequence())
       frames_.add(job.name, moment.time, result, writeSeconds);
