@@ -44,24 +44,55 @@ TEST_F(StockShaders, G1PhongReflectsBothOfItsParts) {
   expectGrey(furnace(s.set("diffuseColor", {.8, .8, .8}).set("specularColor", {.8, .8, .8})), 1, 2e-3); // scaled
 }
 
-// One reflection at GGX facets, seen along the normal: 2 pi times the integral of F D G / 4 sin, Smith's shadowing of light
-// alone.
+// One reflection at GGX facets of a metal, seen along the normal: F D G / 4, with Smith's shadowing of the light alone.
+double roughMetal(double alpha, double n, double k, double angle) {
+  const double c = std::cos(angle / 2), s2 = 1 - c * c;
+  const double distribution = alpha * alpha / (pi * std::pow(s2 + alpha * alpha * c * c, 2));
+  const double shadowing = 2 / (1 + std::sqrt(1 + alpha * alpha * std::pow(std::tan(angle), 2)));
+  const std::complex<double> index(n, k), inside = std::sqrt(index * index - s2);
+  const double rs = std::norm((c - inside) / (c + inside));
+  const double rp = std::norm((index * index * c - inside) / (index * index * c + inside));
+  return (rs + rp) / 2 * distribution * shadowing / 4;
+}
+
 TEST_F(StockShaders, G1RoughMetalReflectsWhatItsFacetsDo) {
   const double n = .96, k = 6.69;
   for (const double alpha : {.1, .5, 1.}) {
     double sum = 0;
     const int steps = 20000;
     for (int j = 0; j < steps; j++) {
-      const double t = (j + .5) * pi / 2 / steps, half = t / 2, c = std::cos(half), s2 = 1 - c * c;
-      const double distribution = alpha * alpha / (pi * std::pow(s2 + alpha * alpha * c * c, 2));
-      const double shadowing = 2 / (1 + std::sqrt(1 + alpha * alpha * std::pow(std::tan(t), 2)));
-      const std::complex<double> index(n, k), inside = std::sqrt(index * index - s2);
-      const double rs = std::norm((c - inside) / (c + inside));
-      const double rp = std::norm((index * index * c - inside) / (index * index * c + inside));
-      sum += (rs + rp) / 2 * distribution * shadowing / 4 * std::sin(t) * pi / 2 / steps;
+      const double t = (j + .5) * pi / 2 / steps;
+      sum += roughMetal(alpha, n, k, t) * std::sin(t) * pi / 2 / steps;
     }
     const Shader metal = Shader("Metal").set("n", {n, n, n}).set("k", {k, k, k}).set("roughness", {alpha});
     expectGrey(furnace(metal), 2 * pi * sum, 2e-3);
+  }
+}
+
+// Places on the lamp and directions from the facets are weighed against each other: their sum is the integral over the lamp.
+TEST_F(StockShaders, RoughMetalUnderARectangularLamp) {
+  const double n = .96, k = 6.69;
+  for (const double alpha : {.1, .3, .8}) {
+    const RTid plane = place(square(Shader("Metal").set("n", {n, n, n}).set("k", {k, k, k}).set("roughness", {alpha}), 100));
+    rtPushMatrix();
+    rtTranslated(.5, 0, 1);
+    rtRotated(180, 1, 0, 0);
+    const RTid lamp = place(square(Shader("Diffuse").set("reflectance", {0, 0, 0}).set("emission", {1, 1, 1}), .3));
+    rtPopMatrix();
+    double expected = 0;
+    const int steps = 400;
+    for (int i = 0; i < steps; i++)
+      for (int j = 0; j < steps; j++) {
+        const double x = .2 + .6 * (i + .5) / steps, y = -.3 + .6 * (j + .5) / steps, r2 = x * x + y * y + 1;
+        const double cosine = 1 / std::sqrt(r2); // at the lamp
+        expected += roughMetal(alpha, n, k, std::acos(cosine)) * cosine / r2 * .36 / steps / steps;
+      }
+    rtQuality(RT_TRANSPORT, RT_TRANSPORT_PATH);
+    rtQuality(RT_MAX_DEPTH, 1);
+    rtQuality(RT_SAMPLES_PER_PIXEL, 16384);
+    EXPECT_NEAR(look(0, 0, .001).g, expected, 1e-2 * expected) << alpha; // three standard errors of the narrowest
+    rtDeleteInstance(plane);
+    rtDeleteInstance(lamp);
   }
 }
 
