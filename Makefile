@@ -12,7 +12,7 @@ R = build/release
 SOURCES = $(shell git ls-files '*.cpp' '*.h' '*.hpp' '*.c')
 export CTEST_OUTPUT_ON_FAILURE = 1
 
-.PHONY: build demo test install bench bench-render audit corpus fuzz asan tsan coverage format format-check tidy packages clean help
+.PHONY: build demo test install bench bench-render audit accuracy corpus fuzz asan tsan coverage format format-check tidy packages clean help
 
 help:
 	@sed -n 's/^## //p' Makefile
@@ -56,6 +56,11 @@ bench-render:
 audit:
 	@$(CONFIGURE) release && cmake --build $(R) -j $(JOBS) --target audit
 	@$(R)/bin/audit $(AUDIT_SEEDS)
+
+## make accuracy      tables of docs/accuracy.md: the numeric tests and the audit
+accuracy:
+	@$(CONFIGURE) release && cmake --build $(R) -j $(JOBS) --target audit numeric
+	@$(PYTHON) tools/accuracy.py $(R)/bin
 
 ## make corpus        table and contact sheets of a folder of VRML files (CORPUS=...) into build/corpus
 corpus: build

@@ -51,7 +51,7 @@ struct Options {
   bool isSequence() const { return frames || turntable > 0; }
 };
 
-// A row of the table. `argument` is empty for a switch, in brackets if it may be left out: then the value is "".
+// A row of the table. `argument` is empty for a switch, in brackets if it may be left out: then the value is "". `apply` throws
 // UsageError.
 struct OptionInfo {
   const char* names; // "-o,--output"

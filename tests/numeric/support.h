@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include "numeric/catalogue.h"
 #include "openrt/openrt.h"
 
 namespace numeric {
@@ -98,6 +99,8 @@ class Scene : public testing::Test {
     rtLoadIdentity();
   }
   void TearDown() override {
+    const RTstats last = stats(); // of the last frame
+    noteRays(last.cameraRays + last.shadowRays + last.secondaryRays);
     const RTenum error = rtGetError();
     EXPECT_EQ(error, RTenum(RT_NO_ERROR)) << rtGetErrorMessage();
     rtDeleteContext(context_);

@@ -1,0 +1,89 @@
+// catalogue.cpp: see catalogue.h. A listener of the test program; tools/accuracy.py makes the tables of docs/accuracy.md of its
+// lines, which begin with "accuracy" and have their parts between tabs.
+#include "numeric/catalogue.h"
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <string>
+
+namespace numeric {
+namespace {
+
+struct Current {
+  double got = NAN, expected = NAN, tolerance = NAN, ratio = -1;
+  uint64_t comparisons = 0, rays = 0;
+  std::chrono::steady_clock::time_point began;
+};
+Current current;
+
+// Ids of tests that do not begin with theirs. accuracy.md of the design, part A; V: the lighting of VRML97.
+const std::map<std::string, const char*> ids = {
+    {"Watertight.NoRandomRayLeavesAClosedBall", "N3"},
+    {"Watertight.FewRaysAimedAtVerticesLeave", "N4"},
+    {"Rays.HostileRaysHitNothingAndAreCounted", "N8"},
+    {"Rays.MatricesThatAreNotFiniteAreRefused", "N8"},
+    {"Rays.SingularInstancesDrawNothing", "N12"},
+    {"Rays.SingularMatricesInsideObjectsDrawNothing", "N12"},
+    {"Rays.FarAwayThingsNeitherShowNorHarm", "N10"},
+    {"Rays.OneThingFarAwayLeavesTheOthersAlone", "N10"},
+    {"Rays.DegenerateTrianglesAreDropped", "N7"},
+    {"Rays.CamerasInOddPlacesMakePictures", "N21"},
+    {"Placement.AThousandNestedTurns", "N12"},
+    {"Placement.NormalsUnderNestedScalesAndMirrors", "N12"},
+    {"Invariance.TurnedAndMirrored", "G10"},
+    {"Lobes.AStackOfPanesHasItsClosedForm", "D15"},
+    {"Lobes.GlassIsInvisibleInAFurnace", "G1"},
+    {"Lobes.G2AndG4AClosedFurnaceByPathTracing", "G2, G4"},
+    {"Lobes.MetalReflectsByItsComplexIndex", "A1 conductors"},
+    {"Lamps.FormFactorOfParallelSquares", "A1 form factors"},
+    {"Lamps.FormFactorOfSquaresWithACommonEdge", "A1 form factors"},
+    {"Lamps.FormFactorOfDiscs", "A1 form factors"},
+    {"ErrorBars.OneOrTwoThreadsGiveTheSameBytes", "N22"},
+    {"LightTracing.ThePictureDoesNotDependOnThreads", "N22"},
+    {"ErrorBars.StoppingDoesNotBiasWhatIsRare", "A4"},
+    {"ErrorBars.ATargetIsReachedWithoutBias", "A4"},
+};
+
+// "Lobes.D1ASlab..." has D1; of "Offsets/Watertight.Name/0" Watertight.Name counts.
+std::string idOf(const testing::TestInfo& test) {
+  std::string suite = test.test_suite_name(), name = test.name();
+  if (const size_t slash = suite.rfind('/'); slash != suite.npos) suite.erase(0, slash + 1);
+  name = name.substr(0, name.find('/'));
+  if (const auto known = ids.find(suite + "." + name); known != ids.end()) return known->second;
+  size_t end = 1;
+  while (end < name.size() && name[end] >= '0' && name[end] <= '9') end++;
+  const bool letter = std::string("RGDNV").find(name[0]) != std::string::npos;
+  return letter && end > 1 ? name.substr(0, end) : "";
+}
+
+class Lines : public testing::EmptyTestEventListener {
+  void OnTestStart(const testing::TestInfo&) override { current = {.began = std::chrono::steady_clock::now()}; }
+  void OnTestEnd(const testing::TestInfo& test) override {
+    const std::string id = idOf(test);
+    if (id.empty()) return;
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - current.began).count();
+    std::printf("accuracy\t%s\t%s.%s\t%.9g\t%.9g\t%.3g\t%llu\t%s\t%.3f\t%llu\n", id.c_str(), test.test_suite_name(), test.name(),
+                current.expected, current.got, current.tolerance, static_cast<unsigned long long>(current.comparisons),
+                test.result()->Passed() ? "pass" : "FAIL", seconds, static_cast<unsigned long long>(current.rays));
+  }
+};
+
+const bool listening = [] {
+  testing::UnitTest::GetInstance()->listeners().Append(new Lines);
+  return true;
+}();
+
+} // namespace
+
+void noteComparison(double got, double expected, double tolerance) {
+  const double off = std::fabs(got - expected), ratio = tolerance > 0 ? off / tolerance : off > 0 ? INFINITY : 0;
+  current.comparisons++;
+  if (ratio <= current.ratio) return;
+  current.got = got, current.expected = expected, current.tolerance = tolerance, current.ratio = ratio;
+}
+
+void noteRays(uint64_t rays) { current.rays += rays; }
+
+} // namespace numeric

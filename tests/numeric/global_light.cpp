@@ -1,0 +1,98 @@
+// global_light.cpp: light between surfaces against closed forms: G5, G6, G7 of the accuracy catalogue.
+#include "numeric/support.h"
+
+namespace numeric {
+namespace {
+
+class GlobalLight : public Scene {
+ protected:
+  // The six faces of a cube of edge 1 about the origin, facing inwards; the first, at -z, has a shader of its own.
+  static void cube(RTid first, RTid others) {
+    for (int i = 0; i < 6; i++) {
+      rtPushMatrix();
+      turn(i);
+      rtTranslated(0, 0, -.5);
+      place(square(i == 0 ? first : others, .5));
+      rtPopMatrix();
+    }
+  }
+  static void turn(int face) {
+    if (face < 4)
+      rtRotated(90 * face, 1, 0, 0);
+    else
+      rtRotated(face == 4 ? 90 : -90, 0, 1, 0);
+  }
+  static std::vector<float> picture(int edge) {
+    rtFrameBuffer(edge, edge, RT_RGBA);
+    rtRender();
+    std::vector<float> rgba(size_t(4 * edge * edge));
+    rtReadPixels(RT_RGBA, rgba.data(), rgba.size());
+    return rgba;
+  }
+  static double mean(const std::vector<float>& rgba) {
+    double sum = 0;
+    for (size_t i = 0; i < rgba.size(); i += 4) sum += double(rgba[i]);
+    return sum / (double(rgba.size()) / 4);
+  }
+};
+
+TEST_F(GlobalLight, G5RouletteDoesNotChangeTheMean) { // Le / (1 - rho), of which roulette sees all but the first terms
+  const Shader wall = Shader("Diffuse").set("emission", {.05, .05, .05}).set("reflectance", {.95, .95, .95});
+  cube(wall, wall);
+  rtPushMatrix();
+  rtPerspective(90);
+  rtPopMatrix();
+  rtQuality(RT_TRANSPORT, RT_TRANSPORT_PATH);
+  rtQuality(RT_MAX_DEPTH, 10000);
+  rtQuality(RT_SAMPLES_PER_PIXEL, 128);
+  double sum = 0, square = 0;
+  constexpr int seeds = 5;
+  for (int seed = 1; seed <= seeds; seed++) {
+    rtQuality(RT_SEED, seed);
+    const double m = mean(picture(8));
+    sum += m, square += m * m;
+  }
+  const double m = sum / seeds, error = std::sqrt(std::max(0.0, square / seeds - m * m) / (seeds - 1));
+  EXPECT_NEAR(m, 1, 4 * error);
+  EXPECT_LT(error, .01);
+}
+
+TEST_F(GlobalLight, G6RadiosityOfACube) { // the sum is exact: what is sent out is what is taken up
+  cube(Shader("Diffuse").set("emission", {1, 1, 1}).set("reflectance", {.5, .5, .5}),
+       Shader("Diffuse").set("reflectance", {.5, .5, .5}));
+  rtQuality(RT_TRANSPORT, RT_TRANSPORT_PATH);
+  rtQuality(RT_SAMPLES_PER_PIXEL, 256);
+  double sum = 0, face[6];
+  for (int i = 0; i < 6; i++) {
+    rtPushMatrix();
+    turn(i);
+    rtTranslated(0, 0, .499);
+    rtOrtho(1);
+    rtPopMatrix();
+    sum += face[i] = mean(picture(8));
+  }
+  EXPECT_NEAR(sum, 2, 4e-3);
+  // A solve with 16x16 patches a face, towards many; with one radiosity for each face: 1.0909, .1817, .1818.
+  EXPECT_NEAR(face[0], 1.1055, .01 * 1.1055);
+  EXPECT_NEAR(face[2], .1700, .02 * .1700);
+  for (const int side : {1, 3, 4, 5}) EXPECT_NEAR(face[side], .1813, .01 * .1813);
+}
+
+TEST_F(GlobalLight, G7ADiffuseSphereWithTheLightAtTheEye) {
+  const RTid ball = rtBeginObject(0);
+  rtBindShader(Shader("Diffuse").set("reflectance", {1, 1, 1}));
+  rtSphere(1);
+  rtEndObject();
+  rtBindShader(0);
+  place(ball);
+  use(tilted(0));
+  rtPushMatrix();
+  rtTranslated(0, 0, 20);
+  rtOrtho(2);
+  rtPopMatrix();
+  rtQuality(RT_SAMPLES_PER_PIXEL, 64);
+  EXPECT_NEAR(mean(picture(32)) / (pi / 4), 2. / 3, 1e-3 * 2 / 3); // of the disc
+}
+
+} // namespace
+} // namespace numeric
