@@ -94,7 +94,14 @@ int Context::reloadShaders(const char* function) {
   const int reloaded = registry_->reload(problems);
   if (reloaded > 0)
     scene.shadersReloaded([&](const std::string& name, const std::string& library) { return &registry_->find(name, library); });
-  parameterArrays.clear(); // they name the parameters of the former tables
+  std::erase_if(parameterArrays, [&](ParameterArray& array) { // where the parameter may still have values of geometry's own
+    const RtsClass& table = *scene.shaderClass(array.shaderClass).table;
+    OwnParameter& own = array.from.parameter;
+    array.from.declared = &table.params[own.index];
+    const uint8_t frequency = table.frequency ? table.frequency[own.index] : uint8_t(RTS_PER_SHADER);
+    own.perVertex = frequency == RTS_PER_VERTEX;
+    return frequency == RTS_PER_SHADER;
+  });
   for (const std::string& problem : problems) errors.record(RT_PLUGIN_ERROR, function, problem.c_str());
   return reloaded;
 }

@@ -195,8 +195,8 @@ void SceneState::setParameter(RTid id, edit::ParameterT parameter) {
   ShaderState& state = shader(id);
   shaders.touch(id, state);
   parameter.shader = id;
-  const RtsClass& table = classOf(state);
-  if (table.frequency && table.frequency[parameter.index] != RTS_PER_SHADER) state.values[parameter.index] = parameter.floats;
+  constexpr size_t largestType = 16; // a matrix
+  if (!parameter.floats.empty() && parameter.floats.size() <= largestType) state.values[parameter.index] = parameter.floats;
   const uint32_t index = parameter.index;
   state.parameters.insert_or_assign(index, std::move(parameter));
 }

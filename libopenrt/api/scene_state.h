@@ -58,7 +58,7 @@ struct ShaderClassState {
 struct ShaderState {
   RTid shaderClass = 0;
   std::map<uint32_t, edit::ParameterT> parameters; // set since the last commit, by index
-  std::map<uint32_t, std::vector<float>> values;   // ever set, of parameters that geometry may have values of its own for
+  std::map<uint32_t, std::vector<float>> values;   // ever set, of numbers: geometry may have values of its own
   bool dirty = false, committed = false;
 };
 

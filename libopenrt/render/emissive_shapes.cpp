@@ -94,7 +94,7 @@ void askTriangles(const RenderScene& scene, uint32_t record, std::span<const Emi
   const Record& r = scene.records[record];
   static constexpr float at[4][2] = {{1.0f / 3, 1.0f / 3}, {1.0f / 6, 1.0f / 6}, {2.0f / 3, 1.0f / 6}, {1.0f / 6, 2.0f / 3}};
   const bool mirrored = mirrors(r);
-  const uint32_t places = r.texCoords || r.colors ? 4 : 1;
+  const uint32_t places = r.texCoords || r.colors || r.parameterCount ? 4 : 1;
   ArenaScope scope(arena);
   Looks looks(arena, uint32_t(shapes.size()) * places);
   for (const EmissiveShapes::Shape& s : shapes) {

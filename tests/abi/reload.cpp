@@ -145,6 +145,20 @@ TEST_F(Reload, AnotherContextHasTheFileThatIsThere) {
   EXPECT_EQ(rtReloadShaders(), 1);
 }
 
+TEST_F(Reload, PointersGoOnAsTheClassDeclaresThem) {
+  const float points[4][3] = {{-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1}},
+              blue[4][3] = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
+  rtVertexPointer(3, RT_FLOAT, 0, points);
+  rtParameterPointer(color, 0, blue[0]);
+  install(2);
+  EXPECT_EQ(rtReloadShaders(), 1);
+  const RTid object = rtBeginObject(0);
+  rtDrawArrays(RT_QUADS, 0, 4);
+  rtEndObject();
+  rtInstantiateObject(object);
+  EXPECT_NEAR(picture(1)[2], 2.5f, 1e-6);
+}
+
 TEST_F(Reload, NotWithinADefinition) {
   rtBeginObject(0);
   EXPECT_EQ(rtReloadShaders(), 0);
