@@ -61,6 +61,8 @@ struct Renderer::Impl {
   double meshSeconds = 0;
   bool pluginMissing = false, memoryExhausted = false;
   RTid environment = 0;
+  std::mutex heardMutex;
+  std::vector<std::string> heard;
 
   // Between the threads. `task` is set by the caller and cleared by the render thread when it is done.
   std::mutex mutex;
@@ -83,6 +85,22 @@ struct Renderer::Impl {
     auto& impl = *static_cast<Impl*>(user);
     impl.pluginMissing |= error == RT_PLUGIN_ERROR;
     impl.memoryExhausted |= error == RT_OUT_OF_MEMORY;
+  }
+
+  // What the engine says: shaders that cannot be rendered, answers that were not finite. Called on render threads too.
+  static void listen(int level, const char* text, void* user) {
+    auto& impl = *static_cast<Impl*>(user);
+    constexpr size_t most = 100;
+    const std::lock_guard lock(impl.heardMutex);
+    if (level >= 2 && impl.heard.size() < most) impl.heard.emplace_back(text);
+  }
+  void passOn() {
+    std::vector<std::string> news;
+    {
+      const std::lock_guard lock(heardMutex);
+      news.swap(heard);
+    }
+    for (const std::string& text : news) world->diagnostics.warn({}, text);
   }
 
   void loop() {
@@ -140,6 +158,7 @@ struct Renderer::Impl {
       context = made;
     }
     rtErrorCallback(note, this);
+    rtLogCallback(listen, this);
     makeMapper();
   }
 
@@ -262,6 +281,7 @@ struct Renderer::Impl {
     rtRender();
     throwOnError("rendering");
     result.renderSeconds = secondsSince(start);
+    passOn();
     result.interrupted = cancelled;
     readChannels(result.picture);
     result.map = mapper->stats();

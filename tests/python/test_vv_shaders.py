@@ -165,3 +165,11 @@ def test_transport_in_the_statistics(wall, name):
 def test_a_clamp_is_part_of_the_claim(wall):
     done = wall("wall.wrl", "-o", "x.pfm", "--stats", "-", "--shader", "*=Diffuse:emission=12.5", "--clamp", "2", *SMALL)
     assert "cut at 2" in json.loads(done.text)["transport"]["claim"]
+
+
+def test_what_the_engine_says_is_heard(vv):
+    vv.write("lamp.wrl", HEADER + "Viewpoint { } Shape { geometry Sphere { } }\nORTLight { shader ORTShader { name \"Luminaire\" file "
+             "\"luminaire\" options \"string profile 'no profile'\" } }")
+    done = vv("lamp.wrl", "-o", "x.png", *SMALL)
+    assert done.returncode == 0 and "Luminaire" in done.talk and "warning" in done.talk
+    assert vv("lamp.wrl", "-o", "y.png", "--strict", *SMALL).returncode == 4
