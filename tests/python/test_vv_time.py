@@ -252,7 +252,9 @@ def test_explain_tells_objects_and_reasons(moving):
     assert told["totals"]["objects"] == len(told["objects"]) > 0
     assert all(o["reason"] and o["name"] for o in told["objects"])
     assert sum(o["triangles"] for o in told["objects"]) == told["totals"]["triangles"] >= 12
-    table = moving("moving.wrl", "--explain").text.split("\n")
+    lines = moving("moving.wrl", "--explain").text.split("\n")
+    assert lines[0].startswith("transport direct: ")
+    table = lines[2:]
     assert len(table) == len(told["objects"]) + 3 and told["objects"][0]["reason"] in table[1]
 
 
