@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Speed against error: our transports, and Mitsuba 3 where it is installed, on four worlds. `make bench-render`.
 
-bench_render.py --out FOLDER [--full] [--docs] [--vv PROGRAM] [--mitsuba PYTHON] [--scenes a,b]
+bench_render.py --out FOLDER [--full] [--docs] [--again] [--vv PROGRAM] [--mitsuba PYTHON] [--scenes a,b]
 
 FOLDER gets render.csv (a row for each renderer, world and number of samples), a plot each (SVG) and render.md. --docs puts the last
 two into docs/. The reference of a world is a long render made in the run by the transport named below, in two halves: their
@@ -24,7 +24,7 @@ from export_mitsuba import ROOT, read_pfm  # noqa: E402
 from plot_svg import log_plot  # noqa: E402
 
 SIZE = (160, 120)
-SAMPLES = (1, 4, 16, 64, 256, 1024)
+SAMPLES = (2, 4, 16, 64, 256, 1024)  # a single sample lies in the middle of its pixel
 T95 = {1: 12.71, 2: 4.30, 3: 3.18, 4: 2.78, 5: 2.57, 6: 2.45, 7: 2.36}  # Student's t, 95 %
 
 # World: title, our transports (the first makes the reference), whether every surface has an exact counterpart in Mitsuba
@@ -234,6 +234,13 @@ def table(rows):
     return text
 
 
+def plotted(row, what):
+    if what != "bias":
+        return row["seconds"], row[what]
+    least, size = 1e-5, abs(row["bias"])
+    return row["seconds"], max(size, least), max(size - row["bias_interval"], least), max(size + row["bias_interval"], least)
+
+
 def report(rows, options, mitsubas):
     out = pathlib.Path(options.out)
     with open(out / "render.csv", "w", newline="") as file:
@@ -242,13 +249,14 @@ def report(rows, options, mitsubas):
         writer.writerows(rows)
     plots = []
     for scene in dict.fromkeys(r["scene"] for r in rows):
-        lines = {}
-        for row in rows:
-            if row["scene"] == scene and not math.isnan(row["rmse"]):
-                lines.setdefault(row["renderer"], []).append((row["seconds"], row["rmse"]))
-        name = f"bench_render_{scene}.svg"
-        (out / name).write_text(log_plot(SCENES[scene][0], "seconds", "RMSE", lines))
-        plots.append(name)
+        for what, title in (("rmse", "RMSE"), ("relmse", "relMSE"), ("bias", "bias of the mean, and its 95 % interval")):
+            lines = {}
+            for row in rows:
+                if row["scene"] == scene and not math.isnan(row[what] + row["bias_interval"]):
+                    lines.setdefault(row["renderer"], []).append(plotted(row, what))
+            name = f"bench_render_{scene}_{what}.svg"
+            (out / name).write_text(log_plot(SCENES[scene][0], "seconds", title, lines))
+            plots.append(name)
     text = table(rows)
     if not mitsubas:
         text += "\nMitsuba 3 was not there.\n"
@@ -257,7 +265,8 @@ def report(rows, options, mitsubas):
         page = ROOT / "docs/benchmarks.md"
         begin, end = "<!-- bench-render -->\n", "<!-- /bench-render -->\n"
         before, rest = page.read_text().split(begin)
-        images = "".join(f"![{SCENES[p[13:-4]][0]}: error over seconds](images/{p})\n" for p in plots)
+        plots = [p for p in plots if not p.endswith("relmse.svg")]  # says what the table says
+        images = "".join(f"![{p[13:-4].replace('_', ': ')} over seconds](images/{p})\n" for p in plots)
         page.write_text(before + begin + text + "\n" + images + end + rest.split(end)[1])
         for plot in plots:
             (ROOT / "docs/images" / plot).write_text((out / plot).read_text())
@@ -271,12 +280,18 @@ def main():
     parser.add_argument("--out", required=True)
     parser.add_argument("--full", action="store_true", help="long references and pictures, more seeds")
     parser.add_argument("--docs", action="store_true", help="also into docs/benchmarks.md")
+    parser.add_argument("--again", action="store_true", help="measure nothing: plots and page from FOLDER/render.csv")
     parser.add_argument("--vv", default=export_mitsuba.BIN / "vv")
     parser.add_argument("--replay", default=export_mitsuba.BIN / "openrt-replay")
     parser.add_argument("--mitsuba", default=os.environ.get("MITSUBA_PYTHON", sys.executable), help="a Python that has Mitsuba 3")
     parser.add_argument("--scenes", default=",".join(SCENES))
     options = parser.parse_args()
     pathlib.Path(options.out).mkdir(parents=True, exist_ok=True)
+    if options.again:
+        with open(pathlib.Path(options.out) / "render.csv", newline="") as file:
+            rows = [{k: v if k in ("scene", "renderer") else float(v) for k, v in row.items()} for row in csv.DictReader(file)]
+        rows = [{**row, "spp": int(row["spp"])} for row in rows if row["spp"] > 1]
+        return report(rows, options, any(r["renderer"].startswith("Mitsuba") for r in rows))
     mitsubas = [m for m in (Mitsuba(options.mitsuba, v) for v in ("llvm_ad_rgb", "scalar_rgb")) if m.works(options.out)]
     if not mitsubas:
         print("Mitsuba 3 is not installed here (MITSUBA_PYTHON names a Python that has it): ours alone")

@@ -17,10 +17,10 @@ def tick(power):
 
 
 def log_plot(title, xlabel, ylabel, lines):
-    """lines: name -> list of (x, y), all above 0. The text of an SVG file."""
+    """lines: name -> list of (x, y) or (x, y, lower end, upper end of a bar), all above 0. The text of an SVG file."""
     points = [p for line in lines.values() for p in line]
     x0, x1 = decades([p[0] for p in points])
-    y0, y1 = decades([p[1] for p in points])
+    y0, y1 = decades([y for p in points for y in p[1:]])
     across, up = (WIDTH - LEFT - RIGHT) / (x1 - x0), (HEIGHT - TOP - BOTTOM) / (y1 - y0)
 
     def place(x, y):
@@ -41,9 +41,12 @@ def log_plot(title, xlabel, ylabel, lines):
     out.append(f'<text transform="translate(14 {(TOP + HEIGHT - BOTTOM) / 2:.0f}) rotate(-90)" text-anchor="middle">{escape(ylabel)}</text>')
     for n, (name, line) in enumerate(lines.items()):
         colour = COLOURS[n % len(COLOURS)]
-        path = " ".join(f"{'ML'[i > 0]}{x:.1f} {y:.1f}" for i, (x, y) in enumerate(place(*p) for p in line))
+        path = " ".join(f"{'ML'[i > 0]}{x:.1f} {y:.1f}" for i, (x, y) in enumerate(place(*p[:2]) for p in line))
         out.append(f'<path d="{path}" fill="none" stroke="{colour}" stroke-width="2"/>')
-        out += [f'<circle cx="{x:.1f}" cy="{y:.1f}" r="3" fill="{colour}"/>' for x, y in (place(*p) for p in line)]
+        out += [f'<circle cx="{x:.1f}" cy="{y:.1f}" r="3" fill="{colour}"/>' for x, y in (place(*p[:2]) for p in line)]
+        for x, _, low, high in (p for p in line if len(p) > 2):
+            (left, bottom), (_, top) = place(x, low), place(x, high)
+            out.append(f'<path d="M{left:.1f} {bottom:.1f}V{top:.1f}" stroke="{colour}"/>')
         y = TOP + 14 + 15 * n
         out.append(f'<path d="M{WIDTH - RIGHT - 118} {y - 4}h18" stroke="{colour}" stroke-width="2"/>'
                    f'<text x="{WIDTH - RIGHT - 94}" y="{y}">{escape(name)}</text>')
