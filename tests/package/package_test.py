@@ -118,6 +118,11 @@ with tempfile.TemporaryDirectory() as scratch:
     if len(set(pictures.values())) != len(pictures):
         sys.exit("the shaders of the tutorial look the same")
 
+    # Manual pages
+    for page in ("openrt.3", "openrt_frames.3", "rtRender.3"):
+        if not list(prefix.rglob(f"man/man3/{page}")):
+            sys.exit(f"{page} is not installed")
+
     # Programs
     (scratch / "box.wrl").write_text("#VRML V2.0 utf8\nShape { appearance Appearance { material Material { } } geometry Box { } }\n")
     run(prefix / "bin/vv", "box.wrl", "-o", "box.png", "--size", "32x24", "--spp", "1", cwd=scratch)

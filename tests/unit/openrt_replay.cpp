@@ -148,6 +148,40 @@ TEST_F(Replay, EveryFrameHasTheSameBytes) {
   EXPECT_NE(said().find("\"frames\": 4"), std::string::npos) << said();
 }
 
+TEST_F(Replay, ValuesOfVerticesAndAReload) {
+  const RTcontext context =
+      rtNewContext(("threads=2 shaderpath=" OPENRT_TEST_PLUGINS " record=\"" + (folder / "colours").string() + "\"").c_str());
+  ASSERT_NE(context, nullptr) << (rtGetError(), rtGetErrorMessage());
+  rtBindShader(rtNewShader(rtNewShaderClass("Varying", "varying")));
+  const int color = rtParameterHandle("color"), show = rtParameterHandle("show"), triple = rtParameterHandle("triple");
+  const RTid object = rtBeginObject(0);
+  rtBegin(RT_TRIANGLE_STRIP);
+  for (int i = 0; i < 12; i++) {
+    rtParameter3f(color, float(i % 3) / 2, float(i % 5) / 4, float(i % 2));
+    rtParameter3f(triple, float(i % 2), float(i % 4) / 4, float(i % 7) / 7);
+    rtVertex3d(0.4 * i - 2.2, i % 2 ? 1.1 : -1.1, -0.01 * i);
+  }
+  rtEnd();
+  rtEndObject();
+  rtInstantiateObject(object);
+  rtTranslated(0, 0, 5), rtPerspective(45), rtLoadIdentity();
+  rtFrameBuffer(width, height, RT_RGBA);
+  rtQuality(RT_SAMPLES_PER_PIXEL, 4);
+  std::vector<Picture> frames{rendered()};
+  rtParameter1i(show, 3);
+  EXPECT_EQ(rtReloadShaders(), 0);
+  frames.push_back(rendered());
+  rtDeleteContext(context);
+  EXPECT_FALSE(same(frames[0], frames[1]));
+  for (int frame = 1; frame <= 2; frame++) {
+    ASSERT_EQ(replay(quoted("colours") + " -o " + quoted("frame.pfm") + " --shader-path '" OPENRT_TEST_PLUGINS "' --frame " +
+                     std::to_string(frame)),
+              0)
+        << said();
+    EXPECT_TRUE(same(readPfm("frame.pfm"), frames[size_t(frame - 1)])) << "frame " << frame;
+  }
+}
+
 TEST_F(Replay, ExitCodes) {
   recordFrames(folder / "good");
   EXPECT_EQ(replay("--help"), 0);
