@@ -124,7 +124,7 @@ const void* ownParameters(const RenderScene& scene, const Record& r, const RayHi
   std::memcpy(block, shader.params, shader.shaderClass->paramSize);
   const size_t primitive = hits.primitive[lane];
   const size_t corners = r.primitive == edit::Primitive::Triangles ? 3 : r.primitive == edit::Primitive::Lines ? 2 : 1;
-  const float u = hits.u[lane], v = corners == 3 ? hits.v[lane] : 0;
+  const float u = corners == 2 ? std::clamp(hits.u[lane], 0.0f, 1.0f) : hits.u[lane], v = corners == 3 ? hits.v[lane] : 0;
   const float w[3] = {1 - u - v, u, v};
   for (uint32_t p = 0; p < r.parameterCount; p++) {
     const GeometryParameter& own = r.parameters[p];
@@ -140,6 +140,8 @@ const void* ownParameters(const RenderScene& scene, const Record& r, const RayHi
     } else {
       std::copy_n(values + n * (own.perVertex ? size_t(r.indices[primitive]) : primitive), n, mixed);
     }
+    if (param.minimum != 0 || param.maximum != 0) // weights may be below 0 by a rounding error
+      for (size_t k = 0; k < n; k++) mixed[k] = std::clamp(mixed[k], param.minimum, param.maximum);
     std::memcpy(block + param.offset, mixed, n * sizeof(float));
   }
   return block;

@@ -11,6 +11,7 @@
 namespace openrt {
 namespace {
 
+constexpr uint32_t maxVaryingBytes = 1 << 14; // every hit then has a copy of the structure
 constexpr uint32_t maxClasses = 1024, maxParameters = 4096, maxParameterBytes = 1 << 20;
 // A class reaches at least to its parameter table; everything behind that is functions, absent in older minors.
 constexpr size_t minClassSize = offsetof(RtsClass, traits);
@@ -72,6 +73,9 @@ void checkParameters(const RtsClass& shaderClass, const std::string& where) {
     ranges.emplace_back(param.offset, param.offset + parameterBytes(param.type));
     const uint8_t frequency = shaderClass.frequency ? shaderClass.frequency[i] : uint8_t(RTS_PER_SHADER);
     const bool numbers = param.type >= RTS_FLOAT && param.type <= RTS_MATRIX;
+    if (frequency != RTS_PER_SHADER && shaderClass.paramSize > maxVaryingBytes)
+      throw std::runtime_error(where + ": parameter " + param.name + ": cannot change by hit in a structure of " +
+                               std::to_string(shaderClass.paramSize) + " bytes; at most " + std::to_string(maxVaryingBytes));
     if (frequency > RTS_PER_VERTEX || (frequency != RTS_PER_SHADER && !numbers))
       throw std::runtime_error(where + ": parameter " + param.name + ": cannot change that often");
   }

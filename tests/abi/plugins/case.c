@@ -68,7 +68,7 @@ static const char* nonsense(const RtsHost* host, void* params) {
 }
 #elif defined(CASE_frequency_value)
 static const uint8_t frequency[] = {RTS_PER_VERTEX, 3};
-#elif defined(CASE_frequency_type)
+#elif defined(CASE_frequency_type) || defined(CASE_frequency_size)
 static const uint8_t frequency[] = {RTS_PER_VERTEX, RTS_PER_VERTEX};
 #endif
 static uint32_t traits(const RtsHost* host, const void* params) {
@@ -107,7 +107,11 @@ static const RtsClass example = {
 #if !defined(CASE_class_unnamed)
     .name = "Example",
 #endif
+#if defined(CASE_frequency_size)
+    .paramSize = 1 << 15,
+#else
     .paramSize = sizeof(Parameters),
+#endif
 #if defined(CASE_parameter_count)
     .paramCount = 1000000,
 #else
@@ -124,7 +128,7 @@ static const RtsClass example = {
 #if defined(CASE_minor_0) || defined(CASE_minor_1)
     .prepare = nonsense, /* beyond what the older structures hold: must not be looked at */
     .frequency = (const uint8_t*)1,
-#elif defined(CASE_frequency_value) || defined(CASE_frequency_type)
+#elif defined(CASE_frequency_value) || defined(CASE_frequency_type) || defined(CASE_frequency_size)
     .frequency = frequency,
 #endif
 };
