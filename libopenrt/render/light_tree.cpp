@@ -11,8 +11,7 @@ namespace {
 
 constexpr uint32_t bins = 12;
 constexpr uint32_t none = ~0u;
-constexpr uint32_t deepest = 60;     // of a trail's 64 steps
-constexpr uint32_t balanceFrom = 28; // deeper nodes are halved: 2^32 lights would end before the deepest step
+constexpr uint32_t balanceFrom = 28; // deeper nodes are halved: bounds the depth
 
 double dot(const float a[3], const float b[3]) { return double(a[0]) * b[0] + double(a[1]) * b[1] + double(a[2]) * b[2]; }
 
@@ -71,7 +70,13 @@ double cost(const LightBounds& b, const double size[3]) {
 
 struct Range {
   uint32_t begin, end, parent, steps; // parent: its second child is this one; none: a first child, or the root
-  uint64_t bits;
+};
+
+// A binary tree first.
+struct Twig {
+  LightBounds bounds;
+  uint32_t next, steps; // the second child (the first one follows the twig), or the light; from the root
+  bool leaf;
 };
 
 class Builder {
@@ -153,128 +158,181 @@ class Builder {
   std::vector<uint32_t>& order_;
 };
 
+std::vector<Twig> makeTwigs(std::span<const LightBounds> lights, std::vector<uint32_t>& order) {
+  std::vector<Twig> twigs;
+  twigs.reserve(2 * order.size() - 1);
+  Builder builder(lights, order);
+  std::vector<Range> left{{0, uint32_t(order.size()), none, 0}};
+  while (!left.empty()) { // depth first, the first child first: it follows its parent
+    const Range range = left.back();
+    left.pop_back();
+    const auto number = uint32_t(twigs.size());
+    if (range.parent != none) twigs[range.parent].next = number;
+    Twig twig{lights[order[range.begin]], order[range.begin], range.steps, range.end - range.begin == 1};
+    for (uint32_t i = range.begin + 1; i < range.end; i++) unite(twig.bounds, lights[order[i]]);
+    twigs.push_back(twig);
+    if (twig.leaf) continue;
+    const uint32_t middle = builder.split(range, twig.bounds);
+    left.push_back({middle, range.end, number, range.steps + 1});
+    left.push_back({range.begin, middle, none, range.steps + 1});
+  }
+  return twigs;
+}
+
+constexpr float slack = 1e-5f; // of cosines: bounds must hold whatever rounds
+
 } // namespace
 
+// Strongest twigs first are replaced by their children until a node is full.
 void LightTree::build(std::span<const LightBounds> lights) {
   nodes_.clear();
   depth_ = 0;
-  trails_.assign(lights.size(), {0, none});
+  places_.assign(lights.size(), {none, 0});
   std::vector<uint32_t> order;
   for (uint32_t i = 0; i < lights.size(); i++)
     if (lights[i].intensity > 0 || lights[i].irradiance > 0) order.push_back(i);
   if (order.empty()) return;
-  nodes_.reserve(2 * order.size() - 1);
-  Builder builder(lights, order);
-  std::vector<Range> left{{0, uint32_t(order.size()), none, 0, 0}};
-  while (!left.empty()) { // depth first, the first child first: it follows its parent
-    const Range range = left.back();
-    left.pop_back();
+  const std::vector<Twig> twigs = makeTwigs(lights, order);
+  struct Todo {
+    uint32_t twig, parent, slot, depth;
+  };
+  std::vector<Todo> left{{0, none, 0, 1}};
+  for (size_t next = 0; next < left.size(); next++) {
+    const Todo todo = left[next];
     const auto number = uint32_t(nodes_.size());
-    if (range.parent != none) nodes_[range.parent].next = number;
-    Node node{lights[order[range.begin]], order[range.begin], range.end - range.begin == 1};
-    for (uint32_t i = range.begin + 1; i < range.end; i++) unite(node.bounds, lights[order[i]]);
-    nodes_.push_back(node);
-    depth_ = std::max(depth_, range.steps);
-    if (node.leaf) {
-      trails_[node.next] = {range.bits, range.steps};
-      continue;
+    Node& node = nodes_.emplace_back();
+    node = {};
+    node.parent = todo.parent, node.slot = todo.slot;
+    if (todo.parent != none) nodes_[todo.parent].child[todo.slot] = number;
+    depth_ = std::max(depth_, todo.depth);
+    uint32_t children[width] = {todo.twig}, count = 1;
+    while (count < width) {
+      uint32_t strongest = none;
+      float most = -1;
+      for (uint32_t i = 0; i < count; i++) {
+        const Twig& t = twigs[children[i]];
+        const float strength = t.bounds.intensity + t.bounds.irradiance;
+        if (!t.leaf && strength > most) most = strength, strongest = i;
+      }
+      if (strongest == none) break;
+      const uint32_t opened = children[strongest];
+      children[strongest] = opened + 1, children[count++] = twigs[opened].next;
     }
-    const uint32_t middle = builder.split(range, node.bounds);
-    left.push_back({middle, range.end, number, range.steps + 1, range.bits | uint64_t(1) << range.steps});
-    left.push_back({range.begin, middle, none, range.steps + 1, range.bits});
+    for (uint32_t i = 0; i < count; i++) {
+      const Twig& t = twigs[children[i]];
+      fill(number, i, t.bounds);
+      nodes_[number].leaf[i] = t.leaf;
+      if (t.leaf)
+        nodes_[number].child[i] = t.next, places_[t.next] = {number, i};
+      else
+        left.push_back({children[i], number, i, todo.depth + 1});
+    }
   }
 }
 
-// cos(max(0, a - b)) of angles given by sine and cosine.
-static float cosineLess(float sinA, float cosA, float sinB, float cosB) { return cosA > cosB ? 1.0f : cosA * cosB + sinA * sinB; }
-static float sineLess(float sinA, float cosA, float sinB, float cosB) { return cosA > cosB ? 0.0f : sinA * cosB - cosA * sinB; }
-static float sineOf(float cosine) { return std::sqrt(std::max(0.0f, 1 - cosine * cosine)); }
-
-// A bound of the irradiance at a place that faces where the light comes from most, up to the nearness of the box.
-float LightTree::measure(const LightBounds& b, const float place[3], const float* normal, Side side) {
-  constexpr float slack = 1e-5f; // of cosines: bounds must hold whatever rounds
-  float way[3], square = 0, diagonal = 0, axial = 0;
+void LightTree::fill(uint32_t number, uint32_t i, const LightBounds& b) {
+  Node& node = nodes_[number];
+  double diagonal = 0;
   for (int k = 0; k < 3; k++) {
-    const float middle = b.low[k] / 2 + b.high[k] / 2, size = b.high[k] - b.low[k];
-    way[k] = place[k] - middle;
-    square += way[k] * way[k], diagonal += size * size;
+    node.centre[k][i] = b.low[k] / 2 + b.high[k] / 2;
+    const double half = std::max(double(b.high[k]) - node.centre[k][i], double(node.centre[k][i]) - b.low[k]);
+    diagonal += half * half;
+    node.axis[k][i] = b.axis[k];
   }
-  const float radius2 = diagonal / 4;
-  if (b.reach < std::numeric_limits<float>::max()) {
-    const float far = b.reach * (1 + 1e-5f) + std::sqrt(radius2);
-    if (square > far * far) return 0;
+  node.radius2[i] = float(std::min(diagonal * (1 + 1e-6), 3e38));
+  const double far = double(b.reach) * (1 + 1e-5) + std::sqrt(diagonal);
+  node.reach2[i] = far < 1e19 ? float(far * far * (1 + 1e-6)) : std::numeric_limits<float>::infinity();
+  node.cosine[i] = b.cosineNormals;
+  node.sine[i] = float(std::sqrt(std::max(0.0, 1 - double(b.cosineNormals) * b.cosineNormals)));
+  node.beyond[i] = b.cosineBeyond, node.both[i] = b.bothSides ? 1 : 0;
+  node.intensity[i] = b.intensity, node.irradiance[i] = b.irradiance, node.used[i] = 1;
+}
+
+struct LightTree::Query {
+  float place[3], normal[3];
+  float facing;     // added to the cosine at the receiver: 2 where its side does not matter
+  float cut, least; // of that cosine: below the one nothing arrives, and it counts as the other at least
+  Query(const float from[3], const float* side, Side meaning) {
+    for (int k = 0; k < 3; k++) place[k] = from[k], normal[k] = side ? side[k] : 0;
+    facing = side ? 0 : 2;
+    cut = meaning == Side::only ? -slack : -2, least = meaning == Side::only ? slack : 0.1f;
   }
-  // The cone about the box as seen from the place.
-  const bool within = square <= radius2 * (1 + 1e-5f);
-  const float distance = std::sqrt(square);
-  const float sinBox = within ? 0.0f : std::sqrt(radius2 / square), cosBox = within ? -1.0f : sineOf(sinBox) - slack;
-  float leaving = 1, arriving = 1;
-  if (distance > 0 && !within) {
-    if (b.cosineNormals > -1) {
-      for (int k = 0; k < 3; k++) axial += way[k] * b.axis[k];
-      float cosine = std::clamp(axial / distance, -1.0f, 1.0f);
-      if (b.bothSides) cosine = std::fabs(cosine);
-      const float sine = sineOf(cosine), sinNormals = sineOf(b.cosineNormals);
-      const float cosX = cosineLess(sine, cosine, sinNormals, b.cosineNormals),
-                  sinX = sineLess(sine, cosine, sinNormals, b.cosineNormals);
-      leaving = cosineLess(sinX, cosX, sineOf(cosBox), cosBox);
-      if (leaving < b.cosineBeyond - slack) return 0;
-      leaving = std::max(leaving, slack);
-    }
-    if (normal) {
-      float facing = 0;
-      for (int k = 0; k < 3; k++) facing -= way[k] * normal[k];
-      const float cosine = std::clamp(facing / distance, -1.0f, 1.0f);
-      arriving = cosineLess(sineOf(cosine), cosine, sineOf(cosBox), cosBox);
-      if (side == Side::only && arriving < -slack) return 0;
-      arriving = std::max(arriving, side == Side::only ? slack : 0.1f);
-    }
+};
+
+// A bound of the irradiance of each child at a place that faces where the light comes from, up to the nearness of the box. One
+// loop without calls or branches: it goes into vector lanes.
+void LightTree::measure(const Node& node, const Query& q, float* __restrict out) {
+  const auto larger = [](float a, float b) { return a > b ? a : b; };
+  for (uint32_t i = 0; i < width; i++) {
+    const float x = q.place[0] - node.centre[0][i], y = q.place[1] - node.centre[1][i], z = q.place[2] - node.centre[2][i];
+    const float square = x * x + y * y + z * z, radius2 = node.radius2[i];
+    const bool within = square <= radius2 * (1 + 1e-5f);
+    const float inverse = 1 / std::sqrt(within ? 1.0f : square);
+    // The cone about the box as seen from the place.
+    const float cosBox = std::sqrt(larger(1 - radius2 * inverse * inverse, 0)) - slack;
+    const float sinBox = std::sqrt(larger(1 - cosBox * cosBox, 0));
+    // Of all directions that leave the box towards the place the one nearest to the cone of normals.
+    const float along = (x * node.axis[0][i] + y * node.axis[1][i] + z * node.axis[2][i]) * inverse;
+    const float axial = larger(along, -along * node.both[i] - (1 - node.both[i]) * 2);
+    const float across = std::sqrt(larger(1 - axial * axial, 0));
+    const float cosine = node.cosine[i], sine = node.sine[i];
+    const float cosLess = axial * cosine + across * sine, sinLess = across * cosine - axial * sine;
+    const float cosX = axial > cosine ? 1.0f : cosLess, sinX = axial > cosine ? 0.0f : sinLess;
+    const float leavesBeside = cosX * cosBox + sinX * sinBox;
+    const float leaves = (cosX > cosBox) | within ? 1.0f : leavesBeside, atLeast = larger(leaves, slack);
+    const float leaving = leaves < node.beyond[i] - slack ? 0.0f : atLeast;
+    // And of all that arrive the one nearest to the receiver's normal.
+    const float facing = q.facing - (x * q.normal[0] + y * q.normal[1] + z * q.normal[2]) * inverse;
+    const float aside = std::sqrt(larger(1 - facing * facing, 0));
+    const float arrivesBeside = facing * cosBox + aside * sinBox;
+    const float arrives = (facing > cosBox) | within ? 1.0f : arrivesBeside, enough = larger(arrives, q.least);
+    const float arriving = arrives < q.cut ? 0.0f : enough;
+    const float falling = node.intensity[i] / larger(larger(square, radius2), 1e-37f);
+    const float sum = larger(falling + node.irradiance[i], 1e-30f), strength = sum < 1e30f ? sum : 1e30f;
+    const float used = node.used[i], lit = square <= node.reach2[i] ? used : 0.0f;
+    out[i] = lit * leaving * arriving * strength;
   }
-  const float nearest = std::max(square, radius2);
-  const float falling = nearest > 0 ? b.intensity / nearest : b.intensity;
-  const float strength = std::min(falling + b.irradiance, 1e30f);
-  return leaving * arriving * std::max(strength, 1e-30f);
 }
 
 LightTree::Choice LightTree::choose(const float place[3], const float* normal, double pick, Side side) const {
   if (nodes_.empty()) return {};
-  uint32_t at = 0;
+  const Query query(place, normal, side);
   double probability = 1;
-  if (nodes_[0].leaf && !(measure(nodes_[0].bounds, place, normal, side) > 0)) return {};
-  while (!nodes_[at].leaf) {
-    const float first = measure(nodes_[at + 1].bounds, place, normal, side);
-    const float second = measure(nodes_[nodes_[at].next].bounds, place, normal, side);
-    const double sum = double(first) + second;
+  for (uint32_t at = 0;;) {
+    const Node& node = nodes_[at];
+    float each[width];
+    measure(node, query, each);
+    double sum = 0;
+    for (const float m : each) sum += double(m);
     if (!(sum > 0)) return {};
-    const double share = first / sum;
-    if (pick < share) {
-      pick /= share, probability *= share;
-      at = at + 1;
-    } else {
-      pick = (pick - share) / (1 - share), probability *= 1 - share;
-      at = nodes_[at].next;
-    }
-    pick = std::min(pick, 1 - 0x1p-53);
+    double target = pick * sum;
+    uint32_t slot = 0, last = 0;
+    for (uint32_t i = 0; i < width; i++)
+      if (each[i] > 0) last = i;
+    while (slot < last && !(target < double(each[slot]))) target -= double(each[slot++]);
+    probability *= double(each[slot]) / sum;
+    if (node.leaf[slot]) return {node.child[slot], float(probability)};
+    pick = std::clamp(target / double(each[slot]), 0.0, 1 - 0x1p-53);
+    at = node.child[slot];
   }
-  return {nodes_[at].next, float(probability)};
 }
 
 float LightTree::probability(const float place[3], const float* normal, uint32_t light) const {
-  if (nodes_.empty() || trails_[light].steps == none) return 0;
-  Trail trail = trails_[light];
-  uint32_t at = 0;
+  if (nodes_.empty() || places_[light].node == none) return 0;
+  const Query query(place, normal, Side::only);
   double probability = 1;
-  if (nodes_[0].leaf) return measure(nodes_[0].bounds, place, normal) > 0 ? 1.0f : 0.0f;
-  for (; trail.steps > 0; trail.steps--, trail.bits >>= 1) {
-    const float first = measure(nodes_[at + 1].bounds, place, normal);
-    const float second = measure(nodes_[nodes_[at].next].bounds, place, normal);
-    const double sum = double(first) + second;
+  Place at = places_[light];
+  for (;;) {
+    const Node& node = nodes_[at.node];
+    float each[width];
+    measure(node, query, each);
+    double sum = 0;
+    for (const float m : each) sum += double(m);
     if (!(sum > 0)) return 0;
-    const double share = first / sum;
-    probability *= trail.bits & 1 ? 1 - share : share;
-    at = trail.bits & 1 ? nodes_[at].next : at + 1;
+    probability *= double(each[at.slot]) / sum;
+    if (node.parent == none) return float(probability);
+    at = {node.parent, node.slot};
   }
-  return float(probability);
 }
 
 } // namespace openrt

@@ -1,8 +1,8 @@
-// light_tree.h: chooses one of many lights, with a probability near its share of the light that arrives: a binary tree of boxes,
-// cones and strengths. A. Conty Estevez, C. Kulla, "Importance Sampling of Many Lights with Adaptive Tree Splitting", HPG 2018;
-// the measure of nodes follows M. Pharr, W. Jakob, G. Humphreys, "Physically Based Rendering", 4th ed., 12.6.3, up to the law of
-// distance, which is in units of the scene's own. Built between frames, always the same for the same lights; read by all render
-// threads. A choice costs one walk from the root, its probability another.
+// light_tree.h: chooses one of many lights, with a probability near its share of the light that arrives: a tree of boxes, cones
+// and strengths, eight children side by side. A. Conty Estevez, C. Kulla, "Importance Sampling of Many Lights with Adaptive Tree
+// Splitting", HPG 2018; the measure of nodes follows M. Pharr, W. Jakob, G. Humphreys, "Physically Based Rendering", 4th
+// ed., 12.6.3, up to the law of distance, which is in units of the scene's own. Built between frames, always the same for the
+// same lights; read by all render threads. A choice costs one walk from the root, its probability another.
 #pragma once
 
 #include <cstdint>
@@ -35,25 +35,31 @@ class LightTree {
 
   void build(std::span<const LightBounds> lights);
   bool empty() const { return nodes_.empty(); }
-  size_t bytes() const { return nodes_.size() * sizeof(Node) + trails_.size() * sizeof(Trail); }
+  size_t bytes() const { return nodes_.size() * sizeof(Node) + places_.size() * sizeof(Place); }
   // One of the lights for a place; normal: null: light counts from everywhere. pick: of [0, 1).
   Choice choose(const float place[3], const float* normal, double pick, Side side = Side::only) const;
   float probability(const float place[3], const float* normal, uint32_t light) const;
   uint32_t depth() const { return depth_; }
 
  private:
+  static constexpr uint32_t width = 8;
+  // Up to eight children side by side, for vector lanes. What does not depend on the place is worked out.
   struct Node {
-    LightBounds bounds;
-    uint32_t next; // the second child (the first one follows the node), or the light
-    bool leaf;
+    float centre[3][width], radius2[width], reach2[width]; // of the box's sphere; squared, from the centre
+    float axis[3][width], cosine[width], sine[width], beyond[width], both[width];
+    float intensity[width], irradiance[width], used[width];
+    uint32_t child[width]; // a node, or a light
+    bool leaf[width];
+    uint32_t parent, slot; // none: the root
   };
-  struct Trail { // of a light: at each step down, 1: the second child; the first step in the lowest bit
-    uint64_t bits = 0;
-    uint32_t steps = 0;
+  struct Place { // of a light
+    uint32_t node, slot;
   };
-  static float measure(const LightBounds& bounds, const float place[3], const float* normal, Side side = Side::only);
+  struct Query;
+  static void measure(const Node& node, const Query& query, float* __restrict out);
+  void fill(uint32_t node, uint32_t slot, const LightBounds& bounds);
   std::vector<Node> nodes_;
-  std::vector<Trail> trails_; // by light; steps ~0: it sends out nothing
+  std::vector<Place> places_; // by light; node ~0: it sends out nothing
   uint32_t depth_ = 0;
 };
 

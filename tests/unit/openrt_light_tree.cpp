@@ -76,7 +76,7 @@ TEST(LightTree, ProbabilitiesAddUpAndAreThoseOfTheChoice) {
       const LightTree::Choice c = tree.choose(p, normal, (i + .5) / draws);
       if (!(c.probability > 0)) continue;
       count[c.light]++;
-      ASSERT_EQ(c.probability, tree.probability(p, normal, c.light));
+      ASSERT_FLOAT_EQ(c.probability, tree.probability(p, normal, c.light));
     }
     for (uint32_t i = 0; i < lights.size(); i++) // even steps of pick: exact but for one step at either end
       ASSERT_NEAR(count[i], double(tree.probability(p, normal, i)) * draws, 1.01);
