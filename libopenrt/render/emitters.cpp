@@ -71,7 +71,7 @@ double Emitters::densityOf(const EmissiveShapes::Shape& shape, const Receiver& f
   }
   const SphericalTriangle seen(shape.corner, from.position);
   if (!(shape.sides & (seen.front() ? 1 : 2)) || !seen.sample(u, v, direction, distance)) return 0;
-  rim = seen.atRim(direction);
+  rim = seen.atRim(direction, distance);
   return seen.density(direction);
 }
 

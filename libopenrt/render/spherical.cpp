@@ -38,35 +38,52 @@ void aboutAxis(const double axis[3], double below, double turn, double out[3]) {
 } // namespace
 
 SphericalTriangle::SphericalTriangle(const float corner[3][3], const float eye[3]) {
-  double a[3], b[3], length[3];
+  double a[3], b[3], longest = 0;
   for (int k = 0; k < 3; k++) {
     a[k] = double(corner[1][k]) - corner[0][k], b[k] = double(corner[2][k]) - corner[0][k];
     for (int c = 0; c < 3; c++) corner_[c][k] = double(corner[c][k]) - eye[k];
   }
   cross(a, b, normal_);
-  for (int c = 0; c < 3; c++) {
-    length[c] = std::sqrt(dot(corner_[c], corner_[c]));
-    for (int k = 0; k < 3; k++) unit_[c][k] = corner_[c][k] / length[c];
-  }
-  const double size = length[0] * length[1] * length[2];
   height_ = dot(corner_[0], normal_);
-  if (!(size > 0) || !std::isfinite(size) || !std::isfinite(height_)) return;
+  const double c[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+  longest = std::max({dot(a, a), dot(b, b), dot(c, c)});
+  far_ = dot(corner_[0], corner_[0]) > 9 * longest;
+  if (!std::isfinite(height_)) height_ = 0;
+  if (!far_) look();
+}
+
+void SphericalTriangle::look() {
+  double size = 1;
+  for (int c = 0; c < 3; c++) {
+    const double length = std::sqrt(dot(corner_[c], corner_[c]));
+    for (int k = 0; k < 3; k++) unit_[c][k] = corner_[c][k] / length;
+    size *= length;
+  }
+  if (!(size > 0) || !std::isfinite(size)) return;
   volume_ = std::fabs(height_) / size;
   others_ = dot(unit_[0], unit_[2]) + dot(unit_[1], unit_[2]);
   first_ = 1 + dot(unit_[0], unit_[1]);
   if (volume_ > 0) solidAngle_ = 2 * std::atan2(volume_, others_ + first_);
 }
 
+double SphericalTriangle::solidAngle() const {
+  if (!far_) return solidAngle_;
+  SphericalTriangle near = *this;
+  near.look();
+  return near.solidAngle_;
+}
+
 double SphericalTriangle::distanceAlong(const double d[3]) const { return height_ / dot(normal_, d); }
 
 bool SphericalTriangle::sample(double u, double v, double direction[3], double& distance) const {
-  if (!(solidAngle_ > 0)) return false;
-  if (flat()) {
+  if (far_) {
+    if (height_ == 0) return false;
     const double root = std::sqrt(u), w[3] = {1 - root, root * (1 - v), root * v};
     for (int k = 0; k < 3; k++) direction[k] = w[0] * corner_[0][k] + w[1] * corner_[1][k] + w[2] * corner_[2][k];
     distance = std::sqrt(dot(direction, direction));
     return normalize(direction);
   }
+  if (!(solidAngle_ > 0)) return false;
   // A place on the arc from the first corner to the last that cuts off the share u of the solid angle, then a place on the arc
   // from the second corner to there.
   const double half = u * solidAngle_ / 2, c = std::cos(half), s = std::sin(half);
@@ -90,20 +107,27 @@ bool SphericalTriangle::sample(double u, double v, double direction[3], double& 
 }
 
 double SphericalTriangle::density(const double direction[3]) const {
-  if (!(solidAngle_ > 0)) return 0;
-  if (!flat()) return 1 / solidAngle_;
+  if (!far_) return solidAngle_ > 0 ? 1 / solidAngle_ : 0;
   const double along = std::fabs(dot(normal_, direction)), distance = distanceAlong(direction);
-  return 2 * distance * distance / along; // square of the distance over the projected area
+  return height_ != 0 ? 2 * distance * distance / along : 0; // square of the distance over the projected area
 }
 
-// The direction's distance from the planes of the edges and the eye, against the rounding of a float direction and of the
-// kernel's corners.
-bool SphericalTriangle::atRim(const double direction[3]) const {
+// Barycentric coordinates against the rounding of a float direction and of the kernel's corners, as far as they move the place
+// where the plane is met.
+bool SphericalTriangle::atRim(const double direction[3], double distance) const {
   constexpr double rounding = 0x1p-20;
+  const double along = dot(normal_, direction), square = dot(normal_, normal_);
+  double place[3];
+  for (int k = 0; k < 3; k++) place[k] = direction[k] * distance;
   for (int c = 0; c < 3; c++) {
-    double n[3];
-    cross(unit_[c], unit_[(c + 1) % 3], n);
-    if (std::fabs(dot(n, direction)) <= rounding * std::sqrt(dot(n, n))) return true;
+    const double *from = corner_[(c + 1) % 3], *to = corner_[(c + 2) % 3];
+    double edge[3], way[3], turn[3];
+    for (int k = 0; k < 3; k++) edge[k] = to[k] - from[k], way[k] = place[k] - from[k];
+    cross(edge, way, turn);
+    // dot(turn, normal) / |normal| is the distance from the edge times its length; a turn of the ray moves the place by more the
+    // flatter it meets the plane.
+    const double inside = std::fabs(dot(turn, normal_)) * std::fabs(along);
+    if (inside <= rounding * distance * std::sqrt(dot(edge, edge)) * square) return true;
   }
   return false;
 }

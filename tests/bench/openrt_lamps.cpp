@@ -1,6 +1,6 @@
 // Error over time of light from lamps, by path tracing through the C API: relMSE (mean of (I - R)^2 / (R^2 + 0.01) over pixels
-// and colours) at 16 samples a pixel against a picture of many, and its product with the CPU seconds of a frame: lower is better, and
-// independent of the number of samples as long as the square of errors falls as their number grows. One thread.
+// and colours) at 16 samples a pixel against a picture of many, and its product with the CPU seconds of a frame: lower is
+// better, and independent of the number of samples as long as the square of errors falls as their number grows. One thread.
 #include <benchmark/benchmark.h>
 
 #include <cmath>

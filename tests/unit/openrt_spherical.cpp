@@ -149,13 +149,60 @@ TEST(Spherical, AHemisphereIsCoveredEvenly) { // R10: the point lies just below 
   expectEven(got, expected);
 }
 
-TEST(Spherical, TinyTrianglesAreSpreadByArea) {
-  const float e = 1e-6f, corner[3][3] = {{e, 0, 1}, {0, e, 1}, {-e, -e, 1}};
-  const SphericalTriangle t(corner, origin);
-  ASSERT_TRUE(t.flat());
-  double d[3], distance;
-  ASSERT_TRUE(t.sample(.5, .5, d, distance));
-  EXPECT_NEAR(t.density(d) * t.solidAngle(), 1, 1e-5);
+TEST(Spherical, FarTrianglesAreSpreadByArea) {
+  for (const float e : {.2f, 1e-3f, 1e-6f, 1e-9f}) {
+    const float corner[3][3] = {{e, 0, 1}, {0, e, 1}, {-e, -e, 1}};
+    const SphericalTriangle t(corner, origin);
+    ASSERT_TRUE(t.far() || e > .1f);
+    double sum = 0;
+    for (uint32_t i = 0; i < 4096; i++) { // the mean of 1 / density is the solid angle
+      float u, v;
+      PairSampler(1, 2, 3)(i, u, v);
+      double d[3], distance;
+      ASSERT_TRUE(t.sample(u, v, d, distance));
+      sum += 1 / t.density(d) / 4096;
+    }
+    EXPECT_NEAR(sum / t.solidAngle(), 1, 1e-4) << e;
+  }
+}
+
+// Noise of the irradiance from a square lamp: by solid angle against by area, at one sample. Over the centre, over a corner, and
+// near.
+TEST(Spherical, SolidAnglesAreLessNoisyThanAreas) {
+  const double places[3][3] = {{0, 0, 1}, {.5, .5, .5}, {0, 0, .1}}; // of the eye from the lamp's middle
+  double ratio[3];
+  for (int p = 0; p < 3; p++) {
+    double sums[2][2] = {};
+    for (uint32_t i = 0; i < 1 << 14; i++) {
+      const float half = .5f, x = float(-places[p][0]), y = float(-places[p][1]), z = float(places[p][2]);
+      const bool second = i & 1;
+      const float corner[3][3] = {
+          {x - half, y - half, z}, {x + half, y + (second ? half : -half), z}, {x + (second ? -half : half), y + half, z}};
+      float u, v;
+      PairSampler(5, 6, 7)(i >> 1, u, v);
+      const SphericalTriangle t(corner, origin);
+      double d[3], distance;
+      if (t.sample(u, v, d, distance)) {
+        const double e = 2 * d[2] / t.density(d);
+        sums[0][0] += e, sums[0][1] += e * e;
+      }
+      const double root = std::sqrt(double(u)), w[3] = {1 - root, root * (1 - v), root * v};
+      double way[3], square = 0;
+      for (int k = 0; k < 3; k++) {
+        way[k] = w[0] * corner[0][k] + w[1] * corner[1][k] + w[2] * corner[2][k];
+        square += way[k] * way[k];
+      }
+      const double e = way[2] * way[2] / (square * square); // area 1 x both cosines over the square of the distance
+      sums[1][0] += e, sums[1][1] += e * e;
+    }
+    double variance[2];
+    for (int i = 0; i < 2; i++) variance[i] = sums[i][1] / (1 << 14) - std::pow(sums[i][0] / (1 << 14), 2);
+    EXPECT_NEAR(sums[0][0] / sums[1][0], 1, 5e-3);
+    ratio[p] = variance[1] / variance[0];
+    std::printf("variance by area over that by solid angle: %.2f\n", ratio[p]);
+  }
+  EXPECT_GT(ratio[0], 1);
+  EXPECT_GT(ratio[2], 10);
 }
 
 // Both ways of seeing a direction agree with the share of directions that meet the ellipsoid.
