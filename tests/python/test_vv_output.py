@@ -154,6 +154,7 @@ def test_statistics(vv):
         "error": "mean_rel mean_rel_interval half_width p99 pixels_trusted level method",
         "memory": "peak_rss bvh scene",
         "cluster": "workers tiles retries bytes",
+        "left_out": "cut_by_depth cut_by_energy clipped unreached_lights shader_faults wrong_hits rejected_rays",
         "machine": "isa threads embree",
     }
     for group, names in keys.items():
