@@ -82,7 +82,8 @@ class Count {
     }
     const double count = double(shots_.size());
     c_.bias = sum / count;
-    c_.biasInterval = count > 1 ? 2 * std::sqrt(std::max(0.0, sum2 / count - c_.bias * c_.bias) / (count - 1)) : 1;
+    const double v = std::max(0.0, sum2 / count - c_.bias * c_.bias) * count / std::max(count - 1, 1.0);
+    c_.biasInterval = count > 1 ? 2 * std::sqrt(v * (1 / count + 1 / reference_.worth)) : 1; // the reference has an error too
   }
 
   const std::vector<Shot>& shots_;

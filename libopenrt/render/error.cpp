@@ -26,7 +26,8 @@ constexpr uint32_t reach = 2; // the window: so many pixels to each side, within
 constexpr uint32_t windowPixels = (2 * reach + 1) * (2 * reach + 1);
 // Replicates' means that carry the variance of a window, at least; hits by what is rare and bright, in a window, at least.
 constexpr double fewestMeans = 2.5, fewestHits = 4;
-constexpr double negligible = .25; // of a half-width
+constexpr double negligible = .25;  // of a half-width
+constexpr double fewestPaths = 16; // from lamps, in a window
 constexpr double largestExcess = 4;
 
 // Of the means of the replicates of one colour of one pixel, about their mean.
@@ -260,18 +261,16 @@ void tileErrors(uint32_t width, std::span<const PixelSums* const> pixels, const 
 
 void addLight(const PixelSums& s, PixelError& e) {
   double was = 3 * .01, squares = 0, half = 0, lamps = 0;
-  bool clear = true;
   for (int k = 0; k < 3; k++) {
     was += double(e.mean[k]);
     const double w = s.lightVariance[k], h = student95(LightImage::parts - 1) * std::sqrt(w);
     e.mean[k] += float(s.light[k]);
     e.halfWidth[k] = float(std::hypot(double(e.halfWidth[k]), h));
     half += double(e.halfWidth[k]), lamps += h, squares += 2 / M_PI * w;
-    clear &= s.light[k] > 4 * std::sqrt(w) || w == 0;
   }
   const double expected = std::hypot(double(e.expected) * was, std::sqrt(3 * squares));
   if (lamps > 0) e.constant = false;
-  if (lamps > negligible * half && !clear) e.trusted = false; // few paths have met the pixel
+  if (lamps > negligible * half && s.lightHits < fewestPaths) e.trusted = false; // few paths have met the pixel
   e.relative = relativeError(half, e.mean), e.expected = relativeError(expected, e.mean);
 }
 

@@ -20,6 +20,7 @@ struct PixelSums { // of one pixel, samples added in their order
   double grey[3] = {}; // sums of (red + green + blue - first)^2, ^3 and ^4; see addTails()
   float depth = 0, position[3] = {}, name = 0;
   double light[3] = {}, lightVariance[3] = {}; // what paths from lamps add to the mean, and its variance (light_image.h)
+  double lightHits = 0;                        // paths from lamps that have met the pixel and those around (light_image.h)
   float largest[3] = {};
   uint32_t samples = 0, replicates = 0; // replicates: complete ones
   bool random = false;                  // a path has taken a random decision

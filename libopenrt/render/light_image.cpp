@@ -1,6 +1,7 @@
 // light_image.cpp: see light_image.h.
 #include "render/light_image.h"
 
+#include <algorithm>
 #include <chrono>
 
 namespace openrt {
@@ -22,6 +23,23 @@ bool LightImage::add(uint32_t number, const std::vector<float>& part, const std:
   lock.unlock();
   turn_.notify_all();
   return true;
+}
+
+LightImage::Around LightImage::around(size_t pixel) const {
+  constexpr uint32_t reach = 2;
+  const uint32_t x = uint32_t(pixel % width_), y = uint32_t(pixel / width_);
+  Around out;
+  for (int k = 0; k < 3; k++) {
+    double mean = 0, variance = 0, count = 0;
+    for (uint32_t j = y - std::min(y, reach); j <= std::min(y + reach, height_ - 1); j++)
+      for (uint32_t i = x - std::min(x, reach); i <= std::min(x + reach, width_ - 1); i++) {
+        const Pixel& p = pixels_[size_t(j) * width_ + i];
+        mean += p.mean[k], variance += p.variance(k), count++;
+      }
+    out.variance[k] = std::max(variance / count, pixels_[pixel].variance(k));
+    if (variance > 0) out.hits = std::min(out.hits, mean * mean / variance);
+  }
+  return out;
 }
 
 } // namespace openrt

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <condition_variable>
 #include <cstdint>
+#include <limits>
 #include <mutex>
 #include <vector>
 
@@ -14,7 +15,7 @@ namespace openrt {
 class LightImage {
  public:
   static constexpr uint32_t parts = 16;
-  LightImage(uint32_t width, uint32_t height) : pixels_(size_t(width) * height) {}
+  LightImage(uint32_t width, uint32_t height) : width_(width), height_(height), pixels_(size_t(width) * height) {}
   // part: rgb by pixel; waits until the parts before it are in. False if cancelled before. [render]
   bool add(uint32_t number, const std::vector<float>& part, const std::atomic<bool>& cancelled);
 
@@ -25,8 +26,15 @@ class LightImage {
     double variance(int k) const { return squares[k] / (parts * (parts - 1.0)); }
   };
   const Pixel& at(size_t pixel) const { return pixels_[pixel]; }
+  // Of a pixel's mean and of what the 5x5 pixels around know: one that few paths have met knows too little of itself (error.cpp).
+  struct Around {
+    double variance[3] = {};                               // of the pixel's mean: its own, at least the mean of those around
+    double hits = std::numeric_limits<double>::infinity(); // as many equal paths have met them, in the colour with the fewest
+  };
+  Around around(size_t pixel) const;
 
  private:
+  uint32_t width_, height_;
   std::vector<Pixel> pixels_;
   std::mutex mutex_;
   std::condition_variable turn_;

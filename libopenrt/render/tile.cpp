@@ -76,7 +76,9 @@ bool TileRenderer::takeSamples(uint32_t first, uint32_t samples) {
 void TileRenderer::store(const Tile& tile) {
   for (size_t i = 0; light_ && i < pixels_.size(); i++) {
     const LightImage::Pixel& pixel = light_->at(pixels_[i]);
-    for (int k = 0; k < 3; k++) sums_[i].light[k] = pixel.mean[k], sums_[i].lightVariance[k] = pixel.variance(k);
+    const LightImage::Around around = light_->around(pixels_[i]);
+    for (int k = 0; k < 3; k++) sums_[i].light[k] = pixel.mean[k], sums_[i].lightVariance[k] = around.variance[k];
+    sums_[i].lightHits = around.hits;
   }
   const uint32_t width = film_.width();
   std::unique_lock<std::mutex> lock;
