@@ -15,7 +15,7 @@ struct BucketRange {
 // Shading points of one bucket, with what the host keeps beside.
 struct Points {
   RtsHits hits;
-  const float* error;     // bound of the position's rounding error along the geometric normal
+  float* error;           // bound of the position's rounding error along the geometric normal
   const uint32_t* record; // Record of each
   const RayHits* rayHits; // where they come from, and
   const uint32_t* order;  // their lanes there
@@ -30,10 +30,9 @@ void sortByBucket(const RenderScene& scene, const RayHits& hits, const uint32_t*
 Points makePoints(const RenderScene& scene, const Rays& rays, const RayHits& hits, const uint32_t* order, uint32_t n,
                   const float* travelled, Arena& arena);
 
-// Whether the ray has met the back of a surface whose back is not there.
-inline bool culled(const RenderScene& scene, const Rays& rays, const RayHits& hits, uint32_t lane) {
+// Whether the ray has met a surface from its back.
+inline bool metFromBehind(const RenderScene& scene, const Rays& rays, const RayHits& hits, uint32_t lane) {
   const Record& r = scene.records[hits.record[lane]];
-  if (!r.cull) return false;
   float n[3] = {hits.ng[0][lane], hits.ng[1][lane], hits.ng[2][lane]};
   if (r.instanced) {
     const float k[3] = {n[0], n[1], n[2]};
@@ -41,6 +40,10 @@ inline bool culled(const RenderScene& scene, const Rays& rays, const RayHits& hi
   }
   const float d = n[0] * rays.dir[0][lane] + n[1] * rays.dir[1][lane] + n[2] * rays.dir[2][lane];
   return r.flip ? d < 0 : d > 0;
+}
+// Whether that back is not there.
+inline bool culled(const RenderScene& scene, const Rays& rays, const RayHits& hits, uint32_t lane) {
+  return scene.records[hits.record[lane]].cull && metFromBehind(scene, rays, hits, lane);
 }
 
 // The point of hit i lifted from its flat triangle to the smooth surface that the vertex normals describe, on the

@@ -62,6 +62,8 @@ class Intersector {
   virtual void intersect(const Rays& rays, uint32_t mask, Coherence coherence, RayHits& hits) const = 0;
   // The same, but the backs of culled surfaces are not there. Slower: for the rays whose first hit is such a back.
   virtual void intersectFronts(const Rays& rays, uint32_t mask, RayHits& hits) const = 0;
+  // Nearest hits on other records than one for each ray.
+  virtual void intersectOthers(const Rays& rays, const uint32_t* record, RayHits& hits) const = 0;
   // Of all there is; low > high where nothing is. [any]
   virtual void bounds(float low[3], float high[3]) const = 0;
   // 1 where something lies within the ray's interval.

@@ -2,6 +2,7 @@
 #include "render/surfaces.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace openrt {
 
@@ -31,6 +32,53 @@ void lookThroughBacks(const RenderScene& scene, Arena& arena, RayCounters& count
   }
 }
 
+namespace {
+
+uint16_t mediumAt(const RenderScene& scene, uint32_t record) { return (*scene.shaders)[scene.records[record].shader].medium; }
+
+// Where two bodies share a face a ray meets one of the two, and is then led beyond the other: both are crossed at once. A ray
+// looks for the other's face within the bounds of the errors.
+void crossSharedFaces(const RtsBatch& batch, Crossing* crossings) {
+  const RenderScene& scene = *batch.scene;
+  const Points& points = *batch.points;
+  const RtsHits& hits = points.hits;
+  Arena& arena = *batch.arena;
+  ArenaScope scope(arena);
+  Rays rays;
+  rays.allocate(arena, hits.count);
+  auto *hit = arena.take<uint32_t>(hits.count), *own = arena.take<uint32_t>(hits.count);
+  uint32_t n = 0;
+  for (uint32_t i = 0; i < hits.count; i++) {
+    if (!mediumAt(scene, points.record[i])) continue;
+    float cosine = 0;
+    for (int k = 0; k < 3; k++) cosine -= hits.geometric[k][i] * hits.direction[k][i];
+    const float reach = 2 * points.error[i] / std::max(cosine, 1e-3f); // two bounds along the normal
+    for (int k = 0; k < 3; k++) {
+      rays.org[k][n] = hits.position[k][i] - reach * hits.direction[k][i];
+      rays.dir[k][n] = hits.direction[k][i];
+    }
+    rays.tnear[n] = 0, rays.tfar[n] = 2 * reach;
+    own[n] = points.record[i], hit[n++] = i;
+  }
+  if (n == 0) return;
+  rays.count = n;
+  RayHits found;
+  found.allocate(arena, n);
+  scene.kernel->intersectOthers(rays, own, found);
+  for (uint32_t r = 0; r < n; r++) {
+    const uint16_t medium = found.record[r] == noHit ? uint16_t(0) : mediumAt(scene, found.record[r]);
+    if (!medium) continue;
+    const uint32_t i = hit[r];
+    Crossing& c = crossings[i];
+    const Crossing other = cross(c.behind, medium, metFromBehind(scene, rays, found, r), scene.shaders->media());
+    c.behind = other.behind, c.to = mediumOf(c.behind, scene.shaders->media());
+    c.seen = c.from != c.to;
+    points.error[i] *= 4; // beyond both
+  }
+}
+
+} // namespace
+
 void meetBoundaries(RtsBatch& batch, RayState* states, Boundaries& out) {
   const RenderScene& scene = *batch.scene;
   const Points& points = *batch.points;
@@ -39,10 +87,15 @@ void meetBoundaries(RtsBatch& batch, RayState* states, Boundaries& out) {
   out.crossing = batch.arena->take<Crossing>(hits.count);
   out.eta = batch.arena->take<float[3]>(hits.count);
   for (uint32_t i = 0; i < hits.count; i++) {
-    const uint16_t medium = (*scene.shaders)[scene.records[points.record[i]].shader].medium;
-    RayState& ray = states[batch.order[i]];
+    const uint16_t medium = mediumAt(scene, points.record[i]);
+    const RayState& ray = states[batch.order[i]];
     Crossing& c = out.crossing[i] = {ray.media, 0, 0, true, false};
     if (medium) c = cross(ray.media, medium, hits.flags[i] & RTS_HIT_BACK, media);
+  }
+  if (media.size() > 1) crossSharedFaces(batch, out.crossing);
+  for (uint32_t i = 0; i < hits.count; i++) {
+    RayState& ray = states[batch.order[i]];
+    const Crossing& c = out.crossing[i];
     if (c.unknown) absorb(c.from, hits.segment[i], media, ray.throughput);
     for (int k = 0; k < 3; k++) out.eta[i][k] = indexOf(c.from, k, media) / indexOf(c.to, k, media);
     for (uint32_t l = 0; l < batch.lobeCount; l++) {

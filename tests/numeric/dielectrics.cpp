@@ -93,6 +93,27 @@ TEST_P(NestedDielectrics, D11WithWaterFirstTheBoundaryIsTheWaters) {
   expectGrey(look(), through({airGlass, glassWater, waterAir}), 2e-5);
 }
 
+TEST_P(NestedDielectrics, D11ASharedFaceIsOneBoundary) {
+  layers(0, 1, 0);
+  expectGrey(look(), through({airGlass, glassWater, waterAir}), 2e-5);
+}
+
+TEST_P(NestedDielectrics, D11ASharedFaceHasItsPlaceAtAnyDistance) {
+  rtPushMatrix();
+  rtTranslated(1234.5, -321.7, 77.3);
+  rtRotated(33, 1, 2, 3);
+  layers(0, 0, 0);
+  rtPopMatrix();
+  rtPushMatrix();
+  rtLoadIdentity();
+  rtTranslated(1234.5, -321.7, 77.3);
+  rtRotated(33, 1, 2, 3);
+  rtTranslated(.3, .2, 20);
+  rtOrtho(1e-6);
+  rtPopMatrix();
+  expectGrey(render(), through({airGlass, glassWater, waterAir}), 2e-5);
+}
+
 TEST_P(NestedDielectrics, D11AGapIsAir) { // light that interferes is not followed: two boundaries more
   layers(-1e-3, 1, 0);
   expectGrey(look(), through({airGlass, airGlass, waterAir, waterAir}), 2e-5);

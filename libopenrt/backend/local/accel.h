@@ -26,6 +26,7 @@ class Accel final : public Intersector {
   void intersect(const Rays& rays, uint32_t mask, Coherence coherence, RayHits& hits) const override;
   void intersectFronts(const Rays& rays, uint32_t mask, RayHits& hits) const override;
   void occluded(const Rays& rays, uint32_t mask, Coherence coherence, uint8_t* blocked) const override;
+  void intersectOthers(const Rays& rays, const uint32_t* record, RayHits& hits) const override;
   void bounds(float low[3], float high[3]) const override;
 
  private:
@@ -49,8 +50,12 @@ class Accel final : public Intersector {
   struct Filtered {
     const Accel* accel;
     const Level* level;
+    const uint32_t* record = nullptr; // by lane: the one that does not count
   };
+  void intersectFiltered(const Rays& rays, uint32_t mask, RTCFilterFunctionN filter, const uint32_t* record, RayHits& hits) const;
+  static Found foundBy(const RTCFilterFunctionNArguments* a, unsigned i);
   static void rejectBacks(const RTCFilterFunctionNArguments* a);
+  static void rejectRecord(const RTCFilterFunctionNArguments* a);
 
   struct Placed { // a cluster
     uint32_t firstRecord = 0, firstSlot = 0;

@@ -68,20 +68,30 @@ Accel::Found Accel::find(const PartScene& root, uint32_t instance, uint32_t geom
   return {base + part.recordOf[primitive], part.primitiveOf[primitive]};
 }
 
+Accel::Found Accel::foundBy(const RTCFilterFunctionNArguments* a, unsigned i) {
+  const Filtered& self = *static_cast<const Filtered*>(static_cast<const QueryContext*>(a->context)->user);
+  return find(*self.level->scene, RTCHitN_instID(a->hit, a->N, i, 0), RTCHitN_geomID(a->hit, a->N, i),
+              RTCHitN_primID(a->hit, a->N, i));
+}
+
 // Ray and normal are both in the frame of the instance that is being met, if any: the sign of their product is the same in all.
 void Accel::rejectBacks(const RTCFilterFunctionNArguments* a) {
   const Filtered& self = *static_cast<const Filtered*>(static_cast<const QueryContext*>(a->context)->user);
   for (unsigned i = 0; i < a->N; i++) {
     if (a->valid[i] != -1) continue;
-    const Found found = find(*self.level->scene, RTCHitN_instID(a->hit, a->N, i, 0), RTCHitN_geomID(a->hit, a->N, i),
-                             RTCHitN_primID(a->hit, a->N, i));
-    const Record& r = self.accel->records[found.record];
+    const Record& r = self.accel->records[foundBy(a, i).record];
     if (!r.cull) continue;
     const float along = RTCHitN_Ng_x(a->hit, a->N, i) * RTCRayN_dir_x(a->ray, a->N, i) +
                         RTCHitN_Ng_y(a->hit, a->N, i) * RTCRayN_dir_y(a->ray, a->N, i) +
                         RTCHitN_Ng_z(a->hit, a->N, i) * RTCRayN_dir_z(a->ray, a->N, i);
     if (r.flip ? along < 0 : along > 0) a->valid[i] = 0;
   }
+}
+
+void Accel::rejectRecord(const RTCFilterFunctionNArguments* a) {
+  const Filtered& self = *static_cast<const Filtered*>(static_cast<const QueryContext*>(a->context)->user);
+  for (unsigned i = 0; i < a->N; i++)
+    if (a->valid[i] == -1 && foundBy(a, i).record == self.record[RTCRayN_id(a->ray, a->N, i)]) a->valid[i] = 0;
 }
 
 // first: the hits are written; else they hold what the other level found, which ends the rays.
@@ -166,14 +176,23 @@ void Accel::intersect(const Rays& rays, uint32_t mask, Coherence coherence, RayH
   if (top) intersectLevel(topLevel_, rays, mask, coherent, !first, hits);
 }
 
-void Accel::intersectFronts(const Rays& rays, uint32_t mask, RayHits& hits) const {
+void Accel::intersectFiltered(const Rays& rays, uint32_t mask, RTCFilterFunctionN filter, const uint32_t* record,
+                              RayHits& hits) const {
   bool first = true;
   for (const Level* level : {&staticLevel_, &topLevel_}) {
     if (level == &topLevel_ && !(level->masks & mask)) continue;
-    const Filtered filtered{this, level};
-    intersectPackets<Packet8>(*level, rays, mask, {false, rejectBacks, &filtered}, first, hits);
+    const Filtered filtered{this, level, record};
+    intersectPackets<Packet8>(*level, rays, mask, {false, filter, &filtered}, first, hits);
     first = false;
   }
+}
+
+void Accel::intersectFronts(const Rays& rays, uint32_t mask, RayHits& hits) const {
+  intersectFiltered(rays, mask, rejectBacks, nullptr, hits);
+}
+
+void Accel::intersectOthers(const Rays& rays, const uint32_t* record, RayHits& hits) const {
+  intersectFiltered(rays, maskAll, rejectRecord, record, hits);
 }
 
 void Accel::occluded(const Rays& rays, uint32_t mask, Coherence coherence, uint8_t* blocked) const {
