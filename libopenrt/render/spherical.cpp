@@ -15,7 +15,8 @@ void cross(const double a[3], const double b[3], double out[3]) {
 bool normalize(double v[3]) {
   const double length = std::sqrt(dot(v, v));
   if (!(length > 0) || !std::isfinite(length)) return false;
-  for (int k = 0; k < 3; k++) v[k] /= length;
+  const double scale = 1 / length;
+  for (int k = 0; k < 3; k++) v[k] *= scale;
   return true;
 }
 
@@ -38,7 +39,7 @@ void aboutAxis(const double axis[3], double below, double turn, double out[3]) {
 } // namespace
 
 SphericalTriangle::SphericalTriangle(const float corner[3][3], const float eye[3]) {
-  double a[3], b[3], longest = 0;
+  double a[3], b[3];
   for (int k = 0; k < 3; k++) {
     a[k] = double(corner[1][k]) - corner[0][k], b[k] = double(corner[2][k]) - corner[0][k];
     for (int c = 0; c < 3; c++) corner_[c][k] = double(corner[c][k]) - eye[k];
@@ -46,8 +47,10 @@ SphericalTriangle::SphericalTriangle(const float corner[3][3], const float eye[3
   cross(a, b, normal_);
   height_ = dot(corner_[0], normal_);
   const double c[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-  longest = std::max({dot(a, a), dot(b, b), dot(c, c)});
-  far_ = dot(corner_[0], corner_[0]) > 9 * longest;
+  const double longest = std::max({dot(a, a), dot(b, b), dot(c, c)});
+  const double square[3] = {dot(corner_[0], corner_[0]), dot(corner_[1], corner_[1]), dot(corner_[2], corner_[2])};
+  const double nearest = std::min({square[0], square[1], square[2]}), farthest = std::max({square[0], square[1], square[2]});
+  far_ = nearest > 4 * longest && farthest < 2 * nearest;
   if (!std::isfinite(height_)) height_ = 0;
   if (!far_) look();
 }
@@ -56,10 +59,11 @@ void SphericalTriangle::look() {
   double size = 1;
   for (int c = 0; c < 3; c++) {
     const double length = std::sqrt(dot(corner_[c], corner_[c]));
-    for (int k = 0; k < 3; k++) unit_[c][k] = corner_[c][k] / length;
+    const double scale = 1 / length;
+    for (int k = 0; k < 3; k++) unit_[c][k] = corner_[c][k] * scale;
     size *= length;
   }
-  if (!(size > 0) || !std::isfinite(size)) return;
+  if (!(size > 0) || !std::isfinite(size)) return; // also where a length was 0
   volume_ = std::fabs(height_) / size;
   others_ = dot(unit_[0], unit_[2]) + dot(unit_[1], unit_[2]);
   first_ = 1 + dot(unit_[0], unit_[1]);
