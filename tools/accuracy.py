@@ -2,7 +2,7 @@
 """Writes the tables of docs/accuracy.md: runs the numeric tests and the audit of the error bars, and puts what they print between the
 markers of that page. `make accuracy`.
 
-usage: accuracy.py BIN [--seeds N] [--edge N] [--page docs/accuracy.md]
+usage: accuracy.py BIN [--seeds N] [--edge N] [--page docs/accuracy.md] [--only audit|numeric]
 """
 import argparse
 import pathlib
@@ -45,7 +45,7 @@ def numeric(folder):
 def audit(folder, seeds, edge):
     run = subprocess.run([folder / "audit", str(seeds), str(edge)], stdout=subprocess.PIPE, text=True)
     out = [
-        "%d pictures of %dx%d pixels each, seeds 1 to %d, against a long render (edges, room and so on: 8192 to 65536 samples) and the" %
+        "%d pictures of %dx%d pixels each, seeds 1 to %d, against a long render (8192 to 65536 samples) and the" %
         (seeds, edge, edge, seeds),
         "other pictures, or a closed form. Coverage: of trusted intervals that are not exact. Tiles: 5th percentile over those of 8x8",
         "pixels. Cost: mean square error over that of as many independent samples.",
@@ -73,7 +73,7 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("bin", type=pathlib.Path)
     parser.add_argument("--seeds", type=int, default=20)
-    parser.add_argument("--edge", type=int, default=32)
+    parser.add_argument("--edge", type=int, default=16)
     parser.add_argument("--page", type=pathlib.Path, default=pathlib.Path("docs/accuracy.md"))
     parser.add_argument("--only", choices=["audit", "numeric"])
     options = parser.parse_args()
