@@ -12,6 +12,9 @@
 
 #include <fmt/format.h>
 
+#include "openrt/openrt.h"
+#include "picture/picture.h"
+
 namespace picture {
 
 namespace {
@@ -100,6 +103,16 @@ void readHdr(Bytes& in, Radiance& picture) {
   }
 }
 
+void readOpenExr(const std::string& path, Radiance& picture) {
+  const Picture read = readExr(path);
+  setSize(picture, read.width, read.height);
+  const std::vector<float>& rgba = read.planes.at(RT_RGBA);
+  const size_t w = size_t(read.width), h = size_t(read.height);
+  for (size_t y = 0; y < h; ++y)
+    for (size_t x = 0; x < w; ++x)
+      for (size_t c = 0; c < 3; ++c) picture.rgb[3 * (y * w + x) + c] = rgba[4 * ((h - 1 - y) * w + x) + c];
+}
+
 } // namespace
 
 Radiance readRadiance(const std::string& path) {
@@ -111,8 +124,10 @@ Radiance readRadiance(const std::string& path) {
       readPfm(in, picture);
     else if (suffix == "hdr")
       readHdr(in, picture);
+    else if (suffix == "exr")
+      readOpenExr(path, picture);
     else
-      refuse("a picture of radiance was expected (pfm, hdr)");
+      refuse("a picture of radiance was expected (exr, hdr, pfm)");
     for (const float v : picture.rgb)
       if (!(v >= 0) || v > 1e30f) refuse("holds numbers that are no radiance");
   } catch (const std::bad_alloc&) { throw; } catch (const std::exception& error) {

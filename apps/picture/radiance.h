@@ -11,7 +11,7 @@ struct Radiance {
   std::vector<float> rgb; // rows from the bottom up, as rtTexImage2D takes them
 };
 
-// By its suffix: pfm (colour), hdr (Radiance RGBE). Throws std::runtime_error.
+// By its suffix: exr, hdr (Radiance RGBE), pfm (colour). Throws std::runtime_error.
 Radiance readRadiance(const std::string& path);
 
 } // namespace picture

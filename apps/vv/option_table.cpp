@@ -150,7 +150,8 @@ const OptionInfo table[] = {
      },
      true},
     {"--environment", "FILE[:INTENSITY]", "Change",
-     "Light from all around instead of the world's Background: a picture of radiance (hdr, pfm), columns of equal longitude, its "
+     "Light from all around instead of the world's Background: a picture of radiance (exr, hdr, pfm), columns of equal "
+     "longitude, its "
      "middle towards -z.",
      [](Options& o, const std::string& v) {
        const size_t colon = v.rfind(':');

@@ -113,6 +113,13 @@ def test_light_from_all_around(vv):
     vv.write("a.hdr", b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4 +X 8\n" + row(127) * 4)
     red = middle(vv.picture("--environment", "a.hdr", world="empty.wrl"))
     assert red[0] == 255 and red[1] < 20
+    # OpenEXR, its first row above
+    vv.write("halves.wrl", HEADER + "NavigationInfo { headlight FALSE } Viewpoint { } "
+             "Background { skyColor 0 1 0 groundColor [ 0 0 1, 0 0 1 ] groundAngle 1.570796 }")
+    assert vv("halves.wrl", "-o", "sky.exr", "--size", "8x4", "--spp", "1").returncode == 0
+    vv.write("nothing.wrl", HEADER)
+    assert middle(vv.picture("--environment", "sky.exr", "--camera", "0,0,0:0,1,0:0,0,1", world="nothing.wrl")) == (0, 255, 0)
+    assert middle(vv.picture("--environment", "sky.exr", "--camera", "0,0,0:0,-1,0:0,0,1", world="nothing.wrl")) == (0, 0, 255)
     # It lights what is there
     vv.write("ball.wrl", HEADER + "NavigationInfo { headlight FALSE } Viewpoint { position 0 0 3 } Shape { appearance Appearance { "
              "material Material { diffuseColor 1 1 1 } } geometry Sphere { } }")
@@ -124,7 +131,7 @@ def test_light_from_all_around(vv):
 @pytest.mark.parametrize("name, content", [
     ("none.pfm", None), ("empty.pfm", b""), ("short.pfm", b"PF\n8 4\n-1.0\nxxx"), ("huge.pfm", b"PF\n99999 99999\n-1.0\n"),
     ("nan.pfm", b"PF\n1 1\n-1.0\n\0\0\xc0\x7f" + b"\0" * 8), ("grey.pfm", b"Pf\n1 1\n-1.0\n\0\0\0\0"), ("text.hdr", b"hello\n"),
-    ("short.hdr", b"#?RADIANCE\n\n-Y 4 +X 8\n\2\2\0\x08\x88"), ("run.hdr", b"#?RADIANCE\n\n-Y 1 +X 8\n\2\2\0\x08\xff\1"), ("a.txt", b"x"),
+    ("short.hdr", b"#?RADIANCE\n\n-Y 4 +X 8\n\2\2\0\x08\x88"), ("run.hdr", b"#?RADIANCE\n\n-Y 1 +X 8\n\2\2\0\x08\xff\1"), ("a.txt", b"x"), ("text.exr", b"hello"),
 ])
 def test_bad_pictures_of_radiance(vv, name, content):
     if content is not None:

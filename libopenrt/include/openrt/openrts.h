@@ -272,7 +272,8 @@ typedef struct RtsClass {
   const uint8_t* frequency;
   /* Called once for each new set of parameter values, before any other function sees it, and when it goes. Both may change
    * parts of the struct that are no parameters (they are zero before `prepare`): tables made from parameters. `prepare` returns
-   * NULL, or a message for people (static, or kept in the struct); the shader is then not rendered. */
+   * NULL, or a message for people (static, or kept in the struct): it is logged, a surface is then drawn by the default surface
+   * shader, and a light, camera, environment or transport is not there. */
   const char* (*prepare)(const RtsHost* host, void* params);
   void (*release)(const RtsHost* host, void* params);
   /* surface: 1 and the inside of the body, 0: it has none. Called at commit. */
