@@ -98,6 +98,10 @@ class World:
         headlight: Union[str, bool] = ...,
         depth: int = ...,
         channels: Sequence[str] = ...,
+        transport: str = ...,
+        error: float = ...,
+        time_limit: float = ...,
+        clamp: float = ...,
     ) -> Picture: ...
 
 _Triple = Union[Tuple[float, float, float], Sequence[float]]
