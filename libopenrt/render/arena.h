@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <new>
+#include <numeric>
 #include <vector>
 
 namespace openrt {
@@ -38,6 +39,13 @@ class Arena {
   template <class T> T* takeZero(size_t count) {
     T* result = take<T>(count);
     std::memset(result, 0, count * sizeof(T));
+    return result;
+  }
+
+  // 0, 1, 2 ...
+  uint32_t* takeNumbers(uint32_t count) {
+    auto* result = take<uint32_t>(count);
+    std::iota(result, result + count, 0u);
     return result;
   }
 

@@ -36,7 +36,7 @@ struct RtsBatch {
   const openrt::RayState* states = nullptr; // rays of the wave, by lane
   const uint32_t* order = nullptr;          // lanes of the hits; null: the camera's rays, in order
   uint32_t rays = 0;                        // number of these
-  uint32_t* requests = nullptr;             // by hit: rays that it has sent
+  uint32_t* requests = nullptr;             // by hit: rays that it has sent; made with the first
   // Lobes that the shader has asked for (surface).
   RtsLobe lobes[RTS_MAX_LOBES];
   uint32_t lobeCount = 0;

@@ -27,13 +27,7 @@ double areaOf(const float p[3][3], float normal[3]) {
 }
 
 // A map that turns corners the other way around: the kernel's normal does not turn with them.
-bool mirrors(const Record& r) {
-  const auto& m = r.toRender.r;
-  const double d = m[0][0] * (double(m[1][1]) * m[2][2] - double(m[1][2]) * m[2][1]) -
-                   m[0][1] * (double(m[1][0]) * m[2][2] - double(m[1][2]) * m[2][0]) +
-                   m[0][2] * (double(m[1][0]) * m[2][1] - double(m[1][1]) * m[2][0]);
-  return r.instanced && d < 0;
-}
+bool mirrors(const Record& r) { return r.instanced && determinantOf(r.toRender) < 0; }
 
 // Rays that meet places of a record head on.
 struct Looks {
@@ -244,19 +238,16 @@ EmissiveShapes::Place EmissiveShapes::place(const RenderScene& scene, uint32_t n
   const Record& r = scene.records[s.record];
   const double z = 1 - 2.0 * u, round = std::sqrt(std::max(0.0, 1 - z * z)), phi = 2 * M_PI * v;
   const double l[3] = {round * std::cos(phi), round * std::sin(phi), z};
-  double length = 0, n[3], determinant = 0;
+  double length = 0, n[3];
   const auto& m = r.toRender.r;
   for (int k = 0; k < 3; k++) {
     p.position[k] = float(m[k][0] * l[0] + m[k][1] * l[1] + m[k][2] * l[2] + m[k][3]);
     n[k] = r.fromRender.r[0][k] * l[0] + r.fromRender.r[1][k] * l[1] + r.fromRender.r[2][k] * l[2]; // by the inverse transpose
     length += n[k] * n[k];
   }
-  determinant = m[0][0] * (double(m[1][1]) * m[2][2] - double(m[1][2]) * m[2][1]) -
-                m[0][1] * (double(m[1][0]) * m[2][2] - double(m[1][2]) * m[2][0]) +
-                m[0][2] * (double(m[1][0]) * m[2][1] - double(m[1][1]) * m[2][0]);
   length = std::sqrt(length);
   for (int k = 0; k < 3; k++) p.normal[k] = float(n[k] / length);
-  p.area = 4 * M_PI * std::fabs(determinant) * length; // an element of area grows by |det M| |M^-T n|
+  p.area = 4 * M_PI * std::fabs(determinantOf(r.toRender)) * length; // an element of area grows by |det M| |M^-T n|
   return p;
 }
 

@@ -71,13 +71,9 @@ void TileRenderer::addEmitters(const RtsBatch& batch, const Points& points, cons
     const Receiver from = receiverOf(points, i, transmitsAt(batch, i));
     const Sight sight = emitters.choose(from, double(pick[0][i]) + double(pick[1][i]) * 0x1p-24, place[0][i], place[1][i]);
     if (!(sight.density > 0)) continue;
-    float origin[3], behind[3], towards = 0;
-    for (int k = 0; k < 3; k++) {
-      origin[k] = hits.position[k][i], behind[k] = -hits.geometric[k][i];
-      towards -= behind[k] * sight.direction[k];
-    }
-    if (towards < 0) offsetPoint(origin, behind, points.error[i], origin);
-    for (int k = 0; k < 3; k++) rays.org[k][n] = towards < 0 ? origin[k] : from.position[k], rays.dir[k][n] = sight.direction[k];
+    float origin[3];
+    liftPoint(points, i, sight.direction, origin);
+    for (int k = 0; k < 3; k++) rays.org[k][n] = origin[k], rays.dir[k][n] = sight.direction[k];
     rays.tnear[n] = 0;
     rays.tfar[n] = sight.distance * (1 + 0x1p-10f);
     hitOf[n] = i;

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "render/scatter.h"
 #include "render/shadows.h"
@@ -27,16 +26,11 @@ float tilt(const RtsLobe& lobe, const RtsHits& hits, uint32_t i, const float out
   return std::isfinite(t) ? std::fabs(t) : 0.0f;
 }
 
-float largest(const float v[3]) { return std::max({v[0], v[1], v[2]}); }
-
 } // namespace
 
 LightTracer::LightTracer(const RenderScene& scene, const LightSources& sources)
     : scene_(scene), sources_(sources), width_(scene.frame.width), height_(scene.frame.height) {
-  const auto& m = scene.camera.toLocal.r;
-  const double determinant = m[0][0] * (double(m[1][1]) * m[2][2] - double(m[1][2]) * m[2][1]) -
-                             m[0][1] * (double(m[1][0]) * m[2][2] - double(m[1][2]) * m[2][0]) +
-                             m[0][2] * (double(m[1][0]) * m[2][1] - double(m[1][1]) * m[2][0]);
+  const double determinant = determinantOf(scene.camera.toLocal);
   cameraArea_ = std::cbrt(determinant * determinant);
 }
 
@@ -192,8 +186,8 @@ void LightTracer::scatter(const Points& points, const uint32_t* order, const Rts
   }
   Boundaries boundaries{nullptr, nullptr};
   if (shaderClass.medium) meetBoundaries(batch, states_, boundaries);
-  auto *all = arena_.take<uint32_t>(n), *connected = arena_.take<uint32_t>(n);
-  std::iota(all, all + n, 0u);
+  const uint32_t* all = arena_.takeNumbers(n);
+  auto* connected = arena_.take<uint32_t>(n);
   uint32_t count = 0;
   for (uint32_t i = 0; i < n; i++)
     if (states_[order[i]].course != Course::straight) connected[count++] = i;
@@ -237,9 +231,7 @@ void LightTracer::goOn(const RtsBatch& batch, uint32_t i, const LobeSamples* con
   if (!(sum > 0)) return;
   float uv[2];
   sampleAt(state, Pair::first + Pair::perLevel * level_ + Use::choice, uv);
-  float at = uv[0] * sum;
-  uint32_t chosen = 0;
-  while (chosen + 1 < ways.count && at >= carried[chosen]) at -= carried[chosen++];
+  const uint32_t chosen = chooseAmong(carried, ways.count, uv[0] * sum);
   const Way& way = ways.list[chosen];
   if (!(carried[chosen] > 0) || way.lost) return;
   double kept = carried[chosen] / sum;
@@ -263,13 +255,8 @@ void LightTracer::goOn(const RtsBatch& batch, uint32_t i, const LobeSamples* con
 
 void LightTracer::push(const Points& points, uint32_t i, const RayState& state, const float way[3]) {
   if (!(largest(state.throughput) > 0) || !std::isfinite(largest(state.throughput))) return;
-  const RtsHits& h = points.hits;
-  float p[3], n[3], towards = 0;
-  for (int k = 0; k < 3; k++) p[k] = h.position[k][i], n[k] = h.geometric[k][i], towards += n[k] * way[k];
-  if (towards < 0)
-    for (float& x : n) x = -x;
   QueuedRay& ray = next_.emplace_back();
-  offsetPoint(p, n, points.error[i], ray.origin);
+  liftPoint(points, i, way, ray.origin);
   std::copy_n(way, 3, ray.direction);
   ray.state = state;
 }
@@ -341,11 +328,9 @@ void LightTracer::connect(const RtsBatch& batch, const uint32_t* hitNumbers, uin
   for (uint32_t i = 0; i < n; i++) {
     const uint32_t h = hitNumbers[i];
     if (!(seen.weight[i] > 0) || !(sent[0][i] > 0 || sent[1][i] > 0 || sent[2][i] > 0)) continue;
-    float p[3], g[3], side = 0, origin[3];
-    for (int k = 0; k < 3; k++) p[k] = hits.position[k][h], g[k] = hits.geometric[k][h], side += g[k] * towards[k][i];
-    if (side < 0)
-      for (float& x : g) x = -x;
-    offsetPoint(p, g, points.error[h], origin);
+    const float way[3] = {towards[0][i], towards[1][i], towards[2][i]};
+    float origin[3];
+    liftPoint(points, h, way, origin);
     for (int k = 0; k < 3; k++) rays.rays.org[k][count] = origin[k], rays.rays.dir[k][count] = towards[k][i];
     rays.rays.tnear[count] = 0;
     rays.rays.tfar[count] = seen.parallel ? std::numeric_limits<float>::infinity() : distance[i];

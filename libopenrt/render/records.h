@@ -19,6 +19,14 @@ struct Affine { // 3x4: x' = r[0][0..2] . p + r[0][3]
   }
 };
 
+// Of the linear part.
+inline double determinantOf(const Affine& map) {
+  const auto& m = map.r;
+  return m[0][0] * (double(m[1][1]) * m[2][2] - double(m[1][2]) * m[2][1]) -
+         m[0][1] * (double(m[1][0]) * m[2][2] - double(m[1][2]) * m[2][0]) +
+         m[0][2] * (double(m[1][0]) * m[2][1] - double(m[1][1]) * m[2][0]);
+}
+
 // Of an invertible map; zero where it is not.
 inline Affine inverseOf(const Affine& m) {
   const auto& r = m.r;

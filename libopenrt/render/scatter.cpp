@@ -7,7 +7,6 @@
 #include "render/scatter.h"
 
 #include <algorithm>
-#include <numeric>
 
 #include "render/paths.h"
 #include "render/sampler.h"
@@ -21,14 +20,6 @@ namespace {
 
 constexpr uint32_t rouletteFrom = 3;
 
-float largest(const float v[3]) { return std::max({v[0], v[1], v[2]}); }
-
-const uint32_t* countTo(Arena& arena, uint32_t n) {
-  auto* all = arena.take<uint32_t>(n);
-  std::iota(all, all + n, 0u);
-  return all;
-}
-
 } // namespace
 
 // A light's colour is the radiance of a white Lambert surface that faces it (openrts.h), so pi of it arrive.
@@ -39,7 +30,7 @@ void TileRenderer::addLights(RtsBatch& batch, const RtsHits& hits, float* const 
   if (lights == 0) return;
   makeRoomForLight(batch, n);
   ArenaScope scope(arena_);
-  const uint32_t* all = countTo(arena_, n);
+  const uint32_t* all = arena_.takeNumbers(n);
   auto* wanted = arena_.take<uint8_t>(padded(n));
   LobeAnswers answers(arena_, n, &batch);
   float* response[3];
@@ -180,7 +171,7 @@ void TileRenderer::draw(const Random& random, Draw what, uint32_t apart, float* 
 const LobeSamples* TileRenderer::sampleLobe(const RtsBatch& batch, uint32_t l, const RtsHits& hits, const Random& random) {
   auto* samples = new (arena_.take<LobeSamples>(1)) LobeSamples(arena_, hits.count, &batch);
   ArenaScope scope(arena_);
-  const uint32_t* all = countTo(arena_, hits.count);
+  const uint32_t* all = arena_.takeNumbers(hits.count);
   float* square[2];
   draw(random, Draw::direction, l ? hash(l, 0x6c6f6265u) : 0, square);
   samples->sample(batch.lobes[l], hits, hits.count, all, square);
@@ -258,9 +249,7 @@ void TileRenderer::sendOn(const RtsBatch& batch, const Points& points, uint32_t 
     return;
   }
   noteRandom(ray.path);
-  float at = choice * sum;
-  uint32_t chosen = 0;
-  while (chosen + 1 < ways.count && at >= carried[chosen]) at -= carried[chosen++];
+  const uint32_t chosen = chooseAmong(carried, ways.count, choice * sum);
   if (carried[chosen] > 0) send(chosen, carried[chosen] / sum);
 }
 

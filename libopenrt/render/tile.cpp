@@ -204,7 +204,6 @@ RtsBatch TileRenderer::makeBatch(const Paths& paths, const Points& points, const
   RtsBatch batch = makeBatch();
   batch.points = &points;
   batch.states = paths.state, batch.order = order;
-  batch.requests = arena_.takeZero<uint32_t>(points.hits.count);
   return batch;
 }
 
@@ -401,13 +400,8 @@ void TileRenderer::noteFirst(const Points& points, uint32_t i, uint32_t path, fl
 void TileRenderer::push(const Points& points, uint32_t i, uint32_t lane, const Step& step, Paths& paths) {
   const RtsHits& h = points.hits;
   const RayState& from = paths.state[lane];
-  float towards = 0;
-  for (int k = 0; k < 3; k++) towards += h.geometric[k][i] * step.direction[k];
-  const float side = towards > 0 ? 1.0f : -1.0f;
-  const float p[3] = {h.position[0][i], h.position[1][i], h.position[2][i]};
-  const float n[3] = {side * h.geometric[0][i], side * h.geometric[1][i], side * h.geometric[2][i]};
   QueuedRay& ray = next_.emplace_back();
-  offsetPoint(p, n, points.error[i], ray.origin);
+  liftPoint(points, i, step.direction, ray.origin);
   ray.state = from;
   for (int k = 0; k < 3; k++) {
     ray.direction[k] = step.direction[k];

@@ -32,12 +32,7 @@ Rays raysOf(const RtsBatch& batch, const RtsRequest& request, uint32_t* to) {
     if (request.origin[0]) {
       for (int k = 0; k < 3; k++) origin[k] = request.origin[k][i];
     } else {
-      const RtsHits& h = batch.points->hits;
-      float p[3], g[3];
-      for (int k = 0; k < 3; k++) p[k] = h.position[k][hit], g[k] = h.geometric[k][hit];
-      const float side = g[0] * d[0] + g[1] * d[1] + g[2] * d[2] < 0 ? -1.0f : 1.0f;
-      for (float& x : g) x *= side;
-      offsetPoint(p, g, batch.points->error[hit], origin);
+      liftPoint(*batch.points, hit, d, origin);
     }
     for (int k = 0; k < 3; k++) rays.org[k][n] = origin[k], rays.dir[k][n] = d[k];
     rays.tnear[n] = 0, rays.tfar[n] = request.length ? request.length[i] : infinite;
@@ -65,6 +60,7 @@ void TileRenderer::trace(RtsBatch& batch, const RtsRequest& request, float* cons
   for (int k = 0; k < 4; k++)
     if (rgba[k]) std::fill_n(rgba[k], request.count, 0.0f);
   if (request.count == 0 || nesting_ == maxNesting || level_ >= scene_.frame.depth) return;
+  if (!batch.requests) batch.requests = arena_.takeZero<uint32_t>(pointsOf(batch)); // it lives as long as the batch
   ArenaScope scope(arena_);
   auto* to = arena_.take<uint32_t>(request.count);
   Paths paths;
@@ -77,9 +73,8 @@ void TileRenderer::trace(RtsBatch& batch, const RtsRequest& request, float* cons
     const uint32_t hit = request.hit[to[i]];
     const RayState parent = batch.order ? batch.states[batch.order[hit]] : RayState{.path = hit};
     root[i] = root_ ? root_[parent.path] : parent.path;
-    const uint32_t number = batch.requests ? ++batch.requests[hit] : 0;
     RayState& state = paths.state[i] = RayState{.path = i};
-    state.branch = number ? hash(parent.branch + number, level_ + 1) : parent.branch;
+    state.branch = hash(parent.branch + ++batch.requests[hit], level_ + 1);
     state.media = parent.media, state.channel = parent.channel;
     if (batch.points) paths.travelled[i] = state.travelled = batch.points->hits.distance[hit];
   }
@@ -149,14 +144,11 @@ void TileRenderer::askTransport(Paths& paths) {
   const uint32_t n = paths.rays.count;
   float* rgba[4];
   for (auto& a : rgba) a = arena_.takeZero<float>(padded(n));
-  auto* number = arena_.take<uint32_t>(n);
-  for (uint32_t i = 0; i < n; i++) number[i] = i;
   RtsRequest request{};
-  request.count = n, request.hit = number;
+  request.count = n, request.hit = arena_.takeNumbers(n);
   for (int k = 0; k < 3; k++) request.origin[k] = paths.rays.org[k], request.direction[k] = paths.rays.dir[k];
   RtsBatch batch = makeBatch();
   batch.rays = n;
-  batch.requests = arena_.takeZero<uint32_t>(n);
   {
     const RunningShader running(*scene_.transport.shaderClass);
     scene_.transport.shaderClass->radiance(&scene_.host, &batch, scene_.transport.params, &request, rgba);

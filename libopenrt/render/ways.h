@@ -16,6 +16,13 @@ struct Way {
   bool bent, lost; // lost: on the wrong side of the facet
 };
 
+// The share that a number between 0 and the sum of all falls on.
+inline uint32_t chooseAmong(const float* shares, uint32_t count, float at) {
+  uint32_t chosen = 0;
+  while (chosen + 1 < count && at >= shares[chosen]) at -= shares[chosen++];
+  return chosen;
+}
+
 class Ways {
  public:
   static constexpr uint32_t maximum = 6 * RTS_MAX_LOBES;
