@@ -22,18 +22,6 @@ class GlobalLight : public Scene {
     else
       rtRotated(face == 4 ? 90 : -90, 0, 1, 0);
   }
-  static std::vector<float> picture(int edge) {
-    rtFrameBuffer(edge, edge, RT_RGBA);
-    rtRender();
-    std::vector<float> rgba(size_t(4 * edge * edge));
-    rtReadPixels(RT_RGBA, rgba.data(), rgba.size());
-    return rgba;
-  }
-  static double mean(const std::vector<float>& rgba) {
-    double sum = 0;
-    for (size_t i = 0; i < rgba.size(); i += 4) sum += double(rgba[i]);
-    return sum / (double(rgba.size()) / 4);
-  }
 };
 
 TEST_F(GlobalLight, G5RouletteDoesNotChangeTheMean) { // Le / (1 - rho), of which roulette sees all but the first terms

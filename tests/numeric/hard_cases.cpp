@@ -14,18 +14,6 @@ class HardCases : public Scene {
   static RTid glow(double r, double g, double b) {
     return Shader("VRML97").set("diffuseColor", {0, 0, 0}).set("emissiveColor", {r, g, b});
   }
-  static std::vector<float> picture(int edge) {
-    rtFrameBuffer(edge, edge, RT_RGBA);
-    rtRender();
-    std::vector<float> rgba(size_t(4 * edge * edge));
-    rtReadPixels(RT_RGBA, rgba.data(), rgba.size());
-    return rgba;
-  }
-  static double mean(const std::vector<float>& rgba) {
-    double sum = 0;
-    for (size_t i = 0; i < rgba.size(); i += 4) sum += double(rgba[i]);
-    return sum / (double(rgba.size()) / 4);
-  }
   static size_t missed(const std::vector<RTray>& rays) {
     std::vector<RThit> hits(rays.size());
     rtCastRays(rays.size(), rays.data(), hits.data());

@@ -32,19 +32,11 @@ class LightTracing : public Scene {
     rtPerspective(fovy);
     rtPopMatrix();
   }
-  static std::vector<float> picture(int edge, int samples, uint32_t channels = RT_RGBA) {
-    rtFrameBuffer(edge, edge, channels);
+  static std::vector<float> picture(int edge, int samples) {
     rtQuality(RT_SAMPLES_PER_PIXEL, samples);
-    rtRender();
-    std::vector<float> out(size_t(4) * size_t(edge) * size_t(edge));
-    rtReadPixels(RT_RGBA, out.data(), out.size());
+    std::vector<float> out = Scene::picture(edge);
     EXPECT_EQ(rtGetError(), RTenum(RT_NO_ERROR)) << rtGetErrorMessage();
     return out;
-  }
-  static double mean(const std::vector<float>& rgba) {
-    double sum = 0;
-    for (size_t i = 0; i < rgba.size(); i += 4) sum += rgba[i];
-    return sum / (double(rgba.size()) / 4);
   }
 };
 

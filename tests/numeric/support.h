@@ -170,6 +170,21 @@ class Scene : public testing::Test {
     return pixel;
   }
 
+  // A square picture, rgba by pixel.
+  static std::vector<float> picture(int edge) {
+    rtFrameBuffer(edge, edge, RT_RGBA);
+    rtRender();
+    std::vector<float> rgba(size_t(4 * edge * edge));
+    rtReadPixels(RT_RGBA, rgba.data(), rgba.size());
+    return rgba;
+  }
+  // Of its first colour.
+  static double mean(const std::vector<float>& rgba) {
+    double sum = 0;
+    for (size_t i = 0; i < rgba.size(); i += 4) sum += double(rgba[i]);
+    return sum / (double(rgba.size()) / 4);
+  }
+
   static RTid texture(int components, std::initializer_list<float> texel) {
     RTid id = 0;
     rtGenTextures(1, &id);
