@@ -18,6 +18,8 @@ pkg_check_modules(GLU REQUIRED IMPORTED_TARGET glu)
 pkg_check_modules(ZSTD REQUIRED IMPORTED_TARGET libzstd)
 pkg_check_modules(XXHASH REQUIRED IMPORTED_TARGET libxxhash)
 pkg_check_modules(FFMPEG IMPORTED_TARGET libavformat libavcodec libswscale libavutil) # films; without them MovieTextures stand still
+pkg_check_modules(SECCOMP IMPORTED_TARGET libseccomp) # without it untrusted scripts are held by resource limits alone
+pkg_check_modules(SDL2 IMPORTED_TARGET sdl2)           # without it vv opens no window
 find_package(fmt REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(nlohmann_json REQUIRED)

@@ -14,8 +14,10 @@ build=(
   libavcodec-dev libavformat-dev libswscale-dev # films; the build does without, too
   libfreetype-dev libharfbuzz-dev libfontconfig-dev fonts-dejavu-core libglu1-mesa-dev # text, polygons
   python3 python3-dev python3-numpy pybind11-dev
+  duktape-dev tcl-dev tk-dev libffi-dev libseccomp-dev # script engines, each built where its library is; their cage
+  libsdl2-dev                                          # the window
 )
-tests=(libgtest-dev librapidcheck-dev libbenchmark-dev python3-pytest python3-hypothesis python3-pil)
+tests=(libgtest-dev librapidcheck-dev libbenchmark-dev python3-pytest python3-hypothesis python3-pil xvfb xdotool)
 dev=(clang-14 clang-format-14 clang-tidy-14 libclang-rt-14-dev llvm-14)
 
 wanted=("${build[@]}" "${tests[@]}")

@@ -87,6 +87,7 @@ bool ScriptHost::makeInterpreter(Script& script, ScriptProgram program) {
   info.text = {script.text.c_str(), script.text.size()};
   info.fieldCount = uint32_t(script.fields.size());
   info.fields = script.fields.data();
+  info.memory = options_.scriptMemory;
   bool made = false;
   const XsResult result = call(script, "create", [&] {
     const XsResult answer = script.engine->create(table_.get(), &script.info, &script.interpreter);

@@ -297,6 +297,19 @@ struct HostTable {
     *out = {script->error.c_str(), script->error.size()};
     return XS_OK;
   }
+
+  // --- The library's own objects ---
+
+  static void* object(Host table, XsNode self, XsNode number) {
+    ScriptHost& host = hostOf(table);
+    Script* script = host.find(self);
+    if (!script || !script->flag(XS_TRUSTED)) return nullptr;
+    return number ? static_cast<void*>(script->handles.find(number)) : static_cast<void*>(&host.browser_);
+  }
+  static XsNode number(Host table, XsNode self, void* object) {
+    Script* script = hostOf(table).find(self);
+    return script && script->flag(XS_TRUSTED) && object ? script->handles.give(static_cast<Node*>(object)) : 0;
+  }
 };
 
 ScriptHost::Table::Table(ScriptHost& host)
@@ -327,7 +340,9 @@ ScriptHost::Table::Table(ScriptHost& host)
              HostTable::now,
              HostTable::shouldStop,
              HostTable::log,
-             HostTable::lastError},
+             HostTable::lastError,
+             HostTable::object,
+             HostTable::number},
       host(host) {}
 
 } // namespace xvrml

@@ -24,6 +24,13 @@ struct BrowserOptions {
   bool allowNetwork = false;            // tells script engines that their programs may use the network
   uint64_t scriptSteps = 1'000'000'000; // that one call into a Script may take, as its engine counts them; then it is stopped
   double scriptSeconds = 2;             // of the clock on the wall, for the same
+  uint64_t scriptMemory = 256 << 20;    // bytes that one Script's program may use
+  // Programs of untrusted worlds run in processes of their own, which can do nothing but compute; never: in this one, where one
+  // that does not end, or takes all memory, takes the program with it; always: trusted ones, too, as far as they can.
+  enum class Isolation : uint8_t { automatic, never, always } scriptIsolation = Isolation::automatic;
+  // Seconds that a call waits for a Script in a process of its own; what it sends later belongs to a later tick. 0: as long as it
+  // runs, so that the same input gives the same world on any machine.
+  double scriptPatience = 0;
   std::function<void(const std::string& text)> print; // what Scripts print; null: notes in world().diagnostics
   // loadUrl asks here first: true: the application has taken care of it.
   std::function<bool(const std::vector<std::string>& urls, const std::vector<std::string>& parameters)> loadUrl;

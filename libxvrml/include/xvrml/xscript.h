@@ -20,7 +20,7 @@
 
 #define XS_MAGIC 0x50435358u /* "XSCP" */
 #define XS_ABI_MAJOR 1       /* a host refuses another major number */
-#define XS_ABI_MINOR 0       /* grows with every field appended; a host accepts minors up to its own */
+#define XS_ABI_MINOR 1       /* grows with every field appended; a host accepts minors up to its own */
 
 #ifdef __cplusplus
 extern "C" {
@@ -127,6 +127,8 @@ typedef struct XsScriptInfo {
   XsString text;      /* the program: what stands behind the scheme, or the file's bytes */
   uint32_t fieldCount;
   const XsField* fields; /* what the Script declares, in order, without url, directOutput and mustEvaluate */
+  /* --- 1.1 --- */
+  uint64_t memory; /* bytes that the program may use, if the engine can tell; beyond it fails as want of memory. 0: no limit */
 } XsScriptInfo;
 
 typedef struct XsEvent {
@@ -142,7 +144,9 @@ typedef uint64_t XsInterpreter;
 
 /* XsEngine.flags */
 enum {
-  XS_NEEDS_TRUST = 1 /* its programs can do whatever the user can: they run in trusted worlds only */
+  XS_NEEDS_TRUST = 1, /* its programs can do whatever the user can: they run in trusted worlds only */
+  XS_HARMLESS = 2     /* 1.1: its programs always end soon, use little memory and reach nothing but the host's functions: they run
+                         in the browser's process in worlds that are not trusted, too */
 };
 
 typedef struct XsEngine {
@@ -170,6 +174,10 @@ typedef struct XsEngine {
   /* Each time the world's time moves on, before its events: for engines with sources of events of their own, as windows or
    * another process. What is sent belongs to this time. */
   XsResult (*tick)(XsInterpreter interpreter, double time);
+  /* --- 1.1 --- */
+  /* Before the first `create` in a process for programs that are not trusted: afterwards no file can be opened, no thread or
+   * process started, no socket made, and memory is limited. What the language needs of these it does here. Optional. */
+  XsResult (*prepare)(void);
 } XsEngine;
 
 typedef struct XsPlugin {
@@ -244,6 +252,14 @@ struct XsHost {
   void (*log)(const XsHost* host, XsNode self, int32_t severity, uint32_t line, XsString text);
   /* Why the last call that did not answer XS_OK could not be done. */
   XsResult (*lastError)(const XsHost* host, XsNode self, XsString* out);
+
+  /* --- 1.1: for engines that share the host's own library, as Python's binding does. Trusted worlds in the browser's process
+   * only; else NULL and 0. --- */
+  /* The host's object (xvrml::Node*) of a node; of node 0 the xvrml::Browser* that runs the Script. It lives as long as the
+   * number is good. */
+  void* (*object)(const XsHost* host, XsNode self, XsNode node);
+  /* The number of such a node, as if it had been read from a field; 0 if there is none. */
+  XsNode (*number)(const XsHost* host, XsNode self, void* object);
 };
 
 #if defined(_WIN32)

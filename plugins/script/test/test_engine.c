@@ -343,7 +343,7 @@ static const char* const mimeTypes[] = {"text/x-test", NULL};
 static const char* const suffixes[] = {".test", NULL};
 static const char* const trustedSchemes[] = {"trusted-test", NULL};
 static const XsEngine engine = {sizeof(XsEngine),
-                                0,
+                                XS_HARMLESS,
                                 "test",
                                 "lines of commands, for tests",
                                 schemes,
@@ -355,7 +355,8 @@ static const XsEngine engine = {sizeof(XsEngine),
                                 event,
                                 processed,
                                 shutdown,
-                                tick};
+                                tick,
+                                NULL};
 static const XsEngine trusted = {sizeof(XsEngine),
                                  XS_NEEDS_TRUST,
                                  "trusted",
@@ -369,6 +370,7 @@ static const XsEngine trusted = {sizeof(XsEngine),
                                  event,
                                  processed,
                                  shutdown,
+                                 NULL,
                                  NULL};
 static const XsEngine* const engines[] = {&engine, &trusted};
 XS_EXPORT const XsPlugin xsPlugin = {XS_MAGIC, XS_ABI_MAJOR, XS_ABI_MINOR, sizeof(XsPlugin), 2, engines};

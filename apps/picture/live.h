@@ -1,0 +1,67 @@
+// live.h: renders a running world while its user goes on working: a frame is started and looked after, never waited for. One
+// OpenRT context and one mapper on a thread of their own, as in renderer.h. Called by one thread, the browser's.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "picture/renderer.h"
+
+namespace picture {
+
+// A frame to be made. Fewer pixels and samples come sooner; the picture is refined from 1 sample a pixel on and can be looked at
+// at any time. However often it was looked at, the finished picture has the bytes of Renderer::render with the same samples.
+struct LiveFrame {
+  View view;
+  int width = 0, height = 0;
+  int samples = 1;
+};
+
+// What can be seen of a frame by now.
+struct LivePicture {
+  int width = 0, height = 0;
+  std::vector<uint8_t> rgb; // display bytes, first row at the top
+  double samples = 0;       // taken so far, mean over the pixels
+  double seconds = 0;       // since the frame was started
+  bool finished = false;    // all samples are taken: map and stats hold
+  xvrml::MapStats map{};
+  RTstats stats{};
+};
+
+class LiveRenderer {
+ public:
+  // Returns at once; the world's geometry is read with the first frame. The browser must live as long as the renderer.
+  LiveRenderer(xvrml::Browser& browser, const RenderSettings& settings);
+  ~LiveRenderer();
+  LiveRenderer(const LiveRenderer&) = delete;
+  LiveRenderer& operator=(const LiveRenderer&) = delete;
+
+  enum class State : uint8_t {
+    idle,
+    mapping,  // the world is being read: the browser and its nodes must be left alone
+    rendering // the browser may go on; the frame shows the world as it was
+  };
+  State state() const;
+  // Only if idle. Takes the browser's changes and returns at once.
+  void start(const LiveFrame& frame);
+  // The frame in flight ends soon; what is finished of it stays visible. No frame: nothing happens.
+  void cancel();
+  // The frame in flight or the last one as far as it is finished, if there is more of it than at the last call; never waits.
+  bool look(LivePicture& picture);
+  // The same with all channels of the settings, for a file; false before the first frame.
+  bool copy(Picture& picture);
+  // Quality of the following frames. [idle]
+  void change(const std::function<void(RenderSettings&)>& change);
+  const std::vector<xvrml::ViewpointInfo>& viewpoints() const; // after the first mapping; [not while mapping]
+  xvrml::Bounds bounds() const;                                // the same
+  // Why the last frame could not be made (RenderError's text), once; "" if nothing was wrong.
+  std::string takeFailure();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+} // namespace picture
