@@ -19,9 +19,9 @@ namespace xvrml {
 struct BrowserOptions {
   uint64_t maximumEvents = 1'000'000; // of one cascade
   bool runScripts = true;
-  std::string scriptPath; // folders of script engines, separated by colons, before $XVRML_SCRIPT_PATH and the installed one
-  bool trustScripts = false;            // Scripts may use engines whose programs can do whatever the user can
-  bool allowNetwork = false;            // tells script engines that their programs may use the network
+  std::string scriptPath;    // folders of script engines, separated by colons, before $XVRML_SCRIPT_PATH and the installed one
+  bool trustScripts = false; // Scripts may use engines whose programs can do whatever the user can
+  bool allowNetwork = false; // tells script engines that their programs may use the network
   uint64_t scriptSteps = 1'000'000'000; // that one call into a Script may take, as its engine counts them; then it is stopped
   double scriptSeconds = 2;             // of the clock on the wall, for the same
   uint64_t scriptMemory = 256 << 20;    // bytes that one Script's program may use
