@@ -55,6 +55,10 @@ void setQuality(Context& c, RTenum name, int value) {
     within(0, maxReplicates);
     frame.replicates = static_cast<uint32_t>(value);
     break;
+  case RT_PROGRESSIVE:
+    within(0, 1);
+    frame.progressive = value == 1;
+    break;
   default: fail(RT_INVALID_ENUM, "unknown quality " + std::to_string(name));
   }
   c.scene.frameDirty = true;
