@@ -28,6 +28,7 @@ void Browser::tick(double time) {
   impl_->workOff();
 }
 FieldChanges Browser::takeChanges() { return impl_->engine->takeChanges(); }
+bool Browser::hasChanges() const { return impl_->engine->hasChanges(); }
 uint64_t Browser::generation() const { return impl_->generation; }
 
 NodeRef Browser::node(std::string_view name) const {

@@ -133,7 +133,7 @@ void Browser::createVrmlFromUrl(const std::vector<std::string>& urls, Node& node
 
 void Browser::loadUrl(const std::vector<std::string>& urls, const std::vector<std::string>& parameters, const std::string& base) {
   impl_->later([this, urls, parameters, base = base.empty() ? impl_->world->path : base] {
-    if (impl_->options.loadUrl && impl_->options.loadUrl(urls, parameters)) return;
+    if (impl_->options.loadUrl && impl_->options.loadUrl(urls, parameters, base)) return;
     const auto bind = [&](const std::string& name) {
       const NodeRef view = node(name);
       if (!view || !impl_->engine->dispatch(*view, "set_bind", true))

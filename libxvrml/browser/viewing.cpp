@@ -19,6 +19,16 @@ BoundNodes Browser::bound() const { return interactionOf(*impl_->engine).binding
 
 CameraSettings Browser::camera(double aspect) const { return interactionOf(*impl_->engine).viewer.camera(aspect); }
 
+void Browser::placeViewer(const double view[16]) {
+  Engine& engine = *impl_->engine;
+  if (engine.settling()) return;
+  engine.beginCascade(engine.now());
+  interactionOf(engine).viewer.moveTo(fromArray(view));
+  interactionOf(engine).navigation.rest();
+  engine.settle();
+  impl_->workOff();
+}
+
 void Browser::setTransition(double seconds) { interactionOf(*impl_->engine).viewer.setTransition(seconds); }
 
 std::vector<ViewpointName> Browser::viewpoints() const {

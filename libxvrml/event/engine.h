@@ -81,6 +81,7 @@ class Engine : public Events {
   void unlisten(Node& node, uint64_t number);
   void markReach(Node& node, const FieldInfo& in, const std::string& reason);
   FieldChanges takeChanges();
+  bool hasChanges() const { return !changes_.empty() || !outdated_.empty(); }
   uint64_t delivered() const { return delivered_; } // events so far
   uint64_t structure() const { return structure_; } // grows whenever nodes get or lose a parent or become roots or no longer
   uint64_t cascade() const { return cascade_; }

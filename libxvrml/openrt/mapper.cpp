@@ -94,8 +94,10 @@ CameraSettings OpenRTMapper::viewpointCamera(size_t index) const {
 
 CameraSettings OpenRTMapper::fitCamera(double fovy) const {
   const CameraSettings first = viewpointCamera(size_t(std::max(0, boundViewpoint())));
-  return cameraAround(impl_->bounds(), fromArray(first.matrix), fovy, impl_->options.aspect);
+  return cameraAround(impl_->bounds(), first.matrix, fovy, impl_->options.aspect);
 }
+
+void OpenRTMapper::setHeadlight(MapOptions::Headlight headlight) { impl_->options.headlight = headlight; }
 
 Bounds OpenRTMapper::bounds() const { return impl_->bounds(); }
 

@@ -104,11 +104,20 @@ Extents measure(const Bounds& b, const Matrix& view, const Vector& center, doubl
 }
 } // namespace
 
-CameraSettings cameraAround(const Bounds& bounds, const Matrix& view, double fovy, double aspect) {
-  CameraSettings camera = cameraOf(nullptr, Matrix(), aspect);
+bool hasHeadlight(const Bound& bound) {
+  const auto* info = nodeCast<nodes::NavigationInfo>(bound.navigationInfo);
+  return !info || info->headlight;
+}
+
+} // namespace xvrml::mapping
+
+namespace xvrml {
+
+CameraSettings cameraAround(const Bounds& bounds, const double view[16], double fovy, double aspect) {
+  CameraSettings camera = mapping::cameraOf(nullptr, Matrix(), aspect);
   camera.fovy = fovy >= 0 && fovy < 3.14 ? fovy : camera.fovy;
   const double margin = 1.1, ratio = aspect > 0 ? aspect : 1;
-  const Matrix axes = rotationOnly(view);
+  const Matrix axes = rotationOnly(fromArray(view));
   if (bounds.empty) {
     if (camera.fovy == 0) camera.height = 10;
     return camera;
@@ -117,7 +126,7 @@ CameraSettings cameraAround(const Bounds& bounds, const Matrix& view, double fov
       high(bounds.maximum[0], bounds.maximum[1], bounds.maximum[2]);
   const Vector center = (low + high) / 2;
   const double tanY = std::tan(camera.fovy / 2) / margin, size = (high - low).length();
-  const Extents e = measure(bounds, axes, center, tanY * ratio, tanY);
+  const mapping::Extents e = mapping::measure(bounds, axes, center, tanY * ratio, tanY);
   double distance = e.front;
   if (camera.fovy == 0) {
     camera.height = 2 * margin * std::max(e.y, e.x / ratio);
@@ -129,9 +138,4 @@ CameraSettings cameraAround(const Bounds& bounds, const Matrix& view, double fov
   return camera;
 }
 
-bool hasHeadlight(const Bound& bound) {
-  const auto* info = nodeCast<nodes::NavigationInfo>(bound.navigationInfo);
-  return !info || info->headlight;
-}
-
-} // namespace xvrml::mapping
+} // namespace xvrml

@@ -26,8 +26,6 @@ std::vector<ViewpointInfo> listViewpoints(const Graph& graph, const Places& plac
 
 // The camera of a Viewpoint node whose parent stands under a matrix; of the standard's default for null.
 CameraSettings cameraOf(const Node* viewpoint, const Matrix& parent, double aspect);
-// A camera that looks along the view's -z from where all of bounds is in the picture.
-CameraSettings cameraAround(const Bounds& bounds, const Matrix& view, double fovy, double aspect);
 // False only if the bound NavigationInfo says so (clause 6.29: the default has a headlight).
 bool hasHeadlight(const Bound& bound);
 

@@ -32,8 +32,9 @@ struct BrowserOptions {
   // runs, so that the same input gives the same world on any machine.
   double scriptPatience = 0;
   std::function<void(const std::string& text)> print; // what Scripts print; null: notes in world().diagnostics
-  // loadUrl asks here first: true: the application has taken care of it.
-  std::function<bool(const std::vector<std::string>& urls, const std::vector<std::string>& parameters)> loadUrl;
+  // loadUrl asks here first: true: the application has taken care of it. base: file that relative URLs are relative to.
+  std::function<bool(const std::vector<std::string>& urls, const std::vector<std::string>& parameters, const std::string& base)>
+      loadUrl;
 };
 
 class Browser {
@@ -52,6 +53,7 @@ class Browser {
   void tick(double time);
   // What changed since the last call; for OpenRTMapper::update. Another world (generation()) begins with an empty list.
   FieldChanges takeChanges();
+  bool hasChanges() const; // takeChanges would return some
   // Grows by one with every world that takes the place of the former (loadUrl, replaceWorld): make a new mapper.
   uint64_t generation() const;
 
@@ -72,6 +74,9 @@ class Browser {
   BoundNodes bound() const;
   // Where the viewer is: the bound Viewpoint, and how far navigation has led away from it. aspect: width / height.
   CameraSettings camera(double aspect) const;
+  // Puts the viewer somewhere else, as navigation does. view: camera to world, column-major, rotation and translation only; one
+  // that is not finite is not taken.
+  void placeViewer(const double view[16]);
   // Seconds of the world's time in which the picture follows when the viewer jumps to another Viewpoint; 0, as at first: at once.
   void setTransition(double seconds);
   std::vector<ViewpointName> viewpoints() const; // in the order of the files, Inlines and prototypes included

@@ -27,6 +27,9 @@ struct MapOptions {
   double aspect = 4.0 / 3.0; // width / height: the smaller angle of view is the Viewpoint's fieldOfView (clause 6.53)
 };
 
+// A camera that looks along the view's -z (camera to world, column-major) from where all of bounds is in the picture.
+CameraSettings cameraAround(const Bounds& bounds, const double view[16], double fovy, double aspect);
+
 struct MapStats {
   uint64_t shapes = 0, triangles = 0, lights = 0, textures = 0, objects = 0, instances = 0;
   uint64_t missingTextures = 0; // ImageTextures and panoramas without a picture that could be read
@@ -68,6 +71,8 @@ class OpenRTMapper {
   // From here on these nodes (camera.h) are bound; without a call those that are first in the file are. Takes effect with the
   // next map().
   void bind(const BoundNodes& bound);
+  // Instead of MapOptions::headlight, from the next map() on.
+  void setHeadlight(MapOptions::Headlight headlight);
   // Between frames, with what the world's takeChanges() returned: does what the changes cost, and no more. A world whose
   // nodes change without records of it must get a mapper anew.
   void update(const FieldChanges& changes);

@@ -123,7 +123,9 @@ TEST(BrowserObject, AnotherWorldTakesThePlaceOfThisOne) {
 TEST(BrowserObject, AnApplicationMayLoadItself) {
   BrowserOptions options;
   std::vector<std::string> asked;
-  options.loadUrl = [&](const std::vector<std::string>& urls, const std::vector<std::string>& parameters) {
+  options.loadUrl = [&](const std::vector<std::string>& urls, const std::vector<std::string>& parameters,
+                        const std::string& base) {
+    EXPECT_EQ(base, "test.wrl");
     asked = urls;
     asked.insert(asked.end(), parameters.begin(), parameters.end());
     return true;

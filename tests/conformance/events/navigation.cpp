@@ -303,5 +303,27 @@ TEST(Keys, PagesLeadThroughTheViewpointsWithADescriptionAndHomeBack) {
   EXPECT_FALSE(r.browser.bindViewpoint("nowhere"));
 }
 
+TEST(Viewer, AProgramMayPutItAnywhere) {
+  Running r("DEF V Viewpoint { position 0 0 10 } DEF W Viewpoint { position 1 0 0 } DEF T Transform { translation 0 2 0 }");
+  double place[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 3, 4, 5, 1};
+  r.browser.placeViewer(place);
+  EXPECT_EQ(eyeOf(r.browser), "3 4 5");
+  place[12] = NAN;
+  r.browser.placeViewer(place);
+  EXPECT_EQ(eyeOf(r.browser), "3 4 5");
+  r.browser.key(Key::home, true);
+  EXPECT_EQ(eyeOf(r.browser), "0 0 10");
+}
+
+TEST(Viewer, WhatHasChangedCanBeAskedWithoutTakingIt) {
+  Running r("DEF T Transform { translation 0 2 0 }");
+  r.browser.takeChanges();
+  EXPECT_FALSE(r.browser.hasChanges());
+  r.set("T", "translation", Vec3f{1, 2, 3});
+  EXPECT_TRUE(r.browser.hasChanges());
+  EXPECT_EQ(r.browser.takeChanges().size(), 1u);
+  EXPECT_FALSE(r.browser.hasChanges());
+}
+
 } // namespace
 } // namespace xvrml
