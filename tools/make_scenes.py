@@ -9,70 +9,8 @@ import struct
 import sys
 import zlib
 
-HEADER = "#VRML V2.0 utf8\n"
-
-
-def number(x):
-    text = f"{x:.5g}"
-    return "0" if text == "-0" else text
-
-
-def numbers(values):
-    return " ".join(number(v) for v in values)
-
-
-def shader(name, file, *options):
-    """An ORTAppearance; shared where it has a DEF name in the caller's text."""
-    listed = " ".join(f'"{o}"' for o in options)
-    return f'ORTAppearance {{ shader ORTShader {{ name "{name}" file "{file}" options [ {listed} ] }} }}'
-
-
-def shape(appearance, geometry):
-    return f"Shape {{ appearance {appearance} geometry {geometry} }}"
-
-
-def at(place, *children, turn=None):
-    rotation = f" rotation {numbers(turn)}" if turn else ""
-    return f"Transform {{ translation {numbers(place)}{rotation} children [\n  " + "\n  ".join(children) + " ] }"
-
-
-def box(*size):
-    return f"Box {{ size {numbers(size)} }}"
-
-
-def quad(a, b, c, d, solid=False):
-    """Faces the side from which a b c d run counter-clockwise."""
-    points = ", ".join(numbers(p) for p in (a, b, c, d))
-    return (f"IndexedFaceSet {{ solid {'TRUE' if solid else 'FALSE'} coord Coordinate {{ point [ {points} ] }} "
-            "coordIndex [ 0 1 2 3 ] }")
-
-
-def lathe(profile, steps=48, crease=0.6, solid=False):
-    """The surface that a line of points (distance from the axis, place on it) sweeps about +z: an Extrusion along a circle.
-    Seen along the line, from its first point to its last, the outside is on the right when the axis is on the left."""
-    circle = [(math.cos(2 * math.pi * i / steps), math.sin(2 * math.pi * i / steps), 0) for i in range(steps)]
-    spine = ", ".join(numbers(p) for p in circle + circle[:1])
-    section = ", ".join(numbers((r - 1, z)) for r, z in profile)
-    return (f"Extrusion {{ beginCap FALSE endCap FALSE solid {'TRUE' if solid else 'FALSE'} creaseAngle {crease}\n"
-            f"    spine [ {spine} ]\n    crossSection [ {section} ] }}")
-
-
-def world(title, view, *parts):
-    return (HEADER + f'WorldInfo {{ title "{title}" }}\nNavigationInfo {{ type "EXAMINE" headlight FALSE }}\n{view}\n'
-            + "\n".join(parts) + "\n")
-
-
-def viewpoint(position, target, angle, kind="Viewpoint", extra=""):
-    """Looks at a target, with +y up: two turns in one."""
-    x, y, z = (t - p for t, p in zip(target, position))
-    yaw, pitch = math.atan2(-x, -z), math.atan2(y, math.hypot(x, z))
-    # quaternion of the turn about y after the turn about x
-    cy, sy, cp, sp = math.cos(yaw / 2), math.sin(yaw / 2), math.cos(pitch / 2), math.sin(pitch / 2)
-    w, q = cy * cp, (cy * sp, sy * cp, -sy * sp)
-    length = math.hypot(*q)
-    axis = [c / length for c in q] if length > 0 else [0, 0, 1]
-    turn = 2 * math.atan2(length, w)
-    return f"{kind} {{ position {numbers(position)} orientation {numbers(axis + [turn])} fieldOfView {number(angle)} {extra}}}"
+from scenes.chess import chess
+from scenes.parts import at, box, lathe, number, numbers, quad, shader, shape, viewpoint, world
 
 
 def glass_ball():
@@ -326,7 +264,7 @@ def studio():
             + chunk(b"IDAT", zlib.compress(rows, 9)) + chunk(b"IEND", b""))
 
 
-SCENES = [glass_ball, mirror_corridor, cornell, furnace, caustic, car_paint, carved, interior, headlight, board]
+SCENES = [glass_ball, mirror_corridor, cornell, furnace, caustic, car_paint, carved, interior, headlight, board, chess]
 
 
 def main():

@@ -106,7 +106,7 @@ RTid Surfaces::customSurface(Node& appearance, nodes::ORTShader& node) {
       const auto number = [&](const char* name, float value) {
         if (takes(name, RT_PARAM_FLOAT)) shader.number(name, value, 0, 1);
       };
-      color("diffuseColor", m->diffuseColor);
+      color(takes("diffuseColor", RT_PARAM_COLOR) ? "diffuseColor" : "color", m->diffuseColor); // of Plastic, CarPaint
       color("emissiveColor", m->emissiveColor);
       color("specularColor", m->specularColor);
       number("ambientIntensity", m->ambientIntensity);

@@ -62,6 +62,21 @@ TEST_F(MapShaders, AMaterialGoesToAShaderThatKnowsIt) {
   silent();
 }
 
+TEST_F(MapShaders, DiffuseColorIsWhatAShaderCallsColor) {
+  load(dark + std::string("DirectionalLight { }") +
+       square("ORTAppearance { material DEF M Material { diffuseColor 0 1 0 } shader DEF S ORTShader { name \"Plastic\" file "
+              "\"plastic\" options \"1f index 1\" } }"));
+  EXPECT_FLOAT_EQ(seen()[0], 0);
+  EXPECT_FLOAT_EQ(seen()[1], 1);
+  send("M", "set_diffuseColor", Color{1, 0, 0});
+  EXPECT_FLOAT_EQ(seen()[0], 1);
+  EXPECT_FLOAT_EQ(seen()[1], 0);
+  send("S", "set_options", MFString{"1f index 1", "color color 0 0 .5"});
+  EXPECT_FLOAT_EQ(seen()[0], 0) << "options have the last word";
+  EXPECT_FLOAT_EQ(seen()[2], 0.5f);
+  silent();
+}
+
 TEST_F(MapShaders, LightsByShader) {
   load(dark + square("Appearance { material Material { diffuseColor 1 1 1 } }") +
        "Transform { translation 0 0 4 children DEF L ORTLight { shader DEF S ORTShader { name \"VRML97PointLight\" options "
