@@ -14,7 +14,7 @@ namespace picture {
 // A frame to be made. Fewer pixels and samples come sooner; the picture is refined from 1 sample a pixel on and can be looked at
 // at any time. However often it was looked at, the finished picture has the bytes of Renderer::render with the same samples.
 struct LiveFrame {
-  View view;
+  View view; // viewer set: looked at from there; else from the bound Viewpoint, where the browser's viewer has gone from it
   int width = 0, height = 0;
   int samples = 1;
 };
@@ -22,10 +22,12 @@ struct LiveFrame {
 // What can be seen of a frame by now.
 struct LivePicture {
   int width = 0, height = 0;
-  std::vector<uint8_t> rgb; // display bytes, first row at the top
-  double samples = 0;       // taken so far, mean over the pixels
-  double seconds = 0;       // since the frame was started
-  bool finished = false;    // all samples are taken: map and stats hold
+  // Display bytes, first row at the top. Pixels without a sample yet show what they did in the picture before.
+  std::vector<uint8_t> rgb;
+  double covered = 0;    // part of the pixels that have samples, 0 to 1
+  double samples = 0;    // taken so far, mean over the pixels
+  double seconds = 0;    // since the frame was started
+  bool finished = false; // all samples are taken: map and stats hold
   xvrml::MapStats map{};
   RTstats stats{};
 };
@@ -44,7 +46,7 @@ class LiveRenderer {
     rendering // the browser may go on; the frame shows the world as it was
   };
   State state() const;
-  // Only if idle. Takes the browser's changes and returns at once.
+  // Only if idle (else std::logic_error). Takes the browser's changes and returns at once.
   void start(const LiveFrame& frame);
   // The frame in flight ends soon; what is finished of it stays visible. No frame: nothing happens.
   void cancel();

@@ -25,10 +25,11 @@ struct RenderSettings {
   int depth = 25;
   bool shadows = true;
   int transport = RT_TRANSPORT_AUTO;
-  double error = 0;      // RT_TARGET_ERROR; 0: none
-  double timeLimit = 0;  // seconds; 0: none
-  double energyCut = -1; // RT_ENERGY_CUT; below 0: the engine's own
-  double clamp = 0;      // RT_CLAMP; 0: none
+  double error = 0;         // RT_TARGET_ERROR; 0: none
+  double timeLimit = 0;     // seconds; 0: none
+  double energyCut = -1;    // RT_ENERGY_CUT; below 0: the engine's own
+  double clamp = 0;         // RT_CLAMP; 0: none
+  bool progressive = false; // RT_PROGRESSIVE
   int seed = 0;
   int threads = 0; // 0: as many as the process may use
   bool linear = true;

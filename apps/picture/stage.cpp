@@ -1,0 +1,217 @@
+// stage.cpp: see stage.h.
+#include "picture/stage.h"
+
+#include <chrono>
+#include <new>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "picture/radiance.h"
+
+namespace picture {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// A configuration value of rtNewContext.
+std::string quoted(const std::string& key, const std::string& value) {
+  if (value.find('"') != value.npos) throw RenderError(fmt::format("{}: a double quote is not possible in {}", key, value));
+  return fmt::format(" {}=\"{}\"", key, value);
+}
+
+std::string contextConfiguration(const RenderSettings& settings) {
+  std::string config = fmt::format("backend={} threads={}", settings.backend, settings.threads);
+  if (!settings.record.empty()) config += quoted("record", settings.record);
+  if (!settings.shaderPath.empty()) config += quoted("shaderpath", settings.shaderPath);
+  return config;
+}
+
+double aspectOf(const RenderSettings& settings) { return double(settings.width) / settings.height; }
+
+// Room for each channel that is wanted; fill says whether it could be filled.
+template <class Fill> bool fillChannels(const RenderSettings& settings, uint32_t channels, Picture& picture, const Fill& fill) {
+  for (const Channel& channel : channelTable()) {
+    if (!(channels & channel.bit)) continue;
+    std::vector<float>& plane = picture.planes[channel.bit];
+    plane.resize(size_t(settings.width) * size_t(settings.height) * size_t(channel.components));
+    if (!fill(channel.bit, plane)) return false;
+  }
+  return true;
+}
+
+} // namespace
+
+void throwOnError(const char* doing) {
+  if (rtGetError() != RT_NO_ERROR) throw RenderError(fmt::format("{}: {}", doing, rtGetErrorMessage()));
+}
+
+Stage::Stage(xvrml::World& world, xvrml::Browser* browser, const RenderSettings& s)
+    : settings(s), world_(&world), browser_(browser) {}
+
+// Errors of calls become diagnostics in the mapper; here only what the exit code depends on.
+void Stage::note(RTenum error, const char*, void* self) {
+  auto& stage = *static_cast<Stage*>(self);
+  stage.pluginMissing_ |= error == RT_PLUGIN_ERROR;
+  stage.memoryExhausted_ |= error == RT_OUT_OF_MEMORY;
+}
+
+// What the engine says: shaders that cannot be rendered, answers that were not finite. Called on render threads too.
+void Stage::listen(int level, const char* text, void* self) {
+  auto& stage = *static_cast<Stage*>(self);
+  constexpr size_t most = 100;
+  const std::lock_guard lock(stage.heardMutex_);
+  if (level >= 2 && stage.heard_.size() < most) stage.heard_.emplace_back(text);
+}
+
+void Stage::passOn() {
+  std::vector<std::string> news;
+  {
+    const std::lock_guard lock(heardMutex_);
+    news.swap(heard_);
+  }
+  for (const std::string& text : news) world_->diagnostics.warn({}, text);
+}
+
+void Stage::open() {
+  const std::string config = contextConfiguration(settings);
+  const RTcontext made = rtNewContext(config.c_str());
+  if (!made) {
+    rtGetError();
+    throw RenderError(fmt::format("no ray tracing context: {}", rtGetErrorMessage()));
+  }
+  rtErrorCallback(note, this);
+  rtLogCallback(listen, this);
+  context_ = made;
+  try {
+    makeMapper();
+  } catch (...) {
+    close();
+    throw;
+  }
+}
+
+void Stage::close() {
+  mapper_.reset();
+  environment_ = 0;
+  rtDeleteContext(context_.exchange(nullptr));
+}
+
+void Stage::makeMapper() {
+  const auto begin = Clock::now();
+  xvrml::MapOptions options;
+  options.linearColor = settings.linear;
+  options.headlight = settings.headlight;
+  options.aspect = aspectOf(settings);
+  mapper_.reset(); // before the next one: both would own the context's scene
+  mapper_ = std::make_unique<xvrml::OpenRTMapper>(*world_, options);
+  meshSeconds_ += std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+double Stage::takeMeshSeconds() { return std::exchange(meshSeconds_, 0); }
+
+News Stage::collect() {
+  News news;
+  if (!browser_) return news;
+  news.changes = browser_->takeChanges();
+  news.otherWorld = std::exchange(generation_, browser_->generation()) != browser_->generation();
+  if (news.otherWorld) world_ = &browser_->world();
+  news.bound = browser_->bound();
+  news.camera = browser_->camera(aspectOf(settings));
+  return news;
+}
+
+void Stage::apply(const News& news) {
+  if (!browser_) return;
+  if (news.otherWorld)
+    makeMapper();
+  else
+    mapper_->update(news.changes);
+  mapper_->bind(news.bound);
+  viewer_.reset();
+  if (news.bound.viewpoint) viewer_ = news.camera;
+}
+
+// The viewer of a running world, unless another view is asked for.
+void Stage::prepare(const View& view) {
+  View seen = view;
+  if (!seen.viewer) seen.viewer = viewer_;
+  mapper_->map(chooseCamera(*mapper_, seen, aspectOf(settings)));
+  useEnvironment();
+  if (memoryExhausted_) throw std::bad_alloc();
+}
+
+// Light from all around that the user gives. The mapper sets its own when that has changed.
+void Stage::useEnvironment() {
+  if (settings.environment.empty()) return;
+  if (environment_ == 0) {
+    const Radiance around = readRadiance(settings.environment);
+    RTid texture = 0;
+    rtGenTextures(1, &texture);
+    rtBindTexture(texture);
+    rtTexImage2D(3, around.width, around.height, RT_FLOAT, around.rgb.data());
+    rtTexParameteri(RT_TEXTURE_WRAP_T, RT_CLAMP_TO_EDGE);
+    environment_ = rtNewShader(rtNewShaderClass("EnvironmentMap", nullptr));
+    rtBindShader(environment_);
+    rtParameterTexture(rtParameterHandle("texture"), texture);
+    rtParameter1f(rtParameterHandle("intensity"), float(settings.environmentIntensity));
+    rtBindShader(0);
+  }
+  rtLoadIdentity();
+  rtUseEnvironment(environment_);
+  throwOnError("environment");
+}
+
+void Stage::setUpFrame() {
+  rtFrameBuffer(settings.width, settings.height, settings.channels);
+  rtQuality(RT_SAMPLES_PER_PIXEL, settings.samples);
+  rtQuality(RT_MAX_DEPTH, settings.depth);
+  rtQuality(RT_SEED, settings.seed);
+  rtQuality(RT_SHADOWS, settings.shadows ? 1 : 0);
+  rtQuality(RT_TRANSPORT, settings.transport);
+  rtQuality(RT_PROGRESSIVE, settings.progressive ? 1 : 0);
+  rtQualityf(RT_TARGET_ERROR, settings.error);
+  rtQualityf(RT_TIME_LIMIT, settings.timeLimit);
+  if (settings.energyCut >= 0) rtQualityf(RT_ENERGY_CUT, settings.energyCut);
+  rtQualityf(RT_CLAMP, settings.clamp);
+  throwOnError("frame");
+}
+
+void Stage::describe(Picture& picture, uint32_t channels) const {
+  picture.width = settings.width;
+  picture.height = settings.height;
+  picture.linear = settings.linear;
+  if (channels & RT_NAME) picture.names = mapper_->names();
+}
+
+bool Stage::snapshot(Picture& picture, uint32_t channels) const {
+  const RTcontext context = context_;
+  const auto copied = [&](uint32_t channel, std::vector<float>& plane) {
+    return rtSnapshot(context, channel, plane.data(), plane.size()) != 0;
+  };
+  if (!context) return false;
+  // Tiles go on being finished: where there are samples there is to be the rest, too.
+  if (!fillChannels(settings, channels & RT_SAMPLES, picture, copied)) return false;
+  if (!fillChannels(settings, channels & ~uint32_t(RT_SAMPLES), picture, copied)) return false;
+  describe(picture, channels);
+  return true;
+}
+
+void Stage::readChannels(Picture& picture) const {
+  describe(picture, settings.channels);
+  fillChannels(settings, settings.channels, picture, [](uint32_t channel, std::vector<float>& plane) {
+    rtReadPixels(channel, plane.data(), plane.size());
+    throwOnError("reading the picture");
+    return true;
+  });
+}
+
+void Stage::describe(RenderResult& result) const {
+  result.map = mapper_->stats();
+  result.missing = pluginMissing_ || result.map.missingTextures > 0;
+  result.stats.size = sizeof result.stats;
+  rtGetStats(&result.stats);
+}
+
+} // namespace picture
