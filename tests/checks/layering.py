@@ -75,7 +75,7 @@ ARROWS = {
     "mapper-h": {"xvrml-h"},
     "mapper": {"mapper-h", "xvrml-h", "xvrml-base", "xvrml-geometry", "xvrml-image", "api-h", "common"},
     "shader-plugin": {"shader-sdk"},
-    "script-plugin": {"script-sdk"},
+    "script-plugin": {"script-sdk", "common"},  # what common/ says of plug-in folders holds for native: libraries, too
     "picture": PUBLIC - {"shader-sdk", "script-sdk"},
     "app": PUBLIC - {"script-sdk"} | {"picture", "common"},  # vv --list-shaders reads the tables of plug-ins
     "binding": PUBLIC - {"shader-sdk", "script-sdk"} | {"picture"},
