@@ -20,6 +20,7 @@ foreach(folder ${xvrml_includes}) # the folder of generated headers is the one i
   endif()
 endforeach()
 install(TARGETS nodegen vv)
+install(TARGETS xvrml-script-host DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/xvrml)
 install(DIRECTORY libxvrml/nodes/ DESTINATION ${CMAKE_INSTALL_DATADIR}/xvrml/nodes FILES_MATCHING PATTERN "*.node")
 install(FILES ${CMAKE_BINARY_DIR}/libxvrml/generated/nodes.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 if(OPENRT_PYTHON)

@@ -195,7 +195,9 @@ void Engine::tick(double time) {
   if (settling_) return; // a listener or a Script must not move time
   beginCascade(std::max(time, now_));
   observer->ticked();
+  settling_ = true; // what their functions do waits for its turn
   if (scripts) scripts->tick();
+  settling_ = false;
   callAll(ticking_, &Behaviour::tick);
   settle();
   beginCascade(now_);

@@ -7,39 +7,29 @@
 #include <stdexcept>
 #include <utility>
 
-#include <dlfcn.h>
-
 #include "plugin_files.h"
-#include "script/plugin_check.h"
+#include "script/library.h"
 
 namespace xvrml {
 namespace {
 
 namespace fs = std::filesystem;
 
-// The engines of one file, loaded once in a process and never unloaded: interpreters of languages do not bear it. Throws
-// std::runtime_error if it is no good plug-in.
+// The engines of each file, loaded once in a process and never forgotten.
+struct Libraries {
+  std::mutex mutex;
+  std::map<std::string, std::vector<XsEngine>, std::less<>> byPath;
+};
+Libraries& libraries() {
+  static auto& all = *new Libraries();
+  return all;
+}
+
 const std::vector<XsEngine>& libraryEngines(const std::string& path) {
-  static std::mutex mutex;
-  static auto& libraries = *new std::map<std::string, std::vector<XsEngine>, std::less<>>();
-  const std::scoped_lock lock(mutex);
-  const auto known = libraries.find(path);
-  if (known != libraries.end()) return known->second;
-  void* handle = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
-  if (!handle) {
-    const char* reason = dlerror();
-    throw std::runtime_error("script library " + path + ": " + (reason ? reason : "cannot be loaded"));
-  }
-  try {
-    void* symbol = dlsym(handle, XS_ENTRY_NAME);
-    if (!symbol)
-      throw std::runtime_error("script library " + path + ": exports no " XS_ENTRY_NAME ", so it is no script plug-in");
-    auto engines = checkScriptPlugin(static_cast<const XsPlugin*>(symbol), plugin_files::exportedBytes(symbol), path);
-    return libraries.emplace(path, std::move(engines)).first->second;
-  } catch (...) {
-    dlclose(handle);
-    throw;
-  }
+  Libraries& all = libraries();
+  const std::scoped_lock lock(all.mutex);
+  const auto known = all.byPath.find(path);
+  return known != all.byPath.end() ? known->second : all.byPath.emplace(path, loadScriptLibrary(path)).first->second;
 }
 
 } // namespace
@@ -89,6 +79,14 @@ const XsEngine* ScriptEngines::find(Names names, std::string_view wanted, std::s
   }
   loadAll();
   return known();
+}
+
+std::string libraryOf(const XsEngine& engine) {
+  Libraries& all = libraries();
+  const std::scoped_lock lock(all.mutex);
+  for (const auto& [path, engines] : all.byPath)
+    if (&engine >= engines.data() && &engine < engines.data() + engines.size()) return path;
+  return {};
 }
 
 const XsEngine* ScriptEngines::byScheme(std::string_view scheme) { return find(&XsEngine::schemes, scheme, scheme); }

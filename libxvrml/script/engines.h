@@ -38,6 +38,9 @@ class ScriptEngines {
   bool all_ = false;                                 // every library of the folders has been tried
 };
 
+// The file that an engine found by these functions has come from; "" if it was not.
+std::string libraryOf(const XsEngine& engine);
+
 // Folders of a process: configured ones (colon-separated), $XVRML_SCRIPT_PATH, the folder beside the library
 // (../lib/xvrml/scripts).
 std::vector<std::string> scriptFolders(std::string_view configured);

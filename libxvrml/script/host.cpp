@@ -16,6 +16,25 @@ bool flagOf(const ScriptNode& node, std::string_view name) {
   return field && field->type == FieldType::SFBool && std::get<bool>(node.get(*field));
 }
 
+uint64_t bytesOf(const Value& value) {
+  return std::visit(
+      [](const auto& v) -> uint64_t {
+        using T = std::decay_t<decltype(v)>;
+        if constexpr (std::is_same_v<T, Image>) {
+          return sizeof v + v.pixels.size();
+        } else if constexpr (std::is_same_v<T, MFString>) {
+          uint64_t sum = 0;
+          for (const std::string& text : v) sum += sizeof text + text.size();
+          return sum;
+        } else if constexpr (requires { v.size(); }) {
+          return sizeof v + v.size() * sizeof(*v.data());
+        } else {
+          return sizeof v;
+        }
+      },
+      value);
+}
+
 bool isOwn(const FieldInfo& field) { return field.name != "url" && field.name != "directOutput" && field.name != "mustEvaluate"; }
 
 } // namespace
@@ -23,13 +42,17 @@ bool isOwn(const FieldInfo& field) { return field.name != "url" && field.name !=
 ScriptHost::ScriptHost(Browser& browser, Engine& engine, World& world, const BrowserOptions& options)
     : browser_(browser), engine_(engine), world_(world), options_(options),
       programs_(scriptFolders(options.scriptPath), world.diagnostics, options.trustScripts),
-      table_(std::make_unique<Table>(*this)) {}
+      table_(std::make_unique<Table>(*this)), patience_(options.scriptPatience) {}
 
 ScriptHost::~ScriptHost() {
   engine_.scripts = nullptr;
-  ending_ = true;
+  ending_ = closing_ = true;
+  constexpr double grace = 0.25; // nobody waits longer for a window to close
+  patience_ = options_.scriptPatience > 0 ? grace : 0;
+  endBy_ = wire::Clock::now() + std::chrono::milliseconds(int64_t(1000 * std::clamp(options_.scriptSeconds, grace, 1e6)));
   finish();
   for (auto& [order, script] : scripts_) stop(*script);
+  processes_.reset();
   scripts_.clear(); // handles may be the last to hold nodes, and nodes Scripts: nothing of them runs any more
 }
 
@@ -47,27 +70,47 @@ bool ScriptHost::initializeNext() {
   if (beginning_.empty()) return false;
   const Key key = beginning_.front();
   beginning_.pop_front();
-  if (const auto found = scripts_.find(key); found != scripts_.end()) start(*found->second);
+  if (const auto found = scripts_.find(key); found != scripts_.end()) {
+    Script& script = *found->second;
+    start(script);
+    if (!script.waiting.empty()) due_[key] = true; // events that came meanwhile
+  }
   return true;
 }
 
 void ScriptHost::start(Script& script) {
-  for (size_t next = 0;;) {
-    ScriptProgram program = programs_.find(*script.node, world_.options, next);
+  script.expected = false;
+  while (!script.stopped && !script.engine && !script.ghost) {
+    ScriptProgram program = programs_.find(*script.node, world_.options, script.nextUrl);
     if (!program.engine) return;
-    next = program.url + 1;
-    if (makeInterpreter(script, std::move(program))) break;
-    if (script.stopped) return;
+    const size_t url = program.url;
+    script.nextUrl = url + 1;
+    const XsResult result = makeInterpreter(script, std::move(program));
+    if (result == later) return;
+    if (result == again) {
+      script.nextUrl = url;
+      if (script.expected) return;
+    } else if (created(script, result)) {
+      return;
+    }
   }
-  if (script.ghost) return; // the program has let go of the last that held its own node
-  if (script.flag(XS_DIRECT_OUTPUT)) markReach(script);
-  const Key key = liveOf(*script.node)->order;
-  if (script.engine->tick) ticking_.push_back(key);
-  if (!script.engine->initialize) return;
-  call(script, "initialize", [&] { return script.engine->initialize(script.interpreter, engine_.now()); });
 }
 
-bool ScriptHost::makeInterpreter(Script& script, ScriptProgram program) {
+// What follows on `create`. False if it failed.
+bool ScriptHost::created(Script& script, XsResult result) {
+  if (result != XS_OK) {
+    if (script.process) detach(script);
+    script.engine = nullptr;
+    return false;
+  }
+  if (script.ghost) return true; // the program has let go of the last that held its own node
+  if (script.flag(XS_DIRECT_OUTPUT)) markReach(script);
+  if (script.engine->tick) ticking_.push_back(liveOf(*script.node)->order);
+  plainCall(script, wire::Op::initialize, &XsEngine::initialize);
+  return true;
+}
+
+XsResult ScriptHost::makeInterpreter(Script& script, ScriptProgram program) {
   script.engine = program.engine;
   script.start = program.start;
   script.scheme = std::move(program.scheme);
@@ -88,6 +131,7 @@ bool ScriptHost::makeInterpreter(Script& script, ScriptProgram program) {
   info.fieldCount = uint32_t(script.fields.size());
   info.fields = script.fields.data();
   info.memory = options_.scriptMemory;
+  if (isolated(*script.engine)) return createRemote(script);
   bool made = false;
   const XsResult result = call(script, "create", [&] {
     const XsResult answer = script.engine->create(table_.get(), &script.info, &script.interpreter);
@@ -95,8 +139,7 @@ bool ScriptHost::makeInterpreter(Script& script, ScriptProgram program) {
     return answer;
   });
   if (made && result != XS_OK) script.engine->destroy(script.interpreter); // stopped
-  if (result != XS_OK) script.engine = nullptr;
-  return result == XS_OK;
+  return result;
 }
 
 // The nodes a Script with directOutput refers to can be changed by it in any way (6.40).
@@ -109,15 +152,14 @@ void ScriptHost::markReach(Script& script) {
 }
 
 void ScriptHost::stop(Script& script) {
-  if (!script.engine) return;
-  const XsEngine& engine = *script.engine;
   script.waiting.clear();
-  if (engine.shutdown) {
-    const bool ending = std::exchange(ending_, true);
-    call(script, "shutdown", [&] { return engine.shutdown(script.interpreter, engine_.now()); });
-    ending_ = ending;
-  }
-  engine.destroy(script.interpreter);
+  script.expected = script.owed = false;
+  if (!script.engine) return;
+  if (script.process) return stopRemote(script);
+  const bool ending = std::exchange(ending_, true);
+  plainCall(script, wire::Op::shutdown, &XsEngine::shutdown);
+  ending_ = ending;
+  script.engine->destroy(script.interpreter);
   script.engine = nullptr;
   script.handles.clear();
 }
@@ -125,25 +167,43 @@ void ScriptHost::stop(Script& script) {
 // Every call into an engine: its time is counted, what it sent leaves when it has returned.
 template <class Invoke> XsResult ScriptHost::call(Script& script, const char* function, Invoke&& invoke) {
   const NodeRef keep(script.node);
+  enter(script);
+  Script* const outer = std::exchange(running_, &script);
+  const XsResult result = invoke();
+  running_ = outer;
+  return leave(script, function, result);
+}
+
+void ScriptHost::enter(Script& script) {
   script.steps = 0;
   script.failed = false;
   script.since = std::chrono::steady_clock::now();
-  Script* const outer = std::exchange(running_, &script);
-  const bool wasStopped = std::exchange(script.stopped, false);
-  const XsResult result = invoke();
-  running_ = outer;
+  script.wasStopped = std::exchange(script.stopped, false);
+}
+
+XsResult ScriptHost::leave(Script& script, const char* function, XsResult result) {
   if (script.stopped || result == XS_STOPPED) {
     script.stopped = true;
     script.outputs.clear();
-    log(script, 3, 0, fmt::format("{} took too long: the Script is stopped", function));
+    log(script, 3, 1, fmt::format("{} took too long: the Script is stopped", function));
   } else if (result != XS_OK && !script.failed) {
     log(script, 3, 0, fmt::format("{} failed", function));
   }
-  script.stopped = script.stopped || wasStopped;
+  script.stopped = script.stopped || script.wasStopped;
   flush(script);
   script.lent.clear();
   script.handles.endCall();
-  return script.stopped && !wasStopped ? XS_STOPPED : result;
+  return script.stopped && !script.wasStopped ? XS_STOPPED : result;
+}
+
+// A function that takes nothing but the time; engines may lack it.
+XsResult ScriptHost::plainCall(Script& script, wire::Op op, Function function) {
+  if (!(script.engine->*function)) return XS_OK;
+  if (script.process) {
+    message_.begin(op, script.number, engine_.now());
+    return callRemote(script, op, message_);
+  }
+  return call(script, wire::functionName(op), [&] { return (script.engine->*function)(script.interpreter, engine_.now()); });
 }
 
 void ScriptHost::flush(Script& script) {
@@ -164,6 +224,8 @@ void ScriptHost::receive(ScriptNode& node, const FieldInfo& in, const Value& val
   if (in.name == "url") { // another program (6.40)
     stop(script);
     script.stopped = false;
+    script.nextUrl = 0;
+    script.expected = true;
     std::erase(ticking_, key);
     due_.erase(key);
     node.urlLines.clear();
@@ -171,22 +233,46 @@ void ScriptHost::receive(ScriptNode& node, const FieldInfo& in, const Value& val
     engine_.scriptsBegin();
     return;
   }
-  if (!isOwn(in) || !script.engine || script.stopped) return;
-  const bool atOnce = script.flag(XS_MUST_EVALUATE) && script.waiting.empty();
+  if (!isOwn(in) || script.stopped || (!script.engine && !script.expected)) return;
+  const bool atOnce = script.flag(XS_MUST_EVALUATE) && script.waiting.empty() && script.ready();
   bool& waits = due_[key];
   if (atOnce) return deliver(script, in, value);
   waits = true;
-  script.waiting.push_back({&in, value});
+  queue(script, in, value);
+}
+
+// While a function of the Script takes its time in its process, events come with every tick: they must not become ever more.
+void ScriptHost::queue(Script& script, const FieldInfo& in, const Value& value) {
+  constexpr size_t mostEvents = 1000;
+  constexpr uint64_t mostBytes = 64 << 20;
+  if (script.waiting.empty()) script.waitingBytes = 0;
+  const uint64_t bytes = bytesOf(value);
+  script.waiting.push_back({&in, value, bytes});
+  script.waitingBytes += bytes;
+  if (script.ready()) return; // they leave in this cascade
+  while (script.waiting.size() > mostEvents || (script.waitingBytes > mostBytes && script.waiting.size() > 1)) {
+    script.waitingBytes -= script.waiting.front().bytes;
+    script.waiting.pop_front();
+    if (script.dropped++ == 0) log(script, 2, 0, "is still busy: the oldest of the events that wait for it are dropped");
+  }
 }
 
 void ScriptHost::deliver(Script& script, const FieldInfo& in, const Value& value) {
-  if (!script.engine || !script.engine->event || script.stopped) return;
+  if (!script.ready() || !script.engine->event) return;
   const auto named =
       std::find_if(script.fields.begin(), script.fields.end(), [&](const XsField& f) { return f.name == in.name; });
+  const auto index = uint32_t(named - script.fields.begin());
+  LentValue event;
+  const XsValue& lent = event.lend(value, script.handles);
+  if (script.process) {
+    message_.begin(wire::Op::event, script.number, engine_.now());
+    message_.put(index);
+    message_.put(lent);
+    if (callRemote(script, wire::Op::event, message_) == again) queue(script, in, value);
+    return;
+  }
   call(script, "event", [&] {
-    LentValue event;
-    const XsEvent told{sizeof(XsEvent), uint32_t(named - script.fields.begin()), in.name.c_str(),
-                       event.lend(value, script.handles), engine_.now()};
+    const XsEvent told{sizeof(XsEvent), index, in.name.c_str(), lent, engine_.now()};
     return script.engine->event(script.interpreter, &told);
   });
 }
@@ -197,12 +283,22 @@ bool ScriptHost::eventsProcessed() {
   for (const auto& [key, waits] : std::exchange(due_, {})) {
     const auto found = scripts_.find(key);
     if (found == scripts_.end()) continue;
-    Script& script = *found->second;
-    for (const Script::Waiting& event : std::exchange(script.waiting, {})) deliver(script, *event.in, event.value);
-    if (script.engine && !script.stopped && script.engine->eventsProcessed)
-      call(script, "eventsProcessed", [&] { return script.engine->eventsProcessed(script.interpreter, engine_.now()); });
+    drain(key, *found->second);
   }
   return true;
+}
+
+void ScriptHost::drain(Key key, Script& script) {
+  for (size_t left = script.waiting.size(); left > 0 && script.ready(); --left) {
+    const Script::Waiting event = std::move(script.waiting.front());
+    script.waiting.pop_front();
+    script.waitingBytes -= event.bytes;
+    deliver(script, *event.in, event.value);
+  }
+  script.owed = script.busy() || script.expected; // then when it has returned
+  if (script.owed) return;
+  if (!script.waiting.empty() && script.ready()) due_[key] = true; // it has been started anew
+  if (script.ready()) plainCall(script, wire::Op::eventsProcessed, &XsEngine::eventsProcessed);
 }
 
 void ScriptHost::drop() {
@@ -211,11 +307,11 @@ void ScriptHost::drop() {
 }
 
 void ScriptHost::tick() {
+  patience_ = options_.scriptPatience;
+  if (processes_) serveLate();
   for (const Key key : std::vector<Key>(ticking_)) {
     const auto found = scripts_.find(key);
-    if (found == scripts_.end() || !found->second->engine || found->second->stopped) continue;
-    Script& script = *found->second;
-    call(script, "tick", [&] { return script.engine->tick(script.interpreter, engine_.now()); });
+    if (found != scripts_.end() && found->second->ready()) plainCall(*found->second, wire::Op::tick, &XsEngine::tick);
   }
 }
 
@@ -261,7 +357,8 @@ Script* ScriptHost::find(XsNode self) {
 bool ScriptHost::overBudget(Script& script, uint64_t steps) {
   script.steps = saturatingAdd(script.steps, steps);
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - script.since;
-  if (script.steps > options_.scriptSteps || taken.count() > options_.scriptSeconds) script.stopped = true;
+  const bool late = !script.process && taken.count() > options_.scriptSeconds; // a process has a clock of its own
+  if (script.steps > options_.scriptSteps || late) script.stopped = true;
   return script.stopped;
 }
 

@@ -9,6 +9,7 @@
 
 #include "event/engine.h"
 #include "script/program.h"
+#include "script/remote/processes.h"
 #include "script/values.h"
 #include "xvrml/browser.h"
 
@@ -21,6 +22,7 @@ struct Script {
   struct Waiting { // an event that has not been brought yet
     const FieldInfo* in;
     Value value;
+    uint64_t bytes;
   };
   struct Output { // what the running function has sent, for when it returns
     NodeRef to;   // null: from an eventOut of the Script itself
@@ -28,6 +30,9 @@ struct Script {
     Value value;
   };
   bool flag(uint32_t bit) const { return info.flags & bit; }
+  // A call is under way in its process, its own or another one's: events wait.
+  bool busy() const { return process && process->busy(); }
+  bool ready() const { return engine && !stopped && !busy(); }
 
   ScriptNode* node; // part of the world; after it has been destroyed `ghost`
   NodeRef ghost;    // keeps the fields of a node that is no more, for shutdown()
@@ -39,9 +44,20 @@ struct Script {
   XsScriptInfo info{};
   std::vector<XsField> fields;
 
-  bool stopped = false; // used up its time: no more calls but shutdown and destroy
-  bool failed = false;  // the running function has logged an error
-  uint64_t steps = 0;   // of the running function
+  // Its interpreter in another process (script/remote)
+  ProcessRef process;    // null: it is in this one
+  uint32_t number = 0;   // of the interpreter there
+  wire::Op pending{};    // the function that is running there; 0: none
+  bool expected = false; // will be started, again or for the first time: events wait
+  int restarts = 0;
+  bool owed = false; // eventsProcessed, when the call under way has returned
+  size_t nextUrl = 0;
+  uint64_t waitingBytes = 0, dropped = 0;
+
+  bool wasStopped = false; // when the running function was called
+  bool stopped = false;    // used up its time: no more calls but shutdown and destroy
+  bool failed = false;     // the running function has logged an error
+  uint64_t steps = 0;      // of the running function
   std::chrono::steady_clock::time_point since;
 
   Handles handles;
@@ -75,10 +91,37 @@ class ScriptHost : public ScriptRunner {
   friend struct HostTable;
   using Key = uint32_t; // order of the nodes in the world
 
+  // Answers of calls beside those of XsResult
+  static constexpr auto later = XsResult(-1); // the function is still running in its process; see tick
+  static constexpr auto again = XsResult(-2); // its process was gone before: it is started anew
+
   void start(Script& script);
-  bool makeInterpreter(Script& script, ScriptProgram program);
+  XsResult makeInterpreter(Script& script, ScriptProgram program);
+  bool created(Script& script, XsResult result);
   void stop(Script& script); // shutdown and destroy
+  void enter(Script& script);
+  XsResult leave(Script& script, const char* function, XsResult result);
   template <class Invoke> XsResult call(Script& script, const char* function, Invoke&& invoke);
+  using Function = XsResult (*XsEngine::*)(XsInterpreter, double);
+  XsResult plainCall(Script& script, wire::Op op, Function function);
+  void drain(Key key, Script& script);
+  void queue(Script& script, const FieldInfo& in, const Value& value);
+
+  // Scripts in processes of their own: host_remote.cpp
+  bool isolated(const XsEngine& engine) const;
+  XsResult createRemote(Script& script);
+  XsResult callRemote(Script& script, wire::Op op, wire::Writer& message);
+  XsResult serveCall(Script& script, double first, double next, wire::Clock::time_point until);
+  XsResult waitFor(Script& script);
+  wire::Clock::time_point patienceEnds() const;
+  void lose(Script& script, wire::Op op, bool tooLong);
+  void detach(Script& script);
+  void restartAll(const ScriptProcess& gone);
+  void restart(Key key, Script& script, const std::string& why);
+  void stopRemote(Script& script);
+  void discard(const ProcessRef& process, double first, wire::Clock::time_point until);
+  void serveLate();
+
   void flush(Script& script);
   void deliver(Script& script, const FieldInfo& in, const Value& value);
   Script* find(XsNode self);
@@ -98,9 +141,17 @@ class ScriptHost : public ScriptRunner {
   std::vector<std::unique_ptr<Script>> ended_; // their nodes have been destroyed
   std::map<Key, bool> due_;                    // eventsProcessed is due; true: there are events waiting
   std::vector<Key> ticking_;
+  std::vector<Key> late_;                      // to be started when their processes are not busy
+  std::unique_ptr<ScriptProcesses> processes_; // null until one is needed
+  std::unordered_set<std::string> unusable_;   // engines of which it has been told that they have no process
+  wire::Writer message_;
+  uint32_t interpreters_ = 0; // in processes, ever
+  double patience_;           // seconds that calls may still wait before the next tick
+  wire::Clock::time_point endBy_ = wire::never;
   XsNode lastNumber_ = 0;
   Script* running_ = nullptr;
-  bool ending_ = false; // outputs go nowhere
+  bool ending_ = false;  // outputs go nowhere
+  bool closing_ = false; // the world ends
 };
 
 } // namespace xvrml

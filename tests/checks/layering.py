@@ -33,6 +33,8 @@ PARTS = {
     "libxvrml/event/": "xvrml-event",
     "libxvrml/behaviour/": "xvrml-behaviour",
     "libxvrml/script/": "xvrml-script",
+    "libxvrml/script/remote/": "script-remote",
+    "libxvrml/tools/script_host/": "script-host",
     "libxvrml/browser/": "xvrml-browser",
     "libxvrml/geometry/": "xvrml-geometry",
     "libxvrml/image/": "xvrml-image",
@@ -68,7 +70,9 @@ ARROWS = {
     "xvrml-parse": {"xvrml-h", "xvrml-base", "common"},
     "xvrml-event": {"xvrml-h", "xvrml-base", "xvrml-parse", "xvrml-geometry", "xvrml-behaviour", "common"},
     "xvrml-behaviour": {"xvrml-h", "xvrml-base", "xvrml-parse", "xvrml-geometry", "xvrml-image", "xvrml-event", "common"},
-    "xvrml-script": {"xvrml-h", "script-sdk", "xvrml-base", "xvrml-parse", "xvrml-event", "common"},
+    "xvrml-script": {"xvrml-h", "script-sdk", "script-remote", "xvrml-base", "xvrml-parse", "xvrml-event", "common"},
+    "script-remote": {"script-sdk", "common"},
+    "script-host": {"script-sdk", "xvrml-script", "script-remote", "common"},
     "xvrml-browser": {"xvrml-h", "xvrml-base", "xvrml-parse", "xvrml-geometry", "xvrml-image", "xvrml-event", "xvrml-behaviour", "xvrml-script", "common"},
     "xvrml-geometry": {"xvrml-h", "xvrml-base", "common"},
     "xvrml-image": {"xvrml-h", "xvrml-base", "common"},
@@ -86,7 +90,7 @@ ARROWS = {
 # Headers of other people that only some parts may know.
 FOREIGN = [
     (re.compile(r"embree\d/"), {"backend-local", "test"}, "Embree"),
-    (re.compile(r"(sys/socket|netinet/|arpa/|netdb|zmq)"), {"backend-cluster"}, "sockets"),
+    (re.compile(r"(sys/socket|netinet/|arpa/|netdb|zmq)"), {"backend-cluster", "script-remote", "test"}, "sockets"),
     (re.compile(r"(png|jpeglib|turbojpeg|gif_lib|ft2build|freetype|hb|hb-ft|fontconfig/.*|GL/glu)(\.h)?$"),
      {"xvrml-geometry", "xvrml-image", "picture", "test"}, "picture and font libraries"),
     (re.compile(r"lib(av|sw)[a-z]+/"), {"xvrml-image", "test"}, "the ffmpeg libraries"),

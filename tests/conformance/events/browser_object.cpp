@@ -4,7 +4,10 @@
 namespace xvrml {
 namespace {
 
-TEST(BrowserObject, TellsWhatItKnows) {
+class BrowserObject : public ScriptsSomewhere {};
+XVRML_SCRIPTS_SOMEWHERE(BrowserObject);
+
+TEST_P(BrowserObject, TellsWhatItKnows) {
   Scripted r("DEF S Script { eventIn SFBool in eventOut MFString out url \"test:in: browser out\" }");
   r.browser.setFrameRate(25);
   r.set("S", "in", true);
@@ -12,12 +15,12 @@ TEST(BrowserObject, TellsWhatItKnows) {
   EXPECT_FALSE(r.browser.name().empty());
 }
 
-TEST(BrowserObject, TakesADescription) {
+TEST_P(BrowserObject, TakesADescription) {
   Scripted r("Script { url \"test:initialize: description A world of cubes\" }");
   EXPECT_EQ(r.browser.description(), "A world of cubes");
 }
 
-TEST(BrowserObject, MakesNodesOfAString) {
+TEST_P(BrowserObject, MakesNodesOfAString) {
   Scripted r(
       "DEF G Group {} DEF S Script { eventIn SFBool in eventOut MFNode out url \"test:in: create out DEF A Transform {} DEF B "
       "Transform {} ROUTE A.translation TO B.translation\" } ROUTE S.out TO G.children");
@@ -29,7 +32,7 @@ TEST(BrowserObject, MakesNodesOfAString) {
   EXPECT_EQ(textOf(r.browser.get(*children[1], "translation")), "1 2 3"); // its routes are active
 }
 
-TEST(BrowserObject, PrototypesAndBehaviourOfAStringAreAlive) {
+TEST_P(BrowserObject, PrototypesAndBehaviourOfAStringAreAlive) {
   Running r("DEF G Group {}");
   const MFNode nodes =
       r.browser.createVrmlFromString("PROTO P [ exposedField SFVec3f at 0 0 0 eventOut SFTime beat ] { Transform { translation "
@@ -46,7 +49,7 @@ TEST(BrowserObject, PrototypesAndBehaviourOfAStringAreAlive) {
   EXPECT_EQ(textOf(r.browser.get(*nodes[1], "translation")), "7 0 0");
 }
 
-TEST(BrowserObject, AStringThatIsWrongIsToldWithItsPlace) {
+TEST_P(BrowserObject, AStringThatIsWrongIsToldWithItsPlace) {
   Running r("Group {}");
   const MFNode nodes = r.browser.createVrmlFromString("Group {}\nGrup {}");
   EXPECT_EQ(nodes.size(), 1u);
@@ -57,7 +60,7 @@ TEST(BrowserObject, AStringThatIsWrongIsToldWithItsPlace) {
   EXPECT_EQ(r.browser.createVrmlFromString("").size(), 0u);
 }
 
-TEST(BrowserObject, NodesOfAStringGoWhenNobodyHoldsThem) {
+TEST_P(BrowserObject, NodesOfAStringGoWhenNobodyHoldsThem) {
   Scripted r("DEF G Group {}");
   const std::string text =
       "PROTO P [ eventOut SFTime beat ] { TimeSensor { loop TRUE time IS beat } Script { url \"test:shutdown: print "
@@ -74,7 +77,7 @@ TEST(BrowserObject, NodesOfAStringGoWhenNobodyHoldsThem) {
   EXPECT_EQ(r.printed(), Log{});
 }
 
-TEST(BrowserObject, ALongChainOfRoutesEndsWithoutRecursion) {
+TEST_P(BrowserObject, ALongChainOfRoutesEndsWithoutRecursion) {
   Running r("DEF G Group {}");
   std::string text;
   constexpr int n = 100'000;
@@ -94,7 +97,7 @@ TEST(BrowserObject, ALongChainOfRoutesEndsWithoutRecursion) {
   EXPECT_TRUE(last->live);
 }
 
-TEST(BrowserObject, ReadsNodesFromAFile) {
+TEST_P(BrowserObject, ReadsNodesFromAFile) {
   Scripted r("DEF G Group {} DEF S Script { field SFNode to USE G eventIn SFBool in url \"test:in: fromUrl to set_children "
              "tests/conformance/good/def-use.wrl\" }");
   r.log("G", "children");
@@ -105,7 +108,7 @@ TEST(BrowserObject, ReadsNodesFromAFile) {
   ASSERT_EQ(r.messages().size(), 1u);
 }
 
-TEST(BrowserObject, AnotherWorldTakesThePlaceOfThisOne) {
+TEST_P(BrowserObject, AnotherWorldTakesThePlaceOfThisOne) {
   Scripted r(
       "DEF V Viewpoint {} Script { url \"test:shutdown: print old\" } DEF S Script { eventIn SFBool in url \"test:in: load "
       "tests/conformance/good/def-use.wrl\" }");
@@ -120,7 +123,7 @@ TEST(BrowserObject, AnotherWorldTakesThePlaceOfThisOne) {
   r.browser.tick(1);
 }
 
-TEST(BrowserObject, AnApplicationMayLoadItself) {
+TEST_P(BrowserObject, AnApplicationMayLoadItself) {
   BrowserOptions options;
   std::vector<std::string> asked;
   options.loadUrl = [&](const std::vector<std::string>& urls, const std::vector<std::string>& parameters,
@@ -135,7 +138,7 @@ TEST(BrowserObject, AnApplicationMayLoadItself) {
   EXPECT_EQ(r.browser.generation(), 1u);
 }
 
-TEST(BrowserObject, AFragmentAloneBindsAViewpoint) {
+TEST_P(BrowserObject, AFragmentAloneBindsAViewpoint) {
   Running r("DEF A Viewpoint {} DEF B Viewpoint {}");
   r.browser.loadUrl({"#B"});
   EXPECT_EQ(r.browser.bound().viewpoint, r.browser.node("B").get());
@@ -144,7 +147,7 @@ TEST(BrowserObject, AFragmentAloneBindsAViewpoint) {
   EXPECT_EQ(r.browser.generation(), 1u);
 }
 
-TEST(BrowserObject, AWorldThatCannotBeReadChangesNothing) {
+TEST_P(BrowserObject, AWorldThatCannotBeReadChangesNothing) {
   Running r("DEF A Group {}");
   r.browser.loadUrl({"absent.wrl"});
   EXPECT_EQ(r.browser.generation(), 1u);
@@ -152,7 +155,7 @@ TEST(BrowserObject, AWorldThatCannotBeReadChangesNothing) {
   EXPECT_EQ(r.browser.world().diagnostics.warnings(), 1u);
 }
 
-TEST(BrowserObject, ReplaceWorldKeepsNodesTheirRoutesAndTheirScripts) {
+TEST_P(BrowserObject, ReplaceWorldKeepsNodesTheirRoutesAndTheirScripts) {
   Scripted r("DEF S Script { url \"test:shutdown: print old\" eventIn MFNode in }");
   const MFNode nodes = r.browser.createVrmlFromString("DEF V Viewpoint {} DEF A Transform {} DEF B Transform {} Script { url "
                                                       "\"test:initialize: print new\nshutdown: print no\" } ROUTE "
@@ -166,14 +169,14 @@ TEST(BrowserObject, ReplaceWorldKeepsNodesTheirRoutesAndTheirScripts) {
   EXPECT_EQ(textOf(r.browser.get(*nodes[2], "translation")), "4 0 0");
 }
 
-TEST(BrowserObject, AScriptReplacesTheWorldItIsIn) {
+TEST_P(BrowserObject, AScriptReplacesTheWorldItIsIn) {
   Scripted r("DEF S Script { eventIn MFNode in url \"test:in: replace\nshutdown: print end\" }");
   r.set("S", "in", MFNode{r.browser.createVrmlFromString("DEF N Group {}")});
   EXPECT_EQ(r.printed(), Log{"end"});
   EXPECT_EQ(r.browser.world().scope.roots.size(), 1u);
 }
 
-TEST(BrowserObject, AWorldThatReplacesItselfForEverDoesNotHang) {
+TEST_P(BrowserObject, AWorldThatReplacesItselfForEverDoesNotHang) {
   Scripted r("Script { url \"test:initialize: load tests/conformance/good/script-loads-itself.wrl\" }");
   const uint64_t generation = r.browser.generation();
   r.browser.tick(1);

@@ -1,4 +1,5 @@
-// scripted.h: a small world whose Scripts are run by the test engine (plugins/script/test); what they print is kept.
+// scripted.h: a small world whose Scripts are run by the test engine (plugins/script/test); what they print is kept. Tests of a
+// fixture that derives from ScriptsSomewhere run twice: Scripts in this process, and in processes of their own.
 #pragma once
 
 #include <memory>
@@ -6,6 +7,27 @@
 #include "conformance/events/support.h"
 
 namespace xvrml {
+
+// Where the Scripts of the present test run.
+inline BrowserOptions::Isolation isolationOfTest = BrowserOptions::Isolation::automatic;
+
+class ScriptsSomewhere : public testing::TestWithParam<BrowserOptions::Isolation> {
+ protected:
+  void SetUp() override { isolationOfTest = GetParam(); }
+  void TearDown() override { isolationOfTest = BrowserOptions::Isolation::automatic; }
+};
+inline std::string whereName(const testing::TestParamInfo<BrowserOptions::Isolation>& info) {
+  return info.param == BrowserOptions::Isolation::always ? "process" : "here";
+}
+#define XVRML_SCRIPTS_SOMEWHERE(fixture)                                                                                         \
+  INSTANTIATE_TEST_SUITE_P(Where, fixture,                                                                                       \
+                           testing::Values(BrowserOptions::Isolation::never, BrowserOptions::Isolation::always), whereName)
+
+inline BrowserOptions scriptOptions(BrowserOptions options = {}) {
+  if (options.scriptPath.empty()) options.scriptPath = XVRML_TEST_SCRIPTS;
+  if (options.scriptIsolation == BrowserOptions::Isolation::automatic) options.scriptIsolation = isolationOfTest;
+  return options;
+}
 
 struct Printed {
   std::shared_ptr<Log> lines = std::make_shared<Log>();
@@ -27,7 +49,7 @@ class Scripted : private Printed, public Running {
 
  private:
   static BrowserOptions with(BrowserOptions options, const std::shared_ptr<Log>& lines) {
-    if (options.scriptPath.empty()) options.scriptPath = XVRML_TEST_SCRIPTS;
+    options = scriptOptions(std::move(options));
     options.print = [lines](const std::string& text) { lines->push_back(text); };
     return options;
   }

@@ -4,7 +4,10 @@
 namespace xvrml {
 namespace {
 
-TEST(Scripts, EventsGoInAndComeOut) {
+class Scripts : public ScriptsSomewhere {};
+XVRML_SCRIPTS_SOMEWHERE(Scripts);
+
+TEST_P(Scripts, EventsGoInAndComeOut) {
   Scripted r("DEF S Script { eventIn SFInt32 in eventOut SFInt32 out url \"test:in: echo out\" } "
              "DEF T Script { eventIn SFInt32 in field SFInt32 sum 10 eventOut SFInt32 out url \"test:in: add sum out\" } "
              "ROUTE S.out TO T.in");
@@ -19,7 +22,7 @@ TEST(Scripts, EventsGoInAndComeOut) {
   EXPECT_EQ(r.messages(), Log{});
 }
 
-TEST(Scripts, InitializeComesBeforeTheFirstEvent) {
+TEST_P(Scripts, InitializeComesBeforeTheFirstEvent) {
   Scripted r("DEF C TimeSensor { loop TRUE } DEF S Script { eventIn SFTime in eventOut SFTime out "
              "url \"test:create: print create\ninitialize: print initialize\ninitialize: now out\nin: print event\" } "
              "ROUTE C.time TO S.in");
@@ -29,7 +32,7 @@ TEST(Scripts, InitializeComesBeforeTheFirstEvent) {
   EXPECT_EQ(r.printed(), Log{"event"});
 }
 
-TEST(Scripts, AnEventOfInitializeReachesItsRoutes) {
+TEST_P(Scripts, AnEventOfInitializeReachesItsRoutes) {
   Scripted r("DEF S Script { eventOut SFString out url \"test:initialize: text out hello\" } "
              "DEF T Script { eventIn SFString in eventOut SFString out url \"test:initialize: print T\nin: echo out\" } "
              "ROUTE S.out TO T.in");
@@ -37,7 +40,7 @@ TEST(Scripts, AnEventOfInitializeReachesItsRoutes) {
   EXPECT_EQ(r.get("T", "out"), "hello");
 }
 
-TEST(Scripts, EventsProcessedFollowsTheEventsOfACascade) {
+TEST_P(Scripts, EventsProcessedFollowsTheEventsOfACascade) {
   const std::string program = "url \"test:a: print a\nb: print b\neventsProcessed: print processed\"";
   const std::string declared = "eventIn SFBool a eventIn SFBool b ";
   for (const char* must : {"TRUE", "FALSE"}) {
@@ -49,7 +52,7 @@ TEST(Scripts, EventsProcessedFollowsTheEventsOfACascade) {
   }
 }
 
-TEST(Scripts, WithoutMustEvaluateEventsWaitForTheEndOfTheCascade) {
+TEST_P(Scripts, WithoutMustEvaluateEventsWaitForTheEndOfTheCascade) {
   const auto order = [](const char* must) {
     Scripted r(fmt::format("DEF A Script {{ eventIn SFBool in url \"test:in: print A\" mustEvaluate {} }} "
                            "DEF B Script {{ eventIn SFBool in url \"test:in: print B\" mustEvaluate TRUE }} "
@@ -63,7 +66,7 @@ TEST(Scripts, WithoutMustEvaluateEventsWaitForTheEndOfTheCascade) {
   EXPECT_EQ(order("TRUE"), (Log{"A", "B"}));
 }
 
-TEST(Scripts, AnEventOutSendsOnceInACascade) {
+TEST_P(Scripts, AnEventOutSendsOnceInACascade) {
   Scripted r(
       "DEF S Script { mustEvaluate TRUE eventIn SFInt32 a eventIn SFInt32 b eventOut SFInt32 out "
       "url \"test:a: echo out\nb: echo out\" } "
@@ -74,14 +77,14 @@ TEST(Scripts, AnEventOutSendsOnceInACascade) {
   EXPECT_EQ(r.take(), Log{"0 S.out 1"});
 }
 
-TEST(Scripts, OfSeveralValuesInOneFunctionTheLastOneIsSent) {
+TEST_P(Scripts, OfSeveralValuesInOneFunctionTheLastOneIsSent) {
   Scripted r("DEF S Script { eventIn SFBool in eventOut SFString out url \"test:in: text out one\nin: text out two\" }");
   r.log("S", "out");
   r.set("S", "in", true);
   EXPECT_EQ(r.take(), Log{"0 S.out two"});
 }
 
-TEST(Scripts, EventsToOtherNodesNeedDirectOutput) {
+TEST_P(Scripts, EventsToOtherNodesNeedDirectOutput) {
   const auto world = [](const char* direct) {
     return fmt::format("DEF T Transform {{}} DEF S Script {{ directOutput {} field SFNode to USE T eventIn SFVec3f in "
                        "url \"test:in: post to set_translation\" }}",
@@ -103,7 +106,7 @@ TEST(Scripts, EventsToOtherNodesNeedDirectOutput) {
   EXPECT_EQ(allowed.messages(), Log{});
 }
 
-TEST(Scripts, ReadsTheFieldsOfNodesItKnows) {
+TEST_P(Scripts, ReadsTheFieldsOfNodesItKnows) {
   Scripted r(
       "DEF T Transform { translation 1 2 3 } DEF S Script { field SFNode to USE T eventIn SFBool a eventIn SFBool b eventIn "
       "SFBool c eventOut SFVec3f out eventOut SFBool no "
@@ -118,7 +121,7 @@ TEST(Scripts, ReadsTheFieldsOfNodesItKnows) {
                               "read: 2 Transform has no exposedField or eventOut 'out'"}));
 }
 
-TEST(Scripts, NodesAreDescribed) {
+TEST_P(Scripts, NodesAreDescribed) {
   Scripted r("DEF T Group {} DEF S Script { field SFNode to USE T eventIn SFBool in "
              "url \"test:in: describe to\nin: find to set_children\nin: find to nothing\" }");
   r.set("S", "in", true);
@@ -127,7 +130,7 @@ TEST(Scripts, NodesAreDescribed) {
                               "find: 2 Group has no field or event 'nothing'"}));
 }
 
-TEST(Scripts, HandlesEndWithTheCallUnlessRetained) {
+TEST_P(Scripts, HandlesEndWithTheCallUnlessRetained) {
   Scripted r(
       "DEF T Transform {} DEF S Script { directOutput TRUE eventIn SFNode keep eventIn SFNode borrow eventIn SFBool drop eventIn "
       "SFVec3f in url \"test:keep: keep\nborrow: borrow\ndrop: drop\nin: post kept set_translation\" }");
@@ -147,7 +150,7 @@ TEST(Scripts, HandlesEndWithTheCallUnlessRetained) {
   EXPECT_EQ(r.printed(), Log{"keep: 1 no node 0"});
 }
 
-TEST(Scripts, WrongValuesAreRefused) {
+TEST_P(Scripts, WrongValuesAreRefused) {
   Scripted r("DEF S Script { eventIn SFBool in eventOut MFString out url \"test:in: wrong out\" }");
   r.log("S", "out");
   r.set("S", "in", true);
@@ -159,7 +162,7 @@ TEST(Scripts, WrongValuesAreRefused) {
                  "wrong: 1 the Script does not know a node 123456789", "wrong: 1 the Script does not know a node 123456789"}));
 }
 
-TEST(Scripts, AProgramThatDoesNotEndIsStopped) {
+TEST_P(Scripts, AProgramThatDoesNotEndIsStopped) {
   BrowserOptions options;
   options.scriptSteps = 100'000;
   Scripted r("DEF S Script { eventIn SFBool in eventIn SFInt32 other eventOut SFInt32 out url \"test:in: loop\nother: echo "
@@ -177,7 +180,7 @@ TEST(Scripts, AProgramThatDoesNotEndIsStopped) {
   EXPECT_EQ(r.take(), Log{"0 S.out 1"});
 }
 
-TEST(Scripts, ErrorsSayFileAndLine) {
+TEST_P(Scripts, ErrorsSayFileAndLine) {
   Scripted r("\nDEF S Script {\n eventIn SFBool in eventIn SFBool plain\n url [ \"none:\"\n\n  \"test:\nin: error 2 "
              "went\\\\wrong\nplain: "
              "fail\" ]\n}");
@@ -189,7 +192,7 @@ TEST(Scripts, ErrorsSayFileAndLine) {
   EXPECT_EQ(r.browser.world().diagnostics.list().back().file, "test.wrl");
 }
 
-TEST(Scripts, AMissingEngineIsToldOnceForEachProtocol) {
+TEST_P(Scripts, AMissingEngineIsToldOnceForEachProtocol) {
   Scripted r("Script { url \"javascript:a\" } Script { url \"JavaScript:b\" } DEF S Script { eventIn SFBool in url [ \"x.class\" "
              "\"tcl:c\" ] } Script { url [ \"tcl:d\" \"test:initialize: print d\" ] } Script {}");
   const Log messages = r.messages();
@@ -201,7 +204,7 @@ TEST(Scripts, AMissingEngineIsToldOnceForEachProtocol) {
   r.set("S", "in", true);           // silent
 }
 
-TEST(Scripts, AnEngineThatNeedsTrustRunsInTrustedWorldsOnly) {
+TEST_P(Scripts, AnEngineThatNeedsTrustRunsInTrustedWorldsOnly) {
   const std::string world = "Script { url \"trusted-test:initialize: print x\" }";
   Scripted refused(world);
   EXPECT_EQ(refused.printed(), Log{});
@@ -212,7 +215,7 @@ TEST(Scripts, AnEngineThatNeedsTrustRunsInTrustedWorldsOnly) {
   EXPECT_EQ(trusted.printed(), Log{"x"});
 }
 
-TEST(Scripts, ShutdownComesWhenANodeIsGone) {
+TEST_P(Scripts, ShutdownComesWhenANodeIsGone) {
   Scripted r("DEF G Group {}");
   r.set(
       "G", "children",
@@ -225,16 +228,15 @@ TEST(Scripts, ShutdownComesWhenANodeIsGone) {
   EXPECT_EQ(r.printed(), (Log{"ends", "read: 4 the Script is being shut down", "text: 4 the Script is being shut down"}));
 }
 
-TEST(Scripts, ShutdownComesAtTheEndOfTheWorld) {
+TEST_P(Scripts, ShutdownComesAtTheEndOfTheWorld) {
   auto lines = std::make_shared<Log>();
-  BrowserOptions options;
-  options.scriptPath = XVRML_TEST_SCRIPTS;
+  BrowserOptions options = scriptOptions();
   options.print = [lines](const std::string& text) { lines->push_back(text); };
   { Running r("Script { url \"test:shutdown: print a\" } Script { url \"test:shutdown: print b\" }", 0, options); }
   EXPECT_EQ(*lines, (Log{"a", "b"}));
 }
 
-TEST(Scripts, RoutesAreAddedAndDeleted) {
+TEST_P(Scripts, RoutesAreAddedAndDeleted) {
   const auto world = [](const char* direct) {
     return fmt::format(
         "DEF A Transform {{}} DEF B Transform {{}} DEF S Script {{ directOutput {} field SFNode a USE A field SFNode b "
@@ -254,7 +256,7 @@ TEST(Scripts, RoutesAreAddedAndDeleted) {
   EXPECT_EQ(refused.printed(), Log{"addRoute: 4 a change of routes needs directOutput TRUE"});
 }
 
-TEST(Scripts, TickComesWithTime) {
+TEST_P(Scripts, TickComesWithTime) {
   Scripted r("DEF S Script { eventOut SFTime out url \"test:tick: now out\" }");
   r.log("S", "out");
   r.browser.tick(1);
@@ -262,7 +264,7 @@ TEST(Scripts, TickComesWithTime) {
   EXPECT_EQ(r.take(), (Log{"1 S.out 1", "1.5 S.out 1.5"}));
 }
 
-TEST(Scripts, RunawayPostsEndWithAMessage) {
+TEST_P(Scripts, RunawayPostsEndWithAMessage) {
   BrowserOptions options;
   options.maximumEvents = 1000;
   Scripted r("DEF S Script { mustEvaluate TRUE eventIn SFBool in url \"test:in: post self in\" }", options);
@@ -271,7 +273,7 @@ TEST(Scripts, RunawayPostsEndWithAMessage) {
   r.set("S", "in", true);
 }
 
-TEST(Scripts, BadPluginsAreRefusedWithTheReason) {
+TEST_P(Scripts, BadPluginsAreRefusedWithTheReason) {
   BrowserOptions options;
   options.scriptPath = XVRML_BAD_SCRIPTS;
   Scripted r("Script { url \"broken:x\" }", options);
@@ -292,7 +294,7 @@ TEST(Scripts, BadPluginsAreRefusedWithTheReason) {
   EXPECT_EQ(messages.size(), 9u); // and that there is no engine
 }
 
-TEST(Scripts, AProgramComesFromADataUrl) {
+TEST_P(Scripts, AProgramComesFromADataUrl) {
   Scripted r("Script { url \"data:text/x-test,initialize:%20print%20plain\" } Script { url "
              "\"data:Text/X-Test;base64,aW5pdGlhbGl6ZTogcHJpbnQgYmFzZTY0\" } Script { url [ \"data:text/x-other,x\" "
              "\"data:;base64,*\" ] }");
@@ -303,11 +305,10 @@ TEST(Scripts, AProgramComesFromADataUrl) {
   EXPECT_NE(messages[1].find("not base64"), std::string::npos);
 }
 
-TEST(Scripts, AProgramComesFromAFile) {
+TEST_P(Scripts, AProgramComesFromAFile) {
   const auto world = loadWorld("tests/conformance/good/script-from-file.wrl");
   EXPECT_EQ(world->diagnostics.warnings(), 0u);
-  BrowserOptions options;
-  options.scriptPath = XVRML_TEST_SCRIPTS;
+  BrowserOptions options = scriptOptions();
   Log lines;
   options.print = [&](const std::string& text) { lines.push_back(text); };
   Browser browser(loadWorld("tests/conformance/good/script-from-file.wrl"), options);

@@ -1,0 +1,245 @@
+// host_remote.cpp: Scripts whose interpreters are in other processes: how they are called, waited for, looked after while they
+// take their time, and what becomes of them when their process ends. Part of ScriptHost; see host.h.
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "script/host_table.h"
+
+namespace xvrml {
+
+namespace {
+
+constexpr double forEver = 1e9;
+// A tick gives all functions that are still running together so much time for what they ask of the host, and each so much to ask
+// for more.
+constexpr auto tickShare = std::chrono::milliseconds(5);
+constexpr double linger = 0.0002;
+constexpr int mostRestarts = 3;
+
+} // namespace
+
+// Engines that need trust run in trusted worlds only, where nothing is kept from them.
+bool ScriptHost::isolated(const XsEngine& engine) const {
+  if (engine.flags & XS_NEEDS_TRUST) return false;
+  switch (options_.scriptIsolation) {
+  case BrowserOptions::Isolation::never: return false;
+  case BrowserOptions::Isolation::always: return true;
+  case BrowserOptions::Isolation::automatic: break;
+  }
+  return !options_.trustScripts && !(engine.flags & XS_HARMLESS);
+}
+
+XsResult ScriptHost::createRemote(Script& script) {
+  const XsEngine& engine = *script.engine;
+  if (!processes_) processes_ = std::make_unique<ScriptProcesses>(*table_);
+  const ProcessSettings settings{libraryOf(engine), engine.name, options_.scriptSteps, options_.scriptSeconds,
+                                 options_.scriptMemory};
+  std::string why;
+  const ProcessRef process = processes_->choose(settings, beginning_.size(), why);
+  if (!process) {
+    if (unusable_.insert(engine.name).second)
+      log(script, 3, 0,
+          fmt::format("no process for programs of engine {}: {}; Scripts of this engine do nothing", engine.name, why));
+    return XS_FAILED;
+  }
+  if (process->busy()) {
+    script.engine = nullptr;
+    script.expected = true;
+    late_.push_back(liveOf(*script.node)->order);
+    return again;
+  }
+  XsScriptInfo& info = script.info;
+  info.flags &= ~uint32_t(XS_TRUSTED | XS_NETWORK); // they can do nothing there
+  script.process = process;
+  script.number = ++interpreters_;
+  process->add();
+  message_.begin(wire::Op::create, script.number, engine_.now());
+  message_.put(info.flags);
+  message_.put(info.self);
+  message_.put(info.memory);
+  message_.put(info.scheme);
+  message_.put(info.origin);
+  message_.put(info.text);
+  message_.put(info.fieldCount);
+  for (const XsField& field : script.fields) message_.put(field);
+  return callRemote(script, wire::Op::create, message_);
+}
+
+// --- Calls ---
+
+XsResult ScriptHost::callRemote(Script& script, wire::Op op, wire::Writer& message) {
+  const ProcessRef process = script.process;
+  enter(script);
+  if (!process->begin(message)) {
+    if (process->dead()) { // nobody's function was running
+      script.stopped = script.wasStopped;
+      restartAll(*process);
+      return again;
+    }
+    log(script, 3, 0, fmt::format("{}: longer than a message to a process may be", wire::functionName(op)));
+    return leave(script, wire::functionName(op), XS_FAILED);
+  }
+  script.pending = op;
+  return waitFor(script);
+}
+
+wire::Clock::time_point ScriptHost::patienceEnds() const {
+  if (options_.scriptPatience <= 0) return endBy_;
+  const std::chrono::duration<double> patience(std::min(patience_, 1e6));
+  return std::min(endBy_, wire::Clock::now() + std::chrono::duration_cast<wire::Clock::duration>(patience));
+}
+
+// Calls between two ticks share one patience: a thousand slow Scripts cost no more than one.
+XsResult ScriptHost::waitFor(Script& script) {
+  const auto start = wire::Clock::now();
+  const XsResult result = serveCall(script, forEver, forEver, patienceEnds());
+  if (options_.scriptPatience > 0)
+    patience_ = std::max(0.0, patience_ - std::chrono::duration<double>(wire::Clock::now() - start).count());
+  return result;
+}
+
+XsResult ScriptHost::serveCall(Script& script, double first, double next, wire::Clock::time_point until) {
+  const NodeRef keep(script.node);
+  const ProcessRef process = script.process;
+  Script* const outer = std::exchange(running_, &script);
+  const ScriptProcess::State state = process->serve(first, next, until, engine_.now());
+  running_ = outer;
+  if (state == ScriptProcess::State::running) return later;
+  const wire::Op op = std::exchange(script.pending, wire::Op{});
+  if (state != ScriptProcess::State::returned) {
+    lose(script, op, state == ScriptProcess::State::tooLong);
+    return XS_STOPPED;
+  }
+  const XsResult result = process->result();
+  script.stopped = script.stopped || process->stopped();
+  const XsResult told = leave(script, wire::functionName(op), result);
+  if (op == wire::Op::create && result == XS_OK && told != XS_OK) process->discarded.push_back(script.number);
+  return told;
+}
+
+// --- When a process ends ---
+
+// One of its functions has ended it, or has to be ended with it.
+void ScriptHost::lose(Script& script, wire::Op op, bool tooLong) {
+  const ProcessRef process = script.process;
+  const char* function = wire::functionName(op);
+  script.stopped = true;
+  script.outputs.clear();
+  script.waiting.clear();
+  log(script, 3, 1,
+      tooLong ? fmt::format("{} took too long: the Script is stopped", function)
+              : fmt::format("{}: its process {}: the Script is stopped", function, process->death()));
+  detach(script);
+  restartAll(*process);
+}
+
+// It has nothing to do with its process any more.
+void ScriptHost::detach(Script& script) {
+  script.process->remove();
+  script.process.reset();
+  script.pending = {};
+  script.engine = nullptr;
+  script.lent.clear();
+  script.handles.clear();
+}
+
+void ScriptHost::restartAll(const ScriptProcess& gone) {
+  if (closing_) return;
+  std::vector<Key> keys;
+  for (const auto& [key, script] : scripts_)
+    if (script->process.get() == &gone) keys.push_back(key);
+  for (const Key key : keys)
+    if (const auto found = scripts_.find(key); found != scripts_.end()) restart(key, *found->second, gone.death());
+}
+
+void ScriptHost::restart(Key key, Script& script, const std::string& why) {
+  const NodeRef keep(script.node);
+  script.outputs.clear();
+  std::erase(ticking_, key);
+  detach(script);
+  if (script.stopped) return;
+  if (++script.restarts > mostRestarts) {
+    script.stopped = true;
+    script.waiting.clear();
+    return log(script, 3, 1, fmt::format("the process that it runs in {} again: the Script is stopped", why));
+  }
+  log(script, 2, 1, fmt::format("the process that it runs in {}: it is started anew", why));
+  script.nextUrl = 0;
+  script.expected = true;
+  beginning_.push_back(key);
+  engine_.scriptsBegin();
+}
+
+// --- When a Script ends ---
+
+void ScriptHost::stopRemote(Script& script) {
+  const bool ending = std::exchange(ending_, true);
+  const bool creating = script.pending == wire::Op::create;
+  if (script.pending != wire::Op{}) waitFor(script);
+  const bool overdue = closing_ && wire::Clock::now() >= endBy_;
+  if (script.process && !script.busy() && !creating && !overdue) plainCall(script, wire::Op::shutdown, &XsEngine::shutdown);
+  ending_ = ending;
+  if (!script.process) return;
+  const ProcessRef process = script.process;
+  const bool running = script.pending != wire::Op{};
+  if (running) {
+    log(script, 1, 0, fmt::format("{} was still running when the Script ended", wire::functionName(script.pending)));
+    process->orphaned = true;
+  }
+  detach(script);
+  process->discarded.push_back(script.number);
+  if (closing_) return;
+  if (process->scripts() == 0 && (running || !processes_->spare(*process)))
+    processes_->remove(*process);
+  else
+    discard(process, forEver, patienceEnds());
+}
+
+// Destroys interpreters that nobody uses any more, when nothing else runs in their process.
+void ScriptHost::discard(const ProcessRef& process, double first, wire::Clock::time_point until) {
+  for (;;) {
+    if (process->busy()) {
+      if (!process->orphaned) return; // somebody waits for that
+      Script* const outer = std::exchange(running_, nullptr);
+      const ScriptProcess::State state = process->serve(first, std::max(first, linger), until, engine_.now());
+      running_ = outer;
+      if (state == ScriptProcess::State::running) return;
+      process->orphaned = false;
+      if (state != ScriptProcess::State::returned) return restartAll(*process);
+    }
+    if (process->dead() || process->discarded.empty()) return;
+    message_.begin(wire::Op::destroy, process->discarded.back(), engine_.now());
+    process->discarded.pop_back();
+    if (!process->begin(message_)) return restartAll(*process);
+    process->orphaned = true;
+  }
+}
+
+// --- With every tick ---
+
+void ScriptHost::serveLate() {
+  const auto end = wire::Clock::now() + tickShare;
+  std::vector<Key> keys;
+  for (const auto& [key, script] : scripts_)
+    if (script->pending != wire::Op{}) keys.push_back(key);
+  for (size_t left = keys.size(); left > 0; --left) {
+    const Key key = keys[keys.size() - left];
+    const auto found = scripts_.find(key);
+    if (found == scripts_.end() || found->second->pending == wire::Op{}) continue;
+    Script& script = *found->second;
+    const wire::Op op = script.pending;
+    const auto now = wire::Clock::now();
+    const XsResult result = serveCall(script, 0, linger, now + std::max(wire::Clock::duration{}, (end - now) / int64_t(left)));
+    if (result == later) continue;
+    if (op == wire::Op::create && !created(script, result)) start(script);
+    if (script.owed || !script.waiting.empty()) due_[key] = true;
+  }
+  for (const ProcessRef& process : std::vector<ProcessRef>(processes_->all())) discard(process, 0, end);
+  const auto idle = [](const ProcessRef& process) { return !process->busy(); };
+  if (late_.empty() || std::none_of(processes_->all().begin(), processes_->all().end(), idle)) return;
+  for (const Key key : std::exchange(late_, {})) beginning_.push_back(key);
+  engine_.scriptsBegin();
+}
+
+} // namespace xvrml
