@@ -193,13 +193,13 @@ TEST_P(Scripts, ErrorsSayFileAndLine) {
 }
 
 TEST_P(Scripts, AMissingEngineIsToldOnceForEachProtocol) {
-  Scripted r("Script { url \"javascript:a\" } Script { url \"JavaScript:b\" } DEF S Script { eventIn SFBool in url [ \"x.class\" "
-             "\"tcl:c\" ] } Script { url [ \"tcl:d\" \"test:initialize: print d\" ] } Script {}");
+  Scripted r("Script { url \"lisp:a\" } Script { url \"Lisp:b\" } DEF S Script { eventIn SFBool in url [ \"x.class\" "
+             "\"prolog:c\" ] } Script { url [ \"prolog:d\" \"test:initialize: print d\" ] } Script {}");
   const Log messages = r.messages();
   ASSERT_EQ(messages.size(), 3u) << messages[0];
-  EXPECT_EQ(messages[0].find("2: Script: no script engine for 'javascript:' is installed (looked in: "), 0u) << messages[0];
+  EXPECT_EQ(messages[0].find("2: Script: no script engine for 'lisp:' is installed (looked in: "), 0u) << messages[0];
   EXPECT_NE(messages[1].find("'.class'"), std::string::npos);
-  EXPECT_NE(messages[2].find("'tcl:'"), std::string::npos);
+  EXPECT_NE(messages[2].find("'prolog:'"), std::string::npos);
   EXPECT_EQ(r.printed(), Log{"d"}); // an alternative that can be run
   r.set("S", "in", true);           // silent
 }

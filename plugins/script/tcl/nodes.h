@@ -1,0 +1,11 @@
+// nodes.h: nodes as commands: `node7 get translation`. [the browser's thread]
+#pragma once
+
+#include "interpreter.h"
+
+namespace tclscript {
+
+// The node that an object names, 0 for NULL and the empty string; false if it names none.
+bool nodeOf(Interpreter& interpreter, Tcl_Obj* object, XsNode& node);
+
+} // namespace tclscript

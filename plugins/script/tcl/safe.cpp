@@ -1,0 +1,108 @@
+// safe.cpp: the interpreter of a world that is not trusted. What is not named here is not there: commands that reach files,
+// sockets, processes, channels, other interpreters, the environment or the queue of events are replaced by ones that say so, all
+// others are deleted. What is left only computes; its memory, and single commands that take long, are bounded by the process that
+// it runs in. [the browser's thread]
+#include <algorithm>
+#include <cstring>
+#include <iterator>
+
+#include "interpreter.h"
+
+namespace tclscript {
+namespace {
+
+// Commands of the global namespace that stay.
+constexpr const char* allowed[] = {
+    "after",     "append",   "apply",   "array",   "binary",   "break",     "case",    "catch",    "clock",  "concat", "continue",
+    "coroutine", "dict",     "error",   "eval",    "expr",     "for",       "foreach", "format",   "global", "if",     "incr",
+    "info",      "join",     "lappend", "lassign", "lindex",   "linsert",   "list",    "llength",  "lmap",   "lrange", "lrepeat",
+    "lreplace",  "lreverse", "lsearch", "lset",    "lsort",    "namespace", "proc",    "puts",     "regexp", "regsub", "rename",
+    "return",    "scan",     "set",     "split",   "string",   "subst",     "switch",  "tailcall", "throw",  "time",   "trace",
+    "try",       "unset",    "uplevel", "upvar",   "variable", "while",     "yield",   "yieldto"};
+// Those that are missed are told why.
+constexpr const char* refused[] = {"cd",         "chan",   "close",  "encoding",  "eof",           "exec",  "fblocked",
+                                   "fconfigure", "fcopy",  "file",   "fileevent", "flush",         "gets",  "glob",
+                                   "interp",     "load",   "open",   "pid",       "pwd",           "read",  "seek",
+                                   "socket",     "source", "tell",   "unload",    "update",        "vwait", "auto_load",
+                                   "tk",         "bind",   "button", "toplevel",  "thread::create"};
+constexpr const char* namespacesThatGo[] = {"::tcl::chan", "::tcl::file",    "::tcl::encoding", "::tcl::unsupported",
+                                            "::tcl::zlib", "::tcl::process", "::zlib",          "::oo"};
+// Subcommands of an ensemble that stay; the commands behind the others are deleted.
+struct Ensemble {
+  const char* name;
+  const char* space;
+  const char* keep; // a Tcl list
+};
+constexpr Ensemble ensembles[] = {{"::info", "::tcl::info",
+                                   "args body cmdcount commands complete coroutine default errorstack exists frame functions "
+                                   "globals level locals patchlevel procs "
+                                   "tclversion vars"},
+                                  {"::clock", "::tcl::clock", "clicks microseconds milliseconds seconds"}};
+
+int refuse(ClientData data, Tcl_Interp* tcl, int, Tcl_Obj* const[]) {
+  Tcl_SetObjResult(tcl, Tcl_ObjPrintf("%s: only in a world that is trusted", static_cast<const char*>(data)));
+  Tcl_SetErrorCode(tcl, "XVRML", "TRUST", nullptr);
+  return TCL_ERROR;
+}
+
+// package require Tcl is harmless, and often written.
+int package(ClientData data, Tcl_Interp* tcl, int count, Tcl_Obj* const words[]) {
+  const bool wanted = count >= 3 && std::strcmp(Tcl_GetString(words[1]), "require") == 0;
+  if (wanted && std::strcmp(Tcl_GetString(words[2]), "Tcl") == 0)
+    return Tcl_SetObjResult(tcl, Tcl_NewStringObj(TCL_PATCH_LEVEL, -1)), TCL_OK;
+  if (!wanted) return refuse(data, tcl, count, words);
+  Tcl_SetObjResult(tcl, Tcl_ObjPrintf("package %s: only in a world that is trusted", Tcl_GetString(words[2])));
+  Tcl_SetErrorCode(tcl, "XVRML", "TRUST", nullptr);
+  return TCL_ERROR;
+}
+
+std::vector<std::string> listOf(Tcl_Interp* tcl, const std::string& script) {
+  std::vector<std::string> names;
+  Tcl_Obj** elements;
+  int count;
+  if (Tcl_Eval(tcl, script.c_str()) == TCL_OK &&
+      Tcl_ListObjGetElements(nullptr, Tcl_GetObjResult(tcl), &count, &elements) == TCL_OK)
+    for (int i = 0; i < count; ++i) names.emplace_back(Tcl_GetString(elements[i]));
+  return names;
+}
+
+template <size_t n> bool isOneOf(const char* const (&list)[n], const std::string& name) {
+  return std::find(std::begin(list), std::end(list), name) != std::end(list);
+}
+
+void keepOnly(Tcl_Interp* tcl, const Ensemble& ensemble) {
+  const std::string quoted = std::string("{") + ensemble.keep + "}";
+  Tcl_Eval(tcl, (std::string("set ::xvrml_map {}; foreach name ") + quoted + " {lappend ::xvrml_map $name " + ensemble.space +
+                 "::$name}; namespace ensemble configure " + ensemble.name + " -map $::xvrml_map; unset ::xvrml_map name")
+                    .c_str());
+  for (const std::string& command : listOf(tcl, std::string("info commands ") + ensemble.space + "::*")) {
+    const std::string tail = command.substr(std::strlen(ensemble.space) + 2);
+    if ((" " + std::string(ensemble.keep) + " ").find(" " + tail + " ") == std::string::npos)
+      Tcl_DeleteCommand(tcl, command.c_str());
+  }
+}
+
+} // namespace
+
+void makeSafe(Interpreter& interpreter) {
+  Tcl_Interp* tcl = interpreter.tcl();
+  Tcl_MakeSafe(tcl);
+  for (const std::string& hidden : listOf(tcl, "interp hidden")) { // so that nothing is left to be brought back
+    const std::string token = "xvrml_hidden";
+    if (Tcl_ExposeCommand(tcl, hidden.c_str(), token.c_str()) == TCL_OK) Tcl_DeleteCommand(tcl, token.c_str());
+  }
+  for (const Ensemble& ensemble : ensembles) keepOnly(tcl, ensemble);
+  for (const char* space : namespacesThatGo)
+    if (Tcl_FindNamespace(tcl, space, nullptr, 0)) Tcl_Eval(tcl, (std::string("namespace delete ") + space).c_str());
+  for (const char* command : {"::tcl::pkgconfig", "::tcl::Bgerror"}) Tcl_DeleteCommand(tcl, command);
+  for (const std::string& command : listOf(tcl, "info commands ::*"))
+    if (!isOneOf(allowed, command.substr(2))) Tcl_DeleteCommand(tcl, command.c_str());
+  for (const char* name : refused)
+    Tcl_CreateObjCommand(tcl, (std::string("::") + name).c_str(), refuse, const_cast<char*>(name), nullptr);
+  Tcl_CreateObjCommand(tcl, "::package", package, const_cast<char*>("package"), nullptr);
+  for (const char* variable : {"env", "tcl_library", "tcl_pkgPath", "auto_path", "tcl_interactive", "argv", "argv0", "argc"})
+    Tcl_UnsetVar(tcl, variable, TCL_GLOBAL_ONLY);
+  Tcl_ResetResult(tcl);
+}
+
+} // namespace tclscript

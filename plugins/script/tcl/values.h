@@ -1,0 +1,68 @@
+// values.h: VRML's values and Tcl's: lists of numbers, booleans, strings, names of nodes. See docs/scripts.md "Tcl/Tk".
+// [the browser's thread]
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <tcl.h>
+
+#include "xvrml/xscript.h"
+
+namespace tclscript {
+
+class Interpreter;
+
+// Holds a Tcl object.
+class Object {
+ public:
+  Object() = default;
+  Object(Tcl_Obj* object) : object_(object) {
+    if (object_) Tcl_IncrRefCount(object_);
+  }
+  Object(const Object& other) : Object(other.object_) {}
+  Object(Object&& other) noexcept : object_(std::exchange(other.object_, nullptr)) {}
+  Object& operator=(Object other) noexcept { return std::swap(object_, other.object_), *this; }
+  ~Object() {
+    if (object_) Tcl_DecrRefCount(object_);
+  }
+  Tcl_Obj* get() const { return object_; }
+
+ private:
+  Tcl_Obj* object_ = nullptr;
+};
+
+// A value on its way to the host, and what it points to.
+struct Converted {
+  Converted() = default;
+  Converted(Converted&&) = default; // vectors keep their places
+  Converted& operator=(Converted&&) = default;
+  Converted(const Converted&) = delete;
+  Converted& operator=(const Converted&) = delete;
+
+  XsValue value{};
+  std::vector<int32_t> ints;
+  std::vector<float> floats;
+  std::vector<double> doubles;
+  std::vector<XsNode> nodes;
+  std::vector<std::string> texts;
+  std::vector<XsString> strings;
+  std::vector<uint8_t> bytes;
+  std::vector<XsImage> images; // none or one
+};
+
+const char* typeName(XsType type); // "SFVec3f"
+
+// A value of the host as Tcl has it; makes commands of nodes.
+Object toTcl(Interpreter& interpreter, const XsValue& value);
+// TCL_ERROR, with a message in the interpreter's result, if the object is no such value.
+int fromTcl(Interpreter& interpreter, Tcl_Obj* object, XsType type, Converted& out);
+
+// Tcl writes U+0000 in two bytes, and what is beyond U+FFFF as two surrogates of three bytes, at times; the host does not.
+std::string hostText(Tcl_Obj* object);
+Object tclText(std::string_view text);
+
+} // namespace tclscript
