@@ -33,7 +33,7 @@ void begin() {
     dlclose(tk);
   else
     tclscript::setNotifier();
-  Tcl_FindExecutable(nullptr); // finds nothing, so that no program can ask where the host is
+  Tcl_FindExecutable(nullptr);            // finds nothing, so that no program can ask where the host is
   Tcl_Interp* first = Tcl_CreateInterp(); // tables that the first one makes
   Tcl_Eval(first, "expr {1 + 1.5}; string is alpha x; regexp {a+} aa; clock seconds; lsort {b a}");
   Tcl_DeleteInterp(first);

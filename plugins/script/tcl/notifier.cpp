@@ -2,12 +2,9 @@
 #include "notifier.h"
 
 #include <algorithm>
-#include <cstdint>
 #include <vector>
 
 #include <poll.h>
-#include <sys/eventfd.h>
-#include <unistd.h>
 
 #include <tcl.h>
 
@@ -57,17 +54,10 @@ void deleteFileHandler(int file) {
   watched.erase(std::remove_if(watched.begin(), watched.end(), [&](const Watched& w) { return w.file == file; }), watched.end());
 }
 
-// A file that other threads write to when they want this one to wake.
-ClientData initialize() { return reinterpret_cast<ClientData>(intptr_t(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC))); }
-int fileOf(ClientData data) { return int(reinterpret_cast<intptr_t>(data)); }
-void finalize(ClientData data) {
-  if (fileOf(data) >= 0) close(fileOf(data));
-  watched.clear();
-}
-void alert(ClientData data) {
-  const uint64_t one = 1;
-  if (fileOf(data) >= 0 && write(fileOf(data), &one, sizeof one) < 0) return; // it is awake already
-}
+// Other threads want this one to wake: it waits for a moment at most.
+ClientData initialize() { return nullptr; }
+void finalize(ClientData) { watched.clear(); }
+void alert(ClientData) {}
 
 int waitForEvent(CONST86 Tcl_Time* longest) {
   std::vector<pollfd> files;
