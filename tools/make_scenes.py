@@ -1,15 +1,18 @@
 #!/usr/bin/env python3
 """Writes the worlds of examples/scenes that show what shaders and transports do. They are checked in; run it again after a change.
 
-make_scenes.py FOLDER     a .wrl for each function below
+make_scenes.py FOLDER     a .wrl for each function below and of scenes/, packed (.wrz) where it is long
 """
+import gzip
 import math
 import pathlib
 import struct
 import sys
 import zlib
 
+from scenes.car import car
 from scenes.chess import chess
+from scenes.headlight import headlight_studio
 from scenes.parts import at, box, lathe, number, numbers, quad, shader, shape, viewpoint, world
 
 
@@ -264,13 +267,18 @@ def studio():
             + chunk(b"IDAT", zlib.compress(rows, 9)) + chunk(b"IEND", b""))
 
 
-SCENES = [glass_ball, mirror_corridor, cornell, furnace, caustic, car_paint, carved, interior, headlight, board, chess]
+SCENES = [glass_ball, mirror_corridor, cornell, furnace, caustic, car_paint, carved, interior, headlight, board, chess, headlight_studio, car]
+LONG = 250000  # bytes
 
 
 def main():
     folder = pathlib.Path(sys.argv[1])
     for make in SCENES:
-        (folder / f"{make.__name__}.wrl").write_text(make())
+        text = make().encode()
+        if len(text) < LONG:
+            (folder / f"{make.__name__}.wrl").write_bytes(text)
+        else:
+            (folder / f"{make.__name__}.wrz").write_bytes(gzip.compress(text, 9, mtime=0))
     (folder / "studio.png").write_bytes(studio())
 
 

@@ -3,7 +3,7 @@ z = 3.5, the file a at x = -3.5. Pieces are moved by chess.tcl through the names
 import math
 
 from scenes.knight import knight_head
-from scenes.parts import HEADER, arc, at, box, curve, lathe, mesh, number, numbers, shape, tube, viewpoint
+from scenes.parts import HEADER, aim, arc, at, box, curve, lathe, mesh, number, numbers, shape, tube, viewpoint
 
 FOOT = .004  # of air between the pieces and the board
 STEPS = 56
@@ -225,14 +225,6 @@ def chess():
 def look(name, material, shader, options):
     use = f'DEF {shader} ORTShader {{ name "Plastic" file "plastic" options [ {options} ] }}' if shader else "USE Board_Shader"
     return f"  Shape {{ appearance DEF {name} ORTAppearance {{\n    material DEF {material}\n    shader {use} }} }}"
-
-
-def aim(place, target):
-    """Turns +z, where lamps shine to, towards a target."""
-    x, y, z = (b - a for a, b in zip(place, target))
-    length = math.sqrt(x * x + y * y + z * z)
-    axis, flat = (-y, x, 0), math.hypot(x, y)
-    return (*(a / flat for a in axis), math.acos(z / length))
 
 
 def bevelled(half, bevel):

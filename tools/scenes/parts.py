@@ -114,3 +114,13 @@ def viewpoint(position, target, angle, kind="Viewpoint", extra=""):
     axis = [c / length for c in q] if length > 0 else [0, 0, 1]
     turn = 2 * math.atan2(length, w)
     return f"{kind} {{ position {numbers(position)} orientation {numbers(axis + [turn])} fieldOfView {number(angle)} {extra}}}"
+
+
+def aim(place, target):
+    """Turns +z, where lamps shine to, towards a target."""
+    x, y, z = (b - a for a, b in zip(place, target))
+    length = math.sqrt(x * x + y * y + z * z)
+    axis, flat = (-y, x, 0), math.hypot(x, y)
+    if flat < 1e-9:
+        return (0, 1, 0, 0 if z > 0 else math.pi)
+    return (*(a / flat for a in axis), math.acos(z / length))
