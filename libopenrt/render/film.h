@@ -13,17 +13,20 @@
 namespace openrt {
 
 struct PixelSums { // of one pixel, samples added in their order
-  double rgba[4] = {}, normal[3] = {}, albedo[3] = {};
+  double rgba[4] = {};
+  float depth = 0, position[3] = {}, name = 0;
+  uint32_t samples = 0;
+  double normal[3] = {}, albedo[3] = {};
+  // From here on: what errors and variances need, and what store() is told of paths from lamps.
   double first[3] = {}, delta[3] = {}, delta2[3] = {}; // sums of (x - first) and its square: no cancellation
   // Over the complete replicates: sums of their delta, of its square, cube and fourth power.
   double closed[3] = {}, closed2[3] = {}, closed3[3] = {}, closed4[3] = {};
-  double grey[3] = {}; // sums of (red + green + blue - first)^2, ^3 and ^4; see addTails()
-  float depth = 0, position[3] = {}, name = 0;
+  double grey[3] = {};                         // sums of (red + green + blue - first)^2, ^3 and ^4; see addTails()
   double light[3] = {}, lightVariance[3] = {}; // what paths from lamps add to the mean, and its variance (light_image.h)
   double lightHits = 0;                        // paths from lamps that have met the pixel and those around (light_image.h)
   float largest[3] = {};
-  uint32_t samples = 0, replicates = 0; // replicates: complete ones
-  bool random = false;                  // a path has taken a random decision
+  uint32_t replicates = 0; // complete ones
+  bool random = false;     // a path has taken a random decision
 
   void add(const float radiance[3], float alpha);
   // After add(), where somebody asks for the error.

@@ -25,6 +25,10 @@ bool LightImage::add(uint32_t number, const std::vector<float>& part, const std:
   return true;
 }
 
+double LightImage::variance(const Pixel& pixel, int k) const {
+  return next_ > 1 ? pixel.squares[k] / (next_ * (next_ - 1.0)) : std::numeric_limits<double>::infinity();
+}
+
 LightImage::Around LightImage::around(size_t pixel) const {
   constexpr uint32_t reach = 2;
   const uint32_t x = uint32_t(pixel % width_), y = uint32_t(pixel / width_);
@@ -34,9 +38,9 @@ LightImage::Around LightImage::around(size_t pixel) const {
     for (uint32_t j = y - std::min(y, reach); j <= std::min(y + reach, height_ - 1); j++)
       for (uint32_t i = x - std::min(x, reach); i <= std::min(x + reach, width_ - 1); i++) {
         const Pixel& p = pixels_[size_t(j) * width_ + i];
-        mean += p.mean[k], variance += p.variance(k), count++;
+        mean += p.mean[k], variance += this->variance(p, k), count++;
       }
-    out.variance[k] = std::max(variance / count, pixels_[pixel].variance(k));
+    out.variance[k] = std::max(variance / count, this->variance(pixels_[pixel], k));
     if (variance > 0) out.hits = std::min(out.hits, mean * mean / variance);
   }
   return out;

@@ -19,11 +19,9 @@ class LightImage {
   // part: rgb by pixel; waits until the parts before it are in. False if cancelled before. [render]
   bool add(uint32_t number, const std::vector<float>& part, const std::atomic<bool>& cancelled);
 
-  // After all parts are in.
+  // While no part is being added. Of the parts that are in.
   struct Pixel {
     double mean[3] = {}, squares[3] = {}; // squares: sum of squared differences from the mean
-    // Variance of the mean.
-    double variance(int k) const { return squares[k] / (parts * (parts - 1.0)); }
   };
   const Pixel& at(size_t pixel) const { return pixels_[pixel]; }
   // Of a pixel's mean and of what the 5x5 pixels around know: one that few paths have met knows too little of itself (error.cpp).
@@ -32,6 +30,8 @@ class LightImage {
     double hits = std::numeric_limits<double>::infinity(); // as many equal paths have met them, in the colour with the fewest
   };
   Around around(size_t pixel) const;
+  // Of a pixel's mean; infinite if fewer than two parts are in.
+  double variance(const Pixel& pixel, int k) const;
 
  private:
   uint32_t width_, height_;

@@ -5,7 +5,6 @@
 #include <xmmintrin.h>
 
 #include <algorithm>
-#include <bit>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -58,21 +57,16 @@ Frame::Frame(std::shared_ptr<const RenderScene> scene, uint32_t threads)
   if (!scene_->camera.shader.shaderClass) tiles_ = 0; // nothing is seen without a camera
   finished_ = std::make_unique<std::atomic<bool>[]>(tiles_);
   ledgers_.resize(tiles_);
-  if (scene_->frame.timeLimit > 0 && scene_->frame.samples > 1 && tiles_ > 0) {
-    rounds_ = std::make_unique<Rounds>();
-    rounds_->sums.resize(tiles_);
-    rounds_->wanted.resize(tiles_);
-    rounds_->samples = scene_->frame.targetError > 0 ? std::min(32u, scene_->frame.samples) : 1;
-    rounds_->began = started_;
-  }
-  const uint32_t count = std::min(threads, std::max(tiles_, 1u));
-  barrier_ = std::make_unique<std::barrier<EndRound>>(count, EndRound{this});
+  rounds_ = Rounds::of(scene_->frame, tiles_, scene_->lightSources != nullptr, started_);
+  crew_ = std::min(threads, std::max(tiles_, 1u));
+  barrier_ = std::make_unique<std::barrier<EndRound>>(crew_, EndRound{this});
   if (scene_->lightSources && tiles_ > 0) {
     light_ = std::make_unique<LightImage>(film_.width(), film_.height());
     partPaths_ = lightPathsOf(scene_->frame) / LightImage::parts + 1;
-    lit_ = std::make_unique<std::barrier<>>(count);
+    lit_ = std::make_unique<std::barrier<>>(crew_);
+    wantParts();
   }
-  for (uint32_t i = 0; i < count; i++) threads_.emplace_back([this] { work(); });
+  for (uint32_t i = 0; i < crew_; i++) threads_.emplace_back([this] { work(); });
 }
 
 Frame::~Frame() {
@@ -94,15 +88,17 @@ Tile Frame::tile(uint32_t number) const {
 
 bool Frame::snapshot(uint32_t channel, std::span<float> out) const {
   if (!film_.clear(channel, out)) return false;
-  std::unique_lock<std::mutex> lock;
-  if (rounds_) lock = std::unique_lock(rounds_->film);
-  for (uint32_t i = 0; i < tiles_; i++)
-    if (finished_[i].load(std::memory_order_acquire)) film_.copy(channel, tile(i), out);
+  for (uint32_t i = 0; i < tiles_; i++) {
+    if (!finished_[i].load(std::memory_order_acquire)) continue;
+    std::unique_lock<std::mutex> lock; // for each tile: those who store the next one do not wait for long
+    if (rounds_) lock = std::unique_lock(rounds_->film);
+    film_.copy(channel, tile(i), out);
+  }
   return true;
 }
 
 float Frame::progress() const {
-  if (rounds_) return over_.load() ? 1.0f : std::min(float((now() - started_) / double(scene_->frame.timeLimit)), 0.99f);
+  if (rounds_) return rounds_->progress(now());
   const float tiles = tiles_ ? float(done_.load()) / float(tiles_) : 1.0f;
   if (!light_) return tiles;
   constexpr float lightShare = 0.4f; // of the work, about
@@ -110,45 +106,48 @@ float Frame::progress() const {
 }
 
 void Frame::renderTile(TileRenderer& renderer, uint32_t number) {
-  if (!rounds_)
+  if (rounds_)
+    rounds_->render(renderer, tile(number), number, ledgers_[number]);
+  else
     renderer.render(tile(number)), ledgers_[number].add(renderer.ledger());
-  else if (rounds_->pilot)
-    rounds_->wanted[number] = renderer.pilot(tile(number), rounds_->samples);
-  else if (rounds_->wanted[number] > rounds_->first) {
-    renderer.renderRound(tile(number), rounds_->sums[number], rounds_->replicates, rounds_->first, rounds_->samples);
-    ledgers_[number].add(renderer.ledger());
-  }
   if (cancelled_) return; // perhaps given up
   finished_[number].store(true, std::memory_order_release);
   done_++;
 }
 
-// Whether there is a further round depends on the time alone and on the pilot, which is no part of the picture.
 void Frame::endRound() noexcept {
-  const edit::FrameSettingsT& settings = scene_->frame;
-  if (!rounds_ || cancelled_) {
-    film_.finishErrors();
-    over_ = true;
-    return;
+  over_ = !rounds_ || cancelled_ || !rounds_->endRound(now());
+  if (!over_) {
+    next_ = 0;
+    wantEarly();
+    return wantParts();
   }
-  Rounds& r = *rounds_;
-  const double time = now(), took = time - r.began, left = double(settings.timeLimit) - (time - started_);
-  if (r.pilot) {
-    // About sixteen rounds fill the time that is left.
-    const double samples = left / 16 / std::max(took, 1e-9) * r.samples;
-    const uint32_t most = std::max(settings.samples / 16, 1u);
-    r.replicates = {settings.seed, uint32_t(std::bit_width(uint32_t(std::clamp(samples, 1.0, double(most))))) - 1};
-    r.pilot = false;
-  } else {
-    r.first += r.samples;
-    over_ = left < took / 2; // the next one would end nearer to the limit than this one by going beyond it
-  }
-  const uint32_t wanted = *std::max_element(r.wanted.begin(), r.wanted.end());
-  if (r.first >= wanted) over_ = true;
-  if (over_) return film_.finishErrors();
-  r.samples = std::min(r.replicates.size(), settings.samples - r.first);
-  r.began = time;
-  next_ = 0;
+  std::unique_lock<std::mutex> lock;
+  if (rounds_) lock = std::unique_lock(rounds_->film);
+  film_.finishErrors();
+}
+
+// In rounds light comes by and by, as many parts at a time as keep all threads busy. What of it is shown early does not matter
+// for the finished picture, which has all parts.
+void Frame::wantParts() {
+  if (!light_) return;
+  constexpr uint32_t all = LightImage::parts;
+  const double share = rounds_ ? rounds_->lightShare() : 1;
+  uint32_t wanted = uint32_t(share * all);
+  if (wanted < all) wanted = wanted / crew_ * crew_;
+  nextPart_ = partsWanted_;
+  partsWanted_ = std::clamp(wanted, partsWanted_, all);
+  shownLight_ = partsWanted_ > 1 ? light_.get() : early_.get();
+}
+
+// The first round has gone without light from lamps: the next shows what a few paths find.
+void Frame::wantEarly() {
+  if (!light_ || early_ || partsWanted_ > 0) return;
+  early_ = std::make_unique<LightImage>(film_.width(), film_.height());
+  earlyWanted_ = crew_ + 1;                                  // of one part nobody knows the variance
+  const uint32_t paths = film_.width() * film_.height() / 2; // half as many as a sample of the camera
+  earlyPaths_ = paths / earlyWanted_ + 1;
+  nextEarly_ = 0;
 }
 
 void Frame::describeError(RTstats& stats) const {
@@ -158,7 +157,7 @@ void Frame::describeError(RTstats& stats) const {
   stats.errorMean = s.mean, stats.errorMeanInterval = s.meanInterval;
   stats.errorHalfWidth = s.halfWidth, stats.errorP99 = s.p99;
   stats.errorPixels = s.pixels, stats.errorTrusted = s.trusted;
-  const bool many = rounds_ || replicatesOf(scene_->frame, scene_->frame.samples, 0).many();
+  const bool many = (rounds_ && rounds_->timed()) || replicatesOf(scene_->frame, scene_->frame.samples, 0).many();
   std::snprintf(stats.errorMethod, sizeof stats.errorMethod, "%s", many ? "replicated nets, Student's t" : "sample variance");
 }
 
@@ -171,36 +170,39 @@ void Frame::describeLedger(RTstats& stats) const {
 }
 
 // A picture of paths from lamps, part by part.
-void Frame::traceLight() {
-  LightTracer tracer(*scene_, *scene_->lightSources);
-  for (uint32_t i; !cancelled_ && (i = nextPart_++) < LightImage::parts;) {
-    tracer.trace(partPaths_, hash(scene_->frame.seed, 0x6c616d70u + i), lightPaths_, cancelled_);
-    light_->add(i, tracer.picture(), cancelled_);
-  }
-  std::lock_guard lock(mutex_);
-  counters_.shadow += tracer.counters().shadow;
-  counters_.secondary += tracer.counters().secondary;
+void Frame::traceLight(std::optional<LightTracer>& tracer) {
+  const auto trace = [&](LightImage& image, uint32_t part, uint32_t paths, uint32_t seed, std::atomic<uint64_t>& done) {
+    if (!tracer) tracer.emplace(*scene_, *scene_->lightSources);
+    tracer->trace(paths, hash(scene_->frame.seed, seed + part), done, cancelled_);
+    image.add(part, tracer->picture(), cancelled_);
+  };
+  std::atomic<uint64_t> unheeded{0};
+  for (uint32_t i; !cancelled_ && (i = nextEarly_++) < earlyWanted_;) trace(*early_, i, earlyPaths_, 0x6561726cu, unheeded);
+  for (uint32_t i; !cancelled_ && (i = nextPart_++) < partsWanted_;) trace(*light_, i, partPaths_, 0x6c616d70u, lightPaths_);
 }
 
 void Frame::work() {
   _mm_setcsr(_mm_getcsr() | 0x8040); // flush denormals to zero, as the ray kernels want it
   bool lit = !light_;
   try {
-    if (light_) {
-      traceLight();
-      lit = true;
-      lit_->arrive_and_wait();
-    }
-    TileRenderer renderer(*scene_, film_, rounds_ ? &rounds_->film : nullptr, light_.get());
+    std::optional<LightTracer> tracer;
+    TileRenderer renderer(*scene_, film_, rounds_ ? &rounds_->film : nullptr);
     renderer.stopAt(cancelled_);
     do {
+      if (light_) {
+        lit = false;
+        traceLight(tracer);
+        lit = true;
+        lit_->arrive_and_wait();
+        renderer.useLight(shownLight_);
+      }
       for (uint32_t i; !cancelled_ && (i = next_++) < tiles_;) renderTile(renderer, i);
       barrier_->arrive_and_wait();
     } while (!over_);
     std::lock_guard lock(mutex_);
     counters_.camera += renderer.counters().camera;
-    counters_.shadow += renderer.counters().shadow;
-    counters_.secondary += renderer.counters().secondary;
+    counters_.shadow += renderer.counters().shadow + (tracer ? tracer->counters().shadow : 0);
+    counters_.secondary += renderer.counters().secondary + (tracer ? tracer->counters().secondary : 0);
     counters_.faults.add(renderer.counters().faults);
     seconds_ = std::max(seconds_, now() - started_);
   } catch (const std::exception& e) {

@@ -2,8 +2,12 @@
 #include "render/tile.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstddef>
+#include <cstring>
 #include <limits>
+#include <type_traits>
 
 #include "render/light_image.h"
 #include "render/paths.h"
@@ -15,17 +19,23 @@ namespace openrt {
 
 namespace {
 constexpr uint32_t pathsInFlight = 4096;
-constexpr uint32_t pilotSamples = 32;
+constexpr uint32_t pilotSeed = 0x70696c6f;
+static_assert(std::is_trivially_copyable_v<PixelSums> && std::is_standard_layout_v<PixelSums>); // kept as bytes
+// Of the sums only what the film asks for is kept from round to round: there is one for each pixel of the picture.
+size_t keptBytes(const Film& film) {
+  if (!film.errors().empty() || film.has(RT_VARIANCE)) return sizeof(PixelSums);
+  return film.has(RT_NORMAL) || film.has(RT_ALBEDO) ? offsetof(PixelSums, first) : offsetof(PixelSums, normal);
+}
 } // namespace
 
 uint32_t tileEdge(uint32_t samplesPerPixel) { return samplesPerPixel >= 16 ? 16 : samplesPerPixel >= 4 ? 32 : 64; }
 
-TileRenderer::TileRenderer(const RenderScene& scene, Film& film, std::mutex* filmLock, const LightImage* light)
-    : scene_(scene), film_(film), filmLock_(filmLock), light_(light), wantsError_(wantsError(scene.frame)) {}
+TileRenderer::TileRenderer(const RenderScene& scene, Film& film, std::mutex* filmLock)
+    : scene_(scene), film_(film), filmLock_(filmLock), wantsError_(wantsError(scene.frame)), keptBytes_(keptBytes(film)) {}
 
 void TileRenderer::render(const Tile& tile) {
   uint32_t samples = scene_.frame.samples;
-  if (scene_.frame.targetError > 0 && samples > pilotSamples) samples = pilot(tile, pilotSamples);
+  if (needsPilot(scene_.frame)) samples = pilot(tile, pilotSamples);
   begin(tile);
   replicates_ = replicatesOf(scene_.frame, samples, scene_.frame.seed);
   single_ = samples == 1;
@@ -34,23 +44,46 @@ void TileRenderer::render(const Tile& tile) {
 
 uint32_t TileRenderer::pilot(const Tile& tile, uint32_t samples) {
   begin(tile);
-  replicates_ = replicatesOf(scene_.frame, samples, hash(scene_.frame.seed, 0x70696c6fu));
+  replicates_ = replicatesOf(scene_.frame, samples, hash(scene_.frame.seed, pilotSeed));
   single_ = samples == 1;
   if (!takeSamples(0, samples)) return samples;
   store(tile);
+  return wantedAfter(samples);
+}
+
+uint32_t TileRenderer::pilotRound(const Tile& tile, std::vector<std::byte>& kept, uint32_t first, uint32_t samples) {
+  const uint32_t seed = hash(scene_.frame.seed, pilotSeed);
+  renderRound(tile, kept, replicatesOf(scene_.frame, pilotSamples, seed), first, samples, first + samples >= pilotSamples);
+  return wantedAfter(pilotSamples);
+}
+
+uint32_t TileRenderer::wantedAfter(uint32_t samples) const {
   const edit::FrameSettingsT& frame = scene_.frame;
   return frame.targetError > 0 ? samplesFor(frame.targetError, halfWidth_, samples, frame.samples) : frame.samples;
 }
 
-void TileRenderer::renderRound(const Tile& tile, std::vector<PixelSums>& sums, const Replicates& replicates, uint32_t first,
-                               uint32_t samples) {
+void TileRenderer::renderRound(const Tile& tile, std::vector<std::byte>& kept, const Replicates& replicates, uint32_t first,
+                               uint32_t samples, bool last) {
   begin(tile);
-  if (!sums.empty()) sums_.swap(sums);
+  takeUp(kept);
   replicates_ = replicates;
   single_ = false;
   if (!takeSamples(first, samples)) return;
   store(tile);
-  sums.swap(sums_);
+  if (last)
+    kept = {};
+  else
+    keep(kept);
+}
+
+void TileRenderer::keep(std::vector<std::byte>& kept) const {
+  kept.resize(sums_.size() * keptBytes_);
+  for (size_t i = 0; i < sums_.size(); i++) std::memcpy(&kept[i * keptBytes_], &sums_[i], keptBytes_);
+}
+
+void TileRenderer::takeUp(const std::vector<std::byte>& kept) {
+  if (kept.empty()) return;
+  for (size_t i = 0; i < sums_.size(); i++) std::memcpy(&sums_[i], &kept[i * keptBytes_], keptBytes_);
 }
 
 void TileRenderer::begin(const Tile& tile) {
@@ -63,14 +96,18 @@ void TileRenderer::begin(const Tile& tile) {
   sums_.assign(pixels_.size(), {});
 }
 
+// A wave is as large as what was taken before it: rounds of a progressive frame begin and end with waves, so that a wave has the
+// same paths in one go and in rounds. What a path meets may depend on those beside it, where faces coincide.
 bool TileRenderer::takeSamples(uint32_t first, uint32_t samples) {
   ledger_.samples += samples;
-  const uint32_t perWave = std::clamp(pathsInFlight / uint32_t(pixels_.size()), 1u, samples);
-  for (uint32_t s = 0; s < samples; s += perWave) {
-    if (stop_ && stop_->load(std::memory_order_relaxed)) return false;
-    wave(first + s, std::min(perWave, samples - s));
+  const uint32_t most = std::clamp(std::bit_floor(pathsInFlight / uint32_t(pixels_.size())), 1u, largestWave);
+  for (uint32_t s = first, end = first + samples; s < end;) {
+    if (stopped()) return false;
+    const uint32_t n = std::min({most, std::max(s, 1u), end - s});
+    wave(s, n);
+    s += n;
   }
-  return true;
+  return !stopped(); // a wave may have been broken off
 }
 
 void TileRenderer::store(const Tile& tile) {
@@ -156,7 +193,7 @@ void TileRenderer::follow(Paths& paths, uint32_t n) {
     queue_.swap(next_);
     next_.clear();
     counters_.secondary += queue_.size();
-    for (size_t begin = 0; begin < queue_.size(); begin += n) {
+    for (size_t begin = 0; begin < queue_.size() && !stopped(); begin += n) {
       loadRays(paths, begin, uint32_t(std::min<size_t>(n, queue_.size() - begin)));
       traceWave(paths);
     }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstddef>
 #include <mutex>
 #include <vector>
 
@@ -24,17 +25,25 @@ class LightImage;
 class TileRenderer {
  public:
   // filmLock: held while pixels are stored, if other threads may read them meanwhile; else null
-  // light: what paths from lamps have made, or null
-  TileRenderer(const RenderScene& scene, Film& film, std::mutex* filmLock = nullptr, const LightImage* light = nullptr);
+  TileRenderer(const RenderScene& scene, Film& film, std::mutex* filmLock = nullptr);
+  // What paths from lamps have made, for the tiles that follow; null: nothing, as at first.
+  void useLight(const LightImage* light) { light_ = light; }
   // Tiles are given up, and not stored, once the flag is set.
   void stopAt(const std::atomic<bool>& flag) { stop_ = &flag; }
   // The whole of a tile: a pilot if the frame has a target error, then its samples, then its pixels.
   void render(const Tile& tile);
-  // Some samples more for a tile whose sums are kept from round to round; the first time sums is empty.
-  void renderRound(const Tile& tile, std::vector<PixelSums>& sums, const Replicates& replicates, uint32_t first,
-                   uint32_t samples);
+  // Samples of a wave, at most.
+  static constexpr uint32_t largestWave = 32;
+  static constexpr uint32_t pilotSamples = 32;
+  static bool needsPilot(const edit::FrameSettingsT& frame) { return frame.targetError > 0 && frame.samples > pilotSamples; }
+  // Some samples more for a tile whose sums are kept from round to round; the first time there are none. May be 0 samples: the
+  // tile is stored again. last: nothing needs to be kept.
+  void renderRound(const Tile& tile, std::vector<std::byte>& kept, const Replicates& replicates, uint32_t first, uint32_t samples,
+                   bool last);
   // A tile of samples that do not count; how many it needs. Its pixels are stored, to be replaced.
   uint32_t pilot(const Tile& tile, uint32_t samples);
+  // The same in rounds; the answer holds after the last one, of pilotSamples altogether.
+  uint32_t pilotRound(const Tile& tile, std::vector<std::byte>& kept, uint32_t first, uint32_t samples);
   const RayCounters& counters() const { return counters_; }
   // Of the samples that the last render() or renderRound() has taken.
   const Ledger& ledger() const { return ledger_; }
@@ -49,7 +58,11 @@ class TileRenderer {
   struct Paths; // structure of arrays, one entry a path
   void begin(const Tile& tile);
   bool takeSamples(uint32_t first, uint32_t samples); // false: stopped
+  bool stopped() const { return stop_ && stop_->load(std::memory_order_relaxed); }
   void store(const Tile& tile);
+  void keep(std::vector<std::byte>& kept) const;
+  void takeUp(const std::vector<std::byte>& kept);
+  uint32_t wantedAfter(uint32_t samples) const; // the tile that was stored last
   void askTransport(Paths& paths);
   void noteRandom(uint32_t path);
 
@@ -107,7 +120,7 @@ class TileRenderer {
   Film& film_;
   std::mutex* filmLock_;
   const std::atomic<bool>* stop_ = nullptr;
-  const LightImage* light_;
+  const LightImage* light_ = nullptr;
   Arena arena_;
   RayCounters counters_;
   Ledger ledger_;
@@ -116,7 +129,9 @@ class TileRenderer {
   std::vector<PixelSums> sums_;
   std::vector<PixelError> errors_; // of the tile that is stored
   Replicates replicates_;
-  bool wantsError_, single_ = false;                   // single_: one sample a pixel, at its centre
+  const bool wantsError_;
+  const size_t keptBytes_;                             // of each pixel's sums, from round to round
+  bool single_ = false;                                // single_: one sample a pixel, at its centre
   double halfWidth_ = 0;                               // relative, mean over the tile that was stored last
   uint8_t* random_ = nullptr;                          // by sample of the wave: its path has taken a random decision
   const uint32_t* root_ = nullptr;                     // within trace(): the sample of the wave that each path belongs to

@@ -115,7 +115,7 @@ TEST(Live, aPictureIsGivenOnce) {
   EXPECT_EQ(live.viewpoints().size(), 1u);
 }
 
-TEST(Live, DISABLED_theFrameInFlightIsSeenAndEndsEarly) {
+TEST(Live, theFrameInFlightIsSeenAndEndsEarly) {
   const auto browser = browserOf();
   LiveRenderer live(*browser, settingsOf());
   live.start(longFrame());

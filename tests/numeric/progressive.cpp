@@ -1,0 +1,191 @@
+// progressive.cpp: RT_PROGRESSIVE shows the whole picture early and ends with the bytes of the frame that is made in one go: for
+// any number of threads, samples and channels, with pilots, replicates and paths from lamps.
+#include <algorithm>
+#include <map>
+#include <string>
+
+#include "numeric/support.h"
+
+namespace numeric {
+namespace {
+
+constexpr uint32_t everyChannel = (RT_TRUST << 1) - 1;
+using Channels = std::map<uint32_t, std::vector<float>>;
+
+size_t componentsOf(uint32_t channel) {
+  if (channel == RT_RGBA) return 4;
+  return channel & (RT_NORMAL | RT_ALBEDO | RT_POSITION | RT_VARIANCE | RT_ERROR) ? 3 : 1;
+}
+
+struct Settings {
+  int samples = 16, transport = RT_TRANSPORT_PATH, width = 50, height = 40;
+  double targetError = 0;
+  int replicates = 0;
+  uint32_t channels = RT_RGBA;
+};
+
+class Progressive : public testing::Test {
+ protected:
+  void open(int threads) {
+    if (context_) rtDeleteContext(context_);
+    context_ = rtNewContext(("threads=" + std::to_string(threads)).c_str());
+    ASSERT_NE(context_, nullptr) << (rtGetError(), rtGetErrorMessage());
+    scene();
+  }
+  void TearDown() override {
+    EXPECT_EQ(rtGetError(), RTenum(RT_NO_ERROR)) << rtGetErrorMessage();
+    rtDeleteContext(context_);
+  }
+
+  static RTid square(RTid shader, float half) {
+    const RTid object = rtBeginObject(0);
+    rtBindShader(shader);
+    rtBegin(RT_QUADS);
+    rtNormal3f(0, 0, 1);
+    for (const auto& c : {std::array{-half, -half}, {half, -half}, {half, half}, {-half, half}}) rtVertex3f(c[0], c[1], 0);
+    rtEnd();
+    rtEndObject();
+    rtBindShader(0);
+    return object;
+  }
+  static void at(double x, double y, double z, RTid object, double turn = 0) {
+    rtPushMatrix();
+    rtTranslated(x, y, z);
+    rtRotated(turn, 1, 0, 0);
+    rtInstantiateObject(object);
+    rtPopMatrix();
+  }
+
+  // A floor of two faces in the same place, a lamp, a mirror, a ball of glass: rays that split, go on and meet ties.
+  static void scene() {
+    rtLoadIdentity();
+    at(0, -1, 0, square(Shader("Diffuse").set("reflectance", {.8, .3, .2}), 4), -90);
+    at(0, -1, 0, square(Shader("Diffuse").set("reflectance", {.2, .3, .8}), 4), -90);
+    at(0, 2.5, 0, square(Shader("Diffuse").set("emission", {9, 9, 8}), .3f), 90);
+    at(-1, 0, -1, square(Shader("Mirror").set("reflectance", {.9, .9, .9}), .8f), 10);
+    const Shader glass("Glass");
+    const RTid ball = rtBeginObject(0);
+    rtBindShader(glass);
+    rtSphere(.6f);
+    rtEndObject();
+    rtBindShader(0);
+    at(.6, 0, 0, ball);
+    Shader lamp("VRML97DirectionalLight");
+    lamp.set("direction", {-.3, -1, -.4}).set("intensity", {.5});
+    rtUseLight(lamp);
+    rtPushMatrix();
+    rtLookAt(0, .5, 5, 0, 0, 0, 0, 1, 0);
+    rtPerspective(40);
+    rtPopMatrix();
+  }
+
+  static void set(const Settings& s, bool progressive) {
+    rtFrameBuffer(s.width, s.height, s.channels);
+    rtQuality(RT_SAMPLES_PER_PIXEL, s.samples);
+    rtQuality(RT_TRANSPORT, s.transport);
+    rtQuality(RT_REPLICATES, s.replicates);
+    rtQualityf(RT_TARGET_ERROR, s.targetError);
+    rtQuality(RT_PROGRESSIVE, progressive);
+    rtQuality(RT_MAX_DEPTH, 6);
+  }
+  static Channels read(const Settings& s) {
+    Channels out;
+    for (uint32_t channel = 1; channel <= s.channels; channel <<= 1) {
+      if (!(s.channels & channel)) continue;
+      std::vector<float>& plane = out[channel];
+      plane.resize(size_t(s.width) * size_t(s.height) * componentsOf(channel));
+      rtReadPixels(channel, plane.data(), plane.size());
+    }
+    return out;
+  }
+  static Channels render(const Settings& s, bool progressive) {
+    set(s, progressive);
+    rtRender();
+    return read(s);
+  }
+
+  void expectSameBytes(const Settings& s) {
+    open(2);
+    const Channels expected = render(s, false);
+    for (const int threads : {1, 2, 5}) {
+      open(threads);
+      const Channels got = render(s, true);
+      for (const auto& [channel, plane] : expected)
+        EXPECT_TRUE(std::equal(plane.begin(), plane.end(), got.at(channel).begin(),
+                               [](float a, float b) { return a == b || (std::isnan(a) && std::isnan(b)); }))
+            << "channel " << channel << ", " << threads << " threads";
+    }
+  }
+
+  RTcontext context_ = nullptr;
+};
+
+TEST_F(Progressive, EndsWithTheBytesOfOneGo) {
+  for (const int samples : {1, 2, 3, 7, 16, 40}) expectSameBytes({.samples = samples});
+}
+
+TEST_F(Progressive, AllChannelsHaveTheBytesOfOneGo) {
+  expectSameBytes({.samples = 21, .channels = everyChannel & ~uint32_t(RT_ERROR | RT_TRUST | RT_VARIANCE)});
+  expectSameBytes({.samples = 21, .channels = RT_RGBA | RT_VARIANCE});
+  expectSameBytes({.samples = 72, .width = 33, .height = 20, .channels = everyChannel});
+}
+
+TEST_F(Progressive, RaysThatSplitHaveTheBytesOfOneGo) {
+  expectSameBytes({.samples = 20, .transport = RT_TRANSPORT_WHITTED, .channels = RT_RGBA | RT_NAME});
+}
+
+TEST_F(Progressive, ReplicatesHaveTheBytesOfOneGo) {
+  expectSameBytes({.samples = 40, .width = 20, .height = 20, .replicates = 8, .channels = everyChannel});
+}
+
+TEST_F(Progressive, ATargetErrorHasTheBytesOfOneGo) {
+  expectSameBytes({.samples = 256, .width = 34, .height = 20, .targetError = .1, .channels = everyChannel});
+  expectSameBytes({.samples = 24, .width = 34, .height = 20, .targetError = .1, .channels = everyChannel});
+}
+
+TEST_F(Progressive, PathsFromLampsHaveTheBytesOfOneGo) {
+  expectSameBytes({.samples = 18, .transport = RT_TRANSPORT_LIGHT, .width = 34, .height = 20});
+  expectSameBytes(
+      {.samples = 128, .transport = RT_TRANSPORT_LIGHT, .width = 20, .height = 18, .targetError = .2, .channels = everyChannel});
+}
+
+// Snapshots of a frame that would take minutes: all of it is there, and there is more of it by and by.
+TEST_F(Progressive, TheWholePictureIsSeenEarly) {
+  for (const int transport : {RT_TRANSPORT_PATH, RT_TRANSPORT_LIGHT}) {
+    open(2);
+    const Settings s{.samples = 65536, .transport = transport, .width = 200, .height = 150, .channels = RT_RGBA | RT_SAMPLES};
+    set(s, true);
+    rtSwapBuffers();
+    std::vector<float> samples(size_t(s.width) * size_t(s.height)), rgba(4 * samples.size());
+    float least = 0;
+    while (least < 4) { // hangs if the picture is made tile by tile
+      ASSERT_EQ(rtSnapshot(context_, RT_SAMPLES, samples.data(), samples.size()), 1);
+      const auto [low, high] = std::minmax_element(samples.begin(), samples.end());
+      EXPECT_GE(*low, least);
+      EXPECT_LE(*high, std::max(2 * *low, 1.0f));
+      least = *low;
+    }
+    EXPECT_EQ(rtSnapshot(context_, RT_RGBA, rgba.data(), rgba.size()), 1);
+    EXPECT_GT(rtProgress(context_), 0);
+    rtCancel(context_);
+    rtFrameBuffer(1, 1, RT_RGBA);
+    rtQuality(RT_SAMPLES_PER_PIXEL, 1);
+    rtSwapBuffers(); // the frame above is finished now
+    rtReadPixels(RT_SAMPLES, samples.data(), samples.size());
+    EXPECT_GE(*std::min_element(samples.begin(), samples.end()), least); // what was seen is not lost
+    rtReadPixels(RT_RGBA, rgba.data(), rgba.size());
+    for (size_t i = 0; i < rgba.size(); i++) ASSERT_TRUE(std::isfinite(rgba[i]));
+  }
+}
+
+// With one sample a picture is made in one go; the next ones are in rounds again.
+TEST_F(Progressive, MayBeSwitchedBetweenFrames) {
+  open(2);
+  const Settings s{.samples = 9}, one{.samples = 1};
+  const Channels a = render(s, true), b = render(one, true), c = render(s, false), d = render(one, false);
+  EXPECT_EQ(a, c);
+  EXPECT_EQ(b, d);
+}
+
+} // namespace
+} // namespace numeric
