@@ -146,7 +146,7 @@ class ScriptHost : public ScriptRunner {
   std::unordered_set<std::string> unusable_;   // engines of which it has been told that they have no process
   wire::Writer message_;
   uint32_t interpreters_ = 0; // in processes, ever
-  double patience_;           // seconds that calls may still wait before the next tick
+  double patience_;           // seconds that calls may still wait before the next tick; below 0: hardly any
   wire::Clock::time_point endBy_ = wire::never;
   XsNode lastNumber_ = 0;
   Script* running_ = nullptr;

@@ -86,7 +86,9 @@ XsResult ScriptHost::callRemote(Script& script, wire::Op op, wire::Writer& messa
 
 wire::Clock::time_point ScriptHost::patienceEnds() const {
   if (options_.scriptPatience <= 0) return endBy_;
-  const std::chrono::duration<double> patience(std::min(patience_, 1e6));
+  // When it is used up, calls that are answered at once still are.
+  const double least = patience_ > -options_.scriptPatience ? 0.001 : 0;
+  const std::chrono::duration<double> patience(std::clamp(patience_, least, 1e6));
   return std::min(endBy_, wire::Clock::now() + std::chrono::duration_cast<wire::Clock::duration>(patience));
 }
 
@@ -95,7 +97,7 @@ XsResult ScriptHost::waitFor(Script& script) {
   const auto start = wire::Clock::now();
   const XsResult result = serveCall(script, forEver, forEver, patienceEnds());
   if (options_.scriptPatience > 0)
-    patience_ = std::max(0.0, patience_ - std::chrono::duration<double>(wire::Clock::now() - start).count());
+    patience_ -= std::chrono::duration<double>(wire::Clock::now() - start).count();
   return result;
 }
 

@@ -82,57 +82,50 @@ bool ScriptProcess::begin(Writer& call) {
   if (dead() || !call.finish()) return false;
   if (!channel_->send(call.bytes())) return lost(State::died, {}), false;
   busy_ = true;
-  seenBusy_ = false;
   used_ = 0;
-  sent_ = Clock::now();
+  left_ = Clock::now();
   return true;
 }
 
-// What an application does between two ticks is nothing that a program may be blamed for: it counts the time up to a message that
-// was waited for, or up to the last time that there was none.
+// The time on the wall counts, but not what the host's functions take, and little of what an application does between two ticks.
 ScriptProcess::State ScriptProcess::serve(double first, double next, Clock::time_point until, double time) {
-  bool waited = false;
+  constexpr double mostBetween = 0.1;
+  const double limit = settings_.seconds + grace;
+  used_ += std::min(seconds(Clock::now() - left_), mostBetween);
+  auto start = Clock::now();
+  const auto leave = [&](State state) {
+    left_ = Clock::now();
+    used_ += seconds(left_ - start);
+    return state;
+  };
   for (double patience = first;; patience = next) {
     const auto now = Clock::now();
-    const double limit = settings_.seconds + grace;
-    const auto hard = std::min(sent_, now) + duration(limit - used_);
-    const auto end = std::min({until, hard, now + duration(patience)});
-    const Channel::Got got = channel_->receive(message_, std::max(end, now));
-    const auto then = Clock::now();
-    if (got == Channel::Got::nothing) {
-      seenBusy_ = true;
-      seen_ = then;
-      if (used_ + seconds(then - sent_) >= limit) return lost(State::tooLong, "took too long");
-      if (then >= until || patience < 1e5) return State::running;
-      continue;
-    }
+    const auto hard = start + duration(limit - used_);
+    const Channel::Got got = channel_->receive(message_, std::max(now, std::min({until, hard, now + duration(patience)})));
+    if (got == Channel::Got::nothing) return Clock::now() >= hard ? lost(State::tooLong, "took too long") : leave(State::running);
     if (got == Channel::Got::closed) return lost(State::died, {});
     if (got == Channel::Got::bad) return lost(State::died, "sent a message that is too long");
-    if (waited || first > 0)
-      used_ += seconds(then - sent_);
-    else if (seenBusy_)
-      used_ += std::max(0.0, seconds(seen_ - sent_));
-    waited = true;
     if (message_.header.op == uint16_t(Op::done)) {
-      const int32_t answer = message_.header.result;
       if (!message_.bytes.empty()) return lost(State::died, "broke the protocol");
+      const int32_t answer = message_.header.result;
       result_ = answer >= XS_OK && answer <= XS_FAILED ? XsResult(answer) : XS_FAILED;
       stopped_ = message_.header.flags & Flags::stopped;
       busy_ = false;
       return State::returned;
     }
-    if (!answer(message_, time)) return dead() ? State::died : lost(State::died, "broke the protocol");
-    sent_ = Clock::now();
-    seenBusy_ = false;
-    if (used_ >= limit) return lost(State::tooLong, "took too long");
-    if (sent_ >= until) return State::running;
+    const auto asked = Clock::now();
+    if (!answer(message_, time)) return State::died;
+    const auto answered = Clock::now();
+    start += answered - asked;
+    if (answered >= start + duration(limit - used_)) return lost(State::tooLong, "took too long");
+    if (answered >= until) return leave(State::running);
   }
 }
 
 bool ScriptProcess::answer(const Message& message, double time) {
   answer_.begin(Op::answer, message.header.script, time);
   const Served served = wire::serve(HostFunctions{}, host_, message, answer_);
-  if (!served.good) return false;
+  if (!served.good) return lost(State::died, "broke the protocol"), false;
   if (!served.answers) return true;
   if (!answer_.finish()) {
     answer_.begin(Op::answer, message.header.script, time);
@@ -140,7 +133,8 @@ bool ScriptProcess::answer(const Message& message, double time) {
     answer_.put("longer than a message to a process may be");
     answer_.finish();
   }
-  return channel_->send(answer_.bytes());
+  if (!channel_->send(answer_.bytes())) return lost(State::died, {}), false;
+  return true;
 }
 
 } // namespace xvrml

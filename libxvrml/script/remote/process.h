@@ -53,19 +53,19 @@ class ScriptProcess {
 
  private:
   State lost(State state, std::string why);
-  bool answer(const wire::Message& message, double time);
+  bool answer(const wire::Message& message, double time); // false: it has been lost
 
   const ProcessSettings settings_;
   const XsHost& host_;
   Child child_;
   std::unique_ptr<wire::Channel> channel_; // null: it is dead
   std::string death_;
-  bool ready_ = false, busy_ = false, stopped_ = false, seenBusy_ = false;
+  bool ready_ = false, busy_ = false, stopped_ = false;
   uint32_t scripts_ = 0;
   uint64_t base_ = 0; // bytes of address space that it had when it was ready; 0: cannot be limited
   XsResult result_ = XS_OK;
-  double used_ = 0;                     // seconds of the call, without those it waited for an answer
-  wire::Clock::time_point sent_, seen_; // the last message to it; when it was last seen to compute
+  double used_ = 0;              // seconds of the call
+  wire::Clock::time_point left_; // when it was last looked after
   wire::Message message_;
   wire::Writer answer_;
 };

@@ -1,0 +1,376 @@
+// Scripts in processes of their own: what a program there cannot do, and what becomes of it, of the others and of the world when
+// it tries. Programs are those of tests/script/hostile_engine.c.
+#include <csignal>
+#include <filesystem>
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "conformance/events/scripted.h"
+
+namespace xvrml {
+namespace {
+
+BrowserOptions limits(double patience = 0, double seconds = 0.3) {
+  BrowserOptions options;
+  options.scriptPath = XVRML_HOSTILE_SCRIPTS ":" XVRML_TEST_SCRIPTS;
+  options.scriptSeconds = seconds;
+  options.scriptMemory = 64 << 20;
+  options.scriptPatience = patience;
+  return options;
+}
+
+// Script S does what `program` says when `go` arrives; E is a well-behaved one, of the test engine, in a process, too.
+std::string world(const std::string& program) {
+  return "DEF S Script { eventIn SFBool go eventOut SFInt32 out\n url \"hostile:" + program +
+         "\" }\nDEF E Script { eventIn SFInt32 in eventOut SFInt32 out url \"test:in: echo out\" }";
+}
+
+struct Hostile : Scripted {
+  explicit Hostile(const std::string& program, BrowserOptions options = limits()) : Scripted(world(program), options) {}
+  bool lives() { // the world does
+    static int32_t number = 0;
+    set("E", "in", ++number);
+    return get("E", "out") == std::to_string(number);
+  }
+  pid_t process(const char* script = "S") { // of a program with "go: process out"
+    set(script, "go", true);
+    return pid_t(std::stol(get(script, "out")));
+  }
+  // Ticks of 1/60 s until there is a message or something is printed, at most 10 s.
+  int ticksUntilTold(Log& told) {
+    for (int ticks = 1; ticks < 2000; ++ticks) {
+      browser.tick(browser.now() + 1.0 / 60);
+      told = messages();
+      for (std::string& line : printed()) told.push_back(std::move(line));
+      if (!told.empty()) return ticks;
+      usleep(5000);
+    }
+    return 0;
+  }
+};
+
+class ScriptProcess : public testing::Test {
+ protected:
+  void SetUp() override { isolationOfTest = BrowserOptions::Isolation::always; }
+  void TearDown() override { isolationOfTest = BrowserOptions::Isolation::automatic; }
+};
+
+struct Misdeed {
+  const char* name;
+  const char* program;
+  const char* message; // part of it
+};
+class ScriptMisdeeds : public testing::TestWithParam<Misdeed> {};
+
+constexpr Misdeed misdeeds[] = {
+    {"EndlessLoop", "go: spin", "took too long"},
+    {"EndlessLoopThatAsks", "go: polite", "took too long"},
+    {"EndlessCallsOfTheHost", "go: calls out", "took too long"},
+    {"EndlessMessages", "go: chatter x", "took too long"},
+    {"MemoryBomb", "go: bomb", "(Aborted)"},
+    {"EndlessRecursion", "go: recurse", "(Segmentation fault)"},
+    {"Crash", "go: crash", "(Segmentation fault)"},
+    {"Exit", "go: exit 0", "its process ended with code 0"},
+    {"BytesForMessages", "go: speak 0123456789abcdef0123456789abcdef", "its process"},
+};
+INSTANTIATE_TEST_SUITE_P(All, ScriptMisdeeds, testing::ValuesIn(misdeeds), [](const auto& info) { return info.param.name; });
+
+// With the default of isolation.
+TEST_P(ScriptMisdeeds, StopTheScriptAndNothingElse) {
+  for (const double patience : {0.0, 0.02}) {
+    Hostile r(GetParam().program, limits(patience, 0.2));
+    EXPECT_EQ(r.messages(), Log{});
+    r.set("S", "go", true);
+    EXPECT_TRUE(r.lives());
+    Log told = r.messages();
+    for (int i = 0; i < 1000 && told.empty(); ++i) {
+      r.ticksUntilTold(told);
+      std::erase(told, "x"); // of the chatter
+    }
+    ASSERT_EQ(told.size(), 1u) << patience;
+    EXPECT_EQ(told[0].find("3: Script S: "), 0u) << told[0]; // where its program begins
+    EXPECT_NE(told[0].find(GetParam().message), std::string::npos) << told[0];
+    EXPECT_NE(told[0].find("the Script is stopped"), std::string::npos) << told[0];
+    EXPECT_EQ(r.browser.world().diagnostics.list().back().file, "test.wrl");
+    r.set("S", "go", true); // nothing any more
+    r.browser.tick(r.browser.now() + 1);
+    EXPECT_TRUE(r.lives());
+    EXPECT_EQ(r.messages(), Log{});
+    r.set("S", "url", MFString{"hostile:go: print again"});
+    r.set("S", "go", true);
+    Log printed = r.printed();
+    for (int i = 0; i < 10'000 && std::count(printed.begin(), printed.end(), "again") == 0; ++i) r.ticksUntilTold(printed);
+    EXPECT_EQ(std::count(printed.begin(), printed.end(), "again"), 1);
+  }
+}
+
+TEST_F(ScriptProcess, ReachesNothing) {
+  setenv("XVRML_TEST_SECRET", "1", 1);
+  struct {
+    const char* program;
+    const char* allowed; // what must not be printed
+  } const table[] = {{"go: open /etc/passwd", "open: worked"},
+                     {"go: create cage-test-file", "create: worked"},
+                     {"go: socket", "socket: worked"},
+                     {"go: env XVRML_TEST_SECRET", "set"},
+                     {"go: env PATH", "set"},
+                     {"go: open /proc/self/environ", "open: worked"},
+#ifdef XVRML_WITH_SECCOMP
+                     {"go: exec /bin/true", "exec: worked"},
+                     {"go: fork", "fork: worked"},
+                     {"go: kill", "kill: worked"},
+                     {"go: raise", "setrlimit: worked"},
+#endif
+                     {"go: descriptors", ""}};
+  for (const auto& entry : table) {
+    Hostile r(entry.program);
+    r.set("S", "go", true);
+    const Log printed = r.printed();
+    ASSERT_EQ(printed.size(), 1u) << entry.program;
+    EXPECT_NE(printed[0], entry.allowed) << entry.program;
+    EXPECT_EQ(r.messages(), Log{}) << entry.program;
+    if (!*entry.allowed) { EXPECT_EQ(printed[0], "0 open"); }
+    EXPECT_TRUE(r.lives());
+  }
+}
+
+TEST_F(ScriptProcess, EveryFunctionHasItsBudget) {
+  for (const char* when : {"create", "initialize", "eventsProcessed", "tick", "shutdown", "destroy"}) {
+    Log told;
+    {
+      Hostile r(std::string(when) + ": spin\ngo: print went");
+      r.set("S", "go", true);
+      r.browser.tick(1);
+      r.browser.tick(2);
+      EXPECT_TRUE(r.lives()) << when;
+      r.set("S", "url", MFString{"hostile:go: print again"});
+      r.set("S", "go", true);
+      told = r.printed();
+      const Log messages = r.messages();
+      const std::string name = when;
+      EXPECT_EQ(messages.size(), name == "destroy" ? 0u : 1u) << when;
+      for (const std::string& message : messages)
+        EXPECT_EQ(message, "3: Script S: " + name + " took too long: the Script is stopped");
+    }
+    ASSERT_FALSE(told.empty()) << when;
+    EXPECT_EQ(told.back(), "again");
+  }
+}
+
+TEST_F(ScriptProcess, OneThatIsKilledWhileNothingRunsIsStartedAnew) {
+  Hostile r("initialize: print begins\ngo: process out");
+  const pid_t first = r.process();
+  ASSERT_GT(first, 1);
+  EXPECT_NE(first, getpid());
+  EXPECT_EQ(r.printed(), Log{"begins"});
+  kill(first, SIGKILL);
+  usleep(20'000);
+  const pid_t second = r.process(); // the event is not lost
+  EXPECT_NE(first, second);
+  EXPECT_EQ(r.printed(), Log{"begins"});
+  const Log messages = r.messages();
+  ASSERT_EQ(messages.size(), 1u);
+  EXPECT_EQ(messages[0].find("3: Script S: the process that it runs in ended by signal 9 (Killed)"), 0u) << messages[0];
+}
+
+TEST_F(ScriptProcess, OneThatIsAlwaysKilledIsStopped) {
+  Hostile r("go: process out");
+  for (int i = 0; i < 4; ++i) {
+    kill(r.process(), SIGKILL);
+    usleep(20'000);
+  }
+  r.set("S", "go", true);
+  const Log messages = r.messages();
+  ASSERT_EQ(messages.size(), 2u); // the same text is told once
+  EXPECT_NE(messages[0].find("ended by signal 9 (Killed)"), std::string::npos) << messages[0];
+  EXPECT_NE(messages[0].find("it is started anew"), std::string::npos) << messages[0];
+  EXPECT_NE(messages[1].find("again: the Script is stopped"), std::string::npos) << messages[1];
+  EXPECT_TRUE(r.lives());
+}
+
+TEST_F(ScriptProcess, ManyScriptsShareProcessesAndOneThatEndsItsProcessEndsAlone) {
+  std::string text;
+  constexpr int scripts = 40;
+  for (int i = 0; i < scripts; ++i)
+    text += fmt::format("DEF S{} Script {{ eventIn SFBool go eventIn SFBool die eventOut SFInt32 out url \"hostile:"
+                        "go: process out\ndie: crash\" }}\n",
+                        i);
+  Scripted r(text, limits());
+  const auto processes = [&](int script) {
+    r.set(fmt::format("S{}", script), "go", true);
+    return std::stol(r.get(fmt::format("S{}", script), "out"));
+  };
+  std::vector<long> of;
+  for (int i = 0; i < scripts; ++i) of.push_back(processes(i));
+  std::vector<long> different = of;
+  std::sort(different.begin(), different.end());
+  different.erase(std::unique(different.begin(), different.end()), different.end());
+  EXPECT_EQ(different.size(), 16u);
+  const auto mates = std::count(of.begin(), of.end(), of[3]);
+  EXPECT_GE(mates, 2);
+  EXPECT_LE(mates, 3);
+  r.set("S3", "die", true);
+  Log messages = r.messages();
+  ASSERT_EQ(long(messages.size()), mates);
+  EXPECT_NE(messages[0].find("Script S3: event: its process ended by signal 11"), std::string::npos) << messages[0];
+  for (long i = 1; i < mates; ++i) EXPECT_NE(messages[size_t(i)].find("it is started anew"), std::string::npos);
+  for (int i = 0; i < scripts; ++i) EXPECT_TRUE(i == 3 || (of[size_t(i)] == of[3]) == (processes(i) != of[size_t(i)])) << i;
+  EXPECT_EQ(r.messages(), Log{});
+}
+
+TEST_F(ScriptProcess, WithoutTheProgramScriptsDoNothing) {
+  for (const char* program : {"/nonexistent/xvrml-script-host", "/bin/true", "/etc/passwd"}) {
+    setenv("XVRML_SCRIPT_HOST", program, 1);
+    Hostile r("create: print runs\ngo: print runs");
+    unsetenv("XVRML_SCRIPT_HOST");
+    const Log messages = r.messages();
+    ASSERT_EQ(messages.size(), 2u); // of each engine
+    EXPECT_EQ(messages[0].find("2: Script S: no process for programs of engine hostile: "), 0u) << messages[0];
+    EXPECT_NE(messages[0].find("; Scripts of this engine do nothing"), std::string::npos) << messages[0];
+    EXPECT_TRUE(r.set("S", "go", true));
+    r.browser.tick(1);
+    EXPECT_EQ(r.printed(), Log{});
+    EXPECT_EQ(r.messages(), Log{});
+  }
+}
+
+// --- Patience ---
+
+TEST_F(ScriptProcess, TheWorldGoesOnWhileAScriptTakesItsTime) {
+  Hostile r("go: print began\ngo: slow 200\ngo: process out", limits(0.01, 10));
+  ASSERT_TRUE(r.lives());
+  r.log("S", "out");
+  r.set("S", "go", true);
+  EXPECT_EQ(r.printed(), Log{"began"});
+  r.set("S", "go", true); // waits
+  EXPECT_TRUE(r.lives());
+  EXPECT_EQ(r.take(), Log{});
+  Log told;
+  EXPECT_GT(r.ticksUntilTold(told), 1);
+  EXPECT_EQ(told[0], "slept");
+  for (int i = 0; i < 100 && r.events.size() < 2; ++i) r.ticksUntilTold(told);
+  const Log events = r.take();
+  ASSERT_EQ(events.size(), 2u); // each at the time of its tick
+  EXPECT_NE(events[0].substr(0, events[0].find(' ')), events[1].substr(0, events[1].find(' ')));
+  EXPECT_EQ(r.messages(), Log{});
+}
+
+TEST_F(ScriptProcess, FramesGoOnWhileAScriptLoops) {
+  for (const char* program : {"go: spin", "go: calls out", "go: chatter x"}) {
+    Scripted r(world(program) + " DEF C TimeSensor { loop TRUE } DEF T Script { eventIn SFTime in eventOut SFTime out url "
+                                "\"test:in: echo out\" } ROUTE C.time TO T.in",
+               limits(0.05, 0.6));
+    r.log("T", "out");
+    r.set("S", "go", true);
+    int frames = 0;
+    while (r.messages().empty() && frames < 2000) {
+      r.browser.tick(r.browser.now() + 1.0 / 60);
+      ++frames;
+      usleep(16'000);
+    }
+    EXPECT_LT(frames, 2000);
+    EXPECT_GT(frames, 10) << program;
+    for (int i = 0; i < 10; ++i) r.browser.tick(r.browser.now() + 1.0 / 60), usleep(2000);
+    EXPECT_GE(int(r.take().size()), frames) << program; // the other Script got its event in each of them
+  }
+}
+
+TEST_F(ScriptProcess, ManyLoopsCostOnePatience) {
+  std::string text = "DEF G Group {} DEF T Transform {}";
+  for (int i = 0; i < 100; ++i)
+    text += fmt::format("DEF S{} Script {{ eventIn SFVec3f go url \"hostile:go: spin\" }} ROUTE T.translation TO S{}.go\n", i, i);
+  Scripted r(text, limits(0.05, 60));
+  const auto start = std::chrono::steady_clock::now();
+  r.set("T", "translation", Vec3f{1, 2, 3});
+  for (int i = 0; i < 10; ++i) r.browser.tick(i);
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+  EXPECT_LT(taken.count(), 3); // not 5, or 50
+  EXPECT_EQ(r.messages(), Log{});
+}
+
+TEST_F(ScriptProcess, EventsThatWaitAreBounded) {
+  Hostile r("go: slow 300\ngo: print went", limits(0.01, 10));
+  for (int i = 0; i < 1500; ++i) r.set("S", "go", true);
+  EXPECT_EQ(r.messages(), Log{"2: Script S: is still busy: the oldest of the events that wait for it are dropped"});
+  EXPECT_TRUE(r.lives());
+}
+
+// --- The end ---
+
+TEST_F(ScriptProcess, NobodyWaitsForAProgramThatIsStuck) {
+  const auto start = std::chrono::steady_clock::now();
+  for (const bool loads : {false, true}) {
+    Hostile r("go: spin\nshutdown: spin", limits(0.02, 60));
+    r.set("S", "go", true);
+    r.set("S", "url", MFString{"hostile:go: spin\nshutdown: spin"});
+    r.set("S", "go", true);
+    if (loads) r.browser.replaceWorld({r.browser.node("E")});
+    r.browser.tick(1);
+  }
+  { Hostile r("shutdown: spin", limits(0, 1)); }
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+  EXPECT_LT(taken.count(), 20); // not minutes
+}
+
+size_t openFiles() {
+  size_t count = 0;
+  for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) ++count;
+  return count;
+}
+
+TEST_F(ScriptProcess, NothingIsLeftBehind) {
+  { Hostile warm("go: print x"); }
+  const size_t before = openFiles();
+  {
+    Hostile r("go: print x");
+    for (int i = 0; i < 10'000; ++i) r.set("S", "url", MFString{"hostile:go: print x"});
+    EXPECT_LT(openFiles(), before + 20);
+    for (int i = 0; i < 20; ++i) {
+      r.set("S", "url", MFString{i % 2 ? "hostile:go: crash" : "hostile:go: exit 1"});
+      r.set("S", "go", true);
+    }
+    EXPECT_LT(openFiles(), before + 20);
+    EXPECT_TRUE(r.lives());
+  }
+  EXPECT_EQ(openFiles(), before);
+  EXPECT_EQ(waitpid(-1, nullptr, WNOHANG), -1); // no child, dead or alive
+  EXPECT_EQ(errno, ECHILD);
+}
+
+TEST_F(ScriptProcess, ChildrenOfTheProgramAreLeftAlone) {
+  const pid_t child = fork();
+  if (child == 0) _exit(7);
+  {
+    Hostile r("go: crash");
+    r.set("S", "go", true);
+    EXPECT_TRUE(r.lives());
+  }
+  int status = 0;
+  EXPECT_EQ(waitpid(child, &status, 0), child);
+  EXPECT_EQ(WEXITSTATUS(status), 7);
+}
+
+// A program that waits for whatever child of it ends takes the helpers' ends away.
+TEST_F(ScriptProcess, SomebodyElseMayWaitForTheProcesses) {
+  struct sigaction reapAll {
+  }, former{};
+  reapAll.sa_handler = [](int) {
+    const int saved = errno;
+    while (waitpid(-1, nullptr, WNOHANG) > 0) {}
+    errno = saved;
+  };
+  sigaction(SIGCHLD, &reapAll, &former);
+  {
+    Hostile r("go: crash");
+    r.set("S", "go", true);
+    const Log messages = r.messages();
+    ASSERT_EQ(messages.size(), 1u);
+    EXPECT_NE(messages[0].find("its process ended"), std::string::npos) << messages[0];
+    EXPECT_TRUE(r.lives());
+  }
+  sigaction(SIGCHLD, &former, nullptr);
+}
+
+} // namespace
+} // namespace xvrml
