@@ -5,6 +5,7 @@
 #include <string>
 
 #include <dlfcn.h>
+#include <unistd.h>
 
 #include "interpreter.h"
 #include "notifier.h"
@@ -50,6 +51,8 @@ XsResult prepare() {
 XsResult create(const XsHost* host, const XsScriptInfo* info, XsInterpreter* made) {
   return guarded([&] {
     prepare();
+    static char* none[] = {nullptr};
+    if (!environ) environ = none; // after clearenv; Tcl looks at the first
     auto interpreter = std::make_unique<Interpreter>(host, info);
     const XsResult result = interpreter->create();
     if (result == XS_OK) *made = XsInterpreter(reinterpret_cast<uintptr_t>(interpreter.release()));
