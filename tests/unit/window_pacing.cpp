@@ -1,0 +1,141 @@
+// Pacing: the frame rate holds while something moves, sizes do not flicker, and what stands still is rendered whole.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "window/pacing.h"
+
+using namespace vv;
+
+namespace {
+
+// A machine on which a frame takes so long.
+struct Machine {
+  double pixel, overhead = 0;
+  double unsteady = 0; // part of the time by which frames differ
+  int count = 0;
+  double seconds(const FrameSize& f) {
+    const double wave = 1 + unsteady * ((count++ * 7919 % 13) / 6.0 - 1);
+    return overhead + pixel * f.width * f.height * f.samples * wave;
+  }
+};
+
+constexpr int width = 800, height = 600;
+constexpr double full = double(width) * height;
+
+// Frames while something moves; the seconds of each.
+std::vector<double> move(Pacing& pacing, Machine& machine, int frames, std::vector<FrameSize>* sizes = nullptr) {
+  std::vector<double> out;
+  for (int i = 0; i < frames; ++i) {
+    const FrameSize f = pacing.next(width, height, true, 64);
+    const double seconds = machine.seconds(f);
+    pacing.took(f, seconds, machine.overhead, f.samples);
+    out.push_back(seconds);
+    if (sizes) sizes->push_back(f);
+  }
+  return out;
+}
+
+} // namespace
+
+TEST(Pacing, whatStandsStillIsRenderedWhole) {
+  Pacing pacing(30);
+  EXPECT_EQ(pacing.next(width, height, false, 64), (FrameSize{width, height, 64}));
+  Machine slow{1 / full};
+  move(pacing, slow, 20);
+  EXPECT_EQ(pacing.next(width, height, false, 64), (FrameSize{width, height, 64}));
+  EXPECT_EQ(pacing.next(0, -1, false, 0), (FrameSize{1, 1, 1}));
+}
+
+TEST(Pacing, theFrameRateHolds) {
+  for (const double fps : {10.0, 30.0, 60.0})
+    for (const double wholePicture : {0.0001, 0.01, 0.05, 0.1, 0.3, 1.0}) {
+      Pacing pacing(fps);
+      Machine machine{wholePicture / full, 0.001};
+      std::vector<FrameSize> sizes;
+      const std::vector<double> seconds = move(pacing, machine, 60, &sizes);
+      const FrameSize last = sizes.back();
+      const bool least = last.width == 100 && last.height == 75;
+      EXPECT_TRUE(seconds.back() <= 1 / fps || least) << fps << ", " << wholePicture;
+      const bool most = last.samples == 16;
+      EXPECT_TRUE(seconds.back() >= 0.3 / fps || most) << fps << ", " << wholePicture; // time is used
+    }
+}
+
+TEST(Pacing, sizesAreBounded) {
+  Machine hopeless{1};
+  for (const auto& [w, h] : {std::pair{800, 600}, {3840, 2160}, {100, 90}, {64, 64}, {10, 7}, {2000, 20}}) {
+    Pacing pacing(30);
+    FrameSize f;
+    for (int i = 0; i < 30; ++i) {
+      f = pacing.next(w, h, true, 16);
+      pacing.took(f, hopeless.seconds(f), 0, 1);
+    }
+    EXPECT_EQ(f.width, std::min(w, std::max(64, (w + 7) / 8)));
+    EXPECT_EQ(f.height, std::min(h, std::max(64, (h + 7) / 8)));
+    EXPECT_EQ(f.samples, 1);
+  }
+}
+
+TEST(Pacing, cheapScenesGetMoreSamplesAtFullSize) {
+  Pacing pacing(30);
+  Machine quick{0.002 / full};
+  std::vector<FrameSize> sizes;
+  move(pacing, quick, 60, &sizes);
+  EXPECT_EQ(sizes.back().width, width);
+  EXPECT_GE(sizes.back().samples, 8);
+  for (int i = 0; i < 10; ++i) EXPECT_LE(pacing.next(width, height, true, 2).samples, 2); // no more than a still picture
+}
+
+TEST(Pacing, sizesDoNotFlicker) {
+  for (double wholePicture = 0.002; wholePicture < 0.5; wholePicture *= 1.13) {
+    Pacing pacing(30);
+    Machine machine{wholePicture / full, 0.002, 0.12};
+    std::vector<FrameSize> sizes;
+    move(pacing, machine, 200, &sizes);
+    int changes = 0;
+    for (size_t i = 100; i < sizes.size(); ++i) changes += !(sizes[i] == sizes[i - 1]);
+    EXPECT_LE(changes, 1) << wholePicture;
+  }
+}
+
+TEST(Pacing, aSceneThatBecomesSlowIsFollowedAtOnceAndBackByAndBy) {
+  Pacing pacing(30);
+  Machine machine{0.02 / full};
+  std::vector<FrameSize> sizes;
+  move(pacing, machine, 30);
+  machine.pixel *= 20;
+  EXPECT_LE(move(pacing, machine, 4).back(), 1 / 30.0);
+  machine.pixel /= 20;
+  move(pacing, machine, 100, &sizes);
+  EXPECT_EQ(sizes.back().width, width);
+  for (size_t i = 1; i < sizes.size(); ++i) EXPECT_LE(sizes[i].width, 1.3 * sizes[i - 1].width) << "a leap";
+}
+
+TEST(Pacing, whatWasLearntWhileStillCountsWhenItMoves) {
+  Pacing pacing(30);
+  pacing.took({width, height, 64}, 3.0, 0, 3); // given up after three samples of a second each
+  const FrameSize first = pacing.next(width, height, true, 64);
+  EXPECT_LE(first.width * first.height / full, 1 / 25.0);
+}
+
+TEST(Pacing, readingTheWorldIsNotHelpedByFewerPixels) {
+  Pacing pacing(30);
+  Machine machine{0.01 / full, 0.2};
+  std::vector<FrameSize> sizes;
+  move(pacing, machine, 40, &sizes);
+  EXPECT_EQ(sizes.back().width, width); // 0.2 s or 0.21 s
+}
+
+TEST(Pacing, oddTimesAreNoReason) {
+  Pacing pacing(30);
+  const FrameSize before = pacing.next(width, height, true, 16);
+  pacing.took(before, -1, 0, 1);
+  pacing.took(before, std::nan(""), 0, 1);
+  pacing.took(before, 1, 2, 1);
+  pacing.took(before, 0.001, 0, 0);
+  EXPECT_EQ(pacing.next(width, height, true, 16), before);
+  EXPECT_EQ(pacing.predicted(before), 0);
+}
