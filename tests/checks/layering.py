@@ -100,7 +100,7 @@ FOREIGN = [
 ]
 # A public header includes the language's own headers and nothing else of others.
 STANDARD = re.compile(r"[a-z_0-9]+(\.h)?$")
-SEARCH = ["libopenrt/include", "libxvrml/include", "libopenrt", "libxvrml", "plugins/shaders", "apps", "tests", "common"]
+SEARCH = ["libopenrt/include", "libxvrml/include", "libopenrt", "libxvrml", "plugins/shaders", "apps", "apps/vv", "tests", "common"]
 # Made at build time -> the part that they belong to.
 GENERATED = [(re.compile(r"edits_generated\.h$"), "openrt-scene"), (re.compile(r"xvrml/nodes\.h$"), "xvrml-h")]
 SUFFIXES = {".c", ".cpp", ".h", ".hpp"}
