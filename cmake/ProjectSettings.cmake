@@ -28,6 +28,8 @@ target_compile_options(project_options INTERFACE -Wall -Wextra -Wno-missing-fiel
                        $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict> # false alarms on std::string in GCC 12 (its bug 105651)
                        $<$<BOOL:${OPENRT_WERROR}>:-Werror>)
 if(OPENRT_SANITIZE)
+  # With them GCC warns of what it cannot follow (its manual says so of this warning).
+  target_compile_options(project_options INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
   add_compile_options(-fsanitize=${OPENRT_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   add_link_options(-fsanitize=${OPENRT_SANITIZE})
 endif()
