@@ -12,6 +12,8 @@ import zlib
 
 from scenes.car import car
 from scenes.chess import chess
+from scenes.earth import earth
+from scenes.globe import globe
 from scenes.headlight import headlight_studio
 from scenes.parts import at, box, lathe, number, numbers, quad, shader, shape, viewpoint, world
 
@@ -267,7 +269,8 @@ def studio():
             + chunk(b"IDAT", zlib.compress(rows, 9)) + chunk(b"IEND", b""))
 
 
-SCENES = [glass_ball, mirror_corridor, cornell, furnace, caustic, car_paint, carved, interior, headlight, board, chess, headlight_studio, car]
+SCENES = [glass_ball, mirror_corridor, cornell, furnace, caustic, car_paint, carved, interior, headlight, board, chess, headlight_studio, car,
+          globe]
 LONG = 250000  # bytes
 
 
@@ -280,6 +283,7 @@ def main():
         else:
             (folder / f"{make.__name__}.wrz").write_bytes(gzip.compress(text, 9, mtime=0))
     (folder / "studio.png").write_bytes(studio())
+    (folder / "globe.png").write_bytes(earth())
 
 
 if __name__ == "__main__":
