@@ -29,6 +29,13 @@ struct BrowserObject : WorldObject, std::enable_shared_from_this<BrowserObject> 
             }};
   }
 
+  ~BrowserObject() override {
+    const Browser* ending = running.get();
+    drawing.reset();
+    running.reset(); // Scripts are shut down
+    scriptsLock(ending, nullptr);
+  }
+
   World& graph() override { return running->world(); }
   Browser* browser() override { return running.get(); }
 
@@ -66,7 +73,11 @@ BrowserPtr makeBrowser(const py::object& source, double start, const py::object&
   options.trustScripts = trust;
   auto made = std::make_shared<BrowserObject>();
   std::unique_ptr<World> world = loadSource(source, limits, allowAbsolute);
-  made->run([&] { made->running = std::make_unique<Browser>(std::move(world), options, start); });
+  {
+    const MakingBrowser making(made->mutex); // its Scripts begin at once
+    made->run([&] { made->running = std::make_unique<Browser>(std::move(world), options, start); });
+  }
+  scriptsLock(made->running.get(), made->mutex);
   return made;
 }
 
@@ -85,7 +96,7 @@ py::object asNode(const BrowserPtr& self, Node* node) { return asNode(self, Node
 py::object node(const BrowserPtr& self, const std::string& name) { return asNode(self, self->running->node(name)); }
 
 Node& own(const BrowserPtr& self, const NodeObject& node) {
-  if (node.world != WorldPtr(self)) throw py::value_error("a node of this browser expected");
+  if (!sameWorld(node.world, self)) throw py::value_error("a node of this browser expected");
   return *node.node;
 }
 

@@ -233,7 +233,7 @@ bool accepts(const std::string& nodeTypes, const Node& node) {
 NodeRef nodeOf(const py::handle& object, const Target& target) {
   if (!py::isinstance<NodeObject>(object)) target.wrongType(object);
   const auto& given = object.cast<const NodeObject&>();
-  if (given.world != target.owner.world) target.wrongValue("of the same world");
+  if (!sameWorld(given.world, target.owner.world)) target.wrongValue("of the same world");
   if (!accepts(target.field.nodeTypes, *given.node))
     target.wrongValue(fmt::format("one of {}, not {}", target.field.nodeTypes, given.node->type().name));
   return given.node;

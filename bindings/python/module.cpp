@@ -126,6 +126,7 @@ PYBIND11_MODULE(_xvrml, module) {
   definePicture(module);
   defineWorld(module);
   defineBrowser(module);
+  defineScripts(module);
   module.attr("__version__") = fmt::format("{}.{}.{}", OPENRT_VERSION_MAJOR, OPENRT_VERSION_MINOR, OPENRT_VERSION_PATCH);
   module.def(
       "load_node_plugins", loadPlugins, py::arg("path") = py::none(),

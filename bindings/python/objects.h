@@ -18,12 +18,13 @@ namespace py = pybind11;
 struct WorldObject {
   std::unique_ptr<xvrml::World> world; // null where a Browser has taken it over
   // Held while a render reads the graph on another thread, and for every change of it. Wait for it without the GIL. A thread
-  // may hold it twice: a callback of a tick uses nodes.
-  std::recursive_mutex mutex;
+  // may hold it twice: a callback of a tick uses nodes. Shared with what Scripts see of the same world.
+  std::shared_ptr<std::recursive_mutex> mutex = std::make_shared<std::recursive_mutex>();
 
   virtual ~WorldObject() = default;
   virtual xvrml::World& graph() { return *world; }
   virtual xvrml::Browser* browser() { return nullptr; } // what runs the world; null: it stands still
+  virtual bool ended() const { return false; }          // it can no longer be changed from here
   // Changes of a running world: `work` without the GIL; afterwards the first exception of a callback is raised.
   virtual void run(const std::function<void()>& work) { work(); }
   virtual std::shared_ptr<picture::Renderer> renderer(const picture::RenderSettings& settings, picture::Watch watch) {
@@ -32,7 +33,7 @@ struct WorldObject {
 
   std::unique_lock<std::recursive_mutex> lock() {
     py::gil_scoped_release release;
-    return std::unique_lock(mutex);
+    return std::unique_lock(*mutex);
   }
 };
 using WorldPtr = std::shared_ptr<WorldObject>;
@@ -42,6 +43,9 @@ struct NodeObject {
   WorldPtr world;
   xvrml::NodeRef node;
 };
+
+// Nodes that a Script was given are of the same world as those of the Browser that runs it.
+inline bool sameWorld(const WorldPtr& a, const WorldPtr& b) { return a == b || (a->browser() && a->browser() == b->browser()); }
 
 // Text of a file may be anything; Python's own way to keep bytes that are not UTF-8.
 py::str toText(const std::string& bytes);
@@ -59,6 +63,18 @@ std::unique_ptr<xvrml::World> loadSource(const py::object& source, const py::obj
 // A file name: str or os.PathLike.
 std::string toPath(const py::handle& path);
 
+// What the script engine of Python (plugins/script/python) uses: see script.cpp.
+// A browser that is being made or runs, and what is locked for its world; null: it is no more.
+void scriptsLock(const xvrml::Browser* browser, std::shared_ptr<std::recursive_mutex> mutex);
+// From here on, on this thread: Scripts of a browser that nobody knows yet belong to the one that is being made.
+struct MakingBrowser {
+  explicit MakingBrowser(std::shared_ptr<std::recursive_mutex> mutex);
+  ~MakingBrowser();
+};
+// Assigns for the Script that is running on this thread, if one is: the event leaves when its function returns.
+bool scriptAssigns(const NodeObject& node, const std::string& field, const py::handle& value);
+
+void defineScripts(py::module_& module);
 void defineNode(py::module_& module);
 void defineWorld(py::module_& module);
 void defineBrowser(py::module_& module);

@@ -96,7 +96,7 @@ FOREIGN = [
     (re.compile(r"lib(av|sw)[a-z]+/"), {"xvrml-image", "test"}, "the ffmpeg libraries"),
     (re.compile(r"(OpenEXR/|Imf)"), {"picture", "test"}, "OpenEXR"),
     (re.compile(r"(CLI/|CLI11)"), {"app", "openrt-tools", "nodegen"}, "CLI11"),
-    (re.compile(r"pybind11/"), {"binding"}, "pybind11"),
+    (re.compile(r"pybind11/"), {"binding", "script-plugin"}, "pybind11"),
 ]
 # A public header includes the language's own headers and nothing else of others.
 STANDARD = re.compile(r"[a-z_0-9]+(\.h)?$")

@@ -1,0 +1,341 @@
+// values.cpp: see values.h.
+#include "values.h"
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include <pybind11/numpy.h>
+
+namespace python {
+namespace {
+
+struct Kind {
+  const char* name;
+  int width; // numbers of an element; 0: no numbers
+  const char* expected;
+};
+const Kind& kindOf(XsType type) {
+  static const Kind kinds[] = {{"SFBool", 1, "True or False"},
+                               {"SFColor", 3, "3 numbers"},
+                               {"SFFloat", 1, "a number"},
+                               {"SFImage", 0, "an array of bytes of shape (height, width, components)"},
+                               {"SFInt32", 1, "a whole number of 32 bits"},
+                               {"SFNode", 0, "a Node or None"},
+                               {"SFRotation", 4, "4 numbers"},
+                               {"SFString", 0, "a str"},
+                               {"SFTime", 1, "a number"},
+                               {"SFVec2f", 2, "2 numbers"},
+                               {"SFVec3f", 3, "3 numbers"},
+                               {"MFColor", 3, "numbers of shape (n, 3)"},
+                               {"MFFloat", 1, "numbers of shape (n,)"},
+                               {"MFInt32", 1, "whole numbers of 32 bits of shape (n,)"},
+                               {"MFNode", 0, "a sequence of Nodes"},
+                               {"MFRotation", 4, "numbers of shape (n, 4)"},
+                               {"MFString", 0, "a sequence of str"},
+                               {"MFTime", 1, "numbers of shape (n,)"},
+                               {"MFVec2f", 2, "numbers of shape (n, 2)"},
+                               {"MFVec3f", 3, "numbers of shape (n, 3)"}};
+  return kinds[type - XS_SFBOOL];
+}
+
+// Who is to blame, for messages.
+struct Target {
+  XsType type;
+  const std::string& name;
+
+  std::string text() const { return name + " (" + typeName(type) + "): " + kindOf(type).expected + " expected"; }
+  [[noreturn]] void wrongType(const py::handle& got) const {
+    throw py::type_error(text() + ", not " + std::string(py::str(py::type::handle_of(got).attr("__name__"))));
+  }
+  [[noreturn]] void wrongValue(const std::string& why) const { throw py::value_error(text() + ", " + why); }
+};
+
+bool hasNumpy() {
+  static const bool has = [] {
+    try {
+      py::module_::import("numpy");
+      return true;
+    } catch (py::error_already_set&) { return false; }
+  }();
+  return has;
+}
+
+// --- To Python ---
+
+template <class T> py::object arrayOf(const T* data, size_t count, size_t width) {
+  if (!hasNumpy()) {
+    py::tuple all(count);
+    for (size_t i = 0; i < count; ++i) {
+      py::tuple row(width);
+      for (size_t c = 0; c < width; ++c) row[c] = py::cast(data[width * i + c]);
+      all[i] = width == 1 ? py::object(row[0]) : py::object(row);
+    }
+    return all;
+  }
+  std::vector<py::ssize_t> shape{py::ssize_t(count)};
+  if (width > 1) shape.push_back(py::ssize_t(width));
+  py::array_t<T> array(shape);
+  if (count > 0) std::memcpy(array.mutable_data(), data, count * width * sizeof(T));
+  array.attr("setflags")(py::arg("write") = false); // a copy: what is written to it would be lost
+  return array;
+}
+
+py::object vectorOf(const float* numbers, size_t width) {
+  py::tuple all(width);
+  for (size_t i = 0; i < width; ++i) all[i] = double(numbers[i]);
+  return all;
+}
+
+py::object imageOf(const XsImage& image) {
+  const size_t row = size_t(image.width) * size_t(image.components), height = size_t(image.height);
+  std::string turned;
+  for (size_t y = height; y-- > 0 && row > 0;) turned.append(reinterpret_cast<const char*>(image.pixels) + y * row, row);
+  const py::tuple shape = py::make_tuple(image.height, image.width, image.components);
+  if (!hasNumpy()) return py::make_tuple(py::bytes(turned), shape);
+  return py::module_::import("numpy").attr("frombuffer")(py::bytes(turned), "uint8").attr("reshape")(shape);
+}
+
+// --- From Python ---
+
+double numberOf(const py::handle& object, const Target& target) {
+  if (PyBool_Check(object.ptr()) || !PyNumber_Check(object.ptr()) || PyComplex_Check(object.ptr())) target.wrongType(object);
+  const double v = PyFloat_AsDouble(object.ptr());
+  if (v == -1 && PyErr_Occurred()) {
+    PyErr_Clear();
+    target.wrongType(object);
+  }
+  if (!std::isfinite(v)) target.wrongValue("not infinity or NaN");
+  return v;
+}
+
+int32_t wholeOf(const py::handle& object, const Target& target) {
+  if (PyBool_Check(object.ptr()) || !PyIndex_Check(object.ptr())) target.wrongType(object);
+  const auto number = py::reinterpret_steal<py::object>(PyNumber_Index(object.ptr()));
+  if (!number) {
+    PyErr_Clear();
+    target.wrongType(object);
+  }
+  int overflow = 0;
+  const long long v = PyLong_AsLongLongAndOverflow(number.ptr(), &overflow);
+  if (overflow || v < std::numeric_limits<int32_t>::min() || v > std::numeric_limits<int32_t>::max())
+    target.wrongValue("not " + std::string(py::str(number)));
+  return int32_t(v);
+}
+
+float singleOf(double v, const Target& target) {
+  if (!std::isfinite(float(v))) target.wrongValue("within the range of 32 bit floats");
+  return float(v);
+}
+
+py::object sequenceOf(const py::handle& object, const Target& target) {
+  if (py::isinstance<py::str>(object) || py::isinstance<py::bytes>(object) || !PySequence_Check(object.ptr()))
+    target.wrongType(object);
+  auto fast = py::reinterpret_steal<py::object>(PySequence_Fast(object.ptr(), ""));
+  if (!fast) {
+    PyErr_Clear();
+    target.wrongType(object);
+  }
+  return fast;
+}
+size_t sizeOf(const py::object& fast) { return size_t(PySequence_Fast_GET_SIZE(fast.ptr())); }
+py::handle itemOf(const py::object& fast, size_t i) { return PySequence_Fast_GET_ITEM(fast.ptr(), py::ssize_t(i)); }
+
+// Numbers of an array, of any dense or sparse layout: rows of `width`, or of an SF type a single row.
+template <class T> bool fromArray(const py::handle& object, size_t width, bool many, const Target& target, std::vector<T>& out) {
+  if (!PyObject_CheckBuffer(object.ptr()) || py::isinstance<py::bytes>(object) || !hasNumpy()) return false;
+  const py::array any = py::array(py::module_::import("numpy").attr("asarray")(object));
+  const char kind = any.dtype().kind();
+  if (any.size() > 0 && !std::strchr(std::is_integral_v<T> ? "iu" : "fiu", kind))
+    throw py::type_error(target.text() + ", not an array of " + std::string(py::str(any.dtype())));
+  const bool fits = many ? any.size() == 0 || (width == 1 ? any.ndim() == 1 : any.ndim() == 2 && size_t(any.shape(1)) == width)
+                         : any.ndim() == 1 && size_t(any.size()) == width;
+  if (!fits) target.wrongValue("not of shape " + std::string(py::str(any.attr("shape"))));
+  const py::array_t<T, py::array::c_style | py::array::forcecast> dense(any);
+  out.assign(dense.data(), dense.data() + dense.size());
+  return true;
+}
+
+template <class T, class Read>
+void flatten(const py::handle& object, size_t width, bool many, const Target& target, std::vector<T>& out, Read&& read) {
+  const auto row = [&](const py::handle& one) {
+    if (width == 1) return out.push_back(read(one));
+    const py::object fast = sequenceOf(one, target);
+    if (sizeOf(fast) != width) target.wrongValue("not " + std::to_string(sizeOf(fast)));
+    for (size_t i = 0; i < width; ++i) out.push_back(read(itemOf(fast, i)));
+  };
+  if (!many) return row(object);
+  const py::object fast = sequenceOf(object, target);
+  for (size_t i = 0; i < sizeOf(fast); ++i) {
+    const py::object one = py::reinterpret_borrow<py::object>(itemOf(fast, i));
+    row(one);
+  }
+}
+
+std::vector<double> numbersOf(const py::handle& object, size_t width, bool many, const Target& target) {
+  std::vector<double> numbers;
+  if ((many || width > 1) && fromArray(object, width, many, target, numbers)) {
+    for (const double v : numbers)
+      if (!std::isfinite(v)) target.wrongValue("not infinity or NaN");
+    return numbers;
+  }
+  flatten(object, width, many, target, numbers, [&](const py::handle& one) { return numberOf(one, target); });
+  return numbers;
+}
+
+std::vector<int32_t> wholesOf(const py::handle& object, bool many, const Target& target) {
+  std::vector<int64_t> wide;
+  std::vector<int32_t> numbers;
+  if (many && fromArray(object, 1, true, target, wide)) {
+    for (const int64_t v : wide) {
+      if (v != int32_t(v)) target.wrongValue("not " + std::to_string(v));
+      numbers.push_back(int32_t(v));
+    }
+    return numbers;
+  }
+  flatten(object, 1, many, target, numbers, [&](const py::handle& one) { return wholeOf(one, target); });
+  return numbers;
+}
+
+int32_t boolOf(const py::handle& object, const Target& target) {
+  if (PyBool_Check(object.ptr())) return object.ptr() == Py_True;
+  if (std::string(py::str(py::type::handle_of(object).attr("__name__"))) == "bool_") return PyObject_IsTrue(object.ptr()) == 1;
+  target.wrongType(object);
+}
+
+std::string textOf(const py::handle& object, const Target& target) {
+  if (!py::isinstance<py::str>(object)) target.wrongType(object);
+  return fromText(object);
+}
+
+} // namespace
+
+const char* typeName(XsType type) { return kindOf(type).name; }
+
+py::str toText(const XsString& bytes) {
+  PyObject* text = PyUnicode_DecodeUTF8(bytes.data, py::ssize_t(bytes.bytes), "surrogateescape");
+  if (!text) throw py::error_already_set();
+  return py::reinterpret_steal<py::str>(text);
+}
+
+std::string fromText(const py::handle& text) {
+  const auto bytes = py::reinterpret_steal<py::bytes>(PyUnicode_AsEncodedString(text.ptr(), "utf-8", "surrogateescape"));
+  if (!bytes) throw py::error_already_set();
+  return std::string(bytes);
+}
+
+std::vector<std::string> textsOf(const py::handle& object, const char* what) {
+  if (py::isinstance<py::str>(object)) return {fromText(object)};
+  const std::string name = what;
+  const Target target{XS_MFSTRING, name};
+  std::vector<std::string> texts;
+  const py::object fast = sequenceOf(object, target);
+  for (size_t i = 0; i < sizeOf(fast); ++i) texts.push_back(textOf(itemOf(fast, i), target));
+  return texts;
+}
+
+py::object toPython(const XsValue& value, const Nodes& nodes) {
+  const size_t width = size_t(kindOf(value.type).width);
+  switch (value.type) {
+  case XS_SFBOOL: return py::bool_(value.of.ints[0] != 0);
+  case XS_SFINT32: return py::int_(value.of.ints[0]);
+  case XS_SFFLOAT: return py::float_(double(value.of.floats[0]));
+  case XS_SFTIME: return py::float_(value.of.doubles[0]);
+  case XS_SFCOLOR:
+  case XS_SFROTATION:
+  case XS_SFVEC2F:
+  case XS_SFVEC3F: return vectorOf(value.of.floats, width);
+  case XS_SFIMAGE: return imageOf(value.of.images[0]);
+  case XS_SFNODE: return nodes.toPython(value.of.nodes[0]);
+  case XS_SFSTRING: return toText(value.of.strings[0]);
+  case XS_MFINT32: return arrayOf(value.of.ints, value.count, 1);
+  case XS_MFTIME: return arrayOf(value.of.doubles, value.count, 1);
+  case XS_MFNODE: {
+    const std::vector<XsNode> numbers(value.of.nodes, value.of.nodes + value.count);
+    py::tuple all(numbers.size());
+    for (size_t i = 0; i < numbers.size(); ++i) all[i] = nodes.toPython(numbers[i]);
+    return all;
+  }
+  case XS_MFSTRING: {
+    py::tuple all(value.count);
+    for (size_t i = 0; i < value.count; ++i) all[i] = toText(value.of.strings[i]);
+    return all;
+  }
+  default: return arrayOf(value.of.floats, value.count, width);
+  }
+}
+
+Owned::Owned(const py::handle& object, XsType type, const std::string& name, const Nodes& nodes) {
+  const Target target{type, name};
+  const Kind& kind = kindOf(type);
+  const bool many = type >= XS_MFCOLOR;
+  value_.type = type;
+  value_.count = 1;
+  switch (type) {
+  case XS_SFBOOL:
+    ints_.push_back(boolOf(object, target));
+    value_.of.ints = ints_.data();
+    break;
+  case XS_SFINT32:
+  case XS_MFINT32:
+    ints_ = wholesOf(object, many, target);
+    value_.count = uint32_t(ints_.size());
+    value_.of.ints = ints_.data();
+    break;
+  case XS_SFTIME:
+  case XS_MFTIME:
+    doubles_ = numbersOf(object, 1, many, target);
+    value_.count = uint32_t(doubles_.size());
+    value_.of.doubles = doubles_.data();
+    break;
+  case XS_SFSTRING:
+  case XS_MFSTRING:
+    if (many)
+      texts_ = py::isinstance<py::str>(object) ? (target.wrongType(object), texts_) : textsOf(object, name.c_str());
+    else
+      texts_.push_back(textOf(object, target));
+    for (const std::string& text : texts_) strings_.push_back({text.c_str(), text.size()});
+    value_.count = uint32_t(strings_.size());
+    value_.of.strings = strings_.data();
+    break;
+  case XS_SFNODE:
+    nodes_.push_back(nodes.toHost(object));
+    value_.of.nodes = nodes_.data();
+    break;
+  case XS_MFNODE: {
+    const py::object fast = sequenceOf(object, target);
+    for (size_t i = 0; i < sizeOf(fast); ++i) nodes_.push_back(nodes.toHost(itemOf(fast, i)));
+    value_.count = uint32_t(nodes_.size());
+    value_.of.nodes = nodes_.data();
+    break;
+  }
+  case XS_SFIMAGE: {
+    if (!hasNumpy()) throw py::type_error(target.text() + ", which needs numpy");
+    const py::array any = py::array(py::module_::import("numpy").attr("asarray")(object));
+    const py::ssize_t components = any.ndim() == 3 ? any.shape(2) : 1;
+    if (any.size() > 0 && any.dtype().kind() != 'i' && any.dtype().kind() != 'u') target.wrongType(object);
+    if (any.size() > 0 && ((any.ndim() != 2 && any.ndim() != 3) || components < 1 || components > 4 || any.shape(0) > 65536 ||
+                           any.shape(1) > 65536))
+      target.wrongValue("not of shape " + std::string(py::str(any.attr("shape"))));
+    if (any.size() > 0) image_ = {int32_t(any.shape(1)), int32_t(any.shape(0)), int32_t(components), 0, nullptr};
+    const py::array_t<int64_t, py::array::c_style | py::array::forcecast> dense(any);
+    const size_t row = size_t(image_.width) * size_t(image_.components);
+    for (size_t y = size_t(image_.height); y-- > 0;) // rows run from the bottom in VRML
+      for (size_t x = 0; x < row; ++x) {
+        const int64_t v = dense.data()[y * row + x];
+        if (v < 0 || v > 255) target.wrongValue("from 0 to 255, not " + std::to_string(v));
+        pixels_.push_back(uint8_t(v));
+      }
+    image_.pixels = pixels_.data();
+    value_.of.images = &image_;
+    break;
+  }
+  default:
+    for (const double v : numbersOf(object, size_t(kind.width), many, target)) floats_.push_back(singleOf(v, target));
+    value_.count = uint32_t(floats_.size() / size_t(kind.width));
+    value_.of.floats = floats_.data();
+    break;
+  }
+}
+
+} // namespace python

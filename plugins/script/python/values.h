@@ -1,0 +1,54 @@
+// values.h: VRML's values as Python objects and back, in the shapes of the Python binding. With Python's lock. [the browser's
+// thread]
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <pybind11/pybind11.h>
+
+#include <xvrml/xscript.h>
+
+namespace py = pybind11;
+
+namespace python {
+
+// Nodes of a Script: host's numbers and the binding's objects.
+struct Nodes {
+  std::function<py::object(XsNode)> toPython;
+  std::function<XsNode(const py::handle&)> toHost; // raises TypeError, ValueError
+};
+
+// Numbers, tuples, str, Node; MF types of numbers are read-only arrays, tuples where there is no numpy; images arrays of
+// (height, width, components), rows from the top.
+py::object toPython(const XsValue& value, const Nodes& nodes);
+
+// A value that owns its memory.
+class Owned {
+ public:
+  // Raises TypeError or ValueError: "name (SFVec3f): 3 numbers expected, not str".
+  Owned(const py::handle& object, XsType type, const std::string& name, const Nodes& nodes);
+  Owned(const Owned&) = delete;
+  Owned& operator=(const Owned&) = delete;
+  const XsValue& value() const { return value_; }
+
+ private:
+  XsValue value_{};
+  std::vector<float> floats_;
+  std::vector<double> doubles_;
+  std::vector<int32_t> ints_;
+  std::vector<XsNode> nodes_;
+  std::vector<std::string> texts_;
+  std::vector<XsString> strings_;
+  std::vector<uint8_t> pixels_;
+  XsImage image_{};
+};
+
+const char* typeName(XsType type);
+// Text may be anything; Python's own way to keep bytes that are not UTF-8.
+py::str toText(const XsString& bytes);
+std::string fromText(const py::handle& text);
+std::vector<std::string> textsOf(const py::handle& object, const char* what); // a str or a sequence of them
+
+} // namespace python
