@@ -153,6 +153,32 @@ TEST_F(MapUpdate, AMaterialThatComesAndGoes) {
   EXPECT_EQ(cost().defined, 0u);
 }
 
+TEST_F(MapUpdate, OptionsOfAShaderAreParametersAlone) {
+  load(rest() +
+       "Shape { appearance ORTAppearance { material DEF O Material { } shader DEF S ORTShader { file \"plastic\" options [ "
+       "\"1f index 1.5\" \"1f roughness .1\" ] } } geometry " +
+       grid(20) + " }\n");
+  send("S", "set_options", MFString{"1f index 1.6", "1f roughness .2"});
+  const Cost first = cost();
+  EXPECT_GT(first.parameters, 0u);
+  EXPECT_EQ(first, (Cost{.parameters = first.parameters}));
+  send("O", "set_diffuseColor", Color{1, 0, 0});
+  const Cost second = cost();
+  EXPECT_EQ(second, (Cost{.parameters = second.parameters}));
+}
+
+TEST_F(MapUpdate, AShaderOfAnotherClassRebuildsNothing) {
+  load(rest() +
+       "Shape { appearance ORTAppearance { shader DEF S ORTShader { file \"plastic\" options \"1f index 1.5\" } } geometry " +
+       grid(20) + " }\n");
+  send("S", "set_file", std::string("marble"));
+  send("S", "set_options", MFString{"1f veins 3"});
+  const Cost first = cost();
+  EXPECT_EQ(first.defined, 0u);
+  EXPECT_EQ(first.regroupings, 0u);
+  EXPECT_GT(first.parameters, 0u);
+}
+
 TEST_F(MapUpdate, PixelsAreLoadedAgainAndNothingElse) {
   load(rest() + "Shape { appearance Appearance { texture DEF P PixelTexture { image 1 1 3 0xFF0000 } } geometry " + square("F") +
        " }\n");
