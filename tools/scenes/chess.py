@@ -183,8 +183,9 @@ def chess():
         "DEF Chess Script {\n  url \"chess.tcl\"\n  directOutput TRUE\n"
         f"  field MFNode pieces [ {used(names)} ]\n  field MFNode spares [ {used(spares)} ]\n"
         "  field MFNode materials [ USE White_Material USE Black_Material USE Light_Squares_Material USE Dark_Squares_Material ]\n"
-        "  field MFNode shaders [ USE White_Shader USE Black_Shader USE Board_Shader ]\n"
-        "  field MFString game [ ]\n  eventIn SFString play\n  eventIn SFTime next\n  eventOut SFString position\n  eventOut SFString status\n}")
+        "  field MFNode shaders [ USE White_Shader USE Black_Shader USE Board_Shader USE Lamp_Shader ]\n"
+        "  field MFString game [ ]\n  eventIn SFString play\n  eventIn SFTime next\n  eventIn SFTime tick\n  eventOut SFString position\n  eventOut SFString status\n}\n"
+        "DEF Clock TimeSensor { loop TRUE }\nROUTE Clock.time TO Chess.tick")
     return HEADER + "\n".join([
         "# A full set of chess: White to move. The pieces are moved by chess.tcl, with a panel of buttons where the world is trusted;",
         "# without the engine for Tcl they stand as here. Written by tools/make_scenes.py.",
@@ -208,7 +209,7 @@ def chess():
              None, ""),
         "] }",
         "DEF Lamps Group { children [",
-        at((-6, 9, 4.5), "DEF Lamp " + shape('ORTAppearance { shader ORTShader { name "Diffuse" file "diffuse" options [ '
+        at((-6, 9, 4.5), "DEF Lamp " + shape('ORTAppearance { shader DEF Lamp_Shader ORTShader { name "Diffuse" file "diffuse" options [ '
            '"color reflectance 0 0 0" "color emission 13 12 10.2" ] } }', mesh([(-3, -2.3, 0), (3, -2.3, 0), (3, 2.3, 0), (-3, 2.3, 0)],
                                                                       [(0, 1, 2, 3)])), turn=aim((-6, 9, 4.5), (0, 0, 0))),
         at((7, 6, -6), shape('ORTAppearance { shader ORTShader { name "Diffuse" file "diffuse" options [ '

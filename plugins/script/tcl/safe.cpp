@@ -39,6 +39,14 @@ constexpr Ensemble ensembles[] = {{"::info", "::tcl::info",
                                    "tclversion vars"},
                                   {"::clock", "::tcl::clock", "clicks microseconds milliseconds seconds"}};
 
+// What init.tcl would bring, from a file.
+constexpr const char functions[] = R"tcl(
+namespace eval ::tcl::mathfunc {
+  proc min {first args} {foreach x $args {if {$x < $first} {set first $x}}; expr {$first + 0}}
+  proc max {first args} {foreach x $args {if {$x > $first} {set first $x}}; expr {$first + 0}}
+}
+)tcl";
+
 int refuse(ClientData data, Tcl_Interp* tcl, int, Tcl_Obj* const[]) {
   Tcl_SetObjResult(tcl, Tcl_ObjPrintf("%s: only in a world that is trusted", static_cast<const char*>(data)));
   Tcl_SetErrorCode(tcl, "XVRML", "TRUST", nullptr);
@@ -102,6 +110,7 @@ void makeSafe(Interpreter& interpreter) {
   Tcl_CreateObjCommand(tcl, "::package", package, const_cast<char*>("package"), nullptr);
   for (const char* variable : {"env", "tcl_library", "tcl_pkgPath", "auto_path", "tcl_interactive", "argv", "argv0", "argc"})
     Tcl_UnsetVar(tcl, variable, TCL_GLOBAL_ONLY);
+  Tcl_Eval(tcl, functions);
   Tcl_ResetResult(tcl);
 }
 
