@@ -1,0 +1,301 @@
+// pilot.cpp: see pilot.h.
+#include "window/pilot.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "picture/renderer.h"
+#include "xvrml/nodes.h"
+
+namespace vv {
+
+using xvrml::Navigation;
+using xvrml::NavigationInput;
+
+namespace {
+
+constexpr double transition = 0.5; // seconds from one Viewpoint to the next
+constexpr double notch = 0.2;      // of the wheel: the logarithm of the distance; of full speed for a second
+
+const char* nameOf(Navigation type) {
+  switch (type) {
+  case Navigation::walk: return "walk";
+  case Navigation::fly: return "fly";
+  case Navigation::examine: return "examine";
+  case Navigation::none: break;
+  }
+  return "none";
+}
+
+// Speed from the way that the pointer has gone since it was pressed, as a part of half the picture: slow at first.
+double speedOf(double way) {
+  constexpr double dead = 0.02;
+  const double far = std::max(0.0, std::abs(way) - dead);
+  return std::copysign(far + 3 * far * far, way);
+}
+
+std::vector<xvrml::ViewpointName> described(std::vector<xvrml::ViewpointName> all) {
+  std::vector<xvrml::ViewpointName> some;
+  for (const xvrml::ViewpointName& one : all)
+    if (!one.description.empty()) some.push_back(one);
+  return some.empty() ? all : some;
+}
+
+} // namespace
+
+Pilot::Pilot(xvrml::Browser& browser, double start, std::optional<double> fov) : browser_(browser), start_(start), fov_(fov) {
+  browser_.setTransition(transition);
+  const xvrml::BoundNodes bound = browser_.bound();
+  // A model that says nothing about those who look at it is looked at from all sides.
+  if (!bound.viewpoint && !bound.navigationInfo) browser_.setNavigation(Navigation::examine);
+}
+
+void Pilot::setAspect(double aspect) {
+  aspect_ = aspect;
+  browser_.setAspect(aspect);
+}
+
+xvrml::CameraSettings Pilot::camera() const {
+  xvrml::CameraSettings camera = browser_.camera(aspect_);
+  if (fov_) camera.fovy = picture::verticalAngle(*fov_ * std::numbers::pi / 180, aspect_);
+  return camera;
+}
+
+void Pilot::step(double seconds) {
+  const double passed = std::max(0.0, seconds - session_);
+  session_ = seconds;
+  if (paused_) lost_ += passed;
+  browser_.tick(paused_ ? browser_.now() : start_ + (session_ - lost_));
+  move(passed);
+  if (inside_ && drag_ != Drag::view) point(drag_ == Drag::sensor); // the viewer may have moved
+}
+
+// --- The pointer ---
+
+void Pilot::point(bool button) {
+  const xvrml::CameraSettings c = camera();
+  const double* m = c.matrix;
+  const double size = c.fovy > 0 ? std::tan(c.fovy / 2) : c.height / 2;
+  const double across = x_ * size * aspect_, along = y_ * size;
+  double origin[3], direction[3];
+  for (int i = 0; i < 3; ++i) {
+    const double aside = m[i] * across + m[4 + i] * along;
+    origin[i] = m[12 + i] + (c.fovy > 0 ? 0 : aside);
+    direction[i] = -m[8 + i] + (c.fovy > 0 ? aside : 0);
+  }
+  const uint64_t before = browser_.generation();
+  browser_.pointerRay(origin, direction, button);
+  if (browser_.generation() != before) drag_ = Drag::none;
+  overSensor_ = !browser_.sensorsAtPointer().empty();
+}
+
+void Pilot::press(const InputEvent& event) {
+  if (drag_ != Drag::none) return; // a second button: the first counts
+  pressed_ = event;
+  point(false);
+  if (event.button == Button::left && overSensor_) {
+    drag_ = Drag::sensor;
+    point(true);
+    return;
+  }
+  drag_ = Drag::view;
+}
+
+void Pilot::release(const InputEvent& event) {
+  if (drag_ == Drag::none || event.button != pressed_.button) return;
+  drag_ = Drag::none;
+  point(false);
+}
+
+// What the button that began the drag stands for, with the keys that stand for other buttons.
+static Button meaning(const InputEvent& pressed) {
+  if (pressed.button != Button::left) return pressed.button;
+  return pressed.shift ? Button::right : pressed.control ? Button::middle : Button::left;
+}
+
+// EXAMINE: the world follows the pointer. The other ways of moving look at the way since it was pressed, in move().
+void Pilot::drag(double dx, double dy) {
+  if (browser_.navigation() != Navigation::examine) return;
+  const double size = std::tan(camera().fovy / 2);
+  switch (meaning(pressed_)) {
+  case Button::left: return navigate({.turn = -dx, .tilt = dy}, 1);
+  case Button::right: return navigate({.right = -dx * size * aspect_, .up = -dy * size}, 1);
+  case Button::middle: return navigate({.ahead = dy}, 1);
+  }
+}
+
+void Pilot::wheel(const InputEvent& event) { navigate({.ahead = event.amount}, notch); }
+
+std::string Pilot::hint() const {
+  if (!inside_ || !overSensor_) return {};
+  for (const xvrml::NodeRef& node : browser_.sensorsAtPointer()) {
+    const auto* anchor = xvrml::nodeCast<xvrml::nodes::Anchor>(node.get());
+    if (!anchor) continue;
+    return !anchor->description.empty() ? anchor->description : anchor->url.empty() ? std::string() : anchor->url.front();
+  }
+  return {};
+}
+
+// --- The viewer ---
+
+void Pilot::navigate(const NavigationInput& input, double seconds) {
+  browser_.navigate(input, seconds);
+  touched_ = true;
+  falls_ = browser_.navigation() == Navigation::walk;
+}
+
+void Pilot::move(double seconds) {
+  if (!(seconds > 0)) return;
+  NavigationInput input;
+  bool wanted = false;
+  if (drag_ == Drag::view && browser_.navigation() != Navigation::examine) {
+    const double dx = speedOf(x_ - pressed_.x), dy = speedOf(y_ - pressed_.y);
+    wanted = dx != 0 || dy != 0;
+    switch (meaning(pressed_)) {
+    case Button::left: input.ahead = dy, input.turn = -dx; break;
+    case Button::right: input.right = dx, input.up = dy; break;
+    case Button::middle: input.tilt = dy, input.turn = -dx; break;
+    }
+  }
+  const auto held = [&](const char* key) { return held_.contains(key) ? 1.0 : 0.0; };
+  const double across = held("Right") - held("Left"), along = held("Up") - held("Down"), speed = shift_ ? 4 : 1;
+  wanted = wanted || across != 0 || along != 0;
+  if (alt_)
+    input.right += across * speed, input.up += along * speed;
+  else
+    input.turn -= across, input.ahead += along * speed;
+  if (wanted)
+    navigate(input, seconds);
+  else if (falls_)
+    browser_.navigate({}, seconds);
+}
+
+void Pilot::frameAll() {
+  const double size = camera().fovy;
+  browser_.placeViewer(xvrml::cameraAround(bounds_, camera().matrix, size, aspect_).matrix);
+  falls_ = false;
+}
+
+void Pilot::place(const picture::LookAt& view) {
+  double matrix[16];
+  if (picture::lookAtMatrix(view, matrix)) browser_.placeViewer(matrix);
+}
+
+void Pilot::putAt(const xvrml::CameraSettings& camera) {
+  browser_.placeViewer(camera.matrix);
+  touched_ = true;
+}
+
+bool Pilot::bindViewpoint(const std::string& name) {
+  std::vector<xvrml::ViewpointInfo> list;
+  for (xvrml::ViewpointName& one : browser_.viewpoints()) list.push_back({one.name, one.description, one.node, {}});
+  const int index = picture::findViewpoint(list, name);
+  if (index < 0) return false;
+  if (browser_.bound().viewpoint == list[size_t(index)].node.get()) browser_.key(xvrml::Key::home, true);
+  browser_.set(*list[size_t(index)].node, "set_bind", true);
+  falls_ = false;
+  return true;
+}
+
+void Pilot::jumpTo(size_t number) {
+  const std::vector<xvrml::ViewpointName> list = described(browser_.viewpoints());
+  if (list.empty()) return frameAll();
+  const xvrml::NodeRef node = list[std::min(number, list.size() - 1)].node;
+  if (browser_.bound().viewpoint == node.get()) browser_.key(xvrml::Key::home, true);
+  browser_.set(*node, "set_bind", true);
+}
+
+void Pilot::choose(Navigation type, const char* name) {
+  falls_ = false;
+  message_ = browser_.setNavigation(type) ? name : fmt::format("the world does not allow it: {}", nameOf(browser_.navigation()));
+}
+
+bool Pilot::hasHeadlight() const {
+  const auto* info = xvrml::nodeCast<xvrml::nodes::NavigationInfo>(browser_.bound().navigationInfo);
+  return headlight_.value_or(!info || info->headlight);
+}
+
+Action Pilot::press(Action action) {
+  const xvrml::Node* before = browser_.bound().viewpoint;
+  switch (action) {
+  case Action::firstViewpoint: jumpTo(0); break;
+  case Action::lastViewpoint: jumpTo(size_t(-1)); break;
+  case Action::previousViewpoint: browser_.key(xvrml::Key::pageUp, true); break;
+  case Action::nextViewpoint: browser_.key(xvrml::Key::pageDown, true); break;
+  case Action::back: before ? browser_.key(xvrml::Key::home, true) : frameAll(); break;
+  case Action::frameAll: frameAll(), touched_ = true; break;
+  case Action::examine: choose(Navigation::examine, "examine"); break;
+  case Action::walk: choose(Navigation::walk, "walk"); break;
+  case Action::fly: choose(Navigation::fly, "fly"); break;
+  case Action::still: choose(Navigation::none, "stand still"); break;
+  case Action::headlight:
+    headlight_ = !hasHeadlight();
+    message_ = *headlight_ ? "headlight on" : "headlight off";
+    break;
+  case Action::pause:
+    paused_ = !paused_;
+    browser_.setTransition(paused_ ? 0 : transition); // it would stand still, too
+    message_ = paused_ ? "time stands still" : "time goes on";
+    break;
+  default: return action;
+  }
+  if (const xvrml::Node* now = browser_.bound().viewpoint; now && now != before) {
+    falls_ = false;
+    for (const xvrml::ViewpointName& one : browser_.viewpoints())
+      if (one.node.get() == now) message_ = one.description.empty() ? one.name : one.description;
+  }
+  if (action <= Action::back) falls_ = false;
+  return Action::none;
+}
+
+Action Pilot::handle(const InputEvent& event) {
+  using Kind = InputEvent::Kind;
+  switch (event.kind) {
+  case Kind::move:
+  case Kind::press:
+  case Kind::release: {
+    const double dx = event.x - x_, dy = event.y - y_;
+    x_ = event.x, y_ = event.y;
+    inside_ = true;
+    if (event.kind == Kind::press) {
+      press(event);
+    } else if (drag_ == Drag::view && (dx != 0 || dy != 0)) {
+      drag(dx, dy);
+    } else {
+      point(drag_ == Drag::sensor);
+    }
+    if (event.kind == Kind::release) release(event);
+    break;
+  }
+  case Kind::leave:
+    inside_ = overSensor_ = false;
+    drag_ = Drag::none;
+    held_.clear();
+    browser_.pointerLeave();
+    break;
+  case Kind::wheel: wheel(event); break;
+  case Kind::down:
+    shift_ = event.shift, alt_ = event.alt;
+    if (event.text == "Left" || event.text == "Right" || event.text == "Up" || event.text == "Down") {
+      held_.insert(event.text);
+      break;
+    }
+    return press(actionOf(event));
+  case Kind::up:
+    shift_ = event.shift, alt_ = event.alt;
+    held_.erase(event.text);
+    break;
+  case Kind::viewpoint:
+    if (!bindViewpoint(event.text)) message_ = fmt::format("there is no viewpoint \"{}\"", event.text);
+    break;
+  case Kind::save: return Action::save;
+  case Kind::quit: return Action::quit;
+  case Kind::open: break;
+  }
+  return Action::none;
+}
+
+} // namespace vv
