@@ -1,13 +1,10 @@
 // headless.cpp: see headless.h.
 #include "headless.h"
 
-#include <cerrno>
 #include <new>
 
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include "definitions.h"
 #include "describe.h"
 #include "messages.h"
 #include "picture/atomic_file.h"
@@ -15,36 +12,17 @@
 #include "problems.h"
 #include "progress.h"
 #include "report.h"
-#include "shader_changes.h"
 #include "shader_list.h"
 #include "shader_text.h"
 #include "signals.h"
 #include "timeline.h"
 #include "watched.h"
+#include "world_start.h"
 #include "xvrml/node_plugin.h"
 
 namespace vv {
 
 namespace {
-
-std::string readStandardInput(uint64_t limit) {
-  std::string bytes;
-  char block[65536];
-  for (;;) {
-    const ssize_t got = ::read(STDIN_FILENO, block, sizeof block);
-    if (got < 0 && errno == EINTR) continue;
-    if (got < 0) throw Failure{exitInput, "cannot read standard input"};
-    if (got == 0) return bytes;
-    bytes.append(block, size_t(got));
-    if (bytes.size() > limit)
-      throw Failure{exitInput, fmt::format("standard input is longer than the limit fileBytes ({})", limit)};
-  }
-}
-
-std::unique_ptr<xvrml::World> load(const Options& options) {
-  if (options.input != "-") return xvrml::loadWorld(options.input, options.load);
-  return xvrml::loadWorldFromMemory(readStandardInput(options.load.limits.fileBytes), "-", options.load);
-}
 
 class Headless {
  public:
@@ -57,7 +35,7 @@ class Headless {
     if (options_.listShaders) return writeOut(listShaders(options_.render.shaderPath, options_.json)), exitDone;
     if (options_.listNodes && options_.input.empty()) return writeOut(listNodes(nullptr, options_.json)), exitDone;
     checkOutputs(options_);
-    begin(load(options_));
+    browser_ = startWorld(readWorld(options_.input, options_.load), options_, 0, problems_);
     const xvrml::World& world = browser_->world();
     if (options_.strict && Problems::any(world)) return exitProblems;
     if (!options_.write.empty()) writeText(options_.write, xvrml::writeWorld(world));
@@ -72,22 +50,6 @@ class Headless {
   std::vector<std::string> files() const { return browser_ ? usedFiles(browser_->world()) : std::vector<std::string>{}; }
 
  private:
-  // The world comes alive at time 0, with what -D changes.
-  void begin(std::unique_ptr<xvrml::World> world) {
-    problems_.tell(*world);
-    if (options_.verbose)
-      say(fmt::format("vv: {} nodes, parsed in {}, Inlines and prototypes in {}", world->nodeCount, duration(world->times.parse),
-                      duration(world->times.load)));
-    const std::vector<Definition> definitions = readDefinitions(options_.definitions, *world);
-    for (const Definition& d : definitions)
-      if (!d.asEvent) d.node->set(*d.field, d.value);
-    changeShaders(options_.shaders, options_.render.shaderPath, *world);
-    browser_ = std::make_unique<xvrml::Browser>(std::move(world), options_.running, 0);
-    for (const Definition& d : definitions)
-      if (d.asEvent) browser_->set(*d.node, d.field->name, d.value);
-    problems_.tell(browser_->world());
-  }
-
   picture::RenderSettings withoutPicture() const {
     picture::RenderSettings settings = options_.render;
     settings.backend = "null";

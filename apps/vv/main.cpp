@@ -8,6 +8,8 @@
 #include "messages.h"
 #include "options.h"
 #include "signals.h"
+#include "window/keys.h"
+#include "window/window.h"
 
 namespace {
 
@@ -21,9 +23,8 @@ int run(int argc, char** argv) {
   const vv::Options options = vv::readCommandLine(argc, argv);
   if (options.help) return vv::writeOut(vv::helpText()), vv::exitDone;
   if (options.version) return vv::writeOut("vv " + vv::version() + "\n"), vv::exitDone;
-  const bool job = options.makesPictures() || options.check || options.info || options.listNodes || options.listViewpoints ||
-                   options.listShaders || options.explain || !options.write.empty();
-  if (!job) throw vv::UsageError("there is no window yet; vv " + options.input + " -o picture.png makes a picture");
+  if (options.listKeys) return vv::writeOut(vv::listKeys()), vv::exitDone;
+  if (options.opensWindow()) return vv::runWindow(options, {argv + 1, argv + argc});
   return vv::runHeadless(options, quoted(argc, argv));
 }
 
@@ -36,6 +37,9 @@ int main(int argc, char** argv) {
   } catch (const vv::UsageError& error) {
     vv::sayError(error.what());
     return vv::exitUsage;
+  } catch (const vv::Failure& failure) {
+    vv::sayError(failure.text);
+    return failure.code;
   } catch (const std::bad_alloc&) {
     vv::sayError("out of memory");
     return vv::exitTryAgain;

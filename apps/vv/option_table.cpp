@@ -86,7 +86,7 @@ const OptionInfo table[] = {
      "for another format). Of a sequence {frame:4} in the name is the number with four digits, and mp4, webm or gif makes a "
      "video through the program ffmpeg. May be given several times.",
      addOutput, true},
-    {"--size", "WxH", "Picture", "Size in pixels (default 800x600).",
+    {"--size", "WxH", "Picture", "Size in pixels, of pictures and of the window (default 800x600).",
      [](Options& o, const std::string& v) { readSize(v, o.render.width, o.render.height); }},
     {"--channels", "LIST", "Picture",
      "Channels of an EXR file, out of rgba, z, normal, albedo, position, id, samples, variance, error, trust (default "
@@ -123,10 +123,24 @@ const OptionInfo table[] = {
      "A picture of each frame from A to B: frame N shows the world at N/fps seconds, and is the same picture in any sequence "
      "that holds it. The number is put where {frame:4} stands in the file name, or else before its suffix.",
      [](Options& o, const std::string& v) { o.frames = readFrames(v); }},
-    {"--fps", "F", "Time", "Frames a second, of sequences and videos, and steps of the world's clock (default 30).",
+    {"--fps", "F", "Time", "Frames a second, of sequences, videos and the window, and steps of the world's clock (default 30).",
      [](Options& o, const std::string& v) { o.fps = readNumber(v, 0.001, 100000); }},
     {"--turntable", "N", "Time", "N pictures, once around the vertical axis through the world's centre, from the chosen view on.",
      [](Options& o, const std::string& v) { o.turntable = int(readInteger(v, 1, 100000)); }},
+    {"--input", "FILE", "Time",
+     "What somebody does to the world, from a script instead of mouse and keys: a line each, SECONDS and what happens (move X Y, "
+     "press left, release left, key PageDown, viewpoint NAME ...; docs/window.md). Time goes in steps of 1/fps from 0, so that "
+     "the "
+     "same script makes the same pictures, in the window and with -o (which by default shows the world at the script's end).",
+     [](Options& o, const std::string& v) {
+       notEmpty(v, "a file name");
+       o.inputScript = v;
+     }},
+    {"--record-input", "FILE", "Time", "Write down what is done in the window, for --input. Time begins at 0.",
+     [](Options& o, const std::string& v) {
+       notEmpty(v, "a file name");
+       o.recordInput = v;
+     }},
     {"-D,--define", "DEF.FIELD=VALUE", "Change",
      "Give a field of a node with a DEF name another value before rendering, in VRML's own spelling (Door.translation='0 0 2', "
      "Sign.string='\"open\"'). May be given several times.",
@@ -160,7 +174,7 @@ const OptionInfo table[] = {
        if (factor) o.render.environmentIntensity = readNumber(std::string_view(v).substr(colon + 1), 0, 1e9);
        notEmpty(o.render.environment, "a file name");
      }},
-    {"--spp", "N", "Quality", "Samples per pixel, 1 to 65536 (default 16).",
+    {"--spp", "N", "Quality", "Samples per pixel, 1 to 65536 (default 16; in the window 256, one after the other).",
      [](Options& o, const std::string& v) { o.samples = int(readInteger(v, 1, 65536)); }},
     {"--error", "E|E%", "Quality",
      "Take as many samples in each part of the picture as it needs for a mean relative half-width E of the 95 % interval, at "
@@ -205,6 +219,8 @@ const OptionInfo table[] = {
      [](Options& o, const std::string&) { o.listViewpoints = true; }},
     {"--list-shaders", "", "Inspect", "List the classes of all shader plug-ins with their parameters.",
      [](Options& o, const std::string&) { o.listShaders = true; }},
+    {"--list-keys", "", "Inspect", "List what keys and mouse do in the window.",
+     [](Options& o, const std::string&) { o.listKeys = true; }},
     {"--explain", "", "Inspect",
      "Say how light is followed and why, and what objects the world is rendered as: each with the reason, its triangles, bytes "
      "and "
@@ -231,7 +247,8 @@ const OptionInfo table[] = {
      "that are trusted.",
      [](Options& o, const std::string& v) { o.audit = v.empty() ? 20 : int(readInteger(v, 2, 10000)); }},
     {"--watch", "", "Inspect",
-     "Make the pictures again whenever the world's file, or one that it uses, changes; until interrupted.",
+     "Make the pictures again whenever the world's file, or one that it uses, changes, until interrupted; in the window: read it "
+     "again, the viewer stays.",
      [](Options& o, const std::string&) { o.watch = true; }},
     {"--write", "FILE", "Write", "Write the world as VRML97; - is standard output.",
      [](Options& o, const std::string& v) {

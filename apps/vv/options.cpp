@@ -56,7 +56,8 @@ void checkSequence(const Options& options) {
     if (!options.isSequence() && output.video != Video::none)
       throw UsageError(output.path + ": a video needs --frames or --turntable");
   }
-  if (options.watch && !options.makesPictures()) throw UsageError("--watch goes with -o");
+  if (options.watch && !options.makesPictures() && !options.opensWindow())
+    throw UsageError("--watch goes with -o, or with the window");
   if (options.watch && options.input == "-") throw UsageError("--watch needs a file, not standard input");
 }
 
@@ -88,7 +89,17 @@ void checkTogether(Options& options) {
   if (options.makesPictures() && options.allViewpoints())
     for (const Output& output : options.outputs)
       if (output.path == "-") throw UsageError("--viewpoint all needs file names, not standard output");
-  const bool needsWorld = !options.listNodes && !options.listShaders && !options.help && !options.version;
+  if (options.opensWindow() && options.allViewpoints()) throw UsageError("--viewpoint all goes with -o");
+  if (!options.recordInput.empty() && (!options.opensWindow() || !options.inputScript.empty()))
+    throw UsageError("--record-input goes with the window, and not with --input");
+  if (!options.inputScript.empty() && !options.makesPictures() && !options.opensWindow())
+    throw UsageError("--input goes with -o, or with the window");
+  if (!options.inputScript.empty() && options.opensWindow() && options.time)
+    throw UsageError("only one of --input and --time can be used in the window");
+  if (!options.inputScript.empty() && (options.audit || options.turntable || options.allViewpoints()))
+    throw UsageError("--input: not with --audit, --turntable or --viewpoint all");
+  const bool needsWorld = !options.opensWindow() && !options.listNodes && !options.listKeys && !options.listShaders &&
+                          !options.help && !options.version;
   if (needsWorld && options.input.empty())
     throw UsageError("a world (a .wrl file, or - for standard input) was expected; vv --help tells more");
 }
@@ -174,6 +185,7 @@ std::string wrapped(std::string_view text, size_t indent, size_t width) {
 std::string helpText() {
   constexpr size_t indent = 26, width = 100;
   std::string out = "vv: renders VRML97 worlds.\n\n"
+                    "  vv world.wrl                    a window to look at it; F1 there lists the keys\n"
                     "  vv world.wrl -o picture.png     first viewpoint, or the whole world in view; shadows; 16 samples a pixel\n"
                     "  vv world.wrl --check            say what is wrong with the world\n\n"
                     "FILE is .wrl, .wrz or .wrl.gz; - is standard input.\n";

@@ -37,6 +37,8 @@ struct Options {
   bool check = false, strict = false;
   bool info = false, listNodes = false, listViewpoints = false, listShaders = false, explain = false, json = false;
   bool watch = false;
+  std::string inputScript, recordInput; // files of the user's doings; empty: none
+  bool listKeys = false;
   std::string write, stats;
   std::string compare;  // reference picture; empty: none
   int audit = 0;        // pictures to check the error bars with; 0: none
@@ -48,6 +50,10 @@ struct Options {
 
   bool allViewpoints() const { return viewpoint == "all"; }
   bool makesPictures() const { return !outputs.empty() || !compare.empty() || audit > 0; }
+  bool opensWindow() const {
+    return !makesPictures() && !check && !info && !listNodes && !listViewpoints && !listShaders && !listKeys && !explain &&
+           write.empty();
+  }
   bool isSequence() const { return frames || turntable > 0; }
 };
 

@@ -70,18 +70,6 @@ std::vector<Job> chooseJobs(const Options& options, const std::vector<xvrml::Vie
   return jobs;
 }
 
-// The channels that were asked for, without those that only the statistics need.
-picture::Picture wantedPart(const picture::Picture& made, uint32_t channels) {
-  picture::Picture wanted;
-  wanted.width = made.width;
-  wanted.height = made.height;
-  wanted.linear = made.linear;
-  wanted.names = made.names;
-  for (const auto& [bit, plane] : made.planes)
-    if (channels & bit) wanted.planes[bit] = plane;
-  return wanted;
-}
-
 class Pictures {
  public:
   Pictures(const Options& options, const std::string& commandLine, xvrml::Browser& browser, Problems& problems)
@@ -230,6 +218,17 @@ class Pictures {
 };
 
 } // namespace
+
+picture::Picture wantedPart(const picture::Picture& made, uint32_t channels) {
+  picture::Picture wanted;
+  wanted.width = made.width;
+  wanted.height = made.height;
+  wanted.linear = made.linear;
+  wanted.names = made.names;
+  for (const auto& [bit, plane] : made.planes)
+    if (channels & bit) wanted.planes[bit] = plane;
+  return wanted;
+}
 
 void checkOutputs(const Options& options) {
   const std::optional<long long> frame =

@@ -12,6 +12,9 @@ void checkOutputs(const Options& options);
 // Returns an exit code. Throws Failure, picture::RenderError and what writing throws.
 int makePictures(const Options& options, const std::string& commandLine, xvrml::Browser& browser, Problems& problems);
 
+// The channels that were asked for, without those that only the statistics need.
+picture::Picture wantedPart(const picture::Picture& made, uint32_t channels);
+
 // To a file or ("-") to standard output.
 void writeText(const std::string& path, const std::string& text);
 

@@ -17,10 +17,14 @@ namespace vv {
 namespace {
 
 std::atomic<bool> deferred{false}, interruptSeen{false}, saveWanted{false};
+std::atomic<unsigned> patience{0}; // seconds
 static_assert(std::atomic<bool>::is_always_lock_free);
 
-void onInterrupt(int) {
-  if (deferred && !interruptSeen.exchange(true)) return;
+void onInterrupt(int number) {
+  if (number != SIGALRM && deferred && !interruptSeen.exchange(true)) {
+    if (patience > 0) ::alarm(patience);
+    return;
+  }
   picture::removeTemporary();
   abandonVideos();
   ::_exit(exitInterrupted);
@@ -60,7 +64,11 @@ void installSignals() {
   install(SIGPIPE, SIG_IGN); // a write that fails says so itself
 }
 
-void deferInterrupt(bool on) { deferred = on; }
+void deferInterrupt(bool on, unsigned seconds) {
+  patience = seconds;
+  deferred = on;
+  if (seconds > 0) install(SIGALRM, onInterrupt);
+}
 bool interrupted() { return interruptSeen; }
 bool takeSaveRequest() { return saveWanted.exchange(false); }
 

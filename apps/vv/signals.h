@@ -7,7 +7,8 @@ namespace vv {
 void installSignals();
 
 // While `on`, the first SIGINT is noted for interrupted(); otherwise it ends the process with exit code 130 at once.
-void deferInterrupt(bool on);
+// seconds: above 0, the process ends anyhow when so much time has passed since then.
+void deferInterrupt(bool on, unsigned seconds = 0);
 bool interrupted();
 
 // True once for each SIGUSR1.

@@ -67,14 +67,18 @@ bool Watched::update() {
   return changed;
 }
 
+bool Watched::changed() {
+  const bool fresh = update();
+  const bool ready = pending_ && !fresh;
+  pending_ = fresh || (pending_ && !ready);
+  return ready;
+}
+
 bool Watched::waitForChange(bool (*ended)()) {
   constexpr auto pause = std::chrono::milliseconds(200);
-  bool changed = false;
   for (;;) {
     if (ended()) return false;
-    const bool fresh = update();
-    if (changed && !fresh) return true;
-    changed |= fresh;
+    if (changed()) return true;
     std::this_thread::sleep_for(pause);
   }
 }

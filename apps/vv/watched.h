@@ -20,6 +20,8 @@ class Watched {
  public:
   explicit Watched(const std::vector<std::string>& files) { add(files); }
   void add(const std::vector<std::string>& files);
+  // True once a file has changed and all have been at rest since the last call; to be called about five times a second.
+  bool changed();
   // Comes back when a file has changed and all have been at rest for a moment. False if `ended` said so.
   bool waitForChange(bool (*ended)());
 
@@ -32,6 +34,7 @@ class Watched {
   static Stamp stampOf(const std::string& path);
   bool update(); // true if a stamp is another one
   std::map<std::string, Stamp> files_;
+  bool pending_ = false; // a change has been seen
 };
 
 } // namespace vv

@@ -30,6 +30,9 @@ class Interaction final : public EngineObserver {
   Navigator navigation;
   const Scope* scope = nullptr; // the world's; null before it has begun
   double aspect = 4.0 / 3;      // width / height of the picture
+  // Sounds in the scene, of the engine's structure with this number (hearing.cpp).
+  std::vector<Node*> sounds;
+  uint64_t soundsStructure = ~uint64_t(0);
 
  private:
   uint64_t structure_ = 0; // of the engine, when it was last looked at

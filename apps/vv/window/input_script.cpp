@@ -21,9 +21,10 @@ struct Word {
   const char* name;
   Kind kind;
 };
-constexpr Word words[] = {{"move", Kind::move},           {"press", Kind::press}, {"release", Kind::release}, {"leave", Kind::leave},
-                          {"wheel", Kind::wheel},         {"down", Kind::down},   {"up", Kind::up},           {"key", Kind::down},
-                          {"viewpoint", Kind::viewpoint}, {"save", Kind::save},   {"open", Kind::open},       {"quit", Kind::quit}};
+constexpr Word words[] = {{"move", Kind::move},   {"press", Kind::press}, {"release", Kind::release},
+                          {"leave", Kind::leave}, {"wheel", Kind::wheel}, {"down", Kind::down},
+                          {"up", Kind::up},       {"key", Kind::down},    {"viewpoint", Kind::viewpoint},
+                          {"save", Kind::save},   {"open", Kind::open},   {"quit", Kind::quit}};
 
 const char* wordOf(Kind kind) {
   for (const Word& word : words)
@@ -154,7 +155,8 @@ std::string inputLine(double time, const InputEvent& event) {
   case Kind::leave:
   case Kind::quit: break;
   }
-  const bool modified = event.kind == Kind::press || event.kind == Kind::release || event.kind == Kind::down || event.kind == Kind::up;
+  const bool modified =
+      event.kind == Kind::press || event.kind == Kind::release || event.kind == Kind::down || event.kind == Kind::up;
   if (modified) line += fmt::format("{}{}{}", event.shift ? " shift" : "", event.control ? " ctrl" : "", event.alt ? " alt" : "");
   return line + "\n";
 }

@@ -36,8 +36,9 @@ constexpr KeyInfo keys[] = {
 constexpr MouseInfo mouse[] = {
     {"pointer", "over a sensor or an anchor it becomes a hand; dragging is then the sensor's"},
     {"examine", "left drag: turn; right drag, or with Shift: move; middle drag, or with Ctrl, or wheel: nearer and farther"},
-    {"walk, fly", "left drag: go and turn, faster the farther from where it was pressed; right drag, or with Shift: sideways, up and "
-                  "down; middle drag, or with Ctrl: look around; wheel: a step"},
+    {"walk, fly",
+     "left drag: go and turn, faster the farther from where it was pressed; right drag, or with Shift: sideways, up and "
+     "down; middle drag, or with Ctrl: look around; wheel: a step"},
     {"drop", "a file: opens it"},
 };
 

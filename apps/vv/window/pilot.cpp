@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "picture/renderer.h"
+#include "values.h"
 #include "xvrml/nodes.h"
 
 namespace vv {
@@ -20,7 +21,9 @@ namespace {
 constexpr double transition = 0.5; // seconds from one Viewpoint to the next
 constexpr double notch = 0.2;      // of the wheel: the logarithm of the distance; of full speed for a second
 
-const char* nameOf(Navigation type) {
+} // namespace
+
+const char* navigationName(Navigation type) {
   switch (type) {
   case Navigation::walk: return "walk";
   case Navigation::fly: return "fly";
@@ -29,6 +32,8 @@ const char* nameOf(Navigation type) {
   }
   return "none";
 }
+
+namespace {
 
 // Speed from the way that the pointer has gone since it was pressed, as a part of half the picture: slow at first.
 double speedOf(double way) {
@@ -47,7 +52,6 @@ std::vector<xvrml::ViewpointName> described(std::vector<xvrml::ViewpointName> al
 } // namespace
 
 Pilot::Pilot(xvrml::Browser& browser, double start, std::optional<double> fov) : browser_(browser), start_(start), fov_(fov) {
-  browser_.setTransition(transition);
   const xvrml::BoundNodes bound = browser_.bound();
   // A model that says nothing about those who look at it is looked at from all sides.
   if (!bound.viewpoint && !bound.navigationInfo) browser_.setNavigation(Navigation::examine);
@@ -173,16 +177,21 @@ void Pilot::move(double seconds) {
     browser_.navigate({}, seconds);
 }
 
-void Pilot::frameAll() {
-  const double size = camera().fovy;
-  browser_.placeViewer(xvrml::cameraAround(bounds_, camera().matrix, size, aspect_).matrix);
+void Pilot::frameAll(const xvrml::Bounds& bounds) {
+  const xvrml::CameraSettings now = camera();
+  browser_.placeViewer(xvrml::cameraAround(bounds, now.matrix, now.fovy, aspect_).matrix);
   falls_ = false;
 }
 
-void Pilot::place(const picture::LookAt& view) {
+bool Pilot::begin(const picture::View& view, const std::string& viewpoint) {
   double matrix[16];
-  if (picture::lookAtMatrix(view, matrix)) browser_.placeViewer(matrix);
+  if (!viewpoint.empty() && !bindViewpoint(viewpoint))
+    throw Failure{exitUsage, fmt::format("--viewpoint: the world has no \"{}\"", viewpoint)};
+  if (view.lookAt && picture::lookAtMatrix(*view.lookAt, matrix)) browser_.placeViewer(matrix);
+  return view.fit || (!view.lookAt && !browser_.bound().viewpoint);
 }
+
+void Pilot::smooth() { browser_.setTransition(transition); }
 
 void Pilot::putAt(const xvrml::CameraSettings& camera) {
   browser_.placeViewer(camera.matrix);
@@ -202,7 +211,7 @@ bool Pilot::bindViewpoint(const std::string& name) {
 
 void Pilot::jumpTo(size_t number) {
   const std::vector<xvrml::ViewpointName> list = described(browser_.viewpoints());
-  if (list.empty()) return frameAll();
+  if (list.empty()) return;
   const xvrml::NodeRef node = list[std::min(number, list.size() - 1)].node;
   if (browser_.bound().viewpoint == node.get()) browser_.key(xvrml::Key::home, true);
   browser_.set(*node, "set_bind", true);
@@ -210,7 +219,8 @@ void Pilot::jumpTo(size_t number) {
 
 void Pilot::choose(Navigation type, const char* name) {
   falls_ = false;
-  message_ = browser_.setNavigation(type) ? name : fmt::format("the world does not allow it: {}", nameOf(browser_.navigation()));
+  message_ =
+      browser_.setNavigation(type) ? name : fmt::format("the world does not allow it: {}", navigationName(browser_.navigation()));
 }
 
 bool Pilot::hasHeadlight() const {
@@ -220,13 +230,14 @@ bool Pilot::hasHeadlight() const {
 
 Action Pilot::press(Action action) {
   const xvrml::Node* before = browser_.bound().viewpoint;
+  const bool nowhere = action == Action::firstViewpoint || action == Action::lastViewpoint || action == Action::back;
+  if (nowhere && browser_.viewpoints().empty()) return Action::frameAll; // a world without Viewpoint begins so
   switch (action) {
   case Action::firstViewpoint: jumpTo(0); break;
   case Action::lastViewpoint: jumpTo(size_t(-1)); break;
   case Action::previousViewpoint: browser_.key(xvrml::Key::pageUp, true); break;
   case Action::nextViewpoint: browser_.key(xvrml::Key::pageDown, true); break;
-  case Action::back: before ? browser_.key(xvrml::Key::home, true) : frameAll(); break;
-  case Action::frameAll: frameAll(), touched_ = true; break;
+  case Action::back: browser_.key(xvrml::Key::home, true); break;
   case Action::examine: choose(Navigation::examine, "examine"); break;
   case Action::walk: choose(Navigation::walk, "walk"); break;
   case Action::fly: choose(Navigation::fly, "fly"); break;

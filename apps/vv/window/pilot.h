@@ -5,12 +5,15 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 
 #include "picture/camera.h"
 #include "window/keys.h"
 #include "xvrml/browser.h"
 
 namespace vv {
+
+const char* navigationName(xvrml::Navigation type);
 
 class Pilot {
  public:
@@ -20,15 +23,18 @@ class Pilot {
   // The session's time has come to `seconds`, not before the last one: the world's follows unless it is paused, held keys and
   // drags move the viewer.
   void step(double seconds);
-  // Returns what is the window's business; Action::none: it has been taken care of.
+  // Returns what is the window's business (frameAll among it: it needs the world's bounds); none: it has been taken care of.
   Action handle(const InputEvent& event);
 
   void setAspect(double aspect); // of the picture, width / height
   double aspect() const { return aspect_; }
-  // The world's extent, for frameAll and for a world without Viewpoint.
-  void setBounds(const xvrml::Bounds& bounds) { bounds_ = bounds; }
-  void frameAll(); // the whole world in view, seen in the direction of now
-  void place(const picture::LookAt& view);
+  // The whole world in view, seen in the direction of now. bounds: of the world as it is.
+  void frameAll(const xvrml::Bounds& bounds);
+  // Where the first picture is taken from. True if the whole world is to be framed: a fitted camera is asked for, or there is no
+  // Viewpoint. Throws Failure if there is no such viewpoint.
+  bool begin(const picture::View& view, const std::string& viewpoint);
+  // From here on the viewer glides from one Viewpoint to the next.
+  void smooth();
   // By DEF name, description or number from 0; false if there is none.
   bool bindViewpoint(const std::string& name);
   void putAt(const xvrml::CameraSettings& camera); // where another session was
@@ -38,7 +44,7 @@ class Pilot {
   std::optional<bool> headlight() const { return headlight_; } // as the user has switched it
   bool touched() const { return touched_; }                    // the user has moved the viewer
   bool overSensor() const { return overSensor_; }
-  std::string hint() const;                                    // of the Anchor under the pointer
+  std::string hint() const; // of the Anchor under the pointer
   std::string takeMessage() { return std::exchange(message_, {}); }
 
  private:
@@ -58,7 +64,6 @@ class Pilot {
   double start_, session_ = 0, lost_ = 0; // lost: seconds of the session in which the world's time stood still
   std::optional<double> fov_;
   double aspect_ = 4.0 / 3;
-  xvrml::Bounds bounds_;
   bool paused_ = false, touched_ = false;
   bool falls_ = false; // gravity acts: the user has walked
   std::optional<bool> headlight_;

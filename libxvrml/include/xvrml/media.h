@@ -50,6 +50,16 @@ struct SoundLevels {
 // the sound's location in the viewer's (x right, z back). Within the inner ellipsoid the direction fades towards the location.
 SoundLevels soundLevels(const nodes::Sound& sound, const Vec3f& viewer, const Vec3f& fromViewer);
 
+class Browser;
+struct Heard {
+  const Node* sound = nullptr; // good until the world changes
+  Playing playing;
+  SoundLevels levels;
+};
+// What the viewer hears at the last tick: Sounds in the scene whose clip plays, silent ones too; one for each place that a Sound
+// has, at most 16. [the browser's thread]
+std::vector<Heard> heardIn(Browser& browser);
+
 // Adds what plays to `stereo`: pairs of left and right samples, `rate` pairs a second. One channel goes to both sides; of more
 // the first two are left and right. Linear between samples; beyond the end there is silence, or with loop the beginning.
 void mix(const Playing& playing, const SoundLevels& levels, double rate, std::span<float> stereo);

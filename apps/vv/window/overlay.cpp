@@ -1,0 +1,69 @@
+// overlay.cpp: see overlay.h.
+#include "window/overlay.h"
+
+#include <fmt/format.h>
+
+#include "describe.h"
+#include "picture/transport.h"
+#include "window/keys.h"
+
+namespace vv {
+
+namespace {
+
+std::string count(uint64_t n, const char* one, const char* many) { return fmt::format("{} {}", n, n == 1 ? one : many); }
+
+double megaraysPerSecond(const RTstats& s) {
+  const double rays = double(s.cameraRays + s.shadowRays + s.secondaryRays);
+  return s.renderSeconds > 0 ? rays / s.renderSeconds * 1e-6 : 0;
+}
+
+std::string sampling(const SessionFacts& f) {
+  if (f.frameRate > 0) return fmt::format("{:.0f} fps", f.frameRate);
+  if (f.wanted <= 0) return "moving";
+  return f.finished ? fmt::format("{:.0f} samples", f.samples) : fmt::format("{:.0f} of {:.0f} samples", f.samples, f.wanted);
+}
+
+std::string problems(const SessionFacts& f) {
+  std::string text;
+  if (f.errors) text += count(f.errors, "error", "errors");
+  if (f.warnings) text += (text.empty() ? "" : ", ") + count(f.warnings, "warning", "warnings");
+  return text;
+}
+
+} // namespace
+
+std::vector<std::string> overlayLines(const SessionFacts& f, bool paused, OverlayLevel level) {
+  if (level == OverlayLevel::none) return {};
+  std::string first = fmt::format("{}   {:.1f} Mray/s", sampling(f), megaraysPerSecond(f.stats));
+  if (f.frameRate > 0) first += fmt::format("   {}x{}", f.width, f.height);
+  if (f.frameRate <= 0 && f.finished && f.stats.errorPixels > 0)
+    first += fmt::format("   error {:.2g} %", 100 * f.stats.errorHalfWidth);
+  if (paused) first += "   paused";
+  if (f.loading) first += "   loading ...";
+  const std::string wrong = problems(f);
+  if (level == OverlayLevel::brief) {
+    if (!wrong.empty()) first += "   " + wrong;
+    return {first};
+  }
+  std::vector<std::string> lines{first};
+  lines.push_back(fmt::format("\t{} of {}, {}", count(f.stats.triangles, "triangle", "triangles"),
+                              count(f.stats.objects, "object", "objects"), count(f.stats.instances, "instance", "instances")));
+  lines.push_back(
+      fmt::format("\t{}, {}", count(f.stats.lights, "light", "lights"), count(f.map.textures, "texture", "textures")));
+  if (f.stats.transport)
+    lines.push_back(fmt::format("\t{}: {}", picture::transportName(f.stats.transport), f.stats.transportReason));
+  lines.push_back(fmt::format("\t{}, picture of {}x{}", f.navigation, f.width, f.height));
+  if (!wrong.empty()) lines.push_back(wrong);
+  if (!f.lastProblem.empty()) lines.push_back("\t" + oneLine(f.lastProblem));
+  return lines;
+}
+
+std::vector<std::string> helpLines() {
+  std::vector<std::string> lines;
+  for (std::string_view rest : split(listKeys(), '\n'))
+    if (!rest.empty()) lines.emplace_back(rest);
+  return lines;
+}
+
+} // namespace vv

@@ -1,0 +1,44 @@
+// saving.cpp: see saving.h.
+#include "window/saving.h"
+
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "messages.h"
+#include "names.h"
+#include "picture/atomic_file.h"
+#include "pictures.h"
+
+namespace vv {
+
+int samplesInWindow(const Options& options) {
+  constexpr int standard = 256;
+  const bool open = options.render.timeLimit > 0 || options.render.error > 0;
+  return options.samples.value_or(open ? options.render.samples : standard);
+}
+
+std::string freeName(const std::string& world, const std::string& suffix) {
+  std::string stem = fileNamePart(std::filesystem::path(world).stem().string());
+  if (stem.empty()) stem = "vv";
+  for (int i = 1; i < 100'000; ++i) {
+    std::string name = fmt::format("{}-{}.{}", stem, i, suffix);
+    std::error_code error;
+    if (!std::filesystem::exists(std::filesystem::symlink_status(name, error))) return name;
+  }
+  return fmt::format("{}.{}", stem, suffix);
+}
+
+std::string savePicture(const picture::Picture& picture, const std::string& path, uint32_t channels) {
+  std::string told;
+  try {
+    const auto format = picture::formatOf(path);
+    if (!format) throw std::runtime_error(fmt::format("{}: the suffix is none of {}", path, picture::formatNames));
+    picture::writeFile(path, picture::encode(wantedPart(picture, channels), *format));
+    told = "saved as " + path;
+    say("vv: " + told);
+  } catch (const std::exception& error) { sayError(told = error.what()); }
+  return told;
+}
+
+} // namespace vv

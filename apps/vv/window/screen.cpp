@@ -1,0 +1,240 @@
+// screen.cpp: see screen.h. Without OpenGL, as under Xvfb and far away, SDL scales and draws by itself.
+#include "window/screen.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include <SDL.h>
+#include <fmt/format.h>
+
+#include "values.h"
+
+namespace vv {
+
+namespace {
+
+[[noreturn]] void fail() {
+  throw Failure{exitRender, fmt::format("no window: {}; -o picture.png makes a picture without one", SDL_GetError())};
+}
+
+// Keys that other keyboards have elsewhere come as text, not by their place.
+bool isTextKey(const std::string& key) { return key == "[" || key == "]" || key == "?"; }
+
+void setModifiers(InputEvent& event, int modifiers) {
+  event.shift = modifiers & KMOD_SHIFT, event.control = modifiers & KMOD_CTRL, event.alt = modifiers & KMOD_ALT;
+}
+
+struct Texture {
+  SDL_Texture* texture = nullptr;
+  int width = 0, height = 0;
+  void drop() {
+    if (texture) SDL_DestroyTexture(texture);
+    texture = nullptr;
+  }
+  bool fit(SDL_Renderer* renderer, uint32_t format, int w, int h) {
+    if (texture && width == w && height == h) return true;
+    drop();
+    width = w, height = h;
+    texture = SDL_CreateTexture(renderer, format, SDL_TEXTUREACCESS_STREAMING, w, h);
+    return texture != nullptr;
+  }
+};
+
+} // namespace
+
+struct Screen::Impl {
+  SDL_Window* window = nullptr;
+  SDL_Renderer* renderer = nullptr;
+  SDL_Cursor *arrow = nullptr, *hand = nullptr;
+  Texture picture;
+  std::array<Texture, places> panels;
+  bool changed = true, isHand = false, pressed = false;
+
+  ~Impl() {
+    picture.drop();
+    for (Texture& panel : panels) panel.drop();
+    if (arrow) SDL_FreeCursor(arrow);
+    if (hand) SDL_FreeCursor(hand);
+    if (renderer) SDL_DestroyRenderer(renderer);
+    if (window) SDL_DestroyWindow(window);
+    SDL_Quit();
+  }
+
+  InputEvent pointer(InputEvent::Kind kind, int x, int y) const {
+    int w = 1, h = 1;
+    SDL_GetWindowSize(window, &w, &h);
+    InputEvent event;
+    event.kind = kind;
+    event.x = (2 * x + 1.0) / std::max(1, w) - 1, event.y = 1 - (2 * y + 1.0) / std::max(1, h);
+    setModifiers(event, SDL_GetModState());
+    return event;
+  }
+
+  static void key(InputEvent::Kind kind, const std::string& name, int modifiers, std::vector<InputEvent>& out) {
+    InputEvent event;
+    event.kind = kind;
+    event.text = name;
+    setModifiers(event, modifiers);
+    out.push_back(std::move(event));
+  }
+
+  void windowEvent(const SDL_WindowEvent& e, std::vector<InputEvent>& out) {
+    changed = true;
+    if (e.event == SDL_WINDOWEVENT_LEAVE && !pressed) out.push_back(pointer(InputEvent::Kind::leave, 0, 0));
+    if (e.event == SDL_WINDOWEVENT_FOCUS_LOST) out.push_back(pointer(InputEvent::Kind::leave, 0, 0));
+  }
+
+  void take(const SDL_Event& e, std::vector<InputEvent>& out) {
+    using Kind = InputEvent::Kind;
+    switch (e.type) {
+    case SDL_QUIT: out.push_back(pointer(Kind::quit, 0, 0)); break;
+    case SDL_WINDOWEVENT: windowEvent(e.window, out); break;
+    case SDL_MOUSEMOTION: out.push_back(pointer(Kind::move, e.motion.x, e.motion.y)); break;
+    case SDL_MOUSEBUTTONDOWN:
+    case SDL_MOUSEBUTTONUP: {
+      if (e.button.button < SDL_BUTTON_LEFT || e.button.button > SDL_BUTTON_RIGHT) break;
+      pressed = e.type == SDL_MOUSEBUTTONDOWN;
+      InputEvent event = pointer(pressed ? Kind::press : Kind::release, e.button.x, e.button.y);
+      event.button = e.button.button == SDL_BUTTON_LEFT     ? Button::left
+                     : e.button.button == SDL_BUTTON_MIDDLE ? Button::middle
+                                                            : Button::right;
+      out.push_back(event);
+      break;
+    }
+    case SDL_MOUSEWHEEL: {
+      int x = 0, y = 0;
+      SDL_GetMouseState(&x, &y);
+      InputEvent event = pointer(Kind::wheel, x, y);
+      event.amount = double(e.wheel.preciseY) * (e.wheel.direction == SDL_MOUSEWHEEL_FLIPPED ? -1 : 1);
+      out.push_back(event);
+      break;
+    }
+    case SDL_KEYDOWN:
+    case SDL_KEYUP: {
+      const std::string name = SDL_GetKeyName(e.key.keysym.sym);
+      if (!e.key.repeat && !isTextKey(name)) key(e.type == SDL_KEYDOWN ? Kind::down : Kind::up, name, e.key.keysym.mod, out);
+      break;
+    }
+    case SDL_TEXTINPUT:
+      if (!isTextKey(e.text.text)) break;
+      key(Kind::down, e.text.text, 0, out);
+      key(Kind::up, e.text.text, 0, out);
+      break;
+    case SDL_DROPFILE: {
+      InputEvent event;
+      event.kind = Kind::open;
+      event.text = e.drop.file;
+      SDL_free(e.drop.file);
+      out.push_back(std::move(event));
+      break;
+    }
+    case SDL_RENDER_TARGETS_RESET:
+    case SDL_RENDER_DEVICE_RESET: changed = true; break;
+    default: break;
+    }
+  }
+};
+
+Screen::Screen(const std::string& title, int width, int height) : impl_(std::make_unique<Impl>()) {
+  SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1"); // vv has its own
+  SDL_SetHint(SDL_HINT_RENDER_SCALE_QUALITY, "linear");
+  SDL_SetHint(SDL_HINT_VIDEO_X11_NET_WM_BYPASS_COMPOSITOR, "0");
+  SDL_SetMainReady();
+  if (!SDL_getenv("DISPLAY") && !SDL_getenv("WAYLAND_DISPLAY") && !SDL_getenv("SDL_VIDEODRIVER")) { // SDL would try everything
+    SDL_SetError("there is no display");
+    fail();
+  }
+  // Only what was meant: SDL's other drivers would open windows that nobody sees.
+  if (!SDL_getenv("SDL_VIDEODRIVER"))
+    SDL_SetHint(SDL_HINT_VIDEODRIVER, !SDL_getenv("DISPLAY") ? "wayland" : SDL_getenv("WAYLAND_DISPLAY") ? "x11,wayland" : "x11");
+  if (SDL_InitSubSystem(SDL_INIT_VIDEO) != 0) fail();
+  impl_->window = SDL_CreateWindow(title.c_str(), SDL_WINDOWPOS_UNDEFINED, SDL_WINDOWPOS_UNDEFINED, width, height,
+                                   SDL_WINDOW_RESIZABLE | SDL_WINDOW_ALLOW_HIGHDPI);
+  if (!impl_->window) fail();
+  impl_->renderer = SDL_CreateRenderer(impl_->window, -1, SDL_RENDERER_ACCELERATED);
+  if (!impl_->renderer) impl_->renderer = SDL_CreateRenderer(impl_->window, -1, SDL_RENDERER_SOFTWARE);
+  if (!impl_->renderer) fail();
+  impl_->arrow = SDL_CreateSystemCursor(SDL_SYSTEM_CURSOR_ARROW);
+  impl_->hand = SDL_CreateSystemCursor(SDL_SYSTEM_CURSOR_HAND);
+  SDL_EventState(SDL_DROPFILE, SDL_ENABLE);
+  SDL_StartTextInput();
+  // The size asked for is that of the picture.
+  if (const double s = scale(); s > 1.01) SDL_SetWindowSize(impl_->window, int(width / s), int(height / s));
+}
+
+Screen::~Screen() = default;
+
+void Screen::wait(double seconds, std::vector<InputEvent>& events) {
+  SDL_Event event;
+  if (SDL_WaitEventTimeout(&event, std::clamp(int(seconds * 1000), 0, 1000)) == 0) return;
+  do impl_->take(event, events);
+  while (SDL_PollEvent(&event));
+}
+
+int Screen::width() const {
+  int w = 1, h = 1;
+  SDL_GetRendererOutputSize(impl_->renderer, &w, &h);
+  return std::max(1, w);
+}
+
+int Screen::height() const {
+  int w = 1, h = 1;
+  SDL_GetRendererOutputSize(impl_->renderer, &w, &h);
+  return std::max(1, h);
+}
+
+double Screen::scale() const {
+  int w = 1, h = 1;
+  SDL_GetWindowSize(impl_->window, &w, &h);
+  return double(width()) / std::max(1, w);
+}
+
+bool Screen::visible() const { return !(SDL_GetWindowFlags(impl_->window) & (SDL_WINDOW_MINIMIZED | SDL_WINDOW_HIDDEN)); }
+
+void Screen::setPicture(int width, int height, const std::vector<uint8_t>& rgb) {
+  if (!impl_->picture.fit(impl_->renderer, SDL_PIXELFORMAT_RGB24, width, height)) return;
+  SDL_SetTextureScaleMode(impl_->picture.texture, SDL_ScaleModeLinear);
+  SDL_UpdateTexture(impl_->picture.texture, nullptr, rgb.data(), width * 3);
+  impl_->changed = true;
+}
+
+void Screen::setPanel(Place place, const Panel& panel) {
+  Texture& texture = impl_->panels[place];
+  impl_->changed = true;
+  if (panel.width == 0 || !texture.fit(impl_->renderer, SDL_PIXELFORMAT_RGBA32, panel.width, panel.height)) return texture.drop();
+  SDL_SetTextureBlendMode(texture.texture, SDL_BLENDMODE_BLEND);
+  SDL_UpdateTexture(texture.texture, nullptr, panel.rgba.data(), panel.width * 4);
+}
+
+void Screen::present() {
+  if (!std::exchange(impl_->changed, false)) return;
+  SDL_Renderer* const r = impl_->renderer;
+  SDL_SetRenderDrawColor(r, 24, 24, 28, 255);
+  SDL_RenderClear(r);
+  if (impl_->picture.texture) SDL_RenderCopy(r, impl_->picture.texture, nullptr, nullptr);
+  const int w = width(), h = height();
+  for (int place = 0; place < places; ++place) {
+    const Texture& panel = impl_->panels[size_t(place)];
+    if (!panel.texture) continue;
+    SDL_Rect at{0, 0, panel.width, panel.height};
+    if (place == bottom) at.y = h - panel.height;
+    if (place == middle) at.x = (w - panel.width) / 2, at.y = (h - panel.height) / 2;
+    SDL_RenderCopy(r, panel.texture, nullptr, &at);
+  }
+  SDL_RenderPresent(r);
+}
+
+void Screen::setHand(bool hand) {
+  if (std::exchange(impl_->isHand, hand) == hand) return;
+  if (SDL_Cursor* cursor = hand ? impl_->hand : impl_->arrow) SDL_SetCursor(cursor);
+}
+
+void Screen::setTitle(const std::string& title) { SDL_SetWindowTitle(impl_->window, title.c_str()); }
+
+void Screen::toggleFullScreen() {
+  const bool full = SDL_GetWindowFlags(impl_->window) & SDL_WINDOW_FULLSCREEN_DESKTOP;
+  SDL_SetWindowFullscreen(impl_->window, full ? 0 : SDL_WINDOW_FULLSCREEN_DESKTOP);
+}
+
+} // namespace vv

@@ -1,0 +1,295 @@
+// session.cpp: see session.h.
+#include "window/session.h"
+
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "describe.h"
+#include "messages.h"
+#include "timeline.h"
+#include "window/saving.h"
+#include "window/view_command.h"
+#include "world_start.h"
+
+namespace vv {
+
+using State = picture::LiveRenderer::State;
+
+namespace {
+
+double sinceEpoch() { return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count(); }
+
+bool equal(const xvrml::CameraSettings& a, const xvrml::CameraSettings& b) {
+  return std::memcmp(a.matrix, b.matrix, sizeof a.matrix) == 0 && a.fovy == b.fovy && a.height == b.height &&
+         a.shader == b.shader;
+}
+
+// What a running world needs besides what a picture does.
+Options forWindow(const Options& options, const Session::Calls& calls, const bool scripted) {
+  Options own = options;
+  own.render.samples = samplesInWindow(options);
+  own.render.channels |= RT_VARIANCE; // then RTstats has the error
+  own.running.print = [](const std::string& text) { say(text); };
+  own.running.scriptPatience = scripted ? 0 : 0.05; // scripted: the same on every machine
+  if (calls.openUrl)
+    own.running.loadUrl = [open = calls.openUrl](const std::vector<std::string>& urls, const std::vector<std::string>&,
+                                                 const std::string& base) {
+      if (!urls.empty() && urls[0].starts_with('#')) return false; // a viewpoint of this world
+      open(urls, base);
+      return true;
+    };
+  return own;
+}
+
+double startOf(const Options& options, bool stepped) { return stepped || options.time ? 0 : sinceEpoch(); }
+
+} // namespace
+
+Session::Session(std::unique_ptr<xvrml::World> world, const Options& options, Problems& problems, Calls calls,
+                 const InputScript* script)
+    : options_(forWindow(options, calls, script || !options.recordInput.empty())), problems_(problems), calls_(std::move(calls)),
+      browser_(startWorld(std::move(world), options_, startOf(options, script || !options.recordInput.empty()), problems)),
+      pilot_(*browser_, options.time && !script ? *options.time : browser_->now(), options.view.fov),
+      renderer_(*browser_, options_.render), channels_(options.render.channels),
+      stepped_(script || !options.recordInput.empty()) {
+  began_ = options.time ? 0 : browser_->now();
+  if (options.time && !script) WorldClock(*browser_, options.fps).advance(*options.time);
+  if (script)
+    replay_ = std::make_unique<Replay>(pilot_, *script, [this](const InputEvent& event, Action action) {
+      if (action == Action::frameAll)
+        fit_ = Fit::wanted;
+      else
+        calls_.business(event, action);
+      if (blocked()) replay_->wait();
+    });
+  forEachNode(browser_->world(), [&](const xvrml::Node& node) {
+    if (node.type().name == "Inline" && !xvrml::inlineScope(node)) inlines_.emplace_back(const_cast<xvrml::Node*>(&node));
+  });
+  last_ = -1;
+}
+
+Session::~Session() = default;
+
+void Session::begin(int width, int height, const std::optional<Place>& place, const std::string& fragment) {
+  resize(width, height);
+  if (pilot_.begin(options_.view, place || !fragment.empty() ? std::string() : options_.viewpoint) && !place) fit_ = Fit::wanted;
+  fitAgain_ = fit_ != Fit::none && !inlines_.empty();
+  if (place) {
+    pilot_.bindViewpoint(place->viewpoint);
+    pilot_.putAt(place->camera);
+  } else if (!fragment.empty() && !pilot_.bindViewpoint(fragment)) {
+    sayWarning(fmt::format("there is no viewpoint \"{}\"", fragment));
+  }
+  pilot_.smooth();
+}
+
+void Session::resize(int width, int height) {
+  width_ = std::max(1, width), height_ = std::max(1, height);
+  pilot_.setAspect(double(width_) / height_);
+}
+
+Session::Place Session::place() const {
+  Place place{"", browser_->camera(1)};
+  if (const xvrml::Node* viewpoint = browser_->bound().viewpoint) {
+    size_t number = 0;
+    for (const xvrml::ViewpointName& one : browser_->viewpoints()) {
+      if (one.node.get() == viewpoint) place.viewpoint = one.name.empty() ? std::to_string(number) : one.name;
+      ++number;
+    }
+  }
+  return place;
+}
+
+// --- Time ---
+
+void Session::advance(double seconds) {
+  const double passed = last_ < 0 ? 0 : std::max(0.0, seconds - last_);
+  last_ = seconds;
+  if (!stepped_) clock_ += passed;
+  if (!resting()) return;
+  if (fit_ == Fit::mapping) {
+    pilot_.frameAll(renderer_.bounds());
+    fit_ = Fit::none;
+    if (replay_) replay_->resume();
+  }
+  if (stepped_ && !blocked()) clock_ += std::min(passed, 0.25);
+  if (begun_ || !blocked()) step(passed);
+  takeEvents();
+  loadSome();
+  problems_.tell(browser_->world());
+  draw();
+  saveIfFinished();
+}
+
+void Session::step(double) {
+  if (!stepped_) {
+    pilot_.step(time_ = clock_);
+    return;
+  }
+  constexpr int most = 10; // steps at once: then a picture
+  for (int i = 0; i < most && double(next_) / options_.fps <= clock_ && !blocked(); ++i) {
+    time_ = double(next_) / options_.fps;
+    if (replay_ && !replay_->step(time_)) return;
+    if (!replay_) pilot_.step(time_);
+    ++next_;
+  }
+  clock_ = std::min(clock_, double(next_) / options_.fps);
+}
+
+// The user's. Of a session that a script drives only the window itself is his.
+void Session::takeEvents() {
+  while (!waiting_.empty()) {
+    const InputEvent event = std::move(waiting_.front());
+    waiting_.pop_front();
+    Action action = Action::none;
+    if (calls_.record) calls_.record(time_, event);
+    if (!replay_)
+      action = pilot_.handle(event);
+    else if (event.kind == InputEvent::Kind::down)
+      action = actionOf(event);
+    const bool ofWindow = action >= Action::save && action != Action::none;
+    if (action == Action::frameAll && !replay_)
+      fit_ = Fit::wanted;
+    else if (ofWindow)
+      calls_.business(event, action);
+  }
+}
+
+// Inlines come after the first picture, a few at a time.
+void Session::loadSome() {
+  if (inlines_.empty() || !shownAny_) return;
+  const auto start = std::chrono::steady_clock::now();
+  while (!inlines_.empty() && std::chrono::steady_clock::now() - start < std::chrono::milliseconds(10)) {
+    const xvrml::NodeRef node = std::move(inlines_.front());
+    inlines_.pop_front();
+    if (xvrml::inlineScope(*node) || !browser_->loadInline(*node)) continue;
+    forEachNodeBelow(*node, [&](const xvrml::Node& below) {
+      if (below.type().name == "Inline" && !xvrml::inlineScope(below)) inlines_.emplace_back(const_cast<xvrml::Node*>(&below));
+    });
+  }
+  if (inlines_.empty() && fitAgain_ && !pilot_.touched()) fit_ = Fit::wanted;
+}
+
+// --- The picture ---
+
+void Session::draw() {
+  if (width_ <= 0) return;
+  const State state = renderer_.state();
+  const bool dirty = !begun_ || fit_ == Fit::wanted || !equal(pilot_.camera(), shown_) || browser_->hasChanges() ||
+                     pilot_.headlight() != shownHeadlight_ || (!moving_ && (facts_.width != width_ || facts_.height != height_));
+  if (state == State::rendering) {
+    if (dirty && !moving_ && (shownAny_ || fit_ == Fit::wanted)) renderer_.cancel();
+    return;
+  }
+  if (state != State::idle) return;
+  if (dirty)
+    start(begun_);
+  else if (moving_ || !refined_)
+    start(false);
+}
+
+void Session::start(bool moving) {
+  picture::LiveFrame frame;
+  frame.view.shader = options_.view.shader;
+  if (fit_ != Fit::wanted || begun_)
+    frame.view.viewer = pilot_.camera();
+  else
+    frame.view.fit = true, frame.view.fov = options_.view.fov;
+  shown_ = pilot_.camera();
+  if (shownHeadlight_ != pilot_.headlight()) {
+    shownHeadlight_ = pilot_.headlight();
+    const auto on = xvrml::MapOptions::Headlight::on, off = xvrml::MapOptions::Headlight::off;
+    renderer_.change([&](picture::RenderSettings& s) { s.headlight = *shownHeadlight_ ? on : off; });
+  }
+  const double now = last_;
+  if (moving && moving_ && now > lastStart_) rate_ = rate_ <= 0 ? 1 / (now - lastStart_) : .8 * rate_ + .2 / (now - lastStart_);
+  if (!moving) rate_ = 0;
+  lastStart_ = now;
+  frame.width = moving ? std::max(16, int(width_ * scale_)) : width_;
+  frame.height = moving ? std::max(12, int(height_ * scale_)) : height_;
+  frame.samples = moving ? 1 : options_.render.samples;
+  moving_ = moving;
+  refined_ = !moving;
+  facts_.width = frame.width, facts_.height = frame.height;
+  renderer_.start(frame);
+  begun_ = true;
+  if (fit_ == Fit::wanted) fit_ = Fit::mapping;
+}
+
+bool Session::look(picture::LivePicture& picture) {
+  if (!renderer_.look(picture)) return false;
+  shownAny_ = true;
+  if (picture.finished && moving_ && picture.seconds > 0) {
+    const double wish = std::sqrt(1 / (options_.fps * picture.seconds));
+    scale_ = std::clamp(scale_ * std::clamp(wish, .7, 1.2), .1, 1.0);
+  }
+  const RTstats stats = picture.finished ? picture.stats : facts_.stats;
+  const xvrml::MapStats map = picture.finished ? picture.map : facts_.map;
+  facts_.width = picture.width, facts_.height = picture.height;
+  facts_.samples = picture.samples, facts_.finished = picture.finished;
+  facts_.stats = stats, facts_.map = map;
+  return true;
+}
+
+std::string Session::save(const std::string& path) {
+  picture::Picture picture;
+  return renderer_.copy(picture) ? savePicture(picture, path, channels_) : "there is no picture yet";
+}
+
+void Session::saveIfFinished() {
+  if (saveTo_.empty() || moving_ || !refined_ || renderer_.state() != State::idle || browser_->hasChanges() ||
+      !equal(pilot_.camera(), shown_))
+    return;
+  message_ = save(std::exchange(saveTo_, {}));
+  if (replay_) replay_->resume();
+}
+
+bool Session::stop(double seconds) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
+  while (renderer_.state() != State::idle) {
+    renderer_.cancel();
+    if (std::chrono::steady_clock::now() > end) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  return true;
+}
+
+// --- What is told ---
+
+std::string Session::command(const std::vector<std::string>& arguments) const {
+  std::optional<bool> headlight = pilot_.headlight();
+  if (!headlight && options_.render.headlight != xvrml::MapOptions::Headlight::automatic)
+    headlight = options_.render.headlight == xvrml::MapOptions::Headlight::on;
+  return viewCommand({browser_->world().path, pilot_.camera(), width_, height_, browser_->now() - began_, headlight}, arguments);
+}
+
+std::string Session::takeMessage() {
+  std::string text = std::exchange(message_, {});
+  std::string pilots = pilot_.takeMessage();
+  if (const std::string failure = renderer_.takeFailure(); !failure.empty()) {
+    sayError(failure);
+    return failure;
+  }
+  return pilots.empty() ? text : pilots;
+}
+
+SessionFacts Session::facts() const {
+  SessionFacts facts;
+  facts.frameRate = moving_ ? rate_ : 0;
+  facts.width = facts_.width, facts.height = facts_.height;
+  facts.samples = facts_.samples, facts.wanted = moving_ ? 0 : options_.render.samples;
+  facts.stats = facts_.stats, facts.map = facts_.map, facts.finished = facts_.finished;
+  const xvrml::Diagnostics& d = browser_->world().diagnostics;
+  facts.errors = d.errors(), facts.warnings = d.warnings();
+  if (!d.list().empty()) facts.lastProblem = d.list().back().text();
+  facts.navigation = navigationName(browser_->navigation());
+  facts.description = browser_->description();
+  facts.loading = !inlines_.empty();
+  return facts;
+}
+
+} // namespace vv

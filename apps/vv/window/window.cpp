@@ -1,0 +1,303 @@
+// window.cpp: the window's loop: what its user does goes to the session, the session's pictures go to the screen; worlds are read
+// meanwhile. See window.h.
+#include "window/window.h"
+
+#include <chrono>
+#include <cstdio>
+#include <fstream>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "messages.h"
+#include "picture/atomic_file.h"
+#include "shader_text.h"
+#include "signals.h"
+#include "watched.h"
+#include "window/overlay.h"
+#include "window/saving.h"
+#include "window/screen.h"
+#include "window/session.h"
+#include "window/speaker.h"
+#include "window/world_loader.h"
+#include "world_start.h"
+#include "xvrml/node_plugin.h"
+
+namespace vv {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+class Window {
+ public:
+  Window(const Options& options, const std::vector<std::string>& arguments)
+      : options_(options), arguments_(arguments), problems_(options_), screen_("vv", options.render.width, options.render.height),
+        speaker_(mixer_) {
+    if (!options_.cameraShader.empty())
+      options_.view.shader = readShader(options_.cameraShader, "--camera-shader", RT_CAMERA, options_.render.shaderPath);
+    if (!options_.inputScript.empty()) script_ = readInputScript(options_.inputScript);
+    if (!options_.recordInput.empty()) {
+      record_.open(options_.recordInput, std::ios::binary | std::ios::trunc);
+      if (!record_) throw Failure{exitRender, fmt::format("--record-input: cannot write {}", options_.recordInput)};
+    }
+    painter_ = std::make_unique<PanelPainter>(int(14 * screen_.scale()));
+  }
+
+  int run() {
+    deferInterrupt(true, 1);
+    if (!options_.input.empty()) open({{options_.input}, "", {}}, false);
+    double next = 0;
+    while (!ended_ && !interrupted()) {
+      const double now = seconds();
+      wait(std::max(0.0, next - now));
+      passOn();
+      takeWorld();
+      if (seconds() >= next && goOn()) next = seconds() + 1 / options_.fps;
+      if (session_ && session_->look(picture_)) screen_.setPicture(picture_.width, picture_.height, picture_.rgb);
+      tell();
+      screen_.present();
+    }
+    return end();
+  }
+
+ private:
+  double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+
+  // A picture that is due soon is looked for often; a hidden window can wait.
+  void wait(double time) {
+    const double most = session_ && screen_.visible() ? .004 : .05;
+    screen_.wait(std::min(time, most), events_);
+  }
+
+  void passOn() {
+    for (InputEvent& event : std::exchange(events_, {})) {
+      if (event.kind == InputEvent::Kind::quit) ended_ = true;
+      if (event.kind == InputEvent::Kind::open) open({{event.text}, "", {}}, false);
+      if (event.kind == InputEvent::Kind::quit || event.kind == InputEvent::Kind::open) continue;
+      if (session_)
+        input_.push_back(std::move(event));
+      else if (event.kind == InputEvent::Kind::down)
+        business(event, actionOf(event));
+    }
+  }
+
+  // Returns true when the world has moved on.
+  bool goOn() {
+    if (!session_) return true;
+    if (screen_.width() != width_ || screen_.height() != height_) {
+      width_ = screen_.width(), height_ = screen_.height();
+      session_->resize(width_, height_);
+    }
+    for (const InputEvent& event : std::exchange(input_, {})) session_->handle(event);
+    try {
+      session_->advance(seconds());
+    } catch (const std::exception& error) { say(fmt::format("vv: error: {}", error.what())); }
+    if (session_->resting()) {
+      screen_.setHand(session_->pilot().overSensor());
+      sound();
+      watch();
+    }
+    return true;
+  }
+
+  // --- Worlds ---
+  void open(LoadRequest request, bool keepPlace) {
+    request.options = options_.load;
+    const bool whole =
+        !options_.shaders.empty() || !options_.definitions.empty() || script_ || record_.is_open() || options_.strict;
+    if (!whole) request.options.loadInlines = false; // they come after the first picture
+    keepPlace_ = keepPlace && session_;
+    loading_ = request.urls.empty() ? "" : request.urls[0];
+    loader_.begin(std::move(request));
+    shownAt_ = -1;
+  }
+
+  void takeWorld() {
+    if (session_ && !session_->resting()) return; // the old one cannot end yet
+    LoadAnswer answer;
+    if (!loader_.take(answer)) return;
+    const std::string name = std::exchange(loading_, "");
+    std::string wrong = std::move(answer.error);
+    if (answer.world) {
+      try {
+        begin(std::move(answer.world), answer.fragment);
+      } catch (const Failure& failure) { wrong = failure.text; } catch (const std::exception& error) {
+        wrong = error.what();
+      }
+    }
+    if (wrong.empty()) return;
+    sayError(wrong);
+    message(wrong, 1e9);
+    if (!session_) failed_ = true;
+  }
+
+  void begin(std::unique_ptr<xvrml::World> world, const std::string& fragment) {
+    std::optional<Session::Place> place;
+    if (keepPlace_) place = session_->place();
+    world->options.loadInlines = true;
+    Session::Calls calls;
+    calls.business = [this](const InputEvent& event, Action action) { business(event, action); };
+    calls.openUrl = [this](const std::vector<std::string>& urls, const std::string& base) { open({urls, base, {}}, false); };
+    if (record_.is_open())
+      calls.record = [this](double time, const InputEvent& event) { record_ << inputLine(time, event) << std::flush; };
+    auto fresh =
+        std::make_unique<Session>(std::move(world), options_, problems_, std::move(calls), script_ ? &*script_ : nullptr);
+    width_ = screen_.width(), height_ = screen_.height();
+    fresh->begin(width_, height_, place, fragment);
+    mixer_.set({});
+    input_.clear();
+    session_ = std::move(fresh); // the former ends here
+    failed_ = false;
+    message("", 0);
+    const std::string& path = session_->browser().world().path;
+    screen_.setTitle(path + " - vv");
+    if (options_.watch && path != "-") watched_ = std::make_unique<Watched>(usedFiles(session_->browser().world()));
+  }
+
+  void reload() {
+    if (!session_) return;
+    const std::string path = session_->browser().world().path;
+    if (path == "-") return message("standard input cannot be read again", 3);
+    open({{path}, "", {}}, true);
+  }
+
+  void watch() {
+    if (!watched_ || seconds() < nextLook_) return;
+    nextLook_ = seconds() + .2;
+    if (!watched_->changed()) return;
+    if (!options_.quiet) say("vv: a file has changed");
+    reload();
+  }
+
+  // --- Keys ---
+  void business(const InputEvent& event, Action action) {
+    switch (action) {
+    case Action::save:
+    case Action::saveExr: save(event, action == Action::save ? "png" : "exr"); break;
+    case Action::command: command(); break;
+    case Action::reload: reload(); break;
+    case Action::overlay: level_ = OverlayLevel((int(level_) + 1) % 3), shownAt_ = -1; break;
+    case Action::help: showHelp(!help_); break;
+    case Action::fullScreen: screen_.toggleFullScreen(); break;
+    case Action::quit:
+      if (help_ && event.text == "Escape")
+        showHelp(false);
+      else
+        ended_ = true;
+      break;
+    default: break;
+    }
+  }
+
+  void save(const InputEvent& event, const char* suffix) {
+    if (!session_) return;
+    const bool named = event.kind == InputEvent::Kind::save;
+    const std::string path = named ? event.text : freeName(session_->browser().world().path, suffix);
+    if (session_->scripted())
+      session_->saveWhenFinished(path);
+    else
+      message(session_->save(path), 4);
+  }
+
+  void command() {
+    if (!session_) return;
+    const std::string line = session_->command(arguments_);
+    writeOut(line + "\n");
+    message(line, 6);
+  }
+
+  void showHelp(bool shown) {
+    help_ = shown;
+    screen_.setPanel(Screen::middle, shown ? painter_->paint(helpLines(), screen_.width(), true) : Panel());
+  }
+
+  // --- What is told ---
+  void message(const std::string& text, double time) {
+    message_ = text;
+    messageEnds_ = seconds() + time;
+    shownAt_ = -1;
+  }
+
+  std::string bottomLine() {
+    if (!loading_.empty()) return fmt::format("loading {} ...", loading_);
+    if (!message_.empty() && seconds() < messageEnds_) return message_;
+    if (!session_) return failed_ ? message_ : "drop a file here; F1 lists the keys";
+    if (!session_->resting()) return bottom_;
+    const std::string hint = session_->pilot().hint();
+    return hint.empty() ? session_->browser().description() : hint;
+  }
+
+  void tell() {
+    if (session_ && session_->resting())
+      if (const std::string text = session_->takeMessage(); !text.empty()) message(text, 3);
+    const std::string bottom = bottomLine();
+    if (bottom != bottom_ || shownAt_ < 0) {
+      bottom_ = bottom;
+      screen_.setPanel(Screen::bottom, bottom.empty() ? Panel() : painter_->paint({bottom}, screen_.width()));
+    }
+    if (shownAt_ >= 0 && seconds() - shownAt_ < .2) return;
+    if (session_ && !session_->resting()) return;
+    shownAt_ = seconds();
+    std::vector<std::string> lines;
+    if (session_) lines = overlayLines(session_->facts(), session_->pilot().paused(), level_);
+    if (lines == lines_) return;
+    lines_ = lines;
+    screen_.setPanel(Screen::top, painter_->paint(lines, screen_.width()));
+  }
+
+  void sound() {
+    const std::vector<xvrml::Heard> heard =
+        session_->pilot().paused() ? std::vector<xvrml::Heard>() : xvrml::heardIn(session_->browser());
+    if (!heard.empty() && !speaker_.tried())
+      if (const std::string why = speaker_.open(); !why.empty() && options_.verbose) say("vv: no sound: " + why);
+    if (speaker_.tried()) mixer_.set(heard);
+  }
+
+  // A world that is being read, or geometry that is being made, cannot be called back: then the process ends as it is.
+  int end() {
+    const int code = interrupted() ? exitInterrupted : failed_ ? exitInput : exitDone;
+    record_.close();
+    const bool stopped = !session_ || session_->stop(.5);
+    if (stopped && !WorldLoader::working()) return code;
+    picture::removeTemporary();
+    std::fflush(nullptr);
+    ::_exit(code);
+  }
+
+  Options options_;
+  const std::vector<std::string>& arguments_;
+  Problems problems_;
+  Screen screen_;
+  Mixer mixer_;
+  Speaker speaker_;
+  WorldLoader loader_;
+  std::optional<InputScript> script_;
+  std::ofstream record_;
+  std::unique_ptr<PanelPainter> painter_;
+  std::unique_ptr<Session> session_; // null: no world yet
+  std::unique_ptr<Watched> watched_;
+  picture::LivePicture picture_;
+  std::vector<InputEvent> events_, input_;
+  const Clock::time_point start_ = Clock::now();
+  int width_ = 0, height_ = 0;
+  bool ended_ = false, failed_ = false, keepPlace_ = false, help_ = false;
+  double nextLook_ = 0;
+
+  OverlayLevel level_ = OverlayLevel::brief;
+  std::string loading_, message_, bottom_;
+  double messageEnds_ = 0, shownAt_ = -1;
+  std::vector<std::string> lines_;
+};
+
+} // namespace
+
+int runWindow(const Options& options, const std::vector<std::string>& arguments) {
+  for (const std::string& refused : xvrml::loadNodePlugins(options.nodePath)) sayWarning(refused);
+  Window window(options, arguments);
+  return window.run();
+}
+
+} // namespace vv

@@ -1,0 +1,70 @@
+// world_loader.cpp: see world_loader.h.
+#include "window/world_loader.h"
+
+#include <atomic>
+#include <new>
+#include <thread>
+
+#include "values.h"
+#include "world_start.h"
+
+namespace vv {
+
+namespace {
+
+std::atomic<int> threads{0};
+
+LoadAnswer load(const LoadRequest& request) {
+  LoadAnswer answer;
+  for (const std::string& url : request.urls) {
+    std::string path = url, why;
+    if (!request.base.empty()) {
+      const xvrml::ResolvedUrl resolved = xvrml::resolveUrl(url, request.base, request.options);
+      path = resolved.path, why = resolved.error, answer.fragment = resolved.fragment;
+    }
+    try {
+      if (why.empty()) answer.world = readWorld(path, request.options);
+    } catch (const xvrml::LoadError& error) { why = error.diagnostic.text(); } catch (const Failure& failure) {
+      why = failure.text;
+    } catch (const std::bad_alloc&) { why = path + ": not enough memory"; } catch (const std::exception& error) {
+      why = path + ": " + error.what();
+    }
+    if (answer.world) break;
+    if (answer.error.size() < 400) answer.error += (answer.error.empty() ? "" : "; ") + why;
+  }
+  if (answer.world) answer.error.clear();
+  if (!answer.world && answer.error.empty()) answer.error = "there is no URL";
+  return answer;
+}
+
+} // namespace
+
+struct WorldLoader::Job {
+  LoadRequest request;
+  LoadAnswer answer;
+  std::atomic<bool> done{false};
+};
+
+WorldLoader::~WorldLoader() = default;
+
+void WorldLoader::begin(LoadRequest request) {
+  job_ = std::make_shared<Job>();
+  job_->request = std::move(request);
+  ++threads;
+  std::thread([job = job_] {
+    job->answer = load(job->request);
+    job->done = true;
+    --threads;
+  }).detach();
+}
+
+bool WorldLoader::take(LoadAnswer& answer) {
+  if (!job_ || !job_->done) return false;
+  answer = std::move(job_->answer);
+  job_ = nullptr;
+  return true;
+}
+
+bool WorldLoader::working() { return threads > 0; }
+
+} // namespace vv

@@ -1,0 +1,56 @@
+// world_start.cpp: see world_start.h.
+#include "world_start.h"
+
+#include <cerrno>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "definitions.h"
+#include "messages.h"
+#include "progress.h"
+#include "shader_changes.h"
+
+namespace vv {
+
+namespace {
+
+std::string readStandardInput(uint64_t limit) {
+  std::string bytes;
+  char block[65536];
+  for (;;) {
+    const ssize_t got = ::read(STDIN_FILENO, block, sizeof block);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) throw Failure{exitInput, "cannot read standard input"};
+    if (got == 0) return bytes;
+    bytes.append(block, size_t(got));
+    if (bytes.size() > limit)
+      throw Failure{exitInput, fmt::format("standard input is longer than the limit fileBytes ({})", limit)};
+  }
+}
+
+} // namespace
+
+std::unique_ptr<xvrml::World> readWorld(const std::string& path, const xvrml::LoadOptions& options) {
+  if (path != "-") return xvrml::loadWorld(path, options);
+  return xvrml::loadWorldFromMemory(readStandardInput(options.limits.fileBytes), "-", options);
+}
+
+std::unique_ptr<xvrml::Browser> startWorld(std::unique_ptr<xvrml::World> world, const Options& options, double start,
+                                           Problems& problems) {
+  problems.tell(*world);
+  if (options.verbose)
+    say(fmt::format("vv: {} nodes, parsed in {}, Inlines and prototypes in {}", world->nodeCount, duration(world->times.parse),
+                    duration(world->times.load)));
+  const std::vector<Definition> definitions = readDefinitions(options.definitions, *world);
+  for (const Definition& d : definitions)
+    if (!d.asEvent) d.node->set(*d.field, d.value);
+  changeShaders(options.shaders, options.render.shaderPath, *world);
+  auto browser = std::make_unique<xvrml::Browser>(std::move(world), options.running, start);
+  for (const Definition& d : definitions)
+    if (d.asEvent) browser->set(*d.node, d.field->name, d.value);
+  problems.tell(browser->world());
+  return browser;
+}
+
+} // namespace vv

@@ -1,0 +1,21 @@
+// world_start.h: reads worlds, and brings them alive as the options ask for: what vv does before a picture and before a window.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "options.h"
+#include "problems.h"
+#include "xvrml/browser.h"
+
+namespace vv {
+
+// "-": standard input. Throws xvrml::LoadError or Failure. [any thread]
+std::unique_ptr<xvrml::World> readWorld(const std::string& path, const xvrml::LoadOptions& options);
+
+// The world comes alive at a time of its clock, with what -D and --shader change; its problems are told. Throws Failure and
+// UsageError. [the browser's thread]
+std::unique_ptr<xvrml::Browser> startWorld(std::unique_ptr<xvrml::World> world, const Options& options, double start,
+                                           Problems& problems);
+
+} // namespace vv
