@@ -72,7 +72,7 @@ class Renderer {
   Renderer& operator=(const Renderer&) = delete;
 
   void setWatch(Watch watch);
-  // Samples, seed, error and channels of the following pictures; the rest must stay. Between two calls of render().
+  // Samples, seed, error, headlight and channels of the following pictures; the rest must stay. Between two calls of render().
   void change(const std::function<void(RenderSettings&)>& change);
   const std::vector<xvrml::ViewpointInfo>& viewpoints();
   xvrml::Bounds bounds();

@@ -137,6 +137,7 @@ void Stage::apply(const News& news) {
 void Stage::prepare(const View& view) {
   View seen = view;
   if (!seen.viewer) seen.viewer = viewer_;
+  mapper_->setHeadlight(settings.headlight);
   mapper_->map(chooseCamera(*mapper_, seen, aspectOf(settings)));
   useEnvironment();
   if (memoryExhausted_) throw std::bad_alloc();

@@ -157,6 +157,10 @@ Options readCommandLine(int argc, char** argv) {
       apply(option, options, option.argument[0] == '[' && values[i][k] == "-" ? "" : values[i][k]);
   }
   checkTogether(options);
+  if (!options.inputScript.empty()) {
+    options.script = std::make_shared<InputScript>(readInputScript(options.inputScript));
+    if (!options.time && !options.frames && !options.opensWindow()) options.time = options.script->end;
+  }
   const picture::RenderSettings& render = options.render;
   options.render.samples = options.samples.value_or(render.timeLimit > 0 ? 65536 : render.error > 0 ? 4096 : render.samples);
   return options;

@@ -2,6 +2,7 @@
 // Called by main() once. [one thread]
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -10,6 +11,7 @@
 #include "picture/renderer.h"
 #include "values.h"
 #include "video.h"
+#include "window/input_script.h"
 #include "xvrml/world.h"
 
 namespace vv {
@@ -37,7 +39,8 @@ struct Options {
   bool check = false, strict = false;
   bool info = false, listNodes = false, listViewpoints = false, listShaders = false, explain = false, json = false;
   bool watch = false;
-  std::string inputScript, recordInput; // files of the user's doings; empty: none
+  std::string inputScript, recordInput;      // files of what a user does; empty: none
+  std::shared_ptr<const InputScript> script; // what inputScript holds
   bool listKeys = false;
   std::string write, stats;
   std::string compare;  // reference picture; empty: none

@@ -18,6 +18,7 @@
 #include "report.h"
 #include "signals.h"
 #include "timeline.h"
+#include "window/replay.h"
 
 namespace vv {
 
@@ -78,16 +79,17 @@ class Pictures {
   int make() {
     picture::RenderSettings settings = options_.render;
     if (!options_.stats.empty() && !options_.isSequence()) settings.channels |= RT_VARIANCE; // then RTstats has the error
-    WorldClock clock(browser_, options_.fps);
     const Timeline timeline(options_);
+    if (options_.script) beginScript(settings);
+    WorldClock clock([this](double time) { tick(time); }, options_.fps);
     if (!clock.advance(timeline[0].time)) return stopped("vv: interrupted before the first picture");
-    picture::Renderer renderer(browser_, settings);
-    renderer_ = &renderer;
+    if (!renderer_) renderer_ = std::make_unique<picture::Renderer>(browser_, settings);
+    picture::Renderer& renderer = *renderer_;
     renderer.setWatch([this](float fraction) { return watch(fraction); });
     for (size_t i = 0; i < timeline.size(); ++i) {
       const Moment moment = timeline[i];
       if (!clock.advance(moment.time)) return stopped("vv: interrupted; the pictures so far are saved");
-      for (Job& job : chooseJobs(options_, renderer.viewpoints())) {
+      for (Job& job : pilot_ ? std::vector<Job>{scriptedJob()} : chooseJobs(options_, renderer.viewpoints())) {
         job.name.frame = moment.frame;
         job.view.turn = moment.turn;
         if (const int code = makeOne(job, moment); code != exitDone) return code;
@@ -98,6 +100,36 @@ class Pictures {
   }
 
  private:
+  // The user of --input: where he looks from. Whether he has all of the world in view only the renderer knows.
+  void beginScript(const picture::RenderSettings& settings) {
+    renderer_ = std::make_unique<picture::Renderer>(browser_, settings);
+    pilot_ = std::make_unique<Pilot>(browser_, 0, options_.view.fov);
+    pilot_->setAspect(double(options_.render.width) / options_.render.height);
+    if (pilot_->begin(options_.view, options_.viewpoint)) pilot_->frameAll(renderer_->bounds());
+    pilot_->smooth();
+    replay_ = std::make_unique<Replay>(*pilot_, *options_.script, [this](const InputEvent&, Action action) {
+      if (action == Action::frameAll) pilot_->frameAll(renderer_->bounds());
+    });
+  }
+
+  void tick(double time) {
+    if (replay_)
+      replay_->step(time);
+    else
+      browser_.tick(time);
+  }
+
+  Job scriptedJob() {
+    Job job;
+    job.view.shader = options_.view.shader;
+    job.view.viewer = pilot_->camera();
+    if (pilot_->headlight())
+      renderer_->change([this](picture::RenderSettings& s) {
+        s.headlight = *pilot_->headlight() ? xvrml::MapOptions::Headlight::on : xvrml::MapOptions::Headlight::off;
+      });
+    return job;
+  }
+
   bool watch(float fraction) {
     if (progress_) progress_->show(fraction);
     saveWanted_ |= takeSaveRequest();
@@ -209,8 +241,10 @@ class Pictures {
   xvrml::Browser& browser_;
   Problems& problems_;
   const Clock::time_point start_ = Clock::now();
-  picture::Renderer* renderer_ = nullptr;
+  std::unique_ptr<picture::Renderer> renderer_;
   std::unique_ptr<Progress> progress_;
+  std::unique_ptr<Pilot> pilot_; // of --input; null: none
+  std::unique_ptr<Replay> replay_;
   const Job* current_ = nullptr; // being rendered
   bool saveWanted_ = false;
   std::map<std::string, std::unique_ptr<VideoFile>> videos_; // by path

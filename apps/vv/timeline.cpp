@@ -28,10 +28,10 @@ Moment Timeline::operator[](size_t i) const {
 bool WorldClock::advance(double time) {
   for (; double(next_) / fps_ < time; ++next_) {
     if (interrupted()) return false;
-    browser_.tick(double(next_) / fps_);
+    tick_(double(next_) / fps_);
   }
   if (double(next_) / fps_ == time) ++next_;
-  browser_.tick(time);
+  tick_(time);
   return true;
 }
 

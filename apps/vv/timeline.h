@@ -2,6 +2,9 @@
 // at frame N is the same whether the frames before it are pictured or not. No wall clock. [main thread]
 #pragma once
 
+#include <functional>
+#include <utility>
+
 #include "options.h"
 #include "xvrml/browser.h"
 
@@ -26,12 +29,14 @@ class Timeline {
 
 class WorldClock {
  public:
-  WorldClock(xvrml::Browser& browser, double fps) : browser_(browser), fps_(fps) {}
-  // Ticks the browser up to `time`, which is not before the last one. False, and not there, after an interrupt.
+  WorldClock(xvrml::Browser& browser, double fps) : WorldClock([&browser](double time) { browser.tick(time); }, fps) {}
+  // tick: what a step is.
+  WorldClock(std::function<void(double time)> tick, double fps) : tick_(std::move(tick)), fps_(fps) {}
+  // Steps up to `time`, which is not before the last one. False, and not there, after an interrupt.
   bool advance(double time);
 
  private:
-  xvrml::Browser& browser_;
+  std::function<void(double time)> tick_;
   double fps_;
   long long next_ = 0; // step that comes next: at next_ / fps
 };

@@ -34,12 +34,12 @@ constexpr KeyInfo keys[] = {
 };
 
 constexpr MouseInfo mouse[] = {
-    {"pointer", "over a sensor or an anchor it becomes a hand; dragging is then the sensor's"},
-    {"examine", "left drag: turn; right drag, or with Shift: move; middle drag, or with Ctrl, or wheel: nearer and farther"},
-    {"walk, fly",
-     "left drag: go and turn, faster the farther from where it was pressed; right drag, or with Shift: sideways, up and "
-     "down; middle drag, or with Ctrl: look around; wheel: a step"},
-    {"drop", "a file: opens it"},
+    {"pointer", "over a sensor or an anchor it is a hand; dragging is then the sensor's"},
+    {"left drag", "examine: turn; walk, fly: go and turn, faster the farther from where it was pressed"},
+    {"right or Shift drag", "examine: move aside; walk, fly: sideways, up and down"},
+    {"middle or Ctrl drag", "examine: nearer and farther; walk, fly: look around"},
+    {"wheel", "nearer and farther"},
+    {"drop of a file", "opens it"},
 };
 
 bool matches(std::string_view one, const InputEvent& event) {
@@ -69,8 +69,8 @@ Action actionOf(const InputEvent& event) {
 std::string listKeys() {
   std::string out;
   for (const KeyInfo& info : keys) {
-    std::string names(info.keys);
-    for (size_t blank; (blank = names.find(' ')) != names.npos;) names.replace(blank, 1, ", ");
+    std::string names;
+    for (const char* at = info.keys; *at; ++at) names += *at == ' ' ? std::string(", ") : std::string(1, *at);
     out += fmt::format("{:<24}{}\n", names, info.text);
   }
   for (const MouseInfo& info : mouse) out += fmt::format("{:<24}{}\n", info.what, info.text);

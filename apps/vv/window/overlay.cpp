@@ -61,7 +61,8 @@ std::vector<std::string> overlayLines(const SessionFacts& f, bool paused, Overla
 
 std::vector<std::string> helpLines() {
   std::vector<std::string> lines;
-  for (std::string_view rest : split(listKeys(), '\n'))
+  const std::string text = listKeys();
+  for (std::string_view rest : split(text, '\n'))
     if (!rest.empty()) lines.emplace_back(rest);
   return lines;
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <string_view>
 #include <utility>
 
 #include <SDL.h>
@@ -23,6 +24,17 @@ bool isTextKey(const std::string& key) { return key == "[" || key == "]" || key 
 
 void setModifiers(InputEvent& event, int modifiers) {
   event.shift = modifiers & KMOD_SHIFT, event.control = modifiers & KMOD_CTRL, event.alt = modifiers & KMOD_ALT;
+}
+
+// OpenGL without a graphics processor takes the time that the rays need, and more of it than SDL's own drawing.
+bool isEmulated(SDL_Renderer* renderer) {
+  SDL_RendererInfo info;
+  if (SDL_GetRendererInfo(renderer, &info) != 0 || !std::string_view(info.name).starts_with("opengl")) return false;
+  using GetString = const unsigned char* (*)(unsigned);
+  const auto get = reinterpret_cast<GetString>(SDL_GL_GetProcAddress("glGetString"));
+  const unsigned char* text = get ? get(0x1F01) : nullptr; // GL_RENDERER
+  const std::string_view name = text ? reinterpret_cast<const char*>(text) : "";
+  return name.find("llvmpipe") != name.npos || name.find("softpipe") != name.npos || name.find("Software") != name.npos;
 }
 
 struct Texture {
@@ -153,6 +165,10 @@ Screen::Screen(const std::string& title, int width, int height) : impl_(std::mak
                                    SDL_WINDOW_RESIZABLE | SDL_WINDOW_ALLOW_HIGHDPI);
   if (!impl_->window) fail();
   impl_->renderer = SDL_CreateRenderer(impl_->window, -1, SDL_RENDERER_ACCELERATED);
+  if (impl_->renderer && isEmulated(impl_->renderer)) {
+    SDL_DestroyRenderer(impl_->renderer);
+    impl_->renderer = nullptr;
+  }
   if (!impl_->renderer) impl_->renderer = SDL_CreateRenderer(impl_->window, -1, SDL_RENDERER_SOFTWARE);
   if (!impl_->renderer) fail();
   impl_->arrow = SDL_CreateSystemCursor(SDL_SYSTEM_CURSOR_ARROW);

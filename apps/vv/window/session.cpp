@@ -187,7 +187,7 @@ void Session::draw() {
   }
   if (state != State::idle) return;
   if (dirty)
-    start(begun_);
+    start(true); // a first picture comes early
   else if (moving_ || !refined_)
     start(false);
 }

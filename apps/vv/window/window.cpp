@@ -38,7 +38,6 @@ class Window {
         speaker_(mixer_) {
     if (!options_.cameraShader.empty())
       options_.view.shader = readShader(options_.cameraShader, "--camera-shader", RT_CAMERA, options_.render.shaderPath);
-    if (!options_.inputScript.empty()) script_ = readInputScript(options_.inputScript);
     if (!options_.recordInput.empty()) {
       record_.open(options_.recordInput, std::ios::binary | std::ios::trunc);
       if (!record_) throw Failure{exitRender, fmt::format("--record-input: cannot write {}", options_.recordInput)};
@@ -107,7 +106,7 @@ class Window {
   void open(LoadRequest request, bool keepPlace) {
     request.options = options_.load;
     const bool whole =
-        !options_.shaders.empty() || !options_.definitions.empty() || script_ || record_.is_open() || options_.strict;
+        !options_.shaders.empty() || !options_.definitions.empty() || options_.script || record_.is_open() || options_.strict;
     if (!whole) request.options.loadInlines = false; // they come after the first picture
     keepPlace_ = keepPlace && session_;
     loading_ = request.urls.empty() ? "" : request.urls[0];
@@ -143,8 +142,7 @@ class Window {
     calls.openUrl = [this](const std::vector<std::string>& urls, const std::string& base) { open({urls, base, {}}, false); };
     if (record_.is_open())
       calls.record = [this](double time, const InputEvent& event) { record_ << inputLine(time, event) << std::flush; };
-    auto fresh =
-        std::make_unique<Session>(std::move(world), options_, problems_, std::move(calls), script_ ? &*script_ : nullptr);
+    auto fresh = std::make_unique<Session>(std::move(world), options_, problems_, std::move(calls), options_.script.get());
     width_ = screen_.width(), height_ = screen_.height();
     fresh->begin(width_, height_, place, fragment);
     mixer_.set({});
@@ -274,7 +272,6 @@ class Window {
   Mixer mixer_;
   Speaker speaker_;
   WorldLoader loader_;
-  std::optional<InputScript> script_;
   std::ofstream record_;
   std::unique_ptr<PanelPainter> painter_;
   std::unique_ptr<Session> session_; // null: no world yet
