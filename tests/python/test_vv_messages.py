@@ -6,8 +6,7 @@ from conftest import HEADER, SMALL
 
 
 @pytest.mark.parametrize("arguments, word", [
-    ([], "world"),
-    (["box.wrl"], "window"),
+    (["-o", "x.png"], "world"),
     (["box.wrl", "--no-such-thing"], "--no-such-thing"),
     (["box.wrl", "--veiwpoint", "1", "-o", "x.png"], "did you mean --viewpoint?"),
     (["box.wrl", "--sise=3x3", "-o", "x.png"], "did you mean --size?"),
