@@ -42,6 +42,7 @@ PARTS = {
     "plugins/shaders/": "shader-plugin",
     "plugins/script/": "script-plugin",
     "apps/": "app",
+    "apps/vv/window/": "window",
     "apps/picture/": "picture",
     "bindings/": "binding",
     "examples/": "example",
@@ -81,7 +82,8 @@ ARROWS = {
     "shader-plugin": {"shader-sdk"},
     "script-plugin": {"script-sdk", "common"},  # what common/ says of plug-in folders holds for native: libraries, too
     "picture": PUBLIC - {"shader-sdk", "script-sdk"},
-    "app": PUBLIC - {"script-sdk"} | {"picture", "common"},  # vv --list-shaders reads the tables of plug-ins
+    "app": PUBLIC - {"script-sdk"} | {"picture", "window", "common"},  # vv --list-shaders reads the tables of plug-ins
+    "window": PUBLIC - {"shader-sdk", "script-sdk"} | {"app", "picture", "common"},
     "binding": PUBLIC - {"shader-sdk", "script-sdk"} | {"picture"},
     "example": PUBLIC,
     "common": set(),
@@ -92,7 +94,8 @@ FOREIGN = [
     (re.compile(r"embree\d/"), {"backend-local", "test"}, "Embree"),
     (re.compile(r"(sys/socket|netinet/|arpa/|netdb|zmq)"), {"backend-cluster", "script-remote", "test"}, "sockets"),
     (re.compile(r"(png|jpeglib|turbojpeg|gif_lib|ft2build|freetype|hb|hb-ft|fontconfig/.*|GL/glu)(\.h)?$"),
-     {"xvrml-geometry", "xvrml-image", "picture", "test"}, "picture and font libraries"),
+     {"xvrml-geometry", "xvrml-image", "picture", "window", "test"}, "picture and font libraries"),
+    (re.compile(r"(SDL2/.*|SDL\w*\.h)$"), {"window"}, "SDL"),
     (re.compile(r"lib(av|sw)[a-z]+/"), {"xvrml-image", "test"}, "the ffmpeg libraries"),
     (re.compile(r"(OpenEXR/|Imf)"), {"picture", "test"}, "OpenEXR"),
     (re.compile(r"(CLI/|CLI11)"), {"app", "openrt-tools", "nodegen"}, "CLI11"),
