@@ -61,6 +61,7 @@ struct Screen::Impl {
   SDL_Cursor *arrow = nullptr, *hand = nullptr;
   Texture picture;
   std::array<Texture, places> panels;
+  std::vector<uint32_t> pixels; // of the picture, working storage
   bool changed = true, isHand = false, pressed = false;
 
   ~Impl() {
@@ -209,9 +210,14 @@ double Screen::scale() const {
 bool Screen::visible() const { return !(SDL_GetWindowFlags(impl_->window) & (SDL_WINDOW_MINIMIZED | SDL_WINDOW_HIDDEN)); }
 
 void Screen::setPicture(int width, int height, const std::vector<uint8_t>& rgb) {
-  if (!impl_->picture.fit(impl_->renderer, SDL_PIXELFORMAT_RGB24, width, height)) return;
+  // The format that SDL's own renderer can scale linearly.
+  if (!impl_->picture.fit(impl_->renderer, SDL_PIXELFORMAT_XRGB8888, width, height)) return;
+  impl_->pixels.resize(rgb.size() / 3);
+  for (size_t i = 0; i < impl_->pixels.size(); ++i)
+    impl_->pixels[i] = uint32_t(rgb[3 * i]) << 16 | uint32_t(rgb[3 * i + 1]) << 8 | uint32_t(rgb[3 * i + 2]);
   SDL_SetTextureScaleMode(impl_->picture.texture, SDL_ScaleModeLinear);
-  SDL_UpdateTexture(impl_->picture.texture, nullptr, rgb.data(), width * 3);
+  SDL_SetTextureBlendMode(impl_->picture.texture, SDL_BLENDMODE_NONE);
+  SDL_UpdateTexture(impl_->picture.texture, nullptr, impl_->pixels.data(), width * 4);
   impl_->changed = true;
 }
 

@@ -54,7 +54,7 @@ Session::Session(std::unique_ptr<xvrml::World> world, const Options& options, Pr
     : options_(forWindow(options, calls, script || !options.recordInput.empty())), problems_(problems), calls_(std::move(calls)),
       browser_(startWorld(std::move(world), options_, startOf(options, script || !options.recordInput.empty()), problems)),
       pilot_(*browser_, options.time && !script ? *options.time : browser_->now(), options.view.fov),
-      renderer_(*browser_, options_.render), channels_(options.render.channels),
+      renderer_(*browser_, options_.render), channels_(options.render.channels), pacing_(options.fps),
       stepped_(script || !options.recordInput.empty()) {
   began_ = options.time ? 0 : browser_->now();
   if (options.time && !script) WorldClock(*browser_, options.fps).advance(*options.time);
@@ -180,7 +180,7 @@ void Session::draw() {
   if (width_ <= 0) return;
   const State state = renderer_.state();
   const bool dirty = !begun_ || fit_ == Fit::wanted || !equal(pilot_.camera(), shown_) || browser_->hasChanges() ||
-                     pilot_.headlight() != shownHeadlight_ || (!moving_ && (facts_.width != width_ || facts_.height != height_));
+                     pilot_.headlight() != shownHeadlight_ || (!moving_ && (frame_.width != width_ || frame_.height != height_));
   if (state == State::rendering) {
     if (dirty && !moving_ && (shownAny_ || fit_ == Fit::wanted)) renderer_.cancel();
     return;
@@ -209,12 +209,10 @@ void Session::start(bool moving) {
   if (moving && moving_ && now > lastStart_) rate_ = rate_ <= 0 ? 1 / (now - lastStart_) : .8 * rate_ + .2 / (now - lastStart_);
   if (!moving) rate_ = 0;
   lastStart_ = now;
-  frame.width = moving ? std::max(16, int(width_ * scale_)) : width_;
-  frame.height = moving ? std::max(12, int(height_ * scale_)) : height_;
-  frame.samples = moving ? 1 : options_.render.samples;
+  frame_ = pacing_.next(width_, height_, moving, options_.render.samples);
+  frame.width = frame_.width, frame.height = frame_.height, frame.samples = frame_.samples;
   moving_ = moving;
   refined_ = !moving;
-  facts_.width = frame.width, facts_.height = frame.height;
   renderer_.start(frame);
   begun_ = true;
   if (fit_ == Fit::wanted) fit_ = Fit::mapping;
@@ -222,17 +220,17 @@ void Session::start(bool moving) {
 
 bool Session::look(picture::LivePicture& picture) {
   if (!renderer_.look(picture)) return false;
+  // Half of a picture over the one before tears what moves.
+  const bool shown = picture.finished || !shownAny_ || !moving_;
   shownAny_ = true;
-  if (picture.finished && moving_ && picture.seconds > 0) {
-    const double wish = std::sqrt(1 / (options_.fps * picture.seconds));
-    scale_ = std::clamp(scale_ * std::clamp(wish, .7, 1.2), .1, 1.0);
-  }
+  if (picture.finished && picture.width == frame_.width && picture.height == frame_.height)
+    pacing_.took(frame_, picture.seconds, picture.seconds - picture.stats.renderSeconds, picture.samples);
   const RTstats stats = picture.finished ? picture.stats : facts_.stats;
   const xvrml::MapStats map = picture.finished ? picture.map : facts_.map;
   facts_.width = picture.width, facts_.height = picture.height;
   facts_.samples = picture.samples, facts_.finished = picture.finished;
   facts_.stats = stats, facts_.map = map;
-  return true;
+  return shown;
 }
 
 std::string Session::save(const std::string& path) {

@@ -12,6 +12,7 @@
 #include "options.h"
 #include "picture/live.h"
 #include "problems.h"
+#include "window/pacing.h"
 #include "window/pilot.h"
 #include "window/replay.h"
 
@@ -88,7 +89,7 @@ class Session {
   Pilot pilot_;
   picture::LiveRenderer renderer_;
   const uint32_t channels_; // of pictures that are saved
-  InputScript none_;
+  Pacing pacing_;
   std::unique_ptr<Replay> replay_;
   std::deque<InputEvent> waiting_;
 
@@ -104,7 +105,7 @@ class Session {
   xvrml::CameraSettings shown_{};
   std::optional<bool> shownHeadlight_;
   bool begun_ = false, moving_ = false, refined_ = false, shownAny_ = false;
-  double scale_ = 1; // of pictures while something moves
+  FrameSize frame_; // in flight, or the last one
   double lastStart_ = 0, rate_ = 0;
   picture::LivePicture facts_; // without the pixels
   std::string saveTo_, message_;
