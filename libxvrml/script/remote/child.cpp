@@ -94,7 +94,7 @@ int Child::start(const std::string& program, std::string& why) {
   char* arguments[] = {name.data(), parent.data(), nullptr};
   std::vector<std::string> variables;
   for (const char* variable : passedOn)
-    if (const char* value = std::getenv(variable)) variables.push_back(fmt::format("{}={}", variable, value));
+    if (const char* value = std::getenv(variable); value && *value) variables.push_back(fmt::format("{}={}", variable, value));
   std::vector<char*> environment;
   for (std::string& variable : variables) environment.push_back(variable.data());
   environment.push_back(nullptr);

@@ -38,6 +38,9 @@ ScriptProcess::ScriptProcess(const std::string& program, ProcessSettings setting
   if (!setup.finish() || !channel_->send(setup.bytes())) lost(State::died, {});
 }
 
+ScriptProcess::ScriptProcess(int socket, ProcessSettings settings, const XsHost& host)
+    : settings_(std::move(settings)), host_(host), channel_(std::make_unique<Channel>(socket)), ready_(true) {}
+
 bool ScriptProcess::ready() {
   if (ready_ || dead()) return !dead();
   const Channel::Got got = channel_->receive(message_, Clock::now() + duration(startSeconds));

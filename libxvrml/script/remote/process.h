@@ -21,6 +21,8 @@ class ScriptProcess {
  public:
   // Starts the program, does not wait for it. host: what programs call.
   ScriptProcess(const std::string& program, ProcessSettings settings, const XsHost& host);
+  // At the other end of a socket is whoever: for tests.
+  ScriptProcess(int socket, ProcessSettings settings, const XsHost& host);
 
   const ProcessSettings& settings() const { return settings_; }
   // Waits until it is ready. False: it is dead.

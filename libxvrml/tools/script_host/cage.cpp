@@ -118,7 +118,8 @@ bool bindToParent(long parent) {
 }
 
 bool closeCage(std::string& why) {
-  clearenv();
+  static char* empty[] = {nullptr}; // not clearenv(): Tcl wants a list
+  environ = empty;
   if (!limitResources(why)) return false;
   if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) return why = "no way to give up privileges", false;
   return filterCalls(why);

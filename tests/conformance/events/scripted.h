@@ -2,13 +2,15 @@
 // fixture that derives from ScriptsSomewhere run twice: Scripts in this process, and in processes of their own.
 #pragma once
 
+#include <cstdlib>
 #include <memory>
 
 #include "conformance/events/support.h"
 
 namespace xvrml {
 
-// Where the Scripts of the present test run.
+// Where the Scripts of the present test run. ctest runs the tests of languages a second time with $XVRML_TEST_ISOLATION=always.
+inline const bool everythingInProcesses = std::getenv("XVRML_TEST_ISOLATION") != nullptr;
 inline BrowserOptions::Isolation isolationOfTest = BrowserOptions::Isolation::automatic;
 
 class ScriptsSomewhere : public testing::TestWithParam<BrowserOptions::Isolation> {
@@ -20,8 +22,8 @@ inline std::string whereName(const testing::TestParamInfo<BrowserOptions::Isolat
   return info.param == BrowserOptions::Isolation::always ? "process" : "here";
 }
 #define XVRML_SCRIPTS_SOMEWHERE(fixture)                                                                                         \
-  INSTANTIATE_TEST_SUITE_P(Where, fixture,                                                                                       \
-                           testing::Values(BrowserOptions::Isolation::never, BrowserOptions::Isolation::always), whereName)
+  INSTANTIATE_TEST_SUITE_P(Where, fixture, testing::Values(BrowserOptions::Isolation::never, BrowserOptions::Isolation::always), \
+                           whereName)
 
 inline BrowserOptions scriptOptions(BrowserOptions options = {}) {
   if (options.scriptPath.empty()) options.scriptPath = XVRML_TEST_SCRIPTS;

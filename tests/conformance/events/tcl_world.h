@@ -1,4 +1,5 @@
-// tcl_world.h: a small world whose Scripts are Tcl, in this process. Tests are skipped where the engine is not built.
+// tcl_world.h: a small world whose Scripts are Tcl, in this process (see scripted.h). Tests are skipped where the engine is not
+// built.
 #pragma once
 
 #include <filesystem>
@@ -24,7 +25,8 @@ class TclWorld : public Scripted {
  private:
   static BrowserOptions with(BrowserOptions options) {
     options.scriptPath = XVRML_SCRIPTS;
-    options.scriptIsolation = BrowserOptions::Isolation::never;
+    options.scriptIsolation =
+        everythingInProcesses && !options.trustScripts ? BrowserOptions::Isolation::always : BrowserOptions::Isolation::never;
     return options;
   }
 };

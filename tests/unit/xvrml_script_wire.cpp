@@ -1,0 +1,288 @@
+// The messages between the browser and xvrml-script-host: values come out as they went in; whatever else comes from a helper ends
+// it with a message, and nothing more.
+#include <cstring>
+#include <random>
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "script/remote/host_functions.h"
+#include "script/remote/process.h"
+
+namespace xvrml {
+namespace {
+
+using namespace wire;
+
+Message messageOf(Writer& writer) {
+  EXPECT_TRUE(writer.finish());
+  Message message;
+  message.header = writer.header();
+  const std::string_view bytes = writer.bytes().substr(sizeof(Header));
+  message.bytes.assign(bytes.begin(), bytes.end());
+  return message;
+}
+
+XsValue valueOf(XsType type, uint32_t count, const void* data) {
+  XsValue value{type, count, {nullptr}};
+  value.of.data = data;
+  return value;
+}
+
+TEST(ScriptWire, EveryTypeComesOutAsItWentIn) {
+  const std::vector<float> numbers(64, 1.5f);
+  for (int type = XS_SFBOOL; type <= XS_MFVEC3F; ++type) {
+    const Element element = elementOf(XsType(type));
+    if (element.kind != Kind::plain) continue;
+    for (const uint32_t count : {0u, 1u, 3u}) {
+      const XsValue value = valueOf(XsType(type), count, numbers.data());
+      Writer writer;
+      writer.begin(Op::event, 7, 2.5);
+      writer.put(value);
+      const Message message = messageOf(writer);
+      EXPECT_EQ(message.header.script, 7u);
+      EXPECT_EQ(message.header.time, 2.5);
+      Reader reader(message);
+      const auto* out = reader.take<const XsValue*>();
+      ASSERT_TRUE(out && reader.complete()) << type;
+      EXPECT_EQ(out->type, type);
+      ASSERT_EQ(out->count, count);
+      if (count > 0) { EXPECT_EQ(std::memcmp(out->of.data, numbers.data(), count * element.bytes), 0); }
+    }
+  }
+}
+
+TEST(ScriptWire, TextsAndImagesComeOutAsTheyWentIn) {
+  std::vector<std::string> texts;
+  for (size_t length = 0; length < 20; ++length) texts.emplace_back(length, 'x');
+  texts.emplace_back("a\0b", 3);
+  std::vector<XsString> list;
+  for (const std::string& text : texts) list.push_back({text.data(), text.size()});
+  const uint8_t pixels[] = {1, 2, 3, 4, 5, 6};
+  const XsImage images[] = {{2, 1, 3, 0, pixels}, {0, 0, 0, 0, nullptr}, {5, 5, 0, 0, pixels}, {-1, 2, 9, 0, pixels}};
+  Writer writer;
+  writer.begin(Op::event);
+  writer.put(valueOf(XS_MFSTRING, uint32_t(list.size()), list.data()));
+  writer.put(valueOf(XS_SFIMAGE, 4, images));
+  const Message message = messageOf(writer);
+  Reader reader(message);
+  const auto* strings = reader.take<const XsValue*>();
+  const auto* pictures = reader.take<const XsValue*>();
+  ASSERT_TRUE(strings && pictures && reader.complete());
+  for (size_t i = 0; i < texts.size(); ++i) {
+    EXPECT_EQ(std::string(strings->of.strings[i].data, strings->of.strings[i].bytes), texts[i]);
+    EXPECT_EQ(strings->of.strings[i].data[texts[i].size()], 0);
+  }
+  EXPECT_EQ(std::memcmp(pictures->of.images[0].pixels, pixels, 6), 0);
+  EXPECT_EQ(pictures->of.images[1].pixels, nullptr);
+  EXPECT_EQ(pictures->of.images[3].width, -1); // refused by whoever takes it as a value
+}
+
+TEST(ScriptWire, WhatIsNoGoodValueGoesAcrossAsSuch) {
+  const XsString noText{nullptr, 5};
+  Writer writer;
+  writer.begin(Op::event);
+  writer.put(static_cast<const XsValue*>(nullptr));
+  writer.put(static_cast<const char*>(nullptr));
+  writer.put(noText);
+  writer.put(valueOf(XS_MFSTRING, 3, nullptr));
+  writer.put(valueOf(XsType(77), 3, &noText));
+  const Message message = messageOf(writer);
+  Reader reader(message);
+  EXPECT_EQ(reader.take<const XsValue*>(), nullptr);
+  EXPECT_EQ(reader.take<const char*>(), nullptr);
+  EXPECT_EQ(reader.take<XsString>().bytes, 5u);
+  const auto* strings = reader.take<const XsValue*>();
+  const auto* unknown = reader.take<const XsValue*>();
+  ASSERT_TRUE(strings && unknown && reader.complete());
+  EXPECT_EQ(strings->count, 3u);
+  EXPECT_EQ(strings->of.data, nullptr);
+  EXPECT_EQ(unknown->type, 77);
+  EXPECT_EQ(unknown->of.data, nullptr);
+}
+
+TEST(ScriptWire, AMessageThatIsTooLongIsNone) {
+  Writer writer;
+  writer.begin(Op::event);
+  writer.put(valueOf(XS_MFVEC3F, UINT32_MAX, &writer)); // never read
+  EXPECT_FALSE(writer.finish());
+  writer.begin(Op::event);
+  EXPECT_TRUE(writer.finish());
+}
+
+// --- A helper that is somebody else's ---
+
+// Functions of a host that look at all they are given.
+struct Looking : XsHost {
+  static uint64_t sum;
+  static void look(const char* text) { sum += text ? std::strlen(text) : 1; }
+  static void look(const XsString& text) {
+    if (!text.data) return;
+    for (uint64_t i = 0; i <= text.bytes; ++i) sum += uint8_t(text.data[i]);
+  }
+  static void look(const XsValue* value) {
+    if (!value || !value->of.data) return;
+    const Element element = elementOf(value->type);
+    for (uint32_t i = 0; i < value->count; ++i) {
+      if (element.kind == Kind::texts) {
+        look(value->of.strings[i]);
+      } else if (element.kind == Kind::images) {
+        const XsImage& image = value->of.images[i];
+        const uint64_t bytes = image.pixels ? uint64_t(image.width) * uint64_t(image.height) * uint64_t(image.components) : 0;
+        for (uint64_t k = 0; image.width > 0 && image.height > 0 && k < bytes; ++k) sum += image.pixels[k];
+      } else {
+        for (uint32_t k = 0; k < element.bytes; ++k) sum += static_cast<const uint8_t*>(value->of.data)[i * element.bytes + k];
+      }
+    }
+  }
+  Looking() : XsHost{} {
+    send = write = [](const XsHost*, XsNode, const char* n, const XsValue* v) { return look(n), look(v), XS_OK; };
+    post = [](const XsHost*, XsNode, XsNode, const char* n, const XsValue* v) { return look(n), look(v), XS_OK; };
+    read = [](const XsHost*, XsNode, XsNode, const char* n, XsValue* v) { return look(n), *v = {XS_MFINT32, 0, {}}, XS_OK; };
+    describe = [](const XsHost*, XsNode, XsNode, XsNodeInfo* i) { return i->typeName = i->defName = "x", XS_OK; };
+    field = [](const XsHost*, XsNode, XsNode, uint32_t, XsField*) { return XS_NO_FIELD; };
+    findField = [](const XsHost*, XsNode, XsNode, const char* n, XsField*) { return look(n), XS_NO_FIELD; };
+    retain = release = [](const XsHost*, XsNode, XsNode) { return XS_OK; };
+    getName = getVersion = getWorldUrl = lastError = [](const XsHost*, XsNode, XsString* s) { return *s = {"x", 1}, XS_OK; };
+    getCurrentSpeed = getCurrentFrameRate = [](const XsHost*, XsNode) { return 1.0; };
+    setDescription = [](const XsHost*, XsNode, XsString s) { return look(s), XS_OK; };
+    replaceWorld = [](const XsHost*, XsNode, uint32_t count, const XsNode* nodes) {
+      for (uint32_t i = 0; nodes && i < count; ++i) sum += nodes[i];
+      return XS_OK;
+    };
+    loadUrl = [](const XsHost*, XsNode, uint32_t n, const XsString* a, uint32_t m, const XsString* b) {
+      for (uint32_t i = 0; a && i < n; ++i) look(a[i]);
+      for (uint32_t i = 0; b && i < m; ++i) look(b[i]);
+      return XS_OK;
+    };
+    createVrmlFromUrl = [](const XsHost*, XsNode, uint32_t n, const XsString* a, XsNode, const char* in) {
+      for (uint32_t i = 0; a && i < n; ++i) look(a[i]);
+      return look(in), XS_OK;
+    };
+    createVrmlFromString = [](const XsHost*, XsNode, XsString s, XsValue* v) { return look(s), *v = {XS_MFINT32, 0, {}}, XS_OK; };
+    addRoute =
+        deleteRoute = [](const XsHost*, XsNode, XsNode, const char* a, XsNode, const char* b) { return look(a), look(b), XS_OK; };
+    log = [](const XsHost*, XsNode, int32_t, uint32_t, XsString s) { look(s); };
+  }
+};
+uint64_t Looking::sum = 0;
+
+ProcessSettings settings() { return {"x.so", "x", 1000, 0.05, 0}; }
+
+// What a call comes to if the helper says this and closes the socket.
+ScriptProcess::State callThatGets(const std::string& bytes, std::string* death = nullptr) {
+  static const Looking host;
+  int ends[2];
+  EXPECT_EQ(socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends), 0);
+  ScriptProcess process(ends[0], settings(), host);
+  EXPECT_EQ(write(ends[1], bytes.data(), bytes.size()), ssize_t(bytes.size()));
+  shutdown(ends[1], SHUT_WR);
+  Writer call;
+  call.begin(Op::tick, 1);
+  EXPECT_TRUE(process.begin(call));
+  const auto state = process.serve(1e9, 1e9, never, 0);
+  if (death) *death = process.death();
+  close(ends[1]);
+  return state;
+}
+
+std::string wireOf(Writer& writer) {
+  EXPECT_TRUE(writer.finish());
+  return std::string(writer.bytes());
+}
+
+std::vector<std::string> goodMessages() {
+  std::vector<std::string> all;
+  const XsString texts[] = {{"one", 3}, {"two", 3}};
+  const float numbers[] = {1, 2, 3, 4, 5, 6};
+  const uint8_t pixels[] = {1, 2, 3, 4};
+  const XsImage image{2, 2, 1, 0, pixels};
+  Writer w;
+  const auto function = [&](int number) {
+    w.begin(Op::host, 1);
+    w.header().op = uint16_t(int(Op::host) + number);
+    w.put(uint64_t(1));
+  };
+  for (const XsValue& value : {valueOf(XS_MFSTRING, 2, texts), valueOf(XS_MFVEC3F, 2, numbers), valueOf(XS_SFIMAGE, 1, &image)}) {
+    function(0);
+    w.put("out");
+    w.put(value);
+    all.push_back(wireOf(w));
+  }
+  function(16); // loadUrl
+  w.put(2u);
+  w.put(&texts[0]);
+  w.put(1u);
+  w.put(&texts[0]);
+  all.push_back(wireOf(w));
+  function(21); // log
+  w.put(int32_t(0));
+  w.put(1u);
+  w.put(texts[0]);
+  all.push_back(wireOf(w));
+  w.begin(Op::done, 1);
+  all.push_back(wireOf(w));
+  return all;
+}
+
+TEST(ScriptWire, AGoodHelperIsServed) {
+  std::string bytes;
+  for (const std::string& message : goodMessages()) bytes += message;
+  EXPECT_EQ(callThatGets(bytes), ScriptProcess::State::returned);
+}
+
+TEST(ScriptWire, BadMessagesEndTheHelper) {
+  std::string death;
+  Writer w;
+  const auto bad = [&] { return callThatGets(wireOf(w), &death); };
+  for (const uint16_t op : {0, 1, 7, 20, 62, 40000}) { // none, the browser's own, beyond the last
+    w.begin(Op(op), 1);
+    EXPECT_EQ(bad(), ScriptProcess::State::died) << op;
+    EXPECT_EQ(death, "broke the protocol");
+  }
+  w.begin(Op::host); // send without arguments
+  EXPECT_EQ(bad(), ScriptProcess::State::died);
+  w.begin(Op::done);
+  w.put(uint64_t(1)); // more than there is to say
+  EXPECT_EQ(bad(), ScriptProcess::State::died);
+  std::string length = goodMessages()[0];
+  length[3] = 0x7f;
+  EXPECT_EQ(callThatGets(length, &death), ScriptProcess::State::died);
+  EXPECT_EQ(death, "sent a message that is too long");
+  EXPECT_EQ(callThatGets("", &death), ScriptProcess::State::died);
+  w.begin(Op::done);
+  w.header().result = 12345;
+  EXPECT_EQ(bad(), ScriptProcess::State::returned); // as XS_FAILED
+}
+
+// Bytes of good messages, changed, left out and repeated; and bytes of nothing at all.
+TEST(ScriptWire, WhateverAHelperSaysNothingBreaks) {
+  std::mt19937 random(1);
+  const std::vector<std::string> good = goodMessages();
+  int returned = 0;
+  for (int round = 0; round < 20'000; ++round) {
+    std::string bytes;
+    for (size_t k = random() % 4 + 1; k > 0; --k) bytes += good[random() % good.size()];
+    for (size_t k = random() % 6; k > 0; --k) {
+      const size_t at = random() % bytes.size();
+      switch (random() % 5) {
+      case 0: bytes[at] = char(random()); break;
+      case 1: bytes[at] = char(1 << random() % 8 ^ bytes[at]); break;
+      case 2: bytes[at / 8 * 8] = char(random() % 64); break; // a number or a length
+      case 3: bytes.resize(at + 1); break;
+      case 4: std::memset(bytes.data() + at, round % 2 ? 0xff : 0, std::min<size_t>(8, bytes.size() - at)); break;
+      }
+    }
+    if (round % 10 == 0)
+      for (char& byte : bytes) byte = char(random());
+    const auto state = callThatGets(bytes);
+    EXPECT_NE(state, ScriptProcess::State::running);
+    returned += state == ScriptProcess::State::returned;
+  }
+  EXPECT_GT(returned, 100);
+}
+
+} // namespace
+} // namespace xvrml
