@@ -130,21 +130,21 @@ def mirrors(skin):
     case = shape("USE Chrome", mesh(points, faces, 1.2, False))
     face = "DEF Outside_Mirror " + shape(glass, mesh(plate, [tuple(range(31, -1, -1))], 0, False))
     for side in (1, -1):
-        place = (.60, .985, .935 * side)
+        place = (.36, .985, .935 * side)
         to_eye, back = unit(tuple(e - p for e, p in zip(eye, place))), unit((-1, .0, .12 * side))
         normal = unit(tuple(a + b for a, b in zip(to_eye, back)))
         turn = aim((0, 0, 0), tuple(-c for c in normal))
         result.append(at(place, ("DEF Mirror_Case " + case) if side > 0 else "USE Mirror_Case", face if side > 0 else "USE Outside_Mirror", turn=turn))
-        foot = skin.side(.66, .845)[0]
-        result.append(shape("USE Chrome", bead(curve([(foot[0], foot[1] - .01, foot[2] * side), (.64, .9, .895 * side), (.605, .955, .93 * side)], 4), .014, .012)))
-    place = (.27, 1.185, 0)
+        foot = skin.side(.44, .845)[0]
+        result.append(shape("USE Chrome", bead(curve([(foot[0], foot[1] - .01, foot[2] * side), (.41, .9, .895 * side), (.365, .955, .93 * side)], 4), .014, .012)))
+    place = (.40, 1.15, 0)
     to_eye = unit(tuple(e - p for e, p in zip(eye, place)))
     normal = unit(tuple(a + b for a, b in zip(to_eye, (-1, -.02, 0))))
     inner = [(.115 * math.copysign(abs(math.cos(p)) ** .5, math.cos(p)), .033 * math.copysign(abs(math.sin(p)) ** .5, math.sin(p)), -.0125)
              for p in (2 * math.pi * i / 32 for i in range(32))]
     result.append(at(place, shape("USE Black", oval(.125, .041, .012, 5)), "DEF Inner_Mirror " + shape(glass, mesh(inner, [tuple(range(31, -1, -1))], 0, False)),
                      turn=aim((0, 0, 0), tuple(-c for c in normal))))
-    result.append(shape("USE Black", bead([(.285, 1.185, 0), (.31, 1.24, 0), (.29, 1.30, 0)], .008, .008)))
+    result.append(shape("USE Black", bead([(.412, 1.15, 0), (.43, 1.18, 0), (.40, 1.225, 0)], .008, .008)))
     return result
 
 

@@ -49,13 +49,17 @@ def knight_head():
                 wide *= 1 - .1 * c
             depth = 1.0
             if .04 < t < .56 and c > .9:  # the mane: teeth along the crest
-                depth = 1 + .10 * (k % 2) + .05
+                depth = 1 + (.22 if k % 2 else .05)
+            if t > .82 and -.75 < c < -.35:  # the mouth
+                wide *= .9
+            if .5 < t < .72 and -.5 < c < .6:  # the cheek
+                wide *= 1.08
             ring.append((ss * wide, my + uy * cc * depth, -(mx + ux * cc * depth)))
         rows.append(ring)
     points, faces = tube(rows)
     for side in (-1, 1):
         add(points, faces, ear(side))
-        add(points, faces, ball((side * .088, .835, -.165), .024))
+        add(points, faces, ball((side * .101, .838, -.165), .026))
         add(points, faces, ball((side * .058, .655, -.352), .016))
     return mesh(points, faces, 1.1)
 
