@@ -1,0 +1,72 @@
+// errors.cpp: what goes wrong in a program, told with its line and the function; see interpreter.h.
+#include <cstdarg>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+
+#include "slots.h"
+
+namespace ecma {
+
+void logText(Interpreter& self, int severity, uint32_t line, const char* text, size_t bytes) {
+  const XsString message{text, bytes};
+  self.host->log(self.host, self.self, severity, line, message);
+}
+
+// Duktape's trace has a line "at NAME (FILE:LINE) ..." for each function; the first one of the program's own file counts.
+void reportError(Interpreter& self, const char* during) {
+  duk_context* ctx = self.ctx;
+  const duk_idx_t error = duk_get_top_index(ctx);
+  uint32_t line = 0;
+  char function[80] = "";
+  if (duk_is_error(ctx, error)) {
+    duk_get_prop_string(ctx, error, "stack");
+    const char* stack = duk_is_string(ctx, -1) ? duk_get_string(ctx, -1) : "";
+    const char* place = std::strstr(stack, " (script:");
+    if (place) {
+      line = uint32_t(std::strtoul(place + 9, nullptr, 10));
+      const char* name = place;
+      while (name > stack && name[-1] != ' ') --name;
+      const auto length = size_t(place - name);
+      if (length < sizeof function && *name != '[' && std::strncmp(name, "global ", 7) != 0) std::memcpy(function, name, length);
+    }
+    duk_pop(ctx);
+  }
+  duk_dup(ctx, error);
+  duk_safe_to_string(ctx, -1);
+  duk_push_string(ctx, *function || std::strcmp(during, "running the program") != 0 ? " (in " : "");
+  duk_push_string(ctx, *function ? function : std::strcmp(during, "running the program") != 0 ? during : "");
+  duk_push_string(ctx, *function || std::strcmp(during, "running the program") != 0 ? ")" : "");
+  duk_concat(ctx, 4);
+  const XsString text = textForHost(ctx, self, -1);
+  logText(self, 3, line, text.data, text.bytes);
+}
+
+void throwType(duk_context* ctx, const char* format, ...) {
+  va_list arguments;
+  va_start(arguments, format);
+  duk_error_va(ctx, DUK_ERR_TYPE_ERROR, format, arguments);
+  va_end(arguments);
+  __builtin_unreachable(); // Duktape has jumped
+}
+
+void throwRange(duk_context* ctx, const char* format, ...) {
+  va_list arguments;
+  va_start(arguments, format);
+  duk_error_va(ctx, DUK_ERR_RANGE_ERROR, format, arguments);
+  va_end(arguments);
+  __builtin_unreachable(); // Duktape has jumped
+}
+
+void throwHost(duk_context* ctx, Interpreter& self, XsResult result, const char* what) {
+  if (result == XS_STOPPED) {
+    self.stopped = true;
+    throwRange(ctx, "the Script is stopped");
+  }
+  XsString why{"", 0};
+  self.host->lastError(self.host, self.self, &why);
+  duk_push_lstring(ctx, why.data, why.bytes);
+  throwType(ctx, "%s: %s", what, duk_get_string(ctx, -1));
+}
+
+} // namespace ecma

@@ -1,0 +1,228 @@
+// interpreter.cpp: makes the heap of a Script, runs its program, calls its functions; see interpreter.h. Every entry is
+// protected: an error of the program, want of memory and even Duktape's giving up end in a message and XS_FAILED.
+#include "interpreter.h"
+
+#include <cstdlib>
+#include <cstring>
+#include <new>
+
+#include "slots.h"
+
+namespace ecma {
+namespace {
+
+// --- Memory: each block begins with its size ---
+
+constexpr size_t header = 16; // keeps malloc's alignment
+
+bool fits(const Interpreter& self, uint64_t more) {
+  return self.most == 0 || (more <= self.most && self.used <= self.most - more);
+}
+
+void* allocate(void* account, duk_size_t bytes) {
+  Interpreter& self = *static_cast<Interpreter*>(account);
+  if (bytes == 0 || bytes > SIZE_MAX - header || !fits(self, bytes)) return nullptr;
+  char* block = static_cast<char*>(std::malloc(bytes + header));
+  if (!block) return nullptr;
+  std::memcpy(block, &bytes, sizeof bytes);
+  self.used += bytes;
+  return block + header;
+}
+
+void release(void* account, void* memory) {
+  if (!memory) return;
+  char* block = static_cast<char*>(memory) - header;
+  duk_size_t bytes;
+  std::memcpy(&bytes, block, sizeof bytes);
+  static_cast<Interpreter*>(account)->used -= bytes;
+  std::free(block);
+}
+
+void* reallocate(void* account, void* memory, duk_size_t bytes) {
+  if (!memory) return allocate(account, bytes);
+  if (bytes == 0) return release(account, memory), nullptr;
+  Interpreter& self = *static_cast<Interpreter*>(account);
+  char* block = static_cast<char*>(memory) - header;
+  duk_size_t old;
+  std::memcpy(&old, block, sizeof old);
+  if (bytes > SIZE_MAX - header || (bytes > old && !fits(self, bytes - old))) return nullptr;
+  block = static_cast<char*>(std::realloc(block, bytes + header));
+  if (!block) return nullptr;
+  std::memcpy(block, &bytes, sizeof bytes);
+  self.used += bytes - old;
+  return block + header;
+}
+
+// Duktape cannot go on. It must not return from here; all entries have set a way out.
+void giveUp(void* account, const char* message) {
+  Interpreter& self = *static_cast<Interpreter*>(account);
+  self.dead = true;
+  logText(self, 3, 0, message ? message : "Duktape has given up", message ? std::strlen(message) : 20);
+  if (self.fatalSet) std::longjmp(self.fatal, 1);
+  for (;;) {} // never: nothing is called outside of an entry
+}
+
+// --- Protected entries ---
+
+// nargs: what the function finds on its stack; its error is told.
+bool guarded(Interpreter& self, duk_safe_call_function function, void* data, const char* during) {
+  duk_context* ctx = self.ctx;
+  if (duk_safe_call(ctx, function, data, 0, 1) == DUK_EXEC_SUCCESS) return duk_pop(ctx), true;
+  if (!self.stopped) {
+    const auto report = [](duk_context* c, void* text) -> duk_ret_t {
+      reportError(Interpreter::of(c), static_cast<const char*>(text));
+      return 0;
+    };
+    if (duk_safe_call(ctx, report, const_cast<char*>(during), 1, 1) != DUK_EXEC_SUCCESS) logText(self, 3, 0, "out of memory", 13);
+  }
+  duk_pop(ctx);
+  return false;
+}
+
+XsResult enter(Interpreter& self, duk_safe_call_function function, void* data, const char* during, bool flush) {
+  if (self.dead) return XS_FAILED;
+  ++self.call;
+  self.texts.clear();
+  if (setjmp(self.fatal)) return self.fatalSet = false, XS_FAILED;
+  self.fatalSet = true;
+  bool good = guarded(self, function, data, during);
+  if (!self.stopped && flush) good = guarded(self, flushSlots, &self, "sending events") && good;
+  self.fatalSet = false;
+  return self.stopped ? XS_STOPPED : good ? XS_OK : XS_FAILED;
+}
+
+void* makeKey(duk_context* ctx, const char* name) {
+  duk_push_string(ctx, name);
+  return keep(ctx);
+}
+
+duk_ret_t setUp(duk_context* ctx, void* data) {
+  Interpreter& self = *static_cast<Interpreter*>(data);
+  self.keySf = makeKey(ctx, DUK_HIDDEN_SYMBOL("sf"));
+  self.keyMf = makeKey(ctx, DUK_HIDDEN_SYMBOL("mf"));
+  self.keyList = makeKey(ctx, DUK_HIDDEN_SYMBOL("list"));
+  self.keyParent = makeKey(ctx, DUK_HIDDEN_SYMBOL("parent"));
+  self.keyNode = makeKey(ctx, DUK_HIDDEN_SYMBOL("node"));
+  self.keyMatrix = makeKey(ctx, DUK_HIDDEN_SYMBOL("matrix"));
+  self.keyRow = makeKey(ctx, DUK_HIDDEN_SYMBOL("row"));
+  duk_push_array(ctx);
+  self.values = keep(ctx);
+  duk_push_array(ctx);
+  self.held = keep(ctx);
+  duk_push_bare_object(ctx);
+  self.types = keep(ctx);
+  registerSf(ctx, self);
+  registerMf(ctx, self);
+  registerMatrix(ctx, self);
+  registerNodes(ctx, self);
+  registerBrowser(ctx, self);
+  registerFields(ctx, self);
+  restrictGlobals(ctx, self);
+  return 0;
+}
+
+duk_ret_t runProgram(duk_context* ctx, void* data) {
+  const XsString text = static_cast<Interpreter*>(data)->info->text;
+  const bool marked = text.bytes >= 3 && std::memcmp(text.data, "\xef\xbb\xbf", 3) == 0;
+  duk_push_lstring(ctx, text.data + (marked ? 3 : 0), text.bytes - (marked ? 3 : 0));
+  duk_push_string(ctx, "script");
+  duk_compile(ctx, 0);
+  duk_call(ctx, 0);
+  return 0;
+}
+
+struct Call {
+  Interpreter& self;
+  const char* name;
+  const XsValue* value;
+  double time;
+};
+
+duk_ret_t runCall(duk_context* ctx, void* data) {
+  const Call& call = *static_cast<Call*>(data);
+  duk_get_global_string(ctx, call.name);
+  if (!duk_is_callable(ctx, -1)) return 0;
+  if (call.value) {
+    pushValue(ctx, call.self, *call.value);
+    duk_push_number(ctx, call.time);
+  }
+  duk_call(ctx, call.value ? 2 : 0);
+  return 0;
+}
+
+} // namespace
+
+Interpreter::~Interpreter() {
+  for (const auto& [number, record] : nodes) delete record;
+}
+
+Interpreter& Interpreter::of(duk_context* ctx) {
+  duk_memory_functions functions;
+  duk_get_memory_functions(ctx, &functions);
+  return *static_cast<Interpreter*>(functions.udata);
+}
+
+void* keep(duk_context* ctx) {
+  void* pointer = duk_get_heapptr(ctx, -1);
+  duk_push_global_stash(ctx);
+  duk_get_prop_string(ctx, -1, "kept");
+  const duk_uarridx_t count = duk_get_uint_default(ctx, -1, 0);
+  duk_pop(ctx);
+  duk_dup(ctx, -2);
+  duk_put_prop_index(ctx, -2, count);
+  duk_push_uint(ctx, count + 1);
+  duk_put_prop_string(ctx, -2, "kept");
+  duk_pop_2(ctx);
+  return pointer;
+}
+
+Interpreter* createInterpreter(const XsHost* host, const XsScriptInfo* info, XsResult& result) {
+  result = XS_FAILED;
+  auto* self = new (std::nothrow) Interpreter;
+  if (!self) return nullptr;
+  self->host = host;
+  self->info = info;
+  self->self = info->self;
+  if (info->size >= offsetof(XsScriptInfo, memory) + sizeof info->memory) self->most = info->memory;
+  if (setjmp(self->fatal)) return nullptr; // the half-made heap is left alone
+  self->fatalSet = true;
+  self->ctx = duk_create_heap(allocate, reallocate, release, self, giveUp);
+  self->fatalSet = false;
+  if (!self->ctx) {
+    logText(*self, 3, 0, "no memory for an interpreter", 28);
+    delete self;
+    return nullptr;
+  }
+  result = enter(*self, setUp, self, "setting up", false);
+  if (result == XS_OK) result = enter(*self, runProgram, self, "running the program", true);
+  if (result == XS_OK) return self;
+  destroyInterpreter(self);
+  return nullptr;
+}
+
+void destroyInterpreter(Interpreter* self) {
+  if (!self->dead) {
+    self->ending = true;
+    if (setjmp(self->fatal) == 0) {
+      self->fatalSet = true;
+      duk_destroy_heap(self->ctx);
+    }
+  }
+  delete self;
+}
+
+XsResult callFunction(Interpreter& self, const char* name, const XsValue* value, double time, bool shutdown) {
+  Call call{self, name, value, time};
+  return enter(self, runCall, &call, name, !shutdown);
+}
+
+void step(Interpreter& self) {
+  constexpr uint32_t often = 256;
+  if (++self.natives >= often || self.stopped) {
+    if (!self.stopped && self.host->shouldStop(self.host, self.self, self.natives)) self.stopped = true;
+    self.natives = 0;
+    if (self.stopped) throwRange(self.ctx, "the Script is stopped");
+  }
+}
+
+} // namespace ecma
