@@ -79,7 +79,9 @@ struct LiveRenderer::Impl {
 
   std::thread thread;
 
-  Impl(xvrml::Browser& browser, const RenderSettings& settings) : given(settings), stage(browser.world(), &browser, settings) {}
+  Impl(xvrml::Browser& browser, const RenderSettings& settings) : given(settings), stage(browser.world(), &browser, settings) {
+    given.progressive = true;
+  }
 
   // --- The render thread ---
   void loop() {
@@ -153,7 +155,7 @@ struct LiveRenderer::Impl {
     stage.passOn();
     stage.settings = given;
     stage.settings.width = frame.width, stage.settings.height = frame.height;
-    stage.settings.samples = frame.samples, stage.settings.progressive = frame.samples > 1;
+    stage.settings.samples = frame.samples, stage.settings.progressive = given.progressive && frame.samples > 1;
     stage.settings.channels |= shownChannels;
     started = Clock::now();
     progress = 0;
@@ -204,6 +206,8 @@ struct LiveRenderer::Impl {
     show(finished->picture, out);
     out.seconds = finished->seconds;
     out.finished = finished->whole;
+    out.ended = true;
+    out.overhead = std::max(0.0, finished->seconds - finished->result.stats.renderSeconds);
     out.map = finished->result.map, out.stats = finished->result.stats;
     shown = finished;
     return true;

@@ -27,7 +27,9 @@ struct LivePicture {
   double covered = 0;    // part of the pixels that have samples, 0 to 1
   double samples = 0;    // taken so far, mean over the pixels
   double seconds = 0;    // since the frame was started
-  bool finished = false; // all samples are taken: map and stats hold
+  bool finished = false; // all samples are taken
+  bool ended = false;    // finished, or given up: there will not be more of it; overhead, map and stats hold
+  double overhead = 0;   // of the seconds: until light was traced, for reading the world and building structures
   xvrml::MapStats map{};
   RTstats stats{};
 };

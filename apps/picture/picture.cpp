@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <stdexcept>
 
 #include "openrt/openrt.h"
@@ -29,10 +30,44 @@ constexpr Channel table[] = {
 // The curve of IEC 61966-2-1, from linear to display values.
 float srgb(float v) { return v <= 0.0031308f ? 12.92f * v : 1.055f * std::pow(v, 1 / 2.4f) - 0.055f; }
 
+uint8_t rounded(float v) { return uint8_t(v * 255 + 0.5f); }
+
+// The curve as bytes: pictures are looked at thirty times a second. Which byte a number becomes is looked up near it and found by
+// comparing, so that it is the one that the formula gives.
+class CurveBytes {
+ public:
+  CurveBytes() {
+    for (uint32_t byte = 1; byte < 256; byte++) least_[byte] = leastOf(uint8_t(byte));
+    least_[256] = std::numeric_limits<float>::infinity();
+    for (uint32_t i = 0; i < places; i++) near_[i] = rounded(srgb(float(i) / places));
+  }
+  // 0 < v < 1
+  uint8_t of(float v) const {
+    uint32_t byte = near_[uint32_t(v * places)];
+    while (v >= least_[byte + 1]) byte++;
+    return uint8_t(byte);
+  }
+
+ private:
+  // The smallest number that becomes this byte, among floats in the order of their bits.
+  static float leastOf(uint8_t byte) {
+    uint32_t below = 0, from = std::bit_cast<uint32_t>(1.0f);
+    while (from - below > 1) {
+      const uint32_t middle = below + (from - below) / 2;
+      (rounded(srgb(std::bit_cast<float>(middle))) >= byte ? from : below) = middle;
+    }
+    return std::bit_cast<float>(from);
+  }
+  static constexpr uint32_t places = 4096;
+  float least_[257] = {};
+  uint8_t near_[places];
+};
+
 uint8_t displayByte(float v, bool linear) {
+  static const CurveBytes curve;
   if (!(v > 0)) return 0; // also NaN
   if (v >= 1) return 255;
-  return uint8_t((linear ? srgb(v) : v) * 255 + 0.5f);
+  return linear ? curve.of(v) : rounded(v);
 }
 
 const std::vector<float>& colours(const Picture& picture) {

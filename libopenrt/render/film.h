@@ -16,9 +16,8 @@ struct PixelSums { // of one pixel, samples added in their order
   double rgba[4] = {};
   float depth = 0, position[3] = {}, name = 0;
   uint32_t samples = 0;
-  double normal[3] = {}, albedo[3] = {};
-  // From here on: what errors and variances need, and what store() is told of paths from lamps.
   double first[3] = {}, delta[3] = {}, delta2[3] = {}; // sums of (x - first) and its square: no cancellation
+  double normal[3] = {}, albedo[3] = {};
   // Over the complete replicates: sums of their delta, of its square, cube and fourth power.
   double closed[3] = {}, closed2[3] = {}, closed3[3] = {}, closed4[3] = {};
   double grey[3] = {};                         // sums of (red + green + blue - first)^2, ^3 and ^4; see addTails()

@@ -22,16 +22,18 @@ constexpr uint32_t pathsInFlight = 4096;
 constexpr uint32_t pilotSeed = 0x70696c6f;
 static_assert(std::is_trivially_copyable_v<PixelSums> && std::is_standard_layout_v<PixelSums>); // kept as bytes
 // Of the sums only what the film asks for is kept from round to round: there is one for each pixel of the picture.
-size_t keptBytes(const Film& film) {
-  if (!film.errors().empty() || film.has(RT_VARIANCE)) return sizeof(PixelSums);
-  return film.has(RT_NORMAL) || film.has(RT_ALBEDO) ? offsetof(PixelSums, first) : offsetof(PixelSums, normal);
+size_t keptBytes(const Film& film, bool wantsError) {
+  if (wantsError) return sizeof(PixelSums);
+  if (film.has(RT_NORMAL) || film.has(RT_ALBEDO)) return offsetof(PixelSums, closed);
+  return film.has(RT_VARIANCE) ? offsetof(PixelSums, normal) : offsetof(PixelSums, first);
 }
 } // namespace
 
 uint32_t tileEdge(uint32_t samplesPerPixel) { return samplesPerPixel >= 16 ? 16 : samplesPerPixel >= 4 ? 32 : 64; }
 
 TileRenderer::TileRenderer(const RenderScene& scene, Film& film, std::mutex* filmLock)
-    : scene_(scene), film_(film), filmLock_(filmLock), wantsError_(wantsError(scene.frame)), keptBytes_(keptBytes(film)) {}
+    : scene_(scene), film_(film), filmLock_(filmLock), wantsError_(wantsError(scene.frame)),
+      keptBytes_(keptBytes(film, wantsError_)) {}
 
 void TileRenderer::render(const Tile& tile) {
   uint32_t samples = scene_.frame.samples;

@@ -130,6 +130,7 @@ TEST(Live, theFrameInFlightIsSeenAndEndsEarly) {
   LivePicture last;
   if (live.look(last)) {
     EXPECT_FALSE(last.finished);
+    EXPECT_TRUE(last.ended);
     EXPECT_GE(last.samples, picture.samples);
   }
   Picture all;

@@ -1,0 +1,219 @@
+// What vv's window does, without a window: frames a second while the viewer moves, the sizes that this takes, how long a change
+// of the camera takes to be seen, and what progressive refinement costs. Worlds: the arguments, or a few of examples/scenes.
+//
+//   bench_live [--size=WxH] [--fps=N] [--threads=N] [--seconds=N] [WORLD...]
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "picture/live.h"
+#include "window/pacing.h"
+
+using namespace picture;
+using Clock = std::chrono::steady_clock;
+using State = LiveRenderer::State;
+
+namespace {
+
+struct Options {
+  int width = 800, height = 600, threads = 0;
+  double fps = 30, seconds = 4;
+  std::vector<std::string> worlds;
+};
+
+double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+void nap() { std::this_thread::sleep_for(std::chrono::microseconds(500)); }
+
+Options read(int argc, char** argv) {
+  Options o;
+  for (int i = 1; i < argc; i++) {
+    const std::string a = argv[i];
+    if (std::sscanf(a.c_str(), "--size=%dx%d", &o.width, &o.height) == 2) continue;
+    if (std::sscanf(a.c_str(), "--fps=%lf", &o.fps) == 1 || std::sscanf(a.c_str(), "--seconds=%lf", &o.seconds) == 1) continue;
+    if (std::sscanf(a.c_str(), "--threads=%d", &o.threads) == 1 || a.starts_with("--benchmark_")) continue; // make bench's
+    o.worlds.push_back(a);
+  }
+  if (o.worlds.empty())
+    for (const char* name : {"board", "globe", "still_life", "headlight", "car", "chess"})
+      if (const std::string path = fmt::format("examples/scenes/{}.wrl", name); std::filesystem::exists(path))
+        o.worlds.push_back(path);
+  return o;
+}
+
+class Looking {
+ public:
+  Looking(const std::string& path, const Options& options)
+      : options_(options), browser_(xvrml::loadWorld(path)), live_(browser_, settings(options)), path_(path) {
+    first_ = Clock::now();
+    LiveFrame frame = whole(1);
+    frame.view.fit = browser_.viewpoints().empty();
+    const LivePicture picture = finish(frame);
+    firstPicture_ = picture.seconds;
+    camera_ = browser_.camera(double(options.width) / options.height);
+    if (frame.view.fit) {
+      const xvrml::Bounds b = live_.bounds();
+      const double size = std::max({b.maximum[0] - b.minimum[0], b.maximum[1] - b.minimum[1], .01});
+      for (int k = 0; k < 3; k++) camera_.matrix[12 + k] = (b.minimum[k] + b.maximum[k]) / 2 + (k == 2 ? 1.5 * size : 0);
+    }
+  }
+
+  // The viewer turns to and fro. One picture follows the other; each shows where the viewer is when it is begun.
+  void move() {
+    vv::Pacing pacing(options_.fps);
+    std::vector<double> intervals, latencies;
+    std::vector<vv::FrameSize> sizes;
+    double overhead = 0;
+    const Clock::time_point begin = Clock::now();
+    double last = 0;
+    while (secondsSince(begin) < options_.seconds) {
+      const double asked = secondsSince(begin);
+      const vv::FrameSize size = pacing.next(options_.width, options_.height, true, 64);
+      LiveFrame frame = whole(size.samples);
+      frame.width = size.width, frame.height = size.height;
+      frame.view.viewer = turned(.2 * std::sin(asked));
+      const LivePicture picture = finish(frame);
+      pacing.took(size, picture.seconds, picture.overhead, picture.samples);
+      const double now = secondsSince(begin);
+      const double frameTime = 1 / options_.fps;
+      if (now - last < frameTime) std::this_thread::sleep_for(std::chrono::duration<double>(frameTime - (now - last)));
+      if (asked > options_.seconds / 4) { // when it has settled
+        intervals.push_back(std::max(now - last, frameTime)), latencies.push_back(now - asked);
+        sizes.push_back(size);
+        overhead += picture.overhead;
+      }
+      last = secondsSince(begin);
+    }
+    if (sizes.empty()) return;
+    const vv::FrameSize typical = sizes[sizes.size() / 2];
+    fmt::print(
+        "  moving      {:5.1f} frames/s at {}x{}, {} samples; change to picture {:.0f} ms (longest {:.0f}), of these {:.1f} "
+        "ms before light is traced; {} sizes\n",
+        double(intervals.size()) / sum(intervals), typical.width, typical.height, typical.samples,
+        1000 * sum(latencies) / double(latencies.size()), 1000 * *std::max_element(latencies.begin(), latencies.end()),
+        1000 * overhead / double(sizes.size()), changes(sizes) + 1);
+  }
+
+  // How long a frame goes on that is no longer wanted.
+  void giveUp() {
+    double most = 0, all = 0;
+    constexpr int times = 10;
+    for (int i = 0; i < times; i++) {
+      live_.start(whole(256));
+      while (live_.state() == State::mapping) nap();
+      std::this_thread::sleep_for(std::chrono::milliseconds(30 + 17 * i));
+      const Clock::time_point begin = Clock::now();
+      live_.cancel();
+      while (live_.state() != State::idle) std::this_thread::sleep_for(std::chrono::microseconds(100));
+      const double took = secondsSince(begin);
+      most = std::max(most, took), all += took;
+    }
+    fmt::print("  given up    in {:.1f} ms (longest {:.1f})\n", 1000 * all / times, 1000 * most);
+  }
+
+  // The first whole picture of a still viewer, and what rounds cost.
+  void refine() {
+    LivePicture picture;
+    finish(whole(1));
+    const double one = best(1, false);
+    live_.start(whole(64));
+    const Clock::time_point begin = Clock::now();
+    double covered = 0;
+    while (live_.state() != State::idle && covered == 0) {
+      if (live_.look(picture) && picture.covered == 1) covered = secondsSince(begin);
+      nap();
+    }
+    live_.cancel();
+    while (live_.state() != State::idle) nap();
+    fmt::print("  still       all of it after {:.0f} ms; a frame of 1 sample takes {:.0f} ms\n", 1000 * covered, 1000 * one);
+  }
+
+  void rounds(int samples) {
+    double cost[2] = {1e9, 1e9};
+    for (int i = 0; i < 3; i++)
+      for (const bool progressive : {false, true}) cost[progressive] = std::min(cost[progressive], best(samples, progressive));
+    fmt::print("  {:2} samples  in one go {:.2f} s, progressive {:.2f} s ({:+.1f} %)\n", samples, cost[0], cost[1],
+               100 * (cost[1] / cost[0] - 1));
+  }
+
+  void tell() const { fmt::print("{}: first picture after {:.2f} s\n", path_, firstPicture_); }
+
+ private:
+  static RenderSettings settings(const Options& o) {
+    RenderSettings s;
+    s.width = o.width, s.height = o.height, s.threads = o.threads;
+    return s;
+  }
+  LiveFrame whole(int samples) const {
+    LiveFrame frame;
+    frame.width = options_.width, frame.height = options_.height, frame.samples = samples;
+    return frame;
+  }
+  xvrml::CameraSettings turned(double angle) const {
+    xvrml::CameraSettings c = camera_;
+    const double cosine = std::cos(angle), sine = std::sin(angle);
+    for (int k = 0; k < 3; k++) {
+      const double x = camera_.matrix[k], z = camera_.matrix[8 + k];
+      c.matrix[k] = cosine * x - sine * z, c.matrix[8 + k] = sine * x + cosine * z;
+    }
+    return c;
+  }
+  LivePicture finish(const LiveFrame& frame) {
+    LivePicture picture;
+    live_.start(frame);
+    while (live_.state() != State::idle) nap();
+    live_.look(picture);
+    if (const std::string wrong = live_.takeFailure(); !wrong.empty()) fmt::print("  {}\n", wrong);
+    return picture;
+  }
+  double best(int samples, bool progressive) {
+    live_.change([&](RenderSettings& s) { s.progressive = progressive; });
+    const double seconds = finish(whole(samples)).stats.renderSeconds;
+    live_.change([&](RenderSettings& s) { s.progressive = true; });
+    return seconds;
+  }
+  static double sum(const std::vector<double>& v) {
+    double s = 0;
+    for (const double x : v) s += x;
+    return s;
+  }
+  static int changes(const std::vector<vv::FrameSize>& sizes) {
+    int n = 0;
+    for (size_t i = 1; i < sizes.size(); i++) n += !(sizes[i] == sizes[i - 1]);
+    return n;
+  }
+
+  const Options& options_;
+  xvrml::Browser browser_;
+  LiveRenderer live_;
+  std::string path_;
+  Clock::time_point first_;
+  double firstPicture_ = 0;
+  xvrml::CameraSettings camera_;
+};
+
+} // namespace
+
+int main(int argc, char** argv) {
+  const Options options = read(argc, argv);
+  for (const std::string& world : options.worlds) {
+    try {
+      Looking looking(world, options);
+      looking.tell();
+      looking.move();
+      looking.giveUp();
+      looking.refine();
+      looking.rounds(16);
+      looking.rounds(64);
+    } catch (const std::exception& e) { fmt::print("{}: {}\n", world, e.what()); }
+    std::fflush(stdout);
+  }
+}
