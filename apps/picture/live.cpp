@@ -22,6 +22,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
+constexpr double leastBetweenLooks = 0.008; // seconds: looking takes time that light could be traced in
 constexpr uint32_t shownChannels = RT_RGBA | RT_SAMPLES;
 
 struct Wanted {
@@ -74,6 +75,7 @@ struct LiveRenderer::Impl {
   Clock::time_point started;
   std::shared_ptr<const Made> shown; // the last one that look() has given
   float progress = 0;                // of the frame in flight when it was looked at
+  Clock::time_point looked;          // when
   Picture seen;                      // working storage of look()
   LivePicture before;                // what look() has given last: size and rgb
 
@@ -215,12 +217,14 @@ struct LiveRenderer::Impl {
 
   // The frame in flight, if there is more of it.
   bool lookAhead(LivePicture& out) {
+    if (secondsSince(looked) < leastBetweenLooks) return false;
     const RTcontext context = stage.context();
     const float now = rtProgress(context);
     if (now <= progress || !stage.snapshot(seen, shownChannels)) return false;
     if (now < 1) progress = now; // 1 also before it has begun
     if (!std::any_of(seen.planes[RT_SAMPLES].begin(), seen.planes[RT_SAMPLES].end(), [](float s) { return s > 0; })) return false;
     show(seen, out);
+    looked = Clock::now();
     out.seconds = secondsSince(started);
     return true;
   }

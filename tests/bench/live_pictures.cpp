@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
+#include <ctime>
 #include <filesystem>
 #include <string>
 #include <thread>
@@ -123,7 +123,7 @@ class Looking {
   void refine() {
     LivePicture picture;
     finish(whole(1));
-    const double one = best(1, false);
+    const double one = finish(whole(1)).seconds;
     live_.start(whole(64));
     const Clock::time_point begin = Clock::now();
     double covered = 0;
@@ -137,11 +137,11 @@ class Looking {
   }
 
   void rounds(int samples) {
-    double cost[2] = {1e9, 1e9};
+    double taken[2] = {1e9, 1e9};
     for (int i = 0; i < 3; i++)
-      for (const bool progressive : {false, true}) cost[progressive] = std::min(cost[progressive], best(samples, progressive));
-    fmt::print("  {:2} samples  in one go {:.2f} s, progressive {:.2f} s ({:+.1f} %)\n", samples, cost[0], cost[1],
-               100 * (cost[1] / cost[0] - 1));
+      for (const bool progressive : {false, true}) taken[progressive] = std::min(taken[progressive], cost(samples, progressive));
+    fmt::print("  {:2} samples  in one go {:.2f} s of processor time, progressive {:.2f} s ({:+.1f} %)\n", samples, taken[0],
+               taken[1], 100 * (taken[1] / taken[0] - 1));
   }
 
   void tell() const { fmt::print("{}: first picture after {:.2f} s\n", path_, firstPicture_); }
@@ -174,9 +174,12 @@ class Looking {
     if (const std::string wrong = live_.takeFailure(); !wrong.empty()) fmt::print("  {}\n", wrong);
     return picture;
   }
-  double best(int samples, bool progressive) {
+  // Seconds of all processors together: others may be using them.
+  double cost(int samples, bool progressive) {
     live_.change([&](RenderSettings& s) { s.progressive = progressive; });
-    const double seconds = finish(whole(samples)).stats.renderSeconds;
+    const std::clock_t begin = std::clock();
+    finish(whole(samples));
+    const double seconds = double(std::clock() - begin) / CLOCKS_PER_SEC;
     live_.change([&](RenderSettings& s) { s.progressive = true; });
     return seconds;
   }
@@ -203,6 +206,7 @@ class Looking {
 } // namespace
 
 int main(int argc, char** argv) {
+  std::setvbuf(stdout, nullptr, _IOLBF, 4096);
   const Options options = read(argc, argv);
   for (const std::string& world : options.worlds) {
     try {
@@ -214,6 +218,5 @@ int main(int argc, char** argv) {
       looking.rounds(16);
       looking.rounds(64);
     } catch (const std::exception& e) { fmt::print("{}: {}\n", world, e.what()); }
-    std::fflush(stdout);
   }
 }

@@ -73,8 +73,13 @@ TEST(Pacing, sizesAreBounded) {
       f = pacing.next(w, h, true, 16);
       pacing.took(f, hopeless.seconds(f), 0, 1);
     }
-    EXPECT_EQ(f.width, std::min(w, std::max(64, (w + 7) / 8)));
-    EXPECT_EQ(f.height, std::min(h, std::max(64, (h + 7) / 8)));
+    for (const auto& [side, whole] : {std::pair{f.width, w}, {f.height, h}}) {
+      EXPECT_LE(side, whole);
+      EXPECT_GE(side, (whole + 7) / 8);
+      EXPECT_GE(side, std::min(whole, 64));
+    }
+    EXPECT_TRUE(f.width <= (w + 7) / 8 || std::min(f.width, f.height) <= 64); // no larger than it must be
+    EXPECT_NEAR(double(f.width) / f.height, double(w) / h, .02 * w / h);      // of the same shape
     EXPECT_EQ(f.samples, 1);
   }
 }

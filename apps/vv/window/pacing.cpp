@@ -16,15 +16,17 @@ constexpr double roomFor = 0.9;       // a better one would take at most this
 constexpr int patience = 4;           // that many frames in a row
 constexpr double assumedPixel = 2e-7; // before anything is known: 800x600 in a tenth of a second
 
-int side(int size, double scale) { return std::min(size, std::max({int(std::lround(size * scale)), (size + 7) / 8, 64})); }
+constexpr double leastSide = 64; // pixels
 
 } // namespace
 
 Pacing::Pacing(double framesPerSecond) : budget_(fill / std::clamp(framesPerSecond, 0.1, 1000.0)) {}
 
 FrameSize Pacing::at(int step, int width, int height) const {
-  const double scale = step < 0 ? std::exp2(step / 4.0) : 1;
-  return {side(width, scale), side(height, scale), step > 0 ? 1 << step : 1};
+  if (step >= 0) return {width, height, 1 << step};
+  // One scale for both sides: the picture keeps its shape.
+  const double scale = std::min(1.0, std::max(std::exp2(step / 4.0), leastSide / std::min(width, height)));
+  return {int(std::ceil(width * scale)), int(std::ceil(height * scale)), 1};
 }
 
 double Pacing::predicted(const FrameSize& f) const {
