@@ -21,7 +21,7 @@ class Child {
   Child& operator=(const Child&) = delete;
 
   // Starts the program; its end of the socket pair is file descriptor 3, all others but the standard ones are closed, and these
-  // lead nowhere. It ends with the thread that calls. Returns the own end, or -1 and why.
+  // lead nowhere. It ends with this process. Returns the own end, or -1 and why.
   int start(const std::string& program, std::string& why);
   void limitMemory(uint64_t bytes); // of address space
   void kill() noexcept;

@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <cstring>
 
-#include <fcntl.h>
+#include <poll.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -112,8 +112,20 @@ bool filterCalls(std::string&) { return true; }
 
 } // namespace
 
-bool bindToParent(long parent) {
-  prctl(PR_SET_PDEATHSIG, SIGKILL);
+// The kernel tells the end of the thread that started this process. As long as the other end of the socket is open, others go on.
+bool bindToParent(long parent, int socket) {
+  static int other;
+  other = socket;
+  struct sigaction action {};
+  action.sa_flags = SA_RESTART;
+  action.sa_handler = [](int) {
+    const int saved = errno;
+    pollfd end{other, 0, 0};
+    if (poll(&end, 1, 0) > 0) _exit(0);
+    errno = saved;
+  };
+  sigaction(SIGUSR2, &action, nullptr);
+  prctl(PR_SET_PDEATHSIG, SIGUSR2);
   return getppid() == parent && chdir("/") == 0;
 }
 

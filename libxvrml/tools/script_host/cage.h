@@ -6,8 +6,8 @@
 
 namespace xvrml {
 
-// First of all: the process ends with its parent; false if that has gone already.
-bool bindToParent(long parent);
+// First of all: the process ends with its parent, at the other end of the socket; false if that has gone already.
+bool bindToParent(long parent, int socket);
 // From here on there are no files, sockets, threads or processes, and no way back. False, and why.
 bool closeCage(std::string& why);
 // Bytes of address space in use; 0 if it cannot be limited, as with the sanitizers, which reserve terabytes.

@@ -142,7 +142,7 @@ int main(int argc, char** argv) {
     std::fputs("xvrml-script-host runs the Scripts of worlds for the XVRML library, which starts it.\n", stderr);
     return 2;
   }
-  if (!xvrml::bindToParent(std::atol(argv[1]))) return 0;
+  if (!xvrml::bindToParent(std::atol(argv[1]), xvrml::socketNumber)) return 0;
   {
     xvrml::wire::Channel channel(xvrml::socketNumber);
     xvrml::serve(channel);

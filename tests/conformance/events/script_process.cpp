@@ -2,6 +2,8 @@
 // it tries. Programs are those of tests/script/hostile_engine.c.
 #include <csignal>
 #include <filesystem>
+#include <fstream>
+#include <thread>
 
 #include <sys/wait.h>
 #include <unistd.h>
@@ -349,6 +351,42 @@ TEST_F(ScriptProcess, ChildrenOfTheProgramAreLeftAlone) {
   int status = 0;
   EXPECT_EQ(waitpid(child, &status, 0), child);
   EXPECT_EQ(WEXITSTATUS(status), 7);
+}
+
+// A browser may be handed from thread to thread.
+TEST_F(ScriptProcess, AProcessOutlivesTheThreadThatStartedIt) {
+  std::unique_ptr<Hostile> r;
+  std::thread([&] { r = std::make_unique<Hostile>("go: process out"); }).join();
+  const pid_t before = r->process();
+  usleep(20'000);
+  EXPECT_EQ(r->process(), before);
+  EXPECT_EQ(r->messages(), Log{});
+}
+
+bool runs(pid_t process) {
+  std::ifstream file(fmt::format("/proc/{}/stat", process));
+  std::string number, name, state;
+  return file >> number >> name >> state && state != "Z";
+}
+
+TEST_F(ScriptProcess, ProcessesEndWithTheProgram) {
+  int pipes[2];
+  ASSERT_EQ(pipe(pipes), 0);
+  const pid_t child = fork();
+  if (child == 0) {
+    Hostile r("go: process out", limits(0.01, 600));
+    const pid_t process = r.process();
+    r.set("S", "url", MFString{"hostile:go: spin"}); // in the same process
+    r.set("S", "go", true);
+    if (write(pipes[1], &process, sizeof process) < 0) _exit(1);
+    raise(SIGKILL);
+  }
+  pid_t process = 0;
+  ASSERT_EQ(read(pipes[0], &process, sizeof process), ssize_t(sizeof process));
+  waitpid(child, nullptr, 0);
+  for (int i = 0; i < 1000 && runs(process); ++i) usleep(5000);
+  EXPECT_FALSE(runs(process));
+  close(pipes[0]), close(pipes[1]);
 }
 
 // A program that waits for whatever child of it ends takes the helpers' ends away.
