@@ -214,13 +214,12 @@ std::string SequenceStats::json(const Options& options, const std::string& comma
 }
 
 std::string explainWorld(const Options& options, const RTstats& stats, const std::vector<xvrml::ExplainedObject>& objects) {
-  uint64_t triangles = 0, bytes = 0, instances = 0, expanded = 0, shapes = 0;
+  uint64_t triangles = 0, bytes = 0, instances = 0, shapes = 0;
   for (const xvrml::ExplainedObject& o : objects) {
     triangles += o.triangles;
     bytes += o.bytes;
     instances += o.instances;
     shapes += o.shapes;
-    expanded += o.triangles * std::max<uint64_t>(o.instances, 1);
   }
   if (options.json) {
     Json list = Json::array();
@@ -239,7 +238,7 @@ std::string explainWorld(const Options& options, const RTstats& stats, const std
                    {"triangles", triangles},
                    {"bytes", bytes},
                    {"instances", instances},
-                   {"instanced_triangles", expanded}}}});
+                   {"instanced_triangles", stats.triangles}}}});
   }
   std::string text = fmt::format("transport {}: {}\n  {}\n", picture::transportName(stats.transport), stats.transportReason,
                                  transportClaim(stats.transport, options.render));
@@ -248,7 +247,7 @@ std::string explainWorld(const Options& options, const RTstats& stats, const std
     text += fmt::format("{:>10} {:>8} {:>12} {:>9}  {}: {}\n", o.triangles, o.shapes, o.bytes, o.instances, oneLine(o.name),
                         oneLine(o.reason));
   return text + fmt::format("{:>10} {:>8} {:>12} {:>9}  {} objects, {} triangles with all instances\n", triangles, shapes, bytes,
-                            instances, objects.size(), expanded);
+                            instances, objects.size(), stats.triangles);
 }
 
 namespace {

@@ -258,6 +258,13 @@ def test_explain_tells_objects_and_reasons(moving):
     assert len(table) == len(told["objects"]) + 3 and told["objects"][0]["reason"] in table[1]
 
 
+def test_explain_counts_instances_in_instances(vv):
+    vv.write("nested.wrl", HEADER + """
+        DEF Outer ORTInstance { children DEF Inner ORTInstance { children Shape { geometry Box { } } } }
+        Transform { translation 3 0 0 children [ USE Inner, Transform { translation 3 0 0 children USE Outer } ] }""")
+    assert json.loads(vv("nested.wrl", "--explain", "--json").text)["totals"]["instanced_triangles"] == 3 * 12
+
+
 # --watch ---------------------------------------------------------------------------------------------------------------
 
 

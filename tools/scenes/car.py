@@ -75,7 +75,7 @@ def car():
         "# A coupe in a studio. Written by tools/make_scenes.py.",
         'WorldInfo { title "Car" info [ "part of OpenRT\'s examples" ] }',
         'NavigationInfo { type "EXAMINE" headlight FALSE }',
-        viewpoint((5.3, 1.35, 4.1), (.12, .56, .12), .44, "DEF Front Viewpoint", 'description "Front" '),
+        viewpoint((5.6, 1.4, 4.5), (.42, .50, -.06), .475, "DEF Front Viewpoint", 'description "Front" '),
         viewpoint((-5.2, 1.75, 4.6), (0, .55, 0), .5, "DEF Rear Viewpoint", 'description "Rear" '),
         viewpoint((.05, .62, 7.2), (.05, .60, 0), .5, "DEF Side Viewpoint", 'description "Side" '),
         viewpoint((.20, 1.225, .44), (.40, 1.15, 0), .5, "DEF Mirrors Viewpoint", 'description "Mirrors in each other" '),

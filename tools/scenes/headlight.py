@@ -154,7 +154,7 @@ def headlight_studio():
         "# A headlamp on a photographer's table, alight. Written by tools/make_scenes.py.",
         'WorldInfo { title "Headlight in the studio" info [ "part of OpenRT\'s examples" ] }',
         'NavigationInfo { type "EXAMINE" headlight FALSE }',
-        viewpoint((24, 9, 42), (3.5, -.6, 4), .5, "DEF Front Viewpoint", 'description "Front" '),
+        viewpoint((24, 9, 42), (2.2, -1.2, 4.5), .52, "DEF Front Viewpoint", 'description "Front" '),
         viewpoint((9, 3.5, 24), (.2, 0, 3), .5, "DEF Close Viewpoint", 'description "The lens" '),
         viewpoint((60, 40, 30), (10, 0, 20), .9, "DEF Beam Viewpoint", 'description "The beam" '),
         "Background { skyColor [ .8 .84 .9, .62 .64 .68, .45 .46 .48 ] skyAngle [ .7, 1.57 ] groundColor [ .1 .1 .11, .4 .41 .42 ] groundAngle 1.57 }",
