@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "describe.h"
+#include "engine_list.h"
 #include "messages.h"
 #include "picture/atomic_file.h"
 #include "pictures.h"
@@ -33,6 +34,7 @@ class Headless {
 
   int run() {
     if (options_.listShaders) return writeOut(listShaders(options_.render.shaderPath, options_.json)), exitDone;
+    if (options_.listEngines) return writeOut(listEngines(options_.running.scriptPath, options_.json)), exitDone;
     if (options_.listNodes && options_.input.empty()) return writeOut(listNodes(nullptr, options_.json)), exitDone;
     checkOutputs(options_);
     browser_ = startWorld(readWorld(options_.input, options_.load), options_, 0, problems_);

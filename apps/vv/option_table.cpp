@@ -219,6 +219,9 @@ const OptionInfo table[] = {
      [](Options& o, const std::string&) { o.listViewpoints = true; }},
     {"--list-shaders", "", "Inspect", "List the classes of all shader plug-ins with their parameters.",
      [](Options& o, const std::string&) { o.listShaders = true; }},
+    {"--list-engines", "", "Inspect",
+     "List the script engines: what they serve, whether they need --trust, the library they come from.",
+     [](Options& o, const std::string&) { o.listEngines = true; }},
     {"--list-keys", "", "Inspect", "List what keys and mouse do in the window.",
      [](Options& o, const std::string&) { o.listKeys = true; }},
     {"--explain", "", "Inspect",
@@ -269,12 +272,14 @@ const OptionInfo table[] = {
        notEmpty(v, "a folder");
        o.render.shaderPath = v;
      }},
-    {"--trust", "", "Trust", "Scripts may use engines whose programs can do whatever you can.",
+    {"--trust", "", "Trust",
+     "Scripts may use engines whose programs can do whatever you can (native:, python:, Tk windows; --list-engines says which).",
      [](Options& o, const std::string&) { o.running.trustScripts = true; }},
     {"--allow-net", "", "Trust", "Scripts may use the network, as far as their engine can.",
      [](Options& o, const std::string&) { o.running.allowNetwork = true; }},
     {"--script-path", "DIR[:DIR...]", "Trust",
-     "Folders where script engines are looked up, before $XVRML_SCRIPT_PATH and the installed ones.",
+     "Folders where script engines are looked up, before $XVRML_SCRIPT_PATH and the installed ones; none that others may write "
+     "to.",
      [](Options& o, const std::string& v) {
        notEmpty(v, "a folder");
        o.running.scriptPath = v;

@@ -68,13 +68,16 @@ void checkTogether(Options& options) {
   if (options.quiet && options.verbose) throw UsageError("only one of --quiet and --verbose can be used");
   int toStandardOutput = (options.stats == "-") + (options.write == "-");
   for (const Output& output : options.outputs) toStandardOutput += output.path == "-";
-  toStandardOutput += options.explain || options.info || options.listNodes || options.listViewpoints || options.listShaders;
+  toStandardOutput += options.explain || options.info || options.listNodes || options.listViewpoints || options.listShaders ||
+                      options.listEngines;
   if (toStandardOutput > 1) throw UsageError("only one thing can go to standard output");
-  const int inspections = options.info + options.listNodes + options.listViewpoints + options.listShaders + options.explain;
+  const int inspections =
+      options.info + options.listNodes + options.listViewpoints + options.listShaders + options.listEngines + options.explain;
   if (options.json && inspections == 0)
-    throw UsageError("--json goes with --info, --explain, --list-nodes, --list-viewpoints or --list-shaders");
+    throw UsageError("--json goes with --info, --explain, --list-nodes, --list-viewpoints, --list-shaders or --list-engines");
   if (inspections > 1)
-    throw UsageError("only one of --info, --explain, --list-nodes, --list-viewpoints and --list-shaders can be used");
+    throw UsageError(
+        "only one of --info, --explain, --list-nodes, --list-viewpoints, --list-shaders and --list-engines can be used");
   checkSequence(options);
   if (options.stats.size() && !options.makesPictures()) throw UsageError("--stats goes with -o");
   if (options.render.record.size() && !options.makesPictures()) throw UsageError("--record goes with -o");
@@ -99,7 +102,7 @@ void checkTogether(Options& options) {
   if (!options.inputScript.empty() && (options.audit || options.turntable || options.allViewpoints()))
     throw UsageError("--input: not with --audit, --turntable or --viewpoint all");
   const bool needsWorld = !options.opensWindow() && !options.listNodes && !options.listKeys && !options.listShaders &&
-                          !options.help && !options.version;
+                          !options.listEngines && !options.help && !options.version;
   if (needsWorld && options.input.empty())
     throw UsageError("a world (a .wrl file, or - for standard input) was expected; vv --help tells more");
 }

@@ -37,7 +37,8 @@ struct Options {
   std::string cameraShader;             // Class:param=value
   std::string viewpoint;                // as asked for: a name, a number or "all"
   bool check = false, strict = false;
-  bool info = false, listNodes = false, listViewpoints = false, listShaders = false, explain = false, json = false;
+  bool info = false, listNodes = false, listViewpoints = false, listShaders = false, listEngines = false, explain = false,
+       json = false;
   bool watch = false;
   std::string inputScript, recordInput;      // files of what a user does; empty: none
   std::shared_ptr<const InputScript> script; // what inputScript holds
@@ -54,8 +55,8 @@ struct Options {
   bool allViewpoints() const { return viewpoint == "all"; }
   bool makesPictures() const { return !outputs.empty() || !compare.empty() || audit > 0; }
   bool opensWindow() const {
-    return !makesPictures() && !check && !info && !listNodes && !listViewpoints && !listShaders && !listKeys && !explain &&
-           write.empty();
+    return !makesPictures() && !check && !info && !listNodes && !listViewpoints && !listShaders && !listEngines && !listKeys &&
+           !explain && write.empty();
   }
   bool isSequence() const { return frames || turntable > 0; }
 };

@@ -81,6 +81,14 @@ const XsEngine* ScriptEngines::find(Names names, std::string_view wanted, std::s
   return known();
 }
 
+std::vector<const XsEngine*> ScriptEngines::all() {
+  loadAll();
+  std::vector<const XsEngine*> list;
+  for (const auto* engines : loaded_)
+    for (const XsEngine& engine : *engines) list.push_back(&engine);
+  return list;
+}
+
 std::string libraryOf(const XsEngine& engine) {
   Libraries& all = libraries();
   const std::scoped_lock lock(all.mutex);

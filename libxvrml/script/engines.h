@@ -22,6 +22,9 @@ class ScriptEngines {
   const XsEngine* byMimeType(std::string_view type);
   const XsEngine* bySuffix(std::string_view suffix);
 
+  // All engines of all folders, in the order in which they are looked at.
+  std::vector<const XsEngine*> all();
+
   // Why libraries were refused since the last call, each once.
   std::vector<std::string> takeRefusals() { return std::exchange(refusals_, {}); }
   std::string searched() const; // the folders, for messages

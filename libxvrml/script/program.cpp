@@ -38,15 +38,17 @@ void append(std::string& reasons, std::string_view reason) {
 
 bool ProgramFinder::usable(const XsEngine* engine, const std::string& protocol) {
   if (!engine) {
-    missing_.emplace_back(protocol,
-                          fmt::format("no script engine for '{}' is installed (looked in: {}); Scripts of this protocol "
-                                      "stay silent",
-                                      protocol, engines_.searched()));
+    std::string found;
+    for (const XsEngine* one : engines_.all()) found += (found.empty() ? "" : ", ") + std::string(one->name);
+    missing_.emplace_back(
+        protocol, fmt::format("no script engine for '{}' is installed (looked in: {}; found: {}); Scripts of this protocol "
+                              "stay silent",
+                              protocol, engines_.searched(), found.empty() ? "none" : found));
     return false;
   }
   if ((engine->flags & XS_NEEDS_TRUST) && !trusted_) {
     missing_.emplace_back(protocol, fmt::format("'{}' is run by engine {}, whose programs can do whatever the user can: only in "
-                                                "worlds that are trusted; Scripts of this protocol stay silent",
+                                                "worlds that are trusted (vv --trust); Scripts of this protocol stay silent",
                                                 protocol, engine->name));
     return false;
   }

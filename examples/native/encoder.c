@@ -1,0 +1,50 @@
+/* encoder.c: the driver of a rotary encoder, as a C library that knows nothing of VRML: open, read, close. There is no encoder
+ * here: a motor is simulated that runs up, and hunts a little. gauge.wrl draws it.
+ *
+ *   cc -std=c99 -shared -fPIC encoder.c -o libencoder.so -lm
+ *   XVRML_NATIVE_PATH=$PWD vv gauge.wrl --trust --time 2 -o gauge.png
+ */
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+static int32_t stepsOfTurn; /* 0: closed */
+static int32_t lastCount;
+static double lastTime;
+
+/* What the shaft of the real machine would do: turns after `time` seconds. */
+static double shaft(double time) { return 0.75 * (time - (1 - exp(-time))) + 0.02 * sin(11 * time); }
+
+/* device: "simulated:..." is the only one that there is; steps: of one turn. */
+int encoder_open(const char* device, int32_t steps) {
+  if (strncmp(device, "simulated:", 10) != 0 || steps < 1) return 0;
+  stepsOfTurn = steps;
+  lastCount = INT32_MIN;
+  lastTime = 0;
+  return 1;
+}
+
+/* The needle's rotation (axis and angle) and the turns per second. 1 if the encoder has moved by a step since it was read last.
+ */
+int encoder_read(double time, float rotation[4], float* speed) {
+  if (!stepsOfTurn) return 0;
+  const double turns = shaft(time);
+  const int32_t count = (int32_t)floor(turns * stepsOfTurn);
+  if (count == lastCount) return 0;
+  rotation[0] = rotation[1] = 0;
+  rotation[2] = -1; /* clockwise, seen from the front */
+  rotation[3] = (float)(6.283185307179586 * count / stepsOfTurn);
+  *speed = time > lastTime && lastCount != INT32_MIN ? (float)((count - lastCount) / (stepsOfTurn * (time - lastTime))) : 0;
+  lastCount = count;
+  lastTime = time;
+  return 1;
+}
+
+void encoder_close(void) { stepsOfTurn = 0; }
+
+/* Slow is blue, `limit` turns per second are red. */
+void heat(float speed, float limit, float rgb[3]) {
+  float t = fabsf(speed) / limit;
+  if (t > 1) t = 1;
+  rgb[0] = t, rgb[1] = 0.25f * (1 - t), rgb[2] = 1 - t;
+}

@@ -1,0 +1,261 @@
+/* formula.c: a script engine for a language of one kind of statement, NAME = EXPRESSION: a template for engines of your own
+ * (docs/script-engines.md). Scheme "formula:", files "*.formula".
+ *
+ *   DEF Wave Script {
+ *     eventIn SFTime time  field SFFloat height 2  eventOut SFFloat y
+ *     url "formula: y = height * sin(3 * time)"
+ *   }
+ *
+ * Names are the Script's fields and events of the types SFBool, SFInt32, SFFloat and SFTime, and those of functions. Whenever
+ * events have come, all statements are run in their order. See xvrml/xscript.h; everything is called on the browser's thread.
+ */
+#include <ctype.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <xvrml/xscript.h>
+
+enum { mostDepth = 200 }; /* of parentheses: a program is somebody else's */
+
+/* --- The interpreter of a Script: what `create` makes and `destroy` frees --- */
+
+typedef struct Formula {
+  const XsHost* host;       /* both are good until destroy */
+  const XsScriptInfo* info; /* the program, and what the Script declares */
+  int due;                  /* events have come */
+  const char* at;           /* while a statement is read: the next character, */
+  const char* end;          /* the end of the program, */
+  uint32_t line;            /* from 1, */
+  uint32_t depth;           /* and how deep in parentheses it is */
+  uint64_t steps;           /* operations since the host was asked last */
+  double values[];          /* of info->fields, the last ones */
+} Formula;
+
+/* --- Messages: the host adds the name of the file and counts the line from where the program stands in it --- */
+
+static XsResult fail(Formula* f, const char* what, const char* name, size_t length) {
+  char text[200];
+  const int shown = length < 60 ? (int)length : 60;
+  const int bytes = snprintf(text, sizeof text, "%s%.*s", what, shown, name);
+  const XsString message = {text, (uint64_t)bytes};
+  f->host->log(f->host, f->info->self, 3, f->line, message);
+  return XS_FAILED;
+}
+
+/* --- Values: plain arrays of C, here of one number --- */
+
+static double numberOf(const XsValue* value) {
+  switch (value->type) {
+  case XS_SFBOOL:
+  case XS_SFINT32: return value->of.ints[0];
+  case XS_SFFLOAT: return value->of.floats[0];
+  case XS_SFTIME: return value->of.doubles[0];
+  default: return 0;
+  }
+}
+
+/* Sends it, or keeps it in a field. The host refuses what is no good value (NaN), and says why. */
+static XsResult give(Formula* f, const XsField* field, double number) {
+  const XsHost* host = f->host;
+  const int isInt = number > -2147483649.0 && number < 2147483648.0;
+  const int32_t whole = field->type == XS_SFBOOL ? number != 0 : isInt ? (int32_t)number : 0;
+  const float single = (float)number;
+  XsValue value = {field->type, 1, {NULL}};
+  XsString why = {"", 0};
+  if (field->type == XS_SFFLOAT)
+    value.of.floats = &single;
+  else if (field->type == XS_SFTIME)
+    value.of.doubles = &number;
+  else
+    value.of.ints = &whole;
+  const XsResult result = (field->access == XS_EVENT_OUT ? host->send : host->write)(host, f->info->self, field->name, &value);
+  if (result == XS_OK || result == XS_STOPPED) return result;
+  host->lastError(host, f->info->self, &why);
+  return fail(f, "", why.data, why.bytes);
+}
+
+/* --- The language: a parser that computes while it reads; with `run` 0 it only reads, which `create` does to find errors --- */
+
+static const struct {
+  const char* name;
+  double (*call)(double);
+} functions[] = {{"sin", sin},     {"cos", cos},     {"tan", tan}, {"sqrt", sqrt}, {"abs", fabs},
+                 {"floor", floor}, {"round", round}, {"exp", exp}, {"log", log}};
+
+static void blanks(Formula* f) { /* of a line: its end ends a statement */
+  while (f->at < f->end && (*f->at == ' ' || *f->at == '\t' || *f->at == '\r')) f->at++;
+}
+static int take(Formula* f, char c) {
+  blanks(f);
+  if (f->at >= f->end || *f->at != c) return 0;
+  f->at++;
+  return 1;
+}
+static size_t name(Formula* f, const char** begin) {
+  blanks(f);
+  *begin = f->at;
+  while (f->at < f->end && (isalnum((unsigned char)*f->at) || *f->at == '_')) f->at++;
+  return (size_t)(f->at - *begin);
+}
+static int is(const char* known, const char* text, size_t length) {
+  return strlen(known) == length && memcmp(known, text, length) == 0;
+}
+static const XsField* fieldNamed(Formula* f, const char* text, size_t length) {
+  for (uint32_t i = 0; i < f->info->fieldCount; i++)
+    if (is(f->info->fields[i].name, text, length)) return &f->info->fields[i];
+  return NULL;
+}
+
+static XsResult sum(Formula* f, double* result);
+
+static XsResult factor(Formula* f, double* result) {
+  const char* word;
+  size_t length;
+  XsResult answer;
+  f->steps++;
+  blanks(f);
+  if (f->at < f->end &&
+      (isdigit((unsigned char)*f->at) || *f->at == '.')) { /* the host's texts end with a zero byte: strtod stops */
+    char* rest;
+    *result = strtod(f->at, &rest);
+    if (rest == f->at) return fail(f, "a number was expected", "", 0);
+    f->at = rest;
+    return XS_OK;
+  }
+  if (++f->depth > mostDepth) return fail(f, "too many parentheses within one another", "", 0);
+  if (take(f, '-')) {
+    answer = factor(f, result);
+    *result = -*result;
+  } else if (take(f, '(')) {
+    answer = sum(f, result);
+    if (answer == XS_OK && !take(f, ')')) answer = fail(f, "')' was expected", "", 0);
+  } else if ((length = name(f, &word)) == 0) {
+    answer = fail(f, "a number, a name or '(' was expected", "", 0);
+  } else if (take(f, '(')) {
+    size_t i = 0;
+    const size_t count = sizeof functions / sizeof *functions;
+    while (i < count && !is(functions[i].name, word, length)) i++;
+    answer = i < count ? sum(f, result) : fail(f, "there is no function ", word, length);
+    if (answer == XS_OK && !take(f, ')')) answer = fail(f, "')' was expected", "", 0);
+    if (answer == XS_OK) *result = functions[i].call(*result);
+  } else {
+    const XsField* field = fieldNamed(f, word, length);
+    answer = field ? XS_OK : fail(f, "the Script has no field or event ", word, length);
+    if (field) *result = f->values[field - f->info->fields];
+  }
+  f->depth--;
+  return answer;
+}
+
+static XsResult product(Formula* f, double* result) {
+  XsResult answer = factor(f, result);
+  while (answer == XS_OK) {
+    double right;
+    const int times = take(f, '*');
+    if (!times && !take(f, '/')) break;
+    if ((answer = factor(f, &right)) == XS_OK) *result = times ? *result * right : *result / right;
+  }
+  return answer;
+}
+
+static XsResult sum(Formula* f, double* result) {
+  XsResult answer = product(f, result);
+  while (answer == XS_OK) {
+    double right;
+    const int plus = take(f, '+');
+    if (!plus && !take(f, '-')) break;
+    if ((answer = product(f, &right)) == XS_OK) *result = plus ? *result + right : *result - right;
+  }
+  return answer;
+}
+
+static XsResult statement(Formula* f, int run) {
+  const char* word;
+  double result = 0;
+  const size_t length = name(f, &word);
+  const XsField* field = fieldNamed(f, word, length);
+  if (!field || field->access == XS_EVENT_IN) return fail(f, "no field or eventOut of the Script: ", word, length);
+  if (field->type != XS_SFBOOL && field->type != XS_SFINT32 && field->type != XS_SFFLOAT && field->type != XS_SFTIME)
+    return fail(f, "not of type SFBool, SFInt32, SFFloat or SFTime: ", word, length);
+  if (!take(f, '=')) return fail(f, "'=' was expected behind ", word, length);
+  const XsResult answer = sum(f, &result);
+  if (answer != XS_OK) return answer;
+  blanks(f);
+  if (f->at < f->end && *f->at != '\n') return fail(f, "unexpected: ", f->at, 1);
+  if (!run) return XS_OK;
+  f->values[field - f->info->fields] = result;
+  return give(f, field, result);
+}
+
+static XsResult program(Formula* f, int run) {
+  XsResult answer = XS_OK;
+  f->at = f->info->text.data;
+  f->end = f->at + f->info->text.bytes;
+  for (f->line = 1; answer == XS_OK && f->at < f->end; f->line++) {
+    f->depth = 0;
+    blanks(f);
+    if (f->at < f->end && *f->at != '\n') answer = statement(f, run);
+    while (f->at < f->end && *f->at != '\n') f->at++; /* the rest of a line that failed */
+    if (f->at < f->end) f->at++;
+    if (f->host->shouldStop(f->host, f->info->self, f->steps)) return XS_STOPPED;
+    f->steps = 0;
+  }
+  return answer;
+}
+
+/* --- The engine: what the host calls --- */
+
+static XsResult create(const XsHost* host, const XsScriptInfo* info, XsInterpreter* made) {
+  Formula* f = calloc(1, sizeof *f + info->fieldCount * sizeof *f->values);
+  if (!f) return XS_FAILED;
+  f->host = host;
+  f->info = info;
+  const XsResult answer = program(f, 0);
+  if (answer != XS_OK)
+    free(f);
+  else
+    *made = (XsInterpreter)(uintptr_t)f;
+  return answer;
+}
+static void destroy(XsInterpreter interpreter) { free((void*)(uintptr_t)interpreter); }
+
+/* What an event brings is good until the function returns: numbers are copied. */
+static XsResult event(XsInterpreter interpreter, const XsEvent* event) {
+  Formula* f = (Formula*)(uintptr_t)interpreter;
+  f->values[event->index] = numberOf(&event->value);
+  f->due = 1;
+  return XS_OK;
+}
+
+static XsResult eventsProcessed(XsInterpreter interpreter, double time) {
+  Formula* f = (Formula*)(uintptr_t)interpreter;
+  XsValue value;
+  (void)time;
+  if (!f->due) return XS_OK;
+  f->due = 0;
+  for (uint32_t i = 0; i < f->info->fieldCount; i++) { /* others may have changed a field */
+    const XsField* field = &f->info->fields[i];
+    if (field->access == XS_FIELD && f->host->read(f->host, f->info->self, f->info->self, field->name, &value) == XS_OK)
+      f->values[i] = numberOf(&value);
+  }
+  return program(f, 1);
+}
+
+static const char* const schemes[] = {"formula", NULL};
+static const char* const suffixes[] = {".formula", NULL};
+/* XS_HARMLESS: a program ends soon, takes no memory, and reaches nothing but the host's functions. Leave it out where you cannot
+ * promise that: programs of untrusted worlds then run in a process of their own. */
+static const XsEngine engine = {.size = sizeof(XsEngine),
+                                .flags = XS_HARMLESS,
+                                .name = "formula",
+                                .text = "formulas: y = sin(x) * 2",
+                                .schemes = schemes,
+                                .suffixes = suffixes,
+                                .create = create,
+                                .destroy = destroy,
+                                .event = event,
+                                .eventsProcessed = eventsProcessed};
+static const XsEngine* const engines[] = {&engine};
+XS_EXPORT const XsPlugin xsPlugin = {XS_MAGIC, XS_ABI_MAJOR, XS_ABI_MINOR, sizeof(XsPlugin), 1, engines};
