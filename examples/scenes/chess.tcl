@@ -555,8 +555,8 @@ proc game::back when {
 }
 
 # Another game: PGN, or moves alone. They are tried before anything is changed.
-proc game::load text {
-  lassign [lindex [pgn::read $text] 0] tags moves
+proc game::load {text {index 0}} {
+  lassign [lindex [pgn::read $text] $index] tags moves
   if {[dict exists $tags FEN]} {error "a game that begins with another position: the pieces of this set begin at home"}
   set position [rules::read $rules::start]
   set line {}

@@ -183,7 +183,7 @@ def chess():
         "DEF Chess Script {\n  url \"chess.tcl\"\n  directOutput TRUE\n"
         f"  field MFNode pieces [ {used(names)} ]\n  field MFNode spares [ {used(spares)} ]\n"
         "  field MFNode materials [ USE White_Material USE Black_Material USE Light_Squares_Material USE Dark_Squares_Material ]\n"
-        "  field MFNode shaders [ USE White_Shader USE Black_Shader USE Board_Shader USE Lamp_Shader ]\n"
+        "  field MFNode shaders [ USE White_Shader USE Black_Shader USE Board_Shader USE Dark_Squares_Shader USE Lamp_Shader ]\n"
         "  field MFString game [ ]\n  eventIn SFString play\n  eventIn SFTime next\n  eventIn SFTime tick\n  eventOut SFString position\n  eventOut SFString status\n}\n"
         "DEF Clock TimeSensor { loop TRUE }\nROUTE Clock.time TO Chess.tick")
     return HEADER + "\n".join([
@@ -206,7 +206,7 @@ def chess():
         look("Light", "Light_Squares_Material Material { diffuseColor .87 .78 .62 specularColor .1 .1 .1 shininess .6 }",
              "Board_Shader", '"1f index 1.5" "1f roughness .1"'),
         look("Dark", "Dark_Squares_Material Material { diffuseColor .45 .24 .15 specularColor .1 .1 .1 shininess .6 }",
-             None, ""),
+             "Dark_Squares_Shader", '"1f index 1.5" "1f roughness .1"'),
         "] }",
         "DEF Lamps Group { children [",
         at((-6, 9, 4.5), "DEF Lamp " + shape('ORTAppearance { shader DEF Lamp_Shader ORTShader { name "Diffuse" file "diffuse" options [ '
@@ -224,7 +224,7 @@ def chess():
 
 
 def look(name, material, shader, options):
-    use = f'DEF {shader} ORTShader {{ name "Plastic" file "plastic" options [ {options} ] }}' if shader else "USE Board_Shader"
+    use = f'DEF {shader} ORTShader {{ name "Plastic" file "plastic" options [ {options} ] }}'
     return f"  Shape {{ appearance DEF {name} ORTAppearance {{\n    material DEF {material}\n    shader {use} }} }}"
 
 
