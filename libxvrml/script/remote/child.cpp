@@ -87,7 +87,7 @@ int Child::start(const std::string& program, std::string& why) {
   sigset_t none, all;
   sigemptyset(&none);
   sigfillset(&all);
-  posix_spawnattr_setflags(&actions.attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
+  posix_spawnattr_setflags(&actions.attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSID); // no Ctrl-C
   posix_spawnattr_setsigmask(&actions.attributes, &none);
   posix_spawnattr_setsigdefault(&actions.attributes, &all);
   std::string name = program, parent = std::to_string(getpid());
@@ -107,6 +107,7 @@ int Child::start(const std::string& program, std::string& why) {
     why = fmt::format("{}: {}", program, std::strerror(error));
     return -1;
   }
+  owner_ = getpid();
   descriptor_ = int(syscall(SYS_pidfd_open, pid_, 0));
   return ends[0];
 }
@@ -119,7 +120,7 @@ void Child::limitMemory(uint64_t bytes) {
 }
 
 void Child::kill() noexcept {
-  if (pid_ <= 0 || ended_) return;
+  if (pid_ <= 0 || ended_ || owner_ != getpid()) return; // not by a copy that fork() has made
   if (descriptor_ >= 0)
     syscall(SYS_pidfd_send_signal, descriptor_, SIGKILL, nullptr, 0);
   else
@@ -128,7 +129,7 @@ void Child::kill() noexcept {
 
 // Somebody else may have waited for it: then nothing is known of its end.
 bool Child::reap(int milliseconds) noexcept {
-  if (ended_ || pid_ <= 0) return true;
+  if (ended_ || pid_ <= 0 || owner_ != getpid()) return true;
   for (int left = milliseconds;; left -= 5) {
     rusage usage{};
     const pid_t got = wait4(pid_, &status_, WNOHANG, &usage);

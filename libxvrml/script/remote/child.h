@@ -31,7 +31,7 @@ class Child {
 
  private:
   bool reap(int milliseconds) noexcept;
-  pid_t pid_ = 0;
+  pid_t pid_ = 0, owner_ = 0;
   int descriptor_ = -1; // names this process and no later one of the same number
   bool ended_ = false, known_ = false;
   int status_ = 0;
