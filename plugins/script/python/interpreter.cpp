@@ -71,6 +71,7 @@ Interpreter::~Interpreter() {
   module_ = py::none();
   if (!browser_ || --scriptsOf()[browser_] > 0) return;
   scriptsOf().erase(browser_);
+  if (!binding_) return; // it could not be imported
   try {
     binding_.attr("_script_end")(browser_);
   } catch (py::error_already_set&) {}
