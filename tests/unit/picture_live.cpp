@@ -4,7 +4,12 @@
 
 #include <chrono>
 #include <filesystem>
+#include <fstream>
 #include <thread>
+
+#include <fmt/format.h>
+#include <malloc.h>
+#include <unistd.h>
 
 #include "picture/live.h"
 
@@ -243,16 +248,81 @@ TEST(Live, anotherWorldIsShownAfterTheFirst) {
   EXPECT_EQ(empty.map.shapes, 0u);
 }
 
+// Threads, files, memory: all is given back. mallinfo2 counts bytes, so that nothing depends on the rest of the machine.
 TEST(Live, framesLeaveNothingBehind) {
   const auto browser = browserOf();
   LiveRenderer live(*browser, settingsOf());
-  finish(live, frameOf());
+  const auto look = [&](int frames) {
+    LivePicture picture;
+    for (int i = 0; i < frames; ++i) {
+      LiveFrame frame = frameOf(16, 12, 1 + i % 3);
+      frame.view.viewer = browser->camera(4.0 / 3);
+      frame.view.viewer->matrix[12] = i % 7;
+      browser->tick(browser->now() + 0.01);
+      live.start(frame);
+      if (i % 4 == 0) live.cancel();
+      waitFor(live);
+      live.look(picture);
+    }
+  };
+  look(50);
   const size_t threads = countOf("/proc/self/task"), files = countOf("/proc/self/fd");
-  for (int i = 0; i < 200; ++i) {
-    live.start(frameOf(16, 12, 1 + i % 3));
-    if (i % 4 == 0) live.cancel();
-    waitFor(live);
-  }
+  const size_t bytes = mallinfo2().uordblks;
+  constexpr int frames = 300;
+  look(frames);
   EXPECT_EQ(countOf("/proc/self/task"), threads);
   EXPECT_EQ(countOf("/proc/self/fd"), files);
+  const size_t after = mallinfo2().uordblks;
+  EXPECT_LT(after > bytes ? after - bytes : 0, 100u * frames);
+}
+
+namespace {
+
+// A folder of its own with files that Inlines name; gone with the test.
+class LiveInlines : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::temp_directory_path() / fmt::format("live_inlines_{}", getpid());
+    std::filesystem::create_directories(folder_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+  void write(const std::string& name, const std::string& body) { std::ofstream(folder_ / name) << "#VRML V2.0 utf8\n" << body; }
+  std::unique_ptr<xvrml::Browser> browserOf(const std::string& name, bool inlines) {
+    xvrml::LoadOptions options;
+    options.loadInlines = inlines;
+    return std::make_unique<xvrml::Browser>(xvrml::loadWorld((folder_ / name).string(), options));
+  }
+  std::filesystem::path folder_;
+};
+
+} // namespace
+
+// Inlines that come while pictures are made cost what they bring; in the end it is the picture of the world read at once.
+TEST_F(LiveInlines, comeBitByBit) {
+  std::string world = "Viewpoint { position 0 0 12 }\n"
+                      "Shape { appearance Appearance { material Material { } } geometry Sphere { radius 0.5 } }\n";
+  constexpr int parts = 5;
+  for (int i = 0; i < parts; ++i) {
+    write(fmt::format("part{}.wrl", i), fmt::format("Transform {{ translation 0 {} 0 children Shape {{ appearance Appearance {{ "
+                                                    "material Material {{ diffuseColor 0 {} 1 }} }} geometry Box {{ }} }} }}",
+                                                    i % 2, 0.2 * i));
+    world +=
+        fmt::format("Transform {{ translation {} 0 0 children DEF Part{} Inline {{ url \"part{}.wrl\" }} }}\n", 2 * i - 4, i, i);
+  }
+  write("world.wrl", world);
+  const auto browser = browserOf("world.wrl", false);
+  LiveRenderer live(*browser, settingsOf());
+  LivePicture picture = finish(live, frameOf());
+  EXPECT_EQ(picture.map.shapes, 1u);
+  std::vector<uint64_t> defined;
+  for (int i = 0; i < parts; ++i) {
+    const uint64_t before = picture.map.objectsDefined;
+    ASSERT_TRUE(browser->loadInline(*browser->node(fmt::format("Part{}", i))));
+    picture = finish(live, frameOf());
+    EXPECT_EQ(picture.map.shapes, uint64_t(2 + i));
+    defined.push_back(picture.map.objectsDefined - before);
+  }
+  for (const uint64_t count : defined) EXPECT_LE(count, 2u) << "objects made anew for one that came";
+  const auto whole = browserOf("world.wrl", true);
+  EXPECT_EQ(picture.rgb, displayBytes(still(*whole, settingsOf(), frameOf()).picture));
 }
