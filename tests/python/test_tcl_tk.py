@@ -27,6 +27,7 @@ DEF Panel Script {
   eventIn SFTime press
   eventIn SFTime close
   eventIn SFTime boom
+  eventIn SFTime later
   eventOut SFInt32 pressed
   eventOut SFString shown
   url "tcl:
@@ -42,6 +43,8 @@ proc up {} {
 proc height {value time} {.height configure -text $value; set ::shown [.height cget -text]}
 proc press {} {after 10 {.up invoke}}
 proc close {} {event generate . <<Close>>; {*}[wm protocol . WM_DELETE_WINDOW]; destroy .}
+proc later {} {event generate . <<Up>> -when tail}
+bind . <<Up>> up
 proc boom {} {.up configure -command {error boom}; .up invoke}
 "
 }
@@ -167,6 +170,17 @@ def test_two_panels_of_one_world():
         world.until(lambda: b["Panel"].pressed == 1 and b["Other"].pressed == 1)
         world.some()
         assert b.warnings == []
+    """, PANEL + "DEF Other" + second)
+
+
+def test_an_event_that_another_scripts_tick_serves_is_not_lost():
+    second = PANEL.split("DEF Panel", 1)[1].replace("Test panel", "Other")
+    run("""
+        world.some()
+        b["Other"].later = 1.0  # in the queue when Panel, which comes first, is given its turn
+        world.until(lambda: b["Other"].pressed == 1)
+        assert tuple(b["Place"].translation) == (0, 1, 0) and b["Panel"].pressed == 0
+        assert b.warnings == [], b.warnings
     """, PANEL + "DEF Other" + second)
 
 

@@ -25,8 +25,8 @@ struct Call {
   explicit Call(Interpreter& interpreter) : outer(std::exchange(Interpreter::running_, &interpreter)), interpreter(interpreter) {
     Tcl_Preserve(interpreter.tcl_);
     interpreter.startClock();
-    for (Interpreter::Late& late : std::exchange(interpreter.late_, {}))
-      interpreter.give(late.kind, late.node, late.name.c_str(), std::move(late.value));
+    for (const Interpreter::Late& late : std::exchange(interpreter.late_, {}))
+      if (setField(interpreter, late.node, late.name, late.value.get()) != TCL_OK) interpreter.report(TCL_ERROR);
   }
   ~Call() {
     Tcl_LimitTypeReset(interpreter.tcl_, TCL_LIMIT_TIME);
@@ -203,17 +203,16 @@ int Interpreter::answer(XsResult result, const char* what) {
 }
 
 XsResult Interpreter::give(Output kind, XsNode node, const char* name, Converted&& value) {
-  if (!isRunning()) {
-    if (late_.size() >= mostLate) return XS_FAILED;
-    late_.push_back({kind, node, name, std::move(value)});
-    return XS_OK;
-  }
   switch (kind) {
   case Output::send: return host_->send(host_, self(), name, &value.value);
   case Output::write: return host_->write(host_, self(), name, &value.value);
   case Output::post: break;
   }
   return host_->post(host_, self(), node, name, &value.value);
+}
+
+void Interpreter::later(XsNode node, std::string name, Object value) {
+  if (late_.size() < mostLate) late_.push_back({node, std::move(name), std::move(value)});
 }
 
 void Interpreter::log(int severity, uint32_t line, std::string_view text) {

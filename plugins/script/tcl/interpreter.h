@@ -51,9 +51,11 @@ class Interpreter {
   bool isOver() const { return stopped_ || exited_; }
   // TCL_OK, or an error with the host's reason. Ends the program if its time is up.
   int answer(XsResult result, const char* what = nullptr);
-  // An event from an eventOut, a field's new value, an event to another node; kept for the next call if this one is not running.
+  // An event from an eventOut, a field's new value, an event to another node.
   enum class Output : uint8_t { send, write, post };
   XsResult give(Output kind, XsNode node, const char* name, Converted&& value);
+  // Does this at the beginning of the next call.
+  void later(XsNode node, std::string name, Object value);
   void endProgram(const char* why);                    // nothing of the program runs any more, no `catch` holds it
   void exit();                                         // what `exit` does: ends the program, and its windows
   void report(int code, std::string_view script = {}); // logs the error that an evaluation ended with
@@ -68,11 +70,10 @@ class Interpreter {
 
  private:
   friend struct Call;
-  struct Late {
-    Output kind;
+  struct Late { // `set` of a node
     XsNode node;
     std::string name;
-    Converted value;
+    Object value;
   };
   XsResult finish(int code, std::string_view script = {}); // of an evaluation
   bool isProcedure(const char* name);

@@ -21,18 +21,8 @@ int get(Interpreter& interpreter, XsNode node, Tcl_Obj* const* words) {
 }
 
 int set(Interpreter& interpreter, XsNode node, Tcl_Obj* const* words) {
-  const std::string name = Tcl_GetString(words[2]);
-  XsField field{};
-  const XsResult found = interpreter.host()->findField(interpreter.host(), interpreter.self(), node, name.c_str(), &field);
-  if (found != XS_OK) return interpreter.answer(found);
-  const XsType type = field.type; // the name is good until the next call only
-  const XsAccess access = field.access;
-  Converted value;
-  if (fromTcl(interpreter, words[3], type, value) != TCL_OK) return TCL_ERROR;
-  using Output = Interpreter::Output;
-  const bool own = node == interpreter.self();
-  const Output kind = own && access == XS_EVENT_OUT ? Output::send : own && access == XS_FIELD ? Output::write : Output::post;
-  return interpreter.answer(interpreter.give(kind, node, name.c_str(), std::move(value)));
+  if (interpreter.isRunning()) return setField(interpreter, node, Tcl_GetString(words[2]), words[3]);
+  return interpreter.later(node, Tcl_GetString(words[2]), words[3]), TCL_OK;
 }
 
 bool describe(Interpreter& interpreter, XsNode node, XsNodeInfo& info, int& code) {
@@ -125,6 +115,20 @@ Object Interpreter::nodeName(XsNode node) {
   const Tcl_Command token = Tcl_CreateObjCommand(tcl_, ("::" + name).c_str(), nodeCommand, new NodeCommand{this, node}, nodeGone);
   nodes[node] = token;
   return tclText(name);
+}
+
+int setField(Interpreter& interpreter, XsNode node, const std::string& name, Tcl_Obj* object) {
+  XsField field{};
+  const XsResult found = interpreter.host()->findField(interpreter.host(), interpreter.self(), node, name.c_str(), &field);
+  if (found != XS_OK) return interpreter.answer(found);
+  const XsType type = field.type; // the name is good until the next call only
+  const XsAccess access = field.access;
+  Converted value;
+  if (fromTcl(interpreter, object, type, value) != TCL_OK) return TCL_ERROR;
+  using Output = Interpreter::Output;
+  const bool own = node == interpreter.self();
+  const Output kind = own && access == XS_EVENT_OUT ? Output::send : own && access == XS_FIELD ? Output::write : Output::post;
+  return interpreter.answer(interpreter.give(kind, node, name.c_str(), std::move(value)));
 }
 
 bool nodeOf(Interpreter& interpreter, Tcl_Obj* object, XsNode& node) {

@@ -36,7 +36,9 @@ char* onChange(ClientData data, Tcl_Interp* tcl, const char*, const char*, int f
   const Tcl_InterpState state = Tcl_SaveInterpState(tcl, TCL_OK);
   Converted value;
   int code = fromTcl(interpreter, now.get(), linked.type, value);
-  if (code == TCL_OK)
+  if (code == TCL_OK && !interpreter.isRunning())
+    interpreter.later(interpreter.self(), linked.variable, now);
+  else if (code == TCL_OK)
     code = interpreter.answer(interpreter.give(linked.output, interpreter.self(), linked.variable.c_str(), std::move(value)));
   char* message = code == TCL_OK ? nullptr : refused(tcl);
   Tcl_RestoreInterpState(tcl, state);
