@@ -3,6 +3,7 @@
 
 package_test.py SOURCE BUILD CMAKE CC
 """
+import json
 import os
 import pathlib
 import re
@@ -117,6 +118,34 @@ with tempfile.TemporaryDirectory() as scratch:
     pictures = {name: (scratch / f"shaders/{name}.png").read_bytes() for name in ("polished", "velvet", "jelly", "crevices")}
     if len(set(pictures.values())) != len(pictures):
         sys.exit("the shaders of the tutorial look the same")
+
+    # Script engines: the tutorial's, and the template that it says to copy
+    follow_tutorial(source / "docs/script-engines.md", scratch / "engines", prefix)
+    if "xvrml" in (needed := run("ldd", scratch / "engines/build/lib/xvrml/scripts/rpn.so")):
+        sys.exit(f"the script engine links against the host: {needed}")
+    formula = scratch / "formula"
+    shutil.copytree(source / "examples/script_engine", formula)
+    run(cmake, "-S", formula, "-B", formula / "build", "-G", "Ninja", f"-DCMAKE_PREFIX_PATH={prefix}", f"-DCMAKE_C_COMPILER={cc}")
+    run(cmake, "--build", formula / "build")
+    for time in "01":
+        run(prefix / "bin/vv", formula / "wave.wrl", "--script-path", formula / "build/lib/xvrml/scripts", "--time", time, "--strict",
+            "-o", formula / f"{time}.png", "--size", "32x24", "--spp", "1")
+    if (formula / "0.png").read_bytes() == (formula / "1.png").read_bytes():
+        sys.exit("the ball of the template does not move")
+
+    # Installed engines that need a trusted world
+    engines = {e["name"] for e in json.loads(run(prefix / "bin/vv", "--list-engines", "--json"))["engines"]}
+    if "python" in engines:
+        (scratch / "python.wrl").write_text("#VRML V2.0 utf8\nDEF T Transform { }\nScript { field SFNode t USE T\n"
+                                            "url \"python:import xvrml\nprint(xvrml.__file__, script.t.node_type)\" }\n")
+        said = run(prefix / "bin/vv", "python.wrl", "--trust", "--check", cwd=scratch)
+        if str(prefix) not in said or "Transform" not in said:
+            sys.exit(f"Scripts in Python do not use the installed package: {said}")
+    if "native" in engines:
+        native = next(prefix.rglob("scripts/native.so")).parent.parent / "native"
+        native.mkdir()
+        run(cc, "-shared", "-fPIC", source / "examples/native/encoder.c", "-o", native / "libencoder.so", "-lm")
+        run(prefix / "bin/vv", source / "examples/native/gauge.wrl", "--trust", "--check", "--time", "0.5")
 
     # Manual pages
     for page in ("openrt.3", "openrt_frames.3", "rtRender.3"):
