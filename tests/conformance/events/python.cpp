@@ -239,7 +239,7 @@ TEST_F(Python, AnEndlessLoopIsStoppedWhateverItCatches) {
     ASSERT_EQ(messages.size(), 2u) << loop;
     EXPECT_NE(messages[0].find("stopped here"), std::string::npos) << messages[0];
     EXPECT_GT(std::stoi(messages[0]), 3); // a line of the program
-    EXPECT_EQ(messages[1], "2: Script S: event took too long: the Script is stopped");
+    EXPECT_EQ(messages[1], "3: Script S: event took too long: the Script is stopped");
     EXPECT_EQ(r.get("S", "out"), "FALSE"); // what it sent does not leave
     r.set("S", "go", true);                // no more events
     r.set("T", "go", true);
