@@ -140,7 +140,7 @@ bool Builder::accepts(const Receiver& receiver, const Token& at, const Node& nod
   const NodeType* type = effectiveType(node);
   if (!type) return true; // an EXTERNPROTO: known when it is loaded
   const bool root = receiver.kind == Receiver::Kind::roots;
-  if (root && inTemplate()) return true;
+  if (root && (inTemplate() || state_.anyRoots)) return true;
   const std::string_view wanted = root ? "child" : receiver.field ? std::string_view(receiver.field->nodeTypes) : "";
   if (wanted.empty() || typeAccepted(wanted, *type)) return true;
   const std::string stands = type == &node.type() ? "" : fmt::format(" ({})", type->name);

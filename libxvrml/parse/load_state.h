@@ -15,6 +15,7 @@ struct LoadState {
   // Nodes USEd within their own DEF, which only Scripts and prototype instances may (4.6.2); a connection must not let them
   // become their own descendants.
   std::unordered_set<const Node*> entered;
+  bool anyRoots = false;            // of createVrmlFromString: what it makes goes into any field, geometries into `geometry`
   uint64_t routes = 0, scripts = 0; // made so far: a file without either can be shared by its Inlines
 };
 

@@ -42,7 +42,9 @@ void Loader::load(const Source& source, const std::string& name, bool header) {
   ParsedFile file;
   const auto sharedName = std::make_shared<const std::string>(name);
   if (header) source.checkHeader(sharedName, state_.diagnostics);
+  state_.anyRoots = !header;
   parse(source, sharedName, file);
+  state_.anyRoots = false;
   world_.times.parse = secondsSince(start);
   const std::string key = canonical(name);
   inlined_[key].reading = true;

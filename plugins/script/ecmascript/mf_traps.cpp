@@ -1,6 +1,7 @@
 // mf_traps.cpp: what happens at mf[i], mf.length and their assignment: traps of the proxies that MF objects are. See values.h.
 //
-// Within the elements an index gives the element, beyond them undefined; assigning beyond them makes the array longer (C.6.10).
+// Within the elements an index gives the element, beyond them undefined, or a tuple that is not there yet: assigning beyond them,
+// or to a component of such a tuple, makes the array longer (C.6.10).
 #include <cmath>
 #include <cstring>
 

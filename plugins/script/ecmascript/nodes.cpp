@@ -40,6 +40,17 @@ int slotFor(duk_context* ctx, Interpreter& self, NodeRecord& record, int name) {
   const XsResult result = self.host->findField(self.host, self.self, record.node, text, &field);
   if (result == XS_NO_FIELD) return -1;
   if (result != XS_OK) throwHost(ctx, self, result, text);
+  if (field.access == XS_FIELD && record.node != self.self) {
+    // coordIndex of an IndexedFaceSet is a field that only set_coordIndex changes; programs name it as if it were exposed.
+    duk_push_sprintf(ctx, "set_%s", text);
+    XsField in{};
+    if (self.host->findField(self.host, self.self, record.node, duk_get_string(ctx, -1), &in) == XS_OK &&
+        in.access == XS_EVENT_IN)
+      field = in;
+    else
+      self.host->findField(self.host, self.self, record.node, text, &field); // what was lent is gone
+    duk_pop(ctx);
+  }
   int slot = -1;
   if (record.node == self.self && field.access != XS_EVENT_IN) slot = ownSlot(self, field.name);
   for (const auto& [known, other] : record.slots)
@@ -208,8 +219,17 @@ void pushNode(duk_context* ctx, Interpreter& self, XsNode node) {
 
 bool isNode(duk_context* ctx, Interpreter& self, duk_idx_t index) { return recordOf(ctx, self, index) != nullptr; }
 
+// What `new SFNode()` gives, as nothing can give null.
+bool isNull(duk_context* ctx, Interpreter& self, duk_idx_t index) {
+  if (!duk_is_object(ctx, index)) return duk_is_null(ctx, index);
+  duk_get_prototype(ctx, index);
+  const bool null = duk_get_heapptr(ctx, -1) == self.nodePrototype;
+  duk_pop(ctx);
+  return null;
+}
+
 XsNode nodeOf(duk_context* ctx, Interpreter& self, duk_idx_t index, const char* what) {
-  if (duk_is_null(ctx, index)) return 0;
+  if (isNull(ctx, self, index)) return 0;
   if (const NodeRecord* record = recordOf(ctx, self, index)) return record->node;
   index = duk_normalize_index(ctx, index);
   if (const MfData* mf = mfData(ctx, index); mf && mf->type == XS_MFNODE && mf->count > 0) { // createVrmlFromString's answer

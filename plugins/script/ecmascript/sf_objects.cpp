@@ -150,7 +150,8 @@ void writeBack(duk_context* ctx, Interpreter& self, duk_idx_t index, SfData* dat
   if (data->hasParent) {
     duk_get_prop_heapptr(ctx, index, self.keyParent);
     MfData* mf = mfData(ctx, -1);
-    if (mf && data->index < mf->count && elementType(mf->type) == data->type) {
+    if (mf && elementType(mf->type) == data->type) {
+      if (data->index >= mf->count) mf = resizeMf(ctx, self, -1, data->index + 1);
       float* at = floatsOf(mf) + size_t(data->index) * size_t(components(data->type));
       for (int i = first; i < first + count; ++i) at[i] = float(data->v[i]);
       touchMf(ctx, self, -1);

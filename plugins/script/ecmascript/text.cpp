@@ -132,7 +132,7 @@ void pushNotation(duk_context* ctx, Interpreter& self, duk_idx_t index) {
     duk_concat(ctx, 2);
     return;
   }
-  if (duk_is_null(ctx, index)) {
+  if (isNull(ctx, self, index)) {
     duk_push_string(ctx, "NULL");
     return;
   }
@@ -145,7 +145,8 @@ duk_ret_t notationMethod(duk_context* ctx) {
   step(self);
   duk_push_this(ctx);
   const duk_idx_t it = duk_get_top_index(ctx);
-  if (!sfData(ctx, it) && !mfData(ctx, it) && !isNode(ctx, self, it)) throwType(ctx, "toString: not a value of VRML");
+  if (!sfData(ctx, it) && !mfData(ctx, it) && !isNode(ctx, self, it) && !isNull(ctx, self, it))
+    throwType(ctx, "toString: not a value of VRML");
   pushNotation(ctx, self, it);
   return 1;
 }

@@ -83,6 +83,7 @@ void registerMatrix(duk_context* ctx, Interpreter& self);
 // nodes.cpp
 void pushNode(duk_context* ctx, Interpreter& self, XsNode node); // 0: null
 XsNode nodeOf(duk_context* ctx, Interpreter& self, duk_idx_t index, const char* what);
+bool isNull(duk_context* ctx, Interpreter& self, duk_idx_t index);
 bool isNode(duk_context* ctx, Interpreter& self, duk_idx_t index);
 void registerNodes(duk_context* ctx, Interpreter& self);
 // browser.cpp

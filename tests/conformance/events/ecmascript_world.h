@@ -1,0 +1,51 @@
+// ecmascript_world.h: a small world whose Script S is ECMAScript, in this process; rows of programs and what they print. Tests
+// are skipped where the engine is not built.
+#pragma once
+
+#include "conformance/events/tcl_world.h"
+
+namespace xvrml {
+
+class EcmaWorld : public TclWorld {
+ public:
+  using TclWorld::TclWorld;
+  static std::string script(const std::string& declared, const std::string& program, const std::string& rest = "") {
+    std::string text = TclWorld::script(declared, program, rest);
+    return text.replace(text.find("\"tcl:") + 1, 4, "javascript:");
+  }
+  // What was printed, and what went wrong, one line each.
+  std::string told() {
+    std::string out;
+    for (const Log& log : {printed(), messages()})
+      for (const std::string& line : log) out += (out.empty() ? "" : "\n") + line;
+    return out;
+  }
+};
+
+inline bool hasEcmaScript() { return std::filesystem::exists(XVRML_SCRIPTS "/ecmascript.so"); }
+
+class EcmaScript : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!hasEcmaScript()) GTEST_SKIP() << "the ECMAScript engine is not built";
+  }
+};
+
+// One rule: a Script of these declarations, its program, what that prints.
+struct EcmaRow {
+  const char* name;
+  const char* declared;
+  const char* program;
+  const char* printed;
+};
+inline void PrintTo(const EcmaRow& row, std::ostream* out) { *out << row.program; }
+inline std::string rowName(const testing::TestParamInfo<EcmaRow>& info) { return info.param.name; }
+
+class EcmaRows : public testing::TestWithParam<EcmaRow> {
+ protected:
+  void SetUp() override {
+    if (!hasEcmaScript()) GTEST_SKIP() << "the ECMAScript engine is not built";
+  }
+};
+
+} // namespace xvrml
