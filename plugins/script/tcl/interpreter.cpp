@@ -54,15 +54,16 @@ Interpreter::~Interpreter() {
 
 XsResult Interpreter::create() {
   const Call call(*this);
-  Tcl_CmdInfo found; // what the commands that `proc` makes have in common
+  Tcl_LimitTypeReset(tcl_, TCL_LIMIT_TIME); // what follows is ours, and must not be broken off
+  Tcl_CmdInfo found;                        // what the commands that `proc` makes have in common
   if (Tcl_Eval(tcl_, "proc ::xvrml_procedure {} {}") == TCL_OK && Tcl_GetCommandInfo(tcl_, "::xvrml_procedure", &found))
     procedure_ = found.objProc;
   Tcl_DeleteCommand(tcl_, "::xvrml_procedure");
   Tcl_Eval(tcl_, "expr {srand(1)}"); // the same world at each start
   if (trusted()) {
     if (makeTrusted(*this) != TCL_OK) return log(3, 0, Tcl_GetStringResult(tcl_)), XS_FAILED;
-  } else {
-    makeSafe(*this);
+  } else if (!makeSafe(*this)) {
+    return log(3, 0, std::string("no safe interpreter: ") + Tcl_GetStringResult(tcl_)), XS_FAILED;
   }
   addOutput(*this);
   addTimers(*this);
@@ -76,6 +77,7 @@ XsResult Interpreter::create() {
   Tcl_GetIntFromObj(nullptr, Tcl_GetObjResult(tcl_), &count);
   Tcl_LimitSetCommands(tcl_, count + stepsAtOnce);
   Tcl_LimitTypeSet(tcl_, TCL_LIMIT_COMMANDS);
+  startClock();
   const Object program = tclText({info_->text.data, size_t(info_->text.bytes)});
   return finish(Tcl_EvalObjEx(tcl_, program.get(), TCL_EVAL_GLOBAL | TCL_EVAL_DIRECT),
                 {info_->text.data, size_t(info_->text.bytes)});

@@ -98,7 +98,7 @@ void addBrowser(Interpreter& interpreter);                                      
 void addOutput(Interpreter& interpreter);                                                  // output.cpp: puts, exit
 void addTimers(Interpreter& interpreter);                                                  // timers.cpp: after
 void runTimers(Interpreter& interpreter, double time);
-void makeSafe(Interpreter& interpreter);   // safe.cpp: before the others
+bool makeSafe(Interpreter& interpreter);   // safe.cpp: before the others; false, with a message: it is not safe
 int makeTrusted(Interpreter& interpreter); // trusted.cpp: before the others
 
 // errors.cpp: the line of the program (from 1; 0: not known) that an error's trace leads to, and in which procedure it is.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstring>
 #include <iterator>
+#include <stdexcept>
 
 #include "interpreter.h"
 
@@ -64,13 +65,19 @@ int package(ClientData data, Tcl_Interp* tcl, int count, Tcl_Obj* const words[])
   return TCL_ERROR;
 }
 
+// Runs a script of our own; one that fails leaves an interpreter that nobody may use.
+void run(Tcl_Interp* tcl, const std::string& script) {
+  if (Tcl_Eval(tcl, script.c_str()) != TCL_OK) throw std::runtime_error(Tcl_GetStringResult(tcl));
+}
+
 std::vector<std::string> listOf(Tcl_Interp* tcl, const std::string& script) {
+  run(tcl, script);
   std::vector<std::string> names;
   Tcl_Obj** elements;
   int count;
-  if (Tcl_Eval(tcl, script.c_str()) == TCL_OK &&
-      Tcl_ListObjGetElements(nullptr, Tcl_GetObjResult(tcl), &count, &elements) == TCL_OK)
-    for (int i = 0; i < count; ++i) names.emplace_back(Tcl_GetString(elements[i]));
+  if (Tcl_ListObjGetElements(tcl, Tcl_GetObjResult(tcl), &count, &elements) != TCL_OK)
+    throw std::runtime_error(Tcl_GetStringResult(tcl));
+  for (int i = 0; i < count; ++i) names.emplace_back(Tcl_GetString(elements[i]));
   return names;
 }
 
@@ -80,9 +87,8 @@ template <size_t n> bool isOneOf(const char* const (&list)[n], const std::string
 
 void keepOnly(Tcl_Interp* tcl, const Ensemble& ensemble) {
   const std::string quoted = std::string("{") + ensemble.keep + "}";
-  Tcl_Eval(tcl, (std::string("set ::xvrml_map {}; foreach name ") + quoted + " {lappend ::xvrml_map $name " + ensemble.space +
-                 "::$name}; namespace ensemble configure " + ensemble.name + " -map $::xvrml_map; unset ::xvrml_map name")
-                    .c_str());
+  run(tcl, std::string("set ::xvrml_map {}; foreach name ") + quoted + " {lappend ::xvrml_map $name " + ensemble.space +
+               "::$name}; namespace ensemble configure " + ensemble.name + " -map $::xvrml_map; unset ::xvrml_map name");
   for (const std::string& command : listOf(tcl, std::string("info commands ") + ensemble.space + "::*")) {
     const std::string tail = command.substr(std::strlen(ensemble.space) + 2);
     if ((" " + std::string(ensemble.keep) + " ").find(" " + tail + " ") == std::string::npos)
@@ -90,18 +96,16 @@ void keepOnly(Tcl_Interp* tcl, const Ensemble& ensemble) {
   }
 }
 
-} // namespace
-
-void makeSafe(Interpreter& interpreter) {
-  Tcl_Interp* tcl = interpreter.tcl();
-  Tcl_MakeSafe(tcl);
+void strip(Tcl_Interp* tcl) {
+  if (Tcl_MakeSafe(tcl) != TCL_OK) throw std::runtime_error(Tcl_GetStringResult(tcl));
   for (const std::string& hidden : listOf(tcl, "interp hidden")) { // so that nothing is left to be brought back
     const std::string token = "xvrml_hidden";
-    if (Tcl_ExposeCommand(tcl, hidden.c_str(), token.c_str()) == TCL_OK) Tcl_DeleteCommand(tcl, token.c_str());
+    if (Tcl_ExposeCommand(tcl, hidden.c_str(), token.c_str()) != TCL_OK) throw std::runtime_error(Tcl_GetStringResult(tcl));
+    Tcl_DeleteCommand(tcl, token.c_str());
   }
   for (const Ensemble& ensemble : ensembles) keepOnly(tcl, ensemble);
   for (const char* space : namespacesThatGo)
-    if (Tcl_FindNamespace(tcl, space, nullptr, 0)) Tcl_Eval(tcl, (std::string("namespace delete ") + space).c_str());
+    if (Tcl_FindNamespace(tcl, space, nullptr, 0)) run(tcl, std::string("namespace delete ") + space);
   for (const char* command : {"::tcl::pkgconfig", "::tcl::Bgerror"}) Tcl_DeleteCommand(tcl, command);
   for (const std::string& command : listOf(tcl, "info commands ::*"))
     if (!isOneOf(allowed, command.substr(2))) Tcl_DeleteCommand(tcl, command.c_str());
@@ -110,8 +114,20 @@ void makeSafe(Interpreter& interpreter) {
   Tcl_CreateObjCommand(tcl, "::package", package, const_cast<char*>("package"), nullptr);
   for (const char* variable : {"env", "tcl_library", "tcl_pkgPath", "auto_path", "tcl_interactive", "argv", "argv0", "argc"})
     Tcl_UnsetVar(tcl, variable, TCL_GLOBAL_ONLY);
-  Tcl_Eval(tcl, functions);
+  run(tcl, functions);
   Tcl_ResetResult(tcl);
+}
+
+} // namespace
+
+bool makeSafe(Interpreter& interpreter) {
+  try {
+    strip(interpreter.tcl());
+    return true;
+  } catch (const std::exception& error) {
+    Tcl_SetObjResult(interpreter.tcl(), Tcl_NewStringObj(error.what(), -1));
+    return false;
+  }
 }
 
 } // namespace tclscript
