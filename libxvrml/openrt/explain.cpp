@@ -65,7 +65,7 @@ std::string ofItem(const Graph& graph, const Item& item, const Part& part) {
   case Own::wanted: return "split: ORTInstance";
   case Own::merged: return "merged: ORTStatic";
   case Own::transform: return reasonOf(*item.node, Change::transform);
-  case Own::children: return reasonOf(*item.node, Change::children);
+  case Own::children: return item.awaited ? "split: it is still to be loaded" : reasonOf(*item.node, Change::children);
   case Own::appearance: return "split: events reach the colour of its lines";
   case Own::geometry: return reasonBelow(*renderedNode(static_cast<nodes::Shape&>(*item.node).geometry.get()), Change::geometry);
   case Own::none: break;

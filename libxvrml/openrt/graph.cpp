@@ -97,6 +97,7 @@ void Graph::planItem(ItemId id) {
   item.kind = plan.kind;
   item.hint = plan.hint;
   item.isInline = plan.isInline;
+  item.awaited = plan.awaited;
   item.on = plan.on;
   item.children = std::move(children);
   item.matrix = plan.matrix == Matrix() ? nullptr : std::make_unique<Matrix>(plan.matrix);

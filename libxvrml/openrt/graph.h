@@ -60,6 +60,7 @@ struct Item {
   Hint hint = Hint::none;
   bool planned = false;
   bool isInline = false; // an Inline's content begins here
+  bool awaited = false;  // an Inline whose content is still to come
   bool on = true;        // a light that shines
   uint32_t name = 0;     // in Graph::names; 0: none
   int32_t mesh = none;   // shape: in Meshes
@@ -92,6 +93,7 @@ struct Plan {
   Kind kind = Kind::none;
   Hint hint = Hint::none;
   bool isInline = false;
+  bool awaited = false;   // an Inline whose content is still to come
   bool keepEmpty = false; // children are kept at their index even if nothing is drawn for them (LOD)
   bool on = true;         // of a light
   Matrix matrix;

@@ -44,10 +44,13 @@ void planBillboard(PlanContext&, Node& node, Plan& plan) {
   plan.add(static_cast<nodes::Billboard&>(node).children);
 }
 
-void planInline(PlanContext&, Node& node, Plan& plan) {
+// Content that comes later (Browser::loadInline) gets an object of its own, so that nothing else is made anew then.
+void planInline(PlanContext& context, Node& node, Plan& plan) {
   plan.kind = Kind::group;
   plan.isInline = true;
-  if (const Scope* scope = inlineScope(node)) plan.add(scope->roots);
+  const Scope* scope = inlineScope(node);
+  plan.awaited = !scope && !context.world.options.loadInlines && !static_cast<nodes::Inline&>(node).url.empty();
+  if (scope) plan.add(scope->roots);
 }
 
 void planStatic(PlanContext&, Node& node, Plan& plan) {

@@ -1,8 +1,8 @@
 // summary.cpp: counts what each item of the render graph holds and decides what becomes an object of its own. Called by the
 // mapper when the world has been read and when something of it is grouped anew.
 //
-// An item has an object of its own when events reach it (xvrml/change.h), when an author wants it (ORTInstance, ORTStatic), or
-// when it is shared: reached several times, and
+// An item has an object of its own when events reach it (xvrml/change.h) or it is an Inline that is still to be loaded, when an
+// author wants it (ORTInstance, ORTStatic), or when it is shared: reached several times, and
 //  - its content does not depend on the place: no lights, bindables, billboards or LODs below it (such an item has an object
 //    a place: see places.cpp);
 //  - it holds no lines and points, whose width is a matter of the place, unless there would be very many of them;
@@ -116,7 +116,7 @@ class Summary {
 
   void lookAtHints(Item& item) {
     item.moves = !item.merged && reachedBy(item, Change::transform);
-    const bool changes = !item.merged && reachedBy(item, Change::children);
+    const bool changes = !item.merged && (item.awaited || reachedBy(item, Change::children));
     item.changes |= changes;
     item.draws |= changes;
     if (!item.draws) return;

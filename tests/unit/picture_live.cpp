@@ -322,7 +322,7 @@ TEST_F(LiveInlines, comeBitByBit) {
     EXPECT_EQ(picture.map.shapes, uint64_t(2 + i));
     defined.push_back(picture.map.objectsDefined - before);
   }
-  for (const uint64_t count : defined) EXPECT_LE(count, 2u) << "objects made anew for one that came";
+  for (const uint64_t count : defined) EXPECT_EQ(count, 1u) << "objects made for one that came";
   const auto whole = browserOf("world.wrl", true);
   EXPECT_EQ(picture.rgb, displayBytes(still(*whole, settingsOf(), frameOf()).picture));
 }
