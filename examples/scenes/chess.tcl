@@ -182,10 +182,11 @@ proc rules::make {position move} {
   list $board [other $side] $castling $next $half $full
 }
 
+proc rules::leavesKing {position move} {inCheck [make $position $move] [lindex $position 1]}
+
 proc rules::legal position {
-  set side [lindex $position 1]
   set moves {}
-  foreach move [pseudo $position] {if {![inCheck [make $position $move] $side]} {lappend moves $move}}
+  foreach move [pseudo $position] {if {![leavesKing $position $move]} {lappend moves $move}}
   return $moves
 }
 
@@ -252,9 +253,10 @@ proc rules::san {position move} {
     set file 0
     set rank 0
     set others 0
-    foreach other [legal $position] {
+    foreach other [pseudo $position] {
       lassign $other from2 to2
       if {$to2 != $to || $from2 == $from || [lindex $board $from2] ne [lindex $board $from]} continue
+      if {[leavesKing $position $other]} continue
       incr others
       if {$from2 % 10 == $from % 10} {incr file}
       if {$from2 / 10 == $from / 10} {incr rank}
@@ -274,21 +276,22 @@ proc rules::san {position move} {
 proc rules::find {position text} {
   lassign $position board side
   set plain [string map {0-0-0 O-O-O 0-0 O-O} [regsub {[+#!?]*(e\.p\.)?$} [string trim $text] {}]]
-  set found {}
-  foreach move [legal $position] {
+  set meant {}
+  foreach move [pseudo $position] {
     lassign $move from to promotion
     set piece [string toupper [lindex $board $from]]
     if {$plain in {O-O O-O-O}} {
-      if {$piece eq "K" && $to - $from == ($plain eq "O-O" ? 2 : -2)} {lappend found $move}
+      if {$piece eq "K" && $to - $from == ($plain eq "O-O" ? 2 : -2)} {lappend meant $move}
     } elseif {[regexp {^([a-h][1-8])-?([a-h][1-8])=?([qrbnQRBN]?)$} $plain -> a b into]} {
-      if {[name $from] eq $a && [name $to] eq $b && $promotion eq [string tolower $into]} {lappend found $move}
+      if {[name $from] eq $a && [name $to] eq $b && $promotion eq [string tolower $into]} {lappend meant $move}
     } elseif {[regexp {^([KQRBNP]?)([a-h]?)([1-8]?)[x:-]?([a-h][1-8])=?\(?([QRBN]?)\)?$} $plain -> kind file rank target into]} {
       if {$piece eq ($kind eq {} ? {P} : $kind) && [name $to] eq $target && $promotion eq [string tolower $into] &&
-          [string match $file* [name $from]] && [string match *$rank [name $from]]} {lappend found $move}
+          [string match $file* [name $from]] && [string match *$rank [name $from]]} {lappend meant $move}
     } else {
       error "no move: $text"
     }
   }
+  set found [lmap move $meant {if {[leavesKing $position $move]} continue; set move}]
   if {[llength $found] == 0} {error "illegal move: $text"}
   if {[llength $found] > 1} {error "ambiguous move: $text"}
   lindex $found 0

@@ -67,13 +67,14 @@ some(0.5)
 @pytest.fixture
 def panel(tmp_path):
     scenes = ROOT / "examples/scenes"
-    for name in ("chess.tcl", "chess_panel.tcl"):
+    for name in ("chess.tcl", "chess_panel.tcl", "studio.png"):
         shutil.copy(scenes / name, tmp_path / name)
     (tmp_path / "driver.tcl").write_text(DRIVER)
     text = (scenes / "chess.wrl").read_text()
     changed = text.replace('url "chess.tcl"', 'url "driver.tcl" eventIn SFString ask eventOut SFString answer')
     assert changed != text
     (tmp_path / "chess.wrl").write_text(changed)
+    (tmp_path / "plain.wrl").write_text(text)
 
     def run(program):
         with display():
@@ -103,6 +104,24 @@ def test_three_moves_are_made_with_the_pointer(panel):
         click(".board.d7"); click(".board.d4"); some(1)
         assert fen().startswith("rnbqkbnr/pppp1ppp/8/4p3/4P3/5N2/PPPP1PPP/RNBQKB1R")
         assert b.warnings == []
+    """)
+
+
+def test_the_picture_is_the_one_of_the_same_moves(panel):
+    panel("""
+        for start, end in (("d2", "d4"), ("g8", "f6"), ("c1", "g5")):
+            click(".board." + start)
+            click(".board." + end)
+            some(1.2)
+        other = xvrml.Browser(sys.argv[1].replace("chess.wrl", "plain.wrl"))  # not trusted: no panel, the Script in its own process
+        before = other.render(size=(64, 48), spp=1).display.tobytes()
+        for i, move in enumerate(("d4", "Nf6", "Bg5")):
+            other["Chess"].play = move
+            other.tick(2.0 * i + 1)
+            other.tick(2.0 * i + 2)
+        assert other["Chess"].position == fen() == "rnbqkb1r/pppppppp/5n2/6B1/3P4/8/PPP1PPPP/RN1QKBNR b KQkq - 2 2"
+        seen, wanted = (x.render(size=(64, 48), spp=1).display.tobytes() for x in (b, other))
+        assert seen == wanted and seen != before
     """)
 
 
