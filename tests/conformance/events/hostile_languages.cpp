@@ -109,7 +109,7 @@ TEST_P(HostileLanguages, AProgramCannotHoldTheWorldUp) {
   if (!hasScriptEngine(c.language, XVRML_SCRIPTS)) GTEST_SKIP() << "no engine for " << c.language;
   BrowserOptions options;
   options.scriptPath = XVRML_SCRIPTS ":" XVRML_TEST_SCRIPTS;
-  options.scriptSeconds = 0.25;
+  options.scriptSeconds = 0.15;
   options.scriptMemory = 32 << 20;
   options.scriptPatience = 0.02;
   Scripted r(

@@ -291,6 +291,29 @@ TEST_F(ScriptProcess, ManyLoopsCostOnePatience) {
   EXPECT_EQ(r.messages(), Log{});
 }
 
+TEST_F(ScriptProcess, WithHardlyAnyPatienceScriptsBeginByAndBy) {
+  std::string text = "DEF T Transform {}";
+  for (int i = 0; i < 100; ++i)
+    text +=
+        fmt::format("DEF S{} Script {{ eventIn SFVec3f in url \"hostile:initialize: slow 1\ninitialize: print begins\nin: print "
+                    "event\" }} ROUTE T.translation TO S{}.in\n",
+                    i, i);
+  Scripted r(text, limits(1e-6, 10));
+  r.set("T", "translation", Vec3f{1, 2, 3}); // waits for those that have not begun
+  Log printed = r.printed();
+  for (int i = 0; i < 3000 && std::count(printed.begin(), printed.end(), "event") < 100; ++i) {
+    r.browser.tick(i);
+    for (std::string& line : r.printed())
+      if (line != "slept") printed.push_back(std::move(line));
+    usleep(1000);
+  }
+  std::erase(printed, "slept");
+  EXPECT_EQ(std::count(printed.begin(), printed.end(), "begins"), 100);
+  EXPECT_EQ(std::count(printed.begin(), printed.end(), "event"), 100);
+  EXPECT_EQ(printed.size(), 200u);
+  EXPECT_EQ(r.messages(), Log{});
+}
+
 TEST_F(ScriptProcess, EventsThatWaitAreBounded) {
   Hostile r("go: slow 300\ngo: print went", limits(0.01, 10));
   for (int i = 0; i < 1500; ++i) r.set("S", "go", true);

@@ -264,6 +264,15 @@ TEST_P(Scripts, TickComesWithTime) {
   EXPECT_EQ(r.take(), (Log{"1 S.out 1", "1.5 S.out 1.5"}));
 }
 
+// No interpreter is called while another one runs.
+TEST_P(Scripts, WhatTickMakesBeginsAfterIt) {
+  Scripted r(
+      "DEF S Script { eventOut MFNode out url \"test:tick: create out Script { url \\\"test:initialize: print child\\\" }\n"
+      "tick: print made\" }");
+  r.browser.tick(1);
+  EXPECT_EQ(r.printed(), (Log{"made", "child"}));
+}
+
 TEST_P(Scripts, RunawayPostsEndWithAMessage) {
   BrowserOptions options;
   options.maximumEvents = 1000;
