@@ -191,8 +191,8 @@ def chess():
         "# without the engine for Tcl they stand as here. Written by tools/make_scenes.py.",
         'WorldInfo { title "Chess" info [ "part of OpenRT\'s examples" ] }',
         'NavigationInfo { type "EXAMINE" headlight FALSE }',
-        viewpoint((3.4, 4.8, 9.6), (-.75, -.05, .15), .62, "DEF White_Player Viewpoint", 'description "White" '),
-        viewpoint((-3.4, 4.8, -9.6), (.75, -.05, -.15), .62, "DEF Black_Player Viewpoint", 'description "Black" '),
+        viewpoint((2.6, 4.8, 9.9), (.15, -.05, .1), .6, "DEF White_Player Viewpoint", 'description "White" '),
+        viewpoint((-2.6, 4.8, -9.9), (-.15, -.05, -.1), .6, "DEF Black_Player Viewpoint", 'description "Black" '),
         viewpoint((0, 13.4, .02), (0, 0, 0), .72, "DEF Above Viewpoint", 'description "From above" '),
         viewpoint((-2.6, 1.15, 5.9), (-1.6, .7, 2.0), .62, "DEF Close Viewpoint", 'description "Among the pieces" '),
         'ORTBackground { shader ORTShader { name "EnvironmentMap" file "environmentmap" '
