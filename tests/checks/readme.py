@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""Runs the examples of README.md as a reader would: readme.py ROOT BUILD CC
+"""Runs the examples of README.md and docs/gallery.md as a reader would: readme.py ROOT BUILD CC
 
 Blocks marked ```sh, ```c and ```python are run in an empty folder with the programs, headers and libraries of BUILD; the C
 blocks are compiled as C99. Commands that build or install (make, git, sudo, apt) are the business of other tests and skipped.
+The gallery's pictures are made small.
 """
 import os
 import pathlib
@@ -19,7 +20,11 @@ ran = failed = 0
 
 with tempfile.TemporaryDirectory() as scratch:
     os.symlink(root / "examples", pathlib.Path(scratch) / "examples")
-    for kind, text in re.findall(r"^```(sh|c|python)\n(.*?)^```", (root / "README.md").read_text(), re.M | re.S):
+    gallery = re.sub(r" --(spp|size) \S+", "", (root / "docs/gallery.md").read_text())
+    gallery = re.sub(r"^vv .*$", r"\g<0> --size 36x24 --spp 1", gallery, flags=re.M)
+    blocks = [(name, *block) for name, document in (("README.md", (root / "README.md").read_text()), ("docs/gallery.md", gallery))
+              for block in re.findall(r"^```(sh|c|python)\n(.*?)^```", document, re.M | re.S)]
+    for name, kind, text in blocks:
         if kind == "sh":
             lines = [line for line in text.splitlines() if line and not re.match(r"(make|git|sudo|apt|cd)\b", line)]
             if not lines:
@@ -38,6 +43,6 @@ with tempfile.TemporaryDirectory() as scratch:
         done = subprocess.run(command, cwd=scratch, env=env, capture_output=True, text=True, timeout=300)
         if done.returncode:
             failed += 1
-            print(f"--- this {kind} block of README.md fails ({done.returncode}):\n{text}\n{done.stdout}{done.stderr}")
+            print(f"--- this {kind} block of {name} fails ({done.returncode}):\n{text}\n{done.stdout}{done.stderr}")
 print(f"{ran} blocks run, {failed} failed")
 sys.exit(1 if failed or ran == 0 else 0)

@@ -68,8 +68,8 @@ def car():
     from scenes import car_parts as parts
     skin = Skin()
     house = Greenhouse(skin)
-    paint = "DEF Paint " + shader("CarPaint", "carpaint", "color color .42 .012 .018", "color flakeColor .95 .38 .30", "1f flakes .16", "1f flakeRoughness .2",
-                                  "1f flakeSize .0012", "1f flakeSpread .2")
+    paint = "DEF Paint " + shader("CarPaint", "carpaint", "color color .42 .012 .018", "color flakeColor .6 .13 .1", "1f flakes .25", "1f flakeRoughness .45",
+                                  "1f flakeSize .0012", "1f flakeSpread .06")
     glass = "DEF Pane " + shader("Glass", "glass", "1f index 1.52", "color absorption 9 4 6")
     text = [
         "# A coupe in a studio. Written by tools/make_scenes.py.",

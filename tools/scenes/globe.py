@@ -85,7 +85,7 @@ def globe():
         'Switch { choice Shape { appearance ORTAppearance { shader DEF Light_From_All_Sides ORTShader { name "GlobalIllumination" } } } }',
         at((0, -.15, 0), "DEF Table " + shape(table, box(24, .3, 12))),
         at((0, 5, -4.2), "DEF Wall " + shape(lit((.74, .69, .58)), box(30, 16, .2))),
-        at((-13, 4, 2), "DEF Window " + shape(shader("Diffuse", "diffuse", "color reflectance 0 0 0", "color emission 4 5.4 7.6"),
+        at((-13, 4, 2), "DEF Window " + shape(shader("Diffuse", "diffuse", "color reflectance 0 0 0", "color emission 6 8 11"),
                                              mesh([(0, -3, 3), (0, -3, -3), (0, 3, -3), (0, 3, 3)], [(0, 1, 2, 3)]))),
         "DEF Stand Group { children [",
         shape(walnut, lathe(foot[::-1], 64, .5, True, True)),
