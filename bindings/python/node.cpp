@@ -43,8 +43,8 @@ void setAttribute(const NodeObject& self, const std::string& name, const py::han
   const FieldInfo* field = findValue(*self.node, name);
   if (!field && browser) field = self.node->type().findEventIn(name);
   if (!field) noField(*self.node, name, browser);
-  if (self.world->ended()) throw py::value_error("the Script that was given this node has ended");
   if (browser && scriptAssigns(self, field->name, object)) return;
+  if (const char* why = self.world->frozen()) throw py::value_error(why);
   Value fresh = fromPython(object, *field, self);
   auto lock = self.world->lock();
   if (browser)

@@ -23,8 +23,8 @@ struct WorldObject {
 
   virtual ~WorldObject() = default;
   virtual xvrml::World& graph() { return *world; }
-  virtual xvrml::Browser* browser() { return nullptr; } // what runs the world; null: it stands still
-  virtual bool ended() const { return false; }          // it can no longer be changed from here
+  virtual xvrml::Browser* browser() { return nullptr; }  // what runs the world; null: it stands still
+  virtual const char* frozen() const { return nullptr; } // why it cannot be changed from here; null: it can
   // Changes of a running world: `work` without the GIL; afterwards the first exception of a callback is raised.
   virtual void run(const std::function<void()>& work) { work(); }
   virtual std::shared_ptr<picture::Renderer> renderer(const picture::RenderSettings& settings, picture::Watch watch) {

@@ -9,21 +9,29 @@ using namespace xvrml;
 
 namespace {
 
+using Mutex = std::shared_ptr<std::recursive_mutex>;
+
 // The world as a Script sees it. It does not hold the browser: the browser holds the Script, which keeps nodes.
 struct ScriptWorld : WorldObject {
   Browser* running;
-  explicit ScriptWorld(Browser* running) : running(running) {}
+  const bool foreign; // the browser is no object of this module: nobody here knows when it may be changed
+  ScriptWorld(Browser* running, Mutex known) : running(running), foreign(!known) {
+    if (known) mutex = std::move(known);
+  }
   World& graph() override {
     if (!running) throw py::value_error("the Script that was given this node has ended");
     return running->world();
   }
   Browser* browser() override { return running; }
-  bool ended() const override { return !running; }
+  const char* frozen() const override {
+    return !running  ? "the Script that was given this node has ended"
+           : foreign ? "only the functions of a Script can change nodes here, on the thread on which they are called"
+                     : nullptr;
+  }
   std::shared_ptr<picture::Renderer> renderer(const picture::RenderSettings&, picture::Watch) override {
     throw picture::RenderError("a Script cannot render");
   }
 };
-using Mutex = std::shared_ptr<std::recursive_mutex>;
 
 auto& worlds() {
   static auto& all = *new std::unordered_map<const Browser*, std::shared_ptr<ScriptWorld>>();
@@ -31,13 +39,13 @@ auto& worlds() {
 }
 thread_local Mutex making;
 
-// A browser may end on a thread that does not have the GIL.
+// Of the browsers of this module. One may end on a thread that does not have the GIL.
 class Mutexes {
  public:
   Mutex find(const Browser* browser) {
     const std::scoped_lock lock(guard_);
     const auto found = all_.find(browser);
-    return found != all_.end() ? found->second : making ? making : std::make_shared<std::recursive_mutex>();
+    return found != all_.end() ? found->second : making;
   }
   void set(const Browser* browser, Mutex mutex) {
     const std::scoped_lock lock(guard_);
@@ -63,10 +71,7 @@ py::object wrap(uintptr_t browserAddress, uintptr_t nodeAddress) {
   if (!nodeAddress) return py::none();
   auto* browser = reinterpret_cast<Browser*>(browserAddress);
   std::shared_ptr<ScriptWorld>& world = worlds()[browser];
-  if (!world) {
-    world = std::make_shared<ScriptWorld>(browser);
-    world->mutex = mutexes().find(browser);
-  }
+  if (!world) world = std::make_shared<ScriptWorld>(browser, mutexes().find(browser));
   return py::cast(NodeObject{world, NodeRef(reinterpret_cast<Node*>(nodeAddress))});
 }
 

@@ -1,6 +1,8 @@
 """Scripts in Python within a Python program: they use the interpreter that runs, and the node objects of the binding."""
 import gc
+import os
 import pathlib
+import subprocess
 import sys
 import threading
 import weakref
@@ -160,6 +162,26 @@ def test_threads_of_the_program_go_on_while_worlds_run():
     thread.join()
     assert b["S"].sum == sum(range(200)) and counts[0] > 0
     assert messages(b) == []
+
+
+def test_an_interrupt_of_a_script_is_one_of_the_program():
+    b = browser('DEF S Script { eventIn SFBool go url "python:import signal\ndef go(v):\n    signal.raise_signal(2)\n    x = 1" }')
+    with pytest.raises(KeyboardInterrupt):
+        b["S"].go = True
+        for _ in range(1000):
+            pass
+    assert messages(b) == ["4: Script S: KeyboardInterrupt"]
+
+
+def test_a_program_may_end_before_its_worlds():
+    code = f"""import xvrml
+world = '#VRML V2.0 utf8\\nScript {{ field SFNode n Group {{ }} url "python:kept = script.n\\ndef shutdown(): print(1)" }}'
+browser = xvrml.Browser(world.encode(), script_path={str(ENGINES)!r}, trust=True)
+other = xvrml.Browser(world.encode(), script_path={str(ENGINES)!r}, trust=True)
+print(len(browser.warnings))"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60,
+                          env={**os.environ, "PYTHONPATH": str(pathlib.Path(xvrml.__file__).parents[1])})
+    assert done.returncode == 0 and done.stderr == "" and done.stdout == "0\n", (done.stdout, done.stderr)
 
 
 def test_memory_is_limited_for_scripts_alone():

@@ -66,6 +66,13 @@ def test_what_a_script_prints_is_a_message(vv):
     assert "hello" in done.talk
 
 
+def test_python_leaves_the_signals_alone(vv):
+    if "python" not in engines(vv):
+        pytest.skip("built without python")
+    vv.write("signals.wrl", HEADER + 'Script { url "python:import signal\nprint(signal.getsignal(signal.SIGINT))" }')
+    assert "None" in vv("signals.wrl", "--check", "--trust").talk  # not Python's
+
+
 def pictures(vv, world, folder, variable, times):
     tree = vv.program.resolve().parents[1]
     if not (tree / folder).is_dir():

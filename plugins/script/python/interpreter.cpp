@@ -64,6 +64,7 @@ Interpreter::~Interpreter() {
   *link_ = nullptr;
   if (globals_) {
     try {
+      py::module_::import("sys").attr("modules").attr("pop")(name_, py::none());
       globals_.attr("clear")(); // functions and their module hold each other
     } catch (py::error_already_set&) {}
   }
@@ -117,6 +118,7 @@ XsResult Interpreter::failed(py::error_already_set& error, bool stopped) {
     return XS_OK;
   }
   log(3, line, text);
+  if (error.matches(PyExc_KeyboardInterrupt)) PyErr_SetInterrupt(); // the user meant the whole program: it gets another one
   return XS_FAILED;
 }
 
@@ -157,8 +159,11 @@ XsResult Interpreter::load() {
   try {
     binding_ = binding();
     binding_.attr("_script_assign")(py::cpp_function(assign));
-    module_ = py::module_::import("types").attr("ModuleType")(file_ ? "script" : info_.origin);
+    static uint64_t number = 0;
+    name_ = "xvrml_script_" + std::to_string(++number);
+    module_ = py::module_::import("types").attr("ModuleType")(name_);
     globals_ = module_.attr("__dict__");
+    py::module_::import("sys").attr("modules")[name_.c_str()] = module_; // dataclasses look there
     globals_["__file__"] = info_.origin;
     globals_["__builtins__"] = py::module_::import("builtins");
     globals_["script"] = makeScriptObject(link_);

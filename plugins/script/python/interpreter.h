@@ -56,6 +56,7 @@ class Interpreter {
   Nodes nodes_;
   py::module_ binding_;
   std::unordered_map<std::string, const XsField*> fields_;
+  std::string name_; // of the module
   py::object module_;
   py::dict globals_;
   std::shared_ptr<Interpreter*> link_; // what `script` and `browser` hold: null once this is gone

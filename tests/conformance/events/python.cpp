@@ -160,6 +160,19 @@ TEST_F(Python, NodesAreThoseOfTheBinding) {
   EXPECT_EQ(r.printed(), Log{"Transform T"});
 }
 
+TEST_F(Python, ThreadsOfAScriptCannotChangeNodes) {
+  Scripted r("DEF T Transform { } DEF S Script { directOutput TRUE eventIn SFBool go field SFNode t USE T\n"
+             "url \"python:\nimport threading\ndef go(v):\n    t, said = script.t, []\n    def work():\n"
+             "        for f in (lambda: setattr(t, 'scale', (2, 2, 2)), lambda: script.t):\n            try: f()\n"
+             "            except ValueError as e: said.append(str(e))\n"
+             "    thread = threading.Thread(target=work)\n    thread.start()\n    thread.join()\n    print(*said, sep='; ')\" }",
+             trusting());
+  r.set("S", "go", true);
+  EXPECT_EQ(r.printed(), Log{"only the functions of a Script can change nodes here, on the thread on which they are called; no "
+                             "function of this Script is running"});
+  EXPECT_EQ(r.get("T", "scale"), "1 1 1");
+}
+
 TEST_F(Python, EventsToOtherNodesNeedDirectOutput) {
   Scripted r("DEF T Transform { } DEF S Script { eventIn SFBool go field SFNode t USE T\n"
              "url \"python:\ndef go(v):\n    script.t.translation = 1, 1, 1\" }",
