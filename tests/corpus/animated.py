@@ -6,7 +6,9 @@ animated.py --vv build/release/bin/vv [--corpus FOLDER] [--out build/corpus]
 
 Each file whose features hold `animated` runs at 10 Hz, mapped once a second (vv --check: no pictures). A crash, a time-out, an
 error of the program or a runaway cascade fails; problems of the file itself do not. Each file with Scripts
-must have them counted by protocol in vv --info, unless the Script itself is wrong and lost (0 in the table). Writes OUT/scripts.tsv. Exit code 77: there is no such folder.
+must have them counted by protocol in vv --info, unless the Script itself is wrong and lost (0 in the table). Each file with
+ECMAScript runs for ten seconds, too: an error of a Script fails, unless the file stands in script_errors.tsv with the reason why its
+program is wrong; so does a file that stands there in vain. Writes OUT/scripts.tsv. Exit code 77: there is no such folder.
 """
 import argparse
 import concurrent.futures
@@ -21,6 +23,7 @@ import time
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 TIMEOUT = 40  # seconds a run
 DONE, PROBLEMS = 0, 4  # exit codes of vv --check
+ECMASCRIPT = {"script:javascript", "script:vrmlscript", "script:ecmascript", "script:js-file"}
 
 
 def run(*command):
@@ -61,6 +64,25 @@ def scripts_of(args, row):
     return row, told["scripts"], ""
 
 
+def expected_errors():
+    """File to the reason why a Script in it fails."""
+    lines = (pathlib.Path(__file__).parent / "script_errors.tsv").read_text(encoding="utf-8").rstrip("\n").split("\n")
+    return dict(line.split("\t") for line in lines)
+
+
+def run_scripts(args, row):
+    """What is wrong with the run of a file's ECMAScript."""
+    code, _, talk = run(args.vv, args.corpus / row["file"], "--check", "--frames", "0-100/10", "--fps", "10")
+    wrong = complaint(code, talk)
+    failed = re.findall(r"^.*: error: Script(?: \S+)?: .*", talk, re.M)
+    expected = row["file"] in args.expected
+    if not wrong and failed and not expected:
+        wrong = failed[0]
+    if not wrong and expected and not failed:
+        wrong = "no Script fails any more: remove it from script_errors.tsv"
+    return row["file"], wrong
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--vv", type=pathlib.Path, required=True)
@@ -69,6 +91,7 @@ def main():
     parser.add_argument("--jobs", type=int, default=2)
     args = parser.parse_args()
     args.corpus = pathlib.Path(args.corpus).resolve()
+    args.expected = expected_errors()
     if not (args.corpus / "FEATURES.tsv").exists():
         print(f"no corpus at {args.corpus}: skipped")
         return 77
@@ -83,12 +106,21 @@ def main():
     with concurrent.futures.ThreadPoolExecutor(args.jobs) as pool:
         played = list(pool.map(lambda row: play(args, row), animated))
         counted = list(pool.map(lambda row: scripts_of(args, row), scripted))
+        there = any(one["engine"] for _, found, _ in counted for one in found or [] if one["protocol"] in ("javascript", "vrmlscript"))
+        programs = [row for row in scripted if there and ECMASCRIPT & set(row["features"])]
+        ran = list(pool.map(lambda row: run_scripts(args, row), programs))
     wall = time.monotonic() - start
     failed = 0
     for file, wrong, _ in played:
         if wrong:
             failed += 1
             print(f"{file}: {wrong}")
+    for file, wrong in ran:
+        if wrong:
+            failed += 1
+            print(f"{file}: {wrong}")
+    if not there:
+        print("no script engine for ECMAScript is there: its Scripts were not run")
     args.out.mkdir(parents=True, exist_ok=True)
     needed = {}
     with open(args.out / "scripts.tsv", "w", encoding="utf-8") as table:
@@ -102,7 +134,7 @@ def main():
                 table.write(f"{row['file']}\t{one['protocol']}\t{one['count']}\t{one['declared']}\t{'there' if one['engine'] else 'missing'}\n")
                 needed.setdefault(one["protocol"], set()).add(row["file"])
     slowest = max(played, key=lambda p: p[2], default=("", "", 0))
-    print(f"{len(played)} animated files and {len(counted)} with scripts in {wall:.0f} s, {failed} failed; slowest {slowest[0]} {slowest[2]:.1f} s")
+    print(f"{len(played)} animated files and {len(counted)} with scripts ({len(ran)} in ECMAScript were run) in {wall:.0f} s, {failed} failed; slowest {slowest[0]} {slowest[2]:.1f} s")
     print("engines:", ", ".join(f"{protocol} {len(files)}" for protocol, files in sorted(needed.items())))
     return 1 if failed or not played else 0
 
