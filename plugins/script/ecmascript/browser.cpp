@@ -114,6 +114,24 @@ duk_ret_t changeRoute(duk_context* ctx, ChangeRoute function, const char* name) 
 duk_ret_t addRoute(duk_context* ctx) { return changeRoute(ctx, &XsHost::addRoute, "Browser.addRoute"); }
 duk_ret_t deleteRoute(duk_context* ctx) { return changeRoute(ctx, &XsHost::deleteRoute, "Browser.deleteRoute"); }
 
+// C.6.2: what a field, an eventOut or an element holds, as a value of its own. See assignments.h.
+duk_ret_t copyOf(duk_context* ctx) {
+  Interpreter& self = Interpreter::of(ctx);
+  if (SfData* sf = sfData(ctx, 0)) {
+    if (sf->type == XS_SFIMAGE && isLive(self, sf->place)) {
+      duk_get_prop_heapptr(ctx, 0, self.keyList);
+      pushImage(ctx, self, sf->v, {});
+      return 1;
+    }
+    if (sf->type != XS_SFIMAGE) sf->place = {}, sf->hasParent = 0; // made for this very access
+  } else if (const MfData* mf = mfData(ctx, 0); mf && isLive(self, mf->place)) {
+    pushMfFrom(ctx, self, 0, mf->type, "assignment");
+    return 1;
+  }
+  duk_dup(ctx, 0);
+  return 1;
+}
+
 duk_ret_t print(duk_context* ctx) { // any number of values
   Interpreter& self = begin(ctx);
   duk_push_string(ctx, " ");
@@ -151,11 +169,9 @@ void registerBrowser(duk_context* ctx, Interpreter&) {
                                        {"print", print, DUK_VARARGS},
                                        {"println", print, DUK_VARARGS}};
   // Names of other browsers, which worlds use.
-  static constexpr Method globals[] = {{"print", print, DUK_VARARGS},
-                                       {"println", print, DUK_VARARGS},
-                                       {"trace", print, DUK_VARARGS},
-                                       {"addRoute", addRoute, 4},
-                                       {"deleteRoute", deleteRoute, 4}};
+  static constexpr Method globals[] = {{"print", print, DUK_VARARGS},   {"println", print, DUK_VARARGS},
+                                       {"trace", print, DUK_VARARGS},   {"addRoute", addRoute, 4},
+                                       {"deleteRoute", deleteRoute, 4}, {"__xvrmlCopy", copyOf, 1}};
   duk_push_object(ctx);
   putMethods(ctx, methods, std::size(methods));
   duk_put_global_string(ctx, "Browser");

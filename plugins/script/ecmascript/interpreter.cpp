@@ -6,6 +6,7 @@
 #include <cstring>
 #include <new>
 
+#include "assignments.h"
 #include "slots.h"
 
 namespace ecma {
@@ -121,12 +122,33 @@ duk_ret_t setUp(duk_context* ctx, void* data) {
   return 0;
 }
 
+// The text with copies where C.6.2 wants them. If that is no program, then only because the text is none, or was not understood.
+void prepareProgram(Interpreter& self) noexcept {
+  try {
+    const XsString text = self.info->text;
+    std::string_view program(text.data ? text.data : "", text.bytes);
+    if (program.starts_with("\xef\xbb\xbf")) program.remove_prefix(3);
+    std::unordered_set<std::string_view> objects;
+    for (uint32_t i = 0; i < self.info->fieldCount; ++i) {
+      const XsField& field = self.info->fields[i];
+      const bool object = isMf(field.type) || field.type == XS_SFIMAGE || components(field.type) > 1;
+      if (field.access != XS_EVENT_IN && object) objects.insert(field.name);
+    }
+    self.program = copyAssigned(program, objects);
+  } catch (const std::bad_alloc&) { self.program.clear(); }
+}
+
 duk_ret_t runProgram(duk_context* ctx, void* data) {
-  const XsString text = static_cast<Interpreter*>(data)->info->text;
-  const bool marked = text.bytes >= 3 && std::memcmp(text.data, "\xef\xbb\xbf", 3) == 0;
-  duk_push_lstring(ctx, text.data + (marked ? 3 : 0), text.bytes - (marked ? 3 : 0));
+  Interpreter& self = *static_cast<Interpreter*>(data);
+  const XsString text = self.info->text;
+  duk_push_lstring(ctx, self.program.data(), self.program.size());
   duk_push_string(ctx, "script");
-  duk_compile(ctx, 0);
+  if (self.program.empty() || duk_pcompile(ctx, 0) != 0) {
+    const bool marked = text.bytes >= 3 && std::memcmp(text.data, "\xef\xbb\xbf", 3) == 0;
+    duk_push_lstring(ctx, text.data + (marked ? 3 : 0), text.bytes - (marked ? 3 : 0));
+    duk_push_string(ctx, "script");
+    duk_compile(ctx, 0);
+  }
   duk_call(ctx, 0);
   return 0;
 }
@@ -194,7 +216,9 @@ Interpreter* createInterpreter(const XsHost* host, const XsScriptInfo* info, XsR
     return nullptr;
   }
   result = enter(*self, setUp, self, "setting up", false);
+  prepareProgram(*self);
   if (result == XS_OK) result = enter(*self, runProgram, self, "running the program", true);
+  self->program = {};
   if (result == XS_OK) return self;
   destroyInterpreter(self);
   return nullptr;

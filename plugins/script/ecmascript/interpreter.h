@@ -72,6 +72,7 @@ struct Interpreter {
   std::vector<XsNode> handles;
   std::deque<std::string> texts; // converted ones, of this call
   std::vector<uint8_t> pixels;
+  std::string program; // as it is compiled
   int32_t integer = 0;
   XsImage image{};
 
