@@ -224,6 +224,20 @@ TEST(Live, aGivenViewerIsWhereItIsLookedFrom) {
   for (size_t i = 3; i < nothing.rgb.size(); ++i) ASSERT_EQ(nothing.rgb[i], nothing.rgb[i % 3]);
 }
 
+// Until the promised error is reached, with as many samples as that takes.
+TEST(Live, aTargetErrorEndsTheRefinement) {
+  const auto browser = browserOf(), other = browserOf();
+  RenderSettings settings = settingsOf();
+  settings.error = 0.05;
+  LiveRenderer live(*browser, settings);
+  const LiveFrame frame = frameOf(64, 48, 256);
+  const LivePicture picture = finish(live, frame);
+  EXPECT_LT(picture.samples, 256);
+  EXPECT_GE(picture.samples, 32);
+  EXPECT_LE(picture.stats.errorMean, 0.05);
+  EXPECT_EQ(picture.rgb, displayBytes(still(*other, settings, frame).picture));
+}
+
 TEST(Live, failuresAreToldAndOver) {
   const auto browser = browserOf();
   RenderSettings settings = settingsOf();
