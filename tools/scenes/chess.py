@@ -194,7 +194,7 @@ def chess():
         viewpoint((2.6, 4.8, 9.9), (.15, -.05, .1), .6, "DEF White_Player Viewpoint", 'description "White" '),
         viewpoint((-2.6, 4.8, -9.9), (-.15, -.05, -.1), .6, "DEF Black_Player Viewpoint", 'description "Black" '),
         viewpoint((0, 13.4, .02), (0, 0, 0), .72, "DEF Above Viewpoint", 'description "From above" '),
-        viewpoint((-2.6, 1.15, 5.9), (-1.6, .7, 2.0), .62, "DEF Close Viewpoint", 'description "Among the pieces" '),
+        viewpoint((-2.6, 1.15, 5.9), (-2.1, .72, 2.0), .6, "DEF Close Viewpoint", 'description "Among the pieces" '),
         'ORTBackground { shader ORTShader { name "EnvironmentMap" file "environmentmap" '
         'options [ "texture texture studio.png", "1f intensity .8", "1f rotation 2.4" ] } }',
         "# What the pieces and squares look like: a material for the colours, a shader for what is done with them.",
