@@ -5,6 +5,7 @@ import shutil
 import subprocess
 import sys
 import textwrap
+import time
 
 import pytest
 from conftest import ROOT, find_vv
@@ -123,6 +124,59 @@ def test_the_picture_is_the_one_of_the_same_moves(panel):
         seen, wanted = (x.render(size=(64, 48), spp=1).display.tobytes() for x in (b, other))
         assert seen == wanted and seen != before
     """)
+
+
+def test_beside_the_picture_of_vv(vv):
+    """vv's window and the panel in one program: three moves by the pointer."""
+    scenes = ROOT / "examples/scenes"
+    for name in ("chess.tcl", "chess_panel.tcl", "studio.png"):
+        shutil.copy(scenes / name, vv.folder / name)
+    # The panel moves away from the picture, says where its squares are, and writes down each position.
+    vv.write("driver.tcl", DRIVER + """
+set folder [file dirname [info script]]
+proc keep {name text} {
+  set channel [open [file join $::folder $name.new] w]
+  puts $channel $text
+  close $channel
+  file rename -force [file join $::folder $name.new] [file join $::folder $name]
+}
+trace add variable position write {apply {args {keep position $::position}}}
+proc where {} {
+  if {[winfo ismapped .board.e2] && [winfo rootx .] >= 340} {
+    keep squares [lmap name {e2 e4 e7 e5 g1 f3} {
+      list [expr {[winfo rootx .board.$name] + 20}] [expr {[winfo rooty .board.$name] + 20}]
+    }]
+  } else {
+    after 100 where
+  }
+}
+after 200 {wm geometry . +340+0; where}
+""")
+    vv.write("chess.wrl", (scenes / "chess.wrl").read_text().replace('url "chess.tcl"', 'url "driver.tcl"'))
+    read = lambda name: (vv.folder / name).read_text() if (vv.folder / name).exists() else ""
+    with display("1280x800"):
+        program = vv.start("chess.wrl", "--trust", "--size", "160x120")
+        try:
+            def until(condition):
+                end = time.monotonic() + 90
+                while not condition():
+                    if program.poll() is not None and b"no window" in (talk := program.stderr.read()):
+                        pytest.skip("vv is built without a window")
+                    assert program.poll() is None and time.monotonic() < end, (read("position"), program.poll())
+                    time.sleep(0.1)
+
+            until(lambda: read("squares"))
+            squares = [tuple(pair.split()) for pair in read("squares").replace("} {", "\n").strip("{}\n ").splitlines()]
+            for i, placement in enumerate(("rnbqkbnr/pppppppp/8/8/4P3/8/PPPP1PPP/RNBQKBNR", "rnbqkbnr/pppp1ppp/8/4p3/4P3/8/PPPP1PPP/RNBQKBNR",
+                                           "rnbqkbnr/pppp1ppp/8/4p3/4P3/5N2/PPPP1PPP/RNBQKB1R")):
+                for x, y in squares[2 * i:2 * i + 2]:
+                    subprocess.run(["xdotool", "mousemove", x, y, "sleep", "0.3", "click", "1", "sleep", "0.3"], check=True)
+                until(lambda: read("position").startswith(placement))
+            names = subprocess.run(["xdotool", "search", "--onlyvisible", "--name", "chess.wrl"], capture_output=True, text=True).stdout.split()
+            assert names  # the picture's own window is there
+        finally:
+            program.terminate()
+            program.communicate(timeout=60)
 
 
 def test_its_game_is_stepped_played_and_taken_back(panel):
