@@ -90,6 +90,13 @@ def test_the_example_of_native_reads_its_sensor(vv):
     assert len(set(at)) == 3 and at[1] == at[3]
 
 
+def test_the_example_of_python_moves(vv):
+    if "python" not in engines(vv):
+        pytest.skip("built without python")
+    at = list(pictures(vv, "examples/python/waves.wrl", "lib/xvrml/scripts", "XVRML_SCRIPT_PATH", ("0.5", "1", "0.5")))
+    assert at[0] == at[2] != at[1]
+
+
 def test_the_template_of_an_engine(vv):
     at = list(pictures(vv, "examples/script_engine/wave.wrl", "examples/scripts", "XVRML_SCRIPT_PATH", ("0", "1", "2")))
     assert at[0] != at[1] and len(set(at)) >= 2

@@ -1,0 +1,21 @@
+"""Heights of a sea, and a buoy that floats on it: the program of a Script (waves.wrl)."""
+from math import atan, cos, sin
+
+WAVES = ((0.9, 0.4, 1.3, 1.0), (-0.7, 1.1, 1.7, 0.5), (2.1, -0.6, 2.3, 0.2))  # along x and z, in time, height
+
+
+def level(x, z, time):
+    return script.height * sum(h * sin(kx * x + kz * z + w * time) for kx, kz, w, h in WAVES)
+
+
+def slope(x, z, time):
+    return script.height * sum(h * kx * cos(kx * x + kz * z + w * time) for kx, kz, w, h in WAVES)
+
+
+def set_time(time):
+    sea, step = script.sea, script.sea.xSpacing
+    columns = [step * i - 5 for i in range(sea.xDimension)]
+    rows = [sea.zSpacing * i - 5 for i in range(sea.zDimension)]
+    script.heights = [level(x, z, time) for z in rows for x in columns]
+    script.buoy.translation = 0, level(0, 2, time), 2  # an event to the node: it needs directOutput TRUE
+    script.buoy.rotation = 0, 0, 1, atan(slope(0, 2, time))
