@@ -13,6 +13,7 @@
 
 #include "messages.h"
 #include "picture/atomic_file.h"
+#include "progress.h"
 #include "shader_text.h"
 #include "signals.h"
 #include "watched.h"
@@ -55,7 +56,7 @@ class Window {
       passOn();
       takeWorld();
       if (seconds() >= next && goOn()) next = seconds() + 1 / options_.fps;
-      if (session_ && session_->look(picture_)) screen_.setPicture(picture_.width, picture_.height, picture_.rgb);
+      if (session_ && session_->look(picture_)) show();
       tell();
       screen_.present();
     }
@@ -81,6 +82,12 @@ class Window {
       else if (event.kind == InputEvent::Kind::down)
         business(event, actionOf(event));
     }
+  }
+
+  void show() {
+    screen_.setPicture(picture_.width, picture_.height, picture_.rgb);
+    if (std::exchange(first_, false) && options_.verbose)
+      say(fmt::format("vv: first picture, {}x{}, after {}", picture_.width, picture_.height, duration(seconds() - loadStart_)));
   }
 
   // Returns true when the world has moved on.
@@ -110,6 +117,7 @@ class Window {
     if (!whole) request.options.loadInlines = false; // they come after the first picture
     keepPlace_ = keepPlace && session_;
     loading_ = request.urls.empty() ? "" : request.urls[0];
+    loadStart_ = seconds();
     loader_.begin(std::move(request));
     shownAt_ = -1;
   }
@@ -146,9 +154,9 @@ class Window {
     width_ = screen_.width(), height_ = screen_.height();
     fresh->begin(width_, height_, place, fragment);
     mixer_.set({});
-    input_.clear();
     session_ = std::move(fresh); // the former ends here
     failed_ = false;
+    first_ = true;
     message("", 0);
     const std::string& path = session_->browser().world().path;
     screen_.setTitle(path + " - vv");
@@ -281,7 +289,8 @@ class Window {
   const Clock::time_point start_ = Clock::now();
   int width_ = 0, height_ = 0;
   bool ended_ = false, failed_ = false, keepPlace_ = false, help_ = false;
-  double nextLook_ = 0;
+  bool first_ = false; // picture of the world is still to come
+  double nextLook_ = 0, loadStart_ = 0;
 
   OverlayLevel level_ = OverlayLevel::brief;
   std::string loading_, message_, bottom_;
