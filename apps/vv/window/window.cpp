@@ -86,7 +86,9 @@ class Window {
 
   void show() {
     screen_.setPicture(picture_.width, picture_.height, picture_.rgb);
-    if (std::exchange(first_, false) && options_.verbose)
+    const bool first = std::exchange(first_, false);
+    if (first && !saveTo_.empty()) message(session_->save(std::exchange(saveTo_, {})), 4);
+    if (first && options_.verbose)
       say(fmt::format("vv: first picture, {}x{}, after {}", picture_.width, picture_.height, duration(seconds() - loadStart_)));
   }
 
@@ -204,6 +206,8 @@ class Window {
     const std::string path = named ? event.text : freeName(session_->browser().world().path, suffix);
     if (session_->scripted())
       session_->saveWhenFinished(path);
+    else if (first_)
+      saveTo_ = path; // a moment later
     else
       message(session_->save(path), 4);
   }
@@ -289,6 +293,7 @@ class Window {
   const Clock::time_point start_ = Clock::now();
   int width_ = 0, height_ = 0;
   bool ended_ = false, failed_ = false, keepPlace_ = false, help_ = false;
+  std::string saveTo_; // with the first picture of the world
   bool first_ = false; // picture of the world is still to come
   double nextLook_ = 0, loadStart_ = 0;
 

@@ -1,0 +1,96 @@
+"""Scripts of input for vv's window, which play without one, too; and its sound."""
+import math
+import re
+import struct
+import wave
+
+import pytest
+
+from conftest import HEADER, read_ppm
+from window_driver import PATIENCE, SENSORS, SIZE, SPINNING, Shot, blue, green, red, screen, window  # noqa: F401
+
+INPUT = """# a click, a drag, a viewpoint, a way round
+0.1 move -0.35 0
+0.2 press left
+0.3 release left
+0.5 press left 0.36 0
+0.6 move 0.36 0.25
+0.7 release left 0.36 0.5
+1 press left 0 0.9
+1.1 move 0.2 0.8
+1.2 release left
+1.5 wheel 1
+"""
+
+
+def test_the_same_input_gives_the_same_bytes(vv):
+    vv.write("world.wrl", SENSORS)
+    vv.write("in.txt", INPUT)
+    made = []
+    for name in ("a.ppm", "b.ppm"):
+        done = vv("world.wrl", "--input", "in.txt", "-o", name, "--size", "160x120", "--spp", 2)
+        assert done.returncode == 0, done.talk
+        made.append((vv.folder / name).read_bytes())
+    assert made[0] == made[1]
+    rows = read_ppm(made[0])[2]
+    count = [sum(test(*p) for row in rows for p in row) for test in (red, green, blue)]
+    assert count[0] == 0 and count[1] > 200 and count[2] > 100
+    assert vv("world.wrl", "-o", "c.ppm", "--size", "160x120", "--spp", 2).returncode == 0
+    assert (vv.folder / "c.ppm").read_bytes() != made[0]
+
+
+def test_with_and_without_a_window_input_gives_the_same_bytes(window, vv):
+    vv.write("world.wrl", SPINNING)
+    vv.write("in.txt", "0.2 press left 0 0.5\n0.4 move 0.3 0.1\n0.6 release left\n0.7 key F\n1 save w.png\n1.1 quit\n")
+    w = window("world.wrl", "--input", "in.txt", "--spp", 3, ready=False)
+    assert w.program.wait(PATIENCE) == 0
+    done = vv("world.wrl", "--input", "in.txt", "--time", 1, "-o", "h.png", "--size", "%dx%d" % SIZE, "--spp", 3)
+    assert done.returncode == 0, done.talk
+    assert (vv.folder / "w.png").read_bytes() == (vv.folder / "h.png").read_bytes()
+
+
+def test_what_was_recorded_can_be_played(window, vv):
+    w = window(SENSORS, "--record-input", "in.txt")
+    w.click(-0.35, 0)
+    w.drag(0.36, 0, 0.36, 0.5)
+    w.key("Page_Down")
+    w.until(lambda s: blue(*s.at(0, 0.4)))
+    assert w.end() == 0
+    text = (vv.folder / "in.txt").read_text()
+    assert "press left" in text and "down PageDown" in text
+    end = float(text.splitlines()[-1].split()[0]) + 2
+    for name in ("a.png", "b.png"):
+        assert vv("world.wrl", "--input", "in.txt", "--time", end, "-o", name, "--size", "%dx%d" % SIZE, "--spp", 1).returncode == 0
+    assert (vv.folder / "a.png").read_bytes() == (vv.folder / "b.png").read_bytes()
+    shot = Shot(vv.folder / "a.png")
+    assert shot.share(blue) > 0.01 and shot.share(red) == 0
+
+
+@pytest.mark.parametrize("line, word", [("x", "number"), ("0 jump", "no event"), ("1 move 0", "a place"), ("1 press up", "middle"),
+                                        ("1 key H super", "shift"), ("1 leave it", "not expected"), ("2 leave\n1 leave", "earlier")])
+def test_a_script_that_is_wrong_names_its_line(vv, line, word):
+    vv.write("in.txt", "# first\n" + line + "\n")
+    done = vv("box.wrl", "--input", "in.txt", "-o", "x.png")
+    assert done.returncode == 2 and re.search(r"in\.txt:[23]: ", done.talk) and word in done.talk, done.talk
+    assert vv("box.wrl", "--input", "absent.txt", "-o", "x.png").returncode == 3
+
+
+def test_sound_arrives_with_its_pitch_on_its_side(window, vv):
+    rate, tone = 8000, 500
+    with wave.open(str(vv.folder / "tone.wav"), "wb") as file:
+        file.setnchannels(1), file.setsampwidth(2), file.setframerate(rate)
+        file.writeframes(b"".join(struct.pack("<h", int(16000 * math.sin(2 * math.pi * tone * i / rate))) for i in range(rate)))
+    w = window(HEADER + "Viewpoint { position 0 0 0 } Sound { location 5 0 0 minFront 20 minBack 20 maxFront 90 maxBack 90 intensity 1 "
+               "source AudioClip { url \"tone.wav\" loop TRUE pitch 2 } } Shape { geometry Box {} }",
+               env={"SDL_AUDIODRIVER": "disk", "SDL_DISKAUDIOFILE": "sound.raw", "SDL_DISKAUDIODELAY": "5"})
+    raw = vv.folder / "sound.raw"
+    w.wait(lambda: raw.exists() and raw.stat().st_size > 8 * 48000, "sound")
+    assert w.end() == 0
+    data = raw.read_bytes()
+    pairs = struct.unpack(f"<{len(data) // 8 * 2}f", data[:len(data) // 8 * 8])
+    left, right = pairs[4096:8 * 4096:2], pairs[4097:8 * 4096:2]  # after it has faded in
+    strength = [math.sqrt(sum(v * v for v in side) / len(side)) for side in (left, right)]
+    assert strength[1] > 1.2 * strength[0] > 0
+    assert max(right) < 16000 / 32768 * math.sqrt(2) * 1.01
+    crossings = sum(a < 0 <= b for a, b in zip(right, right[1:]))
+    assert crossings / (len(right) / 48000) == pytest.approx(2 * tone, rel=0.03)
