@@ -107,8 +107,9 @@ duk_ret_t changeRoute(duk_context* ctx, ChangeRoute function, const char* name) 
   const XsNode from = nodeOf(ctx, self, 0, name), to = nodeOf(ctx, self, 2, name);
   pushText(ctx, 1, name);
   pushText(ctx, 3, name);
-  check(ctx, self, (self.host->*function)(self.host, self.self, from, duk_get_string(ctx, -2), to, duk_get_string(ctx, -1)),
-        name);
+  const XsResult result =
+      (self.host->*function)(self.host, self.self, from, duk_get_string(ctx, -2), to, duk_get_string(ctx, -1));
+  if (result != XS_FAILED) check(ctx, self, result, name); // else it is there, or gone, already
   return 0;
 }
 duk_ret_t addRoute(duk_context* ctx) { return changeRoute(ctx, &XsHost::addRoute, "Browser.addRoute"); }
