@@ -92,8 +92,8 @@ class ScriptHost : public ScriptRunner {
   using Key = uint32_t; // order of the nodes in the world
 
   // Answers of calls beside those of XsResult
-  static constexpr auto later = XsResult(-1); // the function is still running in its process; see tick
-  static constexpr auto again = XsResult(-2); // its process was gone before: it is started anew
+  static constexpr auto later = XsResult(0x7ffffff0); // the function is still running in its process; see tick
+  static constexpr auto again = XsResult(0x7ffffff1); // its process was gone before: it is started anew
 
   void start(Script& script);
   XsResult makeInterpreter(Script& script, ScriptProgram program);

@@ -133,6 +133,7 @@ void ScriptHost::lose(Script& script, wire::Op op, bool tooLong) {
       tooLong ? fmt::format("{} took too long: the Script is stopped", function)
               : fmt::format("{}: its process {}: the Script is stopped", function, process->death()));
   detach(script);
+  processes_->programEnded();
   restartAll(*process);
 }
 
@@ -192,10 +193,11 @@ void ScriptHost::stopRemote(Script& script) {
   detach(script);
   process->discarded.push_back(script.number);
   if (closing_) return;
-  if (process->scripts() == 0 && (running || !processes_->spare(*process)))
+  if (process->scripts() == 0 && running)
     processes_->remove(*process);
   else
     discard(process, forEver, patienceEnds());
+  if (beginning_.empty()) processes_->trim();
 }
 
 // Destroys interpreters that nobody uses any more, when nothing else runs in their process.
@@ -235,9 +237,11 @@ void ScriptHost::serveLate() {
     const XsResult result = serveCall(script, 0, linger, now + std::max(wire::Clock::duration{}, (end - now) / int64_t(left)));
     if (result == later) continue;
     if (op == wire::Op::create && !created(script, result)) start(script);
-    if (script.owed || !script.waiting.empty()) due_[key] = true;
   }
   for (const ProcessRef& process : std::vector<ProcessRef>(processes_->all())) discard(process, 0, end);
+  if (beginning_.empty()) processes_->trim();
+  for (const auto& [key, script] : scripts_) // that waited for that, or for others in their process
+    if (script->process && !script->busy() && (script->owed || !script->waiting.empty())) due_[key] = true;
   const auto idle = [](const ProcessRef& process) { return !process->busy(); };
   if (late_.empty() || std::none_of(processes_->all().begin(), processes_->all().end(), idle)) return;
   for (const Key key : std::exchange(late_, {})) beginning_.push_back(key);

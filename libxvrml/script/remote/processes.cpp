@@ -2,6 +2,7 @@
 #include "script/remote/processes.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace xvrml {
 
@@ -19,6 +20,7 @@ bool ScriptProcesses::start(const ProcessSettings& settings) {
 ProcessRef ScriptProcesses::choose(const ProcessSettings& settings, size_t coming, std::string& why) {
   const std::string key = settings.library + ":" + settings.engine;
   if (const auto known = unusable_.find(key); known != unusable_.end()) return why = known->second, nullptr;
+  if (ended_ >= mostEnded) return why = std::to_string(ended_) + " processes have been ended by programs of this world", nullptr;
   std::erase_if(all_, [](const ProcessRef& process) { return process->dead(); });
   const auto fits = [&](const ProcessRef& p) {
     return p->settings().library == settings.library && p->settings().engine == settings.engine;
@@ -27,20 +29,24 @@ ProcessRef ScriptProcesses::choose(const ProcessSettings& settings, size_t comin
   for (size_t i = empty; i < coming + 1 && all_.size() < most; ++i)
     if (!start(settings)) break;
   if (std::none_of(all_.begin(), all_.end(), fits)) start(settings);
-  ProcessRef best;
-  for (const ProcessRef& process : all_)
-    if (fits(process) && (!best || process->scripts() < best->scripts())) best = process;
-  if (best && best->ready()) return best;
-  why = best ? best->death() : noProgram_;
+  why = noProgram_;
+  for (;;) {
+    ProcessRef best;
+    for (const ProcessRef& process : all_)
+      if (fits(process) && (!best || process->scripts() < best->scripts())) best = process;
+    if (!best) break;
+    if (best->ready()) return best;
+    why = best->death();
+    remove(*best);
+  }
   unusable_[key] = why;
-  std::erase_if(all_, [&](const ProcessRef& p) { return fits(p) && p->scripts() == 0; });
   return nullptr;
 }
 
-bool ScriptProcesses::spare(const ScriptProcess& process) const {
-  return std::none_of(all_.begin(), all_.end(), [&](const ProcessRef& other) {
-    return other.get() != &process && !other->dead() && other->scripts() == 0;
-  });
+void ScriptProcesses::trim() {
+  bool kept = false;
+  std::erase_if(all_,
+                [&](const ProcessRef& p) { return p->scripts() == 0 && (p->dead() || p->busy() || std::exchange(kept, true)); });
 }
 
 void ScriptProcesses::remove(const ScriptProcess& process) {
