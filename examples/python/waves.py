@@ -17,5 +17,5 @@ def set_time(time):
     columns = [step * i - 5 for i in range(sea.xDimension)]
     rows = [sea.zSpacing * i - 5 for i in range(sea.zDimension)]
     script.heights = [level(x, z, time) for z in rows for x in columns]
-    script.buoy.translation = 0, level(0, 2, time), 2  # an event to the node: it needs directOutput TRUE
+    script.buoy.translation = 0, level(0, 2, time) + 0.1, 2  # an event to the node: it needs directOutput TRUE
     script.buoy.rotation = 0, 0, 1, atan(slope(0, 2, time))

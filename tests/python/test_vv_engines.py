@@ -1,5 +1,6 @@
 """vv and its script engines: --list-engines, what is said of unknown protocols and of worlds that are not trusted."""
 import json
+import shutil
 
 import pytest
 
@@ -113,3 +114,17 @@ def test_the_template_of_an_engine(vv):
     assert "no field or eventOut of the Script: x" in talk("x = 1")
     assert "not of type" in talk("y = 1", "eventOut SFVec3f y")
     assert "0 errors" in talk("y = -(2 + x) * 3 / 4 - .5e-3")
+
+
+def test_python_without_its_package_says_so(vv):
+    found = engines(vv).get("python")
+    if not found:
+        pytest.skip("built without python")
+    lonely = vv.folder / "lonely"
+    lonely.mkdir(mode=0o755)
+    shutil.copy(found["library"], lonely)
+    vv.write("alone.wrl", HEADER + 'Script { url "python:print(1)" }')
+    talk = vv("alone.wrl", "--check", "--trust", "--script-path", lonely, env={"PYTHONPATH": "", "PYTHONNOUSERSITE": "1"}).talk
+    if "Script: 1" in talk:
+        pytest.skip("the package is installed for all of Python")
+    assert "alone.wrl:2" in talk and "the Python package xvrml, whose nodes Scripts in Python use, cannot be imported" in talk
