@@ -141,6 +141,11 @@ with tempfile.TemporaryDirectory() as scratch:
         said = run(prefix / "bin/vv", "python.wrl", "--trust", "--check", cwd=scratch)
         if str(prefix) not in said or "Transform" not in said:
             sys.exit(f"Scripts in Python do not use the installed package: {said}")
+    if "ecmascript" in engines: # in a process: the program is found beside the installed library
+        (scratch / "js.wrl").write_text("#VRML V2.0 utf8\nScript { url \"javascript:function initialize() { print('runs'); }\" }\n")
+        said = run(prefix / "bin/vv", "js.wrl", "--check", "--strict", cwd=scratch)
+        if "runs" not in said or not (prefix / "libexec/xvrml/xvrml-script-host").exists():
+            sys.exit(f"Scripts do not run in processes of the installed program: {said}")
     if "native" in engines:
         native = next(prefix.rglob("scripts/native.so")).parent.parent / "native"
         native.mkdir()
