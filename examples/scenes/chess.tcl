@@ -1,8 +1,9 @@
-# chess.tcl: moves the pieces of chess.wrl. It knows the rules, reads games (PGN), and plays one by the world's clock; in a trusted
-# world with a display it opens a panel instead (chess_panel.tcl) and waits for what is pressed there.
+# chess.tcl: moves the pieces of chess.wrl. It knows the rules, reads games (PGN), and plays one by the world's clock; in a
+# trusted world with a display it opens a panel instead (chess_panel.tcl) and waits for what is pressed there. One file, since
+# programs of other worlds cannot read a second.
 #
-# A position is a list {board side castling enPassant halfmoves moveNumber}. The board has 12 rows of 10, with a margin of #, so that
-# no step leaves it: a1 is 21, h1 28, a8 91, h8 98. PNBRQK are White's pieces, pnbrqk Black's, a dot is an empty square.
+# A position is a list {board side castling enPassant halfmoves moveNumber}. The board has 12 rows of 10, with a margin of #, so
+# that no step leaves it: a1 is 21, h1 28, a8 91, h8 98. PNBRQK are White's pieces, pnbrqk Black's, a dot is an empty square.
 
 namespace eval rules {
   variable start {rnbqkbnr/pppppppp/8/8/8/8/PPPPPPPP/RNBQKBNR w KQkq - 0 1}
@@ -103,7 +104,8 @@ proc rules::pseudo position {
         set targets {}
         if {[lindex $board $to] eq "."} {
           lappend targets $to
-          if {$row == ($side eq "w" ? 2 : 7) && [lindex $board [expr {$to + $ahead}]] eq "."} {lappend targets [expr {$to + $ahead}]}
+          set second [expr {$to + $ahead}]
+          if {$row == ($side eq "w" ? 2 : 7) && [lindex $board $second] eq "."} {lappend targets $second}
         }
         foreach step {-1 1} {
           set to [expr {$from + $ahead + $step}]
@@ -272,7 +274,7 @@ proc rules::san {position move} {
   return $text
 }
 
-# The legal move that a text means: SAN (Nbd7, exd8=Q+, O-O) or squares (e2e4, e7e8q). An error if there is none, or more than one.
+# The legal move that a text means: SAN (Nbd7, exd8=Q+, O-O) or squares (e2e4, e7e8q). An error if there is none, or more.
 proc rules::find {position text} {
   lassign $position board side
   set plain [string map {0-0-0 O-O-O 0-0 O-O} [regsub {[+#!?]*(e\.p\.)?$} [string trim $text] {}]]
@@ -408,7 +410,10 @@ proc game::after {layout position move} {
   } elseif {$piece in {P p} && $enPassant && $to == $enPassant} {
     set victim [expr {$side eq "w" ? $to - 10 : $to + 10}]
   }
-  if {$victim ne {}} {dict set layout [nodeAt $layout $victim] [list {} [besidePlace [rules::other $side] [taken $layout [rules::other $side]]]]}
+  if {$victim ne {}} {
+    set other [rules::other $side]
+    dict set layout [nodeAt $layout $victim] [list {} [besidePlace $other [taken $layout $other]]]
+  }
   dict set layout $node [list $to [place $to]]
   if {$piece in {K k} && abs($to - $from) == 2} {
     set rook [nodeAt $layout [expr {$to > $from ? $from + 3 : $from - 4}]]

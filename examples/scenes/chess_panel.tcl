@@ -327,8 +327,8 @@ proc panel::make {} {
     label .board.r$rank -text $rank -background #5a3420 -foreground #e8d0a8
     set line [list .board.r$rank]
     foreach file {a b c d e f g h} {
-      button .board.$file$rank -font {{DejaVu Sans} 26} -width 2 -relief flat -borderwidth 0 -highlightthickness 0 -padx 0 -pady 2 \
-        -command [list panel::press $file$rank] -takefocus 0
+      button .board.$file$rank -font {{DejaVu Sans} 26} -width 2 -relief flat -borderwidth 0 -highlightthickness 0 \
+        -padx 0 -pady 2 -command [list panel::press $file$rank] -takefocus 0
       lappend line .board.$file$rank
     }
     grid {*}$line -sticky nsew
@@ -349,7 +349,8 @@ proc panel::make {} {
   grid .board .tabs -sticky nsew
   grid .status - -sticky ew
   lappend game::observers panel::refresh
-  openText [expr {[llength $::game] ? [join $::game \n] : "\[White \"Morphy\"\]\n\[Black \"Brunswick, Isouard\"\]\n\[Date \"1858\"\]\n$game::opera"}]
+  set tags {[White "Morphy"] [Black "Brunswick, Isouard"] [Date "1858"]}
+  openText [expr {[llength $::game] ? [join $::game \n] : "$tags $game::opera"}]
   choosePart
 }
 

@@ -72,10 +72,16 @@ class World:
 """
 
 
+WINDOWS = """
+import subprocess
+def windows(): return subprocess.run(["xdotool", "search", "--onlyvisible", "--name", ".*", "getwindowname", "%@"], capture_output=True, text=True).stdout
+"""
+
+
 def run(program, world=PANEL):
     """The program in a Python of its own, with a display of its own; what it prints."""
     with display():
-        done = subprocess.run([sys.executable, "-c", START + f"world = World({world!r})\nb = world.browser\n" + textwrap.dedent(program)],
+        done = subprocess.run([sys.executable, "-c", START + WINDOWS + f"world = World({world!r})\nb = world.browser\n" + textwrap.dedent(program)],
                               capture_output=True, text=True, timeout=100, env=os.environ)
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout
@@ -139,9 +145,25 @@ def test_closing_the_panel_ends_the_panel_only():
 
 def test_exit_ends_the_script_and_its_windows_but_not_the_host():
     out = run("""
-        world.some()
+        world.until(lambda: "Test panel" in windows())
+        world.until(lambda: "Test panel" not in windows())
         print("alive")
-    """, PANEL.replace("package require Tk", "package require Tk; after 50 {puts leaving; exit 1}"))
+    """, PANEL.replace("package require Tk", "package require Tk; after 300 {puts leaving; exit 1}"))
+    assert out.endswith("alive\n")
+
+
+def test_a_panel_that_does_not_end_is_stopped_and_closed():
+    out = run("""
+        world.some()
+        assert "Test panel" in windows()
+        b["Panel"].press = 1.0
+        world.until(lambda: any("took too long" in str(w) for w in b.warnings))
+        b["Place"].translation = (5, 0, 0)
+        world.some()
+        assert b["Place"].translation[0] == 5
+        assert "Test panel" not in windows()
+        print("alive")
+    """, PANEL.replace("proc up {} {", "bind .up <Destroy> {while 1 {}}; proc up {} {while 1 {catch {while 1 {}}};"))
     assert out.endswith("alive\n")
 
 

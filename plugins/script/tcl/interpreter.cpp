@@ -117,14 +117,17 @@ void Interpreter::exit() {
 void Interpreter::destroyWindows() {
   timers.clear();
   if (!trusted() || !hasTk()) return;
-  // Tk's commands are C: it needs no more than that the interpreter evaluates something, whatever ended the program.
-  Tcl_LimitTypeReset(tcl_, TCL_LIMIT_COMMANDS | TCL_LIMIT_TIME);
-  Tcl_CancelEval(tcl_, nullptr, nullptr, 0);
+  // Bindings to the end of a window may still do a little, whatever ended the program.
+  constexpr int few = 10'000;
+  Tcl_LimitSetCommands(tcl_, Tcl_LimitGetCommands(tcl_) + few);
+  startClock();
   Tcl_CmdInfo info;
   if (!Tcl_GetCommandInfo(tcl_, "::destroy", &info) || !info.objProc) return;
   const Object words[] = {Tcl_NewStringObj("destroy", -1), Tcl_NewStringObj(".", -1)};
   Tcl_Obj* objects[] = {words[0].get(), words[1].get()};
   info.objProc(info.objClientData, tcl_, 2, objects);
+  constexpr int rounds = 20; // so that the display hears of it: no tick comes any more
+  for (int i = 0; i < rounds && Tcl_DoOneEvent(TCL_WINDOW_EVENTS | TCL_IDLE_EVENTS | TCL_DONT_WAIT); ++i) {}
 }
 
 // --- Calls ---
