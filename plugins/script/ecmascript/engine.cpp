@@ -1,5 +1,7 @@
 // engine.cpp: the plug-in: engine "ecmascript" for javascript:, vrmlscript:, ecmascript: and .js files (ISO/IEC 14772-1 Annex C),
 // on Duktape. See docs/scripts.md. [the browser's thread]
+#include <ctime>
+
 #include "interpreter.h"
 
 namespace {
@@ -25,6 +27,12 @@ XsResult shutdown(XsInterpreter interpreter, double time) {
   return callFunction(of(interpreter), "shutdown", nullptr, time, true);
 }
 
+// Where no file can be opened later on, Date must know the time zone before.
+XsResult prepare() {
+  tzset();
+  return XS_OK;
+}
+
 const char* const schemes[] = {"javascript", "vrmlscript", "ecmascript", nullptr};
 // RFC 9239 lists what has been used; C.3.3 asks for application/x-javascript.
 const char* const mimeTypes[] = {"application/javascript",   "application/x-javascript", "text/javascript", "text/x-javascript",
@@ -35,7 +43,7 @@ const XsEngine engine = {
     sizeof(XsEngine), 0,          "ecmascript", "ECMAScript 5.1 with the objects of ISO/IEC 14772-1 Annex C, on Duktape 2",
     schemes,          mimeTypes,  suffixes,     create,
     destroy,          initialize, event,        eventsProcessed,
-    shutdown,         nullptr,    nullptr};
+    shutdown,         nullptr,    prepare};
 const XsEngine* const engines[] = {&engine};
 
 } // namespace

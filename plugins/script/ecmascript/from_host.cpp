@@ -39,7 +39,7 @@ void pushString(duk_context* ctx, const XsString& text) {
 
 void pushTuple(duk_context* ctx, Interpreter& self, const XsValue& value) {
   double v[4] = {};
-  for (int i = 0; i < components(value.type); ++i) v[i] = double(value.of.floats[i]);
+  for (int i = 0; i < components(value.type); ++i) v[i] = widen(value.of.floats[i]);
   pushSf(ctx, self, value.type, v);
 }
 
@@ -76,7 +76,7 @@ void pushValue(duk_context* ctx, Interpreter& self, const XsValue& value, Place 
   switch (value.type) {
   case XS_SFBOOL: return duk_push_boolean(ctx, value.of.ints[0] != 0);
   case XS_SFINT32: return duk_push_int(ctx, value.of.ints[0]);
-  case XS_SFFLOAT: return duk_push_number(ctx, double(value.of.floats[0]));
+  case XS_SFFLOAT: return duk_push_number(ctx, widen(value.of.floats[0]));
   case XS_SFTIME: return duk_push_number(ctx, value.of.doubles[0]);
   case XS_SFSTRING: return pushString(ctx, value.of.strings[0]);
   case XS_SFNODE: return pushNode(ctx, self, value.of.nodes[0]);

@@ -88,7 +88,7 @@ void pushElement(duk_context* ctx, Interpreter& self, duk_idx_t index, uint32_t 
   const bool beyond = i >= mf->count;
   if (beyond && (elementBytes(mf->type) == 0 || components(elementType(mf->type)) == 1)) return duk_push_undefined(ctx);
   switch (mf->type) {
-  case XS_MFFLOAT: return duk_push_number(ctx, double(floatsOf(mf)[i]));
+  case XS_MFFLOAT: return duk_push_number(ctx, widen(floatsOf(mf)[i]));
   case XS_MFINT32: return duk_push_int(ctx, intsOf(mf)[i]);
   case XS_MFTIME: return duk_push_number(ctx, doublesOf(mf)[i]);
   case XS_MFSTRING:
@@ -101,7 +101,7 @@ void pushElement(duk_context* ctx, Interpreter& self, duk_idx_t index, uint32_t 
   const XsType element = elementType(mf->type);
   const int n = components(element);
   double v[4] = {0, 0, element == XS_SFROTATION ? 1.0 : 0.0, 0};
-  for (int k = 0; k < n && !beyond; ++k) v[k] = double(floatsOf(mf)[size_t(i) * size_t(n) + size_t(k)]);
+  for (int k = 0; k < n && !beyond; ++k) v[k] = widen(floatsOf(mf)[size_t(i) * size_t(n) + size_t(k)]);
   // A value of its own; what is written to it is written here, beyond the end too: mf[mf.length].x = 1 makes it longer.
   SfData* sf = pushSf(ctx, self, element, v);
   sf->hasParent = 1;

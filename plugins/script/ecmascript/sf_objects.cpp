@@ -162,7 +162,7 @@ void writeBack(duk_context* ctx, Interpreter& self, duk_idx_t index, SfData* dat
   const int slot = data->place.slot;
   if (data->type == XS_SFIMAGE) return markDirty(ctx, self, slot);
   loadSlot(ctx, self, slot);
-  for (int i = first; i < first + count; ++i) self.slots[size_t(slot)].plain[i] = double(float(data->v[i]));
+  for (int i = first; i < first + count; ++i) self.slots[size_t(slot)].plain[i] = widen(float(data->v[i]));
   markDirty(ctx, self, slot);
 }
 

@@ -169,6 +169,7 @@ void assignSlot(duk_context* ctx, Interpreter& self, int slot, duk_idx_t value) 
   if (!self.slots[size_t(slot)].writable) throwType(ctx, "%s cannot be written", name);
   if (isPlain(type)) {
     toPlain(ctx, value, type, plain, name);
+    for (int i = 0; i < components(type) && components(type) > 1; ++i) plain[i] = widen(float(plain[i]));
     std::memcpy(self.slots[size_t(slot)].plain, plain, sizeof plain);
     return markDirty(ctx, self, slot);
   }

@@ -1,6 +1,7 @@
 // values.cpp: see values.h: types, what objects are, conversions of the program's values (C.6.2).
 #include "values.h"
 
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -71,6 +72,16 @@ size_t elementBytes(XsType type) {
 
 const char* typeName(XsType type) { return type >= XS_SFBOOL && type <= XS_MFVEC3F ? names[type] : "?"; }
 
+double widen(float value) {
+  const float scaled = value * 4096; // numbers of few bits are what they look like
+  if (scaled == std::trunc(scaled) || !std::isfinite(value)) return double(value);
+  char text[32];
+  double out = double(value);
+  const char* end = std::to_chars(text, text + sizeof text, value).ptr;
+  std::from_chars(text, end, out);
+  return out;
+}
+
 SfData* sfData(duk_context* ctx, duk_idx_t index) {
   if (!duk_is_object(ctx, index)) return nullptr;
   duk_get_prop_heapptr(ctx, index, Interpreter::of(ctx).keySf);
@@ -131,7 +142,7 @@ void toPlain(duk_context* ctx, duk_idx_t index, XsType type, double* out, const 
     out[0] = duk_to_int32(ctx, -1);
     duk_pop(ctx);
     return;
-  case XS_SFFLOAT: out[0] = double(float(toNumber(ctx, index, type, what))); return;
+  case XS_SFFLOAT: out[0] = widen(float(toNumber(ctx, index, type, what))); return;
   case XS_SFTIME: // a Date counts milliseconds
     out[0] = toNumber(ctx, index, type, what);
     if (!duk_is_object(ctx, index)) return;
@@ -154,7 +165,7 @@ void toPlain(duk_context* ctx, duk_idx_t index, XsType type, double* out, const 
     return;
   }
   if (MfData* mf = mfData(ctx, index); mf && mf->type == XS_MFFLOAT && mf->count == uint32_t(count)) {
-    for (int i = 0; i < count; ++i) out[i] = double(floatsOf(mf)[i]);
+    for (int i = 0; i < count; ++i) out[i] = widen(floatsOf(mf)[i]);
     return;
   }
   if (duk_is_string(ctx, index) && tupleOfText(duk_get_string(ctx, index), out, count)) return;

@@ -43,6 +43,9 @@ inline float* floatsOf(MfData* data) { return reinterpret_cast<float*>(data + 1)
 inline int32_t* intsOf(MfData* data) { return reinterpret_cast<int32_t*>(data + 1); }
 inline double* doublesOf(MfData* data) { return reinterpret_cast<double*>(data + 1); }
 
+// A float as the shortest decimal number that means it: the program reads 0.1 as 0.1, not as 0.10000000149011612.
+double widen(float value);
+
 // What a value is, for messages: "SFVec3f", "number 5", "undefined".
 const char* describe(duk_context* ctx, duk_idx_t index);
 

@@ -137,6 +137,10 @@ constexpr EcmaRow rows[] = {
      "true true null 1 2 3 1 2 3 undefined\n7 8 9\n1 8 9 DEF T Transform { }"},
     {"SFNode_copy", "field SFNode t USE T", "print(new SFNode(t) == t, t instanceof SFNode)", "true true"},
     {"SFNode_none", "", "print(new SFNode())", "NULL"},
+    {"Floats", "field SFFloat f 0.1 field SFVec3f v 0.1 -1e-7 3.3 field MFFloat m [0.7, 16777217] field SFColor c 0.3 0 1",
+     "print(f, v.x, v.y, v.z, m[0], m[1], c.r, f == 0.1); f = 1 / 3; print(f); v.x = 2 / 3; print(v.x); v = new SFVec3f(1 / 3, "
+     "0, 0); print(v.x)",
+     "0.1 0.1 -1e-7 3.3 0.7 16777216 0.3 true\n0.33333334\n0.6666667\n0.33333334"},
     // SFString, SFTime, SFBool and numbers are values of the language (C.6.2)
     {"Natives", "field SFString s \"abc\" field SFTime t 2.5 field SFBool b TRUE field SFInt32 i 7 field SFFloat f 0.5",
      "print(typeof s, s.length, typeof t, t, typeof b, b, typeof i, i + 1, f * 2)",
