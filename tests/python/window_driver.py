@@ -12,6 +12,7 @@ import time
 import pytest
 
 from conftest import HEADER, find_vv
+from xserver import display
 
 Image = pytest.importorskip("PIL.Image")
 
@@ -184,20 +185,10 @@ class Window:
 
 @pytest.fixture(scope="module")
 def screen(tmp_path_factory):
-    needs("Xvfb", "xdotool")
+    needs("xdotool")
     folder = tmp_path_factory.mktemp("screen")
-    read, write = os.pipe()
-    server = subprocess.Popen(["Xvfb", "-displayfd", str(write), "-screen", "0", "640x480x24", "-nolisten", "tcp", "-noreset", "-fbdir", folder],
-                              pass_fds=(write,), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    os.close(write)
-    with os.fdopen(read) as pipe:
-        number = pipe.readline().strip()
-    if not number:
-        server.wait()
-        pytest.skip("Xvfb does not start")
-    yield f":{number}", folder / "Xvfb_screen0"
-    server.terminate()
-    server.wait()
+    with display("640x480", "-noreset", "-fbdir", str(folder)) as name:
+        yield name, folder / "Xvfb_screen0"
 
 
 @pytest.fixture

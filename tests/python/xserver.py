@@ -8,12 +8,12 @@ import pytest
 
 
 @contextlib.contextmanager
-def display(size="1024x768"):
-    """Runs Xvfb; $DISPLAY leads there meanwhile."""
+def display(size="1024x768", *options):
+    """Runs Xvfb, with further options of its own; $DISPLAY leads there meanwhile."""
     if not shutil.which("Xvfb"):
         pytest.skip("Xvfb is not installed")
     reading, writing = os.pipe()
-    server = subprocess.Popen(["Xvfb", "-displayfd", str(writing), "-screen", "0", f"{size}x24", "-nolisten", "tcp"], pass_fds=[writing],
+    server = subprocess.Popen(["Xvfb", "-displayfd", str(writing), "-screen", "0", f"{size}x24", "-nolisten", "tcp", *options], pass_fds=[writing],
                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     os.close(writing)
     before = os.environ.get("DISPLAY")

@@ -69,10 +69,12 @@ Session::Session(std::unique_ptr<xvrml::World> world, const Options& options, Pr
   forEachNode(browser_->world(), [&](const xvrml::Node& node) {
     if (node.type().name == "Inline" && !xvrml::inlineScope(node)) inlines_.emplace_back(const_cast<xvrml::Node*>(&node));
   });
-  last_ = -1;
+  generation_ = browser_->generation();
 }
 
-Session::~Session() = default;
+Session::~Session() {
+  if (preparer_.joinable()) preparer_.join();
+}
 
 void Session::begin(int width, int height, const std::optional<Place>& place, const std::string& fragment) {
   resize(width, height);
@@ -123,6 +125,22 @@ void Session::advance(double seconds) {
   problems_.tell(browser_->world());
   draw();
   saveIfFinished();
+  if (!prepared_ && shownAny_) prepare();
+}
+
+// The first ray through a world costs seconds if there are millions of triangles: the thread that the window waits for does not
+// cast it. Nothing else uses the world meanwhile (resting()).
+void Session::prepare() {
+  prepared_ = preparing_ = true;
+  preparer_ = std::thread([this, camera = pilot_.camera()] {
+    const double* m = camera.matrix;
+    const double origin[] = {m[12], m[13], m[14]}, direction[] = {-m[8], -m[9], -m[10]};
+    try {
+      xvrml::PickHit hit;
+      browser_->pick(origin, direction, {}, hit);
+    } catch (const std::exception&) {} // too little memory: whoever asks next is told
+    preparing_ = false;
+  });
 }
 
 void Session::step(double) {
@@ -142,7 +160,13 @@ void Session::step(double) {
 
 // The user's. Of a session that a script drives only the window itself is his.
 void Session::takeEvents() {
+  std::deque<InputEvent> later; // the pointer waits for prepare()
   while (!waiting_.empty()) {
+    if (!prepared_ && !replay_ && waiting_.front().kind <= InputEvent::Kind::wheel) {
+      later.push_back(std::move(waiting_.front()));
+      waiting_.pop_front();
+      continue;
+    }
     const InputEvent event = std::move(waiting_.front());
     waiting_.pop_front();
     Action action = Action::none;
@@ -157,11 +181,13 @@ void Session::takeEvents() {
     else if (ofWindow)
       calls_.business(event, action);
   }
+  waiting_ = std::move(later);
 }
 
 // Inlines come after the first picture, a few at a time.
 void Session::loadSome() {
   if (inlines_.empty() || !shownAny_) return;
+  if (browser_->generation() != generation_) return inlines_.clear(); // of a world that a Script has replaced
   const auto start = std::chrono::steady_clock::now();
   while (!inlines_.empty() && std::chrono::steady_clock::now() - start < std::chrono::milliseconds(10)) {
     const xvrml::NodeRef node = std::move(inlines_.front());
@@ -248,7 +274,7 @@ void Session::saveIfFinished() {
 
 bool Session::stop(double seconds) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
-  while (renderer_.state() != State::idle) {
+  while (preparing_ || renderer_.state() != State::idle) {
     renderer_.cancel();
     if (std::chrono::steady_clock::now() > end) return false;
     std::this_thread::sleep_for(std::chrono::milliseconds(2));

@@ -2,11 +2,13 @@
 // no windowing system. Another world is another session. [the browser's thread]
 #pragma once
 
+#include <atomic>
 #include <deque>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "options.h"
@@ -60,7 +62,9 @@ class Session {
   // Writes the picture as soon as all its samples are taken; the script waits until then.
   void saveWhenFinished(const std::string& path) { saveTo_ = path; }
 
-  bool resting() const { return renderer_.state() != picture::LiveRenderer::State::mapping; } // the world can be used
+  bool resting() const {
+    return !preparing_ && renderer_.state() != picture::LiveRenderer::State::mapping;
+  } // the world can be used
   bool scripted() const { return replay_ != nullptr; }
   bool recordable() const { return stepped_; }
   double time() const { return time_; } // of the session's clock, at the last step
@@ -80,6 +84,7 @@ class Session {
   void draw();
   void start(bool moving);
   void saveIfFinished();
+  void prepare();
   bool blocked() const { return fit_ != Fit::none || !saveTo_.empty(); }
 
   Options options_;
@@ -110,6 +115,11 @@ class Session {
   picture::LivePicture facts_; // without the pixels
   std::string saveTo_, message_;
   std::deque<xvrml::NodeRef> inlines_; // to be loaded
+  uint64_t generation_ = 0;            // of the browser's world that they are in
+  // What the pointer and the viewer's feet meet is made ready beside the first picture.
+  std::thread preparer_;
+  std::atomic<bool> preparing_{false};
+  bool prepared_ = false;
 };
 
 } // namespace vv
