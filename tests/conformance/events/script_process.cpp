@@ -67,6 +67,7 @@ struct Misdeed {
   const char* program;
   const char* message; // part of it
 };
+void PrintTo(const Misdeed& misdeed, std::ostream* out) { *out << misdeed.program; }
 class ScriptMisdeeds : public testing::TestWithParam<Misdeed> {};
 
 constexpr Misdeed misdeeds[] = {
