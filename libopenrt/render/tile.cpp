@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstddef>
 #include <cstring>
 #include <limits>
 #include <type_traits>
@@ -29,7 +28,12 @@ size_t keptBytes(const Film& film, bool wantsError) {
 }
 } // namespace
 
-uint32_t tileEdge(uint32_t samplesPerPixel) { return samplesPerPixel >= 16 ? 16 : samplesPerPixel >= 4 ? 32 : 64; }
+uint32_t tileEdge(uint32_t samplesPerPixel, uint32_t width, uint32_t height) {
+  constexpr uint32_t least = 16, enough = 256; // pixels; tiles
+  uint32_t edge = samplesPerPixel >= 16 ? least : samplesPerPixel >= 4 ? 32 : 64;
+  while (edge > least && uint64_t(width) * height < uint64_t(enough) * edge * edge) edge /= 2;
+  return edge;
+}
 
 TileRenderer::TileRenderer(const RenderScene& scene, Film& film, std::mutex* filmLock)
     : scene_(scene), film_(film), filmLock_(filmLock), wantsError_(wantsError(scene.frame)),

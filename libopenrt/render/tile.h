@@ -16,8 +16,8 @@
 
 namespace openrt {
 
-// Edge of the square tiles for a number of samples a pixel: a few thousand paths are in flight.
-uint32_t tileEdge(uint32_t samplesPerPixel);
+// Edge of the square tiles of a picture: a few thousand paths are in flight, and small pictures have tiles for many threads, too.
+uint32_t tileEdge(uint32_t samplesPerPixel, uint32_t width, uint32_t height);
 
 struct Boundaries;
 class LightImage;
