@@ -74,6 +74,23 @@ def test_python_leaves_the_signals_alone(vv):
     assert "None" in vv("signals.wrl", "--check", "--trust").talk  # not Python's
 
 
+def test_python_is_the_same_in_every_run(vv):
+    if "python" not in engines(vv):
+        pytest.skip("built without python")
+    vv.write("same.wrl", HEADER + "Script { url \"python:import random\nprint(random.random(), set('abcdefgh'), hash('a'))\" }")
+    first = vv("same.wrl", "--check", "--trust").talk
+    assert "Script: 0.84442185152504" in first and first == vv("same.wrl", "--check", "--trust").talk
+
+
+def test_an_interrupt_that_a_script_raises_is_its_own(vv):
+    if "python" not in engines(vv):
+        pytest.skip("built without python")
+    vv.write("raises.wrl", HEADER + 'Script { url "python:\nraise KeyboardInterrupt" }')
+    done = vv("raises.wrl", "--check", "--trust")
+    assert done.returncode == 4 and "raises.wrl:3: error: Script: KeyboardInterrupt" in done.talk
+    assert len(done.talk.splitlines()) == 2, done.talk
+
+
 def pictures(vv, world, folder, variable, times):
     tree = vv.program.resolve().parents[1]
     if not (tree / folder).is_dir():

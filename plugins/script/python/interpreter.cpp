@@ -118,7 +118,8 @@ XsResult Interpreter::failed(py::error_already_set& error, bool stopped) {
     return XS_OK;
   }
   log(3, line, text);
-  if (error.matches(PyExc_KeyboardInterrupt)) PyErr_SetInterrupt(); // the user meant the whole program: it gets another one
+  if (isProgram() && error.matches(PyExc_KeyboardInterrupt))
+    PyErr_SetInterrupt(); // the user meant the whole program: it gets another one
   return XS_FAILED;
 }
 

@@ -15,6 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 
 unsigned long mainThread = 0; // as Python counts threads
+bool startedHere = false;
 
 // Python's own extension modules expect its functions among those of the whole program.
 void shareSymbols() {
@@ -57,11 +58,17 @@ void initialize() {
   c.config.install_signal_handlers = 0;
   c.config.parse_argv = 0;
   c.config.configure_c_stdio = 0;
+  if (!std::getenv("PYTHONHASHSEED")) { // the same order of sets, and with it the same pictures, in every run
+    c.config.use_hash_seed = 1;
+    c.config.hash_seed = 0;
+  }
   check(PyConfig_SetBytesString(&c.config, &c.config.program_name, programName().c_str()));
   check(Py_InitializeFromConfig(&c.config));
   // Standard output may be a picture: what is not printed by a Script goes where messages go.
   if (PyObject* errors = PySys_GetObject("stderr")) PySys_SetObject("stdout", errors);
+  if (PyRun_SimpleString("import random\nrandom.seed(0)") != 0) throw StartError("Python cannot start: no module random");
   mainThread = PyThread_get_thread_ident();
+  startedHere = true;
   PyEval_SaveThread(); // whoever needs the lock takes it
 }
 
@@ -122,6 +129,7 @@ py::module_ binding() {
   return py::reinterpret_borrow<py::module_>(known);
 }
 
+bool isProgram() { return !startedHere; }
 bool isMainThread() { return PyThread_get_thread_ident() == mainThread; }
 
 } // namespace python

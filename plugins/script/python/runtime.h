@@ -32,6 +32,7 @@ void startPython();
 // The functions of the binding's module, from its package beside the engine or on Python's path. With the lock. Throws
 // StartError.
 py::module_ binding();
+bool isProgram();    // it is a Python program that runs worlds
 bool isMainThread(); // of Python: the one that runs what others ask for (Py_AddPendingCall)
 
 } // namespace python
