@@ -3,13 +3,9 @@
 #include <cstring>
 #include <random>
 
-#include <fcntl.h>
 #include <gtest/gtest.h>
-#include <sys/socket.h>
-#include <unistd.h>
 
-#include "script/remote/host_functions.h"
-#include "script/remote/process.h"
+#include "script/looking_host.h"
 
 namespace xvrml {
 namespace {
@@ -113,80 +109,6 @@ TEST(ScriptWire, AMessageThatIsTooLongIsNone) {
 }
 
 // --- A helper that is somebody else's ---
-
-// Functions of a host that look at all they are given.
-struct Looking : XsHost {
-  static uint64_t sum;
-  static void look(const char* text) { sum += text ? std::strlen(text) : 1; }
-  static void look(const XsString& text) {
-    if (!text.data) return;
-    for (uint64_t i = 0; i <= text.bytes; ++i) sum += uint8_t(text.data[i]);
-  }
-  static void look(const XsValue* value) {
-    if (!value || !value->of.data) return;
-    const Element element = elementOf(value->type);
-    for (uint32_t i = 0; i < value->count; ++i) {
-      if (element.kind == Kind::texts) {
-        look(value->of.strings[i]);
-      } else if (element.kind == Kind::images) {
-        const XsImage& image = value->of.images[i];
-        const uint64_t bytes = image.pixels ? uint64_t(image.width) * uint64_t(image.height) * uint64_t(image.components) : 0;
-        for (uint64_t k = 0; image.width > 0 && image.height > 0 && k < bytes; ++k) sum += image.pixels[k];
-      } else {
-        for (uint32_t k = 0; k < element.bytes; ++k) sum += static_cast<const uint8_t*>(value->of.data)[i * element.bytes + k];
-      }
-    }
-  }
-  Looking() : XsHost{} {
-    send = write = [](const XsHost*, XsNode, const char* n, const XsValue* v) { return look(n), look(v), XS_OK; };
-    post = [](const XsHost*, XsNode, XsNode, const char* n, const XsValue* v) { return look(n), look(v), XS_OK; };
-    read = [](const XsHost*, XsNode, XsNode, const char* n, XsValue* v) { return look(n), *v = {XS_MFINT32, 0, {}}, XS_OK; };
-    describe = [](const XsHost*, XsNode, XsNode, XsNodeInfo* i) { return i->typeName = i->defName = "x", XS_OK; };
-    field = [](const XsHost*, XsNode, XsNode, uint32_t, XsField*) { return XS_NO_FIELD; };
-    findField = [](const XsHost*, XsNode, XsNode, const char* n, XsField*) { return look(n), XS_NO_FIELD; };
-    retain = release = [](const XsHost*, XsNode, XsNode) { return XS_OK; };
-    getName = getVersion = getWorldUrl = lastError = [](const XsHost*, XsNode, XsString* s) { return *s = {"x", 1}, XS_OK; };
-    getCurrentSpeed = getCurrentFrameRate = [](const XsHost*, XsNode) { return 1.0; };
-    setDescription = [](const XsHost*, XsNode, XsString s) { return look(s), XS_OK; };
-    replaceWorld = [](const XsHost*, XsNode, uint32_t count, const XsNode* nodes) {
-      for (uint32_t i = 0; nodes && i < count; ++i) sum += nodes[i];
-      return XS_OK;
-    };
-    loadUrl = [](const XsHost*, XsNode, uint32_t n, const XsString* a, uint32_t m, const XsString* b) {
-      for (uint32_t i = 0; a && i < n; ++i) look(a[i]);
-      for (uint32_t i = 0; b && i < m; ++i) look(b[i]);
-      return XS_OK;
-    };
-    createVrmlFromUrl = [](const XsHost*, XsNode, uint32_t n, const XsString* a, XsNode, const char* in) {
-      for (uint32_t i = 0; a && i < n; ++i) look(a[i]);
-      return look(in), XS_OK;
-    };
-    createVrmlFromString = [](const XsHost*, XsNode, XsString s, XsValue* v) { return look(s), *v = {XS_MFINT32, 0, {}}, XS_OK; };
-    addRoute =
-        deleteRoute = [](const XsHost*, XsNode, XsNode, const char* a, XsNode, const char* b) { return look(a), look(b), XS_OK; };
-    log = [](const XsHost*, XsNode, int32_t, uint32_t, XsString s) { look(s); };
-  }
-};
-uint64_t Looking::sum = 0;
-
-ProcessSettings settings() { return {"x.so", "x", 1000, 0.05, 0}; }
-
-// What a call comes to if the helper says this and closes the socket.
-ScriptProcess::State callThatGets(const std::string& bytes, std::string* death = nullptr) {
-  static const Looking host;
-  int ends[2];
-  EXPECT_EQ(socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends), 0);
-  ScriptProcess process(ends[0], settings(), host);
-  EXPECT_EQ(write(ends[1], bytes.data(), bytes.size()), ssize_t(bytes.size()));
-  shutdown(ends[1], SHUT_WR);
-  Writer call;
-  call.begin(Op::tick, 1);
-  EXPECT_TRUE(process.begin(call));
-  const auto state = process.serve(1e9, 1e9, never, 0);
-  if (death) *death = process.death();
-  close(ends[1]);
-  return state;
-}
 
 std::string wireOf(Writer& writer) {
   EXPECT_TRUE(writer.finish());
