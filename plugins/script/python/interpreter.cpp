@@ -171,7 +171,8 @@ XsResult Interpreter::load() {
     globals_["browser"] = makeBrowserObject(link_);
     const std::shared_ptr<Interpreter*> link = link_;
     globals_["print"] = py::cpp_function([link](const py::args& values, const py::kwargs& options) {
-      if (*link) (*link)->print(values, options);
+      if (*link && running() == *link) return (*link)->print(values, options);
+      py::module_::import("builtins").attr("print")(*values, **options); // a thread of the Script
     });
     if (file_) { // its own modules lie beside it
       const py::object folder = py::module_::import("os.path").attr("dirname")(info_.origin);

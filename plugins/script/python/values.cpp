@@ -290,10 +290,12 @@ Owned::Owned(const py::handle& object, XsType type, const std::string& name, con
     break;
   case XS_SFSTRING:
   case XS_MFSTRING:
-    if (many)
-      texts_ = py::isinstance<py::str>(object) ? (target.wrongType(object), texts_) : textsOf(object, name.c_str());
-    else
+    if (!many)
       texts_.push_back(textOf(object, target));
+    else if (py::isinstance<py::str>(object))
+      target.wrongType(object); // its letters would be meant
+    else
+      texts_ = textsOf(object, name.c_str());
     for (const std::string& text : texts_) strings_.push_back({text.c_str(), text.size()});
     value_.count = uint32_t(strings_.size());
     value_.of.strings = strings_.data();
