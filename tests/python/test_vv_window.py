@@ -4,6 +4,7 @@ import os
 import re
 import signal
 import subprocess
+import time
 
 import pytest
 
@@ -219,6 +220,21 @@ def test_the_screen_shows_the_picture_and_the_overlay(window, screen):
     w.key("i")  # two at once are taken for a key that repeats
     w.key("i")
     w.wait(lambda: seen() == (True, False), "no overlay")
+
+
+def test_the_cursor_is_a_hand_over_a_sensor(window, screen):
+    w = window(SENSORS)
+
+    def cursor(x, y):
+        w.move(x, y)
+        time.sleep(0.3)
+        place = dict(re.findall(r"(\w+)=(\d+)", w.tool("getmouselocation", "--shell")))
+        left, top = int(place["X"]) - 10, int(place["Y"]) - 10
+        part = [row[left:left + 20] for row in framebuffer(screen[1])[top:top + 20]]
+        ground = part[19][19]
+        return [[p == ground for p in row] for row in part]
+
+    w.wait(lambda: cursor(0.75, 0.5) == cursor(0.75, -0.4) != cursor(-0.35, 0), "hand")
 
 
 def test_the_page_lists_the_keys(vv):

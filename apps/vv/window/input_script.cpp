@@ -24,7 +24,7 @@ struct Word {
 constexpr Word words[] = {{"move", Kind::move},   {"press", Kind::press}, {"release", Kind::release},
                           {"leave", Kind::leave}, {"wheel", Kind::wheel}, {"down", Kind::down},
                           {"up", Kind::up},       {"key", Kind::down},    {"viewpoint", Kind::viewpoint},
-                          {"save", Kind::save},   {"open", Kind::open},   {"quit", Kind::quit}};
+                          {"save", Kind::save},   {"quit", Kind::quit}};
 
 const char* wordOf(Kind kind) {
   for (const Word& word : words)

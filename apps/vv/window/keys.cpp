@@ -35,7 +35,7 @@ constexpr KeyInfo keys[] = {
 
 constexpr MouseInfo mouse[] = {
     {"pointer", "over a sensor or an anchor it is a hand; dragging is then the sensor's"},
-    {"left drag", "examine: turn; walk, fly: go and turn, faster the farther from where it was pressed"},
+    {"left drag", "examine: turn; walk, fly: go and turn, faster the longer the way"},
     {"right or Shift drag", "examine: move aside; walk, fly: sideways, up and down"},
     {"middle or Ctrl drag", "examine: nearer and farther; walk, fly: look around"},
     {"wheel", "nearer and farther"},

@@ -76,6 +76,21 @@ struct PanelPainter::Impl {
     return int((pen + 63) >> 6);
   }
 
+  // Breaks a line at blanks so that its parts are at most so wide, if there are blanks.
+  static void wrap(FT_Face face, std::string_view text, int width, std::vector<std::string>& out) {
+    const bool weak = text.starts_with('\t');
+    while (widthOf(face, text) > width) {
+      size_t cut = text.npos;
+      for (size_t at = text.find(' ', 1); at != text.npos && widthOf(face, text.substr(0, at)) <= width;
+           at = text.find(' ', at + 1))
+        cut = at;
+      if (cut == text.npos) break;
+      out.emplace_back((weak && !text.starts_with('\t') ? "\t" : "") + std::string(text.substr(0, cut)));
+      text.remove_prefix(cut + 1);
+    }
+    out.emplace_back((weak && !text.starts_with('\t') ? "\t" : "") + std::string(text));
+  }
+
   static void put(Panel& panel, const FT_GlyphSlot glyph, int x, int y, uint8_t bright) {
     const FT_Bitmap& bitmap = glyph->bitmap;
     for (unsigned row = 0; row < bitmap.rows; ++row)
@@ -102,11 +117,18 @@ struct PanelPainter::Impl {
 PanelPainter::PanelPainter(int size) : impl_(std::make_unique<Impl>(size)) {}
 PanelPainter::~PanelPainter() = default;
 
-Panel PanelPainter::paint(const std::vector<std::string>& lines, int width, bool fixed) {
+Panel PanelPainter::paint(const std::vector<std::string>& texts, int width, bool fixed) {
   constexpr size_t longest = 400; // bytes of a line that are looked at
   Panel panel;
   FT_Face face = fixed && impl_->fixed ? impl_->fixed : impl_->proportional;
-  if (!face || lines.empty()) return panel;
+  if (!face || texts.empty()) return panel;
+  std::vector<std::string> lines;
+  for (const std::string& text : texts) {
+    if (fixed)
+      lines.push_back(text);
+    else
+      impl_->wrap(face, text.substr(0, longest), width - impl_->size, lines);
+  }
   const int step = int(face->size->metrics.height >> 6), ascent = int(face->size->metrics.ascender >> 6),
             margin = impl_->size / 2;
   int wide = 0;

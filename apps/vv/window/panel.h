@@ -19,7 +19,8 @@ class PanelPainter {
   // size: pixels of the em square. Without any font panels are empty.
   explicit PanelPainter(int size);
   ~PanelPainter();
-  // UTF-8; a line beginning with a tab stands apart in a weaker colour. Lines are cut at `width` pixels. fixed: columns line up.
+  // UTF-8; a line beginning with a tab stands apart in a weaker colour. Lines are broken at `width` pixels, and cut. fixed:
+  // columns line up, and lines are cut only.
   Panel paint(const std::vector<std::string>& lines, int width, bool fixed = false);
 
  private:
