@@ -82,6 +82,7 @@ bool guarded(Interpreter& self, duk_safe_call_function function, void* data, con
 
 XsResult enter(Interpreter& self, duk_safe_call_function function, void* data, const char* during, bool flush) {
   if (self.dead) return XS_FAILED;
+  if (self.stopped) return XS_OK; // nothing of the program runs any more, neither does shutdown
   ++self.call;
   self.texts.clear();
   if (setjmp(self.fatal)) return self.fatalSet = false, XS_FAILED;

@@ -159,7 +159,7 @@ TEST_P(EcmaScriptAssignments, CopyOrRefer) {
                                                                 "field MFVec3f m [1 1 1, 2 2 2] field MFFloat n [5, 6] field "
                                                                 "SFImage i 1 1 1 7 eventOut SFVec3f out",
                                                                 GetParam().program));
-  EXPECT_EQ(r.told(), GetParam().printed);
+  EXPECT_EQ(r.told(), GetParam().printed) << GetParam().program;
 }
 constexpr EcmaRow assignments[] = {
     {"field", "", "var v = f; v.x = 9; print(f, v)", "1 2 3 9 2 3"},
@@ -205,7 +205,7 @@ TEST_P(EcmaScriptConversions, OfWhatIsAssignedToAField) {
   EcmaWorld r("DEF T Transform { } " +
               script(fmt::format("field SFNode t USE T field {}", GetParam().declared),
                      fmt::format("try {{ f = {}; print(f) }} catch (e) {{ print(e.message) }}", GetParam().program)));
-  EXPECT_EQ(r.told(), GetParam().printed);
+  EXPECT_EQ(r.told(), GetParam().printed) << GetParam().program;
 }
 constexpr EcmaRow conversions[] = {
     {"SFBool_number", "SFBool f FALSE", "5", "true"},

@@ -38,7 +38,7 @@ struct EcmaRow {
   const char* program;
   const char* printed;
 };
-inline void PrintTo(const EcmaRow& row, std::ostream* out) { *out << row.program; }
+inline void PrintTo(const EcmaRow& row, std::ostream* out) { *out << row.name; }
 inline std::string rowName(const testing::TestParamInfo<EcmaRow>& info) { return info.param.name; }
 
 class EcmaRows : public testing::TestWithParam<EcmaRow> {
