@@ -8,7 +8,7 @@ import time
 
 import pytest
 
-from conftest import HEADER, ROOT
+from conftest import HEADER, ROOT, find_vv
 from window_driver import PATIENCE, SENSORS, SIZE, SPINNING, Shot, blue, coloured, framebuffer, green, red, screen, window  # noqa: F401
 
 
@@ -220,6 +220,18 @@ def test_the_screen_shows_the_picture_and_the_overlay(window, screen):
     w.key("i")  # two at once are taken for a key that repeats
     w.key("i")
     w.wait(lambda: seen() == (True, False), "no overlay")
+
+
+def test_a_script_that_never_ends_leaves_the_window_alone(window):
+    if not (find_vv().parents[1] / "lib/xvrml/scripts/ecmascript.so").exists():
+        pytest.skip("the ECMAScript engine is not built")
+    w = window(SPINNING + """DEF S Script { eventIn SFFloat turn url "javascript: function turn() { print('begun'); while (true); }" }
+                             ROUTE Clock.fraction_changed TO S.turn""")
+    w.said("begun")
+    first = w.shot().bytes
+    w.until(lambda s: s.bytes != first)
+    w.said("took too long")
+    assert w.end() == 0
 
 
 def test_the_cursor_is_a_hand_over_a_sensor(window, screen):

@@ -232,8 +232,8 @@ void Session::start(bool moving) {
     renderer_.change([&](picture::RenderSettings& s) { s.headlight = *shownHeadlight_ ? on : off; });
   }
   const double now = last_;
-  if (moving && moving_ && now > lastStart_) rate_ = rate_ <= 0 ? 1 / (now - lastStart_) : .8 * rate_ + .2 / (now - lastStart_);
-  if (!moving) rate_ = 0;
+  if (moving && moving_ && now > lastStart_) gap_ = gap_ <= 0 ? now - lastStart_ : .9 * gap_ + .1 * (now - lastStart_);
+  if (!moving) gap_ = 0;
   lastStart_ = now;
   frame_ = pacing_.next(width_, height_, moving, options_.render.samples);
   frame.width = frame_.width, frame.height = frame_.height, frame.samples = frame_.samples;
@@ -303,7 +303,7 @@ std::string Session::takeMessage() {
 
 SessionFacts Session::facts() const {
   SessionFacts facts;
-  facts.frameRate = moving_ ? rate_ : 0;
+  facts.frameRate = moving_ && gap_ > 0 ? 1 / gap_ : 0;
   facts.width = facts_.width, facts.height = facts_.height;
   facts.samples = facts_.samples, facts.wanted = moving_ ? 0 : options_.render.samples;
   facts.stats = facts_.stats, facts.map = facts_.map, facts.finished = facts_.finished;

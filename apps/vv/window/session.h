@@ -64,9 +64,9 @@ class Session {
 
   bool resting() const {
     return !preparing_ && renderer_.state() != picture::LiveRenderer::State::mapping;
-  } // the world can be used
+  }                                                                                                   // the world can be used
+  bool drawing() const { return moving_ && renderer_.state() != picture::LiveRenderer::State::idle; } // something that moves
   bool scripted() const { return replay_ != nullptr; }
-  bool recordable() const { return stepped_; }
   double time() const { return time_; } // of the session's clock, at the last step
   xvrml::Browser& browser() { return *browser_; }
   const Pilot& pilot() const { return pilot_; }
@@ -110,9 +110,9 @@ class Session {
   xvrml::CameraSettings shown_{};
   std::optional<bool> shownHeadlight_;
   bool begun_ = false, moving_ = false, refined_ = false, shownAny_ = false;
-  FrameSize frame_; // in flight, or the last one
-  double lastStart_ = 0, rate_ = 0;
-  picture::LivePicture facts_; // without the pixels
+  FrameSize frame_;                // in flight, or the last one
+  double lastStart_ = 0, gap_ = 0; // of frames while something moves, smoothed
+  picture::LivePicture facts_;     // without the pixels
   std::string saveTo_, message_;
   std::deque<xvrml::NodeRef> inlines_; // to be loaded
   uint64_t generation_ = 0;            // of the browser's world that they are in

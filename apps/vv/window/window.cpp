@@ -2,6 +2,7 @@
 // meanwhile. See window.h.
 #include "window/window.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <fstream>
@@ -55,7 +56,12 @@ class Window {
       wait(std::max(0.0, next - now));
       passOn();
       takeWorld();
-      if (seconds() >= next && goOn()) next = seconds() + 1 / options_.fps;
+      // A picture of what moves that is nearly there is waited for: the next one can begin at once then.
+      const double period = 1 / options_.fps, time = seconds();
+      if (time >= next + (session_ && session_->drawing() ? period : 0)) {
+        goOn();
+        next = std::max(next + period, time);
+      }
       if (session_ && session_->look(picture_)) show();
       tell();
       screen_.present();
@@ -92,9 +98,8 @@ class Window {
       say(fmt::format("vv: first picture, {}x{}, after {}", picture_.width, picture_.height, duration(seconds() - loadStart_)));
   }
 
-  // Returns true when the world has moved on.
-  bool goOn() {
-    if (!session_) return true;
+  void goOn() {
+    if (!session_) return;
     if (screen_.width() != width_ || screen_.height() != height_) {
       width_ = screen_.width(), height_ = screen_.height();
       session_->resize(width_, height_);
@@ -108,7 +113,6 @@ class Window {
       sound();
       watch();
     }
-    return true;
   }
 
   // --- Worlds ---
