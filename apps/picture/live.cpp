@@ -22,7 +22,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-constexpr double leastBetweenLooks = 0.008; // seconds: looking takes time that light could be traced in
+// Looking takes time that light could be traced in: a part of it at most, and not more often than anybody sees.
+constexpr double leastBetweenLooks = 0.008, restPerLook = 8; // seconds; as long as that many looks
 constexpr uint32_t shownChannels = RT_RGBA | RT_SAMPLES;
 
 struct Wanted {
@@ -75,7 +76,7 @@ struct LiveRenderer::Impl {
   Clock::time_point started;
   std::shared_ptr<const Made> shown; // the last one that look() has given
   float progress = 0;                // of the frame in flight when it was looked at
-  Clock::time_point looked;          // when
+  Clock::time_point nextLook;        // at a frame in flight, not before
   Picture seen;                      // working storage of look()
   LivePicture before;                // what look() has given last: size and rgb
 
@@ -161,6 +162,7 @@ struct LiveRenderer::Impl {
     stage.settings.channels |= shownChannels;
     started = Clock::now();
     progress = 0;
+    nextLook = {};
     cancelled = false;
     Wanted next{frame, stage.collect(), started};
     {
@@ -217,14 +219,16 @@ struct LiveRenderer::Impl {
 
   // The frame in flight, if there is more of it.
   bool lookAhead(LivePicture& out) {
-    if (secondsSince(looked) < leastBetweenLooks) return false;
+    const Clock::time_point begin = Clock::now();
+    if (begin < nextLook) return false;
     const RTcontext context = stage.context();
     const float now = rtProgress(context);
     if (now <= progress || !stage.snapshot(seen, shownChannels)) return false;
     if (now < 1) progress = now; // 1 also before it has begun
     if (!std::any_of(seen.planes[RT_SAMPLES].begin(), seen.planes[RT_SAMPLES].end(), [](float s) { return s > 0; })) return false;
     show(seen, out);
-    looked = Clock::now();
+    const double took = secondsSince(begin), rest = std::max(leastBetweenLooks, restPerLook * took);
+    nextLook = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(rest));
     out.seconds = secondsSince(started);
     return true;
   }
