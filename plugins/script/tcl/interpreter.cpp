@@ -99,7 +99,7 @@ void Interpreter::onLimit(ClientData data, Tcl_Interp* tcl) {
   Interpreter& interpreter = *static_cast<Interpreter*>(data);
   Interpreter& payer = running_ ? *running_ : interpreter; // whose tick serves an event of this one
   const bool commands = Tcl_LimitTypeExceeded(tcl, TCL_LIMIT_COMMANDS);
-  if (payer.stopped_ || payer.host_->shouldStop(payer.host_, payer.self(), commands ? stepsAtOnce : 1)) {
+  if (payer.stopped_ || payer.host_->shouldStop(payer.host_, payer.self(), commands ? stepsAtOnce : 0)) {
     payer.stopped_ = interpreter.stopped_ = true;
     return;
   }
