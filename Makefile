@@ -40,7 +40,7 @@ build:
 install: build
 	@cmake --install $(R) --prefix $(PREFIX)
 
-## make bench         benchmarks, JSON into build/bench
+## make bench         benchmarks, JSON into build/bench; bench_live prints what the window does
 bench: build
 	@mkdir -p build/bench
 	@for b in $(R)/bin/bench_*; do [ -x $$b ] || continue; \
