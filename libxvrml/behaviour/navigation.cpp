@@ -45,6 +45,23 @@ bool Navigator::meet(const PickRay& ray, bool touch, double& t, Vector& normal) 
   return true;
 }
 
+// What EXAMINE goes round: a place in the middle of the picture, so that what is looked at stays in view, as far away as the
+// middle of the Shape that is seen there, or else of the world. Of a world that does not lie ahead its middle.
+Vector Navigator::centerOf(const Matrix& view) {
+  Picker& picker = interaction_.picker;
+  const Vector eye(view.x[3][0], view.x[3][1], view.x[3][2]), back(view.x[2][0], view.x[2][1], view.x[2][2]);
+  const auto& roots = interaction_.scope->roots;
+  PickBox box = picker.bounds(roots);
+  if (box.empty()) return eye - back * 10;
+  Vector center = (box.low + box.high) / 2;
+  if (Hit hit; picker.pick({eye, -back}, {.bothSides = true}, view, roots, hit)) {
+    box = picker.bounds({NodeRef(hit.path.back().node)});
+    center = transformPoint(hit.path.back().toWorld, (box.low + box.high) / 2);
+  }
+  if (const double ahead = (eye - center).dot(back); ahead > 0) return eye - back * ahead;
+  return (eye - center).length() > 0 ? center : eye - back;
+}
+
 void Navigator::move(const NavigationInput& input, double seconds) {
   if (!interaction_.scope || interaction_.viewer.inTransition()) return;
   motion_.view = interaction_.viewer.view();
@@ -57,14 +74,8 @@ void Navigator::move(const NavigationInput& input, double seconds) {
   case Navigation::walk: to = walk(motion_, input, seconds, avatar(), obstacle); break;
   case Navigation::fly: to = fly(motion_, input, seconds, avatar(), obstacle); break;
   case Navigation::examine:
-    if (!hasCenter_) {
-      const PickBox box = interaction_.picker.bounds(interaction_.scope->roots);
-      const Matrix& v = motion_.view;
-      const Vector eye(v.x[3][0], v.x[3][1], v.x[3][2]), back(v.x[2][0], v.x[2][1], v.x[2][2]);
-      motion_.center = box.empty() ? eye - back * 10 : (box.low + box.high) / 2;
-      if (!((eye - motion_.center).length() > 0)) motion_.center = eye - back;
-      hasCenter_ = true;
-    }
+    if (!hasCenter_) motion_.center = centerOf(motion_.view);
+    hasCenter_ = true;
     to = examine(motion_, input, seconds, avatar());
     break;
   }

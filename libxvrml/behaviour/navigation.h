@@ -52,6 +52,7 @@ class Navigator {
 
  private:
   Avatar avatar() const;
+  Vector centerOf(const Matrix& view);
   bool meet(const PickRay& ray, bool touch, double& t, Vector& normal);
 
   Interaction& interaction_;

@@ -19,7 +19,8 @@ double megaraysPerSecond(const RTstats& s) {
 }
 
 std::string sampling(const SessionFacts& f) {
-  if (f.frameRate > 0) return fmt::format("{:.0f} fps", f.frameRate);
+  if (f.frameRate > 0) return fmt::format("{:.{}f} fps", f.frameRate, f.frameRate < 9.95 ? 1 : 0);
+  if (f.stats.cameraRays == 0) return "first picture ...";
   if (f.wanted <= 0) return "moving";
   return f.finished ? fmt::format("{:.0f} samples", f.samples) : fmt::format("{:.0f} of {:.0f} samples", f.samples, f.wanted);
 }
@@ -35,7 +36,8 @@ std::string problems(const SessionFacts& f) {
 
 std::vector<std::string> overlayLines(const SessionFacts& f, bool paused, OverlayLevel level) {
   if (level == OverlayLevel::none) return {};
-  std::string first = fmt::format("{}   {:.1f} Mray/s", sampling(f), megaraysPerSecond(f.stats));
+  std::string first = sampling(f);
+  if (f.stats.cameraRays > 0) first += fmt::format("   {:.1f} Mray/s", megaraysPerSecond(f.stats));
   if (f.frameRate > 0) first += fmt::format("   {}x{}", f.width, f.height);
   if (f.frameRate <= 0 && f.finished && f.stats.errorPixels > 0)
     first += fmt::format("   error {:.2g} %", 100 * f.stats.errorHalfWidth);

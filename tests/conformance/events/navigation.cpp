@@ -166,6 +166,14 @@ TEST(Examine, GoesRoundTheMiddleOfTheWorld) {
   EXPECT_GT(r.browser.camera(1).matrix[5], 0);
 }
 
+TEST(Examine, KeepsInTheMiddleWhatIsSeenThere) {
+  Running r("NavigationInfo { type \"EXAMINE\" } Viewpoint { position 0 0 10 } Shape { geometry Box {} } "
+            "Transform { translation 50 0 -80 children Shape { geometry Box { size 4 4 4 } } }");
+  r.browser.navigate({.turn = 1}, 1);
+  EXPECT_EQ(eyeOf(r.browser), "10 0 0");
+  EXPECT_EQ(lookOf(r.browser), "-1 0 0");
+}
+
 TEST(Navigation, NoneStaysWhereItIs) {
   for (const char* type : {"\"NONE\"", "[]"}) {
     Running r(std::string("NavigationInfo { type ") + type + " } Viewpoint {} " + floor20);
