@@ -181,12 +181,13 @@ def test_watch_reads_a_changed_file_and_keeps_the_viewer(window, vv):
     assert blue(*w.shot().at(0, 0))
 
 
-def test_a_world_that_cannot_be_read_is_said_in_the_window(window):
-    w = window("absent.wrl", ready=False)
-    w.said("absent.wrl")
+@pytest.mark.parametrize("arguments, word, code", [(["absent.wrl"], "absent.wrl", 3), (["box.wrl", "--viewpoint", "Nowhere"], "Nowhere", 2)])
+def test_what_cannot_be_shown_is_said_in_the_window(window, arguments, word, code):
+    w = window(*arguments, ready=False)
+    w.said(word)
     w.id = w.wait(lambda: w.tool("search", "--pid", str(w.program.pid)).split(), "window")[0]
     w.tool("windowfocus", "--sync", w.id)
-    assert w.end("Escape") == 3
+    assert w.end("Escape") == code
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])

@@ -134,17 +134,18 @@ class Window {
     if (!loader_.take(answer)) return;
     const std::string name = std::exchange(loading_, "");
     std::string wrong = std::move(answer.error);
+    int code = exitInput;
     if (answer.world) {
       try {
         begin(std::move(answer.world), answer.fragment);
-      } catch (const Failure& failure) { wrong = failure.text; } catch (const std::exception& error) {
+      } catch (const Failure& failure) { wrong = failure.text, code = failure.code; } catch (const std::exception& error) {
         wrong = error.what();
       }
     }
     if (wrong.empty()) return;
     sayError(wrong);
     message(wrong, 1e9);
-    if (!session_) failed_ = true;
+    if (!session_) failed_ = code;
   }
 
   void begin(std::unique_ptr<xvrml::World> world, const std::string& fragment) {
@@ -161,7 +162,7 @@ class Window {
     fresh->begin(width_, height_, place, fragment);
     mixer_.set({});
     session_ = std::move(fresh); // the former ends here
-    failed_ = false;
+    failed_ = exitDone;
     first_ = true;
     message("", 0);
     const std::string& path = session_->browser().world().path;
@@ -272,7 +273,7 @@ class Window {
 
   // A world that is being read, or geometry that is being made, cannot be called back: then the process ends as it is.
   int end() {
-    const int code = interrupted() ? exitInterrupted : failed_ ? exitInput : exitDone;
+    const int code = interrupted() ? exitInterrupted : failed_;
     record_.close();
     const bool stopped = !session_ || session_->stop(.5);
     if (stopped && !WorldLoader::working()) return code;
@@ -296,7 +297,8 @@ class Window {
   std::vector<InputEvent> events_, input_;
   const Clock::time_point start_ = Clock::now();
   int width_ = 0, height_ = 0;
-  bool ended_ = false, failed_ = false, keepPlace_ = false, help_ = false;
+  int failed_ = exitDone; // why there is no world
+  bool ended_ = false, keepPlace_ = false, help_ = false;
   std::string saveTo_; // with the first picture of the world
   bool first_ = false; // picture of the world is still to come
   double nextLook_ = 0, loadStart_ = 0;
