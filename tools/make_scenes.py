@@ -15,7 +15,7 @@ from scenes.chess import chess
 from scenes.earth import earth
 from scenes.globe import globe
 from scenes.headlight import headlight_studio
-from scenes.parts import at, box, lathe, number, numbers, quad, shader, shape, viewpoint, world
+from scenes.parts import at, box, lathe, numbers, quad, shader, shape, viewpoint, world
 
 
 def glass_ball():

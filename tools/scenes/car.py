@@ -30,14 +30,14 @@ def pane(house, band, side=1):
     outer, out_normals = house.patch(columns, rows, -.0005)
     inner, in_normals = house.patch(columns, rows, -.0055)
     if band in (0, 6):  # both halves
-        def full(points, mirror):
+        def full(points):
             n, result = len(columns), []
             for r in range(len(rows)):
                 line = points[r * n:(r + 1) * n]
                 other = [(x, y, -z) for x, y, z in (line[:0:-1] if band == 0 else line[-2::-1])]
                 result += other + line if band == 0 else line + other
             return result
-        outer, out_normals, inner, in_normals = (full(p, True) for p in (outer, out_normals, inner, in_normals))
+        outer, out_normals, inner, in_normals = (full(p) for p in (outer, out_normals, inner, in_normals))
         columns = list(range(2 * len(columns) - 1))
     n, m = len(columns), len(rows)
     total = n * m

@@ -2,7 +2,7 @@
 greenhouse that stands on it. x points forwards, y up, z to the right; metres. One half; the other is its mirror image."""
 import math
 
-from scenes.parts import number, numbers
+from scenes.parts import number
 
 AXLES, HUB, ARCH = (1.37, -1.30), .325, .375  # of the wheels: x, height, radius of the hole
 

@@ -3,7 +3,7 @@ z = 3.5, the file a at x = -3.5. Pieces are moved by chess.tcl through the names
 import math
 
 from scenes.knight import knight_head
-from scenes.parts import HEADER, aim, arc, at, box, curve, lathe, mesh, number, numbers, shape, tube, viewpoint
+from scenes.parts import HEADER, aim, arc, at, box, curve, lathe, mesh, shape, tube, viewpoint
 
 FOOT = .004  # of air between the pieces and the board
 STEPS = 56

@@ -2,7 +2,7 @@
 for design write them. 8 seconds are one round, 30 pictures a second."""
 import math
 
-from scenes.parts import HEADER, aim, arc, at, box, curve, lathe, mesh, number, numbers, shader, shape, tube, viewpoint
+from scenes.parts import HEADER, arc, at, box, curve, lathe, mesh, number, numbers, shader, shape, viewpoint
 
 ROUND, KEYS = 8, 96
 CENTRE = (0, 2.65, 0)

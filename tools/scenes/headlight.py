@@ -3,7 +3,7 @@ along +z, the middle of the reflector is the origin. All large surfaces are Extr
 scalloped oval that grows along the axis, the lens a fluted section that is swept up along an arc."""
 import math
 
-from scenes.parts import HEADER, aim, arc, at, curve, lathe, mesh, number, numbers, shader, shape, tube, viewpoint
+from scenes.parts import HEADER, aim, arc, at, lathe, mesh, number, numbers, shader, shape, tube, viewpoint
 
 WIDE, HIGH, DEEP = 8.6, 5.9, 5.2  # of the reflector: half axes of its rim, depth
 SECTORS, RINGS = 20, 7  # facets around and along
