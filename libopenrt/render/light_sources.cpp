@@ -37,6 +37,11 @@ bool extentOf(const RenderScene& scene, const LightSlot& light, RtsExtent& out) 
   return local.power > 0 && std::isfinite(local.power);
 }
 
+// Of scenes with the same records: whether the same of them mirror or refract.
+bool sameMirrors(const RenderScene& a, const RenderScene& b) {
+  return a.shaders == b.shaders || a.shaders->extends(*b.shaders); // the same traits
+}
+
 } // namespace
 
 void LightSources::aimAtMirrors(const RenderScene& scene) {
@@ -72,6 +77,9 @@ void LightSources::aimAtMirrors(const RenderScene& scene) {
     square += (high[k] - low[k]) * (high[k] - low[k]) / 4;
   }
   radius_ = float(std::sqrt(square) * (1 + 1e-5));
+}
+
+void LightSources::standBack(const RenderScene& scene) {
   float sceneLow[3], sceneHigh[3];
   scene.kernel->bounds(sceneLow, sceneHigh);
   double diagonal = 0;
@@ -79,9 +87,14 @@ void LightSources::aimAtMirrors(const RenderScene& scene) {
   far_ = float(std::sqrt(diagonal)) + radius_;
 }
 
-LightSources::LightSources(const RenderScene& scene) {
-  aimAtMirrors(scene);
-  if (!(radius_ > 0) || !std::isfinite(far_)) return;
+LightSources::LightSources(const RenderScene& scene, const RenderScene* before) {
+  if (before && before->lightSources && sameMirrors(scene, *before))
+    std::copy_n(before->lightSources->centre_, 3, centre_), radius_ = before->lightSources->radius_;
+  else
+    aimAtMirrors(scene);
+  if (!(radius_ > 0)) return;
+  standBack(scene);
+  if (!std::isfinite(far_)) return;
   double total = 0;
   const auto add = [&](const Source& source, double power) {
     if (!(power > 0)) return;

@@ -12,8 +12,9 @@ namespace openrt {
 
 class LightSources {
  public:
-  // Empty where nothing sends out light, or nothing mirrors or refracts it.
-  explicit LightSources(const RenderScene& scene);
+  // Empty where nothing sends out light, or nothing mirrors or refracts it. before: a scene with everything in the same
+  // places, or null.
+  LightSources(const RenderScene& scene, const RenderScene* before);
   bool empty() const { return cumulative_.empty(); }
 
   struct Start {
@@ -35,6 +36,7 @@ class LightSources {
     RtsExtent extent; // of a light, in render space
   };
   void aimAtMirrors(const RenderScene& scene);
+  void standBack(const RenderScene& scene);
   double coneTo(const float from[3], float axis[3]) const;
   std::vector<Source> sources_;
   std::vector<double> cumulative_;    // of power

@@ -59,7 +59,7 @@ void LocalBackend::prepare() {
   next->emitters.build(*next, snapshot_.get(), samePlaces_);
   next->manyLights = makeManyLights(*next, snapshot_.get());
   if (choice.transport == RT_TRANSPORT_LIGHT && next->camera.shader.shaderClass && next->camera.shader.shaderClass->project) {
-    auto sources = std::make_shared<const LightSources>(*next);
+    auto sources = std::make_shared<const LightSources>(*next, samePlaces_ ? snapshot_.get() : nullptr);
     if (!sources->empty()) next->lightSources = std::move(sources);
   }
   snapshot_ = std::move(next);
