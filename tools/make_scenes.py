@@ -187,7 +187,7 @@ def headlight():
     rim = radius * radius / (4 * focus) - focus
     # Plano-convex: flat towards the lamp, a paraboloid outside; faces outwards.
     convex = [(radius * i / 10, rim + 3.2 - 2.2 * (i / 10) ** 2) for i in range(11)]
-    lens = lathe([(0, rim + .5), (radius, rim + .5)] + list(reversed(convex)), 64, .7)
+    lens = lathe(convex + [(radius, rim + .5), (0, rim + .5)], 64, .7)
     lacquer = shader("Reflector", "reflector", "1f lacquer 1")
     return world(
         "Headlight", viewpoint((52, 20, 27), (0, 1, 23), .82), "Background { skyColor .1 .12 .17 }",
@@ -275,6 +275,8 @@ LONG = 250000  # bytes
 
 
 def main():
+    if len(sys.argv) != 2:
+        raise SystemExit(__doc__.strip())
     folder = pathlib.Path(sys.argv[1])
     for make in SCENES:
         text = make().encode()

@@ -49,7 +49,7 @@ void restrictGlobals(duk_context* ctx, Interpreter& self) {
   removeProperty(ctx, "Uint8Array", "plainOf");
   removeProperty(ctx, nullptr, "performance");
   duk_get_global_string(ctx, "Math");
-  duk_push_c_lightfunc(ctx, random, 0, 0, 0);
+  duk_push_c_function(ctx, random, 0);
   duk_put_prop_string(ctx, -2, "random");
   duk_pop(ctx);
   uint64_t seed = 0xcbf29ce484222325ULL ^ self.self; // FNV-1a of the program
@@ -58,7 +58,7 @@ void restrictGlobals(duk_context* ctx, Interpreter& self) {
   self.random = seed ? seed : 1;
   duk_eval_string(ctx, dates);
   duk_get_global_string(ctx, "Date");
-  duk_push_c_lightfunc(ctx, now, 0, 0, 0);
+  duk_push_c_function(ctx, now, 0);
   duk_call(ctx, 2);
   duk_put_global_string(ctx, "Date");
 }

@@ -181,7 +181,8 @@ void pushText(duk_context* ctx, duk_idx_t index, const char* what) {
 void putMethods(duk_context* ctx, const Method* methods, size_t count, int magic) {
   for (size_t i = 0; i < count; ++i) {
     const Method& m = methods[i];
-    duk_push_c_lightfunc(ctx, m.function, m.arguments, m.arguments == DUK_VARARGS ? 0 : m.arguments, magic);
+    duk_push_c_function(ctx, m.function, m.arguments); // no light function: its text shows an address
+    duk_set_magic(ctx, -1, magic);
     duk_put_prop_string(ctx, -2, m.name);
   }
 }

@@ -40,6 +40,14 @@ TEST_F(EcmaScript, AnErrorEndsTheFunctionNotTheScript) {
   EXPECT_EQ(r.take().size(), 3u); // what was assigned before the error is sent
 }
 
+// --- Secrets ---
+
+TEST_F(EcmaScript, TextsOfFunctionsTellNoAddress) {
+  EcmaWorld r(script("", "var v = new SFVec3f(); var all = [v.add, Math.random, Date, SFVec3f, Browser.getName, print, Math.sin];"
+                         "for (var i = 0; i < all.length; i++) print(/[0-9a-f]{6}/.test(String(all[i]) + all[i].name));"));
+  EXPECT_EQ(r.printed(), Log(7, "false"));
+}
+
 // --- Limits ---
 
 TEST_F(EcmaScript, ABombOfMemoryIsAnError) {
