@@ -20,7 +20,7 @@ help:
 ## make demo          install the packages, build, and render examples/scenes/still_life.wrl to demo.png
 demo: packages
 	@$(CONFIGURE) release
-	@cmake --build $(R) -j $(JOBS) --target vv shaders
+	@cmake --build $(R) -j $(JOBS) --target vv shaders scripts
 	$(R)/bin/vv examples/scenes/still_life.wrl -o demo.png --size 960x640 --spp 64
 	@echo "demo.png: examples/scenes/still_life.wrl, ray traced"
 
