@@ -19,7 +19,8 @@ for header in sorted((root / "libopenrt/include/openrt").iterdir()):
         jobs.append((f"openrt/{header.name}", [cc, "-x", "c", "-std=c99", "-Wstrict-prototypes"]))
     jobs.append((f"openrt/{header.name}", [cxx, "-x", "c++", "-std=c++17"]))
 xvrml = sorted(p.name for p in (root / "libxvrml/include/xvrml").glob("*.h")) + ["nodes.h"]
-jobs.append(("xvrml/xscript.h", [cc, "-x", "c", "-std=c99", "-Wstrict-prototypes"]))
+for header in ("xvrml/xscript.h", "xvrml/xscript_types.h"):
+    jobs.append((header, [cc, "-x", "c", "-std=c99", "-Wstrict-prototypes"]))
 jobs += [(f"xvrml/{name}", [cxx, "-x", "c++", "-std=c++20"]) for name in xvrml]
 if len(jobs) < 6:
     sys.exit("headers.py: the public headers are not where they should be")

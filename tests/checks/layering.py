@@ -25,6 +25,7 @@ PARTS = {
     "libopenrt/tools/": "openrt-tools",
     "libxvrml/include/xvrml/openrt.h": "mapper-h",
     "libxvrml/include/xvrml/xscript.h": "script-sdk",
+    "libxvrml/include/xvrml/xscript_types.h": "script-sdk",
     "libxvrml/include/xvrml/": "xvrml-h",
     "libxvrml/base/": "xvrml-base",
     "libxvrml/nodegen/": "nodegen",

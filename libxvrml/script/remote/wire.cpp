@@ -5,6 +5,8 @@
 #include <iterator>
 #include <utility>
 
+#include "xvrml/xscript_types.h"
+
 namespace xvrml::wire {
 namespace {
 
@@ -15,12 +17,11 @@ constexpr uint64_t padding(uint64_t size) { return (word - size % word) % word; 
 } // namespace
 
 Element elementOf(XsType type) {
-  constexpr Element table[] = {{Kind::plain, 4},  {Kind::plain, 12}, {Kind::plain, 4}, {Kind::images, 0}, {Kind::plain, 4},
-                               {Kind::plain, 8},  {Kind::plain, 16}, {Kind::texts, 0}, {Kind::plain, 8},  {Kind::plain, 8},
-                               {Kind::plain, 12}, {Kind::plain, 12}, {Kind::plain, 4}, {Kind::plain, 4},  {Kind::plain, 8},
-                               {Kind::plain, 16}, {Kind::texts, 0},  {Kind::plain, 8}, {Kind::plain, 8},  {Kind::plain, 12}};
-  static_assert(std::size(table) == XS_MFVEC3F);
-  return type >= XS_SFBOOL && type <= XS_MFVEC3F ? table[type - XS_SFBOOL] : Element{Kind::unknown, 0};
+  const XsTypeInfo* info = xsTypeInfo(type);
+  if (!info) return {Kind::unknown, 0};
+  if (info->element == XS_SFSTRING) return {Kind::texts, 0};
+  if (info->element == XS_SFIMAGE) return {Kind::images, 0};
+  return {Kind::plain, info->bytes};
 }
 
 const char* functionName(Op op) {

@@ -9,10 +9,6 @@
 namespace ecma {
 namespace {
 
-constexpr const char* names[] = {"",           "SFBool",   "SFColor",    "SFFloat",  "SFImage", "SFInt32", "SFNode",
-                                 "SFRotation", "SFString", "SFTime",     "SFVec2f",  "SFVec3f", "MFColor", "MFFloat",
-                                 "MFInt32",    "MFNode",   "MFRotation", "MFString", "MFTime",  "MFVec2f", "MFVec3f"};
-
 bool equalsWord(const char* text, const char* lower) {
   for (; *lower; ++text, ++lower)
     if ((*text | 0x20) != *lower) return false;
@@ -37,40 +33,18 @@ bool tupleOfText(const char* text, double* out, int count) {
 
 } // namespace
 
-XsType elementType(XsType type) {
-  switch (type) {
-  case XS_MFCOLOR: return XS_SFCOLOR;
-  case XS_MFFLOAT: return XS_SFFLOAT;
-  case XS_MFINT32: return XS_SFINT32;
-  case XS_MFNODE: return XS_SFNODE;
-  case XS_MFROTATION: return XS_SFROTATION;
-  case XS_MFSTRING: return XS_SFSTRING;
-  case XS_MFTIME: return XS_SFTIME;
-  case XS_MFVEC2F: return XS_SFVEC2F;
-  case XS_MFVEC3F: return XS_SFVEC3F;
-  default: return type;
-  }
-}
-
-int components(XsType type) {
-  switch (type) {
-  case XS_SFSTRING:
-  case XS_SFNODE:
-  case XS_SFIMAGE: return 0;
-  case XS_SFVEC2F: return 2;
-  case XS_SFCOLOR:
-  case XS_SFVEC3F: return 3;
-  case XS_SFROTATION: return 4;
-  default: return 1;
-  }
-}
+XsType elementType(XsType type) { return xsTypeInfo(type)->element; }
+int components(XsType type) { return xsTypeInfo(type)->components; }
 
 size_t elementBytes(XsType type) {
-  const XsType element = elementType(type);
-  return element == XS_SFTIME ? sizeof(double) : size_t(components(element)) * sizeof(float);
+  const XsTypeInfo* info = xsTypeInfo(type);
+  return info->components > 0 ? info->bytes : 0;
 }
 
-const char* typeName(XsType type) { return type >= XS_SFBOOL && type <= XS_MFVEC3F ? names[type] : "?"; }
+const char* typeName(XsType type) {
+  const XsTypeInfo* info = xsTypeInfo(type);
+  return info ? info->name : "?";
+}
 
 double widen(float value) {
   const float scaled = value * 4096; // numbers of few bits are what they look like

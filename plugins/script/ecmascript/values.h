@@ -3,6 +3,8 @@
 // [the browser's thread]
 #pragma once
 
+#include <xvrml/xscript_types.h>
+
 #include "interpreter.h"
 
 namespace ecma {
@@ -29,7 +31,7 @@ struct MfData {
   uint32_t count;
 };
 
-inline bool isMf(XsType type) { return type >= XS_MFCOLOR; }
+inline bool isMf(XsType type) { return xsIsMany(type); }
 XsType elementType(XsType type);  // of an MF type
 int components(XsType type);      // numbers of an SF type, 0 for SFString, SFNode, SFImage
 size_t elementBytes(XsType type); // of an MF type's numbers; 0: elements are in an array

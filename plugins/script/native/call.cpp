@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include <xvrml/xscript_types.h>
+
 namespace native {
 namespace {
 
@@ -124,7 +126,7 @@ void PreparedCall::add(const Argument& a) {
     return push(typeOf(type), [type](const World& w, Cell& cell) { put(cell, type, w.time); });
   }
   const XsType type = info_.fields[a.field].type;
-  const bool many = type >= XS_MFCOLOR;
+  const bool many = xsIsMany(type);
   const bool data = a.part != Argument::Part::count, count = a.part == Argument::Part::count;
   if (a.write) {
     Place& written = place(a);

@@ -3,42 +3,21 @@
 
 #include <cstring>
 
+#include <xvrml/xscript_types.h>
+
 namespace native {
 
-XsType elementType(XsType type) {
-  switch (type) {
-  case XS_MFCOLOR: return XS_SFCOLOR;
-  case XS_MFFLOAT: return XS_SFFLOAT;
-  case XS_MFINT32: return XS_SFINT32;
-  case XS_MFNODE: return XS_SFNODE;
-  case XS_MFROTATION: return XS_SFROTATION;
-  case XS_MFSTRING: return XS_SFSTRING;
-  case XS_MFTIME: return XS_SFTIME;
-  case XS_MFVEC2F: return XS_SFVEC2F;
-  case XS_MFVEC3F: return XS_SFVEC3F;
-  default: return type;
-  }
-}
+XsType elementType(XsType type) { return xsTypeInfo(type)->element; }
 
 size_t elementBytes(XsType type) {
-  switch (elementType(type)) {
-  case XS_SFBOOL:
-  case XS_SFINT32: return sizeof(int32_t);
-  case XS_SFFLOAT: return sizeof(float);
-  case XS_SFVEC2F: return 2 * sizeof(float);
-  case XS_SFVEC3F:
-  case XS_SFCOLOR: return 3 * sizeof(float);
-  case XS_SFROTATION: return 4 * sizeof(float);
-  case XS_SFTIME: return sizeof(double);
-  case XS_SFNODE: return sizeof(XsNode);
-  default: return 0;
-  }
+  const XsTypeInfo* info = xsTypeInfo(type);
+  return info->components > 0 || info->element == XS_SFNODE ? info->bytes : 0;
 }
 
-Slot::Slot(XsType type) : type_(type) { makeRoom(type >= XS_MFCOLOR ? 0 : 1); }
+Slot::Slot(XsType type) : type_(type) { makeRoom(xsIsMany(type) ? 0 : 1); }
 
 void Slot::makeRoom(uint32_t elements) {
-  count_ = type_ >= XS_MFCOLOR ? elements : 1;
+  count_ = xsIsMany(type_) ? elements : 1;
   const size_t bytes = type_ == XS_SFSTRING ? elements + 1 : elementBytes(type_) * elements;
   words_.assign(bytes / sizeof(uint64_t) + 1, 0); // a text ends even where the room does
   texts_.assign(elementType(type_) == XS_SFSTRING ? count_ : 0, "");
@@ -82,7 +61,7 @@ const char* Slot::text() { return texts_.empty() ? "" : texts_[0].c_str(); }
 const XsImage* Slot::image() { return &image_; }
 
 XsValue Slot::value(uint32_t count) {
-  XsValue value{type_, type_ >= XS_MFCOLOR ? count : 1, {nullptr}};
+  XsValue value{type_, xsIsMany(type_) ? count : 1, {nullptr}};
   if (elementType(type_) == XS_SFSTRING)
     value.of.strings = strings_.data();
   else if (type_ == XS_SFIMAGE)

@@ -6,37 +6,33 @@
 #include <limits>
 
 #include <pybind11/numpy.h>
+#include <xvrml/xscript_types.h>
 
 namespace python {
 namespace {
 
-struct Kind {
-  const char* name;
-  int width; // numbers of an element; 0: no numbers
-  const char* expected;
-};
-const Kind& kindOf(XsType type) {
-  static const Kind kinds[] = {{"SFBool", 1, "True or False"},
-                               {"SFColor", 3, "3 numbers"},
-                               {"SFFloat", 1, "a number"},
-                               {"SFImage", 0, "an array of bytes of shape (height, width, components)"},
-                               {"SFInt32", 1, "a whole number of 32 bits"},
-                               {"SFNode", 0, "a Node or None"},
-                               {"SFRotation", 4, "4 numbers"},
-                               {"SFString", 0, "a str"},
-                               {"SFTime", 1, "a number"},
-                               {"SFVec2f", 2, "2 numbers"},
-                               {"SFVec3f", 3, "3 numbers"},
-                               {"MFColor", 3, "numbers of shape (n, 3)"},
-                               {"MFFloat", 1, "numbers of shape (n,)"},
-                               {"MFInt32", 1, "whole numbers of 32 bits of shape (n,)"},
-                               {"MFNode", 0, "a sequence of Nodes"},
-                               {"MFRotation", 4, "numbers of shape (n, 4)"},
-                               {"MFString", 0, "a sequence of str"},
-                               {"MFTime", 1, "numbers of shape (n,)"},
-                               {"MFVec2f", 2, "numbers of shape (n, 2)"},
-                               {"MFVec3f", 3, "numbers of shape (n, 3)"}};
-  return kinds[type - XS_SFBOOL];
+const char* expected(XsType type) {
+  static const char* const texts[] = {"True or False",
+                                      "3 numbers",
+                                      "a number",
+                                      "an array of bytes of shape (height, width, components)",
+                                      "a whole number of 32 bits",
+                                      "a Node or None",
+                                      "4 numbers",
+                                      "a str",
+                                      "a number",
+                                      "2 numbers",
+                                      "3 numbers",
+                                      "numbers of shape (n, 3)",
+                                      "numbers of shape (n,)",
+                                      "whole numbers of 32 bits of shape (n,)",
+                                      "a sequence of Nodes",
+                                      "numbers of shape (n, 4)",
+                                      "a sequence of str",
+                                      "numbers of shape (n,)",
+                                      "numbers of shape (n, 2)",
+                                      "numbers of shape (n, 3)"};
+  return texts[type - XS_SFBOOL];
 }
 
 // Who is to blame, for messages.
@@ -44,7 +40,7 @@ struct Target {
   XsType type;
   const std::string& name;
 
-  std::string text() const { return name + " (" + typeName(type) + "): " + kindOf(type).expected + " expected"; }
+  std::string text() const { return name + " (" + typeName(type) + "): " + expected(type) + " expected"; }
   [[noreturn]] void wrongType(const py::handle& got) const {
     throw py::type_error(text() + ", not " + std::string(py::str(py::type::handle_of(got).attr("__name__"))));
   }
@@ -210,7 +206,7 @@ std::string textOf(const py::handle& object, const Target& target) {
 
 } // namespace
 
-const char* typeName(XsType type) { return kindOf(type).name; }
+const char* typeName(XsType type) { return xsTypeInfo(type)->name; }
 
 py::str toText(const XsString& bytes) {
   PyObject* text = PyUnicode_DecodeUTF8(bytes.data, py::ssize_t(bytes.bytes), "surrogateescape");
@@ -235,7 +231,7 @@ std::vector<std::string> textsOf(const py::handle& object, const char* what) {
 }
 
 py::object toPython(const XsValue& value, const Nodes& nodes) {
-  const size_t width = size_t(kindOf(value.type).width);
+  const size_t width = size_t(xsTypeInfo(value.type)->components);
   switch (value.type) {
   case XS_SFBOOL: return py::bool_(value.of.ints[0] != 0);
   case XS_SFINT32: return py::int_(value.of.ints[0]);
@@ -267,8 +263,8 @@ py::object toPython(const XsValue& value, const Nodes& nodes) {
 
 Owned::Owned(const py::handle& object, XsType type, const std::string& name, const Nodes& nodes) {
   const Target target{type, name};
-  const Kind& kind = kindOf(type);
-  const bool many = type >= XS_MFCOLOR;
+  const XsTypeInfo& info = *xsTypeInfo(type);
+  const bool many = xsIsMany(type);
   value_.type = type;
   value_.count = 1;
   switch (type) {
@@ -333,8 +329,8 @@ Owned::Owned(const py::handle& object, XsType type, const std::string& name, con
     break;
   }
   default:
-    for (const double v : numbersOf(object, size_t(kind.width), many, target)) floats_.push_back(singleOf(v, target));
-    value_.count = uint32_t(floats_.size() / size_t(kind.width));
+    for (const double v : numbersOf(object, size_t(info.components), many, target)) floats_.push_back(singleOf(v, target));
+    value_.count = uint32_t(floats_.size() / size_t(info.components));
     value_.of.floats = floats_.data();
     break;
   }

@@ -7,25 +7,13 @@
 #include <cstring>
 #include <limits>
 
+#include <xvrml/xscript_types.h>
+
 #include "interpreter.h"
 #include "nodes.h"
 
 namespace tclscript {
 namespace {
-
-struct Kind {
-  const char* name;
-  XsType element; // the SF type
-  int numbers;    // floats of an element: 1, 2, 3 or 4; 0: no floats
-};
-constexpr Kind kinds[] = {
-    {"SFBool", XS_SFBOOL, 0},     {"SFColor", XS_SFCOLOR, 3}, {"SFFloat", XS_SFFLOAT, 1},       {"SFImage", XS_SFIMAGE, 0},
-    {"SFInt32", XS_SFINT32, 0},   {"SFNode", XS_SFNODE, 0},   {"SFRotation", XS_SFROTATION, 4}, {"SFString", XS_SFSTRING, 0},
-    {"SFTime", XS_SFTIME, 0},     {"SFVec2f", XS_SFVEC2F, 2}, {"SFVec3f", XS_SFVEC3F, 3},       {"MFColor", XS_SFCOLOR, 3},
-    {"MFFloat", XS_SFFLOAT, 1},   {"MFInt32", XS_SFINT32, 0}, {"MFNode", XS_SFNODE, 0},         {"MFRotation", XS_SFROTATION, 4},
-    {"MFString", XS_SFSTRING, 0}, {"MFTime", XS_SFTIME, 0},   {"MFVec2f", XS_SFVEC2F, 2},       {"MFVec3f", XS_SFVEC3F, 3}};
-const Kind* kindOf(XsType type) { return type >= XS_SFBOOL && type <= XS_MFVEC3F ? &kinds[type - XS_SFBOOL] : nullptr; }
-bool isMany(XsType type) { return type >= XS_MFCOLOR; }
 
 // The shortest decimal that means this float, so that 0.1 is written 0.1.
 Tcl_Obj* number(float f) {
@@ -40,7 +28,7 @@ Tcl_Obj* number(float f) {
   return Tcl_NewDoubleObj(d);
 }
 
-Tcl_Obj* element(Interpreter& interpreter, const Kind& kind, const XsValue& value, size_t i) {
+Tcl_Obj* element(Interpreter& interpreter, const XsTypeInfo& kind, const XsValue& value, size_t i) {
   switch (kind.element) {
   case XS_SFBOOL: return Tcl_NewBooleanObj(value.of.ints[i]);
   case XS_SFINT32: return Tcl_NewIntObj(value.of.ints[i]);
@@ -65,8 +53,8 @@ Tcl_Obj* element(Interpreter& interpreter, const Kind& kind, const XsValue& valu
   }
   default: {
     Tcl_Obj* parts[4];
-    for (int k = 0; k < kind.numbers; ++k) parts[k] = number(value.of.floats[i * size_t(kind.numbers) + size_t(k)]);
-    return Tcl_NewListObj(kind.numbers, parts);
+    for (int k = 0; k < kind.components; ++k) parts[k] = number(value.of.floats[i * size_t(kind.components) + size_t(k)]);
+    return Tcl_NewListObj(kind.components, parts);
   }
   }
 }
@@ -75,7 +63,7 @@ Tcl_Obj* element(Interpreter& interpreter, const Kind& kind, const XsValue& valu
 struct Reader {
   Interpreter& interpreter;
   const char* type; // for messages
-  const Kind& kind;
+  const XsTypeInfo& kind;
   Converted& out;
 
   Tcl_Interp* tcl() const { return interpreter.tcl(); }
@@ -135,7 +123,7 @@ struct Reader {
   }
 
   int tuple(Tcl_Obj* const* parts) const {
-    for (int k = 0; k < kind.numbers; ++k) {
+    for (int k = 0; k < kind.components; ++k) {
       float f = 0;
       if (one(parts[k], f) != TCL_OK) return TCL_ERROR;
       out.floats.push_back(f);
@@ -170,8 +158,8 @@ struct Reader {
       static constexpr const char* expected[] = {"", "", "2 numbers", "3 numbers", "4 numbers"};
       Tcl_Obj** parts;
       int count;
-      if (Tcl_ListObjGetElements(nullptr, object, &count, &parts) != TCL_OK || count != kind.numbers)
-        return wrong(expected[kind.numbers], object);
+      if (Tcl_ListObjGetElements(nullptr, object, &count, &parts) != TCL_OK || count != kind.components)
+        return wrong(expected[kind.components], object);
       return tuple(parts);
     }
     }
@@ -182,9 +170,9 @@ struct Reader {
     Tcl_Obj** parts;
     int length, first;
     if (Tcl_ListObjGetElements(nullptr, object, &length, &parts) != TCL_OK) return wrong("a list", object);
-    const bool flat = kind.numbers > 1 && length > 0 && length % kind.numbers == 0 &&
+    const bool flat = kind.components > 1 && length > 0 && length % kind.components == 0 &&
                       Tcl_ListObjLength(nullptr, parts[0], &first) == TCL_OK && first == 1;
-    const int step = flat ? kind.numbers : 1;
+    const int step = flat ? kind.components : 1;
     for (int i = 0; i < length; i += step)
       if ((flat ? tuple(parts + i) : element(parts[i])) != TCL_OK) return TCL_ERROR;
     count = uint32_t(length / step);
@@ -211,27 +199,27 @@ const void* dataOf(Converted& c, XsType element) {
 } // namespace
 
 const char* typeName(XsType type) {
-  const Kind* kind = kindOf(type);
+  const XsTypeInfo* kind = xsTypeInfo(type);
   return kind ? kind->name : "?";
 }
 
 Object toTcl(Interpreter& interpreter, const XsValue& value) {
-  const Kind* kind = kindOf(value.type);
+  const XsTypeInfo* kind = xsTypeInfo(value.type);
   if (!kind || (value.count > 0 && !value.of.data)) return Tcl_NewObj();
-  if (!isMany(value.type)) return value.count == 1 ? element(interpreter, *kind, value, 0) : Tcl_NewObj();
+  if (!xsIsMany(value.type)) return value.count == 1 ? element(interpreter, *kind, value, 0) : Tcl_NewObj();
   const Object all = Tcl_NewListObj(0, nullptr);
   for (size_t i = 0; i < value.count; ++i) Tcl_ListObjAppendElement(nullptr, all.get(), element(interpreter, *kind, value, i));
   return all;
 }
 
 int fromTcl(Interpreter& interpreter, Tcl_Obj* object, XsType type, Converted& out) {
-  const Kind* kind = kindOf(type);
+  const XsTypeInfo* kind = xsTypeInfo(type);
   if (!kind) return Tcl_SetObjResult(interpreter.tcl(), Tcl_NewStringObj("a value of an unknown type", -1)), TCL_ERROR;
   const Object keep(object); // lists may be turned into something else under way
   const Reader reader{interpreter, kind->name, *kind, out};
   out.value.type = type;
   out.value.count = 1;
-  const int code = isMany(type) ? reader.many(object, out.value.count) : reader.element(object);
+  const int code = xsIsMany(type) ? reader.many(object, out.value.count) : reader.element(object);
   if (code != TCL_OK) return TCL_ERROR;
   out.value.of.data = out.value.count > 0 ? dataOf(out, kind->element) : nullptr;
   return TCL_OK;
