@@ -15,8 +15,9 @@ constexpr uint32_t mostOfRound = TileRenderer::largestWave; // progressive: so t
 }
 
 std::unique_ptr<Rounds> Rounds::of(const edit::FrameSettingsT& frame, uint32_t tiles, bool light, double now) {
-  const bool wanted = frame.timeLimit > 0 || frame.progressive;
-  return wanted && frame.samples > 1 && tiles > 0 ? std::make_unique<Rounds>(frame, tiles, light, now) : nullptr;
+  const bool wanted =
+      frame.timeLimit > 0 ? frame.samples > 1 : frame.progressive && frame.samples >= TileRenderer::fewestOfRounds;
+  return wanted && tiles > 0 ? std::make_unique<Rounds>(frame, tiles, light, now) : nullptr;
 }
 
 Rounds::Rounds(const edit::FrameSettingsT& frame, uint32_t tiles, bool light, double now)

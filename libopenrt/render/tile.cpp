@@ -29,7 +29,7 @@ size_t keptBytes(const Film& film, bool wantsError) {
 } // namespace
 
 uint32_t tileEdge(uint32_t samplesPerPixel, uint32_t width, uint32_t height) {
-  constexpr uint32_t least = 16, enough = 256; // pixels; tiles
+  constexpr uint32_t least = 16, enough = 64; // pixels; tiles
   uint32_t edge = samplesPerPixel >= 16 ? least : samplesPerPixel >= 4 ? 32 : 64;
   while (edge > least && uint64_t(width) * height < uint64_t(enough) * edge * edge) edge /= 2;
   return edge;
@@ -102,14 +102,14 @@ void TileRenderer::begin(const Tile& tile) {
   sums_.assign(pixels_.size(), {});
 }
 
-// A wave is as large as what was taken before it: rounds of a progressive frame begin and end with waves, so that a wave has the
+// Of many samples, a wave is as large as all before it: rounds of a progressive frame begin and end with waves, which so hold the
 // same paths in one go and in rounds. What a path meets may depend on those beside it, where faces coincide.
 bool TileRenderer::takeSamples(uint32_t first, uint32_t samples) {
   ledger_.samples += samples;
   const uint32_t most = std::clamp(std::bit_floor(pathsInFlight / uint32_t(pixels_.size())), 1u, largestWave);
   for (uint32_t s = first, end = first + samples; s < end;) {
     if (stopped()) return false;
-    const uint32_t n = std::min({most, std::max(s, 1u), end - s});
+    const uint32_t n = std::min({most, scene_.frame.samples < fewestOfRounds ? most : std::max(s, 1u), end - s});
     wave(s, n);
     s += n;
   }

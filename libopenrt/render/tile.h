@@ -34,6 +34,8 @@ class TileRenderer {
   void render(const Tile& tile);
   // Samples of a wave, at most.
   static constexpr uint32_t largestWave = 32;
+  // Frames of so many samples are taken in waves that grow, and may be made in rounds; of fewer, small waves would cost too much.
+  static constexpr uint32_t fewestOfRounds = 32;
   static constexpr uint32_t pilotSamples = 32;
   static bool needsPilot(const edit::FrameSettingsT& frame) { return frame.targetError > 0 && frame.samples > pilotSamples; }
   // Some samples more for a tile whose sums are kept from round to round; the first time there are none. May be 0 samples: the

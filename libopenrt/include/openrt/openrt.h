@@ -364,7 +364,7 @@ enum {
  * RT_PROGRESSIVE 1: for those who look at a frame while it is made (rtSnapshot): rounds over the whole picture, of one sample a
  * pixel at first, then of more. When it is finished its bytes are those of the same frame without; it takes a few per cent longer
  * and 56 to 180 bytes a pixel by channels, with those of the error about 450. With a time limit, which makes rounds of its own,
- * nothing changes. */
+ * nothing changes, nor with fewer than 32 samples. */
 /* Size in pixels (1 .. 65536 each, at most 2^28 in all) and channels of the following frames. */
 RT_API void rtFrameBuffer(int width, int height, uint32_t channels);
 RT_API void rtQuality(RTenum name, int value);

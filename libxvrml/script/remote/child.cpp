@@ -153,8 +153,9 @@ std::string Child::ending() {
   if (!known_) return "ended";
   if (WIFEXITED(status_)) return fmt::format("ended with code {}", WEXITSTATUS(status_));
   const int signal = WTERMSIG(status_);
-  return fmt::format("ended by signal {} ({}), having used {} MB", signal, sigdescr_np(signal) ? sigdescr_np(signal) : "?",
-                     peak_ / 1024);
+  constexpr long much = 64 * 1024; // kB, more than any language needs for itself
+  return fmt::format("ended by signal {} ({})", signal, sigdescr_np(signal) ? sigdescr_np(signal) : "?") +
+         (peak_ > much ? fmt::format(", having used {} MB", peak_ / 1024) : "");
 }
 
 } // namespace xvrml

@@ -197,7 +197,7 @@ TEST_F(ScriptProcess, OneThatIsAlwaysKilledIsStopped) {
   }
   r.set("S", "go", true);
   const Log messages = r.messages();
-  ASSERT_EQ(messages.size(), 2u); // the same text is told once
+  ASSERT_EQ(messages.size(), 2u) << testing::PrintToString(messages); // the same text is told once
   EXPECT_NE(messages[0].find("ended by signal 9 (Killed)"), std::string::npos) << messages[0];
   EXPECT_NE(messages[0].find("it is started anew"), std::string::npos) << messages[0];
   EXPECT_NE(messages[1].find("again: the Script is stopped"), std::string::npos) << messages[1];
