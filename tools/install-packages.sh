@@ -10,6 +10,7 @@ build=(
   libimath-dev libopenexr-dev libpng-dev libjpeg-dev libgif-dev # small maths, pictures
   zlib1g-dev libzstd-dev libxxhash-dev                          # compression, hashes
   libflatbuffers-dev flatbuffers-compiler # scene edits
+  libzmq3-dev cppzmq-dev liblz4-dev       # the cluster
   libfast-float-dev libfmt-dev libspdlog-dev libcli11-dev nlohmann-json3-dev
   libavcodec-dev libavformat-dev libswscale-dev # films; the build does without, too
   libfreetype-dev libharfbuzz-dev libfontconfig-dev fonts-dejavu-core libglu1-mesa-dev # text, polygons

@@ -51,6 +51,7 @@ namespace openrt {
 // seed of its own: independent of the others, so that their means tell their error. The first one has the frame's own seed.
 struct Replicates {
   uint32_t seed = 0, shift = 31; // 31: one net
+  bool operator==(const Replicates&) const = default;
   bool many() const { return shift < 31; }
   uint32_t size() const { return 1u << shift; }
   uint32_t indexOf(uint32_t sample) const { return sample & (size() - 1); }

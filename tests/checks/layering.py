@@ -64,8 +64,8 @@ ARROWS = {
     "backend-record": {"api-h", "shader-sdk", "openrt-scene", "openrt-shading", "openrt-backend", "common"},  # its reader checks against class tables
     "backend-debug": {"api-h", "shader-sdk", "openrt-scene", "openrt-shading", "openrt-backend", "common"},  # class tables and names for its messages
     "backend-null": {"api-h", "openrt-scene", "openrt-backend", "common"},
-    "backend-cluster": {"api-h", "openrt-scene", "openrt-backend", "common"},
-    "openrt-tools": {"api-h", "openrt-scene", "openrt-shading", "openrt-backend", "backend-record", "common"},
+    "backend-cluster": {"api-h", "shader-sdk", "openrt-scene", "openrt-shading", "openrt-render", "openrt-backend", "backend-local", "backend-record", "common"},  # jobs; a worker is a local backend; what comes is checked
+    "openrt-tools": {"api-h", "openrt-scene", "openrt-shading", "openrt-backend", "backend-record", "backend-cluster", "common"},
     "xvrml-h": set(),
     "xvrml-base": {"xvrml-h", "common"},
     "nodegen": {"xvrml-h", "xvrml-base", "common"},

@@ -1,0 +1,27 @@
+// job_runner.h: does jobs of one prepared scene, on one thread.
+#pragma once
+
+#include <atomic>
+#include <memory>
+
+#include "render/job.h"
+#include "render/render_scene.h"
+
+namespace openrt {
+
+struct FrameFacts;
+FrameFacts factsOf(const RenderScene& scene);
+
+class JobRunner {
+ public:
+  explicit JobRunner(std::shared_ptr<const RenderScene> scene);
+  ~JobRunner();
+  // False: given up because the flag was set; result is of no use then. Throws what shaders and kernels throw.
+  bool run(const Job& job, const std::atomic<bool>& stop, JobResult& result);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+} // namespace openrt
