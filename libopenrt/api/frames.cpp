@@ -59,6 +59,10 @@ void setQuality(Context& c, RTenum name, int value) {
     within(0, 1);
     frame.progressive = value == 1;
     break;
+  case RT_TILE_SIZE:
+    require(value == 0 || (value >= int(smallestTile) && value <= int(largestTile)), RT_INVALID_VALUE, "out of range");
+    frame.tile = static_cast<uint8_t>(value);
+    break;
   default: fail(RT_INVALID_ENUM, "unknown quality " + std::to_string(name));
   }
   c.scene.frameDirty = true;

@@ -52,8 +52,8 @@ uint32_t availableThreads() {
 
 Frame::Frame(std::shared_ptr<const RenderScene> scene, uint32_t threads)
     : scene_(std::move(scene)), film_(scene_->frame.width, scene_->frame.height, scene_->frame.channels, errorsOf(scene_->frame)),
-      edge_(tileEdge(scene_->frame.samples, film_.width(), film_.height())), columns_((film_.width() + edge_ - 1) / edge_),
-      tiles_(columns_ * ((film_.height() + edge_ - 1) / edge_)), started_(now()) {
+      edge_(scene_->frame.tile ? scene_->frame.tile : tileEdge(scene_->frame.samples, film_.width(), film_.height())),
+      columns_((film_.width() + edge_ - 1) / edge_), tiles_(columns_ * ((film_.height() + edge_ - 1) / edge_)), started_(now()) {
   if (!scene_->camera.shader.shaderClass) tiles_ = 0; // nothing is seen without a camera
   finished_ = std::make_unique<std::atomic<bool>[]>(tiles_);
   ledgers_.resize(tiles_);

@@ -14,6 +14,7 @@ inline constexpr uint32_t channelBits = 10;
 // Limits of a frame's quality (openrt.h).
 inline constexpr uint32_t maxReplicates = 1024;
 inline constexpr float maxTimeLimit = 1e6f;
+inline constexpr uint32_t smallestTile = 4, largestTile = 128; // edge, pixels
 
 // Floats per pixel of one channel; 0: no such channel.
 constexpr uint32_t channelComponents(uint32_t channel) {

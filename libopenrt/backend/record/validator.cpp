@@ -159,7 +159,7 @@ void CommitValidator::check(const edit::FrameSettingsT& frame) {
          "a frame of an impossible size");
   demand(frame.channels != 0 && (frame.channels & ~allChannels) == 0, "a frame with unknown channels");
   demand(frame.samples >= 1 && frame.samples <= 65536 && frame.depth <= 10000 && frame.transport <= RT_TRANSPORT_LIGHT &&
-             frame.replicates <= maxReplicates,
+             frame.replicates <= maxReplicates && (frame.tile == 0 || (frame.tile >= smallestTile && frame.tile <= largestTile)),
          "a frame of an impossible quality");
   demand(frame.targetError >= 0 && frame.targetError <= 1 && frame.timeLimit >= 0 && frame.timeLimit <= maxTimeLimit,
          "a frame of an impossible error or time limit");

@@ -328,7 +328,9 @@ enum {
   RT_ENERGY_CUT = 9,        /* rtQualityf: whitted: branches that carry less of the camera ray end, 0 .. 1, default 1/4096 */
   RT_CLAMP = 10,            /* rtQualityf: a sample's radiance is at most this by colour; 0 (default): no limit. Biased: what is
                                clipped is counted in RTstats.clipped */
-  RT_PROGRESSIVE = 11       /* 0 (default) or 1: the whole picture early, then better and better, see below */
+  RT_PROGRESSIVE = 11,      /* 0 (default) or 1: the whole picture early, then better and better, see below */
+  RT_TILE_SIZE = 13         /* edge in pixels of the tiles that a picture is made in, 4 .. 128; 0 (default): as size and samples
+                               suggest. What neighbours tell of errors ends at a tile's border, nothing else depends on it */
 };
 /* How light is followed from a surface whose shader answers in lobes (openrts.h). */
 enum {
