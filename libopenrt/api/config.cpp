@@ -1,20 +1,22 @@
 // config.cpp: grammar  options ::= { blank } [ key "=" ( '"' { any but '"' } '"' | { any but blank } ) { blank } ... ]
 #include "api/config.h"
 
+#include <algorithm>
 #include <charconv>
+#include <iterator>
 
 #include "api/errors.h"
 
 namespace openrt {
 namespace {
 constexpr std::string_view blanks = " \t\r\n";
-constexpr uint32_t maxThreads = 1024;
+constexpr uint32_t maxThreads = 1024, maxWorkers = 65536;
 
-uint32_t parseThreads(std::string_view text) {
+uint32_t parseNumber(std::string_view key, std::string_view text, uint32_t most) {
   uint32_t value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (text.empty() || error != std::errc() || end != text.data() + text.size() || value > maxThreads)
-    fail(RT_INVALID_VALUE, "threads=" + std::string(text) + ": expected a number from 0 to " + std::to_string(maxThreads));
+  if (text.empty() || error != std::errc() || end != text.data() + text.size() || value > most)
+    fail(RT_INVALID_VALUE, std::string(key) + "=" + std::string(text) + ": expected a number from 0 to " + std::to_string(most));
   return value;
 }
 
@@ -22,7 +24,9 @@ BackendKind parseBackend(std::string_view text) {
   if (text == "local") return BackendKind::Local;
   if (text == "null") return BackendKind::Null;
   if (text == "record") return BackendKind::Record;
-  fail(RT_INVALID_VALUE, "backend=" + std::string(text) + ": expected local, null or record, or debug: and one of these");
+  if (text == "cluster") return BackendKind::Cluster;
+  fail(RT_INVALID_VALUE,
+       "backend=" + std::string(text) + ": expected local, null, record or cluster, or debug: and one of these");
 }
 
 // Takes one value off the front of the text.
@@ -51,21 +55,59 @@ void ContextConfig::set(std::string_view key, std::string_view value) {
     backend = parseBackend(wrapped ? value.substr(debugging.size()) : value);
     debug = wrapped;
   } else if (key == "threads")
-    threads = parseThreads(value);
+    threads = parseNumber(key, value, maxThreads);
   else if (key == "file")
     file = value;
   else if (key == "record")
     record = value;
   else if (key == "shaderpath")
     shaderPath = value;
+  else if (setCluster(key, value))
+    clusterKey_ = key;
   else
-    fail(RT_INVALID_VALUE, "unknown option \"" + std::string(key) + "\"; known are backend, threads, file, record, shaderpath");
+    fail(RT_INVALID_VALUE,
+         "unknown option \"" + std::string(key) +
+             "\"; known are backend, threads, file, record, shaderpath, and of backend=cluster workers, listen, "
+             "key, allow, local, split, require, tolerant");
+}
+
+bool ContextConfig::setCluster(std::string_view key, std::string_view value) {
+  if (key == "workers") {
+    for (size_t begin = 0; begin <= value.size();) {
+      const size_t end = std::min(value.find(',', begin), value.size());
+      if (end == begin) fail(RT_INVALID_VALUE, "workers=" + std::string(value) + ": expected HOST[:PORT],... or @FILE");
+      cluster.workers.emplace_back(value.substr(begin, end - begin));
+      begin = end + 1;
+    }
+  } else if (key == "listen")
+    cluster.listen = value;
+  else if (key == "key")
+    cluster.keyFile = value;
+  else if (key == "allow")
+    cluster.allowFile = value;
+  else if (key == "local")
+    cluster.local = parseNumber(key, value, maxThreads);
+  else if (key == "split") {
+    constexpr std::string_view known[] = {"auto", "tiles", "samples", "frames"};
+    if (std::find(std::begin(known), std::end(known), value) == std::end(known))
+      fail(RT_INVALID_VALUE, "split=" + std::string(value) + ": expected auto, tiles, samples or frames");
+    cluster.split = value;
+  } else if (key == "require")
+    cluster.require = parseNumber(key, value, maxWorkers);
+  else if (key == "tolerant")
+    cluster.tolerant = parseNumber(key, value, 1) == 1;
+  else
+    return false;
+  return true;
 }
 
 void ContextConfig::check() const {
   if (backend == BackendKind::Record && file.empty()) fail(RT_INVALID_VALUE, "backend=record needs file=PATH");
   if (backend == BackendKind::Record && !record.empty()) fail(RT_INVALID_VALUE, "record=PATH is for backends that render");
   if (backend != BackendKind::Record && !file.empty()) fail(RT_INVALID_VALUE, "file=PATH is for backend=record");
+  if (backend != BackendKind::Cluster && !clusterKey_.empty()) fail(RT_INVALID_VALUE, clusterKey_ + "= is for backend=cluster");
+  if (backend == BackendKind::Cluster && cluster.workers.empty() && cluster.listen.empty())
+    fail(RT_INVALID_VALUE, "backend=cluster needs workers=HOST[:PORT],... or listen=ADDRESS[:PORT], or both");
 }
 
 ContextConfig parseConfig(std::string_view text) {

@@ -40,6 +40,7 @@ void Context::makeBackend(const ContextConfig& config) {
   case BackendKind::Local: backend_ = makeLocalBackend(options); break;
   case BackendKind::Null: backend_ = makeNullBackend(options); break;
   case BackendKind::Record: backend_ = makeRecordBackend(options); break;
+  case BackendKind::Cluster: backend_ = makeClusterBackend(options, config.cluster); break;
   }
   if (config.debug) backend_ = makeDebugBackend(options, std::move(backend_));
   if (!config.record.empty()) backend_ = makeTeeBackend(options, std::move(backend_));
@@ -48,11 +49,12 @@ void Context::makeBackend(const ContextConfig& config) {
 void Context::close() noexcept {
   if (!open_) return;
   try {
-    if (inFlight_) backend_->cancel(), backend_->wait();
+    if (!flying_.empty()) giveUpFrames();
   } catch (...) { // the backend goes whatever became of its frame
   }
   const std::lock_guard lock(backendMutex_);
-  open_ = inFlight_ = false;
+  open_ = false;
+  flying_.clear();
   backend_.reset();
   unsent_.clear();
   definition.reset();
@@ -126,35 +128,64 @@ void Context::commit() {
 
 void Context::start() {
   const edit::FrameSettingsT settings = scene.frame;
-  backend_->start();
-  flying_ = settings;
-  inFlight_ = true;
+  flying_.push_back(settings);
+  try {
+    backend_->start();
+  } catch (...) {
+    flying_.pop_back();
+    throw;
+  }
+  started_++;
+}
+
+void Context::finishOldest() {
+  const edit::FrameSettingsT settings = flying_.front();
+  const uint64_t number = started_ - flying_.size() + 1;
+  flying_.pop_front();
+  backend_->wait();
+  finished_ = settings;
+  finishedNumber_ = number;
+}
+
+// Frames that nobody will see. What went wrong with the first of them is thrown once none is left.
+void Context::giveUpFrames() {
+  backend_->cancel();
+  std::exception_ptr problem;
+  while (!flying_.empty()) {
+    try {
+      finishOldest();
+    } catch (...) {
+      if (!problem) problem = std::current_exception();
+    }
+  }
+  if (problem) std::rethrow_exception(problem);
 }
 
 void Context::swapBuffers() {
   require(scene.frame.width > 0, RT_INVALID_OPERATION, "no frame buffer: call rtFrameBuffer first");
-  if (inFlight_) {
-    inFlight_ = false;
-    backend_->wait();
-    finished_ = flying_;
+  if (!backend_->pipelines()) {
+    if (!flying_.empty()) finishOldest();
+    commit();
+    start();
+    return;
   }
-  commit();
+  commit(); // the next frame is worked on when the last jobs of the one before are still out
   start();
+  while (flying_.size() > framesInFlight) finishOldest();
+}
+
+bool Context::finishFrame() {
+  if (flying_.empty()) return false;
+  finishOldest();
+  return true;
 }
 
 void Context::render() {
   require(scene.frame.width > 0, RT_INVALID_OPERATION, "no frame buffer: call rtFrameBuffer first");
-  if (inFlight_) { // nobody will see this frame
-    backend_->cancel();
-    inFlight_ = false;
-    backend_->wait();
-    finished_ = flying_;
-  }
+  if (!flying_.empty()) giveUpFrames();
   commit();
   start();
-  inFlight_ = false;
-  backend_->wait();
-  finished_ = flying_;
+  finishOldest();
 }
 
 void Context::cancel() {

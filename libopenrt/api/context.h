@@ -2,6 +2,7 @@
 // any thread under backendMutex_, and the log sink is called by render threads.
 #pragma once
 
+#include <deque>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -87,6 +88,7 @@ class Context {
 
   // Frames.
   void swapBuffers();
+  bool finishFrame();
   void render();
   void cancel();
   float progress();
@@ -94,6 +96,8 @@ class Context {
   const edit::FrameSettingsT& finishedFrame() const;
   Backend& backend() { return *backend_; }
   bool everCommitted() const { return everCommitted_; }
+  uint64_t finishedNumber() const { return finishedNumber_; }
+  uint32_t framesInFlight = 1; // that swapBuffers() leaves to a backend that pipelines
   uint64_t degenerate = 0;
   RTid perspectiveCamera = 0, orthographicCamera = 0;
 
@@ -101,13 +105,17 @@ class Context {
   void makeBackend(const ContextConfig& config);
   void commit();
   void start();
+  void finishOldest();
+  void giveUpFrames();
 
   std::unique_ptr<ShaderRegistry> registry_;
   std::unique_ptr<Backend> backend_;
   std::mutex backendMutex_;                           // cancel and progress against close
   std::vector<std::shared_ptr<const Commit>> unsent_; // made, but the backend could not take them yet
-  bool everCommitted_ = false, inFlight_ = false, open_ = true;
-  std::optional<edit::FrameSettingsT> flying_, finished_;
+  bool everCommitted_ = false, open_ = true;
+  std::deque<edit::FrameSettingsT> flying_; // of the frames in flight, oldest first
+  std::optional<edit::FrameSettingsT> finished_;
+  uint64_t started_ = 0, finishedNumber_ = 0;
 };
 
 // The context of this thread: raw for speed, kept alive by a handle beside it (life.cpp).

@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "backend/backend.h"
+
 namespace openrt {
 namespace {
 thread_local char lastMessage[512] = "";
@@ -48,9 +50,11 @@ void recordCurrentException(ErrorState& errors, const char* function) noexcept {
     errors.record(RT_OUT_OF_MEMORY, function, "out of memory");
   } catch (const std::length_error&) {
     errors.record(RT_OUT_OF_MEMORY, function, "more elements than an array can hold");
-  } catch (const std::system_error& e) { errors.record(RT_IO_ERROR, function, e.what()); } catch (const std::exception& e) {
-    errors.record(RT_INVALID_OPERATION, function, e.what());
-  } catch (...) { errors.record(RT_INVALID_OPERATION, function, "an unknown exception"); }
+  } catch (const ClusterError& e) { errors.record(RT_CLUSTER_ERROR, function, e.what()); } catch (const std::system_error& e) {
+    errors.record(RT_IO_ERROR, function, e.what());
+  } catch (const std::exception& e) { errors.record(RT_INVALID_OPERATION, function, e.what()); } catch (...) {
+    errors.record(RT_INVALID_OPERATION, function, "an unknown exception");
+  }
 }
 
 } // namespace openrt

@@ -34,6 +34,10 @@ void setQuality(Context& c, RTenum name, int value) {
   edit::FrameSettingsT& frame = c.scene.frame;
   const auto within = [value](int low, int high) { require(value >= low && value <= high, RT_INVALID_VALUE, "out of range"); };
   switch (name) {
+  case RT_FRAMES_IN_FLIGHT: // how frames are asked for, not what they are
+    within(1, 64);
+    c.framesInFlight = static_cast<uint32_t>(value);
+    return;
   case RT_SAMPLES_PER_PIXEL:
     within(1, 65536);
     frame.samples = static_cast<uint32_t>(value);
@@ -116,8 +120,22 @@ void getStats(Context& c, RTstats* out) {
   stats.lights = c.scene.lights.entries.size();
   stats.textures = c.scene.textures.entries.size();
   stats.degenerate += c.degenerate;
+  stats.frame = c.finishedNumber();
   stats.size = size; // an older program's structure ends earlier
   std::memcpy(out, &stats, std::min(size, sizeof(stats)));
+}
+
+size_t getWorkers(Context& c, RTworker* out, size_t count) {
+  require(out != nullptr || count == 0, RT_INVALID_VALUE, "the pointer is NULL");
+  const size_t size = count > 0 ? out->size : sizeof(RTworker);
+  require(size >= sizeof(size_t), RT_INVALID_VALUE, "set size to sizeof(RTworker) before the call");
+  const std::vector<RTworker> workers = c.backend().workers();
+  for (size_t i = 0; i < std::min(count, workers.size()); i++) { // an older program's structures are smaller
+    RTworker worker = workers[i];
+    worker.size = size;
+    std::memcpy(reinterpret_cast<std::byte*>(out) + i * size, &worker, std::min(size, sizeof(worker)));
+  }
+  return workers.size();
 }
 
 void castRays(Context& c, size_t count, const RTray* rays, RThit* hits) {
@@ -177,6 +195,10 @@ void rtSwapBuffers(void) {
   });
 }
 
+int rtFinishFrame(void) {
+  return guarded("rtFinishFrame", 0, [](Context& c) { return c.finishFrame() ? 1 : 0; });
+}
+
 void rtRender(void) {
   guarded("rtRender", [](Context& c) {
     requireNoDefinition(c);
@@ -190,6 +212,10 @@ void rtReadPixels(RTenum channel, float* out, size_t count) {
 
 void rtGetStats(RTstats* stats) {
   guarded("rtGetStats", [&](Context& c) { getStats(c, stats); });
+}
+
+size_t rtGetWorkers(RTworker* workers, size_t count) {
+  return guarded("rtGetWorkers", size_t(0), [&](Context& c) { return getWorkers(c, workers, count); });
 }
 
 void rtCastRays(size_t count, const RTray* rays, RThit* hits) {

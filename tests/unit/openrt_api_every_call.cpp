@@ -55,6 +55,7 @@ RTray ray{{0, 0, 1}, 0, {0, 0, -1}, 1};
 uint8_t bytes[4];
 double matrix[16];
 RTstats statistics;
+RTworker worker;
 
 // With right arguments. Without a context all of them fail.
 const Named needContext[] = {
@@ -151,9 +152,11 @@ const Named needContext[] = {
     CALL(rtQuality, RT_SEED, 1),
     CALL(rtQualityf, RT_TARGET_ERROR, 0),
     CALL(rtSwapBuffers),
+    CALL(rtFinishFrame),
     CALL(rtRender),
     CALL(rtReadPixels, RT_RGBA, floats, 64),
     CALL(rtGetStats, &statistics),
+    CALL(rtGetWorkers, nullptr, 0),
     CALL(rtPick, 0, 0, &hit),
     CALL(rtCastRays, 1, &ray, &hit),
     CALL(rtOccludedRays, 1, &ray, bytes),
@@ -298,12 +301,14 @@ const Wrong wrong[] = {
     WRONG(ENUM, Outside, rtQuality, RT_CLAMP, 0), WRONG(VALUE, Outside, rtQuality, RT_SAMPLES_PER_PIXEL, 0),
     WRONG(VALUE, Outside, rtQuality, RT_MAX_DEPTH, -1), WRONG(VALUE, Outside, rtQuality, RT_SHADOWS, 2),
     WRONG(VALUE, Outside, rtQuality, RT_TRANSPORT, 5), WRONG(VALUE, Outside, rtQuality, RT_REPLICATES, 1025),
-    WRONG(VALUE, Outside, rtQuality, RT_PROGRESSIVE, 2), WRONG(VALUE, Outside, rtQuality, RT_TILE_SIZE, 3),
+    WRONG(VALUE, Outside, rtQuality, RT_PROGRESSIVE, 2), WRONG(VALUE, Outside, rtQuality, RT_FRAMES_IN_FLIGHT, 0),
+    WRONG(VALUE, Outside, rtQuality, RT_FRAMES_IN_FLIGHT, 65), WRONG(VALUE, Outside, rtQuality, RT_TILE_SIZE, 3),
     WRONG(VALUE, Outside, rtQuality, RT_TILE_SIZE, 129), WRONG(ENUM, Outside, rtQualityf, RT_SEED, 0),
     WRONG(VALUE, Outside, rtQualityf, RT_TARGET_ERROR, 1.5), WRONG(VALUE, Outside, rtQualityf, RT_TIME_LIMIT, -1),
     WRONG(VALUE, Outside, rtQualityf, RT_ENERGY_CUT, double(nan)), WRONG(VALUE, Outside, rtQualityf, RT_CLAMP, double(inf)),
     WRONG(ENUM, Outside, rtReadPixels, 3, floats, 64), WRONG(OPERATION, Outside, rtReadPixels, RT_DEPTH, floats, 64),
     WRONG(VALUE, Outside, rtReadPixels, RT_RGBA, nullptr, 64), WRONG(VALUE, Outside, rtReadPixels, RT_RGBA, floats, 31),
+    WRONG(VALUE, Outside, rtGetWorkers, nullptr, 1), WRONG(VALUE, Outside, rtGetWorkers, (worker.size = 0, &worker), 1),
     WRONG(VALUE, Outside, rtGetStats, nullptr), WRONG(VALUE, Outside, rtGetStats, (statistics.size = 0, &statistics)),
     WRONG(VALUE, Outside, rtPick, double(nan), 0, &hit), WRONG(VALUE, Outside, rtPick, 0, 0, nullptr),
     WRONG(VALUE, Outside, rtCastRays, 1, nullptr, &hit), WRONG(VALUE, Outside, rtCastRays, 1, &ray, nullptr),
@@ -317,8 +322,9 @@ const Wrong wrong[] = {
     WRONG(VALUE, Outside, rtSnapshot, w.context, RT_RGBA, nullptr, 64), WRONG(OPERATION, Outside, rtExit), // without rtInit
 };
 // They cannot fail but for want of a context, or cannot fail at all.
-const char* const infallible[] = {"rtErrorCallback", "rtLogCallback", "rtLoadName",        "rtPushMatrix", "rtLoadIdentity",
-                                  "rtGetError",      "rtGetCurrent",  "rtGetErrorMessage", "rtInit",       "rtRunningShader"};
+const char* const infallible[] = {"rtErrorCallback", "rtLogCallback",   "rtLoadName",   "rtPushMatrix",
+                                  "rtLoadIdentity",  "rtGetError",      "rtGetCurrent", "rtGetErrorMessage",
+                                  "rtInit",          "rtRunningShader", "rtFinishFrame"};
 
 class EveryCall : public ApiTest {
  protected:

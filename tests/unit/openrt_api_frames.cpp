@@ -186,4 +186,72 @@ TEST_F(Frames, EditsComeInTheirOrder) {
   EXPECT_EQ(seen.size(), rank.size()); // each kind is there
 }
 
+// Where frames can overlap the next is started before the last is waited for.
+TEST_F(Frames, ABackendThatPipelinesHasTheNextFrameBeforeItIsAskedForTheLast) {
+  const auto course = [&] { return std::exchange(captured->course, ""); };
+  const auto finished = [&] {
+    RTstats stats{};
+    stats.size = sizeof(stats);
+    rtGetStats(&stats);
+    return stats.frame;
+  };
+  float pixels[32];
+  rtSwapBuffers(), rtSwapBuffers();
+  EXPECT_EQ(course(), "aswas");
+  EXPECT_EQ(finished(), 1u);
+  EXPECT_EQ(rtFinishFrame(), 1);
+  EXPECT_EQ(rtFinishFrame(), 0);
+  EXPECT_EQ(course(), "w");
+  EXPECT_EQ(finished(), 2u);
+
+  captured->pipelines = true;
+  rtSwapBuffers(), rtSwapBuffers();
+  EXPECT_EQ(course(), "asasw");
+  EXPECT_EQ(finished(), 3u);
+  rtQuality(RT_FRAMES_IN_FLIGHT, 3);
+  rtFrameBuffer(8, 2, RT_RGBA);
+  rtSwapBuffers(), rtSwapBuffers(), rtSwapBuffers();
+  EXPECT_EQ(course(), "asasasw");
+  EXPECT_EQ(finished(), 4u);
+  rtReadPixels(RT_RGBA, pixels, 32); // of the former size
+  EXPECT_EQ(rtFinishFrame(), 1);
+  EXPECT_FAILS(RT_INVALID_VALUE, rtReadPixels(RT_RGBA, pixels, 32));
+  rtRender(); // gives up those that are left
+  EXPECT_EQ(course(), "wcwwasw");
+  EXPECT_EQ(finished(), 8u);
+  EXPECT_EQ(rtFinishFrame(), 0);
+}
+
+TEST_F(Frames, AFrameThatFailsIsNotTheFinishedOne) {
+  captured->pipelines = true;
+  rtSwapBuffers(), rtSwapBuffers();
+  captured->failNextWait = true;
+  EXPECT_FAILS(RT_CLUSTER_ERROR, rtSwapBuffers());
+  RTstats stats{};
+  stats.size = sizeof(stats);
+  rtGetStats(&stats);
+  EXPECT_EQ(stats.frame, 1u);
+  EXPECT_EQ(rtFinishFrame(), 1);
+  rtGetStats(&stats);
+  EXPECT_EQ(stats.frame, 3u);
+}
+
+TEST_F(Frames, WorkersAreWrittenAsFarAsThereIsRoom) {
+  EXPECT_EQ(rtGetWorkers(nullptr, 0), 2u);
+  RTworker workers[3]{};
+  workers[0].size = sizeof(RTworker);
+  EXPECT_EQ(rtGetWorkers(workers, 1), 2u);
+  EXPECT_TRUE(workers[0].threads == 3 && workers[1].threads == 0);
+  EXPECT_EQ(rtGetWorkers(workers, 3), 2u);
+  EXPECT_TRUE(workers[1].threads == 4 && workers[1].size == sizeof(RTworker) && workers[2].size == 0);
+  struct Older { // a program that was built when there was less to tell
+    size_t size;
+    char name[64];
+    uint32_t threads;
+  } older[2]{};
+  older[0].size = sizeof(Older);
+  EXPECT_EQ(rtGetWorkers(reinterpret_cast<RTworker*>(older), 2), 2u);
+  EXPECT_TRUE(older[0].threads == 3 && older[1].threads == 4);
+}
+
 } // namespace

@@ -17,12 +17,40 @@ TEST(ApiConfig, ReadsPairsAndQuotes) {
   EXPECT_EQ(config.shaderPath, "/a:/b");
   EXPECT_EQ(parseConfig("record=out.ortr backend=local").record, "out.ortr");
   EXPECT_EQ(parseConfig("").backend, BackendKind::Local);
+  const ContextConfig cluster = parseConfig("workers=a:7447,[::1]:9,@hosts.txt backend=cluster listen=127.0.0.1:0 key=k allow=l "
+                                            "local=0 split=samples require=2 tolerant=1 record=out.ortr");
+  EXPECT_EQ(cluster.backend, BackendKind::Cluster);
+  EXPECT_EQ(cluster.cluster.workers, (std::vector<std::string>{"a:7447", "[::1]:9", "@hosts.txt"}));
+  EXPECT_TRUE(cluster.cluster.keyFile == "k" && cluster.cluster.allowFile == "l" && cluster.cluster.listen == "127.0.0.1:0");
+  EXPECT_TRUE(cluster.cluster.local == 0u && cluster.cluster.split == "samples" && cluster.cluster.require == 2);
+  EXPECT_TRUE(cluster.cluster.tolerant && cluster.record == "out.ortr");
+  EXPECT_FALSE(parseConfig("backend=cluster workers=a").cluster.local.has_value());
 }
 
 TEST(ApiConfig, RefusesNonsense) {
-  for (const char* text :
-       {"backend=gpu", "threads=-1", "threads=", "threads=2x", "threads=5000", "nonsense=1", "backend", "=1", "file=\"open",
-        "file=\"a\"b backend=record", "backend=record", "backend=record file=a record=b", "file=a", "backend =local"}) {
+  for (const char* text : {"backend=gpu",
+                           "threads=-1",
+                           "threads=",
+                           "threads=2x",
+                           "threads=5000",
+                           "nonsense=1",
+                           "backend",
+                           "=1",
+                           "file=\"open",
+                           "file=\"a\"b backend=record",
+                           "backend=record",
+                           "backend=record file=a record=b",
+                           "file=a",
+                           "backend =local",
+                           "backend=cluster",
+                           "workers=a",
+                           "backend=null local=0",
+                           "backend=cluster workers=a,,b",
+                           "backend=cluster workers=",
+                           "backend=cluster workers=a, ",
+                           "backend=cluster workers=a split=pixels",
+                           "backend=cluster workers=a require=-1",
+                           "backend=cluster workers=a tolerant=yes"}) {
     EXPECT_EQ(rtNewContext(text), nullptr) << text;
     EXPECT_RT_ERROR(RT_INVALID_VALUE);
     EXPECT_EQ(rtGetCurrent(), nullptr);

@@ -20,7 +20,8 @@ struct Captured {
   CommitValidator validator;
   std::vector<std::shared_ptr<const Commit>> commits;
   int starts = 0, waits = 0, cancels = 0;
-  bool failNextApply = false;
+  bool failNextApply = false, failNextWait = false, pipelines = false;
+  std::string course; // of the frames: a apply, s start, w wait, c cancel
 };
 
 class CaptureBackend final : public Backend {
@@ -31,12 +32,22 @@ class CaptureBackend final : public Backend {
       captured_->failNextApply = false;
       throw std::bad_alloc();
     }
+    captured_->course += 'a';
     captured_->validator.check(*commit);
     captured_->commits.push_back(std::move(commit));
   }
-  void start() override { captured_->starts++; }
-  void wait() override { captured_->waits++; }
-  void cancel() override { captured_->cancels++; }
+  bool pipelines() const override { return captured_->pipelines; }
+  void start() override { captured_->starts++, captured_->course += 's'; }
+  void wait() override {
+    captured_->waits++, captured_->course += 'w';
+    if (std::exchange(captured_->failNextWait, false)) throw ClusterError("2 workers are needed, there is 1");
+  }
+  void cancel() override { captured_->cancels++, captured_->course += 'c'; }
+  std::vector<RTworker> workers() const override {
+    std::vector<RTworker> workers(2);
+    workers[0].threads = 3, workers[1].threads = 4;
+    return workers;
+  }
   float progress() const override { return 0.25f; }
   bool read(RTenum channel, std::span<float> out) const override {
     for (size_t i = 0; i < out.size(); i++) out[i] = static_cast<float>(channel);

@@ -39,6 +39,8 @@ class DebugBackend final : public Backend {
     renderer_->start();
   }
 
+  bool pipelines() const override { return renderer_->pipelines(); }
+  std::vector<RTworker> workers() const override { return renderer_->workers(); }
   void wait() override { renderer_->wait(); }
   void cancel() override { renderer_->cancel(); }
   float progress() const override { return renderer_->progress(); }

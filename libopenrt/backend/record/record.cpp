@@ -104,6 +104,8 @@ class RecordBackend final : public Backend {
     if (renderer_) renderer_->apply(std::move(commit));
   }
 
+  bool pipelines() const override { return renderer_ && renderer_->pipelines(); }
+  std::vector<RTworker> workers() const override { return renderer_ ? renderer_->workers() : std::vector<RTworker>(); }
   void start() override {
     if (renderer_) renderer_->start();
   }

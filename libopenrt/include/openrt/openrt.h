@@ -47,7 +47,8 @@ enum {
   RT_INVALID_ID = 0x0510,        /* an id that was never made, was deleted, or names another kind of thing */
   RT_INVALID_PARAMETER = 0x0511, /* a shader parameter that its class does not declare, or of another type */
   RT_PLUGIN_ERROR = 0x0512,      /* a shader library missing, unreadable or of another ABI */
-  RT_IO_ERROR = 0x0513           /* a recording that cannot be written */
+  RT_IO_ERROR = 0x0513,          /* a recording that cannot be written */
+  RT_CLUSTER_ERROR = 0x0514      /* backend=cluster: too few workers (require=N), an address that cannot be used, keys missing */
 };
 
 typedef void (*RTerrorCallback)(RTenum error, const char* message, void* user);
@@ -65,11 +66,24 @@ RT_API void rtLogCallback(RTlogCallback callback, void* user);
 /* Life -------------------------------------------------------------------------------------------------------------- */
 
 /* Makes a context and makes it current. config: blank-separated key=value pairs, or NULL.
- *   backend=local|null|record   who renders (default local); debug:NAME: the same, and misuse is explained to rtLogCallback
+ *   backend=local|null|record|cluster
+ *                               who renders (default local); debug:NAME: the same, and misuse is explained to rtLogCallback
  *   threads=N                   render threads; 0 (default): as many as the process may use
  *   file=PATH                   the recording to write (backend=record); a value with blanks stands in "double quotes"
  *   record=PATH                 a recording written while another backend renders; openrt-replay makes the same bytes of it
  *   shaderpath=DIR[:DIR...]     where shader libraries are looked up, before $OPENRT_SHADER_PATH and the installed folder
+ * With backend=cluster, openrt-workers on other machines render, too; pictures are the same bytes whoever does, and whoever joins,
+ * is slow or lost meanwhile. Beside these:
+ *   workers=HOST[:PORT],...     workers to call (port 7447 where none is said; HOST:PORT=PUBLICKEY where theirs is another key);
+ *                               @FILE: those that a file lists, one a line
+ *   listen=ADDRESS[:PORT]       where workers call in (openrt-worker --connect)
+ *   key=FILE                    the key file (openrt-worker --new-key FILE); needed for addresses other than loopback
+ *   allow=FILE                  public keys that are let in beside one's own, one a line
+ *   local=N                     threads of this process that render, too; 0: none as long as a worker lives; default: threads=N
+ *   split=auto|tiles|samples|frames  what the work is cut into (default auto)
+ *   require=N                   a frame fails with RT_CLUSTER_ERROR when there are fewer than N workers for 10 seconds; default 0:
+ *                               this process finishes alone, and says so in the log
+ *   tolerant=1                  workers of another instruction set or version are taken; pictures may differ in the last bits then
  * Returns NULL on failure. Delete it with rtDeleteContext. */
 RT_API RTcontext rtNewContext(const char* config);
 /* Makes a context current on this thread; NULL makes none current. */
@@ -329,6 +343,8 @@ enum {
   RT_CLAMP = 10,            /* rtQualityf: a sample's radiance is at most this by colour; 0 (default): no limit. Biased: what is
                                clipped is counted in RTstats.clipped */
   RT_PROGRESSIVE = 11,      /* 0 (default) or 1: the whole picture early, then better and better, see below */
+  RT_FRAMES_IN_FLIGHT = 12, /* backend=cluster: frames that rtSwapBuffers leaves unfinished, 1 (default) .. 64; takes effect at
+                               once, is no part of the picture */
   RT_TILE_SIZE = 13         /* edge in pixels of the tiles that a picture is made in, 4 .. 128; 0 (default): as size and samples
                                suggest. What neighbours tell of errors ends at a tile's border, nothing else depends on it */
 };
@@ -372,15 +388,18 @@ RT_API void rtFrameBuffer(int width, int height, uint32_t channels);
 RT_API void rtQuality(RTenum name, int value);
 RT_API void rtQualityf(RTenum name, double value);
 /* Commits the edits, waits for the frame in flight, makes it the one rtReadPixels reads and starts the next. Like rtRender it
- * needs a frame buffer and no definition open (else RT_INVALID_OPERATION). */
+ * needs a frame buffer and no definition open (else RT_INVALID_OPERATION). With backend=cluster the next is started first, and
+ * waits for the oldest only while there are more than RT_FRAMES_IN_FLIGHT; RTstats.frame tells which one was finished last. */
 RT_API void rtSwapBuffers(void);
+/* Waits for the oldest frame in flight and makes it the one rtReadPixels reads. Returns 1, or 0 when none is in flight. */
+RT_API int rtFinishFrame(void);
 /* Commits, renders and waits; rtReadPixels then reads this frame. */
 RT_API void rtRender(void);
-/* Ends the frame in flight early: its picture holds the tiles finished so far. May be called from any thread. */
+/* Ends the frames in flight early: their pictures hold the tiles finished so far. May be called from any thread. */
 RT_API void rtCancel(RTcontext context);
-/* Fraction done of the frame in flight, 0 to 1. May be called from any thread. */
+/* Fraction done of the (oldest) frame in flight, 0 to 1. May be called from any thread. */
 RT_API float rtProgress(RTcontext context);
-/* Copies one channel of the frame in flight as far as it is finished into out, laid out as by rtReadPixels; tiles that are not
+/* Copies one channel of the (oldest) frame in flight as far as it is finished into out, laid out as by rtReadPixels; tiles that are not
  * finished are 0 (RT_DEPTH: infinite); of a frame in rounds, what each tile has by now. Returns 1, or 0 if no frame with this
  * channel and at most count floats is in flight. May be called from any thread. */
 RT_API int rtSnapshot(RTcontext context, RTenum channel, float* out, size_t count);
@@ -421,8 +440,31 @@ typedef struct RTstats {
                                is seen by RT_TRANSPORT_LIGHT alone; 0 there */
   uint64_t shaderFaults;    /* hits at which a shader answered with NaN or infinity; taken as 0, the log names the class */
   uint64_t wrongHits;       /* hits on slivers that a check in double precision rejected */
+  uint64_t frame;           /* number of the finished frame, counted from 1; 0: none yet */
+  /* backend=cluster, since the context was made; else 0. Tiles: jobs, parts of tiles too. */
+  uint32_t workers;                /* that are there now, this process not counted */
+  uint64_t tilesRemote, tilesLocal; /* done by workers; by this process */
+  uint64_t reissued, duplicates;   /* handed out again because they were late or their worker was lost; results that came too late */
+  uint64_t bytesSent, bytesReceived;
 } RTstats;
 RT_API void rtGetStats(RTstats* stats);
+
+/* A worker of backend=cluster, since it joined. */
+typedef struct RTworker {
+  size_t size;    /* of the first one of an array: set it to sizeof(RTworker) before the call */
+  char name[64];  /* its host and address, for people; "here": this process */
+  uint32_t threads;
+  int alive;      /* 0: it has left, or was refused */
+  uint64_t jobs;  /* done */
+  uint64_t late;  /* results that came when somebody else had done the job */
+  uint64_t lost;  /* jobs taken away because it left */
+  uint64_t bytesSent, bytesReceived; /* to it, from it */
+  uint64_t rays;
+  double busySeconds; /* of all its threads */
+  double latency;     /* seconds a job is under way beyond the work, smoothed */
+} RTworker;
+/* Writes at most count workers, those that left too, and returns how many there are. workers may be NULL if count is 0. */
+RT_API size_t rtGetWorkers(RTworker* workers, size_t count);
 
 /* Queries on the last committed scene ---------------------------------------------------------------------------------- */
 
