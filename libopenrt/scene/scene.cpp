@@ -41,6 +41,13 @@ ArrayPtr Scene::array(ArrayId id) const {
   return known == arrays_.end() ? nullptr : known->second.lock();
 }
 
+std::map<ArrayId, ArrayPtr> Scene::arrays() const {
+  std::map<ArrayId, ArrayPtr> alive;
+  for (const auto& [id, data] : arrays_)
+    if (ArrayPtr array = data.lock()) alive.emplace(id, std::move(array));
+  return alive;
+}
+
 SceneChanges Scene::apply(const Commit& commit) {
   if (arrays_.size() > 2 * arraysSwept_ + 64) { // now and then: a commit costs what it changes
     std::erase_if(arrays_, [](const auto& entry) { return entry.second.expired(); });

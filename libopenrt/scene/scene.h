@@ -101,6 +101,8 @@ class Scene {
   uint32_t defaultShader = 0, transport = 0;
   edit::FrameSettingsT frame;
 
+  // The arrays that are alive, by the numbers that commits gave them.
+  std::map<ArrayId, ArrayPtr> arrays() const;
   // Ids of the instances placed in an object (0: in the scene), in order.
   const std::vector<uint32_t>& childrenOf(uint32_t object) const;
 
