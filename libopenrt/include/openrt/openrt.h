@@ -48,7 +48,7 @@ enum {
   RT_INVALID_PARAMETER = 0x0511, /* a shader parameter that its class does not declare, or of another type */
   RT_PLUGIN_ERROR = 0x0512,      /* a shader library missing, unreadable or of another ABI */
   RT_IO_ERROR = 0x0513,          /* a recording that cannot be written */
-  RT_CLUSTER_ERROR = 0x0514      /* backend=cluster: too few workers (require=N), an address that cannot be used, keys missing */
+  RT_CLUSTER_ERROR = 0x0514      /* backend=cluster: too few workers (require=N), no usable address or key */
 };
 
 typedef void (*RTerrorCallback)(RTenum error, const char* message, void* user);
@@ -72,8 +72,8 @@ RT_API void rtLogCallback(RTlogCallback callback, void* user);
  *   file=PATH                   the recording to write (backend=record); a value with blanks stands in "double quotes"
  *   record=PATH                 a recording written while another backend renders; openrt-replay makes the same bytes of it
  *   shaderpath=DIR[:DIR...]     where shader libraries are looked up, before $OPENRT_SHADER_PATH and the installed folder
- * With backend=cluster, openrt-workers on other machines render, too; pictures are the same bytes whoever does, and whoever joins,
- * is slow or lost meanwhile. Beside these:
+ * With backend=cluster, openrt-workers on other machines render, too; pictures are the same bytes whoever does, and whoever
+ * joins, is slow or lost meanwhile. Beside these:
  *   workers=HOST[:PORT],...     workers to call (port 7447 where none is said; HOST:PORT=PUBLICKEY where theirs is another key);
  *                               @FILE: those that a file lists, one a line
  *   listen=ADDRESS[:PORT]       where workers call in (openrt-worker --connect)
@@ -81,9 +81,9 @@ RT_API void rtLogCallback(RTlogCallback callback, void* user);
  *   allow=FILE                  public keys that are let in beside one's own, one a line
  *   local=N                     threads of this process that render, too; 0: none as long as a worker lives; default: threads=N
  *   split=auto|tiles|samples|frames  what the work is cut into (default auto)
- *   require=N                   a frame fails with RT_CLUSTER_ERROR when there are fewer than N workers for 10 seconds; default 0:
- *                               this process finishes alone, and says so in the log
- *   tolerant=1                  workers of another instruction set or version are taken; pictures may differ in the last bits then
+ *   require=N                   a frame waits while there are fewer than N workers, and fails with RT_CLUSTER_ERROR after
+ *                               10 seconds; default 0: this process finishes alone, and says so in the log
+ *   tolerant=1                  workers of another instruction set or version are taken; last bits may differ then
  * Returns NULL on failure. Delete it with rtDeleteContext. */
 RT_API RTcontext rtNewContext(const char* config);
 /* Makes a context current on this thread; NULL makes none current. */
@@ -399,8 +399,8 @@ RT_API void rtRender(void);
 RT_API void rtCancel(RTcontext context);
 /* Fraction done of the (oldest) frame in flight, 0 to 1. May be called from any thread. */
 RT_API float rtProgress(RTcontext context);
-/* Copies one channel of the (oldest) frame in flight as far as it is finished into out, laid out as by rtReadPixels; tiles that are not
- * finished are 0 (RT_DEPTH: infinite); of a frame in rounds, what each tile has by now. Returns 1, or 0 if no frame with this
+/* Copies one channel of the (oldest) frame in flight as far as it is finished into out, laid out as by rtReadPixels; tiles that
+ * are not finished are 0 (RT_DEPTH: infinite); of a frame in rounds, what each tile has by now. Returns 1, or 0 if no frame with this
  * channel and at most count floats is in flight. May be called from any thread. */
 RT_API int rtSnapshot(RTcontext context, RTenum channel, float* out, size_t count);
 /* Copies one channel of the finished frame into out: width*height*components floats, first row at the top.
@@ -444,7 +444,7 @@ typedef struct RTstats {
   /* backend=cluster, since the context was made; else 0. Tiles: jobs, parts of tiles too. */
   uint32_t workers;                /* that are there now, this process not counted */
   uint64_t tilesRemote, tilesLocal; /* done by workers; by this process */
-  uint64_t reissued, duplicates;   /* handed out again because they were late or their worker was lost; results that came too late */
+  uint64_t reissued, duplicates;    /* handed out again: late, or their worker was lost; results that came too late */
   uint64_t bytesSent, bytesReceived;
 } RTstats;
 RT_API void rtGetStats(RTstats* stats);
