@@ -400,8 +400,8 @@ RT_API void rtCancel(RTcontext context);
 /* Fraction done of the (oldest) frame in flight, 0 to 1. May be called from any thread. */
 RT_API float rtProgress(RTcontext context);
 /* Copies one channel of the (oldest) frame in flight as far as it is finished into out, laid out as by rtReadPixels; tiles that
- * are not finished are 0 (RT_DEPTH: infinite); of a frame in rounds, what each tile has by now. Returns 1, or 0 if no frame with this
- * channel and at most count floats is in flight. May be called from any thread. */
+ * are not finished are 0 (RT_DEPTH: infinite); of a frame in rounds, what each tile has by now. Returns 1, or 0 if no frame with
+ * this channel and at most count floats is in flight. May be called from any thread. */
 RT_API int rtSnapshot(RTcontext context, RTenum channel, float* out, size_t count);
 /* Copies one channel of the finished frame into out: width*height*components floats, first row at the top.
  * count: floats that out has room for. */
