@@ -16,18 +16,19 @@ enum class Fault : uint8_t { notFinite, undeclaredGlossy, undeclaredEmission, un
 
 class ShaderFaults { // of one thread, or of a frame
  public:
-  void add(const RtsClass& shaderClass, Fault fault, uint64_t hits);
-  void add(const ShaderFaults& more);
-  uint64_t count(Fault fault) const;
-  // A line for each class and fault, in an order that does not depend on threads.
-  void report(RTlogCallback callback, void* user) const;
-
- private:
   struct Entry {
     const RtsClass* shaderClass;
     Fault fault;
     uint64_t hits;
   };
+  void add(const RtsClass& shaderClass, Fault fault, uint64_t hits);
+  void add(const ShaderFaults& more);
+  uint64_t count(Fault fault) const;
+  // A line for each class and fault, in an order that does not depend on threads.
+  void report(RTlogCallback callback, void* user) const;
+  const std::vector<Entry>& entries() const { return entries_; } // in no order
+
+ private:
   std::vector<Entry> entries_;
 };
 

@@ -74,8 +74,36 @@ std::string ShaderRegistry::searched() const { return plugin_files::listed(folde
 
 const RtsClass& ShaderRegistry::find(std::string_view name, std::string_view library) const {
   const std::lock_guard lock(mutex_);
+  const Library* from = nullptr;
+  return find(name, library, from);
+}
+
+std::string ShaderRegistry::libraryOf(std::string_view name, std::string_view library) const {
+  const std::lock_guard lock(mutex_);
+  const Library* from = nullptr;
+  find(name, library, from);
+  return from->name;
+}
+
+std::string ShaderRegistry::locate(std::string_view bareName) const {
+  const std::lock_guard lock(mutex_);
+  for (const auto& library : libraries_)
+    if (library->name == bareName) return library->path;
+  try {
+    return fileOf(plugin_files::bareName(bareName, "shader library"));
+  } catch (const std::runtime_error&) { return {}; }
+}
+
+const RtsClass* ShaderRegistry::loaded(std::string_view name, std::string_view bareName) const {
+  const std::lock_guard lock(mutex_);
+  for (const auto& library : libraries_)
+    if (library->name == bareName) return library->find(name);
+  return nullptr;
+}
+
+const RtsClass& ShaderRegistry::find(std::string_view name, std::string_view library, const Library*& from) const {
   if (!library.empty()) {
-    const Library* found = load(plugin_files::bareName(library, "shader library"));
+    const Library* found = from = load(plugin_files::bareName(library, "shader library"));
     if (!found) throw std::runtime_error("shader library \"" + std::string(library) + "\" not found in: " + searched());
     if (const RtsClass* shaderClass = found->find(name)) return *shaderClass;
     std::string has;
@@ -85,10 +113,10 @@ const RtsClass& ShaderRegistry::find(std::string_view name, std::string_view lib
   const std::string own = lowerCase(name);
   const bool plain =
       !own.empty() && std::all_of(own.begin(), own.end(), [](unsigned char c) { return std::isalnum(c) || c == '_'; });
-  const Library* ownLibrary = plain ? load(own) : nullptr;
-  if (ownLibrary)
-    if (const RtsClass* shaderClass = ownLibrary->find(name)) return *shaderClass;
-  const Library* stock = load("vrml97");
+  from = plain ? load(own) : nullptr;
+  if (from)
+    if (const RtsClass* shaderClass = from->find(name)) return *shaderClass;
+  const Library* stock = from = load("vrml97");
   if (stock)
     if (const RtsClass* shaderClass = stock->find(name)) return *shaderClass;
   throw std::runtime_error("no stock shader class \"" + std::string(name) + "\"" +

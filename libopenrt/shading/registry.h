@@ -34,12 +34,19 @@ class ShaderRegistry {
   int reload(std::vector<std::string>& problems);
   // Files of the libraries in use, as they are found now.
   std::vector<std::string> files() const;
+  // Bare name of the library that find() answers from; throws as it does.
+  std::string libraryOf(std::string_view name, std::string_view library) const;
+  // The file that a library of this bare name was loaded from, or would be; empty: there is none, or this is no bare name.
+  std::string locate(std::string_view bareName) const;
+  // A class of a library that is loaded already; null: none.
+  const RtsClass* loaded(std::string_view name, std::string_view bareName) const;
 
  private:
   struct Library;
   const Library* load(const std::string& bareName) const; // null: in no folder
-  std::string searched() const;                           // the folders, for messages
-  std::string fileOf(const std::string& bareName) const;  // empty: in no folder
+  const RtsClass& find(std::string_view name, std::string_view library, const Library*& from) const;
+  std::string searched() const;                          // the folders, for messages
+  std::string fileOf(const std::string& bareName) const; // empty: in no folder
   std::vector<std::string> folders_;
   mutable std::mutex mutex_;
   mutable std::vector<std::unique_ptr<Library>> libraries_;

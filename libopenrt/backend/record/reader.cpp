@@ -8,39 +8,12 @@
 #include <xxhash.h>
 #include <zstd.h>
 
+#include "backend/record/edits_bytes.h"
 #include "backend/record/format.h"
 
 namespace openrt {
-namespace {
 
 using namespace recording;
-
-// Bytes that the edits take once unpacked, at least. A table may be named from many places in a flatbuffer, so a small file could
-// otherwise grow without bounds; what the writer makes is never larger than its buffer by this count.
-uint64_t unpackedBytes(const edit::Edits& edits) {
-  constexpr uint64_t perTable = 8;
-  uint64_t bytes = 0;
-  if (!edits.edits()) return 0;
-  for (const edit::Edit* entry : *edits.edits()) {
-    bytes += perTable;
-    if (!entry->any()) continue;
-    if (const auto* parameter = entry->any_as_Parameter()) {
-      if (parameter->floats()) bytes += sizeof(float) * uint64_t(parameter->floats()->size());
-      if (parameter->text()) bytes += parameter->text()->size();
-    } else if (const auto* shaderClass = entry->any_as_ShaderClass()) {
-      if (shaderClass->name()) bytes += shaderClass->name()->size();
-      if (shaderClass->library()) bytes += shaderClass->library()->size();
-    } else if (const auto* object = entry->any_as_Object()) {
-      if (!object->geometries()) continue;
-      bytes += sizeof(edit::Matrix) * uint64_t(object->geometries()->size());
-      for (const edit::Geometry* geometry : *object->geometries())
-        if (geometry && geometry->parameters()) bytes += perTable * uint64_t(geometry->parameters()->size());
-    }
-  }
-  return bytes;
-}
-
-} // namespace
 
 RecordingReader::RecordingReader(std::FILE* file, std::string name, const ShaderRegistry* shaders, const RecordingLimits& limits)
     : file_(file), name_(std::move(name)), limits_(limits), validator_(shaders) {
@@ -102,13 +75,9 @@ void RecordingReader::readEdits(uint64_t bytes, uint64_t stored, uint64_t hash, 
   account(bytes);
   const std::vector<uint8_t> buffer = readPayload(bytes);
   if (XXH3_64bits(buffer.data(), buffer.size()) != hash) fail("edits with a wrong checksum");
-  constexpr flatbuffers::uoffset_t depth = 8, bytesPerTable = 8;
-  flatbuffers::Verifier verifier(buffer.data(), buffer.size(), depth,
-                                 static_cast<flatbuffers::uoffset_t>(bytes / bytesPerTable + 1));
-  if (!edit::VerifyEditsBuffer(verifier)) fail("edits that are no valid flatbuffer");
-  const edit::Edits& edits = *edit::GetEdits(buffer.data());
-  if (unpackedBytes(edits) > bytes) fail("edits that share their parts");
-  edits.UnPackTo(&commit.edits);
+  try {
+    unpackEdits(std::as_bytes(std::span(buffer)), commit.edits);
+  } catch (const std::runtime_error& e) { fail(e.what()); }
 }
 
 std::shared_ptr<const Commit> RecordingReader::next() {

@@ -13,6 +13,7 @@
 #include <zstd.h>
 
 #include "backend/backend.h"
+#include "backend/record/edits_bytes.h"
 #include "backend/record/format.h"
 
 namespace openrt {
@@ -56,12 +57,11 @@ class RecordingWriter {
   }
 
   void writeEdits(const edit::EditsT& edits) {
-    flatbuffers::FlatBufferBuilder builder;
-    edit::FinishEditsBuffer(builder, edit::Edits::Pack(builder, &edits));
-    const size_t bytes = builder.GetSize();
-    const ChunkHeader header{ChunkKind::Edits, 0, 0, bytes, bytes, XXH3_64bits(builder.GetBufferPointer(), bytes)};
+    const std::vector<std::byte> packed = packEdits(edits);
+    const size_t bytes = packed.size();
+    const ChunkHeader header{ChunkKind::Edits, 0, 0, bytes, bytes, XXH3_64bits(packed.data(), bytes)};
     put(&header, sizeof(header));
-    put(builder.GetBufferPointer(), bytes);
+    put(packed.data(), bytes);
   }
 
   void put(const void* data, size_t bytes) {
