@@ -107,7 +107,7 @@ STANDARD = re.compile(r"[a-z_0-9]+(\.h)?$")
 LANGUAGES = re.compile(r"(Python\.h|pybind11/\w+\.h)$")  # of the languages that script engines run
 SEARCH = ["libopenrt/include", "libxvrml/include", "libopenrt", "libxvrml", "plugins/shaders", "apps", "apps/vv", "tests", "common"]
 # Made at build time -> the part that they belong to.
-GENERATED = [(re.compile(r"edits_generated\.h$"), "openrt-scene"), (re.compile(r"xvrml/nodes\.h$"), "xvrml-h")]
+GENERATED = [(re.compile(r"edits_generated\.h$"), "openrt-scene"), (re.compile(r"messages_generated\.h$"), "backend-cluster"), (re.compile(r"xvrml/nodes\.h$"), "xvrml-h")]
 SUFFIXES = {".c", ".cpp", ".h", ".hpp"}
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*([<"])([^>"]+)[>"]', re.M)
 
