@@ -198,6 +198,11 @@ bool Context::snapshot(RTenum channel, std::span<float> out) {
   return backend_ && backend_->snapshot(channel, out);
 }
 
+std::vector<RTworker> Context::workers() {
+  const std::lock_guard lock(backendMutex_);
+  return backend_ ? backend_->workers() : std::vector<RTworker>();
+}
+
 float Context::progress() {
   const std::lock_guard lock(backendMutex_);
   return backend_ ? backend_->progress() : 0;

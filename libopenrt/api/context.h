@@ -93,6 +93,7 @@ class Context {
   void cancel();
   float progress();
   bool snapshot(RTenum channel, std::span<float> out);
+  std::vector<RTworker> workers(); // [any]
   const edit::FrameSettingsT& finishedFrame() const;
   Backend& backend() { return *backend_; }
   bool everCommitted() const { return everCommitted_; }

@@ -125,19 +125,6 @@ void getStats(Context& c, RTstats* out) {
   std::memcpy(out, &stats, std::min(size, sizeof(stats)));
 }
 
-size_t getWorkers(Context& c, RTworker* out, size_t count) {
-  require(out != nullptr || count == 0, RT_INVALID_VALUE, "the pointer is NULL");
-  const size_t size = count > 0 ? out->size : sizeof(RTworker);
-  require(size >= sizeof(size_t), RT_INVALID_VALUE, "set size to sizeof(RTworker) before the call");
-  const std::vector<RTworker> workers = c.backend().workers();
-  for (size_t i = 0; i < std::min(count, workers.size()); i++) { // an older program's structures are smaller
-    RTworker worker = workers[i];
-    worker.size = size;
-    std::memcpy(reinterpret_cast<std::byte*>(out) + i * size, &worker, std::min(size, sizeof(worker)));
-  }
-  return workers.size();
-}
-
 void castRays(Context& c, size_t count, const RTray* rays, RThit* hits) {
   require((rays && hits) || count == 0, RT_INVALID_VALUE, "a pointer is NULL");
   if (c.everCommitted()) {
@@ -212,10 +199,6 @@ void rtReadPixels(RTenum channel, float* out, size_t count) {
 
 void rtGetStats(RTstats* stats) {
   guarded("rtGetStats", [&](Context& c) { getStats(c, stats); });
-}
-
-size_t rtGetWorkers(RTworker* workers, size_t count) {
-  return guarded("rtGetWorkers", size_t(0), [&](Context& c) { return getWorkers(c, workers, count); });
 }
 
 void rtCastRays(size_t count, const RTray* rays, RThit* hits) {

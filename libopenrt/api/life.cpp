@@ -199,6 +199,23 @@ int rtSnapshot(RTcontext context, RTenum channel, float* out, size_t count) {
   });
 }
 
+size_t rtGetWorkers(RTcontext context, RTworker* out, size_t count) {
+  return guardedAnywhere("rtGetWorkers", size_t(0), [&] {
+    const std::shared_ptr<Context> found = lookup(context);
+    if (!found) fail(RT_INVALID_VALUE, "not a context");
+    if (!out && count > 0) fail(RT_INVALID_VALUE, "the pointer is NULL");
+    const size_t size = count > 0 ? out->size : sizeof(RTworker);
+    if (size < sizeof(size_t)) fail(RT_INVALID_VALUE, "set size to sizeof(RTworker) before the call");
+    const std::vector<RTworker> workers = found->workers();
+    for (size_t i = 0; i < std::min(count, workers.size()); i++) { // an older program's structures are smaller
+      RTworker worker = workers[i];
+      worker.size = size;
+      std::memcpy(reinterpret_cast<std::byte*>(out) + i * size, &worker, std::min(size, sizeof(worker)));
+    }
+    return workers.size();
+  });
+}
+
 float rtProgress(RTcontext context) {
   return guardedAnywhere("rtProgress", 0.0f, [&] {
     const std::shared_ptr<Context> found = lookup(context);

@@ -1,5 +1,5 @@
 // backend.h: the waist between the API and whoever renders: local, record, null, cluster.
-// Called on the application's thread only, except cancel(), progress() and snapshot().
+// Called on the application's thread only, except cancel(), progress(), snapshot() and workers().
 #pragma once
 
 #include <cstdint>
@@ -59,7 +59,7 @@ class Backend {
   // One channel of the finished frame, first row at the top; false if there is no such channel or frame.
   virtual bool read(RTenum channel, std::span<float> out) const = 0;
   virtual void stats(RTstats& stats) const = 0;
-  virtual std::vector<RTworker> workers() const { return {}; } // of a cluster
+  virtual std::vector<RTworker> workers() const { return {}; } // [any] of a cluster
   virtual void castRays(std::span<const RTray> rays, std::span<RThit> hits) = 0;
   virtual void occludedRays(std::span<const RTray> rays, std::span<uint8_t> occluded) = 0;
   // What the committed camera sees at a place of the picture, as castRays; false if no camera or no frame is committed.

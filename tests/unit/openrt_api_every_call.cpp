@@ -156,15 +156,14 @@ const Named needContext[] = {
     CALL(rtRender),
     CALL(rtReadPixels, RT_RGBA, floats, 64),
     CALL(rtGetStats, &statistics),
-    CALL(rtGetWorkers, nullptr, 0),
     CALL(rtPick, 0, 0, &hit),
     CALL(rtCastRays, 1, &ray, &hit),
     CALL(rtOccludedRays, 1, &ray, bytes),
 };
 // These need none.
-const char* const anywhere[] = {"rtGetError",   "rtGetErrorMessage", "rtNewContext", "rtMakeCurrent",
-                                "rtGetCurrent", "rtDeleteContext",   "rtInit",       "rtExit",
-                                "rtCancel",     "rtProgress",        "rtSnapshot",   "rtRunningShader"};
+const char* const anywhere[] = {
+    "rtGetError", "rtGetErrorMessage", "rtNewContext", "rtMakeCurrent", "rtGetCurrent", "rtDeleteContext", "rtInit",
+    "rtExit",     "rtCancel",          "rtProgress",   "rtSnapshot",    "rtGetWorkers", "rtRunningShader"};
 
 enum State { Outside, Definition, List };
 struct Wrong {
@@ -308,7 +307,6 @@ const Wrong wrong[] = {
     WRONG(VALUE, Outside, rtQualityf, RT_ENERGY_CUT, double(nan)), WRONG(VALUE, Outside, rtQualityf, RT_CLAMP, double(inf)),
     WRONG(ENUM, Outside, rtReadPixels, 3, floats, 64), WRONG(OPERATION, Outside, rtReadPixels, RT_DEPTH, floats, 64),
     WRONG(VALUE, Outside, rtReadPixels, RT_RGBA, nullptr, 64), WRONG(VALUE, Outside, rtReadPixels, RT_RGBA, floats, 31),
-    WRONG(VALUE, Outside, rtGetWorkers, nullptr, 1), WRONG(VALUE, Outside, rtGetWorkers, (worker.size = 0, &worker), 1),
     WRONG(VALUE, Outside, rtGetStats, nullptr), WRONG(VALUE, Outside, rtGetStats, (statistics.size = 0, &statistics)),
     WRONG(VALUE, Outside, rtPick, double(nan), 0, &hit), WRONG(VALUE, Outside, rtPick, 0, 0, nullptr),
     WRONG(VALUE, Outside, rtCastRays, 1, nullptr, &hit), WRONG(VALUE, Outside, rtCastRays, 1, &ray, nullptr),
@@ -318,7 +316,9 @@ const Wrong wrong[] = {
     WRONG(VALUE, Outside, rtMakeCurrent, reinterpret_cast<RTcontext>(&ids)),
     WRONG(VALUE, Outside, rtDeleteContext, reinterpret_cast<RTcontext>(&ids)), WRONG(VALUE, Outside, rtCancel, nullptr),
     WRONG(VALUE, Outside, rtProgress, reinterpret_cast<RTcontext>(&ids)),
-    WRONG(VALUE, Outside, rtSnapshot, nullptr, RT_RGBA, floats, 64),
+    WRONG(VALUE, Outside, rtSnapshot, nullptr, RT_RGBA, floats, 64), WRONG(VALUE, Outside, rtGetWorkers, nullptr, nullptr, 0),
+    WRONG(VALUE, Outside, rtGetWorkers, rtGetCurrent(), nullptr, 1),
+    WRONG(VALUE, Outside, rtGetWorkers, rtGetCurrent(), (worker.size = 0, &worker), 1),
     WRONG(VALUE, Outside, rtSnapshot, w.context, RT_RGBA, nullptr, 64), WRONG(OPERATION, Outside, rtExit), // without rtInit
 };
 // They cannot fail but for want of a context, or cannot fail at all.

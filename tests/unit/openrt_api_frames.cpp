@@ -237,12 +237,12 @@ TEST_F(Frames, AFrameThatFailsIsNotTheFinishedOne) {
 }
 
 TEST_F(Frames, WorkersAreWrittenAsFarAsThereIsRoom) {
-  EXPECT_EQ(rtGetWorkers(nullptr, 0), 2u);
+  EXPECT_EQ(rtGetWorkers(rtGetCurrent(), nullptr, 0), 2u);
   RTworker workers[3]{};
   workers[0].size = sizeof(RTworker);
-  EXPECT_EQ(rtGetWorkers(workers, 1), 2u);
+  EXPECT_EQ(rtGetWorkers(rtGetCurrent(), workers, 1), 2u);
   EXPECT_TRUE(workers[0].threads == 3 && workers[1].threads == 0);
-  EXPECT_EQ(rtGetWorkers(workers, 3), 2u);
+  EXPECT_EQ(rtGetWorkers(rtGetCurrent(), workers, 3), 2u);
   EXPECT_TRUE(workers[1].threads == 4 && workers[1].size == sizeof(RTworker) && workers[2].size == 0);
   struct Older { // a program that was built when there was less to tell
     size_t size;
@@ -250,7 +250,7 @@ TEST_F(Frames, WorkersAreWrittenAsFarAsThereIsRoom) {
     uint32_t threads;
   } older[2]{};
   older[0].size = sizeof(Older);
-  EXPECT_EQ(rtGetWorkers(reinterpret_cast<RTworker*>(older), 2), 2u);
+  EXPECT_EQ(rtGetWorkers(rtGetCurrent(), reinterpret_cast<RTworker*>(older), 2), 2u);
   EXPECT_TRUE(older[0].threads == 3 && older[1].threads == 4);
 }
 
