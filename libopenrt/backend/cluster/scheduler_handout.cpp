@@ -1,0 +1,149 @@
+// scheduler_handout.cpp: which job goes to whom, how large it is, and when it is late. Jobs are large as long as much is left and
+// small towards the end (factoring: S. Hummel, E. Schonberg, L. Flynn, "Factoring: a method for scheduling parallel loops", CACM
+// 35(8), 1992); late ones are given to idle threads as well, as in J. Dean, S. Ghemawat, "MapReduce", OSDI 2004, 3.6.
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "backend/cluster/scheduler_state.h"
+
+namespace openrt::cluster {
+
+namespace {
+constexpr uint32_t fewest = 32;    // samples: a tile's are not divided further (frame_work.h)
+constexpr double mostInFlight = 4; // jobs for a thread, or bundles of them
+constexpr double largestBundle = 64;
+constexpr double parts = 4; // of what is left for a thread, a job is one of so many
+} // namespace
+
+double Scheduler::Impl::secondsOf(const Frame& f) const {
+  const double units = f.lastUnits > 0 ? f.lastUnits : f.tilePixels * std::min(f.perPixel, double(fewest));
+  return f.costs.mean() * units;
+}
+
+double Scheduler::Impl::bundle(const Frame& f) const {
+  const double usual = secondsOf(f);
+  return usual > 0 ? std::clamp(std::floor(options.shortest / usual), 1.0, largestBundle) : 1;
+}
+
+double Scheduler::Impl::threadsFor(Epoch epoch) const {
+  const auto own = groups.find(epoch);
+  const Frame& f = frames.at(epoch);
+  uint32_t all = own == groups.end() ? 0 : own->second.threads;
+  if (f.split != Split::frames) // those of earlier epochs are still to come
+    for (auto g = groups.begin(); g != groups.end() && g->first < epoch; ++g) all += g->second.threads;
+  return std::max(all, 1u);
+}
+
+double Scheduler::Impl::level(const Frame& f) const {
+  const double usual = f.lastUnits > 0 ? f.lastUnits : f.tilePixels * f.perPixel, together = bundle(f);
+  const double left = f.work->undone() / usual / threadsFor(f.epoch); // jobs for a thread
+  return std::clamp(std::ceil(left / together), 1.0, double(std::clamp(options.inFlight, 1u, uint32_t(mostInFlight)))) * together;
+}
+
+uint32_t Scheduler::Impl::largest(const Frame& f, const Worker& w) const {
+  if (f.wholeTiles || f.perPixel <= fewest) return ~0u;
+  double samples = fewest;
+  if (f.spread) {
+    samples = f.perPixel / std::max(usable, 1u);
+  } else if (f.costs.known()) {
+    const double left = f.work->undone() * f.costs.mean() / threadsFor(f.epoch);
+    // A slow link is worth larger jobs: no more of them are in flight.
+    const double least = std::max(options.shortest, w.tally.latency / (mostInFlight - 1));
+    const double seconds = std::clamp(left / parts, least, std::max(options.longest, least));
+    samples = seconds / (f.costs.mean() * f.tilePixels);
+  }
+  if (samples >= f.perPixel) return ~0u;
+  return std::bit_floor(std::max(uint32_t(samples), fewest));
+}
+
+Worker* Scheduler::Impl::roomiest(const Frame& f, Group& g) {
+  const double most = level(f), cap = mostInFlight * bundle(f);
+  while (!g.room.empty()) {
+    const auto [key, id] = *g.room.begin();
+    if (key >= most) return nullptr;
+    Worker& w = workers.at(id);
+    if (w.tally.out < w.hands() * cap && !(w.reserve && !g.movable.empty())) return &w;
+    g.room.erase(g.room.begin()); // until something happens to it
+    w.roomKey = never;
+  }
+  return nullptr;
+}
+
+void Scheduler::Impl::hand(Frame& f, Worker& w, uint64_t id, bool again, double now, Handout& out) {
+  Flight& flight = f.flights.at(id);
+  const Lease lease = ++lastLease;
+  flight.since = now;
+  flight.turns = 1 + std::floor(w.tally.out / double(w.threads));
+  flight.link = w.tally.latency;
+  flight.holders.insert(lease);
+  f.leases[lease] = {w.id, id, now, again, w.tally.out < w.threads};
+  w.leases.insert({f.epoch, lease});
+  w.tally.out = uint32_t(w.leases.size());
+  rekey(f, id, flight);
+  sort(w);
+  out = {w.id, f.epoch, {lease, flight.job}, again};
+}
+
+double Scheduler::Impl::span(Frame& f, const Flight& flight) {
+  const double median = f.costsOf(flight.job).median();
+  if (median <= 0) return never;
+  return std::max(options.patience * (median * flight.units * flight.turns + flight.link), options.soonest);
+}
+
+void Scheduler::Impl::rekey(Frame& f, uint64_t id, Flight& flight) {
+  f.deadlines.erase({flight.deadline, id});
+  flight.deadline = flight.since + span(f, flight);
+  if (flight.again < options.mostAgain && flight.deadline < never) f.deadlines.insert({flight.deadline, id});
+}
+
+bool Scheduler::Impl::reissue(Frame& f, Group& g, double now, Handout& out) {
+  while (!g.idle.empty() && !f.deadlines.empty()) {
+    const auto [deadline, id] = *f.deadlines.begin();
+    if (deadline > now) return false;
+    Flight& flight = f.flights.at(id);
+    rekey(f, id, flight);
+    if (flight.deadline > now) continue;
+    const auto has = [&](WorkerId w) {
+      return std::any_of(flight.holders.begin(), flight.holders.end(), [&](Lease l) { return f.leases.at(l).worker == w; });
+    };
+    const auto idle = std::find_if(g.idle.begin(), g.idle.end(), [&](const auto& entry) { // at most four are passed over
+      return !has(entry.second) && !(workers.at(entry.second).reserve && !g.movable.empty());
+    });
+    if (idle == g.idle.end()) return false;
+    for (const Lease l : flight.holders) // one that has not even been heard of since gets less
+      if (Worker& w = workers.at(f.leases.at(l).worker); w.heard < flight.since) w.slips = std::min(w.slips + 1, 8u), sort(w);
+    flight.again++, reissued++;
+    hand(f, workers.at(idle->second), id, true, now, out);
+    return true;
+  }
+  return false;
+}
+
+bool Scheduler::Impl::next(double now, Handout& out) {
+  for (auto& [epoch, f] : frames) {
+    const auto it = groups.find(epoch);
+    if (!f.work || it == groups.end()) continue;
+    Group& g = it->second;
+    Worker* w = f.maybe ? roomiest(f, g) : nullptr;
+    Job job;
+    if (w && f.work->next(job, largest(f, *w)) == FrameWork::Next::job) {
+      Flight& flight = f.flights[++lastFlight];
+      flight.job = job;
+      const bool ofLight = job.kind == Job::Kind::light;
+      flight.units = std::max(1.0, double(job.count) * (ofLight ? 1 : f.work->pixels(job.number)));
+      if (!ofLight) f.lastUnits = flight.units;
+      hand(f, *w, lastFlight, false, now, out);
+      if (f.exhausted()) moves = true;
+      return true;
+    }
+    if (w) { // there is a place, but no job
+      f.maybe = false;
+      moves = true;
+    }
+    if (reissue(f, g, now, out)) return true;
+  }
+  return false;
+}
+
+} // namespace openrt::cluster

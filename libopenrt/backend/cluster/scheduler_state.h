@@ -1,0 +1,136 @@
+// scheduler_state.h: what the scheduler knows: workers, frames, the jobs that are out and who has them. Only its own files
+// include this. One thread's, as Scheduler.
+#pragma once
+
+#include <limits>
+#include <map>
+#include <set>
+#include <unordered_map>
+
+#include "backend/cluster/job_costs.h"
+#include "backend/cluster/scheduler.h"
+
+namespace openrt::cluster {
+
+inline constexpr double never = std::numeric_limits<double>::infinity();
+using Ranked = std::set<std::pair<double, WorkerId>>; // best first; equal ones by their number, so that all is repeatable
+
+struct Worker {
+  WorkerId id = 0;
+  uint32_t threads = 1;
+  bool here = false, reserve = false;
+  Epoch epoch = 0; // whose scene it has or prepares
+  bool ready = false, unable = false;
+  uint32_t slips = 0; // jobs that were late of late: it gets less
+  double asked = 0;   // when it was told to prepare
+  double heard = 0;   // of it, with a result
+  std::set<std::pair<Epoch, Lease>> leases;
+  WorkerTally tally;
+  double roomKey = never, idleKey = never; // where it stands in its group; never: it does not
+
+  bool tied() const { return here || reserve; }
+  bool usable() const { return !tally.blocked && !unable; }
+  double hands() const { // threads, fewer of one that lets jobs wait
+    return std::max(1u, threads >> std::min(slips, 31u));
+  }
+};
+
+struct Flight { // a job that is out
+  Job job;
+  double units = 0;        // pixels times samples; paths
+  double deadline = never; // late then, by what was known when it was last looked at
+  double since = 0;        // handed out, last time
+  double turns = 1;        // jobs one after the other until this one is done, with those that its worker had before
+  double link = 0;         // of its last worker
+  uint32_t again = 0;      // times it was handed out again
+  std::set<Lease> holders;
+};
+
+struct Held { // a lease
+  WorkerId worker = 0;
+  uint64_t flight = 0; // 0: its job is done, by somebody else
+  double since = 0;
+  bool again = false, direct = false; // a copy; it found a free thread
+};
+
+struct Frame {
+  Epoch epoch = 0;
+  Split split = Split::tiles; // tiles: by cost if that is what was asked for
+  bool wholeTiles = false, spread = false;
+  std::shared_ptr<JobSource> work; // null: nobody has prepared it yet
+  bool maybe = false;              // there may be something to hand out
+  uint32_t tilePixels = 1;
+  double perPixel = 1;  // samples, about
+  double lastUnits = 0; // of the job that was handed out last
+  JobCosts costs, light;
+  std::map<uint64_t, Flight> flights;
+  std::unordered_map<Lease, Held> leases;
+  std::set<std::pair<double, uint64_t>> deadlines; // of flights that may be handed out again
+  uint32_t rekeyAt = 1;                            // jobs done with which all deadlines are found anew
+
+  bool exhausted() const { return work && work->undone() < 0.5; } // nobody is to do more of it, as yet
+  JobCosts& costsOf(const Job& job) { return job.kind == Job::Kind::light ? light : costs; }
+};
+
+struct Group { // workers that have an epoch's scene, or prepare it
+  std::set<WorkerId> members;
+  std::set<WorkerId> movable; // ready ones but those here and in reserve
+  std::set<WorkerId> tied;    // those here and in reserve
+  uint32_t threads = 0;       // of members that are no reserve and not blocked
+  uint32_t usable = 0;        // these members
+  Ranked room;                // by jobs for each thread: those that may be given more
+  Ranked idle;                // with an idle thread
+};
+
+struct Scheduler::Impl {
+  explicit Impl(const SchedulerOptions& o) : options(o) {}
+  SchedulerOptions options;
+  std::map<WorkerId, Worker> workers;
+  std::map<Epoch, Frame> frames;
+  std::map<Epoch, Group> groups;
+  Lease lastLease = 0;
+  uint64_t lastFlight = 0, reissued = 0, duplicates = 0;
+  JobCosts costs, light;                          // of the frame that ended last
+  double frameSeconds = 0;                        // it took on one thread
+  double prepare = 0;                             // seconds that preparing a scene takes, smoothed; 0: unknown
+  uint32_t usable = 0, threads = 0, rescuers = 0; // workers that are no reserve, and their threads; those here and in reserve;
+                                                  // none that are blocked
+  bool moves = false;                             // there may be something to move
+
+  Frame* frame(Epoch epoch);
+  Worker* worker(WorkerId id);
+
+  // scheduler.cpp
+  void leave(Worker& w);
+  void end(Frame& f);
+  void forget(Frame& f, Lease lease, bool lost); // takes a lease away
+  void forgetAll(Worker& w, Epoch until);        // of epochs before `until`
+  void strike(Worker& w);                        // it has failed
+  bool done(Frame& f, Lease lease, double seconds, double now);
+
+  // scheduler_moves.cpp
+  void weigh(const Worker& w, int sign);
+  void enter(Worker& w, Epoch epoch, bool ready);
+  void depart(Worker& w);
+  void sort(Worker& w); // into its group's sets
+  Split splitOf() const;
+  bool worthHelping(const Frame& f) const;
+  Epoch target(Epoch epoch);
+  Epoch targetOfTied(const Worker& w);
+  bool move(double now, WorkerId& worker, Epoch& epoch);
+
+  // scheduler_handout.cpp
+  double secondsOf(const Frame& f) const; // that a usual job takes; 0: unknown
+  double bundle(const Frame& f) const;    // jobs that count together
+  double threadsFor(Epoch epoch) const;
+  double level(const Frame& f) const; // jobs that a thread may have
+  uint32_t largest(const Frame& f, const Worker& w) const;
+  Worker* roomiest(const Frame& f, Group& g);
+  void hand(Frame& f, Worker& w, uint64_t id, bool again, double now, Handout& out);
+  double span(Frame& f, const Flight& flight);
+  void rekey(Frame& f, uint64_t id, Flight& flight);
+  bool reissue(Frame& f, Group& g, double now, Handout& out);
+  bool next(double now, Handout& out);
+};
+
+} // namespace openrt::cluster
