@@ -298,7 +298,7 @@ TEST(Scheduler, theNextFrameIsHandedOutBeforeTheLastJobComesHome) {
   for (const Handout& h : second) EXPECT_EQ(std::pair(h.worker, h.epoch), (std::pair<WorkerId, Epoch>(1, 2)));
   for (const Handout& h : first)
     EXPECT_FALSE(h.worker == 1 && b.done(h)); // ready() has come before: it was not to work on the first any more
-  EXPECT_TRUE(b.handOut().empty()); // as much is left as worker 2 has
+  EXPECT_TRUE(b.handOut().empty());           // as much is left as worker 2 has
   for (const Handout& h : first) b.done(h);
   EXPECT_EQ(byWorker(b.handOut()), (std::map<WorkerId, uint32_t>{{2, 4}}));
 }
