@@ -49,22 +49,6 @@ class JobSource {
   virtual uint32_t pixels(uint32_t tile) const = 0; // of a tile
 };
 
-class FrameSource final : public JobSource {
- public:
-  explicit FrameSource(std::shared_ptr<FrameWork> work) : work_(std::move(work)) {}
-  FrameWork::Next next(Job& job, uint32_t largest) override { return work_->next(job, largest); }
-  void giveBack(const Job& job) override { work_->giveBack(job); }
-  double undone() const override { return work_->undone(); }
-  uint32_t tiles() const override { return work_->tiles(); }
-  uint32_t pixels(uint32_t tile) const override {
-    const Tile t = work_->tile(tile);
-    return (t.x1 - t.x0) * (t.y1 - t.y0);
-  }
-
- private:
-  std::shared_ptr<FrameWork> work_;
-};
-
 struct Handout {
   WorkerId worker = 0;
   Epoch epoch = 0;
@@ -92,11 +76,9 @@ class Scheduler {
   void leave(WorkerId worker, double now); // its jobs are free at once
   // A frame of this epoch is wanted; in order of their epochs. Its work is told by frame() once a worker has prepared the scene.
   void announce(Epoch epoch, double now);
-  void frame(Epoch epoch, std::shared_ptr<JobSource> work, double now); // announces it, if it was not
-  void frame(Epoch epoch, std::shared_ptr<FrameWork> work, double now) {
-    frame(epoch, std::shared_ptr<JobSource>(std::make_shared<FrameSource>(std::move(work))), now);
-  }
-  void end(Epoch epoch); // finished or cancelled: its leases are forgotten
+  void frame(Epoch epoch, std::shared_ptr<JobSource> work, double now);        // announces it, if it was not
+  inline void frame(Epoch epoch, std::shared_ptr<FrameWork> work, double now); // frame_source.h
+  void end(Epoch epoch);                                                       // finished or cancelled: its leases are forgotten
 
   // Which worker is to prepare which epoch's scene now; call until false. It gets no more jobs of earlier epochs, and none of
   // this one until it is ready(). Edits of epochs between go before.
