@@ -15,6 +15,8 @@ namespace openrt::cluster {
 inline constexpr double never = std::numeric_limits<double>::infinity();
 using Ranked = std::set<std::pair<double, WorkerId>>; // best first; equal ones by their number, so that all is repeatable
 
+namespace scheduling { // not to be taken for the sessions of the same names
+
 struct Worker {
   WorkerId id = 0;
   uint32_t threads = 1;
@@ -81,6 +83,9 @@ struct Group { // workers that have an epoch's scene, or prepare it
   Ranked room;                // by jobs for each thread: those that may be given more
   Ranked idle;                // with an idle thread
 };
+
+} // namespace scheduling
+using namespace scheduling;
 
 struct Scheduler::Impl {
   explicit Impl(const SchedulerOptions& o) : options(o) {}
