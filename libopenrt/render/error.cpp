@@ -26,7 +26,7 @@ constexpr uint32_t reach = 2; // the window: so many pixels to each side, within
 constexpr uint32_t windowPixels = (2 * reach + 1) * (2 * reach + 1);
 // Replicates' means that carry the variance of a window, at least; hits by what is rare and bright, in a window, at least.
 constexpr double fewestMeans = 2.5, fewestHits = 4;
-constexpr double negligible = .25;  // of a half-width
+constexpr double negligible = .25; // of a half-width
 constexpr double fewestPaths = 16; // from lamps, in a window
 constexpr double largestExcess = 4;
 
@@ -132,24 +132,24 @@ void finish(PixelError& e, double expected) {
 // The pixels of a tile, colour by colour.
 class TileErrors {
  public:
-  TileErrors(uint32_t width, std::span<const PixelSums* const> pixels, const Replicates& replicates, std::span<PixelError> out)
+  TileErrors(uint32_t width, std::span<const PixelSums> pixels, const Replicates& replicates, std::span<PixelError> out)
       : width_(width), height_(uint32_t(pixels.size()) / width), pixels_(pixels), replicates_(replicates), out_(out),
         pooled_(pixels.size()) {}
 
   void make() {
     for (size_t i = 0; i < pixels_.size(); i++) {
-      out_[i] = independentError(*pixels_[i]);
-      rare_.add(*pixels_[i]);
+      out_[i] = independentError(pixels_[i]);
+      rare_.add(pixels_[i]);
     }
     if (!replicates_.many()) return;
     for (const bool random : {false, true})
       for (int k = 0; k < 3; k++) pool(random, k);
     for (size_t i = 0; i < pixels_.size(); i++) {
-      const bool enough = pixels_[i]->replicates >= trustedReplicates;
+      const bool enough = pixels_[i].replicates >= trustedReplicates;
       if (out_[i].constant)
         out_[i].trusted = enough;
-      else if (pixels_[i]->replicates >= 2)
-        judge(*pixels_[i], pooled_[i], enough, out_[i]);
+      else if (pixels_[i].replicates >= 2)
+        judge(pixels_[i], pooled_[i], enough, out_[i]);
     }
   }
 
@@ -164,8 +164,8 @@ class TileErrors {
   void pool(bool random, int k) {
     std::vector<Cell> cells(pixels_.size());
     for (size_t i = 0; i < pixels_.size(); i++) {
-      if (pixels_[i]->random != random || out_[i].constant || pixels_[i]->replicates < 2) continue;
-      const Spread s = spreadOf(*pixels_[i], k, replicates_.size());
+      if (pixels_[i].random != random || out_[i].constant || pixels_[i].replicates < 2) continue;
+      const Spread s = spreadOf(pixels_[i], k, replicates_.size());
       cells[i] = {1, s.variance, s.variance * s.variance, s.uncertainty, s.fourth};
     }
     const std::vector<Cell> own = cells;
@@ -173,7 +173,7 @@ class TileErrors {
     for (size_t i = 0; i < pixels_.size(); i++) {
       if (own[i].count == 0) continue;
       Pooled& p = pooled_[i];
-      const double r = pixels_[i]->replicates, parts = pixels_[i]->samples / double(replicates_.size());
+      const double r = pixels_[i].replicates, parts = pixels_[i].samples / double(replicates_.size());
       p.variance[k] = combined(own[i].variance, cells[i], r, p.freedom[k]) / parts;
       // For the picture as a whole the pixel's own: where neighbours differ the mean of roots is not the root of the mean.
       // But where it has met nothing at all, what others have met.
@@ -204,7 +204,7 @@ class TileErrors {
   }
 
   uint32_t width_, height_;
-  std::span<const PixelSums* const> pixels_;
+  std::span<const PixelSums> pixels_;
   const Replicates& replicates_;
   std::span<PixelError> out_;
   std::vector<Pooled> pooled_;
@@ -254,23 +254,22 @@ PixelError independentError(const PixelSums& s) {
   return e;
 }
 
-void tileErrors(uint32_t width, std::span<const PixelSums* const> pixels, const Replicates& replicates,
-                std::span<PixelError> out) {
+void tileErrors(uint32_t width, std::span<const PixelSums> pixels, const Replicates& replicates, std::span<PixelError> out) {
   TileErrors(width, pixels, replicates, out).make();
 }
 
-void addLight(const PixelSums& s, PixelError& e) {
+void addLight(const LightSums& light, PixelError& e) {
   double was = 3 * .01, squares = 0, half = 0, lamps = 0;
   for (int k = 0; k < 3; k++) {
     was += double(e.mean[k]);
-    const double w = s.lightVariance[k], h = student95(LightImage::parts - 1) * std::sqrt(w);
-    e.mean[k] += float(s.light[k]);
+    const double w = light.variance[k], h = student95(LightImage::parts - 1) * std::sqrt(w);
+    e.mean[k] += float(light.mean[k]);
     e.halfWidth[k] = float(std::hypot(double(e.halfWidth[k]), h));
     half += double(e.halfWidth[k]), lamps += h, squares += 2 / M_PI * w;
   }
   const double expected = std::hypot(double(e.expected) * was, std::sqrt(3 * squares));
   if (lamps > 0) e.constant = false;
-  if (lamps > negligible * half && s.lightHits < fewestPaths) e.trusted = false; // few paths have met the pixel
+  if (lamps > negligible * half && light.hits < fewestPaths) e.trusted = false; // few paths have met the pixel
   e.relative = relativeError(half, e.mean), e.expected = relativeError(expected, e.mean);
 }
 

@@ -24,11 +24,10 @@ Replicates replicatesOf(const edit::FrameSettingsT& frame, uint32_t samples, uin
 PixelError independentError(const PixelSums& sums);
 
 // Of a tile: its pixels' sums row by row, as many errors. All that its pixels know of each other is used (error.cpp).
-void tileErrors(uint32_t width, std::span<const PixelSums* const> pixels, const Replicates& replicates,
-                std::span<PixelError> out);
+void tileErrors(uint32_t width, std::span<const PixelSums> pixels, const Replicates& replicates, std::span<PixelError> out);
 
-// What paths from lamps add to a pixel (PixelSums::light), which is an estimate of its own.
-void addLight(const PixelSums& sums, PixelError& error);
+// What paths from lamps add to a pixel.
+void addLight(const LightSums& light, PixelError& error);
 
 // Samples that a part of the picture needs for a relative half-width, from independent ones: rounded up to a power of two.
 uint32_t samplesFor(double target, double halfWidth, uint32_t samples, uint32_t most);

@@ -7,37 +7,6 @@
 
 namespace openrt {
 
-void PixelSums::add(const float radiance[3], float alpha) {
-  for (int k = 0; k < 3; k++) {
-    if (samples == 0) first[k] = radiance[k];
-    const double d = radiance[k] - first[k];
-    delta[k] += d;
-    delta2[k] += d * d;
-    rgba[k] += radiance[k];
-  }
-  rgba[3] += alpha;
-  samples++;
-}
-
-void PixelSums::addTails(const float radiance[3]) {
-  double grey1 = 0;
-  for (int k = 0; k < 3; k++) {
-    grey1 += radiance[k] - first[k];
-    largest[k] = std::max(largest[k], radiance[k]);
-  }
-  const double grey2 = grey1 * grey1;
-  grey[0] += grey2, grey[1] += grey2 * grey1, grey[2] += grey2 * grey2;
-}
-
-void PixelSums::closeReplicate() {
-  for (int k = 0; k < 3; k++) {
-    const double sum = delta[k] - closed[k], square = sum * sum;
-    closed2[k] += square, closed3[k] += square * sum, closed4[k] += square * square;
-    closed[k] = delta[k];
-  }
-  replicates++;
-}
-
 Film::Film(uint32_t width, uint32_t height, uint32_t channels, ErrorMap::Kind errors)
     : width_(width), height_(height), channels_(channels), errors_(width, height, errors) {
   for (uint32_t bit = 0; bit < channelBits; bit++)
@@ -51,11 +20,11 @@ size_t planeOf(uint32_t channel) { return std::min(size_t(std::countr_zero(chann
 
 std::vector<float>& Film::plane(uint32_t channel) { return planes_[planeOf(channel)]; }
 
-void Film::store(uint32_t x, uint32_t y, const PixelSums& s, const PixelError* error) {
+void Film::store(uint32_t x, uint32_t y, const PixelSums& s, const LightSums* light, const PixelError* error) {
   const size_t pixel = size_t(y) * width_ + x;
   const double n = s.samples ? s.samples : 1;
   if (has(RT_RGBA))
-    for (int k = 0; k < 4; k++) plane(RT_RGBA)[4 * pixel + k] = float(s.rgba[k] / n + (k < 3 ? s.light[k] : 0));
+    for (int k = 0; k < 4; k++) plane(RT_RGBA)[4 * pixel + k] = float(s.rgba[k] / n + (light && k < 3 ? light->mean[k] : 0));
   for (int k = 0; k < 3; k++) {
     if (has(RT_NORMAL)) plane(RT_NORMAL)[3 * pixel + k] = float(s.normal[k] / n);
     if (has(RT_ALBEDO)) plane(RT_ALBEDO)[3 * pixel + k] = float(s.albedo[k] / n);

@@ -10,6 +10,7 @@
 
 #include "render/film.h"
 #include "render/job.h"
+#include "render/tiles.h"
 #include "scene/scene.h"
 
 namespace openrt {
@@ -41,7 +42,8 @@ class FrameWork {
   // No more jobs, those that are out do not count: the picture holds what is finished.
   void cancel();
   bool over() const; // all has been taken, or cancelled
-  // Called (by whoever gives or takes) after there may be something new for those who got `wait`.
+  // Called (by whoever gives or takes) after there may be something new for those who got `wait`, who then ask again: once for
+  // all that have waited.
   void onChange(std::function<void()> changed);
 
   uint32_t tiles() const; // of the picture

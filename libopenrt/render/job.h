@@ -8,9 +8,10 @@
 #include <vector>
 
 #include "render/batch.h"
-#include "render/film.h"
 #include "render/ledger.h"
 #include "render/sampler.h"
+#include "render/sums.h"
+#include "render/tiles.h"
 
 namespace openrt {
 
@@ -29,7 +30,7 @@ struct Job {
 };
 
 struct JobResult {
-  std::vector<PixelSums> sums; // of a tile, row by row
+  std::vector<PixelSums> sums; // of a tile, row by row; what the frame does not gather (Gathering) means nothing
   std::vector<float> light;    // rgb of the whole picture, row by row
   Ledger ledger;
   RayCounters counters;

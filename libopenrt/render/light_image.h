@@ -1,44 +1,46 @@
 // light_image.h: the part of a picture that paths from lamps make. They may fall on any pixel, so the picture is made in a fixed
-// number of parts, each a whole picture by one thread; their mean and its variance are kept. Parts are added in their order: the
-// sums do not depend on threads.
+// number of parts, each a whole picture by one thread; their mean and its variance are kept. Parts are added in their order,
+// those that come too early wait: the sums do not depend on threads. [any]
 #pragma once
 
 #include <atomic>
-#include <condition_variable>
 #include <cstdint>
 #include <limits>
 #include <mutex>
+#include <shared_mutex>
 #include <vector>
+
+#include "render/film.h"
 
 namespace openrt {
 
 class LightImage {
  public:
-  static constexpr uint32_t parts = 16;
-  LightImage(uint32_t width, uint32_t height) : width_(width), height_(height), pixels_(size_t(width) * height) {}
-  // part: rgb by pixel; waits until the parts before it are in. False if cancelled before. [render]
-  bool add(uint32_t number, const std::vector<float>& part, const std::atomic<bool>& cancelled);
+  static constexpr uint32_t parts = 16; // of a frame
+  LightImage(uint32_t width, uint32_t height, uint32_t all = parts)
+      : width_(width), height_(height), all_(all), pixels_(size_t(width) * height), waiting_(all) {}
+  // part: rgb by pixel; each number once.
+  void add(uint32_t number, std::vector<float>&& part);
+  uint32_t added() const { return added_.load(std::memory_order_acquire); }
+  bool complete() const { return added() == all_; }
+  // Of a tile, row by row, from the parts that are in; their variance is infinite if these are fewer than two.
+  void look(const Tile& tile, std::vector<LightSums>& out) const;
 
-  // While no part is being added. Of the parts that are in.
+ private:
   struct Pixel {
     double mean[3] = {}, squares[3] = {}; // squares: sum of squared differences from the mean
   };
-  const Pixel& at(size_t pixel) const { return pixels_[pixel]; }
-  // Of a pixel's mean and of what the 5x5 pixels around know: one that few paths have met knows too little of itself (error.cpp).
-  struct Around {
-    double variance[3] = {};                               // of the pixel's mean: its own, at least the mean of those around
-    double hits = std::numeric_limits<double>::infinity(); // as many equal paths have met them, in the colour with the fewest
-  };
-  Around around(size_t pixel) const;
-  // Of a pixel's mean; infinite if fewer than two parts are in.
+  void addNow(const std::vector<float>& part, double number);
   double variance(const Pixel& pixel, int k) const;
+  LightSums at(uint32_t x, uint32_t y) const;
 
- private:
-  uint32_t width_, height_;
+  uint32_t width_, height_, all_;
+  mutable std::shared_mutex sums_; // pixels_, and added_ for those who look
   std::vector<Pixel> pixels_;
-  std::mutex mutex_;
-  std::condition_variable turn_;
-  uint32_t next_ = 0;
+  std::atomic<uint32_t> added_{0};
+  std::mutex turn_; // waiting_, adding_
+  std::vector<std::vector<float>> waiting_;
+  bool adding_ = false;
 };
 
 } // namespace openrt

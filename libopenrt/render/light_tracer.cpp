@@ -38,15 +38,16 @@ void LightTracer::sampleAt(const RayState& state, uint32_t pair, float out[2]) c
   PairSampler(~0u, pair + state.branch, seed_)(first_ + state.path, out[0], out[1]);
 }
 
-void LightTracer::trace(uint32_t paths, uint32_t seed, std::atomic<uint64_t>& done, const std::atomic<bool>& cancelled) {
+bool LightTracer::trace(uint32_t paths, uint32_t seed, const std::atomic<bool>& stop) {
   picture_.assign(size_t(width_) * height_ * 3, 0.0f);
   seed_ = seed;
   scale_ = 1.0 / paths;
-  for (uint32_t first = 0; first < paths && !cancelled; first += pathsInFlight) {
-    const uint32_t n = std::min(pathsInFlight, paths - first);
+  for (uint32_t first = 0, n; first < paths; first += n) {
+    if (stop) return false;
+    n = std::min(pathsInFlight, paths - first);
     begin(first, n);
-    done += n;
   }
+  return true;
 }
 
 void LightTracer::begin(uint32_t firstPath, uint32_t n) {

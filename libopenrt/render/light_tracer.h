@@ -20,11 +20,11 @@ namespace openrt {
 class LightTracer {
  public:
   LightTracer(const RenderScene& scene, const LightSources& sources);
-  // A whole picture (rgb by pixel) of a number of paths; seed: another one for each part. done: counts paths; cancelled: looked
-  // at between some thousand of them.
-  void trace(uint32_t paths, uint32_t seed, std::atomic<uint64_t>& done, const std::atomic<bool>& cancelled);
-  const std::vector<float>& picture() const { return picture_; }
-  const RayCounters& counters() const { return counters_; }
+  // A whole picture (rgb by pixel) of a number of paths; seed: another one for each part. False: the flag was set, which is
+  // looked at between some thousand paths.
+  bool trace(uint32_t paths, uint32_t seed, const std::atomic<bool>& stop);
+  std::vector<float>& picture() { return picture_; }
+  RayCounters& counters() { return counters_; } // since they were emptied
 
  private:
   void begin(uint32_t first, uint32_t n);

@@ -70,7 +70,7 @@ void TileRenderer::scatterRange(Paths& paths, const Points& points, const Bucket
   float* radiance[3];
   for (int k = 0; k < 3; k++) {
     radiance[k] = surface.emission[k] = arena_.takeZero<float>(size);
-    surface.albedo[k] = film_.has(RT_ALBEDO) ? arena_.takeZero<float>(size) : nullptr;
+    surface.albedo[k] = has(RT_ALBEDO) ? arena_.takeZero<float>(size) : nullptr;
   }
   RtsBatch batch = makeBatch(paths, points, order);
   batch.lightSet = bucket.lightSet;

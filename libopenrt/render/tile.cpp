@@ -4,11 +4,8 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstring>
 #include <limits>
-#include <type_traits>
 
-#include "render/light_image.h"
 #include "render/paths.h"
 #include "render/sampler.h"
 #include "render/surfaces.h"
@@ -18,145 +15,45 @@ namespace openrt {
 
 namespace {
 constexpr uint32_t pathsInFlight = 4096;
-constexpr uint32_t pilotSeed = 0x70696c6f;
-static_assert(std::is_trivially_copyable_v<PixelSums> && std::is_standard_layout_v<PixelSums>); // kept as bytes
-// Of the sums only what the film asks for is kept from round to round: there is one for each pixel of the picture.
-size_t keptBytes(const Film& film, bool wantsError) {
-  if (wantsError) return sizeof(PixelSums);
-  if (film.has(RT_NORMAL) || film.has(RT_ALBEDO)) return offsetof(PixelSums, closed);
-  return film.has(RT_VARIANCE) ? offsetof(PixelSums, normal) : offsetof(PixelSums, first);
-}
 } // namespace
 
-uint32_t tileEdge(uint32_t samplesPerPixel, uint32_t width, uint32_t height) {
-  constexpr uint32_t least = 16, enough = 64; // pixels; tiles
-  uint32_t edge = samplesPerPixel >= 16 ? least : samplesPerPixel >= 4 ? 32 : 64;
-  while (edge > least && uint64_t(width) * height < uint64_t(enough) * edge * edge) edge /= 2;
-  return edge;
-}
-
-TileRenderer::TileRenderer(const RenderScene& scene, Film& film, std::mutex* filmLock)
-    : scene_(scene), film_(film), filmLock_(filmLock), wantsError_(wantsError(scene.frame)),
-      keptBytes_(keptBytes(film, wantsError_)) {}
-
-void TileRenderer::render(const Tile& tile) {
-  uint32_t samples = scene_.frame.samples;
-  if (needsPilot(scene_.frame)) samples = pilot(tile, pilotSamples);
-  begin(tile);
-  replicates_ = replicatesOf(scene_.frame, samples, scene_.frame.seed);
-  single_ = samples == 1;
-  if (takeSamples(0, samples)) store(tile);
-}
-
-uint32_t TileRenderer::pilot(const Tile& tile, uint32_t samples) {
-  begin(tile);
-  replicates_ = replicatesOf(scene_.frame, samples, hash(scene_.frame.seed, pilotSeed));
-  single_ = samples == 1;
-  if (!takeSamples(0, samples)) return samples;
-  store(tile);
-  return wantedAfter(samples);
-}
-
-uint32_t TileRenderer::pilotRound(const Tile& tile, std::vector<std::byte>& kept, uint32_t first, uint32_t samples) {
-  const uint32_t seed = hash(scene_.frame.seed, pilotSeed);
-  renderRound(tile, kept, replicatesOf(scene_.frame, pilotSamples, seed), first, samples, first + samples >= pilotSamples);
-  return wantedAfter(pilotSamples);
-}
-
-uint32_t TileRenderer::wantedAfter(uint32_t samples) const {
-  const edit::FrameSettingsT& frame = scene_.frame;
-  return frame.targetError > 0 ? samplesFor(frame.targetError, halfWidth_, samples, frame.samples) : frame.samples;
-}
-
-void TileRenderer::renderRound(const Tile& tile, std::vector<std::byte>& kept, const Replicates& replicates, uint32_t first,
-                               uint32_t samples, bool last) {
-  begin(tile);
-  takeUp(kept);
-  replicates_ = replicates;
-  single_ = false;
-  if (!takeSamples(first, samples)) return;
-  store(tile);
-  if (last)
-    kept = {};
-  else
-    keep(kept);
-}
-
-void TileRenderer::keep(std::vector<std::byte>& kept) const {
-  kept.resize(sums_.size() * keptBytes_);
-  for (size_t i = 0; i < sums_.size(); i++) std::memcpy(&kept[i * keptBytes_], &sums_[i], keptBytes_);
-}
-
-void TileRenderer::takeUp(const std::vector<std::byte>& kept) {
-  if (kept.empty()) return;
-  for (size_t i = 0; i < sums_.size(); i++) std::memcpy(&sums_[i], &kept[i * keptBytes_], keptBytes_);
-}
+TileRenderer::TileRenderer(const RenderScene& scene)
+    : scene_(scene), width_(scene.frame.width), gathering_(gatheringOf(scene.frame)) {}
 
 void TileRenderer::begin(const Tile& tile) {
   ledger_ = {};
-  pixels_.clear();
+  pixels_.clear(), places_.clear();
   for (uint32_t by = tile.y0; by < tile.y1; by += 4)
     for (uint32_t bx = tile.x0; bx < tile.x1; bx += 4)
       for (uint32_t y = by; y < std::min(by + 4, tile.y1); y++)
-        for (uint32_t x = bx; x < std::min(bx + 4, tile.x1); x++) pixels_.push_back(y * film_.width() + x);
-  sums_.assign(pixels_.size(), {});
+        for (uint32_t x = bx; x < std::min(bx + 4, tile.x1); x++) {
+          pixels_.push_back(y * width_ + x);
+          places_.push_back((y - tile.y0) * tile.width() + x - tile.x0);
+        }
 }
 
-// Of many samples, a wave is as large as all before it: rounds of a progressive frame begin and end with waves, which so hold the
-// same paths in one go and in rounds. What a path meets may depend on those beside it, where faces coincide.
-bool TileRenderer::takeSamples(uint32_t first, uint32_t samples) {
+// What a path meets may depend on those beside it, where faces coincide: a leaf's waves are always the same.
+bool TileRenderer::render(const Tile& tile, const Replicates& replicates, bool centred, uint32_t first, uint32_t samples,
+                          std::span<PixelSums> sums, const std::atomic<bool>& stop) {
+  begin(tile);
+  replicates_ = replicates, centred_ = centred, leaf_ = first, sums_ = sums, stop_ = &stop;
   ledger_.samples += samples;
   const uint32_t most = std::clamp(std::bit_floor(pathsInFlight / uint32_t(pixels_.size())), 1u, largestWave);
   for (uint32_t s = first, end = first + samples; s < end;) {
     if (stopped()) return false;
-    const uint32_t n = std::min({most, scene_.frame.samples < fewestOfRounds ? most : std::max(s, 1u), end - s});
+    const uint32_t n = std::min(most, end - s);
     wave(s, n);
     s += n;
   }
   return !stopped(); // a wave may have been broken off
 }
 
-void TileRenderer::store(const Tile& tile) {
-  for (size_t i = 0; light_ && i < pixels_.size(); i++) {
-    const LightImage::Pixel& pixel = light_->at(pixels_[i]);
-    const LightImage::Around around = light_->around(pixels_[i]);
-    for (int k = 0; k < 3; k++) sums_[i].light[k] = pixel.mean[k], sums_[i].lightVariance[k] = around.variance[k];
-    sums_[i].lightHits = around.hits;
-  }
-  const uint32_t width = film_.width();
-  std::unique_lock<std::mutex> lock;
-  if (filmLock_) lock = std::unique_lock(*filmLock_);
-  halfWidth_ = 0;
-  if (film_.errors().empty()) { // nobody asks
-    for (size_t i = 0; i < pixels_.size(); i++) film_.store(pixels_[i] % width, pixels_[i] / width, sums_[i]);
-    return;
-  }
-  const uint32_t columns = tile.x1 - tile.x0;
-  errors_.resize(pixels_.size());
-  if (wantsError_) {
-    std::vector<const PixelSums*> rows(pixels_.size());
-    const auto place = [&](uint32_t pixel) { return size_t(pixel / width - tile.y0) * columns + pixel % width - tile.x0; };
-    for (size_t i = 0; i < pixels_.size(); i++) rows[place(pixels_[i])] = &sums_[i];
-    std::vector<PixelError> errors(pixels_.size());
-    tileErrors(columns, rows, replicates_, errors);
-    for (size_t i = 0; i < pixels_.size(); i++) errors_[i] = errors[place(pixels_[i])];
-  } else {
-    for (size_t i = 0; i < pixels_.size(); i++) errors_[i] = independentError(sums_[i]);
-  }
-  for (size_t i = 0; i < pixels_.size(); i++) {
-    if (light_) addLight(sums_[i], errors_[i]);
-    film_.store(pixels_[i] % width, pixels_[i] / width, sums_[i], &errors_[i]);
-    halfWidth_ += double(errors_[i].relative);
-  }
-  halfWidth_ /= double(pixels_.size());
-}
-
-// Working storage of n paths; film: with what the film's channels want of their first surfaces.
+// Working storage of n paths; film: with what the picture's channels want of their first surfaces.
 void TileRenderer::allocate(Paths& paths, uint32_t n, bool film) {
   const uint32_t size = padded(n);
   paths.state = arena_.take<RayState>(size);
   paths.travelled = arena_.takeZero<float>(size);
-  const auto optional = [&](uint32_t channel) { return film && film_.has(channel) ? arena_.takeZero<float>(size) : nullptr; };
+  const auto optional = [&](uint32_t channel) { return film && has(channel) ? arena_.takeZero<float>(size) : nullptr; };
   for (int k = 0; k < 3; k++) {
     paths.radiance[k] = arena_.takeZero<float>(size);
     paths.normal[k] = optional(RT_NORMAL), paths.albedo[k] = optional(RT_ALBEDO), paths.position[k] = optional(RT_POSITION);
@@ -260,12 +157,12 @@ void TileRenderer::makeCameraRays(Paths& paths, uint32_t firstSample) {
   uint32_t lane = 0;
   for (uint32_t pixel : pixels_) {
     PairSampler sampler(pixel, 0, replicates_.seedOf(firstSample));
-    const float x = float(pixel % film_.width()), y = float(pixel / film_.width());
+    const float x = float(pixel % width_), y = float(pixel / width_);
     for (uint32_t sample = firstSample; sample < firstSample + samples; sample++, lane++) {
-      float dx = 0.5f, dy = 0.5f; // one sample: the pixel's centre
+      float dx = 0.5f, dy = 0.5f; // centred
       const uint32_t index = replicates_.indexOf(sample);
       if (index == 0 && sample > firstSample) sampler = PairSampler(pixel, 0, replicates_.seedOf(sample));
-      if (!single_) sampler(index, dx, dy);
+      if (!centred_) sampler(index, dx, dy);
       xy[0][lane] = x + dx, xy[1][lane] = y + dy;
     }
   }
@@ -275,7 +172,7 @@ void TileRenderer::makeCameraRays(Paths& paths, uint32_t firstSample) {
     paths.rays.tfar[i] = std::numeric_limits<float>::infinity();
   }
   const float* points[2] = {xy[0], xy[1]};
-  const float extent[2] = {float(film_.width()), float(film_.height())};
+  const float extent[2] = {float(width_), float(scene_.frame.height)};
   RtsBatch batch = makeBatch();
   batch.rays = n;
   const ShaderSlot& camera = scene_.camera.shader;
@@ -375,7 +272,7 @@ void TileRenderer::shadeRange(Paths& paths, const RayHits& hits, const BucketRan
   for (int k = 0; k < 3; k++) {
     shaded.radiance[k] = arena_.takeZero<float>(size);
     shaded.transmission[k] = arena_.takeZero<float>(size);
-    shaded.albedo[k] = film_.has(RT_ALBEDO) ? arena_.takeZero<float>(size) : nullptr;
+    shaded.albedo[k] = has(RT_ALBEDO) ? arena_.takeZero<float>(size) : nullptr;
   }
   {
     ArenaScope inner(arena_);
@@ -469,7 +366,7 @@ void TileRenderer::push(const Points& points, uint32_t i, uint32_t lane, const S
 void TileRenderer::addToPixels(const Paths& paths, uint32_t firstSample, uint32_t samples) {
   const float limit = scene_.frame.clamp;
   for (size_t pixel = 0; pixel < pixels_.size(); pixel++) {
-    PixelSums& sums = sums_[pixel];
+    PixelSums& sums = sums_[places_[pixel]];
     for (uint32_t s = 0; s < samples; s++) {
       const size_t i = pixel * samples + s;
       float radiance[3] = {paths.radiance[0][i], paths.radiance[1][i], paths.radiance[2][i]};
@@ -478,12 +375,16 @@ void TileRenderer::addToPixels(const Paths& paths, uint32_t firstSample, uint32_
         ledger_.clipped += double(r) - double(limit);
         r = limit;
       }
-      sums.add(radiance, paths.alpha[i]);
-      if (wantsError_) {
+      if (gathering_.spread)
+        sums.add(radiance, paths.alpha[i]);
+      else
+        sums.addColor(radiance, paths.alpha[i]);
+      if (gathering_.error) {
         sums.addTails(radiance);
         sums.random |= random_[i] != 0;
+        const uint32_t next = firstSample + s + 1; // replicates larger than the leaf are closed where leaves merge
+        if (replicates_.many() && replicates_.indexOf(next) == 0 && next - leaf_ >= replicates_.size()) sums.closeReplicate();
       }
-      if (replicates_.many() && replicates_.indexOf(firstSample + s + 1) == 0) sums.closeReplicate();
       for (int k = 0; k < 3; k++) {
         if (paths.normal[k]) sums.normal[k] += paths.normal[k][i];
         if (paths.albedo[k]) sums.albedo[k] += paths.albedo[k][i];
@@ -492,7 +393,7 @@ void TileRenderer::addToPixels(const Paths& paths, uint32_t firstSample, uint32_
       if (paths.depth) sums.depth = paths.depth[i];
       if (paths.position[0])
         for (int k = 0; k < 3; k++) sums.position[k] = paths.position[k][i];
-      sums.name = float(paths.name[i]);
+      sums.name = has(RT_NAME) ? float(paths.name[i]) : 0.0f;
     }
   }
 }

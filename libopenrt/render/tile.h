@@ -4,50 +4,32 @@
 
 #include <atomic>
 #include <cstddef>
-#include <mutex>
+#include <span>
 #include <vector>
 
 #include "render/batch.h"
-#include "render/error.h"
-#include "render/film.h"
 #include "render/ledger.h"
 #include "render/lobes.h"
 #include "render/ray_queue.h"
+#include "render/sums.h"
+#include "render/tiles.h"
 
 namespace openrt {
 
-// Edge of the square tiles of a picture: a few thousand paths are in flight, and small pictures have tiles for many threads, too.
-uint32_t tileEdge(uint32_t samplesPerPixel, uint32_t width, uint32_t height);
-
 struct Boundaries;
-class LightImage;
 
 class TileRenderer {
  public:
-  // filmLock: held while pixels are stored, if other threads may read them meanwhile; else null
-  TileRenderer(const RenderScene& scene, Film& film, std::mutex* filmLock = nullptr);
-  // What paths from lamps have made, for the tiles that follow; null: nothing, as at first.
-  void useLight(const LightImage* light) { light_ = light; }
-  // Tiles are given up, and not stored, once the flag is set.
-  void stopAt(const std::atomic<bool>& flag) { stop_ = &flag; }
-  // The whole of a tile: a pilot if the frame has a target error, then its samples, then its pixels.
-  void render(const Tile& tile);
+  explicit TileRenderer(const RenderScene& scene);
+  // Adds a leaf's samples (sums.h) to the sums of a tile's pixels, row by row. centred: one sample, in the middle of each pixel.
+  // False: the flag was set meanwhile, and nothing of the sums is of use.
+  bool render(const Tile& tile, const Replicates& replicates, bool centred, uint32_t first, uint32_t samples,
+              std::span<PixelSums> sums, const std::atomic<bool>& stop);
   // Samples of a wave, at most.
   static constexpr uint32_t largestWave = 32;
-  // Frames of so many samples are taken in waves that grow, and may be made in rounds; of fewer, small waves would cost too much.
-  static constexpr uint32_t fewestOfRounds = 32;
-  static constexpr uint32_t pilotSamples = 32;
-  static bool needsPilot(const edit::FrameSettingsT& frame) { return frame.targetError > 0 && frame.samples > pilotSamples; }
-  // Some samples more for a tile whose sums are kept from round to round; the first time there are none. May be 0 samples: the
-  // tile is stored again. last: nothing needs to be kept.
-  void renderRound(const Tile& tile, std::vector<std::byte>& kept, const Replicates& replicates, uint32_t first, uint32_t samples,
-                   bool last);
-  // A tile of samples that do not count; how many it needs. Its pixels are stored, to be replaced.
-  uint32_t pilot(const Tile& tile, uint32_t samples);
-  // The same in rounds; the answer holds after the last one, of pilotSamples altogether.
-  uint32_t pilotRound(const Tile& tile, std::vector<std::byte>& kept, uint32_t first, uint32_t samples);
-  const RayCounters& counters() const { return counters_; }
-  // Of the samples that the last render() or renderRound() has taken.
+  // Since they were emptied.
+  RayCounters& counters() { return counters_; }
+  // Of the samples that the last render() has taken.
   const Ledger& ledger() const { return ledger_; }
   uint32_t level() const { return level_; } // surfaces that the rays of the wave have met before
   // trace.cpp: what shaders ask of the renderer (RtsHost).
@@ -59,12 +41,8 @@ class TileRenderer {
  private:
   struct Paths; // structure of arrays, one entry a path
   void begin(const Tile& tile);
-  bool takeSamples(uint32_t first, uint32_t samples); // false: stopped
-  bool stopped() const { return stop_ && stop_->load(std::memory_order_relaxed); }
-  void store(const Tile& tile);
-  void keep(std::vector<std::byte>& kept) const;
-  void takeUp(const std::vector<std::byte>& kept);
-  uint32_t wantedAfter(uint32_t samples) const; // the tile that was stored last
+  bool stopped() const { return stop_->load(std::memory_order_relaxed); }
+  bool has(uint32_t channel) const { return scene_.frame.channels & channel; }
   void askTransport(Paths& paths);
   void noteRandom(uint32_t path);
 
@@ -119,22 +97,18 @@ class TileRenderer {
   void addToPixels(const Paths& paths, uint32_t firstSample, uint32_t samples);
 
   const RenderScene& scene_;
-  Film& film_;
-  std::mutex* filmLock_;
+  const uint32_t width_; // of the picture
+  const Gathering gathering_;
   const std::atomic<bool>* stop_ = nullptr;
-  const LightImage* light_ = nullptr;
   Arena arena_;
   RayCounters counters_;
   Ledger ledger_;
-  std::vector<uint32_t> counts_, pixels_; // pixels_: y * width + x, in blocks of 4x4
+  std::vector<uint32_t> counts_, pixels_, places_; // pixels_: y * width + x, in blocks of 4x4; places_: in the tile's rows
   std::vector<BucketRange> ranges_;
-  std::vector<PixelSums> sums_;
-  std::vector<PixelError> errors_; // of the tile that is stored
+  std::span<PixelSums> sums_;
   Replicates replicates_;
-  const bool wantsError_;
-  const size_t keptBytes_;                             // of each pixel's sums, from round to round
-  bool single_ = false;                                // single_: one sample a pixel, at its centre
-  double halfWidth_ = 0;                               // relative, mean over the tile that was stored last
+  uint32_t leaf_ = 0; // first sample of the leaf
+  bool centred_ = false;
   uint8_t* random_ = nullptr;                          // by sample of the wave: its path has taken a random decision
   const uint32_t* root_ = nullptr;                     // within trace(): the sample of the wave that each path belongs to
   uint32_t nesting_ = 0;                               // of trace()

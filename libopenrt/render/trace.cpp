@@ -49,7 +49,7 @@ void TileRenderer::randomPoints(const RtsBatch& batch, uint32_t pair, float* con
     const RayState* ray = batch.order ? &batch.states[batch.order[i]] : nullptr;
     const uint32_t key = hash(shaderPairs + pair, ray ? pairOf(*ray, Draw::direction) : 0);
     sampleAt(ray ? ray->path : i, key, square[0][i], square[1][i]);
-    if (!single_ || ray) noteRandom(ray ? ray->path : i);
+    if (!centred_ || ray) noteRandom(ray ? ray->path : i);
   }
 }
 

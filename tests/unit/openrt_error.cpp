@@ -24,7 +24,8 @@ PixelSums sumsOf(const std::vector<float>& samples, const Replicates& replicates
 // One pixel by itself, or the first of a row.
 PixelError errorOf(std::initializer_list<const PixelSums*> row, const Replicates& replicates) {
   std::vector<PixelError> errors(row.size());
-  const std::vector<const PixelSums*> pixels(row);
+  std::vector<PixelSums> pixels;
+  for (const PixelSums* sums : row) pixels.push_back(*sums);
   tileErrors(uint32_t(row.size()), pixels, replicates, errors);
   return errors[0];
 }
@@ -109,11 +110,9 @@ TEST(Error, whereNothingIsRandomEqualSamplesAreExact) {
 
 TEST(Error, pixelsThatDifferByChanceShareTheirVariance) {
   std::vector<PixelSums> sums;
-  std::vector<const PixelSums*> pixels;
   for (uint32_t i = 0; i < 25; i++) sums.push_back(sumsOf(calmSamples(i), sixteen)), sums.back().random = true;
-  for (const PixelSums& s : sums) pixels.push_back(&s);
   std::vector<PixelError> errors(25);
-  tileErrors(5, pixels, sixteen, errors);
+  tileErrors(5, sums, sixteen, errors);
   // Standard deviation of a sample sqrt(4 / 12); of the middle pixel's interval little is left to chance.
   EXPECT_NEAR(errors[12].halfWidth[0], 1.96 * std::sqrt(4.0 / 12 / 128), .15 * errors[12].halfWidth[0]);
   for (const PixelError& e : errors) EXPECT_TRUE(e.trusted);

@@ -205,6 +205,11 @@ void LocalBackend::makeLights(RenderScene& next, const Flattened& flat, const Ve
   }
 }
 
+std::shared_ptr<const RenderScene> LocalBackend::prepared() {
+  prepare();
+  return snapshot_;
+}
+
 void LocalBackend::start() {
   prepare();
   auto frame = std::make_shared<Frame>(snapshot_, threads_);
@@ -247,7 +252,9 @@ bool LocalBackend::snapshot(RTenum channel, std::span<float> out) const {
   return frame && frame->snapshot(channel, out);
 }
 
-bool LocalBackend::read(RTenum channel, std::span<float> out) const { return finished_ && finished_->film().read(channel, out); }
+bool LocalBackend::read(RTenum channel, std::span<float> out) const {
+  return finished_ && finished_->work().film().read(channel, out);
+}
 
 void LocalBackend::stats(RTstats& s) const {
   if (accel_) {
@@ -258,12 +265,13 @@ void LocalBackend::stats(RTstats& s) const {
     s.rejectedInstances = flat_.rejected + counts.rejectedInstances;
   }
   if (finished_) {
-    s.cameraRays = finished_->counters().camera, s.shadowRays = finished_->counters().shadow;
-    s.secondaryRays = finished_->counters().secondary;
+    const RayCounters counters = finished_->work().counters();
+    s.cameraRays = counters.camera, s.shadowRays = counters.shadow;
+    s.secondaryRays = counters.secondary;
     s.renderSeconds = finished_->seconds();
-    s.shaderFaults = finished_->counters().faults.count(Fault::notFinite);
-    finished_->describeError(s);
-    finished_->describeLedger(s);
+    s.shaderFaults = counters.faults.count(Fault::notFinite);
+    finished_->work().describeError(s);
+    finished_->work().describeLedger(s);
   }
   if (snapshot_) s.transport = snapshot_->frame.transport;
   s.unreachedLights = unreachedLights_;

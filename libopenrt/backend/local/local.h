@@ -25,6 +25,9 @@ class LocalBackend final : public Backend {
   void occludedRays(std::span<const RTray> rays, std::span<uint8_t> occluded) override;
   bool pick(double x, double y, RThit& hit) override;
 
+  // The committed scene as threads render it, made if anything changed; it stays as it is until the next apply().
+  std::shared_ptr<const RenderScene> prepared();
+
  private:
   void prepare(); // the snapshot of the committed scene, if anything changed since the last
   void bringUpToDate(RenderScene& next);

@@ -1,0 +1,185 @@
+// sums.cpp: see sums.h. Moments about another point: (x + c)^m by the binomial theorem.
+#include "render/sums.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <type_traits>
+
+#include "openrt/openrt.h"
+#include "render/error.h"
+
+namespace openrt {
+namespace {
+
+static_assert(std::is_trivially_copyable_v<PixelSums> && std::is_standard_layout_v<PixelSums>); // kept as bytes
+
+// Of each pixel's sums only the part that is gathered is kept: there may be one for each pixel of the picture.
+size_t keptBytes(const Gathering& g) {
+  if (g.error) return sizeof(PixelSums);
+  if (g.surface) return offsetof(PixelSums, closed);
+  return g.spread ? offsetof(PixelSums, normal) : offsetof(PixelSums, first);
+}
+
+} // namespace
+
+Gathering gatheringOf(const edit::FrameSettingsT& frame) {
+  Gathering g;
+  g.error = wantsError(frame);
+  g.spread = g.error || (frame.channels & RT_VARIANCE);
+  g.surface = frame.channels & (RT_NORMAL | RT_ALBEDO);
+  return g;
+}
+
+void startSums(std::vector<PixelSums>& sums, size_t pixels, const Gathering& gathering) {
+  if (sums.size() != pixels) return sums.assign(pixels, {});
+  const size_t bytes = keptBytes(gathering);
+  for (PixelSums& s : sums) std::memset(static_cast<void*>(&s), 0, bytes);
+}
+
+void PixelSums::add(const float radiance[3], float alpha) {
+  for (int k = 0; k < 3; k++) {
+    if (samples == 0) first[k] = radiance[k];
+    const double d = radiance[k] - first[k];
+    delta[k] += d;
+    delta2[k] += d * d;
+    rgba[k] += radiance[k];
+  }
+  rgba[3] += alpha;
+  samples++;
+}
+
+void PixelSums::addTails(const float radiance[3]) {
+  double grey1 = 0;
+  for (int k = 0; k < 3; k++) {
+    grey1 += radiance[k] - first[k];
+    largest[k] = std::max(largest[k], radiance[k]);
+  }
+  const double grey2 = grey1 * grey1;
+  grey[0] += grey2, grey[1] += grey2 * grey1, grey[2] += grey2 * grey2;
+}
+
+void PixelSums::closeReplicate() {
+  for (int k = 0; k < 3; k++) {
+    const double sum = delta[k] - closed[k], square = sum * sum;
+    closed2[k] += square, closed3[k] += square * sum, closed4[k] += square * square;
+    closed[k] = delta[k];
+  }
+  replicates++;
+}
+
+void PixelSums::merge(const PixelSums& l, const Gathering& gathering, const Replicates& parts) {
+  for (int k = 0; k < 4; k++) rgba[k] += l.rgba[k];
+  for (int k = 0; k < 3 && gathering.surface; k++) normal[k] += l.normal[k], albedo[k] += l.albedo[k];
+  if (gathering.spread) {
+    const double n = l.samples, r = l.replicates, size = double(parts.size());
+    double shift = 0, grey1 = 0;
+    for (int k = 0; k < 3; k++) {
+      const double c = l.first[k] - first[k];
+      shift += c, grey1 += l.delta[k];
+      delta[k] += l.delta[k] + n * c;
+      delta2[k] += l.delta2[k] + c * (2 * l.delta[k] + n * c);
+      if (!gathering.error || !parts.many()) continue;
+      const double d = size * c, s1 = l.closed[k], s2 = l.closed2[k], s3 = l.closed3[k]; // d: of a replicate's sum
+      closed[k] += s1 + r * d;
+      closed2[k] += s2 + d * (2 * s1 + r * d);
+      closed3[k] += s3 + d * (3 * s2 + d * (3 * s1 + r * d));
+      closed4[k] += l.closed4[k] + d * (4 * s3 + d * (6 * s2 + d * (4 * s1 + r * d)));
+    }
+    if (gathering.error) {
+      const double c = shift;
+      grey[0] += l.grey[0] + c * (2 * grey1 + n * c);
+      grey[1] += l.grey[1] + c * (3 * l.grey[0] + c * (3 * grey1 + n * c));
+      grey[2] += l.grey[2] + c * (4 * l.grey[1] + c * (6 * l.grey[0] + c * (4 * grey1 + n * c)));
+      for (int k = 0; k < 3; k++) largest[k] = std::max(largest[k], l.largest[k]);
+      random |= l.random;
+    }
+  }
+  samples += l.samples, replicates += l.replicates;
+  // Larger than its leaves: none of it is closed yet.
+  if (gathering.error && parts.many() && replicates == 0 && samples == parts.size()) closeReplicate();
+}
+
+void SumBlock::append(const SumBlock& later, const Gathering& gathering, const Replicates& replicates) {
+  for (size_t i = 0; i < sums.size(); i++) sums[i].merge(later.sums[i], gathering, replicates);
+  ledger.add(later.ledger);
+  count += later.count;
+}
+
+uint32_t leafEnd(uint32_t first, uint32_t end, uint32_t samplesOfFrame) {
+  if (samplesOfFrame < fewestOfLeaves) return end;
+  const uint32_t leaf = first >= fewestOfLeaves ? fewestOfLeaves : 0;
+  return std::min(end, leaf ? (first / leaf + 1) * leaf : std::bit_ceil(first + 1));
+}
+
+uint32_t blockFrom(uint32_t first, uint32_t end, uint32_t largest) {
+  const uint32_t left = end - first;
+  if (left <= largest && first == 0) return left;
+  if (left < fewestOfLeaves) return left;
+  uint32_t count = std::bit_floor(std::min(left, std::max(largest, fewestOfLeaves)));
+  if (first) count = std::min(count, first & -first);
+  return count;
+}
+
+void TileSums::unpack(const Kept& from, SumBlock& to, const Gathering& gathering) {
+  const size_t bytes = keptBytes(gathering);
+  to.first = from.first, to.count = from.count, to.ledger = from.ledger;
+  to.sums.resize(from.bytes.size() / bytes);
+  for (size_t i = 0; i < to.sums.size(); i++) std::memcpy(static_cast<void*>(&to.sums[i]), &from.bytes[i * bytes], bytes);
+}
+
+void TileSums::join(SumBlock& block, const Gathering& gathering, const Replicates& replicates) {
+  SumBlock other;
+  for (;;) {
+    const auto sibling = std::find_if(kept_.begin(), kept_.end(), [&](const Kept& k) {
+      return siblings(k.first, k.count, block.first, block.count) || siblings(block.first, block.count, k.first, k.count);
+    });
+    if (sibling == kept_.end()) return;
+    unpack(*sibling, other, gathering);
+    kept_.erase(sibling);
+    if (other.first < block.first) std::swap(other, block);
+    block.append(other, gathering, replicates);
+  }
+}
+
+void TileSums::keep(const SumBlock& block, const Gathering& gathering) {
+  const size_t bytes = keptBytes(gathering);
+  Kept kept{block.first, block.count, block.ledger, std::vector<std::byte>(block.sums.size() * bytes)};
+  for (size_t i = 0; i < block.sums.size(); i++) std::memcpy(&kept.bytes[i * bytes], &block.sums[i], bytes);
+  const auto place = std::find_if(kept_.begin(), kept_.end(), [&](const Kept& k) { return k.first > block.first; });
+  kept_.insert(place, std::move(kept));
+}
+
+uint32_t TileSums::reach(const SumBlock* block) const {
+  uint32_t at = block && block->first == 0 ? block->count : 0;
+  for (const Kept& kept : kept_) {
+    if (kept.first == at) at += kept.count;
+    if (block && block->first == at) at += block->count;
+  }
+  return at;
+}
+
+const SumBlock* TileSums::fold(const SumBlock* block, SumBlock& out, const Gathering& gathering,
+                               const Replicates& replicates) const {
+  if (block && block->first == 0 && (kept_.empty() || kept_.front().first != block->count)) return block;
+  uint32_t at = 0;
+  SumBlock next;
+  const auto take = [&](const SumBlock& b) {
+    if (at == 0)
+      out = b;
+    else
+      out.append(b, gathering, replicates);
+    at = b.end();
+  };
+  if (block && block->first == 0) take(*block);
+  for (const Kept& kept : kept_) {
+    if (block && at != 0 && block->first == at) take(*block);
+    if (kept.first != at) break;
+    unpack(kept, next, gathering);
+    take(next);
+  }
+  if (block && at != 0 && block->first == at) take(*block);
+  return at ? &out : nullptr;
+}
+
+} // namespace openrt

@@ -1,0 +1,29 @@
+// tiles.h: the tiles that a picture is made in: squares, cut off at its right and lower border, numbered row by row. [any]
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "scene/scene.h"
+
+namespace openrt {
+
+struct Tile {
+  uint32_t x0, y0, x1, y1; // pixels, end exclusive
+  uint32_t width() const { return x1 - x0; }
+  size_t pixels() const { return size_t(x1 - x0) * (y1 - y0); }
+};
+
+// The same wherever the frame is made.
+class TileGrid {
+ public:
+  explicit TileGrid(const edit::FrameSettingsT& frame);
+  uint32_t count() const { return columns_ * rows_; }
+  uint32_t edge() const { return edge_; }
+  Tile at(uint32_t number) const;
+
+ private:
+  uint32_t width_, height_, edge_, columns_, rows_;
+};
+
+} // namespace openrt
