@@ -79,7 +79,8 @@ bool Address::loopback() const {
   in_addr four;
   in6_addr six;
   if (v4(host, four)) return (ntohl(four.s_addr) >> 24) == 127;
-  return v6(host, six) && IN6_IS_ADDR_LOOPBACK(&six);
+  if (!v6(host, six)) return false;
+  return IN6_IS_ADDR_LOOPBACK(&six) || (IN6_IS_ADDR_V4MAPPED(&six) && six.s6_addr[12] == 127);
 }
 
 bool Address::numeric() const {
@@ -94,6 +95,17 @@ std::string Address::endpoint() const {
   Address digits = *this;
   digits.host = "127.0.0.1";
   return digits.endpoint();
+}
+
+std::string shownEndpoint(std::string_view endpoint) {
+  constexpr std::string_view mapped = "::ffff:";
+  if (endpoint.starts_with(tcpScheme)) endpoint.remove_prefix(tcpScheme.size());
+  const bool brackets = endpoint.starts_with('[');
+  std::string_view rest = endpoint.substr(brackets);
+  if (!rest.starts_with(mapped) || rest.find('.') == rest.npos) return std::string(endpoint);
+  rest.remove_prefix(mapped.size());
+  const size_t end = brackets ? rest.find(']') : rest.npos;
+  return std::string(rest.substr(0, end)) + (end == rest.npos ? "" : std::string(rest.substr(end + 1)));
 }
 
 // In the form that getaddrinfo_a writes to until it is done.

@@ -24,6 +24,9 @@ struct Address {
   std::string endpoint() const; // of ZeroMQ; numeric ones
 };
 
+// An address as ZeroMQ writes it, for people: without the scheme, and IPv4 as itself where a socket of IPv6 carries it.
+std::string shownEndpoint(std::string_view endpoint);
+
 // Looks a name up in the background.
 class Lookup {
  public:

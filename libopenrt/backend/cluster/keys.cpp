@@ -71,7 +71,7 @@ std::vector<std::string> readAllowed(const std::string& path) {
     if (first == "public") first = second; // a line of a key file
     if (isKey(first))
       keys.emplace_back(first);
-    else if (first.front() != '#') // a key may begin with it, too
+    else if (first.front() != '#') // no key begins with it
       failed(path, "line " + std::to_string(number) + ": not a public key (40 characters, then a comment if you like)");
   });
   return keys;

@@ -11,6 +11,7 @@
 #include <netinet/tcp.h>
 #include <sys/socket.h>
 
+#include "backend/cluster/addresses.h"
 #include "backend/cluster/messages.h"
 
 namespace openrt::cluster {
@@ -29,7 +30,7 @@ std::string failureText(uint16_t event, int value, bool withKeys) {
                     : "it uses a key, this side none: give --key FILE";
   if (event == ZMQ_EVENT_HANDSHAKE_FAILED_PROTOCOL && value == ZMQ_PROTOCOL_ERROR_ZMTP_CRYPTOGRAPHIC) return "it has another key";
   if (event == ZMQ_EVENT_HANDSHAKE_FAILED_PROTOCOL) return "it does not speak this protocol";
-  return withKeys ? "it closed the connection: it has another key, most likely"
+  return withKeys ? "it closed the connection: it has another key or none, most likely (--key FILE there, too)"
                   : "it closed the connection: it expects a key, most likely (give --key FILE)";
 }
 
@@ -141,7 +142,7 @@ bool Gate::answer(const std::function<void(const std::string&)>& refused) {
   }
   const bool in = !key.empty() &&
                   (key == keys_.publicKey || std::find(keys_.allowed.begin(), keys_.allowed.end(), key) != keys_.allowed.end());
-  if (!in) refused(address + ": its key " + key + " is not on the list of those that are let in");
+  if (!in) refused(shownEndpoint(address) + ": its key " + key + " is not on the list of those that are let in");
   const std::string reply[] = {"1.0", number, in ? "200" : "400", in ? "OK" : "this key is not let in", in ? key : "", ""};
   for (size_t i = 0; i < std::size(reply); i++)
     socket_.send(zmq::buffer(reply[i]), i + 1 < std::size(reply) ? zmq::send_flags::sndmore : zmq::send_flags::none);

@@ -15,7 +15,7 @@
 namespace openrt::cluster {
 namespace {
 
-constexpr int byeMilliseconds = 200; // that a last word may take
+constexpr int byeMilliseconds = 500; // that a last word may take
 
 std::string remedy(const std::string& what) {
   return what +
@@ -35,8 +35,8 @@ Wire::Impl::Impl(const WireOptions& options)
     : keys(options.keys), heartbeat(options.heartbeat), silence(options.silence), context(makeContext()) {
   for (const std::string& text : options.connect) {
     Address address = Address::parse(text);
-    if (address.port == 0 && !address.ipc) throw std::runtime_error(address.shown() + ": a port to call cannot be 0");
     checkAddress(address, keys);
+    if (address.port == 0 && !address.ipc) throw std::runtime_error(address.shown() + ": a port to call cannot be 0");
     calls.emplace_back().address = std::move(address);
   }
   if (!keys.empty() && !options.listen.empty()) gate.emplace(context, keys);
@@ -166,8 +166,7 @@ void Wire::pace(double heartbeat, double silence) { impl_->heartbeat = heartbeat
 
 std::string Wire::address() const {
   if (!impl_->door) return {};
-  std::string endpoint = impl_->door->get(zmq::sockopt::last_endpoint);
-  return endpoint.starts_with("tcp://") ? endpoint.substr(6) : endpoint;
+  return shownEndpoint(impl_->door->get(zmq::sockopt::last_endpoint));
 }
 
 void Wire::wake() {

@@ -9,8 +9,8 @@ namespace {
 
 constexpr double attempt = 8;                        // seconds until one has failed
 constexpr double firstPause = 0.1, longestPause = 2; // between them
-constexpr int byeMilliseconds = 200;
-constexpr size_t mostAtOnce = 64; // messages that are read of one peer before it is another one's turn
+constexpr int byeMilliseconds = 500;
+constexpr size_t mostAtOnce = 64, bytesAtOnce = size_t(64) << 20; // messages of one peer before it is another one's turn
 
 } // namespace
 
@@ -58,7 +58,7 @@ void Wire::Impl::readCall(Call& call, double now) {
     if (h->kind == Kind::closed) end = "nobody answers; trying again";
     if (h->kind == Kind::disconnected) end = "the connection was closed";
     if (h->kind != Kind::opened || call.peer) continue;
-    call.failures = 0, call.told.clear();
+    call.failures = 0, call.joined = now, call.told.clear();
     PeerState& peer = peers[++lastPeer];
     peer.id = call.peer = lastPeer;
     peer.call = &call, peer.fd = call.fd, peer.address = call.address.shown();
@@ -67,12 +67,14 @@ void Wire::Impl::readCall(Call& call, double now) {
     sendTo(peer, encode(0, message::Beat{now, false}), now); // so that the other side knows of us
     peer.asked = now;
   }
-  for (size_t n = 0; call.peer && (n < mostAtOnce || !end.empty()); n++) {
+  size_t bytes = 0;
+  for (size_t n = 0; call.peer && ((n < mostAtOnce && bytes < bytesAtOnce) || !end.empty()); n++) {
     Frames frames;
     int fd = -1;
     std::string address;
     bool tooMany = false;
     if (!readFrames(*call.socket, frames, fd, address, tooMany)) break;
+    for (const auto& frame : frames) bytes += frame.size();
     take(peers.at(call.peer), std::move(frames), tooMany, now);
     if (!call.socket) return; // it was hung up
   }

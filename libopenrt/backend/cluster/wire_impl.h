@@ -22,6 +22,8 @@ struct Wire::Impl {
     std::optional<Monitor> monitor; // of it, so it is closed first
     double next = 0, deadline = 0;  // when to try; when an attempt has failed
     uint32_t failures = 0;          // in a row
+    uint32_t byes = 0;              // connections in a row that the other side has soon ended by a Bye
+    double joined = 0;              // when the connection stood
     int fd = -1;
     Peer peer = 0; // once it has answered
     std::string told;
@@ -70,7 +72,8 @@ struct Wire::Impl {
   void countBad(PeerState& peer, const std::string& why, double now);
   bool sendTo(PeerState& peer, Frames&& frames, double now);
   void sayBye(PeerState& peer, const std::string& why, double now);
-  void leave(PeerState& peer, const std::string& why, double now); // tells it, and forgets or blocks the peer
+  // Tells it, and forgets or blocks the peer. bye: it has said so.
+  void leave(PeerState& peer, const std::string& why, double now, bool bye = false);
   void forget(Peer peer);
   void keepPeers(double now);
 

@@ -2,6 +2,7 @@
 // cannot be closed by us (ZeroMQ has no such call): one that is shut out is not listened to any more. [wire]
 #include <algorithm>
 #include <cmath>
+#include <system_error>
 
 #include "backend/cluster/wire_impl.h"
 #include "messages_generated.h"
@@ -42,13 +43,15 @@ void Wire::Impl::listen(const std::string& where) {
   doorMonitor.emplace(context, *door, !keys.empty());
   try {
     door->bind(address.endpoint());
-  } catch (const zmq::error_t& e) { throw std::runtime_error(address.shown() + ": cannot listen there: " + e.what()); }
+  } catch (const zmq::error_t& e) {
+    throw std::system_error(e.num(), std::generic_category(), "cannot listen at " + address.shown());
+  }
 }
 
 void Wire::Impl::watchCallers() {
   while (const std::optional<Happening> h = doorMonitor->next()) {
     if (h->kind == Happening::Kind::failed)
-      refused("somebody who calls " + door->get(zmq::sockopt::last_endpoint) + ": " + h->why);
+      refused("somebody who calls " + shownEndpoint(door->get(zmq::sockopt::last_endpoint)) + ": " + h->why);
     if (h->kind != Happening::Kind::disconnected) continue;
     const auto found = callersByFd.find(h->fd);
     if (found == callersByFd.end()) continue;
@@ -108,7 +111,7 @@ bool Wire::Impl::readFrames(zmq::socket_t& socket, Frames& frames, int& fd, std:
     more = part.more();
     if (frames.empty()) {
       fd = zmq_msg_get(part.handle(), ZMQ_SRCFD);
-      if (const char* place = zmq_msg_gets(part.handle(), "Peer-Address")) address = place;
+      if (const char* place = zmq_msg_gets(part.handle(), "Peer-Address")) address = shownEndpoint(place);
     }
     if (frames.size() >= limits::frames) {
       tooMany = true;
@@ -138,7 +141,7 @@ void Wire::Impl::take(PeerState& peer, Frames&& frames, bool tooMany, double now
   }
   Message message;
   if (std::string why = decode(std::move(frames), message); !why.empty()) return countBad(peer, why, now);
-  if (const auto* bye = std::get_if<message::Bye>(&message.body)) return leave(peer, bye->why, now);
+  if (const auto* bye = std::get_if<message::Bye>(&message.body)) return leave(peer, bye->why, now, true);
   const auto& beat = std::get<message::Beat>(message.body);
   if (!beat.answer) {
     sendTo(peer, encode(0, message::Beat{beat.sent, true}), now);
@@ -178,18 +181,21 @@ bool Wire::Impl::sendTo(PeerState& peer, Frames&& frames, double now) {
 void Wire::Impl::sayBye(PeerState& peer, const std::string& why, double now) { sendTo(peer, encode(0, message::Bye{why}), now); }
 
 // By itself or because we think so. A caller that is still connected is kept in mind, so that it can be told if it comes to life.
-void Wire::Impl::leave(PeerState& peer, const std::string& why, double) {
-  const Peer id = peer.id;
+void Wire::Impl::leave(PeerState& peer, const std::string& why, double now, bool bye) {
+  constexpr double again = 0.1, shunned = 4, afterJunk = 5, soon = 10; // seconds
   if (peer.gone) return;
-  if (peer.met) push(Event::Kind::left, id, why);
+  if (peer.met) push(Event::Kind::left, peer.id, why);
   if (!peer.call) {
     peer.gone = true;
+    peer.told = peer.told || bye;
     return;
   }
   Call& call = *peer.call;
-  const bool asked = peer.badOnes >= mostBad;
-  forget(id);
-  hangUp(call, asked ? 5 : 0.1, asked);
+  const bool junk = peer.badOnes >= mostBad;
+  // Who ends may come again at once; who does not want us is not to be asked all the time.
+  call.byes = bye && now - call.joined < soon ? std::min(call.byes + 1, 10u) : 0;
+  forget(peer.id);
+  hangUp(call, junk ? afterJunk : call.byes ? std::min(shunned, again * std::pow(4.0, call.byes - 1)) : again, junk);
 }
 
 void Wire::Impl::forget(Peer peer) {

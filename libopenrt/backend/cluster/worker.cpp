@@ -1,0 +1,171 @@
+// worker.cpp: a worker's session: masters come and go, jobs, results. Scenes: worker_scenes.cpp.
+#include "backend/cluster/worker.h"
+
+#include <algorithm>
+
+#include "backend/record/validator.h"
+#include "render/light_image.h"
+#include "render/result_codec.h"
+
+namespace openrt::cluster {
+namespace {
+
+constexpr double patience = 5;        // seconds that a master may take to answer
+constexpr size_t mostJobs = 1 << 16;  // that are out
+constexpr uint64_t mostLogged = 1000; // lines of a session
+constexpr size_t mostFrames = 256;    // that are prepared and not dropped
+
+} // namespace
+
+Worker::Worker(const WorkerOptions& options, WorkerLink link, Machine& machine)
+    : options_(options), link_(std::move(link)), machine_(machine), cache_(options.cacheBytes), libraries_(options.shaders) {}
+
+Worker::~Worker() = default;
+
+void Worker::tell(int level, const std::string& text) const {
+  if (options_.log) options_.log(level, text);
+}
+
+void Worker::say(message::Body&& body) { link_.send(peer_, encode(session_, std::move(body))); }
+
+void Worker::joined(Peer peer, const std::string& address, double now) {
+  if (peer_ != 0) return link_.close(peer, "busy: this worker serves another master");
+  peer_ = peer, address_ = address, asked_ = now;
+  link_.send(peer, encode(0, message::Hello(options_.self)));
+}
+
+void Worker::left(Peer peer, const std::string& why, double) {
+  if (peer != peer_) return;
+  const std::string text = "master " + address_ + (serving() ? " has left: " : " has not taken us: ") + why;
+  tell(serving() ? 1 : text == told_ ? 0 : 2, text); // one that asks again and again is heard of once
+  told_ = text;
+  endSession();
+}
+
+// What is out is given up; arrays stay.
+void Worker::endSession() {
+  if (serving()) machine_.drop(newest_);
+  peer_ = 0, session_ = 0, base_ = newest_, logged_ = 0;
+  coming_.clear(), streams_.clear(), frames_.clear(), leases_.clear();
+  broken_ = "no scene has come yet";
+  validator_.reset();
+  cache_.trim();
+}
+
+void Worker::advance(double now) {
+  if (peer_ == 0 || serving() || now - asked_ < patience) return;
+  link_.close(peer_, "no Welcome has come");
+  endSession();
+}
+
+void Worker::bad(const std::string& why) {
+  tell(2, "master " + address_ + " has sent nonsense: " + why);
+  link_.bad(peer_, why);
+}
+
+void Worker::message(Peer peer, Frames&& frames, double) {
+  if (peer != peer_) return;
+  Message m;
+  if (const std::string why = decode(std::move(frames), m); !why.empty()) return bad(why);
+  if (const auto* hail = std::get_if<message::Welcome>(&m.body)) {
+    if (serving()) return bad("a second Welcome");
+    if (hail->session == 0 || m.session != hail->session) return bad("a Welcome without a session");
+    return welcome(*hail);
+  }
+  if (!serving() || m.session != session_) return; // of a session that has ended
+  struct {
+    Worker& w;
+    void operator()(message::Scene& m) const { w.scene(std::move(m)); }
+    void operator()(message::Piece& m) const { w.piece(m); }
+    void operator()(message::Prepare& m) const { w.prepare(m); }
+    void operator()(message::Jobs& m) const { w.jobs(m); }
+    void operator()(message::Drop& m) const { w.drop(m); }
+    void operator()(message::Welcome&) const {}
+    void operator()(message::Beat&) const {}
+    void operator()(message::Bye&) const {}
+    void operator()(message::Unknown&) const {}
+    void operator()(message::Hello&) const { ours(); }
+    void operator()(message::Need&) const { ours(); }
+    void operator()(message::Ready&) const { ours(); }
+    void operator()(message::Failed&) const { ours(); }
+    void operator()(message::Result&) const { ours(); }
+    void operator()(message::Log&) const { ours(); }
+    void ours() const { w.bad("a message that only workers send"); }
+  } const handler{*this};
+  std::visit(handler, m.body);
+}
+
+void Worker::welcome(const message::Welcome& m) {
+  if (m.protocol != protocolVersion) {
+    const std::string why = "protocol " + std::to_string(m.protocol) + " of the master, " + std::to_string(protocolVersion) +
+                            " of the worker: they must be the same";
+    tell(3, "master " + address_ + ": " + why);
+    link_.close(peer_, why);
+    return endSession();
+  }
+  session_ = m.session;
+  masters_++;
+  broken_ = "no scene has come yet";
+  link_.pace(m.heartbeat, m.silence);
+  tell(1, "serving " + address_);
+}
+
+void Worker::jobs(const message::Jobs& m) {
+  const Epoch epoch = base_ + m.epoch;
+  if (m.epoch == 0 || epoch > newest_) return bad("jobs of a scene that has not come");
+  const auto frame = frames_.find(epoch);
+  if (frame == frames_.end()) return; // dropped
+  const edit::FrameSettingsT& f = frame->second;
+  const uint64_t pixels = uint64_t(f.width) * f.height;
+  constexpr uint64_t mostSamples = uint64_t(1) << 17; // of a pixel
+  for (const LeasedJob& job : m.jobs) {
+    const bool samples = job.job.kind == Job::Kind::samples;
+    if (samples ? job.job.number >= pixels || uint64_t(job.job.first) + job.job.count > mostSamples
+                : job.job.number >= LightImage::parts)
+      return bad("a job that the frame does not have");
+  }
+  if (leases_.size() + m.jobs.size() > mostJobs) return bad("more jobs than a worker takes");
+  for (const LeasedJob& job : m.jobs)
+    if (!leases_.insert(job.lease).second) return bad("a lease that is out already");
+  machine_.work(epoch, m.jobs);
+}
+
+void Worker::drop(const message::Drop& m) {
+  const Epoch epoch = std::min(m.epoch > newest_ ? newest_ : base_ + m.epoch, newest_);
+  machine_.drop(epoch);
+  frames_.erase(frames_.begin(), frames_.upper_bound(epoch));
+  if (frames_.empty()) leases_.clear();
+}
+
+void Worker::ready(Epoch epoch, const Prepared& prepared) {
+  if (epoch <= base_ || !serving()) return; // of a former master
+  frames_[epoch] = prepared.frame;
+  if (frames_.size() > mostFrames) frames_.erase(frames_.begin());
+  message::Ready m;
+  m.epoch = epoch - base_, m.facts = prepared.facts, m.transport = prepared.frame.transport, m.stats = prepared.stats;
+  say(std::move(m));
+}
+
+void Worker::failed(Epoch epoch, const std::string& why) {
+  if (epoch > base_ && serving()) say(message::Failed{epoch - base_, why});
+}
+
+void Worker::done(Epoch epoch, const LeasedJob& job, JobResult&& result) {
+  if (epoch <= base_ || !serving()) return;
+  leases_.erase(job.lease);
+  const auto frame = frames_.find(epoch);
+  if (frame == frames_.end()) return; // dropped meanwhile
+  message::Result m;
+  m.epoch = epoch - base_, m.lease = job.lease, m.seconds = result.seconds;
+  m.camera = result.counters.camera, m.shadow = result.counters.shadow, m.secondary = result.counters.secondary;
+  m.faults = faultsOf(result.counters.faults);
+  m.bytes = encodeResult(frame->second, job.job, result);
+  say(std::move(m));
+}
+
+void Worker::log(int level, const std::string& text) {
+  if (serving() && logged_ < mostLogged) say(message::Log{level, text});
+  logged_++;
+}
+
+} // namespace openrt::cluster

@@ -1,0 +1,255 @@
+// Messages: each comes back as it was; what is cut, changed, too large or contradicts itself is refused.
+#include <cmath>
+#include <cstring>
+
+#include "backend/cluster/array_cache.h"
+#include "messages_generated.h"
+#include "unit/cluster_wires.h"
+
+using namespace openrt;
+using namespace openrt::cluster;
+
+namespace {
+
+// One of each, with all that it can hold.
+std::vector<message::Body> oneOfEach() {
+  message::Ready ready{5, {true, false}, RT_TRANSPORT_PATH, {}};
+  ready.stats.size = sizeof ready.stats, ready.stats.triangles = 77;
+  std::strcpy(ready.stats.isa, "avx2");
+  message::Result result{5, 9, 0.25, 1, 2, 3, {{"Phong", "vrml97", 0, 4}}, someBytes(1000)};
+  message::Jobs jobs{5, {}};
+  jobs.jobs.push_back({11, {Job::Kind::samples, true, 2, 64, 32, {7, 4}}});
+  jobs.jobs.push_back({12, {Job::Kind::light, false, 15, 0, 4000000000u, {8, 31}}});
+  std::vector<message::Body> all;
+  all.emplace_back(message::Hello{1, "0.1.0", 1, 2, "avx2", "Embree", "glibc 2.36", 16, "node1", 4711});
+  all.emplace_back(message::Need{5, {{1, 2}, {3, 4}}});
+  all.emplace_back(ready);
+  all.emplace_back(message::Failed{5, "why"});
+  all.emplace_back(result);
+  all.emplace_back(message::Log{2, "text"});
+  all.emplace_back(message::Welcome{1, 42, 0.1f, 0.5f});
+  all.emplace_back(message::Scene{5, true, true, {{1, 100, {1, 2}}, {2, 200, {3, 4}}}, {{"vrml97", {5, 6}}}, someBytes(333)});
+  all.emplace_back(message::Piece{{1, 2}, 100, 50, 0, someBytes(50)});
+  all.emplace_back(message::Prepare{5});
+  all.emplace_back(jobs);
+  all.emplace_back(message::Drop{5});
+  all.emplace_back(message::Beat{1.5, true});
+  all.emplace_back(message::Bye{"why"});
+  return all;
+}
+
+std::string problem(Frames frames) {
+  Message out;
+  return decode(std::move(frames), out);
+}
+
+Frames of(message::Body body) { return encode(42, std::move(body)); }
+
+} // namespace
+
+TEST(Messages, eachComesBackAsItWas) {
+  for (const message::Body& body : oneOfEach()) {
+    const Frames frames = of(body);
+    Message out;
+    ASSERT_EQ(decode(Frames(frames), out), "");
+    EXPECT_EQ(out.session, 42u);
+    ASSERT_EQ(out.body.index(), body.index());
+    EXPECT_EQ(encode(42, std::move(out.body)), frames) << "the same message makes the same bytes, kind " << body.index();
+  }
+}
+
+TEST(Messages, jobsKeepAllTheirNumbers) {
+  const auto jobs = std::get<message::Jobs>(oneOfEach()[10]);
+  Message out;
+  ASSERT_EQ(decode(of(jobs), out), "");
+  const auto& back = std::get<message::Jobs>(out.body).jobs;
+  ASSERT_EQ(back.size(), 2u);
+  for (size_t i = 0; i < 2; i++) {
+    EXPECT_EQ(back[i].lease, jobs.jobs[i].lease);
+    EXPECT_EQ(back[i].job, jobs.jobs[i].job);
+  }
+}
+
+TEST(Messages, cutAnywhereIsRefusedOrHarmless) {
+  for (const message::Body& body : oneOfEach()) {
+    const Frames whole = of(body);
+    for (size_t frame = 0; frame < whole.size(); frame++)
+      for (size_t length = 0; length < whole[frame].size(); length++) {
+        Frames cut = whole;
+        cut[frame].resize(length);
+        if (frame == 0 && length + 8 < whole[0].size()) {
+          EXPECT_NE(problem(std::move(cut)), "") << body.index() << " " << length;
+        } else {
+          problem(std::move(cut));
+        }
+      }
+  }
+}
+
+TEST(Messages, anyByteMayBeWrong) {
+  for (const message::Body& body : oneOfEach()) {
+    const Frames whole = of(body);
+    for (size_t frame = 0; frame < whole.size(); frame++)
+      for (size_t at = 0; at < whole[frame].size(); at++)
+        for (const uint8_t value : {0x00, 0x01, 0x7f, 0x80, 0xff}) {
+          Frames changed = whole;
+          changed[frame][at] = std::byte(value);
+          problem(std::move(changed)); // no crash, nothing huge
+        }
+  }
+}
+
+TEST(Messages, tooManyOrTooFewFrames) {
+  for (const message::Body& body : oneOfEach()) {
+    Frames frames = of(body);
+    const bool many = std::holds_alternative<message::Scene>(body);
+    frames.push_back(someBytes(3));
+    EXPECT_EQ(problem(std::move(frames)).empty(), many) << body.index();
+    frames = of(body);
+    if (frames.size() > 1) {
+      frames.resize(1);
+      EXPECT_NE(problem(std::move(frames)), "") << body.index();
+    }
+    EXPECT_NE(problem(Frames(limits::frames + 1, of(body)[0])), "");
+  }
+  EXPECT_NE(problem({}), "");
+}
+
+TEST(Messages, membersOfLaterVersionsAreIgnored) {
+  flatbuffers::FlatBufferBuilder builder;
+  const auto beat = wire::CreateBeat(builder, 1, false);
+  const auto any = wire::Any(uint8_t(wire::Any::MAX) + 1);
+  wire::FinishHeaderBuffer(builder, wire::CreateHeader(builder, 42, any, beat.Union()));
+  const auto* bytes = reinterpret_cast<const std::byte*>(builder.GetBufferPointer());
+  Message out;
+  EXPECT_EQ(decode({{bytes, bytes + builder.GetSize()}, someBytes(7)}, out), "");
+  EXPECT_TRUE(std::holds_alternative<message::Unknown>(out.body));
+}
+
+TEST(Messages, resultsAreChecked) {
+  message::Result result{5, 9, 0.25, 1, 2, 3, {}, std::vector<std::byte>(200000)};
+  Frames packed = of(result);
+  ASSERT_EQ(packed.size(), 2u);
+  EXPECT_LT(packed[1].size(), 5000u) << "zeros are worth packing";
+  Message out;
+  ASSERT_EQ(decode(Frames(packed), out), "");
+  EXPECT_EQ(std::get<message::Result>(out.body).bytes, result.bytes);
+  result.bytes = someBytes(200000);
+  Frames plain = of(result);
+  EXPECT_EQ(plain[1], result.bytes) << "noise is not";
+  plain[1][777] ^= std::byte(1);
+  EXPECT_NE(problem(plain).find("checksum"), std::string::npos);
+  plain[1].pop_back();
+  EXPECT_NE(problem(plain).find("size"), std::string::npos);
+  packed[1][packed[1].size() / 2] ^= std::byte(255);
+  EXPECT_NE(problem(packed), "");
+}
+
+TEST(Messages, resultsOfManyFrames) {
+  for (const bool noise : {true, false}) {
+    std::vector<std::byte> bytes(limits::chunkBytes + 12345);
+    if (noise) bytes = someBytes(bytes.size());
+    const Frames frames = of(message::Result{5, 9, 0.25, 1, 2, 3, {}, bytes});
+    EXPECT_EQ(frames.size(), 3u);
+    Message out;
+    ASSERT_EQ(decode(Frames(frames), out), "");
+    EXPECT_TRUE(std::get<message::Result>(out.body).bytes == bytes);
+  }
+}
+
+TEST(Messages, textsAreCut) {
+  Message out;
+  ASSERT_EQ(decode(of(message::Failed{1, std::string(100000, 'x')}), out), "");
+  EXPECT_EQ(std::get<message::Failed>(out.body).why.size(), limits::textBytes);
+}
+
+TEST(Messages, numbersThatCannotBe) {
+  const auto refused = [](message::Body body) { return !problem(of(std::move(body))).empty(); };
+  EXPECT_TRUE(refused(message::Hello{.threads = 0}));
+  EXPECT_TRUE(refused(message::Ready{1, {}, 99, {}}));
+  EXPECT_TRUE(refused(message::Welcome{1, 1, 0, 0}));
+  EXPECT_TRUE(refused(message::Welcome{1, 1, std::nanf(""), 1}));
+  EXPECT_TRUE(refused(message::Scene{0, true, true, {}, {}, {}}));
+  EXPECT_TRUE(refused(message::Scene{1, true, true, {{0, 1, {}}}, {}, {}}));
+  EXPECT_TRUE(refused(message::Scene{1, true, true, {{1, limits::arrayBytes + 1, {}}}, {}, {}}));
+  EXPECT_TRUE(refused(message::Scene{1, true, true, std::vector(5, message::ArrayName{1, limits::arrayBytes, {}}), {}, {}}));
+  EXPECT_TRUE(refused(message::Piece{{}, uint64_t(1) << 33, 1000, 0, someBytes(1000)})) << "more than zstd can unpack";
+  EXPECT_TRUE(refused(message::Piece{{}, 1000, 100, 1, someBytes(99)})) << "no multiple";
+  EXPECT_TRUE(refused(message::Jobs{1, std::vector<LeasedJob>(limits::jobs + 1, {1, {Job::Kind::samples, false, 0, 0, 1, {}}})}));
+  EXPECT_TRUE(refused(message::Jobs{1, {{1, {Job::Kind::samples, false, 0, 0, 0, {}}}}}));
+  EXPECT_TRUE(refused(message::Jobs{1, {{1, {Job::Kind::samples, false, 0, 0xffffffff, 0xffffffff, {}}}}}));
+  EXPECT_TRUE(refused(message::Jobs{1, {{1, {Job::Kind(9), false, 0, 0, 1, {}}}}}));
+  message::Result result{.seconds = -1};
+  EXPECT_TRUE(refused(result));
+  result.seconds = INFINITY;
+  EXPECT_TRUE(refused(result));
+}
+
+TEST(Arrays, travelInPiecesAndBackAsTheyWere) {
+  for (const size_t size : {size_t(0), size_t(1), pieceBytes, 3 * pieceBytes + 17}) {
+    const auto bytes = someBytes(size);
+    const Hash hash = hashOf(bytes);
+    const auto packed = packArray(bytes);
+    ArrayStream stream(hash, size);
+    for (size_t at = 0; at < packed.size(); at += pieceBytes) {
+      EXPECT_FALSE(stream.complete());
+      ASSERT_EQ(stream.put(pieceOf(hash, size, packed, at)), "");
+    }
+    ASSERT_TRUE(stream.complete());
+    const ArrayPtr array = stream.take();
+    ASSERT_NE(array, nullptr);
+    ASSERT_EQ(array->size(), size);
+    EXPECT_EQ(std::memcmp(array->data(), bytes.data(), size), 0);
+    const ArrayPtr atOnce = unpackArray(packed, size, hash);
+    ASSERT_NE(atOnce, nullptr);
+    EXPECT_EQ(unpackArray(packed, size, {1, 2}), nullptr);
+  }
+}
+
+TEST(Arrays, piecesThatDoNotFit) {
+  const auto bytes = someBytes(2 * pieceBytes);
+  const Hash hash = hashOf(bytes);
+  const auto packed = packArray(bytes);
+  const auto piece = [&](size_t at) { return pieceOf(hash, bytes.size(), packed, at); };
+  EXPECT_NE(ArrayStream(hash, bytes.size()).put(piece(pieceBytes)), "") << "the second first";
+  EXPECT_NE(ArrayStream(hash, bytes.size() - 1).put(piece(0)), "") << "another size";
+  ArrayStream twice(hash, bytes.size());
+  EXPECT_EQ(twice.put(piece(0)), "");
+  EXPECT_NE(twice.put(piece(0)), "") << "the first twice";
+  auto junk = piece(0);
+  junk.data = someBytes(pieceBytes, 5);
+  EXPECT_NE(ArrayStream(hash, bytes.size()).put(junk), "");
+  // More than it says: the packed one is of a larger array.
+  const auto larger = packArray(std::vector<std::byte>(1 << 20));
+  EXPECT_NE(ArrayStream(hash, 1000).put({hash, 1000, larger.size(), 0, larger}), "");
+  // Less than it says, and something else than it says.
+  const std::vector<std::byte> zeros(1000);
+  ArrayStream less(hash, 2000), other(hash, 1000);
+  const auto small = packArray(zeros);
+  EXPECT_EQ(less.put({hash, 2000, small.size(), 0, small}), "");
+  EXPECT_TRUE(less.complete());
+  EXPECT_EQ(less.take(), nullptr);
+  EXPECT_EQ(other.put({hash, 1000, small.size(), 0, small}), "");
+  EXPECT_EQ(other.take(), nullptr);
+}
+
+TEST(Arrays, theCacheKeepsWhatIsInUseAndThrowsAwayTheOldest) {
+  ArrayCache cache(2500);
+  const auto make = [] { return std::make_shared<Array>(1000); };
+  ArrayPtr used = make();
+  cache.put({0, 1}, used);
+  for (uint64_t i = 2; i <= 4; i++) cache.put({0, i}, make());
+  EXPECT_NE(cache.find({0, 2}, 1000), nullptr); // now 3 is the oldest
+  EXPECT_EQ(cache.find({0, 2}, 999), nullptr);
+  cache.trim();
+  EXPECT_EQ(cache.bytes(), 2000u);
+  EXPECT_NE(cache.find({0, 1}, 1000), nullptr) << "in use";
+  EXPECT_NE(cache.find({0, 2}, 1000), nullptr);
+  EXPECT_EQ(cache.find({0, 3}, 1000), nullptr);
+  EXPECT_EQ(cache.find({0, 4}, 1000), nullptr);
+  used.reset();
+  ArrayCache none(0);
+  none.put({0, 1}, make());
+  none.trim();
+  EXPECT_EQ(none.count(), 0u);
+}

@@ -1,0 +1,332 @@
+// The wire: who is let in and who is not, what is too large, beats, losses. Real sockets on the loopback; events, not times.
+#include <thread>
+
+#include "unit/cluster_wires.h"
+
+using namespace openrt;
+using namespace openrt::cluster;
+using Kind = Event::Kind;
+
+namespace {
+
+// A peer that knows nothing of the Wire: a bare socket.
+class Bare {
+ public:
+  explicit Bare(const Wire& other) : socket_(context_, zmq::socket_type::dealer) {
+    socket_.set(zmq::sockopt::linger, 0);
+    socket_.connect("tcp://" + other.address());
+  }
+  void send(const Frames& frames) {
+    for (size_t i = 0; i < frames.size(); i++)
+      socket_.send(zmq::buffer(frames[i].data(), frames[i].size()),
+                   i + 1 < frames.size() ? zmq::send_flags::sndmore : zmq::send_flags::none);
+  }
+  bool receive(Frames& frames) {
+    frames.clear();
+    zmq::message_t part;
+    do {
+      if (!socket_.recv(part, zmq::recv_flags::dontwait)) return false;
+      frames.emplace_back(part.data<std::byte>(), part.data<std::byte>() + part.size());
+    } while (part.more());
+    return true;
+  }
+
+ private:
+  zmq::context_t context_;
+  zmq::socket_t socket_;
+};
+
+Frames beat() { return encode(0, message::Beat{1, false}); }
+Frames hello() { return encode(0, message::Hello{.library = "bare", .threads = 3}); }
+
+// Why one that calls with these keys is refused, in the words of the two sides.
+std::pair<std::string, std::string> refusals(const KeyRing& server, const KeyRing& client, const std::string& serverKey = "") {
+  Wires wires;
+  const Wire& door = wires.add(listening(server));
+  const Wire& caller = wires.add(calling(door, client, serverKey));
+  const double begin = steadyNow();
+  const std::string theirs = wires.next(caller, Kind::refused).text, ours = wires.next(door, Kind::refused).text;
+  testing::Test::RecordProperty("milliseconds", int((steadyNow() - begin) * 1000));
+  EXPECT_FALSE(wires.has(door, Kind::joined));
+  EXPECT_FALSE(wires.has(caller, Kind::joined));
+  return {theirs, ours};
+}
+
+} // namespace
+
+TEST(Wire, bothSidesJoinAndMessagesArriveAsTheyWere) {
+  Wires wires;
+  Wire& door = wires.add(listening());
+  Wire& caller = wires.add(calling(door));
+  const Peer there = wires.next(caller, Kind::joined).peer, here = wires.next(door, Kind::joined).peer;
+  ASSERT_NE(there, 0u);
+  ASSERT_NE(here, 0u);
+  EXPECT_TRUE(caller.send(there, hello()));
+  const Message greeting = read(wires.next(door, Kind::message));
+  ASSERT_TRUE(std::holds_alternative<message::Hello>(greeting.body));
+  EXPECT_EQ(std::get<message::Hello>(greeting.body).threads, 3u);
+  const auto edits = someBytes(3 << 20);
+  message::Scene scene{7, true, false, {{1, 2, {3, 4}}}, {{"vrml97", {5, 6}}}, edits};
+  EXPECT_TRUE(door.send(here, encode(99, std::move(scene))));
+  const Message back = read(wires.next(caller, Kind::message));
+  EXPECT_EQ(back.session, 99u);
+  EXPECT_EQ(std::get<message::Scene>(back.body).edits, edits);
+  EXPECT_GT(door.traffic(here).sent, edits.size());
+  EXPECT_GT(caller.traffic(there).received, edits.size());
+}
+
+TEST(Wire, oneCallsManyAndIsCalledByMany) {
+  Wires wires;
+  Wire& a = wires.add(listening());
+  Wire& b = wires.add(listening());
+  WireOptions options = listening();
+  options.connect = {a.address(), b.address()};
+  Wire& master = wires.add(options);
+  const Wire& c = wires.add(calling(master));
+  for (int i = 0; i < 3; i++) EXPECT_NE(wires.next(master, Kind::joined).peer, 0u);
+  EXPECT_NE(wires.next(a, Kind::joined).peer, 0u);
+  EXPECT_NE(wires.next(b, Kind::joined).peer, 0u);
+  EXPECT_NE(wires.next(c, Kind::joined).peer, 0u);
+}
+
+TEST(Wire, addressesBeyondTheLoopbackNeedKeys) {
+  for (const char* address : {"0.0.0.0:0", "*:0", "192.0.2.1", "example.org:7447", "[2001:db8::1]:7447", "[::]:0", "128.0.0.1"}) {
+    const std::string listens = thrown([&] { Wire({{}, address, {}}); });
+    EXPECT_NE(listens.find("--new-key"), std::string::npos) << address << ": " << listens;
+    const std::string calls = thrown([&] { Wire({{address}, "", {}}); });
+    EXPECT_NE(calls.find("--key"), std::string::npos) << address << ": " << calls;
+  }
+  for (const char* address : {"127.0.0.1:0", "127.1.2.3:0", "localhost:0", ":0"})
+    EXPECT_EQ(thrown([&] { Wire({{}, address, {}}); }), "") << address;
+}
+
+TEST(Wire, addressesThatAreNone) {
+  for (const char* address : {"a:b", "a:70000", "[::1", "[::1]x", "a b:1", "a:1=short", "http://a:1", "a:-1", "a:0"})
+    EXPECT_NE(thrown([&] { Wire({{address}, "", {}}); }), "") << address;
+}
+
+TEST(Wire, aPortThatIsTaken) {
+  const Wire first(listening());
+  EXPECT_NE(thrown([&] { Wire({{}, first.address(), {}}); }).find("cannot listen at " + first.address()), std::string::npos);
+}
+
+TEST(Wire, oneKeyForAll) {
+  const Folder folder;
+  const KeyRing keys = freshKeys(folder, "key");
+  Wires wires;
+  Wire& door = wires.add(listening(keys));
+  Wire& caller = wires.add(calling(door, keys));
+  EXPECT_NE(wires.next(door, Kind::joined).peer, 0u);
+  EXPECT_TRUE(caller.send(wires.next(caller, Kind::joined).peer, hello()));
+  EXPECT_EQ(std::get<message::Hello>(read(wires.next(door, Kind::message)).body).library, "bare");
+}
+
+TEST(Wire, keysOfOnesOwnAndAList) {
+  const Folder folder;
+  KeyRing server = freshKeys(folder, "server");
+  const KeyRing client = freshKeys(folder, "client");
+  server.allowed = {client.publicKey};
+  Wires wires;
+  const Wire& door = wires.add(listening(server));
+  const Wire& caller = wires.add(calling(door, client, server.publicKey));
+  EXPECT_NE(wires.next(door, Kind::joined).peer, 0u);
+  EXPECT_NE(wires.next(caller, Kind::joined).peer, 0u);
+}
+
+TEST(Wire, whoIsNotOnTheListIsRefusedAndBothSay) {
+  const Folder folder;
+  const KeyRing server = freshKeys(folder, "server"), client = freshKeys(folder, "client");
+  const auto [theirs, ours] = refusals(server, client, server.publicKey);
+  EXPECT_NE(theirs.find("list"), std::string::npos) << theirs;
+  EXPECT_NE(ours.find(client.publicKey), std::string::npos) << ours;
+}
+
+TEST(Wire, anotherKeyIsRefusedAndBothSay) {
+  const Folder folder;
+  const auto [theirs, ours] = refusals(freshKeys(folder, "server"), freshKeys(folder, "client"));
+  EXPECT_NE(theirs.find("another key"), std::string::npos) << theirs;
+  EXPECT_NE(ours.find("key"), std::string::npos) << ours;
+}
+
+TEST(Wire, aKeyOnOneSideOnlyIsRefusedAndBothSay) {
+  const Folder folder;
+  const KeyRing keys = freshKeys(folder, "key");
+  for (const bool onServer : {true, false}) {
+    const auto [theirs, ours] = refusals(onServer ? keys : KeyRing(), onServer ? KeyRing() : keys);
+    EXPECT_NE(theirs.find("--key"), std::string::npos) << theirs;
+    EXPECT_NE(ours.find("key"), std::string::npos) << ours;
+  }
+}
+
+TEST(Wire, whoCallsANobodyIsToldOnceAndGoesOn) {
+  Wires wires;
+  std::string address;
+  {
+    const Wire gone(listening());
+    address = gone.address();
+  }
+  const Wire& caller = wires.add(patient({{address}, "", {}}));
+  EXPECT_NE(wires.next(caller, Kind::refused).text.find("nobody answers"), std::string::npos);
+  const Wire& door = wires.add(patient({{}, address, {}}));
+  EXPECT_NE(wires.next(caller, Kind::joined).peer, 0u);
+  EXPECT_NE(wires.next(door, Kind::joined).peer, 0u);
+  EXPECT_FALSE(wires.has(caller, Kind::refused));
+}
+
+TEST(Wire, whoEndsHasLeftAndIsCalledAgain) {
+  Wires wires;
+  const Wire& door = wires.add(listening());
+  const std::string address = door.address();
+  const Wire& caller = wires.add(calling(door));
+  const Peer first = wires.next(caller, Kind::joined).peer;
+  wires.next(door, Kind::joined);
+  wires.end(door);
+  EXPECT_EQ(wires.next(caller, Kind::left).peer, first);
+  const Wire& again = wires.add(patient({{}, address, {}}));
+  EXPECT_NE(wires.next(again, Kind::joined).peer, 0u);
+  const Peer second = wires.next(caller, Kind::joined).peer;
+  EXPECT_NE(second, 0u);
+  EXPECT_NE(second, first);
+}
+
+TEST(Wire, aCallerThatEndsHasLeftAfterWhatItSaid) {
+  Wires wires;
+  const Wire& door = wires.add(listening());
+  Wire& caller = wires.add(calling(door));
+  const Peer there = wires.next(caller, Kind::joined).peer;
+  for (uint32_t i = 0; i < 20; i++) EXPECT_TRUE(caller.send(there, encode(i, message::Prepare{i})));
+  wires.end(caller);
+  for (uint32_t i = 0; i < 20; i++) EXPECT_EQ(read(wires.next(door, Kind::message)).session, i);
+  EXPECT_NE(wires.next(door, Kind::left).peer, 0u);
+}
+
+TEST(Wire, whoIsClosedIsToldWhy) {
+  Wires wires;
+  Wire& door = wires.add(listening());
+  const Wire& caller = wires.add(calling(door));
+  door.close(wires.next(door, Kind::joined).peer, "busy with something else");
+  EXPECT_EQ(wires.next(caller, Kind::left).text, "busy with something else");
+}
+
+TEST(Wire, silenceMeansLeftAndWhoComesToLifeBeginsAnew) {
+  Wires wires;
+  WireOptions options = listening();
+  options.silence = 0.5;
+  const Wire& door = wires.add(options);
+  Bare bare(door);
+  bare.send(beat());
+  const Peer first = wires.next(door, Kind::joined).peer;
+  const Event left = wires.next(door, Kind::left);
+  EXPECT_EQ(left.peer, first);
+  EXPECT_NE(left.text.find("nothing was heard"), std::string::npos);
+  bare.send(hello()); // too late
+  bool bye = false;
+  for (const double end = steadyNow() + 30; !bye && steadyNow() < end; wires.serve())
+    for (Frames frames; bare.receive(frames);) {
+      Message message;
+      ASSERT_EQ(decode(std::move(frames), message), "");
+      bye |= std::holds_alternative<message::Bye>(message.body);
+    }
+  EXPECT_TRUE(bye);
+  EXPECT_FALSE(wires.has(door, Kind::message));
+  Bare again(door);
+  again.send(hello());
+  EXPECT_NE(wires.next(door, Kind::joined).peer, first);
+}
+
+TEST(Wire, beatsKeepTheIdleAliveAndMeasureTheWay) {
+  Wires wires;
+  WireOptions options = listening();
+  options.silence = 2;
+  Wire& door = wires.add(options);
+  options = calling(door), options.silence = 2;
+  Wire& caller = wires.add(options);
+  const Peer there = wires.next(caller, Kind::joined).peer;
+  for (const double end = steadyNow() + 3; steadyNow() < end;) wires.serve();
+  EXPECT_FALSE(wires.has(door, Kind::left));
+  EXPECT_FALSE(wires.has(caller, Kind::left));
+  EXPECT_GT(caller.traffic(there).latency, 0);
+}
+
+TEST(Wire, threeMessagesThatAreNoneCloseThePeer) {
+  const Frames bad[] = {
+      {{}}, {someBytes(40)}, {someBytes(100000)}, {std::vector<std::byte>(64)}, Frames(limits::frames + 5, someBytes(4))};
+  for (const Frames& junk : bad) {
+    Wires wires;
+    const Wire& door = wires.add(listening());
+    Bare bare(door);
+    bare.send(hello());
+    EXPECT_NE(wires.next(door, Kind::message).peer, 0u);
+    bare.send(junk), bare.send(junk);
+    bare.send(hello());
+    EXPECT_NE(wires.next(door, Kind::message).peer, 0u); // two are forgiven
+    bare.send(junk);
+    EXPECT_NE(wires.next(door, Kind::left).text.find("three messages"), std::string::npos);
+    bare.send(hello());
+    for (int i = 0; i < 20; i++) wires.serve();
+    EXPECT_FALSE(wires.has(door, Kind::message));
+  }
+}
+
+TEST(Wire, whoOnlySpeaksJunkNeverJoins) {
+  Wires wires;
+  const Wire& door = wires.add(listening());
+  Bare bare(door);
+  for (int i = 0; i < 3; i++) bare.send({someBytes(50)});
+  EXPECT_NE(wires.next(door, Kind::refused).text.find("three messages"), std::string::npos);
+  EXPECT_FALSE(wires.has(door, Kind::joined));
+}
+
+TEST(Wire, aFrameThatIsTooLargeEndsTheConnection) {
+  Wires wires;
+  const Wire& door = wires.add(listening());
+  Bare bare(door);
+  bare.send(hello());
+  EXPECT_NE(wires.next(door, Kind::message).peer, 0u);
+  bare.send({std::vector<std::byte>(largestMessage + 1)});
+  EXPECT_NE(wires.next(door, Kind::left).peer, 0u);
+  EXPECT_FALSE(wires.has(door, Kind::message));
+}
+
+TEST(Wire, cutAndDoubledMessages) {
+  Wires wires;
+  const Wire& door = wires.add(listening());
+  Bare bare(door);
+  Frames whole = hello();
+  bare.send(whole), bare.send(whole); // twice the same: both arrive, what they mean is not the wire's
+  EXPECT_NE(wires.next(door, Kind::message).peer, 0u);
+  EXPECT_NE(wires.next(door, Kind::message).peer, 0u);
+  for (int i = 0; i < 3; i++) {
+    whole[0].resize(whole[0].size() / 2);
+    bare.send(whole);
+  }
+  EXPECT_NE(wires.next(door, Kind::left).peer, 0u);
+}
+
+TEST(Wire, aFullQueueSaysSoAndKeepsTheFrames) {
+  Wires wires;
+  const Wire& door = wires.add(listening());
+  Wire& caller = wires.add(calling(door));
+  const Peer there = wires.next(caller, Kind::joined).peer;
+  const message::Piece piece{{1, 2}, 1 << 20, 1 << 20, 0, someBytes(1 << 20)};
+  Frames frames;
+  uint32_t sent = 0;
+  for (bool taken = true; taken && sent < 10000; sent += taken) { // nobody reads
+    frames = encode(1, message::Piece(piece));
+    taken = caller.send(there, std::move(frames));
+  }
+  ASSERT_LT(sent, 10000u);
+  ASSERT_EQ(frames.size(), 2u);
+  EXPECT_EQ(frames[1], piece.data);
+  for (uint32_t i = 0; i < sent; i++) EXPECT_NE(wires.next(door, Kind::message).peer, 0u);
+  EXPECT_TRUE(caller.send(there, std::move(frames)));
+  EXPECT_EQ(std::get<message::Piece>(read(wires.next(door, Kind::message)).body).data, piece.data);
+}
+
+TEST(Wire, anyThreadWakesIt) {
+  Wire wire(listening());
+  std::thread other([&] { wire.wake(); });
+  EXPECT_EQ(wire.receive(60).kind, Kind::woken);
+  other.join();
+  EXPECT_EQ(wire.receive(0).kind, Kind::nothing);
+}
