@@ -1,4 +1,4 @@
-# What `cmake --install` lays down: libraries, headers (the generated xvrml/nodes.h too), vv, openrt-replay, nodegen, shader
+# What `cmake --install` lays down: libraries, headers (the generated xvrml/nodes.h too), vv, openrt-replay, openrt-worker, nodegen, shader
 # plug-ins, the Python package, manual pages (ManPages.cmake), CMake packages `openrt` and `xvrml`, pkg-config files. The installed tree can be moved.
 include(CMakePackageConfigHelpers)
 set(openrt_cmake_dir ${CMAKE_INSTALL_LIBDIR}/cmake/openrt)
@@ -6,7 +6,7 @@ set(xvrml_cmake_dir ${CMAKE_INSTALL_LIBDIR}/cmake/xvrml)
 
 install(TARGETS openrt openrt_headers EXPORT openrt_targets)
 install(DIRECTORY libopenrt/include/openrt DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h" PATTERN "*.hpp")
-install(TARGETS openrt-replay)
+install(TARGETS openrt-replay openrt-worker)
 get_property(shaders GLOBAL PROPERTY OPENRT_SHADERS)
 install(TARGETS ${shaders} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/openrt/shaders)
 

@@ -1,13 +1,9 @@
 // renderer.cpp: see renderer.h. The picture does not depend on which thread does what (frame_work.h).
 #include "render/renderer.h"
 
-#include <sched.h>
-
 #include <algorithm>
 #include <bit>
 #include <chrono>
-#include <cmath>
-#include <cstdio>
 #include <exception>
 
 #include "render/job_runner.h"
@@ -24,25 +20,7 @@ uint32_t largestJob(const edit::FrameSettingsT& frame, uint32_t tiles, uint32_t 
   return std::max(uint32_t(uint64_t(frame.samples) * tiles / (jobsOfThread * threads)), fewestOfLeaves);
 }
 
-// CPUs' worth of time a control group (version 2) grants, 0 if it does not limit.
-double groupQuota() {
-  FILE* file = std::fopen("/sys/fs/cgroup/cpu.max", "re");
-  if (!file) return 0;
-  double quota = 0, period = 0;
-  const int read = std::fscanf(file, "%lf %lf", &quota, &period); // "max 100000" reads nothing
-  std::fclose(file);
-  return read == 2 && period > 0 ? quota / period : 0;
-}
-
 } // namespace
-
-uint32_t availableThreads() {
-  cpu_set_t set;
-  CPU_ZERO(&set);
-  uint32_t count = sched_getaffinity(0, sizeof set, &set) == 0 ? uint32_t(CPU_COUNT(&set)) : std::thread::hardware_concurrency();
-  if (const double quota = groupQuota(); quota > 0) count = std::min(count, uint32_t(std::ceil(quota)));
-  return std::max(count, 1u);
-}
 
 Frame::Frame(std::shared_ptr<const RenderScene> scene, uint32_t threads)
     : scene_(std::move(scene)), work_(scene_->frame, factsOf(*scene_), threads), started_(now()) {

@@ -12,11 +12,9 @@
 
 #include "render/frame_work.h"
 #include "render/render_scene.h"
+#include "render/threads.h"
 
 namespace openrt {
-
-// Threads the process may use: affinity and, where there is one, the control group's quota.
-uint32_t availableThreads();
 
 class Frame {
  public:

@@ -124,9 +124,11 @@ void Worker::jobs(const message::Jobs& m) {
                 : job.job.number >= LightImage::parts)
       return bad("a job that the frame does not have");
   }
-  if (leases_.size() + m.jobs.size() > mostJobs) return bad("more jobs than a worker takes");
+  size_t out = m.jobs.size();
+  for (const auto& [of, leases] : leases_) out += leases.size();
+  if (out > mostJobs) return bad("more jobs than a worker takes");
   for (const LeasedJob& job : m.jobs)
-    if (!leases_.insert(job.lease).second) return bad("a lease that is out already");
+    if (!leases_[epoch].insert(job.lease).second) return bad("a lease that is out already");
   machine_.work(epoch, m.jobs);
 }
 
@@ -134,7 +136,7 @@ void Worker::drop(const message::Drop& m) {
   const Epoch epoch = std::min(m.epoch > newest_ ? newest_ : base_ + m.epoch, newest_);
   machine_.drop(epoch);
   frames_.erase(frames_.begin(), frames_.upper_bound(epoch));
-  if (frames_.empty()) leases_.clear();
+  leases_.erase(leases_.begin(), leases_.upper_bound(epoch));
 }
 
 void Worker::ready(Epoch epoch, const Prepared& prepared) {
@@ -147,12 +149,14 @@ void Worker::ready(Epoch epoch, const Prepared& prepared) {
 }
 
 void Worker::failed(Epoch epoch, const std::string& why) {
-  if (epoch > base_ && serving()) say(message::Failed{epoch - base_, why});
+  if (epoch <= base_ || !serving()) return;
+  leases_.erase(epoch);
+  say(message::Failed{epoch - base_, why});
 }
 
 void Worker::done(Epoch epoch, const LeasedJob& job, JobResult&& result) {
   if (epoch <= base_ || !serving()) return;
-  leases_.erase(job.lease);
+  if (const auto out = leases_.find(epoch); out != leases_.end()) out->second.erase(job.lease);
   const auto frame = frames_.find(epoch);
   if (frame == frames_.end()) return; // dropped meanwhile
   message::Result m;

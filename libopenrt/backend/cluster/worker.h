@@ -101,7 +101,7 @@ class Worker {
   std::deque<Coming> coming_;
   std::map<Hash, ArrayStream> streams_;
   std::map<Epoch, edit::FrameSettingsT> frames_; // of what is prepared; the machine's epochs
-  std::set<Lease> leases_;                       // of jobs that are out
+  std::map<Epoch, std::set<Lease>> leases_;      // of jobs that are out
   uint64_t logged_ = 0;
 };
 

@@ -1,0 +1,139 @@
+// openrt_worker.cpp: the program openrt-worker: lends this machine's threads to masters (backend=cluster, vv --workers). Options
+// and signals here; the work in backend/cluster/serve.h.
+// Exit codes: 0 done (also by SIGTERM), 1 something failed, 2 usage, 3 key file missing or unusable, 75 a port that is taken, or
+// out of memory; 130 by SIGINT.
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <iostream>
+#include <optional>
+#include <string>
+#include <system_error>
+
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+
+#include "backend/cluster/keys.h"
+#include "backend/cluster/serve.h"
+#include "openrt/openrt.h"
+#include "shading/registry.h"
+
+namespace {
+
+using namespace openrt;
+using namespace openrt::cluster;
+
+enum ExitCode { Done = 0, Failed = 1, Usage = 2, KeysUnusable = 3, TryAgain = 75, Interrupted = 130 };
+
+constexpr const char* here = "127.0.0.1:7447";
+constexpr unsigned graceSeconds = 1; // from a signal to the end, whatever happens
+
+struct Options {
+  std::string listen, connect, key, allow, newKey, shaderPath;
+  uint32_t threads = 0;
+  size_t cache = 1024; // MB
+  bool once = false, quiet = false;
+};
+
+WorkerService* service = nullptr; // for the signal handler
+volatile std::sig_atomic_t signalled = 0;
+
+extern "C" void onSignal(int number) {
+  if (signalled || number == SIGALRM || !service) _exit(signalled == SIGTERM || number == SIGTERM ? Done : Interrupted);
+  signalled = number;
+  alarm(graceSeconds);
+  service->stop();
+}
+
+int complain(ExitCode code, const std::string& message) {
+  std::fprintf(stderr, "openrt-worker: error: %s\n", message.c_str());
+  return code;
+}
+
+std::optional<Options> parseOptions(int argc, char** argv, int& exitCode) {
+  Options o;
+  CLI::App app("Lends this machine to masters: renders parts of their pictures.", "openrt-worker");
+  auto* listen = app.add_option("--listen", o.listen,
+                                "wait for masters at [ADDRESS][:PORT] (default 127.0.0.1:7447; port 0: any that is free)")
+                     ->expected(0, 1);
+  app.add_option("--connect", o.connect, "call a master that listens at HOST[:PORT], again and again")->excludes(listen);
+  app.add_option("--key", o.key, "key file; needed beyond this machine, the same one or one that the other side allows");
+  app.add_option("--allow", o.allow, "file of public keys that are let in besides one's own, one a line");
+  app.add_option("--new-key", o.newKey, "make a key file (never over an existing one), print its public key, and end");
+  app.add_option("--threads", o.threads, "threads that work (default: as many as the process may use)")
+      ->check(CLI::Range(0, 1024));
+  app.add_option("--shader-path", o.shaderPath, "folders with shader libraries, separated by colons");
+  app.add_option("--cache", o.cache, "megabytes of arrays that are kept for the next scene (default 1024)")
+      ->check(CLI::Range(size_t(0), size_t(1) << 24));
+  app.add_flag("--once", o.once, "end when the first master has left");
+  app.add_flag("-q,--quiet", o.quiet, "say nothing but errors");
+  app.set_version_flag("--version", std::string("openrt-worker ") + std::to_string(OPENRT_VERSION_MAJOR) + "." +
+                                        std::to_string(OPENRT_VERSION_MINOR) + "." + std::to_string(OPENRT_VERSION_PATCH));
+  try {
+    app.parse(argc, argv);
+    if (!o.allow.empty() && o.key.empty()) throw CLI::ValidationError("--allow", "of no use without --key");
+  } catch (const CLI::ParseError& e) {
+    exitCode = app.exit(e, std::cout, std::cerr) == 0 ? Done : Usage;
+    return std::nullopt;
+  }
+  if (o.connect.empty() && o.listen.empty()) o.listen = here;
+  return o;
+}
+
+void report(bool quiet, int level, const std::string& text) {
+  static const char* const names[] = {"debug", "info", "warning", "error"};
+  if (level >= (quiet ? 3 : 1)) std::fprintf(stderr, "openrt-worker: %s: %s\n", names[level > 3 ? 3 : level], text.c_str());
+}
+
+int newKey(const std::string& path) {
+  try {
+    std::printf("%s\n", makeKeyFile(path).c_str());
+    return Done;
+  } catch (const std::exception& e) { return complain(KeysUnusable, e.what()); }
+}
+
+int serve(const Options& o) {
+  ServeOptions options;
+  try {
+    if (!o.key.empty()) options.wire.keys = readKeys(o.key, o.allow);
+  } catch (const std::exception& e) { return complain(KeysUnusable, e.what()); }
+  options.wire.listen = o.listen;
+  if (!o.connect.empty()) options.wire.connect = {o.connect};
+  const ShaderRegistry shaders(shaderFolders(o.shaderPath));
+  options.backend.threads = o.threads;
+  options.backend.shaders = &shaders;
+  options.cacheBytes = o.cache << 20;
+  options.once = o.once;
+  options.log = [quiet = o.quiet](int level, const std::string& text) { report(quiet, level, text); };
+  WorkerService worker(options);
+  service = &worker;
+  if (!o.quiet) {
+    const char* how = options.wire.keys.empty() ? "plain, for this machine only" : "with keys";
+    if (o.connect.empty())
+      std::printf("listening at %s (%s)\n", worker.address().c_str(), how);
+    else
+      std::printf("calling %s (%s)\n", o.connect.c_str(), how);
+    std::fflush(stdout);
+  }
+  worker.run();
+  service = nullptr; // a signal ends the program at once while all is put away
+  return signalled && signalled != SIGTERM ? Interrupted : Done;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+  int exitCode = Done;
+  for (int number : {SIGINT, SIGTERM, SIGALRM}) std::signal(number, onSignal);
+  std::signal(SIGPIPE, SIG_IGN);
+  try {
+    const std::optional<Options> options = parseOptions(argc, argv, exitCode);
+    if (!options) return exitCode;
+    return options->newKey.empty() ? serve(*options) : newKey(options->newKey);
+  } catch (const std::system_error& e) { return complain(TryAgain, e.what()); } catch (const std::bad_alloc&) {
+    return complain(TryAgain, "out of memory");
+  } catch (const std::runtime_error& e) { return complain(Usage, e.what()); } catch (const std::exception& e) {
+    return complain(Failed, e.what());
+  }
+}
