@@ -218,7 +218,9 @@ double Scheduler::wake(double now) const {
   double when = never;
   for (const auto& [epoch, f] : impl_->frames) {
     const auto g = impl_->groups.find(epoch);
-    if (f.deadlines.empty() || g == impl_->groups.end() || g->second.idle.empty()) continue;
+    if (f.deadlines.empty() || g == impl_->groups.end()) continue;
+    const bool rescue = !f.rescue && impl_->rescuers > 0 && g->second.tied.empty();
+    if (g->second.idle.empty() && !rescue) continue;
     when = std::min(when, std::max(f.deadlines.begin()->first, now + breath));
   }
   return when;

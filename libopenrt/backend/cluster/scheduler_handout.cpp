@@ -142,6 +142,8 @@ bool Scheduler::Impl::next(double now, Handout& out) {
       moves = true;
     }
     if (reissue(f, g, now, out)) return true;
+    if (!f.rescue && rescuers > 0 && g.tied.empty() && !f.deadlines.empty() && f.deadlines.begin()->first <= now)
+      f.rescue = moves = true; // once, by who is here
   }
   return false;
 }

@@ -100,7 +100,7 @@ Epoch Scheduler::Impl::targetOfTied(const Worker& w) {
   if (others > 0 && w.here && !w.reserve) others -= w.unable ? 0 : w.threads;
   if (others == 0) return f.epoch;
   if (w.reserve) return 0;
-  if (f.split != Split::frames) return f.epoch;
+  if (f.split != Split::frames || f.rescue) return f.epoch;
   const auto g = groups.find(f.epoch);
   return g == groups.end() || g->second.threads == 0 || worthHelping(f) ? f.epoch : 0;
 }

@@ -68,6 +68,7 @@ struct Frame {
   std::map<uint64_t, Flight> flights;
   std::unordered_map<Lease, Held> leases;
   std::set<std::pair<double, uint64_t>> deadlines; // of flights that may be handed out again
+  bool rescue = false;                             // something is late, and nobody at it is idle
   uint32_t rekeyAt = 1;                            // jobs done with which all deadlines are found anew
 
   bool exhausted() const { return work && work->undone() < 0.5; } // nobody is to do more of it, as yet

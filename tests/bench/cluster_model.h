@@ -1,0 +1,153 @@
+// cluster_model.h: what the simulator of a cluster (cluster_sim.cpp) is made of besides the real master: links with a bandwidth
+// and a latency, machines that sleep instead of rendering, a picture whose places cost different amounts. Time is virtual; that
+// of the master alone is measured.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <deque>
+#include <fstream>
+#include <functional>
+#include <queue>
+#include <random>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "backend/cluster/messages.h"
+#include "render/result_codec.h"
+#include "render/tiles.h"
+
+namespace sim {
+
+using namespace openrt;
+using namespace openrt::cluster;
+
+// What a sample costs where, relative to the mean of the picture: cells, row by row.
+class CostMap {
+ public:
+  // A file: width, height, then the cells' seconds (any unit), as numbers of text; lines that begin with # are comments.
+  explicit CostMap(const std::string& file) {
+    std::ifstream in(file);
+    std::string line, all;
+    while (std::getline(in, line))
+      if (line.empty() || line[0] != '#') all += line + ' ';
+    const char* at = all.c_str();
+    const auto number = [&] {
+      char* end = nullptr;
+      const double x = std::strtod(at, &end);
+      if (end == at || !(x >= 0)) throw std::runtime_error(file + ": width, height and their product of numbers are expected");
+      at = end;
+      return x;
+    };
+    width_ = uint32_t(number()), height_ = uint32_t(number());
+    cells_.resize(size_t(width_) * height_);
+    for (double& c : cells_) c = number();
+    normalise();
+  }
+  // A third of the picture is background at a tenth of the cost; the rest is log-normal (sigma 0.5), with eight hot spots of ten
+  // times the cost, a fortieth of the picture's width in radius.
+  CostMap() : width_(120), height_(68), cells_(size_t(width_) * height_) {
+    std::mt19937 random(7);
+    std::vector<std::pair<double, double>> spots;
+    const auto uniform = [&] { return double(random()) / 4294967296.0; };
+    for (int i = 0; i < 8; i++) spots.push_back({width_ * uniform(), height_ * (0.35 + 0.6 * uniform())});
+    for (uint32_t y = 0; y < height_; y++)
+      for (uint32_t x = 0; x < width_; x++) {
+        const double normal = std::sqrt(-2 * std::log(uniform() + 1e-12)) * std::cos(6.283185307 * uniform());
+        double cost = y * 3 < height_ ? 0.1 : std::exp(0.5 * normal);
+        for (const auto& [sx, sy] : spots) {
+          const double r = std::hypot(x - sx, y - sy) / (width_ / 40.0);
+          if (r < 1) cost *= 10;
+        }
+        cells_[y * width_ + x] = cost;
+      }
+    normalise();
+  }
+  // Mean of the cells that a tile of a picture of this size touches, by where its pixels lie.
+  double of(const Tile& tile, uint32_t width, uint32_t height) const {
+    constexpr int steps = 8;
+    double sum = 0;
+    for (int j = 0; j < steps; j++)
+      for (int i = 0; i < steps; i++) {
+        const double x = (tile.x0 + (i + 0.5) / steps * (tile.x1 - tile.x0)) / width;
+        const double y = (tile.y0 + (j + 0.5) / steps * (tile.y1 - tile.y0)) / height;
+        sum += cells_[size_t(std::min(y * height_, height_ - 1.0)) * width_ + size_t(std::min(x * width_, width_ - 1.0))];
+      }
+    return sum / (steps * steps);
+  }
+
+ private:
+  void normalise() {
+    double sum = 0;
+    for (const double c : cells_) sum += c;
+    for (double& c : cells_) c *= double(cells_.size()) / sum;
+  }
+  uint32_t width_ = 0, height_ = 0;
+  std::vector<double> cells_;
+};
+
+// One thing after the other, each taking its time.
+struct Server {
+  double free = 0, busy = 0;
+  double take(double now, double seconds) {
+    free = std::max(free, now) + seconds, busy += seconds;
+    return free;
+  }
+};
+
+class Events {
+ public:
+  void at(double when, std::function<void()> what) { queue_.push({when, next_++, std::move(what)}); }
+  bool empty() const { return queue_.empty(); }
+  double now = 0;
+  void step() {
+    Event e = std::move(const_cast<Event&>(queue_.top()));
+    queue_.pop();
+    now = std::max(now, e.when);
+    e.what();
+  }
+
+ private:
+  struct Event {
+    double when;
+    uint64_t number;
+    std::function<void()> what;
+    bool operator<(const Event& e) const { return when != e.when ? when > e.when : number > e.number; }
+  };
+  std::priority_queue<Event> queue_;
+  uint64_t next_ = 0;
+};
+
+// Results as bytes: sums of random pixels, encoded as a worker does; the same for all tiles of a size, but for their leases.
+class Results {
+ public:
+  explicit Results(const edit::FrameSettingsT& frame) : frame_(frame) {}
+  Frames make(uint64_t session, Epoch epoch, const LeasedJob& job, size_t pixels, double seconds) {
+    Frames frames =
+        encode(session, message::Result{.epoch = epoch, .lease = job.lease, .seconds = seconds, .bytes = bytes(job, pixels)});
+    return frames;
+  }
+
+ private:
+  std::vector<std::byte> bytes(const LeasedJob& job, size_t pixels) {
+    std::vector<std::byte>& known = bytes_[pixels];
+    if (known.empty()) {
+      std::mt19937_64 random(pixels);
+      JobResult result;
+      result.sums.resize(pixels);
+      for (PixelSums& s : result.sums) {
+        for (double& c : s.rgba) c = double(random() >> 11) * 0x1p-50;
+        s.rgba[3] = job.job.count, s.samples = job.job.count;
+      }
+      known = encodeResult(frame_, job.job, result);
+    }
+    return known;
+  }
+  const edit::FrameSettingsT frame_;
+  std::map<size_t, std::vector<std::byte>> bytes_;
+};
+
+} // namespace sim

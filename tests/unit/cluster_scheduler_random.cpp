@@ -1,0 +1,169 @@
+// Whatever happens in whatever order: each sample of each frame is taken exactly once, every frame ends, nobody has more than it
+// may, and no lease is left over. What happens is a list of numbers that rapidcheck makes, and makes short if a rule breaks.
+#include <gtest/gtest.h>
+#include <rapidcheck.h>
+
+#include <set>
+
+#include "unit/cluster_fake_work.h"
+
+using namespace openrt;
+using namespace openrt::cluster;
+
+namespace {
+
+// One run: workers come and go, results come late, twice, never or broken.
+struct Turmoil {
+  explicit Turmoil(Split split) : b({.split = split, .shortest = 0}) {}
+  struct Machine {
+    uint32_t threads;
+    Epoch preparing = 0, ready = 0;
+  };
+  Bench b;
+  std::map<WorkerId, Machine> machines;
+  std::map<Lease, Handout> out; // with a machine, as far as it knows
+  std::vector<Handout> past;
+  WorkerId lastWorker = 0;
+  Epoch lastEpoch = 0;
+  std::set<Lease> seen;
+  bool aMasterHere = false;
+
+  void join(uint32_t threads, bool here) {
+    machines[++lastWorker] = {threads};
+    b.s.join(lastWorker, threads, here && !aMasterHere, b.now);
+    aMasterHere |= here;
+  }
+  void leave(WorkerId w) {
+    b.s.leave(w, b.now);
+    machines.erase(w);
+    std::erase_if(out, [&](const auto& entry) { // some of what it sent still comes
+      if (entry.second.worker == w) past.push_back(entry.second);
+      return entry.second.worker == w;
+    });
+  }
+  void begin() {
+    if (b.work.size() >= 5) return;
+    b.frame(++lastEpoch, 1 + lastEpoch % 3 * 4, 16, lastEpoch % 2 ? 8 : 160);
+  }
+  void end(Epoch epoch) {
+    b.s.end(epoch);
+    b.work.erase(epoch);
+  }
+  void deliver(const Handout& h, double seconds) {
+    const bool live = b.work.contains(h.epoch);
+    const bool first = live ? b.done(h, seconds) : b.s.done(h.worker, h.epoch, h.job.lease, seconds, b.now);
+    RC_ASSERT(live || !first);
+    past.push_back(h);
+    out.erase(h.job.lease);
+    if (first && b.work.at(h.epoch)->over()) end(h.epoch);
+  }
+  void settle() {
+    WorkerId w;
+    Epoch e;
+    while (b.s.move(b.now, w, e)) {
+      Machine& m = machines.at(w);
+      RC_ASSERT(e > m.ready && e > m.preparing && b.work.contains(e) && !b.s.tally(w).blocked);
+      m.preparing = e;
+    }
+    Handout h;
+    while (b.s.next(b.now, h)) {
+      RC_ASSERT(machines.contains(h.worker));
+      const Machine& m = machines.at(h.worker);
+      RC_ASSERT(m.ready == h.epoch && m.preparing <= m.ready && !b.s.tally(h.worker).blocked);
+      RC_ASSERT(seen.insert(h.job.lease).second);
+      RC_ASSERT(b.s.tally(h.worker).out <= 4 * m.threads);
+      for (const auto& [lease, other] : out)
+        RC_ASSERT(!(other.worker == h.worker && other.epoch == h.epoch && other.job.job == h.job.job));
+      out[h.job.lease] = h;
+    }
+    for (const auto& [id, m] : machines) {
+      uint32_t count = 0;
+      for (const auto& [lease, other] : out)
+        count += other.worker == id && b.work.contains(other.epoch) && other.epoch >= m.ready;
+      RC_ASSERT(b.s.tally(id).out <= count);
+    }
+  }
+  void prepared(WorkerId w) {
+    Machine& m = machines.at(w);
+    if (m.preparing <= m.ready) return;
+    m.ready = m.preparing;
+    b.s.ready(w, m.ready, b.now);
+  }
+  template <class Map> auto pick(Map& map, uint32_t which) { return std::next(map.begin(), ptrdiff_t(which % map.size())); }
+
+  void step(uint32_t number) {
+    const uint32_t what = number % 20, which = number / 20 % 1000;
+    const double amount = double(number / 20000 % 1000) / 1000;
+    if (what == 0) join(1 + which % 4, which % 5 == 0);
+    if (what == 1 && !machines.empty()) leave(pick(machines, which)->first);
+    if (what == 2) begin();
+    if (what >= 3 && what <= 5 && !machines.empty()) prepared(pick(machines, which)->first);
+    if (what >= 6 && what <= 12 && !out.empty()) deliver(Handout(pick(out, which)->second), amount);
+    if (what == 13 && !past.empty()) { // again, or of one that was lost
+      const Handout h = past[which % past.size()];
+      const bool again = b.s.done(h.worker, h.epoch, h.job.lease, amount, b.now);
+      RC_ASSERT(!again);
+    }
+    if (what == 14) RC_ASSERT(!b.s.done(which, which % 7, 1000000 + number, amount, b.now));
+    if (what == 15) b.now += amount;
+    if (what == 16) b.now += 100 * amount;
+    if (what == 17 && !out.empty()) {
+      const Handout h = pick(out, which)->second;
+      b.s.failed(h.worker, h.epoch, h.job.lease, b.now);
+      past.push_back(h), out.erase(h.job.lease);
+    }
+    if (what == 18 && !machines.empty() && which % 3 == 0) {
+      const auto m = pick(machines, which);
+      if (m->second.preparing > m->second.ready) b.s.unable(m->first, m->second.preparing, b.now);
+    }
+    if (what == 19 && which % 10 == 0 && !b.work.empty()) end(b.work.begin()->first); // cancelled
+    settle();
+  }
+
+  void finish() {
+    begin();
+    aMasterHere = false;
+    join(2, true); // one that does all it is asked to
+    for (int i = 0; i < 20000 && !b.work.empty(); i++) {
+      settle();
+      b.now += 0.01;
+      for (const auto& [id, m] : std::map(machines)) prepared(id);
+      if (!out.empty()) deliver(Handout(out.begin()->second), 0.01);
+    }
+    RC_ASSERT(b.work.empty()); // every frame has ended, and take() has counted every sample
+    for (const auto& [id, m] : machines) RC_ASSERT(b.s.tally(id).out == 0);
+  }
+};
+
+void run(Split split, const std::vector<uint32_t>& numbers) {
+  Turmoil t(split);
+  for (const uint32_t n : numbers) t.step(n);
+  t.finish();
+}
+
+void check(Split split) {
+  const bool held = rc::check([split] {
+    const auto length = *rc::gen::inRange<size_t>(0, 400);
+    run(split, *rc::gen::container<std::vector<uint32_t>>(length, rc::gen::inRange<uint32_t>(0, 20000000)));
+  });
+  EXPECT_TRUE(held);
+}
+
+} // namespace
+
+TEST(SchedulerRandom, automatic) { check(Split::automatic); }
+TEST(SchedulerRandom, tiles) { check(Split::tiles); }
+TEST(SchedulerRandom, samples) { check(Split::samples); }
+TEST(SchedulerRandom, frames) { check(Split::frames); }
+
+TEST(SchedulerRandom, theSameCallsTheSameAnswers) {
+  const auto answers = [] {
+    Turmoil t(Split::automatic);
+    uint32_t x = 12345;
+    for (int i = 0; i < 3000; i++) t.step((x = x * 1664525 + 1013904223) >> 4);
+    std::vector<std::pair<WorkerId, Lease>> all;
+    for (const Handout& h : t.past) all.push_back({h.worker, h.job.lease});
+    return all;
+  };
+  EXPECT_EQ(answers(), answers());
+}
