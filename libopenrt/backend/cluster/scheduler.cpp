@@ -136,6 +136,8 @@ void Scheduler::announce(Epoch epoch, double) {
   f.spread = s.options.split == Split::samples;
   f.costs = s.costs.ofNextFrame(), f.light = s.light.ofNextFrame();
   s.moves = true;
+  if (const auto g = s.groups.find(epoch); g != s.groups.end()) // who has its scene already
+    for (const WorkerId id : g->second.members) s.sort(s.workers.at(id));
 }
 
 void Scheduler::frame(Epoch epoch, std::shared_ptr<JobSource> work, double now) {
@@ -146,6 +148,10 @@ void Scheduler::frame(Epoch epoch, std::shared_ptr<JobSource> work, double now) 
   f.tilePixels = f.work->tiles() > 0 ? std::max(f.work->pixels(0), 1u) : 1;
   f.perPixel = std::max(f.work->undone() / (double(f.tilePixels) * std::max(f.work->tiles(), 1u)), 1.0);
   impl_->moves = true;
+}
+
+void Scheduler::changed(Epoch epoch) {
+  if (Frame* f = impl_->frame(epoch)) f->maybe = f->work != nullptr;
 }
 
 void Scheduler::end(Epoch epoch) {
@@ -173,8 +179,8 @@ void Scheduler::unable(WorkerId worker, Epoch epoch, double) {
     w->unable = true;
     w->ready = true; // for the next one
     impl_->weigh(*w, 1);
-    impl_->forgetAll(*w, epoch + 1);
   }
+  impl_->forgetAll(*w, epoch + 1);
   impl_->strike(*w);
   impl_->enter(*w, w->epoch, w->ready);
 }

@@ -98,7 +98,7 @@ Epoch Scheduler::Impl::targetOfTied(const Worker& w) {
   uint32_t others = 0; // that can do it
   for (auto g = groups.begin(); g != groups.end() && g->first <= f.epoch; ++g) others += g->second.threads;
   if (others > 0 && w.here && !w.reserve) others -= w.unable ? 0 : w.threads;
-  if (others == 0) return f.epoch;
+  if (others == 0) return w.reserve && f.exhausted() && !f.rescue ? 0 : f.epoch;
   if (w.reserve) return 0;
   if (f.split != Split::frames || f.rescue) return f.epoch;
   const auto g = groups.find(f.epoch);
