@@ -332,7 +332,8 @@ void print(const Options& o) {
 constexpr const char* usage = R"(bench_cluster_sim [OPTION=VALUE]...
   workers=1,2,4...  threads=16  size=1920x1080  samples=1024  tile=0  frames=3 (the first is not counted)
   work=2048 (seconds of one thread a frame)  network=10e9  link=10e9 (bits/s)  latency=50e-6 (one way)
-  per-message=2e-6  per-byte=0 (seconds of the socket thread)  prepare=0 (seconds a scene)  slow=0 (share of workers, 4 times slower)
+  per-message=2e-6  per-byte=0 (seconds of the socket thread)  prepare=0 (seconds a scene)
+  slow=0 (share of workers, 4 times slower)
   split=auto|tiles|samples|frames  ideal=0|1 (the master takes no time)  pipelined=0|1  costs=FILE (width, height, cells)
 )";
 
