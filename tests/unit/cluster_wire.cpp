@@ -1,6 +1,7 @@
 // The wire: who is let in and who is not, what is too large, beats, losses. Real sockets on the loopback; events, not times.
 #include <thread>
 
+#include "backend/cluster/addresses.h"
 #include "unit/cluster_wires.h"
 
 using namespace openrt;
@@ -103,6 +104,54 @@ TEST(Wire, addressesBeyondTheLoopbackNeedKeys) {
 TEST(Wire, addressesThatAreNone) {
   for (const char* address : {"a:b", "a:70000", "[::1", "[::1]x", "a b:1", "a:1=short", "http://a:1", "a:-1", "a:0"})
     EXPECT_NE(thrown([&] { Wire({{address}, "", {}}); }), "") << address;
+}
+
+TEST(Addresses, areReadAndShown) {
+  const auto shown = [](const char* text) { return Address::parse(text).shown(); };
+  EXPECT_EQ(shown("node1"), "node1:7447");
+  EXPECT_EQ(shown("node1:80"), "node1:80");
+  EXPECT_EQ(shown("tcp://10.0.0.1:80"), "10.0.0.1:80");
+  EXPECT_EQ(shown(":80"), "127.0.0.1:80");
+  EXPECT_EQ(shown("::1"), "[::1]:7447");
+  EXPECT_EQ(shown("[2001:db8::1]:80"), "[2001:db8::1]:80");
+  const std::string key = "rq:rM>}U?@Lns47E1%kR.o@n%FcmmsL/@{H8]yf7";
+  const Address a = Address::parse("node1:80=" + key);
+  EXPECT_EQ(a.key, key);
+  EXPECT_EQ(a.shown(), "node1:80");
+  EXPECT_EQ(shownEndpoint("tcp://[::ffff:10.0.0.1]:80"), "10.0.0.1:80");
+  EXPECT_EQ(shownEndpoint("::ffff:10.0.0.1"), "10.0.0.1");
+  EXPECT_EQ(shownEndpoint("tcp://[::1]:80"), "[::1]:80");
+}
+
+TEST(Addresses, namesAreLookedUpWithoutWaiting) {
+  const auto found = [](const char* name, std::string& why) {
+    const Lookup lookup(Address::parse(name));
+    for (const double end = steadyNow() + 60; !lookup.ready() && steadyNow() < end;)
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    return lookup.result(why);
+  };
+  std::string why;
+  const auto here = found("localhost:80", why);
+  ASSERT_TRUE(here) << why;
+  EXPECT_TRUE(here->loopback());
+  EXPECT_EQ(here->port, 80);
+  EXPECT_FALSE(found("no-such-host.invalid", why));
+  EXPECT_NE(why, "");
+  const Lookup abandoned(Address::parse("another.invalid")); // its end does not wait either
+}
+
+TEST(Wire, localSocketsAndIpv6) {
+  const Folder folder;
+  for (const std::string& where : {"ipc://" + folder / "socket", std::string("[::1]:0")}) {
+    Wires wires;
+    std::unique_ptr<Wire> probe;
+    if (!thrown([&] { probe = std::make_unique<Wire>(listening({}, where)); }).empty() && where.starts_with("[")) continue;
+    probe.reset();
+    const Wire& door = wires.add(listening({}, where));
+    const Wire& caller = wires.add(calling(door));
+    EXPECT_NE(wires.next(door, Kind::joined).peer, 0u) << where;
+    EXPECT_NE(wires.next(caller, Kind::joined).peer, 0u) << where;
+  }
 }
 
 TEST(Wire, aPortThatIsTaken) {
