@@ -98,7 +98,9 @@ class Player {
     }
     JobResult again = result;
     EXPECT_TRUE(work_->take(job, std::move(result)));
-    if (what < 4) EXPECT_FALSE(work_->take(job, std::move(again))); // done twice
+    if (what < 4) {
+      EXPECT_FALSE(work_->take(job, std::move(again))); // done twice
+    }
     if (what == 4) work_->giveBack(job);
   }
 

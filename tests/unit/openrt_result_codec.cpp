@@ -160,7 +160,9 @@ TEST(ResultCodec, RandomBytesDoNoHarm) {
         wrong[random() % std::min<size_t>(wrong.size(), i % 2 ? 64 : wrong.size())] = std::byte(random());
       wrong.resize(random() % (wrong.size() + 10));
       decodeResult(frame, job, tile, wrong, out);
-      if (!out.sums.empty()) ASSERT_EQ(out.sums.size(), tile.pixels());
+      if (!out.sums.empty()) {
+        ASSERT_EQ(out.sums.size(), tile.pixels());
+      }
     }
   }
 }
