@@ -121,7 +121,7 @@ struct LiveRenderer::Impl {
   // All that holds on to nodes is given up when this returns: from then on the browser uses them.
   void map(Wanted frame) {
     if (!stage.context()) {
-      stage.open();
+      stage.open([this] { return cancelled.load(); });
       frame.news.changes.clear(); // the mapper has begun with them
       frame.news.otherWorld = false;
     }

@@ -1,10 +1,12 @@
 // renderer.cpp: see renderer.h.
 #include "picture/renderer.h"
 
+#include <algorithm>
 #include <atomic>
 #include <charconv>
 #include <chrono>
 #include <condition_variable>
+#include <deque>
 #include <exception>
 #include <mutex>
 #include <thread>
@@ -12,6 +14,7 @@
 
 #include <fmt/format.h>
 
+#include "picture/cluster.h"
 #include "picture/stage.h"
 
 namespace picture {
@@ -19,7 +22,16 @@ namespace picture {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+constexpr int maxInFlight = 64;
+constexpr size_t inFlightBytes = size_t(2) << 30, pixelBytes = 128; // of all frames in flight; of a pixel, about
+
 double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+// A frame that was started, and what can be said of it only then.
+struct Flight {
+  RenderResult result{};
+  std::vector<std::string> names;
+};
 
 } // namespace
 
@@ -35,6 +47,10 @@ struct Renderer::Impl {
   bool ending = false;
   std::atomic<bool> cancelled{false};
   std::thread thread;
+
+  // The calling thread, and the render thread while that waits.
+  std::deque<Flight> flights;
+  Clock::time_point lastEnd; // of a frame
 
   Impl(xvrml::World& world, xvrml::Browser* browser, const RenderSettings& settings, Watch w)
       : stage(world, browser, settings), watch(std::move(w)) {}
@@ -82,6 +98,36 @@ struct Renderer::Impl {
     if (failure) std::rethrow_exception(std::exchange(failure, nullptr));
   }
 
+  void start(const View& view) {
+    const auto begin = Clock::now();
+    stage.prepare(view);
+    Flight flight;
+    flight.result.mapSeconds = secondsSince(begin) + stage.takeMeshSeconds();
+    flight.result.map = stage.mapper()->stats();
+    if (stage.settings.channels & RT_NAME) flight.names = stage.mapper()->names();
+    stage.setUpFrame();
+    rtQuality(RT_FRAMES_IN_FLIGHT, maxInFlight);
+    if (flights.empty()) lastEnd = Clock::now();
+    rtSwapBuffers();
+    throwOnError("rendering");
+    flights.push_back(std::move(flight));
+  }
+
+  void finish(RenderResult& result) {
+    const Flight flight = std::move(flights.front());
+    flights.pop_front();
+    rtFinishFrame();
+    throwOnError("rendering");
+    result = flight.result;
+    result.renderSeconds = secondsSince(lastEnd); // of frames that overlap: what they add
+    lastEnd = Clock::now();
+    stage.passOn();
+    result.interrupted = cancelled;
+    stage.readChannels(result.picture, &flight.names);
+    stage.describe(result);
+    result.map = flight.result.map;
+  }
+
   void render(const View& view, RenderResult& result) {
     auto start = Clock::now();
     stage.prepare(view);
@@ -112,7 +158,7 @@ Renderer::Renderer(xvrml::Browser& browser, const RenderSettings& settings, Watc
 void Renderer::begin() {
   impl_->thread = std::thread([impl = impl_.get()] { impl->loop(); });
   try {
-    impl_->run([this] { impl_->stage.open(); });
+    impl_->run([this] { impl_->stage.open([this] { return impl_->cancelled.load(); }); });
   } catch (...) {
     end();
     throw;
@@ -166,9 +212,43 @@ std::vector<xvrml::ExplainedObject> Renderer::explain() {
 
 bool Renderer::snapshot(Picture& picture) { return impl_->stage.snapshot(picture, impl_->stage.settings.channels); }
 
-RenderResult Renderer::render(const View& view) {
+void Renderer::checkViewpoint(const View& view) {
   if (view.viewpoint && *view.viewpoint >= viewpoints().size())
     throw RenderError(fmt::format("there is no viewpoint {}: the world has {}", *view.viewpoint, viewpoints().size()));
+}
+
+void Renderer::start(const View& view) {
+  checkViewpoint(view);
+  if (impl_->flights.empty()) impl_->cancelled = false;
+  const News news = impl_->stage.collect();
+  impl_->run([&] {
+    impl_->stage.apply(news);
+    impl_->start(view);
+  });
+}
+
+RenderResult Renderer::finish() {
+  if (impl_->flights.empty()) throw RenderError("no frame is in flight");
+  RenderResult result{};
+  impl_->run([&] { impl_->finish(result); });
+  return result;
+}
+
+size_t Renderer::flying() const { return impl_->flights.size(); }
+
+size_t Renderer::overlap() const {
+  const RenderSettings& settings = impl_->stage.settings;
+  if (!settings.cluster) return 1;
+  // A frame has a place for the sums of all its channels, and a copy of them.
+  const size_t bytes = size_t(settings.width) * size_t(settings.height) * pixelBytes;
+  const size_t most = std::clamp(inFlightBytes / bytes, size_t(2), size_t(maxInFlight));
+  const std::string& split = settings.cluster->settings().split;
+  const bool shared = split == "tiles" || split == "samples";
+  return shared ? 2 : std::clamp(settings.cluster->alive() + 1, size_t(2), most);
+}
+
+RenderResult Renderer::render(const View& view) {
+  checkViewpoint(view);
   RenderResult result{};
   impl_->cancelled = false;
   const News news = impl_->stage.collect();

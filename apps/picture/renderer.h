@@ -19,6 +19,8 @@
 
 namespace picture {
 
+class Cluster; // cluster.h
+
 struct RenderSettings {
   int width = 800, height = 600;
   int samples = 16;
@@ -40,12 +42,14 @@ struct RenderSettings {
   std::string shaderPath;  // folders, separated by colons
   std::string environment; // a picture of radiance (radiance.h) all around, instead of the world's Background
   double environmentIntensity = 1;
+  std::shared_ptr<Cluster> cluster; // machines to render with, instead of `backend`; null: none
 
   bool operator==(const RenderSettings&) const = default;
 };
 
 struct RenderError : std::runtime_error {
-  using runtime_error::runtime_error;
+  explicit RenderError(const std::string& text, RTenum engine = RT_NO_ERROR) : runtime_error(text), code(engine) {}
+  RTenum code; // the engine's, if it is one of these
 };
 
 struct RenderResult {
@@ -55,6 +59,7 @@ struct RenderResult {
   bool missing = false;     // a shader plug-in or a texture could not be found; the world's diagnostics say which
   bool interrupted = false; // the picture holds what was finished until then
   double mapSeconds = 0, renderSeconds = 0;
+  std::vector<RTworker> workers; // of a cluster, as they then were
 };
 
 // Called on the calling thread about 20 times a second with the fraction done; true ends the picture early.
@@ -85,9 +90,19 @@ class Renderer {
   // Throws RenderError. An exception of the watch ends the picture and is passed on.
   RenderResult render(const View& view);
 
+  // Frames that overlap, where the settings have a cluster: start() returns when the world is mapped and the frame under way, and
+  // the world may then change; finish() waits for the oldest. Each frame has the bytes that render() gives. Not mixed with
+  // render() while a frame is in flight.
+  void start(const View& view);
+  RenderResult finish();
+  size_t flying() const; // started and not finished
+  // How many frames may be in flight so that all machines have work, and not too much memory is used: 1 without a cluster.
+  size_t overlap() const;
+
  private:
   void begin();
   void end();
+  void checkViewpoint(const View& view);
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

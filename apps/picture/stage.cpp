@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "picture/cluster.h"
 #include "picture/radiance.h"
 
 namespace picture {
@@ -14,19 +15,6 @@ namespace picture {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-// A configuration value of rtNewContext.
-std::string quoted(const std::string& key, const std::string& value) {
-  if (value.find('"') != value.npos) throw RenderError(fmt::format("{}: a double quote is not possible in {}", key, value));
-  return fmt::format(" {}=\"{}\"", key, value);
-}
-
-std::string contextConfiguration(const RenderSettings& settings) {
-  std::string config = fmt::format("backend={} threads={}", settings.backend, settings.threads);
-  if (!settings.record.empty()) config += quoted("record", settings.record);
-  if (!settings.shaderPath.empty()) config += quoted("shaderpath", settings.shaderPath);
-  return config;
-}
 
 double aspectOf(const RenderSettings& settings) { return double(settings.width) / settings.height; }
 
@@ -44,7 +32,21 @@ template <class Fill> bool fillChannels(const RenderSettings& settings, uint32_t
 } // namespace
 
 void throwOnError(const char* doing) {
-  if (rtGetError() != RT_NO_ERROR) throw RenderError(fmt::format("{}: {}", doing, rtGetErrorMessage()));
+  if (const RTenum code = rtGetError(); code != RT_NO_ERROR)
+    throw RenderError(fmt::format("{}: {}", doing, rtGetErrorMessage()), code);
+}
+
+std::string contextConfiguration(const RenderSettings& settings) {
+  std::string config = fmt::format(" threads={}", settings.threads);
+  if (!settings.record.empty()) addQuoted(config, "record", settings.record);
+  if (!settings.shaderPath.empty()) addQuoted(config, "shaderpath", settings.shaderPath);
+  return config;
+}
+
+RTcontext newContext(const std::string& configuration) {
+  if (const RTcontext made = rtNewContext(configuration.c_str())) return made;
+  const RTenum code = rtGetError();
+  throw RenderError(rtGetErrorMessage(), code);
 }
 
 Stage::Stage(xvrml::World& world, xvrml::Browser* browser, const RenderSettings& s)
@@ -74,16 +76,18 @@ void Stage::passOn() {
   for (const std::string& text : news) world_->diagnostics.warn({}, text);
 }
 
-void Stage::open() {
-  const std::string config = contextConfiguration(settings);
-  const RTcontext made = rtNewContext(config.c_str());
-  if (!made) {
-    rtGetError();
-    throw RenderError(fmt::format("no ray tracing context: {}", rtGetErrorMessage()));
+void Stage::open(const std::function<bool()>& stop) {
+  if (settings.cluster) {
+    const auto listener = [this](int level, const char* text) { listen(level, text, this); };
+    const RTcontext lent = settings.cluster->borrow(listener, stop);
+    if (!lent) throw RenderError("given up: the cluster makes another picture");
+    borrowed_ = true;
+    context_ = lent;
+  } else {
+    context_ = newContext("backend=" + settings.backend + contextConfiguration(settings));
+    rtLogCallback(listen, this);
   }
   rtErrorCallback(note, this);
-  rtLogCallback(listen, this);
-  context_ = made;
   try {
     makeMapper();
   } catch (...) {
@@ -93,9 +97,19 @@ void Stage::open() {
 }
 
 void Stage::close() {
+  if (borrowed_) rtCancel(context_); // a frame that nobody will see
   mapper_.reset();
-  environment_ = 0;
-  rtDeleteContext(context_.exchange(nullptr));
+  if (borrowed_ && environment_) {
+    rtUseEnvironment(0);
+    rtDeleteShader(environment_);
+    rtDeleteTexture(environmentTexture_);
+  }
+  environment_ = environmentTexture_ = 0;
+  const RTcontext context = context_.exchange(nullptr);
+  if (std::exchange(borrowed_, false))
+    settings.cluster->giveBack();
+  else
+    rtDeleteContext(context);
 }
 
 void Stage::makeMapper() {
@@ -148,14 +162,13 @@ void Stage::useEnvironment() {
   if (settings.environment.empty()) return;
   if (environment_ == 0) {
     const Radiance around = readRadiance(settings.environment);
-    RTid texture = 0;
-    rtGenTextures(1, &texture);
-    rtBindTexture(texture);
+    rtGenTextures(1, &environmentTexture_);
+    rtBindTexture(environmentTexture_);
     rtTexImage2D(3, around.width, around.height, RT_FLOAT, around.rgb.data());
     rtTexParameteri(RT_TEXTURE_WRAP_T, RT_CLAMP_TO_EDGE);
     environment_ = rtNewShader(rtNewShaderClass("EnvironmentMap", nullptr));
     rtBindShader(environment_);
-    rtParameterTexture(rtParameterHandle("texture"), texture);
+    rtParameterTexture(rtParameterHandle("texture"), environmentTexture_);
     rtParameter1f(rtParameterHandle("intensity"), float(settings.environmentIntensity));
     rtBindShader(0);
   }
@@ -174,7 +187,7 @@ void Stage::setUpFrame() {
   rtQuality(RT_PROGRESSIVE, settings.progressive ? 1 : 0);
   rtQualityf(RT_TARGET_ERROR, settings.error);
   rtQualityf(RT_TIME_LIMIT, settings.timeLimit);
-  if (settings.energyCut >= 0) rtQualityf(RT_ENERGY_CUT, settings.energyCut);
+  rtQualityf(RT_ENERGY_CUT, settings.energyCut >= 0 ? settings.energyCut : 1.0 / 4096);
   rtQualityf(RT_CLAMP, settings.clamp);
   throwOnError("frame");
 }
@@ -199,8 +212,9 @@ bool Stage::snapshot(Picture& picture, uint32_t channels) const {
   return true;
 }
 
-void Stage::readChannels(Picture& picture) const {
+void Stage::readChannels(Picture& picture, const std::vector<std::string>* names) const {
   describe(picture, settings.channels);
+  if (names && (settings.channels & RT_NAME)) picture.names = *names;
   fillChannels(settings, settings.channels, picture, [](uint32_t channel, std::vector<float>& plane) {
     rtReadPixels(channel, plane.data(), plane.size());
     throwOnError("reading the picture");
@@ -213,6 +227,7 @@ void Stage::describe(RenderResult& result) const {
   result.missing = pluginMissing_ || result.map.missingTextures > 0;
   result.stats.size = sizeof result.stats;
   rtGetStats(&result.stats);
+  if (settings.cluster) result.workers = settings.cluster->workers();
 }
 
 } // namespace picture

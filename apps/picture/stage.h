@@ -4,6 +4,7 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -38,15 +39,16 @@ class Stage {
   void passOn();
 
   // --- On the context's thread ---
-  void open(); // the context and the mapper; throws RenderError
+  // The context and the mapper; throws RenderError. stop: asked while a cluster is in use by others; true: give up.
+  void open(const std::function<bool()>& stop = {});
   void close();
   void apply(const News& news);
   // Maps the world for a view.
   void prepare(const View& view);
   // The size, channels and quality of the next frame, from the settings.
   void setUpFrame();
-  // The channels of the frame that is finished.
-  void readChannels(Picture& picture) const;
+  // The channels of the frame that is finished. names: as they were when it was started; null: as they are.
+  void readChannels(Picture& picture, const std::vector<std::string>* names = nullptr) const;
   void describe(RenderResult& result) const; // statistics of the frame that is finished
   const xvrml::OpenRTMapper* mapper() const { return mapper_.get(); }
   double takeMeshSeconds(); // that mappers were made in
@@ -69,7 +71,8 @@ class Stage {
   std::atomic<RTcontext> context_{nullptr};
   double meshSeconds_ = 0;
   bool pluginMissing_ = false, memoryExhausted_ = false;
-  RTid environment_ = 0;
+  RTid environment_ = 0, environmentTexture_ = 0;
+  bool borrowed_ = false; // the context is the cluster's
   std::optional<xvrml::CameraSettings> viewer_; // of a running world, where a Viewpoint is bound
   uint64_t generation_ = 0;                     // of the browser's world that the mapper shows
   std::mutex heardMutex_;
@@ -77,5 +80,10 @@ class Stage {
 };
 
 void throwOnError(const char* doing);
+
+// What the settings say of a context besides its backend: " threads=...".
+std::string contextConfiguration(const RenderSettings& settings);
+// rtNewContext. Throws RenderError.
+RTcontext newContext(const std::string& configuration);
 
 } // namespace picture

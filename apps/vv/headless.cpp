@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "cluster_report.h"
 #include "describe.h"
 #include "engine_list.h"
 #include "messages.h"
@@ -56,6 +57,7 @@ class Headless {
     picture::RenderSettings settings = options_.render;
     settings.backend = "null";
     settings.record.clear();
+    settings.cluster.reset();
     return settings;
   }
 
@@ -94,6 +96,7 @@ class Headless {
   void explain() {
     picture::RenderSettings settings = options_.render;
     settings.record.clear();
+    settings.cluster.reset();
     settings.width = settings.height = settings.samples = 1;
     settings.channels = RT_RGBA;
     settings.error = settings.timeLimit = 0;
@@ -118,6 +121,9 @@ int runOnce(Headless& job) {
   } catch (const xvrml::LoadError& error) {
     say(error.diagnostic.text());
     return exitInput;
+  } catch (const picture::RenderError& error) {
+    sayError(error.what());
+    return exitCodeOf(error);
   } catch (const std::bad_alloc&) {
     sayError("out of memory");
     return exitTryAgain;

@@ -3,6 +3,7 @@
 #include <exception>
 #include <new>
 
+#include "cluster_report.h"
 #include "describe.h"
 #include "headless.h"
 #include "messages.h"
@@ -20,10 +21,11 @@ std::string quoted(int argc, char** argv) {
 }
 
 int run(int argc, char** argv) {
-  const vv::Options options = vv::readCommandLine(argc, argv);
+  vv::Options options = vv::readCommandLine(argc, argv);
   if (options.help) return vv::writeOut(vv::helpText()), vv::exitDone;
   if (options.version) return vv::writeOut("vv " + vv::version() + "\n"), vv::exitDone;
   if (options.listKeys) return vv::writeOut(vv::listKeys()), vv::exitDone;
+  vv::joinCluster(options);
   if (options.opensWindow()) return vv::runWindow(options, {argv + 1, argv + argc});
   return vv::runHeadless(options, quoted(argc, argv));
 }
@@ -40,6 +42,9 @@ int main(int argc, char** argv) {
   } catch (const vv::Failure& failure) {
     vv::sayError(failure.text);
     return failure.code;
+  } catch (const picture::RenderError& error) {
+    vv::sayError(error.what());
+    return vv::exitCodeOf(error);
   } catch (const std::bad_alloc&) {
     vv::sayError("out of memory");
     return vv::exitTryAgain;

@@ -207,6 +207,48 @@ const OptionInfo table[] = {
     {"--threads", "N", "Quality",
      "Render threads; 0 (default): as many as the process may use. The picture does not depend on it.",
      [](Options& o, const std::string& v) { o.render.threads = int(readInteger(v, 0, 1024)); }},
+    {"--workers", "HOST[:PORT],...|@FILE", "Cluster",
+     "Machines that render, too: an openrt-worker listens there (port 7447 where none is said). @FILE: a file with one a line, # "
+     "begins a comment. The picture has the same bytes however many there are, and whatever becomes of them (docs/cluster.md).",
+     [](Options& o, const std::string& v) {
+       notEmpty(v == "@" ? "" : v, "HOST[:PORT],... or @FILE");
+       o.cluster.workers = v;
+     }},
+    {"--listen-workers", "ADDRESS[:PORT]", "Cluster",
+     "Workers call in here (openrt-worker --connect): 0.0.0.0 is every address of this machine.",
+     [](Options& o, const std::string& v) {
+       notEmpty(v, "ADDRESS[:PORT]");
+       o.cluster.listen = v;
+     }},
+    {"--key", "FILE", "Cluster",
+     "The key file that workers have, too (openrt-worker --new-key FILE makes one). Without one only loopback addresses are used.",
+     [](Options& o, const std::string& v) {
+       notEmpty(v, "a file name");
+       o.cluster.key = v;
+     }},
+    {"--allow-keys", "FILE", "Cluster", "Public keys of workers that are let in beside those with the same key file, one a line.",
+     [](Options& o, const std::string& v) {
+       notEmpty(v, "a file name");
+       o.cluster.allow = v;
+     }},
+    {"--local-threads", "N", "Cluster",
+     "Threads of this machine that render beside the workers (default: as --threads); 0: none as long as a worker lives.",
+     [](Options& o, const std::string& v) { o.cluster.localThreads = int(readInteger(v, 0, 1024)); }},
+    {"--split", "auto|tiles|samples|frames", "Cluster",
+     "What the work is cut into: tiles of a picture, samples, or whole pictures of a sequence (default auto: by what is to be "
+     "done). Says nothing of the bytes.",
+     [](Options& o, const std::string& v) {
+       if (v != "auto" && v != "tiles" && v != "samples" && v != "frames")
+         throw UsageError(fmt::format("auto, tiles, samples or frames was expected, not \"{}\"", v));
+       o.cluster.split = v;
+     }},
+    {"--require-workers", "[N]", "Cluster",
+     "Without N workers (default 1) there is no picture: exit code 6 when they are missing for 10 seconds. Else this machine "
+     "finishes alone.",
+     [](Options& o, const std::string& v) { o.cluster.require = v.empty() ? 1 : int(readInteger(v, 1, 65536)); }},
+    {"--tolerant", "", "Cluster",
+     "Take workers of another instruction set or version, too: the last digits of a picture may then differ from run to run.",
+     [](Options& o, const std::string&) { o.cluster.tolerant = true; }},
     {"--check", "", "Inspect", "Read the world, report every problem, make no picture; exit code 4 if there is any.",
      [](Options& o, const std::string&) { o.check = true; }},
     {"--strict", "", "Inspect",

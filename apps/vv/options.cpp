@@ -61,6 +61,23 @@ void checkSequence(const Options& options) {
   if (options.watch && options.input == "-") throw UsageError("--watch needs a file, not standard input");
 }
 
+// Options about workers say nothing where there are none.
+void checkCluster(const Options& options) {
+  const picture::ClusterSettings& c = options.cluster;
+  const auto alone = [&](bool given, const char* name) {
+    if (given && !c.used()) throw UsageError(fmt::format("{} goes with --workers or --listen-workers", name));
+  };
+  alone(!c.key.empty(), "--key");
+  alone(!c.allow.empty(), "--allow-keys");
+  alone(c.localThreads >= 0, "--local-threads");
+  alone(!c.split.empty(), "--split");
+  alone(c.require > 0, "--require-workers");
+  alone(c.tolerant, "--tolerant");
+  if (!c.allow.empty() && c.key.empty()) throw UsageError("--allow-keys goes with --key");
+  if (c.used() && !options.makesPictures() && !options.opensWindow())
+    throw UsageError("--workers and --listen-workers go with -o, or with the window");
+}
+
 // What the options ask for together.
 void checkTogether(Options& options) {
   const int views = !options.viewpoint.empty() + options.view.lookAt.has_value() + options.view.fit;
@@ -88,6 +105,7 @@ void checkTogether(Options& options) {
     throw UsageError("--audit and --compare write to standard output: nothing else can go there");
   if (options.audit && options.render.timeLimit > 0)
     throw UsageError("--audit: not with --time-limit, which makes no picture twice");
+  checkCluster(options);
   if (options.check && options.makesPictures()) throw UsageError("--check makes no picture: not with -o");
   if (options.makesPictures() && options.allViewpoints())
     for (const Output& output : options.outputs)
@@ -208,9 +226,9 @@ std::string helpText() {
   }
   return out + "\nExit codes: 0 done, 1 the picture failed, 2 usage, 3 the world is missing or unusable, 4 problems found by "
                "--check or\n"
-               "--strict, 5 a plug-in or a texture is missing under --strict, 75 try again, 130 interrupted (what was finished "
-               "is saved;\n"
-               "a second interrupt ends at once; SIGUSR1 saves and goes on).\n";
+               "--strict, 5 a plug-in or a texture is missing under --strict, 6 too few workers under --require-workers, 75 try "
+               "again,\n"
+               "130 interrupted (what was finished is saved; a second interrupt ends at once; SIGUSR1 saves and goes on).\n";
 }
 
 } // namespace vv

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "picture/cluster.h"
 #include "picture/renderer.h"
 #include "values.h"
 #include "video.h"
@@ -26,6 +27,7 @@ struct Options {
   std::string input; // "-": standard input; empty: none given
   std::vector<Output> outputs;
   picture::RenderSettings render;
+  picture::ClusterSettings cluster;
   std::optional<int> samples; // as asked for; render.samples is what follows
   picture::View view;
   std::optional<double> time; // seconds of the world's clock

@@ -2,6 +2,7 @@
 #include "pictures.h"
 
 #include <chrono>
+#include <deque>
 #include <map>
 #include <set>
 
@@ -9,6 +10,7 @@
 #include <unistd.h>
 
 #include "audit.h"
+#include "cluster_report.h"
 #include "describe.h"
 #include "messages.h"
 #include "names.h"
@@ -86,15 +88,20 @@ class Pictures {
     if (!renderer_) renderer_ = std::make_unique<picture::Renderer>(browser_, settings);
     picture::Renderer& renderer = *renderer_;
     renderer.setWatch([this](float fraction) { return watch(fraction); });
+    moments_ = timeline.size();
     for (size_t i = 0; i < timeline.size(); ++i) {
       const Moment moment = timeline[i];
-      if (!clock.advance(moment.time)) return stopped("vv: interrupted; the pictures so far are saved");
-      for (Job& job : pilot_ ? std::vector<Job>{scriptedJob()} : chooseJobs(options_, renderer.viewpoints())) {
+      if (!clock.advance(moment.time)) return flights_.empty() ? stopped("vv: interrupted; the pictures so far are saved") : land();
+      std::vector<Job> jobs = pilot_ ? std::vector<Job>{scriptedJob()} : chooseJobs(options_, renderer.viewpoints());
+      views_ = jobs.size();
+      for (Job& job : jobs) {
         job.name.frame = moment.frame;
         job.view.turn = moment.turn;
         if (const int code = makeOne(job, moment); code != exitDone) return code;
       }
     }
+    while (!flights_.empty())
+      if (const int code = land(); code != exitDone) return code;
     finishSequence();
     return exitDone;
   }
@@ -131,26 +138,53 @@ class Pictures {
   }
 
   bool watch(float fraction) {
-    if (progress_) progress_->show(fraction);
+    tellNotes();
+    if (progress_) {
+      const double all = double(moments_ * views_);
+      progress_->show(float((double(done_) + double(fraction)) / std::max(1.0, all)), workersText(options_.render.cluster.get()));
+    }
     saveWanted_ |= takeSaveRequest();
     picture::Picture soFar;
-    if (current_ && saveWanted_ && renderer_->snapshot(soFar)) {
+    if (!flights_.empty() && saveWanted_ && renderer_->snapshot(soFar)) {
       saveWanted_ = false;
-      savePart(*current_, soFar);
+      savePart(flights_.front().job, soFar);
     }
     return interrupted();
   }
 
+  // What is said of workers, between the pictures of a progress bar.
+  void tellNotes() {
+    if (!options_.render.cluster) return;
+    const std::vector<std::string> lines = noteLines(options_.render.cluster->takeNotes(), options_.verbose, options_.quiet);
+    if (progress_ && !lines.empty()) progress_->clear();
+    for (const std::string& line : lines) say(line);
+  }
+
+  // As many frames as there is somebody to work at are under way at a time; they are saved in their order.
   int makeOne(const Job& job, const Moment& moment) {
     if (options_.audit) return auditOne(job);
-    current_ = &job;
-    progress_ = std::make_unique<Progress>(job.name.text(), options_.quiet);
-    const picture::RenderResult result = renderer_->render(job.view);
-    progress_.reset();
-    current_ = nullptr;
+    if (!progress_) progress_ = std::make_unique<Progress>(job.name.text(), options_.quiet);
+    renderer_->start(job.view);
+    flights_.push_back({job, moment});
+    const size_t most = options_.strict ? 1 : renderer_->overlap();
+    while (flights_.size() >= most)
+      if (const int code = land(); code != exitDone) return code;
+    return exitDone;
+  }
+
+  // Waits for the oldest frame and saves it.
+  int land() {
+    if (progress_) progress_->rename(flights_.front().job.name.text());
+    const picture::RenderResult result = renderer_->finish();
+    const Flight flight = std::move(flights_.front());
+    flights_.pop_front();
+    ++done_;
+    if (done_ == moments_ * views_) progress_.reset();
+    if (progress_) progress_->clear();
+    tellNotes();
     problems_.tell(browser_.world());
     if (options_.strict && Problems::any(browser_.world())) return result.missing ? exitMissing : exitProblems;
-    finish(job, moment, result);
+    finish(flight.job, flight.moment, result);
     return interrupted() ? stopped("vv: interrupted; the picture so far is saved") : exitDone;
   }
 
@@ -170,6 +204,7 @@ class Pictures {
   }
 
   int stopped(const char* text) {
+    progress_.reset();
     finishSequence();
     say(text);
     return exitInterrupted;
@@ -216,6 +251,8 @@ class Pictures {
       say(fmt::format("vv: {}{}{} triangles, mapped in {}, rendered in {}, written in {}", job.name.text(),
                       job.name.text().empty() ? "" : ": ", result.stats.triangles, duration(result.mapSeconds),
                       duration(result.renderSeconds), duration(writeSeconds)));
+    if (options_.verbose && done_ == moments_ * views_)
+      for (const std::string& line : clusterLines(result)) say(line);
     const RTstats& s = result.stats;
     if (options_.render.error > 0 && !result.interrupted && s.errorPixels > 0 && s.errorHalfWidth > 1.1 * options_.render.error)
       sayWarning(fmt::format("{}{}the error is {:.2g} %, not {:.2g} %: {} samples a pixel were not enough; --spp allows more",
@@ -245,7 +282,12 @@ class Pictures {
   std::unique_ptr<Progress> progress_;
   std::unique_ptr<Pilot> pilot_; // of --input; null: none
   std::unique_ptr<Replay> replay_;
-  const Job* current_ = nullptr; // being rendered
+  struct Flight {
+    Job job;
+    Moment moment;
+  };
+  std::deque<Flight> flights_;                  // being rendered, the oldest first
+  size_t moments_ = 1, views_ = 1, done_ = 0; // pictures: of a moment, finished
   bool saveWanted_ = false;
   std::map<std::string, std::unique_ptr<VideoFile>> videos_; // by path
   SequenceStats frames_;

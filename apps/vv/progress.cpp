@@ -51,13 +51,14 @@ void Progress::clear() {
   shown_ = false;
 }
 
-void Progress::show(float fraction) {
+void Progress::show(float fraction, const std::string& more) {
   const auto now = Clock::now();
   if (quiet_ || now < next_) return;
   fraction = std::clamp(fraction, 0.0f, 1.0f);
   const double elapsed = std::chrono::duration<double>(now - start_).count();
   std::string text = fmt::format("{:3.0f} %  {}", 100 * fraction, duration(elapsed));
   if (fraction > 0.01f) text += fmt::format(", about {} to go", duration(elapsed / fraction * (1 - fraction)));
+  if (!more.empty()) text += ", " + more;
   if (terminal_) {
     writeError(fmt::format("\r{}{} {}\x1b[K", what_.empty() ? "" : what_ + " ", bar(fraction, colour_), text));
     next_ = now + 100ms;

@@ -11,10 +11,12 @@ class Progress {
   // what: shown in front, e.g. the viewpoint; quiet: nothing at all.
   Progress(std::string what, bool quiet);
   ~Progress();
-  void show(float fraction);
+  // more: shown behind, e.g. who works on it.
+  void show(float fraction, const std::string& more = "");
+  void rename(std::string what) { what_ = std::move(what); }
+  void clear(); // before something else is said
 
  private:
-  void clear();
 
   std::string what_;
   bool quiet_, terminal_, colour_;

@@ -11,6 +11,7 @@
 #include <sys/resource.h>
 
 #include "describe.h"
+#include "picture/cluster.h"
 #include "picture/transport.h"
 #include "transport_words.h"
 #include "xvrml/script_engines.h"
@@ -41,6 +42,30 @@ Json transportJson(const Options& options, const RTstats& s) {
   return {{"chosen", picture::transportName(s.transport)},
           {"reason", s.transportReason},
           {"claim", transportClaim(s.transport, options.render)}};
+}
+
+// Since the program has begun to call the workers. Tiles: jobs, parts of tiles too.
+Json clusterJson(const picture::RenderResult& result) {
+  const RTstats& s = result.stats;
+  Json machines = Json::array();
+  for (const RTworker& w : result.workers)
+    machines.push_back({{"name", w.name},
+                        {"here", picture::isHere(w)},
+                        {"alive", w.alive != 0},
+                        {"threads", w.threads},
+                        {"tiles", w.jobs},
+                        {"rays", w.rays},
+                        {"bytes_sent", w.bytesSent},
+                        {"bytes_received", w.bytesReceived},
+                        {"late", w.late},
+                        {"lost", w.lost},
+                        {"busy", w.busySeconds},
+                        {"latency", w.latency}});
+  return {{"workers", s.workers},       {"tiles", s.tilesRemote},
+          {"tiles_here", s.tilesLocal}, {"retries", s.reissued},
+          {"duplicates", s.duplicates}, {"bytes", s.bytesSent + s.bytesReceived},
+          {"bytes_sent", s.bytesSent},  {"bytes_received", s.bytesReceived},
+          {"machines", std::move(machines)}};
 }
 
 uint64_t peakMemory() {
@@ -137,7 +162,7 @@ void addMachine(Json& json, const Options& options, const picture::RenderResult&
                       {"unreached_lights", s.unreachedLights}, {"shader_faults", s.shaderFaults}, {"wrong_hits", s.wrongHits},
                       {"rejected_rays", s.rejectedRays}};
   json["memory"] = {{"peak_rss", peakMemory()}, {"bvh", s.bvhBytes}, {"scene", nullptr}};
-  json["cluster"] = {{"workers", 0}, {"tiles", 0}, {"retries", 0}, {"bytes", 0}};
+  json["cluster"] = clusterJson(result);
   json["machine"] = {{"isa", s.isa}, {"threads", s.threads}, {"embree", s.kernel}};
 }
 
@@ -197,6 +222,7 @@ void SequenceStats::add(const PictureName& name, double worldTime, const picture
   sum.secondary += s.secondaryRays;
   sum.last.map = result.map;
   sum.last.stats = s;
+  sum.last.workers = result.workers;
   sum.last.interrupted |= result.interrupted;
 }
 

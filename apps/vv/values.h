@@ -19,6 +19,7 @@ enum ExitCode {
   exitInput = 3,     // the world is missing or unusable
   exitProblems = 4,  // --check or --strict found problems
   exitMissing = 5,   // a plug-in or a texture is missing under --strict
+  exitNoWorkers = 6, // fewer than --require-workers asks for
   exitTryAgain = 75, // out of memory or of another resource
   exitInterrupted = 130
 };

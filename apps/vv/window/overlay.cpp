@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "cluster_report.h"
 #include "describe.h"
 #include "picture/transport.h"
 #include "window/keys.h"
@@ -32,6 +33,26 @@ std::string problems(const SessionFacts& f) {
   return text;
 }
 
+// A line for each machine, as long as there are few.
+std::vector<std::string> workerLines(const std::vector<RTworker>& workers) {
+  constexpr size_t most = 8;
+  std::vector<std::string> lines;
+  for (const RTworker& w : workers) {
+    if (lines.size() == most) {
+      lines.push_back(fmt::format("and {} more", workers.size() - most));
+      break;
+    }
+    const bool here = picture::isHere(w);
+    std::string line = fmt::format("{}: {}, {} tiles", here ? "this process" : oneLine(w.name), count(w.threads, "thread", "threads"), w.jobs);
+    if (!w.alive)
+      line += ", gone";
+    else if (!here)
+      line += fmt::format(", {:.1f} ms away", w.latency * 1e3);
+    lines.push_back(std::move(line));
+  }
+  return lines;
+}
+
 } // namespace
 
 std::vector<std::string> overlayLines(const SessionFacts& f, bool paused, OverlayLevel level) {
@@ -41,6 +62,7 @@ std::vector<std::string> overlayLines(const SessionFacts& f, bool paused, Overla
   if (f.frameRate > 0) first += fmt::format("   {}x{}", f.width, f.height);
   if (f.frameRate <= 0 && f.finished && f.stats.errorPixels > 0)
     first += fmt::format("   error {:.2g} %", 100 * f.stats.errorHalfWidth);
+  if (f.cluster) first += "   " + workersText(f.workers);
   if (paused) first += "   paused";
   if (f.loading) first += "   loading ...";
   const std::string wrong = problems(f);
@@ -56,6 +78,7 @@ std::vector<std::string> overlayLines(const SessionFacts& f, bool paused, Overla
   if (f.stats.transport)
     lines.push_back(fmt::format("\t{}: {}", picture::transportName(f.stats.transport), f.stats.transportReason));
   lines.push_back(fmt::format("\t{}, picture of {}x{}", f.navigation, f.width, f.height));
+  for (const std::string& line : workerLines(f.workers)) lines.push_back("\t" + line);
   if (!wrong.empty()) lines.push_back(wrong);
   if (!f.lastProblem.empty()) lines.push_back("\t" + oneLine(f.lastProblem));
   return lines;

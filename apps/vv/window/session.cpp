@@ -313,6 +313,7 @@ SessionFacts Session::facts() const {
   facts.navigation = navigationName(browser_->navigation());
   facts.description = browser_->description();
   facts.loading = !inlines_.empty();
+  if (const auto& cluster = options_.render.cluster) facts.cluster = true, facts.workers = cluster->workers();
   return facts;
 }
 

@@ -29,7 +29,8 @@ struct SessionFacts {
   xvrml::MapStats map{};
   uint64_t errors = 0, warnings = 0;
   std::string lastProblem, navigation, description;
-  bool loading = false, finished = false;
+  bool loading = false, finished = false, cluster = false;
+  std::vector<RTworker> workers; // of a cluster
 };
 
 class Session {

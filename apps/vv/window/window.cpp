@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "cluster_report.h"
 #include "messages.h"
 #include "picture/atomic_file.h"
 #include "progress.h"
@@ -245,7 +246,17 @@ class Window {
     return hint.empty() ? session_->browser().description() : hint;
   }
 
+  // What is said of workers: in the terminal, and what is wrong also in the window.
+  void tellNotes() {
+    if (!options_.render.cluster) return;
+    const std::vector<picture::ClusterNote> notes = options_.render.cluster->takeNotes();
+    for (const picture::ClusterNote& note : notes)
+      if (note.level >= 2) message(note.text, 6);
+    for (const std::string& line : noteLines(notes, options_.verbose, options_.quiet)) say(line);
+  }
+
   void tell() {
+    tellNotes();
     if (session_ && session_->resting())
       if (const std::string text = session_->takeMessage(); !text.empty()) message(text, 3);
     const std::string bottom = bottomLine();
