@@ -18,12 +18,12 @@ struct RenderSettings;
 
 // Words as in the configuration of a context (openrt.h).
 struct ClusterSettings {
-  std::string workers;     // HOST[:PORT],... or @FILE
-  std::string listen;      // ADDRESS[:PORT]
-  std::string key, allow;  // files
-  int localThreads = -1;   // that render here, too; below 0: as RenderSettings.threads says
-  std::string split;       // auto, tiles, samples or frames; empty: auto
-  int require = 0;         // workers without which there is no picture
+  std::string workers;    // HOST[:PORT],... or @FILE
+  std::string listen;     // ADDRESS[:PORT]
+  std::string key, allow; // files
+  int localThreads = -1;  // that render here, too; below 0: as RenderSettings.threads says
+  std::string split;      // auto, tiles, samples or frames; empty: auto
+  int require = 0;        // workers without which there is no picture
   bool tolerant = false;
 
   bool used() const { return !workers.empty() || !listen.empty(); }

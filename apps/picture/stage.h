@@ -72,7 +72,7 @@ class Stage {
   double meshSeconds_ = 0;
   bool pluginMissing_ = false, memoryExhausted_ = false;
   RTid environment_ = 0, environmentTexture_ = 0;
-  bool borrowed_ = false; // the context is the cluster's
+  bool borrowed_ = false;                       // the context is the cluster's
   std::optional<xvrml::CameraSettings> viewer_; // of a running world, where a Viewpoint is bound
   uint64_t generation_ = 0;                     // of the browser's world that the mapper shows
   std::mutex heardMutex_;

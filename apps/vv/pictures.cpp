@@ -91,7 +91,8 @@ class Pictures {
     moments_ = timeline.size();
     for (size_t i = 0; i < timeline.size(); ++i) {
       const Moment moment = timeline[i];
-      if (!clock.advance(moment.time)) return flights_.empty() ? stopped("vv: interrupted; the pictures so far are saved") : land();
+      if (!clock.advance(moment.time))
+        return flights_.empty() ? stopped("vv: interrupted; the pictures so far are saved") : land();
       std::vector<Job> jobs = pilot_ ? std::vector<Job>{scriptedJob()} : chooseJobs(options_, renderer.viewpoints());
       views_ = jobs.size();
       for (Job& job : jobs) {
@@ -286,7 +287,7 @@ class Pictures {
     Job job;
     Moment moment;
   };
-  std::deque<Flight> flights_;                  // being rendered, the oldest first
+  std::deque<Flight> flights_;                // being rendered, the oldest first
   size_t moments_ = 1, views_ = 1, done_ = 0; // pictures: of a moment, finished
   bool saveWanted_ = false;
   std::map<std::string, std::unique_ptr<VideoFile>> videos_; // by path

@@ -17,7 +17,6 @@ class Progress {
   void clear(); // before something else is said
 
  private:
-
   std::string what_;
   bool quiet_, terminal_, colour_;
   bool shown_ = false;

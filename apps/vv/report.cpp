@@ -61,10 +61,10 @@ Json clusterJson(const picture::RenderResult& result) {
                         {"lost", w.lost},
                         {"busy", w.busySeconds},
                         {"latency", w.latency}});
-  return {{"workers", s.workers},       {"tiles", s.tilesRemote},
-          {"tiles_here", s.tilesLocal}, {"retries", s.reissued},
-          {"duplicates", s.duplicates}, {"bytes", s.bytesSent + s.bytesReceived},
-          {"bytes_sent", s.bytesSent},  {"bytes_received", s.bytesReceived},
+  return {{"workers", s.workers},           {"tiles", s.tilesRemote},
+          {"tiles_here", s.tilesLocal},     {"retries", s.reissued},
+          {"duplicates", s.duplicates},     {"bytes", s.bytesSent + s.bytesReceived},
+          {"bytes_sent", s.bytesSent},      {"bytes_received", s.bytesReceived},
           {"machines", std::move(machines)}};
 }
 

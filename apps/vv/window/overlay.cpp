@@ -43,7 +43,8 @@ std::vector<std::string> workerLines(const std::vector<RTworker>& workers) {
       break;
     }
     const bool here = picture::isHere(w);
-    std::string line = fmt::format("{}: {}, {} tiles", here ? "this process" : oneLine(w.name), count(w.threads, "thread", "threads"), w.jobs);
+    std::string line =
+        fmt::format("{}: {}, {} tiles", here ? "this process" : oneLine(w.name), count(w.threads, "thread", "threads"), w.jobs);
     if (!w.alive)
       line += ", gone";
     else if (!here)
