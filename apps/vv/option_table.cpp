@@ -1,5 +1,9 @@
-// option_table.cpp: every option of vv, once: names, argument, text and what it does.
+// option_table.cpp: every option of vv, once: names, argument, text and what it does. Those of the group Cluster are in
+// cluster_options.cpp.
 #include "options.h"
+
+#include <algorithm>
+#include <iterator>
 
 #include <fmt/format.h>
 
@@ -80,305 +84,233 @@ void notEmpty(const std::string& value, const char* what) {
   if (value.empty()) throw UsageError(fmt::format("{} was expected", what));
 }
 
-const OptionInfo
-    table[] =
-        {
-            {"-o,--output", "FILE", "Picture",
-             "Picture to write; the format is that of the suffix (exr, png, jpg, ppm, pfm). - is standard output (PNG; exr:- and "
-             "so on "
-             "for another format). Of a sequence {frame:4} in the name is the number with four digits, and mp4, webm or gif "
-             "makes a "
-             "video through the program ffmpeg. May be given several times.",
-             addOutput, true},
-            {"--size", "WxH", "Picture", "Size in pixels, of pictures and of the window (default 800x600).",
-             [](Options& o, const std::string& v) { readSize(v, o.render.width, o.render.height); }},
-            {"--channels", "LIST", "Picture",
-             "Channels of an EXR file, out of rgba, z, normal, albedo, position, id, samples, variance, error, trust (default "
-             "rgba). error and trust: the 95 % interval of each colour and whether it can be trusted; asking for them changes "
-             "how the "
-             "samples "
-             "are made.",
-             setChannels},
-            {"--colour,--color", "linear|vrml97", "Picture",
-             "linear (default): colours of the file are decoded from sRGB, light adds up linearly, PNG, JPEG and PPM get the "
-             "sRGB curve. "
-             "vrml97: the standard's equation on the numbers as written, no curve anywhere.",
-             setColour},
-            {"--viewpoint", "NAME|N|all", "View",
-             "Look from this viewpoint: DEF name, description or number from 0 (default: the first). all: a picture each; "
-             "{viewpoint} in "
-             "the file name, or else a suffix, tells them apart.",
-             [](Options& o, const std::string& v) {
-               notEmpty(v, "a name, a number or all");
-               o.viewpoint = v;
-             }},
-            {"--camera", "PX,PY,PZ:TX,TY,TZ[:UX,UY,UZ]", "View",
-             "Look from a position at a target, with this up vector (default 0,1,0).",
-             [](Options& o, const std::string& v) { o.view.lookAt = readCamera(v); }},
-            {"--fit", "", "View", "Place the camera so that the whole world is seen (default in a world without Viewpoint).",
-             [](Options& o, const std::string&) { o.view.fit = true; }},
-            {"--fov", "DEGREES", "View", "The smaller of the two angles of view, instead of the viewpoint's.",
-             [](Options& o, const std::string& v) { o.view.fov = readNumber(v, 0, 180); }},
-            {"--camera-shader", "CLASS[:PARAM=VALUE...]", "View",
-             "Another camera at the same place: ThinLens:radius=.1:focus=5 (depth of field), Panorama (everything around).",
-             [](Options& o, const std::string& v) { o.cameraShader = v; }},
-            {"--headlight", "on|off|auto", "View", "Light at the camera; auto (default): as NavigationInfo says.", setHeadlight},
-            {"--time", "SECONDS", "Time",
-             "The world at this time. Its clock starts at 0 when it is loaded and goes in steps of 1/fps up to here, as in a "
-             "sequence; "
-             "no wall clock is read (default 0).",
-             [](Options& o, const std::string& v) { o.time = v == "0" ? 0 : readNumber(v, -1e-9, 1e6); }},
-            {"--frames", "A-B[/STEP]", "Time",
-             "A picture of each frame from A to B: frame N shows the world at N/fps seconds, and is the same picture in any "
-             "sequence "
-             "that holds it. The number is put where {frame:4} stands in the file name, or else before its suffix.",
-             [](Options& o, const std::string& v) { o.frames = readFrames(v); }},
-            {"--fps", "F", "Time",
-             "Frames a second, of sequences, videos and the window, and steps of the world's clock (default 30).",
-             [](Options& o, const std::string& v) { o.fps = readNumber(v, 0.001, 100000); }},
-            {"--turntable", "N", "Time",
-             "N pictures, once around the vertical axis through the world's centre, from the chosen view on.",
-             [](Options& o, const std::string& v) { o.turntable = int(readInteger(v, 1, 100000)); }},
-            {"--input", "FILE", "Time",
-             "What somebody does to the world, from a script instead of mouse and keys: a line each, SECONDS and what happens "
-             "(move X Y, "
-             "press left, release left, key PageDown, viewpoint NAME ...; docs/window.md). Time goes in steps of 1/fps from 0, "
-             "so that "
-             "the "
-             "same script makes the same pictures, in the window and with -o (which by default shows the world at the script's "
-             "end).",
-             [](Options& o, const std::string& v) {
-               notEmpty(v, "a file name");
-               o.inputScript = v;
-             }},
-            {"--record-input", "FILE", "Time", "Write down what is done in the window, for --input. Time begins at 0.",
-             [](Options& o, const std::string& v) {
-               notEmpty(v, "a file name");
-               o.recordInput = v;
-             }},
-            {"-D,--define", "DEF.FIELD=VALUE", "Change",
-             "Give a field of a node with a DEF name another value before rendering, in VRML's own spelling (Door.translation='0 "
-             "0 2', "
-             "Sign.string='\"open\"'). May be given several times.",
-             [](Options& o, const std::string& v) {
-               const size_t equals = v.find('=');
-               const size_t dot = v.find('.');
-               if (equals == v.npos || dot == v.npos || dot == 0 || dot + 1 >= equals)
-                 throw UsageError(fmt::format("DEF.FIELD=VALUE was expected, not \"{}\"", v));
-               o.definitions.push_back(v);
-             },
-             true},
-            {"--shader", "DEF=CLASS[:PARAM=VALUE...]", "Change",
-             "Give a shape, the shapes of an appearance or all below a group another surface shader: Ball=Glass:index=1.33, "
-             "Wall=Diffuse:reflectance=.8,.1,.1. * stands for all shapes without a shader of their own, LIBRARY/CLASS for a "
-             "class of a "
-             "plug-in. A texture is a file, @FILE the content of one. May be given several times.",
-             [](Options& o, const std::string& v) {
-               const size_t equals = v.find('=');
-               if (equals == v.npos || equals == 0)
-                 throw UsageError(fmt::format("DEF=CLASS[:PARAM=VALUE...] was expected, not \"{}\"", v));
-               o.shaders.push_back(v);
-             },
-             true},
-            {"--environment", "FILE[:INTENSITY]", "Change",
-             "Light from all around instead of the world's Background: a picture of radiance (exr, hdr, pfm), columns of equal "
-             "longitude, its "
-             "middle towards -z.",
-             [](Options& o, const std::string& v) {
-               const size_t colon = v.rfind(':');
-               const bool factor = colon != v.npos && colon > 0 && v.find('/', colon) == v.npos;
-               o.render.environment = factor ? v.substr(0, colon) : v;
-               if (factor) o.render.environmentIntensity = readNumber(std::string_view(v).substr(colon + 1), 0, 1e9);
-               notEmpty(o.render.environment, "a file name");
-             }},
-            {"--spp", "N", "Quality", "Samples per pixel, 1 to 65536 (default 16; in the window 256, one after the other).",
-             [](Options& o, const std::string& v) { o.samples = int(readInteger(v, 1, 65536)); }},
-            {"--error", "E|E%", "Quality",
-             "Take as many samples in each part of the picture as it needs for a mean relative half-width E of the 95 % "
-             "interval, at "
-             "most "
-             "--spp (here by default 4096).",
-             [](Options& o, const std::string& v) { o.render.error = readShare(v); }},
-            {"--time-limit", "SECONDS", "Quality",
-             "Take samples in rounds over the whole picture for about this time, at most --spp (here by default 65536). Such a "
-             "picture "
-             "depends on the speed of the machine.",
-             [](Options& o, const std::string& v) { o.render.timeLimit = readNumber(v, 0, 1e6); }},
-            {"--depth", "N", "Quality", "Surfaces a path may pass or bounce at, 0 to 10000 (default 25).",
-             [](Options& o, const std::string& v) { o.render.depth = int(readInteger(v, 0, 10000)); }},
-            {"--transport", "NAME", "Quality",
-             "How light is followed: auto (default: what the shaders of the world ask for; --explain and --stats say which and "
-             "why), "
-             "direct "
-             "(lights alone), whitted (and mirrors and glass), path (and light between surfaces), light (and what lamps send "
-             "through "
-             "mirrors and lenses).",
-             setTransport},
-            {"--energy-cut", "E", "Quality",
-             "whitted: branches of reflection and refraction that carry less than this share of a camera ray end, 0 to 1 "
-             "(default "
-             "1/4096).",
-             [](Options& o, const std::string& v) { o.render.energyCut = v == "0" ? 0 : readShare(v); }},
-            {"--clamp", "RADIANCE", "Quality",
-             "No sample is brighter than this. It takes away fireflies, and light: the statistics say how much (default: no "
-             "limit).",
-             [](Options& o, const std::string& v) { o.render.clamp = readNumber(v, 0, 1e30); }},
-            {"--shadows", "on|off", "Quality", "Whether lights cast shadows (default on).",
-             [](Options& o, const std::string& v) { o.render.shadows = readSwitch(v); }},
-            {"--seed", "N", "Quality", "Another set of sample positions (default 0).",
-             [](Options& o, const std::string& v) { o.render.seed = int(readInteger(v, 0, 2147483647)); }},
-            {"--threads", "N", "Quality",
-             "Render threads; 0 (default): as many as the process may use. The picture does not depend on it.",
-             [](Options& o, const std::string& v) { o.render.threads = int(readInteger(v, 0, 1024)); }},
-            {"--workers", "HOST[:PORT],...|@FILE", "Cluster",
-             "Machines that render, too: an openrt-worker listens there (port 7447 where none is said). @FILE: a file with one a "
-             "line, # "
-             "begins a comment. The picture has the same bytes however many there are, and whatever becomes of them "
-             "(docs/cluster.md).",
-             [](Options& o, const std::string& v) {
-               notEmpty(v == "@" ? "" : v, "HOST[:PORT],... or @FILE");
-               o.cluster.workers = v;
-             }},
-            {"--listen-workers", "ADDRESS[:PORT]", "Cluster",
-             "Workers call in here (openrt-worker --connect): 0.0.0.0 is every address of this machine.",
-             [](Options& o, const std::string& v) {
-               notEmpty(v, "ADDRESS[:PORT]");
-               o.cluster.listen = v;
-             }},
-            {"--key", "FILE", "Cluster",
-             "The key file that workers have, too (openrt-worker --new-key FILE makes one). Without one only loopback addresses "
-             "are used.",
-             [](Options& o, const std::string& v) {
-               notEmpty(v, "a file name");
-               o.cluster.key = v;
-             }},
-            {"--allow-keys", "FILE", "Cluster",
-             "Public keys of workers that are let in beside those with the same key file, one a line.",
-             [](Options& o, const std::string& v) {
-               notEmpty(v, "a file name");
-               o.cluster.allow = v;
-             }},
-            {"--local-threads", "N", "Cluster",
-             "Threads of this machine that render beside the workers (default: as --threads); 0: none as long as a worker lives.",
-             [](Options& o, const std::string& v) { o.cluster.localThreads = int(readInteger(v, 0, 1024)); }},
-            {"--split", "auto|tiles|samples|frames", "Cluster",
-             "What the work is cut into: tiles of a picture, samples, or whole pictures of a sequence (default auto: by what is "
-             "to be "
-             "done). Says nothing of the bytes.",
-             [](Options& o, const std::string& v) {
-               if (v != "auto" && v != "tiles" && v != "samples" && v != "frames")
-                 throw UsageError(fmt::format("auto, tiles, samples or frames was expected, not \"{}\"", v));
-               o.cluster.split = v;
-             }},
-            {"--require-workers", "[N]", "Cluster",
-             "Without N workers (default 1) there is no picture: exit code 6 when they are missing for 10 seconds. Else this "
-             "machine "
-             "finishes alone.",
-             [](Options& o, const std::string& v) { o.cluster.require = v.empty() ? 1 : int(readInteger(v, 1, 65536)); }},
-            {"--tolerant", "", "Cluster",
-             "Take workers of another instruction set or version, too: the last digits of a picture may then differ from run to "
-             "run.",
-             [](Options& o, const std::string&) { o.cluster.tolerant = true; }},
-            {"--check", "", "Inspect", "Read the world, report every problem, make no picture; exit code 4 if there is any.",
-             [](Options& o, const std::string&) { o.check = true; }},
-            {"--strict", "", "Inspect",
-             "Any problem of the world ends the program: exit code 4, or 5 for a plug-in or a texture that is missing.",
-             [](Options& o, const std::string&) { o.strict = true; }},
-            {"--info", "", "Inspect", "Say what the world holds.", [](Options& o, const std::string&) { o.info = true; }},
-            {"--list-nodes", "", "Inspect", "List the node types with their fields; with a FILE also the prototypes it declares.",
-             [](Options& o, const std::string&) { o.listNodes = true; }},
-            {"--list-viewpoints", "", "Inspect", "List the viewpoints of the world.",
-             [](Options& o, const std::string&) { o.listViewpoints = true; }},
-            {"--list-shaders", "", "Inspect", "List the classes of all shader plug-ins with their parameters.",
-             [](Options& o, const std::string&) { o.listShaders = true; }},
-            {"--list-engines", "", "Inspect",
-             "List the script engines: what they serve, whether they need --trust, the library they come from.",
-             [](Options& o, const std::string&) { o.listEngines = true; }},
-            {"--list-keys", "", "Inspect", "List what keys and mouse do in the window.",
-             [](Options& o, const std::string&) { o.listKeys = true; }},
-            {"--explain", "", "Inspect",
-             "Say how light is followed and why, and what objects the world is rendered as: each with the reason, its triangles, "
-             "bytes "
-             "and "
-             "instances.",
-             [](Options& o, const std::string&) { o.explain = true; }},
-            {"--json", "", "Inspect", "--info, --explain and the lists as JSON.",
-             [](Options& o, const std::string&) { o.json = true; }},
-            {"--stats", "FILE", "Inspect", "Write statistics as JSON, one file for a whole sequence; - is standard output.",
-             [](Options& o, const std::string& v) {
-               notEmpty(v, "a file name");
-               o.stats = v;
-             }},
-            {"--compare", "REF.exr", "Inspect",
-             "Say how far the picture is off another one of the same size and view: RMSE, relMSE, bias with its interval, "
-             "largest "
-             "difference. -o is not needed.",
-             [](Options& o, const std::string& v) {
-               notEmpty(v, "an OpenEXR file");
-               o.compare = v;
-             }},
-            {"--audit", "[N]", "Inspect",
-             "Do the error bars hold? Renders the picture with N seeds (default 20) and once with many more samples (or takes "
-             "the "
-             "picture "
-             "of --compare instead), and says how many of the 95 % intervals hold the truth. Exit code 4 if it is not 93 to 97 % "
-             "of "
-             "those "
-             "that are trusted.",
-             [](Options& o, const std::string& v) { o.audit = v.empty() ? 20 : int(readInteger(v, 2, 10000)); }},
-            {"--watch", "", "Inspect",
-             "Make the pictures again whenever the world's file, or one that it uses, changes, until interrupted; in the window: "
-             "read it "
-             "again, the viewer stays.",
-             [](Options& o, const std::string&) { o.watch = true; }},
-            {"--write", "FILE", "Write", "Write the world as VRML97; - is standard output.",
-             [](Options& o, const std::string& v) {
-               notEmpty(v, "a file name");
-               o.write = v;
-             }},
-            {"--record", "FILE", "Write", "Keep the scene as OpenRT edits, for openrt-replay.",
-             [](Options& o, const std::string& v) {
-               notEmpty(v, "a file name");
-               o.render.record = v;
-             }},
-            {"--limit", "NAME=VALUE", "Trust",
-             "Raise or lower a limit on what a world may cost; a wrong name lists them. May be given several times.", setLimit,
-             true},
-            {"--allow-absolute", "", "Trust", "Follow absolute paths and file: URLs named inside a world.",
-             [](Options& o, const std::string&) { o.load.allowAbsolute = true; }},
-            {"--shader-path", "DIR[:DIR...]", "Trust", "Folders where shader plug-ins are looked up first.",
-             [](Options& o, const std::string& v) {
-               notEmpty(v, "a folder");
-               o.render.shaderPath = v;
-             }},
-            {"--trust", "", "Trust",
-             "Scripts may use engines whose programs can do whatever you can (native:, python:, Tk windows; --list-engines says "
-             "which).",
-             [](Options& o, const std::string&) { o.running.trustScripts = true; }},
-            {"--allow-net", "", "Trust", "Scripts may use the network, as far as their engine can.",
-             [](Options& o, const std::string&) { o.running.allowNetwork = true; }},
-            {"--script-path", "DIR[:DIR...]", "Trust",
-             "Folders where script engines are looked up, before $XVRML_SCRIPT_PATH and the installed ones; none that others may "
-             "write "
-             "to.",
-             [](Options& o, const std::string& v) {
-               notEmpty(v, "a folder");
-               o.running.scriptPath = v;
-             }},
-            {"--node-path", "DIR[:DIR...]", "Trust",
-             "Folders where node plug-ins are looked up, before $XVRML_NODE_PATH and the installed ones.",
-             [](Options& o, const std::string& v) {
-               notEmpty(v, "a folder");
-               o.nodePath = v;
-             }},
-            {"-q,--quiet", "", "Talk", "Errors only.", [](Options& o, const std::string&) { o.quiet = true; }},
-            {"-v,--verbose", "", "Talk", "Every warning, and times.", [](Options& o, const std::string&) { o.verbose = true; }},
-            {"--version", "", "Talk", "The version.", [](Options& o, const std::string&) { o.version = true; }},
-            {"-h,--help", "", "Talk", "This text.", [](Options& o, const std::string&) { o.help = true; }},
+const OptionInfo table[] = {
+    {"-o,--output", "FILE", "Picture",
+     "Picture to write; the format is that of the suffix (exr, png, jpg, ppm, pfm). - is standard output (PNG; exr:- and so on "
+     "for another format). Of a sequence {frame:4} in the name is the number with four digits, and mp4, webm or gif makes a "
+     "video through the program ffmpeg. May be given several times.",
+     addOutput, true},
+    {"--size", "WxH", "Picture", "Size in pixels, of pictures and of the window (default 800x600).",
+     [](Options& o, const std::string& v) { readSize(v, o.render.width, o.render.height); }},
+    {"--channels", "LIST", "Picture",
+     "Channels of an EXR file, out of rgba, z, normal, albedo, position, id, samples, variance, error, trust (default "
+     "rgba). error and trust: the 95 % interval of each colour and whether it can be trusted; asking for them changes how the "
+     "samples "
+     "are made.",
+     setChannels},
+    {"--colour,--color", "linear|vrml97", "Picture",
+     "linear (default): colours of the file are decoded from sRGB, light adds up linearly, PNG, JPEG and PPM get the sRGB curve. "
+     "vrml97: the standard's equation on the numbers as written, no curve anywhere.",
+     setColour},
+    {"--viewpoint", "NAME|N|all", "View",
+     "Look from this viewpoint: DEF name, description or number from 0 (default: the first). all: a picture each; {viewpoint} in "
+     "the file name, or else a suffix, tells them apart.",
+     [](Options& o, const std::string& v) {
+       notEmpty(v, "a name, a number or all");
+       o.viewpoint = v;
+     }},
+    {"--camera", "PX,PY,PZ:TX,TY,TZ[:UX,UY,UZ]", "View", "Look from a position at a target, with this up vector (default 0,1,0).",
+     [](Options& o, const std::string& v) { o.view.lookAt = readCamera(v); }},
+    {"--fit", "", "View", "Place the camera so that the whole world is seen (default in a world without Viewpoint).",
+     [](Options& o, const std::string&) { o.view.fit = true; }},
+    {"--fov", "DEGREES", "View", "The smaller of the two angles of view, instead of the viewpoint's.",
+     [](Options& o, const std::string& v) { o.view.fov = readNumber(v, 0, 180); }},
+    {"--camera-shader", "CLASS[:PARAM=VALUE...]", "View",
+     "Another camera at the same place: ThinLens:radius=.1:focus=5 (depth of field), Panorama (everything around).",
+     [](Options& o, const std::string& v) { o.cameraShader = v; }},
+    {"--headlight", "on|off|auto", "View", "Light at the camera; auto (default): as NavigationInfo says.", setHeadlight},
+    {"--time", "SECONDS", "Time",
+     "The world at this time. Its clock starts at 0 when it is loaded and goes in steps of 1/fps up to here, as in a sequence; "
+     "no wall clock is read (default 0).",
+     [](Options& o, const std::string& v) { o.time = v == "0" ? 0 : readNumber(v, -1e-9, 1e6); }},
+    {"--frames", "A-B[/STEP]", "Time",
+     "A picture of each frame from A to B: frame N shows the world at N/fps seconds, and is the same picture in any sequence "
+     "that holds it. The number is put where {frame:4} stands in the file name, or else before its suffix.",
+     [](Options& o, const std::string& v) { o.frames = readFrames(v); }},
+    {"--fps", "F", "Time", "Frames a second, of sequences, videos and the window, and steps of the world's clock (default 30).",
+     [](Options& o, const std::string& v) { o.fps = readNumber(v, 0.001, 100000); }},
+    {"--turntable", "N", "Time", "N pictures, once around the vertical axis through the world's centre, from the chosen view on.",
+     [](Options& o, const std::string& v) { o.turntable = int(readInteger(v, 1, 100000)); }},
+    {"--input", "FILE", "Time",
+     "What somebody does to the world, from a script instead of mouse and keys: a line each, SECONDS and what happens (move X Y, "
+     "press left, release left, key PageDown, viewpoint NAME ...; docs/window.md). Time goes in steps of 1/fps from 0, so that "
+     "the "
+     "same script makes the same pictures, in the window and with -o (which by default shows the world at the script's end).",
+     [](Options& o, const std::string& v) {
+       notEmpty(v, "a file name");
+       o.inputScript = v;
+     }},
+    {"--record-input", "FILE", "Time", "Write down what is done in the window, for --input. Time begins at 0.",
+     [](Options& o, const std::string& v) {
+       notEmpty(v, "a file name");
+       o.recordInput = v;
+     }},
+    {"-D,--define", "DEF.FIELD=VALUE", "Change",
+     "Give a field of a node with a DEF name another value before rendering, in VRML's own spelling (Door.translation='0 0 2', "
+     "Sign.string='\"open\"'). May be given several times.",
+     [](Options& o, const std::string& v) {
+       const size_t equals = v.find('=');
+       const size_t dot = v.find('.');
+       if (equals == v.npos || dot == v.npos || dot == 0 || dot + 1 >= equals)
+         throw UsageError(fmt::format("DEF.FIELD=VALUE was expected, not \"{}\"", v));
+       o.definitions.push_back(v);
+     },
+     true},
+    {"--shader", "DEF=CLASS[:PARAM=VALUE...]", "Change",
+     "Give a shape, the shapes of an appearance or all below a group another surface shader: Ball=Glass:index=1.33, "
+     "Wall=Diffuse:reflectance=.8,.1,.1. * stands for all shapes without a shader of their own, LIBRARY/CLASS for a class of a "
+     "plug-in. A texture is a file, @FILE the content of one. May be given several times.",
+     [](Options& o, const std::string& v) {
+       const size_t equals = v.find('=');
+       if (equals == v.npos || equals == 0)
+         throw UsageError(fmt::format("DEF=CLASS[:PARAM=VALUE...] was expected, not \"{}\"", v));
+       o.shaders.push_back(v);
+     },
+     true},
+    {"--environment", "FILE[:INTENSITY]", "Change",
+     "Light from all around instead of the world's Background: a picture of radiance (exr, hdr, pfm), columns of equal "
+     "longitude, its "
+     "middle towards -z.",
+     [](Options& o, const std::string& v) {
+       const size_t colon = v.rfind(':');
+       const bool factor = colon != v.npos && colon > 0 && v.find('/', colon) == v.npos;
+       o.render.environment = factor ? v.substr(0, colon) : v;
+       if (factor) o.render.environmentIntensity = readNumber(std::string_view(v).substr(colon + 1), 0, 1e9);
+       notEmpty(o.render.environment, "a file name");
+     }},
+    {"--spp", "N", "Quality", "Samples per pixel, 1 to 65536 (default 16; in the window 256, one after the other).",
+     [](Options& o, const std::string& v) { o.samples = int(readInteger(v, 1, 65536)); }},
+    {"--error", "E|E%", "Quality",
+     "Take as many samples in each part of the picture as it needs for a mean relative half-width E of the 95 % interval, at "
+     "most "
+     "--spp (here by default 4096).",
+     [](Options& o, const std::string& v) { o.render.error = readShare(v); }},
+    {"--time-limit", "SECONDS", "Quality",
+     "Take samples in rounds over the whole picture for about this time, at most --spp (here by default 65536). Such a picture "
+     "depends on the speed of the machine.",
+     [](Options& o, const std::string& v) { o.render.timeLimit = readNumber(v, 0, 1e6); }},
+    {"--depth", "N", "Quality", "Surfaces a path may pass or bounce at, 0 to 10000 (default 25).",
+     [](Options& o, const std::string& v) { o.render.depth = int(readInteger(v, 0, 10000)); }},
+    {"--transport", "NAME", "Quality",
+     "How light is followed: auto (default: what the shaders of the world ask for; --explain and --stats say which and why), "
+     "direct "
+     "(lights alone), whitted (and mirrors and glass), path (and light between surfaces), light (and what lamps send through "
+     "mirrors and lenses).",
+     setTransport},
+    {"--energy-cut", "E", "Quality",
+     "whitted: branches of reflection and refraction that carry less than this share of a camera ray end, 0 to 1 (default "
+     "1/4096).",
+     [](Options& o, const std::string& v) { o.render.energyCut = v == "0" ? 0 : readShare(v); }},
+    {"--clamp", "RADIANCE", "Quality",
+     "No sample is brighter than this. It takes away fireflies, and light: the statistics say how much (default: no limit).",
+     [](Options& o, const std::string& v) { o.render.clamp = readNumber(v, 0, 1e30); }},
+    {"--shadows", "on|off", "Quality", "Whether lights cast shadows (default on).",
+     [](Options& o, const std::string& v) { o.render.shadows = readSwitch(v); }},
+    {"--seed", "N", "Quality", "Another set of sample positions (default 0).",
+     [](Options& o, const std::string& v) { o.render.seed = int(readInteger(v, 0, 2147483647)); }},
+    {"--threads", "N", "Quality",
+     "Render threads; 0 (default): as many as the process may use. The picture does not depend on it.",
+     [](Options& o, const std::string& v) { o.render.threads = int(readInteger(v, 0, 1024)); }},
+    {"--check", "", "Inspect", "Read the world, report every problem, make no picture; exit code 4 if there is any.",
+     [](Options& o, const std::string&) { o.check = true; }},
+    {"--strict", "", "Inspect",
+     "Any problem of the world ends the program: exit code 4, or 5 for a plug-in or a texture that is missing.",
+     [](Options& o, const std::string&) { o.strict = true; }},
+    {"--info", "", "Inspect", "Say what the world holds.", [](Options& o, const std::string&) { o.info = true; }},
+    {"--list-nodes", "", "Inspect", "List the node types with their fields; with a FILE also the prototypes it declares.",
+     [](Options& o, const std::string&) { o.listNodes = true; }},
+    {"--list-viewpoints", "", "Inspect", "List the viewpoints of the world.",
+     [](Options& o, const std::string&) { o.listViewpoints = true; }},
+    {"--list-shaders", "", "Inspect", "List the classes of all shader plug-ins with their parameters.",
+     [](Options& o, const std::string&) { o.listShaders = true; }},
+    {"--list-engines", "", "Inspect",
+     "List the script engines: what they serve, whether they need --trust, the library they come from.",
+     [](Options& o, const std::string&) { o.listEngines = true; }},
+    {"--list-keys", "", "Inspect", "List what keys and mouse do in the window.",
+     [](Options& o, const std::string&) { o.listKeys = true; }},
+    {"--explain", "", "Inspect",
+     "Say how light is followed and why, and what objects the world is rendered as: each with the reason, its triangles, bytes "
+     "and "
+     "instances.",
+     [](Options& o, const std::string&) { o.explain = true; }},
+    {"--json", "", "Inspect", "--info, --explain and the lists as JSON.", [](Options& o, const std::string&) { o.json = true; }},
+    {"--stats", "FILE", "Inspect", "Write statistics as JSON, one file for a whole sequence; - is standard output.",
+     [](Options& o, const std::string& v) {
+       notEmpty(v, "a file name");
+       o.stats = v;
+     }},
+    {"--compare", "REF.exr", "Inspect",
+     "Say how far the picture is off another one of the same size and view: RMSE, relMSE, bias with its interval, largest "
+     "difference. -o is not needed.",
+     [](Options& o, const std::string& v) {
+       notEmpty(v, "an OpenEXR file");
+       o.compare = v;
+     }},
+    {"--audit", "[N]", "Inspect",
+     "Do the error bars hold? Renders the picture with N seeds (default 20) and once with many more samples (or takes the "
+     "picture "
+     "of --compare instead), and says how many of the 95 % intervals hold the truth. Exit code 4 if it is not 93 to 97 % of "
+     "those "
+     "that are trusted.",
+     [](Options& o, const std::string& v) { o.audit = v.empty() ? 20 : int(readInteger(v, 2, 10000)); }},
+    {"--watch", "", "Inspect",
+     "Make the pictures again whenever the world's file, or one that it uses, changes, until interrupted; in the window: read it "
+     "again, the viewer stays.",
+     [](Options& o, const std::string&) { o.watch = true; }},
+    {"--write", "FILE", "Write", "Write the world as VRML97; - is standard output.",
+     [](Options& o, const std::string& v) {
+       notEmpty(v, "a file name");
+       o.write = v;
+     }},
+    {"--record", "FILE", "Write", "Keep the scene as OpenRT edits, for openrt-replay.",
+     [](Options& o, const std::string& v) {
+       notEmpty(v, "a file name");
+       o.render.record = v;
+     }},
+    {"--limit", "NAME=VALUE", "Trust",
+     "Raise or lower a limit on what a world may cost; a wrong name lists them. May be given several times.", setLimit, true},
+    {"--allow-absolute", "", "Trust", "Follow absolute paths and file: URLs named inside a world.",
+     [](Options& o, const std::string&) { o.load.allowAbsolute = true; }},
+    {"--shader-path", "DIR[:DIR...]", "Trust", "Folders where shader plug-ins are looked up first.",
+     [](Options& o, const std::string& v) {
+       notEmpty(v, "a folder");
+       o.render.shaderPath = v;
+     }},
+    {"--trust", "", "Trust",
+     "Scripts may use engines whose programs can do whatever you can (native:, python:, Tk windows; --list-engines says which).",
+     [](Options& o, const std::string&) { o.running.trustScripts = true; }},
+    {"--allow-net", "", "Trust", "Scripts may use the network, as far as their engine can.",
+     [](Options& o, const std::string&) { o.running.allowNetwork = true; }},
+    {"--script-path", "DIR[:DIR...]", "Trust",
+     "Folders where script engines are looked up, before $XVRML_SCRIPT_PATH and the installed ones; none that others may write "
+     "to.",
+     [](Options& o, const std::string& v) {
+       notEmpty(v, "a folder");
+       o.running.scriptPath = v;
+     }},
+    {"--node-path", "DIR[:DIR...]", "Trust",
+     "Folders where node plug-ins are looked up, before $XVRML_NODE_PATH and the installed ones.",
+     [](Options& o, const std::string& v) {
+       notEmpty(v, "a folder");
+       o.nodePath = v;
+     }},
+    {"-q,--quiet", "", "Talk", "Errors only.", [](Options& o, const std::string&) { o.quiet = true; }},
+    {"-v,--verbose", "", "Talk", "Every warning, and times.", [](Options& o, const std::string&) { o.verbose = true; }},
+    {"--version", "", "Talk", "The version.", [](Options& o, const std::string&) { o.version = true; }},
+    {"-h,--help", "", "Talk", "This text.", [](Options& o, const std::string&) { o.help = true; }},
 };
 
 } // namespace
 
-std::span<const OptionInfo> optionTable() { return table; }
+std::span<const OptionInfo> optionTable() {
+  static const std::vector<OptionInfo> all = [] {
+    std::vector<OptionInfo> rows(std::begin(table), std::end(table));
+    const auto place =
+        std::find_if(rows.begin(), rows.end(), [](const OptionInfo& o) { return std::string_view(o.group) == "Inspect"; });
+    rows.insert(place, clusterOptions().begin(), clusterOptions().end());
+    return rows;
+  }();
+  return all;
+}
 
 } // namespace vv

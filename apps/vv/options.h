@@ -74,6 +74,7 @@ struct OptionInfo {
   bool repeatable = false;
 };
 std::span<const OptionInfo> optionTable();
+std::span<const OptionInfo> clusterOptions(); // a part of it
 
 // Throws UsageError with one line that names the option and what was expected.
 Options readCommandLine(int argc, char** argv);
