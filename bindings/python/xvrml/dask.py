@@ -1,0 +1,121 @@
+"""Frames of an animation on a Dask cluster: `pip install xvrml[dask]`, and xvrml on every Dask worker.
+
+>>> from dask.distributed import Client
+>>> import xvrml.dask
+>>> with Client("scheduler:8786") as client:
+...     for array in xvrml.dask.render_frames("world.wrl", times=[0, 0.5, 1], client=client, size=(640, 480)):
+...         print(array.shape)
+
+A task makes one frame: it reads the world, lets its clock run up to the frame's time in steps of 1/fps, and renders. So a frame has
+the bytes that `vv --frames` gives it, whoever makes it, and a frame whose worker dies is simply made again. For single pictures that
+many machines share see xvrml.Cluster.
+"""
+import io
+import os
+import pathlib
+import tempfile
+from collections import deque
+
+from . import Browser, World
+
+__all__ = ["render_frames"]
+
+
+def render_frames(world, times, client=None, *, out=None, fps=30.0, retries=3, in_flight=None, threads=1, browser=None, **options):
+    """Renders the world at each of these times (seconds of its clock) on a Dask cluster, in their order.
+
+    world    a path that every Dask worker can read; or bytes or an xvrml.World, which travel (files that such a world refers to
+             are looked up relative to its own path, if the workers have it)
+    client   a dask.distributed.Client; None: the current one
+    out      None: an iterator of numpy arrays (float32, height x width x 4), which asks for frames as they are taken. A path with
+             {frame} in it, as "film-{frame:04}.png": the files are written here, not by the workers, and their paths returned
+    fps      steps of the world's clock, as of vv
+    retries  how often a frame is made again when its worker is lost or fails
+    in_flight  frames that are asked for at a time (default: two for each thread of the cluster): what bounds the memory
+    threads  render threads of a task
+    browser  keyword arguments of xvrml.Browser (limits, allow_absolute)
+    options  as of Browser.render: size, spp, viewpoint, transport ...
+    """
+    if client is None:
+        from distributed import get_client
+        client = get_client()
+    frames = _frames(world, list(times), client, out, float(fps), int(retries), in_flight, dict(options, threads=threads), browser or {})
+    if out is None:
+        return (array for array in frames)
+    paths = []
+    for number, data in enumerate(frames):
+        path = str(out).format(frame=number)
+        _write(path, data)
+        paths.append(path)
+    return paths
+
+
+def _frames(world, times, client, out, fps, retries, in_flight, options, browser):
+    if not fps > 0:
+        raise ValueError("fps: a number above 0 expected")
+    if any(later < earlier for earlier, later in zip([0, *times], times)):
+        raise ValueError("times: from 0 on, in their order expected")
+    suffix = None
+    if out is not None:
+        suffix = pathlib.Path(str(out)).suffix
+        if len(times) > 1 and str(out).format(frame=0) == str(out).format(frame=1):
+            raise ValueError("out: a path with {frame} in it expected, not " + str(out))
+    source = _source(world)
+    if isinstance(source, tuple) and len(source[0]) > 100_000:  # sent once, not with every task
+        source = client.scatter([source], broadcast=True, hash=False)[0]
+    most = in_flight or 2 * max(1, sum(client.nthreads().values()))
+    waiting, out_there = deque(times), deque()
+    try:
+        while waiting or out_there:
+            while waiting and len(out_there) < most:
+                out_there.append(client.submit(_render, source, waiting.popleft(), fps, suffix, options, browser, retries=retries,
+                                               pure=False, key=None))
+            yield out_there[0].result()
+            out_there.popleft()  # forgotten by the cluster when the future is
+    finally:
+        client.cancel(list(out_there))
+
+
+def _source(world):
+    """What a task is given: a path, or (bytes, name)."""
+    if isinstance(world, World):
+        return world.to_vrml().encode("utf-8", "surrogateescape"), world.path
+    if isinstance(world, (bytes, bytearray, memoryview)):
+        return bytes(world), ""
+    return os.path.abspath(os.fspath(world))
+
+
+def _render(source, time, fps, suffix, options, browser):
+    """On a Dask worker: one frame, as an array or as the bytes of a file."""
+    if isinstance(source, tuple):
+        data = io.BytesIO(source[0])
+        data.name = source[1] or "<memory>"
+        source = data
+    running = Browser(source, **browser)
+    step = 0
+    while step / fps < time:
+        running.tick(step / fps)
+        step += 1
+    running.tick(time)
+    picture = running.render(**options)
+    if suffix is None:
+        return picture.array.copy()
+    with tempfile.TemporaryDirectory() as folder:
+        path = pathlib.Path(folder) / ("frame" + suffix)
+        picture.save(path)
+        return path.read_bytes()
+
+
+def _write(path, data):
+    """Beside its name, then renamed: a reader never sees half of it."""
+    folder = os.path.dirname(os.path.abspath(path))
+    with tempfile.NamedTemporaryFile(dir=folder, prefix=".xvrml-", delete=False) as file:
+        file.write(data)
+    try:
+        mask = os.umask(0)
+        os.umask(mask)
+        os.chmod(file.name, 0o666 & ~mask)
+        os.replace(file.name, path)
+    except BaseException:
+        os.unlink(file.name)
+        raise
