@@ -63,6 +63,11 @@ struct BrowserObject : WorldObject, std::enable_shared_from_this<BrowserObject> 
     drawn = settings;
     return drawing;
   }
+
+  void rest() override {
+    drawing.reset();
+    drawn.cluster.reset();
+  }
 };
 using BrowserPtr = std::shared_ptr<BrowserObject>;
 

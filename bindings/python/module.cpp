@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "cluster_object.h"
 #include "objects.h"
 #include "openrt/openrt.h"
 #include "picture/nearest.h"
@@ -122,6 +123,7 @@ PYBIND11_MODULE(_xvrml, module) {
     } catch (const LoadError& error) { setParseError(error.diagnostic); }
   });
   py::register_exception<picture::RenderError>(module, "RenderError", PyExc_RuntimeError);
+  defineCluster(module);
   defineNode(module);
   definePicture(module);
   defineWorld(module);

@@ -31,6 +31,8 @@ struct WorldObject {
     return std::make_shared<picture::Renderer>(*world, settings, std::move(watch));
   }
 
+  virtual void rest() {} // gives up what is kept for the next picture, the cluster's context with it
+
   std::unique_lock<std::recursive_mutex> lock() {
     py::gil_scoped_release release;
     return std::unique_lock(*mutex);

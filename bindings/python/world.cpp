@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
+#include "cluster_object.h"
 #include "objects.h"
 #include "picture/atomic_file.h"
 #include "picture/nearest.h"
@@ -210,7 +211,7 @@ std::unique_ptr<PictureObject> render(const WorldPtr& self, const py::object& si
                                       const py::object& camera, bool fit, std::optional<double> fov, long long seed,
                                       long long threads, bool shadows, const std::string& colour, const py::object& headlight,
                                       long long depth, const py::object& channels, const std::string& transport, double error,
-                                      double timeLimit, double clamp) {
+                                      double timeLimit, double clamp, const py::object& cluster) {
   picture::RenderSettings settings;
   const auto sides = size.cast<std::vector<long long>>();
   if (sides.size() != 2) throw py::value_error("size: (width, height) expected");
@@ -246,6 +247,7 @@ std::unique_ptr<PictureObject> render(const WorldPtr& self, const py::object& si
   view.fit = fit;
   view.fov = fov;
 
+  settings.cluster = clusterFor(cluster, self); // before the lock: it may wait for another world
   picture::RenderResult result;
   auto lock = self->lock();
   std::shared_ptr<picture::Renderer> renderer;
@@ -315,7 +317,7 @@ void defineWorld(py::module_& module) {
            py::arg("camera") = py::none(), py::arg("fit") = false, py::arg("fov") = py::none(), py::arg("seed") = 0,
            py::arg("threads") = 0, py::arg("shadows") = true, py::arg("colour") = "linear", py::arg("headlight") = "auto",
            py::arg("depth") = 25, py::arg("channels") = py::make_tuple("rgba"), py::arg("transport") = "auto",
-           py::arg("error") = 0.0, py::arg("time_limit") = 0.0, py::arg("clamp") = 0.0,
+           py::arg("error") = 0.0, py::arg("time_limit") = 0.0, py::arg("clamp") = 0.0, py::arg("cluster") = py::none(),
            "Renders the world as it is now: the scene is made anew for each picture, a Browser's is kept from one to the next. "
            "Options as "
            "those of the program vv.");

@@ -15,10 +15,10 @@ A Browser is a world that runs; time is an argument:
 """
 import warnings as _warnings
 
-from ._xvrml import (Browser, Diagnostic, Node, ParseError, Picture, RenderError, Viewpoint, World, load, load_node_plugins,
-                     __version__)
+from ._xvrml import (Browser, Cluster, ClusterError, Diagnostic, Node, ParseError, Picture, RenderError, Viewpoint, Worker, World, load,
+                     load_node_plugins, __version__)
 
-__all__ = ["Browser", "Diagnostic", "Node", "ParseError", "Picture", "RenderError", "Viewpoint", "World", "load",
+__all__ = ["Browser", "Cluster", "ClusterError", "Diagnostic", "Node", "ParseError", "Picture", "RenderError", "Viewpoint", "Worker", "World", "load",
            "load_node_plugins", "__version__"]
 
 for _line in load_node_plugins():

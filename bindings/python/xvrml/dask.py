@@ -39,9 +39,18 @@ def render_frames(world, times, client=None, *, out=None, fps=30.0, retries=3, i
     if client is None:
         from distributed import get_client
         client = get_client()
-    frames = _frames(world, list(times), client, out, float(fps), int(retries), in_flight, dict(options, threads=threads), browser or {})
+    times, fps, suffix = list(times), float(fps), None
+    if not fps > 0:
+        raise ValueError("fps: a number above 0 expected")
+    if any(later < earlier for earlier, later in zip([0, *times], times)):
+        raise ValueError("times: from 0 on, in their order expected")
+    if out is not None:
+        suffix = pathlib.Path(str(out)).suffix
+        if len(times) > 1 and str(out).format(frame=0) == str(out).format(frame=1):
+            raise ValueError("out: a path with {frame} in it expected, not " + str(out))
+    frames = _frames(_source(world), times, client, suffix, fps, int(retries), in_flight, dict(options, threads=threads), browser or {})
     if out is None:
-        return (array for array in frames)
+        return frames
     paths = []
     for number, data in enumerate(frames):
         path = str(out).format(frame=number)
@@ -50,17 +59,7 @@ def render_frames(world, times, client=None, *, out=None, fps=30.0, retries=3, i
     return paths
 
 
-def _frames(world, times, client, out, fps, retries, in_flight, options, browser):
-    if not fps > 0:
-        raise ValueError("fps: a number above 0 expected")
-    if any(later < earlier for earlier, later in zip([0, *times], times)):
-        raise ValueError("times: from 0 on, in their order expected")
-    suffix = None
-    if out is not None:
-        suffix = pathlib.Path(str(out)).suffix
-        if len(times) > 1 and str(out).format(frame=0) == str(out).format(frame=1):
-            raise ValueError("out: a path with {frame} in it expected, not " + str(out))
-    source = _source(world)
+def _frames(source, times, client, suffix, fps, retries, in_flight, options, browser):
     if isinstance(source, tuple) and len(source[0]) > 100_000:  # sent once, not with every task
         source = client.scatter([source], broadcast=True, hash=False)[0]
     most = in_flight or 2 * max(1, sum(client.nthreads().values()))

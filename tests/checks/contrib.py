@@ -1,0 +1,171 @@
+#!/usr/bin/env python3
+"""The templates of contrib/ are what they say: contrib.py ROOT BUILD
+
+Every option that they give to vv and openrt-worker is one that these have; bash and systemd-analyze read what is theirs; the YAML files
+parse, and what one object says of another holds. A tool that is absent is named and left out.
+"""
+import pathlib
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+import tempfile
+
+root, build = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
+contrib = root / "contrib"
+complaints, skipped = [], []
+
+
+def complain(path, text):
+    complaints.append(f"{path.relative_to(root)}: {text}")
+
+
+def run(*command, **how):
+    return subprocess.run([str(word) for word in command], capture_output=True, text=True, timeout=60, **how)
+
+
+def options_of(program):
+    """What --help lists; None if the program is not there."""
+    if not (build / "bin" / program).exists():
+        skipped.append(f"{program} is not built")
+        return None
+    return set(re.findall(r"--[a-z][a-z-]+", run(build / "bin" / program, "--help").stdout))
+
+
+known = {program: options_of(program) for program in ("vv", "openrt-worker")}
+
+
+def check_command(path, words):
+    """Options behind the first word that is one of our programs."""
+    for program in known:
+        if program in words and known[program] is not None:
+            for word in words[words.index(program):]:
+                if word.startswith("--") and word.split("=")[0] not in known[program]:
+                    complain(path, f"{program} has no option {word}")
+
+
+# Hosts -------------------------------------------------------------------------------------------------------------------
+
+hosts = contrib / "hosts.txt"
+lines = [line.split("#")[0].strip() for line in hosts.read_text().splitlines()]
+for line in filter(None, lines):
+    if not re.fullmatch(r"([\w.-]+|\[[0-9a-f:]+\])(:\d+)?(=\S{40})?", line):
+        complain(hosts, f"no address: {line}")
+
+# Slurm -------------------------------------------------------------------------------------------------------------------
+
+script = contrib / "slurm/render.sbatch"
+if (done := run("bash", "-n", script)).returncode:
+    complain(script, done.stderr)
+text = re.sub(r"\\\n", " ", script.read_text())
+for line in text.splitlines():
+    if re.match(r"\s*(vv|openrt-worker)\b", line):
+        check_command(script, shlex.split(line.rstrip("& "), comments=True))
+if shutil.which("shellcheck") and (done := run("shellcheck", "-s", "bash", script)).returncode:
+    complain(script, done.stdout)
+if not re.search(r"^#SBATCH --", text, re.M) or text.index("#SBATCH") > text.index("set -euo"):
+    complain(script, "options of sbatch stand before the first command")
+
+# systemd -----------------------------------------------------------------------------------------------------------------
+
+unit = contrib / "systemd/openrt-worker@.service"
+text = unit.read_text()
+command = re.search(r"^ExecStart=(.*)$", text, re.M).group(1)
+check_command(unit, [pathlib.Path(word).name if i == 0 else word for i, word in enumerate(shlex.split(command))])
+for needed in ("DynamicUser", "ProtectSystem", "NoNewPrivileges", "SystemCallFilter", "MemoryMax", "LoadCredential"):
+    if not re.search(rf"^{needed}=", text, re.M):
+        complain(unit, f"no {needed}")
+if shutil.which("systemd-analyze"):
+    with tempfile.TemporaryDirectory() as folder:  # the program need not be installed, nor the manual page
+        copy = pathlib.Path(folder) / "openrt-worker@7447.service"
+        copy.write_text(re.sub(r"^Documentation=.*\n", "", re.sub(r"^ExecStart=\S+", "ExecStart=/bin/true", text, flags=re.M), flags=re.M))
+        done = run("systemd-analyze", "verify", "--man=no", copy)
+        said = [line for line in done.stderr.splitlines() if "openrt-worker" in line]
+        if done.returncode or said:
+            complain(unit, done.stderr)
+        done = run("systemd-analyze", "security", "--offline=true", "--threshold=20", copy)
+        if "unrecognized option" in done.stderr:
+            skipped.append("systemd-analyze knows no --offline")
+        elif done.returncode:
+            complain(unit, "exposure is above 2.0: " + (done.stdout or done.stderr)[-200:])
+else:
+    skipped.append("no systemd-analyze")
+
+# YAML --------------------------------------------------------------------------------------------------------------------
+
+try:
+    import yaml
+except ImportError:
+    yaml = None
+    skipped.append("no yaml for Python")
+
+
+def containers(pod):
+    return pod.get("initContainers", []) + pod["containers"]
+
+
+def check_pod(path, pod, labels):
+    volumes = {volume["name"] for volume in pod.get("volumes", [])}
+    for container in containers(pod):
+        check_command(path, container.get("command", []))
+        if not container.get("securityContext", {}).get("readOnlyRootFilesystem"):
+            complain(path, f"{container['name']} may write to its image")
+        if "limits" not in container.get("resources", {}):
+            complain(path, f"{container['name']} has no limits")
+        for mount in container.get("volumeMounts", []):
+            if mount["name"] not in volumes:
+                complain(path, f"no volume {mount['name']}")
+    if pod.get("securityContext", {}).get("runAsNonRoot") is not True or pod.get("automountServiceAccountToken") is not False:
+        complain(path, "the pod has rights that it does not need")
+    return labels, {port["name"]: port["containerPort"] for c in containers(pod) for port in c.get("ports", [])}
+
+
+if yaml:
+    objects = {}
+    for path in sorted((contrib / "kubernetes").glob("*.yaml")):
+        for one in yaml.safe_load_all(path.read_text()):
+            for field in ("apiVersion", "kind", "metadata", "spec"):
+                if field not in one:
+                    complain(path, f"an object has no {field}")
+            objects[one["kind"]] = path, one
+    if set(objects) != {"Service", "Deployment", "Job"}:
+        complaints.append(f"contrib/kubernetes has {sorted(objects)}")
+    service_path, service = objects["Service"]
+    pods = {}
+    for kind in ("Deployment", "Job"):
+        path, one = objects[kind]
+        template = one["spec"]["template"]
+        labels = template["metadata"]["labels"]
+        pods[kind] = check_pod(path, template["spec"], labels)
+        selector = one["spec"].get("selector", {}).get("matchLabels", {})
+        if not selector.items() <= labels.items() or (kind == "Deployment") != bool(selector):
+            complain(path, f"the selector of the {kind} does not find its pods")
+        names = {v["secret"]["secretName"] for v in template["spec"]["volumes"] if "secret" in v}
+        if names != {"openrt-cluster-key"} or "openrt-cluster-key" not in path.with_name("workers.yaml").read_text().split("apiVersion")[0]:
+            complain(path, f"the secret is {names}")
+    labels, ports = pods["Job"]
+    if not service["spec"]["selector"].items() <= labels.items() or service["spec"]["selector"].items() <= pods["Deployment"][0].items():
+        complain(service_path, "the Service does not lead to vv alone")
+    port = service["spec"]["ports"][0]
+    if ports.get(port["targetPort"]) != port["port"]:
+        complain(service_path, "the Service's port is not vv's")
+    worker = objects["Deployment"][1]["spec"]["template"]["spec"]["containers"][0]["command"]
+    if f"{service['metadata']['name']}:{port['port']}" not in worker:
+        complain(service_path, "workers call somebody else")
+    images = {c["image"] for kind in ("Deployment", "Job") for c in containers(objects[kind][1]["spec"]["template"]["spec"])}
+    if len(images) != 1:
+        complain(service_path, f"master and workers have different images: {images}")
+    compose = contrib / "compose.yaml"
+    for service in yaml.safe_load(compose.read_text())["services"].values():
+        check_command(compose, service["command"])
+        if service["image"] not in images or service.get("cap_drop") != ["ALL"] or service.get("read_only") is not True:
+            complain(compose, "another image than Kubernetes', or rights that are not needed")
+
+listed = (contrib / "README.md").read_text()
+for path in contrib.rglob("*"):
+    if path.is_file() and path.parent.name != "container" and path.name != "README.md" and f"`{path.relative_to(root)}`" not in listed:
+        complain(path, "contrib/README.md does not list it")
+
+print(*complaints, f"{len(complaints)} complaints" + "".join(f"; skipped: {what}" for what in skipped), sep="\n")
+sys.exit(1 if complaints else 0)
