@@ -1,9 +1,13 @@
 // hosts.cpp: see hosts.h.
 #include "backend/cluster/hosts.h"
 
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <fstream>
 
 #include "backend/backend.h"
+#include "backend/cluster/addresses.h"
 
 namespace openrt::cluster {
 namespace {
@@ -25,12 +29,22 @@ std::vector<std::string> readHosts(const std::vector<std::string>& entries) {
       hosts.push_back(entry);
       continue;
     }
+    errno = 0;
     std::ifstream file(entry.substr(1));
-    if (!file) throw ClusterError("the list of workers " + entry.substr(1) + " cannot be read");
+    if (!file) throw ClusterError(entry.substr(1) + ": the list of workers cannot be read: " + std::strerror(errno ? errno : EIO));
     const size_t before = hosts.size();
-    for (std::string line; hosts.size() < most && std::getline(file, line);)
-      if (std::string host = trimmed(std::move(line)); !host.empty()) hosts.push_back(std::move(host));
-    if (hosts.size() == before) throw ClusterError("the list of workers " + entry.substr(1) + " names nobody");
+    size_t number = 1; // of the line
+    for (std::string line; hosts.size() < most && std::getline(file, line); ++number) {
+      std::string host = trimmed(std::move(line));
+      if (host.empty()) continue;
+      try {
+        Address::parse(host);
+      } catch (const std::runtime_error& error) {
+        throw ClusterError(entry.substr(1) + ":" + std::to_string(number) + ": " + error.what());
+      }
+      hosts.push_back(std::move(host));
+    }
+    if (hosts.size() == before) throw ClusterError(entry.substr(1) + ": the list of workers names nobody");
   }
   return hosts;
 }
