@@ -16,6 +16,12 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+// "rtRender: why" -> "why": of what is wrong with workers, not with a call.
+std::string withoutCall(const std::string& message) {
+  const size_t colon = message.find(": ");
+  return message.starts_with("rt") && colon != message.npos ? message.substr(colon + 2) : message;
+}
+
 double aspectOf(const RenderSettings& settings) { return double(settings.width) / settings.height; }
 
 // Room for each channel that is wanted; fill says whether it could be filled.
@@ -32,8 +38,9 @@ template <class Fill> bool fillChannels(const RenderSettings& settings, uint32_t
 } // namespace
 
 void throwOnError(const char* doing) {
-  if (const RTenum code = rtGetError(); code != RT_NO_ERROR)
-    throw RenderError(fmt::format("{}: {}", doing, rtGetErrorMessage()), code);
+  const RTenum code = rtGetError();
+  if (code == RT_CLUSTER_ERROR) throw RenderError(withoutCall(rtGetErrorMessage()), code);
+  if (code != RT_NO_ERROR) throw RenderError(fmt::format("{}: {}", doing, rtGetErrorMessage()), code);
 }
 
 std::string contextConfiguration(const RenderSettings& settings) {
@@ -46,7 +53,7 @@ std::string contextConfiguration(const RenderSettings& settings) {
 RTcontext newContext(const std::string& configuration) {
   if (const RTcontext made = rtNewContext(configuration.c_str())) return made;
   const RTenum code = rtGetError();
-  throw RenderError(rtGetErrorMessage(), code);
+  throw RenderError(withoutCall(rtGetErrorMessage()), code);
 }
 
 Stage::Stage(xvrml::World& world, xvrml::Browser* browser, const RenderSettings& s)

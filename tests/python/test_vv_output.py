@@ -153,7 +153,7 @@ def test_statistics(vv):
         "transport": "chosen reason claim",
         "error": "mean_rel mean_rel_interval half_width p99 pixels_trusted level method",
         "memory": "peak_rss bvh scene",
-        "cluster": "workers tiles retries bytes",
+        "cluster": "workers tiles tiles_here retries duplicates bytes bytes_sent bytes_received machines",
         "left_out": "cut_by_depth cut_by_energy clipped unreached_lights shader_faults wrong_hits rejected_rays",
         "machine": "isa threads embree",
     }
