@@ -81,7 +81,7 @@ void release(ClusterObject& self) {
   holder->rest();
 }
 
-void close(const ClusterPtr& self) {
+void closeCluster(const ClusterPtr& self) {
   release(*self);
   std::shared_ptr<picture::Cluster> last = std::exchange(self->cluster, nullptr);
   py::gil_scoped_release released;
@@ -99,12 +99,12 @@ void leave(const ClusterPtr& self, const py::args&) {
     py::handle(scope).attr("reset")(self->tokens.back());
     self->tokens.pop_back();
   }
-  if (self->tokens.empty()) close(self);
+  if (self->tokens.empty()) closeCluster(self);
 }
 
 std::vector<RTworker> workers(const ClusterPtr& self) { return self->open().workers(); }
 
-void wait(const ClusterPtr& self, size_t count, double timeout) {
+void waitFor(const ClusterPtr& self, size_t count, double timeout) {
   const std::shared_ptr<picture::Cluster> cluster = self->cluster;
   self->open();
   bool signalled = false, there = false;
@@ -187,9 +187,9 @@ void defineCluster(py::module_& module) {
            "once. require: renders raise ClusterError while fewer workers are there for 10 seconds.")
       .def("__enter__", enter)
       .def("__exit__", leave)
-      .def("close", close, "Says goodbye to the workers; the end of the with block does it.")
+      .def("close", closeCluster, "Says goodbye to the workers; the end of the with block does it.")
       .def_property_readonly("workers", workers, "A Worker for each machine that has joined, those that left and this one too.")
-      .def("wait", wait, py::arg("count") = 1, py::arg("timeout") = 10.0,
+      .def("wait", waitFor, py::arg("count") = 1, py::arg("timeout") = 10.0,
            "Waits until so many workers are there; raises TimeoutError if they are not in time. A render needs no wait: workers "
            "may join in its middle.")
       .def("__repr__", text);

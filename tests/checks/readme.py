@@ -28,7 +28,8 @@ def free_port():
         return probe.getsockname()[1]
 
 
-has_worker = (build / "bin/openrt-worker").exists()
+probe = subprocess.run([build / "bin/vv", "-", "-o", "png:-", "--workers", "127.0.0.1:1"], input=b"#VRML", capture_output=True, timeout=60)
+has_worker = (build / "bin/openrt-worker").exists() and b"not built" not in probe.stderr
 free = {"7447": free_port(), "7448": free_port()}
 
 with tempfile.TemporaryDirectory() as scratch:
