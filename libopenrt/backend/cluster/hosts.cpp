@@ -31,7 +31,8 @@ std::vector<std::string> readHosts(const std::vector<std::string>& entries) {
     }
     errno = 0;
     std::ifstream file(entry.substr(1));
-    if (!file) throw ClusterError(entry.substr(1) + ": the list of workers cannot be read: " + std::strerror(errno ? errno : EIO));
+    if (!file)
+      throw ClusterError(entry.substr(1) + ": the list of workers cannot be read: " + std::strerror(errno ? errno : EIO));
     const size_t before = hosts.size();
     size_t number = 1; // of the line
     for (std::string line; hosts.size() < most && std::getline(file, line); ++number) {
