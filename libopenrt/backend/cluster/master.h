@@ -5,7 +5,9 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
+#include "backend/cluster/messages.h"
 #include "backend/cluster/scheduler.h"
 #include "backend/cluster/wire.h"
 #include "scene/commit.h"
@@ -17,10 +19,19 @@ struct MasterOptions {
   bool tolerant = false;     // workers of another instruction set are taken
   BackendOptions local;      // shaders (to name and hash what a scene needs), log
   uint32_t localThreads = 0; // of the worker here; 0: none as long as others live
+  uint32_t require = 0;      // workers without which nothing is handed out
+  double patience = 10;      // seconds for which fewer are borne
+  double grace = 1;          // seconds that a worker here without threads of its own waits for the first other one
+  uint64_t session = 1;      // sessions of workers are numbered from here; a random number keeps those of two masters apart
+  message::Hello self;       // what workers are compared with (greeting.h)
+  std::function<void(Peer, const std::string& why)> close; // a worker is refused
+  // Runs the first function on any thread and the second, later, on the master's. None: both at once.
+  std::function<void(std::function<void()> heavy, std::function<void()> then)> background;
 };
 
 class Master {
  public:
+  // False: the peer's queue is full; the frames are left as they were. Or it has left.
   using Send = std::function<bool(Peer, Frames&&)>;
   Master(const MasterOptions& options, Send send, WorkerCore* here);
   ~Master();
@@ -34,20 +45,33 @@ class Master {
   void failedHere(Epoch epoch, const std::string& why, double now);
   void doneHere(Epoch epoch, const LeasedJob& job, JobResult&& result, double now);
 
-  // What the application tells. Commits in their order; the frame of a commit is begun once a worker has prepared it.
+  // What the application tells. Commits in their order, epochs ascend; the frame of a commit is begun once a worker has prepared
+  // it.
   void commit(Epoch epoch, std::shared_ptr<const Commit> commit, bool frame, double now);
-  void cancel(Epoch epoch, double now);
+  void cancel(Epoch epoch, double now); // this frame and those before
   // Hands out what there is; returns when to be called again at the latest.
   double advance(double now);
+  // The worker here gets the scene of the last commit, to be asked about it. False: frames before it are not finished yet, or
+  // there is no worker here.
+  bool bringHere();
 
   struct FrameState {
     std::shared_ptr<FrameWork> work; // null: nobody has prepared it yet
     Prepared prepared;
-    std::string failure; // not empty: it cannot be made
-    bool over = false;
+    std::string failure;  // not empty: it cannot be made
+    bool missing = false; // and that is because workers are missing
+    bool over = false;    // finished, failed or cancelled
   };
   FrameState frame(Epoch epoch) const;
   void forget(Epoch epoch); // a frame that was read
+
+  struct Totals {
+    uint32_t workers = 0; // that are there now, without the one here
+    uint64_t jobsRemote = 0, jobsHere = 0, reissued = 0, duplicates = 0, bytesSent = 0, bytesReceived = 0;
+    uint32_t threads = 0; // of all that are there
+  };
+  Totals totals() const;
+  std::vector<RTworker> workers() const; // the one here first, then in the order in which they joined
 
  private:
   struct Impl;

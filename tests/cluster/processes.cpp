@@ -1,0 +1,228 @@
+// processes.cpp: pictures with the help of real worker processes on loopback: the same bytes as one thread whoever takes part,
+// whenever they come and however they go.
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include <unistd.h>
+
+#include "cluster/support.h"
+
+namespace {
+
+using namespace cluster_test;
+
+using Workers = std::vector<std::unique_ptr<Worker>>;
+
+Workers start(int count) {
+  Workers workers;
+  for (int i = 0; i < count; i++) workers.push_back(std::make_unique<Worker>());
+  return workers;
+}
+
+// Waits until so many workers have joined.
+void join(uint32_t count) {
+  EXPECT_TRUE(until([&] { return statistics().workers >= count; })) << statistics().workers << " of " << count << " workers";
+}
+
+uint64_t jobsOf(const std::vector<RTworker>& workers) {
+  uint64_t jobs = 0;
+  for (const RTworker& worker : workers) jobs += worker.jobs;
+  return jobs;
+}
+
+TEST(ClusterProcesses, AnyNumberOfWorkersMakesTheSameBytes) {
+  for (const Look& look : {Look{}, Look{.samples = 70, .transport = RT_TRANSPORT_AUTO}}) {
+    const Picture one = expected(look);
+    for (int count = 0; count <= 3; count++) {
+      SCOPED_TRACE(count);
+      const Workers helping = start(count);
+      const Context context("backend=cluster threads=1 " +
+                            (count ? calling(helping) : "listen=127.0.0.1:" + std::to_string(freePort())));
+      World world;
+      world.look(look);
+      join(uint32_t(count));
+      rtRender();
+      EXPECT_EQ(different(pixels(look), one), 0u);
+      const RTstats stats = statistics();
+      EXPECT_EQ(stats.workers, uint32_t(count));
+      EXPECT_EQ(stats.threads, uint32_t(count) + 1);
+      EXPECT_EQ(jobsOf(workers()), stats.tilesLocal + stats.tilesRemote);
+    }
+  }
+}
+
+TEST(ClusterProcesses, WithoutThreadsOfItsOwnTheMasterLeavesAllToTheWorkers) {
+  const Workers helping = start(2);
+  const Context context("backend=cluster local=0 " + calling(helping));
+  World world;
+  for (const double time : {0.0, .5}) {
+    if (time > 0) world.move(time);
+    rtRender();
+    EXPECT_EQ(different(pixels({}), expected({}, time)), 0u);
+  }
+  const RTstats stats = statistics();
+  EXPECT_EQ(stats.tilesLocal, 0u);
+  EXPECT_GT(stats.tilesRemote, 0u);
+  EXPECT_GT(stats.bytesSent, 10000u);
+  EXPECT_GT(stats.bytesReceived, 10000u);
+}
+
+// More than the test waits for if nobody helps, but not much.
+Look longer() { return {.width = 120, .height = 90, .samples = 256, .channels = RT_RGBA | RT_ERROR | RT_SAMPLES}; }
+
+TEST(ClusterProcesses, WhoJoinsInMidFrameHelps) {
+  const Picture one = expected(longer());
+  const int port = freePort();
+  const Context context("backend=cluster threads=1 listen=127.0.0.1:" + std::to_string(port));
+  World world;
+  world.look(longer());
+  rtSwapBuffers();
+  ASSERT_TRUE(until([&] { return rtProgress(context.handle) > .05f; }));
+  Worker late({"--connect", "127.0.0.1:" + std::to_string(port)});
+  EXPECT_EQ(rtFinishFrame(), 1);
+  EXPECT_EQ(different(pixels(longer()), one), 0u);
+  EXPECT_GT(statistics().tilesRemote, 0u);
+}
+
+TEST(ClusterProcesses, AWorkerThatIsKilledInMidFrameIsMadeUpFor) {
+  const Picture one = expected(longer());
+  for (int victims : {1, 3}) {
+    SCOPED_TRACE(victims);
+    Workers helping = start(3);
+    Context context("backend=cluster threads=1 local=" + std::string(victims == 1 ? "0 " : "1 ") + calling(helping));
+    World world;
+    world.look(longer());
+    join(3);
+    rtSwapBuffers();
+    ASSERT_TRUE(until([&] { return rtProgress(context.handle) > .1f; }));
+    for (int i = 0; i < victims; i++) helping[size_t(i)]->kill();
+    EXPECT_EQ(rtFinishFrame(), 1);
+    EXPECT_EQ(different(pixels(longer()), one), 0u);
+    EXPECT_EQ(statistics().workers, uint32_t(3 - victims));
+    EXPECT_EQ(context.said("all workers have gone"), victims == 3);
+  }
+}
+
+TEST(ClusterProcesses, AllGoneAndNoThreadsOfItsOwnTheMasterFinishesAllTheSame) {
+  const Picture one = expected(longer());
+  Workers helping = start(2);
+  Context context("backend=cluster local=0 threads=1 " + calling(helping));
+  World world;
+  world.look(longer());
+  rtSwapBuffers();
+  ASSERT_TRUE(until([&] { return rtProgress(context.handle) > .1f; }));
+  for (auto& worker : helping) worker->kill();
+  EXPECT_EQ(rtFinishFrame(), 1);
+  EXPECT_EQ(different(pixels(longer()), one), 0u);
+  EXPECT_TRUE(context.said("all workers have gone"));
+  EXPECT_GT(statistics().tilesLocal, 0u);
+}
+
+TEST(ClusterProcesses, NobodyToCallIsNoReasonToFail) {
+  Context context("backend=cluster local=0 threads=1 workers=127.0.0.1:" + std::to_string(freePort()));
+  World world;
+  rtRender();
+  EXPECT_EQ(different(pixels({}), expected({})), 0u);
+  EXPECT_TRUE(context.said("no worker"));
+}
+
+TEST(ClusterProcesses, AWorkerThatIsStoppedIsLeftOutUntilItGoesOn) {
+  const Picture one = expected(longer());
+  Workers helping = start(2);
+  const Context context("backend=cluster threads=1 " + calling(helping));
+  World world;
+  world.look(longer());
+  join(2);
+  rtSwapBuffers();
+  ASSERT_TRUE(until([&] { return rtProgress(context.handle) > .05f; }));
+  helping[0]->signal(SIGSTOP);
+  EXPECT_EQ(rtFinishFrame(), 1);
+  EXPECT_EQ(different(pixels(longer()), one), 0u);
+  ASSERT_TRUE(until([&] { return statistics().workers == 1; }));
+  helping[0]->signal(SIGCONT);
+  join(2);
+  rtRender();
+  EXPECT_EQ(different(pixels(longer()), one), 0u);
+}
+
+TEST(ClusterProcesses, ACancelledFrameEndsAndTheNextIsRight) {
+  const Workers helping = start(2);
+  const Context context("backend=cluster threads=1 " + calling(helping));
+  World world;
+  world.look({.width = 800, .height = 600, .samples = 4096, .channels = RT_RGBA});
+  join(2);
+  rtSwapBuffers();
+  ASSERT_TRUE(until([&] { return rtProgress(context.handle) > 0; }));
+  rtCancel(context.handle);
+  EXPECT_EQ(rtFinishFrame(), 1);
+  world.look({});
+  rtRender();
+  EXPECT_EQ(different(pixels({}), expected({})), 0u);
+}
+
+TEST(ClusterProcesses, RaysAreAskedAboutTheLastScene) {
+  const Workers helping = start(1);
+  RThit hits[2][3];
+  for (int i = 0; i < 2; i++) {
+    const Context context(i == 0 ? "threads=1" : "backend=cluster threads=1 local=0 " + calling(helping));
+    World world;
+    rtSwapBuffers();
+    world.move(1.3);
+    rtSwapBuffers(); // in flight, perhaps with the one before
+    const RTray rays[2] = {{{0, 0, 6}, 0, {0, -.1f, -1}, INFINITY}, {{-2.5f, 9, 0}, 0, {0, -1, 0}, INFINITY}};
+    rtCastRays(2, rays, hits[i]);
+    EXPECT_EQ(rtPick(30, 22, &hits[i][2]), 1);
+    uint8_t occluded[2];
+    rtOccludedRays(2, rays, occluded);
+    EXPECT_TRUE(occluded[0] && occluded[1]);
+  }
+  for (int k = 0; k < 3; k++) {
+    EXPECT_EQ(hits[0][k].t, hits[1][k].t);
+    EXPECT_EQ(hits[0][k].instance, hits[1][k].instance);
+    EXPECT_EQ(hits[0][k].name, hits[1][k].name);
+  }
+}
+
+TEST(ClusterProcesses, ARecordingBesideIsThatOfTheSameScene) {
+  const auto file = std::filesystem::temp_directory_path() / ("openrt_cluster_" + std::to_string(getpid()) + ".ortr");
+  const auto alone = file.string() + "2";
+  {
+    const Workers helping = start(1);
+    const Context context("backend=cluster threads=1 record=" + file.string() + " " + calling(helping));
+    World world;
+    rtRender();
+    EXPECT_EQ(different(pixels({}), expected({})), 0u);
+  }
+  {
+    const Context context("backend=record file=" + alone);
+    World world;
+    rtRender();
+  }
+  const auto bytes = [](const std::filesystem::path& path) { return std::filesystem::file_size(path); };
+  EXPECT_EQ(bytes(file), bytes(alone));
+  std::filesystem::remove(file), std::filesystem::remove(alone);
+}
+
+TEST(ClusterProcesses, RequiredWorkersThatAreMissingAreAnError) {
+  const Context context("backend=cluster threads=1 require=2 workers=127.0.0.1:" + std::to_string(freePort()));
+  World world;
+  rtRender();
+  EXPECT_EQ(rtGetError(), RTenum(RT_CLUSTER_ERROR));
+  EXPECT_NE(std::string(rtGetErrorMessage()).find("2 workers are needed, there are 0"), std::string::npos) << rtGetErrorMessage();
+}
+
+TEST(ClusterConfig, WhatCannotWorkIsSaidAtOnce) {
+  for (const char* config :
+       {"backend=cluster workers=@/nonexistent/hosts", "backend=cluster workers=203.0.113.9", "backend=cluster listen=0.0.0.0",
+        "backend=cluster workers=127.0.0.1 key=/nonexistent/key", "backend=cluster workers=127.0.0.1 allow=/nonexistent/list"}) {
+    EXPECT_EQ(rtNewContext(config), nullptr) << config;
+    EXPECT_EQ(rtGetError(), RTenum(RT_CLUSTER_ERROR)) << config << ": " << rtGetErrorMessage();
+  }
+  rtNewContext("backend=cluster workers=203.0.113.9");
+  rtGetError();
+  EXPECT_NE(std::string(rtGetErrorMessage()).find("--new-key"), std::string::npos) << rtGetErrorMessage();
+}
+
+} // namespace

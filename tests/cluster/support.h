@@ -1,0 +1,104 @@
+// support.h: for tests of the cluster: a scene that asks for everything that travels, its pictures as bytes, and worker processes
+// on loopback that can be stopped, killed and started again.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <sys/types.h>
+
+#include "openrt/openrt.h"
+
+namespace cluster_test {
+
+using namespace std::chrono_literals;
+
+inline constexpr uint32_t allChannels =
+    RT_RGBA | RT_DEPTH | RT_NORMAL | RT_ALBEDO | RT_POSITION | RT_NAME | RT_SAMPLES | RT_VARIANCE | RT_ERROR | RT_TRUST;
+
+struct Look { // of a frame
+  int width = 61, height = 45;
+  int samples = 4;
+  uint32_t channels = allChannels;
+  int transport = RT_TRANSPORT_PATH;
+  int tile = 0;
+  bool progressive = false;
+  double targetError = 0;
+};
+
+// A context that is current as long as the object lives; at its end no error may be left over.
+class Context {
+ public:
+  explicit Context(const std::string& config);
+  ~Context();
+  Context(const Context&) = delete;
+  Context& operator=(const Context&) = delete;
+  RTcontext handle = nullptr;
+  std::vector<std::string> log; // what the library has said; read it when nothing is in flight
+  bool said(const std::string& part) const;
+};
+
+// Things of several materials under a lamp, some moving, on a floor of many triangles.
+class World {
+ public:
+  World(); // in the current context
+  void look(const Look& look);
+  void move(double time); // edits of an animation: matrices, a parameter, the camera, now and then geometry
+  void slow(int depth);   // paths of many bounces between mirrors: a frame that takes its time
+
+ private:
+  RTid surface_ = 0, lamp_ = 0, ball_ = 0, shape_ = 0;
+  std::vector<RTid> places_;
+  int color_ = -1;
+};
+
+using Picture = std::vector<float>; // all channels of a frame, one after the other
+Picture pixels(const Look& look);
+// The frame of a World by one thread here.
+Picture expected(const Look& look, double time = 0);
+// How many values differ; 0: the same bytes.
+size_t different(const Picture& a, const Picture& b);
+
+RTstats statistics();
+std::vector<RTworker> workers();
+
+// openrt-worker on a free port of this machine.
+class Worker {
+ public:
+  explicit Worker(std::vector<std::string> options = {}, int threads = 1);
+  ~Worker(); // killed
+  Worker(const Worker&) = delete;
+  Worker& operator=(const Worker&) = delete;
+  std::string address() const { return "127.0.0.1:" + std::to_string(port_); }
+  void signal(int number) const; // SIGKILL, SIGSTOP, SIGCONT
+  void kill();                   // at once, and reaped
+  void start();                  // again, on the same port
+  int wait();                    // for it to end by itself; its exit code, -1 if it was killed
+  pid_t process() const { return pid_; }
+
+ private:
+  std::vector<std::string> options_;
+  int threads_ = 1, port_ = 0;
+  pid_t pid_ = -1;
+};
+int freePort();
+// Addresses of workers as an option of a context.
+template <class Workers> std::string calling(const Workers& workers) {
+  std::string list;
+  for (const auto& worker : workers) list += (list.empty() ? "workers=" : ",") + worker->address();
+  return list;
+}
+// Until it is so; false: not within so many seconds.
+template <class F> bool until(const F& condition, double seconds = 20) {
+  for (const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);;) {
+    if (condition()) return true;
+    if (std::chrono::steady_clock::now() > end) return false;
+    std::this_thread::sleep_for(5ms);
+  }
+}
+
+} // namespace cluster_test
