@@ -147,6 +147,42 @@ TEST(ClusterProcesses, AWorkerThatIsStoppedIsLeftOutUntilItGoesOn) {
   EXPECT_EQ(different(pixels(longer()), one), 0u);
 }
 
+TEST(ClusterProcesses, AnAnimationIsTheSameFrameByFrame) {
+  constexpr int frames = 100;
+  const Look look{.width = 32, .height = 24, .samples = 2, .channels = RT_RGBA | RT_DEPTH | RT_NAME};
+  std::vector<Picture> alone;
+  {
+    const Context context("threads=1");
+    World world;
+    world.look(look);
+    for (int i = 0; i < frames; i++) world.move(.1 * i), rtRender(), alone.push_back(pixels(look));
+  }
+  for (const char* how : {"split=auto", "split=frames", "split=samples local=0"}) {
+    SCOPED_TRACE(how);
+    Workers helping = start(2);
+    const Context context("backend=cluster threads=1 " + calling(helping) + " " + how);
+    World world;
+    world.look(look);
+    rtQuality(RT_FRAMES_IN_FLIGHT, 4);
+    uint64_t seen = 0;
+    const auto compare = [&] {
+      const uint64_t number = statistics().frame;
+      if (number == seen) return;
+      seen = number;
+      EXPECT_EQ(different(pixels(look), alone[size_t(number - 1)]), 0u) << "frame " << number;
+    };
+    for (int i = 0; i < frames; i++) {
+      world.move(.1 * i);
+      rtSwapBuffers();
+      compare();
+      if (i == 40) helping[0]->kill();
+      if (i == 60) helping[0]->start();
+    }
+    while (rtFinishFrame()) compare();
+    EXPECT_EQ(seen, uint64_t(frames));
+  }
+}
+
 TEST(ClusterProcesses, ACancelledFrameEndsAndTheNextIsRight) {
   const Workers helping = start(2);
   const Context context("backend=cluster threads=1 " + calling(helping));

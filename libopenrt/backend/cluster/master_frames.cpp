@@ -136,19 +136,20 @@ void Master::Impl::taken(Epoch epoch) {
   }
 }
 
-// Jobs of it that are still out are of no use.
+// Jobs of it that are still out are of no use. They are taken back together with those of all earlier frames, once these are over.
 void Master::Impl::end(Epoch epoch) {
   frames.at(epoch).state.over = true;
   scheduler.end(epoch);
-  const auto takeBack = [epoch](Remote& remote) {
+  const Epoch first = oldest(), until = first ? first - 1 : std::max(epoch, scenes.last());
+  const auto takeBack = [until](Remote& remote) {
     bool any = false;
-    for (auto out = remote.out.begin(); out != remote.out.end() && out->first <= epoch; out = remote.out.erase(out))
+    for (auto out = remote.out.begin(); out != remote.out.end() && out->first <= until; out = remote.out.erase(out))
       any |= out->second > 0;
     return any;
   };
-  if (core && takeBack(here)) core->drop(epoch);
+  if (core && takeBack(here)) core->drop(until);
   for (const auto& [id, peer] : peers)
-    if (Remote& remote = remotes.at(peer); takeBack(remote)) say(remote, message::Drop{epoch});
+    if (Remote& remote = remotes.at(peer); takeBack(remote)) say(remote, message::Drop{until});
 }
 
 void Master::Impl::fail(Epoch epoch, const std::string& why, bool missing) {
