@@ -136,7 +136,8 @@ void Master::Impl::taken(Epoch epoch) {
   }
 }
 
-// Jobs of it that are still out are of no use. They are taken back together with those of all earlier frames, once these are over.
+// Jobs of it that are still out are of no use. They are taken back together with those of all earlier frames, once these are
+// over.
 void Master::Impl::end(Epoch epoch) {
   frames.at(epoch).state.over = true;
   scheduler.end(epoch);
