@@ -15,7 +15,8 @@
 namespace openrt::test {
 
 struct Captured {
-  explicit Captured(const std::string& plugins) : shaders({plugins + "/stock", plugins}), validator(&shaders) {}
+  explicit Captured(const std::string& plugins) : Captured(std::vector<std::string>{plugins + "/stock", plugins}) {}
+  explicit Captured(std::vector<std::string> folders) : shaders(std::move(folders)), validator(&shaders) {}
   ShaderRegistry shaders;
   CommitValidator validator;
   std::vector<std::shared_ptr<const Commit>> commits;

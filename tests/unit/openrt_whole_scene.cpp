@@ -83,6 +83,13 @@ class Comparer { // geometry names shaders that may be deleted by now: those nam
 
 class WholeScene : public ApiTest, public testing::WithParamInterface<int> {
  protected:
+  void SetUp() override { // with the stock shaders
+    captured = std::make_shared<Captured>(shaderFolders(OPENRT_TEST_PLUGINS));
+    ContextConfig config;
+    config.shaderPath = OPENRT_TEST_PLUGINS;
+    handle = adoptContext(std::make_shared<Context>(config, std::make_unique<CaptureBackend>(captured)));
+  }
+
   std::mt19937 random{unsigned(GetParam())};
   float number(float low, float high) { return low + (high - low) * float(random() >> 8) / float(1 << 24); }
   RTid any(const std::vector<RTid>& ids) { return ids.empty() ? 0 : ids[random() % ids.size()]; }
