@@ -384,11 +384,12 @@ TEST_P(ClusterMaster, NonsenseIsBorneThreeTimes) {
 TEST_P(ClusterMaster, ACancelledFrameIsOverAtOnceAndTheNextIsRight) {
   join(), join();
   master->commit(1, edits(1), true, now);
-  if (GetParam() % 2)
+  if (GetParam() % 2) {
     ASSERT_TRUE(runUntil([&] {
       const auto work = master->frame(1).work;
       return work && work->progress() > .2f;
     }));
+  }
   master->cancel(1, now);
   EXPECT_TRUE(over(1));
   EXPECT_TRUE(master->frame(1).work);
