@@ -12,7 +12,7 @@ R = build/release
 SOURCES = $(shell git ls-files '*.cpp' '*.h' '*.hpp' '*.c')
 export CTEST_OUTPUT_ON_FAILURE = 1
 
-.PHONY: build demo test install bench bench-render audit accuracy corpus fuzz asan tsan coverage format format-check tidy packages clean help
+.PHONY: build demo test install bench bench-render audit accuracy corpus fuzz cluster-campaign asan tsan coverage format format-check tidy packages clean help
 
 help:
 	@sed -n 's/^## //p' Makefile
@@ -77,6 +77,10 @@ asan: packages
 	@$(CONFIGURE) asan-ubsan && cmake --build build/asan-ubsan -j $(JOBS) && ctest --preset asan-ubsan -j $(JOBS)
 tsan: packages
 	@$(CONFIGURE) tsan && cmake --build build/tsan -j $(JOBS) && ctest --preset tsan -j $(JOBS)
+
+## make cluster-campaign  workers killed at random, partitions, 10,000 frames (CAMPAIGN="--kills 10 --frames 1000")
+cluster-campaign: build
+	@OPENRT_BUILD=$(CURDIR)/$(R) $(PYTHON) tests/cluster/campaign.py $(CAMPAIGN)
 
 ## make coverage      line coverage of the tests, summary into build/coverage/coverage.txt
 coverage: packages

@@ -1,0 +1,92 @@
+"""Workers as processes on the loopback, each behind a fault proxy if asked for; and what is to be known of processes."""
+import contextlib
+import os
+import pathlib
+import signal
+import socket
+import subprocess
+import time
+
+from fault_proxy import FaultProxy
+from openrt_c import build
+
+PROGRAM = build() / "bin/openrt-worker"
+
+
+def free_port():
+    with socket.create_server(("127.0.0.1", 0)) as s:
+        return s.getsockname()[1]
+
+
+def listening(port, seconds=20):
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        with contextlib.suppress(OSError), socket.create_connection(("127.0.0.1", port), timeout=1):
+            return True
+        time.sleep(0.02)
+    return False
+
+
+class Worker:
+    """One openrt-worker that listens; address: where the master is to call."""
+
+    def __init__(self, *arguments, threads=1, proxy=False, port=None):
+        self.port = port or free_port()
+        self.arguments = [PROGRAM, "--listen", f"127.0.0.1:{self.port}", "--threads", str(threads), *arguments]
+        self.process = None
+        self.proxy = None
+        self.start()
+        if proxy:
+            self.proxy = FaultProxy(("127.0.0.1", self.port))
+        self.address = self.proxy.address if proxy else f"127.0.0.1:{self.port}"
+
+    def start(self):
+        self.process = subprocess.Popen(self.arguments, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        assert listening(self.port), "openrt-worker does not listen"
+
+    def kill(self):
+        self.process.kill()
+        self.process.wait()
+
+    def stop(self):
+        self.process.send_signal(signal.SIGSTOP)
+
+    def resume(self):
+        self.process.send_signal(signal.SIGCONT)
+
+    def close(self):
+        if self.process.poll() is None:
+            self.process.send_signal(signal.SIGCONT)
+            self.kill()
+        if self.proxy:
+            self.proxy.close()
+
+
+@contextlib.contextmanager
+def farm(count, *arguments, **options):
+    workers = []
+    try:
+        for _ in range(count):
+            workers.append(Worker(*arguments, **options))
+        yield workers
+    finally:
+        for worker in workers:
+            worker.close()
+
+
+def cluster(workers, **options):
+    """The configuration of a context."""
+    words = {"workers": ",".join(w.address for w in workers), **options}
+    return "backend=cluster " + " ".join(f"{key}={value}" for key, value in words.items())
+
+
+def resident(pid="self"):
+    """Bytes of memory that a process holds."""
+    for line in pathlib.Path(f"/proc/{pid}/status").read_text().splitlines():
+        if line.startswith("VmRSS:"):
+            return int(line.split()[1]) * 1024
+    return 0
+
+
+def descriptors(pid="self"):
+    return len(os.listdir(f"/proc/{pid}/fd"))
