@@ -69,8 +69,7 @@ def long_partition(expected, seconds):
         timer.start()
         made, wrong, longest = frames_until(c, expected, lambda: not timer.is_alive())
         begin = time.monotonic()
-        while c.worker_count() < 2 and time.monotonic() - begin < 30:
-            time.sleep(0.02)
+        c.wait_for(2, 30)
         back = time.monotonic() - begin
         wrong += c.render() != expected
         note(f"partition of {seconds:g} s", f"{made} frames, {wrong} wrong, the longest {longest:.2f} s; back after {back:.2f} s",

@@ -13,6 +13,7 @@ import pytest
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "cluster"))
 import openrt_c  # noqa: E402
 from farm import PROGRAM, Worker, cluster, farm, resident  # noqa: E402
+from namespace import THERE, namespace  # noqa: E402
 
 pytestmark = pytest.mark.skipif(not PROGRAM.exists(), reason="no openrt-worker in this build")
 
@@ -92,10 +93,8 @@ def test_a_worker_that_comes_back_is_taken_again(expected):
         assert render(c, workers[0].kill)[0] == expected
         workers[0].start()
         begin = time.monotonic()
-        while c.worker_count() < 2 and time.monotonic() - begin < 20:
-            time.sleep(0.05)
+        assert c.wait_for(2)
         print(f"back after {time.monotonic() - begin:.2f} s")
-        assert c.worker_count() == 2
         assert render(c, workers[1].kill)[0] == expected
 
 
@@ -222,3 +221,28 @@ def test_nobody_there_the_master_does_it_alone_and_says_so(expected):
     with farm(1) as workers, openrt_c.context(cluster(workers, local=0), **FRAME) as c:
         assert render(c, workers[0].kill)[0] == expected
         assert "alone" in talk(c)
+
+
+def test_another_machine_with_a_key_and_a_cable_that_is_pulled(expected, tmp_path):
+    key = tmp_path / "cluster.key"
+    subprocess.run([PROGRAM, "--new-key", key], check=True, capture_output=True)
+    with namespace() as there:
+        if there is None:
+            pytest.skip("no network namespaces here (they need root and iproute2)")
+        with there.popen(PROGRAM, "--listen", f"{THERE}:7447", "--threads", "1", "--key", key) as worker:
+            try:
+                time.sleep(0.5)
+                with pytest.raises(openrt_c.RtError, match="key"):
+                    openrt_c.Context(f"backend=cluster workers={THERE}:7447")
+                with openrt_c.context(f"backend=cluster workers={THERE}:7447 local=0 key={key}", **FRAME) as c:
+                    assert c.wait_for(1), talk(c)
+                    assert render(c)[0] == expected
+                    assert c.stats()["tilesRemote"] > 0
+                    out, took = render(c, lambda: there.plug(False))
+                    print(f"the cable is pulled: {took:.2f} s")
+                    assert out == expected
+                    there.plug(True)
+                    assert c.wait_for(1), talk(c)
+                    assert render(c)[0] == expected
+            finally:
+                worker.kill()
