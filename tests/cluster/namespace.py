@@ -4,7 +4,7 @@ import os
 import shutil
 import subprocess
 
-HERE, THERE = "192.0.2.1", "192.0.2.2"  # RFC 5737: documentation
+HERE, THERE = "198.51.100.1", "198.51.100.2"  # RFC 5737: documentation
 
 
 def ip(*arguments):
