@@ -6,6 +6,8 @@ import ctypes
 import math
 import os
 import pathlib
+import re
+import time
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 RGBA, DEPTH, NORMAL, ALBEDO, POSITION, NAME, SAMPLES, VARIANCE, ERROR, TRUST = (1 << i for i in range(10))
@@ -22,6 +24,24 @@ def build():
         if folder and (pathlib.Path(folder).resolve().parent / "lib/libopenrt.so").exists():
             return pathlib.Path(folder).resolve().parent
     return ROOT / "build/release"
+
+
+def structure(name):
+    """A structure of openrt.h, read from there."""
+    kinds = {"size_t": ctypes.c_size_t, "uint64_t": ctypes.c_uint64, "uint32_t": ctypes.c_uint32, "RTenum": ctypes.c_uint32,
+             "int": ctypes.c_int, "double": ctypes.c_double, "char": ctypes.c_char}
+    text = re.sub(r"/\*.*?\*/", "", (ROOT / "libopenrt/include/openrt/openrt.h").read_text(), flags=re.S)
+    body = re.search(r"typedef struct %s \{(.*?)\}" % name, text, re.S)[1]
+    fields = []
+    for declaration in filter(str.strip, body.split(";")):
+        kind, names = declaration.split(None, 1)
+        for field in names.split(","):
+            field, _, count = field.strip().rstrip("]").partition("[")
+            fields.append((field, kinds[kind] * int(count) if count else kinds[kind]))
+    return type(name, (ctypes.Structure,), {"_fields_": fields})
+
+
+Stats, Worker = structure("RTstats"), structure("RTworker")
 
 
 class RtError(RuntimeError):
@@ -41,7 +61,8 @@ class Context:
         self.rt.rtParameterHandle.argtypes = [ctypes.c_char_p]
         self.rt.rtReadPixels.argtypes = [ctypes.c_uint32, ctypes.c_void_p, ctypes.c_size_t]
         self.rt.rtInstanceMatrix.argtypes = [ctypes.c_uint32, ctypes.POINTER(ctypes.c_double)]
-        self.rt.rtGetStats.argtypes = [ctypes.c_void_p]
+        self.rt.rtGetWorkers.restype = ctypes.c_size_t
+        self.rt.rtGetWorkers.argtypes = [ctypes.c_void_p, ctypes.c_size_t]
         self.messages = []
         log = ctypes.CFUNCTYPE(None, ctypes.c_int, ctypes.c_char_p, ctypes.c_void_p)
         self._log = log(lambda level, text, _: self.messages.append((level, text.decode(errors="replace"))))
@@ -75,6 +96,26 @@ class Context:
 
     def cancel(self):
         self.rt.rtCancel(self.handle)
+
+    def stats(self):
+        out = Stats(size=ctypes.sizeof(Stats))
+        self("GetStats", ctypes.byref(out))
+        return {name: getattr(out, name) for name, _ in Stats._fields_}
+
+    def workers(self):
+        """What rtGetWorkers knows of each."""
+        out = (Worker * 64)()
+        count = self("GetWorkers", out, len(out))
+        return [{name: getattr(w, name) for name, _ in Worker._fields_} for w in out[:count]]
+
+    def wait_for(self, count, seconds=20):
+        """Whether so many workers are there before the time is up."""
+        end = time.monotonic() + seconds
+        while sum(w["alive"] for w in self.workers()) < count:
+            if time.monotonic() > end:
+                return False
+            time.sleep(0.02)
+        return True
 
     # The scene --------------------------------------------------------------------------------------------------------
 
