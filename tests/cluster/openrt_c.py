@@ -105,13 +105,14 @@ class Context:
     def workers(self):
         """What rtGetWorkers knows of each."""
         out = (Worker * 64)()
+        out[0].size = ctypes.sizeof(Worker)
         count = self("GetWorkers", out, len(out))
         return [{name: getattr(w, name) for name, _ in Worker._fields_} for w in out[:count]]
 
     def wait_for(self, count, seconds=20):
         """Whether so many workers are there before the time is up."""
         end = time.monotonic() + seconds
-        while sum(w["alive"] for w in self.workers()) < count:
+        while sum(w["alive"] for w in self.workers() if w["name"] != b"here") < count:
             if time.monotonic() > end:
                 return False
             time.sleep(0.02)
