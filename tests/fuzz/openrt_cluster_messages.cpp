@@ -1,0 +1,61 @@
+// openrt_cluster_messages.cpp: what a master or a worker may be sent, from bytes: framing, headers, edits, pieces of arrays,
+// results of jobs. Input: frame after frame, each with its length in two bytes; what is left is the last one.
+#include <array>
+
+#include "backend/cluster/messages.h"
+#include "backend/record/edits_bytes.h"
+#include "backend/record/validator.h"
+#include "render/result_codec.h"
+
+namespace {
+
+using namespace openrt;
+using namespace openrt::cluster;
+
+Frames framesOf(std::span<const std::byte> data) {
+  Frames frames;
+  while (data.size() >= 2) {
+    const size_t length = std::min(size_t(data[0]) | size_t(data[1]) << 8, data.size() - 2);
+    frames.emplace_back(data.begin() + 2, data.begin() + 2 + std::ptrdiff_t(length));
+    data = data.subspan(2 + length);
+  }
+  return frames;
+}
+
+// As the worker does.
+void take(message::Scene& scene) {
+  Commit commit;
+  if (!unpackEdits(scene.edits, commit.edits).empty()) return;
+  for (const auto& name : scene.arrays)
+    if (name.bytes <= 4096) commit.arrays.emplace(name.id, std::make_shared<Array>(name.bytes));
+  try {
+    CommitValidator(nullptr).check(commit);
+  } catch (const std::runtime_error&) {}
+}
+
+// As the master does, for frames of several kinds.
+void take(const message::Result& result) {
+  for (const uint32_t channels : {uint32_t(RT_RGBA), uint32_t(RT_RGBA | RT_DEPTH | RT_NORMAL | RT_VARIANCE | RT_ERROR)}) {
+    edit::FrameSettingsT frame;
+    frame.width = 5, frame.height = 3, frame.samples = 8, frame.channels = channels;
+    Job job;
+    job.count = 8;
+    JobResult out;
+    decodeResult(frame, job, {0, 0, 5, 3}, result.bytes, out);
+    job.kind = Job::Kind::light;
+    decodeResult(frame, job, {}, result.bytes, out);
+  }
+}
+
+} // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  Message out;
+  if (!decode(framesOf(std::as_bytes(std::span(data, size))), out).empty()) return 0;
+  if (auto* scene = std::get_if<message::Scene>(&out.body)) take(*scene);
+  if (auto* result = std::get_if<message::Result>(&out.body)) take(*result);
+  if (auto* piece = std::get_if<message::Piece>(&out.body);
+      piece && piece->bytes <= 1 << 20 && plausible(piece->bytes, piece->stored))
+    unpackArray(piece->data, piece->bytes, piece->hash);
+  return 0;
+}
