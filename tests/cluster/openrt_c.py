@@ -62,7 +62,7 @@ class Context:
         self.rt.rtReadPixels.argtypes = [ctypes.c_uint32, ctypes.c_void_p, ctypes.c_size_t]
         self.rt.rtInstanceMatrix.argtypes = [ctypes.c_uint32, ctypes.POINTER(ctypes.c_double)]
         self.rt.rtGetWorkers.restype = ctypes.c_size_t
-        self.rt.rtGetWorkers.argtypes = [ctypes.c_void_p, ctypes.c_size_t]
+        self.rt.rtGetWorkers.argtypes = [ctypes.c_void_p, ctypes.c_void_p, ctypes.c_size_t]
         self.messages = []
         log = ctypes.CFUNCTYPE(None, ctypes.c_int, ctypes.c_char_p, ctypes.c_void_p)
         self._log = log(lambda level, text, _: self.messages.append((level, text.decode(errors="replace"))))
@@ -106,7 +106,7 @@ class Context:
         """What rtGetWorkers knows of each."""
         out = (Worker * 64)()
         out[0].size = ctypes.sizeof(Worker)
-        count = self("GetWorkers", out, len(out))
+        count = self("GetWorkers", self.handle, out, len(out))
         return [{name: getattr(w, name) for name, _ in Worker._fields_} for w in out[:count]]
 
     def wait_for(self, count, seconds=20):
