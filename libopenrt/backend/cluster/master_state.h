@@ -30,7 +30,7 @@ struct Remote {
   std::map<Epoch, std::vector<OfferPtr>> offered; // arrays of scenes for which it has not said yet what it lacks
   std::map<Epoch, uint32_t> out;                  // jobs it has, by frame
   uint64_t bytesSent = 0, bytesReceived = 0, rays = 0;
-  std::string name() const { return host.empty() ? address : host + " (" + address + ")"; }
+  std::string name() const { return host.empty() ? address : address.empty() ? host : host + " (" + address + ")"; }
 };
 
 struct FrameEntry {
