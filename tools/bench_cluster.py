@@ -1,21 +1,23 @@
 #!/usr/bin/env python3
 """What the cluster costs and gains, on this machine, over loopback.
 
-bench_cluster.py BUILD [--world FILE] [--size 640x480] [--spp 16] [--runs 5] [--key] [--threads N] [--json FILE]
+bench_cluster.py BUILD [--world FILE] [--size 640x480] [--spp 16] [--runs 5] [--threads N] [--key] [--vv OPTIONS] [--json FILE]
 
-Measures, in turns so that all see the same load of the machine, and prints medians:
-  local      vv --threads N
-  one        one worker of N threads, the master with none of its own: its ratio to local is what the way costs
-  one, CURVE the same, encrypted (--key)
-  single     one worker of one thread
-  two        two workers of one thread: how much faster than single
-Times are RTstats.renderSeconds: from the start of the frame, scene sent and prepared, to its last pixel; and the same of a second
-frame of the same scene (a sequence of two), which nothing has to be sent for.
+Measures in turns, so that all see the same load of the machine, and prints medians:
+  local       vv --threads N
+  one         one worker of N threads, the master with none of its own: its ratio to local is what the way costs
+  one, CURVE  the same, encrypted (--key)
+  single      one worker of one thread
+  two         two workers of one thread: how much faster than single
+Seconds are those that vv --stats tells of rendering: from the start of the frame, scene sent and prepared, to its last pixel.
+Processor time is that of all processes together from start to end; on a machine that does other things it tells more. All
+pictures must be the same bytes.
 """
 import argparse
 import json
 import os
 import pathlib
+import resource
 import socket
 import statistics
 import subprocess
@@ -30,43 +32,43 @@ def free_port():
         return s.getsockname()[1]
 
 
-class Workers:
-    def __init__(self, build, count, threads, key=None):
-        self.ports = [free_port() for _ in range(count)]
-        options = ["--key", key] if key else []
-        self.processes = [subprocess.Popen([build / "bin/openrt-worker", "--listen", f"127.0.0.1:{port}", "--threads", str(threads),
-                                            "--quiet", *options], stdout=subprocess.DEVNULL) for port in self.ports]
-
-    def __enter__(self):
-        time.sleep(0.3)
-        return ["--workers", ",".join(f"127.0.0.1:{port}" for port in self.ports)]
-
-    def __exit__(self, *_):
-        for process in self.processes:
-            process.kill()
-            process.wait()
+def processor_seconds(process):
+    fields = pathlib.Path(f"/proc/{process.pid}/stat").read_text().rsplit(") ", 1)[1].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
-def picture(build, folder, args, options):
-    """Seconds of the first and the second of two frames, and the bytes of the last picture."""
-    width, _, height = args.size.partition("x")
-    stats = folder / "stats.json"
-    command = [build / "bin/vv", args.world, "-q", "--size", f"{width}x{height}", "--spp", str(args.spp), "--frames", "2", "--fps", "25",
-               "--stats", stats, "-o", folder / "picture%d.pfm", *args.vv.split(), *options]
-    subprocess.run([str(c) for c in command], check=True, stdout=subprocess.DEVNULL)
-    told = json.loads(stats.read_text())
-    seconds = [frame.get("renderSeconds", frame.get("seconds")) for frame in told["frames"]] if "frames" in told else [told["renderSeconds"]]
-    pictures = sorted(folder.glob("picture*.pfm"))
-    content = pictures[-1].read_bytes()
-    for path in pictures:
-        path.unlink()
-    return seconds, content
+def picture(args, folder, options):
+    """Seconds of rendering, processor time of vv, and the bytes of the picture."""
+    stats, out = folder / "stats.json", folder / "picture.pfm"
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    subprocess.run([args.build / "bin/vv", args.world, "-q", "--size", args.size, "--spp", str(args.spp), "--stats", stats, "-o", out,
+                    *args.vv.split(), *options], check=True)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return (json.loads(stats.read_text())["time"]["render"], after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime,
+            out.read_bytes())
+
+
+def with_workers(args, folder, count, threads, key):
+    ports = [free_port() for _ in range(count)]
+    secret = ["--key", key] if key else []
+    workers = [subprocess.Popen([args.build / "bin/openrt-worker", "--listen", f"127.0.0.1:{port}", "--threads", str(threads), "-q",
+                                 *secret]) for port in ports]
+    try:
+        time.sleep(1)
+        before = sum(map(processor_seconds, workers))
+        seconds, processor, content = picture(args, folder, [
+            "--workers", ",".join(f"127.0.0.1:{port}" for port in ports), "--local-threads", "0", "--require-workers", str(count), *secret])
+        return seconds, processor + sum(map(processor_seconds, workers)) - before, content
+    finally:
+        for worker in workers:
+            worker.kill()
+            worker.wait()
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("build", type=pathlib.Path)
-    parser.add_argument("--world", default="build/demo/headlight.wrl")
+    parser.add_argument("build", type=lambda text: pathlib.Path(text).resolve())
+    parser.add_argument("--world", default="examples/scenes/headlight.wrl")
     parser.add_argument("--size", default="640x480")
     parser.add_argument("--spp", type=int, default=16)
     parser.add_argument("--runs", type=int, default=5)
@@ -75,37 +77,33 @@ def main():
     parser.add_argument("--vv", default="", help="more options of vv")
     parser.add_argument("--json", type=pathlib.Path)
     args = parser.parse_args()
-    build = args.build.resolve()
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        key = None
+        key = folder / "key"
         if args.key:
-            key = folder / "key"
-            subprocess.run([build / "bin/openrt-worker", "--new-key", key], check=True, stdout=subprocess.DEVNULL)
+            subprocess.run([args.build / "bin/openrt-worker", "--new-key", key], check=True, stdout=subprocess.DEVNULL)
         n = args.threads
-        cases = {"local": (0, 0, None), "one": (1, n, None), "single": (1, 1, None), "two": (2, 1, None)}
+        cases = {"local": None, "one": (1, n, None), "single": (1, 1, None), "two": (2, 1, None)}
         if args.key:
             cases["one, CURVE"] = (1, n, key)
-        times = {case: [] for case in cases}
-        first = None
+        wall, processor, first = {case: [] for case in cases}, {case: [] for case in cases}, None
         for run in range(args.runs):
-            for case, (count, threads, secret) in cases.items():
-                if count == 0:
-                    seconds, content = picture(build, folder, args, ["--threads", str(n)])
-                else:
-                    with Workers(build, count, threads, secret) as options:
-                        options += ["--local-threads", "0", "--require-workers", str(count), *(["--key", secret] if secret else [])]
-                        seconds, content = picture(build, folder, args, options)
-                times[case].append(seconds[-1])
-                first = first or content
-                if content != first:
+            for case, workers in cases.items():
+                made = with_workers(args, folder, *workers) if workers else picture(args, folder, ["--threads", str(n)])
+                wall[case].append(made[0])
+                processor[case].append(made[1])
+                first = first or made[2]
+                if made[2] != first:
                     sys.exit(f"{case}: the picture is another one")
-            print(f"run {run + 1}: " + ", ".join(f"{case} {values[-1]:.3f} s" for case, values in times.items()), flush=True)
-    middle = {case: statistics.median(values) for case, values in times.items()}
-    result = {"world": args.world, "size": args.size, "spp": args.spp, "threads": n, "seconds": middle,
-              "one / local": middle["local"] / middle["one"], "two / single": middle["single"] / middle["two"]}
-    if args.key:
-        result["one, CURVE / local"] = middle["local"] / middle["one, CURVE"]
+            print(f"run {run + 1}: " + ", ".join(f"{case} {wall[case][-1]:.3f} s ({processor[case][-1]:.2f})" for case in cases), flush=True)
+    result = {"world": args.world, "size": args.size, "spp": args.spp, "threads": n}
+    for what, times in (("seconds", wall), ("processor seconds", processor)):
+        middle = {case: statistics.median(values) for case, values in times.items()}
+        result[what] = middle
+        result[f"one / local, {what}"] = middle["local"] / middle["one"]
+        if args.key:
+            result[f"one, CURVE / local, {what}"] = middle["local"] / middle["one, CURVE"]
+    result["two / single, seconds"] = result["seconds"]["single"] / result["seconds"]["two"]
     for name, value in result.items():
         print(f"{name}: {value if not isinstance(value, float) else format(value, '.3f')}")
     if args.json:

@@ -1,5 +1,6 @@
 // processes.cpp: pictures with the help of real worker processes on loopback: the same bytes as one thread whoever takes part,
 // whenever they come and however they go.
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
