@@ -21,6 +21,25 @@ size_t keptBytes(const Gathering& g) {
   return g.spread ? offsetof(PixelSums, normal) : offsetof(PixelSums, first);
 }
 
+// What errors are told by: change: of the differences of l.
+void mergeTails(PixelSums& s, const PixelSums& l, const double change[3], double size) {
+  const double c = change[0] + change[1] + change[2], n = l.samples, grey1 = l.delta[0] + l.delta[1] + l.delta[2];
+  s.grey[0] += l.grey[0] + c * (2 * grey1 + n * c);
+  s.grey[1] += l.grey[1] + c * (3 * l.grey[0] + c * (3 * grey1 + n * c));
+  s.grey[2] += l.grey[2] + c * (4 * l.grey[1] + c * (6 * l.grey[0] + c * (4 * grey1 + n * c)));
+  for (int k = 0; k < 3; k++) s.largest[k] = std::max(s.largest[k], l.largest[k]);
+  s.random |= l.random;
+  if (l.replicates == 0) return;
+  const double r = l.replicates;
+  for (int k = 0; k < 3; k++) {
+    const double d = size * change[k], s1 = l.closed[k], s2 = l.closed2[k], s3 = l.closed3[k]; // d: of a replicate's sum
+    s.closed[k] += s1 + r * d;
+    s.closed2[k] += s2 + d * (2 * s1 + r * d);
+    s.closed3[k] += s3 + d * (3 * s2 + d * (3 * s1 + r * d));
+    s.closed4[k] += l.closed4[k] + d * (4 * s3 + d * (6 * s2 + d * (4 * s1 + r * d)));
+  }
+}
+
 } // namespace
 
 Gathering gatheringOf(const edit::FrameSettingsT& frame) {
@@ -72,28 +91,14 @@ void PixelSums::merge(const PixelSums& l, const Gathering& gathering, const Repl
   for (int k = 0; k < 4; k++) rgba[k] += l.rgba[k];
   for (int k = 0; k < 3 && gathering.surface; k++) normal[k] += l.normal[k], albedo[k] += l.albedo[k];
   if (gathering.spread) {
-    const double n = l.samples, r = l.replicates, size = double(parts.size());
-    double shift = 0, grey1 = 0;
+    const double n = l.samples;
+    double c[3]; // what has to be added to the differences
     for (int k = 0; k < 3; k++) {
-      const double c = l.first[k] - first[k];
-      shift += c, grey1 += l.delta[k];
-      delta[k] += l.delta[k] + n * c;
-      delta2[k] += l.delta2[k] + c * (2 * l.delta[k] + n * c);
-      if (!gathering.error || !parts.many()) continue;
-      const double d = size * c, s1 = l.closed[k], s2 = l.closed2[k], s3 = l.closed3[k]; // d: of a replicate's sum
-      closed[k] += s1 + r * d;
-      closed2[k] += s2 + d * (2 * s1 + r * d);
-      closed3[k] += s3 + d * (3 * s2 + d * (3 * s1 + r * d));
-      closed4[k] += l.closed4[k] + d * (4 * s3 + d * (6 * s2 + d * (4 * s1 + r * d)));
+      c[k] = l.first[k] - first[k];
+      delta[k] += l.delta[k] + n * c[k];
+      delta2[k] += l.delta2[k] + c[k] * (2 * l.delta[k] + n * c[k]);
     }
-    if (gathering.error) {
-      const double c = shift;
-      grey[0] += l.grey[0] + c * (2 * grey1 + n * c);
-      grey[1] += l.grey[1] + c * (3 * l.grey[0] + c * (3 * grey1 + n * c));
-      grey[2] += l.grey[2] + c * (4 * l.grey[1] + c * (6 * l.grey[0] + c * (4 * grey1 + n * c)));
-      for (int k = 0; k < 3; k++) largest[k] = std::max(largest[k], l.largest[k]);
-      random |= l.random;
-    }
+    if (gathering.error) mergeTails(*this, l, c, double(parts.size()));
   }
   samples += l.samples, replicates += l.replicates;
   // Larger than its leaves: none of it is closed yet.
