@@ -56,28 +56,6 @@ void startSums(std::vector<PixelSums>& sums, size_t pixels, const Gathering& gat
   for (PixelSums& s : sums) std::memset(static_cast<void*>(&s), 0, bytes);
 }
 
-void PixelSums::add(const float radiance[3], float alpha) {
-  for (int k = 0; k < 3; k++) {
-    if (samples == 0) first[k] = radiance[k];
-    const double d = radiance[k] - first[k];
-    delta[k] += d;
-    delta2[k] += d * d;
-    rgba[k] += radiance[k];
-  }
-  rgba[3] += alpha;
-  samples++;
-}
-
-void PixelSums::addTails(const float radiance[3]) {
-  double grey1 = 0;
-  for (int k = 0; k < 3; k++) {
-    grey1 += radiance[k] - first[k];
-    largest[k] = std::max(largest[k], radiance[k]);
-  }
-  const double grey2 = grey1 * grey1;
-  grey[0] += grey2, grey[1] += grey2 * grey1, grey[2] += grey2 * grey2;
-}
-
 void PixelSums::closeReplicate() {
   for (int k = 0; k < 3; k++) {
     const double sum = delta[k] - closed[k], square = sum * sum;

@@ -34,14 +34,32 @@ struct PixelSums { // of one pixel, samples added in their order
   uint32_t replicates = 0; // complete ones
   bool random = false;     // a path has taken a random decision
 
-  void add(const float radiance[3], float alpha);
+  void add(const float radiance[3], float alpha) {
+    for (int k = 0; k < 3; k++) {
+      if (samples == 0) first[k] = radiance[k];
+      const double d = radiance[k] - first[k];
+      delta[k] += d;
+      delta2[k] += d * d;
+      rgba[k] += radiance[k];
+    }
+    rgba[3] += alpha;
+    samples++;
+  }
   void addColor(const float radiance[3], float alpha) { // instead of add(), where nobody asks for the spread
     for (int k = 0; k < 3; k++) rgba[k] += radiance[k];
     rgba[3] += alpha;
     samples++;
   }
   // After add(), where somebody asks for the error.
-  void addTails(const float radiance[3]);
+  void addTails(const float radiance[3]) {
+    double grey1 = 0;
+    for (int k = 0; k < 3; k++) {
+      grey1 += radiance[k] - first[k];
+      largest[k] = largest[k] < radiance[k] ? radiance[k] : largest[k];
+    }
+    const double grey2 = grey1 * grey1;
+    grey[0] += grey2, grey[1] += grey2 * grey1, grey[2] += grey2 * grey2;
+  }
   void closeReplicate();
   // Adds the samples that follow; a replicate that they complete is closed.
   void merge(const PixelSums& later, const Gathering& gathering, const Replicates& replicates);

@@ -21,7 +21,8 @@ TileRenderer::TileRenderer(const RenderScene& scene)
     : scene_(scene), width_(scene.frame.width), gathering_(gatheringOf(scene.frame)) {}
 
 void TileRenderer::begin(const Tile& tile) {
-  ledger_ = {};
+  if (tile == tile_) return;
+  tile_ = tile;
   pixels_.clear(), places_.clear();
   for (uint32_t by = tile.y0; by < tile.y1; by += 4)
     for (uint32_t bx = tile.x0; bx < tile.x1; bx += 4)
@@ -36,6 +37,7 @@ void TileRenderer::begin(const Tile& tile) {
 bool TileRenderer::render(const Tile& tile, const Replicates& replicates, bool centred, uint32_t first, uint32_t samples,
                           std::span<PixelSums> sums, const std::atomic<bool>& stop) {
   begin(tile);
+  ledger_ = {};
   replicates_ = replicates, centred_ = centred, leaf_ = first, sums_ = sums, stop_ = &stop;
   ledger_.samples += samples;
   const uint32_t most = std::clamp(std::bit_floor(pathsInFlight / uint32_t(pixels_.size())), 1u, largestWave);

@@ -103,6 +103,7 @@ class TileRenderer {
   Arena arena_;
   RayCounters counters_;
   Ledger ledger_;
+  Tile tile_;
   std::vector<uint32_t> counts_, pixels_, places_; // pixels_: y * width + x, in blocks of 4x4; places_: in the tile's rows
   std::vector<BucketRange> ranges_;
   std::span<PixelSums> sums_;

@@ -9,7 +9,8 @@
 namespace openrt {
 
 struct Tile {
-  uint32_t x0, y0, x1, y1; // pixels, end exclusive
+  uint32_t x0 = 0, y0 = 0, x1 = 0, y1 = 0; // pixels, end exclusive
+  bool operator==(const Tile&) const = default;
   uint32_t width() const { return x1 - x0; }
   size_t pixels() const { return size_t(x1 - x0) * (y1 - y0); }
 };
