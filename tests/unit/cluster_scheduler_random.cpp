@@ -43,7 +43,8 @@ struct Turmoil {
   }
   void begin() {
     if (b.work.size() >= 5) return;
-    b.frame(++lastEpoch, 1 + lastEpoch % 3 * 4, 16, lastEpoch % 2 ? 8 : 160);
+    lastEpoch++;
+    b.frame(lastEpoch, 1 + lastEpoch % 3 * 4, 16, lastEpoch % 2 ? 8 : 160);
   }
   void end(Epoch epoch) {
     b.s.end(epoch);
