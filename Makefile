@@ -12,7 +12,7 @@ R = build/release
 SOURCES = $(shell git ls-files '*.cpp' '*.h' '*.hpp' '*.c')
 export CTEST_OUTPUT_ON_FAILURE = 1
 
-.PHONY: build demo test install bench bench-render audit accuracy corpus fuzz cluster-campaign asan tsan coverage format format-check tidy packages clean help
+.PHONY: docs build demo test install bench bench-render audit accuracy corpus fuzz cluster-campaign asan tsan coverage format format-check tidy packages clean help
 
 help:
 	@sed -n 's/^## //p' Makefile
@@ -39,6 +39,12 @@ build:
 ## make install       into PREFIX (default /usr/local), DESTDIR is honoured
 install: build
 	@cmake --install $(R) --prefix $(PREFIX)
+
+## make docs          the documentation as a site: build/docs/index.html
+docs: build
+	@tools/install-packages.sh docs
+	@$(PYTHON) tools/docs/make_docs.py . $(R) build/docs
+	@echo "build/docs/index.html"
 
 ## make bench         benchmarks, JSON into build/bench; bench_live prints what the window does
 bench: build

@@ -1,6 +1,6 @@
 #!/bin/bash
 # Installs the Debian packages that the project needs: `tools/install-packages.sh` for building, testing and the demo,
-# `tools/install-packages.sh dev` also what `make fuzz`, `make tidy` and `make format` use. Does nothing, quickly and
+# `tools/install-packages.sh dev` also what `make fuzz`, `make tidy` and `make format` use, `docs` what `make docs` uses. Does nothing, quickly and
 # without a network, when all of them are there. Runs as root or through sudo.
 set -euo pipefail
 
@@ -20,9 +20,11 @@ build=(
 )
 tests=(libgtest-dev librapidcheck-dev libbenchmark-dev python3-pytest python3-hypothesis python3-pil python3-zmq xvfb xdotool python3-yaml python3-distributed)
 dev=(clang-14 clang-format-14 clang-tidy-14 libclang-rt-14-dev llvm-14)
+docs=(python3-sphinx python3-myst-parser furo python3-sphinx-copybutton doxygen)
 
 wanted=("${build[@]}" "${tests[@]}")
 [ "${1:-}" = dev ] && wanted+=("${dev[@]}")
+[ "${1:-}" = docs ] && wanted+=("${docs[@]}")
 
 if ! command -v apt-get >/dev/null; then
   echo "install-packages: no apt-get here; install the counterparts of these packages yourself:" "${wanted[@]}" >&2

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """What the documents name must be there: docs.py ROOT
 
-Checks paths of the repository in back quotes (globs and {a,b} too), relative links, `make` targets and presets.
+Checks paths of the repository in back quotes (globs and {a,b} too), relative links and their anchors, `make` targets and presets,
+and that every page of docs/ stands in the contents of docs/index.md.
 """
 import itertools
 import json
@@ -36,12 +37,43 @@ def missing(document, text):
         for preset in re.findall(r"--preset ([a-z-]+)", code):
             if preset not in presets:
                 yield f"no preset {preset}"
-    for link in re.findall(r"\]\(([^)#:]+)\)", text):
-        if not (document.parent / link).exists():
+    for link, anchor in re.findall(r"\]\(([^)#:\s]*)(#[^)\s]+)?\)", text):
+        target = document.parent / link if link else document
+        if not target.exists():
             yield f"no {link}"
+        elif anchor and target.suffix == ".md" and anchor[1:] not in anchors(target):
+            yield f"no such heading: {link}{anchor}"
+
+
+def anchors(document):
+    """Of the headings, as GitHub and MyST make them."""
+    text = re.sub(r"^```.*?^```", "", document.read_text(encoding="utf-8"), flags=re.M | re.S)
+    found, seen = set(), {}
+    for title in re.findall(r"^#+ (.+?)\s*$", text, re.M):
+        slug = re.sub(r"[^\w\- ]", "", re.sub(r"[`*]|\]\([^)]*\)", "", title).lower()).replace(" ", "-")
+        found.add(slug if slug not in seen else f"{slug}-{seen[slug]}")
+        seen[slug] = seen.get(slug, 0) + 1
+    return found
+
+
+# Pages that other work brings, and pages that are made
+COMING = re.compile(r"reference/.*|readme|hacking|changelog|python|ray-queries|cluster|protocol")
+
+
+def contents():
+    """What the contents of the site leave out, or name in vain."""
+    index = (root / "docs/index.md").read_text(encoding="utf-8")
+    listed = {line for toc in re.findall(r"```\{toctree\}\n(.*?)```", index, re.S) for line in toc.split("\n") if re.fullmatch(r"[\w/-]+", line)}
+    there = {p.relative_to(root / "docs").with_suffix("").as_posix() for p in (root / "docs").rglob("*.md")}
+    there = {p for p in there if not re.match(r"decisions/\d|index$", p)}
+    yield from (f"the contents lack {page}" for page in sorted(there - listed))
+    yield from (f"no page {page}" for page in sorted(listed - there) if not COMING.fullmatch(page))
 
 
 failed = 0
+for what in contents():
+    failed += 1
+    print(f"docs/index.md: {what}")
 for document in sorted([*root.glob("*.md"), *(root / "docs").rglob("*.md")]):
     for what in missing(document, document.read_text(encoding="utf-8")):
         failed += 1

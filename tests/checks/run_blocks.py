@@ -1,0 +1,174 @@
+#!/usr/bin/env python3
+"""Checks the code blocks of a document as blocks.py says: run_blocks.py ROOT BUILD CC CXX INCLUDES PAGE
+
+BUILD: programs, libraries and the Python package of a build; INCLUDES: its folder of generated headers; PAGE: relative to ROOT, or
+`--marks`: all pages, only whether every block is checked or says why not. Exit code 77: everything was left out (no Python package).
+"""
+import ast
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+
+import blocks
+
+TIMEOUT = 300
+SERVER = """
+import json, sys, traceback
+space = {"__name__": "__main__"}
+answers, sys.stdout = sys.stdout, sys.stderr
+for line in sys.stdin:
+    text, name = json.loads(line)
+    try:
+        exec(compile(text, name, "exec"), space)
+        said = ""
+    except SystemExit as end:
+        said = "" if not end.code else f"exit {end.code}"
+    except BaseException:
+        said = traceback.format_exc()
+    print(json.dumps(said), file=answers, flush=True)
+"""
+
+
+class Runner:
+    def __init__(self, root, build, cc, cxx, includes, scratch):
+        self.root, self.build, self.cc, self.cxx, self.scratch = root, build, cc, cxx, scratch
+        self.includes = [f"-I{root}/libopenrt/include", f"-I{root}/libxvrml/include", f"-I{includes}"]
+        self.python = "/usr/bin/python3" if os.path.exists("/usr/bin/python3") else sys.executable
+        self.env = dict(os.environ, PATH=f"{build}/bin:{root}/tools:" + os.environ["PATH"], PYTHONPATH=f"{build}/python",
+                        PYTHONDONTWRITEBYTECODE="1", NO_COLOR="1")
+        self.interpreter = None
+        self.has_python = not self.call([self.python, "-c", "import xvrml"], scratch)
+        shutil.copytree(root / "examples", scratch / "examples")
+
+    def call(self, command, folder):
+        """What a command says if it fails, else nothing."""
+        try:
+            done = subprocess.run([str(c) for c in command], cwd=folder, env=self.env, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                                  stderr=subprocess.STDOUT, timeout=TIMEOUT)
+        except subprocess.TimeoutExpired:
+            return f"still running after {TIMEOUT} s"
+        return f"exit code {done.returncode}\n{done.stdout.decode('utf-8', 'replace')[-4000:]}" if done.returncode else ""
+
+    def sh(self, block, folder):
+        text = blocks.shell(block.text)
+        if not text:
+            return None
+        if "syntax only" in block.marks:
+            return self.call(["bash", "-nc", text], folder)
+        return self.call(["bash", "-euo", "pipefail", "-c", text], folder)
+
+    def run_python(self, block, folder):
+        if "syntax only" in block.marks:
+            ast.parse(block.text)
+            return ""
+        if not self.has_python:
+            return None
+        if not self.interpreter:
+            self.interpreter = subprocess.Popen([self.python, "-c", SERVER], cwd=folder, env=self.env, stdin=subprocess.PIPE,
+                                                stdout=subprocess.PIPE, stderr=sys.stderr, text=True)
+        print(json.dumps([block.text, f"{block.page}:{block.line}"]), file=self.interpreter.stdin, flush=True)
+        answer = self.interpreter.stdout.readline()
+        return json.loads(answer) if answer else "the interpreter ended"
+
+    def compiled(self, block, folder):
+        text, cpp = block.text, block.language == "cpp"
+        if "inside" in block.marks:
+            head = [line for line in text.split("\n") if line.startswith("#")]
+            body = [line for line in text.split("\n") if not line.startswith("#")]
+            text = "\n".join([*head, block.marks["inside"] + " {", *body, "}"])
+        source = folder / f"block{block.line}.{block.language}"
+        source.write_text(text)
+        flags = ["-std=c++20" if cpp else "-std=c99", "-Wall", "-Wextra", "-Wno-unused-function", "-Wno-unused-variable", *self.includes]
+        compiler = self.cxx if cpp else self.cc
+        if "int main" not in text:  # declarations without their bodies are allowed here
+            return self.call([compiler, *flags, "-fsyntax-only", source], folder)
+        libraries = [f"-L{self.build}/lib", f"-Wl,-rpath,{self.build}/lib", *(["-lxvrml_openrt", "-lxvrml"] if cpp else []), "-lopenrt", "-lm"]
+        program = source.with_suffix("")
+        return self.call([compiler, *flags, "-Werror", source, "-o", program, *libraries], folder) or self.call([program], folder)
+
+    def vrml(self, block, folder):
+        world = folder / f"block{block.line}.wrl"
+        text = block.text if block.text.startswith("#VRML") else f"#VRML V2.0 utf8\n{block.marks.get('with', '')}\n{block.text}"
+        world.write_text(text)
+        return self.call(["vv", world.name, "--check", "--trust"], folder)
+
+    def compared(self, block):
+        source = self.root / block.marks["part of"]
+        whole = " ".join(source.read_text(encoding="utf-8").split()) if source.is_file() else ""
+        return "" if " ".join(block.text.split()) in whole else f"{block.marks['part of']} does not hold it"
+
+    def js(self, block, folder):
+        (folder / f"block{block.line}.js").write_text(block.text)
+        world = folder / f"block{block.line}.wrl"
+        world.write_text(f'#VRML V2.0 utf8\nScript {{ url "block{block.line}.js" }}\n')
+        return self.call(["vv", world.name, "--check", "--strict"], folder)
+
+    def tcl(self, block, folder):
+        tclsh = shutil.which("tclsh")
+        if not tclsh:
+            return None
+        (folder / "block.tcl").write_text(block.text)
+        test = "set f [open block.tcl]; if {![info complete [read $f]]} {puts {not a complete script}; exit 1}"
+        (folder / "test.tcl").write_text(test)
+        return self.call([tclsh, "test.tcl"], folder)
+
+    def check(self, block):
+        """Nothing if it is as it must be, None if it was left out, else what is wrong."""
+        way = block.way
+        if way.startswith("wrong: "):
+            return way[len("wrong: "):]
+        if way in ("unchecked", "followed"):
+            return None
+        if way == "compared":
+            return self.compared(block)
+        folder = self.scratch / block.marks.get("in", ".")
+        if block.file:
+            (folder / block.file).parent.mkdir(parents=True, exist_ok=True)
+            (folder / block.file).write_text(block.text)
+            if block.language == "vrml" and block.file.endswith(".wrl"):
+                return self.call(["vv", block.file, "--check", "--trust"], folder)
+            return ""
+        if block.language in blocks.COMPILED:
+            return self.compiled(block, folder)
+        return {"sh": self.sh, "python": self.run_python, "vrml": self.vrml, "js": self.js, "tcl": self.tcl}[block.language](block, folder)
+
+
+def check_marks(root):
+    wrong = [b for page in blocks.pages(root) for b in blocks.blocks_of(root, page) if b.way.startswith("wrong: ")]
+    for block in wrong:
+        print(f"{block.page}:{block.line}: {block.way[len('wrong: '):]}")
+    total = sum(len(blocks.blocks_of(root, page)) for page in blocks.pages(root))
+    print(f"{total} blocks, {len(wrong)} of which nothing is known")
+    return 1 if wrong or total < 20 else 0
+
+
+def main():
+    root = pathlib.Path(sys.argv[1]).resolve()
+    if sys.argv[-1] == "--marks":
+        return check_marks(root)
+    build, page = pathlib.Path(sys.argv[2]).resolve(), root / sys.argv[6]
+    checked = failed = left = 0
+    with tempfile.TemporaryDirectory() as scratch:
+        runner = Runner(root, build, sys.argv[3], sys.argv[4], sys.argv[5], pathlib.Path(scratch))
+        for block in blocks.blocks_of(root, page):
+            wrong = runner.check(block)
+            if wrong is None:
+                left += 1
+                continue
+            checked += 1
+            if wrong:
+                failed += 1
+                print(f"--- {block.page}:{block.line}: this {block.language} block fails: {wrong}\n{block.text}")
+        if runner.interpreter:
+            runner.interpreter.stdin.close()
+            runner.interpreter.wait(60)
+    print(f"{sys.argv[6]}: {checked} blocks checked, {failed} failed, {left} left to others or out")
+    return 1 if failed else 0 if checked else 77
+
+
+if __name__ == "__main__":
+    sys.exit(main())

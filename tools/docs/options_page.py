@@ -1,0 +1,56 @@
+"""Pages of command lines from what the programs say of themselves (`--help`); called by make_docs.py."""
+import re
+import subprocess
+
+
+def escape(text):
+    return re.sub(r"([*|\\`])|_(?=\W|$)", lambda m: "\\" + m.group(0), text)
+
+
+def help_of(program):
+    return subprocess.run([str(program), "--help"], capture_output=True, text=True, timeout=60).stdout
+
+
+def vv_page(vv):
+    """The options of vv by group, each a target of links and of the search."""
+    lines = ["vv", "==", "", "*Made from the table of options of the program.*", "", ".. program:: vv", "", ".. code-block:: text", ""]
+    text = help_of(vv).split("\n")
+    first = next(i for i, line in enumerate(text) if re.fullmatch(r"[A-Z]\w+", line))
+    lines += ["   " + line if line else "" for line in text[1:first]]
+    tail = next(i for i, line in enumerate(text) if line.startswith("Exit codes:"))
+    option, said = None, []
+
+    def flush():
+        if option:
+            names, _, argument = option.partition(" ")
+            while names.endswith(","):
+                more, _, argument = argument.partition(" ")
+                names += " " + more
+            shown = ", ".join(f"{n} {argument}".strip() for n in names.split(", "))
+            lines.extend([f".. option:: {shown}", "", "   " + escape(" ".join(said)), ""])
+
+    for line in text[first:tail]:
+        if re.fullmatch(r"[A-Z]\w+", line):
+            flush()
+            option = None
+            lines.extend([line, "-" * len(line), ""])
+        elif re.match(r"  -", line):
+            flush()
+            found = re.match(r"  (\S+(?: \S+)*)(?:\s{2,}(\S.*))?$", line)
+            option, said = found.group(1), [found.group(2)] if found.group(2) else []
+        elif line.strip():
+            said.append(line.strip())
+    flush()
+    lines += ["Exit codes", "----------", ""]
+    codes = " ".join(line.strip() for line in text[tail:])[len("Exit codes:"):]
+    lines += [escape(codes.strip()), ""]
+    return "\n".join(lines)
+
+
+def programs_page(programs):
+    """The other programs, as they print it."""
+    out = ["# Other programs", "", "*What `--help` prints.* `vv` has [a page of its own](vv.rst).", ""]
+    for program in programs:
+        text = re.sub(r"\S*/(?=" + re.escape(program.name) + r"\b)", "", help_of(program)).strip()
+        out += [f"## {program.name}", "", "```text", text, "```", ""]
+    return "\n".join(out)
