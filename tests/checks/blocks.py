@@ -50,12 +50,12 @@ class Block:
             return "followed"
         if "part of" in self.marks:
             return "compared"
-        if "unchecked" in self.marks:
-            return "unchecked" if self.marks["unchecked"] else "wrong: unchecked: says no reason"
         if not self.language:
             return "wrong: the fence names no language"
         if self.file:
             return "written"
+        if "unchecked" in self.marks:
+            return "unchecked" if self.marks["unchecked"] else "wrong: unchecked: says no reason"
         if "syntax only" in self.marks and self.language in RUN:
             return "syntax"
         if self.language in RUN:
