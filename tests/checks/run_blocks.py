@@ -5,10 +5,14 @@ BUILD: programs, libraries and the Python package of a build; INCLUDES: its fold
 `--marks`: all pages, only whether every block is checked or says why not. Exit code 77: everything was left out (no Python package).
 """
 import ast
+import contextlib
 import json
 import os
 import pathlib
+import re
 import shutil
+import signal
+import socket
 import subprocess
 import sys
 import tempfile
@@ -33,6 +37,12 @@ for line in sys.stdin:
 """
 
 
+def free_port():
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return str(probe.getsockname()[1])
+
+
 class Runner:
     def __init__(self, root, build, cc, cxx, includes, scratch):
         self.root, self.build, self.cc, self.cxx, self.scratch = root, build, cc, cxx, scratch
@@ -41,22 +51,34 @@ class Runner:
         self.env = dict(os.environ, PATH=f"{build}/bin:{root}/tools:" + os.environ["PATH"], PYTHONPATH=f"{build}/python",
                         PYTHONDONTWRITEBYTECODE="1", NO_COLOR="1")
         self.interpreter = None
+        self.ports = {"7447": free_port(), "7448": free_port()}  # workers of the pages listen on ports that are free
+        said = self.call([build / "bin/vv", "-", "-o", "png:-", "--workers", "127.0.0.1:1"], scratch)
+        self.has_worker = (build / "bin/openrt-worker").exists() and "not built" not in said
         self.has_python = not self.call([self.python, "-c", "import xvrml"], scratch)
         shutil.copytree(root / "examples", scratch / "examples")
 
     def call(self, command, folder):
-        """What a command says if it fails, else nothing."""
-        try:
-            done = subprocess.run([str(c) for c in command], cwd=folder, env=self.env, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                                  stderr=subprocess.STDOUT, timeout=TIMEOUT)
-        except subprocess.TimeoutExpired:
-            return f"still running after {TIMEOUT} s"
-        return f"exit code {done.returncode}\n{done.stdout.decode('utf-8', 'replace')[-4000:]}" if done.returncode else ""
+        """What a command says if it fails, else nothing. What it leaves running is ended."""
+        with tempfile.TemporaryFile() as talk:  # no pipe: a worker in the background would hold it open
+            done = subprocess.Popen([str(c) for c in command], cwd=folder, env=self.env, stdin=subprocess.DEVNULL, stdout=talk,
+                                    stderr=talk, start_new_session=True)
+            try:
+                code = done.wait(TIMEOUT)
+            except subprocess.TimeoutExpired:
+                code = f"none after {TIMEOUT} s"
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(done.pid, signal.SIGKILL)
+            done.wait()
+            talk.seek(0)
+            return f"exit code {code}\n{talk.read().decode('utf-8', 'replace')[-4000:]}" if code else ""
 
     def sh(self, block, folder):
         text = blocks.shell(block.text)
         if not text:
             return "left"
+        if "openrt-worker" in text and not self.has_worker:
+            return None
+        text = re.sub(r"\b744[78]\b", lambda port: self.ports[port.group()], text)
         if "syntax only" in block.marks:
             return self.call(["bash", "-nc", text], folder)
         return self.call(["bash", "-euo", "pipefail", "-c", text], folder)
@@ -70,7 +92,8 @@ class Runner:
         if not self.interpreter:
             self.interpreter = subprocess.Popen([self.python, "-c", SERVER], cwd=folder, env=self.env, stdin=subprocess.PIPE,
                                                 stdout=subprocess.PIPE, stderr=sys.stderr, text=True)
-        print(json.dumps([block.text, f"{block.page}:{block.line}"]), file=self.interpreter.stdin, flush=True)
+        text = re.sub(r"\b744[78]\b", lambda port: self.ports[port.group()], block.text)
+        print(json.dumps([text, f"{block.page}:{block.line}"]), file=self.interpreter.stdin, flush=True)
         answer = self.interpreter.stdout.readline()
         return json.loads(answer) if answer else "the interpreter ended"
 
