@@ -12,7 +12,7 @@ R = build/release
 SOURCES = $(shell git ls-files '*.cpp' '*.h' '*.hpp' '*.c')
 export CTEST_OUTPUT_ON_FAILURE = 1
 
-.PHONY: docs build demo test install bench bench-render audit accuracy corpus fuzz cluster-campaign asan tsan coverage format format-check tidy packages clean help
+.PHONY: docs build demo test install bench bench-render audit accuracy corpus fuzz cluster-campaign asan tsan coverage format format-check tidy packages clean help wheel deb container test-embree4 test-wheel
 
 help:
 	@sed -n 's/^## //p' Makefile
@@ -45,6 +45,30 @@ docs: build
 	@tools/install-packages.sh docs
 	@$(PYTHON) tools/docs/make_docs.py . $(R) build/docs
 	@echo "build/docs/index.html"
+
+## make wheel         the Python distribution with all that it needs, build/dist/*.whl (what `pip install .` builds)
+wheel: packages
+	@[ -x build/venv/bin/pip ] || $(PYTHON) -m venv build/venv
+	@CMAKE_BUILD_PARALLEL_LEVEL=$(JOBS) build/venv/bin/pip wheel . --no-deps -w build/dist
+
+## make test-wheel    installs the wheel into a bare Debian below build/ and draws with it (needs root and debootstrap)
+test-wheel:
+	@tools/test-wheel.sh $(firstword $(wildcard build/dist/xvrml-*.whl)) build/wheel-test
+
+## make deb           Debian packages, build/deb/*.deb
+deb: packages
+	@cmake --log-level=NOTICE -S . -B build/deb -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_INSTALL_PREFIX=/usr -DCMAKE_SKIP_INSTALL_RPATH=ON \
+	  -DOPENRT_PYTHON_DIR=lib/python3/dist-packages -DPython_EXECUTABLE=$(PYTHON) -DPython3_EXECUTABLE=$(PYTHON)
+	@cmake --build build/deb -j $(JOBS)
+	@cd build/deb && cpack
+
+## make container     the image `openrt`, by podman or docker (contrib/container)
+container:
+	@$(firstword $(shell command -v podman docker)) build -f contrib/container/Containerfile -t openrt .
+
+## make test-embree4  build and all tests against Embree 4, in a Debian 13 of its own below build/ (needs root and debootstrap)
+test-embree4:
+	@tools/test-embree4.sh build/trixie $(JOBS)
 
 ## make bench         benchmarks, JSON into build/bench; bench_live prints what the window does
 bench: build

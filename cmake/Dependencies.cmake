@@ -19,9 +19,13 @@ pkg_check_modules(ZSTD REQUIRED IMPORTED_TARGET libzstd)
 pkg_check_modules(XXHASH REQUIRED IMPORTED_TARGET libxxhash)
 pkg_check_modules(LZ4 REQUIRED IMPORTED_TARGET liblz4)
 pkg_check_modules(ZMQ REQUIRED IMPORTED_TARGET libzmq)
-pkg_check_modules(FFMPEG IMPORTED_TARGET libavformat libavcodec libswscale libavutil) # films; without them MovieTextures stand still
+if(OPENRT_FILMS)
+  pkg_check_modules(FFMPEG IMPORTED_TARGET libavformat libavcodec libswscale libavutil) # films; without them MovieTextures stand still
+endif()
 pkg_check_modules(SECCOMP IMPORTED_TARGET libseccomp) # without it untrusted scripts are held by resource limits alone
-pkg_check_modules(SDL2 IMPORTED_TARGET sdl2)           # without it vv opens no window
+if(OPENRT_WINDOW)
+  pkg_check_modules(SDL2 IMPORTED_TARGET sdl2) # without it vv opens no window
+endif()
 find_package(fmt REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(nlohmann_json REQUIRED)

@@ -14,7 +14,7 @@ build=(
   libfast-float-dev libfmt-dev libspdlog-dev libcli11-dev nlohmann-json3-dev
   libavcodec-dev libavformat-dev libswscale-dev # films; the build does without, too
   libfreetype-dev libharfbuzz-dev libfontconfig-dev fonts-dejavu-core libglu1-mesa-dev # text, polygons
-  python3 python3-dev python3-numpy pybind11-dev
+  python3 python3-dev python3-numpy python3-venv pybind11-dev
   duktape-dev tcl-dev tk-dev libffi-dev libseccomp-dev # script engines, each built where its library is; their cage
   libsdl2-dev                                          # the window
 )

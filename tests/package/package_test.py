@@ -157,6 +157,19 @@ with tempfile.TemporaryDirectory() as scratch:
         if not list(prefix.rglob(f"man/man3/{page}")):
             sys.exit(f"{page} is not installed")
 
+    # What a desktop and a shell look for, and the libraries' names
+    for file in ("man/man1/vv.1", "man/man1/openrt-replay.1", "man/man1/nodegen.1", "bash-completion/completions/vv",
+                 "zsh/vendor-completions/_vv", "fish/vendor_completions.d/vv.fish", "applications/vv.desktop",
+                 "mime/packages/openrt-vv.xml", "metainfo/org.openrt.vv.metainfo.xml", "icons/hicolor/128x128/apps/vv.png"):
+        if not (prefix / "share" / file).exists():
+            sys.exit(f"share/{file} is not installed")
+    for library in ("openrt", "xvrml", "xvrml_openrt"):
+        if not (libs.parent / f"lib{library}.so.0").is_symlink():
+            sys.exit(f"lib{library}.so.0 is not installed")
+    for file in ("graph", "triangle"):  # a stranger's programs ask for versions
+        if "@XVRML_0" not in (needed := run("nm", "-D", "--with-symbol-versions", out / file)) and "@OPENRT_0" not in needed:
+            sys.exit(f"{file} links symbols without versions:\n{needed}")
+
     # Programs
     (scratch / "box.wrl").write_text("#VRML V2.0 utf8\nShape { appearance Appearance { material Material { } } geometry Box { } }\n")
     run(prefix / "bin/vv", "box.wrl", "-o", "box.png", "--size", "32x24", "--spp", "1", cwd=scratch)

@@ -1,0 +1,31 @@
+# openrt_version_script(TARGET NODE HEADERS... [PRIVATE NODE [SIBLINGS FOLDERS...]]): exports of a shared library what its public headers
+# declare, as symbols of the version NODE, and nothing else (cmake/tools/make_version_script.py). PRIVATE: what the sources in
+# SIBLINGS, other parts of the project, include of this one's private headers, under a version that names the very release.
+# With OPENRT_TESTS all of namespace xvrml is there under the private version: tests look inside.
+find_package(Python3 COMPONENTS Interpreter)
+function(openrt_version_script target node)
+  cmake_parse_arguments(arg "" "PRIVATE" "HEADERS;SIBLINGS" ${ARGN})
+  if(NOT Python3_Interpreter_FOUND)
+    message(STATUS "No Python: ${target} without versions of its symbols")
+    return()
+  endif()
+  if(OPENRT_SANITIZE OR OPENRT_FUZZ OR CMAKE_CXX_FLAGS MATCHES coverage) # their run-time libraries look into it
+    return()
+  endif()
+  set(script ${CMAKE_CURRENT_BINARY_DIR}/${target}.map)
+  set(maker ${PROJECT_SOURCE_DIR}/cmake/tools/make_version_script.py)
+  if(arg_PRIVATE AND OPENRT_TESTS)
+    set(private --private ${arg_PRIVATE} --private-all xvrml)
+  elseif(arg_SIBLINGS)
+    list(TRANSFORM arg_SIBLINGS PREPEND --siblings=)
+    set(private --private ${arg_PRIVATE} --of ${CMAKE_CURRENT_SOURCE_DIR} ${arg_SIBLINGS})
+  endif()
+  add_custom_command(OUTPUT ${script}
+                     COMMAND ${Python3_EXECUTABLE} ${maker} --output ${script} --version ${node} ${private} ${arg_HEADERS}
+                     COMMAND ${CMAKE_COMMAND} -E touch ${script}
+                     DEPENDS ${maker} ${arg_HEADERS} COMMENT "Version script of ${target}" VERBATIM)
+  target_sources(${target} PRIVATE ${script})
+  set_source_files_properties(${script} PROPERTIES HEADER_FILE_ONLY ON)
+  target_link_options(${target} PRIVATE LINKER:--version-script=${script} LINKER:--no-undefined)
+  set_target_properties(${target} PROPERTIES LINK_DEPENDS ${script})
+endfunction()

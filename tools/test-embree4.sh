@@ -1,0 +1,27 @@
+#!/bin/bash
+# test-embree4.sh FOLDER JOBS: builds the project and runs all its tests in a Debian 13 (trixie), whose Embree is version 4. FOLDER
+# becomes its root; nothing of this system is mounted there, the sources are copied. A second run uses what the first one left.
+# Needs root, debootstrap, unshare and Debian's mirror.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+root=$(realpath -m "$1") jobs=${2:-2}
+for tool in debootstrap unshare; do
+  command -v $tool >/dev/null || { echo "test-embree4: $tool is not installed" >&2; exit 1; }
+done
+[ "$(id -u)" = 0 ] || { echo "test-embree4: needs root" >&2; exit 1; }
+
+# A root of its own, with its own processes; /proc and /dev/shm end with the command.
+inside() {
+  unshare --mount --pid --fork --mount-proc="$root/proc" bash -c \
+    'mkdir -p "$0/dev/shm" && mount -t tmpfs none "$0/dev/shm" && exec chroot "$0" /usr/bin/env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 bash -euc "$1"' \
+    "$root" "$1"
+}
+
+if [ ! -e "$root/etc/debian_version" ]; then
+  mkdir -p "$root"
+  debootstrap --variant=minbase --include=ca-certificates trixie "$root" "${DEBIAN_MIRROR:-http://deb.debian.org/debian}"
+fi
+cp -L /etc/resolv.conf "$root/etc/"
+mkdir -p "$root/src"
+git ls-files -z | tar --null -T - -c | tar -x -C "$root/src"
+inside "cd /src && tools/install-packages.sh && dpkg-query -W libembree-dev && make test JOBS=$jobs"
