@@ -163,6 +163,12 @@ TEST(Messages, textsAreCut) {
   EXPECT_EQ(std::get<message::Failed>(out.body).why.size(), limits::textBytes);
 }
 
+TEST(Messages, textsCannotMoveTheCursor) {
+  Message out;
+  ASSERT_EQ(decode(of(message::Log{2, "a\x1b[2Jb\nc\x7f"}), out), "");
+  EXPECT_EQ(std::get<message::Log>(out.body).text, "a [2Jb c ");
+}
+
 TEST(Messages, numbersThatCannotBe) {
   const auto refused = [](message::Body body) { return !problem(of(std::move(body))).empty(); };
   EXPECT_TRUE(refused(message::Hello{.threads = 0}));
@@ -170,6 +176,7 @@ TEST(Messages, numbersThatCannotBe) {
   EXPECT_TRUE(refused(message::Welcome{1, 1, 0, 0}));
   EXPECT_TRUE(refused(message::Welcome{1, 1, std::nanf(""), 1}));
   EXPECT_TRUE(refused(message::Scene{0, true, true, {}, {}, {}}));
+  EXPECT_TRUE(refused(message::Scene{limits::epochs + 1, true, true, {}, {}, {}}));
   EXPECT_TRUE(refused(message::Scene{1, true, true, {{0, 1, {}}}, {}, {}}));
   EXPECT_TRUE(refused(message::Scene{1, true, true, {{1, limits::arrayBytes + 1, {}}}, {}, {}}));
   EXPECT_TRUE(refused(message::Scene{1, true, true, std::vector(5, message::ArrayName{1, limits::arrayBytes, {}}), {}, {}}));

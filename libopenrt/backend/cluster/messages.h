@@ -27,6 +27,7 @@ inline constexpr size_t editBytes = size_t(1) << 30;    // of the edits of one c
 inline constexpr size_t textBytes = 4096;               // of a text in a header; longer ones are cut when sent
 inline constexpr size_t libraries = 1000;               // of a scene
 inline constexpr size_t jobs = 4096;                    // of a message
+inline constexpr uint64_t epochs = uint64_t(1) << 40;   // of a session
 inline constexpr uint64_t arrayBytes = uint64_t(1) << 34;
 inline constexpr uint64_t sceneBytes = uint64_t(1) << 36; // of all arrays of one commit
 inline constexpr uint64_t resultBytes = uint64_t(1) << 32;

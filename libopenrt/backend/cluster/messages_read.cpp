@@ -27,10 +27,14 @@ Hash from(const wire::Hash* hash) {
   return {hash->low(), hash->high()};
 }
 
+// Texts are shown to people: without characters that move a terminal's cursor.
 std::string text(const flatbuffers::String* string) {
   if (!string) return {};
   demand(string->size() <= limits::textBytes, "a text that is too long");
-  return string->str();
+  std::string result = string->str();
+  for (char& c : result)
+    if (static_cast<unsigned char>(c) < ' ' || c == 0x7f) c = ' ';
+  return result;
 }
 
 size_t bulkBytes(const Frames& frames) {
@@ -120,7 +124,7 @@ void read(const wire::Welcome& t, Frames&, message::Welcome& m) {
 
 void read(const wire::Scene& t, Frames& frames, message::Scene& m) {
   m.epoch = t.epoch(), m.whole = t.whole(), m.prepare = t.prepare();
-  demand(m.epoch != 0, "a scene without a number");
+  demand(m.epoch != 0 && m.epoch <= limits::epochs, "a scene without a number, or with too large a one");
   demand(bulkBytes(frames) <= limits::editBytes, "too many edits");
   uint64_t sum = 0;
   if (t.arrays()) {
