@@ -2,6 +2,8 @@
 #include "cluster_report.h"
 
 #include <algorithm>
+#include <set>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -40,12 +42,14 @@ void joinCluster(Options& options) {
 int exitCodeOf(const picture::RenderError& error) { return error.code == RT_CLUSTER_ERROR ? exitNoWorkers : exitRender; }
 
 std::string workersText(const std::vector<RTworker>& workers) {
-  size_t known = 0, alive = 0;
+  std::set<std::string_view> names; // who comes back is there twice
+  size_t alive = 0;
   for (const RTworker& worker : workers) {
     if (picture::isHere(worker)) continue;
-    ++known;
+    names.insert(worker.name);
     alive += worker.alive != 0;
   }
+  const size_t known = std::max(names.size(), alive);
   if (known == 0) return "no worker yet";
   if (alive < known) return fmt::format("{} of {} worker{}", alive, known, known == 1 ? "" : "s");
   return fmt::format("{} worker{}", alive, alive == 1 ? "" : "s");

@@ -22,7 +22,7 @@ Transform { translation -1 0 0 children Shape { appearance Appearance { material
   texture PixelTexture { image 2 2 3 0xff0000 0x00ff00 0x0000ff 0xffffff } } geometry Sphere { } } }
 Transform { translation 1.2 0 0 children Shape { appearance Appearance { material Material { diffuseColor .2 .3 .9
   specularColor .9 .9 .9 shininess .6 } } geometry Cone { } } }
-Transform { translation 0 2.5 -1 children Shape { appearance Appearance { material Material { emissiveColor 3 3 2 } }
+Transform { translation 0 2.5 -1 children Shape { appearance Appearance { material Material { emissiveColor 1 1 .7 } }
   geometry Box { size 1 .1 1 } } }
 DEF Clock TimeSensor { cycleInterval 2 loop TRUE }
 DEF Way PositionInterpolator { key [0, 0.5, 1] keyValue [-2 0 1, 2 0 1, -2 0 1] }
