@@ -153,12 +153,12 @@ if yaml:
     worker = objects["Deployment"][1]["spec"]["template"]["spec"]["containers"][0]["command"]
     if f"{service['metadata']['name']}:{port['port']}" not in worker:
         complain(service_path, "workers call somebody else")
-    images = {c["image"] for kind in ("Deployment", "Job") for c in containers(objects[kind][1]["spec"]["template"]["spec"])}
+    images = {c["image"] for kind in ("Deployment", "Job") for c in objects[kind][1]["spec"]["template"]["spec"]["containers"]}
     if len(images) != 1:
         complain(service_path, f"master and workers have different images: {images}")
     compose = contrib / "compose.yaml"
     for service in yaml.safe_load(compose.read_text())["services"].values():
-        check_command(compose, service["command"])
+        check_command(compose, service["entrypoint"])
         if service["image"] not in images or service.get("cap_drop") != ["ALL"] or service.get("read_only") is not True:
             complain(compose, "another image than Kubernetes', or rights that are not needed")
 
