@@ -361,6 +361,23 @@ TEST_P(ClusterMaster, WhoDiffersIsRefused) {
   EXPECT_NE((liar.refused + good.refused).find("triangle"), std::string::npos);
 }
 
+TEST_P(ClusterMaster, NobodyWorksWithOtherVersionsOfShaders) {
+  FakeWorker& before = join();
+  master->commit(1, edits(1), true, now);
+  ASSERT_TRUE(runUntil([&] { return over(1); }));
+  expectSame(1);
+  const auto commit = edits(2);
+  auto entry = std::make_unique<edit::EditT>();
+  entry->any.Set(edit::ReloadShadersT());
+  commit->edits.edits.insert(commit->edits.edits.begin(), std::move(entry));
+  master->commit(2, commit, true, now);
+  FakeWorker& after = join();
+  for (int i = 0; i < 300; i++) step();
+  EXPECT_NE(before.refused.find("anew"), std::string::npos);
+  EXPECT_NE(after.refused.find("anew"), std::string::npos);
+  EXPECT_EQ(master->totals().workers, 0u);
+}
+
 TEST_P(ClusterMaster, NonsenseIsBorneThreeTimes) {
   FakeWorker& bad = join();
   FakeWorker& good = join();

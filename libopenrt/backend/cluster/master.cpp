@@ -105,6 +105,8 @@ void Master::doneHere(Epoch epoch, const LeasedJob& job, JobResult&& result, dou
 void Master::commit(Epoch epoch, std::shared_ptr<const Commit> commit, bool frame, double now) {
   Impl& m = *impl_;
   m.firstCommit = std::min(m.firstCommit, now);
+  for (const auto& entry : commit->edits.edits)
+    if (entry && entry->any.AsReloadShaders()) m.leaveWorkersOut(now);
   m.scenes.add(epoch, std::move(commit));
   if (frame) {
     FrameEntry& entry = m.frames[epoch];

@@ -48,6 +48,7 @@ struct Master::Impl {
   void depart(Remote& remote, double now);
   void strike(Remote& remote, const std::string& what, double now);
   void refuse(Peer peer, const std::string& why, double now);
+  void leaveWorkersOut(double now);
   void say(Remote& remote, message::Body&& body);
   void flush(Remote& remote);
   bool deliver(Remote& remote, Frames&& frames);
@@ -92,7 +93,7 @@ struct Master::Impl {
   uint64_t jobsHere = 0, jobsRemote = 0, goneSent = 0, goneReceived = 0;
   double firstCommit = std::numeric_limits<double>::infinity();
   double fewSince = std::numeric_limits<double>::infinity(); // fewer workers than required
-  bool everJoined = false, saidAlone = false;
+  bool everJoined = false, saidAlone = false, reloaded = false;
   std::string lastRefusal; // for who waits for workers in vain
 };
 

@@ -11,6 +11,7 @@ constexpr uint32_t mostStrikes = 3;    // messages that are nonsense
 constexpr uint32_t mostThreads = 4096; // of a worker
 constexpr size_t mostGone = 256;       // workers that have left and are remembered
 constexpr size_t mostSaid = 1000;
+constexpr const char* reloadedWhy = "the master has loaded shader libraries anew, and renders alone from there on";
 } // namespace
 
 void Master::Impl::log(int level, const std::string& text) const {
@@ -37,11 +38,19 @@ void Master::Impl::joinHere(double now) {
   hereJoined = true;
 }
 
+// Shader libraries that are loaded anew keep the numbers of their parameters from one version to the next; a worker that has not
+// seen all versions would take them for others, and one that has does not load its own anew.
+void Master::Impl::leaveWorkersOut(double now) {
+  reloaded = true;
+  for (const auto& [id, peer] : std::unordered_map<WorkerId, Peer>(peers)) refuse(peer, reloadedWhy, now);
+}
+
 void Master::Impl::hello(Remote& remote, message::Hello&& hello, double now) {
   if (remote.welcome) depart(remote, now); // it has begun anew
   remote.host = hello.host;
   if (hello.threads < 1 || hello.threads > mostThreads)
     return refuse(remote.peer, "a worker with " + std::to_string(hello.threads) + " threads", now);
+  if (reloaded) return refuse(remote.peer, reloadedWhy, now);
   if (const std::string differing = difference(hello, options.self, options.tolerant); !differing.empty())
     return refuse(remote.peer, differing, now);
   remote.welcome = true;
