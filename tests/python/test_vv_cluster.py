@@ -7,7 +7,7 @@ import time
 
 import pytest
 
-from cluster_tools import PATIENCE, Worker, addresses, free_port, needs_worker, new_key, workers
+from cluster_tools import addresses, free_port, needs_worker, new_key, workers
 from conftest import HEADER, SMALL
 from window_driver import screen, window  # noqa: F401
 
@@ -122,19 +122,6 @@ def test_with_a_key(room):
     assert (room.folder / "key.png").read_bytes() == (room.folder / "alone.png").read_bytes()
 
 
-def test_a_wrong_key(room):
-    needs_worker()
-    for name in ("ours.key", "theirs.key"):
-        new_key(room.folder / name)
-    with workers(1, "--key", room.folder / "theirs.key") as started:
-        common = ("room.wrl", *SIZE, "-o", "x.png", "--workers", addresses(started), "--key", "ours.key")
-        done = room(*common)
-        assert done.returncode == 0 and (room.folder / "x.png").exists(), "this machine makes it alone"
-        done = room(*common, "--require-workers")
-    assert done.returncode == 6, done.talk
-    assert re.search(r"key", done.talk) and done.talk.count("vv: error:") == 1, done.talk
-
-
 def test_a_key_that_others_may_read(room):
     needs_worker()
     new_key(room.folder / "open.key")
@@ -167,39 +154,53 @@ def test_nobody_answers(room):
     assert json.loads((room.folder / "x.json").read_text())["cluster"]["workers"] == 0
 
 
-def test_required_workers_that_are_not_there(room):
+def test_too_few_workers(room):
+    """Patience is ten seconds: both at a time."""
     needs_worker()
-    with workers(1) as started:
-        done = room("room.wrl", *SIZE, "-o", "x.png", "--workers", f"{started[0].address},127.0.0.1:{free_port()}", "--require-workers", 2)
-    assert done.returncode == 6 and not (room.folder / "x.png").exists(), done.talk
-    assert "2" in done.talk and "1" in done.talk and "worker" in done.talk, done.talk
+    for name in ("ours.key", "theirs.key"):
+        new_key(room.folder / name)
+    with workers(1) as plain, workers(1, "--key", room.folder / "theirs.key") as foreign:
+        wrong = ("room.wrl", *SIZE, "--workers", addresses(foreign), "--key", "ours.key")
+        runs = [room.start(*wrong, "-o", "a.png", "--require-workers"),
+                room.start("room.wrl", *SIZE, "-o", "b.png", "--workers", f"{plain[0].address},127.0.0.1:{free_port()}", "--require-workers", 2)]
+        done = room(*wrong, "-o", "alone.png")
+        assert done.returncode == 0 and (room.folder / "alone.png").exists(), "this machine makes it alone"
+        talks = [run.communicate(timeout=60)[1].decode() for run in runs]
+    assert [run.returncode for run in runs] == [6, 6], talks
+    assert "key" in talks[0] and "1 worker is needed, there are 0" in talks[0], talks
+    assert "2 workers are needed, there is 1" in talks[1], talks
+    assert all(talk.count("vv: error:") == 1 for talk in talks)
+    assert not (room.folder / "a.png").exists() and not (room.folder / "b.png").exists()
 
 
 def test_all_workers_die(room):
     """The picture is finished here, with the same bytes, and that is said once."""
     needs_worker()
-    common = ("room.wrl", "--size", "320x240", "--spp", 64, "--transport", "path")
+    common = ("room.wrl", "--size", "160x120", "--spp", 128, "--transport", "path")
     assert room(*common, "-o", "alone.png").returncode == 0
     with workers(2) as started:
         running = room.start(*common, "-o", "x.png", "--workers", addresses(started), "--stats", "x.json", "-v", "--local-threads", 0)
-        time.sleep(1)
+        talk, joined = "", 0
+        while joined < 2 and (line := running.stderr.readline().decode()):
+            talk += line
+            joined += "has joined" in line
         for worker in started:
             worker.process.kill()
-        _, talk = running.communicate(timeout=120)
-    talk = talk.decode()
+        talk += running.communicate(timeout=120)[1].decode()
     assert running.returncode == 0, talk
     assert (room.folder / "x.png").read_bytes() == (room.folder / "alone.png").read_bytes()
     assert talk.count("alone") == 1, talk
     assert all(not m["alive"] for m in machines(room.folder / "x.json"))
 
 
-def test_an_interrupt_saves_what_there_is(room, two):
+def test_progress_tells_of_workers_and_an_interrupt_saves_what_there_is(room, two):
     running = room.start("room.wrl", "--size", "1600x1200", "--spp", 4096, "--workers", addresses(two), "-o", "part.ppm")
-    time.sleep(2)
+    time.sleep(7)
     running.send_signal(signal.SIGINT)
     _, talk = running.communicate(timeout=60)
     assert running.returncode == 130 and b"is saved" in talk, talk
     assert (room.folder / "part.ppm").exists()
+    assert re.search(rb"vv: +\d+ %.*2 workers", talk), talk
 
 
 # Talk --------------------------------------------------------------------------------------------------------------------
@@ -226,14 +227,6 @@ def test_without_a_cluster_its_statistics_are_empty(vv):
     assert vv("box.wrl", *SMALL, "-o", "x.png", "--stats", "x.json").returncode == 0
     cluster = json.loads((vv.folder / "x.json").read_text())["cluster"]
     assert (cluster["workers"], cluster["tiles"], cluster["bytes"], cluster["machines"]) == (0, 0, 0, [])
-
-
-def test_progress_tells_of_workers(room, two):
-    running = room.start("room.wrl", "--size", "1600x1200", "--spp", 4096, "-o", "x.png", "--workers", addresses(two))
-    time.sleep(7)
-    running.send_signal(signal.SIGINT)
-    _, talk = running.communicate(timeout=60)
-    assert re.search(rb"vv: +\d+ %.*2 workers", talk), talk
 
 
 @pytest.mark.parametrize("arguments, text", [
@@ -284,10 +277,9 @@ def test_a_hosts_file_that_is_no_use(vv):
 
 def test_the_window_with_a_worker(window, vv, two):  # noqa: F811
     vv.write("room.wrl", ROOM.replace("loop TRUE", "loop FALSE"))
-    alone = window("room.wrl", "--time", 0, "--spp", 8).still()
-    opened = window("room.wrl", "--time", 0, "--spp", 8, "--workers", addresses(two), "--local-threads", 0)
-    shot = opened.still()
-    assert shot.rows == alone.rows
+    alone = window("room.wrl", "--time", 0).still()
+    opened = window("room.wrl", "--time", 0, "--workers", addresses(two), "--local-threads", 0)
+    opened.until(lambda shot: shot.rows == alone.rows)
     opened.key("i")  # all that is known
     assert opened.end() == 0, opened.err
 
@@ -295,7 +287,6 @@ def test_the_window_with_a_worker(window, vv, two):  # noqa: F811
 def test_a_window_whose_worker_dies_goes_on(window, vv):  # noqa: F811
     with workers(1) as started:
         opened = window(ROOM, "--workers", addresses(started), "--local-threads", 0, "--spp", 2)
-        opened.said("1 worker" if False else "first picture")
         started[0].process.kill()
         opened.said("alone")
         opened.shot()
