@@ -17,7 +17,7 @@ except ImportError:
     pass
 myst_enable_extensions = ["colon_fence"]
 myst_heading_anchors = 4
-suppress_warnings = ["myst.header", "highlighting"]
+suppress_warnings = ["myst.header", "misc.highlighting_failure"]
 html_theme = "furo"
 html_title = "OpenRT " + version
 html_static_path = ["static"]
