@@ -120,7 +120,7 @@ class Simulation {
   static edit::FrameSettingsT settingsOf(const Options& o) {
     edit::FrameSettingsT f;
     f.width = o.width, f.height = o.height, f.samples = o.samples, f.depth = 5;
-    f.channels = RT_COLOR, f.transport = RT_TRANSPORT_PATH;
+    f.channels = RT_RGBA, f.transport = RT_TRANSPORT_PATH;
     f.tile = uint8_t(std::min(o.tile, 128u));
     return f;
   }
@@ -137,7 +137,7 @@ class Simulation {
     const Epoch epoch = ++lastEpoch_;
     auto commit = std::make_shared<Commit>();
     auto edit = std::make_unique<edit::EditT>();
-    edit->any.Set(settings_);
+    edit->any.Set(edit::FrameSettingsT(settings_));
     commit->edits.edits.push_back(std::move(edit));
     commit->edits.render = true;
     atMaster([this, epoch, commit](double now) { master_->commit(epoch, commit, true, now); });
@@ -334,6 +334,7 @@ constexpr const char* usage = R"(bench_cluster_sim [OPTION=VALUE]...
   work=2048 (seconds of one thread a frame)  network=10e9  link=10e9 (bits/s)  latency=50e-6 (one way)
   per-message=2e-6  per-byte=0 (seconds of the socket thread)  prepare=0 (seconds a scene)
   slow=0 (share of workers, 4 times slower)
+  in-flight=3  shortest=0.002 (of the scheduler)
   split=auto|tiles|samples|frames  ideal=0|1 (the master takes no time)  pipelined=0|1  costs=FILE (width, height, cells)
 )";
 
@@ -360,6 +361,8 @@ bool set(Options& o, const std::string& name, const std::string& value) {
       {"slow", [&] { o.slow = std::stod(value); }},
       {"ideal", [&] { o.ideal = value == "1"; }},
       {"pipelined", [&] { o.pipelined = value == "1"; }},
+      {"in-flight", [&] { o.schedule.inFlight = uint32_t(std::stoul(value)); }},
+      {"shortest", [&] { o.schedule.shortest = std::stod(value); }},
       {"costs", [&] { o.costs = value; }},
       {"split",
        [&] {

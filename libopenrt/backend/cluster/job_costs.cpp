@@ -13,7 +13,7 @@ constexpr double priorJobs = 8; // as many jobs of this frame count as much as a
 
 JobCosts JobCosts::ofNextFrame() const {
   JobCosts next;
-  next.median_ = median_;
+  next.median_ = median_, next.dear_ = dear_;
   if (jobs_ == 0) {
     next.priorSeconds_ = priorSeconds_, next.priorUnits_ = priorUnits_;
   } else {
@@ -31,14 +31,16 @@ void JobCosts::add(double units, double seconds) {
   if (jobs_ < next_) return;
   next_ = jobs_ + std::max(jobs_ / 16, 1u);
   // Few jobs of this frame say less than all of the last one.
-  if (median_ == 0 || jobs_ >= priorJobs) findMedian();
+  if (median_ == 0 || jobs_ >= priorJobs) median_ = quantile(0.5);
+  // Places that cost much may come late in a frame.
+  if (dear_ == 0 || jobs_ >= 50 * priorJobs) dear_ = quantile(0.98);
 }
 
-void JobCosts::findMedian() {
-  uint32_t below = 0;
+double JobCosts::quantile(double share) const {
+  double below = 0;
   size_t bin = 0;
-  while (bin + 1 < counts_.size() && 2 * (below + counts_[bin]) < jobs_) below += counts_[bin++];
-  median_ = std::exp2((double(bin) + 0.5) / perOctave + lowest);
+  while (bin + 1 < counts_.size() && below + counts_[bin] < share * jobs_) below += counts_[bin++];
+  return std::exp2((double(bin) + 0.5) / perOctave + lowest);
 }
 
 } // namespace openrt::cluster

@@ -58,6 +58,7 @@ void Scheduler::Impl::strike(Worker& w) {
 void Scheduler::Impl::end(Frame& f) {
   if (f.costs.jobs() > 0) costs = f.costs;
   if (f.light.jobs() > 0) light = f.light;
+  places = std::move(f.places);
   if (f.costs.jobs() > 0) frameSeconds = f.costs.seconds() + f.light.seconds();
   for (const auto& [lease, held] : f.leases) {
     Worker* w = worker(held.worker);
@@ -94,7 +95,10 @@ bool Scheduler::Impl::done(Frame& f, Lease lease, double seconds, double now) {
     return false;
   }
   const auto flight = f.flights.find(held.flight);
-  f.costsOf(flight->second.job).add(flight->second.units, seconds);
+  const Job& job = flight->second.job;
+  f.costsOf(job).add(flight->second.units, seconds);
+  if (job.kind == Job::Kind::samples && job.number < f.places.size() && seconds > 0)
+    f.places[job.number] = float(seconds / flight->second.units);
   for (const Lease other : flight->second.holders)
     if (other != lease) f.leases.at(other).flight = 0;
   f.deadlines.erase({flight->second.deadline, held.flight});
@@ -147,6 +151,8 @@ void Scheduler::frame(Epoch epoch, std::shared_ptr<JobSource> work, double now) 
   f.maybe = true;
   f.tilePixels = f.work->tiles() > 0 ? std::max(f.work->pixels(0), 1u) : 1;
   f.perPixel = std::max(f.work->undone() / (double(f.tilePixels) * std::max(f.work->tiles(), 1u)), 1.0);
+  if (impl_->places.size() == f.work->tiles()) f.places = impl_->places; // costs lie where they lay
+  f.places.resize(f.work->tiles());
   impl_->moves = true;
 }
 

@@ -79,7 +79,7 @@ class Scheduler {
   void frame(Epoch epoch, std::shared_ptr<JobSource> work, double now);        // announces it, if it was not
   inline void frame(Epoch epoch, std::shared_ptr<FrameWork> work, double now); // frame_source.h
   void changed(Epoch epoch); // its work may have new jobs, though nothing was told here: what was done() was taken later
-  void end(Epoch epoch);                                                       // finished or cancelled: its leases are forgotten
+  void end(Epoch epoch);     // finished or cancelled: its leases are forgotten
 
   // Which worker is to prepare which epoch's scene now; call until false. It gets no more jobs of earlier epochs, and none of
   // this one until it is ready(). Edits of epochs between go before.

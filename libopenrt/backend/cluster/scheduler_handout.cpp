@@ -51,7 +51,11 @@ uint32_t Scheduler::Impl::largest(const Frame& f, const Worker& w) const {
     // A slow link is worth larger jobs: no more of them are in flight.
     const double least = std::max(options.shortest, w.tally.latency / (mostInFlight - 1));
     const double seconds = std::clamp(left / parts, least, std::max(options.longest, least));
-    samples = seconds / (f.costs.mean() * f.tilePixels);
+    const double place = f.nextPlace();
+    if (place > 0)
+      samples = seconds / place / f.tilePixels;
+    else // nobody knows what the next tile costs: one of the dear ones must not take longer than half of what is left
+      samples = std::min(seconds / f.costs.mean(), std::max(left / 2, least) / f.costs.dear()) / f.tilePixels;
   }
   if (samples >= f.perPixel) return ~0u;
   return std::bit_floor(std::max(uint32_t(samples), fewest));
@@ -132,7 +136,7 @@ bool Scheduler::Impl::next(double now, Handout& out) {
       flight.job = job;
       const bool ofLight = job.kind == Job::Kind::light;
       flight.units = std::max(1.0, double(job.count) * (ofLight ? 1 : f.work->pixels(job.number)));
-      if (!ofLight) f.lastUnits = flight.units;
+      if (!ofLight) f.lastUnits = flight.units, f.lastTile = job.number;
       hand(f, *w, lastFlight, false, now, out);
       if (f.exhausted()) moves = true;
       return true;

@@ -2,10 +2,12 @@
 // include this. One thread's, as Scheduler.
 #pragma once
 
+#include <algorithm>
 #include <limits>
 #include <map>
 #include <set>
 #include <unordered_map>
+#include <vector>
 
 #include "backend/cluster/job_costs.h"
 #include "backend/cluster/scheduler.h"
@@ -65,12 +67,20 @@ struct Frame {
   double perPixel = 1;  // samples, about
   double lastUnits = 0; // of the job that was handed out last
   JobCosts costs, light;
+  std::vector<float> places; // by tile: seconds of a pixel's sample, here or in the frame before; 0: unknown
+  uint32_t lastTile = 0;     // of the job that was handed out last
   std::map<uint64_t, Flight> flights;
   std::unordered_map<Lease, Held> leases;
   std::set<std::pair<double, uint64_t>> deadlines; // of flights that may be handed out again
   bool rescue = false;                             // something is late, and nobody at it is idle
   uint32_t rekeyAt = 1;                            // jobs done with which all deadlines are found anew
 
+  // Of the next job, about: the tile of the last one, or the one behind it. 0: unknown.
+  double nextPlace() const {
+    const float here = lastTile < places.size() ? places[lastTile] : 0,
+                behind = lastTile + 1 < places.size() ? places[lastTile + 1] : here;
+    return here > 0 && behind > 0 ? std::max(here, behind) : 0;
+  }
   bool exhausted() const { return work && work->undone() < 0.5; } // nobody is to do more of it, as yet
   JobCosts& costsOf(const Job& job) { return job.kind == Job::Kind::light ? light : costs; }
 };
@@ -97,6 +107,7 @@ struct Scheduler::Impl {
   Lease lastLease = 0;
   uint64_t lastFlight = 0, reissued = 0, duplicates = 0;
   JobCosts costs, light;                          // of the frame that ended last
+  std::vector<float> places;                      // of the frame that ended last
   double frameSeconds = 0;                        // it took on one thread
   double prepare = 0;                             // seconds that preparing a scene takes, smoothed; 0: unknown
   uint32_t usable = 0, threads = 0, rescuers = 0; // workers that are no reserve, and their threads; those here and in reserve;
