@@ -10,6 +10,7 @@
 #include <deque>
 #include <fstream>
 #include <functional>
+#include <map>
 #include <queue>
 #include <random>
 #include <stdexcept>
@@ -126,9 +127,9 @@ class Results {
  public:
   explicit Results(const edit::FrameSettingsT& frame) : frame_(frame) {}
   Frames make(uint64_t session, Epoch epoch, const LeasedJob& job, size_t pixels, double seconds) {
-    Frames frames =
-        encode(session, message::Result{.epoch = epoch, .lease = job.lease, .seconds = seconds, .bytes = bytes(job, pixels)});
-    return frames;
+    message::Result result;
+    result.epoch = epoch, result.lease = job.lease, result.seconds = seconds, result.bytes = bytes(job, pixels);
+    return encode(session, std::move(result));
   }
 
  private:
