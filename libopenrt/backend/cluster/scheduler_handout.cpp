@@ -13,7 +13,8 @@ namespace {
 constexpr uint32_t fewest = 32;    // samples: a tile's are not divided further (frame_work.h)
 constexpr double mostInFlight = 4; // jobs for a thread, or bundles of them
 constexpr double largestBundle = 64;
-constexpr double parts = 4; // of what is left for a thread, a job is one of so many
+constexpr double masterSeconds = 2e-5; // of its one thread for each job, with as much to spare (docs/cluster-scaling.md)
+constexpr double parts = 4;            // of what is left for a thread, a job is one of so many
 } // namespace
 
 double Scheduler::Impl::secondsOf(const Frame& f) const {
@@ -49,7 +50,7 @@ uint32_t Scheduler::Impl::largest(const Frame& f, const Worker& w) const {
   } else if (f.costs.known()) {
     const double left = f.work->undone() * f.costs.mean() / threadsFor(f.epoch);
     // A slow link is worth larger jobs: no more of them are in flight.
-    const double least = std::max(options.shortest, w.tally.latency / (mostInFlight - 1));
+    const double least = std::max({options.shortest, w.tally.latency / (mostInFlight - 1), masterSeconds * threadsFor(f.epoch)});
     const double seconds = std::clamp(left / parts, least, std::max(options.longest, least));
     const double place = f.nextPlace();
     if (place > 0)
