@@ -12,7 +12,7 @@ R = build/release
 SOURCES = $(shell git ls-files '*.cpp' '*.h' '*.hpp' '*.c')
 export CTEST_OUTPUT_ON_FAILURE = 1
 
-.PHONY: docs build demo test install bench bench-render audit accuracy corpus fuzz cluster-campaign asan tsan coverage format format-check tidy packages clean help wheel deb container test-embree4 test-wheel
+.PHONY: docs build demo test install bench bench-render audit accuracy corpus fuzz cluster-campaign asan tsan coverage format format-check tidy packages python-sequences bench-rays clean help wheel deb container test-embree4 test-wheel
 
 help:
 	@sed -n 's/^## //p' Makefile
@@ -127,6 +127,15 @@ tidy:
 	@tools/install-packages.sh dev
 	@$(CONFIGURE) release && cmake --build $(R) -j $(JOBS)
 	@tools/run-tidy.sh $(R) $(JOBS)
+
+## make python-sequences   100,000 random sequences of calls of the Python package (XVRML_SEQUENCES=...)
+python-sequences: build
+	XVRML_SEQUENCES=$(or $(XVRML_SEQUENCES),100000) PYTHONPATH=$(R)/python $(PYTHON) -X faulthandler -m pytest -q -p no:cacheprovider \
+	  tests/python/test_random_sdk.py
+
+## make bench-rays     ray queries from numpy beside raw Embree, Open3D and embreex
+bench-rays: build
+	PYTHONPATH=$(R)/python $(PYTHON) tools/bench_rays.py --raw $(R)/lib/libraw_rays.so
 
 packages:
 	@tools/install-packages.sh

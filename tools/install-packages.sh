@@ -18,7 +18,7 @@ build=(
   duktape-dev tcl-dev tk-dev libffi-dev libseccomp-dev # script engines, each built where its library is; their cage
   libsdl2-dev                                          # the window
 )
-tests=(libgtest-dev librapidcheck-dev libbenchmark-dev python3-pytest python3-hypothesis python3-pil python3-zmq xvfb xdotool python3-yaml python3-distributed)
+tests=(libgtest-dev librapidcheck-dev libbenchmark-dev python3-pytest python3-hypothesis python3-pil python3-zmq xvfb xdotool python3-yaml python3-distributed mypy)
 dev=(clang-14 clang-format-14 clang-tidy-14 libclang-rt-14-dev llvm-14)
 docs=(python3-sphinx python3-myst-parser furo python3-sphinx-copybutton doxygen)
 

@@ -7,68 +7,13 @@
 #include <pybind11/stl.h>
 
 #include "objects.h"
-#include "picture/nearest.h"
 
 using namespace xvrml;
 
 namespace {
 
-struct BrowserObject : WorldObject, std::enable_shared_from_this<BrowserObject> {
-  std::unique_ptr<Browser> running;
-  std::shared_ptr<picture::Renderer> drawing; // of the last picture; ends before the browser
-  picture::RenderSettings drawn;
-  int depth = 0;              // calls of run() under way: more than 0 in a callback
-  std::exception_ptr failure; // of a callback
-
-  // Whoever drops a callback may not have the GIL.
-  using Callable = std::shared_ptr<py::function>;
-  static Callable keep(py::function function) {
-    return {new py::function(std::move(function)), [](py::function* held) {
-              py::gil_scoped_acquire acquire;
-              delete held;
-            }};
-  }
-
-  ~BrowserObject() override {
-    const Browser* ending = running.get();
-    drawing.reset();
-    running.reset(); // Scripts are shut down
-    scriptsLock(ending, nullptr);
-  }
-
-  World& graph() override { return running->world(); }
-  Browser* browser() override { return running.get(); }
-
-  void run(const std::function<void()>& work) override {
-    ++depth;
-    {
-      py::gil_scoped_release release;
-      try {
-        work();
-      } catch (...) {
-        if (!failure) failure = std::current_exception();
-      }
-    }
-    if (--depth == 0 && failure) std::rethrow_exception(std::exchange(failure, nullptr));
-  }
-
-  std::shared_ptr<picture::Renderer> renderer(const picture::RenderSettings& settings, picture::Watch watch) override {
-    if (depth > 0) throw picture::RenderError("a callback cannot render: the events are still under way");
-    if (drawing && drawn == settings) {
-      drawing->setWatch(std::move(watch));
-      return drawing;
-    }
-    drawing.reset(); // one renderer a browser: it takes the changes
-    drawing = std::make_shared<picture::Renderer>(*running, settings, std::move(watch));
-    drawn = settings;
-    return drawing;
-  }
-
-  void rest() override {
-    drawing.reset();
-    drawn.cluster.reset();
-  }
-};
+// A world that runs from the beginning: nothing else.
+struct BrowserObject : WorldObject {};
 using BrowserPtr = std::shared_ptr<BrowserObject>;
 
 BrowserPtr makeBrowser(const py::object& source, double start, const py::object& limits, bool allowAbsolute,
@@ -78,92 +23,33 @@ BrowserPtr makeBrowser(const py::object& source, double start, const py::object&
   options.trustScripts = trust;
   auto made = std::make_shared<BrowserObject>();
   std::unique_ptr<World> world = loadSource(source, limits, allowAbsolute);
-  {
-    const MakingBrowser making(made->mutex); // its Scripts begin at once
-    made->run([&] { made->running = std::make_unique<Browser>(std::move(world), options, start); });
-  }
-  scriptsLock(made->running.get(), made->mutex);
+  made->run(std::move(world), options, start);
   return made;
 }
 
 void tick(const BrowserPtr& self, double time) {
   if (!(time >= self->running->now())) // also NaN
     throw py::value_error(fmt::format("tick: a time from {} on expected, not {}", self->running->now(), time));
-  auto lock = self->lock();
-  self->run([&] { self->running->tick(time); });
+  const auto lock = self->lock();
+  self->change([&] { self->running->tick(time); });
 }
-
-py::object asNode(const BrowserPtr& self, const NodeRef& node) {
-  return node ? py::cast(NodeObject{self, node}) : py::object(py::none());
-}
-py::object asNode(const BrowserPtr& self, Node* node) { return asNode(self, NodeRef(node)); }
 
 py::object node(const BrowserPtr& self, const std::string& name) { return asNode(self, self->running->node(name)); }
 
 Node& own(const BrowserPtr& self, const NodeObject& node) {
-  if (!sameWorld(node.world, self)) throw py::value_error("a node of this browser expected");
+  if (!sameWorld(node.world(), self)) throw py::value_error("a node of this browser expected");
   return *node.node;
-}
-
-std::string nearestEvent(const Node& node, const std::string& name, bool out) {
-  std::vector<std::string> known;
-  for (const FieldInfo& field : node.type().fields)
-    if (field.access == Access::exposedField || field.access == (out ? Access::eventOut : Access::eventIn))
-      known.push_back(field.name);
-  const std::string near = picture::nearest(name, known);
-  return near.empty() ? "" : fmt::format("; did you mean {}?", near);
-}
-
-// Callbacks get the value and the time. The first exception of one is raised by the call that made the event.
-uint64_t listen(const BrowserPtr& self, const NodeObject& object, const std::string& event, py::function function) {
-  Node& from = own(self, object);
-  if (!from.type().findEventOut(event))
-    throw py::attribute_error(fmt::format("{} has no eventOut {}{}", from.type().name, event, nearestEvent(from, event, true)));
-  BrowserObject* browser = self.get(); // the callback ends with the browser
-  auto lock = self->lock();
-  return self->running->listen(
-      from, event, [browser, callable = BrowserObject::keep(std::move(function))](Node&, const FieldInfo&, const Value& value) {
-        py::gil_scoped_acquire acquire;
-        if (browser->failure) return;
-        try {
-          (*callable)(toPython(value, browser->shared_from_this()), browser->running->now());
-        } catch (...) { browser->failure = std::current_exception(); }
-      });
-}
-
-void unlisten(const BrowserPtr& self, const NodeObject& object, uint64_t number) {
-  auto lock = self->lock();
-  self->running->unlisten(own(self, object), number);
-}
-
-bool route(const BrowserPtr& self, const NodeObject& from, const std::string& out, const NodeObject& to, const std::string& in,
-           bool add) {
-  Node &source = own(self, from), &target = own(self, to);
-  const FieldInfo *sends = source.type().findEventOut(out), *takes = target.type().findEventIn(in);
-  if (!sends)
-    throw py::attribute_error(fmt::format("{} has no eventOut {}{}", source.type().name, out, nearestEvent(source, out, true)));
-  if (!takes)
-    throw py::attribute_error(fmt::format("{} has no eventIn {}{}", target.type().name, in, nearestEvent(target, in, false)));
-  if (sends->type != takes->type)
-    throw py::type_error(fmt::format("{} is {}, {} is {}", out, fieldTypeName(sends->type), in, fieldTypeName(takes->type)));
-  auto lock = self->lock();
-  bool done = false;
-  self->run([&] {
-    done = add ? self->running->addRoute(source, out, target, in) : self->running->deleteRoute(source, out, target, in);
-  });
-  return done;
 }
 
 py::object createNode(const BrowserPtr& self, const std::string& type, const py::kwargs& fields) {
   NodeRef made;
-  auto lock = self->lock();
+  const auto lock = self->lock();
   try {
     made = self->running->createNode(type);
   } catch (const std::invalid_argument& error) {
     std::vector<std::string> known;
     for (const NodeType* one : nodeTypes()) known.push_back(one->name);
-    const std::string near = picture::nearest(type, known);
-    throw py::value_error(error.what() + (near.empty() ? "" : fmt::format("; did you mean {}?", near)));
+    throw py::value_error(error.what() + didYouMean(type, known));
   }
   py::object object = asNode(self, made);
   for (const auto& [name, value] : fields) py::setattr(object, name, value);
@@ -173,8 +59,8 @@ py::object createNode(const BrowserPtr& self, const std::string& type, const py:
 py::tuple createFromString(const BrowserPtr& self, const py::str& text) {
   const std::string bytes = fromText(text);
   MFNode made;
-  auto lock = self->lock();
-  self->run([&] { made = self->running->createVrmlFromString(bytes); });
+  const auto lock = self->lock();
+  self->change([&] { made = self->running->createVrmlFromString(bytes); });
   py::tuple out(made.size());
   for (size_t i = 0; i < made.size(); ++i) out[i] = asNode(self, made[i]);
   return out;
@@ -183,13 +69,13 @@ py::tuple createFromString(const BrowserPtr& self, const py::str& text) {
 void replaceWorld(const BrowserPtr& self, const std::vector<NodeObject>& nodes) {
   MFNode list;
   for (const NodeObject& one : nodes) list.emplace_back(&own(self, one));
-  auto lock = self->lock();
-  self->run([&] { self->running->replaceWorld(list); });
+  const auto lock = self->lock();
+  self->change([&] { self->running->replaceWorld(list); });
 }
 
 void loadUrl(const BrowserPtr& self, const std::vector<std::string>& urls) {
-  auto lock = self->lock();
-  self->run([&] { self->running->loadUrl(urls); });
+  const auto lock = self->lock();
+  self->change([&] { self->running->loadUrl(urls); });
 }
 
 py::dict bound(const BrowserPtr& self) {
@@ -216,7 +102,7 @@ py::object pick(const BrowserPtr& self, const Triple& origin, const Triple& dire
   PickOptions options;
   options.bothSides = bothSides;
   PickHit hit;
-  auto lock = self->lock();
+  const auto lock = self->lock();
   if (!self->running->pick(origin.data(), direction.data(), options, hit)) return py::none();
   py::dict out;
   out["distance"] = hit.distance;
@@ -265,8 +151,8 @@ Key keyOf(const std::string& name) {
 
 void navigate(const BrowserPtr& self, double dt, double ahead, double right, double up, double turn, double tilt, double roll) {
   if (!(dt >= 0)) throw py::value_error("navigate: dt: seconds from 0 on expected");
-  auto lock = self->lock();
-  self->run([&] { self->running->navigate({ahead, right, up, turn, tilt, roll}, dt); });
+  const auto lock = self->lock();
+  self->change([&] { self->running->navigate({ahead, right, up, turn, tilt, roll}, dt); });
 }
 
 } // namespace
@@ -285,32 +171,19 @@ void defineBrowser(py::module_& module) {
           "Grows with every world that takes the place of the former.")
       .def("tick", tick, py::arg("time"), "Time has come to `time`: sensors send, routes carry, until nothing is left to do.")
       .def("node", node, py::arg("name"), "The node that a DEF name of the file means; None if there is none.")
-      .def("listen", listen, py::arg("node"), py::arg("event"), py::arg("callback"),
-           "Calls callback(value, time) whenever an eventOut or exposedField has sent. Returns a number for unlisten.")
-      .def("unlisten", unlisten, py::arg("node"), py::arg("number"))
-      .def(
-          "add_route",
-          [](const BrowserPtr& self, const NodeObject& from, const std::string& out, const NodeObject& to,
-             const std::string& in) { return route(self, from, out, to, in, true); },
-          py::arg("from_node"), py::arg("out"), py::arg("to_node"), py::arg("in_"), "Adds a route; one that exists stays one.")
-      .def(
-          "delete_route",
-          [](const BrowserPtr& self, const NodeObject& from, const std::string& out, const NodeObject& to,
-             const std::string& in) { return route(self, from, out, to, in, false); },
-          py::arg("from_node"), py::arg("out"), py::arg("to_node"), py::arg("in_"), "False if there was no such route.")
       .def("create_node", createNode, py::arg("type"), "A new node; keywords are its fields.")
       .def(
           "add_root",
           [](const BrowserPtr& self, const NodeObject& added) {
-            auto lock = self->lock();
-            self->run([&] { self->running->addRoot(NodeRef(&own(self, added))); });
+            const auto lock = self->lock();
+            self->change([&] { self->running->addRoot(NodeRef(&own(self, added))); });
           },
           py::arg("node"))
       .def(
           "remove_root",
           [](const BrowserPtr& self, const NodeObject& removed) {
-            auto lock = self->lock();
-            self->run([&] { self->running->removeRoot(own(self, removed)); });
+            const auto lock = self->lock();
+            self->change([&] { self->running->removeRoot(own(self, removed)); });
           },
           py::arg("node"))
       .def("create_vrml_from_string", createFromString, py::arg("text"),
@@ -321,9 +194,9 @@ void defineBrowser(py::module_& module) {
       .def(
           "bind_viewpoint",
           [](const BrowserPtr& self, const std::string& name) {
-            auto lock = self->lock();
+            const auto lock = self->lock();
             bool done = false;
-            self->run([&] { done = self->running->bindViewpoint(name); });
+            self->change([&] { done = self->running->bindViewpoint(name); });
             return done;
           },
           py::arg("name"), "By DEF name or description; False if there is none.")
@@ -334,8 +207,8 @@ void defineBrowser(py::module_& module) {
       .def(
           "pointer",
           [](const BrowserPtr& self, double x, double y, bool button, double aspect) {
-            auto lock = self->lock();
-            self->run([&] {
+            const auto lock = self->lock();
+            self->change([&] {
               self->running->setAspect(aspect);
               self->running->pointer(x, y, button);
             });
@@ -345,15 +218,15 @@ void defineBrowser(py::module_& module) {
       .def(
           "pointer_ray",
           [](const BrowserPtr& self, const Triple& origin, const Triple& direction, bool button) {
-            auto lock = self->lock();
-            self->run([&] { self->running->pointerRay(origin.data(), direction.data(), button); });
+            const auto lock = self->lock();
+            self->change([&] { self->running->pointerRay(origin.data(), direction.data(), button); });
           },
           py::arg("origin"), py::arg("direction"), py::arg("button") = false, "The pointer as a ray in the world.")
       .def(
           "pointer_leave",
           [](const BrowserPtr& self) {
-            auto lock = self->lock();
-            self->run([&] { self->running->pointerLeave(); });
+            const auto lock = self->lock();
+            self->change([&] { self->running->pointerLeave(); });
           },
           "The pointer is outside of the picture.")
       .def_property_readonly("sensors_at_pointer",
@@ -371,8 +244,8 @@ void defineBrowser(py::module_& module) {
           "key",
           [](const BrowserPtr& self, const std::string& name, bool pressed) {
             const Key which = keyOf(name);
-            auto lock = self->lock();
-            self->run([&] { self->running->key(which, pressed); });
+            const auto lock = self->lock();
+            self->change([&] { self->running->key(which, pressed); });
           },
           py::arg("name"), py::arg("pressed"))
       .def_property(
@@ -381,9 +254,9 @@ void defineBrowser(py::module_& module) {
           "The way of moving: none, walk, fly or examine.")
       .def("load_inlines",
            [](const BrowserPtr& self) {
-             auto lock = self->lock();
+             const auto lock = self->lock();
              uint64_t loaded = 0;
-             self->run([&] { loaded = self->running->loadInlines(); });
+             self->change([&] { loaded = self->running->loadInlines(); });
              return loaded;
            })
       .def("__repr__", [](const BrowserPtr& self) {

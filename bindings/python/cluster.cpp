@@ -76,7 +76,7 @@ void release(ClusterObject& self) {
   const WorldPtr holder = self.holder.lock();
   self.holder.reset();
   if (!holder) return;
-  auto lock = holder->lock();
+  const auto lock = holder->lock();
   py::gil_scoped_release released;
   holder->rest();
 }

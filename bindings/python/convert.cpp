@@ -2,10 +2,13 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <unordered_set>
 
 #include <fmt/format.h>
 
 #include "objects.h"
+#include "picture/nearest.h"
+#include "xvrml/viewed.h"
 
 using namespace xvrml;
 
@@ -45,6 +48,7 @@ std::string expectation(FieldType type) {
 struct Target {
   const FieldInfo& field;
   const NodeObject& owner;
+  mutable WorldPtr place = nullptr; // of a loose owner: the world of the first of its nodes that is in one
 
   std::string text() const {
     return fmt::format("{}.{} ({}): {} expected", owner.node->type().name, field.name, fieldTypeName(field.type),
@@ -233,7 +237,10 @@ bool accepts(const std::string& nodeTypes, const Node& node) {
 NodeRef nodeOf(const py::handle& object, const Target& target) {
   if (!py::isinstance<NodeObject>(object)) target.wrongType(object);
   const auto& given = object.cast<const NodeObject&>();
-  if (!sameWorld(given.world, target.owner.world)) target.wrongValue("of the same world");
+  const WorldPtr from = given.world(), to = target.owner.world();
+  if (!from->loose() && to->loose() && !target.place) target.place = from;
+  const WorldPtr& place = target.place ? target.place : to;
+  if (!from->loose() && !sameWorld(from, place)) target.wrongValue("of the same world");
   if (!accepts(target.field.nodeTypes, *given.node))
     target.wrongValue(fmt::format("one of {}, not {}", target.field.nodeTypes, given.node->type().name));
   return given.node;
@@ -268,7 +275,7 @@ struct ToPython {
   py::object operator()(const Vec2f& v) const { return py::make_tuple(v.x, v.y); }
   py::object operator()(const Vec3f& v) const { return py::make_tuple(v.x, v.y, v.z); }
   py::object operator()(const Rotation& v) const { return py::make_tuple(v.x, v.y, v.z, v.angle); }
-  py::object operator()(const NodeRef& v) const { return v ? py::cast(NodeObject{world, v}) : py::object(py::none()); }
+  py::object operator()(const NodeRef& v) const { return asNode(world, v); }
   py::object operator()(const Image& v) const {
     const size_t row = size_t(v.width) * size_t(v.components);
     std::vector<uint8_t> flipped;
@@ -296,6 +303,30 @@ struct ToPython {
   }
 };
 
+// What an array of a field's own numbers keeps: the view ends before the node.
+struct Viewing {
+  NodeObject node;
+  std::shared_ptr<const ViewedField> view;
+};
+
+template <class T> py::object viewArray(Viewing* viewing, std::vector<py::ssize_t> shape) {
+  py::capsule keeper(viewing, [](void* held) { delete static_cast<Viewing*>(held); });
+  py::array_t<T> array(std::move(shape), static_cast<const T*>(viewing->view->data()), keeper);
+  array.attr("setflags")(py::arg("write") = false);
+  return array;
+}
+
+// Nodes below a node that its fields hold.
+void below(Node& node, std::vector<Node*>& out) {
+  for (const FieldInfo& field : node.type().fields) {
+    if (field.access != Access::field && field.access != Access::exposedField) continue;
+    if (field.type == FieldType::SFNode)
+      out.push_back(static_cast<const NodeRef*>(node.storage(field))->get());
+    else if (field.type == FieldType::MFNode)
+      for (const NodeRef& one : *static_cast<const MFNode*>(node.storage(field))) out.push_back(one.get());
+  }
+}
+
 } // namespace
 
 py::str toText(const std::string& bytes) {
@@ -310,6 +341,17 @@ std::string fromText(const py::handle& text) {
   return std::string(bytes);
 }
 
+std::string didYouMean(const std::string& name, const std::vector<std::string>& known) {
+  const std::string near = picture::nearest(name, known);
+  return near.empty() ? "" : fmt::format("; did you mean {}?", near);
+}
+
+void raiseOsError(const std::string& failure) {
+  if (failure.empty()) return;
+  PyErr_SetString(PyExc_OSError, failure.c_str());
+  throw py::error_already_set();
+}
+
 std::string toPath(const py::handle& path) {
   auto text = py::reinterpret_steal<py::object>(PyOS_FSPath(path.ptr()));
   if (!text) throw py::error_already_set();
@@ -318,8 +360,54 @@ std::string toPath(const py::handle& path) {
 
 py::object toPython(const Value& value, const WorldPtr& world) { return std::visit(ToPython{world}, value); }
 
+py::object fieldToPython(const NodeObject& object, const FieldInfo& field) {
+  std::shared_ptr<const ViewedField> view = viewField(*object.node, field);
+  if (!view || view->size() == 0) return toPython(object.node->get(field), object.world());
+  const auto n = py::ssize_t(view->size());
+  auto* viewing = new Viewing{object, std::move(view)};
+  switch (field.type) {
+  case FieldType::MFColor: return viewArray<float>(viewing, {n, 3});
+  case FieldType::MFRotation: return viewArray<float>(viewing, {n, 4});
+  case FieldType::MFVec2f: return viewArray<float>(viewing, {n, 2});
+  case FieldType::MFVec3f: return viewArray<float>(viewing, {n, 3});
+  case FieldType::MFInt32: return viewArray<int32_t>(viewing, {n});
+  case FieldType::MFTime: return viewArray<double>(viewing, {n});
+  default: return viewArray<float>(viewing, {n});
+  }
+}
+
+void joinWorlds(const NodeObject& owner, const py::handle& object) {
+  if (py::isinstance<NodeObject>(object)) {
+    const WorldPtr to = owner.world(), from = object.cast<const NodeObject&>().world();
+    if (from == to) return;
+    if (from->loose())
+      from->joined = to;
+    else if (to->loose())
+      to->joined = from;
+  } else if (!py::isinstance<py::str>(object) && PySequence_Check(object.ptr())) {
+    for (const py::handle one : py::reinterpret_borrow<py::sequence>(object))
+      if (py::isinstance<NodeObject>(one)) joinWorlds(owner, one);
+  }
+}
+
+void refuseLoops(const NodeObject& owner, const FieldInfo& field, const Value& value) {
+  std::vector<Node*> open;
+  if (const auto* one = std::get_if<NodeRef>(&value)) open.push_back(one->get());
+  if (const auto* many = std::get_if<MFNode>(&value))
+    for (const NodeRef& one : *many) open.push_back(one.get());
+  std::unordered_set<const Node*> met;
+  while (!open.empty()) {
+    Node* node = open.back();
+    open.pop_back();
+    if (!node || !met.insert(node).second) continue;
+    if (node == owner.node.get())
+      throw py::value_error(fmt::format("{}.{}: the node would hold itself", owner.node->type().name, field.name));
+    below(*node, open);
+  }
+}
+
 Value fromPython(const py::handle& object, const FieldInfo& field, const NodeObject& owner) {
-  const Target target{field, owner};
+  const Target target{field, owner, nullptr};
   switch (field.type) {
   case FieldType::SFBool: return boolean(object, target);
   case FieldType::SFColor: return fixed<Color>(object, target);

@@ -8,7 +8,6 @@
 #include "cluster_object.h"
 #include "objects.h"
 #include "openrt/openrt.h"
-#include "picture/nearest.h"
 #include "picture/renderer.h"
 #include "xvrml/node_plugin.h"
 
@@ -40,9 +39,7 @@ void setLimits(Limits& limits, const py::dict& given) {
     if (setLimit(limits, name, value.cast<uint64_t>())) continue;
     std::vector<std::string> names;
     for (const LimitInfo& limit : limitTable()) names.emplace_back(limit.name);
-    const std::string near = picture::nearest(name, names);
-    throw py::value_error(
-        fmt::format("limits: there is no {}{}", name, near.empty() ? "" : fmt::format("; did you mean {}?", near)));
+    throw py::value_error(fmt::format("limits: there is no {}{}", name, didYouMean(name, names)));
   }
 }
 
@@ -129,6 +126,8 @@ PYBIND11_MODULE(_xvrml, module) {
   defineWorld(module);
   defineBrowser(module);
   defineScripts(module);
+  defineShapes(module);
+  defineRt(module);
   module.attr("__version__") = fmt::format("{}.{}.{}", OPENRT_VERSION_MAJOR, OPENRT_VERSION_MINOR, OPENRT_VERSION_PATCH);
   module.def(
       "load_node_plugins", loadPlugins, py::arg("path") = py::none(),

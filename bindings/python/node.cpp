@@ -1,8 +1,12 @@
-// node.cpp: the Python class Node: attributes are fields, found in the type's table. Called with the GIL held.
+// node.cpp: the Python class Node and a class below it for every node type: attributes are fields, found in the type's table.
+// Called with the GIL held.
+#include <memory>
+#include <unordered_map>
+
 #include <fmt/format.h>
 
 #include "objects.h"
-#include "picture/nearest.h"
+#include "xvrml/build.h"
 
 using namespace xvrml;
 
@@ -20,35 +24,48 @@ const FieldInfo* findValue(const Node& node, const std::string& name) {
   std::vector<std::string> names;
   for (const FieldInfo& field : node.type().fields)
     if (holdsValue(field) || events) names.push_back(field.name);
-  const std::string near = picture::nearest(name, names);
-  throw py::attribute_error(
-      fmt::format("{} has no field {}{}", node.type().name, name, near.empty() ? "" : fmt::format("; did you mean {}?", near)));
+  throw py::attribute_error(fmt::format("{} has no field {}{}", node.type().name, name, didYouMean(name, names)));
 }
 
-py::object value(const NodeObject& self, const FieldInfo& field) { return toPython(self.node->get(field), self.world); }
+py::object value(const NodeObject& self, const FieldInfo& field) {
+  const WorldPtr world = self.world();
+  const auto lock = world->lockGraph();
+  return fieldToPython(self, field);
+}
 
 // In a running world an eventOut's value is the last one that it sent.
 py::object getAttribute(const NodeObject& self, const std::string& name) {
   if (const FieldInfo* field = findValue(*self.node, name)) return value(self, *field);
-  Browser* browser = self.world->browser();
+  const WorldPtr world = self.world();
+  Browser* browser = world->browser();
   const FieldInfo* out = browser ? self.node->type().findEventOut(name) : nullptr;
   if (!out) noField(*self.node, name, browser);
-  auto lock = self.world->lock();
-  return toPython(browser->get(*self.node, name), self.world);
+  const auto lock = world->lockGraph();
+  return toPython(browser->get(*self.node, name), world);
 }
 
 // In a running world exposedFields and eventIns get an event.
 void setAttribute(const NodeObject& self, const std::string& name, const py::handle& object) {
-  Browser* browser = self.world->browser();
+  const WorldPtr world = self.world();
+  Browser* browser = world->browser();
   const FieldInfo* field = findValue(*self.node, name);
   if (!field && browser) field = self.node->type().findEventIn(name);
   if (!field) noField(*self.node, name, browser);
   if (browser && scriptAssigns(self, field->name, object)) return;
-  if (const char* why = self.world->frozen()) throw py::value_error(why);
   Value fresh = fromPython(object, *field, self);
-  auto lock = self.world->lock();
+  const bool nodes = field->type == FieldType::SFNode || field->type == FieldType::MFNode;
+  const auto lock = world->lock();
+  WorldPtr now = world;
+  WorldObject::Changing also;
+  if (nodes) {
+    refuseLoops(self, *field, fresh);
+    joinWorlds(self, object);
+    now = self.world();
+    if (now != world) also = now->lock(); // a loose node has joined a world, which may be running
+    browser = now->browser();
+  }
   if (browser)
-    self.world->run([&] { browser->set(*self.node, field->name, std::move(fresh)); });
+    now->change([&] { browser->set(*self.node, field->name, std::move(fresh)); });
   else
     self.node->set(*field, std::move(fresh));
 }
@@ -82,11 +99,82 @@ std::string describe(const NodeObject& self) {
                      node.source.line ? fmt::format(" at line {}", node.source.line) : "");
 }
 
+// Classes by node type, owned by the module for the life of the interpreter. A plug-in's are made when it is loaded.
+auto& classes() {
+  static auto& all = *new std::unordered_map<const NodeType*, PyTypeObject*>();
+  return all;
+}
+PyTypeObject* nodeClass = nullptr;
+
+std::string description(const NodeType& type) {
+  std::string text = type.text + "\n";
+  if (!type.clause.empty()) text += fmt::format("ISO/IEC 14772-1 clause {}.\n", type.clause);
+  text += "\n";
+  for (const FieldInfo& field : type.fields) {
+    const char* kind[] = {"field", "exposedField", "eventIn", "eventOut"};
+    text += fmt::format("{} ({} {}): {}\n", field.name, kind[size_t(field.access)], fieldTypeName(field.type), field.text);
+  }
+  return text;
+}
+
+PyTypeObject* classOf(const NodeType& type) {
+  if (type.index < 0) return nodeClass; // of a prototype or a Script
+  PyTypeObject*& known = classes()[&type];
+  if (known) return known;
+  py::dict members;
+  members["__slots__"] = py::tuple();
+  members["__doc__"] = toText(description(type));
+  members["__module__"] = "xvrml";
+  const py::handle base(reinterpret_cast<PyObject*>(nodeClass));
+  py::object made =
+      py::reinterpret_borrow<py::object>(py::type::handle_of(base))(toText(type.name), py::make_tuple(base), members);
+  return known = reinterpret_cast<PyTypeObject*>(made.release().ptr());
+}
+
+py::dict nodeClasses() {
+  py::dict all;
+  for (const NodeType* type : nodeTypes())
+    all[toText(type->name)] = py::reinterpret_borrow<py::object>(reinterpret_cast<PyObject*>(classOf(*type)));
+  return all;
+}
+
+// The constructor of all classes: keywords are fields. The node is in no world until it is put into one.
+void makeLoose(py::detail::value_and_holder& self, const py::kwargs& fields) {
+  const NodeType* type = nullptr;
+  for (PyTypeObject* one = Py_TYPE(self.inst); one && !type; one = one->tp_base)
+    for (const auto& [known, its] : classes())
+      if (its == one) type = known;
+  if (!type) throw py::type_error("Node is the class of all nodes: make one of a type, as xvrml.Box(size=(1, 2, 3))");
+  NodeRef node = makeNode(*type);
+  if (!node) throw py::type_error(type->name + " nodes come from files alone");
+  auto made = std::make_unique<NodeObject>(std::make_shared<WorldObject>(), std::move(node));
+  for (const auto& [name, value] : fields) setAttribute(*made, fromText(name), value);
+  self.value_ptr() = made.release();
+}
+
 } // namespace
 
+py::object asNode(const WorldPtr& world, const NodeRef& node) {
+  if (!node) return py::none();
+  PyTypeObject* type = classOf(node->type());
+  auto made = py::reinterpret_steal<py::object>(type->tp_new(type, py::tuple().ptr(), nullptr));
+  if (!made) throw py::error_already_set();
+  // As pybind11 does it for the class itself.
+  static const py::detail::type_info* info = py::detail::get_type_info(typeid(NodeObject), true);
+  auto* instance = reinterpret_cast<py::detail::instance*>(made.ptr());
+  instance->get_value_and_holder(info).value_ptr() = new NodeObject(world, node);
+  info->init_instance(instance, nullptr);
+  return made;
+}
+
 void defineNode(py::module_& module) {
-  py::class_<NodeObject>(module, "Node",
-                         "A node of a world. Its fields are attributes; reading gives a copy, assigning changes the node.")
+  py::class_<NodeObject> all(
+      module, "Node",
+      "A node. Its fields are attributes: numbers of lists are read-only arrays of what the field holds now; assigning changes "
+      "the node.");
+  nodeClass = reinterpret_cast<PyTypeObject*>(all.ptr());
+  module.def("_node_classes", nodeClasses);
+  all.def("__init__", makeLoose, py::detail::is_new_style_constructor())
       .def_property_readonly(
           "node_type", [](const NodeObject& self) { return toText(self.node->type().name); },
           "The name of the node's type, e.g. 'Transform'.")

@@ -41,6 +41,13 @@ py::object item(const py::object& self, const py::object& key) {
   return floats(self, *channel);
 }
 
+py::array errorBars(const py::object& self) {
+  const picture::Channel& channel = *picture::findChannel("error");
+  if (!self.cast<const PictureObject&>().picture.planes.count(channel.bit))
+    throw py::attribute_error("the picture was made without error bars: render(error=0.02) or channels=('error',) makes some");
+  return floats(self, channel);
+}
+
 py::object asArray(const py::object& self, const py::object& type, const py::object& copy) {
   py::object array = rgba(self);
   if (!type.is_none() && !type.equal(array.attr("dtype"))) return array.attr("astype")(type);
@@ -67,9 +74,7 @@ void save(const PictureObject& self, const py::object& file) {
       picture::writeFile(path, bytes);
     } catch (const std::runtime_error& error) { failure = error.what(); }
   }
-  if (failure.empty()) return;
-  PyErr_SetString(PyExc_OSError, failure.c_str());
-  throw py::error_already_set();
+  raiseOsError(failure);
 }
 
 py::tuple names(const PictureObject& self) {
@@ -90,6 +95,11 @@ py::tuple channels(const PictureObject& self) {
 void definePicture(py::module_& module) {
   py::class_<PictureObject>(module, "Picture", "A rendered picture. picture['z'] is a channel, picture[...] indexes the colours.")
       .def_property_readonly("array", rgba, "Red, green, blue, alpha: float32 of shape (height, width, 4), first row at the top.")
+      .def_property_readonly(
+          "error", errorBars,
+          "Half-widths of the 95 % intervals of red, green, blue: float32 of shape (height, width, 3). Only in "
+          "pictures that were made with an error or this channel.")
+      .def_readonly("time", &PictureObject::time, "Seconds of the world's clock that it shows.")
       .def_property_readonly("display", display, "What a screen shows: uint8 of shape (height, width, 3).")
       .def_property_readonly("shape",
                              [](const PictureObject& self) { return py::make_tuple(self.picture.height, self.picture.width, 4); })

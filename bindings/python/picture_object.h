@@ -8,4 +8,5 @@
 struct PictureObject {
   picture::Picture picture;
   pybind11::dict stats;
+  double time = 0; // of the world
 };

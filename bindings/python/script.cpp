@@ -9,22 +9,21 @@ using namespace xvrml;
 
 namespace {
 
-using Mutex = std::shared_ptr<std::recursive_mutex>;
-
 // The world as a Script sees it. It does not hold the browser: the browser holds the Script, which keeps nodes.
 struct ScriptWorld : WorldObject {
-  Browser* running;
+  Browser* scripted;
   const bool foreign; // the browser is no object of this module: nobody here knows when it may be changed
-  ScriptWorld(Browser* running, Mutex known) : running(running), foreign(!known) {
-    if (known) mutex = std::move(known);
+  ScriptWorld(Browser* browser, LocksPtr known) : scripted(browser), foreign(!known) {
+    if (known) locks = std::move(known);
   }
   World& graph() override {
-    if (!running) throw py::value_error("the Script that was given this node has ended");
-    return running->world();
+    if (!scripted) throw py::value_error("the Script that was given this node has ended");
+    return scripted->world();
   }
-  Browser* browser() override { return running; }
+  Browser* browser() override { return scripted; }
+  bool loose() const override { return false; }
   const char* frozen() const override {
-    return !running  ? "the Script that was given this node has ended"
+    return !scripted ? "the Script that was given this node has ended"
            : foreign ? "only the functions of a Script can change nodes here, on the thread on which they are called"
                      : nullptr;
   }
@@ -37,30 +36,30 @@ auto& worlds() {
   static auto& all = *new std::unordered_map<const Browser*, std::shared_ptr<ScriptWorld>>();
   return all;
 }
-thread_local Mutex making;
+thread_local LocksPtr making;
 
 // Of the browsers of this module. One may end on a thread that does not have the GIL.
-class Mutexes {
+class AllLocks {
  public:
-  Mutex find(const Browser* browser) {
+  LocksPtr find(const Browser* browser) {
     const std::scoped_lock lock(guard_);
     const auto found = all_.find(browser);
     return found != all_.end() ? found->second : making;
   }
-  void set(const Browser* browser, Mutex mutex) {
+  void set(const Browser* browser, LocksPtr locks) {
     const std::scoped_lock lock(guard_);
-    if (mutex)
-      all_[browser] = std::move(mutex);
+    if (locks)
+      all_[browser] = std::move(locks);
     else
       all_.erase(browser);
   }
 
  private:
   std::mutex guard_;
-  std::unordered_map<const Browser*, Mutex> all_;
+  std::unordered_map<const Browser*, LocksPtr> all_;
 };
-Mutexes& mutexes() {
-  static auto& all = *new Mutexes();
+AllLocks& allLocks() {
+  static auto& all = *new AllLocks();
   return all;
 }
 
@@ -71,12 +70,12 @@ py::object wrap(uintptr_t browserAddress, uintptr_t nodeAddress) {
   if (!nodeAddress) return py::none();
   auto* browser = reinterpret_cast<Browser*>(browserAddress);
   std::shared_ptr<ScriptWorld>& world = worlds()[browser];
-  if (!world) world = std::make_shared<ScriptWorld>(browser, mutexes().find(browser));
-  return py::cast(NodeObject{world, NodeRef(reinterpret_cast<Node*>(nodeAddress))});
+  if (!world) world = std::make_shared<ScriptWorld>(browser, allLocks().find(browser));
+  return asNode(world, reinterpret_cast<Node*>(nodeAddress));
 }
 
 uintptr_t address(const NodeObject& node, uintptr_t browserAddress) {
-  if (node.world->browser() != reinterpret_cast<Browser*>(browserAddress))
+  if (node.world()->browser() != reinterpret_cast<Browser*>(browserAddress))
     throw py::value_error("a node of the world that the Script is in expected");
   return reinterpret_cast<uintptr_t>(node.node.get());
 }
@@ -85,20 +84,20 @@ uintptr_t address(const NodeObject& node, uintptr_t browserAddress) {
 void end(uintptr_t browserAddress) {
   const auto found = worlds().find(reinterpret_cast<const Browser*>(browserAddress));
   if (found == worlds().end()) return;
-  found->second->running = nullptr;
+  found->second->scripted = nullptr;
   worlds().erase(found);
 }
 
 } // namespace
 
-void scriptsLock(const Browser* browser, Mutex mutex) { mutexes().set(browser, std::move(mutex)); }
+void scriptsLock(const Browser* browser, LocksPtr locks) { allLocks().set(browser, std::move(locks)); }
 
-MakingBrowser::MakingBrowser(Mutex mutex) { making = std::move(mutex); }
+MakingBrowser::MakingBrowser(LocksPtr locks) { making = std::move(locks); }
 MakingBrowser::~MakingBrowser() { making.reset(); }
 
 bool scriptAssigns(const NodeObject& node, const std::string& field, const py::handle& value) {
   if (!assignHandler) return false;
-  return py::reinterpret_borrow<py::object>(assignHandler)(reinterpret_cast<uintptr_t>(node.world->browser()),
+  return py::reinterpret_borrow<py::object>(assignHandler)(reinterpret_cast<uintptr_t>(node.world()->browser()),
                                                            reinterpret_cast<uintptr_t>(node.node.get()), field, value)
       .cast<bool>();
 }

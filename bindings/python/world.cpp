@@ -1,16 +1,14 @@
-// world.cpp: the Python class World: names, problems, writing, rendering. Called with the GIL held; parsing and rendering
-// release it.
-#include <cmath>
+// world.cpp: the Python class World: names, problems, what is in it, events, writing. Called with the GIL held; what takes long
+// releases it.
+#include <algorithm>
+#include <optional>
 
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
-#include "cluster_object.h"
 #include "objects.h"
 #include "picture/atomic_file.h"
 #include "picture/nearest.h"
-#include "picture/transport.h"
-#include "picture_object.h"
 
 using namespace xvrml;
 
@@ -25,33 +23,13 @@ const char* severityName(Severity severity) {
   return "error";
 }
 
-// Runs `work` without the GIL while Ctrl-C is watched for: the watch that it gets ends the picture.
-template <class Work> void interruptible(Work work) {
-  bool signalled = false;
-  std::exception_ptr failure;
-  {
-    py::gil_scoped_release release;
-    try {
-      work([&signalled](float) {
-        if (signalled) return true;
-        py::gil_scoped_acquire acquire;
-        signalled = PyErr_CheckSignals() != 0;
-        return signalled;
-      });
-    } catch (...) { failure = std::current_exception(); }
-  }
-  if (signalled) throw py::error_already_set();
-  if (failure) std::rethrow_exception(failure);
-}
-
 py::object getNode(const WorldPtr& self, const std::string& name) {
   const auto& names = self->graph().scope.names;
   auto found = names.find(name);
-  if (found != names.end()) return py::cast(NodeObject{self, found->second});
+  if (found != names.end()) return asNode(self, found->second);
   std::vector<std::string> known;
   for (const auto& [one, node] : names) known.push_back(one);
-  const std::string near = picture::nearest(name, known);
-  throw py::key_error(fmt::format("no node is called {}{}", name, near.empty() ? "" : fmt::format("; did you mean {}?", near)));
+  throw py::key_error(fmt::format("no node is called {}{}", name, didYouMean(name, known)));
 }
 
 py::tuple names(const WorldPtr& self) {
@@ -62,12 +40,12 @@ py::tuple names(const WorldPtr& self) {
 
 py::tuple roots(const WorldPtr& self) {
   py::list out;
-  for (const NodeRef& root : self->graph().scope.roots) out.append(NodeObject{self, root});
+  for (const NodeRef& root : self->graph().scope.roots) out.append(asNode(self, root));
   return py::tuple(out);
 }
 
 std::vector<Diagnostic> warnings(const WorldPtr& self) {
-  auto lock = self->lock();
+  const auto lock = self->lockDrawing();
   return self->graph().diagnostics.list();
 }
 
@@ -79,198 +57,143 @@ picture::RenderSettings withoutPicture() {
 
 std::vector<ViewpointInfo> viewpoints(const WorldPtr& self) {
   std::vector<ViewpointInfo> list;
-  auto lock = self->lock();
+  const auto lock = self->lock();
   interruptible(
       [&](picture::Watch watch) { list = picture::Renderer(self->graph(), withoutPicture(), std::move(watch)).viewpoints(); });
   return list;
 }
 
 py::str toVrml(const WorldPtr& self) {
-  auto lock = self->lock();
+  const auto lock = self->lockGraph();
   return toText(writeWorld(self->graph()));
 }
 
-void writeTo(const WorldPtr& self, const py::object& file) {
+void save(const WorldPtr& self, const py::object& file) {
   const std::string path = toPath(file);
   std::string failure;
+  const auto lock = self->lockGraph();
+  World& world = self->graph();
   {
-    auto lock = self->lock();
+    py::gil_scoped_release release;
     try {
-      picture::writeFile(path, writeWorld(self->graph()));
+      picture::writeFile(path, writeWorld(world));
     } catch (const std::runtime_error& error) { failure = error.what(); }
   }
-  if (failure.empty()) return;
-  PyErr_SetString(PyExc_OSError, failure.c_str());
-  throw py::error_already_set();
+  raiseOsError(failure);
 }
 
-int inRange(const char* name, long long value, long long minimum, long long maximum) {
-  if (value < minimum || value > maximum)
-    throw py::value_error(fmt::format("{}: {} to {} expected, not {}", name, minimum, maximum, value));
-  return int(value);
+double now(const WorldPtr& self) { return self->browser() ? self->browser()->now() : 0; }
+
+void setTime(const WorldPtr& self, double time) {
+  Browser& browser = self->live();
+  const auto lock = self->lock();
+  if (!(time >= browser.now())) // also NaN
+    throw py::value_error(fmt::format("time: from {} on expected, not {}: it does not go back", browser.now(), time));
+  self->change([&] { browser.tick(time); });
 }
 
-MapOptions::Headlight headlightOf(const py::object& value) {
-  using Headlight = MapOptions::Headlight;
-  if (py::isinstance<py::bool_>(value)) return value.cast<bool>() ? Headlight::on : Headlight::off;
-  const std::string text = py::isinstance<py::str>(value) ? value.cast<std::string>() : "";
-  if (text == "auto") return Headlight::automatic;
-  if (text == "on" || text == "off") return text == "on" ? Headlight::on : Headlight::off;
-  throw py::value_error("headlight: 'auto', 'on', 'off', True or False expected");
+Node& own(const WorldPtr& self, const NodeObject& node) {
+  if (!sameWorld(node.world(), self)) throw py::value_error("a node of this world expected");
+  return *node.node;
 }
 
-uint32_t channelsOf(const py::object& list) {
-  uint32_t bits = RT_RGBA;
-  const bool one = py::isinstance<py::str>(list);
-  for (const py::handle name : one ? py::object(py::make_tuple(list)) : list) {
-    const picture::Channel* channel = py::isinstance<py::str>(name) ? picture::findChannel(fromText(name)) : nullptr;
-    if (!channel) {
-      std::string known;
-      for (const picture::Channel& c : picture::channelTable()) known += (known.empty() ? "" : ", ") + std::string(c.name);
-      throw py::value_error(fmt::format("channels: out of {} expected, not {}", known, std::string(py::str(name))));
-    }
-    bits |= channel->bit;
-  }
-  return bits;
-}
-
-picture::LookAt cameraOf(const py::object& given) {
-  picture::LookAt camera;
-  double matrix[16];
-  try {
-    auto rows = given.cast<std::vector<std::vector<double>>>();
-    if (rows.size() != 2 && rows.size() != 3) throw py::cast_error();
-    double* targets[] = {camera.position, camera.target, camera.up};
-    for (size_t i = 0; i < rows.size(); ++i) {
-      if (rows[i].size() != 3) throw py::cast_error();
-      for (size_t k = 0; k < 3; ++k) {
-        if (!std::isfinite(rows[i][k])) throw py::cast_error();
-        targets[i][k] = rows[i][k];
-      }
-    }
-  } catch (const py::cast_error&) {
-    throw py::value_error("camera: (position, target) or (position, target, up) of 3 numbers each expected");
-  }
-  if (!picture::lookAtMatrix(camera, matrix)) throw py::value_error("camera: position and target are the same point");
-  return camera;
-}
-
-// Index of the viewpoint asked for by name or number.
-size_t viewpointIndex(const std::vector<ViewpointInfo>& list, const py::object& wanted) {
-  if (py::isinstance<py::int_>(wanted) && !py::isinstance<py::bool_>(wanted)) {
-    long long index = wanted.cast<long long>();
-    if (index < 0) index += static_cast<long long>(list.size());
-    if (index < 0 || index >= static_cast<long long>(list.size()))
-      throw py::index_error(fmt::format("viewpoint: the world has {}", list.size()));
-    return size_t(index);
-  }
-  if (!py::isinstance<py::str>(wanted)) throw py::type_error("viewpoint: a name, a number or None expected");
-  const std::string name = fromText(wanted);
-  const int index = picture::findViewpoint(list, name);
-  if (index >= 0) return size_t(index);
+std::string nearestEvent(const Node& node, const std::string& name, bool out) {
   std::vector<std::string> known;
-  for (const ViewpointInfo& v : list) known.push_back(v.name.empty() ? v.description : v.name);
-  const std::string near = picture::nearest(name, known);
-  throw py::key_error(
-      fmt::format("viewpoint: the world has no {}{}", name, near.empty() ? "" : fmt::format("; did you mean {}?", near)));
+  for (const FieldInfo& field : node.type().fields)
+    if (field.access == Access::exposedField || field.access == (out ? Access::eventOut : Access::eventIn))
+      known.push_back(field.name);
+  return didYouMean(name, known);
 }
 
-py::dict statsOf(const World& world, const picture::RenderResult& result) {
-  const RTstats& s = result.stats;
-  py::dict stats;
-  stats["nodes"] = world.nodeCount;
-  stats["shapes"] = result.map.shapes;
-  stats["triangles"] = s.triangles;
-  stats["unique_triangles"] = s.uniqueTriangles;
-  stats["objects"] = s.objects;
-  stats["instances"] = s.instances;
-  stats["lights"] = s.lights;
-  stats["textures"] = s.textures;
-  stats["camera_rays"] = s.cameraRays;
-  stats["shadow_rays"] = s.shadowRays;
-  stats["secondary_rays"] = s.secondaryRays;
-  stats["parse_seconds"] = world.times.parse;
-  stats["map_seconds"] = result.mapSeconds;
-  stats["build_seconds"] = s.commitSeconds + s.buildSeconds;
-  stats["render_seconds"] = result.renderSeconds;
-  stats["threads"] = s.threads;
-  stats["transport"] = picture::transportName(s.transport);
-  stats["transport_reason"] = s.transportReason;
-  if (s.errorPixels > 0) {
-    stats["error_mean"] = s.errorMean;
-    stats["error_mean_interval"] = s.errorMeanInterval;
-    stats["error_half_width"] = s.errorHalfWidth;
-    stats["error_p99"] = s.errorP99;
-    stats["error_trusted"] = double(s.errorTrusted) / double(s.errorPixels);
-    stats["error_method"] = s.errorMethod;
-  }
-  return stats;
+uint64_t listen(const WorldPtr& self, const NodeObject& object, const std::string& event, py::function function) {
+  Node& from = own(self, object);
+  if (!from.type().findEventOut(event))
+    throw py::attribute_error(fmt::format("{} has no eventOut {}{}", from.type().name, event, nearestEvent(from, event, true)));
+  return self->listen(object.node, event, std::move(function));
 }
 
-std::unique_ptr<PictureObject> render(const WorldPtr& self, const py::object& size, long long spp, const py::object& viewpoint,
-                                      const py::object& camera, bool fit, std::optional<double> fov, long long seed,
-                                      long long threads, bool shadows, const std::string& colour, const py::object& headlight,
-                                      long long depth, const py::object& channels, const std::string& transport, double error,
-                                      double timeLimit, double clamp, const py::object& cluster) {
-  picture::RenderSettings settings;
-  const auto sides = size.cast<std::vector<long long>>();
-  if (sides.size() != 2) throw py::value_error("size: (width, height) expected");
-  settings.width = inRange("size", sides[0], 1, 65536);
-  settings.height = inRange("size", sides[1], 1, 65536);
-  if (int64_t(settings.width) * settings.height > (int64_t(1) << 28)) throw py::value_error("size: at most 2^28 pixels expected");
-  settings.samples = inRange("spp", spp, 1, 65536);
-  settings.seed = inRange("seed", seed, 0, 2147483647);
-  settings.threads = inRange("threads", threads, 0, 1024);
-  settings.depth = inRange("depth", depth, 0, 10000);
-  settings.shadows = shadows;
-  if (colour != "linear" && colour != "vrml97")
-    throw py::value_error("colour: 'linear' or 'vrml97' expected, not '" + colour + "'");
-  settings.linear = colour == "linear";
-  settings.headlight = headlightOf(headlight);
-  const std::optional<int> following = picture::transportNamed(transport);
-  if (!following) throw py::value_error(fmt::format("transport: {} expected, not '{}'", picture::transportNames, transport));
-  settings.transport = *following;
-  const auto limited = [](const char* name, double value, double maximum) {
-    if (value >= 0 && value <= maximum) return value;
-    throw py::value_error(fmt::format("{}: a number from 0 to {} expected", name, maximum));
-  };
-  settings.error = limited("error", error, 1);
-  settings.timeLimit = limited("time_limit", timeLimit, 1e6);
-  settings.clamp = limited("clamp", clamp, 1e30);
-  settings.channels = channelsOf(channels);
-
-  picture::View view;
-  if (!viewpoint.is_none() + !camera.is_none() + fit > 1)
-    throw py::value_error("only one of viewpoint, camera and fit can be used");
-  if (fov && !(*fov > 0 && *fov < 180)) throw py::value_error("fov: an angle between 0 and 180 degrees expected");
-  if (!camera.is_none()) view.lookAt = cameraOf(camera);
-  view.fit = fit;
-  view.fov = fov;
-
-  settings.cluster = clusterFor(cluster, self); // before the lock: it may wait for another world
-  picture::RenderResult result;
-  auto lock = self->lock();
-  std::shared_ptr<picture::Renderer> renderer;
-  interruptible([&](picture::Watch watch) {
-    renderer = self->renderer(settings, std::move(watch));
-    renderer->setWatch({}); // what it refers to ends here
+// Routes are in the list that is written, too.
+bool route(const WorldPtr& self, const NodeObject& from, const std::string& out, const NodeObject& to, const std::string& in,
+           bool add) {
+  Node &source = own(self, from), &target = own(self, to);
+  const FieldInfo *sends = source.type().findEventOut(out), *takes = target.type().findEventIn(in);
+  if (!sends)
+    throw py::attribute_error(fmt::format("{} has no eventOut {}{}", source.type().name, out, nearestEvent(source, out, true)));
+  if (!takes)
+    throw py::attribute_error(fmt::format("{} has no eventIn {}{}", target.type().name, in, nearestEvent(target, in, false)));
+  if (sends->type != takes->type)
+    throw py::type_error(fmt::format("{} is {}, {} is {}", out, fieldTypeName(sends->type), in, fieldTypeName(takes->type)));
+  const auto lock = self->lock();
+  std::vector<Route>& written = self->graph().scope.routes;
+  const auto found = std::find_if(written.begin(), written.end(), [&](const Route& r) {
+    return r.from == from.node && r.to == to.node && source.type().findEventOut(r.fromField) == sends &&
+           target.type().findEventIn(r.toField) == takes;
   });
-  if (!viewpoint.is_none()) view.viewpoint = viewpointIndex(renderer->viewpoints(), viewpoint);
-  interruptible([&](picture::Watch watch) {
-    renderer->setWatch(std::move(watch));
-    try {
-      result = renderer->render(view);
-    } catch (...) {
-      renderer->setWatch({});
-      throw;
-    }
-    renderer->setWatch({});
-    renderer.reset();
-  });
-  auto made = std::make_unique<PictureObject>();
-  made->stats = statsOf(self->graph(), result);
-  made->picture = std::move(result.picture);
+  bool done = add || found != written.end();
+  if (Browser* browser = self->browser())
+    self->change(
+        [&] { done = add ? browser->addRoute(source, out, target, in) : browser->deleteRoute(source, out, target, in); });
+  if (!add && found != written.end()) written.erase(found);
+  if (add && done && found == written.end()) written.push_back({from.node, out, to.node, in, {}});
+  return done;
+}
+
+// A name for a node that has none, or another: of the file, as DEF gives it.
+void setName(const WorldPtr& self, const NodeObject& node, const std::string& name) {
+  auto& names = self->graph().scope.names;
+  const bool good = !name.empty() && name.find_first_of(" \t\r\n,\"'#.[]\\{}") == name.npos &&
+                    std::string_view("+-0123456789").find(name[0]) == std::string_view::npos;
+  if (!good) throw py::value_error(fmt::format("name: '{}' cannot be a DEF name", name));
+  if (const auto found = names.find(name); found != names.end() && found->second != node.node)
+    throw py::value_error(fmt::format("name: the world has a node called {}", name));
+  if (const auto former = names.find(node.node->defName); former != names.end() && former->second == node.node)
+    names.erase(former);
+  node.node->defName = name;
+  names[name] = node.node;
+}
+
+const NodeObject& add(const WorldPtr& self, const NodeObject& added, const std::optional<std::string>& name) {
+  const WorldPtr from = added.world();
+  self->graph(); // or raises
+  if (!from->loose() && !sameWorld(from, self)) throw py::value_error("the node is in another world");
+  const auto lock = self->lock();
+  if (name) setName(self, added, *name);
+  if (from->loose()) from->joined = self;
+  auto& roots = self->graph().scope.roots;
+  if (Browser* browser = self->browser())
+    self->change([&] { browser->addRoot(added.node); });
+  else if (std::find(roots.begin(), roots.end(), added.node) == roots.end())
+    roots.push_back(added.node);
+  return added;
+}
+
+void removeNode(const WorldPtr& self, const NodeObject& removed) {
+  Node& node = own(self, removed);
+  const auto lock = self->lock();
+  if (Browser* browser = self->browser())
+    self->change([&] { browser->removeRoot(node); });
+  else
+    std::erase(self->graph().scope.roots, removed.node);
+}
+
+WorldPtr emptyWorld() {
+  auto made = std::make_shared<WorldObject>();
+  made->world = std::make_unique<World>();
+  made->world->path = "<memory>";
   return made;
+}
+
+// A name that is none would be kept, and nothing happen.
+void setAttribute(const py::object& self, const py::str& name, const py::object& value) {
+  const py::handle type = py::type::handle_of(self);
+  const bool ours = std::string(py::str(type.attr("__module__"))).starts_with("xvrml");
+  if (ours && !py::hasattr(type, name) && fromText(name) != "__dict__") {
+    std::vector<std::string> known;
+    for (const py::handle one : py::reinterpret_steal<py::list>(PyObject_Dir(type.ptr())))
+      if (!fromText(one).starts_with("_")) known.push_back(fromText(one));
+    throw py::attribute_error(fmt::format("a World has no attribute {}{}", fromText(name), didYouMean(fromText(name), known)));
+  }
+  if (PyObject_GenericSetAttr(self.ptr(), name.ptr(), value.ptr()) != 0) throw py::error_already_set();
 }
 
 py::array matrixOf(const ViewpointInfo& v) {
@@ -290,19 +213,28 @@ void defineWorld(py::module_& module) {
       .def_property_readonly("message", [](const Diagnostic& d) { return toText(d.message); })
       .def("__str__", [](const Diagnostic& d) { return toText(d.text()); })
       .def("__repr__", [](const Diagnostic& d) { return toText("<" + d.text().substr(0, d.text().find('\n')) + ">"); });
-  py::class_<ViewpointInfo>(module, "Viewpoint", "A viewpoint of a world.")
+  py::class_<ViewpointInfo>(module, "ViewpointInfo", "A viewpoint of a world.")
       .def_property_readonly(
           "name", [](const ViewpointInfo& v) { return toText(v.name); }, "DEF name, '' if it has none.")
       .def_property_readonly("description", [](const ViewpointInfo& v) { return toText(v.description); })
       .def_property_readonly("matrix", matrixOf, "Its local coordinates to world coordinates, 4x4 for column vectors.")
       .def("__repr__",
            [](const ViewpointInfo& v) { return toText("<Viewpoint " + (v.name.empty() ? v.description : v.name) + ">"); });
-  py::class_<WorldObject, WorldPtr>(module, "World", "A loaded world. world['NAME'] is the node that DEF NAME names.")
-      .def_property_readonly("path", [](const WorldPtr& self) { return toText(self->graph().path); })
+  py::class_<WorldObject, WorldPtr> world(
+      module, "World",
+      "A world; World() is an empty one. world['NAME'] is the node that DEF NAME names. It stands still until its time or its "
+      "events are asked for.",
+      py::dynamic_attr());
+  world.def(py::init(&emptyWorld))
+      .def_property_readonly(
+          "path", [](const WorldPtr& self) { return toText(self->graph().path); }, "The file that it comes from.")
       .def_property_readonly("warnings", warnings, "Every problem found so far, in order: errors too.")
       .def_property_readonly("names", names, "DEF names of the file.")
       .def_property_readonly("roots", roots, "Nodes of the file's top level.")
       .def_property_readonly("viewpoints", viewpoints, "Viewpoints in the order of the file.")
+      .def_property("time", now, setTime,
+                    "Seconds of the world's own clock. Assigning lets time pass: sensors send, routes carry, Scripts run, until "
+                    "nothing is left to do. It does not go back.")
       .def("__getitem__", [](const WorldPtr& self, const py::str& name) { return getNode(self, fromText(name)); })
       .def("__contains__",
            [](const WorldPtr& self, const py::object& name) {
@@ -310,15 +242,32 @@ void defineWorld(py::module_& module) {
            })
       .def("__iter__", [](const WorldPtr& self) { return py::iter(names(self)); })
       .def("__len__", [](const WorldPtr& self) { return self->graph().scope.names.size(); })
+      .def("__bool__", [](const WorldPtr&) { return true; })
+      .def("__setattr__", setAttribute)
+      .def("add", add, py::arg("node"), py::arg("name") = py::none(), py::return_value_policy::reference,
+           "Puts a node into the world, at the top level, under a DEF name if one is given. Returns the node.")
+      .def("remove", removeNode, py::arg("node"), "Takes a node from the top level.")
+      .def("listen", listen, py::arg("node"), py::arg("event"), py::arg("callback"),
+           "Calls callback(value, time) whenever an eventOut or exposedField has sent: after the events that belong together, on "
+           "the thread that made them happen. Returns a number for unlisten.")
+      .def(
+          "unlisten",
+          [](const WorldPtr& self, const NodeObject& node, uint64_t number) { self->unlisten(own(self, node), number); },
+          py::arg("node"), py::arg("number"))
+      .def(
+          "add_route",
+          [](const WorldPtr& self, const NodeObject& from, const std::string& out, const NodeObject& to, const std::string& in) {
+            return route(self, from, out, to, in, true);
+          },
+          py::arg("from_node"), py::arg("out"), py::arg("to_node"), py::arg("in_"), "Adds a route; one that exists stays one.")
+      .def(
+          "delete_route",
+          [](const WorldPtr& self, const NodeObject& from, const std::string& out, const NodeObject& to, const std::string& in) {
+            return route(self, from, out, to, in, false);
+          },
+          py::arg("from_node"), py::arg("out"), py::arg("to_node"), py::arg("in_"), "False if there was no such route.")
       .def("to_vrml", toVrml, "The world as VRML97 text.")
-      .def("write", writeTo, py::arg("path"), "Writes the world as a VRML97 file.")
-      .def("__repr__", [](const WorldPtr& self) { return toText("<World " + self->graph().path + ">"); })
-      .def("render", render, py::arg("size") = py::make_tuple(800, 600), py::arg("spp") = 16, py::arg("viewpoint") = py::none(),
-           py::arg("camera") = py::none(), py::arg("fit") = false, py::arg("fov") = py::none(), py::arg("seed") = 0,
-           py::arg("threads") = 0, py::arg("shadows") = true, py::arg("colour") = "linear", py::arg("headlight") = "auto",
-           py::arg("depth") = 25, py::arg("channels") = py::make_tuple("rgba"), py::arg("transport") = "auto",
-           py::arg("error") = 0.0, py::arg("time_limit") = 0.0, py::arg("clamp") = 0.0, py::arg("cluster") = py::none(),
-           "Renders the world as it is now: the scene is made anew for each picture, a Browser's is kept from one to the next. "
-           "Options as "
-           "those of the program vv.");
+      .def("save", save, py::arg("path"), "Writes the world as a VRML97 file.")
+      .def("__repr__", [](const WorldPtr& self) { return toText("<World " + self->graph().path + ">"); });
+  defineRender(world);
 }

@@ -1,18 +1,21 @@
 """Heights of a sea, and a buoy that floats on it: the program of a Script (waves.wrl)."""
 from math import atan, cos, sin
+from typing import Any
+
+script: Any  # the Script node: set before the program begins
 
 WAVES = ((0.9, 0.4, 1.3, 1.0), (-0.7, 1.1, 1.7, 0.5), (2.1, -0.6, 2.3, 0.2))  # along x and z, in time, height
 
 
-def level(x, z, time):
-    return script.height * sum(h * sin(kx * x + kz * z + w * time) for kx, kz, w, h in WAVES)
+def level(x: float, z: float, time: float) -> float:
+    return float(script.height) * sum(h * sin(kx * x + kz * z + w * time) for kx, kz, w, h in WAVES)
 
 
-def slope(x, z, time):
-    return script.height * sum(h * kx * cos(kx * x + kz * z + w * time) for kx, kz, w, h in WAVES)
+def slope(x: float, z: float, time: float) -> float:
+    return float(script.height) * sum(h * kx * cos(kx * x + kz * z + w * time) for kx, kz, w, h in WAVES)
 
 
-def set_time(time):
+def set_time(time: float) -> None:
     sea, step = script.sea, script.sea.xSpacing
     columns = [step * i - 5 for i in range(sea.xDimension)]
     rows = [sea.zSpacing * i - 5 for i in range(sea.zDimension)]

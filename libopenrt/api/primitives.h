@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "api/errors.h"
+#include "degenerate.h"
 #include "edits_generated.h"
 
 namespace openrt {
@@ -36,15 +37,6 @@ inline size_t indexCount(RTenum mode, size_t count) {
   case RT_QUAD_STRIP: return count < 4 ? 0 : (count / 2 - 1) * 6;
   default: return count < 3 ? 0 : 3 * (count - 2); // strips, fans, polygons
   }
-}
-
-// No area: two corners in one place, or the cross product of the edges is not above its own rounding error in double.
-inline bool degenerateTriangle(const float* a, const float* b, const float* c) {
-  const double ux = double(b[0]) - a[0], uy = double(b[1]) - a[1], uz = double(b[2]) - a[2];
-  const double vx = double(c[0]) - a[0], vy = double(c[1]) - a[1], vz = double(c[2]) - a[2];
-  constexpr double bound = 4 * 0x1p-53;
-  const auto vanishes = [](double p, double q) { return std::fabs(p - q) <= bound * (std::fabs(p) + std::fabs(q)); };
-  return vanishes(uy * vz, uz * vy) && vanishes(uz * vx, ux * vz) && vanishes(ux * vy, uy * vx);
 }
 
 inline bool samePoint(const float* a, const float* b) { return a[0] == b[0] && a[1] == b[1] && a[2] == b[2]; }

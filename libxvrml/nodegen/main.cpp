@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <system_error>
 
 #include <CLI/CLI.hpp>
@@ -47,8 +48,15 @@ void describe(CLI::App& app, Options& options) {
   app.footer("Exit codes: 0 done, 2 wrong use, 3 a file cannot be read, 4 a specification is wrong, 5 a file cannot be written.");
 }
 
-// A half-written file would be compiled: it is written beside its place and moved there.
+bool holds(const std::filesystem::path& path, const std::string& text) {
+  std::ifstream stream(path, std::ios::binary);
+  return stream && std::string(std::istreambuf_iterator<char>(stream), {}) == text;
+}
+
+// A half-written file would be compiled: it is written beside its place and moved there. One that would be the same is left
+// alone: nothing is compiled anew.
 bool writeFile(const std::filesystem::path& path, const std::string& text) {
+  if (holds(path, text)) return true;
   std::error_code error;
   if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path(), error);
   const std::filesystem::path part = path.string() + ".part";

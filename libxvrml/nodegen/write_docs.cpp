@@ -38,9 +38,9 @@ std::string referenceOf(const TypeSpec& type) {
 
 // What the binding returns when a field is read and what it takes: any array of the shape, list of rows and so on.
 constexpr std::string_view stubPrologue =
-    R"("""Node classes of xvrml, for type checkers and editors only: there is no such module at run time.
+    R"("""Node classes of xvrml. Written by nodegen from the .node files.
 
-Written by nodegen from the .node files. Import it under typing.TYPE_CHECKING and cast nodes to these classes.
+A node of a world is of the class of its type: isinstance(node, xvrml.Shape) tells a type checker which fields it has.
 """
 from typing import Any, Generic, Optional, Sequence, Tuple, TypeVar
 
@@ -96,13 +96,34 @@ std::string docString(std::string_view text) {
   return result;
 }
 
-std::string stubOf(const TypeSpec& type) {
-  std::string text = fmt::format("\nclass {}(Node):\n    \"\"\"{}\"\"\"\n", type.name, docString(type.text));
-  for (const FieldSpec& field : type.fields) {
-    if (!field.hasStorage()) continue;
-    text += fmt::format("    {}{}: {}  # {}\n", isPythonKeyword(field.name) ? "# " : "", field.name, fieldTypeName(field.type),
-                        field.text);
+// What a constructor's keyword takes.
+std::string_view written(FieldType type) {
+  switch (type) {
+  case FieldType::SFBool: return "bool";
+  case FieldType::SFFloat:
+  case FieldType::SFTime: return "float";
+  case FieldType::SFInt32: return "int";
+  case FieldType::SFNode: return "Optional[Node]";
+  case FieldType::SFString: return "str";
+  case FieldType::MFNode: return "Sequence[Node]";
+  case FieldType::MFString: return "Sequence[str]";
+  default: return "npt.ArrayLike";
   }
+}
+
+// Fields, then events, which have values in a running world.
+std::string stubOf(const TypeSpec& type) {
+  std::string text = fmt::format("\nclass {}(Node):\n    \"\"\"{}\"\"\"\n", type.name, docString(type.text)), keywords;
+  for (const bool events : {false, true})
+    for (const FieldSpec& field : type.fields) {
+      if (field.hasStorage() == events) continue;
+      const bool keyword = isPythonKeyword(field.name);
+      text += fmt::format("    {}{}: {}  # {}{}\n", keyword ? "# " : "", field.name, fieldTypeName(field.type),
+                          events ? fmt::format("{}: ", accessName(field.access)) : "", field.text);
+      if (!events && !keyword) keywords += fmt::format(", {}: {} = ...", field.name, written(field.type));
+    }
+  if (type.name != "Script") // from files alone
+    text += fmt::format("    def __init__(self{}{}) -> None: ...\n", keywords.empty() ? "" : ", *", keywords);
   return text;
 }
 
@@ -125,6 +146,11 @@ std::string writeReference(const Model& model) {
 
 std::string writeStub(const Model& model) {
   std::string text(stubPrologue);
+  text += "\n__all__ = [\n";
+  for (const Component& component : model.components)
+    for (const TypeSpec& type : component.types)
+      if (!component.imported && !type.isAbstract) text += fmt::format("    \"{}\",\n", type.name);
+  text += "]\n";
   for (const Component& component : model.components) {
     if (component.imported) continue;
     for (const TypeSpec& type : component.types)

@@ -11,6 +11,7 @@ import sys
 # Part of the project -> the parts whose headers it may include (itself always). A file belongs to the longest prefix.
 PARTS = {
     "libopenrt/include/openrt/openrt.h": "api-h",
+    "libopenrt/include/openrt/queries.h": "api-h",
     "libopenrt/include/openrt/": "shader-sdk",
     "libopenrt/api/": "openrt-api",
     "libopenrt/scene/": "openrt-scene",
@@ -85,7 +86,7 @@ ARROWS = {
     "picture": PUBLIC - {"shader-sdk", "script-sdk"},
     "app": PUBLIC - {"script-sdk"} | {"picture", "window", "common"},  # vv --list-shaders reads the tables of plug-ins
     "window": PUBLIC - {"shader-sdk", "script-sdk"} | {"app", "picture", "common"},
-    "binding": PUBLIC - {"shader-sdk", "script-sdk"} | {"picture"},
+    "binding": PUBLIC - {"shader-sdk", "script-sdk"} | {"picture", "common"},
     "example": PUBLIC,
     "common": set(),
     "test": set(PARTS.values()),

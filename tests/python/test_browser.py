@@ -94,14 +94,13 @@ def test_an_exception_of_a_callback_is_raised_by_the_call(browser):
     browser.tick(1)
 
 
-def test_a_callback_may_change_the_world_but_not_render_or_move_time(browser):
+def test_a_callback_may_change_the_world_and_render(browser):
     told = []
 
     def react(value, now):
         browser["Paint"].transparency = 0.5
         told.append(browser["Clock"].fraction_changed)
-        with pytest.raises(xvrml.RenderError, match="callback"):
-            browser.render(**SMALL)
+        browser.render(**SMALL)
 
     browser.listen(browser["Place"], "translation", react)
     browser.tick(0.5)
@@ -125,7 +124,7 @@ def test_routes(browser):
 
 def test_nodes_of_another_world_are_refused(browser):
     other = xvrml.Browser(MOVING)
-    with pytest.raises(ValueError, match="this browser"):
+    with pytest.raises(ValueError, match="this world"):
         browser.add_route(other["Clock"], "fraction_changed", browser["Paint"], "transparency")
     with pytest.raises(ValueError):
         browser["Place"].children = [other["Place"]]

@@ -53,7 +53,7 @@ def test_a_script_sees_the_same_nodes():
     seen = sys.modules["builtins"].seen_by_script
     assert messages(b) == []
     assert b["T"].translation == (1, 2, 3)  # of initialize(), within the making of the browser
-    assert seen[0] == b["T"] and hash(seen[0]) == hash(b["T"]) and type(seen[0]) is xvrml.Node
+    assert seen[0] == b["T"] and hash(seen[0]) == hash(b["T"]) and type(seen[0]) is xvrml.Transform
     b.tick(7)
     b["S"].node = b["T"]
     assert messages(b) == []

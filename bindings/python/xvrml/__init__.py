@@ -3,23 +3,37 @@
 >>> import xvrml
 >>> world = xvrml.load("world.wrl")
 >>> world["Door"].translation = (0, 0, 2)
->>> picture = world.render(size=(640, 480), spp=16)
->>> picture.save("door.png")
+>>> world.add(xvrml.Shape(geometry=xvrml.Box(size=(1, 2, 3))), name="Crate")
+>>> image = world.render(size=(640, 480), error=0.02)
+>>> image.save("door.png")
 
-A Browser is a world that runs; time is an argument:
+A world has a clock of its own, which moves when it is told to:
 
->>> browser = xvrml.Browser("world.wrl")
->>> browser.listen(browser["Door"], "translation_changed", print)
->>> browser.tick(0.5)
->>> browser.render().save("later.png")
+>>> @world.on("Door.translation_changed")
+... def moved(value, time): print(value)
+>>> world.time = 0.5
+>>> for frame in world.animate(0, 10, fps=25): ...
+
+xvrml.rt is the renderer without VRML, xvrml.interop goes between other packages' meshes and pictures and ours.
 """
 import warnings as _warnings
 
-from ._xvrml import (Browser, Cluster, ClusterError, Diagnostic, Node, ParseError, Picture, RenderError, Viewpoint, Worker, World, load,
-                     load_node_plugins, __version__)
+from . import _world
+from ._xvrml import (Browser, Cluster, ClusterError, Diagnostic, Mesh, Node, ParseError, Picture, RenderError, ViewpointInfo, Worker,
+                     World, load, load_node_plugins, __version__)
 
-__all__ = ["Browser", "Cluster", "ClusterError", "Diagnostic", "Node", "ParseError", "Picture", "RenderError", "Viewpoint", "Worker", "World", "load",
-           "load_node_plugins", "__version__"]
+_world.complete(World, Node)
 
 for _line in load_node_plugins():
     _warnings.warn(_line, RuntimeWarning)
+
+from . import nodes as nodes  # noqa: E402  after the plug-ins: a class for each of their nodes, too
+from .nodes import *  # noqa: E402,F401,F403
+
+__all__ = ["Browser", "Cluster", "ClusterError", "Diagnostic", "Mesh", "Node", "ParseError", "Picture", "RenderError", "ViewpointInfo",
+           "Worker", "World", "load", "load_node_plugins", "__version__", *nodes.__all__]
+
+
+def __getattr__(name):
+    """Nodes of plug-ins that were loaded later."""
+    return getattr(nodes, name)

@@ -6,6 +6,7 @@
 
 #include "backend/backend.h"
 #include "backend/debug/rules.h"
+#include "backend/surface_queries.h"
 #include "shading/registry.h"
 
 namespace openrt {
@@ -13,7 +14,7 @@ namespace {
 
 using namespace debug;
 
-class DebugBackend final : public Backend {
+class DebugBackend final : public Backend, public ForwardedQueries {
  public:
   DebugBackend(const BackendOptions& options, std::unique_ptr<Backend> renderer)
       : options_(options), renderer_(std::move(renderer)) {}
@@ -84,6 +85,8 @@ class DebugBackend final : public Backend {
   }
 
   BackendOptions options_;
+  SurfaceQueries* target() const override { return dynamic_cast<SurfaceQueries*>(renderer_.get()); }
+
   std::unique_ptr<Backend> renderer_;
   Scene scene_;
   std::map<uint32_t, History> histories_;

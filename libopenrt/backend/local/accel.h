@@ -8,6 +8,7 @@
 
 #include <atomic>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "backend/local/body.h"
@@ -28,6 +29,22 @@ class Accel final : public Intersector {
   void occluded(const Rays& rays, uint32_t mask, Coherence coherence, uint8_t* blocked) const override;
   void intersectOthers(const Rays& rays, const uint32_t* record, RayHits& hits) const override;
   void bounds(float low[3], float high[3]) const override;
+
+  // A surface that a ray passes.
+  struct Passed {
+    uint32_t ray, record, primitive;
+    float t, u, v, ng[3];
+  };
+  // All that the rays pass, by ray and distance. [any thread]
+  void passed(const Rays& rays, std::vector<Passed>& out) const;
+  // The surface point next to a place of render space, not farther than `distance`; false if there is none. [any thread]
+  struct Nearest {
+    uint32_t record = noHit, primitive = 0;
+    double distance = 0, point[3] = {}, normal[3] = {}, u = 0, v = 0; // normal: outwards, unit
+  };
+  // round: spheres().
+  bool nearest(const double place[3], double distance, std::span<const uint32_t> round, Nearest& out) const;
+  std::vector<uint32_t> spheres() const; // records of those in sight
 
  private:
   friend class AccelBuilder;
@@ -51,8 +68,14 @@ class Accel final : public Intersector {
     const Accel* accel;
     const Level* level;
     const uint32_t* record = nullptr; // by lane: the one that does not count
+    std::vector<Passed>* all = nullptr;
   };
-  void intersectFiltered(const Rays& rays, uint32_t mask, RTCFilterFunctionN filter, const uint32_t* record, RayHits& hits) const;
+  void intersectFiltered(const Rays& rays, uint32_t mask, RTCFilterFunctionN filter, const uint32_t* record, RayHits& hits,
+                         std::vector<Passed>* all = nullptr) const;
+  static void collect(const RTCFilterFunctionNArguments* a);
+  struct PointSearch;
+  bool measure(const Found& found, const Vec3d& p, Nearest& best) const;
+  static bool visitNear(RTCPointQueryFunctionArguments* a);
   static Found foundBy(const RTCFilterFunctionNArguments* a, unsigned i);
   static void rejectBacks(const RTCFilterFunctionNArguments* a);
   static void rejectRecord(const RTCFilterFunctionNArguments* a);

@@ -177,11 +177,11 @@ void Accel::intersect(const Rays& rays, uint32_t mask, Coherence coherence, RayH
 }
 
 void Accel::intersectFiltered(const Rays& rays, uint32_t mask, RTCFilterFunctionN filter, const uint32_t* record,
-                              RayHits& hits) const {
+                              RayHits& hits, std::vector<Passed>* all) const {
   bool first = true;
   for (const Level* level : {&staticLevel_, &topLevel_}) {
     if (level == &topLevel_ && !(level->masks & mask)) continue;
-    const Filtered filtered{this, level, record};
+    const Filtered filtered{this, level, record, all};
     intersectPackets<Packet8>(*level, rays, mask, {false, filter, &filtered}, first, hits);
     first = false;
   }

@@ -1,15 +1,17 @@
 // local.h: the backend that renders in this process: applies commits to its scene, builds what they changed, renders frames.
 #pragma once
 
+#include <functional>
 #include <memory>
 
 #include "backend/backend.h"
 #include "backend/local/accel_build.h"
+#include "backend/surface_queries.h"
 #include "render/renderer.h"
 
 namespace openrt {
 
-class LocalBackend final : public Backend {
+class LocalBackend final : public Backend, public SurfaceQueries {
  public:
   explicit LocalBackend(const BackendOptions& options);
   ~LocalBackend() override;
@@ -23,6 +25,9 @@ class LocalBackend final : public Backend {
   void stats(RTstats& stats) const override;
   void castRays(std::span<const RTray> rays, std::span<RThit> hits) override;
   void occludedRays(std::span<const RTray> rays, std::span<uint8_t> occluded) override;
+  void countHits(std::span<const RTray> rays, std::span<uint32_t> counts) override;
+  void listHits(std::span<const RTray> rays, std::span<const size_t> first, std::span<RThit> hits) override;
+  void closestPoints(std::span<const float> points, float radius, std::span<RTclosest> closest) override;
   bool pick(double x, double y, RThit& hit) override;
 
   // The committed scene as threads render it, made if anything changed; it stays as it is until the next apply().
@@ -38,6 +43,7 @@ class LocalBackend final : public Backend {
   Vec3d eye() const;
   bool cameraRay(double x, double y, float origin[3], float direction[3]) const; // of the snapshot
   RThit hitOf(const RayHits& found, uint32_t i) const;
+  void forPassed(std::span<const RTray> rays, const std::function<void(size_t ray, std::span<const Accel::Passed>)>& take);
   void loadRays(std::span<const RTray> rays, size_t first, Rays& to) const;
 
   BackendOptions options_;
@@ -51,9 +57,9 @@ class LocalBackend final : public Backend {
   Flattened flat_;
   PixelFootprint footprint_;
   bool scopedLights_ = false, samePlaces_ = false; // samePlaces_: of the records, as in the last snapshot
-  std::string transportReason_; // of the snapshot
+  std::string transportReason_;                    // of the snapshot
   uint32_t unreachedLights_ = 0;
-  mutable std::mutex mutex_;                       // frame_ as seen by cancel(), progress() and snapshot()
+  mutable std::mutex mutex_; // frame_ as seen by cancel(), progress() and snapshot()
   std::shared_ptr<Frame> frame_, finished_;
   double commitSeconds_ = 0, buildSeconds_ = 0;
 };

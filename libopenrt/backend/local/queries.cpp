@@ -15,8 +15,7 @@ namespace {
 constexpr size_t block = 4096;
 
 // Outward unit normal in the world: the kernel's, brought out of the instance and turned to the front.
-void worldNormal(const Record& r, const RayHits& hits, uint32_t i, float out[3]) {
-  const float k[3] = {hits.ng[0][i], hits.ng[1][i], hits.ng[2][i]};
+void worldNormal(const Record& r, const float k[3], float out[3]) {
   double n[3] = {k[0], k[1], k[2]};
   if (r.instanced)
     for (int j = 0; j < 3; j++)
@@ -68,9 +67,67 @@ RThit LocalBackend::hitOf(const RayHits& found, uint32_t i) const {
   if (found.record[i] == noHit) return hit;
   const Record& r = accel_->records[found.record[i]];
   hit.t = found.t[i], hit.u = found.u[i], hit.v = found.v[i];
-  worldNormal(r, found, i, hit.normal);
+  const float ng[3] = {found.ng[0][i], found.ng[1][i], found.ng[2][i]};
+  worldNormal(r, ng, hit.normal);
   hit.instance = r.instance, hit.name = r.name, hit.primitive = found.primitive[i], hit.userData = r.userData;
   return hit;
+}
+
+void LocalBackend::forPassed(std::span<const RTray> rays,
+                             const std::function<void(size_t ray, std::span<const Accel::Passed>)>& take) {
+  prepare();
+  parallelBlocks(threads_, rays.size(), [&](size_t first, size_t n) {
+    Arena arena;
+    Rays batch;
+    batch.allocate(arena, uint32_t(n));
+    loadRays(rays, first, batch);
+    std::vector<Accel::Passed> all;
+    accel_->passed(batch, all);
+    for (size_t i = 0, begin = 0; i < n; i++) {
+      size_t end = begin;
+      while (end < all.size() && all[end].ray == i) end++;
+      take(first + i, {all.data() + begin, end - begin});
+      begin = end;
+    }
+  });
+}
+
+void LocalBackend::countHits(std::span<const RTray> rays, std::span<uint32_t> counts) {
+  forPassed(rays, [&](size_t ray, std::span<const Accel::Passed> passed) { counts[ray] = uint32_t(passed.size()); });
+}
+
+void LocalBackend::listHits(std::span<const RTray> rays, std::span<const size_t> first, std::span<RThit> hits) {
+  forPassed(rays, [&](size_t ray, std::span<const Accel::Passed> passed) {
+    for (size_t i = first[ray]; i < first[ray + 1]; i++) {
+      RThit& hit = hits[i] = {};
+      hit.t = std::numeric_limits<float>::infinity();
+      if (i - first[ray] >= passed.size()) continue;
+      const Accel::Passed& p = passed[i - first[ray]];
+      const Record& r = accel_->records[p.record];
+      hit.t = p.t, hit.u = p.u, hit.v = p.v;
+      worldNormal(r, p.ng, hit.normal);
+      hit.instance = r.instance, hit.name = r.name, hit.primitive = p.primitive, hit.userData = r.userData;
+    }
+  });
+}
+
+void LocalBackend::closestPoints(std::span<const float> points, float radius, std::span<RTclosest> closest) {
+  prepare();
+  const double* origin = snapshot_->origin;
+  const std::vector<uint32_t> round = accel_->spheres();
+  parallelBlocks(threads_, closest.size(), [&](size_t first, size_t n) {
+    for (size_t i = first; i < first + n; i++) {
+      RTclosest& out = closest[i] = {};
+      out.distance = std::numeric_limits<float>::infinity();
+      const double place[3] = {points[3 * i] - origin[0], points[3 * i + 1] - origin[1], points[3 * i + 2] - origin[2]};
+      Accel::Nearest found;
+      if (!accel_->nearest(place, radius, round, found)) continue;
+      const Record& r = accel_->records[found.record];
+      out.distance = float(found.distance), out.u = float(found.u), out.v = float(found.v);
+      for (int k = 0; k < 3; k++) out.point[k] = float(found.point[k] + origin[k]), out.normal[k] = float(found.normal[k]);
+      out.instance = r.instance, out.name = r.name, out.primitive = found.primitive, out.userData = r.userData;
+    }
+  });
 }
 
 // The camera's own ray in render space: what the picture shows, also where the world's coordinates are too large for float.

@@ -15,6 +15,7 @@
 #include "backend/backend.h"
 #include "backend/record/edits_bytes.h"
 #include "backend/record/format.h"
+#include "backend/surface_queries.h"
 
 namespace openrt {
 namespace {
@@ -80,7 +81,7 @@ class RecordingWriter {
 };
 
 // Records; what renders, if anything does, sees everything that it would see alone.
-class RecordBackend final : public Backend {
+class RecordBackend final : public Backend, public ForwardedQueries {
  public:
   RecordBackend(const BackendOptions& options, std::unique_ptr<Backend> renderer)
       : writer_(std::make_unique<RecordingWriter>(options.file)), renderer_(std::move(renderer)) {}
@@ -146,6 +147,8 @@ class RecordBackend final : public Backend {
 
  private:
   std::unique_ptr<RecordingWriter> writer_;
+  SurfaceQueries* target() const override { return dynamic_cast<SurfaceQueries*>(renderer_.get()); }
+
   std::unique_ptr<Backend> renderer_;
   uint32_t channels_ = 0;
   bool camera_ = false;

@@ -1,0 +1,250 @@
+// render.cpp: World.render(): options checked, a picture made without the GIL, Ctrl-C and progress watched. Called with the GIL
+// held.
+#include <cmath>
+
+#include <fmt/format.h>
+#include <pybind11/stl.h>
+
+#include "cluster_object.h"
+#include "picture/transport.h"
+#include "picture_object.h"
+
+using namespace xvrml;
+
+namespace {
+
+int inRange(const char* name, long long value, long long minimum, long long maximum) {
+  if (value < minimum || value > maximum)
+    throw py::value_error(fmt::format("{}: {} to {} expected, not {}", name, minimum, maximum, value));
+  return int(value);
+}
+
+MapOptions::Headlight headlightOf(const py::object& value) {
+  using Headlight = MapOptions::Headlight;
+  if (py::isinstance<py::bool_>(value)) return value.cast<bool>() ? Headlight::on : Headlight::off;
+  const std::string text = py::isinstance<py::str>(value) ? value.cast<std::string>() : "";
+  if (text == "auto") return Headlight::automatic;
+  if (text == "on" || text == "off") return text == "on" ? Headlight::on : Headlight::off;
+  throw py::value_error("headlight: 'auto', 'on', 'off', True or False expected");
+}
+
+uint32_t channelsOf(const py::object& list) {
+  uint32_t bits = RT_RGBA;
+  const bool one = py::isinstance<py::str>(list);
+  for (const py::handle name : one ? py::object(py::make_tuple(list)) : list) {
+    const picture::Channel* channel = py::isinstance<py::str>(name) ? picture::findChannel(fromText(name)) : nullptr;
+    if (!channel) {
+      std::string known;
+      for (const picture::Channel& c : picture::channelTable()) known += (known.empty() ? "" : ", ") + std::string(c.name);
+      throw py::value_error(fmt::format("channels: out of {} expected, not {}", known, std::string(py::str(name))));
+    }
+    bits |= channel->bit;
+  }
+  return bits;
+}
+
+picture::LookAt cameraOf(const py::object& given) {
+  picture::LookAt camera;
+  double matrix[16];
+  try {
+    auto rows = given.cast<std::vector<std::vector<double>>>();
+    if (rows.size() != 2 && rows.size() != 3) throw py::cast_error();
+    double* targets[] = {camera.position, camera.target, camera.up};
+    for (size_t i = 0; i < rows.size(); ++i) {
+      if (rows[i].size() != 3) throw py::cast_error();
+      for (size_t k = 0; k < 3; ++k) {
+        if (!std::isfinite(rows[i][k])) throw py::cast_error();
+        targets[i][k] = rows[i][k];
+      }
+    }
+  } catch (const py::cast_error&) {
+    throw py::value_error("camera: (position, target) or (position, target, up) of 3 numbers each expected");
+  }
+  if (!picture::lookAtMatrix(camera, matrix)) throw py::value_error("camera: position and target are the same point");
+  return camera;
+}
+
+// Index of the viewpoint asked for by name or number.
+size_t viewpointIndex(const std::vector<ViewpointInfo>& list, const py::object& wanted) {
+  if (py::isinstance<py::int_>(wanted) && !py::isinstance<py::bool_>(wanted)) {
+    long long index = wanted.cast<long long>();
+    if (index < 0) index += static_cast<long long>(list.size());
+    if (index < 0 || index >= static_cast<long long>(list.size()))
+      throw py::index_error(fmt::format("viewpoint: the world has {}", list.size()));
+    return size_t(index);
+  }
+  if (!py::isinstance<py::str>(wanted)) throw py::type_error("viewpoint: a name, a number or None expected");
+  const std::string name = fromText(wanted);
+  const int index = picture::findViewpoint(list, name);
+  if (index >= 0) return size_t(index);
+  std::vector<std::string> known;
+  for (const ViewpointInfo& v : list) known.push_back(v.name.empty() ? v.description : v.name);
+  throw py::key_error(fmt::format("viewpoint: the world has no {}{}", name, didYouMean(name, known)));
+}
+
+py::dict statsOf(const World& world, const picture::RenderResult& result) {
+  const RTstats& s = result.stats;
+  py::dict stats;
+  stats["nodes"] = world.nodeCount;
+  stats["shapes"] = result.map.shapes;
+  stats["triangles"] = s.triangles;
+  stats["unique_triangles"] = s.uniqueTriangles;
+  stats["objects"] = s.objects;
+  stats["instances"] = s.instances;
+  stats["lights"] = s.lights;
+  stats["textures"] = s.textures;
+  stats["camera_rays"] = s.cameraRays;
+  stats["shadow_rays"] = s.shadowRays;
+  stats["secondary_rays"] = s.secondaryRays;
+  stats["parse_seconds"] = world.times.parse;
+  stats["map_seconds"] = result.mapSeconds;
+  stats["build_seconds"] = s.commitSeconds + s.buildSeconds;
+  stats["render_seconds"] = result.renderSeconds;
+  stats["threads"] = s.threads;
+  stats["transport"] = picture::transportName(s.transport);
+  stats["transport_reason"] = s.transportReason;
+  if (s.errorPixels > 0) {
+    stats["error_mean"] = s.errorMean;
+    stats["error_mean_interval"] = s.errorMeanInterval;
+    stats["error_half_width"] = s.errorHalfWidth;
+    stats["error_p99"] = s.errorP99;
+    stats["error_trusted"] = double(s.errorTrusted) / double(s.errorPixels);
+    stats["error_method"] = s.errorMethod;
+  }
+  return stats;
+}
+
+py::object render(const WorldPtr& self, const py::object& size, std::optional<long long> spp, const py::object& viewpoint,
+                  const py::object& camera, bool fit, std::optional<double> fov, long long seed, long long threads, bool shadows,
+                  const std::string& colour, const py::object& headlight, long long depth, const py::object& channels,
+                  const std::string& transport, double error, double timeLimit, double clamp, const py::object& cluster,
+                  const py::object& progress) {
+  picture::RenderSettings settings;
+  const auto sides = size.cast<std::vector<long long>>();
+  if (sides.size() != 2) throw py::value_error("size: (width, height) expected");
+  settings.width = inRange("size", sides[0], 1, 65536);
+  settings.height = inRange("size", sides[1], 1, 65536);
+  if (int64_t(settings.width) * settings.height > (int64_t(1) << 28)) throw py::value_error("size: at most 2^28 pixels expected");
+  settings.seed = inRange("seed", seed, 0, 2147483647);
+  settings.threads = inRange("threads", threads, 0, 1024);
+  settings.depth = inRange("depth", depth, 0, 10000);
+  settings.shadows = shadows;
+  if (colour != "linear" && colour != "vrml97")
+    throw py::value_error("colour: 'linear' or 'vrml97' expected, not '" + colour + "'");
+  settings.linear = colour == "linear";
+  settings.headlight = headlightOf(headlight);
+  const std::optional<int> following = picture::transportNamed(transport);
+  if (!following) throw py::value_error(fmt::format("transport: {} expected, not '{}'", picture::transportNames, transport));
+  settings.transport = *following;
+  const auto limited = [](const char* name, double value, double maximum) {
+    if (value >= 0 && value <= maximum) return value;
+    throw py::value_error(fmt::format("{}: a number from 0 to {} expected", name, maximum));
+  };
+  settings.error = limited("error", error, 1);
+  settings.timeLimit = limited("time_limit", timeLimit, 1e6);
+  settings.clamp = limited("clamp", clamp, 1e30);
+  const long long most = settings.timeLimit > 0 ? 65536 : settings.error > 0 ? 4096 : settings.samples;
+  settings.samples = inRange("spp", spp.value_or(most), 1, 65536);
+  settings.channels =
+      channels.is_none() ? uint32_t(RT_RGBA | RT_DEPTH | (settings.error > 0 ? RT_ERROR | RT_TRUST : 0)) : channelsOf(channels);
+
+  picture::View view;
+  if (!viewpoint.is_none() + !camera.is_none() + fit > 1)
+    throw py::value_error("only one of viewpoint, camera and fit can be used");
+  if (fov && !(*fov > 0 && *fov < 180)) throw py::value_error("fov: an angle between 0 and 180 degrees expected");
+  if (!camera.is_none()) view.lookAt = cameraOf(camera);
+  view.fit = fit;
+  view.fov = fov;
+
+  settings.cluster = clusterFor(cluster, self); // before the lock: it may wait for another world
+  picture::RenderResult result;
+  const auto lock = self->lockDrawing();
+  if (self->drawingNow) throw picture::RenderError("a picture is being made: its progress cannot make another");
+  struct Drawing { // from here on changes of this thread are refused, those of others wait
+    WorldObject& world;
+    explicit Drawing(WorldObject& w) : world(w) { world.drawingNow = true; }
+    ~Drawing() { world.drawingNow = false; }
+  };
+  const py::object bar = progress.ptr() == Py_True    ? py::module_::import("xvrml._progress").attr("Bar")()
+                         : progress.ptr() == Py_False ? py::object(py::none())
+                                                      : progress;
+  const auto pictureOf = [&] {
+    auto made = std::make_unique<PictureObject>();
+    made->stats = statsOf(self->graph(), result);
+    made->time = self->browser() ? self->browser()->now() : 0;
+    made->picture = std::move(result.picture);
+    return py::cast(std::move(made));
+  };
+  std::shared_ptr<picture::Renderer> renderer;
+  try {
+    const Drawing drawing(*self);
+    interruptible([&](picture::Watch watch) {
+      renderer = self->renderer(settings, std::move(watch));
+      renderer->setWatch({}); // what it refers to ends here
+    });
+    if (!viewpoint.is_none()) view.viewpoint = viewpointIndex(renderer->viewpoints(), viewpoint);
+    interruptible(
+        [&](picture::Watch watch) {
+          renderer->setWatch(std::move(watch));
+          try {
+            result = renderer->render(view);
+          } catch (...) {
+            renderer->setWatch({});
+            throw;
+          }
+          renderer->setWatch({});
+          renderer.reset();
+        },
+        bar);
+  } catch (py::error_already_set& stopped) {
+    if (py::hasattr(bar, "close")) bar.attr("close")();
+    if (!result.picture.planes.empty()) stopped.value().attr("image") = pictureOf(); // as far as it was finished
+    throw;
+  }
+  if (py::hasattr(bar, "close")) bar.attr("close")();
+  return pictureOf();
+}
+
+} // namespace
+
+void interruptible(const std::function<void(picture::Watch watch)>& work, const py::object& progress) {
+  bool stopped = false, signalled = false;
+  std::exception_ptr failure;
+  {
+    py::gil_scoped_release release;
+    try {
+      work([&](float done) {
+        if (stopped) return true;
+        py::gil_scoped_acquire acquire;
+        stopped = signalled = PyErr_CheckSignals() != 0;
+        if (stopped || progress.is_none()) return stopped;
+        try {
+          progress(done);
+        } catch (...) {
+          failure = std::current_exception();
+          stopped = true;
+        }
+        return stopped;
+      });
+    } catch (...) {
+      if (!failure) failure = std::current_exception();
+    }
+  }
+  if (signalled) throw py::error_already_set();
+  if (failure) std::rethrow_exception(failure);
+}
+
+void defineRender(py::object worldClass) {
+  auto world = py::reinterpret_borrow<py::class_<WorldObject, WorldPtr>>(worldClass);
+  world.def(
+      "render", render, py::arg("size") = py::make_tuple(800, 600), py::arg("spp") = py::none(),
+      py::arg("viewpoint") = py::none(), py::arg("camera") = py::none(), py::arg("fit") = false, py::arg("fov") = py::none(),
+      py::arg("seed") = 0, py::arg("threads") = 0, py::arg("shadows") = true, py::arg("colour") = "linear",
+      py::arg("headlight") = "auto", py::arg("depth") = 25, py::arg("channels") = py::none(), py::arg("transport") = "auto",
+      py::arg("error") = 0.0, py::arg("time_limit") = 0.0, py::arg("clamp") = 0.0, py::arg("cluster") = py::none(),
+      py::arg("progress") = py::none(),
+      "Renders the world as it is now; of one that runs, the scene is kept from one picture to the next. Options as those of "
+      "the program vv. spp: samples a pixel, 16; with an error at most so many, 4096; with a time limit 65536. channels: "
+      "rgba and z, and with an error also error and trust. progress: True for a bar, or a function that is called with the "
+      "fraction done. Ctrl-C raises KeyboardInterrupt; its attribute image is what was finished.");
+}

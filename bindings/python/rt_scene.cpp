@@ -1,0 +1,435 @@
+// rt_scene.cpp: what is in a context of xvrml.rt: meshes from arrays, instances, shaders and their parameters, lights, camera,
+// textures. Called with the GIL held; what takes long releases it.
+#include <fmt/format.h>
+#include <pybind11/stl.h>
+
+#include "degenerate.h"
+#include "objects.h"
+#include "rt_objects.h"
+
+namespace {
+
+template <class T> using Dense = py::array_t<T, py::array::c_style | py::array::forcecast>;
+
+template <class T> Dense<T> rows(const py::object& given, const char* name, py::ssize_t width, py::ssize_t count = -1) {
+  Dense<T> array(given);
+  if (array.ndim() != 2 || array.shape(1) != width || (count >= 0 && array.shape(0) != count))
+    throw py::value_error(
+        fmt::format("{}: numbers of shape ({}, {}) expected", name, count < 0 ? "n" : std::to_string(count), width));
+  return array;
+}
+
+const RtShader* shaderOf(const RtContextPtr& context, const py::object& shader) {
+  if (shader.is_none()) return nullptr;
+  const auto& found = shader.cast<const RtShader&>();
+  if (found.context != context) throw py::value_error("shader: of another context");
+  return &found;
+}
+
+struct Opened { // an object's definition
+  RTid id = rtBeginObject(0);
+  ~Opened() {
+    rtVertexPointer(3, RT_FLOAT, 0, nullptr);
+    rtNormalPointer(RT_FLOAT, 0, nullptr);
+    rtTexCoordPointer(2, RT_FLOAT, 0, nullptr);
+    rtColorPointer(3, RT_FLOAT, 0, nullptr);
+    rtBindShader(0);
+    rtEndObject();
+  }
+};
+
+RtObject mesh(const RtContextPtr& self, const py::object& vertices, const py::object& faces, const py::object& normals,
+              const py::object& texcoords, const py::object& colors, const py::object& shader, uint32_t name, bool cull) {
+  const bool wide = py::isinstance<py::array_t<double>>(vertices);
+  Dense<double> precise;
+  Dense<float> single;
+  if (wide)
+    precise = rows<double>(vertices, "vertices", 3);
+  else
+    single = rows<float>(vertices, "vertices", 3);
+  const py::ssize_t count = wide ? precise.shape(0) : single.shape(0);
+  Dense<uint32_t> corners;
+  if (!faces.is_none()) {
+    const auto given = rows<int64_t>(faces, "faces", 3);
+    corners = Dense<uint32_t>(given.size());
+    for (py::ssize_t i = 0; i < given.size(); ++i) {
+      const int64_t v = given.data()[i];
+      if (v < 0 || v >= count) throw py::value_error(fmt::format("faces: {} is no vertex: there are {}", v, count));
+      corners.mutable_data()[i] = uint32_t(v);
+    }
+  }
+  Dense<float> n, t, c;
+  if (!normals.is_none()) n = rows<float>(normals, "normals", 3, count);
+  if (!texcoords.is_none()) t = rows<float>(texcoords, "texcoords", 2, count);
+  if (!colors.is_none()) c = rows<float>(colors, "colors", 3, count);
+  const RtShader* surface = shaderOf(self, shader);
+  const RtUse use(self);
+  RtObject made;
+  {
+    py::gil_scoped_release release;
+    const Opened opened;
+    made = {{self, opened.id}};
+    if (surface) rtBindShader(surface->id);
+    rtLoadName(name);
+    (cull ? rtEnable : rtDisable)(RT_CULL_FACE);
+    rtVertexPointer(3, wide ? RT_DOUBLE : RT_FLOAT, 0, wide ? static_cast<const void*>(precise.data()) : single.data());
+    if (n.size()) rtNormalPointer(RT_FLOAT, 0, n.data());
+    if (t.size()) rtTexCoordPointer(2, RT_FLOAT, 0, t.data());
+    if (c.size()) rtColorPointer(3, RT_FLOAT, 0, c.data());
+    if (!faces.is_none())
+      rtDrawElements(RT_TRIANGLES, size_t(corners.size()), corners.data(), size_t(count));
+    else
+      rtDrawArrays(RT_TRIANGLES, 0, size_t(count));
+    rtDisable(RT_CULL_FACE);
+    rtLoadName(0);
+  }
+  use.check();
+  return made;
+}
+
+// Numbers of the triangles that a mesh of these arrays keeps, or None if that are all.
+py::object keptTriangles(const py::object& vertices, const py::object& faces) {
+  const auto points = rows<float>(vertices, "vertices", 3);
+  const auto corners = rows<uint32_t>(faces, "faces", 3);
+  std::vector<uint32_t> kept;
+  const auto total = size_t(corners.shape(0));
+  for (size_t i = 0; i < total; ++i) {
+    const uint32_t* at = corners.data() + 3 * i;
+    for (int k = 0; k < 3; ++k)
+      if (py::ssize_t(at[k]) >= points.shape(0)) throw py::value_error("faces: a vertex that is not there");
+    const float* p = points.data();
+    if (!openrt::degenerateTriangle(p + 3 * size_t(at[0]), p + 3 * size_t(at[1]), p + 3 * size_t(at[2])))
+      kept.push_back(uint32_t(i));
+  }
+  if (kept.size() == total) return py::none();
+  return py::array_t<uint32_t>(py::ssize_t(kept.size()), kept.data());
+}
+
+RtObject sphere(const RtContextPtr& self, float radius, const py::object& shader, uint32_t name) {
+  const RtShader* surface = shaderOf(self, shader);
+  const RtUse use(self);
+  RtObject made;
+  {
+    const Opened opened;
+    made = {{self, opened.id}};
+    if (surface) rtBindShader(surface->id);
+    rtLoadName(name);
+    rtSphere(radius);
+    rtLoadName(0);
+  }
+  use.check();
+  return made;
+}
+
+RtObject group(const RtContextPtr& self, const py::iterable& parts) {
+  std::vector<std::pair<RTid, std::array<double, 16>>> all;
+  for (const py::handle part : parts) {
+    const auto pair = part.cast<std::pair<py::object, py::object>>();
+    const auto& object = pair.first.cast<const RtObject&>();
+    if (object.context != self) throw py::value_error("group: an object of another context");
+    all.emplace_back(object.id, rtMatrix(pair.second));
+  }
+  const RtUse use(self);
+  RtObject made;
+  {
+    const Opened opened;
+    made = {{self, opened.id}};
+    for (const auto& [object, matrix] : all) {
+      rtLoadMatrixd(matrix.data());
+      rtInstantiateObject(object);
+    }
+  }
+  use.check();
+  return made;
+}
+
+RtInstance instance(const RtContextPtr& self, const RtObject& object, const py::object& matrix, const py::object& shader,
+                    uint32_t name, uint64_t userData, bool dynamic) {
+  if (object.context != self) throw py::value_error("instance: an object of another context");
+  const RtShader* surface = shaderOf(self, shader);
+  const auto m = rtMatrix(matrix);
+  const RtUse use(self);
+  rtPushMatrix();
+  rtLoadMatrixd(m.data());
+  rtLoadName(name);
+  RtInstance made{{self, rtInstantiateObject(object.id)}};
+  rtLoadName(0);
+  rtPopMatrix();
+  if (made.id) {
+    if (surface) rtInstanceShader(made.id, surface->id);
+    if (userData) rtInstanceUserData(made.id, userData);
+    if (dynamic) rtInstanceHint(made.id, RT_DYNAMIC);
+  }
+  use.check();
+  return made;
+}
+
+struct Bound { // the shader that rtParameter* means
+  explicit Bound(const RtShader& shader) { rtBindShader(shader.id); }
+  ~Bound() { rtBindShader(0); }
+};
+
+std::vector<RTparameterInfo> parametersOf(const RtShader& shader) {
+  int count = 0;
+  rtGetShaderClass(shader.shaderClass, nullptr, &count);
+  std::vector<RTparameterInfo> all(size_t(std::max(count, 0)));
+  for (int i = 0; i < count; ++i) rtGetParameterInfo(shader.shaderClass, i, &all[size_t(i)]);
+  return all;
+}
+
+void setParameter(const RtShader& self, const std::string& name, const py::object& value) {
+  const RtUse use(self.context);
+  const Bound bound(self);
+  const int handle = rtParameterHandle(name.c_str());
+  if (handle < 0) {
+    rtGetError();
+    std::vector<std::string> known;
+    for (const RTparameterInfo& p : parametersOf(self)) known.emplace_back(p.name);
+    throw py::key_error(fmt::format("{} has no parameter {}{}", self.name, name, didYouMean(name, known)));
+  }
+  RTparameterInfo info{};
+  rtGetParameterInfo(self.shaderClass, handle, &info);
+  const auto numbers = [&](py::ssize_t count) {
+    const Dense<float> array(value);
+    if (count >= 0 && array.size() != count)
+      throw py::value_error(fmt::format("{}.{}: {} numbers expected", self.name, name, count));
+    return array;
+  };
+  switch (info.type) {
+  case RT_PARAM_INT: rtParameter1i(handle, py::isinstance<py::bool_>(value) ? int(value.cast<bool>()) : value.cast<int>()); break;
+  case RT_PARAM_FLOAT: rtParameter1f(handle, value.cast<float>()); break;
+  case RT_PARAM_VEC2: {
+    const auto v = numbers(2);
+    rtParameter2f(handle, v.data()[0], v.data()[1]);
+    break;
+  }
+  case RT_PARAM_VEC3:
+  case RT_PARAM_COLOR: {
+    const auto v = numbers(3);
+    rtParameter3f(handle, v.data()[0], v.data()[1], v.data()[2]);
+    break;
+  }
+  case RT_PARAM_VEC4: {
+    const auto v = numbers(4);
+    rtParameter4f(handle, v.data()[0], v.data()[1], v.data()[2], v.data()[3]);
+    break;
+  }
+  case RT_PARAM_MATRIX: {
+    const auto m = rtMatrix(value);
+    float f[16];
+    for (size_t i = 0; i < 16; ++i) f[i] = float(m[i]);
+    rtParameter16f(handle, f);
+    break;
+  }
+  case RT_PARAM_FLOATS: {
+    const auto v = numbers(-1);
+    rtParameterfv(handle, size_t(v.size()), v.data());
+    break;
+  }
+  case RT_PARAM_STRING: rtParameterString(handle, fromText(value).c_str()); break;
+  case RT_PARAM_TEXTURE: {
+    const auto& texture = value.cast<const RtTexture&>();
+    if (texture.context != self.context)
+      throw py::value_error(fmt::format("{}.{}: a texture of another context", self.name, name));
+    rtParameterTexture(handle, texture.id);
+    break;
+  }
+  default: throw py::type_error(fmt::format("{}.{} cannot be set", self.name, name));
+  }
+  use.check();
+}
+
+RtShader shader(const RtContextPtr& self, const std::string& name, const py::object& library, const py::kwargs& parameters) {
+  RtShader made;
+  {
+    const std::string folder = library.is_none() ? "" : fromText(library);
+    const RtUse use(self);
+    const RTid shaderClass = rtNewShaderClass(name.c_str(), library.is_none() ? nullptr : folder.c_str());
+    use.check();
+    made = {{self, rtNewShader(shaderClass)}, shaderClass, name};
+    use.check();
+  }
+  for (const auto& [key, value] : parameters) setParameter(made, fromText(key), py::reinterpret_borrow<py::object>(value));
+  return made;
+}
+
+py::dict parameters(const RtShader& self) {
+  constexpr const char* types[] = {"", "int", "float", "vec2", "vec3", "vec4", "color", "matrix", "floats", "string", "texture"};
+  const RtUse use(self.context, false);
+  py::dict all;
+  for (const RTparameterInfo& p : parametersOf(self))
+    all[p.name] = py::make_tuple(types[p.type < 11 ? p.type : 0], p.text ? p.text : "");
+  return all;
+}
+
+RtTexture texture(const RtContextPtr& self, const py::object& pixels, bool srgb, const std::string& wrap,
+                  const std::string& filter) {
+  const py::array any = py::array::ensure(pixels);
+  if (!any || (any.ndim() != 2 && any.ndim() != 3))
+    throw py::value_error("texture: pixels of shape (height, width, components) expected");
+  const py::ssize_t components = any.ndim() == 3 ? any.shape(2) : 1;
+  const bool bytes = py::isinstance<py::array_t<uint8_t>>(any);
+  if (components < 1 || components > 4 || any.shape(0) < 1 || any.shape(1) < 1 || any.shape(0) > 65536 || any.shape(1) > 65536)
+    throw py::value_error("texture: pixels of shape (height, width, 1 to 4) expected");
+  if ((wrap != "repeat" && wrap != "clamp") || (filter != "linear" && filter != "nearest"))
+    throw py::value_error("texture: wrap 'repeat' or 'clamp', filter 'linear' or 'nearest' expected");
+  // Rows from the top in Python, from the bottom in OpenRT.
+  const py::object turned = any[py::make_tuple(py::slice(py::none(), py::none(), py::int_(-1)))];
+  Dense<uint8_t> small;
+  Dense<float> large;
+  if (bytes)
+    small = Dense<uint8_t>(turned);
+  else
+    large = Dense<float>(turned);
+  const RtUse use(self);
+  RtTexture made{{self, 0}};
+  rtGenTextures(1, &made.id);
+  rtBindTexture(made.id);
+  rtTexImage2D(int(components), int(any.shape(1)), int(any.shape(0)), bytes ? RT_UNSIGNED_BYTE : RT_FLOAT,
+               bytes ? static_cast<const void*>(small.data()) : large.data());
+  rtTexParameteri(RT_TEXTURE_SRGB, srgb);
+  for (const RTenum side : {RT_TEXTURE_WRAP_S, RT_TEXTURE_WRAP_T})
+    rtTexParameteri(side, wrap == "repeat" ? RT_REPEAT : RT_CLAMP_TO_EDGE);
+  rtTexParameteri(RT_TEXTURE_MAG_FILTER, filter == "linear" ? RT_LINEAR : RT_NEAREST);
+  rtBindTexture(0);
+  use.check();
+  return made;
+}
+
+struct Placed { // the current matrix of a role
+  explicit Placed(const std::array<double, 16>& matrix) {
+    rtPushMatrix();
+    rtLoadMatrixd(matrix.data());
+  }
+  ~Placed() { rtPopMatrix(); }
+};
+
+RtLight light(const RtContextPtr& self, const RtShader& shader, const py::object& matrix, const py::object& scope) {
+  if (shader.context != self) throw py::value_error("light: a shader of another context");
+  const auto m = rtMatrix(matrix);
+  const RTid instance = scope.is_none() ? 0 : scope.cast<const RtInstance&>().id;
+  const RtUse use(self);
+  const Placed placed(m);
+  RtLight made{{self, rtUseLight(shader.id)}};
+  if (instance) rtLightScope(made.id, instance);
+  use.check();
+  return made;
+}
+
+void camera(const RtContextPtr& self, const std::array<double, 3>& eye, const std::array<double, 3>& at,
+            const std::array<double, 3>& up, double fov, std::optional<double> height) {
+  const RtUse use(self);
+  const Placed placed(rtMatrix(py::none()));
+  rtLookAt(eye[0], eye[1], eye[2], at[0], at[1], at[2], up[0], up[1], up[2]);
+  if (height)
+    rtOrtho(*height);
+  else
+    rtPerspective(fov);
+  use.check();
+}
+
+void role(const RtContextPtr& self, const py::object& shader, const py::object& matrix, void (*take)(RTid)) {
+  const RtShader* given = shaderOf(self, shader);
+  const auto m = rtMatrix(matrix);
+  const RtUse use(self);
+  const Placed placed(m);
+  take(given ? given->id : 0);
+  use.check();
+}
+
+template <class F> auto call(F f) {
+  return [f](const RtThing& self) {
+    const RtUse use(self.context);
+    f(self.id);
+    use.check();
+  };
+}
+
+} // namespace
+
+void defineRtScene(py::module_& module) {
+  using namespace pybind11::literals;
+  const py::object none = py::none();
+  const auto unread = [](const RtThing&) -> py::object { throw py::attribute_error("it can be assigned, not read"); };
+  py::class_<RtThing>(module, "_Thing").def_readonly("id", &RtThing::id, "The number in the C API.");
+  py::class_<RtObject, RtThing>(module, "Object", "Geometry that instances place.")
+      .def("delete", call(rtDeleteObject), "Instances of it vanish with it.");
+  py::class_<RtInstance, RtThing>(module, "Instance", "An object where it stands.")
+      .def("delete", call(rtDeleteInstance))
+      .def_property(
+          "matrix", unread,
+          [](const RtInstance& self, const py::object& matrix) {
+            const auto m = rtMatrix(matrix);
+            const RtUse use(self.context);
+            rtInstanceMatrix(self.id, m.data());
+            use.check();
+          },
+          "Assign a 4x4 matrix for column vectors.")
+      .def_property("visible", unread,
+                    [](const RtInstance& self, bool visible) {
+                      const RtUse use(self.context);
+                      rtInstanceVisible(self.id, visible);
+                      use.check();
+                    })
+      .def_property(
+          "shader", unread,
+          [](const RtInstance& self, const py::object& shader) {
+            const RtShader* given = shaderOf(self.context, shader);
+            const RtUse use(self.context);
+            rtInstanceShader(self.id, given ? given->id : 0);
+            use.check();
+          },
+          "For everything in it instead of its own; None: its own.")
+      .def_property(
+          "user_data", unread,
+          [](const RtInstance& self, uint64_t data) {
+            const RtUse use(self.context);
+            rtInstanceUserData(self.id, data);
+            use.check();
+          },
+          "A number that queries report.");
+  py::class_<RtTexture, RtThing>(module, "Texture").def("delete", call(rtDeleteTexture));
+  py::class_<RtLight, RtThing>(module, "Light")
+      .def("delete", call(rtRemoveLight))
+      .def_property("matrix", unread, [](const RtLight& self, const py::object& matrix) {
+        const auto m = rtMatrix(matrix);
+        const RtUse use(self.context);
+        rtLightMatrix(self.id, m.data());
+        use.check();
+      });
+  py::class_<RtShader, RtThing>(module, "Shader", "A shader; shader['reflectance'] = 0.5 sets a parameter.")
+      .def("__setitem__", setParameter)
+      .def_property_readonly("parameters", parameters, "Names of the parameters: (type, text).")
+      .def_readonly("name", &RtShader::name, "Its class.")
+      .def("delete", call(rtDeleteShader));
+  py::object type = module.attr("Context");
+  py::reinterpret_borrow<py::class_<RtContext, RtContextPtr>>(type)
+      .def("mesh", mesh, "vertices"_a, "faces"_a = none, py::kw_only(), "normals"_a = none, "texcoords"_a = none,
+           "colors"_a = none, "shader"_a = none, "name"_a = 0, "cull"_a = false,
+           "An object of triangles: vertices (n, 3) in float32 or float64, faces (m, 3); without faces every three vertices are "
+           "one. normals, texcoords and colors by vertex. cull: back faces are not there.")
+      .def("sphere", sphere, "radius"_a, py::kw_only(), "shader"_a = none, "name"_a = 0, "An exact sphere about the origin.")
+      .def("group", group, "parts"_a, "An object of others: pairs of an object and its matrix.")
+      .def("instance", instance, "object"_a, "matrix"_a = none, py::kw_only(), "shader"_a = none, "name"_a = 0, "user_data"_a = 0,
+           "dynamic"_a = false, "Places an object in the scene. dynamic: it will move.")
+      .def("shader", shader, "name"_a, "library"_a = none,
+           "A shader of a class of the stock shaders, or of a plug-in library; keywords are its parameters.")
+      .def("texture", texture, "pixels"_a, py::kw_only(), "srgb"_a = false, "wrap"_a = "repeat", "filter"_a = "linear",
+           "A texture of bytes or floats, first row at the top.")
+      .def("light", light, "shader"_a, "matrix"_a = none, py::kw_only(), "scope"_a = none,
+           "Turns a light shader on. scope: an instance that alone it shines on.")
+      .def("camera", camera, "eye"_a, "at"_a, "up"_a = std::array<double, 3>{0, 1, 0}, "fov"_a = 45.0, py::kw_only(),
+           "height"_a = none, "The camera looks from eye to at; fov: vertical angle in degrees. height: orthographic, so high.")
+      .def(
+          "camera_shader",
+          [](const RtContextPtr& self, const py::object& s, const py::object& m) { role(self, s, m, rtUseCamera); }, "shader"_a,
+          "matrix"_a = none, "A camera of a shader instead.")
+      .def(
+          "environment",
+          [](const RtContextPtr& self, const py::object& s, const py::object& m) { role(self, s, m, rtUseEnvironment); },
+          "shader"_a, "matrix"_a = none, "What rays see that hit nothing; None: nothing.")
+      .def(
+          "default_shader", [](const RtContextPtr& self, const py::object& s) { role(self, s, py::none(), rtDefaultShader); },
+          "shader"_a, "The surface of geometry that has none.");
+  module.def("_kept_triangles", keptTriangles);
+}

@@ -1,0 +1,85 @@
+"""Methods of World and Node that need nothing but other methods of theirs."""
+import contextlib
+
+import numpy as np
+
+
+def _end(world, end):
+    """The node and the event of "Clock.fraction_changed" or of (node, "fraction_changed")."""
+    if isinstance(end, str):
+        name, dot, event = end.rpartition(".")
+        if not dot:
+            raise ValueError(f"'NAME.event' expected, not {end!r}")
+        return world[name], event
+    node, event = end
+    return node, event
+
+
+def on(self, event, callback=None):
+    """Calls callback(value, time) after an eventOut or exposedField has sent. event: "NAME.event" or (node, "event"). A decorator
+    without a callback."""
+    node, name = _end(self, event)
+
+    def register(function):
+        self.listen(node, name, function)
+        return function
+
+    return register if callback is None else register(callback)
+
+
+def route(self, source, target):
+    """ROUTE source TO target, each "NAME.event" or (node, "event")."""
+    if not self.add_route(*_end(self, source), *_end(self, target)):
+        raise ValueError(f"no route from {source} to {target}")
+
+
+def unroute(self, source, target):
+    """Takes a route away; False if there was none."""
+    return self.delete_route(*_end(self, source), *_end(self, target))
+
+
+def animate(self, start, stop, fps=25, **options):
+    """Pictures of the times from start up to stop (excluded), fps of them a second; options are those of render. The clock gets
+    there in steps of 1/fps from 0, so that a picture of some time is the same whatever was pictured before it."""
+    if not fps > 0:
+        raise ValueError("fps: above 0 expected")
+    first, end = round(start * fps), round(stop * fps)
+    step = int(np.ceil(self.time * fps - 1e-9))  # the first that is not over
+    if first < step:
+        raise ValueError(f"the world's time is {self.time} already: it does not go back to {first / fps}")
+    for number in range(first, end):
+        for between in range(step, number + 1):
+            self.time = max(between / fps, self.time)
+        step = number + 1
+        yield self.render(**options)
+
+
+def raycaster(self, spheres=0):
+    """A Raycaster (xvrml.rt) of what is drawn now. Its geometry ids are places in its list `meshes`; meshes[i].node is the Shape.
+    spheres: see meshes(); 0: they are exact."""
+    from .rt import Raycaster
+    caster = Raycaster()
+    for mesh in self.meshes(spheres=spheres):
+        caster.add_mesh(mesh)
+    return caster
+
+
+@contextlib.contextmanager
+def edit(self, field):
+    """A copy of a field's numbers that can be written to; the field is assigned when the block ends without an exception.
+
+    >>> with coord.edit("point") as p:
+    ...     p[:, 1] += 1
+    """
+    value = getattr(self, field)
+    if not isinstance(value, np.ndarray):
+        raise TypeError(f"{self.node_type}.{field} is no list of numbers: assign it")
+    array = value.copy()
+    yield array
+    setattr(self, field, array)
+
+
+def complete(world, node):
+    for function in (on, route, unroute, animate, raycaster):
+        setattr(world, function.__name__, function)
+    node.edit = edit

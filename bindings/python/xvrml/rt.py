@@ -1,0 +1,145 @@
+"""The renderer without VRML: OpenRT contexts, and ray queries on meshes under the names of Open3D's RaycastingScene.
+
+>>> from xvrml import rt
+>>> with rt.Context() as context:
+...     red = context.shader("VRML97", diffuseColor=(1, 0, 0))
+...     context.instance(context.mesh(vertices, faces, shader=red))
+...     context.light(context.shader("VRML97DirectionalLight", direction=(0, 0, -1)))
+...     context.camera(eye=(0, 0, 5), at=(0, 0, 0))
+...     context.render(size=(640, 480)).save("red.png")
+
+>>> caster = rt.Raycaster()
+>>> caster.add_triangles(vertices, triangles)
+0
+>>> caster.cast_rays(rays)["t_hit"]
+"""
+import numpy as np
+
+from ._xvrml import rt as _rt
+from ._xvrml.rt import Context, Error, Instance, Light, Object, Shader, Texture
+
+__all__ = ["Context", "Error", "Instance", "Light", "Object", "Raycaster", "Shader", "Texture", "create_rays_pinhole"]
+
+_FIVE = ("t_hit", "geometry_ids", "primitive_ids", "primitive_uvs", "primitive_normals")
+
+
+class Raycaster:
+    """Ray queries on triangle meshes: arrays in, dicts of arrays out; all threads work, and other Python threads go on meanwhile.
+
+    Rays are (..., 6): origin and direction, which need not be of length 1; t_hit is in its lengths. Results have the shape of
+    what is in front of the 6. geometry_ids are what add_triangles returned, primitive_ids rows of its triangles; INVALID_ID and
+    t_hit = inf where nothing is hit. Numbers are float32, as of the ray kernels.
+    """
+
+    INVALID_ID = 0xFFFFFFFF
+
+    def __init__(self, threads=0):
+        self._context = Context(threads)
+        self._kept = {}
+        self.meshes = []
+
+    def _place(self, thing, matrix, kept):
+        number = len(self.meshes)
+        self._context.instance(thing, matrix, user_data=number)
+        if kept is not None:
+            self._kept[number] = kept
+        return number
+
+    def add_triangles(self, vertices, triangles, matrix=None):
+        """Adds a mesh, vertices (n, 3) and triangles (m, 3), under a matrix (4, 4) for column vectors. Returns its number."""
+        triangles = np.ascontiguousarray(triangles)
+        thing = self._context.mesh(vertices, triangles)
+        number = self._place(thing, matrix, _rt._kept_triangles(vertices, triangles))
+        self.meshes.append((vertices, triangles))
+        return number
+
+    def add_sphere(self, center, radius):
+        """Adds an exact sphere; its primitive id is 0. Returns its number."""
+        matrix = np.eye(4)
+        matrix[:3, 3] = center
+        number = self._place(self._context.sphere(radius), matrix, None)
+        self.meshes.append((center, radius))
+        return number
+
+    def add_mesh(self, mesh):
+        """Adds an xvrml.Mesh where it stands; None for lines and points. Returns its number."""
+        if mesh.kind == "sphere":
+            thing, kept = self._context.sphere(mesh.radius), None
+        elif mesh.kind == "triangles":
+            thing = self._context.mesh(mesh.vertices, mesh.faces)
+            kept = _rt._kept_triangles(mesh.vertices, mesh.faces)
+        else:
+            return None
+        number = self._place(thing, mesh.matrix, kept)
+        self.meshes.append(mesh)
+        return number
+
+    def _numbered(self, hits, keys):
+        """Rows of the triangles as they were given: those without area are not there."""
+        ids, primitives = hits["geometry_ids"], hits["primitive_ids"]
+        for number, kept in self._kept.items():
+            here = ids == number
+            primitives[here] = kept[primitives[here]]
+        return {key: hits[key] for key in keys}
+
+    def cast_rays(self, rays, nthreads=0, *, tnear=0.0, tfar=np.inf):
+        """Nearest hits: a dict of t_hit, geometry_ids, primitive_ids, primitive_uvs, primitive_normals. nthreads: as in Open3D;
+        the constructor's threads work."""
+        return self._numbered(self._context.cast_rays(rays, tnear=tnear, tfar=tfar), _FIVE)
+
+    def test_occlusions(self, rays, tnear=0.0, tfar=np.inf, nthreads=0):
+        """Whether anything lies on the rays between tnear and tfar."""
+        return self._context.test_occlusions(rays, tnear=tnear, tfar=tfar)
+
+    def count_intersections(self, rays, nthreads=0, *, tnear=0.0, tfar=np.inf):
+        """How many triangles each ray passes."""
+        return self._context.count_intersections(rays, tnear=tnear, tfar=tfar)
+
+    def list_intersections(self, rays, nthreads=0, *, tnear=0.0, tfar=np.inf):
+        """All hits, nearest first: as cast_rays, of shape (n,), and ray_ids, ray_splits: those of ray i are ray_splits[i] to
+        ray_splits[i + 1]."""
+        return self._numbered(self._context.list_intersections(rays, tnear=tnear, tfar=tfar), (*_FIVE[:4], "primitive_normals", "ray_ids",
+                                                                                              "ray_splits"))
+
+    def compute_closest_points(self, query_points, nthreads=0, *, radius=np.inf):
+        """The surface points nearest to points (..., 3): points, distances, geometry_ids, primitive_ids, primitive_uvs,
+        primitive_normals. radius: how far to look; NaN and INVALID_ID where nothing is."""
+        return self._numbered(self._context.compute_closest_points(query_points, radius=radius), ("points", "distances", *_FIVE[1:]))
+
+    def compute_distance(self, query_points, nthreads=0):
+        """Distances of points (..., 3) to the nearest surface."""
+        return self.compute_closest_points(query_points)["distances"]
+
+    def compute_occupancy(self, query_points, nthreads=0, nsamples=1):
+        """1 for points (..., 3) inside of closed surfaces, else 0: of rays that leave them an odd number of surfaces is passed.
+        nsamples: rays for each, an odd number; most of them decide."""
+        points = np.asarray(query_points, np.float32)
+        votes = np.zeros(points.shape[:-1], np.int32)
+        directions = np.random.default_rng(0).normal(size=(nsamples, 3)).astype(np.float32)
+        for direction in directions:
+            rays = np.concatenate([points, np.broadcast_to(direction, points.shape)], -1)
+            votes += self.count_intersections(rays) % 2
+        return (votes * 2 > nsamples).astype(np.float32)
+
+    def compute_signed_distance(self, query_points, nthreads=0, nsamples=1):
+        """Distances to the nearest surface, negative inside of closed ones."""
+        inside = self.compute_occupancy(query_points, nsamples=nsamples) > 0
+        return np.where(inside, -1, 1).astype(np.float32) * self.compute_distance(query_points)
+
+    create_rays_pinhole = staticmethod(lambda *args, **options: create_rays_pinhole(*args, **options))
+
+
+def create_rays_pinhole(fov_deg, center, eye, up, width_px, height_px):
+    """Rays (height, width, 6) of a pinhole camera at eye that looks at center; fov_deg is the horizontal angle of view."""
+    eye, center, up = (np.asarray(v, np.float64) for v in (eye, center, up))
+    ahead = (center - eye) / np.linalg.norm(center - eye)
+    right = np.cross(ahead, up)
+    right /= np.linalg.norm(right)
+    down = np.cross(ahead, right)
+    size = 2 * np.tan(np.radians(fov_deg) / 2) / width_px
+    x = (np.arange(width_px) + 0.5 - width_px / 2) * size
+    y = (np.arange(height_px) + 0.5 - height_px / 2) * size
+    rays = np.empty((height_px, width_px, 6), np.float32)
+    rays[..., :3] = eye
+    rays[..., 3:] = ahead + x[None, :, None] * right + y[:, None, None] * down
+    return rays

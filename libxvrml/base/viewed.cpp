@@ -1,0 +1,86 @@
+// viewed.cpp: see xvrml/viewed.h. A table by the place of the field's storage: there is one view of each value at most.
+#include "xvrml/viewed.h"
+
+#include <atomic>
+#include <mutex>
+#include <unordered_map>
+
+namespace xvrml {
+namespace {
+
+struct Table {
+  struct Entry {
+    const ViewedField* view;
+    std::weak_ptr<ViewedField> alive; // gone as soon as the view begins to end
+  };
+  std::mutex mutex;
+  std::unordered_map<const void*, Entry> byStorage;
+  std::atomic<size_t> size{0}; // asked by every change of a list: most programs have no views
+};
+Table& table() {
+  static Table& all = *new Table(); // views may end after everything else
+  return all;
+}
+
+// Calls with the list if the field holds one of numbers.
+template <class F> bool withNumbers(FieldType type, void* storage, const F& f) {
+  switch (type) {
+  case FieldType::MFColor: return f(*static_cast<MFColor*>(storage)), true;
+  case FieldType::MFFloat: return f(*static_cast<MFFloat*>(storage)), true;
+  case FieldType::MFInt32: return f(*static_cast<MFInt32*>(storage)), true;
+  case FieldType::MFRotation: return f(*static_cast<MFRotation*>(storage)), true;
+  case FieldType::MFTime: return f(*static_cast<MFTime*>(storage)), true;
+  case FieldType::MFVec2f: return f(*static_cast<MFVec2f*>(storage)), true;
+  case FieldType::MFVec3f: return f(*static_cast<MFVec3f*>(storage)), true;
+  default: return false;
+  }
+}
+
+bool holdsValue(const FieldInfo& field) { return field.access == Access::field || field.access == Access::exposedField; }
+
+} // namespace
+
+ViewedField::ViewedField(Node& node, const FieldInfo& field) : storage_(node.storage(field)) {
+  withNumbers(field.type, node.storage(field), [this](const auto& list) {
+    data_ = list.data();
+    size_ = list.size();
+  });
+}
+
+ViewedField::~ViewedField() {
+  Table& all = table();
+  const std::scoped_lock lock(all.mutex);
+  const auto found = all.byStorage.find(storage_);
+  if (found == all.byStorage.end() || found->second.view != this) return;
+  all.byStorage.erase(found);
+  all.size = all.byStorage.size();
+}
+
+std::shared_ptr<const ViewedField> viewField(Node& node, const FieldInfo& field) {
+  if (!holdsValue(field) || !withNumbers(field.type, node.storage(field), [](const auto&) {})) return nullptr;
+  Table& all = table();
+  std::shared_ptr<ViewedField> made; // ends after the lock
+  const std::scoped_lock lock(all.mutex);
+  auto& entry = all.byStorage[node.storage(field)];
+  if (auto known = entry.alive.lock()) return known;
+  made = std::make_shared<ViewedField>(node, field);
+  entry = {made.get(), made};
+  all.size = all.byStorage.size();
+  return made;
+}
+
+void leaveToViews(Node& node, const FieldInfo& field) {
+  Table& all = table();
+  if (all.size.load(std::memory_order_relaxed) == 0) return;
+  std::shared_ptr<ViewedField> view; // ends after the lock
+  const std::scoped_lock lock(all.mutex);
+  const auto found = all.byStorage.find(node.storage(field));
+  if (found == all.byStorage.end()) return;
+  view = found->second.alive.lock();
+  all.byStorage.erase(found);
+  all.size = all.byStorage.size();
+  // A vector that is moved keeps its elements where they are.
+  if (view) withNumbers(field.type, node.storage(field), [&](auto& list) { view->kept_ = std::move(list); });
+}
+
+} // namespace xvrml

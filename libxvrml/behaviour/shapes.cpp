@@ -1,0 +1,117 @@
+// shapes.cpp: see xvrml/build.h. The walk has a stack of its own: nesting costs no C++ stack.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "behaviour/descend.h"
+#include "event/hierarchy.h"
+#include "geometry/mesh.h"
+#include "parse/inline_node.h"
+#include "xvrml/build.h"
+
+namespace xvrml {
+namespace {
+
+constexpr size_t maximumVisits = 4'000'000;
+
+// What a viewer sees below a node.
+void seenBelow(Node& node, const Matrix& toWorld, const Matrix& view, std::vector<Node*>& parts) {
+  if (const auto* lod = nodeCast<nodes::LOD>(&node)) {
+    if (!lod->level.empty()) parts.push_back(lod->level[levelFor(*lod, toWorld, view)].get());
+  } else if (const auto* choice = nodeCast<nodes::Switch>(&node)) {
+    if (choice->whichChoice >= 0 && size_t(choice->whichChoice) < choice->choice.size())
+      parts.push_back(choice->choice[size_t(choice->whichChoice)].get());
+  } else if (const auto* collision = nodeCast<nodes::Collision>(&node)) {
+    for (const NodeRef& child : collision->children) parts.push_back(child.get());
+  } else {
+    childrenInHierarchy(node, parts);
+  }
+}
+
+void cutSphere(GeometryArrays& arrays, int steps) {
+  const float radius = arrays.radius;
+  const uint32_t rings = uint32_t(steps), around = 2 * rings;
+  for (uint32_t r = 0; r <= rings; ++r)
+    for (uint32_t a = 0; a <= around; ++a) {
+      const double up = std::numbers::pi * r / rings, turn = 2 * std::numbers::pi * a / around;
+      const Vec3f n{float(-std::sin(up) * std::sin(turn)), float(-std::cos(up)), float(-std::sin(up) * std::cos(turn))};
+      arrays.points.push_back({radius * n.x, radius * n.y, radius * n.z});
+      arrays.normals.push_back(n);
+      arrays.texCoords.push_back({float(a) / float(around), float(r) / float(rings)});
+    }
+  for (uint32_t r = 0; r < rings; ++r)
+    for (uint32_t a = 0; a < around; ++a) {
+      const uint32_t low = r * (around + 1) + a, high = low + around + 1;
+      if (r > 0) arrays.indices.insert(arrays.indices.end(), {low, low + 1, high + 1});
+      if (r + 1 < rings) arrays.indices.insert(arrays.indices.end(), {low, high + 1, high});
+    }
+  arrays.kind = GeometryArrays::Kind::triangles;
+}
+
+} // namespace
+
+NodeRef makeNode(const NodeType& type) {
+  if (!type.create || type.name == "Script") return {};
+  return makeStaticNode(type);
+}
+
+std::vector<PlacedShape> placedShapes(const World& world, const double* view) {
+  constexpr uint32_t none = ~0u;
+  struct Visit {
+    Node* node;
+    uint32_t parent; // in `way`
+  };
+  const Matrix viewer = view ? fromArray(view) : Matrix();
+  std::vector<PlacedShape> shapes;
+  std::vector<Visit> open;
+  std::vector<Matrix> way; // from a root down to where the walk is
+  std::vector<Node*> path; // the same
+  std::vector<Node*> parts;
+  const auto& roots = world.scope.roots;
+  for (size_t i = roots.size(); i-- > 0;)
+    if (roots[i]) open.push_back({roots[i].get(), none});
+  for (size_t visits = 0; !open.empty(); ++visits) {
+    if (visits == maximumVisits) throw std::length_error("the world has more than 4,000,000 nodes where they are drawn");
+    const Visit visit = open.back();
+    open.pop_back();
+    way.resize(visit.parent + 1); // none + 1 is 0
+    path.resize(visit.parent + 1);
+    const Matrix outside = visit.parent == none ? Matrix() : way[visit.parent];
+    if (std::find(path.begin(), path.end(), visit.node) != path.end()) continue; // holds itself: a program has made it so
+    if (auto* shape = nodeCast<nodes::Shape>(visit.node)) {
+      Node* geometry = renderedNode(shape->geometry.get());
+      if (!geometry) continue;
+      shapes.push_back({NodeRef(shape), NodeRef(geometry), {}});
+      toArray(outside, shapes.back().matrix);
+      continue;
+    }
+    Matrix inner;
+    if (!innerMatrix(*visit.node, outside, viewer, inner) || !finite(inner)) continue;
+    parts.clear();
+    seenBelow(*visit.node, outside, viewer, parts);
+    const auto index = uint32_t(way.size());
+    way.push_back(inner);
+    path.push_back(visit.node);
+    for (size_t i = parts.size(); i-- > 0;)
+      if (parts[i]) open.push_back({parts[i], index});
+  }
+  return shapes;
+}
+
+GeometryArrays geometryArrays(Node& geometry, int sphereSteps, const Limits& limits) {
+  const Mesh mesh = buildMesh(geometry, {.needTexCoords = true, .limits = &limits, .diagnostics = nullptr});
+  GeometryArrays arrays;
+  arrays.kind = GeometryArrays::Kind(mesh.kind);
+  static_assert(int(GeometryArrays::Kind::sphere) == int(Mesh::Kind::sphere));
+  arrays.points.assign(mesh.points.begin(), mesh.points.end());
+  arrays.indices.assign(mesh.indices.begin(), mesh.indices.end());
+  arrays.normals.assign(mesh.normals.begin(), mesh.normals.end());
+  arrays.texCoords.assign(mesh.texCoords.begin(), mesh.texCoords.end());
+  arrays.colors.assign(mesh.colors.begin(), mesh.colors.end());
+  arrays.solid = mesh.solid, arrays.ccw = mesh.ccw, arrays.radius = mesh.radius;
+  if (arrays.kind == GeometryArrays::Kind::sphere && sphereSteps > 1) cutSphere(arrays, sphereSteps);
+  return arrays;
+}
+
+} // namespace xvrml

@@ -1,0 +1,29 @@
+"""The code blocks of docs/python.md and docs/ray-queries.md, run in order; blocks marked needs=PACKAGE where it is installed."""
+import importlib.util
+import pathlib
+import re
+
+import pytest
+
+pytest.importorskip("numpy")
+pytest.importorskip("xvrml")
+
+from test_sdk import CAR  # noqa: E402
+
+DOCS = pathlib.Path(__file__).resolve().parents[2] / "docs"
+
+
+@pytest.mark.parametrize("page", ["python.md", "ray-queries.md"])
+def test_blocks_run(page, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "car.wrl").write_text(CAR)
+    text = (DOCS / page).read_text()
+    blocks = re.findall(r"```python([^\n]*)\n(.*?)```", text, re.S)
+    assert len(blocks) >= 3
+    names = {"__name__": "docs"}
+    for mark, block in blocks:
+        needs = re.findall(r"needs=(\w+)", mark)
+        if any(importlib.util.find_spec(package) is None for package in needs):
+            continue
+        line = text[:text.index(block)].count("\n")
+        exec(compile("\n" * line + block, str(DOCS / page), "exec"), names)

@@ -1,0 +1,81 @@
+"""mypy --strict over the stubs, the examples and a program that uses the API; and over one that must not pass."""
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+
+import pytest
+
+xvrml = pytest.importorskip("xvrml")
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+
+GOOD = '''
+import numpy as np
+import xvrml
+from xvrml import interop, rt
+
+world = xvrml.load("car.wrl")
+for problem in world.warnings:
+    print(problem.file, problem.line)
+world["Lamp"].intensity = 0.5
+box = xvrml.Shape(geometry=xvrml.Box(size=(1, 2, 3)), appearance=xvrml.Appearance(material=xvrml.Material()))
+crate: xvrml.Shape = world.add(box, name="Crate")
+world.route("Clock.fraction_changed", (crate, "set_geometry"))
+
+@world.on("Clock.fraction_changed")
+def tick(value: float, time: float) -> None:
+    print(value, time)
+
+tick(1, 2)
+world.time = 2.5
+node = world["Hull"]
+if isinstance(node, xvrml.Transform):
+    x, y, z = node.translation
+    node.translation = np.zeros(3)
+    node.children = [crate]
+with node.edit("point") as p:
+    p[:] = 1
+image = world.render(size=(640, 480), error=0.01, viewpoint="Front", progress=True)
+total: float = float(image.array.sum() + image["z"].min() + image.error.max())
+for frame in world.animate(0, 10, fps=25, size=(640, 480)):
+    frame.save(f"{frame.time}.png")
+hits = world.raycaster().cast_rays(np.zeros((5, 6)))
+print(hits["t_hit"].min())
+with rt.Context() as context:
+    context.instance(context.mesh(np.zeros((3, 3)))).matrix = np.eye(4)
+    print(context.render(size=(4, 3)).array.shape)
+print(interop.to_pil(image))
+browser = xvrml.Browser("car.wrl", trust=True)
+browser.tick(1.0)
+'''
+BAD = {
+    "xvrml.Box(sise=(1, 2, 3))": "sise",
+    "xvrml.Sphere(radius='big')": "radius",
+    "xvrml.load('a.wrl').tiem": "tiem",
+    "xvrml.load('a.wrl').render(sice=(1, 2))": "sice",
+    "xvrml.Sphere().radius = 'big'": "assignment",
+}
+
+
+def mypy(*arguments):
+    program = shutil.which("mypy")
+    if not program:
+        pytest.skip("mypy is not installed")
+    stubs = pathlib.Path(xvrml.__file__).resolve().parent.parent
+    return subprocess.run([program, "--strict", "--no-error-summary", "--show-error-codes", "--python-executable", sys.executable,
+                           *map(str, arguments)], env={**os.environ, "MYPYPATH": str(stubs)}, capture_output=True, text=True, timeout=300)
+
+
+def test_programs_and_examples_are_typed(tmp_path):
+    (tmp_path / "good.py").write_text(GOOD)
+    examples = sorted((ROOT / "examples").rglob("*.py"))
+    assert examples
+    stubs = sorted(pathlib.Path(xvrml.__file__).resolve().parent.glob("*.pyi"))
+    done = mypy("--cache-dir", tmp_path / "cache", tmp_path / "good.py", *examples, *stubs)
+    assert done.returncode == 0, done.stdout
+    (tmp_path / "bad.py").write_text("import xvrml\n" + "\n".join(BAD))
+    done = mypy("--cache-dir", tmp_path / "cache", tmp_path / "bad.py")
+    lines = done.stdout.splitlines()
+    for number, (code, word) in enumerate(BAD.items(), 2):
+        assert any(line.startswith(f"{tmp_path}/bad.py:{number}:") and word in line for line in lines), (code, done.stdout)

@@ -1,0 +1,108 @@
+#!/usr/bin/env python3
+"""Ray queries from numpy: xvrml.rt's cast_rays beside raw Embree (tests/bench/raw_rays.cpp, one rtcIntersect1 a ray), Open3D and embreex,
+where they are installed, on the same mesh and the same incoherent rays. Rounds take turns; the best of each is compared.
+
+PYTHONPATH=build/release/python tools/bench_rays.py --raw build/release/lib/libraw_rays.so [--rays 2000000] [--threads 2]"""
+import argparse
+import ctypes
+import os
+import time
+
+import numpy as np
+
+
+def terrain(edge):
+    """The mesh of tests/bench/openrt_rays.cpp: 2 edge^2 triangles over 10 x 10 units."""
+    u, v = np.meshgrid(np.linspace(-5, 5, edge + 1), np.linspace(-5, 5, edge + 1))
+    y = 0.4 * np.sin(3 * u) * np.cos(2 * v) + 0.02 * np.sin(40 * u + 30 * v)
+    vertices = np.stack([u, y, v], -1).reshape(-1, 3).astype(np.float32)
+    i = (np.arange(edge)[:, None] * (edge + 1) + np.arange(edge)).ravel()
+    triangles = np.concatenate([np.stack([i, i + edge + 1, i + 1], -1), np.stack([i + 1, i + edge + 1, i + edge + 2], -1)], 1)
+    return vertices, triangles.reshape(-1, 3).astype(np.uint32)
+
+
+def incoherent(count):
+    """From anywhere near the terrain to anywhere: nine tenths meet it."""
+    random = np.random.default_rng(1)
+    rays = np.empty((count, 6), np.float32)
+    rays[:, :3] = random.uniform((-5, 0, -5), (5, 3, 5), (count, 3))
+    rays[:, 3:] = random.uniform((-5, -0.5, -5), (5, 0.5, 5), (count, 3)) - rays[:, :3]
+    return rays
+
+
+def raw_caster(path, vertices, triangles, threads, robust):
+    library = ctypes.CDLL(os.path.abspath(path))
+    library.raw_scene.restype, library.raw_cast.restype = ctypes.c_void_p, ctypes.c_double
+
+    def pointer(array):
+        return ctypes.c_void_p(array.ctypes.data)
+
+    scene = library.raw_scene(pointer(vertices), ctypes.c_size_t(len(vertices)), pointer(triangles), ctypes.c_size_t(len(triangles)),
+                              int(robust))
+
+    def cast(rays):
+        n = len(rays)
+        t, primitive = np.empty(n, np.float32), np.empty(n, np.uint32)
+        uv, normal = np.empty((n, 2), np.float32), np.empty((n, 3), np.float32)
+        library.raw_cast(ctypes.c_void_p(scene), pointer(rays), ctypes.c_size_t(n), threads, pointer(t), pointer(primitive), pointer(uv),
+                         pointer(normal))
+        return t
+    return cast
+
+
+def contenders(arguments, vertices, triangles):
+    if arguments.raw:
+        yield "raw Embree, robust", raw_caster(arguments.raw, vertices, triangles, arguments.threads, True)
+        yield "raw Embree, default", raw_caster(arguments.raw, vertices, triangles, arguments.threads, False)
+    if not arguments.without_ours:
+        from xvrml import rt
+        caster = rt.Raycaster(arguments.threads)
+        caster.add_triangles(vertices, triangles)
+        yield "xvrml.rt", lambda rays: caster.cast_rays(rays)["t_hit"]
+    try:
+        import open3d as o3d
+        scene = o3d.t.geometry.RaycastingScene(nthreads=arguments.threads)
+        scene.add_triangles(o3d.core.Tensor(vertices), o3d.core.Tensor(triangles))
+        yield "Open3D " + o3d.__version__, lambda rays: scene.cast_rays(o3d.core.Tensor(rays), nthreads=arguments.threads)["t_hit"].numpy()
+    except ImportError as error:
+        print("Open3D:", error)
+    try:
+        from embreex import rtcore_scene
+        from embreex.mesh_construction import TriangleMesh
+        scene = rtcore_scene.EmbreeScene()
+        TriangleMesh(scene, vertices[triangles])
+        yield "embreex (one thread)", lambda rays: scene.run(np.ascontiguousarray(rays[:, :3]), np.ascontiguousarray(rays[:, 3:]),
+                                                             output=True)["tfar"]
+    except ImportError as error:
+        print("embreex:", error)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--rays", type=int, default=2_000_000)
+    parser.add_argument("--edge", type=int, default=636, help="of the terrain: 2 edge^2 triangles")
+    parser.add_argument("--threads", type=int, default=os.cpu_count())
+    parser.add_argument("--rounds", type=int, default=5)
+    parser.add_argument("--raw", help="libraw_rays.so of the build")
+    parser.add_argument("--without-ours", action="store_true")
+    arguments = parser.parse_args()
+    vertices, triangles = terrain(arguments.edge)
+    rays = incoherent(arguments.rays)
+    casters = list(contenders(arguments, vertices, triangles))
+    best, answers = {}, {}
+    for _ in range(arguments.rounds):
+        for name, cast in casters:
+            begin = time.perf_counter()
+            answers[name] = cast(rays)
+            best[name] = min(best.get(name, 1e9), time.perf_counter() - begin)
+    base = best[casters[0][0]]
+    print(f"{len(triangles)} triangles, {len(rays)} rays, {arguments.threads} threads, best of {arguments.rounds}")
+    print("| | Mrays/s | time of the first / its time | rays with the same answer |\n| --- | --- | --- | --- |")
+    reference = answers[casters[0][0]]
+    for name, _ in casters:
+        same = np.isclose(answers[name], reference, rtol=1e-4, atol=1e-5) | ~(np.isfinite(answers[name]) | np.isfinite(reference))
+        print(f"| {name} | {len(rays) / best[name] / 1e6:.2f} | {base / best[name]:.2f} | {same.mean():.4%} |")
+
+
+if __name__ == "__main__":
+    main()
