@@ -44,8 +44,8 @@ class Site:
             if piece.startswith("```"):
                 piece = re.sub(r"\A```(\w+) file=(\S+)\n", self.named_block, piece)
             else:
+                piece = re.sub(r"\[([^\]\n]*)\]\((\.\./[^)\n]+)\)", lambda m: self.outside(m, page), piece)
                 piece = re.sub(r"(?<!\[)`([^`\n]+)`(?!\])", lambda m: self.linked(m, page), piece)
-                piece = re.sub(r"\]\(\.\./(?!images)([^)]+)\)", self.outside, piece)
                 piece = piece.replace("](docs/", "](")
             out.append(piece)
         return "".join(out)
@@ -54,10 +54,14 @@ class Site:
         language = "node" if match.group(2).endswith(".node") else match.group(1)
         return f"```{{code-block}} {language}\n:caption: {match.group(2)}\n\n"
 
-    def outside(self, match):
-        """A link to a file beside docs/."""
-        page = {"README.md": "readme.md", "HACKING.md": "hacking.md", "CHANGELOG.md": "changelog.md"}.get(match.group(1))
-        return f"]({page})" if page else f"](https://invalid.example/{match.group(1)})"
+    def outside(self, match, page):
+        """A link upwards: to another page of docs/ as it is, to a file beside docs/ its text alone."""
+        target = pathlib.Path(os.path.normpath(self.root / "docs" / page.parent / match.group(2).split("#")[0]))
+        if target.is_relative_to(self.root / "docs"):
+            return match.group(0)
+        if target.name in ("README.md", "HACKING.md", "CHANGELOG.md") and target.parent == self.root:
+            return f"[{match.group(1)}]({'../' * (len(page.parts) - 1)}{target.name.lower()})"
+        return match.group(1)
 
     def linked(self, match, page):
         """`docs/x.md`: a link with the title of that page; a public header: a link to its reference."""
