@@ -52,6 +52,7 @@ void setAttribute(const NodeObject& self, const std::string& name, const py::han
   if (!field && browser) field = self.node->type().findEventIn(name);
   if (!field) noField(*self.node, name, browser);
   if (browser && scriptAssigns(self, field->name, object)) return;
+  if (const char* why = world->frozen()) throw py::value_error(why);
   Value fresh = fromPython(object, *field, self);
   const bool nodes = field->type == FieldType::SFNode || field->type == FieldType::MFNode;
   const auto lock = world->lock();

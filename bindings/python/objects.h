@@ -40,7 +40,7 @@ struct WorldObject : std::enable_shared_from_this<WorldObject> {
   virtual ~WorldObject();
   virtual xvrml::World& graph();                              // raises ValueError for loose nodes
   virtual xvrml::Browser* browser() { return running.get(); } // what runs the world; null: it stands still
-  virtual const char* frozen() const;                         // why it cannot be changed now; null: it can
+  virtual const char* frozen() const { return nullptr; }      // why it cannot be changed from here; null: it can
   virtual bool loose() const { return !world && !running && !joined; }
   // Makes it run, from time 0 on.
   xvrml::Browser& live();

@@ -33,10 +33,6 @@ World& WorldObject::graph() {
   return *world;
 }
 
-const char* WorldObject::frozen() const {
-  return drawingNow ? "the world cannot be changed while a picture of it is made" : nullptr;
-}
-
 Browser& WorldObject::live() {
   if (!running) {
     const auto locked = lock();
@@ -93,6 +89,7 @@ WorldObject::Changing WorldObject::lock() {
     locked.graph = std::unique_lock(locks->graph);
     sweep();
   }
+  if (drawingNow) throw py::value_error("the world cannot be changed while a picture of it is made");
   if (const char* why = frozen()) throw py::value_error(why);
   return locked;
 }

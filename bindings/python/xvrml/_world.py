@@ -1,7 +1,7 @@
-"""Methods of World and Node that need nothing but other methods of theirs."""
+"""Methods of World and Node that need nothing but other methods of theirs. Importing the package does not need numpy: programs of
+Scripts run in interpreters that may not have it."""
 import contextlib
-
-import numpy as np
+import math
 
 
 def _end(world, end):
@@ -44,7 +44,7 @@ def animate(self, start, stop, fps=25, **options):
     if not fps > 0:
         raise ValueError("fps: above 0 expected")
     first, end = round(start * fps), round(stop * fps)
-    step = int(np.ceil(self.time * fps - 1e-9))  # the first that is not over
+    step = math.ceil(self.time * fps - 1e-9)  # the first that is not over
     if first < step:
         raise ValueError(f"the world's time is {self.time} already: it does not go back to {first / fps}")
     for number in range(first, end):
@@ -72,7 +72,7 @@ def edit(self, field):
     ...     p[:, 1] += 1
     """
     value = getattr(self, field)
-    if not isinstance(value, np.ndarray):
+    if not hasattr(value, "setflags"):  # a numpy array has it
         raise TypeError(f"{self.node_type}.{field} is no list of numbers: assign it")
     array = value.copy()
     yield array
