@@ -187,7 +187,8 @@ double number(const py::handle& object, const Target& target) {
 
 bool boolean(const py::handle& object, const Target& target) {
   if (PyBool_Check(object.ptr())) return object.ptr() == Py_True;
-  if (std::string(py::str(py::type::handle_of(object).attr("__name__"))) == "bool_")
+  const std::string type = py::str(py::type::handle_of(object).attr("__name__"));
+  if (type == "bool_" || type == "bool") // numpy's, before and from version 2 on
     return py::bool_(py::reinterpret_borrow<py::object>(object));
   target.wrongType(object);
 }
