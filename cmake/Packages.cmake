@@ -48,8 +48,8 @@ openrt_package(python python3-xvrml python "libopenrt0 ${same}, libxvrml0 ${same
 set(CPACK_DEBIAN_VV_PACKAGE_RECOMMENDS "fonts-dejavu-core")
 set(CPACK_DEBIAN_VV_PACKAGE_SUGGESTS "ffmpeg")
 set(CPACK_DEBIAN_LIBXVRML_PACKAGE_RECOMMENDS "fonts-dejavu-core")
-set(CPACK_DEBIAN_LIBOPENRT_PACKAGE_GENERATE_SHLIBS ON)
-set(CPACK_DEBIAN_LIBXVRML_PACKAGE_GENERATE_SHLIBS ON)
+set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
+set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS_POLICY "=")
 set(CPACK_COMPONENTS_ALL ${packaged_components})
 
 # What Debian's policy asks of every package: its licence and its changes.
@@ -70,11 +70,15 @@ if(CMAKE_INSTALL_PREFIX STREQUAL "/usr")
     set(CPACK_DEBIAN_${upper}_PACKAGE_CONTROL_EXTRA ${debian}/${component}/triggers)
   endforeach()
 endif()
-# Manual pages are packed compressed.
+# Manual pages are packed compressed, the Python module without symbols (it is installed as a file, not as a target).
 file(WRITE ${CMAKE_BINARY_DIR}/package/compress.cmake [=[
 file(GLOB_RECURSE pages ${CPACK_TEMPORARY_DIRECTORY}/*/usr/share/man/*.[13])
 if(pages)
   execute_process(COMMAND gzip -9nf ${pages} COMMAND_ERROR_IS_FATAL ANY)
+endif()
+file(GLOB_RECURSE modules ${CPACK_TEMPORARY_DIRECTORY}/*/usr/lib/python3/*.so)
+if(modules)
+  execute_process(COMMAND strip --strip-unneeded ${modules} COMMAND_ERROR_IS_FATAL ANY)
 endif()
 ]=])
 set(CPACK_PRE_BUILD_SCRIPTS ${CMAKE_BINARY_DIR}/package/compress.cmake)

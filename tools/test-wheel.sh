@@ -10,7 +10,7 @@ if [ ! -e "$root/etc/debian_version" ]; then
   debootstrap --variant=minbase --include=python3,python3-venv,python3-pip bookworm "$root" "${DEBIAN_MIRROR:-http://deb.debian.org/debian}"
 fi
 rm -rf "$root/try" && mkdir -p "$root/try" "$folder/pictures" "$folder/wheels"
-python3 -m pip download -q --only-binary=:all: --python-version "$(chroot "$root" python3 -c 'import sys; print("%d.%d" % sys.version_info[:2])')" \
+"${PYTHON:-python3}" -m pip download -q --only-binary=:all: --python-version "$(chroot "$root" python3 -c 'import sys; print("%d.%d" % sys.version_info[:2])')" \
   --platform manylinux2014_x86_64 --platform manylinux_2_28_x86_64 --platform manylinux_2_27_x86_64 -d "$folder/wheels" "${NUMPY:-numpy}"
 cp "$wheel" "$folder"/wheels/numpy*.whl "$here"/examples/scenes/still_life.wrl "$root/try/"
 cp -r "$here/examples/scenes" "$root/try/scenes"

@@ -3,7 +3,8 @@
 # fonts-dejavu-core with fontconfig's configuration, and the folders that a program expects.
 set -euo pipefail
 stage=$1 root=$2
-mkdir -p "$root"/{etc,tmp,work,usr/lib}
+mkdir -p "$root"/{etc,tmp,work,usr/share/fonts/truetype,usr/share/fontconfig}
+umask 022
 chmod 1777 "$root/tmp"
 for link in bin lib lib64; do
   mkdir -p "$root/usr/$link"
@@ -18,12 +19,14 @@ folders=$(find "$stage" -name 'lib*.so*' -printf '%h\n' | sort -u | paste -sd:)
 for file in $libraries; do LD_LIBRARY_PATH=$folders ldd "$file"; done |
   sed -nE 's/.*=> (\/[^ ]+) .*/\1/p; s/^\s+(\/[^ ]+ld-linux[^ ]+) .*/\1/p' | grep -v "^$stage" | sort -u |
   while read -r library; do
-    place=$(realpath -m "/usr/${library#/usr/}")
+    place=$(realpath -ms "/usr/${library#/usr/}")
     mkdir -p "$root$(dirname "$place")"
     cp -L "$library" "$root$place"
   done
 
 cp -a --parents /etc/fonts "$root"
-if [ -d /usr/share/fonts/truetype/dejavu ]; then cp -a --parents /usr/share/fonts/truetype/dejavu /usr/share/fontconfig/conf.avail "$root"; fi
+for folder in fonts/truetype/dejavu fontconfig/conf.avail; do
+  if [ -d /usr/share/$folder ]; then cp -a /usr/share/$folder "$root/usr/share/${folder%/*}/"; fi
+done
 printf 'root:x:0:0::/:/\nuser:x:1000:1000::/work:/\n' >"$root/etc/passwd"
 du -sm "$root"
