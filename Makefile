@@ -28,7 +28,7 @@ demo: packages
 test: packages build
 	@status=0; \
 	ctest --test-dir $(R) --no-tests=error -j $(JOBS) -E '^python$$' || status=1; \
-	PYTHONPATH=$(R)/python $(PYTHON) -m pytest -q -p no:cacheprovider tests/python || status=1; \
+	PYTHONPATH=$(CURDIR)/$(R)/python $(PYTHON) -m pytest -q -p no:cacheprovider tests/python || status=1; \
 	exit $$status
 
 ## make build         libraries, programs and tests into build/release (bin/, lib/, python/)
@@ -130,12 +130,12 @@ tidy:
 
 ## make python-sequences   100,000 random sequences of calls of the Python package (XVRML_SEQUENCES=...)
 python-sequences: build
-	XVRML_SEQUENCES=$(or $(XVRML_SEQUENCES),100000) PYTHONPATH=$(R)/python $(PYTHON) -X faulthandler -m pytest -q -p no:cacheprovider \
+	XVRML_SEQUENCES=$(or $(XVRML_SEQUENCES),100000) PYTHONPATH=$(CURDIR)/$(R)/python $(PYTHON) -X faulthandler -m pytest -q -p no:cacheprovider \
 	  tests/python/test_random_sdk.py
 
 ## make bench-rays     ray queries from numpy beside raw Embree, Open3D and embreex
 bench-rays: build
-	PYTHONPATH=$(R)/python $(PYTHON) tools/bench_rays.py --raw $(R)/lib/libraw_rays.so
+	PYTHONPATH=$(CURDIR)/$(R)/python $(PYTHON) tools/bench_rays.py --raw $(R)/lib/libraw_rays.so
 
 packages:
 	@tools/install-packages.sh
