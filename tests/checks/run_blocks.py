@@ -52,8 +52,7 @@ class Runner:
                         PYTHONDONTWRITEBYTECODE="1", NO_COLOR="1")
         self.interpreter = None
         self.ports = {"7447": free_port(), "7448": free_port()}  # workers of the pages listen on ports that are free
-        said = self.call([build / "bin/vv", "-", "-o", "png:-", "--workers", "127.0.0.1:1"], scratch)
-        self.has_worker = (build / "bin/openrt-worker").exists() and "not built" not in said
+        self.has_worker = (build / "bin/openrt-worker").exists()
         self.has_python = not self.call([self.python, "-c", "import xvrml"], scratch)
         shutil.copytree(root / "examples", scratch / "examples")
 

@@ -9,6 +9,19 @@
 
 namespace openrt::cluster {
 
+const Hash& FileHashes::of(const std::string& path) {
+  std::error_code error;
+  const int64_t changed = std::filesystem::last_write_time(path, error).time_since_epoch().count();
+  const uint64_t bytes = std::filesystem::file_size(path, error);
+  Known& known = files_[path];
+  if (known.changed != changed || known.bytes != bytes) {
+    std::ifstream stream(path, std::ios::binary);
+    const std::vector<char> content(std::istreambuf_iterator<char>(stream), {});
+    known = {changed, bytes, hashOf(std::as_bytes(std::span(content)))};
+  }
+  return known.hash;
+}
+
 std::string LibraryCheck::problem(std::span<const message::Library> wanted) {
   std::string text;
   const auto add = [&](const message::Library& library, const std::string& what) {
@@ -20,18 +33,9 @@ std::string LibraryCheck::problem(std::span<const message::Library> wanted) {
       add(library, " is in no folder of this worker (--shader-path)");
       continue;
     }
-    std::error_code error;
-    const int64_t changed = std::filesystem::last_write_time(path, error).time_since_epoch().count();
-    const uint64_t bytes = std::filesystem::file_size(path, error);
-    Known& known = files_[path];
-    if (known.changed != changed || known.bytes != bytes) {
-      std::ifstream stream(path, std::ios::binary);
-      const std::vector<char> content(std::istreambuf_iterator<char>(stream), {});
-      known = {changed, bytes, hashOf(std::as_bytes(std::span(content)))};
-    }
-    if (known.hash != library.hash)
-      add(library,
-          " is another file here (" + path + " has hash " + hex(known.hash) + ", the master's " + hex(library.hash) + ")");
+    const Hash& hash = files_.of(path);
+    if (hash != library.hash)
+      add(library, " is another file here (" + path + " has hash " + hex(hash) + ", the master's " + hex(library.hash) + ")");
   }
   return text;
 }

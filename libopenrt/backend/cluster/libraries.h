@@ -14,11 +14,10 @@ class ShaderRegistry;
 
 namespace openrt::cluster {
 
-class LibraryCheck {
+// What is in files: read again only when one has changed.
+class FileHashes {
  public:
-  explicit LibraryCheck(const ShaderRegistry* shaders) : shaders_(shaders) {}
-  // Empty, or which of them are missing or different, for people.
-  std::string problem(std::span<const message::Library> wanted);
+  const Hash& of(const std::string& path);
 
  private:
   struct Known {
@@ -26,8 +25,18 @@ class LibraryCheck {
     uint64_t bytes = 0;
     Hash hash;
   };
-  const ShaderRegistry* shaders_;
   std::map<std::string, Known> files_;
+};
+
+class LibraryCheck {
+ public:
+  explicit LibraryCheck(const ShaderRegistry* shaders) : shaders_(shaders) {}
+  // Empty, or which of them are missing or different, for people.
+  std::string problem(std::span<const message::Library> wanted);
+
+ private:
+  const ShaderRegistry* shaders_;
+  FileHashes files_;
 };
 
 } // namespace openrt::cluster

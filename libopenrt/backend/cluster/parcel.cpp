@@ -2,9 +2,6 @@
 #include "backend/cluster/parcel.h"
 
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 
 #include "backend/record/edits_bytes.h"
 #include "shading/registry.h"
@@ -42,16 +39,7 @@ void Packer::addLibraries(const Commit& commit, Parcel& parcel) {
     } catch (const std::exception&) { continue; }
     if (path.empty() || std::any_of(parcel.libraries.begin(), parcel.libraries.end(), [&](auto& l) { return l.name == name; }))
       continue;
-    std::error_code error;
-    const auto changed = std::filesystem::last_write_time(path, error).time_since_epoch().count();
-    const auto bytes = std::filesystem::file_size(path, error);
-    File& file = files_[path];
-    if (file.bytes != bytes || file.changed != changed) {
-      std::ifstream stream(path, std::ios::binary);
-      const std::vector<char> content(std::istreambuf_iterator<char>(stream), {});
-      file = {changed, bytes, hashOf(std::as_bytes(std::span(content)))};
-    }
-    parcel.libraries.push_back({name, file.hash});
+    parcel.libraries.push_back({name, files_.of(path)});
   }
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <unordered_map>
 
+#include "backend/cluster/libraries.h"
 #include "backend/cluster/messages.h"
 #include "scene/commit.h"
 
@@ -50,12 +51,7 @@ class Packer {
   std::map<Hash, std::weak_ptr<Offer>> offers_;
   std::unordered_map<const Array*, std::pair<std::weak_ptr<const Array>, Hash>> hashes_; // of arrays that were seen
   size_t sweepAt_ = 64;
-  struct File {
-    int64_t changed = 0;
-    uint64_t bytes = 0;
-    Hash hash;
-  };
-  std::map<std::string, File> files_; // of shader libraries, by path
+  FileHashes files_; // of shader libraries
 };
 
 } // namespace openrt::cluster

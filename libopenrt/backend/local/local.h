@@ -43,6 +43,8 @@ class LocalBackend final : public Backend, public SurfaceQueries {
   Vec3d eye() const;
   bool cameraRay(double x, double y, float origin[3], float direction[3]) const; // of the snapshot
   RThit hitOf(const RayHits& found, uint32_t i) const;
+  // Portions of rays, loaded, on all threads.
+  void forBatches(std::span<const RTray> rays, const std::function<void(size_t first, Arena& arena, Rays& batch)>& use);
   void forPassed(std::span<const RTray> rays, const std::function<void(size_t ray, std::span<const Accel::Passed>)>& take);
   void loadRays(std::span<const RTray> rays, size_t first, Rays& to) const;
 

@@ -47,17 +47,24 @@ void LocalBackend::loadRays(std::span<const RTray> rays, size_t first, Rays& to)
   }
 }
 
-void LocalBackend::castRays(std::span<const RTray> rays, std::span<RThit> hits) {
+void LocalBackend::forBatches(std::span<const RTray> rays,
+                              const std::function<void(size_t first, Arena& arena, Rays& batch)>& use) {
   prepare();
   parallelBlocks(threads_, rays.size(), [&](size_t first, size_t n) {
     Arena arena;
     Rays batch;
     batch.allocate(arena, uint32_t(n));
-    RayHits found;
-    found.allocate(arena, uint32_t(n));
     loadRays(rays, first, batch);
+    use(first, arena, batch);
+  });
+}
+
+void LocalBackend::castRays(std::span<const RTray> rays, std::span<RThit> hits) {
+  forBatches(rays, [&](size_t first, Arena& arena, Rays& batch) {
+    RayHits found;
+    found.allocate(arena, batch.count);
     accel_->intersect(batch, maskAll, Coherence::incoherent, found);
-    for (uint32_t i = 0; i < n; i++) hits[first + i] = hitOf(found, i);
+    for (uint32_t i = 0; i < batch.count; i++) hits[first + i] = hitOf(found, i);
   });
 }
 
@@ -75,15 +82,10 @@ RThit LocalBackend::hitOf(const RayHits& found, uint32_t i) const {
 
 void LocalBackend::forPassed(std::span<const RTray> rays,
                              const std::function<void(size_t ray, std::span<const Accel::Passed>)>& take) {
-  prepare();
-  parallelBlocks(threads_, rays.size(), [&](size_t first, size_t n) {
-    Arena arena;
-    Rays batch;
-    batch.allocate(arena, uint32_t(n));
-    loadRays(rays, first, batch);
+  forBatches(rays, [&](size_t first, Arena&, Rays& batch) {
     std::vector<Accel::Passed> all;
     accel_->passed(batch, all);
-    for (size_t i = 0, begin = 0; i < n; i++) {
+    for (size_t i = 0, begin = 0; i < batch.count; i++) {
       size_t end = begin;
       while (end < all.size() && all[end].ray == i) end++;
       take(first + i, {all.data() + begin, end - begin});
@@ -149,12 +151,7 @@ bool LocalBackend::pick(double x, double y, RThit& hit) {
 }
 
 void LocalBackend::occludedRays(std::span<const RTray> rays, std::span<uint8_t> occluded) {
-  prepare();
-  parallelBlocks(threads_, rays.size(), [&](size_t first, size_t n) {
-    Arena arena;
-    Rays batch;
-    batch.allocate(arena, uint32_t(n));
-    loadRays(rays, first, batch);
+  forBatches(rays, [&](size_t first, Arena&, Rays& batch) {
     accel_->occluded(batch, maskAll, Coherence::incoherent, occluded.data() + first);
   });
 }
