@@ -48,23 +48,19 @@ docs: build
 
 ## make wheel         the Python distribution with all that it needs, build/dist/*.whl (what `pip install .` builds)
 wheel: packages
-	@[ -x build/venv/bin/pip ] || $(PYTHON) -m venv build/venv
-	@CMAKE_BUILD_PARALLEL_LEVEL=$(JOBS) build/venv/bin/pip wheel . --no-deps -w build/dist
+	@PYTHON=$(PYTHON) tools/make-wheel.sh build/dist $(JOBS)
 
 ## make test-wheel    installs the wheel into a bare Debian below build/ and draws with it (needs root and debootstrap)
 test-wheel:
-	@tools/test-wheel.sh $(firstword $(wildcard build/dist/xvrml-*.whl)) build/wheel-test
+	@tools/test-wheel.sh $(firstword $(wildcard build/dist/xvrml-*.whl) build/dist/xvrml.whl) build/wheel-test
 
 ## make deb           Debian packages, build/deb/*.deb
 deb: packages
-	@cmake --log-level=NOTICE -S . -B build/deb -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_INSTALL_PREFIX=/usr -DCMAKE_SKIP_INSTALL_RPATH=ON \
-	  -DOPENRT_PYTHON_DIR=lib/python3/dist-packages -DPython_EXECUTABLE=$(PYTHON) -DPython3_EXECUTABLE=$(PYTHON)
-	@cmake --build build/deb -j $(JOBS)
-	@cd build/deb && cpack
+	@PYTHON=$(PYTHON) tools/make-deb.sh build/deb $(JOBS)
 
-## make container     the image `openrt`, by podman or docker (contrib/container)
+## make container     the image `openrt`, by podman, buildah or docker (contrib/container); CONTAINER=... options for its build
 container:
-	@$(firstword $(shell command -v podman docker)) build -f contrib/container/Containerfile -t openrt .
+	@tools/make-container.sh $(CONTAINER)
 
 ## make test-embree4  build and all tests against Embree 4, in a Debian 13 of its own below build/ (needs root and debootstrap)
 test-embree4:

@@ -1,10 +1,10 @@
 #!/bin/bash
 # test-embree4.sh FOLDER JOBS: builds the project and runs all its tests in a Debian 13 (trixie), whose Embree is version 4. FOLDER
-# becomes its root; nothing of this system is mounted there, the sources are copied. A second run uses what the first one left.
-# Needs root, debootstrap, unshare and Debian's mirror.
+# becomes its root; nothing of this system is mounted there, the sources are copied, and the corpus (OPENRT_CORPUS) where there is one.
+# A second run uses what the first one left: packages, ccache, the build. Needs root, debootstrap, unshare and Debian's mirror.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-root=$(realpath -m "$1") jobs=${2:-2}
+root=$(realpath -m "$1") jobs=${2:-2} corpus=${OPENRT_CORPUS:-../shared/corpus}
 for tool in debootstrap unshare; do
   command -v $tool >/dev/null || { echo "test-embree4: $tool is not installed" >&2; exit 1; }
 done
@@ -12,16 +12,23 @@ done
 
 # A root of its own, with its own processes; /proc and /dev/shm end with the command.
 inside() {
-  unshare --mount --pid --fork --mount-proc="$root/proc" bash -c \
+  unshare --mount --pid --fork --kill-child --mount-proc="$root/proc" bash -c \
     'mkdir -p "$0/dev/shm" && mount -t tmpfs none "$0/dev/shm" && exec chroot "$0" /usr/bin/env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 bash -euc "$1"' \
-    "$root" "$1"
+    "$root" "$1" </dev/null
 }
 
-if [ ! -e "$root/etc/debian_version" ]; then
+# The stamp is written last: a root that was interrupted is made anew.
+if [ ! -e "$root/debootstrap-done" ]; then
   mkdir -p "$root"
   debootstrap --variant=minbase --include=ca-certificates trixie "$root" "${DEBIAN_MIRROR:-http://deb.debian.org/debian}"
+  touch "$root/debootstrap-done"
 fi
 cp -L /etc/resolv.conf "$root/etc/"
+# All but the build is laid anew, with its times, so that nothing stays that the sources no longer have.
 mkdir -p "$root/src"
+find "$root/src" -mindepth 1 -maxdepth 1 ! -name build -exec rm -rf {} +
 git ls-files -z | tar --null -T - -c | tar -x -C "$root/src"
-inside "cd /src && tools/install-packages.sh && dpkg-query -W libembree-dev && make test JOBS=$jobs"
+if [ -d "$corpus" ] && [ ! -d "$root/shared/corpus" ]; then
+  mkdir -p "$root/shared" && cp -rL "$corpus" "$root/shared/corpus"
+fi
+inside "cd /src && tools/install-packages.sh && dpkg-query -W libembree-dev g++ && make test JOBS=$jobs"

@@ -1,15 +1,17 @@
 #!/bin/bash
 # test-wheel.sh WHEEL FOLDER: installs a wheel into a Debian 12 that has Python and nothing else, made in FOLDER, and uses it there:
-# a picture by the command vv, one by Python, an untrusted Script, a shader plug-in. Pictures are left in FOLDER/pictures. Nothing of
-# this system is mounted there. Needs root, debootstrap, pip (which fetches numpy) and Debian's mirror.
+# pictures by the command vv, with text, and by Python; Scripts of all engines; two workers; and nothing may be warned of. Pictures are
+# left in FOLDER/pictures. Nothing of this system is mounted there. NUMPY: which numpy ("numpy<2"). Needs root, debootstrap, pip
+# (which fetches numpy) and Debian's mirror.
 set -euo pipefail
 wheel=$(realpath "$1") folder=$(realpath -m "$2") here=$(realpath "$(dirname "$0")/..")
 root=$folder/root
-if [ ! -e "$root/etc/debian_version" ]; then
+if [ ! -e "$root/debootstrap-done" ]; then
   mkdir -p "$root"
   debootstrap --variant=minbase --include=python3,python3-venv,python3-pip bookworm "$root" "${DEBIAN_MIRROR:-http://deb.debian.org/debian}"
+  touch "$root/debootstrap-done"
 fi
-rm -rf "$root/try" && mkdir -p "$root/try" "$folder/pictures" "$folder/wheels"
+rm -rf "$root/try" "$folder/wheels" && mkdir -p "$root/try" "$folder/pictures" "$folder/wheels"
 "${PYTHON:-python3}" -m pip download -q --only-binary=:all: --python-version "$(chroot "$root" python3 -c 'import sys; print("%d.%d" % sys.version_info[:2])')" \
   --platform manylinux2014_x86_64 --platform manylinux_2_28_x86_64 --platform manylinux_2_27_x86_64 -d "$folder/wheels" "${NUMPY:-numpy}"
 cp "$wheel" "$folder"/wheels/numpy*.whl "$here"/examples/scenes/still_life.wrl "$root/try/"
@@ -18,25 +20,48 @@ cat >"$root/try/try.py" <<'P'
 import pathlib
 import numpy
 import xvrml
-print("package:", pathlib.Path(xvrml.__file__).parent)
+print("package:", pathlib.Path(xvrml.__file__).parent, "numpy:", numpy.__version__)
 world = xvrml.load("still_life.wrl")
 picture = world.render(size=(320, 240), spp=8)
 pixels = numpy.asarray(picture)
 assert pixels.shape == (240, 320, 4) and pixels[..., :3].std() > 0.05, pixels.shape
+assert not world.warnings, world.warnings
 picture.save("python.png")
-pathlib.Path("js.wrl").write_text('#VRML V2.0 utf8\nDEF S Script { eventOut SFFloat x url "javascript:function initialize() { x = 42; }" }\n')
-browser = xvrml.Browser("js.wrl")
-browser.tick(0.1)
-print("Script: x =", browser["S"].x)
-assert browser["S"].x == 42
-P
-inside() {
-  unshare --mount --pid --fork --mount-proc="$root/proc" chroot "$root" /usr/bin/env -i PATH=/usr/bin:/bin HOME=/root bash -euc "cd /try; $1"
+HEADER = "#VRML V2.0 utf8\nDEF S Script { eventOut SFFloat x url "
+PROGRAMS = {  # engine: trusted, program
+    "JavaScript": (False, '"javascript:function initialize() { x = 42; }"'),
+    "Tcl": (False, '"tcl:proc initialize {} { set ::x 42 }"'),
+    "trusted Tcl": (True, '"tcl:package require msgcat; proc initialize {} { set ::x [clock format 42 -format %s] }"'),
+    "Python": (True, '"python:import math\ndef initialize(): script.x = math.floor(42.5)\n"'),
 }
-# No library of ours and no display may be there.
-inside 'if ls /usr/lib/x86_64-linux-gnu | grep -E "embree|tbb|OpenEXR|libX11|libglib"; then echo "the root is not bare"; exit 1; fi'
-inside 'rm -rf v && python3 -m venv v && v/bin/pip install -q --no-index --find-links=. xvrml-*.whl && v/bin/pip list'
-inside 'v/bin/vv still_life.wrl -o vv.png --size 640x480 --spp 16 && v/bin/python try.py && v/bin/vv --list-engines && v/bin/vv --version &&
-        v/bin/openrt-replay --help >/dev/null && v/bin/vv scenes/glass_ball.wrl -o glass.png --size 160x120 --spp 4'
+for name, (trust, program) in PROGRAMS.items():
+    pathlib.Path("script.wrl").write_text(HEADER + program + " }\n")
+    browser = xvrml.Browser("script.wrl", trust=trust)
+    browser.tick(0.1)
+    print(name, "Script: x =", browser["S"].x)
+    assert browser["S"].x == 42 and not browser.warnings, browser.warnings
+P
+cat >"$root/try/text.wrl" <<'W'
+#VRML V2.0 utf8
+Viewpoint { position 0 0 9 }
+Shape { appearance Appearance { material Material { } } geometry Text {
+  string [ "SERIF" "bold" ] fontStyle FontStyle { justify [ "MIDDLE" "MIDDLE" ] style "BOLD" } } }
+W
+inside() {
+  unshare --mount --pid --fork --kill-child --mount-proc="$root/proc" bash -c 'mkdir -p "$0/dev/shm" && mount -t tmpfs none "$0/dev/shm" &&
+    exec chroot "$0" /usr/bin/env -i PATH=/usr/bin:/bin HOME=/root bash -euc "cd /try; $1"' "$root" "$1" </dev/null
+}
+# No library of ours, no font and no display may be there.
+inside 'if ls /usr/lib/x86_64-linux-gnu | grep -E "embree|tbb|OpenEXR|libX11|libglib|libtcl"; then echo "the root is not bare"; exit 1; fi
+        if [ -e /usr/share/fonts ] || [ -e /etc/fonts ]; then echo "the root has fonts"; exit 1; fi'
+inside 'python3 -m venv v && v/bin/pip install -q --no-index --find-links=. xvrml-*.whl && v/bin/pip list'
+inside '{ v/bin/vv still_life.wrl -o vv.png --size 640x480 --spp 16 --strict
+          v/bin/vv text.wrl -o text.png --size 320x240 --spp 16 --strict
+          v/bin/vv scenes/glass_ball.wrl -o glass.png --size 160x120 --spp 4 --strict
+          v/bin/python try.py; v/bin/vv --list-engines; v/bin/vv --version; v/bin/openrt-replay --help >/dev/null; } 2>errors
+        v/bin/openrt-worker --connect 127.0.0.1:7447 2>/dev/null & v/bin/openrt-worker --connect 127.0.0.1:7447 2>/dev/null &
+        v/bin/vv still_life.wrl -o cluster.png --size 640x480 --spp 16 --local-threads 0 --listen-workers 127.0.0.1:7447 --require-workers 2 2>errors.cluster
+        kill %1 %2; cmp vv.png cluster.png; echo "two workers: the same picture"' || { cat "$root"/try/errors* >&2; exit 1; }
+if grep -q . "$root/try/errors"; then echo "test-wheel: warnings:" >&2; cat "$root/try/errors" >&2; exit 1; fi
 cp "$root"/try/*.png "$folder/pictures/"
 echo "the wheel works; pictures in $folder/pictures"

@@ -1,6 +1,9 @@
 // world_object.cpp: what is behind the Python class World: how it comes alive, who may change it when, callbacks after events.
 #include <algorithm>
+#include <filesystem>
 #include <utility>
+
+#include <dlfcn.h>
 
 #include "objects.h"
 
@@ -15,6 +18,18 @@ struct Count {
   explicit Count(int& n) : number(n) { ++number; }
   ~Count() { --number; }
 };
+
+// In a wheel the engine for Scripts in Python lies beside this module, where no program without a Python finds it.
+BrowserOptions withOwnEngines(BrowserOptions options) {
+  static const char here = 0;
+  std::error_code error;
+  Dl_info info{};
+  if (dladdr(&here, &info) == 0 || !info.dli_fname) return options;
+  const std::filesystem::path folder =
+      std::filesystem::canonical(std::filesystem::path(info.dli_fname).parent_path() / "scripts", error);
+  if (!error) options.scriptPath += (options.scriptPath.empty() ? "" : ":") + folder.string();
+  return options;
+}
 
 } // namespace
 
@@ -45,7 +60,7 @@ Browser& WorldObject::live() {
 void WorldObject::run(std::unique_ptr<World> made, const BrowserOptions& options, double start) {
   const MakingBrowser making(locks); // its Scripts begin at once
   locks->callbacks = this;
-  change([&] { running = std::make_unique<Browser>(std::move(made), options, start); });
+  change([&] { running = std::make_unique<Browser>(std::move(made), withOwnEngines(options), start); });
   scriptsLock(running.get(), locks);
 }
 

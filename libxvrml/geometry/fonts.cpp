@@ -4,6 +4,9 @@
 #include <fontconfig/fontconfig.h>
 
 #include <cstring>
+#include <filesystem>
+
+#include <dlfcn.h>
 
 namespace xvrml {
 namespace {
@@ -14,6 +17,27 @@ template <class T, void (*destroy)(T*)> struct Destroyer {
 using Pattern = std::unique_ptr<FcPattern, Destroyer<FcPattern, FcPatternDestroy>>;
 
 const FcChar8* fc(const char* s) { return reinterpret_cast<const FcChar8*>(s); }
+
+// A tree that brings fonts, as a wheel does, has them in share/xvrml/fonts beside lib; they serve where the system has none.
+// There is a configuration among them for a system without fontconfig's own, of which fontconfig would complain on standard
+// error.
+void addBundledFonts() {
+  namespace fs = std::filesystem;
+  static const char here = 0;
+  std::error_code error;
+  Dl_info info{};
+  if (dladdr(&here, &info) == 0 || !info.dli_fname) return;
+  const fs::path folder = fs::canonical(fs::path(info.dli_fname).parent_path() / "../share/xvrml/fonts", error);
+  if (error) return;
+  if (FcChar8* installed = FcConfigGetFilename(nullptr, nullptr)) {
+    FcStrFree(installed);
+    const FcFontSet* fonts = FcConfigGetFonts(nullptr, FcSetSystem);
+    if (!fonts || fonts->nfont == 0) FcConfigAppFontAddDir(nullptr, fc(folder.c_str()));
+  } else if (FcConfig* own = FcConfigCreate()) {
+    if (FcConfigParseAndLoad(own, fc((folder / "fonts.conf").c_str()), FcFalse)) FcConfigSetCurrent(own); // builds the list
+    FcConfigDestroy(own);
+  }
+}
 
 // The standard's families by fontconfig's names.
 std::string fontconfigName(const std::string& family) {
@@ -30,6 +54,8 @@ struct Match {
 };
 
 bool match(const std::string& name, bool bold, bool italic, const std::string& language, Match& result) {
+  static const bool prepared = (addBundledFonts(), true);
+  (void)prepared;
   Pattern pattern(FcPatternCreate());
   if (!pattern) return false;
   FcPatternAddString(pattern.get(), FC_FAMILY, fc(name.c_str()));

@@ -200,7 +200,7 @@ Mesh buildText(const nodes::Text& node, const MeshOptions& options, Faults& faul
   std::lock_guard lock(fontsMutex());
   Font* font = findFont(style.families, style.bold, style.italic, style.language);
   if (!font) {
-    faults.note("no font is installed; nothing is drawn");
+    faults.note("no font is installed (fonts-dejavu-core on Debian); nothing is drawn");
     return {};
   }
   Mesh mesh = Layout(node, style, *font, options, faults).run();

@@ -81,10 +81,10 @@ FieldTarget Builder::openDeclaration(Access access, FieldType type, const Token&
   if (isScript()) {
     auto& script = static_cast<ScriptNode&>(*nodes_.back().node);
     if (declaration.accepted) {
-      const FieldInfo& added = addField(target, field);
-      if (holdsValue(added)) {
+      const FieldInfo* added = &addField(target, field); // one of the type's fields
+      if (holdsValue(*added)) {
         script.values.push_back(defaultValue(type));
-        storage = script.storage(added);
+        storage = script.storage(*added);
       }
     }
     if (hasValue && nodeValue) receivers_.push_back({kind, storage, nullptr, &script});

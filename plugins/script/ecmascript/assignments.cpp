@@ -4,6 +4,7 @@
 #include "assignments.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <vector>
 
 namespace ecma {

@@ -1,9 +1,36 @@
 // trusted.cpp: the interpreter of a trusted world: all of Tcl, Tk if the program asks for it. What would hold the host up is done
 // differently: `vwait` and `tkwait` wait within a coroutine, while the world goes on. [the browser's thread]
+#include <filesystem>
+
+#include <dlfcn.h>
+
 #include "interpreter.h"
 
 namespace tclscript {
 namespace {
+
+// A tree that brings Tcl's own library, as a wheel does, has it beside the folder of script engines; it fits the libtcl that came
+// with it, which an installed one need not. Empty if there is none.
+std::filesystem::path bundledLibrary() {
+  static const char here = 0;
+  std::error_code error;
+  Dl_info info{};
+  if (dladdr(&here, &info) == 0 || !info.dli_fname) return {};
+  const std::filesystem::path folder = std::filesystem::path(info.dli_fname).parent_path() / "../tcl" TCL_VERSION;
+  return std::filesystem::exists(folder / "init.tcl", error) ? std::filesystem::canonical(folder, error)
+                                                             : std::filesystem::path();
+}
+
+// Tcl's own procedures, found by Tcl itself unless they came with this.
+int initialize(Tcl_Interp* tcl) {
+  static const std::filesystem::path library = bundledLibrary();
+  if (library.empty()) return Tcl_Init(tcl);
+  Tcl_SetVar2Ex(tcl, "tcl_library", nullptr, tclText(library.c_str()).get(), TCL_GLOBAL_ONLY);
+  const Object encodings(Tcl_NewListObj(0, nullptr));
+  Tcl_ListObjAppendElement(nullptr, encodings.get(), tclText((library / "encoding").c_str()).get());
+  Tcl_SetEncodingSearchPath(encodings.get());
+  return Tcl_Init(tcl);
+}
 
 // The prelude. vwait's trace starts the coroutine again in the event loop, not from within the assignment.
 constexpr const char prelude[] = R"tcl(
@@ -97,7 +124,7 @@ int backgroundError(ClientData data, Tcl_Interp* tcl, int count, Tcl_Obj* const 
 int makeTrusted(Interpreter& interpreter) {
   Tcl_Interp* tcl = interpreter.tcl();
   const XsScriptInfo& info = interpreter.info();
-  if (Tcl_Init(tcl) != TCL_OK) return TCL_ERROR;
+  if (initialize(tcl) != TCL_OK) return TCL_ERROR;
   Tcl_CreateObjCommand(tcl, "::xvrml::backgroundError", backgroundError, &interpreter, nullptr);
   for (const char* name : {"argv0", "argv"})
     Tcl_SetVar2Ex(tcl, name, nullptr, tclText(name[4] ? info.origin : "").get(), TCL_GLOBAL_ONLY);

@@ -277,7 +277,7 @@ static const struct {
                 {"loop", loop},         {"wrong", wrong}};
 
 /* One line: the words of a copy, and the command. */
-static XsResult runLine(Call* call, const char* line, size_t length) {
+static XsResult runLine(Call call, const char* line, size_t length) {
   char copy[2000], words[2000], *p;
   if (length >= sizeof copy) return XS_FAILED;
   memcpy(copy, line, length);
@@ -286,20 +286,20 @@ static XsResult runLine(Call* call, const char* line, size_t length) {
   p = words;
   for (int i = 0; i < MOST_ARGUMENTS; i++) {
     while (*p == ' ') p++;
-    call->words[i] = p;
+    call.words[i] = p;
     while (*p && *p != ' ') p++;
     if (*p) *p++ = 0;
   }
-  call->rest = copy + (call->words[0] - words) + strlen(call->words[0]);
-  while (*call->rest == ' ') call->rest++;
+  call.rest = copy + (call.words[0] - words) + strlen(call.words[0]);
+  while (*call.rest == ' ') call.rest++;
   for (size_t i = 0; i < sizeof commands / sizeof *commands; i++)
-    if (strcmp(commands[i].name, call->words[0]) == 0) return commands[i].run(call);
+    if (strcmp(commands[i].name, call.words[0]) == 0) return commands[i].run(&call);
   return XS_FAILED;
 }
 
 /* All lines for this event, in order. */
 static XsResult run(XsInterpreter interpreter, const char* when, const XsEvent* event) {
-  Call call;
+  Call call = {0};
   call.self = (Interpreter*)(uintptr_t)interpreter;
   call.event = event;
   const XsString program = call.self->info->text;
@@ -309,7 +309,7 @@ static XsResult run(XsInterpreter interpreter, const char* when, const XsEvent* 
     if (!stop) stop = end;
     while (p < stop && *p == ' ') p++;
     if ((size_t)(stop - p) > length && memcmp(p, when, length) == 0 && p[length] == ':') {
-      const XsResult result = runLine(&call, p + length + 1, (size_t)(stop - p) - length - 1);
+      const XsResult result = runLine(call, p + length + 1, (size_t)(stop - p) - length - 1);
       if (result != XS_OK) return result;
     }
     p = stop + 1;

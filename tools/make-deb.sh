@@ -1,0 +1,9 @@
+#!/bin/bash
+# make-deb.sh FOLDER JOBS: Debian packages of this system's release, FOLDER/*.deb, by CPack (cmake/Packages.cmake).
+set -euo pipefail
+cd "$(dirname "$0")/.."
+folder=$1 jobs=${2:-2} python=${PYTHON:-/usr/bin/python3}
+cmake --log-level=NOTICE -S . -B "$folder" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_INSTALL_PREFIX=/usr -DCMAKE_SKIP_INSTALL_RPATH=ON \
+  -DOPENRT_PYTHON_DIR=lib/python3/dist-packages -DPython_EXECUTABLE="$python" -DPython3_EXECUTABLE="$python"
+cmake --build "$folder" -j "$jobs"
+cd "$folder" && cpack
