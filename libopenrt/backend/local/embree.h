@@ -1,6 +1,15 @@
 // embree.h: the only place that knows which Embree this is. Packets of 16 rays; contexts and arguments of both major versions.
 #pragma once
 
+// The library's build says which; what else includes this (tests) finds the same, in the order of cmake/Dependencies.cmake.
+#ifndef OPENRT_EMBREE_MAJOR
+#if __has_include(<embree3/rtcore.h>)
+#define OPENRT_EMBREE_MAJOR 3
+#else
+#define OPENRT_EMBREE_MAJOR 4
+#endif
+#endif
+
 #if OPENRT_EMBREE_MAJOR >= 4
 #include <embree4/rtcore.h>
 #else
