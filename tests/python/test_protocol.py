@@ -1,28 +1,49 @@
 """openrt-worker against a master that knows docs/protocol.md alone: bare ZeroMQ sockets, flatbuffers put together by hand."""
+import ctypes
+import ctypes.util
 import signal
 import struct
 import subprocess
+import threading
 
 import pytest
-from conftest import find_vv
+from conftest import HEADER, SMALL, find_vv
 
 zmq = pytest.importorskip("zmq")
 
 WORKER = find_vv().with_name("openrt-worker")
 pytestmark = pytest.mark.skipif(not WORKER.exists(), reason="openrt-worker is not built")
 
+hashing = ctypes.CDLL(ctypes.util.find_library("xxhash") or "libxxhash.so.0")
+hashing.XXH3_64bits_withSeed.restype = ctypes.c_uint64
+hashing.XXH3_64bits_withSeed.argtypes = [ctypes.c_char_p, ctypes.c_size_t, ctypes.c_uint64]
+
+
+def xxh3(data, seed=0):
+    return hashing.XXH3_64bits_withSeed(data, len(data), seed)
+
+
+def seal(frames, number):
+    """The last frame of a message: its number in this direction of the connection, and a checksum."""
+    total = xxh3(frames[0], number)
+    for frame in frames[1:]:
+        total = xxh3(struct.pack("<Q", len(frame)), total)
+    return struct.pack("<QQ", number, total)
+
+
 KINDS = ["", "Hello", "Need", "Ready", "Failed", "Result", "Log", "Welcome", "Scene", "Piece", "Prepare", "Jobs", "Drop", "Beat", "Bye"]
 PATIENCE = 60_000  # milliseconds; machines may be busy
 
 
 def table(fields):
-    """A table whose fields (struct format, value) lie 8 bytes apart: its vtable, then itself. Length: a multiple of 8."""
+    """A table whose fields (struct format, value; None: absent) lie 8 bytes apart: its vtable, then itself. Length: a multiple of 8."""
     size = 4 + 8 * len(fields)
-    vtable = struct.pack(f"<HH{len(fields)}H", 4 + 2 * len(fields), size, *(4 + 8 * i for i in range(len(fields))))
+    places = (4 + 8 * i if field else 0 for i, field in enumerate(fields))
+    vtable = struct.pack(f"<HH{len(fields)}H", 4 + 2 * len(fields), size, *places)
     before = (len(vtable) + 3) // 8 * 8 + 4  # the table begins at 4 modulo 8, its first field at 0
     vtable += bytes(before - len(vtable))
     body = struct.pack("<i", before)
-    for form, value in fields:
+    for form, value in (field or ("Q", 0) for field in fields):
         body += struct.pack("<" + form, value).ljust(8, b"\0")
     return vtable + body, before
 
@@ -70,10 +91,15 @@ class Master:
         self.socket = zmq.Context.instance().socket(zmq.DEALER)
         self.socket.linger = 0
         self.socket.connect("tcp://" + address)
+        self.sent = self.received = 0
         self.send("Beat", [("d", 1.0), ("?", False)])
 
     def send(self, kind, fields, session=0, bulk=()):
-        self.socket.send_multipart([header(kind, fields, session), *bulk])
+        self.send_frames([header(kind, fields, session), *bulk])
+
+    def send_frames(self, frames):
+        self.sent += 1
+        self.socket.send_multipart([*frames, seal(frames, self.sent)])
 
     def beat(self):
         self.send("Beat", [("d", 0.5), ("?", True)])
@@ -84,7 +110,10 @@ class Master:
             self.beat()
             if not self.socket.poll(50):
                 continue
-            data, *bulk = self.socket.recv_multipart()
+            *frames, last = self.socket.recv_multipart()
+            self.received += 1
+            assert last == seal(frames, self.received)
+            data = self.last = frames[0]
             assert data[4:8] == b"ORTW"
             root = Table(data, struct.unpack_from("<I", data)[0])
             name, content = KINDS[root.get(1, "B")], Table(data, root.follow(2))
@@ -97,6 +126,10 @@ class Master:
         # A busy machine is not a lost one: long silences are allowed.
         self.send("Welcome", [("I", protocol), ("Q", session), ("f", 0.1), ("f", 60.0)], session)
         return session
+
+    def scene(self, epoch, edits, session=42):
+        # Vectors of arrays and libraries would be fields 3 and 4: absent ones are 0 in the vtable.
+        self.send("Scene", [("Q", epoch), ("?", True), ("?", True), None, None, ("Q", xxh3(edits))], session, [edits])
 
     def close(self):
         self.socket.close()
@@ -168,7 +201,7 @@ def test_junk_ends_the_connection_and_the_next_master_is_served(worker):
     master = Master(worker.address)
     master.welcome()
     for junk in (b"", b"junk", bytes(1000)):
-        master.socket.send_multipart([junk])
+        master.send_frames([junk])
     _, bye = master.receive("Bye")
     assert "three messages" in bye.text(0)
     Master(worker.address).welcome()
@@ -177,7 +210,7 @@ def test_junk_ends_the_connection_and_the_next_master_is_served(worker):
 def test_scenes_are_answered_and_edits_that_are_none_refused(worker):
     master = Master(worker.address)
     session = master.welcome()
-    master.send("Scene", [("Q", 5), ("?", True), ("?", True)], session, [b"no edits at all"])
+    master.scene(5, b"no edits at all")
     got, need = master.receive("Need")
     assert (got, need.get(0, "Q"), need.count(1)) == (session, 5, 0)
     _, failed = master.receive("Failed")
@@ -185,11 +218,46 @@ def test_scenes_are_answered_and_edits_that_are_none_refused(worker):
     assert "flatbuffer" in failed.text(1)
 
 
+def test_a_master_does_not_wait_for_ever_for_a_worker_that_never_gets_ready(worker, vv):
+    real = Master(worker.address)
+    real.receive("Hello")
+    listener = zmq.Context.instance().socket(zmq.ROUTER)
+    port = listener.bind_to_random_port("tcp://127.0.0.1")
+    over, heard = threading.Event(), []
+
+    def serve():  # a worker that says what a real one says, beats, and does nothing
+        numbers = {}
+        while not over.is_set():
+            if listener.poll(50):
+                route, *frames = listener.recv_multipart()
+                heard.append(frames[0])
+                if route not in numbers:
+                    numbers[route] = 1
+                    listener.send_multipart([route, real.last, seal([real.last], 1)])
+            for route in numbers:
+                numbers[route] += 1
+                frames = [header("Beat", [("d", 0.5), ("?", True)])]
+                listener.send_multipart([route, *frames, seal(frames, numbers[route])])
+
+    thread = threading.Thread(target=serve)
+    thread.start()
+    try:
+        vv.write("ball.wrl", HEADER + "Shape { geometry Sphere { } }")
+        said = vv("ball.wrl", "-o", "ball.png", *SMALL, "--local-threads", 0, "--workers", f"127.0.0.1:{port}")
+    finally:
+        over.set()
+        thread.join()
+        listener.close(0)
+    assert said.returncode == 0, said.stderr
+    assert "this process helps" in said.stderr.decode()
+    assert len(heard) > 50  # it was there all the time
+
+
 def test_messages_of_another_session_are_not_heard(worker):
     master = Master(worker.address)
     session = master.welcome()
-    master.send("Scene", [("Q", 5), ("?", True), ("?", True)], session + 1, [b"x"])
-    master.send("Scene", [("Q", 6), ("?", True), ("?", True)], session, [b"x"])
+    master.scene(5, b"x", session + 1)
+    master.scene(6, b"x", session)
     _, need = master.receive("Need")
     assert need.get(0, "Q") == 6
 
@@ -210,8 +278,8 @@ def test_the_end_is_said():
 def test_once_ends_with_its_master():
     worker = Worker("--once")
     master = Master(worker.address)
-    session = master.welcome()
-    master.send("Scene", [("Q", 5), ("?", True), ("?", True)], session, [b"x"])
+    master.welcome()
+    master.scene(5, b"x")
     master.receive("Need")
     master.close()
     assert worker.process.wait(timeout=60) == 0

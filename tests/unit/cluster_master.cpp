@@ -378,19 +378,29 @@ TEST_P(ClusterMaster, NobodyWorksWithOtherVersionsOfShaders) {
   EXPECT_EQ(master->totals().workers, 0u);
 }
 
+TEST_P(ClusterMaster, WhoSendsWhatCannotBeReadIsRefusedAtOnce) {
+  FakeWorker& bad = join();
+  join();
+  master->commit(1, edits(1), true, now);
+  ASSERT_TRUE(runUntil([&] { return bad.session != 0; }));
+  Frames noise(1, std::vector<std::byte>(64));
+  for (auto& byte : noise[0]) byte = std::byte(random());
+  master->message(bad.peer, std::move(noise), now);
+  EXPECT_NE(bad.refused, "");
+  ASSERT_TRUE(runUntil([&] { return over(1); }));
+  expectSame(1);
+}
+
 TEST_P(ClusterMaster, NonsenseIsBorneThreeTimes) {
   FakeWorker& bad = join();
   FakeWorker& good = join();
   master->commit(1, edits(1), true, now);
   ASSERT_TRUE(runUntil([&] { return bad.session != 0 && good.session != 0; }));
-  Frames noise(1, std::vector<std::byte>(64));
-  for (auto& byte : noise[0]) byte = std::byte(random());
   for (int i = 0; i < 3; i++) {
     EXPECT_EQ(bad.refused, "");
-    Frames frames =
-        i == 0 ? noise
-               : encode(bad.session, i == 1 ? message::Body(message::Need{77, {Hash{1, 2}}}) : message::Body(message::Drop{1}));
-    master->message(bad.peer, std::move(frames), now);
+    master->message(
+        bad.peer, encode(bad.session, i == 1 ? message::Body(message::Need{77, {Hash{1, 2}}}) : message::Body(message::Drop{1})),
+        now);
   }
   EXPECT_NE(bad.refused, "");
   ASSERT_TRUE(runUntil([&] { return over(1); }));

@@ -340,6 +340,48 @@ TEST(Scheduler, aReserveWorksOnlyIfNobodyElseCan) {
   EXPECT_TRUE(b.handOut().empty());
 }
 
+TEST(Scheduler, aReserveHelpsIfNothingComesOfTheOthers) {
+  Bench b;
+  b.s.announce(1, 0);
+  b.s.join(9, 2, true, 0, true);
+  b.s.join(1, 2, false, 0);
+  WorkerId w;
+  Epoch e;
+  EXPECT_TRUE(b.s.move(0, w, e) && w == 1); // and is not heard of again
+  EXPECT_EQ(b.s.wake(b.now), 10);
+  b.now = 9.9;
+  EXPECT_TRUE(b.prepare().empty());
+  b.now = 10;
+  EXPECT_EQ(b.prepare(), std::vector<WorkerId>{9});
+  b.frame(1, 3);
+  for (int i = 0; i < 3; i++)
+    for (const Handout& h : b.handOut()) {
+      EXPECT_EQ(h.worker, 9u);
+      EXPECT_TRUE(b.done(h));
+    }
+  EXPECT_TRUE(b.work[1]->over());
+}
+
+TEST(Scheduler, aReserveTakesOverJobsThatNeverComeHome) {
+  Bench b;
+  b.s.announce(1, 0);
+  b.s.join(9, 2, true, 0, true);
+  b.frame(1, 3);
+  b.workers(1, 1, 2);
+  EXPECT_EQ(byWorker(b.handOut()), (std::map<WorkerId, uint32_t>{{1, 2}}));
+  b.now = 10;
+  EXPECT_EQ(b.prepare(), std::vector<WorkerId>{9});
+  uint32_t again = 0;
+  for (int i = 0; i < 3; i++)
+    for (const Handout& h : b.handOut()) {
+      EXPECT_EQ(h.worker, 9u);
+      EXPECT_TRUE(b.done(h));
+      again += h.again;
+    }
+  EXPECT_EQ(again, 2u);
+  EXPECT_TRUE(b.work[1]->over());
+}
+
 TEST(Scheduler, joiningInMidFrame) {
   Bench b;
   b.frame(1, 100);

@@ -1,7 +1,11 @@
 // The wire: who is let in and who is not, what is too large, beats, losses. Real sockets on the loopback; events, not times.
 #include <thread>
 
+#include <netinet/in.h>
+#include <sys/socket.h>
+
 #include "backend/cluster/addresses.h"
+#include "backend/cluster/seal.h"
 #include "unit/cluster_wires.h"
 
 using namespace openrt;
@@ -10,14 +14,18 @@ using Kind = Event::Kind;
 
 namespace {
 
-// A peer that knows nothing of the Wire: a bare socket.
+// A peer that knows nothing of the Wire: a bare socket, and seals.
 class Bare {
  public:
   explicit Bare(const Wire& other) : socket_(context_, zmq::socket_type::dealer) {
     socket_.set(zmq::sockopt::linger, 0);
     socket_.connect("tcp://" + other.address());
   }
-  void send(const Frames& frames) {
+  void send(Frames frames) {
+    seal(frames, ++sent_);
+    sendAsTheyAre(frames);
+  }
+  void sendAsTheyAre(const Frames& frames) {
     for (size_t i = 0; i < frames.size(); i++)
       socket_.send(zmq::buffer(frames[i].data(), frames[i].size()),
                    i + 1 < frames.size() ? zmq::send_flags::sndmore : zmq::send_flags::none);
@@ -29,12 +37,14 @@ class Bare {
       if (!socket_.recv(part, zmq::recv_flags::dontwait)) return false;
       frames.emplace_back(part.data<std::byte>(), part.data<std::byte>() + part.size());
     } while (part.more());
+    EXPECT_TRUE(unseal(frames, ++received_));
     return true;
   }
 
  private:
   zmq::context_t context_;
   zmq::socket_t socket_;
+  uint64_t sent_ = 0, received_ = 0;
 };
 
 Frames beat() { return encode(0, message::Beat{1, false}); }
@@ -337,7 +347,7 @@ TEST(Wire, aFrameThatIsTooLargeEndsTheConnection) {
   EXPECT_FALSE(wires.has(door, Kind::message));
 }
 
-TEST(Wire, cutAndDoubledMessages) {
+TEST(Wire, headersThatAreCut) {
   Wires wires;
   const Wire& door = wires.add(listening());
   Bare bare(door);
@@ -350,6 +360,68 @@ TEST(Wire, cutAndDoubledMessages) {
     bare.send(whole);
   }
   EXPECT_NE(wires.next(door, Kind::left).peer, 0u);
+}
+
+TEST(Wire, whatIsLostRepeatedOrDamagedOnTheWayEndsThePeer) {
+  const Frames first = encode(7, message::Piece{{1, 2}, 10, 10, 0, someBytes(10)});
+  enum Damage { lost, repeated, damaged, shortened, without };
+  for (const Damage damage : {lost, repeated, damaged, shortened, without}) {
+    Wires wires;
+    const Wire& door = wires.add(listening());
+    Bare bare(door);
+    Frames frames = first;
+    seal(frames, 1);
+    bare.sendAsTheyAre(frames);
+    EXPECT_NE(wires.next(door, Kind::message).peer, 0u);
+    frames = first;
+    if (damage != repeated) seal(frames, damage == lost ? 3 : 2);
+    if (damage == repeated) seal(frames, 1);
+    if (damage == damaged) frames[0][frames[0].size() / 2] ^= std::byte(16);
+    if (damage == shortened) frames[1].pop_back();
+    if (damage == without) frames.pop_back();
+    bare.sendAsTheyAre(frames);
+    EXPECT_NE(wires.next(door, Kind::left).text.find("lost, repeated or damaged"), std::string::npos) << damage;
+    bare.send(first);
+    for (int i = 0; i < 20; i++) wires.serve();
+    EXPECT_FALSE(wires.has(door, Kind::message));
+  }
+}
+
+// A length that was damaged: the connection waits for a frame that never ends, and beats go into it.
+TEST(Wire, beatsInAFrameThatNeverEndsAreSilence) {
+  Wires wires;
+  WireOptions options = listening();
+  options.silence = 0.5;
+  const Wire& door = wires.add(options);
+  const std::string address = door.address();
+  const int fd = socket(AF_INET, SOCK_STREAM, 0);
+  sockaddr_in to{};
+  to.sin_family = AF_INET;
+  to.sin_port = htons(uint16_t(std::stoi(address.substr(address.rfind(':') + 1))));
+  to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  ASSERT_EQ(connect(fd, reinterpret_cast<sockaddr*>(&to), sizeof to), 0);
+  const auto put = [fd](const std::string& bytes) { send(fd, bytes.data(), bytes.size(), MSG_NOSIGNAL); };
+  // ZMTP 3.0: greeting, mechanism NULL, READY.
+  put(std::string("\xff\0\0\0\0\0\0\0\x01\x7f\x03\0", 12) + "NULL" + std::string(48, '\0'));
+  char greeting[64];
+  ASSERT_EQ(recv(fd, greeting, sizeof greeting, MSG_WAITALL), ssize_t(sizeof greeting));
+  put(std::string("\x04\x1c\x05READY\x0bSocket-Type\0\0\0\x06"
+                  "DEALER",
+                  30));
+  Frames frames = beat();
+  seal(frames, 1);
+  for (size_t i = 0; i < frames.size(); i++) {
+    std::string head{char(i + 1 < frames.size()), char(frames[i].size())};
+    put(head + std::string(reinterpret_cast<const char*>(frames[i].data()), frames[i].size()));
+  }
+  EXPECT_NE(wires.next(door, Kind::joined).peer, 0u);
+  put(std::string("\x02\0\0\0\0\x03\0\0\0", 9)); // 48 MiB are to come
+  for (const double end = steadyNow() + 30; !wires.has(door, Kind::left) && steadyNow() < end; wires.serve()) {
+    put(std::string(100, 'b'));
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+  EXPECT_NE(wires.next(door, Kind::left, 0).text.find("nothing was heard"), std::string::npos);
+  close(fd);
 }
 
 TEST(Wire, aFullQueueSaysSoAndKeepsTheFrames) {

@@ -332,6 +332,15 @@ TEST(Worker, messagesOfAnotherSessionAreNotHeard) {
   EXPECT_TRUE(rig.badOnes.empty());
 }
 
+TEST(Worker, aMessageThatCannotBeReadEndsTheSession) {
+  Rig rig;
+  rig.greet();
+  rig.worker.message(1, {someBytes(30)}, 0);
+  EXPECT_FALSE(rig.worker.serving());
+  ASSERT_EQ(rig.closed.size(), 1u);
+  EXPECT_NE(rig.closed[0].second.find("cannot be read"), std::string::npos);
+}
+
 TEST(Worker, nonsenseIsCounted) {
   Rig rig;
   rig.greet();
@@ -339,16 +348,15 @@ TEST(Worker, nonsenseIsCounted) {
   rig.tell(TinyScene(1).piece());                                         // that nobody asked for
   rig.tell(message::Prepare{1});
   rig.tell(message::Welcome{1, 7, 0.1f, 0.5f});
-  rig.worker.message(1, {someBytes(30)}, 0);
-  EXPECT_EQ(rig.badOnes.size(), 6u);
+  EXPECT_EQ(rig.badOnes.size(), 5u);
   const TinyScene scene(5);
   rig.tell(scene.message);
   rig.tell(scene.message); // replayed
-  EXPECT_EQ(rig.badOnes.size(), 7u);
+  EXPECT_EQ(rig.badOnes.size(), 6u);
   auto wrong = scene.piece();
   wrong.data.back() ^= std::byte(1);
   rig.tell(wrong);
-  EXPECT_EQ(rig.badOnes.size(), 8u);
+  EXPECT_EQ(rig.badOnes.size(), 7u);
   EXPECT_TRUE(std::holds_alternative<message::Failed>(rig.said.back().second.body)) << "the scene cannot be made";
   EXPECT_EQ(rig.machine.all(), Told{});
 }

@@ -38,7 +38,8 @@ void Master::message(Peer peer, Frames&& frames, double now) {
   Remote& remote = found->second;
   for (const auto& frame : frames) remote.bytesReceived += frame.size();
   Message message;
-  if (const std::string wrong = decode(std::move(frames), message); !wrong.empty()) return impl_->strike(remote, wrong, now);
+  if (const std::string wrong = decode(std::move(frames), message); !wrong.empty())
+    return impl_->refuse(peer, "a message that cannot be read: " + wrong, now); // nobody knows what it should have been
   if (auto* hello = std::get_if<message::Hello>(&message.body)) return impl_->hello(remote, std::move(*hello), now);
   if (!remote.welcome || message.session != remote.session) return; // of a session that has ended
   struct {

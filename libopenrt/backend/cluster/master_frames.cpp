@@ -201,7 +201,11 @@ void Master::Impl::handOut(double now) {
   WorkerId worker = 0;
   Epoch epoch = 0;
   bool moved = false;
-  for (; scheduler.move(now, worker, epoch); moved = true) bring(worker, epoch);
+  for (; scheduler.move(now, worker, epoch); moved = true) {
+    if (worker == hereId && options.localThreads == 0 && alive() > 0)
+      logOnce(2, "the workers that are there get nowhere: this process helps");
+    bring(worker, epoch);
+  }
   if (moved) settle();
   std::map<std::pair<WorkerId, Epoch>, std::vector<LeasedJob>> jobs; // few messages, each with all that one worker gets
   Handout out;

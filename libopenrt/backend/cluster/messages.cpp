@@ -113,6 +113,7 @@ struct Encoder {
       auto& l = *t.libraries.emplace_back(std::make_unique<wire::LibraryT>());
       l.name = cut(std::move(library.name)), l.hash = std::make_unique<wire::Hash>(to(library.hash));
     }
+    t.hash = XXH3_64bits(m.edits.data(), m.edits.size());
     append(bulk, std::move(m.edits), largestMessage);
   }
   void operator()(message::Piece&& m) {

@@ -141,6 +141,7 @@ void read(const wire::Scene& t, Frames& frames, message::Scene& m) {
     for (const wire::Library* library : *t.libraries()) m.libraries.push_back({text(library->name()), from(library->hash())});
   }
   m.edits = joined(frames);
+  demand(XXH3_64bits(m.edits.data(), m.edits.size()) == t.hash(), "edits with a wrong checksum");
 }
 
 void read(const wire::Piece& t, Frames& frames, message::Piece& m) {

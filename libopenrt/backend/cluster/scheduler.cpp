@@ -45,6 +45,7 @@ void Scheduler::Impl::forgetAll(Worker& w, Epoch until) {
 void Scheduler::Impl::leave(Worker& w) {
   forgetAll(w, ~Epoch(0));
   depart(w);
+  reserves -= w.reserve;
   workers.erase(w.id);
 }
 
@@ -80,7 +81,7 @@ bool Scheduler::Impl::done(Frame& f, Lease lease, double seconds, double now) {
   w.leases.erase({f.epoch, lease});
   w.tally.out = uint32_t(w.leases.size());
   w.tally.busy += std::max(seconds, 0.0);
-  w.heard = now;
+  w.heard = lively = now;
   if (w.slips > 0) w.slips--;
   const double beyond = std::max(now - held.since - seconds, 0.0);
   if (w.tally.jobs + w.tally.late == 0 || (held.direct && beyond < w.tally.latency))
@@ -123,6 +124,7 @@ void Scheduler::join(WorkerId worker, uint32_t threads, bool here, double now, b
   Worker& w = impl_->workers[worker];
   w.id = worker, w.threads = std::clamp(threads, 1u, 1u << 16), w.here = here, w.reserve = reserve;
   w.heard = now;
+  impl_->reserves += w.reserve;
   impl_->enter(w, 0, true);
 }
 
@@ -130,9 +132,10 @@ void Scheduler::leave(WorkerId worker, double) {
   if (Worker* w = impl_->worker(worker)) impl_->leave(*w);
 }
 
-void Scheduler::announce(Epoch epoch, double) {
+void Scheduler::announce(Epoch epoch, double now) {
   Impl& s = *impl_;
   if (s.frames.contains(epoch)) return;
+  if (s.frames.empty()) s.lively = now;
   Frame& f = s.frames[epoch];
   f.epoch = epoch;
   f.split = s.splitOf();
@@ -169,6 +172,7 @@ bool Scheduler::move(double now, WorkerId& worker, Epoch& epoch) { return impl_-
 void Scheduler::ready(WorkerId worker, Epoch epoch, double now) {
   Worker* w = impl_->worker(worker);
   if (!w || epoch < w->epoch) return;
+  impl_->lively = now;
   if (epoch == w->epoch && !w->ready) {
     const double took = std::max(now - std::max(w->asked, w->heard), 0.0);
     impl_->prepare += (took - impl_->prepare) / (impl_->prepare > 0 ? 8 : 1);
@@ -227,7 +231,7 @@ uint32_t Scheduler::able(Epoch epoch) const {
 
 double Scheduler::wake(double now) const {
   constexpr double breath = 0.005; // a late job that nobody can take yet is looked at again after this
-  double when = never;
+  double when = impl_->stuckAt();
   for (const auto& [epoch, f] : impl_->frames) {
     const auto g = impl_->groups.find(epoch);
     if (f.deadlines.empty() || g == impl_->groups.end()) continue;

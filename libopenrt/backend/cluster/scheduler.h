@@ -35,6 +35,7 @@ struct SchedulerOptions {
   double longest = 0.25;   // and at most
   double soonest = 0.02;   // no job is late before
   uint32_t mostAgain = 3;  // a job is handed out again so often
+  double stuck = 10;       // seconds after which a reserve helps with the oldest frame, if nothing has come of anybody
   uint32_t mostFailed = 3; // a worker gets nothing more after so many failed jobs
 };
 
@@ -71,7 +72,7 @@ class Scheduler {
   ~Scheduler();
 
   // here: in the master's process, no link between; it stays at the oldest unfinished frame, so that whatever is lost can be
-  // done. reserve: only if nobody else can.
+  // done. reserve: only if nobody else can, or does.
   void join(WorkerId worker, uint32_t threads, bool here, double now, bool reserve = false);
   void leave(WorkerId worker, double now); // its jobs are free at once
   // A frame of this epoch is wanted; in order of their epochs. Its work is told by frame() once a worker has prepared the scene.

@@ -68,7 +68,7 @@ Worker* Scheduler::Impl::roomiest(const Frame& f, Group& g) {
     const auto [key, id] = *g.room.begin();
     if (key >= most) return nullptr;
     Worker& w = workers.at(id);
-    if (w.tally.out < w.hands() * cap && !(w.reserve && !g.movable.empty())) return &w;
+    if (w.tally.out < w.hands() * cap && !(w.reserve && !f.stuck && !g.movable.empty())) return &w;
     g.room.erase(g.room.begin()); // until something happens to it
     w.roomKey = never;
   }
@@ -92,7 +92,7 @@ void Scheduler::Impl::hand(Frame& f, Worker& w, uint64_t id, bool again, double 
 
 double Scheduler::Impl::span(Frame& f, const Flight& flight) {
   const double median = f.costsOf(flight.job).median();
-  if (median <= 0) return never;
+  if (median <= 0) return options.stuck;
   return std::max(options.patience * (median * flight.units * flight.turns + flight.link), options.soonest);
 }
 
@@ -113,7 +113,7 @@ bool Scheduler::Impl::reissue(Frame& f, Group& g, double now, Handout& out) {
       return std::any_of(flight.holders.begin(), flight.holders.end(), [&](Lease l) { return f.leases.at(l).worker == w; });
     };
     const auto idle = std::find_if(g.idle.begin(), g.idle.end(), [&](const auto& entry) { // at most four are passed over
-      return !has(entry.second) && !(workers.at(entry.second).reserve && !g.movable.empty());
+      return !has(entry.second) && !(workers.at(entry.second).reserve && !f.stuck && !g.movable.empty());
     });
     if (idle == g.idle.end()) return false;
     for (const Lease l : flight.holders) // one that has not even been heard of since gets less

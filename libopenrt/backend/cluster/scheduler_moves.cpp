@@ -99,13 +99,18 @@ Epoch Scheduler::Impl::targetOfTied(const Worker& w) {
   for (auto g = groups.begin(); g != groups.end() && g->first <= f.epoch; ++g) others += g->second.threads;
   if (others > 0 && w.here && !w.reserve) others -= w.unable ? 0 : w.threads;
   if (others == 0) return w.reserve && f.exhausted() && !f.rescue ? 0 : f.epoch;
-  if (w.reserve) return 0;
+  if (w.reserve) return f.stuck ? f.epoch : 0;
   if (f.split != Split::frames || f.rescue) return f.epoch;
   const auto g = groups.find(f.epoch);
   return g == groups.end() || g->second.threads == 0 || worthHelping(f) ? f.epoch : 0;
 }
 
+double Scheduler::Impl::stuckAt() const {
+  return reserves > 0 && !frames.empty() && !frames.begin()->second.stuck ? lively + options.stuck : never;
+}
+
 bool Scheduler::Impl::move(double now, WorkerId& worker, Epoch& epoch) {
+  if (now >= stuckAt()) frames.begin()->second.stuck = moves = true;
   if (!moves) return false;
   const auto go = [&](WorkerId id, Epoch to) {
     Worker& w = workers.at(id);

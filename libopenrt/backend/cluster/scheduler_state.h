@@ -73,6 +73,7 @@ struct Frame {
   std::unordered_map<Lease, Held> leases;
   std::set<std::pair<double, uint64_t>> deadlines; // of flights that may be handed out again
   bool rescue = false;                             // something is late, and nobody at it is idle
+  bool stuck = false;                              // nothing comes of those at it: the reserve helps
   uint32_t rekeyAt = 1;                            // jobs done with which all deadlines are found anew
 
   // Of the next job, about: the tile of the last one, or the one behind it. 0: unknown.
@@ -112,7 +113,9 @@ struct Scheduler::Impl {
   double prepare = 0;                             // seconds that preparing a scene takes, smoothed; 0: unknown
   uint32_t usable = 0, threads = 0, rescuers = 0; // workers that are no reserve, and their threads; those here and in reserve;
                                                   // none that are blocked
-  bool moves = false;                             // there may be something to move
+  uint32_t reserves = 0;
+  bool moves = false; // there may be something to move
+  double lively = 0;  // when something has come last: a frame to be made, a worker that was ready, a result
 
   Frame* frame(Epoch epoch);
   Worker* worker(WorkerId id);
@@ -134,6 +137,7 @@ struct Scheduler::Impl {
   bool worthHelping(const Frame& f) const;
   Epoch target(Epoch epoch);
   Epoch targetOfTied(const Worker& w);
+  double stuckAt() const; // when the reserve is to help with the oldest frame; never: it does, or there is none
   bool move(double now, WorkerId& worker, Epoch& epoch);
 
   // scheduler_handout.cpp

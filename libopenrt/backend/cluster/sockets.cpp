@@ -7,10 +7,6 @@
 #include <cstring>
 #include <stdexcept>
 
-#include <netinet/in.h>
-#include <netinet/tcp.h>
-#include <sys/socket.h>
-
 #include "backend/cluster/addresses.h"
 #include "backend/cluster/messages.h"
 
@@ -147,13 +143,6 @@ bool Gate::answer(const std::function<void(const std::string&)>& refused) {
   for (size_t i = 0; i < std::size(reply); i++)
     socket_.send(zmq::buffer(reply[i]), i + 1 < std::size(reply) ? zmq::send_flags::sndmore : zmq::send_flags::none);
   return true;
-}
-
-bool bytesArrive(int fd, double seconds) {
-  tcp_info info{};
-  socklen_t size = sizeof info;
-  if (fd < 0 || getsockopt(fd, IPPROTO_TCP, TCP_INFO, &info, &size) != 0 || size < offsetof(tcp_info, tcpi_pmtu)) return false;
-  return info.tcpi_last_data_recv <= seconds * 1000;
 }
 
 } // namespace openrt::cluster

@@ -56,7 +56,4 @@ class Gate {
   KeyRing keys_;
 };
 
-// Whether bytes have come on a connection within so many seconds, though no whole message: a large one on a slow line.
-bool bytesArrive(int fd, double seconds);
-
 } // namespace openrt::cluster

@@ -154,7 +154,7 @@ void Wire::close(Peer peer, const std::string& why) {
     impl_->forget(peer);
     impl_->hangUp(call, again, true);
   } else {
-    state->gone = state->told = true;
+    state->gone = true;
   }
 }
 

@@ -7,6 +7,7 @@
 #include <unordered_map>
 
 #include "backend/cluster/addresses.h"
+#include "backend/cluster/flow.h"
 #include "backend/cluster/messages.h"
 #include "backend/cluster/sockets.h"
 #include "backend/cluster/wire.h"
@@ -37,8 +38,10 @@ struct Wire::Impl {
     int fd = -1;
     bool met = false;  // `joined` was told
     bool gone = false; // has left as far as others know; what it says is not heard
-    bool told = false; // and it knows
+    double told = 0;   // a Bye, last time
     double heard = 0, said = 0, asked = 0, measured = 0;
+    uint64_t messagesSent = 0, messagesReceived = 0; // numbers of the last ones (seal.h)
+    Flow flow;                                       // of a message that has not come whole
     int badOnes = 0;
     Traffic traffic;
   };
@@ -70,6 +73,7 @@ struct Wire::Impl {
   bool readFrames(zmq::socket_t& socket, Frames& frames, int& fd, std::string& address, bool& tooMany);
   void take(PeerState& peer, Frames&& frames, bool tooMany, double now);
   void countBad(PeerState& peer, const std::string& why, double now);
+  void shutOut(PeerState& peer, const std::string& why, double now);
   bool sendTo(PeerState& peer, Frames&& frames, double now);
   void sayBye(PeerState& peer, const std::string& why, double now);
   // Tells it, and forgets or blocks the peer. bye: it has said so.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <system_error>
 
+#include "backend/cluster/seal.h"
 #include "backend/cluster/wire_impl.h"
 #include "messages_generated.h"
 
@@ -15,6 +16,7 @@ constexpr size_t mostAtOnce = 64, bytesAtOnce = size_t(64) << 20; // that are re
 constexpr size_t smallFrame = 4096;                               // copied, not handed over
 constexpr size_t mostFormer = 4096;
 constexpr double measureAgain = 1; // seconds after which the way there and back is measured though there is traffic
+constexpr double tellAgain = 1;    // seconds after which one that has left is told so again
 
 size_t bytesOf(const Frames& frames) {
   size_t sum = 0;
@@ -113,7 +115,7 @@ bool Wire::Impl::readFrames(zmq::socket_t& socket, Frames& frames, int& fd, std:
       fd = zmq_msg_get(part.handle(), ZMQ_SRCFD);
       if (const char* place = zmq_msg_gets(part.handle(), "Peer-Address")) address = shownEndpoint(place);
     }
-    if (frames.size() >= limits::frames) {
+    if (frames.size() > limits::frames) { // and the seal
       tooMany = true;
       continue;
     }
@@ -125,13 +127,15 @@ bool Wire::Impl::readFrames(zmq::socket_t& socket, Frames& frames, int& fd, std:
 
 void Wire::Impl::take(PeerState& peer, Frames&& frames, bool tooMany, double now) {
   if (peer.gone) {
-    if (!std::exchange(peer.told, true)) sayBye(peer, "this side was not heard of for too long; say Hello again", now);
+    if (now - peer.told > tellAgain) sayBye(peer, "this side was not heard of for too long; say Hello again", now);
     return;
   }
   peer.heard = now;
   peer.traffic.received += bytesOf(frames);
+  peer.messagesReceived++;
   uint8_t kind = 0;
   if (tooMany) return countBad(peer, "too many frames", now);
+  if (!unseal(frames, peer.messagesReceived)) return shutOut(peer, "a message was lost, repeated or damaged on the way", now);
   if (std::string why = verifyHeader(frames[0], kind); !why.empty()) return countBad(peer, why, now);
   if (!std::exchange(peer.met, true)) push(Event::Kind::joined, peer.id, peer.address);
   if (wire::Any(kind) != wire::Any::Beat && wire::Any(kind) != wire::Any::Bye) {
@@ -154,31 +158,43 @@ void Wire::Impl::take(PeerState& peer, Frames&& frames, bool tooMany, double now
 
 void Wire::Impl::countBad(PeerState& peer, const std::string& why, double now) {
   if (++peer.badOnes < mostBad) return;
-  const std::string text = "three messages that are none, the last one: " + why;
-  sayBye(peer, text, now);
-  if (!peer.met) refused(peer.address + ": " + text);
-  leave(peer, text, now);
+  shutOut(peer, "three messages that are none, the last one: " + why, now);
+}
+
+void Wire::Impl::shutOut(PeerState& peer, const std::string& why, double now) {
+  sayBye(peer, why, now);
+  if (!peer.met) refused(peer.address + ": " + why);
+  leave(peer, why, now);
 }
 
 bool Wire::Impl::sendTo(PeerState& peer, Frames&& frames, double now) {
   zmq::socket_t& socket = peer.call ? *peer.call->socket : *door;
+  seal(frames, peer.messagesSent + 1);
   const uint64_t bytes = bytesOf(frames);
   const auto flags = [&](size_t i) {
     return zmq::send_flags::dontwait | (i + 1 < frames.size() ? zmq::send_flags::sndmore : zmq::send_flags::none);
   };
   try {
-    if (!peer.call && !socket.send(zmq::buffer(peer.route), zmq::send_flags::dontwait | zmq::send_flags::sndmore)) return false;
     zmq::message_t header(frames[0].data(), frames[0].size());
-    if (!socket.send(header, flags(0)) && peer.call) return false;
+    if (peer.call ? !socket.send(header, flags(0))
+                  : !socket.send(zmq::buffer(peer.route), zmq::send_flags::dontwait | zmq::send_flags::sndmore)) {
+      frames.pop_back();
+      return false;
+    }
+    if (!peer.call) socket.send(header, flags(0));
     for (size_t i = 1; i < frames.size(); i++)
       socket.send(messageOf(std::move(frames[i])), flags(i)); // goes where the first went
   } catch (const zmq::error_t&) { return false; }             // no way there any more: the monitor tells
+  peer.messagesSent++;
   peer.traffic.sent += bytes;
   peer.said = now;
   return true;
 }
 
-void Wire::Impl::sayBye(PeerState& peer, const std::string& why, double now) { sendTo(peer, encode(0, message::Bye{why}), now); }
+void Wire::Impl::sayBye(PeerState& peer, const std::string& why, double now) {
+  sendTo(peer, encode(0, message::Bye{why}), now);
+  peer.told = now;
+}
 
 // By itself or because we think so. A caller that is still connected is kept in mind, so that it can be told if it comes to life.
 void Wire::Impl::leave(PeerState& peer, const std::string& why, double now, bool bye) {
@@ -187,7 +203,7 @@ void Wire::Impl::leave(PeerState& peer, const std::string& why, double now, bool
   if (peer.met) push(Event::Kind::left, peer.id, why);
   if (!peer.call) {
     peer.gone = true;
-    peer.told = peer.told || bye;
+    if (bye) peer.told = now + shunned; // it knows
     return;
   }
   Call& call = *peer.call;
@@ -218,7 +234,8 @@ void Wire::Impl::keepPeers(double now) {
       sendTo(peer, encode(0, message::Beat{now, false}), now);
       peer.asked = now;
     }
-    if (now - peer.heard > silence && !bytesArrive(peer.fd, silence)) silent.push_back(&peer);
+    peer.flow.look(peer.fd, now, silence);
+    if (now - peer.heard > silence && !peer.flow.flowing()) silent.push_back(&peer);
   }
   char text[64];
   for (PeerState* peer : silent) {

@@ -66,7 +66,12 @@ void Worker::bad(const std::string& why) {
 void Worker::message(Peer peer, Frames&& frames, double) {
   if (peer != peer_) return;
   Message m;
-  if (const std::string why = decode(std::move(frames), m); !why.empty()) return bad(why);
+  if (const std::string why = decode(std::move(frames), m); !why.empty()) { // nobody knows what it should have been
+    const std::string text = "a message that cannot be read: " + why;
+    tell(2, "master " + address_ + " has sent " + text);
+    link_.close(peer_, text);
+    return endSession();
+  }
   if (const auto* hail = std::get_if<message::Welcome>(&m.body)) {
     if (serving()) return bad("a second Welcome");
     if (hail->session == 0 || m.session != hail->session) return bad("a Welcome without a session");
