@@ -11,7 +11,7 @@
 namespace openrt::test {
 namespace {
 
-const RtsClass& camera(const std::string& name) {
+const RtsClass& camera(const char* name) {
   static const ShaderRegistry registry(shaderFolders(""));
   return registry.find(name, "");
 }

@@ -10,10 +10,10 @@ namespace {
 
 class ErrorBars : public Scene {
  protected:
-  static const audit::Scenario& scenario(const std::string& name) {
+  static const audit::Scenario& scenario(std::string_view name) {
     for (const audit::Scenario& s : audit::scenarios())
       if (s.name == name) return s;
-    throw std::runtime_error(name);
+    throw std::runtime_error(std::string(name));
   }
   // Scenes with a reference of their own are rendered more coarsely than by the audit.
   static audit::Coverage measure(const std::string& name, int seeds, int reference, int edge) {

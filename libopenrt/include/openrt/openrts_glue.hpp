@@ -341,6 +341,7 @@ template <class T> const RtsClass* classOf(std::string name) {
   declaration() = &params;
   new (prototype) T();
   declaration() = nullptr;
+  params.start = nullptr; // the offsets are known; the prototype ends here
   table.size = sizeof(RtsClass);
   table.name = ownName.c_str();
   if constexpr (HasText<T>::value)
