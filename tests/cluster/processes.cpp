@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "cluster/support.h"
+#include "openrt/queries.h"
 
 namespace {
 
@@ -202,6 +203,9 @@ TEST(ClusterProcesses, ACancelledFrameEndsAndTheNextIsRight) {
 TEST(ClusterProcesses, RaysAreAskedAboutTheLastScene) {
   const Workers helping = start(1);
   RThit hits[2][3];
+  uint32_t counts[2][2];
+  std::vector<RThit> lists[2];
+  RTclosest closest[2];
   for (int i = 0; i < 2; i++) {
     const Context context(i == 0 ? "threads=1" : "backend=cluster threads=1 local=0 " + calling(helping));
     World world;
@@ -214,7 +218,17 @@ TEST(ClusterProcesses, RaysAreAskedAboutTheLastScene) {
     uint8_t occluded[2];
     rtOccludedRays(2, rays, occluded);
     EXPECT_TRUE(occluded[0] && occluded[1]);
+    rtCountHits(2, rays, counts[i]);
+    const size_t first[3] = {0, counts[i][0], size_t(counts[i][0]) + counts[i][1]};
+    lists[i].resize(first[2]);
+    rtListHits(2, rays, first, lists[i].data());
+    const float points[3] = {0, 0, 6};
+    rtClosestPoints(1, points, INFINITY, &closest[i]);
   }
+  EXPECT_TRUE(counts[0][0] > 1 && counts[0][0] == counts[1][0] && counts[0][1] == counts[1][1]);
+  ASSERT_EQ(lists[0].size(), lists[1].size());
+  for (size_t k = 0; k < lists[0].size(); k++) EXPECT_EQ(lists[0][k].t, lists[1][k].t);
+  EXPECT_TRUE(std::isfinite(closest[0].distance) && closest[0].distance == closest[1].distance);
   for (int k = 0; k < 3; k++) {
     EXPECT_EQ(hits[0][k].t, hits[1][k].t);
     EXPECT_EQ(hits[0][k].instance, hits[1][k].instance);

@@ -16,11 +16,14 @@
 #include "backend/cluster/greeting.h"
 #include "backend/cluster/hosts.h"
 #include "backend/cluster/master.h"
+#include "backend/surface_queries.h"
 
 namespace openrt {
 namespace {
 
 using namespace cluster;
+
+SurfaceQueries& surfaces(Backend& local) { return dynamic_cast<SurfaceQueries&>(local); }
 
 double clockNow() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
@@ -71,7 +74,7 @@ class Background {
   std::thread thread_;
 };
 
-class ClusterBackend final : public Backend, private WorkerSink {
+class ClusterBackend final : public Backend, public SurfaceQueries, private WorkerSink {
  public:
   ClusterBackend(const BackendOptions& options, const ClusterOptions& cluster) : log_(options.log), logUser_(options.logUser) {
     WireOptions wire;
@@ -225,6 +228,15 @@ class ClusterBackend final : public Backend, private WorkerSink {
     bool seen = false;
     ask([&](Backend& backend) { seen = backend.pick(x, y, hit); });
     return seen;
+  }
+  void countHits(std::span<const RTray> rays, std::span<uint32_t> counts) override {
+    ask([&](Backend& backend) { surfaces(backend).countHits(rays, counts); });
+  }
+  void listHits(std::span<const RTray> rays, std::span<const size_t> first, std::span<RThit> hits) override {
+    ask([&](Backend& backend) { surfaces(backend).listHits(rays, first, hits); });
+  }
+  void closestPoints(std::span<const float> points, float radius, std::span<RTclosest> closest) override {
+    ask([&](Backend& backend) { surfaces(backend).closestPoints(points, radius, closest); });
   }
 
  private:

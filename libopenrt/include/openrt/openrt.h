@@ -346,7 +346,7 @@ enum {
   RT_FRAMES_IN_FLIGHT = 12, /* backend=cluster: frames that rtSwapBuffers leaves unfinished, 1 (default) .. 64; takes effect at
                                once, is no part of the picture */
   RT_TILE_SIZE = 13         /* edge in pixels of the tiles that a picture is made in, 4 .. 128; 0 (default): as size and samples
-                               suggest. What neighbours tell of errors ends at a tile's border, nothing else depends on it */
+                               suggest. Tiles bound what neighbours tell of errors, and RT_ERROR is reached tile by tile */
 };
 /* How light is followed from a surface whose shader answers in lobes (openrts.h). */
 enum {
@@ -381,7 +381,7 @@ enum {
  *
  * RT_PROGRESSIVE 1: for those who look at a frame while it is made (rtSnapshot): rounds over the whole picture, of one sample a
  * pixel at first, then of more. When it is finished its bytes are those of the same frame without; it takes a few per cent longer
- * and 56 to 180 bytes a pixel by channels, with those of the error about 450. With a time limit, which makes rounds of its own,
+ * and 56 to 180 bytes a pixel by channels, with those of the error about 320. With a time limit, which makes rounds of its own,
  * nothing changes, nor with fewer than 32 samples. */
 /* Size in pixels (1 .. 65536 each, at most 2^28 in all) and channels of the following frames. */
 RT_API void rtFrameBuffer(int width, int height, uint32_t channels);
