@@ -2,13 +2,13 @@
 // shader plug-in against a loop of raw Embree on the same rays (one camera ray and one shadow ray at a time, shading inlined,
 // default mode and robust mode). The counter `ratio` of the API's line is measured in the same run: raw time over ours.
 #include <benchmark/benchmark.h>
-#include <embree3/rtcore.h>
 
 #include <atomic>
 #include <cmath>
 #include <thread>
 #include <vector>
 
+#include "bench/raw_embree.h"
 #include "openrt/openrt.h"
 #include "render/sampler.h"
 
@@ -73,12 +73,10 @@ struct Raw {
       float d[3] = {a, f[1] + b * up[1], f[2] + b * up[2]};
       const float l = 1 / std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
       for (float& c : d) c *= l;
-      RTCIntersectContext context;
-      rtcInitIntersectContext(&context);
       RTCRayHit r{};
       r.ray = {float(eye[0]), float(eye[1]), float(eye[2]), 0, d[0], d[1], d[2], 0, INFINITY, ~0u, 0, 0};
       r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-      rtcIntersect1(scene, &context, &r);
+      raw::intersect(scene, r);
       if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID) continue;
       float n[3] = {r.hit.Ng_x, r.hit.Ng_y, r.hit.Ng_z}, p[3], w[3];
       const float nl = 1 / std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
@@ -89,7 +87,7 @@ struct Raw {
       const float distance = std::sqrt(w2), cosine = (n[0] * w[0] + n[1] * w[1] + n[2] * w[2]) / distance;
       if (cosine <= 0) continue;
       RTCRay shadow{p[0], p[1], p[2], 0, w[0] / distance, w[1] / distance, w[2] / distance, 0, distance, ~0u, 0, 0};
-      rtcOccluded1(scene, &context, &shadow);
+      raw::occluded(scene, shadow);
       if (shadow.tfar >= 0) sum += 0.8f * cosine;
     }
     return sum / spp;

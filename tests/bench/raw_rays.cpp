@@ -1,7 +1,5 @@
 // raw_rays.cpp: a loop of raw Embree over rays, one rtcIntersect1 each, as a library for tools/bench_rays.py: what ray queries
 // from Python are measured against. Results are written as cast_rays gives them.
-#include <embree3/rtcore.h>
-
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -10,6 +8,8 @@
 #include <limits>
 #include <thread>
 #include <vector>
+
+#include "raw_embree.h"
 
 namespace {
 
@@ -56,9 +56,7 @@ __attribute__((visibility("default"))) double raw_cast(const void* scene, const 
         q.hit.geomID = RTC_INVALID_GEOMETRY_ID;
         q.hit.primID = RTC_INVALID_GEOMETRY_ID;
         q.hit.u = q.hit.v = q.hit.Ng_x = q.hit.Ng_y = q.hit.Ng_z = 0;
-        RTCIntersectContext context;
-        rtcInitIntersectContext(&context);
-        rtcIntersect1(s, &context, &q);
+        raw::intersect(s, q);
         t[i] = q.ray.tfar, primitive[i] = q.hit.primID, uv[2 * i] = q.hit.u, uv[2 * i + 1] = q.hit.v;
         const float l = std::sqrt(q.hit.Ng_x * q.hit.Ng_x + q.hit.Ng_y * q.hit.Ng_y + q.hit.Ng_z * q.hit.Ng_z);
         const float k = l > 0 ? 1 / l : 0;

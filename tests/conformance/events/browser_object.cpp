@@ -1,4 +1,6 @@
 // The Browser object: clause 4.12.10, from Scripts and from programs.
+#include <algorithm>
+
 #include "conformance/events/scripted.h"
 
 namespace xvrml {

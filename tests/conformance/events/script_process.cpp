@@ -1,5 +1,6 @@
 // Scripts in processes of their own: what a program there cannot do, and what becomes of it, of the others and of the world when
 // it tries. Programs are those of tests/script/hostile_engine.c.
+#include <algorithm>
 #include <csignal>
 #include <filesystem>
 #include <fstream>

@@ -1,4 +1,6 @@
 // Script nodes: clauses 4.12.2 to 4.12.6 and 6.40. Programs are those of the test engine.
+#include <algorithm>
+
 #include "conformance/events/scripted.h"
 
 namespace xvrml {
