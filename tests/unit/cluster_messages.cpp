@@ -206,7 +206,7 @@ TEST(Arrays, travelInPiecesAndBackAsTheyWere) {
     const ArrayPtr array = stream.take();
     ASSERT_NE(array, nullptr);
     ASSERT_EQ(array->size(), size);
-    EXPECT_EQ(std::memcmp(array->data(), bytes.data(), size), 0);
+    EXPECT_TRUE(std::equal(bytes.begin(), bytes.end(), array->data()));
     const ArrayPtr atOnce = unpackArray(packed, size, hash);
     ASSERT_NE(atOnce, nullptr);
     EXPECT_EQ(unpackArray(packed, size, {1, 2}), nullptr);

@@ -41,15 +41,21 @@ struct ArrayStream::Impl {
   Hash hash;
   std::shared_ptr<Array> array; // none before the first piece, which says how many bytes there are of it
   uint64_t bytes = 0, written = 0, stored = 0, received = 0;
-  std::unique_ptr<ZSTD_DStream, Free> zstd{ZSTD_createDStream()};
-  std::unique_ptr<XXH3_state_t, Free> state{XXH3_createState()};
+  std::unique_ptr<ZSTD_DStream, Free> zstd; // a hundred thousand bytes, so they are made for those that come only
+  std::unique_ptr<XXH3_state_t, Free> state;
   bool ended = false;
+
+  void begin(uint64_t allStored) {
+    array = std::make_shared<Array>(bytes);
+    zstd.reset(ZSTD_createDStream()), state.reset(XXH3_createState());
+    if (!zstd || !state) throw std::bad_alloc();
+    XXH3_128bits_reset(state.get());
+    stored = allStored;
+  }
 };
 
 ArrayStream::ArrayStream(const Hash& hash, uint64_t bytes) : impl_(std::make_unique<Impl>()) {
   impl_->hash = hash, impl_->bytes = bytes;
-  if (!impl_->zstd || !impl_->state) throw std::bad_alloc();
-  XXH3_128bits_reset(impl_->state.get());
 }
 ArrayStream::~ArrayStream() = default;
 ArrayStream::ArrayStream(ArrayStream&&) noexcept = default;
@@ -57,10 +63,7 @@ ArrayStream::ArrayStream(ArrayStream&&) noexcept = default;
 std::string ArrayStream::put(const message::Piece& piece) {
   Impl& s = *impl_;
   if (piece.bytes != s.bytes) return "a piece of an array of another size";
-  if (s.stored == 0) {
-    s.stored = piece.stored;
-    s.array = std::make_shared<Array>(s.bytes);
-  }
+  if (s.stored == 0) s.begin(piece.stored);
   if (piece.stored != s.stored || piece.offset != s.received) return "a piece out of its turn";
   s.received += piece.data.size();
   ZSTD_inBuffer in{piece.data.data(), piece.data.size(), 0};
@@ -78,6 +81,7 @@ std::string ArrayStream::put(const message::Piece& piece) {
   return {};
 }
 
+bool ArrayStream::begun() const { return impl_->stored != 0; }
 bool ArrayStream::complete() const { return impl_->stored != 0 && impl_->received == impl_->stored; }
 
 ArrayPtr ArrayStream::take() {

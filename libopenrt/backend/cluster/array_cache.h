@@ -38,6 +38,7 @@ class ArrayStream {
   ArrayStream(ArrayStream&&) noexcept;
   // Empty, or what is wrong with the piece.
   std::string put(const message::Piece& piece);
+  bool begun() const; // memory has been taken for it
   bool complete() const;
   ArrayPtr take(); // once complete; null: not what its name says
 

@@ -4,8 +4,18 @@
 #include <cmath>
 
 #include "backend/cluster/master_state.h"
+#include "scene/channels.h"
 
 namespace openrt::cluster {
+namespace {
+
+uint64_t largestResultOf(const edit::FrameSettingsT& frame) {
+  constexpr uint64_t tile = uint64_t(largestTile) * largestTile * sizeof(PixelSums), beside = 4096;
+  const uint64_t light = uint64_t(frame.width) * frame.height * 3 * sizeof(float); // runs of zeros are shorter than these
+  return std::max(tile, light) + beside;
+}
+
+} // namespace
 
 Master::Impl::Impl(const MasterOptions& o, Send s, WorkerCore* h)
     : options(o), send(std::move(s)), core(h), scheduler(o.schedule), scenes(o.local.shaders), nextSession(o.session) {
@@ -38,7 +48,7 @@ void Master::message(Peer peer, Frames&& frames, double now) {
   Remote& remote = found->second;
   for (const auto& frame : frames) remote.bytesReceived += frame.size();
   Message message;
-  if (const std::string wrong = decode(std::move(frames), message); !wrong.empty())
+  if (const std::string wrong = decode(std::move(frames), message, impl_->largestResult); !wrong.empty())
     return impl_->refuse(peer, "a message that cannot be read: " + wrong, now); // nobody knows what it should have been
   if (auto* hello = std::get_if<message::Hello>(&message.body)) return impl_->hello(remote, std::move(*hello), now);
   if (!remote.welcome || message.session != remote.session) return; // of a session that has ended
@@ -50,17 +60,21 @@ void Master::message(Peer peer, Frames&& frames, double now) {
     void operator()(message::Ready& ready) const {
       if (ready.epoch > remote.furthest || ready.transport == RT_TRANSPORT_AUTO || ready.transport > RT_TRANSPORT_LIGHT)
         return m.strike(remote, "a scene that it cannot have prepared", now);
+      remote.offered.erase(remote.offered.begin(), remote.offered.upper_bound(ready.epoch)); // it has all of that
       m.ready(remote.id, remote.name(), ready.epoch, ready.facts, ready.transport, ready.stats, now);
     }
     void operator()(message::Failed& failed) const {
       m.logOnce(2, "worker " + remote.name() + ": " + failed.why);
       m.lastRefusal = remote.name() + ": " + failed.why;
       remote.sent = 0; // whatever it has of the scene
+      remote.offered.erase(remote.offered.begin(), remote.offered.upper_bound(failed.epoch));
       remote.out.erase(failed.epoch);
       m.scheduler.unable(remote.id, failed.epoch, now);
     }
     void operator()(message::Result& result) const { m.result(remote, std::move(result), now); }
-    void operator()(message::Log& log) const { m.log(log.level, "worker " + remote.name() + ": " + log.text); }
+    void operator()(message::Log& log) const {
+      if (remote.logged++ < limits::logLines) m.log(log.level, "worker " + remote.name() + ": " + log.text);
+    }
     void operator()(message::Beat&) const {}
     void operator()(message::Bye&) const {}
     void operator()(message::Unknown&) const {}
@@ -112,6 +126,7 @@ void Master::commit(Epoch epoch, std::shared_ptr<const Commit> commit, bool fram
   if (frame) {
     FrameEntry& entry = m.frames[epoch];
     entry.settings = m.scenes.frame();
+    m.largestResult = std::max(m.largestResult, largestResultOf(entry.settings));
     m.joinHere(now);
     m.scheduler.announce(epoch, now);
   }
@@ -147,7 +162,11 @@ double Master::advance(double now) {
   } else if (m.oldest() != 0) {
     next = m.fewSince + m.options.patience;
   }
-  for (Peer peer : std::set<Peer>(m.waiting)) m.flush(m.remotes.at(peer));
+  for (Peer peer : std::set<Peer>(m.waiting)) {
+    Remote& remote = m.remotes.at(peer);
+    m.flush(remote);
+    if (remote.outbox.overfull()) m.refuse(peer, "it does not read what it is sent", now);
+  }
   if (!m.waiting.empty()) next = std::min(next, now + 0.001); // a queue has room again
   if (!m.hereJoined && m.core && std::isfinite(m.firstCommit)) next = std::min(next, m.firstCommit + m.options.grace);
   return std::max(next, now);

@@ -24,6 +24,7 @@ struct Remote {
   uint64_t session = 0;
   uint32_t threads = 0;
   uint32_t strikes = 0; // messages that were nonsense
+  uint64_t logged = 0;  // lines that it has said
   Epoch sent = 0;       // it has the scene up to here, or will; 0: none
   Epoch furthest = 0;   // that it was sent
   Outbox outbox;
@@ -94,7 +95,8 @@ struct Master::Impl {
   double firstCommit = std::numeric_limits<double>::infinity();
   double fewSince = std::numeric_limits<double>::infinity(); // fewer workers than required
   bool everJoined = false, saidAlone = false, reloaded = false;
-  std::string lastRefusal; // for who waits for workers in vain
+  uint64_t largestResult = 0; // bytes of a job's, of any frame so far: nothing small is unpacked to something huge
+  std::string lastRefusal;    // for who waits for workers in vain
 };
 
 } // namespace openrt::cluster

@@ -46,7 +46,12 @@ void Master::Impl::leaveWorkersOut(double now) {
 }
 
 void Master::Impl::hello(Remote& remote, message::Hello&& hello, double now) {
-  if (remote.welcome) depart(remote, now); // it has begun anew
+  if (remote.welcome) { // it has begun anew, which it should do with another connection
+    const Peer peer = remote.peer;
+    strike(remote, "Hello again", now);
+    if (!remotes.contains(peer)) return;
+    depart(remote, now);
+  }
   remote.host = hello.host;
   if (hello.threads < 1 || hello.threads > mostThreads)
     return refuse(remote.peer, "a worker with " + std::to_string(hello.threads) + " threads", now);
@@ -120,12 +125,14 @@ void Master::Impl::flush(Remote& remote) {
 void Master::Impl::need(Remote& remote, const message::Need& need, double now) {
   const auto offered = remote.offered.find(need.epoch);
   if (offered == remote.offered.end()) return strike(remote, "it needs arrays of a scene that it was not sent", now);
-  std::vector<OfferPtr> offers = std::move(offered->second);
+  std::map<Hash, OfferPtr> offers;
+  for (OfferPtr& offer : offered->second) offers.emplace(offer->hash, std::move(offer));
   remote.offered.erase(offered);
   for (const Hash& hash : need.arrays) {
-    const auto found = std::find_if(offers.begin(), offers.end(), [&](const OfferPtr& o) { return o && o->hash == hash; });
+    const auto found = offers.find(hash);
     if (found == offers.end()) return strike(remote, "it needs an array that it was not offered", now);
-    const OfferPtr offer = std::exchange(*found, nullptr); // once
+    const OfferPtr offer = std::move(found->second);
+    offers.erase(found); // once
     remote.outbox.add(offer);
     waiting.insert(remote.peer);
     if (offer->ready || offer->asked) continue;

@@ -30,6 +30,12 @@ inline constexpr size_t jobs = 4096;                    // of a message
 inline constexpr uint64_t epochs = uint64_t(1) << 40;   // of a session
 inline constexpr uint64_t arrayBytes = uint64_t(1) << 34;
 inline constexpr uint64_t sceneBytes = uint64_t(1) << 36; // of all arrays of one commit
+inline constexpr size_t arraysAtOnce = 16;                // that are in the middle of their pieces
+inline constexpr size_t scenesAtOnce = 1024;              // that a worker has been sent and has not made yet
+inline constexpr size_t scenesBytes = 2 * editBytes;      // of the edits of these
+inline constexpr size_t outboxMessages = size_t(1) << 16; // that a worker has not read
+inline constexpr size_t outboxBytes = size_t(1) << 32;    // of these
+inline constexpr uint64_t logLines = 1000;                // of a connection
 inline constexpr uint64_t resultBytes = uint64_t(1) << 32;
 inline constexpr size_t chunkBytes = size_t(32) << 20; // of a result that a frame holds, before it is packed
 } // namespace limits
@@ -146,7 +152,7 @@ struct Message {
 
 Frames encode(uint64_t session, message::Body&& body);
 // Empty, or what is wrong with it. What frames hold is taken from them.
-std::string decode(Frames&& frames, Message& out);
+std::string decode(Frames&& frames, Message& out, uint64_t largestResult = limits::resultBytes);
 // Whether a frame is a Header whose tables lie within it; empty, or what is wrong. kind: number of its member of the union.
 std::string verifyHeader(std::span<const std::byte> frame, uint8_t& kind);
 

@@ -27,13 +27,37 @@ Hash from(const wire::Hash* hash) {
   return {hash->low(), hash->high()};
 }
 
-// Texts are shown to people: without characters that move a terminal's cursor.
+// Bytes of the UTF-8 character at the beginning (RFC 3629); 0: it is none.
+size_t characterAt(std::string_view text) {
+  const auto byte = [&](size_t i) { return i < text.size() ? static_cast<uint8_t>(text[i]) : uint8_t(0); };
+  const uint8_t first = byte(0), second = byte(1);
+  const size_t length = first < 0x80 ? 1 : first < 0xc2 ? 0 : first < 0xe0 ? 2 : first < 0xf0 ? 3 : first < 0xf5 ? 4 : 0;
+  for (size_t i = 1; i < length; i++)
+    if ((byte(i) & 0xc0) != 0x80) return 0;
+  const bool outside = (first == 0xe0 && second < 0xa0) || (first == 0xed && second >= 0xa0) ||
+                       (first == 0xf0 && second < 0x90) ||
+                       (first == 0xf4 && second >= 0x90); // overlong, halves of pairs, beyond Unicode
+  return outside ? 0 : length;
+}
+
+// Texts are shown to people: no characters that move a terminal's cursor (C0, DEL, C1), and nothing but UTF-8.
+void clean(std::span<char> text) {
+  for (size_t i = 0; i < text.size();) {
+    const size_t length = characterAt({text.data() + i, text.size() - i});
+    const auto first = static_cast<uint8_t>(text[i]), second = length == 2 ? static_cast<uint8_t>(text[i + 1]) : uint8_t(0);
+    if (first < ' ' || first == 0x7f || (first == 0xc2 && length == 2 && second < 0xa0))
+      std::fill_n(&text[i], length, ' ');
+    else if (length == 0)
+      text[i] = '?';
+    i += std::max<size_t>(length, 1);
+  }
+}
+
 std::string text(const flatbuffers::String* string) {
   if (!string) return {};
   demand(string->size() <= limits::textBytes, "a text that is too long");
   std::string result = string->str();
-  for (char& c : result)
-    if (static_cast<unsigned char>(c) < ' ' || c == 0x7f) c = ' ';
+  clean(result);
   return result;
 }
 
@@ -65,7 +89,10 @@ void read(const wire::Need& t, Frames&, message::Need& m) {
   for (const wire::Hash* hash : *t.arrays()) m.arrays.push_back(from(hash));
 }
 
-template <size_t n> void terminate(char (&text)[n]) { text[n - 1] = 0; }
+template <size_t n> void terminate(char (&text)[n]) {
+  text[n - 1] = 0;
+  clean({text, std::strlen(text)});
+}
 
 void read(const wire::Ready& t, Frames&, message::Ready& m) {
   m.epoch = t.epoch(), m.facts.camera = t.camera(), m.facts.lamps = t.lamps(), m.transport = t.transport();
@@ -225,7 +252,7 @@ std::string verifyHeader(std::span<const std::byte> frame, uint8_t& kind) {
   return {};
 }
 
-std::string decode(Frames&& frames, Message& out) {
+std::string decode(Frames&& frames, Message& out, uint64_t largestResult) {
   if (frames.empty() || frames.size() > limits::frames) return "a message of " + std::to_string(frames.size()) + " frames";
   uint8_t kind = 0;
   if (std::string why = verifyHeader(frames[0], kind); !why.empty()) return why;
@@ -234,10 +261,14 @@ std::string decode(Frames&& frames, Message& out) {
   const bool known = header.any_type() <= wire::Any::MAX;
   if (known && (frames.size() - 1 < expected.least || frames.size() - 1 > expected.most))
     return std::string("a ") + wire::EnumNameAny(header.any_type()) + " of " + std::to_string(frames.size()) + " frames";
+  if (const wire::Result* result = header.any_as_Result(); result && result->bytes() > largestResult)
+    return "a result of " + std::to_string(result->bytes()) + " bytes, which no job makes";
   out.session = header.session();
   try {
     readBody(header, frames, out.body);
-  } catch (const Bad& bad) { return std::string(wire::EnumNameAny(header.any_type())) + ": " + bad.why; }
+  } catch (const Bad& bad) {
+    return std::string(wire::EnumNameAny(header.any_type())) + ": " + bad.why;
+  } catch (const std::bad_alloc&) { return std::string(wire::EnumNameAny(header.any_type())) + ": no memory for it"; }
   return {};
 }
 

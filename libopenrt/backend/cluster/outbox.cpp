@@ -2,6 +2,20 @@
 #include "backend/cluster/outbox.h"
 
 namespace openrt::cluster {
+namespace {
+
+size_t bytesOf(const Frames& frames) {
+  size_t sum = 0;
+  for (const auto& frame : frames) sum += frame.size();
+  return sum;
+}
+
+} // namespace
+
+void Outbox::add(Frames&& frames) {
+  bytes_ += bytesOf(frames);
+  messages_.push_back(std::move(frames));
+}
 
 bool Outbox::flush(uint64_t session, const Send& send) {
   if (!piece_.empty()) { // it is older than all else that waits
@@ -9,8 +23,10 @@ bool Outbox::flush(uint64_t session, const Send& send) {
     piece_.clear();
   }
   while (!messages_.empty()) {
+    const size_t bytes = bytesOf(messages_.front());
     if (!send(std::move(messages_.front()))) return false;
     messages_.pop_front();
+    bytes_ -= bytes;
   }
   while (!arrays_.empty() && arrays_.front().array->ready) {
     Travelling& next = arrays_.front();

@@ -13,12 +13,13 @@ class Outbox {
  public:
   using Send = std::function<bool(Frames&&)>; // false: not now; the frames are left as they were
 
-  void add(Frames&& frames) { messages_.push_back(std::move(frames)); }
+  void add(Frames&& frames);
   void add(OfferPtr array) { arrays_.push_back({std::move(array), 0}); }
   // True: nothing waits that could go. Arrays that are not packed yet are left for later.
   bool flush(uint64_t session, const Send& send);
   bool empty() const { return piece_.empty() && messages_.empty() && arrays_.empty(); }
-  void clear() { piece_.clear(), messages_.clear(), arrays_.clear(); }
+  bool overfull() const { return messages_.size() > limits::outboxMessages || bytes_ > limits::outboxBytes; }
+  void clear() { piece_.clear(), messages_.clear(), arrays_.clear(), bytes_ = 0; }
 
  private:
   struct Travelling {
@@ -26,6 +27,7 @@ class Outbox {
     uint64_t offset = 0; // in what is packed
   };
   std::deque<Frames> messages_;
+  size_t bytes_ = 0; // of these
   std::deque<Travelling> arrays_;
   Frames piece_; // made, but the queue was full
 };

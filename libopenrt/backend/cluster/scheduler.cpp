@@ -80,6 +80,7 @@ bool Scheduler::Impl::done(Frame& f, Lease lease, double seconds, double now) {
   Worker& w = *worker(held.worker);
   w.leases.erase({f.epoch, lease});
   w.tally.out = uint32_t(w.leases.size());
+  if (now > held.since) seconds = std::min(seconds, now - held.since); // who says more has not told the truth
   w.tally.busy += std::max(seconds, 0.0);
   w.heard = lively = now;
   if (w.slips > 0) w.slips--;

@@ -17,6 +17,7 @@ namespace openrt::cluster {
 namespace {
 
 constexpr size_t mostWaiting = size_t(512) << 20; // bytes that the session has not read; then the wire waits
+constexpr size_t overhead = 512;                  // about, of a message that waits
 constexpr double idle = 0.05, hurry = 0.001;      // seconds to wait for messages; while something could not be sent
 
 size_t bytesOf(const Frames& frames) {
@@ -157,7 +158,7 @@ struct WorkerService::Impl final : WorkerSink, Machine {
       break;
     }
     case Event::Kind::message: {
-      const size_t bytes = bytesOf(event.frames);
+      const size_t bytes = bytesOf(event.frames) + overhead;
       const auto kept = std::make_shared<Frames>(std::move(event.frames));
       return post([=](Worker& w) { w.message(peer, std::move(*kept), now); }, bytes);
     }

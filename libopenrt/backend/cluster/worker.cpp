@@ -10,10 +10,9 @@
 namespace openrt::cluster {
 namespace {
 
-constexpr double patience = 5;        // seconds that a master may take to answer
-constexpr size_t mostJobs = 1 << 16;  // that are out
-constexpr uint64_t mostLogged = 1000; // lines of a session
-constexpr size_t mostFrames = 256;    // that are prepared and not dropped
+constexpr double patience = 5;       // seconds that a master may take to answer
+constexpr size_t mostJobs = 1 << 16; // that are out
+constexpr size_t mostFrames = 256;   // that are prepared and not dropped
 
 } // namespace
 
@@ -46,7 +45,8 @@ void Worker::left(Peer peer, const std::string& why, double) {
 void Worker::endSession() {
   if (serving()) machine_.drop(newest_);
   peer_ = 0, session_ = 0, base_ = newest_, logged_ = 0;
-  coming_.clear(), streams_.clear(), frames_.clear(), leases_.clear();
+  coming_.clear(), streams_.clear(), frames_.clear(), leases_.clear(), unanswered_.clear();
+  begun_ = unansweredBytes_ = 0;
   broken_ = "no scene has come yet";
   validator_.reset();
   cache_.trim();
@@ -55,6 +55,12 @@ void Worker::endSession() {
 void Worker::advance(double now) {
   if (peer_ == 0 || serving() || now - asked_ < patience) return;
   link_.close(peer_, "no Welcome has come");
+  endSession();
+}
+
+void Worker::giveUp(const std::string& why) {
+  tell(3, "master " + address_ + ": " + why);
+  link_.close(peer_, why);
   endSession();
 }
 
@@ -101,13 +107,9 @@ void Worker::message(Peer peer, Frames&& frames, double) {
 }
 
 void Worker::welcome(const message::Welcome& m) {
-  if (m.protocol != protocolVersion) {
-    const std::string why = "protocol " + std::to_string(m.protocol) + " of the master, " + std::to_string(protocolVersion) +
-                            " of the worker: they must be the same";
-    tell(3, "master " + address_ + ": " + why);
-    link_.close(peer_, why);
-    return endSession();
-  }
+  if (m.protocol != protocolVersion)
+    return giveUp("protocol " + std::to_string(m.protocol) + " of the master, " + std::to_string(protocolVersion) +
+                  " of the worker: they must be the same");
   session_ = m.session;
   masters_++;
   broken_ = "no scene has come yet";
@@ -116,8 +118,8 @@ void Worker::welcome(const message::Welcome& m) {
 }
 
 void Worker::jobs(const message::Jobs& m) {
+  if (m.epoch == 0 || m.epoch > newest_ - base_) return bad("jobs of a scene that has not come");
   const Epoch epoch = base_ + m.epoch;
-  if (m.epoch == 0 || epoch > newest_) return bad("jobs of a scene that has not come");
   const auto frame = frames_.find(epoch);
   if (frame == frames_.end()) return; // dropped
   const edit::FrameSettingsT& f = frame->second;
@@ -138,14 +140,20 @@ void Worker::jobs(const message::Jobs& m) {
 }
 
 void Worker::drop(const message::Drop& m) {
-  const Epoch epoch = std::min(m.epoch > newest_ ? newest_ : base_ + m.epoch, newest_);
+  const Epoch epoch = base_ + std::min(m.epoch, newest_ - base_);
   machine_.drop(epoch);
   frames_.erase(frames_.begin(), frames_.upper_bound(epoch));
   leases_.erase(leases_.begin(), leases_.upper_bound(epoch));
 }
 
+void Worker::answered(Epoch epoch) {
+  for (; !unanswered_.empty() && unanswered_.front().first <= epoch; unanswered_.pop_front())
+    unansweredBytes_ -= unanswered_.front().second;
+}
+
 void Worker::ready(Epoch epoch, const Prepared& prepared) {
   if (epoch <= base_ || !serving()) return; // of a former master
+  answered(epoch);
   frames_[epoch] = prepared.frame;
   if (frames_.size() > mostFrames) frames_.erase(frames_.begin());
   message::Ready m;
@@ -155,6 +163,7 @@ void Worker::ready(Epoch epoch, const Prepared& prepared) {
 
 void Worker::failed(Epoch epoch, const std::string& why) {
   if (epoch <= base_ || !serving()) return;
+  answered(epoch);
   leases_.erase(epoch);
   say(message::Failed{epoch - base_, why});
 }
@@ -173,7 +182,7 @@ void Worker::done(Epoch epoch, const LeasedJob& job, JobResult&& result) {
 }
 
 void Worker::log(int level, const std::string& text) {
-  if (serving() && logged_ < mostLogged) say(message::Log{level, text});
+  if (serving() && logged_ < limits::logLines) say(message::Log{level, text});
   logged_++;
 }
 

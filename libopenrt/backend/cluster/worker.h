@@ -83,6 +83,8 @@ class Worker {
   void apply(Coming& coming);
   void refuse(Epoch epoch, const std::string& why);
   void endSession();
+  void giveUp(const std::string& why); // this master
+  void answered(Epoch epoch);          // by the machine
   void tell(int level, const std::string& text) const;
 
   WorkerOptions options_;
@@ -100,6 +102,9 @@ class Worker {
   std::string broken_; // why nothing can be made until a whole scene comes
   std::deque<Coming> coming_;
   std::map<Hash, ArrayStream> streams_;
+  size_t begun_ = 0;                                // of these
+  std::deque<std::pair<Epoch, size_t>> unanswered_; // scenes of which the machine has not spoken yet, bytes of their edits
+  size_t unansweredBytes_ = 0;
   std::map<Epoch, edit::FrameSettingsT> frames_; // of what is prepared; the machine's epochs
   std::map<Epoch, std::set<Lease>> leases_;      // of jobs that are out
   uint64_t logged_ = 0;

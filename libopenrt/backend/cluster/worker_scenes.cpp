@@ -8,21 +8,24 @@
 #include "backend/record/validator.h"
 
 namespace openrt::cluster {
-namespace {
-
-constexpr size_t mostComing = 1024; // scenes that wait for arrays
-
-} // namespace
 
 void Worker::refuse(Epoch epoch, const std::string& why) {
   broken_ = why;
+  std::erase_if(unanswered_, [&](const auto& scene) {
+    if (scene.first != base_ + epoch) return false;
+    unansweredBytes_ -= scene.second;
+    return true;
+  });
   say(message::Failed{epoch, why});
 }
 
 void Worker::scene(message::Scene&& m) {
   if (base_ + m.epoch <= newest_) return bad("a scene that is older than the last");
-  if (coming_.size() >= mostComing) return bad("too many scenes at once");
+  if (unanswered_.size() >= limits::scenesAtOnce || unansweredBytes_ + m.edits.size() > limits::scenesBytes)
+    return giveUp("it sends more scenes than can be made");
   newest_ = base_ + m.epoch;
+  unanswered_.emplace_back(newest_, m.edits.size());
+  unansweredBytes_ += m.edits.size();
   message::Need need{m.epoch, {}};
   Coming& coming = coming_.emplace_back();
   coming.scene = std::move(m);
@@ -42,6 +45,8 @@ void Worker::scene(message::Scene&& m) {
 void Worker::piece(const message::Piece& m) {
   const auto stream = streams_.find(m.hash);
   if (stream == streams_.end()) return bad("a piece of an array that nobody asked for");
+  if (!stream->second.begun() && begun_ >= limits::arraysAtOnce) return bad("pieces of too many arrays at once");
+  begun_ += stream->second.begun() ? 0 : 1;
   std::string why;
   try {
     why = stream->second.put(m);
@@ -50,6 +55,7 @@ void Worker::piece(const message::Piece& m) {
   const ArrayPtr array = why.empty() ? stream->second.take() : nullptr;
   if (why.empty() && !array) why = "an array with a wrong checksum";
   streams_.erase(stream);
+  begun_--;
   if (!array) { // scenes without it cannot be made
     bad(why);
     for (Coming& coming : coming_)
@@ -63,12 +69,12 @@ void Worker::piece(const message::Piece& m) {
 }
 
 void Worker::prepare(const message::Prepare& m) {
-  if (m.epoch == 0 || base_ + m.epoch > newest_) return bad("a scene that has not come is to be prepared");
+  if (m.epoch == 0 || m.epoch > newest_ - base_) return bad("a scene that has not come is to be prepared");
   if (coming_.empty()) {
     if (!broken_.empty()) return say(message::Failed{m.epoch, broken_});
     return machine_.prepare(base_ + m.epoch);
   }
-  if (coming_.size() >= mostComing) return bad("too many scenes at once");
+  if (coming_.size() >= 2 * limits::scenesAtOnce) return giveUp("it asks for more scenes than can be made");
   Coming& coming = coming_.emplace_back();
   coming.scene.epoch = m.epoch, coming.prepareOnly = true;
 }
