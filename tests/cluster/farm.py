@@ -5,12 +5,13 @@ import pathlib
 import signal
 import socket
 import subprocess
+import tempfile
 import time
 
 from fault_proxy import FaultProxy
 from openrt_c import build
 
-PROGRAM = build() / "bin/openrt-worker"
+PROGRAM = pathlib.Path(os.environ.get("OPENRT_WORKER", build() / "bin/openrt-worker"))
 
 
 def free_port():
@@ -18,9 +19,9 @@ def free_port():
         return s.getsockname()[1]
 
 
-def listening(port, seconds=20):
+def listening(port, process, seconds=30):
     end = time.monotonic() + seconds
-    while time.monotonic() < end:
+    while time.monotonic() < end and process.poll() is None:
         with contextlib.suppress(OSError), socket.create_connection(("127.0.0.1", port), timeout=1):
             return True
         time.sleep(0.02)
@@ -28,11 +29,12 @@ def listening(port, seconds=20):
 
 
 class Worker:
-    """One openrt-worker that listens; address: where the master is to call."""
+    """One openrt-worker. It listens, and address is where the master is to call, or its arguments say whom to call."""
 
-    def __init__(self, *arguments, threads=1, proxy=False, port=None):
-        self.port = port or free_port()
-        self.arguments = [PROGRAM, "--listen", f"127.0.0.1:{self.port}", "--threads", str(threads), *arguments]
+    def __init__(self, *arguments, listen=True, threads=1, proxy=False):
+        self.port = free_port() if listen else None
+        place = ["--listen", f"127.0.0.1:{self.port}"] if listen else []
+        self.arguments = [PROGRAM, *place, "--threads", str(threads), *map(str, arguments)]
         self.process = None
         self.proxy = None
         self.start()
@@ -41,8 +43,11 @@ class Worker:
         self.address = self.proxy.address if proxy else f"127.0.0.1:{self.port}"
 
     def start(self):
-        self.process = subprocess.Popen(self.arguments, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        assert listening(self.port), "openrt-worker does not listen"
+        with tempfile.TemporaryFile() as said:
+            self.process = subprocess.Popen(self.arguments, stdout=subprocess.DEVNULL, stderr=said)
+            if self.port and not listening(self.port, self.process):
+                said.seek(0)
+                raise AssertionError("openrt-worker does not listen: " + said.read().decode())
 
     def kill(self):
         self.process.kill()
@@ -74,9 +79,13 @@ def farm(count, *arguments, **options):
             worker.close()
 
 
+def addresses(workers):
+    return ",".join(worker.address for worker in workers)
+
+
 def cluster(workers, **options):
     """The configuration of a context."""
-    words = {"workers": ",".join(w.address for w in workers), **options}
+    words = {"workers": addresses(workers), **options}
     return "backend=cluster " + " ".join(f"{key}={value}" for key, value in words.items())
 
 
