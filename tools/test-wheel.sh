@@ -62,6 +62,6 @@ inside '{ v/bin/vv still_life.wrl -o vv.png --size 640x480 --spp 16 --strict
         v/bin/openrt-worker --connect 127.0.0.1:7447 2>/dev/null & v/bin/openrt-worker --connect 127.0.0.1:7447 2>/dev/null &
         v/bin/vv still_life.wrl -o cluster.png --size 640x480 --spp 16 --local-threads 0 --listen-workers 127.0.0.1:7447 --require-workers 2 2>errors.cluster
         kill %1 %2; cmp vv.png cluster.png; echo "two workers: the same picture"' || { cat "$root"/try/errors* >&2; exit 1; }
-if grep -q . "$root/try/errors"; then echo "test-wheel: warnings:" >&2; cat "$root/try/errors" >&2; exit 1; fi
+if grep -v '^vv: *[0-9]* %' "$root/try/errors" | grep -q .; then echo "test-wheel: warnings:" >&2; cat "$root/try/errors" >&2; exit 1; fi
 cp "$root"/try/*.png "$folder/pictures/"
 echo "the wheel works; pictures in $folder/pictures"

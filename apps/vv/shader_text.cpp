@@ -1,6 +1,7 @@
 // shader_text.cpp: see shader_text.h.
 #include "shader_text.h"
 
+#include <algorithm>
 #include <cfloat>
 #include <charconv>
 #include <cmath>

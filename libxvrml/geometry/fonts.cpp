@@ -29,14 +29,16 @@ void addBundledFonts() {
   if (dladdr(&here, &info) == 0 || !info.dli_fname) return;
   const fs::path folder = fs::canonical(fs::path(info.dli_fname).parent_path() / "../share/xvrml/fonts", error);
   if (error) return;
-  if (FcChar8* installed = FcConfigGetFilename(nullptr, nullptr)) {
+  FcConfig* own = FcConfigCreate(); // to ask it: without one fontconfig would load its own, and complain
+  if (!own) return;
+  if (FcChar8* installed = FcConfigGetFilename(own, nullptr)) {
     FcStrFree(installed);
     const FcFontSet* fonts = FcConfigGetFonts(nullptr, FcSetSystem);
     if (!fonts || fonts->nfont == 0) FcConfigAppFontAddDir(nullptr, fc(folder.c_str()));
-  } else if (FcConfig* own = FcConfigCreate()) {
-    if (FcConfigParseAndLoad(own, fc((folder / "fonts.conf").c_str()), FcFalse)) FcConfigSetCurrent(own); // builds the list
-    FcConfigDestroy(own);
+  } else if (FcConfigParseAndLoad(own, fc((folder / "fonts.conf").c_str()), FcFalse)) {
+    FcConfigSetCurrent(own); // builds the list
   }
+  FcConfigDestroy(own);
 }
 
 // The standard's families by fontconfig's names.

@@ -29,7 +29,8 @@ int initialize(Tcl_Interp* tcl) {
   const Object encodings(Tcl_NewListObj(0, nullptr));
   Tcl_ListObjAppendElement(nullptr, encodings.get(), tclText((library / "encoding").c_str()).get());
   Tcl_SetEncodingSearchPath(encodings.get());
-  return Tcl_Init(tcl);
+  // Debian's Tcl knows the folder of its modules (msgcat, which `clock` needs) by an absolute path.
+  return Tcl_Init(tcl) == TCL_OK ? Tcl_Eval(tcl, "::tcl::tm::path add [file join $tcl_library tcl8]") : TCL_ERROR;
 }
 
 // The prelude. vwait's trace starts the coroutine again in the event loop, not from within the assignment.
