@@ -71,6 +71,15 @@ void FrameSchedule::give(const Out& out, Job& job, double now) {
   entry.round = round_;
 }
 
+void FrameSchedule::order(std::vector<uint32_t> tiles) {
+  if (!rounds_ && nextTile_ == 0 && from_ == 0 && tiles.size() == tiles_) order_ = std::move(tiles);
+}
+
+uint32_t FrameSchedule::upcoming() const {
+  if (!back_.empty() || nextEarly_ < earlyUntil_ || nextPart_ < partsUntil_) return tiles_;
+  return !ready_.empty() ? ready_.front().tile : nextTile_ < tiles_ ? tileAt(nextTile_) : tiles_;
+}
+
 bool FrameSchedule::next(Job& job, uint32_t largest, double now) {
   while (!back_.empty()) {
     const auto found = out_.find(back_.front());
@@ -129,7 +138,8 @@ bool FrameSchedule::nextTile(Job& job, uint32_t largest, double now) {
     return true;
   }
   if (nextTile_ >= tiles_ || (!rounds_ && dark && nextTile_ >= ahead_)) return false;
-  giveBlock(job, pilot_ ? Stage::pilot : Stage::samples, nextTile_, from_, endOf(nextTile_), largest, now);
+  const uint32_t tile = tileAt(nextTile_);
+  giveBlock(job, pilot_ ? Stage::pilot : Stage::samples, tile, from_, endOf(tile), largest, now);
   skipTiles();
   return true;
 }
@@ -142,7 +152,7 @@ uint32_t FrameSchedule::endOf(uint32_t tile) const {
 
 // On to the next tile that has something left in this round.
 void FrameSchedule::skipTiles() {
-  for (; nextTile_ < tiles_ && from_ >= endOf(nextTile_); from_ = first_) nextTile_++;
+  for (; nextTile_ < tiles_ && from_ >= endOf(tileAt(nextTile_)); from_ = first_) nextTile_++;
 }
 
 std::optional<FrameSchedule::Out> FrameSchedule::claim(const Job& job) {

@@ -32,6 +32,9 @@ class FrameSchedule {
     bool back = false; // nobody has it
   };
 
+  // Tiles in another order than their numbers'; of a frame that is not shown before it is finished, and not begun.
+  void order(std::vector<uint32_t> tiles);
+  uint32_t upcoming() const;                         // the tile that next() comes to; their number: none, or it is open
   bool next(Job& job, uint32_t largest, double now); // false: not now
   std::optional<Out> claim(const Job& job);          // it has been done; none: it is not out
   void done(const Out& out, double now);             // and what it has made is where it belongs
@@ -62,6 +65,7 @@ class FrameSchedule {
   bool nextTile(Job& job, uint32_t largest, double now);
   void giveBlock(Job& job, Stage stage, uint32_t tile, uint32_t& from, uint32_t end, uint32_t largest, double now);
   uint32_t endOf(uint32_t tile) const;
+  uint32_t tileAt(uint32_t place) const { return order_.empty() ? place : order_[place]; }
   void skipTiles();
   bool endRound(double now);
   bool endTimed(double now);
@@ -75,9 +79,10 @@ class FrameSchedule {
   bool pilot_; // stage of all tiles in rounds; else tiles have pilots
   bool lit_ = false, ended_ = false;
   const uint32_t pilotSamples_;
-  std::vector<uint32_t> wanted_; // by tile: samples; known after the pilot
-  uint32_t undecided_;           // tiles without an answer of the pilot
-  uint32_t nextTile_ = 0, from_ = 0;
+  std::vector<uint32_t> wanted_;     // by tile: samples; known after the pilot
+  uint32_t undecided_;               // tiles without an answer of the pilot
+  std::vector<uint32_t> order_;      // empty: by their numbers
+  uint32_t nextTile_ = 0, from_ = 0; // place in the order
   struct Ready {
     uint32_t tile, from;
   };

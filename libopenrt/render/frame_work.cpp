@@ -229,6 +229,16 @@ FrameWork::Next FrameWork::next(Job& job, uint32_t largest) {
   return Next::wait;
 }
 
+void FrameWork::order(std::vector<uint32_t> tiles) {
+  std::lock_guard lock(impl_->mutex);
+  impl_->schedule.order(std::move(tiles));
+}
+
+uint32_t FrameWork::upcoming() const {
+  std::lock_guard lock(impl_->mutex);
+  return impl_->schedule.upcoming();
+}
+
 void FrameWork::giveBack(const Job& job) {
   {
     std::lock_guard lock(impl_->mutex);

@@ -35,6 +35,10 @@ class FrameWork {
   // The next job that nobody has. largest: samples of a pixel that it should have at most; a tile's samples are given out in
   // aligned blocks of powers of two then, at least 32.
   Next next(Job& job, uint32_t largest = ~0u);
+  // All tiles' numbers, in the order in which they are to be given out. Before the first job; a frame that shows something early
+  // keeps its own order.
+  void order(std::vector<uint32_t> tiles);
+  uint32_t upcoming() const; // the tile whose samples next() gives out, if it gives any; tiles(): that is open
   // A job that comes back undone; it is given out again, before others.
   void giveBack(const Job& job);
   // What has become of a job that was given out. True the first time; what comes a second time is dropped.

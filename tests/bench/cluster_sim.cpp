@@ -25,10 +25,14 @@ struct Options {
   double link = 10e9;                    // of a worker
   double latency = 50e-6;                // seconds, one way
   double perMessage = 2e-6, perByte = 0; // seconds that the master's socket thread takes (--curve: encrypting, too)
-  double prepare = 0;                    // seconds for a scene
-  double slow = 0;                       // share of workers that are four times slower
-  bool ideal = false;                    // the master takes no time: what is lost is the schedule's
-  bool pipelined = false;                // the next frame is begun with the last
+  double receive = 2.5e-6, send = 1e-6, copy = 5e-10, handOver = 5e-7; // of the master's thread: ZeroMQ's calls for a message,
+                                                                       // for a byte of it; a result that is given to others
+  uint32_t mergers = 4;   // threads of the master that unpack and merge results; 0: its thread does it
+  double prepare = 0;     // seconds for a scene
+  double noise = 0;       // what a job costs differs from the frame before: sigma of its logarithm
+  double slow = 0;        // share of workers that are four times slower
+  bool ideal = false;     // the master takes no time: what is lost is the schedule's
+  bool pipelined = false; // the next frame is begun with the last
   std::string costs;
   SchedulerOptions schedule;
 };
@@ -37,6 +41,16 @@ double cpuSeconds() {
   timespec t;
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
   return double(t.tv_sec) + double(t.tv_nsec) * 1e-9;
+}
+
+// Of looking at this clock, which is a system call: the real master does not.
+double costOfClock() {
+  std::vector<double> times;
+  for (int i = 0; i < 10001; i++) times.push_back(cpuSeconds());
+  for (size_t i = 0; i + 1 < times.size(); i++) times[i] = times[i + 1] - times[i];
+  times.pop_back();
+  std::nth_element(times.begin(), times.begin() + 5000, times.end());
+  return times[5000];
 }
 
 class Simulation {
@@ -50,11 +64,20 @@ class Simulation {
     MasterOptions options;
     options.schedule = o.schedule;
     options.self = hello();
+    if (o.mergers > 0)
+      options.results = [this](std::function<void()> heavy, MasterOptions::Then then) {
+        paused_ -= o_.handOver;
+        events_.at(clock(), [this, heavy = std::move(heavy), then = std::move(then)] {
+          merging_.push_back({heavy, then});
+          merge();
+        });
+      };
     options.close = [](Peer, const std::string& why) { throw std::runtime_error("a worker was refused: " + why); };
     master_ = std::make_unique<Master>(
         options, [this](Peer peer, Frames&& frames) { return send(peer, std::move(frames)); }, nullptr);
     for (uint32_t i = 0; i < workers; i++) {
       workers_[i].speed = i < o.slow * workers ? 4 : 1;
+      workers_[i].idle.resize(o.threads);
       atMaster([this, i](double now) {
         master_->joined(i + 1, "worker", now);
         master_->message(i + 1, encode(0, hello()), now);
@@ -63,30 +86,36 @@ class Simulation {
   }
 
   struct Outcome {
-    double frame = 0, efficiency = 0, master = 0, network = 0, socket = 0, in = 0, out = 0, jobs = 0, perJob = 0;
+    double frame = 0, efficiency = 0, master = 0, merging = 0, network = 0, socket = 0, in = 0, out = 0, jobs = 0, perJob = 0;
+    double begin = 0, gaps = 0, end = 0; // shares of the workers' time that nothing is done in
     uint64_t again = 0;
   };
   Outcome run() {
     while (joined_ < workers_.size() || !events_.empty()) events_.step(); // all are there
     commit();
-    if (o_.pipelined) commit();
+    if (o_.pipelined) commit(); // there is always a next one
     Outcome outcome;
     double began = 0;
     while (finished_ < o_.frames && !events_.empty()) {
       const uint32_t before = finished_;
       events_.step();
       if (before == finished_ || finished_ != 1) continue; // the first frame finds out what it costs
-      began = lastEnd_;
-      mark_ = counts();
+      began = idleFrom_ = lastEnd_;
+      mark_ = counts(), idleBegin_ = idleGaps_ = idleEnd_ = 0;
     }
     if (finished_ < o_.frames) throw std::runtime_error("the simulation has come to a halt");
     const Counts end = counts();
     const double all = lastEnd_ - began, n = o_.frames - 1;
     double power = 0;
-    for (const Machine& m : workers_) power += o_.threads / m.speed;
+    for (Machine& m : workers_) {
+      power += o_.threads / m.speed;
+      while (!m.idle.empty()) use(m, lastEnd_);
+    }
     outcome.frame = all / n;
     outcome.efficiency = o_.work / power / outcome.frame;
+    outcome.begin = idleBegin_ / power / all, outcome.gaps = idleGaps_ / power / all, outcome.end = idleEnd_ / power / all;
     outcome.master = (end.cpu - mark_.cpu) / all;
+    outcome.merging = (end.merging - mark_.merging) / all / std::max(o_.mergers, 1u);
     outcome.network = std::max(end.in - mark_.in, end.out - mark_.out) * 8 / o_.network / all;
     outcome.socket = (end.socket - mark_.socket) / all;
     outcome.in = (end.in - mark_.in) / all, outcome.out = (end.out - mark_.out) / all;
@@ -102,17 +131,26 @@ class Simulation {
     Epoch epoch = 0;
     bool scene = false;
   };
+  struct Merging {
+    std::function<void()> heavy;
+    MasterOptions::Then then;
+  };
+  struct Running {
+    Item item;
+    double seconds = 0, until = 0;
+  };
   struct Machine {
     double speed = 1; // times slower
     uint64_t session = 0;
-    uint32_t running = 0;
     bool preparing = false;
     Epoch dropped = 0;
     std::deque<Item> queue;
-    Server in, out; // its link
+    std::vector<double> idle;            // since when, of each thread without a job
+    std::map<uint64_t, Running> running; // by number
+    Server in, out;                      // its link
   };
   struct Counts {
-    double cpu = 0, socket = 0, in = 0, out = 0, work = 0;
+    double cpu = 0, merging = 0, socket = 0, in = 0, out = 0, work = 0;
     uint64_t jobs = 0, again = 0;
   };
   using Call = std::function<void(double now)>;
@@ -131,7 +169,9 @@ class Simulation {
     h.host = "simulated";
     return h;
   }
-  Counts counts() const { return {masterCpu_, socket_.busy, bytesIn_, bytesOut_, work_, jobs_, master_->totals().reissued}; }
+  Counts counts() const {
+    return {masterCpu_, mergingCpu_, socket_.busy, bytesIn_, bytesOut_, work_, jobs_, master_->totals().reissued};
+  }
 
   void commit() {
     const Epoch epoch = ++lastEpoch_;
@@ -163,9 +203,14 @@ class Simulation {
       inbox_.pop_front();
       call(clock());
     }
+    const double dbg0 = clock();
+    dbgMsg += dbg0 - turnBegan_;
     const double next = master_->advance(clock());
+    dbgAdv += clock() - dbg0;
+    dbgTurns++;
     const double took = clock() - turnBegan_;
     masterCpu_ += took, masterFree_ = turnBegan_ + took;
+    master_->busy(took);
     look();
     awake_ = false;
     if (!inbox_.empty())
@@ -173,13 +218,33 @@ class Simulation {
     else if (std::isfinite(next))
       sleep(std::max(next, masterFree_));
   }
+  // The threads that merge: what they do is done here at once, and takes them the time that it takes here.
+  void merge() {
+    while (mergersBusy_ < o_.mergers && !merging_.empty()) {
+      const Merging next = std::move(merging_.front());
+      merging_.pop_front();
+      mergersBusy_++;
+      const double began = cpuSeconds();
+      next.heavy();
+      const double took = std::max(0.0, cpuSeconds() - began - clockCost_);
+      mergingCpu_ += took;
+      events_.at(events_.now + (o_.ideal ? 0 : took), [this, then = next.then] {
+        mergersBusy_--;
+        atMaster(then);
+        merge();
+      });
+    }
+  }
   void sleep(double until) {
     const uint64_t number = wakes_;
     events_.at(until, [this, number] {
       if (number == wakes_ && !awake_) wakeMaster(events_.now);
     });
   }
-  double clock() const { return turnBegan_ + (o_.ideal ? 0 : cpuSeconds() - turnCpu_ - paused_); }
+  double clock() {
+    paused_ += clockCost_;
+    return turnBegan_ + (o_.ideal ? 0 : std::max(0.0, cpuSeconds() - turnCpu_ - paused_));
+  }
   void look() {
     for (Epoch epoch = oldest_; epoch <= lastEpoch_; epoch++) {
       const Master::FrameState state = master_->frame(epoch);
@@ -187,7 +252,8 @@ class Simulation {
       if (!state.failure.empty()) throw std::runtime_error(state.failure);
       master_->forget(epoch);
       oldest_ = epoch + 1, finished_++, lastEnd_ = masterFree_;
-      if (lastEpoch_ < o_.frames) commit();
+      ends_.push_back(lastEnd_);
+      if (finished_ < o_.frames) commit();
     }
   }
 
@@ -197,7 +263,8 @@ class Simulation {
     return bytes + bytes / 1460 * 66;
   }
   bool send(Peer peer, Frames&& frames) {
-    const double when = clock(), begin = cpuSeconds();
+    paused_ -= o_.send;
+    const double when = clock(), begin = cpuSeconds() - clockCost_;
     const double bytes = double(sizeOf(frames));
     bytesOut_ += bytes;
     const double sent = nicOut_.take(socket_.take(when, o_.perMessage + bytes * o_.perByte), bytes * 8 / o_.network);
@@ -233,17 +300,22 @@ class Simulation {
     if (const auto* drop = std::get_if<message::Drop>(&message.body)) {
       m.dropped = std::max(m.dropped, drop->epoch);
       std::erase_if(m.queue, [&](const Item& item) { return !item.scene && item.epoch <= drop->epoch; });
+      for (const auto& [number, running] : m.running)
+        if (running.item.epoch <= drop->epoch) giveUp(w, number, running);
     }
     begin(w);
   }
   void reply(uint32_t w, message::Body&& body) {
     auto frames = std::make_shared<Frames>(encode(workers_[w].session, std::move(body)));
-    toMaster(w, sizeOf(*frames), [this, w, frames](double now) { master_->message(w + 1, std::move(*frames), now); });
+    toMaster(w, sizeOf(*frames), [this, w, frames](double now) {
+      paused_ -= o_.receive;
+      master_->message(w + 1, std::move(*frames), now);
+    });
   }
   void begin(uint32_t w) {
     Machine& m = workers_[w];
     while (!m.preparing && !m.queue.empty()) {
-      if (m.queue.front().scene ? m.running > 0 : m.running == o_.threads) return;
+      if (m.queue.front().scene ? !m.running.empty() : m.idle.empty()) return;
       const Item item = m.queue.front();
       m.queue.pop_front();
       if (item.scene) {
@@ -257,25 +329,54 @@ class Simulation {
         });
         return;
       }
-      m.running++;
+      use(m, events_.now);
       const openrt::Job& job = item.job.job;
-      const double pixels = double(grid_.at(job.number).pixels());
-      const double seconds = cost_[job.number] * pixels * job.count * m.speed;
-      work_ += seconds;
-      events_.at(events_.now + seconds, [this, w, item, seconds] { finished(w, item, seconds); });
+      const double differs = o_.noise > 0 ? std::exp(o_.noise * normal_(random_) - o_.noise * o_.noise / 2) : 1;
+      const double seconds = cost_[job.number] * double(grid_.at(job.number).pixels()) * job.count * m.speed * differs;
+      const uint64_t number = ++lastRunning_;
+      m.running[number] = {item, seconds, events_.now + seconds};
+      events_.at(events_.now + seconds, [this, w, number] { finished(w, number); });
     }
   }
-  void finished(uint32_t w, const Item& item, double seconds) {
+  // A thread that has been idle gets something to do. When a frame ends in between: what is before is its end, what is behind is
+  // the beginning of the next one.
+  void use(Machine& m, double now) {
+    const double since = std::max(m.idle.back(), idleFrom_);
+    m.idle.pop_back();
+    if (now <= since) return;
+    const auto end = std::lower_bound(ends_.begin(), ends_.end(), since);
+    if (end == ends_.end() || *end > now) {
+      idleGaps_ += (now - since) / m.speed;
+    } else {
+      idleEnd_ += (*end - since) / m.speed;
+      idleBegin_ += (now - *end) / m.speed;
+    }
+  }
+  // A job that nobody wants any more: its thread looks up after each bounce, a wave is a leaf of samples.
+  void giveUp(uint32_t w, uint64_t number, const Running& running) {
+    constexpr double leaf = 32, bounces = 4;
+    const double until = events_.now + running.seconds / running.item.job.job.count * leaf / bounces;
+    if (until >= running.until) return;
+    events_.at(until, [this, w, number] { finished(w, number); });
+  }
+  void finished(uint32_t w, uint64_t number) {
     Machine& m = workers_[w];
-    m.running--, jobs_++;
+    const auto found = m.running.find(number);
+    if (found == m.running.end()) return; // it was given up
+    const Item item = found->second.item;
+    const double seconds = found->second.seconds;
+    m.running.erase(found);
+    m.idle.push_back(events_.now);
     if (item.epoch > m.dropped) {
+      jobs_++, work_ += seconds;
       const size_t pixels = grid_.at(item.job.job.number).pixels();
       size_t& bytes = resultBytes_[{pixels, item.job.job.count}]; // what is in it is made when it is looked at: less is kept
       if (bytes == 0) bytes = sizeOf(results_.make(m.session, item.epoch, item.job, pixels, seconds));
       toMaster(w, bytes, [this, w, item, pixels, seconds](double now) {
-        const double began = cpuSeconds();
+        const double began = cpuSeconds() - clockCost_;
         Frames frames = results_.make(workers_[w].session, item.epoch, item.job, pixels, seconds);
         paused_ += cpuSeconds() - began; // nobody's time
+        paused_ -= o_.receive + double(sizeOf(frames)) * o_.copy;
         master_->message(w + 1, std::move(frames), now);
       });
     }
@@ -298,15 +399,29 @@ class Simulation {
   uint32_t joined_ = 0, finished_ = 0;
   Epoch lastEpoch_ = 0, oldest_ = 1;
   double lastEnd_ = 0;
+  std::vector<double> ends_; // of frames
+ public:
+  double dbgMsg = 0, dbgAdv = 0;
+  uint64_t dbgTurns = 0;
+
+ private:
+  std::deque<Merging> merging_;
+  uint32_t mergersBusy_ = 0;
+  double mergingCpu_ = 0;
+  const double clockCost_ = costOfClock();
+  std::mt19937_64 random_{11};
+  std::normal_distribution<double> normal_;
+  double idleFrom_ = 0, idleBegin_ = 0, idleGaps_ = 0, idleEnd_ = 0;
+  uint64_t lastRunning_ = 0;
   std::map<std::pair<size_t, uint32_t>, size_t> resultBytes_;
   Counts mark_;
 };
 
 const char* limitOf(const Simulation::Outcome& o) {
-  const double most = std::max({o.master, o.network, o.socket});
+  const double most = std::max({o.master, o.merging, o.network, o.socket});
   if (o.efficiency >= 0.95) return "workers";
   if (most < 0.8) return o.perJob > o.frame / 8 ? "size of jobs" : "end of frame";
-  return most == o.master ? "master's thread" : most == o.network ? "network" : "socket thread";
+  return most == o.master ? "master's thread" : most == o.merging ? "merging" : most == o.network ? "network" : "socket thread";
 }
 
 void print(const Options& o) {
@@ -316,15 +431,23 @@ void print(const Options& o) {
       "links %g Gbit/s, %g ms; %s\n",
       o.width, o.height, o.samples, o.tile, o.work, o.threads, o.network * 1e-9, o.link * 1e-9, o.latency * 1e3,
       o.ideal ? "the master takes no time" : "the master's time is measured");
-  std::printf("| workers | frame (ms) | efficiency | jobs/s | mean job (ms) | again | in (MB/s) | out (MB/s) | master | network "
-              "| socket | limit |\n"
-              "| ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | --- |\n");
+  std::printf(
+      "| workers | frame (ms) | efficiency | begin | gaps | end | vain | jobs/s | mean job (ms) | again | in (MB/s) | out (MB/s) "
+      "| master | merging | network "
+      "| socket | limit |\n"
+      "| ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | --- "
+      "|\n");
   for (const uint32_t n : o.workers) {
     Simulation simulation(o, costs, n);
     const Simulation::Outcome r = simulation.run();
-    std::printf("| %u | %.1f | %.1f %% | %.0f | %.2f | %llu | %.1f | %.2f | %.0f %% | %.0f %% | %.0f %% | %s |\n", n,
-                r.frame * 1e3, r.efficiency * 100, r.jobs, r.perJob * 1e3, static_cast<unsigned long long>(r.again), r.in * 1e-6,
-                r.out * 1e-6, r.master * 100, r.network * 100, r.socket * 100, limitOf(r));
+    std::fprintf(stderr, "turns %llu msg %.3f adv %.3f\n", (unsigned long long)simulation.dbgTurns, simulation.dbgMsg,
+                 simulation.dbgAdv);
+    std::printf(
+        "| %u | %.1f | %.1f %% | %.1f | %.1f | %.1f | %.1f | %.0f | %.2f | %llu | %.1f | %.2f | %.0f %% | %.0f %% | %.0f %% | "
+        "%.0f %% | %s |\n",
+        n, r.frame * 1e3, r.efficiency * 100, r.begin * 100, r.gaps * 100, r.end * 100,
+        (1 - r.efficiency - r.begin - r.gaps - r.end) * 100, r.jobs, r.perJob * 1e3, static_cast<unsigned long long>(r.again),
+        r.in * 1e-6, r.out * 1e-6, r.master * 100, r.merging * 100, r.network * 100, r.socket * 100, limitOf(r));
     std::fflush(stdout);
   }
 }
@@ -332,7 +455,10 @@ void print(const Options& o) {
 constexpr const char* usage = R"(bench_cluster_sim [OPTION=VALUE]...
   workers=1,2,4...  threads=16  size=1920x1080  samples=1024  tile=0  frames=3 (the first is not counted)
   work=2048 (seconds of one thread a frame)  network=10e9  link=10e9 (bits/s)  latency=50e-6 (one way)
-  per-message=2e-6  per-byte=0 (seconds of the socket thread)  prepare=0 (seconds a scene)
+  per-message=2e-6  per-byte=0 (seconds of the socket thread)
+  receive=2.5e-6  send=1e-6  copy=5e-10  hand-over=5e-7 (seconds of the master's thread: a message, a byte, a result)
+  mergers=4 (threads that merge results)
+  prepare=0 (seconds a scene)  noise=0 (by which costs differ from the frame before)
   slow=0 (share of workers, 4 times slower)
   in-flight=3  shortest=0.002 (of the scheduler)
   split=auto|tiles|samples|frames  ideal=0|1 (the master takes no time)  pipelined=0|1  costs=FILE (width, height, cells)
@@ -357,6 +483,12 @@ bool set(Options& o, const std::string& name, const std::string& value) {
       {"latency", [&] { o.latency = std::stod(value); }},
       {"per-message", [&] { o.perMessage = std::stod(value); }},
       {"per-byte", [&] { o.perByte = std::stod(value); }},
+      {"receive", [&] { o.receive = std::stod(value); }},
+      {"send", [&] { o.send = std::stod(value); }},
+      {"copy", [&] { o.copy = std::stod(value); }},
+      {"hand-over", [&] { o.handOver = std::stod(value); }},
+      {"mergers", [&] { o.mergers = uint32_t(std::stoul(value)); }},
+      {"noise", [&] { o.noise = std::stod(value); }},
       {"prepare", [&] { o.prepare = std::stod(value); }},
       {"slow", [&] { o.slow = std::stod(value); }},
       {"ideal", [&] { o.ideal = value == "1"; }},

@@ -27,12 +27,13 @@ class FakeWork final : public JobSource {
       return FrameWork::Next::job;
     }
     const uint32_t end = std::min(samples_, until);
-    while (tile_ < next_.size() && next_[tile_] >= end) tile_++;
+    while (tile_ < next_.size() && next_[at(tile_)] >= end) tile_++;
     if (tile_ == next_.size()) return FrameWork::Next::wait;
+    uint32_t& from = next_[at(tile_)];
     job = Job{};
-    job.number = uint32_t(tile_), job.first = next_[tile_];
-    job.count = std::min(largest, end - next_[tile_]);
-    next_[tile_] += job.count;
+    job.number = at(tile_), job.first = from;
+    job.count = std::min(largest, end - from);
+    from += job.count;
     undone_ -= double(job.count) * pixels_;
     return FrameWork::Next::job;
   }
@@ -43,6 +44,12 @@ class FakeWork final : public JobSource {
   double undone() const override { return undone_; }
   uint32_t tiles() const override { return uint32_t(next_.size()); }
   uint32_t pixels(uint32_t) const override { return pixels_; }
+  void order(std::vector<uint32_t> tiles) override { order_ = std::move(tiles); }
+  uint32_t upcoming() const override {
+    size_t tile = tile_;
+    while (tile < next_.size() && next_[at(tile)] >= std::min(samples_, until)) tile++;
+    return back_.empty() && tile < next_.size() ? at(tile) : uint32_t(next_.size());
+  }
 
   void take(const Job& job) {
     for (uint32_t i = job.first; i < job.first + job.count; i++) ASSERT_EQ(taken_[job.number][i]++, 0) << job.number << " " << i;
@@ -55,8 +62,9 @@ class FakeWork final : public JobSource {
   uint32_t given = 0; // back
 
  private:
+  uint32_t at(size_t tile) const { return order_.empty() ? uint32_t(tile) : order_[tile]; }
   uint32_t pixels_, samples_;
-  std::vector<uint32_t> next_;
+  std::vector<uint32_t> next_, order_;
   std::vector<std::vector<uint8_t>> taken_;
   std::vector<Job> back_;
   uint32_t until = ~0u;

@@ -61,7 +61,7 @@ struct FakeWorker {
   std::unique_ptr<CommitValidator> validator = std::make_unique<CommitValidator>(nullptr);
   Epoch epoch = 0;
   std::map<Epoch, edit::FrameSettingsT> frames;
-  bool gone = false, still = false, twice = false, nonsense = false;
+  bool gone = false, still = false, twice = false, nonsense = false, cut = false;
   std::string refused;
   uint64_t arrayBytes = 0; // that came
 
@@ -144,6 +144,7 @@ struct FakeWorker {
     message::Result result;
     result.epoch = at, result.lease = job.lease, result.seconds = made.seconds, result.camera = made.counters.camera;
     result.bytes = encodeResult(frame, job.job, made);
+    if (cut) result.bytes.pop_back();
     say(std::move(result));
   }
 };
@@ -160,6 +161,11 @@ class ClusterMaster : public testing::TestWithParam<int> {
     options.require = require;
     options.local.log = [](int, const char* text, void* user) { static_cast<std::vector<std::string>*>(user)->push_back(text); };
     options.local.logUser = &log;
+    elsewhere.clear();
+    if (GetParam() > 2) // threads that merge
+      options.results = [this](std::function<void()> heavy, MasterOptions::Then then) {
+        elsewhere.push_back({std::move(heavy), std::move(then)});
+      };
     options.close = [this](Peer peer, const std::string& why) { worker(peer).refused = why, worker(peer).gone = true; };
     master = std::make_unique<Master>(
         options, [this](Peer peer, Frames&& frames) { return post(peer, std::move(frames)); }, nullptr);
@@ -188,6 +194,7 @@ class ClusterMaster : public testing::TestWithParam<int> {
   // One thing happens, somewhere.
   void step() {
     now += .0005 * double(1 + below(4));
+    if (!elsewhere.empty() && below(2)) mergeOne();
     if (workers.empty()) return;
     FakeWorker& any = *workers[below(workers.size())];
     if (any.still) return;
@@ -210,6 +217,15 @@ class ClusterMaster : public testing::TestWithParam<int> {
     default: break;
     }
     master->advance(now);
+  }
+
+  // Some result goes one step on: into the picture, or the master hears of it.
+  void mergeOne() {
+    const size_t i = below(elsewhere.size());
+    if (elsewhere[i].first) return std::exchange(elsewhere[i].first, nullptr)();
+    const MasterOptions::Then then = std::move(elsewhere[i].second);
+    elsewhere.erase(elsewhere.begin() + ptrdiff_t(i));
+    then(now);
   }
 
   // A scene of a few objects with arrays, and settings.
@@ -285,6 +301,7 @@ class ClusterMaster : public testing::TestWithParam<int> {
   double now = 1;
   std::vector<std::string> log;
   std::vector<std::unique_ptr<FakeWorker>> workers;
+  std::vector<std::pair<std::function<void()>, MasterOptions::Then>> elsewhere; // null: it is in the picture
   std::unique_ptr<Master> master;
 };
 
@@ -406,6 +423,21 @@ TEST_P(ClusterMaster, NonsenseIsBorneThreeTimes) {
   ASSERT_TRUE(runUntil([&] { return over(1); }));
   expectSame(1);
   EXPECT_EQ(good.refused, "");
+}
+
+TEST_P(ClusterMaster, ResultsThatAreNoneAreBorneThreeTimes) {
+  FakeWorker& bad = join();
+  bad.cut = true;
+  master->commit(1, edits(1), true, now);
+  ASSERT_TRUE(runUntil([&] { return !bad.refused.empty(); }));
+  EXPECT_NE(bad.refused.find("a result that is none of its job"), bad.refused.npos);
+  EXPECT_EQ(master->totals().jobsRemote, 0u);
+  join();
+  ASSERT_TRUE(runUntil([&] { return over(1); }));
+  expectSame(1);
+  uint64_t done = 0;
+  for (const RTworker& worker : master->workers()) done += worker.jobs;
+  EXPECT_EQ(master->totals().jobsRemote, done);
 }
 
 TEST_P(ClusterMaster, ACancelledFrameIsOverAtOnceAndTheNextIsRight) {

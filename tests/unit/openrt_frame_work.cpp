@@ -2,6 +2,7 @@
 // The picture is always the same bytes, and those of the local backend's threads.
 #include <cstring>
 #include <map>
+#include <numeric>
 #include <random>
 
 #include "render/job_runner.h"
@@ -51,6 +52,12 @@ class Player {
       : frame_(scene->frame), way_(way), random_(way.seed), runner_(scene) {
     frame_.progressive = way.progressive;
     work_ = std::make_unique<FrameWork>(frame_, factsOf(*scene), 3);
+    if (way.seed % 2 == 1) {
+      std::vector<uint32_t> tiles(work_->tiles());
+      std::iota(tiles.begin(), tiles.end(), 0u);
+      std::shuffle(tiles.begin(), tiles.end(), random_);
+      work_->order(std::move(tiles));
+    }
     std::vector<Job> jobs;
     for (;;) {
       Job job;
@@ -191,6 +198,26 @@ TEST(FrameWorkByHand, ASinglePixelIsWorkForMany) {
     EXPECT_EQ(job.first, 64 * i);
   }
   EXPECT_EQ(work.next(job, 64), FrameWork::Next::wait);
+}
+
+TEST(FrameWorkByHand, TilesComeInTheOrderThatIsAskedFor) {
+  const Room room(Settings{.samples = 64, .tile = 8});
+  const auto scene = room.scene();
+  FrameWork work(scene->frame, factsOf(*scene), 1);
+  std::vector<uint32_t> tiles(work.tiles());
+  std::iota(tiles.rbegin(), tiles.rend(), 0u);
+  work.order(tiles);
+  Job job;
+  for (const uint32_t tile : tiles)
+    for (const uint32_t first : {0u, 32u}) {
+      EXPECT_EQ(work.upcoming(), tile);
+      ASSERT_EQ(work.next(job, 32), FrameWork::Next::job);
+      EXPECT_EQ(job.number, tile);
+      EXPECT_EQ(job.first, first);
+    }
+  EXPECT_EQ(work.upcoming(), work.tiles());
+  work.giveBack(job);
+  EXPECT_EQ(work.upcoming(), work.tiles()); // it is no tile's turn
 }
 
 TEST(FrameWorkByHand, RoundsOverlap) {

@@ -8,6 +8,7 @@
 #include <deque>
 #include <exception>
 #include <future>
+#include <iterator>
 #include <mutex>
 #include <random>
 #include <thread>
@@ -17,6 +18,7 @@
 #include "backend/cluster/hosts.h"
 #include "backend/cluster/master.h"
 #include "backend/surface_queries.h"
+#include "render/threads.h"
 
 namespace openrt {
 namespace {
@@ -34,24 +36,30 @@ Split splitOf(const std::string& word) {
   return Split::automatic;
 }
 
-// Does what would keep the network waiting, in its order.
+// Does what would keep the network waiting, on so many threads; with one, in its order.
 class Background {
  public:
-  Background() : thread_([this] { run(); }) {}
+  using Task = std::function<void()>;
+  explicit Background(uint32_t threads) {
+    for (uint32_t i = 0; i < threads; i++) threads_.emplace_back([this] { run(); });
+  }
   ~Background() {
     {
       const std::lock_guard lock(mutex_);
       stop_ = true;
     }
-    changed_.notify_one();
-    thread_.join();
+    changed_.notify_all();
+    for (std::thread& thread : threads_) thread.join();
   }
-  void add(std::function<void()> task) {
+  // Takes them all.
+  void add(std::vector<Task>& tasks) {
+    if (tasks.empty()) return;
     {
       const std::lock_guard lock(mutex_);
-      tasks_.push_back(std::move(task));
+      std::move(tasks.begin(), tasks.end(), std::back_inserter(tasks_));
     }
-    changed_.notify_one();
+    for (size_t i = 0; i < std::min(tasks.size(), threads_.size()); i++) changed_.notify_one();
+    tasks.clear();
   }
 
  private:
@@ -60,7 +68,7 @@ class Background {
     for (;;) {
       changed_.wait(lock, [this] { return stop_ || !tasks_.empty(); });
       if (stop_) return;
-      const std::function<void()> task = std::move(tasks_.front());
+      const Task task = std::move(tasks_.front());
       tasks_.pop_front();
       lock.unlock();
       task();
@@ -69,10 +77,13 @@ class Background {
   }
   std::mutex mutex_;
   std::condition_variable changed_;
-  std::deque<std::function<void()>> tasks_;
+  std::deque<Task> tasks_;
   bool stop_ = false;
-  std::thread thread_;
+  std::vector<std::thread> threads_;
 };
+
+// Of the threads here, those that merge what comes from elsewhere while one speaks with the network.
+uint32_t mergersOf(uint32_t threads) { return std::clamp(threads / 2, 1u, 8u); }
 
 class ClusterBackend final : public Backend, public SurfaceQueries, private WorkerSink {
  public:
@@ -100,11 +111,12 @@ class ClusterBackend final : public Backend, public SurfaceQueries, private Work
     master.session = uint64_t(std::random_device()()) << 32 | 1;
     master.self = identity(self);
     master.close = [this](Peer peer, const std::string& why) { wire_->close(peer, why); };
-    master.background = [this](std::function<void()> heavy, std::function<void()> then) {
-      background_.add([this, heavy = std::move(heavy), then = std::move(then)] {
-        heavy();
-        post([then](double) { then(); });
-      });
+    master.background = [this](std::function<void()> heavy, MasterOptions::Then then) {
+      std::vector<Background::Task> task{later(std::move(heavy), std::move(then))};
+      background_.add(task);
+    };
+    master.results = [this](std::function<void()> heavy, MasterOptions::Then then) {
+      results_.push_back(later(std::move(heavy), std::move(then)));
     };
     master_ = std::make_unique<Master>(
         master, [this](Peer peer, Frames&& frames) { return wire_->send(peer, std::move(frames)); }, core_.get());
@@ -319,6 +331,8 @@ class ClusterBackend final : public Backend, public SurfaceQueries, private Work
         const double next = master_->advance(clockNow());
         publish();
         listen(std::clamp(next - clockNow(), 0.0, 0.1));
+        master_->busy(clockNow() - waited_);
+        waited_ = clockNow();
       }
     } catch (const std::exception& e) {
       const std::lock_guard lock(mutex_);
@@ -334,6 +348,13 @@ class ClusterBackend final : public Backend, public SurfaceQueries, private Work
     changed_.notify_all();
   }
 
+  Background::Task later(std::function<void()> heavy, std::function<void(double)> then) {
+    return [this, heavy = std::move(heavy), then = std::move(then)]() mutable {
+      heavy();
+      post(std::move(then));
+    };
+  }
+
   void obey() {
     std::vector<std::function<void(double)>> commands;
     {
@@ -341,17 +362,22 @@ class ClusterBackend final : public Backend, public SurfaceQueries, private Work
       commands.swap(commands_);
     }
     for (auto& command : commands) command(clockNow());
+    mergers_.add(results_);
   }
 
   // What has come, and what comes at once behind it.
   void listen(double seconds) {
-    constexpr int most = 256; // messages before anything is handed out
+    constexpr int most = 256;       // messages before anything is handed out
+    constexpr size_t together = 16; // results for those who merge: waking somebody for each would take longer
     for (int i = 0; i < most; i++) {
+      if (results_.size() >= together) mergers_.add(results_);
+      const double asked = clockNow();
       Event event = wire_->receive(i == 0 ? seconds : 0);
       const double now = clockNow();
+      if (i == 0) waited_ += now - asked;
       switch (event.kind) {
       case Event::Kind::nothing:
-      case Event::Kind::woken: return;
+      case Event::Kind::woken: return mergers_.add(results_);
       case Event::Kind::joined: master_->joined(event.peer, event.text, now); break;
       case Event::Kind::message: master_->message(event.peer, std::move(event.frames), now); break;
       case Event::Kind::left: master_->left(event.peer, event.text, now); break;
@@ -360,6 +386,7 @@ class ClusterBackend final : public Backend, public SurfaceQueries, private Work
         break;
       }
     }
+    mergers_.add(results_);
   }
 
   // What has become of the frames in flight, for those who look or wait.
@@ -407,11 +434,14 @@ class ClusterBackend final : public Backend, public SurfaceQueries, private Work
   mutable std::vector<std::function<void(double)>> commands_;
   mutable bool closed_ = false;
 
-  bool stop_ = false; // of the network's thread
+  // Of the network's thread.
+  bool stop_ = false;
+  double waited_ = clockNow();            // since when it has been busy, without the time in which it waited
+  std::vector<Background::Task> results_; // for those who merge
   std::unique_ptr<Wire> wire_;
   std::unique_ptr<WorkerCore> core_;
   std::unique_ptr<Master> master_;
-  Background background_;
+  Background background_{1}, mergers_{mergersOf(availableThreads())};
   std::thread thread_;
 };
 

@@ -15,6 +15,8 @@ class FrameSource final : public JobSource {
   void giveBack(const Job& job) override { work_->giveBack(job); }
   double undone() const override { return work_->undone(); }
   uint32_t tiles() const override { return work_->tiles(); }
+  void order(std::vector<uint32_t> tiles) override { work_->order(std::move(tiles)); }
+  uint32_t upcoming() const override { return work_->upcoming(); }
   uint32_t pixels(uint32_t tile) const override {
     const Tile t = work_->tile(tile);
     return (t.x1 - t.x0) * (t.y1 - t.y0);

@@ -48,7 +48,7 @@ void Master::message(Peer peer, Frames&& frames, double now) {
   Remote& remote = found->second;
   for (const auto& frame : frames) remote.bytesReceived += frame.size();
   Message message;
-  if (const std::string wrong = decode(std::move(frames), message, impl_->largestResult); !wrong.empty())
+  if (const std::string wrong = decodePacked(std::move(frames), message, impl_->largestResult); !wrong.empty())
     return impl_->refuse(peer, "a message that cannot be read: " + wrong, now); // nobody knows what it should have been
   if (auto* hello = std::get_if<message::Hello>(&message.body)) return impl_->hello(remote, std::move(*hello), now);
   if (!remote.welcome || message.session != remote.session) return; // of a session that has ended
@@ -109,12 +109,15 @@ void Master::doneHere(Epoch epoch, const LeasedJob& job, JobResult&& result, dou
   Impl& m = *impl_;
   if (auto out = m.here.out.find(epoch); out != m.here.out.end() && out->second > 0) out->second--;
   m.here.rays += result.counters.camera + result.counters.shadow + result.counters.secondary;
-  if (!m.scheduler.done(hereId, epoch, job.lease, result.seconds, now)) return;
-  m.jobsHere++;
   FrameEntry* entry = m.unfinished(epoch);
-  if (!entry || !entry->state.work) return;
-  entry->state.work->take(job.job, std::move(result));
-  m.taken(epoch);
+  if (!entry || !entry->state.work || !m.scheduler.find(hereId, epoch, job.lease)) {
+    m.scheduler.done(hereId, epoch, job.lease, result.seconds, now);
+    return;
+  }
+  const auto arrival = std::make_shared<Arrival>();
+  arrival->epoch = epoch, arrival->job = job;
+  arrival->result = std::move(result);
+  m.arrive(*entry, arrival, now);
 }
 
 void Master::commit(Epoch epoch, std::shared_ptr<const Commit> commit, bool frame, double now) {
@@ -154,7 +157,7 @@ double Master::advance(double now) {
   double next = std::numeric_limits<double>::infinity();
   bool ended = false;
   for (auto& [epoch, entry] : m.frames) // those with a time limit end by themselves
-    if (!entry.state.over && entry.state.work && entry.state.work->over()) m.end(epoch), ended = true;
+    if (!entry.state.over && entry.complete()) m.end(epoch), ended = true;
   if (ended) m.settle();
   if (m.enough(now)) {
     m.handOut(now);
@@ -170,6 +173,16 @@ double Master::advance(double now) {
   if (!m.waiting.empty()) next = std::min(next, now + 0.001); // a queue has room again
   if (!m.hereJoined && m.core && std::isfinite(m.firstCommit)) next = std::min(next, m.firstCommit + m.options.grace);
   return std::max(next, now);
+}
+
+void Master::busy(double seconds) {
+  constexpr double memory = 5000; // jobs
+  Impl& m = *impl_;
+  if (m.jobsSince == 0) return; // scenes and the like
+  const double keep = std::exp(-m.jobsSince / memory);
+  m.busySeconds = m.busySeconds * keep + seconds, m.busyJobs = m.busyJobs * keep + m.jobsSince;
+  m.jobsSince = 0;
+  m.scheduler.pace(m.busySeconds / m.busyJobs);
 }
 
 bool Master::bringHere() {

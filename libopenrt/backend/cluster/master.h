@@ -25,8 +25,11 @@ struct MasterOptions {
   uint64_t session = 1;      // sessions of workers are numbered from here; a random number keeps those of two masters apart
   message::Hello self;       // what workers are compared with (greeting.h)
   std::function<void(Peer, const std::string& why)> close; // a worker is refused
-  // Runs the first function on any thread and the second, later, on the master's. None: both at once.
-  std::function<void(std::function<void()> heavy, std::function<void()> then)> background;
+  // Run the first function on any thread and the second, later, on the master's. None: both at once. background: what takes long,
+  // one after the other; results: unpacking and merging what workers have made, as many at once as there are threads for it.
+  using Then = std::function<void(double now)>;
+  using Elsewhere = std::function<void(std::function<void()> heavy, Then then)>;
+  Elsewhere background, results;
 };
 
 class Master {
@@ -51,6 +54,8 @@ class Master {
   void cancel(Epoch epoch, double now); // this frame and those before
   // Hands out what there is; returns when to be called again at the latest.
   double advance(double now);
+  // So many seconds this thread has been busy since the last call: what a job costs decides how large jobs are.
+  void busy(double seconds);
   // The worker here gets the scene of the last commit, to be asked about it. False: frames before it are not finished yet, or
   // there is no worker here.
   bool bringHere();

@@ -106,34 +106,74 @@ void Master::Impl::result(Remote& remote, message::Result&& message, double now)
   if (auto out = remote.out.find(message.epoch); out != remote.out.end() && out->second > 0) out->second--;
   const Job* job = scheduler.find(remote.id, message.epoch, message.lease);
   FrameEntry* entry = unfinished(message.epoch);
-  JobResult result;
-  Job known;
-  if (job && entry && entry->state.work) {
-    known = *job;
-    const Tile tile = known.kind == Job::Kind::samples ? entry->state.work->tile(known.number) : Tile{};
-    if (!decodeResult(entry->state.prepared.frame, known, tile, message.bytes, result)) {
-      scheduler.failed(remote.id, message.epoch, message.lease, now);
-      return strike(remote, "a result that is none of its job", now);
-    }
-  }
-  if (!scheduler.done(remote.id, message.epoch, message.lease, message.seconds, now) || !job || !entry || !entry->state.work)
+  if (!job || !entry || !entry->state.work) { // too late
+    scheduler.done(remote.id, message.epoch, message.lease, message.seconds, now);
     return;
-  result.counters.camera = message.camera, result.counters.shadow = message.shadow;
-  result.counters.secondary = message.secondary;
-  if (options.local.shaders) result.counters.faults = faultsFrom(message.faults, *options.local.shaders);
-  result.seconds = message.seconds;
-  remote.rays += message.camera + message.shadow + message.secondary;
-  jobsRemote++;
-  entry->state.work->take(known, std::move(result));
-  taken(message.epoch);
+  }
+  if (!remote.arriving.insert(message.lease).second) return; // it says so twice
+  const auto arrival = std::make_shared<Arrival>();
+  arrival->worker = remote.id, arrival->epoch = message.epoch, arrival->job = {message.lease, *job};
+  arrival->result.counters.camera = message.camera, arrival->result.counters.shadow = message.shadow;
+  arrival->result.counters.secondary = message.secondary;
+  if (options.local.shaders) arrival->result.counters.faults = faultsFrom(message.faults, *options.local.shaders);
+  arrival->result.seconds = message.seconds;
+  arrival->message = std::move(message);
+  arrive(*entry, arrival, now);
+}
+
+void Arrival::merge() {
+  if (worker != hereId) {
+    unreadable = unpack(message);
+    const Tile tile = job.job.kind == Job::Kind::samples ? work->tile(job.job.number) : Tile{};
+    fits = unreadable.empty() && decodeResult(frame, job.job, tile, message.bytes, result);
+    message = {};
+  }
+  if (fits) first = work->take(job.job, std::move(result));
+  result.sums = {}, result.light = {}; // memory is given back here, not by the master's thread
+}
+
+// What others may do at the same time: the picture does not depend on who comes first.
+void Master::Impl::arrive(FrameEntry& entry, const std::shared_ptr<Arrival>& arrival, double now) {
+  arrival->work = entry.state.work;
+  arrival->frame = entry.state.prepared.frame;
+  entry.arriving++;
+  const auto merge = [arrival]() noexcept {
+    try {
+      arrival->merge();
+    } catch (...) { arrival->failure = std::current_exception(); }
+  };
+  const auto then = [this, arrival](double later) { arrived(*arrival, later); };
+  if (options.results) return options.results(merge, then);
+  merge();
+  then(now);
+}
+
+void Master::Impl::arrived(const Arrival& a, double now) {
+  if (a.failure) std::rethrow_exception(a.failure);
+  jobsSince++;
+  if (const auto found = frames.find(a.epoch); found != frames.end()) found->second.arriving--;
+  Remote* remote = remoteOf(a.worker);
+  if (remote) remote->arriving.erase(a.job.lease);
+  if (!a.fits) {
+    if (a.unreadable.empty()) scheduler.failed(a.worker, a.epoch, a.job.lease, now);
+    if (remote && a.unreadable.empty()) strike(*remote, "a result that is none of its job", now);
+    if (remote && !a.unreadable.empty()) refuse(remote->peer, "a message that cannot be read: " + a.unreadable, now);
+    return taken(a.epoch);
+  }
+  scheduler.done(a.worker, a.epoch, a.job.lease, a.result.seconds, now);
+  if (a.first) {
+    const RayCounters& rays = a.result.counters;
+    if (remote && a.worker != hereId) remote->rays += rays.camera + rays.shadow + rays.secondary;
+    (a.worker == hereId ? jobsHere : jobsRemote)++;
+  }
+  taken(a.epoch);
 }
 
 void Master::Impl::taken(Epoch epoch) {
   FrameEntry* entry = unfinished(epoch);
-  if (entry && entry->state.work && entry->state.work->over()) {
-    end(epoch);
-    settle();
-  }
+  if (!entry || !entry->complete()) return;
+  end(epoch);
+  settle();
 }
 
 // Jobs of it that are still out are of no use. They are taken back together with those of all earlier frames, once these are
@@ -207,9 +247,16 @@ void Master::Impl::handOut(double now) {
     bring(worker, epoch);
   }
   if (moved) settle();
-  std::map<std::pair<WorkerId, Epoch>, std::vector<LeasedJob>> jobs; // few messages, each with all that one worker gets
+  while (handSomeOut(now)) {}
+}
+
+// Few messages, each with all that one worker gets; but they leave before the last of thousands of threads has its job.
+bool Master::Impl::handSomeOut(double now) {
+  constexpr size_t most = 512;
+  std::map<std::pair<WorkerId, Epoch>, std::vector<LeasedJob>> jobs;
   Handout out;
-  while (scheduler.next(now, out)) jobs[{out.worker, out.epoch}].push_back(out.job);
+  size_t count = 0;
+  for (; count < most && scheduler.next(now, out); count++) jobs[{out.worker, out.epoch}].push_back(out.job);
   for (auto& [to, list] : jobs) {
     Remote* remote = remoteOf(to.first);
     if (!remote) continue;
@@ -218,11 +265,10 @@ void Master::Impl::handOut(double now) {
       core->work(to.second, list);
       continue;
     }
-    for (size_t first = 0; first < list.size(); first += limits::jobs)
-      say(*remote, message::Jobs{
-                       to.second,
-                       {list.begin() + ptrdiff_t(first), list.begin() + ptrdiff_t(std::min(first + limits::jobs, list.size()))}});
+    say(*remote, message::Jobs{to.second, std::move(list)});
+    flush(*remote);
   }
+  return count == most;
 }
 
 } // namespace openrt::cluster

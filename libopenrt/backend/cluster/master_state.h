@@ -2,10 +2,12 @@
 #pragma once
 
 #include <deque>
+#include <exception>
 #include <limits>
 #include <map>
 #include <set>
 #include <unordered_map>
+#include <unordered_set>
 
 #include "backend/cluster/master.h"
 #include "backend/cluster/outbox.h"
@@ -30,6 +32,7 @@ struct Remote {
   Outbox outbox;
   std::map<Epoch, std::vector<OfferPtr>> offered; // arrays of scenes for which it has not said yet what it lacks
   std::map<Epoch, uint32_t> out;                  // jobs it has, by frame
+  std::unordered_set<Lease> arriving;             // of results that are being merged
   uint64_t bytesSent = 0, bytesReceived = 0, rays = 0;
   std::string name() const { return host.empty() ? address : address.empty() ? host : host + " (" + address + ")"; }
 };
@@ -39,6 +42,24 @@ struct FrameEntry {
   Master::FrameState state;
   std::string who;        // prepared it first
   std::set<WorkerId> all; // that have prepared it
+  uint32_t arriving = 0;  // results that are being merged
+  // All is merged, and everybody's share in it is known.
+  bool complete() const { return state.work && arriving == 0 && state.work->over(); }
+};
+
+struct Arrival { // a job that was done, on its way into the picture
+  WorkerId worker = hereId;
+  Epoch epoch = 0;
+  LeasedJob job;
+  std::shared_ptr<FrameWork> work;
+  edit::FrameSettingsT frame;
+  message::Result message; // from elsewhere: packed
+  JobResult result;
+  std::string unreadable;     // why
+  bool fits = true;           // its job
+  std::exception_ptr failure; // what went wrong here
+  bool first = false;         // nobody had done this job before
+  void merge();               // [any]
 };
 
 struct Master::Impl {
@@ -67,11 +88,14 @@ struct Master::Impl {
              const RTstats& stats, double now);
   bool agree(FrameEntry& entry, WorkerId worker, const std::string& who, const Prepared& prepared, double now);
   void result(Remote& remote, message::Result&& result, double now);
+  void arrive(FrameEntry& entry, const std::shared_ptr<Arrival>& arrival, double now);
+  void arrived(const Arrival& arrival, double now);
   void taken(Epoch epoch);
   void end(Epoch epoch);
   void fail(Epoch epoch, const std::string& why, bool missing);
   void settle();
   void handOut(double now);
+  bool handSomeOut(double now);
   bool enough(double now);
   FrameEntry* unfinished(Epoch epoch);
   Epoch oldest() const; // unfinished; 0: none
@@ -91,6 +115,7 @@ struct Master::Impl {
   std::set<Peer> waiting; // whose outbox is not empty
   WorkerId nextWorker = 1;
   uint64_t nextSession;
+  double busySeconds = 5e-3, busyJobs = 500, jobsSince = 0; // of this thread, of late; jobs since it was told
   uint64_t jobsHere = 0, jobsRemote = 0, goneSent = 0, goneReceived = 0;
   double firstCommit = std::numeric_limits<double>::infinity();
   double fewSince = std::numeric_limits<double>::infinity(); // fewer workers than required

@@ -85,7 +85,7 @@ void Master::Impl::depart(Remote& remote, double now) {
   }
   remote.welcome = false;
   remote.outbox.clear();
-  remote.offered.clear(), remote.out.clear();
+  remote.offered.clear(), remote.out.clear(), remote.arriving.clear();
   remote.bytesSent = remote.bytesReceived = remote.rays = 0;
 }
 
@@ -137,7 +137,7 @@ void Master::Impl::need(Remote& remote, const message::Need& need, double now) {
     waiting.insert(remote.peer);
     if (offer->ready || offer->asked) continue;
     offer->asked = true;
-    const auto then = [this, offer] {
+    const auto then = [this, offer](double) {
       offer->ready = true;
       for (auto& [peer, other] : remotes) // whoever waits for it
         if (!other.outbox.empty()) waiting.insert(peer);
@@ -146,7 +146,7 @@ void Master::Impl::need(Remote& remote, const message::Need& need, double now) {
       options.background([offer] { offer->pack(); }, then);
     } else {
       offer->pack();
-      then();
+      then(now);
     }
   }
 }

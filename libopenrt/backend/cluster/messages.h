@@ -86,7 +86,12 @@ struct Result {
   double seconds = 0;
   uint64_t camera = 0, shadow = 0, secondary = 0; // rays
   std::vector<Fault> faults;
-  std::vector<std::byte> bytes; // of encodeResult
+  std::vector<std::byte> bytes; // of encodeResult; empty before unpack()
+  struct Packed {               // as it came
+    Frames frames;
+    uint64_t bytes = 0, hash = 0;
+    bool lz4 = false;
+  } packed{};
 };
 struct Log {
   int level = 0;
@@ -153,6 +158,9 @@ struct Message {
 Frames encode(uint64_t session, message::Body&& body);
 // Empty, or what is wrong with it. What frames hold is taken from them.
 std::string decode(Frames&& frames, Message& out, uint64_t largestResult = limits::resultBytes);
+// As decode(), but a Result stays packed: what costs time is left to unpack(), on another thread.
+std::string decodePacked(Frames&& frames, Message& out, uint64_t largestResult = limits::resultBytes);
+std::string unpack(message::Result& result);
 // Whether a frame is a Header whose tables lie within it; empty, or what is wrong. kind: number of its member of the union.
 std::string verifyHeader(std::span<const std::byte> frame, uint8_t& kind);
 

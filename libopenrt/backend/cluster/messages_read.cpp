@@ -132,13 +132,19 @@ void read(const wire::Result& t, Frames& frames, message::Result& m) {
     for (const wire::Fault* fault : *t.faults())
       m.faults.push_back({text(fault->name()), text(fault->library()), fault->kind(), fault->hits()});
   }
-  if (t.packed()) {
-    m.bytes = unpackResult(frames, t.bytes());
+  m.packed.bytes = t.bytes(), m.packed.hash = t.hash(), m.packed.lz4 = t.packed();
+  m.packed.frames.swap(frames); // the header that is read here lies in them
+}
+
+void unpackBytes(message::Result& m) {
+  Frames frames = std::move(m.packed.frames);
+  if (m.packed.lz4) {
+    m.bytes = unpackResult(frames, m.packed.bytes);
   } else {
-    demand(bulkBytes(frames) == t.bytes(), "a result of another size than it says");
+    demand(bulkBytes(frames) == m.packed.bytes, "a result of another size than it says");
     m.bytes = joined(frames);
   }
-  demand(XXH3_64bits(m.bytes.data(), m.bytes.size()) == t.hash(), "a result with a wrong checksum");
+  demand(XXH3_64bits(m.bytes.data(), m.bytes.size()) == m.packed.hash, "a result with a wrong checksum");
 }
 
 void read(const wire::Log& t, Frames&, message::Log& m) { m.level = std::clamp(t.level(), 0, 3), m.text = text(t.text()); }
@@ -252,7 +258,22 @@ std::string verifyHeader(std::span<const std::byte> frame, uint8_t& kind) {
   return {};
 }
 
+std::string unpack(message::Result& result) {
+  try {
+    unpackBytes(result);
+  } catch (const Bad& bad) { return "Result: " + bad.why; } catch (const std::bad_alloc&) {
+    return "Result: no memory for it";
+  }
+  return {};
+}
+
 std::string decode(Frames&& frames, Message& out, uint64_t largestResult) {
+  if (std::string why = decodePacked(std::move(frames), out, largestResult); !why.empty()) return why;
+  auto* result = std::get_if<message::Result>(&out.body);
+  return result ? unpack(*result) : std::string();
+}
+
+std::string decodePacked(Frames&& frames, Message& out, uint64_t largestResult) {
   if (frames.empty() || frames.size() > limits::frames) return "a message of " + std::to_string(frames.size()) + " frames";
   uint8_t kind = 0;
   if (std::string why = verifyHeader(frames[0], kind); !why.empty()) return why;

@@ -31,6 +31,7 @@ void Scheduler::Impl::forget(Frame& f, Lease lease, bool lost) {
   flight->second.holders.erase(lease);
   if (!flight->second.holders.empty()) return;
   f.work->giveBack(flight->second.job);
+  if (flight->second.seconds > 0) f.aheadUnits += flight->second.units, f.aheadSeconds += flight->second.seconds;
   f.maybe = true;
   f.deadlines.erase({flight->second.deadline, held.flight});
   f.flights.erase(flight);
@@ -157,6 +158,7 @@ void Scheduler::frame(Epoch epoch, std::shared_ptr<JobSource> work, double now) 
   f.perPixel = std::max(f.work->undone() / (double(f.tilePixels) * std::max(f.work->tiles(), 1u)), 1.0);
   if (impl_->places.size() == f.work->tiles()) f.places = impl_->places; // costs lie where they lay
   f.places.resize(f.work->tiles());
+  impl_->plan(f);
   impl_->moves = true;
 }
 
@@ -229,6 +231,8 @@ uint32_t Scheduler::able(Epoch epoch) const {
   for (const auto& [id, w] : impl_->workers) count += !w.tally.blocked && (w.epoch < epoch || (w.epoch == epoch && !w.unable));
   return count;
 }
+
+void Scheduler::pace(double secondsOfJob) { impl_->pace = std::clamp(secondsOfJob, 0.0, 1e-4); }
 
 double Scheduler::wake(double now) const {
   constexpr double breath = 0.005; // a late job that nobody can take yet is looked at again after this

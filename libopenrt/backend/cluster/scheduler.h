@@ -28,9 +28,9 @@ enum class Split : uint8_t { automatic, tiles, samples, frames };
 
 struct SchedulerOptions {
   Split split = Split::automatic;
-  double patience = 2;     // a job that waits longer than so many times what the median lets expect is handed out again
-  uint32_t inFlight = 3;   // jobs for each thread of a worker: one is done, the others wait; up to 4 where the link is slow, and
-                           // fewer when little is left. Jobs shorter than `shortest` count together
+  double patience = 2;   // a job that waits longer than so many times what the median lets expect is handed out again
+  uint32_t inFlight = 3; // jobs for each thread of a worker: one is done, the others wait; up to 4 where the link is slow, fewer
+                         // when little is left or jobs are long. Jobs shorter than `shortest` count together
   double shortest = 0.002; // seconds that a job should take at least, if there is a choice
   double longest = 0.25;   // and at most
   double soonest = 0.02;   // no job is late before
@@ -48,6 +48,8 @@ class JobSource {
   virtual double undone() const = 0;                // pixels times samples that nobody has yet, about
   virtual uint32_t tiles() const = 0;               // of the picture
   virtual uint32_t pixels(uint32_t tile) const = 0; // of a tile
+  virtual void order(std::vector<uint32_t>) {}      // all tiles, in which they are to be given out
+  virtual uint32_t upcoming() const { return ~0u; } // the tile that next() comes to; none such: it is open
 };
 
 struct Handout {
@@ -102,6 +104,9 @@ class Scheduler {
   const Job* find(WorkerId worker, Epoch epoch, Lease lease) const;
   // Workers that work on this epoch's frame, or can come to: 0 and nobody joins: it never ends.
   uint32_t able(Epoch epoch) const;
+  // What handing a job out and taking its result costs whoever asks, in seconds: jobs are made so long that there is time for
+  // all.
+  void pace(double secondsOfJob);
   // When next() may have something new although nothing has happened; infinite: never.
   double wake(double now) const;
   // How long a usual job takes at most before it is handed out again; infinite as long as nothing is known.

@@ -13,11 +13,46 @@ namespace {
 constexpr uint32_t fewest = 32;    // samples: a tile's are not divided further (frame_work.h)
 constexpr double mostInFlight = 4; // jobs for a thread, or bundles of them
 constexpr double largestBundle = 64;
-constexpr double masterSeconds = 2e-5; // of its one thread for each job, with as much to spare (docs/cluster-scaling.md)
-constexpr double parts = 4;            // of what is left for a thread, a job is one of so many
+constexpr double spare = 1.75;        // of the master's time for a job: it is busy for at most so many times less
+constexpr double turnaround = 8e-3;   // for which a worker has something to do when it has told of a job, but for its link
+constexpr double leastWaiting = 0.25; // jobs for a thread behind that which it does
+constexpr double mixedUntil = 0.7;    // of a frame's work
+constexpr double parts = 4;           // of what is left for a thread, a job is one of so many
 } // namespace
 
+void Scheduler::Impl::plan(Frame& f) {
+  const uint32_t tiles = f.work->tiles();
+  if (std::find(f.places.begin(), f.places.end(), 0.0f) != f.places.end()) return;
+  std::vector<uint32_t> order(tiles);
+  std::vector<float> cost(tiles);
+  for (uint32_t i = 0; i < tiles; i++) {
+    const float pixels = float(f.work->pixels(i));
+    order[i] = i, cost[i] = f.places[i] * pixels;
+    f.aheadUnits += pixels, f.aheadSeconds += cost[i];
+  }
+  const double samples = f.work->undone() / std::max(f.aheadUnits, 1.0);
+  f.aheadUnits *= samples, f.aheadSeconds *= samples;
+  std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return cost[a] > cost[b]; });
+  // Those that take less time than a job should are no use at the end, where the master would be asked for too many of them.
+  const double least = std::max(options.shortest, spare * pace * threads) / samples;
+  const auto cheap = std::find_if(order.begin(), order.end(), [&](uint32_t tile) { return cost[tile] < least; });
+  const size_t dear = size_t(cheap - order.begin());
+  std::vector<uint32_t> mixed;
+  mixed.reserve(tiles);
+  size_t next = dear;
+  double given = 0;
+  for (size_t i = 0; i < dear; i++) {
+    mixed.push_back(order[i]);
+    given += cost[order[i]] * samples;
+    const double share = std::min(given / (mixedUntil * f.aheadSeconds), 1.0);
+    while (double(next - dear) < share * double(tiles - dear)) mixed.push_back(order[next++]);
+  }
+  mixed.insert(mixed.end(), order.begin() + ptrdiff_t(next), order.end());
+  f.work->order(std::move(mixed));
+}
+
 double Scheduler::Impl::secondsOf(const Frame& f) const {
+  if (f.lastSeconds > 0) return f.lastSeconds;
   const double units = f.lastUnits > 0 ? f.lastUnits : f.tilePixels * std::min(f.perPixel, double(fewest));
   return f.costs.mean() * units;
 }
@@ -37,9 +72,13 @@ double Scheduler::Impl::threadsFor(Epoch epoch) const {
 }
 
 double Scheduler::Impl::level(const Frame& f) const {
-  const double usual = f.lastUnits > 0 ? f.lastUnits : f.tilePixels * f.perPixel, together = bundle(f);
-  const double left = f.work->undone() / usual / threadsFor(f.epoch); // jobs for a thread
-  return std::clamp(std::ceil(left / together), 1.0, double(std::clamp(options.inFlight, 1u, uint32_t(mostInFlight)))) * together;
+  const double together = bundle(f);
+  const double left = (f.lastSeconds > 0 ? f.left() / f.lastSeconds
+                                         : f.work->undone() / (f.lastUnits > 0 ? f.lastUnits : f.tilePixels * f.perPixel)) /
+                      threadsFor(f.epoch); // jobs for a thread
+  double most = std::clamp(options.inFlight, 1u, uint32_t(mostInFlight));
+  if (f.lastSeconds > 0) most = std::min(most, 1 + std::max(leastWaiting, turnaround / f.lastSeconds)); // others begin sooner
+  return std::clamp(std::ceil(left / together), 1.0, most) * together;
 }
 
 uint32_t Scheduler::Impl::largest(const Frame& f, const Worker& w) const {
@@ -48,11 +87,11 @@ uint32_t Scheduler::Impl::largest(const Frame& f, const Worker& w) const {
   if (f.spread) {
     samples = f.perPixel / std::max(usable, 1u);
   } else if (f.costs.known()) {
-    const double left = f.work->undone() * f.costs.mean() / threadsFor(f.epoch);
+    const double left = f.left() / threadsFor(f.epoch);
     // A slow link is worth larger jobs: no more of them are in flight.
-    const double least = std::max({options.shortest, w.tally.latency / (mostInFlight - 1), masterSeconds * threadsFor(f.epoch)});
+    const double least = std::max({options.shortest, w.tally.latency / (mostInFlight - 1), spare * pace * threadsFor(f.epoch)});
     const double seconds = std::clamp(left / parts, least, std::max(options.longest, least));
-    const double place = f.nextPlace();
+    const double place = f.place(f.work->upcoming());
     if (place > 0)
       samples = seconds / place / f.tilePixels;
     else // nobody knows what the next tile costs: one of the dear ones must not take longer than half of what is left
@@ -93,7 +132,8 @@ void Scheduler::Impl::hand(Frame& f, Worker& w, uint64_t id, bool again, double 
 double Scheduler::Impl::span(Frame& f, const Flight& flight) {
   const double median = f.costsOf(flight.job).median();
   if (median <= 0) return options.stuck;
-  return std::max(options.patience * (median * flight.units * flight.turns + flight.link), options.soonest);
+  const double usual = flight.seconds > 0 ? flight.seconds : median * flight.units;
+  return std::max(options.patience * (usual * flight.turns + flight.link), options.soonest);
 }
 
 void Scheduler::Impl::rekey(Frame& f, uint64_t id, Flight& flight) {
@@ -137,7 +177,13 @@ bool Scheduler::Impl::next(double now, Handout& out) {
       flight.job = job;
       const bool ofLight = job.kind == Job::Kind::light;
       flight.units = std::max(1.0, double(job.count) * (ofLight ? 1 : f.work->pixels(job.number)));
-      if (!ofLight) f.lastUnits = flight.units, f.lastTile = job.number;
+      if (!ofLight) {
+        flight.seconds = f.place(job.number) * flight.units;
+        f.lastUnits = flight.units, f.lastSeconds = flight.seconds;
+        if (flight.seconds > 0)
+          f.aheadUnits = std::max(f.aheadUnits - flight.units, 0.0),
+          f.aheadSeconds = std::max(f.aheadSeconds - flight.seconds, 0.0);
+      }
       hand(f, *w, lastFlight, false, now, out);
       if (f.exhausted()) moves = true;
       return true;

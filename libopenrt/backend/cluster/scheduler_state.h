@@ -42,6 +42,7 @@ struct Worker {
 struct Flight { // a job that is out
   Job job;
   double units = 0;        // pixels times samples; paths
+  double seconds = 0;      // it should take, by what its place cost before; 0: unknown
   double deadline = never; // late then, by what was known when it was last looked at
   double since = 0;        // handed out, last time
   double turns = 1;        // jobs one after the other until this one is done, with those that its worker had before
@@ -64,11 +65,12 @@ struct Frame {
   std::shared_ptr<JobSource> work; // null: nobody has prepared it yet
   bool maybe = false;              // there may be something to hand out
   uint32_t tilePixels = 1;
-  double perPixel = 1;  // samples, about
-  double lastUnits = 0; // of the job that was handed out last
+  double perPixel = 1;                     // samples, about
+  double lastUnits = 0;                    // of the job that was handed out last
+  double lastSeconds = 0;                  // it should take; 0: unknown
+  double aheadUnits = 0, aheadSeconds = 0; // of what nobody has yet, by what places cost before; 0: unknown
   JobCosts costs, light;
   std::vector<float> places; // by tile: seconds of a pixel's sample, here or in the frame before; 0: unknown
-  uint32_t lastTile = 0;     // of the job that was handed out last
   std::map<uint64_t, Flight> flights;
   std::unordered_map<Lease, Held> leases;
   std::set<std::pair<double, uint64_t>> deadlines; // of flights that may be handed out again
@@ -76,11 +78,10 @@ struct Frame {
   bool stuck = false;                              // nothing comes of those at it: the reserve helps
   uint32_t rekeyAt = 1;                            // jobs done with which all deadlines are found anew
 
-  // Of the next job, about: the tile of the last one, or the one behind it. 0: unknown.
-  double nextPlace() const {
-    const float here = lastTile < places.size() ? places[lastTile] : 0,
-                behind = lastTile + 1 < places.size() ? places[lastTile + 1] : here;
-    return here > 0 && behind > 0 ? std::max(here, behind) : 0;
+  double place(uint32_t tile) const { return tile < places.size() ? double(places[tile]) : 0; }
+  // Seconds of one thread for what nobody has yet, about.
+  double left() const {
+    return work->undone() * (aheadUnits >= 1 && aheadSeconds > 0 ? aheadSeconds / aheadUnits : costs.mean());
   }
   bool exhausted() const { return work && work->undone() < 0.5; } // nobody is to do more of it, as yet
   JobCosts& costsOf(const Job& job) { return job.kind == Job::Kind::light ? light : costs; }
@@ -110,6 +111,7 @@ struct Scheduler::Impl {
   JobCosts costs, light;                          // of the frame that ended last
   std::vector<float> places;                      // of the frame that ended last
   double frameSeconds = 0;                        // it took on one thread
+  double pace = 1e-5;                             // seconds that whoever asks takes for a job
   double prepare = 0;                             // seconds that preparing a scene takes, smoothed; 0: unknown
   uint32_t usable = 0, threads = 0, rescuers = 0; // workers that are no reserve, and their threads; those here and in reserve;
                                                   // none that are blocked
@@ -141,6 +143,7 @@ struct Scheduler::Impl {
   bool move(double now, WorkerId& worker, Epoch& epoch);
 
   // scheduler_handout.cpp
+  void plan(Frame& f);                    // what costs most first: what is left then fills the gaps
   double secondsOf(const Frame& f) const; // that a usual job takes; 0: unknown
   double bundle(const Frame& f) const;    // jobs that count together
   double threadsFor(Epoch epoch) const;
