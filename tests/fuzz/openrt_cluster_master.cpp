@@ -24,7 +24,7 @@ struct Game {
   Epoch epoch = 0;
   std::map<Peer, Side> sides;
   ArrayPtr array;
-  std::vector<std::function<void()>> later; // what runs in the background
+  std::vector<MasterOptions::Then> later; // what runs elsewhere
   std::unique_ptr<Master> master;
 
   explicit Game(std::span<const std::byte> bytes) : in(bytes) {
@@ -36,7 +36,7 @@ struct Game {
     options.schedule.split = Split(in.below(4));
     options.local.log = [](int, const char*, void*) {};
     options.close = [this](Peer peer, const std::string&) { sides[peer] = {}; };
-    options.background = [this](std::function<void()> heavy, std::function<void()> then) {
+    options.background = options.results = [this](std::function<void()> heavy, MasterOptions::Then then) {
       heavy();
       later.push_back(std::move(then));
     };
@@ -168,8 +168,9 @@ struct Game {
     case 4: now += in.below(200) * 0.05; break;
     case 5:
       if (!later.empty()) {
-        later.back()();
+        const MasterOptions::Then then = std::move(later.back());
         later.pop_back();
+        then(now);
       }
       break;
     case 6: look(1 + in.below(20)); break;

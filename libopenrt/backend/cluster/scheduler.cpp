@@ -101,7 +101,7 @@ bool Scheduler::Impl::done(Frame& f, Lease lease, double seconds, double now) {
   const Job& job = flight->second.job;
   f.costsOf(job).add(flight->second.units, seconds);
   if (job.kind == Job::Kind::samples && job.number < f.places.size() && seconds > 0)
-    f.places[job.number] = float(seconds / flight->second.units);
+    f.places[job.number] = float(std::min(seconds, 1e6) / flight->second.units); // finite, whatever a worker says
   for (const Lease other : flight->second.holders)
     if (other != lease) f.leases.at(other).flight = 0;
   f.deadlines.erase({flight->second.deadline, held.flight});
