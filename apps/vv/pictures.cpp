@@ -81,6 +81,7 @@ class Pictures {
   int make() {
     picture::RenderSettings settings = options_.render;
     if (!options_.stats.empty() && !options_.isSequence()) settings.channels |= RT_VARIANCE; // then RTstats has the error
+    settings.progressive = !options_.isSequence() && picture::worthRounds(settings);
     const Timeline timeline(options_);
     if (options_.script) beginScript(settings);
     WorldClock clock([this](double time) { tick(time); }, options_.fps);

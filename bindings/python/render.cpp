@@ -148,6 +148,8 @@ py::object render(const WorldPtr& self, const py::object& size, std::optional<lo
   settings.channels =
       channels.is_none() ? uint32_t(RT_RGBA | RT_DEPTH | (settings.error > 0 ? RT_ERROR | RT_TRUST : 0)) : channelsOf(channels);
 
+  settings.progressive = picture::worthRounds(settings);
+
   picture::View view;
   if (!viewpoint.is_none() + !camera.is_none() + fit > 1)
     throw py::value_error("only one of viewpoint, camera and fit can be used");

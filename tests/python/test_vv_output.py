@@ -104,6 +104,18 @@ def test_interrupt_keeps_the_picture(vv):
     assert not vv.leftovers()
 
 
+def test_an_interrupted_picture_shows_all_of_the_world(vv):
+    vv.write("white.wrl", HEADER + "Background { skyColor 1 1 1 } Shape { appearance Appearance { material Material { "
+             "emissiveColor .5 .5 .5 } } geometry Sphere { } }")
+    running = vv.start("white.wrl", "-o", "part.pfm", "--size", "320x240", "--spp", "65536", "--threads", "1")
+    wait_until_rendering(running)
+    running.send_signal(signal.SIGINT)
+    _, talk = running.communicate(timeout=30)
+    assert running.returncode == 130, talk
+    _, _, rows = read_pfm((vv.folder / "part.pfm").read_bytes())
+    assert min(pixel[0] for row in rows for pixel in row) > 0.1  # every pixel has samples
+
+
 def test_termination_is_an_interrupt(vv):
     running = vv.start("box.wrl", "-o", "part.png", *LONG)
     wait_until_rendering(running)
