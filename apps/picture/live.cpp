@@ -1,11 +1,13 @@
-// live.cpp: see live.h. The browser's thread and the render thread meet in `state_`: who has the world, and in `mutex_`: the
-// frame that is wanted and the one that is finished.
+// live.cpp: see live.h. The browser's thread and the render thread meet in `state`: who has the world, and in `mutex`: the
+// frame that is wanted and those that have ended. The settings are the browser's thread's but for the time of mapping; what
+// belongs to a frame in flight is in its Flight.
 #include "picture/live.h"
 
 #include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
+#include <deque>
 #include <mutex>
 #include <new>
 #include <optional>
@@ -20,11 +22,15 @@ namespace picture {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+double between(Clock::time_point start, Clock::time_point end) { return std::chrono::duration<double>(end - start).count(); }
+double secondsSince(Clock::time_point start) { return between(start, Clock::now()); }
 
 // Looking takes time that light could be traced in: a part of it at most, and not more often than anybody sees.
 constexpr double leastBetweenLooks = 0.008, restPerLook = 8; // seconds; as long as that many looks
 constexpr uint32_t shownChannels = RT_RGBA | RT_SAMPLES;
+constexpr size_t mostOverlapping = 2;
+// How often it is asked whether a frame has ended behind which another one may still be started: who waits for it cannot do that.
+constexpr std::chrono::milliseconds patience(1);
 
 struct Wanted {
   LiveFrame frame;
@@ -32,11 +38,19 @@ struct Wanted {
   Clock::time_point started;
 };
 
+// A frame that was begun, and what can be said of it only then.
+struct Flight {
+  RenderSettings settings;
+  Clock::time_point started; // by start()
+  xvrml::MapStats map;
+  std::vector<std::string> names;
+};
+
 // A frame that has come to its end, or as far as it got.
 struct Made {
   Picture picture;
-  RenderResult result; // without the picture
-  double seconds = 0;  // from start() on
+  RenderResult result;           // without the picture
+  double seconds = 0, alone = 0; // as in LivePicture
   bool whole = false;
 };
 
@@ -62,60 +76,105 @@ void fillFrom(const LivePicture& before, const std::vector<float>& samples, Live
 struct LiveRenderer::Impl {
   RenderSettings given; // width, height and samples are the frames'
   Stage stage;
+  const size_t most; // frames in flight
   std::atomic<State> state{State::idle};
-  std::atomic<bool> cancelled{false};
+  std::atomic<size_t> flying{0};      // started and not ended
+  std::atomic<bool> cancelled{false}; // those in flight; none is begun until they have ended
 
   std::mutex mutex;
   std::condition_variable changed;
   std::optional<Wanted> wanted;
-  bool ending = false, ended = false;
-  std::shared_ptr<const Made> made; // the last one
+  bool ending = false;
+  std::shared_ptr<const Made> made;               // the last one
+  std::deque<std::shared_ptr<const Made>> unseen; // that look() has not given yet: as many as may be in flight
   std::string failure;
+
+  // The render thread alone.
+  std::deque<Flight> flights; // oldest first
+  Clock::time_point lastEnd;
 
   // The browser's thread alone.
   Clock::time_point started;
-  std::shared_ptr<const Made> shown; // the last one that look() has given
-  float progress = 0;                // of the frame in flight when it was looked at
-  Clock::time_point nextLook;        // at a frame in flight, not before
-  Picture seen;                      // working storage of look()
-  LivePicture before;                // what look() has given last: size and rgb
+  float progress = 0;         // of the frame in flight when it was looked at
+  Clock::time_point nextLook; // at a frame in flight, not before
+  Picture seen;               // working storage of look()
+  LivePicture before;         // what look() has given last: size and rgb
 
   std::thread thread;
 
-  Impl(xvrml::Browser& browser, const RenderSettings& settings) : given(settings), stage(browser.world(), &browser, settings) {
+  Impl(xvrml::Browser& browser, const RenderSettings& settings)
+      : given(settings), stage(browser.world(), &browser, settings), most(settings.cluster ? mostOverlapping : 1) {
     given.progressive = true;
   }
 
   // --- The render thread ---
+  // While another frame may be started the oldest one is not waited for: that would keep the newer one waiting.
   void loop() {
+    const auto news = [this] { return wanted || ending; };
     std::unique_lock lock(mutex);
-    for (;;) {
-      changed.wait(lock, [&] { return wanted || ending; });
-      if (ending) break;
-      Wanted frame = *std::exchange(wanted, {});
-      lock.unlock();
-      std::shared_ptr<Made> result;
-      std::string wrong;
-      try {
-        const Clock::time_point begin = frame.started;
-        map(std::move(frame));
-        state.store(State::rendering, std::memory_order_release);
-        result = render();
-        if (result) result->seconds = secondsSince(begin);
-      } catch (const std::bad_alloc&) { wrong = "not enough memory"; } catch (const std::exception& e) {
-        wrong = e.what();
-      } catch (...) { wrong = "it could not be rendered"; }
-      if (state == State::mapping) stage.close(); // half mapped: the next frame begins anew
-      lock.lock();
-      if (result) made = std::move(result);
-      failure = std::move(wrong);
-      state.store(State::idle, std::memory_order_release);
+    while (!ending) {
+      if (wanted) {
+        Wanted frame = *std::exchange(wanted, {});
+        lock.unlock();
+        std::string wrong = failureOf([&] { begin(std::move(frame)); });
+        lock.lock();
+        settle(std::move(wrong));
+      } else if (flights.empty()) {
+        changed.wait(lock, news);
+      } else if (flights.size() < most && !cancelled && rtProgress(stage.context()) < 1) {
+        changed.wait_for(lock, patience, news);
+      } else {
+        lock.unlock();
+        std::shared_ptr<const Made> result;
+        std::string wrong = failureOf([&] { result = finish(); });
+        lock.lock();
+        if (result) {
+          made = result;
+          unseen.push_back(std::move(result));
+          if (unseen.size() > most) unseen.pop_front();
+        }
+        settle(std::move(wrong));
+      }
     }
     lock.unlock();
     stage.close();
-    lock.lock();
-    ended = true;
-    changed.notify_all();
+  }
+
+  template <class Work> std::string failureOf(const Work& work) {
+    try {
+      work();
+      return {};
+    } catch (const std::bad_alloc&) { return "not enough memory"; } catch (const std::exception& e) {
+      return e.what();
+    } catch (...) { return "it could not be rendered"; }
+  }
+
+  // Under the mutex, when a frame has been begun or has ended. One that was wanted meanwhile keeps its state.
+  void settle(std::string wrong) {
+    if (!wrong.empty()) failure = std::move(wrong);
+    flying = flights.size() + (wanted ? 1 : 0);
+    if (wanted) return;
+    const State now = flights.empty() ? State::idle : flights.size() < most ? State::ready : State::rendering;
+    state.store(now, std::memory_order_release);
+  }
+
+  void begin(Wanted frame) {
+    Flight flight{stage.settings, frame.started, {}, {}};
+    try {
+      map(std::move(frame));
+      flight.map = stage.mapper()->stats();
+      if (flight.settings.channels & RT_NAME) flight.names = stage.mapper()->names();
+    } catch (...) { // half mapped: the next frame begins anew
+      stage.close();
+      flights.clear();
+      throw;
+    }
+    state.store(State::rendering, std::memory_order_release);
+    if (cancelled) return; // not even begun
+    rtSwapBuffers();
+    throwOnError("rendering");
+    flights.push_back(std::move(flight));
+    if (cancelled) rtCancel(stage.context()); // before there was anything to be cancelled
   }
 
   // All that holds on to nodes is given up when this returns: from then on the browser uses them.
@@ -128,24 +187,36 @@ struct LiveRenderer::Impl {
     stage.apply(frame.news);
     stage.prepare(frame.frame.view);
     stage.setUpFrame();
+    rtQuality(RT_FRAMES_IN_FLIGHT, int(most)); // then rtSwapBuffers waits for none of them
   }
 
-  std::shared_ptr<Made> render() {
-    if (cancelled) return nullptr; // not even begun
-    auto result = std::make_shared<Made>();
-    rtRender();
+  // Waits for the oldest.
+  std::shared_ptr<const Made> finish() {
+    const Flight flight = std::move(flights.front());
+    flights.pop_front();
+    rtFinishFrame();
     throwOnError("rendering");
-    stage.readChannels(result->picture);
-    stage.describe(result->result);
-    result->whole = !cancelled || all(result->picture.planes.at(RT_SAMPLES), float(stage.settings.samples));
+    auto result = std::make_shared<Made>();
+    stage.readChannels(flight.settings, result->picture, &flight.names);
+    stage.describe(flight.settings, result->result);
+    result->result.map = flight.map;
+    result->whole = !cancelled || all(result->picture.planes.at(RT_SAMPLES), float(flight.settings.samples));
+    const Clock::time_point end = Clock::now();
+    result->seconds = between(flight.started, end);
+    result->alone = between(std::max(flight.started, lastEnd), flights.empty() ? end : flights.front().started);
+    lastEnd = end;
     return result;
   }
 
   // --- The browser's thread ---
-  // Again and again: a cancellation before the frame has begun would be lost.
-  void cancelAgain() {
-    const RTcontext context = stage.context();
-    if (cancelled && context && state == State::rendering) rtCancel(context);
+  State now() const {
+    const State now = state.load(std::memory_order_acquire);
+    return now == State::ready && cancelled ? State::rendering : now;
+  }
+
+  void cancel() {
+    cancelled = true;
+    if (const RTcontext context = stage.context()) rtCancel(context);
   }
 
   std::shared_ptr<const Made> last() {
@@ -153,8 +224,22 @@ struct LiveRenderer::Impl {
     return made;
   }
 
+  std::shared_ptr<const Made> nextUnseen() {
+    const std::lock_guard lock(mutex);
+    if (unseen.empty()) return nullptr;
+    std::shared_ptr<const Made> next = std::move(unseen.front());
+    unseen.pop_front();
+    return next;
+  }
+
+  // The frame in flight is the one that was started last: the stage has its settings.
+  bool alone() const {
+    const State now = state.load(std::memory_order_acquire);
+    return (now == State::rendering || now == State::ready) && flying == 1;
+  }
+
   void start(const LiveFrame& frame) {
-    if (state != State::idle) throw std::logic_error("a frame is in flight");
+    if (now() != State::idle && now() != State::ready) throw std::logic_error("a frame is in flight");
     stage.passOn();
     stage.settings = given;
     stage.settings.width = frame.width, stage.settings.height = frame.height;
@@ -169,18 +254,19 @@ struct LiveRenderer::Impl {
       const std::lock_guard lock(mutex);
       failure.clear();
       wanted = std::move(next);
+      flying++;
       state = State::mapping;
     }
     changed.notify_all();
   }
 
   void end() {
-    std::unique_lock lock(mutex);
-    ending = true;
-    cancelled = true;
+    {
+      const std::lock_guard lock(mutex);
+      ending = true;
+    }
+    cancel();
     changed.notify_all();
-    while (!changed.wait_for(lock, std::chrono::milliseconds(5), [&] { return ended; })) cancelAgain();
-    lock.unlock();
     thread.join();
   }
 
@@ -200,20 +286,14 @@ struct LiveRenderer::Impl {
 
   bool look(LivePicture& out) {
     stage.passOn();
-    cancelAgain();
-    const std::shared_ptr<const Made> finished = last();
-    if (state == State::rendering && lookAhead(out)) {
-      shown = finished; // it is older
-      return true;
-    }
-    if (!finished || finished == shown) return false;
+    const std::shared_ptr<const Made> finished = nextUnseen();
+    if (!finished) return alone() && lookAhead(out);
     show(finished->picture, out);
-    out.seconds = finished->seconds;
+    out.seconds = finished->seconds, out.alone = finished->alone;
     out.finished = finished->whole;
     out.ended = true;
     out.overhead = std::max(0.0, finished->seconds - finished->result.stats.renderSeconds);
     out.map = finished->result.map, out.stats = finished->result.stats;
-    shown = finished;
     return true;
   }
 
@@ -235,8 +315,8 @@ struct LiveRenderer::Impl {
 
   bool copy(Picture& out) {
     const std::shared_ptr<const Made> finished = last();
-    const bool flying = state == State::rendering && stage.snapshot(out, stage.settings.channels);
-    if (!flying || (finished && !all(out.planes[RT_SAMPLES], 1))) {
+    const bool begun = alone() && stage.snapshot(out, stage.settings.channels);
+    if (!begun || (finished && !all(out.planes[RT_SAMPLES], 1))) {
       if (!finished) return false;
       out = finished->picture;
     }
@@ -253,17 +333,12 @@ LiveRenderer::LiveRenderer(xvrml::Browser& browser, const RenderSettings& settin
 
 LiveRenderer::~LiveRenderer() { impl_->end(); }
 
-LiveRenderer::State LiveRenderer::state() const {
-  impl_->cancelAgain();
-  return impl_->state.load(std::memory_order_acquire);
-}
+LiveRenderer::State LiveRenderer::state() const { return impl_->now(); }
 
 void LiveRenderer::start(const LiveFrame& frame) { impl_->start(frame); }
 
 void LiveRenderer::cancel() {
-  if (impl_->state == State::idle) return;
-  impl_->cancelled = true;
-  impl_->cancelAgain();
+  if (impl_->state != State::idle) impl_->cancel();
 }
 
 bool LiveRenderer::look(LivePicture& picture) { return impl_->look(picture); }

@@ -1,5 +1,6 @@
-// live.h: renders a running world while its user goes on working: a frame is started and looked after, never waited for. One
-// OpenRT context and one mapper on a thread of their own, as in renderer.h. Called by one thread, the browser's.
+// live.h: renders a running world while its user goes on working: a frame is started and looked after, never waited for. With a
+// cluster frames overlap: the next one may be started while the last jobs of the one before are under way. One OpenRT context and
+// one mapper on a thread of their own, as in renderer.h. Called by one thread, the browser's.
 #pragma once
 
 #include <cstdint>
@@ -27,6 +28,7 @@ struct LivePicture {
   double covered = 0;    // part of the pixels that have samples, 0 to 1
   double samples = 0;    // taken so far, mean over the pixels
   double seconds = 0;    // since the frame was started
+  double alone = 0;      // ended: of the seconds: while no other frame was in flight
   bool finished = false; // all samples are taken
   bool ended = false;    // finished, or given up: there will not be more of it; overhead, map and stats hold
   double overhead = 0;   // of the seconds: until light was traced, for reading the world and building structures
@@ -44,15 +46,18 @@ class LiveRenderer {
 
   enum class State : uint8_t {
     idle,
-    mapping,  // the world is being read: the browser and its nodes must be left alone
-    rendering // the browser may go on; the frame shows the world as it was
+    mapping,   // the world is being read: the browser and its nodes must be left alone
+    rendering, // the browser may go on; the frame shows the world as it was
+    ready      // the same, and another frame may be started behind it: never without a cluster
   };
   State state() const;
-  // Only if idle (else std::logic_error). Takes the browser's changes and returns at once.
+  // Only if idle or ready (else std::logic_error). Takes the browser's changes and returns at once. Two frames are in flight at
+  // most: what is seen is one frame old.
   void start(const LiveFrame& frame);
-  // The frame in flight ends soon; what is finished of it stays visible. No frame: nothing happens.
+  // The frames in flight end soon, the older one as well; what is finished of them stays visible. No frame: nothing happens.
   void cancel();
-  // The frame in flight or the last one as far as it is finished, if there is more of it than at the last call; never waits.
+  // A frame that has ended, each once and in their order; else the one in flight, if it is alone and there is more of it than at
+  // the last call. Never waits.
   bool look(LivePicture& picture);
   // The same with all channels of the settings, for a file; false before the first frame.
   bool copy(Picture& picture);

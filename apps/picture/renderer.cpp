@@ -129,8 +129,8 @@ struct Renderer::Impl {
     lastEnd = Clock::now();
     stage.passOn();
     result.interrupted = cancelled;
-    stage.readChannels(result.picture, &flight.names);
-    stage.describe(result);
+    stage.readChannels(stage.settings, result.picture, &flight.names);
+    stage.describe(stage.settings, result);
     result.map = flight.result.map;
   }
 
@@ -145,8 +145,8 @@ struct Renderer::Impl {
     result.renderSeconds = secondsSince(start);
     stage.passOn(); // the browser's thread waits
     result.interrupted = cancelled;
-    stage.readChannels(result.picture);
-    stage.describe(result);
+    stage.readChannels(stage.settings, result.picture);
+    stage.describe(stage.settings, result);
   }
 };
 

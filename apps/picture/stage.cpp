@@ -199,10 +199,10 @@ void Stage::setUpFrame() {
   throwOnError("frame");
 }
 
-void Stage::describe(Picture& picture, uint32_t channels) const {
-  picture.width = settings.width;
-  picture.height = settings.height;
-  picture.linear = settings.linear;
+void Stage::describe(const RenderSettings& frame, Picture& picture, uint32_t channels) const {
+  picture.width = frame.width;
+  picture.height = frame.height;
+  picture.linear = frame.linear;
   if (channels & RT_NAME) picture.names = mapper_->names();
 }
 
@@ -215,26 +215,26 @@ bool Stage::snapshot(Picture& picture, uint32_t channels) const {
   // Tiles go on being finished: where there are samples there is to be the rest, too.
   if (!fillChannels(settings, channels & RT_SAMPLES, picture, copied)) return false;
   if (!fillChannels(settings, channels & ~uint32_t(RT_SAMPLES), picture, copied)) return false;
-  describe(picture, channels);
+  describe(settings, picture, channels);
   return true;
 }
 
-void Stage::readChannels(Picture& picture, const std::vector<std::string>* names) const {
-  describe(picture, settings.channels);
-  if (names && (settings.channels & RT_NAME)) picture.names = *names;
-  fillChannels(settings, settings.channels, picture, [](uint32_t channel, std::vector<float>& plane) {
+void Stage::readChannels(const RenderSettings& frame, Picture& picture, const std::vector<std::string>* names) const {
+  describe(frame, picture, frame.channels);
+  if (names && (frame.channels & RT_NAME)) picture.names = *names;
+  fillChannels(frame, frame.channels, picture, [](uint32_t channel, std::vector<float>& plane) {
     rtReadPixels(channel, plane.data(), plane.size());
     throwOnError("reading the picture");
     return true;
   });
 }
 
-void Stage::describe(RenderResult& result) const {
+void Stage::describe(const RenderSettings& frame, RenderResult& result) const {
   result.map = mapper_->stats();
   result.missing = pluginMissing_ || result.map.missingTextures > 0;
   result.stats.size = sizeof result.stats;
   rtGetStats(&result.stats);
-  if (settings.cluster) result.workers = settings.cluster->workers();
+  if (frame.cluster) result.workers = frame.cluster->workers();
 }
 
 } // namespace picture

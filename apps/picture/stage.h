@@ -47,21 +47,23 @@ class Stage {
   void prepare(const View& view);
   // The size, channels and quality of the next frame, from the settings.
   void setUpFrame();
-  // The channels of the frame that is finished. names: as they were when it was started; null: as they are.
-  void readChannels(Picture& picture, const std::vector<std::string>* names = nullptr) const;
-  void describe(RenderResult& result) const; // statistics of the frame that is finished
+  // The channels of the frame that is finished, whose settings these were. names: as they were when it was started; null: as
+  // they are.
+  void readChannels(const RenderSettings& frame, Picture& picture, const std::vector<std::string>* names = nullptr) const;
+  void describe(const RenderSettings& frame, RenderResult& result) const; // statistics of it
   const xvrml::OpenRTMapper* mapper() const { return mapper_.get(); }
   double takeMeshSeconds(); // that mappers were made in
 
   // --- On any thread ---
   RTcontext context() const { return context_; } // null: not yet
-  // Channels of the frame in flight as far as it is finished; false: there is none. The mapper must be at rest.
+  // Channels of the frame in flight as far as it is finished; false: there is none. The settings must be its own, and the
+  // mapper at rest.
   bool snapshot(Picture& picture, uint32_t channels) const;
 
  private:
   void makeMapper();
   void useEnvironment();
-  void describe(Picture& picture, uint32_t channels) const;
+  void describe(const RenderSettings& frame, Picture& picture, uint32_t channels) const;
   static void note(RTenum error, const char* message, void* self);
   static void listen(int level, const char* text, void* self);
 

@@ -2,6 +2,8 @@
 // cancel, progress and the log sink.
 #include "api/context.h"
 
+#include <utility>
+
 #include "api/transform.h"
 
 namespace openrt {
@@ -138,6 +140,19 @@ void Context::start() {
   started_++;
 }
 
+bool Context::forgetCancel() {
+  const std::lock_guard lock(backendMutex_);
+  return std::exchange(cancelled_, false);
+}
+
+// A cancellation that comes while edits are handed over and structures are built is for this frame, too, though the backend does
+// not know of it yet.
+void Context::begin() {
+  commit();
+  start();
+  if (forgetCancel()) backend_->cancel();
+}
+
 void Context::finishOldest() {
   const edit::FrameSettingsT settings = flying_.front();
   const uint64_t number = started_ - flying_.size() + 1;
@@ -163,15 +178,11 @@ void Context::giveUpFrames() {
 
 void Context::swapBuffers() {
   require(scene.frame.width > 0, RT_INVALID_OPERATION, "no frame buffer: call rtFrameBuffer first");
-  if (!backend_->pipelines()) {
-    if (!flying_.empty()) finishOldest();
-    commit();
-    start();
-    return;
-  }
-  commit(); // the next frame is worked on when the last jobs of the one before are still out
-  start();
-  while (flying_.size() > framesInFlight) finishOldest();
+  const bool pipelines = backend_->pipelines();
+  if (!pipelines && !flying_.empty()) finishOldest();
+  forgetCancel();
+  begin(); // of a backend that pipelines: when the last jobs of the frame before are still out
+  while (pipelines && flying_.size() > framesInFlight) finishOldest();
 }
 
 bool Context::finishFrame() {
@@ -182,14 +193,15 @@ bool Context::finishFrame() {
 
 void Context::render() {
   require(scene.frame.width > 0, RT_INVALID_OPERATION, "no frame buffer: call rtFrameBuffer first");
+  forgetCancel();
   if (!flying_.empty()) giveUpFrames();
-  commit();
-  start();
+  begin();
   finishOldest();
 }
 
 void Context::cancel() {
   const std::lock_guard lock(backendMutex_);
+  cancelled_ = true;
   if (backend_) backend_->cancel();
 }
 

@@ -104,15 +104,18 @@ class Context {
 
  private:
   void makeBackend(const ContextConfig& config);
+  void begin();
   void commit();
   void start();
   void finishOldest();
+  bool forgetCancel();
   void giveUpFrames();
 
   std::unique_ptr<ShaderRegistry> registry_;
   std::unique_ptr<Backend> backend_;
-  std::mutex backendMutex_;                           // cancel and progress against close
+  std::mutex backendMutex_;                           // cancel and progress against close; cancelled_
   std::vector<std::shared_ptr<const Commit>> unsent_; // made, but the backend could not take them yet
+  bool cancelled_ = false;                            // since the frame being begun was asked for
   bool everCommitted_ = false, open_ = true;
   std::deque<edit::FrameSettingsT> flying_; // of the frames in flight, oldest first
   std::optional<edit::FrameSettingsT> finished_;

@@ -2,6 +2,10 @@
 // of the camera takes to be seen, and what progressive refinement costs. Worlds: the arguments, or a few of examples/scenes.
 //
 //   bench_live [--size=WxH] [--fps=N] [--threads=N] [--seconds=N] [WORLD...]
+//
+// On a cluster, frames that overlap and one at a time by turns, in the window's way and at the full size as often as it goes:
+//
+//   bench_live --workers=HOST:PORT,... [--local-threads=N] ...
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -15,6 +19,7 @@
 
 #include <fmt/format.h>
 
+#include "picture/cluster.h"
 #include "picture/live.h"
 #include "window/pacing.h"
 
@@ -27,6 +32,7 @@ namespace {
 struct Options {
   int width = 800, height = 600, threads = 0;
   double fps = 30, seconds = 4;
+  ClusterSettings cluster;
   std::vector<std::string> worlds;
 };
 
@@ -39,6 +45,11 @@ Options read(int argc, char** argv) {
     const std::string a = argv[i];
     if (std::sscanf(a.c_str(), "--size=%dx%d", &o.width, &o.height) == 2) continue;
     if (std::sscanf(a.c_str(), "--fps=%lf", &o.fps) == 1 || std::sscanf(a.c_str(), "--seconds=%lf", &o.seconds) == 1) continue;
+    if (std::sscanf(a.c_str(), "--local-threads=%d", &o.cluster.localThreads) == 1) continue;
+    if (a.starts_with("--workers=")) {
+      o.cluster.workers = a.substr(a.find('=') + 1);
+      continue;
+    }
     if (std::sscanf(a.c_str(), "--threads=%d", &o.threads) == 1 || a.starts_with("--benchmark_")) continue; // make bench's
     o.worlds.push_back(a);
   }
@@ -51,8 +62,8 @@ Options read(int argc, char** argv) {
 
 class Looking {
  public:
-  Looking(const std::string& path, const Options& options)
-      : options_(options), browser_(xvrml::loadWorld(path)), live_(browser_, settings(options)), path_(path) {
+  Looking(const std::string& path, const Options& options, std::shared_ptr<Cluster> cluster)
+      : options_(options), browser_(xvrml::loadWorld(path)), live_(browser_, settings(options, std::move(cluster))), path_(path) {
     first_ = Clock::now();
     LiveFrame frame = whole(1);
     frame.view.fit = browser_.viewpoints().empty();
@@ -81,7 +92,7 @@ class Looking {
       frame.width = size.width, frame.height = size.height;
       frame.view.viewer = turned(.2 * std::sin(asked));
       const LivePicture picture = finish(frame);
-      pacing.took(size, picture.seconds, picture.overhead, picture.samples);
+      pacing.took(size, picture.seconds, picture.alone, picture.overhead, picture.samples);
       const double now = secondsSince(begin);
       const double frameTime = 1 / options_.fps;
       if (now - last < frameTime) std::this_thread::sleep_for(std::chrono::duration<double>(frameTime - (now - last)));
@@ -100,6 +111,48 @@ class Looking {
         double(intervals.size()) / sum(intervals), typical.width, typical.height, typical.samples,
         1000 * sum(latencies) / double(latencies.size()), 1000 * *std::max_element(latencies.begin(), latencies.end()),
         1000 * overhead / double(sizes.size()), changes(sizes) + 1);
+  }
+
+  // As a window on a cluster does it. paced: not more often than fps, and sizes that allow for it.
+  void follow(bool overlapping, bool paced) {
+    vv::Pacing pacing(options_.fps);
+    const double refined = finish(whole(16)).seconds; // as has been seen before anything moves
+    pacing.took({options_.width, options_.height, 16}, refined, refined, 0, 16);
+    const double period = paced ? 1 / options_.fps : 0, settled = options_.seconds / 4;
+    std::vector<double> ends, pixels, seconds;
+    double next = 0, now = 0;
+    const Clock::time_point begin = Clock::now();
+    LivePicture picture;
+    const auto look = [&] {
+      while (live_.look(picture)) {
+        if (!picture.finished) continue;
+        pacing.took({picture.width, picture.height, 1}, picture.seconds, picture.alone, picture.overhead, picture.samples);
+        if (now < settled) continue;
+        ends.push_back(now), seconds.push_back(picture.seconds);
+        pixels.push_back(double(picture.width) * picture.height * picture.samples);
+      }
+    };
+    for (; now < options_.seconds; now = secondsSince(begin)) {
+      look();
+      const State state = live_.state();
+      if (now < next || (state != State::idle && (state != State::ready || !overlapping))) {
+        nap();
+        continue;
+      }
+      vv::FrameSize size = pacing.next(options_.width, options_.height, true, 64);
+      if (!paced) size = {options_.width, options_.height, 1};
+      LiveFrame frame = whole(size.samples);
+      frame.width = size.width, frame.height = size.height;
+      frame.view.viewer = turned(.2 * std::sin(now));
+      next = std::max(next + period, now);
+      live_.start(frame);
+    }
+    while (live_.state() != State::idle) nap();
+    while (live_.look(picture)) {}
+    if (ends.size() < 2) return;
+    fmt::print("  {} {:<16} {:5.1f} frames/s of {:.0f} samples; start to end {:.0f} ms\n", paced ? "paced" : "whole",
+               overlapping ? "overlapping" : "one at a time", double(ends.size() - 1) / (ends.back() - ends.front()),
+               sum(pixels) / double(pixels.size()), 1000 * sum(seconds) / double(seconds.size()));
   }
 
   // How long a frame goes on that is no longer wanted.
@@ -148,9 +201,10 @@ class Looking {
   void tell() const { fmt::print("{}: first picture after {:.2f} s\n", path_, firstPicture_); }
 
  private:
-  static RenderSettings settings(const Options& o) {
+  static RenderSettings settings(const Options& o, std::shared_ptr<Cluster> cluster) {
     RenderSettings s;
     s.width = o.width, s.height = o.height, s.threads = o.threads;
+    s.cluster = std::move(cluster);
     return s;
   }
   LiveFrame whole(int samples) const {
@@ -211,10 +265,21 @@ class Looking {
 int main(int argc, char** argv) {
   std::setvbuf(stdout, nullptr, _IOLBF, 4096);
   const Options options = read(argc, argv);
+  std::shared_ptr<Cluster> cluster;
+  if (options.cluster.used()) {
+    RenderSettings rendering;
+    rendering.threads = options.threads;
+    cluster = std::make_shared<Cluster>(options.cluster, rendering);
+    if (!cluster->wait(1, 10)) fmt::print("no worker answers\n");
+  }
   for (const std::string& world : options.worlds) {
     try {
-      Looking looking(world, options);
+      Looking looking(world, options, cluster);
       looking.tell();
+      for (int turn = 0; cluster && turn < 3; turn++)
+        for (const bool paced : {false, true})
+          for (const bool overlapping : {false, true}) looking.follow(overlapping, paced);
+      if (cluster) continue;
       looking.move();
       looking.giveUp();
       looking.refine();

@@ -259,7 +259,9 @@ TEST(ClusterProcesses, ARecordingBesideIsThatOfTheSameScene) {
 TEST(ClusterProcesses, RequiredWorkersThatAreMissingAreAnError) {
   const Context context("backend=cluster threads=1 require=2 workers=127.0.0.1:" + std::to_string(freePort()));
   World world;
-  rtRender();
+  rtSwapBuffers();
+  EXPECT_TRUE(until([&] { return rtProgress(context.handle) == 1; })); // who waits without waiting hears of it, too
+  rtFinishFrame();
   EXPECT_EQ(rtGetError(), RTenum(RT_CLUSTER_ERROR));
   EXPECT_NE(std::string(rtGetErrorMessage()).find("2 workers are needed, there are 0"), std::string::npos) << rtGetErrorMessage();
 }

@@ -9,7 +9,7 @@ import pytest
 
 from cluster_tools import addresses, free_port, needs_worker, new_key, workers
 from conftest import HEADER, SMALL
-from window_driver import screen, window  # noqa: F401
+from window_driver import framebuffer_row, screen, window  # noqa: F401
 
 SIZE = ("--size", "64x48")
 # Something of everything that a picture is made of: shadows, a mirror, glass, a texture; path traced by its emitter.
@@ -282,6 +282,22 @@ def test_the_window_with_a_worker(window, vv, two):  # noqa: F811
     opened.until(lambda shot: shot.rows == alone.rows)
     opened.key("i")  # all that is known
     assert opened.end() == 0, opened.err
+
+
+def test_a_window_whose_world_moves_and_comes_to_rest(window, vv, two, screen):  # noqa: F811
+    """While it moves pictures overlap and are shown; the last one is the one without workers."""
+    vv.write("room.wrl", ROOM)
+    vv.write("in.txt", "0.1 down Left\n0.6 up Left\n0.7 press left 0 0.5\n0.9 move 0.3 0.1\n1.2 release left\n1.4 save w.ppm\n2 quit\n")
+    opened = window(ROOM, "--spp", 2, "--input", "in.txt", "--workers", addresses(two), "--local-threads", 0)
+    top = int(re.search(r"\bY=(\d+)", opened.tool("getwindowgeometry", "--shell", opened.id))[1])
+    seen = set()
+    while opened.program.poll() is None:
+        seen.add(framebuffer_row(screen[1], top + 60))  # the middle: no text there
+        time.sleep(0.01)
+    assert opened.program.wait(60) == 0, opened.err
+    assert len(seen) > 3, "nothing moves"
+    assert vv("room.wrl", "-o", "alone.ppm", "--size", "160x120", "--spp", 2, "--input", "in.txt", "--time", 1.4).returncode == 0
+    assert (vv.folder / "w.ppm").read_bytes() == (vv.folder / "alone.ppm").read_bytes()
 
 
 def test_a_window_whose_worker_dies_goes_on(window, vv):  # noqa: F811

@@ -213,6 +213,14 @@ def window(vv, screen):
         one.program.wait()
 
 
+def framebuffer_row(path, y):
+    """The bytes of one row of what the X server shows."""
+    data = path.read_bytes()
+    header = struct.unpack_from(">25I", data)
+    start = header[0] + 12 * header[19] + y * header[12]
+    return data[start:start + header[12]]
+
+
 def framebuffer(path):
     """Rows of (r, g, b) of what the X server shows: an XWD file."""
     data = path.read_bytes()

@@ -222,6 +222,27 @@ TEST_F(Frames, ABackendThatPipelinesHasTheNextFrameBeforeItIsAskedForTheLast) {
   EXPECT_EQ(rtFinishFrame(), 0);
 }
 
+// The backend does not know yet of a frame that is being handed over; a cancellation of that time reaches it all the same.
+TEST_F(Frames, ACancellationWhileAFrameIsBegunIsForThatFrame) {
+  const auto course = [&](const char* cancelIn, void (*call)()) {
+    captured->cancelIn = cancelIn, captured->course.clear();
+    call();
+    return captured->course;
+  };
+  EXPECT_EQ(course("a", rtRender), "acscw");
+  EXPECT_EQ(course("", rtRender), "asw"); // and only that one
+  EXPECT_EQ(course("s", rtRender), "asccw");
+  EXPECT_EQ(course("", rtSwapBuffers), "as");
+  EXPECT_EQ(course("a", rtSwapBuffers), "wacsc");
+  EXPECT_EQ(course("w", rtSwapBuffers), "wcas"); // while the frame before is waited for: that one ends, the next is whole
+  rtCancel(handle);
+  EXPECT_EQ(course("", rtSwapBuffers), "was");
+  EXPECT_EQ(course("w", rtRender), "cwcascwc"); // rtRender gives up the frame before, and is given up itself
+  captured->pipelines = true;
+  EXPECT_EQ(course("", rtSwapBuffers), "as");
+  EXPECT_EQ(course("s", rtSwapBuffers), "asccw");
+}
+
 TEST_F(Frames, AFrameThatFailsIsNotTheFinishedOne) {
   captured->pipelines = true;
   rtSwapBuffers(), rtSwapBuffers();

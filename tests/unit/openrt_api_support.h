@@ -22,7 +22,8 @@ struct Captured {
   std::vector<std::shared_ptr<const Commit>> commits;
   int starts = 0, waits = 0, cancels = 0;
   bool failNextApply = false, failNextWait = false, pipelines = false;
-  std::string course; // of the frames: a apply, s start, w wait, c cancel
+  std::string course;   // of the frames: a apply, s start, w wait, c cancel
+  std::string cancelIn; // calls of these letters in which somebody cancels
 };
 
 class CaptureBackend final : public Backend {
@@ -33,14 +34,18 @@ class CaptureBackend final : public Backend {
       captured_->failNextApply = false;
       throw std::bad_alloc();
     }
-    captured_->course += 'a';
+    happens('a');
     captured_->validator.check(*commit);
     captured_->commits.push_back(std::move(commit));
   }
   bool pipelines() const override { return captured_->pipelines; }
-  void start() override { captured_->starts++, captured_->course += 's'; }
+  void start() override {
+    captured_->starts++;
+    happens('s');
+  }
   void wait() override {
-    captured_->waits++, captured_->course += 'w';
+    captured_->waits++;
+    happens('w');
     if (std::exchange(captured_->failNextWait, false)) throw ClusterError("2 workers are needed, there is 1");
   }
   void cancel() override { captured_->cancels++, captured_->course += 'c'; }
@@ -67,6 +72,10 @@ class CaptureBackend final : public Backend {
   }
 
  private:
+  void happens(char what) {
+    captured_->course += what;
+    if (captured_->cancelIn.find(what) != std::string::npos) rtCancel(rtGetCurrent());
+  }
   std::shared_ptr<Captured> captured_;
 };
 

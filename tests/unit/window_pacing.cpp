@@ -31,12 +31,55 @@ std::vector<double> move(Pacing& pacing, Machine& machine, int frames, std::vect
   for (int i = 0; i < frames; ++i) {
     const FrameSize f = pacing.next(width, height, true, 64);
     const double seconds = machine.seconds(f);
-    pacing.took(f, seconds, machine.overhead, f.samples);
+    pacing.took(f, seconds, seconds, machine.overhead, f.samples);
     out.push_back(seconds);
     if (sizes) sizes->push_back(f);
   }
   return out;
 }
+
+// Machines behind a link: they do one frame after the other, and the way there and back takes its time. The next frame is begun
+// with the window's next step, at most `most` are in flight.
+struct Link {
+  double pixel, latency;
+  size_t most = 2;
+  double unsteady = 0;
+  struct Run {
+    std::vector<FrameSize> sizes;
+    std::vector<double> ends;
+    double rate() const { // of the second half
+      const size_t half = ends.size() / 2;
+      return double(ends.size() - 1 - half) / (ends.back() - ends[half]);
+    }
+    int changes() const {
+      int n = 0;
+      for (size_t i = sizes.size() / 2; i < sizes.size(); ++i) n += !(sizes[i] == sizes[i - 1]);
+      return n;
+    }
+  };
+  Run move(Pacing& pacing, double fps, size_t frames) const {
+    Run run;
+    std::vector<double> starts;
+    double next = 0, free = 0;
+    size_t told = 0;
+    for (size_t i = 0; i < frames; ++i) {
+      const double start = i < most ? next : std::max(next, run.ends[i - most]);
+      for (; told < i && run.ends[told] <= start; ++told) {
+        const double from = told == 0 ? starts[0] : std::max(starts[told], run.ends[told - 1]);
+        const double to = told + 1 < i ? std::min(starts[told + 1], run.ends[told]) : run.ends[told];
+        pacing.took(run.sizes[told], run.ends[told] - starts[told], to - from, 0, run.sizes[told].samples);
+      }
+      const FrameSize f = pacing.next(width, height, true, 64);
+      const double wave = 1 + unsteady * (double(i * 7919 % 13) / 6 - 1);
+      free = std::max(free, start + latency / 2) + pixel * f.width * f.height * f.samples * wave;
+      starts.push_back(start);
+      run.sizes.push_back(f);
+      run.ends.push_back(free + latency / 2);
+      next = std::max(next + 1 / fps, start);
+    }
+    return run;
+  }
+};
 
 } // namespace
 
@@ -71,7 +114,8 @@ TEST(Pacing, sizesAreBounded) {
     FrameSize f;
     for (int i = 0; i < 30; ++i) {
       f = pacing.next(w, h, true, 16);
-      pacing.took(f, hopeless.seconds(f), 0, 1);
+      const double seconds = hopeless.seconds(f);
+      pacing.took(f, seconds, seconds, 0, 1);
     }
     for (const auto& [side, whole] : {std::pair{f.width, w}, {f.height, h}}) {
       EXPECT_LE(side, whole);
@@ -121,7 +165,7 @@ TEST(Pacing, aSceneThatBecomesSlowIsFollowedAtOnceAndBackByAndBy) {
 
 TEST(Pacing, whatWasLearntWhileStillCountsWhenItMoves) {
   Pacing pacing(30);
-  pacing.took({width, height, 64}, 3.0, 0, 3); // given up after three samples of a second each
+  pacing.took({width, height, 64}, 3.0, 3.0, 0, 3); // given up after three samples of a second each
   const FrameSize first = pacing.next(width, height, true, 64);
   EXPECT_LE(first.width * first.height / full, 1 / 25.0);
 }
@@ -137,10 +181,39 @@ TEST(Pacing, readingTheWorldIsNotHelpedByFewerPixels) {
 TEST(Pacing, oddTimesAreNoReason) {
   Pacing pacing(30);
   const FrameSize before = pacing.next(width, height, true, 16);
-  pacing.took(before, -1, 0, 1);
-  pacing.took(before, std::nan(""), 0, 1);
-  pacing.took(before, 1, 2, 1);
-  pacing.took(before, 0.001, 0, 0);
+  pacing.took(before, -1, -1, 0, 1);
+  pacing.took(before, std::nan(""), 1, 0, 1);
+  pacing.took(before, 1, std::nan(""), 0, 1);
+  pacing.took(before, 1, 1, 2, 1);
+  pacing.took(before, 0.001, 0.001, 0, 0);
   EXPECT_EQ(pacing.next(width, height, true, 16), before);
   EXPECT_EQ(pacing.predicted(before), 0);
+}
+
+TEST(Pacing, framesThatOverlapKeepTheRateAndTheirSize) {
+  constexpr double fps = 30;
+  for (const double latency : {0.0, .001, .004, .01, .02, .03, .04, .06})
+    for (double wholePicture = 0.002; wholePicture < 0.5; wholePicture *= 1.13) {
+      Pacing pacing(fps);
+      pacing.took({width, height, 64}, 64 * wholePicture, 64 * wholePicture, 0, 64); // a refined one was seen before
+      const Link link{wholePicture / full, latency, 2, 0.05};
+      const Link::Run run = link.move(pacing, fps, 200);
+      EXPECT_LE(run.changes(), 1) << wholePicture << ", " << latency;
+      EXPECT_GE(run.rate(), .97 * std::min(fps, 2 / (latency + 1e-9))) << wholePicture << ", " << latency;
+    }
+}
+
+// One frame at a time has to wait for the link: its pictures are as small as they get, and late.
+TEST(Pacing, aSlowLinkDoesNotMakePicturesSmallWhereFramesOverlap) {
+  constexpr double fps = 30, latency = .04, wholePicture = .02;
+  const auto run = [&](size_t most) {
+    Pacing pacing(fps);
+    pacing.took({width, height, 64}, 64 * wholePicture + latency, 64 * wholePicture + latency, 0, 64);
+    return Link{wholePicture / full, latency, most}.move(pacing, fps, 200);
+  };
+  const Link::Run overlapping = run(2), one = run(1);
+  EXPECT_EQ(overlapping.sizes.back().width, width);
+  EXPECT_NEAR(overlapping.rate(), fps, .5);
+  EXPECT_LT(one.sizes.back().width, width / 2);
+  EXPECT_LT(one.rate(), 25);
 }

@@ -16,9 +16,10 @@ class Pacing {
 
   // A frame has ended, or was given up.
   //   seconds:  from its start to its end
-  //   overhead: of these, before light was traced (the world is read, structures are built)
+  //   alone:    of these, while no other frame was in flight
+  //   overhead: of the seconds, before light was traced (the world is read, structures are built)
   //   samples:  taken, mean over the pixels; 0: not known what a pixel costs
-  void took(const FrameSize& frame, double seconds, double overhead, double samples);
+  void took(const FrameSize& frame, double seconds, double alone, double overhead, double samples);
 
   // The next frame in a window of this size. moving: the viewer, or anything else in the world; then it takes at most a frame's
   // time as far as the frames before tell, at least an eighth of the window each way and 64 pixels; else it is as large as the

@@ -207,14 +207,15 @@ void Session::draw() {
   const State state = renderer_.state();
   const bool dirty = !begun_ || fit_ == Fit::wanted || !equal(pilot_.camera(), shown_) || browser_->hasChanges() ||
                      pilot_.headlight() != shownHeadlight_ || (!moving_ && (frame_.width != width_ || frame_.height != height_));
-  if (state == State::rendering) {
+  const bool behind = state == State::ready && moving_; // frames of what moves overlap; a refined one is given up instead
+  if (state == State::rendering || (state == State::ready && !behind)) {
     if (dirty && !moving_ && (shownAny_ || fit_ == Fit::wanted)) renderer_.cancel();
     return;
   }
-  if (state != State::idle) return;
+  if (state == State::mapping) return;
   if (dirty)
     start(true); // a first picture comes early
-  else if (moving_ || !refined_)
+  else if (!behind && (moving_ || !refined_))
     start(false);
 }
 
@@ -249,8 +250,8 @@ bool Session::look(picture::LivePicture& picture) {
   // Half of a picture over the one before tears what moves.
   const bool shown = picture.finished || !shownAny_ || !moving_;
   shownAny_ = true;
-  if (picture.finished && picture.width == frame_.width && picture.height == frame_.height)
-    pacing_.took(frame_, picture.seconds, picture.seconds - picture.stats.renderSeconds, picture.samples);
+  if (picture.finished)
+    pacing_.took({picture.width, picture.height, 1}, picture.seconds, picture.alone, picture.overhead, picture.samples);
   const RTstats stats = picture.finished ? picture.stats : facts_.stats;
   const xvrml::MapStats map = picture.finished ? picture.map : facts_.map;
   facts_.width = picture.width, facts_.height = picture.height;

@@ -65,8 +65,12 @@ class Session {
 
   bool resting() const {
     return !preparing_ && renderer_.state() != picture::LiveRenderer::State::mapping;
-  }                                                                                                   // the world can be used
-  bool drawing() const { return moving_ && renderer_.state() != picture::LiveRenderer::State::idle; } // something that moves
+  } // the world can be used
+  // Something that moves, and the next frame has to wait for it.
+  bool drawing() const {
+    const auto state = renderer_.state();
+    return moving_ && (state == picture::LiveRenderer::State::mapping || state == picture::LiveRenderer::State::rendering);
+  }
   bool scripted() const { return replay_ != nullptr; }
   double time() const { return time_; } // of the session's clock, at the last step
   xvrml::Browser& browser() { return *browser_; }

@@ -179,6 +179,7 @@ class ClusterBackend final : public Backend, public SurfaceQueries, private Work
     const std::lock_guard lock(mutex_);
     if (flying_.empty()) return 1;
     const Master::FrameState& state = flying_.front().state;
+    if (state.over || !broken_.empty()) return 1; // wait() returns at once
     return state.work ? state.work->progress() : 0;
   }
 
