@@ -81,7 +81,10 @@ struct Game final : Machine {
   message::Body anything() {
     const Epoch of = in.number();
     switch (in.below(10)) {
-    case 0: return message::Welcome{uint32_t(1 + (in.byte() > 250)), session = in.number(), 0.1f, 0.5f};
+    case 0: {
+      session = in.number();
+      return message::Welcome{protocolVersion + (in.byte() > 250), session, 0.1f, 0.5f};
+    }
     case 1: return message::Prepare{of};
     case 2: return message::Drop{of};
     case 3: return message::Need{of, {}};
@@ -151,7 +154,8 @@ struct Game final : Machine {
     }
     if (!worker.serving()) {
       worker.joined(peer = 1, "somewhere", 0);
-      worker.message(peer, encode(session = 1 + in.below(3), message::Welcome{1, session, 0.1f, 0.5f}), 0);
+      session = 1 + in.below(3);
+      worker.message(peer, encode(session, message::Welcome{protocolVersion, session, 0.1f, 0.5f}), 0);
     }
     message::Body body = anything();
     worker.message(peer, encode(session, std::move(body)), 0);

@@ -22,6 +22,7 @@ struct NoMachine final : Machine { // never answers
 struct LoneWorker {
   NoMachine machine;
   std::vector<std::string> closed, badOnes;
+  std::vector<double> beats;
   size_t needed = 0; // arrays
   Worker worker;
   LoneWorker()
@@ -32,7 +33,8 @@ struct LoneWorker {
                   if (const auto* need = std::get_if<message::Need>(&m.body)) needed += need->arrays.size();
                 },
                 [this](Peer, const std::string& why) { closed.push_back(why); },
-                [this](Peer, const std::string& why) { badOnes.push_back(why); }, [](double, double) {}},
+                [this](Peer, const std::string& why) { badOnes.push_back(why); },
+                [this](double heartbeat, double) { beats.push_back(heartbeat); }},
                machine) {
     worker.joined(1, "somewhere", 0);
     tell(message::Welcome{protocolVersion, 7, 0.1f, 0.5f});
@@ -128,6 +130,17 @@ TEST(Hostile, epochsThatWrapAround) {
   EXPECT_EQ(w.badOnes.size(), 2u);
 }
 
+TEST(Hostile, oneMastersHeartbeatsAreNotTheNextOnes) {
+  LoneWorker w;
+  w.worker.left(1, "gone", 0);
+  w.worker.joined(2, "elsewhere", 0);
+  w.worker.message(2, encode(8, message::Welcome{protocolVersion, 8, 50, 100}), 0);
+  w.worker.left(2, "gone", 0);
+  ASSERT_EQ(w.beats.size(), 4u);
+  EXPECT_NEAR(w.beats[2], 50, 1e-6);
+  EXPECT_EQ(w.beats[3], 0) << "as at the beginning";
+}
+
 TEST(Hostile, whoDoesNotReadIsNoticed) {
   const auto blocked = [](Frames&&) { return false; };
   Outbox many;
@@ -181,8 +194,7 @@ TEST(Hostile, textsAreUtf8AndMoveNoCursor) {
             "a  2Jb")
       << "CSI in one character";
   EXPECT_EQ(shown("\xff\xc3\x28\x80"), "\?\?(?");
-  EXPECT_EQ(shown("\xc0\xaf\xed\xa0\x80\xf5\x80\xe2\x82"), "?????????")
-      << "overlong, half a pair, cut";
+  EXPECT_EQ(shown("\xc0\xaf\xed\xa0\x80\xf5\x80\xe2\x82"), "?????????") << "overlong, half a pair, cut";
   message::Ready ready{1, {}, RT_TRANSPORT_PATH, {}};
   std::memcpy(ready.stats.isa, "a\x1b\xffz", 4);
   Message out;

@@ -13,8 +13,9 @@ size_t bytesOf(const Frames& frames) {
 } // namespace
 
 void Outbox::add(Frames&& frames) {
-  bytes_ += bytesOf(frames);
-  messages_.push_back(std::move(frames));
+  const size_t bytes = bytesOf(frames);
+  messages_.push_back({std::move(frames), bytes});
+  bytes_ += bytes;
 }
 
 bool Outbox::flush(uint64_t session, const Send& send) {
@@ -23,10 +24,9 @@ bool Outbox::flush(uint64_t session, const Send& send) {
     piece_.clear();
   }
   while (!messages_.empty()) {
-    const size_t bytes = bytesOf(messages_.front());
-    if (!send(std::move(messages_.front()))) return false;
+    if (!send(std::move(messages_.front().frames))) return false;
+    bytes_ -= messages_.front().bytes;
     messages_.pop_front();
-    bytes_ -= bytes;
   }
   while (!arrays_.empty() && arrays_.front().array->ready) {
     Travelling& next = arrays_.front();

@@ -22,11 +22,15 @@ class Outbox {
   void clear() { piece_.clear(), messages_.clear(), arrays_.clear(), bytes_ = 0; }
 
  private:
+  struct Waiting {
+    Frames frames;
+    size_t bytes = 0;
+  };
   struct Travelling {
     OfferPtr array;
     uint64_t offset = 0; // in what is packed
   };
-  std::deque<Frames> messages_;
+  std::deque<Waiting> messages_;
   size_t bytes_ = 0; // of these
   std::deque<Travelling> arrays_;
   Frames piece_; // made, but the queue was full

@@ -59,7 +59,11 @@ struct WorkerService::Impl final : WorkerSink, Machine {
               does(peer, [=, this](Wire& w) { w.close(peer, why), alive.erase(peer); });
             },
             [does](Peer peer, const std::string& why) { does(peer, [=](Wire& w) { w.bad(peer, why); }); },
-            [does](double heartbeat, double silence) { does(0, [=](Wire& w) { w.pace(heartbeat, silence); }); }};
+            [this, does](double heartbeat, double silence) {
+              const double h = heartbeat > 0 ? heartbeat : options.wire.heartbeat,
+                           s = silence > 0 ? silence : options.wire.silence;
+              does(0, [h, s](Wire& w) { w.pace(h, s); });
+            }};
   }
 
   // To the session. [any]

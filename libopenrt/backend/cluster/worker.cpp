@@ -43,7 +43,7 @@ void Worker::left(Peer peer, const std::string& why, double) {
 
 // What is out is given up; arrays stay.
 void Worker::endSession() {
-  if (serving()) machine_.drop(newest_);
+  if (serving()) machine_.drop(newest_), link_.pace(0, 0);
   peer_ = 0, session_ = 0, base_ = newest_, logged_ = 0;
   coming_.clear(), streams_.clear(), frames_.clear(), leases_.clear(), unanswered_.clear();
   begun_ = unansweredBytes_ = 0;

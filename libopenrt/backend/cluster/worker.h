@@ -41,7 +41,7 @@ struct WorkerLink {
   std::function<void(Peer, Frames&&)> send;
   std::function<void(Peer, const std::string& why)> close;
   std::function<void(Peer, const std::string& why)> bad; // a message that is none
-  std::function<void(double heartbeat, double silence)> pace;
+  std::function<void(double heartbeat, double silence)> pace; // 0: as before any Welcome
 };
 
 class Worker {
