@@ -34,13 +34,13 @@ uint32_t load(const Rays& rays, const float* ends, uint32_t first, float scale, 
     const float ox = rays.org[0][lane], oy = rays.org[1][lane], oz = rays.org[2][lane];
     const float dx = rays.dir[0][lane], dy = rays.dir[1][lane], dz = rays.dir[2][lane];
     const float near = rays.tnear[lane], far = ends[i];
-    const float d = std::fabs(dx) + std::fabs(dy) + std::fabs(dz);
+    const float ax = std::fabs(ox), ay = std::fabs(oy), az = std::fabs(oz), d = std::fabs(dx) + std::fabs(dy) + std::fabs(dz);
     // Comparisons are false for NaN: whatever is not a number is refused.
-    const bool good = (std::fabs(ox) <= limit) & (std::fabs(oy) <= limit) & (std::fabs(oz) <= limit) & (d > 0) & (d <= 1e18f) &
-                      (near >= 0) & (near <= far) & (near < std::numeric_limits<float>::infinity());
+    const bool good = (ax <= limit) & (ay <= limit) & (az <= limit) & (d > 0) & (d <= 1e18f) & (near >= 0) & (near <= far) &
+                      (near < std::numeric_limits<float>::infinity());
     const bool present = lane < rays.count;
     refused += present & !good;
-    valid[i] = present & good ? -1 : 0;
+    valid[i] = (present & good) ? -1 : 0;
     to.org_x[i] = good ? ox * scale : 0, to.org_y[i] = good ? oy * scale : 0, to.org_z[i] = good ? oz * scale : 0;
     to.dir_x[i] = good ? dx : 0, to.dir_y[i] = good ? dy : 0, to.dir_z[i] = good ? dz : 1;
     to.tnear[i] = good ? near * scale : 0;
@@ -176,8 +176,8 @@ void Accel::intersect(const Rays& rays, uint32_t mask, Coherence coherence, RayH
   if (top) intersectLevel(topLevel_, rays, mask, coherent, !first, hits);
 }
 
-void Accel::intersectFiltered(const Rays& rays, uint32_t mask, RTCFilterFunctionN filter, const uint32_t* record,
-                              RayHits& hits, std::vector<Passed>* all) const {
+void Accel::intersectFiltered(const Rays& rays, uint32_t mask, RTCFilterFunctionN filter, const uint32_t* record, RayHits& hits,
+                              std::vector<Passed>* all) const {
   bool first = true;
   for (const Level* level : {&staticLevel_, &topLevel_}) {
     if (level == &topLevel_ && !(level->masks & mask)) continue;
