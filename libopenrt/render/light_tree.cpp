@@ -279,13 +279,13 @@ void LightTree::measure(const Node& node, const Query& q, float* __restrict out)
     const float cosLess = axial * cosine + across * sine, sinLess = across * cosine - axial * sine;
     const float cosX = axial > cosine ? 1.0f : cosLess, sinX = axial > cosine ? 0.0f : sinLess;
     const float leavesBeside = cosX * cosBox + sinX * sinBox;
-    const float leaves = (cosX > cosBox) | within ? 1.0f : leavesBeside, atLeast = larger(leaves, slack);
+    const float leaves = ((cosX > cosBox) | within) ? 1.0f : leavesBeside, atLeast = larger(leaves, slack);
     const float leaving = leaves < node.beyond[i] - slack ? 0.0f : atLeast;
     // And of all that arrive the one nearest to the receiver's normal.
     const float facing = q.facing - (x * q.normal[0] + y * q.normal[1] + z * q.normal[2]) * inverse;
     const float aside = std::sqrt(larger(1 - facing * facing, 0));
     const float arrivesBeside = facing * cosBox + aside * sinBox;
-    const float arrives = (facing > cosBox) | within ? 1.0f : arrivesBeside, enough = larger(arrives, q.least);
+    const float arrives = ((facing > cosBox) | within) ? 1.0f : arrivesBeside, enough = larger(arrives, q.least);
     const float arriving = arrives < q.cut ? 0.0f : enough;
     const float falling = node.intensity[i] / larger(larger(square, radius2), 1e-37f);
     const float sum = larger(falling + node.irradiance[i], 1e-30f), strength = sum < 1e30f ? sum : 1e30f;
