@@ -1,4 +1,5 @@
 // What the mapper makes of worlds, seen through its results and the engine: viewpoints, bounds, names, sharing, levels.
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <numbers>
