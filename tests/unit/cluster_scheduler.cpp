@@ -351,8 +351,10 @@ TEST(Scheduler, aReserveHelpsIfNothingComesOfTheOthers) {
   EXPECT_EQ(b.s.wake(b.now), 10);
   b.now = 9.9;
   EXPECT_TRUE(b.prepare().empty());
+  EXPECT_FALSE(b.s.stuck(1));
   b.now = 10;
   EXPECT_EQ(b.prepare(), std::vector<WorkerId>{9});
+  EXPECT_TRUE(b.s.stuck(1));
   b.frame(1, 3);
   for (int i = 0; i < 3; i++)
     for (const Handout& h : b.handOut()) {

@@ -242,8 +242,7 @@ void Master::Impl::handOut(double now) {
   Epoch epoch = 0;
   bool moved = false;
   for (; scheduler.move(now, worker, epoch); moved = true) {
-    if (worker == hereId && options.localThreads == 0 && alive() > 0)
-      logOnce(2, "the workers that are there get nowhere: this process helps");
+    if (worker == hereId && scheduler.stuck(epoch)) logOnce(2, "the workers that are there get nowhere: this process helps");
     bring(worker, epoch);
   }
   if (moved) settle();

@@ -247,6 +247,11 @@ double Scheduler::wake(double now) const {
   return when;
 }
 
+bool Scheduler::stuck(Epoch epoch) const {
+  const Frame* f = impl_->frame(epoch);
+  return f && f->stuck;
+}
+
 double Scheduler::lateAfter(Epoch epoch) const {
   Frame* f = impl_->frame(epoch);
   if (!f || f->costs.median() <= 0) return never;

@@ -109,6 +109,7 @@ class Scheduler {
   void pace(double secondsOfJob);
   // When next() may have something new although nothing has happened; infinite: never.
   double wake(double now) const;
+  bool stuck(Epoch epoch) const; // nothing came of those at it for so long that a reserve helps
   // How long a usual job takes at most before it is handed out again; infinite as long as nothing is known.
   double lateAfter(Epoch epoch) const;
 
