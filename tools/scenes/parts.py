@@ -6,6 +6,8 @@ HEADER = "#VRML V2.0 utf8\n"
 
 
 def number(x):
+    if abs(x) < 1e-12:  # what rounding leaves of 0, which differs: sum() of floats is another one from Python 3.12 on
+        return "0"
     text = f"{x:.5g}"
     return "0" if text == "-0" else text
 
