@@ -11,43 +11,43 @@ namespace {
 
 using namespace sim;
 
-const char* limitOf(const Simulation::Outcome& o) {
-  const double most = std::max({o.master, o.merging, o.network, o.socket});
+std::string limitOf(const Simulation::Outcome& o) {
+  const std::pair<double, const char*> used[] = {
+      {o.master, "master's thread"}, {o.merging, "merging"}, {o.network, "network"}, {o.socket, "socket thread"}};
+  const auto most = *std::max_element(std::begin(used), std::end(used));
   if (o.efficiency >= 0.95) return "workers";
-  if (most < 0.8) return o.perJob > o.frame / 8 ? "size of jobs" : "end of frame";
-  return most == o.master ? "master's thread" : most == o.merging ? "merging" : most == o.network ? "network" : "socket thread";
+  if (most.first >= 0.8) return most.second;
+  return o.end > o.gaps ? "end of frame" : std::string("bursts, ") + most.second;
 }
 
+// Shares of the workers' time: what they do (efficiency), wait for at a frame's beginning, in it and at its end, do in vain.
 void print(const Options& o) {
   const CostMap costs = o.costs.empty() ? CostMap() : CostMap(o.costs);
   std::printf(
-      "%ux%u, %u samples, tiles of %u (0: as they are), %g s of one thread a frame; workers of %u threads; master %g Gbit/s, "
-      "links %g Gbit/s, %g ms; %s\n",
-      o.width, o.height, o.samples, o.tile, o.work, o.threads, o.network * 1e-9, o.link * 1e-9, o.latency * 1e3,
-      o.ideal ? "the master takes no time" : "the master's time is measured");
-  std::printf(
-      "| workers | frame (ms) | efficiency | begin | gaps | end | vain | jobs/s | mean job (ms) | again | in (MB/s) | out (MB/s) "
-      "| master | merging | network "
-      "| socket | limit |\n"
-      "| ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | --- "
-      "|\n");
+      "%ux%u, %u samples, %s, %g s of one thread a frame; workers of %u threads; master %g Gbit/s, links %g Gbit/s, %g ms; "
+      "%s\n",
+      o.width, o.height, o.samples, o.tile ? ("tiles of " + std::to_string(o.tile) + " pixels").c_str() : "ordinary tiles",
+      o.work, o.threads, o.network * 1e-9, o.link * 1e-9, o.latency * 1e3,
+      o.ideal ? "the master takes no time"
+              : ("the master's time is measured, " + std::to_string(o.mergers) + " threads merge").c_str());
+  std::printf("| workers | frame (ms) | efficiency | begin | gaps | end | vain | jobs/s | mean job (ms) | again | in (MB/s) | "
+              "out (MB/s) | master | merging | network | socket | limit |\n|");
+  for (int i = 0; i < 16; i++) std::printf(" ---: |");
+  std::printf(" --- |\n");
   for (const uint32_t n : o.workers) {
     Simulation simulation(o, costs, n);
     const Simulation::Outcome r = simulation.run();
-    std::fprintf(stderr, "turns %llu msg %.3f adv %.3f\n", (unsigned long long)simulation.dbgTurns, simulation.dbgMsg,
-                 simulation.dbgAdv);
-    std::printf(
-        "| %u | %.1f | %.1f %% | %.1f | %.1f | %.1f | %.1f | %.0f | %.2f | %llu | %.1f | %.2f | %.0f %% | %.0f %% | %.0f %% | "
-        "%.0f %% | %s |\n",
-        n, r.frame * 1e3, r.efficiency * 100, r.begin * 100, r.gaps * 100, r.end * 100,
-        (1 - r.efficiency - r.begin - r.gaps - r.end) * 100, r.jobs, r.perJob * 1e3, static_cast<unsigned long long>(r.again),
-        r.in * 1e-6, r.out * 1e-6, r.master * 100, r.merging * 100, r.network * 100, r.socket * 100, limitOf(r));
+    std::printf("| %u | %.1f | %.1f %% | %.1f %% | %.1f %% | %.1f %% | %.1f %% |", n, r.frame * 1e3, r.efficiency * 100,
+                r.begin * 100, r.gaps * 100, r.end * 100, (1 - r.efficiency - r.begin - r.gaps - r.end) * 100);
+    std::printf(" %.0f | %.2f | %llu | %.1f | %.2f | %.0f %% | %.0f %% | %.0f %% | %.0f %% | %s |\n", r.jobs, r.perJob * 1e3,
+                static_cast<unsigned long long>(r.again), r.in * 1e-6, r.out * 1e-6, r.master * 100, r.merging * 100,
+                r.network * 100, r.socket * 100, limitOf(r).c_str());
     std::fflush(stdout);
   }
 }
 
 constexpr const char* usage = R"(bench_cluster_sim [OPTION=VALUE]...
-  workers=1,2,4...  threads=16  size=1920x1080  samples=1024  tile=0  frames=3 (the first is not counted)
+  workers=1,2,4...  threads=16  size=1920x1080  samples=1024  tile=0  frames=3 (the first is not counted; overlapping: three)
   work=2048 (seconds of one thread a frame)  network=10e9  link=10e9 (bits/s)  latency=50e-6 (one way)
   per-message=2e-6  per-byte=0 (seconds of the socket thread)
   receive=2.5e-6  send=1e-6  copy=5e-10  hand-over=5e-7 (seconds of the master's thread: a message, a byte, a result)
@@ -70,7 +70,7 @@ bool set(Options& o, const std::string& name, const std::string& value) {
       {"size", [&] { std::sscanf(value.c_str(), "%ux%u", &o.width, &o.height); }},
       {"samples", [&] { o.samples = uint32_t(std::stoul(value)); }},
       {"tile", [&] { o.tile = uint32_t(std::stoul(value)); }},
-      {"frames", [&] { o.frames = std::max(2u, uint32_t(std::stoul(value))); }},
+      {"frames", [&] { o.frames = uint32_t(std::stoul(value)); }},
       {"work", [&] { o.work = std::stod(value); }},
       {"network", [&] { o.network = std::stod(value); }},
       {"link", [&] { o.link = std::stod(value); }},
@@ -117,6 +117,7 @@ int main(int argc, char** argv) {
         return 2;
       }
     }
+    options.frames = std::max(options.frames, options.pipelined ? 8u : 2u);
     print(options);
     return 0;
   } catch (const std::exception& e) {

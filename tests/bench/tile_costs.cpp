@@ -1,0 +1,66 @@
+// tile_costs.cpp: bench_tile_costs RECORDING [SAMPLES]: what each tile of a recording's last frame costs one thread, in
+// microseconds of a pixel's sample, as bench_cluster_sim reads it (costs=FILE), on standard output. Processor time, so that it
+// may be taken on a machine that does other things as well.
+#include <time.h>
+
+#include <atomic>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+
+#include "backend/local/local.h"
+#include "backend/record/reader.h"
+#include "render/frame_work.h"
+#include "render/job_runner.h"
+#include "shading/registry.h"
+
+namespace {
+
+using namespace openrt;
+
+double cpuSeconds() {
+  timespec t;
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return double(t.tv_sec) + double(t.tv_nsec) * 1e-9;
+}
+
+void print(const char* recording, uint32_t samples) {
+  constexpr uint32_t edge = 16;
+  ShaderRegistry shaders(shaderFolders({}));
+  BackendOptions options;
+  options.threads = 1, options.shaders = &shaders;
+  LocalBackend backend(options);
+  const auto reader = openRecording(recording, &shaders);
+  while (const auto commit = reader->next()) backend.apply(commit);
+  auto scene = std::make_shared<RenderScene>(*backend.prepared());
+  scene->frame.tile = edge, scene->frame.samples = samples, scene->frame.progressive = false;
+  FrameWork work(scene->frame, FrameFacts{true, false}, 1); // light from lamps is no tile's
+  JobRunner runner(scene);
+  const std::atomic<bool> never{false};
+  JobResult result;
+  const uint32_t columns = (scene->frame.width + edge - 1) / edge;
+  std::printf("# microseconds of a pixel's sample, %ux%u, tiles of %u; bench_tile_costs\n%u %u\n", scene->frame.width,
+              scene->frame.height, edge, columns, work.tiles() / columns);
+  for (Job job; work.next(job) == FrameWork::Next::job;) {
+    const double began = cpuSeconds();
+    runner.run(job, never, result);
+    const double perSample = (cpuSeconds() - began) / double(work.tile(job.number).pixels() * job.count);
+    std::printf("%.2f%c", perSample * 1e6, (job.number + 1) % columns ? ' ' : '\n');
+  }
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+  if (argc < 2) {
+    std::fputs("bench_tile_costs RECORDING [SAMPLES]\n", stderr);
+    return 2;
+  }
+  try {
+    print(argv[1], argc > 2 ? uint32_t(std::strtoul(argv[2], nullptr, 10)) : 4);
+    return 0;
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "bench_tile_costs: %s\n", e.what());
+    return 1;
+  }
+}
