@@ -30,15 +30,17 @@ void print(const Options& o) {
       o.work, o.threads, o.network * 1e-9, o.link * 1e-9, o.latency * 1e3,
       o.ideal ? "the master takes no time"
               : ("the master's time is measured, " + std::to_string(o.mergers) + " threads merge").c_str());
-  std::printf("| workers | frame (ms) | efficiency | begin | gaps | end | vain | jobs/s | mean job (ms) | again | in (MB/s) | "
+  std::printf("| workers | first (ms) | frame (ms) | efficiency | begin | gaps | end | vain | jobs/s | mean job (ms) | again | "
+              "in (MB/s) | "
               "out (MB/s) | master | merging | network | socket | limit |\n|");
-  for (int i = 0; i < 16; i++) std::printf(" ---: |");
+  for (int i = 0; i < 17; i++) std::printf(" ---: |");
   std::printf(" --- |\n");
   for (const uint32_t n : o.workers) {
     Simulation simulation(o, costs, n);
     const Simulation::Outcome r = simulation.run();
-    std::printf("| %u | %.1f | %.1f %% | %.1f %% | %.1f %% | %.1f %% | %.1f %% |", n, r.frame * 1e3, r.efficiency * 100,
-                r.begin * 100, r.gaps * 100, r.end * 100, (1 - r.efficiency - r.begin - r.gaps - r.end) * 100);
+    std::printf("| %u | %.1f | %.1f | %.1f %% | %.1f %% | %.1f %% | %.1f %% | %.1f %% |", n, r.first * 1e3, r.frame * 1e3,
+                r.efficiency * 100, r.begin * 100, r.gaps * 100, r.end * 100,
+                (1 - r.efficiency - r.begin - r.gaps - r.end) * 100);
     std::printf(" %.0f | %.2f | %llu | %.1f | %.2f | %.0f %% | %.0f %% | %.0f %% | %.0f %% | %s |\n", r.jobs, r.perJob * 1e3,
                 static_cast<unsigned long long>(r.again), r.in * 1e-6, r.out * 1e-6, r.master * 100, r.merging * 100,
                 r.network * 100, r.socket * 100, limitOf(r).c_str());

@@ -84,11 +84,13 @@ class Simulation {
 
   struct Outcome {
     double frame = 0, efficiency = 0, master = 0, merging = 0, network = 0, socket = 0, in = 0, out = 0, jobs = 0, perJob = 0;
+    double first = 0;                    // frame, of which nobody knew what it costs
     double begin = 0, gaps = 0, end = 0; // shares of the workers' time that nothing is done in
     uint64_t again = 0;
   };
   Outcome run() {
     while (joined_ < workers_.size() || !events_.empty()) events_.step(); // all are there
+    firstCommit_ = events_.now;
     commit();
     if (o_.pipelined) commit(); // there is always a next one
     Outcome outcome;
@@ -98,6 +100,7 @@ class Simulation {
       events_.step();
       if (before == finished_ || finished_ != unmeasured()) continue;
       began = idleFrom_ = lastEnd_;
+      outcome.first = ends_.front() - firstCommit_;
       mark_ = counts(), idleBegin_ = idleGaps_ = idleEnd_ = 0;
     }
     if (finished_ < o_.frames) throw std::runtime_error("the simulation has come to a halt");
@@ -206,7 +209,7 @@ class Simulation {
     const double next = master_->advance(clock());
     const double took = clock() - turnBegan_;
     masterCpu_ += took, masterFree_ = turnBegan_ + took;
-    master_->busy(took);
+    if (!o_.ideal) master_->busy(took);
     look();
     awake_ = false;
     if (!inbox_.empty())
@@ -396,6 +399,7 @@ class Simulation {
   Epoch lastEpoch_ = 0, oldest_ = 1;
   double lastEnd_ = 0;
   std::vector<double> ends_; // of frames
+  double firstCommit_ = 0;
   std::deque<Merging> merging_;
   uint32_t mergersBusy_ = 0;
   double mergingCpu_ = 0;

@@ -17,6 +17,7 @@ constexpr double spare = 1.75;        // of the master's time for a job: it is b
 constexpr double turnaround = 8e-3;   // for which a worker has something to do when it has told of a job, but for its link
 constexpr double leastWaiting = 0.25; // jobs for a thread behind that which it does
 constexpr double mixedUntil = 0.7;    // of a frame's work
+constexpr double unequal = 32;        // of so many tiles one may cost as much as all
 constexpr double parts = 4;           // of what is left for a thread, a job is one of so many
 } // namespace
 
@@ -94,8 +95,10 @@ uint32_t Scheduler::Impl::largest(const Frame& f, const Worker& w) const {
     const double place = f.place(f.work->upcoming());
     if (place > 0)
       samples = seconds / place / f.tilePixels;
-    else // nobody knows what the next tile costs: one of the dear ones must not take longer than half of what is left
-      samples = std::min(seconds / f.costs.mean(), std::max(left / 2, least) / f.costs.dear()) / f.tilePixels;
+    else // nobody knows what the next tile costs: one of the dear ones must not take longer than half of what is left, nor much
+         // longer than the frame if all of its work lies in a few of the tiles
+      samples = std::min({seconds / f.costs.mean() / f.tilePixels, std::max(left / 2, least) / f.costs.dear() / f.tilePixels,
+                          f.perPixel * f.work->tiles() / (unequal * threadsFor(f.epoch))});
   }
   if (samples >= f.perPixel) return ~0u;
   return std::bit_floor(std::max(uint32_t(samples), fewest));
