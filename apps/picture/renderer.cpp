@@ -38,7 +38,7 @@ struct Flight {
 bool worthRounds(const RenderSettings& settings) {
   constexpr int samples = 64;
   constexpr int64_t pixels = int64_t(2) << 20;
-  return settings.samples >= samples && int64_t(settings.width) * settings.height <= pixels;
+  return !settings.cluster && settings.samples >= samples && int64_t(settings.width) * settings.height <= pixels;
 }
 
 struct Renderer::Impl {

@@ -48,7 +48,7 @@ struct RenderSettings {
 };
 
 // Whether a picture takes long enough to be progressive: what is saved of it before it is finished then shows all of it, not only
-// the tiles that are finished. That costs no time, but up to 320 bytes a pixel.
+// the tiles that are finished. That costs no time, but up to 320 bytes a pixel; with a cluster it would be many small jobs.
 bool worthRounds(const RenderSettings& settings);
 
 struct RenderError : std::runtime_error {
