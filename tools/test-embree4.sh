@@ -24,10 +24,14 @@ if [ ! -e "$root/debootstrap-done" ]; then
   touch "$root/debootstrap-done"
 fi
 cp -L /etc/resolv.conf "$root/etc/"
-# All but the build is laid anew, with its times, so that nothing stays that the sources no longer have.
-mkdir -p "$root/src"
-find "$root/src" -mindepth 1 -maxdepth 1 ! -name build -exec rm -rf {} +
-git ls-files -z | tar --null -T - -c | tar -x -C "$root/src"
+# The sources are laid anew beside the build, so that nothing stays that is gone; what is the same keeps its time, what is not is new.
+mkdir -p "$root/src" && rm -rf "$root/src.new" && mkdir "$root/src.new"
+git ls-files -z | tar --null -T - -c | tar -xm -C "$root/src.new"
+(cd "$root/src.new" && find . -type f -print0 | while IFS= read -r -d '' file; do
+  if cmp -s "$file" "../src/$file"; then touch -r "../src/$file" "$file"; fi
+done)
+if [ -d "$root/src/build" ]; then mv "$root/src/build" "$root/src.new/"; fi
+rm -rf "$root/src" && mv "$root/src.new" "$root/src"
 if [ -d "$corpus" ] && [ ! -d "$root/shared/corpus" ]; then
   mkdir -p "$root/shared" && cp -rL "$corpus" "$root/shared/corpus"
 fi
