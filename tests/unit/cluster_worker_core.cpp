@@ -130,8 +130,9 @@ TEST_F(WorkerCoreTest, ItsPicturesAreThoseOfTheLocalBackend) {
   EXPECT_GT(sink.last.stats.triangles, 0u);
   EXPECT_GT(std::strlen(sink.last.stats.isa), 0u);
   EXPECT_EQ(picture(core, 1, lease), expected(all, 1));
+  const size_t before = sink.all().size();
   core.scene(2, all[1], false, true);
-  ASSERT_TRUE(sink.wait(sink.all().size() + 1));
+  ASSERT_TRUE(sink.wait(before + 1));
   EXPECT_EQ(sink.all().back().what, "ready");
   EXPECT_EQ(picture(core, 2, lease), expected(all, 2));
   // Forgotten: the first scene again.
