@@ -138,10 +138,11 @@ int runWatching(const Options& options, const std::string& commandLine) {
   deferInterrupt(true);
   Watched watched({options.input});
   for (;;) {
+    const timespec begin = Watched::now();
     Headless job(options, commandLine);
     runOnce(job);
-    watched.add(job.files());
-    watched.add(shaderFiles(options.render.shaderPath));
+    watched.add(job.files(), begin);
+    watched.add(shaderFiles(options.render.shaderPath), begin);
     if (!options.quiet && !interrupted()) say("vv: waiting for a change of the world's files");
     if (!watched.waitForChange(interrupted)) return exitInterrupted;
   }

@@ -7,6 +7,7 @@
 #include <set>
 #include <sstream>
 #include <thread>
+#include <utility>
 
 #include <sys/stat.h>
 
@@ -53,8 +54,18 @@ Watched::Stamp Watched::stampOf(const std::string& path) {
   return {info.st_mtim.tv_sec, info.st_mtim.tv_nsec, info.st_size, info.st_ino};
 }
 
-void Watched::add(const std::vector<std::string>& files) {
-  for (const std::string& file : files) files_.try_emplace(file, stampOf(file));
+timespec Watched::now() {
+  timespec time{};
+  clock_gettime(CLOCK_REALTIME_COARSE, &time); // what the kernel writes into files
+  return time;
+}
+
+void Watched::add(const std::vector<std::string>& files, timespec read) {
+  for (const std::string& file : files) {
+    const Stamp stamp = stampOf(file);
+    const bool since = std::pair(stamp.seconds, stamp.nanoseconds) > std::pair<long long, long long>(read.tv_sec, read.tv_nsec);
+    files_.try_emplace(file, since ? Stamp{} : stamp);
+  }
 }
 
 bool Watched::update() {

@@ -2,6 +2,7 @@
 // second: that also sees editors that replace a file, and folders of other machines. [main thread]
 #pragma once
 
+#include <ctime>
 #include <map>
 #include <string>
 #include <vector>
@@ -18,8 +19,11 @@ std::vector<std::string> shaderFiles(const std::string& shaderPath);
 
 class Watched {
  public:
-  explicit Watched(const std::vector<std::string>& files) { add(files); }
-  void add(const std::vector<std::string>& files);
+  explicit Watched(const std::vector<std::string>& files) { add(files, now()); }
+  // The clock of files' times.
+  static timespec now();
+  // read: when files may have been read first. One that was written since counts as changed: nobody knows what of it was read.
+  void add(const std::vector<std::string>& files, timespec read);
   // True once a file has changed and all have been at rest since the last call; to be called about five times a second.
   bool changed();
   // Comes back when a file has changed and all have been at rest for a moment. False if `ended` said so.
