@@ -46,7 +46,7 @@ void Master::message(Peer peer, Frames&& frames, double now) {
   const auto found = impl_->remotes.find(peer);
   if (found == impl_->remotes.end()) return; // it has left: whatever this was, somebody else does it
   Remote& remote = found->second;
-  for (const auto& frame : frames) remote.bytesReceived += frame.size();
+  remote.bytesReceived += bytesOf(frames);
   Message message;
   if (const std::string wrong = decodePacked(std::move(frames), message, impl_->largestResult); !wrong.empty())
     return impl_->refuse(peer, "a message that cannot be read: " + wrong, now); // nobody knows what it should have been

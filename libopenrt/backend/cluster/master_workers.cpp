@@ -110,8 +110,7 @@ void Master::Impl::say(Remote& remote, message::Body&& body) {
 }
 
 bool Master::Impl::deliver(Remote& remote, Frames&& frames) {
-  size_t bytes = 0;
-  for (const auto& frame : frames) bytes += frame.size();
+  const size_t bytes = bytesOf(frames);
   if (!send(remote.peer, std::move(frames))) return false;
   remote.bytesSent += bytes;
   return true;

@@ -2,15 +2,6 @@
 #include "backend/cluster/outbox.h"
 
 namespace openrt::cluster {
-namespace {
-
-size_t bytesOf(const Frames& frames) {
-  size_t sum = 0;
-  for (const auto& frame : frames) sum += frame.size();
-  return sum;
-}
-
-} // namespace
 
 void Outbox::add(Frames&& frames) {
   const size_t bytes = bytesOf(frames);

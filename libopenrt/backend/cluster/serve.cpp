@@ -20,12 +20,6 @@ constexpr size_t mostWaiting = size_t(512) << 20; // bytes that the session has 
 constexpr size_t overhead = 512;                  // about, of a message that waits
 constexpr double idle = 0.05, hurry = 0.001;      // seconds to wait for messages; while something could not be sent
 
-size_t bytesOf(const Frames& frames) {
-  size_t sum = 0;
-  for (const auto& frame : frames) sum += frame.size();
-  return sum;
-}
-
 } // namespace
 
 struct WorkerService::Impl final : WorkerSink, Machine {

@@ -21,6 +21,12 @@ using Peer = uint32_t; // numbered by the Wire; a peer that comes again has a ne
 
 using Frames = std::vector<std::vector<std::byte>>; // of a message; [0] is the header
 
+inline size_t bytesOf(const Frames& frames) {
+  size_t sum = 0;
+  for (const auto& frame : frames) sum += frame.size();
+  return sum;
+}
+
 struct WireOptions {
   std::vector<std::string> connect; // HOST[:PORT] or HOST:PORT=PUBLICKEY of those to call
   std::string listen;               // ADDRESS[:PORT] where to be called; empty: nowhere

@@ -74,7 +74,7 @@ void Wire::Impl::readCall(Call& call, double now) {
     std::string address;
     bool tooMany = false;
     if (!readFrames(*call.socket, frames, fd, address, tooMany)) break;
-    for (const auto& frame : frames) bytes += frame.size();
+    bytes += bytesOf(frames);
     take(peers.at(call.peer), std::move(frames), tooMany, now);
     if (!call.socket) return; // it was hung up
   }

@@ -18,12 +18,6 @@ constexpr size_t mostFormer = 4096;
 constexpr double measureAgain = 1; // seconds after which the way there and back is measured though there is traffic
 constexpr double tellAgain = 1;    // seconds after which one that has left is told so again
 
-size_t bytesOf(const Frames& frames) {
-  size_t sum = 0;
-  for (const auto& frame : frames) sum += frame.size();
-  return sum;
-}
-
 // A frame as ZeroMQ's; large ones are handed over, and freed when they are sent.
 zmq::message_t messageOf(std::vector<std::byte>&& frame) {
   if (frame.size() <= smallFrame) return zmq::message_t(frame.data(), frame.size());
