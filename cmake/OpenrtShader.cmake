@@ -6,6 +6,7 @@ function(openrt_add_shader name)
   set_target_properties(shader_${name} PROPERTIES PREFIX "" OUTPUT_NAME ${name} CXX_VISIBILITY_PRESET hidden
                         C_VISIBILITY_PRESET hidden LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib/openrt/shaders)
   target_compile_features(shader_${name} PRIVATE cxx_std_20)
+  target_link_options(shader_${name} PRIVATE LINKER:-z,relro,-z,now,-z,noexecstack) # as the programs that load it
   target_link_libraries(shader_${name} PRIVATE openrt::headers)
   if(TARGET project_options)
     target_link_libraries(shader_${name} PRIVATE project_options)

@@ -15,7 +15,10 @@ set(CMAKE_ARCHIVE_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib)
 # Programs find the libraries, and the libraries their plug-ins, relative to themselves: the tree can be moved. The build tree has
 # the run paths of the installed one. CMake would otherwise pad those of the build tree with colons, to edit them when it installs,
 # and the loader takes an empty element for the current folder: programs would load libraries from wherever they are started.
-set(CMAKE_BUILD_WITH_INSTALL_RPATH ON)
+# Packages of the system have no run paths, but the tree that they are built in needs them: CMake takes them away as it installs.
+if(NOT CMAKE_SKIP_INSTALL_RPATH)
+  set(CMAKE_BUILD_WITH_INSTALL_RPATH ON)
+endif()
 set(CMAKE_INSTALL_RPATH "$ORIGIN;$ORIGIN/../lib;$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
 list(REMOVE_DUPLICATES CMAKE_INSTALL_RPATH)
 set(CMAKE_INSTALL_RPATH_USE_LINK_PATH ON) # libraries of others that are installed outside the system's folders

@@ -47,6 +47,7 @@ function(xvrml_add_nodes name)
   set_target_properties(nodes_${name} PROPERTIES PREFIX "" OUTPUT_NAME ${name} CXX_VISIBILITY_PRESET hidden
                         LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib/xvrml/nodes)
   target_compile_features(nodes_${name} PRIVATE cxx_std_20)
+  target_link_options(nodes_${name} PRIVATE LINKER:-z,relro,-z,now,-z,noexecstack) # as the programs that load it
   target_include_directories(nodes_${name} PRIVATE ${out})
   if(TARGET xvrml::xvrml)
     target_link_libraries(nodes_${name} PRIVATE xvrml::xvrml)

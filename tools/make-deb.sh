@@ -7,3 +7,4 @@ cmake --log-level=NOTICE -S . -B "$folder" -G Ninja -DCMAKE_BUILD_TYPE=Release -
   -DOPENRT_PYTHON_DIR=lib/python3/dist-packages -DPython_EXECUTABLE="$python" -DPython3_EXECUTABLE="$python"
 cmake --build "$folder" -j "$jobs"
 cd "$folder" && cpack
+python3 "$OLDPWD/tests/checks/hardening.py" ./*.deb

@@ -7,3 +7,4 @@ folder=$1 jobs=${2:-2}
 [ -x build/venv/bin/pip ] || "${PYTHON:-python3}" -m venv build/venv
 rm -f "$folder"/xvrml-*.whl
 CMAKE_BUILD_PARALLEL_LEVEL=$jobs build/venv/bin/pip wheel . --no-deps -w "$folder"
+"${PYTHON:-python3}" tests/checks/hardening.py "$folder"/xvrml-*.whl # no path of this machine, nothing executable that is writable

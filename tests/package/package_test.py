@@ -64,6 +64,9 @@ with tempfile.TemporaryDirectory() as scratch:
     first, prefix, out = scratch / "first place", scratch / "prefix", scratch / "build"
     run(cmake, "--install", build, "--prefix", first)
     first.rename(prefix)  # an installed tree may be moved
+    debug = "CMAKE_BUILD_TYPE:STRING=Debug" in (build / "CMakeCache.txt").read_text()
+    hardening = [sys.executable, source / "tests/checks/hardening.py", *(["--plain"] if debug else [])]
+    print(run(*hardening, prefix, env={"CC": cc}), end="")
     project = scratch / "project"
     shutil.copytree(source / "tests/package", project)
 
@@ -74,6 +77,8 @@ with tempfile.TemporaryDirectory() as scratch:
     for program in ("triangle", "world", "graph"):
         if wrong := foreign_libraries(out / program, prefix):
             sys.exit(f"{program} does not use the installed libraries: {wrong}")
+    # A stranger's plug-in is loaded by our programs: its tables are read-only, too, and it names no folder.
+    print(run(*hardening, "--plain", "--partial", out / "lib/openrt/shaders"), end="")
     plugin = run("ldd", out / "lib/openrt/shaders/flat.so")
     if "openrt" in plugin:
         sys.exit(f"the plug-in links against the host: {plugin}")

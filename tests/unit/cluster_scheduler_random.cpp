@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 
+#include <algorithm>
 #include <set>
 
 #include "unit/cluster_fake_work.h"
@@ -134,18 +135,43 @@ struct Turmoil {
     RC_ASSERT(b.work.empty()); // every frame has ended, and take() has counted every sample
     for (const auto& [id, m] : machines) RC_ASSERT(b.s.tally(id).out == 0);
   }
+
+  // None of those that are there does anything any more, except the worker here: no frame waits longer than the rule says.
+  void finishAlone(bool reserve) {
+    begin();
+    const WorkerId here = ++lastWorker;
+    machines[here] = {2};
+    b.s.join(here, 2, true, b.now, reserve);
+    constexpr double step = 0.01, promised = 10, soon = 1;
+    double progressed = b.now;
+    for (int i = 0; i < 20000 && !b.work.empty(); i++) {
+      settle();
+      b.now += step;
+      prepared(here);
+      const auto mine = std::find_if(out.begin(), out.end(), [&](const auto& o) { return o.second.worker == here; });
+      if (mine != out.end()) deliver(Handout(mine->second), step), progressed = b.now;
+      RC_ASSERT(b.now < progressed + promised + soon);
+    }
+    RC_ASSERT(b.work.empty());
+  }
 };
 
-void run(Split split, const std::vector<uint32_t>& numbers) {
+enum class End { all, here, reserve };
+
+void run(Split split, End end, const std::vector<uint32_t>& numbers) {
   Turmoil t(split);
+  t.aMasterHere = end != End::all;
   for (const uint32_t n : numbers) t.step(n);
-  t.finish();
+  if (end == End::all)
+    t.finish();
+  else
+    t.finishAlone(end == End::reserve);
 }
 
-void check(Split split) {
-  const bool held = rc::check([split] {
+void check(Split split, End end = End::all) {
+  const bool held = rc::check([=] {
     const auto length = *rc::gen::inRange<size_t>(0, 400);
-    run(split, *rc::gen::container<std::vector<uint32_t>>(length, rc::gen::inRange<uint32_t>(0, 20000000)));
+    run(split, end, *rc::gen::container<std::vector<uint32_t>>(length, rc::gen::inRange<uint32_t>(0, 20000000)));
   });
   EXPECT_TRUE(held);
 }
@@ -156,6 +182,13 @@ TEST(SchedulerRandom, automatic) { check(Split::automatic); }
 TEST(SchedulerRandom, tiles) { check(Split::tiles); }
 TEST(SchedulerRandom, samples) { check(Split::samples); }
 TEST(SchedulerRandom, frames) { check(Split::frames); }
+
+TEST(SchedulerRandom, onlyTheOneHereWorks) {
+  for (const Split split : {Split::automatic, Split::samples, Split::frames}) check(split, End::here);
+}
+TEST(SchedulerRandom, onlyTheReserveWorks) {
+  for (const Split split : {Split::automatic, Split::samples, Split::frames}) check(split, End::reserve);
+}
 
 TEST(SchedulerRandom, theSameCallsTheSameAnswers) {
   const auto answers = [] {

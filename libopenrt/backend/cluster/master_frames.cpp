@@ -1,4 +1,5 @@
 // master_frames.cpp: who prepares what, how jobs go out and results come home, and how a frame ends.
+#include <algorithm>
 #include <utility>
 
 #include "backend/cluster/frame_source.h"
@@ -214,9 +215,17 @@ void Master::Impl::settle() {
   scenes.trim(had);
 }
 
+uint32_t Master::Impl::able() const {
+  const Epoch epoch = oldest();
+  return uint32_t(std::count_if(peers.begin(), peers.end(), [&](const auto& peer) { return scheduler.usable(peer.first, epoch); }));
+}
+
+// Workers that come and go without doing anything are too few workers all the time.
 bool Master::Impl::enough(double now) {
-  if (alive() >= options.require) {
-    fewSince = std::numeric_limits<double>::infinity();
+  const uint32_t can = options.require == 0 ? 0 : able();
+  if (can >= options.require) {
+    if (options.require == 0 || oldest() == 0 || scheduler.progressed(oldest()) > fewSince)
+      fewSince = std::numeric_limits<double>::infinity();
     if (alive() == 0 && everJoined && !saidAlone && core && oldest() != 0) {
       saidAlone = true;
       log(2, "all workers have gone: this process goes on alone");
@@ -231,6 +240,7 @@ bool Master::Impl::enough(double now) {
   if (now < fewSince + options.patience) return false;
   const std::string why = plural(options.require, "worker") + (options.require == 1 ? " is" : " are") + " needed, " +
                           (alive() == 1 ? "there is 1" : "there are " + std::to_string(alive())) +
+                          (can == alive() ? "" : " (" + std::to_string(can) + " that can make this picture)") +
                           (lastRefusal.empty() ? "" : "; refused was " + lastRefusal);
   while (const Epoch epoch = oldest()) fail(epoch, why, true);
   fewSince = std::numeric_limits<double>::infinity();
@@ -242,7 +252,10 @@ void Master::Impl::handOut(double now) {
   Epoch epoch = 0;
   bool moved = false;
   for (; scheduler.move(now, worker, epoch); moved = true) {
-    if (worker == hereId && scheduler.stuck(epoch)) logOnce(2, "the workers that are there get nowhere: this process helps");
+    if (worker == hereId && scheduler.stuck(epoch))
+      logOnce(2, "the workers that are there get nowhere: this process helps");
+    else if (worker == hereId && options.localThreads == 0 && alive() > 0 && able() == 0)
+      logOnce(2, "none of the workers can make this picture: this process goes on alone");
     bring(worker, epoch);
   }
   if (moved) settle();

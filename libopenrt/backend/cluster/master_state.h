@@ -97,6 +97,7 @@ struct Master::Impl {
   void handOut(double now);
   bool handSomeOut(double now);
   bool enough(double now);
+  uint32_t able() const; // workers elsewhere that can make the oldest frame, as far as is known
   FrameEntry* unfinished(Epoch epoch);
   Epoch oldest() const; // unfinished; 0: none
 

@@ -17,6 +17,11 @@ Worker* Scheduler::Impl::worker(WorkerId id) {
   return it == workers.end() ? nullptr : &it->second;
 }
 
+void Scheduler::Impl::unschedule(Frame& f, uint64_t id, const Flight& flight) {
+  f.deadlines.erase({flight.deadline, id});
+  f.spent.erase({flight.deadline, id});
+}
+
 void Scheduler::Impl::forget(Frame& f, Lease lease, bool lost) {
   const auto it = f.leases.find(lease);
   const Held held = it->second;
@@ -33,7 +38,7 @@ void Scheduler::Impl::forget(Frame& f, Lease lease, bool lost) {
   f.work->giveBack(flight->second.job);
   if (flight->second.seconds > 0) f.aheadUnits += flight->second.units, f.aheadSeconds += flight->second.seconds;
   f.maybe = true;
-  f.deadlines.erase({flight->second.deadline, held.flight});
+  unschedule(f, held.flight, flight->second);
   f.flights.erase(flight);
 }
 
@@ -83,7 +88,7 @@ bool Scheduler::Impl::done(Frame& f, Lease lease, double seconds, double now) {
   w.tally.out = uint32_t(w.leases.size());
   if (now > held.since) seconds = std::min(seconds, now - held.since); // who says more has not told the truth
   w.tally.busy += std::max(seconds, 0.0);
-  w.heard = lively = now;
+  w.heard = now;
   if (w.slips > 0) w.slips--;
   const double beyond = std::max(now - held.since - seconds, 0.0);
   if (w.tally.jobs + w.tally.late == 0 || (held.direct && beyond < w.tally.latency))
@@ -97,6 +102,8 @@ bool Scheduler::Impl::done(Frame& f, Lease lease, double seconds, double now) {
     sort(w);
     return false;
   }
+  f.progressed = now; // what was done before, or is of no use, is no progress
+  if (!w.tied()) helpless = false;
   const auto flight = f.flights.find(held.flight);
   const Job& job = flight->second.job;
   f.costsOf(job).add(flight->second.units, seconds);
@@ -104,7 +111,7 @@ bool Scheduler::Impl::done(Frame& f, Lease lease, double seconds, double now) {
     f.places[job.number] = float(std::min(seconds, 1e6) / flight->second.units); // finite, whatever a worker says
   for (const Lease other : flight->second.holders)
     if (other != lease) f.leases.at(other).flight = 0;
-  f.deadlines.erase({flight->second.deadline, held.flight});
+  unschedule(f, held.flight, flight->second);
   f.flights.erase(flight);
   w.tally.jobs++;
   if (held.again) w.tally.again++;
@@ -137,9 +144,8 @@ void Scheduler::leave(WorkerId worker, double) {
 void Scheduler::announce(Epoch epoch, double now) {
   Impl& s = *impl_;
   if (s.frames.contains(epoch)) return;
-  if (s.frames.empty()) s.lively = now;
   Frame& f = s.frames[epoch];
-  f.epoch = epoch;
+  f.epoch = epoch, f.progressed = now;
   f.split = s.splitOf();
   f.wholeTiles = s.options.split == Split::tiles;
   f.spread = s.options.split == Split::samples;
@@ -153,7 +159,7 @@ void Scheduler::frame(Epoch epoch, std::shared_ptr<JobSource> work, double now) 
   announce(epoch, now);
   Frame& f = impl_->frames.at(epoch);
   f.work = std::move(work);
-  f.maybe = true;
+  f.maybe = true, f.progressed = now;
   f.tilePixels = f.work->tiles() > 0 ? std::max(f.work->pixels(0), 1u) : 1;
   f.perPixel = std::max(f.work->undone() / (double(f.tilePixels) * std::max(f.work->tiles(), 1u)), 1.0);
   if (impl_->places.size() == f.work->tiles()) f.places = impl_->places; // costs lie where they lay
@@ -175,7 +181,6 @@ bool Scheduler::move(double now, WorkerId& worker, Epoch& epoch) { return impl_-
 void Scheduler::ready(WorkerId worker, Epoch epoch, double now) {
   Worker* w = impl_->worker(worker);
   if (!w || epoch < w->epoch) return;
-  impl_->lively = now;
   if (epoch == w->epoch && !w->ready) {
     const double took = std::max(now - std::max(w->asked, w->heard), 0.0);
     impl_->prepare += (took - impl_->prepare) / (impl_->prepare > 0 ? 8 : 1);
@@ -239,12 +244,22 @@ double Scheduler::wake(double now) const {
   double when = impl_->stuckAt();
   for (const auto& [epoch, f] : impl_->frames) {
     const auto g = impl_->groups.find(epoch);
-    if (f.deadlines.empty() || g == impl_->groups.end()) continue;
+    if (g == impl_->groups.end()) continue;
     const bool rescue = !f.rescue && impl_->rescuers > 0 && g->second.tied.empty();
     if (g->second.idle.empty() && !rescue) continue;
-    when = std::min(when, std::max(f.deadlines.begin()->first, now + breath));
+    when = std::min(when, std::max(f.firstLate(), now + breath));
   }
   return when;
+}
+
+bool Scheduler::usable(WorkerId worker, Epoch epoch) const {
+  const Worker* w = impl_->worker(worker);
+  return w && !w->tally.blocked && !(w->unable && w->epoch == epoch);
+}
+
+double Scheduler::progressed(Epoch epoch) const {
+  const Frame* f = impl_->frame(epoch);
+  return f ? f->progressed : 0;
 }
 
 bool Scheduler::stuck(Epoch epoch) const {

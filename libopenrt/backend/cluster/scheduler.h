@@ -35,7 +35,7 @@ struct SchedulerOptions {
   double longest = 0.25;   // and at most
   double soonest = 0.02;   // no job is late before
   uint32_t mostAgain = 3;  // a job is handed out again so often
-  double stuck = 10;       // seconds after which a reserve helps with the oldest frame, if nothing has come of anybody
+  double stuck = 10;       // seconds after which the worker here helps with the oldest frame, if it has not progressed
   uint32_t mostFailed = 3; // a worker gets nothing more after so many failed jobs
 };
 
@@ -93,7 +93,8 @@ class Scheduler {
   void unable(WorkerId worker, Epoch epoch, double now);
 
   // What to hand out now; call until false. Oldest frame first; the next frame's jobs once no worker can be given more of the
-  // oldest. A job that is late is handed out again, to a worker with an idle thread, at most three times.
+  // oldest. A job that is late is handed out again, to a worker with an idle thread, at most three times; then once more to the
+  // worker here, which no other machine can hold up.
   bool next(double now, Handout& out);
   // A result. True: the lease is known, and its job has not been done before: give it to the frame's work. seconds: on one
   // thread.
@@ -109,7 +110,9 @@ class Scheduler {
   void pace(double secondsOfJob);
   // When next() may have something new although nothing has happened; infinite: never.
   double wake(double now) const;
-  bool stuck(Epoch epoch) const; // nothing came of those at it for so long that a reserve helps
+  bool usable(WorkerId worker, Epoch epoch) const; // neither blocked nor unable to make this frame
+  double progressed(Epoch epoch) const; // when it was announced, first prepared, became the oldest or got a result, last of these
+  bool stuck(Epoch epoch) const;        // it has not progressed for so long that the worker here helps
   // How long a usual job takes at most before it is handed out again; infinite as long as nothing is known.
   double lateAfter(Epoch epoch) const;
 

@@ -110,7 +110,7 @@ Worker* Scheduler::Impl::roomiest(const Frame& f, Group& g) {
     const auto [key, id] = *g.room.begin();
     if (key >= most) return nullptr;
     Worker& w = workers.at(id);
-    if (w.tally.out < w.hands() * cap && !(w.reserve && !f.stuck && !g.movable.empty())) return &w;
+    if (w.tally.out < w.hands() * cap && !waits(f, g, w)) return &w;
     g.room.erase(g.room.begin()); // until something happens to it
     w.roomKey = never;
   }
@@ -140,9 +140,9 @@ double Scheduler::Impl::span(Frame& f, const Flight& flight) {
 }
 
 void Scheduler::Impl::rekey(Frame& f, uint64_t id, Flight& flight) {
-  f.deadlines.erase({flight.deadline, id});
+  unschedule(f, id, flight);
   flight.deadline = flight.since + span(f, flight);
-  if (flight.again < options.mostAgain && flight.deadline < never) f.deadlines.insert({flight.deadline, id});
+  if (flight.deadline < never) (flight.again < options.mostAgain ? f.deadlines : f.spent).insert({flight.deadline, id});
 }
 
 bool Scheduler::Impl::reissue(Frame& f, Group& g, double now, Handout& out) {
@@ -156,13 +156,38 @@ bool Scheduler::Impl::reissue(Frame& f, Group& g, double now, Handout& out) {
       return std::any_of(flight.holders.begin(), flight.holders.end(), [&](Lease l) { return f.leases.at(l).worker == w; });
     };
     const auto idle = std::find_if(g.idle.begin(), g.idle.end(), [&](const auto& entry) { // at most four are passed over
-      return !has(entry.second) && !(workers.at(entry.second).reserve && !f.stuck && !g.movable.empty());
+      return !has(entry.second) && !waits(f, g, workers.at(entry.second));
     });
     if (idle == g.idle.end()) return false;
     for (const Lease l : flight.holders) // one that has not even been heard of since gets less
       if (Worker& w = workers.at(f.leases.at(l).worker); w.heard < flight.since) w.slips = std::min(w.slips + 1, 8u), sort(w);
     flight.again++, reissued++;
     hand(f, workers.at(idle->second), id, true, now, out);
+    return true;
+  }
+  return false;
+}
+
+// Gives the worker here, which cannot be lost, a job that many workers have had and none has answered; in a frame that is stuck
+// any job that others have, however long they were expected to take.
+bool Scheduler::Impl::reissueHere(Frame& f, Group& g, double now, Handout& out) {
+  for (const WorkerId id : g.tied) {
+    Worker& w = workers.at(id);
+    if (w.idleKey == never || waits(f, g, w)) continue;
+    const auto takes = [&](const auto& late) {
+      const auto& holders = f.flights.at(late.second).holders;
+      return (f.stuck || late.first <= now) &&
+             std::none_of(holders.begin(), holders.end(), [&](Lease l) { return f.leases.at(l).worker == id; });
+    };
+    auto found = std::find_if(f.spent.begin(), f.spent.end(), takes);
+    if (found == f.spent.end()) {
+      if (!f.stuck) continue;
+      found = std::find_if(f.deadlines.begin(), f.deadlines.end(), takes);
+      if (found == f.deadlines.end()) continue;
+    }
+    const uint64_t flight = found->second; // hand() changes the set
+    reissued++;
+    hand(f, w, flight, true, now, out);
     return true;
   }
   return false;
@@ -195,8 +220,8 @@ bool Scheduler::Impl::next(double now, Handout& out) {
       f.maybe = false;
       moves = true;
     }
-    if (reissue(f, g, now, out)) return true;
-    if (!f.rescue && rescuers > 0 && g.tied.empty() && !f.deadlines.empty() && f.deadlines.begin()->first <= now)
+    if (reissue(f, g, now, out) || reissueHere(f, g, now, out)) return true;
+    if (!f.rescue && rescuers > 0 && g.tied.empty() && f.firstLate() <= now)
       f.rescue = moves = true; // once, by who is here
   }
   return false;

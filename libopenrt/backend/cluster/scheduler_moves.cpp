@@ -3,6 +3,7 @@
 // oldest unfinished frame; without any of them the last one of a group stays until its frame is over: somebody must be able to do
 // what is lost.
 #include <algorithm>
+#include <utility>
 
 #include "backend/cluster/scheduler_state.h"
 
@@ -24,6 +25,7 @@ void Scheduler::Impl::depart(Worker& w) {
   g.movable.erase(w.id), g.tied.erase(w.id);
   g.room.erase({w.roomKey, w.id}), g.idle.erase({w.idleKey, w.id});
   w.roomKey = w.idleKey = never;
+  if (g.able.erase(w.id) && g.able.empty()) sortTied(w.epoch); // a reserve has its turn
   if (g.members.empty() && !frames.contains(w.epoch)) groups.erase(it);
   moves = true;
 }
@@ -38,6 +40,7 @@ void Scheduler::Impl::enter(Worker& w, Epoch epoch, bool ready) {
     g.tied.insert(w.id);
   else if (ready && !w.tally.blocked)
     g.movable.insert(w.id);
+  if (!w.tied() && ready && w.usable()) g.able.insert(w.id);
   weigh(w, 1);
   sort(w);
   moves = true;
@@ -60,6 +63,15 @@ void Scheduler::Impl::sort(Worker& w) {
     w.idleKey = share;
     g.idle.insert({w.idleKey, w.id});
   }
+}
+
+void Scheduler::Impl::sortTied(Epoch epoch) {
+  if (const auto g = groups.find(epoch); g != groups.end())
+    for (const WorkerId id : std::set<WorkerId>(g->second.tied)) sort(workers.at(id));
+}
+
+bool Scheduler::Impl::waits(const Frame& f, const Group& g, const Worker& w) const {
+  return w.reserve && !f.stuck && !g.able.empty();
 }
 
 Split Scheduler::Impl::splitOf() const {
@@ -95,22 +107,33 @@ Epoch Scheduler::Impl::targetOfTied(const Worker& w) {
   if (frames.empty() || w.tally.blocked || !w.ready) return 0;
   const Frame& f = frames.begin()->second; // the oldest one
   if (f.epoch <= w.epoch) return 0;
+  if (f.stuck) return f.epoch;
   uint32_t others = 0; // that can do it
   for (auto g = groups.begin(); g != groups.end() && g->first <= f.epoch; ++g) others += g->second.threads;
   if (others > 0 && w.here && !w.reserve) others -= w.unable ? 0 : w.threads;
   if (others == 0) return w.reserve && f.exhausted() && !f.rescue ? 0 : f.epoch;
-  if (w.reserve) return f.stuck ? f.epoch : 0;
+  if (w.reserve) return 0;
   if (f.split != Split::frames || f.rescue) return f.epoch;
   const auto g = groups.find(f.epoch);
   return g == groups.end() || g->second.threads == 0 || worthHelping(f) ? f.epoch : 0;
 }
 
 double Scheduler::Impl::stuckAt() const {
-  return reserves > 0 && !frames.empty() && !frames.begin()->second.stuck ? lively + options.stuck : never;
+  return rescuers > 0 && !frames.empty() && !frames.begin()->second.stuck ? frames.begin()->second.progressed + options.stuck : never;
+}
+
+// A picture after one that was stuck does not wait again, as long as nothing comes from elsewhere.
+void Scheduler::Impl::watch(double now) {
+  if (frames.empty() || rescuers == 0) return;
+  Frame& f = frames.begin()->second;
+  if (std::exchange(watched, f.epoch) != f.epoch) f.progressed = std::max(f.progressed, now);
+  if (f.stuck || !(helpless || now >= f.progressed + options.stuck)) return;
+  f.stuck = helpless = moves = true;
+  sortTied(f.epoch);
 }
 
 bool Scheduler::Impl::move(double now, WorkerId& worker, Epoch& epoch) {
-  if (now >= stuckAt()) frames.begin()->second.stuck = moves = true;
+  watch(now);
   if (!moves) return false;
   const auto go = [&](WorkerId id, Epoch to) {
     Worker& w = workers.at(id);

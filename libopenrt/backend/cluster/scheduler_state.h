@@ -73,9 +73,11 @@ struct Frame {
   std::vector<float> places; // by tile: seconds of a pixel's sample, here or in the frame before; 0: unknown
   std::map<uint64_t, Flight> flights;
   std::unordered_map<Lease, Held> leases;
-  std::set<std::pair<double, uint64_t>> deadlines; // of flights that may be handed out again
+  std::set<std::pair<double, uint64_t>> deadlines; // of flights that may be handed out again, to anybody
+  std::set<std::pair<double, uint64_t>> spent;     // of those that were so often enough: only the worker here takes them
+  double progressed = 0;                           // when it was announced, was first prepared, became the oldest, got a result
   bool rescue = false;                             // something is late, and nobody at it is idle
-  bool stuck = false;                              // nothing comes of those at it: the reserve helps
+  bool stuck = false;                              // it has not progressed for too long: the worker here helps
   uint32_t rekeyAt = 1;                            // jobs done with which all deadlines are found anew
 
   double place(uint32_t tile) const { return tile < places.size() ? double(places[tile]) : 0; }
@@ -84,12 +86,17 @@ struct Frame {
     return work->undone() * (aheadUnits >= 1 && aheadSeconds > 0 ? aheadSeconds / aheadUnits : costs.mean());
   }
   bool exhausted() const { return work && work->undone() < 0.5; } // nobody is to do more of it, as yet
+  // When the first job that is out is late; never: none can be.
+  double firstLate() const {
+    return std::min(deadlines.empty() ? never : deadlines.begin()->first, spent.empty() ? never : spent.begin()->first);
+  }
   JobCosts& costsOf(const Job& job) { return job.kind == Job::Kind::light ? light : costs; }
 };
 
 struct Group { // workers that have an epoch's scene, or prepare it
   std::set<WorkerId> members;
   std::set<WorkerId> movable; // ready ones but those here and in reserve
+  std::set<WorkerId> able;    // these, without those that cannot make this frame
   std::set<WorkerId> tied;    // those here and in reserve
   uint32_t threads = 0;       // of members that are no reserve and not blocked
   uint32_t usable = 0;        // these members
@@ -117,7 +124,8 @@ struct Scheduler::Impl {
                                                   // none that are blocked
   uint32_t reserves = 0;
   bool moves = false; // there may be something to move
-  double lively = 0;  // when something has come last: a frame to be made, a worker that was ready, a result
+  Epoch watched = 0;     // the oldest frame, when it was looked at last
+  bool helpless = false; // a frame was stuck, and no result has come from elsewhere since
 
   Frame* frame(Epoch epoch);
   Worker* worker(WorkerId id);
@@ -125,6 +133,7 @@ struct Scheduler::Impl {
   // scheduler.cpp
   void leave(Worker& w);
   void end(Frame& f);
+  void unschedule(Frame& f, uint64_t id, const Flight& flight); // it is not late any more
   void forget(Frame& f, Lease lease, bool lost); // takes a lease away
   void forgetAll(Worker& w, Epoch until);        // of epochs before `until`
   void strike(Worker& w);                        // it has failed
@@ -139,7 +148,10 @@ struct Scheduler::Impl {
   bool worthHelping(const Frame& f) const;
   Epoch target(Epoch epoch);
   Epoch targetOfTied(const Worker& w);
-  double stuckAt() const; // when the reserve is to help with the oldest frame; never: it does, or there is none
+  void sortTied(Epoch epoch);
+  bool waits(const Frame& f, const Group& g, const Worker& w) const; // a reserve, as long as others get on
+  double stuckAt() const; // when the worker here is to help with the oldest frame; never: it does, or there is none
+  void watch(double now); // whether the oldest frame progresses
   bool move(double now, WorkerId& worker, Epoch& epoch);
 
   // scheduler_handout.cpp
@@ -154,6 +166,7 @@ struct Scheduler::Impl {
   double span(Frame& f, const Flight& flight);
   void rekey(Frame& f, uint64_t id, Flight& flight);
   bool reissue(Frame& f, Group& g, double now, Handout& out);
+  bool reissueHere(Frame& f, Group& g, double now, Handout& out);
   bool next(double now, Handout& out);
 };
 

@@ -1,0 +1,346 @@
+// cluster_useless.cpp: every way in which a worker can be useless, against a whole master over real wires: the rule of
+// docs/cluster.md is that no picture waits longer than 10 seconds without progress. The pictures are those of one thread.
+#include <algorithm>
+#include <atomic>
+#include <condition_variable>
+#include <future>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+#include <arpa/inet.h>
+#include <sys/socket.h>
+
+#include "backend/backend.h"
+#include "backend/cluster/greeting.h"
+#include "backend/cluster/worker_core.h"
+#include "unit/cluster_wires.h"
+#include "unit/drawn_scene.h"
+
+using namespace openrt;
+using namespace openrt::cluster;
+
+namespace {
+
+constexpr double promised = 10; // seconds without progress (docs/cluster.md)
+constexpr double slack = 15;    // of a busy machine
+constexpr uint32_t frames = 2;
+
+enum class Way {
+  nobody,          // nothing listens there
+  deaf,            // the system takes the connection, the process does not read: it was stopped
+  mute,            // lives, and says no Hello
+  otherVersion,    // of the program
+  otherProtocol,   // of the messages
+  otherChip,       // of the machine: another instruction set
+  takesNoScene,    // beats, and never says what it lacks of a scene
+  neverReady,      // has all, and never says Ready
+  refuses,         // cannot prepare a scene: a shader library is another one
+  refusesLater,    // says Ready, then that it cannot
+  beatsOnly,       // is ready, takes jobs, and never answers
+  dies,            // is ready, and goes down with the first jobs; comes again
+  comesAndGoes,    // joins and leaves a few times a second
+  answersNonsense, // bytes that are no result
+  answersOthers,   // results of jobs that it was not given
+  sendsNonsense,   // messages that only a master sends
+  sendsNoise,      // no messages at all
+  readyForEver,    // says Ready again and again
+  liesAboutScene,  // has found other triangles
+};
+const std::map<Way, const char*> names = {{Way::nobody, "nobody"},
+                                          {Way::deaf, "deaf"},
+                                          {Way::mute, "mute"},
+                                          {Way::otherVersion, "otherVersion"},
+                                          {Way::otherProtocol, "otherProtocol"},
+                                          {Way::otherChip, "otherChip"},
+                                          {Way::takesNoScene, "takesNoScene"},
+                                          {Way::neverReady, "neverReady"},
+                                          {Way::refuses, "refuses"},
+                                          {Way::refusesLater, "refusesLater"},
+                                          {Way::beatsOnly, "beatsOnly"},
+                                          {Way::dies, "dies"},
+                                          {Way::comesAndGoes, "comesAndGoes"},
+                                          {Way::answersNonsense, "answersNonsense"},
+                                          {Way::answersOthers, "answersOthers"},
+                                          {Way::sendsNonsense, "sendsNonsense"},
+                                          {Way::sendsNoise, "sendsNoise"},
+                                          {Way::readyForEver, "readyForEver"},
+                                          {Way::liesAboutScene, "liesAboutScene"}};
+
+// What is the same for all: two pictures, and what a worker that can prepare them says of them.
+struct Pictures final : WorkerSink {
+  Pictures() {
+    BackendOptions options;
+    options.threads = 1, options.shaders = &shaders;
+    {
+      const auto backend = makeLocalBackend(options);
+      RTstats stats{};
+      stats.size = sizeof stats;
+      backend->stats(stats);
+      self = identity(stats);
+      self.threads = 2;
+      for (uint32_t i = 0; i < frames; i++) {
+        backend->apply(commits[i]);
+        backend->start();
+        backend->wait();
+        expected.push_back(read(*backend));
+      }
+    }
+    WorkerCore core(options, *this);
+    for (uint32_t i = 0; i < frames; i++) core.scene(i + 1, commits[i], i == 0, true);
+    std::unique_lock lock(mutex);
+    EXPECT_TRUE(changed.wait_for(lock, std::chrono::seconds(60), [this] { return prepared.size() == frames; }));
+  }
+  static std::vector<float> read(const Backend& backend) {
+    std::vector<float> rgba(40 * 30 * 4);
+    EXPECT_TRUE(backend.read(RT_RGBA, rgba));
+    return rgba;
+  }
+  void ready(Epoch epoch, const Prepared& p) override {
+    const std::lock_guard lock(mutex);
+    prepared[epoch] = p;
+    changed.notify_all();
+  }
+  void failed(Epoch, const std::string& why) override { ADD_FAILURE() << why; }
+  void done(Epoch, const LeasedJob&, JobResult&&) override {}
+
+  ShaderRegistry shaders{shaderFolders("")};
+  test::Commits commits = test::drawn([] {
+    test::drawRoom();
+    test::set({.samples = 64, .width = 40, .height = 30});
+    rtRender();
+    test::lookFrom(1, 1, 4);
+    rtRender();
+  });
+  message::Hello self;
+  std::vector<std::vector<float>> expected;
+  std::mutex mutex;
+  std::condition_variable changed;
+  std::map<Epoch, Prepared> prepared;
+};
+
+const Pictures& pictures() {
+  static const Pictures all;
+  return all;
+}
+
+// A worker of no use, in a thread of its own.
+class Useless {
+ public:
+  explicit Useless(Way way) : way_(way) {
+    if (way == Way::deaf || way == Way::nobody) {
+      socket_ = socket(AF_INET, SOCK_STREAM, 0);
+      sockaddr_in where{};
+      where.sin_family = AF_INET, where.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+      socklen_t size = sizeof where;
+      EXPECT_EQ(bind(socket_, reinterpret_cast<sockaddr*>(&where), size), 0);
+      if (way == Way::deaf) EXPECT_EQ(listen(socket_, 16), 0);
+      EXPECT_EQ(getsockname(socket_, reinterpret_cast<sockaddr*>(&where), &size), 0);
+      address_ = "127.0.0.1:" + std::to_string(ntohs(where.sin_port));
+      return;
+    }
+    wire_.emplace(WireOptions{{}, "127.0.0.1:0", {}});
+    address_ = wire_->address();
+    thread_ = std::thread([this] { run(); });
+  }
+  ~Useless() {
+    stop_ = true;
+    if (thread_.joinable()) thread_.join();
+    if (socket_ >= 0) close(socket_);
+  }
+  const std::string& address() const { return address_; }
+
+ private:
+  void run() {
+    while (!stop_) {
+      if (!wire_) { // the port is free a moment after the last one has died
+        try {
+          wire_.emplace(WireOptions{{}, address_, {}});
+        } catch (const std::exception&) {
+          std::this_thread::sleep_for(std::chrono::milliseconds(20));
+          continue;
+        }
+      }
+      Event event = wire_->receive(0.02);
+      if (event.kind == Event::Kind::joined) peer_ = event.peer, session_ = 0, joined_ = steadyNow(), greet();
+      if (event.kind == Event::Kind::message) hear(read(std::move(event)));
+      if (session_ != 0 && way_ == Way::comesAndGoes && steadyNow() > joined_ + 0.2) die();
+      if (session_ != 0 && way_ == Way::readyForEver && epoch_ > 0 && steadyNow() > told_ + 0.1) ready();
+    }
+  }
+  void greet() {
+    message::Hello hello = pictures().self;
+    if (way_ == Way::otherVersion) hello.library = "0.0.1";
+    if (way_ == Way::otherProtocol) hello.protocol++;
+    if (way_ == Way::otherChip) hello.isa = "of its own";
+    if (way_ != Way::mute) say(std::move(hello));
+  }
+  void hear(Message&& m) {
+    if (const auto* welcome = std::get_if<message::Welcome>(&m.body)) {
+      session_ = welcome->session;
+      if (way_ == Way::sendsNonsense)
+        for (int i = 0; i < 3; i++) say(message::Drop{1});
+      if (way_ == Way::sendsNoise) wire_->send(peer_, Frames(2, someBytes(100)));
+    }
+    if (const auto* scene = std::get_if<message::Scene>(&m.body)) {
+      epoch_ = scene->epoch;
+      if (way_ == Way::takesNoScene) return;
+      message::Need need{scene->epoch, {}};
+      for (const auto& array : scene->arrays) need.arrays.push_back(array.hash);
+      say(std::move(need));
+      if (way_ == Way::refuses) return say(message::Failed{scene->epoch, "shader library vrml97 is another file here"});
+      if (scene->prepare && way_ != Way::neverReady) ready();
+    }
+    if (const auto* prepare = std::get_if<message::Prepare>(&m.body)) epoch_ = prepare->epoch, ready();
+    if (const auto* jobs = std::get_if<message::Jobs>(&m.body)) work(*jobs);
+  }
+  void ready() {
+    const auto found = pictures().prepared.find(epoch_);
+    if (found == pictures().prepared.end()) return; // scenes of a session that began in the middle
+    message::Ready m;
+    m.epoch = epoch_, m.facts = found->second.facts, m.transport = found->second.frame.transport, m.stats = found->second.stats;
+    if (way_ == Way::liesAboutScene) m.stats.triangles++;
+    told_ = steadyNow();
+    say(std::move(m));
+    if (way_ == Way::refusesLater) say(message::Failed{epoch_, "no memory"});
+  }
+  void work(const message::Jobs& jobs) {
+    if (way_ == Way::dies) return die();
+    if (way_ != Way::answersNonsense && way_ != Way::answersOthers) return;
+    for (const LeasedJob& job : jobs.jobs) {
+      message::Result m;
+      m.epoch = jobs.epoch, m.lease = job.lease + (way_ == Way::answersOthers ? 1000000 : 0), m.seconds = 0.001;
+      m.bytes = someBytes(64, uint32_t(job.lease));
+      say(std::move(m));
+    }
+  }
+  void say(message::Body&& body) { wire_->send(peer_, encode(session_, std::move(body))); }
+  void die() { wire_.reset(), session_ = 0, epoch_ = 0; }
+
+  Way way_;
+  std::string address_;
+  std::optional<Wire> wire_;
+  int socket_ = -1;
+  std::thread thread_;
+  std::atomic<bool> stop_{false};
+  Peer peer_ = 0;
+  uint64_t session_ = 0;
+  Epoch epoch_ = 0;
+  double joined_ = 0, told_ = 0;
+};
+
+struct Outcome {
+  std::string said;    // the log
+  std::string failure; // what wait() threw
+  double longest = 0;  // seconds without progress
+  bool right = true;   // the bytes
+  double last = 0;     // seconds of the last picture
+};
+
+// Two pictures with these workers. One that waits for ever is given up after a while.
+Outcome render(std::vector<Way> ways, ClusterOptions cluster) {
+  std::vector<std::unique_ptr<Useless>> workers;
+  for (const Way way : ways) cluster.workers.push_back((workers.emplace_back(std::make_unique<Useless>(way)))->address());
+  Outcome out;
+  BackendOptions options;
+  options.threads = 1, options.shaders = &pictures().shaders;
+  struct Log {
+    std::mutex mutex;
+    std::string text;
+  } log;
+  options.log = [](int, const char* text, void* user) {
+    Log& to = *static_cast<Log*>(user);
+    const std::lock_guard lock(to.mutex);
+    to.text.append(text).append("\n");
+  };
+  options.logUser = &log;
+  {
+    const auto backend = makeClusterBackend(options, cluster);
+    for (uint32_t i = 0; i < frames; i++) {
+      backend->apply(pictures().commits[i]);
+      const double begin = steadyNow();
+      backend->start();
+      std::atomic<bool> over{false};
+      std::thread watch([&] {
+        float before = -1;
+        for (double since = steadyNow(); !over; std::this_thread::sleep_for(std::chrono::milliseconds(20))) {
+          const float is = backend->progress();
+          if (is != before) since = steadyNow();
+          before = is;
+          out.longest = std::max(out.longest, steadyNow() - since);
+          if (steadyNow() - since > promised + 2 * slack) backend->cancel(); // it would wait for ever
+        }
+      });
+      try {
+        backend->wait();
+        out.right = out.right && Pictures::read(*backend) == pictures().expected[i];
+      } catch (const ClusterError& e) { out.failure = e.what(); }
+      over = true;
+      watch.join();
+      out.last = steadyNow() - begin;
+    }
+  }
+  out.said = log.text;
+  return out;
+}
+
+// All at the same time: nearly all of it is waiting.
+std::map<Way, Outcome> renderAll(const ClusterOptions& cluster) {
+  pictures();
+  std::map<Way, std::future<Outcome>> running;
+  for (const auto& [way, name] : names)
+    running[way] = std::async(std::launch::async, [=, way = way] { return render({way}, cluster); });
+  std::map<Way, Outcome> all;
+  for (auto& [way, future] : running) all[way] = future.get();
+  return all;
+}
+
+} // namespace
+
+TEST(Useless, aMasterThatLeavesAllToOthersHelpsInTime) {
+  ClusterOptions cluster;
+  cluster.local = 0;
+  for (const auto& [way, out] : renderAll(cluster)) {
+    EXPECT_TRUE(out.right) << names.at(way);
+    EXPECT_EQ(out.failure, "") << names.at(way);
+    EXPECT_LT(out.longest, promised + slack) << names.at(way);
+    EXPECT_NE(out.said, "") << names.at(way) << ": whoever renders alone says so";
+    if (way != Way::comesAndGoes && way != Way::dies && way != Way::answersNonsense)
+      EXPECT_LT(out.last, promised) << names.at(way) << ": a second picture does not wait as long once more";
+  }
+}
+
+TEST(Useless, threadsHereDoWhatNobodyElseDoes) {
+  for (const char* split : {"auto", "frames"}) {
+    ClusterOptions cluster;
+    cluster.local = 1, cluster.split = split;
+    for (const auto& [way, out] : renderAll(cluster)) {
+      EXPECT_TRUE(out.right) << names.at(way) << ", " << split;
+      EXPECT_EQ(out.failure, "") << names.at(way) << ", " << split;
+      EXPECT_LT(out.longest, promised + slack) << names.at(way) << ", " << split;
+    }
+  }
+}
+
+TEST(Useless, whereAWorkerIsRequiredThePictureIsMadeOrRefusedInTime) {
+  ClusterOptions cluster;
+  cluster.local = 0, cluster.require = 1;
+  for (const auto& [way, out] : renderAll(cluster)) {
+    EXPECT_LT(out.longest, promised + slack) << names.at(way);
+    EXPECT_TRUE(!out.failure.empty() || out.right) << names.at(way);
+    if (way == Way::refuses || way == Way::otherVersion || way == Way::nobody)
+      EXPECT_NE(out.failure.find("1 worker is needed"), std::string::npos) << names.at(way) << ": " << out.failure;
+    if (way == Way::refuses) EXPECT_NE(out.failure.find("another file"), std::string::npos) << "it says why: " << out.failure;
+  }
+}
+
+TEST(Useless, manyThatOnlyBeatDoNotSwallowAJob) { // a job is handed out a few times, and all of these keep it
+  for (const uint32_t local : {0u, 1u}) {
+    ClusterOptions cluster;
+    cluster.local = local;
+    const Outcome out = render(std::vector<Way>(7, Way::beatsOnly), cluster);
+    EXPECT_TRUE(out.right);
+    EXPECT_LT(out.longest, promised + slack);
+  }
+}
