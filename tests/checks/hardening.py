@@ -184,7 +184,7 @@ def check_self():
     """Programs that have each fault are found, and one without any is not."""
     source = "#include <stdio.h>\nint main(int n, char **v) { char b[64]; sprintf(b, \"%s %d\", v[0], n); return puts(b); }\n"
     hard = ["-O2", "-U_FORTIFY_SOURCE", "-D_FORTIFY_SOURCE=2", "-fstack-protector-strong", "-fPIE", "-pie", "-Wl,-z,relro,-z,now,-z,noexecstack"]
-    faults = {None: [], "empty element": ["-Wl,-rpath,$ORIGIN/../lib::"], "neither below": ["-Wl,-rpath,lib"], "which is neither": ["-Wl,-rpath,/tmp/libraries"],
+    faults = {None: [], "empty element": ["-Wl,-rpath,$ORIGIN/../lib::"], "neither below": ["-Wl,-rpath,lib"], "which is neither": ["-Wl,-rpath,/nonexistent/libraries"],
               "stack is executable": ["-Wl,-z,execstack"], "BIND_NOW": ["-Wl,-z,lazy"], "GNU_RELRO": ["-Wl,-z,norelro"],
               "no PIE": ["-no-pie"], "_FORTIFY_SOURCE": ["-U_FORTIFY_SOURCE"]}
     bad = 0

@@ -135,7 +135,7 @@ class Useless {
       where.sin_family = AF_INET, where.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
       socklen_t size = sizeof where;
       EXPECT_EQ(bind(socket_, reinterpret_cast<sockaddr*>(&where), size), 0);
-      if (way == Way::deaf) EXPECT_EQ(listen(socket_, 16), 0);
+      if (way == Way::deaf) { EXPECT_EQ(listen(socket_, 16), 0); }
       EXPECT_EQ(getsockname(socket_, reinterpret_cast<sockaddr*>(&where), &size), 0);
       address_ = "127.0.0.1:" + std::to_string(ntohs(where.sin_port));
       return;
@@ -306,8 +306,9 @@ TEST(Useless, aMasterThatLeavesAllToOthersHelpsInTime) {
     EXPECT_EQ(out.failure, "") << names.at(way);
     EXPECT_LT(out.longest, promised + slack) << names.at(way);
     EXPECT_NE(out.said, "") << names.at(way) << ": whoever renders alone says so";
-    if (way != Way::comesAndGoes && way != Way::dies && way != Way::answersNonsense)
+    if (way != Way::comesAndGoes && way != Way::dies && way != Way::answersNonsense) {
       EXPECT_LT(out.last, promised) << names.at(way) << ": a second picture does not wait as long once more";
+    }
   }
 }
 
@@ -329,9 +330,10 @@ TEST(Useless, whereAWorkerIsRequiredThePictureIsMadeOrRefusedInTime) {
   for (const auto& [way, out] : renderAll(cluster)) {
     EXPECT_LT(out.longest, promised + slack) << names.at(way);
     EXPECT_TRUE(!out.failure.empty() || out.right) << names.at(way);
-    if (way == Way::refuses || way == Way::otherVersion || way == Way::nobody)
+    if (way == Way::refuses || way == Way::otherVersion || way == Way::nobody) {
       EXPECT_NE(out.failure.find("1 worker is needed"), std::string::npos) << names.at(way) << ": " << out.failure;
-    if (way == Way::refuses) EXPECT_NE(out.failure.find("another file"), std::string::npos) << "it says why: " << out.failure;
+    }
+    if (way == Way::refuses) { EXPECT_NE(out.failure.find("another file"), std::string::npos) << "it says why: " << out.failure; }
   }
 }
 

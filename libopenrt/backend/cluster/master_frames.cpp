@@ -217,7 +217,8 @@ void Master::Impl::settle() {
 
 uint32_t Master::Impl::able() const {
   const Epoch epoch = oldest();
-  return uint32_t(std::count_if(peers.begin(), peers.end(), [&](const auto& peer) { return scheduler.usable(peer.first, epoch); }));
+  const auto can = [&](const auto& peer) { return scheduler.usable(peer.first, epoch); };
+  return uint32_t(std::count_if(peers.begin(), peers.end(), can));
 }
 
 // Workers that come and go without doing anything are too few workers all the time.

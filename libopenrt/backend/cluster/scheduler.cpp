@@ -246,8 +246,11 @@ double Scheduler::wake(double now) const {
     const auto g = impl_->groups.find(epoch);
     if (g == impl_->groups.end()) continue;
     const bool rescue = !f.rescue && impl_->rescuers > 0 && g->second.tied.empty();
-    if (g->second.idle.empty() && !rescue) continue;
-    when = std::min(when, std::max(f.firstLate(), now + breath));
+    const auto& tied = g->second.tied;
+    const bool here = std::any_of(tied.begin(), tied.end(), [&](WorkerId id) { return impl_->workers.at(id).idleKey < never; });
+    if (!f.deadlines.empty() && (rescue || !g->second.idle.empty()))
+      when = std::min(when, std::max(f.deadlines.begin()->first, now + breath));
+    if (!f.spent.empty() && (rescue || here)) when = std::min(when, std::max(f.spent.begin()->first, now + breath));
   }
   return when;
 }

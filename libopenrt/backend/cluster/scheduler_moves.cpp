@@ -119,7 +119,8 @@ Epoch Scheduler::Impl::targetOfTied(const Worker& w) {
 }
 
 double Scheduler::Impl::stuckAt() const {
-  return rescuers > 0 && !frames.empty() && !frames.begin()->second.stuck ? frames.begin()->second.progressed + options.stuck : never;
+  if (rescuers == 0 || frames.empty() || frames.begin()->second.stuck) return never;
+  return frames.begin()->second.progressed + options.stuck;
 }
 
 // A picture after one that was stuck does not wait again, as long as nothing comes from elsewhere.
