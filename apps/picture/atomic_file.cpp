@@ -6,7 +6,9 @@
 #include <climits>
 #include <cstdlib>
 #include <cstring>
+#include <map>
 #include <stdexcept>
+#include <utility>
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -18,6 +20,13 @@ namespace {
 
 char temporaryName[PATH_MAX];
 std::atomic<bool> temporaryExists{false};
+
+std::map<std::pair<dev_t, ino_t>, std::string> kept; // what they are
+
+std::string whyKept(const std::string& path, const struct stat& info) {
+  const auto found = kept.find({info.st_dev, info.st_ino});
+  return found == kept.end() ? "" : "cannot write " + path + ": it is " + found->second + "; another name is needed";
+}
 
 [[noreturn]] void fail(const std::string& path, int reason) {
   throw std::runtime_error("cannot write " + path + ": " + std::strerror(reason));
@@ -84,6 +93,8 @@ void writeFile(const std::string& path, std::string_view bytes) {
   const bool exists = ::stat(target.c_str(), &info) == 0;
   if (exists && S_ISDIR(info.st_mode)) fail(path, EISDIR);
   if (exists && !S_ISREG(info.st_mode)) return writeDirectly(path, bytes);
+  if (exists)
+    if (const std::string why = whyKept(path, info); !why.empty()) throw std::runtime_error(why);
   if (exists && ::access(target.c_str(), W_OK) != 0) fail(path, errno);
 
   int descriptor = makeTemporary(path, target, 0666);
@@ -105,6 +116,11 @@ void writeFile(const std::string& path, std::string_view bytes) {
   temporaryExists = false;
 }
 
+void keepFile(const std::string& path, const std::string& what) {
+  struct stat info;
+  if (::stat(path.c_str(), &info) == 0 && S_ISREG(info.st_mode)) kept.try_emplace({info.st_dev, info.st_ino}, what);
+}
+
 std::string whyNotWritable(const std::string& path) {
   const std::string target = followLinks(path);
   struct stat info;
@@ -115,6 +131,7 @@ std::string whyNotWritable(const std::string& path) {
     else if (::access(target.c_str(), W_OK) != 0)
       reason = errno;
     if (!reason && !S_ISREG(info.st_mode)) return "";
+    if (const std::string why = whyKept(path, info); !reason && !why.empty()) return why;
   }
   const std::string folder = folderOf(target);
   if (!reason && ::stat(folder.c_str(), &info) == 0 && !S_ISDIR(info.st_mode)) reason = ENOTDIR;

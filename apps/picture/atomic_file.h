@@ -13,6 +13,10 @@ void writeFile(const std::string& path, std::string_view bytes);
 // Writes everything to an open descriptor; `name` for the message. Throws std::runtime_error.
 void writeDescriptor(int descriptor, std::string_view bytes, const std::string& name);
 
+// Keeps a regular file from being replaced: writeFile() refuses it under every name that it has. what: "the world that is read",
+// for the message. Anything else, or nothing, at this path is passed over.
+void keepFile(const std::string& path, const std::string& what);
+
 // Why writeFile(path) cannot succeed, as far as can be told without writing; empty if nothing speaks against it.
 std::string whyNotWritable(const std::string& path);
 

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "messages.h"
+#include "printable.h"
 #include "xvrml/script_engines.h"
 
 namespace vv {
@@ -40,7 +41,7 @@ std::string listEngines(const std::string& scriptPath, bool json) {
     list.push_back(engineJson(engine));
     text += engineText(engine);
   }
-  if (json) return Json({{"engines", std::move(list)}}).dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  if (json) return printableJson(Json({{"engines", std::move(list)}}).dump(2, ' ', false, Json::error_handler_t::replace)) + "\n";
   return text.empty() ? "no script engine is installed\n" : text;
 }
 

@@ -9,6 +9,7 @@
 #include "describe.h"
 #include "engine_list.h"
 #include "messages.h"
+#include "outputs.h"
 #include "picture/atomic_file.h"
 #include "pictures.h"
 #include "problems.h"
@@ -26,6 +27,9 @@ namespace vv {
 
 namespace {
 
+// After the first SIGINT or SIGTERM the process has ended, also while a shader hangs. Supervisors wait as long (docker stop: 10).
+constexpr unsigned interruptSeconds = 9;
+
 class Headless {
  public:
   Headless(const Options& options, const std::string& commandLine) : options_(options), commandLine_(commandLine) {
@@ -40,12 +44,13 @@ class Headless {
     checkOutputs(options_);
     browser_ = startWorld(readWorld(options_.input, options_.load), options_, 0, problems_);
     const xvrml::World& world = browser_->world();
+    keepFilesOf(world, options_);
     if (options_.strict && Problems::any(world)) return exitProblems;
     if (!options_.write.empty()) writeText(options_.write, xvrml::writeWorld(world));
     if (options_.check) return check();
     if (options_.info || options_.listNodes || options_.listViewpoints || options_.explain) inspect();
     if (!options_.makesPictures()) return exitDone;
-    deferInterrupt(true);
+    deferInterrupt(true, interruptSeconds);
     return makePictures(options_, commandLine_, *browser_, problems_);
   }
 

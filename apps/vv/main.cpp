@@ -5,6 +5,7 @@
 
 #include "cluster_report.h"
 #include "describe.h"
+#include "enough_stack.h"
 #include "headless.h"
 #include "messages.h"
 #include "options.h"
@@ -30,10 +31,8 @@ int run(int argc, char** argv) {
   return vv::runHeadless(options, quoted(argc, argv));
 }
 
-} // namespace
-
-int main(int argc, char** argv) {
-  vv::installSignals();
+// Returns the exit code; whatever went wrong is said.
+int runAndTell(int argc, char** argv) {
   try {
     return run(argc, argv);
   } catch (const vv::UsageError& error) {
@@ -52,4 +51,11 @@ int main(int argc, char** argv) {
     vv::sayError(error.what());
     return vv::exitRender;
   }
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+  vv::installSignals();
+  return withEnoughStack([&] { return runAndTell(argc, argv); });
 }

@@ -9,24 +9,9 @@
 #include <unistd.h>
 
 #include "picture/atomic_file.h"
+#include "printable.h"
 
 namespace vv {
-
-namespace {
-
-// A file's name or a node's may hold control characters, and a terminal would obey them.
-std::string printable(const std::string& text) {
-  std::string out;
-  for (unsigned char c : text) {
-    if ((c < 0x20 && c != '\n' && c != '\t') || c == 0x7f)
-      out += fmt::format("\\x{:02x}", c);
-    else
-      out += char(c);
-  }
-  return out;
-}
-
-} // namespace
 
 void say(const std::string& text) {
   const std::string line = printable(text) + "\n";
@@ -52,12 +37,14 @@ void sayDiagnostics(const xvrml::Diagnostics& diagnostics, size_t limit, bool qu
     say(fmt::format("vv: and {} more (errors: {}, warnings: {} in all)", left, diagnostics.errors(), diagnostics.warnings()));
 }
 
-void writeOut(const std::string& text) {
+void writeData(const std::string& bytes) {
   try {
-    picture::writeDescriptor(STDOUT_FILENO, text, "standard output");
+    picture::writeDescriptor(STDOUT_FILENO, ::isatty(STDOUT_FILENO) ? printable(bytes) : bytes, "standard output");
   } catch (const std::runtime_error&) {
     if (errno != EPIPE) throw;
   }
 }
+
+void writeOut(const std::string& text) { writeData(printable(text)); }
 
 } // namespace vv

@@ -16,7 +16,10 @@ void say(const std::string& text);
 // Diagnostics with place, source line and caret; at most `limit` (0: all), then how many more there are. quiet: errors only.
 void sayDiagnostics(const xvrml::Diagnostics& diagnostics, size_t limit, bool quiet);
 
-// Writes data to standard output. A reader that has gone away is no error.  Throws std::runtime_error otherwise.
+// Writes text for people to standard output: control characters of a world's strings are shown, not obeyed. A reader that has
+// gone away is no error. Throws std::runtime_error otherwise.
 void writeOut(const std::string& text);
+// Writes a file to standard output, byte for byte unless that is a terminal. Errors as above.
+void writeData(const std::string& bytes);
 
 } // namespace vv

@@ -14,6 +14,7 @@
 #include "describe.h"
 #include "messages.h"
 #include "names.h"
+#include "outputs.h"
 #include "picture/atomic_file.h"
 #include "picture/nearest.h"
 #include "progress.h"
@@ -28,6 +29,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+constexpr int stuckSeconds = 4; // from an interrupt until a render that has not stopped is given up
 
 // One picture to make: where from, and the name that tells it from the others.
 struct Job {
@@ -151,7 +154,25 @@ class Pictures {
       saveWanted_ = false;
       savePart(flights_.front().job, soFar);
     }
+    if (secondsInterrupted() >= stuckSeconds) giveUp(soFar);
     return interrupted();
+  }
+
+  // The render was told to stop, and does not: a shader hangs, and with it whoever waits for it. What there is of the picture is
+  // saved from here. (An alarm ends the process if even that hangs: deferInterrupt.)
+  [[noreturn]] void giveUp(picture::Picture& soFar) {
+    progress_.reset();
+    const bool saved = !flights_.empty() && renderer_->snapshot(soFar);
+    interruptObeyed();
+    if (saved) savePart(flights_.front().job, soFar);
+    try {
+      finishSequence();
+    } catch (const std::exception& error) { sayWarning(error.what()); }
+    sayError(fmt::format("a shader did not stop within {} s of the interrupt; {}", stuckSeconds,
+                         saved ? "the picture so far is saved" : "there is no picture yet"));
+    picture::removeTemporary();
+    abandonVideos();
+    ::_exit(exitInterrupted);
   }
 
   // What is said of workers, between the pictures of a progress bar.
@@ -178,6 +199,7 @@ class Pictures {
   int land() {
     if (progress_) progress_->rename(flights_.front().job.name.text());
     const picture::RenderResult result = renderer_->finish();
+    interruptObeyed();
     const Flight flight = std::move(flights_.front());
     flights_.pop_front();
     ++done_;
@@ -217,10 +239,13 @@ class Pictures {
     for (const Output& output : options_.outputs) {
       if (output.video != Video::none) continue;
       const std::string bytes = picture::encode(wanted, output.format);
-      if (output.path == "-")
+      if (output.path == "-") {
         picture::writeDescriptor(STDOUT_FILENO, bytes, "standard output");
-      else
-        picture::writeFile(pathFor(output.path, job.name), bytes);
+        continue;
+      }
+      const std::string path = pathFor(output.path, job.name);
+      keepFilesOf(browser_.world(), path);
+      picture::writeFile(path, bytes);
     }
   }
 
@@ -308,27 +333,13 @@ picture::Picture wantedPart(const picture::Picture& made, uint32_t channels) {
   return wanted;
 }
 
-void checkOutputs(const Options& options) {
-  const std::optional<long long> frame =
-      options.isSequence() ? std::optional(Timeline(options)[0].frame.value_or(0)) : std::nullopt;
-  for (const Output& output : options.outputs) {
-    if (output.path == "-" && ::isatty(STDOUT_FILENO)) throw Failure{exitUsage, "-o -: a picture is not written to a terminal"};
-    const bool video = output.video != Video::none;
-    if (video)
-      if (const std::string why = whyNoVideo(); !why.empty()) throw Failure{exitRender, output.path + ": " + why};
-    if (output.path == "-" || options.allViewpoints()) continue;
-    const std::string path = pathFor(output.path, {"", video ? std::nullopt : frame});
-    if (const std::string why = picture::whyNotWritable(path); !why.empty()) throw Failure{exitRender, why};
-  }
-}
-
 int makePictures(const Options& options, const std::string& commandLine, xvrml::Browser& browser, Problems& problems) {
   return Pictures(options, commandLine, browser, problems).make();
 }
 
 void writeText(const std::string& path, const std::string& text) {
   if (path == "-")
-    writeOut(text);
+    writeData(text);
   else
     picture::writeFile(path, text);
 }

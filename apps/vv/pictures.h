@@ -6,9 +6,6 @@
 
 namespace vv {
 
-// Said before the work, not after it: outputs that cannot be written. Throws Failure.
-void checkOutputs(const Options& options);
-
 // Returns an exit code. Throws Failure, picture::RenderError and what writing throws.
 int makePictures(const Options& options, const std::string& commandLine, xvrml::Browser& browser, Problems& problems);
 

@@ -9,6 +9,7 @@
 
 #include "messages.h"
 #include "picture/atomic_file.h"
+#include "printable.h"
 
 namespace vv {
 
@@ -35,7 +36,7 @@ std::string duration(double seconds) {
   return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
 }
 
-Progress::Progress(std::string what, bool quiet) : what_(std::move(what)), quiet_(quiet), start_(Clock::now()) {
+Progress::Progress(const std::string& what, bool quiet) : what_(printable(what)), quiet_(quiet), start_(Clock::now()) {
   const char* noColour = std::getenv("NO_COLOR");
   const char* terminal = std::getenv("TERM");
   terminal_ = ::isatty(STDERR_FILENO) && terminal && std::string_view(terminal) != "dumb";

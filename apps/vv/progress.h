@@ -9,7 +9,7 @@ namespace vv {
 class Progress {
  public:
   // what: shown in front, e.g. the viewpoint; quiet: nothing at all.
-  Progress(std::string what, bool quiet);
+  Progress(const std::string& what, bool quiet);
   ~Progress();
   // more: shown behind, e.g. who works on it.
   void show(float fraction, const std::string& more = "");

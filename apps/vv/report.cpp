@@ -13,6 +13,7 @@
 #include "describe.h"
 #include "picture/cluster.h"
 #include "picture/transport.h"
+#include "printable.h"
 #include "transport_words.h"
 #include "xvrml/script_engines.h"
 
@@ -23,7 +24,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // Names may hold bytes that are not UTF-8: JSON gets the replacement character for them.
-std::string dump(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; }
+std::string dump(const Json& json) { return printableJson(json.dump(2, ' ', false, Json::error_handler_t::replace)) + "\n"; }
 
 // What is said of the picture's error (openrt.h, RTstats): of the whole picture, relative.
 Json errorEstimate(const RTstats& s) {

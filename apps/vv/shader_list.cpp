@@ -15,6 +15,7 @@
 #include "openrt/openrt.h"
 #include "openrt/openrts.h"
 #include "plugin_files.h"
+#include "printable.h"
 #include "shader_text.h"
 
 namespace vv {
@@ -145,7 +146,8 @@ std::string listShaders(const std::string& shaderPath, bool json) {
   for (const File& file : libraries(shaderPath))
     if (const std::string why = addLibrary(file, classes); !why.empty()) sayWarning(file.path + ": " + why);
   rtDeleteContext(context);
-  if (json) return Json({{"shaders", std::move(classes)}}).dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  if (json)
+    return printableJson(Json({{"shaders", std::move(classes)}}).dump(2, ' ', false, Json::error_handler_t::replace)) + "\n";
   std::string text;
   for (const Json& c : classes) text += classText(c);
   return text;

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <csignal>
 #include <cstring>
+#include <ctime>
 
 #include <unistd.h>
 
@@ -18,10 +19,18 @@ namespace {
 
 std::atomic<bool> deferred{false}, interruptSeen{false}, saveWanted{false};
 std::atomic<unsigned> patience{0}; // seconds
-static_assert(std::atomic<bool>::is_always_lock_free);
+std::atomic<int64_t> interruptAt{0}; // seconds of the steady clock
+static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int64_t>::is_always_lock_free);
+
+int64_t steadySeconds() {
+  timespec now = {};
+  ::clock_gettime(CLOCK_MONOTONIC, &now); // may be called by a signal handler
+  return now.tv_sec;
+}
 
 void onInterrupt(int number) {
   if (number != SIGALRM && deferred && !interruptSeen.exchange(true)) {
+    interruptAt = steadySeconds();
     if (patience > 0) ::alarm(patience);
     return;
   }
@@ -62,6 +71,7 @@ void installSignals() {
   install(SIGUSR1, onSave);
   for (int crash : {SIGSEGV, SIGBUS, SIGFPE, SIGILL}) install(crash, onCrash);
   install(SIGPIPE, SIG_IGN); // a write that fails says so itself
+  install(SIGXFSZ, SIG_IGN);
 }
 
 void deferInterrupt(bool on, unsigned seconds) {
@@ -69,7 +79,9 @@ void deferInterrupt(bool on, unsigned seconds) {
   deferred = on;
   if (seconds > 0) install(SIGALRM, onInterrupt);
 }
+void interruptObeyed() { ::alarm(0); }
 bool interrupted() { return interruptSeen; }
+int secondsInterrupted() { return interruptSeen ? int(steadySeconds() - interruptAt) : 0; }
 bool takeSaveRequest() { return saveWanted.exchange(false); }
 
 } // namespace vv

@@ -1,6 +1,7 @@
 // openrt_replay.cpp: the program openrt-replay: renders a recording again and writes one of its frames. Reads the file on the
 // main thread; the local backend brings its own.
 // Exit codes: 0 done, 1 render failed or picture not written, 2 usage, 3 recording missing or unusable.
+#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <optional>
@@ -11,6 +12,8 @@
 
 #include "backend/backend.h"
 #include "backend/record/reader.h"
+#include "enough_stack.h"
+#include "printable.h"
 #include "shading/registry.h"
 #include "tools/scene_export.h"
 
@@ -34,7 +37,7 @@ struct Picture {
 
 void log(int level, const char* message, void*) {
   static const char* const names[] = {"debug", "info", "warning", "error"};
-  if (level >= 2) std::fprintf(stderr, "openrt-replay: %s: %s\n", names[level > 3 ? 3 : level], message);
+  if (level >= 2) std::fprintf(stderr, "openrt-replay: %s: %s\n", names[level > 3 ? 3 : level], printable(message).c_str());
 }
 
 // Colour PFM: three floats a pixel, little-endian, rows from the bottom up. Written beside its name and renamed.
@@ -71,7 +74,7 @@ void printStats(const Backend& backend, uint64_t frames) {
 }
 
 int complain(ExitCode code, const std::string& message) {
-  std::fprintf(stderr, "openrt-replay: error: %s\n", message.c_str());
+  std::fprintf(stderr, "openrt-replay: error: %s\n", printable(message).c_str());
   return code;
 }
 
@@ -148,6 +151,11 @@ int writeScene(const Options& options, RecordingReader& reader, const ShaderRegi
 }
 
 int run(const Options& options) {
+  for (const std::string& written : {options.output, options.exported}) {
+    std::error_code none; // one of them is not there: they are not the same
+    if (!written.empty() && std::filesystem::equivalent(written, options.recording, none))
+      return complain(Usage, written + ": it is the recording that is read; another name is needed");
+  }
   const ShaderRegistry shaders(shaderFolders(options.shaderPath));
   std::unique_ptr<RecordingReader> reader;
   try {
@@ -177,9 +185,12 @@ int run(const Options& options) {
 } // namespace
 
 int main(int argc, char** argv) {
-  int exitCode = Done;
-  try {
-    const std::optional<Options> options = parseOptions(argc, argv, exitCode);
-    return options ? run(*options) : exitCode;
-  } catch (const std::exception& e) { return complain(RenderFailed, e.what()); }
+  std::signal(SIGXFSZ, SIG_IGN); // a file that may not be as long says so itself, and is removed
+  return withEnoughStack([&] {
+    int exitCode = Done;
+    try {
+      const std::optional<Options> options = parseOptions(argc, argv, exitCode);
+      return options ? run(*options) : exitCode;
+    } catch (const std::exception& e) { return int(complain(RenderFailed, e.what())); }
+  });
 }

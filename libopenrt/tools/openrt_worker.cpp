@@ -17,6 +17,8 @@
 #include "backend/cluster/keys.h"
 #include "backend/cluster/serve.h"
 #include "openrt/openrt.h"
+#include "enough_stack.h"
+#include "printable.h"
 #include "shading/registry.h"
 
 namespace {
@@ -47,7 +49,7 @@ extern "C" void onSignal(int number) {
 }
 
 int complain(ExitCode code, const std::string& message) {
-  std::fprintf(stderr, "openrt-worker: error: %s\n", message.c_str());
+  std::fprintf(stderr, "openrt-worker: error: %s\n", printable(message).c_str());
   return code;
 }
 
@@ -83,7 +85,8 @@ std::optional<Options> parseOptions(int argc, char** argv, int& exitCode) {
 
 void report(bool quiet, int level, const std::string& text) {
   static const char* const names[] = {"debug", "info", "warning", "error"};
-  if (level >= (quiet ? 3 : 1)) std::fprintf(stderr, "openrt-worker: %s: %s\n", names[level > 3 ? 3 : level], text.c_str());
+  if (level >= (quiet ? 3 : 1))
+    std::fprintf(stderr, "openrt-worker: %s: %s\n", names[level > 3 ? 3 : level], printable(text).c_str());
 }
 
 int newKey(const std::string& path) {
@@ -121,12 +124,9 @@ int serve(const Options& o) {
   return signalled && signalled != SIGTERM ? Interrupted : Done;
 }
 
-} // namespace
-
-int main(int argc, char** argv) {
+// Returns the exit code; whatever went wrong is said.
+int run(int argc, char** argv) {
   int exitCode = Done;
-  for (int number : {SIGINT, SIGTERM, SIGALRM}) std::signal(number, onSignal);
-  std::signal(SIGPIPE, SIG_IGN);
   try {
     const std::optional<Options> options = parseOptions(argc, argv, exitCode);
     if (!options) return exitCode;
@@ -136,4 +136,12 @@ int main(int argc, char** argv) {
   } catch (const std::runtime_error& e) { return complain(Usage, e.what()); } catch (const std::exception& e) {
     return complain(Failed, e.what());
   }
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+  for (int number : {SIGINT, SIGTERM, SIGALRM}) std::signal(number, onSignal);
+  std::signal(SIGPIPE, SIG_IGN);
+  return withEnoughStack([&] { return run(argc, argv); });
 }

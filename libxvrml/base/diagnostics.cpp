@@ -49,7 +49,7 @@ Diagnostic at(Severity severity, const SourcePosition& where, std::string messag
 } // namespace
 
 std::string Diagnostic::text() const {
-  std::string result = file;
+  std::string result = printable(file);
   if (line > 0) {
     if (!result.empty()) result += ':';
     result += std::to_string(line);

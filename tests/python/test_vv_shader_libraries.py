@@ -26,6 +26,24 @@ def test_a_crash_names_the_shader(tmp_path):
     assert not list(tmp_path.glob("a.png*"))
 
 
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
+def test_one_signal_ends_a_render_that_hangs_in_a_shader(tmp_path, number):
+    (tmp_path / "hang.wrl").write_text("#VRML V2.0 utf8\nViewpoint { position 0 0 5 }\n" + (WORLD % ("Hang", "faulty")).split("\n", 1)[1])
+    with subprocess.Popen([VV, "hang.wrl", "-o", "a.png", "--size", "64x48", "--spp", "1", "--threads", "2", "--shader-path", PLUGINS],
+                          cwd=tmp_path, stderr=subprocess.PIPE, text=True) as vv:
+        time.sleep(2)
+        assert vv.poll() is None, vv.stderr.read()
+        begin = time.monotonic()
+        vv.send_signal(number)
+        said = vv.communicate(timeout=60)[1]
+    took = time.monotonic() - begin
+    assert vv.returncode == 130, said
+    assert took < 15, took
+    assert "a shader did not stop" in said and "the picture so far is saved" in said, said
+    assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
+    assert not [p for p in tmp_path.iterdir() if p.name.startswith(".vv-")]
+
+
 def no_core():
     import resource
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))

@@ -9,6 +9,7 @@
 #include <SDL.h>
 #include <fmt/format.h>
 
+#include "printable.h"
 #include "values.h"
 
 namespace vv {
@@ -252,7 +253,7 @@ void Screen::setHand(bool hand) {
   if (SDL_Cursor* cursor = hand ? impl_->hand : impl_->arrow) SDL_SetCursor(cursor);
 }
 
-void Screen::setTitle(const std::string& title) { SDL_SetWindowTitle(impl_->window, title.c_str()); }
+void Screen::setTitle(const std::string& title) { SDL_SetWindowTitle(impl_->window, printable(title).c_str()); }
 
 void Screen::toggleFullScreen() {
   const bool full = SDL_GetWindowFlags(impl_->window) & SDL_WINDOW_FULLSCREEN_DESKTOP;

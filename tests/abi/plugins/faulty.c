@@ -12,6 +12,16 @@ static void crash(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, Rts
   *nowhere = 1;
 }
 
+/* Never ends where x is above 0. */
+static void hang(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, RtsShading* out) {
+  static volatile int sink;
+  (void)host, (void)batch;
+  for (uint32_t i = 0; i < hits->count; i++) {
+    while (hits->position[0][i] > 0) sink++;
+    out->radiance[0][i] = 0.5f;
+  }
+}
+
 static void notANumber(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, RtsShading* out) {
   (void)host;
   (void)batch;
@@ -70,11 +80,12 @@ static void badLobe(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, R
 
 #define SURFACE .size = sizeof(RtsClass), .kind = RTS_SURFACE
 static const RtsClass crashes = {SURFACE, .name = "Crash", .shade = crash};
+static const RtsClass hangs = {SURFACE, .name = "Hang", .shade = hang};
 static const RtsClass nans = {SURFACE, .name = "Nan", .shade = notANumber};
 static const RtsClass nanLobes = {SURFACE, .name = "NanLobe", .surface = nanLobe};
 static const RtsClass lamps = {SURFACE, .name = "SilentLamp", .surface = emission};
 static const RtsClass veils = {SURFACE, .name = "SilentVeil", .surface = veil};
 static const RtsClass glosses = {SURFACE, .name = "SilentGloss", .surface = gloss};
 static const RtsClass badLobes = {SURFACE, .name = "BadLobe", .surface = badLobe};
-static const RtsClass* const classes[] = {&crashes, &nans, &nanLobes, &lamps, &veils, &glosses, &badLobes};
-RTS_EXPORT const RtsPlugin rtsPlugin = {RTS_MAGIC, RTS_ABI_MAJOR, RTS_ABI_MINOR, sizeof(RtsPlugin), 7, classes};
+static const RtsClass* const classes[] = {&crashes, &hangs, &nans, &nanLobes, &lamps, &veils, &glosses, &badLobes};
+RTS_EXPORT const RtsPlugin rtsPlugin = {RTS_MAGIC, RTS_ABI_MAJOR, RTS_ABI_MINOR, sizeof(RtsPlugin), 8, classes};
