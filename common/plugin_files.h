@@ -1,11 +1,14 @@
 // plugin_files.h: where plug-ins may come from, and what may be believed of their files: configured folders only, bare names
-// only, no folder that others may write to. Used by whoever loads plug-ins: shaders (libopenrt), script engines (libxvrml).
+// only, nothing that others may write or replace. Used by whoever loads plug-ins: shaders (libopenrt), script engines (libxvrml).
 // Stateless; any thread.
 #pragma once
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -13,7 +16,9 @@
 #include <vector>
 
 #include <dlfcn.h>
+#include <grp.h>
 #include <link.h>
+#include <pwd.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -36,12 +41,66 @@ inline std::string bareName(std::string_view name, const char* what) {
   return std::string(name);
 }
 
-// A folder that anybody may write to, or that belongs to another user, could hold anybody's code.
+// Whether a group has one member only, the owner: where the umask is 002, every user has a group of the same name. In a container
+// that does not know the user of a folder of the host, equal numbers count.
+inline bool isPrivateGroup(uid_t owner, gid_t group) {
+  std::vector<char> userText(1 << 14), groupText(1 << 16);
+  passwd user{}, *foundUser = nullptr;
+  ::group members{}, *foundGroup = nullptr;
+  getpwuid_r(owner, &user, userText.data(), userText.size(), &foundUser);
+  if (getgrgid_r(group, &members, groupText.data(), groupText.size(), &foundGroup) != 0) return false; // too many members
+  if (!foundUser || !foundGroup) return !foundUser && !foundGroup && owner == group;
+  if (std::strcmp(user.pw_name, members.gr_name) != 0) return false;
+  for (char** name = members.gr_mem; name && *name; ++name)
+    if (std::strcmp(*name, user.pw_name) != 0) return false;
+  return true;
+}
+
+// The folders in which the library with this function lies. Whoever can replace one of them can replace the library itself.
+inline std::set<std::string> foldersOfThisLibrary() {
+  static const char here = 0;
+  std::set<std::string> result;
+  std::error_code error;
+  Dl_info info{};
+  if (dladdr(&here, &info) == 0 || !info.dli_fname) return result;
+  fs::path place = fs::canonical(info.dli_fname, error).parent_path();
+  for (; !error && place.has_relative_path(); place = place.parent_path()) result.insert(place.string());
+  return result;
+}
+
+// Returns why code in a file or folder could be somebody else's, or nothing: others may write to it or to a folder above it, or
+// it belongs to another user. "Others" is a group, too, unless it is the owner's own. A folder like /tmp, where only the owner of
+// an entry may replace it (the sticky bit), may lie above it. Links are followed first.
+inline std::string objection(const std::string& fileOrFolder) {
+  std::error_code error;
+  const fs::path place = fs::canonical(fileOrFolder, error);
+  if (error) return error.message();
+  const std::set<std::string> own = foldersOfThisLibrary();
+  for (fs::path at = place;; at = at.parent_path()) {
+    const bool itself = at == place;
+    if (!itself && own.contains(at.string())) return {};
+    struct stat info {};
+    if (stat(at.c_str(), &info) != 0) return std::strerror(errno);
+    const uid_t user = geteuid();
+    if (itself && user != 0 && info.st_uid != user && info.st_uid != 0) return "it belongs to another user";
+    const bool open = (info.st_mode & S_IWOTH) || ((info.st_mode & S_IWGRP) && !isPrivateGroup(info.st_uid, info.st_gid));
+    if (open && (itself || !(info.st_mode & S_ISVTX)))
+      return "others may write to " + (itself ? std::string("it") : at.string() + ", above it");
+    if (!at.has_relative_path()) return {};
+  }
+}
+
+// Whether code may be loaded from a folder.
 inline bool trusted(const std::string& folder) {
-  struct stat info {};
-  if (stat(folder.c_str(), &info) != 0 || !S_ISDIR(info.st_mode)) return false;
-  const uid_t user = geteuid();
-  return (info.st_mode & S_IWOTH) == 0 && (user == 0 || info.st_uid == user || info.st_uid == 0);
+  std::error_code ignored;
+  return fs::is_directory(folder, ignored) && objection(folder).empty();
+}
+
+// Throws std::runtime_error for a library that could be somebody else's; what: kind of library, for the message.
+inline void checkFile(const std::string& path, const char* what) {
+  if (const std::string why = objection(path); !why.empty())
+    throw std::runtime_error(std::string(what) + " " + path + " is refused: " + why +
+                             (why.starts_with("others") ? " (chmod go-w takes that right away)" : ""));
 }
 
 // Size of the object that an exported symbol names; 0 if it is not known.
@@ -100,8 +159,8 @@ inline std::string listed(const std::vector<std::string>& folders) {
   std::string text;
   for (const std::string& folder : folders) {
     std::error_code ignored;
-    const bool refused = fs::is_directory(folder, ignored) && !trusted(folder);
-    text += (text.empty() ? "" : ", ") + folder + (refused ? " (refused: others may write to it)" : "");
+    const std::string why = fs::is_directory(folder, ignored) ? objection(folder) : std::string();
+    text += (text.empty() ? "" : ", ") + folder + (why.empty() ? "" : " (refused: " + why + ")");
   }
   return text.empty() ? "no folder is configured" : text;
 }

@@ -282,8 +282,8 @@ const OptionInfo table[] = {
     {"--allow-net", "", "Trust", "Scripts may use the network, as far as their engine can.",
      [](Options& o, const std::string&) { o.running.allowNetwork = true; }},
     {"--script-path", "DIR[:DIR...]", "Trust",
-     "Folders where script engines are looked up, before $XVRML_SCRIPT_PATH and the installed ones; none that others may write "
-     "to.",
+     "Folders where script engines are looked up, before $XVRML_SCRIPT_PATH and the installed ones; nothing that others "
+     "may write or replace.",
      [](Options& o, const std::string& v) {
        notEmpty(v, "a folder");
        o.running.scriptPath = v;

@@ -67,6 +67,19 @@ std::vector<std::string> commandFor(Video kind, int width, int height, double fp
   return command;
 }
 
+// Returns the path of ffmpeg, or nothing. Elements of PATH that are empty or relative mean the current folder, which may be full
+// of downloads: these are passed over.
+std::string ffmpegProgram() {
+  const char* path = std::getenv("PATH");
+  for (std::string_view folder : split(path ? path : "/usr/local/bin:/usr/bin:/bin", ':')) {
+    if (!folder.starts_with('/')) continue;
+    std::string program = std::string(folder) + "/ffmpeg";
+    struct stat info;
+    if (::stat(program.c_str(), &info) == 0 && S_ISREG(info.st_mode) && ::access(program.c_str(), X_OK) == 0) return program;
+  }
+  return "";
+}
+
 // Standard input is the pipe, standard output nothing; SIGPIPE and the interrupts are as usual again.
 int spawn(const std::vector<std::string>& command, int input, pid_t& pid) {
   std::vector<char*> arguments;
@@ -80,11 +93,13 @@ int spawn(const std::vector<std::string>& command, int input, pid_t& pid) {
   ::posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
   sigset_t usual;
   ::sigemptyset(&usual);
-  for (const int signal : {SIGPIPE, SIGINT, SIGTERM, SIGUSR1}) ::sigaddset(&usual, signal);
+  for (const int signal : {SIGPIPE, SIGXFSZ, SIGINT, SIGTERM, SIGUSR1}) ::sigaddset(&usual, signal);
   ::posix_spawnattr_setsigdefault(&attributes, &usual);
   ::posix_spawnattr_setpgroup(&attributes, 0);
   ::posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
-  const int error = ::posix_spawnp(&pid, arguments[0], &actions, &attributes, arguments.data(), environ);
+  const std::string program = ffmpegProgram();
+  const int error =
+      program.empty() ? ENOENT : ::posix_spawn(&pid, program.c_str(), &actions, &attributes, arguments.data(), environ);
   ::posix_spawn_file_actions_destroy(&actions);
   ::posix_spawnattr_destroy(&attributes);
   return error;
@@ -108,12 +123,7 @@ Video videoOf(const std::string& path) {
 }
 
 std::string whyNoVideo() {
-  const char* path = std::getenv("PATH");
-  for (std::string_view folder : split(path ? path : "/usr/local/bin:/usr/bin:/bin", ':')) {
-    const std::string program = std::string(folder.empty() ? "." : folder) + "/ffmpeg";
-    struct stat info;
-    if (::stat(program.c_str(), &info) == 0 && S_ISREG(info.st_mode) && ::access(program.c_str(), X_OK) == 0) return "";
-  }
+  if (!ffmpegProgram().empty()) return "";
   return "a video is made by the program ffmpeg, which is not on PATH; -o 'picture-{frame:4}.png' writes single pictures";
 }
 

@@ -13,7 +13,7 @@ namespace vv {
 enum class Video { none, mp4, webm, gif };
 Video videoOf(const std::string& path); // by the suffix
 
-// Why there can be no video: ffmpeg is not on PATH. Empty: it is.
+// Why there can be no video: ffmpeg is in no folder of PATH that is named from the root. Empty: it is.
 std::string whyNoVideo();
 
 class VideoFile {

@@ -139,6 +139,7 @@ void ShaderLibrary::readClasses() {
 
 ShaderLibrary::ShaderLibrary(std::string bareName, std::string file)
     : name(std::move(bareName)), path(std::move(file)), stamp(FileStamp::of(path)) {
+  plugin_files::checkFile(path, "shader library");
   if (replacedSinceLoaded(path, stamp))
     open(PrivateCopy(path, name).file().string());
   else
@@ -153,6 +154,7 @@ ShaderLibrary::ShaderLibrary(std::string bareName, std::string file)
 
 ShaderLibrary::ShaderLibrary(std::string bareName, std::string file, const ShaderLibrary& before, uint32_t number)
     : name(std::move(bareName)), path(std::move(file)), stamp(FileStamp::of(path)) {
+  plugin_files::checkFile(path, "shader library");
   {
     const PrivateCopy copy(path, name + "." + std::to_string(number));
     open(copy.file().string());

@@ -62,6 +62,9 @@ bool registerNodes(const NodePlugin& plugin) {
 
 // Empty: loaded.
 std::string loadOne(const std::string& path) {
+  try {
+    plugin_files::checkFile(path, "node plug-in");
+  } catch (const std::runtime_error& why) { return why.what(); }
   void* handle = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (!handle) {
     const char* reason = ::dlerror();
@@ -99,7 +102,7 @@ std::vector<std::string> loadNodePlugins(std::string_view first) {
   for (const std::string& folder : nodePluginFolders(first)) {
     const std::vector<fs::path> files = librariesOf(folder);
     if (!files.empty() && !plugin_files::trusted(folder)) {
-      refused.push_back(fmt::format("node plug-ins in {} are refused: others may write to the folder", folder));
+      refused.push_back(fmt::format("node plug-ins in {} are refused: {}", folder, plugin_files::objection(folder)));
       continue;
     }
     for (const fs::path& file : files) {

@@ -37,7 +37,7 @@ std::vector<ScriptEngineInfo> scriptEngines(std::string_view folders, std::vecto
   for (const std::string& folder : searched) {
     std::error_code none;
     if (std::filesystem::is_directory(folder, none) && !plugin_files::trusted(folder))
-      refused->push_back("script engines in " + folder + " are refused: others may write to the folder");
+      refused->push_back("script engines in " + folder + " are refused: " + plugin_files::objection(folder));
   }
   return list;
 }

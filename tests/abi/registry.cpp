@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include "plugin_files.h"
 #include "shading/plugin_check.h"
 #include "shading/registry.h"
 
@@ -165,6 +166,42 @@ TEST(Registry, RefusesFoldersThatAnybodyMayWriteTo) {
   ASSERT_EQ(::chmod(folder.c_str(), 0755), 0);
   EXPECT_EQ(refusal(registry, "Everything", "everything"), "");
   fs::remove_all(folder);
+}
+
+TEST(Registry, RefusesWhatAGroupOrSomebodyAboveMayReplace) {
+  const fs::path above = fs::temp_directory_path() / ("openrt_above_" + std::to_string(::getpid()));
+  const fs::path folder = above / "shaders", file = folder / "everything.so";
+  fs::create_directories(folder);
+  fs::copy_file(plugins + "/everything.so", file, fs::copy_options::overwrite_existing);
+  const ShaderRegistry registry({folder.string()});
+  const auto refused = [&](const char* what, mode_t modeAbove, mode_t modeFolder, mode_t modeFile, const std::string& why) {
+    ASSERT_EQ(::chmod(above.c_str(), modeAbove) | ::chmod(folder.c_str(), modeFolder) | ::chmod(file.c_str(), modeFile), 0);
+    const std::string text = refusal(registry, "Everything", "everything");
+    EXPECT_NE(text.find(why), text.npos) << what << ": " << text;
+  };
+  refused("a folder above that anybody may write to", 0777, 0755, 0644,
+          "others may write to " + fs::canonical(above).string() + ", above it");
+  refused("a file that anybody may write to", 0755, 0755, 0666, "everything.so is refused: others may write to it");
+  refused("the sticky bit does not keep others from adding files", 0755, 01777, 0644, "others may write to it");
+  const gid_t group = 12345; // nobody's own; only root can give a file away
+  if (::geteuid() == 0) {
+    for (const fs::path& place : {above, folder, file}) ASSERT_EQ(::chown(place.c_str(), gid_t(-1), group), 0);
+    refused("a folder that a group may write to", 0755, 0775, 0644, "refused: others may write to it");
+    refused("a file that a group may write to", 0755, 0755, 0664, "everything.so is refused: others may write to it");
+    refused("a folder above that a group may write to", 0775, 0755, 0644, "above it");
+    for (const fs::path& place : {above, folder, file}) ASSERT_EQ(::chown(place.c_str(), gid_t(-1), ::getegid()), 0);
+  }
+  ASSERT_EQ(::chmod(above.c_str(), 01777) | ::chmod(folder.c_str(), 0755) | ::chmod(file.c_str(), 0644), 0); // as /tmp
+  EXPECT_EQ(refusal(registry, "Everything", "everything"), "");
+  fs::remove_all(above);
+}
+
+TEST(Registry, AGroupOfOneIsItsOwner) {
+  EXPECT_TRUE(plugin_files::isPrivateGroup(0, 0)); // root
+  EXPECT_FALSE(plugin_files::isPrivateGroup(0, 1));
+  EXPECT_TRUE(plugin_files::isPrivateGroup(3000000001u, 3000000001u)) << "neither is known, as in containers";
+  EXPECT_FALSE(plugin_files::isPrivateGroup(3000000001u, 3000000002u));
+  EXPECT_FALSE(plugin_files::isPrivateGroup(3000000001u, 0));
 }
 
 TEST(Registry, AFileThatIsNoLibraryIsRefused) {

@@ -41,7 +41,7 @@ TEST(NodePluginRefusals, FoldersThatOthersMayWriteTo) {
   const std::vector<std::string> refused = loadNodePlugins(folder.string());
   fs::remove_all(folder);
   ASSERT_EQ(refused.size(), 1u);
-  EXPECT_NE(refused[0].find("others may write to the folder"), refused[0].npos) << refused[0];
+  EXPECT_NE(refused[0].find("others may write to it"), refused[0].npos) << refused[0];
 }
 
 } // namespace

@@ -33,7 +33,7 @@ def test_a_library_that_is_no_engine_is_named(vv):
     done = vv("--list-engines", "--script-path", folder)
     assert done.returncode == 0 and "bad.so" in done.talk
     folder.chmod(0o777)
-    assert "others may write to the folder" in vv("--list-engines", "--script-path", folder).talk
+    assert "others may write to it" in vv("--list-engines", "--script-path", folder).talk
 
 
 def test_it_stands_alone(vv):

@@ -186,6 +186,18 @@ def test_a_video_without_ffmpeg(moving):
     assert done.returncode == 1 and "ffmpeg" in done.talk and "PATH" in done.talk and "{frame:4}" in done.talk
 
 
+@pytest.mark.parametrize("path", ["", ":", "/nonexistent:", ".", "tools", "./tools:/nonexistent"])
+def test_a_program_of_the_current_folder_is_not_ffmpeg(moving, ffmpeg, path):
+    for folder in ("", "tools"):
+        (moving.folder / folder).mkdir(exist_ok=True)
+        program = moving.folder / folder / "ffmpeg"
+        program.write_text("#!/bin/sh\ntouch " + str(moving.folder / "it-ran") + "\ncat >/dev/null\n")
+        program.chmod(stat.S_IRWXU)
+    done = moving("moving.wrl", "--frames", "0-2", "-o", "v.mp4", *SMALL, env={"PATH": path})
+    assert not (moving.folder / "it-ran").exists()
+    assert done.returncode == 1 and "PATH" in done.talk
+
+
 def test_a_video_whose_ffmpeg_fails(moving, ffmpeg):
     moving.write("v.mp4", "before")
     done = moving("moving.wrl", "--frames", "0-2", "-o", "v.mp4", *SMALL, env={**ffmpeg, "FAKE_CODE": "3"})

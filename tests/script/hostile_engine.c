@@ -111,6 +111,9 @@ static void raises(Interpreter* self, const char* argument) { /* the limits agai
   outcome(self, "setrlimit", setrlimit(RLIMIT_AS, &most) == 0);
 }
 static void environment(Interpreter* self, const char* argument) { say(self, getenv(argument) ? "set" : "not set"); }
+static int libraryPath; /* whether the process was given one, before it gave up all it may do */
+__attribute__((constructor)) static void loaded(void) { libraryPath = getenv("LD_LIBRARY_PATH") != NULL; }
+static void given(Interpreter* self, const char* argument) { (void)argument, say(self, libraryPath ? "given" : "not given"); }
 static void descriptors(Interpreter* self, const char* argument) { /* how many are open beside the standard ones and the socket */
   int open = 0;
   char line[40];
@@ -156,6 +159,7 @@ static const struct {
                 {"kill", signals},
                 {"raise", raises},
                 {"env", environment},
+                {"given", given},
                 {"descriptors", descriptors},
                 {"print", print},
                 {"process", process},

@@ -25,14 +25,18 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* programName = "xvrml-script-host";
-// What loading plug-ins may need of the environment; programs of Scripts see nothing of it.
-constexpr std::array passedOn = {"LD_LIBRARY_PATH", "TCL_LIBRARY", "ASAN_OPTIONS", "UBSAN_OPTIONS", "TSAN_OPTIONS"};
+// What engines may need of the environment while they are prepared; it is empty when a program of a Script runs. No
+// LD_LIBRARY_PATH: whoever sets it for another program, perhaps with an empty element for the current folder, would choose this
+// one's libraries.
+constexpr std::array passedOn = {"TCL_LIBRARY", "ASAN_OPTIONS", "UBSAN_OPTIONS", "TSAN_OPTIONS"};
 
 bool usable(const fs::path& program, std::string& why) {
   if (access(program.c_str(), X_OK) != 0)
     why = fmt::format("{}: {}", program.string(), std::strerror(errno));
   else if (!plugin_files::trusted(program.parent_path().string()))
-    why = fmt::format("{}: others may write to its folder", program.string());
+    why = fmt::format("{}: its folder is refused: {}", program.string(), plugin_files::objection(program.parent_path().string()));
+  else if (const std::string objection = plugin_files::objection(program.string()); !objection.empty())
+    why = fmt::format("{} is refused: {}", program.string(), objection);
   else
     return true;
   return false;

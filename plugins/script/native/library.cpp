@@ -46,6 +46,7 @@ void* loadLibrary(const std::string& name) {
     throw std::runtime_error("there is no library \"" + name +
                              "\" in the folders of $XVRML_NATIVE_PATH and of the installation (" + plugin_files::listed(folders) +
                              ")");
+  plugin_files::checkFile(path, "native library");
   static std::mutex mutex;
   static auto& known = *new std::map<std::string, void*>();
   const std::scoped_lock lock(mutex);

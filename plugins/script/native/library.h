@@ -7,7 +7,7 @@
 namespace native {
 
 // Looks for NAME, NAME.so, libNAME.so in the folders of $XVRML_NATIVE_PATH, then in xvrml/native beside the engines' folder.
-// Returns dlopen's handle. Throws std::runtime_error with the reason: no bare name, not found, a folder that others may write to.
+// Returns dlopen's handle. Throws std::runtime_error with the reason: no bare name, not found, others may write to it.
 void* loadLibrary(const std::string& name);
 
 } // namespace native

@@ -125,6 +125,7 @@ TEST_P(ScriptMisdeeds, StopTheScriptAndNothingElse) {
 
 TEST_F(ScriptProcess, ReachesNothing) {
   setenv("XVRML_TEST_SECRET", "1", 1);
+  setenv("LD_LIBRARY_PATH", ":/nonexistent", 0);
   struct {
     const char* program;
     const char* allowed; // what must not be printed
@@ -133,6 +134,7 @@ TEST_F(ScriptProcess, ReachesNothing) {
                      {"go: socket", "socket: worked"},
                      {"go: env XVRML_TEST_SECRET", "set"},
                      {"go: env PATH", "set"},
+                     {"go: given", "given"},
                      {"go: open /proc/self/environ", "open: worked"},
 #ifdef XVRML_WITH_SECCOMP
                      {"go: exec /bin/true", "exec: worked"},
