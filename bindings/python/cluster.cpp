@@ -66,7 +66,7 @@ ClusterPtr make(const py::object& workers, const py::object& key, const py::obje
   context.shaderPath = pathOf(shaderPath);
   auto made = std::make_shared<ClusterObject>();
   made->settings = settings;
-  py::gil_scoped_release release;
+  const ReleaseGil release;
   made->cluster = std::make_shared<picture::Cluster>(settings, context);
   return made;
 }
@@ -77,14 +77,14 @@ void release(ClusterObject& self) {
   self.holder.reset();
   if (!holder) return;
   const auto lock = holder->lock();
-  py::gil_scoped_release released;
+  const ReleaseGil released;
   holder->rest();
 }
 
 void closeCluster(const ClusterPtr& self) {
   release(*self);
   std::shared_ptr<picture::Cluster> last = std::exchange(self->cluster, nullptr);
-  py::gil_scoped_release released;
+  const ReleaseGil released;
   last.reset(); // says goodbye to the workers
 }
 
@@ -109,9 +109,10 @@ void waitFor(const ClusterPtr& self, size_t count, double timeout) {
   self->open();
   bool signalled = false, there = false;
   {
-    py::gil_scoped_release release;
+    const ReleaseGil release;
     there = cluster->wait(count, timeout, [&signalled] {
-      py::gil_scoped_acquire acquire;
+      const AcquireGil acquire;
+      if (!acquire) return true;
       return signalled = PyErr_CheckSignals() != 0;
     });
   }

@@ -244,6 +244,7 @@ NodeRef nodeOf(const py::handle& object, const Target& target) {
   if (!from->loose() && !sameWorld(from, place)) target.wrongValue("of the same world");
   if (!accepts(target.field.nodeTypes, *given.node))
     target.wrongValue(fmt::format("one of {}, not {}", target.field.nodeTypes, given.node->type().name));
+  given.heldByNone = false;
   return given.node;
 }
 
@@ -381,10 +382,13 @@ void joinWorlds(const NodeObject& owner, const py::handle& object) {
   if (py::isinstance<NodeObject>(object)) {
     const WorldPtr to = owner.world(), from = object.cast<const NodeObject&>().world();
     if (from == to) return;
-    if (from->loose())
+    // The one that stands for fewer joins the other, so that the way from any node to its world stays short.
+    if (from->loose() && (!to->loose() || from->rank <= to->rank)) {
+      to->rank += from->rank == to->rank;
       from->joined = to;
-    else if (to->loose())
+    } else if (to->loose()) {
       to->joined = from;
+    }
   } else if (!py::isinstance<py::str>(object) && PySequence_Check(object.ptr())) {
     for (const py::handle one : py::reinterpret_borrow<py::sequence>(object))
       if (py::isinstance<NodeObject>(one)) joinWorlds(owner, one);
@@ -392,6 +396,7 @@ void joinWorlds(const NodeObject& owner, const py::handle& object) {
 }
 
 void refuseLoops(const NodeObject& owner, const FieldInfo& field, const Value& value) {
+  if (owner.heldByNone && owner.world()->loose()) return; // neither the value nor what is below it holds the owner
   std::vector<Node*> open;
   if (const auto* one = std::get_if<NodeRef>(&value)) open.push_back(one->get());
   if (const auto* many = std::get_if<MFNode>(&value))

@@ -56,7 +56,7 @@ bool bytesOf(const py::object& source, std::string& bytes) {
 template <class Load> std::unique_ptr<World> loadWith(Load load) {
   std::unique_ptr<World> made;
   try {
-    py::gil_scoped_release release;
+    const ReleaseGil release;
     made = load();
   } catch (const LoadError& error) { raise(error.diagnostic); }
   return made;
@@ -73,12 +73,31 @@ py::list loadPlugins(const py::object& path) {
   std::vector<std::string> refused;
   const std::string folders = path.is_none() ? "" : toPath(path);
   {
-    py::gil_scoped_release release;
+    const ReleaseGil release;
     refused = loadNodePlugins(folders);
   }
   py::list lines;
   for (const std::string& line : refused) lines.append(toText(line));
   return lines;
+}
+
+// X.__new__(X) makes an object without anything in it; pybind11 would give its methods memory that nobody has initialised.
+void refuseEmptyObjects(const py::module_& module) {
+  for (const auto& [name, value] : py::reinterpret_borrow<py::dict>(module.attr("__dict__")))
+    if (PyType_Check(value.ptr()))
+      if (auto* info = py::detail::get_type_info(reinterpret_cast<PyTypeObject*>(value.ptr())))
+        info->operator_new = [](size_t) -> void* {
+          throw py::type_error("the object was made by __new__ alone: __init__ has not run");
+        };
+}
+
+// pickle and copy call the class that all classes are below, which pybind11 answers with an exception through Python's C.
+PyObject* newObject(PyTypeObject* type, PyObject*, PyObject*) {
+  try {
+    if (!py::detail::all_type_info(type).empty()) return py::detail::make_new_instance(type);
+    PyErr_Format(PyExc_TypeError, "objects of %s alone cannot be made, copied or pickled", type->tp_name);
+  } catch (const std::exception& error) { PyErr_SetString(PyExc_RuntimeError, error.what()); }
+  return nullptr;
 }
 
 } // namespace
@@ -110,6 +129,8 @@ std::unique_ptr<World> loadSource(const py::object& source, const py::object& li
 }
 
 PYBIND11_MODULE(_xvrml, module) {
+  watchInterpreter();
+  reinterpret_cast<PyTypeObject*>(py::detail::get_internals().instance_base)->tp_new = newObject;
   parseError = PyErr_NewExceptionWithDoc("xvrml.ParseError", "Nothing of a world can be used; file, line and column say where.",
                                          PyExc_ValueError, nullptr);
   if (!parseError) throw py::error_already_set();
@@ -128,6 +149,8 @@ PYBIND11_MODULE(_xvrml, module) {
   defineScripts(module);
   defineShapes(module);
   defineRt(module);
+  refuseEmptyObjects(module);
+  refuseEmptyObjects(module.attr("rt"));
   module.attr("__version__") = fmt::format("{}.{}.{}", OPENRT_VERSION_MAJOR, OPENRT_VERSION_MINOR, OPENRT_VERSION_PATCH);
   module.def(
       "load_node_plugins", loadPlugins, py::arg("path") = py::none(),

@@ -149,6 +149,7 @@ void makeLoose(py::detail::value_and_holder& self, const py::kwargs& fields) {
   NodeRef node = makeNode(*type);
   if (!node) throw py::type_error(type->name + " nodes come from files alone");
   auto made = std::make_unique<NodeObject>(std::make_shared<WorldObject>(), std::move(node));
+  made->heldByNone = true;
   for (const auto& [name, value] : fields) setAttribute(*made, fromText(name), value);
   self.value_ptr() = made.release();
 }

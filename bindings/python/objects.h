@@ -11,6 +11,7 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
+#include "gil.h"
 #include "picture/renderer.h"
 #include "xvrml/browser.h"
 #include "xvrml/world.h"
@@ -35,6 +36,7 @@ struct WorldObject : std::enable_shared_from_this<WorldObject> {
   std::unique_ptr<xvrml::World> world;     // of one that stands still
   std::unique_ptr<xvrml::Browser> running; // of one that runs
   WorldPtr joined;                         // of loose nodes: where they are now
+  int rank = 0;                            // of loose nodes: joins that led here, one after the other, at most
   LocksPtr locks = std::make_shared<WorldLocks>();
 
   virtual ~WorldObject();
@@ -99,6 +101,7 @@ class NodeObject {
     return world_;
   }
   xvrml::NodeRef node;
+  mutable bool heldByNone = false; // it was made here and was never the value of a field: no other object is of this node
 
  private:
   mutable WorldPtr world_;

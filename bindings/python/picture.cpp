@@ -68,7 +68,7 @@ void save(const PictureObject& self, const py::object& file) {
     throw py::value_error(fmt::format("a file name with one of the suffixes {} expected, not {}", picture::formatNames, path));
   std::string failure;
   {
-    py::gil_scoped_release release;
+    const ReleaseGil release;
     const std::string bytes = picture::encode(self.picture, *format);
     try {
       picture::writeFile(path, bytes);

@@ -210,14 +210,16 @@ py::object render(const WorldPtr& self, const py::object& size, std::optional<lo
 } // namespace
 
 void interruptible(const std::function<void(picture::Watch watch)>& work, const py::object& progress) {
+  if (interpreterEnds()) throw std::runtime_error("the interpreter is ending");
   bool stopped = false, signalled = false;
   std::exception_ptr failure;
   {
-    py::gil_scoped_release release;
+    const ReleaseGil release;
     try {
       work([&](float done) {
         if (stopped) return true;
-        py::gil_scoped_acquire acquire;
+        const AcquireGil acquire;
+        if (!acquire) return stopped = true;
         stopped = signalled = PyErr_CheckSignals() != 0;
         if (stopped || progress.is_none()) return stopped;
         try {

@@ -22,7 +22,7 @@ RtContext::RtContext(const std::string& config) {
   RTenum code = RT_NO_ERROR;
   std::string text;
   {
-    py::gil_scoped_release release;
+    const ReleaseGil release;
     const RTcontext before = rtGetCurrent();
     handle = rtNewContext(config.c_str());
     if (!handle) code = rtGetError(), text = rtGetErrorMessage();
@@ -33,7 +33,7 @@ RtContext::RtContext(const std::string& config) {
 
 RtContext::~RtContext() {
   if (!handle) return;
-  py::gil_scoped_release release;
+  const ReleaseGil release;
   rtDeleteContext(handle);
 }
 
@@ -41,7 +41,7 @@ void RtContext::close() {
   if (!handle) return;
   if (drawing && owner == std::this_thread::get_id())
     throw std::runtime_error("the context cannot be closed while a picture of it is made");
-  py::gil_scoped_release release;
+  const ReleaseGil release;
   const std::scoped_lock lock(mutex);
   rtDeleteContext(std::exchange(handle, nullptr));
 }
@@ -50,7 +50,7 @@ RtUse::RtUse(const RtContextPtr& context, bool edits) : context_(context), befor
   if (context->drawing && context->owner == std::this_thread::get_id())
     throw std::runtime_error("the context cannot be used while a picture of it is made");
   {
-    py::gil_scoped_release release;
+    const ReleaseGil release;
     lock_ = std::unique_lock(context->mutex);
   }
   if (!context->handle) throw std::runtime_error("the context is closed");
@@ -70,7 +70,7 @@ void RtUse::check() const {
 void RtUse::commit() const {
   if (!context_->dirty) return;
   {
-    py::gil_scoped_release release;
+    const ReleaseGil release;
     rtFrameBuffer(1, 1, RT_RGBA);
     rtQuality(RT_SAMPLES_PER_PIXEL, 1);
     rtQualityf(RT_TARGET_ERROR, 0);

@@ -12,6 +12,7 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
+#include "gil.h"
 #include "openrt/openrt.h"
 
 namespace py = pybind11;

@@ -91,7 +91,7 @@ template <class F> void inChunks(const RtUse& use, size_t count, const F& f) {
   for (size_t first = 0; first < count; first += chunk) {
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
     {
-      py::gil_scoped_release release;
+      const ReleaseGil release;
       f(first, std::min(chunk, count - first));
     }
     use.check();

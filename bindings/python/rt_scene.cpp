@@ -66,7 +66,7 @@ RtObject mesh(const RtContextPtr& self, const py::object& vertices, const py::ob
   const RtUse use(self);
   RtObject made;
   {
-    py::gil_scoped_release release;
+    const ReleaseGil release;
     const Opened opened;
     made = {{self, opened.id}};
     if (surface) rtBindShader(surface->id);

@@ -78,7 +78,7 @@ py::list meshes(const WorldPtr& self, int spheres, const py::object& view) {
   World& world = self->graph();
   {
     const auto lock = self->lockGraph();
-    py::gil_scoped_release release;
+    const ReleaseGil release;
     shapes = placedShapes(world, view.is_none() ? nullptr : camera.data());
     for (const PlacedShape& shape : shapes) {
       Arrays& arrays = made[shape.geometry.get()];

@@ -74,7 +74,7 @@ void save(const WorldPtr& self, const py::object& file) {
   const auto lock = self->lockGraph();
   World& world = self->graph();
   {
-    py::gil_scoped_release release;
+    const ReleaseGil release;
     try {
       picture::writeFile(path, writeWorld(world));
     } catch (const std::runtime_error& error) { failure = error.what(); }

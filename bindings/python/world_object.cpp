@@ -68,7 +68,7 @@ void WorldObject::change(const std::function<void()>& work) {
   std::exception_ptr failure;
   {
     const Count here(depth_);
-    py::gil_scoped_release release;
+    const ReleaseGil release;
     try {
       work();
     } catch (...) { failure = std::current_exception(); }
@@ -99,7 +99,7 @@ void WorldObject::rest() {
 WorldObject::Changing WorldObject::lock() {
   Changing locked;
   {
-    py::gil_scoped_release release;
+    const ReleaseGil release;
     locked.drawing = std::unique_lock(locks->drawing);
     locked.graph = std::unique_lock(locks->graph);
     sweep();
@@ -110,12 +110,12 @@ WorldObject::Changing WorldObject::lock() {
 }
 
 std::unique_lock<std::recursive_mutex> WorldObject::lockGraph() {
-  py::gil_scoped_release release;
+  const ReleaseGil release;
   return std::unique_lock(locks->graph);
 }
 
 std::unique_lock<std::recursive_mutex> WorldObject::lockDrawing() {
-  py::gil_scoped_release release;
+  const ReleaseGil release;
   return std::unique_lock(locks->drawing);
 }
 

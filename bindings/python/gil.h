@@ -1,0 +1,40 @@
+// gil.h: the interpreter's lock (GIL) around what takes long, also while the interpreter ends. Python ends a thread that asks for
+// the lock after the interpreter has begun to end by pthread_exit(): from a destructor in C++ that aborts the process. So before
+// the end all that is under way without the lock is stopped and waited for, and what does not stop never asks for the lock again.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+namespace py = pybind11;
+
+// Gives the lock up while it lives.
+class ReleaseGil {
+ public:
+  ReleaseGil();
+  ~ReleaseGil(); // does not return on a daemon thread once the interpreter has ended
+  ReleaseGil(const ReleaseGil&) = delete;
+  ReleaseGil& operator=(const ReleaseGil&) = delete;
+
+ private:
+  PyThreadState* state_;
+};
+
+// Takes the lock while it lives, within ReleaseGil. False: it was not taken, because the interpreter ends: stop what you do.
+class AcquireGil {
+ public:
+  AcquireGil();
+  ~AcquireGil();
+  AcquireGil(const AcquireGil&) = delete;
+  AcquireGil& operator=(const AcquireGil&) = delete;
+  explicit operator bool() const { return held_; }
+
+ private:
+  bool held_;
+  PyGILState_STATE state_{};
+};
+
+// Whether the interpreter ends and this is not the thread that ends it: nothing long should begin. [GIL not needed]
+bool interpreterEnds();
+
+// To be called once, when the module is imported.
+void watchInterpreter();
