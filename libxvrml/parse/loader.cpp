@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "enough_stack.h"
 #include "parse/builder.h"
 #include "parse/field_access.h"
 #include "parse/inline_node.h"
@@ -267,6 +268,9 @@ void Loader::checkSize(Scope& scope) {
 
 namespace {
 
+// Bytes for nodes that are nested as deep as they may be, in a debug build too; a release build takes 0.6 kB a level.
+constexpr size_t deepestStack = size_t(6) << 20;
+
 template <class MakeSource>
 std::unique_ptr<World> loadFrom(const std::string& name, const LoadOptions& options, MakeSource makeSource, bool header = true) {
   try {
@@ -274,8 +278,10 @@ std::unique_ptr<World> loadFrom(const std::string& name, const LoadOptions& opti
     world->path = name;
     world->options = options;
     const Source source = makeSource();
-    Loader(*world, world->options).load(source, name, header);
-    return world;
+    return onStackOf(deepestStack, [&] {
+      Loader(*world, world->options).load(source, name, header);
+      return std::move(world);
+    });
   } catch (const std::bad_alloc&) { throw LoadError{{Severity::error, name, 0, 0, "not enough memory", {}, 0}}; }
 }
 

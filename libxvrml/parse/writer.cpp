@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "base/lexer.h"
+#include "enough_stack.h"
 #include "parse/expander.h"
 #include "parse/field_access.h"
 #include "parse/value_writer.h"
@@ -267,10 +268,13 @@ class Writer {
 } // namespace
 
 std::string writeWorld(const World& world) {
-  Writer writer;
-  writer.scope(world.scope, nullptr);
-  writer.text += '\n';
-  return std::move(writer.text);
+  constexpr size_t deepestStack = size_t(6) << 20; // bytes; a level takes about 1 kB
+  return onStackOf(deepestStack, [&] {
+    Writer writer;
+    writer.scope(world.scope, nullptr);
+    writer.text += '\n';
+    return std::move(writer.text);
+  });
 }
 
 } // namespace xvrml

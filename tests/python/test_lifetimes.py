@@ -266,3 +266,30 @@ def test_a_node_cannot_hold_itself_however_it_was_made():
     with pytest.raises(ValueError, match="hold itself"):
         fresh.children = [xvrml.Group(children=[fresh])]
     assert len(fresh.children) == 0
+
+
+# Small stacks -------------------------------------------------------------------------------------------------------------
+
+
+def test_threads_with_small_stacks_read_and_write_deep_worlds(tmp_path):
+    (tmp_path / "deep.wrl").write_text("#VRML V2.0 utf8\n" + "Group { children [ " * 990 + "Shape { geometry Box { } }" + " ] }" * 990)
+    (tmp_path / "bad.wrl").write_text("no world")
+    done = python("""
+        import sys, threading, xvrml
+        said = []
+        def work():
+            world = xvrml.load(sys.argv[1])
+            said.append(world.to_vrml().count("Group"))
+            xvrml.Browser(sys.argv[1]).tick(0.1)
+            said.append(world.render(size=(4, 3), spp=1).shape)
+            try:
+                xvrml.load(sys.argv[2])
+            except xvrml.ParseError as error:
+                said.append("refused")
+        threading.stack_size(256 * 1024)
+        thread = threading.Thread(target=work)
+        thread.start()
+        thread.join()
+        print(said)
+    """, tmp_path / "deep.wrl", tmp_path / "bad.wrl")
+    assert done.returncode == 0 and done.stdout == "[990, (3, 4, 4), 'refused']\n", (done.returncode, done.stdout, done.stderr[-500:])
