@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "render/huge_spheres.h"
 #include "shading/parameters.h"
 
 namespace openrt {
@@ -84,12 +85,19 @@ void triangle(const Record& r, const RayHits& hits, uint32_t lane, Local& h) {
 }
 
 void sphere(const Record& r, const Rays& rays, const RayHits& hits, uint32_t lane, Local& h) {
-  float p[3], l[3], none[3] = {0, 0, 0}, ignored[3];
-  for (int k = 0; k < 3; k++) p[k] = rays.org[k][lane] + hits.t[lane] * rays.dir[k][lane];
+  float p[3], bound[3], l[3], none[3] = {0, 0, 0}, ignored[3];
+  for (int k = 0; k < 3; k++) {
+    const float step = hits.t[lane] * rays.dir[k][lane];
+    p[k] = rays.org[k][lane] + step;
+    bound[k] = gammaOf(8) * (std::fabs(rays.org[k][lane]) + std::fabs(step));
+  }
   applyBound(r.fromRender, p, none, l, ignored);
   if (!normalize(l)) l[0] = 0, l[1] = 0, l[2] = 1;
   const float e[3] = {gammaOf(5), gammaOf(5), gammaOf(5)};
-  applyBound(r.toRender, l, e, h.p, h.bound);
+  if (metInDouble(r)) // t is right to its last bit: near to the ray's origin the place is known far better than the radius
+    for (int k = 0; k < 3; k++) h.p[k] = p[k], h.bound[k] = bound[k];
+  else
+    applyBound(r.toRender, l, e, h.p, h.bound);
   apply(r.normalMatrix, l, h.ng);
   // Clause 6.42: s runs counter-clockwise seen from above, from the back; t from the bottom to the top.
   const float turn = std::atan2(-l[0], -l[2]) * float(0.5 / M_PI);

@@ -73,6 +73,7 @@ class Accel final : public Intersector {
   void intersectFiltered(const Rays& rays, uint32_t mask, RTCFilterFunctionN filter, const uint32_t* record, RayHits& hits,
                          std::vector<Passed>* all = nullptr) const;
   static void collect(const RTCFilterFunctionNArguments* a);
+  void settlePassed(const Rays& rays, Passed& p) const;
   struct PointSearch;
   bool measure(const Found& found, const Vec3d& p, Nearest& best) const;
   static bool visitNear(RTCPointQueryFunctionArguments* a);

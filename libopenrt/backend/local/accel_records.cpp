@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "backend/local/accel_build.h"
+#include "render/huge_spheres.h"
 #include "shading/parameters.h"
 
 namespace openrt {
@@ -99,8 +100,8 @@ void AccelBuilder::writeRecords(uint32_t c) {
       case DrawnAs::baked:
         if (!root)
           setInstance(r, partToRender * body->fromKernel);
-        else if (sphere && !similarity(uniformScale(in_->scale) * toRender)) // an instance even so
-          setInstance(r, unit);
+        else if (sphere && !similarity(uniformScale(in_->scale) * toRender) && !isHugeSphere(uniformScale(in_->scale) * unit))
+          setInstance(r, unit); // it is an instance even so
         r.flip = flipped(g, root ? toRender : item.matrix * g.matrix);
         r.vertices = body->vertices[entry];
         break;

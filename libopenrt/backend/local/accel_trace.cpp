@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "backend/local/accel.h"
+#include "backend/local/exact.h"
 
 namespace openrt {
 namespace {
@@ -22,6 +23,20 @@ struct Packet8 {
   static void intersect(RTCScene s, const int* v, RayHit& r, Query& q) { intersect8(s, v, r, q); }
   static void occluded(RTCScene s, const int* v, Ray& r, bool c) { occluded8(s, v, r, c); }
 };
+
+// A triangle that the ray grazes is met again in double precision.
+void settleGrazing(const Record& r, const Rays& rays, float far, RayHits& hits, uint32_t lane) {
+  if (r.primitive != edit::Primitive::Triangles) return;
+  float n[3] = {hits.ng[0][lane], hits.ng[1][lane], hits.ng[2][lane]};
+  const float d[3] = {rays.dir[0][lane], rays.dir[1][lane], rays.dir[2][lane]};
+  if (r.instanced) {
+    const float k[3] = {n[0], n[1], n[2]};
+    normalToRender(r, k, n);
+  }
+  if (!grazes(n, d)) return;
+  settle(r, hits.primitive[lane], {rays.org[0][lane], rays.org[1][lane], rays.org[2][lane]}, {d[0], d[1], d[2]}, rays.tnear[lane],
+         far, hits.t[lane], hits.u[lane], hits.v[lane]);
+}
 
 // Fills a packet from lane `first` on; returns how many of its rays were refused. Refused and absent rays are made harmless.
 // ends: where the rays end, from that lane on.
@@ -127,6 +142,7 @@ template <class Packet> void Accel::intersectPackets(const Level& level, const R
       hits.u[lane] = packet.hit.u[i];
       hits.v[lane] = packet.hit.v[i];
       hits.ng[0][lane] = packet.hit.Ng_x[i], hits.ng[1][lane] = packet.hit.Ng_y[i], hits.ng[2][lane] = packet.hit.Ng_z[i];
+      settleGrazing(records[found.record], rays, first ? rays.tfar[lane] : ends[i], hits, lane);
     }
   }
   if (refused) rejectedRays += refused;

@@ -8,25 +8,9 @@
 #include <atomic>
 #include <cmath>
 
+#include "backend/local/sliver_edges.h"
+
 namespace openrt {
-namespace {
-
-constexpr float sliverRatio = 2e-4f; // height over longest edge: below it Embree's robust mode reports false hits
-
-enum class Shape : uint8_t { good, sliver, degenerate };
-
-Shape shapeOf(const float* a, const float* b, const float* c) {
-  float e1[3], e2[3], e3[3];
-  for (int k = 0; k < 3; k++) e1[k] = b[k] - a[k], e2[k] = c[k] - a[k], e3[k] = c[k] - b[k];
-  const float n[3] = {e1[1] * e2[2] - e1[2] * e2[1], e1[2] * e2[0] - e1[0] * e2[2], e1[0] * e2[1] - e1[1] * e2[0]};
-  const float area = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
-  const auto square = [](const float* e) { return e[0] * e[0] + e[1] * e[1] + e[2] * e[2]; };
-  const float longest = std::max({square(e1), square(e2), square(e3)});
-  if (!(area > 0) || !std::isfinite(longest)) return Shape::degenerate;
-  return area < sliverRatio * sliverRatio * longest * longest ? Shape::sliver : Shape::good;
-}
-
-} // namespace
 
 void Box::add(const Vec3d& p) {
   low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
@@ -97,17 +81,20 @@ BakedTriangles bakeTriangles(const Geometry& geometry, const Matrix4d& toKernel)
   std::atomic<bool> clean{true};
   tbb::parallel_for(tbb::blocked_range<size_t>(0, count, 16384), [&](const auto& range) {
     for (size_t t = range.begin(); t < range.end(); t++)
-      if (shape(t) != Shape::good) {
+      if (shape(t) != TriangleShape::good) {
         clean = false;
         return;
       }
   });
   if (clean) return out;
+  std::vector<TriangleShape> shapes(count);
+  for (size_t t = 0; t < count; t++) shapes[t] = shape(t);
+  if (std::find(shapes.begin(), shapes.end(), TriangleShape::sliver) != shapes.end())
+    out.openEdges = widenSlivers(out.vertices, index, shapes);
   for (size_t t = 0; t < count; t++) {
-    const Shape s = shape(t);
-    if (s == Shape::degenerate) out.degenerate++;
-    if (s == Shape::sliver) out.slivers.push_back(uint32_t(t));
-    if (s != Shape::good) continue;
+    if (shapes[t] == TriangleShape::degenerate) out.degenerate++;
+    if (shapes[t] == TriangleShape::sliver) out.slivers.push_back(uint32_t(t));
+    if (shapes[t] != TriangleShape::good) continue;
     out.kept.push_back(uint32_t(t));
     out.indices.insert(out.indices.end(), index + 3 * t, index + 3 * t + 3);
   }

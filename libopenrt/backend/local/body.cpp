@@ -1,4 +1,4 @@
-// body.cpp: see body.h. Small geometries share one Embree geometry, large ones have their own; slivers get a second look.
+// body.cpp: see body.h. Small geometries share one Embree geometry, large ones have their own; slivers are met in double.
 #include "backend/local/body.h"
 
 #include <algorithm>
@@ -6,6 +6,7 @@
 
 #include "backend/local/bake.h"
 #include "backend/local/survey.h"
+#include "render/huge_spheres.h"
 
 namespace openrt {
 namespace {
@@ -54,7 +55,10 @@ void BodyBuilder::addTriangles(const Geometry& g, const Matrix4d& toKernel, uint
   const bool whole = baked.indices.empty() && baked.slivers.empty() && baked.degenerate == 0;
   const size_t kept = whole ? g.primitives() : baked.kept.size();
   const uint32_t* index = g.indices->as<uint32_t>();
-  if (!baked.slivers.empty()) merge(baked.vertices, index, &baked.slivers, 0, entry, mask, true);
+  if (!baked.slivers.empty()) {
+    Part& part = merge(baked.vertices, index, &baked.slivers, 0, entry, mask, true);
+    part.openEdges.insert(part.openEdges.end(), baked.openEdges.begin(), baked.openEdges.end());
+  }
   if (kept < mergeBelow) {
     if (kept) merge(baked.vertices, index, whole ? nullptr : &baked.kept, kept, entry, mask, false);
     return;
@@ -74,10 +78,10 @@ void BodyBuilder::addTriangles(const Geometry& g, const Matrix4d& toKernel, uint
 }
 
 // Triangles of `which` (null: the first count) join the merged geometry of their kind.
-void BodyBuilder::merge(const std::vector<float>& vertices, const uint32_t* index, const std::vector<uint32_t>* which,
-                        size_t count, uint32_t entry, uint32_t mask, bool filtered) {
-  auto& part = merged_[{mask, filtered}];
-  if (part && part->vertices.size() / 3 > mergedVertices) attachTriangles(*body_, device_, std::move(part), mask, filtered);
+Part& BodyBuilder::merge(const std::vector<float>& vertices, const uint32_t* index, const std::vector<uint32_t>* which,
+                         size_t count, uint32_t entry, uint32_t mask, bool slivers) {
+  auto& part = merged_[{mask, slivers}];
+  if (part && part->vertices.size() / 3 > mergedVertices) attachTriangles(*body_, device_, std::move(part), mask, slivers);
   if (!part) part = std::make_unique<Part>();
   const uint32_t base = uint32_t(part->vertices.size() / 3);
   part->vertices.insert(part->vertices.end(), vertices.begin(), vertices.end());
@@ -89,11 +93,21 @@ void BodyBuilder::merge(const std::vector<float>& vertices, const uint32_t* inde
     part->recordOf.push_back(entry);
     part->primitiveOf.push_back(t);
   }
+  return *part;
 }
 
 void BodyBuilder::addSphere(const Geometry& g, const Matrix4d& toKernel, uint32_t entry, uint32_t mask) {
+  const Matrix4d unit = toKernel * uniformScale(g.width);
+  if (isHugeSphere(unit)) {
+    auto& part = hugeSpheres_[mask];
+    if (!part) part = std::make_unique<Part>();
+    part->spheres.push_back(unit);
+    part->recordOf.push_back(entry);
+    part->primitiveOf.push_back(0);
+    return;
+  }
   if (!similarity(toKernel)) {
-    addInstance(unitSpheres_.get(mask), toKernel * uniformScale(g.width), entry);
+    addInstance(unitSpheres_.get(mask), unit, entry);
     return;
   }
   auto& part = spheres_[mask];
@@ -111,6 +125,8 @@ std::shared_ptr<Body> BodyBuilder::finish() {
     if (part) attachTriangles(*body_, device_, std::move(part), key.first, key.second);
   for (auto& [mask, part] : spheres_)
     if (part) attachRound(*body_, device_, std::move(part), mask, RTC_GEOMETRY_TYPE_SPHERE_POINT);
+  for (auto& [mask, part] : hugeSpheres_)
+    if (part) attachHugeSpheres(*body_, device_, std::move(part), mask);
   for (const VertexOf& v : vertexOf_) body_->vertices[v.entry] = v.part->vertices.data() + v.offset;
   rtcCommitScene(body_->scene);
   return std::move(body_);

@@ -41,14 +41,14 @@ class BodyBuilder {
  private:
   void addTriangles(const Geometry& geometry, const Matrix4d& toKernel, uint32_t entry, uint32_t mask);
   void addSphere(const Geometry& geometry, const Matrix4d& toKernel, uint32_t entry, uint32_t mask);
-  void merge(const std::vector<float>& vertices, const uint32_t* index, const std::vector<uint32_t>* which, size_t count,
-             uint32_t entry, uint32_t mask, bool filtered);
+  Part& merge(const std::vector<float>& vertices, const uint32_t* index, const std::vector<uint32_t>* which, size_t count,
+              uint32_t entry, uint32_t mask, bool slivers);
 
   const EmbreeDevice& device_;
   UnitSpheres& unitSpheres_;
   std::shared_ptr<Body> body_;
-  std::map<std::pair<uint32_t, bool>, std::unique_ptr<Part>> merged_; // triangles of small geometries, by (mask, filtered)
-  std::map<uint32_t, std::unique_ptr<Part>> spheres_;                 // by mask
+  std::map<std::pair<uint32_t, bool>, std::unique_ptr<Part>> merged_; // triangles of small geometries, by (mask, slivers)
+  std::map<uint32_t, std::unique_ptr<Part>> spheres_, hugeSpheres_;   // by mask
   struct VertexOf {                                                   // where an entry's vertices lie
     uint32_t entry;
     const Part* part;

@@ -29,6 +29,7 @@ struct QueryOptions {
 inline const RTCSceneFlags sceneFlags = RTCSceneFlags(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENTS);
 struct QueryContext : RTCRayQueryContext {
   const void* user;
+  RTCFilterFunctionN takes; // the query's filter, for geometries of our own
 };
 struct Query {
   QueryContext context;
@@ -36,6 +37,7 @@ struct Query {
   explicit Query(const QueryOptions& options) {
     rtcInitRayQueryContext(&context);
     context.user = options.user;
+    context.takes = options.filter;
     rtcInitIntersectArguments(&arguments);
     arguments.context = &context;
     arguments.filter = options.filter;
@@ -67,12 +69,14 @@ inline void occluded8(RTCScene scene, const int* valid, RTCRay8& rays, bool cohe
 inline const RTCSceneFlags sceneFlags = RTCSceneFlags(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
 struct QueryContext : RTCIntersectContext {
   const void* user;
+  RTCFilterFunctionN takes; // the query's filter, for geometries of our own
 };
 struct Query {
   QueryContext context;
   explicit Query(const QueryOptions& options) {
     rtcInitIntersectContext(&context);
     context.user = options.user;
+    context.takes = options.filter;
     context.filter = options.filter;
     context.flags = options.coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
   }

@@ -2,40 +2,11 @@
 #include "backend/local/body.h"
 #include "render/rays.h"
 
-#include <cmath>
 #include <stdexcept>
 #include <string>
 
 namespace openrt {
 namespace {
-
-// A triangle hit again in double (Moeller and Trumbore's test); false where Embree's single precision was wrong about a sliver.
-bool confirm(const Part& part, uint32_t primitive, const Vec3d& org, const Vec3d& dir, double t) {
-  const auto vertex = [&](int k) {
-    const float* v = part.vertices.data() + 3 * size_t(part.indices[3 * size_t(primitive) + k]);
-    return Vec3d{v[0], v[1], v[2]};
-  };
-  const Vec3d a = vertex(0), e1 = vertex(1) - a, e2 = vertex(2) - a;
-  const Vec3d p = cross(dir, e2);
-  const double det = dot(e1, p);
-  if (det == 0) return false;
-  const Vec3d s = org - a, q = cross(s, e1);
-  const double u = dot(s, p) / det, v = dot(dir, q) / det, exact = dot(e2, q) / det;
-  const double size = std::max(length(e1), length(e2)), reach = length(dir) * std::fabs(t);
-  return u >= -1e-5 && v >= -1e-5 && u + v <= 1 + 1e-5 && std::fabs(exact - t) * length(dir) <= 1e-5 * (size + reach);
-}
-
-void confirmSlivers(const RTCFilterFunctionNArguments* a) {
-  const Part& part = *static_cast<const Part*>(a->geometryUserPtr);
-  uint64_t wrong = 0;
-  for (unsigned i = 0; i < a->N; i++) {
-    if (a->valid[i] != -1) continue;
-    const Vec3d org{RTCRayN_org_x(a->ray, a->N, i), RTCRayN_org_y(a->ray, a->N, i), RTCRayN_org_z(a->ray, a->N, i)};
-    const Vec3d dir{RTCRayN_dir_x(a->ray, a->N, i), RTCRayN_dir_y(a->ray, a->N, i), RTCRayN_dir_z(a->ray, a->N, i)};
-    if (!confirm(part, RTCHitN_primID(a->hit, a->N, i), org, dir, RTCRayN_tfar(a->ray, a->N, i))) a->valid[i] = 0, wrong++;
-  }
-  if (wrong) *part.wrongHits += wrong;
-}
 
 void attach(PartScene& to, RTCGeometry geometry, std::unique_ptr<Part> part, uint32_t mask, uint32_t slot = nextSlot) {
   rtcSetGeometryMask(geometry, mask);
@@ -81,7 +52,12 @@ RTCScene newScene(const EmbreeDevice& device) {
   return scene;
 }
 
-void attachTriangles(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part, uint32_t mask, bool filtered) {
+void attachTriangles(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part, uint32_t mask, bool slivers) {
+  if (slivers) {
+    RTCGeometry geometry = newSlivers(device, *part);
+    attach(to, geometry, std::move(part), mask);
+    return;
+  }
   RTCGeometry geometry = rtcNewGeometry(device.device, RTC_GEOMETRY_TYPE_TRIANGLE);
   const size_t points = part->vertices.size() / 3;
   part->vertices.resize(part->vertices.size() + 4); // kernels read past the end
@@ -90,12 +66,11 @@ void attachTriangles(PartScene& to, const EmbreeDevice& device, std::unique_ptr<
   const uint32_t* indices = part->sharedIndices ? part->sharedIndices->as<uint32_t>() : part->indices.data();
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, part->vertices.data(), 0, 12, points);
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, indices, 0, 12, corners / 3);
-  if (filtered) {
-    part->wrongHits = &device.wrongHits;
-    rtcSetGeometryUserData(geometry, part.get());
-    rtcSetGeometryIntersectFilterFunction(geometry, confirmSlivers);
-    rtcSetGeometryOccludedFilterFunction(geometry, confirmSlivers);
-  }
+  attach(to, geometry, std::move(part), mask);
+}
+
+void attachHugeSpheres(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part, uint32_t mask) {
+  RTCGeometry geometry = newHugeSpheres(device, *part);
   attach(to, geometry, std::move(part), mask);
 }
 

@@ -20,7 +20,7 @@ struct EmbreeDevice {
   RTCDevice device;
   bool wide = true;                           // packets of 16 are native
   std::atomic<int64_t> bytes{0};              // held by acceleration structures
-  mutable std::atomic<uint64_t> wrongHits{0}; // on slivers, rejected
+  mutable std::atomic<uint64_t> wrongHits{0}; // on slivers, of single precision, not taken
 };
 
 struct Body;
@@ -33,7 +33,9 @@ struct Part {
   std::vector<float> vertices; // as Embree reads them
   std::vector<uint32_t> indices;
   ArrayPtr sharedIndices;
-  std::atomic<uint64_t>* wrongHits = nullptr; // of the device, which outlives it; where hits are validated
+  std::vector<uint8_t> openEdges;             // of slivers, a triangle each: bits of edges that it shares with what is none
+  std::vector<Matrix4d> spheres;              // huge ones: the unit sphere's frame to that of the geometry
+  std::atomic<uint64_t>* wrongHits = nullptr; // of slivers: the device's, which outlives it
   std::shared_ptr<const Body> object;         // an instance of it; record is the first of the place
 };
 
@@ -52,8 +54,13 @@ struct PartScene {
 inline constexpr uint32_t nextSlot = ~0u; // behind the parts there are
 
 RTCScene newScene(const EmbreeDevice& device); // robust mode
-// filtered: hits are validated in double (slivers).
-void attachTriangles(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part, uint32_t mask, bool filtered);
+// slivers: they are met in double precision.
+void attachTriangles(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part, uint32_t mask, bool slivers);
+// The geometry of slivers, not yet attached; the part stays where it is.
+RTCGeometry newSlivers(const EmbreeDevice& device, Part& part);
+// Huge spheres and ellipsoids (render/huge_spheres.h): part.spheres, met in double precision.
+void attachHugeSpheres(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part, uint32_t mask);
+RTCGeometry newHugeSpheres(const EmbreeDevice& device, Part& part); // not yet attached
 // Spheres or round linear curves; part.vertices have stride 4: centre and radius. slot: the geometry id, of those in parts.
 void attachRound(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part, uint32_t mask, RTCGeometryType type,
                  uint32_t slot = nextSlot);

@@ -2,6 +2,7 @@
 // acceleration structure; moved dynamic instances and redefined dynamic objects change it in place; all else lays it out anew
 // from the parts that did not change.
 #include "backend/local/local.h"
+#include "backend/local/near_lamps.h"
 #include "shading/running.h"
 
 #include <chrono>
@@ -57,6 +58,11 @@ void LocalBackend::prepare() {
   unreachedLights_ = choice.unreached;
   transportReason_ = std::move(choice.reason);
   next->emitters.build(*next, snapshot_.get(), samePlaces_);
+  if (!saidNearLamp_ && options_.log && next->emitters.shapes() != (snapshot_ ? snapshot_->emitters.shapes() : nullptr)) {
+    const std::string warning = warnOfNearLamps(*next);
+    if (!warning.empty()) options_.log(2, warning.c_str(), options_.logUser);
+    saidNearLamp_ = !warning.empty();
+  }
   next->manyLights = makeManyLights(*next, snapshot_.get());
   if (choice.transport == RT_TRANSPORT_LIGHT && next->camera.shader.shaderClass && next->camera.shader.shaderClass->project) {
     auto sources = std::make_shared<const LightSources>(*next, samePlaces_ ? snapshot_.get() : nullptr);

@@ -174,11 +174,15 @@ double Survey::scale(const Vec3d& origin) const {
   if (world.empty()) return 1;
   const Vec3d a = world.low - origin, b = world.high - origin;
   const double far = std::max({std::fabs(a.x), std::fabs(a.y), std::fabs(a.z), std::fabs(b.x), std::fabs(b.y), std::fabs(b.z)});
-  // Small scenes grow to about 1. Large ones shrink to the upper end of what the kernels do well (sizes of 1e-10 to 1e12), no
-  // further: one thing put out of sight must not make everything else too small. Beyond 1e20 things are not drawn at all.
-  const double target = far < 1e-4 ? 1.0 : 1e10;
-  if (!(far > 0 && (far < 1e-4 || far > target))) return 1;
-  return std::exp2(std::floor(std::log2(target / std::min(far, 1e20))));
+  if (!(far > 0)) return 1;
+  const auto powerOfTwo = [](double x) { return std::exp2(std::floor(std::log2(x))); };
+  if (far < 1e-4) return powerOfTwo(1 / far); // small scenes grow to about 1
+  // Large ones shrink to the upper end of what the kernels do well (sizes of 1e-10 to 1e12), but no further than what most of the
+  // scene is made of stays above 1e-3: one thing put out of sight must not change everything else. Distances of 1e17 are the
+  // kernels' limit. Beyond 1e20 things are not drawn at all.
+  const double reach = std::min(far, 1e20), comfortable = 1e10 / reach;
+  if (comfortable >= 1) return 1;
+  return powerOfTwo(std::max(comfortable, std::min({1.0, std::ldexp(1e-3, -detail_), 1e17 / reach})));
 }
 
 } // namespace openrt

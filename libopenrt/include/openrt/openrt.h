@@ -439,7 +439,7 @@ typedef struct RTstats {
   uint64_t unreachedLights; /* lights without extent in a path-traced scene with mirrors or glass: what they send by way of these
                                is seen by RT_TRANSPORT_LIGHT alone; 0 there */
   uint64_t shaderFaults;    /* hits at which a shader answered with NaN or infinity; taken as 0, the log names the class */
-  uint64_t wrongHits;       /* hits on slivers that a check in double precision rejected */
+  uint64_t wrongHits;       /* times single precision would find a sliver (decision 41) that a ray misses in double; not taken */
   uint64_t frame;           /* number of the finished frame, counted from 1; 0: none yet */
   /* backend=cluster, since the context was made; else 0. Tiles: jobs, parts of tiles too. */
   uint32_t workers;                /* that are there now, this process not counted */

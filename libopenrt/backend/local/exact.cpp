@@ -1,0 +1,133 @@
+// exact.cpp: see exact.h. Numbers that double precision cannot tell from 0 are worked out again in long double, which has 64 bits
+// of mantissa on x86: products of three differences of floats, of triangles a million times longer than high, met at 1e-7.
+#include "backend/local/exact.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace openrt {
+namespace {
+
+double largest(const Vec3d& v) { return std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)}); }
+
+// Twice the volume that the direction and the edge from p to q span with the origin; exactly the negative for q and p. On which
+// side of the edge the ray passes (J. Pluecker's coordinates; as S. Woop, C. Benthin, I. Wald: Watertight ray/triangle
+// intersection, JCGT 2(1), 2013, but for any direction).
+template <class T> T side(const Vec3d& p, const Vec3d& q, const Vec3d& d) {
+  const T ex = T(q.x) - p.x, ey = T(q.y) - p.y, ez = T(q.z) - p.z, sx = T(q.x) + p.x, sy = T(q.y) + p.y, sz = T(q.z) + p.z;
+  return (ey * sz - ez * sy) * d.x + (ez * sx - ex * sz) * d.y + (ex * sy - ey * sx) * d.z;
+}
+
+// The bound of the rounding error depends on the edge alone, so both of its triangles choose the same precision. 2^-20 of the
+// largest value: a weight must be right to about 1e-6 also where the ray grazes.
+double sideOf(const Vec3d& p, const Vec3d& q, const Vec3d& d) {
+  const double rough = side<double>(p, q, d);
+  const double doubt = 0x1p-30 * largest(q - p) * (largest(p) + largest(q)) * largest(d);
+  return std::fabs(rough) > doubt ? rough : double(side<long double>(p, q, d));
+}
+
+struct Sides {
+  double ac, ba, cb; // weights of b, c and a, times their sum
+};
+
+Sides sidesOf(const SeenTriangle& s, const Vec3d& d) { return {sideOf(s.a, s.c, d), sideOf(s.b, s.a, d), sideOf(s.c, s.b, d)}; }
+
+// The point (1 - s) p + s q of an edge that is next to the line along d through the origin.
+double nextOnEdge(const Vec3d& p, const Vec3d& q, const Vec3d& d, double& s, double& t) {
+  const Vec3d e = q - p;
+  const double dd = dot(d, d);
+  // Both without what is along the line.
+  const Vec3d pp = p - d * (dot(p, d) / dd), ee = e - d * (dot(e, d) / dd);
+  const double square = dot(ee, ee);
+  s = square > 0 ? std::clamp(-dot(pp, ee) / square, 0.0, 1.0) : 0;
+  t = dot(p + e * s, d) / dd;
+  return length(pp + ee * s);
+}
+
+} // namespace
+
+bool passesClearly(const SeenTriangle& s, const Vec3d& d, double edge) {
+  // Eight roundings of floats are 2^-21 of the largest product; a gap that is closed (slivers.cpp) is as wide.
+  const double doubt = 0x1p-18 * edge * std::max({largest(s.a), largest(s.b), largest(s.c)}) * largest(d);
+  const auto apart = [doubt](double p, double q) { return (p > doubt && q < -doubt) || (p < -doubt && q > doubt); };
+  const double ac = side<double>(s.a, s.c, d), ba = side<double>(s.b, s.a, d);
+  if (apart(ac, ba)) return true;
+  const double cb = side<double>(s.c, s.b, d);
+  return apart(ac, cb) || apart(ba, cb);
+}
+
+bool meets(const SeenTriangle& s, const Vec3d& d, Meeting& at) {
+  const Sides w = sidesOf(s, d);
+  const bool front = w.ac >= 0 && w.ba >= 0 && w.cb >= 0, back = w.ac <= 0 && w.ba <= 0 && w.cb <= 0;
+  if (!front && !back) return false;
+  const double sum = w.ac + w.ba + w.cb;
+  if (sum == 0) return false;
+  at.u = w.ac / sum, at.v = w.ba / sum;
+  const Vec3d p = s.a * (w.cb / sum) + s.b * at.u + s.c * at.v;
+  at.t = dot(p, d) / dot(d, d);
+  return std::isfinite(at.t);
+}
+
+double nextTo(const SeenTriangle& s, const Vec3d& d, unsigned edges, Meeting& at) {
+  double best = HUGE_VAL, share = 0, t = 0;
+  const auto nearer = [&](unsigned edge, const Vec3d& p, const Vec3d& q) {
+    if (!(edges & (1u << edge))) return false;
+    const double distance = nextOnEdge(p, q, d, share, t);
+    if (!(distance < best)) return false;
+    best = distance, at.t = t;
+    return true;
+  };
+  if (nearer(0, s.a, s.c)) at.u = 0, at.v = share;
+  if (nearer(1, s.a, s.b)) at.u = share, at.v = 0;
+  if (nearer(2, s.b, s.c)) at.u = 1 - share, at.v = share;
+  return best;
+}
+
+double meetsPlane(const SeenTriangle& s, const Vec3d& d) {
+  const Vec3d n = cross(s.b - s.a, s.c - s.a);
+  return dot(n, s.a) / dot(n, d);
+}
+
+bool foundInSingle(const SeenTriangle& s, const Vec3d& direction, float near, float far) {
+  struct V {
+    float x, y, z;
+    V operator+(const V& o) const { return {x + o.x, y + o.y, z + o.z}; }
+    V operator-(const V& o) const { return {x - o.x, y - o.y, z - o.z}; }
+  };
+  const auto rounded = [](const Vec3d& v) { return V{float(v.x), float(v.y), float(v.z)}; };
+  const auto times = [](const V& p, const V& q) { return p.x * q.x + p.y * q.y + p.z * q.z; };
+  const auto across = [](const V& p, const V& q) {
+    return V{p.y * q.z - p.z * q.y, p.z * q.x - p.x * q.z, p.x * q.y - p.y * q.x};
+  };
+  const V d = rounded(direction), a = rounded(s.a), b = rounded(s.b), c = rounded(s.c), e0 = c - a, e1 = a - b, e2 = b - c;
+  const float u = times(across(e0, c + a), d), v = times(across(e1, a + b), d), w = times(across(e2, b + c), d);
+  const float slack = 0x1p-23f * std::fabs(u + v + w);
+  if (!(std::min({u, v, w}) >= -slack || std::max({u, v, w}) <= slack)) return false;
+  const V n = across(e0, e1);
+  const float t = times(a, n) / times(n, d);
+  return t >= near && t <= far;
+}
+
+void settle(const Record& r, uint32_t primitive, const Vec3d& origin, const Vec3d& direction, float near, float far, float& t,
+            float& u, float& v) {
+  const uint32_t* corner = r.indices + 3 * size_t(primitive);
+  const auto place = [&](int k) {
+    const float* p = r.vertices + 3 * size_t(corner[k]);
+    return r.instanced ? Vec3d{p[0], p[1], p[2]} : Vec3d{p[0], p[1], p[2]} * double(r.scale);
+  };
+  Vec3d from = origin, d = direction;
+  if (r.instanced) {
+    Matrix4d m;
+    for (int i = 0; i < 3; i++)
+      for (int j = 0; j < 4; j++) m.m[size_t(4 * j + i)] = r.toRender.r[i][j];
+    const Matrix4d back = inverse(m);
+    from = back.point(origin), d = back.vector(direction);
+  }
+  const SeenTriangle seen{place(0) - from, place(1) - from, place(2) - from};
+  Meeting at;
+  if (!meets(seen, d, at) && !std::isfinite(nextTo(seen, d, 7, at))) return;
+  if (!std::isfinite(at.t) || !std::isfinite(at.u) || !std::isfinite(at.v)) return;
+  t = std::clamp(float(at.t), near, far), u = float(at.u), v = float(at.v);
+}
+
+} // namespace openrt

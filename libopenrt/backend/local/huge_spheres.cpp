@@ -1,0 +1,90 @@
+// huge_spheres.cpp: spheres and ellipsoids whose surface single precision cannot place (render/huge_spheres.h): the ground as a
+// sphere, of which the eye is a millionth of the radius away. Each is met in double precision in its own frame, as a geometry of
+// our own. Called by render threads.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "backend/local/embree_parts.h"
+#include "backend/local/own_geometry.h"
+
+namespace openrt {
+namespace {
+
+// Where the ray meets the unit sphere, nearest first; false if it does not. The product of both distances comes from how far the
+// origin is from the surface, so that the nearer one keeps its digits.
+bool meetsUnitSphere(const Vec3d& o, const Vec3d& d, double t[2]) {
+  const double dd = dot(d, d), middle = -dot(o, d) / dd;
+  const Vec3d across = o + d * middle;
+  const double h = length(across), square = (1 - h) * (1 + h) / dd;
+  if (!(square >= 0)) return false;
+  const double half = std::sqrt(square), far = middle + std::copysign(half, middle), distance = length(o);
+  const double near = far != 0 ? (distance - 1) * (distance + 1) / dd / far : 0;
+  t[0] = std::min(near, far), t[1] = std::max(near, far);
+  return std::isfinite(near) && std::isfinite(far);
+}
+
+struct SeenSphere {
+  Matrix4d toUnit;
+  explicit SeenSphere(const Matrix4d& unit) : toUnit(inverse(unit)) {}
+  bool meets(const Lane& lane, double t[2]) const {
+    return meetsUnitSphere(toUnit.point(lane.origin), toUnit.vector(lane.direction), t);
+  }
+  // Outwards: by the transpose of the inverse.
+  Vec3d normalAt(const Lane& lane, double t) const {
+    const Vec3d p = toUnit.point(lane.origin + lane.direction * t);
+    return {dot(toUnit.column(0), p), dot(toUnit.column(1), p), dot(toUnit.column(2), p)};
+  }
+};
+
+const Matrix4d& unitOf(const void* part, uint32_t primitive) { return static_cast<const Part*>(part)->spheres[primitive]; }
+
+void boundsOf(const RTCBoundsFunctionArguments* a) {
+  const Matrix4d& m = unitOf(a->geometryUserPtr, a->primID);
+  float low[3], high[3];
+  for (size_t k = 0; k < 3; k++) {
+    const double half = std::sqrt(m.m[k] * m.m[k] + m.m[4 + k] * m.m[4 + k] + m.m[8 + k] * m.m[8 + k]) * (1 + 1e-6);
+    const double slack = 1e-6 * std::fabs(m.m[12 + k]);
+    low[k] = float(m.m[12 + k] - half - slack), high[k] = float(m.m[12 + k] + half + slack);
+  }
+  a->bounds_o->lower_x = low[0], a->bounds_o->lower_y = low[1], a->bounds_o->lower_z = low[2];
+  a->bounds_o->upper_x = high[0], a->bounds_o->upper_y = high[1], a->bounds_o->upper_z = high[2];
+}
+
+void intersect(const RTCIntersectFunctionNArguments* a) {
+  const SeenSphere sphere(unitOf(a->geometryUserPtr, a->primID));
+  RTCRayN* rays = RTCRayHitN_RayN(a->rayhit, a->N);
+  for (unsigned i = 0; i < a->N; i++) {
+    double t[2];
+    if (a->valid[i] != -1) continue;
+    const Lane lane(rays, a->N, i);
+    if (!sphere.meets(lane, t)) continue;
+    for (const double at : t)
+      if (lane.reaches(at) && takeHit(a, i, at, 0, 0, sphere.normalAt(lane, at))) break;
+  }
+}
+
+void occluded(const RTCOccludedFunctionNArguments* a) {
+  const SeenSphere sphere(unitOf(a->geometryUserPtr, a->primID));
+  for (unsigned i = 0; i < a->N; i++) {
+    double t[2];
+    if (a->valid[i] != -1) continue;
+    const Lane lane(a->ray, a->N, i);
+    if (sphere.meets(lane, t) && (lane.reaches(t[0]) || lane.reaches(t[1])))
+      RTCRayN_tfar(a->ray, a->N, i) = -std::numeric_limits<float>::infinity();
+  }
+}
+
+} // namespace
+
+RTCGeometry newHugeSpheres(const EmbreeDevice& device, Part& part) {
+  RTCGeometry geometry = rtcNewGeometry(device.device, RTC_GEOMETRY_TYPE_USER);
+  rtcSetGeometryUserPrimitiveCount(geometry, unsigned(part.spheres.size()));
+  rtcSetGeometryUserData(geometry, &part);
+  rtcSetGeometryBoundsFunction(geometry, boundsOf, nullptr);
+  rtcSetGeometryIntersectFunction(geometry, intersect);
+  rtcSetGeometryOccludedFunction(geometry, occluded);
+  return geometry;
+}
+
+} // namespace openrt

@@ -1,0 +1,110 @@
+// near_lamps.cpp: see near_lamps.h.
+#include "backend/local/near_lamps.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <vector>
+
+#include "render/rays.h"
+
+namespace openrt {
+namespace {
+
+constexpr uint32_t most = 1024; // shapes that are looked at
+constexpr double wanted = 128;  // times the step: then a small lamp is right to about 1.5 %
+
+// From the middle of a shape to where it sends light; skip: how far the shape itself reaches there.
+struct Probe {
+  double origin[3], direction[3], skip;
+  uint32_t record;
+};
+
+void addTriangle(const EmissiveShapes::Shape& shape, std::vector<Probe>& out) {
+  const auto corner = [&](int c) { return Vec3d{shape.corner[c][0], shape.corner[c][1], shape.corner[c][2]}; };
+  const Vec3d n = cross(corner(1) - corner(0), corner(2) - corner(0)), m = (corner(0) + corner(1) + corner(2)) * (1 / 3.0);
+  const double l = length(n);
+  if (!(l > 0)) return;
+  for (const int side : {1, 2}) {
+    const double s = (side == 1 ? 1 : -1) / l;
+    if (shape.sides & side) out.push_back({{m.x, m.y, m.z}, {n.x * s, n.y * s, n.z * s}, 0, shape.record});
+  }
+}
+
+void addSphere(const EmissiveShapes::Shape& shape, const Record& r, std::vector<Probe>& out) {
+  for (int axis = 0; axis < 3; axis++)
+    for (const double sign : {-1.0, 1.0}) {
+      Probe p{{r.toRender.r[0][3], r.toRender.r[1][3], r.toRender.r[2][3]}, {}, 0, shape.record};
+      for (int k = 0; k < 3; k++)
+        p.direction[k] = sign * double(r.toRender.r[k][axis]), p.skip += p.direction[k] * p.direction[k];
+      p.skip = std::sqrt(p.skip);
+      if (!(p.skip > 0)) continue;
+      for (double& d : p.direction) d /= p.skip;
+      out.push_back(p);
+    }
+}
+
+// How far rays step off what was met, about as render/points.cpp works it out; unit: what a float can tell apart there.
+double stepOff(const Record& r, uint32_t primitive, const Probe& p, double t, double& unit) {
+  double largest[3] = {}, along = 0, all = 0;
+  float corner[3][3];
+  if (r.primitive == edit::Primitive::Triangles) cornersOf(r, primitive, corner);
+  for (int k = 0; k < 3; k++) {
+    largest[k] = std::fabs(p.origin[k] + t * p.direction[k]);
+    if (r.primitive == edit::Primitive::Triangles)
+      for (const auto& c : corner) largest[k] = std::max(largest[k], std::fabs(double(c[k])));
+    along += largest[k] * std::fabs(p.direction[k]), all = std::max(all, largest[k]);
+  }
+  unit = 0x1p-23 * along;
+  return 7 * 0x1p-24 * std::max(along, 0x1p-6 * all);
+}
+
+} // namespace
+
+std::string warnOfNearLamps(const RenderScene& scene) {
+  const EmissiveShapes* shapes = scene.emitters.shapes();
+  if (!shapes || shapes->size() == 0) return {};
+  std::vector<Probe> probes;
+  const auto count = uint32_t(shapes->size()), stride = std::max(1u, count / most);
+  for (uint32_t i = 0; i < count; i += stride) {
+    const EmissiveShapes::Shape& shape = (*shapes)[i];
+    if (!(shape.power > 0)) continue;
+    if (shape.sphere)
+      addSphere(shape, scene.records[shape.record], probes);
+    else
+      addTriangle(shape, probes);
+  }
+  Arena arena;
+  Rays rays;
+  RayHits hits;
+  rays.allocate(arena, uint32_t(probes.size())), hits.allocate(arena, uint32_t(probes.size()));
+  auto* own = arena.take<uint32_t>(padded(uint32_t(probes.size())));
+  for (uint32_t i = 0; i < probes.size(); i++) {
+    for (int k = 0; k < 3; k++) rays.org[k][i] = float(probes[i].origin[k]), rays.dir[k][i] = float(probes[i].direction[k]);
+    rays.tnear[i] = 0, rays.tfar[i] = std::numeric_limits<float>::infinity();
+    own[i] = probes[i].record;
+  }
+  scene.kernel->intersectOthers(rays, own, hits);
+  double worst = 1, gap = 0, step = 0;
+  for (uint32_t i = 0; i < probes.size(); i++) {
+    if (hits.record[i] == noHit) continue;
+    const Record& r = scene.records[hits.record[i]];
+    if (r.primitive != edit::Primitive::Triangles && r.primitive != edit::Primitive::Sphere) continue;
+    double unit = 0;
+    const double off = stepOff(r, hits.primitive[i], probes[i], double(hits.t[i]), unit),
+                 distance = double(hits.t[i]) - probes[i].skip;
+    if (!(distance > unit) || !(distance < worst * wanted * off)) continue;
+    worst = distance / (wanted * off), gap = distance, step = off;
+  }
+  if (!(gap > 0)) return {};
+  char text[320];
+  std::snprintf(
+      text, sizeof text,
+      "a lamp is %.3g away from the surface that it lights, but rays step %.2g off that surface: what it gets from the lamp is "
+      "wrong. Keep lamps of this world %.2g away, or make the surface smaller (docs/accuracy.md)",
+      gap, step, wanted * step);
+  return text;
+}
+
+} // namespace openrt

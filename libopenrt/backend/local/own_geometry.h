@@ -1,0 +1,50 @@
+// own_geometry.h: what geometries that are met by code of ours, not Embree's, do with a packet of rays. Called by render threads.
+#pragma once
+
+#include "backend/local/embree.h"
+#include "scene/matrix.h"
+
+namespace openrt {
+
+// A lane of one of Embree's packets.
+struct Lane {
+  Vec3d origin, direction;
+  float near, far;
+  Lane(RTCRayN* ray, unsigned n, unsigned i)
+      : origin{RTCRayN_org_x(ray, n, i), RTCRayN_org_y(ray, n, i), RTCRayN_org_z(ray, n, i)}, direction{RTCRayN_dir_x(ray, n, i),
+                                                                                                        RTCRayN_dir_y(ray, n, i),
+                                                                                                        RTCRayN_dir_z(ray, n, i)},
+        near(RTCRayN_tnear(ray, n, i)), far(RTCRayN_tfar(ray, n, i)) {}
+  bool reaches(double t) const { return float(t) >= near && float(t) <= far; }
+};
+
+// Stores a hit of lane i, unless the filter of the query refuses it, which sees it as of a packet of one ray.
+inline bool takeHit(const RTCIntersectFunctionNArguments* a, unsigned i, double t, double u, double v, const Vec3d& normal) {
+  RTCRayN* rays = RTCRayHitN_RayN(a->rayhit, a->N);
+  RTCHit hit{};
+  hit.Ng_x = float(normal.x), hit.Ng_y = float(normal.y), hit.Ng_z = float(normal.z);
+  hit.u = float(u), hit.v = float(v);
+  hit.primID = a->primID, hit.geomID = a->geomID, hit.instID[0] = a->context->instID[0];
+  if (const auto* context = static_cast<const QueryContext*>(a->context); context->takes) {
+    RTCRay ray{};
+    ray.org_x = RTCRayN_org_x(rays, a->N, i), ray.org_y = RTCRayN_org_y(rays, a->N, i), ray.org_z = RTCRayN_org_z(rays, a->N, i);
+    ray.dir_x = RTCRayN_dir_x(rays, a->N, i), ray.dir_y = RTCRayN_dir_y(rays, a->N, i), ray.dir_z = RTCRayN_dir_z(rays, a->N, i);
+    ray.tnear = RTCRayN_tnear(rays, a->N, i), ray.tfar = float(t);
+    ray.mask = RTCRayN_mask(rays, a->N, i), ray.id = RTCRayN_id(rays, a->N, i);
+    RTCHit seen = hit;
+    int valid = -1;
+    const RTCFilterFunctionNArguments one{
+        &valid, a->geometryUserPtr, a->context, reinterpret_cast<RTCRayN*>(&ray), reinterpret_cast<RTCHitN*>(&seen), 1};
+    context->takes(&one);
+    if (valid != -1) return false;
+  }
+  RTCHitN* hits = RTCRayHitN_HitN(a->rayhit, a->N);
+  RTCRayN_tfar(rays, a->N, i) = float(t);
+  RTCHitN_Ng_x(hits, a->N, i) = hit.Ng_x, RTCHitN_Ng_y(hits, a->N, i) = hit.Ng_y, RTCHitN_Ng_z(hits, a->N, i) = hit.Ng_z;
+  RTCHitN_u(hits, a->N, i) = hit.u, RTCHitN_v(hits, a->N, i) = hit.v;
+  RTCHitN_primID(hits, a->N, i) = hit.primID, RTCHitN_geomID(hits, a->N, i) = hit.geomID;
+  RTCHitN_instID(hits, a->N, i, 0) = hit.instID[0];
+  return true;
+}
+
+} // namespace openrt

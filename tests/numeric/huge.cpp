@@ -1,0 +1,145 @@
+// huge.cpp: things of sizes that single precision cannot hold beside each other: the ground as a sphere under an eye at a man's
+// height, and a thing so far away that nobody sees it, which must change nothing.
+#include <limits>
+
+#include "numeric/support.h"
+
+namespace numeric {
+namespace {
+
+constexpr float infinity = std::numeric_limits<float>::infinity();
+
+class Huge : public Scene {
+ protected:
+  // A sphere that touches the plane y = 0 from below at the origin; squashed: its height is a quarter of its width.
+  static RTid ground(double radius, bool squashed, RTid shader) {
+    rtPushMatrix();
+    rtLoadIdentity();
+    rtTranslated(0, squashed ? -radius / 4 : -radius, 0);
+    if (squashed) rtScaled(1, .25, 1);
+    const RTid object = rtBeginObject(0);
+    rtBindShader(shader);
+    rtSphere(radius);
+    rtEndObject();
+    rtBindShader(0);
+    const RTid instance = rtInstantiateObject(object);
+    rtPopMatrix();
+    return instance;
+  }
+  // Where a ray from (x, y, 0) meets it, by the half of the equation that keeps its digits.
+  static double meets(double radius, bool squashed, Vec from, Vec d) {
+    const long double s = squashed ? 4 : 1, r = static_cast<long double>(radius);
+    const long double o[3] = {from.x, s * from.y, from.z}, v[3] = {d.x, s * d.y, d.z}; // about the point of contact
+    const long double a = v[0] * v[0] + v[1] * v[1] + v[2] * v[2], b = o[0] * v[0] + (o[1] + r) * v[1] + o[2] * v[2];
+    const long double c = o[0] * o[0] + o[1] * o[1] + o[2] * o[2] + 2 * r * o[1], root = b * b - a * c;
+    if (root < 0) return HUGE_VAL;
+    const long double q = -(b + (b < 0 ? -sqrtl(root) : sqrtl(root)));
+    return static_cast<double>(b < 0 ? c / q : q / a);
+  }
+};
+
+TEST_F(Huge, TheGroundMayBeASphereOfAnyRadius) {
+  const Shader white("VRML97");
+  for (const double radius : {1e4, 1e5, 5e7, 1e8, 1e9, 1e10})
+    for (const bool squashed : {false, true}) {
+      const RTid instance = ground(radius, squashed, white);
+      rtRender();
+      double worst = 0;
+      for (int i = 0; i < 400; i++) {
+        const double down = .04 + 1.5 * i / 400, around = .7 * i;
+        const RTray ray{
+            {float(.1 * i), 2, 0},
+            0,
+            {float(std::cos(down) * std::cos(around)), float(-std::sin(down)), float(std::cos(down) * std::sin(around))},
+            infinity};
+        RThit hit;
+        rtCastRays(1, &ray, &hit);
+        const double expected = meets(radius, squashed, {double(ray.origin[0]), 2, 0},
+                                      {double(ray.direction[0]), double(ray.direction[1]), double(ray.direction[2])});
+        ASSERT_TRUE(std::isfinite(hit.t)) << radius << " " << squashed << " ray " << i;
+        worst = std::max(worst, std::fabs(double(hit.t) - expected) / expected);
+        uint8_t blocked[2];
+        RTray before = ray, beyond = ray;
+        before.tfar = hit.t * .99f, beyond.tfar = hit.t * 1.01f;
+        rtOccludedRays(1, &before, blocked);
+        rtOccludedRays(1, &beyond, blocked + 1);
+        EXPECT_FALSE(blocked[0]) << radius << " ray " << i;
+        EXPECT_TRUE(blocked[1]) << radius << " ray " << i;
+        EXPECT_GT(hit.normal[1], .9f);
+      }
+      EXPECT_LT(worst, 1e-6) << radius << " " << squashed;
+      rtDeleteInstance(instance);
+    }
+}
+
+TEST_F(Huge, WhatStandsOnAHugeSphereCastsItsShadow) {
+  const Shader white("VRML97");
+  use(directional({-1, -1, 0}));
+  for (const double radius : {1e5, 1e8, 1e10}) {
+    const RTid instance = ground(radius, false, white);
+    rtPushMatrix();
+    rtLoadIdentity();
+    rtTranslated(0, 1, 0); // a wall from the ground to a height of 2, in the plane x = 0
+    rtRotated(90, 0, 1, 0);
+    const RTid wall = place(square(white, 1));
+    rtPopMatrix();
+    rtPushMatrix();
+    rtLoadIdentity();
+    rtTranslated(0, 3, 0);
+    rtRotated(-90, 1, 0, 0);
+    const auto at = [&](double x) {
+      rtPushMatrix();
+      rtLoadIdentity();
+      rtTranslated(x, 3, .3);
+      rtRotated(-90, 1, 0, 0);
+      rtOrtho(1e-6);
+      rtPopMatrix();
+      return render();
+    };
+    rtPopMatrix();
+    expectGrey(at(1), .8 * std::sqrt(.5), 1e-4); // towards the light
+    for (const double x : {-.2, -1.0, -1.9}) expectGrey(at(x), 0);
+    expectGrey(at(-2.1), .8 * std::sqrt(.5), 1e-4);
+    rtDeleteInstance(instance);
+    rtDeleteInstance(wall);
+  }
+}
+
+// A picture of small and of large things, with and without something at the end of the world.
+TEST_F(Huge, WhatIsFarAwayChangesNothingElse) {
+  const Shader white("VRML97");
+  use(tilted(30));
+  std::vector<RTid> all;
+  for (const double size : {1e-3, .05, 1.0, 30.0}) {
+    rtPushMatrix();
+    rtLoadIdentity();
+    rtTranslated(0, 0, -size);
+    rtRotated(20, 1, 1, 0);
+    all.push_back(place(square(white, size / 2)));
+    rtPopMatrix();
+  }
+  rtPushMatrix();
+  rtLoadIdentity();
+  rtTranslated(0, 0, .1);
+  rtPerspective(60);
+  rtPopMatrix();
+  const std::vector<float> alone = picture(48);
+  EXPECT_GT(mean(alone), .1);
+  for (const double far : {1e6, 1e12, 1e16, 1e19, 1e20, 1e25}) {
+    rtPushMatrix();
+    rtLoadIdentity();
+    rtTranslated(0, far, 0);
+    const RTid thing = place(square(white, 1));
+    rtPopMatrix();
+    const std::vector<float> with = picture(48);
+    size_t other = 0;
+    float worst = 0;
+    for (size_t i = 0; i < alone.size(); i++)
+      other += std::fabs(alone[i] - with[i]) > 1e-5f, worst = std::max(worst, std::fabs(alone[i] - with[i]));
+    EXPECT_EQ(other, 0u) << "of " << alone.size() << " at " << far << ", by " << worst;
+    rtDeleteInstance(thing);
+  }
+}
+
+} // namespace
+} // namespace numeric
