@@ -67,7 +67,7 @@ TEST_F(Huge, TheGroundMayBeASphereOfAnyRadius) {
         EXPECT_TRUE(blocked[1]) << radius << " ray " << i;
         EXPECT_GT(hit.normal[1], .9f);
       }
-      EXPECT_LT(worst, 1e-6) << radius << " " << squashed;
+      EXPECT_LT(worst, 3e-7 + 2e-16 * radius) << radius << " " << squashed;
       rtDeleteInstance(instance);
     }
 }
@@ -110,11 +110,11 @@ TEST_F(Huge, WhatIsFarAwayChangesNothingElse) {
   const Shader white("VRML97");
   use(tilted(30));
   std::vector<RTid> all;
-  for (const double size : {1e-3, .05, 1.0, 30.0}) {
+  for (const double size : {.01, .05, 1.0, 30.0}) {
     rtPushMatrix();
     rtLoadIdentity();
     rtTranslated(0, 0, -size);
-    rtRotated(20, 1, 1, 0);
+    rtRotated(15 * double(all.size()), 1, 1, 0); // each has a shade of its own
     all.push_back(place(square(white, size / 2)));
     rtPopMatrix();
   }
