@@ -25,8 +25,8 @@ inline size_t stackLeft() {
   return lowest && &here > lowest ? size_t(&here - lowest) : 0;
 }
 
-// Runs work() on this thread if so many bytes of its stack are left, else on a thread of its own while this one waits. Returns what
-// it returns, and throws what it throws.
+// Runs work() on this thread if so many bytes of its stack are left, else on a thread of its own while this one waits. Returns
+// what it returns, and throws what it throws.
 template <class Work> auto onStackOf(size_t bytes, const Work& work) -> decltype(work()) {
   const size_t left = stackLeft();
   if (left == 0 || left >= bytes) return work();

@@ -204,7 +204,7 @@ def check_self():
 
 def main():
     options = {a for a in sys.argv[1:] if a.startswith("--")}
-    places = [a for a in sys.argv[1:] if not a.startswith("--")]
+    places = [a for a in sys.argv[1:] if a and not a.startswith("--")]
     if not shutil.which("readelf"):
         print("readelf is not installed (binutils)")
         return 77
