@@ -109,28 +109,39 @@ TEST_F(Huge, WhatStandsOnAHugeSphereCastsItsShadow) {
 TEST_F(Huge, WhatIsFarAwayChangesNothingElse) {
   const Shader white("VRML97");
   use(tilted(30));
-  std::vector<RTid> all;
-  for (const double size : {.01, .05, 1.0, 30.0}) {
+  for (int i = 0; i < 60; i++) { // leaves and balls of .001 to .1
+    const double size = .001 * std::pow(100, .5 + .5 * std::sin(2.1 * i));
     rtPushMatrix();
     rtLoadIdentity();
-    rtTranslated(0, 0, -size);
-    rtRotated(15 * double(all.size()), 1, 1, 0); // each has a shade of its own
-    all.push_back(place(square(white, size / 2)));
+    rtTranslated(.15 * std::sin(1.3 * i), .15 * std::sin(2.9 * i), .2 * std::sin(3.7 * i));
+    if (i % 3 == 0) {
+      const RTid object = rtBeginObject(0);
+      rtBindShader(white);
+      rtSphere(float(size / 2));
+      rtEndObject();
+      rtBindShader(0);
+      place(object);
+    } else {
+      rtRotated(37 * i, 1, .5, .2); // each has a shade of its own
+      place(square(white, size / 2));
+    }
     rtPopMatrix();
   }
   rtPushMatrix();
   rtLoadIdentity();
-  rtTranslated(0, 0, .1);
-  rtPerspective(60);
+  rtTranslated(0, 0, 1);
+  rtPerspective(25);
   rtPopMatrix();
   const std::vector<float> alone = picture(48);
-  EXPECT_GT(mean(alone), .1);
+  EXPECT_GT(mean(alone), .02);
   for (const double far : {1e6, 1e12, 1e16, 1e19, 1e20, 1e25}) {
-    rtPushMatrix();
-    rtLoadIdentity();
+    const RTid object = rtBeginObject(0); // its place is part of the object: an instance there would be refused
     rtTranslated(0, far, 0);
-    const RTid thing = place(square(white, 1));
-    rtPopMatrix();
+    rtBindShader(white);
+    rtSphere(1);
+    rtEndObject();
+    rtBindShader(0);
+    const RTid thing = place(object);
     const std::vector<float> with = picture(48);
     size_t other = 0;
     float worst = 0;
@@ -139,6 +150,35 @@ TEST_F(Huge, WhatIsFarAwayChangesNothingElse) {
     EXPECT_EQ(other, 0u) << "of " << alone.size() << " at " << far << ", by " << worst;
     rtDeleteInstance(thing);
   }
+}
+
+// A lamp over a floor so large that rays step farther off it than the lamp is away: said once, with the distance that is needed.
+// Not where there is room, nor of a lamp that touches the floor.
+TEST_F(Huge, ALampTooNearToBeSeenIsWarnedOf) {
+  static std::vector<std::string> said;
+  said.clear();
+  rtLogCallback([](int level, const char* message, void*) { said.emplace_back(std::to_string(level) + message); }, nullptr);
+  rtQuality(RT_TRANSPORT, RT_TRANSPORT_PATH);
+  Shader floor("Diffuse"), lamp("Diffuse");
+  lamp.set("emission", {1, 1, 1});
+  place(square(floor, 100));
+  const auto hang = [&](double height) {
+    rtPushMatrix();
+    rtLoadIdentity();
+    rtTranslated(0, 0, height);
+    rtRotated(180, 1, 0, 0);
+    const RTid instance = place(square(lamp, .01));
+    rtPopMatrix();
+    look();
+    rtDeleteInstance(instance);
+  };
+  for (const double height : {1.0, .001, 0.0}) hang(height);
+  EXPECT_EQ(said.size(), 0u) << (said.empty() ? "" : said[0]);
+  for (const double height : {1e-6, 1e-5}) hang(height);
+  ASSERT_EQ(said.size(), 1u);
+  EXPECT_EQ(said[0][0], '2');
+  EXPECT_NE(said[0].find("1e-06"), std::string::npos) << said[0];
+  rtLogCallback(nullptr, nullptr);
 }
 
 } // namespace
