@@ -5,6 +5,7 @@
 #include <random>
 
 #include "numeric/support.h"
+#include "openrt/queries.h"
 
 namespace numeric {
 namespace {
@@ -232,6 +233,42 @@ TEST_F(Slivers, StaticAndDynamicBoxesDifferInTheLastBits) {
     }
     EXPECT_EQ(wrong, 0u) << what << ", worst " << worst;
   });
+}
+
+// Queries of all surfaces and of the nearest point see slivers as nearest hits do.
+TEST_F(Slivers, AllQueriesSeeThem) {
+  Random random(5);
+  for (const bool dynamic : {false, true}) {
+    const Box box{{5e3, .5, .5}};
+    const Matrix m = turned(random, 1e3);
+    rtPushMatrix();
+    rtLoadIdentity();
+    rtMultMatrixd(m.data());
+    const RTid instance = place(boxObject(box));
+    rtPopMatrix();
+    if (dynamic) rtInstanceHint(instance, RT_DYNAMIC);
+    rtRender();
+    std::vector<RTray> rays;
+    std::vector<float> points;
+    std::vector<double> away;
+    for (int i = 0; i < 500; i++) {
+      const Vec at{random(-4e3, 4e3), random(-.4, .4), random(-.4, .4)};
+      const Vec from = apply(m, at), d = random.direction();
+      rays.push_back({{float(from.x), float(from.y), float(from.z)}, 0, {float(d.x), float(d.y), float(d.z)}, infinity});
+      points.insert(points.end(), {float(from.x), float(from.y), float(from.z)});
+      away.push_back(numeric::depth(box, at));
+    }
+    std::vector<uint32_t> counts(rays.size());
+    rtCountHits(rays.size(), rays.data(), counts.data());
+    std::vector<RTclosest> nearest(rays.size());
+    rtClosestPoints(rays.size(), points.data(), infinity, nearest.data());
+    for (size_t i = 0; i < rays.size(); i++) {
+      EXPECT_EQ(counts[i], 1u) << i;
+      EXPECT_NEAR(double(nearest[i].distance), away[i], 4e-3) << i; // floats at 5,000
+      EXPECT_EQ(nearest[i].instance, instance);
+    }
+    rtDeleteInstance(instance);
+  }
 }
 
 // One triangle, its corners as given (no matrix, the camera at the origin): what is hit follows from the numbers alone.
