@@ -99,7 +99,7 @@ void sphere(const Record& r, const Rays& rays, const RayHits& hits, uint32_t lan
   else
     applyBound(r.toRender, l, e, h.p, h.bound);
   apply(r.normalMatrix, l, h.ng);
-  // Clause 6.42: s runs counter-clockwise seen from above, from the back; t from the bottom to the top.
+  // Clause 6.43: s runs counter-clockwise seen from above, from the back; t from the bottom to the top.
   const float turn = std::atan2(-l[0], -l[2]) * float(0.5 / M_PI);
   h.uv[0] = turn < 0 ? turn + 1 : turn;
   h.uv[1] = 0.5f + std::asin(std::clamp(l[1], -1.0f, 1.0f)) * float(1 / M_PI);

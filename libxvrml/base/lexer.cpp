@@ -105,7 +105,7 @@ const char* Lexer::lexNumber(const char* p, bool& valid) const {
   return p;
 }
 
-// string ::= ".*" where double-quotes must be \", backslashes must be \\ (A.3)
+// string ::= ".*" where double-quotes must be \", backslashes must be \\ (A.4)
 const char* Lexer::lexString(const char* p, bool& valid) const {
   for (++p; p < end_; ++p) {
     if (*p == '"') return p + 1;

@@ -1,4 +1,4 @@
-// hierarchy.h: the transformation hierarchy of a running world (clause 4.3.2): what hangs below a node, and the ways that lead
+// hierarchy.h: the transformation hierarchy of a running world (clause 4.4.4): what hangs below a node, and the ways that lead
 // to it. A prototype instance holds the first node of its body, an Inline what it loaded; Scripts hold nothing. [the browser's
 // thread]
 #pragma once

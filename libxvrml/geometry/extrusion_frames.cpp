@@ -1,4 +1,4 @@
-// extrusion_frames.cpp: the rules of clause 6.18.3 for the axes of the spine-aligned cross-section planes. Coincident spine
+// extrusion_frames.cpp: the rules of 6.18.2 and 6.18.3 for the axes of the spine-aligned cross-section planes. Coincident spine
 // points share a frame, so the rules run over the different points only.
 #include "geometry/extrusion_frames.h"
 

@@ -1,4 +1,4 @@
-// extrusion_frames.h: the spine-aligned cross-section planes of an Extrusion (clause 6.18.3).
+// extrusion_frames.h: the spine-aligned cross-section planes of an Extrusion (clauses 6.18.2 and 6.18.3).
 #pragma once
 
 #include <span>

@@ -54,7 +54,7 @@ class Font {
 
 std::mutex& fontsMutex();
 
-// The font for FontStyle's family and style (clause 6.22.1): the first family that is there; SERIF, SANS and TYPEWRITER always
+// The font for FontStyle's family and style (clause 6.20.2): the first family that is there; SERIF, SANS and TYPEWRITER always
 // are as long as any font is installed. Null if none is.
 Font* findFont(std::span<const std::string> families, bool bold, bool italic, const std::string& language);
 

@@ -1,4 +1,4 @@
-// text.cpp: Text and FontStyle (clauses 6.22, 6.47): lines of glyphs in the plane z = 0.
+// text.cpp: Text and FontStyle (clauses 6.20, 6.47): lines of glyphs in the plane z = 0.
 #include <algorithm>
 
 #include "geometry/builders.h"
@@ -106,7 +106,7 @@ class Layout {
     }
   }
 
-  // Major alignment, a line at a time: what of it lies at 0 (tables of clause 6.22.3).
+  // Major alignment, a line at a time: what of it lies at 0 (tables of clause 6.20.3).
   double startAlong(double length) const {
     bool towardsPlus = style_.horizontal ? style_.leftToRight : !style_.topToBottom;
     switch (style_.major) {

@@ -1,4 +1,4 @@
-// lights.cpp: see lights.h. Clauses 4.6.6 (lights and their scope), 6.14, 6.34 and 6.44.
+// lights.cpp: see lights.h. Clauses 4.6.6 (lights and their scope), 6.16, 6.35 and 6.45.
 #include "openrt/lights.h"
 
 #include <algorithm>

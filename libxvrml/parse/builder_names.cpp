@@ -1,4 +1,4 @@
-// builder_names.cpp: name spaces of files and prototypes: DEF and USE, routes, IS (ISO/IEC 14772-1 4.4.3, 4.6.2, 4.8.2, 4.10.2).
+// builder_names.cpp: name spaces of files and prototypes: DEF and USE, routes, IS (ISO/IEC 14772-1 4.4.6, 4.6.2, 4.8.2, 4.10.2).
 // See builder.h.
 #include <fmt/format.h>
 

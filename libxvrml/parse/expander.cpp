@@ -301,7 +301,7 @@ bool isUrlField(const FieldInfo& field) {
   return field.type == FieldType::MFString && (field.name == "url" || field.name.ends_with("Url"));
 }
 
-// A relative URL written in the file of the instance, for a node that stands in another file (4.9.3).
+// A relative URL written in the file of the instance, for a node that stands in another file (4.5.3).
 void rebaseUrls(MFString& urls, const std::string& from, const std::string& to) {
   namespace fs = std::filesystem;
   const fs::path fromFolder = fs::path(from).lexically_normal().parent_path();

@@ -129,7 +129,7 @@ bool Loader::loadInlineFrom(InlineNode& node, const std::string& path, uint64_t 
   }
 }
 
-// EXTERNPROTO: the first of its URLs that can be read and has the prototype (4.9.2). Null, with one message, if there is none.
+// EXTERNPROTO: the first of its URLs that can be read and has the prototype (4.9.3). Null, with one message, if there is none.
 ProtoPtr Loader::resolveExtern(ProtoDeclaration& declaration) {
   if (declaration.resolved || !tried_.insert(&declaration).second) return declaration.resolved;
   const std::string& name = declaration.type->name;
@@ -189,7 +189,7 @@ ProtoPtr Loader::findIn(const std::string& path, const std::string& name, std::s
   return nullptr;
 }
 
-// 4.9.1: the interface of an EXTERNPROTO is a subset of the PROTO's. What is not in it leads nowhere; the rest works.
+// 4.9.2: the interface of an EXTERNPROTO is a subset of the PROTO's. What is not in it leads nowhere; the rest works.
 void Loader::checkInterface(const ProtoDeclaration& wanted, const ProtoDeclaration& found) {
   for (const FieldInfo& field : wanted.type->fields) {
     const FieldInfo* declared = found.type->find(field.name);

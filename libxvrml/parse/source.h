@@ -21,7 +21,7 @@ class Source {
 
   // The text behind a byte-order mark.
   std::string_view text() const { return text_; }
-  // Throws LoadError if this is no VRML97 world; warns if its header is not what it should be (clause 4.2.1, Annex A.2).
+  // Throws LoadError if this is no VRML97 world; warns if its header is not what it should be (clause 4.2.2, Annex A.2).
   void checkHeader(const std::shared_ptr<const std::string>& file, Diagnostics& diagnostics) const;
 
  private:

@@ -1,4 +1,4 @@
-// url.cpp: where the URLs of a world lead: relative ones to files beside the file that holds them (ISO/IEC 14772-1 4.5.2),
+// url.cpp: where the URLs of a world lead: relative ones to files beside the file that holds them (ISO/IEC 14772-1 4.5.3),
 // absolute ones only if asked for, the network nowhere. Pure but for a look at the disk; any thread; used by the loader and the
 // mapper.
 #include <algorithm>

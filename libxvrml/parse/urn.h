@@ -1,4 +1,4 @@
-// urn.h: EXTERNPROTOs that name a node of this browser (ISO/IEC 14772-1 4.9.2, RFC 2141). Used by the loader, on its thread.
+// urn.h: EXTERNPROTOs that name a node of this browser (ISO/IEC 14772-1 4.9.3, RFC 2141). Used by the loader, on its thread.
 #pragma once
 
 #include <string_view>

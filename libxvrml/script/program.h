@@ -1,4 +1,4 @@
-// program.h: which of a Script's URLs to run, with which engine (ISO/IEC 14772-1 4.5.2, 4.12.5): the first whose engine is
+// program.h: which of a Script's URLs to run, with which engine (ISO/IEC 14772-1 4.5.4, 4.12.7): the first whose engine is
 // installed and whose text can be read. [the browser's thread]
 #pragma once
 

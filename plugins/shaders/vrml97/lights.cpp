@@ -1,4 +1,4 @@
-// lights.cpp: the lights of ISO/IEC 14772-1 clauses 6.16 (DirectionalLight), 6.33 (PointLight) and 6.41 (SpotLight).
+// lights.cpp: the lights of ISO/IEC 14772-1 clauses 6.16 (DirectionalLight), 6.35 (PointLight) and 6.45 (SpotLight).
 // Distances, angles and the radius are measured in the light's local space, as the standard asks. Thread tag [render].
 #include <cmath>
 
@@ -164,7 +164,7 @@ Cone coneOf(const SpotParams& p) {
   const double length = std::sqrt(double(d[0]) * d[0] + double(d[1]) * d[1] + double(d[2]) * d[2]);
   for (int c = 0; c < 3 && length > 0; c++) cone.axis[c] = static_cast<float>(d[c] / length);
   cone.cut = p.cutOffAngle;
-  const float beam = smaller(p.beamWidth, p.cutOffAngle); // clause 6.41: a wider beam gives a uniform cone
+  const float beam = smaller(p.beamWidth, p.cutOffAngle); // clause 6.45: a wider beam gives a uniform cone
   cone.slope = beam < cone.cut ? 1.0f / (cone.cut - beam) : 0.0f;
   cone.cosCut = static_cast<float>(std::cos(double(cone.cut)));
   return cone;

@@ -151,7 +151,7 @@ Texels fetch(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, uint32_t
   return texels;
 }
 
-// Clause 4.14.3, tables 4.5 (unlit) and 4.6 (lit), and the colours of lines and points (clauses 6.24, 6.36).
+// Clauses 4.14.2 and 4.14.3, tables 4.5 (unlit) and 4.6 (lit), and the colours of lines and points (clauses 6.24, 6.36).
 void colours(const RtsHits* hits, const Summary& summary, const Texels& texels, const Terms& t) {
   for (uint32_t i = 0; i < hits->count; i++) {
     const bool lit = paramsOf(hits, i).lit != 0, own = (hits->flags[i] & RTS_HIT_COLOR) != 0;
