@@ -2,16 +2,13 @@
 #pragma once
 
 #include <string>
-#include <vector>
+
+#include "xvrml/radiance.h"
 
 namespace picture {
 
-struct Radiance {
-  int width = 0, height = 0;
-  std::vector<float> rgb; // rows from the bottom up, as rtTexImage2D takes them
-};
-
-// By its suffix: exr, hdr (Radiance RGBE), pfm (colour). Throws std::runtime_error.
-Radiance readRadiance(const std::string& path);
+// Reads what worlds may name too, and every OpenEXR file that OpenEXR's library can read: the file is the user's own. Throws
+// std::runtime_error.
+xvrml::RadianceImage readRadiance(const std::string& path);
 
 } // namespace picture

@@ -168,7 +168,7 @@ void Stage::prepare(const View& view) {
 void Stage::useEnvironment() {
   if (settings.environment.empty()) return;
   if (environment_ == 0) {
-    const Radiance around = readRadiance(settings.environment);
+    const xvrml::RadianceImage around = readRadiance(settings.environment);
     rtGenTextures(1, &environmentTexture_);
     rtBindTexture(environmentTexture_);
     rtTexImage2D(3, around.width, around.height, RT_FLOAT, around.rgb.data());

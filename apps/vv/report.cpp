@@ -42,7 +42,8 @@ Json errorEstimate(const RTstats& s) {
 Json transportJson(const Options& options, const RTstats& s) {
   return {{"chosen", picture::transportName(s.transport)},
           {"reason", s.transportReason},
-          {"claim", transportClaim(s.transport, options.render)}};
+          {"claim", transportClaim(s, options.render)},
+          {"leaves_out", picture::leftOutNames(s)}};
 }
 
 // Since the program has begun to call the workers. Tiles: jobs, parts of tiles too.
@@ -268,7 +269,7 @@ std::string explainWorld(const Options& options, const RTstats& stats, const std
                    {"instanced_triangles", stats.triangles}}}});
   }
   std::string text = fmt::format("transport {}: {}\n  {}\n", picture::transportName(stats.transport), stats.transportReason,
-                                 transportClaim(stats.transport, options.render));
+                                 transportClaim(stats, options.render));
   text += fmt::format("{:>10} {:>8} {:>12} {:>9}  {}\n", "triangles", "shapes", "bytes", "instances", "object: reason");
   for (const xvrml::ExplainedObject& o : objects)
     text += fmt::format("{:>10} {:>8} {:>12} {:>9}  {}: {}\n", o.triangles, o.shapes, o.bytes, o.instances, oneLine(o.name),

@@ -7,7 +7,7 @@
 
 namespace vv {
 
-// What a picture made by this transport is, and what it leaves out.
-std::string transportClaim(RTenum transport, const picture::RenderSettings& settings);
+// Says how exact a picture is that the transport of these statistics made, and which of the scene's light it leaves out.
+std::string transportClaim(const RTstats& stats, const picture::RenderSettings& settings);
 
 } // namespace vv

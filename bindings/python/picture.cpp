@@ -2,10 +2,34 @@
 #include <cstring>
 
 #include <fmt/format.h>
+#include <pybind11/stl.h>
 
 #include "objects.h"
 #include "picture/atomic_file.h"
+#include "picture/transport.h"
 #include "picture_object.h"
+
+void describePicture(py::dict& stats, const RTstats& s) {
+  stats["transport"] = picture::transportName(s.transport);
+  stats["transport_reason"] = s.transportReason;
+  stats["transport_leaves_out"] = picture::leftOutNames(s);
+  py::dict left; // under the names of vv --stats
+  left["cut_by_depth"] = s.cutByDepth;
+  left["cut_by_energy"] = s.cutByEnergy;
+  left["clipped"] = s.clipped;
+  left["unreached_lights"] = s.unreachedLights;
+  left["shader_faults"] = s.shaderFaults;
+  left["wrong_hits"] = s.wrongHits;
+  left["rejected_rays"] = s.rejectedRays;
+  stats["left_out"] = left;
+  if (s.errorPixels == 0) return; // nobody has asked for the error
+  stats["error_mean"] = s.errorMean;
+  stats["error_mean_interval"] = s.errorMeanInterval;
+  stats["error_half_width"] = s.errorHalfWidth;
+  stats["error_p99"] = s.errorP99;
+  stats["error_trusted"] = double(s.errorTrusted) / double(s.errorPixels);
+  stats["error_method"] = s.errorMethod;
+}
 
 namespace {
 

@@ -10,3 +10,6 @@ struct PictureObject {
   pybind11::dict stats;
   double time = 0; // of the world
 };
+
+// Adds to Picture.stats how light was followed, what is left out and how large the picture's error is.
+void describePicture(pybind11::dict& stats, const RTstats& s);

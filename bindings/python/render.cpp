@@ -101,16 +101,7 @@ py::dict statsOf(const World& world, const picture::RenderResult& result) {
   stats["build_seconds"] = s.commitSeconds + s.buildSeconds;
   stats["render_seconds"] = result.renderSeconds;
   stats["threads"] = s.threads;
-  stats["transport"] = picture::transportName(s.transport);
-  stats["transport_reason"] = s.transportReason;
-  if (s.errorPixels > 0) {
-    stats["error_mean"] = s.errorMean;
-    stats["error_mean_interval"] = s.errorMeanInterval;
-    stats["error_half_width"] = s.errorHalfWidth;
-    stats["error_p99"] = s.errorP99;
-    stats["error_trusted"] = double(s.errorTrusted) / double(s.errorPixels);
-    stats["error_method"] = s.errorMethod;
-  }
+  describePicture(stats, s);
   return stats;
 }
 

@@ -87,8 +87,7 @@ py::object render(const RtContextPtr& self, const std::pair<int, int>& size, std
     stats["build_seconds"] = s.commitSeconds + s.buildSeconds;
     stats["render_seconds"] = s.renderSeconds;
     stats["threads"] = s.threads;
-    stats["transport"] = picture::transportName(s.transport);
-    if (s.errorPixels > 0) stats["error_mean"] = s.errorMean;
+    describePicture(stats, s);
   };
   struct Drawing {
     RtContext& context;

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "render/batch.h"
+#include "render/lobes.h"
 #include "shading/running.h"
 
 namespace openrt {
@@ -23,6 +24,8 @@ const char* textOf(Fault fault) {
     return "has emission, but its traits lack RTS_EMISSIVE: nobody looks for its light, so the picture is noisier than it need "
            "be";
   case Fault::undeclaredTransparency: return "lets light through, but its traits lack RTS_TRANSPARENT: its shadows are opaque";
+  case Fault::undeclaredScattering:
+    return "has lobes that scatter, but its traits have RTS_NO_SCATTER: the automatic transport may leave out light";
   }
   return "";
 }
@@ -49,12 +52,22 @@ template <class Above> void demandTrait(const RtsClass& c, RtsBatch& batch, uint
 
 bool anyAbove(float* const group[3], uint32_t i) { return group[0][i] > 0 || group[1][i] > 0 || group[2][i] > 0; }
 
+// The opposite: hits at which something is above 0 that the class excludes. Values of a geometry are not known to traits.
+template <class Above> void excludeTrait(const RtsClass& c, RtsBatch& batch, uint32_t trait, Fault fault, const Above& above) {
+  uint64_t hits = 0;
+  for (uint32_t i = 0; i < batch.points->hits.count; i++)
+    hits += (traitsAt(batch, i) & trait) && !batch.scene->records[batch.points->record[i]].parameterCount && above(i);
+  if (hits) batch.counters->faults.add(c, fault, hits);
+}
+
 void diagnose(const RtsClass& c, RtsBatch& batch, const RtsSurface& out) {
   demandTrait(c, batch, RTS_EMISSIVE, Fault::undeclaredEmission, [&](uint32_t i) { return anyAbove(out.emission, i); });
   for (uint32_t l = 0; l < batch.lobeCount; l++) {
     const RtsLobe& lobe = batch.lobes[l];
     if (lobe.kind == RTS_LOBE_TRANSPARENT)
       demandTrait(c, batch, RTS_TRANSPARENT, Fault::undeclaredTransparency, [&](uint32_t i) { return anyAbove(lobe.weight, i); });
+    if (scatteringOf(lobe))
+      excludeTrait(c, batch, RTS_NO_SCATTER, Fault::undeclaredScattering, [&](uint32_t i) { return anyAbove(lobe.weight, i); });
     if (lobe.kind == RTS_LOBE_GLOSSY || lobe.kind == RTS_LOBE_ROUGH_DIELECTRIC || lobe.kind == RTS_LOBE_CUSTOM)
       demandTrait(c, batch, RTS_GLOSSY, Fault::undeclaredGlossy, [&](uint32_t i) { return anyAbove(lobe.weight, i); });
   }

@@ -12,7 +12,7 @@
 
 namespace openrt {
 
-enum class Fault : uint8_t { notFinite, undeclaredGlossy, undeclaredEmission, undeclaredTransparency };
+enum class Fault : uint8_t { notFinite, undeclaredGlossy, undeclaredEmission, undeclaredTransparency, undeclaredScattering };
 
 class ShaderFaults { // of one thread, or of a frame
  public:

@@ -101,6 +101,7 @@ struct RenderScene {
   std::shared_ptr<const std::vector<ManyLights>> manyLights; // by light set; null: all lights are asked everywhere
   std::shared_ptr<const LightSources> lightSources;          // light tracing: null where it has nothing to do
   bool transparentShadows = false;                           // something transparent may stand before a light
+  bool skyKnown = false, skyShines = false;                  // whether the environment was asked for light, and has some
   RenderHost host;
   edit::FrameSettingsT frame;
 };

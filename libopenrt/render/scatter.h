@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/frame.h"
+
 namespace openrt {
 
 inline float dot3(const float a[3], const float b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
@@ -37,14 +39,6 @@ inline void refractAt(const float d[3], const float n[3], double eta, double cos
   for (int k = 0; k < 3; k++) r[k] = eta * d[k] + (eta * cosine - cosineBehind) * n[k], length += r[k] * r[k];
   const double s = length > 0 ? 1 / std::sqrt(length) : 0; // unit again: errors of a long chain must not grow
   for (int k = 0; k < 3; k++) out[k] = float(r[k] * s);
-}
-
-// Two unit vectors at right angles to n and to each other: T. Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1),
-// 2017.
-inline void basisOf(const float n[3], float s[3], float t[3]) {
-  const float sign = std::copysign(1.0f, n[2]), c = -1 / (sign + n[2]), d = n[0] * n[1] * c;
-  s[0] = 1 + sign * n[0] * n[0] * c, s[1] = sign * d, s[2] = -sign * n[0];
-  t[0] = d, t[1] = sign + n[1] * n[1] * c, t[2] = -n[1];
 }
 
 // Sine and cosine between -pi/4 and pi/4, to a unit in the last place: their series.

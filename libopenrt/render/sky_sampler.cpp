@@ -80,6 +80,14 @@ void SkySampler::measure(const RenderScene& scene, std::vector<float>& cells) co
   }
 }
 
+bool SkySampler::shines(const RenderScene& scene) {
+  SkySampler coarse;
+  coarse.columns_ = 64, coarse.rows_ = 8; // four places in each
+  std::vector<float> cells(size_t(coarse.columns_) * coarse.rows_);
+  coarse.measure(scene, cells);
+  return std::any_of(cells.begin(), cells.end(), [](float mean) { return mean > 0; });
+}
+
 SkySampler::SkySampler(const RenderScene& scene) {
   const ShaderSlot& environment = scene.environment.shader;
   if (!environment.shaderClass || !environment.shaderClass->miss) return;

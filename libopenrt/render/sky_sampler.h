@@ -16,12 +16,15 @@ class SkySampler {
   // Reads the environment of the scene; not usable() where there is none or it is black.
   explicit SkySampler(const RenderScene& scene);
   bool usable() const { return total_ > 0; }
+  // Whether some of 2048 directions of the scene's environment, which has `miss`, has light.
+  static bool shines(const RenderScene& scene);
   // A local unit direction and its density by solid angle, from a point of the unit square. 0: none.
   float sample(double u, double v, float direction[3]) const;
   float density(const float direction[3]) const;
   uint32_t columns() const { return columns_; }
 
  private:
+  SkySampler() = default;
   void measure(const RenderScene& scene, std::vector<float>& cells) const;
   double solidAngle(uint32_t row) const;
   float cellDensity(uint32_t row, uint32_t column) const;

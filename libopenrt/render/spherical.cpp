@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "render/frame.h"
+
 namespace openrt {
 namespace {
 
@@ -20,17 +22,10 @@ bool normalize(double v[3]) {
   return true;
 }
 
-// Two unit vectors beside a third: T. Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017.
-void frameOf(const double n[3], double s[3], double t[3]) {
-  const double sign = std::copysign(1.0, n[2]), c = -1 / (sign + n[2]), d = n[0] * n[1] * c;
-  s[0] = 1 + sign * n[0] * n[0] * c, s[1] = sign * d, s[2] = -sign * n[0];
-  t[0] = d, t[1] = sign + n[1] * n[1] * c, t[2] = -n[1];
-}
-
 // About an axis, with the cosine 1 - below.
 void aboutAxis(const double axis[3], double below, double turn, double out[3]) {
   double s[3], t[3];
-  frameOf(axis, s, t);
+  basisOf(axis, s, t);
   const double sine = std::sqrt(std::max(0.0, below * (2 - below))), phi = 2 * M_PI * turn;
   const double x = sine * std::cos(phi), y = sine * std::sin(phi), z = 1 - below;
   for (int k = 0; k < 3; k++) out[k] = x * s[k] + y * t[k] + z * axis[k];

@@ -8,8 +8,12 @@
 #include <string>
 
 #include "image/image.h"
+#include "xvrml/radiance.h"
 
 namespace xvrml {
+
+// Returns the bytes of a regular file of at most limits.fileBytes; throws std::runtime_error.
+std::vector<uint8_t> readPictureFile(const std::string& path, const Limits& limits);
 
 Image decodePng(std::span<const uint8_t> bytes, const Limits& limits);
 Image decodeJpeg(std::span<const uint8_t> bytes, const Limits& limits);
@@ -21,5 +25,10 @@ void checkImageSize(uint64_t width, uint64_t height, const Limits& limits, const
 // Rows arrive from the top; the pixels grow with them, so that a header that promises much and a file that holds little cost
 // little.
 void flipRows(Image& image);
+
+// The same for pictures of radiance; their size is refused where a quarter of limits.imagePixels is too little.
+RadianceImage decodeExr(std::span<const uint8_t> bytes, const Limits& limits);
+void checkRadianceSize(int64_t width, int64_t height, const Limits& limits);
+void flipRows(RadianceImage& image);
 
 } // namespace xvrml

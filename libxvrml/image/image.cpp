@@ -38,10 +38,11 @@ Image decodeImage(const uint8_t* bytes, size_t size, const Limits& limits) {
   if (startsWith("\xff\xd8\xff")) return decodeJpeg(content, limits);
   if (startsWith("GIF87a") || startsWith("GIF89a")) return decodeGif(content, limits);
   if (size == 0) throw std::runtime_error("the file is empty");
-  throw std::runtime_error("not a PNG, JPEG or GIF picture");
+  if (looksLikeRadiance(bytes, size)) throw std::runtime_error("a picture of radiance cannot be used here");
+  throw std::runtime_error("not a PNG, JPEG, GIF, Radiance (.hdr), PFM or OpenEXR picture");
 }
 
-Image readImage(const std::string& path, const Limits& limits) {
+std::vector<uint8_t> readPictureFile(const std::string& path, const Limits& limits) {
   struct stat info;
   if (stat(path.c_str(), &info) != 0) throw std::runtime_error(std::strerror(errno));
   if (!S_ISREG(info.st_mode)) throw std::runtime_error("not a file"); // a pipe or device could wait for ever
@@ -52,6 +53,11 @@ Image readImage(const std::string& path, const Limits& limits) {
   std::vector<uint8_t> bytes(size_t(info.st_size) + 1);
   bytes.resize(std::fread(bytes.data(), 1, size_t(info.st_size), file.get()));
   if (std::ferror(file.get())) throw std::runtime_error("cannot be read");
+  return bytes;
+}
+
+Image readImage(const std::string& path, const Limits& limits) {
+  const std::vector<uint8_t> bytes = readPictureFile(path, limits);
   return decodeImage(bytes.data(), bytes.size(), limits);
 }
 

@@ -33,14 +33,15 @@ std::string readText(const std::string& path, uint64_t limit, std::string& text)
 
 } // namespace
 
-void CustomShaders::setOption(const ShaderOption& option, const Node& node) {
+void CustomShaders::setOption(const ShaderOption& option, const Node& node, RTenum role) {
   const int handle = rtParameterHandle(option.name.c_str());
   const std::vector<float>& n = option.numbers;
   switch (option.type) {
   case ShaderOption::Type::integer:
   case ShaderOption::Type::boolean: return rtParameter1i(handle, option.integer);
   case ShaderOption::Type::text: return rtParameterString(handle, option.text.c_str());
-  case ShaderOption::Type::texture: return rtParameterTexture(handle, textures_.ofUrls({option.text}, node, true, true));
+  case ShaderOption::Type::texture: // the zenith of a picture all around must not blend with its nadir
+    return rtParameterTexture(handle, textures_.ofUrls({option.text}, node, true, role != RT_ENVIRONMENT));
   case ShaderOption::Type::list: return rtParameterfv(handle, n.size(), n.data());
   case ShaderOption::Type::file: {
     constexpr uint64_t longest = 1 << 24; // of a text that a parameter holds
@@ -100,7 +101,7 @@ void CustomShaders::make(Made& made, RTenum role, const Preset& preset) {
   report(world_.diagnostics, node.source, "ORTShader " + node.name);
   for (const ShaderOption& option : options) {
     made.options.push_back(option.name);
-    setOption(option, node);
+    setOption(option, node, role);
     report(world_.diagnostics, node.source, "ORTShader " + node.name + ", option " + option.name);
   }
 }
@@ -121,7 +122,7 @@ void CustomShaders::refresh(Made& made, RTenum role, const Preset& preset) {
   ShaderSetup shader(made.shader, sets_);
   if (preset) preset(shader, shaderClass);
   for (const ShaderOption& option : options) {
-    setOption(option, node);
+    setOption(option, node, role);
     ++sets_;
   }
   report(world_.diagnostics, node.source, "ORTShader " + node.name);

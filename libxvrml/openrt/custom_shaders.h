@@ -46,7 +46,7 @@ class CustomShaders {
   };
   void make(Made& made, RTenum role, const Preset& preset);
   void refresh(Made& made, RTenum role, const Preset& preset);
-  void setOption(const ShaderOption& option, const Node& node);
+  void setOption(const ShaderOption& option, const Node& node, RTenum role);
 
   World& world_;
   ShaderClasses& classes_;

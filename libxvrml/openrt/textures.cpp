@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <exception>
 
-#include "image/image.h"
+#include "image/decoders.h"
 #include "xvrml/media.h"
 #include "xvrml/nodes.h"
 
@@ -16,6 +16,8 @@ bool usable(const Image& image) {
   if (image.width <= 0 || image.height <= 0 || image.components < 1 || image.components > 4) return false;
   return image.pixels.size() >= size_t(image.width) * size_t(image.height) * size_t(image.components);
 }
+
+bool usable(const RadianceImage& image) { return image.width > 0 && image.height > 0; }
 
 // A node that gives its picture itself, now: the picture, or null if it has none at present.
 struct OwnImage {
@@ -109,7 +111,11 @@ RTid Textures::ofFile(const std::string& path, bool repeatS, bool repeatT, std::
   auto& [id, why] = it->second;
   if (fresh) {
     try {
-      id = make(readImage(path, world_.options.limits), repeatS, repeatT);
+      const Limits& limits = world_.options.limits;
+      const std::vector<uint8_t> bytes = readPictureFile(path, limits);
+      id = looksLikeRadiance(bytes.data(), bytes.size())
+               ? make(decodeRadiance(bytes.data(), bytes.size(), limits), repeatS, repeatT)
+               : make(decodeImage(bytes.data(), bytes.size(), limits), repeatS, repeatT);
       if (id == 0 && rtGetError() != RT_NO_ERROR) why = rtGetErrorMessage();
     } catch (const std::exception& failure) { why = failure.what(); }
   }
@@ -122,7 +128,12 @@ void Textures::upload(const Image& image) {
   ++loaded_;
 }
 
-RTid Textures::make(const Image& image, bool repeatS, bool repeatT) {
+void Textures::upload(const RadianceImage& image) {
+  rtTexImage2D(3, image.width, image.height, RT_FLOAT, image.rgb.data());
+  ++loaded_;
+}
+
+template <class Picture> RTid Textures::make(const Picture& image, bool repeatS, bool repeatT) {
   if (!usable(image)) return 0;
   RTid id = 0;
   rtGenTextures(1, &id);

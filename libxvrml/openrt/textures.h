@@ -8,6 +8,7 @@
 #include <unordered_map>
 
 #include "openrt/rt.h"
+#include "xvrml/radiance.h"
 #include "xvrml/world.h"
 
 namespace xvrml::mapping {
@@ -30,8 +31,9 @@ class Textures {
 
  private:
   RTid ofFile(const std::string& path, bool repeatS, bool repeatT, std::string& error);
-  RTid make(const Image& image, bool repeatS, bool repeatT);
+  template <class Picture> RTid make(const Picture& image, bool repeatS, bool repeatT);
   void upload(const Image& image);
+  void upload(const RadianceImage& image); // numbers are used as they are
   RTid makeNode(Node& texture);
 
   struct Known {

@@ -5,13 +5,13 @@ namespace {
 
 struct Diffuse : rts::Surface<Diffuse> {
   static constexpr const char* text = "scatters light evenly; may send out light of its own";
-  static constexpr uint32_t needs = 0;
   rts::Param<rts::Color> reflectance{"reflectance", {0.8f, 0.8f, 0.8f}, "fraction of light scattered, 0..1", 0, 1,
                                      rts::PerVertex};
   rts::Param<rts::Color> emission{"emission", {0, 0, 0}, "radiance sent out"};
   rts::Param<rts::Texture> texture{"texture", "multiplies reflectance"};
 
   bool emits() const { return rts::largest(emission) > 0; }
+  uint32_t needs() const { return rts::largest(reflectance) > 0 ? 0 : RTS_NO_SCATTER; }
   void surface(const rts::Hit& hit, rts::Closures& out) const {
     const rts::Vec4 texel = hit.sample(texture, hit.uv);
     const rts::Color albedo =

@@ -5,6 +5,7 @@ namespace {
 
 struct Glass : rts::Surface<Glass> {
   static constexpr const char* text = "clear glass: Fresnel reflection and refraction, absorption and dispersion inside";
+  static constexpr uint32_t needs = RTS_SPECULAR | RTS_NO_SCATTER;
   rts::Param<float> index{"index", 1.5f, "index of refraction (of yellow light, 587.6 nm), > 0", 0.1f, 10};
   rts::Param<float> abbe{"abbe", 0, "Abbe number: how little the index depends on the colour (crown 60, flint 30); 0: not at all",
                          0, 1000};

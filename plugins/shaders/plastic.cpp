@@ -1,10 +1,13 @@
 // plastic.cpp: a coloured body under a clear boundary, smooth or rough.
+#include <algorithm>
+#include <array>
+
 #include "coat.h"
 #include "microfacet.h"
 
 namespace {
 
-constexpr int knots = 12; // of the table of what a rough boundary lets through, evenly over the cosine
+constexpr int knots = 14; // of the table of what a rough boundary lets through, evenly over the root of the cosine
 
 struct Boundary { // one facet of it
   float index;
@@ -14,15 +17,40 @@ struct Boundary { // one facet of it
   }
 };
 
+struct Node { // of Gauss and Legendre's rule over 0..1
+  double place, weight;
+};
+template <int n> std::array<Node, n> gauss() {
+  std::array<Node, n> nodes;
+  for (int i = 0; i < n; i++) {
+    double z = std::cos(3.14159265358979324 * (i + 0.75) / (n + 0.5)), slope = 1;
+    for (int step = 0; step < 8; step++) { // Newton's, on the Legendre polynomial of degree n
+      double p = 1, before = 0;
+      for (int k = 0; k < n; k++) {
+        const double next = ((2 * k + 1) * z * p - k * before) / (k + 1);
+        before = p, p = next;
+      }
+      slope = n * (z * p - before) / (z * z - 1);
+      z -= p / slope;
+    }
+    nodes[size_t(i)] = {(1 - z) / 2, 1 / ((1 - z * z) * slope * slope)};
+  }
+  return nodes;
+}
+
 // The body under a rough boundary, with T from a table: f = T(in) T(out) / (pi mean T), white. The same rule for both directions.
 struct RoughMatt {
   float mean, table[knots];
 
-  float through(float cosine) const {
-    const float x = std::fmin(1.0f, std::fmax(0.0f, cosine)) * (knots - 1);
-    const int i = std::fmin(knots - 2.0f, x) < 0 ? 0 : static_cast<int>(std::fmin(knots - 2.0f, x));
-    return table[i] + (table[i + 1] - table[i]) * (x - float(i));
+  // T by the cubic polynomial through the four knots around the root of the cosine.
+  static float at(const float (&table)[knots], float root) {
+    const float x = std::fmin(1.0f, std::fmax(0.0f, root)) * (knots - 1);
+    const int i = std::min(std::max(static_cast<int>(x) - 1, 0), knots - 4);
+    const float a = x - float(i), b = a - 1, c = a - 2, d = a - 3;
+    const float* t = table + i;
+    return (d * (b * c * t[0] * -1 + 3 * a * c * t[1]) + a * b * (c * t[3] - 3 * d * t[2])) / 6;
   }
+  float through(float cosine) const { return at(table, std::sqrt(std::fmax(0.0f, cosine))); }
   rts::Color evaluate(rts::Vec3 toEye, rts::Vec3 direction, rts::Vec3 normal) const {
     const float in = rts::dot(direction, normal);
     if (!(in > 0)) return {};
@@ -45,22 +73,22 @@ struct Plastic : rts::Surface<Plastic> {
     if (!(index > 1.001f)) return 0;
     return rough() ? RTS_GLOSSY : RTS_SPECULAR | RTS_GLOSSY;
   }
-  // What the rough boundary reflects towards each cosine, by the rule that its own samples follow: a bound from above, so that
-  // boundary and body never reflect more than they get.
+  // What the rough boundary does not reflect goes to the body, also what facets throw at each other: a white body under it
+  // reflects all light, to about 3e-4.
   const char* prepare() {
     if (!rough()) return nullptr;
     const microfacet::Rough<Boundary> boundary{roughness, {index}};
-    double mean = 0;
     for (int j = 0; j < knots; j++) {
-      const float z = std::fmax(1e-3f, float(j) / (knots - 1));
-      body_.table[j] = std::fmax(0.0f, 1 - margin - reflected(boundary, {std::sqrt(std::fmax(0.0f, 1 - z * z)), 0, z}));
+      const float root = std::fmax(1e-2f, float(j) / (knots - 1)), z = root * root;
+      const float reflectance = reflected(boundary, {std::sqrt(std::fmax(0.0f, 1 - z * z)), 0, z});
+      body_.table[j] = std::fmin(1.0f, std::fmax(0.0f, 1 - reflectance));
     }
-    const auto moment = [](double a, double b, double fa, double fb) { // of 2 x f(x) over a..b, f straight
-      const double slope = (fb - fa) / (b - a), start = fa - slope * a;
-      return start * (b * b - a * a) + slope * 2 / 3 * (b * b * b - a * a * a);
-    };
+    double mean = 0; // of 2 c T(c) dc = 4 r^3 T dr, r the root; a polynomial of degree 6 between two knots
     for (int j = 0; j + 1 < knots; j++)
-      mean += moment(double(j) / (knots - 1), double(j + 1) / (knots - 1), body_.table[j], body_.table[j + 1]);
+      for (const Node& node : gauss<4>()) {
+        const double r = (j + node.place) / (knots - 1);
+        mean += node.weight / (knots - 1) * 4 * r * r * r * double(RoughMatt::at(body_.table, float(r)));
+      }
     body_.mean = static_cast<float>(mean);
     return nullptr;
   }
@@ -74,17 +102,16 @@ struct Plastic : rts::Surface<Plastic> {
   }
 
  private:
-  static constexpr float margin = 2e-3f; // of the quadrature and of the straight lines between knots
   bool rough() const { return roughness > microfacet::smoothest && index > 1.001f; }
   static float reflected(const microfacet::Rough<Boundary>& boundary, rts::Vec3 o) {
-    constexpr int side = 48;
+    constexpr int around = 40; // half of the circle: the other half is the same
     double sum = 0;
-    for (int a = 0; a < side; a++)
-      for (int b = 0; b < side; b++) {
-        const rts::Sample s = boundary.sample(o, {(float(a) + 0.5f) / side, (float(b) + 0.5f) / side}, {0, 0, 1});
-        if (s.density > 0) sum += s.quotient.r;
+    for (const Node& node : gauss<40>())
+      for (int a = 0; a < around; a++) {
+        const rts::Sample s = boundary.sample(o, {(float(a) + 0.5f) / (2 * around), float(node.place)}, {0, 0, 1});
+        if (s.density > 0) sum += node.weight / around * double(s.quotient.r);
       }
-    return static_cast<float>(sum / (side * side));
+    return static_cast<float>(sum);
   }
   RoughMatt body_; // made by prepare
 };

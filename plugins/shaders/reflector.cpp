@@ -31,7 +31,10 @@ struct Reflector : rts::Surface<Reflector> {
   rts::Param<float> dust{"dust", 0, "fraction of the surface that is covered", 0, 1};
   rts::Param<rts::Color> dustColor{"dustColor", {0.3f, 0.27f, 0.22f}, "fraction of light that dust scatters, 0..1", 0, 1};
 
-  uint32_t needs() const { return roughness > microfacet::smoothest ? RTS_GLOSSY : RTS_SPECULAR; }
+  uint32_t needs() const {
+    if (roughness > microfacet::smoothest) return RTS_GLOSSY;
+    return dust > 0 ? RTS_SPECULAR : RTS_SPECULAR | RTS_NO_SCATTER;
+  }
   void surface(const rts::Hit& hit, rts::Closures& out) const {
     const Lacquered metal{n, k, lacquer};
     const rts::Color clean = metal(hit.cosine());

@@ -138,6 +138,12 @@ TEST_F(Diagnosed, TraitsThatKeepSilent) {
   EXPECT_FALSE(log.has("SilentLamp of faulty has emission")); // hidden by the others
 }
 
+TEST_F(Diagnosed, ScatteringThatTraitsExclude) {
+  square("SilentScatter");
+  picture(2);
+  EXPECT_EQ(log.count("shader SilentScatter of faulty has lobes that scatter, but its traits have RTS_NO_SCATTER"), 1u);
+}
+
 TEST_F(Diagnosed, EmissionAndTransparencyThatAreNotAnnounced) {
   square("SilentLamp");
   rtTranslated(0, 0, 1);

@@ -6,15 +6,22 @@
 #include <vector>
 
 #include "image/image.h"
+#include "xvrml/radiance.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) try {
   if (size == 0) return 0;
-  static const char* const magic[] = {"", "\x89PNG\r\n\x1a\n", "\xff\xd8\xff", "GIF89a"};
-  const char* start = magic[data[0] & 3];
+  static const char* const magic[] = {"",       "\x89PNG\r\n\x1a\n", "\xff\xd8\xff",   "GIF89a",
+                                      "#?RGBE\n", "PF\n",                "\x76\x2f\x31\x01", ""};
+  const char* start = magic[data[0] & 7];
   std::vector<uint8_t> bytes(start, start + std::strlen(start));
   bytes.insert(bytes.end(), data + 1, data + size);
   xvrml::Limits limits;
   limits.imagePixels = 1 << 20;
+  if (xvrml::looksLikeRadiance(bytes.data(), bytes.size())) {
+    const xvrml::RadianceImage sky = xvrml::decodeRadiance(bytes.data(), bytes.size(), limits);
+    if (sky.rgb.size() != size_t(sky.width) * size_t(sky.height) * 3) __builtin_trap();
+    return 0;
+  }
   const xvrml::Image image = xvrml::decodeImage(bytes.data(), bytes.size(), limits);
   if (image.pixels.size() != size_t(image.width) * size_t(image.height) * size_t(image.components)) __builtin_trap();
   return 0;

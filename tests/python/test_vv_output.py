@@ -162,7 +162,7 @@ def test_statistics(vv):
         "image": "width height spp channels",
         "time": "parse graph map build first_pass render write total",
         "rays": "camera shadow secondary per_second",
-        "transport": "chosen reason claim",
+        "transport": "chosen reason claim leaves_out",
         "error": "mean_rel mean_rel_interval half_width p99 pixels_trusted level method",
         "memory": "peak_rss bvh scene",
         "cluster": "workers tiles tiles_here retries duplicates bytes bytes_sent bytes_received machines",

@@ -308,6 +308,12 @@ def test_render_by_transport(box):
     for transport in ("direct", "whitted", "path"):
         stats = world.render(size=(8, 6), spp=1, transport=transport, clamp=2).stats
         assert stats["transport"] == transport and stats["transport_reason"]
+        assert set(stats["left_out"]) == {
+            "cut_by_depth", "cut_by_energy", "clipped", "unreached_lights", "shader_faults", "wrong_hits", "rejected_rays"
+        }  # fmt: skip
+        assert stats["transport_leaves_out"] == ([] if transport == "path" else ["interreflection"])
+    stats = world.render(size=(8, 6), spp=32, channels=["rgba", "error"]).stats
+    assert stats["error_mean"] >= 0 and stats["error_mean_interval"] >= 0
     for wrong in ({"transport": "paths"}, {"error": 2}, {"time_limit": -1}, {"clamp": float("nan")}):
         with pytest.raises(ValueError, match=next(iter(wrong))):
             world.render(size=(8, 6), **wrong)

@@ -6,6 +6,7 @@
 #include <random>
 #include <vector>
 
+#include "render/frame.h"
 #include "render/sampler.h"
 #include "render/spherical.h"
 
@@ -252,6 +253,47 @@ TEST(Spherical, InsideASphereThereIsNothingToChoose) {
     EXPECT_TRUE(s.inside());
     EXPECT_FALSE(s.sample(.5, .5, d, distance));
     EXPECT_EQ(s.density(any), 0);
+  }
+}
+
+// Right-handed and orthonormal everywhere, and continuous but near one direction.
+template <class T> void checkFrames(double tolerance) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  int jumps = 0;
+  for (int i = 0; i < 200000; i++) {
+    double d[3] = {normal(random), normal(random), i % 3 ? normal(random) : 0.0}, other[3], length = 0, otherLength = 0;
+    for (int k = 0; k < 3; k++) length += d[k] * d[k];
+    for (int k = 0; k < 3; k++)
+      d[k] /= std::sqrt(length), other[k] = d[k] + 1e-3 * normal(random), otherLength += other[k] * other[k];
+    const T n[3] = {T(d[0]), T(d[1]), T(d[2])};
+    T s[3], t[3], near[3], beside[3];
+    const T m[3] = {T(other[0] / std::sqrt(otherLength)), T(other[1] / std::sqrt(otherLength)),
+                    T(other[2] / std::sqrt(otherLength))};
+    basisOf(n, s, t), basisOf(m, near, beside);
+    const auto dot = [](const T a[3], const T b[3]) { return double(a[0] * b[0] + a[1] * b[1] + a[2] * b[2]); };
+    for (const double zero : {dot(s, t), dot(s, n), dot(t, n), dot(s, s) - 1, dot(t, t) - 1}) ASSERT_NEAR(zero, 0, tolerance);
+    const T across[3] = {s[1] * t[2] - s[2] * t[1], s[2] * t[0] - s[0] * t[2], s[0] * t[1] - s[1] * t[0]};
+    ASSERT_GT(dot(across, n), 0.99);
+    jumps += dot(s, near) < 0.99;
+  }
+  EXPECT_LT(jumps, 20) << "of 200,000 pairs that are about a milliradian apart";
+}
+
+TEST(Frame, IsRightHandedOrthonormalAndContinuous) {
+  checkFrames<double>(1e-13);
+  checkFrames<float>(6e-6);
+  // Also along the direction in which it jumps.
+  const double pole[3] = {0.6649982694690716, 0.11246117974981107, -0.7383290490373657};
+  for (const double off : {0.0, 1e-12, 1e-7, 1e-5, 1e-3, .05, .1, .15}) {
+    float n[3] = {float(pole[0] + off), float(pole[1]), float(pole[2])}, s[3], t[3];
+    const float length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+    for (float& x : n) x /= length;
+    basisOf(n, s, t);
+    for (int k = 0; k < 3; k++) EXPECT_TRUE(std::isfinite(s[k]) && std::isfinite(t[k]));
+    EXPECT_NEAR(s[0] * n[0] + s[1] * n[1] + s[2] * n[2], 0, 3e-6) << off;
+    EXPECT_NEAR(t[0] * n[0] + t[1] * n[1] + t[2] * n[2], 0, 3e-6) << off;
+    EXPECT_NEAR(s[0] * t[0] + s[1] * t[1] + s[2] * t[2], 0, 3e-6) << off;
   }
 }
 

@@ -19,7 +19,8 @@ std::string whatOf(const Prepared& p) {
 bool same(const Prepared& a, const Prepared& b) {
   return a.facts.camera == b.facts.camera && a.facts.lamps == b.facts.lamps && a.frame.transport == b.frame.transport &&
          a.stats.triangles == b.stats.triangles && a.stats.uniqueTriangles == b.stats.uniqueTriangles &&
-         a.stats.rejectedInstances == b.stats.rejectedInstances && a.stats.unreachedLights == b.stats.unreachedLights;
+         a.stats.rejectedInstances == b.stats.rejectedInstances && a.stats.unreachedLights == b.stats.unreachedLights &&
+         a.stats.transportLeavesOut == b.stats.transportLeavesOut;
 }
 
 } // namespace

@@ -173,7 +173,7 @@ ShaderFaults faultsFrom(std::span<const message::Fault> faults, const ShaderRegi
   ShaderFaults result;
   for (const message::Fault& fault : faults) {
     const RtsClass* shaderClass = shaders.loaded(fault.name, fault.library);
-    if (shaderClass && fault.kind <= uint8_t(Fault::undeclaredTransparency))
+    if (shaderClass && fault.kind <= uint8_t(Fault::undeclaredScattering))
       result.add(*shaderClass, Fault(fault.kind), fault.hits);
   }
   return result;

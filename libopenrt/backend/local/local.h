@@ -60,7 +60,7 @@ class LocalBackend final : public Backend, public SurfaceQueries {
   PixelFootprint footprint_;
   bool scopedLights_ = false, samePlaces_ = false; // samePlaces_: of the records, as in the last snapshot
   std::string transportReason_;                    // of the snapshot
-  uint32_t unreachedLights_ = 0;
+  uint32_t unreachedLights_ = 0, transportLeavesOut_ = 0;
   bool saidNearLamp_ = false;
   mutable std::mutex mutex_; // frame_ as seen by cancel(), progress() and snapshot()
   std::shared_ptr<Frame> frame_, finished_;

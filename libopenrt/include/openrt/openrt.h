@@ -345,19 +345,19 @@ enum {
   RT_PROGRESSIVE = 11,      /* 0 (default) or 1: the whole picture early, then better and better, see below */
   RT_FRAMES_IN_FLIGHT = 12, /* backend=cluster: frames that rtSwapBuffers leaves unfinished, 1 (default) .. 64; takes effect at
                                once, is no part of the picture */
-  RT_TILE_SIZE = 13         /* edge in pixels of the tiles that a picture is made in, 4 .. 128; 0 (default): as size and samples
-                               suggest. Tiles bound what neighbours tell of errors, and RT_ERROR is reached tile by tile */
+  RT_TILE_SIZE = 13         /* edge of tiles in pixels, 4 .. 128; 0 (default): by size and samples. Errors are judged by tile */
 };
 /* How light is followed from a surface whose shader answers in lobes (openrts.h). */
 enum {
-  RT_TRANSPORT_AUTO = 0,   /* what the shaders in the scene ask for, RTstats.transport says which: path where one emits, is glossy
-                              or asks for global light; whitted where one is a mirror or clear; direct without */
+  RT_TRANSPORT_AUTO = 0,   /* what leaves out nothing that surfaces of lobes do with light; RTstats.transport says which */
   RT_TRANSPORT_DIRECT = 1, /* light from the lights alone; no mirror images, nothing behind glass */
   RT_TRANSPORT_WHITTED = 2, /* and the whole tree of reflections and refractions; no randomness */
   RT_TRANSPORT_PATH = 3,    /* and light between diffuse surfaces: path tracing, noisy, unbiased */
   RT_TRANSPORT_LIGHT = 4 /* path; what lamps send through mirrors and lenses to surfaces that the camera sees directly is followed
                             from the lamps: caustics, also of lights without extent */
 };
+/* RTstats.transportLeavesOut: light that is not followed. Images: by mirrors; between: surfaces; caustics: of lamps, by mirrors. */
+enum { RT_LEAVES_IMAGES = 1, RT_LEAVES_BETWEEN = 2, RT_LEAVES_EMITTERS = 4, RT_LEAVES_SKY = 8, RT_LEAVES_CAUSTICS = 16 };
 /* Error bars. The mean over the pixel's area and over all paths lies, with a probability of 95 % for each colour by itself,
  * within RT_RGBA +- RT_ERROR. Where a transport takes no random decision (direct, whitted) only the mean over the area is
  * uncertain; what the depth limit and the whitted transport's energy cut leave out is not counted.
@@ -436,8 +436,7 @@ typedef struct RTstats {
   double cutByDepth;        /* throughput of paths that the depth limit ended: times the radiance beyond it is the loss */
   double cutByEnergy;       /* the same of branches that RT_ENERGY_CUT ended */
   double clipped;           /* radiance that RT_CLAMP has taken away */
-  uint64_t unreachedLights; /* lights without extent in a path-traced scene with mirrors or glass: what they send by way of these
-                               is seen by RT_TRANSPORT_LIGHT alone; 0 there */
+  uint64_t unreachedLights; /* lights without extent whose way through mirrors or glass only RT_TRANSPORT_LIGHT follows; there 0 */
   uint64_t shaderFaults;    /* hits at which a shader answered with NaN or infinity; taken as 0, the log names the class */
   uint64_t wrongHits;       /* times single precision would find a sliver (decision 41) that a ray misses in double; not taken */
   uint64_t frame;           /* number of the finished frame, counted from 1; 0: none yet */
@@ -446,6 +445,7 @@ typedef struct RTstats {
   uint64_t tilesRemote, tilesLocal; /* done by workers; by this process */
   uint64_t reissued, duplicates;    /* handed out again: late, or their worker was lost; results that came too late */
   uint64_t bytesSent, bytesReceived;
+  uint32_t transportLeavesOut; /* RT_LEAVES_*, or'ed: light of the scene that the transport does not follow */
 } RTstats;
 RT_API void rtGetStats(RTstats* stats);
 

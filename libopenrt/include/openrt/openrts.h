@@ -231,7 +231,10 @@ enum {
   /* since 1.2; from these the automatic transport is chosen */
   RTS_SPECULAR = 16, /* surface: may have lobes REFLECTION or DIELECTRIC. Assumed of classes made for 1.1 */
   RTS_GLOSSY = 32,   /* surface: may have lobes that scatter, other than DIFFUSE */
-  RTS_GLOBAL = 64    /* surface: asks for the light of other surfaces: path tracing */
+  RTS_GLOBAL = 64,   /* surface: asks for the light of other surfaces: path tracing */
+  /* Hosts that do not know these take them as not set. */
+  RTS_NO_SCATTER = 128, /* surface: has no lobes but REFLECTION, DIELECTRIC and TRANSPARENT */
+  RTS_BACKDROP = 256    /* environment: a picture that does not light surfaces that answer by themselves (`shade`) */
 };
 
 /* Since 1.2: what may set a parameter's value; whatever it is, functions find it in the parameter struct of the hit. */

@@ -24,8 +24,8 @@
 //                                                                     meets the light by chance only
 //                   Medium medium() const                             optional: the inside of the body
 //                   static constexpr uint32_t needs = RTS_GLOSSY;     optional, also as a const function: RTS_SPECULAR,
-//                                                                     RTS_GLOSSY, RTS_GLOBAL; without it a class with `surface`
-//                                                                     counts as RTS_SPECULAR
+//                                                                     RTS_GLOSSY, RTS_GLOBAL, RTS_NO_SCATTER; without it a class
+//                                                                     with `surface` counts as RTS_SPECULAR
 //   LightSource<T>  Illumination illuminate(Vec3 point) const         point and answer in the light's local space
 //                   Extent extent() const                             optional: where it is and how strong
 //                   static constexpr bool directional = true;         optional: toLight has no end point

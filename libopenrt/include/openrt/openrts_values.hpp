@@ -57,13 +57,21 @@ inline Color operator/(Color a, float s) { return a * (1 / s); }
 inline float largest(Color c) { return std::fmax(c.r, std::fmax(c.g, c.b)); }
 inline constexpr float pi = 3.14159265358979f;
 
-// Three unit vectors at right angles of which the third is given: local coordinates with z along a normal. T. Duff et al.,
-// "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017.
+// Three unit vectors at right angles of which the third is given: local coordinates with z along a normal. The frame is a fixed
+// one, reflected at the plane between its third axis and -normal. It is continuous but in one direction, along which hardly
+// anything is built: where a frame jumps, pictures have more noise.
 struct Frame {
   explicit Frame(Vec3 normal) : n(normal) {
-    const float sign = std::copysign(1.0f, n.z), c = -1 / (sign + n.z), d = n.x * n.y * c;
-    s = {1 + sign * n.x * n.x * c, sign * d, -sign * n.x};
-    t = {d, sign + n.y * n.y * c, -n.y};
+    constexpr Vec3 pole{-0.664998269f, -0.11246118f, 0.738329049f};
+    constexpr Vec3 first{0.745604724f, -0.0430220561f, 0.664998269f}, second{-0.0430220561f, 0.992724325f, 0.11246118f};
+    const Vec3 v = n + pole;
+    const float square = dot(v, v), scale = square > 0 ? 2 / square : 0;
+    s = first - scale * dot(n, first) * v;
+    t = second - scale * dot(n, second) * v;
+    if (square > 0.01f) return;
+    s = s - dot(s, n) * n; // digits are lost there
+    s = s * (1 / std::sqrt(dot(s, s)));
+    t = {n.y * s.z - n.z * s.y, n.z * s.x - n.x * s.z, n.x * s.y - n.y * s.x};
   }
   Vec3 toLocal(Vec3 v) const { return {dot(v, s), dot(v, t), dot(v, n)}; }
   Vec3 toWorld(Vec3 v) const { return s * v.x + t * v.y + n * v.z; }

@@ -233,6 +233,9 @@ void attenuate(const RtsHost* host, RtsBatch* batch, const void* params, uint32_
   (p.fogType == exponentialFog ? exponentialFraction : linearFraction)(p.fogRange, lanes, distance, fraction);
 }
 
+// Clause 6.5: a Background is seen and lights nothing.
+uint32_t environmentTraits(const RtsHost*, const void*) { return RTS_BACKDROP; }
+
 constexpr RtsClass makeEnvironmentClass() {
   RtsClass c{};
   c.size = sizeof(RtsClass);
@@ -242,6 +245,7 @@ constexpr RtsClass makeEnvironmentClass() {
   c.paramSize = sizeof(EnvironmentParams);
   c.paramCount = sizeof(environmentParams) / sizeof(environmentParams[0]);
   c.params = environmentParams;
+  c.traits = environmentTraits;
   c.miss = miss;
   c.attenuate = attenuate;
   return c;

@@ -61,7 +61,7 @@ RtsClass makeGlobalIlluminationClass() {
 
 uint32_t scatterTraits(const SurfaceParams& p) {
   const auto any = [](const float c[3]) { return c[0] > 0.0f || c[1] > 0.0f || c[2] > 0.0f; };
-  return (p.lit && any(p.specularColor) ? uint32_t(RTS_GLOSSY) : 0u) |
+  return (p.lit ? 0u : uint32_t(RTS_NO_SCATTER)) | (p.lit && any(p.specularColor) ? uint32_t(RTS_GLOSSY) : 0u) |
          (!p.lit || any(p.emissiveColor) ? uint32_t(RTS_EMISSIVE) : 0u);
 }
 

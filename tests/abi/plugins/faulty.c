@@ -78,6 +78,17 @@ static void badLobe(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, R
     for (int k = 0; k < 3; k++) lobe->weight[k][i] = 0.5f;
 }
 
+static uint32_t nothingScatters(const RtsHost* host, const void* params) {
+  (void)host, (void)params;
+  return RTS_NO_SCATTER;
+}
+static void scatter(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, RtsSurface* out) {
+  RtsLobe* const lobe = host->lobe(batch, RTS_LOBE_DIFFUSE);
+  (void)out;
+  for (uint32_t i = 0; i < hits->count; i++)
+    for (int k = 0; k < 3; k++) lobe->weight[k][i] = 0.5f;
+}
+
 #define SURFACE .size = sizeof(RtsClass), .kind = RTS_SURFACE
 static const RtsClass crashes = {SURFACE, .name = "Crash", .shade = crash};
 static const RtsClass hangs = {SURFACE, .name = "Hang", .shade = hang};
@@ -86,6 +97,8 @@ static const RtsClass nanLobes = {SURFACE, .name = "NanLobe", .surface = nanLobe
 static const RtsClass lamps = {SURFACE, .name = "SilentLamp", .surface = emission};
 static const RtsClass veils = {SURFACE, .name = "SilentVeil", .surface = veil};
 static const RtsClass glosses = {SURFACE, .name = "SilentGloss", .surface = gloss};
+static const RtsClass scatters = {SURFACE, .name = "SilentScatter", .traits = nothingScatters, .surface = scatter};
 static const RtsClass badLobes = {SURFACE, .name = "BadLobe", .surface = badLobe};
-static const RtsClass* const classes[] = {&crashes, &hangs, &nans, &nanLobes, &lamps, &veils, &glosses, &badLobes};
-RTS_EXPORT const RtsPlugin rtsPlugin = {RTS_MAGIC, RTS_ABI_MAJOR, RTS_ABI_MINOR, sizeof(RtsPlugin), 8, classes};
+static const RtsClass* const classes[] = {&crashes, &hangs,   &nans,     &nanLobes, &lamps,
+                                          &veils,   &glosses, &badLobes, &scatters};
+RTS_EXPORT const RtsPlugin rtsPlugin = {RTS_MAGIC, RTS_ABI_MAJOR, RTS_ABI_MINOR, sizeof(RtsPlugin), 9, classes};
