@@ -39,7 +39,7 @@ Image decodeImage(const uint8_t* bytes, size_t size, const Limits& limits) {
   if (startsWith("GIF87a") || startsWith("GIF89a")) return decodeGif(content, limits);
   if (size == 0) throw std::runtime_error("the file is empty");
   if (looksLikeRadiance(bytes, size)) throw std::runtime_error("a picture of radiance cannot be used here");
-  throw std::runtime_error("not a PNG, JPEG, GIF, Radiance (.hdr), PFM or OpenEXR picture");
+  throw std::runtime_error("not a PNG, JPEG or GIF picture, nor one of radiance (.hdr, .pfm, .exr)");
 }
 
 std::vector<uint8_t> readPictureFile(const std::string& path, const Limits& limits) {

@@ -83,6 +83,7 @@ TEST_F(ErrorBars, DirectLightIsExactInsideASurface) {
   rtTranslated(0, 0, 10);
   rtOrtho(1);
   rtPopMatrix();
+  rtQuality(RT_TRANSPORT, RT_TRANSPORT_WHITTED);
   rtQuality(RT_SAMPLES_PER_PIXEL, 32);
   rtFrameBuffer(8, 8, RT_RGBA | RT_ERROR | RT_TRUST);
   rtRender();

@@ -356,7 +356,7 @@ enum {
   RT_TRANSPORT_LIGHT = 4 /* path; what lamps send through mirrors and lenses to surfaces that the camera sees directly is followed
                             from the lamps: caustics, also of lights without extent */
 };
-/* RTstats.transportLeavesOut: light that is not followed. Images: by mirrors; between: surfaces; caustics: of lamps, by mirrors. */
+/* RTstats.transportLeavesOut: light that is not followed. Images: in mirrors; between: surfaces; caustics: lamps, by mirrors. */
 enum { RT_LEAVES_IMAGES = 1, RT_LEAVES_BETWEEN = 2, RT_LEAVES_EMITTERS = 4, RT_LEAVES_SKY = 8, RT_LEAVES_CAUSTICS = 16 };
 /* Error bars. The mean over the pixel's area and over all paths lies, with a probability of 95 % for each colour by itself,
  * within RT_RGBA +- RT_ERROR. Where a transport takes no random decision (direct, whitted) only the mean over the area is
@@ -436,7 +436,7 @@ typedef struct RTstats {
   double cutByDepth;        /* throughput of paths that the depth limit ended: times the radiance beyond it is the loss */
   double cutByEnergy;       /* the same of branches that RT_ENERGY_CUT ended */
   double clipped;           /* radiance that RT_CLAMP has taken away */
-  uint64_t unreachedLights; /* lights without extent whose way through mirrors or glass only RT_TRANSPORT_LIGHT follows; there 0 */
+  uint64_t unreachedLights; /* lights without extent whose way by mirrors or glass only RT_TRANSPORT_LIGHT follows; there 0 */
   uint64_t shaderFaults;    /* hits at which a shader answered with NaN or infinity; taken as 0, the log names the class */
   uint64_t wrongHits;       /* times single precision would find a sliver (decision 41) that a ray misses in double; not taken */
   uint64_t frame;           /* number of the finished frame, counted from 1; 0: none yet */
