@@ -1,5 +1,6 @@
 """vv and shaders: --shader, --list-shaders, --transport and what is said about it, HDR emission."""
 import json
+import struct
 
 import pytest
 
@@ -126,6 +127,36 @@ def test_light_from_all_around(vv):
     vv.write("white.pfm", environment(8, 4, lambda x, y: (.5, .5, .5)))
     lit = middle(vv.picture("--environment", "white.pfm", "--transport", "path", "--spp", "64", world="ball.wrl"))
     assert all(abs(c - 188) < 6 for c in lit)
+    assert middle(vv.picture("--environment", "white.pfm", "--spp", "64", world="ball.wrl")) == lit  # what "auto" chooses
+
+
+def test_skies_that_worlds_name(vv):
+    """The same picture as with --environment, for each format; a Background and a texture of more than 1."""
+    start = HEADER + "NavigationInfo { headlight FALSE } Viewpoint { position 0 0 3 } "
+    ball = "Shape { appearance Appearance { material Material { diffuseColor 1 1 1 } } geometry Sphere { } }"
+    vv.write("plain.wrl", start + ball)
+    vv.write("sky.pfm", environment(8, 4, lambda x, y: (2 * x, y, 1)))
+    vv.write("empty.wrl", HEADER)
+    run = vv("empty.wrl", "-o", "sky.exr", "--environment", "sky.pfm", "--camera-shader", "Panorama", "--size", "16x8", "--spp", "1")
+    assert run.returncode == 0, run.talk
+    row = lambda bright: bytes([2, 2, 0, 8]) + bytes([136, bright]) + bytes([136, 0]) * 2 + bytes([136, 129])
+    vv.write("sky.hdr", b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4 +X 8\n" + row(127) * 4)
+    for name in ("sky.pfm", "sky.hdr", "sky.exr"):
+        shader = f'ORTShader {{ name "EnvironmentMap" file "environmentmap" options "texture texture {name}" }}'
+        vv.write("named.wrl", start + ball + f" ORTBackground {{ shader {shader} }}")
+        pictures = []
+        for world, more in (("named.wrl", ()), ("plain.wrl", ("--environment", name))):
+            done = vv(world, "-o", f"{world}.pfm", "--spp", "4", *more, *SMALL)
+            assert done.returncode == 0 and "warning" not in done.talk, done.talk
+            pictures.append((vv.folder / f"{world}.pfm").read_bytes())
+        assert pictures[0] == pictures[1], name
+    vv.write("five.pfm", environment(2, 2, lambda x, y: (5, 5, 5)))
+    vv.write("front.wrl", HEADER + 'NavigationInfo { headlight FALSE } Viewpoint { } Background { frontUrl "five.pfm" }')
+    vv.write("texture.wrl", start + 'Shape { appearance Appearance { texture ImageTexture { url "five.pfm" } } geometry Sphere { } }')
+    for world in ("front.wrl", "texture.wrl"):
+        assert vv(world, "-o", "x.pfm", *SMALL).returncode == 0
+        texels = (vv.folder / "x.pfm").read_bytes()[-32 * 24 * 12:]
+        assert struct.unpack_from("<3f", texels, (12 * 32 + 16) * 12) == (5, 5, 5), world
 
 
 @pytest.mark.parametrize("name, content", [
