@@ -46,16 +46,6 @@ double nextOnEdge(const Vec3d& p, const Vec3d& q, const Vec3d& d, double& s, dou
 
 } // namespace
 
-bool passesClearly(const SeenTriangle& s, const Vec3d& d, double edge) {
-  // Eight roundings of floats are 2^-21 of the largest product; a gap that is closed (slivers.cpp) is as wide.
-  const double doubt = 0x1p-18 * edge * std::max({largest(s.a), largest(s.b), largest(s.c)}) * largest(d);
-  const auto apart = [doubt](double p, double q) { return (p > doubt && q < -doubt) || (p < -doubt && q > doubt); };
-  const double ac = side<double>(s.a, s.c, d), ba = side<double>(s.b, s.a, d);
-  if (apart(ac, ba)) return true;
-  const double cb = side<double>(s.c, s.b, d);
-  return apart(ac, cb) || apart(ba, cb);
-}
-
 bool meets(const SeenTriangle& s, const Vec3d& d, Meeting& at) {
   const Sides w = sidesOf(s, d);
   const bool front = w.ac >= 0 && w.ba >= 0 && w.cb >= 0, back = w.ac <= 0 && w.ba <= 0 && w.cb <= 0;

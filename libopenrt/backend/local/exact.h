@@ -18,10 +18,6 @@ struct SeenTriangle {
   Vec3d a, b, c;
 };
 
-// Whether the line along `direction` passes the triangle so far away that no rounding of floats could put it there: quick, and
-// the answer to most questions. edge: the largest difference of coordinates of two corners.
-bool passesClearly(const SeenTriangle& triangle, const Vec3d& direction, double edge);
-
 // Whether the line along `direction` meets the triangle, its edges included. Two triangles with the same edge decide about it
 // with the same number, so no ray passes between them.
 bool meets(const SeenTriangle& triangle, const Vec3d& direction, Meeting& at);

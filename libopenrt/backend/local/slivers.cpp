@@ -25,17 +25,34 @@ bool closesGap(const SeenTriangle& s, unsigned open, const Vec3d& d, double near
   return distance <= slack && meetsPlane(s, d) >= near;
 }
 
+// A triangle, with what the question that most rays are answered by asks of it.
 struct Sliver {
   Vec3d a, b, c;
-  double edge; // see passesClearly()
+  Vec3d edge[3], moment[3]; // c - a, a - b, b - c; and their products with the sums of their ends
+  double extent, doubt;     // largest coordinate; what the roundings of floats put in doubt, but for the ray's part
   Sliver(const Part& part, uint32_t triangle)
-      : a(cornerOf(part, triangle, 0)), b(cornerOf(part, triangle, 1)), c(cornerOf(part, triangle, 2)),
-        edge(std::max({largest(b - a), largest(c - b), largest(a - c)})) {}
+      : a(cornerOf(part, triangle, 0)), b(cornerOf(part, triangle, 1)),
+        c(cornerOf(part, triangle, 2)), edge{c - a, a - b, b - c}, moment{cross(edge[0], c + a), cross(edge[1], a + b),
+                                                                          cross(edge[2], b + c)},
+        extent(std::max({largest(a), largest(b), largest(c)})),
+        doubt(0x1p-18 * std::max({largest(edge[0]), largest(edge[1]), largest(edge[2])})) {}
+
+  // Whether the ray's line passes so far away that no rounding of floats could put it there, nor a gap be closed.
+  bool isPassed(const Lane& ray) const {
+    const Vec3d m = cross(ray.direction, ray.origin) * 2;
+    const double slack = doubt * (extent + largest(ray.origin)) * largest(ray.direction);
+    const auto side = [&](int k) { return dot(moment[k], ray.direction) + dot(edge[k], m); };
+    const auto apart = [slack](double p, double q) { return (p > slack && q < -slack) || (p < -slack && q > slack); };
+    const double p = side(0), q = side(1);
+    if (apart(p, q)) return true;
+    const double r = side(2);
+    return apart(p, r) || apart(q, r);
+  }
 };
 
 bool meetsLane(const Part& part, uint32_t triangle, const Sliver& s, const Lane& lane, Meeting& at) {
+  if (s.isPassed(lane)) return false;
   const SeenTriangle seen{s.a - lane.origin, s.b - lane.origin, s.c - lane.origin};
-  if (passesClearly(seen, lane.direction, s.edge)) return false;
   bool met = meets(seen, lane.direction, at);
   if (!met && part.openEdges[triangle]) met = closesGap(seen, part.openEdges[triangle], lane.direction, lane.near, at);
   if (met) return lane.reaches(at.t);
