@@ -36,8 +36,10 @@ build:
 	@$(CONFIGURE) release
 	@cmake --build $(R) -j $(JOBS)
 
-## make install       into PREFIX (default /usr/local), DESTDIR is honoured
-install: build
+## make install       into PREFIX (default /usr/local), DESTDIR is honoured; builds no tests and no benchmarks
+install:
+	@$(CONFIGURE) release -DOPENRT_TESTS=OFF -DOPENRT_BENCH=OFF
+	@cmake --build $(R) -j $(JOBS)
 	@cmake --install $(R) --prefix $(PREFIX)
 
 ## make docs          the documentation as a site: build/docs/index.html

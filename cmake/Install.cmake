@@ -61,8 +61,11 @@ endif()
 if(OPENRT_PYTHON)
   install(DIRECTORY ${CMAKE_BINARY_DIR}/python/xvrml/ DESTINATION ${openrt_python_place} COMPONENT python PATTERN "__pycache__" EXCLUDE)
 endif()
+# Guides beside what they talk of: their commands run in this folder as in a checkout.
 install(FILES README.md LICENSE CHANGELOG.md ${CMAKE_BINARY_DIR}/libxvrml/generated/nodes.md DESTINATION ${CMAKE_INSTALL_DOCDIR}
         COMPONENT doc)
+install(DIRECTORY docs examples DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT doc PATTERN "site" EXCLUDE PATTERN "__pycache__" EXCLUDE
+        PATTERN "examples/CMakeLists.txt" EXCLUDE)
 
 foreach(package openrt xvrml)
   install(EXPORT ${package}_targets NAMESPACE ${package}:: DESTINATION ${${package}_cmake_dir} FILE ${package}-targets.cmake)

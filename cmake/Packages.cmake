@@ -45,6 +45,8 @@ openrt_package(vv vv graphics "libopenrt0 ${same}, libxvrml0 ${same}" "ray-trace
 openrt_package(python python3-xvrml python "libopenrt0 ${same}, libxvrml0 ${same}, python3, python3-numpy"
   "VRML97 worlds and ray tracing for Python"
   "Loads, changes, runs and renders VRML97 worlds from Python, with numpy arrays\nfor pictures, fields and rays; and Scripts in Python for trusted worlds.")
+openrt_package(doc openrt-doc doc "" "guides and examples of OpenRT, XVRML and vv"
+  "How to draw boards, robots, optics and old worlds, how to write shaders, nodes\nand script engines; programs in C and Python, and the worlds that the guides\nuse.")
 set(CPACK_DEBIAN_VV_PACKAGE_RECOMMENDS "fonts-dejavu-core")
 set(CPACK_DEBIAN_VV_PACKAGE_SUGGESTS "ffmpeg")
 set(CPACK_DEBIAN_LIBXVRML_PACKAGE_RECOMMENDS "fonts-dejavu-core")

@@ -102,7 +102,7 @@ with tempfile.TemporaryDirectory() as scratch:
         run(examples / example.stem, *options, examples / "a.ppm")
     print("examples: as they must be")
     flags = run("pkg-config", "--cflags", "--libs", "xvrml", env={"PKG_CONFIG_PATH": str(libs)}).split()
-    run(cc, "-x", "c++", "-std=c++20", project / "world.cpp", "-o", scratch / "world_by_pkg_config", *flags, "-lstdc++", "-lm", rpath)
+    run(cc, "-x", "c++", project / "world.cpp", "-o", scratch / "world_by_pkg_config", *flags, "-lstdc++", "-lm", rpath)
     print(run(scratch / "world_by_pkg_config"), end="")
 
     # Node plug-ins
