@@ -48,7 +48,6 @@ openrt_package(python python3-xvrml python "libopenrt0 ${same}, libxvrml0 ${same
 openrt_package(doc openrt-doc doc "" "guides and examples of OpenRT, XVRML and vv"
   "How to draw boards, robots, optics and old worlds, how to write shaders, nodes\nand script engines; programs in C and Python, and the worlds that the guides\nuse.")
 set(CPACK_DEBIAN_VV_PACKAGE_RECOMMENDS "fonts-dejavu-core")
-set(CPACK_DEBIAN_VV_PACKAGE_SUGGESTS "ffmpeg")
 set(CPACK_DEBIAN_LIBXVRML_PACKAGE_RECOMMENDS "fonts-dejavu-core")
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS_POLICY "=")

@@ -28,12 +28,19 @@ class Option:
         parts = self.argument.split("|")
         return [p for p in parts if re.fullmatch(r"[a-z][a-z0-9]*", p)] if len(parts) > 1 else []
 
+    def members(self):
+        """Of a LIST the words that may stand in it, between commas: "... out of a, b, c ..."."""
+        found = re.search(r"out of ((?:[a-z]+, )+[a-z]+)", self.text) if self.argument == "LIST" else None
+        return found.group(1).split(", ") if found else []
+
     def takes(self):
-        """What follows it: nothing, words, file, folder, or something that cannot be completed."""
+        """What follows it: nothing, words, list, file, folder, or something that cannot be completed."""
         if not self.argument:
             return "nothing"
         if self.words():
             return "words"
+        if self.members():
+            return "list"
         if self.argument.startswith("DIR"):
             return "folder"
         if re.match(r"FILE|TEXT|PATH|REF\.", self.argument):
@@ -133,6 +140,8 @@ def bash(program):
     for option in program.options():
         names = "|".join(option.names)
         action = {"words": f'mapfile -t COMPREPLY < <(compgen -W "{" ".join(option.words())}" -- "$cur"); return',
+                  "list": f'compopt -o nospace 2>/dev/null; local done=; [[ $cur == *,* ]] && done="${{cur%,*}},"; '
+                          f'mapfile -t COMPREPLY < <(compgen -P "$done" -W "{" ".join(option.members())}" -- "${{cur##*,}}"); return',
                   "file": 'compopt -o filenames 2>/dev/null; mapfile -t COMPREPLY < <(compgen -f -- "$cur"); return',
                   "folder": 'compopt -o filenames 2>/dev/null; mapfile -t COMPREPLY < <(compgen -d -- "$cur"); return',
                   "other": "return", "nothing": ""}[option.takes()]
@@ -158,7 +167,8 @@ def zsh(program):
 
     lines = []
     for option in program.options():
-        action = {"words": f":{quoted(option.argument)}:({' '.join(option.words())})", "file": f":{quoted(option.argument)}:_files",
+        action = {"words": f":{quoted(option.argument)}:({' '.join(option.words())})",
+                  "list": f":{quoted(option.argument)}:_values -s , word {' '.join(option.members())}", "file": f":{quoted(option.argument)}:_files",
                   "folder": f":{quoted(option.argument)}:_files -/", "other": f":{quoted(option.argument)}:", "nothing": ""}[option.takes()]
         if option.optional():
             action = ":" + action
@@ -183,7 +193,8 @@ def fish(program):
     lines = [f"# Completion of {program.name} for fish; made from its table of options."]
     for option in program.options():
         names = " ".join(f"-l {n[2:]}" if n.startswith("--") else f"-s {n[1:]}" for n in option.names)
-        action = {"words": f" -x -a '{' '.join(option.words())}'", "file": " -r -F", "folder": " -x -a '(__fish_complete_directories)'",
+        action = {"words": f" -x -a '{' '.join(option.words())}'",
+                  "list": f" -x -a '(__fish_append , {' '.join(option.members())})'", "file": " -r -F", "folder": " -x -a '(__fish_complete_directories)'",
                   "other": "" if option.optional() else " -x", "nothing": ""}[option.takes()]
         lines.append(f"complete -c {program.name} {names}{action} -d '{quoted(option.brief())}'")
     for suffix in program.suffixes():

@@ -19,15 +19,21 @@ using xvrml::MapOptions;
 
 void addOutput(Options& o, const std::string& value) {
   if (value == "-") return o.outputs.push_back({"-", picture::Format::png});
-  if (value.size() > 2 && value.ends_with(":-")) {
-    if (auto format = picture::formatNamed(value.substr(0, value.size() - 2))) return o.outputs.push_back({"-", *format});
+  // FORMAT:FILE, for names whose suffix says something else, or nothing.
+  if (const size_t colon = value.find(':'); colon != value.npos && colon + 1 < value.size()) {
+    const std::string file = value.substr(colon + 1);
+    if (const auto format = picture::formatNamed(value.substr(0, colon))) {
+      if (file != "-") checkFramePlace(file);
+      return o.outputs.push_back({file, *format});
+    }
   }
   checkFramePlace(value);
-  if (const Video video = videoOf(value); video != Video::none) return o.outputs.push_back({value, {}, video});
+  if (const picture::FilmKind film = picture::filmOf(value); film != picture::FilmKind::none)
+    return o.outputs.push_back({value, {}, film});
   auto format = picture::formatOf(value);
   if (!format)
-    throw UsageError(fmt::format("a file name with one of the suffixes {}, mp4, webm, gif was expected, not \"{}\"",
-                                 picture::formatNames, value));
+    throw UsageError(fmt::format("a file name with one of the suffixes {}, {} was expected, not \"{}\"", picture::formatNames,
+                                 picture::filmSuffixes, value));
   o.outputs.push_back({value, *format});
 }
 
@@ -86,9 +92,9 @@ void notEmpty(const std::string& value, const char* what) {
 
 const OptionInfo table[] = {
     {"-o,--output", "FILE", "Picture",
-     "Picture to write; the format is that of the suffix (exr, png, jpg, ppm, pfm). - is standard output (PNG; exr:- and so on "
-     "for another format). Of a sequence {frame:4} in the name is the number with four digits, and mp4, webm or gif makes a "
-     "video through the program ffmpeg. May be given several times.",
+     "Picture to write; the format is that of the suffix (exr, png, jpg, ppm, pfm). FORMAT:FILE says it where the "
+     "suffix does not. - is standard output (PNG; exr:- and so on for another format). Of a sequence {frame:4} in the name is the number with four digits, and mp4, webm or gif makes a "
+     "film. May be given several times.",
      addOutput, true},
     {"--size", "WxH", "Picture", "Size in pixels, of pictures and of the window (default 800x600).",
      [](Options& o, const std::string& v) { readSize(v, o.render.width, o.render.height); }},
@@ -127,7 +133,7 @@ const OptionInfo table[] = {
      "A picture of each frame from A to B: frame N shows the world at N/fps seconds, and is the same picture in any sequence "
      "that holds it. The number is put where {frame:4} stands in the file name, or else before its suffix.",
      [](Options& o, const std::string& v) { o.frames = readFrames(v); }},
-    {"--fps", "F", "Time", "Frames a second, of sequences, videos and the window, and steps of the world's clock (default 30).",
+    {"--fps", "F", "Time", "Frames a second, of sequences, films and the window, and steps of the world's clock (default 30).",
      [](Options& o, const std::string& v) { o.fps = readNumber(v, 0.001, 100000); }},
     {"--turntable", "N", "Time", "N pictures, once around the vertical axis through the world's centre, from the chosen view on.",
      [](Options& o, const std::string& v) { o.turntable = int(readInteger(v, 1, 100000)); }},
@@ -191,7 +197,7 @@ const OptionInfo table[] = {
      [](Options& o, const std::string& v) { o.render.timeLimit = readNumber(v, 0, 1e6); }},
     {"--depth", "N", "Quality", "Surfaces a path may pass or bounce at, 0 to 10000 (default 25).",
      [](Options& o, const std::string& v) { o.render.depth = int(readInteger(v, 0, 10000)); }},
-    {"--transport", "NAME", "Quality",
+    {"--transport", "auto|direct|whitted|path|light", "Quality",
      "How light is followed: auto (default: what the shaders of the world ask for; --explain and --stats say which and why), "
      "direct "
      "(lights alone), whitted (and mirrors and glass), path (and light between surfaces), light (and what lamps send through "

@@ -32,6 +32,7 @@ std::vector<std::string> allNames() {
 
 std::string unknownOption(std::string option) {
   option = option.substr(0, option.find('='));
+  if (const std::string hint = optionHint(option); !hint.empty()) return hint;
   const std::string near = picture::nearest(option, allNames());
   if (near.empty()) return fmt::format("there is no option {}; vv --help lists them", option);
   return fmt::format("there is no option {}; did you mean {}?", option, near);
@@ -53,8 +54,8 @@ void checkSequence(const Options& options) {
     throw UsageError("--frames and --turntable go with -o (or, to try a world out, with --check)");
   for (const Output& output : options.outputs) {
     if (options.isSequence() && output.path == "-") throw UsageError("a sequence needs file names, not standard output");
-    if (!options.isSequence() && output.video != Video::none)
-      throw UsageError(output.path + ": a video needs --frames or --turntable");
+    if (!options.isSequence() && output.film != picture::FilmKind::none)
+      throw UsageError(output.path + ": a film needs --frames or --turntable");
   }
   if (options.watch && !options.makesPictures() && !options.opensWindow())
     throw UsageError("--watch goes with -o, or with the window");
@@ -165,7 +166,7 @@ Options readCommandLine(int argc, char** argv) {
   } catch (const CLI::ParseError& error) { throw UsageError(error.what()); }
   for (const std::string& extra : app.remaining())
     if (extra.size() > 1 && extra[0] == '-') throw UsageError(unknownOption(extra));
-  if (inputs.size() > 1) throw UsageError(fmt::format("one world at a time: \"{}\" is one too many", inputs[1]));
+  if (inputs.size() > 1) throw UsageError(secondFileHint(inputs[0], inputs[1]));
   if (!app.remaining().empty()) throw UsageError(fmt::format("\"{}\" was not expected", app.remaining()[0]));
   if (!inputs.empty()) options.input = inputs[0];
   for (size_t i = 0; i < added.size(); ++i) {

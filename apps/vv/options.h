@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "picture/cluster.h"
+#include "picture/film.h"
 #include "picture/renderer.h"
 #include "values.h"
-#include "video.h"
 #include "window/input_script.h"
 #include "xvrml/world.h"
 
@@ -20,7 +20,7 @@ namespace vv {
 struct Output {
   std::string path; // "-": standard output
   picture::Format format = picture::Format::png;
-  Video video = Video::none; // else a file of all pictures of a sequence, and no format
+  picture::FilmKind film = picture::FilmKind::none; // else a file of all pictures of a sequence, and no format
 };
 
 struct Options {
@@ -32,7 +32,7 @@ struct Options {
   picture::View view;
   std::optional<double> time; // seconds of the world's clock
   std::optional<FrameRange> frames;
-  double fps = 30;                      // of frames and videos; also the steps of the world's clock
+  double fps = 30;                      // of frames and films; also the steps of the world's clock
   int turntable = 0;                    // pictures around the world; 0: none
   std::vector<std::string> definitions; // DEF.field=value
   std::vector<std::string> shaders;     // DEF=Class:param=value

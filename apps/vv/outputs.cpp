@@ -30,7 +30,7 @@ std::vector<Named> outputsOf(const Options& options) {
   std::vector<Named> all;
   for (const Output& output : options.outputs)
     if (!options.allViewpoints())
-      all.push_back({"-o", pathFor(output.path, {"", output.video != Video::none ? std::nullopt : frame})});
+      all.push_back({"-o", pathFor(output.path, {"", output.film != picture::FilmKind::none ? std::nullopt : frame})});
   if (!options.allViewpoints() || options.isSequence()) all.push_back({"--stats", options.stats});
   all.push_back({"--write", options.write});
   all.push_back({"--record", options.render.record});
@@ -73,8 +73,8 @@ void refuseKept(const Options& options) {
 void checkOutputs(const Options& options) {
   for (const Output& output : options.outputs) {
     if (output.path == "-" && ::isatty(STDOUT_FILENO)) throw Failure{exitUsage, "-o -: a picture is not written to a terminal"};
-    if (output.video == Video::none) continue;
-    if (const std::string why = whyNoVideo(); !why.empty()) throw Failure{exitRender, output.path + ": " + why};
+    if (output.film == picture::FilmKind::none) continue;
+    if (const std::string why = picture::whyNoFilm(output.film); !why.empty()) throw Failure{exitRender, output.path + ": " + why};
   }
   std::map<std::string, std::string> taken; // by place: the option
   for (const Named& output : outputsOf(options)) {

@@ -171,7 +171,6 @@ class Pictures {
     sayError(fmt::format("a shader did not stop within {} s of the interrupt; {}", stuckSeconds,
                          saved ? "the picture so far is saved" : "there is no picture yet"));
     picture::removeTemporary();
-    abandonVideos();
     ::_exit(exitInterrupted);
   }
 
@@ -237,7 +236,7 @@ class Pictures {
   void writePictures(const Job& job, const picture::Picture& made) {
     const picture::Picture wanted = wantedPart(made, options_.render.channels);
     for (const Output& output : options_.outputs) {
-      if (output.video != Video::none) continue;
+      if (output.film != picture::FilmKind::none) continue;
       const std::string bytes = picture::encode(wanted, output.format);
       if (output.path == "-") {
         picture::writeDescriptor(STDOUT_FILENO, bytes, "standard output");
@@ -249,14 +248,16 @@ class Pictures {
     }
   }
 
-  // A view has a video of its own.
-  void addToVideos(const Job& job, const picture::Picture& made) {
+  // Adds a picture to the film of its view.
+  void addToFilms(const Job& job, const picture::Picture& made) {
     for (const Output& output : options_.outputs) {
-      if (output.video == Video::none) continue;
+      if (output.film == picture::FilmKind::none) continue;
       const std::string path = pathFor(output.path, {job.name.viewpoint, {}});
-      auto& video = videos_[path];
-      if (!video) video = std::make_unique<VideoFile>(path, output.video, made.width, made.height, options_.fps);
-      video->add(picture::displayBytes(made));
+      auto& film = films_[path];
+      try {
+        if (!film) film = std::make_unique<picture::Film>(output.film, made.width, made.height, options_.fps);
+        film->add(picture::displayBytes(made));
+      } catch (const std::runtime_error& error) { throw Failure{exitRender, fmt::format("cannot make {}: {}", path, error.what())}; }
     }
   }
 
@@ -271,7 +272,7 @@ class Pictures {
   void finish(const Job& job, const Moment& moment, const picture::RenderResult& result) {
     const auto start = Clock::now();
     writePictures(job, result.picture);
-    if (!result.interrupted) addToVideos(job, result.picture);
+    if (!result.interrupted) addToFilms(job, result.picture);
     const double writeSeconds = secondsSince(start);
     if (!options_.compare.empty() && !result.interrupted) writeOut(compareText(result.picture, options_.compare));
     if (options_.verbose)
@@ -294,8 +295,11 @@ class Pictures {
   }
 
   void finishSequence() {
-    for (auto& [path, video] : videos_) video->finish();
-    videos_.clear();
+    for (auto& [path, film] : films_) {
+      keepFilesOf(browser_.world(), path);
+      picture::writeFile(path, film->finish());
+    }
+    films_.clear();
     if (!options_.stats.empty() && options_.isSequence())
       writeText(options_.stats, frames_.json(options_, commandLine_, browser_.world(), secondsSince(start_)));
   }
@@ -316,7 +320,7 @@ class Pictures {
   std::deque<Flight> flights_;                // being rendered, the oldest first
   size_t moments_ = 1, views_ = 1, done_ = 0; // pictures: of a moment, finished
   bool saveWanted_ = false;
-  std::map<std::string, std::unique_ptr<VideoFile>> videos_; // by path
+  std::map<std::string, std::unique_ptr<picture::Film>> films_; // by path
   SequenceStats frames_;
 };
 

@@ -1,4 +1,4 @@
-// pictures.h: the pictures that the command line asks for: views, frames, turntables, files and videos. [main thread]
+// pictures.h: the pictures that the command line asks for: views, frames, turntables, files and films. [main thread]
 #pragma once
 
 #include "options.h"

@@ -11,7 +11,6 @@
 #include "openrt/openrt.h"
 #include "picture/atomic_file.h"
 #include "values.h"
-#include "video.h"
 
 namespace vv {
 
@@ -35,7 +34,6 @@ void onInterrupt(int number) {
     return;
   }
   picture::removeTemporary();
-  abandonVideos();
   ::_exit(exitInterrupted);
 }
 

@@ -144,6 +144,7 @@ PYBIND11_MODULE(_xvrml, module) {
   defineCluster(module);
   defineNode(module);
   definePicture(module);
+  defineFilm(module);
   defineWorld(module);
   defineBrowser(module);
   defineScripts(module);

@@ -162,5 +162,6 @@ void defineWorld(py::module_& module);
 void defineRender(py::object worldClass);
 void defineBrowser(py::module_& module);
 void definePicture(py::module_& module);
+void defineFilm(py::module_& module);
 void defineShapes(py::module_& module);
 void defineRt(py::module_& module);

@@ -114,6 +114,41 @@ py::tuple channels(const PictureObject& self) {
   return py::tuple(out);
 }
 
+constexpr int pickleVersion = 1;
+
+// What pickle keeps: version, size, whether linear, names, time, stats, {name of channel: numbers}.
+py::tuple pickled(const py::object& self) {
+  const PictureObject& object = self.cast<const PictureObject&>();
+  py::dict planes;
+  for (const picture::Channel& channel : picture::channelTable())
+    if (object.picture.planes.count(channel.bit)) planes[py::str(std::string(channel.name))] = floats(self, channel);
+  return py::make_tuple(pickleVersion, object.picture.width, object.picture.height, object.picture.linear, names(object), object.time,
+                        object.stats, planes);
+}
+
+PictureObject unpickled(const py::tuple& state) {
+  const auto refuse = [] { throw py::value_error("this is no pickled Picture of this version"); };
+  if (state.size() != 8 || !py::isinstance<py::int_>(state[0]) || state[0].cast<int>() != pickleVersion) refuse();
+  PictureObject object;
+  picture::Picture& made = object.picture;
+  made.width = state[1].cast<int>();
+  made.height = state[2].cast<int>();
+  if (made.width < 1 || made.height < 1 || made.width > 65536 || made.height > 65536) refuse();
+  made.linear = state[3].cast<bool>();
+  for (const py::handle name : state[4].cast<py::tuple>()) made.names.push_back(fromText(name));
+  object.time = state[5].cast<double>();
+  object.stats = state[6].cast<py::dict>();
+  for (const auto& [name, numbers] : state[7].cast<py::dict>()) {
+    const picture::Channel* const channel = picture::findChannel(fromText(name));
+    const auto plane = py::array_t<float, py::array::c_style | py::array::forcecast>::ensure(numbers);
+    const auto pixels = size_t(made.width) * size_t(made.height);
+    if (!channel || !plane || size_t(plane.size()) != pixels * size_t(channel->components)) refuse();
+    made.planes[channel->bit].assign(plane.data(), plane.data() + plane.size());
+  }
+  if (!made.planes.count(RT_RGBA)) refuse();
+  return object;
+}
+
 } // namespace
 
 void definePicture(py::module_& module) {
@@ -135,6 +170,7 @@ void definePicture(py::module_& module) {
       .def("__array__", asArray, py::arg("dtype") = py::none(), py::arg("copy") = py::none())
       .def("save", save, py::arg("path"), "Writes a file; the suffix (exr, png, jpg, ppm, pfm) says the format.")
       .def("_repr_png_", [](const PictureObject& self) { return py::bytes(picture::encode(self.picture, picture::Format::png)); })
+      .def(py::pickle(&pickled, &unpickled))
       .def("__repr__",
            [](const PictureObject& self) { return fmt::format("<Picture {}x{}>", self.picture.width, self.picture.height); });
 }

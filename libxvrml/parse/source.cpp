@@ -14,12 +14,19 @@
 #include <zlib.h>
 
 #include "base/lexer.h"
+#include "parse/other_formats.h"
 
 namespace xvrml {
 namespace {
 
 [[noreturn]] void refuse(const std::string& name, std::string message, uint32_t line = 0) {
   throw LoadError{{Severity::error, name, line, line, std::move(message), {}, 0}};
+}
+
+// Refuses a file of a format that is known and not VRML97.
+[[noreturn]] void refuseOther(const std::string& name, std::string_view bytes) {
+  const OtherFormat& format = *otherFormat(bytes);
+  refuse(name, fmt::format("is {}, not a VRML97 world: {}", format.name, format.remedy));
 }
 
 struct Descriptor {
@@ -197,12 +204,11 @@ void Source::checkHeader(const std::shared_ptr<const std::string>& file, Diagnos
       }
       refuse(*file, fmt::format("is not VRML97: expected '{}', found '{}'", exact, current.substr(0, 60)), 1);
     }
-    if (comment && (current.starts_with("#X3D") || current.starts_with("#Inventor"))) {
-      refuse(*file, fmt::format("is not VRML97: its header is '{}', expected '{}'", current.substr(0, 60), exact), 1);
-    }
+    if (comment && (current.starts_with("#X3D") || current.starts_with("#Inventor"))) refuseOther(*file, rest);
     if (!comment && current.find_first_not_of(" \t,") != current.npos) break;
     rest.remove_prefix(std::min(rest.size(), current.size() + 1));
   }
+  if (otherFormat(text_)) refuseOther(*file, text_);
   if (looksLikeVrml(text_)) return warn(fmt::format("the header '{}' is missing; read as VRML97 all the same", exact));
   if (text_.empty()) refuse(*file, fmt::format("is empty: expected '{}'", exact));
   refuse(*file, fmt::format("is not a VRML97 world: expected it to begin with '{}'", exact), 1);

@@ -2,7 +2,8 @@
 
 A block is a fence with a language. What a reader does with it decides what the test does:
 
-  sh        is run, in an empty folder with the programs of the build and a copy of examples/; pictures are made small
+  sh        is run, all blocks of a page in one folder with the programs of the build and a copy of examples/, each where the one
+            before has gone by cd; pictures are made small
   python    is run, all blocks of a page in one interpreter
   c, cpp    is compiled, and run if it has a main
   vrml      is read by vv --check --strict

@@ -98,7 +98,7 @@ FOREIGN = [
     (re.compile(r"(png|jpeglib|turbojpeg|gif_lib|ft2build|freetype|hb|hb-ft|fontconfig/.*|GL/glu)(\.h)?$"),
      {"xvrml-geometry", "xvrml-image", "picture", "window", "test"}, "picture and font libraries"),
     (re.compile(r"(SDL2/.*|SDL\w*\.h)$"), {"window"}, "SDL"),
-    (re.compile(r"lib(av|sw)[a-z]+/"), {"xvrml-image", "test"}, "the ffmpeg libraries"),
+    (re.compile(r"lib(av|sw)[a-z]+/"), {"xvrml-image", "picture", "test"}, "the ffmpeg libraries"),
     (re.compile(r"(OpenEXR/|Imf)"), {"picture", "test"}, "OpenEXR"),
     (re.compile(r"(CLI/|CLI11)"), {"app", "openrt-tools", "nodegen"}, "CLI11"),
     (re.compile(r"pybind11/"), {"binding", "script-plugin"}, "pybind11"),

@@ -60,6 +60,8 @@ with tempfile.TemporaryDirectory() as scratch:
             complaints.append(f"bash: {name} --he is not completed")
         if name == "vv":
             for words, offered in ((["vv", "--headlight", "o"], {"on", "off"}), (["vv", "--spp", ""], set()),
+                                   (["vv", "--transport", "w"], {"whitted"}), (["vv", "--channels", "nor"], {"normal"}),
+                                   (["vv", "--channels", "z,nor"], {"z,normal"}),
                                    (["vv", ""], {"world one.wrl", "two.wrz", "folder"}),
                                    (["vv", "-o", "n"], {"notes.txt"}), (["vv", "--shader-path", ""], set())):
                 got = completed(bash, function, words)

@@ -51,6 +51,7 @@ class Runner:
         self.env = dict(os.environ, PATH=f"{build}/bin:{root}/tools:" + os.environ["PATH"], PYTHONPATH=f"{build}/python",
                         PYTHONDONTWRITEBYTECODE="1", NO_COLOR="1")
         self.interpreter = None
+        self.place = scratch  # the folder in which the page's shell stands
         self.ports = {"7447": free_port(), "7448": free_port()}  # workers of the pages listen on ports that are free
         self.has_worker = (build / "bin/openrt-worker").exists()
         self.has_python = not self.call([self.python, "-c", "import xvrml"], scratch)
@@ -80,7 +81,14 @@ class Runner:
         text = re.sub(r"\b744[78]\b", lambda port: self.ports[port.group()], text)
         if "syntax only" in block.marks:
             return self.call(["bash", "-nc", text], folder)
-        return self.call(["bash", "-euo", "pipefail", "-c", text], folder)
+        # A reader pastes the blocks of a page into one shell: each begins where the one before has gone.
+        start = folder if "in" in block.marks else self.place
+        place = self.scratch.parent / (self.scratch.name + ".place")
+        wrong = self.call(["bash", "-euo", "pipefail", "-c", f"trap 'pwd >{place}' EXIT\n{text}"], start)
+        if "in" not in block.marks and place.exists():
+            self.place = pathlib.Path(place.read_text().rstrip("\n"))
+        place.unlink(missing_ok=True)
+        return wrong
 
     def run_python(self, block, folder):
         if "syntax only" in block.marks:

@@ -164,7 +164,7 @@ with tempfile.TemporaryDirectory() as scratch:
 
     # What a desktop and a shell look for, and the libraries' names
     for file in ("man/man1/vv.1", "man/man1/openrt-replay.1", "man/man1/nodegen.1", "bash-completion/completions/vv",
-                 "zsh/vendor-completions/_vv", "fish/vendor_completions.d/vv.fish", "applications/vv.desktop",
+                 "zsh/vendor-completions/_vv", "fish/vendor_completions.d/vv.fish", "applications/vv.desktop", "thumbnailers/vv.thumbnailer",
                  "mime/packages/openrt-vv.xml", "metainfo/org.openrt.vv.metainfo.xml", "icons/hicolor/128x128/apps/vv.png"):
         if not (prefix / "share" / file).exists():
             sys.exit(f"share/{file} is not installed")

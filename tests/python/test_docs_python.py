@@ -2,13 +2,12 @@
 import importlib.util
 import pathlib
 import re
+import shutil
 
 import pytest
 
 pytest.importorskip("numpy")
 pytest.importorskip("xvrml")
-
-from test_sdk import CAR  # noqa: E402
 
 DOCS = pathlib.Path(__file__).resolve().parents[2] / "docs"
 
@@ -16,7 +15,7 @@ DOCS = pathlib.Path(__file__).resolve().parents[2] / "docs"
 @pytest.mark.parametrize("page", ["python.md", "ray-queries.md"])
 def test_blocks_run(page, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "car.wrl").write_text(CAR)
+    shutil.copytree(DOCS.parent / "examples", tmp_path / "examples")
     text = (DOCS / page).read_text()
     blocks = re.findall(r"```python([^\n]*)\n(.*?)```", text, re.S)
     assert len(blocks) >= 3

@@ -10,23 +10,12 @@ import time
 import weakref
 
 import pytest
+from conftest import ROOT
 
 np = pytest.importorskip("numpy")
 xvrml = pytest.importorskip("xvrml")
 
-CAR = """#VRML V2.0 utf8
-DEF Front Viewpoint { position 0 0 10 description "front" }
-DEF Lamp PointLight { location 0 5 5 }
-DEF Clock TimeSensor { cycleInterval 4 loop TRUE }
-DEF Turn OrientationInterpolator { key [0, 1] keyValue [0 1 0 0, 0 1 0 3] }
-DEF Spin ScalarInterpolator { key [0, 1] keyValue [0, 1] }
-DEF Body Transform { children DEF Hull Shape {
-  appearance Appearance { material DEF Paint Material { diffuseColor 0.8 0.1 0.1 } }
-  geometry IndexedFaceSet { coord DEF Points Coordinate { point [-1 -1 0, 1 -1 0, 1 1 0, -1 1 0] } coordIndex [0 1 2 3] solid FALSE }
-} }
-ROUTE Clock.fraction_changed TO Turn.set_fraction
-ROUTE Turn.value_changed TO Body.set_rotation
-"""
+CAR = (ROOT / "examples/python/car.wrl").read_text()
 SMALL = dict(size=(32, 24), spp=1)
 
 

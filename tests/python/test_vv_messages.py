@@ -37,6 +37,14 @@ from conftest import HEADER, SMALL
     (["box.wrl", "-o", "x.png", "--limit", "nesting"], "NAME=VALUE"),
     (["box.wrl", "-o", "x.png", "--limit", "nesting=-1"], "count"),
     (["box.wrl", "other.wrl", "-o", "x.png"], "one world at a time"),
+    (["box.wrl", "x.png"], "vv box.wrl -o x.png"),
+    (["box.wrl", "-o", "x.png", "--size", "800,600"], "did you mean --size 800x600?"),
+    (["box.wrl", "-o", "x.png", "--size", "800*600"], "did you mean --size 800x600?"),
+    (["box.wrl", "-o", "x.png", "--size", "800"], "did you mean --size 800x600?"),
+    (["box.wrl", "-o", "x.png", "--size", "-800,600"], "640x480"),
+    (["box.wrl", "-o", "x.png", "--resolution", "800,600"], "--size 800x600"),
+    (["box.wrl", "-o", "x.png", "--samples=64"], "--spp N"),
+    (["box.wrl", "--video", "x.mp4"], "-o film.mp4"),
     (["box.wrl", "-o", "-", "--stats", "-"], "standard output"),
     (["box.wrl", "--check", "-o", "x.png"], "--check"),
     (["box.wrl", "--stats", "s.json"], "-o"),
@@ -50,6 +58,27 @@ def test_usage(vv, arguments, word):
     lines = done.talk.splitlines()
     assert len(lines) == 1 and lines[0].startswith("vv: error: ") and word in lines[0], done.talk
     assert not (vv.folder / "x.png").exists()
+
+
+@pytest.mark.parametrize("content, name", [
+    (b"#X3D V3.3 utf8\nPROFILE Interchange\n", "X3D world (classic encoding)"),
+    (b"<?xml version='1.0'?>\n<X3D profile='Full'><Scene/></X3D>", "X3D world (XML encoding)"),
+    (b"solid part\n facet normal 0 0 1\n", "STL mesh"),
+    (b"a part".ljust(80) + (2).to_bytes(4, "little") + bytes(100), "STL mesh"),
+    (b"glTF\x02\0\0\0", "binary glTF"),
+    (b'{ "asset": { "version": "2.0" } }', "glTF model"),
+    (b"# made by hand\nmtllib a.mtl\nv 1 2 3\n", "Wavefront OBJ"),
+    (b"ply\nformat ascii 1.0\n", "PLY mesh"),
+    (b"ISO-10303-21;\n", "STEP model"),
+    (b"(kicad_pcb (version 20221018)", "KiCad board"),
+    (b"\x89PNG\r\n\x1a\n", "a picture"),
+    (b"<!DOCTYPE html><title>404</title>", "web page"),
+    (b"PK\x03\x04", "ZIP archive"),
+])
+def test_files_of_other_formats_are_named(vv, content, name):
+    (vv.folder / "other.wrl").write_bytes(content)
+    done = vv("other.wrl", "-o", "x.png", *SMALL)
+    assert done.returncode == 3 and name in done.talk and "not a VRML97 world" in done.talk, done.talk
 
 
 def test_help_and_version(vv):

@@ -16,12 +16,18 @@ A world has a clock of its own, which moves when it is told to:
 
 xvrml.rt is the renderer without VRML, xvrml.interop goes between other packages' meshes and pictures and ours.
 """
+import difflib as _difflib
 import warnings as _warnings
 
-from . import _world
-from ._xvrml import (Browser, Cluster, ClusterError, Diagnostic, Mesh, Node, ParseError, Picture, RenderError, ViewpointInfo, Worker,
-                     World, load, load_node_plugins, __version__)
+from . import _arguments, _world
+from . import _xvrml
+from ._world import loads
+from ._xvrml import (Browser, Cluster, ClusterError, Diagnostic, Film, Mesh, Node, ParseError, Picture, RenderError, ViewpointInfo,
+                     Worker, World, load_node_plugins, __version__)
 
+load = _arguments.explained(_xvrml.load)
+for _class in (World, Browser, Cluster, Film, Node, Picture):
+    _arguments.explain_class(_class)
 _world.complete(World, Node)
 
 for _line in load_node_plugins():
@@ -30,10 +36,18 @@ for _line in load_node_plugins():
 from . import nodes as nodes  # noqa: E402  after the plug-ins: a class for each of their nodes, too
 from .nodes import *  # noqa: E402,F401,F403
 
-__all__ = ["Browser", "Cluster", "ClusterError", "Diagnostic", "Mesh", "Node", "ParseError", "Picture", "RenderError", "ViewpointInfo",
-           "Worker", "World", "load", "load_node_plugins", "__version__", *nodes.__all__]
+__all__ = ["Browser", "Cluster", "ClusterError", "Diagnostic", "Film", "Mesh", "Node", "ParseError", "Picture", "RenderError",
+           "ViewpointInfo", "Worker", "World", "load", "load_node_plugins", "loads", "__version__", *nodes.__all__]
 
 
 def __getattr__(name):
     """Nodes of plug-ins that were loaded later."""
-    return getattr(nodes, name)
+    if name.startswith("__"):
+        raise AttributeError(f"module xvrml has no attribute {name}")
+    try:
+        return getattr(nodes, name)
+    except AttributeError:
+        known = [*__all__, "dask", "interop", "nodes", "rt"]
+        near = _difflib.get_close_matches(name, known, 1) or [k for k in known if k.lower() == name.lower()]
+        hint = f"; did you mean {near[0]}?" if near else ""
+        raise AttributeError(f"module xvrml has no attribute {name}{hint}") from None

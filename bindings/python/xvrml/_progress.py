@@ -1,6 +1,8 @@
-"""The bar that progress=True shows, on standard error."""
+"""What progress=True shows on standard error: a bar on a terminal, in a log a line every five seconds."""
 import sys
 import time
+
+_SECONDS = 5  # between two lines of a log
 
 
 class Bar:
@@ -8,17 +10,26 @@ class Bar:
         self._stream = stream or sys.stderr
         self._width = width
         self._begin = time.monotonic()
+        self._next = self._begin + _SECONDS
+        self._terminal = self._stream.isatty() if hasattr(self._stream, "isatty") else False
         self._shown = False
 
     def __call__(self, done):
-        seconds = time.monotonic() - self._begin
-        full = int(self._width * min(max(done, 0), 1))
+        now = time.monotonic()
+        seconds = now - self._begin
         left = f"{seconds / done - seconds:.0f} s left" if done > 0.02 else ""
-        self._stream.write(f"\r[{'#' * full}{'.' * (self._width - full)}] {100 * done:3.0f} %  {left:<12}")
+        if self._terminal:
+            full = int(self._width * min(max(done, 0), 1))
+            self._stream.write(f"\r[{'#' * full}{'.' * (self._width - full)}] {100 * done:3.0f} %  {left:<12}")
+        elif now >= self._next:
+            self._next = now + _SECONDS
+            self._stream.write(f"xvrml: {100 * done:.0f} %, {seconds:.0f} s{', ' + left if left else ''}\n")
+        else:
+            return
         self._stream.flush()
         self._shown = True
 
     def close(self):
-        if self._shown:
+        if self._shown and self._terminal:
             self._stream.write("\r" + " " * (self._width + 24) + "\r")
             self._stream.flush()

@@ -4,6 +4,34 @@ import contextlib
 import math
 
 
+class _Text:
+    """What load() takes for a file object: text with the name of the file that it stands for."""
+
+    def __init__(self, text, name):
+        self._text = text
+        self.name = name
+
+    def read(self):
+        return self._text
+
+
+def loads(text, path="<memory>", *, limits=None, allow_absolute=False):
+    """A world from VRML97 text (str or bytes), as json.loads is to json.load. path: the file that the text stands for; relative urls
+    in it are looked up beside that file. Raises ParseError."""
+    from ._xvrml import load
+    if not isinstance(text, (str, bytes, bytearray, memoryview)):
+        raise TypeError(f"loads(): text: a str or bytes expected, not the {type(text).__name__} {text!r}; load() takes files")
+    return load(_Text(text if isinstance(text, str) else bytes(text), str(path)), limits=limits, allow_absolute=allow_absolute)
+
+
+def _reduce(self):
+    """What pickle and copy.deepcopy keep of a World: its text, as to_vrml() gives it, and its path. Its clock begins anew."""
+    from ._xvrml import Browser
+    if isinstance(self, Browser):
+        raise TypeError("a Browser cannot be pickled: it runs; pickle the World that it was made from, or its to_vrml()")
+    return loads, (self.to_vrml(), self.path)
+
+
 def _end(world, end):
     """The node and the event of "Clock.fraction_changed" or of (node, "fraction_changed")."""
     if isinstance(end, str):
@@ -54,6 +82,15 @@ def animate(self, start, stop, fps=25, **options):
         yield self.render(**options)
 
 
+def film(self, path, start, stop, fps=25, **options):
+    """Writes a film of the times from start up to stop (excluded): the pictures of animate(), whose options are those of render.
+    The suffix of path (mp4, webm, gif) says the format."""
+    from ._xvrml import Film
+    with Film(path, fps) as file:
+        for picture in self.animate(start, stop, fps, **options):
+            file.add(picture)
+
+
 def raycaster(self, spheres=0):
     """A Raycaster (xvrml.rt) of what is drawn now. Its geometry ids are places in its list `meshes`; meshes[i].node is the Shape.
     spheres: see meshes(); 0: they are exact."""
@@ -80,6 +117,7 @@ def edit(self, field):
 
 
 def complete(world, node):
-    for function in (on, route, unroute, animate, raycaster):
+    for function in (on, route, unroute, animate, film, raycaster):
         setattr(world, function.__name__, function)
+    world.__reduce__ = _reduce
     node.edit = edit

@@ -1,0 +1,99 @@
+// film.cpp: the Python class Film: pictures or arrays become a film file. Called with the GIL held; encoding releases it.
+#include <cstring>
+#include <memory>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "objects.h"
+#include "picture/atomic_file.h"
+#include "picture/film.h"
+#include "picture_object.h"
+
+namespace {
+
+class FilmObject {
+ public:
+  FilmObject(const py::object& file, double fps) : path_(toPath(file)), kind_(picture::filmOf(path_)), fps_(fps) {
+    if (kind_ == picture::FilmKind::none)
+      throw py::value_error(fmt::format("a file name with one of the suffixes {} expected, not {}", picture::filmSuffixes, path_));
+    if (!(fps > 0 && fps < 1e6)) throw py::value_error("fps: above 0 expected");
+    if (const std::string why = picture::whyNoFilm(kind_); !why.empty()) throw std::runtime_error(path_ + ": " + why);
+  }
+
+  void add(const py::object& shown) {
+    if (closed_) throw py::value_error("the film is closed");
+    if (py::isinstance<PictureObject>(shown)) {
+      const picture::Picture& made = shown.cast<const PictureObject&>().picture;
+      std::vector<uint8_t> bytes;
+      {
+        py::gil_scoped_release release;
+        bytes = picture::displayBytes(made);
+      }
+      return append(bytes.data(), made.width, made.height);
+    }
+    const auto array = py::array::ensure(shown);
+    if (!array || array.ndim() != 3 || array.shape(2) != 3 || !py::isinstance<py::array_t<uint8_t>>(array))
+      throw py::type_error("a Picture or an array of uint8 of shape (height, width, 3) expected");
+    const auto rows = py::array_t<uint8_t, py::array::c_style | py::array::forcecast>::ensure(array);
+    append(rows.data(), int(array.shape(1)), int(array.shape(0)));
+  }
+
+  void close() {
+    if (closed_) return;
+    closed_ = true;
+    if (!film_) return;
+    std::string failure;
+    {
+      py::gil_scoped_release release;
+      const std::string bytes = film_->finish();
+      film_.reset();
+      try {
+        picture::writeFile(path_, bytes);
+      } catch (const std::runtime_error& error) { failure = error.what(); }
+    }
+    raiseOsError(failure);
+  }
+
+  // After an exception in a with block nothing is written.
+  void exit(const py::object& type, const py::object&, const py::object&) {
+    if (type.is_none()) return close();
+    closed_ = true;
+    film_.reset();
+  }
+
+  const std::string& path() const { return path_; }
+
+ private:
+  void append(const uint8_t* rgb, int width, int height) {
+    if (film_ && (width != width_ || height != height_))
+      throw py::value_error(fmt::format("all pictures of a film have one size: {}x{}, not {}x{}", width_, height_, width, height));
+    py::gil_scoped_release release;
+    if (!film_) film_ = std::make_unique<picture::Film>(kind_, width, height, fps_);
+    width_ = width;
+    height_ = height;
+    film_->add({rgb, size_t(width) * size_t(height) * 3});
+  }
+
+  std::string path_;
+  picture::FilmKind kind_;
+  double fps_;
+  int width_ = 0, height_ = 0;
+  bool closed_ = false;
+  std::unique_ptr<picture::Film> film_; // null before the first picture and after the last
+};
+
+} // namespace
+
+void defineFilm(py::module_& module) {
+  py::class_<FilmObject>(module, "Film",
+                         "A film file made of pictures: Film('turn.mp4', fps=25), then add() for each picture and close(), or as a "
+                         "context manager. The suffix (mp4, webm, gif) says the format. Nothing is written before close().")
+      .def(py::init<const py::object&, double>(), py::arg("path"), py::arg("fps") = 25.0)
+      .def("add", &FilmObject::add, py::arg("picture"),
+           "Appends a Picture, or an array of uint8 of shape (height, width, 3). All have one size.")
+      .def("close", &FilmObject::close, "Writes the file. A film without a picture is not written.")
+      .def("__enter__", [](py::object self) { return self; })
+      .def("__exit__", &FilmObject::exit)
+      .def("__repr__", [](const FilmObject& self) { return toText("<Film " + self.path() + ">"); });
+}

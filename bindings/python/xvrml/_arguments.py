@@ -1,0 +1,138 @@
+"""Errors about arguments in sentences. The compiled functions list all their signatures when an argument has a wrong type; what is
+wrapped here says which argument it was, what was expected and what was given."""
+import difflib
+import functools
+import inspect
+import re
+import types
+
+_WORDS = {"int": "a whole number", "float": "a number", "str": "a text", "bool": "True or False", "object": "any object",
+          "dict": "a dict", "list": "a list", "tuple": "a tuple", "bytes": "bytes", "None": "None"}
+
+
+def _split(text):
+    """"a: int, b: Tuple[int, int] = (1, 2)" -> its parts at the commas that stand in no brackets."""
+    parts, depth, quote = [""], 0, ""
+    for c in text:
+        if quote:
+            quote = "" if c == quote else quote
+        elif c in "'\"":
+            quote = c
+        elif c in "[(<{":
+            depth += 1
+        elif c in "])>}":
+            depth -= 1
+        elif c == "," and depth == 0:
+            parts.append("")
+            continue
+        parts[-1] += c
+    return [p.strip() for p in parts if p.strip()]
+
+
+def _signature(doc):
+    """{name: type as text} of the first line of a compiled function's text, and which have a default; None if it has none such."""
+    found = re.match(r"\w+\((.*)\) -> ", (doc or "").strip().split("\n")[0])
+    if not found:
+        return None
+    names, optional = {}, set()
+    for part in _split(found[1]):
+        name, _, kind = part.partition(":")
+        kind, default, _ = kind.partition(" = ")
+        if not name.startswith("*"):
+            names[name.strip()] = kind.strip()
+        if default:
+            optional.add(name.strip())
+    return names, optional
+
+
+def _describe(kind):
+    optional = re.fullmatch(r"(?:Optional|typing\.Optional)\[(.*)\]", kind)
+    if optional:
+        return f"{_describe(optional[1])} or None"
+    name = kind.split("[")[0].split(".")[-1]
+    return _WORDS.get(name, f"a {name}")
+
+
+def _fits(value, kind):
+    """Whether a value is what a type's text asks for, as far as that can be told from the text; True in doubt."""
+    optional = re.fullmatch(r"(?:Optional|typing\.Optional)\[(.*)\]", kind)
+    if optional:
+        return value is None or _fits(value, optional[1])
+    if kind == "int":
+        return hasattr(type(value), "__index__")
+    if kind == "float":
+        return hasattr(type(value), "__float__") or hasattr(type(value), "__index__")
+    if kind == "bool":
+        return isinstance(value, bool)
+    if kind in ("str", "dict", "bytes"):
+        return isinstance(value, {"str": str, "dict": dict, "bytes": bytes}[kind])
+    name = kind.split(".")[-1]
+    if kind.startswith("xvrml") and name.isidentifier():
+        return any(c.__name__ == name for c in type(value).__mro__)
+    return True
+
+
+def _short(value):
+    text = repr(value)
+    text = text if len(text) <= 40 else text[:37] + "..."
+    return text if value is None or isinstance(value, bool) else f"the {type(value).__name__} {text}"
+
+
+def sentence(function, args, kwargs):
+    """What is wrong with the arguments of a compiled function, in a sentence; None if its signature cannot be told."""
+    parsed = _signature(function.__doc__)
+    if not parsed:
+        return None
+    names, optional = parsed
+    name = function.__name__ if function.__name__ != "__init__" else names["self"].split(".")[-1]
+    order = list(names)
+    shown = [n for n in order if n != "self"]
+    for given in kwargs:
+        if given not in names:
+            near = difflib.get_close_matches(given, shown, 1)
+            return f"{name}(): there is no argument {given}" + (f"; did you mean {near[0]}?" if near else f" (there are: {', '.join(shown)})")
+    for position, value in enumerate(args):
+        if position >= len(order):
+            return f"{name}(): {len(args)} arguments were given, at most {len(order)} can be; the rest go by name"
+        if not _fits(value, names[order[position]]):
+            return f"{name}(): {order[position]}: {_describe(names[order[position]])} expected, not {_short(value)}"
+    for given, value in kwargs.items():
+        if not _fits(value, names[given]):
+            return f"{name}(): {given}: {_describe(names[given])} expected, not {_short(value)}"
+    missing = [n for n in order[len(args):] if n not in kwargs and n not in optional and n != "self"]
+    if missing:
+        return f"{name}(): {' and '.join(missing)} must be given"
+    return f"{name}(): the arguments do not fit {name}({', '.join(shown)})"
+
+
+def _wrapped(function):
+    @functools.wraps(function)
+    def call(*args, **kwargs):
+        try:
+            return function(*args, **kwargs)
+        except TypeError as error:
+            if "incompatible" not in str(error) or "arguments" not in str(error):
+                raise
+            message = sentence(function, args, kwargs)
+            if not message:
+                raise
+        raise TypeError(message)
+
+    return call
+
+
+def _compiled(value):
+    return type(value).__name__ in ("instancemethod", "builtin_function_or_method") or isinstance(value, types.BuiltinFunctionType)
+
+
+def explain_class(cls):
+    """Wraps the compiled methods of a class."""
+    for name, value in list(vars(cls).items()):
+        if name in ("__new__", "__getattr__", "__setattr__") or not _compiled(value):
+            continue
+        setattr(cls, name, _wrapped(inspect.unwrap(getattr(cls, name))))
+
+
+def explained(function):
+    """A compiled function whose errors are sentences."""
+    return _wrapped(function)

@@ -1,0 +1,113 @@
+// other_formats.cpp: see other_formats.h. The signatures are those of each format's specification.
+#include "parse/other_formats.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cstdint>
+#include <cstring>
+
+namespace xvrml {
+namespace {
+
+// How much of a text is searched for a word that tells its format.
+constexpr size_t searched = 4096;
+
+bool holds(std::string_view bytes, std::string_view word) { return bytes.substr(0, searched).find(word) != bytes.npos; }
+
+std::string_view withoutBlanks(std::string_view bytes) {
+  const size_t first = bytes.find_first_not_of(" \t\r\n");
+  return first == bytes.npos ? std::string_view() : bytes.substr(first);
+}
+
+bool beginsWithoutCase(std::string_view bytes, std::string_view word) {
+  return bytes.size() >= word.size() && std::equal(word.begin(), word.end(), bytes.begin(), [](char a, char b) {
+           return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b));
+         });
+}
+
+// 80 bytes of anything, the number of triangles, 50 bytes each.
+bool isBinaryStl(std::string_view bytes) {
+  if (bytes.size() < 84) return false;
+  uint32_t count = 0;
+  std::memcpy(&count, bytes.data() + 80, sizeof count);
+  return count > 0 && uint64_t(84) + uint64_t(50) * count == bytes.size();
+}
+
+bool isAsciiStl(std::string_view bytes) { return bytes.starts_with("solid") && holds(bytes, "facet"); }
+
+// Lines of vertices ("v 1 2 3") among comments and groups, and nothing else at first.
+bool isObj(std::string_view bytes) {
+  bytes = bytes.substr(0, searched);
+  for (int line = 0; line < 100 && !bytes.empty(); ++line) {
+    const size_t end = std::min(bytes.find('\n'), bytes.size());
+    const std::string_view current = withoutBlanks(bytes.substr(0, end));
+    bytes.remove_prefix(std::min(end + 1, bytes.size()));
+    if (current.starts_with("mtllib ") || current.starts_with("v ")) return true;
+    const bool passed = current.empty() || current[0] == '#' || current.starts_with("o ") || current.starts_with("g ");
+    if (!passed) return false;
+  }
+  return false;
+}
+
+bool isGltfText(std::string_view bytes) {
+  return withoutBlanks(bytes).starts_with('{') && holds(bytes, "\"asset\"") && holds(bytes, "\"version\"");
+}
+
+// 3D Studio's main chunk holds its own length.
+bool is3ds(std::string_view bytes) {
+  uint32_t length = 0;
+  if (bytes.size() < 6 || !bytes.starts_with("MM")) return false;
+  std::memcpy(&length, bytes.data() + 2, sizeof length);
+  return length == bytes.size();
+}
+
+constexpr std::string_view exportIt = "export it as VRML97 (.wrl), for example from MeshLab or Blender, or hand its mesh to Python's "
+                                      "xvrml.interop.from_trimesh";
+constexpr std::string_view saveIt = "save it as VRML97 (.wrl) in the program that made it";
+
+struct Signature {
+  bool (*matches)(std::string_view bytes);
+  OtherFormat format;
+};
+
+const Signature signatures[] = {
+    {[](std::string_view b) { return b.starts_with("#X3D"); }, {"an X3D world (classic encoding)", saveIt}},
+    {[](std::string_view b) { return withoutBlanks(b).starts_with('<') && holds(b, "<X3D"); }, {"an X3D world (XML encoding)", saveIt}},
+    {[](std::string_view b) { return withoutBlanks(b).starts_with('{') && holds(b, "\"X3D\""); }, {"an X3D world (JSON encoding)", saveIt}},
+    {[](std::string_view b) { return b.starts_with("#Inventor"); }, {"an Open Inventor file", saveIt}},
+    {[](std::string_view b) { return withoutBlanks(b).starts_with('<') && holds(b, "<COLLADA"); }, {"a COLLADA document", exportIt}},
+    {[](std::string_view b) { return b.starts_with("glTF"); }, {"a binary glTF model (.glb)", exportIt}},
+    {isGltfText, {"a glTF model", exportIt}},
+    {isAsciiStl, {"an STL mesh", exportIt}},
+    {isBinaryStl, {"an STL mesh", exportIt}},
+    {[](std::string_view b) { return b.starts_with("ply\n") || b.starts_with("ply\r"); }, {"a PLY mesh", exportIt}},
+    {[](std::string_view b) { return b.starts_with("OFF\n") || b.starts_with("OFF\r"); }, {"an OFF mesh", exportIt}},
+    {isObj, {"a Wavefront OBJ mesh", exportIt}},
+    {is3ds, {"a 3D Studio mesh", exportIt}},
+    {[](std::string_view b) { return b.starts_with("Kaydara FBX Binary"); }, {"an FBX scene", exportIt}},
+    {[](std::string_view b) { return b.starts_with("BLENDER"); }, {"a Blender file", "export it as VRML97 (.wrl) from Blender"}},
+    {[](std::string_view b) { return b.starts_with("#usda") || b.starts_with("PXR-USDC"); }, {"a USD scene", exportIt}},
+    {[](std::string_view b) { return b.starts_with("ISO-10303-21"); },
+     {"a STEP model", "export it as VRML97 (.wrl) from the CAD program, for example FreeCAD"}},
+    {[](std::string_view b) { return b.starts_with("(kicad_pcb"); },
+     {"a KiCad board", "export it from KiCad: File > Export > VRML, or kicad-cli pcb export vrml"}},
+    {[](std::string_view b) { return b.starts_with("\x89PNG") || b.starts_with("\xff\xd8\xff") || b.starts_with("GIF8"); },
+     {"a picture", "name the world that shows it, or write one with an ImageTexture"}},
+    {[](std::string_view b) { return b.starts_with("PK\x03\x04"); }, {"a ZIP archive", "unpack it and name the .wrl file in it"}},
+    {[](std::string_view b) { return b.starts_with("%PDF"); }, {"a PDF document", "name a .wrl file"}},
+    {[](std::string_view b) {
+       const std::string_view text = withoutBlanks(b);
+       return beginsWithoutCase(text, "<!doctype html") || beginsWithoutCase(text, "<html");
+     },
+     {"a web page", "download the .wrl file itself: the server answered with a page instead"}},
+};
+
+} // namespace
+
+const OtherFormat* otherFormat(std::string_view bytes) {
+  for (const Signature& signature : signatures)
+    if (signature.matches(bytes)) return &signature.format;
+  return nullptr;
+}
+
+} // namespace xvrml

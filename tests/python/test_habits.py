@@ -1,0 +1,144 @@
+"""What people try who come from other packages: loads, names written nearly right, arguments of wrong types, pickle, films, logs."""
+import copy
+import io
+import pickle
+
+import pytest
+
+np = pytest.importorskip("numpy")
+xvrml = pytest.importorskip("xvrml")
+
+BALL = """#VRML V2.0 utf8
+Viewpoint { position 0 0 6 }
+DEF Clock TimeSensor { loop TRUE }
+DEF Way PositionInterpolator { key [0, 1] keyValue [0 0 0, 1 0 0] }
+DEF Ball Transform { children Shape { appearance Appearance { material Material { } } geometry Sphere { } } }
+ROUTE Clock.fraction_changed TO Way.set_fraction
+ROUTE Way.value_changed TO Ball.set_translation
+"""
+SMALL = dict(size=(32, 24), spp=1)
+
+
+def test_loads_reads_text_and_bytes():
+    for text in (BALL, BALL.encode(), bytearray(BALL.encode())):
+        assert xvrml.loads(text)["Ball"].node_type == "Transform"
+    with pytest.raises(TypeError, match="load\\(\\) takes files"):
+        xvrml.loads(3)
+    with pytest.raises(xvrml.ParseError) as caught:
+        xvrml.loads("solid part\n facet normal 0 0 1\n", path="part.stl")
+    assert "STL" in str(caught.value) and caught.value.file == "part.stl"
+
+
+def test_urls_of_a_text_are_looked_up_beside_its_path(tmp_path):
+    (tmp_path / "ball.wrl").write_text(BALL)
+    world = xvrml.loads('#VRML V2.0 utf8\nInline { url "ball.wrl" }', path=tmp_path / "main.wrl")
+    image = world.render(fit=True, **SMALL)
+    assert image.stats["shapes"] == 1 and not world.warnings
+
+
+@pytest.mark.parametrize("name, near", [("Wrold", "World"), ("sphere", "Sphere"), ("IndexedFaceset", "IndexedFaceSet"), ("lods", "loads")])
+def test_a_name_written_nearly_right(name, near):
+    with pytest.raises(AttributeError, match=f"no attribute {name}; did you mean {near}\\?"):
+        getattr(xvrml, name)
+    assert not hasattr(xvrml, "nothing_like_it")
+
+
+@pytest.mark.parametrize("call, words", [
+    (lambda w: w.render(spp="many"), "render(): spp: a whole number or None expected, not the str 'many'"),
+    (lambda w: w.render(shadows="yes"), "render(): shadows: True or False expected"),
+    (lambda w: w.render(sise=(3, 4)), "render(): there is no argument sise; did you mean size?"),
+    (lambda w: w.add(3), "add(): node: a Node expected, not the int 3"),
+    (lambda w: w.listen(w["Ball"], "translation"), "listen(): callback must be given"),
+    (lambda w: w.add_route("Ball", "a", "Ball", "b"), "add_route(): from_node: a Node expected, not the str 'Ball'"),
+    (lambda w: xvrml.Film("x.gif", fps="fast"), "Film(): fps: a number expected, not the str 'fast'"),
+    (lambda w: xvrml.load(), "load(): source must be given"),
+])
+def test_arguments_of_wrong_types_are_named(call, words):
+    with pytest.raises(TypeError) as caught:
+        call(xvrml.loads(BALL))
+    assert words in str(caught.value) and "incompatible" not in str(caught.value)
+
+
+def test_pictures_are_pickled():
+    image = xvrml.loads(BALL).render(channels=("z", "id"), **SMALL)
+    for again in (pickle.loads(pickle.dumps(image)), copy.deepcopy(image)):
+        assert np.array_equal(again.array, image.array) and np.array_equal(again["z"], image["z"])
+        assert again.names == image.names and again.stats == image.stats and again.channels == image.channels
+        again.array[0, 0] = 7
+        assert image.array[0, 0, 0] != 7
+
+
+def test_damaged_pickles_are_refused():
+    image = xvrml.loads(BALL).render(**SMALL)
+    state = list(image.__getstate__())
+    for place, wrong in ((0, 99), (1, 33), (1, -1), (7, {}), (7, {"rgba": np.zeros(3, np.float32)}), (7, {"nothing": np.zeros(3)})):
+        damaged = [*state[:place], wrong, *state[place + 1:]]
+        with pytest.raises(ValueError):
+            xvrml.Picture.__new__(xvrml.Picture).__setstate__(tuple(damaged))
+
+
+def test_worlds_are_pickled(tmp_path):
+    (tmp_path / "ball.wrl").write_text(BALL)
+    world = xvrml.load(tmp_path / "ball.wrl")
+    world["Ball"].translation = (1, 2, 3)
+    again = pickle.loads(pickle.dumps(world))
+    assert tuple(again["Ball"].translation) == (1, 2, 3) and again.path == world.path
+    assert np.array_equal(again.render(**SMALL).array, world.render(**SMALL).array)
+    other = copy.deepcopy(world)
+    other["Ball"].translation = (0, 0, 0)
+    assert tuple(world["Ball"].translation) == (1, 2, 3)
+    with pytest.raises(TypeError, match="Browser"):
+        pickle.dumps(xvrml.Browser(BALL.encode()))
+
+
+def test_a_film_of_pictures_and_arrays(tmp_path):
+    pil = pytest.importorskip("PIL.Image")
+    world = xvrml.loads(BALL)
+    world.film(tmp_path / "a.gif", 0, 0.3, fps=10, **SMALL)
+    with pil.open(tmp_path / "a.gif") as film:
+        assert film.n_frames == 3 and film.size == (32, 24)
+    with xvrml.Film(tmp_path / "b.gif", fps=5) as film:
+        for level in (0, 255):
+            film.add(np.full((10, 20, 3), level, np.uint8))
+    with pil.open(tmp_path / "b.gif") as film:
+        assert film.n_frames == 2 and film.info["duration"] == 200
+        film.seek(1)
+        assert film.convert("RGB").getpixel((5, 5)) == (255, 255, 255)
+
+
+def test_films_that_cannot_be(tmp_path):
+    with pytest.raises(ValueError, match="mp4, webm, gif"):
+        xvrml.Film(tmp_path / "a.avi")
+    with pytest.raises(ValueError, match="fps"):
+        xvrml.Film(tmp_path / "a.gif", fps=0)
+    film = xvrml.Film(tmp_path / "a.gif")
+    film.add(np.zeros((10, 20, 3), np.uint8))
+    with pytest.raises(ValueError, match="one size"):
+        film.add(np.zeros((20, 10, 3), np.uint8))
+    with pytest.raises(TypeError, match="uint8"):
+        film.add(np.zeros((10, 20, 3), np.float32))
+    with pytest.raises(RuntimeError, match="stop"):
+        with film:
+            raise RuntimeError("stop")
+    assert not list(tmp_path.iterdir())
+    with pytest.raises(OSError):
+        with xvrml.Film(tmp_path / "nowhere/a.gif") as film:
+            film.add(np.zeros((10, 20, 3), np.uint8))
+
+
+class Clock:
+    def __init__(self, monkeypatch):
+        self.now = 0.0
+        monkeypatch.setattr("xvrml._progress.time.monotonic", lambda: self.now)
+
+
+def test_progress_in_a_log_is_a_line_every_five_seconds(monkeypatch):
+    from xvrml._progress import Bar
+    clock, log = Clock(monkeypatch), io.StringIO()
+    bar = Bar(log)
+    for second in range(12):
+        clock.now = second
+        bar(second / 20)
+    bar.close()
+    lines = log.getvalue().splitlines()
+    assert lines == ["xvrml: 25 %, 5 s, 15 s left", "xvrml: 50 %, 10 s, 10 s left"]
