@@ -1,29 +1,44 @@
 #!/bin/bash
-# run-fuzz.sh FOLDER SECONDS: runs every fuzz target of FOLDER for SECONDS, from the seeds in tests/ and the corpus of earlier
-# runs (build/fuzz-corpus). A finding ends the run with its file in build/fuzz-findings.
+# run-fuzz.sh FOLDER SECONDS [CORPUS]: runs every fuzz target of FOLDER for SECONDS, from the seeds in tests/ and the corpus of earlier
+# runs (CORPUS, default build/fuzz-corpus), under a limit of memory. Afterwards the corpus is minimised and the executions of all runs
+# are added up in CORPUS/executions.tsv, so that campaigns on several days count together. A finding ends the run with exit code 1 and
+# its file in build/fuzz-findings.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-folder=$1 seconds=$2
-mkdir -p build/fuzz-findings
+folder=$1 seconds=$2 corpora=${3:-build/fuzz-corpus}
+mkdir -p build/fuzz-findings "$corpora"
+touch "$corpora/executions.tsv"
 found=0
 for target in "$folder"/fuzz_*; do
   [ -x "$target" ] || continue
   name=$(basename "$target")
-  corpus=build/fuzz-corpus/$name
+  corpus=$corpora/$name
   mkdir -p "$corpus"
   seeds=()
-  for dir in "tests/fuzz/seeds/$name" tests/conformance/good tests/conformance/bad; do
-    if [ -d "$dir" ]; then seeds+=("$dir"); fi
-  done
+  if [ -d "tests/fuzz/seeds/$name" ]; then seeds+=("tests/fuzz/seeds/$name"); fi
+  case $name in
+    fuzz_xvrml_vrml | fuzz_xvrml_geometry) seeds+=(tests/conformance/good tests/conformance/bad) ;;
+  esac
   dictionary=()
   if [ -f "tests/fuzz/$name.dict" ]; then dictionary=("-dict=tests/fuzz/$name.dict"); fi
-  echo "$name: $seconds s"
   log=build/fuzz-findings/$name.log
-  if ! "$target" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -print_final_stats=1 "${dictionary[@]}" \
-    -artifact_prefix="build/fuzz-findings/$name-" "$corpus" "${seeds[@]}" >"$log" 2>&1; then
+  if ! "$target" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -malloc_limit_mb=512 -print_final_stats=1 \
+    "${dictionary[@]}" -artifact_prefix="build/fuzz-findings/$name-" "$corpus" "${seeds[@]}" >"$log" 2>&1; then
     found=1
     tail -n 60 "$log"
+  else
+    smaller=$corpus.minimised
+    rm -rf "$smaller" && mkdir "$smaller"
+    if "$target" -merge=1 -rss_limit_mb=2048 "$smaller" "$corpus" "${seeds[@]}" >>"$log" 2>&1; then
+      rm -rf "$corpus" && mv "$smaller" "$corpus"
+    else
+      rm -rf "$smaller" # the whole corpus stays
+    fi
   fi
-  grep -E '^stat::(number_of_executed_units|average_exec_per_sec|peak_rss_mb)' "$log" || true
+  executions=$(sed -n 's/^stat::number_of_executed_units: *//p' "$log" | head -n 1)
+  printf '%s\t%s\n' "$name" "${executions:-0}" >>"$corpora/executions.tsv"
+  total=$(awk -F'\t' -v n="$name" '$1 == n { sum += $2 } END { print sum }' "$corpora/executions.tsv")
+  echo "$name: ${executions:-0} executions in $seconds s, $total in all runs, $(find "$corpus" -type f | wc -l) files kept"
 done
+awk -F'\t' '{ sum += $2 } END { printf "%d executions in all runs of all targets\n", sum }' "$corpora/executions.tsv"
 exit $found
