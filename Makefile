@@ -12,7 +12,7 @@ R = build/release
 SOURCES = $(shell git ls-files '*.cpp' '*.h' '*.hpp' '*.c')
 export CTEST_OUTPUT_ON_FAILURE = 1
 
-.PHONY: docs build demo test install bench bench-render audit accuracy corpus fuzz cluster-campaign asan tsan coverage format format-check tidy packages python-sequences bench-rays clean help wheel deb container test-embree4 test-wheel
+.PHONY: docs build demo test install bench bench-render audit accuracy corpus fuzz cluster-campaign soak asan tsan coverage format format-check tidy packages python-sequences bench-rays clean help wheel deb container test-embree4 test-wheel
 
 help:
 	@sed -n 's/^## //p' Makefile
@@ -109,6 +109,10 @@ tsan: packages
 ## make cluster-campaign  workers killed at random, partitions, 10,000 frames (CAMPAIGN="--kills 10 --frames 1000")
 cluster-campaign: build
 	@OPENRT_BUILD=$(CURDIR)/$(R) $(PYTHON) tests/cluster/campaign.py $(CAMPAIGN)
+
+## make soak          60 minutes (SOAK="--minutes N") of a window under Xvfb and of a cluster whose workers come and go
+soak: build
+	@OPENRT_BUILD=$(CURDIR)/$(R) $(PYTHON) tests/soak/soak.py $(SOAK)
 
 ## make coverage      line coverage of the tests, summary into build/coverage/coverage.txt
 coverage: packages
