@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "habits.h"
 #include "picture/nearest.h"
 
 namespace vv {
