@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "gil.h"
 #include "objects.h"
 #include "picture/atomic_file.h"
 #include "picture/film.h"
@@ -27,7 +28,7 @@ class FilmObject {
       const picture::Picture& made = shown.cast<const PictureObject&>().picture;
       std::vector<uint8_t> bytes;
       {
-        py::gil_scoped_release release;
+        ReleaseGil release;
         bytes = picture::displayBytes(made);
       }
       return append(bytes.data(), made.width, made.height);
@@ -45,7 +46,7 @@ class FilmObject {
     if (!film_) return;
     std::string failure;
     {
-      py::gil_scoped_release release;
+      ReleaseGil release;
       const std::string bytes = film_->finish();
       film_.reset();
       try {
@@ -68,7 +69,7 @@ class FilmObject {
   void append(const uint8_t* rgb, int width, int height) {
     if (film_ && (width != width_ || height != height_))
       throw py::value_error(fmt::format("all pictures of a film have one size: {}x{}, not {}x{}", width_, height_, width, height));
-    py::gil_scoped_release release;
+    ReleaseGil release;
     if (!film_) film_ = std::make_unique<picture::Film>(kind_, width, height, fps_);
     width_ = width;
     height_ = height;
