@@ -224,6 +224,7 @@ class TileErrors {
     const double parts = sums.samples / double(replicates_.size());
     noise.own += float(meanError(s.variance / parts, sums.replicates - 1.0));
     noise.second += float(s.variance / parts);
+    noise.square += float((s.variance * s.variance - s.uncertainty) / (parts * parts));
     noise.third += float(s.k3 / (parts * parts));
     noise.fourth += float(s.k4 / (parts * parts * parts));
   }
@@ -311,7 +312,8 @@ void addLight(const LightSums& light, PixelError& e) {
     e.halfWidth[k] = float(std::hypot(double(e.halfWidth[k]), h));
     half += double(e.halfWidth[k]), lamps += h;
     own += meanError(w, LightImage::parts - 1);
-    e.noise.second += float(w), e.noise.third += float(w * std::sqrt(w / met)), e.noise.fourth += float(w * w / met);
+    e.noise.second += float(w), e.noise.square += float(w * w), e.noise.third += float(w * std::sqrt(w / met)),
+        e.noise.fourth += float(w * w / met);
   }
   e.noise.own = std::hypot(e.noise.own, float(own));
   e.noise.scale = scaleOf(e.mean);

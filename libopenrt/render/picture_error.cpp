@@ -30,7 +30,7 @@ constexpr double negligibleExcess = .1;                  // fourth over squared 
 constexpr double lowerHalf = .72;                        // mean of the lower half of variances with 15 degrees of freedom
 constexpr double unsureShape = .3;                       // of the correction by tailShape()
 constexpr double mostJumps = 24;                         // where a Poisson variable is as good as normal
-constexpr std::array<uint32_t, 2> reaches{2, 5};         // of the pixels around, to each side; then the whole picture
+constexpr std::array<uint32_t, 2> reaches{2, 5};         // of the pixels around, to each side
 
 double normalDensity(double x) { return 0.398942280401433 * std::exp(-.5 * x * x); }
 double normalBelow(double x) { return .5 * std::erfc(-x * 0.707106781186548); }
@@ -51,15 +51,16 @@ double cappedMean(double expected) {
 }
 
 struct Cumulants { // summed over pixels, relative
-  double pixels = 0, second = 0, third = 0, fourth = 0;
-  void add(const Cumulants& c) { pixels += c.pixels, second += c.second, third += c.third, fourth += c.fourth; }
+  double pixels = 0, second = 0, third = 0, fourth = 0, square = 0;
+  void add(const Cumulants& c) {
+    pixels += c.pixels, second += c.second, third += c.third, fourth += c.fourth, square += c.square;
+  }
   double jumps() const { // among these pixels
     if (!(second > 0)) return 0;
     return fourth > 0 ? second * second / fourth : std::numeric_limits<double>::infinity();
   }
-  bool tailed() const { // else errors are as good as normal
-    return second > 0 && third > 0 && fourth * pixels > negligibleExcess * second * second;
-  }
+  // Else errors are as good as normal. Squares are summed pixel by pixel: that some have more noise than others is no tail.
+  bool tailed() const { return second > 0 && third > 0 && fourth > negligibleExcess * std::max(square, 0.0); }
   // seconds: of the pixels, in any order; they are put in another. met: second cumulant of a pixel that has met a jump, at least.
   TailShape shape(std::vector<double>& seconds, double& met) const {
     if (!tailed()) return {};
@@ -73,7 +74,9 @@ struct Cumulants { // summed over pixels, relative
     normal = std::min(normal, std::max(0.0, k2 - k3 * k3 * pixels / fourth));
     const double rest = k2 - normal;
     if (!(rest > 0)) return {};
-    const double jumps = std::min(rest * rest * rest / (k3 * k3), mostJumps);
+    // The former where all pixels are alike, the latter where some have many jumps and others none.
+    const double alike = rest * rest * rest / (k3 * k3), apart = square * (rest / k2) * (rest / k2) / fourth;
+    const double jumps = std::min(std::max(alike, apart), mostJumps);
     met = normal + .5 * rest / jumps;
     return tailShape(normal / rest, jumps);
   }
@@ -83,7 +86,7 @@ class Whole {
  public:
   Whole(uint32_t width, std::span<const PixelNoise> pixels, std::span<const float> doubted)
       : width_(width), height_(uint32_t(pixels.size()) / width), pixels_(pixels), doubted_(doubted), stay_(pixels.size()),
-        spread_(pixels.size()), missing_(pixels.size()), around_(pixels.size()), met_(pixels.size()), reach_(pixels.size()) {}
+        spread_(pixels.size()), missing_(pixels.size()), part_(pixels.size()), met_(pixels.size()), reach_(pixels.size()) {}
 
   PictureError make() {
     gather();
@@ -118,14 +121,13 @@ class Whole {
       const double s2 = scale * scale;
       // So that three equal colours count as one would.
       own_[i] = {1, double(p.second) / s2 / std::sqrt(3.0), double(p.third) / (s2 * scale) / std::pow(3.0, .25),
-                 double(p.fourth) / (s2 * s2)};
+                 double(p.fourth) / (s2 * s2), double(p.square) / (s2 * s2)};
       all_.add(own_[i]);
     }
     if (all_.tailed())
       for (size_t i = 0; i < pixels_.size(); i++)
         if (random(i)) seconds_.push_back(own_[i].second);
     allShape_ = all_.shape(seconds_, allMet_);
-    for (size_t i = 0; i < pixels_.size(); i++) allWithout_ += lacking(i, allMet_);
   }
 
   // How much of the pixel's error is where it is, and how much is with those around.
@@ -134,7 +136,6 @@ class Whole {
     if (!p.finished || !std::isnan(doubted_[i])) return;
     stay_[i] = double(p.own);
     if (!random(i) || !(p.own > 0)) return;
-    around_[i] = 1;
     Cumulants c;
     uint32_t reach = 0;
     for (uint32_t r : reaches) {
@@ -143,39 +144,35 @@ class Whole {
       if (c.jumps() >= fewestJumps) break;
     }
     const bool few = c.jumps() < fewestJumps;
-    double met = allMet_, without = allWithout_;
+    double met = allMet_, without = 0;
     if (!few && !c.tailed()) return;
     seconds_.clear();
     if (!few) window(i, reach, [&](size_t at) { seconds_.push_back(own_[at].second); });
     const TailShape shape = few ? allShape_ : c.shape(seconds_, met);
-    if (!few && shape.missing > 0) {
-      without = 0;
-      window(i, reach, [&](size_t at) { without += lacking(at, met); });
-    }
-    const double all = double(p.own) * shape.factor;
-    corrected_ += std::fabs(all - double(p.own)) / double(p.scale);
+    double lack = 0, all = 0; // pixels
+    if (shape.missing > 0)
+      window(i, reach, [&](size_t at) { all++, without += lacking(at, met), lack += lacking(at, met) > 0 ? 1 : 0; });
+    const double alike = std::max(1.0, all - lack) * shape.without; // so many of those that lack are of the kind that meets jumps
+    const double expected = double(p.own) * shape.factor;
+    corrected_ += std::fabs(expected - double(p.own)) / double(p.scale);
     missing_[i] = without > 0 ? shape.missing : 0;
-    spread_[i] = missing_[i] * all, stay_[i] = all - spread_[i];
-    around_[i] = without, reach_[i] = few ? 0 : reach, met_[i] = met;
+    spread_[i] = missing_[i] * expected, stay_[i] = expected - spread_[i];
+    // None of these lacks a larger part of its light than what is wrong with the pixel that tells of it.
+    if (without > 0) part_[i] = std::min(spread_[i] / without, std::min(1.0, alike / lack) * expected / double(p.scale));
+    reach_[i] = reach, met_[i] = met;
   }
 
   void distribute() {
     lack_.assign(pixels_.size(), 0);
-    double everywhere = 0;
     for (size_t i = 0; i < pixels_.size(); i++) {
       if (!(spread_[i] > 0)) continue;
-      const double each = spread_[i] / around_[i];
-      if (reach_[i] == 0)
-        everywhere += each;
-      else
-        window(i, reach_[i], [&](size_t at) { lack_[at] += each * lacking(at, met_[i]); });
+      window(i, reach_[i], [&](size_t at) { lack_[at] += part_[i] * lacking(at, met_[i]); });
     }
-    for (size_t i = 0; i < pixels_.size(); i++) lack_[i] += everywhere * lacking(i, allMet_);
   }
 
   PictureError sum() {
     PictureError out;
-    double n = 0, unseen = 0, unknown = 0, slope = 0; // slope: of the picture's error, for what is missing everywhere
+    double n = 0, unseen = 0, unknown = 0;
     const bool nothing = all_.pixels > 0 && !(largest_ > 0);
     // Where next to nothing has been met at all it may be the largest sample that was missed.
     const double bound = all_.pixels > 0 && !(all_.jumps() > ruleOfThree) ? ruleOfThree * largest_ / all_.pixels : 0;
@@ -201,18 +198,14 @@ class Whole {
       kept[i] *= kept[i] + lack > 0 ? expected / (kept[i] + lack) : 1;
       if (!random(i)) continue;
       unseen += std::min(1 - expected, bound / scale);
-      slope += slopes[i] * lacking(i, allMet_);
     }
     if (n == 0) return out;
     double variance = 0, fourth = 0;
     for (size_t i = 0; i < pixels_.size(); i++) {
       double scattered = 0; // this pixel's share of the errors of others
       if (spread_[i] > 0) {
-        if (reach_[i] == 0)
-          scattered = slope;
-        else
-          window(i, reach_[i], [&](size_t at) { scattered += slopes[at] * lacking(at, met_[i]); });
-        scattered *= spread_[i] / around_[i];
+        window(i, reach_[i], [&](size_t at) { scattered += slopes[at] * lacking(at, met_[i]); });
+        scattered *= part_[i];
       }
       const double k = kept[i] / meanOfNormal;
       const double v = varianceOfNormal * (1 - 2 * missing_[i]) * k * k + scattered * scattered;
@@ -234,11 +227,11 @@ class Whole {
   std::vector<Cumulants> own_;
   Cumulants all_;
   TailShape allShape_;
-  double largest_ = 0, corrected_ = 0, allMet_ = 0, allWithout_ = 0;
+  double largest_ = 0, corrected_ = 0, allMet_ = 0;
   std::vector<double> stay_, spread_, missing_, lack_;
-  std::vector<double> around_, met_; // of the pixels around those that lack something: how many, how they are told
-  std::vector<double> seconds_;      // room
-  std::vector<uint32_t> reach_;      // 0: the whole picture
+  std::vector<double> part_, met_; // of what those around lack: the pixel's part, relative; how they are told
+  std::vector<double> seconds_;    // room
+  std::vector<uint32_t> reach_;    // of the pixels around
 };
 
 } // namespace
@@ -256,6 +249,7 @@ TailShape tailShape(double variance, double jumps) {
     error += probability * e, told += probability * own;
   }
   if (!(told > 0) || !(error > 0)) return {};
+  out.without = 1 / std::expm1(jumps);
   out.factor = std::max(1.0, error / told), out.missing = std::min(.5, out.missing / error);
   return out;
 }

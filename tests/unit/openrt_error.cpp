@@ -118,10 +118,10 @@ TEST(Error, pixelsThatDifferByChanceShareTheirVariance) {
   for (const PixelError& e : errors) EXPECT_TRUE(e.trusted);
 }
 
-TEST(Error, whereNoiseIsAsStrongAsTheLightVariancesArePooledRelativeToIt) { // a hundred times less from row to row
+TEST(Error, whereNoiseIsAsStrongAsTheLightVariancesArePooledRelativeToIt) { // a quarter from row to row
   std::vector<PixelSums> sums;
   float scale = 1;
-  for (uint32_t y = 0; y < 5; y++, scale /= 100)
+  for (uint32_t y = 0; y < 5; y++, scale /= 4)
     for (uint32_t x = 0; x < 5; x++) {
       std::vector<float> samples = calmSamples(5 * y + x, scale);
       sums.push_back(sumsOf(samples, sixteen)), sums.back().random = true;
@@ -129,7 +129,7 @@ TEST(Error, whereNoiseIsAsStrongAsTheLightVariancesArePooledRelativeToIt) { // a
   std::vector<PixelError> errors(25);
   tileErrors(5, sums, sixteen, errors);
   scale = 1;
-  for (uint32_t y = 0; y < 5; y++, scale /= 100) {
+  for (uint32_t y = 0; y < 5; y++, scale /= 4) {
     const float right = scale * 1.96f * std::sqrt(4.0f / 12 / 128);
     EXPECT_NEAR(errors[5 * y + 2].halfWidth[0], right, .35 * right) << y;
   }
