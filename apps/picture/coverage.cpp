@@ -52,6 +52,8 @@ class Count {
       off += std::min(1.0, error / all) / double(pixels_);
     }
     c_.meanError += off / count;
+    c_.shots++, c_.promiseHeld += std::fabs(off - shot.promised) <= shot.promisedInterval;
+    c_.promiseBelow += off < shot.promised - shot.promisedInterval;
     c_.promised += shot.promised / count, c_.promisedInterval += shot.promisedInterval / count;
   }
 

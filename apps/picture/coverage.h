@@ -22,6 +22,7 @@ struct Coverage {
   uint64_t held = 0, heldTrusted = 0;
   double halfWidth = 0;                                     // mean of the trusted ones
   double meanError = 0, promised = 0, promisedInterval = 0; // of whole pictures: what they were off by, and what was said
+  uint64_t shots = 0, promiseHeld = 0, promiseBelow = 0;    // pictures; off by what was said, by less
   double bias = 0, biasInterval = 0;                        // of the pictures' means against the reference, relative
   double worstTiles = 1;                                    // 5th percentile over the tiles of their share
   double cost = 0; // mean square error over that of as many independent samples: 1 for plain Monte Carlo, less is better
@@ -30,6 +31,7 @@ struct Coverage {
   // Share of the trusted intervals that held, and the half-width of its own 95 % interval (E. B. Wilson's score).
   double share() const;
   double shareInterval() const;
+  double promiseShare() const { return shots ? double(promiseHeld) / double(shots) : 0; }
   double trustedShare() const { return pixels ? double(trusted) / double(pixels) : 0; }
 };
 

@@ -2,6 +2,7 @@
 #include "audit.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -101,6 +102,9 @@ std::string Audit::whatIsWrong() const {
     return "the coverage is not what was promised";
   if (c.intervals() > 0 && c.worstTiles < .90) return "the coverage of the worst tiles is not what was promised";
   if (c.exact - c.exactHeld > c.exact / 100) return "exact pixels are not exact";
+  // Of so many pictures fewer than nine in ten, by more than chance.
+  const double shots = double(c.shots);
+  if (c.promiseShare() + 3 * std::sqrt(.09 / shots) < .9) return "the error of the pictures is not what was promised";
   return "";
 }
 
@@ -117,7 +121,8 @@ std::string Audit::text() const {
         fmt::format("coverage    {:.4f} +- {:.4f} of the trusted 95 % intervals (wanted: 0.93 to 0.97); of all pixels {:.4f}\n"
                     "tiles       5 % of those of {}x{} pixels have less than {:.3f} (wanted: at least 0.90)\n",
                     c.share(), c.shareInterval(), double(c.held) / double(c.pixels), tileEdge, tileEdge, c.worstTiles);
-  text += fmt::format("mean error  said {:.5g} +- {:.2g}, was {:.5g}\n", c.promised, c.promisedInterval, c.meanError);
+  text += fmt::format("mean error  said {:.5g} +- {:.2g}, was {:.5g}; it was what was said in {} of {} pictures\n", c.promised,
+                      c.promisedInterval, c.meanError, c.promiseHeld, c.shots);
   text += fmt::format("bias        {:+.2g} +- {:.2g} of the picture's mean\n", c.bias, c.biasInterval);
   if (c.cost > 0) text += fmt::format("variance    {:.3g} of that of as many independent samples\n", c.cost);
   const std::string wrong = whatIsWrong();

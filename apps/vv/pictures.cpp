@@ -1,6 +1,7 @@
 // pictures.cpp: see pictures.h.
 #include "pictures.h"
 
+#include <algorithm>
 #include <chrono>
 #include <deque>
 #include <map>
@@ -84,6 +85,7 @@ class Pictures {
   int make() {
     picture::RenderSettings settings = options_.render;
     if (!options_.stats.empty() && !options_.isSequence()) settings.channels |= RT_VARIANCE; // then RTstats has the error
+    if (settings.error > 0) settings.channels |= RT_SAMPLES;                                 // whyMissed()
     settings.progressive = !options_.isSequence() && picture::worthRounds(settings);
     const Timeline timeline(options_);
     if (options_.script) beginScript(settings);
@@ -282,16 +284,31 @@ class Pictures {
     if (options_.verbose && done_ == moments_ * views_)
       for (const std::string& line : clusterLines(result)) say(line);
     const RTstats& s = result.stats;
-    if (options_.render.error > 0 && !result.interrupted && s.errorPixels > 0 && s.errorHalfWidth > 1.1 * options_.render.error)
-      sayWarning(fmt::format("{}{}the error is {:.2g} %, not {:.2g} %: {} samples a pixel were not enough; --spp allows more",
-                             job.name.text(), job.name.text().empty() ? "" : ": ", 100 * s.errorHalfWidth,
-                             100 * options_.render.error, options_.render.samples));
+    if (options_.render.error > 0 && !result.interrupted && s.errorPixels > 0 && s.errorHalfWidth > 1.001 * options_.render.error)
+      sayWarning(fmt::format("{}{}the error is {:.3g} %, not {:.3g} %: {}", job.name.text(), job.name.text().empty() ? "" : ": ",
+                             100 * s.errorHalfWidth, 100 * options_.render.error, whyMissed(result.picture)));
     if (options_.stats.empty()) return;
     if (options_.isSequence())
       frames_.add(job.name, moment.time, result, writeSeconds);
     else
       writeText(options_.stats == "-" ? "-" : pathFor(options_.stats, job.name),
                 statsJson(options_, commandLine_, browser_.world(), result, {writeSeconds, secondsSince(start_)}));
+  }
+
+  // Why a picture has not reached --error, from the samples that it took.
+  std::string whyMissed(const picture::Picture& made) const {
+    const auto samples = made.planes.find(RT_SAMPLES);
+    const auto most = float(options_.render.samples);
+    double full = 1; // share of the pixels
+    if (samples != made.planes.end() && !samples->second.empty()) {
+      const std::vector<float>& all = samples->second;
+      full = double(std::count_if(all.begin(), all.end(), [&](float n) { return n >= most; })) / double(all.size());
+    }
+    if (full > 0)
+      return fmt::format("{:.3g} % of its pixels have taken {} samples, the most allowed; --spp allows more", 100 * full,
+                         options_.render.samples);
+    if (options_.render.timeLimit > 0) return "--time-limit has ended it";
+    return "what is left is noise of the paths from lamps; --spp N without --error takes N of them a pixel";
   }
 
   void finishSequence() {

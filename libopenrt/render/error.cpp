@@ -28,13 +28,13 @@ constexpr uint32_t windowPixels = (2 * reach + 1) * (2 * reach + 1);
 constexpr double fewestMeans = 2.5, fewestHits = 4;
 constexpr double negligible = .25; // of a half-width
 constexpr double fewestPaths = 16; // from lamps, in a window
-constexpr double largestExcess = 4;
 
 // Of the means of the replicates of one colour of one pixel, about their mean.
 struct Spread {
   double variance = 0;    // k-statistic
   double uncertainty = 0; // variance of that, without bias
   double fourth = 0;      // central sum
+  double k3 = 0, k4 = 0;  // k-statistics
 };
 
 Spread spreadOf(const PixelSums& s, int k, double size) {
@@ -43,19 +43,24 @@ Spread spreadOf(const PixelSums& s, int k, double size) {
   const double second = s.closed2[k] - s.closed[k] * m;
   if (!(second > 1e-13 * s.closed2[k])) return out; // of the subtraction
   const double fourth = s.closed4[k] - 4 * m * s.closed3[k] + 6 * m * m * s.closed2[k] - 3 * r * m * m * m * m;
+  const double third = s.closed3[k] - 3 * m * s.closed2[k] + 2 * r * m * m * m;
   const double scale = 1 / (size * size);
   const double squares = second * scale;
   out.fourth = std::max(fourth, 0.0) * scale * scale;
   out.variance = squares / (r - 1);
   // Fisher's fourth k-statistic; Var(k2) = k4 / r + 2 k2^2 / (r - 1) with k2^2 corrected for its own bias.
-  const double k4 = r < 4 ? 0 : r * ((r + 1) * out.fourth - 3 * (r - 1) / r * squares * squares) / ((r - 1) * (r - 2) * (r - 3));
-  out.uncertainty = k4 / r + 2 / (r + 1) * (out.variance * out.variance - k4 / r);
+  if (r > 3) {
+    out.k3 = r * third * scale / size / ((r - 1) * (r - 2));
+    out.k4 = r * ((r + 1) * out.fourth - 3 * (r - 1) / r * squares * squares) / ((r - 1) * (r - 2) * (r - 3));
+  }
+  out.uncertainty = out.k4 / r + 2 / (r + 1) * (out.variance * out.variance - out.k4 / r);
   return out;
 }
 
 // What the windows sum up.
 struct Cell {
   double count = 0, variance = 0, variance2 = 0, uncertainty = 0, fourth = 0;
+  void scale(double s) { variance *= s, variance2 *= s * s, uncertainty *= s * s, fourth *= s * s; }
   void add(const Cell& c) {
     count += c.count, variance += c.variance, variance2 += c.variance2, uncertainty += c.uncertainty, fourth += c.fourth;
   }
@@ -77,16 +82,24 @@ void sumWindows(std::vector<Cell>& cells, uint32_t width, uint32_t height) {
   pass(rows, cells, false);
 }
 
-// The variance of a pixel's replicates from its own and its window's, and the degrees of freedom of that.
-double combined(double own, const Cell& window, double replicates, double& freedom) {
-  const double n = window.count, mean = window.variance / n;
-  const double chance = std::max(window.uncertainty / n, 0.0);
-  const double between = n > 1 ? std::max(0.0, window.variance2 / n - mean * mean) * n / (n - 1) : 0;
-  const double real = std::max(0.0, between - chance);
-  const double weight = n > 1 && real + chance > 0 ? real / (real + chance) : 1;
-  freedom = (replicates - 1) / (weight * weight + (1 - weight) * (1 - weight) / n);
-  return mean + weight * (own - mean);
-}
+// What a window tells of the variance of a pixel's replicates.
+struct Pool {
+  double mean = 0, chance = 0, real = 0; // of the window's variances; variance of these by chance, and beyond it
+  explicit Pool(const Cell& window) {
+    const double n = window.count;
+    mean = window.variance / n;
+    chance = std::max(window.uncertainty / n, 0.0);
+    const double between = n > 1 ? std::max(0.0, window.variance2 / n - mean * mean) * n / (n - 1) : 0;
+    real = std::max(0.0, between - chance);
+  }
+  double differing() const { return mean > 0 ? real / (mean * mean) : 0; }
+  // The variance from the pixel's own and this, and the degrees of freedom of that.
+  double combined(double own, double n, double replicates, double& freedom) const {
+    const double weight = n > 1 && real + chance > 0 ? real / (real + chance) : 1;
+    freedom = (replicates - 1) / (weight * weight + (1 - weight) * (1 - weight) / n);
+    return mean + weight * (own - mean);
+  }
+};
 
 // What is rare and bright in a tile, from the samples' grey: how often pixels that it matters to have met it.
 struct Rare {
@@ -115,19 +128,14 @@ struct Rare {
 // Mean of |x| of a normal x of estimated variance v, with the bias of the root of a variance taken out (the factor known as c4).
 double meanError(double v, double freedom) { return std::sqrt(2 / M_PI * v) * (4 * freedom + 1) / (4 * freedom); }
 
-// By how much the mean of |error| is more than follows from a pixel's own variance v: with excess kurtosis, q of the mean, the
-// root of v is too small by q / 8 on average, and the mean of |error| is smaller than a normal one's by q / 24.
-double tailFactor(const Cell& window, double replicates) {
-  const double squares = window.variance2 - window.uncertainty; // of the true variances
-  const double q = squares > 0 ? window.uncertainty / squares - 2 / (replicates - 1) : largestExcess;
-  return 1 + std::clamp(q, 0.0, largestExcess) / 12;
-}
-
-void finish(PixelError& e, double expected) {
+void finish(PixelError& e) {
   double half = 0;
   for (float h : e.halfWidth) half += double(h);
-  e.relative = relativeError(half, e.mean), e.expected = relativeError(expected, e.mean);
+  e.relative = relativeError(half, e.mean);
 }
+
+// What errors are relative to.
+float scaleOf(const float mean[3]) { return darkest + std::fabs(mean[0]) + std::fabs(mean[1]) + std::fabs(mean[2]); }
 
 // The pixels of a tile, colour by colour.
 class TileErrors {
@@ -142,6 +150,8 @@ class TileErrors {
       rare_.add(pixels_[i]);
     }
     if (!replicates_.many()) return;
+    for (size_t i = 0; i < pixels_.size(); i++)
+      if (pixels_[i].replicates >= 2) out_[i].noise.own = 0; // noteNoise()
     for (const bool random : {false, true})
       for (int k = 0; k < 3; k++) pool(random, k);
     for (size_t i = 0; i < pixels_.size(); i++) {
@@ -155,48 +165,82 @@ class TileErrors {
 
  private:
   struct Pooled { // of a pixel
-    double variance[3] = {}, freedom[3] = {}, expected[3] = {};
+    double variance[3] = {}, freedom[3] = {};
     double window = 0; // pixels in it
     bool few = false;  // few replicates carry the window's variance
   };
 
-  // Random pixels and others are kept apart: those have nothing to say of each other. Nor have those that are exact.
+  // Random pixels and others are kept apart: those have nothing to say of each other. Nor have those that are exact. Noise may be
+  // as strong everywhere, or as strong as the light: the variances, or those relative to the brightness of the 3x3 pixels around,
+  // are pooled, whichever differ less.
   void pool(bool random, int k) {
-    std::vector<Cell> cells(pixels_.size());
+    std::vector<Cell> cells(pixels_.size()), relative;
+    const std::vector<double> bright = brightness(random, k);
     for (size_t i = 0; i < pixels_.size(); i++) {
       if (pixels_[i].random != random || out_[i].constant || pixels_[i].replicates < 2) continue;
       const Spread s = spreadOf(pixels_[i], k, replicates_.size());
+      noteNoise(pixels_[i], s, out_[i].noise);
       cells[i] = {1, s.variance, s.variance * s.variance, s.uncertainty, s.fourth};
     }
-    const std::vector<Cell> own = cells;
+    const std::vector<Cell> own = relative = cells;
+    for (size_t i = 0; i < relative.size(); i++) relative[i].scale(1 / (bright[i] * bright[i]));
     sumWindows(cells, width_, height_);
+    sumWindows(relative, width_, height_);
     for (size_t i = 0; i < pixels_.size(); i++) {
       if (own[i].count == 0) continue;
       Pooled& p = pooled_[i];
       const double r = pixels_[i].replicates, parts = pixels_[i].samples / double(replicates_.size());
-      p.variance[k] = combined(own[i].variance, cells[i], r, p.freedom[k]) / parts;
-      // For the picture as a whole the pixel's own: where neighbours differ the mean of roots is not the root of the mean.
-      // But where it has met nothing at all, what others have met.
-      p.expected[k] = own[i].variance > 0 ? meanError(own[i].variance / parts, r - 1) * tailFactor(cells[i], r)
-                                          : meanError(p.variance[k], p.freedom[k]);
-      p.window = cells[i].count;
-      const double squares = cells[i].variance * (r - 1);
-      p.few |= random && cells[i].fourth * fewestMeans > squares * squares;
+      const Pool plain(cells[i]), scaled(relative[i]);
+      const bool byLight = scaled.differing() < plain.differing();
+      const double unit = byLight ? bright[i] * bright[i] : 1;
+      const Cell& window = byLight ? relative[i] : cells[i];
+      const double n = window.count;
+      p.variance[k] = unit * (byLight ? scaled : plain).combined(own[i].variance / unit, n, r, p.freedom[k]) / parts;
+      p.window = n;
+      const double squares = window.variance * (r - 1);
+      p.few |= random && window.fourth * fewestMeans > squares * squares;
     }
+  }
+
+  // Of the 3x3 pixels around: a pixel's own would know of what it has missed.
+  std::vector<double> brightness(bool random, int k) const {
+    std::vector<double> out(pixels_.size(), 1);
+    for (uint32_t y = 0; y < height_; y++)
+      for (uint32_t x = 0; x < width_; x++) {
+        double sum = 0, n = 0;
+        for (uint32_t v = y - std::min(y, 1u); v <= std::min(y + 1, height_ - 1); v++)
+          for (uint32_t u = x - std::min(x, 1u); u <= std::min(x + 1, width_ - 1); u++) {
+            const size_t at = size_t(v) * width_ + u;
+            if (pixels_[at].random != random || out_[at].constant) continue;
+            sum += std::fabs(double(out_[at].mean[k])), n++;
+          }
+        if (sum > 0) out[size_t(y) * width_ + x] = sum / n;
+      }
+    return out;
+  }
+
+  // For the picture as a whole each pixel's own spread counts, whatever those around have met.
+  void noteNoise(const PixelSums& sums, const Spread& s, PixelNoise& noise) const {
+    const double parts = sums.samples / double(replicates_.size());
+    noise.own += float(meanError(s.variance / parts, sums.replicates - 1.0));
+    noise.second += float(s.variance / parts);
+    noise.square += float((s.variance * s.variance - s.uncertainty) / (parts * parts));
+    noise.third += float(s.k3 / (parts * parts));
+    noise.fourth += float(s.k4 / (parts * parts * parts));
   }
 
   void judge(const PixelSums& s, const Pooled& p, bool enough, PixelError& e) const {
     const bool dark = s.random && !(p.variance[0] + p.variance[1] + p.variance[2] > 0); // all the same, here and around
-    double half = 0, expected = 0;
+    double half = 0;
     for (int k = 0; k < 3; k++) {
-      double h = student95(p.freedom[k]) * std::sqrt(p.variance[k]), mean = p.expected[k];
+      double h = student95(p.freedom[k]) * std::sqrt(p.variance[k]);
       if (dark) // no sample has met anything: the rule of three
-        h = mean = rare_.largest[k] > 0 ? ruleOfThree / (s.samples * p.window) * rare_.largest[k]
-                                        : std::numeric_limits<double>::infinity();
+        h = rare_.largest[k] > 0 ? ruleOfThree / (s.samples * p.window) * rare_.largest[k]
+                                 : std::numeric_limits<double>::infinity();
       e.halfWidth[k] = float(h);
-      half += h, expected += mean;
+      half += h;
     }
-    finish(e, expected);
+    finish(e);
     e.trusted = enough && !dark && !p.few;
     // What is so rare that most windows have missed it: its mean is missing there, and no variance tells.
     const double hits = rare_.hits(s.samples) * std::min(windowPixels, rare_.pixels);
@@ -238,7 +282,6 @@ PixelError independentError(const PixelSums& s) {
   PixelError e;
   if (s.samples == 0) return e;
   const double n = s.samples;
-  double expected = 0;
   bool varies = false;
   for (int k = 0; k < 3; k++) {
     const double squares = std::max(0.0, s.delta2[k] - s.delta[k] * s.delta[k] / n);
@@ -246,11 +289,13 @@ PixelError independentError(const PixelSums& s) {
     const double v = s.samples > 1 ? squares / (n - 1) / n : std::numeric_limits<double>::infinity();
     e.halfWidth[k] = s.samples > 1 ? float(student95(n - 1) * std::sqrt(v)) : float(v);
     e.mean[k] = float(s.rgba[k] / n);
-    expected += s.samples > 1 ? meanError(v, n - 1) : v;
+    e.noise.own += float(s.samples > 1 ? meanError(v, n - 1) : v);
+    e.noise.largest += float(s.largest[k] / n);
   }
   e.samples = s.samples;
   e.constant = s.samples > 1 && !varies && !s.random;
-  finish(e, expected);
+  e.noise.scale = scaleOf(e.mean), e.noise.random = s.random, e.noise.finished = true;
+  finish(e);
   return e;
 }
 
@@ -259,18 +304,28 @@ void tileErrors(uint32_t width, std::span<const PixelSums> pixels, const Replica
 }
 
 void addLight(const LightSums& light, PixelError& e) {
-  double was = 3 * .01, squares = 0, half = 0, lamps = 0;
+  double half = 0, lamps = 0, own = 0;
+  const double met = std::max(light.hits / windowPixels, 1e-3); // by a pixel, on average
   for (int k = 0; k < 3; k++) {
-    was += double(e.mean[k]);
     const double w = light.variance[k], h = student95(LightImage::parts - 1) * std::sqrt(w);
     e.mean[k] += float(light.mean[k]);
     e.halfWidth[k] = float(std::hypot(double(e.halfWidth[k]), h));
-    half += double(e.halfWidth[k]), lamps += h, squares += 2 / M_PI * w;
+    half += double(e.halfWidth[k]), lamps += h;
+    own += meanError(w, LightImage::parts - 1);
+    e.noise.second += float(w), e.noise.square += float(w * w), e.noise.third += float(w * std::sqrt(w / met)),
+        e.noise.fourth += float(w * w / met);
   }
-  const double expected = std::hypot(double(e.expected) * was, std::sqrt(3 * squares));
-  if (lamps > 0) e.constant = false;
+  e.noise.own = std::hypot(e.noise.own, float(own));
+  e.noise.scale = scaleOf(e.mean);
+  if (lamps > 0) e.constant = false, e.noise.random = true;
   if (lamps > negligible * half && light.hits < fewestPaths) e.trusted = false; // few paths have met the pixel
-  e.relative = relativeError(half, e.mean), e.expected = relativeError(expected, e.mean);
+  e.relative = relativeError(half, e.mean);
+}
+
+double lightAlone(const LightSums& light, const float mean[3]) {
+  double half = 0;
+  for (double w : light.variance) half += student95(LightImage::parts - 1) * std::sqrt(w);
+  return double(relativeError(half, mean));
 }
 
 uint32_t samplesFor(double target, double halfWidth, uint32_t samples, uint32_t most) {

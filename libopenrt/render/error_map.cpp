@@ -10,10 +10,11 @@
 namespace openrt {
 
 // Most pixels in doubt are what they seem. Of an edge across pixels, 64 samples: a tenth of the bound is what they are off by.
-constexpr double expectedOfBound = .1;
+// The corner that no sample meets has an area of 1 / n, the edges that cut so little off are as many as sqrt(1 / n) of all.
+double expectedOfBound(double samples) { return std::min(1.0, .8 / std::sqrt(samples)); }
 
 float relativeError(double sum, const float colors[3]) {
-  double all = 0.03;
+  double all = darkest;
   for (int k = 0; k < 3; k++) all += std::fabs(colors[k]);
   const double relative = sum / all;
   return relative < 1 ? float(relative) : 1.0f;
@@ -23,14 +24,15 @@ ErrorMap::ErrorMap(uint32_t width, uint32_t height, Kind kind) : width_(width), 
   const size_t pixels = size_t(width) * height;
   if (kind == Kind::none) return;
   relative_.assign(pixels, std::numeric_limits<float>::quiet_NaN());
-  expected_ = relative_;
+  doubted_ = relative_;
+  noise_.resize(pixels);
   if (kind == Kind::full) seen_.resize(pixels);
 }
 
 void ErrorMap::store(size_t pixel, const PixelError& e) {
   if (empty()) return;
   relative_[pixel] = e.trusted ? e.relative : -e.relative;
-  expected_[pixel] = e.expected;
+  noise_[pixel] = e.noise;
   if (!seen_.empty()) seen_[pixel] = {{e.mean[0], e.mean[1], e.mean[2]}, e.samples, e.constant};
 }
 
@@ -79,11 +81,11 @@ void ErrorMap::doubtConstants(const std::function<void(size_t pixel, const float
       const double part = std::min(1.0, ruleOfThree / here.samples);
       double sum = 0, expected = 0;
       for (int k = 0; k < 3; k++) {
-        expected += expectedOfBound * part * double(half[k]);
+        expected += expectedOfBound(here.samples) * part * double(half[k]);
         // At the border of the picture the other side may lie outside: any of its colours.
         half[k] = float(part * double(border(x, y) ? range_[k] : half[k])), sum += double(half[k]);
       }
-      expected_[pixel] = relativeError(expected, here.mean);
+      doubted_[pixel] = relativeError(expected, here.mean);
       relative_[pixel] = -relativeError(sum, here.mean);
       changed(pixel, half);
     }
@@ -91,23 +93,21 @@ void ErrorMap::doubtConstants(const std::function<void(size_t pixel, const float
 
 ErrorSummary ErrorMap::summary() const {
   ErrorSummary s;
-  double sum2 = 0;
   std::vector<float> halves;
   halves.reserve(relative_.size());
   for (size_t i = 0; i < relative_.size(); i++) {
     if (std::isnan(relative_[i])) continue;
-    const double e = expected_[i], h = std::fabs(relative_[i]);
+    const double h = std::fabs(relative_[i]);
     s.pixels++;
     s.trusted += std::signbit(relative_[i]) ? 0 : 1;
-    s.mean += e, sum2 += e * e, s.halfWidth += h;
+    s.halfWidth += h;
     halves.push_back(float(h));
   }
   if (s.pixels == 0) return s;
   const double n = double(s.pixels);
-  s.mean /= n, s.halfWidth /= n;
-  // Pixels are independent. That they differ from place to place widens the interval a little.
-  if (s.pixels > 1)
-    s.meanInterval = student95(uint32_t(std::min(n - 1, 1e9))) * std::sqrt(std::max(0.0, sum2 / n - s.mean * s.mean) / (n - 1));
+  s.halfWidth /= n;
+  const PictureError whole = pictureError(width_, noise_, doubted_);
+  s.mean = whole.mean, s.meanInterval = whole.interval;
   const auto at = halves.begin() + std::ptrdiff_t(double(halves.size() - 1) * 0.99);
   std::nth_element(halves.begin(), at, halves.end());
   s.p99 = *at;

@@ -7,21 +7,24 @@
 #include <functional>
 #include <vector>
 
+#include "render/picture_error.h"
+
 namespace openrt {
 
+inline constexpr float darkest = 0.03f;       // colours summed: errors of what is darker are not blown up
 inline constexpr double ruleOfThree = 2.9957; // -ln 0.05: n misses in a row bound a probability by this / n
 
 struct PixelError {
   float mean[3] = {};
-  float halfWidth[3] = {};          // of the 95 % interval of each colour
-  float relative = 1, expected = 1; // relativeError() of the half-widths, and of what the pixel is expected to be off by
+  float halfWidth[3] = {}; // of the 95 % interval of each colour
+  float relative = 1;      // relativeError() of the half-widths
+  PixelNoise noise;
   uint32_t samples = 0;
   bool trusted = false;
   bool constant = false; // nothing random, all samples equal: exact, unless an edge passes through a corner
 };
 
-// A sum over the colours of errors, over the sum of the colours; 0.01 each is added to these: errors of the dark are not blown
-// up. At most 1.
+// A sum over the colours of errors, over the sum of the colours and `darkest`. At most 1.
 float relativeError(double sum, const float colors[3]);
 
 struct ErrorSummary { // as in RTstats
@@ -52,7 +55,9 @@ class ErrorMap {
   bool beside(uint32_t x, uint32_t y) const;
   void range(uint32_t x, uint32_t y, float out[3]) const;
   uint32_t width_ = 0, height_ = 0;
-  std::vector<float> relative_, expected_; // NaN: not finished; relative_ negative: not trusted
+  std::vector<float> relative_; // NaN: not finished; negative: not trusted
+  std::vector<float> doubted_;  // what a constant pixel in doubt is expected to be off by, relative; NaN: it is not in doubt
+  std::vector<PixelNoise> noise_;
   std::vector<Seen> seen_;
   float range_[3] = {}; // of all pixels' colours; doubtConstants()
 };

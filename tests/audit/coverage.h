@@ -22,11 +22,26 @@ struct Scenario {
   const char* reason; // why not more: ""
   void (*draw)();     // into the current context
 };
-const std::vector<Scenario>& scenarios();
+const std::vector<Scenario>& scenarios();      // all
+const std::vector<Scenario>& firstScenes();    // may set limits
+const std::vector<Scenario>& trainingScenes(); // may set limits
+const std::vector<Scenario>& judgingScenes();  // may only judge
 
 using Coverage = picture::Coverage;
 
-// Renders 16x16 pixels with seeds 1 .. seeds. Quality other than samples, transport and seed is left as it is.
-Coverage measure(const Scenario& scenario, int seeds, int edge = 16);
+// One scene, for pictures of several numbers of samples: what is true of it is made once.
+class Judge {
+ public:
+  // In the current context, whose quality other than samples, transport and seed is left as it is. edge: pixels.
+  Judge(const Scenario& scenario, int edge);
+  // Renders with seeds 1 .. seeds.
+  Coverage measure(int samples, int seeds);
+
+ private:
+  const Scenario& scenario_;
+  const int edge_;
+  picture::Reference reference_;
+};
+Coverage measure(const Scenario& scenario, int seeds, int edge = 16); // with the scene's own number of samples
 
 } // namespace audit

@@ -1,41 +1,14 @@
-// scenes.cpp: the scenes of the audit: each kind of difficulty once, small, through the public C API. The first six served to
-// tune the rules of libopenrt/render/error.cpp; the others did not, and show whether the rules hold elsewhere.
-#include "audit/coverage.h"
-
+// scenes.cpp: the first scenes of the audit: each kind of difficulty once, small, through the public C API. They may set limits,
+// as those of training_scenes.cpp may, and those of judging_scenes.cpp may not.
 #include <cmath>
+
+#include "audit/coverage.h"
+#include "audit/scene_parts.h"
 
 #include "openrt/openrt.h"
 
 namespace audit {
 namespace {
-
-RTid diffuse(float emission, float reflectance) {
-  const RTid shader = rtNewShader(rtNewShaderClass("Diffuse", nullptr));
-  rtBindShader(shader);
-  rtParameter3f(rtParameterHandle("emission"), emission, emission, emission);
-  rtParameter3f(rtParameterHandle("reflectance"), reflectance, reflectance, reflectance);
-  rtBindShader(0);
-  return shader;
-}
-
-// A square in z = 0 that faces +z, under the current matrix.
-void square(RTid shader, double half) {
-  const RTid object = rtBeginObject(0);
-  rtBindShader(shader);
-  rtBegin(RT_QUADS);
-  rtVertex3d(-half, -half, 0), rtVertex3d(half, -half, 0), rtVertex3d(half, half, 0), rtVertex3d(-half, half, 0);
-  rtEnd();
-  rtEndObject();
-  rtBindShader(0);
-  rtInstantiateObject(object);
-}
-
-void lookDown(double height) { // from far above on a square of this height about the origin
-  rtPushMatrix();
-  rtTranslated(0, 0, 40);
-  rtOrtho(height);
-  rtPopMatrix();
-}
 
 // Stripes at an angle, a few pixels wide: pixels with edges, and some without.
 void drawEdges() {
@@ -91,15 +64,7 @@ void drawTinyLamp() { lampOver(.03, 1, 1000); }
 // A room with a lamp in its ceiling: light between coloured walls, edges, shadows.
 void drawRoom() {
   const RTid white = diffuse(0, .7f), dark = diffuse(0, .2f), lamp = diffuse(8, 0);
-  const auto wall = [](double angle, double x, double y, double z, RTid shader) {
-    rtPushMatrix();
-    rtRotated(angle, x, y, z);
-    rtTranslated(0, 0, -1);
-    square(shader, 1);
-    rtPopMatrix();
-  };
-  wall(0, 1, 0, 0, white), wall(-90, 1, 0, 0, white), wall(90, 1, 0, 0, white);
-  wall(90, 0, 1, 0, dark), wall(-90, 0, 1, 0, dark);
+  roomOf(white, white, dark, dark, white);
   rtPushMatrix();
   rtTranslated(0, .99, 0);
   rtRotated(90, 1, 0, 0);
@@ -116,83 +81,10 @@ void drawRoom() {
   rtPopMatrix();
 }
 
-void colored(RTid shader, const char* parameter, float r, float g, float b) {
-  rtBindShader(shader);
-  rtParameter3f(rtParameterHandle(parameter), r, g, b);
-  rtBindShader(0);
-}
-RTid paint(float r, float g, float b) {
-  const RTid shader = diffuse(0, 0);
-  colored(shader, "reflectance", r, g, b);
-  return shader;
-}
-
-// A box about the origin, under the current matrix.
-RTid box(RTid shader, double x, double y, double z) {
-  const RTid object = rtBeginObject(0);
-  rtBindShader(shader);
-  rtBegin(RT_QUADS);
-  for (int axis = 0; axis < 3; axis++)
-    for (int side = -1; side <= 1; side += 2)
-      for (int corner = 0; corner < 4; corner++) {
-        const int a = corner == 1 || corner == 2 ? 1 : -1, b = corner >= 2 ? 1 : -1;
-        double v[3];
-        v[axis] = side, v[(axis + 1) % 3] = side * a, v[(axis + 2) % 3] = b;
-        rtVertex3d(x * v[0], y * v[1], z * v[2]);
-      }
-  rtEnd();
-  rtEndObject();
-  rtBindShader(0);
-  return object;
-}
-RTid ball(RTid shader, float radius) {
-  const RTid object = rtBeginObject(0);
-  rtBindShader(shader);
-  rtSphere(radius);
-  rtEndObject();
-  rtBindShader(0);
-  return object;
-}
-void put(RTid object, double x, double y, double z, double turn) {
-  rtPushMatrix();
-  rtTranslated(x, y, z);
-  rtRotated(turn, 0, 1, 0);
-  rtInstantiateObject(object);
-  rtPopMatrix();
-}
-void lampAbove(double x, double y, double z, double half, float radiance) {
-  rtPushMatrix();
-  rtTranslated(x, y, z);
-  rtRotated(90, 1, 0, 0);
-  square(diffuse(radiance, 0), half);
-  rtPopMatrix();
-}
-void floorAt(double y, RTid shader, double half) {
-  rtPushMatrix();
-  rtTranslated(0, y, 0);
-  rtRotated(-90, 1, 0, 0);
-  square(shader, half);
-  rtPopMatrix();
-}
-void eyeAt(double x, double y, double z, double degrees) {
-  rtPushMatrix();
-  rtLookAt(x, y, z, 0, 0, 0, 0, 1, 0);
-  rtPerspective(degrees);
-  rtPopMatrix();
-}
-
 // The Cornell box in its usual proportions: red and green walls, two white boxes, a lamp in the ceiling.
 void drawCornell() {
   const RTid white = paint(.73f, .73f, .73f), red = paint(.65f, .05f, .05f), green = paint(.12f, .45f, .15f);
-  const auto wall = [](double angle, double x, double y, double z, RTid shader) {
-    rtPushMatrix();
-    rtRotated(angle, x, y, z);
-    rtTranslated(0, 0, -1);
-    square(shader, 1);
-    rtPopMatrix();
-  };
-  wall(0, 1, 0, 0, white), wall(-90, 1, 0, 0, white), wall(90, 1, 0, 0, white);
-  wall(90, 0, 1, 0, red), wall(-90, 0, 1, 0, green);
+  roomOf(white, white, red, green, white);
   lampAbove(0, .998, 0, .24, 17);
   put(box(white, .3, .6, .3), -.33, -.4, -.3, 17);
   put(box(white, .3, .3, .3), .35, -.7, .3, -18);
@@ -327,6 +219,6 @@ const std::vector<Scenario> table = {
 
 } // namespace
 
-const std::vector<Scenario>& scenarios() { return table; }
+const std::vector<Scenario>& firstScenes() { return table; }
 
 } // namespace audit

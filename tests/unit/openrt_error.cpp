@@ -118,6 +118,23 @@ TEST(Error, pixelsThatDifferByChanceShareTheirVariance) {
   for (const PixelError& e : errors) EXPECT_TRUE(e.trusted);
 }
 
+TEST(Error, whereNoiseIsAsStrongAsTheLightVariancesArePooledRelativeToIt) { // a quarter from row to row
+  std::vector<PixelSums> sums;
+  float scale = 1;
+  for (uint32_t y = 0; y < 5; y++, scale /= 4)
+    for (uint32_t x = 0; x < 5; x++) {
+      std::vector<float> samples = calmSamples(5 * y + x, scale);
+      sums.push_back(sumsOf(samples, sixteen)), sums.back().random = true;
+    }
+  std::vector<PixelError> errors(25);
+  tileErrors(5, sums, sixteen, errors);
+  scale = 1;
+  for (uint32_t y = 0; y < 5; y++, scale /= 4) {
+    const float right = scale * 1.96f * std::sqrt(4.0f / 12 / 128);
+    EXPECT_NEAR(errors[5 * y + 2].halfWidth[0], right, .35 * right) << y;
+  }
+}
+
 TEST(Error, pixelsThatReallyDifferKeepTheirOwn) {
   PixelSums calm = sumsOf(calmSamples(1), sixteen), wild = sumsOf(calmSamples(2, 50), sixteen);
   calm.random = wild.random = true;
@@ -142,7 +159,7 @@ TEST(Error, aConstantPixelBesideAnEdgeIsInDoubt) {
   for (size_t i = 0; i < 15; i++) {
     PixelError e;
     e.mean[0] = i % 5 < 3 ? 0.0f : 1.0f;
-    e.samples = 30, e.trusted = e.constant = true, e.relative = e.expected = 0;
+    e.samples = 30, e.trusted = e.constant = true, e.relative = 0, e.noise.finished = true, e.noise.scale = 1;
     map.store(i, e);
   }
   std::vector<size_t> changed;

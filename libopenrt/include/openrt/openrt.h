@@ -372,8 +372,8 @@ enum { RT_LEAVES_IMAGES = 1, RT_LEAVES_BETWEEN = 2, RT_LEAVES_EMITTERS = 4, RT_L
  * that most have missed them; where nothing is random and samples are equal, but not beside or at the border (a bound too).
  *
  * RT_TARGET_ERROR e: sample each part of the picture until the mean over its pixels of (RT_ERROR summed over the colours) /
- * (colours summed + 0.03), at most 1 a pixel, is about e, with at most RT_SAMPLES_PER_PIXEL samples. How many is decided by a
- * pilot of 32 samples that are not part of the picture: stopping does not bias it.
+ * (colours summed + 0.03), at most 1 a pixel, is at most e, or RT_SAMPLES_PER_PIXEL samples are taken. How many is decided by a
+ * pilot of 32 samples that are not part of the picture; parts that then miss e are made anew with more.
  *
  * RT_TIME_LIMIT s: rounds over the whole picture, each one replicate, until s seconds have gone by since the frame was started
  * or RT_SAMPLES_PER_PIXEL are taken. A round is not broken off, so the limit is kept to about a thirtieth; at least one round is
@@ -422,8 +422,8 @@ typedef struct RTstats {
   char isa[16];
   char kernel[32]; /* e.g. "Embree 3.13.5" */
   /* Error of the picture as a whole. Of a pixel it is (errors of the colours summed) / (colours summed + 0.03), at most 1. */
-  double errorMean;         /* expected mean over the pixels of what they are off by */
-  double errorMeanInterval; /* half-width of its 95 % interval */
+  double errorMean;         /* about the mean over the pixels of what they are off by */
+  double errorMeanInterval; /* that mean lies in errorMean +- this with 95 %; what rests on what: docs/accuracy.md */
   double errorHalfWidth;    /* mean over the pixels of RT_ERROR; what RT_TARGET_ERROR is compared with */
   double errorP99;          /* 99 % of the pixels have a smaller RT_ERROR */
   double errorLevel;        /* 0.95 */
