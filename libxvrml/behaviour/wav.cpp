@@ -2,6 +2,7 @@
 #include "behaviour/wav.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -21,7 +22,7 @@ uint32_t little(const uint8_t* p, int bytes) {
 class File {
  public:
   explicit File(const std::string& path) : stream_(path, std::ios::binary) {
-    if (!stream_) throw std::runtime_error(fmt::format("{}: cannot be read", path));
+    if (!stream_) throw std::runtime_error(std::strerror(errno));
     stream_.seekg(0, std::ios::end);
     size_ = uint64_t(std::max(std::streamoff(stream_.tellg()), std::streamoff(0)));
   }

@@ -8,7 +8,9 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <map>
 #include <mutex>
 #include <vector>
@@ -177,7 +179,7 @@ namespace {
 
 std::unique_ptr<FilmData::Impl> load(const std::string& path, const Limits& limits) {
   Owned<FILE> file(fopen(path.c_str(), "rb"));
-  if (!file) fail(fmt::format("{}: cannot be read", path));
+  if (!file) fail(std::strerror(errno));
   constexpr int bufferBytes = 64 << 10;
   auto* buffer = static_cast<unsigned char*>(av_malloc(bufferBytes));
   Owned<AVIOContext> io(buffer ? avio_alloc_context(buffer, bufferBytes, 0, file.get(), readBytes, nullptr, seekBytes) : nullptr);
@@ -230,7 +232,8 @@ std::shared_ptr<const FilmData> FilmData::read(const std::string& path, const Li
   static std::map<std::string, std::weak_ptr<const FilmData>> films;
   av_log_set_level(AV_LOG_QUIET); // a library does not print
   struct stat status = {};
-  if (stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) fail(fmt::format("{}: cannot be read", path));
+  if (stat(path.c_str(), &status) != 0) fail(std::strerror(errno));
+  if (!S_ISREG(status.st_mode)) fail("not a file");
   const std::string key = fmt::format("{}|{}|{}.{}", path, status.st_size, status.st_mtim.tv_sec, status.st_mtim.tv_nsec);
   const std::lock_guard lock(mutex);
   std::erase_if(films, [](const auto& entry) { return entry.second.expired(); });

@@ -241,9 +241,8 @@ void Builder::closeField(bool good) {
     static_cast<ScriptNode&>(*frame.node).urlLines = linesOfStrings(frame.fieldAt + field.name.size());
   if (holdsNodes(field)) {
     receivers_.pop_back();
-  } else if (good && field.range.bounded() && !enforceRange(field, frame.node->storage(field))) {
-    lexer_.warn(frame.fieldAt,
-                fmt::format("{} of {} is outside of its range {}", field.name, frame.node->type().name, describe(field.range)));
+  } else if (RangeFault fault; good && field.range.bounded() && !enforceRange(field, frame.node->storage(field), &fault)) {
+    lexer_.warn(frame.fieldAt, xvrml::describe(frame.node->type(), field, fault));
   }
 }
 

@@ -57,6 +57,7 @@ bool Parser::node(const Token* def) {
   const Token type = lexer_.peek();
   if (!type.is(TokenKind::identifier)) return fail(type, "a node");
   lexer_.next();
+  if (!lexer_.peek().is(TokenKind::braceOpen) && leaveOutX3d(type)) return false;
   if (!lexer_.peek().is(TokenKind::braceOpen)) return fail(lexer_.peek(), fmt::format("{{ after {}", describe(type)));
   if (depth_ >= nesting_) {
     lexer_.error(type.at(), fmt::format("nodes nested deeper than limit nesting={}{}; {} is left out", nesting_,

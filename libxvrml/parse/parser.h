@@ -41,6 +41,7 @@ class Parser {
   bool name(Token& out, const char* what);
   bool fail(const Token& at, std::string_view expected);
   void failAtEnd(const Token& opened);
+  bool leaveOutX3d(const Token& keyword);
   void noteLost(const Token& token);
   void skipBlock();
   void skipField();

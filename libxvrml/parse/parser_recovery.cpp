@@ -9,6 +9,41 @@
 
 namespace xvrml {
 
+namespace {
+
+// Statements that X3D has and VRML97 has not, and what a world lacks without them. Nothing that is seen depends on most of them.
+struct X3dStatement {
+  std::string_view keyword;
+  const char* lost; // null: nothing
+};
+constexpr X3dStatement x3dStatements[] = {{"PROFILE", nullptr},
+                                          {"COMPONENT", nullptr},
+                                          {"META", nullptr},
+                                          {"UNIT", "lengths and angles are taken as metres and radians"},
+                                          {"IMPORT", "the name that it brings is unknown"},
+                                          {"EXPORT", "the name stays the file's own"}};
+
+const X3dStatement* x3dStatement(const Token& token) {
+  if (!token.is(TokenKind::identifier)) return nullptr;
+  const auto found = std::find_if(std::begin(x3dStatements), std::end(x3dStatements),
+                                  [&](const X3dStatement& one) { return one.keyword == token.text; });
+  return found == std::end(x3dStatements) ? nullptr : found;
+}
+
+} // namespace
+
+// Says so if it is the keyword of a statement of X3D; skipToStatement() leaves the rest of it out.
+bool Parser::leaveOutX3d(const Token& keyword) {
+  const X3dStatement* statement = x3dStatement(keyword);
+  if (!statement) return false;
+  const std::string text = fmt::format("{} is a statement of X3D, not of VRML97: it is left out", statement->keyword);
+  if (statement->lost)
+    lexer_.error(keyword.at(), fmt::format("{}; {}", text, statement->lost));
+  else
+    lexer_.warn(keyword.at(), text);
+  return true;
+}
+
 bool Parser::fail(const Token& at, std::string_view expected) {
   if (at.is(TokenKind::end) && std::exchange(endReported_, true)) return false; // once is enough
   lexer_.error(at.at(), fmt::format("expected {}, found {}", expected, describe(at)));
@@ -113,7 +148,7 @@ void Parser::skipToStatement(TokenKind end) {
       const char* before = token.at();
       lexer_.next();
       const bool isNode = lexer_.peek().is(TokenKind::braceOpen) && isIdentifierStart(static_cast<unsigned char>(token.text[0]));
-      if (isNode) return lexer_.seek(before);
+      if (isNode || x3dStatement(token)) return lexer_.seek(before);
       continue;
     }
     lexer_.next();
