@@ -35,6 +35,7 @@ struct RenderSettings {
   int seed = 0;
   int threads = 0; // 0: as many as the process may use
   bool linear = true;
+  bool multiplyTextures = false; // xvrml::MapOptions::multiplyTextures
   xvrml::MapOptions::Headlight headlight = xvrml::MapOptions::Headlight::automatic;
   uint32_t channels = RT_RGBA;
   std::string backend = "local";

@@ -127,6 +127,7 @@ void Stage::makeMapper() {
   options.aspect = aspectOf(settings);
   mapper_.reset(); // before the next one: both would own the context's scene
   mapper_ = std::make_unique<xvrml::OpenRTMapper>(*world_, options);
+  mapper_->setMultiplyTextures(settings.multiplyTextures);
   meshSeconds_ += std::chrono::duration<double>(Clock::now() - begin).count();
 }
 

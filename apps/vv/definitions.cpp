@@ -54,7 +54,9 @@ Definition readOne(const std::string& text, const World& world) {
   const std::string_view written = std::string_view(text).substr(equals + 1);
   std::optional<Value> value = parseValue(one.field->type, written, problem, world.options.limits);
   if (!value) fail(text, fmt::format("a value of type {} was expected: {}", fieldTypeName(one.field->type), problem));
-  if (holdsValue(*one.field) && !inRange(*one.field, *value))
+  const bool rotates =
+      one.field->type == FieldType::SFRotation || one.field->type == FieldType::MFRotation; // axes are normalised
+  if (holdsValue(*one.field) && !rotates && !inRange(*one.field, *value))
     fail(text, fmt::format("the value is out of the range of {}.{}", one.node->type().name, one.field->name));
   one.value = std::move(*value);
   const bool instance = dynamic_cast<const ProtoInstance*>(one.node.get()) != nullptr;

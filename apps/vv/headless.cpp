@@ -42,7 +42,7 @@ class Headless {
     if (options_.listEngines) return writeOut(listEngines(options_.running.scriptPath, options_.json)), exitDone;
     if (options_.listNodes && options_.input.empty()) return writeOut(listNodes(nullptr, options_.json)), exitDone;
     checkOutputs(options_);
-    browser_ = startWorld(readWorld(options_.input, options_.load), options_, 0, problems_);
+    browser_ = startWorld(readWorld(options_.input, options_.load), options_, problems_);
     const xvrml::World& world = browser_->world();
     keepFilesOf(world, options_);
     if (options_.strict && Problems::any(world)) return exitProblems;
@@ -107,7 +107,7 @@ class Headless {
     settings.error = settings.timeLimit = 0;
     picture::Renderer renderer(*browser_, settings);
     const picture::RenderResult result = renderer.render(options_.view);
-    writeOut(explainWorld(options_, result.stats, renderer.explain()));
+    writeOut(explainWorld(options_, browser_->world(), result.stats, renderer.explain()));
   }
 
   Options options_;

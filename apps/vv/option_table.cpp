@@ -3,6 +3,7 @@
 #include "options.h"
 
 #include <algorithm>
+#include <chrono>
 #include <iterator>
 
 #include <fmt/format.h>
@@ -51,6 +52,17 @@ void setColour(Options& o, const std::string& value) {
   o.render.linear = value == "linear";
 }
 
+void setCompat(Options& o, const std::string& value) {
+  for (const std::string_view name : split(value, ',')) {
+    if (name == "scripts")
+      o.directOutputAlways = true;
+    else if (name == "textures")
+      o.render.multiplyTextures = true;
+    else
+      throw UsageError(fmt::format("scripts or textures was expected, not \"{}\"", name));
+  }
+}
+
 void setTransport(Options& o, const std::string& value) {
   const std::optional<int> transport = picture::transportNamed(value);
   if (!transport) throw UsageError(fmt::format("{} was expected, not \"{}\"", picture::transportNames, value));
@@ -85,6 +97,8 @@ void setLimit(Options& o, const std::string& value) {
   throw UsageError(fmt::format("there is no limit \"{}\"{}; the limits are {}", name,
                                near.empty() ? "" : fmt::format(" (did you mean {}?)", near), known));
 }
+
+double secondsSince1970() { return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count(); }
 
 void notEmpty(const std::string& value, const char* what) {
   if (value.empty()) throw UsageError(fmt::format("{} was expected", what));
@@ -126,9 +140,14 @@ const OptionInfo table[] = {
      [](Options& o, const std::string& v) { o.cameraShader = v; }},
     {"--headlight", "on|off|auto", "View", "Light at the camera; auto (default): as NavigationInfo says.", setHeadlight},
     {"--time", "SECONDS", "Time",
-     "The world at this time. Its clock starts at 0 when it is loaded and goes in steps of 1/fps up to here, as in a sequence; "
-     "no wall clock is read (default 0).",
+     "The world so long after it was loaded (default 0). Time goes in steps of 1/fps up to here, as in a sequence; no wall clock "
+     "is read.",
      [](Options& o, const std::string& v) { o.time = v == "0" ? 0 : readNumber(v, -1e-9, 1e6); }},
+    {"--epoch", "SECONDS|now", "Time",
+     "When the world is loaded, in seconds since 1970, which startTime and Scripts count in. Default 1729728000 (24 October "
+     "2024), "
+     "always the same for reproducible pictures; in the window now, the clock of this machine.",
+     [](Options& o, const std::string& v) { o.epoch = v == "now" ? secondsSince1970() : readNumber(v, -1, 1e11); }},
     {"--frames", "A-B[/STEP]", "Time",
      "A picture of each frame from A to B: frame N shows the world at N/fps seconds, and is the same picture in any sequence "
      "that holds it. The number is put where {frame:4} stands in the file name, or else before its suffix.",
@@ -162,6 +181,18 @@ const OptionInfo table[] = {
        o.definitions.push_back(v);
      },
      true},
+    {"--compat", "LIST", "Change",
+     "Habits of other browsers instead of the standard's rules, out of scripts (a Script without directOutput TRUE may change "
+     "nodes, "
+     "as in the browsers of 1997), textures (a colour texture multiplies diffuseColor, as in X3D). --explain says what they "
+     "change.",
+     setCompat},
+    {"--old-world", "", "Change",
+     "As browsers of the nineties showed it: --compat scripts,textures --colour vrml97 --shadows off.",
+     [](Options& o, const std::string&) {
+       setCompat(o, "scripts,textures");
+       o.render.linear = o.render.shadows = false;
+     }},
     {"--shader", "DEF=CLASS[:PARAM=VALUE...]", "Change",
      "Give a shape, the shapes of an appearance or all below a group another surface shader: Ball=Glass:index=1.33, "
      "Wall=Diffuse:reflectance=.8,.1,.1. * stands for all shapes without a shader of their own, LIBRARY/CLASS for a class of a "

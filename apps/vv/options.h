@@ -30,7 +30,8 @@ struct Options {
   picture::ClusterSettings cluster;
   std::optional<int> samples; // as asked for; render.samples is what follows
   picture::View view;
-  std::optional<double> time; // seconds of the world's clock
+  std::optional<double> time;  // seconds since the world was loaded
+  std::optional<double> epoch; // seconds since 1970 when it is loaded; none: xvrml::worldEpoch, in the window the real time
   std::optional<FrameRange> frames;
   double fps = 30;                      // of frames and films; also the steps of the world's clock
   int turntable = 0;                    // pictures around the world; 0: none
@@ -51,6 +52,7 @@ struct Options {
   std::string nodePath; // folders, separated by colons
   xvrml::LoadOptions load;
   xvrml::BrowserOptions running;
+  bool directOutputAlways = false; // xvrml::RunOptions
   bool quiet = false, verbose = false;
   bool help = false, version = false;
 

@@ -15,6 +15,7 @@
 #include "picture/transport.h"
 #include "printable.h"
 #include "transport_words.h"
+#include "xvrml/nodes.h"
 #include "xvrml/script_engines.h"
 
 namespace vv {
@@ -241,7 +242,62 @@ std::string SequenceStats::json(const Options& options, const std::string& comma
   return dump(json);
 }
 
-std::string explainWorld(const Options& options, const RTstats& stats, const std::vector<xvrml::ExplainedObject>& objects) {
+namespace {
+
+// What --compat changes, or would.
+struct Compat {
+  uint64_t scripts = 0;  // hold nodes without directOutput TRUE
+  uint64_t textures = 0; // appearances with a picture and a diffuseColor that is not white
+};
+
+Compat compatOf(const xvrml::World& world) {
+  Compat compat;
+  forEachNode(world, [&](const xvrml::Node& node) {
+    if (const auto* script = dynamic_cast<const xvrml::ScriptNode*>(&node)) {
+      const xvrml::FieldInfo* flag = node.type().find("directOutput");
+      const bool allowed = flag && node.get(*flag) == xvrml::Value(true);
+      const bool holds =
+          std::any_of(script->type().fields.begin(), script->type().fields.end(), [&](const xvrml::FieldInfo& field) {
+            if (field.access == xvrml::Access::eventIn) // it may be sent some
+              return field.type == xvrml::FieldType::SFNode || field.type == xvrml::FieldType::MFNode;
+            if (field.access != xvrml::Access::field) return false;
+            const xvrml::Value value = node.get(field);
+            const auto* one = std::get_if<xvrml::NodeRef>(&value);
+            const auto* many = std::get_if<xvrml::MFNode>(&value);
+            return (one && *one) || (many && !many->empty());
+          });
+      compat.scripts += !allowed && holds;
+    } else if (node.type().index == xvrml::nodes::Appearance::typeIndex) {
+      const auto* appearance = static_cast<const xvrml::nodes::Appearance*>(&node);
+      const auto* material = xvrml::nodeCast<xvrml::nodes::Material>(xvrml::renderedNode(appearance->material.get()));
+      compat.textures += appearance->texture && material && material->diffuseColor != xvrml::Color{1, 1, 1};
+    }
+  });
+  return compat;
+}
+
+std::string compatText(const Options& options, const Compat& compat) {
+  std::string text;
+  if (compat.scripts > 0)
+    text += fmt::format("compat scripts {}: {} without directOutput TRUE; {}\n", options.directOutputAlways ? "on" : "off",
+                        compat.scripts == 1 ? "1 Script holds nodes" : fmt::format("{} Scripts hold nodes", compat.scripts),
+                        options.directOutputAlways
+                            ? "what they do to them is done, as in browsers of 1997"
+                            : "what they do to them is ignored (6.40); --compat scripts does it, as browsers of 1997 did");
+  if (compat.textures > 0)
+    text += fmt::format("compat textures {}: {} appearance{} with a texture and a diffuseColor that is not white; {}\n",
+                        options.render.multiplyTextures ? "on" : "off", compat.textures, compat.textures == 1 ? "" : "s",
+                        options.render.multiplyTextures
+                            ? "a colour picture multiplies it, as in X3D"
+                            : "a colour picture replaces it (4.14.3); --compat textures multiplies, as X3D does");
+  return text;
+}
+
+} // namespace
+
+std::string explainWorld(const Options& options, const xvrml::World& world, const RTstats& stats,
+                         const std::vector<xvrml::ExplainedObject>& objects) {
+  const Compat compat = compatOf(world);
   uint64_t triangles = 0, bytes = 0, instances = 0, shapes = 0;
   for (const xvrml::ExplainedObject& o : objects) {
     triangles += o.triangles;
@@ -259,6 +315,9 @@ std::string explainWorld(const Options& options, const RTstats& stats, const std
                       {"bytes", o.bytes},
                       {"instances", o.instances}});
     return dump({{"transport", transportJson(options, stats)},
+                 {"compat",
+                  {{"scripts", {{"on", options.directOutputAlways}, {"affected", compat.scripts}}},
+                   {"textures", {{"on", options.render.multiplyTextures}, {"affected", compat.textures}}}}},
                  {"objects", std::move(list)},
                  {"totals",
                   {{"objects", objects.size()},
@@ -270,6 +329,7 @@ std::string explainWorld(const Options& options, const RTstats& stats, const std
   }
   std::string text = fmt::format("transport {}: {}\n  {}\n", picture::transportName(stats.transport), stats.transportReason,
                                  transportClaim(stats, options.render));
+  text += compatText(options, compat);
   text += fmt::format("{:>10} {:>8} {:>12} {:>9}  {}\n", "triangles", "shapes", "bytes", "instances", "object: reason");
   for (const xvrml::ExplainedObject& o : objects)
     text += fmt::format("{:>10} {:>8} {:>12} {:>9}  {}: {}\n", o.triangles, o.shapes, o.bytes, o.instances, oneLine(o.name),

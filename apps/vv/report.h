@@ -33,7 +33,8 @@ class SequenceStats {
 };
 
 // How light is followed in a world, and what it is rendered as (OpenRTMapper::explain). stats: of any picture of it.
-std::string explainWorld(const Options& options, const RTstats& stats, const std::vector<xvrml::ExplainedObject>& objects);
+std::string explainWorld(const Options& options, const xvrml::World& world, const RTstats& stats,
+                         const std::vector<xvrml::ExplainedObject>& objects);
 
 // world may be null: the node types alone.
 std::string listNodes(const xvrml::World* world, bool json);

@@ -26,12 +26,14 @@ Moment Timeline::operator[](size_t i) const {
 }
 
 bool WorldClock::advance(double time) {
+  if (there_ == time) return true; // one moment has one tick
   for (; double(next_) / fps_ < time; ++next_) {
     if (interrupted()) return false;
     tick_(double(next_) / fps_);
   }
   if (double(next_) / fps_ == time) ++next_;
   tick_(time);
+  there_ = time;
   return true;
 }
 

@@ -38,7 +38,8 @@ class WorldClock {
  private:
   std::function<void(double time)> tick_;
   double fps_;
-  long long next_ = 0; // step that comes next: at next_ / fps
+  long long next_ = 0;          // step that comes next: at next_ / fps
+  std::optional<double> there_; // the time it has come to
 };
 
 } // namespace vv

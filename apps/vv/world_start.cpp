@@ -36,8 +36,7 @@ std::unique_ptr<xvrml::World> readWorld(const std::string& path, const xvrml::Lo
   return xvrml::loadWorldFromMemory(readStandardInput(options.limits.fileBytes), "-", options);
 }
 
-std::unique_ptr<xvrml::Browser> startWorld(std::unique_ptr<xvrml::World> world, const Options& options, double start,
-                                           Problems& problems) {
+std::unique_ptr<xvrml::Browser> startWorld(std::unique_ptr<xvrml::World> world, const Options& options, Problems& problems) {
   problems.tell(*world);
   if (options.verbose)
     say(fmt::format("vv: {} nodes, parsed in {}, Inlines and prototypes in {}", world->nodeCount, duration(world->times.parse),
@@ -46,7 +45,10 @@ std::unique_ptr<xvrml::Browser> startWorld(std::unique_ptr<xvrml::World> world, 
   for (const Definition& d : definitions)
     if (!d.asEvent) d.node->set(*d.field, d.value);
   changeShaders(options.shaders, options.render.shaderPath, *world);
-  auto browser = std::make_unique<xvrml::Browser>(std::move(world), options.running, start);
+  xvrml::RunOptions run;
+  run.epoch = options.epoch.value_or(xvrml::worldEpoch);
+  run.directOutputAlways = options.directOutputAlways;
+  auto browser = std::make_unique<xvrml::Browser>(std::move(world), options.running, 0, run);
   for (const Definition& d : definitions)
     if (d.asEvent) browser->set(*d.node, d.field->name, d.value);
   problems.tell(browser->world());

@@ -13,9 +13,8 @@ namespace vv {
 // "-": standard input. Throws xvrml::LoadError or Failure. [any thread]
 std::unique_ptr<xvrml::World> readWorld(const std::string& path, const xvrml::LoadOptions& options);
 
-// The world comes alive at a time of its clock, with what -D and --shader change; its problems are told. Throws Failure and
-// UsageError. [the browser's thread]
-std::unique_ptr<xvrml::Browser> startWorld(std::unique_ptr<xvrml::World> world, const Options& options, double start,
-                                           Problems& problems);
+// Brings the world alive at time 0 after options.epoch, with what -D and --shader change, and tells its problems. Throws Failure
+// and UsageError. [the browser's thread]
+std::unique_ptr<xvrml::Browser> startWorld(std::unique_ptr<xvrml::World> world, const Options& options, Problems& problems);
 
 } // namespace vv

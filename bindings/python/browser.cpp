@@ -1,6 +1,7 @@
 // browser.cpp: the Python class Browser: a World that runs. Time, events, the pointer and the viewer are arguments; callbacks of
 // listeners run on the calling thread. Called with the GIL held; what runs the world releases it.
 #include <array>
+#include <cmath>
 
 #include <fmt/format.h>
 #include <pybind11/functional.h>
@@ -17,13 +18,18 @@ struct BrowserObject : WorldObject {};
 using BrowserPtr = std::shared_ptr<BrowserObject>;
 
 BrowserPtr makeBrowser(const py::object& source, double start, const py::object& limits, bool allowAbsolute,
-                       const py::object& scriptPath, bool trust) {
+                       const py::object& scriptPath, bool trust, double epoch, bool directOutputAlways) {
+  if (!std::isfinite(start) || !std::isfinite(epoch))
+    throw py::value_error(fmt::format("start={}, epoch={}: finite numbers of seconds expected", start, epoch));
   BrowserOptions options;
   if (!scriptPath.is_none()) options.scriptPath = toPath(scriptPath);
   options.trustScripts = trust;
+  RunOptions more;
+  more.epoch = epoch;
+  more.directOutputAlways = directOutputAlways;
   auto made = std::make_shared<BrowserObject>();
   std::unique_ptr<World> world = loadSource(source, limits, allowAbsolute);
-  made->run(std::move(world), options, start);
+  made->run(std::move(world), options, start, more);
   return made;
 }
 
@@ -163,9 +169,14 @@ void defineBrowser(py::module_& module) {
       "A world that runs: tick(time) moves its clock, assigning a node's field sends an event. It has no clock of its own.")
       .def(py::init(&makeBrowser), py::arg("source"), py::kw_only(), py::arg("start") = 0.0, py::arg("limits") = py::none(),
            py::arg("allow_absolute") = false, py::arg("script_path") = py::none(), py::arg("trust") = false,
-           "source: as of load(). The world comes alive at time `start` (seconds).")
+           py::arg("epoch") = worldEpoch, py::arg("direct_output_always") = false,
+           "source: as of load(). The world comes alive at time `start`, in seconds after `epoch`, which is in seconds since "
+           "1970: "
+           "nodes and Scripts see epoch + time. direct_output_always: Scripts without directOutput TRUE may change nodes, as in "
+           "browsers "
+           "of 1997.")
       .def_property_readonly(
-          "now", [](const BrowserPtr& self) { return self->running->now(); }, "The world's time in seconds.")
+          "now", [](const BrowserPtr& self) { return self->running->now(); }, "Time in seconds after `epoch`.")
       .def_property_readonly(
           "generation", [](const BrowserPtr& self) { return self->running->generation(); },
           "Grows with every world that takes the place of the former.")

@@ -46,7 +46,8 @@ struct WorldObject : std::enable_shared_from_this<WorldObject> {
   virtual bool loose() const { return !world && !running && !joined; }
   // Makes it run, from time 0 on.
   xvrml::Browser& live();
-  void run(std::unique_ptr<xvrml::World> made, const xvrml::BrowserOptions& options, double start);
+  void run(std::unique_ptr<xvrml::World> made, const xvrml::BrowserOptions& options, double start,
+           const xvrml::RunOptions& more = {});
   // Changes of a running world: `work` without the GIL, then the callbacks of what it made happen. Raises the first exception of
   // a callback.
   void change(const std::function<void()>& work);

@@ -158,7 +158,7 @@ void definePicture(py::module_& module) {
           "error", errorBars,
           "Half-widths of the 95 % intervals of red, green, blue: float32 of shape (height, width, 3). Only in "
           "pictures that were made with an error or this channel.")
-      .def_readonly("time", &PictureObject::time, "Seconds of the world's clock that it shows.")
+      .def_readonly("time", &PictureObject::time, "Seconds since the world was loaded: the moment that it shows.")
       .def_property_readonly("display", display, "What a screen shows: uint8 of shape (height, width, 3).")
       .def_property_readonly("shape",
                              [](const PictureObject& self) { return py::make_tuple(self.picture.height, self.picture.width, 4); })

@@ -109,8 +109,9 @@ py::object render(const WorldPtr& self, const py::object& size, std::optional<lo
                   const py::object& camera, bool fit, std::optional<double> fov, long long seed, long long threads, bool shadows,
                   const std::string& colour, const py::object& headlight, long long depth, const py::object& channels,
                   const std::string& transport, double error, double timeLimit, double clamp, const py::object& cluster,
-                  const py::object& progress) {
+                  const py::object& progress, bool multiplyTextures) {
   picture::RenderSettings settings;
+  settings.multiplyTextures = multiplyTextures;
   const auto sides = size.cast<std::vector<long long>>();
   if (sides.size() != 2) throw py::value_error("size: (width, height) expected");
   settings.width = inRange("size", sides[0], 1, 65536);
@@ -237,7 +238,7 @@ void defineRender(py::object worldClass) {
       py::arg("seed") = 0, py::arg("threads") = 0, py::arg("shadows") = true, py::arg("colour") = "linear",
       py::arg("headlight") = "auto", py::arg("depth") = 25, py::arg("channels") = py::none(), py::arg("transport") = "auto",
       py::arg("error") = 0.0, py::arg("time_limit") = 0.0, py::arg("clamp") = 0.0, py::arg("cluster") = py::none(),
-      py::arg("progress") = py::none(),
+      py::arg("progress") = py::none(), py::arg("multiply_textures") = false,
       "Renders the world as it is now; of one that runs, the scene is kept from one picture to the next. Options as those of "
       "the program vv. spp: samples a pixel, 16; with an error at most so many, 4096; with a time limit 65536. channels: "
       "rgba and z, and with an error also error and trust. progress: True for a bar, or a function that is called with the "

@@ -232,9 +232,13 @@ void defineWorld(py::module_& module) {
       .def_property_readonly("names", names, "DEF names of the file.")
       .def_property_readonly("roots", roots, "Nodes of the file's top level.")
       .def_property_readonly("viewpoints", viewpoints, "Viewpoints in the order of the file.")
-      .def_property("time", now, setTime,
-                    "Seconds of the world's own clock. Assigning lets time pass: sensors send, routes carry, Scripts run, until "
-                    "nothing is left to do. It does not go back.")
+      .def_property(
+          "time", now, setTime,
+          "Seconds since the world was loaded. Assigning lets time pass: sensors send, routes carry, Scripts run, until "
+          "nothing is left to do. It does not go back.")
+      .def_property_readonly(
+          "epoch", [](const WorldPtr& self) { return self->browser() ? self->browser()->epoch() : worldEpoch; },
+          "Time 0 in the world's own time, seconds since 1970: assign epoch + time to a startTime to start something now.")
       .def("__getitem__", [](const WorldPtr& self, const py::str& name) { return getNode(self, fromText(name)); })
       .def("__contains__",
            [](const WorldPtr& self, const py::object& name) {

@@ -57,10 +57,10 @@ Browser& WorldObject::live() {
   return *running;
 }
 
-void WorldObject::run(std::unique_ptr<World> made, const BrowserOptions& options, double start) {
+void WorldObject::run(std::unique_ptr<World> made, const BrowserOptions& options, double start, const RunOptions& more) {
   const MakingBrowser making(locks); // its Scripts begin at once
   locks->callbacks = this;
-  change([&] { running = std::make_unique<Browser>(std::move(made), withOwnEngines(options), start); });
+  change([&] { running = std::make_unique<Browser>(std::move(made), withOwnEngines(options), start, more); });
   scriptsLock(running.get(), locks);
 }
 

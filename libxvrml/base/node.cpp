@@ -1,11 +1,13 @@
 // node.cpp: generic access to nodes through their tables. Everybody who does not know a node's struct reads and writes its
 // fields here: parser, writer, router, prototypes, bindings. A node is used by one thread at a time.
 #include "xvrml/node.h"
-#include "xvrml/viewed.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
+
+#include "base/rotation.h"
+#include "xvrml/viewed.h"
 
 namespace xvrml {
 namespace {
@@ -121,6 +123,7 @@ bool Node::set(const FieldInfo& field, Value value) {
   if (!hasStorage(field) || value.index() != size_t(field.type)) return false;
   if (isMultiple(field.type)) leaveToViews(*this, field);
   storeByType(size_t(field.type), storage(field), std::move(value), allTypes);
+  if (hasNormalizedAxes(field)) normalizeAxes(field.type, storage(field));
   if (!live && type_->expand) // in a running world the event engine renews it
     if (NodeRef* standsFor = expansion()) *standsFor = {};
   return true;

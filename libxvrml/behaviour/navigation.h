@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <set>
 
 #include "behaviour/pick.h"
@@ -61,7 +62,7 @@ class Navigator {
   Navigation chosen_ = Navigation::none;
   bool hasChosen_ = false;
   std::set<Key> held_;
-  double lastTick_ = 0;
+  double lastTick_ = std::numeric_limits<double>::quiet_NaN();
 };
 
 } // namespace xvrml

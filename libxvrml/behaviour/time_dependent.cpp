@@ -32,7 +32,11 @@ bool TimeDependent::wantsTicks(const TimeFields& fields, double now) const {
   return fields.enabled && !finished_ && (fields.startTime > now || end(fields) > now);
 }
 
-TimeStep TimeDependent::tick(const TimeFields& fields, double now, bool mayTurn) { return step(fields, now, mayTurn); }
+// At most one event of an eventOut has a timestamp (4.10.3): a second tick of the same time tells what runs nothing new.
+TimeStep TimeDependent::tick(const TimeFields& fields, double now, bool mayTurn) {
+  if (std::exchange(ticked_, now) == now && active_ && fields.enabled && now < end(fields)) return {};
+  return step(fields, now, mayTurn);
+}
 
 TimeStep TimeDependent::fieldChanged(const TimeFields& fields, double now, bool mayTurn, bool started) {
   if (started || fields.loop) finished_ = false;
@@ -57,6 +61,8 @@ void TimeDependent::place(const TimeFields& fields, TimeStep& step) const {
   const double resolution = std::numeric_limits<double>::epsilon() * std::max(std::abs(step.time), std::abs(fields.startTime));
   double rest = std::fmod(elapsed, fields.cycle);
   if (elapsed >= fields.cycle && rest <= resolution) rest = 0;
+  // A cycle such as .1 is no double: many of them end a little after the sum that is meant.
+  if (fields.cycle > 8 * resolution && fields.cycle - rest <= resolution) rest = 0;
   step.cycleStart = step.time - rest;
   step.fraction = rest == 0 ? 1 : rest / fields.cycle;
 }
@@ -75,6 +81,8 @@ TimeStep TimeDependent::step(const TimeFields& fields, double now, bool mayTurn)
     step.time = std::min(now, end(fields));
     step.begins = step.newCycle = true;
     place(fields, step);
+    if (step.cycleStart == step.time && step.time < end(fields))
+      step.fraction = 0; // joined where one cycle ends: the next begins
     if (!fields.loop) {
       step.cycleStart = fields.startTime;
       if (step.time >= fields.startTime + fields.cycle) step.fraction = 1;

@@ -2,6 +2,8 @@
 // one as (part of) its NodeState and sends what its steps say. [the browser's thread]
 #pragma once
 
+#include <limits>
+
 #include "xvrml/behaviour.h"
 
 namespace xvrml {
@@ -49,6 +51,7 @@ class TimeDependent {
   bool waiting_ = false;  // startTime, or the turn of isActive, was still to come at the last step
   bool finished_ = false; // a run without loop is over: it takes a new startTime, or loop, to run again
   double last_ = 0;       // time of the last step
+  double ticked_ = std::numeric_limits<double>::quiet_NaN(); // time of the last tick
   double cycleStart_ = 0;
 };
 

@@ -1,5 +1,6 @@
 // browser.cpp: see xvrml/browser.h.
 #include <algorithm>
+#include <cstring>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -11,8 +12,16 @@
 namespace xvrml {
 
 Browser::Browser(std::unique_ptr<World> world, BrowserOptions options, double start)
+    : Browser(std::move(world), std::move(options), start, RunOptions()) {}
+
+Browser::Browser(std::unique_ptr<World> world, BrowserOptions options, double start, const RunOptions& run)
     : impl_(std::make_unique<Impl>(*this, std::move(world), options)) {
-  impl_->engine->beginCascade(start);
+  RunOptions known; // what a program built against an earlier version does not know has its default
+  std::memcpy(&known, &run, std::min(run.size, sizeof known));
+  impl_->epoch = known.epoch;
+  if (impl_->scripts) impl_->scripts->directOutputAlways = known.directOutputAlways;
+  impl_->time = start;
+  impl_->engine->beginCascade(impl_->epoch + start);
   impl_->engine->adoptScope(impl_->world->scope, true);
   impl_->engine->settle();
   impl_->workOff();
@@ -22,9 +31,12 @@ Browser::~Browser() = default;
 
 World& Browser::world() { return *impl_->world; }
 Events& Browser::events() { return *impl_->engine; }
-double Browser::now() const { return impl_->engine->now(); }
+double Browser::now() const { return impl_->time; }
+double Browser::epoch() const { return impl_->epoch; }
 void Browser::tick(double time) {
-  impl_->engine->tick(time);
+  if (impl_->engine->settling()) return;     // a listener or a Script must not move time
+  impl_->time = std::max(time, impl_->time); // the caller's number, which epoch + time rounds
+  impl_->engine->tick(impl_->epoch + impl_->time);
   impl_->workOff();
 }
 FieldChanges Browser::takeChanges() { return impl_->engine->takeChanges(); }

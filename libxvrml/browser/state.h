@@ -24,6 +24,7 @@ struct Browser::Impl {
   std::unique_ptr<World> world;
   std::unique_ptr<Engine> engine;      // ends before the world
   std::unique_ptr<ScriptHost> scripts; // ends before the engine; null: Scripts do nothing
+  double epoch = 0, time = 0;          // the engine's time is their sum, rounded
   uint64_t generation = 1;
   std::function<void(Node& anchor)> onAnchor;
   std::deque<std::function<void()>> jobs;

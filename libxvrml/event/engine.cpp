@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "base/rotation.h"
 #include "behaviour/interaction.h"
 #include "parse/field_access.h"
 
@@ -116,10 +117,10 @@ void Engine::leave(Event& event) {
   const size_t count = part(node).links.size();
   for (size_t i = 0; i < count; ++i) {
     const Link link = part(node).links[i];
-    if (link.out != event.field || link.kind == Link::Kind::intoBody || !link.leads()) continue;
+    if (link.out != event.field || !link.carriesOut() || !link.leads()) continue;
     const NodeRef keep(link.instance);
-    if (link.instance)
-      relay(*link.instance, *link.in, event.value);
+    if (link.instance) // that a field has changed the instance knows already: see mirror()
+      relay(*link.instance, *link.in, event.value, event.field->access == Access::eventOut);
     else
       arrive(*link.to, *link.in, event.value);
   }
@@ -146,7 +147,7 @@ void Engine::arriveAtStatic(Node& node, const FieldInfo& in, const Value& value)
   if (in.access == Access::exposedField) {
     if (behaviour && behaviour->accept && !behaviour->accept(*this, node, in, value)) return;
     if (!store(node, in, value)) return;
-    send(node, in, holdsNodes(in) ? node.get(in) : value);
+    send(node, in, holdsNodes(in) || hasNormalizedAxes(in) ? node.get(in) : value);
   } else if (in.name.starts_with("set_")) {
     if (const FieldInfo* field = node.type().find(std::string_view(in.name).substr(4)); field && field->type == in.type)
       store(node, *field, value);
@@ -154,20 +155,21 @@ void Engine::arriveAtStatic(Node& node, const FieldInfo& in, const Value& value)
   if (behaviour && behaviour->receive) behaviour->receive(*this, node, in, value);
 }
 
-// Into the body; an exposedField that nothing in the body IS keeps its value itself.
+// Into the body; an exposedField that no exposedField in the body IS keeps its value itself.
 void Engine::arriveAtInstance(ProtoInstance& instance, const FieldInfo& in, const Value& value) {
-  bool inside = false;
+  bool kept = false;
   for (const Link& link : part(instance).links) {
     if (link.kind != Link::Kind::intoBody || link.out != &in || !link.to) continue;
-    inside = true;
+    for (const Link& back : part(*link.to).links) // it will send the value back
+      kept |= back.instance == &instance && back.in == &in && back.out == link.in && link.in->access == Access::exposedField;
     queue_.push_back({link.to, link.in, value, true});
   }
-  if (!inside && in.access == Access::exposedField) relay(instance, in, value);
+  if (!kept && in.access == Access::exposedField) relay(instance, in, value, true);
 }
 
 // Out of the body: the instance's eventOut or exposedField sends what the node in it has sent.
-void Engine::relay(ProtoInstance& instance, const FieldInfo& out, const Value& value) {
-  if (out.access == Access::exposedField) store(instance, out, value);
+void Engine::relay(ProtoInstance& instance, const FieldInfo& out, const Value& value, bool keeps) {
+  if (keeps && out.access == Access::exposedField) store(instance, out, value);
   send(instance, out, value);
 }
 

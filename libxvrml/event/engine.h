@@ -106,6 +106,7 @@ class Engine : public Events {
   void enterScope(const Scope& scope, Newcomers& newcomers);
   void complete(Newcomers& newcomers);
   void connectBody(ProtoInstance& instance);
+  void mirror(Node& node, const FieldInfo& stored);
   void disconnectBody(ProtoInstance& instance);
   void bury(std::unique_ptr<Participant> part) noexcept;
   void linkChild(Node& parent, Node& child);
@@ -117,7 +118,7 @@ class Engine : public Events {
   void arrive(Node& node, const FieldInfo& in, const Value& value);
   void arriveAtInstance(ProtoInstance& instance, const FieldInfo& in, const Value& value);
   void arriveAtStatic(Node& node, const FieldInfo& in, const Value& value);
-  void relay(ProtoInstance& instance, const FieldInfo& out, const Value& value);
+  void relay(ProtoInstance& instance, const FieldInfo& out, const Value& value, bool keeps);
   void sweep();
   void renewExpansions();
   void renewExpansion(Node& node);

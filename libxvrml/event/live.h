@@ -18,13 +18,15 @@ class Engine;
 
 // From an eventOut to an eventIn of another node, or across a prototype's border (clause 4.8.2: IS).
 struct Link {
-  enum class Kind : uint8_t { route, intoBody, outOfBody };
+  // keepsField: no events: a field of the instance has the value of the exposedField that IS it, for whoever writes the world.
+  enum class Kind : uint8_t { route, intoBody, outOfBody, keepsField };
   const FieldInfo* out;
   NodeRef to; // null: deleted, swept after the cascade
   const FieldInfo* in;
   Kind kind = Kind::route;
-  ProtoInstance* instance = nullptr; // outOfBody: instead of `to`: it holds its body, which must not hold it
+  ProtoInstance* instance = nullptr; // outOfBody, keepsField: instead of `to`: it holds its body, which must not hold it
 
+  bool carriesOut() const { return kind == Kind::route || kind == Kind::outOfBody; }
   bool leads() const { return to || instance; }
 };
 

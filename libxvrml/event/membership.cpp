@@ -299,6 +299,7 @@ bool Events::store(Node& node, const FieldInfo& field, Value value) {
     node.set(field, std::move(value));
   }
   if (auto* instance = dynamic_cast<ProtoInstance*>(&node)) instance->give(field);
+  engine.mirror(node, field);
   changed(node, field);
   return true;
 }

@@ -96,11 +96,43 @@ void Engine::sweep() {
     if (node->live && liveOf(*node)->part) std::erase_if(liveOf(*node)->part->links, [](const Link& l) { return !l.leads(); });
 }
 
+// Whether nothing else in the body IS the same field: the field could not have the values of both.
+static bool isAlone(const ProtoInstance& instance, const IsConnection& connection) {
+  return std::none_of(instance.is.begin(), instance.is.end(), [&](const IsConnection& other) {
+    return &other != &connection && other.interfaceName == connection.interfaceName;
+  });
+}
+
+// A value of a node in a body is that of the instance's field or exposedField that it IS, and of those around it. Without events:
+// of these an eventOut sends one at a time (4.10.3), but a field may be stored more often.
+void Engine::mirror(Node& first, const FieldInfo& stored) {
+  std::vector<std::pair<Node*, const FieldInfo*>> open{{&first, &stored}};
+  while (!open.empty()) {
+    const auto [node, field] = open.back();
+    open.pop_back();
+    if (!node->live || !liveOf(*node)->part) continue;
+    for (const Link& link : liveOf(*node)->part->links) {
+      if (!link.instance || link.out != field || !holdsValue(*link.in)) continue;
+      Value value = node->get(*field);
+      if (link.instance->get(*link.in) == value) continue;
+      link.instance->set(*link.in, std::move(value));
+      link.instance->give(*link.in);
+      open.emplace_back(link.instance, link.in);
+    }
+  }
+}
+
 // Clause 4.8.2: events cross the border where an interface's event IS one of a node in the body.
 void Engine::connectBody(ProtoInstance& instance) {
   for (const IsConnection& c : instance.is) {
     const FieldInfo* interface = instance.type().find(c.interfaceName);
-    if (!interface || interface->access == Access::field || !c.node->live) continue;
+    if (!interface || !c.node->live) continue;
+    if (interface->access == Access::field) {
+      const FieldInfo* of = c.node->type().find(c.field);
+      if (of && of->type == interface->type && of->access == Access::exposedField && isAlone(instance, c))
+        addLink(*c.node, {of, {}, interface, Link::Kind::keepsField, &instance});
+      continue;
+    }
     if (interface->access != Access::eventOut)
       if (const FieldInfo* in = c.node->type().findEventIn(c.field); in && in->type == interface->type)
         addLink(instance, {interface, c.node, in, Link::Kind::intoBody});

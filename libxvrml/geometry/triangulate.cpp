@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "geometry/face_set.h"
+#include "geometry/flat_triangles.h"
 #include "geometry/tessellator.h"
 
 namespace xvrml {
@@ -33,9 +34,12 @@ class Triangulation {
  private:
   V3d point(uint32_t corner) const { return toV3d(set_.points[set_.corners[corner]]); }
 
+  bool isKept(uint32_t a, uint32_t b, uint32_t c) const {
+    return hasArea(set_.points[set_.corners[a]], set_.points[set_.corners[b]], set_.points[set_.corners[c]]);
+  }
+
   void add(uint32_t a, uint32_t b, uint32_t c) {
-    if (hasArea(set_.points[set_.corners[a]], set_.points[set_.corners[b]], set_.points[set_.corners[c]]))
-      triangles_.insert(triangles_.end(), {a, b, c});
+    if (isKept(a, b, c)) triangles_.insert(triangles_.end(), {a, b, c});
   }
 
   // Sine of the turn at a corner about the face's normal, negative where it is concave.
@@ -120,8 +124,12 @@ class Triangulation {
     for (const auto& crossing : tessellator_->crossings())
       addCorner(face, first, count, added, axes.outOf(crossing.point) + origin, crossing);
     auto corner = [&](uint32_t vertex) { return vertex < count ? first + vertex : added + (vertex - count); };
-    const auto& t = tessellator_->triangles();
-    for (size_t i = 0; i + 2 < t.size(); i += 3) add(corner(t[i]), corner(t[i + 1]), corner(t[i + 2]));
+    std::vector<uint32_t> t;
+    t.reserve(tessellator_->triangles().size());
+    for (const uint32_t vertex : tessellator_->triangles()) t.push_back(corner(vertex));
+    removeFlatTriangles(
+        t, [&](uint32_t a) { return point(a); }, [&](uint32_t a, uint32_t b, uint32_t c) { return isKept(a, b, c); });
+    triangles_.insert(triangles_.end(), t.begin(), t.end());
   }
 
   // Large polygons are looked at first: the tessellator takes time by the square of some of them. Turns the plane if that helps.

@@ -138,6 +138,7 @@ void Surfaces::makeSurface(Entry& entry) {
   const bool fallback = parts.shader != nullptr; // a shader that could not be had: shaded as a default Material
   setMaterial(shader, parts.material ? parts.material : fallback ? &standard : nullptr, linear_);
   if (texture != 0 || !shader.fresh()) shader.texture("texture", texture);
+  if (multiplyTextures && shader.fresh()) shader.integer("multiplyTexture", 1);
   if (const nodes::TextureTransform* t = parts.textureTransform; t && texture != 0)
     shader.matrix("textureTransform", textureMatrix(t->center, t->rotation, t->scale, t->translation));
   else if (!shader.fresh())

@@ -40,6 +40,7 @@ class Surfaces {
   void clear(); // deletes everything
   size_t count() const { return surfaces_.size() + lines_.size(); }
   uint64_t parametersSet() const { return sets_; }
+  bool multiplyTextures = false; // OpenRTMapper::setMultiplyTextures
 
  private:
   struct Entry {

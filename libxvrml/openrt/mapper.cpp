@@ -97,6 +97,7 @@ CameraSettings OpenRTMapper::fitCamera(double fovy) const {
   return cameraAround(impl_->bounds(), first.matrix, fovy, impl_->options.aspect);
 }
 
+void OpenRTMapper::setMultiplyTextures(bool multiply) { impl_->surfaces.multiplyTextures = multiply; }
 void OpenRTMapper::setHeadlight(MapOptions::Headlight headlight) { impl_->options.headlight = headlight; }
 
 Bounds OpenRTMapper::bounds() const { return impl_->bounds(); }

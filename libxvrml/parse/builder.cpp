@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "base/rotation.h"
 #include "parse/field_access.h"
 #include "parse/inline_node.h"
 #include "parse/nearest.h"
@@ -128,7 +129,15 @@ void Builder::closeNode(bool good) {
   }
   if (!good) return rollBack(frame.mark);
   if (frame.expanded > 1) expanded_.emplace(frame.node.get(), frame.expanded);
-  if (!deliver(frame.type, frame.node, frame.expanded)) rollBack(frame.mark);
+  // A node that is good, but in a wrong place, keeps its names: a later USE may have a right one. In a prototype's body only if
+  // nothing of it is connected to the interface.
+  const Mark now = mark();
+  const bool keeps = now.names > frame.mark.names && now.connections == frame.mark.connections;
+  if (!accepts(receivers_.back(), frame.type, *frame.node, keeps ? "; what DEF names in it can be USEd" : "")) {
+    if (!keeps) rollBack(frame.mark);
+  } else if (!place(frame.type, frame.node, frame.expanded)) {
+    rollBack(frame.mark);
+  }
 }
 
 uint64_t Builder::expandedCount(const Node* node) const {
@@ -136,7 +145,7 @@ uint64_t Builder::expandedCount(const Node* node) const {
   return found == expanded_.end() ? 1 : found->second;
 }
 
-bool Builder::accepts(const Receiver& receiver, const Token& at, const Node& node) {
+bool Builder::accepts(const Receiver& receiver, const Token& at, const Node& node, std::string_view remedy) {
   const NodeType* type = effectiveType(node);
   if (!type) return true; // an EXTERNPROTO: known when it is loaded
   const bool root = receiver.kind == Receiver::Kind::roots;
@@ -145,19 +154,23 @@ bool Builder::accepts(const Receiver& receiver, const Token& at, const Node& nod
   if (wanted.empty() || typeAccepted(wanted, *type)) return true;
   const std::string stands = type == &node.type() ? "" : fmt::format(" ({})", type->name);
   if (root) {
-    lexer_.error(at.at(),
-                 fmt::format("{}{} cannot stand at the root of a file: expected a child node (4.6.5)", describe(at), stands));
+    lexer_.error(at.at(), fmt::format("{}{} cannot stand at the root of a file: expected a child node (4.6.5){}", describe(at),
+                                      stands, remedy));
   } else {
-    lexer_.error(at.at(), fmt::format("{}{} cannot be in field {} of {}: expected {}", describe(at), stands, receiver.field->name,
-                                      receiver.holder->type().name, wanted));
+    lexer_.error(at.at(), fmt::format("{}{} cannot be in field {} of {}: expected {}{}", describe(at), stands,
+                                      receiver.field->name, receiver.holder->type().name, wanted, remedy));
   }
   return false;
 }
 
 // False, after a message, if the node cannot stand where it is written.
 bool Builder::deliver(const Token& at, const NodeRef& node, uint64_t expanded) {
+  return accepts(receivers_.back(), at, *node, "") && place(at, node, expanded);
+}
+
+// False, after a message, if there are too many nodes.
+bool Builder::place(const Token& at, const NodeRef& node, uint64_t expanded) {
   Receiver& receiver = receivers_.back();
-  if (!accepts(receiver, at, *node)) return false;
   const bool root = receiver.kind == Receiver::Kind::roots;
   uint64_t& sum = root || nodes_.empty() || receiver.holder == nullptr ? scope().expanded : nodes_.back().expanded;
   const uint64_t limit = state_.options.limits.expandedNodes;
@@ -241,6 +254,13 @@ void Builder::closeField(bool good) {
     static_cast<ScriptNode&>(*frame.node).urlLines = linesOfStrings(frame.fieldAt + field.name.size());
   if (holdsNodes(field)) {
     receivers_.pop_back();
+  } else if (good && hasNormalizedAxes(field)) {
+    Rotation first;
+    const size_t outside = normalizeAxes(field.type, frame.node->storage(field), &first);
+    if (outside > 0)
+      lexer_.warn(frame.fieldAt, fmt::format("{}.{}: the axis {} {} {} has length {:.3g}, not 1; {} normalised",
+                                             frame.node->type().name, field.name, first.x, first.y, first.z, axisLength(first),
+                                             outside == 1 ? "it is" : fmt::format("it and {} more are", outside - 1)));
   } else if (RangeFault fault; good && field.range.bounded() && !enforceRange(field, frame.node->storage(field), &fault)) {
     lexer_.warn(frame.fieldAt, xvrml::describe(frame.node->type(), field, fault));
   }

@@ -87,7 +87,8 @@ class Builder : public ParseSink {
   bool makeNode(const Token& type, NodeFrame& frame);
   void checkChild(const NodeFrame& frame);
   bool deliver(const Token& at, const NodeRef& node, uint64_t expanded);
-  bool accepts(const Receiver& receiver, const Token& at, const Node& node);
+  bool place(const Token& at, const NodeRef& node, uint64_t expanded);
+  bool accepts(const Receiver& receiver, const Token& at, const Node& node, std::string_view remedy);
   std::vector<uint32_t> linesOfStrings(const char* from);
   uint64_t expandedCount(const Node* node) const;
   ProtoPtr findPrototype(std::string_view name) const;

@@ -12,6 +12,13 @@ namespace {
 // Table 4.4: which declarations of a prototype's interface a node's field or event may be connected to.
 bool mayConnect(Access ofNode, Access ofInterface) { return ofNode == Access::exposedField || ofNode == ofInterface; }
 
+// What a connection that Table 4.4 forbids can still mean: one half of an exposedField. Empty: nothing.
+std::string_view whatIsMeant(Access ofNode, Access ofInterface) {
+  if (ofInterface != Access::exposedField) return {};
+  if (ofNode == Access::field) return "it takes the value that the instance is given, and no events";
+  return ofNode == Access::eventIn ? "it takes the events" : "it sends the events";
+}
+
 std::vector<std::string> namesOf(const Scope& scope) {
   std::vector<std::string> names;
   for (const auto& [name, node] : scope.names) {
@@ -66,8 +73,9 @@ NodeRef Builder::findName(const Token& name) {
   return {};
 }
 
-// USE nodeNameId. A node may be used within itself by a Script or a prototype instance only (4.6.2: a node is not its own
-// descendant); these do not draw what their fields hold.
+// USE nodeNameId. Only the transformation hierarchy must have no cycle (4.4.4), and what a Script or a prototype instance holds
+// in its fields is no part of it: a node may be used within itself if there is one on the way. Whether a prototype puts the field
+// into its body is found out when it is expanded.
 void Builder::useNode(const Token& name) {
   const NodeRef node = findName(name);
   if (!node) return;
@@ -75,14 +83,19 @@ void Builder::useNode(const Token& name) {
     deliver(name, node, expandedCount(node.get()));
     return;
   }
-  Node* holder = receivers_.back().holder;
-  if (!holder || !dynamic_cast<DynamicNode*>(holder)) {
+  Node* between = nullptr;
+  for (auto frame = nodes_.rbegin(); frame != nodes_.rend() && !between; ++frame) {
+    if (dynamic_cast<DynamicNode*>(frame->node.get())) between = frame->node.get();
+    if (frame->node == node) break;
+  }
+  if (!between || !receivers_.back().holder) {
     lexer_.error(name.at(), fmt::format("{} is USEd inside itself: a node cannot be its own descendant (4.6.2)", describe(name)));
     return;
   }
+  if (!deliver(name, node, 0)) return;
   state_.entered.insert(node.get());
-  state_.world.cyclic.emplace_back(holder);
-  deliver(name, node, 0);
+  state_.cycleHolders.insert(between);
+  state_.world.cyclic.emplace_back(between);
 }
 
 void Builder::route(const Token& keyword, const RouteNames& names) {
@@ -145,10 +158,11 @@ void Builder::connect(const Token& name, const Token& interfaceName) {
     return;
   }
   if (!mayConnect(access, declared->access)) {
+    const std::string_view meant = whatIsMeant(access, declared->access);
     lexer_.error(interfaceName.at(),
-                 fmt::format("{} {} of {} cannot be {} {} of the interface (4.8.2)", accessName(access), describe(name),
-                             type.name, accessName(declared->access), describe(interfaceName)));
-    return;
+                 fmt::format("{} {} of {} cannot be {} {} of the interface (4.8.2){}{}", accessName(access), describe(name),
+                             type.name, accessName(declared->access), describe(interfaceName), meant.empty() ? "" : ": ", meant));
+    if (meant.empty()) return;
   }
   proto->proto->is.push_back({frame.node, std::string(name.text), std::string(interfaceName.text)});
 }

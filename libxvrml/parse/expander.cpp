@@ -2,6 +2,7 @@
 #include "parse/expander.h"
 
 #include <filesystem>
+#include <unordered_set>
 
 #include <fmt/format.h>
 
@@ -209,10 +210,7 @@ std::vector<NodeRef> Expander::copyAll(const std::vector<Node*>& nodes, const st
     if (dynamic_cast<ProtoInstance*>(copies[i].get())) todo_.push_back(copies[i]);
     if (dynamic_cast<InlineNode*>(copies[i].get())) inlines.push_back(copies[i]);
     // A copy of a node that may hold itself may do so too.
-    if (copies[i]->type().index >= 0) continue;
-    forEachChild(*copies[i], [&](NodeRef& child, const FieldInfo&) {
-      if (state_.entered.contains(child.get()) || child.get() == copies[i].get()) state_.world.cyclic.push_back(copies[i]);
-    });
+    if (state_.cycleHolders.contains(nodes[i])) holdsItself(copies[i]);
   }
   return copies;
 }
@@ -337,17 +335,45 @@ void Expander::applyConnections(ProtoInstance& instance, const ProtoDeclaration&
   }
 }
 
+void Expander::holdsItself(const NodeRef& node) {
+  if (state_.cycleHolders.insert(node.get()).second) state_.world.cyclic.push_back(node);
+}
+
+namespace {
+
+// Whether `target` hangs below `top`, fields of Scripts and prototype instances left out. Asked only in files with nodes that are
+// USEd within themselves.
+bool reaches(Node& top, const Node& target) {
+  std::unordered_set<const Node*> seen{&top};
+  std::vector<Node*> open{&top};
+  const auto add = [&](const NodeRef& node) {
+    if (node && seen.insert(node.get()).second) open.push_back(node.get());
+  };
+  while (!open.empty()) {
+    Node& node = *open.back();
+    open.pop_back();
+    if (&node == &target) return true;
+    if (node.type().index >= 0) forEachChild(node, [&](NodeRef& child, const FieldInfo&) { add(child); });
+    const auto* instance = dynamic_cast<const ProtoInstance*>(&node);
+    if (!instance) continue;
+    for (const NodeRef& root : instance->body.roots) add(root);
+    for (const IsConnection& connection : instance->is) add(connection.node);
+    for (const Route& route : instance->body.routes) add(route.from), add(route.to);
+  }
+  return false;
+}
+
+} // namespace
+
 void Expander::connect(const ProtoInstance& instance, const FieldInfo& from, const Value& value, const IsConnection& connection) {
   Node& node = *connection.node;
   const FieldInfo& to = *node.type().find(connection.field);
   if (auto* inner = dynamic_cast<ProtoInstance*>(&node)) inner->give(to);
+  if (!state_.entered.empty() && node.type().index < 0 && holdsNodes(to))
+    holdsItself(connection.node); // it may: more is not known
   const auto acceptable = [&](const NodeRef& child) {
     if (!child) return true;
-    if (state_.entered.contains(child.get())) {
-      if (node.type().index < 0) {
-        state_.world.cyclic.push_back(connection.node);
-        return true;
-      }
+    if (!state_.entered.empty() && node.type().index >= 0 && reaches(*child, node)) {
       state_.diagnostics.error(instance.source,
                                fmt::format("the value of {} would make a node its own descendant (4.6.2)", from.name));
       return false;

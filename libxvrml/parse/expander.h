@@ -38,6 +38,7 @@ class Expander {
   void markShared(Plan& plan, const ProtoDeclaration& declaration) const;
   void expandOne(ProtoInstance& instance, std::vector<NodeRef>& inlines);
   void completeFields(ProtoInstance& instance, const ProtoDeclaration& definition, std::vector<NodeRef>& inlines);
+  void holdsItself(const NodeRef& node); // a Script or instance whose fields may hold what it is part of
   NodeRef copyNode(Node& original);
   void copyFields(const Node& original, Node& copy, const std::unordered_map<const Node*, uint32_t>& index,
                   const std::vector<NodeRef>& copies);

@@ -12,11 +12,12 @@ struct LoadState {
   World& world;
   const LoadOptions& options;
   Diagnostics& diagnostics;
-  // Nodes USEd within their own DEF, which only Scripts and prototype instances may (4.6.2); a connection must not let them
-  // become their own descendants.
+  // Nodes USEd within their own DEF. A connection of a prototype must not make such a node its own descendant (4.4.4).
   std::unordered_set<const Node*> entered;
   bool anyRoots = false;            // of createVrmlFromString: what it makes goes into any field, geometries into `geometry`
   uint64_t routes = 0, scripts = 0; // made so far: a file without either can be shared by its Inlines
+  // Scripts and prototype instances whose fields may hold what they are part of: those of World::cyclic.
+  std::unordered_set<const Node*> cycleHolders;
 };
 
 // A file's graph, and those of its nodes that are not complete when it has been parsed. Prototype bodies are not among them:

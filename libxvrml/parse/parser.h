@@ -45,6 +45,7 @@ class Parser {
   void noteLost(const Token& token);
   void skipBlock();
   void skipField();
+  void skipDeclaration();
   void skipProto();
   void skipToStatement(TokenKind end);
 

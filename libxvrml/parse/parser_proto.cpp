@@ -108,16 +108,22 @@ bool Parser::scriptBodyElement() {
   const Token keyword = lexer_.next();
   Access access;
   accessFromName(keyword.text, access);
-  if (access == Access::exposedField) {
-    lexer_.error(keyword.at(), "a Script declares field, eventIn and eventOut, not exposedField (6.40)");
-    return false;
-  }
+  const bool exposed = access == Access::exposedField;
+  if (exposed) access = Access::field; // the value is what the program needs
   FieldType type;
   const Token typeName = lexer_.peek();
-  if (!typeName.is(TokenKind::identifier) || !fieldTypeFromName(typeName.text, type)) return fail(typeName, "a field type");
+  if (!typeName.is(TokenKind::identifier) || !fieldTypeFromName(typeName.text, type)) {
+    fail(typeName, "a field type");
+    skipDeclaration();
+    return true;
+  }
   lexer_.next();
   Token id;
   if (!name(id, "a name for the interface")) return false;
+  if (exposed)
+    lexer_.error(keyword.at(),
+                 fmt::format("a Script declares field, eventIn and eventOut, not exposedField (6.40): {} is read as a field",
+                             describe(id)));
   const bool isConnection = lexer_.peek().is("IS");
   const bool hasValue = access == Access::field && !isConnection;
   const FieldTarget target = sink_.openDeclaration(access, type, id, hasValue);

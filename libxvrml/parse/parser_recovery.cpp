@@ -111,6 +111,23 @@ void Parser::skipField() {
   }
 }
 
+// A declaration in a Script whose type nobody knows: up to the next declaration or field of the Script, or its end. The rest of
+// the Script still runs.
+void Parser::skipDeclaration() {
+  uint64_t open = 0;
+  for (;;) {
+    const Token token = lexer_.peek();
+    if (token.is(TokenKind::end)) return;
+    if (open == 0 && token.is(TokenKind::braceClose)) return;
+    const bool begins = token.is("field") || token.is("eventIn") || token.is("eventOut") || token.is("exposedField");
+    if (open == 0 && token.is(TokenKind::identifier) && (begins || sink_.hasField(token.text))) return;
+    lexer_.next();
+    if (token.is(TokenKind::braceOpen) || token.is(TokenKind::bracketOpen)) ++open;
+    if ((token.is(TokenKind::braceClose) || token.is(TokenKind::bracketClose)) && open > 0) --open;
+    noteLost(token);
+  }
+}
+
 // After an error in a prototype's interface: behind its body, which opens with the first brace that follows a bracket outside of
 // any node of a default value.
 void Parser::skipProto() {

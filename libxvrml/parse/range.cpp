@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "base/rotation.h"
 #include "parse/builder.h"
 #include "parse/field_access.h"
 
@@ -56,7 +57,7 @@ template <class T> void clampToClosed(T& number, const FieldRange& range) {
 
 template <class T> bool isAlso(T number, const FieldRange& range) { return static_cast<double>(number) == range.also; }
 
-// The numbers of a value that the range speaks of; the angle of a rotation is free.
+// The numbers of a value that the range speaks of; rotations are normalised instead.
 template <class T> struct Numbers;
 template <> struct Numbers<float> { static constexpr int count = 1; };
 template <> struct Numbers<double> { static constexpr int count = 1; };
@@ -64,7 +65,6 @@ template <> struct Numbers<int32_t> { static constexpr int count = 1; };
 template <> struct Numbers<Vec2f> { static constexpr int count = 2; };
 template <> struct Numbers<Vec3f> { static constexpr int count = 3; };
 template <> struct Numbers<Color> { static constexpr int count = 3; };
-template <> struct Numbers<Rotation> { static constexpr int count = 3; };
 template <class T>
 concept Numeric = requires {
   Numbers<T>::count;
@@ -110,6 +110,10 @@ std::string boundText(double bound) {
 } // namespace
 
 bool enforceRange(const FieldInfo& field, void* storage, RangeFault* fault) {
+  if (hasNormalizedAxes(field)) {
+    normalizeAxes(field.type, storage);
+    return true;
+  }
   const auto tell = [fault](const auto& given, const auto& used, size_t index) {
     if (fault && fault->count++ == 0) fault->given = textOf(given), fault->used = textOf(used), fault->index = index;
   };

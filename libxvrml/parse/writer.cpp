@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "base/lexer.h"
+#include "base/rotation.h"
 #include "enough_stack.h"
 #include "parse/expander.h"
 #include "parse/field_access.h"
@@ -158,7 +159,13 @@ class Writer {
       line();
       if (declared) text += fmt::format("{} {} ", accessName(field.access), fieldTypeName(field.type));
       text += field.name;
-      if (value) fieldValue(node.storage(field), field.type, names, connections);
+      if (value && hasNormalizedAxes(field)) // a program may have written to the struct
+        visitStorage(field.type, node.storage(field), [&](auto copy) {
+          normalizeAxes(field.type, &copy);
+          fieldValue(&copy, field.type, names, connections);
+        });
+      else if (value)
+        fieldValue(node.storage(field), field.type, names, connections);
     }
     for (size_t i = 0; i < own.size(); ++i) {
       if (i > 0 || !declared) {

@@ -121,7 +121,7 @@ XsResult ScriptHost::makeInterpreter(Script& script, ScriptProgram program) {
     if (isOwn(field)) script.fields.push_back({field.name.c_str(), xsType(field.type), xsAccess(field.access)});
   XsScriptInfo& info = script.info;
   info.size = sizeof(XsScriptInfo);
-  info.flags = (flagOf(*script.node, "directOutput") ? uint32_t(XS_DIRECT_OUTPUT) : 0u) |
+  info.flags = (flagOf(*script.node, "directOutput") || directOutputAlways ? uint32_t(XS_DIRECT_OUTPUT) : 0u) |
                (flagOf(*script.node, "mustEvaluate") ? uint32_t(XS_MUST_EVALUATE) : 0u) |
                (options_.trustScripts ? uint32_t(XS_TRUSTED) : 0u) | (options_.allowNetwork ? uint32_t(XS_NETWORK) : 0u);
   info.self = script.self;

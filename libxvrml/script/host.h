@@ -86,6 +86,7 @@ class ScriptHost : public ScriptRunner {
   void finish() override;
 
   size_t running() const { return scripts_.size(); }
+  bool directOutputAlways = false; // RunOptions, before the first Script begins
 
  private:
   friend struct HostTable;

@@ -143,7 +143,7 @@ struct HostTable {
   }
 
   static XsResult needsDirectOutput(ScriptHost& host, Script& script, const char* what) {
-    host.log(script, 2, 0, fmt::format("{} needs directOutput TRUE (6.40); ignored", what));
+    host.log(script, 2, 0, fmt::format("{} needs directOutput TRUE (6.40); ignored, --compat scripts allows it", what));
     return refuse(script, XS_NOT_ALLOWED, fmt::format("{} needs directOutput TRUE", what));
   }
 

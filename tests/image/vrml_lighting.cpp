@@ -185,4 +185,30 @@ TEST(VrmlLighting, LinearColoursDecodeWhatTheAuthorSaw) {
   expectGrey(ahead(dark + square("Appearance { texture PixelTexture { image 1 1 3 0x808080 } }"), 10, linear), texel);
 }
 
+// Table 4.6: a colour picture replaces diffuseColor, a grey one multiplies it; X3D's rule multiplies always.
+TEST(VrmlLighting, ColourTexturesReplaceOrMultiply) {
+  const auto look = [](const char* image, const char* colors, bool multiplies) {
+    SceneOptions options;
+    options.multiplyTextures = multiplies;
+    return ahead(
+        dark + "DirectionalLight { }" +
+            square(std::string("Appearance { material Material { diffuseColor 0.5 0.25 1 } texture PixelTexture { image ") +
+                       image + " } }",
+                   colors),
+        10, options);
+  };
+  const auto expect = [](const Pixel& p, float r, float g, float b) {
+    EXPECT_NEAR(p.r, r, 1e-4);
+    EXPECT_NEAR(p.g, g, 1e-4);
+    EXPECT_NEAR(p.b, b, 1e-4);
+  };
+  expect(look("1 1 3 0xFF6633", "", false), 1, 0.4f, 0.2f);
+  expect(look("1 1 3 0xFF6633", "", true), 0.5f, 0.1f, 0.2f);
+  expect(look("1 1 4 0xFF6633FF", "", true), 0.5f, 0.1f, 0.2f);
+  for (const bool multiplies : {false, true}) expect(look("1 1 1 0x66", "", multiplies), 0.2f, 0.1f, 0.4f);
+  const char* own = "color Color { color [ 1 0.5 0 ] } colorPerVertex FALSE";
+  expect(look("1 1 3 0xFF6633", own, false), 1, 0.4f, 0.2f);
+  expect(look("1 1 3 0xFF6633", own, true), 1, 0.2f, 0);
+}
+
 } // namespace

@@ -19,7 +19,7 @@ struct Pixel {
 struct SceneOptions {
   std::string config = "threads=1";
   int width = 1, height = 1, samples = 1;
-  bool shadows = true, linearColor = false;
+  bool shadows = true, linearColor = false, multiplyTextures = false;
   MapOptions::Headlight headlight = MapOptions::Headlight::automatic;
   uint32_t channels = RT_RGBA;
 };
@@ -35,6 +35,7 @@ class Scene {
     map.headlight = options.headlight;
     map.aspect = double(options.width) / options.height;
     mapper = std::make_unique<OpenRTMapper>(*world, map);
+    mapper->setMultiplyTextures(options.multiplyTextures);
     rtFrameBuffer(options.width, options.height, options.channels);
     rtQuality(RT_SAMPLES_PER_PIXEL, options.samples);
     rtQuality(RT_SHADOWS, options.shadows);

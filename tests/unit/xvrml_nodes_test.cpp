@@ -283,7 +283,7 @@ struct Maker {
   void operator()(SFImage& v) const { v = {2, 1, 1, {uint8_t(seed), 7}}; }
   void operator()(SFInt32& v) const { v = 1000 + seed; }
   void operator()(SFNode& v) const { v = NodeRef(new nodes::Group); }
-  void operator()(SFRotation& v) const { v = {number(), number(1), number(2), number(3)}; }
+  void operator()(SFRotation& v) const { v = {std::cos(float(seed)), 0, std::sin(float(seed)), number(3)}; } // length 1
   void operator()(SFString& v) const { v = "a string too long for a short one " + std::to_string(seed); }
   void operator()(SFTime& v) const { v = 1e9 + seed; }
   void operator()(SFVec2f& v) const { v = {number(), number(1)}; }

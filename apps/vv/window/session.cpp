@@ -21,7 +21,10 @@ using State = picture::LiveRenderer::State;
 
 namespace {
 
-double sinceEpoch() { return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count(); }
+// Seconds since 1970, whole ones: the command of a view names them.
+double realTime() {
+  return double(std::chrono::duration_cast<std::chrono::seconds>(std::chrono::system_clock::now().time_since_epoch()).count());
+}
 
 bool equal(const xvrml::CameraSettings& a, const xvrml::CameraSettings& b) {
   return std::memcmp(a.matrix, b.matrix, sizeof a.matrix) == 0 && a.fovy == b.fovy && a.height == b.height &&
@@ -35,6 +38,7 @@ Options forWindow(const Options& options, const Session::Calls& calls, const boo
   own.render.channels |= RT_VARIANCE; // then RTstats has the error
   own.running.print = [](const std::string& text) { say(text); };
   own.running.scriptPatience = scripted ? 0 : 0.05; // scripted: the same on every machine
+  if (!own.epoch && !scripted && !options.time) own.epoch = realTime();
   if (calls.openUrl)
     own.running.loadUrl = [open = calls.openUrl](const std::vector<std::string>& urls, const std::vector<std::string>&,
                                                  const std::string& base) {
@@ -45,18 +49,14 @@ Options forWindow(const Options& options, const Session::Calls& calls, const boo
   return own;
 }
 
-double startOf(const Options& options, bool stepped) { return stepped || options.time ? 0 : sinceEpoch(); }
-
 } // namespace
 
 Session::Session(std::unique_ptr<xvrml::World> world, const Options& options, Problems& problems, Calls calls,
                  const InputScript* script)
     : options_(forWindow(options, calls, script || !options.recordInput.empty())), problems_(problems), calls_(std::move(calls)),
-      browser_(startWorld(std::move(world), options_, startOf(options, script || !options.recordInput.empty()), problems)),
-      pilot_(*browser_, options.time && !script ? *options.time : browser_->now(), options.view.fov),
-      renderer_(*browser_, options_.render), channels_(options.render.channels), pacing_(options.fps),
-      stepped_(script || !options.recordInput.empty()) {
-  began_ = options.time ? 0 : browser_->now();
+      browser_(startWorld(std::move(world), options_, problems)),
+      pilot_(*browser_, options.time && !script ? *options.time : 0, options.view.fov), renderer_(*browser_, options_.render),
+      channels_(options.render.channels), pacing_(options.fps), stepped_(script || !options.recordInput.empty()) {
   if (options.time && !script) WorldClock(*browser_, options.fps).advance(*options.time);
   if (script)
     replay_ = std::make_unique<Replay>(pilot_, *script, [this](const InputEvent& event, Action action) {
@@ -289,7 +289,8 @@ std::string Session::command(const std::vector<std::string>& arguments) const {
   std::optional<bool> headlight = pilot_.headlight();
   if (!headlight && options_.render.headlight != xvrml::MapOptions::Headlight::automatic)
     headlight = options_.render.headlight == xvrml::MapOptions::Headlight::on;
-  return viewCommand({browser_->world().path, pilot_.camera(), width_, height_, browser_->now() - began_, headlight}, arguments);
+  return viewCommand({browser_->world().path, pilot_.camera(), width_, height_, browser_->now(), options_.epoch, headlight},
+                     arguments);
 }
 
 std::string Session::takeMessage() {

@@ -106,7 +106,7 @@ class Session {
   // Time.
   bool stepped_; // in steps of 1/fps, for scripts
   long long next_ = 0;
-  double clock_ = 0, time_ = 0, last_ = -1, began_ = 0;
+  double clock_ = 0, time_ = 0, last_ = -1;
 
   // The picture.
   int width_ = 0, height_ = 0;

@@ -13,7 +13,8 @@ struct ShownView {
   std::string world; // its file
   xvrml::CameraSettings camera;
   int width = 0, height = 0;
-  double time = 0; // of a clock that began at 0 with the world
+  double time = 0;             // seconds since the world was loaded
+  std::optional<double> epoch; // when it was, in seconds since 1970; none: as by default
   std::optional<bool> headlight;
 };
 

@@ -37,19 +37,36 @@ struct BrowserOptions {
       loadUrl;
 };
 
+// Time 0 of a Browser in the world's own time, which is seconds since 1970-01-01 00:00 UTC (ISO/IEC 14772-1 4.11.2): the
+// beginning of 24 October 2024. A fixed number keeps pictures reproducible. Most cycleIntervals divide it (2^9 3^3 5^3 7 11 13),
+// so that a TimeSensor with startTime 0 and loop TRUE is at the beginning of a cycle (decision 0014).
+inline constexpr double worldEpoch = 1'729'728'000;
+
+// More options, which may become more still: size tells which of them the program knows.
+struct RunOptions {
+  size_t size = sizeof(RunOptions);
+  double epoch = worldEpoch; // time 0 in seconds since 1970; 0: the times of this class are seconds since 1970 themselves
+  // Every Script may send to other nodes and change routes, as the browsers of 1997 let them; else only those with
+  // directOutput TRUE (6.40).
+  bool directOutputAlways = false;
+};
+
 class Browser {
  public:
-  // Takes a loaded world over: sensors, Scripts, bindables and routes come alive at time `start` (seconds). The first tick shows
-  // the world at that time.
+  // Takes a loaded world over: sensors, Scripts, bindables and routes come alive at time `start`. The first tick shows the world
+  // at that time. All times of this class are seconds after the epoch; nodes and Scripts see epoch + time.
   explicit Browser(std::unique_ptr<World> world, BrowserOptions options = {}, double start = 0);
+  Browser(std::unique_ptr<World> world, BrowserOptions options, double start, const RunOptions& run);
   ~Browser();
   Browser(const Browser&) = delete;
   Browser& operator=(const Browser&) = delete;
 
   World& world();
   Events& events();
-  double now() const;
-  // Time has come to `time` (seconds, not before now()): sensors send, routes carry, Scripts run, until nothing is left to do.
+  double now() const;   // seconds after epoch()
+  double epoch() const; // seconds since 1970; startTime = epoch() + now() is "at once"
+  // Time has come to `time` (seconds after epoch(), not before now()): sensors send, routes carry, Scripts run, until nothing is
+  // left to do.
   void tick(double time);
   // What changed since the last call; for OpenRTMapper::update. Another world (generation()) begins with an empty list.
   FieldChanges takeChanges();

@@ -73,6 +73,8 @@ class OpenRTMapper {
   void bind(const BoundNodes& bound);
   // Instead of MapOptions::headlight, from the next map() on.
   void setHeadlight(MapOptions::Headlight headlight);
+  // A colour texture multiplies diffuseColor (X3D's rule) instead of replacing it (clause 4.14.3). Before the first map().
+  void setMultiplyTextures(bool multiply);
   // Between frames, with what the world's takeChanges() returned: does what the changes cost, and no more. A world whose
   // nodes change without records of it must get a mapper anew.
   void update(const FieldChanges& changes);

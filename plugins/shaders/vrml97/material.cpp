@@ -52,6 +52,13 @@ const RtsParam surfaceParams[] = {
      0.0f,
      0.0f,
      "from texture coordinates (s, t, 0, 1) to places in the picture"},
+    {"multiplyTexture",
+     RTS_INT,
+     offsetof(SurfaceParams, multiplyTexture),
+     {0.0f},
+     0.0f,
+     1.0f,
+     "1: a colour picture multiplies diffuseColor, as in X3D; 0: it replaces it"},
 };
 const uint32_t surfaceParamCount = sizeof(surfaceParams) / sizeof(surfaceParams[0]);
 
@@ -163,10 +170,11 @@ void colours(const RtsHits* hits, const Summary& summary, const Texels& texels, 
       continue;
     }
     const uint32_t components = summary.textured ? texels.components[i] : 0;
+    const bool multiplies = components <= 2 || paramsOf(hits, i).multiplyTexture != 0;
     float* const* base = lit ? t.diffuse : t.glow;
     for (int c = 0; c < 3; c++) {
       const float plain = own ? hits->color[c][i] : base[c][i];
-      base[c][i] = components == 0 ? plain : components <= 2 ? plain * texels.rgba[c][i] : texels.rgba[c][i];
+      base[c][i] = components == 0 ? plain : multiplies ? plain * texels.rgba[c][i] : texels.rgba[c][i];
     }
     if (hasAlpha(components)) t.alpha[i] = texels.rgba[3][i];
   }

@@ -18,6 +18,7 @@ struct SurfaceParams {
   int32_t lit;
   RtsTexture texture;
   float textureTransform[16];
+  int32_t multiplyTexture;
 };
 
 extern const RtsParam surfaceParams[];

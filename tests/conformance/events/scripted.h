@@ -37,7 +37,8 @@ struct Printed {
 
 class Scripted : private Printed, public Running {
  public:
-  explicit Scripted(const std::string& vrml, BrowserOptions options = {}) : Running(vrml, 0, with(std::move(options), lines)) {}
+  explicit Scripted(const std::string& vrml, BrowserOptions options = {}, bool directOutput = false)
+      : Running(vrml, 0, with(std::move(options), lines), 0, directOutput) {}
 
   // Lines since the last call.
   Log printed() { return std::exchange(*lines, {}); }

@@ -408,7 +408,7 @@ TEST(TimeSensor, FractionsAreExactOverMillionsOfShortCycles) {
     const double now = 1.7e9 + 1e6 + 0.25 + i / 1024.0;
     s.tick(now);
     const double part = std::fmod(i / 1024.0, 0.125) / 0.125;
-    ASSERT_EQ(s.number("fraction_changed"), part == 0 ? 1 : part) << i;
+    ASSERT_EQ(s.number("fraction_changed"), part == 0 && i > 0 ? 1 : part) << i; // joined, a cycle begins
   }
 }
 
