@@ -19,6 +19,7 @@ xvrml.rt is the renderer without VRML, xvrml.interop goes between other packages
 import warnings as _warnings
 
 from . import _world
+from ._camera import Pinhole
 from ._xvrml import (Browser, Cluster, ClusterError, Diagnostic, Mesh, Node, ParseError, Picture, RenderError, ViewpointInfo, Worker,
                      World, load, load_node_plugins, __version__)
 
@@ -30,7 +31,7 @@ for _line in load_node_plugins():
 from . import nodes as nodes  # noqa: E402  after the plug-ins: a class for each of their nodes, too
 from .nodes import *  # noqa: E402,F401,F403
 
-__all__ = ["Browser", "Cluster", "ClusterError", "Diagnostic", "Mesh", "Node", "ParseError", "Picture", "RenderError", "ViewpointInfo",
+__all__ = ["Browser", "Cluster", "ClusterError", "Diagnostic", "Mesh", "Node", "ParseError", "Picture", "Pinhole", "RenderError", "ViewpointInfo",
            "Worker", "World", "load", "load_node_plugins", "__version__", *nodes.__all__]
 
 
