@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 
 namespace picture {
@@ -48,40 +49,82 @@ double verticalAngle(double smaller, double aspect) {
 
 namespace {
 
-// Turns a camera and its place about the vertical axis through the middle of the bounds.
-void turn(xvrml::CameraSettings& camera, const xvrml::Bounds& bounds, double angle) {
-  if (angle == 0) return;
-  const double cx = bounds.empty ? 0 : (bounds.minimum[0] + bounds.maximum[0]) / 2;
-  const double cz = bounds.empty ? 0 : (bounds.minimum[2] + bounds.maximum[2]) / 2;
-  const double c = std::cos(angle), s = std::sin(angle);
+// Turns a camera and its place about an axis through the middle of the bounds.
+void turn(xvrml::CameraSettings& camera, const xvrml::Bounds& bounds, xvrml::Axis axis, double angle) {
+  const int along = int(axis) % 3, first = (along + 1) % 3, second = (along + 2) % 3;
+  const auto middle = [&](int i) { return bounds.empty ? 0 : (bounds.minimum[i] + bounds.maximum[i]) / 2; };
+  const double a = middle(first), b = middle(second);
+  const double c = std::cos(angle), s = int(axis) < 3 ? std::sin(angle) : -std::sin(angle);
   for (size_t column = 0; column < 4; ++column) {
     double* v = camera.matrix + 4 * column;
-    const double x = v[0] - (column == 3 ? cx : 0), z = v[2] - (column == 3 ? cz : 0);
-    v[0] = c * x + s * z + (column == 3 ? cx : 0);
-    v[2] = -s * x + c * z + (column == 3 ? cz : 0);
+    const double x = v[first] - (column == 3 ? a : 0), y = v[second] - (column == 3 ? b : 0);
+    v[first] = c * x - s * y + (column == 3 ? a : 0);
+    v[second] = s * x + c * y + (column == 3 ? b : 0);
   }
 }
 
+// A model from three quarters, or a figure in the x-y plane from the front.
+xvrml::CameraSettings modelCamera(const xvrml::OpenRTMapper& mapper, const View& view, double fovy, double aspect) {
+  double axes[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+  if (view.up) {
+    xvrml::threeQuarterView(*view.up, axes);
+  } else if (const xvrml::UpGuess guess = mapper.guessUp(); !guess.frontal) {
+    xvrml::threeQuarterView(guess.axis, axes);
+  }
+  return xvrml::cameraAround(mapper.boundingSphere(), axes, fovy, aspect);
+}
+
 } // namespace
+
+bool lookAtMatrix(const View& view, double matrix[16]) {
+  if (!view.lookAt) return false;
+  LookAt look = *view.lookAt;
+  if (view.up && !look.saysUp) xvrml::upVector(*view.up, look.up);
+  return lookAtMatrix(look, matrix);
+}
+
+static constexpr const char* axisNames[] = {"x", "y", "z", "-x", "-y", "-z"};
+
+std::optional<xvrml::Axis> axisNamed(std::string_view name) {
+  if (name.size() == 2 && name.starts_with('+')) name.remove_prefix(1);
+  for (size_t i = 0; i < std::size(axisNames); ++i)
+    if (name == axisNames[i]) return xvrml::Axis(i);
+  return {};
+}
+
+const char* axisName(xvrml::Axis axis) { return axisNames[size_t(axis)]; }
+
+xvrml::Axis upOf(const xvrml::OpenRTMapper& mapper, const View& view) {
+  if (view.up) return *view.up;
+  return mapper.boundViewpoint() >= 0 ? xvrml::Axis::y : mapper.guessUp().axis;
+}
 
 xvrml::CameraSettings chooseCamera(const xvrml::OpenRTMapper& mapper, const View& view, double aspect) {
   constexpr double radians = std::numbers::pi / 180;
   const double smaller = view.fov ? *view.fov * radians : std::numbers::pi / 4; // a Viewpoint's default
   const double fovy = verticalAngle(smaller, aspect);
   xvrml::CameraSettings camera;
+  if (view.pinhole) {
+    std::copy_n(view.pinhole->matrix, 16, camera.matrix);
+    camera.fovy = view.pinhole->fovy;
+    return camera;
+  }
   if (view.lookAt) {
-    lookAtMatrix(*view.lookAt, camera.matrix);
+    lookAtMatrix(view, camera.matrix);
     camera.fovy = fovy;
+    if (view.fit) camera = xvrml::cameraAround(mapper.boundingSphere(), camera.matrix, fovy, aspect);
   } else if (view.viewer && !view.viewpoint && !view.fit) {
     camera = *view.viewer;
     if (view.fov) camera.fovy = fovy;
   } else if (view.viewpoint || (!view.fit && mapper.boundViewpoint() >= 0)) {
     camera = mapper.viewpointCamera(view.viewpoint.value_or(size_t(std::max(0, mapper.boundViewpoint()))));
     if (view.fov) camera.fovy = fovy;
-  } else {
+  } else if (mapper.boundViewpoint() >= 0 && !view.up) {
     camera = mapper.fitCamera(fovy);
+  } else {
+    camera = modelCamera(mapper, view, fovy, aspect);
   }
-  turn(camera, mapper.bounds(), view.turn);
+  if (view.turn != 0) turn(camera, mapper.bounds(), upOf(mapper, view), view.turn);
   if (view.shader) camera.shader = view.shader.get();
   return camera;
 }

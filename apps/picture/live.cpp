@@ -354,6 +354,14 @@ const std::vector<xvrml::ViewpointInfo>& LiveRenderer::viewpoints() const {
 
 xvrml::Bounds LiveRenderer::bounds() const { return impl_->stage.mapper() ? impl_->stage.mapper()->bounds() : xvrml::Bounds{}; }
 
+xvrml::CameraSettings LiveRenderer::cameraOf(const View& view, double aspect) const {
+  return impl_->stage.mapper() ? chooseCamera(*impl_->stage.mapper(), view, aspect) : xvrml::CameraSettings{};
+}
+
+xvrml::Axis LiveRenderer::upOf(const View& view) const {
+  return impl_->stage.mapper() ? picture::upOf(*impl_->stage.mapper(), view) : xvrml::Axis::y;
+}
+
 std::string LiveRenderer::takeFailure() {
   const std::lock_guard lock(impl_->mutex);
   return std::exchange(impl_->failure, {});

@@ -65,6 +65,8 @@ class LiveRenderer {
   void change(const std::function<void(RenderSettings&)>& change);
   const std::vector<xvrml::ViewpointInfo>& viewpoints() const; // after the first mapping; [not while mapping]
   xvrml::Bounds bounds() const;                                // the same
+  xvrml::CameraSettings cameraOf(const View& view, double aspect) const; // see camera.h; the same
+  xvrml::Axis upOf(const View& view) const;                    // see camera.h; the same
   // Why the last frame could not be made (RenderError's text), once; "" if nothing was wrong.
   std::string takeFailure();
 

@@ -20,7 +20,7 @@ constexpr Channel table[] = {
     {"normal", RT_NORMAL, 3, {"N.X", "N.Y", "N.Z"}, "mean shading normal in world space"},
     {"albedo", RT_ALBEDO, 3, {"albedo.R", "albedo.G", "albedo.B"}, "mean surface colour"},
     {"position", RT_POSITION, 3, {"P.X", "P.Y", "P.Z"}, "world-space position of the first hit"},
-    {"id", RT_NAME, 1, {"id"}, "number of the shape hit; the table of names is in the attribute idNames"},
+    {"id", RT_NAME, 1, {"id"}, "number of the Shape hit; the table of names is in the attribute idNames"},
     {"samples", RT_SAMPLES, 1, {"samples"}, "samples taken"},
     {"variance", RT_VARIANCE, 3, {"variance.R", "variance.G", "variance.B"}, "sample variance of the radiance"},
     {"error", RT_ERROR, 3, {"error.R", "error.G", "error.B"}, "half-width of the 95 % interval of each colour"},
@@ -131,6 +131,18 @@ std::vector<uint8_t> displayBytes(const Picture& picture) {
   std::vector<uint8_t> bytes(rgba.size() / 4 * 3);
   for (size_t i = 0; i < rgba.size() / 4; ++i)
     for (size_t c = 0; c < 3; ++c) bytes[3 * i + c] = displayByte(rgba[4 * i + c], picture.linear);
+  return bytes;
+}
+
+std::vector<uint8_t> displayBytesAlpha(const Picture& picture) {
+  const std::vector<float>& rgba = colours(picture);
+  std::vector<uint8_t> bytes(rgba.size());
+  for (size_t i = 0; i < rgba.size(); i += 4) {
+    const float alpha = rgba[i + 3];
+    bytes[i + 3] = displayByte(alpha, false);
+    for (size_t c = 0; c < 3; ++c)
+      bytes[i + c] = alpha > 0 ? displayByte(rgba[i + c] / std::min(alpha, 1.0f), picture.linear) : 0;
+  }
   return bytes;
 }
 

@@ -104,13 +104,22 @@ struct Renderer::Impl {
     if (failure) std::rethrow_exception(std::exchange(failure, nullptr));
   }
 
+  void noteCamera(RenderResult& result) const {
+    result.camera = stage.shown();
+    result.ownRays = std::exchange(result.camera.shader, nullptr) != nullptr;
+  }
+
   void start(const View& view) {
     const auto begin = Clock::now();
     stage.prepare(view);
     Flight flight;
     flight.result.mapSeconds = secondsSince(begin) + stage.takeMeshSeconds();
     flight.result.map = stage.mapper()->stats();
-    if (stage.settings.channels & RT_NAME) flight.names = stage.mapper()->names();
+    if (stage.settings.channels & RT_NAME) {
+      flight.names = stage.mapper()->names();
+      flight.result.nodes = stage.mapper()->nodes();
+    }
+    noteCamera(flight.result);
     stage.setUpFrame();
     rtQuality(RT_FRAMES_IN_FLIGHT, maxInFlight);
     if (flights.empty()) lastEnd = Clock::now();
@@ -138,6 +147,7 @@ struct Renderer::Impl {
     auto start = Clock::now();
     stage.prepare(view);
     result.mapSeconds = secondsSince(start) + stage.takeMeshSeconds(); // meshes are made once, with the first picture
+    noteCamera(result);
     stage.setUpFrame();
     start = Clock::now();
     rtRender();
@@ -147,6 +157,7 @@ struct Renderer::Impl {
     result.interrupted = cancelled;
     stage.readChannels(stage.settings, result.picture);
     stage.describe(stage.settings, result);
+    if (stage.settings.channels & RT_NAME) result.nodes = stage.mapper()->nodes();
   }
 };
 
@@ -200,6 +211,20 @@ xvrml::Bounds Renderer::bounds() {
     bounds = impl_->stage.mapper()->bounds();
   });
   return bounds;
+}
+
+Renderer::Place Renderer::placeOf(const View& view) {
+  checkViewpoint(view);
+  Place place;
+  const News news = impl_->stage.collect();
+  impl_->run([&] {
+    impl_->stage.apply(news);
+    place.camera = impl_->stage.cameraOf(view);
+    const xvrml::OpenRTMapper& mapper = *impl_->stage.mapper();
+    place.up = upOf(mapper, view);
+    if (!view.up && mapper.boundViewpoint() < 0) place.reason = mapper.guessUp().reason;
+  });
+  return place;
 }
 
 void Renderer::prepare(const View& view) {

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "openrt/openrt.h"
+#include "picture/background.h"
 #include "picture/camera.h"
 #include "picture/picture.h"
 #include "xvrml/browser.h"
@@ -43,6 +44,7 @@ struct RenderSettings {
   std::string shaderPath;  // folders, separated by colons
   std::string environment; // a picture of radiance (radiance.h) all around, instead of the world's Background
   double environmentIntensity = 1;
+  Background background;            // with any but Kind::world no environment may be given
   std::shared_ptr<Cluster> cluster; // machines to render with, instead of `backend`; null: none
 
   bool operator==(const RenderSettings&) const = default;
@@ -64,7 +66,11 @@ struct RenderResult {
   bool missing = false;     // a shader plug-in or a texture could not be found; the world's diagnostics say which
   bool interrupted = false; // the picture holds what was finished until then
   double mapSeconds = 0, renderSeconds = 0;
-  std::vector<RTworker> workers; // of a cluster, as they then were
+  std::vector<RTworker> workers;  // of a cluster, as they then were
+  xvrml::CameraSettings camera{}; // that it was made with; its shader is null
+  bool ownRays = false;           // a shader made the rays
+  // With the channel RT_NAME: the Shape nodes by the numbers in it, [0] is null. To be given up while the world is at rest.
+  std::vector<xvrml::NodeRef> nodes;
 };
 
 // Called on the calling thread about 20 times a second with the fraction done; true ends the picture early.
@@ -86,6 +92,13 @@ class Renderer {
   void change(const std::function<void(RenderSettings&)>& change);
   const std::vector<xvrml::ViewpointInfo>& viewpoints();
   xvrml::Bounds bounds();
+  // Where a view looks from and which way is up for it, without a picture.
+  struct Place {
+    xvrml::CameraSettings camera;
+    xvrml::Axis up = xvrml::Axis::y;
+    std::string reason; // why up is that; "": a Viewpoint or the view says so
+  };
+  Place placeOf(const View& view);
   // Maps the world for a view without making a picture; problems are in the world's diagnostics.
   void prepare(const View& view);
   // What the world is rendered as; after prepare() or render().

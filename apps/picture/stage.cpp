@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <new>
+#include <numbers>
 #include <utility>
 
 #include <fmt/format.h>
@@ -155,14 +156,31 @@ void Stage::apply(const News& news) {
   if (news.bound.viewpoint) viewer_ = news.camera;
 }
 
-// The viewer of a running world, unless another view is asked for.
-void Stage::prepare(const View& view) {
+xvrml::CameraSettings Stage::cameraOf(const View& view) const {
   View seen = view;
   if (!seen.viewer) seen.viewer = viewer_;
+  return chooseCamera(*mapper_, seen, aspectOf(settings));
+}
+
+void Stage::prepare(const View& view) {
   mapper_->setHeadlight(settings.headlight);
-  mapper_->map(chooseCamera(*mapper_, seen, aspectOf(settings)));
+  mapper_->setModelLight(settings.environment.empty());
+  mapper_->setBackground(settings.background.kind == Background::Kind::world); // else alpha is what the shapes cover
+  readBackground();
+  shown_ = cameraOf(view);
+  mapper_->map(shown_);
+  if (view.pinhole) {
+    rtLoadMatrixd(view.pinhole->sheared);
+    rtPerspective(view.pinhole->fovy * 180 / std::numbers::pi);
+  }
   useEnvironment();
   if (memoryExhausted_) throw std::bad_alloc();
+}
+
+void Stage::readBackground() {
+  if (background_ == settings.background) return;
+  backcloth_ = Backcloth(settings.background, settings.linear);
+  background_ = settings.background;
 }
 
 // Light from all around that the user gives. The mapper sets its own when that has changed.
@@ -204,6 +222,7 @@ void Stage::describe(const RenderSettings& frame, Picture& picture, uint32_t cha
   picture.width = frame.width;
   picture.height = frame.height;
   picture.linear = frame.linear;
+  picture.transparent = frame.background.kind == Background::Kind::none;
   if (channels & RT_NAME) picture.names = mapper_->names();
 }
 
@@ -217,6 +236,7 @@ bool Stage::snapshot(Picture& picture, uint32_t channels) const {
   if (!fillChannels(settings, channels & RT_SAMPLES, picture, copied)) return false;
   if (!fillChannels(settings, channels & ~uint32_t(RT_SAMPLES), picture, copied)) return false;
   describe(settings, picture, channels);
+  if (channels & RT_RGBA) backcloth_.putBehind(picture.planes[RT_RGBA], settings.width, settings.height);
   return true;
 }
 
@@ -228,6 +248,7 @@ void Stage::readChannels(const RenderSettings& frame, Picture& picture, const st
     throwOnError("reading the picture");
     return true;
   });
+  if (frame.channels & RT_RGBA) backcloth_.putBehind(picture.planes[RT_RGBA], frame.width, frame.height);
 }
 
 void Stage::describe(const RenderSettings& frame, RenderResult& result) const {

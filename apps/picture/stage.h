@@ -43,6 +43,8 @@ class Stage {
   void open(const std::function<bool()>& stop = {});
   void close();
   void apply(const News& news);
+  // Where a view looks from; the viewer of a running world unless another view is asked for.
+  xvrml::CameraSettings cameraOf(const View& view) const;
   // Maps the world for a view.
   void prepare(const View& view);
   // The size, channels and quality of the next frame, from the settings.
@@ -51,6 +53,7 @@ class Stage {
   // they are.
   void readChannels(const RenderSettings& frame, Picture& picture, const std::vector<std::string>* names = nullptr) const;
   void describe(const RenderSettings& frame, RenderResult& result) const; // statistics of it
+  const xvrml::CameraSettings& shown() const { return shown_; }           // by the last prepare()
   const xvrml::OpenRTMapper* mapper() const { return mapper_.get(); }
   double takeMeshSeconds(); // that mappers were made in
 
@@ -63,6 +66,7 @@ class Stage {
  private:
   void makeMapper();
   void useEnvironment();
+  void readBackground();
   void describe(const RenderSettings& frame, Picture& picture, uint32_t channels) const;
   static void note(RTenum error, const char* message, void* self);
   static void listen(int level, const char* text, void* self);
@@ -74,6 +78,9 @@ class Stage {
   double meshSeconds_ = 0;
   bool pluginMissing_ = false, memoryExhausted_ = false;
   RTid environment_ = 0, environmentTexture_ = 0;
+  Backcloth backcloth_{{}, true}; // what is put behind the frames, as `background_` says
+  Background background_;
+  xvrml::CameraSettings shown_{};
   bool borrowed_ = false;                       // the context is the cluster's
   std::optional<xvrml::CameraSettings> viewer_; // of a running world, where a Viewpoint is bound
   uint64_t generation_ = 0;                     // of the browser's world that the mapper shows

@@ -93,7 +93,10 @@ class Headless {
     } else if (options_.listViewpoints) {
       writeOut(listViewpoints(renderer.viewpoints(), options_.json));
     } else {
-      writeOut(describeWorld(world, renderer.viewpoints(), renderer.bounds(), options_.running.scriptPath, options_.json));
+      const picture::Renderer::Place place = renderer.placeOf(options_.view);
+      const std::string up = picture::axisName(place.up);
+      writeOut(describeWorld(world, renderer.viewpoints(), renderer.bounds(), {up, place.reason}, options_.running.scriptPath,
+                             options_.json));
     }
   }
 

@@ -47,6 +47,12 @@ void setHeadlight(Options& o, const std::string& value) {
     throw UsageError(fmt::format("on, off or auto was expected, not \"{}\"", value));
 }
 
+void setBackground(Options& o, const std::string& value) {
+  try {
+    o.render.background = picture::readBackground(value);
+  } catch (const std::invalid_argument& error) { throw UsageError(error.what()); }
+}
+
 void setColour(Options& o, const std::string& value) {
   if (value != "linear" && value != "vrml97") throw UsageError(fmt::format("linear or vrml97 was expected, not \"{}\"", value));
   o.render.linear = value == "linear";
@@ -122,6 +128,11 @@ const OptionInfo table[] = {
      "linear (default): colours of the file are decoded from sRGB, light adds up linearly, PNG, JPEG and PPM get the sRGB curve. "
      "vrml97: the standard's equation on the numbers as written, no curve anywhere.",
      setColour},
+    {"--background", "none|COLOUR|FILE", "Picture",
+     "What shows where nothing is drawn; the world's Background is not there then, in mirrors neither. none: nothing; a PNG has "
+     "alpha. COLOUR: a name (white), #rgb, #rrggbb, or R,G,B from 0 to 1. FILE: a picture that covers the whole frame "
+     "(png, jpg, gif; exr, hdr, pfm).",
+     setBackground},
     {"--viewpoint", "NAME|N|all", "View",
      "Look from this viewpoint: DEF name, description or number from 0 (default: the first). all: a picture each; {viewpoint} in "
      "the file name, or else a suffix, tells them apart.",
@@ -129,16 +140,29 @@ const OptionInfo table[] = {
        notEmpty(v, "a name, a number or all");
        o.viewpoint = v;
      }},
-    {"--camera", "PX,PY,PZ:TX,TY,TZ[:UX,UY,UZ]", "View", "Look from a position at a target, with this up vector (default 0,1,0).",
+    {"--camera", "PX,PY,PZ:TX,TY,TZ[:UX,UY,UZ]", "View",
+     "Look from a position at a target, with this up vector (default: the axis of --up, or else 0,1,0). With --fit: in this "
+     "direction, from as far away as all of the world is in the picture.",
      [](Options& o, const std::string& v) { o.view.lookAt = readCamera(v); }},
-    {"--fit", "", "View", "Place the camera so that the whole world is seen (default in a world without Viewpoint).",
+    {"--fit", "", "View",
+     "Place the camera so that the whole world is seen: in the direction of the first Viewpoint or of --camera; in a world "
+     "without "
+     "Viewpoint from three quarters, which is the default there.",
      [](Options& o, const std::string&) { o.view.fit = true; }},
+    {"--up", "x|y|z|-x|-y|-z", "View",
+     "The axis that points up: of the view from three quarters, of --turntable and of --camera (default: y in a world with a "
+     "Viewpoint; else guessed from what wrote the file and how it lies, --info says it).",
+     [](Options& o, const std::string& v) { o.view.up = readAxis(v); }},
     {"--fov", "DEGREES", "View", "The smaller of the two angles of view, instead of the viewpoint's.",
      [](Options& o, const std::string& v) { o.view.fov = readNumber(v, 0, 180); }},
     {"--camera-shader", "CLASS[:PARAM=VALUE...]", "View",
      "Another camera at the same place: ThinLens:radius=.1:focus=5 (depth of field), Panorama (everything around).",
      [](Options& o, const std::string& v) { o.cameraShader = v; }},
-    {"--headlight", "on|off|auto", "View", "Light at the camera; auto (default): as NavigationInfo says.", setHeadlight},
+    {"--headlight", "on|off|auto", "View",
+     "Light at the camera; auto (default): as NavigationInfo says. A world without Viewpoint, NavigationInfo and lights gets "
+     "three "
+     "soft lights about the camera instead.",
+     setHeadlight},
     {"--time", "SECONDS", "Time",
      "The world so long after it was loaded (default 0). Time goes in steps of 1/fps up to here, as in a sequence; no wall clock "
      "is read.",
@@ -154,7 +178,8 @@ const OptionInfo table[] = {
      [](Options& o, const std::string& v) { o.frames = readFrames(v); }},
     {"--fps", "F", "Time", "Frames a second, of sequences, films and the window, and steps of the world's clock (default 30).",
      [](Options& o, const std::string& v) { o.fps = readNumber(v, 0.001, 100000); }},
-    {"--turntable", "N", "Time", "N pictures, once around the vertical axis through the world's centre, from the chosen view on.",
+    {"--turntable", "N", "Time",
+     "N pictures, once around the axis that points up (--up) through the world's centre, from the chosen view on.",
      [](Options& o, const std::string& v) { o.turntable = int(readInteger(v, 1, 100000)); }},
     {"--input", "FILE", "Time",
      "What somebody does to the world, from a script instead of mouse and keys: a line each, SECONDS and what happens (move X Y, "

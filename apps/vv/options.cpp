@@ -82,8 +82,10 @@ void checkCluster(const Options& options) {
 
 // What the options ask for together.
 void checkTogether(Options& options) {
-  const int views = !options.viewpoint.empty() + options.view.lookAt.has_value() + options.view.fit;
-  if (views > 1) throw UsageError("only one of --viewpoint, --camera and --fit can be used");
+  if (!options.viewpoint.empty() && (options.view.lookAt || options.view.fit))
+    throw UsageError("--viewpoint: not with --camera or --fit, which look from elsewhere");
+  if (!options.render.environment.empty() && options.render.background.kind != picture::Background::Kind::world)
+    throw UsageError("only one of --environment, which shows all around, and --background can be used");
   if (options.quiet && options.verbose) throw UsageError("only one of --quiet and --verbose can be used");
   int toStandardOutput = (options.stats == "-") + (options.write == "-");
   for (const Output& output : options.outputs) toStandardOutput += output.path == "-";

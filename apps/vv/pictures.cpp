@@ -119,11 +119,19 @@ class Pictures {
     renderer_ = std::make_unique<picture::Renderer>(browser_, settings);
     pilot_ = std::make_unique<Pilot>(browser_, 0, options_.view.fov);
     pilot_->setAspect(double(options_.render.width) / options_.render.height);
-    if (pilot_->begin(options_.view, options_.viewpoint)) pilot_->frameAll(renderer_->bounds());
+    if (pilot_->begin(options_.view, options_.viewpoint)) present();
     pilot_->smooth();
     replay_ = std::make_unique<Replay>(*pilot_, *options_.script, [this](const InputEvent&, Action action) {
       if (action == Action::frameAll) pilot_->frameAll(renderer_->bounds());
+      if (action == Action::beginAgain) present();
     });
+  }
+
+  void present() {
+    const std::optional<picture::View> view = pilot_->beginning(options_.view);
+    if (!view) return pilot_->frameAll(renderer_->bounds());
+    const picture::Renderer::Place place = renderer_->placeOf(*view);
+    pilot_->present(place.camera, place.up);
   }
 
   void tick(double time) {
@@ -137,10 +145,11 @@ class Pictures {
     Job job;
     job.view.shader = options_.view.shader;
     job.view.viewer = pilot_->camera();
-    if (pilot_->headlight())
-      renderer_->change([this](picture::RenderSettings& s) {
-        s.headlight = *pilot_->headlight() ? xvrml::MapOptions::Headlight::on : xvrml::MapOptions::Headlight::off;
-      });
+    renderer_->change([this](picture::RenderSettings& s) {
+      const std::optional<bool> switched = pilot_->headlight();
+      s.headlight = options_.render.headlight;
+      if (switched) s.headlight = *switched ? xvrml::MapOptions::Headlight::on : xvrml::MapOptions::Headlight::off;
+    });
     return job;
   }
 

@@ -381,7 +381,7 @@ std::string listViewpoints(const std::vector<xvrml::ViewpointInfo>& viewpoints, 
 }
 
 std::string describeWorld(const xvrml::World& world, const std::vector<xvrml::ViewpointInfo>& viewpoints,
-                          const xvrml::Bounds& bounds, const std::string& scriptPath, bool json) {
+                          const xvrml::Bounds& bounds, const UpAxis& up, const std::string& scriptPath, bool json) {
   const WorldCounts counts = countWorld(world);
   if (json) {
     Json all = {{"path", world.path}, {"nodes", world.nodeCount}, {"types", Json(counts.types)}, {"routes", counts.routes}};
@@ -396,6 +396,7 @@ std::string describeWorld(const xvrml::World& world, const std::vector<xvrml::Vi
     all["viewpoints"] = viewpointsJson(viewpoints);
     all["bounds"] = nullptr;
     if (!bounds.empty) all["bounds"] = {{"minimum", Json(bounds.minimum)}, {"maximum", Json(bounds.maximum)}};
+    all["up"] = {{"axis", up.axis}, {"reason", up.reason}};
     all["errors"] = world.diagnostics.errors();
     all["warnings"] = world.diagnostics.warnings();
     return dump(all);
@@ -407,6 +408,7 @@ std::string describeWorld(const xvrml::World& world, const std::vector<xvrml::Vi
   else
     text += fmt::format("bounds      {:.6g} {:.6g} {:.6g}  to  {:.6g} {:.6g} {:.6g}\n", bounds.minimum[0], bounds.minimum[1],
                         bounds.minimum[2], bounds.maximum[0], bounds.maximum[1], bounds.maximum[2]);
+  if (!up.reason.empty()) text += fmt::format("up          {}: {}\n", up.axis, up.reason);
   for (const auto& [protocol, count] : scriptsByProtocol(counts))
     text += fmt::format("scripts     {} {}{}: {}\n", count.first, protocol,
                         count.second ? fmt::format(", {} in prototypes", count.second) : "",

@@ -39,8 +39,12 @@ std::string explainWorld(const Options& options, const xvrml::World& world, cons
 // world may be null: the node types alone.
 std::string listNodes(const xvrml::World* world, bool json);
 std::string listViewpoints(const std::vector<xvrml::ViewpointInfo>& viewpoints, bool json);
+// Which axis is up, and why that is believed; no reason: it is said.
+struct UpAxis {
+  std::string axis, reason;
+};
 // scriptPath: where script engines are looked for first.
 std::string describeWorld(const xvrml::World& world, const std::vector<xvrml::ViewpointInfo>& viewpoints,
-                          const xvrml::Bounds& bounds, const std::string& scriptPath, bool json);
+                          const xvrml::Bounds& bounds, const UpAxis& up, const std::string& scriptPath, bool json);
 
 } // namespace vv

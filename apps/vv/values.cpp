@@ -126,13 +126,19 @@ picture::LookAt readCamera(std::string_view text) {
     if (parts.size() != 2 && parts.size() != 3) throw UsageError("");
     readTriple(parts[0], camera.position);
     readTriple(parts[1], camera.target);
-    if (parts.size() == 3) readTriple(parts[2], camera.up);
+    if (parts.size() == 3) readTriple(parts[2], camera.up), camera.saysUp = true;
   } catch (const UsageError&) {
     throw UsageError(
         fmt::format("position, target and, if wanted, up vector as px,py,pz:tx,ty,tz:ux,uy,uz were expected, not \"{}\"", text));
   }
   if (!picture::lookAtMatrix(camera, matrix)) throw UsageError("position and target are the same point");
   return camera;
+}
+
+xvrml::Axis readAxis(std::string_view text) {
+  const std::optional<xvrml::Axis> axis = picture::axisNamed(text);
+  if (!axis) throw UsageError(fmt::format("x, y, z, -x, -y or -z was expected, not \"{}\"", text));
+  return *axis;
 }
 
 } // namespace vv

@@ -47,6 +47,7 @@ uint64_t readCount(std::string_view text);
 bool readSwitch(std::string_view text); // on, off
 void readSize(std::string_view text, int& width, int& height);
 picture::LookAt readCamera(std::string_view text);
+xvrml::Axis readAxis(std::string_view text);  // x, y, z, perhaps with a sign
 FrameRange readFrames(std::string_view text); // A-B, A-B/STEP or A
 std::vector<std::string_view> split(std::string_view text, char separator);
 

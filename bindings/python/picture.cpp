@@ -107,6 +107,21 @@ py::tuple names(const PictureObject& self) {
   return out;
 }
 
+py::object nodes(PictureObject& self) {
+  if (self.nodeList) return self.nodeList;
+  py::tuple out(self.nodes.size());
+  for (size_t i = 0; i < self.nodes.size(); ++i) out[i] = asNode(self.nodes[i].world(), self.nodes[i].node);
+  return self.nodeList = out;
+}
+
+py::object camera(PictureObject& self) {
+  if (!self.camera && self.place.fovy > 0)
+    self.camera = py::module_::import("xvrml._camera")
+                      .attr("_of")(std::vector<double>(self.place.matrix, self.place.matrix + 16), self.place.fovy,
+                                   self.picture.width, self.picture.height);
+  return self.camera ? self.camera : py::none();
+}
+
 py::tuple channels(const PictureObject& self) {
   py::list out;
   for (const picture::Channel& channel : picture::channelTable())
@@ -158,12 +173,20 @@ void definePicture(py::module_& module) {
           "error", errorBars,
           "Half-widths of the 95 % intervals of red, green, blue: float32 of shape (height, width, 3). Only in "
           "pictures that were made with an error or this channel.")
+      .def_property_readonly(
+          "camera", camera,
+          "The Pinhole that it was made with; None for cameras that are none (orthographic ones, ORTViewpoints).")
       .def_readonly("time", &PictureObject::time, "Seconds since the world was loaded: the moment that it shows.")
       .def_property_readonly("display", display, "What a screen shows: uint8 of shape (height, width, 3).")
       .def_property_readonly("shape",
                              [](const PictureObject& self) { return py::make_tuple(self.picture.height, self.picture.width, 4); })
       .def_property_readonly("channels", channels, "Names of the channels.")
-      .def_property_readonly("names", names, "What the numbers of channel 'id' stand for.")
+      .def_property_readonly("nodes", nodes,
+                             "The Shape for each number of channel 'id': picture.nodes[picture['id'][row, column]]; None for 0.")
+      .def_property_readonly(
+          "names", names,
+          "A name for each number of channel 'id': the Shape's DEF name, else that of the nearest group above it, "
+          "else 'Shape'; '' for 0.")
       .def_readonly("stats", &PictureObject::stats, "Counts and seconds of this render.")
       .def_property_readonly("colour", [](const PictureObject& self) { return self.picture.linear ? "linear" : "vrml97"; })
       .def("__getitem__", item)

@@ -1,5 +1,6 @@
 // render.cpp: World.render(): options checked, a picture made without the GIL, Ctrl-C and progress watched. Called with the GIL
 // held.
+#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -43,12 +44,44 @@ uint32_t channelsOf(const py::object& list) {
   return bits;
 }
 
+// A pose: camera to world, looking along -z with +y up, as VRML's own.
+picture::LookAt posed(const std::vector<std::vector<double>>& rows) {
+  picture::LookAt camera;
+  camera.saysUp = true;
+  double products[3][3] = {}, last = 0;
+  for (size_t i = 0; i < 4; ++i) {
+    if (rows[i].size() != 4) throw py::cast_error();
+    for (size_t k = 0; k < 4; ++k)
+      if (!std::isfinite(rows[i][k])) throw py::cast_error();
+    last = std::max(last, std::abs(rows[3][i] - (i == 3 ? 1 : 0)));
+  }
+  double off = last;
+  for (size_t a = 0; a < 3; ++a)
+    for (size_t b = 0; b < 3; ++b) {
+      for (size_t i = 0; i < 3; ++i) products[a][b] += rows[i][a] * rows[i][b];
+      off = std::max(off, std::abs(products[a][b] - (a == b ? 1 : 0)));
+    }
+  double handed = 0;
+  for (size_t i = 0; i < 3; ++i)
+    handed += rows[i][0] * (rows[(i + 1) % 3][1] * rows[(i + 2) % 3][2] - rows[(i + 2) % 3][1] * rows[(i + 1) % 3][2]);
+  if (off > 1e-4 || handed < 0)
+    throw py::value_error("camera: the 4x4 matrix must turn and move only, with 0 0 0 1 as its last row");
+  for (size_t i = 0; i < 3; ++i) {
+    camera.position[i] = rows[i][3];
+    camera.target[i] = rows[i][3] - rows[i][2];
+    camera.up[i] = rows[i][1];
+  }
+  return camera;
+}
+
 picture::LookAt cameraOf(const py::object& given) {
   picture::LookAt camera;
   double matrix[16];
   try {
     auto rows = given.cast<std::vector<std::vector<double>>>();
+    if (rows.size() == 4) return posed(rows);
     if (rows.size() != 2 && rows.size() != 3) throw py::cast_error();
+    camera.saysUp = rows.size() == 3;
     double* targets[] = {camera.position, camera.target, camera.up};
     for (size_t i = 0; i < rows.size(); ++i) {
       if (rows[i].size() != 3) throw py::cast_error();
@@ -58,10 +91,61 @@ picture::LookAt cameraOf(const py::object& given) {
       }
     }
   } catch (const py::cast_error&) {
-    throw py::value_error("camera: (position, target) or (position, target, up) of 3 numbers each expected");
+    throw py::value_error(
+        "camera: a Pinhole, a 4x4 matrix from camera to world, or (position, target) or (position, target, up) of 3 numbers each "
+        "expected");
   }
   if (!picture::lookAtMatrix(camera, matrix)) throw py::value_error("camera: position and target are the same point");
   return camera;
+}
+
+// A Pinhole (xvrml/_camera.py). The rays of a symmetric camera with square pixels, of the same focal length fy, are sheared until
+// they are its own.
+picture::View::Pinhole pinholeOf(const py::object& given, int width, int height) {
+  const auto [numbers, pose] = given.attr("_numbers")().cast<std::pair<std::array<double, 5>, std::array<double, 16>>>();
+  const auto [fx, fy, cx, cy, skew] = numbers;
+  picture::View::Pinhole camera{};
+  camera.fovy = 2 * std::atan(height / 2.0 / fy);
+  const double up = (cy - height / 2.0) / fy, right = (width / 2.0 - cx) / fx + skew / fx * up;
+  for (size_t i = 0; i < 3; ++i) { // the pose's y runs down and its z ahead
+    const double x = pose[4 * i], y = -pose[4 * i + 1], z = -pose[4 * i + 2];
+    const double columns[] = {x, y, z, pose[4 * i + 3]};
+    const double sheared[] = {x * fy / fx, y + x * skew / fx, z - x * right - y * up, pose[4 * i + 3]};
+    for (size_t k = 0; k < 4; ++k) camera.matrix[4 * k + i] = columns[k], camera.sheared[4 * k + i] = sheared[k];
+  }
+  camera.matrix[15] = camera.sheared[15] = 1;
+  return camera;
+}
+
+// The renderer measures along the middle of the picture, which is not the view axis where the principal point lies elsewhere.
+void measureAlongAxis(const picture::View::Pinhole& camera, picture::Picture& picture) {
+  const std::vector<float>& position = picture.planes.at(RT_POSITION);
+  std::vector<float>& depth = picture.planes.at(RT_DEPTH);
+  const double* m = camera.matrix;
+  for (size_t i = 0; i < depth.size(); ++i) {
+    if (!std::isfinite(depth[i])) continue;
+    double along = 0;
+    for (size_t k = 0; k < 3; ++k) along -= (double(position[3 * i + k]) - m[12 + k]) * m[8 + k];
+    depth[i] = float(along);
+  }
+}
+
+picture::Background backgroundOf(const py::object& given) {
+  if (given.is_none()) return {};
+  std::string text;
+  if (py::isinstance<py::str>(given)) {
+    text = fromText(given);
+  } else if (py::hasattr(given, "__fspath__")) {
+    text = toPath(given);
+  } else {
+    try {
+      const auto rgb = given.cast<std::array<double, 3>>();
+      text = fmt::format("{},{},{}", rgb[0], rgb[1], rgb[2]);
+    } catch (const py::cast_error&) { throw py::value_error(fmt::format("background: {} expected", picture::backgroundForms)); }
+  }
+  try {
+    return picture::readBackground(text);
+  } catch (const std::invalid_argument& error) { throw py::value_error(std::string("background: ") + error.what()); }
 }
 
 // Index of the viewpoint asked for by name or number.
@@ -109,7 +193,8 @@ py::object render(const WorldPtr& self, const py::object& size, std::optional<lo
                   const py::object& camera, bool fit, std::optional<double> fov, long long seed, long long threads, bool shadows,
                   const std::string& colour, const py::object& headlight, long long depth, const py::object& channels,
                   const std::string& transport, double error, double timeLimit, double clamp, const py::object& cluster,
-                  const py::object& progress, bool multiplyTextures) {
+                  const py::object& progress, bool multiplyTextures, const std::optional<std::string>& up,
+                  const py::object& background) {
   picture::RenderSettings settings;
   settings.multiplyTextures = multiplyTextures;
   const auto sides = size.cast<std::vector<long long>>();
@@ -143,10 +228,20 @@ py::object render(const WorldPtr& self, const py::object& size, std::optional<lo
   settings.progressive = picture::worthRounds(settings);
 
   picture::View view;
-  if (!viewpoint.is_none() + !camera.is_none() + fit > 1)
-    throw py::value_error("only one of viewpoint, camera and fit can be used");
+  const bool pinhole = py::hasattr(camera, "_numbers");
+  if (!viewpoint.is_none() && (!camera.is_none() || fit))
+    throw py::value_error("viewpoint: not with camera or fit, which look from elsewhere");
+  if (pinhole && (fit || fov)) throw py::value_error("camera: a Pinhole says all of the view: not with fit or fov");
   if (fov && !(*fov > 0 && *fov < 180)) throw py::value_error("fov: an angle between 0 and 180 degrees expected");
-  if (!camera.is_none()) view.lookAt = cameraOf(camera);
+  if (pinhole)
+    view.pinhole = pinholeOf(camera, settings.width, settings.height);
+  else if (!camera.is_none())
+    view.lookAt = cameraOf(camera);
+  if (up && !(view.up = picture::axisNamed(*up)))
+    throw py::value_error("up: 'x', 'y', 'z', '-x', '-y' or '-z' expected, not '" + *up + "'");
+  settings.background = backgroundOf(background);
+  const uint32_t wanted = settings.channels;
+  if (pinhole && (wanted & RT_DEPTH)) settings.channels |= RT_POSITION;
   view.fit = fit;
   view.fov = fov;
 
@@ -166,7 +261,13 @@ py::object render(const WorldPtr& self, const py::object& size, std::optional<lo
     auto made = std::make_unique<PictureObject>();
     made->stats = statsOf(self->graph(), result);
     made->time = self->browser() ? self->browser()->now() : 0;
+    if (view.pinhole && (wanted & RT_DEPTH)) measureAlongAxis(*view.pinhole, result.picture);
+    if (!(wanted & RT_POSITION)) result.picture.planes.erase(RT_POSITION);
+    if (!result.ownRays) made->place = result.camera;
+    if (pinhole) made->camera = camera;
     made->picture = std::move(result.picture);
+    made->nodes.reserve(result.nodes.size());
+    for (xvrml::NodeRef& node : result.nodes) made->nodes.emplace_back(self, std::move(node));
     return py::cast(std::move(made));
   };
   std::shared_ptr<picture::Renderer> renderer;
@@ -238,9 +339,13 @@ void defineRender(py::object worldClass) {
       py::arg("seed") = 0, py::arg("threads") = 0, py::arg("shadows") = true, py::arg("colour") = "linear",
       py::arg("headlight") = "auto", py::arg("depth") = 25, py::arg("channels") = py::none(), py::arg("transport") = "auto",
       py::arg("error") = 0.0, py::arg("time_limit") = 0.0, py::arg("clamp") = 0.0, py::arg("cluster") = py::none(),
-      py::arg("progress") = py::none(), py::arg("multiply_textures") = false,
+      py::arg("progress") = py::none(), py::arg("multiply_textures") = false, py::arg("up") = py::none(),
+      py::arg("background") = py::none(),
       "Renders the world as it is now; of one that runs, the scene is kept from one picture to the next. Options as those of "
       "the program vv. spp: samples a pixel, 16; with an error at most so many, 4096; with a time limit 65536. channels: "
       "rgba and z, and with an error also error and trust. progress: True for a bar, or a function that is called with the "
-      "fraction done. Ctrl-C raises KeyboardInterrupt; its attribute image is what was finished.");
+      "fraction done. Ctrl-C raises KeyboardInterrupt; its attribute image is what was finished. camera: a Pinhole, a 4x4 matrix "
+      "from camera to world (looking along -z, +y up), or (position, target) or (position, target, up); with fit only its "
+      "direction "
+      "counts. up: the axis that is up ('z', '-y' ...) in a world without Viewpoint. background: 'none', a colour or a file.");
 }

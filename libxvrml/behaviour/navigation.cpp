@@ -26,7 +26,8 @@ Avatar Navigator::avatar() const {
   }
   if (scale > 0 && std::isfinite(scale))
     for (double* v : {&a.distance, &a.height, &a.step, &a.speed, &a.gravity}) *v *= scale;
-  const Vector up = transformDirection(outside, {0, 1, 0});
+  const bool guided = interaction_.binding.bound().viewpoint != nullptr;
+  const Vector up = guided ? transformDirection(outside, {0, 1, 0}) : up_;
   if (up.length() > 0) a.up = up.normalized();
   return a;
 }

@@ -46,6 +46,8 @@ class Navigator {
   // The first of NavigationInfo.type that is known; what was chosen last if the list has ANY or it.
   Navigation type() const;
   bool choose(Navigation type); // false if the bound NavigationInfo does not allow it
+  // The direction that is up while no Viewpoint is bound.
+  void setUp(const Vector& up) { up_ = up; }
   void rest() {
     motion_.fall = 0;
     hasCenter_ = false;
@@ -63,6 +65,7 @@ class Navigator {
   bool hasChosen_ = false;
   std::set<Key> held_;
   double lastTick_ = std::numeric_limits<double>::quiet_NaN();
+  Vector up_{0, 1, 0};
 };
 
 } // namespace xvrml

@@ -29,6 +29,12 @@ void Browser::placeViewer(const double view[16]) {
   impl_->workOff();
 }
 
+void Browser::setUp(const double up[3]) {
+  const Vector v(up[0], up[1], up[2]);
+  const double length = v.length();
+  if (length > 0 && std::isfinite(length)) interactionOf(*impl_->engine).navigation.setUp(v / length);
+}
+
 void Browser::setTransition(double seconds) { interactionOf(*impl_->engine).viewer.setTransition(seconds); }
 
 std::vector<ViewpointName> Browser::viewpoints() const {

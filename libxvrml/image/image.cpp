@@ -61,4 +61,6 @@ Image readImage(const std::string& path, const Limits& limits) {
   return decodeImage(bytes.data(), bytes.size(), limits);
 }
 
+Image loadImage(const std::string& path, const Limits& limits) { return readImage(path, limits); }
+
 } // namespace xvrml

@@ -3,6 +3,7 @@
 #include "openrt/graph.h"
 
 #include <algorithm>
+#include <functional>
 
 #include "openrt/appearance.h"
 #include "xvrml/nodes.h"
@@ -13,6 +14,7 @@ Graph::Graph(World& world) : meshes(world), context_{world} {
   items.resize(2);
   items[0].planned = true;
   names.emplace_back();
+  shapes.push_back(0);
   planRoots();
   plan(root);
   settle();
@@ -121,6 +123,7 @@ void Graph::settle() {
   }
   sortItems();
   linkParents();
+  numberShapes();
   std::erase_if(replanned_, [&](ItemId id) { return !items[id].planned; });
 }
 
@@ -165,6 +168,7 @@ void Graph::drop(ItemId id) {
   Item& item = items[id];
   known_.erase(item.node.get());
   if (item.mesh != none) meshes.drop(item.mesh);
+  if (item.number != 0) shapes[item.number] = 0, freeNumbers_.push_back(item.number);
   const int32_t part = item.part; // Objects clears it away
   item = Item();
   item.part = part;
@@ -187,6 +191,37 @@ void Graph::linkParents() {
   for (const ItemId id : order)
     for (const ItemId child : items[id].children)
       if (child != 0) parents[items[child].firstParent + items[child].parentCount++] = id;
+}
+
+// A shape keeps its number as long as it is there. New ones are numbered in the order of the file, and take free numbers first.
+void Graph::numberShapes() {
+  std::sort(freeNumbers_.begin(), freeNumbers_.end(), std::greater<>());
+  for (const ItemId id : order) {
+    Item& item = items[id];
+    if (item.kind != Kind::shape || item.number != 0) continue;
+    if (freeNumbers_.empty()) {
+      item.number = uint32_t(shapes.size());
+      shapes.push_back(id);
+    } else {
+      item.number = freeNumbers_.back();
+      freeNumbers_.pop_back();
+      shapes[item.number] = id;
+    }
+  }
+}
+
+std::vector<std::string> Graph::shapeNames() const {
+  std::vector<uint32_t> nearest(items.size(), 0); // parents stand behind children
+  for (size_t i = order.size(); i-- > 0;) {
+    const Item& item = items[order[i]];
+    uint32_t& name = nearest[order[i]];
+    if (item.name != 0) name = item.name;
+    for (size_t c = item.children.size(); c-- > 0;) nearest[item.children[c]] = name;
+  }
+  std::vector<std::string> out(shapes.size());
+  for (size_t number = 1; number < shapes.size(); ++number)
+    if (shapes[number] != 0) out[number] = nearest[shapes[number]] != 0 ? names[nearest[shapes[number]]] : "Shape";
+  return out;
 }
 
 uint32_t Graph::nameId(const std::string& name) {

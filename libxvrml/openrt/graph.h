@@ -64,6 +64,7 @@ struct Item {
   bool on = true;        // a light that shines
   uint32_t name = 0;     // in Graph::names; 0: none
   int32_t mesh = none;   // shape: in Meshes
+  uint32_t number = 0;   // shape: in Graph::shapes, what the id channel shows
 
   // Made by Graph::settle.
   uint32_t position = 0;                     // in Graph::order
@@ -134,11 +135,14 @@ class Graph {
   Matrix matrixOf(const Item& item) const { return item.matrix ? *item.matrix : Matrix(); }
   Matrix below(const Matrix& outside, const Item& item) const { return item.matrix ? compose(outside, *item.matrix) : outside; }
   uint32_t nameId(const std::string& name);
+  // Returns for each number of a shape its DEF name, else that of the nearest group above its first place, else "Shape".
+  std::vector<std::string> shapeNames() const;
 
   std::vector<Item> items;        // items[0] is the empty item, items[root] holds the world
   std::vector<ItemId> order;      // children before parents, in the order of the file; the root last
   std::vector<ItemId> parents;    // see Item::firstParent
   std::vector<std::string> names; // [0] is ""
+  std::vector<ItemId> shapes;     // by number, [0] is none; 0: the shape has gone and its number is free
   static constexpr ItemId root = 1;
   Meshes meshes;
 
@@ -149,11 +153,13 @@ class Graph {
   void sortItems();
   void linkParents();
   void drop(ItemId id);
+  void numberShapes();
 
   PlanContext context_;
   std::unordered_map<const Node*, ItemId> known_;
   std::unordered_map<std::string, uint32_t> nameIds_;
   std::vector<ItemId> pending_, free_, dropped_, replanned_;
+  std::vector<uint32_t> freeNumbers_; // of shapes
   std::vector<NodeRef> roots_;
 };
 

@@ -2,7 +2,9 @@
 #include "openrt/lights.h"
 
 #include <algorithm>
+#include <span>
 
+#include "openrt/model.h"
 #include "xvrml/nodes.h"
 
 namespace xvrml::mapping {
@@ -85,10 +87,12 @@ void Lights::remove(const std::vector<Place>& gone) {
 
 void Lights::clear(Places& places) {
   for (Place& place : places.all) takeAway(place.light);
-  takeAway(headlight_);
+  takeFromCamera();
   for (const auto& [node, known] : shaders_)
     if (known.own) rtDeleteShader(known.shader);
-  if (headlightShader_ != 0) rtDeleteShader(headlightShader_);
+  if (headlight_.shader != 0) rtDeleteShader(headlight_.shader);
+  for (const AtCamera& one : modelLights_)
+    if (one.shader != 0) rtDeleteShader(one.shader);
 }
 
 void Lights::forget(const Graph& graph) {
@@ -120,7 +124,7 @@ void Lights::follow(const Graph& graph, Places& places) {
     if (item.kind == Kind::directionalLight && place.light != 0 && place.parent != 0) scope(place, places);
   }
   remade_.clear();
-  if (behindNew) takeAway(headlight_);
+  if (behindNew) takeFromCamera();
 }
 
 void Lights::makeOrMove(Place& place, const Item& item) {
@@ -148,24 +152,38 @@ void Lights::scope(Place& place, const Places& places) {
   ++changes_;
 }
 
-void Lights::headlight(bool on, const CameraSettings& camera) {
-  if (!on) return takeAway(headlight_);
-  ++count_;
+void Lights::takeFromCamera() {
+  takeAway(headlight_.light);
+  for (AtCamera& one : modelLights_) takeAway(one.light);
+}
+
+void Lights::atCamera(CameraLight light, const CameraSettings& camera) {
+  static constexpr Lamp headlamp[] = {{{0, 0, -1}, 1}};
+  if (light != atCamera_) takeFromCamera();
+  atCamera_ = light;
+  if (light == CameraLight::none) return;
+  const bool head = light == CameraLight::head;
+  const std::span<const Lamp> lamps = head ? std::span<const Lamp>(headlamp) : std::span<const Lamp>(modelLamps);
+  const std::span<AtCamera> used = head ? std::span<AtCamera>(&headlight_, 1) : std::span<AtCamera>(modelLights_);
   const Matrix view = rigid(fromArray(camera.matrix));
-  if (headlight_ != 0) {
-    if (view != view_) rtLightMatrix(headlight_, data(view));
-    view_ = view;
-    return;
+  for (size_t i = 0; i < used.size(); ++i) {
+    AtCamera& one = used[i];
+    ++count_;
+    if (one.light != 0) {
+      if (view != view_) rtLightMatrix(one.light, data(view));
+      continue;
+    }
+    if (one.shader == 0) {
+      ShaderSetup s(classes_.get("VRML97DirectionalLight", ""));
+      s.vector("direction", lamps[i].direction);
+      if (lamps[i].intensity != 1) s.number("intensity", lamps[i].intensity, 0);
+      s.integer("shadows", 0);
+      one.shader = s.id();
+    }
+    load(view);
+    one.light = rtUseLight(one.shader);
+    ++changes_;
   }
-  if (headlightShader_ == 0) {
-    ShaderSetup s(classes_.get("VRML97DirectionalLight", ""));
-    s.vector("direction", {0, 0, -1});
-    s.integer("shadows", 0);
-    headlightShader_ = s.id();
-  }
-  load(view);
-  headlight_ = rtUseLight(headlightShader_);
-  ++changes_;
   view_ = view;
   report(world_.diagnostics, {}, "headlight");
 }

@@ -10,6 +10,8 @@
 
 namespace xvrml::mapping {
 
+enum class CameraLight : uint8_t { none, head, model };
+
 class Lights {
  public:
   Lights(World& world, bool linearColor, ShaderClasses& classes, CustomShaders& custom)
@@ -23,8 +25,8 @@ class Lights {
   void remove(const std::vector<Place>& gone);
   void forget(const Graph& graph);
   void clear(Places& places); // takes everything away
-  // A directional light along the view that casts no shadows.
-  void headlight(bool on, const CameraSettings& camera);
+  // Directional lights that go with the camera and cast no shadows: the headlight, or the three of model.h.
+  void atCamera(CameraLight light, const CameraSettings& camera);
   uint64_t count() const { return count_; }
   uint64_t changes() const { return changes_; }
   uint64_t parametersSet() const { return sets_; }
@@ -39,8 +41,14 @@ class Lights {
   bool linear_;
   ShaderClasses& classes_;
   CustomShaders& custom_;
-  RTid headlight_ = 0, headlightShader_ = 0;
-  Matrix view_; // of the headlight
+  struct AtCamera {
+    RTid light = 0, shader = 0;
+  };
+  void takeFromCamera();
+
+  CameraLight atCamera_ = CameraLight::none;
+  AtCamera headlight_, modelLights_[3];
+  Matrix view_; // of the lights at the camera
   uint64_t count_ = 0, changes_ = 0, sets_ = 0;
   struct Known {
     RTid shader = 0;

@@ -4,6 +4,7 @@
 
 #include "openrt/extent.h"
 #include "openrt/mapper_impl.h"
+#include "openrt/model.h"
 
 namespace xvrml {
 
@@ -71,9 +72,24 @@ const Bounds& OpenRTMapper::Impl::bounds() {
   if (boundsStale) {
     places.follow(graph, camera);
     bounds_ = boundsOf(graph, places);
+    sphereStale = true;
   }
   boundsStale = false;
   return bounds_;
+}
+
+const BoundingSphere& OpenRTMapper::Impl::sphere() {
+  const Bounds& box = bounds();
+  if (sphereStale) sphere_ = sphereOf(graph, places, box);
+  sphereStale = false;
+  return sphere_;
+}
+
+bool OpenRTMapper::Impl::lightsModel() {
+  if (!modelLight || options.headlight != MapOptions::Headlight::automatic || bound.viewpoint) return false;
+  if (lightStale) leavesLightOpen_ = leavesLightOpen(graph, bound);
+  lightStale = false;
+  return leavesLightOpen_;
 }
 
 OpenRTMapper::OpenRTMapper(World& world, const MapOptions& options) : impl_(std::make_unique<Impl>(world, options)) {}
@@ -100,11 +116,21 @@ CameraSettings OpenRTMapper::fitCamera(double fovy) const {
 void OpenRTMapper::setMultiplyTextures(bool multiply) { impl_->surfaces.multiplyTextures = multiply; }
 void OpenRTMapper::setHeadlight(MapOptions::Headlight headlight) { impl_->options.headlight = headlight; }
 
+void OpenRTMapper::setModelLight(bool on) { impl_->modelLight = on; }
+
+void OpenRTMapper::setBackground(bool on) { impl_->background = on; }
+
 Bounds OpenRTMapper::bounds() const { return impl_->bounds(); }
 
+BoundingSphere OpenRTMapper::boundingSphere() const { return impl_->sphere(); }
+
+UpGuess OpenRTMapper::guessUp() const { return mapping::guessUp(impl_->world, impl_->graph, impl_->bounds()); }
+
 void OpenRTMapper::bind(const BoundNodes& nodes) {
+  const Bound before = impl_->bound;
   impl_->given = boundTo(impl_->graph, impl_->places, nodes);
   impl_->bound = *impl_->given;
+  impl_->lightStale |= before.navigationInfo != impl_->bound.navigationInfo || before.background != impl_->bound.background;
 }
 
 void OpenRTMapper::update(const FieldChanges& changes) { impl_->update(changes); }
@@ -114,10 +140,12 @@ void OpenRTMapper::map(const CameraSettings& camera) {
   report(m.world.diagnostics, {}, "before the world was mapped");
   m.camera = camera;
   m.places.follow(m.graph, camera);
-  m.environment.follow(m.places, m.bound);
+  Bound around = m.bound;
+  if (!m.background) around.background = {}, around.backgroundPlace = none;
+  m.environment.follow(m.places, around);
   m.objects.follow();
   m.lights.follow(m.graph, m.places);
-  m.lights.headlight(m.headlight(), camera);
+  m.lights.atCamera(m.lightsModel() ? CameraLight::model : m.headlight() ? CameraLight::head : CameraLight::none, camera);
   m.graph.meshes.release(); // the context has its own copy
   m.useCamera(camera);
   m.custom.sweep();
@@ -164,6 +192,17 @@ MapStats OpenRTMapper::stats() const {
   return s;
 }
 
-const std::vector<std::string>& OpenRTMapper::names() const { return impl_->graph.names; }
+const std::vector<std::string>& OpenRTMapper::names() const {
+  if (impl_->namesStale) impl_->names = impl_->graph.shapeNames();
+  impl_->namesStale = false;
+  return impl_->names;
+}
+
+std::vector<NodeRef> OpenRTMapper::nodes() const {
+  std::vector<NodeRef> nodes;
+  nodes.reserve(impl_->graph.shapes.size());
+  for (const ItemId id : impl_->graph.shapes) nodes.push_back(id == 0 ? NodeRef() : impl_->graph.items[id].node);
+  return nodes;
+}
 
 } // namespace xvrml

@@ -35,6 +35,7 @@ struct OpenRTMapper::Impl {
   ~Impl(); // takes everything out of the context again, if that is still the current one
   CameraSettings cameraAt(int32_t place) const;
   bool headlight() const;
+  bool lightsModel();
   void useCamera(const CameraSettings& settings);
   void rebind();
 
@@ -42,7 +43,11 @@ struct OpenRTMapper::Impl {
   const std::vector<ViewpointInfo>& viewpoints();
   const std::vector<int32_t>& viewpointPlaces();
   const Bounds& bounds();
-  bool viewsStale = true, boundsStale = true, countsStale = false;
+  const BoundingSphere& sphere();
+  bool viewsStale = true, boundsStale = true, countsStale = false, namesStale = true;
+  bool sphereStale = true, lightStale = true;
+  bool modelLight = false, background = true; // as setModelLight() and setBackground() say
+  std::vector<std::string> names;             // of the shapes, by number
 
   // Between frames: update.cpp.
   void update(const FieldChanges& changes);
@@ -60,6 +65,8 @@ struct OpenRTMapper::Impl {
   std::vector<ViewpointInfo> viewpoints_;
   std::vector<int32_t> viewpointPlaces_;
   Bounds bounds_;
+  BoundingSphere sphere_;
+  bool leavesLightOpen_ = false;
   size_t surfacesKept_ = 64;
 };
 

@@ -239,6 +239,24 @@ void Meshes::grow(Bounds& bounds, int32_t mesh, const Matrix& matrix) {
     if (used[i]) growByPoint(bounds, transformPoint(matrix, vector(m.points[i])));
 }
 
+double Meshes::reach(int32_t mesh, const Matrix& matrix, const Vector& from) {
+  const Mesh& m = get(mesh);
+  double far = 0;
+  if (m.kind == Mesh::Kind::sphere) {
+    double longest = 0;
+    for (int axis = 0; axis < 3; ++axis)
+      longest = std::max(longest, Vector(matrix.x[axis][0], matrix.x[axis][1], matrix.x[axis][2]).length());
+    far = (transformPoint(matrix, Vector(0)) - from).length() + m.radius * longest;
+    return std::isfinite(far) ? far : 0;
+  }
+  for (const uint32_t index : m.indices) {
+    if (index >= m.points.size()) continue;
+    const double length = (transformPoint(matrix, vector(m.points[index])) - from).length();
+    if (length > far && std::isfinite(length)) far = length;
+  }
+  return far;
+}
+
 void compact(const Mesh& mesh, Mesh& out) {
   std::vector<uint32_t> used(mesh.indices.begin(), mesh.indices.end());
   std::sort(used.begin(), used.end());

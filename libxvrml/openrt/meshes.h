@@ -45,6 +45,8 @@ class Meshes {
   uint32_t users(int32_t mesh) const;
   // Grows bounds by the mesh under a matrix.
   void grow(Bounds& bounds, int32_t mesh, const Matrix& matrix);
+  // Returns how far from a point the mesh under a matrix reaches; of a sphere that is not round at least so far.
+  double reach(int32_t mesh, const Matrix& matrix, const Vector& from);
   // Forgets the arrays; get() would build them again.
   void release();
 

@@ -63,7 +63,7 @@ void Objects::definePlace(size_t index) {
   const bool pure = !item.placed; // an LOD's level
   defineBelow(place.item, pure ? none : int32_t(index));
   open(part, item.changes && item.own != Own::merged);
-  expand({place.item, pure ? none : int32_t(index), Matrix(), place.name});
+  expand({place.item, pure ? none : int32_t(index), Matrix()});
   drain();
   close();
 }
@@ -123,10 +123,8 @@ void Objects::defineItem(ItemId id) {
   if (!parts_[size_t(part)].dirty) return;
   const Item& item = graph_.items[id];
   open(part, item.changes && item.own != Own::merged);
-  nameless_ = true;
-  expand({id, none, Matrix(), item.name});
+  expand({id, none, Matrix()});
   drain();
-  nameless_ = false;
   close();
 }
 

@@ -59,7 +59,6 @@ class Objects {
     ItemId item;
     int32_t place; // or `none`: an item whose meaning does not depend on the place
     Matrix matrix; // that its content stands under, in the object being written
-    uint32_t name;
   };
   struct Placed { // an instance that events move or colour
     RTid instance;
@@ -88,17 +87,15 @@ class Objects {
   void close();
 
   // Writes what a step leads to into the open object; the stack holds what is still to come: shapes.cpp.
-  void enter(ItemId item, int32_t place, const Matrix& matrix, uint32_t name);
+  void enter(ItemId item, int32_t place, const Matrix& matrix);
   void expand(const Step& step);
   void drain();
-  void writeShape(ItemId item, const Matrix& matrix, uint32_t name);
+  void writeShape(ItemId item, const Matrix& matrix);
   void draw(int32_t mesh, const Surface& surface, bool textured);
   void drawArrays(const Mesh& mesh, const Surface& surface, bool textured);
-  RTid instantiate(int32_t part, const Matrix& matrix, uint32_t name, bool dynamic);
+  // number: of the shape that the instance is; 0: shapes below have their own.
+  RTid instantiate(int32_t part, const Matrix& matrix, uint32_t number, bool dynamic);
   void keep(ItemId item, RTid instance, const Matrix& base);
-  // The name to give: that of the nearest group, else "Shape"; none in an object that has instances in several places, each of
-  // which brings its own.
-  uint32_t givenName(const Item& item, uint32_t name);
 
   World& world_;
   bool linear_;
@@ -113,7 +110,6 @@ class Objects {
   std::vector<uint32_t> seen_; // by item: number of the last walk upwards that met it
   uint32_t walk_ = 0;
   int32_t writing_ = none;    // the open part
-  bool nameless_ = false;     // names come from its instances
   bool live_ = false;         // the world runs: hints are given
   std::vector<float> colors_; // scratch
   uint64_t objects_ = 0, instances_ = 0, definitions_ = 0, moves_ = 0;

@@ -30,7 +30,6 @@ void Places::expand(const Graph& graph) {
     place.item = id;
     place.parent = parent;
     place.level = level;
-    place.name = item.name != 0 || parent == none ? item.name : all[size_t(parent)].name;
     place.inlined = item.isInline || (parent != none && all[size_t(parent)].inlined);
     place.split = parent == none || level != none || item.kind == Kind::billboard || item.kind == Kind::lod || item.scopesLight ||
                   isSplit(item.own);

@@ -17,7 +17,6 @@ struct Place {
   uint32_t firstChild = 0; // in Places::children, one for each child of the item: a place or `none`
   uint32_t childCount = 0;
   int32_t level = none;  // child of an LOD: which
-  uint32_t name = 0;     // of the nearest named group, the item included
   bool inlined = false;  // below an Inline
   bool split = false;    // has an object of its own: root, billboards, LODs, their levels, what events reach or scopes a light
   bool active = true;    // not in an LOD's level that is not chosen

@@ -13,31 +13,30 @@ RTenum modeOf(Mesh::Kind kind) {
 }
 } // namespace
 
-void Objects::enter(ItemId id, int32_t at, const Matrix& matrix, uint32_t name) {
+void Objects::enter(ItemId id, int32_t at, const Matrix& matrix) {
   const Item& item = graph_.items[id];
   if (at == none && !item.draws) return;
   if (at != none && places_.all[size_t(at)].split) {
     Place& place = places_.all[size_t(at)];
     const bool turns = item.kind == Kind::billboard && live_;
     place.base = matrix;
-    place.instance = instantiate(partOfPlace(size_t(at)), compose(graph_.below(matrix, item), places_.turns[size_t(at)]),
-                                 givenName(item, name), item.moves || turns);
+    place.instance = instantiate(partOfPlace(size_t(at)), compose(graph_.below(matrix, item), places_.turns[size_t(at)]), 0,
+                                 item.moves || turns);
   } else if (at == none && item.own != Own::none) {
-    const RTid instance = instantiate(partOfItem(id), graph_.below(matrix, item), givenName(item, name), item.moves);
+    const RTid instance = instantiate(partOfItem(id), graph_.below(matrix, item), 0, item.moves);
     if (item.moves) keep(id, instance, matrix);
   } else {
-    stack_.push_back({id, at, graph_.below(matrix, item), name});
+    stack_.push_back({id, at, graph_.below(matrix, item)});
   }
 }
 
 void Objects::expand(const Step& step) {
   const Item& item = graph_.items[step.item];
-  const uint32_t name = item.name != 0 ? item.name : step.name;
-  if (item.kind == Kind::shape) return writeShape(step.item, step.matrix, name);
+  if (item.kind == Kind::shape) return writeShape(step.item, step.matrix);
   const bool oneLevel = item.kind == Kind::lod; // one that has no place of its own: see summarise
   for (size_t c = oneLevel ? std::min(item.children.size(), size_t(1)) : item.children.size(); c-- > 0;) {
     const int32_t at = step.place == none ? none : places_.children[places_.all[size_t(step.place)].firstChild + c];
-    enter(item.children[c], at, step.matrix, name);
+    enter(item.children[c], at, step.matrix);
   }
 }
 
@@ -50,10 +49,10 @@ void Objects::drain() {
 }
 
 // dynamic: events or the camera will move it.
-RTid Objects::instantiate(int32_t id, const Matrix& matrix, uint32_t name, bool dynamic) {
+RTid Objects::instantiate(int32_t id, const Matrix& matrix, uint32_t number, bool dynamic) {
   const bool usable = finite(matrix);
   if (!usable && !dynamic) return 0; // scales that multiply beyond all numbers: out of sight
-  rtLoadName(name);
+  rtLoadName(number);
   load(usable ? matrix : scaling(Vector(0)));
   const RTid instance = rtInstantiateObject(parts_[size_t(id)].object);
   if (instance == 0) {
@@ -73,24 +72,21 @@ void Objects::keep(ItemId item, RTid instance, const Matrix& base) {
   parts_[size_t(writing_)].moving.push_back(item);
 }
 
-uint32_t Objects::givenName(const Item& item, uint32_t name) {
-  if (item.name != 0) name = item.name;
-  return name != 0 || nameless_ ? name : graph_.nameId("Shape");
-}
-
-void Objects::writeShape(ItemId id, const Matrix& matrix, uint32_t name) {
+// What a shape draws has the shape's number as its name, also in an object that holds many shapes or has many instances: the id
+// channel tells them apart.
+void Objects::writeShape(ItemId id, const Matrix& matrix) {
   const Item& item = graph_.items[id];
   Node* appearance = static_cast<nodes::Shape&>(*item.node).appearance.get();
   if (item.viaMesh) {
     const int32_t part = partOfMesh(graph_.meshes.equal(item.mesh));
-    const RTid instance = instantiate(part, matrix, givenName(item, name), false);
+    const RTid instance = instantiate(part, matrix, item.number, false);
     if (instance != 0) rtInstanceShader(instance, surfaces_.of(appearance, false).shader);
     if (item.recolored) keep(id, instance, matrix);
   } else {
     const Meshes::Extent extent = graph_.meshes.extent(item.mesh);
     if (extent.primitives == 0 || !finite(matrix)) return;
     const Surface surface = surfaces_.of(appearance, item.lines);
-    rtLoadName(givenName(item, name));
+    rtLoadName(item.number);
     load(matrix);
     draw(item.mesh, surface, isTextured(appearance));
   }

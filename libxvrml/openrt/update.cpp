@@ -131,6 +131,7 @@ void OpenRTMapper::Impl::reshaped(Work& work, Node& first) {
 void OpenRTMapper::Impl::relooked(Work& work, Node& first) {
   if (const ItemId id = graph.find(&first)) {
     if (graph.items[id].kind != Kind::shape) return;
+    lightStale = true; // its appearance may be this renderer's own
     if (objects.recolored(id)) return textured(work, id);
     textured(work, id);
     work.rewrite.push_back(id);
@@ -204,7 +205,7 @@ void OpenRTMapper::Impl::regroup() {
   lights.remove(gone);
   lights.forget(graph);
   rebind();
-  viewsStale = boundsStale = true;
+  viewsStale = boundsStale = namesStale = lightStale = true;
   countsStale = false;
   if (surfaces.count() <= 2 * surfacesKept_) return;
   std::unordered_set<const Node*> used;

@@ -41,7 +41,7 @@ Loader::Loader(World& world, const LoadOptions& options)
 void Loader::load(const Source& source, const std::string& name, bool header) {
   const auto start = std::chrono::steady_clock::now();
   ParsedFile file;
-  const auto sharedName = std::make_shared<const std::string>(name);
+  const auto sharedName = source.nameWithComments(name);
   if (header) source.checkHeader(sharedName, state_.diagnostics);
   state_.anyRoots = !header;
   parse(source, sharedName, file);

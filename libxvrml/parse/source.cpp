@@ -15,6 +15,7 @@
 
 #include "base/lexer.h"
 #include "parse/other_formats.h"
+#include "xvrml/comments.h"
 
 namespace xvrml {
 namespace {
@@ -212,6 +213,36 @@ void Source::checkHeader(const std::shared_ptr<const std::string>& file, Diagnos
   if (looksLikeVrml(text_)) return warn(fmt::format("the header '{}' is missing; read as VRML97 all the same", exact));
   if (text_.empty()) refuse(*file, fmt::format("is empty: expected '{}'", exact));
   refuse(*file, fmt::format("is not a VRML97 world: expected it to begin with '{}'", exact), 1);
+}
+
+namespace {
+
+// The deleter of a file's name: what is known of the file goes with the name that all its nodes hold.
+struct NameDeleter {
+  std::string comments;
+  void operator()(const std::string* name) const { delete name; }
+};
+
+} // namespace
+
+std::shared_ptr<const std::string> Source::nameWithComments(const std::string& name) const {
+  constexpr size_t most = 4096;
+  std::string comments;
+  std::string_view rest = text_;
+  while (!rest.empty() && comments.size() < most) {
+    const std::string_view line = firstLine(rest);
+    const size_t begin = line.find_first_not_of(" \t\r,");
+    if (begin != line.npos && line[begin] != '#') break;
+    if (begin != line.npos) comments += std::string(line.substr(begin + 1, most - comments.size())) + "\n";
+    rest.remove_prefix(std::min(rest.size(), line.size() + 1));
+  }
+  return {new std::string(name), NameDeleter{std::move(comments)}};
+}
+
+std::string_view openingComments(const World& world) {
+  for (const NodeRef& root : world.scope.roots)
+    if (const NameDeleter* known = root ? std::get_deleter<NameDeleter>(root->source.file) : nullptr) return known->comments;
+  return {};
 }
 
 } // namespace xvrml

@@ -2,6 +2,7 @@
 // VRML97 world. Used by the loader, on the thread that loads.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <string_view>
 
@@ -18,6 +19,9 @@ class Source {
   Source(Source&& other) noexcept;
   Source& operator=(Source&&) = delete;
   ~Source();
+
+  // The file's name for the positions of its nodes; openingComments() finds the comments at the top of the file by it.
+  std::shared_ptr<const std::string> nameWithComments(const std::string& name) const;
 
   // The text behind a byte-order mark.
   std::string_view text() const { return text_; }

@@ -19,6 +19,7 @@ enum class Action : uint8_t {
   nextViewpoint,
   back,
   frameAll,
+  beginAgain, // the view that a world without Viewpoint begins with; no key of its own
   examine,
   walk,
   fly,

@@ -183,11 +183,36 @@ void Pilot::frameAll(const xvrml::Bounds& bounds) {
   falls_ = false;
 }
 
+void Pilot::present(const xvrml::CameraSettings& camera, xvrml::Axis up) {
+  double axis[3];
+  xvrml::upVector(up, axis);
+  browser_.setUp(axis);
+  browser_.placeViewer(camera.matrix);
+  falls_ = false;
+}
+
+std::optional<picture::View> Pilot::beginning(const picture::View& view) const {
+  if (browser_.bound().viewpoint && !view.up && !view.lookAt) return {};
+  picture::View wanted = view;
+  wanted.fit = true;
+  if (!wanted.fov && browser_.bound().viewpoint) { // the picture goes on to have the Viewpoint's
+    const double vertical = camera().fovy;
+    const double smaller = aspect_ >= 1 ? vertical : 2 * std::atan(std::tan(vertical / 2) * aspect_);
+    if (smaller > 0) wanted.fov = smaller * 180 / std::numbers::pi;
+  }
+  return wanted;
+}
+
 bool Pilot::begin(const picture::View& view, const std::string& viewpoint) {
   double matrix[16];
   if (!viewpoint.empty() && !bindViewpoint(viewpoint))
     throw Failure{exitUsage, fmt::format("--viewpoint: the world has no \"{}\"", viewpoint)};
-  if (view.lookAt && picture::lookAtMatrix(*view.lookAt, matrix)) browser_.placeViewer(matrix);
+  if (view.up) {
+    double up[3];
+    xvrml::upVector(*view.up, up);
+    browser_.setUp(up);
+  }
+  if (picture::lookAtMatrix(view, matrix)) browser_.placeViewer(matrix);
   return view.fit || (!view.lookAt && !browser_.bound().viewpoint);
 }
 
@@ -231,7 +256,7 @@ bool Pilot::hasHeadlight() const {
 Action Pilot::press(Action action) {
   const xvrml::Node* before = browser_.bound().viewpoint;
   const bool nowhere = action == Action::firstViewpoint || action == Action::lastViewpoint || action == Action::back;
-  if (nowhere && browser_.viewpoints().empty()) return Action::frameAll; // a world without Viewpoint begins so
+  if (nowhere && browser_.viewpoints().empty()) return Action::beginAgain;
   switch (action) {
   case Action::firstViewpoint: jumpTo(0); break;
   case Action::lastViewpoint: jumpTo(size_t(-1)); break;
@@ -243,8 +268,8 @@ Action Pilot::press(Action action) {
   case Action::fly: choose(Navigation::fly, "fly"); break;
   case Action::still: choose(Navigation::none, "stand still"); break;
   case Action::headlight:
-    headlight_ = !hasHeadlight();
-    message_ = *headlight_ ? "headlight on" : "headlight off";
+    message_ = hasHeadlight() ? "headlight off" : "headlight on";
+    headlight_ = headlight_ ? std::nullopt : std::optional(!hasHeadlight()); // back to what the world has, or the other way round
     break;
   case Action::pause:
     paused_ = !paused_;

@@ -23,7 +23,8 @@ class Pilot {
   // The session's time has come to `seconds`, not before the last one: the world's follows unless it is paused, held keys and
   // drags move the viewer.
   void step(double seconds);
-  // Returns what is the window's business (frameAll among it: it needs the world's bounds); none: it has been taken care of.
+  // Returns what is the window's business (frameAll and beginAgain among it: they need the world's extent); none: it has been
+  // taken care of.
   Action handle(const InputEvent& event);
 
   void setAspect(double aspect); // of the picture, width / height
@@ -38,6 +39,10 @@ class Pilot {
   // By DEF name, description or number from 0; false if there is none.
   bool bindViewpoint(const std::string& name);
   void putAt(const xvrml::CameraSettings& camera); // where another session was
+  // The view that the world begins with where no Viewpoint says it, and the axis that is up in it.
+  void present(const xvrml::CameraSettings& camera, xvrml::Axis up);
+  // What that view is asked for by, from the options' view; nothing where a bound Viewpoint gives the direction: frameAll() then.
+  std::optional<picture::View> beginning(const picture::View& view) const;
 
   xvrml::CameraSettings camera() const;
   bool paused() const { return paused_; }

@@ -60,8 +60,8 @@ Session::Session(std::unique_ptr<xvrml::World> world, const Options& options, Pr
   if (options.time && !script) WorldClock(*browser_, options.fps).advance(*options.time);
   if (script)
     replay_ = std::make_unique<Replay>(pilot_, *script, [this](const InputEvent& event, Action action) {
-      if (action == Action::frameAll)
-        fit_ = Fit::wanted;
+      if (action == Action::frameAll || action == Action::beginAgain)
+        wantFit(action == Action::beginAgain);
       else
         calls_.business(event, action);
       if (blocked()) replay_->wait();
@@ -78,7 +78,7 @@ Session::~Session() {
 
 void Session::begin(int width, int height, const std::optional<Place>& place, const std::string& fragment) {
   resize(width, height);
-  if (pilot_.begin(options_.view, place || !fragment.empty() ? std::string() : options_.viewpoint) && !place) fit_ = Fit::wanted;
+  if (pilot_.begin(options_.view, place || !fragment.empty() ? std::string() : options_.viewpoint) && !place) wantFit(true);
   fitAgain_ = fit_ != Fit::none && !inlines_.empty();
   if (place) {
     pilot_.bindViewpoint(place->viewpoint);
@@ -114,7 +114,10 @@ void Session::advance(double seconds) {
   if (!stepped_) clock_ += passed;
   if (!resting()) return;
   if (fit_ == Fit::mapping) {
-    pilot_.frameAll(renderer_.bounds());
+    if (const auto view = fitAsAtFirst_ ? pilot_.beginning(options_.view) : std::nullopt)
+      pilot_.present(renderer_.cameraOf(*view, pilot_.aspect()), renderer_.upOf(*view));
+    else
+      pilot_.frameAll(renderer_.bounds());
     fit_ = Fit::none;
     if (replay_) replay_->resume();
   }
@@ -176,8 +179,8 @@ void Session::takeEvents() {
     else if (event.kind == InputEvent::Kind::down)
       action = actionOf(event);
     const bool ofWindow = action >= Action::save && action != Action::none;
-    if (action == Action::frameAll && !replay_)
-      fit_ = Fit::wanted;
+    if ((action == Action::frameAll || action == Action::beginAgain) && !replay_)
+      wantFit(action == Action::beginAgain);
     else if (ofWindow)
       calls_.business(event, action);
   }
@@ -197,10 +200,15 @@ void Session::loadSome() {
       if (below.type().name == "Inline" && !xvrml::inlineScope(below)) inlines_.emplace_back(const_cast<xvrml::Node*>(&below));
     });
   }
-  if (inlines_.empty() && fitAgain_ && !pilot_.touched()) fit_ = Fit::wanted;
+  if (inlines_.empty() && fitAgain_ && !pilot_.touched()) wantFit(true);
 }
 
 // --- The picture ---
+
+void Session::wantFit(bool asAtFirst) {
+  fit_ = Fit::wanted;
+  fitAsAtFirst_ = asAtFirst;
+}
 
 void Session::draw() {
   if (width_ <= 0) return;
@@ -222,15 +230,19 @@ void Session::draw() {
 void Session::start(bool moving) {
   picture::LiveFrame frame;
   frame.view.shader = options_.view.shader;
-  if (fit_ != Fit::wanted || begun_)
-    frame.view.viewer = pilot_.camera();
-  else
+  const bool presenting = fit_ == Fit::wanted && fitAsAtFirst_;
+  if (const auto view = presenting ? pilot_.beginning(options_.view) : std::nullopt)
+    frame.view = *view;
+  else if (presenting && !begun_)
     frame.view.fit = true, frame.view.fov = options_.view.fov;
+  else
+    frame.view.viewer = pilot_.camera();
   shown_ = pilot_.camera();
   if (shownHeadlight_ != pilot_.headlight()) {
     shownHeadlight_ = pilot_.headlight();
     const auto on = xvrml::MapOptions::Headlight::on, off = xvrml::MapOptions::Headlight::off;
-    renderer_.change([&](picture::RenderSettings& s) { s.headlight = *shownHeadlight_ ? on : off; });
+    const auto wanted = !shownHeadlight_ ? options_.render.headlight : *shownHeadlight_ ? on : off;
+    renderer_.change([&](picture::RenderSettings& s) { s.headlight = wanted; });
   }
   const double now = last_;
   if (moving && moving_ && now > lastStart_) gap_ = gap_ <= 0 ? now - lastStart_ : .9 * gap_ + .1 * (now - lastStart_);

@@ -87,6 +87,7 @@ class Session {
   void takeEvents();
   void loadSome();
   void draw();
+  void wantFit(bool asAtFirst);
   void start(bool moving);
   void saveIfFinished();
   void prepare();
@@ -111,6 +112,7 @@ class Session {
   // The picture.
   int width_ = 0, height_ = 0;
   enum class Fit : uint8_t { none, wanted, mapping } fit_ = Fit::none; // the whole world in view, once its extent is known
+  bool fitAsAtFirst_ = true;                                           // as the world begins; false: in the direction of now
   bool fitAgain_ = false;                                              // the picture still shows it all, and more is loaded
   xvrml::CameraSettings shown_{};
   std::optional<bool> shownHeadlight_;

@@ -30,7 +30,7 @@ const OptionInfo* optionOf(std::string_view name) {
 // Groups of options that a picture of the same view is made with.
 bool isKept(const OptionInfo& option) {
   const std::string_view group = option.group, names = option.names;
-  if (names == "--colour,--color" || names == "--camera-shader") return true;
+  if (names == "--colour,--color" || names == "--camera-shader" || names == "--background") return true;
   return group == "Change" || group == "Quality" || group == "Trust";
 }
 

@@ -21,6 +21,7 @@ import warnings as _warnings
 
 from . import _arguments, _world
 from . import _xvrml
+from ._camera import Pinhole
 from ._world import loads
 from ._xvrml import (Browser, Cluster, ClusterError, Diagnostic, Film, Mesh, Node, ParseError, Picture, RenderError, ViewpointInfo,
                      Worker, World, load_node_plugins, __version__)
@@ -36,7 +37,7 @@ for _line in load_node_plugins():
 from . import nodes as nodes  # noqa: E402  after the plug-ins: a class for each of their nodes, too
 from .nodes import *  # noqa: E402,F401,F403
 
-__all__ = ["Browser", "Cluster", "ClusterError", "Diagnostic", "Film", "Mesh", "Node", "ParseError", "Picture", "RenderError",
+__all__ = ["Browser", "Cluster", "ClusterError", "Diagnostic", "Film", "Mesh", "Node", "ParseError", "Picture", "Pinhole", "RenderError",
            "ViewpointInfo", "Worker", "World", "load", "load_node_plugins", "loads", "__version__", *nodes.__all__]
 
 

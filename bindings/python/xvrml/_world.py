@@ -101,6 +101,22 @@ def raycaster(self, spheres=0):
     return caster
 
 
+@property
+def bounds(self):
+    """The box that everything drawn lies in: float64 of shape (2, 3), the lower and the upper corner; None where nothing is drawn.
+    Of levels of detail the first."""
+    import numpy as np
+    corners = []
+    for mesh in self.meshes(spheres=0):
+        if mesh.kind == "sphere":
+            reach = mesh.radius * np.linalg.norm(mesh.matrix[:3, :3], axis=1)
+            corners += [mesh.matrix[:3, 3] - reach, mesh.matrix[:3, 3] + reach]
+        else:
+            points = mesh.world_vertices[np.unique(mesh.faces)]
+            corners += [points.min(0), points.max(0)] if len(points) else []
+    return np.array([np.min(corners, 0), np.max(corners, 0)]) if corners else None
+
+
 @contextlib.contextmanager
 def edit(self, field):
     """A copy of a field's numbers that can be written to; the field is assigned when the block ends without an exception.
@@ -120,4 +136,5 @@ def complete(world, node):
     for function in (on, route, unroute, animate, film, raycaster):
         setattr(world, function.__name__, function)
     world.__reduce__ = _reduce
+    world.bounds = bounds
     node.edit = edit

@@ -15,6 +15,7 @@
 """
 import numpy as np
 
+from ._camera import Pinhole
 from ._xvrml import rt as _rt
 from ._xvrml.rt import Context, Error, Instance, Light, Object, Shader, Texture
 
@@ -129,8 +130,22 @@ class Raycaster:
     create_rays_pinhole = staticmethod(lambda *args, **options: create_rays_pinhole(*args, **options))
 
 
-def create_rays_pinhole(fov_deg, center, eye, up, width_px, height_px):
-    """Rays (height, width, 6) of a pinhole camera at eye that looks at center; fov_deg is the horizontal angle of view."""
+def create_rays_pinhole(*args, **options):
+    """Rays (height, width, 6) of a pinhole camera, as Open3D makes them: directions have length 1 along the view axis.
+
+    create_rays_pinhole(fov_deg, center, eye, up, width_px, height_px): at eye, looking at center; fov_deg is the horizontal angle of
+    view. create_rays_pinhole(intrinsic_matrix, extrinsic_matrix, width_px, height_px): K (3x3) and world to camera (4x4), camera x to
+    the right, y down, z ahead; the middle of a picture is at (width_px / 2, height_px / 2), as in Open3D.
+    """
+    by_matrices = "intrinsic_matrix" in options or (len(args) > 0 and np.ndim(args[0]) == 2)
+    return (_rays_of_matrices if by_matrices else _rays_of_view)(*args, **options)
+
+
+def _rays_of_matrices(intrinsic_matrix, extrinsic_matrix, width_px, height_px):
+    return Pinhole(intrinsic_matrix, extrinsic_matrix, center=0.5).rays(width_px, height_px)
+
+
+def _rays_of_view(fov_deg, center, eye, up, width_px, height_px):
     eye, center, up = (np.asarray(v, np.float64) for v in (eye, center, up))
     ahead = (center - eye) / np.linalg.norm(center - eye)
     right = np.cross(ahead, up)

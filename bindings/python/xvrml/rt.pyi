@@ -126,11 +126,22 @@ class Raycaster:
     def compute_signed_distance(
         self, query_points: npt.ArrayLike, nthreads: int = ..., nsamples: int = ...
     ) -> npt.NDArray[np.float32]: ...
+    @overload
     @staticmethod
     def create_rays_pinhole(
         fov_deg: float, center: npt.ArrayLike, eye: npt.ArrayLike, up: npt.ArrayLike, width_px: int, height_px: int
     ) -> npt.NDArray[np.float32]: ...
+    @overload
+    @staticmethod
+    def create_rays_pinhole(
+        intrinsic_matrix: npt.ArrayLike, extrinsic_matrix: npt.ArrayLike, width_px: int, height_px: int
+    ) -> npt.NDArray[np.float32]: ...
 
+@overload
 def create_rays_pinhole(
     fov_deg: float, center: npt.ArrayLike, eye: npt.ArrayLike, up: npt.ArrayLike, width_px: int, height_px: int
+) -> npt.NDArray[np.float32]: ...
+@overload
+def create_rays_pinhole(
+    intrinsic_matrix: npt.ArrayLike, extrinsic_matrix: npt.ArrayLike, width_px: int, height_px: int
 ) -> npt.NDArray[np.float32]: ...

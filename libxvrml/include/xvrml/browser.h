@@ -94,6 +94,9 @@ class Browser {
   // Puts the viewer somewhere else, as navigation does. view: camera to world, column-major, rotation and translation only; one
   // that is not finite is not taken.
   void placeViewer(const double view[16]);
+  // The direction in the world that is up for navigation while no Viewpoint is bound; 0 1 0 at first. A vector that is not finite
+  // or has no length is not taken.
+  void setUp(const double up[3]);
   // Seconds of the world's time in which the picture follows when the viewer jumps to another Viewpoint; 0, as at first: at once.
   void setTransition(double seconds);
   std::vector<ViewpointName> viewpoints() const; // in the order of the files, Inlines and prototypes included
