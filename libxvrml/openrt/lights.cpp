@@ -76,6 +76,7 @@ void Lights::takeAway(RTid& light) {
   if (light == 0) return;
   rtRemoveLight(light);
   light = 0;
+  if (&light != &headlight_) ration_.give(bytesOfLight);
   ++changes_;
 }
 
@@ -128,8 +129,10 @@ void Lights::makeOrMove(Place& place, const Item& item) {
   if (place.light == 0) {
     const RTid shader = shaderOf(*item.node);
     if (shader == 0) return; // said when it was made
+    if (!ration_.take(bytesOfLight, item.node->source)) return;
     load(place.world);
     place.light = rtUseLight(shader);
+    if (place.light == 0) ration_.give(bytesOfLight);
     place.lightScope = 0;
   } else {
     rtLightMatrix(place.light, data(place.world));

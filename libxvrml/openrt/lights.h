@@ -6,6 +6,7 @@
 
 #include "openrt/custom_shaders.h"
 #include "openrt/places.h"
+#include "openrt/ration.h"
 #include "openrt/rt.h"
 
 namespace xvrml::mapping {
@@ -13,7 +14,7 @@ namespace xvrml::mapping {
 class Lights {
  public:
   Lights(World& world, bool linearColor, ShaderClasses& classes, CustomShaders& custom)
-      : world_(world), linear_(linearColor), classes_(classes), custom_(custom) {}
+      : world_(world), linear_(linearColor), classes_(classes), custom_(custom), ration_(world, "lights") {}
 
   // Makes, moves or removes the lights of all places. Objects and instances of the places must be there: scopes name them.
   void follow(const Graph& graph, Places& places);
@@ -39,6 +40,7 @@ class Lights {
   bool linear_;
   ShaderClasses& classes_;
   CustomShaders& custom_;
+  Ration ration_;
   RTid headlight_ = 0, headlightShader_ = 0;
   Matrix view_; // of the headlight
   uint64_t count_ = 0, changes_ = 0, sets_ = 0;

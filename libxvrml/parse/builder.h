@@ -84,6 +84,7 @@ class Builder : public ParseSink {
   bool inTemplate() const { return scopes_.size() > 1; }
   void pushScope(Scope* scope, ProtoPtr proto, std::shared_ptr<NodeType> type);
   void popScope();
+  bool takes(uint64_t bytes, const Token& at);
   bool makeNode(const Token& type, NodeFrame& frame);
   void checkChild(const NodeFrame& frame);
   bool deliver(const Token& at, const NodeRef& node, uint64_t expanded);

@@ -75,6 +75,7 @@ FieldTarget Builder::openDeclaration(Access access, FieldType type, const Token&
     lexer_.error(name.at(), fmt::format("{} declares more than limit interfaceFields={}", target.name, limit));
     declaration.accepted = false;
   }
+  if (declaration.accepted) declaration.accepted = takes(bytesOfDeclaration, name);
   void* storage = std::visit([](auto& value) -> void* { return &value; }, field.defaultValue);
   const bool nodeValue = type == FieldType::SFNode || type == FieldType::MFNode;
   const auto kind = type == FieldType::SFNode ? Receiver::Kind::single : Receiver::Kind::multiple;
@@ -112,6 +113,7 @@ void Builder::closeDeclaration(bool good) {
 }
 
 void Builder::openProto(const Token& name) {
+  takes(bytesOfPrototype, name);
   auto proto = std::make_shared<ProtoDeclaration>();
   auto type = std::make_shared<NodeType>();
   type->name = name.text;
