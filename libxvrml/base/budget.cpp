@@ -48,7 +48,7 @@ uint64_t defaultWorldBytes() {
     most = std::min(most, readNumber("/sys/fs/cgroup/memory/memory.limit_in_bytes"));
     rlimit space{};
     if (getrlimit(RLIMIT_AS, &space) == 0 && space.rlim_cur != RLIM_INFINITY) most = std::min(most, uint64_t(space.rlim_cur));
-    return std::max<uint64_t>(most / 4, 256ull << 20);
+    return std::max<uint64_t>(most / 8, 256ull << 20);
   }();
   return bytes;
 }

@@ -75,7 +75,7 @@ class Share {
   uint64_t bytes_ = 0;
 };
 
-// Returns a quarter of the memory that this process may use: of the machine, of its control group (cgroup v2 or v1), or of its
+// Returns an eighth of the memory that this process may use: of the machine, of its control group (cgroup v2 or v1), or of its
 // address space (ulimit -v), whichever is least; 256 MiB at least. Read once.
 uint64_t defaultWorldBytes();
 

@@ -38,8 +38,7 @@ size_t RegularFile::read(uint64_t at, void* to, size_t count) const {
   size_t done = 0;
   while (done < count) {
     constexpr size_t most = 1 << 30; // Linux reads at most 2 GiB at once
-    const ssize_t got =
-        ::pread(descriptor_, static_cast<char*>(to) + done, std::min(count - done, most), off_t(at + done));
+    const ssize_t got = ::pread(descriptor_, static_cast<char*>(to) + done, std::min(count - done, most), off_t(at + done));
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) fail(errno);
     if (got == 0) break;

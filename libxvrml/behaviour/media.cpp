@@ -69,9 +69,7 @@ const LoadOptions& loadOptions(const Events& events) {
   return events.browser() ? events.browser()->world().options : defaults;
 }
 
-Share mediaShare(const Events& events) {
-  return events.browser() ? Share(budgetOf(events.browser()->world())) : Share();
-}
+Share mediaShare(const Events& events) { return events.browser() ? Share(budgetOf(events.browser()->world())) : Share(); }
 
 std::string tooMuch(uint64_t bytes, const Budget& budget) {
   return fmt::format("with all that the world holds its {} bytes are more than {}", bytes, budget.name());

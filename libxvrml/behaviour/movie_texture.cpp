@@ -89,7 +89,7 @@ struct State : Media {
   }
 
   Limits limits;
-  Share share; // of the world's budget: the compressed pictures
+  Share share;                          // of the world's budget: the compressed pictures
   std::shared_ptr<const FilmData> film; // null: nothing could be read
   std::unique_ptr<FilmReader> reader;
   Image image;

@@ -131,7 +131,8 @@ MFNode Browser::createVrmlFromString(std::string_view text) {
   LoadOptions options = impl_->world->options;
   uint64_t& most = options.limits.expandedNodes;
   most -= std::min<uint64_t>(most, impl_->engine->nodes());
-  const auto loaded = loadFragment(text, impl_->world->path + " (createVrmlFromString)", options, Passing(*impl_->world).budget());
+  const auto loaded =
+      loadFragment(text, impl_->world->path + " (createVrmlFromString)", options, Passing(*impl_->world).budget());
   MFNode nodes = impl_->adopt(*loaded);
   impl_->settle();
   return nodes;
@@ -141,8 +142,8 @@ void Browser::createVrmlFromUrl(const std::vector<std::string>& urls, Node& node
                                 const std::string& base) {
   impl_->later([this, urls, to = NodeRef(&node), in = std::string(eventIn), base = base.empty() ? impl_->world->path : base] {
     World& world = *impl_->world;
-    const auto loaded = loadFirst(urls, base, world.options, world.diagnostics, "createVrmlFromURL", nullptr,
-                                  Passing(world).budget());
+    const auto loaded =
+        loadFirst(urls, base, world.options, world.diagnostics, "createVrmlFromURL", nullptr, Passing(world).budget());
     if (!loaded || !to->live) return;
     MFNode nodes = impl_->adopt(*loaded);
     impl_->engine->dispatch(*to, in, std::move(nodes));

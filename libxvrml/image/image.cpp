@@ -30,8 +30,9 @@ void checkImageSize(uint64_t width, uint64_t height, uint64_t components, uint64
                                          "most 4 bytes for each pixel of the limit 'imagePixels' ({})",
                                          format, width, height, bytes, room.limits.imagePixels));
   if (room.budget && bytes + working > room.budget->left())
-    throw std::runtime_error(fmt::format("{} picture of {} x {} pixels takes {} bytes: with all that the world holds more than {}",
-                                         format, width, height, bytes + working, room.budget->name()));
+    throw std::runtime_error(
+        fmt::format("{} picture of {} x {} pixels takes {} bytes: with all that the world holds more than {}", format, width,
+                    height, bytes + working, room.budget->name()));
 }
 
 void checkFileSize(uint64_t fileBytes, uint64_t leastBytes, const char* format) {
@@ -62,8 +63,7 @@ Image decodeImage(const uint8_t* bytes, size_t size, const ImageRoom& room) {
 std::vector<uint8_t> readPictureFile(const std::string& path, const ImageRoom& room) {
   const RegularFile file(path);
   if (file.size() > room.limits.fileBytes)
-    throw std::runtime_error(
-        fmt::format("{} bytes are beyond the limit 'fileBytes' ({})", file.size(), room.limits.fileBytes));
+    throw std::runtime_error(fmt::format("{} bytes are beyond the limit 'fileBytes' ({})", file.size(), room.limits.fileBytes));
   if (room.budget && file.size() > room.budget->left())
     throw std::runtime_error(
         fmt::format("{} bytes are, with all that the world holds, more than {}", file.size(), room.budget->name()));

@@ -22,7 +22,8 @@ struct Surface {
 class Surfaces {
  public:
   Surfaces(World& world, bool linearColor, ShaderClasses& classes, Textures& textures, CustomShaders& custom)
-      : world_(world), linear_(linearColor), classes_(classes), textures_(textures), custom_(custom), ration_(world, "appearances") {}
+      : world_(world), linear_(linearColor), classes_(classes), textures_(textures), custom_(custom),
+        ration_(world, "appearances") {}
 
   // Of a Shape's appearance (may be null or a prototype instance). lines: for IndexedLineSet and PointSet, which are neither
   // lit nor textured (clauses 6.24, 6.36).

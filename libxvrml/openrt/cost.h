@@ -25,8 +25,8 @@ inline constexpr uint64_t bytesOfPrimitive = 150, bytesOfInstance = 1500;
 // (base/budget.h). Measured as the growth of the process by worlds of 100,000 of each, and rounded up.
 inline constexpr uint64_t bytesOfItem = 600;     // a node that is drawn, placed or shines
 inline constexpr uint64_t bytesOfPlace = 900;    // each place of a node that depends on it
-inline constexpr uint64_t bytesOfLight = 1500;   // each place of a light that shines
-inline constexpr uint64_t bytesOfDraw = 1000;    // a shape written into an object, beside its primitives
+inline constexpr uint64_t bytesOfLight = 2900;   // each place of a light that shines
+inline constexpr uint64_t bytesOfShape = 1000;   // a shape written into an object, beside its primitives
 inline constexpr uint64_t bytesOfSurface = 2500; // an appearance
 inline constexpr uint64_t bytesWhileBuilt = 150; // a triangle in a mesh and in what it is made of
 

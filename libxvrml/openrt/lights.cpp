@@ -129,7 +129,10 @@ void Lights::makeOrMove(Place& place, const Item& item) {
   if (place.light == 0) {
     const RTid shader = shaderOf(*item.node);
     if (shader == 0) return; // said when it was made
-    if (!ration_.take(bytesOfLight, item.node->source)) return;
+    if (!ration_.take(bytesOfLight, item.node->source)) {
+      --count_;
+      return;
+    }
     load(place.world);
     place.light = rtUseLight(shader);
     if (place.light == 0) ration_.give(bytesOfLight);

@@ -31,8 +31,9 @@ double reachOf(const Mesh& m) {
 }
 
 uint64_t ownBytes(const Mesh& m) {
-  return m.ownPoints.capacity() * sizeof(Vec3f) + m.ownNormals.capacity() * sizeof(Vec3f) + m.ownColors.capacity() * sizeof(Color) +
-         m.ownTexCoords.capacity() * sizeof(Vec2f) + m.ownIndices.capacity() * sizeof(uint32_t);
+  return m.ownPoints.capacity() * sizeof(Vec3f) + m.ownNormals.capacity() * sizeof(Vec3f) +
+         m.ownColors.capacity() * sizeof(Color) + m.ownTexCoords.capacity() * sizeof(Vec2f) +
+         m.ownIndices.capacity() * sizeof(uint32_t);
 }
 
 template <class T> bool equalBytes(std::span<const T> a, std::span<const T> b) {

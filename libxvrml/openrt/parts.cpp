@@ -8,8 +8,7 @@
 namespace xvrml::mapping {
 
 Objects::Objects(World& world, bool linearColor, Graph& graph, Places& places, Surfaces& surfaces)
-    : world_(world), linear_(linearColor), graph_(graph), places_(places), surfaces_(surfaces),
-      ration_(world, "shapes") {
+    : world_(world), linear_(linearColor), graph_(graph), places_(places), surfaces_(surfaces), ration_(world, "shapes") {
   for (const NodeRef& root : world.scope.roots) live_ |= root && root->live;
   met_.assign(graph.items.size(), 0);
 }

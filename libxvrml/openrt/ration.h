@@ -3,6 +3,7 @@
 #pragma once
 
 #include "base/budget.h"
+#include "openrt/cost.h"
 #include "xvrml/world.h"
 
 namespace xvrml::mapping {

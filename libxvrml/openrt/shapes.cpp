@@ -132,7 +132,7 @@ void Objects::writeShape(ItemId id, const Matrix& matrix, uint32_t name) {
 bool Objects::draw(int32_t mesh, const Surface& surface, bool textured) {
   const Meshes::Extent extent = graph_.meshes.extent(mesh);
   if (extent.primitives == 0) return true;
-  const uint64_t bytes = addSaturating(multiplySaturating(extent.primitives, bytesOfPrimitive), bytesOfDraw);
+  const uint64_t bytes = addSaturating(multiplySaturating(extent.primitives, bytesOfPrimitive), bytesOfShape);
   if (!ration_.take(bytes, graph_.meshes.geometry(mesh).source)) return false;
   const Mesh& m = graph_.meshes.get(mesh);
   Part& part = parts_[size_t(writing_)];

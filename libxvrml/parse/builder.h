@@ -107,6 +107,7 @@ class Builder : public ParseSink {
   std::vector<NodeFrame> nodes_;
   std::vector<Receiver> receivers_;
   std::unordered_map<const Node*, uint64_t> expanded_; // where more than 1
+  const NodeType* fullInterface_ = nullptr;            // the last one that declares more than the limit
 };
 
 // The type that decides where a node may stand: a prototype instance stands for the first node of its body (4.8.3). Null if not

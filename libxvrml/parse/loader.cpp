@@ -270,9 +270,9 @@ namespace {
 // Bytes for nodes that are nested as deep as they may be, in a debug build too; a release build takes 0.6 kB a level.
 constexpr size_t deepestStack = size_t(6) << 20;
 
-template <class MakeSource>
-std::unique_ptr<World> loadFrom(const std::string& name, const LoadOptions& options, MakeSource makeSource, bool header = true,
-                                const BudgetPtr& budget = nullptr) {
+template <class MakeSource> std::unique_ptr<World> loadFrom(const std::string& name, const LoadOptions& options,
+                                                            MakeSource makeSource, bool header = true,
+                                                            const BudgetPtr& budget = nullptr) {
   try {
     auto world = std::make_unique<World>();
     world->path = name;

@@ -1,5 +1,6 @@
-// failing_allocator.cpp: see failing_allocator.h. The program's operator new and malloc take the place of everybody's. Who asks is
-// told by the return address; where the standard library asks for somebody (std::string, std::vector out of line), by the stack.
+// failing_allocator.cpp: see failing_allocator.h. The program's operator new and malloc take the place of everybody's. Who asks
+// is told by the return address; where the standard library asks for somebody (std::string, std::vector out of line), by the
+// stack.
 #include "failures/failing_allocator.h"
 
 #include <atomic>
@@ -170,7 +171,9 @@ void* operator new[](size_t size, const std::nothrow_t&) noexcept { return alloc
 void* operator new(size_t size, std::align_val_t a) { return orThrow(allocate(size, size_t(a), CALLER)); }
 void* operator new[](size_t size, std::align_val_t a) { return orThrow(allocate(size, size_t(a), CALLER)); }
 void* operator new(size_t size, std::align_val_t a, const std::nothrow_t&) noexcept { return allocate(size, size_t(a), CALLER); }
-void* operator new[](size_t size, std::align_val_t a, const std::nothrow_t&) noexcept { return allocate(size, size_t(a), CALLER); }
+void* operator new[](size_t size, std::align_val_t a, const std::nothrow_t&) noexcept {
+  return allocate(size, size_t(a), CALLER);
+}
 void operator delete(void* block) noexcept { release(block, 0); }
 void operator delete[](void* block) noexcept { release(block, 0); }
 void operator delete(void* block, size_t) noexcept { release(block, 0); }

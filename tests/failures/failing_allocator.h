@@ -1,5 +1,5 @@
-// failing_allocator.h: the allocator of alloc_failures: it counts what the project's own libraries allocate, and makes one of these
-// allocations fail. What Embree, oneTBB, FreeType's C++ users and the test itself allocate is left alone.
+// failing_allocator.h: the allocator of alloc_failures. It counts what the project's libraries allocate, and makes one of these
+// allocations fail. What Embree, oneTBB and the test itself allocate is left alone.
 #pragma once
 
 #include <cstdint>

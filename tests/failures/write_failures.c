@@ -51,8 +51,8 @@ static int fails(void) {
   return 1;
 }
 
-#define REAL(result, name, ...)                                                  \
-  static result (*real)(__VA_ARGS__);                                            \
+#define REAL(result, name, ...)                                                                                                  \
+  static result (*real)(__VA_ARGS__);                                                                                            \
   if (!real) *(void**)&real = dlsym(RTLD_NEXT, name)
 
 ssize_t write(int descriptor, const void* bytes, size_t count) {
