@@ -12,7 +12,7 @@ R = build/release
 SOURCES = $(shell git ls-files '*.cpp' '*.h' '*.hpp' '*.c')
 export CTEST_OUTPUT_ON_FAILURE = 1
 
-.PHONY: docs build demo test install bench bench-render audit accuracy corpus fuzz cluster-campaign soak asan tsan coverage format format-check tidy packages python-sequences bench-rays clean help wheel deb container test-embree4 test-wheel
+.PHONY: docs build demo test install bench bench-render audit accuracy corpus fuzz test-alloc-failures test-write-failures cluster-campaign soak asan tsan coverage format format-check tidy packages python-sequences bench-rays clean help wheel deb container test-embree4 test-wheel
 
 help:
 	@sed -n 's/^## //p' Makefile
@@ -105,6 +105,16 @@ asan: packages
 	@$(CONFIGURE) asan-ubsan && cmake --build build/asan-ubsan -j $(JOBS) && ctest --preset asan-ubsan -j $(JOBS)
 tsan: packages
 	@$(CONFIGURE) tsan && cmake --build build/tsan -j $(JOBS) && ctest --preset tsan -j $(JOBS)
+
+## make test-alloc-failures   load and draw a world once for each allocation, with this one failing (the quick part is in make test)
+test-alloc-failures:
+	@$(CONFIGURE) release && cmake --build $(R) -j $(JOBS) --target alloc_failures
+	@$(R)/bin/alloc_failures
+
+## make test-write-failures   every kind of output once for each write, with this one failing as on a full disk
+test-write-failures:
+	@$(CONFIGURE) release && cmake --build $(R) -j $(JOBS) --target write_failures
+	@$(PYTHON) tests/failures/write_failures.py $(R)/bin $(R)/tests/failures/write_failures.so
 
 ## make cluster-campaign  workers killed at random, partitions, 10,000 frames (CAMPAIGN="--kills 10 --frames 1000")
 cluster-campaign: build

@@ -172,7 +172,10 @@ int run(const Options& options) {
   try {
     while (more && (options.frame == 0 || replay.frames() < options.frame)) more = replay.renderNext();
   } catch (const BadRecording& e) { return complain(InputUnusable, e.what()); }
-  if (options.stats) printStats(*backend, replay.frames());
+  if (options.stats) {
+    printStats(*backend, replay.frames());
+    if (std::fflush(stdout) != 0 || std::ferror(stdout)) return complain(RenderFailed, "standard output cannot be written");
+  }
   if (replay.frames() < std::max<uint64_t>(options.frame, 1))
     return complain(InputUnusable, options.recording + ": has " + std::to_string(replay.frames()) + " frames");
   if (options.output.empty()) return Done;

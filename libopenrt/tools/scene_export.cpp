@@ -1,10 +1,13 @@
 // scene_export.cpp: see scene_export.h.
 #include "tools/scene_export.h"
 
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <map>
-#include <memory>
 #include <stdexcept>
+#include <string>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
@@ -29,12 +32,41 @@ uint32_t floatsOf(RtsType type) {
   }
 }
 
+// A file that is written beside its name and renamed when it is whole. Throws std::runtime_error that names it.
+class Output {
+ public:
+  explicit Output(const std::string& path)
+      : path_(path), temporary_(path + ".partial"), file_(std::fopen(temporary_.c_str(), "wbe")) {
+    if (!file_) fail();
+  }
+  ~Output() {
+    if (file_) std::fclose(file_);
+    if (!named_) std::remove(temporary_.c_str());
+  }
+  Output(const Output&) = delete;
+  Output& operator=(const Output&) = delete;
+  void write(const void* bytes, size_t count) {
+    if (count > 0 && std::fwrite(bytes, 1, count, file_) != count) fail();
+  }
+  void close() {
+    if (std::fclose(std::exchange(file_, nullptr)) != 0) fail();
+  }
+  void rename() {
+    if (std::rename(temporary_.c_str(), path_.c_str()) != 0) fail();
+    named_ = true;
+  }
+
+ private:
+  [[noreturn]] void fail() const { throw std::runtime_error(path_ + " cannot be written: " + std::strerror(errno)); }
+  std::string path_, temporary_;
+  std::FILE* file_;
+  bool named_ = false;
+};
+
 class Export {
  public:
   Export(const Scene& scene, const ShaderRegistry& shaders, const std::string& path)
-      : scene_(scene), registry_(shaders), path_(path), bytes_(std::fopen((path + ".bin").c_str(), "wbe"), &std::fclose) {
-    if (!bytes_) throw std::runtime_error(path + ".bin cannot be written");
-  }
+      : scene_(scene), registry_(shaders), path_(path), bytes_(path + ".bin") {}
 
   void run() {
     Json all = {{"format", 1},
@@ -53,9 +85,12 @@ class Export {
     all["textures"] = Json::object();
     for (const auto& [id, texture] : scene_.textures) all["textures"][std::to_string(id)] = image(texture);
     const std::string text = all.dump(1, ' ', false, Json::error_handler_t::replace);
-    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path_.c_str(), "wbe"), &std::fclose);
-    if (!file || std::fwrite(text.data(), 1, text.size(), file.get()) != text.size() || std::fflush(bytes_.get()) != 0)
-      throw std::runtime_error(path_ + " cannot be written");
+    Output scene(path_);
+    scene.write(text.data(), text.size());
+    scene.close();
+    bytes_.close();
+    bytes_.rename();
+    scene.rename();
   }
 
  private:
@@ -66,8 +101,7 @@ class Export {
     if (!array) return nullptr;
     const auto [found, fresh] = offsets_.try_emplace(array.get(), end_);
     if (fresh) {
-      if (std::fwrite(array->data(), 1, array->size(), bytes_.get()) != array->size())
-        throw std::runtime_error(path_ + ".bin cannot be written");
+      bytes_.write(array->data(), array->size());
       end_ += array->size();
     }
     return {{"offset", found->second}, {"count", array->size() / 4}};
@@ -146,7 +180,7 @@ class Export {
   const Scene& scene_;
   const ShaderRegistry& registry_;
   const std::string path_;
-  std::unique_ptr<std::FILE, int (*)(std::FILE*)> bytes_;
+  Output bytes_;
   std::map<const Array*, size_t> offsets_;
   size_t end_ = 0;
 };

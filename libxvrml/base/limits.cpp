@@ -11,7 +11,8 @@ constexpr std::array<LimitInfo, 13> table = {{
     {"protoDepth", &Limits::protoDepth, "depth of prototypes that instantiate prototypes"},
     {"inlineDepth", &Limits::inlineDepth, "depth of files within files"},
     {"expandedNodes", &Limits::expandedNodes, "nodes after all prototypes and USEs are expanded"},
-    {"copyBytes", &Limits::copyBytes, "estimated memory of prototype instances and of Inlines read more than once"},
+    {"worldBytes", &Limits::worldBytes,
+     "estimated memory of everything made from a world's files; 0: an eighth of the machine's"},
     {"interfaceFields", &Limits::interfaceFields, "declarations of one PROTO, EXTERNPROTO or Script"},
     {"stringBytes", &Limits::stringBytes, "bytes of one string"},
     {"arrayElements", &Limits::arrayElements, "numbers in one multiple-valued field"},
@@ -28,6 +29,7 @@ static_assert(sizeof(Limits) == table.size() * sizeof(uint64_t), "every limit ha
 std::span<const LimitInfo> limitTable() { return table; }
 
 bool setLimit(Limits& limits, std::string_view name, uint64_t value) {
+  if (name == "copyBytes") name = "worldBytes"; // as scripts of the first version spell it
   for (const LimitInfo& info : table) {
     if (info.name != name) continue;
     limits.*info.value = value;

@@ -2,6 +2,7 @@
 #include "base/value_parser.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -66,6 +67,13 @@ bool ValueParser::fail(const char* at, std::string message) {
 
 bool ValueParser::failFound(const Token& found, std::string_view expected) {
   return fail(found.at(), fmt::format("expected {}, found {}", expected, describe(found)));
+}
+
+// Takes memory for a value from the budget. False, after a message, if there is not enough left.
+bool ValueParser::take(const char* at, uint64_t bytes) {
+  if (!budget_ || budget_->take(bytes)) return true;
+  if (std::exchange(refused_, true)) return false;
+  return fail(at, fmt::format("the world takes more memory than {}; values beyond are left out", budget_->name()));
 }
 
 // One number at p, which is not white space. Moves p behind it.
@@ -135,6 +143,7 @@ bool ValueParser::single(std::string& out) {
     return fail(token.at(),
                 fmt::format("string of {} bytes: more than limit stringBytes={}", token.text.size(), limits_.stringBytes));
   }
+  if (token.text.size() > 2 * sizeof(std::string) && !take(token.at(), token.text.size())) return false;
   out = unescape(token.text);
   return true;
 }
@@ -158,6 +167,7 @@ bool ValueParser::single(Image& out) {
     return fail(start,
                 fmt::format("SFImage of {} x {} pixels: more than limit imagePixels={}", width, height, limits_.imagePixels));
   }
+  if (!take(start, pixels * uint64_t(components))) return false;
   out = {width, height, components, {}};
   // A pixel takes two bytes of text at least: a header alone reserves nothing.
   out.pixels.reserve(std::min<uint64_t>(pixels, (lexer_.end() - p) / 2 + 1) * uint64_t(components));
@@ -206,6 +216,7 @@ template <class T> bool ValueParser::multiple(std::vector<T>& out) {
   out.clear();
   if (!lexer_.accept(TokenKind::bracketOpen)) return single(out.emplace_back());
   constexpr size_t sample = 1024;
+  uint64_t taken = 0; // values for which memory has been taken
   const char* const first = lexer_.cursor();
   const char* p = lexer_.skipSpace(first);
   for (; p < lexer_.end() && *p != ']'; p = lexer_.skipSpace(p)) {
@@ -233,10 +244,19 @@ template <class T> bool ValueParser::multiple(std::vector<T>& out) {
         return fail(start, fmt::format("more values in one field than limit arrayElements={}", limits_.arrayElements));
       }
     }
+    if (out.size() == taken) { // as far as the vector grows now
+      const uint64_t more = std::max<uint64_t>(taken, 4);
+      if (!take(start, more * sizeof(T))) {
+        if (budget_) budget_->give(taken * sizeof(T));
+        return false;
+      }
+      taken += more;
+    }
     out.push_back(std::move(value));
     if (out.size() == sample) reserve(out, first, p);
   }
   lexer_.seek(p);
+  if (budget_) budget_->give((taken - out.size()) * sizeof(T));
   if (!lexer_.accept(TokenKind::bracketClose)) return failFound(lexer_.peek(), "a value or ]");
   return true;
 }

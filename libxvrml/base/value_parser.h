@@ -2,6 +2,7 @@
 // read straight into a node's vectors) and by nodegen (defaults). On the lexer's thread.
 #pragma once
 
+#include "base/budget.h"
 #include "base/lexer.h"
 #include "xvrml/limits.h"
 
@@ -9,7 +10,8 @@ namespace xvrml {
 
 class ValueParser {
  public:
-  ValueParser(Lexer& lexer, const Limits& limits) : lexer_(lexer), limits_(limits) {}
+  // budget: what the values draw their memory from; null: nothing is counted.
+  ValueParser(Lexer& lexer, const Limits& limits, Budget* budget = nullptr) : lexer_(lexer), limits_(limits), budget_(budget) {}
 
   // Reads a value into *storage, which is of the C++ type of `type`. SFNode takes NULL and MFNode [ ] only: nodes are the file
   // parser's. False after an error was reported; the lexer then stands at or behind what was wrong, the storage is unspecified.
@@ -25,11 +27,14 @@ class ValueParser {
   bool single(NodeRef& out);
   template <class T> bool single(T& out); // numbers and tuples of them
   template <class Scalar> bool scalar(const char*& p, Scalar& out, FieldType type);
+  bool take(const char* at, uint64_t bytes);
   bool fail(const char* at, std::string message);
   bool failFound(const Token& found, std::string_view expected);
 
   Lexer& lexer_;
   const Limits& limits_;
+  Budget* budget_;
+  bool refused_ = false; // by the budget: said once
 };
 
 // The characters a string token stands for: \" and \\ are undone, other backslashes stay (clause 5.9).

@@ -1,5 +1,6 @@
 // audio_clip.cpp: AudioClip (clause 6.4): duration_changed and isActive; the samples for xvrml/media.h.
 #include <exception>
+#include <stdexcept>
 
 #include "behaviour/media.h"
 #include "behaviour/wav.h"
@@ -12,6 +13,8 @@ struct State : Media {
   double load(Events& events, Node& node) override {
     clip = nullptr;
     path.clear();
+    share = mediaShare(events);
+    diagnostics = &events.diagnostics();
     double seconds = -1;
     readFirst(events, node, static_cast<nodes::AudioClip&>(node).url, [&](const std::string& file) {
       seconds = readWavInfo(file).duration;
@@ -29,6 +32,8 @@ struct State : Media {
   std::string path; // empty: nothing could be read
   std::shared_ptr<const Clip> clip;
   double position = 0; // seconds
+  Share share;         // of the world's budget: the samples
+  Diagnostics* diagnostics = nullptr;
 };
 
 std::unique_ptr<NodeState> begin(Events& events, Node& node) { return beginMedia(events, node, std::make_unique<State>()); }
@@ -41,8 +46,11 @@ Playing playingOf(const Node& node) {
   if (!state || !state->time.active() || state->path.empty()) return {};
   if (!state->clip) {
     try {
-      state->clip = std::make_shared<Clip>(readWav(state->path));
-    } catch (const std::exception&) {
+      state->clip = std::make_shared<Clip>(readWav(state->path, [&](uint64_t bytes) {
+        if (!state->share.take(bytes)) throw std::runtime_error(tooMuch(bytes, *state->share.budget()));
+      }));
+    } catch (const std::exception& failure) {
+      state->diagnostics->warn(node.source, "AudioClip: no sound: " + std::string(failure.what()));
       state->path.clear(); // its events go on
       return {};
     }

@@ -30,7 +30,11 @@ bool loadInlineContent(Engine& engine, Node& node) {
   World& world = engine.browser()->world();
   engine.contentLeaves(node);
   const std::shared_ptr<const Scope> old = std::exchange(inlineNode->content, nullptr); // ends when nothing refers to it here
+  inlineNode->share.clear();
+  const BudgetPtr budget = budgetOf(world);
+  const uint64_t before = budget->used();
   Loader(world, world.options).loadLate(*inlineNode, enclosingFiles(node));
+  if (const uint64_t after = budget->used(); after > before) inlineNode->share.adopt(budget, after - before);
   engine.contentLoaded(node);
   engine.changed(node, fieldOf<nodes::Inline>("url"));
   return inlineNode->content != nullptr;

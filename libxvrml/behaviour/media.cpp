@@ -69,6 +69,12 @@ const LoadOptions& loadOptions(const Events& events) {
   return events.browser() ? events.browser()->world().options : defaults;
 }
 
+Share mediaShare(const Events& events) { return events.browser() ? Share(budgetOf(events.browser()->world())) : Share(); }
+
+std::string tooMuch(uint64_t bytes, const Budget& budget) {
+  return fmt::format("with all that the world holds its {} bytes are more than {}", bytes, budget.name());
+}
+
 bool readFirst(Events& events, const Node& node, const MFString& urls, const std::function<bool(const std::string& path)>& read) {
   std::string error;
   for (const std::string& url : urls) {

@@ -2,6 +2,7 @@
 // 6.4, 6.28). [the browser's thread]
 #pragma once
 
+#include "base/budget.h"
 #include "behaviour/builtin.h"
 #include "behaviour/time_dependent.h"
 
@@ -30,5 +31,9 @@ std::unique_ptr<NodeState> beginMedia(Events& events, Node& node, std::unique_pt
 bool readFirst(Events& events, const Node& node, const MFString& urls, const std::function<bool(const std::string& path)>& read);
 // The limits of the world that events runs; defaults without a browser.
 const LoadOptions& loadOptions(const Events& events);
+// An empty share of the budget of the world that events runs; without a browser of none.
+Share mediaShare(const Events& events);
+// Says that so many bytes are more than the budget has left.
+std::string tooMuch(uint64_t bytes, const Budget& budget);
 
 } // namespace xvrml

@@ -1,6 +1,7 @@
 // movie_texture.cpp: MovieTexture (clause 6.28): its events, and which picture of the film it shows; decoded when asked for.
 #include <atomic>
 #include <exception>
+#include <stdexcept>
 
 #include "behaviour/media.h"
 #include "event/live.h"
@@ -23,12 +24,15 @@ struct State : Media {
     image = {};
     wanted = shown = none;
     limits = loadOptions(events).limits;
+    share = mediaShare(events);
     readFirst(events, node, static_cast<nodes::MovieTexture&>(node).url, [&](const std::string& path) {
       if (decodesFilms()) {
-        film = FilmData::read(path, limits);
+        auto read = FilmData::read(path, limits);
+        if (!share.take(read->bytes())) throw std::runtime_error(tooMuch(read->bytes(), *share.budget()));
+        film = std::move(read);
       } else { // a picture at least, if it is a GIF
         try {
-          image = readImage(path, limits);
+          image = readImage(path, {limits, ~uint64_t(0), share.budget().get()});
         } catch (const std::exception&) { FilmData::read(path, limits); } // says why
         wanted = shown = 0;
         events.diagnostics().warn(node.source, "MovieTexture: the first picture only: this build has no decoder of films");
@@ -85,6 +89,7 @@ struct State : Media {
   }
 
   Limits limits;
+  Share share;                          // of the world's budget: the compressed pictures
   std::shared_ptr<const FilmData> film; // null: nothing could be read
   std::unique_ptr<FilmReader> reader;
   Image image;

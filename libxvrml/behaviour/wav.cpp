@@ -2,13 +2,13 @@
 #include "behaviour/wav.h"
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
 #include <cstring>
-#include <fstream>
 #include <stdexcept>
 
 #include <fmt/format.h>
+
+#include "base/regular_file.h"
 
 namespace xvrml {
 namespace {
@@ -21,23 +21,16 @@ uint32_t little(const uint8_t* p, int bytes) {
 
 class File {
  public:
-  explicit File(const std::string& path) : stream_(path, std::ios::binary) {
-    if (!stream_) throw std::runtime_error(std::strerror(errno));
-    stream_.seekg(0, std::ios::end);
-    size_ = uint64_t(std::max(std::streamoff(stream_.tellg()), std::streamoff(0)));
-  }
-  uint64_t size() const { return size_; }
+  explicit File(const std::string& path) : file_(path) {}
+  uint64_t size() const { return file_.size(); }
   // False if the file ends before.
   bool read(uint64_t at, void* to, uint64_t bytes) {
-    if (at > size_ || bytes > size_ - at) return false;
-    stream_.seekg(std::streamoff(at));
-    stream_.read(static_cast<char*>(to), std::streamsize(bytes));
-    return bool(stream_);
+    if (at > size() || bytes > size() - at) return false;
+    return file_.read(at, to, bytes) == bytes;
   }
 
  private:
-  std::ifstream stream_;
-  uint64_t size_ = 0;
+  RegularFile file_;
 };
 
 bool is(const uint8_t* bytes, const char* name) { return std::memcmp(bytes, name, 4) == 0; }
@@ -103,13 +96,14 @@ WavInfo readWavInfo(const std::string& path) {
   return readHeader(file);
 }
 
-Clip readWav(const std::string& path) {
+Clip readWav(const std::string& path, const std::function<void(uint64_t bytes)>& reserve) {
   File file(path);
   const WavInfo info = readHeader(file);
   const int bytes = (info.bits + 7) / 8;
   if (!(info.format == 1 && bytes >= 1 && bytes <= 4) && !(info.format == 3 && bytes == 4))
     throw std::runtime_error(fmt::format("WAVE sound of format {} with {} bits is not decoded", info.format, info.bits));
   if (info.dataBytes > maximumClipBytes) throw std::runtime_error("the sound is too large");
+  if (reserve) reserve(info.dataBytes / uint64_t(bytes) * sizeof(float));
   std::vector<uint8_t> raw(info.dataBytes);
   if (!file.read(info.dataAt, raw.data(), raw.size())) throw std::runtime_error("damaged WAVE sound");
   Clip clip{info.channels, info.rate, {}};

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 
 #include "xvrml/media.h"
@@ -21,7 +22,8 @@ struct WavInfo {
 WavInfo readWavInfo(const std::string& path);
 
 // PCM of 8, 16, 24 or 32 bits and floats of 32. Throws std::runtime_error for others, and for more than maximumClipBytes.
-Clip readWav(const std::string& path);
+// reserve, if there is one: is told how many bytes the samples will take, and throws if these are too many.
+Clip readWav(const std::string& path, const std::function<void(uint64_t bytes)>& reserve = {});
 inline constexpr uint64_t maximumClipBytes = 256 << 20;
 
 } // namespace xvrml

@@ -28,15 +28,17 @@ void append(Diagnostics& to, const Diagnostics& from) {
 }
 
 // The first of the URLs that is a world, or null after a warning.
+// budget: of the world that it becomes part of; null: it has one of its own.
 std::unique_ptr<World> loadFirst(const std::vector<std::string>& urls, const std::string& base, const LoadOptions& options,
-                                 Diagnostics& diagnostics, std::string_view what, std::string* fragment) {
+                                 Diagnostics& diagnostics, std::string_view what, std::string* fragment,
+                                 const BudgetPtr& budget) {
   std::string reasons;
   for (const std::string& url : urls) {
     const ResolvedUrl resolved = resolveUrl(url, base, options);
     std::string reason = resolved.error;
     if (reason.empty()) {
       try {
-        auto loaded = loadWorld(resolved.path, options);
+        auto loaded = budget ? loadWorldInto(budget, resolved.path, options) : loadWorld(resolved.path, options);
         if (fragment) *fragment = resolved.fragment;
         return loaded;
       } catch (const LoadError& error) { reason = error.diagnostic.text(); }
@@ -46,6 +48,21 @@ std::unique_ptr<World> loadFirst(const std::vector<std::string>& urls, const std
   diagnostics.warn({}, fmt::format("{}: {}", what, reasons.empty() ? "it names no URL" : reasons));
   return nullptr;
 }
+
+// What programs make is checked against the budget while it is made. It is not counted afterwards: a world that makes and drops
+// nodes for hours would come to its end otherwise. The number of nodes that live bounds it (limit expandedNodes).
+class Passing {
+ public:
+  explicit Passing(const World& world) : budget_(budgetOf(world)), before_(budget_->used()) {}
+  ~Passing() {
+    if (const uint64_t now = budget_->used(); now > before_) budget_->give(now - before_);
+  }
+  const BudgetPtr& budget() const { return budget_; }
+
+ private:
+  BudgetPtr budget_;
+  uint64_t before_;
+};
 
 } // namespace
 
@@ -114,7 +131,8 @@ MFNode Browser::createVrmlFromString(std::string_view text) {
   LoadOptions options = impl_->world->options;
   uint64_t& most = options.limits.expandedNodes;
   most -= std::min<uint64_t>(most, impl_->engine->nodes());
-  const auto loaded = loadFragment(text, impl_->world->path + " (createVrmlFromString)", options);
+  const auto loaded =
+      loadFragment(text, impl_->world->path + " (createVrmlFromString)", options, Passing(*impl_->world).budget());
   MFNode nodes = impl_->adopt(*loaded);
   impl_->settle();
   return nodes;
@@ -124,7 +142,8 @@ void Browser::createVrmlFromUrl(const std::vector<std::string>& urls, Node& node
                                 const std::string& base) {
   impl_->later([this, urls, to = NodeRef(&node), in = std::string(eventIn), base = base.empty() ? impl_->world->path : base] {
     World& world = *impl_->world;
-    const auto loaded = loadFirst(urls, base, world.options, world.diagnostics, "createVrmlFromURL", nullptr);
+    const auto loaded =
+        loadFirst(urls, base, world.options, world.diagnostics, "createVrmlFromURL", nullptr, Passing(world).budget());
     if (!loaded || !to->live) return;
     MFNode nodes = impl_->adopt(*loaded);
     impl_->engine->dispatch(*to, in, std::move(nodes));
@@ -142,9 +161,10 @@ void Browser::loadUrl(const std::vector<std::string>& urls, const std::vector<st
     World& world = *impl_->world;
     if (!urls.empty() && urls[0].starts_with('#')) return bind(urls[0].substr(1));
     std::string fragment;
-    const auto loaded = loadFirst(urls, base, world.options, world.diagnostics, "loadURL", &fragment);
+    const auto loaded = loadFirst(urls, base, world.options, world.diagnostics, "loadURL", &fragment, nullptr);
     if (!loaded) return;
     append(world.diagnostics, loaded->diagnostics);
+    setBudget(world, budgetOf(*loaded));
     world.path = loaded->path;
     world.times = loaded->times;
     world.nodeCount = loaded->nodeCount;
@@ -159,6 +179,7 @@ void Browser::replaceWorld(const MFNode& nodes) {
     for (const NodeRef& node : nodes)
       if (node) scope.roots.push_back(node);
     const std::vector<NodeRef> kept = scope.roots;
+    setBudget(*impl_->world, std::make_shared<Budget>(impl_->world->options.limits.worldBytes));
     impl_->become(std::move(scope), kept, {});
   });
 }

@@ -28,4 +28,9 @@ inline uint64_t triangleLimit(const MeshOptions& options) {
   return options.limits ? options.limits->triangles : Limits().triangles;
 }
 
+// What the number of triangles is bounded by, for messages.
+inline std::string_view triangleLimitName(const MeshOptions& options) {
+  return options.limitName.empty() ? "the limit 'triangles'" : options.limitName;
+}
+
 } // namespace xvrml

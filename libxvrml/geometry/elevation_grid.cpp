@@ -27,16 +27,17 @@ Mesh buildElevationGrid(const nodes::ElevationGrid& node, const MeshOptions& opt
   if (!(node.xSpacing > 0 && node.zSpacing > 0)) faults.note("xSpacing and zSpacing must be positive");
   if (!isFinite(node.xSpacing) || !isFinite(node.zSpacing)) return {};
   int64_t columns = node.xDimension, rows = node.zDimension;
-  if (columns <= 0 || rows <= 0 || node.height.empty()) return {}; // an empty grid is allowed
+  if (columns <= 0 || rows <= 0) return {}; // an empty grid is allowed
   // Each is below 2^31, so products stay within 64 bits.
   if (int64_t(node.height.size()) < columns * rows) {
     faults.note("height has " + std::to_string(node.height.size()) + " values where xDimension and zDimension ask for " +
-                std::to_string(columns * rows) + "; only whole rows are drawn");
+                std::to_string(columns * rows) +
+                (int64_t(node.height.size()) < 2 * columns ? "; nothing is drawn" : "; only whole rows are drawn"));
     rows = int64_t(node.height.size()) / columns;
   }
   if (columns < 2 || rows < 2) return {};
   if (uint64_t(2 * (columns - 1) * (rows - 1)) > triangleLimit(options) || columns * rows >= int64_t(noValue / 4)) {
-    faults.note("more triangles than the limit 'triangles' allows; nothing is drawn");
+    faults.note("more triangles than " + std::string(triangleLimitName(options)) + " allows; nothing is drawn");
     return {};
   }
 

@@ -32,7 +32,7 @@ class Sweep {
     // 64 bits: sizes are below 2^32 each.
     uint64_t points = uint64_t(spine_.size()) * section_.size() + 2 * section_.size();
     if (points > triangleLimit(options_) / 2 + 4 || points >= noValue / 4) {
-      faults_.note("more triangles than the limit 'triangles' allows; nothing is drawn");
+      faults_.note("more triangles than " + std::string(triangleLimitName(options_)) + " allows; nothing is drawn");
       return {};
     }
     closedSection_ = section_.size() > 2 && section_.front() == section_.back();

@@ -11,7 +11,7 @@ static constexpr const char* faultTexts[] = {
     "dropped for coordinates that are not finite",
     "dropped for having no area",
     "dropped as too large and tangled to be cut into triangles",
-    "dropped beyond the limit 'triangles'",
+    "dropped beyond ",
     "without a colour, drawn white",
     "without a usable normal, drawn with the face's own",
     "without texture coordinates",
@@ -24,13 +24,15 @@ bool Faults::any() const {
   return !notes_.empty();
 }
 
-void Faults::report(const Node& node, Diagnostics* diagnostics) const {
+void Faults::report(const Node& node, Diagnostics* diagnostics, std::string_view limit) const {
   if (!diagnostics || !any()) return;
   std::string text;
   auto append = [&](const std::string& part) { text += (text.empty() ? "" : "; ") + part; };
   for (size_t i = 0; i < entries_.size(); i++) {
     const Entry& entry = entries_[i];
-    if (entry.count) append(fmt::format("{} {} (first at index {})", entry.count, faultTexts[i], entry.first));
+    if (!entry.count) continue;
+    const std::string_view which = i == size_t(Fault::overLimit) ? limit : "";
+    append(fmt::format("{} {}{} (first at index {})", entry.count, faultTexts[i], which, entry.first));
   }
   for (const std::string& note : notes_) append(note);
   diagnostics->warn(node.source, node.type().name + ": " + text);

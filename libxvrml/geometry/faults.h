@@ -18,7 +18,7 @@ enum class Fault : uint8_t {
   notFinite,       // NaN or infinite coordinates
   noArea,          // all vertices on one line
   tangled,         // too large, or crosses itself too often, to be tessellated
-  overLimit,       // beyond limits.triangles
+  overLimit,       // beyond limits.triangles, or what the world's budget allows
   colorMissing,    // no colour for a face or vertex: white
   normalMissing,   // no usable normal: the face's own
   texCoordMissing, // no texture coordinates: 0 0
@@ -34,8 +34,8 @@ class Faults {
   }
   void note(std::string text) { notes_.push_back(std::move(text)); }
   bool any() const;
-  // One warning at the node's place, none if nothing was wrong.
-  void report(const Node& node, Diagnostics* diagnostics) const;
+  // Gives one warning at the node's place, none if nothing was wrong. limit: what Fault::overLimit speaks of.
+  void report(const Node& node, Diagnostics* diagnostics, std::string_view limit) const;
 
  private:
   struct Entry {

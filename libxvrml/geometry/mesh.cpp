@@ -51,7 +51,7 @@ Mesh buildMesh(Node& geometry, const MeshOptions& options) {
       tryBuild(node, buildSphere, options, mesh, faults) || tryBuild(node, buildIndexedLineSet, options, mesh, faults) ||
       tryBuild(node, buildPointSet, options, mesh, faults) || tryBuild(node, buildElevationGrid, options, mesh, faults) ||
       tryBuild(node, buildExtrusion, options, mesh, faults) || tryBuild(node, buildText, options, mesh, faults);
-  faults.report(*node, options.diagnostics);
+  faults.report(*node, options.diagnostics, triangleLimitName(options));
   return mesh;
 }
 

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "xvrml/diagnostics.h"
@@ -46,6 +47,7 @@ struct MeshOptions {
   bool needTexCoords = false; // the shape has a texture: make the default mapping where the node gives none
   const Limits* limits = nullptr;
   Diagnostics* diagnostics = nullptr;
+  std::string_view limitName = {}; // what limits->triangles follows from, for messages; empty: the limit 'triangles'
 };
 
 // The mesh of any geometry node (Box ... Text); kind empty for a node that is none or has nothing to draw. The node must

@@ -13,14 +13,26 @@
 namespace xvrml {
 
 // Returns the bytes of a regular file of at most limits.fileBytes; throws std::runtime_error.
-std::vector<uint8_t> readPictureFile(const std::string& path, const Limits& limits);
+std::vector<uint8_t> readPictureFile(const std::string& path, const ImageRoom& room);
+inline std::vector<uint8_t> readPictureFile(const std::string& path, const Limits& limits) {
+  return readPictureFile(path, ImageRoom{limits});
+}
 
-Image decodePng(std::span<const uint8_t> bytes, const Limits& limits);
-Image decodeJpeg(std::span<const uint8_t> bytes, const Limits& limits);
-Image decodeGif(std::span<const uint8_t> bytes, const Limits& limits);
+Image decodePng(std::span<const uint8_t> bytes, const ImageRoom& room);
+Image decodeJpeg(std::span<const uint8_t> bytes, const ImageRoom& room);
+Image decodeGif(std::span<const uint8_t> bytes, const ImageRoom& room);
 
-// Refuses sizes of no pixels or more than limits.imagePixels, before anything is allocated for them.
+inline constexpr uint64_t maximumImageSide = 65536; // what a texture can have
+
+// Throws std::runtime_error for sizes of no pixels, of a side above maximumImageSide or of more pixels than limits.imagePixels.
+// Decoders call it before they allocate anything that grows with the picture.
 void checkImageSize(uint64_t width, uint64_t height, const Limits& limits, const char* format);
+// Does the same, and throws if `components` bytes a pixel, and `working` bytes while the picture is decoded, are more than the
+// room holds.
+void checkImageSize(uint64_t width, uint64_t height, uint64_t components, uint64_t working, const ImageRoom& room,
+                    const char* format);
+// Throws std::runtime_error if the file is shorter than any file that holds a picture of this size.
+void checkFileSize(uint64_t fileBytes, uint64_t leastBytes, const char* format);
 
 // Rows arrive from the top; the pixels grow with them, so that a header that promises much and a file that holds little cost
 // little.

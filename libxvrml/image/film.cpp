@@ -5,18 +5,14 @@
 #include <stdexcept>
 
 #ifdef XVRML_WITH_FFMPEG
-#include <sys/stat.h>
-
 #include <algorithm>
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
 #include <map>
 #include <mutex>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "base/regular_file.h"
 #include "image/decoders.h"
 
 extern "C" {
@@ -50,24 +46,37 @@ struct Deleter {
   void operator()(AVPacket* p) const { av_packet_free(&p); }
   void operator()(AVFrame* f) const { av_frame_free(&f); }
   void operator()(SwsContext* s) const { sws_freeContext(s); }
-  void operator()(FILE* f) const { fclose(f); }
 };
 template <class T> using Owned = std::unique_ptr<T, Deleter>;
 
 [[noreturn]] void fail(const std::string& why) { throw std::runtime_error(why); }
 
-int readBytes(void* file, uint8_t* to, int count) {
-  const size_t n = fread(to, 1, size_t(count), static_cast<FILE*>(file));
-  return n > 0 ? int(n) : AVERROR_EOF;
+// A decoder keeps up to 16 pictures at once, of which the smallest file can ask for the largest.
+uint64_t maximumPixels(const Limits& limits) { return std::min<uint64_t>(limits.imagePixels / 16, INT32_MAX); }
+
+// Where the library reads.
+struct Input {
+  const RegularFile& file;
+  int64_t at = 0;
+};
+
+int readBytes(void* opaque, uint8_t* to, int count) {
+  auto& input = *static_cast<Input*>(opaque);
+  try {
+    const size_t n = input.file.read(uint64_t(input.at), to, size_t(std::max(count, 0)));
+    input.at += int64_t(n);
+    return n > 0 ? int(n) : AVERROR_EOF;
+  } catch (const std::exception&) { return AVERROR(EIO); }
 }
 
 int64_t seekBytes(void* opaque, int64_t offset, int whence) {
-  FILE* file = static_cast<FILE*>(opaque);
-  if (whence == AVSEEK_SIZE) {
-    struct stat status;
-    return fstat(fileno(file), &status) == 0 ? int64_t(status.st_size) : -1;
-  }
-  return fseeko(file, offset, whence & ~AVSEEK_FORCE) == 0 ? ftello(file) : -1;
+  auto& input = *static_cast<Input*>(opaque);
+  const auto size = int64_t(input.file.size());
+  whence &= ~AVSEEK_FORCE;
+  if (whence == AVSEEK_SIZE) return size;
+  const int64_t from = whence == SEEK_CUR ? input.at : whence == SEEK_END ? size : 0;
+  if (offset < -from || offset > INT64_MAX - from) return -1;
+  return input.at = from + offset;
 }
 
 int openNothing(AVFormatContext*, AVIOContext**, const char*, int, AVDictionary**) { return AVERROR(EPERM); }
@@ -90,6 +99,7 @@ struct FilmData::Impl {
   std::vector<bool> key;                // decoding can begin here
   std::vector<double> starts;           // seconds, by picture, never decreasing, from 0
   double duration = 0;
+  uint64_t bytes = 0; // of the packets
 
   void demux(AVFormatContext& format, AVStream& stream);
   void sortMpeg();
@@ -100,7 +110,6 @@ struct FilmData::Impl {
 void FilmData::Impl::demux(AVFormatContext& format, AVStream& stream) {
   for (unsigned i = 0; i < format.nb_streams; ++i)
     if (format.streams[i] != &stream) format.streams[i]->discard = AVDISCARD_ALL;
-  uint64_t bytes = 0;
   Owned<AVPacket> packet(av_packet_alloc());
   while (packet && av_read_frame(&format, packet.get()) >= 0) {
     if (packet->stream_index != stream.index || packet->size <= 0) {
@@ -169,6 +178,7 @@ FilmData::FilmData(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 FilmData::~FilmData() = default;
 double FilmData::duration() const { return impl_->duration; }
 size_t FilmData::pictures() const { return impl_->packets.size(); }
+uint64_t FilmData::bytes() const { return impl_->bytes; }
 
 size_t FilmData::pictureAt(double seconds) const {
   const auto after = std::upper_bound(impl_->starts.begin(), impl_->starts.end(), seconds);
@@ -177,12 +187,11 @@ size_t FilmData::pictureAt(double seconds) const {
 
 namespace {
 
-std::unique_ptr<FilmData::Impl> load(const std::string& path, const Limits& limits) {
-  Owned<FILE> file(fopen(path.c_str(), "rb"));
-  if (!file) fail(std::strerror(errno));
+std::unique_ptr<FilmData::Impl> load(const RegularFile& file, const Limits& limits) {
+  Input input{file};
   constexpr int bufferBytes = 64 << 10;
   auto* buffer = static_cast<unsigned char*>(av_malloc(bufferBytes));
-  Owned<AVIOContext> io(buffer ? avio_alloc_context(buffer, bufferBytes, 0, file.get(), readBytes, nullptr, seekBytes) : nullptr);
+  Owned<AVIOContext> io(buffer ? avio_alloc_context(buffer, bufferBytes, 0, &input, readBytes, nullptr, seekBytes) : nullptr);
   AVFormatContext* context = avformat_alloc_context();
   if (!io || !context) fail("no memory for the film");
   context->pb = io.get();
@@ -194,7 +203,7 @@ std::unique_ptr<FilmData::Impl> load(const std::string& path, const Limits& limi
   {
     std::vector<AVDictionary*> options(format->nb_streams, nullptr);
     for (AVDictionary*& o : options) {
-      av_dict_set_int(&o, "max_pixels", int64_t(std::min<uint64_t>(limits.imagePixels, INT32_MAX)), 0);
+      av_dict_set_int(&o, "max_pixels", int64_t(maximumPixels(limits)), 0);
       av_dict_set_int(&o, "threads", 1, 0);
     }
     const int found = avformat_find_stream_info(format.get(), options.empty() ? nullptr : options.data());
@@ -207,7 +216,11 @@ std::unique_ptr<FilmData::Impl> load(const std::string& path, const Limits& limi
   const AVCodecID codec = stream.codecpar->codec_id;
   if (std::find(std::begin(codecs), std::end(codecs), codec) == std::end(codecs))
     fail(fmt::format("films of type {} are not decoded", avcodec_get_name(codec)));
-  checkImageSize(uint64_t(std::max(stream.codecpar->width, 0)), uint64_t(std::max(stream.codecpar->height, 0)), limits, "film");
+  const auto width = uint64_t(std::max(stream.codecpar->width, 0)), height = uint64_t(std::max(stream.codecpar->height, 0));
+  checkImageSize(width, height, limits, "film");
+  if (width * height > maximumPixels(limits))
+    fail(fmt::format("film picture of {} x {} pixels is beyond a sixteenth of the limit 'imagePixels' ({})", width, height,
+                     limits.imagePixels));
 
   auto impl = std::make_unique<FilmData::Impl>();
   impl->parameters.reset(avcodec_parameters_alloc());
@@ -231,14 +244,12 @@ std::shared_ptr<const FilmData> FilmData::read(const std::string& path, const Li
   static std::mutex mutex;
   static std::map<std::string, std::weak_ptr<const FilmData>> films;
   av_log_set_level(AV_LOG_QUIET); // a library does not print
-  struct stat status = {};
-  if (stat(path.c_str(), &status) != 0) fail(std::strerror(errno));
-  if (!S_ISREG(status.st_mode)) fail("not a file");
-  const std::string key = fmt::format("{}|{}|{}.{}", path, status.st_size, status.st_mtim.tv_sec, status.st_mtim.tv_nsec);
+  const RegularFile file(path);
+  const std::string key = fmt::format("{}|{}|{}", path, file.size(), file.modified());
   const std::lock_guard lock(mutex);
   std::erase_if(films, [](const auto& entry) { return entry.second.expired(); });
   if (auto known = films[key].lock()) return known;
-  auto film = std::make_shared<const FilmData>(load(path, limits));
+  auto film = std::make_shared<const FilmData>(load(file, limits));
   films[key] = film;
   return film;
 }
@@ -303,7 +314,7 @@ bool FilmReader::Impl::send() {
 
 bool FilmReader::Impl::convert(Image& image) {
   const int width = frame->width, height = frame->height;
-  if (width <= 0 || height <= 0 || uint64_t(width) * uint64_t(height) > limits.imagePixels) return false;
+  if (width <= 0 || height <= 0 || uint64_t(width) * uint64_t(height) > maximumPixels(limits)) return false;
   const auto source = AVPixelFormat(frame->format);
   const AVPixFmtDescriptor* description = av_pix_fmt_desc_get(source);
   const bool alpha = description && description->flags & AV_PIX_FMT_FLAG_ALPHA;
@@ -338,7 +349,7 @@ FilmReader::FilmReader(std::shared_ptr<const FilmData> film, const Limits& limit
   if (!codec || !decoder || !impl_->frame || avcodec_parameters_to_context(decoder, parameters) < 0)
     fail("no decoder for the film");
   decoder->thread_count = 1;
-  decoder->max_pixels = int64_t(std::min<uint64_t>(limits.imagePixels, INT32_MAX));
+  decoder->max_pixels = int64_t(maximumPixels(limits));
   decoder->flags |= AV_CODEC_FLAG_BITEXACT; // the same pictures on every machine
   decoder->idct_algo = FF_IDCT_SIMPLE;
   if (avcodec_open2(decoder, codec, nullptr) < 0) fail("no decoder for the film");
@@ -380,6 +391,7 @@ FilmData::FilmData(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 FilmData::~FilmData() = default;
 double FilmData::duration() const { return 0; }
 size_t FilmData::pictures() const { return 0; }
+uint64_t FilmData::bytes() const { return 0; }
 size_t FilmData::pictureAt(double) const { return 0; }
 std::shared_ptr<const FilmData> FilmData::read(const std::string&, const Limits&) {
   throw std::runtime_error("this build has no decoder of films (the ffmpeg libraries were absent)");

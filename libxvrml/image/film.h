@@ -19,6 +19,7 @@ class FilmData {
   ~FilmData();
   double duration() const; // seconds, above 0
   size_t pictures() const; // at least 1
+  uint64_t bytes() const;  // of the compressed pictures in memory
   // The picture that is shown at a time from the beginning (clamped to the film).
   size_t pictureAt(double seconds) const;
 

@@ -53,6 +53,7 @@ void readExtension(GifFileType* gif, int& transparent) {
 std::vector<uint8_t> readIndices(GifFileType* gif) {
   const size_t width = size_t(gif->Image.Width), height = size_t(gif->Image.Height);
   std::vector<uint8_t> inOrder;
+  inOrder.reserve(width * height);
   std::vector<GifByteType> row(width);
   for (size_t y = 0; y < height; y++) {
     check(gif, DGifGetLine(gif, row.data(), int(width)));
@@ -97,7 +98,7 @@ Image paint(GifFileType* gif, const std::vector<uint8_t>& indices, int transpare
 
 } // namespace
 
-Image decodeGif(std::span<const uint8_t> bytes, const Limits& limits) {
+Image decodeGif(std::span<const uint8_t> bytes, const ImageRoom& room) {
   Source source{bytes};
   int error = 0;
   Gif gif(DGifOpen(&source, readBytes, &error));
@@ -119,8 +120,14 @@ Image decodeGif(std::span<const uint8_t> bytes, const Limits& limits) {
     gif->SWidth = gif->Image.Width;
     gif->SHeight = gif->Image.Height;
   }
-  checkImageSize(uint64_t(std::max(gif->SWidth, 0)), uint64_t(std::max(gif->SHeight, 0)), limits, "GIF");
-  checkImageSize(uint64_t(std::max(gif->Image.Width, 0)), uint64_t(std::max(gif->Image.Height, 0)), limits, "GIF");
+  const uint64_t width = uint64_t(std::max(gif->SWidth, 0)), height = uint64_t(std::max(gif->SHeight, 0));
+  const uint64_t pictureWidth = uint64_t(std::max(gif->Image.Width, 0)), pictureHeight = uint64_t(std::max(gif->Image.Height, 0));
+  checkImageSize(pictureWidth, pictureHeight, room.limits, "GIF");
+  checkImageSize(width, height, 4, 2 * pictureWidth * pictureHeight, room, "GIF");
+  // A code of 12 bits stands for fewer than 4096 pixels. A screen may be larger than the picture on it, in reason.
+  checkFileSize(bytes.size(), pictureWidth * pictureHeight / 2731, "GIF");
+  constexpr uint64_t freeScreen = 4 << 20;
+  if (width * height > freeScreen) checkFileSize(bytes.size(), width * height / 2731, "GIF");
   std::vector<uint8_t> indices = readIndices(gif.get());
   return paint(gif.get(), indices, transparent);
 }

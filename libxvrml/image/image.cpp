@@ -2,23 +2,41 @@
 #include "image/image.h"
 
 #include <fmt/format.h>
-#include <sys/stat.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstdio>
 #include <cstring>
-#include <memory>
 
+#include "base/regular_file.h"
 #include "image/decoders.h"
 
 namespace xvrml {
 
 void checkImageSize(uint64_t width, uint64_t height, const Limits& limits, const char* format) {
   if (width == 0 || height == 0) throw std::runtime_error(fmt::format("{} picture without pixels", format));
-  if (width > INT32_MAX || height > INT32_MAX || width * height > limits.imagePixels)
+  if (width > maximumImageSide || height > maximumImageSide)
+    throw std::runtime_error(fmt::format("{} picture of {} x {} pixels: a side has at most {}, see the limit 'imagePixels' ({})",
+                                         format, width, height, maximumImageSide, limits.imagePixels));
+  if (width * height > limits.imagePixels)
     throw std::runtime_error(fmt::format("{} picture of {} x {} pixels is beyond the limit 'imagePixels' ({})", format, width,
                                          height, limits.imagePixels));
+}
+
+void checkImageSize(uint64_t width, uint64_t height, uint64_t components, uint64_t working, const ImageRoom& room,
+                    const char* format) {
+  checkImageSize(width, height, room.limits, format);
+  const uint64_t bytes = width * height * components; // below 2^35: see maximumImageSide
+  if (bytes > room.bytes)
+    throw std::runtime_error(fmt::format("{} picture of {} x {} pixels takes {} bytes: all pictures of a world together take at "
+                                         "most 4 bytes for each pixel of the limit 'imagePixels' ({})",
+                                         format, width, height, bytes, room.limits.imagePixels));
+  if (room.budget && bytes + working > room.budget->left())
+    throw std::runtime_error(
+        fmt::format("{} picture of {} x {} pixels takes {} bytes: with all that the world holds more than {}", format, width,
+                    height, bytes + working, room.budget->name()));
+}
+
+void checkFileSize(uint64_t fileBytes, uint64_t leastBytes, const char* format) {
+  if (fileBytes < leastBytes) throw std::runtime_error(fmt::format("damaged {} picture: too short for its size", format));
 }
 
 void flipRows(Image& image) {
@@ -29,36 +47,34 @@ void flipRows(Image& image) {
   }
 }
 
-Image decodeImage(const uint8_t* bytes, size_t size, const Limits& limits) {
+Image decodeImage(const uint8_t* bytes, size_t size, const ImageRoom& room) {
   std::span<const uint8_t> content(bytes, size);
   auto startsWith = [&](std::string_view magic) {
     return size >= magic.size() && std::memcmp(bytes, magic.data(), magic.size()) == 0;
   };
-  if (startsWith("\x89PNG\r\n\x1a\n")) return decodePng(content, limits);
-  if (startsWith("\xff\xd8\xff")) return decodeJpeg(content, limits);
-  if (startsWith("GIF87a") || startsWith("GIF89a")) return decodeGif(content, limits);
+  if (startsWith("\x89PNG\r\n\x1a\n")) return decodePng(content, room);
+  if (startsWith("\xff\xd8\xff")) return decodeJpeg(content, room);
+  if (startsWith("GIF87a") || startsWith("GIF89a")) return decodeGif(content, room);
   if (size == 0) throw std::runtime_error("the file is empty");
   if (looksLikeRadiance(bytes, size)) throw std::runtime_error("a picture of radiance cannot be used here");
   throw std::runtime_error("not a PNG, JPEG or GIF picture, nor one of radiance (.hdr, .pfm, .exr)");
 }
 
-std::vector<uint8_t> readPictureFile(const std::string& path, const Limits& limits) {
-  struct stat info;
-  if (stat(path.c_str(), &info) != 0) throw std::runtime_error(std::strerror(errno));
-  if (!S_ISREG(info.st_mode)) throw std::runtime_error("not a file"); // a pipe or device could wait for ever
-  if (uint64_t(info.st_size) > limits.fileBytes)
-    throw std::runtime_error(fmt::format("{} bytes are beyond the limit 'fileBytes' ({})", info.st_size, limits.fileBytes));
-  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
-  if (!file) throw std::runtime_error(std::strerror(errno));
-  std::vector<uint8_t> bytes(size_t(info.st_size) + 1);
-  bytes.resize(std::fread(bytes.data(), 1, size_t(info.st_size), file.get()));
-  if (std::ferror(file.get())) throw std::runtime_error("cannot be read");
+std::vector<uint8_t> readPictureFile(const std::string& path, const ImageRoom& room) {
+  const RegularFile file(path);
+  if (file.size() > room.limits.fileBytes)
+    throw std::runtime_error(fmt::format("{} bytes are beyond the limit 'fileBytes' ({})", file.size(), room.limits.fileBytes));
+  if (room.budget && file.size() > room.budget->left())
+    throw std::runtime_error(
+        fmt::format("{} bytes are, with all that the world holds, more than {}", file.size(), room.budget->name()));
+  std::vector<uint8_t> bytes(size_t(file.size()) + 1);
+  bytes.resize(file.read(0, bytes.data(), size_t(file.size())));
   return bytes;
 }
 
-Image readImage(const std::string& path, const Limits& limits) {
-  const std::vector<uint8_t> bytes = readPictureFile(path, limits);
-  return decodeImage(bytes.data(), bytes.size(), limits);
+Image readImage(const std::string& path, const ImageRoom& room) {
+  const std::vector<uint8_t> bytes = readPictureFile(path, room);
+  return decodeImage(bytes.data(), bytes.size(), room);
 }
 
 Image loadImage(const std::string& path, const Limits& limits) { return readImage(path, limits); }

@@ -106,7 +106,7 @@ void appendRow(JpegReader& reader) {
 
 } // namespace
 
-Image decodeJpeg(std::span<const uint8_t> bytes, const Limits& limits) {
+Image decodeJpeg(std::span<const uint8_t> bytes, const ImageRoom& room) {
   JpegReader reader;
   reader.jpeg.err = jpeg_std_error(&reader.errors);
   reader.errors.error_exit = onError;
@@ -116,12 +116,21 @@ Image decodeJpeg(std::span<const uint8_t> bytes, const Limits& limits) {
     if (!fine) throw std::runtime_error(std::string("damaged JPEG picture: ") + reader.message);
   };
   check(readHeader(reader, bytes));
-  checkImageSize(reader.jpeg.image_width, reader.jpeg.image_height, limits, "JPEG");
+  const uint64_t width = reader.jpeg.image_width, height = reader.jpeg.image_height;
+  // Pictures of several scans have all their coefficients in memory, two bytes each.
+  const bool scans = reader.jpeg.progressive_mode || jpeg_has_multiple_scans(&reader.jpeg);
+  const uint64_t working = scans ? 2 * width * height * uint64_t(reader.jpeg.num_components) : 0;
+  checkImageSize(width, height, reader.jpeg.jpeg_color_space == JCS_GRAYSCALE ? 1 : 3, working, room, "JPEG");
+  // A block of 8 x 8 pixels takes one bit at least, but for the arithmetic code.
+  if (!reader.jpeg.arith_code) checkFileSize(bytes.size(), width * height / 512, "JPEG");
+  constexpr uint64_t rows = 16 << 20; // what the library needs beside the coefficients
+  reader.jpeg.mem->max_memory_to_use = long(2 * working + rows);
   check(start(reader));
   Image& image = reader.image;
   image.width = int32_t(reader.jpeg.output_width);
   image.height = int32_t(reader.jpeg.output_height);
   image.components = reader.cmyk ? 3 : reader.jpeg.output_components;
+  image.pixels.reserve(size_t(image.width) * size_t(image.height) * size_t(image.components));
   reader.row.resize(size_t(image.width) * size_t(reader.jpeg.output_components));
   for (int32_t y = 0; y < image.height; y++) {
     check(readRow(reader));

@@ -18,6 +18,7 @@ struct PngReader {
   std::jmp_buf escape;
   png_structp png = nullptr;
   png_infop info = nullptr;
+  int passes = 1; // 7 if the picture is interlaced
   Image image;
 
   ~PngReader() { png_destroy_read_struct(&png, &info, nullptr); }
@@ -38,6 +39,7 @@ void readBytes(png_structp png, png_bytep to, size_t count) {
   reader->position += count;
 }
 
+// Reads what is before the pixels; nothing that grows with the picture is allocated.
 bool readHeader(PngReader& reader) {
   if (setjmp(reader.escape)) return false;
   png_structp png = reader.png;
@@ -46,22 +48,38 @@ bool readHeader(PngReader& reader) {
   png_set_chunk_malloc_max(png, 16 << 20);
   png_set_chunk_cache_max(png, 100);
   png_read_info(png, reader.info);
+  return true;
+}
+
+// Tells the library how the pixels are wanted. It allocates its rows here.
+bool start(PngReader& reader) {
+  if (setjmp(reader.escape)) return false;
+  png_structp png = reader.png;
   if (png_get_bit_depth(png, reader.info) == 16) png_set_scale_16(png);
   png_set_expand(png); // palettes to RGB, fewer than 8 bits to 8, tRNS to alpha
-  png_set_interlace_handling(png);
+  reader.passes = png_set_interlace_handling(png);
   png_read_update_info(png, reader.info);
   return true;
 }
 
-bool readRows(PngReader& reader, png_bytepp rows) {
+// Reads all rows, the last one of the picture first in memory. What follows the pixels in the file does not matter.
+bool readRows(PngReader& reader, png_bytep pixels, size_t rowBytes, size_t height, int passes) {
   if (setjmp(reader.escape)) return false;
-  png_read_image(reader.png, rows);
-  return true; // what follows the pixels does not matter
+  for (int pass = 0; pass < passes; pass++)
+    for (size_t y = height; y-- > 0;) png_read_row(reader.png, pixels + y * rowBytes, nullptr);
+  return true;
+}
+
+// Returns the bytes a pixel has once it is decoded: palettes become RGB, a tRNS chunk becomes alpha.
+uint64_t decodedComponents(const PngReader& reader) {
+  const int type = png_get_color_type(reader.png, reader.info);
+  const bool alpha = type & PNG_COLOR_MASK_ALPHA || png_get_valid(reader.png, reader.info, PNG_INFO_tRNS);
+  return (type & PNG_COLOR_MASK_COLOR ? 3u : 1u) + (alpha ? 1u : 0u);
 }
 
 } // namespace
 
-Image decodePng(std::span<const uint8_t> bytes, const Limits& limits) {
+Image decodePng(std::span<const uint8_t> bytes, const ImageRoom& room) {
   PngReader reader;
   reader.bytes = bytes;
   reader.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &reader, onError, onWarning);
@@ -72,9 +90,10 @@ Image decodePng(std::span<const uint8_t> bytes, const Limits& limits) {
   };
   check(readHeader(reader));
   uint64_t width = png_get_image_width(reader.png, reader.info), height = png_get_image_height(reader.png, reader.info);
-  checkImageSize(width, height, limits, "PNG");
-  // Deflate packs 1032 to 1 at best: more rows than that cannot be in the file. (A sample has one bit at least.)
-  if (width * height / 8 / 1032 > bytes.size()) throw std::runtime_error("damaged PNG picture: too short for its size");
+  checkImageSize(width, height, decodedComponents(reader), 0, room, "PNG");
+  // Deflate packs 1032 to 1 at best: more rows than that cannot be in the file.
+  checkFileSize(bytes.size(), png_get_rowbytes(reader.png, reader.info) * height / 1032, "PNG");
+  check(start(reader));
   Image& image = reader.image;
   image.width = int32_t(width);
   image.height = int32_t(height);
@@ -82,9 +101,7 @@ Image decodePng(std::span<const uint8_t> bytes, const Limits& limits) {
   size_t rowBytes = size_t(width) * size_t(image.components);
   if (png_get_rowbytes(reader.png, reader.info) != rowBytes) throw std::runtime_error("PNG picture of an unknown kind");
   image.pixels.resize(rowBytes * size_t(height));
-  std::vector<png_bytep> rows(height);
-  for (size_t y = 0; y < height; y++) rows[y] = image.pixels.data() + (size_t(height) - 1 - y) * rowBytes;
-  check(readRows(reader, rows.data()));
+  check(readRows(reader, image.pixels.data(), rowBytes, size_t(height), reader.passes));
   return std::move(image);
 }
 

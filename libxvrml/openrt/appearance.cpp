@@ -61,11 +61,13 @@ Surface Surfaces::of(Node* appearance, bool lines) {
   Entry& entry = it->second;
   if (!fresh) return entry.surface;
   entry.appearance = NodeRef(node);
+  entry.textured = isTextured(node);
+  entry.counted = ration_.take(bytesOfSurface, node ? node->source : SourcePosition());
+  if (!entry.counted) return entry.surface;
   if (lines)
     entry.own = (entry.surface = makeLines(node)).shader;
   else
     makeSurface(entry);
-  entry.textured = isTextured(node);
   return entry.surface;
 }
 
@@ -150,7 +152,7 @@ Surfaces::Effect Surfaces::update(Node& appearance) {
   Effect effect;
   if (const auto it = surfaces_.find(&appearance); it != surfaces_.end()) {
     const RTid before = it->second.surface.shader;
-    makeSurface(it->second);
+    if (it->second.counted) makeSurface(it->second);
     effect.other = it->second.surface.shader != before;
     const bool textured = isTextured(&appearance);
     effect.textured = textured && !it->second.textured;
@@ -171,6 +173,7 @@ void Surfaces::clear() {
 }
 
 void Surfaces::forget(const Entry& entry) {
+  if (entry.counted) ration_.give(bytesOfSurface);
   if (entry.own != 0) rtDeleteShader(entry.own);
   if (entry.appearance) custom_.forget(*entry.appearance);
 }

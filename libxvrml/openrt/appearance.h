@@ -4,6 +4,7 @@
 #include <unordered_map>
 
 #include "openrt/custom_shaders.h"
+#include "openrt/ration.h"
 #include "openrt/rt.h"
 #include "openrt/textures.h"
 #include "xvrml/world.h"
@@ -21,7 +22,8 @@ struct Surface {
 class Surfaces {
  public:
   Surfaces(World& world, bool linearColor, ShaderClasses& classes, Textures& textures, CustomShaders& custom)
-      : world_(world), linear_(linearColor), classes_(classes), textures_(textures), custom_(custom) {}
+      : world_(world), linear_(linearColor), classes_(classes), textures_(textures), custom_(custom),
+        ration_(world, "appearances") {}
 
   // Of a Shape's appearance (may be null or a prototype instance). lines: for IndexedLineSet and PointSet, which are neither
   // lit nor textured (clauses 6.24, 6.36).
@@ -48,6 +50,7 @@ class Surfaces {
     Surface surface;
     RTid own = 0; // of the class VRML97
     bool textured = false;
+    bool counted = false; // its memory is taken from the budget
   };
   using Entries = std::unordered_map<const Node*, Entry>;
   Surface makeLines(Node* appearance);
@@ -60,6 +63,7 @@ class Surfaces {
   ShaderClasses& classes_;
   Textures& textures_;
   CustomShaders& custom_;
+  Ration ration_;
   Entries surfaces_, lines_;
   uint64_t sets_ = 0;
 };

@@ -2,9 +2,9 @@
 #include "openrt/custom_shaders.h"
 
 #include <algorithm>
-#include <fstream>
+#include <exception>
 
-#include <sys/stat.h>
+#include "base/regular_file.h"
 
 namespace xvrml::mapping {
 namespace {
@@ -20,14 +20,12 @@ const char* roleName(RTenum role) {
 
 // The whole of a regular file of text; why not, if that cannot be.
 std::string readText(const std::string& path, uint64_t limit, std::string& text) {
-  struct stat info {};
-  if (::stat(path.c_str(), &info) != 0) return "there is no file " + path;
-  if (!S_ISREG(info.st_mode)) return path + " is not a file";
-  if (uint64_t(info.st_size) > limit) return path + " is longer than " + std::to_string(limit) + " bytes";
-  std::ifstream in(path, std::ios::binary);
-  text.resize(size_t(info.st_size));
-  in.read(text.data(), std::streamsize(text.size()));
-  if (in.gcount() != std::streamsize(text.size())) return path + " cannot be read";
+  try {
+    const RegularFile file(path);
+    if (file.size() > limit) return path + " is longer than " + std::to_string(limit) + " bytes";
+    text.resize(size_t(file.size()));
+    if (file.read(0, text.data(), text.size()) != text.size()) return path + " became shorter while it was read";
+  } catch (const std::exception& failure) { return path + ": " + failure.what(); }
   return text.find('\0') == text.npos ? "" : path + " is not a text";
 }
 

@@ -10,7 +10,7 @@
 
 namespace xvrml::mapping {
 
-Graph::Graph(World& world) : meshes(world), context_{world} {
+Graph::Graph(World& world) : meshes(world), context_{world}, ration_(world, "nodes") {
   items.resize(2);
   items[0].planned = true;
   names.emplace_back();
@@ -74,6 +74,7 @@ ItemId Graph::itemFor(Node* written) {
   if (!node || !planOf(node->type())) return 0;
   const auto [known, fresh] = known_.try_emplace(node, 0);
   if (!fresh) return known->second;
+  if (!ration_.take(bytesOfItem, node->source)) return 0;
   const ItemId id = known->second = newItem();
   items[id].node = NodeRef(node);
   items[id].name = nameId(node->defName.empty() ? written->defName : node->defName);
@@ -167,6 +168,7 @@ void Graph::sortItems() {
 void Graph::drop(ItemId id) {
   Item& item = items[id];
   known_.erase(item.node.get());
+  ration_.give(bytesOfItem);
   if (item.mesh != none) meshes.drop(item.mesh);
   if (item.number != 0) shapes[item.number] = 0, freeNumbers_.push_back(item.number);
   const int32_t part = item.part; // Objects clears it away

@@ -12,6 +12,7 @@
 #include "geometry/matrix.h"
 #include "openrt/cost.h"
 #include "openrt/meshes.h"
+#include "openrt/ration.h"
 #include "xvrml/node.h"
 #include "xvrml/world.h"
 
@@ -156,6 +157,7 @@ class Graph {
   void numberShapes();
 
   PlanContext context_;
+  Ration ration_;
   std::unordered_map<const Node*, ItemId> known_;
   std::unordered_map<std::string, uint32_t> nameIds_;
   std::vector<ItemId> pending_, free_, dropped_, replanned_;

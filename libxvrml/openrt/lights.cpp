@@ -74,10 +74,11 @@ void Lights::changed(Node& light) {
   report(world_.diagnostics, light.source, light.type().name);
 }
 
-void Lights::takeAway(RTid& light) {
+void Lights::takeAway(RTid& light, uint64_t bytes) {
   if (light == 0) return;
   rtRemoveLight(light);
   light = 0;
+  ration_.give(bytes);
   ++changes_;
 }
 
@@ -132,8 +133,13 @@ void Lights::makeOrMove(Place& place, const Item& item) {
   if (place.light == 0) {
     const RTid shader = shaderOf(*item.node);
     if (shader == 0) return; // said when it was made
+    if (!ration_.take(bytesOfLight, item.node->source)) {
+      --count_;
+      return;
+    }
     load(place.world);
     place.light = rtUseLight(shader);
+    if (place.light == 0) ration_.give(bytesOfLight);
     place.lightScope = 0;
   } else {
     rtLightMatrix(place.light, data(place.world));
@@ -153,8 +159,8 @@ void Lights::scope(Place& place, const Places& places) {
 }
 
 void Lights::takeFromCamera() {
-  takeAway(headlight_.light);
-  for (AtCamera& one : modelLights_) takeAway(one.light);
+  takeAway(headlight_.light, 0);
+  for (AtCamera& one : modelLights_) takeAway(one.light, 0);
 }
 
 void Lights::atCamera(CameraLight light, const CameraSettings& camera) {

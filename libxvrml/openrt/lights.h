@@ -6,6 +6,7 @@
 
 #include "openrt/custom_shaders.h"
 #include "openrt/places.h"
+#include "openrt/ration.h"
 #include "openrt/rt.h"
 
 namespace xvrml::mapping {
@@ -15,7 +16,7 @@ enum class CameraLight : uint8_t { none, head, model };
 class Lights {
  public:
   Lights(World& world, bool linearColor, ShaderClasses& classes, CustomShaders& custom)
-      : world_(world), linear_(linearColor), classes_(classes), custom_(custom) {}
+      : world_(world), linear_(linearColor), classes_(classes), custom_(custom), ration_(world, "lights") {}
 
   // Makes, moves or removes the lights of all places. Objects and instances of the places must be there: scopes name them.
   void follow(const Graph& graph, Places& places);
@@ -34,7 +35,8 @@ class Lights {
  private:
   void makeOrMove(Place& place, const Item& item);
   void scope(Place& place, const Places& places);
-  void takeAway(RTid& light);
+  // Removes a light; bytes: what of the world's budget it gives back (those at the camera took nothing).
+  void takeAway(RTid& light, uint64_t bytes = bytesOfLight);
   RTid shaderOf(Node& light);
 
   World& world_;
@@ -49,6 +51,7 @@ class Lights {
   CameraLight atCamera_ = CameraLight::none;
   AtCamera headlight_, modelLights_[3];
   Matrix view_; // of the lights at the camera
+  Ration ration_;
   uint64_t count_ = 0, changes_ = 0, sets_ = 0;
   struct Known {
     RTid shader = 0;

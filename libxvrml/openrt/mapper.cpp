@@ -11,7 +11,7 @@ namespace xvrml {
 using namespace mapping;
 
 OpenRTMapper::Impl::Impl(World& w, const MapOptions& o)
-    : world(w), options(o), graph(w), textures(w, o.linearColor), custom(w, classes, textures),
+    : world(w), options(o), graph(w), places(w), textures(w, o.linearColor), custom(w, classes, textures),
       surfaces(w, o.linearColor, classes, textures, custom), objects(w, o.linearColor, graph, places, surfaces),
       lights(w, o.linearColor, classes, custom), environment(w, o.linearColor, classes, textures, custom),
       camera(cameraOf(nullptr, Matrix(), o.aspect)) {

@@ -7,6 +7,8 @@
 
 #include <xxhash.h>
 
+#include "openrt/cost.h"
+
 namespace xvrml::mapping {
 namespace {
 
@@ -19,6 +21,19 @@ template <class T> uint64_t hashed(std::span<const T> values, uint64_t seed) {
 uint64_t contentHash(const Mesh& m) {
   const uint64_t flags = uint64_t(m.kind) | uint64_t(m.solid) << 8 | uint64_t(m.ccw) << 9;
   return hashed(m.colors, hashed(m.texCoords, hashed(m.normals, hashed(m.indices, hashed(m.points, flags)))));
+}
+
+double reachOf(const Mesh& m) {
+  float reach = m.kind == Mesh::Kind::sphere ? m.radius : 0;
+  for (const Vec3f& p : m.points) // not by NaN, which fails every comparison
+    for (const float v : {p.x, p.y, p.z}) reach = std::abs(v) > reach && std::isfinite(v) ? std::abs(v) : reach;
+  return double(reach);
+}
+
+uint64_t ownBytes(const Mesh& m) {
+  return m.ownPoints.capacity() * sizeof(Vec3f) + m.ownNormals.capacity() * sizeof(Vec3f) +
+         m.ownColors.capacity() * sizeof(Color) + m.ownTexCoords.capacity() * sizeof(Vec2f) +
+         m.ownIndices.capacity() * sizeof(uint32_t);
 }
 
 template <class T> bool equalBytes(std::span<const T> a, std::span<const T> b) {
@@ -108,13 +123,20 @@ const Mesh& Meshes::get(int32_t mesh) {
   Entry& entry = entries_[size_t(mesh)];
   if (entry.mesh) return *entry.mesh;
   Diagnostics silent; // what is wrong with a geometry was said when it was built first
-  MeshOptions options{entry.textured, &world_.options.limits, entry.said ? &silent : &world_.diagnostics};
+  Limits limits = world_.options.limits;
+  if (!entry.known) entry.triangles = ration_.budget().left() / (bytesWhileBuilt + bytesOfPrimitive);
+  const bool scarce = entry.triangles < limits.triangles;
+  if (scarce) limits.triangles = entry.triangles;
+  const std::string name = scarce ? ration_.budget().name() : std::string();
+  MeshOptions options{entry.textured, &limits, entry.said ? &silent : &world_.diagnostics, name};
   entry.mesh = std::make_unique<Mesh>(buildMesh(*entry.geometry, options));
+  if (!ration_.take(ownBytes(*entry.mesh), entry.geometry->source)) *entry.mesh = Mesh();
   entry.said = true;
   built_.push_back(mesh);
   if (entry.known) return *entry.mesh;
   entry.known = true;
   const size_t corners = entry.mesh->indices.size();
+  entry.extent.reach = reachOf(*entry.mesh);
   entry.extent.kind = entry.mesh->kind;
   switch (entry.mesh->kind) {
   case Mesh::Kind::empty: entry.extent.primitives = 0; break;
@@ -196,6 +218,7 @@ Meshes::Extent Meshes::extent(int32_t mesh) {
 void Meshes::release() {
   for (const int32_t mesh : built_) entries_[size_t(mesh)].mesh.reset();
   built_.clear();
+  ration_.clear();
 }
 
 void growByPoint(Bounds& bounds, const Vector& p) {

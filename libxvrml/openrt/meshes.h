@@ -8,13 +8,14 @@
 
 #include "geometry/matrix.h"
 #include "geometry/mesh.h"
+#include "openrt/ration.h"
 #include "xvrml/openrt.h"
 
 namespace xvrml::mapping {
 
 class Meshes {
  public:
-  explicit Meshes(World& world) : world_(world) {}
+  explicit Meshes(World& world) : world_(world), ration_(world, "meshes") {}
   // The number of a geometry node's mesh, with one user more. textured: a shape that uses it has a texture.
   int32_t add(Node& geometry, bool textured);
   void drop(int32_t mesh); // one user less
@@ -37,6 +38,7 @@ class Meshes {
   struct Extent {
     Mesh::Kind kind = Mesh::Kind::empty;
     uint64_t primitives = 0;
+    double reach = 0; // largest coordinate
   };
   Extent extent(int32_t mesh);
   // The mesh whose object draws this one too: one with equal content, perhaps itself.
@@ -56,6 +58,7 @@ class Meshes {
     NodeRef geometry;
     std::unique_ptr<Mesh> mesh; // null: not built, or released
     Extent extent;
+    uint64_t triangles = 0; // at most: as the budget was when it was built first
     uint32_t users = 0;
     int32_t group = none_, next = none_, previous = none_; // those of equal content
     bool textured = false, known = false, dynamic = false, said = false;
@@ -73,6 +76,7 @@ class Meshes {
   void count(int32_t mesh, int32_t users);
 
   World& world_;
+  Ration ration_; // of the meshes that are built now
   std::vector<Entry> entries_;
   std::vector<int32_t> free_, dropped_, built_;
   std::unordered_map<const Node*, int32_t> index_;

@@ -9,6 +9,7 @@
 
 #include "openrt/appearance.h"
 #include "openrt/places.h"
+#include "openrt/ration.h"
 
 namespace xvrml::mapping {
 
@@ -22,6 +23,9 @@ struct Part {
   bool dynamic = false;                                              // as RT_DYNAMIC says
   uint64_t instances = 0;                                            // of it, in the parts that are defined
   uint64_t shapes = 0, triangles = 0, primitives = 0, drawCalls = 0; // written into it
+  uint64_t bytes = 0;                                                // taken from the world's budget for what it holds
+  uint64_t flat = 0;  // instances that one of it comes to, once what it instantiates is flattened (decision 2)
+  double reach = 0;   // largest coordinate of what it holds
   std::vector<int32_t> uses;                                         // parts it instantiates, once for each time
   std::vector<ItemId> moving; // items of which it holds instances that are kept (Objects::placed_)
 };
@@ -91,8 +95,9 @@ class Objects {
   void expand(const Step& step);
   void drain();
   void writeShape(ItemId item, const Matrix& matrix);
-  void draw(int32_t mesh, const Surface& surface, bool textured);
+  bool draw(int32_t mesh, const Surface& surface, bool textured);
   void drawArrays(const Mesh& mesh, const Surface& surface, bool textured);
+  bool tooFar(const Matrix& matrix, double reach, const SourcePosition& where, const std::string& what);
   // number: of the shape that the instance is; 0: shapes below have their own.
   RTid instantiate(int32_t part, const Matrix& matrix, uint32_t number, bool dynamic);
   void keep(ItemId item, RTid instance, const Matrix& base);
@@ -102,6 +107,7 @@ class Objects {
   Graph& graph_;
   Places& places_;
   Surfaces& surfaces_;
+  Ration ration_;
   std::vector<Part> parts_;
   std::vector<int32_t> freeParts_, meshParts_, dirty_;
   std::unordered_map<ItemId, std::vector<Placed>> placed_;

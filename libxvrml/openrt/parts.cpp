@@ -8,7 +8,7 @@
 namespace xvrml::mapping {
 
 Objects::Objects(World& world, bool linearColor, Graph& graph, Places& places, Surfaces& surfaces)
-    : world_(world), linear_(linearColor), graph_(graph), places_(places), surfaces_(surfaces) {
+    : world_(world), linear_(linearColor), graph_(graph), places_(places), surfaces_(surfaces), ration_(world, "shapes") {
   for (const NodeRef& root : world.scope.roots) live_ |= root && root->live;
   met_.assign(graph.items.size(), 0);
 }
@@ -42,6 +42,9 @@ void Objects::forget(Part& part) {
   }
   part.moving.clear();
   part.shapes = part.triangles = part.primitives = part.drawCalls = 0;
+  ration_.give(part.bytes);
+  part.bytes = part.flat = 0;
+  part.reach = 0;
 }
 
 // Parts that instantiate it are dirty, or go too: its instances vanish with it.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <unordered_map>
+#include <utility>
 
 #include "xvrml/nodes.h"
 
@@ -13,6 +14,7 @@ void Places::build(const Graph& graph, std::vector<Place>& gone) {
   const std::vector<int32_t> childrenBefore = std::move(children);
   all.clear();
   children.clear();
+  ration_.give(std::exchange(taken_, 0));
   expand(graph);
   turns.assign(all.size(), Matrix());
   inherit(before, childrenBefore, gone);
@@ -51,7 +53,11 @@ void Places::expand(const Graph& graph) {
     const uint32_t index = top.next++, slot = all[top.place].firstChild + index;
     const ItemId child = item.children[index];
     const bool level = item.kind == Kind::lod && item.placed;
-    if (level || graph.items[child].placed) children[slot] = open(child, int32_t(top.place), level ? int32_t(index) : none);
+    if (!level && !graph.items[child].placed) continue;
+    const Node* node = graph.items[child].node.get();
+    if (!ration_.take(bytesOfPlace, node ? node->source : SourcePosition())) continue;
+    taken_ += bytesOfPlace;
+    children[slot] = open(child, int32_t(top.place), level ? int32_t(index) : none);
   }
 }
 

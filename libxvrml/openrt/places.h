@@ -34,6 +34,7 @@ struct Place {
 
 class Places {
  public:
+  explicit Places(World& world) : ration_(world, "lights, views, billboards and levels of detail") {}
   // From nothing, or with what is left of the places before. gone: those of them that are no more, with what was made of them.
   void build(const Graph& graph, std::vector<Place>& gone);
   // World matrices, billboards' turns, levels of detail for a camera.
@@ -51,6 +52,8 @@ class Places {
   std::vector<Matrix> turns; // by place: a billboard's turn, identity elsewhere
 
  private:
+  Ration ration_;
+  uint64_t taken_ = 0; // of it
   void expand(const Graph& graph);
   void inherit(std::vector<Place>& before, const std::vector<int32_t>& childrenBefore, std::vector<Place>& gone);
   void index(size_t items);

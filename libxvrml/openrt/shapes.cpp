@@ -1,6 +1,8 @@
 // shapes.cpp: what is written into an open object: instances of the objects below, shapes with their arrays as they are, the
 // matrix, the surface. The other half of Objects.
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "openrt/objects.h"
 #include "xvrml/nodes.h"
@@ -48,19 +50,47 @@ void Objects::drain() {
   }
 }
 
+// Is something of this extent, placed by this matrix, beyond what float coordinates can say? Tells it, too.
+bool Objects::tooFar(const Matrix& matrix, double reach, const SourcePosition& where, const std::string& what) {
+  constexpr double most = 1e38;
+  double far = 0;
+  for (int i = 0; i < 3; ++i) {
+    const double turned = std::abs(matrix.x[0][i]) + std::abs(matrix.x[1][i]) + std::abs(matrix.x[2][i]);
+    far = std::max(far, std::abs(matrix.x[3][i]) + turned * reach);
+    if (!(far <= most)) far = std::numeric_limits<double>::infinity(); // NaN too
+  }
+  if (far <= most) {
+    Part& part = parts_[size_t(writing_)];
+    part.reach = std::max(part.reach, far);
+    return false;
+  }
+  world_.diagnostics.warn(where, what + " is larger than 1e38, or further away, by the Transforms around it; it is left out");
+  return true;
+}
+
 // dynamic: events or the camera will move it.
 RTid Objects::instantiate(int32_t id, const Matrix& matrix, uint32_t number, bool dynamic) {
-  const bool usable = finite(matrix);
-  if (!usable && !dynamic) return 0; // scales that multiply beyond all numbers: out of sight
+  const Part& used = parts_[size_t(id)];
+  const NodeRef node = used.of == Part::Of::mesh ? NodeRef(&graph_.meshes.geometry(used.mesh)) : graph_.items[used.item].node;
+  const SourcePosition where = node ? node->source : SourcePosition();
+  const bool usable = !tooFar(matrix, used.reach, where, node ? node->type().name : "the world");
+  if (!usable && !dynamic) return 0;
+  const uint64_t flat = std::max<uint64_t>(used.flat + (used.drawCalls > 0), 1);
+  const uint64_t bytes = multiplySaturating(flat, bytesOfInstance);
+  if (!ration_.take(bytes, where)) return 0;
   rtLoadName(number);
   load(usable ? matrix : scaling(Vector(0)));
   const RTid instance = rtInstantiateObject(parts_[size_t(id)].object);
   if (instance == 0) {
+    ration_.give(bytes);
     report(world_.diagnostics, {}, "a group cannot be placed");
     return 0;
   }
   if (dynamic) rtInstanceHint(instance, RT_DYNAMIC);
-  parts_[size_t(writing_)].uses.push_back(id);
+  Part& part = parts_[size_t(writing_)];
+  part.uses.push_back(id);
+  part.bytes += bytes;
+  part.flat = addSaturating(part.flat, flat);
   ++parts_[size_t(id)].instances;
   ++instances_;
   return instance;
@@ -84,21 +114,25 @@ void Objects::writeShape(ItemId id, const Matrix& matrix) {
     if (item.recolored) keep(id, instance, matrix);
   } else {
     const Meshes::Extent extent = graph_.meshes.extent(item.mesh);
-    if (extent.primitives == 0 || !finite(matrix)) return;
+    if (extent.primitives == 0 || tooFar(matrix, extent.reach, item.node->source, "Shape")) return;
     const Surface surface = surfaces_.of(appearance, item.lines);
     rtLoadName(item.number);
     load(matrix);
-    draw(item.mesh, surface, isTextured(appearance));
+    if (!draw(item.mesh, surface, isTextured(appearance))) return;
   }
   ++parts_[size_t(writing_)].shapes;
   report(world_.diagnostics, item.node->source, "Shape");
 }
 
-void Objects::draw(int32_t mesh, const Surface& surface, bool textured) {
-  const Mesh& m = graph_.meshes.get(mesh);
+// False if the world's budget does not allow it.
+bool Objects::draw(int32_t mesh, const Surface& surface, bool textured) {
   const Meshes::Extent extent = graph_.meshes.extent(mesh);
-  if (extent.primitives == 0) return;
+  if (extent.primitives == 0) return true;
+  const uint64_t bytes = addSaturating(multiplySaturating(extent.primitives, bytesOfPrimitive), bytesOfShape);
+  if (!ration_.take(bytes, graph_.meshes.geometry(mesh).source)) return false;
+  const Mesh& m = graph_.meshes.get(mesh);
   Part& part = parts_[size_t(writing_)];
+  part.bytes += bytes;
   part.primitives += extent.primitives;
   if (m.kind == Mesh::Kind::triangles) part.triangles += extent.primitives;
   ++part.drawCalls;
@@ -115,6 +149,7 @@ void Objects::draw(int32_t mesh, const Surface& surface, bool textured) {
     drawArrays(m, surface, textured);
   }
   rtBindShader(0);
+  return true;
 }
 
 void Objects::drawArrays(const Mesh& m, const Surface& surface, bool textured) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <stdexcept>
 
 #include "image/decoders.h"
 #include "xvrml/media.h"
@@ -51,7 +52,11 @@ RTid Textures::makeNode(Node& node) {
   if (auto* image = nodeCast<nodes::ImageTexture>(&node)) return ofUrls(image->url, node, image->repeatS, image->repeatT);
   RTid id = 0;
   if (OwnImage own; ownImage(node, own)) {
-    if (own.image) id = make(*own.image, own.repeatS, own.repeatT);
+    try {
+      if (own.image) id = make(*own.image, own.repeatS, own.repeatT);
+    } catch (const std::runtime_error& failure) {
+      world_.diagnostics.error(node.source, node.type().name + ": no picture: " + failure.what());
+    }
     if (!node.live && nodeCast<nodes::MovieTexture>(&node))
       world_.diagnostics.warn(node.source, "MovieTexture: films play in a running world; the surface is drawn without it");
     report(world_.diagnostics, node.source, node.type().name);
@@ -69,6 +74,7 @@ void Textures::clear() {
   ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
   for (const RTid id : ids)
     if (id != 0) rtDeleteTexture(id);
+  share_.clear();
 }
 
 bool Textures::changed(Node& node) {
@@ -77,12 +83,16 @@ bool Textures::changed(Node& node) {
   const RTid before = found->second.id;
   if (OwnImage own; before != 0 && ownImage(node, own) && own.image && usable(*own.image)) {
     rtBindTexture(before);
-    upload(*own.image);
+    try {
+      upload(before, *own.image);
+    } catch (const std::runtime_error& failure) { // the picture before stays
+      world_.diagnostics.error(node.source, node.type().name + ": no picture: " + failure.what());
+    }
     report(world_.diagnostics, node.source, node.type().name);
     return false;
   }
   if (OwnImage own; before != 0 && ownImage(node, own)) { // it has none any more
-    rtDeleteTexture(before);
+    remove(before);
     --count_;
   }
   const RTid id = makeNode(node);
@@ -112,10 +122,11 @@ RTid Textures::ofFile(const std::string& path, bool repeatS, bool repeatT, std::
   if (fresh) {
     try {
       const Limits& limits = world_.options.limits;
-      const std::vector<uint8_t> bytes = readPictureFile(path, limits);
+      const ImageRoom room{limits, this->room(), share_.budget().get()};
+      const std::vector<uint8_t> bytes = readPictureFile(path, room);
       id = looksLikeRadiance(bytes.data(), bytes.size())
                ? make(decodeRadiance(bytes.data(), bytes.size(), limits), repeatS, repeatT)
-               : make(decodeImage(bytes.data(), bytes.size(), limits), repeatS, repeatT);
+               : make(decodeImage(bytes.data(), bytes.size(), room), repeatS, repeatT);
       if (id == 0 && rtGetError() != RT_NO_ERROR) why = rtGetErrorMessage();
     } catch (const std::exception& failure) { why = failure.what(); }
   }
@@ -123,12 +134,39 @@ RTid Textures::ofFile(const std::string& path, bool repeatS, bool repeatT, std::
   return id;
 }
 
-void Textures::upload(const Image& image) {
+// What pictures of files hold in all: 4 bytes for each pixel that a single one may have.
+uint64_t Textures::room() const {
+  const uint64_t pixels = world_.options.limits.imagePixels;
+  const uint64_t most = pixels > ~uint64_t(0) / 4 ? ~uint64_t(0) : 4 * pixels;
+  return most - std::min(most, share_.bytes());
+}
+
+void Textures::remove(RTid texture) {
+  rtDeleteTexture(texture);
+  if (const auto found = bytes_.find(texture); found != bytes_.end()) {
+    share_.give(found->second);
+    bytes_.erase(found);
+  }
+}
+
+// Counts the bytes of a texture's pixels from now on.
+void Textures::take(RTid texture, uint64_t wanted) {
+  uint64_t& bytes = bytes_[texture];
+  if (wanted > bytes && !share_.take(wanted - bytes))
+    throw std::runtime_error("with all that the world holds " + std::to_string(wanted) + " bytes are more than " +
+                             share_.budget()->name());
+  if (wanted < bytes) share_.give(bytes - wanted);
+  bytes = wanted;
+}
+
+void Textures::upload(RTid texture, const Image& image) {
+  take(texture, image.pixels.size());
   rtTexImage2D(image.components, image.width, image.height, RT_UNSIGNED_BYTE, image.pixels.data());
   ++loaded_;
 }
 
-void Textures::upload(const RadianceImage& image) {
+void Textures::upload(RTid texture, const RadianceImage& image) {
+  take(texture, image.rgb.size() * sizeof(float));
   rtTexImage2D(3, image.width, image.height, RT_FLOAT, image.rgb.data());
   ++loaded_;
 }
@@ -139,7 +177,12 @@ template <class Picture> RTid Textures::make(const Picture& image, bool repeatS,
   rtGenTextures(1, &id);
   if (id == 0) return 0;
   rtBindTexture(id);
-  upload(image);
+  try {
+    upload(id, image);
+  } catch (...) {
+    remove(id);
+    throw;
+  }
   rtTexParameteri(RT_TEXTURE_WRAP_S, repeatS ? RT_REPEAT : RT_CLAMP_TO_EDGE);
   rtTexParameteri(RT_TEXTURE_WRAP_T, repeatT ? RT_REPEAT : RT_CLAMP_TO_EDGE);
   rtTexParameteri(RT_TEXTURE_SRGB, srgb_ ? 1 : 0);

@@ -7,6 +7,7 @@
 #include <tuple>
 #include <unordered_map>
 
+#include "base/budget.h"
 #include "openrt/rt.h"
 #include "xvrml/radiance.h"
 #include "xvrml/world.h"
@@ -15,7 +16,7 @@ namespace xvrml::mapping {
 
 class Textures {
  public:
-  Textures(World& world, bool linearColor) : world_(world), srgb_(linearColor) {}
+  Textures(World& world, bool linearColor) : world_(world), srgb_(linearColor), share_(budgetOf(world)) {}
 
   // Of an ImageTexture, PixelTexture or MovieTexture node (or null); 0: there is none, or it could not be had (said once).
   RTid ofNode(Node* texture);
@@ -31,9 +32,13 @@ class Textures {
 
  private:
   RTid ofFile(const std::string& path, bool repeatS, bool repeatT, std::string& error);
+  // Throws std::runtime_error if the world's budget does not allow the picture.
   template <class Picture> RTid make(const Picture& image, bool repeatS, bool repeatT);
-  void upload(const Image& image);
-  void upload(const RadianceImage& image); // numbers are used as they are
+  void upload(RTid texture, const Image& image);
+  void upload(RTid texture, const RadianceImage& image); // numbers are used as they are
+  void take(RTid texture, uint64_t bytes);
+  void remove(RTid texture);
+  uint64_t room() const; // bytes that still pictures may still take
   RTid makeNode(Node& texture);
 
   struct Known {
@@ -42,6 +47,8 @@ class Textures {
   };
   World& world_;
   bool srgb_;
+  Share share_; // of the world's budget
+  std::unordered_map<RTid, uint64_t> bytes_; // of each texture
   uint64_t count_ = 0, missing_ = 0, loaded_ = 0;
   std::unordered_map<const Node*, Known> nodes_;
   std::map<std::tuple<std::string, bool, bool>, std::pair<RTid, std::string>> files_; // texture, or why there is none

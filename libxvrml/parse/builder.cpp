@@ -2,9 +2,12 @@
 // builder_proto.cpp.
 #include "parse/builder.h"
 
+#include <utility>
+
 #include <fmt/format.h>
 
 #include "base/rotation.h"
+#include "parse/expander.h"
 #include "parse/field_access.h"
 #include "parse/inline_node.h"
 #include "parse/nearest.h"
@@ -88,14 +91,25 @@ bool Builder::makeNode(const Token& type, NodeFrame& frame) {
   return true;
 }
 
+// Takes memory from the world's budget. False, after one message, if there is not enough left.
+bool Builder::takes(uint64_t bytes, const Token& at) {
+  if (state_.budget.take(bytes)) return true;
+  if (!std::exchange(state_.full, true))
+    lexer_.error(at.at(), fmt::format("the world takes more memory than {}; nodes from {} on are left out", state_.budget.name(),
+                                      describe(at)));
+  return false;
+}
+
 bool Builder::openNode(const Token& type, const Token* def) {
   NodeFrame frame{{}, type, {}, mark(), 1, {}, nullptr, nullptr};
   const uint64_t limit = state_.options.limits.expandedNodes;
   bool made = false;
   if (state_.world.nodeCount >= limit) {
     lexer_.error(type.at(), fmt::format("more nodes than limit expandedNodes={}; {} is left out", limit, describe(type)));
+  } else if (!takes((def ? bytesOfName + def->text.size() : 0), type)) {
+    made = false;
   } else {
-    made = makeNode(type, frame);
+    made = makeNode(type, frame) && takes(nodeBytes(*frame.node), type);
   }
   if (!made) {
     if (def) lostName(*def);

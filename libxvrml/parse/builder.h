@@ -84,6 +84,7 @@ class Builder : public ParseSink {
   bool inTemplate() const { return scopes_.size() > 1; }
   void pushScope(Scope* scope, ProtoPtr proto, std::shared_ptr<NodeType> type);
   void popScope();
+  bool takes(uint64_t bytes, const Token& at);
   bool makeNode(const Token& type, NodeFrame& frame);
   void checkChild(const NodeFrame& frame);
   bool deliver(const Token& at, const NodeRef& node, uint64_t expanded);
@@ -107,6 +108,7 @@ class Builder : public ParseSink {
   std::vector<NodeFrame> nodes_;
   std::vector<Receiver> receivers_;
   std::unordered_map<const Node*, uint64_t> expanded_; // where more than 1
+  const NodeType* fullInterface_ = nullptr;            // the last one that declares more than the limit
 };
 
 // The type that decides where a node may stand: a prototype instance stands for the first node of its body (4.8.3). Null if not

@@ -115,6 +115,7 @@ void Builder::route(const Token& keyword, const RouteNames& names) {
                              fieldTypeName(out->type), describe(names.toField), fieldTypeName(in->type)));
     return;
   }
+  if (!takes(bytesOfRoute, keyword)) return;
   ++state_.routes;
   scope().scope->routes.push_back(
       {from, std::string(names.fromField.text), to, std::string(names.toField.text), lexer_.place(keyword.at())});

@@ -1,5 +1,7 @@
 // builder_proto.cpp: PROTO and EXTERNPROTO declarations and the interfaces of Scripts (ISO/IEC 14772-1 4.8, 4.9, 6.40). See
 // builder.h.
+#include <utility>
+
 #include <fmt/format.h>
 
 #include "parse/builder.h"
@@ -69,12 +71,13 @@ FieldTarget Builder::openDeclaration(Access access, FieldType type, const Token&
   FieldInfo& field = declaration.field;
   field.name = name.text, field.type = type, field.access = access, field.change = Change::none, field.offset = 0;
   field.defaultValue = defaultValue(type);
-  declaration.accepted = !declarationConflicts(target, field, name);
   const uint64_t limit = state_.options.limits.interfaceFields;
-  if (declaration.accepted && target.fields.size() >= limit) {
-    lexer_.error(name.at(), fmt::format("{} declares more than limit interfaceFields={}", target.name, limit));
-    declaration.accepted = false;
-  }
+  declaration.accepted = target.fields.size() < limit;
+  if (!declaration.accepted && std::exchange(fullInterface_, &target) != &target)
+    lexer_.error(name.at(), fmt::format("{} declares more than limit interfaceFields={}; those from {} on are left out",
+                                        target.name, limit, describe(name)));
+  declaration.accepted = declaration.accepted && !declarationConflicts(target, field, name);
+  if (declaration.accepted) declaration.accepted = takes(bytesOfDeclaration, name);
   void* storage = std::visit([](auto& value) -> void* { return &value; }, field.defaultValue);
   const bool nodeValue = type == FieldType::SFNode || type == FieldType::MFNode;
   const auto kind = type == FieldType::SFNode ? Receiver::Kind::single : Receiver::Kind::multiple;
@@ -112,6 +115,7 @@ void Builder::closeDeclaration(bool good) {
 }
 
 void Builder::openProto(const Token& name) {
+  takes(bytesOfPrototype, name);
   auto proto = std::make_shared<ProtoDeclaration>();
   auto type = std::make_shared<NodeType>();
   type->name = name.text;

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <unordered_set>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -31,16 +32,31 @@ void appendNodes(const Value& value, std::vector<Node*>& nodes) {
 
 } // namespace
 
+uint64_t valueBytes(FieldType type, const void* storage) {
+  return visitStorage(type, const_cast<void*>(storage), [](auto& value) -> uint64_t {
+    using T = std::remove_reference_t<decltype(value)>;
+    const auto outside = [](const std::string& text) { return text.size() > 15 ? text.size() + 1 : 0; };
+    if constexpr (std::is_same_v<T, std::string>) {
+      return outside(value);
+    } else if constexpr (std::is_same_v<T, Image>) {
+      return value.pixels.size();
+    } else if constexpr (requires { value.front(); }) {
+      uint64_t bytes = value.size() * sizeof(value.front());
+      if constexpr (std::is_same_v<T, MFString>)
+        for (const std::string& text : value) bytes += outside(text);
+      return bytes;
+    } else {
+      return 0;
+    }
+  });
+}
+
 uint64_t nodeBytes(Node& node) {
-  uint64_t bytes = node.type().index < 0 ? 600 : 300;
+  const bool dynamic = node.type().index < 0;
+  uint64_t bytes = dynamic ? 600 : 300;
   for (const FieldInfo& field : node.type().fields) {
-    if (!isMultiple(field.type) || !holdsValue(field)) continue;
-    bytes += visitStorage(field.type, node.storage(field), [](auto& value) -> uint64_t {
-      if constexpr (requires { value.front(); })
-        return value.size() * sizeof(value.front());
-      else
-        return 0;
-    });
+    if (!holdsValue(field)) continue;
+    bytes += valueBytes(field.type, node.storage(field)) + (dynamic ? sizeof(Value) : 0);
   }
   return bytes;
 }
@@ -99,6 +115,8 @@ Expander::PlanPtr Expander::plan(const ProtoPtr& declaration, const SourcePositi
     good = false;
   }
   for (size_t i = 0; i < plan->nodes.size(); ++i) plan->ownBytes += plan->shared[i] ? 0 : nodeBytes(*plan->nodes[i]);
+  plan->ownBytes += bytesOfConnection * declaration->is.size() + bytesOfRoute * declaration->body.routes.size() +
+                    bytesOfName * declaration->body.names.size();
   plan->bytes = plan->ownBytes;
   for (size_t i = 0; good && i < plan->nodes.size(); ++i) {
     if (auto* nested = dynamic_cast<ProtoInstance*>(plan->nodes[i])) good = addNested(*plan, *nested, where);
@@ -255,13 +273,12 @@ void Expander::expandOne(ProtoInstance& instance, std::vector<NodeRef>& inlines)
                                          name, plan->expandedNodes, limits.expandedNodes));
     return;
   }
-  if (saturatingAdd(bytes_, plan->bytes) > limits.copyBytes) {
-    state_.diagnostics.error(
-        instance.source,
-        fmt::format("copies of prototype '{}' take more memory than limit copyBytes={}; not expanded", name, limits.copyBytes));
+  if (plan->bytes > state_.budget.left() || !state_.budget.take(plan->ownBytes)) {
+    state_.diagnostics.error(instance.source, fmt::format("copies of prototype '{}' take, with all that the world holds, more "
+                                                          "memory than {}; not expanded",
+                                                          name, state_.budget.name()));
     return;
   }
-  bytes_ += plan->ownBytes;
   completeFields(instance, *definition, inlines);
   const std::vector<NodeRef> copies = copyAll(plan->nodes, plan->index, plan->shared, inlines);
   const auto map = [&](const NodeRef& node) {
@@ -384,6 +401,14 @@ void Expander::connect(const ProtoInstance& instance, const FieldInfo& from, con
                                                         type->name, to.name, node.type().name, from.name, to.nodeTypes));
     return false;
   };
+  const void* const given = std::visit([](const auto& alternative) -> const void* { return &alternative; }, value);
+  if (!state_.budget.take(valueBytes(to.type, given))) {
+    if (!std::exchange(state_.full, true))
+      state_.diagnostics.error(instance.source, fmt::format("the world takes more memory than {}; values of prototype '{}' from "
+                                                            "{} on are left out",
+                                                            state_.budget.name(), instance.type().name, from.name));
+    return;
+  }
   visitStorage(to.type, node.storage(to), [&](auto& target) {
     using T = std::remove_reference_t<decltype(target)>;
     target = std::get<T>(value);

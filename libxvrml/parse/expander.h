@@ -52,12 +52,14 @@ class Expander {
   Resolve resolve_;
   std::unordered_map<const ProtoDeclaration*, PlanPtr> plans_;
   std::vector<NodeRef> todo_;
-  uint64_t depth_ = 0, bytes_ = 0;
+  uint64_t depth_ = 0;
 };
 
 // Every node that the given ones hold in their fields, themselves first, each once. A loop: graphs may be deep.
 void collectNodes(const std::vector<Node*>& roots, std::vector<Node*>& nodes, std::unordered_map<const Node*, uint32_t>& index);
-// Rough size of a node in memory.
+// Rough size of a node in memory, with the values of its fields.
 uint64_t nodeBytes(Node& node);
+// Rough size of a field's value beyond the storage in its node: elements of lists, long strings, pixels.
+uint64_t valueBytes(FieldType type, const void* storage);
 
 } // namespace xvrml

@@ -2,6 +2,7 @@
 // Used by the builder, the prototype instancer and the loader.
 #pragma once
 
+#include "base/budget.h"
 #include "xvrml/nodes.h"
 #include "xvrml/world.h"
 
@@ -10,6 +11,7 @@ namespace xvrml {
 struct InlineNode : nodes::Inline {
   using nodes::Inline::Inline;
   std::shared_ptr<const Scope> content; // null until it is loaded
+  Share share;                          // of the world's budget: content that a running world has loaded
 };
 
 // A node of a type of the registry other than Script.

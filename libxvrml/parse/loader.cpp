@@ -35,7 +35,7 @@ double secondsSince(std::chrono::steady_clock::time_point start) {
 } // namespace
 
 Loader::Loader(World& world, const LoadOptions& options)
-    : world_(world), state_{world, options, world.diagnostics, {}, 0, 0},
+    : world_(world), budget_(budgetOf(world)), state_{world, options, world.diagnostics, *budget_, {}},
       expander_(state_, [this](ProtoDeclaration& declaration) { return resolveExtern(declaration); }) {}
 
 void Loader::load(const Source& source, const std::string& name, bool header) {
@@ -63,7 +63,7 @@ void Loader::loadLate(InlineNode& node, const std::vector<std::string>& enclosin
 void Loader::parse(const Source& source, const std::shared_ptr<const std::string>& name, ParsedFile& file) {
   Lexer lexer(source.text(), name, state_.diagnostics);
   Builder builder(lexer, state_, file);
-  Parser(lexer, state_.options.limits, builder).vrmlScene();
+  Parser(lexer, state_.options.limits, builder, budget_.get()).vrmlScene();
 }
 
 void Loader::complete(ParsedFile& file, uint64_t depth) {
@@ -100,25 +100,24 @@ bool Loader::loadInlineFrom(InlineNode& node, const std::string& path, uint64_t 
     return true;
   }
   if (known.content) {
-    const bool copy = known.changing && copyBytes_ + known.bytes <= limits.copyBytes;
+    const bool copy = known.changing && known.bytes <= budget_->left();
     if (!copy) {
       node.content = known.content;
       return true;
     }
-    copyBytes_ += known.bytes;
   }
   try {
     const Source source = Source::open(path, limits);
     const auto name = std::make_shared<const std::string>(path);
     source.checkHeader(name, state_.diagnostics);
-    const uint64_t nodes = world_.nodeCount, routes = state_.routes, scripts = state_.scripts;
+    const uint64_t before = budget_->used(), routes = state_.routes, scripts = state_.scripts;
     known.reading = true;
     ParsedFile file;
     parse(source, name, file);
     complete(file, depth);
     InlinedFile& entry = inlined_[key]; // the table may have moved
     entry.reading = false;
-    entry.bytes = source.text().size() + 400 * (world_.nodeCount - nodes);
+    entry.bytes = budget_->used() - std::min(budget_->used(), before);
     entry.changing = state_.routes > routes || state_.scripts > scripts;
     entry.content = std::make_shared<const Scope>(std::move(file.scope));
     node.content = entry.content;
@@ -271,12 +270,14 @@ namespace {
 // Bytes for nodes that are nested as deep as they may be, in a debug build too; a release build takes 0.6 kB a level.
 constexpr size_t deepestStack = size_t(6) << 20;
 
-template <class MakeSource>
-std::unique_ptr<World> loadFrom(const std::string& name, const LoadOptions& options, MakeSource makeSource, bool header = true) {
+template <class MakeSource> std::unique_ptr<World> loadFrom(const std::string& name, const LoadOptions& options,
+                                                            MakeSource makeSource, bool header = true,
+                                                            const BudgetPtr& budget = nullptr) {
   try {
     auto world = std::make_unique<World>();
     world->path = name;
     world->options = options;
+    if (budget) setBudget(*world, budget);
     const Source source = makeSource();
     return onStackOf(deepestStack, [&] {
       Loader(*world, world->options).load(source, name, header);
@@ -295,9 +296,15 @@ std::unique_ptr<World> loadWorldFromMemory(std::string_view bytes, const std::st
   return loadFrom(name, options, [&] { return Source::fromMemory(bytes, name, options.limits); });
 }
 
-std::unique_ptr<World> loadFragment(std::string_view text, const std::string& name, const LoadOptions& options) {
+std::unique_ptr<World> loadWorldInto(const BudgetPtr& budget, const std::string& path, const LoadOptions& options) {
   return loadFrom(
-      name, options, [&] { return Source::fromMemory(text, name, options.limits); }, false);
+      path, options, [&] { return Source::open(path, options.limits); }, true, budget);
+}
+
+std::unique_ptr<World> loadFragment(std::string_view text, const std::string& name, const LoadOptions& options,
+                                    const BudgetPtr& budget) {
+  return loadFrom(
+      name, options, [&] { return Source::fromMemory(text, name, options.limits); }, false, budget);
 }
 
 } // namespace xvrml

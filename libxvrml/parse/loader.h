@@ -39,17 +39,21 @@ class Loader {
   void checkSize(Scope& scope);
 
   World& world_;
+  BudgetPtr budget_;
   LoadState state_;
   Expander expander_;
   std::unordered_map<std::string, InlinedFile> inlined_;                   // by canonical path
   std::unordered_map<std::string, std::unique_ptr<ParsedFile>> libraries_; // files that EXTERNPROTOs name
   std::unordered_set<const ProtoDeclaration*> tried_;
   uint64_t resolving_ = 0;
-  uint64_t copyBytes_ = 0;
   bool composed_ = false; // prototypes or Inlines came in: sizes are not what the parser added up
 };
 
 // A text that needs no header (Browser::createVrmlFromString). name: for messages; relative URLs are relative to its folder.
-std::unique_ptr<World> loadFragment(std::string_view text, const std::string& name, const LoadOptions& options);
+// budget: of the world that the text becomes part of.
+std::unique_ptr<World> loadFragment(std::string_view text, const std::string& name, const LoadOptions& options,
+                                    const BudgetPtr& budget);
+// As loadWorld(), for a world that becomes part of another one.
+std::unique_ptr<World> loadWorldInto(const BudgetPtr& budget, const std::string& path, const LoadOptions& options);
 
 } // namespace xvrml

@@ -8,8 +8,8 @@
 
 namespace xvrml {
 
-Parser::Parser(Lexer& lexer, const Limits& limits, ParseSink& sink)
-    : lexer_(lexer), values_(lexer, limits), sink_(sink), nesting_(std::min(limits.nesting, maximumNesting)) {}
+Parser::Parser(Lexer& lexer, const Limits& limits, ParseSink& sink, Budget* budget)
+    : lexer_(lexer), values_(lexer, limits, budget), sink_(sink), nesting_(std::min(limits.nesting, maximumNesting)) {}
 
 // vrmlScene ::= statements
 void Parser::vrmlScene() { statements(TokenKind::end); }

@@ -12,7 +12,8 @@ class Parser {
   // Nodes within nodes that no option can raise: what the thread's stack bears.
   static constexpr uint64_t maximumNesting = 2500;
 
-  Parser(Lexer& lexer, const Limits& limits, ParseSink& sink);
+  // budget: what values draw their memory from; null: nothing is counted.
+  Parser(Lexer& lexer, const Limits& limits, ParseSink& sink, Budget* budget = nullptr);
   // Reads the whole text (the header is a comment to the lexer).
   void vrmlScene();
 

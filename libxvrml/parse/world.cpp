@@ -1,6 +1,7 @@
 // world.cpp: what a loaded world can be asked, and its end. See xvrml/world.h.
 #include "xvrml/world.h"
 
+#include "base/budget.h"
 #include "parse/expansion.h"
 #include "parse/field_access.h"
 
@@ -22,6 +23,7 @@ Node* renderedNode(Node* node) {
 
 // A Script's field may hold a node that contains the Script: such owners of themselves are let go by hand.
 World::~World() {
+  forgetBudget(*this);
   for (const NodeRef& node : cyclic) {
     for (const FieldInfo& field : node->type().fields) {
       if (!holdsNodes(field)) continue;

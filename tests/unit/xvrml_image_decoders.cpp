@@ -7,6 +7,8 @@
 #include <fstream>
 #include <random>
 
+#include <sys/resource.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "image/image.h"
@@ -203,6 +205,77 @@ TEST(ImageDamage, PixelLimitIsCheckedFirst) {
   EXPECT_NE(refusal(gif).find("imagePixels"), std::string::npos);
 }
 
+// A file of less than 100 bytes that promises a large picture. The sum over the chunk is left out: the decoder reads it later.
+Bytes pngHeader(uint32_t width, uint32_t height, uint8_t depth, uint8_t type) {
+  Bytes bytes = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
+  const auto chunk = [&](const char* name, const Bytes& content) {
+    Bytes part(name, name + 4);
+    part.insert(part.end(), content.begin(), content.end());
+    const auto big = [&](uint32_t v) {
+      for (int shift = 24; shift >= 0; shift -= 8) bytes.push_back(uint8_t(v >> shift));
+    };
+    big(uint32_t(content.size()));
+    bytes.insert(bytes.end(), part.begin(), part.end());
+    uint32_t sum = 0xffffffff; // ISO/IEC 15948 annex D
+    for (const uint8_t byte : part) {
+      sum ^= byte;
+      for (int i = 0; i < 8; i++) sum = sum & 1 ? 0xedb88320 ^ (sum >> 1) : sum >> 1;
+    }
+    big(~sum);
+  };
+  Bytes header;
+  for (const uint32_t v : {width, height})
+    for (int shift = 24; shift >= 0; shift -= 8) header.push_back(uint8_t(v >> shift));
+  header.insert(header.end(), {depth, type, 0, 0, 0});
+  chunk("IHDR", header);
+  chunk("IDAT", {0x78, 0x9c, 0x63, 0, 0, 0, 1, 0, 1});
+  chunk("IEND", {});
+  return bytes;
+}
+
+long mostMemory() { // kB that the process has had
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return usage.ru_maxrss;
+}
+
+TEST(ImageDamage, HeadersCostNoMemory) {
+  std::vector<Bytes> files;
+  for (const uint32_t width : {0x7fffffffu, 1u << 28, 65536u, 16384u})
+    for (const uint32_t height : {1u, 16384u})
+      for (const uint8_t type : {uint8_t(0), uint8_t(2), uint8_t(6)}) files.push_back(pngHeader(width, height, 16, type));
+  Bytes jpeg = makeJpeg(16, 16, 3, true, smooth); // progressive: all coefficients are in memory
+  for (size_t i = 0; i + 8 < jpeg.size(); i++)
+    if (jpeg[i] == 0xff && jpeg[i + 1] == 0xc2) jpeg[i + 5] = jpeg[i + 7] = 0x40, jpeg[i + 6] = jpeg[i + 8] = 0;
+  files.push_back(jpeg);
+  Bytes gif = makeGif(2, 2, {{}}, paletteIndex); // a small picture on a large screen
+  gif[7] = gif[9] = 0x40;
+  files.push_back(gif);
+  for (size_t i = 0; i < files.size(); i++) {
+    const long before = mostMemory();
+    EXPECT_NE(refusal(files[i]), "") << i;
+    EXPECT_LT(mostMemory() - before, 32 << 10) << "kB more for file " << i << " of " << files[i].size() << " bytes";
+  }
+}
+
+TEST(ImageDamage, RoomIsCheckedFirst) {
+  const Bytes png = makePng(100, 100, {PNG_COLOR_TYPE_RGB}, pattern), jpeg = makeJpeg(100, 100, 3, true, smooth),
+              gif = makeGif(100, 100, {{}}, paletteIndex);
+  for (const Bytes* bytes : {&png, &jpeg, &gif}) {
+    const auto with = [&](const ImageRoom& room) -> std::string {
+      try {
+        decodeImage(bytes->data(), bytes->size(), room);
+      } catch (const std::runtime_error& error) { return error.what(); }
+      return "";
+    };
+    EXPECT_EQ(with({limits, 40'000}), "");
+    EXPECT_NE(with({limits, 29'999}).find("all pictures of a world"), std::string::npos) << with({limits, 29'999});
+    const Budget wide(1 << 20), narrow(29'999);
+    EXPECT_EQ(with({limits, 40'000, &wide}), "");
+    EXPECT_NE(with({limits, 40'000, &narrow}).find("worldBytes=29999"), std::string::npos);
+  }
+}
+
 TEST(ImageDamage, OtherFilesAreNoPictures) {
   EXPECT_NE(refusal({}).find("empty"), std::string::npos);
   std::string world = "#VRML V2.0 utf8\nShape {}\n";
@@ -225,6 +298,16 @@ TEST(ImageFiles, ContentCountsNotTheName) {
   } catch (const std::runtime_error& error) { EXPECT_STREQ(error.what(), "No such file or directory"); }
   EXPECT_THROW(readImage(std::filesystem::temp_directory_path().string(), limits), std::runtime_error);
   EXPECT_THROW(readImage("/dev/null", limits), std::runtime_error);
+}
+
+TEST(ImageFiles, APipeDoesNotWait) {
+  const auto path = std::filesystem::temp_directory_path() / ("xvrml_pipe_" + std::to_string(::getpid()) + ".png");
+  ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
+  try {
+    readImage(path.string(), limits);
+    ADD_FAILURE() << "a pipe is no picture";
+  } catch (const std::runtime_error& error) { EXPECT_STREQ(error.what(), "not a regular file"); }
+  std::filesystem::remove(path);
 }
 
 } // namespace

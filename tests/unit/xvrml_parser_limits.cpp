@@ -64,7 +64,7 @@ TEST(ParserLimits, ExpandedNodesByPrototypes) {
   EXPECT_EQ(renderedNode(world->scope.roots[0].get()), nullptr);
   LoadOptions unbounded;
   unbounded.limits.expandedNodes = ~0ull; // then memory is the bound
-  EXPECT_TRUE(says(*parse(text + "P40 { }", unbounded), "limit copyBytes"));
+  EXPECT_TRUE(says(*parse(text + "P40 { }", unbounded), "limit worldBytes"));
 }
 
 TEST(ParserLimits, ExpandedNodesByDefaultsOfPrototypes) {

@@ -9,6 +9,8 @@
 #include <system_error>
 #include <vector>
 
+#include <sys/stat.h>
+#include <unistd.h>
 #include <xxhash.h>
 #include <zstd.h>
 
@@ -22,18 +24,32 @@ namespace {
 
 using namespace recording;
 
-// Writes the file; any failure is a std::system_error that names it.
+// Writes the file; any failure is a std::system_error that names it. The file is written beside its name and gets that name once
+// a first commit is in it: what was there before stays if the disk is full, and a program that ends by a signal leaves a
+// recording. A device or a pipe is written to directly. After a failure the file ends with the last whole commit.
 class RecordingWriter {
  public:
-  explicit RecordingWriter(std::string path) : path_(std::move(path)), file_(std::fopen(path_.c_str(), "wbe")) {
+  explicit RecordingWriter(std::string path) : path_(std::move(path)) {
+    struct stat status {};
+    const bool direct = stat(path_.c_str(), &status) == 0 && !S_ISREG(status.st_mode);
+    if (!direct) temporary_ = path_ + ".partial-" + std::to_string(getpid());
+    file_ = std::fopen((direct ? path_ : temporary_).c_str(), "wbe");
     if (!file_) failed("cannot be made");
-    FileHeader header{};
-    std::memcpy(header.magic, magic, sizeof(magic));
-    header.version = version;
-    put(&header, sizeof(header));
-    flush();
+    try {
+      FileHeader header{};
+      std::memcpy(header.magic, magic, sizeof(magic));
+      header.version = version;
+      put(&header, sizeof(header));
+      commit();
+    } catch (...) {
+      end();
+      throw;
+    }
   }
-  ~RecordingWriter() { std::fclose(file_); }
+  ~RecordingWriter() {
+    if (!temporary_.empty() && good_) (void)name(); // a recording of nothing is one, too
+    end();
+  }
   RecordingWriter(const RecordingWriter&) = delete;
   RecordingWriter& operator=(const RecordingWriter&) = delete;
 
@@ -43,7 +59,8 @@ class RecordingWriter {
     std::sort(ids.begin(), ids.end());
     for (ArrayId id : ids) writeArray(id, *commit.arrays.at(id));
     writeEdits(commit.edits);
-    flush();
+    this->commit();
+    if (!temporary_.empty() && !name()) failed("cannot be renamed");
   }
 
  private:
@@ -68,15 +85,34 @@ class RecordingWriter {
   void put(const void* data, size_t bytes) {
     if (bytes > 0 && std::fwrite(data, 1, bytes, file_) != bytes) failed("cannot be written");
   }
-  void flush() {
+  // What has been put is in the file.
+  void commit() {
     if (std::fflush(file_) != 0) failed("cannot be written");
+    whole_ = ftello(file_);
   }
-  [[noreturn]] void failed(const char* what) const {
+  bool name() {
+    if (std::rename(temporary_.c_str(), path_.c_str()) != 0) return false;
+    temporary_.clear();
+    return true;
+  }
+  // Closes the file; cuts off what is not whole, removes what has no name yet.
+  void end() {
+    const int descriptor = dup(fileno(file_));
+    std::fclose(file_);
+    if (descriptor < 0) return;
+    if (!good_) (void)!ftruncate(descriptor, whole_); // of no effect on devices
+    close(descriptor);
+    if (!temporary_.empty()) std::remove(temporary_.c_str());
+  }
+  [[noreturn]] void failed(const char* what) {
+    good_ = false;
     throw std::system_error(errno, std::generic_category(), "recording " + path_ + " " + what);
   }
 
-  std::string path_;
-  std::FILE* file_;
+  std::string path_, temporary_; // empty: the file has its name
+  std::FILE* file_ = nullptr;
+  off_t whole_ = 0; // bytes up to the end of the last commit
+  bool good_ = true;
   std::vector<char> packed_;
 };
 
@@ -86,7 +122,7 @@ class RecordBackend final : public Backend, public ForwardedQueries {
   RecordBackend(const BackendOptions& options, std::unique_ptr<Backend> renderer)
       : writer_(std::make_unique<RecordingWriter>(options.file)), renderer_(std::move(renderer)) {}
 
-  // After a failed write the file is of no use: the recording ends, rendering goes on with the next call.
+  // After a failed write the recording ends, rendering goes on with the next call.
   void apply(std::shared_ptr<const Commit> commit) override {
     if (writer_) {
       try {

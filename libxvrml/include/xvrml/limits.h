@@ -12,7 +12,10 @@ struct Limits {
   uint64_t protoDepth = 64;             // prototypes instantiating prototypes
   uint64_t inlineDepth = 32;            // files within files
   uint64_t expandedNodes = 10'000'000;  // nodes after all prototypes and USEs are expanded
-  uint64_t copyBytes = 512ull << 20;    // memory of prototype instances and of Inlines read more than once (estimated)
+  union {
+    uint64_t worldBytes = 0; // memory of everything made from a world's files (estimated); 0: an eighth of the machine's
+    uint64_t copyBytes;      // its former name, when it bounded copies alone
+  };
   uint64_t interfaceFields = 10'000;    // declarations of one PROTO, EXTERNPROTO or Script
   uint64_t stringBytes = 64ull << 20;
   uint64_t arrayElements = 400'000'000; // numbers in one MF field

@@ -1,0 +1,114 @@
+/* write_failures.c: a library for LD_PRELOAD that makes one write to a file fail as on a full disk. write_failures.py uses it.
+ *
+ * Calls that can fail for want of space are counted: write and pwrite to regular files, fwrite, fflush and fclose of streams on
+ * such files, close, rename, link and fsync of them. WRITE_FAILURE=N makes the N-th of them fail with ENOSPC (0: none).
+ * WRITE_FAILURE_STICKS=1 makes all after it fail as well, except for those that give space back. The number of calls so far is
+ * kept in the file named by WRITE_FAILURE_COUNT, which is itself not counted; one process at a time. */
+#define _GNU_SOURCE
+#include <dlfcn.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+static pthread_mutex_t mutex = PTHREAD_MUTEX_INITIALIZER;
+static long calls;
+
+static int regular(int descriptor) {
+  struct stat status;
+  return descriptor > STDERR_FILENO && fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode);
+}
+
+static void keep(long number) {
+  const char* path = getenv("WRITE_FAILURE_COUNT");
+  char text[32];
+  int file, length;
+  if (!path) return;
+  file = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (file < 0) return;
+  length = snprintf(text, sizeof text, "%ld\n", number);
+  (void)!syscall(SYS_write, file, text, (size_t)length);
+  syscall(SYS_close, file);
+}
+
+/* Counts a call. 1: it is to fail; errno says why. */
+static int fails(void) {
+  const char* which = getenv("WRITE_FAILURE");
+  const char* sticks = getenv("WRITE_FAILURE_STICKS");
+  const long wanted = which ? atol(which) : 0;
+  long number;
+  pthread_mutex_lock(&mutex);
+  number = ++calls;
+  keep(number);
+  pthread_mutex_unlock(&mutex);
+  if (wanted == 0 || number < wanted || (number > wanted && !(sticks && *sticks == '1'))) return 0;
+  errno = ENOSPC;
+  return 1;
+}
+
+#define REAL(result, name, ...)                                                                                                  \
+  static result (*real)(__VA_ARGS__);                                                                                            \
+  if (!real) *(void**)&real = dlsym(RTLD_NEXT, name)
+
+ssize_t write(int descriptor, const void* bytes, size_t count) {
+  REAL(ssize_t, "write", int, const void*, size_t);
+  if (regular(descriptor) && fails()) return -1;
+  return real(descriptor, bytes, count);
+}
+
+ssize_t pwrite(int descriptor, const void* bytes, size_t count, off_t at) {
+  REAL(ssize_t, "pwrite", int, const void*, size_t, off_t);
+  if (regular(descriptor) && fails()) return -1;
+  return real(descriptor, bytes, count, at);
+}
+
+/* A disk that fills up in the middle: a part of the bytes is there. */
+size_t fwrite(const void* bytes, size_t size, size_t count, FILE* stream) {
+  REAL(size_t, "fwrite", const void*, size_t, size_t, FILE*);
+  if (regular(fileno(stream)) && fails()) {
+    const size_t done = real(bytes, size, count / 2, stream);
+    errno = ENOSPC;
+    return done;
+  }
+  return real(bytes, size, count, stream);
+}
+
+int fflush(FILE* stream) {
+  REAL(int, "fflush", FILE*);
+  if (stream && regular(fileno(stream)) && fails()) return EOF;
+  return real(stream);
+}
+
+int fclose(FILE* stream) {
+  REAL(int, "fclose", FILE*);
+  const int descriptor = fileno(stream);
+  const int writes = regular(descriptor) && (fcntl(descriptor, F_GETFL) & O_ACCMODE) != O_RDONLY;
+  const int failed = writes && fails();
+  const int result = real(stream);
+  if (failed) errno = ENOSPC;
+  return failed ? EOF : result;
+}
+
+int close(int descriptor) {
+  REAL(int, "close", int);
+  const int writes = regular(descriptor) && (fcntl(descriptor, F_GETFL) & O_ACCMODE) != O_RDONLY;
+  const int failed = writes && fails();
+  const int result = real(descriptor);
+  if (failed) errno = ENOSPC;
+  return failed ? -1 : result;
+}
+
+int rename(const char* from, const char* to) {
+  REAL(int, "rename", const char*, const char*);
+  return fails() ? -1 : real(from, to);
+}
+
+int fsync(int descriptor) {
+  REAL(int, "fsync", int);
+  return regular(descriptor) && fails() ? -1 : real(descriptor);
+}
