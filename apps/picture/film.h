@@ -1,6 +1,6 @@
-// film.h: a sequence of pictures as the bytes of a film: MP4 and WebM by the ffmpeg libraries where the build has them, animated GIF
-// by giflib always. vv and the Python binding write the bytes with writeFile() when the film is finished, so that a file is whole or
-// not there. Same pictures, same bytes. [one thread at a time for each Film]
+// film.h: a sequence of pictures as the bytes of a film: MP4 and WebM by the ffmpeg libraries where the build has them, animated
+// GIF by giflib always. vv and the Python binding write the bytes with writeFile() when the film is finished, so that a file is
+// whole or not there. Same pictures, same bytes. [one thread at a time for each Film]
 #pragma once
 
 #include <cstdint>

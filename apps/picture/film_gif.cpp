@@ -1,5 +1,6 @@
-// film_gif.cpp: animated GIF by giflib. Each picture has a palette of its own, made by median cut (Heckbert, "Color image quantization
-// for frame buffer display", 1982), and its colours are dithered by error diffusion (Floyd and Steinberg, 1976). See film.h.
+// film_gif.cpp: animated GIF by giflib. Each picture has a palette of its own, made by median cut (Heckbert, "Color image
+// quantization for frame buffer display", 1982), and its colours are dithered by error diffusion (Floyd and Steinberg, 1976). See
+// film.h.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -131,7 +132,8 @@ class Nearest {
   std::vector<int16_t> known_;
 };
 
-std::vector<GifPixelType> dithered(std::span<const uint8_t> rgb, int width, int height, const std::vector<GifColorType>& palette) {
+std::vector<GifPixelType> dithered(std::span<const uint8_t> rgb, int width, int height,
+                                   const std::vector<GifColorType>& palette) {
   std::vector<GifPixelType> out(size_t(width) * size_t(height));
   std::vector<std::array<int, 3>> here(size_t(width) + 2), below(size_t(width) + 2); // errors, in sixteenths
   Nearest nearest(palette);

@@ -1,5 +1,5 @@
-// film_libav.cpp: MP4 (H.264, or MPEG-4 where the libraries have no encoder of H.264) and WebM (VP9 or VP8) by the ffmpeg libraries,
-// into memory. See film.h.
+// film_libav.cpp: MP4 (H.264, or MPEG-4 where the libraries have no encoder of H.264) and WebM (VP9 or VP8) by the ffmpeg
+// libraries, into memory. See film.h.
 #include "picture/film.h"
 
 #ifndef PICTURE_WITH_FFMPEG
@@ -167,9 +167,9 @@ class LibavEncoder : public FilmEncoder {
 
   // From red, green, blue to the film's colours (ITU-R BT.709, 16 to 235).
   void openScaler() {
-    scaler_.reset(made(sws_getContext(codec_->width, codec_->height, AV_PIX_FMT_RGB24, codec_->width, codec_->height,
-                                      AV_PIX_FMT_YUV420P, SWS_BICUBIC | SWS_ACCURATE_RND | SWS_BITEXACT, nullptr, nullptr,
-                                      nullptr)));
+    scaler_.reset(
+        made(sws_getContext(codec_->width, codec_->height, AV_PIX_FMT_RGB24, codec_->width, codec_->height, AV_PIX_FMT_YUV420P,
+                            SWS_BICUBIC | SWS_ACCURATE_RND | SWS_BITEXACT, nullptr, nullptr, nullptr)));
     const int* const bt709 = sws_getCoefficients(SWS_CS_ITU709);
     sws_setColorspaceDetails(scaler_.get(), bt709, 1, bt709, 0, 0, 1 << 16, 1 << 16);
     padded_.resize(size_t(codec_->width) * size_t(codec_->height) * 3);

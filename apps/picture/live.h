@@ -63,10 +63,10 @@ class LiveRenderer {
   bool copy(Picture& picture);
   // Quality of the following frames. [idle]
   void change(const std::function<void(RenderSettings&)>& change);
-  const std::vector<xvrml::ViewpointInfo>& viewpoints() const; // after the first mapping; [not while mapping]
-  xvrml::Bounds bounds() const;                                // the same
+  const std::vector<xvrml::ViewpointInfo>& viewpoints() const;           // after the first mapping; [not while mapping]
+  xvrml::Bounds bounds() const;                                          // the same
   xvrml::CameraSettings cameraOf(const View& view, double aspect) const; // see camera.h; the same
-  xvrml::Axis upOf(const View& view) const;                    // see camera.h; the same
+  xvrml::Axis upOf(const View& view) const;                              // see camera.h; the same
   // Why the last frame could not be made (RenderError's text), once; "" if nothing was wrong.
   std::string takeFailure();
 

@@ -113,7 +113,8 @@ void notEmpty(const std::string& value, const char* what) {
 const OptionInfo table[] = {
     {"-o,--output", "FILE", "Picture",
      "Picture to write; the format is that of the suffix (exr, png, jpg, ppm, pfm). FORMAT:FILE says it where the "
-     "suffix does not. - is standard output (PNG; exr:- and so on for another format). Of a sequence {frame:4} in the name is the number with four digits, and mp4, webm or gif makes a "
+     "suffix does not. - is standard output (PNG; exr:- and so on for another format). Of a sequence {frame:4} in the name is "
+     "the number with four digits, and mp4, webm or gif makes a "
      "film. May be given several times.",
      addOutput, true},
     {"--size", "WxH", "Picture", "Size in pixels, of pictures and of the window (default 800x600).",

@@ -40,12 +40,10 @@ std::vector<Named> outputsOf(const Options& options) {
 }
 
 std::vector<Named> inputsOf(const Options& options) {
-  std::vector<Named> all = {{"the world that is read", options.input},
-                            {"the picture of --environment", options.render.environment},
-                            {"the script of --input", options.inputScript},
-                            {"the picture of --compare", options.compare},
-                            {"the file of --key", options.cluster.key},
-                            {"the file of --allow-keys", options.cluster.allow}};
+  std::vector<Named> all = {
+      {"the world that is read", options.input},      {"the picture of --environment", options.render.environment},
+      {"the script of --input", options.inputScript}, {"the picture of --compare", options.compare},
+      {"the file of --key", options.cluster.key},     {"the file of --allow-keys", options.cluster.allow}};
   if (options.cluster.workers.starts_with('@')) all.push_back({"the file of --workers", options.cluster.workers.substr(1)});
   for (const std::string& shader : options.shaders) // DEF=CLASS:texture=@FILE
     for (size_t at = shader.find("=@"); at != shader.npos; at = shader.find("=@", at + 1))
@@ -74,7 +72,8 @@ void checkOutputs(const Options& options) {
   for (const Output& output : options.outputs) {
     if (output.path == "-" && ::isatty(STDOUT_FILENO)) throw Failure{exitUsage, "-o -: a picture is not written to a terminal"};
     if (output.film == picture::FilmKind::none) continue;
-    if (const std::string why = picture::whyNoFilm(output.film); !why.empty()) throw Failure{exitRender, output.path + ": " + why};
+    if (const std::string why = picture::whyNoFilm(output.film); !why.empty())
+      throw Failure{exitRender, output.path + ": " + why};
   }
   std::map<std::string, std::string> taken; // by place: the option
   for (const Named& output : outputsOf(options)) {
@@ -82,8 +81,8 @@ void checkOutputs(const Options& options) {
     if (place.empty()) continue;
     const auto [found, fresh] = taken.try_emplace(place, output.option);
     if (!fresh)
-      throw Failure{exitUsage, fmt::format("{} and {} name one file, {}: each needs its own", found->second, output.option,
-                                           output.path)};
+      throw Failure{exitUsage,
+                    fmt::format("{} and {} name one file, {}: each needs its own", found->second, output.option, output.path)};
   }
   for (const Named& input : inputsOf(options)) picture::keepFile(input.path, input.option);
   refuseKept(options);

@@ -268,7 +268,9 @@ class Pictures {
       try {
         if (!film) film = std::make_unique<picture::Film>(output.film, made.width, made.height, options_.fps);
         film->add(picture::displayBytes(made));
-      } catch (const std::runtime_error& error) { throw Failure{exitRender, fmt::format("cannot make {}: {}", path, error.what())}; }
+      } catch (const std::runtime_error& error) {
+        throw Failure{exitRender, fmt::format("cannot make {}: {}", path, error.what())};
+      }
     }
   }
 

@@ -17,7 +17,7 @@ namespace vv {
 namespace {
 
 std::atomic<bool> deferred{false}, interruptSeen{false}, saveWanted{false};
-std::atomic<unsigned> patience{0}; // seconds
+std::atomic<unsigned> patience{0};   // seconds
 std::atomic<int64_t> interruptAt{0}; // seconds of the steady clock
 static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int64_t>::is_always_lock_free);
 

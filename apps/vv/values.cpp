@@ -111,9 +111,8 @@ void readSize(std::string_view text, int& width, int& height) {
   int w = 0, h = 0;
   const bool read = parts.size() == 2 && whole(parts[0], w) && whole(parts[1], h);
   if (!read || w < 1 || h < 1 || w > 65536 || h > 65536 || int64_t(w) * h > (int64_t(1) << 28))
-    throw UsageError(
-        fmt::format("a size such as 640x480 was expected (each side 1 to 65536, at most 2^28 pixels), not \"{}\"{}", text,
-                    sizeHint(text)));
+    throw UsageError(fmt::format("a size such as 640x480 was expected (each side 1 to 65536, at most 2^28 pixels), not \"{}\"{}",
+                                 text, sizeHint(text)));
   width = w;
   height = h;
 }

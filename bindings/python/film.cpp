@@ -17,7 +17,8 @@ class FilmObject {
  public:
   FilmObject(const py::object& file, double fps) : path_(toPath(file)), kind_(picture::filmOf(path_)), fps_(fps) {
     if (kind_ == picture::FilmKind::none)
-      throw py::value_error(fmt::format("a file name with one of the suffixes {} expected, not {}", picture::filmSuffixes, path_));
+      throw py::value_error(
+          fmt::format("a file name with one of the suffixes {} expected, not {}", picture::filmSuffixes, path_));
     if (!(fps > 0 && fps < 1e6)) throw py::value_error("fps: above 0 expected");
     if (const std::string why = picture::whyNoFilm(kind_); !why.empty()) throw std::runtime_error(path_ + ": " + why);
   }
@@ -68,7 +69,8 @@ class FilmObject {
  private:
   void append(const uint8_t* rgb, int width, int height) {
     if (film_ && (width != width_ || height != height_))
-      throw py::value_error(fmt::format("all pictures of a film have one size: {}x{}, not {}x{}", width_, height_, width, height));
+      throw py::value_error(
+          fmt::format("all pictures of a film have one size: {}x{}, not {}x{}", width_, height_, width, height));
     ReleaseGil release;
     if (!film_) film_ = std::make_unique<picture::Film>(kind_, width, height, fps_);
     width_ = width;
@@ -87,9 +89,10 @@ class FilmObject {
 } // namespace
 
 void defineFilm(py::module_& module) {
-  py::class_<FilmObject>(module, "Film",
-                         "A film file made of pictures: Film('turn.mp4', fps=25), then add() for each picture and close(), or as a "
-                         "context manager. The suffix (mp4, webm, gif) says the format. Nothing is written before close().")
+  py::class_<FilmObject>(
+      module, "Film",
+      "A film file made of pictures: Film('turn.mp4', fps=25), then add() for each picture and close(), or as a "
+      "context manager. The suffix (mp4, webm, gif) says the format. Nothing is written before close().")
       .def(py::init<const py::object&, double>(), py::arg("path"), py::arg("fps") = 25.0)
       .def("add", &FilmObject::add, py::arg("picture"),
            "Appends a Picture, or an array of uint8 of shape (height, width, 3). All have one size.")

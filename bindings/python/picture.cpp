@@ -137,8 +137,8 @@ py::tuple pickled(const py::object& self) {
   py::dict planes;
   for (const picture::Channel& channel : picture::channelTable())
     if (object.picture.planes.count(channel.bit)) planes[py::str(std::string(channel.name))] = floats(self, channel);
-  return py::make_tuple(pickleVersion, object.picture.width, object.picture.height, object.picture.linear, names(object), object.time,
-                        object.stats, planes);
+  return py::make_tuple(pickleVersion, object.picture.width, object.picture.height, object.picture.linear, names(object),
+                        object.time, object.stats, planes);
 }
 
 PictureObject unpickled(const py::tuple& state) {

@@ -16,8 +16,8 @@
 
 #include "backend/cluster/keys.h"
 #include "backend/cluster/serve.h"
-#include "openrt/openrt.h"
 #include "enough_stack.h"
+#include "openrt/openrt.h"
 #include "printable.h"
 #include "shading/registry.h"
 

@@ -1,6 +1,6 @@
 // exr.cpp: OpenEXR pictures that worlds name. Reads the simple half of the format and nothing else: one part, scan lines, without
 // compression, run-length coded or deflated. OpenEXR's own library reads all of it, but its list of vulnerabilities is long and
-// the copies of distributions are old, so files that anybody may have made are kept from it (docs/decisions/0037). The format:
+// the copies of distributions are old, so files that anybody may have made are kept from it (docs/decisions/0038). The format:
 // "OpenEXR File Layout", openexr.com. [any thread]
 #include <fmt/format.h>
 #include <zlib.h>

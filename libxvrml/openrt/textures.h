@@ -47,7 +47,7 @@ class Textures {
   };
   World& world_;
   bool srgb_;
-  Share share_; // of the world's budget
+  Share share_;                              // of the world's budget
   std::unordered_map<RTid, uint64_t> bytes_; // of each texture
   uint64_t count_ = 0, missing_ = 0, loaded_ = 0;
   std::unordered_map<const Node*, Known> nodes_;

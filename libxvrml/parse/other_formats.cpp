@@ -61,8 +61,9 @@ bool is3ds(std::string_view bytes) {
   return length == bytes.size();
 }
 
-constexpr std::string_view exportIt = "export it as VRML97 (.wrl), for example from MeshLab or Blender, or hand its mesh to Python's "
-                                      "xvrml.interop.from_trimesh";
+constexpr std::string_view exportIt =
+    "export it as VRML97 (.wrl), for example from MeshLab or Blender, or hand its mesh to Python's "
+    "xvrml.interop.from_trimesh";
 constexpr std::string_view saveIt = "save it as VRML97 (.wrl) in the program that made it";
 
 struct Signature {
@@ -72,10 +73,13 @@ struct Signature {
 
 const Signature signatures[] = {
     {[](std::string_view b) { return b.starts_with("#X3D"); }, {"an X3D world (classic encoding)", saveIt}},
-    {[](std::string_view b) { return withoutBlanks(b).starts_with('<') && holds(b, "<X3D"); }, {"an X3D world (XML encoding)", saveIt}},
-    {[](std::string_view b) { return withoutBlanks(b).starts_with('{') && holds(b, "\"X3D\""); }, {"an X3D world (JSON encoding)", saveIt}},
+    {[](std::string_view b) { return withoutBlanks(b).starts_with('<') && holds(b, "<X3D"); },
+     {"an X3D world (XML encoding)", saveIt}},
+    {[](std::string_view b) { return withoutBlanks(b).starts_with('{') && holds(b, "\"X3D\""); },
+     {"an X3D world (JSON encoding)", saveIt}},
     {[](std::string_view b) { return b.starts_with("#Inventor"); }, {"an Open Inventor file", saveIt}},
-    {[](std::string_view b) { return withoutBlanks(b).starts_with('<') && holds(b, "<COLLADA"); }, {"a COLLADA document", exportIt}},
+    {[](std::string_view b) { return withoutBlanks(b).starts_with('<') && holds(b, "<COLLADA"); },
+     {"a COLLADA document", exportIt}},
     {[](std::string_view b) { return b.starts_with("glTF"); }, {"a binary glTF model (.glb)", exportIt}},
     {isGltfText, {"a glTF model", exportIt}},
     {isAsciiStl, {"an STL mesh", exportIt}},

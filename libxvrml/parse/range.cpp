@@ -144,8 +144,7 @@ bool enforceRange(const FieldInfo& field, void* storage, RangeFault* fault) {
 
 std::string describe(const FieldRange& range) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
-  const std::string low =
-      range.minimum == -infinity ? "(-inf" : (range.minimumOpen ? '(' : '[') + boundText(range.minimum);
+  const std::string low = range.minimum == -infinity ? "(-inf" : (range.minimumOpen ? '(' : '[') + boundText(range.minimum);
   const std::string high = range.maximum == infinity ? "inf)" : boundText(range.maximum) + (range.maximumOpen ? ')' : ']');
   return low + "," + high + (range.also == range.also ? fmt::format(" or {}", range.also) : "");
 }
@@ -153,8 +152,8 @@ std::string describe(const FieldRange& range) {
 std::string describe(const NodeType& type, const FieldInfo& field, const RangeFault& fault) {
   const bool list = field.type >= FieldType::MFColor;
   const std::string where = list ? fmt::format("{}.{}[{}]", type.name, field.name, fault.index) : type.name + "." + field.name;
-  const std::string done = fault.given == fault.used ? "is left as it is, and what cannot be drawn is left out" :
-                                                       fmt::format("becomes {}", fault.used);
+  const std::string done = fault.given == fault.used ? "is left as it is, and what cannot be drawn is left out"
+                                                     : fmt::format("becomes {}", fault.used);
   return fmt::format("{}: {} is outside of its range {} and {}{}", where, fault.given, describe(field.range), done,
                      fault.count > 1 ? fmt::format(", as do {} further elements", fault.count - 1) : "");
 }

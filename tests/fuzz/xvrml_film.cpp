@@ -9,7 +9,8 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) try {
   xvrml::Limits limits;
   limits.imagePixels = 1 << 16;
   const auto film = xvrml::FilmData::read(file.path(), limits);
-  if (!(film->duration() > 0) || film->pictures() < 1 || film->pictureAt(film->duration() * 2) >= film->pictures()) __builtin_trap();
+  if (!(film->duration() > 0) || film->pictures() < 1 || film->pictureAt(film->duration() * 2) >= film->pictures())
+    __builtin_trap();
   xvrml::FilmReader reader(film, limits);
   xvrml::Image image;
   for (const size_t picture : {size_t(0), film->pictures() / 2, film->pictures() - 1}) reader.read(picture, image);

@@ -10,8 +10,8 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) try {
   if (size == 0) return 0;
-  static const char* const magic[] = {"",       "\x89PNG\r\n\x1a\n", "\xff\xd8\xff",   "GIF89a",
-                                      "#?RGBE\n", "PF\n",                "\x76\x2f\x31\x01", ""};
+  static const char* const magic[] = {"", "\x89PNG\r\n\x1a\n", "\xff\xd8\xff", "GIF89a", "#?RGBE\n", "PF\n", "\x76\x2f\x31\x01",
+                                      ""};
   const char* start = magic[data[0] & 7];
   std::vector<uint8_t> bytes(start, start + std::strlen(start));
   bytes.insert(bytes.end(), data + 1, data + size);

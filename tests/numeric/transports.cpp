@@ -10,8 +10,8 @@ namespace {
 
 constexpr RTenum direct = RT_TRANSPORT_DIRECT, whitted = RT_TRANSPORT_WHITTED, path = RT_TRANSPORT_PATH,
                  light = RT_TRANSPORT_LIGHT;
-constexpr uint32_t images = RT_LEAVES_IMAGES, between = RT_LEAVES_BETWEEN, emitters = RT_LEAVES_EMITTERS,
-                   sky = RT_LEAVES_SKY, caustics = RT_LEAVES_CAUSTICS;
+constexpr uint32_t images = RT_LEAVES_IMAGES, between = RT_LEAVES_BETWEEN, emitters = RT_LEAVES_EMITTERS, sky = RT_LEAVES_SKY,
+                   caustics = RT_LEAVES_CAUSTICS;
 
 struct Row {
   const char* name;

@@ -143,27 +143,13 @@ static void speak(Interpreter* self, const char* argument) { /* bytes in place o
 static const struct {
   const char* name;
   void (*run)(Interpreter* self, const char* argument);
-} commands[] = {{"spin", spin},
-                {"calls", calls},
-                {"chatter", chatter},
-                {"slow", slow},
-                {"bomb", bomb},
-                {"recurse", recurse},
-                {"crash", crash},
-                {"exit", leave},
-                {"open", readFile},
-                {"create", writeFile},
-                {"socket", connectOut},
-                {"exec", execute},
-                {"fork", forks},
-                {"kill", signals},
-                {"raise", raises},
-                {"env", environment},
-                {"given", given},
-                {"descriptors", descriptors},
-                {"print", print},
-                {"process", process},
-                {"polite", polite},
+} commands[] = {{"spin", spin},        {"calls", calls},       {"chatter", chatter},
+                {"slow", slow},        {"bomb", bomb},         {"recurse", recurse},
+                {"crash", crash},      {"exit", leave},        {"open", readFile},
+                {"create", writeFile}, {"socket", connectOut}, {"exec", execute},
+                {"fork", forks},       {"kill", signals},      {"raise", raises},
+                {"env", environment},  {"given", given},       {"descriptors", descriptors},
+                {"print", print},      {"process", process},   {"polite", polite},
                 {"speak", speak}};
 
 /* All lines for this event, in order. */

@@ -94,11 +94,12 @@ TEST(Budget, OfNumbersAndPixels) {
   const std::string points = "Shape { geometry PointSet { coord Coordinate { point [" + repeated("0 0 0 ", 10'000) + "] } } }";
   expectRefused(*parse(points, of(100'000)), 100'000);
   EXPECT_EQ(messages(*parse(points, of(1'000'000))), "");
-  expectRefused(*parse("PixelTexture { image 20000 10000 4 0 }", [] {
-                  LoadOptions options = of(1'000'000);
-                  options.limits.imagePixels = ~uint64_t(0);
-                  return options;
-                }()),
+  expectRefused(*parse("PixelTexture { image 20000 10000 4 0 }",
+                       [] {
+                         LoadOptions options = of(1'000'000);
+                         options.limits.imagePixels = ~uint64_t(0);
+                         return options;
+                       }()),
                 1'000'000);
 }
 

@@ -221,8 +221,7 @@ bool Scheduler::Impl::next(double now, Handout& out) {
       moves = true;
     }
     if (reissue(f, g, now, out) || reissueHere(f, g, now, out)) return true;
-    if (!f.rescue && rescuers > 0 && g.tied.empty() && f.firstLate() <= now)
-      f.rescue = moves = true; // once, by who is here
+    if (!f.rescue && rescuers > 0 && g.tied.empty() && f.firstLate() <= now) f.rescue = moves = true; // once, by who is here
   }
   return false;
 }

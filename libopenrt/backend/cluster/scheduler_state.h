@@ -123,7 +123,7 @@ struct Scheduler::Impl {
   uint32_t usable = 0, threads = 0, rescuers = 0; // workers that are no reserve, and their threads; those here and in reserve;
                                                   // none that are blocked
   uint32_t reserves = 0;
-  bool moves = false; // there may be something to move
+  bool moves = false;    // there may be something to move
   Epoch watched = 0;     // the oldest frame, when it was looked at last
   bool helpless = false; // a frame was stuck, and no result has come from elsewhere since
 
@@ -134,9 +134,9 @@ struct Scheduler::Impl {
   void leave(Worker& w);
   void end(Frame& f);
   void unschedule(Frame& f, uint64_t id, const Flight& flight); // it is not late any more
-  void forget(Frame& f, Lease lease, bool lost); // takes a lease away
-  void forgetAll(Worker& w, Epoch until);        // of epochs before `until`
-  void strike(Worker& w);                        // it has failed
+  void forget(Frame& f, Lease lease, bool lost);                // takes a lease away
+  void forgetAll(Worker& w, Epoch until);                       // of epochs before `until`
+  void strike(Worker& w);                                       // it has failed
   bool done(Frame& f, Lease lease, double seconds, double now);
 
   // scheduler_moves.cpp

@@ -349,8 +349,8 @@ enum {
 };
 /* How light is followed from a surface whose shader answers in lobes (openrts.h). */
 enum {
-  RT_TRANSPORT_AUTO = 0,   /* what leaves out nothing that surfaces of lobes do with light; RTstats.transport says which */
-  RT_TRANSPORT_DIRECT = 1, /* light from the lights alone; no mirror images, nothing behind glass */
+  RT_TRANSPORT_AUTO = 0,    /* what leaves out nothing that surfaces of lobes do with light; RTstats.transport says which */
+  RT_TRANSPORT_DIRECT = 1,  /* light from the lights alone; no mirror images, nothing behind glass */
   RT_TRANSPORT_WHITTED = 2, /* and the whole tree of reflections and refractions; no randomness */
   RT_TRANSPORT_PATH = 3,    /* and light between diffuse surfaces: path tracing, noisy, unbiased */
   RT_TRANSPORT_LIGHT = 4 /* path; what lamps send through mirrors and lenses to surfaces that the camera sees directly is followed
@@ -441,7 +441,7 @@ typedef struct RTstats {
   uint64_t wrongHits;       /* times single precision would find a sliver (decision 41) that a ray misses in double; not taken */
   uint64_t frame;           /* number of the finished frame, counted from 1; 0: none yet */
   /* backend=cluster, since the context was made; else 0. Tiles: jobs, parts of tiles too. */
-  uint32_t workers;                /* that are there now, this process not counted */
+  uint32_t workers;                 /* that are there now, this process not counted */
   uint64_t tilesRemote, tilesLocal; /* done by workers; by this process */
   uint64_t reissued, duplicates;    /* handed out again: late, or their worker was lost; results that came too late */
   uint64_t bytesSent, bytesReceived;
@@ -451,13 +451,13 @@ RT_API void rtGetStats(RTstats* stats);
 
 /* A worker of backend=cluster, since it joined. */
 typedef struct RTworker {
-  size_t size;    /* of the first one of an array: set it to sizeof(RTworker) before the call */
-  char name[64];  /* its host and address, for people; "here": this process */
+  size_t size;   /* of the first one of an array: set it to sizeof(RTworker) before the call */
+  char name[64]; /* its host and address, for people; "here": this process */
   uint32_t threads;
-  int alive;      /* 0: it has left, or was refused */
-  uint64_t jobs;  /* done */
-  uint64_t late;  /* results that came when somebody else had done the job */
-  uint64_t lost;  /* jobs taken away because it left */
+  int alive;                         /* 0: it has left, or was refused */
+  uint64_t jobs;                     /* done */
+  uint64_t late;                     /* results that came when somebody else had done the job */
+  uint64_t lost;                     /* jobs taken away because it left */
   uint64_t bytesSent, bytesReceived; /* to it, from it */
   uint64_t rays;
   double busySeconds; /* of all its threads */

@@ -99,6 +99,5 @@ static const RtsClass veils = {SURFACE, .name = "SilentVeil", .surface = veil};
 static const RtsClass glosses = {SURFACE, .name = "SilentGloss", .surface = gloss};
 static const RtsClass scatters = {SURFACE, .name = "SilentScatter", .traits = nothingScatters, .surface = scatter};
 static const RtsClass badLobes = {SURFACE, .name = "BadLobe", .surface = badLobe};
-static const RtsClass* const classes[] = {&crashes, &hangs,   &nans,     &nanLobes, &lamps,
-                                          &veils,   &glosses, &badLobes, &scatters};
+static const RtsClass* const classes[] = {&crashes, &hangs, &nans, &nanLobes, &lamps, &veils, &glosses, &badLobes, &scatters};
 RTS_EXPORT const RtsPlugin rtsPlugin = {RTS_MAGIC, RTS_ABI_MAJOR, RTS_ABI_MINOR, sizeof(RtsPlugin), 9, classes};
