@@ -308,7 +308,7 @@ class Pictures {
       return fmt::format("{:.3g} % of its pixels have taken {} samples, the most allowed; --spp allows more", 100 * full,
                          options_.render.samples);
     if (options_.render.timeLimit > 0) return "--time-limit has ended it";
-    return "what is left is noise of the paths from lamps; --spp N without --error takes N of them a pixel";
+    return "what is left are pixels beside edges, or paths from lamps; --spp N without --error takes N of both a pixel";
   }
 
   void finishSequence() {
