@@ -94,7 +94,7 @@ Backcloth::Backcloth(const Background& background, bool linear) {
 
 void Backcloth::read(const std::string& file, bool linear) {
   if (isRadiance(suffixOf(file))) {
-    const Radiance read = readRadiance(file);
+    const xvrml::RadianceImage read = readRadiance(file);
     width_ = read.width, height_ = read.height;
     rgb_.resize(read.rgb.size());
     const size_t row = size_t(width_) * 3;

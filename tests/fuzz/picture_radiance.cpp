@@ -20,7 +20,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) try {
     const std::string& link;
     ~Remove() { ::unlink(link.c_str()); }
   } remove{link};
-  const picture::Radiance read = picture::readRadiance(link);
+  const xvrml::RadianceImage read = picture::readRadiance(link);
   if (read.rgb.size() != size_t(read.width) * size_t(read.height) * 3) __builtin_trap();
   return 0;
 } catch (const std::runtime_error&) { return 0; }
