@@ -359,6 +359,7 @@ picture::Picture wantedPart(const picture::Picture& made, uint32_t channels) {
   wanted.width = made.width;
   wanted.height = made.height;
   wanted.linear = made.linear;
+  wanted.transparent = made.transparent;
   wanted.names = made.names;
   for (const auto& [bit, plane] : made.planes)
     if (channels & bit) wanted.planes[bit] = plane;

@@ -21,8 +21,8 @@ struct Lamp {
   float intensity;
 };
 inline constexpr Lamp modelLamps[] = {
-    {{0.5f, -0.75f, -0.6f}, 0.75f}, // over the viewer's left shoulder
-    {{-0.8f, -0.1f, -0.6f}, 0.3f},  // from the right
+    {{0.5f, -0.65f, -0.6f}, 0.75f}, // over the viewer's left shoulder
+    {{-0.8f, -0.1f, -0.6f}, 0.25f}, // from the right
     {{0, 0, -1}, 0.2f},             // from the eye: nothing that is seen is black
 };
 

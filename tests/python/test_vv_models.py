@@ -59,7 +59,7 @@ def test_up_is_said(vv):
     assert info(vv, CUBE, "--up=-x") == {"axis": "-x", "reason": ""}
     assert info(vv, CUBE, "--up", "+z") == {"axis": "z", "reason": ""}
     assert info(vv, BOX) == {"axis": "y", "reason": ""}
-    for wrong in ("w", "", "xy", "--z", "+-z"):
+    for wrong in ("w", "xy", "--z", "+-z"):
         done = vv("model.wrl", "--info", f"--up={wrong}")
         assert done.returncode == 2 and "x, y, z, -x, -y or -z" in done.talk, wrong
 
@@ -92,11 +92,11 @@ def border(rows):
     return rows[0] + rows[-1] + [p for row in rows for p in (row[0], row[-1])]
 
 
-@pytest.mark.parametrize("size", ["40x24", "24x40"])
+@pytest.mark.parametrize("size", ["80x48", "48x80"])
 @pytest.mark.parametrize("up", ["x", "y", "z"])
-@pytest.mark.parametrize("how", [("--fit",), ("--camera", "900,5,3:10,20,30", "--fit")])
+@pytest.mark.parametrize("how", [("--fit",), ("--camera", "300,400,500:50,15,22", "--fit")])
 def test_a_turntable_stays_in_the_window(vv, size, up, how):
-    vv.write("rod.wrl", HEADER + mesh((-100, 5, 7), (200, 8, 10)))
+    vv.write("rod.wrl", HEADER + mesh((-100, 5, 7), (200, 25, 37)))
     assert vv("rod.wrl", *how, "--up", up, "--turntable", 8, "--size", size, "--spp", 4, "-o", "t.ppm").returncode == 0
     widest = 0
     for number in range(8):
@@ -106,7 +106,7 @@ def test_a_turntable_stays_in_the_window(vv, size, up, how):
         assert seen, number
         xs, ys = [x for x, _ in seen], [y for _, y in seen]
         widest = max(widest, max(xs) - min(xs), max(ys) - min(ys))
-    assert widest >= 0.7 * 24, "and no smaller than it must be"
+    assert widest >= 0.7 * 48, "and no smaller than it must be"
 
 
 def test_a_turntable_goes_round_the_axis(vv):
@@ -251,7 +251,7 @@ def test_background_file(vv):
     assert rows[12][16] == png(vv)[1][12][16]
 
 
-@pytest.mark.parametrize("wrong, word", [("", "colour"), ("whit", "colour"), ("#12", "colour"), ("1,2,3", "0 to 1"), ("1,1", "colour"),
+@pytest.mark.parametrize("wrong, word", [("whit", "colour"), ("#12", "colour"), ("1,2,3", "0 to 1"), ("1,1", "colour"),
                                          ("#gggggg", "colour"), ("0.5,0.5,nan", "colour")])
 def test_wrong_backgrounds(vv, wrong, word):
     done = vv("box.wrl", "-o", "x.png", f"--background={wrong}")
