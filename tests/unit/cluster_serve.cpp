@@ -99,7 +99,7 @@ struct Master {
     std::map<Lease, Job> out;
     for (Job job;;) {
       message::Jobs jobs{epoch, {}};
-      FrameWork::Next what;
+      FrameWork::Next what = FrameWork::Next::job;
       while (out.size() < 8 && (what = work.next(job, 32)) == FrameWork::Next::job)
         jobs.jobs.push_back({++lease, job}), out[lease] = job;
       if (!jobs.jobs.empty()) say(std::move(jobs));
