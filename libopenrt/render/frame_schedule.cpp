@@ -13,7 +13,7 @@ namespace {
 
 constexpr uint32_t mostOfRound = 32; // progressive: so that the picture goes on becoming better everywhere
 constexpr uint32_t samplesOfPilot = 32;
-constexpr uint32_t pilotSeed = 0x70696c6f, lightSeed = 0x6c616d70, earlySeed = 0x6561726c, passSeed = 0x70617373;
+constexpr uint32_t pilotSeed = 0x70696c6f, lightSeed = 0x6c616d70, earlySeed = 0x6561726c;
 constexpr double bytesAhead = 64 << 20; // of sums that wait for light
 
 bool makesRounds(const edit::FrameSettingsT& frame) {
@@ -43,7 +43,6 @@ FrameSchedule::FrameSchedule(const edit::FrameSettingsT& frame, const FrameFacts
       earlyParts_(std::clamp(crew + 1, 2u, LightImage::parts)) { // of one part nobody knows the variance
   pilot_ = pilotSamples_ > 0;
   undecided_ = pilot_ ? tiles_ : 0;
-  if (frame.targetError > 0) passes_.assign(tiles_, 0), unjudged_ = tiles_;
   most_ = frame.samples;
   samples_ = timed_ ? pilotSamples_ : rounds_ ? 1 : frame.samples;
   const double ahead = bytesAhead / (double(sizeof(PixelSums)) * grid.edge() * grid.edge());
@@ -123,7 +122,7 @@ void FrameSchedule::giveBlock(Job& job, Stage stage, uint32_t tile, uint32_t& fr
   if (pilot)
     out.job.replicates = replicatesOf(frame_, pilotSamples_, hash(frame_.seed, pilotSeed));
   else
-    out.job.replicates = timed_ ? replicates_ : replicatesOf(frame_, out.until, seedOf(tile));
+    out.job.replicates = timed_ ? replicates_ : replicatesOf(frame_, out.until, frame_.seed);
   from += out.job.count;
   give(out, job, now);
 }
@@ -187,54 +186,8 @@ void FrameSchedule::decided(uint32_t tile, uint32_t wanted) {
   if (!rounds_) ready_.push_back({tile, 0});
 }
 
-uint32_t FrameSchedule::seedOf(uint32_t tile) const {
-  const uint32_t passes = passes_.empty() ? 0 : passes_[tile];
-  return passes ? hash(frame_.seed, passSeed + passes) : frame_.seed;
-}
-
-// Samples of frames with a time limit come in replicates of one size.
-uint32_t FrameSchedule::wholeRounds(uint32_t samples) const {
-  const uint64_t size = replicates_.size();
-  return uint32_t(std::min<uint64_t>((samples + size - 1) / size * size, frame_.samples));
-}
-
-bool FrameSchedule::judged(uint32_t tile, uint32_t needs) {
-  if (passes_.empty()) return false;
-  if (needs == 0 || (timed_ && wholeRounds(needs) <= wanted_[tile])) {
-    unjudged_--;
-  } else if (timed_) {
-    wanted_[tile] = wholeRounds(needs);
-    most_ = std::max(most_, wanted_[tile]);
-    return true;
-  } else { // what has been made knows of the decision: none of it is kept
-    const double more = double(needs) * double(grid_.at(tile).pixels());
-    undone_ += more, all_ += more;
-    wanted_[tile] = needs, passes_[tile]++;
-    if (rounds_)
-      again_.push_back(tile);
-    else
-      ready_.push_back({tile, 0});
-    if (rounds_) unjudged_--; // of this pass
-  }
-  // In progressive frames the last of a pass ends it, unless its job does.
-  while (rounds_ && !timed_ && nextTile_ >= tiles_ && endRound(0)) {}
-  return false;
-}
-
-// Progressive: those tiles again that need more samples, the others have none of this pass.
-void FrameSchedule::startPass() {
-  std::sort(again_.begin(), again_.end()); // who came first does not matter
-  std::vector<uint32_t> wanted(tiles_, 0);
-  most_ = 0;
-  for (uint32_t tile : again_) most_ = std::max(most_, wanted[tile] = wanted_[tile]);
-  wanted_ = std::move(wanted);
-  unjudged_ = uint32_t(again_.size());
-  again_.clear();
-  first_ = 0, samples_ = std::min(most_, mostOfRound);
-}
-
 bool FrameSchedule::over() const {
-  const bool given = rounds_ ? ended_ : nextTile_ >= tiles_ && ready_.empty() && undecided_ == 0 && unjudged_ == 0;
+  const bool given = rounds_ ? ended_ : nextTile_ >= tiles_ && ready_.empty() && undecided_ == 0;
   return given && out_.empty() && outNow_ + outBefore_ == 0 && (!lamps_ || (nextPart_ == partsUntil_ && lit_));
 }
 
@@ -243,12 +196,7 @@ bool FrameSchedule::endRound(double now) {
   if (!rounds_ || ended_ || nextTile_ < tiles_) return false;
   const bool decides = pilot_ && first_ + samples_ >= pilotSamples_;
   // At most the next round's jobs are out beside those of one: the picture becomes better everywhere.
-  const bool judges = !passes_.empty() && !timed_ && !pilot_ && first_ + samples_ >= most_; // a pass ends
-  if (outBefore_ > 0 || ((timed_ || decides || judges) && outNow_ > 0) || (decides && undecided_ > 0)) return false;
-  if (judges && unjudged_ > 0) {
-    // Tiles wait for the light, all of which has to be given out.
-    return false;
-  }
+  if (outBefore_ > 0 || ((timed_ || decides) && outNow_ > 0) || (decides && undecided_ > 0)) return false;
   ended_ = !(timed_ ? endTimed(now) : endProgressive());
   if (ended_) return false;
   if (earlyUntil_ == 0 && partsUntil_ == 0) earlyUntil_ = lamps_ ? earlyParts_ : 0; // the first round has gone without
@@ -268,7 +216,6 @@ bool FrameSchedule::endTimed(double now) {
     const double samples = left / 16 / std::max(took, 1e-9) * samples_;
     const uint32_t most = std::max(frame_.samples / 16, 1u);
     replicates_ = {frame_.seed, uint32_t(std::bit_width(uint32_t(std::clamp(samples, 1.0, double(most))))) - 1};
-    for (uint32_t& wanted : wanted_) wanted = wholeRounds(wanted);
     most_ = *std::max_element(wanted_.begin(), wanted_.end());
     pilot_ = false;
   } else {
@@ -292,7 +239,6 @@ bool FrameSchedule::endProgressive() {
     samples_ = std::clamp(first_, 1u, mostOfRound);
   const uint32_t all = pilot_ ? pilotSamples_ : most_;
   samples_ = std::min(samples_, all - std::min(first_, all));
-  if (first_ >= most_ && !again_.empty()) startPass();
   return first_ < most_;
 }
 

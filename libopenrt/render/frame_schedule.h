@@ -40,11 +40,8 @@ class FrameSchedule {
   void done(const Out& out, double now);             // and what it has made is where it belongs
   void giveBack(const Job& job);
   void decided(uint32_t tile, uint32_t wanted); // by a pilot
-  // All samples that the tile wanted are there, and the light: it needs so many, or 0: they will do. With a target error; more
-  // than it wanted so far. Its samples are made anew, or in rounds of replicates added to: true.
-  bool judged(uint32_t tile, uint32_t needs);
-  void lit() { lit_ = true; } // all of the light is in
-  bool over() const;          // everything has been given out and is done
+  void lit() { lit_ = true; }                   // all of the light is in
+  bool over() const;                            // everything has been given out and is done
 
   bool rounds() const { return rounds_; } // the picture is shown before it is finished
   bool timed() const { return timed_; }
@@ -68,9 +65,6 @@ class FrameSchedule {
   bool nextTile(Job& job, uint32_t largest, double now);
   void giveBlock(Job& job, Stage stage, uint32_t tile, uint32_t& from, uint32_t end, uint32_t largest, double now);
   uint32_t endOf(uint32_t tile) const;
-  uint32_t seedOf(uint32_t tile) const;
-  uint32_t wholeRounds(uint32_t samples) const;
-  void startPass();
   uint32_t tileAt(uint32_t place) const { return order_.empty() ? place : order_[place]; }
   void skipTiles();
   bool endRound(double now);
@@ -87,9 +81,6 @@ class FrameSchedule {
   const uint32_t pilotSamples_;
   std::vector<uint32_t> wanted_;     // by tile: samples; known after the pilot
   uint32_t undecided_;               // tiles without an answer of the pilot
-  std::vector<uint8_t> passes_;      // by tile: how often it is made anew; empty without a target
-  uint32_t unjudged_ = 0;            // tiles that are not known to have enough
-  std::vector<uint32_t> again_;      // progressive: tiles of the next pass
   std::vector<uint32_t> order_;      // empty: by their numbers
   uint32_t nextTile_ = 0, from_ = 0; // place in the order
   struct Ready {

@@ -31,11 +31,6 @@ struct TileState {
   TileSums sums; // that are not complete, or wait for light
   Ledger ledger;
   bool shown = false;
-  uint32_t least = 0; // samples that are shown; fewer, of those that are made anew, are not
-};
-
-struct HalfWidth {             // relative, mean over the pixels of a tile
-  double all = 0, ofLight = 0; // ofLight: what it would be without the samples' part
 };
 
 } // namespace
@@ -54,8 +49,8 @@ struct FrameWork::Impl {
   bool fits(const Job& job, const JobResult& result) const;
   void addSamples(const FrameSchedule::Out& out, JobResult& result);
   void addLight(const FrameSchedule::Out& out, JobResult& result);
-  bool finish(const FrameSchedule::Out& out, const SumBlock& all, TileState& state);
-  HalfWidth store(const Tile& tile, const std::vector<PixelSums>& sums, const Replicates& replicates, bool show);
+  void finish(const FrameSchedule::Out& out, const SumBlock& all, TileState& state);
+  double store(const Tile& tile, const std::vector<PixelSums>& sums, const Replicates& replicates, bool show);
   void settle();
   void settleWaiting();
   void tell();
@@ -83,8 +78,8 @@ bool FrameWork::Impl::fits(const Job& job, const JobResult& result) const {
   return job.number < count && result.sums.size() == grid.at(job.number).pixels();
 }
 
-// What is there of the tile, with what is there of the light, into the film if it is to be shown.
-HalfWidth FrameWork::Impl::store(const Tile& tile, const std::vector<PixelSums>& sums, const Replicates& replicates, bool show) {
+// What is there of the tile, with what is there of the light, into the film if it is to be shown. The mean relative half-width.
+double FrameWork::Impl::store(const Tile& tile, const std::vector<PixelSums>& sums, const Replicates& replicates, bool show) {
   std::vector<LightSums> lights;
   if (light && light->added() > 1)
     light->look(tile, lights);
@@ -99,42 +94,30 @@ HalfWidth FrameWork::Impl::store(const Tile& tile, const std::vector<PixelSums>&
     else
       for (size_t i = 0; i < sums.size(); i++) errors[i] = independentError(sums[i]);
   }
-  HalfWidth halfWidth;
+  double halfWidth = 0;
   size_t i = 0;
   for (uint32_t y = tile.y0; y < tile.y1; y++)
     for (uint32_t x = tile.x0; x < tile.x1; x++, i++) {
       PixelError* error = errors.empty() ? nullptr : &errors[i];
-      if (error && lamps) {
-        openrt::addLight(lights[i], *error);
-        halfWidth.ofLight += lightAlone(lights[i], error->mean);
-      }
-      if (error) halfWidth.all += double(error->relative);
+      if (error && lamps) openrt::addLight(lights[i], *error);
+      if (error) halfWidth += double(error->relative);
       if (show) film.store(x, y, sums[i], lamps ? &lights[i] : nullptr, error);
     }
-  halfWidth.all /= double(sums.size()), halfWidth.ofLight /= double(sums.size());
-  return halfWidth;
+  return halfWidth / double(sums.size());
 }
 
-// All samples of this stage are there, and all of the light. Under the tile's lock. True: more of them are to come.
-bool FrameWork::Impl::finish(const FrameSchedule::Out& out, const SumBlock& all, TileState& state) {
+// All samples of this stage are there, and all of the light. Under the tile's lock.
+void FrameWork::Impl::finish(const FrameSchedule::Out& out, const SumBlock& all, TileState& state) {
   const bool pilot = out.stage == Stage::pilot, show = !pilot || schedule.rounds();
-  const HalfWidth halfWidth = store(grid.at(out.job.number), all.sums, out.job.replicates, show);
+  const double halfWidth = store(grid.at(out.job.number), all.sums, out.job.replicates, show);
   state.shown |= show;
   if (!pilot) state.ledger = all.ledger;
-  const auto target = double(frame.targetError);
   if (pilot) {
-    const uint32_t wanted = target > 0 ? samplesFor(target, halfWidth.all, all.count, frame.samples) : frame.samples;
+    const bool aims = frame.targetError > 0;
+    const uint32_t wanted = aims ? samplesFor(double(frame.targetError), halfWidth, all.count, frame.samples) : frame.samples;
     std::lock_guard lock(mutex);
     schedule.decided(out.job.number, wanted);
-    return false;
   }
-  if (!(target > 0)) return false;
-  uint32_t needs = 0;
-  if (halfWidth.all > target && halfWidth.ofLight < target && all.count < frame.samples) // else more samples are of no use
-    needs = std::max(samplesFor(target, halfWidth.all, all.count, frame.samples), std::min(2 * all.count, frame.samples));
-  state.least = all.count;
-  std::lock_guard lock(mutex);
-  return schedule.judged(out.job.number, needs);
 }
 
 void FrameWork::Impl::addSamples(const FrameSchedule::Out& out, JobResult& result) {
@@ -147,11 +130,10 @@ void FrameWork::Impl::addSamples(const FrameSchedule::Out& out, JobResult& resul
   const bool complete = reach == out.until;
   const SumBlock* all = complete || schedule.rounds() ? state.sums.fold(&block, room, gathering, job.replicates) : nullptr;
   if (complete && lit()) {
-    const bool more = finish(out, *all, state);
+    finish(out, *all, state);
     state.sums.clear();
-    if (more) state.sums.keep(*all, gathering);
   } else {
-    if (all && schedule.rounds() && all->count >= state.least) {
+    if (all && schedule.rounds()) {
       store(grid.at(job.number), all->sums, job.replicates, true);
       state.shown = true;
       if (out.stage == Stage::samples) state.ledger = all->ledger;
@@ -187,9 +169,8 @@ void FrameWork::Impl::settleWaiting() {
       std::lock_guard tileLock(state.mutex);
       SumBlock all;
       state.sums.fold(nullptr, all, gathering, out.job.replicates);
-      const bool more = finish(out, all, state);
+      finish(out, all, state);
       state.sums.clear();
-      if (more) state.sums.keep(all, gathering);
     }
     lock.lock();
     busy--;

@@ -148,7 +148,7 @@ void Builder::closeNode(bool good) {
   const Mark now = mark();
   const bool keeps = now.names > frame.mark.names && now.connections == frame.mark.connections;
   if (!accepts(receivers_.back(), frame.type, *frame.node, keeps ? "; what DEF names in it can be USEd" : "")) {
-    if (!keeps) rollBack(frame.mark);
+    keeps ? keepNames(frame.mark) : rollBack(frame.mark);
   } else if (!place(frame.type, frame.node, frame.expanded)) {
     rollBack(frame.mark);
   }

@@ -15,6 +15,7 @@ namespace xvrml {
 class Builder : public ParseSink {
  public:
   Builder(Lexer& lexer, LoadState& state, ParsedFile& file);
+  void dropUnplacedNames(); // to be called at the end of the file, or of a prototype's body
   bool openNode(const Token& type, const Token* def) override;
   void closeNode(bool good) override;
   bool isScript() const override;
@@ -73,12 +74,16 @@ class Builder : public ParseSink {
     std::unordered_map<std::string_view, ProtoPtr> types;
     std::unordered_set<std::string_view> lost;
     std::vector<std::string_view> defined;
+    std::unordered_set<std::string_view> placed; // names by which USE or ROUTE has given a node a place
+    // The names within each node that stands in a wrong place, with their nodes.
+    std::vector<std::vector<std::pair<std::string_view, NodeRef>>> misplaced;
     uint64_t expanded = 0;
     size_t outerNodes = 0; // nodes that were open when the scope began
   };
 
   Mark mark() const;
   void rollBack(const Mark& mark);
+  void keepNames(const Mark& mark);
   ScopeFrame& scope() { return scopes_.back(); }
   ScopeFrame* protoFrame();
   bool inTemplate() const { return scopes_.size() > 1; }

@@ -44,8 +44,29 @@ void Builder::pushScope(Scope* target, ProtoPtr proto, std::shared_ptr<NodeType>
 }
 
 void Builder::popScope() {
+  dropUnplacedNames();
   receivers_.pop_back();
   scopes_.pop_back();
+}
+
+// Remembers the names of a node in a wrong place: they may be used below it.
+void Builder::keepNames(const Mark& mark) {
+  auto& names = scope().misplaced.emplace_back();
+  for (size_t i = mark.names; i < scope().defined.size(); ++i)
+    if (const auto found = scope().scope->names.find(scope().defined[i]); found != scope().scope->names.end())
+      names.emplace_back(scope().defined[i], found->second);
+}
+
+// Drops the names of nodes in wrong places to which no USE and no ROUTE has given a better one: these nodes are in no world, and
+// what is written of the world has no place for them.
+void Builder::dropUnplacedNames() {
+  ScopeFrame& frame = scope();
+  for (const auto& names : frame.misplaced) {
+    if (std::any_of(names.begin(), names.end(), [&](const auto& one) { return frame.placed.contains(one.first); })) continue;
+    for (const auto& [name, node] : names)
+      if (const auto found = frame.scope->names.find(name); found != frame.scope->names.end() && found->second == node)
+        frame.scope->names.erase(found);
+  }
 }
 
 void Builder::lostName(const Token& name) { scope().lost.insert(name.text); }
@@ -80,7 +101,7 @@ void Builder::useNode(const Token& name) {
   const NodeRef node = findName(name);
   if (!node) return;
   if (!isOpen(node.get())) {
-    deliver(name, node, expandedCount(node.get()));
+    if (deliver(name, node, expandedCount(node.get()))) scope().placed.insert(name.text);
     return;
   }
   Node* between = nullptr;
@@ -117,6 +138,7 @@ void Builder::route(const Token& keyword, const RouteNames& names) {
   }
   if (!takes(bytesOfRoute, keyword)) return;
   ++state_.routes;
+  scope().placed.insert({names.from.text, names.to.text});
   scope().scope->routes.push_back(
       {from, std::string(names.fromField.text), to, std::string(names.toField.text), lexer_.place(keyword.at())});
 }

@@ -64,6 +64,7 @@ void Loader::parse(const Source& source, const std::shared_ptr<const std::string
   Lexer lexer(source.text(), name, state_.diagnostics);
   Builder builder(lexer, state_, file);
   Parser(lexer, state_.options.limits, builder, budget_.get()).vrmlScene();
+  builder.dropUnplacedNames();
 }
 
 void Loader::complete(ParsedFile& file, uint64_t depth) {

@@ -33,7 +33,7 @@ TEST(FilmPicture, ASurfaceShowsThePictureOfTheTime) {
   RTcontext context = rtNewContext("threads=1");
   ASSERT_NE(context, nullptr);
   {
-    Browser browser(loadWorldFromMemory(vrml, folder / "world.wrl"));
+    Browser browser(loadWorldFromMemory(vrml, folder / "world.wrl"), BrowserOptions(), 0, RunOptions{.epoch = 0});
     OpenRTMapper mapper(browser.world(), MapOptions());
     rtFrameBuffer(1, 1, RT_RGBA);
     const auto seen = [&](double time) {

@@ -93,26 +93,6 @@ TEST_F(ErrorBars, PicturesAreOffByWhatIsSaid) {
   }
 }
 
-// A pilot that has not met what is rare takes too few samples: the parts are made anew until the target is met, or all
-// samples are taken.
-TEST_F(ErrorBars, ATargetIsReachedOrAllSamplesAreTaken) {
-  scenario("slit").draw(); // closed: no pixels beside the border of what is seen, whose doubt tiles do not count
-  rtQuality(RT_TRANSPORT, RT_TRANSPORT_PATH);
-  for (const double target : {.3, .05}) {
-    rtFrameBuffer(16, 8, RT_RGBA | RT_SAMPLES);
-    rtQuality(RT_TILE_SIZE, 8);
-    rtQuality(RT_SAMPLES_PER_PIXEL, 256);
-    rtQualityf(RT_TARGET_ERROR, target);
-    rtRender();
-    const std::vector<float> samples = read(RT_SAMPLES, 128);
-    const bool all = std::any_of(samples.begin(), samples.end(), [](float n) { return n == 256; });
-    printf("target %.2f: half-width %.4f, %s\n", target, stats().errorHalfWidth,
-           all ? "some have taken all" : "none has taken all");
-    EXPECT_TRUE(all || stats().errorHalfWidth <= target);
-    for (const float n : samples) EXPECT_LE(n, 256);
-  }
-}
-
 TEST_F(ErrorBars, DirectLightIsExactInsideASurface) {
   Shader grey("Diffuse");
   grey.set("reflectance", {.5, .5, .5});

@@ -373,7 +373,7 @@ enum { RT_LEAVES_IMAGES = 1, RT_LEAVES_BETWEEN = 2, RT_LEAVES_EMITTERS = 4, RT_L
  *
  * RT_TARGET_ERROR e: sample each part of the picture until the mean over its pixels of (RT_ERROR summed over the colours) /
  * (colours summed + 0.03), at most 1 a pixel, is about e, or RT_SAMPLES_PER_PIXEL samples are taken. How many is decided by a
- * pilot of 32 samples, not part of the picture; tiles that miss e are made anew. Doubt beside edges is added last.
+ * pilot of 32 samples that are not part of the picture: stopping does not bias it.
  *
  * RT_TIME_LIMIT s: rounds over the whole picture, each one replicate, until s seconds have gone by since the frame was started
  * or RT_SAMPLES_PER_PIXEL are taken. A round is not broken off, so the limit is kept to about a thirtieth; at least one round is

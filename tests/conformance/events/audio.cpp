@@ -14,7 +14,8 @@ struct Clips {
     folder.write("clip.wav", wav(std::vector<int16_t>(200, 8192), 1, 100));
     folder.write("mono.wav", wav({0, 16384, -32768, 32767}, 1, 4));
     folder.write("song.mid", std::string("MThd\0\0\0\6\0\0\0\1\0\1", 14));
-    browser = std::make_unique<Browser>(folder.world("Sound { source DEF A AudioClip { url [ " + url + " ] " + fields + " } }"));
+    browser = std::make_unique<Browser>(folder.world("Sound { source DEF A AudioClip { url [ " + url + " ] " + fields + " } }"),
+                                        BrowserOptions(), 0, RunOptions{.epoch = 0});
     for (const char* out : {"isActive", "duration_changed"})
       browser->listen(*browser->node("A"), out, [this, out](Node&, const FieldInfo&, const Value& value) {
         events.push_back(fmt::format("{:g} {} {}", browser->now(), out, textOf(value)));

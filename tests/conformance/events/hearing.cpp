@@ -10,7 +10,7 @@ const std::string clip = "source DEF A AudioClip { url \"clip.wav\" loop TRUE } 
 struct Hearing {
   explicit Hearing(const std::string& text) {
     folder.write("clip.wav", wav(std::vector<int16_t>(200, 8192), 1, 100));
-    browser = std::make_unique<Browser>(folder.world(text));
+    browser = std::make_unique<Browser>(folder.world(text), BrowserOptions(), 0, RunOptions{.epoch = 0});
     browser->tick(0);
   }
   std::vector<Heard> now() { return heardIn(*browser); }

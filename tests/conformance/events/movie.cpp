@@ -23,7 +23,7 @@ TEST(MovieTexture, ThatCannotBeHadHasDurationMinusOneAndItsEventsGoOn) {
   const Folder folder;
   folder.write("text.mpg", "no film at all");
   for (const char* url : {"none.mpg", "text.mpg", "http://a/b.mpg", "/dev/zero", "concat:a|b", "."}) {
-    Browser browser(folder.world(inShape(std::string("startTime 1 url \"") + url + "\"")));
+    Browser browser(folder.world(inShape(std::string("startTime 1 url \"") + url + "\"")), BrowserOptions(), 0, RunOptions{.epoch = 0});
     Node& movie = *browser.node("M");
     EXPECT_EQ(textOf(browser.get(movie, "duration_changed")), "-1") << url;
     EXPECT_EQ(browser.world().diagnostics.warnings(), 1u) << url;
@@ -182,7 +182,7 @@ TEST(FilmLimits, PicturesBeyondTheLimitAreRefused) {
 struct Movie {
   explicit Movie(const std::string& fields) {
     makeFilm(folder / "film.mpg", "mpeg", AV_CODEC_ID_MPEG1VIDEO);
-    browser = std::make_unique<Browser>(folder.world(inShape("url \"film.mpg\" " + fields)));
+    browser = std::make_unique<Browser>(folder.world(inShape("url \"film.mpg\" " + fields)), BrowserOptions(), 0, RunOptions{.epoch = 0});
     browser->listen(node(), "isActive", [this](Node&, const FieldInfo&, const Value& value) {
       events.push_back(fmt::format("{:g} {}", browser->now(), textOf(value)));
     });
