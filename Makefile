@@ -106,7 +106,7 @@ asan: packages
 tsan: packages
 	@$(CONFIGURE) tsan && cmake --build build/tsan -j $(JOBS) && ctest --preset tsan -j $(JOBS)
 
-## make test-alloc-failures   load and draw a world once for each allocation, with this one failing (the quick part is in make test)
+## make test-alloc-failures   load and draw a world once for each allocation, with this one failing
 test-alloc-failures:
 	@$(CONFIGURE) release && cmake --build $(R) -j $(JOBS) --target alloc_failures
 	@$(R)/bin/alloc_failures
