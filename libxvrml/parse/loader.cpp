@@ -101,11 +101,12 @@ bool Loader::loadInlineFrom(InlineNode& node, const std::string& path, uint64_t 
     return true;
   }
   if (known.content) {
-    const bool copy = known.changing && known.bytes <= budget_->left();
+    const bool copy = known.changing && copied_ + known.bytes <= std::min(mostCopied, budget_->left());
     if (!copy) {
       node.content = known.content;
       return true;
     }
+    copied_ += known.bytes;
   }
   try {
     const Source source = Source::open(path, limits);

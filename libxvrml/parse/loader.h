@@ -39,6 +39,10 @@ class Loader {
   void checkSize(Scope& scope);
 
   World& world_;
+  // Bytes of Inlines that are read again, because each place needs nodes of its own. Copies within copies count at every level,
+  // which ends files that double at each level soon; further places share their nodes.
+  static constexpr uint64_t mostCopied = uint64_t(512) << 20;
+  uint64_t copied_ = 0;
   BudgetPtr budget_;
   LoadState state_;
   Expander expander_;
