@@ -49,9 +49,13 @@ class Headless {
     if (!options_.write.empty()) writeText(options_.write, xvrml::writeWorld(world));
     if (options_.check) return check();
     if (options_.info || options_.listNodes || options_.listViewpoints || options_.explain) inspect();
-    if (!options_.makesPictures()) return exitDone;
-    deferInterrupt(true, interruptSeconds);
-    return makePictures(options_, commandLine_, *browser_, problems_);
+    int code = exitDone;
+    if (options_.makesPictures()) {
+      deferInterrupt(true, interruptSeconds);
+      code = makePictures(options_, commandLine_, *browser_, problems_);
+    }
+    if (code == exitDone) problems_.tellLeftOut(browser_->world());
+    return code;
   }
 
   // The files that the world was made of; empty if it could not be loaded.

@@ -21,22 +21,6 @@ void say(const std::string& text) {
 void sayError(const std::string& text) { say("vv: error: " + text); }
 void sayWarning(const std::string& text) { say("vv: warning: " + text); }
 
-void sayDiagnostics(const xvrml::Diagnostics& diagnostics, size_t limit, bool quiet) {
-  size_t said = 0, left = 0;
-  for (const xvrml::Diagnostic& diagnostic : diagnostics.list()) {
-    if (quiet && diagnostic.severity != xvrml::Severity::error) continue;
-    if (limit && said == limit) {
-      ++left;
-      continue;
-    }
-    say(diagnostic.text());
-    ++said;
-  }
-  left += diagnostics.dropped();
-  if (left)
-    say(fmt::format("vv: and {} more (errors: {}, warnings: {} in all)", left, diagnostics.errors(), diagnostics.warnings()));
-}
-
 void writeData(const std::string& bytes) {
   try {
     picture::writeDescriptor(STDOUT_FILENO, ::isatty(STDOUT_FILENO) ? printable(bytes) : bytes, "standard output");

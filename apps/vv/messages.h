@@ -4,7 +4,6 @@
 #include <string>
 
 #include "options.h"
-#include "xvrml/diagnostics.h"
 
 namespace vv {
 
@@ -12,9 +11,6 @@ namespace vv {
 void sayError(const std::string& text);
 void sayWarning(const std::string& text);
 void say(const std::string& text);
-
-// Diagnostics with place, source line and caret; at most `limit` (0: all), then how many more there are. quiet: errors only.
-void sayDiagnostics(const xvrml::Diagnostics& diagnostics, size_t limit, bool quiet);
 
 // Writes text for people to standard output: control characters of a world's strings are shown, not obeyed. A reader that has
 // gone away is no error. Throws std::runtime_error otherwise.

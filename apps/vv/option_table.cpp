@@ -61,7 +61,7 @@ void setColour(Options& o, const std::string& value) {
 void setCompat(Options& o, const std::string& value) {
   for (const std::string_view name : split(value, ',')) {
     if (name == "scripts")
-      o.directOutputAlways = true;
+      o.run.directOutputAlways = true;
     else if (name == "textures")
       o.render.multiplyTextures = true;
     else
@@ -96,8 +96,12 @@ void setLimit(Options& o, const std::string& value) {
     names.emplace_back(limit.name);
     known += (known.empty() ? "" : ", ") + std::string(limit.name);
   }
+  constexpr std::string_view ofScripts = "worldScriptSeconds"; // of the running world, not of its file
+  names.emplace_back(ofScripts);
+  known += ", " + names.back();
   if (equals == value.npos) throw UsageError(fmt::format("NAME=VALUE was expected, not \"{}\"; the limits are {}", value, known));
   const uint64_t count = readCount(std::string_view(value).substr(equals + 1));
+  if (name == ofScripts) return void(o.run.worldScriptSeconds = double(count));
   if (xvrml::setLimit(o.load.limits, name, count)) return;
   const std::string near = picture::nearest(name, names);
   throw UsageError(fmt::format("there is no limit \"{}\"{}; the limits are {}", name,

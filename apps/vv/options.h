@@ -52,7 +52,7 @@ struct Options {
   std::string nodePath; // folders, separated by colons
   xvrml::LoadOptions load;
   xvrml::BrowserOptions running;
-  bool directOutputAlways = false; // xvrml::RunOptions
+  xvrml::RunOptions run; // its epoch is set by startWorld
   bool quiet = false, verbose = false;
   bool help = false, version = false;
 

@@ -13,6 +13,7 @@
 #include "audit.h"
 #include "cluster_report.h"
 #include "describe.h"
+#include "hints.h"
 #include "messages.h"
 #include "names.h"
 #include "outputs.h"
@@ -293,7 +294,9 @@ class Pictures {
                       job.name.text().empty() ? "" : ": ", result.stats.triangles, duration(result.mapSeconds),
                       duration(result.renderSeconds), duration(writeSeconds)));
     if (options_.verbose && done_ == moments_ * views_)
-      for (const std::string& line : clusterLines(result)) say(line);
+      tellLast(result);
+    if (!options_.isSequence() && !options_.quiet && flights_.empty() && !result.interrupted && showsNothing(result.picture))
+      if (const std::string hint = hintFor(options_, job.view, result, *renderer_); !hint.empty()) say("vv: " + hint);
     const RTstats& s = result.stats;
     if (options_.render.error > 0 && !result.interrupted && s.errorPixels > 0 && s.errorHalfWidth > 1.001 * options_.render.error)
       sayWarning(fmt::format("{}{}the error is {:.3g} %, not {:.3g} %: {}", job.name.text(), job.name.text().empty() ? "" : ": ",
@@ -303,7 +306,17 @@ class Pictures {
       frames_.add(job.name, moment.time, result, writeSeconds);
     else
       writeText(options_.stats == "-" ? "-" : pathFor(options_.stats, job.name),
-                statsJson(options_, commandLine_, browser_.world(), result, {writeSeconds, secondsSince(start_)}));
+                statsJson(options_, commandLine_, running(), result, {writeSeconds, secondsSince(start_)}));
+  }
+
+  RunningWorld running() const { return {browser_.world(), browser_.scripts()}; }
+
+  // What -v says with the last picture.
+  void tellLast(const picture::RenderResult& result) {
+    for (const std::string& line : clusterLines(result)) say(line);
+    if (const xvrml::ScriptCounts counts = browser_.scripts(); counts.started > 0)
+      say(fmt::format("vv: {} of {} Scripts run; {} calls have taken {}", counts.started, counts.scripts, counts.calls,
+                      duration(counts.seconds)));
   }
 
   // Why a picture has not reached --error, from the samples that it took.
@@ -329,7 +342,7 @@ class Pictures {
     }
     films_.clear();
     if (!options_.stats.empty() && options_.isSequence())
-      writeText(options_.stats, frames_.json(options_, commandLine_, browser_.world(), secondsSince(start_)));
+      writeText(options_.stats, frames_.json(options_, commandLine_, running(), secondsSince(start_)));
   }
 
   const Options& options_;

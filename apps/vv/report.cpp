@@ -134,8 +134,9 @@ Json viewpointsJson(const std::vector<xvrml::ViewpointInfo>& viewpoints) {
 namespace {
 
 // What the statistics of a picture and of a sequence share; numbers of the last picture.
-Json sceneStats(const Options& options, const std::string& commandLine, const xvrml::World& world,
+Json sceneStats(const Options& options, const std::string& commandLine, const RunningWorld& running,
                 const picture::RenderResult& result) {
+  const xvrml::World& world = running.world;
   const RTstats& s = result.stats;
   const picture::RenderSettings& r = options.render;
   Json json;
@@ -153,6 +154,10 @@ Json sceneStats(const Options& options, const std::string& commandLine, const xv
                    {"textures", s.textures},
                    {"lights", s.lights},
                    {"warnings", world.diagnostics.warnings() + world.diagnostics.errors()}};
+  json["scripts"] = {{"scripts", running.scripts.scripts},
+                     {"started", running.scripts.started},
+                     {"calls", running.scripts.calls},
+                     {"seconds", running.scripts.seconds}};
   json["image"] = {{"width", r.width}, {"height", r.height}, {"spp", r.samples}, {"channels", channelNames(r.channels)}};
   return json;
 }
@@ -178,10 +183,11 @@ Json rayStats(uint64_t camera, uint64_t shadow, uint64_t secondary, double secon
 
 } // namespace
 
-std::string statsJson(const Options& options, const std::string& commandLine, const xvrml::World& world,
+std::string statsJson(const Options& options, const std::string& commandLine, const RunningWorld& running,
                       const picture::RenderResult& result, const RunTimes& times) {
   const RTstats& s = result.stats;
-  Json json = sceneStats(options, commandLine, world, result);
+  const xvrml::World& world = running.world;
+  Json json = sceneStats(options, commandLine, running, result);
   // One pass makes the whole picture.
   json["time"] = {{"parse", world.times.parse},
                   {"graph", world.times.load},
@@ -229,10 +235,11 @@ void SequenceStats::add(const PictureName& name, double worldTime, const picture
   sum.last.interrupted |= result.interrupted;
 }
 
-std::string SequenceStats::json(const Options& options, const std::string& commandLine, const xvrml::World& world,
+std::string SequenceStats::json(const Options& options, const std::string& commandLine, const RunningWorld& running,
                                 double totalSeconds) const {
   const Impl& sum = *impl_;
-  Json json = sceneStats(options, commandLine, world, sum.last);
+  const xvrml::World& world = running.world;
+  Json json = sceneStats(options, commandLine, running, sum.last);
   json["time"] = {{"parse", world.times.parse}, {"graph", world.times.load}, {"map", sum.map},     {"build", sum.build},
                   {"first_pass", sum.first},    {"render", sum.render},      {"write", sum.write}, {"total", totalSeconds}};
   json["rays"] = rayStats(sum.camera, sum.shadow, sum.secondary, sum.tracing);
@@ -279,9 +286,9 @@ Compat compatOf(const xvrml::World& world) {
 std::string compatText(const Options& options, const Compat& compat) {
   std::string text;
   if (compat.scripts > 0)
-    text += fmt::format("compat scripts {}: {} without directOutput TRUE; {}\n", options.directOutputAlways ? "on" : "off",
+    text += fmt::format("compat scripts {}: {} without directOutput TRUE; {}\n", options.run.directOutputAlways ? "on" : "off",
                         compat.scripts == 1 ? "1 Script holds nodes" : fmt::format("{} Scripts hold nodes", compat.scripts),
-                        options.directOutputAlways
+                        options.run.directOutputAlways
                             ? "what they do to them is done, as in browsers of 1997"
                             : "what they do to them is ignored (6.40); --compat scripts does it, as browsers of 1997 did");
   if (compat.textures > 0)
@@ -316,7 +323,7 @@ std::string explainWorld(const Options& options, const xvrml::World& world, cons
                       {"instances", o.instances}});
     return dump({{"transport", transportJson(options, stats)},
                  {"compat",
-                  {{"scripts", {{"on", options.directOutputAlways}, {"affected", compat.scripts}}},
+                  {{"scripts", {{"on", options.run.directOutputAlways}, {"affected", compat.scripts}}},
                    {"textures", {{"on", options.render.multiplyTextures}, {"affected", compat.textures}}}}},
                  {"objects", std::move(list)},
                  {"totals",

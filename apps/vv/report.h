@@ -7,16 +7,21 @@
 #include "names.h"
 #include "options.h"
 #include "picture/renderer.h"
-#include "xvrml/world.h"
+#include "xvrml/browser.h"
 
 namespace vv {
 
 struct RunTimes {
   double write = 0, total = 0; // seconds
 };
+// What a running world is asked for.
+struct RunningWorld {
+  const xvrml::World& world;
+  xvrml::ScriptCounts scripts;
+};
 
 // The statistics of a picture as JSON, schema 1.
-std::string statsJson(const Options& options, const std::string& commandLine, const xvrml::World& world,
+std::string statsJson(const Options& options, const std::string& commandLine, const RunningWorld& running,
                       const picture::RenderResult& result, const RunTimes& times);
 
 // The statistics of a sequence: sums, and the times of each picture. Also schema 1: `frames` is there besides.
@@ -25,7 +30,8 @@ class SequenceStats {
   SequenceStats();
   ~SequenceStats();
   void add(const PictureName& name, double worldTime, const picture::RenderResult& result, double writeSeconds);
-  std::string json(const Options& options, const std::string& commandLine, const xvrml::World& world, double totalSeconds) const;
+  std::string json(const Options& options, const std::string& commandLine, const RunningWorld& running,
+                   double totalSeconds) const;
 
  private:
   struct Impl;

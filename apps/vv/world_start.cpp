@@ -2,6 +2,7 @@
 #include "world_start.h"
 
 #include <cerrno>
+#include <chrono>
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -29,6 +30,23 @@ std::string readStandardInput(uint64_t limit) {
   }
 }
 
+// Scripts start while the Browser is made: that is shown if it takes long.
+std::unique_ptr<xvrml::Browser> startScripts(std::unique_ptr<xvrml::World> world, const Options& options) {
+  const auto progress = std::make_shared<std::unique_ptr<Progress>>(std::make_unique<Progress>("Scripts", options.quiet));
+  xvrml::RunOptions run = options.run;
+  run.epoch = options.epoch.value_or(xvrml::worldEpoch);
+  run.onScriptStart = [progress](const xvrml::ScriptCounts& counts) { // later ones are started in the midst of other things
+    if (*progress && counts.scripts > 0) (*progress)->show(1 - float(counts.waiting) / float(counts.scripts));
+  };
+  const auto begin = std::chrono::steady_clock::now();
+  auto browser = std::make_unique<xvrml::Browser>(std::move(world), options.running, 0, run);
+  progress->reset();
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  if (const xvrml::ScriptCounts counts = browser->scripts(); options.verbose && counts.scripts > 0)
+    say(fmt::format("vv: {} of {} Scripts started in {}", counts.started, counts.scripts, duration(seconds)));
+  return browser;
+}
+
 } // namespace
 
 std::unique_ptr<xvrml::World> readWorld(const std::string& path, const xvrml::LoadOptions& options) {
@@ -45,10 +63,7 @@ std::unique_ptr<xvrml::Browser> startWorld(std::unique_ptr<xvrml::World> world, 
   for (const Definition& d : definitions)
     if (!d.asEvent) d.node->set(*d.field, d.value);
   changeShaders(options.shaders, options.render.shaderPath, *world);
-  xvrml::RunOptions run;
-  run.epoch = options.epoch.value_or(xvrml::worldEpoch);
-  run.directOutputAlways = options.directOutputAlways;
-  auto browser = std::make_unique<xvrml::Browser>(std::move(world), options.running, 0, run);
+  std::unique_ptr<xvrml::Browser> browser = startScripts(std::move(world), options);
   for (const Definition& d : definitions)
     if (d.asEvent) browser->set(*d.node, d.field->name, d.value);
   problems.tell(browser->world());

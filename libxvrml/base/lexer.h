@@ -1,4 +1,4 @@
-// lexer.h: the tokens of VRML97 text (ISO/IEC 14772-1 Annex A.3) as views over the bytes; nothing is copied or stored.
+// lexer.h: the tokens of VRML97 text (ISO/IEC 14772-1 Annex A) as views over the bytes; nothing is copied or stored.
 // Used by the value parser, the file parser and nodegen. One lexer per text, on one thread. The bytes must outlive it.
 #pragma once
 

@@ -1,4 +1,4 @@
-// number.h: VRML97 numbers from text (Annex A.3), correctly rounded: a branch-poor path for the short plain decimals that fill
+// number.h: VRML97 numbers from text (Annex A.4), correctly rounded: a branch-poor path for the short plain decimals that fill
 // big arrays, fast_float for the rest. Used by the value parser's loops. [any thread]
 #pragma once
 

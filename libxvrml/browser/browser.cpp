@@ -1,6 +1,5 @@
 // browser.cpp: see xvrml/browser.h.
 #include <algorithm>
-#include <cstring>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -15,13 +14,9 @@ Browser::Browser(std::unique_ptr<World> world, BrowserOptions options, double st
     : Browser(std::move(world), std::move(options), start, RunOptions()) {}
 
 Browser::Browser(std::unique_ptr<World> world, BrowserOptions options, double start, const RunOptions& run)
-    : impl_(std::make_unique<Impl>(*this, std::move(world), options)) {
-  RunOptions known; // what a program built against an earlier version does not know has its default
-  std::memcpy(&known, &run, std::min(run.size, sizeof known));
-  impl_->epoch = known.epoch;
-  if (impl_->scripts) impl_->scripts->directOutputAlways = known.directOutputAlways;
+    : impl_(std::make_unique<Impl>(*this, std::move(world), options, run)) {
   impl_->time = start;
-  impl_->engine->beginCascade(impl_->epoch + start);
+  impl_->engine->beginCascade(impl_->run.epoch + start);
   impl_->engine->adoptScope(impl_->world->scope, true);
   impl_->engine->settle();
   impl_->workOff();
@@ -32,15 +27,16 @@ Browser::~Browser() = default;
 World& Browser::world() { return *impl_->world; }
 Events& Browser::events() { return *impl_->engine; }
 double Browser::now() const { return impl_->time; }
-double Browser::epoch() const { return impl_->epoch; }
+double Browser::epoch() const { return impl_->run.epoch; }
 void Browser::tick(double time) {
   if (impl_->engine->settling()) return;     // a listener or a Script must not move time
   impl_->time = std::max(time, impl_->time); // the caller's number, which epoch + time rounds
-  impl_->engine->tick(impl_->epoch + impl_->time);
+  impl_->engine->tick(impl_->run.epoch + impl_->time);
   impl_->workOff();
 }
 FieldChanges Browser::takeChanges() { return impl_->engine->takeChanges(); }
 bool Browser::hasChanges() const { return impl_->engine->hasChanges(); }
+ScriptCounts Browser::scripts() const { return impl_->scripts ? impl_->scripts->counts() : ScriptCounts{}; }
 uint64_t Browser::generation() const { return impl_->generation; }
 
 NodeRef Browser::node(std::string_view name) const {

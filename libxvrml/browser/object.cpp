@@ -30,8 +30,8 @@ void append(Diagnostics& to, const Diagnostics& from) {
 // The first of the URLs that is a world, or null after a warning.
 // budget: of the world that it becomes part of; null: it has one of its own.
 std::unique_ptr<World> loadFirst(const std::vector<std::string>& urls, const std::string& base, const LoadOptions& options,
-                                 Diagnostics& diagnostics, std::string_view what, std::string* fragment,
-                                 const BudgetPtr& budget) {
+                                 Diagnostics& diagnostics, const SourcePosition& where, std::string_view what,
+                                 std::string* fragment, const BudgetPtr& budget) {
   std::string reasons;
   for (const std::string& url : urls) {
     const ResolvedUrl resolved = resolveUrl(url, base, options);
@@ -45,7 +45,7 @@ std::unique_ptr<World> loadFirst(const std::vector<std::string>& urls, const std
     }
     if (reasons.size() < 400) reasons += (reasons.empty() ? "" : "; ") + reason;
   }
-  diagnostics.warn({}, fmt::format("{}: {}", what, reasons.empty() ? "it names no URL" : reasons));
+  diagnostics.warn(where, fmt::format("{}: {}", what, reasons.empty() ? "it names no URL" : reasons));
   return nullptr;
 }
 
@@ -66,11 +66,11 @@ class Passing {
 
 } // namespace
 
-Browser::Impl::Impl(Browser& browser, std::unique_ptr<World> world, const BrowserOptions& options)
-    : options(options), world(std::move(world)), engine(std::make_unique<Engine>(this->world->diagnostics, &browser)) {
+Browser::Impl::Impl(Browser& browser, std::unique_ptr<World> world, const BrowserOptions& options, const RunOptions& run)
+    : options(options), run(run), world(std::move(world)), engine(std::make_unique<Engine>(this->world->diagnostics, &browser)) {
   engine->maximumEvents = options.maximumEvents;
   if (!options.runScripts) return;
-  scripts = std::make_unique<ScriptHost>(browser, *engine, *this->world, this->options);
+  scripts = std::make_unique<ScriptHost>(browser, *engine, *this->world, this->options, this->run);
   engine->scripts = scripts.get();
 }
 
@@ -92,6 +92,11 @@ void Browser::Impl::workOff() {
     if (generation != before) break; // at most one new world a call
   }
   working = false;
+}
+
+SourcePosition Browser::Impl::asking() const {
+  const Node* script = scripts ? scripts->runningNode() : nullptr;
+  return script ? script->source : SourcePosition{std::make_shared<const std::string>(world->path), 0, 0};
 }
 
 MFNode Browser::Impl::adopt(World& loaded) {
@@ -140,10 +145,11 @@ MFNode Browser::createVrmlFromString(std::string_view text) {
 
 void Browser::createVrmlFromUrl(const std::vector<std::string>& urls, Node& node, std::string_view eventIn,
                                 const std::string& base) {
-  impl_->later([this, urls, to = NodeRef(&node), in = std::string(eventIn), base = base.empty() ? impl_->world->path : base] {
+  impl_->later([this, urls, to = NodeRef(&node), in = std::string(eventIn), base = base.empty() ? impl_->world->path : base,
+                where = impl_->asking()] {
     World& world = *impl_->world;
     const auto loaded =
-        loadFirst(urls, base, world.options, world.diagnostics, "createVrmlFromURL", nullptr, Passing(world).budget());
+        loadFirst(urls, base, world.options, world.diagnostics, where, "createVrmlFromURL", nullptr, Passing(world).budget());
     if (!loaded || !to->live) return;
     MFNode nodes = impl_->adopt(*loaded);
     impl_->engine->dispatch(*to, in, std::move(nodes));
@@ -151,17 +157,17 @@ void Browser::createVrmlFromUrl(const std::vector<std::string>& urls, Node& node
 }
 
 void Browser::loadUrl(const std::vector<std::string>& urls, const std::vector<std::string>& parameters, const std::string& base) {
-  impl_->later([this, urls, parameters, base = base.empty() ? impl_->world->path : base] {
+  impl_->later([this, urls, parameters, base = base.empty() ? impl_->world->path : base, where = impl_->asking()] {
     if (impl_->options.loadUrl && impl_->options.loadUrl(urls, parameters, base)) return;
     const auto bind = [&](const std::string& name) {
       const NodeRef view = node(name);
       if (!view || !impl_->engine->dispatch(*view, "set_bind", true))
-        impl_->world->diagnostics.warn({}, fmt::format("loadURL: there is no viewpoint '{}'", name.substr(0, 100)));
+        impl_->world->diagnostics.warn(where, fmt::format("loadURL: there is no viewpoint '{}'", name.substr(0, 100)));
     };
     World& world = *impl_->world;
     if (!urls.empty() && urls[0].starts_with('#')) return bind(urls[0].substr(1));
     std::string fragment;
-    const auto loaded = loadFirst(urls, base, world.options, world.diagnostics, "loadURL", &fragment, nullptr);
+    const auto loaded = loadFirst(urls, base, world.options, world.diagnostics, where, "loadURL", &fragment, nullptr);
     if (!loaded) return;
     append(world.diagnostics, loaded->diagnostics);
     setBudget(world, budgetOf(*loaded));

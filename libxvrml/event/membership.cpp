@@ -277,7 +277,7 @@ bool Events::store(Node& node, const FieldInfo& field, Value value) {
     if (auto* many = std::get_if<MFNode>(&value))
       std::erase_if(*many, [&](const NodeRef& child) { return child ? refused(child) : !keeps; });
     if (inHierarchy && engine.wouldLoop(node, value)) {
-      diagnostics_.warn(node.source, fmt::format("{} of {} would hold the node itself (4.6.2)", field.name, node.type().name));
+      diagnostics_.warn(node.source, fmt::format("{} of {} would hold the node itself (4.4.4)", field.name, node.type().name));
       return false;
     }
     const auto each = [](const Value& nodes, const auto& visit) {

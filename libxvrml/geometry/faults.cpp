@@ -24,6 +24,13 @@ bool Faults::any() const {
   return !notes_.empty();
 }
 
+// Points, lines and faces without area are seen with or without them the same.
+bool Faults::invisible() const {
+  for (size_t i = 0; i < entries_.size(); i++)
+    if (entries_[i].count && Fault(i) != Fault::fewVertices && Fault(i) != Fault::noArea) return false;
+  return notes_.empty();
+}
+
 void Faults::report(const Node& node, Diagnostics* diagnostics, std::string_view limit) const {
   if (!diagnostics || !any()) return;
   std::string text;
@@ -35,7 +42,12 @@ void Faults::report(const Node& node, Diagnostics* diagnostics, std::string_view
     append(fmt::format("{} {}{} (first at index {})", entry.count, faultTexts[i], which, entry.first));
   }
   for (const std::string& note : notes_) append(note);
-  diagnostics->warn(node.source, node.type().name + ": " + text);
+  Diagnostic d;
+  d.severity = invisible() ? Severity::note : Severity::warning;
+  if (node.source.file) d.file = *node.source.file;
+  d.line = node.source.line, d.column = node.source.column;
+  d.message = node.type().name + ": " + text;
+  diagnostics->add(std::move(d));
 }
 
 } // namespace xvrml

@@ -34,10 +34,12 @@ class Faults {
   }
   void note(std::string text) { notes_.push_back(std::move(text)); }
   bool any() const;
-  // Gives one warning at the node's place, none if nothing was wrong. limit: what Fault::overLimit speaks of.
+  // Gives one warning at the node's place, none if nothing was wrong; a note if only that is dropped which nobody can see.
+  // limit: what Fault::overLimit speaks of.
   void report(const Node& node, Diagnostics* diagnostics, std::string_view limit) const;
 
  private:
+  bool invisible() const;
   struct Entry {
     uint64_t count = 0, first = 0;
   };

@@ -89,7 +89,7 @@ NodeRef Builder::findName(const Token& name) {
     return {};
   }
   std::string hint = suggestion(name.text, namesOf(*scope().scope));
-  if (inTemplate() && scopes_.front().scope->names.contains(name.text)) hint = "; a prototype has names of its own (4.4.3)";
+  if (inTemplate() && scopes_.front().scope->names.contains(name.text)) hint = "; a prototype has names of its own (4.8.4)";
   lexer_.error(name.at(), fmt::format("no node is named {} by a DEF above{}", describe(name), hint));
   return {};
 }
@@ -110,7 +110,7 @@ void Builder::useNode(const Token& name) {
     if (frame->node == node) break;
   }
   if (!between || !receivers_.back().holder) {
-    lexer_.error(name.at(), fmt::format("{} is USEd inside itself: a node cannot be its own descendant (4.6.2)", describe(name)));
+    lexer_.error(name.at(), fmt::format("{} is USEd inside itself: a node cannot be its own descendant (4.4.4)", describe(name)));
     return;
   }
   if (!deliver(name, node, 0)) return;

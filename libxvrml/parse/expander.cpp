@@ -392,7 +392,7 @@ void Expander::connect(const ProtoInstance& instance, const FieldInfo& from, con
     if (!child) return true;
     if (!state_.entered.empty() && node.type().index >= 0 && reaches(*child, node)) {
       state_.diagnostics.error(instance.source,
-                               fmt::format("the value of {} would make a node its own descendant (4.6.2)", from.name));
+                               fmt::format("the value of {} would make a node its own descendant (4.4.4)", from.name));
       return false;
     }
     const NodeType* type = effectiveType(*child);

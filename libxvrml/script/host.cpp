@@ -11,11 +11,6 @@
 namespace xvrml {
 namespace {
 
-bool flagOf(const ScriptNode& node, std::string_view name) {
-  const FieldInfo* field = node.type().find(name);
-  return field && field->type == FieldType::SFBool && std::get<bool>(node.get(*field));
-}
-
 uint64_t bytesOf(const Value& value) {
   return std::visit(
       [](const auto& v) -> uint64_t {
@@ -35,12 +30,10 @@ uint64_t bytesOf(const Value& value) {
       value);
 }
 
-bool isOwn(const FieldInfo& field) { return field.name != "url" && field.name != "directOutput" && field.name != "mustEvaluate"; }
-
 } // namespace
 
-ScriptHost::ScriptHost(Browser& browser, Engine& engine, World& world, const BrowserOptions& options)
-    : browser_(browser), engine_(engine), world_(world), options_(options),
+ScriptHost::ScriptHost(Browser& browser, Engine& engine, World& world, const BrowserOptions& options, const RunOptions& run)
+    : browser_(browser), engine_(engine), world_(world), options_(options), run_(run),
       programs_(scriptFolders(options.scriptPath), world.diagnostics, options.trustScripts),
       table_(std::make_unique<Table>(*this)), patience_(options.scriptPatience) {}
 
@@ -51,96 +44,15 @@ ScriptHost::~ScriptHost() {
   patience_ = options_.scriptPatience > 0 ? grace : 0;
   endBy_ = wire::Clock::now() + std::chrono::milliseconds(int64_t(1000 * std::clamp(options_.scriptSeconds, grace, 1e6)));
   finish();
-  for (auto& [order, script] : scripts_) stop(*script);
+  for (auto& [order, script] : scripts_) {
+    shutDownAhead(order);
+    stop(*script);
+  }
   processes_.reset();
   scripts_.clear(); // handles may be the last to hold nodes, and nodes Scripts: nothing of them runs any more
 }
 
-void ScriptHost::begin(ScriptNode& node) {
-  const Key key = liveOf(node)->order;
-  const XsNode self = ++lastNumber_;
-  auto script = std::make_unique<Script>(node, self, lastNumber_);
-  bySelf_.emplace(script->self, script.get());
-  scripts_.emplace(key, std::move(script));
-  beginning_.push_back(key);
-}
-
-// 4.12.3: before any event reaches it.
-bool ScriptHost::initializeNext() {
-  if (beginning_.empty()) return false;
-  const Key key = beginning_.front();
-  beginning_.pop_front();
-  if (const auto found = scripts_.find(key); found != scripts_.end()) {
-    Script& script = *found->second;
-    start(script);
-    if (!script.waiting.empty()) due_[key] = true; // events that came meanwhile
-  }
-  return true;
-}
-
-void ScriptHost::start(Script& script) {
-  script.expected = false;
-  while (!script.stopped && !script.engine && !script.ghost) {
-    ScriptProgram program = programs_.find(*script.node, world_.options, script.nextUrl);
-    if (!program.engine) return;
-    const size_t url = program.url;
-    script.nextUrl = url + 1;
-    const XsResult result = makeInterpreter(script, std::move(program));
-    if (result == later) return;
-    if (result == again) {
-      script.nextUrl = url;
-      if (script.expected) return;
-    } else if (created(script, result)) {
-      return;
-    }
-  }
-}
-
-// What follows on `create`. False if it failed.
-bool ScriptHost::created(Script& script, XsResult result) {
-  if (result != XS_OK) {
-    if (script.process) detach(script);
-    script.engine = nullptr;
-    return false;
-  }
-  if (script.ghost) return true; // the program has let go of the last that held its own node
-  if (script.flag(XS_DIRECT_OUTPUT)) markReach(script);
-  if (script.engine->tick) ticking_.push_back(liveOf(*script.node)->order);
-  plainCall(script, wire::Op::initialize, &XsEngine::initialize);
-  return true;
-}
-
-XsResult ScriptHost::makeInterpreter(Script& script, ScriptProgram program) {
-  script.engine = program.engine;
-  script.start = program.start;
-  script.scheme = std::move(program.scheme);
-  script.text = std::move(program.text);
-  script.origin = script.start.file ? *script.start.file : world_.path;
-  script.fields.clear();
-  for (const FieldInfo& field : script.node->type().fields)
-    if (isOwn(field)) script.fields.push_back({field.name.c_str(), xsType(field.type), xsAccess(field.access)});
-  XsScriptInfo& info = script.info;
-  info.size = sizeof(XsScriptInfo);
-  info.flags = (flagOf(*script.node, "directOutput") || directOutputAlways ? uint32_t(XS_DIRECT_OUTPUT) : 0u) |
-               (flagOf(*script.node, "mustEvaluate") ? uint32_t(XS_MUST_EVALUATE) : 0u) |
-               (options_.trustScripts ? uint32_t(XS_TRUSTED) : 0u) | (options_.allowNetwork ? uint32_t(XS_NETWORK) : 0u);
-  info.self = script.self;
-  info.scheme = script.scheme.c_str();
-  info.origin = script.origin.c_str();
-  info.text = {script.text.c_str(), script.text.size()};
-  info.fieldCount = uint32_t(script.fields.size());
-  info.fields = script.fields.data();
-  info.memory = options_.scriptMemory;
-  if (isolated(*script.engine)) return createRemote(script);
-  bool made = false;
-  const XsResult result = call(script, "create", [&] {
-    const XsResult answer = script.engine->create(table_.get(), &script.info, &script.interpreter);
-    made = answer == XS_OK;
-    return answer;
-  });
-  if (made && result != XS_OK) script.engine->destroy(script.interpreter); // stopped
-  return result;
-}
+const XsHost* ScriptHost::table() const { return table_.get(); }
 
 // The nodes a Script with directOutput refers to can be changed by it in any way (6.40).
 void ScriptHost::markReach(Script& script) {
@@ -154,24 +66,15 @@ void ScriptHost::markReach(Script& script) {
 void ScriptHost::stop(Script& script) {
   script.waiting.clear();
   script.expected = script.owed = false;
+  if (std::exchange(script.ahead, false)) --sentAhead_;
   if (!script.engine) return;
   if (script.process) return stopRemote(script);
   const bool ending = std::exchange(ending_, true);
-  plainCall(script, wire::Op::shutdown, &XsEngine::shutdown);
+  if (!spent()) plainCall(script, wire::Op::shutdown, &XsEngine::shutdown);
   ending_ = ending;
   script.engine->destroy(script.interpreter);
   script.engine = nullptr;
   script.handles.clear();
-}
-
-// Every call into an engine: its time is counted, what it sent leaves when it has returned.
-template <class Invoke> XsResult ScriptHost::call(Script& script, const char* function, Invoke&& invoke) {
-  const NodeRef keep(script.node);
-  enter(script);
-  Script* const outer = std::exchange(running_, &script);
-  const XsResult result = invoke();
-  running_ = outer;
-  return leave(script, function, result);
 }
 
 void ScriptHost::enter(Script& script) {
@@ -182,6 +85,10 @@ void ScriptHost::enter(Script& script) {
 }
 
 XsResult ScriptHost::leave(Script& script, const char* function, XsResult result) {
+  if (!script.process) {
+    const auto taken = std::chrono::steady_clock::now() - script.since;
+    spend(taken, std::chrono::duration<double>(taken).count());
+  }
   if (script.stopped || result == XS_STOPPED) {
     script.stopped = true;
     script.outputs.clear();
@@ -217,6 +124,7 @@ void ScriptHost::flush(Script& script) {
 }
 
 void ScriptHost::receive(ScriptNode& node, const FieldInfo& in, const Value& value) {
+  if (spent()) stopAll();
   const Key key = liveOf(node)->order;
   const auto found = scripts_.find(key);
   if (found == scripts_.end()) return;
@@ -233,7 +141,7 @@ void ScriptHost::receive(ScriptNode& node, const FieldInfo& in, const Value& val
     engine_.scriptsBegin();
     return;
   }
-  if (!isOwn(in) || script.stopped || (!script.engine && !script.expected)) return;
+  if (!Script::isOwn(in) || script.stopped || (!script.engine && !script.expected)) return;
   const bool atOnce = script.flag(XS_MUST_EVALUATE) && script.waiting.empty() && script.ready();
   bool& waits = due_[key];
   if (atOnce) return deliver(script, in, value);
@@ -279,6 +187,7 @@ void ScriptHost::deliver(Script& script, const FieldInfo& in, const Value& value
 
 // mustEvaluate FALSE: events wait until nothing else is left to do in the cascade; they keep their order.
 bool ScriptHost::eventsProcessed() {
+  if (spent()) stopAll();
   if (due_.empty()) return false;
   for (const auto& [key, waits] : std::exchange(due_, {})) {
     const auto found = scripts_.find(key);
@@ -289,7 +198,7 @@ bool ScriptHost::eventsProcessed() {
 }
 
 void ScriptHost::drain(Key key, Script& script) {
-  for (size_t left = script.waiting.size(); left > 0 && script.ready(); --left) {
+  for (size_t left = script.waiting.size(); left > 0 && script.ready() && !spent(); --left) {
     const Script::Waiting event = std::move(script.waiting.front());
     script.waiting.pop_front();
     script.waitingBytes -= event.bytes;
@@ -298,7 +207,7 @@ void ScriptHost::drain(Key key, Script& script) {
   script.owed = script.busy() || script.expected; // then when it has returned
   if (script.owed) return;
   if (!script.waiting.empty() && script.ready()) due_[key] = true; // it has been started anew
-  if (script.ready()) plainCall(script, wire::Op::eventsProcessed, &XsEngine::eventsProcessed);
+  if (script.ready() && !spent()) plainCall(script, wire::Op::eventsProcessed, &XsEngine::eventsProcessed);
 }
 
 void ScriptHost::drop() {
@@ -308,10 +217,15 @@ void ScriptHost::drop() {
 
 void ScriptHost::tick() {
   patience_ = options_.scriptPatience;
+  if (spent()) stopAll();
+  const double passed = engine_.now() - lastTick_.value_or(engine_.now());
+  used_ = std::max(0.0, used_ - passed * run_.worldScriptSeconds);
+  waited_ = std::max(0.0, waited_ - passed * mostWaiting * run_.worldScriptSeconds);
+  lastTick_ = engine_.now();
   if (processes_) serveLate();
   for (const Key key : std::vector<Key>(ticking_)) {
     const auto found = scripts_.find(key);
-    if (found != scripts_.end() && found->second->ready()) plainCall(*found->second, wire::Op::tick, &XsEngine::tick);
+    if (found != scripts_.end() && found->second->ready() && !spent()) plainCall(*found->second, wire::Op::tick, &XsEngine::tick);
   }
 }
 

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <map>
 #include <memory>
+#include <optional>
 
 #include "event/engine.h"
 #include "script/program.h"
@@ -29,6 +30,9 @@ struct Script {
     const FieldInfo* field;
     Value value;
   };
+  static bool isOwn(const FieldInfo& field) {
+    return field.name != "url" && field.name != "directOutput" && field.name != "mustEvaluate";
+  }
   bool flag(uint32_t bit) const { return info.flags & bit; }
   // A call is under way in its process, its own or another one's: events wait.
   bool busy() const { return process && process->busy(); }
@@ -48,6 +52,7 @@ struct Script {
   ProcessRef process;    // null: it is in this one
   uint32_t number = 0;   // of the interpreter there
   wire::Op pending{};    // the function that is running there; 0: none
+  bool ahead = false;    // that is `create`, and the Script's turn to start has not come: nobody looks after it yet
   bool expected = false; // will be started, again or for the first time: events wait
   int restarts = 0;
   bool owed = false; // eventsProcessed, when the call under way has returned
@@ -71,7 +76,8 @@ struct Script {
 class ScriptHost : public ScriptRunner {
  public:
   struct Table; // the XsHost that scripts get, with the way back to this
-  ScriptHost(Browser& browser, Engine& engine, World& world, const BrowserOptions& options);
+  ScriptHost(Browser& browser, Engine& engine, World& world, const BrowserOptions& options,
+             const RunOptions& run);
   ~ScriptHost() override; // shuts all down
   ScriptHost(const ScriptHost&) = delete;
   ScriptHost& operator=(const ScriptHost&) = delete;
@@ -86,7 +92,9 @@ class ScriptHost : public ScriptRunner {
   void finish() override;
 
   size_t running() const { return scripts_.size(); }
-  bool directOutputAlways = false; // RunOptions, before the first Script begins
+  ScriptCounts counts() const;
+  // Returns the node whose function is running; null if none is.
+  const Node* runningNode() const { return running_ ? running_->node : nullptr; }
 
  private:
   friend struct HostTable;
@@ -96,13 +104,26 @@ class ScriptHost : public ScriptRunner {
   static constexpr auto later = XsResult(0x7ffffff0); // the function is still running in its process; see tick
   static constexpr auto again = XsResult(0x7ffffff1); // its process was gone before: it is started anew
 
+  // Starting Scripts: host_start.cpp
+  void startAhead();
+  bool sendAhead(Script& script);
+  const XsHost* table() const;
   void start(Script& script);
+  void describe(Script& script, ScriptProgram program);
   XsResult makeInterpreter(Script& script, ScriptProgram program);
   bool created(Script& script, XsResult result);
   void stop(Script& script); // shutdown and destroy
+  void shutDownAhead(Key from);
   void enter(Script& script);
   XsResult leave(Script& script, const char* function, XsResult result);
-  template <class Invoke> XsResult call(Script& script, const char* function, Invoke&& invoke);
+  template <class Invoke> XsResult call(Script& script, const char* function, Invoke&& invoke) {
+    const NodeRef keep(script.node);
+    enter(script);
+    Script* const outer = std::exchange(running_, &script);
+    const XsResult result = invoke();
+    running_ = outer;
+    return leave(script, function, result);
+  }
   using Function = XsResult (*XsEngine::*)(XsInterpreter, double);
   XsResult plainCall(Script& script, wire::Op op, Function function);
   void drain(Key key, Script& script);
@@ -110,7 +131,10 @@ class ScriptHost : public ScriptRunner {
 
   // Scripts in processes of their own: host_remote.cpp
   bool isolated(const XsEngine& engine) const;
+  ProcessRef chooseProcess(const XsEngine& engine, size_t coming, std::string& why);
+  XsResult beginCreate(Script& script, const ProcessRef& process);
   XsResult createRemote(Script& script);
+  XsResult beginCall(Script& script, wire::Op op, wire::Writer& message);
   XsResult callRemote(Script& script, wire::Op op, wire::Writer& message);
   XsResult serveCall(Script& script, double first, double next, wire::Clock::time_point until);
   XsResult waitFor(Script& script);
@@ -128,17 +152,26 @@ class ScriptHost : public ScriptRunner {
   Script* find(XsNode self);
   void log(Script& script, int severity, uint32_t line, const std::string& text);
   bool overBudget(Script& script, uint64_t steps);
+  void spend(std::chrono::steady_clock::duration time, double processor);
+  bool spent() const {
+    return options_.scriptPatience <= 0 &&
+           (used_ >= run_.worldScriptSeconds || waited_ >= mostWaiting * run_.worldScriptSeconds);
+  }
+  void stopAll();
   void markReach(Script& script);
 
   Browser& browser_;
   Engine& engine_;
   World& world_;
   const BrowserOptions& options_;
+  const RunOptions& run_;
   ProgramFinder programs_;
   std::unique_ptr<Table> table_;
   std::map<Key, std::unique_ptr<Script>> scripts_;
   std::unordered_map<XsNode, Script*> bySelf_;
-  std::deque<Key> beginning_;
+  std::deque<Key> beginning_; // to be started, in this order
+  size_t ahead_ = 0;          // how many of them startAhead() has dealt with
+  size_t sentAhead_ = 0;      // how many are ahead of their turn
   std::vector<std::unique_ptr<Script>> ended_; // their nodes have been destroyed
   std::map<Key, bool> due_;                    // eventsProcessed is due; true: there are events waiting
   std::vector<Key> ticking_;
@@ -148,6 +181,13 @@ class ScriptHost : public ScriptRunner {
   wire::Writer message_;
   uint32_t interpreters_ = 0; // in processes, ever
   double patience_;           // seconds that calls may still wait before the next tick; below 0: hardly any
+  // Of RunOptions::worldScriptSeconds: processor time, so that a busy machine stops no Script that an idle one lets run. What
+  // sleeps uses none: waiting is bounded, too.
+  static constexpr double mostWaiting = 10;
+  double used_ = 0, waited_ = 0; // seconds: of the processor, on the wall
+  std::optional<double> lastTick_; // the world's time then
+  bool toldSpent_ = false;
+  ScriptCounts counts_;
   wire::Clock::time_point endBy_ = wire::never;
   XsNode lastNumber_ = 0;
   Script* running_ = nullptr;

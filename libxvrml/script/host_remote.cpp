@@ -30,13 +30,17 @@ bool ScriptHost::isolated(const XsEngine& engine) const {
   return !options_.trustScripts && !(engine.flags & XS_HARMLESS);
 }
 
-XsResult ScriptHost::createRemote(Script& script) {
-  const XsEngine& engine = *script.engine;
+ProcessRef ScriptHost::chooseProcess(const XsEngine& engine, size_t coming, std::string& why) {
   if (!processes_) processes_ = std::make_unique<ScriptProcesses>(*table_);
   const ProcessSettings settings{libraryOf(engine), engine.name, options_.scriptSteps, options_.scriptSeconds,
                                  options_.scriptMemory};
+  return processes_->choose(settings, coming, why);
+}
+
+XsResult ScriptHost::createRemote(Script& script) {
+  const XsEngine& engine = *script.engine;
   std::string why;
-  const ProcessRef process = processes_->choose(settings, beginning_.size(), why);
+  const ProcessRef process = chooseProcess(engine, beginning_.size() - ahead_, why);
   if (!process) {
     if (unusable_.insert(engine.name).second)
       log(script, 3, 0,
@@ -49,12 +53,20 @@ XsResult ScriptHost::createRemote(Script& script) {
     late_.push_back(liveOf(*script.node)->order);
     return again;
   }
+  const XsResult result = beginCreate(script, process);
+  if (result == again) restartAll(*process);
+  return result == later ? waitFor(script) : result;
+}
+
+// Sends all that its process needs to make the interpreter, and to go on with initialize if the engine has that.
+XsResult ScriptHost::beginCreate(Script& script, const ProcessRef& process) {
   XsScriptInfo& info = script.info;
   info.flags &= ~uint32_t(XS_TRUSTED | XS_NETWORK); // they can do nothing there
   script.process = process;
   script.number = ++interpreters_;
   process->add();
   message_.begin(wire::Op::create, script.number, engine_.now());
+  if (script.engine->initialize) message_.header().flags = wire::Flags::thenInitialize;
   message_.put(info.flags);
   message_.put(info.self);
   message_.put(info.memory);
@@ -63,25 +75,29 @@ XsResult ScriptHost::createRemote(Script& script) {
   message_.put(info.text);
   message_.put(info.fieldCount);
   for (const XsField& field : script.fields) message_.put(field);
-  return callRemote(script, wire::Op::create, message_);
+  return beginCall(script, wire::Op::create, message_);
 }
 
 // --- Calls ---
 
-XsResult ScriptHost::callRemote(Script& script, wire::Op op, wire::Writer& message) {
+// Sends a call. Answers `later`, or `again` if the process is dead: nobody's function was running there.
+XsResult ScriptHost::beginCall(Script& script, wire::Op op, wire::Writer& message) {
   const ProcessRef process = script.process;
   enter(script);
   if (!process->begin(message)) {
-    if (process->dead()) { // nobody's function was running
-      script.stopped = script.wasStopped;
-      restartAll(*process);
-      return again;
-    }
+    if (process->dead()) return script.stopped = script.wasStopped, again;
     log(script, 3, 0, fmt::format("{}: longer than a message to a process may be", wire::functionName(op)));
     return leave(script, wire::functionName(op), XS_FAILED);
   }
   script.pending = op;
-  return waitFor(script);
+  return later;
+}
+
+XsResult ScriptHost::callRemote(Script& script, wire::Op op, wire::Writer& message) {
+  const ProcessRef process = script.process;
+  const XsResult result = beginCall(script, op, message);
+  if (result == again) restartAll(*process);
+  return result == later ? waitFor(script) : result;
 }
 
 wire::Clock::time_point ScriptHost::patienceEnds() const {
@@ -94,10 +110,13 @@ wire::Clock::time_point ScriptHost::patienceEnds() const {
 
 // Calls between two ticks share one patience: a thousand slow Scripts cost no more than one.
 XsResult ScriptHost::waitFor(Script& script) {
+  const ProcessRef process = script.process;
   const auto start = wire::Clock::now();
   const XsResult result = serveCall(script, forEver, forEver, patienceEnds());
-  if (options_.scriptPatience > 0)
-    patience_ -= std::chrono::duration<double>(wire::Clock::now() - start).count();
+  const auto taken = wire::Clock::now() - start;
+  if (options_.scriptPatience > 0) patience_ -= std::chrono::duration<double>(taken).count();
+  const double seconds = std::chrono::duration<double>(taken).count();
+  spend(taken, process->dead() ? std::min(seconds, options_.scriptSeconds) : process->takeProcessorTime());
   return result;
 }
 
@@ -116,7 +135,14 @@ XsResult ScriptHost::serveCall(Script& script, double first, double next, wire::
   const XsResult result = process->result();
   script.stopped = script.stopped || process->stopped();
   const XsResult told = leave(script, wire::functionName(op), result);
-  if (op == wire::Op::create && result == XS_OK && told != XS_OK) process->discarded.push_back(script.number);
+  const bool goesOn = process->busy(); // with initialize
+  if (op == wire::Op::create && result == XS_OK && told != XS_OK) {
+    process->orphaned = goesOn;
+    process->discarded.push_back(script.number);
+  } else if (goesOn) {
+    enter(script);
+    script.pending = wire::Op::initialize;
+  }
   return told;
 }
 
@@ -179,9 +205,11 @@ void ScriptHost::restart(Key key, Script& script, const std::string& why) {
 void ScriptHost::stopRemote(Script& script) {
   const bool ending = std::exchange(ending_, true);
   const bool creating = script.pending == wire::Op::create;
+  const bool shutting = script.pending == wire::Op::shutdown; // sent ahead
   if (script.pending != wire::Op{}) waitFor(script);
-  const bool overdue = closing_ && wire::Clock::now() >= endBy_;
-  if (script.process && !script.busy() && !creating && !overdue) plainCall(script, wire::Op::shutdown, &XsEngine::shutdown);
+  const bool overdue = spent() || (closing_ && wire::Clock::now() >= endBy_);
+  if (script.process && !script.busy() && !creating && !shutting && !overdue)
+    plainCall(script, wire::Op::shutdown, &XsEngine::shutdown);
   ending_ = ending;
   if (!script.process) return;
   const ProcessRef process = script.process;
@@ -198,6 +226,18 @@ void ScriptHost::stopRemote(Script& script) {
   else
     discard(process, forEver, patienceEnds());
   if (beginning_.empty()) processes_->trim();
+}
+
+// The world ends: a few Scripts of those that follow on `from` begin to shut down, each in a process where nothing else runs.
+void ScriptHost::shutDownAhead(Key from) {
+  if (spent() || wire::Clock::now() >= endBy_) return;
+  size_t left = ScriptProcesses::most;
+  for (auto next = scripts_.upper_bound(from); next != scripts_.end() && left > 0; ++next, --left) {
+    Script& script = *next->second;
+    if (!script.process || !script.engine || !script.engine->shutdown || script.busy() || script.process->dead()) continue;
+    message_.begin(wire::Op::shutdown, script.number, engine_.now());
+    beginCall(script, wire::Op::shutdown, message_);
+  }
 }
 
 // Destroys interpreters that nobody uses any more, when nothing else runs in their process.
@@ -226,7 +266,7 @@ void ScriptHost::serveLate() {
   const auto end = wire::Clock::now() + tickShare;
   std::vector<Key> keys;
   for (const auto& [key, script] : scripts_)
-    if (script->pending != wire::Op{}) keys.push_back(key);
+    if (script->pending != wire::Op{} && !script->ahead) keys.push_back(key);
   for (size_t left = keys.size(); left > 0; --left) {
     const Key key = keys[keys.size() - left];
     const auto found = scripts_.find(key);

@@ -98,6 +98,13 @@ void ProgramFinder::tellMissing(const ScriptNode& script) {
 }
 
 ScriptProgram ProgramFinder::find(const ScriptNode& script, const LoadOptions& options, size_t first) {
+  ScriptProgram program = peek(script, options, first);
+  tellRefusals();
+  if (!program.engine) tellMissing(script);
+  return program;
+}
+
+ScriptProgram ProgramFinder::peek(const ScriptNode& script, const LoadOptions& options, size_t first) {
   missing_.clear();
   reasons_.clear();
   const FieldInfo* field = script.type().find("url");
@@ -122,11 +129,8 @@ ScriptProgram ProgramFinder::find(const ScriptNode& script, const LoadOptions& o
       if (!inlineProgram(url, start + program.scheme.size(), program)) continue;
     }
     program.url = i;
-    tellRefusals();
     return program;
   }
-  tellRefusals();
-  tellMissing(script);
   return {};
 }
 

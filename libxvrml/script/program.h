@@ -25,13 +25,15 @@ class ProgramFinder {
   // The first that can be run, from URL number `first` on. If there is none, says why: a missing engine once for each protocol
   // of a world, anything else for each Script.
   ScriptProgram find(const ScriptNode& script, const LoadOptions& options, size_t first = 0);
+  // The same without a message: for a Script whose turn has not come. tellRefusals() follows when it has.
+  ScriptProgram peek(const ScriptNode& script, const LoadOptions& options, size_t first = 0);
+  void tellRefusals(); // of plug-ins that cannot be used
 
  private:
   bool inlineProgram(const std::string& url, size_t colon, ScriptProgram& program);
   bool dataProgram(std::string_view url, const LoadOptions& options, ScriptProgram& program);
   bool fileProgram(const std::string& url, const std::string& base, const LoadOptions& options, ScriptProgram& program);
   bool usable(const XsEngine* engine, const std::string& protocol);
-  void tellRefusals();
   void tellMissing(const ScriptNode& script);
 
   ScriptEngines engines_;

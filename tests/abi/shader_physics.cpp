@@ -281,7 +281,8 @@ TEST(RoughBoundary, TheWayBackIsTheSameScaledByTheIndices) {
       if (there == 0 && back == 0) continue;
       compared++;
       const float f = there, g = back / (1.5f * 1.5f);
-      ASSERT_NEAR(f, g, 1e-5f * std::fmax(std::fmax(f, g), 1e-2f)) << roughness << " pair " << k;
+      // Floats of narrow lobes: a rounded facet's normal is off by some 1e-7, which the distribution magnifies by 1 / roughness.
+      ASSERT_NEAR(f, g, (1e-5f + 2e-6f / roughness) * std::fmax(std::fmax(f, g), 1e-2f)) << roughness << " pair " << k;
     }
     EXPECT_GT(compared, 300) << roughness;
   }

@@ -237,8 +237,8 @@ TEST(Vrml97Surface, EveryRowOfTheTextureTables) { // V9
     expectRgb(a.colour(), row.wanted);
     expectRgb(transmit(host, hits), {1 - A, 1 - A, 1 - A});
     const bool transparent = A < 1;
-    EXPECT_EQ(surface().traits(&host, p.get()),
-              (transparent ? unsigned(RTS_TRANSPARENT) : 0u) | (row.lit ? 0u : unsigned(RTS_UNLIT | RTS_EMISSIVE)));
+    const unsigned unlit = RTS_UNLIT | RTS_EMISSIVE | RTS_NO_SCATTER;
+    EXPECT_EQ(surface().traits(&host, p.get()), (transparent ? unsigned(RTS_TRANSPARENT) : 0u) | (row.lit ? 0u : unlit));
   }
 }
 

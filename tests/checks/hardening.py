@@ -94,12 +94,13 @@ def path_complaints(dynamic, packed):
 
 
 def functions_without_endbr(path, symbols):
-    """Exported functions of code that do not begin with endbr64."""
+    """Exported functions that do not begin with endbr64. Weak ones are left out: they are inline functions and templates, of which
+    the linker may have taken the copy of a static library of others (GoogleTest's)."""
     segments = [tuple(int(x, 16) for x in m) for m in
                 re.findall(r"^\s+LOAD\s+(0x\w+) (0x\w+) 0x\w+ (0x\w+) 0x\w+ R E", readelf("-l", path), re.M)]
     content = path.read_bytes()
     for address, kind, binding, section, name in symbols:
-        if kind != "FUNC" or binding not in ("GLOBAL", "WEAK") or section == "UND" or name.startswith("_init@") or name in ("_init", "_fini"):
+        if kind != "FUNC" or binding != "GLOBAL" or section == "UND" or name.startswith("_init@") or name in ("_init", "_fini"):
             continue
         for offset, start, size in segments:
             if start <= address < start + size and content[offset + address - start:][:4] != ENDBR64:

@@ -183,7 +183,7 @@ with tempfile.TemporaryDirectory() as scratch:
     for program in ("openrt-replay", "nodegen"):
         if not os.access(prefix / "bin" / program, os.X_OK):
             sys.exit(f"{program} is not installed")
-    for folder in prefix.rglob("python"):
+    for folder in (init.parent.parent for init in prefix.rglob("xvrml/__init__.py")):
         code = "import xvrml; w = xvrml.load('box.wrl'); print('python: as it must be', w.render(size=(8, 6), spp=1).shape)"
         python = "/usr/bin/python3" if os.path.exists("/usr/bin/python3") else sys.executable
         print(run(python, "-c", code, cwd=scratch, env={"PYTHONPATH": str(folder)}), end="")

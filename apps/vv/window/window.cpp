@@ -242,6 +242,8 @@ class Window {
     if (!message_.empty() && seconds() < messageEnds_) return message_;
     if (!session_) return failed_ ? message_ : "drop a file here; F1 lists the keys";
     if (!session_->resting()) return bottom_;
+    if (const xvrml::ScriptCounts counts = session_->browser().scripts(); counts.waiting > 0)
+      return fmt::format("starting Scripts: {} of {} ...", counts.scripts - counts.waiting, counts.scripts);
     const std::string hint = session_->pilot().hint();
     return hint.empty() ? session_->browser().description() : hint;
   }

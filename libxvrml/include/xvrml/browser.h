@@ -16,6 +16,15 @@
 
 namespace xvrml {
 
+// What Scripts have done since the world began.
+struct ScriptCounts {
+  uint64_t scripts = 0; // that have become part of the world
+  uint64_t started = 0; // whose program has been found and has begun
+  uint64_t waiting = 0; // that are still to be started, or are starting in their processes
+  uint64_t calls = 0;   // of their functions
+  double seconds = 0;   // that the world has waited for these
+};
+
 struct BrowserOptions {
   uint64_t maximumEvents = 1'000'000; // of one cascade
   bool runScripts = true;
@@ -23,7 +32,7 @@ struct BrowserOptions {
   bool trustScripts = false; // Scripts may use engines whose programs can do whatever the user can
   bool allowNetwork = false; // tells script engines that their programs may use the network
   uint64_t scriptSteps = 1'000'000'000; // that one call into a Script may take, as its engine counts them; then it is stopped
-  double scriptSeconds = 2;             // of the clock on the wall, for the same
+  double scriptSeconds = 2; // for the same: of the processor if the program has a process of its own, else on the wall
   uint64_t scriptMemory = 256 << 20;    // bytes that one Script's program may use
   // Programs of untrusted worlds run in processes of their own, which can do nothing but compute; never: in this one, where one
   // that does not end, or takes all memory, takes the program with it; always: trusted ones, too, as far as they can.
@@ -42,13 +51,18 @@ struct BrowserOptions {
 // so that a TimeSensor with startTime 0 and loop TRUE is at the beginning of a cycle (decision 0014).
 inline constexpr double worldEpoch = 1'729'728'000;
 
-// More options, which may become more still: size tells which of them the program knows.
+// More options. A later version that adds members reads them only if size tells that the program knows them.
 struct RunOptions {
   size_t size = sizeof(RunOptions);
   double epoch = worldEpoch; // time 0 in seconds since 1970; 0: the times of this class are seconds since 1970 themselves
   // Every Script may send to other nodes and change routes, as the browsers of 1997 let them; else only those with
   // directOutput TRUE (6.40).
   bool directOutputAlways = false;
+  // Seconds of processor time that calls of all Scripts may take together while scriptPatience is 0 (ten times as many on the
+  // wall), and as many again for each second that the world's time moves on. Then all Scripts are stopped, with one error.
+  double worldScriptSeconds = 30;
+  // Called after each Script that has been started, on the browser's thread, within its constructor too: to show how far it is.
+  std::function<void(const ScriptCounts& counts)> onScriptStart;
 };
 
 class Browser {
@@ -71,6 +85,7 @@ class Browser {
   // What changed since the last call; for OpenRTMapper::update. Another world (generation()) begins with an empty list.
   FieldChanges takeChanges();
   bool hasChanges() const; // takeChanges would return some
+  ScriptCounts scripts() const; // what its Scripts have done so far
   // Grows by one with every world that takes the place of the former (loadUrl, replaceWorld): make a new mapper.
   uint64_t generation() const;
 

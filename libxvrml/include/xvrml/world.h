@@ -33,7 +33,7 @@ struct IsConnection {
   std::string interfaceName;
 };
 
-// The statements of a file or of a prototype's body: a name space of its own (clause 4.4.3).
+// The statements of a file or of a prototype's body: a name space of its own (clauses 4.4.6, 4.8.4).
 struct Scope {
   std::vector<ProtoPtr> prototypes; // in order of declaration
   std::vector<NodeRef> roots;

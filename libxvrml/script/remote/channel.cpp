@@ -13,7 +13,6 @@ namespace xvrml::wire {
 namespace {
 
 constexpr size_t chunk = 64 << 10;
-constexpr auto sendPatience = std::chrono::seconds(1);
 
 // Waits until the socket is ready; false if it is not in time.
 bool wait(int socket, short what, Clock::time_point until) {
@@ -33,12 +32,12 @@ bool wait(int socket, short what, Clock::time_point until) {
 Channel::~Channel() { close(socket_); }
 
 bool Channel::send(std::string_view message) {
-  auto until = Clock::now() + sendPatience;
+  auto until = Clock::now() + patience_;
   while (!message.empty()) {
     const ssize_t sent = ::send(socket_, message.data(), message.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
     if (sent > 0) {
       message.remove_prefix(size_t(sent));
-      until = Clock::now() + sendPatience;
+      until = Clock::now() + patience_;
     } else if (errno == EAGAIN) {
       if (!wait(socket_, POLLOUT, until)) return false;
     } else if (errno != EINTR) {

@@ -13,12 +13,13 @@ constexpr Clock::time_point never = Clock::time_point::max();
 
 class Channel {
  public:
-  explicit Channel(int socket) : socket_(socket) {}
+  // patience: how long send() waits while the other end takes nothing.
+  explicit Channel(int socket, Clock::duration patience = std::chrono::seconds(1)) : socket_(socket), patience_(patience) {}
   ~Channel();
   Channel(const Channel&) = delete;
   Channel& operator=(const Channel&) = delete;
 
-  // False if the other end is gone, or has taken nothing for a second. Never raises SIGPIPE.
+  // False if the other end is gone, or has taken nothing for the time of `patience`. Never raises SIGPIPE.
   bool send(std::string_view message);
 
   enum class Got { message, nothing, closed, bad };
@@ -29,6 +30,7 @@ class Channel {
   Got fill(char* to, size_t wanted, Clock::time_point until);
   Got some(char* to, size_t room, Clock::time_point until, size_t& got);
   int socket_;
+  Clock::duration patience_;
   std::vector<char> ahead_; // from used_ to filled_: has arrived, is not used
   size_t used_ = 0, filled_ = 0;
   Message partial_; // of which a part has arrived

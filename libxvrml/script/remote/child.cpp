@@ -4,8 +4,10 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -121,6 +123,24 @@ void Child::limitMemory(uint64_t bytes) {
   if (pid_ <= 0 || ended_ || prlimit(pid_, RLIMIT_AS, nullptr, &old) != 0) return;
   const rlimit fresh{std::min<rlim_t>(bytes, old.rlim_max), old.rlim_max};
   prlimit(pid_, RLIMIT_AS, &fresh, nullptr);
+}
+
+double Child::processorSeconds() const {
+  clockid_t clock{};
+  timespec time{};
+  if (pid_ <= 0 || ended_ || clock_getcpuclockid(pid_, &clock) != 0 || clock_gettime(clock, &time) != 0) return 0;
+  return double(time.tv_sec) + 1e-9 * double(time.tv_nsec);
+}
+
+bool Child::computes() const {
+  if (pid_ <= 0 || ended_) return false;
+  char line[512] = {};
+  std::FILE* file = std::fopen(fmt::format("/proc/{}/stat", pid_).c_str(), "re");
+  if (!file) return false;
+  const size_t got = std::fread(line, 1, sizeof line - 1, file);
+  std::fclose(file);
+  const size_t name = std::string_view(line, got).rfind(") "); // the state follows on the program's name
+  return name != std::string_view::npos && name + 2 < got && line[name + 2] == 'R';
 }
 
 void Child::kill() noexcept {

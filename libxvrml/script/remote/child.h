@@ -28,6 +28,10 @@ class Child {
   // How it ended, for people: "ended with code 1"; waits for that for a moment, then kills it.
   std::string ending();
   pid_t number() const { return pid_; }
+  // Returns the processor time that it has used, in seconds; 0 if that is not known.
+  double processorSeconds() const;
+  // Returns true if it computes, or would if a processor were free; false if it waits or sleeps.
+  bool computes() const;
 
  private:
   bool reap(int milliseconds) noexcept;

@@ -2,6 +2,7 @@
 #include "script/remote/process.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -85,12 +86,32 @@ bool ScriptProcess::begin(Writer& call) {
   if (dead() || !call.finish()) return false;
   if (!channel_->send(call.bytes())) return lost(State::died, {}), false;
   busy_ = true;
-  used_ = 0;
-  left_ = Clock::now();
+  follows_ = call.header().op == uint16_t(Op::create) && (call.header().flags & Flags::thenInitialize);
+  callBegins();
   return true;
 }
 
-// The time on the wall counts, but not what the host's functions take, and little of what an application does between two ticks.
+void ScriptProcess::callBegins() {
+  used_ = shared_ = 0;
+  processor_ = child_.processorSeconds();
+  left_ = Clock::now();
+}
+
+double ScriptProcess::takeProcessorTime() {
+  const double now = dead() ? taken_ : child_.processorSeconds();
+  return std::max(0.0, now - std::exchange(taken_, now));
+}
+
+double ScriptProcess::missing(double limit) {
+  const double left = limit - (child_.processorSeconds() - processor_);
+  if (left <= 0 || shared_ >= mostShared * limit || !child_.computes()) return 0;
+  const double given = std::max(left, 0.01);
+  shared_ += given;
+  return given;
+}
+
+// The time on the wall counts, but not what the host's functions take, nor the time in which the program waited for a processor,
+// and little of what an application does between two ticks.
 ScriptProcess::State ScriptProcess::serve(double first, double next, Clock::time_point until, double time) {
   constexpr double mostBetween = 0.1;
   const double limit = settings_.seconds + grace;
@@ -105,7 +126,13 @@ ScriptProcess::State ScriptProcess::serve(double first, double next, Clock::time
     const auto now = Clock::now();
     const auto hard = start + duration(limit - used_);
     const Channel::Got got = channel_->receive(message_, std::max(now, std::min({until, hard, now + duration(patience)})));
-    if (got == Channel::Got::nothing) return Clock::now() >= hard ? lost(State::tooLong, "took too long") : leave(State::running);
+    if (got == Channel::Got::nothing && Clock::now() >= hard) {
+      const double more = missing(limit);
+      if (more <= 0) return lost(State::tooLong, "took too long");
+      start += duration(more);
+      continue;
+    }
+    if (got == Channel::Got::nothing) return leave(State::running);
     if (got == Channel::Got::closed) return lost(State::died, {});
     if (got == Channel::Got::bad) return lost(State::died, "sent a message that is too long");
     if (message_.header.op == uint16_t(Op::done)) {
@@ -113,14 +140,19 @@ ScriptProcess::State ScriptProcess::serve(double first, double next, Clock::time
       const int32_t answer = message_.header.result;
       result_ = answer >= XS_OK && answer <= XS_FAILED ? XsResult(answer) : XS_FAILED;
       stopped_ = message_.header.flags & Flags::stopped;
-      busy_ = false;
+      busy_ = std::exchange(follows_, false) && result_ == XS_OK && !stopped_;
+      if (busy_) callBegins();
       return State::returned;
     }
     const auto asked = Clock::now();
     if (!answer(message_, time)) return State::died;
     const auto answered = Clock::now();
     start += answered - asked;
-    if (answered >= start + duration(limit - used_)) return lost(State::tooLong, "took too long");
+    if (answered >= start + duration(limit - used_)) {
+      const double more = missing(limit);
+      if (more <= 0) return lost(State::tooLong, "took too long");
+      start += duration(more);
+    }
     if (answered >= until) return leave(State::running);
   }
 }

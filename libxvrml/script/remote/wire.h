@@ -12,7 +12,7 @@
 
 namespace xvrml::wire {
 
-constexpr uint32_t version = 1;
+constexpr uint32_t version = 2;
 constexpr uint32_t maximumMessage = 256u << 20; // bytes of one message
 
 enum class Op : uint16_t {
@@ -35,7 +35,10 @@ enum class Op : uint16_t {
 
 const char* functionName(Op op); // "event"
 
-enum Flags : uint16_t { stopped = 1 }; // of done: the program has used up its steps or its time
+enum Flags : uint16_t {
+  stopped = 1,        // of done: the program has used up its steps or its time
+  thenInitialize = 2, // of create: the helper goes on with initialize if create succeeds, and answers each with a `done`
+};
 
 struct Header {
   uint32_t bytes; // of what follows

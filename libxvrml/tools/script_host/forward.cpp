@@ -1,6 +1,8 @@
 // forward.cpp: see forward.h.
 #include "forward.h"
 
+#include <algorithm>
+#include <ctime>
 #include <new>
 
 #include <unistd.h>
@@ -31,6 +33,16 @@ template <auto Member, auto... All> constexpr uint16_t numberIn(FunctionList<All
   bool found = false;
   ((found = found || same(Member, All), number = uint16_t(number + (found ? 0 : 1))), ...);
   return number;
+}
+
+Clock::duration duration(double seconds) {
+  return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(std::min(seconds, 1e6)));
+}
+
+double processorSeconds() {
+  timespec time{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+  return double(time.tv_sec) + 1e-9 * double(time.tv_nsec);
 }
 
 template <class T> bool present(const T& argument) {
@@ -139,7 +151,18 @@ void Forward::enter(double time) {
   now_ = time;
   steps_ = 0;
   stopped_ = false;
-  end_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(std::min(seconds_, 1e6)));
+  processor_ = processorSeconds();
+  end_ = Clock::now() + duration(seconds_);
+}
+
+// A process that has to share the processors with others is slower, and its program is not to blame: the seconds are those of
+// the processor. A program that sleeps is ended by the browser.
+bool Forward::late() {
+  const auto now = Clock::now();
+  if (now <= end_) return false;
+  const double left = seconds_ - (processorSeconds() - processor_);
+  if (left > 0) end_ = now + duration(std::max(left, 0.001));
+  return left <= 0;
 }
 
 Guest* Forward::find(XsNode self) const {
@@ -149,7 +172,7 @@ Guest* Forward::find(XsNode self) const {
 
 bool Forward::spend(uint64_t steps) {
   steps_ = steps_ + steps < steps_ ? UINT64_MAX : steps_ + steps;
-  return stopped_ = stopped_ || steps_ > mostSteps_ || Clock::now() > end_;
+  return stopped_ = stopped_ || steps_ > mostSteps_ || late();
 }
 
 // Time that the browser takes is not the program's.

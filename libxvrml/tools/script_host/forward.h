@@ -40,6 +40,7 @@ class Forward : public XsHost {
   template <auto Member> struct Function;
   static Forward& of(const XsHost* host) { return *const_cast<Forward*>(static_cast<const Forward*>(host)); }
   bool spend(uint64_t steps);
+  bool late();
   wire::Message ask();
 
   wire::Channel& channel_;
@@ -47,6 +48,7 @@ class Forward : public XsHost {
   const double seconds_;
   uint64_t steps_ = 0;
   wire::Clock::time_point end_;
+  double processor_ = 0; // processor time of this process when the call began
   double now_ = 0;
   bool stopped_ = false;
   wire::Writer writer_;

@@ -29,18 +29,32 @@ class Server {
   void run() {
     Message call;
     while (channel_.receive(call, never) == Channel::Got::message) {
-      host_.enter(call.header.time);
-      const XsResult result = serve(call);
-      Writer done;
-      done.begin(Op::done, call.header.script);
-      done.header().result = result;
-      done.header().flags = host_.stopped() ? uint16_t(Flags::stopped) : uint16_t(0);
-      done.finish();
-      if (!channel_.send(done.bytes())) return;
+      const wire::Header header = call.header;
+      const bool begins = Op(header.op) == Op::create && (header.flags & Flags::thenInitialize);
+      if (!one(call)) return;
+      if (!begins || !lastGood_) continue;
+      Message next;
+      next.header = header;
+      next.header.op = uint16_t(Op::initialize);
+      if (!one(next)) return;
     }
   }
 
  private:
+  // Serves a call and says that it is done. False: the browser has gone.
+  bool one(Message& call) {
+    const uint32_t script = call.header.script;
+    host_.enter(call.header.time);
+    const XsResult result = serve(call);
+    lastGood_ = result == XS_OK && !host_.stopped();
+    Writer done;
+    done.begin(Op::done, script);
+    done.header().result = result;
+    done.header().flags = host_.stopped() ? uint16_t(Flags::stopped) : uint16_t(0);
+    done.finish();
+    return channel_.send(done.bytes());
+  }
+
   XsResult create(Message&& call) {
     const uint32_t number = call.header.script;
     auto made = std::make_unique<Guest>(std::move(call));
@@ -94,6 +108,7 @@ class Server {
   const XsEngine& engine_;
   Forward host_;
   std::unordered_map<uint32_t, std::unique_ptr<Guest>> guests_;
+  bool lastGood_ = false; // the last call has succeeded
 };
 
 const XsEngine& engineNamed(const std::vector<XsEngine>& engines, std::string_view name, const char* library) {
@@ -144,7 +159,8 @@ int main(int argc, char** argv) {
   }
   if (!xvrml::bindToParent(std::atol(argv[1]), xvrml::socketNumber)) return 0;
   {
-    xvrml::wire::Channel channel(xvrml::socketNumber);
+    // The browser may look after others for long before it reads; that it has ended is told by the socket and by the kernel.
+    xvrml::wire::Channel channel(xvrml::socketNumber, std::chrono::hours(10000));
     xvrml::serve(channel);
   }
   _exit(0); // nothing of an interpreter is of use any more

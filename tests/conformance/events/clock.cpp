@@ -6,7 +6,7 @@ namespace {
 
 // A world as an application runs it that says nothing of the clock: times 0, 1, 2 after worldEpoch.
 struct Loaded : Running {
-  explicit Loaded(const std::string& vrml) : Running(vrml, 0, {}, worldEpoch) {}
+  explicit Loaded(const std::string& vrml) : Running(vrml, 0, {}, RunOptions()) {}
   void ticks(std::initializer_list<double> times) {
     for (const double time : times) browser.tick(time);
   }
@@ -88,7 +88,7 @@ TEST(Clock, ASensorThatIsSetToStartBetweenTicksOfTheSameTimeStarts) {
 }
 
 TEST(Clock, AnotherEpochIsTheProgramsOwn) {
-  Running w("DEF T TimeSensor { loop TRUE }", 5, {}, 100);
+  Running w("DEF T TimeSensor { loop TRUE }", 5, {}, {.epoch = 100});
   w.browser.tick(6);
   EXPECT_EQ(w.get("T", "time"), "106");
   EXPECT_EQ(w.browser.now(), 6);

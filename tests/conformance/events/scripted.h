@@ -37,8 +37,8 @@ struct Printed {
 
 class Scripted : private Printed, public Running {
  public:
-  explicit Scripted(const std::string& vrml, BrowserOptions options = {}, bool directOutput = false)
-      : Running(vrml, 0, with(std::move(options), lines), 0, directOutput) {}
+  explicit Scripted(const std::string& vrml, BrowserOptions options = {}, const RunOptions& run = {.epoch = 0})
+      : Running(vrml, 0, with(std::move(options), lines), run) {}
 
   // Lines since the last call.
   Log printed() { return std::exchange(*lines, {}); }

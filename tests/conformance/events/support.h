@@ -17,10 +17,9 @@ std::string textOf(const Value& value);
 class Running {
  public:
   // The clock's own numbers: epoch 0, so that tests can speak of times 0, 1, 2.
-  explicit Running(const std::string& vrml, double start = 0, BrowserOptions options = {}, double epoch = 0,
-                   bool directOutput = false)
-      : browser(loadWorldFromMemory("#VRML V2.0 utf8\n" + vrml, "test.wrl"), std::move(options), start,
-                RunOptions{sizeof(RunOptions), epoch, directOutput}) {}
+  explicit Running(const std::string& vrml, double start = 0, BrowserOptions options = {},
+                   const RunOptions& run = {.epoch = 0})
+      : browser(loadWorldFromMemory("#VRML V2.0 utf8\n" + vrml, "test.wrl"), std::move(options), start, run) {}
 
   Node& node(std::string_view name) { return *browser.node(name); }
   // From now on every event of name.out is appended to log as "time name.out value".

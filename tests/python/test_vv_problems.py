@@ -1,0 +1,66 @@
+"""What vv says about worlds: each sentence once, hints for pictures that show nothing, the last line after errors, Scripts."""
+import json
+
+from conftest import HEADER, SMALL
+
+SCRIPT = 'Script { url "javascript: function initialize() { var i; for (i = 0; i < 10; ++i) {} }" }\n'
+
+
+def test_repeated_sentences_are_folded(vv):
+    light = "DirectionalLight {{ intensity {} }}\n"
+    vv.write("many.wrl", HEADER + "".join(light.format(2 + i) for i in range(48)) + "Shape { geometry Box { } }")
+    done = vv("many.wrl", "-o", "x.png", *SMALL)
+    assert done.returncode == 0
+    assert done.talk.count("is outside of its range") == 1
+    assert "many.wrl:2:20: warning: DirectionalLight.intensity: 2 is outside of its range [0,1] and becomes 1 "\
+           "(and 47 more like this; -v shows all)" in done.talk
+    assert vv("many.wrl", "-v", "-o", "x.png", *SMALL).talk.count("is outside of its range") == 48
+    assert vv("many.wrl", "--check").talk.count("is outside of its range") == 48
+
+
+def test_faces_that_nobody_can_see_are_told_to_authors_only(vv):
+    vv.write("flat.wrl", HEADER + "Shape { geometry IndexedFaceSet { coord Coordinate { point [ 0 0 0, 1 0 0, 2 0 0, 0 1 0 ] } "
+             "coordIndex [ 0 1 2 -1 0 1 3 -1 ] } }")
+    assert "area" not in vv("flat.wrl", "-o", "x.png", *SMALL).talk
+    done = vv("flat.wrl", "--check", "--strict")
+    assert done.returncode == 0 and "note: IndexedFaceSet: 1 dropped for having no area (first at index 0)" in done.talk
+    assert "no area" in vv("flat.wrl", "-v", "-o", "x.png", *SMALL).talk
+
+
+def test_last_line_after_errors(vv):
+    vv.write("wrong.wrl", HEADER + "NoSuch { }\nShape { geometry Box { } }\nNeither { }\n")
+    done = vv("wrong.wrl", "-o", "x.png", *SMALL)
+    assert done.returncode == 0
+    last = done.talk.strip().splitlines()[-1]
+    assert last == "vv: what the 2 errors of wrong.wrl:2, wrong.wrl:4 names is left out; --strict refuses such a world"
+    assert "left out" not in vv("box.wrl", "-o", "x.png", *SMALL).talk
+    assert vv("wrong.wrl", "--strict", "-o", "x.png", *SMALL).returncode == 4
+
+
+def test_hints_for_pictures_that_show_nothing(vv):
+    vv.write("dark.wrl", HEADER + "NavigationInfo { headlight FALSE }\nShape { appearance Appearance { material Material { } } "
+             "geometry Box { size 20 20 2 } }")
+    talk = vv("dark.wrl", "-o", "x.png", *SMALL).talk
+    assert talk == "vv: the picture is black: the world has no light and its headlight is off; --headlight on\n"
+    assert vv("dark.wrl", "-o", "x.png", "--headlight", "on", *SMALL).talk == ""
+    vv.write("away.wrl", HEADER + "Viewpoint { orientation 0 1 0 3.14159 }\nShape { geometry Box { } }")
+    assert vv("away.wrl", "-o", "x.png", *SMALL).talk == "vv: nothing is in view from here: --fit shows all of the world\n"
+    assert vv("away.wrl", "-o", "x.png", "--fit", *SMALL).talk == ""
+    vv.write("empty.wrl", HEADER)
+    assert "no shapes" in vv("empty.wrl", "-o", "x.png", *SMALL).talk
+    assert vv("away.wrl", "-q", "-o", "x.png", *SMALL).talk == ""
+
+
+def test_scripts_are_counted(vv):
+    vv.write("scripts.wrl", HEADER + SCRIPT * 40 + "Shape { geometry Box { } }")
+    done = vv("scripts.wrl", "-v", "-o", "x.png", "--stats", "s.json", *SMALL)
+    assert "vv: 40 of 40 Scripts started in " in done.talk and "vv: 40 of 40 Scripts run; " in done.talk
+    scripts = json.loads((vv.folder / "s.json").read_text())["scripts"]
+    assert scripts["scripts"] == scripts["started"] == 40 and scripts["calls"] >= 80 and scripts["seconds"] > 0
+
+
+def test_script_time_of_a_world_is_limited(vv):
+    vv.write("spin.wrl", HEADER + 'Script { url "javascript: function initialize() { while (1); }" }\n' * 20 + "Shape { geometry Box { } }")
+    done = vv("spin.wrl", "-o", "x.png", "--limit", "worldScriptSeconds=1", *SMALL, timeout=60)
+    assert done.returncode == 0 and (vv.folder / "x.png").exists()
+    assert done.talk.count("limit worldScriptSeconds=1: ") == 1 and "--limit worldScriptSeconds=60" in done.talk
