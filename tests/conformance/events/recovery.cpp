@@ -96,7 +96,7 @@ TEST(Recovery, AMisplacedNodeKeepsItsName) {
 TEST(Recovery, ScriptsSendToNodesWhereOldWorldsMay) {
   const std::string world = "DEF S Script { field SFNode g USE G eventIn SFInt32 go url \"test:go: post g set_whichChoice\" }";
   for (const bool old : {false, true}) {
-    Scripted r("DEF G Switch {} " + world, {}, old);
+    Scripted r("DEF G Switch {} " + world, {}, {.epoch = 0, .directOutputAlways = old});
     r.set("S", "go", 3);
     EXPECT_EQ(r.get("G", "whichChoice"), old ? "3" : "-1");
     EXPECT_EQ(r.messages().size(), old ? 0u : 1u);
