@@ -95,7 +95,8 @@ Backcloth::Backcloth(const Background& background, bool linear) {
 void Backcloth::read(const std::string& file, bool linear) {
   if (isRadiance(suffixOf(file))) {
     const xvrml::RadianceImage read = readRadiance(file);
-    width_ = read.width, height_ = read.height;
+    width_ = read.width;
+    height_ = read.height;
     rgb_.resize(read.rgb.size());
     const size_t row = size_t(width_) * 3;
     for (size_t y = 0; y < size_t(height_); ++y)
@@ -109,7 +110,8 @@ void Backcloth::read(const std::string& file, bool linear) {
     const std::string why = error.what();
     throw std::runtime_error(why.find(file) == why.npos ? file + ": " + why : why);
   }
-  width_ = read.width, height_ = read.height;
+  width_ = read.width;
+  height_ = read.height;
   const size_t components = size_t(read.components), w = size_t(width_), h = size_t(height_);
   if (w == 0 || h == 0) throw std::runtime_error(file + ": the picture is empty");
   rgb_.resize(w * h * 3);

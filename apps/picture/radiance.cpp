@@ -13,7 +13,8 @@ namespace {
 xvrml::RadianceImage readOpenExr(const std::string& path) {
   const Picture read = readExr(path);
   xvrml::RadianceImage picture;
-  picture.width = read.width, picture.height = read.height;
+  picture.width = read.width;
+  picture.height = read.height;
   const std::vector<float>& rgba = read.planes.at(RT_RGBA);
   const size_t w = size_t(read.width), h = size_t(read.height);
   picture.rgb.resize(3 * w * h);

@@ -45,7 +45,8 @@ void Faults::report(const Node& node, Diagnostics* diagnostics, std::string_view
   Diagnostic d;
   d.severity = invisible() ? Severity::note : Severity::warning;
   if (node.source.file) d.file = *node.source.file;
-  d.line = node.source.line, d.column = node.source.column;
+  d.line = node.source.line;
+  d.column = node.source.column;
   d.message = node.type().name + ": " + text;
   diagnostics->add(std::move(d));
 }

@@ -109,8 +109,10 @@ Header readHeader(Reader& in) {
     if (name == "channels") header.channels = readChannels(value);
     if (name == "compression") header.compression = readCompression(value.byte()), compression = true;
     if (name == "dataWindow") {
-      header.x0 = value.integer(), header.y0 = value.integer();
-      header.width = value.integer() - header.x0 + 1, header.height = value.integer() - header.y0 + 1;
+      header.x0 = value.integer();
+      header.y0 = value.integer();
+      header.width = value.integer() - header.x0 + 1;
+      header.height = value.integer() - header.y0 + 1;
       window = true;
     }
   }
@@ -187,7 +189,8 @@ RadianceImage decodeExr(std::span<const uint8_t> bytes, const Limits& limits) {
   for (const Channel& c : header.channels) lineBytes += c.bytes() * width;
   if (lineBytes * lines > mostBlockBytes) refuse("blocks of lines that are too large");
   RadianceImage image;
-  image.width = int(width), image.height = int(height);
+  image.width = int(width);
+  image.height = int(height);
   const size_t blocks = (height + lines - 1) / lines;
   std::vector<uint64_t> offsets;
   for (size_t b = 0; b < blocks; b++) offsets.push_back(in.offset()); // as many as the file holds

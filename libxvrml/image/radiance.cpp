@@ -63,7 +63,8 @@ RadianceImage decodePfm(Bytes bytes, const Limits& limits) {
   const int64_t width = number<int64_t>(size), height = number<int64_t>(size);
   const double scale = number<double>(order);
   checkRadianceSize(width, height, limits);
-  image.width = int(width), image.height = int(height);
+  image.width = int(width);
+  image.height = int(height);
   const size_t count = size_t(width) * size_t(height) * 3;
   if (in.rest().size() / 4 < count) refuse("it ends too early");
   image.rgb.resize(count);
@@ -103,7 +104,8 @@ RadianceImage decodeHdr(Bytes bytes, const Limits& limits) {
   const int64_t width = number<int64_t>(resolution);
   checkRadianceSize(width, height, limits);
   RadianceImage image;
-  image.width = int(width), image.height = int(height);
+  image.width = int(width);
+  image.height = int(height);
   const size_t w = size_t(width);
   std::vector<uint8_t> row(4 * w);
   for (int64_t y = 0; y < height; y++) {

@@ -28,7 +28,8 @@ template <int n> std::array<Node, n> gauss() {
       double p = 1, before = 0;
       for (int k = 0; k < n; k++) {
         const double next = ((2 * k + 1) * z * p - k * before) / (k + 1);
-        before = p, p = next;
+        before = p;
+        p = next;
       }
       slope = n * (z * p - before) / (z * z - 1);
       z -= p / slope;

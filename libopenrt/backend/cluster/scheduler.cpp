@@ -145,7 +145,8 @@ void Scheduler::announce(Epoch epoch, double now) {
   Impl& s = *impl_;
   if (s.frames.contains(epoch)) return;
   Frame& f = s.frames[epoch];
-  f.epoch = epoch, f.progressed = now;
+  f.epoch = epoch;
+  f.progressed = now;
   f.split = s.splitOf();
   f.wholeTiles = s.options.split == Split::tiles;
   f.spread = s.options.split == Split::samples;
@@ -159,7 +160,8 @@ void Scheduler::frame(Epoch epoch, std::shared_ptr<JobSource> work, double now) 
   announce(epoch, now);
   Frame& f = impl_->frames.at(epoch);
   f.work = std::move(work);
-  f.maybe = true, f.progressed = now;
+  f.maybe = true;
+  f.progressed = now;
   f.tilePixels = f.work->tiles() > 0 ? std::max(f.work->pixels(0), 1u) : 1;
   f.perPixel = std::max(f.work->undone() / (double(f.tilePixels) * std::max(f.work->tiles(), 1u)), 1.0);
   if (impl_->places.size() == f.work->tiles()) f.places = impl_->places; // costs lie where they lay

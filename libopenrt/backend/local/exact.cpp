@@ -52,7 +52,8 @@ bool meets(const SeenTriangle& s, const Vec3d& d, Meeting& at) {
   if (!front && !back) return false;
   const double sum = w.ac + w.ba + w.cb;
   if (sum == 0) return false;
-  at.u = w.ac / sum, at.v = w.ba / sum;
+  at.u = w.ac / sum;
+  at.v = w.ba / sum;
   const Vec3d p = s.a * (w.cb / sum) + s.b * at.u + s.c * at.v;
   at.t = dot(p, d) / dot(d, d);
   return std::isfinite(at.t);
@@ -64,7 +65,8 @@ double nextTo(const SeenTriangle& s, const Vec3d& d, unsigned edges, Meeting& at
     if (!(edges & (1u << edge))) return false;
     const double distance = nextOnEdge(p, q, d, share, t);
     if (!(distance < best)) return false;
-    best = distance, at.t = t;
+    best = distance;
+    at.t = t;
     return true;
   };
   if (nearer(0, s.a, s.c)) at.u = 0, at.v = share;
@@ -111,7 +113,8 @@ void settle(const Record& r, uint32_t primitive, const Vec3d& origin, const Vec3
     for (int i = 0; i < 3; i++)
       for (int j = 0; j < 4; j++) m.m[size_t(4 * j + i)] = r.toRender.r[i][j];
     const Matrix4d back = inverse(m);
-    from = back.point(origin), d = back.vector(direction);
+    from = back.point(origin);
+    d = back.vector(direction);
   }
   const SeenTriangle seen{place(0) - from, place(1) - from, place(2) - from};
   Meeting at;

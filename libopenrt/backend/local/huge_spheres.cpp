@@ -20,7 +20,8 @@ bool meetsUnitSphere(const Vec3d& o, const Vec3d& d, double t[2]) {
   if (!(square >= 0)) return false;
   const double half = std::sqrt(square), far = middle + std::copysign(half, middle), distance = length(o);
   const double near = far != 0 ? (distance - 1) * (distance + 1) / dd / far : 0;
-  t[0] = std::min(near, far), t[1] = std::max(near, far);
+  t[0] = std::min(near, far);
+  t[1] = std::max(near, far);
   return std::isfinite(near) && std::isfinite(far);
 }
 
@@ -45,10 +46,15 @@ void boundsOf(const RTCBoundsFunctionArguments* a) {
   for (size_t k = 0; k < 3; k++) {
     const double half = std::sqrt(m.m[k] * m.m[k] + m.m[4 + k] * m.m[4 + k] + m.m[8 + k] * m.m[8 + k]) * (1 + 1e-6);
     const double slack = 1e-6 * std::fabs(m.m[12 + k]);
-    low[k] = float(m.m[12 + k] - half - slack), high[k] = float(m.m[12 + k] + half + slack);
+    low[k] = float(m.m[12 + k] - half - slack);
+    high[k] = float(m.m[12 + k] + half + slack);
   }
-  a->bounds_o->lower_x = low[0], a->bounds_o->lower_y = low[1], a->bounds_o->lower_z = low[2];
-  a->bounds_o->upper_x = high[0], a->bounds_o->upper_y = high[1], a->bounds_o->upper_z = high[2];
+  a->bounds_o->lower_x = low[0];
+  a->bounds_o->lower_y = low[1];
+  a->bounds_o->lower_z = low[2];
+  a->bounds_o->upper_x = high[0];
+  a->bounds_o->upper_y = high[1];
+  a->bounds_o->upper_z = high[2];
 }
 
 void intersect(const RTCIntersectFunctionNArguments* a) {

@@ -55,7 +55,8 @@ void LocalBackend::prepare() {
   next->transparentShadows = accel_->hasTransparent;
   TransportChoice choice = chooseTransport(*next, snapshot_.get());
   next->frame.transport = uint8_t(choice.transport);
-  unreachedLights_ = choice.unreached, transportLeavesOut_ = choice.leavesOut;
+  unreachedLights_ = choice.unreached;
+  transportLeavesOut_ = choice.leavesOut;
   transportReason_ = std::move(choice.reason);
   next->emitters.build(*next, snapshot_.get(), samePlaces_);
   if (!saidNearLamp_ && options_.log && next->emitters.shapes() != (snapshot_ ? snapshot_->emitters.shapes() : nullptr)) {
@@ -280,7 +281,8 @@ void LocalBackend::stats(RTstats& s) const {
     finished_->work().describeLedger(s);
   }
   if (snapshot_) s.transport = snapshot_->frame.transport;
-  s.unreachedLights = unreachedLights_, s.transportLeavesOut = transportLeavesOut_;
+  s.unreachedLights = unreachedLights_;
+  s.transportLeavesOut = transportLeavesOut_;
   std::snprintf(s.transportReason, sizeof s.transportReason, "%s", transportReason_.c_str());
   s.objectBuilds = builder_.objectBuilds, s.topLevelBuilds = builder_.topLevelBuilds;
   s.commitSeconds = commitSeconds_;

@@ -82,7 +82,8 @@ std::string warnOfNearLamps(const RenderScene& scene) {
   auto* own = arena.take<uint32_t>(padded(uint32_t(probes.size())));
   for (uint32_t i = 0; i < probes.size(); i++) {
     for (int k = 0; k < 3; k++) rays.org[k][i] = float(probes[i].origin[k]), rays.dir[k][i] = float(probes[i].direction[k]);
-    rays.tnear[i] = 0, rays.tfar[i] = std::numeric_limits<float>::infinity();
+    rays.tnear[i] = 0;
+    rays.tfar[i] = std::numeric_limits<float>::infinity();
     own[i] = probes[i].record;
   }
   scene.kernel->intersectOthers(rays, own, hits);
@@ -95,7 +96,9 @@ std::string warnOfNearLamps(const RenderScene& scene) {
     const double off = stepOff(r, hits.primitive[i], probes[i], double(hits.t[i]), unit),
                  distance = double(hits.t[i]) - probes[i].skip;
     if (!(distance > unit) || !(distance < worst * wanted * off)) continue;
-    worst = distance / (wanted * off), gap = distance, step = off;
+    worst = distance / (wanted * off);
+    gap = distance;
+    step = off;
   }
   if (!(gap > 0)) return {};
   char text[320];
