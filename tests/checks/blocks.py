@@ -115,10 +115,10 @@ def small(command):
     return re.sub(r"((?:^|[\s;|&])vv )", r"\1" + more.strip() + " ", command)
 
 
-def shell(text):
-    """The lines of a block of shell that are run, or nothing."""
+def shell(text, change=small):
+    """The lines of a block of shell that are run, each changed (made small for a test), or nothing."""
     joined = re.sub(r"\\\n\s*", "", text)
-    return "\n".join(small(line) for line in joined.split("\n") if line.strip() and not OTHERS.match(line.strip()))
+    return "\n".join(change(line) for line in joined.split("\n") if line.strip() and not OTHERS.match(line.strip()))
 
 
 def table(root):

@@ -3,6 +3,7 @@
 
 BUILD: programs, libraries and the Python package of a build; INCLUDES: its folder of generated headers; PAGE: relative to ROOT, or
 `--marks`: all pages, only whether every block is checked or says why not. Exit code 77: everything was left out (no Python package).
+With `--times` behind the page the commands of vv run as they stand, not made small, and their seconds are printed.
 """
 import ast
 import contextlib
@@ -10,6 +11,7 @@ import json
 import os
 import pathlib
 import re
+import shlex
 import shutil
 import signal
 import socket
@@ -52,6 +54,7 @@ class Runner:
                         PYTHONDONTWRITEBYTECODE="1", NO_COLOR="1")
         self.interpreter = None
         self.place = scratch  # the folder in which the page's shell stands
+        self.times = None  # a file: the commands run as they stand, and their seconds are written into it
         self.ports = {"7447": free_port(), "7448": free_port()}  # workers of the pages listen on ports that are free
         self.has_worker = (build / "bin/openrt-worker").exists()
         self.has_python = not self.call([self.python, "-c", "import xvrml"], scratch)
@@ -72,8 +75,16 @@ class Runner:
             talk.seek(0)
             return f"exit code {code}\n{talk.read().decode('utf-8', 'replace')[-4000:]}" if code else ""
 
+    def timed(self, line):
+        """A line as it stands; if it calls vv, with the seconds that it takes written into the file of times."""
+        if not line.startswith("vv "):
+            return line
+        command = line.partition(" #")[0].strip()
+        now = "${EPOCHREALTIME/[.,]/}"  # microseconds
+        return f"start={now}\n{line}\necho $(({now} - start)) {shlex.quote(command)} >>{self.times}"
+
     def sh(self, block, folder):
-        text = blocks.shell(block.text)
+        text = blocks.shell(block.text, self.timed) if self.times else blocks.shell(block.text)
         if not text:
             return "left"
         if "openrt-worker" in text and not self.has_worker:
@@ -180,10 +191,12 @@ def main():
     root = pathlib.Path(sys.argv[1]).resolve()
     if sys.argv[-1] == "--marks":
         return check_marks(root)
+    timed = sys.argv[-1] == "--times"
     build, page = pathlib.Path(sys.argv[2]).resolve(), root / sys.argv[6]
     checked = failed = left = absent = 0
     with tempfile.TemporaryDirectory() as scratch:
         runner = Runner(root, build, sys.argv[3], sys.argv[4], sys.argv[5], pathlib.Path(scratch))
+        runner.times = pathlib.Path(scratch) / "times" if timed else None
         for block in blocks.blocks_of(root, page):
             wrong = runner.check(block)
             if wrong is None or wrong == "left":
@@ -197,6 +210,10 @@ def main():
         if runner.interpreter:
             runner.interpreter.stdin.close()
             runner.interpreter.wait(60)
+        if timed and runner.times.exists():
+            for line in runner.times.read_text().splitlines():
+                seconds, _, command = line.partition(" ")
+                print(f"{float(seconds) / 1e6:7.1f} s  {command}")
     print(f"{sys.argv[6]}: {checked} blocks checked, {failed} failed, {left} left to others or out")
     return 1 if failed else 77 if absent and not checked else 0
 
