@@ -277,7 +277,7 @@ class Reader {
     depth_ = 0;
   }
 
-  const Limits limits_;
+  const Limits limits_{};
   Lexer lexer_;
   ValueParser values_;
   const char* gap_; // end of what has been taken: comments from here on have not been looked at
