@@ -10,9 +10,9 @@
 
 static int32_t stepsOfTurn; /* 0: closed */
 static int32_t lastCount;
-static double lastTime;
+static double firstTime, lastTime; /* of readings, in seconds since 1970; lastCount tells whether there were any */
 
-/* What the shaft of the real machine would do: turns after `time` seconds. */
+/* What the shaft of the real machine would do: turns, `time` seconds after the motor was switched on. */
 static double shaft(double time) { return 0.75 * (time - (1 - exp(-time))) + 0.02 * sin(11 * time); }
 
 /* device: "simulated:..." is the only one that there is; steps: of one turn. */
@@ -20,7 +20,6 @@ int encoder_open(const char* device, int32_t steps) {
   if (strncmp(device, "simulated:", 10) != 0 || steps < 1) return 0;
   stepsOfTurn = steps;
   lastCount = INT32_MIN;
-  lastTime = 0;
   return 1;
 }
 
@@ -28,7 +27,8 @@ int encoder_open(const char* device, int32_t steps) {
  */
 int encoder_read(double time, float rotation[4], float* speed) {
   if (!stepsOfTurn) return 0;
-  const double turns = shaft(time);
+  if (lastCount == INT32_MIN) firstTime = time; /* the first reading switches the motor on */
+  const double turns = shaft(time - firstTime);
   const int32_t count = (int32_t)floor(turns * stepsOfTurn);
   if (count == lastCount) return 0;
   rotation[0] = rotation[1] = 0;
