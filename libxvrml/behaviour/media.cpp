@@ -65,7 +65,7 @@ std::unique_ptr<NodeState> beginMedia(Events& events, Node& node, std::unique_pt
 }
 
 const LoadOptions& loadOptions(const Events& events) {
-  static const LoadOptions defaults;
+  static const LoadOptions defaults{};
   return events.browser() ? events.browser()->world().options : defaults;
 }
 

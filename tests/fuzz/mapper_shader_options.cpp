@@ -7,6 +7,6 @@
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   const std::string text(reinterpret_cast<const char*>(data), size);
   std::vector<std::string> errors;
-  xvrml::parseShaderOptions({text}, errors);
+  xvrml::mapping::parseShaderOptions({text}, errors);
   return 0;
 }

@@ -17,7 +17,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) try {
   bytes.insert(bytes.end(), data + 1, data + size);
   // The limits as they are: run-fuzz.sh bounds the memory, so that a decoder that allocates by what a header says is found.
   if (size > 16384) return 0; // packs no more than 200 MB
-  const xvrml::Limits limits;
+  const xvrml::Limits limits{};
   if (xvrml::looksLikeRadiance(bytes.data(), bytes.size())) {
     xvrml::Limits small;
     small.imagePixels = 1 << 20;

@@ -281,7 +281,7 @@ double Scheduler::lateAfter(Epoch epoch) const {
 }
 
 const WorkerTally& Scheduler::tally(WorkerId worker) const {
-  static const WorkerTally none;
+  static const WorkerTally none{};
   const Worker* w = impl_->worker(worker);
   return w ? w->tally : none;
 }
