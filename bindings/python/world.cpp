@@ -55,11 +55,20 @@ picture::RenderSettings withoutPicture() {
   return settings;
 }
 
+// In Python the matrix of a viewpoint is its pose, where render(viewpoint=...) looks from, rather than that of the Viewpoint's parent.
 std::vector<ViewpointInfo> viewpoints(const WorldPtr& self) {
   std::vector<ViewpointInfo> list;
   const auto lock = self->lock();
-  interruptible(
-      [&](picture::Watch watch) { list = picture::Renderer(self->graph(), withoutPicture(), std::move(watch)).viewpoints(); });
+  interruptible([&](picture::Watch watch) {
+    picture::Renderer renderer(self->graph(), withoutPicture(), std::move(watch));
+    list = renderer.viewpoints();
+    picture::View view;
+    view.up = Axis::y; // or a world without a bound Viewpoint is measured each time to guess it
+    for (size_t i = 0; i < list.size(); ++i) {
+      view.viewpoint = i;
+      std::ranges::copy(renderer.placeOf(view).camera.matrix, list[i].matrix);
+    }
+  });
   return list;
 }
 
@@ -217,7 +226,9 @@ void defineWorld(py::module_& module) {
       .def_property_readonly(
           "name", [](const ViewpointInfo& v) { return toText(v.name); }, "DEF name, '' if it has none.")
       .def_property_readonly("description", [](const ViewpointInfo& v) { return toText(v.description); })
-      .def_property_readonly("matrix", matrixOf, "Its local coordinates to world coordinates, 4x4 for column vectors.")
+      .def_property_readonly("matrix", matrixOf, 
+                             "Its pose: camera to world, 4x4 for column vectors, looking along -z with +y up; as render(camera=...) "
+                             "takes it.")
       .def("__repr__",
            [](const ViewpointInfo& v) { return toText("<Viewpoint " + (v.name.empty() ? v.description : v.name) + ">"); });
   py::class_<WorldObject, WorldPtr> world(

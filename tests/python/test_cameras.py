@@ -133,7 +133,30 @@ def test_the_camera_of_a_picture(world):
     assert again.camera is camera and np.allclose(again["z"], image["z"], rtol=1e-5)
     posed = world.render(size=(80, 60), spp=1, channels="z", camera=image.camera.pose @ np.diag([1.0, -1, -1, 1]))
     assert np.allclose(posed["z"], image["z"], rtol=1e-5), "poses look along -z"
-    assert world.render(size=(8, 6), spp=1, camera=world.viewpoints[0].matrix @ turned((0, 0, 1), 0, (0, 0, 9))).camera is not None
+
+
+def test_the_matrix_of_a_viewpoint_is_its_pose():
+    """Position and orientation are in it as well as the Transforms above, whose scale is not; so is it in Inlines and ORTViewpoints."""
+    world = xvrml.loads("""#VRML V2.0 utf8
+Transform { translation 7 0 0 rotation 0 0 1 .3 scale 2 2 2 children [
+  DEF V Viewpoint { position 0 1.5 5 orientation 0 1 0 .5 }
+  DEF W Viewpoint { position 1 2 6 orientation 1 0 0 -.2 fieldOfView .5 }
+  Transform { translation -1 0 -2 children Shape { geometry Cone { } appearance Appearance { material Material { } } } } ] }
+DEF O ORTViewpoint { position 0 0 20 }
+""")
+    names = [v.name for v in world.viewpoints]
+    assert names == ["V", "W", "O"]
+    for number, (name, fov) in enumerate(zip(names, (45, np.degrees(0.5), 45))):
+        matrix = world.viewpoints[number].matrix
+        seen = world.render(size=(40, 30), spp=1, channels="z", viewpoint=name)
+        assert matrix == pytest.approx(seen.camera.pose @ np.diag([1.0, -1, -1, 1]), abs=1e-6)
+        again = world.render(size=(40, 30), spp=1, channels="z", camera=matrix, fov=fov)
+        assert np.isfinite(seen["z"]).any() and np.allclose(again["z"], seen["z"], rtol=1e-4)
+        assert np.abs(again.array - seen.array).max() < 1e-3
+    assert world.viewpoints[0].matrix[:3, :3] @ world.viewpoints[0].matrix[:3, :3].T == pytest.approx(np.eye(3))
+    world["V"].position = (0, 0, 0)
+    world["V"].orientation = (0, 1, 0, 0)
+    assert world.viewpoints[0].matrix[:3, 3] == pytest.approx([7, 0, 0])
 
 
 def test_pinholes(world):
