@@ -129,21 +129,22 @@ py::tuple channels(const PictureObject& self) {
   return py::tuple(out);
 }
 
-constexpr int pickleVersion = 1;
+constexpr int pickleVersion = 2; // 1 had no camera
 
-// What pickle keeps: version, size, whether linear, names, time, stats, {name of channel: numbers}.
+// What pickle keeps: version, size, whether linear, names, time, stats, {name of channel: numbers}, camera.
 py::tuple pickled(const py::object& self) {
-  const PictureObject& object = self.cast<const PictureObject&>();
+  PictureObject& object = self.cast<PictureObject&>();
   py::dict planes;
   for (const picture::Channel& channel : picture::channelTable())
     if (object.picture.planes.count(channel.bit)) planes[py::str(std::string(channel.name))] = floats(self, channel);
   return py::make_tuple(pickleVersion, object.picture.width, object.picture.height, object.picture.linear, names(object),
-                        object.time, object.stats, planes);
+                        object.time, object.stats, planes, camera(object));
 }
 
 PictureObject unpickled(const py::tuple& state) {
   const auto refuse = [] { throw py::value_error("this is no pickled Picture of this version"); };
-  if (state.size() != 8 || !py::isinstance<py::int_>(state[0]) || state[0].cast<int>() != pickleVersion) refuse();
+  const int version = state.empty() || !py::isinstance<py::int_>(state[0]) ? 0 : state[0].cast<int>();
+  if (version < 1 || version > pickleVersion || state.size() != (version == 1 ? 8 : 9)) refuse();
   PictureObject object;
   picture::Picture& made = object.picture;
   made.width = state[1].cast<int>();
@@ -161,6 +162,10 @@ PictureObject unpickled(const py::tuple& state) {
     made.planes[channel->bit].assign(plane.data(), plane.data() + plane.size());
   }
   if (!made.planes.count(RT_RGBA)) refuse();
+  if (version > 1 && !state[8].is_none()) {
+    if (!py::isinstance(state[8], py::module_::import("xvrml._camera").attr("Pinhole"))) refuse();
+    object.camera = state[8];
+  }
   return object;
 }
 
@@ -182,7 +187,8 @@ void definePicture(py::module_& module) {
                              [](const PictureObject& self) { return py::make_tuple(self.picture.height, self.picture.width, 4); })
       .def_property_readonly("channels", channels, "Names of the channels.")
       .def_property_readonly("nodes", nodes,
-                             "The Shape for each number of channel 'id': picture.nodes[picture['id'][row, column]]; None for 0.")
+                             "The Shape for each number of channel 'id': picture.nodes[picture['id'][row, column]]; None for 0. "
+                             "Empty in pictures without this channel, and in copies and pickled ones: nodes belong to the world.")
       .def_property_readonly(
           "names", names,
           "A name for each number of channel 'id': the Shape's DEF name, else that of the nearest group above it, "

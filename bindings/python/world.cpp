@@ -55,7 +55,7 @@ picture::RenderSettings withoutPicture() {
   return settings;
 }
 
-// In Python the matrix of a viewpoint is its pose, where render(viewpoint=...) looks from, rather than that of the Viewpoint's parent.
+// In Python the matrix of a viewpoint is its pose, where render(viewpoint=...) looks from, rather than that of its parent.
 std::vector<ViewpointInfo> viewpoints(const WorldPtr& self) {
   std::vector<ViewpointInfo> list;
   const auto lock = self->lock();
@@ -226,9 +226,9 @@ void defineWorld(py::module_& module) {
       .def_property_readonly(
           "name", [](const ViewpointInfo& v) { return toText(v.name); }, "DEF name, '' if it has none.")
       .def_property_readonly("description", [](const ViewpointInfo& v) { return toText(v.description); })
-      .def_property_readonly("matrix", matrixOf, 
-                             "Its pose: camera to world, 4x4 for column vectors, looking along -z with +y up; as render(camera=...) "
-                             "takes it.")
+      .def_property_readonly("matrix", matrixOf,
+                             "Its pose: camera to world, 4x4 for column vectors, looking along -z with +y up, as "
+                             "render(camera=...) takes it.")
       .def("__repr__",
            [](const ViewpointInfo& v) { return toText("<Viewpoint " + (v.name.empty() ? v.description : v.name) + ">"); });
   py::class_<WorldObject, WorldPtr> world(

@@ -64,14 +64,28 @@ def test_pictures_are_pickled():
     for again in (pickle.loads(pickle.dumps(image)), copy.deepcopy(image)):
         assert np.array_equal(again.array, image.array) and np.array_equal(again["z"], image["z"])
         assert again.names == image.names and again.stats == image.stats and again.channels == image.channels
+        assert again.nodes == () and len(image.nodes) > 1, "nodes belong to the world"
         again.array[0, 0] = 7
         assert image.array[0, 0, 0] != 7
+
+
+def test_copies_of_pictures_keep_the_camera():
+    world = xvrml.loads(BALL)
+    given = xvrml.Pinhole([[30, 1, 12], [0, 40, 11], [0, 0, 1]], np.diag([1.0, -1, -1, 1]), center=0.5)
+    for image in (world.render(**SMALL), world.render(camera=given, **SMALL)):
+        for again in (pickle.loads(pickle.dumps(image)), copy.copy(image), copy.deepcopy(copy.copy(image))):
+            assert np.array_equal(again.camera.K, image.camera.K) and np.array_equal(again.camera.T, image.camera.T)
+            assert again.camera.center == image.camera.center
+    former = list(image.__getstate__())[:8]  # as version 1 kept it
+    again = xvrml.Picture.__new__(xvrml.Picture)
+    again.__setstate__((1, *former[1:]))
+    assert again.camera is None and np.array_equal(again.array, image.array)
 
 
 def test_damaged_pickles_are_refused():
     image = xvrml.loads(BALL).render(**SMALL)
     state = list(image.__getstate__())
-    for place, wrong in ((0, 99), (1, 33), (1, -1), (7, {}), (7, {"rgba": np.zeros(3, np.float32)}), (7, {"nothing": np.zeros(3)})):
+    for place, wrong in ((0, 99), (1, 33), (1, -1), (7, {}), (7, {"rgba": np.zeros(3, np.float32)}), (7, {"nothing": np.zeros(3)}), (8, "camera")):
         damaged = [*state[:place], wrong, *state[place + 1:]]
         with pytest.raises(ValueError):
             xvrml.Picture.__new__(xvrml.Picture).__setstate__(tuple(damaged))
