@@ -54,7 +54,7 @@ class Headless {
       deferInterrupt(true, interruptSeconds);
       code = makePictures(options_, commandLine_, *browser_, problems_);
     }
-    if (code == exitDone) problems_.tellLeftOut(browser_->world());
+    if (code == exitDone) problems_.tellEnd(browser_->world());
     return code;
   }
 

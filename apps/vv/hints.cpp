@@ -12,18 +12,32 @@ namespace {
 
 constexpr const char* black = "the picture is black: ";
 
-bool anythingInView(const Options& options, const picture::View& view, picture::Renderer& renderer) {
-  renderer.change([](picture::RenderSettings& s) {
+using Headlight = xvrml::MapOptions::Headlight;
+
+// Makes a picture of one sample a pixel and sets the renderer back to what the options say.
+picture::RenderResult probe(const Options& options, const picture::View& view, picture::Renderer& renderer, Headlight headlight) {
+  renderer.change([&](picture::RenderSettings& s) {
     s.samples = 1;
     s.error = 0;
     s.channels = RT_RGBA | RT_DEPTH;
+    s.headlight = headlight;
   });
-  const picture::RenderResult probe = renderer.render(view);
+  picture::RenderResult result = renderer.render(view);
   renderer.change([&](picture::RenderSettings& s) {
     s.samples = options.render.samples;
     s.error = options.render.error;
     s.channels = options.render.channels;
+    s.headlight = options.render.headlight;
   });
+  return result;
+}
+
+bool isBlack(const picture::Picture& picture) {
+  const std::vector<uint8_t> bytes = picture::displayBytes(picture);
+  return std::all_of(bytes.begin(), bytes.end(), [](uint8_t byte) { return byte <= 1; });
+}
+
+bool anythingInView(const picture::RenderResult& probe) {
   const auto depth = probe.picture.planes.find(RT_DEPTH);
   if (probe.interrupted || depth == probe.picture.planes.end()) return true;
   return std::any_of(depth->second.begin(), depth->second.end(), [](float d) { return std::isfinite(d); });
@@ -41,15 +55,16 @@ bool showsNothing(const picture::Picture& picture) {
 
 std::string hintFor(const Options& options, const picture::View& view, const picture::RenderResult& result,
                     picture::Renderer& renderer) {
-  if (renderer.bounds().empty) return "there is nothing to see: the world has no shapes that could be drawn";
-  if (!anythingInView(options, view, renderer)) {
+  const xvrml::Bounds bounds = renderer.bounds();
+  if (bounds.empty) return "there is nothing to see: the world has no shapes that could be drawn";
+  if (std::equal(bounds.minimum, bounds.minimum + 3, bounds.maximum)) return "there is nothing to see: all shapes are scaled down to a point";
+  if (!anythingInView(probe(options, view, renderer, options.render.headlight))) {
     const size_t viewpoints = renderer.viewpoints().size();
     return fmt::format("nothing is in view from here: --fit shows all of the world{}",
                        viewpoints > 1 ? fmt::format(", --viewpoint one of its {} viewpoints", viewpoints) : "");
   }
-  const std::vector<uint8_t> bytes = picture::displayBytes(result.picture);
-  if (std::any_of(bytes.begin(), bytes.end(), [](uint8_t byte) { return byte > 1; })) return {};
-  if (options.render.headlight == xvrml::MapOptions::Headlight::on) return {};
+  // Black may be meant: only what really helps is proposed.
+  if (!isBlack(result.picture) || isBlack(probe(options, view, renderer, Headlight::on).picture)) return {};
   if (result.stats.lights == 0) return std::string(black) + "the world has no light and its headlight is off; --headlight on";
   return std::string(black) + "no light reaches what is in view; --headlight on adds one at the camera";
 }

@@ -27,6 +27,8 @@ void addOutput(Options& o, const std::string& value) {
       if (file != "-") checkFramePlace(file);
       return o.outputs.push_back({file, *format});
     }
+    if (picture::filmOf("film." + value.substr(0, colon)) != picture::FilmKind::none)
+      throw UsageError(fmt::format("a film is known by its suffix: -o {}.{}, not \"{}\"", file, value.substr(0, colon), value));
   }
   checkFramePlace(value);
   if (const picture::FilmKind film = picture::filmOf(value); film != picture::FilmKind::none)
@@ -171,7 +173,7 @@ const OptionInfo table[] = {
     {"--time", "SECONDS", "Time",
      "The world so long after it was loaded (default 0). Time goes in steps of 1/fps up to here, as in a sequence; no wall clock "
      "is read.",
-     [](Options& o, const std::string& v) { o.time = v == "0" ? 0 : readNumber(v, -1e-9, 1e6); }},
+     [](Options& o, const std::string& v) { o.time = readSeconds(v); }},
     {"--epoch", "SECONDS|now", "Time",
      "When the world is loaded, in seconds since 1970, which startTime and Scripts count in. Default 1729728000 (24 October "
      "2024), "

@@ -295,7 +295,10 @@ class Pictures {
                       duration(result.renderSeconds), duration(writeSeconds)));
     if (options_.verbose && done_ == moments_ * views_)
       tellLast(result);
-    if (!options_.isSequence() && !options_.quiet && flights_.empty() && !result.interrupted && showsNothing(result.picture))
+    const bool nothing = !options_.quiet && !result.interrupted && showsNothing(result.picture);
+    anythingShown_ = anythingShown_ || !nothing;
+    const bool hints = !options_.isSequence() || (done_ == moments_ * views_ && !anythingShown_); // of a sequence the last picture
+    if (nothing && hints && flights_.empty())
       if (const std::string hint = hintFor(options_, job.view, result, *renderer_); !hint.empty()) say("vv: " + hint);
     const RTstats& s = result.stats;
     if (options_.render.error > 0 && !result.interrupted && s.errorPixels > 0 && s.errorHalfWidth > 1.001 * options_.render.error)
@@ -360,6 +363,7 @@ class Pictures {
   };
   std::deque<Flight> flights_;                // being rendered, the oldest first
   size_t moments_ = 1, views_ = 1, done_ = 0; // pictures: of a moment, finished
+  bool anythingShown_ = false;                // by one of them
   bool saveWanted_ = false;
   std::map<std::string, std::unique_ptr<picture::Film>> films_; // by path
   SequenceStats frames_;

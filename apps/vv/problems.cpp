@@ -2,6 +2,7 @@
 #include "problems.h"
 
 #include <algorithm>
+#include <cctype>
 #include <unordered_map>
 #include <utility>
 
@@ -24,8 +25,9 @@ std::string kindOf(const xvrml::Diagnostic& diagnostic) {
   std::string kind(1, char('0' + int(diagnostic.severity)));
   const std::string& text = diagnostic.message;
   for (size_t i = 0; i < text.size(); ++i) {
+    const bool inName = i > 0 && (std::isalnum(static_cast<unsigned char>(text[i - 1])) || text[i - 1] == '_');
     const bool sign = (text[i] == '-' || text[i] == '.') && i + 1 < text.size() && isDigit(text[i + 1]);
-    if (!isDigit(text[i]) && !sign) {
+    if (inName || (!isDigit(text[i]) && !sign)) {
       kind += text[i];
       continue;
     }
@@ -39,28 +41,41 @@ std::string kindOf(const xvrml::Diagnostic& diagnostic) {
   return kind;
 }
 
+// What Scripts print is no problem: each line is told.
 void Problems::tellFolded(const std::vector<xvrml::Diagnostic>& fresh) {
-  constexpr size_t mostShown = 50;
   std::unordered_map<std::string, size_t> counts;
   std::vector<std::pair<const xvrml::Diagnostic*, std::string>> shown;
   for (const xvrml::Diagnostic& d : fresh) {
     if (isDetail(d) || (options_.quiet && d.severity != xvrml::Severity::error)) continue;
+    if (d.severity == xvrml::Severity::note) {
+      shown.emplace_back(&d, std::string());
+      continue;
+    }
     std::string kind = kindOf(d);
-    if (d.severity == xvrml::Severity::note) kind += fmt::format("|{}", told_ + counts.size()); // what Scripts print
-    if (counts[kind]++ == 0 && kinds_.insert(kind).second) shown.emplace_back(&d, std::move(kind));
+    if (kinds_.contains(kind)) {
+      ++repeated_;
+      continue;
+    }
+    if (counts[kind]++ == 0) shown.emplace_back(&d, std::move(kind));
   }
-  for (size_t i = 0; i < std::min(shown.size(), mostShown); ++i) {
-    xvrml::Diagnostic told = *shown[i].first;
-    if (const size_t count = counts[shown[i].second]; count > 1)
-      told.message += fmt::format(" (and {} more like this; -v shows all)", count - 1);
+  for (const auto& [kind, count] : counts) kinds_.insert(kind);
+  constexpr size_t mostErrors = 50, mostWarnings = 50;
+  size_t errors = 0, warnings = 0;
+  for (const auto& [diagnostic, kind] : shown) {
+    if (diagnostic->severity == xvrml::Severity::error && ++errors > mostErrors) continue;
+    if (diagnostic->severity == xvrml::Severity::warning && ++warnings > mostWarnings) continue;
+    xvrml::Diagnostic told = *diagnostic;
+    if (const auto count = counts.find(kind); count != counts.end() && count->second > 1)
+      told.message += fmt::format(" (and {} more like this; -v shows all)", count->second - 1);
     say(told.text());
   }
-  if (shown.size() > mostShown) say(fmt::format("vv: and {} more kinds of problems; -v shows all", shown.size() - mostShown));
+  const size_t more = errors - std::min(errors, mostErrors) + warnings - std::min(warnings, mostWarnings);
+  if (more > 0) say(fmt::format("vv: and {} more kinds of problems; -v shows all", more));
 }
 
 void Problems::tell(const xvrml::World& world) {
   if (std::exchange(world_, &world) != &world) {
-    told_ = droppedTold_ = 0;
+    told_ = droppedTold_ = repeated_ = 0;
     kinds_.clear();
   }
   const auto& list = world.diagnostics.list();
@@ -73,25 +88,31 @@ void Problems::tell(const xvrml::World& world) {
     tellFolded(fresh);
   }
   if (const uint64_t dropped = world.diagnostics.dropped(); dropped > droppedTold_) {
-    say(fmt::format("vv: and {} more problems", dropped - droppedTold_));
+    if (!options_.quiet) say(fmt::format("vv: and {} more problems", dropped - droppedTold_));
     droppedTold_ = dropped;
   }
 }
 
-void Problems::tellLeftOut(const xvrml::World& world) const {
+void Problems::tellEnd(const xvrml::World& world) const {
+  if (options_.quiet) return;
+  if (repeated_ > 0) say(fmt::format("vv: {} more like those above came later; -v shows all", repeated_));
   const uint64_t errors = world.diagnostics.errors();
-  if (errors == 0 || options_.quiet) return;
+  if (errors == 0) return;
   constexpr size_t mostPlaces = 3;
-  std::string places;
-  size_t named = 0;
+  std::vector<std::string> places;
+  bool more = false;
   for (const xvrml::Diagnostic& d : world.diagnostics.list()) {
-    if (d.severity != xvrml::Severity::error || d.line == 0 || named == mostPlaces) continue;
-    places += fmt::format("{}{}:{}", named++ ? ", " : "", d.file, d.line);
+    if (d.severity != xvrml::Severity::error || d.line == 0) continue;
+    std::string place = fmt::format("{}:{}", d.file, d.line);
+    if (std::find(places.begin(), places.end(), place) != places.end()) continue;
+    more = places.size() == mostPlaces;
+    if (more) break;
+    places.push_back(std::move(place));
   }
-  const bool more = named > 0 && named < errors;
-  say(fmt::format("vv: what {} of {} left out; --strict refuses such a world",
-                  errors == 1 ? "the error" : fmt::format("the {} errors", errors),
-                  named == 0 ? "above names is" : fmt::format("{}{} names is", places, more ? " and further lines" : "")));
+  const std::string where = fmt::format("{}{}", fmt::join(places, ", "), more ? " and further lines" : "");
+  say(fmt::format("vv: {}{} is left out; --strict refuses such a world",
+                  errors == 1 ? "what the error names" : fmt::format("what the {} errors name", errors),
+                  places.empty() ? "" : fmt::format(" ({})", where)));
 }
 
 } // namespace vv

@@ -1,6 +1,8 @@
 // values.cpp: see values.h.
 #include "values.h"
 
+#include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -49,6 +51,13 @@ double readNumber(std::string_view text, double minimum, double maximum) {
   double value = 0;
   if (!whole(text, value) || !(value > minimum && value < maximum))
     throw UsageError(fmt::format("a number between {} and {} was expected, not \"{}\"", minimum, maximum, text));
+  return value;
+}
+
+double readSeconds(std::string_view text) {
+  double value = 0;
+  if (!whole(text, value) || !(value >= 0 && value <= 1e6))
+    throw UsageError(fmt::format("seconds from 0 to 1000000 were expected, not \"{}\"", text));
   return value;
 }
 
@@ -135,7 +144,9 @@ picture::LookAt readCamera(std::string_view text) {
 }
 
 xvrml::Axis readAxis(std::string_view text) {
-  const std::optional<xvrml::Axis> axis = picture::axisNamed(text);
+  std::string small(text);
+  std::transform(small.begin(), small.end(), small.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  const std::optional<xvrml::Axis> axis = picture::axisNamed(small);
   if (!axis) throw UsageError(fmt::format("x, y, z, -x, -y or -z was expected, not \"{}\"", text));
   return *axis;
 }

@@ -41,6 +41,7 @@ struct FrameRange {
 
 long long readInteger(std::string_view text, long long minimum, long long maximum);
 double readNumber(std::string_view text, double minimum, double maximum); // both exclusive
+double readSeconds(std::string_view text);                                  // from 0 to a million
 double readShare(std::string_view text);                                  // above 0 up to 1, or a percentage
 // A byte or item count, also with the suffixes k, M, G (powers of 1024).
 uint64_t readCount(std::string_view text);

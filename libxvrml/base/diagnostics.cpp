@@ -65,10 +65,12 @@ std::string Diagnostic::text() const {
   return result;
 }
 
+// Errors have a share of the list that other messages cannot use up.
 void Diagnostics::add(Diagnostic diagnostic) {
+  const bool kept = keeps(diagnostic.severity);
   if (diagnostic.severity == Severity::error) ++errors_;
   if (diagnostic.severity == Severity::warning) ++warnings_;
-  if (list_.size() < limit)
+  if (kept)
     list_.push_back(std::move(diagnostic));
   else
     ++dropped_;

@@ -185,7 +185,7 @@ SourcePosition Lexer::place(const char* at) {
 }
 
 void Lexer::report(Severity severity, const char* at, std::string message) {
-  if (diagnostics_.list().size() >= diagnostics_.limit) { // it will only be counted: spare the search for its line
+  if (!diagnostics_.keeps(severity)) { // it will only be counted: spare the search for its line
     diagnostics_.add({severity, {}, 0, 0, {}, {}, 0});
     return;
   }

@@ -38,8 +38,10 @@ void CustomShaders::setOption(const ShaderOption& option, const Node& node, RTen
   case ShaderOption::Type::integer:
   case ShaderOption::Type::boolean: return rtParameter1i(handle, option.integer);
   case ShaderOption::Type::text: return rtParameterString(handle, option.text.c_str());
-  case ShaderOption::Type::texture: // the zenith of a picture all around must not blend with its nadir
-    return rtParameterTexture(handle, textures_.ofUrls({option.text}, node, true, role != RT_ENVIRONMENT));
+  case ShaderOption::Type::texture: { // the zenith of a picture all around must not blend with its nadir
+    const RTid texture = textures_.ofUrls({option.text}, node, true, role != RT_ENVIRONMENT);
+    return rtParameterTexture(handle, texture == 0 && role == RT_ENVIRONMENT ? textures_.black() : texture);
+  }
   case ShaderOption::Type::list: return rtParameterfv(handle, n.size(), n.data());
   case ShaderOption::Type::file: {
     constexpr uint64_t longest = 1 << 24; // of a text that a parameter holds

@@ -116,6 +116,17 @@ RTid Textures::ofUrls(const MFString& urls, const Node& node, bool repeatS, bool
   return 0;
 }
 
+RTid Textures::black() {
+  RTid& texture = files_[{std::string(), false, false}].first; // no file has an empty path
+  if (texture == 0) {
+    RadianceImage texel;
+    texel.width = texel.height = 1;
+    texel.rgb.assign(3, 0.0f);
+    texture = make(texel, false, false);
+  }
+  return texture;
+}
+
 RTid Textures::ofFile(const std::string& path, bool repeatS, bool repeatT, std::string& error) {
   const auto [it, fresh] = files_.try_emplace({path, repeatS, repeatT}, 0, std::string());
   auto& [id, why] = it->second;

@@ -22,6 +22,8 @@ class Textures {
   RTid ofNode(Node* texture);
   // The first URL of a list that leads to a picture. node: for messages and as the file that relative URLs mean.
   RTid ofUrls(const MFString& urls, const Node& node, bool repeatS, bool repeatT);
+  // A black texel: what is shown in place of a sky whose picture cannot be had.
+  RTid black();
   // A texture node has another picture: it is handed over again, under the same id where the picture is the node's own. True
   // if ofNode() now gives another id.
   bool changed(Node& texture);

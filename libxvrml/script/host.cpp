@@ -277,10 +277,11 @@ bool ScriptHost::overBudget(Script& script, uint64_t steps) {
 }
 
 void ScriptHost::log(Script& script, int severity, uint32_t line, const std::string& text) {
-  constexpr size_t most = 100; // messages of one Script
+  constexpr size_t most = 100; // errors of one Script, and as many other messages
   script.failed = script.failed || severity >= 3;
   if (severity <= 0 && options_.print) return options_.print(text);
-  if (script.told.size() > most || !script.told.insert(fmt::format("{} {}", line, text.substr(0, 2000))).second) return;
+  std::unordered_set<std::string>& told = severity >= 3 ? script.failures : script.told;
+  if (told.size() > most || !told.insert(fmt::format("{} {}", line, text.substr(0, 2000))).second) return;
   Diagnostic d;
   d.severity = severity <= 1 ? Severity::note : severity == 2 ? Severity::warning : Severity::error;
   const SourcePosition& place = line > 0 ? script.start : script.node->source;
@@ -288,7 +289,7 @@ void ScriptHost::log(Script& script, int severity, uint32_t line, const std::str
   d.line = line > 0 ? place.line + line - 1 : place.line;
   d.column = line > 0 ? 0 : place.column;
   const std::string& name = script.node->defName;
-  d.message = script.told.size() > most ? "Script: more messages than can be read; the rest is left out"
+  d.message = told.size() > most ? "Script: more messages than can be read; the rest is left out"
                                         : fmt::format("Script{}{}: {}", name.empty() ? "" : " ", name, text.substr(0, 2000));
   world_.diagnostics.add(std::move(d));
 }

@@ -70,7 +70,9 @@ struct Script {
   std::string lentText, error;
   std::deque<Waiting> waiting;
   std::vector<Output> outputs;
-  std::unordered_set<std::string> told; // messages, each once
+  std::unordered_set<std::string> told;   // warnings and notes, each once
+  std::unordered_set<std::string> failures; // errors, each once: what a Script prints cannot hide them
+  bool counted = false;                     // in ScriptCounts::started, which restarts leave as it is
 };
 
 class ScriptHost : public ScriptRunner {
@@ -153,6 +155,7 @@ class ScriptHost : public ScriptRunner {
   void log(Script& script, int severity, uint32_t line, const std::string& text);
   bool overBudget(Script& script, uint64_t steps);
   void spend(std::chrono::steady_clock::duration time, double processor);
+  void spendOfAll();
   bool spent() const {
     return options_.scriptPatience <= 0 &&
            (used_ >= run_.worldScriptSeconds || waited_ >= mostWaiting * run_.worldScriptSeconds);

@@ -45,6 +45,7 @@ bool ScriptHost::initializeNext() {
   if (const auto found = scripts_.find(key); found != scripts_.end()) {
     Script& script = *found->second;
     start(script);
+    if (sentAhead_ > 0) spendOfAll();
     if (!script.waiting.empty()) due_[key] = true; // events that came meanwhile
   }
   if (run_.onScriptStart) {
@@ -121,7 +122,7 @@ bool ScriptHost::created(Script& script, XsResult result) {
     script.engine = nullptr;
     return false;
   }
-  ++counts_.started;
+  counts_.started += !std::exchange(script.counted, true);
   const bool initializing = script.pending == wire::Op::initialize; // its process has gone on by itself
   if (!script.ghost) {
     if (script.flag(XS_DIRECT_OUTPUT)) markReach(script);
@@ -190,6 +191,11 @@ void ScriptHost::spend(std::chrono::steady_clock::duration time, double processo
   waited_ += seconds;
   counts_.seconds += seconds;
   ++counts_.calls;
+}
+
+// Counts what the processes have used whose Scripts start ahead of their turn.
+void ScriptHost::spendOfAll() {
+  for (const ProcessRef& process : processes_->all()) used_ += process->takeProcessorTime();
 }
 
 // Ends all Scripts: they have used up what the world may take. Not while a function of one runs.

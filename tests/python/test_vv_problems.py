@@ -32,7 +32,7 @@ def test_last_line_after_errors(vv):
     done = vv("wrong.wrl", "-o", "x.png", *SMALL)
     assert done.returncode == 0
     last = done.talk.strip().splitlines()[-1]
-    assert last == "vv: what the 2 errors of wrong.wrl:2, wrong.wrl:4 names is left out; --strict refuses such a world"
+    assert last == "vv: what the 2 errors name (wrong.wrl:2, wrong.wrl:4) is left out; --strict refuses such a world"
     assert "left out" not in vv("box.wrl", "-o", "x.png", *SMALL).talk
     assert vv("wrong.wrl", "--strict", "-o", "x.png", *SMALL).returncode == 4
 
@@ -64,3 +64,40 @@ def test_script_time_of_a_world_is_limited(vv):
     done = vv("spin.wrl", "-o", "x.png", "--limit", "worldScriptSeconds=1", *SMALL, timeout=60)
     assert done.returncode == 0 and (vv.folder / "x.png").exists()
     assert done.talk.count("limit worldScriptSeconds=1: ") == 1 and "--limit worldScriptSeconds=60" in done.talk
+
+
+def test_errors_are_not_lost_among_other_messages(vv):
+    vv.write("prints.wrl", HEADER + 'Script { url "javascript: function initialize() { for (var i = 0; i < 300; i++) print(\'line \' + i); '
+             'undefinedfn(); }" }\nShape { geometry Box { } }')
+    for options in ([], ["-q"]):
+        assert "undefinedfn" in vv("prints.wrl", "-o", "x.png", *options, *SMALL).talk
+    assert "undefinedfn" in vv("prints.wrl", "--check").talk
+    assert vv("prints.wrl", "--strict", "-o", "x.png", *SMALL).returncode == 4
+    shiny = "Shape { appearance Appearance { material Material { shininess 2 } } geometry Box { } }\n"
+    vv.write("thousand.wrl", HEADER + shiny * 1001 + "Shape { geometry Bxo { } }\n")
+    assert "Bxo" in vv("thousand.wrl", "-o", "x.png", *SMALL).talk
+    quiet = vv("thousand.wrl", "-q", "-o", "x.png", *SMALL).talk.splitlines()
+    assert "Bxo" in quiet[0] and not any("more" in line for line in quiet)
+
+
+def test_names_with_digits_are_not_folded(vv):
+    vv.write("names.wrl", HEADER + "".join(f"Node{i} {{ }}\n" for i in range(4)))
+    assert all(f"'Node{i}'" in vv("names.wrl", "-o", "x.png", *SMALL).talk for i in range(4))
+
+
+def test_what_comes_again_in_a_sequence_is_counted(vv):
+    vv.write("again.wrl", HEADER + "DEF T TimeSensor { loop TRUE }\nDEF S Script { eventIn SFFloat f url \"javascript: function f() { "
+             "Browser.createVrmlFromString('Material { shininess 2 }'); }\" }\nROUTE T.fraction_changed TO S.f\nShape { geometry Box { } }")
+    talk = vv("again.wrl", "-o", "x.png", "--frames", "0-5", *SMALL).talk
+    assert talk.count("outside of its range") == 1 and "vv: 5 more like those above came later; -v shows all" in talk
+
+
+def test_hints_are_given_only_if_they_help(vv):
+    black = "Shape {{ appearance Appearance {{ material Material {{ diffuseColor 0 0 0 }} }} geometry Box {{ size 99 99 1 }} }}{}"
+    vv.write("black.wrl", HEADER + "Viewpoint { }\n" + black.format(""))
+    assert vv("black.wrl", "-o", "x.png", *SMALL).talk == ""
+    vv.write("point.wrl", HEADER + "Transform { scale 0 0 0 children Shape { geometry Box { } } }")
+    assert "--fit" not in vv("point.wrl", "-o", "x.png", *SMALL).talk
+    vv.write("dark.wrl", HEADER + "NavigationInfo { headlight FALSE }\nShape { appearance Appearance { material Material { } } "
+             "geometry Box { size 20 20 2 } }")
+    assert vv("dark.wrl", "-o", "x.png", "--frames", "0-2", *SMALL).talk.count("--headlight on") == 1

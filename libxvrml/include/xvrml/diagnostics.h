@@ -28,11 +28,16 @@ class Diagnostics {
   void add(Diagnostic diagnostic);
   void warn(const SourcePosition& where, std::string message);
   void error(const SourcePosition& where, std::string message);
+  // Whether one more of this severity would be kept; else it is only counted.
+  bool keeps(Severity severity) const {
+    const uint64_t errors = errors_ < limit ? errors_ : limit;
+    return (severity == Severity::error ? errors : list_.size() - errors) < limit;
+  }
   const std::vector<Diagnostic>& list() const { return list_; }
   uint64_t errors() const { return errors_; }
   uint64_t warnings() const { return warnings_; }
   uint64_t dropped() const { return dropped_; }
-  size_t limit = 1000;
+  size_t limit = 1000; // errors that are kept, and as many other messages
 
  private:
   std::vector<Diagnostic> list_;
