@@ -57,7 +57,8 @@ std::string hintFor(const Options& options, const picture::View& view, const pic
                     picture::Renderer& renderer) {
   const xvrml::Bounds bounds = renderer.bounds();
   if (bounds.empty) return "there is nothing to see: the world has no shapes that could be drawn";
-  if (std::equal(bounds.minimum, bounds.minimum + 3, bounds.maximum)) return "there is nothing to see: all shapes are scaled down to a point";
+  if (std::equal(bounds.minimum, bounds.minimum + 3, bounds.maximum))
+    return "there is nothing to see: all shapes are scaled down to a point";
   if (!anythingInView(probe(options, view, renderer, options.render.headlight))) {
     const size_t viewpoints = renderer.viewpoints().size();
     return fmt::format("nothing is in view from here: --fit shows all of the world{}",

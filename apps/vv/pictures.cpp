@@ -297,7 +297,8 @@ class Pictures {
       tellLast(result);
     const bool nothing = !options_.quiet && !result.interrupted && showsNothing(result.picture);
     anythingShown_ = anythingShown_ || !nothing;
-    const bool hints = !options_.isSequence() || (done_ == moments_ * views_ && !anythingShown_); // of a sequence the last picture
+    // Of a sequence the last picture speaks for all.
+    const bool hints = !options_.isSequence() || (done_ == moments_ * views_ && !anythingShown_);
     if (nothing && hints && flights_.empty())
       if (const std::string hint = hintFor(options_, job.view, result, *renderer_); !hint.empty()) say("vv: " + hint);
     const RTstats& s = result.stats;

@@ -15,8 +15,8 @@ class Problems {
   // Those that were not told yet. Messages that differ only in their places and numbers are told once, with how many more there
   // are; -v and --check tell all of them, and also the details that nobody sees.
   void tell(const xvrml::World& world);
-  // Says at the end of a run that succeeds how many messages were like those told before; and, as its last line, if there were errors
-  // what is left out, and what would refuse it.
+  // Says at the end of a run that succeeds how many messages were like those told before; and, as its last line, if there were
+  // errors, what is left out, and what would refuse it.
   void tellEnd(const xvrml::World& world) const;
   static bool any(const xvrml::World& world) { return world.diagnostics.errors() + world.diagnostics.warnings() > 0; }
 
