@@ -304,7 +304,7 @@ class Pictures {
     const RTstats& s = result.stats;
     if (options_.render.error > 0 && !result.interrupted && s.errorPixels > 0 && s.errorHalfWidth > 1.001 * options_.render.error)
       sayWarning(fmt::format("{}{}the error is {:.3g} %, not {:.3g} %: {}", job.name.text(), job.name.text().empty() ? "" : ": ",
-                             100 * s.errorHalfWidth, 100 * options_.render.error, whyMissed(result.picture)));
+                             100 * s.errorHalfWidth, 100 * options_.render.error, whyMissed(result)));
     if (options_.stats.empty()) return;
     if (options_.isSequence())
       frames_.add(job.name, moment.time, result, writeSeconds);
@@ -324,19 +324,26 @@ class Pictures {
   }
 
   // Why a picture has not reached --error, from the samples that it took.
-  std::string whyMissed(const picture::Picture& made) const {
-    const auto samples = made.planes.find(RT_SAMPLES);
+  std::string whyMissed(const picture::RenderResult& result) const {
+    const auto samples = result.picture.planes.find(RT_SAMPLES);
     const auto most = float(options_.render.samples);
-    double full = 1; // share of the pixels
-    if (samples != made.planes.end() && !samples->second.empty()) {
+    double full = 0, largest = 0; // share of the pixels; samples of one
+    if (samples != result.picture.planes.end() && !samples->second.empty()) {
       const std::vector<float>& all = samples->second;
       full = double(std::count_if(all.begin(), all.end(), [&](float n) { return n >= most; })) / double(all.size());
+      largest = double(*std::max_element(all.begin(), all.end()));
     }
     if (full > 0)
       return fmt::format("{:.3g} % of its pixels have taken {} samples, the most allowed; --spp allows more", 100 * full,
                          options_.render.samples);
     if (options_.render.timeLimit > 0) return "--time-limit has ended it";
-    return "what is left are pixels beside edges, or paths from lamps; --spp N without --error takes N of both a pixel";
+    const std::string taken = fmt::format("its pixels have taken at most {:.0f} of the {} samples allowed, ", largest, most);
+    if (result.stats.transport == RT_TRANSPORT_LIGHT)
+      return taken +
+             "and paths from lamps, whose number --error does not change; --spp N without --error takes N of both a pixel";
+    return taken +
+           "which were enough in the pilots that decide it, and this picture has met more noise than they have; a smaller "
+           "--error takes more";
   }
 
   void finishSequence() {

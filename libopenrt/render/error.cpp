@@ -322,16 +322,10 @@ void addLight(const LightSums& light, PixelError& e) {
   e.relative = relativeError(half, e.mean);
 }
 
-double lightAlone(const LightSums& light, const float mean[3]) {
+double lightHalfWidth(const LightSums& light) {
   double half = 0;
-  for (double w : light.variance) half += student95(LightImage::parts - 1) * std::sqrt(w);
-  return double(relativeError(half, mean));
-}
-
-uint32_t samplesFor(double target, double halfWidth, uint32_t samples, uint32_t most) {
-  const double ratio = halfWidth / target, needed = samples * ratio * ratio;
-  if (!(needed < most)) return most;
-  return std::min(most, std::bit_ceil(std::max(uint32_t(std::ceil(needed)), fewestSamples)));
+  for (const double w : light.variance) half += student95(LightImage::parts - 1) * std::sqrt(w);
+  return half;
 }
 
 } // namespace openrt

@@ -28,10 +28,7 @@ void tileErrors(uint32_t width, std::span<const PixelSums> pixels, const Replica
 
 // What paths from lamps add to a pixel.
 void addLight(const LightSums& light, PixelError& error);
-// Relative half-width of that by itself; mean: the pixel's colours.
-double lightAlone(const LightSums& light, const float mean[3]);
-
-// Samples that a part of the picture needs for a relative half-width, from independent ones: rounded up to a power of two.
-uint32_t samplesFor(double target, double halfWidth, uint32_t samples, uint32_t most);
+// The half-width of that by itself, colours summed.
+double lightHalfWidth(const LightSums& light);
 
 } // namespace openrt

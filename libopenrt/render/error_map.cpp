@@ -13,6 +13,16 @@ namespace openrt {
 // The corner that no sample meets has an area of 1 / n, the edges that cut so little off are as many as sqrt(1 / n) of all.
 double expectedOfBound(double samples) { return std::min(1.0, .8 / std::sqrt(samples)); }
 
+// How far apart nineteen in twenty of them are; they are put in another order.
+static float middleRange(std::vector<float>& values) {
+  const auto out = std::ptrdiff_t(double(values.size() - 1) * .025);
+  const auto low = values.begin() + out, high = values.end() - 1 - out;
+  std::nth_element(values.begin(), low, values.end());
+  const float lowest = *low;
+  std::nth_element(values.begin(), high, values.end());
+  return *high - lowest;
+}
+
 float relativeError(double sum, const float colors[3]) {
   double all = darkest;
   for (int k = 0; k < 3; k++) all += std::fabs(colors[k]);
@@ -25,14 +35,14 @@ ErrorMap::ErrorMap(uint32_t width, uint32_t height, Kind kind) : width_(width), 
   if (kind == Kind::none) return;
   relative_.assign(pixels, std::numeric_limits<float>::quiet_NaN());
   doubted_ = relative_;
-  noise_.resize(pixels);
-  if (kind == Kind::full) seen_.resize(pixels);
+  if (kind != Kind::doubts) noise_.resize(pixels);
+  if (kind != Kind::summary) seen_.resize(pixels);
 }
 
 void ErrorMap::store(size_t pixel, const PixelError& e) {
   if (empty()) return;
   relative_[pixel] = e.trusted ? e.relative : -e.relative;
-  noise_[pixel] = e.noise;
+  if (!noise_.empty()) noise_[pixel] = e.noise;
   if (!seen_.empty()) seen_[pixel] = {{e.mean[0], e.mean[1], e.mean[2]}, e.samples, e.constant};
 }
 
@@ -65,12 +75,19 @@ void ErrorMap::range(uint32_t x, uint32_t y, float out[3]) const {
 
 void ErrorMap::doubtConstants(const std::function<void(size_t pixel, const float halfWidth[3])>& changed) {
   if (seen_.empty()) return;
-  float low[3], high[3];
-  std::fill_n(low, 3, std::numeric_limits<float>::infinity()), std::fill_n(high, 3, -low[0]);
-  for (const Seen& s : seen_)
-    for (int k = 0; k < 3 && s.samples > 0; k++) low[k] = std::min(low[k], s.mean[k]), high[k] = std::max(high[k], s.mean[k]);
-  for (int k = 0; k < 3; k++) range_[k] = high[k] - low[k];
-  const bool uniform = !(range_[0] > 0 || range_[1] > 0 || range_[2] > 0);
+  // At the border of the picture the other side may lie outside: it has any colour of nineteen in twenty of the pixels. One that
+  // a bright path has met, or a lamp, tells nothing of what is there.
+  bool uniform = true;
+  std::vector<float> values;
+  values.reserve(seen_.size());
+  for (int k = 0; k < 3; k++) {
+    values.clear();
+    for (const Seen& s : seen_)
+      if (s.samples > 0 && std::isfinite(s.mean[k])) values.push_back(s.mean[k]);
+    if (values.empty()) continue;
+    range_[k] = middleRange(values);
+    uniform &= *std::min_element(values.begin(), values.end()) == *std::max_element(values.begin(), values.end());
+  }
   for (uint32_t y = 0; y < height_; y++)
     for (uint32_t x = 0; x < width_; x++) {
       const size_t pixel = size_t(y) * width_ + x;
@@ -79,13 +96,14 @@ void ErrorMap::doubtConstants(const std::function<void(size_t pixel, const float
       float half[3];
       range(x, y, half);
       const double part = std::min(1.0, ruleOfThree / here.samples);
-      double sum = 0, expected = 0;
+      double sum = 0, behind = 0;
       for (int k = 0; k < 3; k++) {
-        expected += expectedOfBound(here.samples) * part * double(half[k]);
-        // At the border of the picture the other side may lie outside: any of its colours.
-        half[k] = float(part * double(border(x, y) ? range_[k] : half[k])), sum += double(half[k]);
+        behind += part * double(half[k]);
+        half[k] = float(part * double(border(x, y) ? std::max(range_[k], half[k]) : half[k])), sum += double(half[k]);
       }
-      doubted_[pixel] = relativeError(expected, here.mean);
+      const float edge = relativeError(behind, here.mean);
+      doubted_[pixel] = relativeError(expectedOfBound(here.samples) * behind, here.mean);
+      if (!noise_.empty()) noise_[pixel].own = edge; // picture_error.cpp: what it is off by if there is an edge
       relative_[pixel] = -relativeError(sum, here.mean);
       changed(pixel, half);
     }

@@ -34,7 +34,8 @@ struct ErrorSummary { // as in RTstats
 
 class ErrorMap {
  public:
-  enum class Kind { none, summary, full }; // full: also what doubtConstants() needs
+  // full: also what doubtConstants() needs; doubts: that alone, there is no summary().
+  enum class Kind { none, summary, full, doubts };
   ErrorMap() = default;
   ErrorMap(uint32_t width, uint32_t height, Kind kind);
   bool empty() const { return relative_.empty(); }

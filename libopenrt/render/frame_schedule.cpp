@@ -7,13 +7,13 @@
 
 #include "render/error.h"
 #include "render/light_image.h"
+#include "render/pilots.h"
 
 namespace openrt {
 namespace {
 
 constexpr uint32_t mostOfRound = 32; // progressive: so that the picture goes on becoming better everywhere
-constexpr uint32_t samplesOfPilot = 32;
-constexpr uint32_t pilotSeed = 0x70696c6f, lightSeed = 0x6c616d70, earlySeed = 0x6561726c;
+constexpr uint32_t pilotSeed = 0x70696c6f, furtherSeed = 0x66757274, lightSeed = 0x6c616d70, earlySeed = 0x6561726c;
 constexpr double bytesAhead = 64 << 20; // of sums that wait for light
 
 bool makesRounds(const edit::FrameSettingsT& frame) {
@@ -28,21 +28,16 @@ uint32_t lightPathsOf(const edit::FrameSettingsT& frame) {
   return uint32_t(std::min(paths, 4e9));
 }
 
-uint32_t pilotSamplesOf(const edit::FrameSettingsT& frame, bool timed) {
-  if (timed) return frame.targetError > 0 ? std::min(samplesOfPilot, frame.samples) : 1;
-  return frame.targetError > 0 && frame.samples > samplesOfPilot ? samplesOfPilot : 0;
-}
-
 } // namespace
 
 FrameSchedule::FrameSchedule(const edit::FrameSettingsT& frame, const FrameFacts& facts, const TileGrid& grid, uint32_t crew,
                              double now)
     : frame_(frame), grid_(grid), tiles_(facts.camera ? grid.count() : 0), lamps_(facts.lamps && tiles_ > 0),
-      timed_(frame.timeLimit > 0 && makesRounds(frame)), rounds_(makesRounds(frame)),
-      pilotSamples_(pilotSamplesOf(frame, timed_)), wanted_(tiles_, frame.samples), started_(now), began_(now),
+      timed_(frame.timeLimit > 0 && makesRounds(frame)), rounds_(makesRounds(frame)), pilotSamples_(firstPilotOf(frame, timed_)),
+      wanted_(tiles_, frame.samples), started_(now), began_(now),
       earlyParts_(std::clamp(crew + 1, 2u, LightImage::parts)) { // of one part nobody knows the variance
   pilot_ = pilotSamples_ > 0;
-  undecided_ = pilot_ ? tiles_ : 0;
+  undecided_ = unpiloted_ = pilot_ ? tiles_ : 0;
   most_ = frame.samples;
   samples_ = timed_ ? pilotSamples_ : rounds_ ? 1 : frame.samples;
   const double ahead = bytesAhead / (double(sizeof(PixelSums)) * grid.edge() * grid.edge());
@@ -113,14 +108,12 @@ bool FrameSchedule::nextLight(Job& job, double now) {
 }
 
 // The next block of a tile's samples, from there to the end of its round; from is moved on.
-void FrameSchedule::giveBlock(Job& job, Stage stage, uint32_t tile, uint32_t& from, uint32_t end, uint32_t largest, double now) {
-  const bool pilot = stage == Stage::pilot;
-  Out out;
-  out.stage = stage, out.until = pilot ? pilotSamples_ : wanted_[tile];
+void FrameSchedule::giveBlock(Job& job, Out out, uint32_t tile, uint32_t& from, uint32_t end, uint32_t largest, double now) {
+  const bool pilot = out.stage == Stage::pilot;
   out.job.number = tile, out.job.first = from, out.job.count = blockFrom(from, end, largest);
   out.job.centred = out.until == 1 && (pilot || !rounds_);
   if (pilot)
-    out.job.replicates = replicatesOf(frame_, pilotSamples_, hash(frame_.seed, pilotSeed));
+    out.job.replicates = replicatesOf(frame_, out.until, hash(frame_.seed, out.further ? furtherSeed + out.until : pilotSeed));
   else
     out.job.replicates = timed_ ? replicates_ : replicatesOf(frame_, out.until, frame_.seed);
   from += out.job.count;
@@ -130,16 +123,20 @@ void FrameSchedule::giveBlock(Job& job, Stage stage, uint32_t tile, uint32_t& fr
 bool FrameSchedule::nextTile(Job& job, uint32_t largest, double now) {
   const bool dark = lamps_ && !lit_;
   if (timed_ && dark) return false;
+  Out out;
   if (!ready_.empty()) {
     Ready& ready = ready_.front();
-    const uint32_t all = wanted_[ready.tile];
-    giveBlock(job, Stage::samples, ready.tile, ready.from, all, largest, now);
-    if (ready.from >= all) ready_.pop_front();
+    out.until = ready.pilot ? ready.pilot : wanted_[ready.tile], out.further = ready.pilot > 0;
+    if (out.further) out.stage = Stage::pilot;
+    giveBlock(job, out, ready.tile, ready.from, out.until, largest, now);
+    if (ready.from >= out.until) ready_.pop_front();
     return true;
   }
   if (nextTile_ >= tiles_ || (!rounds_ && dark && nextTile_ >= ahead_)) return false;
   const uint32_t tile = tileAt(nextTile_);
-  giveBlock(job, pilot_ ? Stage::pilot : Stage::samples, tile, from_, endOf(tile), largest, now);
+  out.until = pilot_ ? pilotSamples_ : wanted_[tile];
+  if (pilot_) out.stage = Stage::pilot;
+  giveBlock(job, out, tile, from_, endOf(tile), largest, now);
   skipTiles();
   return true;
 }
@@ -183,7 +180,13 @@ void FrameSchedule::decided(uint32_t tile, uint32_t wanted) {
   undone_ -= saved, all_ -= saved;
   wanted_[tile] = wanted;
   undecided_--;
-  if (!rounds_) ready_.push_back({tile, 0});
+  if (!rounds_) ready_.push_back({tile, 0, 0});
+}
+
+void FrameSchedule::pilotAgain(uint32_t tile, uint32_t samples) {
+  const double more = double(samples) * double(grid_.at(tile).pixels());
+  undone_ += more, all_ += more;
+  ready_.push_back({tile, 0, samples});
 }
 
 bool FrameSchedule::over() const {

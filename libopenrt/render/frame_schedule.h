@@ -27,7 +27,8 @@ class FrameSchedule {
   struct Out { // a job that is given out
     Job job;
     Stage stage = Stage::samples;
-    uint32_t until = 0; // samples that the tile gets altogether, in this stage
+    uint32_t until = 0;   // samples that the tile gets altogether, in this stage
+    bool further = false; // a pilot that is not the first one
     uint32_t round = 0;
     bool back = false; // nobody has it
   };
@@ -39,9 +40,11 @@ class FrameSchedule {
   std::optional<Out> claim(const Job& job);          // it has been done; none: it is not out
   void done(const Out& out, double now);             // and what it has made is where it belongs
   void giveBack(const Job& job);
-  void decided(uint32_t tile, uint32_t wanted); // by a pilot
-  void lit() { lit_ = true; }                   // all of the light is in
-  bool over() const;                            // everything has been given out and is done
+  bool firstPilotDone() { return --unpiloted_ == 0; } // of a tile; true: of all of them
+  void decided(uint32_t tile, uint32_t wanted);       // by pilots
+  void pilotAgain(uint32_t tile, uint32_t samples);   // instead: a further pilot of so many
+  void lit() { lit_ = true; }                         // all of the light is in
+  bool over() const;                                  // everything has been given out and is done
 
   bool rounds() const { return rounds_; } // the picture is shown before it is finished
   bool timed() const { return timed_; }
@@ -63,7 +66,7 @@ class FrameSchedule {
   void give(const Out& out, Job& job, double now);
   bool nextLight(Job& job, double now);
   bool nextTile(Job& job, uint32_t largest, double now);
-  void giveBlock(Job& job, Stage stage, uint32_t tile, uint32_t& from, uint32_t end, uint32_t largest, double now);
+  void giveBlock(Job& job, Out out, uint32_t tile, uint32_t& from, uint32_t end, uint32_t largest, double now);
   uint32_t endOf(uint32_t tile) const;
   uint32_t tileAt(uint32_t place) const { return order_.empty() ? place : order_[place]; }
   void skipTiles();
@@ -80,13 +83,13 @@ class FrameSchedule {
   bool lit_ = false, ended_ = false;
   const uint32_t pilotSamples_;
   std::vector<uint32_t> wanted_;     // by tile: samples; known after the pilot
-  uint32_t undecided_;               // tiles without an answer of the pilot
+  uint32_t undecided_, unpiloted_;   // tiles without an answer of pilots; with a first pilot that is not done
   std::vector<uint32_t> order_;      // empty: by their numbers
   uint32_t nextTile_ = 0, from_ = 0; // place in the order
   struct Ready {
-    uint32_t tile, from;
+    uint32_t tile, from, pilot; // pilot: samples of a further one; 0: those that count
   };
-  std::deque<Ready> ready_; // not in rounds: tiles that are decided
+  std::deque<Ready> ready_; // tiles that need a further pilot; not in rounds: tiles that are decided, too
   uint32_t ahead_;          // not in rounds: tiles that may be begun as long as light is missing, their sums are kept
   // Rounds.
   uint32_t round_ = 0, first_ = 0, samples_ = 0, most_ = 0; // most_: samples that any tile wants

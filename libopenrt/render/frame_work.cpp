@@ -13,6 +13,7 @@
 #include "render/flush_denormals.h"
 #include "render/frame_schedule.h"
 #include "render/light_image.h"
+#include "render/pilots.h"
 
 namespace openrt {
 namespace {
@@ -40,6 +41,7 @@ struct FrameWork::Impl {
       : frame(f), grid(frame), count(facts.camera ? grid.count() : 0), gathering(gatheringOf(frame)),
         film(frame.width, frame.height, frame.channels, errorsOf(frame)), tiles(std::make_unique<TileState[]>(count)),
         schedule(frame, facts, grid, crew, now()) {
+    if (frame.targetError > 0 && count > 0) pilots = std::make_unique<Pilots>(frame, grid, schedule.timed());
     if (!facts.lamps || count == 0) return;
     light = std::make_unique<LightImage>(frame.width, frame.height);
     if (schedule.rounds()) early = std::make_unique<LightImage>(frame.width, frame.height, schedule.earlyParts());
@@ -50,7 +52,10 @@ struct FrameWork::Impl {
   void addSamples(const FrameSchedule::Out& out, JobResult& result);
   void addLight(const FrameSchedule::Out& out, JobResult& result);
   void finish(const FrameSchedule::Out& out, const SumBlock& all, TileState& state);
-  double store(const Tile& tile, const std::vector<PixelSums>& sums, const Replicates& replicates, bool show);
+  void store(const Tile& tile, const std::vector<PixelSums>& sums, const Replicates& replicates, bool show,
+             const FrameSchedule::Out* pilot = nullptr);
+  void judge(const FrameSchedule::Out& pilot, const std::vector<PilotPixel>& pixels, const std::vector<PixelError>& errors);
+  void follow(uint32_t tile, const Pilots::Verdict& verdict);
   void settle();
   void settleWaiting();
   void tell();
@@ -63,6 +68,7 @@ struct FrameWork::Impl {
   mutable std::shared_mutex ending; // alone: the picture as a whole is looked at
   std::unique_ptr<TileState[]> tiles;
   std::unique_ptr<LightImage> light, early; // null: none
+  std::unique_ptr<Pilots> pilots;           // null: no target error
 
   mutable std::mutex mutex; // all below
   FrameSchedule schedule;
@@ -78,8 +84,10 @@ bool FrameWork::Impl::fits(const Job& job, const JobResult& result) const {
   return job.number < count && result.sums.size() == grid.at(job.number).pixels();
 }
 
-// What is there of the tile, with what is there of the light, into the film if it is to be shown. The mean relative half-width.
-double FrameWork::Impl::store(const Tile& tile, const std::vector<PixelSums>& sums, const Replicates& replicates, bool show) {
+// What is there of the tile, with what is there of the light, into the film if it is to be shown. pilot: that is complete, and is
+// asked how many samples are needed.
+void FrameWork::Impl::store(const Tile& tile, const std::vector<PixelSums>& sums, const Replicates& replicates, bool show,
+                            const FrameSchedule::Out* pilot) {
   std::vector<LightSums> lights;
   if (light && light->added() > 1)
     light->look(tile, lights);
@@ -94,30 +102,58 @@ double FrameWork::Impl::store(const Tile& tile, const std::vector<PixelSums>& su
     else
       for (size_t i = 0; i < sums.size(); i++) errors[i] = independentError(sums[i]);
   }
-  double halfWidth = 0;
+  std::vector<PilotPixel> asked(pilot ? sums.size() : 0);
   size_t i = 0;
   for (uint32_t y = tile.y0; y < tile.y1; y++)
     for (uint32_t x = tile.x0; x < tile.x1; x++, i++) {
       PixelError* error = errors.empty() ? nullptr : &errors[i];
-      if (error && lamps) openrt::addLight(lights[i], *error);
-      if (error) halfWidth += double(error->relative);
+      if (pilot)
+        asked[i] = pilotPixel(errors[i], lamps ? &lights[i] : nullptr);
+      else if (error && lamps)
+        openrt::addLight(lights[i], *error);
       if (show) film.store(x, y, sums[i], lamps ? &lights[i] : nullptr, error);
     }
-  return halfWidth / double(sums.size());
+  if (pilot) judge(*pilot, asked, errors);
+}
+
+// What the tile does next. Under its lock.
+void FrameWork::Impl::judge(const FrameSchedule::Out& pilot, const std::vector<PilotPixel>& pixels,
+                            const std::vector<PixelError>& errors) {
+  const uint32_t tile = pilot.job.number;
+  if (pilot.further) {
+    const Pilots::Verdict verdict = pilots->judge(tile, pixels, pilot.until);
+    std::lock_guard lock(mutex);
+    follow(tile, verdict);
+    return;
+  }
+  pilots->note(tile, pixels, errors);
+  {
+    std::lock_guard lock(mutex);
+    if (!schedule.firstPilotDone()) return;
+  }
+  const std::vector<Pilots::Verdict> verdicts = pilots->judgeAll(); // no other thread has anything of it
+  std::lock_guard lock(mutex);
+  for (uint32_t i = 0; i < count; i++) follow(i, verdicts[i]);
+}
+
+// Under `mutex`.
+void FrameWork::Impl::follow(uint32_t tile, const Pilots::Verdict& verdict) {
+  if (verdict.pilot)
+    schedule.pilotAgain(tile, verdict.samples);
+  else
+    schedule.decided(tile, verdict.samples);
 }
 
 // All samples of this stage are there, and all of the light. Under the tile's lock.
 void FrameWork::Impl::finish(const FrameSchedule::Out& out, const SumBlock& all, TileState& state) {
-  const bool pilot = out.stage == Stage::pilot, show = !pilot || schedule.rounds();
-  const double halfWidth = store(grid.at(out.job.number), all.sums, out.job.replicates, show);
+  const bool pilot = out.stage == Stage::pilot, show = !pilot || (schedule.rounds() && !out.further);
+  const bool asks = pilot && pilots;
+  store(grid.at(out.job.number), all.sums, out.job.replicates, show, asks ? &out : nullptr);
   state.shown |= show;
   if (!pilot) state.ledger = all.ledger;
-  if (pilot) {
-    const bool aims = frame.targetError > 0;
-    const uint32_t wanted = aims ? samplesFor(double(frame.targetError), halfWidth, all.count, frame.samples) : frame.samples;
-    std::lock_guard lock(mutex);
-    schedule.decided(out.job.number, wanted);
-  }
+  if (!pilot || asks) return;
+  std::lock_guard lock(mutex); // it was for the clock
+  schedule.decided(out.job.number, frame.samples);
 }
 
 void FrameWork::Impl::addSamples(const FrameSchedule::Out& out, JobResult& result) {
@@ -128,12 +164,13 @@ void FrameWork::Impl::addSamples(const FrameSchedule::Out& out, JobResult& resul
   state.sums.join(block, gathering, job.replicates);
   const uint32_t reach = state.sums.reach(&block);
   const bool complete = reach == out.until;
-  const SumBlock* all = complete || schedule.rounds() ? state.sums.fold(&block, room, gathering, job.replicates) : nullptr;
+  const bool showsParts = schedule.rounds() && !out.further;
+  const SumBlock* all = complete || showsParts ? state.sums.fold(&block, room, gathering, job.replicates) : nullptr;
   if (complete && lit()) {
     finish(out, *all, state);
     state.sums.clear();
   } else {
-    if (all && schedule.rounds()) {
+    if (all && showsParts) {
       store(grid.at(job.number), all->sums, job.replicates, true);
       state.shown = true;
       if (out.stage == Stage::samples) state.ledger = all->ledger;

@@ -29,6 +29,7 @@ constexpr double fewestJumps = 8;                        // in the pixels around
 constexpr double negligibleExcess = .1;                  // fourth over squared second cumulant
 constexpr double lowerHalf = .72;                        // mean of the lower half of variances with 15 degrees of freedom
 constexpr double unsureShape = .3;                       // of the correction by tailShape()
+constexpr double unsureScale = .6;                       // of the errors of random pixels: neighbours err together
 constexpr double mostJumps = 24;                         // where a Poisson variable is as good as normal
 constexpr std::array<uint32_t, 2> reaches{2, 5};         // of the pixels around, to each side
 
@@ -172,7 +173,7 @@ class Whole {
 
   PictureError sum() {
     PictureError out;
-    double n = 0, unseen = 0, unknown = 0;
+    double n = 0, unseen = 0, unknown = 0, doubts = 0;
     const bool nothing = all_.pixels > 0 && !(largest_ > 0);
     // Where next to nothing has been met at all it may be the largest sample that was missed.
     const double bound = all_.pixels > 0 && !(all_.jumps() > ruleOfThree) ? ruleOfThree * largest_ / all_.pixels : 0;
@@ -182,7 +183,7 @@ class Whole {
       if (!p.finished) continue;
       n++;
       if (!std::isnan(doubted_[i])) {
-        kept[i] = double(doubted_[i]), out.mean += kept[i];
+        kept[i] = double(doubted_[i]), out.mean += kept[i], doubts += kept[i];
         continue;
       }
       if (random(i) && nothing) {
@@ -208,12 +209,16 @@ class Whole {
         scattered *= part_[i];
       }
       const double k = kept[i] / meanOfNormal;
-      const double v = varianceOfNormal * (1 - 2 * missing_[i]) * k * k + scattered * scattered;
+      double v = varianceOfNormal * (1 - 2 * missing_[i]) * k * k + scattered * scattered;
+      if (!std::isnan(doubted_[i]))
+        v = kept[i] * std::max(0.0, double(pixels_[i].own) - kept[i]); // own: its error if there is an edge
       variance += v, fourth += v * v;
     }
     const double freedom = fourth > 0 ? variance * variance / fourth : 1;
     const double chance = student95(std::max(1.0, freedom - 1)) * std::sqrt(variance), unsure = unsureShape * corrected_;
-    out.interval = std::sqrt(chance * chance + unsure * unsure + unseen * unseen);
+    const double common = unsureScale * (out.mean - doubts);
+    // How many of the pixels in doubt hold an edge is the scene's: from none to twice as many.
+    out.interval = std::sqrt(chance * chance + unsure * unsure + common * common + unseen * unseen + doubts * doubts);
     // Where nothing at all has been met it may be anything.
     out.mean += .5 * unknown, out.interval += .5 * unknown;
     out.mean /= n, out.interval /= n;

@@ -21,6 +21,7 @@ class TileGrid {
   explicit TileGrid(const edit::FrameSettingsT& frame);
   uint32_t count() const { return columns_ * rows_; }
   uint32_t edge() const { return edge_; }
+  uint32_t columns() const { return columns_; }
   Tile at(uint32_t number) const;
 
  private:

@@ -57,11 +57,11 @@ void drawAbsorbing() {
   colored(amber, "absorption", .3f, 1.2f, 4);
   set(amber, "roughness", .1f);
   const RTid env = shaderOf("VRML97Environment");
-  const float fogColor[] = {.4f, .4f, .5f}, grey[] = {.4f, .4f, .5f};
+  const float grey[] = {.4f, .4f, .5f};
   rtBindShader(env);
   rtParameterfv(rtParameterHandle("skyColor"), 3, grey);
-  rtParameterfv(rtParameterHandle("fogColor"), 3, fogColor);
   rtBindShader(0);
+  colored(env, "fogColor", .4f, .4f, .5f);
   set(env, "fogRange", 12);
   rtUseEnvironment(env);
   floorAt(-1, paint(.5f, .5f, .5f), 20);

@@ -174,14 +174,6 @@ TEST(Error, aConstantPixelBesideAnEdgeIsInDoubt) {
   EXPECT_EQ(map.summary().pixels, 15u);
 }
 
-TEST(Error, numberOfSamplesForATarget) {
-  EXPECT_EQ(samplesFor(0.1, 0.1, 32, 4096), 32u);
-  EXPECT_EQ(samplesFor(0.05, 0.1, 32, 4096), 128u);
-  EXPECT_EQ(samplesFor(0.04, 0.1, 32, 4096), 256u);
-  EXPECT_EQ(samplesFor(0.1, 0, 32, 4096), 32u);
-  EXPECT_EQ(samplesFor(0.001, 1, 32, 4000), 4000u);
-}
-
 TEST(Error, replicatesOnlyWhereTheErrorIsAskedFor) {
   edit::FrameSettingsT frame;
   frame.channels = RT_RGBA;

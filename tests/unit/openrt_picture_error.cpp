@@ -107,6 +107,16 @@ TEST(PictureError, aPlainBackgroundBehindALensIsNotAnError) { // equal samples o
   EXPECT_LT(e.mean + e.interval, .01);
 }
 
+TEST(PictureError, pixelsInDoubtHoldAnEdgeOrNone) { // a tenth of them does, and then they are wrong altogether
+  std::vector<PixelNoise> noise(256);
+  for (PixelNoise& p : noise) p.finished = true, p.scale = .03f, p.own = 1;
+  const std::vector<float> doubted(256, .1f);
+  const PictureError e = pictureError(16, noise, doubted);
+  EXPECT_NEAR(e.mean, .1, 1e-6);
+  EXPECT_GE(e.interval, .1); // none may do
+  EXPECT_LT(e.interval, .15);
+}
+
 TEST(PictureError, theShapeOfPureJumps) { // E|K - a| / (sqrt(2/pi) E sqrt(K)) of Poisson's K, summed by hand
   EXPECT_NEAR(tailShape(0, 1).factor, .7358 / (.79788 * .7733), .003);
   EXPECT_NEAR(tailShape(0, .01).factor, 2 / .79788, .03);

@@ -372,8 +372,8 @@ enum { RT_LEAVES_IMAGES = 1, RT_LEAVES_BETWEEN = 2, RT_LEAVES_EMITTERS = 4, RT_L
  * that most have missed them; where nothing is random and samples are equal, but not beside or at the border (a bound too).
  *
  * RT_TARGET_ERROR e: sample each part of the picture until the mean over its pixels of (RT_ERROR summed over the colours) /
- * (colours summed + 0.03), at most 1 a pixel, is about e, or RT_SAMPLES_PER_PIXEL samples are taken. How many is decided by a
- * pilot of 32 samples that are not part of the picture: stopping does not bias it.
+ * (colours summed + 0.03), at most 1 a pixel, is about e, or RT_SAMPLES_PER_PIXEL samples are taken. How many is decided by
+ * pilots that are not part of the picture, a third of these samples and 32 at most: stopping does not bias it.
  *
  * RT_TIME_LIMIT s: rounds over the whole picture, each one replicate, until s seconds have gone by since the frame was started
  * or RT_SAMPLES_PER_PIXEL are taken. A round is not broken off, so the limit is kept to about a thirtieth; at least one round is
