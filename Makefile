@@ -114,7 +114,7 @@ test-alloc-failures:
 ## make test-write-failures   every kind of output once for each write, with this one failing as on a full disk
 test-write-failures:
 	@$(CONFIGURE) release && cmake --build $(R) -j $(JOBS) --target write_failures
-	@$(PYTHON) tests/failures/write_failures.py $(R)/bin $(R)/tests/failures/write_failures.so
+	@$(PYTHON) tests/failures/write_failures.py $(R)/bin $(R)/tests/failures/write_failures.so --python $(R)/python
 
 ## make cluster-campaign  workers killed at random, partitions, 10,000 frames (CAMPAIGN="--kills 10 --frames 1000")
 cluster-campaign: build

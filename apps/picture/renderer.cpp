@@ -51,6 +51,7 @@ struct Renderer::Impl {
   std::function<void()> task;
   std::exception_ptr failure;
   bool ending = false;
+  std::string wrong; // with the end; empty: nothing
   std::atomic<bool> cancelled{false};
   std::thread thread;
 
@@ -75,7 +76,7 @@ struct Renderer::Impl {
       changed.notify_all();
     }
     lock.unlock();
-    stage.close();
+    wrong = stage.close();
   }
 
   // Runs `work` on the render thread; meanwhile calls the watch.
@@ -183,6 +184,11 @@ void Renderer::begin() {
 }
 
 Renderer::~Renderer() { end(); }
+
+void Renderer::close() {
+  end();
+  if (!impl_->wrong.empty()) throw RenderError(impl_->wrong, RT_IO_ERROR);
+}
 
 void Renderer::end() {
   {

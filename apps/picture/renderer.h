@@ -84,6 +84,9 @@ class Renderer {
   // (Browser::takeChanges), so one renderer a browser. The browser must live as long as the renderer.
   Renderer(xvrml::Browser& browser, const RenderSettings& settings, Watch watch = {});
   ~Renderer();
+  // Ends the context, as the destructor does; throws RenderError where the recording that the settings ask for is not whole. No
+  // other call may follow.
+  void close();
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 

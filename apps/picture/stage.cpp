@@ -104,7 +104,7 @@ void Stage::open(const std::function<bool()>& stop) {
   }
 }
 
-void Stage::close() {
+std::string Stage::close() {
   if (borrowed_) rtCancel(context_); // a frame that nobody will see
   mapper_.reset();
   if (borrowed_ && environment_) {
@@ -114,10 +114,13 @@ void Stage::close() {
   }
   environment_ = environmentTexture_ = 0;
   const RTcontext context = context_.exchange(nullptr);
-  if (std::exchange(borrowed_, false))
+  if (std::exchange(borrowed_, false)) {
     settings.cluster->giveBack();
-  else
-    rtDeleteContext(context);
+    return "";
+  }
+  while (rtGetError() != RT_NO_ERROR) {}
+  rtDeleteContext(context);
+  return rtGetError() == RT_NO_ERROR ? "" : rtGetErrorMessage();
 }
 
 void Stage::makeMapper() {

@@ -41,7 +41,8 @@ class Stage {
   // --- On the context's thread ---
   // The context and the mapper; throws RenderError. stop: asked while a cluster is in use by others; true: give up.
   void open(const std::function<bool()>& stop = {});
-  void close();
+  // Ends the context. Returns why a recording is not whole; empty where all is well.
+  std::string close();
   void apply(const News& news);
   // Where a view looks from; the viewer of a running world unless another view is asked for.
   xvrml::CameraSettings cameraOf(const View& view) const;

@@ -111,10 +111,16 @@ class Pictures {
     while (!flights_.empty())
       if (const int code = land(); code != exitDone) return code;
     finishSequence();
+    endRecording();
     return exitDone;
   }
 
  private:
+  // What is recorded is whole only now. The renderer goes with it.
+  void endRecording() {
+    if (!options_.render.record.empty() && renderer_) renderer_->close();
+  }
+
   // The user of --input: where he looks from. Whether he has all of the world in view only the renderer knows.
   void beginScript(const picture::RenderSettings& settings) {
     renderer_ = std::make_unique<picture::Renderer>(browser_, settings);
@@ -241,6 +247,7 @@ class Pictures {
   int stopped(const char* text) {
     progress_.reset();
     finishSequence();
+    endRecording();
     say(text);
     return exitInterrupted;
   }
@@ -293,8 +300,7 @@ class Pictures {
       say(fmt::format("vv: {}{}{} triangles, mapped in {}, rendered in {}, written in {}", job.name.text(),
                       job.name.text().empty() ? "" : ": ", result.stats.triangles, duration(result.mapSeconds),
                       duration(result.renderSeconds), duration(writeSeconds)));
-    if (options_.verbose && done_ == moments_ * views_)
-      tellLast(result);
+    if (options_.verbose && done_ == moments_ * views_) tellLast(result);
     const bool nothing = !options_.quiet && !result.interrupted && showsNothing(result.picture);
     anythingShown_ = anythingShown_ || !nothing;
     // Of a sequence the last picture speaks for all.

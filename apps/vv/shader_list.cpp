@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "folder_files.h"
 #include "messages.h"
 #include "openrt/openrt.h"
 #include "openrt/openrts.h"
@@ -37,10 +38,8 @@ std::vector<File> libraries(const std::string& shaderPath) {
   for (const std::string& folder : plugin_files::folders(shaderPath, "OPENRT_SHADER_PATH", "openrt/shaders", here)) {
     if (!plugin_files::trusted(folder)) continue;
     std::vector<std::string> names;
-    std::error_code ignored;
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored))
-      if (entry.path().extension() == ".so")
-        names.push_back(plugin_files::bareName(entry.path().filename().string(), "shader library"));
+    for (const std::string& file : filesOfFolder(folder, ".so"))
+      names.push_back(plugin_files::bareName(fs::path(file).filename().string(), "shader library"));
     std::sort(names.begin(), names.end());
     for (const std::string& name : names)
       if (known.insert(name).second) list.push_back({name, plugin_files::file(folder, name)});

@@ -3,7 +3,6 @@
 
 #include <chrono>
 #include <cstdlib>
-#include <filesystem>
 #include <set>
 #include <sstream>
 #include <thread>
@@ -12,6 +11,7 @@
 #include <sys/stat.h>
 
 #include "describe.h"
+#include "folder_files.h"
 
 namespace vv {
 
@@ -40,10 +40,8 @@ std::vector<std::string> shaderFiles(const std::string& shaderPath) {
   std::istringstream folders(shaderPath + ":" + (environment ? environment : ""));
   std::vector<std::string> files;
   for (std::string folder; std::getline(folders, folder, ':');) {
-    std::error_code error;
-    if (!folder.empty())
-      for (const auto& entry : std::filesystem::directory_iterator(folder, error))
-        if (entry.path().extension() == ".so") files.push_back(entry.path().string());
+    if (folder.empty()) continue;
+    for (std::string& file : filesOfFolder(folder, ".so")) files.push_back(std::move(file));
   }
   return files;
 }

@@ -41,9 +41,19 @@ void RtContext::close() {
   if (!handle) return;
   if (drawing && owner == std::this_thread::get_id())
     throw std::runtime_error("the context cannot be closed while a picture of it is made");
-  const ReleaseGil release;
-  const std::scoped_lock lock(mutex);
-  rtDeleteContext(std::exchange(handle, nullptr));
+  RTenum code = RT_NO_ERROR;
+  std::string text;
+  {
+    const ReleaseGil release;
+    const std::scoped_lock lock(mutex);
+    const RTcontext before = rtGetCurrent();
+    rtMakeCurrent(nullptr); // the errors of this thread alone
+    rtGetError();
+    rtDeleteContext(std::exchange(handle, nullptr));
+    if ((code = rtGetError()) != RT_NO_ERROR) text = rtGetErrorMessage();
+    rtMakeCurrent(before);
+  }
+  if (code != RT_NO_ERROR) raise(code, text);
 }
 
 RtUse::RtUse(const RtContextPtr& context, bool edits) : context_(context), before_(rtGetCurrent()) {

@@ -48,12 +48,16 @@ void Context::makeBackend(const ContextConfig& config) {
   if (!config.record.empty()) backend_ = makeTeeBackend(options, std::move(backend_));
 }
 
-void Context::close() noexcept {
-  if (!open_) return;
+std::exception_ptr Context::close() noexcept {
+  if (!open_) return nullptr;
   try {
     if (!flying_.empty()) giveUpFrames();
   } catch (...) { // the backend goes whatever became of its frame
   }
+  std::exception_ptr wrong;
+  try {
+    if (backend_) backend_->finish();
+  } catch (...) { wrong = std::current_exception(); }
   const std::lock_guard lock(backendMutex_);
   open_ = false;
   flying_.clear();
@@ -62,6 +66,7 @@ void Context::close() noexcept {
   definition.reset();
   scene = SceneState();
   registry_.reset();
+  return wrong;
 }
 
 Definition& Context::openDefinition() {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <deque>
+#include <exception>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -53,8 +54,8 @@ class Context {
   Context(const Context&) = delete;
   Context& operator=(const Context&) = delete;
 
-  // Frees everything; the context answers no call afterwards.
-  void close() noexcept;
+  // Frees everything; the context answers no call afterwards. Returns why a recording is not whole; null where all is well.
+  std::exception_ptr close() noexcept;
   bool open() const { return open_; }
 
   ErrorState errors;

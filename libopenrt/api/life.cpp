@@ -68,7 +68,7 @@ void deleteContext(RTcontext handle) {
     if (live().initial == handle) live().initial = nullptr;
   }
   if (currentContext == context.get()) makeCurrent(nullptr);
-  context->close();
+  if (const std::exception_ptr wrong = context->close()) std::rethrow_exception(wrong);
 }
 
 // Splits off the arguments --rt-KEY=VALUE: they go into the configuration, the others stay in kept.

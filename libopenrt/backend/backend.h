@@ -64,6 +64,8 @@ class Backend {
   virtual void occludedRays(std::span<const RTray> rays, std::span<uint8_t> occluded) = 0;
   // What the committed camera sees at a place of the picture, as castRays; false if no camera or no frame is committed.
   virtual bool pick(double x, double y, RThit& hit) = 0;
+  // Ends the file that is written, if one is: throws where it is not whole. No call but the destructor may follow.
+  virtual void finish() {}
 };
 
 // Throws std::runtime_error with a message for people when the backend cannot start.

@@ -13,6 +13,7 @@
 #include "backend/backend.h"
 #include "backend/record/reader.h"
 #include "enough_stack.h"
+#include "output_written.h"
 #include "printable.h"
 #include "shading/registry.h"
 #include "tools/scene_export.h"
@@ -54,10 +55,11 @@ bool writePfm(const Picture& picture, const std::string& path) {
     good = std::fwrite(row.data(), sizeof(float), row.size(), file) == row.size();
   }
   good = std::fclose(file) == 0 && good;
-  std::error_code error;
+  std::error_code error, none;
   if (good) std::filesystem::rename(partial, path, error);
-  if (!good || error) std::filesystem::remove(partial, error);
-  return good && !error;
+  good = good && !error;
+  if (!good) std::filesystem::remove(partial, none);
+  return good;
 }
 
 void printStats(const Backend& backend, uint64_t frames) {
@@ -172,10 +174,7 @@ int run(const Options& options) {
   try {
     while (more && (options.frame == 0 || replay.frames() < options.frame)) more = replay.renderNext();
   } catch (const BadRecording& e) { return complain(InputUnusable, e.what()); }
-  if (options.stats) {
-    printStats(*backend, replay.frames());
-    if (std::fflush(stdout) != 0 || std::ferror(stdout)) return complain(RenderFailed, "standard output cannot be written");
-  }
+  if (options.stats) printStats(*backend, replay.frames());
   if (replay.frames() < std::max<uint64_t>(options.frame, 1))
     return complain(InputUnusable, options.recording + ": has " + std::to_string(replay.frames()) + " frames");
   if (options.output.empty()) return Done;
@@ -193,7 +192,9 @@ int main(int argc, char** argv) {
     int exitCode = Done;
     try {
       const std::optional<Options> options = parseOptions(argc, argv, exitCode);
-      return options ? run(*options) : exitCode;
+      if (options) exitCode = run(*options);
+      if (exitCode == Done && !outputWritten()) return int(complain(RenderFailed, "standard output cannot be written"));
+      return exitCode;
     } catch (const std::exception& e) { return int(complain(RenderFailed, e.what())); }
   });
 }

@@ -18,6 +18,7 @@
 #include "backend/cluster/serve.h"
 #include "enough_stack.h"
 #include "openrt/openrt.h"
+#include "output_written.h"
 #include "printable.h"
 #include "shading/registry.h"
 
@@ -89,10 +90,13 @@ void report(bool quiet, int level, const std::string& text) {
     std::fprintf(stderr, "openrt-worker: %s: %s\n", names[level > 3 ? 3 : level], printable(text).c_str());
 }
 
+// The exit code of what only prints.
+int printed() { return outputWritten() ? int(Done) : complain(Failed, "standard output cannot be written"); }
+
 int newKey(const std::string& path) {
   try {
     std::printf("%s\n", makeKeyFile(path).c_str());
-    return Done;
+    return printed();
   } catch (const std::exception& e) { return complain(KeysUnusable, e.what()); }
 }
 
@@ -129,7 +133,7 @@ int run(int argc, char** argv) {
   int exitCode = Done;
   try {
     const std::optional<Options> options = parseOptions(argc, argv, exitCode);
-    if (!options) return exitCode;
+    if (!options) return exitCode == Done ? printed() : exitCode;
     return options->newKey.empty() ? serve(*options) : newKey(options->newKey);
   } catch (const std::system_error& e) { return complain(TryAgain, e.what()); } catch (const std::bad_alloc&) {
     return complain(TryAgain, "out of memory");

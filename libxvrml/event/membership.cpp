@@ -1,5 +1,7 @@
 // membership.cpp: who is part of a running world: adoption of nodes and scopes, parents, and the end of nodes. See engine.h.
 #include <algorithm>
+#include <new>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -17,36 +19,38 @@ struct Engine::Newcomers {
 };
 
 Live& Engine::makeLive(Node& node) {
-  auto* live = new Live;
-  live->forget = forget;
-  live->engine = this;
-  live->node = &node;
-  live->slot = lives_.size();
-  live->order = order_++;
-  lives_.push_back(live);
+  auto made = std::make_unique<Live>();
+  made->forget = forget;
+  made->engine = this;
+  made->node = &node;
+  made->slot = lives_.size();
+  made->order = order_;
+  lives_.push_back(made.get());
+  ++order_;
+  Live* const live = made.release();
   node.live = live;
   return *live;
 }
 
 Engine::~Engine() {
-  // Links may hold the last reference to a node: they go when nothing of the engine is left.
-  std::vector<std::unique_ptr<Participant>> parts;
-  for (Live* live : lives_) {
-    live->node->live = nullptr;
-    parts.push_back(std::move(live->part));
-    delete live;
-  }
-  lives_.clear();
+  // Links may hold the last reference to a node: they go when no node knows of the engine any more.
+  for (Live* live : lives_) live->node->live = nullptr;
+  for (Live* live : std::exchange(lives_, {})) delete live;
 }
 
 // The node is about to be destroyed; what it holds is still there.
 void Engine::forget(LiveBase* base) noexcept {
   auto* live = static_cast<Live*>(base);
   Engine& engine = *live->engine;
-  std::vector<Node*> children;
-  childrenInHierarchy(*live->node, children);
-  for (Node* child : children)
-    if (child && child->live) engine.unlinkChild(*live->node, *child);
+  try {
+    std::vector<Node*> children;
+    childrenInHierarchy(*live->node, children);
+    for (Node* child : children)
+      if (child && child->live) engine.unlinkChild(*live->node, *child);
+  } catch (const std::bad_alloc&) { // nobody may keep the node as a parent
+    for (Live* other : engine.lives_) std::erase(other->parents, live->node);
+    ++engine.structure_;
+  }
   engine.ticking_.erase(live->order);
   engine.looking_.erase(live->order);
   engine.observer->forgotten(*live->node);

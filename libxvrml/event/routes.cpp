@@ -152,10 +152,13 @@ void Engine::disconnectBody(ProtoInstance& instance) {
       part.index.erase(keyOf(link));
       link.instance = nullptr;
     }
-    if (settling_) // its links may just be followed
-      swept_.push_back(c.node);
-    else
+    if (!settling_) {
       std::erase_if(part.links, [](const Link& l) { return !l.leads(); });
+      continue;
+    }
+    try { // its links may just be followed
+      swept_.push_back(c.node);
+    } catch (const std::bad_alloc&) {} // then links that lead nowhere stay
   }
 }
 

@@ -10,6 +10,7 @@
 
 #include "base/lexer.h"
 #include "nodegen/writers.h"
+#include "output_written.h"
 
 namespace {
 
@@ -63,10 +64,12 @@ bool writeFile(const std::filesystem::path& path, const std::string& text) {
   {
     std::ofstream stream(part, std::ios::binary);
     stream << text;
-    if (!stream.flush()) return false;
+    stream.close();
+    if (stream) std::filesystem::rename(part, path, error);
+    if (stream && !error) return true;
   }
-  std::filesystem::rename(part, path, error);
-  return !error;
+  std::filesystem::remove(part, error);
+  return false;
 }
 
 bool writeCode(const Model& model, const std::filesystem::path& folder, const std::string& plugin) {
@@ -123,7 +126,8 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
     return run(options);
-  } catch (const CLI::ParseError& error) { return app.exit(error) == 0 ? success : usage; } catch (const std::exception& error) {
-    return fail(unwritable, error.what());
-  }
+  } catch (const CLI::ParseError& error) {
+    if (app.exit(error) != 0) return usage;
+    return outputWritten() ? int(success) : fail(unwritable, "cannot write standard output");
+  } catch (const std::exception& error) { return fail(unwritable, error.what()); }
 }

@@ -10,6 +10,7 @@
 #include <dlfcn.h>
 #include <fmt/format.h>
 
+#include "folder_files.h"
 #include "nodes/registry.h"
 #include "plugin_files.h"
 
@@ -78,15 +79,6 @@ std::string loadOne(const std::string& path) {
   return fmt::format("node plug-in {} is refused: {}", path, reason);
 }
 
-std::vector<fs::path> librariesOf(const std::string& folder) {
-  std::vector<fs::path> files;
-  std::error_code error;
-  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
-    if (it->path().extension() == ".so") files.push_back(it->path());
-  std::sort(files.begin(), files.end());
-  return files;
-}
-
 } // namespace
 
 std::vector<std::string> nodePluginFolders(std::string_view first) {
@@ -100,16 +92,16 @@ std::vector<std::string> loadNodePlugins(std::string_view first) {
   const std::scoped_lock lock(mutex);
   std::vector<std::string> refused;
   for (const std::string& folder : nodePluginFolders(first)) {
-    const std::vector<fs::path> files = librariesOf(folder);
+    const std::vector<std::string> files = filesOfFolder(folder, ".so");
     if (!files.empty() && !plugin_files::trusted(folder)) {
       refused.push_back(fmt::format("node plug-ins in {} are refused: {}", folder, plugin_files::objection(folder)));
       continue;
     }
-    for (const fs::path& file : files) {
+    for (const std::string& file : files) {
       std::error_code error;
       const fs::path canonical = fs::canonical(file, error);
-      if (!seen.insert(error ? file.string() : canonical.string()).second) continue;
-      if (std::string reason = loadOne(file.string()); !reason.empty()) refused.push_back(std::move(reason));
+      if (!seen.insert(error ? file : canonical.string()).second) continue;
+      if (std::string reason = loadOne(file); !reason.empty()) refused.push_back(std::move(reason));
     }
   }
   return refused;

@@ -1,5 +1,6 @@
 // mapper.cpp: OpenRTMapper: the order of the steps from a world to rt* calls, frame by frame. See xvrml/openrt.h.
 #include <algorithm>
+#include <new>
 #include <numbers>
 
 #include "openrt/extent.h"
@@ -24,12 +25,14 @@ OpenRTMapper::Impl::Impl(World& w, const MapOptions& o)
 
 OpenRTMapper::Impl::~Impl() {
   if (!context || rtGetCurrent() != context) return;
-  lights.clear(places);
-  objects.clear();
-  environment.clear();
-  surfaces.clear();
-  custom.clear();
-  textures.clear();
+  try {
+    lights.clear(places);
+    objects.clear();
+    environment.clear();
+    surfaces.clear();
+    custom.clear();
+    textures.clear();
+  } catch (const std::bad_alloc&) {} // what is left goes with the context
 }
 
 void OpenRTMapper::Impl::rebind() {

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "folder_files.h"
 #include "plugin_files.h"
 #include "script/library.h"
 
@@ -56,12 +57,7 @@ void ScriptEngines::loadAll() {
   if (std::exchange(all_, true)) return;
   for (const std::string& folder : folders_) {
     if (!plugin_files::trusted(folder)) continue;
-    std::vector<std::string> files;
-    std::error_code error;
-    for (fs::directory_iterator i(folder, error), end; !error && i != end; i.increment(error))
-      if (i->path().extension() == ".so" && i->is_regular_file(error)) files.push_back(i->path().string());
-    std::sort(files.begin(), files.end());
-    for (const std::string& file : files) load(file);
+    for (const std::string& file : filesOfFolder(folder, ".so")) load(file);
   }
 }
 

@@ -39,7 +39,11 @@ bool Handles::release(XsNode number) {
   if (number == ownNumber_) return true;
   const auto found = entries_.find(number);
   if (found == entries_.end() || found->second.retained == 0) return false;
-  if (--found->second.retained == 0 && !std::exchange(found->second.lent, true)) lent_.push_back(number); // goes with the call
+  if (found->second.retained == 1 && !found->second.lent) {
+    lent_.push_back(number); // goes with the call
+    found->second.lent = true;
+  }
+  --found->second.retained;
   return true;
 }
 

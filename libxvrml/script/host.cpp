@@ -2,6 +2,7 @@
 #include "script/host.h"
 
 #include <algorithm>
+#include <new>
 
 #include <fmt/format.h>
 
@@ -43,9 +44,13 @@ ScriptHost::~ScriptHost() {
   constexpr double grace = 0.25; // nobody waits longer for a window to close
   patience_ = options_.scriptPatience > 0 ? grace : 0;
   endBy_ = wire::Clock::now() + std::chrono::milliseconds(int64_t(1000 * std::clamp(options_.scriptSeconds, grace, 1e6)));
-  finish();
+  try {
+    finish();
+  } catch (const std::bad_alloc&) {} // the others end all the same
   for (auto& [order, script] : scripts_) {
-    shutDownAhead(order);
+    try {
+      shutDownAhead(order);
+    } catch (const std::bad_alloc&) {} // at its own turn, then
     stop(*script);
   }
   processes_.reset();
@@ -63,14 +68,26 @@ void ScriptHost::markReach(Script& script) {
   });
 }
 
+// Where there is no memory for what shutdown() asks, the interpreter is destroyed all the same.
 void ScriptHost::stop(Script& script) {
   script.waiting.clear();
   script.expected = script.owed = false;
   if (std::exchange(script.ahead, false)) --sentAhead_;
   if (!script.engine) return;
-  if (script.process) return stopRemote(script);
-  const bool ending = std::exchange(ending_, true);
-  if (!spent()) plainCall(script, wire::Op::shutdown, &XsEngine::shutdown);
+  const bool ending = ending_;
+  if (script.process) {
+    try {
+      return stopRemote(script);
+    } catch (const std::bad_alloc&) {
+      ending_ = ending;
+      if (script.process) detach(script);
+      return;
+    }
+  }
+  ending_ = true;
+  try {
+    if (!spent()) plainCall(script, wire::Op::shutdown, &XsEngine::shutdown);
+  } catch (const std::bad_alloc&) {}
   ending_ = ending;
   script.engine->destroy(script.interpreter);
   script.engine = nullptr;
@@ -233,11 +250,11 @@ void ScriptHost::tick() {
 void ScriptHost::end(ScriptNode& node) noexcept {
   const auto found = scripts_.find(liveOf(node)->order);
   if (found == scripts_.end()) return;
+  std::unique_ptr<Script> script = std::move(found->second);
+  std::erase(ticking_, found->first);
+  due_.erase(found->first);
+  scripts_.erase(found);
   try {
-    std::unique_ptr<Script> script = std::move(found->second);
-    std::erase(ticking_, found->first);
-    due_.erase(found->first);
-    scripts_.erase(found);
     auto* ghost = new ScriptNode(node.typePtr);
     script->ghost = NodeRef(ghost);
     ghost->values = std::move(node.values);
@@ -250,7 +267,13 @@ void ScriptHost::end(ScriptNode& node) noexcept {
     script->handles.setOwn(ghost);
     script->waiting.clear();
     ended_.push_back(std::move(script));
-  } catch (const std::bad_alloc&) {} // no shutdown then
+  } catch (const std::bad_alloc&) { // no shutdown then
+    bySelf_.erase(script->self);
+    if (script->process)
+      detach(*script);
+    else if (script->engine)
+      script->engine->destroy(script->interpreter);
+  }
 }
 
 void ScriptHost::finish() {

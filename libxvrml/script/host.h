@@ -113,6 +113,7 @@ class ScriptHost : public ScriptRunner {
   void start(Script& script);
   void describe(Script& script, ScriptProgram program);
   XsResult makeInterpreter(Script& script, ScriptProgram program);
+  void giveUp(Script& script);
   bool created(Script& script, XsResult result);
   void stop(Script& script); // shutdown and destroy
   void shutDownAhead(Key from);

@@ -27,9 +27,8 @@ size_t sideBySide() {
 void ScriptHost::begin(ScriptNode& node) {
   const Key key = liveOf(node)->order;
   const XsNode self = ++lastNumber_;
-  auto script = std::make_unique<Script>(node, self, lastNumber_);
-  bySelf_.emplace(script->self, script.get());
-  scripts_.emplace(key, std::move(script));
+  const auto place = scripts_.emplace(key, std::make_unique<Script>(node, self, lastNumber_)).first;
+  bySelf_.emplace(self, place->second.get());
   beginning_.push_back(key);
   ++counts_.scripts;
 }
@@ -78,8 +77,15 @@ bool ScriptHost::sendAhead(Script& script) {
   const ProcessRef process = chooseProcess(*program.engine, beginning_.size() - ahead_ - 1, why);
   if (!process || process->busy()) return !process;
   const size_t url = program.url;
-  describe(script, std::move(program));
-  if (const XsResult result = beginCreate(script, process); result != later) {
+  XsResult result = XS_FAILED;
+  try {
+    describe(script, std::move(program));
+    result = beginCreate(script, process);
+  } catch (...) {
+    giveUp(script);
+    throw;
+  }
+  if (result != later) {
     detach(script);
     if (result == again) restartAll(*process);
     return true;
@@ -160,17 +166,30 @@ void ScriptHost::describe(Script& script, ScriptProgram program) {
   info.memory = options_.scriptMemory;
 }
 
+// The Script has no interpreter: nobody is to shut it down.
+void ScriptHost::giveUp(Script& script) {
+  if (script.process) detach(script);
+  script.engine = nullptr;
+}
+
 XsResult ScriptHost::makeInterpreter(Script& script, ScriptProgram program) {
-  describe(script, std::move(program));
-  if (isolated(*script.engine)) return createRemote(script);
+  const XsEngine* const engine = program.engine;
   bool made = false;
-  const XsResult result = call(script, "create", [&] {
-    const XsResult answer = script.engine->create(table(), &script.info, &script.interpreter);
-    made = answer == XS_OK;
-    return answer;
-  });
-  if (made && result != XS_OK) script.engine->destroy(script.interpreter); // stopped
-  return result;
+  try {
+    describe(script, std::move(program));
+    if (isolated(*engine)) return createRemote(script);
+    const XsResult result = call(script, "create", [&] {
+      const XsResult answer = engine->create(table(), &script.info, &script.interpreter);
+      made = answer == XS_OK;
+      return answer;
+    });
+    if (made && result != XS_OK) engine->destroy(script.interpreter); // stopped
+    return result;
+  } catch (...) { // out of memory
+    if (made) engine->destroy(script.interpreter);
+    giveUp(script);
+    throw;
+  }
 }
 
 ScriptCounts ScriptHost::counts() const {

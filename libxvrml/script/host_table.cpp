@@ -2,6 +2,8 @@
 // border. See xvrml/xscript.h. [the browser's thread]
 #include "script/host_table.h"
 
+#include <new>
+
 #include <fmt/format.h>
 
 #include "parse/field_access.h"
@@ -193,7 +195,9 @@ struct HostTable {
   // Also while no function runs: languages with garbage collection let go when they like. What is let go of waits for a call.
   static XsResult release(Host table, XsNode self, XsNode number) {
     Script* script = hostOf(table).find(self);
-    return script && script->handles.release(number) ? XS_OK : XS_NO_NODE;
+    try {
+      return script && script->handles.release(number) ? XS_OK : XS_NO_NODE;
+    } catch (const std::bad_alloc&) { return XS_FAILED; } // the node stays until the Script ends
   }
 
   // --- The Browser object ---

@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <cerrno>
+#include <climits>
 #include <cstdlib>
 #include <cstring>
 #include <new>
@@ -40,6 +41,8 @@ thread_local bool inside = false;
 // Libraries of the build tree are the project's. Of others the C libraries that decode pictures and glyphs take part with malloc.
 Owner ownerOf(const char* path) {
   if (!path || !*path) return Owner::other; // the test
+  char real[PATH_MAX]; // without the .. of a run path
+  if (realpath(path, real)) path = real;
   if (std::strstr(path, FAILURES_BUILD "/")) return Owner::project;
   const char* name = std::strrchr(path, '/');
   name = name ? name + 1 : path;

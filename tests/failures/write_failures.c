@@ -1,7 +1,8 @@
 /* write_failures.c: a library for LD_PRELOAD that makes one write to a file fail as on a full disk. write_failures.py uses it.
  *
- * Calls that can fail for want of space are counted: write and pwrite to regular files, fwrite, fflush and fclose of streams on
- * such files, close, rename, link and fsync of them. WRITE_FAILURE=N makes the N-th of them fail with ENOSPC (0: none).
+ * Calls that can fail for want of space are counted: open and fopen that make a file, write, writev and pwrite to regular files,
+ * fwrite, fflush and fclose of streams on such files, close and fsync of them, rename. Standard output and standard error are
+ * not counted. WRITE_FAILURE=N makes the N-th of them fail with ENOSPC (0: none).
  * WRITE_FAILURE_STICKS=1 makes all after it fail as well, except for those that give space back. The number of calls so far is
  * kept in the file named by WRITE_FAILURE_COUNT, which is itself not counted; one process at a time. */
 #define _GNU_SOURCE
@@ -9,11 +10,13 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <pthread.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
+#include <sys/uio.h>
 #include <unistd.h>
 
 static pthread_mutex_t mutex = PTHREAD_MUTEX_INITIALIZER;
@@ -29,7 +32,7 @@ static void keep(long number) {
   char text[32];
   int file, length;
   if (!path) return;
-  file = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  file = (int)syscall(SYS_openat, AT_FDCWD, path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (file < 0) return;
   length = snprintf(text, sizeof text, "%ld\n", number);
   (void)!syscall(SYS_write, file, text, (size_t)length);
@@ -54,6 +57,57 @@ static int fails(void) {
 #define REAL(result, name, ...)                                                                                                  \
   static result (*real)(__VA_ARGS__);                                                                                            \
   if (!real) *(void**)&real = dlsym(RTLD_NEXT, name)
+
+static int absent(const char* path) {
+  struct stat status;
+  return stat(path, &status) != 0 && errno == ENOENT;
+}
+
+/* A new file needs room, too. */
+static int opens(const char* name, const char* path, int flags, va_list more) {
+  REAL(int, name, const char*, int, ...);
+  const unsigned mode = (flags & O_CREAT) ? va_arg(more, unsigned) : 0;
+  const int before = errno;
+  if ((flags & O_CREAT) && absent(path) && fails()) return -1;
+  errno = before;
+  return real(path, flags, mode);
+}
+
+int open(const char* path, int flags, ...) {
+  va_list more;
+  int result;
+  va_start(more, flags);
+  result = opens("open", path, flags, more);
+  va_end(more);
+  return result;
+}
+
+int open64(const char* path, int flags, ...) {
+  va_list more;
+  int result;
+  va_start(more, flags);
+  result = opens("open64", path, flags, more);
+  va_end(more);
+  return result;
+}
+
+FILE* fopen(const char* path, const char* mode) {
+  REAL(FILE*, "fopen", const char*, const char*);
+  if (*mode != 'r' && absent(path) && fails()) return NULL;
+  return real(path, mode);
+}
+
+FILE* fopen64(const char* path, const char* mode) {
+  REAL(FILE*, "fopen64", const char*, const char*);
+  if (*mode != 'r' && absent(path) && fails()) return NULL;
+  return real(path, mode);
+}
+
+ssize_t writev(int descriptor, const struct iovec* parts, int count) {
+  REAL(ssize_t, "writev", int, const struct iovec*, int);
+  if (regular(descriptor) && fails()) return -1;
+  return real(descriptor, parts, count);
+}
 
 ssize_t write(int descriptor, const void* bytes, size_t count) {
   REAL(ssize_t, "write", int, const void*, size_t);
@@ -110,5 +164,10 @@ int rename(const char* from, const char* to) {
 
 int fsync(int descriptor) {
   REAL(int, "fsync", int);
+  return regular(descriptor) && fails() ? -1 : real(descriptor);
+}
+
+int fdatasync(int descriptor) {
+  REAL(int, "fdatasync", int);
   return regular(descriptor) && fails() ? -1 : real(descriptor);
 }

@@ -66,6 +66,13 @@ def test_what_was_recorded_can_be_played(window, vv):
     assert shot.share(blue) > 0.01 and shot.share(red) == 0
 
 
+def test_what_cannot_be_recorded_is_told(window):
+    w = window(SENSORS, "--record-input", "/dev/full")
+    w.click(-0.35, 0)
+    w.said("--record-input: cannot write /dev/full: No space left")
+    assert w.end() == 1
+
+
 @pytest.mark.parametrize("line, word", [("x", "number"), ("0 jump", "no event"), ("1 move 0", "a place"), ("1 press up", "middle"),
                                         ("1 key H super", "shift"), ("1 leave it", "not expected"), ("2 leave\n1 leave", "earlier")])
 def test_a_script_that_is_wrong_names_its_line(vv, line, word):

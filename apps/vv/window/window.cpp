@@ -3,8 +3,10 @@
 #include "window/window.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <cstdio>
+#include <cstring>
 #include <fstream>
 #include <optional>
 #include <utility>
@@ -156,8 +158,7 @@ class Window {
     Session::Calls calls;
     calls.business = [this](const InputEvent& event, Action action) { business(event, action); };
     calls.openUrl = [this](const std::vector<std::string>& urls, const std::string& base) { open({urls, base, {}}, false); };
-    if (record_.is_open())
-      calls.record = [this](double time, const InputEvent& event) { record_ << inputLine(time, event) << std::flush; };
+    if (record_.is_open()) calls.record = [this](double time, const InputEvent& event) { record(inputLine(time, event)); };
     auto fresh = std::make_unique<Session>(std::move(world), options_, problems_, std::move(calls), options_.script.get());
     width_ = screen_.width(), height_ = screen_.height();
     fresh->begin(width_, height_, place, fragment);
@@ -169,6 +170,22 @@ class Window {
     const std::string& path = session_->browser().world().path;
     screen_.setTitle(path + " - vv");
     if (options_.watch && path != "-") watched_ = std::make_unique<Watched>(usedFiles(session_->browser().world()));
+  }
+
+  // After a write that failed nothing more is written: a script with a hole would be played wrong.
+  void record(const std::string& line) {
+    if (!record_) return;
+    errno = 0;
+    if (record_ << line << std::flush) return;
+    const int reason = errno;
+    recordingFailed(reason);
+  }
+
+  void recordingFailed(int reason) {
+    const std::string text =
+        fmt::format("--record-input: cannot write {}: {}", options_.recordInput, std::strerror(reason ? reason : EIO));
+    sayError(text);
+    message(text, 1e9);
   }
 
   void reload() {
@@ -286,8 +303,9 @@ class Window {
 
   // A world that is being read, or geometry that is being made, cannot be called back: then the process ends as it is.
   int end() {
-    const int code = interrupted() ? exitInterrupted : failed_;
-    record_.close();
+    errno = 0;
+    if (record_.is_open() && record_ && (record_.close(), !record_)) recordingFailed(errno);
+    const int code = interrupted() ? exitInterrupted : failed_ == exitDone && !record_ ? exitRender : failed_;
     const bool stopped = !session_ || session_->stop(.5);
     if (stopped && !WorldLoader::working()) return code;
     picture::removeTemporary();

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -82,13 +83,14 @@ std::vector<std::string> readAllowed(const std::string& path) {
 std::string makeKeyFile(const std::string& path) {
   char publicKey[keyLength + 1], secretKey[keyLength + 1];
   if (zmq_curve_keypair(publicKey, secretKey) != 0) failed(path, "this build of ZeroMQ cannot make keys (it has no CURVE)");
-  const File file{open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, S_IRUSR | S_IWUSR)};
+  File file{open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, S_IRUSR | S_IWUSR)};
   if (file.fd < 0) failed(path, errno == EEXIST ? "is there already; a key is never written over a file" : std::strerror(errno));
   const std::string text = std::string("public ") + publicKey + "\nsecret " + secretKey + "\n";
   size_t written = 0;
   for (ssize_t n; written < text.size() && (n = write(file.fd, text.data() + written, text.size() - written)) > 0;)
     written += size_t(n);
-  if (fchmod(file.fd, S_IRUSR | S_IWUSR) != 0 || written < text.size() || fsync(file.fd) != 0) {
+  if (fchmod(file.fd, S_IRUSR | S_IWUSR) != 0 || written < text.size() || fsync(file.fd) != 0 ||
+      close(std::exchange(file.fd, -1)) != 0) {
     const std::string why = std::strerror(errno);
     unlink(path.c_str());
     failed(path, why);

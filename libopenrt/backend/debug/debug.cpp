@@ -53,6 +53,7 @@ class DebugBackend final : public Backend, public ForwardedQueries {
     renderer_->occludedRays(rays, occluded);
   }
   bool pick(double x, double y, RThit& hit) override { return renderer_->pick(x, y, hit); }
+  void finish() override { renderer_->finish(); }
 
  private:
   const RtsClass* classOf(uint32_t shader) const {

@@ -7,6 +7,7 @@
 #include <limits>
 #include <stdexcept>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include <sys/stat.h>
@@ -46,10 +47,7 @@ class RecordingWriter {
       throw;
     }
   }
-  ~RecordingWriter() {
-    if (!temporary_.empty() && good_) (void)name(); // a recording of nothing is one, too
-    end();
-  }
+  ~RecordingWriter() { end(); }
   RecordingWriter(const RecordingWriter&) = delete;
   RecordingWriter& operator=(const RecordingWriter&) = delete;
 
@@ -61,6 +59,12 @@ class RecordingWriter {
     writeEdits(commit.edits);
     this->commit();
     if (!temporary_.empty() && !name()) failed("cannot be renamed");
+  }
+
+  // Closes the file under its name. No write may follow.
+  void finish() {
+    if (!temporary_.empty() && !name()) failed("cannot be renamed"); // a recording of nothing is one, too
+    if (std::fclose(std::exchange(file_, nullptr)) != 0) failed("cannot be written");
   }
 
  private:
@@ -95,13 +99,16 @@ class RecordingWriter {
     temporary_.clear();
     return true;
   }
-  // Closes the file; cuts off what is not whole, removes what has no name yet.
+  // Closes the file if it is open; cuts off what is not whole, removes what has no name yet.
   void end() {
-    const int descriptor = dup(fileno(file_));
-    std::fclose(file_);
-    if (descriptor < 0) return;
-    if (!good_) (void)!ftruncate(descriptor, whole_); // of no effect on devices
-    close(descriptor);
+    if (file_) {
+      const int descriptor = good_ ? -1 : dup(fileno(file_));
+      std::fclose(std::exchange(file_, nullptr)); // an error was told before, or nobody has called finish()
+      if (descriptor >= 0) {
+        (void)!ftruncate(descriptor, whole_); // of no effect on devices
+        close(descriptor);
+      }
+    }
     if (!temporary_.empty()) std::remove(temporary_.c_str());
   }
   [[noreturn]] void failed(const char* what) {
@@ -139,6 +146,12 @@ class RecordBackend final : public Backend, public ForwardedQueries {
       if (const auto* camera = entry ? entry->any.AsCamera() : nullptr) camera_ = camera->shader != 0;
     }
     if (renderer_) renderer_->apply(std::move(commit));
+  }
+
+  void finish() override {
+    const std::unique_ptr<RecordingWriter> writer = std::move(writer_);
+    if (writer) writer->finish();
+    if (renderer_) renderer_->finish();
   }
 
   bool pipelines() const override { return renderer_ && renderer_->pipelines(); }

@@ -89,7 +89,7 @@ RT_API RTcontext rtNewContext(const char* config);
 /* Makes a context current on this thread; NULL makes none current. */
 RT_API void rtMakeCurrent(RTcontext context);
 RT_API RTcontext rtGetCurrent(void);
-/* Ends a context: a frame in flight is cancelled, everything in it is freed. NULL is allowed. */
+/* Ends a context and its frame in flight; frees all in it. NULL is allowed. RT_IO_ERROR: the recording is not whole. */
 RT_API void rtDeleteContext(RTcontext context);
 /* Make and end a default context. Options of the form --rt-KEY=VALUE are taken out of argv into its configuration. */
 RT_API void rtInit(int* argc, char** argv);

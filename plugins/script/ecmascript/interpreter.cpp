@@ -124,7 +124,8 @@ duk_ret_t setUp(duk_context* ctx, void* data) {
 }
 
 // The text with copies where C.6.2 wants them. If that is no program, then only because the text is none, or was not understood.
-void prepareProgram(Interpreter& self) noexcept {
+// Returns false where there is no memory for it.
+bool prepareProgram(Interpreter& self) noexcept {
   try {
     const XsString text = self.info->text;
     std::string_view program(text.data ? text.data : "", text.bytes);
@@ -136,7 +137,8 @@ void prepareProgram(Interpreter& self) noexcept {
       if (field.access != XS_EVENT_IN && object) objects.insert(field.name);
     }
     self.program = copyAssigned(program, objects);
-  } catch (const std::bad_alloc&) { self.program.clear(); }
+    return true;
+  } catch (const std::bad_alloc&) { return false; }
 }
 
 duk_ret_t runProgram(duk_context* ctx, void* data) {
@@ -217,7 +219,10 @@ Interpreter* createInterpreter(const XsHost* host, const XsScriptInfo* info, XsR
     return nullptr;
   }
   result = enter(*self, setUp, self, "setting up", false);
-  prepareProgram(*self);
+  if (result == XS_OK && !prepareProgram(*self)) {
+    logText(*self, 3, 0, "no memory for the program", 25);
+    result = XS_FAILED;
+  }
   if (result == XS_OK) result = enter(*self, runProgram, self, "running the program", true);
   self->program = {};
   if (result == XS_OK) return self;

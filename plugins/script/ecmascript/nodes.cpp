@@ -212,7 +212,10 @@ void pushNode(duk_context* ctx, Interpreter& self, XsNode node) {
   duk_put_prop_heapptr(ctx, -2, self.keyNode);
   const XsResult result = self.host->retain(self.host, self.self, node);
   if (result != XS_OK) throwHost(ctx, self, result, "SFNode");
-  if (!makeRecord(self, node, duk_get_heapptr(ctx, -1))) throwRange(ctx, "out of memory");
+  if (!makeRecord(self, node, duk_get_heapptr(ctx, -1))) {
+    self.host->release(self.host, self.self, node);
+    throwRange(ctx, "out of memory");
+  }
   duk_insert(ctx, -2);
   duk_set_prototype(ctx, -2); // from here on the finalizer is its own
 }
