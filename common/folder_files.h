@@ -1,5 +1,5 @@
-// folder_files.h: the files of a folder, for whoever looks for plug-ins there. Not std::filesystem::directory_iterator: that of GCC's
-// library ends the process where there is no memory for a name. Stateless; any thread.
+// folder_files.h: the files of a folder, for whoever looks for plug-ins there. Not std::filesystem::directory_iterator: in GCC's
+// library that ends the process where there is no memory for a name. Stateless; any thread.
 #pragma once
 
 #include <algorithm>

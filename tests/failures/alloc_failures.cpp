@@ -284,7 +284,10 @@ class Sweep {
     for (const uint64_t number : numbers) {
       const int64_t before = failing_allocator::blocks();
       const std::string messages = attempt(number).messages;
-      if (!work(path_).same(reference_)) fault(tally_, number, "the next picture is wrong");
+      if (const Outcome next = work(path_); !next.same(reference_))
+        fault(tally_, number,
+              "the next picture is wrong: error " + std::to_string(next.error) + (next.threw ? ", thrown; " : "; ") +
+                  next.messages);
       if (const int64_t more = failing_allocator::blocks() - before; more > 0)
         fault(tally_, number, std::to_string(more) + " blocks are not freed; " + messages);
     }

@@ -86,7 +86,7 @@ duk_ret_t setField(duk_context* ctx) {
   return 0;
 }
 
-// The number of a name for accessors; -1 if there are too many.
+// The number of a name for accessors; -1 if there are too many, -2 if there is no memory for it.
 int nameNumber(Interpreter& self, const char* name) noexcept {
   constexpr size_t most = 32'000;
   for (size_t i = 0; i < self.names.size(); ++i)
@@ -94,12 +94,15 @@ int nameNumber(Interpreter& self, const char* name) noexcept {
   if (self.names.size() >= most) return -1;
   try {
     self.names.emplace_back(name);
-  } catch (const std::bad_alloc&) { return -1; }
+  } catch (const std::bad_alloc&) { return -2; }
   return int(self.names.size()) - 1;
 }
 
+// Without memory there is no type: one that lacked a field would be kept.
 void putField(duk_context* ctx, Interpreter& self, const char* name) {
-  if (const int number = nameNumber(self, name); number >= 0) putAccessor(ctx, name, getField, setField, number);
+  const int number = nameNumber(self, name);
+  if (number == -2) throwRange(ctx, "out of memory");
+  if (number >= 0) putAccessor(ctx, name, getField, setField, number);
 }
 
 // Pushes the prototype of a node's type, made when the type is first met. Types that look alike from outside are one: which field
@@ -128,7 +131,9 @@ void pushType(duk_context* ctx, Interpreter& self, XsNode node) {
   duk_push_heapptr(ctx, self.nodePrototype);
   duk_set_prototype(ctx, -2);
   for (uint32_t i = 0; i < info.fieldCount; ++i) {
-    if (self.host->field(self.host, self.self, node, i, &field) != XS_OK) continue;
+    result = self.host->field(self.host, self.self, node, i, &field);
+    if (result == XS_FAILED || result == XS_STOPPED) throwHost(ctx, self, result, "SFNode");
+    if (result != XS_OK) continue;
     duk_push_string(ctx, field.name);
     const char* name = duk_get_string(ctx, -1);
     const bool exposed = field.access == XS_EXPOSED_FIELD;

@@ -231,7 +231,8 @@ void registerFields(duk_context* ctx, Interpreter& self) {
     if (field.access == XS_EVENT_IN) continue;
     constexpr int most = 32'000; // numbers of accessors are short integers
     const int place = makeSlot(self, 0, field, true, true);
-    if (place < 0 || place > most) break;
+    if (place < 0) throwRange(ctx, "out of memory");
+    if (place > most) break;
     putAccessor(ctx, field.name, getOwn, setOwn, place);
   }
   duk_pop(ctx);
