@@ -65,14 +65,14 @@ class Case:
     recording: bool = False  # given.ort is read
 
 
-PICTURES = """import sys, xvrml
-picture = xvrml.load("box.wrl").render(width=16, height=12, samples=1)
+PICTURES = """import xvrml
+picture = xvrml.load("box.wrl").render(size=(16, 12), spp=1)
 picture.save("out.png")
 with xvrml.Film("out.gif", fps=10) as film:
     film.add(picture)
     film.add(picture)
 """
-CONTEXT = """import xvrml
+CONTEXT = """import xvrml.rt
 with xvrml.rt.Context(1, config="backend=record file=out.ort"):
     pass
 """
