@@ -1,6 +1,6 @@
 // plugin_files.h: where plug-ins may come from, and what may be believed of their files: configured folders only, bare names
-// only, nothing that others may write or replace. Used by whoever loads plug-ins: shaders (libopenrt), script engines (libxvrml).
-// Stateless; any thread.
+// only, nothing that another user owns, may write or replace. Used by whoever loads plug-ins: shaders (libopenrt), script engines
+// (libxvrml). Stateless; any thread.
 #pragma once
 
 #include <algorithm>
@@ -56,33 +56,44 @@ inline bool isPrivateGroup(uid_t owner, gid_t group) {
   return true;
 }
 
-// The folders in which the library with this function lies. Whoever can replace one of them can replace the library itself.
-inline std::set<std::string> foldersOfThisLibrary() {
+// The library with this function: its owner, and the folders in which it lies. Whoever can replace one of them can replace the
+// library itself, and needs no plug-in for that.
+struct ThisLibrary {
+  uid_t owner = 0;
+  std::set<std::string> folders;
+};
+inline ThisLibrary thisLibrary() {
   static const char here = 0;
-  std::set<std::string> result;
+  ThisLibrary result;
   std::error_code error;
   Dl_info info{};
   if (dladdr(&here, &info) == 0 || !info.dli_fname) return result;
-  fs::path place = fs::canonical(info.dli_fname, error).parent_path();
-  for (; !error && place.has_relative_path(); place = place.parent_path()) result.insert(place.string());
+  const fs::path file = fs::canonical(info.dli_fname, error);
+  struct stat state {};
+  if (error || stat(file.c_str(), &state) != 0) return result;
+  result.owner = state.st_uid;
+  for (fs::path place = file.parent_path(); place.has_relative_path(); place = place.parent_path())
+    result.folders.insert(place.string());
   return result;
 }
 
-// Returns why code in a file or folder could be somebody else's, or nothing: others may write to it or to a folder above it, or
-// it belongs to another user. "Others" is a group, too, unless it is the owner's own. A folder like /tmp, where only the owner of
-// an entry may replace it (the sticky bit), may lie above it. Links are followed first.
+// Returns why code in a file or folder could be somebody else's, or nothing. It and all folders above it belong to root, to the
+// user who runs the program or to the owner of this library, and nobody else may write to them. "Else" is a group, too, unless it
+// is the owner's own. A folder like /tmp, where only the owner of an entry may replace it (the sticky bit), may lie above it. The
+// folders of this library are not asked. Links are followed first.
 inline std::string objection(const std::string& fileOrFolder) {
   std::error_code error;
   const fs::path place = fs::canonical(fileOrFolder, error);
   if (error) return error.message();
-  const std::set<std::string> own = foldersOfThisLibrary();
+  const ThisLibrary library = thisLibrary();
   for (fs::path at = place;; at = at.parent_path()) {
     const bool itself = at == place;
-    if (!itself && own.contains(at.string())) return {};
+    if (!itself && library.folders.contains(at.string())) return {};
     struct stat info {};
     if (stat(at.c_str(), &info) != 0) return std::strerror(errno);
-    const uid_t user = geteuid();
-    if (itself && user != 0 && info.st_uid != user && info.st_uid != 0) return "it belongs to another user";
+    const uid_t owner = info.st_uid;
+    if (owner != 0 && owner != geteuid() && owner != library.owner)
+      return (itself ? "it" : at.string() + ", above it,") + " belongs to another user";
     const bool open = (info.st_mode & S_IWOTH) || ((info.st_mode & S_IWGRP) && !isPrivateGroup(info.st_uid, info.st_gid));
     if (open && (itself || !(info.st_mode & S_ISVTX)))
       return "others may write to " + (itself ? std::string("it") : at.string() + ", above it");

@@ -219,7 +219,7 @@ template <class T> bool ValueParser::multiple(std::vector<T>& out) {
   uint64_t taken = 0; // values for which memory has been taken
   const char* const first = lexer_.cursor();
   const char* p = lexer_.skipSpace(first);
-  for (; p < lexer_.end() && *p != ']'; p = lexer_.skipSpace(p)) {
+  for (; p < lexer_.end() && *p != ']' && *p != '}'; p = lexer_.skipSpace(p)) {
     T value{};
     const char* start = p;
     if constexpr (HasTuple<T>) {
@@ -257,7 +257,9 @@ template <class T> bool ValueParser::multiple(std::vector<T>& out) {
   }
   lexer_.seek(p);
   if (budget_) budget_->give((taken - out.size()) * sizeof(T));
-  if (!lexer_.accept(TokenKind::bracketClose)) return failFound(lexer_.peek(), "a value or ]");
+  if (lexer_.accept(TokenKind::bracketClose)) return true;
+  if (!lexer_.peek().is(TokenKind::braceClose)) return failFound(lexer_.peek(), "a value or ]");
+  lexer_.error(p, "']' is missing before '}'"); // the brace ends the node, and the list with it
   return true;
 }
 

@@ -14,14 +14,22 @@
 
 namespace xvrml {
 
+namespace {
+
+// The node that an instance of a prototype stands for; null if it is not known.
+const Node* firstNode(const ProtoDeclaration* declaration) {
+  if (declaration->isExtern) declaration = declaration->resolved.get();
+  return declaration && !declaration->body.roots.empty() ? declaration->body.roots[0].get() : nullptr;
+}
+
+} // namespace
+
 const NodeType* effectiveType(const Node& node) {
   const Node* current = &node;
   // Instances of instances; their number is bounded by the depth of prototypes declared before one another.
   while (const auto* instance = dynamic_cast<const ProtoInstance*>(current)) {
-    const ProtoDeclaration* declaration = instance->declaration.get();
-    if (declaration->isExtern) declaration = declaration->resolved.get();
-    if (!declaration || declaration->body.roots.empty() || !declaration->body.roots[0]) return nullptr;
-    current = declaration->body.roots[0].get();
+    current = firstNode(instance->declaration.get());
+    if (!current) return nullptr;
   }
   return &current->type();
 }
@@ -159,13 +167,44 @@ uint64_t Builder::expandedCount(const Node* node) const {
   return found == expanded_.end() ? 1 : found->second;
 }
 
+SourcePosition Builder::openNodePlace() const { return nodes_.empty() ? SourcePosition() : nodes_.back().node->source; }
+
+const NodeType* Builder::typeNamed(std::string_view name) const {
+  const ProtoPtr proto = findPrototype(name);
+  return proto ? proto->type.get() : findNodeType(name);
+}
+
+bool Builder::wouldTake(size_t receiver, std::string_view name, bool use) const {
+  const Node* node = nullptr;
+  if (use) {
+    const auto found = scopes_.back().scope->names.find(name);
+    if (found == scopes_.back().scope->names.end() || isOpen(found->second.get())) return false;
+    node = found->second.get();
+  } else if (const ProtoPtr proto = findPrototype(name)) {
+    node = firstNode(proto.get());
+  } else {
+    return suits(receivers_[receiver - 1], findNodeType(name));
+  }
+  return suits(receivers_[receiver - 1], node ? effectiveType(*node) : nullptr);
+}
+
+// The types of node that a receiver takes; empty: all.
+std::string_view Builder::wantedBy(const Receiver& receiver) const {
+  if (receiver.kind == Receiver::Kind::roots) return inTemplate() || state_.anyRoots ? "" : "child";
+  return receiver.field ? std::string_view(receiver.field->nodeTypes) : "";
+}
+
+// A type that is null is an EXTERNPROTO's, known when it is loaded.
+bool Builder::suits(const Receiver& receiver, const NodeType* type) const {
+  const std::string_view wanted = wantedBy(receiver);
+  return !type || wanted.empty() || typeAccepted(wanted, *type);
+}
+
 bool Builder::accepts(const Receiver& receiver, const Token& at, const Node& node, std::string_view remedy) {
   const NodeType* type = effectiveType(node);
-  if (!type) return true; // an EXTERNPROTO: known when it is loaded
+  if (suits(receiver, type)) return true;
   const bool root = receiver.kind == Receiver::Kind::roots;
-  if (root && (inTemplate() || state_.anyRoots)) return true;
-  const std::string_view wanted = root ? "child" : receiver.field ? std::string_view(receiver.field->nodeTypes) : "";
-  if (wanted.empty() || typeAccepted(wanted, *type)) return true;
+  const std::string_view wanted = wantedBy(receiver);
   const std::string stands = type == &node.type() ? "" : fmt::format(" ({})", type->name);
   if (root) {
     lexer_.error(at.at(), fmt::format("{}{} cannot stand at the root of a file: expected a child node (4.6.5){}", describe(at),
@@ -213,7 +252,7 @@ void Builder::nullNode(const Token& token) {
 }
 
 bool Builder::hasField(std::string_view name) const {
-  return !nodes_.empty() && nodes_.back().node->type().find(name) != nullptr;
+  return nodes_.size() > scopes_.back().outerNodes && nodes_.back().node->type().find(name) != nullptr;
 }
 
 FieldTarget Builder::openField(const Token& name) {

@@ -18,6 +18,10 @@ class Builder : public ParseSink {
   void dropUnplacedNames(); // to be called at the end of the file, or of a prototype's body
   bool openNode(const Token& type, const Token* def) override;
   void closeNode(bool good) override;
+  SourcePosition openNodePlace() const override;
+  const NodeType* typeNamed(std::string_view name) const override;
+  size_t receiver() const override { return receivers_.size(); }
+  bool wouldTake(size_t receiver, std::string_view name, bool use) const override;
   bool isScript() const override;
   void useNode(const Token& name) override;
   void nullNode(const Token& token) override;
@@ -94,6 +98,8 @@ class Builder : public ParseSink {
   void checkChild(const NodeFrame& frame);
   bool deliver(const Token& at, const NodeRef& node, uint64_t expanded);
   bool place(const Token& at, const NodeRef& node, uint64_t expanded);
+  std::string_view wantedBy(const Receiver& receiver) const;
+  bool suits(const Receiver& receiver, const NodeType* type) const;
   bool accepts(const Receiver& receiver, const Token& at, const Node& node, std::string_view remedy);
   std::vector<uint32_t> linesOfStrings(const char* from);
   uint64_t expandedCount(const Node* node) const;

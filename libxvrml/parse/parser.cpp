@@ -1,8 +1,9 @@
 // parser.cpp: nodes, fields and routes of the VRML97 grammar (ISO/IEC 14772-1 Annex A.2). See parser.h; prototypes and recovery
-// are in parser_proto.cpp and parser_recovery.cpp.
+// are in parser_proto.cpp, parser_recovery.cpp and parser_skip.cpp.
 #include "parse/parser.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -16,9 +17,11 @@ void Parser::vrmlScene() { statements(TokenKind::end); }
 
 // statements ::= statement | statement statements | empty
 void Parser::statements(TokenKind end) {
+  openTaker(Taker::Kind::statements);
   while (!lexer_.peek().is(end) && !lexer_.peek().is(TokenKind::end)) {
-    if (!statement()) skipToStatement(end);
+    if (!strayInStatements(lexer_.peek(), end) && !statement()) skipToStatement(end);
   }
+  takers_.pop_back();
 }
 
 // statement ::= nodeStatement | protoStatement | routeStatement
@@ -57,25 +60,32 @@ bool Parser::node(const Token* def) {
   const Token type = lexer_.peek();
   if (!type.is(TokenKind::identifier)) return fail(type, "a node");
   lexer_.next();
-  if (!lexer_.peek().is(TokenKind::braceOpen) && leaveOutX3d(type)) return false;
-  if (!lexer_.peek().is(TokenKind::braceOpen)) return fail(lexer_.peek(), fmt::format("{{ after {}", describe(type)));
+  const bool opens = lexer_.peek().is(TokenKind::braceOpen);
+  if (!opens) {
+    if (leaveOutX3d(type) || endsList(type, def)) return false;
+    fail(lexer_.peek(), fmt::format("{{ after {}", describe(type)));
+    if (!bodyFollows(type)) return false; // else as if the brace had been there
+  }
   if (depth_ >= nesting_) {
     lexer_.error(type.at(), fmt::format("nodes nested deeper than limit nesting={}{}; {} is left out", nesting_,
                                         nesting_ == maximumNesting ? " (the most there can be)" : "", describe(type)));
     if (def) sink_.lostName(*def);
-    lexer_.next();
+    if (opens) lexer_.next();
     skipBlock();
     return true;
   }
   const bool known = sink_.openNode(type, def);
-  lexer_.next();
+  if (opens) lexer_.next();
   if (!known) {
     skipBlock();
     return true;
   }
   ++depth_;
+  open_.push_back(type);
   const bool good = nodeBody(type);
   if (!good) skipBlock();
+  open_.pop_back();
+  if (open_.size() <= keep_) keep_ = SIZE_MAX;
   --depth_;
   sink_.closeNode(good);
   return true;
@@ -84,7 +94,7 @@ bool Parser::node(const Token* def) {
 // nodeBody ::= nodeBodyElement | nodeBodyElement nodeBody | empty      (up to and with the closing brace)
 // A text that ends early keeps what was read of its open nodes.
 bool Parser::nodeBody(const Token& type) {
-  while (!lexer_.accept(TokenKind::braceClose)) {
+  while (!isClosing() && !lexer_.accept(TokenKind::braceClose)) {
     if (lexer_.peek().is(TokenKind::end)) return failAtEnd(type), true;
     if (!nodeBodyElement()) return false;
   }
@@ -95,13 +105,10 @@ bool Parser::nodeBody(const Token& type) {
 //                   | routeStatement | protoStatement
 bool Parser::nodeBodyElement() {
   const Token token = lexer_.peek();
-  if (!token.is(TokenKind::identifier)) return fail(token, "a field or }");
+  if (!token.is(TokenKind::identifier)) return strayInBody(token);
   if (token.text == "ROUTE") return routeStatement();
   if (token.text == "PROTO" || token.text == "EXTERNPROTO") return protoStatement();
-  if (sink_.isScript() &&
-      (token.text == "field" || token.text == "eventIn" || token.text == "eventOut" || token.text == "exposedField")) {
-    return scriptBodyElement();
-  }
+  if (sink_.isScript() && declares(token)) return scriptBodyElement();
   return field();
 }
 
@@ -114,12 +121,16 @@ bool Parser::field() {
     sink_.connect(id, interfaceName);
     return true;
   }
+  if ((lexer_.peek().is(TokenKind::braceOpen) || id.text == "DEF" || id.text == "USE") && nodeInBody(id)) return true;
   const FieldTarget target = sink_.openField(id);
   if (!target.known) {
     skipField();
     return true;
   }
-  const bool good = fieldValue(target);
+  const bool listOfValues = isMultiple(target.type) && lexer_.peek().is(TokenKind::bracketOpen);
+  bool good = fieldValue(target);
+  // A list that the next field follows: the values of it are there, its bracket is not.
+  if (!good && listOfValues) good = lexer_.peek().is(TokenKind::identifier) && sink_.hasField(lexer_.peek().text);
   sink_.closeField(good);
   return good;
 }
@@ -141,11 +152,33 @@ bool Parser::nodeValue() {
 // mfnodeValue ::= nodeStatement | [ ] | [ nodeStatements ]
 bool Parser::nodeValues() {
   if (!lexer_.accept(TokenKind::bracketOpen)) return nodeValue();
+  openTaker(Taker::Kind::list);
+  const bool good = nodesOfList();
+  takers_.pop_back();
+  return good;
+}
+
+bool Parser::nodesOfList() {
   while (!lexer_.accept(TokenKind::bracketClose)) {
     const Token token = lexer_.peek();
     if (token.is(TokenKind::end)) return true; // the node's body reports it
-    if (!token.is(TokenKind::identifier)) return fail(token, "a node or ]");
-    if (!nodeValue()) return false;
+    if (token.is(TokenKind::identifier)) {
+      if (nodeValue()) continue;
+      if (std::exchange(listEnded_, false)) return true;
+      skipToNode();
+    } else if (!token.is(TokenKind::braceClose)) {
+      fail(token, "a node or ]");
+      lexer_.next();
+      if (token.is(TokenKind::braceOpen))
+        passBrace(false);
+      else if (!token.is(TokenKind::bracketOpen))
+        skipToNode();
+    } else if (takers_.back().braces > 0) {
+      --takers_.back().braces;
+      lexer_.next();
+    } else {
+      return closeListBefore(token);
+    }
   }
   return true;
 }

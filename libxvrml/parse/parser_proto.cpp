@@ -5,6 +5,24 @@
 
 namespace xvrml {
 
+namespace {
+
+bool accessFromName(std::string_view text, Access& access) {
+  if (text == "eventIn")
+    access = Access::eventIn;
+  else if (text == "eventOut")
+    access = Access::eventOut;
+  else if (text == "field")
+    access = Access::field;
+  else if (text == "exposedField")
+    access = Access::exposedField;
+  else
+    return false;
+  return true;
+}
+
+} // namespace
+
 // protoStatement ::= proto | externproto
 bool Parser::protoStatement() {
   const Token keyword = lexer_.next();
@@ -23,12 +41,12 @@ bool Parser::proto() {
   Token id;
   if (!name(id, "a name after PROTO")) return false;
   sink_.openProto(id);
-  bool good = interfaceDeclarations(false);
-  if (good && !lexer_.peek().is(TokenKind::braceOpen)) good = fail(lexer_.peek(), "{ and the prototype's body");
-  if (!good) {
+  const bool good = interfaceDeclarations(false);
+  if (!good || !lexer_.peek().is(TokenKind::braceOpen)) {
+    if (good) fail(lexer_.peek(), "{ and the prototype's body");
     sink_.closeProto(false);
     sink_.lostName(id);
-    skipProto();
+    if (!good) skipProto();
     return true;
   }
   // protoBody ::= protoStatements rootNodeStatement statements
@@ -54,30 +72,24 @@ bool Parser::externproto() {
 
 // interfaceDeclarations ::= interfaceDeclaration | interfaceDeclaration interfaceDeclarations | empty      (with its brackets)
 bool Parser::interfaceDeclarations(bool isExtern) {
-  if (!lexer_.accept(TokenKind::bracketOpen)) return fail(lexer_.peek(), "[ and the interface");
-  while (!lexer_.accept(TokenKind::bracketClose)) {
-    if (!interfaceDeclaration(isExtern)) return false;
+  if (!lexer_.accept(TokenKind::bracketOpen)) {
+    fail(lexer_.peek(), "[ and the interface");
+    if (!declares(lexer_.peek())) return false;
   }
-  return true;
+  openTaker(Taker::Kind::interface);
+  bool good = true;
+  while (good && !lexer_.accept(TokenKind::bracketClose)) {
+    const Token token = lexer_.peek();
+    const bool ends = isExtern ? token.is(TokenKind::string) || token.is(TokenKind::bracketOpen) : token.is(TokenKind::braceOpen);
+    if (ends) {
+      lexer_.error(token.at(), fmt::format("']' is missing before {}", isExtern ? "the URLs" : "the prototype's body"));
+      break;
+    }
+    good = interfaceDeclaration(isExtern);
+  }
+  takers_.pop_back();
+  return good;
 }
-
-namespace {
-
-bool accessFromName(std::string_view text, Access& access) {
-  if (text == "eventIn")
-    access = Access::eventIn;
-  else if (text == "eventOut")
-    access = Access::eventOut;
-  else if (text == "field")
-    access = Access::field;
-  else if (text == "exposedField")
-    access = Access::exposedField;
-  else
-    return false;
-  return true;
-}
-
-} // namespace
 
 // interfaceDeclaration ::= restrictedInterfaceDeclaration | exposedField fieldType fieldId fieldValue
 // restrictedInterfaceDeclaration ::= eventIn fieldType eventInId | eventOut fieldType eventOutId | field fieldType fieldId

@@ -1,5 +1,5 @@
-// parser_recovery.cpp: what the parser does after an error: where it goes on, and which names are lost. All loops, no recursion:
-// a million open braces are skipped like any other text. See parser.h.
+// parser_recovery.cpp: messages of the parser, and how it goes on where a brace, a bracket or a name is missing or too much. What
+// only skips text is in parser_skip.cpp. See parser.h.
 #include <algorithm>
 #include <utility>
 
@@ -31,6 +31,8 @@ const X3dStatement* x3dStatement(const Token& token) {
 }
 
 } // namespace
+
+bool Parser::isX3dStatement(const Token& token) { return x3dStatement(token) != nullptr; }
 
 // Says so if it is the keyword of a statement of X3D; skipToStatement() leaves the rest of it out.
 bool Parser::leaveOutX3d(const Token& keyword) {
@@ -70,107 +72,152 @@ bool Parser::name(Token& out, const char* what) {
   return true;
 }
 
-// Names defined in what is skipped: later uses of them are not errors of their own.
-void Parser::noteLost(const Token& token) {
-  if (!token.is("DEF")) return;
-  const Token lost = lexer_.peek();
-  if (lost.is(TokenKind::identifier)) sink_.lostName(lost);
+// Ends the nodes that are open within what takes nodes here, as if their braces had been there.
+void Parser::closeNodesBefore(const Token& at, std::string_view what) {
+  Taker& taker = takers_.back();
+  const size_t nodes = open_.size() - taker.nodes;
+  const SourcePosition begin = sink_.openNodePlace();
+  const std::string more = nodes == 1   ? std::string()
+                           : nodes == 2 ? ", nor is the node around it"
+                                        : fmt::format(", nor are the {} nodes around it", nodes - 1);
+  lexer_.error(at.at(), fmt::format("'}}' is missing before {}: {}, which begins in line {}, column {}, is not closed{}", what,
+                                    describe(open_.back()), begin.line, begin.column, more));
+  keep_ = taker.nodes;
+  // If it was no brace that was missing but something else, the braces are still to come: within the list, or where it was ended
+  // too early, at the end of all.
+  (at.is(TokenKind::bracketClose) ? takers_.front() : taker).braces += nodes;
 }
 
-// From inside a block to behind its closing brace.
-void Parser::skipBlock() {
-  for (uint64_t open = 1; open > 0;) {
-    const Token token = lexer_.next();
-    if (token.is(TokenKind::end)) {
-      fail(token, "}");
-      return;
-    }
-    if (token.is(TokenKind::braceOpen)) ++open;
-    if (token.is(TokenKind::braceClose)) --open;
-    noteLost(token);
-  }
-}
-
-// The value of a field nobody knows: up to the next field of the node that is known, or the end of the node.
-void Parser::skipField() {
-  uint64_t braces = 0, brackets = 0;
-  for (bool first = true;; first = false) {
-    const Token token = lexer_.peek();
-    if (token.is(TokenKind::end)) return;
-    if (braces == 0) {
-      if (token.is(TokenKind::braceClose)) return;
-      const bool statement = token.is("ROUTE") || token.is("PROTO") || token.is("EXTERNPROTO");
-      if (!first && brackets == 0 && token.is(TokenKind::identifier) && (statement || sink_.hasField(token.text))) return;
-    }
+// A node of a known type where a field is expected, which begins with this token: the brace before it is missing, unless what
+// takes nodes here cannot hold it. False, with the token consumed, if it is something else.
+bool Parser::nodeInBody(const Token& first) {
+  if (sink_.hasField(first.text)) return false;
+  lexer_.seek(first.at());
+  const bool use = first.is("USE");
+  Token named;
+  bool node;
+  if (use) {
     lexer_.next();
-    if (token.is(TokenKind::braceOpen)) ++braces;
-    if (token.is(TokenKind::braceClose)) --braces;
-    if (token.is(TokenKind::bracketOpen)) ++brackets;
-    if (token.is(TokenKind::bracketClose) && brackets > 0) --brackets;
-    noteLost(token);
+    named = lexer_.nextName();
+    node = named.is(TokenKind::identifier);
+    lexer_.seek(first.at());
+  } else {
+    node = nodeAhead(named);
   }
+  if (!node) return lexer_.next(), false;
+  if (takers_.back().kind != Taker::Kind::interface && sink_.wouldTake(takers_.back().receiver, named.text, use)) {
+    closeNodesBefore(first, fmt::format("the node {}", describe(named)));
+    return true;
+  }
+  lexer_.error(first.at(), fmt::format("expected a field or }}, found the node {}: it is left out", describe(named)));
+  if (use) {
+    lexer_.next();
+    lexer_.nextName();
+    return true;
+  }
+  for (Token token = lexer_.next(); !token.is(TokenKind::braceOpen); token = lexer_.next()) noteLost(token);
+  skipBlock();
+  return true;
 }
 
-// A declaration in a Script whose type nobody knows: up to the next declaration or field of the Script, or its end. The rest of
-// the Script still runs.
-void Parser::skipDeclaration() {
-  uint64_t open = 0;
-  for (;;) {
-    const Token token = lexer_.peek();
-    if (token.is(TokenKind::end)) return;
-    if (open == 0 && token.is(TokenKind::braceClose)) return;
-    const bool begins = token.is("field") || token.is("eventIn") || token.is("eventOut") || token.is("exposedField");
-    if (open == 0 && token.is(TokenKind::identifier) && (begins || sink_.hasField(token.text))) return;
-    lexer_.next();
-    if (token.is(TokenKind::braceOpen) || token.is(TokenKind::bracketOpen)) ++open;
-    if ((token.is(TokenKind::braceClose) || token.is(TokenKind::bracketClose)) && open > 0) --open;
-    noteLost(token);
+// Whether a node of a known type begins with the next token. Reads on and comes back.
+bool Parser::nodeAhead(Token& type) {
+  const char* const start = lexer_.peek().at();
+  type = lexer_.next();
+  if (type.is("DEF")) {
+    lexer_.nextName();
+    type = lexer_.next();
   }
+  const bool ahead = type.is(TokenKind::identifier) && lexer_.peek().is(TokenKind::braceOpen) && sink_.typeNamed(type.text);
+  lexer_.seek(start);
+  return ahead;
 }
 
-// After an error in a prototype's interface: behind its body, which opens with the first brace that follows a bracket outside of
-// any node of a default value.
-void Parser::skipProto() {
-  uint64_t braces = 0;
-  bool afterBracket = false;
-  for (;;) {
-    const Token token = lexer_.peek();
-    if (token.is(TokenKind::end)) return;
-    if (braces == 0 && token.is(TokenKind::braceClose)) return;
-    if (braces == 0 && (token.is("PROTO") || token.is("EXTERNPROTO"))) return;
-    lexer_.next();
-    if (token.is(TokenKind::braceOpen)) {
-      if (braces == 0 && afterBracket) return skipBlock();
-      ++braces;
-    }
-    if (token.is(TokenKind::braceClose)) --braces;
-    afterBracket = token.is(TokenKind::bracketClose);
-  }
+// Whether a body follows whose opening brace is missing: a field of the type, or the closing brace.
+bool Parser::bodyFollows(const Token& type) {
+  const NodeType* known = sink_.typeNamed(type.text);
+  const Token next = lexer_.peek();
+  return known && (next.is(TokenKind::braceClose) || (next.is(TokenKind::identifier) && known->find(next.text)));
 }
 
-// To what looks like the start of a statement; blocks on the way are skipped whole.
-void Parser::skipToStatement(TokenKind end) {
-  for (;;) {
-    const Token token = lexer_.peek();
-    if (token.is(TokenKind::end)) return;
-    if (token.is(TokenKind::braceClose)) {
-      if (end == TokenKind::braceClose) return;
-      lexer_.next();
-      continue;
+// Whether a list of nodes ends before this token, which stands where a node may: it is the next field of the node that has the
+// list. The lexer then stands at the token again.
+bool Parser::endsList(const Token& token, bool hasDef) {
+  const Taker& taker = takers_.back();
+  if (hasDef || taker.kind != Taker::Kind::list || open_.size() != taker.nodes) return false;
+  if (!sink_.hasField(token.text) || sink_.typeNamed(token.text)) return false;
+  lexer_.error(token.at(), fmt::format("']' is missing before {}", describe(token)));
+  lexer_.seek(token.at());
+  return listEnded_ = true;
+}
+
+// A closing brace in a list of nodes: the list ends before it.
+bool Parser::closeListBefore(const Token& brace) {
+  const Taker& around = takers_[takers_.size() - 2];
+  if (around.kind == Taker::Kind::interface && around.nodes == open_.size()) return fail(brace, "a node or ]"); // no node's list
+  const SourcePosition begin = sink_.openNodePlace();
+  lexer_.error(brace.at(), fmt::format("']' is missing before the '}}' of {}, which begins in line {}, column {}",
+                                       describe(open_.back()), begin.line, begin.column));
+  ++takers_.front().braces, ++brackets_; // if it was this brace that was too many
+  return true;
+}
+
+// What cannot begin a field. Braces and brackets are put right; after anything else the node is left out.
+bool Parser::strayInBody(const Token& token) {
+  if (token.is(TokenKind::bracketClose)) {
+    if (takers_.back().kind != Taker::Kind::statements) {
+      closeNodesBefore(token, "']'");
+      ++brackets_; // if it was this bracket that was too many
+      return true;
     }
-    if (token.is(TokenKind::identifier)) {
-      if (token.text == "DEF" || token.text == "USE" || token.text == "PROTO" || token.text == "EXTERNPROTO" ||
-          token.text == "ROUTE")
-        return;
-      const char* before = token.at();
-      lexer_.next();
-      const bool isNode = lexer_.peek().is(TokenKind::braceOpen) && isIdentifierStart(static_cast<unsigned char>(token.text[0]));
-      if (isNode || x3dStatement(token)) return lexer_.seek(before);
-      continue;
-    }
+    if (brackets_ > 0)
+      --brackets_;
+    else
+      fail(token, "a field or }");
     lexer_.next();
-    if (token.is(TokenKind::braceOpen)) skipBlock();
+    return true;
   }
+  fail(token, "a field or }");
+  if (!token.is(TokenKind::braceOpen)) return false;
+  lexer_.next();
+  passBrace(true);
+  return true;
+}
+
+// Passes over a brace or bracket that can begin no statement. False if the token is something else.
+bool Parser::strayInStatements(const Token& token, TokenKind end) {
+  constexpr auto expected = "a node, DEF, USE, PROTO, EXTERNPROTO or ROUTE";
+  if (token.is(TokenKind::braceClose) && end != TokenKind::braceClose) {
+    if (takers_.back().braces > 0)
+      --takers_.back().braces;
+    else
+      fail(token, expected);
+    lexer_.next();
+  } else if (token.is(TokenKind::bracketClose) && brackets_ > 0) {
+    --brackets_;
+    lexer_.next();
+  } else if (token.is(TokenKind::braceOpen)) {
+    fail(token, expected);
+    lexer_.next();
+    passBrace(false);
+  } else {
+    return false;
+  }
+  return true;
+}
+
+// Behind a brace that opens nothing: it alone is passed over if what follows can stand here without it, else all that it holds.
+void Parser::passBrace(bool inNode) {
+  const Token next = lexer_.peek();
+  Token type;
+  if (lexer_.accept(TokenKind::braceClose)) return;
+  bool here = next.is("ROUTE") || next.is("PROTO") || next.is("EXTERNPROTO");
+  if (inNode)
+    here = here || (next.is(TokenKind::identifier) && sink_.hasField(next.text)) || (sink_.isScript() && declares(next));
+  else
+    here = here || next.is("USE") || (next.is(TokenKind::identifier) && nodeAhead(type));
+  if (!here) return skipBlock();
+  ++takers_.back().braces;
 }
 
 } // namespace xvrml

@@ -22,6 +22,13 @@ class ParseSink {
   // node is not closed. good: false if the body could not be read.
   virtual bool openNode(const Token& type, const Token* def) = 0;
   virtual void closeNode(bool good) = 0;
+  virtual SourcePosition openNodePlace() const = 0; // where the innermost open node begins
+  // The interface of a node type that is known here: a prototype's or the standard's; null: there is none of that name.
+  virtual const NodeType* typeNamed(std::string_view name) const = 0;
+  // A number for what takes complete nodes now (a file, a body, a field), good until it ends; and whether it would take a node of
+  // the named type, or with `use` the node that is DEFined by that name.
+  virtual size_t receiver() const = 0;
+  virtual bool wouldTake(size_t receiver, std::string_view name, bool use) const = 0;
   virtual bool isScript() const = 0; // the open node takes scriptBodyElements
   virtual void useNode(const Token& name) = 0;
   virtual void nullNode(const Token& token) = 0;

@@ -196,6 +196,39 @@ TEST(Registry, RefusesWhatAGroupOrSomebodyAboveMayReplace) {
   fs::remove_all(above);
 }
 
+// Only root can give files away, and take another user's place.
+TEST(Registry, RefusesWhatBelongsToAnotherUserOrLiesInHisFolder) {
+  if (::geteuid() != 0) GTEST_SKIP() << "needs root";
+  constexpr uid_t other = 12345, user = 12346;
+  const fs::path above = fs::temp_directory_path() / ("openrt_owners_" + std::to_string(::getpid()));
+  const fs::path folder = above / "shaders", file = folder / "everything.so";
+  fs::create_directories(folder);
+  fs::copy_file(plugins + "/everything.so", file, fs::copy_options::overwrite_existing);
+  for (const fs::path& place : {above, folder}) ASSERT_EQ(::chmod(place.c_str(), 0755), 0);
+  const ShaderRegistry registry({folder.string()});
+  const std::string belongs = " belongs to another user", aboveIt = fs::canonical(above).string() + ", above it," + belongs;
+  const auto refused = [&](const fs::path& place, const std::string& why) {
+    ASSERT_EQ(::chown(place.c_str(), other, other), 0);
+    const std::string text = refusal(registry, "Everything", "everything");
+    EXPECT_NE(text.find(why), text.npos) << text;
+    ASSERT_EQ(::seteuid(user), 0);
+    const std::string forUser = plugin_files::objection(file.string());
+    ASSERT_EQ(::seteuid(0), 0);
+    EXPECT_NE(forUser.find(belongs), text.npos) << place << ": " << forUser;
+    ASSERT_EQ(::chown(place.c_str(), user, user), 0); // the user's own, which is nothing to root
+    ASSERT_EQ(::seteuid(user), 0);
+    EXPECT_EQ(plugin_files::objection(file.string()), "");
+    ASSERT_EQ(::seteuid(0), 0);
+    EXPECT_NE(plugin_files::objection(file.string()), "");
+    ASSERT_EQ(::chown(place.c_str(), 0, 0), 0);
+  };
+  refused(file, "everything.so is refused: it" + belongs);
+  refused(folder, "refused: it" + belongs);
+  refused(above, aboveIt);
+  EXPECT_EQ(refusal(registry, "Everything", "everything"), "");
+  fs::remove_all(above);
+}
+
 TEST(Registry, AGroupOfOneIsItsOwner) {
   EXPECT_TRUE(plugin_files::isPrivateGroup(0, 0)); // root
   EXPECT_FALSE(plugin_files::isPrivateGroup(0, 1));

@@ -61,7 +61,7 @@ inline constexpr const char* nodePluginSymbol = "xvrmlNodePlugin";
 // --- For programs ---
 
 // Where plug-ins are looked for: the folders given (separated by colons), those of $XVRML_NODE_PATH, then xvrml/nodes beside the
-// library and beside the program, and in ../lib. What others may write or replace is refused.
+// library and beside the program, and in ../lib. What another user owns, may write or replace is refused.
 std::vector<std::string> nodePluginFolders(std::string_view first);
 
 // Loads all plug-ins (*.so) of these folders, in the order of the folders and of their names; one that is loaded already is

@@ -21,7 +21,7 @@ struct ScriptEngineInfo {
 };
 
 // Every engine of these folders, in the order in which they are looked at. refused: a line for each library that is none, and
-// for each folder that is refused because others may write to it.
+// for each folder that is refused because it, or code put into it, could be somebody else's.
 std::vector<ScriptEngineInfo> scriptEngines(std::string_view folders = {}, std::vector<std::string>* refused = nullptr);
 
 } // namespace xvrml

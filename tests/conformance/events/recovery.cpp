@@ -1,5 +1,8 @@
 // What is meant by a world that breaks a rule: as much of it as can be is kept, and one message says so.
+#include <sstream>
+
 #include "conformance/events/scripted.h"
+#include "parse/expander.h"
 
 namespace xvrml {
 namespace {
@@ -101,6 +104,123 @@ TEST(Recovery, ScriptsSendToNodesWhereOldWorldsMay) {
     EXPECT_EQ(r.get("G", "whichChoice"), old ? "3" : "-1");
     EXPECT_EQ(r.messages().size(), old ? 0u : 1u);
   }
+}
+
+// Nodes of a type that a world draws or holds, shared ones once.
+size_t count(const World& world, std::string_view type) {
+  std::vector<Node*> roots, nodes;
+  for (const NodeRef& root : world.scope.roots) roots.push_back(root.get());
+  std::unordered_map<const Node*, uint32_t> index;
+  collectNodes(roots, nodes, index);
+  return std::count_if(nodes.begin(), nodes.end(), [&](const Node* node) { return node && node->type().name == type; });
+}
+
+std::unique_ptr<World> read(const std::string& text) { return loadWorldFromMemory("#VRML V2.0 utf8\n" + text, "damaged.wrl"); }
+
+std::string messages(const World& world) {
+  std::string text;
+  for (const Diagnostic& diagnostic : world.diagnostics.list()) text += diagnostic.text() + '\n';
+  return text;
+}
+
+// Any one token of a file may be lost or doubled: what stands around its statement is there, and few words say why.
+TEST(Recovery, OneTokenCostsAtMostOneStatement) {
+  std::vector<std::string> tokens;
+  std::istringstream in("Transform { translation 1 0 0 children [ Shape { geometry Box { } } ] }");
+  for (std::string token; in >> token;) tokens.push_back(token);
+  std::string rest = "\n";
+  constexpr size_t more = 20;
+  for (size_t i = 0; i < more; ++i) rest += "Transform { children [ Shape { geometry Sphere { } } ] }\n";
+  for (const bool twice : {false, true}) {
+    for (size_t at = 0; at < tokens.size(); ++at) {
+      std::string first;
+      for (size_t i = 0; i < tokens.size(); ++i)
+        for (size_t times = i == at ? (twice ? 2 : 0) : 1; times > 0; --times) first += tokens[i] + ' ';
+      for (const std::string& before : {std::string(), std::string("Group { children [ Group { } ] } ")}) {
+        const auto world = read(before + first + rest);
+        EXPECT_EQ(count(*world, "Sphere"), more) << first << messages(*world);
+        EXPECT_EQ(world->diagnostics.errors(), 1u) << first << messages(*world);
+        const bool brace = tokens[at] == "{" || tokens[at] == "}" || (tokens[at] == "]") || (tokens[at] == "[" && twice);
+        if (brace) EXPECT_EQ(count(*world, "Box"), 1u) << first << messages(*world);
+      }
+    }
+  }
+}
+
+TEST(Recovery, WhatIsReadBehindAMissingBraceStandsWhereItBelongs) {
+  const auto roots =
+      read("Transform { children [ Shape { geometry Box { } } ] Transform { } DEF A Transform { } USE A Group { }");
+  EXPECT_EQ(roots->diagnostics.errors(), 1u) << messages(*roots);
+  EXPECT_EQ(roots->scope.roots.size(), 5u);
+  const auto list = read("DEF G Group { children [ Shape { geometry Box { } Group { } Group { } ] } Group { }");
+  EXPECT_EQ(list->diagnostics.errors(), 1u) << messages(*list);
+  EXPECT_EQ(list->scope.roots.size(), 2u);
+  Node& group = *list->scope.names.at("G");
+  EXPECT_EQ(static_cast<MFNode*>(group.storage(*group.type().find("children")))->size(), 3u);
+  const auto body = read("PROTO P [ ] { Group { children [ Shape { geometry Box { } ] } } P { } Group { }");
+  EXPECT_EQ(body->diagnostics.errors(), 1u) << messages(*body);
+  EXPECT_EQ(body->scope.roots.size(), 2u);
+  const auto value =
+      read("PROTO P [ field SFNode n Shape { geometry Box { } field SFInt32 i 0 ] { Group { } } P { i 1 } Group { }");
+  EXPECT_EQ(value->scope.roots.size(), 2u) << messages(*value);
+}
+
+TEST(Recovery, ValuesOfAListWithoutItsBracketAreKept) {
+  Running r("Shape { geometry DEF F IndexedFaceSet { coord DEF C Coordinate { point [ 0 0 0, 1 0 0, 0 1 0 } "
+            "coordIndex [ 0 1 2 -1 ccw FALSE } } Group { }");
+  EXPECT_EQ(errors(r), 2u);
+  EXPECT_EQ(r.get("C", "point"), "[0 0 0, 1 0 0, 0 1 0]");
+  EXPECT_EQ(r.get("F", "coordIndex"), "[0, 1, 2, -1]");
+  EXPECT_EQ(r.get("F", "ccw"), "FALSE");
+  EXPECT_EQ(r.browser.world().scope.roots.size(), 2u);
+}
+
+TEST(Recovery, WhatIsLeftOutEndsWhereANodeShowsThatItsBraceIsMissing) {
+  for (const char* first :
+       {"Foo { bar Bar { x 1 ", "LOD { range wide level [ Shape { geometry Box { } ] ", "Foo { a [ Bar { x 1 ] b 2 ",
+        "Group { foo [ 1 2 ] ", "PROTO P [ field SFFoo x 1 ] ", "PROTO P [ ] "}) {
+    const auto world = read(std::string(first) + "Transform { } DEF T Transform { } Group { children USE T }");
+    EXPECT_EQ(count(*world, "Transform"), 2u) << first << messages(*world);
+    EXPECT_LE(world->diagnostics.errors(), 2u) << messages(*world);
+  }
+}
+
+// Costs that grow with the square of the size would take hours here.
+TEST(Recovery, DamageOfAnySizeIsReadInLinearTime) {
+  const auto repeated = [](std::string_view text, size_t times) {
+    std::string all;
+    for (size_t i = 0; i < times; ++i) all += text;
+    return all;
+  };
+  constexpr size_t many = 300'000;
+  for (const char* text : {"Group { ",
+                           "Group { children [ ",
+                           "Group { } } ",
+                           "{ ",
+                           "} ",
+                           "] ",
+                           "[ ",
+                           "Group { { ",
+                           "Group { ] ",
+                           "Foo { 1 Box { ",
+                           "DEF A ",
+                           "USE USE ",
+                           "Group { USE ",
+                           "Group { DEF A Box { } ",
+                           "Shape { Box { ",
+                           "Group children ",
+                           "Group { children [ { ",
+                           "PROTO P ",
+                           "PROTO P [ ",
+                           "Group { foo Foo { 1 ",
+                           "Group { children Shape { "}) {
+    const auto world = read(repeated(text, many));
+    EXPECT_GT(world->diagnostics.errors(), 0u) << text;
+  }
+  const std::string deep = "Foo " + repeated("{ ", many) + repeated("1 Box { } ", many);
+  EXPECT_GT(read(deep)->diagnostics.errors(), 0u);
+  const std::string nested = repeated("Group { children Group { children [ ", 400) + repeated("Shape { Box { } } ", many);
+  EXPECT_GT(read(nested + repeated("] ", 400))->diagnostics.errors(), 0u);
 }
 
 } // namespace
