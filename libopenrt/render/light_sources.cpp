@@ -133,6 +133,7 @@ LightSources::Start LightSources::begin(const RenderScene& scene, double pick, c
   if (source.light != none) {
     const RtsExtent& e = source.extent;
     start.parallel = e.parallel != 0;
+    start.endless = !std::isfinite(e.radius);
     if (!start.parallel) {
       const double cosine = coneTo(e.position, axis);
       std::copy_n(e.position, 3, start.origin);

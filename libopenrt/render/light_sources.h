@@ -25,6 +25,7 @@ class LightSources {
     uint32_t light = none, shape = none;
     EmissiveShapes::Place place; // of a shape
     bool parallel = false;
+    bool endless = true; // nothing says that it lights nothing beyond some radius
   };
   static constexpr uint32_t none = ~0u;
   // Numbers of [0, 1): which, the place on it, the direction.

@@ -57,6 +57,7 @@ void LightTracer::begin(uint32_t firstPath, uint32_t n) {
   rays_.allocate(arena_, n);
   states_ = arena_.take<RayState>(padded(n));
   starts_.clear();
+  departures_.assign(n, {});
   queue_.clear();
   for (uint32_t i = 0; i < n; i++) {
     const RayState state{.path = i};
@@ -104,6 +105,7 @@ void LightTracer::step(uint32_t n) {
     if (hits.record[i] == noHit) continue;
     const uint32_t traits = (*scene_.shaders)[scene_.records[hits.record[i]].shader].traits;
     if (states_[i].course == Course::straight && !(traits & (RTS_SPECULAR | RTS_TRANSPARENT))) continue;
+    departures_[states_[i].path].way += double(hits.t[i]);
     met[mets++] = i;
   }
   std::vector<BucketRange> ranges;
@@ -139,38 +141,64 @@ void LightTracer::pass(const Points& points, const uint32_t* order, const RtsCla
   }
 }
 
+// The flux that a light without extent sends on a straight way to a place.
+void LightTracer::lampFlux(const Points& points, const LightSources::Start& start, const float at[3], float flux[3]) {
+  const LightSlot& light = scene_.lights[start.light];
+  ArenaScope scope(arena_);
+  float* local[3];
+  RtsIllumination out{};
+  for (int k = 0; k < 3; k++) {
+    local[k] = arena_.take<float>(lanes);
+    const float* m = light.toLocal.r[k];
+    std::fill_n(local[k], lanes, m[0] * at[0] + m[1] * at[1] + m[2] * at[2] + m[3]);
+    out.toLight[k] = arena_.takeZero<float>(lanes);
+    out.color[k] = arena_.takeZero<float>(lanes), out.ambient[k] = arena_.takeZero<float>(lanes);
+  }
+  RtsBatch batch;
+  batch.scene = &scene_, batch.arena = &arena_, batch.counters = &counters_, batch.points = &points;
+  const float* places[3] = {local[0], local[1], local[2]};
+  const RunningShader running(*light.shader.shaderClass);
+  light.shader.shaderClass->illuminate(&scene_.host, &batch, light.shader.params, 1, places, &out);
+  double way = 0;
+  for (int k = 0; k < 3; k++) way += std::pow(double(at[k]) - start.origin[k], 2);
+  const double scale = M_PI * start.weight * (start.parallel ? 1 : way); // a colour is the radiance of white paper
+  for (int k = 0; k < 3; k++) {
+    flux[k] = float(out.color[k][0] * scale);
+    if (!(flux[k] > 0) || !std::isfinite(flux[k])) flux[k] = 0;
+  }
+}
+
 // The flux that the lamp sends along a ray that has met its first surface.
 bool LightTracer::leaveLamp(const Points& points, uint32_t i, RayState& state) {
   const LightSources::Start& start = starts_[state.path];
+  Departure& departure = departures_[state.path];
   float flux[3] = {0, 0, 0};
   if (start.shape != LightSources::none) {
     scene_.emitters.shapes()->radiance(scene_, start.shape, start.place, start.direction, arena_, flux);
     for (float& x : flux) x = float(x * start.weight);
   } else {
-    const LightSlot& light = scene_.lights[start.light];
-    ArenaScope scope(arena_);
-    float* local[3];
-    RtsIllumination out{};
-    for (int k = 0; k < 3; k++) {
-      local[k] = arena_.take<float>(lanes);
-      const float* m = light.toLocal.r[k];
-      const auto& p = points.hits.position;
-      std::fill_n(local[k], lanes, m[0] * p[0][i] + m[1] * p[1][i] + m[2] * p[2][i] + m[3]);
-      out.toLight[k] = arena_.takeZero<float>(lanes);
-      out.color[k] = arena_.takeZero<float>(lanes), out.ambient[k] = arena_.takeZero<float>(lanes);
-    }
-    RtsBatch batch;
-    batch.scene = &scene_, batch.arena = &arena_, batch.counters = &counters_, batch.points = &points;
-    const float* at[3] = {local[0], local[1], local[2]};
-    const RunningShader running(*light.shader.shaderClass);
-    light.shader.shaderClass->illuminate(&scene_.host, &batch, light.shader.params, 1, at, &out);
-    double way = 0;
-    for (int k = 0; k < 3; k++) way += std::pow(double(points.hits.position[k][i]) - start.origin[k], 2);
-    const double scale = M_PI * start.weight * (start.parallel ? 1 : way); // a colour is the radiance of white paper
-    for (int k = 0; k < 3; k++) flux[k] = float(out.color[k][0] * scale);
+    const float at[3] = {points.hits.position[0][i], points.hits.position[1][i], points.hits.position[2][i]};
+    lampFlux(points, start, at, flux);
+    std::copy_n(flux, 3, departure.flux);
+    departure.settled = start.parallel;
   }
   for (int k = 0; k < 3; k++) state.throughput[k] *= flux[k] > 0 && std::isfinite(flux[k]) ? flux[k] : 0.0f;
   return largest(state.throughput) > 0;
+}
+
+// Asks the light at the end of the unfolded way, in the direction that the path has left it in. A light that falls with the
+// square of the distance has the same flux everywhere: what differs there is rounding.
+void LightTracer::attenuate(const Points& points, uint32_t path) {
+  const LightSources::Start& start = starts_[path];
+  Departure& departure = departures_[path];
+  float at[3], flux[3];
+  for (int k = 0; k < 3; k++) at[k] = float(start.origin[k] + departure.way * start.direction[k]);
+  lampFlux(points, start, at, flux);
+  for (int k = 0; k < 3; k++) {
+    const float change = departure.flux[k] > 0 ? flux[k] / departure.flux[k] : 0.0f;
+    const bool rounding = departure.flux[k] > 0 && start.endless && std::fabs(change - 1) < 1e-3f;
+    departure.attenuation[k] = rounding || !std::isfinite(change) ? 1.0f : change;
+  }
 }
 
 void LightTracer::scatter(const Points& points, const uint32_t* order, const RtsClass& shaderClass) {
@@ -187,12 +215,17 @@ void LightTracer::scatter(const Points& points, const uint32_t* order, const Rts
   }
   Boundaries boundaries{nullptr, nullptr};
   if (shaderClass.medium) meetBoundaries(batch, states_, boundaries);
+  bool scatters = false;
+  for (uint32_t l = 0; l < batch.lobeCount; l++) scatters |= scatteringOf(batch.lobes[l]) != nullptr;
   const uint32_t* all = arena_.takeNumbers(n);
   auto* connected = arena_.take<uint32_t>(n);
   uint32_t count = 0;
   for (uint32_t i = 0; i < n; i++)
-    if (states_[order[i]].course != Course::straight) connected[count++] = i;
-  if (count) connect(batch, connected, count);
+    if (const RayState& state = states_[order[i]]; state.course != Course::straight) {
+      connected[count++] = i;
+      if (scatters && !departures_[state.path].settled) attenuate(points, state.path);
+    }
+  if (count && scatters) connect(batch, connected, count);
   const LobeSamples* samples[RTS_MAX_LOBES] = {};
   for (uint32_t l = 0; count && l < batch.lobeCount; l++) {
     if (!scatteringOf(batch.lobes[l])) continue;
@@ -241,6 +274,10 @@ void LightTracer::goOn(const RtsBatch& batch, uint32_t i, const LobeSamples* con
     if (uv[1] >= stay) return;
     kept *= stay;
   }
+  if (Departure& departure = departures_[state.path]; scatteringOf(batch.lobes[way.lobe]) && !departure.settled) {
+    for (int k = 0; k < 3; k++) state.throughput[k] *= departure.attenuation[k];
+    departure = {};
+  }
   const float turned = way.bent ? tilt(batch.lobes[way.lobe], points.hits, i, way.direction) : 1.0f;
   for (int k = 0; k < 3; k++) state.throughput[k] *= float(way.weight[k] * turned / kept);
   state.channel = way.channel;
@@ -265,9 +302,6 @@ void LightTracer::push(const Points& points, uint32_t i, const RayState& state, 
 // Light that goes straight from the hits into the camera.
 void LightTracer::connect(const RtsBatch& batch, const uint32_t* hitNumbers, uint32_t n) {
   const ShaderSlot& camera = scene_.camera.shader;
-  bool scatters = false;
-  for (uint32_t l = 0; l < batch.lobeCount; l++) scatters |= scatteringOf(batch.lobes[l]) != nullptr;
-  if (!scatters) return;
   ArenaScope scope(arena_);
   const Points& points = *batch.points;
   const RtsHits& hits = points.hits;
@@ -343,9 +377,10 @@ void LightTracer::connect(const RtsBatch& batch, const uint32_t* hitNumbers, uin
     const float x = seen.xy[0][i], y = seen.xy[1][i];
     if (!(seen.weight[i] > 0) || !(x >= 0 && y >= 0 && x < extent[0] && y < extent[1])) continue;
     const RayState& state = states_[batch.order[hitNumbers[i]]];
+    const float* attenuation = departures_[state.path].attenuation;
     float* pixel = &picture_[3 * (size_t(y) * width_ + size_t(x))];
     for (int k = 0; k < 3; k++) {
-      const double light = double(state.throughput[k]) * sent[k][i] * cameraArea_ * scale_;
+      const double light = double(state.throughput[k]) * attenuation[k] * sent[k][i] * cameraArea_ * scale_;
       if (std::isfinite(light)) pixel[k] += float(light);
     }
   }

@@ -33,10 +33,21 @@ class LightTracer {
   void pass(const Points& points, const uint32_t* order, const RtsClass& shaderClass);
   void scatter(const Points& points, const uint32_t* order, const RtsClass& shaderClass);
   bool leaveLamp(const Points& points, uint32_t i, RayState& state);
+  void lampFlux(const Points& points, const LightSources::Start& start, const float at[3], float flux[3]);
+  void attenuate(const Points& points, uint32_t path);
   void connect(const RtsBatch& batch, const uint32_t* hits, uint32_t n);
   void goOn(const RtsBatch& batch, uint32_t i, const LobeSamples* const samples[], const Boundaries& boundaries);
   void push(const Points& points, uint32_t i, const RayState& state, const float direction[3]);
   void sampleAt(const RayState& state, uint32_t pair, float out[2]) const;
+
+  // The light of a path that has left a light without extent. Attenuation is that of the whole way to the first surface that
+  // scatters, as if mirrors and smooth boundaries had not bent it.
+  struct Departure {
+    double way = 0;                   // length up to the hit
+    float flux[3] = {0, 0, 0};        // at the first surface; the throughput counts it
+    float attenuation[3] = {1, 1, 1}; // at this hit, over that
+    bool settled = true;              // the light has been scattered, or no distance matters
+  };
 
   const RenderScene& scene_;
   const LightSources& sources_;
@@ -45,6 +56,7 @@ class LightTracer {
   Arena arena_;
   RayCounters counters_;
   std::vector<LightSources::Start> starts_;
+  std::vector<Departure> departures_; // by path
   std::vector<float> picture_;
   std::vector<uint32_t> counts_;
   RayQueue queue_, next_;
