@@ -7,6 +7,7 @@
 
 #include "objects.h"
 #include "xvrml/build.h"
+#include "xvrml/set_field.h"
 
 using namespace xvrml;
 
@@ -64,7 +65,7 @@ void setStanding(WorldObject& world, const NodeRef& node, const FieldInfo& field
   }
   {
     const ReleaseGil release; // an Inline reads a file
-    world.world->set(*node, field.name, std::move(value));
+    setField(*world.world, *node, field.name, std::move(value));
   }
   if (instance && field.access == Access::exposedField && takesEvent(*instance, field.name))
     world.early.emplace_back(node, field.name);

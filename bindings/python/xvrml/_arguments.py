@@ -72,7 +72,7 @@ def _fits(value, kind):
     several = re.fullmatch(_LIST, kind)
     if several or re.fullmatch(_PAIR, kind):
         try:
-            good = not isinstance(value, (str, bytes)) and all(_fits(v, several[1] if several else "int") for v in value)
+            good = not isinstance(value, (str, bytes, dict)) and all(_fits(v, several[1] if several else "int") for v in value)
             return good and len(value) == int(several[2] or len(value) if several else 2)
         except TypeError:
             return False

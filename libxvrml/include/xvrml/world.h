@@ -97,13 +97,6 @@ class World {
   World(const World&) = delete;
   World& operator=(const World&) = delete;
 
-  // Sets a field or exposedField of a node of this world while it stands still, as if the file had the value: nodes in the body
-  // of a prototype's instance get it where their fields IS that one, and an Inline with another url is loaded again. Returns
-  // false, and changes nothing, if the node has no such field or the value is of another type. The value must not hold the node
-  // itself. What cannot be used of it is in diagnostics. Node::set() changes the node alone. In a running world use
-  // Browser::set(). [the thread that owns the world]
-  bool set(Node& node, std::string_view field, Value value);
-
   Scope scope;
   std::string path;      // the file, or "-"
   Diagnostics diagnostics;

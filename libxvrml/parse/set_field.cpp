@@ -1,4 +1,6 @@
-// setting.cpp: fields of a world that stands still: World::set. In a running world Browser::set does it.
+// set_field.cpp: see xvrml/set_field.h.
+#include "xvrml/set_field.h"
+
 #include "base/budget.h"
 #include "parse/crossing.h"
 #include "parse/field_access.h"
@@ -22,14 +24,14 @@ void loadAgain(World& world, InlineNode& node) {
 
 } // namespace
 
-bool World::set(Node& node, std::string_view name, Value value) {
+bool setField(World& world, Node& node, std::string_view name, Value value) {
   const FieldInfo* field = node.type().find(name);
   if (!field || !node.set(*field, std::move(value))) return false;
   std::vector<std::pair<Node*, const FieldInfo*>> open{{&node, field}};
   while (!open.empty()) {
     const auto [one, from] = open.back();
     open.pop_back();
-    if (auto* inlineNode = dynamic_cast<InlineNode*>(one); inlineNode && from->name == "url") loadAgain(*this, *inlineNode);
+    if (auto* inlineNode = dynamic_cast<InlineNode*>(one); inlineNode && from->name == "url") loadAgain(world, *inlineNode);
     auto* instance = dynamic_cast<ProtoInstance*>(one);
     if (!instance) continue;
     instance->give(*from);
@@ -37,7 +39,7 @@ bool World::set(Node& node, std::string_view name, Value value) {
       const FieldInfo* to = connection.node->type().find(connection.field);
       if (connection.interfaceName != from->name || !to || !holdsValue(*to) || to->type != from->type) continue;
       if (isMultiple(to->type)) leaveToViews(*connection.node, *to);
-      giveAcross({*instance, *from, *connection.node, *to, true}, instance->get(*from), diagnostics);
+      giveAcross({*instance, *from, *connection.node, *to, true}, instance->get(*from), world.diagnostics);
       if (NodeRef* standsFor = connection.node->expansion()) *standsFor = {}; // it is asked again
       open.emplace_back(connection.node.get(), to);
     }
