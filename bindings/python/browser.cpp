@@ -19,8 +19,10 @@ using BrowserPtr = std::shared_ptr<BrowserObject>;
 
 BrowserPtr makeBrowser(const py::object& source, double start, const py::object& limits, bool allowAbsolute,
                        const py::object& scriptPath, bool trust, double epoch, bool directOutputAlways) {
-  if (!std::isfinite(start) || !std::isfinite(epoch))
-    throw py::value_error(fmt::format("start={}, epoch={}: finite numbers of seconds expected", start, epoch));
+  if (!(start >= -latestTime && start < latestTime))
+    throw py::value_error(fmt::format("start: a number between -{0} and {0} was expected, not {1}", latestTime, start));
+  if (!(epoch > -1 && epoch < latestTime)) // also NaN; as --epoch of vv
+    throw py::value_error(fmt::format("epoch: a number between -1 and {} was expected, not {}", latestTime, epoch));
   BrowserOptions options;
   if (!scriptPath.is_none()) options.scriptPath = toPath(scriptPath);
   options.trustScripts = trust;
@@ -34,8 +36,8 @@ BrowserPtr makeBrowser(const py::object& source, double start, const py::object&
 }
 
 void tick(const BrowserPtr& self, double time) {
-  if (!(time >= self->running->now())) // also NaN
-    throw py::value_error(fmt::format("tick: a time from {} on expected, not {}", self->running->now(), time));
+  if (!(time >= self->running->now() && time < latestTime)) // also NaN
+    throw py::value_error(fmt::format("tick: a time from {} to {} expected, not {}", self->running->now(), latestTime, time));
   const auto lock = self->lock();
   self->change([&] { self->running->tick(time); });
 }

@@ -100,7 +100,7 @@ py::array numbersOf(const py::handle& object, const Target& target, const char* 
 
 template <class T> using Dense = py::array_t<T, py::array::c_style | py::array::forcecast>;
 
-// One float32 from a double, checked. The range of a rotation is that of its axis: the angle is free.
+// One float32 from a double, checked. free: any finite number will do.
 float single(double v, const Target& target, bool free = false) {
   free ? target.checkFinite(v) : target.checkRange(v);
   const float f = float(v);
@@ -108,13 +108,14 @@ float single(double v, const Target& target, bool free = false) {
   return f;
 }
 
-template <class T> bool isAngle(size_t i) { return std::is_same_v<T, Rotation> && i % width<Rotation> == 3; }
+// The axes of rotations are normalised by the node, as everywhere (docs/decisions/0042); 0 0 0 stays and turns nothing.
+template <class T> constexpr bool isFree = std::is_same_v<T, Rotation>;
 
 template <class T> T fixed(const py::handle& object, const Target& target) {
   Dense<double> array(numbersOf(object, target, "fiu"));
   if (array.ndim() != 1 || size_t(array.size()) != width<T>) target.wrongValue(shapeText(array));
   float numbers[width<T>];
-  for (size_t i = 0; i < width<T>; ++i) numbers[i] = single(array.data()[i], target, isAngle<T>(i));
+  for (size_t i = 0; i < width<T>; ++i) numbers[i] = single(array.data()[i], target, isFree<T>);
   T value;
   std::memcpy(static_cast<void*>(&value), numbers, sizeof value);
   return value;
@@ -127,7 +128,7 @@ template <class T> std::vector<T> rows(const py::handle& object, const Target& t
   if (!fits) target.wrongValue(shapeText(array));
   std::vector<T> list(size_t(array.shape(0)));
   float* out = reinterpret_cast<float*>(list.data());
-  for (size_t i = 0; i < size_t(array.size()); ++i) out[i] = single(array.data()[i], target, isAngle<T>(i));
+  for (size_t i = 0; i < size_t(array.size()); ++i) out[i] = single(array.data()[i], target, isFree<T>);
   return list;
 }
 

@@ -25,6 +25,8 @@ Sections& sections() {
   return all;
 }
 
+thread_local int insideHere = 0; // of them, those of this thread: one in a callback of another
+
 // Before a thread asks for the lock. False: it must not.
 bool mayAsk(bool whileItEnds) {
   Sections& s = sections();
@@ -75,17 +77,21 @@ void endInterpreter() {
 } // namespace
 
 ReleaseGil::ReleaseGil() {
+  bool ends = false;
   {
     Sections& s = sections();
     const std::scoped_lock lock(s.mutex);
-    s.inside++;
+    ends = s.state != State::runs && s.ending != std::this_thread::get_id() && awaitedHere == 0 && insideHere == 0;
+    if (!ends) s.inside++, insideHere++;
   }
   state_ = PyEval_SaveThread();
+  while (ends) ::pause(); // until the process ends
 }
 
 ReleaseGil::~ReleaseGil() {
   while (!mayAsk(true)) ::pause(); // until the process ends
   PyEval_RestoreThread(state_);
+  insideHere--;
   asked(-1);
 }
 

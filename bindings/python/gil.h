@@ -7,7 +7,29 @@
 
 namespace py = pybind11;
 
-// Gives the lock up while it lives.
+inline thread_local int awaitedHere = 0; // mutexes that this thread holds and others may wait for
+
+// A mutex that others may wait for while they are without the interpreter's lock. A thread that holds one when the interpreter
+// ends goes on until it has given it back.
+template <class Mutex> class Awaited : public Mutex {
+ public:
+  void lock() {
+    Mutex::lock();
+    ++awaitedHere;
+  }
+  bool try_lock() {
+    const bool locked = Mutex::try_lock();
+    awaitedHere += locked;
+    return locked;
+  }
+  void unlock() {
+    --awaitedHere;
+    Mutex::unlock();
+  }
+};
+
+// Gives the lock up while it lives. Once the interpreter ends a daemon thread that holds nothing does not return from the
+// constructor: it would begin something new again and again, and the end would wait for it.
 class ReleaseGil {
  public:
   ReleaseGil();

@@ -34,9 +34,12 @@ void setParseError(const Diagnostic& d) {
 void setLimits(Limits& limits, const py::dict& given) {
   for (const auto& [key, value] : given) {
     const std::string name = py::str(key);
-    if (!py::isinstance<py::int_>(value) || value.cast<long long>() < 0)
-      throw py::value_error("limits: " + name + ": a whole number expected");
-    if (setLimit(limits, name, value.cast<uint64_t>())) continue;
+    const unsigned long long number = py::isinstance<py::int_>(value) ? PyLong_AsUnsignedLongLong(value.ptr()) : 0;
+    if (!py::isinstance<py::int_>(value) || PyErr_Occurred()) {
+      PyErr_Clear();
+      throw py::value_error("limits: " + name + ": a whole number of 64 bits expected, not negative");
+    }
+    if (setLimit(limits, name, number)) continue;
     std::vector<std::string> names;
     for (const LimitInfo& limit : limitTable()) names.emplace_back(limit.name);
     throw py::value_error(fmt::format("limits: there is no {}{}", name, didYouMean(name, names)));
@@ -105,7 +108,10 @@ PyObject* newObject(PyTypeObject* type, PyObject*, PyObject*) {
 std::unique_ptr<World> loadSource(const py::object& source, const py::object& limits, bool allowAbsolute) {
   LoadOptions options;
   options.allowAbsolute = allowAbsolute;
-  if (!limits.is_none()) setLimits(options.limits, limits.cast<py::dict>());
+  if (!limits.is_none()) {
+    if (!py::isinstance<py::dict>(limits)) throw py::type_error("limits: a dict of names and numbers expected");
+    setLimits(options.limits, limits.cast<py::dict>());
+  }
   std::string bytes, name = "<memory>";
   bool inMemory = bytesOf(source, bytes);
   if (!inMemory && py::hasattr(source, "read")) {
@@ -139,6 +145,12 @@ PYBIND11_MODULE(_xvrml, module) {
     try {
       if (failure) std::rethrow_exception(failure);
     } catch (const LoadError& error) { setParseError(error.diagnostic); }
+  });
+  // Functions check what they are given; a conversion that none of them has checked is still a matter of the caller's value.
+  py::register_exception_translator([](std::exception_ptr failure) {
+    try {
+      if (failure) std::rethrow_exception(failure);
+    } catch (const py::cast_error&) { PyErr_SetString(PyExc_TypeError, "a value has a type or a size that is not expected"); }
   });
   py::register_exception<picture::RenderError>(module, "RenderError", PyExc_RuntimeError);
   defineCluster(module);

@@ -7,6 +7,7 @@
 
 #include "objects.h"
 #include "xvrml/build.h"
+#include "xvrml/set_field.h"
 
 using namespace xvrml;
 
@@ -44,6 +45,32 @@ py::object getAttribute(const NodeObject& self, const std::string& name) {
   return toPython(browser->get(*self.node, name), world);
 }
 
+// Whether a node in the body of an instance takes a value of the interface as an event alone: a Script's eventIn.
+bool takesEvent(const ProtoInstance& instance, const std::string& name) {
+  for (const IsConnection& connection : instance.is) {
+    if (connection.interfaceName != name) continue;
+    const FieldInfo* in = connection.node->type().findEventIn(connection.field);
+    const auto* inner = dynamic_cast<const ProtoInstance*>(connection.node.get());
+    if ((in && in->access == Access::eventIn) || (inner && takesEvent(*inner, connection.field))) return true;
+  }
+  return false;
+}
+
+// In a world that stands still: as if the file had the value.
+void setStanding(WorldObject& world, const NodeRef& node, const FieldInfo& field, Value value) {
+  const auto* instance = dynamic_cast<const ProtoInstance*>(node.get());
+  if (!world.world) {
+    node->set(field, std::move(value));
+    return;
+  }
+  {
+    const ReleaseGil release; // an Inline reads a file
+    setField(*world.world, *node, field.name, std::move(value));
+  }
+  if (instance && field.access == Access::exposedField && takesEvent(*instance, field.name))
+    world.early.emplace_back(node, field.name);
+}
+
 // In a running world exposedFields and eventIns get an event.
 void setAttribute(const NodeObject& self, const std::string& name, const py::handle& object) {
   const WorldPtr world = self.world();
@@ -68,7 +95,7 @@ void setAttribute(const NodeObject& self, const std::string& name, const py::han
   if (browser)
     now->change([&] { browser->set(*self.node, field->name, std::move(fresh)); });
   else
-    self.node->set(*field, std::move(fresh));
+    setStanding(*now, self.node, *field, std::move(fresh));
 }
 
 // A property of Node whose name is also a field's (NavigationInfo has a field `type`): the field.

@@ -18,13 +18,17 @@
 
 namespace py = pybind11;
 
+// Times and epochs of worlds are less than this, in seconds: three thousand years.
+inline constexpr double latestTime = 1e11;
+
 // What is locked for a world; shared with what Scripts see of it. A thread may hold both, and each twice: callbacks use nodes.
 // Waited for without the GIL, `drawing` before `graph`.
 struct WorldObject;
+using WorldMutex = Awaited<std::recursive_mutex>;
 struct WorldLocks {
   WorldObject* callbacks = nullptr; // who calls back what was heard; null: nobody
-  std::recursive_mutex drawing;     // while a picture is made, and for every change
-  std::recursive_mutex graph;       // for every change, and while fields are read
+  WorldMutex drawing;               // while a picture is made, and for every change
+  WorldMutex graph;                 // for every change, and while fields are read
 };
 using LocksPtr = std::shared_ptr<WorldLocks>;
 
@@ -37,6 +41,7 @@ struct WorldObject : std::enable_shared_from_this<WorldObject> {
   std::unique_ptr<xvrml::Browser> running; // of one that runs
   WorldPtr joined;                         // of loose nodes: where they are now
   int rank = 0;                            // of loose nodes: joins that led here, one after the other, at most
+  std::vector<std::pair<xvrml::NodeRef, std::string>> early; // fields that are sent as events when the world begins to run
   LocksPtr locks = std::make_shared<WorldLocks>();
 
   virtual ~WorldObject();
@@ -56,11 +61,11 @@ struct WorldObject : std::enable_shared_from_this<WorldObject> {
 
   // Locks; for changes both, after it was asked whether there may be some.
   struct Changing {
-    std::unique_lock<std::recursive_mutex> drawing, graph;
+    std::unique_lock<WorldMutex> drawing, graph;
   };
   Changing lock();
-  std::unique_lock<std::recursive_mutex> lockGraph();
-  std::unique_lock<std::recursive_mutex> lockDrawing();
+  std::unique_lock<WorldMutex> lockGraph();
+  std::unique_lock<WorldMutex> lockDrawing();
   // True while a picture is made on behalf of this very thread: callbacks for its progress must leave the world alone.
   bool drawingNow = false;
 

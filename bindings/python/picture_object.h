@@ -19,5 +19,10 @@ struct PictureObject {
   pybind11::object camera;
 };
 
+// The channels of these names (one or several) and RGBA, as bits. Raises TypeError or ValueError.
+uint32_t channelsOf(const pybind11::object& list);
+// What the argument progress asks for: a function of the fraction done, or None. Raises TypeError.
+pybind11::object progressOf(const pybind11::object& given);
+
 // Adds to Picture.stats how light was followed, what is left out and how large the picture's error is.
 void describePicture(pybind11::dict& stats, const RTstats& s);

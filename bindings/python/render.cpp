@@ -20,6 +20,19 @@ int inRange(const char* name, long long value, long long minimum, long long maxi
   return int(value);
 }
 
+std::string typeOf(const py::handle& value) { return py::str(py::type::handle_of(value).attr("__name__")); }
+
+// Width and height, any whole numbers.
+std::pair<long long, long long> sizeOf(const py::object& size) {
+  try {
+    const auto sides = size.cast<std::vector<long long>>();
+    if (sides.size() == 2) return {sides[0], sides[1]};
+  } catch (const py::cast_error&) {}
+  const std::string text = "size: (width, height) expected, whole numbers from 1 to 65536, not " + std::string(py::repr(size));
+  if (py::isinstance<py::str>(size) || !PySequence_Check(size.ptr())) throw py::type_error(text);
+  throw py::value_error(text);
+}
+
 MapOptions::Headlight headlightOf(const py::object& value) {
   using Headlight = MapOptions::Headlight;
   if (py::isinstance<py::bool_>(value)) return value.cast<bool>() ? Headlight::on : Headlight::off;
@@ -27,21 +40,6 @@ MapOptions::Headlight headlightOf(const py::object& value) {
   if (text == "auto") return Headlight::automatic;
   if (text == "on" || text == "off") return text == "on" ? Headlight::on : Headlight::off;
   throw py::value_error("headlight: 'auto', 'on', 'off', True or False expected");
-}
-
-uint32_t channelsOf(const py::object& list) {
-  uint32_t bits = RT_RGBA;
-  const bool one = py::isinstance<py::str>(list);
-  for (const py::handle name : one ? py::object(py::make_tuple(list)) : list) {
-    const picture::Channel* channel = py::isinstance<py::str>(name) ? picture::findChannel(fromText(name)) : nullptr;
-    if (!channel) {
-      std::string known;
-      for (const picture::Channel& c : picture::channelTable()) known += (known.empty() ? "" : ", ") + std::string(c.name);
-      throw py::value_error(fmt::format("channels: out of {} expected, not {}", known, std::string(py::str(name))));
-    }
-    bits |= channel->bit;
-  }
-  return bits;
 }
 
 // A pose: camera to world, looking along -z with +y up, as VRML's own.
@@ -151,9 +149,10 @@ picture::Background backgroundOf(const py::object& given) {
 // Index of the viewpoint asked for by name or number.
 size_t viewpointIndex(const std::vector<ViewpointInfo>& list, const py::object& wanted) {
   if (py::isinstance<py::int_>(wanted) && !py::isinstance<py::bool_>(wanted)) {
-    long long index = wanted.cast<long long>();
+    int overflow = 0;
+    long long index = PyLong_AsLongLongAndOverflow(wanted.ptr(), &overflow);
     if (index < 0) index += static_cast<long long>(list.size());
-    if (index < 0 || index >= static_cast<long long>(list.size()))
+    if (overflow || index < 0 || index >= static_cast<long long>(list.size()))
       throw py::index_error(fmt::format("viewpoint: the world has {}", list.size()));
     return size_t(index);
   }
@@ -197,10 +196,9 @@ py::object render(const WorldPtr& self, const py::object& size, std::optional<lo
                   const py::object& background) {
   picture::RenderSettings settings;
   settings.multiplyTextures = multiplyTextures;
-  const auto sides = size.cast<std::vector<long long>>();
-  if (sides.size() != 2) throw py::value_error("size: (width, height) expected");
-  settings.width = inRange("size", sides[0], 1, 65536);
-  settings.height = inRange("size", sides[1], 1, 65536);
+  const auto [width, height] = sizeOf(size);
+  settings.width = inRange("size", width, 1, 65536);
+  settings.height = inRange("size", height, 1, 65536);
   if (int64_t(settings.width) * settings.height > (int64_t(1) << 28)) throw py::value_error("size: at most 2^28 pixels expected");
   settings.seed = inRange("seed", seed, 0, 2147483647);
   settings.threads = inRange("threads", threads, 0, 1024);
@@ -245,6 +243,7 @@ py::object render(const WorldPtr& self, const py::object& size, std::optional<lo
   view.fit = fit;
   view.fov = fov;
 
+  const py::object bar = progressOf(progress);
   settings.cluster = clusterFor(cluster, self); // before the lock: it may wait for another world
   picture::RenderResult result;
   const auto lock = self->lockDrawing();
@@ -254,9 +253,6 @@ py::object render(const WorldPtr& self, const py::object& size, std::optional<lo
     explicit Drawing(WorldObject& w) : world(w) { world.drawingNow = true; }
     ~Drawing() { world.drawingNow = false; }
   };
-  const py::object bar = progress.ptr() == Py_True    ? py::module_::import("xvrml._progress").attr("Bar")()
-                         : progress.ptr() == Py_False ? py::object(py::none())
-                                                      : progress;
   const auto pictureOf = [&] {
     auto made = std::make_unique<PictureObject>();
     made->stats = statsOf(self->graph(), result);
@@ -301,6 +297,30 @@ py::object render(const WorldPtr& self, const py::object& size, std::optional<lo
 }
 
 } // namespace
+
+uint32_t channelsOf(const py::object& list) {
+  uint32_t bits = RT_RGBA;
+  const bool one = py::isinstance<py::str>(list);
+  if (!one && !PySequence_Check(list.ptr()) && !PyAnySet_Check(list.ptr()))
+    throw py::type_error("channels: a name or several expected, not an object of the class " + typeOf(list));
+  for (const py::handle name : one ? py::object(py::make_tuple(list)) : list) {
+    const picture::Channel* channel = py::isinstance<py::str>(name) ? picture::findChannel(fromText(name)) : nullptr;
+    if (!channel) {
+      std::string known;
+      for (const picture::Channel& c : picture::channelTable()) known += (known.empty() ? "" : ", ") + std::string(c.name);
+      throw py::value_error(fmt::format("channels: out of {} expected, not {}", known, std::string(py::str(name))));
+    }
+    bits |= channel->bit;
+  }
+  return bits;
+}
+
+py::object progressOf(const py::object& given) {
+  if (given.is_none() || given.ptr() == Py_False) return py::none();
+  if (given.ptr() == Py_True) return py::module_::import("xvrml._progress").attr("Bar")();
+  if (PyCallable_Check(given.ptr())) return given;
+  throw py::type_error("progress: True, False, None or a function expected, not an object of the class " + typeOf(given));
+}
 
 void interruptible(const std::function<void(picture::Watch watch)>& work, const py::object& progress) {
   if (interpreterEnds()) throw std::runtime_error("the interpreter is ending");

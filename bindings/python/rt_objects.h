@@ -22,7 +22,7 @@ struct RtContext {
   ~RtContext(); // no call is under way: each holds it
   void close();
   RTcontext handle = nullptr;
-  std::mutex mutex;
+  Awaited<std::mutex> mutex;
   bool dirty = true;                // edits that no query has seen yet
   std::atomic<bool> drawing{false}; // a picture is made on behalf of the thread that holds the mutex
   std::thread::id owner;            // that thread
@@ -43,7 +43,7 @@ class RtUse {
 
  private:
   const RtContextPtr context_;
-  std::unique_lock<std::mutex> lock_;
+  std::unique_lock<Awaited<std::mutex>> lock_;
   RTcontext before_;
 };
 

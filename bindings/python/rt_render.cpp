@@ -44,17 +44,8 @@ py::object render(const RtContextPtr& self, const std::pair<int, int>& size, std
   const std::optional<int> following = picture::transportNamed(transport);
   if (!following) throw py::value_error(fmt::format("transport: {} expected, not '{}'", picture::transportNames, transport));
   uint32_t bits = uint32_t(RT_RGBA | (channels.is_none() ? RT_DEPTH | (error > 0 ? RT_ERROR | RT_TRUST : 0) : 0));
-  if (!channels.is_none()) {
-    const bool one = py::isinstance<py::str>(channels);
-    for (const py::handle name : one ? py::object(py::make_tuple(channels)) : channels) {
-      const picture::Channel* channel = picture::findChannel(fromText(name));
-      if (!channel) throw py::value_error(fmt::format("channels: there is no {}", fromText(name)));
-      bits |= channel->bit;
-    }
-  }
-  const py::object bar = progress.ptr() == Py_True    ? py::module_::import("xvrml._progress").attr("Bar")()
-                         : progress.ptr() == Py_False ? py::object(py::none())
-                                                      : progress;
+  if (!channels.is_none()) bits |= channelsOf(channels);
+  const py::object bar = progressOf(progress);
   auto made = std::make_unique<PictureObject>();
   picture::Picture& picture = made->picture;
   const RtUse use(self);

@@ -69,8 +69,10 @@ py::list meshes(const WorldPtr& self, int spheres, const py::object& view) {
   if (spheres < 0 || spheres > 1000) throw py::value_error("spheres: 0 to 1000 expected");
   std::array<double, 16> camera{};
   if (!view.is_none()) {
-    const auto rows = py::array_t<double, py::array::c_style | py::array::forcecast>(view);
-    if (rows.ndim() != 2 || rows.shape(0) != 4 || rows.shape(1) != 4) throw py::value_error("view: a 4x4 matrix expected");
+    const auto rows = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(view);
+    if (PyErr_Occurred()) PyErr_Clear();
+    if (!rows || rows.ndim() != 2 || rows.shape(0) != 4 || rows.shape(1) != 4)
+      throw py::value_error("view: a 4x4 matrix expected");
     for (size_t i = 0; i < 16; ++i) camera[i] = rows.at(py::ssize_t(i % 4), py::ssize_t(i / 4));
   }
   std::vector<PlacedShape> shapes;

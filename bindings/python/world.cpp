@@ -96,7 +96,9 @@ double now(const WorldPtr& self) { return self->browser() ? self->browser()->now
 void setTime(const WorldPtr& self, double time) {
   Browser& browser = self->live();
   const auto lock = self->lock();
-  if (!(time >= browser.now())) // also NaN
+  if (!(time < latestTime)) // also NaN
+    throw py::value_error(fmt::format("time: a number of seconds below {} expected, not {}", latestTime, time));
+  if (time < browser.now())
     throw py::value_error(fmt::format("time: from {} on expected, not {}: it does not go back", browser.now(), time));
   self->change([&] { browser.tick(time); });
 }

@@ -60,7 +60,10 @@ Browser& WorldObject::live() {
 void WorldObject::run(std::unique_ptr<World> made, const BrowserOptions& options, double start, const RunOptions& more) {
   const MakingBrowser making(locks); // its Scripts begin at once
   locks->callbacks = this;
-  change([&] { running = std::make_unique<Browser>(std::move(made), withOwnEngines(options), start, more); });
+  change([&] {
+    running = std::make_unique<Browser>(std::move(made), withOwnEngines(options), start, more);
+    for (const auto& [node, field] : std::exchange(early, {})) running->set(*node, field, running->get(*node, field));
+  });
   scriptsLock(running.get(), locks);
 }
 
@@ -109,12 +112,12 @@ WorldObject::Changing WorldObject::lock() {
   return locked;
 }
 
-std::unique_lock<std::recursive_mutex> WorldObject::lockGraph() {
+std::unique_lock<WorldMutex> WorldObject::lockGraph() {
   const ReleaseGil release;
   return std::unique_lock(locks->graph);
 }
 
-std::unique_lock<std::recursive_mutex> WorldObject::lockDrawing() {
+std::unique_lock<WorldMutex> WorldObject::lockDrawing() {
   const ReleaseGil release;
   return std::unique_lock(locks->drawing);
 }

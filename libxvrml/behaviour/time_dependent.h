@@ -22,6 +22,7 @@ struct TimeStep {
   bool begins = false;  // isActive TRUE is due
   bool ends = false;    // isActive FALSE is due, after the final events
   bool newCycle = false;
+  bool told = false;      // what runs has had a step at this very time before: fraction and time have been sent
   double time = 0;       // seconds: now, or the exact end if that has passed since the last step
   double cycleStart = 0; // seconds: beginning of the cycle that `time` lies in
   double fraction = 0;   // of that cycle, in [0,1]: 1, never 0, at its end
@@ -51,6 +52,7 @@ class TimeDependent {
   bool waiting_ = false;  // startTime, or the turn of isActive, was still to come at the last step
   bool finished_ = false; // a run without loop is over: it takes a new startTime, or loop, to run again
   double last_ = 0;       // time of the last step
+  double stepped_ = std::numeric_limits<double>::quiet_NaN(); // now of the last step in which it ran
   double ticked_ = std::numeric_limits<double>::quiet_NaN(); // time of the last tick
   double cycleStart_ = 0;
 };

@@ -34,8 +34,10 @@ void send(Events& events, Node& node, const TimeStep& step) {
   if (step.running) {
     if (step.begins) events.send(node, out.isActive, true);
     if (step.newCycle) events.send(node, out.cycleTime, step.cycleStart);
-    events.send(node, out.fraction, float(step.fraction));
-    events.send(node, out.time, step.time);
+    if (!step.told) {
+      events.send(node, out.fraction, float(step.fraction));
+      events.send(node, out.time, step.time);
+    }
     if (step.ends) events.send(node, out.isActive, false);
   }
 }

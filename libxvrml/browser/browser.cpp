@@ -45,10 +45,33 @@ NodeRef Browser::node(std::string_view name) const {
   return found == names.end() ? NodeRef() : found->second;
 }
 
+// Stores a field, and if it is of a prototype's instance also in the body: what takes events there gets one.
+static bool storeField(Engine& engine, Node& node, const FieldInfo& field, Value value) {
+  if (!engine.store(node, field, std::move(value))) return false;
+  std::vector<std::pair<ProtoInstance*, const FieldInfo*>> open;
+  const auto add = [&](Node& one, const FieldInfo& its) {
+    if (auto* instance = dynamic_cast<ProtoInstance*>(&one)) open.emplace_back(instance, &its);
+  };
+  add(node, field);
+  while (!open.empty()) {
+    const auto [instance, from] = open.back();
+    open.pop_back();
+    for (const IsConnection& connection : instance->is) {
+      const FieldInfo* to = connection.node->type().find(connection.field);
+      if (connection.interfaceName != from->name || !to || !holdsValue(*to) || to->type != from->type) continue;
+      if (to->access == Access::exposedField)
+        engine.post(*connection.node, *to, instance->get(*from));
+      else if (engine.store(*connection.node, *to, instance->get(*from)))
+        add(*connection.node, *to);
+    }
+  }
+  return true;
+}
+
 bool Browser::set(Node& node, std::string_view field, Value value) {
   const FieldInfo* plain = node.type().find(field);
   if (plain && plain->access == Access::field) {
-    const bool stored = impl_->engine->store(node, *plain, std::move(value));
+    const bool stored = storeField(*impl_->engine, node, *plain, std::move(value));
     impl_->settle();
     return stored;
   }

@@ -1,13 +1,13 @@
 // expander.cpp: see expander.h.
 #include "parse/expander.h"
 
-#include <filesystem>
 #include <unordered_set>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "parse/builder.h"
+#include "parse/crossing.h"
 #include "parse/field_access.h"
 #include "parse/inline_node.h"
 
@@ -310,29 +310,6 @@ void Expander::expand(const std::vector<NodeRef>& instances, std::vector<NodeRef
   }
 }
 
-namespace {
-
-bool isUrlField(const FieldInfo& field) {
-  return field.type == FieldType::MFString && (field.name == "url" || field.name.ends_with("Url"));
-}
-
-// A relative URL written in the file of the instance, for a node that stands in another file (4.5.3).
-void rebaseUrls(MFString& urls, const std::string& from, const std::string& to) {
-  namespace fs = std::filesystem;
-  const fs::path fromFolder = fs::path(from).lexically_normal().parent_path();
-  const fs::path toFolder = fs::path(to).lexically_normal().parent_path();
-  if (fromFolder == toFolder) return;
-  const fs::path step = fromFolder.lexically_relative(toFolder);
-  if (step.empty() || step == ".") return;
-  for (std::string& url : urls) {
-    const size_t colon = url.find(':');
-    const bool relative = !url.empty() && url[0] != '/' && url[0] != '#' && (colon == url.npos || url.find('/') < colon);
-    if (relative) url = (step / url).string();
-  }
-}
-
-} // namespace
-
 // "field IS name": the instance's value becomes that of the node in its body (4.8.2).
 void Expander::applyConnections(ProtoInstance& instance, const ProtoDeclaration& definition, std::vector<NodeRef>& inlines) {
   std::unordered_map<std::string_view, Value> undeclared; // what an EXTERNPROTO's interface leaves out has its default
@@ -356,51 +333,12 @@ void Expander::holdsItself(const NodeRef& node) {
   if (state_.cycleHolders.insert(node.get()).second) state_.world.cyclic.push_back(node);
 }
 
-namespace {
-
-// Whether `target` hangs below `top`, fields of Scripts and prototype instances left out. Asked only in files with nodes that are
-// USEd within themselves.
-bool reaches(Node& top, const Node& target) {
-  std::unordered_set<const Node*> seen{&top};
-  std::vector<Node*> open{&top};
-  const auto add = [&](const NodeRef& node) {
-    if (node && seen.insert(node.get()).second) open.push_back(node.get());
-  };
-  while (!open.empty()) {
-    Node& node = *open.back();
-    open.pop_back();
-    if (&node == &target) return true;
-    if (node.type().index >= 0) forEachChild(node, [&](NodeRef& child, const FieldInfo&) { add(child); });
-    const auto* instance = dynamic_cast<const ProtoInstance*>(&node);
-    if (!instance) continue;
-    for (const NodeRef& root : instance->body.roots) add(root);
-    for (const IsConnection& connection : instance->is) add(connection.node);
-    for (const Route& route : instance->body.routes) add(route.from), add(route.to);
-  }
-  return false;
-}
-
-} // namespace
-
 void Expander::connect(const ProtoInstance& instance, const FieldInfo& from, const Value& value, const IsConnection& connection) {
   Node& node = *connection.node;
   const FieldInfo& to = *node.type().find(connection.field);
   if (auto* inner = dynamic_cast<ProtoInstance*>(&node)) inner->give(to);
   if (!state_.entered.empty() && node.type().index < 0 && holdsNodes(to))
     holdsItself(connection.node); // it may: more is not known
-  const auto acceptable = [&](const NodeRef& child) {
-    if (!child) return true;
-    if (!state_.entered.empty() && node.type().index >= 0 && reaches(*child, node)) {
-      state_.diagnostics.error(instance.source,
-                               fmt::format("the value of {} would make a node its own descendant (4.4.4)", from.name));
-      return false;
-    }
-    const NodeType* type = effectiveType(*child);
-    if (!type || to.nodeTypes.empty() || typeAccepted(to.nodeTypes, *type)) return true;
-    state_.diagnostics.error(child->source, fmt::format("'{}' cannot be in field {} of {} that {} stands for: expected {}",
-                                                        type->name, to.name, node.type().name, from.name, to.nodeTypes));
-    return false;
-  };
   const void* const given = std::visit([](const auto& alternative) -> const void* { return &alternative; }, value);
   if (!state_.budget.take(valueBytes(to.type, given))) {
     if (!std::exchange(state_.full, true))
@@ -409,20 +347,8 @@ void Expander::connect(const ProtoInstance& instance, const FieldInfo& from, con
                                                             state_.budget.name(), instance.type().name, from.name));
     return;
   }
-  visitStorage(to.type, node.storage(to), [&](auto& target) {
-    using T = std::remove_reference_t<decltype(target)>;
-    target = std::get<T>(value);
-    if constexpr (std::is_same_v<T, MFString>) {
-      const bool foreign = isUrlField(to) && instance.isGiven(from) && instance.source.file && node.source.file;
-      if (foreign) rebaseUrls(target, *instance.source.file, *node.source.file);
-    } else if constexpr (std::is_same_v<T, NodeRef>) {
-      if (!acceptable(target)) target = {};
-    } else if constexpr (std::is_same_v<T, MFNode>) {
-      const bool keeps = keepsNull(to) || node.type().index < 0;
-      std::erase_if(target, [&](const NodeRef& child) { return child ? !acceptable(child) : !keeps; });
-    }
-  });
-  if (!holdsNodes(to) && to.range.bounded()) enforceRange(to, node.storage(to));
+  const Crossing crossing{instance, from, node, to, !state_.entered.empty()};
+  giveAcross(crossing, value, state_.diagnostics);
 }
 
 } // namespace xvrml

@@ -43,6 +43,26 @@ def test_time_is_an_argument(browser):
         browser.tick(float("nan"))
 
 
+def test_a_moment_is_told_once():
+    w = xvrml.loads("DEF T TimeSensor { loop TRUE cycleInterval 4 } DEF S TimeSensor { loop TRUE cycleInterval 4 }".join(
+        ("#VRML V2.0 utf8\n", "\n")))
+    heard = []
+    for event in ("T.fraction_changed", "T.time", "T.isActive", "S.fraction_changed"):
+        w.on(event, lambda value, time, event=event: heard.append((event, value)))
+    w.time = 0.5
+    assert [e for e, _ in heard].count("T.fraction_changed") == 1
+    heard.clear()
+    w["T"].loop = False
+    w.time = 0.5
+    assert heard == []
+    w["T"].enabled = False  # it stops at the same moment
+    assert heard == [("T.isActive", False)]
+    heard.clear()
+    w["T"].enabled = True  # and begins anew
+    w.time = 1
+    assert ("S.fraction_changed", 0.25) in heard
+
+
 def test_a_browser_is_a_world(browser):
     assert isinstance(browser, xvrml.World)
     assert "Clock" in browser and set(browser.names) >= {"Clock", "Place"}

@@ -2,6 +2,8 @@
 import copy
 import io
 import pickle
+import subprocess
+import sys
 
 import pytest
 
@@ -43,7 +45,39 @@ def test_a_name_written_nearly_right(name, near):
     assert not hasattr(xvrml, "nothing_like_it")
 
 
+def test_submodules_are_there_without_an_import_of_their_own():
+    code = "import sys, xvrml; assert 'xvrml.rt' not in sys.modules; print(xvrml.%s.__name__, hasattr(xvrml, 'nothing'))"
+    for name in ("rt", "interop", "dask"):
+        done = subprocess.run([sys.executable, "-c", code % name], capture_output=True, text=True)
+        assert done.stdout == f"xvrml.{name} False\n", done.stderr
+
+
+def test_a_submodule_whose_package_is_missing_says_so():
+    code = "import sys; sys.modules['numpy'] = None; import xvrml; print(hasattr(xvrml, 'rt')); xvrml.rt"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert done.stdout == "False\n" and "xvrml.rt needs the package numpy, which is not installed" in done.stderr
+
+
 @pytest.mark.parametrize("call, words", [
+    (lambda w: w.render(size="x"), "size: (width, height) expected, whole numbers from 1 to 65536, not 'x'"),
+    (lambda w: w.render(size=5), "size: (width, height) expected, whole numbers from 1 to 65536, not 5"),
+    (lambda w: w.render(size=(4, 4), channels=5), "channels: a name or several expected"),
+    (lambda w: w.render(size=(4, 4), progress="yes"), "progress: True, False, None or a function expected"),
+    (lambda w: w.render(size=(4, 4), spp=10**30), "render(): spp: a number nearer to 0 expected"),
+    (lambda w: w.render(size=(4, 4), fov=np.zeros(3)), "render(): fov: a number or None expected"),
+    (lambda w: w.film("a.gif", "now", 1), "start: a number expected, not the str 'now'"),
+    (lambda w: next(w.animate(0, None)), "stop: a number expected, not None"),
+    (lambda w: setattr(w, "time", "now"), "World.time: a number expected, not the str 'now'"),
+    (lambda w: xvrml.loads(BALL, limits=5), "limits: a dict of names and numbers expected"),
+    (lambda w: xvrml.Browser(BALL.encode()).pick(5, (0, 0, 1)), "pick(): origin: 3 numbers expected, not the int 5"),
+    (lambda w: xvrml.Browser(BALL.encode()).load_url("x.wrl"), "load_url(): urls: a list of texts expected, not the str 'x.wrl'"),
+    (lambda w: w.raycaster("many"), "meshes(): spheres: a whole number expected"),
+    (lambda w: xvrml.rt.Raycaster("all"), "Context(): threads: a whole number expected, not the str 'all'"),
+    (lambda w: xvrml.rt.Raycaster().add_sphere("here", 1), "center: 3 numbers expected, not the str 'here'"),
+    (lambda w: xvrml.rt.Context().render(size="x"), "render(): size: 2 whole numbers expected, not the str 'x'"),
+    (lambda w: xvrml.rt.Context().camera(eye=1, at=(0, 0, 0)), "camera(): eye: 3 numbers expected, not the int 1"),
+    (lambda w: xvrml.Pinhole(np.eye(3), center="x"), "center: a number expected, not the str 'x'"),
+    (lambda w: xvrml.Pinhole(np.eye(3)).rays(2.5, 3), "width: a whole number expected, not the float 2.5"),
     (lambda w: w.render(spp="many"), "render(): spp: a whole number or None expected, not the str 'many'"),
     (lambda w: w.render(shadows="yes"), "render(): shadows: True or False expected"),
     (lambda w: w.render(sise=(3, 4)), "render(): there is no argument sise; did you mean size?"),
@@ -57,6 +91,24 @@ def test_arguments_of_wrong_types_are_named(call, words):
     with pytest.raises(TypeError) as caught:
         call(xvrml.loads(BALL))
     assert words in str(caught.value) and "incompatible" not in str(caught.value)
+
+
+@pytest.mark.parametrize("call, words", [
+    (lambda w: w.render(size=(1e9, 1)), "size: (width, height) expected, whole numbers from 1 to 65536, not (1000000000.0, 1)"),
+    (lambda w: w.render(size=(10**30, 1)), "size: (width, height) expected"),
+    (lambda w: w.render(size=(4, 4), viewpoint=-10**30), "viewpoint: the world has 1"),
+    (lambda w: w.meshes(view="x"), "view: a 4x4 matrix expected"),
+    (lambda w: xvrml.loads(BALL, limits={"arrayElements": 10**30}), "limits: arrayElements: a whole number of 64 bits expected"),
+    (lambda w: xvrml.Pinhole(np.eye(3)).project((1, 2)), "points: numbers of shape (..., 3) expected"),
+    (lambda w: xvrml.Pinhole(np.eye(3), center=float("nan")), "center: a finite number expected"),
+    (lambda w: xvrml.Browser(BALL.encode(), epoch=1e300), "epoch: a number between -1 and 100000000000 was expected, not 1e+300"),
+    (lambda w: xvrml.Browser(BALL.encode(), epoch=-1), "epoch: a number between -1 and 100000000000 was expected, not -1"),
+    (lambda w: setattr(w, "time", float("inf")), "time: a number of seconds below 100000000000 expected, not inf"),
+])
+def test_arguments_of_wrong_values_are_named(call, words):
+    with pytest.raises((ValueError, IndexError)) as caught:
+        call(xvrml.loads(BALL))
+    assert words in str(caught.value)
 
 
 def test_pictures_are_pickled():

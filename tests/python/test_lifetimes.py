@@ -181,6 +181,17 @@ def test_the_interpreter_ends_while_a_daemon_thread_works(work):
         assert time.monotonic() - begin < 60
 
 
+@pytest.mark.parametrize("work", ["world.meshes()", "world.to_vrml()", "xvrml.loads('#VRML V2.0 utf8 Group { }')",
+                                  "browser.tick(browser.now)"])
+def test_the_end_does_not_wait_for_threads_that_begin_again_and_again(work):
+    code = ENDING.format(world=BOX.replace("\n", " ").replace("utf8 ", "utf8\\n", 1), work=work, threads=3, pause=0.1)
+    code = code.replace('print("ends"', 'begin = time.monotonic()\nprint("ends"')
+    code = "import atexit, time\natexit.register(lambda: print('took', time.monotonic() - begin))\n" + code
+    done = python(code)  # what is registered first is called last
+    assert done.returncode == 0, done.stderr
+    assert float(done.stdout.split("took")[1]) < 3, done.stdout
+
+
 def test_the_main_thread_may_render_while_the_interpreter_ends():
     done = python("""
         import atexit, xvrml

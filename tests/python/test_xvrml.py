@@ -225,6 +225,23 @@ def test_ranges():
         w["S"].radius = 0
 
 
+def test_axes_of_rotations_are_normalised():
+    w = world("DEF A Transform { } DEF O OrientationInterpolator { } DEF E Transform { rotation 0 5 0 1 }")
+    a, o = w["A"], w["O"]
+    for runs in (False, True):
+        if runs:
+            w.time = 1
+        a.rotation = (0, 5, 0, 1)
+        assert a.rotation == w["E"].rotation == (0, 1, 0, 1)
+        o.keyValue = [(0, 5, 0, 1), (3, 0, 4, 9)]
+        assert np.allclose(o.keyValue, [(0, 1, 0, 1), (0.6, 0, 0.8, 9)])
+        a.rotation = (0, 0, 0, 2)  # turns nothing, as in a file
+        assert a.rotation == (0, 0, 0, 2)
+        with pytest.raises(ValueError, match="not infinity or NaN"):
+            a.rotation = (0, float("inf"), 0, 1)
+    assert np.allclose(xvrml.Transform(rotation=(3, 0, 4, 1)).rotation, (0.6, 0, 0.8, 1))
+
+
 def test_nodes_as_values():
     w = world()
     n, other = w["All"], w["Other"]

@@ -17,6 +17,7 @@ A world has a clock of its own, which moves when it is told to:
 xvrml.rt is the renderer without VRML, xvrml.interop goes between other packages' meshes and pictures and ours.
 """
 import difflib as _difflib
+import importlib as _importlib
 import warnings as _warnings
 
 from . import _arguments, _world
@@ -40,15 +41,22 @@ from .nodes import *  # noqa: E402,F401,F403
 __all__ = ["Browser", "Cluster", "ClusterError", "Diagnostic", "Film", "Mesh", "Node", "ParseError", "Picture", "Pinhole", "RenderError",
            "ViewpointInfo", "Worker", "World", "load", "load_node_plugins", "loads", "__version__", *nodes.__all__]
 
+_SUBMODULES = ("dask", "interop", "rt")
+
 
 def __getattr__(name):
-    """Nodes of plug-ins that were loaded later."""
+    """Submodules, imported when they are first used, and nodes of plug-ins that were loaded later."""
     if name.startswith("__"):
         raise AttributeError(f"module xvrml has no attribute {name}")
+    if name in _SUBMODULES:
+        try:
+            return _importlib.import_module(f".{name}", __name__)
+        except ModuleNotFoundError as error:
+            raise AttributeError(f"xvrml.{name} needs the package {error.name}, which is not installed") from error
     try:
         return getattr(nodes, name)
     except AttributeError:
-        known = [*__all__, "dask", "interop", "nodes", "rt"]
+        known = [*__all__, *_SUBMODULES, "nodes"]
         near = _difflib.get_close_matches(name, known, 1) or [k for k in known if k.lower() == name.lower()]
         hint = f"; did you mean {near[0]}?" if near else ""
         raise AttributeError(f"module xvrml has no attribute {name}{hint}") from None

@@ -3,9 +3,15 @@ wrapped here says which argument it was, what was expected and what was given.""
 import difflib
 import functools
 import inspect
+import math
+import operator
 import re
 import types
 
+_OPTIONAL = r"(?:Optional|typing\.Optional)\[(.*)\]"
+_LIST = r"(?:List|list|Sequence)\[([\w.]+)(?:\[(\d+)\])?\]"
+_PAIR = r"(?:Tuple|tuple)\[int, int\]"
+_MANY = {"int": "whole numbers", "float": "numbers", "str": "texts"}
 _WORDS = {"int": "a whole number", "float": "a number", "str": "a text", "bool": "True or False", "object": "any object",
           "dict": "a dict", "list": "a list", "tuple": "a tuple", "bytes": "bytes", "None": "None"}
 
@@ -46,22 +52,36 @@ def _signature(doc):
 
 
 def _describe(kind):
-    optional = re.fullmatch(r"(?:Optional|typing\.Optional)\[(.*)\]", kind)
+    optional = re.fullmatch(_OPTIONAL, kind)
     if optional:
         return f"{_describe(optional[1])} or None"
+    several = re.fullmatch(_LIST, kind)
+    if several:
+        return f"{several[2] or 'a list of'} {_MANY.get(several[1], several[1].split('.')[-1] + 's')}"
+    if re.fullmatch(_PAIR, kind):
+        return "2 whole numbers"
     name = kind.split("[")[0].split(".")[-1]
     return _WORDS.get(name, f"a {name}")
 
 
 def _fits(value, kind):
     """Whether a value is what a type's text asks for, as far as that can be told from the text; True in doubt."""
-    optional = re.fullmatch(r"(?:Optional|typing\.Optional)\[(.*)\]", kind)
+    optional = re.fullmatch(_OPTIONAL, kind)
     if optional:
         return value is None or _fits(value, optional[1])
-    if kind == "int":
-        return hasattr(type(value), "__index__")
-    if kind == "float":
-        return hasattr(type(value), "__float__") or hasattr(type(value), "__index__")
+    several = re.fullmatch(_LIST, kind)
+    if several or re.fullmatch(_PAIR, kind):
+        try:
+            good = not isinstance(value, (str, bytes, dict)) and all(_fits(v, several[1] if several else "int") for v in value)
+            return good and len(value) == int(several[2] or len(value) if several else 2)
+        except TypeError:
+            return False
+    if kind in ("int", "float"):
+        try:
+            operator.index(value) if kind == "int" else _real(value)
+        except TypeError:
+            return False
+        return True
     if kind == "bool":
         return isinstance(value, bool)
     if kind in ("str", "dict", "bytes"):
@@ -102,6 +122,10 @@ def sentence(function, args, kwargs):
     missing = [n for n in order[len(args):] if n not in kwargs and n not in optional and n != "self"]
     if missing:
         return f"{name}(): {' and '.join(missing)} must be given"
+    for given, value in [*zip(order, args), *kwargs.items()]:  # types are right
+        for one in [value] if names[given] in ("int", "Optional[int]") else value if re.fullmatch(_PAIR, names[given]) else []:
+            if one is not None and abs(operator.index(one)) >= 1 << 31:
+                return f"{name}(): {given}: a number nearer to 0 expected, not {_short(one)}"
     return f"{name}(): the arguments do not fit {name}({', '.join(shown)})"
 
 
@@ -121,16 +145,64 @@ def _wrapped(function):
     return call
 
 
+def _wrapped_setter(cls, name, setter):
+    """A property's setter: its text has no name, and "arg1" for the value."""
+    kind = re.search(r"arg1: (.*)\) -> ", setter.__doc__ or "")
+
+    @functools.wraps(setter)
+    def assign(self, value):
+        try:
+            return setter(self, value)
+        except TypeError as error:
+            if not kind or "incompatible" not in str(error):
+                raise
+        raise TypeError(f"{cls.__name__}.{name}: {_describe(kind[1])} expected, not {_short(value)}")
+
+    return assign
+
+
 def _compiled(value):
     return type(value).__name__ in ("instancemethod", "builtin_function_or_method") or isinstance(value, types.BuiltinFunctionType)
 
 
 def explain_class(cls):
-    """Wraps the compiled methods of a class."""
+    """Wraps the compiled methods of a class, and what assigns its properties."""
     for name, value in list(vars(cls).items()):
+        if isinstance(value, property) and value.fset and _compiled(value.fset):
+            setattr(cls, name, property(value.fget, _wrapped_setter(cls, name, value.fset), value.fdel, value.__doc__))
         if name in ("__new__", "__getattr__", "__setattr__") or not _compiled(value):
             continue
         setattr(cls, name, _wrapped(inspect.unwrap(getattr(cls, name))))
+
+
+def _real(value):
+    if isinstance(value, (str, bytes)):
+        raise TypeError
+    return float(value)
+
+
+def number(name, value):
+    """An argument that must be a finite number, as a float."""
+    try:
+        made = _real(value)
+    except (TypeError, ValueError):
+        raise TypeError(f"{name}: a number expected, not {_short(value)}") from None
+    except OverflowError:
+        made = math.inf
+    if not math.isfinite(made):
+        raise ValueError(f"{name}: a finite number expected, not {_short(value)}")
+    return made
+
+
+def whole(name, value):
+    """An argument that must be a whole number above 0, as an int."""
+    try:
+        made = operator.index(value)
+    except TypeError:
+        raise TypeError(f"{name}: a whole number expected, not {_short(value)}") from None
+    if made < 1:
+        raise ValueError(f"{name}: a whole number above 0 expected, not {made}")
+    return made
 
 
 def explained(function):

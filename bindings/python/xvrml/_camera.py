@@ -1,5 +1,7 @@
 """Cameras as matrices: Pinhole, in the conventions of OpenCV."""
 
+from . import _arguments
+
 
 def _matrix(name, value, rows, columns):
     import numpy as np
@@ -46,9 +48,7 @@ class Pinhole:
         if not (k[0, 0] > 0 and k[1, 1] > 0) or k[1, 0] != 0 or not np.array_equal(k[2], [0, 0, 1]):
             raise ValueError("K: [[fx, s, cx], [0, fy, cy], [0, 0, 1]] with fx and fy above 0 expected")
         self._T = np.eye(4) if T is None else _rigid("T", T)
-        self._center = float(center)
-        if not np.isfinite(self._center):
-            raise ValueError("center: a finite number expected")
+        self._center = _arguments.number("center", center)
         for matrix in (self._K, self._T):
             matrix.setflags(write=False)
 
@@ -83,7 +83,13 @@ class Pinhole:
         """Where points (..., 3) of the world are seen: (..., 3), column, row and distance along the view axis, which is negative
         behind the camera."""
         import numpy as np
-        seen = np.asarray(points, np.float64) @ self._T[:3, :3].T + self._T[:3, 3]
+        try:
+            points = np.asarray(points, np.float64)
+        except (TypeError, ValueError):
+            points = None
+        if points is None or points.ndim < 1 or points.shape[-1] != 3:
+            raise ValueError("points: numbers of shape (..., 3) expected")
+        seen = points @ self._T[:3, :3].T + self._T[:3, 3]
         z = seen[..., 2:]
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.concatenate([(seen @ self._K.T)[..., :2] / z, z], -1)
@@ -92,6 +98,7 @@ class Pinhole:
         """Rays (height, width, 6) through the centres of the pixels: origin and direction, whose length along the view axis is 1:
         t_hit of a Raycaster is the distance along that axis."""
         import numpy as np
+        width, height = _arguments.whole("width", width), _arguments.whole("height", height)
         column, row = np.meshgrid(np.arange(width) + self._center, np.arange(height) + self._center)
         pose = self.pose
         directions = np.stack([column, row, np.ones_like(column)], -1) @ (pose[:3, :3] @ np.linalg.inv(self._K)).T

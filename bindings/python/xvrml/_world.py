@@ -3,6 +3,8 @@ Scripts run in interpreters that may not have it."""
 import contextlib
 import math
 
+from . import _arguments
+
 
 class _Text:
     """What load() takes for a file object: text with the name of the file that it stands for."""
@@ -69,6 +71,7 @@ def unroute(self, source, target):
 def animate(self, start, stop, fps=25, **options):
     """Pictures of the times from start up to stop (excluded), fps of them a second; options are those of render. The clock gets
     there in steps of 1/fps from 0, so that a picture of some time is the same whatever was pictured before it."""
+    start, stop, fps = (_arguments.number(*one) for one in (("start", start), ("stop", stop), ("fps", fps)))
     if not fps > 0:
         raise ValueError("fps: above 0 expected")
     first, end = round(start * fps), round(stop * fps)

@@ -37,7 +37,11 @@ def render_frames(world, times, client=None, *, out=None, fps=30.0, retries=3, i
     options  as of Browser.render: size, spp, viewpoint, transport ...
     """
     if client is None:
-        from distributed import get_client
+        try:
+            from distributed import get_client
+        except ModuleNotFoundError as error:
+            raise ModuleNotFoundError(f"render_frames() without a client needs the package {error.name}, which is not installed: "
+                                      "pip install xvrml[dask]", name=error.name) from None
         client = get_client()
     times, fps, suffix = list(times), float(fps), None
     if not fps > 0:

@@ -15,11 +15,15 @@
 """
 import numpy as np
 
+from . import _arguments
 from ._camera import Pinhole
 from ._xvrml import rt as _rt
 from ._xvrml.rt import Context, Error, Instance, Light, Object, Shader, Texture
 
 __all__ = ["Context", "Error", "Instance", "Light", "Object", "Raycaster", "Shader", "Texture", "create_rays_pinhole"]
+
+for _class in (Context, Instance, Light, Object, Shader, Texture):
+    _arguments.explain_class(_class)
 
 _FIVE = ("t_hit", "geometry_ids", "primitive_ids", "primitive_uvs", "primitive_normals")
 
@@ -57,6 +61,8 @@ class Raycaster:
     def add_sphere(self, center, radius):
         """Adds an exact sphere; its primitive id is 0. Returns its number."""
         matrix = np.eye(4)
+        if not _arguments._fits(center, "List[float[3]]"):
+            raise TypeError(f"center: 3 numbers expected, not {_arguments._short(center)}")
         matrix[:3, 3] = center
         number = self._place(self._context.sphere(radius), matrix, None)
         self.meshes.append((center, radius))
