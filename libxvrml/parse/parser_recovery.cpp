@@ -210,10 +210,11 @@ bool Parser::strayInStatements(const Token& token, TokenKind end) {
 void Parser::passBrace(bool inNode) {
   const Token next = lexer_.peek();
   Token type;
-  if (lexer_.accept(TokenKind::braceClose)) return;
+  if (!inNode && lexer_.accept(TokenKind::braceClose)) return;
   bool here = next.is("ROUTE") || next.is("PROTO") || next.is("EXTERNPROTO");
   if (inNode)
-    here = here || (next.is(TokenKind::identifier) && sink_.hasField(next.text)) || (sink_.isScript() && declares(next));
+    here = here || next.is(TokenKind::braceClose) || (next.is(TokenKind::identifier) && sink_.hasField(next.text)) ||
+           (sink_.isScript() && declares(next));
   else
     here = here || next.is("USE") || (next.is(TokenKind::identifier) && nodeAhead(type));
   if (!here) return skipBlock();
