@@ -32,12 +32,11 @@ def green_box():
 @pytest.mark.parametrize("runs", [False, True])
 @pytest.mark.parametrize("instance, field", [("Lamp", "c"), ("Pair", "both")])
 def test_an_exposed_field_of_an_instance_is_drawn(runs, instance, field):
-    w = world(f"DEF L {instance} {{ }} DEF Other {instance} {{ }}")
+    w = world(f"DEF L {instance} {{ }} Transform {{ translation 20 0 0 children DEF Other {instance} {{ }} }}")
     if runs:
         w.time = 0
     else:
         assert middle(w) == "r"
-    w.remove(w["Other"])
     setattr(w["L"], field, (0, 0, 1))
     assert getattr(w["L"], field) == (0, 0, 1) and middle(w) == "b"
     w.time = 1
