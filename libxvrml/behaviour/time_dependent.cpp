@@ -32,8 +32,8 @@ bool TimeDependent::wantsTicks(const TimeFields& fields, double now) const {
   return fields.enabled && !finished_ && (fields.startTime > now || end(fields) > now);
 }
 
-// At most one event of an eventOut has a timestamp (4.10.3): a second tick of the same time tells what runs nothing new. A field
-// that is set between the two may end it, or begin it anew (TimeStep::told).
+// At most one event of an eventOut has a timestamp (4.10.3): a second tick of the same time tells what runs nothing new, and
+// neither does a field that is set meanwhile. One that ends the run brings the final events once more (6.50).
 TimeStep TimeDependent::tick(const TimeFields& fields, double now, bool mayTurn) {
   if (std::exchange(ticked_, now) == now && active_ && fields.enabled && now < end(fields)) return {};
   return step(fields, now, mayTurn);
@@ -91,8 +91,8 @@ TimeStep TimeDependent::step(const TimeFields& fields, double now, bool mayTurn)
     active_ = true;
   } else {
     const double over = fields.enabled ? end(fields) : now;
-    step.told = stepped_ == now;
     step.ends = now >= over && mayTurn;
+    step.told = stepped_ == now && !step.ends;
     step.time = now >= over ? std::clamp(over, std::min(last_, now), now) : now; // a stopTime set into the past stops now
     place(fields, step);
     if (!fields.loop && step.time >= cycleStart_ + fields.cycle) step.fraction = 1;

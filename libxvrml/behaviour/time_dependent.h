@@ -22,7 +22,7 @@ struct TimeStep {
   bool begins = false;  // isActive TRUE is due
   bool ends = false;    // isActive FALSE is due, after the final events
   bool newCycle = false;
-  bool told = false;      // what runs has had a step at this very time before: fraction and time have been sent
+  bool told = false;      // what goes on has had a step at this very time before: fraction and time have been sent
   double time = 0;       // seconds: now, or the exact end if that has passed since the last step
   double cycleStart = 0; // seconds: beginning of the cycle that `time` lies in
   double fraction = 0;   // of that cycle, in [0,1]: 1, never 0, at its end
