@@ -75,7 +75,7 @@ class Parser {
   bool closeListBefore(const Token& brace);
   void passBrace(bool holdsFields);
   void noteLost(const Token& token);
-  void skipBlock();
+  void skipBlock(char kind = '{');
   bool skipNested(char opened, bool inList);
   void skipOne();
   void skipToNode();

@@ -29,17 +29,18 @@ void Parser::noteLost(const Token& token) {
   if (lost.is(TokenKind::identifier)) sink_.lostName(lost);
 }
 
-// From inside a block to behind its closing brace.
-void Parser::skipBlock() {
-  if (!skipNested('{', takers_.back().kind != Taker::Kind::statements)) fail(lexer_.peek(), "}");
+// From inside a block to behind its closing brace; kind: as in skipNested().
+void Parser::skipBlock(char kind) {
+  if (!skipNested(kind, takers_.back().kind != Taker::Kind::statements)) fail(lexer_.peek(), "}");
 }
 
-// From behind an opening brace or bracket to behind its partner. What is missing within is found out as in text that is read: the
-// end of the file, a bracket of a list around it (inList), a node where only a field may stand, and a brace before a bracket's
-// partner end it, and stay to be read. False at the end of the file.
+// From behind an opening brace or bracket to behind its partner. opened: { the body of a node, s that of a prototype, [ a list.
+// What is missing within is found out as in text that is read: the end of the file, a bracket of a list around it (inList), a
+// node where only a field may stand, and a brace before a bracket's partner end it, and stay to be read. False at the end of the
+// file.
 bool Parser::skipNested(char opened, bool inList) {
-  std::string open(1, opened);                // { body of a node, s statements of a prototype's body, [ list
-  uint64_t lists = opened == '[', bodies = 0; // of [ and of s among them
+  std::string open(1, opened);
+  uint64_t lists = opened == '[', bodies = opened == 's'; // of [ and of s among them
   const auto pop = [&] {
     lists -= open.back() == '[', bodies -= open.back() == 's';
     open.pop_back();
@@ -71,7 +72,7 @@ bool Parser::skipNested(char opened, bool inList) {
       if (open.back() != '{' || !endsValue(previous) || !nodeAhead(type)) break;
       if (lists + bodies > 0)
         while (open.back() == '{') pop();
-      else if (inList || sink_.wouldTake(takers_.back().receiver, type.text, false))
+      else if (sink_.wouldTake(takers_.back().receiver, type.text, false))
         return true;
       break;
     default: break;
@@ -129,7 +130,7 @@ void Parser::skipProto() {
     if (afterBracket && token.is(TokenKind::identifier) && nodeAhead(type)) return;
     if (afterBracket && token.is(TokenKind::braceOpen)) {
       lexer_.next();
-      return skipBlock();
+      return skipBlock('s');
     }
     skipOne();
     previous = lastOf(token.kind);
@@ -161,6 +162,7 @@ void Parser::skipToNode() {
 
 // To what looks like the start of a statement; blocks on the way are skipped whole.
 void Parser::skipToStatement(TokenKind end) {
+  bool afterBracket = false; // a brace then opens the body of a prototype
   for (;;) {
     const Token token = lexer_.peek();
     if (token.is(TokenKind::end)) return;
@@ -180,7 +182,8 @@ void Parser::skipToStatement(TokenKind end) {
       continue;
     }
     lexer_.next();
-    if (token.is(TokenKind::braceOpen)) skipBlock();
+    if (token.is(TokenKind::braceOpen)) skipBlock(afterBracket ? 's' : '{');
+    afterBracket = token.is(TokenKind::bracketClose);
   }
 }
 

@@ -178,7 +178,8 @@ TEST(Recovery, ValuesOfAListWithoutItsBracketAreKept) {
 TEST(Recovery, WhatIsLeftOutEndsWhereANodeShowsThatItsBraceIsMissing) {
   for (const char* first :
        {"Foo { bar Bar { x 1 ", "LOD { range wide level [ Shape { geometry Box { } ] ", "Foo { a [ Bar { x 1 ] b 2 ",
-        "Group { foo [ 1 2 ] ", "PROTO P [ field SFFoo x 1 ] ", "PROTO P [ ] "}) {
+        "Group { foo [ 1 2 ] ", "PROTO P [ field SFFoo x 1 ] ", "PROTO P [ ] ",
+        "PROTO P [ field SFFoo x 1 ] { Group { } Transform { } } ", "PROTO { } [ ] { Group { } Transform { } } "}) {
     const auto world = read(std::string(first) + "Transform { } DEF T Transform { } Group { children USE T }");
     EXPECT_EQ(count(*world, "Transform"), 2u) << first << messages(*world);
     EXPECT_LE(world->diagnostics.errors(), 2u) << messages(*world);
