@@ -168,17 +168,19 @@ TEST(Diagnostic, TheCaretStandsBelowTheColumn) {
   EXPECT_EQ((Diagnostic{Severity::error, "f", 1, 3, "m", "äö!"}.text()), "f:1:3: error: m\näö!\n  ^"); // columns are characters
 }
 
+// Errors and other messages have room of their own: the one cannot hide the other.
 TEST(Diagnostics, CountWhatTheyDrop) {
   Diagnostics diagnostics;
   diagnostics.limit = 2;
   const SourcePosition where{std::make_shared<const std::string>("f"), 1, 2};
-  diagnostics.warn(where, "one");
+  for (int i = 0; i < 4; ++i) diagnostics.warn(where, "one");
   for (int i = 0; i < 3; ++i) diagnostics.error(where, "two");
-  ASSERT_EQ(diagnostics.list().size(), 2u);
+  ASSERT_EQ(diagnostics.list().size(), 4u);
   EXPECT_EQ(diagnostics.list()[0].text(), "f:1:2: warning: one");
+  EXPECT_EQ(diagnostics.list()[3].text(), "f:1:2: error: two");
   EXPECT_EQ(diagnostics.errors(), 3u);
-  EXPECT_EQ(diagnostics.warnings(), 1u);
-  EXPECT_EQ(diagnostics.dropped(), 2u);
+  EXPECT_EQ(diagnostics.warnings(), 4u);
+  EXPECT_EQ(diagnostics.dropped(), 3u);
 }
 
 } // namespace
