@@ -20,6 +20,7 @@ class FilmObject {
       throw py::value_error(
           fmt::format("a file name with one of the suffixes {} expected, not {}", picture::filmSuffixes, path_));
     if (!(fps > 0 && fps < 1e6)) throw py::value_error("fps: above 0 expected");
+    raiseOsError(picture::whyNotWritable(path_));
     if (const std::string why = picture::whyNoFilm(kind_); !why.empty()) throw std::runtime_error(path_ + ": " + why);
   }
 

@@ -7,6 +7,7 @@
 #include <pybind11/stl.h>
 
 #include "cluster_object.h"
+#include "numbers.h"
 #include "picture/transport.h"
 #include "picture_object.h"
 
@@ -72,6 +73,19 @@ picture::LookAt posed(const std::vector<std::vector<double>>& rows) {
   return camera;
 }
 
+// Whether an array is a rotation, which says where a camera looks but not where it stands.
+bool isRotation(const py::object& given, const std::vector<std::vector<double>>& rows) {
+  if (rows.size() != 3 || !py::isinstance<py::array>(given)) return false;
+  double off = 0;
+  for (size_t a = 0; a < 3; ++a)
+    for (size_t b = 0; b < 3; ++b) {
+      double product = 0;
+      for (size_t i = 0; i < 3; ++i) product += rows[a].at(i) * rows[b].at(i);
+      off = std::max(off, std::abs(product - (a == b ? 1 : 0)));
+    }
+  return off < 1e-4;
+}
+
 picture::LookAt cameraOf(const py::object& given) {
   picture::LookAt camera;
   double matrix[16];
@@ -79,10 +93,15 @@ picture::LookAt cameraOf(const py::object& given) {
     auto rows = given.cast<std::vector<std::vector<double>>>();
     if (rows.size() == 4) return posed(rows);
     if (rows.size() != 2 && rows.size() != 3) throw py::cast_error();
+    for (const auto& row : rows)
+      if (row.size() != 3) throw py::cast_error();
+    if (isRotation(given, rows))
+      throw py::value_error(
+          "camera: a 3x3 rotation does not say where the camera stands: a 4x4 matrix from camera to world expected; position, "
+          "target and up are given as a tuple");
     camera.saysUp = rows.size() == 3;
     double* targets[] = {camera.position, camera.target, camera.up};
     for (size_t i = 0; i < rows.size(); ++i) {
-      if (rows[i].size() != 3) throw py::cast_error();
       for (size_t k = 0; k < 3; ++k) {
         if (!std::isfinite(rows[i][k])) throw py::cast_error();
         targets[i][k] = rows[i][k];
@@ -91,7 +110,8 @@ picture::LookAt cameraOf(const py::object& given) {
   } catch (const py::cast_error&) {
     throw py::value_error(
         "camera: a Pinhole, a 4x4 matrix from camera to world, or (position, target) or (position, target, up) of 3 numbers each "
-        "expected");
+        "expected, not " +
+        shown(given));
   }
   if (!picture::lookAtMatrix(camera, matrix)) throw py::value_error("camera: position and target are the same point");
   return camera;

@@ -1,4 +1,5 @@
 // rt_context.cpp: life of the contexts of xvrml.rt, errors, matrices. See rt_objects.h.
+#include "numbers.h"
 #include "objects.h"
 #include "rt_objects.h"
 
@@ -91,11 +92,12 @@ void RtUse::commit() const {
   context_->dirty = false;
 }
 
-std::array<double, 16> rtMatrix(const py::object& rows) {
+std::array<double, 16> rtMatrix(const py::object& rows, const std::string& name) {
   std::array<double, 16> m{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
   if (rows.is_none()) return m;
-  const auto given = py::array_t<double, py::array::c_style | py::array::forcecast>(rows);
-  if (given.ndim() != 2 || given.shape(0) != 4 || given.shape(1) != 4) throw py::value_error("a 4x4 matrix expected");
+  const py::array_t<double, py::array::c_style | py::array::forcecast> given(numberArray(rows, name, "a 4x4 matrix"));
+  if (given.ndim() != 2 || given.shape(0) != 4 || given.shape(1) != 4)
+    throw py::value_error(name + ": a 4x4 matrix expected, not of shape " + fromText(py::str(given.attr("shape"))));
   for (size_t i = 0; i < 16; ++i) m[i] = given.at(py::ssize_t(i % 4), py::ssize_t(i / 4));
   return m;
 }

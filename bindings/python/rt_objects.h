@@ -60,8 +60,8 @@ struct RtShader : RtThing {
   std::string name;
 };
 
-// A 4x4 matrix for column vectors, as on paper; None: the identity.
-std::array<double, 16> rtMatrix(const py::object& rows);
+// A 4x4 matrix for column vectors, as on paper; None: the identity. name: of the argument, for messages.
+std::array<double, 16> rtMatrix(const py::object& rows, const std::string& name = "matrix");
 
 void defineRtScene(py::module_& module);
 void defineRtQueries(py::class_<RtContext, RtContextPtr>& context);

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "numbers.h"
 #include "objects.h"
 #include "openrt/queries.h"
 #include "rt_objects.h"
@@ -25,9 +26,11 @@ struct Rows { // of numbers, whatever shape is before the last side
   Floats values;
   Shape shape; // without the last side
   size_t count = 0;
-  Rows(const py::object& given, const char* name, py::ssize_t width) : values(given) {
+  Rows(const py::object& given, const char* name, py::ssize_t width) {
+    const std::string expected = fmt::format("numbers of shape (..., {})", width);
+    values = Floats(numberArray(given, name, expected));
     if (values.ndim() < 1 || values.shape(values.ndim() - 1) != width)
-      throw py::value_error(fmt::format("{}: numbers of shape (..., {}) expected", name, width));
+      throw py::value_error(name + (": " + expected) + " expected, not of shape " + fromText(py::str(values.attr("shape"))));
     shape.assign(values.shape(), values.shape() + values.ndim() - 1);
     count = size_t(values.size() / width);
   }

@@ -4,6 +4,7 @@
 #include <pybind11/stl.h>
 
 #include "degenerate.h"
+#include "numbers.h"
 #include "objects.h"
 #include "rt_objects.h"
 
@@ -12,16 +13,22 @@ namespace {
 template <class T> using Dense = py::array_t<T, py::array::c_style | py::array::forcecast>;
 
 template <class T> Dense<T> rows(const py::object& given, const char* name, py::ssize_t width, py::ssize_t count = -1) {
-  Dense<T> array(given);
-  if (array.ndim() != 2 || array.shape(1) != width || (count >= 0 && array.shape(0) != count))
-    throw py::value_error(
-        fmt::format("{}: numbers of shape ({}, {}) expected", name, count < 0 ? "n" : std::to_string(count), width));
-  return array;
+  const std::string expected = fmt::format("numbers of shape ({}, {})", count < 0 ? "n" : std::to_string(count), width);
+  const py::array numbers = numberArray(given, name, expected, std::is_integral_v<T>);
+  if (numbers.ndim() != 2 || numbers.shape(1) != width || (count >= 0 && numbers.shape(0) != count))
+    throw py::value_error(name + (": " + expected) + " expected, not of shape " + fromText(py::str(numbers.attr("shape"))));
+  return Dense<T>(numbers);
+}
+
+// The value as one of our objects.
+template <class T> const T& thing(const py::handle& value, const char* name, const char* expected) {
+  if (!py::isinstance<T>(value)) throw py::type_error(fmt::format("{}: {} expected, not {}", name, expected, shown(value)));
+  return value.cast<const T&>();
 }
 
 const RtShader* shaderOf(const RtContextPtr& context, const py::object& shader) {
   if (shader.is_none()) return nullptr;
-  const auto& found = shader.cast<const RtShader&>();
+  const auto& found = thing<RtShader>(shader, "shader", "a Shader or None");
   if (found.context != context) throw py::value_error("shader: of another context");
   return &found;
 }
@@ -124,10 +131,11 @@ RtObject sphere(const RtContextPtr& self, float radius, const py::object& shader
 RtObject group(const RtContextPtr& self, const py::iterable& parts) {
   std::vector<std::pair<RTid, std::array<double, 16>>> all;
   for (const py::handle part : parts) {
-    const auto pair = part.cast<std::pair<py::object, py::object>>();
-    const auto& object = pair.first.cast<const RtObject&>();
-    if (object.context != self) throw py::value_error("group: an object of another context");
-    all.emplace_back(object.id, rtMatrix(pair.second));
+    if (!py::isinstance<py::sequence>(part) || py::len(part) != 2)
+      throw py::type_error("parts: pairs of an Object and its matrix expected, not " + shown(part));
+    const auto& object = thing<RtObject>(part[py::int_(0)], "parts", "pairs of an Object and its matrix");
+    if (object.context != self) throw py::value_error("parts: an object of another context");
+    all.emplace_back(object.id, rtMatrix(part[py::int_(1)]));
   }
   const RtUse use(self);
   RtObject made;
@@ -177,6 +185,20 @@ std::vector<RTparameterInfo> parametersOf(const RtShader& shader) {
   return all;
 }
 
+const char* parameterText(RTenum type) {
+  switch (type) {
+  case RT_PARAM_INT: return "a whole number";
+  case RT_PARAM_FLOAT: return "a number";
+  case RT_PARAM_VEC2: return "2 numbers";
+  case RT_PARAM_VEC3: return "3 numbers";
+  case RT_PARAM_COLOR: return "3 numbers (red, green, blue)";
+  case RT_PARAM_VEC4: return "4 numbers";
+  case RT_PARAM_STRING: return "a str";
+  case RT_PARAM_TEXTURE: return "a Texture";
+  default: return "numbers";
+  }
+}
+
 void setParameter(const RtShader& self, const std::string& name, const py::object& value) {
   const RtUse use(self.context);
   const Bound bound(self);
@@ -189,53 +211,63 @@ void setParameter(const RtShader& self, const std::string& name, const py::objec
   }
   RTparameterInfo info{};
   rtGetParameterInfo(self.shaderClass, handle, &info);
+  const std::string label = self.name + "." + name;
+  const auto wrongType = [&] {
+    throw py::type_error(fmt::format("{}: {} expected, not {}", label, parameterText(info.type), shown(value)));
+  };
   const auto numbers = [&](py::ssize_t count) {
-    const Dense<float> array(value);
+    Dense<float> array(numberArray(value, label, parameterText(info.type)));
     if (count >= 0 && array.size() != count)
-      throw py::value_error(fmt::format("{}.{}: {} numbers expected", self.name, name, count));
+      throw py::value_error(fmt::format("{}: {} expected, not {} of them", label, parameterText(info.type), array.size()));
     return array;
   };
-  switch (info.type) {
-  case RT_PARAM_INT: rtParameter1i(handle, py::isinstance<py::bool_>(value) ? int(value.cast<bool>()) : value.cast<int>()); break;
-  case RT_PARAM_FLOAT: rtParameter1f(handle, value.cast<float>()); break;
-  case RT_PARAM_VEC2: {
-    const auto v = numbers(2);
-    rtParameter2f(handle, v.data()[0], v.data()[1]);
-    break;
-  }
-  case RT_PARAM_VEC3:
-  case RT_PARAM_COLOR: {
-    const auto v = numbers(3);
-    rtParameter3f(handle, v.data()[0], v.data()[1], v.data()[2]);
-    break;
-  }
-  case RT_PARAM_VEC4: {
-    const auto v = numbers(4);
-    rtParameter4f(handle, v.data()[0], v.data()[1], v.data()[2], v.data()[3]);
-    break;
-  }
-  case RT_PARAM_MATRIX: {
-    const auto m = rtMatrix(value);
-    float f[16];
-    for (size_t i = 0; i < 16; ++i) f[i] = float(m[i]);
-    rtParameter16f(handle, f);
-    break;
-  }
-  case RT_PARAM_FLOATS: {
-    const auto v = numbers(-1);
-    rtParameterfv(handle, size_t(v.size()), v.data());
-    break;
-  }
-  case RT_PARAM_STRING: rtParameterString(handle, fromText(value).c_str()); break;
-  case RT_PARAM_TEXTURE: {
-    const auto& texture = value.cast<const RtTexture&>();
-    if (texture.context != self.context)
-      throw py::value_error(fmt::format("{}.{}: a texture of another context", self.name, name));
-    rtParameterTexture(handle, texture.id);
-    break;
-  }
-  default: throw py::type_error(fmt::format("{}.{} cannot be set", self.name, name));
-  }
+  try {
+    switch (info.type) {
+    case RT_PARAM_INT:
+      rtParameter1i(handle, py::isinstance<py::bool_>(value) ? int(value.cast<bool>()) : value.cast<int>());
+      break;
+    case RT_PARAM_FLOAT: rtParameter1f(handle, value.cast<float>()); break;
+    case RT_PARAM_VEC2: {
+      const auto v = numbers(2);
+      rtParameter2f(handle, v.data()[0], v.data()[1]);
+      break;
+    }
+    case RT_PARAM_VEC3:
+    case RT_PARAM_COLOR: {
+      const auto v = numbers(3);
+      rtParameter3f(handle, v.data()[0], v.data()[1], v.data()[2]);
+      break;
+    }
+    case RT_PARAM_VEC4: {
+      const auto v = numbers(4);
+      rtParameter4f(handle, v.data()[0], v.data()[1], v.data()[2], v.data()[3]);
+      break;
+    }
+    case RT_PARAM_MATRIX: {
+      const auto m = rtMatrix(value, label);
+      float f[16];
+      for (size_t i = 0; i < 16; ++i) f[i] = float(m[i]);
+      rtParameter16f(handle, f);
+      break;
+    }
+    case RT_PARAM_FLOATS: {
+      const auto v = numbers(-1);
+      rtParameterfv(handle, size_t(v.size()), v.data());
+      break;
+    }
+    case RT_PARAM_STRING:
+      if (!py::isinstance<py::str>(value)) wrongType();
+      rtParameterString(handle, fromText(value).c_str());
+      break;
+    case RT_PARAM_TEXTURE: {
+      const auto& texture = thing<RtTexture>(value, label.c_str(), parameterText(info.type));
+      if (texture.context != self.context) throw py::value_error(label + ": a texture of another context");
+      rtParameterTexture(handle, texture.id);
+      break;
+    }
+    default: throw py::type_error(label + " cannot be set");
+    }
+  } catch (const py::cast_error&) { wrongType(); }
   use.check();
 }
 
@@ -264,8 +296,8 @@ py::dict parameters(const RtShader& self) {
 
 RtTexture texture(const RtContextPtr& self, const py::object& pixels, bool srgb, const std::string& wrap,
                   const std::string& filter) {
-  const py::array any = py::array::ensure(pixels);
-  if (!any || (any.ndim() != 2 && any.ndim() != 3))
+  const py::array any = numberArray(pixels, "pixels", "an array of shape (height, width, components)");
+  if (any.ndim() != 2 && any.ndim() != 3)
     throw py::value_error("texture: pixels of shape (height, width, components) expected");
   const py::ssize_t components = any.ndim() == 3 ? any.shape(2) : 1;
   const bool bytes = py::isinstance<py::array_t<uint8_t>>(any);
@@ -307,7 +339,7 @@ struct Placed { // the current matrix of a role
 RtLight light(const RtContextPtr& self, const RtShader& shader, const py::object& matrix, const py::object& scope) {
   if (shader.context != self) throw py::value_error("light: a shader of another context");
   const auto m = rtMatrix(matrix);
-  const RTid instance = scope.is_none() ? 0 : scope.cast<const RtInstance&>().id;
+  const RTid instance = scope.is_none() ? 0 : thing<RtInstance>(scope, "scope", "an Instance or None").id;
   const RtUse use(self);
   const Placed placed(m);
   RtLight made{{self, rtUseLight(shader.id)}};
@@ -398,7 +430,7 @@ void defineRtScene(py::module_& module) {
         use.check();
       });
   py::class_<RtShader, RtThing>(module, "Shader", "A shader; shader['reflectance'] = 0.5 sets a parameter.")
-      .def("__setitem__", setParameter)
+      .def("__setitem__", setParameter, "name"_a, "value"_a)
       .def_property_readonly("parameters", parameters, "Names of the parameters: (type, text).")
       .def_readonly("name", &RtShader::name, "Its class.")
       .def("delete", call(rtDeleteShader));

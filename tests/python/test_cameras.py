@@ -179,7 +179,14 @@ K = [[70, 0, 39.5], [0, 70, 29.5], [0, 0, 1]]
     lambda w: w.render(camera=xvrml.Pinhole(K), fov=30), lambda w: w.render(camera=xvrml.Pinhole(K), fit=True),
     lambda w: w.render(camera=2 * np.eye(4)), lambda w: w.render(camera=np.diag([1, 1, -1, 1])), lambda w: w.render(camera=np.eye(5)),
     lambda w: w.render(up="w"), lambda w: w.render(background="nothing"), lambda w: w.render(background=(1, 2, 3)),
-    lambda w: w.render(viewpoint=0, fit=True),
+    lambda w: w.render(viewpoint=0, fit=True), lambda w: w.render(camera=np.eye(3)), lambda w: w.render(camera="front"),
+    lambda w: xvrml.Pinhole(K, [[1], [2, 3]]), lambda w: xvrml.Pinhole(K, center=np.inf), lambda w: xvrml.Pinhole(K).rays(-1, 3),
+    lambda w: xvrml.Pinhole(K).project(5), lambda w: xvrml.Pinhole(K).project([[1, 2]]),
+    lambda w: rt.create_rays_pinhole(60, (0, 0, 0), (0, 0, 0), (0, 1, 0), 4, 3),
+    lambda w: rt.create_rays_pinhole(60, (0, 0, 0), (0, 5, 0), (0, 1, 0), 4, 3),
+    lambda w: rt.create_rays_pinhole(180, (0, 0, 0), (0, 0, 5), (0, 1, 0), 4, 3),
+    lambda w: rt.create_rays_pinhole(60, (0, 0, 0), (0, 5), (0, 1, 0), 4, 3), lambda w: rt.create_rays_pinhole(np.eye(3), np.eye(3), 4, 3),
+    lambda w: rt.create_rays_pinhole(60, (0, 0, 0), (0, 0, 5), (0, 1, 0), 4, -3),
 ])
 def test_wrong_cameras(world, wrong):
     with pytest.raises(ValueError):
@@ -225,3 +232,24 @@ def test_models_in_python():
     assert np.allclose(white[..., :3], clear[..., :3] + 1 - clear[..., 3:], atol=1e-6)
     near = model.render(size=(32, 24), spp=1, camera=((9, 9, 9), (0, 0, 0)), fit=True, channels="z")
     assert np.isfinite(near["z"]).sum() > 50 and not np.isfinite(near["z"][[0, -1]]).any()
+
+
+@pytest.mark.parametrize("call, words", [
+    (lambda: rt.create_rays_pinhole("60", (0, 0, 0), (0, 0, 5), (0, 1, 0), 4, 3), "fov_deg: a number above 0 expected, not the str '60'"),
+    (lambda: rt.create_rays_pinhole(), "create_rays_pinhole(): fov_deg, center, eye, up, width_px, height_px must be given, or intrinsic"),
+    (lambda: rt.create_rays_pinhole(60, up=(0, 1, 0)), "create_rays_pinhole(): center, eye, width_px, height_px must be given"),
+    (lambda: rt.create_rays_pinhole(60, fov=3), "create_rays_pinhole(): fov is no argument"),
+    (lambda: xvrml.Pinhole(K, center="a"), "center: a number expected, not the str 'a'"),
+    (lambda: xvrml.Pinhole(K).rays("a", 3), "width: a whole number expected, not the str 'a'"),
+])
+def test_arguments_of_cameras_of_wrong_types(call, words):
+    with pytest.raises(TypeError) as caught:
+        call()
+    assert words in str(caught.value)
+
+
+def test_position_target_and_up_are_a_tuple_even_if_they_are_at_right_angles(world):
+    view = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
+    assert np.allclose(world.render(size=(8, 6), spp=1, camera=view).camera.pose[:3, 3], (1, 0, 0))
+    many = np.array([[0, 0, 9], [0, 0, 0], [0, 1, 0]])
+    assert np.allclose(world.render(size=(8, 6), spp=1, camera=many).camera.pose[:3, 3], (0, 0, 9)), "an array that is no rotation"

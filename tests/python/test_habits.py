@@ -86,6 +86,14 @@ def test_a_submodule_whose_package_is_missing_says_so():
     (lambda w: w.add_route("Ball", "a", "Ball", "b"), "add_route(): from_node: a Node expected, not the str 'Ball'"),
     (lambda w: xvrml.Film("x.gif", fps="fast"), "Film(): fps: a number expected, not the str 'fast'"),
     (lambda w: xvrml.load(), "load(): source must be given"),
+    (lambda w: setattr(w, "time", "x"), "World.time: a number expected, not the str 'x'"),
+    (lambda w: w.on(5), "'NAME.event' or a tuple (node, 'event') expected, not the int 5"),
+    (lambda w: w.animate("a", 1), "animate(): start: a number expected, not the str 'a'"),
+    (lambda w: w.film("a.gif", 0, 1, fps="a"), "film(): fps: a number above 0 expected, not the str 'a'"),
+    (lambda w: w.render(progress=3), "progress: True, False, None or a function expected"),
+    (lambda w: w.render(channels=5), "channels: a name or several expected"),
+    (lambda w: xvrml.Browser(BALL.encode()).pointer_ray((0, 0), (0, 0, 1)), "pointer_ray(): origin: 3 numbers expected, not the tuple (0, 0)"),
+    (lambda w: setattr(xvrml.Browser(BALL.encode()), "navigation", 3), "Browser.navigation: a text expected, not the int 3"),
 ])
 def test_arguments_of_wrong_types_are_named(call, words):
     with pytest.raises(TypeError) as caught:
@@ -172,6 +180,24 @@ def test_a_film_of_pictures_and_arrays(tmp_path):
         assert film.convert("RGB").getpixel((5, 5)) == (255, 255, 255)
 
 
+def test_the_ends_of_a_film(tmp_path):
+    pil = pytest.importorskip("PIL.Image")
+    with pytest.raises(ValueError, match="film\\(\\): stop=0 is before start=1"):
+        xvrml.loads(BALL).film(tmp_path / "a.gif", 1, 0, **SMALL)
+    with pytest.raises(ValueError, match="animate\\(\\): stop=0 is before start=1"):
+        xvrml.loads(BALL).animate(1, 0)
+    for wrong in (float("nan"), float("inf")):
+        with pytest.raises(ValueError, match="stop: a finite number expected"):
+            xvrml.loads(BALL).film(tmp_path / "a.gif", 0, wrong, **SMALL)
+    assert not list(tmp_path.iterdir())
+    for start, stop in ((0.2, 0.2), (0, 0.001)):
+        world = xvrml.loads(BALL)
+        world.film(tmp_path / "a.gif", start, stop, fps=10, **SMALL)
+        with pil.open(tmp_path / "a.gif") as film:
+            assert getattr(film, "n_frames", 1) == 1 and world.time == start
+    assert list(xvrml.loads(BALL).animate(1, 1)) == [], "the end is excluded"
+
+
 def test_films_that_cannot_be(tmp_path):
     with pytest.raises(ValueError, match="mp4, webm, gif"):
         xvrml.Film(tmp_path / "a.avi")
@@ -187,9 +213,8 @@ def test_films_that_cannot_be(tmp_path):
         with film:
             raise RuntimeError("stop")
     assert not list(tmp_path.iterdir())
-    with pytest.raises(OSError):
-        with xvrml.Film(tmp_path / "nowhere/a.gif") as film:
-            film.add(np.zeros((10, 20, 3), np.uint8))
+    with pytest.raises(OSError, match="cannot write .*nowhere/a.gif"):
+        xvrml.Film(tmp_path / "nowhere/a.gif")
 
 
 class Clock:

@@ -71,6 +71,57 @@ def test_what_is_wrong_is_said():
     assert context.cast_rays([[0, 0, 1, 0, 0, -1]])["t_hit"].tolist() == [np.inf], "nothing is placed yet"
 
 
+@pytest.mark.parametrize("call, words", [
+    (lambda c: rt.Raycaster(threads="a"), "Raycaster(): threads: a whole number from 0 to 1024 expected, not the str 'a'"),
+    (lambda c: rt.Context(threads="a"), "Context(): threads: a whole number expected, not the str 'a'"),
+    (lambda c: c.camera(eye="a", at=(0, 0, 0)), "camera(): eye: 3 numbers expected, not the str 'a'"),
+    (lambda c: c.camera(eye=(0, 1), at=(0, 0, 0)), "camera(): eye: 3 numbers expected, not the tuple (0, 1)"),
+    (lambda c: c.render(size="a"), "render(): size: 2 whole numbers expected, not the str 'a'"),
+    (lambda c: c.render(progress=3), "progress: True, False, None or a function expected"),
+    (lambda c: c.render(channels=5), "channels: a name or several expected"),
+    (lambda c: c.mesh("a"), "vertices: numbers of shape (n, 3) expected, not the str 'a'"),
+    (lambda c: c.mesh(SQUARE, shader=5), "shader: a Shader or None expected, not the int 5"),
+    (lambda c: c.group([5]), "parts: pairs of an Object and its matrix expected, not the int 5"),
+    (lambda c: c.instance(c.sphere(1), "m"), "matrix: a 4x4 matrix expected, not the str 'm'"),
+    (lambda c: setattr(c.instance(c.sphere(1)), "visible", "a"), "Instance.visible: True or False expected, not the str 'a'"),
+    (lambda c: c.texture("a"), "pixels: an array of shape (height, width, components) expected, not the str 'a'"),
+    (lambda c: c.cast_rays("a"), "rays: numbers of shape (..., 6) expected, not the str 'a'"),
+    (lambda c: c.shader("VRML97", transparency="a"), "VRML97.transparency: a number expected, not the str 'a'"),
+    (lambda c: c.shader("VRML97", diffuseColor="a"), "VRML97.diffuseColor: 3 numbers (red, green, blue) expected, not the str 'a'"),
+    (lambda c: c.light(c.shader("VRML97DirectionalLight"), scope=5), "scope: an Instance or None expected, not the int 5"),
+    (lambda c: rt.Raycaster().add_sphere((0, 0, 0), "a"), "add_sphere(): radius: a number above 0 expected, not the str 'a'"),
+    (lambda c: rt.Raycaster().add_sphere("a", 1), "add_sphere(): center: 3 numbers expected, not the str 'a'"),
+    (lambda c: rt.Raycaster().add_mesh(5), "add_mesh(): mesh: a Mesh of World.meshes() expected, not the int 5"),
+    (lambda c: rt.Raycaster().add_triangles(SQUARE, "a"), "add_triangles(): triangles: numbers of shape (n, 3) expected, not the str 'a'"),
+])
+def test_arguments_of_wrong_types_are_named(call, words):
+    with pytest.raises(TypeError) as caught:
+        call(rt.Context(threads=1))
+    assert words in str(caught.value) and "incompatible" not in str(caught.value)
+
+
+@pytest.mark.parametrize("call, words", [
+    (lambda c: rt.Raycaster().add_sphere((0, 0), 1), "add_sphere(): center: 3 numbers expected, not of shape (2,)"),
+    (lambda c: rt.Raycaster().add_triangles(SQUARE, [[0, 1.5, 2]]), "add_triangles(): triangles: whole numbers expected, not 1.5"),
+    (lambda c: rt.Raycaster().add_triangles(SQUARE, [[0, 1, 9]]), "add_triangles(): triangles: 9 is no vertex: there are 4"),
+    (lambda c: c.mesh(SQUARE, [[0, 1.5, 2]]), "faces: whole numbers of shape (n, 3) expected, not 1.5"),
+    (lambda c: c.mesh(SQUARE, [[0, np.nan, 2]]), "faces: whole numbers of shape (n, 3) expected, not nan"),
+    (lambda c: c.cast_rays(np.zeros((4, 5))), "rays: numbers of shape (..., 6) expected, not of shape (4, 5)"),
+    (lambda c: rt.Raycaster().compute_occupancy([[0, 0, 0]], nsamples=0), "nsamples: a whole number from 1 to 65535 expected, not 0"),
+])
+def test_wrong_numbers_are_named(call, words):
+    with pytest.raises(ValueError) as caught:
+        call(rt.Context(threads=1))
+    assert words in str(caught.value)
+
+
+def test_whole_numbers_may_be_written_as_floats():
+    caster = rt.Raycaster(threads=1)
+    assert caster.add_triangles(SQUARE, FACES.astype(float)) == 0 and caster.add_triangles(SQUARE.tolist(), FACES.tolist()) == 1
+    assert caster.cast_rays([[0.1, 0, 1, 0, 0, -1]])["t_hit"].tolist() == [1]
+    assert rt.Context(threads=1).mesh(SQUARE, FACES.astype(np.float32)).id > 0
+
+
 def test_things_outlive_the_name_of_their_context():
     mesh = rt.Context(threads=1).mesh(SQUARE, FACES)
     gc.collect()

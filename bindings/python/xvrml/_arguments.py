@@ -181,30 +181,67 @@ def _real(value):
     return float(value)
 
 
-def number(name, value):
-    """An argument that must be a finite number, as a float."""
+def number(name, value, above=None):
+    """An argument that must be a finite number, and above a bound if there is one, as a float."""
+    expected = "a number" if above is None else f"a number above {above}"
     try:
         made = _real(value)
     except (TypeError, ValueError):
-        raise TypeError(f"{name}: a number expected, not {_short(value)}") from None
+        raise TypeError(f"{name}: {expected} expected, not {_short(value)}") from None
     except OverflowError:
         made = math.inf
     if not math.isfinite(made):
         raise ValueError(f"{name}: a finite number expected, not {_short(value)}")
+    if above is not None and not made > above:
+        raise ValueError(f"{name}: {expected} expected, not {_short(value)}")
     return made
 
 
-def whole(name, value):
-    """An argument that must be a whole number above 0, as an int."""
+def whole(name, value, low=1, high=None):
+    """An argument that must be a whole number from low to high, as an int."""
     try:
         made = operator.index(value)
     except TypeError:
         raise TypeError(f"{name}: a whole number expected, not {_short(value)}") from None
-    if made < 1:
-        raise ValueError(f"{name}: a whole number above 0 expected, not {made}")
+    if made < low or (high is not None and made > high):
+        span = "above 0" if (low, high) == (1, None) else f"from {low} on" if high is None else f"from {low} to {high}"
+        raise ValueError(f"{name}: a whole number {span} expected, not {made}")
     return made
 
 
 def explained(function):
     """A compiled function whose errors are sentences."""
     return _wrapped(function)
+
+
+def _expected(shape):
+    sides = [str(side) if side is not None else "n" for side in shape if side is not ...]
+    if shape[0] is ...:
+        return f"numbers of shape (..., {', '.join(sides)})"
+    return f"{sides[0]} numbers" if len(sides) == 1 and shape[0] else f"numbers of shape ({', '.join(sides)})"
+
+
+def array(name, value, shape):
+    """The value as an array of numbers of whatever type. shape: its sides, ... for any number of them in front, None for any length.
+    Raises TypeError for what holds no numbers, ValueError for another shape."""
+    import numpy as np
+    try:
+        found = np.asarray(value)
+        if found.size and found.dtype.kind not in "fiub":
+            raise TypeError
+    except (TypeError, ValueError):
+        raise TypeError(f"{name}: {_expected(shape)} expected, not {_short(value)}") from None
+    wanted = [side for side in shape if side is not ...]
+    last = found.shape[found.ndim - len(wanted):] if found.ndim >= len(wanted) else None
+    if last is None or (shape[0] is not ... and found.ndim != len(wanted)) or any(w not in (None, n) for w, n in zip(wanted, last)):
+        raise ValueError(f"{name}: {_expected(shape)} expected, not of shape {found.shape}")
+    return found
+
+
+def numbers(name, value, shape, finite=True):
+    """The same as float64. Raises ValueError, too, for numbers that are not finite, unless finite is False."""
+    import numpy as np
+    found = array(name, value, shape).astype(np.float64)
+    if finite and not np.isfinite(found).all():
+        raise ValueError(f"{name}: {_expected(shape)} expected, all of them finite")
+    return found

@@ -17,9 +17,13 @@ def _matrix(name, value, rows, columns):
 def _rigid(name, value):
     """A 4x4 matrix that turns and moves; its last row may be missing."""
     import numpy as np
-    if np.shape(value) == (3, 4):
-        value = np.vstack([np.array(value, dtype=np.float64), [0, 0, 0, 1]])
-    matrix = _matrix(name, value, 4, 4)
+    try:
+        rows = 3 if np.shape(value) == (3, 4) else 4
+    except ValueError:  # of different lengths
+        rows = 4
+    matrix = _matrix(name, value, rows, 4)
+    if rows == 3:
+        matrix = np.vstack([matrix, [0, 0, 0, 1]])
     turn = matrix[:3, :3]
     if not np.allclose(turn @ turn.T, np.eye(3), atol=1e-4) or np.linalg.det(turn) < 0:
         raise ValueError(f"{name}: its 3x3 part is no rotation")

@@ -41,8 +41,9 @@ def _end(world, end):
         if not dot:
             raise ValueError(f"'NAME.event' expected, not {end!r}")
         return world[name], event
-    node, event = end
-    return node, event
+    if not isinstance(end, (tuple, list)) or len(end) != 2:
+        raise TypeError(f"'NAME.event' or a tuple (node, 'event') expected, not {_arguments._short(end)}")
+    return tuple(end)
 
 
 def on(self, event, callback=None):
@@ -68,13 +69,16 @@ def unroute(self, source, target):
     return self.delete_route(*_end(self, source), *_end(self, target))
 
 
-def animate(self, start, stop, fps=25, **options):
-    """Pictures of the times from start up to stop (excluded), fps of them a second; options are those of render. The clock gets
-    there in steps of 1/fps from 0, so that a picture of some time is the same whatever was pictured before it."""
-    start, stop, fps = (_arguments.number(*one) for one in (("start", start), ("stop", stop), ("fps", fps)))
-    if not fps > 0:
-        raise ValueError("fps: above 0 expected")
-    first, end = round(start * fps), round(stop * fps)
+def _times(name, start, stop, fps):
+    """The numbers of the first picture and of the one after the last, at fps pictures a second."""
+    start, stop = _arguments.number(f"{name}: start", start), _arguments.number(f"{name}: stop", stop)
+    fps = _arguments.number(f"{name}: fps", fps, above=0)
+    if stop < start:
+        raise ValueError(f"{name}: stop={stop:g} is before start={start:g}")
+    return round(start * fps), round(stop * fps)
+
+
+def _pictures(self, first, end, fps, options):
     step = math.ceil(self.time * fps - 1e-9)  # the first that is not over
     if first < step:
         raise ValueError(f"the world's time is {self.time} already: it does not go back to {first / fps}")
@@ -85,12 +89,20 @@ def animate(self, start, stop, fps=25, **options):
         yield self.render(**options)
 
 
+def animate(self, start, stop, fps=25, **options):
+    """Pictures of the times from start up to stop (excluded), fps of them a second; options are those of render. The clock gets
+    there in steps of 1/fps from 0, so that a picture of some time is the same whatever was pictured before it."""
+    first, end = _times("animate()", start, stop, fps)
+    return _pictures(self, first, end, fps, options)
+
+
 def film(self, path, start, stop, fps=25, **options):
-    """Writes a film of the times from start up to stop (excluded): the pictures of animate(), whose options are those of render.
-    The suffix of path (mp4, webm, gif) says the format."""
+    """Writes a film of the times from start up to stop (excluded): the pictures of animate(), whose options are those of render,
+    and at least the first. The suffix of path (mp4, webm, gif) says the format."""
     from ._xvrml import Film
+    first, end = _times("film()", start, stop, fps)
     with Film(path, fps) as file:
-        for picture in self.animate(start, stop, fps, **options):
+        for picture in _pictures(self, first, max(end, first + 1), fps, options):
             file.add(picture)
 
 

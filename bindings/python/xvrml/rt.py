@@ -16,7 +16,7 @@
 import numpy as np
 
 from . import _arguments
-from ._camera import Pinhole
+from ._camera import Pinhole, _matrix, _rigid
 from ._xvrml import rt as _rt
 from ._xvrml.rt import Context, Error, Instance, Light, Object, Shader, Texture
 
@@ -26,6 +26,18 @@ for _class in (Context, Instance, Light, Object, Shader, Texture):
     _arguments.explain_class(_class)
 
 _FIVE = ("t_hit", "geometry_ids", "primitive_ids", "primitive_uvs", "primitive_normals")
+
+
+def _corners(vertices, triangles):
+    """Triangles as whole numbers of vertices."""
+    count = len(_arguments.array("add_triangles(): vertices", vertices, (None, 3)))
+    corners = _arguments.array("add_triangles(): triangles", triangles, (None, 3))
+    if corners.dtype.kind not in "iu":
+        for odd in corners[corners != np.floor(corners)][:1]:  # NaN, too
+            raise ValueError(f"add_triangles(): triangles: whole numbers expected, not {odd:g}")
+    for none in corners[(corners < 0) | (corners >= count)][:1]:
+        raise ValueError(f"add_triangles(): triangles: {none:.0f} is no vertex: there are {count}")
+    return np.ascontiguousarray(corners, np.uint32)
 
 
 class Raycaster:
@@ -39,7 +51,7 @@ class Raycaster:
     INVALID_ID = 0xFFFFFFFF
 
     def __init__(self, threads=0):
-        self._context = Context(threads)
+        self._context = Context(_arguments.whole("Raycaster(): threads", threads, 0, 1024))
         self._kept = {}
         self.meshes = []
 
@@ -52,7 +64,7 @@ class Raycaster:
 
     def add_triangles(self, vertices, triangles, matrix=None):
         """Adds a mesh, vertices (n, 3) and triangles (m, 3), under a matrix (4, 4) for column vectors. Returns its number."""
-        triangles = np.ascontiguousarray(triangles)
+        triangles = _corners(vertices, triangles)
         thing = self._context.mesh(vertices, triangles)
         number = self._place(thing, matrix, _rt._kept_triangles(vertices, triangles))
         self.meshes.append((vertices, triangles))
@@ -61,15 +73,16 @@ class Raycaster:
     def add_sphere(self, center, radius):
         """Adds an exact sphere; its primitive id is 0. Returns its number."""
         matrix = np.eye(4)
-        if not _arguments._fits(center, "List[float[3]]"):
-            raise TypeError(f"center: 3 numbers expected, not {_arguments._short(center)}")
-        matrix[:3, 3] = center
+        matrix[:3, 3] = _arguments.numbers("add_sphere(): center", center, (3,))
+        radius = _arguments.number("add_sphere(): radius", radius, above=0)
         number = self._place(self._context.sphere(radius), matrix, None)
         self.meshes.append((center, radius))
         return number
 
     def add_mesh(self, mesh):
         """Adds an xvrml.Mesh where it stands; None for lines and points. Returns its number."""
+        if not hasattr(mesh, "kind"):
+            raise TypeError(f"add_mesh(): mesh: a Mesh of World.meshes() expected, not {_arguments._short(mesh)}")
         if mesh.kind == "sphere":
             thing, kept = self._context.sphere(mesh.radius), None
         elif mesh.kind == "triangles":
@@ -120,7 +133,8 @@ class Raycaster:
     def compute_occupancy(self, query_points, nthreads=0, nsamples=1):
         """1 for points (..., 3) inside of closed surfaces, else 0: of rays that leave them an odd number of surfaces is passed.
         nsamples: rays for each, an odd number; most of them decide."""
-        points = np.asarray(query_points, np.float32)
+        points = _arguments.numbers("query_points", query_points, (..., 3), finite=False).astype(np.float32)
+        nsamples = _arguments.whole("nsamples", nsamples, 1, 65535)
         votes = np.zeros(points.shape[:-1], np.int32)
         directions = np.random.default_rng(0).normal(size=(nsamples, 3)).astype(np.float32)
         for direction in directions:
@@ -143,18 +157,50 @@ def create_rays_pinhole(*args, **options):
     view. create_rays_pinhole(intrinsic_matrix, extrinsic_matrix, width_px, height_px): K (3x3) and world to camera (4x4), camera x to
     the right, y down, z ahead; the middle of a picture is at (width_px / 2, height_px / 2), as in Open3D.
     """
-    by_matrices = "intrinsic_matrix" in options or (len(args) > 0 and np.ndim(args[0]) == 2)
-    return (_rays_of_matrices if by_matrices else _rays_of_view)(*args, **options)
+    by_matrices = any(name in options for name in _BY_MATRICES[:2]) or (
+        len(args) > 0 and hasattr(args[0], "__len__") and not isinstance(args[0], (str, bytes)))
+    if not args and not options:
+        raise TypeError(f"create_rays_pinhole(): {', '.join(_BY_VIEW)} must be given, or {', '.join(_BY_MATRICES)}")
+    names = _BY_MATRICES if by_matrices else _BY_VIEW
+    given = dict(zip(names, args))
+    for name in options:
+        if name not in names or name in given:
+            wrong = "is given twice" if name in given else f"is no argument; there are: {', '.join(names)}"
+            raise TypeError(f"create_rays_pinhole(): {name} {wrong}")
+    given.update(options)
+    if len(args) > len(names):
+        raise TypeError(f"create_rays_pinhole(): {len(args)} arguments were given, at most {len(names)} can be: {', '.join(names)}")
+    missing = [name for name in names if name not in given]
+    if missing:
+        raise TypeError(f"create_rays_pinhole(): {', '.join(missing)} must be given")
+    for name in names[-2:]:
+        given[name] = _arguments.whole(f"create_rays_pinhole(): {name}", given[name], 1, 65536)
+    return (_rays_of_matrices if by_matrices else _rays_of_view)(**given)
+
+
+_BY_VIEW = ("fov_deg", "center", "eye", "up", "width_px", "height_px")
+_BY_MATRICES = ("intrinsic_matrix", "extrinsic_matrix", "width_px", "height_px")
 
 
 def _rays_of_matrices(intrinsic_matrix, extrinsic_matrix, width_px, height_px):
-    return Pinhole(intrinsic_matrix, extrinsic_matrix, center=0.5).rays(width_px, height_px)
+    K = _matrix("create_rays_pinhole(): intrinsic_matrix", intrinsic_matrix, 3, 3)
+    T = _rigid("create_rays_pinhole(): extrinsic_matrix", extrinsic_matrix)
+    return Pinhole(K, T, center=0.5).rays(width_px, height_px)
 
 
 def _rays_of_view(fov_deg, center, eye, up, width_px, height_px):
-    eye, center, up = (np.asarray(v, np.float64) for v in (eye, center, up))
-    ahead = (center - eye) / np.linalg.norm(center - eye)
+    fov_deg = _arguments.number("create_rays_pinhole(): fov_deg", fov_deg, above=0)
+    if fov_deg >= 180:
+        raise ValueError(f"create_rays_pinhole(): fov_deg: an angle between 0 and 180 degrees expected, not {fov_deg:g}")
+    eye, center, up = (_arguments.numbers(f"create_rays_pinhole(): {name}", value, (3,))
+                       for name, value in (("eye", eye), ("center", center), ("up", up)))
+    distance = np.linalg.norm(center - eye)
+    if not distance > 0:
+        raise ValueError("create_rays_pinhole(): eye and center are the same point: a direction of view expected")
+    ahead = (center - eye) / distance
     right = np.cross(ahead, up)
+    if not np.linalg.norm(right) > 1e-9 * np.linalg.norm(up):
+        raise ValueError("create_rays_pinhole(): up: a direction across the view expected, not one along it, nor 0 0 0")
     right /= np.linalg.norm(right)
     down = np.cross(ahead, right)
     size = 2 * np.tan(np.radians(fov_deg) / 2) / width_px
