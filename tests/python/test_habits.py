@@ -72,7 +72,7 @@ def test_a_submodule_whose_package_is_missing_says_so():
     (lambda w: xvrml.Browser(BALL.encode()).pick(5, (0, 0, 1)), "pick(): origin: 3 numbers expected, not the int 5"),
     (lambda w: xvrml.Browser(BALL.encode()).load_url("x.wrl"), "load_url(): urls: a list of texts expected, not the str 'x.wrl'"),
     (lambda w: w.raycaster("many"), "meshes(): spheres: a whole number expected"),
-    (lambda w: xvrml.rt.Raycaster("all"), "Context(): threads: a whole number expected, not the str 'all'"),
+    (lambda w: xvrml.rt.Raycaster("all"), "Raycaster(): threads: a whole number expected, not the str 'all'"),
     (lambda w: xvrml.rt.Raycaster().add_sphere("here", 1), "center: 3 numbers expected, not the str 'here'"),
     (lambda w: xvrml.rt.Context().render(size="x"), "render(): size: 2 whole numbers expected, not the str 'x'"),
     (lambda w: xvrml.rt.Context().camera(eye=1, at=(0, 0, 0)), "camera(): eye: 3 numbers expected, not the int 1"),
