@@ -132,7 +132,8 @@ bool Builder::openNode(const Token& type, const Token* def) {
   }
   if (def) {
     node.defName = def->text;
-    scope().scope->names.insert_or_assign(node.defName, frame.node);
+    const auto [named, fresh] = scope().scope->names.try_emplace(node.defName, frame.node);
+    if (!fresh) scope().earlier.emplace(&node, std::exchange(named->second, frame.node));
     scope().defined.push_back(def->text);
   }
   nodes_.push_back(std::move(frame));

@@ -81,6 +81,7 @@ class Builder : public ParseSink {
     std::unordered_set<std::string_view> placed; // names by which USE or ROUTE has given a node a place
     // The names within each node that stands in a wrong place, with their nodes.
     std::vector<std::vector<std::pair<std::string_view, NodeRef>>> misplaced;
+    std::unordered_map<const Node*, NodeRef> earlier; // that had a node's name before it
     uint64_t expanded = 0;
     size_t outerNodes = 0; // nodes that were open when the scope began
   };

@@ -58,14 +58,28 @@ void Builder::keepNames(const Mark& mark) {
 }
 
 // Drops the names of nodes in wrong places to which no USE and no ROUTE has given a better one: these nodes are in no world, and
-// what is written of the world has no place for them.
+// what is written of the world has no place for them. A node that had the name before has it again.
 void Builder::dropUnplacedNames() {
   ScopeFrame& frame = scope();
+  std::unordered_set<const Node*> dropped;
+  std::vector<std::string_view> theirs;
   for (const auto& names : frame.misplaced) {
     if (std::any_of(names.begin(), names.end(), [&](const auto& one) { return frame.placed.contains(one.first); })) continue;
-    for (const auto& [name, node] : names)
-      if (const auto found = frame.scope->names.find(name); found != frame.scope->names.end() && found->second == node)
+    for (const auto& [name, node] : names) {
+      dropped.insert(node.get());
+      theirs.push_back(name);
+    }
+  }
+  for (const std::string_view name : theirs) {
+    auto found = frame.scope->names.find(name);
+    while (found != frame.scope->names.end() && dropped.contains(found->second.get())) {
+      const auto before = frame.earlier.find(found->second.get());
+      if (before == frame.earlier.end()) {
         frame.scope->names.erase(found);
+        break;
+      }
+      found->second = before->second;
+    }
   }
 }
 
