@@ -59,8 +59,13 @@ void Builder::rollBack(const Mark& mark) {
   file_.instances.resize(mark.instances);
   file_.inlines.resize(mark.inlines);
   for (size_t i = mark.names; i < frame.defined.size(); ++i) {
-    frame.lost.insert(frame.defined[i]);
     const auto name = frame.scope->names.find(frame.defined[i]);
+    const auto before = name == frame.scope->names.end() ? frame.earlier.end() : frame.earlier.find(name->second.get());
+    if (before != frame.earlier.end()) {
+      name->second = before->second; // the node that had the name before has it again
+      continue;
+    }
+    frame.lost.insert(frame.defined[i]);
     if (name != frame.scope->names.end()) frame.scope->names.erase(name);
   }
   frame.defined.resize(mark.names);
