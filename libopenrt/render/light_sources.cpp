@@ -104,6 +104,8 @@ LightSources::LightSources(const RenderScene& scene, const RenderScene* before) 
   const EmissiveShapes* shapes = scene.emitters.shapes();
   for (uint32_t i = 0; shapes && i < shapes->size(); i++) add({none, i, {}}, (*shapes)[i].power * M_PI);
   for (uint32_t i = 0; i < scene.lights.size(); i++) {
+    // Without shadows a light shines straight through glass: what a path brought besides would count twice.
+    if (!scene.frame.shadows || (scene.lights[i].shader.traits & RTS_NO_SHADOW)) continue;
     Source source{i, none, {}};
     if (extentOf(scene, scene.lights[i], source.extent))
       add(source, source.extent.power * (source.extent.parallel ? M_PI * radius_ * radius_ : 1.0));

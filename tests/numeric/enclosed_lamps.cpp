@@ -94,6 +94,15 @@ TEST_F(EnclosedLamps, ABallBetweenTheLampAndTheFloor) { // one part of the light
   expectAsThroughAir();
 }
 
+// A light without shadows shines straight through the glass: what reaches the floor by way of the glass must not come on top.
+TEST_F(EnclosedLamps, ALightWithoutShadowsCountsOnce) {
+  place(square(floor(false), 3));
+  use(lamp(false, {1, 0, 0}).setInt("shadows", 0));
+  const double withoutGlass = meanOf(RT_TRANSPORT_PATH);
+  ball(.5, lampAt - .8);
+  expectLit(withoutGlass);
+}
+
 TEST_F(EnclosedLamps, ShellsInShellsAndALampInAScaledSpace) {
   place(square(floor(false), 3));
   for (const double radius : {.05, .2, .45}) ball(radius);
