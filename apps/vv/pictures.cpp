@@ -303,7 +303,7 @@ class Pictures {
     if (options_.verbose && done_ == moments_ * views_) tellLast(result);
     const bool nothing = !options_.quiet && !result.interrupted && showsNothing(result.picture);
     anythingShown_ = anythingShown_ || !nothing;
-    // Of a sequence the last picture speaks for all.
+    // The last picture of a sequence speaks for all of them.
     const bool hints = !options_.isSequence() || (done_ == moments_ * views_ && !anythingShown_);
     if (nothing && hints && flights_.empty())
       if (const std::string hint = hintFor(options_, job.view, result, *renderer_); !hint.empty()) say("vv: " + hint);
@@ -321,7 +321,7 @@ class Pictures {
 
   RunningWorld running() const { return {browser_.world(), browser_.scripts()}; }
 
-  // What -v says with the last picture.
+  // Says what -v adds with the last picture.
   void tellLast(const picture::RenderResult& result) {
     for (const std::string& line : clusterLines(result)) say(line);
     if (const xvrml::ScriptCounts counts = browser_.scripts(); counts.started > 0)

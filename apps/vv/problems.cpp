@@ -41,7 +41,7 @@ std::string kindOf(const xvrml::Diagnostic& diagnostic) {
   return kind;
 }
 
-// What Scripts print is no problem: each line is told.
+// Tells messages of one kind once. Lines that Scripts print are no problems: each of them is told.
 void Problems::tellFolded(const std::vector<xvrml::Diagnostic>& fresh) {
   std::unordered_map<std::string, size_t> counts;
   std::vector<std::pair<const xvrml::Diagnostic*, std::string>> shown;

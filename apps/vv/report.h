@@ -14,7 +14,7 @@ namespace vv {
 struct RunTimes {
   double write = 0, total = 0; // seconds
 };
-// What a running world is asked for.
+// Holds what statistics say of a running world.
 struct RunningWorld {
   const xvrml::World& world;
   xvrml::ScriptCounts scripts;

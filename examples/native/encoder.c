@@ -12,7 +12,7 @@ static int32_t stepsOfTurn; /* 0: closed */
 static int32_t lastCount;
 static double firstTime, lastTime; /* of readings, in seconds since 1970; lastCount tells whether there were any */
 
-/* What the shaft of the real machine would do: turns, `time` seconds after the motor was switched on. */
+/* Returns the turns that the real machine's shaft would have made `time` seconds after the motor was switched on. */
 static double shaft(double time) { return 0.75 * (time - (1 - exp(-time))) + 0.02 * sin(11 * time); }
 
 /* device: "simulated:..." is the only one that there is; steps: of one turn. */

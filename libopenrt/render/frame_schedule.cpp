@@ -126,7 +126,8 @@ bool FrameSchedule::nextTile(Job& job, uint32_t largest, double now) {
   Out out;
   if (!ready_.empty()) {
     Ready& ready = ready_.front();
-    out.until = ready.pilot ? ready.pilot : wanted_[ready.tile], out.further = ready.pilot > 0;
+    out.until = ready.pilot ? ready.pilot : wanted_[ready.tile];
+    out.further = ready.pilot > 0;
     if (out.further) out.stage = Stage::pilot;
     giveBlock(job, out, ready.tile, ready.from, out.until, largest, now);
     if (ready.from >= out.until) ready_.pop_front();
@@ -185,7 +186,8 @@ void FrameSchedule::decided(uint32_t tile, uint32_t wanted) {
 
 void FrameSchedule::pilotAgain(uint32_t tile, uint32_t samples) {
   const double more = double(samples) * double(grid_.at(tile).pixels());
-  undone_ += more, all_ += more;
+  undone_ += more;
+  all_ += more;
   ready_.push_back({tile, 0, samples});
 }
 

@@ -54,16 +54,18 @@ PilotPixel pilotPixel(PixelError& error, const LightSums* light) {
   out.trusted = error.trusted;
   if (light) addLight(*light, error);
   const auto scale = double(error.noise.scale);
-  out.noise = float(half / scale), out.constant = error.constant;
+  out.noise = float(half / scale);
+  out.constant = error.constant;
   if (light) out.light = float(lightHalfWidth(*light) / scale);
   return out;
 }
 
 Pilots::Pilots(const edit::FrameSettingsT& frame, const TileGrid& grid, bool timed)
     : grid_(grid), width_(frame.width), most_(frame.samples), target_(double(frame.targetError)), timed_(timed),
-      map_(frame.width, frame.height, ErrorMap::Kind::doubts) {
+      ladder_(ladderOf(frame.samples)), map_(frame.width, frame.height, ErrorMap::Kind::doubts) {
   const size_t pixels = size_t(frame.width) * frame.height;
-  first_.resize(pixels), scale_.resize(pixels);
+  first_.resize(pixels);
+  scale_.resize(pixels);
 }
 
 void Pilots::note(uint32_t tile, std::span<const PilotPixel> pixels, std::span<const PixelError> errors) {
@@ -73,7 +75,8 @@ void Pilots::note(uint32_t tile, std::span<const PilotPixel> pixels, std::span<c
     for (uint32_t x = t.x0; x < t.x1; x++, i++) {
       const size_t at = size_t(y) * width_ + x;
       map_.store(at, errors[i]);
-      first_[at] = pixels[i], scale_[at] = errors[i].noise.scale;
+      first_[at] = pixels[i];
+      scale_[at] = errors[i].noise.scale;
     }
 }
 
@@ -92,13 +95,12 @@ double Pilots::expected(const Tile& tile, std::span<const PilotPixel> pixels, do
 }
 
 Pilots::Opinion Pilots::opinion(const Tile& tile, std::span<const PilotPixel> pixels, uint32_t samples) const {
-  const std::vector<uint32_t> ladder = ladderOf(most_);
   double light = 0, unknown = 0;
   for (const PilotPixel& p : pixels) light += std::min(1.0, double(p.light)) / double(pixels.size());
   // Where paths from lamps alone are over it, samples are of use until they add little.
   const double target = std::max(margin * target_, 1.1 * light);
   const auto enough = [&](uint32_t wanted) { return expected(tile, pixels, samples, wanted) <= target; };
-  const auto found = std::partition_point(ladder.begin(), ladder.end() - 1, [&](uint32_t n) { return !enough(n); });
+  const auto found = std::partition_point(ladder_.begin(), ladder_.end() - 1, [&](uint32_t n) { return !enough(n); });
   Opinion out{*found, 0};
   const double less = std::sqrt(double(samples) / out.wanted);
   for (const PilotPixel& p : pixels)

@@ -58,6 +58,7 @@ class Pilots {
   const uint32_t width_, most_;
   const double target_;
   const bool timed_;
+  const std::vector<uint32_t> ladder_; // numbers of samples that tiles may take
   // Row by row, of the first pilot. The half-width that constant pixels beside an edge have: neighbours of other tiles tell.
   ErrorMap map_;
   std::vector<PilotPixel> first_;
