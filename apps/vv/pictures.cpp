@@ -87,6 +87,7 @@ class Pictures {
     picture::RenderSettings settings = options_.render;
     if (!options_.stats.empty() && !options_.isSequence()) settings.channels |= RT_VARIANCE; // then RTstats has the error
     if (settings.error > 0) settings.channels |= RT_SAMPLES;                                 // whyMissed()
+    warnOfAlpha();
     settings.progressive = !options_.isSequence() && picture::worthRounds(settings);
     const Timeline timeline(options_);
     if (options_.script) beginScript(settings);
@@ -116,6 +117,16 @@ class Pictures {
   }
 
  private:
+  // Transparency that was asked for and that no file keeps.
+  void warnOfAlpha() const {
+    if (options_.quiet || options_.render.background.kind != picture::Background::Kind::none || options_.outputs.empty()) return;
+    const bool kept = std::any_of(options_.outputs.begin(), options_.outputs.end(), [](const Output& output) {
+      return output.film == picture::FilmKind::none &&
+             (output.format == picture::Format::png || output.format == picture::Format::exr);
+    });
+    if (!kept) sayWarning("--background none: only png and exr keep what is transparent; it is black in the other files");
+  }
+
   // What is recorded is whole only now. The renderer goes with it.
   void endRecording() {
     if (!options_.render.record.empty() && renderer_) renderer_->close();

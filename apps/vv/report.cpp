@@ -36,6 +36,7 @@ Json errorEstimate(const RTstats& s) {
           {"half_width", value(s.errorHalfWidth)},
           {"p99", value(s.errorP99)},
           {"pixels_trusted", value(known ? double(s.errorTrusted) / double(s.errorPixels) : 0)},
+          {"unmet", value(s.errorUnmet)},
           {"level", s.errorLevel},
           {"method", s.errorMethod}};
 }

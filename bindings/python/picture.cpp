@@ -28,6 +28,7 @@ void describePicture(py::dict& stats, const RTstats& s) {
   stats["error_half_width"] = s.errorHalfWidth;
   stats["error_p99"] = s.errorP99;
   stats["error_trusted"] = double(s.errorTrusted) / double(s.errorPixels);
+  stats["error_unmet"] = s.errorUnmet;
   stats["error_method"] = s.errorMethod;
 }
 

@@ -252,7 +252,12 @@ void defineWorld(py::module_& module) {
       .def_property_readonly(
           "epoch", [](const WorldPtr& self) { return self->browser() ? self->browser()->epoch() : worldEpoch; },
           "Time 0 in the world's own time, seconds since 1970: assign epoch + time to a startTime to start something now.")
-      .def("__getitem__", [](const WorldPtr& self, const py::str& name) { return getNode(self, fromText(name)); })
+      .def("__getitem__",
+           [](const WorldPtr& self, const py::object& name) {
+             if (!py::isinstance<py::str>(name))
+               throw py::type_error("a world is asked by the DEF name of a node, which is a string");
+             return getNode(self, fromText(name));
+           })
       .def("__contains__",
            [](const WorldPtr& self, const py::object& name) {
              return py::isinstance<py::str>(name) && self->graph().scope.names.count(fromText(name)) > 0;

@@ -195,6 +195,7 @@ void EmissiveShapes::add(const RenderScene& scene, uint32_t id, std::vector<Ligh
   if (r.primitive == edit::Primitive::Sphere) {
     const double outside = askSphere(scene, id, arena); // inside, a surface's own directions meet it
     firstOf_[id] = uint32_t(shapes_.size());
+    brightest_ = std::max(brightest_, outside);
     bounds.push_back(sphereBounds(r, outside));
     shapes_.push_back({id, 0, uint8_t(outside > 0 ? 1 : 0), true, {}, false, 4 * bounds.back().intensity});
     return;
@@ -218,6 +219,7 @@ void EmissiveShapes::add(const RenderScene& scene, uint32_t id, std::vector<Ligh
     if (r.cull) std::fill_n((r.flip ? front : back).begin(), n, 0.0); // that side is not there
     for (uint32_t i = 0; i < n; i++) {
       Shape& s = shapes_[begin + i];
+      brightest_ = std::max({brightest_, front[i], back[i]});
       bounds.push_back(triangleBounds(s, front[i], back[i]));
       if (bounds.back().intensity > 0) s.sides = uint8_t((front[i] > 0 ? 1 : 0) | (back[i] > 0 ? 2 : 0));
       s.power = bounds.back().intensity * (s.sides == 3 ? 2.0f : 1.0f);

@@ -27,6 +27,7 @@ class EmissiveShapes {
   explicit EmissiveShapes(const RenderScene& scene);
   bool empty() const { return tree_.empty(); }
   size_t size() const { return shapes_.size(); }
+  double brightest() const { return brightest_; } // mean luminance of a shape's side
   const Shape& operator[](uint32_t number) const { return shapes_[number]; }
   const LightTree& tree() const { return tree_; }
   // A place on a shape. u, v: even numbers of the unit square; area: of the whole shape, or what makes up for uneven places.
@@ -50,6 +51,7 @@ class EmissiveShapes {
   std::vector<Shape> shapes_;     // all primitives of a record one after the other
   std::vector<uint32_t> firstOf_; // by record
   LightTree tree_;
+  double brightest_ = 0;
 };
 
 // Corners of a record's triangle in render space.

@@ -139,6 +139,9 @@ float Emitters::skyDensity(const Receiver&, const float local[3]) const {
   return share_ > 0 ? share_ * sky_->density(local) / skyStretch(local) : 0.0f;
 }
 
+double Emitters::brightestSky() const { return share_ > 0 ? sky_->brightest() : 0; }
+double Emitters::brightest() const { return any() ? std::max(brightestSky(), shapes_->brightest()) : 0; }
+
 bool Emitters::sends(uint32_t record, uint32_t primitive, const float direction[3]) const {
   const uint32_t number = shapes_ ? shapes_->find(record, primitive) : EmissiveShapes::none;
   if (number == EmissiveShapes::none) return false;

@@ -36,6 +36,9 @@ class Emitters {
   // their places are those of this one.
   void build(const RenderScene& scene, const RenderScene* before, bool samePlaces);
   bool any() const { return share_ >= 0; }
+  // Largest luminance of the sky, of sky and shapes.
+  double brightestSky() const;
+  double brightest() const;
   // pick chooses the emitter, (u, v) the place on it: numbers of [0, 1). Of pick every digit counts where emitters are many.
   Sight choose(const Receiver& from, double pick, float u, float v) const;
   // Whether what the ray of a sight has met is what it was sent for.

@@ -51,6 +51,13 @@ void Film::finishErrors() {
   });
 }
 
+void Film::distrust(const Tile& tile, double missed) {
+  for (uint32_t y = tile.y0; y < tile.y1; y++)
+    for (uint32_t x = tile.x0; x < tile.x1; x++)
+      if (const size_t pixel = size_t(y) * width_ + x; errors_.distrust(pixel, missed) && has(RT_TRUST))
+        plane(RT_TRUST)[pixel] = 0;
+}
+
 bool Film::read(uint32_t channel, std::span<float> out) const {
   if (!std::has_single_bit(channel) || !has(channel)) return false;
   const auto& source = planes_[planeOf(channel)];

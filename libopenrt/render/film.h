@@ -31,6 +31,8 @@ class Film {
   void store(uint32_t x, uint32_t y, const PixelSums& sums, const LightSums* light = nullptr, const PixelError* error = nullptr);
   // After the last store(): looks at the neighbours of constant pixels. One thread.
   void finishErrors();
+  // Then, of each tile: what its pixels may lack that no sample tells of (ErrorMap).
+  void distrust(const Tile& tile, double missed);
   const ErrorMap& errors() const { return errors_; }
   bool read(uint32_t channel, std::span<float> out) const;
   // Of a picture that is still being made: nothing everywhere, then tile by tile those that are finished. false: no such

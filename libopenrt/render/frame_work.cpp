@@ -56,6 +56,12 @@ struct FrameWork::Impl {
              const FrameSchedule::Out* pilot = nullptr);
   void judge(const FrameSchedule::Out& pilot, const std::vector<PilotPixel>& pixels, const std::vector<PixelError>& errors);
   void follow(uint32_t tile, const Pilots::Verdict& verdict);
+  double pathsOf(uint32_t tile) const { return double(tiles[tile].ledger.samples) * double(grid.at(tile).pixels()); }
+  Ledger wholeLedger() const {
+    Ledger all;
+    for (uint32_t i = 0; i < count; i++) all.add(tiles[i].ledger);
+    return all;
+  }
   void settle();
   void settleWaiting();
   void tell();
@@ -227,6 +233,8 @@ void FrameWork::Impl::settle() {
     {
       std::unique_lock alone(ending);
       film.finishErrors();
+      const Ledger whole = wholeLedger();
+      for (uint32_t i = 0; i < count; i++) film.distrust(grid.at(i), tiles[i].ledger.missedByChance(whole, pathsOf(i)));
     }
     std::lock_guard lock(mutex);
     over = true;
@@ -362,8 +370,12 @@ RayCounters FrameWork::counters() const {
 void FrameWork::describeError(RTstats& stats) const {
   stats.errorLevel = 0.95;
   if (impl_->film.errors().empty()) return;
-  const ErrorSummary s = impl_->film.errors().summary();
-  stats.errorMean = s.mean, stats.errorMeanInterval = s.meanInterval;
+  double paths = 0;
+  for (uint32_t i = 0; i < impl_->count; i++) paths += impl_->pathsOf(i);
+  const Ledger whole = impl_->wholeLedger();
+  const double missed = whole.missedByChance(whole, paths);
+  const ErrorSummary s = impl_->film.errors().summary(missed);
+  stats.errorMean = s.mean, stats.errorMeanInterval = s.meanInterval, stats.errorUnmet = missed;
   stats.errorHalfWidth = s.halfWidth, stats.errorP99 = s.p99;
   stats.errorPixels = s.pixels, stats.errorTrusted = s.trusted;
   const bool many = impl_->schedule.timed() || replicatesOf(impl_->frame, impl_->frame.samples, 0).many();

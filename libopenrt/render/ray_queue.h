@@ -29,9 +29,11 @@ struct RayState {
   Receiver from;         // whose density it is
   MediaStack media = {}; // bodies that the ray is inside of
   Course course = Course::straight;
-  uint8_t bent = 0;    // no longer the straight line from the camera: alpha is settled
-  uint8_t splits = 0;  // times the path has gone on in several directions
-  uint8_t channel = 0; // 1 + the only colour it carries (dispersion); 0: all
+  uint8_t scattered = 0; // a surface that scatters was on the way
+  uint8_t byChance = 0;  // and mirrors or smooth boundaries alone since the last one: it meets emitters by chance (ledger.h)
+  uint8_t bent = 0;      // no longer the straight line from the camera: alpha is settled
+  uint8_t splits = 0;    // times the path has gone on in several directions
+  uint8_t channel = 0;   // 1 + the only colour it carries (dispersion); 0: all
 };
 
 struct QueuedRay {

@@ -102,9 +102,10 @@ class Source {
 };
 
 bool getLedger(Source& source, Ledger& ledger) {
-  double v[3];
+  double v[9];
   if (!source.get(v, sizeof v)) return false;
   ledger.cutByDepth = v[0], ledger.cutByEnergy = v[1], ledger.clipped = v[2];
+  ledger.chance = {v[3], v[4], v[5]}, ledger.chanceSky = {v[6], v[7], v[8]};
   return true;
 }
 
@@ -177,7 +178,9 @@ bool getLight(Source source, size_t size, float* light) {
 
 std::vector<std::byte> encodeResult(const edit::FrameSettingsT& frame, const Job& job, const JobResult& result) {
   std::vector<std::byte> out;
-  const double ledger[3] = {result.ledger.cutByDepth, result.ledger.cutByEnergy, result.ledger.clipped};
+  const Ledger& l = result.ledger;
+  const double ledger[9] = {l.cutByDepth, l.cutByEnergy,     l.clipped,        l.chance.light, l.chance.rays,
+                            l.chance.met, l.chanceSky.light, l.chanceSky.rays, l.chanceSky.met};
   put(out, ledger, sizeof ledger);
   if (job.kind == Job::Kind::light) {
     putLight(out, result.light);

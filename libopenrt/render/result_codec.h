@@ -2,8 +2,8 @@
 // one value if all pixels have the same, as floats where nothing is lost, else as doubles. Without rays, faults and seconds.
 // [any]
 //
-// A tile: 3 doubles (Ledger), then each field of all pixels, row by row: a byte, then what it says (0: one value; 1: floats;
-// 2: all values as they are). Light: 3 doubles, then runs of the picture's numbers: how many zeros, how many numbers follow,
+// A tile: 9 doubles (Ledger), then each field of all pixels, row by row: a byte, then what it says (0: one value; 1: floats;
+// 2: all values as they are). Light: 9 doubles, then runs of the picture's numbers: how many zeros, how many numbers follow,
 // these; zeros at the end are left out. Little-endian, not aligned.
 #pragma once
 

@@ -84,6 +84,10 @@ void TileRenderer::scatterRange(Paths& paths, const Points& points, const Bucket
   for (uint32_t i = 0; i < hits.count; i++) {
     const float share = boundaries.crossing && !boundaries.crossing[i].seen ? 0 : chanceMet(paths.state[order[i]], points, i);
     for (int k = 0; k < 3; k++) radiance[k][i] *= share;
+    if (const RayState& ray = paths.state[order[i]]; share > 0 && ray.byChance) {
+      const float light[3] = {radiance[0][i], radiance[1][i], radiance[2][i]};
+      chanceOf(ray).meet(light, brightestFor(ray));
+    }
   }
   addLights(batch, hits, radiance);
   const bool path = scene_.frame.transport >= RT_TRANSPORT_PATH;

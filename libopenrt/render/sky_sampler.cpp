@@ -94,6 +94,7 @@ SkySampler::SkySampler(const RenderScene& scene) {
   columns_ = columnsFor(scene), rows_ = columns_ / 2;
   std::vector<float> cells(size_t(columns_) * rows_);
   measure(scene, cells);
+  for (const float mean : cells) brightest_ = std::max(brightest_, double(mean));
   // A cell beside a much brighter one may hold some of it between the places that were looked at.
   const auto beside = [&](uint32_t row, uint32_t column) {
     float most = 0;

@@ -16,6 +16,7 @@ class SkySampler {
   // Reads the environment of the scene; not usable() where there is none or it is black.
   explicit SkySampler(const RenderScene& scene);
   bool usable() const { return total_ > 0; }
+  double brightest() const { return brightest_; } // mean luminance of a cell
   // Whether some of 2048 directions of the scene's environment, which has `miss`, has light.
   static bool shines(const RenderScene& scene);
   // A local unit direction and its density by solid angle, from a point of the unit square. 0: none.
@@ -31,7 +32,7 @@ class SkySampler {
   uint32_t columns_ = 0, rows_ = 0;
   std::vector<float> inRow_;  // by cell: share of its row up to its end
   std::vector<double> byRow_; // share of the sphere up to the row's end
-  double total_ = 0;
+  double total_ = 0, brightest_ = 0;
 };
 
 } // namespace openrt

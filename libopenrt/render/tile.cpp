@@ -18,7 +18,8 @@ constexpr uint32_t pathsInFlight = 4096;
 } // namespace
 
 TileRenderer::TileRenderer(const RenderScene& scene)
-    : scene_(scene), width_(scene.frame.width), gathering_(gatheringOf(scene.frame)) {}
+    : scene_(scene), width_(scene.frame.width), gathering_(gatheringOf(scene.frame)), brightest_(scene.emitters.brightest()),
+      brightestSky_(scene.emitters.brightestSky()) {}
 
 void TileRenderer::begin(const Tile& tile) {
   if (tile == tile_) return;
@@ -231,6 +232,10 @@ void TileRenderer::background(Paths& paths, const uint32_t* missed, uint32_t n) 
       const float d[3] = {direction[0][i], direction[1][i], direction[2][i]};
       share = ray.density / (ray.density + scene_.emitters.skyDensity(ray.from, d));
     }
+    if (ray.byChance) {
+      const float light[3] = {rgba[0][i], rgba[1][i], rgba[2][i]};
+      chanceOf(ray).meet(light, brightestFor(ray));
+    }
     for (int k = 0; k < 3; k++) {
       if (std::isfinite(rgba[k][i])) paths.radiance[k][ray.path] += ray.throughput[k] * share * rgba[k][i];
       weight += ray.throughput[k];
@@ -357,6 +362,9 @@ void TileRenderer::push(const Points& points, uint32_t i, uint32_t lane, const S
       ray.state.course = step.density > 0 ? Course::scattered : Course::mirrored;
     else if (from.course != Course::mirrored)
       ray.state.course = step.density > 0 ? Course::scattered : Course::through;
+    ray.state.scattered |= step.density > 0 ? 1 : 0;
+    ray.state.byChance = ray.state.scattered && !(step.density > 0) ? 1 : 0;
+    if (ray.state.byChance) chanceOf(ray.state).send(ray.state.throughput, brightestFor(ray.state));
   }
   ray.state.bent |= step.bent ? 1 : 0;
   ray.state.branch = step.branch;

@@ -85,6 +85,10 @@ class TileRenderer {
   void passOn(const Points& points, uint32_t i, uint32_t lane, const Crossing& crossing, Paths& paths);
   void sendOn(const RtsBatch& batch, const Points& points, uint32_t i, uint32_t lane, Paths& paths,
               const LobeSamples* const samples[], const Boundaries& boundaries, float* const choices[2], float* const chance[]);
+  // Of a ray that meets emitters by chance: whether light tracing leaves those that have a place to it.
+  bool skyAlone(const RayState& ray) const { return scene_.lightSources && ray.course == Course::through; }
+  ChanceLight& chanceOf(const RayState& ray) { return skyAlone(ray) ? ledger_.chanceSky : ledger_.chance; }
+  double brightestFor(const RayState& ray) const { return skyAlone(ray) ? brightestSky_ : brightest_; }
   void push(const Points& points, uint32_t i, uint32_t lane, const Step& step, Paths& paths);
   float chanceMet(const RayState& ray, const Points& points, uint32_t i) const;
   // emitted.cpp: the light of emitters and of the sky, by choosing places on them.
@@ -99,6 +103,7 @@ class TileRenderer {
   const RenderScene& scene_;
   const uint32_t width_; // of the picture
   const Gathering gathering_;
+  const double brightest_, brightestSky_; // luminance of emitters
   const std::atomic<bool>* stop_ = nullptr;
   Arena arena_;
   RayCounters counters_;

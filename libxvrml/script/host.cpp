@@ -304,7 +304,8 @@ void ScriptHost::log(Script& script, int severity, uint32_t line, const std::str
   script.failed = script.failed || severity >= 3;
   if (severity <= 0 && options_.print) return options_.print(text);
   std::unordered_set<std::string>& told = severity >= 3 ? script.failures : script.told;
-  if (told.size() > most || !told.insert(fmt::format("{} {}", line, text.substr(0, 2000))).second) return;
+  const size_t apart = severity <= 0 ? told.size() : 0; // each line that is printed counts, what is wrong is told once
+  if (told.size() > most || !told.insert(fmt::format("{} {} {}", line, apart, text.substr(0, 2000))).second) return;
   Diagnostic d;
   d.severity = severity <= 1 ? Severity::note : severity == 2 ? Severity::warning : Severity::error;
   const SourcePosition& place = line > 0 ? script.start : script.node->source;
@@ -313,7 +314,7 @@ void ScriptHost::log(Script& script, int severity, uint32_t line, const std::str
   d.column = line > 0 ? 0 : place.column;
   const std::string& name = script.node->defName;
   d.message = told.size() > most ? "Script: more messages than can be read; the rest is left out"
-                                        : fmt::format("Script{}{}: {}", name.empty() ? "" : " ", name, text.substr(0, 2000));
+                                 : fmt::format("Script{}{}: {}", name.empty() ? "" : " ", name, text.substr(0, 2000));
   world_.diagnostics.add(std::move(d));
 }
 

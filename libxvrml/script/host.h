@@ -70,7 +70,7 @@ struct Script {
   std::string lentText, error;
   std::deque<Waiting> waiting;
   std::vector<Output> outputs;
-  std::unordered_set<std::string> told;   // warnings and notes, each once
+  std::unordered_set<std::string> told;     // what it has printed, and warnings, each of them once
   std::unordered_set<std::string> failures; // errors, each once: what a Script prints cannot hide them
   bool counted = false;                     // in ScriptCounts::started, which restarts leave as it is
 };
@@ -78,8 +78,7 @@ struct Script {
 class ScriptHost : public ScriptRunner {
  public:
   struct Table; // the XsHost that scripts get, with the way back to this
-  ScriptHost(Browser& browser, Engine& engine, World& world, const BrowserOptions& options,
-             const RunOptions& run);
+  ScriptHost(Browser& browser, Engine& engine, World& world, const BrowserOptions& options, const RunOptions& run);
   ~ScriptHost() override; // shuts all down
   ScriptHost(const ScriptHost&) = delete;
   ScriptHost& operator=(const ScriptHost&) = delete;
@@ -158,8 +157,7 @@ class ScriptHost : public ScriptRunner {
   void spend(std::chrono::steady_clock::duration time, double processor);
   void spendOfAll();
   bool spent() const {
-    return options_.scriptPatience <= 0 &&
-           (used_ >= run_.worldScriptSeconds || waited_ >= mostWaiting * run_.worldScriptSeconds);
+    return options_.scriptPatience <= 0 && (used_ >= run_.worldScriptSeconds || waited_ >= mostWaiting * run_.worldScriptSeconds);
   }
   void stopAll();
   void markReach(Script& script);
@@ -173,9 +171,9 @@ class ScriptHost : public ScriptRunner {
   std::unique_ptr<Table> table_;
   std::map<Key, std::unique_ptr<Script>> scripts_;
   std::unordered_map<XsNode, Script*> bySelf_;
-  std::deque<Key> beginning_; // to be started, in this order
-  size_t ahead_ = 0;          // how many of them startAhead() has dealt with
-  size_t sentAhead_ = 0;      // how many are ahead of their turn
+  std::deque<Key> beginning_;                  // to be started, in this order
+  size_t ahead_ = 0;                           // how many of them startAhead() has dealt with
+  size_t sentAhead_ = 0;                       // how many are ahead of their turn
   std::vector<std::unique_ptr<Script>> ended_; // their nodes have been destroyed
   std::map<Key, bool> due_;                    // eventsProcessed is due; true: there are events waiting
   std::vector<Key> ticking_;
@@ -188,7 +186,7 @@ class ScriptHost : public ScriptRunner {
   // Of RunOptions::worldScriptSeconds: processor time, so that a busy machine stops no Script that an idle one lets run. What
   // sleeps uses none: waiting is bounded, too.
   static constexpr double mostWaiting = 10;
-  double used_ = 0, waited_ = 0; // seconds: of the processor, on the wall
+  double used_ = 0, waited_ = 0;   // seconds: of the processor, on the wall
   std::optional<double> lastTick_; // the world's time then
   bool toldSpent_ = false;
   ScriptCounts counts_;

@@ -95,6 +95,37 @@ TEST_F(ErrorBars, PicturesAreOffByWhatIsSaid) {
   }
 }
 
+// The light of a lamp of a ten-thousandth that comes through a ball of glass is there, and next to no path meets it: no sample
+// tells of it. That it may be missing is said, also where the eye sees the floor through glass.
+TEST_F(ErrorBars, WhatIsMetByChanceAndWasNotMetIsInTheInterval) {
+  const RTid white = audit::paint(.7f, .7f, .7f), glass = audit::shaderOf("Glass");
+  const auto picture = [](RTenum transport) {
+    rtQuality(RT_TRANSPORT, transport);
+    rtRender();
+    printf("%.4f +- %.4f, unmet %.4g\n", stats().errorMean, stats().errorMeanInterval, stats().errorUnmet);
+    return stats();
+  };
+  audit::floorAt(-1, white, 10);
+  audit::put(audit::ball(audit::diffuse(4e7f, 0), 1e-4f), .2, .6, 0, 0);
+  audit::put(audit::ball(white, .3f), -.7, -.7, 0, 0);
+  rtPushMatrix();
+  rtLookAt(0, 2, 2, 0, -1, 0, 0, 1, 0);
+  rtPerspective(40);
+  rtPopMatrix();
+  rtFrameBuffer(16, 16, RT_RGBA | RT_ERROR);
+  rtQuality(RT_SAMPLES_PER_PIXEL, 64);
+  const RTstats open = picture(RT_TRANSPORT_PATH);
+  EXPECT_EQ(open.errorUnmet, 0);
+  EXPECT_LT(open.errorMean + open.errorMeanInterval, .2);
+  audit::put(audit::ball(glass, .3f), .5, -.6, 0, 0);
+  const RTstats ball = picture(RT_TRANSPORT_PATH);
+  EXPECT_GT(ball.errorUnmet, 1);
+  EXPECT_GT(ball.errorMean + ball.errorMeanInterval, .5);
+  EXPECT_LE(ball.errorMean + ball.errorMeanInterval, 1 + 1e-9);
+  audit::put(audit::box(glass, 2, .01, 2), 0, 1.2, 1, 0); // before the eye: then paths from lamps do not reach it
+  EXPECT_GT(picture(RT_TRANSPORT_LIGHT).errorUnmet, 1);
+}
+
 TEST_F(ErrorBars, DirectLightIsExactInsideASurface) {
   Shader grey("Diffuse");
   grey.set("reflectance", {.5, .5, .5});

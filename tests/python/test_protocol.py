@@ -121,7 +121,7 @@ class Master:
                 return root.get(0, "Q"), content
         raise AssertionError(f"no {kind} has come")
 
-    def welcome(self, session=42, protocol=1):
+    def welcome(self, session=42, protocol=2):
         self.receive("Hello")
         # A busy machine is not a lost one: long silences are allowed.
         self.send("Welcome", [("I", protocol), ("Q", session), ("f", 0.1), ("f", 60.0)], session)
@@ -164,7 +164,7 @@ def worker():
 def test_a_caller_that_beats_is_told_hello(worker):
     session, hello = Master(worker.address).receive("Hello")
     assert session == 0
-    assert hello.get(0, "I") == 1
+    assert hello.get(0, "I") == 2
     assert hello.get(7, "I") == 1
     assert hello.get(9, "I") == worker.process.pid
     assert hello.text(4) in ("avx512", "avx2", "sse")

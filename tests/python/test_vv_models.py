@@ -217,6 +217,13 @@ def test_background_none(vv):
     assert edge and all(abs(a - b) <= 3 for p in edge if p[3] > 60 for a, b in zip(p[:3], inside)), "colours as of the surface"
 
 
+def test_background_none_in_a_file_without_alpha(vv):
+    small = ("--size", "8x8", "--spp", "1", "--background", "none")
+    vv.write("sky.wrl", SKY)
+    assert "only png and exr keep" in vv("sky.wrl", "-o", "x.jpg", *small).talk
+    assert "keep" not in vv("sky.wrl", "-o", "x.jpg", "-o", "x.png", *small).talk
+
+
 def srgb(byte):
     v = byte / 255
     return v / 12.92 if v <= 0.04045 else ((v + 0.055) / 1.055) ** 2.4

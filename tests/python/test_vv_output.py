@@ -176,7 +176,7 @@ def test_statistics(vv):
         "time": "parse graph map build first_pass render write total",
         "rays": "camera shadow secondary per_second",
         "transport": "chosen reason claim leaves_out",
-        "error": "mean_rel mean_rel_interval half_width p99 pixels_trusted level method",
+        "error": "mean_rel mean_rel_interval half_width p99 pixels_trusted unmet level method",
         "memory": "peak_rss bvh scene",
         "cluster": "workers tiles tiles_here retries duplicates bytes bytes_sent bytes_received machines",
         "left_out": "cut_by_depth cut_by_energy clipped unreached_lights shader_faults wrong_hits rejected_rays",

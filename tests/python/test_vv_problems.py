@@ -66,6 +66,12 @@ def test_script_time_of_a_world_is_limited(vv):
     assert done.talk.count("limit worldScriptSeconds=1: ") == 1 and "--limit worldScriptSeconds=60" in done.talk
 
 
+def test_a_script_is_heard_each_time_that_it_prints(vv):
+    vv.write("twice.wrl", HEADER + 'Script { url "javascript: function initialize() { for (var i = 0; i < 3; i++) print(\'again\'); }" }')
+    for options in ([], ["-v"]):
+        assert vv("twice.wrl", "-o", "x.png", *options, *SMALL).talk.count("again") == 3
+
+
 def test_errors_are_not_lost_among_other_messages(vv):
     vv.write("prints.wrl", HEADER + 'Script { url "javascript: function initialize() { for (var i = 0; i < 300; i++) print(\'line \' + i); '
              'undefinedfn(); }" }\nShape { geometry Box { } }')

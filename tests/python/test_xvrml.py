@@ -108,7 +108,7 @@ def test_names():
     assert set(w) == {"All", "Other"} and len(w) == 2 and "All" in w and "Any" not in w and 5 not in w
     with pytest.raises(KeyError, match="did you mean Other"):
         w["Othr"]
-    with pytest.raises(TypeError):
+    with pytest.raises(TypeError, match="DEF name"):
         w[0]
     assert w["All"] == w["All"] and w["All"] != w["Other"] and hash(w["All"]) == hash(w["All"])
     assert [n.node_type for n in w.roots] == ["Everything", "Group"]

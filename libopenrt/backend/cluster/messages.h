@@ -18,7 +18,7 @@
 
 namespace openrt::cluster {
 
-inline constexpr uint32_t protocolVersion = 1; // another one is refused
+inline constexpr uint32_t protocolVersion = 2; // another one is refused
 
 namespace limits {
 inline constexpr size_t headerBytes = size_t(64) << 20; // of a Scene: two million arrays

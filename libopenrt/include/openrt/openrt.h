@@ -281,8 +281,7 @@ RT_API void rtGetParameterInfo(RTid shaderClass, int handle, RTparameterInfo* in
 /* Turns a light shader on and returns the light's id. */
 RT_API RTid rtUseLight(RTid shader);
 RT_API void rtLightMatrix(RTid light, const double m[16]);
-/* The light shines only on what lies below this instance; 0: on everything (default). It shines on nothing once the instance
- * is deleted. */
+/* The light shines only on what lies below this instance, on nothing once that is deleted; 0: on everything (default). */
 RT_API void rtLightScope(RTid light, RTid instance);
 RT_API void rtRemoveLight(RTid light);
 /* The one camera. Its local frame looks down -z with +y up. 0 removes it. */
@@ -446,6 +445,8 @@ typedef struct RTstats {
   uint64_t reissued, duplicates;    /* handed out again: late, or their worker was lost; results that came too late */
   uint64_t bytesSent, bytesReceived;
   uint32_t transportLeavesOut; /* RT_LEAVES_*, or'ed: light of the scene that the transport does not follow */
+  double errorUnmet; /* radiance, colours summed, that pixels lack on average at most, with 95 %: of what paths meet by chance and
+                        too few have met (docs/accuracy.md); errorMeanInterval contains it. 0: enough have, or there are none */
 } RTstats;
 RT_API void rtGetStats(RTstats* stats);
 
@@ -463,8 +464,8 @@ typedef struct RTworker {
   double busySeconds; /* of all its threads */
   double latency;     /* seconds a job is under way beyond the work, smoothed */
 } RTworker;
-/* Writes at most count workers, those that left too, and returns how many there are. workers may be NULL if count is 0. May be
- * called from any thread. */
+/* Writes at most count workers, those that left too; returns how many there are. workers may be NULL if count is 0. Any thread.
+ */
 RT_API size_t rtGetWorkers(RTcontext context, RTworker* workers, size_t count);
 
 /* Queries on the last committed scene ---------------------------------------------------------------------------------- */
