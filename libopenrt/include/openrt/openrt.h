@@ -445,8 +445,7 @@ typedef struct RTstats {
   uint64_t reissued, duplicates;    /* handed out again: late, or their worker was lost; results that came too late */
   uint64_t bytesSent, bytesReceived;
   uint32_t transportLeavesOut; /* RT_LEAVES_*, or'ed: light of the scene that the transport does not follow */
-  double errorUnmet; /* radiance, colours summed, that pixels lack on average at most, with 95 %: of what paths meet by chance and
-                        too few have met (docs/accuracy.md); errorMeanInterval contains it. 0: enough have, or there are none */
+  double errorUnmet; /* radiance that may be missing, with 95 %: paths meet it by chance, and few have; docs/accuracy.md */
 } RTstats;
 RT_API void rtGetStats(RTstats* stats);
 
