@@ -57,9 +57,21 @@ TEST_F(MapBudget, Lights) {
   expectRefused("lights from here on are left out");
 }
 
+// What the allocator has given out.
+uint64_t heap() { return mallinfo2().uordblks + mallinfo2().hblkhd; }
+
+// The API keeps no values of a light's parameters once more for geometry, which has none of lights.
+TEST_F(MapBudget, LightsInTheApi) {
+  if (heap() == 0) GTEST_SKIP() << "this allocator does not tell what it holds";
+  const std::string lights = repeat("SpotLight { }\n", 4000);
+  draw(lights);
+  const uint64_t before = (mapper_.reset(), world_.reset(), heap());
+  EXPECT_EQ(draw(lights).lights, 4001u);
+  EXPECT_LT((heap() - before) / 4000, 3000u);
+}
+
 // Lights that are left out leave nothing behind that is not counted.
 TEST_F(MapBudget, LightsThatAreLeftOut) {
-  const auto heap = [] { return uint64_t(mallinfo2().uordblks + mallinfo2().hblkhd); };
   if (heap() == 0) GTEST_SKIP() << "this allocator does not tell what it holds";
   const std::string lights = repeat("PointLight { intensity .5 attenuation 1 2 3 location 4 5 6 }\n", 5000);
   draw(lights, 5000 * (bytesOfItem + bytesOfPlace) + 1'000'000);
