@@ -195,8 +195,9 @@ void SceneState::setParameter(RTid id, edit::ParameterT parameter) {
   ShaderState& state = shader(id);
   shaders.touch(id, state);
   parameter.shader = id;
-  constexpr size_t largestType = 16; // a matrix
-  if (!parameter.floats.empty() && parameter.floats.size() <= largestType) state.values[parameter.index] = parameter.floats;
+  constexpr size_t largestType = 16;             // a matrix
+  const size_t floats = parameter.floats.size(); // kept for surfaces alone: only geometry has values of its own
+  if (floats > 0 && floats <= largestType && classOf(state).kind == RTS_SURFACE) state.values[parameter.index] = parameter.floats;
   const uint32_t index = parameter.index;
   state.parameters.insert_or_assign(index, std::move(parameter));
 }

@@ -23,12 +23,15 @@ inline uint64_t multiplySaturating(uint64_t a, uint64_t b) {
 inline constexpr uint64_t bytesOfPrimitive = 150, bytesOfInstance = 1500;
 // What things take in all, in the scene graph's mapper, the API and the renderer: what the budget of a world counts by
 // (base/budget.h). Measured as the growth of the process by worlds of 100,000 of each, and rounded up.
-inline constexpr uint64_t bytesOfItem = 600;     // a node that is drawn, placed or shines
-inline constexpr uint64_t bytesOfPlace = 900;    // each place of a node that depends on it
-inline constexpr uint64_t bytesOfLight = 2900;   // each place of a light that shines
-inline constexpr uint64_t bytesOfShape = 1000;   // a shape written into an object, beside its primitives
-inline constexpr uint64_t bytesOfSurface = 2500; // an appearance
-inline constexpr uint64_t bytesWhileBuilt = 150; // a triangle in a mesh and in what it is made of
+inline constexpr uint64_t bytesOfItem = 600;         // a node that is drawn, placed or shines
+inline constexpr uint64_t bytesOfPlace = 900;        // each place of a node that depends on it
+inline constexpr uint64_t bytesOfLight = 900;        // each place of a light that shines
+inline constexpr uint64_t bytesOfLightShader = 2400; // each light node that shines
+inline constexpr uint64_t bytesOfShape = 1000;       // a shape written into an object, beside its primitives
+inline constexpr uint64_t bytesOfSurface = 2500;     // an appearance
+inline constexpr uint64_t bytesOfOption = 200;       // an option of an ORTShader, beside its text and numbers
+inline constexpr uint64_t copiesOfOption = 2;        // of those: in the renderer's scene, and in the shader's parameters there
+inline constexpr uint64_t bytesWhileBuilt = 150;     // a triangle in a mesh and in what it is made of
 
 inline constexpr uint64_t replaced = 3;                    // instances' worth that one instance must replace ...
 inline constexpr uint64_t savedSome = 256 << 10;           // ... if this much is saved in all

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <utility>
 
 #include "base/regular_file.h"
 
@@ -31,7 +32,24 @@ std::string readText(const std::string& path, uint64_t limit, std::string& text)
 
 } // namespace
 
-void CustomShaders::setOption(const ShaderOption& option, const Node& node, RTenum role) {
+bool CustomShaders::take(Made& made, uint64_t bytes) {
+  if (!ration_.take(bytes, made.node->source)) return false;
+  made.bytes += bytes;
+  return true;
+}
+
+std::vector<ShaderOption> CustomShaders::optionsOf(Made& made, std::vector<std::string>& errors) {
+  ration_.give(std::exchange(made.bytes, 0));
+  std::vector<ShaderOption> options = parseShaderOptions(static_cast<const nodes::ORTShader&>(*made.node).options, errors);
+  uint64_t bytes = 0;
+  for (const ShaderOption& option : options)
+    bytes += bytesOfOption + option.name.size() + copiesOfOption * (option.text.size() + option.numbers.size() * sizeof(float));
+  if (!take(made, bytes)) options.clear();
+  return options;
+}
+
+void CustomShaders::setOption(const ShaderOption& option, Made& made, RTenum role) {
+  const Node& node = *made.node;
   const int handle = rtParameterHandle(option.name.c_str());
   const std::vector<float>& n = option.numbers;
   switch (option.type) {
@@ -50,7 +68,8 @@ void CustomShaders::setOption(const ShaderOption& option, const Node& node, RTen
     std::string text, why = resolved.error;
     if (why.empty()) why = readText(resolved.path, std::min(longest, world_.options.limits.fileBytes), text);
     if (!why.empty()) return world_.diagnostics.error(node.source, "ORTShader: option " + option.name + ": " + why);
-    return rtParameterString(handle, text.c_str());
+    if (take(made, copiesOfOption * text.size())) rtParameterString(handle, text.c_str());
+    return;
   }
   case ShaderOption::Type::color:
   case ShaderOption::Type::floats: break;
@@ -92,7 +111,7 @@ void CustomShaders::make(Made& made, RTenum role, const Preset& preset) {
     return;
   }
   std::vector<std::string> errors;
-  const std::vector<ShaderOption> options = parseShaderOptions(node.options, errors);
+  const std::vector<ShaderOption> options = optionsOf(made, errors);
   if (told_.insert(&node).second)
     for (const std::string& error : errors) world_.diagnostics.error(node.source, "ORTShader " + node.name + ": " + error);
   ShaderSetup shader(shaderClass.id);
@@ -101,7 +120,7 @@ void CustomShaders::make(Made& made, RTenum role, const Preset& preset) {
   report(world_.diagnostics, node.source, "ORTShader " + node.name);
   for (const ShaderOption& option : options) {
     made.options.push_back(option.name);
-    setOption(option, node, role);
+    setOption(option, made, role);
     report(world_.diagnostics, node.source, "ORTShader " + node.name + ", option " + option.name);
   }
 }
@@ -110,7 +129,7 @@ void CustomShaders::make(Made& made, RTenum role, const Preset& preset) {
 void CustomShaders::refresh(Made& made, RTenum role, const Preset& preset) {
   const auto& node = static_cast<const nodes::ORTShader&>(*made.node);
   std::vector<std::string> errors, names;
-  const std::vector<ShaderOption> options = parseShaderOptions(node.options, errors);
+  const std::vector<ShaderOption> options = optionsOf(made, errors);
   for (const ShaderOption& option : options) names.push_back(option.name);
   if (made.shader == 0 || made.name != node.name || made.file != node.file || names != made.options || !errors.empty()) {
     const RTid before = made.shader;
@@ -122,7 +141,7 @@ void CustomShaders::refresh(Made& made, RTenum role, const Preset& preset) {
   ShaderSetup shader(made.shader, sets_);
   if (preset) preset(shader, shaderClass);
   for (const ShaderOption& option : options) {
-    setOption(option, node, role);
+    setOption(option, made, role);
     ++sets_;
   }
   report(world_.diagnostics, node.source, "ORTShader " + node.name);
@@ -138,6 +157,7 @@ void CustomShaders::forget(const Node& user) {
   std::erase_if(made_, [&](const auto& entry) {
     if (entry.first.second != &user) return false;
     if (entry.second.shader != 0) rtDeleteShader(entry.second.shader);
+    ration_.give(entry.second.bytes);
     return true;
   });
 }
@@ -152,6 +172,7 @@ void CustomShaders::clear() {
   for (const auto& [key, made] : made_)
     if (made.shader != 0) rtDeleteShader(made.shader);
   made_.clear();
+  ration_.clear();
 }
 
 } // namespace xvrml::mapping

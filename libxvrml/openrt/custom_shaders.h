@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "openrt/ration.h"
 #include "openrt/rt.h"
 #include "openrt/shader_options.h"
 #include "openrt/textures.h"
@@ -20,7 +21,7 @@ namespace xvrml::mapping {
 class CustomShaders {
  public:
   CustomShaders(World& world, ShaderClasses& classes, Textures& textures)
-      : world_(world), classes_(classes), textures_(textures) {}
+      : world_(world), classes_(classes), textures_(textures), ration_(world, "options of shaders") {}
 
   // Sets parameters that the world gives by other means than the options, which come after it and so have the last word.
   using Preset = std::function<void(ShaderSetup& shader, const ShaderClass& shaderClass)>;
@@ -42,16 +43,22 @@ class CustomShaders {
     RTid shader = 0;
     std::string name, file;
     std::vector<std::string> options; // names of the parameters it has been given
+    uint64_t bytes = 0;               // taken from the world's budget for them
     bool stale = false;
   };
   void make(Made& made, RTenum role, const Preset& preset);
   void refresh(Made& made, RTenum role, const Preset& preset);
-  void setOption(const ShaderOption& option, const Node& node, RTenum role);
+  // The options that the node has now, counted as this shader's; none, after a message, if the world's budget does not allow
+  // them.
+  std::vector<ShaderOption> optionsOf(Made& made, std::vector<std::string>& errors);
+  bool take(Made& made, uint64_t bytes);
+  void setOption(const ShaderOption& option, Made& made, RTenum role);
 
   World& world_;
   ShaderClasses& classes_;
   Textures& textures_;
   std::map<std::pair<const Node*, const Node*>, Made> made_; // by ORTShader and user
+  Ration ration_;
   std::vector<RTid> replaced_;
   std::set<const Node*> told_; // whose options have been complained of
   uint64_t sets_ = 0;

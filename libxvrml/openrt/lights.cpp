@@ -52,6 +52,10 @@ RTid Lights::shaderOf(Node& light) {
     auto* shader = nodeCast<nodes::ORTShader>(renderedNode(static_cast<nodes::ORTLight&>(light).shader.get()));
     it->second = {shader ? custom_.of(*shader, RT_LIGHT) : 0, false};
   } else if (fresh) {
+    if (!ration_.take(bytesOfLightShader, light.source)) {
+      shaders_.erase(it);
+      return 0;
+    }
     ShaderSetup setup(classes_.get(classOf(light), ""));
     set(setup, light, linear_);
     it->second = {setup.id(), true};
@@ -99,7 +103,10 @@ void Lights::clear(Places& places) {
 void Lights::forget(const Graph& graph) {
   std::erase_if(shaders_, [&](const auto& known) {
     if (graph.find(known.first) != 0) return false;
-    if (known.second.own) rtDeleteShader(known.second.shader);
+    if (known.second.own) {
+      rtDeleteShader(known.second.shader);
+      ration_.give(bytesOfLightShader);
+    }
     return true;
   });
 }
@@ -131,9 +138,10 @@ void Lights::follow(const Graph& graph, Places& places) {
 void Lights::makeOrMove(Place& place, const Item& item) {
   if (place.light != 0 && place.lightMatrix == place.world) return;
   if (place.light == 0) {
-    const RTid shader = shaderOf(*item.node);
-    if (shader == 0) return; // said when it was made
-    if (!ration_.take(bytesOfLight, item.node->source)) {
+    const bool allowed = ration_.take(bytesOfLight, item.node->source);
+    const RTid shader = allowed ? shaderOf(*item.node) : 0; // a light that is left out takes no shader either
+    if (shader == 0) {
+      if (allowed) ration_.give(bytesOfLight);
       --count_;
       return;
     }

@@ -101,6 +101,10 @@ std::vector<ShaderOption> parseShaderOptions(const MFString& options, std::vecto
                               : "option '" + std::string(*type) + "' has no name");
         break; // the rest of this string cannot be made sense of
       }
+      if (result.size() == maximumShaderOptions) {
+        errors.push_back("more than " + std::to_string(maximumShaderOptions) + " options; the rest is left out");
+        return result;
+      }
       ShaderOption option;
       option.name = *name;
       if (std::string error = readValues(words, *type, option); !error.empty()) {

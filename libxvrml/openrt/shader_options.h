@@ -17,6 +17,9 @@ struct ShaderOption {
   std::string text; // string, texture, file
 };
 
+// More options than any shader has parameters; an option takes twenty times the memory of its text.
+inline constexpr size_t maximumShaderOptions = 10'000;
+
 // What could be read, in order; what could not, in errors, one sentence each. Types: 1i 1f 2f 3f 4f 16f bool color string
 // texture file floats. A string or a URL runs to the next blank, or stands in 'single quotes'; a list of floats goes on as long
 // as numbers follow.

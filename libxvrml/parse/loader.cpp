@@ -109,7 +109,7 @@ bool Loader::loadInlineFrom(InlineNode& node, const std::string& path, uint64_t 
     copied_ += known.bytes;
   }
   try {
-    const Source source = Source::open(path, limits);
+    const Source source = Source::open(path, limits, budget_);
     const auto name = std::make_shared<const std::string>(path);
     source.checkHeader(name, state_.diagnostics);
     const uint64_t before = budget_->used(), routes = state_.routes, scripts = state_.scripts;
@@ -171,7 +171,7 @@ ProtoPtr Loader::findIn(const std::string& path, const std::string& name, std::s
   auto& library = libraries_[canonical(path)];
   if (!library) {
     try {
-      const Source source = Source::open(path, state_.options.limits);
+      const Source source = Source::open(path, state_.options.limits, budget_);
       const auto sharedName = std::make_shared<const std::string>(path);
       source.checkHeader(sharedName, state_.diagnostics);
       library = std::make_unique<ParsedFile>();
@@ -280,7 +280,7 @@ template <class MakeSource> std::unique_ptr<World> loadFrom(const std::string& n
     world->path = name;
     world->options = options;
     if (budget) setBudget(*world, budget);
-    const Source source = makeSource();
+    const Source source = makeSource(budgetOf(*world));
     return onStackOf(deepestStack, [&] {
       Loader(*world, world->options).load(source, name, header);
       return std::move(world);
@@ -291,22 +291,23 @@ template <class MakeSource> std::unique_ptr<World> loadFrom(const std::string& n
 } // namespace
 
 std::unique_ptr<World> loadWorld(const std::string& path, const LoadOptions& options) {
-  return loadFrom(path, options, [&] { return Source::open(path, options.limits); });
+  return loadFrom(path, options, [&](const BudgetPtr& budget) { return Source::open(path, options.limits, budget); });
 }
 
 std::unique_ptr<World> loadWorldFromMemory(std::string_view bytes, const std::string& name, const LoadOptions& options) {
-  return loadFrom(name, options, [&] { return Source::fromMemory(bytes, name, options.limits); });
+  return loadFrom(name, options,
+                  [&](const BudgetPtr& budget) { return Source::fromMemory(bytes, name, options.limits, budget); });
 }
 
 std::unique_ptr<World> loadWorldInto(const BudgetPtr& budget, const std::string& path, const LoadOptions& options) {
   return loadFrom(
-      path, options, [&] { return Source::open(path, options.limits); }, true, budget);
+      path, options, [&](const BudgetPtr& its) { return Source::open(path, options.limits, its); }, true, budget);
 }
 
 std::unique_ptr<World> loadFragment(std::string_view text, const std::string& name, const LoadOptions& options,
                                     const BudgetPtr& budget) {
   return loadFrom(
-      name, options, [&] { return Source::fromMemory(text, name, options.limits); }, false, budget);
+      name, options, [&](const BudgetPtr& its) { return Source::fromMemory(text, name, options.limits, its); }, false, budget);
 }
 
 } // namespace xvrml

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <new>
 #include <utility>
 
 #include <fcntl.h>
@@ -37,26 +38,23 @@ struct Descriptor {
   }
 };
 
-std::string readAll(int descriptor, const std::string& name, const Limits& limits) {
-  std::string bytes;
+void readAll(int descriptor, const std::string& name, const Limits& limits, HeldText& bytes) {
   for (;;) {
-    const size_t had = bytes.size();
+    const size_t had = bytes.text().size();
     constexpr size_t step = 1 << 20;
-    bytes.resize(had + step);
-    const ssize_t got = ::read(descriptor, bytes.data() + had, step);
-    if (got < 0 && errno == EINTR) {
-      bytes.resize(had);
-      continue;
-    }
+    char* const room = bytes.grow(step);
+    if (!room) refuse(name, "its text " + bytes.tooMuch());
+    const ssize_t got = ::read(descriptor, room, step);
+    if (got < 0 && errno == EINTR) continue;
     if (got < 0) refuse(name, fmt::format("cannot be read: {}", std::strerror(errno)));
-    bytes.resize(had + static_cast<size_t>(got));
-    if (bytes.size() > limits.fileBytes) refuse(name, fmt::format("longer than limit fileBytes={}", limits.fileBytes));
-    if (got == 0) return bytes;
+    bytes.keep(had + static_cast<size_t>(got));
+    if (bytes.text().size() > limits.fileBytes) refuse(name, fmt::format("longer than limit fileBytes={}", limits.fileBytes));
+    if (got == 0) return bytes.fit();
   }
 }
 
 // Inflates all gzip members; refuses damage only if nothing came out: a cut file shows what it has.
-std::string inflateAll(std::string_view packed, const std::string& name, const Limits& limits, std::string& damage) {
+void inflateAll(std::string_view packed, const std::string& name, const Limits& limits, std::string& damage, HeldText& out) {
   z_stream stream{};
   if (inflateInit2(&stream, 15 + 16) != Z_OK) refuse(name, "no memory to unpack it");
   struct End {
@@ -66,25 +64,25 @@ std::string inflateAll(std::string_view packed, const std::string& name, const L
   constexpr uint64_t freeBytes = 1 << 20; // small files may have any ratio
   const uint64_t byRatio = std::max<uint64_t>(freeBytes, limits.inflateRatio * packed.size());
   const uint64_t most = std::min({limits.inflateBytes, limits.fileBytes, byRatio});
-  std::string out;
   size_t used = 0;
   int status = Z_OK;
   while (status != Z_STREAM_END || used < packed.size()) {
     if (status == Z_STREAM_END) { // another member, or padding
       if (packed.size() - used < 2 || packed.substr(used, 2) != "\x1f\x8b" || inflateReset(&stream) != Z_OK) break;
     }
-    const size_t had = out.size();
-    const size_t step = std::min<size_t>(std::max<size_t>(1 << 16, had), 64 << 20);
-    out.resize(had + step);
+    const size_t had = out.text().size();
+    const size_t step = std::min<size_t>(std::max<size_t>(1 << 16, had / 4), 64 << 20);
+    char* const room = out.grow(step);
+    if (!room) refuse(name, "its unpacked text " + out.tooMuch());
     stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(packed.data() + used));
     stream.avail_in = static_cast<uInt>(std::min<size_t>(packed.size() - used, 1u << 30));
     const uInt offered = stream.avail_in;
-    stream.next_out = reinterpret_cast<Bytef*>(out.data() + had);
+    stream.next_out = reinterpret_cast<Bytef*>(room);
     stream.avail_out = static_cast<uInt>(step);
     status = inflate(&stream, Z_NO_FLUSH);
     used += offered - stream.avail_in;
-    out.resize(had + step - stream.avail_out);
-    if (out.size() > most) {
+    out.keep(had + step - stream.avail_out);
+    if (out.text().size() > most) {
       const char* limit = most == limits.inflateBytes ? "inflateBytes" : most == limits.fileBytes ? "fileBytes" : "inflateRatio";
       const uint64_t value = most == limits.inflateBytes ? limits.inflateBytes
                              : most == limits.fileBytes  ? limits.fileBytes
@@ -94,11 +92,11 @@ std::string inflateAll(std::string_view packed, const std::string& name, const L
     if (status != Z_OK && status != Z_STREAM_END) {
       damage = status == Z_BUF_ERROR ? "the gzip data ends early"
                                      : fmt::format("damaged gzip data: {}", stream.msg ? stream.msg : "unknown");
-      if (out.empty()) refuse(name, damage);
+      if (out.text().empty()) refuse(name, damage);
       break;
     }
   }
-  return out;
+  out.fit();
 }
 
 bool isGzip(std::string_view bytes) { return bytes.starts_with("\x1f\x8b"); }
@@ -118,11 +116,39 @@ bool looksLikeVrml(std::string_view text) {
 
 } // namespace
 
-Source Source::open(const std::string& path, const Limits& limits) {
-  Source source;
+char* HeldText::grow(size_t more) {
+  if (const size_t wanted = size_ + more; wanted > share_.bytes()) {
+    const uint64_t extra = wanted - share_.bytes();
+    if (!share_.take(extra)) return nullptr;
+    char* const bytes = static_cast<char*>(std::realloc(bytes_.get(), wanted));
+    if (!bytes) {
+      share_.give(extra);
+      throw std::bad_alloc();
+    }
+    static_cast<void>(bytes_.release()); // realloc() has freed it
+    bytes_.reset(bytes);
+  }
+  return bytes_.get() + size_;
+}
+
+void HeldText::fit() {
+  if (size_ == 0 || size_ == share_.bytes()) return;
+  char* const bytes = static_cast<char*>(std::realloc(bytes_.get(), size_));
+  if (!bytes) return;
+  static_cast<void>(bytes_.release());
+  bytes_.reset(bytes);
+  share_.give(share_.bytes() - size_);
+}
+
+std::string HeldText::tooMuch() const {
+  return "takes, with all that the world holds, more than " + (share_.budget() ? share_.budget()->name() : std::string());
+}
+
+Source Source::open(const std::string& path, const Limits& limits, const BudgetPtr& budget) {
+  Source source(budget);
   if (path == "-") {
-    source.owned_ = readAll(STDIN_FILENO, "-", limits);
-    source.text_ = source.owned_;
+    readAll(STDIN_FILENO, "-", limits, source.held_);
+    source.text_ = source.held_.text();
   } else {
     Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
     if (file.number < 0) refuse(path, fmt::format("cannot be opened: {}", std::strerror(errno)));
@@ -139,40 +165,37 @@ Source Source::open(const std::string& path, const Limits& limits) {
         madvise(mapping, size, MADV_SEQUENTIAL);
         source.text_ = {static_cast<const char*>(mapping), size};
       } else {
-        source.owned_ = readAll(file.number, path, limits);
-        source.text_ = source.owned_;
+        readAll(file.number, path, limits, source.held_);
+        source.text_ = source.held_.text();
       }
     }
   }
-  source.unpack(path, limits);
+  source.unpack(path, limits, budget);
   return source;
 }
 
-Source Source::fromMemory(std::string_view bytes, const std::string& name, const Limits& limits) {
+Source Source::fromMemory(std::string_view bytes, const std::string& name, const Limits& limits, const BudgetPtr& budget) {
   if (bytes.size() > limits.fileBytes)
     refuse(name, fmt::format("has {} bytes: more than limit fileBytes={}", bytes.size(), limits.fileBytes));
-  Source source;
+  Source source(budget);
   source.text_ = bytes;
-  source.unpack(name, limits);
+  source.unpack(name, limits, budget);
   return source;
 }
 
-void Source::unpack(const std::string& name, const Limits& limits) {
+void Source::unpack(const std::string& name, const Limits& limits, const BudgetPtr& budget) {
   if (isGzip(text_)) {
-    owned_ = inflateAll(text_, name, limits, damage_);
-    text_ = owned_;
+    HeldText unpacked(budget);
+    inflateAll(text_, name, limits, damage_, unpacked);
+    held_ = std::move(unpacked); // what was packed is not needed any more
+    text_ = held_.text();
   }
   if ((byteOrderMark_ = text_.starts_with("\xef\xbb\xbf"))) text_.remove_prefix(3);
 }
 
 Source::Source(Source&& other) noexcept
-    : text_(other.text_), mapping_(std::exchange(other.mapping_, nullptr)), mappedBytes_(other.mappedBytes_),
-      byteOrderMark_(other.byteOrderMark_) {
-  const size_t offset = other.owned_.empty() ? 0 : static_cast<size_t>(text_.data() - other.owned_.data());
-  owned_ = std::move(other.owned_);
-  damage_ = std::move(other.damage_);
-  if (!owned_.empty()) text_ = std::string_view(owned_).substr(offset, text_.size()); // short strings move their bytes
-}
+    : text_(other.text_), held_(std::move(other.held_)), damage_(std::move(other.damage_)),
+      mapping_(std::exchange(other.mapping_, nullptr)), mappedBytes_(other.mappedBytes_), byteOrderMark_(other.byteOrderMark_) {}
 
 Source::~Source() {
   if (mapping_) munmap(mapping_, mappedBytes_);

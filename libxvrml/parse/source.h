@@ -2,20 +2,47 @@
 // VRML97 world. Used by the loader, on the thread that loads.
 #pragma once
 
+#include <cstdlib>
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 
+#include "base/budget.h"
 #include "xvrml/world.h"
 
 namespace xvrml {
 
+// A text that grows in place: realloc() moves pages, so that it never takes twice its size. What it takes is drawn from a budget.
+class HeldText {
+ public:
+  explicit HeldText(BudgetPtr budget) : share_(std::move(budget)) {}
+  // Room for more bytes behind those that are there; null if the budget has not enough left. Throws std::bad_alloc.
+  char* grow(size_t more);
+  // So many bytes are there now.
+  void keep(size_t size) { size_ = size; }
+  // Gives back what is not used.
+  void fit();
+  std::string_view text() const { return {bytes_.get(), size_}; }
+  // "takes ... more than limit worldBytes=N", for messages.
+  std::string tooMuch() const;
+
+ private:
+  struct Free {
+    void operator()(char* bytes) const { std::free(bytes); }
+  };
+  std::unique_ptr<char, Free> bytes_;
+  size_t size_ = 0;
+  Share share_; // of as many bytes as there is room for
+};
+
 class Source {
  public:
-  // Throws LoadError if there is nothing to read. "-" is standard input.
-  static Source open(const std::string& path, const Limits& limits);
+  // budget: of the world, for the text while the source holds it; null: it is not counted. What is mapped from a file is not.
+  // Throws LoadError if there is nothing to read, or more than the budget allows. "-" is standard input.
+  static Source open(const std::string& path, const Limits& limits, const BudgetPtr& budget);
   // The bytes must outlive the source unless they are gzipped.
-  static Source fromMemory(std::string_view bytes, const std::string& name, const Limits& limits);
+  static Source fromMemory(std::string_view bytes, const std::string& name, const Limits& limits, const BudgetPtr& budget);
   Source(Source&& other) noexcept;
   Source& operator=(Source&&) = delete;
   ~Source();
@@ -29,11 +56,11 @@ class Source {
   void checkHeader(const std::shared_ptr<const std::string>& file, Diagnostics& diagnostics) const;
 
  private:
-  Source() = default;
-  void unpack(const std::string& name, const Limits& limits);
+  explicit Source(const BudgetPtr& budget) : held_(budget) {}
+  void unpack(const std::string& name, const Limits& limits, const BudgetPtr& budget);
 
   std::string_view text_;
-  std::string owned_;
+  HeldText held_;
   std::string damage_; // what is wrong with gzip data of which something could be read
   void* mapping_ = nullptr;
   size_t mappedBytes_ = 0;

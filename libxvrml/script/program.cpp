@@ -72,7 +72,7 @@ bool ProgramFinder::fileProgram(const std::string& url, const std::string& base,
   if (!usable(program.engine, suffix)) return false;
   if (!resolved.error.empty()) return append(reasons_, resolved.error), false;
   try {
-    program.text = Source::open(resolved.path, options.limits).text();
+    program.text = Source::open(resolved.path, options.limits, nullptr).text();
   } catch (const LoadError& error) { return append(reasons_, error.diagnostic.text()), false; }
   if (program.text.size() > options.limits.stringBytes)
     return append(reasons_, fmt::format("'{}' is longer than limit stringBytes={}", resolved.path, options.limits.stringBytes)),

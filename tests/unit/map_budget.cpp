@@ -1,14 +1,19 @@
 // map_budget.cpp: what the mapper draws from the budget of a world, and the messages about shapes that would vanish in silence.
+#include <malloc.h>
+
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <string>
 
 #include "base/budget.h"
+#include "openrt/cost.h"
 #include "unit/map_fixture.h"
 
 namespace xvrml::test {
 namespace {
+
+using namespace mapping;
 
 std::string messages(const World& world) {
   std::string text;
@@ -50,6 +55,60 @@ TEST_F(MapBudget, Lights) {
   EXPECT_EQ(messages(*world_), "");
   EXPECT_LT(draw(lights, 1'000'000).lights, 450u);
   expectRefused("lights from here on are left out");
+}
+
+// What the allocator has given out.
+uint64_t heap() { return mallinfo2().uordblks + mallinfo2().hblkhd; }
+
+// The API keeps no values of a light's parameters once more for geometry, which has none of lights.
+TEST_F(MapBudget, LightsInTheApi) {
+  if (heap() == 0) GTEST_SKIP() << "this allocator does not tell what it holds";
+  const std::string lights = repeat("SpotLight { }\n", 4000);
+  draw(lights);
+  const uint64_t before = (mapper_.reset(), world_.reset(), heap());
+  EXPECT_EQ(draw(lights).lights, 4001u);
+  EXPECT_LT((heap() - before) / 4000, 3000u);
+}
+
+// Lights that are left out leave nothing behind that is not counted.
+TEST_F(MapBudget, LightsThatAreLeftOut) {
+  if (heap() == 0) GTEST_SKIP() << "this allocator does not tell what it holds";
+  const std::string lights = repeat("PointLight { intensity .5 attenuation 1 2 3 location 4 5 6 }\n", 5000);
+  draw(lights, 5000 * (bytesOfItem + bytesOfPlace) + 1'000'000);
+  const uint64_t before = (mapper_.reset(), world_.reset(), heap());
+  const uint64_t drawn = draw(lights, 5000 * (bytesOfItem + bytesOfPlace) + 1'000'000).lights;
+  EXPECT_LT(drawn, 600u);
+  EXPECT_LT(heap() - before, budgetOf(*world_)->used());
+}
+
+// A light that goes out keeps its shader, and what is counted for it, until its node goes.
+TEST_F(MapBudget, LightsThatGoOut) {
+  load("DEF G Group { children DEF L PointLight { } }");
+  const uint64_t on = budgetOf(*world_)->used();
+  send("L", "set_on", false);
+  frame();
+  EXPECT_EQ(budgetOf(*world_)->used(), on - bytesOfLight);
+  send("L", "set_on", true);
+  frame();
+  EXPECT_EQ(budgetOf(*world_)->used(), on);
+  send("G", "children", MFNode());
+  frame();
+  EXPECT_LE(budgetOf(*world_)->used(), on - bytesOfLight - bytesOfLightShader);
+}
+
+// Each appearance with a material has a shader of its own, and with it the texts of the options.
+TEST_F(MapBudget, OptionsOfShaders) {
+  const std::string text =
+      "Shape { appearance ORTAppearance { material Material { } shader DEF S ORTShader { name \"Diffuse\" file "
+      "\"diffuse\" options \"string note " +
+      std::string(100'000, 'x') + "\" } } geometry Box { } }\n" +
+      repeat("Shape { appearance ORTAppearance { material Material { } shader USE S } geometry Box { } }\n", 9);
+  draw(text);
+  EXPECT_EQ(count(messages(*world_), "limit worldBytes="), 0u) << messages(*world_);
+  EXPECT_GT(budgetOf(*world_)->used(), 10u * 200'000);
+  draw(text, 1'000'000);
+  EXPECT_EQ(count(messages(*world_), "options of shaders from here on are left out"), 1u) << messages(*world_);
+  EXPECT_LE(budgetOf(*world_)->used(), budgetOf(*world_)->limit());
 }
 
 TEST_F(MapBudget, TrianglesOfOneGeometry) {

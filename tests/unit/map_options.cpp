@@ -69,6 +69,15 @@ TEST(MapOptions, BadOnesAreNamedAndTheOthersKept) {
   EXPECT_NE(errors[2].find("'x'"), std::string::npos);
 }
 
+TEST(MapOptions, NotMoreThanAnyShaderHas) {
+  std::string text;
+  for (size_t i = 0; i < maximumShaderOptions + 10; ++i) text += "1f a 1 ";
+  std::vector<std::string> errors;
+  EXPECT_EQ(parseShaderOptions({text, text}, errors).size(), maximumShaderOptions);
+  ASSERT_EQ(errors.size(), 1u);
+  EXPECT_NE(errors[0].find("more than 10000 options"), std::string::npos);
+}
+
 TEST(MapOptions, NothingIsNothing) {
   EXPECT_TRUE(parse({}).empty());
   EXPECT_TRUE(parse({"", "  "}).empty());

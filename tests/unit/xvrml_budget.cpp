@@ -1,6 +1,7 @@
 // xvrml_budget.cpp: the budget of a world (limit worldBytes): what nodes, values, prototypes and scripts take of it, what happens
 // where it ends, and that it comes back.
 #include <fmt/format.h>
+#include <zlib.h>
 
 #include "base/budget.h"
 #include "unit/xvrml_parser_support.h"
@@ -21,6 +22,20 @@ std::string repeated(const std::string& text, size_t count) {
   all.reserve(text.size() * count);
   for (size_t i = 0; i < count; ++i) all += text;
   return all;
+}
+
+std::string gzipped(const std::string& text) {
+  z_stream stream{};
+  EXPECT_EQ(deflateInit2(&stream, 9, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY), Z_OK);
+  std::string packed(deflateBound(&stream, text.size()), '\0');
+  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(text.data()));
+  stream.avail_in = uInt(text.size());
+  stream.next_out = reinterpret_cast<Bytef*>(packed.data());
+  stream.avail_out = uInt(packed.size());
+  EXPECT_EQ(deflate(&stream, Z_FINISH), Z_STREAM_END);
+  packed.resize(stream.total_out);
+  deflateEnd(&stream);
+  return packed;
 }
 
 size_t count(const std::string& text, const std::string& part) {
@@ -135,6 +150,24 @@ TEST(Budget, ComesBackWithTheWorld) {
     EXPECT_GT(budget->used(), 10'000u);
   }
   EXPECT_EQ(budget.use_count(), 1); // the world has let it go
+}
+
+// While the file is read, and no longer.
+TEST(Budget, OfTextThatIsUnpacked) {
+  const std::string header = "#VRML V2.0 utf8\n", comment = "#" + std::string(600'000, 'x') + "\n";
+  const std::string nodes = repeated("PointLight { }\n", 2000); // 600,000 bytes of nodes
+  const auto load = [](const std::string& text) { return loadWorldFromMemory(text, "test.wrl", of(1'000'000)); };
+  EXPECT_EQ(messages(*load(header + comment + nodes)), ""); // a text that others hold
+  EXPECT_EQ(messages(*load(gzipped(header + nodes))), "");
+  const auto world = load(gzipped(header + comment + nodes));
+  expectRefused(*world, 1'000'000);
+  EXPECT_LT(budgetOf(*world)->used(), 400'000u); // the text has been given back
+  try {
+    load(gzipped(header + comment + comment));
+    ADD_FAILURE() << "a text of more bytes than the budget was unpacked";
+  } catch (const LoadError& error) {
+    EXPECT_NE(error.diagnostic.text().find("limit worldBytes=1000000"), std::string::npos) << error.diagnostic.text();
+  }
 }
 
 // What programs make and drop for hours does not add up.
