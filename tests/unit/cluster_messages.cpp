@@ -27,7 +27,7 @@ std::vector<message::Body> oneOfEach() {
   all.emplace_back(message::Failed{5, "why"});
   all.emplace_back(result);
   all.emplace_back(message::Log{2, "text"});
-  all.emplace_back(message::Welcome{1, 42, 0.1f, 0.5f});
+  all.emplace_back(message::Welcome{protocolVersion, 42, 0.1f, 0.5f});
   all.emplace_back(message::Scene{5, true, true, {{1, 100, {1, 2}}, {2, 200, {3, 4}}}, {{"vrml97", {5, 6}}}, someBytes(333)});
   all.emplace_back(message::Piece{{1, 2}, 100, 50, 0, someBytes(50)});
   all.emplace_back(message::Prepare{5});
@@ -173,8 +173,8 @@ TEST(Messages, numbersThatCannotBe) {
   const auto refused = [](message::Body body) { return !problem(of(std::move(body))).empty(); };
   EXPECT_TRUE(refused(message::Hello{.threads = 0}));
   EXPECT_TRUE(refused(message::Ready{1, {}, 99, {}}));
-  EXPECT_TRUE(refused(message::Welcome{1, 1, 0, 0}));
-  EXPECT_TRUE(refused(message::Welcome{1, 1, std::nanf(""), 1}));
+  EXPECT_TRUE(refused(message::Welcome{protocolVersion, 1, 0, 0}));
+  EXPECT_TRUE(refused(message::Welcome{protocolVersion, 1, std::nanf(""), 1}));
   EXPECT_TRUE(refused(message::Scene{0, true, true, {}, {}, {}}));
   EXPECT_TRUE(refused(message::Scene{limits::epochs + 1, true, true, {}, {}, {}}));
   EXPECT_TRUE(refused(message::Scene{1, true, true, {{0, 1, {}}}, {}, {}}));

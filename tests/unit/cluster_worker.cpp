@@ -44,7 +44,7 @@ struct Rig {
   }
   void greet(uint64_t session = 7, Peer peer = 1) {
     worker.joined(peer, "somewhere", 0);
-    tell(message::Welcome{1, session, 0.1f, 0.5f}, session, peer);
+    tell(message::Welcome{protocolVersion, session, 0.1f, 0.5f}, session, peer);
     said.clear();
   }
   // The only message since the last time, of a kind.
@@ -115,7 +115,7 @@ TEST(Worker, saysHelloAndServesWhoSaysWelcome) {
   rig.worker.joined(1, "somewhere", 0);
   EXPECT_EQ(rig.answer<message::Hello>().threads, 2u);
   EXPECT_FALSE(rig.worker.serving());
-  rig.tell(message::Welcome{1, 7, 0.1f, 0.5f});
+  rig.tell(message::Welcome{protocolVersion, 7, 0.1f, 0.5f});
   EXPECT_TRUE(rig.worker.serving());
 }
 
@@ -135,7 +135,7 @@ TEST(Worker, oneMasterAtATime) {
   ASSERT_EQ(rig.closed.size(), 1u);
   EXPECT_EQ(rig.closed[0].first, 2u);
   EXPECT_NE(rig.closed[0].second.find("busy"), std::string::npos);
-  rig.tell(message::Welcome{1, 9, 0.1f, 0.5f}, 9, 2); // nobody listens to it
+  rig.tell(message::Welcome{protocolVersion, 9, 0.1f, 0.5f}, 9, 2); // nobody listens to it
   EXPECT_TRUE(rig.said.empty());
   rig.worker.left(1, "gone", 0);
   rig.worker.joined(3, "elsewhere", 0);
@@ -347,7 +347,7 @@ TEST(Worker, nonsenseIsCounted) {
   rig.tell(message::Need{1, {}}), rig.tell(message::Hello{.threads = 1}); // what only workers say
   rig.tell(TinyScene(1).piece());                                         // that nobody asked for
   rig.tell(message::Prepare{1});
-  rig.tell(message::Welcome{1, 7, 0.1f, 0.5f});
+  rig.tell(message::Welcome{protocolVersion, 7, 0.1f, 0.5f});
   EXPECT_EQ(rig.badOnes.size(), 5u);
   const TinyScene scene(5);
   rig.tell(scene.message);

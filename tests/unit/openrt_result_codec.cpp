@@ -41,7 +41,7 @@ JobResult resultOf(const edit::FrameSettingsT& frame, const Job& job, uint32_t s
   const auto value = [&]() -> double { return same ? one : floats ? double(float(random())) : number(); };
   const Gathering g = gatheringOf(frame);
   JobResult result;
-  result.ledger = {number(), number(), number(), job.count};
+  result.ledger = {number(), number(), number(), {number(), number(), number()}, {number(), number(), number()}, job.count};
   result.sums.resize(tile.pixels());
   for (PixelSums& s : result.sums) {
     s.samples = job.count;
@@ -101,7 +101,7 @@ TEST(ResultCodec, FloatsTravelAsFloats) {
   in.sums.resize(tile.pixels());
   for (size_t i = 0; i < in.sums.size(); i++)
     for (int k = 0; k < 4; k++) in.sums[i].rgba[k] = double(float(i) / 3);
-  EXPECT_EQ(encodeResult(frame, job, in).size(), 3 * 8 + 4 * (1 + 4 * tile.pixels()));
+  EXPECT_EQ(encodeResult(frame, job, in).size(), 9 * 8 + 4 * (1 + 4 * tile.pixels()));
 }
 
 TEST(ResultCodec, LightComesBackExactly) {
