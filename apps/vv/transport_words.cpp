@@ -41,7 +41,8 @@ std::string transportClaim(const RTstats& stats, const picture::RenderSettings& 
   } else if (stats.transport >= RT_TRANSPORT_DIRECT && stats.transport <= RT_TRANSPORT_LIGHT) {
     claim += "; no other light is left out";
   }
-  if (stats.errorUnmet > 0)
+  constexpr double negligible = .001; // errors are relative to colours + .03
+  if (stats.errorUnmet > negligible)
     claim += fmt::format("; of the paths that only chance leads by way of mirrors or glass to an emitter few have met the "
                          "brightest one: on average a pixel may lack radiance of up to {:.2g}, which more samples tell",
                          stats.errorUnmet);

@@ -186,7 +186,7 @@ def test_another_protocol_is_refused_with_both_numbers(worker):
     master = Master(worker.address)
     master.welcome(protocol=7)
     _, bye = master.receive("Bye")
-    assert "7" in bye.text(0) and "1" in bye.text(0)
+    assert "7" in bye.text(0) and "2" in bye.text(0)
 
 
 def test_one_master_at_a_time(worker):
