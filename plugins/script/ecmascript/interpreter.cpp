@@ -10,32 +10,47 @@
 #include "slots.h"
 
 namespace ecma {
+
+// A piece of the heap's memory. Each is in a list, by which a heap is freed that Duktape has given up.
+struct alignas(16) Block { // what follows has malloc's alignment
+  Block *before, *after;
+  duk_size_t bytes;
+};
+
 namespace {
 
-// --- Memory: each block begins with its size ---
+// --- Memory ---
 
-constexpr size_t header = 16; // keeps malloc's alignment
+Block* blockOf(void* memory) { return static_cast<Block*>(memory) - 1; }
 
 bool fits(const Interpreter& self, uint64_t more) {
   return self.most == 0 || (more <= self.most && self.used <= self.most - more);
 }
 
+// Makes the neighbours of a block point to it.
+void* link(Interpreter& self, Block* block) {
+  (block->before ? block->before->after : self.blocks) = block;
+  if (block->after) block->after->before = block;
+  return block + 1;
+}
+
 void* allocate(void* account, duk_size_t bytes) {
   Interpreter& self = *static_cast<Interpreter*>(account);
-  if (bytes == 0 || bytes > SIZE_MAX - header || !fits(self, bytes)) return nullptr;
-  char* block = static_cast<char*>(std::malloc(bytes + header));
+  if (bytes == 0 || bytes > SIZE_MAX - sizeof(Block) || !fits(self, bytes)) return nullptr;
+  auto* block = static_cast<Block*>(std::malloc(bytes + sizeof(Block)));
   if (!block) return nullptr;
-  std::memcpy(block, &bytes, sizeof bytes);
+  *block = {nullptr, self.blocks, bytes};
   self.used += bytes;
-  return block + header;
+  return link(self, block);
 }
 
 void release(void* account, void* memory) {
   if (!memory) return;
-  char* block = static_cast<char*>(memory) - header;
-  duk_size_t bytes;
-  std::memcpy(&bytes, block, sizeof bytes);
-  static_cast<Interpreter*>(account)->used -= bytes;
+  Interpreter& self = *static_cast<Interpreter*>(account);
+  Block* block = blockOf(memory);
+  (block->before ? block->before->after : self.blocks) = block->after;
+  if (block->after) block->after->before = block->before;
+  self.used -= block->bytes;
   std::free(block);
 }
 
@@ -43,15 +58,18 @@ void* reallocate(void* account, void* memory, duk_size_t bytes) {
   if (!memory) return allocate(account, bytes);
   if (bytes == 0) return release(account, memory), nullptr;
   Interpreter& self = *static_cast<Interpreter*>(account);
-  char* block = static_cast<char*>(memory) - header;
-  duk_size_t old;
-  std::memcpy(&old, block, sizeof old);
-  if (bytes > SIZE_MAX - header || (bytes > old && !fits(self, bytes - old))) return nullptr;
-  block = static_cast<char*>(std::realloc(block, bytes + header));
+  const duk_size_t old = blockOf(memory)->bytes;
+  if (bytes > SIZE_MAX - sizeof(Block) || (bytes > old && !fits(self, bytes - old))) return nullptr;
+  auto* block = static_cast<Block*>(std::realloc(blockOf(memory), bytes + sizeof(Block)));
   if (!block) return nullptr;
-  std::memcpy(block, &bytes, sizeof bytes);
+  block->bytes = bytes;
   self.used += bytes - old;
-  return block + header;
+  return link(self, block);
+}
+
+// Frees a heap that Duktape does not know any more, without asking it.
+void freeHeap(Interpreter& self) {
+  while (self.blocks) release(&self, self.blocks + 1);
 }
 
 // Duktape cannot go on. It must not return from here; all entries have set a way out.
@@ -203,13 +221,17 @@ void* keep(duk_context* ctx) {
 
 Interpreter* createInterpreter(const XsHost* host, const XsScriptInfo* info, XsResult& result) {
   result = XS_FAILED;
-  auto* self = new (std::nothrow) Interpreter;
+  Interpreter* const self = new (std::nothrow) Interpreter; // const: it is known after a longjmp, too
   if (!self) return nullptr;
   self->host = host;
   self->info = info;
   self->self = info->self;
   if (info->size >= offsetof(XsScriptInfo, memory) + sizeof info->memory) self->most = info->memory;
-  if (setjmp(self->fatal)) return nullptr; // the half-made heap is left alone
+  if (setjmp(self->fatal)) {
+    freeHeap(*self); // half made
+    delete self;
+    return nullptr;
+  }
   self->fatalSet = true;
   self->ctx = duk_create_heap(allocate, reallocate, release, self, giveUp);
   self->fatalSet = false;
@@ -238,6 +260,7 @@ void destroyInterpreter(Interpreter* self) {
       duk_destroy_heap(self->ctx);
     }
   }
+  freeHeap(*self); // what is left if Duktape has given up
   delete self;
 }
 

@@ -37,9 +37,12 @@ struct NodeRecord {
   std::vector<std::pair<int, int>> slots; // index of the name, slot
 };
 
+struct Block;
+
 struct Interpreter {
   // Before all else: the allocator's account.
   uint64_t used = 0, most = 0;
+  Block* blocks = nullptr; // all of the heap
 
   const XsHost* host = nullptr;
   const XsScriptInfo* info = nullptr;
@@ -47,7 +50,7 @@ struct Interpreter {
   duk_context* ctx = nullptr;
   bool stopped = false; // the host said so: nothing of the program may run any more
   bool ending = false;  // the heap is being destroyed
-  bool dead = false;    // Duktape has given up; the heap is left alone
+  bool dead = false;    // Duktape has given up; the heap is freed without it
   uint64_t call = 1;    // number of the host's call
   uint32_t natives = 0; // calls of native functions since the host was asked
   uint64_t random = 0;  // state of Math.random
