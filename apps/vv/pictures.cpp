@@ -117,7 +117,7 @@ class Pictures {
   }
 
  private:
-  // Transparency that was asked for and that no file keeps.
+  // Warns if no file keeps the transparency that was asked for.
   void warnOfAlpha() const {
     if (options_.quiet || options_.render.background.kind != picture::Background::Kind::none || options_.outputs.empty()) return;
     const bool kept = std::any_of(options_.outputs.begin(), options_.outputs.end(), [](const Output& output) {

@@ -44,8 +44,8 @@ class ErrorMap {
   // met. Its interval gets what the rule of three allows for, and it is not trusted. The same at the border of a picture that is
   // not of one colour. changed is called for each.
   void doubtConstants(const std::function<void(size_t pixel, const float halfWidth[3])>& changed);
-  // What a pixel with random samples may lack and no sample tells of (ledger.h), radiance, colours summed: if that is more than
-  // its interval it is not trusted, and true is returned.
+  // Takes the trust of a pixel with random samples, and returns true, if it may lack more than its interval. missed: radiance
+  // that no sample tells of (ledger.h), colours summed.
   bool distrust(size_t pixel, double missed);
   // missed: the same of the whole picture.
   ErrorSummary summary(double missed = 0) const;

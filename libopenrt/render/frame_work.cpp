@@ -375,7 +375,9 @@ void FrameWork::describeError(RTstats& stats) const {
   const Ledger whole = impl_->wholeLedger();
   const double missed = whole.missedByChance(whole, paths);
   const ErrorSummary s = impl_->film.errors().summary(missed);
-  stats.errorMean = s.mean, stats.errorMeanInterval = s.meanInterval, stats.errorUnmet = missed;
+  stats.errorMean = s.mean;
+  stats.errorMeanInterval = s.meanInterval;
+  stats.errorUnmet = missed;
   stats.errorHalfWidth = s.halfWidth, stats.errorP99 = s.p99;
   stats.errorPixels = s.pixels, stats.errorTrusted = s.trusted;
   const bool many = impl_->schedule.timed() || replicatesOf(impl_->frame, impl_->frame.samples, 0).many();

@@ -122,11 +122,19 @@ void LightTracer::step(uint32_t n) {
   }
 }
 
+RtsBatch LightTracer::makeBatch(const Points& points) {
+  RtsBatch batch;
+  batch.scene = &scene_;
+  batch.arena = &arena_;
+  batch.counters = &counters_;
+  batch.points = &points;
+  return batch;
+}
+
 // A surface that answers for itself lets light pass, and returns none.
 void LightTracer::pass(const Points& points, const uint32_t* order, const RtsClass& shaderClass) {
   const uint32_t n = points.hits.count;
-  RtsBatch batch;
-  batch.scene = &scene_, batch.arena = &arena_, batch.counters = &counters_, batch.points = &points;
+  RtsBatch batch = makeBatch(points);
   float* through[3];
   for (auto& a : through) a = arena_.takeZero<float>(padded(n));
   {
@@ -154,8 +162,7 @@ void LightTracer::lampFlux(const Points& points, const LightSources::Start& star
     out.toLight[k] = arena_.takeZero<float>(lanes);
     out.color[k] = arena_.takeZero<float>(lanes), out.ambient[k] = arena_.takeZero<float>(lanes);
   }
-  RtsBatch batch;
-  batch.scene = &scene_, batch.arena = &arena_, batch.counters = &counters_, batch.points = &points;
+  RtsBatch batch = makeBatch(points);
   const float* places[3] = {local[0], local[1], local[2]};
   const RunningShader running(*light.shader.shaderClass);
   light.shader.shaderClass->illuminate(&scene_.host, &batch, light.shader.params, 1, places, &out);
@@ -206,8 +213,7 @@ void LightTracer::scatter(const Points& points, const uint32_t* order, const Rts
   const uint32_t n = hits.count;
   RtsSurface surface{};
   for (auto& e : surface.emission) e = arena_.takeZero<float>(padded(n));
-  RtsBatch batch;
-  batch.scene = &scene_, batch.arena = &arena_, batch.counters = &counters_, batch.points = &points;
+  RtsBatch batch = makeBatch(points);
   batch.states = states_, batch.order = order;
   {
     const RunningShader running(shaderClass);

@@ -30,6 +30,7 @@ class LightTracer {
   void begin(uint32_t first, uint32_t n);
   void load(uint32_t n);
   void step(uint32_t n);
+  RtsBatch makeBatch(const Points& points);
   void pass(const Points& points, const uint32_t* order, const RtsClass& shaderClass);
   void scatter(const Points& points, const uint32_t* order, const RtsClass& shaderClass);
   bool leaveLamp(const Points& points, uint32_t i, RayState& state);

@@ -463,8 +463,8 @@ typedef struct RTworker {
   double busySeconds; /* of all its threads */
   double latency;     /* seconds a job is under way beyond the work, smoothed */
 } RTworker;
-/* Writes at most count workers, those that left too; returns how many there are. workers may be NULL if count is 0. Any thread.
- */
+/* Writes at most count workers, those that left too, and returns how many there are. workers may be NULL if count is 0. May be
+ * called from any thread. */
 RT_API size_t rtGetWorkers(RTcontext context, RTworker* workers, size_t count);
 
 /* Queries on the last committed scene ---------------------------------------------------------------------------------- */
