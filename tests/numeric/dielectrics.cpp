@@ -20,18 +20,9 @@ class Dielectrics : public Scene {
   static Shader glass(double index, int priority = 0) {
     return Shader("Glass").set("index", {index}).setInt("priority", priority);
   }
-  // A square at height z that faces up, or down.
-  static RTid at(double z, RTid object, bool down = false) {
-    rtPushMatrix();
-    rtTranslated(0, 0, z);
-    if (down) rtRotated(180, 1, 0, 0);
-    const RTid placed = place(object);
-    rtPopMatrix();
-    return placed;
-  }
   static void slab(double top, double bottom, RTid shader) {
-    at(top, square(shader));
-    at(bottom, square(shader), true);
+    placeAt(top, square(shader));
+    placeAt(bottom, square(shader), true);
   }
   static void environment(double radiance) {
     Shader sky("VRML97Environment");
@@ -53,7 +44,7 @@ TEST_F(Dielectrics, D4AbsorptionFollowsBeerAndLambert) {
   for (const double length : {1e-6, .5, 1., 2.}) {
     Shader dye = glass(1);
     dye.set("absorption", {1, .5, 0});
-    const RTid top = at(length, square(dye)), bottom = at(0, square(dye), true), lamp = at(-1, square(glowing(1)));
+    const RTid top = placeAt(length, square(dye)), bottom = placeAt(0, square(dye), true), lamp = placeAt(-1, square(glowing(1)));
     expectColor(look(0, 0, 10), {std::exp(-length), std::exp(-length / 2), 1});
     for (const RTid i : {top, bottom, lamp}) rtDeleteInstance(i);
   }
@@ -62,7 +53,7 @@ TEST_F(Dielectrics, D4AbsorptionFollowsBeerAndLambert) {
 TEST_F(Dielectrics, D4FiftyOpticalDepthsAreDark) {
   Shader dye = glass(1);
   slab(50, 0, dye.set("absorption", {1, 1, 1}));
-  at(-1, square(glowing(1)));
+  placeAt(-1, square(glowing(1)));
   const Rgba pixel = look(0, 0, 100);
   EXPECT_GE(pixel.g, 0);
   EXPECT_LT(pixel.g, 1e-6); // the cut: e^-50 would be 1.9e-22
@@ -76,7 +67,7 @@ class NestedDielectrics : public Dielectrics, public testing::WithParamInterface
     if (GetParam()) slab(1, 0, water);
     slab(2, 1 - overlap, crown);
     if (!GetParam()) slab(1, 0, water);
-    at(-1, square(glowing(1)));
+    placeAt(-1, square(glowing(1)));
   }
 };
 constexpr double airGlass = .04, glassWater = .003608489, waterAir = .020059312;
@@ -124,7 +115,7 @@ TEST_P(NestedDielectrics, D11WaterWithinGlassIsABubbleOfWater) {
   if (GetParam()) slab(3, 0, crown);
   slab(2, 1, water);
   if (!GetParam()) slab(3, 0, crown);
-  at(-1, square(glowing(1)));
+  placeAt(-1, square(glowing(1)));
   expectGrey(look(), through({airGlass, glassWater, glassWater, airGlass}), 2e-5);
 }
 
@@ -134,7 +125,7 @@ TEST_P(NestedDielectrics, D11WhatIsWithinABodyOfHigherPriorityIsNotSeen) {
   if (GetParam()) slab(3, 0, crown);
   slab(2, 1, ink);
   if (!GetParam()) slab(3, 0, crown);
-  at(-1, square(glowing(1)));
+  placeAt(-1, square(glowing(1)));
   expectGrey(look(), through({airGlass, airGlass}), 2e-5);
 }
 
@@ -166,7 +157,7 @@ TEST_F(Dielectrics, G1LightThroughAPaneCountsOnce) {
   environment(1);
   slab(1, .5, glass(1.5));
   Shader white("Diffuse");
-  at(0, square(white.set("reflectance", {1, 1, 1}), 1e3));
+  placeAt(0, square(white.set("reflectance", {1, 1, 1}), 1e3));
   rtQuality(RT_TRANSPORT, RT_TRANSPORT_PATH);
   rtQuality(RT_MAX_DEPTH, 200);
   rtQuality(RT_SAMPLES_PER_PIXEL, 8192);

@@ -36,11 +36,7 @@ class EnclosedLamps : public Scene {
     rtSphere(radius);
     rtEndObject();
     rtBindShader(0);
-    rtPushMatrix();
-    rtTranslated(0, 0, z);
-    const RTid placed = place(object);
-    rtPopMatrix();
-    return placed;
+    return placeAt(z, object);
   }
   // Of the picture that a transport makes.
   static double meanOf(RTenum transport) {

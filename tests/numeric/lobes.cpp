@@ -16,17 +16,9 @@ class Lobes : public Scene {
     s.set("reflectance", {reflectance, reflectance, reflectance}).set("emission", {radiance, radiance, radiance});
     return s;
   }
-  // A square at height z that faces up, or down.
-  static void at(double z, RTid object, bool down = false) {
-    rtPushMatrix();
-    rtTranslated(0, 0, z);
-    if (down) rtRotated(180, 1, 0, 0);
-    place(object);
-    rtPopMatrix();
-  }
   static void slab(double top, double bottom, RTid glass) {
-    at(top, square(glass));
-    at(bottom, square(glass), true);
+    placeAt(top, square(glass));
+    placeAt(bottom, square(glass), true);
   }
   static void environment(double radiance) {
     Shader sky("VRML97Environment");
@@ -48,15 +40,15 @@ TEST_F(Lobes, DiffuseAnswersLightsAsLambertSays) {
 
 TEST_F(Lobes, D1ASlabLetsThroughAllInnerReflections) {
   slab(2, 1, Shader("Glass"));
-  at(0, square(glowing(1)));
+  placeAt(0, square(glowing(1)));
   expectGrey(look(), (1 - R) / (1 + R), 1e-4); // the tree is cut at 1/4096 of the light
 }
 
 TEST_F(Lobes, D1ASlabReflectsTheRest) {
   slab(2, 1, Shader("Glass"));
-  at(0, square(glowing(0)));
+  placeAt(0, square(glowing(0)));
   rtPushMatrix();
-  at(30, square(glowing(1)), true);
+  placeAt(30, square(glowing(1)), true);
   rtPopMatrix();
   expectGrey(look(), 2 * R / (1 + R), 1e-3);
 }
@@ -65,7 +57,7 @@ TEST_F(Lobes, D2ASlabThatAbsorbs) {
   Shader glass("Glass");
   glass.set("absorption", {1, 2, 0});
   slab(2, 1, glass);
-  at(0, square(glowing(1)));
+  placeAt(0, square(glowing(1)));
   const auto t = [](double a) { return (1 - R) * (1 - R) * a / (1 - R * R * a * a); };
   EXPECT_NEAR(t(std::exp(-1)), .339111, 1e-6);
   expectColor(look(), {t(std::exp(-1)), t(std::exp(-2)), t(1)}, 1e-4);
@@ -76,7 +68,7 @@ TEST_F(Lobes, D3FresnelAtFortyFiveDegreesAveragedAtEachBoundary) {
   rtRotated(45, 0, 1, 0);
   slab(.5, -.5, Shader("Glass"));
   rtPopMatrix();
-  at(-30, square(glowing(1), 100));
+  placeAt(-30, square(glowing(1), 100));
   const double r = .050240;
   expectGrey(look(), (1 - r) / (1 + r), 1e-4);
 }
@@ -103,7 +95,7 @@ TEST_F(Lobes, MetalReflectsByItsComplexIndex) {
 TEST_F(Lobes, D13EveryImageIsDimmerByTheReflectance) {
   Shader mirror("Mirror");
   environment(1);
-  at(0, square(mirror, 1000));
+  placeAt(0, square(mirror, 1000));
   rtPushMatrix();
   rtTranslated(0, 0, 1);
   rtRotated(180, 1, 0, 0);
@@ -133,7 +125,7 @@ TEST_F(Lobes, AMirrorShowsTheSkyTimesItsReflectance) {
 TEST_F(Lobes, AStackOfPanesHasItsClosedForm) { // D15: N boundaries, all orders: T = (1 - R) / (1 + (N - 1) R)
   rtQuality(RT_MAX_DEPTH, 200);
   for (int pane = 0; pane < 3; ++pane) slab(2 + pane, 1.5 + pane, Shader("Glass"));
-  at(0, square(glowing(1)));
+  placeAt(0, square(glowing(1)));
   expectGrey(look(), (1 - R) / (1 + 5 * R), 1e-3);
 }
 
@@ -185,20 +177,20 @@ class AreaLights : public Lobes {
 };
 
 TEST_F(AreaLights, R10ARectangleAboveThePoint) {
-  at(1, square(glowing(1), .5), true);
+  placeAt(1, square(glowing(1), .5), true);
   EXPECT_NEAR(lit(), .75227469 / pi, 2.5e-4); // R7: unit square centred at height 1
 }
 
 TEST_F(AreaLights, R10ARectangleOverItsCorner) {
   rtPushMatrix();
   rtTranslated(.5, .5, 0);
-  at(1, square(glowing(1), .5), true);
+  placeAt(1, square(glowing(1), .5), true);
   rtPopMatrix();
   EXPECT_NEAR(lit(), .13853161, 2.5e-4); // a = b = c = 1
 }
 
 TEST_F(AreaLights, R10ALargeSquareVeryNear) {
-  at(.01, square(glowing(1), 1), true);
+  placeAt(.01, square(glowing(1), 1), true);
   EXPECT_NEAR(lit(), .99991818, 2e-3);
 }
 
@@ -215,8 +207,8 @@ TEST_F(AreaLights, R7ATriangle) {
 }
 
 TEST_F(AreaLights, TwoLightsOfUnequalPowerAddUp) {
-  at(1, square(glowing(1), .5), true);
-  at(2, square(glowing(30), .01), true);
+  placeAt(1, square(glowing(1), .5), true);
+  placeAt(2, square(glowing(30), .01), true);
   const double small = 30 * .02 * .02 / 4; // far away: area over the square of the distance, over pi
   EXPECT_NEAR(lit(), .75227469 / pi, 1e-3 + small / pi) << "the nearer one hides the other";
 }

@@ -27,11 +27,7 @@ class Optics : public Scene {
     rtEnd();
     rtEndObject();
     rtBindShader(0);
-    rtPushMatrix();
-    rtTranslated(0, 0, z);
-    const RTid placed = place(object);
-    rtPopMatrix();
-    return placed;
+    return placeAt(z, object);
   }
   // x of the place that the ray down through (x, 0) arrives at in the plane z.
   static double arrives(double x, double z) {

@@ -125,6 +125,15 @@ class Scene : public testing::Test {
   }
   // The object in the scene, under the current matrix.
   static RTid place(RTid object) { return rtInstantiateObject(object); }
+  // Places an object at height z: its side that faces up stays so, or faces down.
+  static RTid placeAt(double z, RTid object, bool down = false) {
+    rtPushMatrix();
+    rtTranslated(0, 0, z);
+    if (down) rtRotated(180, 1, 0, 0);
+    const RTid placed = place(object);
+    rtPopMatrix();
+    return placed;
+  }
 
   static RTid use(const Shader& light) { return rtUseLight(light); }
   static Shader directional(Vec direction) {
