@@ -1,7 +1,7 @@
 // headless.h: everything vv does without a window: load, check, list, write, render. [main thread]
 #pragma once
 
-#include "options.h"
+#include "options/options.h"
 
 namespace vv {
 

@@ -3,14 +3,14 @@
 #include <exception>
 #include <new>
 
-#include "cluster_report.h"
-#include "describe.h"
+#include "report/cluster_report.h"
+#include "report/describe.h"
 #include "enough_stack.h"
 #include "headless.h"
-#include "messages.h"
-#include "options.h"
+#include "report/messages.h"
+#include "options/options.h"
 #include "signals.h"
-#include "window/keys.h"
+#include "window/input/keys.h"
 #include "window/window.h"
 
 namespace {

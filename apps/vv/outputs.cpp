@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "names.h"
-#include "picture/atomic_file.h"
+#include "options/names.h"
+#include "libpicture/files/atomic_file.h"
 #include "timeline.h"
 #include "watched.h"
 

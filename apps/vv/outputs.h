@@ -2,7 +2,7 @@
 // file that is read, or of another one? [main thread]
 #pragma once
 
-#include "options.h"
+#include "options/options.h"
 #include "xvrml/world.h"
 
 namespace vv {

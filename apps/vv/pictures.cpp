@@ -10,20 +10,20 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "audit.h"
-#include "cluster_report.h"
-#include "describe.h"
-#include "hints.h"
-#include "messages.h"
-#include "names.h"
+#include "report/audit.h"
+#include "report/cluster_report.h"
+#include "report/describe.h"
+#include "report/hints.h"
+#include "report/messages.h"
+#include "options/names.h"
 #include "outputs.h"
-#include "picture/atomic_file.h"
-#include "picture/nearest.h"
-#include "progress.h"
-#include "report.h"
+#include "libpicture/files/atomic_file.h"
+#include "libpicture/nearest.h"
+#include "report/progress.h"
+#include "report/report.h"
 #include "signals.h"
 #include "timeline.h"
-#include "window/replay.h"
+#include "window/input/replay.h"
 
 namespace vv {
 

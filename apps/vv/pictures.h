@@ -1,8 +1,8 @@
 // pictures.h: the pictures that the command line asks for: views, frames, turntables, files and films. [main thread]
 #pragma once
 
-#include "options.h"
-#include "problems.h"
+#include "options/options.h"
+#include "report/problems.h"
 
 namespace vv {
 

@@ -9,8 +9,8 @@
 #include <unistd.h>
 
 #include "openrt/openrt.h"
-#include "picture/atomic_file.h"
-#include "values.h"
+#include "libpicture/files/atomic_file.h"
+#include "options/values.h"
 
 namespace vv {
 

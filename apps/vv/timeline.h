@@ -5,7 +5,7 @@
 #include <functional>
 #include <utility>
 
-#include "options.h"
+#include "options/options.h"
 #include "xvrml/browser.h"
 
 namespace vv {

@@ -10,7 +10,7 @@
 
 #include <sys/stat.h>
 
-#include "describe.h"
+#include "report/describe.h"
 #include "folder_files.h"
 
 namespace vv {

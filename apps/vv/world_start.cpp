@@ -7,10 +7,10 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "definitions.h"
-#include "messages.h"
-#include "progress.h"
-#include "shader_changes.h"
+#include "options/definitions.h"
+#include "report/messages.h"
+#include "report/progress.h"
+#include "options/shader_changes.h"
 
 namespace vv {
 

@@ -4,8 +4,8 @@
 #include <memory>
 #include <string>
 
-#include "options.h"
-#include "problems.h"
+#include "options/options.h"
+#include "report/problems.h"
 #include "xvrml/browser.h"
 
 namespace vv {

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "objects.h"
-#include "picture/cluster.h"
+#include "libpicture/cluster.h"
 
 // The machines for a picture of this world: of the argument `cluster` of a render, else (None) of the innermost `with` around the
 // call; null: this machine alone. Another world that still holds on to them gives them up. Raises TypeError or ValueError.

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "objects.h"
-#include "picture/nearest.h"
+#include "libpicture/nearest.h"
 #include "xvrml/viewed.h"
 
 using namespace xvrml;

@@ -7,8 +7,8 @@
 
 #include "gil.h"
 #include "objects.h"
-#include "picture/atomic_file.h"
-#include "picture/film.h"
+#include "libpicture/files/atomic_file.h"
+#include "libpicture/files/film.h"
 #include "picture_object.h"
 
 namespace {

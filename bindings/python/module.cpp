@@ -8,7 +8,7 @@
 #include "cluster_object.h"
 #include "objects.h"
 #include "openrt/openrt.h"
-#include "picture/renderer.h"
+#include "libpicture/renderer.h"
 #include "xvrml/node_plugin.h"
 
 using namespace xvrml;

@@ -12,7 +12,7 @@
 #include <pybind11/pybind11.h>
 
 #include "gil.h"
-#include "picture/renderer.h"
+#include "libpicture/renderer.h"
 #include "xvrml/browser.h"
 #include "xvrml/world.h"
 

@@ -5,8 +5,8 @@
 #include <pybind11/stl.h>
 
 #include "objects.h"
-#include "picture/atomic_file.h"
-#include "picture/transport.h"
+#include "libpicture/files/atomic_file.h"
+#include "libpicture/transport.h"
 #include "picture_object.h"
 
 void describePicture(py::dict& stats, const RTstats& s) {

@@ -6,7 +6,7 @@
 #include <pybind11/pybind11.h>
 
 #include "objects.h"
-#include "picture/renderer.h"
+#include "libpicture/renderer.h"
 
 struct PictureObject {
   picture::Picture picture;

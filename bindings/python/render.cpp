@@ -8,7 +8,7 @@
 
 #include "cluster_object.h"
 #include "numbers.h"
-#include "picture/transport.h"
+#include "libpicture/transport.h"
 #include "picture_object.h"
 
 using namespace xvrml;

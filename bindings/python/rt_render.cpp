@@ -7,7 +7,7 @@
 #include <pybind11/stl.h>
 
 #include "objects.h"
-#include "picture/transport.h"
+#include "libpicture/transport.h"
 #include "picture_object.h"
 #include "rt_objects.h"
 

@@ -7,8 +7,8 @@
 #include <pybind11/stl.h>
 
 #include "objects.h"
-#include "picture/atomic_file.h"
-#include "picture/nearest.h"
+#include "libpicture/files/atomic_file.h"
+#include "libpicture/nearest.h"
 
 using namespace xvrml;
 

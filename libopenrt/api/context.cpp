@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "api/transform.h"
+#include "api/geometry/transform.h"
 
 namespace openrt {
 

@@ -12,8 +12,8 @@
 
 #include "api/config.h"
 #include "api/errors.h"
-#include "api/matrix_stack.h"
-#include "api/object_builder.h"
+#include "api/geometry/matrix_stack.h"
+#include "api/geometry/object_builder.h"
 #include "api/scene_state.h"
 #include "backend/backend.h"
 #include "shading/registry.h"

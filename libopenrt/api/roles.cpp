@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "api/guard.h"
-#include "api/transform.h"
+#include "api/geometry/transform.h"
 
 using namespace openrt;
 

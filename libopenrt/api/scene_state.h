@@ -23,7 +23,7 @@
 #include <vector>
 
 #include "api/errors.h"
-#include "api/object_builder.h"
+#include "api/geometry/object_builder.h"
 #include "openrt/openrts.h"
 #include "scene/commit.h"
 #include "scene/matrix.h"

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "openrt/openrt.h"
-#include "render/emitters.h"
-#include "render/many_lights.h"
+#include "render/lights/emitters.h"
+#include "render/lights/many_lights.h"
 #include "render/rays.h"
 #include "render/records.h"
 #include "shading/texture.h"
@@ -106,7 +106,7 @@ struct RenderScene {
   edit::FrameSettingsT frame;
 };
 
-// Fills the host table's functions (render/host.cpp).
+// Fills the host table's functions (render/surface/host.cpp).
 void fillHost(RtsHost& host);
 
 } // namespace openrt

@@ -1,5 +1,5 @@
 // openrt_worker.cpp: the program openrt-worker: lends this machine's threads to masters (backend=cluster, vv --workers). Options
-// and signals here; the work in backend/cluster/serve.h.
+// and signals here; the work in backend/cluster/worker/serve.h.
 // Exit codes: 0 done (also by SIGTERM), 1 something failed, 2 usage, 3 key file missing or unusable, 75 a port that is taken, or
 // out of memory; 130 by SIGINT.
 #include <csignal>
@@ -14,8 +14,8 @@
 
 #include <CLI/CLI.hpp>
 
-#include "backend/cluster/keys.h"
-#include "backend/cluster/serve.h"
+#include "backend/cluster/net/keys.h"
+#include "backend/cluster/worker/serve.h"
 #include "enough_stack.h"
 #include "openrt/openrt.h"
 #include "output_written.h"

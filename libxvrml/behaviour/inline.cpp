@@ -5,7 +5,7 @@
 
 #include "behaviour/builtin.h"
 #include "event/hierarchy.h"
-#include "parse/inline_node.h"
+#include "graph/inline_node.h"
 #include "parse/loader.h"
 #include "xvrml/browser.h"
 

@@ -7,7 +7,7 @@
 #include <Imath/ImathQuat.h>
 
 #include "behaviour/builtin.h"
-#include "behaviour/interaction.h"
+#include "behaviour/viewer/interaction.h"
 #include "event/hierarchy.h"
 #include "xvrml/nodes.h"
 

@@ -4,10 +4,10 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "behaviour/descend.h"
+#include "behaviour/viewer/descend.h"
 #include "event/hierarchy.h"
 #include "geometry/mesh.h"
-#include "parse/inline_node.h"
+#include "graph/inline_node.h"
 #include "xvrml/build.h"
 
 namespace xvrml {

@@ -2,9 +2,9 @@
 // one world takes the place of another. See xvrml/browser.h. [the browser's thread]
 #include <fmt/format.h>
 
-#include "behaviour/interaction.h"
+#include "behaviour/viewer/interaction.h"
 #include "browser/state.h"
-#include "parse/field_access.h"
+#include "graph/field_access.h"
 #include "parse/loader.h"
 
 namespace xvrml {
@@ -67,7 +67,7 @@ class Passing {
 } // namespace
 
 Browser::Impl::Impl(Browser& browser, std::unique_ptr<World> world, const BrowserOptions& options, const RunOptions& run)
-    : options(options), run(run), world(std::move(world)), engine(std::make_unique<Engine>(this->world->diagnostics, &browser)) {
+    : options(options), run(run), world(std::move(world)), engine(std::make_unique<Engine>(this->world->diagnostics, makeInteraction, &browser)) {
   engine->maximumEvents = options.maximumEvents;
   if (!options.runScripts) return;
   scripts = std::make_unique<ScriptHost>(browser, *engine, *this->world, this->options, this->run);

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "behaviour/inline.h"
-#include "behaviour/interaction.h"
+#include "behaviour/viewer/interaction.h"
 #include "browser/state.h"
 #include "nodes/viewpoint.h"
 

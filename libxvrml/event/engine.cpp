@@ -4,12 +4,12 @@
 #include <fmt/format.h>
 
 #include "base/rotation.h"
-#include "behaviour/interaction.h"
-#include "parse/field_access.h"
+#include "graph/field_access.h"
 
 namespace xvrml {
 
-Engine::Engine(Diagnostics& diagnostics, Browser* browser) : Events(diagnostics, browser), observer(makeInteraction(*this)) {}
+Engine::Engine(Diagnostics& diagnostics, const MakeObserver& makeObserver, Browser* browser)
+    : Events(diagnostics, browser), observer(makeObserver(*this)) {}
 
 // An eventOut sends once in a cascade (4.10.3, 4.10.4). Without anybody to receive it only its last value is kept.
 void Events::send(Node& from, const FieldInfo& out, Value value) {

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <deque>
+#include <functional>
 #include <map>
+#include <memory>
 #include <unordered_set>
 
 #include "event/live.h"
@@ -25,7 +27,7 @@ class ScriptRunner {
   virtual void finish() = 0;                         // a good time to shut down those that have ended
 };
 
-// Told what happens in a running world while it happens: the viewer's part of it (behaviour/interaction.h).
+// Is told what happens in a running world while it happens. The Browser injects the one of the viewer.
 class EngineObserver {
  public:
   virtual ~EngineObserver() = default;
@@ -38,7 +40,9 @@ class EngineObserver {
 
 class Engine : public Events {
  public:
-  explicit Engine(Diagnostics& diagnostics, Browser* browser = nullptr);
+  // Makes the observer of an engine that is being constructed. It may keep the reference, and call it from began() on.
+  using MakeObserver = std::function<std::unique_ptr<EngineObserver>(Engine&)>;
+  Engine(Diagnostics& diagnostics, const MakeObserver& makeObserver, Browser* browser = nullptr);
   ~Engine();
   Engine(const Engine&) = delete;
   Engine& operator=(const Engine&) = delete;

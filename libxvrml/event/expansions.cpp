@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "event/engine.h"
-#include "parse/expansion.h"
-#include "parse/field_access.h"
+#include "graph/expansion.h"
+#include "graph/field_access.h"
 
 namespace xvrml {
 namespace {

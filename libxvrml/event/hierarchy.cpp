@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <unordered_set>
 
-#include "parse/expansion.h"
-#include "parse/field_access.h"
+#include "graph/expansion.h"
+#include "graph/field_access.h"
 #include "xvrml/nodes.h"
 
 namespace xvrml {

@@ -7,8 +7,8 @@
 
 #include "event/engine.h"
 #include "event/hierarchy.h"
-#include "parse/builder.h"
-#include "parse/field_access.h"
+#include "graph/node_kinds.h"
+#include "graph/field_access.h"
 
 namespace xvrml {
 

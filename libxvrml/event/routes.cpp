@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 
 #include "event/engine.h"
-#include "parse/expansion.h"
-#include "parse/field_access.h"
+#include "graph/expansion.h"
+#include "graph/field_access.h"
 
 namespace xvrml {
 namespace {

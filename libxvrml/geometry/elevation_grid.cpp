@@ -1,6 +1,6 @@
 // elevation_grid.cpp: ElevationGrid (clause 6.17): a grid of heights over the xz plane as quadrilaterals.
 #include "geometry/builders.h"
-#include "geometry/face_set.h"
+#include "geometry/polygons/face_set.h"
 
 namespace xvrml {
 namespace {

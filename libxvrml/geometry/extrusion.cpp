@@ -3,7 +3,7 @@
 
 #include "geometry/builders.h"
 #include "geometry/extrusion_frames.h"
-#include "geometry/face_set.h"
+#include "geometry/polygons/face_set.h"
 
 namespace xvrml {
 namespace {

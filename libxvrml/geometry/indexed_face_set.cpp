@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "geometry/builders.h"
-#include "geometry/face_set.h"
+#include "geometry/polygons/face_set.h"
 #include "geometry/texture_mapping.h"
 
 namespace xvrml {

@@ -7,42 +7,14 @@
 #include <fmt/format.h>
 
 #include "base/rotation.h"
-#include "parse/expander.h"
-#include "parse/field_access.h"
-#include "parse/inline_node.h"
-#include "parse/nearest.h"
+#include "graph/expander.h"
+#include "graph/field_access.h"
+#include "graph/inline_node.h"
+#include "graph/nearest.h"
+#include "graph/node_kinds.h"
+#include "graph/range.h"
 
 namespace xvrml {
-
-namespace {
-
-// The node that an instance of a prototype stands for; null if it is not known.
-const Node* firstNode(const ProtoDeclaration* declaration) {
-  if (declaration->isExtern) declaration = declaration->resolved.get();
-  return declaration && !declaration->body.roots.empty() ? declaration->body.roots[0].get() : nullptr;
-}
-
-} // namespace
-
-const NodeType* effectiveType(const Node& node) {
-  const Node* current = &node;
-  // Instances of instances; their number is bounded by the depth of prototypes declared before one another.
-  while (const auto* instance = dynamic_cast<const ProtoInstance*>(current)) {
-    current = firstNode(instance->declaration.get());
-    if (!current) return nullptr;
-  }
-  return &current->type();
-}
-
-bool typeAccepted(std::string_view nodeTypes, const NodeType& type) {
-  while (!nodeTypes.empty()) {
-    const size_t end = std::min(nodeTypes.find(' '), nodeTypes.size());
-    const std::string_view name = nodeTypes.substr(0, end);
-    if (!name.empty() && (type.name == name || type.is(name))) return true;
-    nodeTypes.remove_prefix(std::min(end + 1, nodeTypes.size()));
-  }
-  return false;
-}
 
 Builder::Builder(Lexer& lexer, LoadState& state, ParsedFile& file) : lexer_(lexer), state_(state), file_(file) {
   pushScope(&file.scope, nullptr, nullptr);

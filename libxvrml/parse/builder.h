@@ -7,7 +7,7 @@
 #include <unordered_map>
 #include <unordered_set>
 
-#include "parse/load_state.h"
+#include "graph/load_state.h"
 #include "parse/sink.h"
 
 namespace xvrml {
@@ -122,23 +122,5 @@ class Builder : public ParseSink {
   std::unordered_map<const Node*, uint64_t> expanded_; // where more than 1
   const NodeType* fullInterface_ = nullptr;            // the last one that declares more than the limit
 };
-
-// The type that decides where a node may stand: a prototype instance stands for the first node of its body (4.8.3). Null if not
-// known (EXTERNPROTO not loaded).
-const NodeType* effectiveType(const Node& node);
-// Does a type suit a field's nodeTypes?
-bool typeAccepted(std::string_view nodeTypes, const NodeType& type);
-// Brings numbers outside of a field's range back: to a closed end of the range; a single number beyond an open end to the
-// default. Other values beyond an open end stay for those who draw them. Numbers that are a bound as files round it are
-// not outside. False if something was outside; fault, which may be null, says what.
-struct RangeFault {
-  uint64_t count = 0;      // values that were outside
-  size_t index = 0;        // of the first one in its list
-  std::string given, used; // the first one as it was, and as it is now
-};
-bool enforceRange(const FieldInfo& field, void* storage, RangeFault* fault = nullptr);
-std::string describe(const FieldRange& range); // "[0,1]", "(0,inf) or -1", "(0,pi/2]"
-// "SpotLight.cutOffAngle: 1.9 is outside of its range (0,pi/2] and becomes 1.5707964"
-std::string describe(const NodeType& type, const FieldInfo& field, const RangeFault& fault);
 
 } // namespace xvrml

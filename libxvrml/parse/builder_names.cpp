@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "parse/builder.h"
-#include "parse/field_access.h"
-#include "parse/nearest.h"
+#include "graph/field_access.h"
+#include "graph/nearest.h"
 
 namespace xvrml {
 namespace {

@@ -5,8 +5,8 @@
 #include <fmt/format.h>
 
 #include "parse/builder.h"
-#include "parse/field_access.h"
-#include "parse/inline_node.h"
+#include "graph/field_access.h"
+#include "graph/inline_node.h"
 
 namespace xvrml {
 

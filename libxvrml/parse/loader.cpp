@@ -8,8 +8,8 @@
 
 #include "enough_stack.h"
 #include "parse/builder.h"
-#include "parse/field_access.h"
-#include "parse/inline_node.h"
+#include "graph/field_access.h"
+#include "graph/inline_node.h"
 #include "parse/parser.h"
 #include "parse/urn.h"
 

@@ -4,7 +4,7 @@
 
 #include <chrono>
 
-#include "parse/expander.h"
+#include "graph/expander.h"
 #include "parse/source.h"
 
 namespace xvrml {

@@ -2,9 +2,9 @@
 #include "xvrml/set_field.h"
 
 #include "base/budget.h"
-#include "parse/crossing.h"
-#include "parse/field_access.h"
-#include "parse/inline_node.h"
+#include "graph/crossing.h"
+#include "graph/field_access.h"
+#include "graph/inline_node.h"
 #include "parse/loader.h"
 #include "xvrml/viewed.h"
 

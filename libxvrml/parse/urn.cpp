@@ -1,7 +1,7 @@
 // urn.cpp: see urn.h.
 #include "parse/urn.h"
 
-#include "parse/inline_node.h"
+#include "graph/inline_node.h"
 #include "parse/url.h"
 
 namespace xvrml {

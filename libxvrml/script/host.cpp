@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "parse/field_access.h"
+#include "graph/field_access.h"
 #include "script/host_table.h"
 
 namespace xvrml {

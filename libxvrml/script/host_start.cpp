@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "parse/field_access.h"
+#include "graph/field_access.h"
 #include "script/host.h"
 
 namespace xvrml {

@@ -1,6 +1,6 @@
 // shader_physics.cpp: what every surface of the stock must keep, whatever its parameters: energy, reciprocity, densities that
 // belong to what is sampled (chi-square), finite numbers everywhere (accuracy catalogue A1, "BRDF checks"). The surfaces run as
-// plug-ins in the fake host; the engine's own kinds of lobes answer through render/lobes.h.
+// plug-ins in the fake host; the engine's own kinds of lobes answer through render/surface/lobes.h.
 #include <cfloat>
 #include <cmath>
 #include <numeric>

@@ -9,7 +9,7 @@
 
 #include "abi/fake_host.h"
 #include "openrt/openrts.hpp"
-#include "render/lobes.h"
+#include "render/surface/lobes.h"
 #include "shading/registry.h"
 
 namespace openrt::test {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "picture/coverage.h"
+#include "libpicture/coverage.h"
 
 namespace audit {
 

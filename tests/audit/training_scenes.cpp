@@ -1,4 +1,4 @@
-// training_scenes.cpp: hard scenes of the audit that may set limits: the rules of libopenrt/render/error.cpp and error_map.cpp
+// training_scenes.cpp: hard scenes of the audit that may set limits: the rules of libopenrt/render/film/error.cpp and error_map.cpp
 // were made while looking at these, and at those of scenes.cpp. Those of judging_scenes.cpp were not.
 #include <cmath>
 

@@ -17,9 +17,9 @@
 #include <string>
 #include <vector>
 
-#include "backend/cluster/messages.h"
-#include "render/result_codec.h"
-#include "render/tiles.h"
+#include "backend/cluster/net/messages.h"
+#include "render/frame/result_codec.h"
+#include "render/frame/tiles.h"
 
 namespace sim {
 

@@ -9,7 +9,7 @@
 #include <memory>
 #include <set>
 
-#include "backend/cluster/master.h"
+#include "backend/cluster/master/master.h"
 #include "bench/cluster_model.h"
 
 namespace sim {

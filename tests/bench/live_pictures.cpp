@@ -19,8 +19,8 @@
 
 #include <fmt/format.h>
 
-#include "picture/cluster.h"
-#include "picture/live.h"
+#include "libpicture/cluster.h"
+#include "libpicture/live.h"
 #include "window/pacing.h"
 
 using namespace picture;

@@ -10,7 +10,7 @@
 
 #include "bench/raw_embree.h"
 #include "openrt/openrt.h"
-#include "render/sampler.h"
+#include "render/path/sampler.h"
 
 namespace {
 

@@ -10,8 +10,8 @@
 
 #include "backend/local/local.h"
 #include "backend/record/reader.h"
-#include "render/frame_work.h"
-#include "render/job_runner.h"
+#include "render/frame/frame_work.h"
+#include "render/frame/job_runner.h"
 #include "shading/registry.h"
 
 namespace {

@@ -1,96 +1,95 @@
 #!/usr/bin/env python3
 """Reads every #include of the sources and fails on any arrow that docs/architecture.md section 1 does not draw.
 
-layering.py ROOT      checks the tree
-layering.py --self    feeds the checker includes that must be refused, and some that must pass
+layering.py ROOT           checks the tree, and that the map in docs/architecture.md is the one that follows from TABLE
+layering.py ROOT --write   writes that map
+layering.py --self         feeds the checker includes that must be refused, and some that must pass
 """
+import dataclasses
 import pathlib
 import re
 import sys
+import textwrap
 
-# Part of the project -> the parts whose headers it may include (itself always). A file belongs to the longest prefix.
-PARTS = {
-    "libopenrt/include/openrt/openrt.h": "api-h",
-    "libopenrt/include/openrt/queries.h": "api-h",
-    "libopenrt/include/openrt/": "shader-sdk",
-    "libopenrt/api/": "openrt-api",
-    "libopenrt/scene/": "openrt-scene",
-    "libopenrt/shading/": "openrt-shading",
-    "libopenrt/render/": "openrt-render",
-    "libopenrt/backend/": "openrt-backend",
-    "libopenrt/backend/local/": "backend-local",
-    "libopenrt/backend/record/": "backend-record",
-    "libopenrt/backend/null/": "backend-null",
-    "libopenrt/backend/debug/": "backend-debug",
-    "libopenrt/backend/cluster/": "backend-cluster",
-    "libopenrt/tools/": "openrt-tools",
-    "libxvrml/include/xvrml/openrt.h": "mapper-h",
-    "libxvrml/include/xvrml/xscript.h": "script-sdk",
-    "libxvrml/include/xvrml/xscript_types.h": "script-sdk",
-    "libxvrml/include/xvrml/": "xvrml-h",
-    "libxvrml/base/": "xvrml-base",
-    "libxvrml/nodegen/": "nodegen",
-    "libxvrml/nodes/": "xvrml-base",
-    "libxvrml/parse/": "xvrml-parse",
-    "libxvrml/event/": "xvrml-event",
-    "libxvrml/behaviour/": "xvrml-behaviour",
-    "libxvrml/script/": "xvrml-script",
-    "libxvrml/script/remote/": "script-remote",
-    "libxvrml/tools/script_host/": "script-host",
-    "libxvrml/browser/": "xvrml-browser",
-    "libxvrml/geometry/": "xvrml-geometry",
-    "libxvrml/image/": "xvrml-image",
-    "libxvrml/openrt/": "mapper",
-    "plugins/shaders/": "shader-plugin",
-    "plugins/script/": "script-plugin",
-    "apps/": "app",
-    "apps/vv/window/": "window",
-    "apps/picture/": "picture",
-    "bindings/": "binding",
-    "examples/": "example",
-    "common/": "common",
-    "tests/": "test",
-}
+@dataclasses.dataclass(frozen=True)
+class Part:
+    """A part of the project: the files below `prefixes` (a file belongs to the longest prefix of all), and the parts whose
+    headers they may include besides their own."""
+    name: str
+    prefixes: tuple
+    purpose: str
+    includes: frozenset
+
+
+def part(name, prefixes, purpose, includes=""):
+    return Part(name, tuple(prefixes.split()), purpose, frozenset(includes.split()))
+
+
+# From the ground up: public headers first, then each library, then what is built on them.
+TABLE = [
+    part("api-h", "libopenrt/include/openrt/openrt.h libopenrt/include/openrt/queries.h", "the application API, C99"),
+    part("shader-sdk", "libopenrt/include/openrt/", "what a shader plug-in sees, C99 and C++"),
+    part("xvrml-h", "libxvrml/include/xvrml/", "worlds, nodes, events: the public C++ headers"),
+    part("script-sdk", "libxvrml/include/xvrml/xscript.h libxvrml/include/xvrml/xscript_types.h", "what a script engine sees, C99"),
+    part("mapper-h", "libxvrml/include/xvrml/mapper.h libxvrml/include/xvrml/openrt.h", "draws a world through the C API", "xvrml-h"),
+    part("common", "common/", "headers that several libraries share"),
+
+    part("openrt-scene", "libopenrt/scene/", "edits, commits, and the scene that they make", "api-h common"),
+    part("openrt-shading", "libopenrt/shading/", "shader plug-ins, parameters, textures", "shader-sdk openrt-scene common"),
+    part("openrt-render", "libopenrt/render/", "rays, light transport, samples, film and its errors",
+         "api-h shader-sdk openrt-scene openrt-shading common"),
+    part("openrt-backend", "libopenrt/backend/", "the interface between the API and whoever renders", "api-h openrt-scene common"),
+    part("backend-local", "libopenrt/backend/local/", "renders in this process; the only part that knows Embree",
+         "api-h shader-sdk openrt-scene openrt-shading openrt-render openrt-backend common"),
+    part("backend-record", "libopenrt/backend/record/", "writes edits to a file, and reads it; checks them against class tables",
+         "api-h shader-sdk openrt-scene openrt-shading openrt-backend common"),
+    part("backend-debug", "libopenrt/backend/debug/", "tells misuse of the API; names things as the class tables do",
+         "api-h shader-sdk openrt-scene openrt-shading openrt-backend common"),
+    part("backend-null", "libopenrt/backend/null/", "takes edits and draws nothing", "api-h openrt-scene openrt-backend common"),
+    part("backend-cluster", "libopenrt/backend/cluster/",
+         "renders with the help of other machines: net/ carries messages, master/ gives jobs out, worker/ does them on a local backend",
+         "api-h shader-sdk openrt-scene openrt-shading openrt-render openrt-backend backend-local backend-record common"),
+    part("openrt-api", "libopenrt/api/", "the rt* functions: they make edits and hand them to a backend",
+         "api-h shader-sdk openrt-scene openrt-shading openrt-backend common"),
+    part("openrt-tools", "libopenrt/tools/", "openrt-replay and openrt-worker",
+         "api-h openrt-scene openrt-shading openrt-backend backend-record backend-cluster common"),
+
+    part("xvrml-base", "libxvrml/base/ libxvrml/nodes/", "values, lexer, limits; shared with nodegen", "xvrml-h common"),
+    part("nodegen", "libxvrml/nodegen/", "writes the node classes and tables from .node files", "xvrml-h xvrml-base common"),
+    part("xvrml-graph", "libxvrml/graph/", "the scene graph: access to fields, ranges, prototypes and their expansion, equality",
+         "xvrml-h xvrml-base common"),
+    part("xvrml-parse", "libxvrml/parse/", "reads worlds: parser, builder, loader", "xvrml-h xvrml-base xvrml-graph common"),
+    part("xvrml-write", "libxvrml/write/", "writes worlds and values as VRML97 text", "xvrml-h xvrml-base xvrml-graph common"),
+    part("xvrml-geometry", "libxvrml/geometry/", "geometry nodes as triangles, lines and points: pure functions", "xvrml-h xvrml-base common"),
+    part("xvrml-image", "libxvrml/image/", "decodes pictures and films", "xvrml-h xvrml-base common"),
+    part("xvrml-event", "libxvrml/event/", "routes, cascades, and which nodes are part of the running world",
+         "xvrml-h xvrml-base xvrml-graph xvrml-geometry common"),
+    part("xvrml-behaviour", "libxvrml/behaviour/", "what nodes do when events arrive and time passes; the viewer, the pointer, picking",
+         "xvrml-h xvrml-base xvrml-graph xvrml-parse xvrml-geometry xvrml-image xvrml-event common"),
+    part("script-remote", "libxvrml/script/remote/", "Scripts in processes of their own", "script-sdk common"),
+    part("xvrml-script", "libxvrml/script/", "finds script engines and runs Script nodes with them",
+         "xvrml-h script-sdk script-remote xvrml-base xvrml-graph xvrml-parse xvrml-event common"),
+    part("script-host", "libxvrml/tools/script_host/", "the program of those processes", "script-sdk xvrml-script script-remote common"),
+    part("xvrml-browser", "libxvrml/browser/", "a running world: one object that owns all of the above",
+         "xvrml-h xvrml-base xvrml-graph xvrml-parse xvrml-geometry xvrml-image xvrml-event xvrml-behaviour xvrml-script common"),
+    part("mapper", "libxvrml/mapper/", "maps a scene graph to rt* calls (library xvrml_openrt)",
+         "mapper-h xvrml-h xvrml-base xvrml-geometry xvrml-image api-h common"),
+
+    part("shader-plugin", "plugins/shaders/", "stock shaders", "shader-sdk"),
+    part("script-plugin", "plugins/script/", "script engines; common/ says where native: libraries are looked for", "script-sdk common"),
+    part("picture", "libpicture/", "renders worlds to pictures and writes files; shared by vv and the Python bindings",
+         "api-h xvrml-h mapper-h"),
+    part("window", "apps/vv/window/", "vv's window; the only part that knows SDL", "api-h xvrml-h mapper-h app picture common"),
+    part("app", "apps/", "vv on the command line; --list-shaders reads the tables of plug-ins",
+         "api-h shader-sdk xvrml-h mapper-h picture window common"),
+    part("binding", "bindings/", "the Python package", "api-h xvrml-h mapper-h picture common"),
+    part("example", "examples/", "programs for readers", "api-h shader-sdk script-sdk xvrml-h mapper-h"),
+    part("test", "tests/", "tests, benchmarks and audits"),
+]
+PARTS = {prefix: p.name for p in TABLE for prefix in p.prefixes}
+ARROWS = {p.name: p.includes for p in TABLE}
+ARROWS["test"] = frozenset(ARROWS)
 PUBLIC = {"api-h", "shader-sdk", "script-sdk", "xvrml-h", "mapper-h"}
-ARROWS = {
-    "api-h": set(),
-    "shader-sdk": set(),
-    "script-sdk": set(),
-    "openrt-api": {"api-h", "shader-sdk", "openrt-scene", "openrt-shading", "openrt-backend", "common"},
-    "openrt-scene": {"api-h", "common"},
-    "openrt-shading": {"shader-sdk", "openrt-scene", "common"},
-    "openrt-render": {"api-h", "shader-sdk", "openrt-scene", "openrt-shading", "common"},
-    "openrt-backend": {"api-h", "openrt-scene", "common"},
-    "backend-local": {"api-h", "shader-sdk", "openrt-scene", "openrt-shading", "openrt-render", "openrt-backend", "common"},
-    "backend-record": {"api-h", "shader-sdk", "openrt-scene", "openrt-shading", "openrt-backend", "common"},  # its reader checks against class tables
-    "backend-debug": {"api-h", "shader-sdk", "openrt-scene", "openrt-shading", "openrt-backend", "common"},  # class tables and names for its messages
-    "backend-null": {"api-h", "openrt-scene", "openrt-backend", "common"},
-    "backend-cluster": {"api-h", "shader-sdk", "openrt-scene", "openrt-shading", "openrt-render", "openrt-backend", "backend-local", "backend-record", "common"},  # jobs; a worker is a local backend; what comes is checked
-    "openrt-tools": {"api-h", "openrt-scene", "openrt-shading", "openrt-backend", "backend-record", "backend-cluster", "common"},
-    "xvrml-h": set(),
-    "xvrml-base": {"xvrml-h", "common"},
-    "nodegen": {"xvrml-h", "xvrml-base", "common"},
-    "xvrml-parse": {"xvrml-h", "xvrml-base", "common"},
-    "xvrml-event": {"xvrml-h", "xvrml-base", "xvrml-parse", "xvrml-geometry", "xvrml-behaviour", "common"},
-    "xvrml-behaviour": {"xvrml-h", "xvrml-base", "xvrml-parse", "xvrml-geometry", "xvrml-image", "xvrml-event", "common"},
-    "xvrml-script": {"xvrml-h", "script-sdk", "script-remote", "xvrml-base", "xvrml-parse", "xvrml-event", "common"},
-    "script-remote": {"script-sdk", "common"},
-    "script-host": {"script-sdk", "xvrml-script", "script-remote", "common"},
-    "xvrml-browser": {"xvrml-h", "xvrml-base", "xvrml-parse", "xvrml-geometry", "xvrml-image", "xvrml-event", "xvrml-behaviour", "xvrml-script", "common"},
-    "xvrml-geometry": {"xvrml-h", "xvrml-base", "common"},
-    "xvrml-image": {"xvrml-h", "xvrml-base", "common"},
-    "mapper-h": {"xvrml-h"},
-    "mapper": {"mapper-h", "xvrml-h", "xvrml-base", "xvrml-geometry", "xvrml-image", "api-h", "common"},
-    "shader-plugin": {"shader-sdk"},
-    "script-plugin": {"script-sdk", "common"},  # what common/ says of plug-in folders holds for native: libraries, too
-    "picture": PUBLIC - {"shader-sdk", "script-sdk"},
-    "app": PUBLIC - {"script-sdk"} | {"picture", "window", "common"},  # vv --list-shaders reads the tables of plug-ins
-    "window": PUBLIC - {"shader-sdk", "script-sdk"} | {"app", "picture", "common"},
-    "binding": PUBLIC - {"shader-sdk", "script-sdk"} | {"picture", "common"},
-    "example": PUBLIC,
-    "common": set(),
-    "test": set(PARTS.values()),
-}
 # Headers of other people that only some parts may know.
 FOREIGN = [
     (re.compile(r"embree\d/"), {"backend-local", "test"}, "Embree"),
@@ -106,7 +105,7 @@ FOREIGN = [
 # A public header includes the language's own headers and nothing else of others.
 STANDARD = re.compile(r"[a-z_0-9]+(\.h)?$")
 LANGUAGES = re.compile(r"(Python\.h|pybind11/\w+\.h)$")  # of the languages that script engines run
-SEARCH = ["libopenrt/include", "libxvrml/include", "libopenrt", "libxvrml", "plugins/shaders", "apps", "apps/vv", "tests", "common"]
+SEARCH = ["libopenrt/include", "libxvrml/include", "libopenrt", "libxvrml", "plugins/shaders", "apps/vv", "tests", "common", "."]
 # Made at build time -> the part that they belong to.
 GENERATED = [(re.compile(r"edits_generated\.h$"), "openrt-scene"), (re.compile(r"messages_generated\.h$"), "backend-cluster"), (re.compile(r"xvrml/nodes\.h$"), "xvrml-h")]
 SUFFIXES = {".c", ".cpp", ".h", ".hpp"}
@@ -182,29 +181,29 @@ def tree(root):
 def self_test():
     base = {
         "libopenrt/include/openrt/openrt.h": "", "libopenrt/include/openrt/openrts.h": "", "libopenrt/scene/commit.h": "",
-        "libopenrt/render/film.h": "", "libopenrt/backend/backend.h": "", "libopenrt/backend/local/embree.h": "",
-        "libxvrml/include/xvrml/world.h": "", "libxvrml/include/xvrml/xscript.h": "", "libxvrml/include/xvrml/openrt.h": "", "libxvrml/parse/builder.h": "",
+        "libopenrt/render/film/film.h": "", "libopenrt/backend/backend.h": "", "libopenrt/backend/local/accel/embree.h": "",
+        "libxvrml/include/xvrml/world.h": "", "libxvrml/include/xvrml/xscript.h": "", "libxvrml/include/xvrml/mapper.h": "", "libxvrml/parse/builder.h": "",
         "libxvrml/geometry/mesh.h": "",
     }
     refused = [
-        ("libopenrt/api/a.cpp", "<embree3/rtcore.h>"), ("libopenrt/render/a.cpp", '"backend/local/embree.h"'),
-        ("libopenrt/scene/a.cpp", '"render/film.h"'), ("libopenrt/scene/a.cpp", '"../render/film.h"'),
+        ("libopenrt/api/a.cpp", "<embree3/rtcore.h>"), ("libopenrt/render/a.cpp", '"backend/local/accel/embree.h"'),
+        ("libopenrt/scene/a.cpp", '"render/film/film.h"'), ("libopenrt/scene/a.cpp", '"../render/film.h"'),
         ("libopenrt/api/a.cpp", '"xvrml/world.h"'), ("libxvrml/parse/a.cpp", '"openrt/openrt.h"'),
         ("libxvrml/parse/a.cpp", "<openrt/openrt.h>"), ("libxvrml/geometry/a.cpp", '"parse/builder.h"'),
-        ("libxvrml/openrt/a.cpp", '"scene/commit.h"'), ("libxvrml/parse/a.cpp", "<png.h>"),
+        ("libxvrml/mapper/a.cpp", '"scene/commit.h"'), ("libxvrml/parse/a.cpp", "<png.h>"),
         ("plugins/script/test/a.c", "<xvrml/world.h>"), ("libxvrml/event/a.cpp", '"xvrml/xscript.h"'),
         ("plugins/shaders/a.cpp", "<openrt/openrt.h>"), ("plugins/shaders/a.cpp", "<fmt/format.h>"),
         ("apps/vv/a.cpp", '"geometry/mesh.h"'), ("apps/vv/a.cpp", '"scene/commit.h"'), ("bindings/python/a.cpp", '"edits_generated.h"'),
         ("libopenrt/include/openrt/openrts.h", "<openrt/openrt.h>"), ("libxvrml/include/xvrml/world.h", "<fmt/format.h>"),
-        ("libopenrt/backend/local/a.cpp", "<sys/socket.h>"), ("libopenrt/backend/null/a.cpp", '"backend/local/embree.h"'),
+        ("libopenrt/backend/local/a.cpp", "<sys/socket.h>"), ("libopenrt/backend/null/a.cpp", '"backend/local/accel/embree.h"'),
         ("libxvrml/base/a.cpp", '"no/such.h"'), ("somewhere/a.cpp", "<vector>"),
     ]
     passing = [
-        ("libopenrt/backend/local/a.cpp", "<embree3/rtcore.h>"), ("libopenrt/backend/local/a.cpp", '"render/film.h"'),
+        ("libopenrt/backend/local/a.cpp", "<embree3/rtcore.h>"), ("libopenrt/backend/local/a.cpp", '"render/film/film.h"'),
         ("libopenrt/api/a.cpp", '"scene/commit.h"'), ("libopenrt/api/a.cpp", '"edits_generated.h"'),
-        ("libxvrml/openrt/a.cpp", "<openrt/openrt.h>"), ("libxvrml/openrt/a.cpp", '"geometry/mesh.h"'),
+        ("libxvrml/mapper/a.cpp", "<openrt/openrt.h>"), ("libxvrml/mapper/a.cpp", '"geometry/mesh.h"'),
         ("libxvrml/geometry/a.cpp", "<xvrml/nodes.h>"), ("plugins/shaders/a.cpp", "<openrt/openrts.h>"),
-        ("plugins/shaders/a.cpp", "<cmath>"), ("plugins/script/test/a.c", "<xvrml/xscript.h>"), ("apps/vv/a.cpp", '"xvrml/openrt.h"'), ("tests/unit/a.cpp", '"parse/builder.h"'),
+        ("plugins/shaders/a.cpp", "<cmath>"), ("plugins/script/test/a.c", "<xvrml/xscript.h>"), ("apps/vv/a.cpp", '"xvrml/mapper.h"'), ("tests/unit/a.cpp", '"parse/builder.h"'),
     ]
     wrong = []
     for path, name in refused:
@@ -216,8 +215,73 @@ def self_test():
     return wrong
 
 
+BEGIN, END = "<!-- begin of the map: tests/checks/layering.py --write makes it -->", "<!-- end of the map -->"
+
+
+def levels():
+    """Lists the parts (tests aside) by height: each includes parts of lower rows only. Parts that include each other share a row."""
+    names = [p.name for p in TABLE if p.name != "test"]
+    reach = {name: set(ARROWS[name]) for name in names}
+    for via in names:  # Warshall's transitive closure
+        for name in names:
+            if via in reach[name]:
+                reach[name] |= reach[via]
+    height = {}
+
+    def height_of(name):
+        if name not in height:
+            height[name] = 1 + max((height_of(lower) for lower in reach[name] if name not in reach[lower]), default=-1)
+        return height[name]
+
+    rows = {}
+    for name in names:
+        rows.setdefault(height_of(name), []).append(name)
+    return [rows[h] for h in sorted(rows, reverse=True)]
+
+
+def wrapped(names, width):
+    return textwrap.wrap("  ".join(names), width, break_long_words=False, break_on_hyphens=False)
+
+
+def map_text():
+    """Returns the drawing and the table of docs/architecture.md, section 1."""
+    lines = [BEGIN, "<!-- unchecked: a drawing made from the table below -->", "```text"]
+    columns = [("libopenrt", 36), ("libxvrml", 36), ("", 28)]
+    lines.append("".join(f"{name or 'beside and above both':<{width}}" for name, width in columns).rstrip())
+    library_of = {p.name: next((c for c, (name, _) in enumerate(columns) if name and p.prefixes[0].startswith(name)), 2) for p in TABLE}
+    for row in levels():
+        cells = [wrapped([name for name in row if library_of[name] == c], width - 2) for c, (_, width) in enumerate(columns)]
+        lines.append("-" * 100)
+        for k in range(max(len(cell) for cell in cells)):
+            texts = [cell[k] if k < len(cell) else "" for cell in cells]
+            lines.append("".join(f"{text:<{width}}" for text, (_, width) in zip(texts, columns)).rstrip())
+    lines.append("```")
+    lines += ["", "| part | files | what it is | may include |", "| --- | --- | --- | --- |"]
+    for p in TABLE:
+        allowed = "every part" if p.name == "test" else ", ".join(q.name for q in TABLE if q.name in p.includes) or "nothing"
+        files = ", ".join(f"`{prefix}`" for prefix in p.prefixes)
+        lines.append(f"| {p.name} | {files} | {p.purpose} | {allowed} |")
+    return "\n".join(lines + [END])
+
+
+def page_with_map(text):
+    before, rest = text.split(BEGIN, 1)
+    return before + map_text() + rest.split(END, 1)[1]
+
+
 def main():
-    complaints = self_test() if sys.argv[1:] == ["--self"] else check(tree(pathlib.Path(sys.argv[1]).resolve()))
+    if sys.argv[1:] == ["--self"]:
+        complaints = self_test()
+    else:
+        root = pathlib.Path(sys.argv[1]).resolve()
+        page = root / "docs/architecture.md"
+        text = page.read_text(encoding="utf-8")
+        if sys.argv[2:] == ["--write"]:
+            page.write_text(page_with_map(text), encoding="utf-8")
+            return 0
+        complaints = check(tree(root))
+        if page_with_map(text) != text:
+            complaints.append("docs/architecture.md: the map of section 1 is old; run tests/checks/layering.py . --write")
     for complaint in complaints:
         print(complaint)
     return 1 if complaints else 0

@@ -33,7 +33,7 @@
 #include "failures/failing_allocator.h"
 #include "openrt/openrt.h"
 #include "xvrml/browser.h"
-#include "xvrml/openrt.h"
+#include "xvrml/mapper.h"
 #include "xvrml/world.h"
 
 namespace {

@@ -2,11 +2,11 @@
 #include <string>
 #include <vector>
 
-#include "openrt/shader_options.h"
+#include "mapper/shading/shader_options.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   const std::string text(reinterpret_cast<const char*>(data), size);
   std::vector<std::string> errors;
-  xvrml::mapping::parseShaderOptions({text}, errors);
+  xvrml::mapper::parseShaderOptions({text}, errors);
   return 0;
 }

@@ -2,9 +2,9 @@
 // well formed, while the application commits, cancels and reads frames. Input: what happens, one thing after the other.
 #include <map>
 
-#include "backend/cluster/master.h"
+#include "backend/cluster/master/master.h"
 #include "fuzz_input.h"
-#include "render/result_codec.h"
+#include "render/frame/result_codec.h"
 
 namespace {
 

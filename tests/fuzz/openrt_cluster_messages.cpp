@@ -2,10 +2,10 @@
 // results of jobs. Input: frame after frame, each with its length in two bytes; what is left is the last one.
 #include <array>
 
-#include "backend/cluster/messages.h"
+#include "backend/cluster/net/messages.h"
 #include "backend/record/edits_bytes.h"
 #include "backend/record/validator.h"
-#include "render/result_codec.h"
+#include "render/frame/result_codec.h"
 
 namespace {
 

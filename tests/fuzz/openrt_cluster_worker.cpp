@@ -2,10 +2,10 @@
 // most of them well formed, while the machine answers or fails. Input: what happens, one thing after the other.
 #include <deque>
 
-#include "backend/cluster/worker.h"
+#include "backend/cluster/worker/worker.h"
 #include "backend/record/edits_bytes.h"
 #include "fuzz_input.h"
-#include "render/result_codec.h"
+#include "render/frame/result_codec.h"
 
 namespace {
 

@@ -1,7 +1,7 @@
 // openrt_keys.cpp: any bytes as a key file, and as a list of the keys that are let in. libFuzzer calls this on one thread.
 #include <stdexcept>
 
-#include "backend/cluster/keys.h"
+#include "backend/cluster/net/keys.h"
 #include "fuzz_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {

@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 #include "fuzz_file.h"
-#include "picture/radiance.h"
+#include "libpicture/files/radiance.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) try {
   if (size == 0) return 0;

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <string>
 
-#include "values.h"
-#include "window/input_script.h"
+#include "options/values.h"
+#include "window/input/input_script.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) try {
   const vv::InputScript script = vv::parseInputScript({reinterpret_cast<const char*>(data), size}, "fuzz");

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "openrt/openrt.h"
-#include "xvrml/openrt.h"
+#include "xvrml/mapper.h"
 
 namespace xvrml::test {
 

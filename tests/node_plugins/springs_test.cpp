@@ -5,7 +5,7 @@
 #include "xvrml/browser.h"
 #include "xvrml/node_plugin.h"
 #include "xvrml/nodes.h"
-#include "xvrml/openrt.h"
+#include "xvrml/mapper.h"
 
 namespace {
 

@@ -1,4 +1,4 @@
-// transports.cpp: the automatic choice of a transport, row by row of its table (render/transport.cpp), and what each transport
+// transports.cpp: the automatic choice of a transport, row by row of its table (render/path/transport.cpp), and what each transport
 // says it leaves out: a picture of the chosen one agrees with path tracing, and one that leaves out light is darker.
 #include <functional>
 #include <vector>

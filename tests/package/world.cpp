@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <openrt/openrt.h>
 #include <vector>
-#include <xvrml/openrt.h>
+#include <xvrml/mapper.h>
 
 int main() {
   auto world =

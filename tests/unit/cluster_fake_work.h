@@ -8,7 +8,7 @@
 #include <map>
 #include <vector>
 
-#include "backend/cluster/scheduler.h"
+#include "backend/cluster/master/scheduler.h"
 
 namespace openrt::cluster {
 

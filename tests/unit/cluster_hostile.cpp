@@ -1,8 +1,8 @@
 // cluster_hostile.cpp: a side that has a key and bad intentions: it asks for more than can be done, does not read, says the same
 // for ever. It is let go, and takes neither memory nor the log from the others.
-#include "backend/cluster/master.h"
-#include "backend/cluster/outbox.h"
-#include "backend/cluster/worker.h"
+#include "backend/cluster/master/master.h"
+#include "backend/cluster/master/outbox.h"
+#include "backend/cluster/worker/worker.h"
 #include "backend/record/edits_bytes.h"
 #include "unit/cluster_fake_work.h"
 #include "unit/cluster_wires.h"

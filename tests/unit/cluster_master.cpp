@@ -7,12 +7,12 @@
 
 #include <gtest/gtest.h>
 
-#include "backend/cluster/greeting.h"
-#include "backend/cluster/hosts.h"
-#include "backend/cluster/master.h"
+#include "backend/cluster/net/greeting.h"
+#include "backend/cluster/master/hosts.h"
+#include "backend/cluster/master/master.h"
 #include "backend/record/edits_bytes.h"
 #include "backend/record/validator.h"
-#include "render/result_codec.h"
+#include "render/frame/result_codec.h"
 #include "scene/scene.h"
 
 namespace {

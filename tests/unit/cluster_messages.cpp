@@ -2,7 +2,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "backend/cluster/array_cache.h"
+#include "backend/cluster/worker/array_cache.h"
 #include "messages_generated.h"
 #include "unit/cluster_wires.h"
 

@@ -1,15 +1,15 @@
 // A whole worker in a thread of this process, and a master of a few lines over a real wire: scenes, arrays, jobs and results go
 // across, and the picture is that of the local backend.
-#include "backend/cluster/serve.h"
+#include "backend/cluster/worker/serve.h"
 
 #include <atomic>
 #include <map>
 #include <thread>
 
-#include "backend/cluster/parcel.h"
-#include "backend/cluster/worker_core.h"
-#include "render/frame_work.h"
-#include "render/result_codec.h"
+#include "backend/cluster/master/parcel.h"
+#include "backend/cluster/worker/worker_core.h"
+#include "render/frame/frame_work.h"
+#include "render/frame/result_codec.h"
 #include "unit/cluster_wires.h"
 #include "unit/drawn_scene.h"
 

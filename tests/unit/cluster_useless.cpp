@@ -13,8 +13,8 @@
 #include <sys/socket.h>
 
 #include "backend/backend.h"
-#include "backend/cluster/greeting.h"
-#include "backend/cluster/worker_core.h"
+#include "backend/cluster/net/greeting.h"
+#include "backend/cluster/worker/worker_core.h"
 #include "unit/cluster_wires.h"
 #include "unit/drawn_scene.h"
 

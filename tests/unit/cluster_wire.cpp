@@ -4,8 +4,8 @@
 #include <netinet/in.h>
 #include <sys/socket.h>
 
-#include "backend/cluster/addresses.h"
-#include "backend/cluster/seal.h"
+#include "backend/cluster/net/addresses.h"
+#include "backend/cluster/net/seal.h"
 #include "unit/cluster_wires.h"
 
 using namespace openrt;

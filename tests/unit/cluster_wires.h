@@ -11,9 +11,9 @@
 
 #include <unistd.h>
 
-#include "backend/cluster/messages.h"
-#include "backend/cluster/sockets.h"
-#include "backend/cluster/wire.h"
+#include "backend/cluster/net/messages.h"
+#include "backend/cluster/net/sockets.h"
+#include "backend/cluster/net/wire.h"
 
 namespace openrt::cluster {
 

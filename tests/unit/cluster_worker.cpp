@@ -1,8 +1,8 @@
 // A worker's session, driven by hand: a master that is the test, a machine that only writes down what it is told.
-#include "backend/cluster/worker.h"
+#include "backend/cluster/worker/worker.h"
 
 #include "backend/record/edits_bytes.h"
-#include "render/result_codec.h"
+#include "render/frame/result_codec.h"
 #include "shading/registry.h"
 #include "unit/cluster_wires.h"
 

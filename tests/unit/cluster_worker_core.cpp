@@ -5,7 +5,7 @@
 #include <cstring>
 #include <mutex>
 
-#include "backend/cluster/worker_core.h"
+#include "backend/cluster/worker/worker_core.h"
 #include "unit/drawn_scene.h"
 
 namespace openrt::cluster {

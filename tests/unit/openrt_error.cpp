@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "render/error.h"
+#include "render/film/error.h"
 
 using namespace openrt;
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "render/film.h"
+#include "render/film/film.h"
 
 using namespace openrt;
 

@@ -5,8 +5,8 @@
 #include <numeric>
 #include <random>
 
-#include "render/job_runner.h"
-#include "render/result_codec.h"
+#include "render/frame/job_runner.h"
+#include "render/frame/result_codec.h"
 #include "unit/drawn_scene.h"
 
 namespace openrt {

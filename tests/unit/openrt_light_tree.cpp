@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "render/light_tree.h"
+#include "render/lights/light_tree.h"
 
 using namespace openrt;
 

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "render/lobes.h"
-#include "render/sampler.h"
-#include "render/scatter.h"
+#include "render/surface/lobes.h"
+#include "render/path/sampler.h"
+#include "render/surface/scatter.h"
 
 namespace {
 

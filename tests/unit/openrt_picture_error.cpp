@@ -6,9 +6,9 @@
 #include <random>
 #include <vector>
 
-#include "render/error.h"
-#include "render/ledger.h"
-#include "render/picture_error.h"
+#include "render/film/error.h"
+#include "render/film/ledger.h"
+#include "render/film/picture_error.h"
 
 using namespace openrt;
 

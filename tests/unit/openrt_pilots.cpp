@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "openrt/openrt.h"
-#include "render/pilots.h"
+#include "render/film/pilots.h"
 
 using namespace openrt;
 

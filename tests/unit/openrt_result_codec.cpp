@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "render/result_codec.h"
+#include "render/frame/result_codec.h"
 #include "scene/channels.h"
 
 namespace openrt {

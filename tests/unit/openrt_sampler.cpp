@@ -4,7 +4,7 @@
 #include <set>
 #include <vector>
 
-#include "render/sampler.h"
+#include "render/path/sampler.h"
 
 using namespace openrt;
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "render/frame.h"
-#include "render/sampler.h"
-#include "render/spherical.h"
+#include "render/path/sampler.h"
+#include "render/lights/spherical.h"
 
 using namespace openrt;
 

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "render/sums.h"
+#include "render/film/sums.h"
 
 namespace openrt {
 namespace {

@@ -1,7 +1,7 @@
 // How many threads a process should use: texts of control groups and batch systems, the smallest limit wins.
 #include <gtest/gtest.h>
 
-#include "render/threads.h"
+#include "render/frame/threads.h"
 
 namespace {
 using namespace openrt;

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "openrt/openrt.h"
-#include "picture/picture.h"
+#include "libpicture/files/picture.h"
 
 using namespace picture;
 

@@ -11,7 +11,7 @@
 #include <malloc.h>
 #include <unistd.h>
 
-#include "picture/live.h"
+#include "libpicture/live.h"
 
 using namespace picture;
 using State = LiveRenderer::State;

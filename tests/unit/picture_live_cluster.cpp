@@ -9,8 +9,8 @@
 
 #include <malloc.h>
 
-#include "picture/cluster.h"
-#include "picture/live.h"
+#include "libpicture/cluster.h"
+#include "libpicture/live.h"
 
 using namespace picture;
 using State = LiveRenderer::State;

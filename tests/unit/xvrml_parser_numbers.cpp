@@ -7,7 +7,7 @@
 
 #include "base/number.h"
 #include "base/value_parser.h"
-#include "parse/value_writer.h"
+#include "write/value_writer.h"
 #include "unit/xvrml_parser_support.h"
 
 namespace {

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "behaviour/interaction.h"
+#include "behaviour/viewer/interaction.h"
 #include "xvrml/browser.h"
 
 namespace xvrml {

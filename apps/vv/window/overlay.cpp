@@ -3,10 +3,10 @@
 
 #include <fmt/format.h>
 
-#include "cluster_report.h"
-#include "describe.h"
-#include "picture/transport.h"
-#include "window/keys.h"
+#include "report/cluster_report.h"
+#include "report/describe.h"
+#include "libpicture/transport.h"
+#include "window/input/keys.h"
 
 namespace vv {
 

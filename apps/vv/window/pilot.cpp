@@ -7,8 +7,8 @@
 
 #include <fmt/format.h>
 
-#include "picture/renderer.h"
-#include "values.h"
+#include "libpicture/renderer.h"
+#include "options/values.h"
 #include "xvrml/nodes.h"
 
 namespace vv {

@@ -7,8 +7,8 @@
 #include <string>
 #include <utility>
 
-#include "picture/camera.h"
-#include "window/keys.h"
+#include "libpicture/camera.h"
+#include "window/input/keys.h"
 #include "xvrml/browser.h"
 
 namespace vv {

@@ -5,9 +5,9 @@
 
 #include <fmt/format.h>
 
-#include "messages.h"
-#include "names.h"
-#include "picture/atomic_file.h"
+#include "report/messages.h"
+#include "options/names.h"
+#include "libpicture/files/atomic_file.h"
 #include "pictures.h"
 
 namespace vv {

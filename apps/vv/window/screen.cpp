@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include "printable.h"
-#include "values.h"
+#include "options/values.h"
 
 namespace vv {
 

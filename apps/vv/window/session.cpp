@@ -8,11 +8,11 @@
 
 #include <fmt/format.h>
 
-#include "describe.h"
-#include "messages.h"
+#include "report/describe.h"
+#include "report/messages.h"
 #include "timeline.h"
 #include "window/saving.h"
-#include "window/view_command.h"
+#include "window/input/view_command.h"
 #include "world_start.h"
 
 namespace vv {

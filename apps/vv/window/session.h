@@ -11,12 +11,12 @@
 #include <thread>
 #include <vector>
 
-#include "options.h"
-#include "picture/live.h"
-#include "problems.h"
+#include "options/options.h"
+#include "libpicture/live.h"
+#include "report/problems.h"
 #include "window/pacing.h"
 #include "window/pilot.h"
-#include "window/replay.h"
+#include "window/input/replay.h"
 
 namespace vv {
 

@@ -5,7 +5,7 @@
 #include <new>
 #include <thread>
 
-#include "values.h"
+#include "options/values.h"
 #include "world_start.h"
 
 namespace vv {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "backend/local/embree_parts.h"
+#include "backend/local/accel/embree_parts.h"
 #include "backend/local/own_geometry.h"
 
 namespace openrt {

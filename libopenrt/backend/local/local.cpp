@@ -12,8 +12,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "render/light_sources.h"
-#include "render/transport.h"
+#include "render/lights/light_sources.h"
+#include "render/path/transport.h"
 
 namespace openrt {
 namespace {

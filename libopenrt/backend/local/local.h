@@ -5,9 +5,9 @@
 #include <memory>
 
 #include "backend/backend.h"
-#include "backend/local/accel_build.h"
+#include "backend/local/accel/accel_build.h"
 #include "backend/surface_queries.h"
-#include "render/renderer.h"
+#include "render/frame/renderer.h"
 
 namespace openrt {
 

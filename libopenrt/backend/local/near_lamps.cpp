@@ -45,7 +45,7 @@ void addSphere(const EmissiveShapes::Shape& shape, const Record& r, std::vector<
     }
 }
 
-// How far rays step off what was met, about as render/points.cpp works it out; unit: what a float can tell apart there.
+// How far rays step off what was met, about as render/surface/points.cpp works it out; unit: what a float can tell apart there.
 double stepOff(const Record& r, uint32_t primitive, const Probe& p, double t, double& unit) {
   double largest[3] = {}, along = 0, all = 0;
   float corner[3][3];

@@ -1,7 +1,7 @@
 // own_geometry.h: what geometries that are met by code of ours, not Embree's, do with a packet of rays. Called by render threads.
 #pragma once
 
-#include "backend/local/embree.h"
+#include "backend/local/accel/embree.h"
 #include "scene/matrix.h"
 
 namespace openrt {

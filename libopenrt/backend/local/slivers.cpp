@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "backend/local/embree_parts.h"
+#include "backend/local/accel/embree_parts.h"
 #include "backend/local/exact.h"
 #include "backend/local/own_geometry.h"
 

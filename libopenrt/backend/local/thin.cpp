@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "backend/local/bake.h"
+#include "backend/local/accel/bake.h"
 
 namespace openrt {
 

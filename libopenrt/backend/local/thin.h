@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "backend/local/accel.h"
+#include "backend/local/accel/accel.h"
 
 namespace openrt {
 

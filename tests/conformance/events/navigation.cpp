@@ -1,5 +1,5 @@
 // How the viewer moves: clauses 6.29 (NavigationInfo), 6.8 (Collision), 6.53 (up and down).
-#include "behaviour/interaction.h"
+#include "behaviour/viewer/interaction.h"
 #include "conformance/events/viewing.h"
 
 namespace xvrml {

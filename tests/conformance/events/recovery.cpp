@@ -2,7 +2,7 @@
 #include <sstream>
 
 #include "conformance/events/scripted.h"
-#include "parse/expander.h"
+#include "graph/expander.h"
 
 namespace xvrml {
 namespace {

@@ -1,0 +1,78 @@
+// definitions.cpp: see definitions.h.
+#include "definitions.h"
+
+#include <fmt/format.h>
+
+#include "libpicture/nearest.h"
+#include "values.h"
+#include "xvrml/value_text.h"
+
+namespace vv {
+
+namespace {
+
+using namespace xvrml;
+
+[[noreturn]] void fail(const std::string& text, const std::string& why) {
+  throw Failure{exitUsage, fmt::format("-D {}: {}", text, why)};
+}
+
+std::string didYouMean(const std::string& word, const std::vector<std::string>& known) {
+  const std::string near = picture::nearest(word, known);
+  return near.empty() ? "" : fmt::format("; did you mean {}?", near);
+}
+
+bool holdsValue(const FieldInfo& field) { return field.access == Access::field || field.access == Access::exposedField; }
+
+NodeRef findNode(const std::string& text, const std::string& name, const World& world) {
+  const auto found = world.scope.names.find(name);
+  if (found != world.scope.names.end()) return found->second;
+  std::vector<std::string> known;
+  for (const auto& [one, node] : world.scope.names) known.push_back(one);
+  fail(text,
+       known.empty() ? "the world names no node with DEF" : fmt::format("no node is called {}{}", name, didYouMean(name, known)));
+}
+
+const FieldInfo& findField(const std::string& text, const std::string& name, const Node& node) {
+  const NodeType& type = node.type();
+  const FieldInfo* field = type.find(name);
+  if (!field) field = type.findEventIn(name);
+  if (field && field->access == Access::eventOut) fail(text, fmt::format("{} is an eventOut: {} sends it", name, type.name));
+  if (field) return *field;
+  std::vector<std::string> known;
+  for (const FieldInfo& one : type.fields)
+    if (one.access != Access::eventOut) known.push_back(one.name);
+  fail(text, fmt::format("{} has no field {}{}", type.name, name, didYouMean(name, known)));
+}
+
+Definition readOne(const std::string& text, const World& world) {
+  const size_t dot = text.find('.'), equals = text.find('=');
+  Definition one;
+  one.node = findNode(text, text.substr(0, dot), world);
+  one.field = &findField(text, text.substr(dot + 1, equals - dot - 1), *one.node);
+  std::string problem;
+  const std::string_view written = std::string_view(text).substr(equals + 1);
+  std::optional<Value> value = parseValue(one.field->type, written, problem, world.options.limits);
+  if (!value) fail(text, fmt::format("a value of type {} was expected: {}", fieldTypeName(one.field->type), problem));
+  const bool rotates =
+      one.field->type == FieldType::SFRotation || one.field->type == FieldType::MFRotation; // axes are normalised
+  if (holdsValue(*one.field) && !rotates && !inRange(*one.field, *value))
+    fail(text, fmt::format("the value is out of the range of {}.{}", one.node->type().name, one.field->name));
+  one.value = std::move(*value);
+  const bool instance = dynamic_cast<const ProtoInstance*>(one.node.get()) != nullptr;
+  if (instance && one.field->access == Access::field)
+    fail(text, fmt::format("{} is a field of prototype {}, which is fixed when the file is read; an exposedField can be set",
+                           one.field->name, one.node->type().name));
+  one.asEvent = one.field->access == Access::eventIn || instance || one.node->type().name == "Inline";
+  return one;
+}
+
+} // namespace
+
+std::vector<Definition> readDefinitions(const std::vector<std::string>& texts, const World& world) {
+  std::vector<Definition> all;
+  for (const std::string& text : texts) all.push_back(readOne(text, world));
+  return all;
+}
+
+} // namespace vv

@@ -1,0 +1,86 @@
+// options.h: what the command line asks for, and the one table of options that reads it and writes --help.
+// Called by main() once. [one thread]
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "libpicture/cluster.h"
+#include "libpicture/files/film.h"
+#include "libpicture/renderer.h"
+#include "values.h"
+#include "window/input/input_script.h"
+#include "xvrml/world.h"
+
+namespace vv {
+
+struct Output {
+  std::string path; // "-": standard output
+  picture::Format format = picture::Format::png;
+  picture::FilmKind film = picture::FilmKind::none; // else a file of all pictures of a sequence, and no format
+};
+
+struct Options {
+  std::string input; // "-": standard input; empty: none given
+  std::vector<Output> outputs;
+  picture::RenderSettings render;
+  picture::ClusterSettings cluster;
+  std::optional<int> samples; // as asked for; render.samples is what follows
+  picture::View view;
+  std::optional<double> time;  // seconds since the world was loaded
+  std::optional<double> epoch; // seconds since 1970 when it is loaded; none: xvrml::worldEpoch, in the window the real time
+  std::optional<FrameRange> frames;
+  double fps = 30;                      // of frames and films; also the steps of the world's clock
+  int turntable = 0;                    // pictures around the world; 0: none
+  std::vector<std::string> definitions; // DEF.field=value
+  std::vector<std::string> shaders;     // DEF=Class:param=value
+  std::string cameraShader;             // Class:param=value
+  std::string viewpoint;                // as asked for: a name, a number or "all"
+  bool check = false, strict = false;
+  bool info = false, listNodes = false, listViewpoints = false, listShaders = false, listEngines = false, explain = false,
+       json = false;
+  bool watch = false;
+  std::string inputScript, recordInput;      // files of what a user does; empty: none
+  std::shared_ptr<const InputScript> script; // what inputScript holds
+  bool listKeys = false;
+  std::string write, stats;
+  std::string compare;  // reference picture; empty: none
+  int audit = 0;        // pictures to check the error bars with; 0: none
+  std::string nodePath; // folders, separated by colons
+  xvrml::LoadOptions load;
+  xvrml::BrowserOptions running;
+  xvrml::RunOptions run; // its epoch is set by startWorld
+  bool quiet = false, verbose = false;
+  bool help = false, version = false;
+
+  bool allViewpoints() const { return viewpoint == "all"; }
+  bool makesPictures() const { return !outputs.empty() || !compare.empty() || audit > 0; }
+  bool opensWindow() const {
+    return !makesPictures() && !check && !info && !listNodes && !listViewpoints && !listShaders && !listEngines && !listKeys &&
+           !explain && write.empty();
+  }
+  bool isSequence() const { return frames || turntable > 0; }
+};
+
+// A row of the table. `argument` is empty for a switch, in brackets if it may be left out: then the value is "". `apply` throws
+// UsageError.
+struct OptionInfo {
+  const char* names; // "-o,--output"
+  const char* argument;
+  const char* group;
+  const char* text;
+  void (*apply)(Options& options, const std::string& value);
+  bool repeatable = false;
+};
+std::span<const OptionInfo> optionTable();
+std::span<const OptionInfo> clusterOptions(); // a part of it
+
+// Throws UsageError with one line that names the option and what was expected.
+Options readCommandLine(int argc, char** argv);
+
+std::string helpText();
+
+} // namespace vv

@@ -1,0 +1,199 @@
+// shader_text.cpp: see shader_text.h.
+#include "shader_text.h"
+
+#include <algorithm>
+#include <cfloat>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "libpicture/nearest.h"
+#include "values.h"
+#include "xvrml/nodes.h"
+
+namespace vv {
+
+namespace {
+
+struct Setting {
+  std::string name, value;
+};
+
+// "Class:a=1:b=2"; a colon in a value is kept where no name and equals sign follow it.
+struct Written {
+  std::string library, name;
+  std::vector<Setting> settings;
+};
+
+bool startsSetting(std::string_view part) {
+  size_t i = 0;
+  while (i < part.size() && (std::isalnum(static_cast<unsigned char>(part[i])) || part[i] == '_')) ++i;
+  return i > 0 && i < part.size() && part[i] == '=';
+}
+
+Written readWritten(const std::string& text) {
+  Written written;
+  const std::vector<std::string_view> parts = split(std::string_view(text), ':');
+  const std::string_view head = parts[0];
+  const size_t slash = head.find('/');
+  written.library = slash == head.npos ? "" : head.substr(0, slash);
+  written.name = slash == head.npos ? head : head.substr(slash + 1);
+  if (written.name.empty()) throw UsageError(fmt::format("the name of a shader class was expected, not \"{}\"", text));
+  for (size_t i = 1; i < parts.size(); ++i) {
+    if (startsSetting(parts[i])) {
+      const size_t equals = parts[i].find('=');
+      written.settings.push_back({std::string(parts[i].substr(0, equals)), std::string(parts[i].substr(equals + 1))});
+    } else if (!written.settings.empty()) {
+      written.settings.back().value += ":" + std::string(parts[i]);
+    } else {
+      throw UsageError(fmt::format("PARAM=VALUE was expected, not \"{}\"", parts[i]));
+    }
+  }
+  return written;
+}
+
+std::vector<float> numbers(const std::string& text) {
+  std::vector<float> list;
+  for (std::string_view word : split(std::string_view(text), ',')) {
+    while (!word.empty() && word.front() == ' ') word.remove_prefix(1);
+    if (word.starts_with('+')) word.remove_prefix(1);
+    float value = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value))
+      throw UsageError(fmt::format("numbers, separated by commas, were expected, not \"{}\"", text));
+    list.push_back(value);
+  }
+  return list;
+}
+
+size_t countOf(RTenum type) {
+  switch (type) {
+  case RT_PARAM_VEC2: return 2;
+  case RT_PARAM_VEC3:
+  case RT_PARAM_COLOR: return 3;
+  case RT_PARAM_VEC4: return 4;
+  case RT_PARAM_MATRIX: return 16;
+  default: return 1;
+  }
+}
+
+// A place of the user's own: as a URL relative to the current folder, which a world's own rules let through.
+std::string fileUrl(const std::string& path) {
+  std::string url;
+  for (const char c : std::filesystem::path(path).is_absolute() ? std::filesystem::relative(path).string() : path)
+    url += c == '%' ? "%25" : std::string(1, c);
+  return url;
+}
+
+std::string quoted(const std::string& text) {
+  if (text.find('\'') != text.npos) throw UsageError("a quotation mark is not possible in " + text);
+  return "'" + text + "'";
+}
+
+// As an option of an ORTShader node.
+std::string optionOf(const RTparameterInfo& info, const std::string& value) {
+  switch (info.type) {
+  case RT_PARAM_TEXTURE: return fmt::format("texture {} {}", info.name, quoted(fileUrl(value)));
+  case RT_PARAM_STRING:
+    if (value.starts_with('@')) return fmt::format("file {} {}", info.name, quoted(fileUrl(value.substr(1))));
+    return fmt::format("string {} {}", info.name, quoted(value));
+  case RT_PARAM_INT: return fmt::format("1i {} {}", info.name, readInteger(value, INT32_MIN, INT32_MAX));
+  default: break;
+  }
+  std::vector<float> list = numbers(value);
+  const size_t count = countOf(info.type);
+  if (info.type == RT_PARAM_COLOR && list.size() == 1) list.resize(3, list[0]);
+  if (info.type != RT_PARAM_FLOATS && list.size() != count)
+    throw UsageError(fmt::format("{} number{} expected, not \"{}\"", count, count == 1 ? " was" : "s were", value));
+  std::string option = info.type == RT_PARAM_FLOATS ? "floats " : fmt::format("{}f ", count);
+  option += info.name;
+  for (const float x : list) {
+    if (x < info.minimum || x > info.maximum)
+      throw UsageError(fmt::format("{} is out of range: {} to {}", x, info.minimum, info.maximum));
+    option += fmt::format(" {}", x);
+  }
+  return option;
+}
+
+// A context in which nothing is drawn.
+struct Lookup {
+  RTcontext context;
+  explicit Lookup(const std::string& shaderPath) {
+    const std::string config = "backend=null" + (shaderPath.empty() ? "" : " shaderpath=\"" + shaderPath + "\"");
+    context = rtNewContext(config.c_str());
+    if (!context) throw UsageError((rtGetError(), rtGetErrorMessage()));
+  }
+  ~Lookup() { rtDeleteContext(context); }
+  Lookup(const Lookup&) = delete;
+  Lookup& operator=(const Lookup&) = delete;
+};
+
+std::vector<std::string> optionsOf(const Written& written, RTenum role, const std::string& shaderPath) {
+  const Lookup lookup(shaderPath);
+  const RTid shaderClass = rtNewShaderClass(written.name.c_str(), written.library.empty() ? nullptr : written.library.c_str());
+  if (shaderClass == 0) throw UsageError(std::string((rtGetError(), rtGetErrorMessage())) + "; vv --list-shaders lists them");
+  RTenum found = 0;
+  int count = 0;
+  rtGetShaderClass(shaderClass, &found, &count);
+  if (found != role)
+    throw UsageError(fmt::format("{} is a shader for a {}, not for a {}", written.name, roleName(found), roleName(role)));
+  std::vector<RTparameterInfo> infos(size_t(std::max(count, 0)));
+  std::vector<std::string> names, options;
+  for (size_t i = 0; i < infos.size(); ++i) {
+    rtGetParameterInfo(shaderClass, int(i), &infos[i]);
+    names.emplace_back(infos[i].name);
+  }
+  for (const Setting& setting : written.settings) {
+    const auto at = std::find(names.begin(), names.end(), setting.name);
+    if (at == names.end()) {
+      const std::string near = picture::nearest(setting.name, names);
+      std::string all;
+      for (const std::string& name : names) all += (all.empty() ? "" : ", ") + name;
+      throw UsageError(fmt::format("{} has no parameter {}{}", written.name, setting.name,
+                                   !near.empty() ? fmt::format("; did you mean {}?", near)
+                                   : all.empty() ? ", it has none at all"
+                                                 : "; it has " + all));
+    }
+    try {
+      options.push_back(optionOf(infos[size_t(at - names.begin())], setting.value));
+    } catch (const UsageError& error) { throw UsageError(setting.name + ": " + error.what()); }
+  }
+  return options;
+}
+
+} // namespace
+
+const char* roleName(RTenum role) {
+  switch (role) {
+  case RT_SURFACE: return "surface";
+  case RT_LIGHT: return "light";
+  case RT_CAMERA: return "camera";
+  case RT_ENVIRONMENT: return "environment";
+  default: return "transport";
+  }
+}
+
+const char* parameterTypeName(RTenum type) {
+  constexpr const char* names[] = {"int", "float", "vec2", "vec3", "vec4", "color", "matrix", "floats", "string", "texture"};
+  return type >= RT_PARAM_INT && type <= RT_PARAM_TEXTURE ? names[type - RT_PARAM_INT] : "?";
+}
+
+xvrml::NodeRef readShader(const std::string& text, const char* option, RTenum role, const std::string& shaderPath) {
+  try {
+    const Written written = readWritten(text);
+    const xvrml::NodeType& type = *xvrml::findNodeType("ORTShader");
+    xvrml::NodeRef node(type.create(type));
+    auto& shader = static_cast<xvrml::nodes::ORTShader&>(*node);
+    shader.name = written.name;
+    shader.file = written.library;
+    shader.options = optionsOf(written, role, shaderPath);
+    shader.source.file = std::make_shared<std::string>(option);
+    return node;
+  } catch (const UsageError& error) { throw UsageError(fmt::format("{} {}: {}", option, text, error.what())); }
+}
+
+} // namespace vv

@@ -1,0 +1,429 @@
+// report.cpp: see report.h. The only file of vv that includes nlohmann/json.
+#include "report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <sys/resource.h>
+
+#include "describe.h"
+#include "libpicture/cluster.h"
+#include "libpicture/transport.h"
+#include "printable.h"
+#include "transport_words.h"
+#include "xvrml/nodes.h"
+#include "xvrml/script_engines.h"
+
+namespace vv {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Names may hold bytes that are not UTF-8: JSON gets the replacement character for them.
+std::string dump(const Json& json) { return printableJson(json.dump(2, ' ', false, Json::error_handler_t::replace)) + "\n"; }
+
+// What is said of the picture's error (openrt.h, RTstats): of the whole picture, relative.
+Json errorEstimate(const RTstats& s) {
+  const bool known = s.errorPixels > 0;
+  const auto value = [known](double x) { return known ? Json(x) : Json(nullptr); };
+  return {{"mean_rel", value(s.errorMean)},
+          {"mean_rel_interval", value(s.errorMeanInterval)},
+          {"half_width", value(s.errorHalfWidth)},
+          {"p99", value(s.errorP99)},
+          {"pixels_trusted", value(known ? double(s.errorTrusted) / double(s.errorPixels) : 0)},
+          {"unmet", value(s.errorUnmet)},
+          {"level", s.errorLevel},
+          {"method", s.errorMethod}};
+}
+
+Json transportJson(const Options& options, const RTstats& s) {
+  return {{"chosen", picture::transportName(s.transport)},
+          {"reason", s.transportReason},
+          {"claim", transportClaim(s, options.render)},
+          {"leaves_out", picture::leftOutNames(s)}};
+}
+
+// Since the program has begun to call the workers. Tiles: jobs, parts of tiles too.
+Json clusterJson(const picture::RenderResult& result) {
+  const RTstats& s = result.stats;
+  Json machines = Json::array();
+  for (const RTworker& w : result.workers)
+    machines.push_back({{"name", w.name},
+                        {"here", picture::isHere(w)},
+                        {"alive", w.alive != 0},
+                        {"threads", w.threads},
+                        {"tiles", w.jobs},
+                        {"rays", w.rays},
+                        {"bytes_sent", w.bytesSent},
+                        {"bytes_received", w.bytesReceived},
+                        {"late", w.late},
+                        {"lost", w.lost},
+                        {"busy", w.busySeconds},
+                        {"latency", w.latency}});
+  return {{"workers", s.workers},           {"tiles", s.tilesRemote},
+          {"tiles_here", s.tilesLocal},     {"retries", s.reissued},
+          {"duplicates", s.duplicates},     {"bytes", s.bytesSent + s.bytesReceived},
+          {"bytes_sent", s.bytesSent},      {"bytes_received", s.bytesReceived},
+          {"machines", std::move(machines)}};
+}
+
+uint64_t peakMemory() {
+  rusage usage{};
+  ::getrusage(RUSAGE_SELF, &usage);
+  return uint64_t(usage.ru_maxrss) * 1024;
+}
+
+Json channelNames(uint32_t channels) {
+  Json names = Json::array();
+  for (const picture::Channel& channel : picture::channelTable())
+    if (channels & channel.bit) names.push_back(channel.name);
+  return names;
+}
+
+std::string_view accessName(xvrml::Access access) {
+  switch (access) {
+  case xvrml::Access::field: return "field";
+  case xvrml::Access::exposedField: return "exposedField";
+  case xvrml::Access::eventIn: return "eventIn";
+  case xvrml::Access::eventOut: return "eventOut";
+  }
+  return "";
+}
+
+bool holdsValue(const xvrml::FieldInfo& field) {
+  return field.access == xvrml::Access::field || field.access == xvrml::Access::exposedField;
+}
+
+Json typeJson(const xvrml::NodeType& type) {
+  Json fields = Json::array();
+  for (const xvrml::FieldInfo& field : type.fields) {
+    Json one = {{"name", field.name}, {"type", fieldTypeName(field.type)}, {"access", accessName(field.access)}};
+    if (holdsValue(field)) one["default"] = valueText(field.defaultValue);
+    if (!field.nodeTypes.empty()) one["accepts"] = field.nodeTypes;
+    if (!field.text.empty()) one["text"] = field.text;
+    fields.push_back(std::move(one));
+  }
+  return {{"name", type.name}, {"component", type.component}, {"text", type.text}, {"fields", std::move(fields)}};
+}
+
+std::string typeText(const xvrml::NodeType& type, std::string_view comment) {
+  std::string out = fmt::format("{} {{{}{}\n", type.name, comment.empty() ? "" : " # ", comment);
+  for (const xvrml::FieldInfo& field : type.fields) {
+    std::string line = fmt::format("  {:<12} {:<10} {}", accessName(field.access), fieldTypeName(field.type), field.name);
+    if (holdsValue(field)) line = fmt::format("{:<46} {}", line, valueText(field.defaultValue));
+    out += line + "\n";
+  }
+  return out + "}\n";
+}
+
+Json viewpointsJson(const std::vector<xvrml::ViewpointInfo>& viewpoints) {
+  Json list = Json::array();
+  for (size_t i = 0; i < viewpoints.size(); ++i) {
+    const xvrml::ViewpointInfo& v = viewpoints[i];
+    list.push_back({{"index", i}, {"name", v.name}, {"description", v.description}, {"matrix", Json(v.matrix)}});
+  }
+  return list;
+}
+
+} // namespace
+
+namespace {
+
+// What the statistics of a picture and of a sequence share; numbers of the last picture.
+Json sceneStats(const Options& options, const std::string& commandLine, const RunningWorld& running,
+                const picture::RenderResult& result) {
+  const xvrml::World& world = running.world;
+  const RTstats& s = result.stats;
+  const picture::RenderSettings& r = options.render;
+  Json json;
+  json["schema"] = 1;
+  json["version"] = version();
+  json["command"] = commandLine;
+  json["interrupted"] = result.interrupted;
+  json["scene"] = {{"path", world.path},
+                   {"nodes", world.nodeCount},
+                   {"shapes", result.map.shapes},
+                   {"triangles", s.triangles},
+                   {"unique_triangles", s.uniqueTriangles},
+                   {"objects", s.objects},
+                   {"instances", s.instances},
+                   {"textures", s.textures},
+                   {"lights", s.lights},
+                   {"warnings", world.diagnostics.warnings() + world.diagnostics.errors()}};
+  json["scripts"] = {{"scripts", running.scripts.scripts},
+                     {"started", running.scripts.started},
+                     {"calls", running.scripts.calls},
+                     {"seconds", running.scripts.seconds}};
+  json["image"] = {{"width", r.width}, {"height", r.height}, {"spp", r.samples}, {"channels", channelNames(r.channels)}};
+  return json;
+}
+
+void addMachine(Json& json, const Options& options, const picture::RenderResult& result) {
+  const RTstats& s = result.stats;
+  json["transport"] = transportJson(options, result.stats);
+  json["error"] = errorEstimate(result.stats);
+  json["left_out"] = {{"cut_by_depth", s.cutByDepth},          {"cut_by_energy", s.cutByEnergy},  {"clipped", s.clipped},
+                      {"unreached_lights", s.unreachedLights}, {"shader_faults", s.shaderFaults}, {"wrong_hits", s.wrongHits},
+                      {"rejected_rays", s.rejectedRays}};
+  json["memory"] = {{"peak_rss", peakMemory()}, {"bvh", s.bvhBytes}, {"scene", nullptr}};
+  json["cluster"] = clusterJson(result);
+  json["machine"] = {{"isa", s.isa}, {"threads", s.threads}, {"embree", s.kernel}};
+}
+
+Json rayStats(uint64_t camera, uint64_t shadow, uint64_t secondary, double seconds) {
+  return {{"camera", camera},
+          {"shadow", shadow},
+          {"secondary", secondary},
+          {"per_second", seconds > 0 ? double(camera + shadow + secondary) / seconds : 0.0}};
+}
+
+} // namespace
+
+std::string statsJson(const Options& options, const std::string& commandLine, const RunningWorld& running,
+                      const picture::RenderResult& result, const RunTimes& times) {
+  const RTstats& s = result.stats;
+  const xvrml::World& world = running.world;
+  Json json = sceneStats(options, commandLine, running, result);
+  // One pass makes the whole picture.
+  json["time"] = {{"parse", world.times.parse},
+                  {"graph", world.times.load},
+                  {"map", result.mapSeconds},
+                  {"build", s.commitSeconds + s.buildSeconds},
+                  {"first_pass", result.renderSeconds},
+                  {"render", result.renderSeconds},
+                  {"write", times.write},
+                  {"total", times.total}};
+  json["rays"] = rayStats(s.cameraRays, s.shadowRays, s.secondaryRays, s.renderSeconds);
+  addMachine(json, options, result);
+  return dump(json);
+}
+
+struct SequenceStats::Impl {
+  Json frames = Json::array();
+  picture::RenderResult last{}; // without its picture
+  double map = 0, build = 0, render = 0, write = 0, first = 0, tracing = 0;
+  uint64_t camera = 0, shadow = 0, secondary = 0;
+};
+
+SequenceStats::SequenceStats() : impl_(std::make_unique<Impl>()) {}
+SequenceStats::~SequenceStats() = default;
+
+void SequenceStats::add(const PictureName& name, double worldTime, const picture::RenderResult& result, double writeSeconds) {
+  Impl& sum = *impl_;
+  const RTstats& s = result.stats;
+  const double build = s.commitSeconds + s.buildSeconds;
+  Json frame = {{"frame", name.frame.value_or(0)}, {"world_time", worldTime}};
+  if (!name.viewpoint.empty()) frame["viewpoint"] = name.viewpoint;
+  frame["time"] = {{"map", result.mapSeconds}, {"build", build}, {"render", result.renderSeconds}, {"write", writeSeconds}};
+  if (sum.frames.empty()) sum.first = result.renderSeconds;
+  sum.frames.push_back(std::move(frame));
+  sum.map += result.mapSeconds;
+  sum.build += build;
+  sum.render += result.renderSeconds;
+  sum.write += writeSeconds;
+  sum.tracing += s.renderSeconds;
+  sum.camera += s.cameraRays;
+  sum.shadow += s.shadowRays;
+  sum.secondary += s.secondaryRays;
+  sum.last.map = result.map;
+  sum.last.stats = s;
+  sum.last.workers = result.workers;
+  sum.last.interrupted |= result.interrupted;
+}
+
+std::string SequenceStats::json(const Options& options, const std::string& commandLine, const RunningWorld& running,
+                                double totalSeconds) const {
+  const Impl& sum = *impl_;
+  const xvrml::World& world = running.world;
+  Json json = sceneStats(options, commandLine, running, sum.last);
+  json["time"] = {{"parse", world.times.parse}, {"graph", world.times.load}, {"map", sum.map},     {"build", sum.build},
+                  {"first_pass", sum.first},    {"render", sum.render},      {"write", sum.write}, {"total", totalSeconds}};
+  json["rays"] = rayStats(sum.camera, sum.shadow, sum.secondary, sum.tracing);
+  addMachine(json, options, sum.last);
+  json["fps"] = options.fps;
+  json["frames"] = sum.frames;
+  return dump(json);
+}
+
+namespace {
+
+// What --compat changes, or would.
+struct Compat {
+  uint64_t scripts = 0;  // hold nodes without directOutput TRUE
+  uint64_t textures = 0; // appearances with a picture and a diffuseColor that is not white
+};
+
+Compat compatOf(const xvrml::World& world) {
+  Compat compat;
+  forEachNode(world, [&](const xvrml::Node& node) {
+    if (const auto* script = dynamic_cast<const xvrml::ScriptNode*>(&node)) {
+      const xvrml::FieldInfo* flag = node.type().find("directOutput");
+      const bool allowed = flag && node.get(*flag) == xvrml::Value(true);
+      const bool holds =
+          std::any_of(script->type().fields.begin(), script->type().fields.end(), [&](const xvrml::FieldInfo& field) {
+            if (field.access == xvrml::Access::eventIn) // it may be sent some
+              return field.type == xvrml::FieldType::SFNode || field.type == xvrml::FieldType::MFNode;
+            if (field.access != xvrml::Access::field) return false;
+            const xvrml::Value value = node.get(field);
+            const auto* one = std::get_if<xvrml::NodeRef>(&value);
+            const auto* many = std::get_if<xvrml::MFNode>(&value);
+            return (one && *one) || (many && !many->empty());
+          });
+      compat.scripts += !allowed && holds;
+    } else if (node.type().index == xvrml::nodes::Appearance::typeIndex) {
+      const auto* appearance = static_cast<const xvrml::nodes::Appearance*>(&node);
+      const auto* material = xvrml::nodeCast<xvrml::nodes::Material>(xvrml::renderedNode(appearance->material.get()));
+      compat.textures += appearance->texture && material && material->diffuseColor != xvrml::Color{1, 1, 1};
+    }
+  });
+  return compat;
+}
+
+std::string compatText(const Options& options, const Compat& compat) {
+  std::string text;
+  if (compat.scripts > 0)
+    text += fmt::format("compat scripts {}: {} without directOutput TRUE; {}\n", options.run.directOutputAlways ? "on" : "off",
+                        compat.scripts == 1 ? "1 Script holds nodes" : fmt::format("{} Scripts hold nodes", compat.scripts),
+                        options.run.directOutputAlways
+                            ? "what they do to them is done, as in browsers of 1997"
+                            : "what they do to them is ignored (6.40); --compat scripts does it, as browsers of 1997 did");
+  if (compat.textures > 0)
+    text += fmt::format("compat textures {}: {} appearance{} with a texture and a diffuseColor that is not white; {}\n",
+                        options.render.multiplyTextures ? "on" : "off", compat.textures, compat.textures == 1 ? "" : "s",
+                        options.render.multiplyTextures
+                            ? "a colour picture multiplies it, as in X3D"
+                            : "a colour picture replaces it (4.14.3); --compat textures multiplies, as X3D does");
+  return text;
+}
+
+} // namespace
+
+std::string explainWorld(const Options& options, const xvrml::World& world, const RTstats& stats,
+                         const std::vector<xvrml::ExplainedObject>& objects) {
+  const Compat compat = compatOf(world);
+  uint64_t triangles = 0, bytes = 0, instances = 0, shapes = 0;
+  for (const xvrml::ExplainedObject& o : objects) {
+    triangles += o.triangles;
+    bytes += o.bytes;
+    instances += o.instances;
+    shapes += o.shapes;
+  }
+  if (options.json) {
+    Json list = Json::array();
+    for (const xvrml::ExplainedObject& o : objects)
+      list.push_back({{"name", o.name},
+                      {"reason", o.reason},
+                      {"triangles", o.triangles},
+                      {"shapes", o.shapes},
+                      {"bytes", o.bytes},
+                      {"instances", o.instances}});
+    return dump({{"transport", transportJson(options, stats)},
+                 {"compat",
+                  {{"scripts", {{"on", options.run.directOutputAlways}, {"affected", compat.scripts}}},
+                   {"textures", {{"on", options.render.multiplyTextures}, {"affected", compat.textures}}}}},
+                 {"objects", std::move(list)},
+                 {"totals",
+                  {{"objects", objects.size()},
+                   {"shapes", shapes},
+                   {"triangles", triangles},
+                   {"bytes", bytes},
+                   {"instances", instances},
+                   {"instanced_triangles", stats.triangles}}}});
+  }
+  std::string text = fmt::format("transport {}: {}\n  {}\n", picture::transportName(stats.transport), stats.transportReason,
+                                 transportClaim(stats, options.render));
+  text += compatText(options, compat);
+  text += fmt::format("{:>10} {:>8} {:>12} {:>9}  {}\n", "triangles", "shapes", "bytes", "instances", "object: reason");
+  for (const xvrml::ExplainedObject& o : objects)
+    text += fmt::format("{:>10} {:>8} {:>12} {:>9}  {}: {}\n", o.triangles, o.shapes, o.bytes, o.instances, oneLine(o.name),
+                        oneLine(o.reason));
+  return text + fmt::format("{:>10} {:>8} {:>12} {:>9}  {} objects, {} triangles with all instances\n", triangles, shapes, bytes,
+                            instances, objects.size(), stats.triangles);
+}
+
+namespace {
+// Scripts in the world, and in the bodies of its prototypes.
+std::map<std::string, std::pair<uint64_t, uint64_t>> scriptsByProtocol(const WorldCounts& counts) {
+  std::map<std::string, std::pair<uint64_t, uint64_t>> all;
+  for (const auto& [protocol, count] : counts.scripts) all[protocol].first = count;
+  for (const auto& [protocol, count] : counts.declaredScripts) all[protocol].second = count;
+  return all;
+}
+} // namespace
+
+std::string listNodes(const xvrml::World* world, bool json) {
+  Json list = Json::array(), prototypes = Json::array();
+  std::string text;
+  for (const xvrml::NodeType* type : xvrml::nodeTypes()) {
+    if (json)
+      list.push_back(typeJson(*type));
+    else
+      text += typeText(*type, type->text);
+  }
+  if (world) {
+    for (const xvrml::ProtoPtr& prototype : world->scope.prototypes) {
+      if (json)
+        prototypes.push_back(typeJson(*prototype->type));
+      else
+        text += typeText(*prototype->type, prototype->isExtern ? "EXTERNPROTO of " + world->path : "PROTO of " + world->path);
+    }
+  }
+  if (!json) return text;
+  Json all = {{"nodes", std::move(list)}};
+  if (world) all["prototypes"] = std::move(prototypes);
+  return dump(all);
+}
+
+std::string listViewpoints(const std::vector<xvrml::ViewpointInfo>& viewpoints, bool json) {
+  if (json) return dump(viewpointsJson(viewpoints));
+  std::string text;
+  for (size_t i = 0; i < viewpoints.size(); ++i)
+    text +=
+        fmt::format("{}\t{}\t{}\n", i, viewpoints[i].name.empty() ? "-" : viewpoints[i].name, oneLine(viewpoints[i].description));
+  return text;
+}
+
+std::string describeWorld(const xvrml::World& world, const std::vector<xvrml::ViewpointInfo>& viewpoints,
+                          const xvrml::Bounds& bounds, const UpAxis& up, const std::string& scriptPath, bool json) {
+  const WorldCounts counts = countWorld(world);
+  if (json) {
+    Json all = {{"path", world.path}, {"nodes", world.nodeCount}, {"types", Json(counts.types)}, {"routes", counts.routes}};
+    all["prototypes"] = counts.prototypes;
+    all["scripts"] = Json::array();
+    for (const auto& [protocol, count] : scriptsByProtocol(counts))
+      all["scripts"].push_back({{"protocol", protocol},
+                                {"count", count.first},
+                                {"declared", count.second},
+                                {"engine", xvrml::hasScriptEngine(protocol, scriptPath)}});
+    all["names"] = counts.names;
+    all["viewpoints"] = viewpointsJson(viewpoints);
+    all["bounds"] = nullptr;
+    if (!bounds.empty) all["bounds"] = {{"minimum", Json(bounds.minimum)}, {"maximum", Json(bounds.maximum)}};
+    all["up"] = {{"axis", up.axis}, {"reason", up.reason}};
+    all["errors"] = world.diagnostics.errors();
+    all["warnings"] = world.diagnostics.warnings();
+    return dump(all);
+  }
+  std::string text = fmt::format("world       {}\nnodes       {}\nroutes      {}\nprototypes  {}\nviewpoints  {}\n", world.path,
+                                 world.nodeCount, counts.routes, counts.prototypes.size(), viewpoints.size());
+  if (bounds.empty)
+    text += "bounds      nothing to see\n";
+  else
+    text += fmt::format("bounds      {:.6g} {:.6g} {:.6g}  to  {:.6g} {:.6g} {:.6g}\n", bounds.minimum[0], bounds.minimum[1],
+                        bounds.minimum[2], bounds.maximum[0], bounds.maximum[1], bounds.maximum[2]);
+  if (!up.reason.empty()) text += fmt::format("up          {}: {}\n", up.axis, up.reason);
+  for (const auto& [protocol, count] : scriptsByProtocol(counts))
+    text += fmt::format("scripts     {} {}{}: {}\n", count.first, protocol,
+                        count.second ? fmt::format(", {} in prototypes", count.second) : "",
+                        xvrml::hasScriptEngine(protocol, scriptPath) ? "engine there" : "no engine for them");
+  text += fmt::format("problems    {} errors, {} warnings\n", world.diagnostics.errors(), world.diagnostics.warnings());
+  for (const auto& [type, count] : counts.types) text += fmt::format("  {:>8}  {}\n", count, type);
+  return text;
+}
+
+} // namespace vv

@@ -1,0 +1,80 @@
+// keys.cpp: see keys.h.
+#include "window/input/keys.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace vv {
+
+namespace {
+
+constexpr KeyInfo keys[] = {
+    {Action::firstViewpoint, "Home", "first viewpoint"},
+    {Action::lastViewpoint, "End", "last viewpoint"},
+    {Action::previousViewpoint, "PageUp [", "previous viewpoint"},
+    {Action::nextViewpoint, "PageDown ]", "next viewpoint"},
+    {Action::back, "Backspace", "back to where the viewpoint is"},
+    {Action::frameAll, "F", "frame all: the whole world in view"},
+    {Action::examine, "1", "examine: turn the world around"},
+    {Action::walk, "2", "walk, on the ground and not through walls"},
+    {Action::fly, "3", "fly"},
+    {Action::still, "4", "stand still: the mouse is for the world alone"},
+    {Action::none, "Left Right Up Down", "turn and go; Shift: faster; Alt: sideways, up and down"},
+    {Action::headlight, "H", "headlight on or off"},
+    {Action::pause, "P", "pause time, or let it go on"},
+    {Action::save, "S", "save the picture as PNG"},
+    {Action::saveExr, "Shift+S", "save the picture as OpenEXR"},
+    {Action::command, "C", "print the vv command that makes a picture of this very view"},
+    {Action::reload, "R", "read the world again; the viewer stays"},
+    {Action::overlay, "I", "what is known about the picture: none, brief, all"},
+    {Action::help, "F1 ?", "this text"},
+    {Action::fullScreen, "F11", "full screen"},
+    {Action::quit, "Q Escape", "quit"},
+};
+
+constexpr MouseInfo mouse[] = {
+    {"pointer", "over a sensor or an anchor it is a hand; dragging is then the sensor's"},
+    {"left drag", "examine: turn; walk, fly: go and turn, faster the longer the way"},
+    {"right or Shift drag", "examine: move aside; walk, fly: sideways, up and down"},
+    {"middle or Ctrl drag", "examine: nearer and farther; walk, fly: look around"},
+    {"wheel", "nearer and farther"},
+    {"drop of a file", "opens it"},
+};
+
+bool matches(std::string_view one, const InputEvent& event) {
+  const bool shifted = one.starts_with("Shift+");
+  if (shifted) one.remove_prefix(6);
+  const bool letter = one.size() == 1 && one[0] >= 'A' && one[0] <= 'Z';
+  return one == event.text && (!letter || shifted == event.shift) && !event.control && !event.alt;
+}
+
+} // namespace
+
+std::span<const KeyInfo> keyTable() { return keys; }
+std::span<const MouseInfo> mouseTable() { return mouse; }
+
+Action actionOf(const InputEvent& event) {
+  for (const KeyInfo& info : keys) {
+    std::string_view rest = info.keys;
+    while (!rest.empty()) {
+      const size_t blank = std::min(rest.find(' '), rest.size());
+      if (matches(rest.substr(0, blank), event)) return info.action;
+      rest.remove_prefix(std::min(blank + 1, rest.size()));
+    }
+  }
+  return Action::none;
+}
+
+std::string listKeys() {
+  std::string out;
+  for (const KeyInfo& info : keys) {
+    std::string names;
+    for (const char* at = info.keys; *at; ++at) names += *at == ' ' ? std::string(", ") : std::string(1, *at);
+    out += fmt::format("{:<24}{}\n", names, info.text);
+  }
+  for (const MouseInfo& info : mouse) out += fmt::format("{:<24}{}\n", info.what, info.text);
+  return out;
+}
+
+} // namespace vv

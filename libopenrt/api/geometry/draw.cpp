@@ -1,0 +1,178 @@
+// draw.cpp: rtDrawArrays and rtDrawElements: attributes are copied straight into the arrays that travel to the backend.
+// Everything is checked before anything is kept. Application thread.
+#include <cstring>
+
+#include "api/geometry/object_builder.h"
+#include "api/geometry/transform.h"
+#include "shading/parameters.h"
+
+namespace openrt {
+namespace {
+
+constexpr size_t maxVertices = size_t(1) << 31;
+
+bool allFinite(const float* values, size_t count) {
+  // x - x is 0 for finite x and NaN otherwise. Independent sums, so that the loop is not bound by the latency of one.
+  float sums[8] = {};
+  size_t i = 0;
+  for (; i + 8 <= count; i += 8)
+    for (size_t k = 0; k < 8; k++) sums[k] += values[i + k] - values[i + k];
+  for (; i < count; i++) sums[0] += values[i] - values[i];
+  float total = 0;
+  for (float s : sums) total += s;
+  return total == 0;
+}
+
+void checkIndices(const DrawCall& call) {
+  if (!call.indices) return;
+  uint32_t largest = 0;
+  for (size_t i = 0; i < call.count; i++) largest = std::max(largest, call.indices[i]);
+  if (call.count > 0 && largest >= call.vertexCount)
+    fail(RT_INVALID_VALUE,
+         "index " + std::to_string(largest) + " is beyond the " + std::to_string(call.vertexCount) + " vertices");
+}
+
+// Which vertices a draw call uses: only they need to be finite.
+class UsedVertices {
+ public:
+  explicit UsedVertices(const DrawCall& call) : all_(!call.indices) {
+    if (all_) return;
+    used_.resize(call.vertexCount);
+    for (size_t i = 0; i < call.count; i++) used_[call.indices[i]] = true;
+  }
+  bool operator[](size_t i) const { return all_ || used_[i]; }
+
+ private:
+  bool all_;
+  std::vector<bool> used_;
+};
+
+// Values that are not finite: an error where they are used, else 0.
+void clearUnused(const DrawCall& call, float* values, size_t components, const char* complaint) {
+  const UsedVertices used(call);
+  for (size_t i = 0; i < call.vertexCount; i++) {
+    if (allFinite(values + components * i, components)) continue;
+    if (used[i]) fail(RT_INVALID_VALUE, complaint);
+    std::fill_n(values + components * i, components, 0.0f);
+  }
+}
+
+// Copies count elements of from floats each into elements of to floats; what is missing is 1 (alpha).
+void gather(const AttributeSource& source, size_t count, size_t to, float* out) {
+  const size_t from = static_cast<size_t>(source.components);
+  if (from == to && source.stride == to * sizeof(float)) {
+    std::memcpy(out, source.data, count * to * sizeof(float));
+    return;
+  }
+  for (size_t i = 0; i < count; i++, out += to) {
+    std::memcpy(out, source.data + i * source.stride, from * sizeof(float));
+    for (size_t k = from; k < to; k++) out[k] = 1;
+  }
+}
+
+ArrayPtr attribute(const DrawCall& call, const AttributeSource& source, size_t components, bool set, const float* current,
+                   const char* complaint) {
+  if (!source.data && !set) return nullptr;
+  auto array = std::make_shared<Array>(call.vertexCount * components * sizeof(float));
+  float* out = reinterpret_cast<float*>(array->data());
+  if (source.data) {
+    gather(source, call.vertexCount, components, out);
+    if (!allFinite(out, call.vertexCount * components)) clearUnused(call, out, components, complaint);
+  } else {
+    for (size_t i = 0; i < call.vertexCount; i++) std::copy_n(current, components, out + components * i);
+  }
+  return array;
+}
+
+Vec3d loadPoint(const AttributeSource& source, size_t i) {
+  Vec3d p;
+  std::memcpy(&p, source.data + i * source.stride, sizeof(p));
+  return p;
+}
+
+// Points given in double: relative to an origin of their own unless float holds them exactly.
+ArrayPtr widePoints(const DrawCall& call, Matrix4d& matrix) {
+  static_assert(sizeof(Vec3d) == 3 * sizeof(double));
+  const UsedVertices used(call);
+  WideBounds bounds;
+  for (size_t i = 0; i < call.vertexCount; i++) {
+    if (!used[i]) continue;
+    const Vec3d p = loadPoint(call.points, i);
+    if (!(std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)}) <= maxCoordinate && p.x == p.x && p.y == p.y && p.z == p.z))
+      fail(RT_INVALID_VALUE, "a coordinate is not finite or beyond 1e38");
+    bounds.add(p);
+  }
+  const Vec3d origin = bounds.exact ? Vec3d() : bounds.origin();
+  auto array = std::make_shared<Array>(call.vertexCount * 3 * sizeof(float));
+  float* out = reinterpret_cast<float*>(array->data());
+  for (size_t i = 0; i < call.vertexCount; i++, out += 3) {
+    const Vec3d p = used[i] ? loadPoint(call.points, i) - origin : Vec3d();
+    out[0] = static_cast<float>(p.x), out[1] = static_cast<float>(p.y), out[2] = static_cast<float>(p.z);
+  }
+  if (!bounds.exact) matrix = matrix * translation(origin.x, origin.y, origin.z);
+  return array;
+}
+
+// ordinals: where wanted, the number of each primitive that is kept among all of the call.
+ArrayPtr collectIndices(const DrawCall& call, const float* points, uint64_t& degenerate, std::vector<uint32_t>* ordinals) {
+  const size_t room = indexCount(call.mode, call.count);
+  auto array = std::make_shared<Array>(room * sizeof(uint32_t));
+  uint32_t* out = reinterpret_cast<uint32_t*>(array->data());
+  const uint32_t* end = nullptr;
+  const auto kept = [ordinals](size_t ordinal) {
+    if (ordinals) ordinals->push_back(static_cast<uint32_t>(ordinal));
+  };
+  if (call.indices)
+    end = writeIndices(
+        call.mode, call.count, points, [&](size_t i) { return call.indices[i]; }, out, degenerate, kept);
+  else
+    end = writeIndices(
+        call.mode, call.count, points, [](size_t i) { return static_cast<uint32_t>(i); }, out, degenerate, kept);
+  const size_t written = static_cast<size_t>(end - out);
+  if (written == room) return array;
+  auto fitting = std::make_shared<Array>(written * sizeof(uint32_t));
+  std::memcpy(fitting->data(), out, fitting->size());
+  return fitting;
+}
+
+// Values of a shader parameter: those that something uses must be such as the parameter takes, the others become its default.
+BuiltParameter ownValues(const DrawCall& call, const ParameterSource& from, const std::vector<uint32_t>& ordinals) {
+  const UsedVertices used(call);
+  const bool perVertex = from.parameter.perVertex;
+  const size_t count = perVertex ? call.vertexCount : ordinals.size(), n = from.parameter.floats;
+  auto array = std::make_shared<Array>(count * n * sizeof(float));
+  float* out = reinterpret_cast<float*>(array->data());
+  for (size_t i = 0; i < count; i++, out += n) {
+    std::memcpy(out, from.source.data + (perVertex ? i : ordinals[i]) * from.source.stride, n * sizeof(float));
+    const std::string problem = valueProblem(*from.declared, std::span<const float>(out, n));
+    if (problem.empty()) continue;
+    if (!perVertex || used[i]) fail(RT_INVALID_VALUE, problem);
+    std::copy_n(from.declared->defaultValue, n, out);
+  }
+  return {from.parameter.index, perVertex, std::move(array)};
+}
+
+} // namespace
+
+std::optional<BuiltGeometry> buildDraw(const DrawCall& call, const GeometryState& state, const VertexState& current,
+                                       uint64_t& degenerate) {
+  BuiltGeometry built{.state = state, .primitive = primitiveOf(call.mode)};
+  require(call.points.data != nullptr, RT_INVALID_OPERATION, "no vertex array: call rtVertexPointer first");
+  require(call.vertexCount <= maxVertices && call.count <= maxVertices, RT_INVALID_VALUE, "more than 2^31 vertices");
+  checkIndices(call);
+  if (call.points.type == RT_DOUBLE)
+    built.points = widePoints(call, built.state.matrix);
+  else
+    built.points = attribute(call, call.points, 3, true, nullptr, "a coordinate is not finite");
+  built.normals = attribute(call, call.normals, 3, current.present & HasNormal, current.normal, "a normal is not finite");
+  built.texCoords =
+      attribute(call, call.texCoords, 2, current.present & HasTexCoord, current.texCoord, "a texture coordinate is not finite");
+  built.colors = attribute(call, call.colors, 4, current.present & HasColor, current.color, "a colour is not finite");
+  std::vector<uint32_t> ordinals;
+  built.indices = collectIndices(call, built.points->as<float>(), degenerate, call.parameters.empty() ? nullptr : &ordinals);
+  for (const ParameterSource& parameter : call.parameters) built.parameters.push_back(ownValues(call, parameter, ordinals));
+  if (built.indices->size() == 0) return std::nullopt;
+  return built;
+}
+
+} // namespace openrt

@@ -1,0 +1,259 @@
+// object_builder.cpp: begin/end: merging of lists, local origins, attributes that appear late. Application thread.
+#include "api/geometry/object_builder.h"
+
+#include <cstring>
+
+#include "api/geometry/transform.h"
+
+namespace openrt {
+namespace {
+
+constexpr size_t maxMergedVertices = size_t(1) << 26; // further lists start another geometry
+constexpr double maxReachInExtents = 64;
+
+// Room for more elements with amortised growth, so that the caller can fill it without a further allocation.
+void makeRoom(std::vector<uint32_t>& indices, size_t more) {
+  if (indices.capacity() - indices.size() < more) indices.reserve(std::max(indices.size() + more, 2 * indices.capacity()));
+}
+
+bool fitsFloat(double v) { return static_cast<double>(static_cast<float>(v)) == v; }
+
+} // namespace
+
+void WideBounds::add(const Vec3d& p) {
+  exact = exact && fitsFloat(p.x) && fitsFloat(p.y) && fitsFloat(p.z);
+  if (!any) low = high = p, any = true;
+  low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+  high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+}
+
+Vec3d WideBounds::origin() const {
+  const auto snapped = [](double a, double b) {
+    const double centre = a + 0.5 * (b - a);
+    if (b == a) return a;
+    const double grid = std::exp2(std::ceil(std::log2(b - a)));
+    const double rounded = std::round(centre / grid) * grid;
+    return std::isfinite(rounded) ? rounded : centre;
+  };
+  return {snapped(low.x, high.x), snapped(low.y, high.y), snapped(low.z, high.z)};
+}
+
+double WideBounds::reach(const Vec3d& from) const {
+  const auto along = [](double a, double b, double f) { return std::max(std::fabs(a - f), std::fabs(b - f)); };
+  return std::max({along(low.x, high.x, from.x), along(low.y, high.y, from.y), along(low.z, high.z, from.z)});
+}
+
+void ObjectBuilder::begin(RTenum mode, const GeometryState& state) {
+  require(!inList_, RT_INVALID_OPERATION, "already between rtBegin and rtEnd");
+  const edit::Primitive primitive = primitiveOf(mode);
+  const auto latched = latched_.find(state.shader);
+  const bool parameters = latched != latched_.end();
+  const size_t floats = parameters ? latched->second.values.size() : 0;
+  const uint8_t present = uint8_t((current.present & ~HasParameters) | (parameters ? HasParameters : 0));
+  const bool joins = open_ && primitive == primitive_ && present == vertices_.attributes() && state == state_ &&
+                     vertices_.parameterFloats() == floats && vertices_.count() < maxMergedVertices;
+  if (!joins) {
+    std::vector<OwnParameter> layout = parameters ? latched->second.layout : std::vector<OwnParameter>();
+    flush(vertices_.count());
+    vertices_.restart(present, floats);
+    indices_.clear();
+    layout_ = std::move(layout);
+    state_ = state;
+    primitive_ = primitive;
+    open_ = true;
+    local_ = false;
+  }
+  current.present = present;
+  current.parameters = parameters ? latched->second.values.data() : nullptr;
+  mode_ = mode;
+  listStart_ = vertices_.count();
+  wideList_ = false;
+  inList_ = true;
+}
+
+void ObjectBuilder::rejectVertex() const {
+  require(inList_, RT_INVALID_OPERATION, "not between rtBegin and rtEnd");
+  fail(RT_INVALID_VALUE, "a coordinate is not finite");
+}
+
+// An attribute was set for the first time: lists before this one never have it, the vertices of this one get the unset state.
+void ObjectBuilder::adaptAttributes() {
+  if (listStart_ > 0) flush(listStart_);
+  vertices_.addAttributes(current.present);
+}
+
+void ObjectBuilder::parameter(const OwnParameter& which, std::span<const float> value, std::span<const float> own) {
+  require(inList_, RT_INVALID_OPERATION, "not between rtBegin and rtEnd");
+  Latched& latched = latched_[state_.shader];
+  size_t at = 0;
+  for (const OwnParameter& known : latched.layout) {
+    if (known.index == which.index) {
+      std::copy(value.begin(), value.end(), latched.values.begin() + ptrdiff_t(at));
+      return;
+    }
+    at += known.floats;
+  }
+  Latched wider = latched;
+  wider.layout.push_back(which);
+  wider.values.insert(wider.values.end(), value.begin(), value.end());
+  std::vector<OwnParameter> layout = wider.layout;
+  if (listStart_ > 0) flush(listStart_); // lists before this one never have it
+  vertices_.addParameters(own.data(), own.size());
+  latched = std::move(wider);
+  layout_ = std::move(layout);
+  current.parameters = latched.values.data();
+  current.present |= HasParameters;
+}
+
+void ObjectBuilder::vertex(double x, double y, double z) {
+  if (!inList_) rejectVertex();
+  if (!(std::fabs(x) <= maxCoordinate && std::fabs(y) <= maxCoordinate && std::fabs(z) <= maxCoordinate))
+    fail(RT_INVALID_VALUE, "a coordinate is not finite or beyond 1e38");
+  if (current.present != vertices_.attributes()) adaptAttributes();
+  if (!wideList_) widenList();
+  appendWide(x, y, z);
+  try {
+    vertices_.append(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z), current);
+  } catch (...) {
+    wide_.pop_back();
+    throw;
+  }
+}
+
+void ObjectBuilder::appendWide(double x, double y, double z) {
+  if (std::fabs(x) > maxCoordinate || std::fabs(y) > maxCoordinate || std::fabs(z) > maxCoordinate)
+    fail(RT_INVALID_VALUE, "a coordinate beyond 1e38 beside vertices in double");
+  wide_.push_back({x, y, z});
+}
+
+// From here on the list is kept in double; what it has so far came in float and may be too large for that.
+void ObjectBuilder::widenList() {
+  std::vector<Vec3d> points;
+  for (size_t i = listStart_; i < vertices_.count(); i++) {
+    const float* p = vertices_.points() + 3 * i;
+    if (std::max({std::fabs(p[0]), std::fabs(p[1]), std::fabs(p[2])}) > maxCoordinate)
+      fail(RT_INVALID_VALUE, "a vertex in double beside coordinates beyond 1e38");
+    points.push_back({p[0], p[1], p[2]});
+  }
+  wide_ = std::move(points);
+  wideList_ = true;
+}
+
+// Decides where the origin of a list in double lies, and whether the list joins the open geometry.
+void ObjectBuilder::settleOrigin() {
+  if (!wideList_) {
+    if (local_ && listStart_ > 0) flush(listStart_); // coordinates in float keep their own origin
+    local_ = false;
+    return;
+  }
+  WideBounds bounds;
+  for (const Vec3d& p : wide_) bounds.add(p);
+  if (bounds.exact) {
+    if (local_ && listStart_ > 0) flush(listStart_);
+    local_ = false;
+    return;
+  }
+  const double extent = std::max({bounds.high.x - bounds.low.x, bounds.high.y - bounds.low.y, bounds.high.z - bounds.low.z});
+  const bool joins = listStart_ > 0 && local_ && bounds.reach(origin_) <= maxReachInExtents * extent;
+  if (!joins) {
+    if (listStart_ > 0) flush(listStart_);
+    local_ = true;
+    origin_ = bounds.origin();
+  }
+  storeRelative(origin_);
+}
+
+void ObjectBuilder::storeRelative(const Vec3d& origin) {
+  float* out = vertices_.points() + 3 * listStart_;
+  for (const Vec3d& p : wide_) {
+    *out++ = static_cast<float>(p.x - origin.x);
+    *out++ = static_cast<float>(p.y - origin.y);
+    *out++ = static_cast<float>(p.z - origin.z);
+  }
+}
+
+void ObjectBuilder::end() {
+  require(inList_, RT_INVALID_OPERATION, "not between rtBegin and rtEnd");
+  const size_t count = vertices_.count() - listStart_;
+  const size_t room = indexCount(mode_, count);
+  makeRoom(indices_, room);
+  if (!layout_.empty()) makeRoom(completing_, room);
+  settleOrigin();
+  const size_t before = indices_.size(); // settleOrigin may have handed earlier lists over
+  indices_.resize(before + room);
+  const uint32_t first = static_cast<uint32_t>(listStart_);
+  uint32_t* start = indices_.data() + before;
+  const uint32_t* written = writeIndices(
+      mode_, count, vertices_.points(), [first](size_t i) { return first + static_cast<uint32_t>(i); }, start, degenerate_,
+      [&](size_t ordinal) {
+        if (!layout_.empty()) completing_.push_back(first + static_cast<uint32_t>(completingVertex(mode_, count, ordinal)));
+      });
+  indices_.resize(before + static_cast<size_t>(written - start));
+  if (written == start) vertices_.truncate(listStart_); // nothing of the list is left
+  inList_ = wideList_ = false;
+  wide_.clear();
+}
+
+// Hands the first vertexCount vertices of the open geometry over, with all indices so far: they are those of closed lists.
+void ObjectBuilder::flush(size_t vertexCount) {
+  if (!indices_.empty()) {
+    BuiltGeometry built{.state = state_, .primitive = primitive_};
+    if (local_) built.state.matrix = state_.matrix * translation(origin_.x, origin_.y, origin_.z);
+    auto indices = std::make_shared<Array>(indices_.size() * sizeof(uint32_t));
+    std::memcpy(indices->data(), indices_.data(), indices->size());
+    built.indices = std::move(indices);
+    built.points = vertices_.copyPoints(vertexCount);
+    built.normals = vertices_.copyNormals(vertexCount);
+    built.texCoords = vertices_.copyTexCoords(vertexCount);
+    built.colors = vertices_.copyColors(vertexCount);
+    addParameters(built, vertexCount);
+    done_.push_back(std::move(built));
+  }
+  vertices_.dropFront(vertexCount);
+  indices_.clear();
+  completing_.clear();
+  listStart_ = 0;
+}
+
+void ObjectBuilder::addParameters(BuiltGeometry& built, size_t vertexCount) const {
+  size_t at = 0;
+  for (const OwnParameter& parameter : layout_) {
+    const size_t count = parameter.perVertex ? vertexCount : completing_.size(), n = parameter.floats;
+    auto values = std::make_shared<Array>(count * n * sizeof(float));
+    float* out = reinterpret_cast<float*>(values->data());
+    for (size_t i = 0; i < count; i++)
+      std::copy_n(vertices_.parameters(parameter.perVertex ? i : completing_[i]) + at, n, out + n * i);
+    built.parameters.push_back({parameter.index, parameter.perVertex, std::move(values)});
+    at += n;
+  }
+}
+
+void ObjectBuilder::draw(const DrawCall& call, const GeometryState& state) {
+  require(!inList_, RT_INVALID_OPERATION, "between rtBegin and rtEnd");
+  uint64_t degenerate = 0;
+  std::optional<BuiltGeometry> built = buildDraw(call, state, current, degenerate);
+  if (built) {
+    flush(vertices_.count());
+    open_ = false;
+    done_.push_back(std::move(*built));
+  }
+  degenerate_ += degenerate;
+}
+
+void ObjectBuilder::sphere(float radius, const GeometryState& state) {
+  require(!inList_, RT_INVALID_OPERATION, "between rtBegin and rtEnd");
+  require(std::isfinite(radius) && radius > 0, RT_INVALID_VALUE, "the radius must be positive and finite");
+  flush(vertices_.count());
+  open_ = false;
+  BuiltGeometry built{.state = state, .primitive = edit::Primitive::Sphere};
+  built.state.width = radius;
+  done_.push_back(std::move(built));
+}
+
+std::vector<BuiltGeometry> ObjectBuilder::finish() {
+  flush(vertices_.count());
+  open_ = false;
+  return std::move(done_);
+}
+
+} // namespace openrt

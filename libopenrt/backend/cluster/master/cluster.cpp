@@ -1,0 +1,459 @@
+// cluster.cpp: the backend that renders with the help of other machines. One thread speaks with them (Wire, Master); the worker
+// in this process has threads of its own (WorkerCore). Whoever calls hands that thread a function, and waits if there is an
+// answer.
+#include <algorithm>
+#include <chrono>
+#include <condition_variable>
+#include <cstdio>
+#include <deque>
+#include <exception>
+#include <future>
+#include <iterator>
+#include <mutex>
+#include <random>
+#include <thread>
+
+#include "backend/backend.h"
+#include "backend/cluster/net/greeting.h"
+#include "backend/cluster/master/hosts.h"
+#include "backend/cluster/master/master.h"
+#include "backend/surface_queries.h"
+#include "render/frame/threads.h"
+
+namespace openrt {
+namespace {
+
+using namespace cluster;
+
+SurfaceQueries& surfaces(Backend& local) { return dynamic_cast<SurfaceQueries&>(local); }
+
+double clockNow() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+Split splitOf(const std::string& word) {
+  if (word == "tiles") return Split::tiles;
+  if (word == "samples") return Split::samples;
+  if (word == "frames") return Split::frames;
+  return Split::automatic;
+}
+
+// Does what would keep the network waiting, on so many threads; with one, in its order.
+class Background {
+ public:
+  using Task = std::function<void()>;
+  explicit Background(uint32_t threads) {
+    for (uint32_t i = 0; i < threads; i++) threads_.emplace_back([this] { run(); });
+  }
+  ~Background() {
+    {
+      const std::lock_guard lock(mutex_);
+      stop_ = true;
+    }
+    changed_.notify_all();
+    for (std::thread& thread : threads_) thread.join();
+  }
+  // Takes them all.
+  void add(std::vector<Task>& tasks) {
+    if (tasks.empty()) return;
+    {
+      const std::lock_guard lock(mutex_);
+      std::move(tasks.begin(), tasks.end(), std::back_inserter(tasks_));
+    }
+    for (size_t i = 0; i < std::min(tasks.size(), threads_.size()); i++) changed_.notify_one();
+    tasks.clear();
+  }
+
+ private:
+  void run() {
+    std::unique_lock lock(mutex_);
+    for (;;) {
+      changed_.wait(lock, [this] { return stop_ || !tasks_.empty(); });
+      if (stop_) return;
+      const Task task = std::move(tasks_.front());
+      tasks_.pop_front();
+      lock.unlock();
+      task();
+      lock.lock();
+    }
+  }
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<Task> tasks_;
+  bool stop_ = false;
+  std::vector<std::thread> threads_;
+};
+
+// Of the threads here, those that merge what comes from elsewhere while one speaks with the network.
+uint32_t mergersOf(uint32_t threads) { return std::clamp(threads / 2, 1u, 8u); }
+
+class ClusterBackend final : public Backend, public SurfaceQueries, private WorkerSink {
+ public:
+  ClusterBackend(const BackendOptions& options, const ClusterOptions& cluster) : log_(options.log), logUser_(options.logUser) {
+    WireOptions wire;
+    wire.connect = readHosts(cluster.workers);
+    wire.listen = cluster.listen;
+    if (!cluster.keyFile.empty())
+      wire.keys = readKeys(cluster.keyFile, cluster.allowFile);
+    else if (!cluster.allowFile.empty())
+      throw ClusterError("a list of keys that are let in (allow=" + cluster.allowFile + ") is of no use without key=FILE");
+    wire_ = std::make_unique<Wire>(wire);
+    BackendOptions local = options;
+    if (cluster.local.value_or(0) > 0) local.threads = *cluster.local;
+    core_ = std::make_unique<WorkerCore>(local, static_cast<WorkerSink&>(*this));
+    RTstats self{};
+    core_->ask([&](Backend& backend) { backend.stats(self); });
+
+    MasterOptions master;
+    master.schedule.split = splitOf(cluster.split);
+    master.tolerant = cluster.tolerant;
+    master.local = local;
+    master.localThreads = cluster.local == 0u ? 0 : core_->threads();
+    master.require = cluster.require;
+    master.session = uint64_t(std::random_device()()) << 32 | 1;
+    master.self = identity(self);
+    master.close = [this](Peer peer, const std::string& why) { wire_->close(peer, why); };
+    master.background = [this](std::function<void()> heavy, MasterOptions::Then then) {
+      std::vector<Background::Task> task{later(std::move(heavy), std::move(then))};
+      background_.add(task);
+    };
+    master.results = [this](std::function<void()> heavy, MasterOptions::Then then) {
+      results_.push_back(later(std::move(heavy), std::move(then)));
+    };
+    master_ = std::make_unique<Master>(
+        master, [this](Peer peer, Frames&& frames) { return wire_->send(peer, std::move(frames)); }, core_.get());
+    thread_ = std::thread([this] { run(); });
+  }
+
+  ~ClusterBackend() override {
+    cancel();
+    post([this](double) { stop_ = true; });
+    thread_.join();
+  }
+
+  bool pipelines() const override { return true; }
+
+  void apply(std::shared_ptr<const Commit> commit) override {
+    const double begin = clockNow();
+    unsent_.push_back(std::move(commit));
+    commitSeconds_ = clockNow() - begin;
+  }
+
+  void start() override {
+    if (unsent_.empty()) unsent_.push_back(std::make_shared<Commit>());
+    Flight flight;
+    flight.epoch = epoch_ + unsent_.size();
+    flight.begun = clockNow();
+    {
+      const std::lock_guard lock(mutex_);
+      flying_.push_back(flight);
+    }
+    hand(true);
+  }
+
+  void wait() override {
+    std::unique_lock lock(mutex_);
+    if (flying_.empty()) return;
+    changed_.wait(lock, [this] { return flying_.front().state.over || !broken_.empty(); });
+    finished_ = std::move(flying_.front());
+    flying_.pop_front();
+    const std::string broken = broken_;
+    lock.unlock();
+    if (!finished_.state.over) throw ClusterError(broken);
+    post([this, epoch = finished_.epoch](double) { master_->forget(epoch); });
+    const Master::FrameState& state = finished_.state;
+    if (state.failure.empty()) return;
+    if (state.missing) throw ClusterError(state.failure);
+    throw std::runtime_error(state.failure);
+  }
+
+  void cancel() override {
+    Epoch last = 0;
+    {
+      const std::lock_guard lock(mutex_);
+      if (flying_.empty()) return;
+      last = flying_.back().epoch;
+    }
+    post([this, last](double now) { master_->cancel(last, now); });
+  }
+
+  float progress() const override {
+    const std::lock_guard lock(mutex_);
+    if (flying_.empty()) return 1;
+    const Master::FrameState& state = flying_.front().state;
+    if (state.over || !broken_.empty()) return 1; // wait() returns at once
+    return state.work ? state.work->progress() : 0;
+  }
+
+  bool snapshot(RTenum channel, std::span<float> out) const override {
+    std::shared_ptr<FrameWork> work;
+    {
+      const std::lock_guard lock(mutex_);
+      if (!flying_.empty()) work = flying_.front().state.work;
+    }
+    return work && work->snapshot(channel, out);
+  }
+
+  bool read(RTenum channel, std::span<float> out) const override {
+    return finished_.state.work && finished_.state.work->film().read(channel, out);
+  }
+
+  void stats(RTstats& s) const override {
+    const uint64_t degenerate = s.degenerate;
+    const size_t size = s.size;
+    if (const Master::FrameState& state = finished_.state; state.work) {
+      s = state.prepared.stats; // of the scene
+      s.size = size, s.degenerate += degenerate;
+      for (char* text : {s.isa + sizeof s.isa, s.kernel + sizeof s.kernel, s.transportReason + sizeof s.transportReason})
+        text[-1] = '\0'; // a worker may have said it
+      const RayCounters counters = state.work->counters();
+      s.cameraRays = counters.camera, s.shadowRays = counters.shadow, s.secondaryRays = counters.secondary;
+      s.shaderFaults = counters.faults.count(Fault::notFinite);
+      s.renderSeconds = finished_.ended - finished_.begun;
+      s.transport = state.prepared.frame.transport;
+      state.work->describeError(s);
+      state.work->describeLedger(s);
+    } else {
+      core_->ask([&](Backend& backend) { backend.stats(s); });
+    }
+    s.commitSeconds = commitSeconds_;
+    Master::Totals totals;
+    {
+      const std::lock_guard lock(mutex_);
+      totals = totals_;
+    }
+    s.workers = totals.workers, s.threads = totals.threads;
+    s.tilesRemote = totals.jobsRemote, s.tilesLocal = totals.jobsHere;
+    s.reissued = totals.reissued, s.duplicates = totals.duplicates;
+    s.bytesSent = totals.bytesSent, s.bytesReceived = totals.bytesReceived;
+  }
+
+  std::vector<RTworker> workers() const override {
+    const std::lock_guard lock(mutex_); // the thread of the network may be in the application's log
+    return workers_;
+  }
+
+  void castRays(std::span<const RTray> rays, std::span<RThit> hits) override {
+    ask([&](Backend& backend) { backend.castRays(rays, hits); });
+  }
+  void occludedRays(std::span<const RTray> rays, std::span<uint8_t> occluded) override {
+    ask([&](Backend& backend) { backend.occludedRays(rays, occluded); });
+  }
+  bool pick(double x, double y, RThit& hit) override {
+    bool seen = false;
+    ask([&](Backend& backend) { seen = backend.pick(x, y, hit); });
+    return seen;
+  }
+  void countHits(std::span<const RTray> rays, std::span<uint32_t> counts) override {
+    ask([&](Backend& backend) { surfaces(backend).countHits(rays, counts); });
+  }
+  void listHits(std::span<const RTray> rays, std::span<const size_t> first, std::span<RThit> hits) override {
+    ask([&](Backend& backend) { surfaces(backend).listHits(rays, first, hits); });
+  }
+  void closestPoints(std::span<const float> points, float radius, std::span<RTclosest> closest) override {
+    ask([&](Backend& backend) { surfaces(backend).closestPoints(points, radius, closest); });
+  }
+
+ private:
+  struct Flight { // a frame that was begun
+    Epoch epoch = 0;
+    double begun = 0, ended = 0;
+    Master::FrameState state;
+  };
+
+  // Commits go to the thread of the network, the last perhaps as that of a frame.
+  void hand(bool frame) {
+    while (!unsent_.empty()) {
+      const bool last = unsent_.size() == 1;
+      post([this, epoch = ++epoch_, commit = std::move(unsent_.front()), render = frame && last](double now) {
+        master_->commit(epoch, commit, render, now);
+      });
+      unsent_.pop_front();
+    }
+  }
+
+  // About the last committed scene. The worker here has it once the frames before are finished.
+  void ask(const std::function<void(Backend&)>& question) {
+    hand(false);
+    for (;;) {
+      if (call([this](double) { return master_->bringHere(); })) break;
+      std::unique_lock lock(mutex_);
+      changed_.wait_for(lock, std::chrono::milliseconds(20)); // a frame has ended, perhaps
+    }
+    core_->ask(question);
+  }
+
+  // [any]
+  void post(std::function<void(double)> command) const {
+    bool first = false;
+    {
+      const std::lock_guard lock(commandMutex_);
+      if (closed_) return;
+      first = commands_.empty();
+      commands_.push_back(std::move(command));
+    }
+    if (first) wire_->wake();
+  }
+
+  // The answer of a function on the thread of the network.
+  template <class F> auto call(const F& function) const -> decltype(function(0.0)) {
+    using Result = decltype(function(0.0));
+    auto promise = std::make_shared<std::promise<Result>>();
+    auto answer = promise->get_future();
+    post([promise, &function](double now) {
+      try {
+        promise->set_value(function(now));
+      } catch (...) { promise->set_exception(std::current_exception()); }
+    });
+    promise.reset(); // if the command is thrown away, the future knows
+    try {
+      return answer.get();
+    } catch (const std::future_error&) {
+      const std::lock_guard lock(mutex_);
+      throw ClusterError(broken_.empty() ? "the cluster has ended" : broken_);
+    }
+  }
+
+  // The worker here, on threads of its own.
+  void ready(Epoch epoch, const Prepared& prepared) override {
+    post([this, epoch, prepared](double now) { master_->readyHere(epoch, prepared, now); });
+  }
+  void failed(Epoch epoch, const std::string& why) override {
+    post([this, epoch, why](double now) { master_->failedHere(epoch, why, now); });
+  }
+  void done(Epoch epoch, const LeasedJob& job, JobResult&& result) override {
+    post([this, epoch, job, result = std::make_shared<JobResult>(std::move(result))](double now) {
+      master_->doneHere(epoch, job, std::move(*result), now);
+    });
+  }
+
+  void run() noexcept {
+    try {
+      while (!stop_) {
+        obey();
+        const double next = master_->advance(clockNow());
+        publish();
+        listen(std::clamp(next - clockNow(), 0.0, 0.1));
+        master_->busy(clockNow() - waited_);
+        waited_ = clockNow();
+      }
+    } catch (const std::exception& e) {
+      const std::lock_guard lock(mutex_);
+      broken_ = std::string("the cluster has broken down: ") + e.what();
+    }
+    std::vector<std::function<void(double)>> left;
+    {
+      const std::lock_guard lock(commandMutex_);
+      closed_ = true;
+      left.swap(commands_);
+    }
+    left.clear(); // whoever waits for one of them hears that it is gone
+    changed_.notify_all();
+  }
+
+  Background::Task later(std::function<void()> heavy, std::function<void(double)> then) {
+    return [this, heavy = std::move(heavy), then = std::move(then)]() mutable {
+      heavy();
+      post(std::move(then));
+    };
+  }
+
+  void obey() {
+    std::vector<std::function<void(double)>> commands;
+    {
+      const std::lock_guard lock(commandMutex_);
+      commands.swap(commands_);
+    }
+    for (auto& command : commands) command(clockNow());
+    mergers_.add(results_);
+  }
+
+  // What has come, and what comes at once behind it.
+  void listen(double seconds) {
+    constexpr int most = 256;       // messages before anything is handed out
+    constexpr size_t together = 16; // results for those who merge: waking somebody for each would take longer
+    for (int i = 0; i < most; i++) {
+      if (results_.size() >= together) mergers_.add(results_);
+      const double asked = clockNow();
+      Event event = wire_->receive(i == 0 ? seconds : 0);
+      const double now = clockNow();
+      if (i == 0) waited_ += now - asked;
+      switch (event.kind) {
+      case Event::Kind::nothing:
+      case Event::Kind::woken: return mergers_.add(results_);
+      case Event::Kind::joined: master_->joined(event.peer, event.text, now); break;
+      case Event::Kind::message: master_->message(event.peer, std::move(event.frames), now); break;
+      case Event::Kind::left: master_->left(event.peer, event.text, now); break;
+      case Event::Kind::refused:
+        if (log_) log_(2, ("cluster: " + event.text).c_str(), logUser_);
+        break;
+      }
+    }
+    mergers_.add(results_);
+  }
+
+  // What has become of the frames in flight, for those who look or wait.
+  void publish() {
+    constexpr double often = 0.1; // seconds between counts while nothing ends
+    bool ended = false;
+    std::vector<std::shared_ptr<FrameWork>> works;
+    {
+      const std::lock_guard lock(mutex_);
+      for (Flight& flight : flying_) {
+        if (flight.state.over) continue;
+        flight.state = master_->frame(flight.epoch);
+        if (!flight.state.over) continue;
+        flight.ended = clockNow();
+        ended = true;
+        if (flight.state.work) works.push_back(flight.state.work);
+      }
+      if (const double now = clockNow(); ended || now > counted_ + often) {
+        totals_ = master_->totals(), workers_ = master_->workers();
+        counted_ = now;
+      }
+    }
+    if (log_)
+      for (const auto& work : works) work->counters().faults.report(log_, logUser_);
+    if (ended) changed_.notify_all();
+  }
+
+  RTlogCallback log_;
+  void* logUser_;
+  // Of the application's thread.
+  std::deque<std::shared_ptr<const Commit>> unsent_;
+  Epoch epoch_ = 0;
+  Flight finished_;
+  double commitSeconds_ = 0;
+
+  mutable std::mutex mutex_; // of these
+  std::condition_variable changed_;
+  std::deque<Flight> flying_;
+  std::string broken_; // why no frame is made any more
+  Master::Totals totals_;
+  std::vector<RTworker> workers_;
+  double counted_ = 0; // when these two were
+
+  mutable std::mutex commandMutex_; // commands_, closed_
+  mutable std::vector<std::function<void(double)>> commands_;
+  mutable bool closed_ = false;
+
+  // Of the network's thread.
+  bool stop_ = false;
+  double waited_ = clockNow();            // since when it has been busy, without the time in which it waited
+  std::vector<Background::Task> results_; // for those who merge
+  std::unique_ptr<Wire> wire_;
+  std::unique_ptr<WorkerCore> core_;
+  std::unique_ptr<Master> master_;
+  Background background_{1}, mergers_{mergersOf(availableThreads())};
+  std::thread thread_;
+};
+
+} // namespace
+
+std::unique_ptr<Backend> makeClusterBackend(const BackendOptions& options, const ClusterOptions& cluster) {
+  try {
+    return std::make_unique<ClusterBackend>(options, cluster);
+  } catch (const std::bad_alloc&) { throw; } catch (const ClusterError&) {
+    throw;
+  } catch (const std::exception& e) { throw ClusterError(e.what()); }
+}
+
+} // namespace openrt

@@ -1,0 +1,233 @@
+// master.cpp: the master's events. Workers: master_workers.cpp; frames: master_frames.cpp.
+#include "backend/cluster/master/master.h"
+
+#include <cmath>
+
+#include "backend/cluster/master/master_state.h"
+#include "scene/channels.h"
+
+namespace openrt::cluster {
+namespace {
+
+uint64_t largestResultOf(const edit::FrameSettingsT& frame) {
+  constexpr uint64_t tile = uint64_t(largestTile) * largestTile * sizeof(PixelSums), beside = 4096;
+  const uint64_t light = uint64_t(frame.width) * frame.height * 3 * sizeof(float); // runs of zeros are shorter than these
+  return std::max(tile, light) + beside;
+}
+
+} // namespace
+
+Master::Impl::Impl(const MasterOptions& o, Send s, WorkerCore* h)
+    : options(o), send(std::move(s)), core(h), scheduler(o.schedule), scenes(o.local.shaders), nextSession(o.session) {
+  here.threads = h ? h->threads() : 0;
+  here.host = "here";
+}
+
+Master::Master(const MasterOptions& options, Send send, WorkerCore* here)
+    : impl_(std::make_unique<Impl>(options, std::move(send), here)) {}
+Master::~Master() = default;
+
+void Master::joined(Peer peer, const std::string& address, double) {
+  Remote& remote = impl_->remotes[peer];
+  remote.peer = peer;
+  remote.address = address;
+}
+
+void Master::left(Peer peer, const std::string& why, double now) {
+  const auto found = impl_->remotes.find(peer);
+  if (found == impl_->remotes.end()) return;
+  Remote& remote = found->second;
+  if (remote.welcome) impl_->log(2, "worker " + remote.name() + " has left: " + why);
+  impl_->depart(remote, now);
+  impl_->remotes.erase(found);
+}
+
+void Master::message(Peer peer, Frames&& frames, double now) {
+  const auto found = impl_->remotes.find(peer);
+  if (found == impl_->remotes.end()) return; // it has left: whatever this was, somebody else does it
+  Remote& remote = found->second;
+  remote.bytesReceived += bytesOf(frames);
+  Message message;
+  if (const std::string wrong = decodePacked(std::move(frames), message, impl_->largestResult); !wrong.empty())
+    return impl_->refuse(peer, "a message that cannot be read: " + wrong, now); // nobody knows what it should have been
+  if (auto* hello = std::get_if<message::Hello>(&message.body)) return impl_->hello(remote, std::move(*hello), now);
+  if (!remote.welcome || message.session != remote.session) return; // of a session that has ended
+  struct {
+    Impl& m;
+    Remote& remote;
+    double now;
+    void operator()(message::Need& need) const { m.need(remote, need, now); }
+    void operator()(message::Ready& ready) const {
+      if (ready.epoch > remote.furthest || ready.transport == RT_TRANSPORT_AUTO || ready.transport > RT_TRANSPORT_LIGHT)
+        return m.strike(remote, "a scene that it cannot have prepared", now);
+      remote.offered.erase(remote.offered.begin(), remote.offered.upper_bound(ready.epoch)); // it has all of that
+      m.ready(remote.id, remote.name(), ready.epoch, ready.facts, ready.transport, ready.stats, now);
+    }
+    void operator()(message::Failed& failed) const {
+      m.logOnce(2, "worker " + remote.name() + ": " + failed.why);
+      m.lastRefusal = remote.name() + ": " + failed.why;
+      remote.sent = 0; // whatever it has of the scene
+      remote.offered.erase(remote.offered.begin(), remote.offered.upper_bound(failed.epoch));
+      remote.out.erase(failed.epoch);
+      m.scheduler.unable(remote.id, failed.epoch, now);
+    }
+    void operator()(message::Result& result) const { m.result(remote, std::move(result), now); }
+    void operator()(message::Log& log) const {
+      if (remote.logged++ < limits::logLines) m.log(log.level, "worker " + remote.name() + ": " + log.text);
+    }
+    void operator()(message::Beat&) const {}
+    void operator()(message::Bye&) const {}
+    void operator()(message::Unknown&) const {}
+    void operator()(message::Hello&) const {}
+    void operator()(message::Welcome&) const { ours(); }
+    void operator()(message::Scene&) const { ours(); }
+    void operator()(message::Piece&) const { ours(); }
+    void operator()(message::Prepare&) const { ours(); }
+    void operator()(message::Jobs&) const { ours(); }
+    void operator()(message::Drop&) const { ours(); }
+    void ours() const { m.strike(remote, "a message that only masters send", now); }
+  } const handler{*impl_, remote, now};
+  std::visit(handler, message.body);
+}
+
+void Master::readyHere(Epoch epoch, const Prepared& prepared, double now) {
+  impl_->ready(hereId, "here", epoch, prepared.facts, prepared.frame.transport, prepared.stats, now);
+}
+
+// What cannot be made here could not be made without the others either.
+void Master::failedHere(Epoch epoch, const std::string& why, double now) {
+  Impl& m = *impl_;
+  m.fail(epoch, why, false);
+  m.here.sent = 0; // it begins anew with the next frame, which may be better
+  if (!m.hereJoined) return;
+  m.scheduler.leave(hereId, now);
+  m.hereJoined = false;
+  m.joinHere(now);
+}
+
+void Master::doneHere(Epoch epoch, const LeasedJob& job, JobResult&& result, double now) {
+  Impl& m = *impl_;
+  if (auto out = m.here.out.find(epoch); out != m.here.out.end() && out->second > 0) out->second--;
+  m.here.rays += result.counters.camera + result.counters.shadow + result.counters.secondary;
+  FrameEntry* entry = m.unfinished(epoch);
+  if (!entry || !entry->state.work || !m.scheduler.find(hereId, epoch, job.lease)) {
+    m.scheduler.done(hereId, epoch, job.lease, result.seconds, now);
+    return;
+  }
+  const auto arrival = std::make_shared<Arrival>();
+  arrival->epoch = epoch, arrival->job = job;
+  arrival->result = std::move(result);
+  m.arrive(*entry, arrival, now);
+}
+
+void Master::commit(Epoch epoch, std::shared_ptr<const Commit> commit, bool frame, double now) {
+  Impl& m = *impl_;
+  m.firstCommit = std::min(m.firstCommit, now);
+  for (const auto& entry : commit->edits.edits)
+    if (entry && entry->any.AsReloadShaders()) m.leaveWorkersOut(now);
+  m.scenes.add(epoch, std::move(commit));
+  if (frame) {
+    FrameEntry& entry = m.frames[epoch];
+    entry.settings = m.scenes.frame();
+    m.largestResult = std::max(m.largestResult, largestResultOf(entry.settings));
+    m.joinHere(now);
+    m.scheduler.announce(epoch, now);
+  }
+  m.settle();
+}
+
+void Master::cancel(Epoch epoch, double) {
+  Impl& m = *impl_;
+  for (auto& [number, entry] : m.frames) {
+    if (number > epoch || entry.state.over) continue;
+    if (!entry.state.work) { // a picture in which nothing is finished
+      entry.state.prepared.frame = entry.settings;
+      if (entry.settings.transport == RT_TRANSPORT_AUTO) entry.state.prepared.frame.transport = RT_TRANSPORT_DIRECT;
+      entry.state.work = std::make_shared<FrameWork>(entry.state.prepared.frame, FrameFacts{true, false}, 1);
+    }
+    entry.state.work->cancel();
+    m.end(number);
+  }
+  m.settle();
+}
+
+double Master::advance(double now) {
+  Impl& m = *impl_;
+  m.joinHere(now);
+  double next = std::numeric_limits<double>::infinity();
+  bool ended = false;
+  for (auto& [epoch, entry] : m.frames) // those with a time limit end by themselves
+    if (!entry.state.over && entry.complete()) m.end(epoch), ended = true;
+  if (ended) m.settle();
+  if (m.enough(now)) {
+    m.handOut(now);
+    next = m.scheduler.wake(now);
+  } else if (m.oldest() != 0) {
+    next = m.fewSince + m.options.patience;
+  }
+  for (Peer peer : std::set<Peer>(m.waiting)) {
+    Remote& remote = m.remotes.at(peer);
+    m.flush(remote);
+    if (remote.outbox.overfull()) m.refuse(peer, "it does not read what it is sent", now);
+  }
+  if (!m.waiting.empty()) next = std::min(next, now + 0.001); // a queue has room again
+  if (!m.hereJoined && m.core && std::isfinite(m.firstCommit)) next = std::min(next, m.firstCommit + m.options.grace);
+  return std::max(next, now);
+}
+
+void Master::busy(double seconds) {
+  constexpr double memory = 5000; // jobs
+  Impl& m = *impl_;
+  if (m.jobsSince == 0) return; // scenes and the like
+  const double keep = std::exp(-m.jobsSince / memory);
+  m.busySeconds = m.busySeconds * keep + seconds, m.busyJobs = m.busyJobs * keep + m.jobsSince;
+  m.jobsSince = 0;
+  m.scheduler.pace(m.busySeconds / m.busyJobs);
+}
+
+bool Master::bringHere() {
+  Impl& m = *impl_;
+  const Epoch last = m.scenes.last();
+  if (!m.core || last == 0) return false;
+  if (const Epoch first = m.oldest(); first != 0 && first < last) return false;
+  for (const SceneLog::Step& step : m.scenes.steps(m.here.sent, last))
+    m.core->scene(step.epoch, step.parcel->commit, step.whole, false);
+  m.here.sent = last;
+  return true;
+}
+
+Master::FrameState Master::frame(Epoch epoch) const {
+  const auto found = impl_->frames.find(epoch);
+  return found == impl_->frames.end() ? FrameState() : found->second.state;
+}
+
+void Master::forget(Epoch epoch) {
+  if (const auto found = impl_->frames.find(epoch); found != impl_->frames.end() && found->second.state.over)
+    impl_->frames.erase(found);
+}
+
+Master::Totals Master::totals() const {
+  Totals t;
+  t.workers = impl_->alive();
+  t.jobsRemote = impl_->jobsRemote, t.jobsHere = impl_->jobsHere;
+  t.reissued = impl_->scheduler.reissued(), t.duplicates = impl_->scheduler.duplicates();
+  t.bytesSent = impl_->goneSent, t.bytesReceived = impl_->goneReceived;
+  t.threads = impl_->options.localThreads;
+  for (const auto& [peer, remote] : impl_->remotes) {
+    t.bytesSent += remote.bytesSent, t.bytesReceived += remote.bytesReceived;
+    if (remote.welcome) t.threads += remote.threads;
+  }
+  return t;
+}
+
+std::vector<RTworker> Master::workers() const {
+  std::vector<RTworker> result;
+  if (impl_->core) result.push_back(impl_->describe(impl_->here, true));
+  result.insert(result.end(), impl_->gone.begin(), impl_->gone.end());
+  std::map<WorkerId, const Remote*> present;
+  for (const auto& [id, peer] : impl_->peers) present[id] = &impl_->remotes.at(peer);
+  for (const auto& [id, remote] : present) result.push_back(impl_->describe(*remote, true));
+  return result;
+}
+
+} // namespace openrt::cluster

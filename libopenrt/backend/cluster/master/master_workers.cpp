@@ -1,0 +1,165 @@
+// master_workers.cpp: how workers come, what they lack, and how they go.
+#include <algorithm>
+#include <cstdio>
+
+#include "backend/cluster/net/greeting.h"
+#include "backend/cluster/master/master_state.h"
+
+namespace openrt::cluster {
+namespace {
+constexpr uint32_t mostStrikes = 3;    // messages that are nonsense
+constexpr uint32_t mostThreads = 4096; // of a worker
+constexpr size_t mostGone = 256;       // workers that have left and are remembered
+constexpr size_t mostSaid = 1000;
+constexpr const char* reloadedWhy = "the master has loaded shader libraries anew, and renders alone from there on";
+} // namespace
+
+void Master::Impl::log(int level, const std::string& text) const {
+  if (options.local.log) options.local.log(level, ("cluster: " + text).c_str(), options.local.logUser);
+}
+
+void Master::Impl::logOnce(int level, const std::string& text) {
+  if (said.size() < mostSaid && said.insert(text).second) log(level, text);
+}
+
+Remote* Master::Impl::remoteOf(WorkerId id) {
+  if (id == hereId) return &here;
+  const auto found = peers.find(id);
+  return found == peers.end() ? nullptr : &remotes.at(found->second);
+}
+
+// A reserve waits a little: workers that are called need some time to answer.
+void Master::Impl::joinHere(double now) {
+  if (hereJoined || !core) return;
+  const bool reserve = options.localThreads == 0;
+  if (reserve && !everJoined && now < firstCommit + options.grace) return;
+  if (reserve && !everJoined && options.require == 0) log(2, "no worker has answered yet: this process goes on alone");
+  scheduler.join(hereId, core->threads(), true, now, reserve);
+  hereJoined = true;
+}
+
+// Shader libraries that are loaded anew keep the numbers of their parameters from one version to the next; a worker that has not
+// seen all versions would take them for others, and one that has does not load its own anew.
+void Master::Impl::leaveWorkersOut(double now) {
+  reloaded = true;
+  for (const auto& [id, peer] : std::unordered_map<WorkerId, Peer>(peers)) refuse(peer, reloadedWhy, now);
+}
+
+void Master::Impl::hello(Remote& remote, message::Hello&& hello, double now) {
+  if (remote.welcome) { // it has begun anew, which it should do with another connection
+    const Peer peer = remote.peer;
+    strike(remote, "Hello again", now);
+    if (!remotes.contains(peer)) return;
+    depart(remote, now);
+  }
+  remote.host = hello.host;
+  if (hello.threads < 1 || hello.threads > mostThreads)
+    return refuse(remote.peer, "a worker with " + std::to_string(hello.threads) + " threads", now);
+  if (reloaded) return refuse(remote.peer, reloadedWhy, now);
+  if (const std::string differing = difference(hello, options.self, options.tolerant); !differing.empty())
+    return refuse(remote.peer, differing, now);
+  remote.welcome = true;
+  remote.threads = hello.threads;
+  remote.id = nextWorker++;
+  remote.session = nextSession++;
+  remote.sent = remote.furthest = 0;
+  peers[remote.id] = remote.peer;
+  everJoined = true;
+  saidAlone = false;
+  log(1, "worker " + remote.name() + " has joined: " + std::to_string(remote.threads) +
+             (remote.threads == 1 ? " thread, " : " threads, ") + hello.isa);
+  say(remote, message::Welcome{.session = remote.session});
+  scheduler.join(remote.id, remote.threads, false, now);
+}
+
+void Master::Impl::depart(Remote& remote, double now) {
+  waiting.erase(remote.peer);
+  goneSent += remote.bytesSent, goneReceived += remote.bytesReceived;
+  if (remote.welcome) {
+    RTworker last = describe(remote, false);
+    last.lost += scheduler.tally(remote.id).out;
+    gone.push_back(last);
+    if (gone.size() > mostGone) gone.erase(gone.begin());
+    peers.erase(remote.id);
+    scheduler.leave(remote.id, now);
+  }
+  remote.welcome = false;
+  remote.outbox.clear();
+  remote.offered.clear(), remote.out.clear(), remote.arriving.clear();
+  remote.bytesSent = remote.bytesReceived = remote.rays = 0;
+}
+
+void Master::Impl::strike(Remote& remote, const std::string& what, double now) {
+  logOnce(2, "worker " + remote.name() + " has sent nonsense: " + what);
+  if (++remote.strikes >= mostStrikes) refuse(remote.peer, "it sends nonsense: " + what, now);
+}
+
+void Master::Impl::refuse(Peer peer, const std::string& why, double now) {
+  const auto found = remotes.find(peer);
+  if (found == remotes.end()) return;
+  lastRefusal = found->second.name() + ": " + why;
+  logOnce(2, "worker " + found->second.name() + " is refused: " + why);
+  depart(found->second, now);
+  remotes.erase(found);
+  if (options.close) options.close(peer, why);
+}
+
+void Master::Impl::say(Remote& remote, message::Body&& body) {
+  remote.outbox.add(encode(remote.session, std::move(body)));
+  waiting.insert(remote.peer);
+}
+
+bool Master::Impl::deliver(Remote& remote, Frames&& frames) {
+  const size_t bytes = bytesOf(frames);
+  if (!send(remote.peer, std::move(frames))) return false;
+  remote.bytesSent += bytes;
+  return true;
+}
+
+void Master::Impl::flush(Remote& remote) {
+  const bool idle = remote.outbox.flush(remote.session, [&](Frames&& frames) { return deliver(remote, std::move(frames)); });
+  if (idle) waiting.erase(remote.peer); // what is being packed comes back by itself
+}
+
+void Master::Impl::need(Remote& remote, const message::Need& need, double now) {
+  const auto offered = remote.offered.find(need.epoch);
+  if (offered == remote.offered.end()) return strike(remote, "it needs arrays of a scene that it was not sent", now);
+  std::map<Hash, OfferPtr> offers;
+  for (OfferPtr& offer : offered->second) offers.emplace(offer->hash, std::move(offer));
+  remote.offered.erase(offered);
+  for (const Hash& hash : need.arrays) {
+    const auto found = offers.find(hash);
+    if (found == offers.end()) return strike(remote, "it needs an array that it was not offered", now);
+    const OfferPtr offer = std::move(found->second);
+    offers.erase(found); // once
+    remote.outbox.add(offer);
+    waiting.insert(remote.peer);
+    if (offer->ready || offer->asked) continue;
+    offer->asked = true;
+    const auto then = [this, offer](double) {
+      offer->ready = true;
+      for (auto& [peer, other] : remotes) // whoever waits for it
+        if (!other.outbox.empty()) waiting.insert(peer);
+    };
+    if (options.background) {
+      options.background([offer] { offer->pack(); }, then);
+    } else {
+      offer->pack();
+      then(now);
+    }
+  }
+}
+
+RTworker Master::Impl::describe(const Remote& remote, bool isAlive) const {
+  RTworker w{};
+  w.size = sizeof(w);
+  std::snprintf(w.name, sizeof w.name, "%s", remote.name().c_str());
+  const WorkerTally& tally = scheduler.tally(remote.id);
+  w.threads = remote.threads, w.alive = isAlive;
+  w.jobs = tally.jobs, w.late = tally.late, w.lost = tally.lost;
+  w.bytesSent = remote.bytesSent, w.bytesReceived = remote.bytesReceived, w.rays = remote.rays;
+  w.busySeconds = tally.busy, w.latency = tally.latency;
+  return w;
+}
+
+} // namespace openrt::cluster

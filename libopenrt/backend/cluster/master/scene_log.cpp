@@ -1,0 +1,49 @@
+// scene_log.cpp: see scene_log.h.
+#include "backend/cluster/master/scene_log.h"
+
+#include "scene/whole_scene.h"
+
+namespace openrt::cluster {
+
+void SceneLog::add(Epoch epoch, std::shared_ptr<const Commit> commit) {
+  for (const auto& entry : commit->edits.edits)
+    if (const auto* settings = entry ? entry->any.AsFrameSettings() : nullptr) frame_ = *settings;
+  log_.push_back({epoch, packer_.pack(std::move(commit))});
+  bytes_ += log_.back().parcel->bytes;
+}
+
+void SceneLog::dropFirst() {
+  bytes_ -= log_.front().parcel->bytes;
+  gone_ = log_.front().epoch;
+  log_.pop_front();
+}
+
+void SceneLog::settle(Epoch epoch) {
+  for (const Entry& entry : log_) {
+    if (entry.epoch <= base_ || entry.epoch > epoch) continue;
+    scene_.apply(*entry.parcel->commit);
+    base_ = entry.epoch;
+    whole_.reset();
+  }
+  while (!log_.empty() && log_.front().epoch <= base_ && (log_.size() > mostCommits || bytes_ > mostBytes)) dropFirst();
+}
+
+void SceneLog::trim(Epoch epoch) {
+  while (!log_.empty() && log_.front().epoch <= std::min(base_, epoch)) dropFirst();
+}
+
+std::vector<SceneLog::Step> SceneLog::steps(Epoch has, Epoch wanted) {
+  std::vector<Step> result;
+  const bool fresh = has == 0;
+  if (has < gone_ || (fresh && base_ > 0)) {
+    const bool onlyOne = gone_ == 0 && !log_.empty() && log_.front().epoch == base_; // which is the whole scene itself
+    if (!whole_) whole_ = onlyOne ? log_.front().parcel : packer_.pack(wholeScene(scene_));
+    result.push_back({base_, whole_, true});
+    has = base_;
+  }
+  for (const Entry& entry : log_)
+    if (entry.epoch > has && entry.epoch <= wanted) result.push_back({entry.epoch, entry.parcel, fresh && result.empty()});
+  return result;
+}
+
+} // namespace openrt::cluster

@@ -1,0 +1,64 @@
+// greeting.cpp: see greeting.h.
+#include "backend/cluster/net/greeting.h"
+
+#include <unistd.h>
+
+#if defined(__GLIBC__)
+#include <gnu/libc-version.h>
+#endif
+
+#include "openrt/openrt.h"
+#include "openrt/openrts.h"
+
+namespace openrt::cluster {
+namespace {
+
+std::string version() {
+  return std::to_string(OPENRT_VERSION_MAJOR) + "." + std::to_string(OPENRT_VERSION_MINOR) + "." +
+         std::to_string(OPENRT_VERSION_PATCH);
+}
+
+// Sines and logarithms are the C library's, and differ in last bits from one to the next.
+std::string platform() {
+#if defined(__GLIBC__)
+  return std::string("glibc ") + gnu_get_libc_version();
+#else
+  return "another C library";
+#endif
+}
+
+} // namespace
+
+message::Hello identity(const RTstats& local) {
+  message::Hello self;
+  self.library = version();
+  self.api = OPENRT_VERSION_MAJOR << 16 | OPENRT_VERSION_MINOR;
+  self.shaderAbi = RTS_ABI_MAJOR << 16 | RTS_ABI_MINOR;
+  self.isa = local.isa, self.kernel = local.kernel, self.platform = platform();
+  char host[256] = "";
+  if (gethostname(host, sizeof host - 1) == 0) self.host = host;
+  self.process = uint32_t(getpid());
+  return self;
+}
+
+std::string difference(const message::Hello& worker, const message::Hello& master, bool tolerant) {
+  std::string differing;
+  const auto compare = [&](const char* what, const std::string& theirs, const std::string& ours) {
+    if (theirs != ours)
+      differing += (differing.empty() ? "" : "; ") + std::string(what) + ": the worker has " + theirs + ", the master " + ours;
+  };
+  compare("protocol", std::to_string(worker.protocol), std::to_string(master.protocol));
+  compare("interface of shaders", std::to_string(worker.shaderAbi >> 16) + "." + std::to_string(worker.shaderAbi & 0xffff),
+          std::to_string(master.shaderAbi >> 16) + "." + std::to_string(master.shaderAbi & 0xffff));
+  if (!differing.empty() || tolerant) return differing;
+  compare("version", worker.library, master.library);
+  compare("interface", std::to_string(worker.api >> 16) + "." + std::to_string(worker.api & 0xffff),
+          std::to_string(master.api >> 16) + "." + std::to_string(master.api & 0xffff));
+  compare("instruction set", worker.isa, master.isa);
+  compare("ray kernel", worker.kernel, master.kernel);
+  compare("system", worker.platform, master.platform);
+  if (!differing.empty()) differing += " (tolerant=1 takes it, and last bits may differ)";
+  return differing;
+}
+
+} // namespace openrt::cluster

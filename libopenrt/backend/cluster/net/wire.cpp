@@ -1,0 +1,183 @@
+// wire.cpp: the loop of the Wire: waits, lets the calls (wire_calls.cpp) and the peers (wire_peers.cpp) do their part, and hands
+// out what has happened. The owner's thread; wake() from any.
+#include "backend/cluster/net/wire.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <stdexcept>
+#include <system_error>
+
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include "backend/cluster/net/wire_impl.h"
+
+namespace openrt::cluster {
+namespace {
+
+constexpr int byeMilliseconds = 500; // that a last word may take
+
+std::string remedy(const std::string& what) {
+  return what +
+         " is not this machine's loopback, so keys are needed: make one with \"openrt-worker --new-key FILE\", copy it to all "
+         "machines, and give --key FILE (key=FILE) on both sides";
+}
+
+void checkAddress(const Address& address, const KeyRing& keys) {
+  if (keys.empty() && !address.loopback()) throw std::runtime_error(remedy(address.shown()));
+  if (keys.empty() && !address.key.empty())
+    throw std::runtime_error(address.shown() + ": a public key of the other side is of no use without a key of one's own");
+}
+
+} // namespace
+
+Wire::Impl::Impl(const WireOptions& options)
+    : keys(options.keys), heartbeat(options.heartbeat), silence(options.silence), context(makeContext()) {
+  for (const std::string& text : options.connect) {
+    Address address = Address::parse(text);
+    checkAddress(address, keys);
+    if (address.port == 0 && !address.ipc) throw std::runtime_error(address.shown() + ": a port to call cannot be 0");
+    calls.emplace_back().address = std::move(address);
+  }
+  if (!keys.empty() && !options.listen.empty()) gate.emplace(context, keys);
+  if (!options.listen.empty()) {
+    checkAddress(Address::parse(options.listen), keys);
+    listen(options.listen);
+  }
+  wakeFd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+  if (wakeFd < 0) throw std::system_error(errno, std::generic_category(), "eventfd");
+}
+
+Wire::Impl::~Impl() {
+  const double now = steadyNow();
+  for (auto& [id, peer] : peers)
+    if (!peer.gone) sayBye(peer, "the other side has ended", now);
+  doorMonitor.reset();
+  if (door) door->set(zmq::sockopt::linger, byeMilliseconds);
+  for (Call& call : calls) {
+    call.monitor.reset();
+    if (call.socket && call.peer) call.socket->set(zmq::sockopt::linger, byeMilliseconds);
+  }
+  if (wakeFd >= 0) ::close(wakeFd);
+}
+
+void Wire::Impl::push(Event::Kind kind, Peer peer, std::string text) {
+  Event& event = events.emplace_back();
+  event.kind = kind, event.peer = peer, event.text = std::move(text);
+}
+
+// Said once in a while only, and not by crowds: who knocks is not ours to choose.
+void Wire::Impl::refused(const std::string& text) {
+  constexpr double again = 10;
+  constexpr size_t crowd = 100;
+  const double now = steadyNow();
+  std::erase_if(refusals, [&](const auto& entry) { return now - entry.second > again; });
+  if (refusals.size() < crowd && refusals.emplace(text, now).second) push(Event::Kind::refused, 0, text);
+}
+
+// What time brings: calls, beats, silence.
+void Wire::Impl::keep(double now) {
+  if (now - kept < heartbeat / 4) return;
+  if (now - kept > silence / 2) // we were away ourselves; what came meanwhile has not been read
+    for (auto& [id, peer] : peers) peer.heard = std::max(peer.heard, now - silence / 2);
+  kept = now;
+  keepCalls(now);
+  keepPeers(now);
+}
+
+void Wire::Impl::poll(double seconds) {
+  std::vector<zmq_pollitem_t> items{{nullptr, wakeFd, ZMQ_POLLIN, 0}};
+  const auto add = [&](void* socket) {
+    items.push_back({socket, 0, ZMQ_POLLIN, 0});
+    return items.size() - 1;
+  };
+  const size_t atGate = gate ? add(gate->socket().handle()) : 0;
+  const size_t atDoor = door ? add(door->handle()) : 0;
+  const size_t atDoorMonitor = door ? add(doorMonitor->socket().handle()) : 0;
+  std::vector<std::pair<Call*, size_t>> atCalls;
+  for (Call& call : calls) {
+    if (!call.socket) continue;
+    atCalls.emplace_back(&call, add(call.socket->handle()));
+    add(call.monitor->socket().handle());
+  }
+  if (zmq_poll(items.data(), int(items.size()), long(std::ceil(std::max(0.0, seconds) * 1000))) <= 0) return; // also a signal
+  const double now = steadyNow();
+  if (items[0].revents) {
+    uint64_t count = 0;
+    if (read(wakeFd, &count, sizeof count) == sizeof count) push(Event::Kind::woken, 0, {});
+  }
+  if (gate && items[atGate].revents)
+    while (gate->answer([this](const std::string& text) { refused(text); })) {}
+  if (door && (items[atDoor].revents || items[atDoorMonitor].revents)) readCallers(now);
+  for (const auto& [call, at] : atCalls)
+    if (items[at].revents || items[at + 1].revents) readCall(*call, now);
+}
+
+Event Wire::Impl::receive(double seconds) {
+  const double until = steadyNow() + std::max(0.0, seconds);
+  for (bool polled = false;; polled = true) {
+    const double now = steadyNow();
+    keep(now);
+    if (!events.empty()) {
+      Event event = std::move(events.front());
+      events.pop_front();
+      return event;
+    }
+    if (polled && now >= until) return {};
+    poll(closing.empty() ? std::min(until, kept + heartbeat / 4) - now : 0);
+    if (!closing.empty()) readCallers(steadyNow());
+  }
+}
+
+Wire::Wire(const WireOptions& options) {
+  try {
+    impl_ = std::make_unique<Impl>(options);
+  } catch (const zmq::error_t& e) { throw std::runtime_error(std::string("ZeroMQ: ") + e.what()); }
+}
+
+Wire::~Wire() = default;
+
+Event Wire::receive(double seconds) { return impl_->receive(seconds); }
+
+bool Wire::send(Peer peer, Frames&& frames) {
+  Impl::PeerState* state = impl_->find(peer);
+  return state && !state->gone && !frames.empty() && impl_->sendTo(*state, std::move(frames), steadyNow());
+}
+
+void Wire::close(Peer peer, const std::string& why) {
+  constexpr double again = 5;
+  Impl::PeerState* state = impl_->find(peer);
+  if (!state || state->gone) return;
+  impl_->sayBye(*state, why, steadyNow());
+  if (state->call) {
+    Impl::Call& call = *state->call;
+    impl_->forget(peer);
+    impl_->hangUp(call, again, true);
+  } else {
+    state->gone = true;
+  }
+}
+
+void Wire::bad(Peer peer, const std::string& why) {
+  if (Impl::PeerState* state = impl_->find(peer); state && !state->gone) impl_->countBad(*state, why, steadyNow());
+}
+
+void Wire::pace(double heartbeat, double silence) { impl_->heartbeat = heartbeat, impl_->silence = silence; }
+
+std::string Wire::address() const {
+  if (!impl_->door) return {};
+  return shownEndpoint(impl_->door->get(zmq::sockopt::last_endpoint));
+}
+
+void Wire::wake() {
+  const uint64_t one = 1;
+  static_cast<void>(write(impl_->wakeFd, &one, sizeof one) == sizeof one); // full: it wakes up anyway
+}
+
+Wire::Traffic Wire::traffic(Peer peer) const {
+  if (const Impl::PeerState* state = impl_->find(peer)) return state->traffic;
+  const auto found = impl_->former.find(peer);
+  return found == impl_->former.end() ? Traffic() : found->second;
+}
+
+} // namespace openrt::cluster

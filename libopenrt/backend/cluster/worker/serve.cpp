@@ -1,0 +1,226 @@
+// serve.cpp: see serve.h. Tasks for the session wait in one queue, what it has to say in another.
+#include "backend/cluster/worker/serve.h"
+
+#include <atomic>
+#include <condition_variable>
+#include <deque>
+#include <mutex>
+#include <set>
+#include <thread>
+
+#include "backend/cluster/net/greeting.h"
+#include "backend/cluster/net/sockets.h"
+#include "backend/cluster/worker/worker.h"
+#include "backend/cluster/worker/worker_core.h"
+
+namespace openrt::cluster {
+namespace {
+
+constexpr size_t mostWaiting = size_t(512) << 20; // bytes that the session has not read; then the wire waits
+constexpr size_t overhead = 512;                  // about, of a message that waits
+constexpr double idle = 0.05, hurry = 0.001;      // seconds to wait for messages; while something could not be sent
+
+} // namespace
+
+struct WorkerService::Impl final : WorkerSink, Machine {
+  struct Saying { // frames to a peer, or something else to do with the wire
+    Peer peer = 0;
+    Frames frames;
+    std::function<void(Wire&)> act;
+  };
+
+  explicit Impl(const ServeOptions& o) : options(o), wire(o.wire) {
+    options.backend.log = [](int level, const char* text, void* user) { static_cast<Impl*>(user)->backendSays(level, text); };
+    options.backend.logUser = this;
+    core = std::make_unique<WorkerCore>(options.backend, *this);
+    RTstats stats{};
+    stats.size = sizeof stats;
+    core->ask([&](Backend& backend) { backend.stats(stats); });
+    WorkerOptions w;
+    w.self = identity(stats);
+    w.self.threads = core->threads();
+    w.shaders = options.backend.shaders, w.cacheBytes = options.cacheBytes, w.log = options.log;
+    worker = std::make_unique<Worker>(w, link(), *this);
+  }
+  ~Impl() override { core.reset(); } // nothing is told any more
+
+  WorkerLink link() {
+    const auto does = [this](Peer peer, std::function<void(Wire&)> act) { say({peer, {}, std::move(act)}); };
+    return {[this](Peer peer, Frames&& frames) {
+              say({peer, std::move(frames), {}});
+            },
+            [this, does](Peer peer, const std::string& why) {
+              does(peer, [=, this](Wire& w) { w.close(peer, why), alive.erase(peer); });
+            },
+            [does](Peer peer, const std::string& why) { does(peer, [=](Wire& w) { w.bad(peer, why); }); },
+            [this, does](double heartbeat, double silence) {
+              const double h = heartbeat > 0 ? heartbeat : options.wire.heartbeat,
+                           s = silence > 0 ? silence : options.wire.silence;
+              does(0, [h, s](Wire& w) { w.pace(h, s); });
+            }};
+  }
+
+  // To the session. [any]
+  void post(std::function<void(Worker&)> task, size_t bytes = 0) {
+    {
+      const std::lock_guard lock(mutex);
+      tasks.emplace_back(std::move(task), bytes);
+      waiting += bytes;
+    }
+    changed.notify_one();
+  }
+  // To the wire. [session]
+  void say(Saying&& saying) {
+    {
+      const std::lock_guard lock(mutex);
+      sayings.push_back(std::move(saying));
+    }
+    wire.wake();
+  }
+  void backendSays(int level, const std::string& text) {
+    if (options.log) options.log(level, text);
+    post([=](Worker& w) { w.log(level, text); });
+  }
+
+  // WorkerSink: on the core's threads.
+  void ready(Epoch epoch, const Prepared& prepared) override {
+    post([=](Worker& w) { w.ready(epoch, prepared); });
+  }
+  void failed(Epoch epoch, const std::string& why) override {
+    post([=](Worker& w) { w.failed(epoch, why); });
+  }
+  void done(Epoch epoch, const LeasedJob& job, JobResult&& result) override {
+    const auto kept = std::make_shared<JobResult>(std::move(result));
+    post([=](Worker& w) { w.done(epoch, job, std::move(*kept)); });
+  }
+
+  // Machine: for the session.
+  void scene(Epoch epoch, std::shared_ptr<const Commit> commit, bool whole, bool prepare) override {
+    core->scene(epoch, std::move(commit), whole, prepare);
+  }
+  void prepare(Epoch epoch) override { core->prepare(epoch); }
+  void work(Epoch epoch, std::span<const LeasedJob> jobs) override { core->work(epoch, jobs); }
+  void drop(Epoch epoch) override { core->drop(epoch); }
+
+  void sessionLoop() {
+    for (;;) {
+      std::function<void(Worker&)> task;
+      {
+        std::unique_lock lock(mutex);
+        changed.wait(lock, [this] { return stopping || !tasks.empty(); });
+        if (stopping) return;
+        task = std::move(tasks.front().first);
+        waiting -= tasks.front().second;
+        tasks.pop_front();
+      }
+      try {
+        task(*worker);
+      } catch (const std::exception& e) {
+        if (options.log) options.log(3, e.what());
+      }
+      serving = worker->serving();
+      if (options.once && worker->masters() > 0 && !worker->serving()) stop();
+    }
+  }
+
+  // What the session has said, in its order, as far as the queues take it.
+  bool flush() {
+    for (;;) {
+      Saying saying;
+      {
+        const std::lock_guard lock(mutex);
+        if (sayings.empty()) return true;
+        saying = std::move(sayings.front());
+        sayings.pop_front();
+      }
+      if (saying.act) {
+        saying.act(wire);
+      } else if (!wire.send(saying.peer, std::move(saying.frames)) && alive.contains(saying.peer)) {
+        const std::lock_guard lock(mutex);
+        sayings.push_front(std::move(saying));
+        return false;
+      }
+    }
+  }
+
+  void take(Event&& event) {
+    const double now = steadyNow();
+    const Peer peer = event.peer;
+    switch (event.kind) {
+    case Event::Kind::joined:
+      alive.insert(peer);
+      return post([=, address = std::move(event.text)](Worker& w) { w.joined(peer, address, now); });
+    case Event::Kind::left: {
+      const std::lock_guard lock(mutex);
+      std::erase_if(sayings, [&](const Saying& s) { return s.peer == peer; });
+      break;
+    }
+    case Event::Kind::message: {
+      const size_t bytes = bytesOf(event.frames) + overhead;
+      const auto kept = std::make_shared<Frames>(std::move(event.frames));
+      return post([=](Worker& w) { w.message(peer, std::move(*kept), now); }, bytes);
+    }
+    case Event::Kind::refused:
+      if (options.log) options.log(2, event.text);
+      return;
+    default: return;
+    }
+    alive.erase(peer);
+    post([=, why = std::move(event.text)](Worker& w) { w.left(peer, why, now); });
+  }
+
+  void run() {
+    std::thread session([this] { sessionLoop(); });
+    double advanced = 0;
+    while (!stopping) {
+      const bool all = flush();
+      if (bytesWaiting() > mostWaiting) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        continue;
+      }
+      take(wire.receive(all ? idle : hurry));
+      if (const double now = steadyNow(); now - advanced > 1) {
+        advanced = now;
+        post([=](Worker& w) { w.advance(now); });
+      }
+    }
+    {
+      const std::lock_guard lock(mutex); // so that nobody misses it
+    }
+    changed.notify_all();
+    session.join();
+    flush(); // the last words
+  }
+
+  size_t bytesWaiting() {
+    const std::lock_guard lock(mutex);
+    return waiting;
+  }
+
+  void stop() {
+    stopping = true;
+    wire.wake();
+  }
+
+  ServeOptions options;
+  std::mutex mutex;
+  std::condition_variable changed;
+  std::deque<std::pair<std::function<void(Worker&)>, size_t>> tasks;
+  size_t waiting = 0;
+  std::deque<Saying> sayings;
+  std::atomic<bool> stopping{false}, serving{false};
+  std::set<Peer> alive; // as the wire has it
+  Wire wire;
+  std::unique_ptr<Worker> worker;
+  std::unique_ptr<WorkerCore> core;
+};
+
+WorkerService::WorkerService(const ServeOptions& options) : impl_(std::make_unique<Impl>(options)) {}
+WorkerService::~WorkerService() = default;
+
+std::string WorkerService::address() const { return impl_->wire.address(); }
+void WorkerService::run() { impl_->run(); }
+void WorkerService::stop() { impl_->stop(); }
+bool WorkerService::serving() const { return impl_->serving; }
+
+} // namespace openrt::cluster

@@ -1,0 +1,189 @@
+// worker.cpp: a worker's session: masters come and go, jobs, results. Scenes: worker_scenes.cpp.
+#include "backend/cluster/worker/worker.h"
+
+#include <algorithm>
+
+#include "backend/record/validator.h"
+#include "render/film/light_image.h"
+#include "render/frame/result_codec.h"
+
+namespace openrt::cluster {
+namespace {
+
+constexpr double patience = 5;       // seconds that a master may take to answer
+constexpr size_t mostJobs = 1 << 16; // that are out
+constexpr size_t mostFrames = 256;   // that are prepared and not dropped
+
+} // namespace
+
+Worker::Worker(const WorkerOptions& options, WorkerLink link, Machine& machine)
+    : options_(options), link_(std::move(link)), machine_(machine), cache_(options.cacheBytes), libraries_(options.shaders) {}
+
+Worker::~Worker() = default;
+
+void Worker::tell(int level, const std::string& text) const {
+  if (options_.log) options_.log(level, text);
+}
+
+void Worker::say(message::Body&& body) { link_.send(peer_, encode(session_, std::move(body))); }
+
+void Worker::joined(Peer peer, const std::string& address, double now) {
+  if (peer_ != 0) return link_.close(peer, "busy: this worker serves another master");
+  peer_ = peer, address_ = address, asked_ = now;
+  link_.send(peer, encode(0, message::Hello(options_.self)));
+}
+
+void Worker::left(Peer peer, const std::string& why, double) {
+  if (peer != peer_) return;
+  const std::string text = "master " + address_ + (serving() ? " has left: " : " has not taken us: ") + why;
+  tell(serving() ? 1 : text == told_ ? 0 : 2, text); // one that asks again and again is heard of once
+  told_ = text;
+  endSession();
+}
+
+// What is out is given up; arrays stay.
+void Worker::endSession() {
+  if (serving()) machine_.drop(newest_), link_.pace(0, 0);
+  peer_ = 0, session_ = 0, base_ = newest_, logged_ = 0;
+  coming_.clear(), streams_.clear(), frames_.clear(), leases_.clear(), unanswered_.clear();
+  begun_ = unansweredBytes_ = 0;
+  broken_ = "no scene has come yet";
+  validator_.reset();
+  cache_.trim();
+}
+
+void Worker::advance(double now) {
+  if (peer_ == 0 || serving() || now - asked_ < patience) return;
+  link_.close(peer_, "no Welcome has come");
+  endSession();
+}
+
+void Worker::giveUp(const std::string& why) {
+  tell(3, "master " + address_ + ": " + why);
+  link_.close(peer_, why);
+  endSession();
+}
+
+void Worker::bad(const std::string& why) {
+  tell(2, "master " + address_ + " has sent nonsense: " + why);
+  link_.bad(peer_, why);
+}
+
+void Worker::message(Peer peer, Frames&& frames, double) {
+  if (peer != peer_) return;
+  Message m;
+  if (const std::string why = decode(std::move(frames), m); !why.empty()) { // nobody knows what it should have been
+    const std::string text = "a message that cannot be read: " + why;
+    tell(2, "master " + address_ + " has sent " + text);
+    link_.close(peer_, text);
+    return endSession();
+  }
+  if (const auto* hail = std::get_if<message::Welcome>(&m.body)) {
+    if (serving()) return bad("a second Welcome");
+    if (hail->session == 0 || m.session != hail->session) return bad("a Welcome without a session");
+    return welcome(*hail);
+  }
+  if (!serving() || m.session != session_) return; // of a session that has ended
+  struct {
+    Worker& w;
+    void operator()(message::Scene& m) const { w.scene(std::move(m)); }
+    void operator()(message::Piece& m) const { w.piece(m); }
+    void operator()(message::Prepare& m) const { w.prepare(m); }
+    void operator()(message::Jobs& m) const { w.jobs(m); }
+    void operator()(message::Drop& m) const { w.drop(m); }
+    void operator()(message::Welcome&) const {}
+    void operator()(message::Beat&) const {}
+    void operator()(message::Bye&) const {}
+    void operator()(message::Unknown&) const {}
+    void operator()(message::Hello&) const { ours(); }
+    void operator()(message::Need&) const { ours(); }
+    void operator()(message::Ready&) const { ours(); }
+    void operator()(message::Failed&) const { ours(); }
+    void operator()(message::Result&) const { ours(); }
+    void operator()(message::Log&) const { ours(); }
+    void ours() const { w.bad("a message that only workers send"); }
+  } const handler{*this};
+  std::visit(handler, m.body);
+}
+
+void Worker::welcome(const message::Welcome& m) {
+  if (m.protocol != protocolVersion)
+    return giveUp("protocol " + std::to_string(m.protocol) + " of the master, " + std::to_string(protocolVersion) +
+                  " of the worker: they must be the same");
+  session_ = m.session;
+  masters_++;
+  broken_ = "no scene has come yet";
+  link_.pace(m.heartbeat, m.silence);
+  tell(1, "serving " + address_);
+}
+
+void Worker::jobs(const message::Jobs& m) {
+  if (m.epoch == 0 || m.epoch > newest_ - base_) return bad("jobs of a scene that has not come");
+  const Epoch epoch = base_ + m.epoch;
+  const auto frame = frames_.find(epoch);
+  if (frame == frames_.end()) return; // dropped
+  const edit::FrameSettingsT& f = frame->second;
+  const uint64_t pixels = uint64_t(f.width) * f.height;
+  constexpr uint64_t mostSamples = uint64_t(1) << 17; // of a pixel
+  for (const LeasedJob& job : m.jobs) {
+    const bool samples = job.job.kind == Job::Kind::samples;
+    if (samples ? job.job.number >= pixels || uint64_t(job.job.first) + job.job.count > mostSamples
+                : job.job.number >= LightImage::parts)
+      return bad("a job that the frame does not have");
+  }
+  size_t out = m.jobs.size();
+  for (const auto& [of, leases] : leases_) out += leases.size();
+  if (out > mostJobs) return bad("more jobs than a worker takes");
+  for (const LeasedJob& job : m.jobs)
+    if (!leases_[epoch].insert(job.lease).second) return bad("a lease that is out already");
+  machine_.work(epoch, m.jobs);
+}
+
+void Worker::drop(const message::Drop& m) {
+  const Epoch epoch = base_ + std::min(m.epoch, newest_ - base_);
+  machine_.drop(epoch);
+  frames_.erase(frames_.begin(), frames_.upper_bound(epoch));
+  leases_.erase(leases_.begin(), leases_.upper_bound(epoch));
+}
+
+void Worker::answered(Epoch epoch) {
+  for (; !unanswered_.empty() && unanswered_.front().first <= epoch; unanswered_.pop_front())
+    unansweredBytes_ -= unanswered_.front().second;
+}
+
+void Worker::ready(Epoch epoch, const Prepared& prepared) {
+  if (epoch <= base_ || !serving()) return; // of a former master
+  answered(epoch);
+  frames_[epoch] = prepared.frame;
+  if (frames_.size() > mostFrames) frames_.erase(frames_.begin());
+  message::Ready m;
+  m.epoch = epoch - base_, m.facts = prepared.facts, m.transport = prepared.frame.transport, m.stats = prepared.stats;
+  say(std::move(m));
+}
+
+void Worker::failed(Epoch epoch, const std::string& why) {
+  if (epoch <= base_ || !serving()) return;
+  answered(epoch);
+  leases_.erase(epoch);
+  say(message::Failed{epoch - base_, why});
+}
+
+void Worker::done(Epoch epoch, const LeasedJob& job, JobResult&& result) {
+  if (epoch <= base_ || !serving()) return;
+  if (const auto out = leases_.find(epoch); out != leases_.end()) out->second.erase(job.lease);
+  const auto frame = frames_.find(epoch);
+  if (frame == frames_.end()) return; // dropped meanwhile
+  message::Result m;
+  m.epoch = epoch - base_, m.lease = job.lease, m.seconds = result.seconds;
+  m.camera = result.counters.camera, m.shadow = result.counters.shadow, m.secondary = result.counters.secondary;
+  m.faults = faultsOf(result.counters.faults);
+  m.bytes = encodeResult(frame->second, job.job, result);
+  say(std::move(m));
+}
+
+void Worker::log(int level, const std::string& text) {
+  if (serving() && logged_ < limits::logLines) say(message::Log{level, text});
+  logged_++;
+}
+
+} // namespace openrt::cluster

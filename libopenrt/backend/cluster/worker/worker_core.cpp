@@ -1,0 +1,251 @@
+// worker_core.cpp: see worker_core.h. What is asked stands in one queue. Threads take jobs from its front as long as there are
+// any; what changes the scene, and questions, are done by the control thread alone once they have come to the front and no job
+// runs any more.
+#include "backend/cluster/worker/worker_core.h"
+
+#include <algorithm>
+#include <atomic>
+#include <condition_variable>
+#include <deque>
+#include <exception>
+#include <mutex>
+#include <stdexcept>
+#include <thread>
+
+#include "backend/local/local.h"
+#include "render/frame/job_runner.h"
+
+namespace openrt::cluster {
+namespace {
+
+struct Command {
+  enum class Kind : uint8_t { job, scene, prepare, question } kind = Kind::job;
+  Epoch epoch = 0;
+  LeasedJob job;
+  std::shared_ptr<const Commit> commit;
+  bool whole = false, prepare = false;
+  const std::function<void(Backend&)>* question = nullptr;
+  bool* answered = nullptr;
+  std::exception_ptr* failure = nullptr;
+};
+
+} // namespace
+
+struct WorkerCore::Impl {
+  Impl(const BackendOptions& o, WorkerSink& s) : options(o), sink(s), count(o.threads ? o.threads : availableThreads()) {
+    options.threads = count;
+    backend = std::make_unique<LocalBackend>(options);
+    running = std::make_unique<Running[]>(count);
+    for (uint32_t i = 0; i < count; i++) threads.emplace_back([this, i] { work(i); });
+    threads.emplace_back([this] { control(); });
+  }
+  ~Impl();
+
+  void push(Command&& command);
+  void work(uint32_t thread);
+  void control();
+  void obey(const Command& command); // without the lock, alone
+  void applyCommit(const Command& command);
+  void makeReady(Epoch epoch);
+  void tellFailed(Epoch epoch, const std::string& why);
+  bool jobInFront() const { return !alone && !queue.empty() && queue.front().kind == Command::Kind::job; }
+  bool controlInFront() const { return busy == 0 && !queue.empty() && queue.front().kind != Command::Kind::job; }
+
+  BackendOptions options;
+  WorkerSink& sink;
+  const uint32_t count;
+  std::mutex sinkMutex; // one call at a time
+
+  struct Running { // a thread's job
+    Epoch epoch = 0;
+    std::atomic<bool> stop{false};
+    std::unique_ptr<JobRunner> runner; // of the scene that is prepared; null: none yet
+  };
+  std::unique_ptr<Running[]> running; // by thread; runners: the thread's, the control thread's when it is alone
+
+  // The control thread's; read by others only while it is not alone.
+  std::unique_ptr<LocalBackend> backend;
+  bool intact = true;                       // all commits since a whole scene have been applied
+  std::shared_ptr<const RenderScene> scene; // prepared; null: not
+  Epoch applied = 0;                        // the last commit
+  Epoch broken = 0;                         // of the last failure that was told
+
+  std::mutex mutex; // all below, and Running::epoch
+  std::condition_variable jobsCame, controlCame, answers;
+  std::deque<Command> queue;
+  uint32_t busy = 0; // threads with a job
+  bool alone = false, closing = false;
+
+  std::vector<std::thread> threads;
+};
+
+WorkerCore::Impl::~Impl() {
+  {
+    std::lock_guard lock(mutex);
+    closing = true;
+    for (uint32_t i = 0; i < count; i++) running[i].stop = true;
+  }
+  jobsCame.notify_all(), controlCame.notify_all();
+  for (std::thread& thread : threads) thread.join();
+}
+
+void WorkerCore::Impl::push(Command&& command) {
+  {
+    std::lock_guard lock(mutex);
+    queue.push_back(std::move(command));
+  }
+  jobsCame.notify_one(), controlCame.notify_one();
+}
+
+void WorkerCore::Impl::tellFailed(Epoch epoch, const std::string& why) {
+  std::lock_guard lock(sinkMutex);
+  if (broken == epoch && epoch != 0) return;
+  broken = epoch;
+  sink.failed(epoch, why);
+}
+
+void WorkerCore::Impl::work(uint32_t thread) {
+  Running& mine = running[thread];
+  JobResult result;
+  std::unique_lock lock(mutex);
+  for (;;) {
+    jobsCame.wait(lock, [this] { return closing || jobInFront(); });
+    if (closing) return;
+    const Command command = std::move(queue.front());
+    queue.pop_front();
+    busy++;
+    mine.epoch = command.epoch, mine.stop = false;
+    const bool here = scene && command.epoch == applied;
+    lock.unlock();
+    try {
+      if (here) {
+        if (!mine.runner) mine.runner = std::make_unique<JobRunner>(scene);
+        if (mine.runner->run(command.job.job, mine.stop, result)) {
+          std::lock_guard sinkLock(sinkMutex);
+          sink.done(command.epoch, command.job, std::move(result));
+        }
+      } else {
+        tellFailed(command.epoch, "a job of a scene that is not prepared");
+      }
+    } catch (const std::exception& e) {
+      mine.runner = nullptr; // what it holds is of no use now
+      tellFailed(command.epoch, std::string("rendering failed: ") + e.what());
+    }
+    lock.lock();
+    busy--;
+    mine.epoch = 0;
+    if (controlInFront()) controlCame.notify_one();
+  }
+}
+
+void WorkerCore::Impl::control() {
+  std::unique_lock lock(mutex);
+  for (;;) {
+    controlCame.wait(lock, [this] { return closing || controlInFront(); });
+    if (closing) return;
+    const Command command = std::move(queue.front());
+    queue.pop_front();
+    alone = true;
+    lock.unlock();
+    obey(command);
+    lock.lock();
+    alone = false;
+    if (command.answered) *command.answered = true, answers.notify_all();
+    jobsCame.notify_all();
+  }
+}
+
+void WorkerCore::Impl::obey(const Command& command) {
+  try {
+    switch (command.kind) {
+    case Command::Kind::job: return;
+    case Command::Kind::scene: return applyCommit(command);
+    case Command::Kind::prepare:
+      if (command.epoch == applied && intact && !scene) makeReady(command.epoch);
+      return;
+    case Command::Kind::question:
+      if (!backend) throw std::runtime_error("there is no scene");
+      return (*command.question)(*backend);
+    }
+  } catch (const std::exception& e) {
+    if (command.failure)
+      *command.failure = std::current_exception();
+    else
+      tellFailed(command.epoch, e.what());
+  }
+}
+
+void WorkerCore::Impl::applyCommit(const Command& command) {
+  for (uint32_t i = 0; i < count; i++) running[i].runner = nullptr;
+  scene = nullptr;
+  applied = command.epoch;
+  if (!command.whole && !intact) throw std::runtime_error("an earlier change of the scene could not be made");
+  intact = false;
+  if (command.whole) {
+    backend = nullptr; // its memory first
+    backend = std::make_unique<LocalBackend>(options);
+  }
+  backend->apply(command.commit);
+  intact = true;
+  if (command.prepare) makeReady(command.epoch);
+}
+
+void WorkerCore::Impl::makeReady(Epoch epoch) {
+  scene = backend->prepared();
+  Prepared prepared{.facts = factsOf(*scene), .frame = scene->frame};
+  prepared.stats.size = sizeof prepared.stats;
+  backend->stats(prepared.stats);
+  std::lock_guard lock(sinkMutex);
+  sink.ready(epoch, prepared);
+}
+
+WorkerCore::WorkerCore(const BackendOptions& options, WorkerSink& sink) : impl_(std::make_unique<Impl>(options, sink)) {}
+WorkerCore::~WorkerCore() = default;
+
+uint32_t WorkerCore::threads() const { return impl_->count; }
+
+void WorkerCore::scene(Epoch epoch, std::shared_ptr<const Commit> commit, bool whole, bool prepare) {
+  Command command;
+  command.kind = Command::Kind::scene;
+  command.epoch = epoch, command.commit = std::move(commit), command.whole = whole, command.prepare = prepare;
+  impl_->push(std::move(command));
+}
+
+void WorkerCore::prepare(Epoch epoch) {
+  Command command;
+  command.kind = Command::Kind::prepare, command.epoch = epoch;
+  impl_->push(std::move(command));
+}
+
+void WorkerCore::work(Epoch epoch, std::span<const LeasedJob> jobs) {
+  {
+    std::lock_guard lock(impl_->mutex);
+    for (const LeasedJob& job : jobs) {
+      Command& command = impl_->queue.emplace_back();
+      command.epoch = epoch, command.job = job;
+    }
+  }
+  impl_->jobsCame.notify_all();
+}
+
+void WorkerCore::drop(Epoch epoch) {
+  std::lock_guard lock(impl_->mutex);
+  std::erase_if(impl_->queue, [&](const Command& c) { return c.kind == Command::Kind::job && c.epoch <= epoch; });
+  for (uint32_t i = 0; i < impl_->count; i++)
+    if (impl_->running[i].epoch != 0 && impl_->running[i].epoch <= epoch) impl_->running[i].stop = true;
+  impl_->jobsCame.notify_all(), impl_->controlCame.notify_one();
+}
+
+void WorkerCore::ask(const std::function<void(Backend&)>& question) {
+  bool answered = false;
+  std::exception_ptr failure;
+  Command command;
+  command.kind = Command::Kind::question, command.question = &question;
+  command.answered = &answered, command.failure = &failure;
+  impl_->push(std::move(command));
+  std::unique_lock lock(impl_->mutex);
+  impl_->answers.wait(lock, [&] { return answered; });
+  if (failure) std::rethrow_exception(failure);
+}
+
+} // namespace openrt::cluster

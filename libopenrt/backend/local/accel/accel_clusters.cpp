@@ -1,0 +1,230 @@
+// accel_clusters.cpp: the top level: which slots (Embree geometry ids) a cluster has, and what stands in them. Slots follow from
+// the scene alone, never from the order of edits. A cluster that was never seen costs no acceleration structure.
+#include <algorithm>
+
+#include "backend/local/accel/accel_build.h"
+
+namespace openrt {
+namespace {
+
+// In this order: what is baked, heavy items, ellipsoids, lines, points. The static scene has the first three elsewhere.
+struct Slots {
+  uint32_t heavy, ellipsoids, lines, points, end; // where they begin
+  Slots(const PartInfo& part, bool root) {
+    heavy = !root && part.baked ? 1 : 0;
+    ellipsoids = heavy + (root ? 0 : uint32_t(part.heavyItems.size()));
+    lines = ellipsoids + (root ? 0 : uint32_t(part.ellipsoids.size()));
+    points = lines + part.lines;
+    end = points + part.points;
+  }
+};
+
+} // namespace
+
+void AccelBuilder::begin(Accel& accel, const BuildInput& input) {
+  accel_ = &accel;
+  in_ = &input;
+  worldToRender_ = {};
+  worldToRender_.translate(input.origin * -1.0);
+  changed_ = false;
+  number_++;
+}
+
+bool AccelBuilder::standsAt(const Accel& accel, const Vec3d& origin, double scale) {
+  return accel.origin_.x == origin.x && accel.origin_.y == origin.y && accel.origin_.z == origin.z &&
+         accel.scale_ == float(scale);
+}
+
+std::shared_ptr<Accel> AccelBuilder::build(const BuildInput& input) {
+  const auto accel = std::make_shared<Accel>();
+  begin(*accel, input);
+  accel->device_ = device_;
+  accel->origin_ = input.origin, accel->scale_ = float(input.scale);
+  buckets_.clear();
+  layOut();
+  accel->static_ = staticBody();
+  accel->staticLevel_ = {accel->static_.get(), accel->static_->parts.empty() ? 0u : maskOpaque | maskTransparent,
+                         accel->static_->instances};
+  for (uint32_t c = 0; c < input.flat.clusters.size(); c++) place(c);
+  if (accel->buckets.empty()) accel->buckets.push_back({input.shaders[0].shaderClass, 0});
+  if (!changed_) topLevelBuilds++; // of the static scene alone
+  finish();
+  sweep();
+  return accel;
+}
+
+void AccelBuilder::update(Accel& accel, const BuildInput& input, const std::vector<uint32_t>& clusters,
+                          const std::vector<uint32_t>& objects, bool thin) {
+  begin(accel, input);
+  std::vector<uint32_t> all = clusters;
+  for (uint32_t object : objects) {
+    const std::vector<uint32_t>& its = survey.parts()[survey.partOf(object)].clusters;
+    all.insert(all.end(), its.begin(), its.end());
+  }
+  std::sort(all.begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  for (uint32_t c : all) place(c);
+  if (thin)
+    for (const PartInfo& part : survey.parts())
+      if (part.lines || part.points)
+        for (uint32_t c : part.clusters)
+          if (input.flat.clusters[c].visible) placeThin(c);
+  finish();
+}
+
+void AccelBuilder::layOut() {
+  const auto& clusters = in_->flat.clusters;
+  uint64_t records = 0, slots = 0;
+  accel_->placed_.resize(clusters.size());
+  for (uint32_t c = 0; c < clusters.size(); c++) {
+    const PartInfo& part = survey.parts()[clusters[c].part];
+    accel_->placed_[c].firstRecord = uint32_t(records), accel_->placed_[c].firstSlot = uint32_t(slots);
+    records += part.entries();
+    slots += Slots(part, clusters[c].part == 0).end;
+  }
+  if (records > 0xfffffff0u || slots > 0xfffffff0u) throw std::bad_alloc();
+  accel_->records.resize(records);
+  accel_->top_.parts.resize(slots);
+  if (slots) accel_->top_.scene = newScene(*device_);
+}
+
+// A cluster where it now stands, or out of sight.
+void AccelBuilder::place(uint32_t c) {
+  if (!in_->flat.clusters[c].visible) {
+    hide(c);
+    return;
+  }
+  writeRecords(c);
+  accel_->placed_[c].shown = true;
+  if (in_->flat.clusters[c].part != 0) placeInstances(c);
+  placeThin(c);
+}
+
+void AccelBuilder::hide(uint32_t c) {
+  Accel::Placed& placed = accel_->placed_[c];
+  if (!placed.shown) return;
+  const PartInfo& part = survey.parts()[in_->flat.clusters[c].part];
+  const Slots slots(part, in_->flat.clusters[c].part == 0);
+  for (uint32_t s = 0; s < slots.lines; s++)
+    if (accel_->top_.parts[placed.firstSlot + s]) setEnabled(accel_->top_, placed.firstSlot + s, false);
+  for (uint32_t s = slots.lines; s < slots.end; s++) detach(accel_->top_, placed.firstSlot + s);
+  placed.shown = placed.instances = placed.transparent = false;
+  placed.rejected = 0;
+  changed_ = true;
+}
+
+void AccelBuilder::placeInstances(uint32_t c) {
+  const Cluster& cluster = in_->flat.clusters[c];
+  const ScenePart& part = in_->flat.parts[cluster.part];
+  const PartInfo& info = survey.parts()[cluster.part];
+  Accel::Placed& placed = accel_->placed_[c];
+  const Slots slots(info, false);
+  const Matrix4d partToRender = worldToRender_ * cluster.world;
+  const uint32_t override = overrideMask(cluster.path.shader);
+  uint32_t slot = placed.firstSlot;
+  bool any = false;
+  if (info.baked) {
+    const auto body = partBody(cluster.part, override);
+    any |= placeInstance(slot++, body, placed.firstRecord, partToRender * body->fromKernel);
+  }
+  for (uint32_t i : info.heavyItems) {
+    const Item& item = part.items[i];
+    const auto body = objectBody(item.object, override ? override : overrideMask(item.path.shader));
+    any |= placeInstance(slot++, body, placed.firstRecord + info.firstEntry[i], partToRender * item.matrix * body->fromKernel);
+  }
+  for (const auto& [i, k] : info.ellipsoids) {
+    const Item& item = part.items[i];
+    const Geometry& g = in_->scene.objects.at(item.object).geometries[k];
+    any |=
+        placeInstance(slot++, consistent(g) ? spheres_.get(maskOf(item, g, override)) : nullptr,
+                      placed.firstRecord + info.firstEntry[i] + k, partToRender * item.matrix * g.matrix * uniformScale(g.width));
+  }
+  placed.instances = any;
+}
+
+// Whether it can be seen.
+bool AccelBuilder::placeInstance(uint32_t slot, std::shared_ptr<const Body> body, uint32_t record, const Matrix4d& toRender) {
+  PartScene& top = accel_->top_;
+  const Matrix4d toRoot = uniformScale(in_->scale) * toRender;
+  changed_ = true;
+  if (!body || body->parts.empty() || !toRoot.usable()) {
+    if (top.parts[slot]) setEnabled(top, slot, false);
+    return false;
+  }
+  if (top.parts[slot] && top.parts[slot]->object == body) {
+    setTransform(top, slot, toRoot);
+    setEnabled(top, slot, true);
+    return true;
+  }
+  auto part = std::make_unique<Part>();
+  part->record = record;
+  part->object = std::move(body);
+  attachInstance(top, *device_, std::move(part), toRoot, slot);
+  return true;
+}
+
+void AccelBuilder::placeThin(uint32_t c) {
+  const Cluster& cluster = in_->flat.clusters[c];
+  const PartInfo& info = survey.parts()[cluster.part];
+  if (!info.lines && !info.points) return;
+  const ScenePart& part = in_->flat.parts[cluster.part];
+  const Accel::Placed& placed = accel_->placed_[c];
+  const Slots slots(info, cluster.part == 0);
+  const Matrix4d toKernel = uniformScale(in_->scale) * worldToRender_ * cluster.world;
+  auto lines = std::make_unique<Part>(), points = std::make_unique<Part>();
+  for (uint32_t i = 0; i < part.items.size(); i++) {
+    const auto& geometries = in_->scene.objects.at(part.items[i].object).geometries;
+    for (uint32_t k = 0; k < geometries.size(); k++)
+      if (info.drawn[info.firstEntry[i] + k] == DrawnAs::thin)
+        addThin(geometries[k].primitive == edit::Primitive::Lines ? *lines : *points, geometries[k],
+                toKernel * part.items[i].matrix * geometries[k].matrix, placed.firstRecord + info.firstEntry[i] + k,
+                in_->footprint, accel_->scale_);
+  }
+  const auto put = [&](std::unique_ptr<Part> made, uint32_t slot, RTCGeometryType type) {
+    if (made->vertices.empty())
+      detach(accel_->top_, slot);
+    else
+      attachRound(accel_->top_, *device_, std::move(made), maskThin, type, slot);
+  };
+  if (info.lines) put(std::move(lines), placed.firstSlot + slots.lines, RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE);
+  if (info.points) put(std::move(points), placed.firstSlot + slots.points, RTC_GEOMETRY_TYPE_SPHERE_POINT);
+  changed_ = true;
+}
+
+// Builds the top level if something of it changed, and says what there is now to meet.
+void AccelBuilder::finish() {
+  Accel& a = *accel_;
+  a.hasTransparent = false;
+  uint32_t masks = 0;
+  bool instances = false;
+  for (uint32_t c = 0; c < a.placed_.size(); c++) {
+    const Accel::Placed& placed = a.placed_[c];
+    if (!placed.shown) continue;
+    const PartInfo& part = survey.parts()[in_->flat.clusters[c].part];
+    a.hasTransparent |= placed.transparent;
+    if (placed.instances) instances = true, masks |= maskOpaque | maskTransparent;
+    if (part.lines || part.points) masks |= maskThin;
+  }
+  a.topLevel_ = {&a.top_, masks, instances};
+  if (changed_ && a.top_.scene) {
+    rtcCommitScene(a.top_.scene);
+    topLevelBuilds++;
+  }
+  changed_ = false;
+  in_ = nullptr, accel_ = nullptr;
+}
+
+AccelBuilder::Counts AccelBuilder::count(const Accel& accel, const Flattened& flat) const {
+  Counts counts;
+  counts.uniqueTriangles = survey.uniqueTriangles();
+  for (uint32_t c = 0; c < accel.placed_.size(); c++) {
+    if (!accel.placed_[c].shown) continue;
+    counts.triangles += survey.parts()[flat.clusters[c].part].triangles;
+    counts.rejectedInstances += accel.placed_[c].rejected;
+  }
+  counts.degenerate = static_.body ? static_.body->degenerate : 0;
+  for (const auto& [key, entry] : bodies_) counts.degenerate += entry.body ? entry.body->degenerate : 0;
+  return counts;
+}
+
+} // namespace openrt

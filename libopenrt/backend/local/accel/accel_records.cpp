@@ -1,0 +1,126 @@
+// accel_records.cpp: records of clusters: what shading needs to know of each geometry where it stands.
+#include <algorithm>
+#include <cmath>
+
+#include "backend/local/accel/accel_build.h"
+#include "render/huge_spheres.h"
+#include "shading/parameters.h"
+
+namespace openrt {
+namespace {
+
+// Inverse transpose up to a positive factor, its largest element 1: directions only.
+void normalMatrixOf(const Matrix4d& m, float out[3][3]) {
+  const Vec3d a = m.column(0), b = m.column(1), c = m.column(2);
+  const Vec3d r[3] = {cross(b, c), cross(c, a), cross(a, b)}; // columns of the cofactor matrix
+  double largest = 0;
+  for (const Vec3d& v : r) largest = std::max({largest, std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
+  const double s = (m.determinant() < 0 ? -1 : 1) / (largest > 0 ? largest : 1);
+  for (int j = 0; j < 3; j++) out[0][j] = float(r[j].x * s), out[1][j] = float(r[j].y * s), out[2][j] = float(r[j].z * s);
+}
+
+void setInstance(Record& r, const Matrix4d& kernelToRender) {
+  r.instanced = true;
+  r.toRender = Affine::from(kernelToRender);
+  normalMatrixOf(kernelToRender, r.kernelNormal);
+}
+
+bool flipped(const Geometry& g, const Matrix4d& asTheKernelSeesIt) {
+  return g.primitive == edit::Primitive::Triangles && g.clockwise != (asTheKernelSeesIt.determinant() < 0);
+}
+
+} // namespace
+
+uint32_t AccelBuilder::bucketOf(uint32_t slot, uint32_t lightSet) {
+  const auto key = std::make_pair(in_->shaders[slot].shaderClass, lightSet);
+  const auto [found, fresh] = buckets_.try_emplace(key, uint32_t(accel_->buckets.size()));
+  if (fresh) accel_->buckets.push_back({key.first, lightSet});
+  return found->second;
+}
+
+// Whether the values that a geometry has for parameters hold where it is drawn: with a shader of the class that they are of.
+bool AccelBuilder::carriesParameters(const Geometry& g, uint32_t slot) const {
+  const uint32_t own = in_->shaders.slotOf(g.shader);
+  if (g.parameters.empty() || own == 0 || in_->shaders[own].shaderClass != in_->shaders[slot].shaderClass) return false;
+  const RtsClass& table = *in_->shaders[own].shaderClass;
+  return std::all_of(g.parameters.begin(), g.parameters.end(), [&](const GeometryParameter& p) {
+    const size_t count = p.perVertex ? (g.points ? g.points->count<float>() / 3 : 0) : g.primitives();
+    const size_t floats = p.index < table.paramCount ? parameterFloats(table.params[p.index].type) : 0;
+    return floats > 0 && p.values && p.values->count<float>() >= count * floats;
+  });
+}
+
+// toRender: the geometry's local frame to render space.
+Record AccelBuilder::recordOf(const Inherited& path, const Geometry& g, const Matrix4d& toRender) {
+  Record r;
+  r.primitive = g.primitive;
+  r.primitives = uint32_t(g.primitives());
+  r.shader = in_->shaders.slotOf(path.shader ? path.shader : g.shader);
+  // A body that light passes through has an inside, whatever its maker thought of its backs.
+  r.cull = g.cull && !in_->shaders[r.shader].shaderClass->medium;
+  r.bucket = bucketOf(r.shader, path.lightSet);
+  r.name = g.name ? g.name : path.name, r.instance = path.instance, r.userData = path.userData;
+  r.indices = g.indices ? g.indices->as<uint32_t>() : nullptr;
+  r.normals = g.normals ? g.normals->as<float>() : nullptr;
+  r.texCoords = g.texCoords ? g.texCoords->as<float>() : nullptr;
+  r.colors = g.colors ? g.colors->as<float>() : nullptr;
+  if (carriesParameters(g, r.shader)) r.parameters = g.parameters.data(), r.parameterCount = uint32_t(g.parameters.size());
+  r.scale = 1 / accel_->scale_;
+  normalMatrixOf(toRender, r.normalMatrix);
+  return r;
+}
+
+void AccelBuilder::writeRecords(uint32_t c) {
+  const Cluster& cluster = in_->flat.clusters[c];
+  const ScenePart& part = in_->flat.parts[cluster.part];
+  const PartInfo& info = survey.parts()[cluster.part];
+  Accel::Placed& placed = accel_->placed_[c];
+  const bool root = cluster.part == 0;
+  const Matrix4d partToRender = worldToRender_ * cluster.world;
+  const std::shared_ptr<const Body> body = root ? accel_->static_ : partBody(cluster.part, overrideMask(cluster.path.shader));
+  placed.transparent = false;
+  placed.rejected = 0;
+  for (uint32_t i = 0; i < part.items.size(); i++) {
+    const Item& item = part.items[i];
+    const auto& geometries = in_->scene.objects.at(item.object).geometries;
+    const Inherited path = in_->flat.inherit(cluster.path, item.path);
+    const Matrix4d itemToRender = partToRender * item.matrix;
+    placed.rejected += !itemToRender.usable();
+    std::shared_ptr<const Body> heavy;
+    if (info.drawn[info.firstEntry[i]] == DrawnAs::heavy) heavy = objectBody(item.object, overrideMask(path.shader));
+    for (uint32_t k = 0; k < geometries.size(); k++) {
+      const Geometry& g = geometries[k];
+      const uint32_t entry = info.firstEntry[i] + k;
+      const Matrix4d toRender = itemToRender * g.matrix;
+      const bool sphere = g.primitive == edit::Primitive::Sphere;
+      const Matrix4d unit = sphere ? toRender * uniformScale(g.width) : toRender;
+      Record r = recordOf(path, g, toRender);
+      r.toObject = Affine::from(inverse(itemToRender));
+      switch (info.drawn[entry]) {
+      case DrawnAs::baked:
+        if (!root)
+          setInstance(r, partToRender * body->fromKernel);
+        else if (sphere && !similarity(uniformScale(in_->scale) * toRender) && !isHugeSphere(uniformScale(in_->scale) * unit))
+          setInstance(r, unit); // it is an instance even so
+        r.flip = flipped(g, root ? toRender : item.matrix * g.matrix);
+        r.vertices = body->vertices[entry];
+        break;
+      case DrawnAs::heavy:
+        setInstance(r, itemToRender * heavy->fromKernel);
+        r.flip = flipped(g, g.matrix);
+        r.vertices = heavy->vertices[k];
+        break;
+      case DrawnAs::ellipsoid: setInstance(r, unit); break;
+      case DrawnAs::thin: break;
+      }
+      if (sphere) {
+        r.toRender = Affine::from(unit);
+        r.fromRender = Affine::from(inverse(unit));
+      }
+      placed.transparent |= (in_->shaders[r.shader].traits & RTS_TRANSPARENT) != 0;
+      accel_->records[placed.firstRecord + entry] = r;
+    }
+  }
+}
+
+} // namespace openrt

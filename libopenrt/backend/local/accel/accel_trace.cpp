@@ -1,0 +1,233 @@
+// accel_trace.cpp: rays in, hits out. Every ray is checked before Embree sees it: a build with assertions would end the
+// process on one that is not finite.
+#include <cmath>
+#include <limits>
+
+#include "backend/local/accel/accel.h"
+#include "backend/local/exact.h"
+
+namespace openrt {
+namespace {
+
+struct Packet16 {
+  static constexpr uint32_t width = 16;
+  using RayHit = RTCRayHit16;
+  using Ray = RTCRay16;
+  static void intersect(RTCScene s, const int* v, RayHit& r, Query& q) { intersect16(s, v, r, q); }
+  static void occluded(RTCScene s, const int* v, Ray& r, bool c) { occluded16(s, v, r, c); }
+};
+struct Packet8 {
+  static constexpr uint32_t width = 8;
+  using RayHit = RTCRayHit8;
+  using Ray = RTCRay8;
+  static void intersect(RTCScene s, const int* v, RayHit& r, Query& q) { intersect8(s, v, r, q); }
+  static void occluded(RTCScene s, const int* v, Ray& r, bool c) { occluded8(s, v, r, c); }
+};
+
+// A triangle that the ray grazes is met again in double precision.
+void settleGrazing(const Record& r, const Rays& rays, float far, RayHits& hits, uint32_t lane) {
+  if (r.primitive != edit::Primitive::Triangles) return;
+  float n[3] = {hits.ng[0][lane], hits.ng[1][lane], hits.ng[2][lane]};
+  const float d[3] = {rays.dir[0][lane], rays.dir[1][lane], rays.dir[2][lane]};
+  if (r.instanced) {
+    const float k[3] = {n[0], n[1], n[2]};
+    normalToRender(r, k, n);
+  }
+  if (!grazes(n, d)) return;
+  settle(r, hits.primitive[lane], {rays.org[0][lane], rays.org[1][lane], rays.org[2][lane]}, {d[0], d[1], d[2]}, rays.tnear[lane],
+         far, hits.t[lane], hits.u[lane], hits.v[lane]);
+}
+
+// Fills a packet from lane `first` on; returns how many of its rays were refused. Refused and absent rays are made harmless.
+// ends: where the rays end, from that lane on.
+template <uint32_t W, class Ray>
+uint32_t load(const Rays& rays, const float* ends, uint32_t first, float scale, uint32_t mask, int* valid, Ray& to) {
+  const float limit = 1e18f / scale;
+  uint32_t refused = 0;
+  for (uint32_t i = 0; i < W; i++) {
+    const uint32_t lane = first + i;
+    const float ox = rays.org[0][lane], oy = rays.org[1][lane], oz = rays.org[2][lane];
+    const float dx = rays.dir[0][lane], dy = rays.dir[1][lane], dz = rays.dir[2][lane];
+    const float near = rays.tnear[lane], far = ends[i];
+    const float ax = std::fabs(ox), ay = std::fabs(oy), az = std::fabs(oz), d = std::fabs(dx) + std::fabs(dy) + std::fabs(dz);
+    // Comparisons are false for NaN: whatever is not a number is refused.
+    const bool good = (ax <= limit) & (ay <= limit) & (az <= limit) & (d > 0) & (d <= 1e18f) & (near >= 0) & (near <= far) &
+                      (near < std::numeric_limits<float>::infinity());
+    const bool present = lane < rays.count;
+    refused += present & !good;
+    valid[i] = (present & good) ? -1 : 0;
+    to.org_x[i] = good ? ox * scale : 0, to.org_y[i] = good ? oy * scale : 0, to.org_z[i] = good ? oz * scale : 0;
+    to.dir_x[i] = good ? dx : 0, to.dir_y[i] = good ? dy : 0, to.dir_z[i] = good ? dz : 1;
+    to.tnear[i] = good ? near * scale : 0;
+    to.tfar[i] = good ? far * scale : 0;
+    to.time[i] = 0;
+    to.mask[i] = mask;
+    to.id[i] = lane;
+    to.flags[i] = 0;
+  }
+  return refused;
+}
+
+} // namespace
+
+Accel::Found Accel::find(const PartScene& root, uint32_t instance, uint32_t geometry, uint32_t primitive) {
+  uint32_t base = 0;
+  const PartScene* scene = &root;
+  if (instance != RTC_INVALID_GEOMETRY_ID) {
+    const Part& placed = *root.parts[instance];
+    base = placed.record;
+    scene = placed.object.get();
+  }
+  const Part& part = *scene->parts[geometry];
+  if (part.recordOf.empty()) return {base + part.record, primitive};
+  return {base + part.recordOf[primitive], part.primitiveOf[primitive]};
+}
+
+Accel::Found Accel::foundBy(const RTCFilterFunctionNArguments* a, unsigned i) {
+  const Filtered& self = *static_cast<const Filtered*>(static_cast<const QueryContext*>(a->context)->user);
+  return find(*self.level->scene, RTCHitN_instID(a->hit, a->N, i, 0), RTCHitN_geomID(a->hit, a->N, i),
+              RTCHitN_primID(a->hit, a->N, i));
+}
+
+// Ray and normal are both in the frame of the instance that is being met, if any: the sign of their product is the same in all.
+void Accel::rejectBacks(const RTCFilterFunctionNArguments* a) {
+  const Filtered& self = *static_cast<const Filtered*>(static_cast<const QueryContext*>(a->context)->user);
+  for (unsigned i = 0; i < a->N; i++) {
+    if (a->valid[i] != -1) continue;
+    const Record& r = self.accel->records[foundBy(a, i).record];
+    if (!r.cull) continue;
+    const float along = RTCHitN_Ng_x(a->hit, a->N, i) * RTCRayN_dir_x(a->ray, a->N, i) +
+                        RTCHitN_Ng_y(a->hit, a->N, i) * RTCRayN_dir_y(a->ray, a->N, i) +
+                        RTCHitN_Ng_z(a->hit, a->N, i) * RTCRayN_dir_z(a->ray, a->N, i);
+    if (r.flip ? along < 0 : along > 0) a->valid[i] = 0;
+  }
+}
+
+void Accel::rejectRecord(const RTCFilterFunctionNArguments* a) {
+  const Filtered& self = *static_cast<const Filtered*>(static_cast<const QueryContext*>(a->context)->user);
+  for (unsigned i = 0; i < a->N; i++)
+    if (a->valid[i] == -1 && foundBy(a, i).record == self.record[RTCRayN_id(a->ray, a->N, i)]) a->valid[i] = 0;
+}
+
+// first: the hits are written; else they hold what the other level found, which ends the rays.
+template <class Packet> void Accel::intersectPackets(const Level& level, const Rays& rays, uint32_t mask,
+                                                     const QueryOptions& options, bool first, RayHits& hits) const {
+  constexpr uint32_t W = Packet::width;
+  alignas(64) int valid[W];
+  alignas(64) typename Packet::RayHit packet;
+  alignas(64) float ends[W] = {};
+  const float unscale = 1 / scale_;
+  uint64_t refused = 0;
+  for (uint32_t begin = 0; begin < rays.count; begin += W) {
+    const uint32_t n = std::min(W, rays.count - begin);
+    if (!first)
+      for (uint32_t i = 0; i < n; i++) ends[i] = std::min(rays.tfar[begin + i], hits.t[begin + i]);
+    const uint32_t bad = load<W>(rays, first ? rays.tfar + begin : ends, begin, scale_, mask, valid, packet.ray);
+    if (first) refused += bad;
+    for (uint32_t i = 0; i < W; i++) packet.hit.geomID[i] = packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+    Query query(options);
+    Packet::intersect(level.scene->scene, valid, packet, query);
+    for (uint32_t i = 0; i < n; i++) {
+      const uint32_t lane = begin + i;
+      if (!valid[i] || packet.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) {
+        if (!first) continue;
+        hits.record[lane] = noHit;
+        hits.t[lane] = std::numeric_limits<float>::infinity();
+        continue;
+      }
+      const Found found = find(*level.scene, packet.hit.instID[0][i], packet.hit.geomID[i], packet.hit.primID[i]);
+      hits.record[lane] = found.record;
+      hits.primitive[lane] = found.primitive;
+      hits.t[lane] = packet.ray.tfar[i] * unscale;
+      hits.u[lane] = packet.hit.u[i];
+      hits.v[lane] = packet.hit.v[i];
+      hits.ng[0][lane] = packet.hit.Ng_x[i], hits.ng[1][lane] = packet.hit.Ng_y[i], hits.ng[2][lane] = packet.hit.Ng_z[i];
+      settleGrazing(records[found.record], rays, first ? rays.tfar[lane] : ends[i], hits, lane);
+    }
+  }
+  if (refused) rejectedRays += refused;
+}
+
+template <class Packet> void Accel::occludedPackets(const Level& level, const Rays& rays, uint32_t mask, bool coherent,
+                                                    bool first, uint8_t* blocked) const {
+  constexpr uint32_t W = Packet::width;
+  alignas(64) int valid[W];
+  alignas(64) typename Packet::Ray packet;
+  uint64_t refused = 0;
+  for (uint32_t begin = 0; begin < rays.count; begin += W) {
+    const uint32_t n = std::min(W, rays.count - begin);
+    const uint32_t bad = load<W>(rays, rays.tfar + begin, begin, scale_, mask, valid, packet);
+    if (first)
+      refused += bad;
+    else
+      for (uint32_t i = 0; i < n; i++) valid[i] = blocked[begin + i] ? 0 : valid[i];
+    Packet::occluded(level.scene->scene, valid, packet, coherent);
+    for (uint32_t i = 0; i < n; i++) {
+      const bool met = valid[i] && packet.tfar[i] < 0; // Embree writes -infinity
+      blocked[begin + i] = first ? met : blocked[begin + i] | met;
+    }
+  }
+  if (refused) rejectedRays += refused;
+}
+
+void Accel::intersectLevel(const Level& level, const Rays& rays, uint32_t mask, bool coherent, bool first, RayHits& hits) const {
+  if (device_->wide && !level.instances)
+    intersectPackets<Packet16>(level, rays, mask, {coherent}, first, hits);
+  else
+    intersectPackets<Packet8>(level, rays, mask, {coherent && !level.instances}, first, hits);
+}
+
+void Accel::occludedLevel(const Level& level, const Rays& rays, uint32_t mask, bool coherent, bool first,
+                          uint8_t* blocked) const {
+  if (device_->wide && !level.instances)
+    occludedPackets<Packet16>(level, rays, mask, coherent, first, blocked);
+  else
+    occludedPackets<Packet8>(level, rays, mask, coherent && !level.instances, first, blocked);
+}
+
+void Accel::intersect(const Rays& rays, uint32_t mask, Coherence coherence, RayHits& hits) const {
+  const bool coherent = coherence == Coherence::coherent, top = topLevel_.masks & mask;
+  const bool first = staticLevel_.masks || !top;
+  if (first) intersectLevel(staticLevel_, rays, mask, coherent, true, hits);
+  if (top) intersectLevel(topLevel_, rays, mask, coherent, !first, hits);
+}
+
+void Accel::intersectFiltered(const Rays& rays, uint32_t mask, RTCFilterFunctionN filter, const uint32_t* record, RayHits& hits,
+                              std::vector<Passed>* all) const {
+  bool first = true;
+  for (const Level* level : {&staticLevel_, &topLevel_}) {
+    if (level == &topLevel_ && !(level->masks & mask)) continue;
+    const Filtered filtered{this, level, record, all};
+    intersectPackets<Packet8>(*level, rays, mask, {false, filter, &filtered}, first, hits);
+    first = false;
+  }
+}
+
+void Accel::intersectFronts(const Rays& rays, uint32_t mask, RayHits& hits) const {
+  intersectFiltered(rays, mask, rejectBacks, nullptr, hits);
+}
+
+void Accel::intersectOthers(const Rays& rays, const uint32_t* record, RayHits& hits) const {
+  intersectFiltered(rays, maskAll, rejectRecord, record, hits);
+}
+
+void Accel::occluded(const Rays& rays, uint32_t mask, Coherence coherence, uint8_t* blocked) const {
+  const bool coherent = coherence == Coherence::coherent, top = topLevel_.masks & mask;
+  const bool first = staticLevel_.masks || !top;
+  if (first) occludedLevel(staticLevel_, rays, mask, coherent, true, blocked);
+  if (top) occludedLevel(topLevel_, rays, mask, coherent, !first, blocked);
+}
+
+void Accel::bounds(float low[3], float high[3]) const {
+  std::fill_n(low, 3, std::numeric_limits<float>::infinity());
+  std::fill_n(high, 3, -std::numeric_limits<float>::infinity());
+  for (const Level* level : {&staticLevel_, &topLevel_}) {
+    if (!level->masks) continue;
+    RTCBounds b;
+    rtcGetSceneBounds(level->scene->scene, &b);
+    const float l[3] = {b.lower_x, b.lower_y, b.lower_z}, h[3] = {b.upper_x, b.upper_y, b.upper_z};
+    for (int k = 0; k < 3; k++) low[k] = std::min(low[k], l[k] / scale_), high[k] = std::max(high[k], h[k] / scale_);
+  }
+}
+
+} // namespace openrt

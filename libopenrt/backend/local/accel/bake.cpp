@@ -1,0 +1,104 @@
+// bake.cpp: see bake.h. Large arrays are worked on in parallel; every element is independent, so the result is the same.
+#include "backend/local/accel/bake.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "backend/local/sliver_edges.h"
+
+namespace openrt {
+
+void Box::add(const Vec3d& p) {
+  low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+  high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+}
+
+void Box::add(const Box& box, const Matrix4d& matrix) {
+  if (box.empty()) return;
+  for (int corner = 0; corner < 8; corner++)
+    add(matrix.point(
+        {corner & 1 ? box.high.x : box.low.x, corner & 2 ? box.high.y : box.low.y, corner & 4 ? box.high.z : box.low.z}));
+}
+
+Box boundsOf(const Geometry& geometry) {
+  Box local, result;
+  if (geometry.primitive == edit::Primitive::Sphere) {
+    const double r = geometry.width;
+    local.add({-r, -r, -r});
+    local.add({r, r, r});
+  } else if (geometry.points) {
+    const float* p = geometry.points->as<float>();
+    const size_t n = geometry.points->count<float>() / 3;
+    float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    for (size_t i = 0; i < n; i++)
+      for (int k = 0; k < 3; k++) low[k] = std::min(low[k], p[3 * i + k]), high[k] = std::max(high[k], p[3 * i + k]);
+    if (n) local.add({low[0], low[1], low[2]}), local.add({high[0], high[1], high[2]});
+  }
+  result.add(local, geometry.matrix);
+  return result;
+}
+
+bool consistent(const Geometry& g) {
+  if (g.primitive == edit::Primitive::Sphere) return g.width > 0 && std::isfinite(g.width);
+  if (!g.points || !g.indices) return false;
+  const size_t n = g.points->count<float>() / 3;
+  if ((g.normals && g.normals->count<float>() < 3 * n) || (g.texCoords && g.texCoords->count<float>() < 2 * n) ||
+      (g.colors && g.colors->count<float>() < 4 * n))
+    return false;
+  const uint32_t* index = g.indices->as<uint32_t>();
+  const size_t count = g.indices->count<uint32_t>();
+  uint32_t largest = 0;
+  for (size_t i = 0; i < count; i++) largest = std::max(largest, index[i]);
+  return count > 0 && largest < n;
+}
+
+std::vector<float> bakePoints(const Geometry& geometry, const Matrix4d& m) {
+  const float* p = geometry.points->as<float>();
+  const size_t n = geometry.points->count<float>() / 3;
+  std::vector<float> out(3 * n);
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, n, 16384), [&](const auto& range) {
+    for (size_t i = range.begin(); i < range.end(); i++) {
+      const double x = p[3 * i], y = p[3 * i + 1], z = p[3 * i + 2];
+      for (int k = 0; k < 3; k++) out[3 * i + k] = float(m.m[k] * x + m.m[4 + k] * y + m.m[8 + k] * z + m.m[12 + k]);
+    }
+  });
+  return out;
+}
+
+BakedTriangles bakeTriangles(const Geometry& geometry, const Matrix4d& toKernel) {
+  BakedTriangles out;
+  out.vertices = bakePoints(geometry, toKernel);
+  const uint32_t* index = geometry.indices->as<uint32_t>();
+  const size_t count = geometry.primitives();
+  const auto shape = [&](size_t t) {
+    const float* v = out.vertices.data();
+    return shapeOf(v + 3 * size_t(index[3 * t]), v + 3 * size_t(index[3 * t + 1]), v + 3 * size_t(index[3 * t + 2]));
+  };
+  std::atomic<bool> clean{true};
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, count, 16384), [&](const auto& range) {
+    for (size_t t = range.begin(); t < range.end(); t++)
+      if (shape(t) != TriangleShape::good) {
+        clean = false;
+        return;
+      }
+  });
+  if (clean) return out;
+  std::vector<TriangleShape> shapes(count);
+  for (size_t t = 0; t < count; t++) shapes[t] = shape(t);
+  if (std::find(shapes.begin(), shapes.end(), TriangleShape::sliver) != shapes.end())
+    out.openEdges = widenSlivers(out.vertices, index, shapes);
+  for (size_t t = 0; t < count; t++) {
+    if (shapes[t] == TriangleShape::degenerate) out.degenerate++;
+    if (shapes[t] == TriangleShape::sliver) out.slivers.push_back(uint32_t(t));
+    if (shapes[t] != TriangleShape::good) continue;
+    out.kept.push_back(uint32_t(t));
+    out.indices.insert(out.indices.end(), index + 3 * t, index + 3 * t + 3);
+  }
+  return out;
+}
+
+} // namespace openrt

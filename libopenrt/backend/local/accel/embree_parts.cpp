@@ -1,0 +1,116 @@
+// embree_parts.cpp: see embree_parts.h.
+#include "backend/local/accel/body.h"
+#include "render/rays.h"
+
+#include <stdexcept>
+#include <string>
+
+namespace openrt {
+namespace {
+
+void attach(PartScene& to, RTCGeometry geometry, std::unique_ptr<Part> part, uint32_t mask, uint32_t slot = nextSlot) {
+  rtcSetGeometryMask(geometry, mask);
+  rtcCommitGeometry(geometry);
+  if (slot == nextSlot) {
+    slot = uint32_t(to.parts.size());
+    to.parts.emplace_back();
+  }
+  detach(to, slot);
+  rtcAttachGeometryByID(to.scene, geometry, slot);
+  rtcReleaseGeometry(geometry);
+  to.parts[slot] = std::move(part);
+}
+
+void transform(RTCGeometry geometry, const Matrix4d& matrix) {
+  float m[12];
+  for (int column = 0; column < 4; column++)
+    for (int row = 0; row < 3; row++) m[3 * column + row] = float(matrix.m[4 * column + row]);
+  rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, m);
+}
+
+} // namespace
+
+EmbreeDevice::EmbreeDevice(uint32_t threads) {
+  const std::string config = "threads=" + std::to_string(threads);
+  device = rtcNewDevice(config.c_str());
+  if (!device)
+    throw std::runtime_error("the ray kernels (Embree) do not start: error " + std::to_string(rtcGetDeviceError(nullptr)));
+  rtcSetDeviceMemoryMonitorFunction(
+      device,
+      [](void* counter, ssize_t change, bool) {
+        *static_cast<std::atomic<int64_t>*>(counter) += change;
+        return true;
+      },
+      &bytes);
+  wide = rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED);
+}
+
+RTCScene newScene(const EmbreeDevice& device) {
+  RTCScene scene = rtcNewScene(device.device);
+  if (!scene) throw std::bad_alloc();
+  rtcSetSceneFlags(scene, sceneFlags);
+  return scene;
+}
+
+void attachTriangles(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part, uint32_t mask, bool slivers) {
+  if (slivers) {
+    RTCGeometry geometry = newSlivers(device, *part);
+    attach(to, geometry, std::move(part), mask);
+    return;
+  }
+  RTCGeometry geometry = rtcNewGeometry(device.device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  const size_t points = part->vertices.size() / 3;
+  part->vertices.resize(part->vertices.size() + 4); // kernels read past the end
+  part->indices.reserve(part->indices.size() + 4);
+  const size_t corners = part->sharedIndices ? part->sharedIndices->count<uint32_t>() : part->indices.size();
+  const uint32_t* indices = part->sharedIndices ? part->sharedIndices->as<uint32_t>() : part->indices.data();
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, part->vertices.data(), 0, 12, points);
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, indices, 0, 12, corners / 3);
+  attach(to, geometry, std::move(part), mask);
+}
+
+void attachHugeSpheres(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part, uint32_t mask) {
+  RTCGeometry geometry = newHugeSpheres(device, *part);
+  attach(to, geometry, std::move(part), mask);
+}
+
+void attachRound(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part, uint32_t mask, RTCGeometryType type,
+                 uint32_t slot) {
+  RTCGeometry geometry = rtcNewGeometry(device.device, type);
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, part->vertices.data(), 0, 16,
+                             part->vertices.size() / 4);
+  if (type == RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE)
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT, part->indices.data(), 0, 4,
+                               part->indices.size());
+  attach(to, geometry, std::move(part), mask, slot);
+}
+
+void attachInstance(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part, const Matrix4d& matrix,
+                    uint32_t slot) {
+  RTCGeometry geometry = rtcNewGeometry(device.device, RTC_GEOMETRY_TYPE_INSTANCE);
+  rtcSetGeometryInstancedScene(geometry, part->object->scene);
+  transform(geometry, matrix);
+  attach(to, geometry, std::move(part), maskAll, slot);
+}
+
+void detach(PartScene& from, uint32_t slot) {
+  if (!from.parts[slot]) return;
+  rtcDetachGeometry(from.scene, slot);
+  from.parts[slot].reset();
+}
+
+void setTransform(PartScene& in, uint32_t slot, const Matrix4d& matrix) {
+  RTCGeometry geometry = rtcGetGeometry(in.scene, slot);
+  transform(geometry, matrix);
+  rtcCommitGeometry(geometry);
+}
+
+void setEnabled(PartScene& in, uint32_t slot, bool enabled) {
+  RTCGeometry geometry = rtcGetGeometry(in.scene, slot);
+  if (enabled)
+    rtcEnableGeometry(geometry);
+  else
+    rtcDisableGeometry(geometry);
+}
+
+} // namespace openrt

@@ -1,0 +1,188 @@
+// survey.cpp: see survey.h.
+#include "backend/local/accel/survey.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace openrt {
+namespace {
+
+constexpr uint64_t bakedTriangles = 50000; // copies that are cheaper than an instance
+
+// log2 of a length, within what the kernels accept.
+int exponent(double length) { return std::ilogb(std::clamp(length, 1e-30, 1e30)); }
+
+double halfDiagonal(const Box& box) { return box.empty() ? 0 : length(box.high - box.low) / 2; }
+
+double largestColumn(const Matrix4d& m) { return std::max({length(m.column(0)), length(m.column(1)), length(m.column(2))}); }
+
+} // namespace
+
+Matrix4d uniformScale(double s) {
+  Matrix4d m;
+  m.m[0] = m.m[5] = m.m[10] = s;
+  return m;
+}
+
+bool similarity(const Matrix4d& m) {
+  const Vec3d a = m.column(0), b = m.column(1), c = m.column(2);
+  const double l = dot(a, a), e = 1e-6 * l;
+  return std::fabs(dot(b, b) - l) <= e && std::fabs(dot(c, c) - l) <= e && std::fabs(dot(a, b)) <= e &&
+         std::fabs(dot(a, c)) <= e && std::fabs(dot(b, c)) <= e;
+}
+
+void Survey::measure(const Scene& scene, uint32_t id) {
+  const Object& object = scene.objects.at(id);
+  ObjectInfo& info = objects_[id];
+  if (info.version == object.version) return;
+  info = {};
+  info.version = object.version;
+  for (const Geometry& g : object.geometries) {
+    info.boxes.push_back(boundsOf(g));
+    info.bounds.add(info.boxes.back(), Matrix4d());
+    if (g.primitive == edit::Primitive::Triangles) info.triangles += g.primitives();
+    if (g.primitive == edit::Primitive::Lines || g.primitive == edit::Primitive::Points) info.bakeOnly = true;
+    if (g.primitive == edit::Primitive::Sphere && !similarity(g.matrix)) info.bakeOnly = true;
+  }
+}
+
+bool Survey::isHeavy(uint32_t id) const {
+  const ObjectInfo& info = objects_.at(id);
+  const uint64_t uses = uses_.at(id);
+  return !info.bakeOnly && uses > 1 && info.triangles * (uses - 1) > bakedTriangles;
+}
+
+PartInfo Survey::weigh(const Scene& scene, const ScenePart& part, bool root) const {
+  PartInfo info;
+  for (uint32_t i = 0; i < part.items.size(); i++) {
+    const Item& item = part.items[i];
+    const ObjectInfo& object = objects_.at(item.object);
+    info.firstEntry.push_back(info.entries());
+    info.bounds.add(object.bounds, item.matrix);
+    info.triangles += object.triangles;
+    const bool heavy = isHeavy(item.object);
+    if (heavy) info.heavyItems.push_back(i);
+    const auto& geometries = scene.objects.at(item.object).geometries;
+    for (uint32_t g = 0; g < geometries.size(); g++) {
+      DrawnAs drawn = DrawnAs::baked;
+      switch (geometries[g].primitive) {
+      case edit::Primitive::Lines: info.lines = true, drawn = DrawnAs::thin; break;
+      case edit::Primitive::Points: info.points = true, drawn = DrawnAs::thin; break;
+      case edit::Primitive::Sphere:
+        if (!heavy && !root && !similarity(item.matrix * geometries[g].matrix)) drawn = DrawnAs::ellipsoid;
+        break;
+      case edit::Primitive::Triangles: break;
+      }
+      if (heavy) drawn = DrawnAs::heavy;
+      if (drawn == DrawnAs::ellipsoid) info.ellipsoids.emplace_back(i, g);
+      info.baked |= drawn == DrawnAs::baked;
+      info.drawn.push_back(drawn);
+    }
+  }
+  return info;
+}
+
+void Survey::take(const Scene& scene, const Flattened& flat) {
+  uses_.clear(), partOf_.clear(), parts_.clear();
+  for (const ScenePart& part : flat.parts)
+    for (const Item& item : part.items)
+      if (uses_[item.object]++ == 0) measure(scene, item.object);
+  std::erase_if(objects_, [&](const auto& entry) { return !uses_.contains(entry.first); });
+  for (uint32_t p = 0; p < flat.parts.size(); p++) {
+    partOf_[flat.parts[p].object] = p;
+    parts_.push_back(weigh(scene, flat.parts[p], p == 0));
+  }
+  boxes_.assign(flat.clusters.size(), {});
+  for (uint32_t c = 0; c < flat.clusters.size(); c++) parts_[flat.clusters[c].part].clusters.push_back(c);
+  std::vector<uint32_t> all(flat.clusters.size());
+  for (uint32_t c = 0; c < all.size(); c++) all[c] = c;
+  place(flat, all);
+
+  std::map<int, uint64_t> sizes; // primitives by size
+  uint64_t total = 0;
+  for (const Item& item : flat.parts[0].items) {
+    const auto& geometries = scene.objects.at(item.object).geometries;
+    const auto& boxes = objects_.at(item.object).boxes;
+    const double growth = largestColumn(item.matrix);
+    for (size_t g = 0; g < geometries.size(); g++)
+      sizes[exponent(halfDiagonal(boxes[g]) * growth)] += geometries[g].primitives(), total += geometries[g].primitives();
+  }
+  detail_ = 200;
+  uint64_t below = 0;
+  for (const auto& [size, count] : sizes) {
+    below += count;
+    if (2 * below < total) continue;
+    detail_ = size;
+    break;
+  }
+}
+
+bool Survey::retake(const Scene& scene, const Flattened& flat, uint32_t object) {
+  const uint32_t p = partOf(object);
+  if (p == ~0u || flat.parts[p].items.empty() || flat.parts[p].items[0].object != object) return false;
+  if (scene.objects.at(object).geometries.empty()) return false;
+  measure(scene, object);
+  PartInfo fresh = weigh(scene, flat.parts[p], false);
+  fresh.clusters = std::move(parts_[p].clusters);
+  const bool same = fresh.drawn == parts_[p].drawn && fresh.lines == parts_[p].lines && fresh.points == parts_[p].points;
+  parts_[p] = std::move(fresh);
+  place(flat, parts_[p].clusters);
+  return same;
+}
+
+void Survey::place(const Flattened& flat, const std::vector<uint32_t>& clusters) {
+  for (uint32_t c : clusters) {
+    const Cluster& cluster = flat.clusters[c];
+    boxes_[c] = {};
+    if (cluster.world.usable()) boxes_[c].add(parts_[cluster.part].bounds, cluster.world);
+  }
+}
+
+uint32_t Survey::partOf(uint32_t object) const {
+  const auto found = partOf_.find(object);
+  return found == partOf_.end() ? ~0u : found->second;
+}
+
+uint64_t Survey::uniqueTriangles() const {
+  uint64_t sum = 0;
+  for (const auto& [id, info] : objects_) sum += info.triangles;
+  return sum;
+}
+
+Box Survey::bounds() const {
+  Box all;
+  for (const Box& box : boxes_)
+    if (!box.empty()) all.add(box.low), all.add(box.high);
+  return all;
+}
+
+Vec3d Survey::origin(const Vec3d& eye) const {
+  const Box box = boxes_.empty() ? Box() : boxes_[0].empty() ? bounds() : boxes_[0];
+  const double radius = halfDiagonal(box);
+  if (!(radius > 0) || !std::isfinite(radius)) return {};
+  const double cell = std::ldexp(1.0, std::min(exponent(radius) + 2, detail_ + 16));
+  const auto snap = [cell](double x) {
+    // The steps lie beside the round numbers on which cameras like to stand and to turn.
+    const double at = std::floor(x / cell + 0.43) * cell;
+    return std::isfinite(at) ? at : 0.0;
+  };
+  return {snap(eye.x), snap(eye.y), snap(eye.z)};
+}
+
+double Survey::scale(const Vec3d& origin) const {
+  const Box world = bounds();
+  if (world.empty()) return 1;
+  const Vec3d a = world.low - origin, b = world.high - origin;
+  const double far = std::max({std::fabs(a.x), std::fabs(a.y), std::fabs(a.z), std::fabs(b.x), std::fabs(b.y), std::fabs(b.z)});
+  if (!(far > 0)) return 1;
+  const auto powerOfTwo = [](double x) { return std::exp2(std::floor(std::log2(x))); };
+  if (far < 1e-4) return powerOfTwo(1 / far); // small scenes grow to about 1
+  // Large ones shrink to the upper end of what the kernels do well (sizes of 1e-10 to 1e12), but no further than what most of the
+  // scene is made of stays above 1e-3: one thing put out of sight must not change everything else. Distances of 1e17 are the
+  // kernels' limit. Beyond 1e20 things are not drawn at all.
+  const double reach = std::min(far, 1e20), comfortable = 1e10 / reach;
+  if (comfortable >= 1) return 1;
+  return powerOfTwo(std::max(comfortable, std::min({1.0, std::ldexp(1e-3, -detail_), 1e17 / reach})));
+}
+
+} // namespace openrt

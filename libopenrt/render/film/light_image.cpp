@@ -1,0 +1,68 @@
+// light_image.cpp: see light_image.h.
+#include "render/film/light_image.h"
+
+#include <algorithm>
+
+namespace openrt {
+
+void LightImage::add(uint32_t number, std::vector<float>&& part) {
+  std::unique_lock turn(turn_);
+  waiting_[number] = std::move(part);
+  if (adding_) return; // by somebody who looks again
+  adding_ = true;
+  for (uint32_t next; (next = added_) < all_ && !waiting_[next].empty();) {
+    const std::vector<float> now = std::move(waiting_[next]);
+    waiting_[next].clear();
+    turn.unlock();
+    addNow(now, next);
+    turn.lock();
+  }
+  adding_ = false;
+}
+
+void LightImage::addNow(const std::vector<float>& part, double number) {
+  std::unique_lock lock(sums_);
+  for (size_t i = 0; i < pixels_.size(); i++) // B. P. Welford, Technometrics 4(3), 1962
+    for (int k = 0; k < 3; k++) {
+      Pixel& p = pixels_[i];
+      const double x = part[3 * i + size_t(k)], d = x - p.mean[k];
+      p.mean[k] += d / (number + 1);
+      p.squares[k] += d * (x - p.mean[k]);
+    }
+  added_.fetch_add(1, std::memory_order_release);
+}
+
+double LightImage::variance(const Pixel& pixel, int k) const {
+  const double n = added_;
+  return n > 1 ? pixel.squares[k] / (n * (n - 1)) : std::numeric_limits<double>::infinity();
+}
+
+// A pixel that few paths have met knows too little of itself (error.cpp): its variance is its own, at least the mean of those of
+// the 5x5 pixels around. hits: as many equal paths have met these, in the colour with the fewest.
+LightSums LightImage::at(uint32_t x, uint32_t y) const {
+  constexpr uint32_t reach = 2;
+  const Pixel& pixel = pixels_[size_t(y) * width_ + x];
+  LightSums out;
+  out.hits = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < 3; k++) {
+    double mean = 0, variance = 0, count = 0;
+    for (uint32_t j = y - std::min(y, reach); j <= std::min(y + reach, height_ - 1); j++)
+      for (uint32_t i = x - std::min(x, reach); i <= std::min(x + reach, width_ - 1); i++) {
+        const Pixel& p = pixels_[size_t(j) * width_ + i];
+        mean += p.mean[k], variance += this->variance(p, k), count++;
+      }
+    out.mean[k] = pixel.mean[k];
+    out.variance[k] = std::max(variance / count, this->variance(pixel, k));
+    if (variance > 0) out.hits = std::min(out.hits, mean * mean / variance);
+  }
+  return out;
+}
+
+void LightImage::look(const Tile& tile, std::vector<LightSums>& out) const {
+  std::shared_lock lock(sums_);
+  out.clear();
+  for (uint32_t y = tile.y0; y < tile.y1; y++)
+    for (uint32_t x = tile.x0; x < tile.x1; x++) out.push_back(at(x, y));
+}
+
+} // namespace openrt

@@ -1,0 +1,266 @@
+// frame_schedule.cpp: see frame_schedule.h. Which samples a picture is made of depends on the settings and on pilots alone, with
+// a time limit also on the time; never on who does what.
+#include "render/frame/frame_schedule.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "render/film/error.h"
+#include "render/film/light_image.h"
+#include "render/film/pilots.h"
+
+namespace openrt {
+namespace {
+
+constexpr uint32_t mostOfRound = 32; // progressive: so that the picture goes on becoming better everywhere
+constexpr uint32_t pilotSeed = 0x70696c6f, furtherSeed = 0x66757274, lightSeed = 0x6c616d70, earlySeed = 0x6561726c;
+constexpr double bytesAhead = 64 << 20; // of sums that wait for light
+
+bool makesRounds(const edit::FrameSettingsT& frame) {
+  return frame.timeLimit > 0 ? frame.samples > 1 : frame.progressive && frame.samples >= fewestOfLeaves;
+}
+
+// As many paths from lamps as from the camera; where the number of these is open, at most a few for each pixel.
+uint32_t lightPathsOf(const edit::FrameSettingsT& frame) {
+  constexpr uint32_t mostOfOpen = 64;
+  const bool open = frame.targetError > 0 || frame.timeLimit > 0;
+  const double paths = double(frame.width) * frame.height * (open ? std::min(frame.samples, mostOfOpen) : frame.samples);
+  return uint32_t(std::min(paths, 4e9));
+}
+
+} // namespace
+
+FrameSchedule::FrameSchedule(const edit::FrameSettingsT& frame, const FrameFacts& facts, const TileGrid& grid, uint32_t crew,
+                             double now)
+    : frame_(frame), grid_(grid), tiles_(facts.camera ? grid.count() : 0), lamps_(facts.lamps && tiles_ > 0),
+      timed_(frame.timeLimit > 0 && makesRounds(frame)), rounds_(makesRounds(frame)), pilotSamples_(firstPilotOf(frame, timed_)),
+      wanted_(tiles_, frame.samples), started_(now), began_(now),
+      earlyParts_(std::clamp(crew + 1, 2u, LightImage::parts)) { // of one part nobody knows the variance
+  pilot_ = pilotSamples_ > 0;
+  undecided_ = unpiloted_ = pilot_ ? tiles_ : 0;
+  most_ = frame.samples;
+  samples_ = timed_ ? pilotSamples_ : rounds_ ? 1 : frame.samples;
+  const double ahead = bytesAhead / (double(sizeof(PixelSums)) * grid.edge() * grid.edge());
+  ahead_ = std::max(uint32_t(ahead), 4 * crew);
+  all_ = double(frame.width) * frame.height * (double(frame.samples) + pilotSamples_);
+  if (lamps_) {
+    partPaths_ = lightPathsOf(frame) / LightImage::parts + 1;
+    earlyPaths_ = frame.width * frame.height / 2 / earlyParts_ + 1; // altogether half as many as a sample of the camera
+    all_ += double(LightImage::parts) * partPaths_;
+  }
+  undone_ = all_;
+  ended_ = tiles_ == 0;
+  wantLight();
+}
+
+double FrameSchedule::costOf(const TileGrid& grid, const Job& job) {
+  return job.kind == Job::Kind::light ? job.count : double(job.count) * double(grid.at(job.number).pixels());
+}
+
+void FrameSchedule::give(const Out& out, Job& job, double now) {
+  if (!begun_ && out.job.kind == Job::Kind::samples) begun_ = true, began_ = now;
+  job = out.job;
+  if (out.stage != Stage::early) undone_ -= costOf(grid_, job);
+  if (job.kind == Job::Kind::samples) outNow_++;
+  Out& entry = out_[keyOf(job)] = out;
+  entry.round = round_;
+}
+
+void FrameSchedule::order(std::vector<uint32_t> tiles) {
+  if (!rounds_ && nextTile_ == 0 && from_ == 0 && tiles.size() == tiles_) order_ = std::move(tiles);
+}
+
+uint32_t FrameSchedule::upcoming() const {
+  if (!back_.empty() || nextEarly_ < earlyUntil_ || nextPart_ < partsUntil_) return tiles_;
+  return !ready_.empty() ? ready_.front().tile : nextTile_ < tiles_ ? tileAt(nextTile_) : tiles_;
+}
+
+bool FrameSchedule::next(Job& job, uint32_t largest, double now) {
+  while (!back_.empty()) {
+    const auto found = out_.find(back_.front());
+    back_.pop_front();
+    if (found == out_.end() || !found->second.back) continue;
+    found->second.back = false;
+    job = found->second.job;
+    if (found->second.stage != Stage::early) undone_ -= costOf(grid_, job);
+    return true;
+  }
+  do {
+    if (nextLight(job, now) || nextTile(job, largest, now)) return true;
+  } while (endRound(now));
+  return false;
+}
+
+bool FrameSchedule::nextLight(Job& job, double now) {
+  Out out;
+  out.job.kind = Job::Kind::light;
+  if (nextEarly_ < earlyUntil_) {
+    out.stage = Stage::early, out.job.number = nextEarly_++, out.job.count = earlyPaths_;
+    out.job.replicates.seed = hash(frame_.seed, earlySeed + out.job.number);
+  } else if (nextPart_ < partsUntil_) {
+    out.stage = Stage::light, out.job.number = nextPart_++, out.job.count = partPaths_;
+    out.job.replicates.seed = hash(frame_.seed, lightSeed + out.job.number);
+  } else {
+    return false;
+  }
+  give(out, job, now);
+  return true;
+}
+
+// The next block of a tile's samples, from there to the end of its round; from is moved on.
+void FrameSchedule::giveBlock(Job& job, Out out, uint32_t tile, uint32_t& from, uint32_t end, uint32_t largest, double now) {
+  const bool pilot = out.stage == Stage::pilot;
+  out.job.number = tile, out.job.first = from, out.job.count = blockFrom(from, end, largest);
+  out.job.centred = out.until == 1 && (pilot || !rounds_);
+  if (pilot)
+    out.job.replicates = replicatesOf(frame_, out.until, hash(frame_.seed, out.further ? furtherSeed + out.until : pilotSeed));
+  else
+    out.job.replicates = timed_ ? replicates_ : replicatesOf(frame_, out.until, frame_.seed);
+  from += out.job.count;
+  give(out, job, now);
+}
+
+bool FrameSchedule::nextTile(Job& job, uint32_t largest, double now) {
+  const bool dark = lamps_ && !lit_;
+  if (timed_ && dark) return false;
+  Out out;
+  if (!ready_.empty()) {
+    Ready& ready = ready_.front();
+    out.until = ready.pilot ? ready.pilot : wanted_[ready.tile];
+    out.further = ready.pilot > 0;
+    if (out.further) out.stage = Stage::pilot;
+    giveBlock(job, out, ready.tile, ready.from, out.until, largest, now);
+    if (ready.from >= out.until) ready_.pop_front();
+    return true;
+  }
+  if (nextTile_ >= tiles_ || (!rounds_ && dark && nextTile_ >= ahead_)) return false;
+  const uint32_t tile = tileAt(nextTile_);
+  out.until = pilot_ ? pilotSamples_ : wanted_[tile];
+  if (pilot_) out.stage = Stage::pilot;
+  giveBlock(job, out, tile, from_, endOf(tile), largest, now);
+  skipTiles();
+  return true;
+}
+
+// Of a tile's samples in this round.
+uint32_t FrameSchedule::endOf(uint32_t tile) const {
+  const uint32_t all = pilot_ ? pilotSamples_ : wanted_[tile];
+  return rounds_ ? std::min(first_ + samples_, all) : all;
+}
+
+// On to the next tile that has something left in this round.
+void FrameSchedule::skipTiles() {
+  for (; nextTile_ < tiles_ && from_ >= endOf(tileAt(nextTile_)); from_ = first_) nextTile_++;
+}
+
+std::optional<FrameSchedule::Out> FrameSchedule::claim(const Job& job) {
+  const auto found = out_.find(keyOf(job));
+  if (found == out_.end() || !(found->second.job == job)) return std::nullopt;
+  const Out out = found->second;
+  out_.erase(found);
+  if (out.back && out.stage != Stage::early) undone_ -= costOf(grid_, job);
+  return out;
+}
+
+void FrameSchedule::done(const Out& out, double now) {
+  if (out.job.kind == Job::Kind::samples) (out.round == round_ ? outNow_ : outBefore_)--;
+  if (out.stage != Stage::early) done_ += costOf(grid_, out.job);
+  while (nextTile_ >= tiles_ && endRound(now)) {}
+}
+
+void FrameSchedule::giveBack(const Job& job) {
+  const auto found = out_.find(keyOf(job));
+  if (found == out_.end() || !(found->second.job == job) || found->second.back) return;
+  found->second.back = true;
+  back_.push_back(found->first);
+  if (found->second.stage != Stage::early) undone_ += costOf(grid_, job);
+}
+
+void FrameSchedule::decided(uint32_t tile, uint32_t wanted) {
+  const double saved = double(frame_.samples - wanted) * double(grid_.at(tile).pixels());
+  undone_ -= saved, all_ -= saved;
+  wanted_[tile] = wanted;
+  undecided_--;
+  if (!rounds_) ready_.push_back({tile, 0, 0});
+}
+
+void FrameSchedule::pilotAgain(uint32_t tile, uint32_t samples) {
+  const double more = double(samples) * double(grid_.at(tile).pixels());
+  undone_ += more;
+  all_ += more;
+  ready_.push_back({tile, 0, samples});
+}
+
+bool FrameSchedule::over() const {
+  const bool given = rounds_ ? ended_ : nextTile_ >= tiles_ && ready_.empty() && undecided_ == 0;
+  return given && out_.empty() && outNow_ + outBefore_ == 0 && (!lamps_ || (nextPart_ == partsUntil_ && lit_));
+}
+
+// False: there is no further round, or it must wait.
+bool FrameSchedule::endRound(double now) {
+  if (!rounds_ || ended_ || nextTile_ < tiles_) return false;
+  const bool decides = pilot_ && first_ + samples_ >= pilotSamples_;
+  // At most the next round's jobs are out beside those of one: the picture becomes better everywhere.
+  if (outBefore_ > 0 || ((timed_ || decides) && outNow_ > 0) || (decides && undecided_ > 0)) return false;
+  ended_ = !(timed_ ? endTimed(now) : endProgressive());
+  if (ended_) return false;
+  if (earlyUntil_ == 0 && partsUntil_ == 0) earlyUntil_ = lamps_ ? earlyParts_ : 0; // the first round has gone without
+  wantLight();
+  outBefore_ = outNow_, outNow_ = 0, round_++;
+  nextTile_ = 0, from_ = first_;
+  skipTiles();
+  return true;
+}
+
+// Whether there is a further round depends on the time alone and on the pilot, which is no part of the picture.
+bool FrameSchedule::endTimed(double now) {
+  const double took = now - began_, left = double(frame_.timeLimit) - (now - started_);
+  bool more = true;
+  if (pilot_) {
+    // About sixteen rounds fill the time that is left.
+    const double samples = left / 16 / std::max(took, 1e-9) * samples_;
+    const uint32_t most = std::max(frame_.samples / 16, 1u);
+    replicates_ = {frame_.seed, uint32_t(std::bit_width(uint32_t(std::clamp(samples, 1.0, double(most))))) - 1};
+    most_ = *std::max_element(wanted_.begin(), wanted_.end());
+    pilot_ = false;
+  } else {
+    first_ += samples_;
+    more = left >= took / 2; // else the next one would end farther beyond the limit than this one has ended before it
+  }
+  samples_ = std::min(replicates_.size(), frame_.samples - std::min(first_, frame_.samples));
+  begun_ = false;
+  return more && first_ < most_;
+}
+
+// The portions are leaves (sums.h): the picture's bytes are those of one go.
+bool FrameSchedule::endProgressive() {
+  first_ += samples_;
+  if (pilot_ && first_ >= pilotSamples_) {
+    most_ = *std::max_element(wanted_.begin(), wanted_.end());
+    pilot_ = false;
+    first_ = 0;
+    samples_ = pilotSamples_; // fewer would look worse than the pilot
+  } else
+    samples_ = std::clamp(first_, 1u, mostOfRound);
+  const uint32_t all = pilot_ ? pilotSamples_ : most_;
+  samples_ = std::min(samples_, all - std::min(first_, all));
+  return first_ < most_;
+}
+
+// In progressive frames light comes by and by, as samples do. What of it is shown early does not matter for the finished picture,
+// which has all parts, nor for what a pilot finds.
+void FrameSchedule::wantLight() {
+  if (!lamps_) return;
+  const uint32_t all = pilot_ ? pilotSamples_ : most_;
+  const bool whole = !rounds_ || timed_ || first_ + samples_ >= all;
+  const auto share = uint32_t(double(first_) / most_ * LightImage::parts);
+  partsUntil_ = whole ? LightImage::parts : std::clamp(share, partsUntil_, LightImage::parts);
+}
+
+float FrameSchedule::progress(double now) const {
+  if (over()) return 1;
+  const double part = timed_ ? (now - started_) / double(frame_.timeLimit) : done_ / std::max(all_, 1.0);
+  return std::min(float(part), 0.99f);
+}
+
+} // namespace openrt

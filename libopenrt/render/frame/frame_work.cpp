@@ -1,0 +1,395 @@
+// frame_work.cpp: see frame_work.h. Locks: `mutex` for what is to be done and what is out; one for each tile's sums and its place
+// in the film, so that tiles are merged and stored by all who bring results at once. A tile's lock is never taken under `mutex`.
+#include "render/frame/frame_work.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <deque>
+#include <mutex>
+#include <shared_mutex>
+
+#include "render/film/error.h"
+#include "render/flush_denormals.h"
+#include "render/frame/frame_schedule.h"
+#include "render/film/light_image.h"
+#include "render/film/pilots.h"
+
+namespace openrt {
+namespace {
+
+using Stage = FrameSchedule::Stage;
+
+double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+ErrorMap::Kind errorsOf(const edit::FrameSettingsT& frame) {
+  if (wantsError(frame)) return ErrorMap::Kind::full;
+  return frame.samples > 1 && (frame.channels & RT_VARIANCE) ? ErrorMap::Kind::summary : ErrorMap::Kind::none;
+}
+
+struct TileState {
+  std::mutex mutex;
+  TileSums sums; // that are not complete, or wait for light
+  Ledger ledger;
+  bool shown = false;
+};
+
+} // namespace
+
+struct FrameWork::Impl {
+  Impl(const edit::FrameSettingsT& f, const FrameFacts& facts, uint32_t crew)
+      : frame(f), grid(frame), count(facts.camera ? grid.count() : 0), gathering(gatheringOf(frame)),
+        film(frame.width, frame.height, frame.channels, errorsOf(frame)), tiles(std::make_unique<TileState[]>(count)),
+        schedule(frame, facts, grid, crew, now()) {
+    if (frame.targetError > 0 && count > 0) pilots = std::make_unique<Pilots>(frame, grid, schedule.timed());
+    if (!facts.lamps || count == 0) return;
+    light = std::make_unique<LightImage>(frame.width, frame.height);
+    if (schedule.rounds()) early = std::make_unique<LightImage>(frame.width, frame.height, schedule.earlyParts());
+  }
+
+  bool lit() const { return !light || light->complete(); }
+  bool fits(const Job& job, const JobResult& result) const;
+  void addSamples(const FrameSchedule::Out& out, JobResult& result);
+  void addLight(const FrameSchedule::Out& out, JobResult& result);
+  void finish(const FrameSchedule::Out& out, const SumBlock& all, TileState& state);
+  void store(const Tile& tile, const std::vector<PixelSums>& sums, const Replicates& replicates, bool show,
+             const FrameSchedule::Out* pilot = nullptr);
+  void judge(const FrameSchedule::Out& pilot, const std::vector<PilotPixel>& pixels, const std::vector<PixelError>& errors);
+  void follow(uint32_t tile, const Pilots::Verdict& verdict);
+  double pathsOf(uint32_t tile) const { return double(tiles[tile].ledger.samples) * double(grid.at(tile).pixels()); }
+  Ledger wholeLedger() const {
+    Ledger all;
+    for (uint32_t i = 0; i < count; i++) all.add(tiles[i].ledger);
+    return all;
+  }
+  void settle();
+  void settleWaiting();
+  void tell();
+
+  const edit::FrameSettingsT frame;
+  const TileGrid grid;
+  const uint32_t count; // tiles
+  const Gathering gathering;
+  Film film;
+  mutable std::shared_mutex ending; // alone: the picture as a whole is looked at
+  std::unique_ptr<TileState[]> tiles;
+  std::unique_ptr<LightImage> light, early; // null: none
+  std::unique_ptr<Pilots> pilots;           // null: no target error
+
+  mutable std::mutex mutex; // all below
+  FrameSchedule schedule;
+  std::deque<FrameSchedule::Out> waiting; // complete tiles without all of the light
+  uint32_t busy = 0;                      // threads between claiming a result and its end
+  bool cancelled = false, finishing = false, over = false, waited = false;
+  RayCounters counters;
+  std::function<void()> changed;
+};
+
+bool FrameWork::Impl::fits(const Job& job, const JobResult& result) const {
+  if (job.kind == Job::Kind::light) return result.light.size() == size_t(frame.width) * frame.height * 3;
+  return job.number < count && result.sums.size() == grid.at(job.number).pixels();
+}
+
+// What is there of the tile, with what is there of the light, into the film if it is to be shown. pilot: that is complete, and is
+// asked how many samples are needed.
+void FrameWork::Impl::store(const Tile& tile, const std::vector<PixelSums>& sums, const Replicates& replicates, bool show,
+                            const FrameSchedule::Out* pilot) {
+  std::vector<LightSums> lights;
+  if (light && light->added() > 1)
+    light->look(tile, lights);
+  else if (early && early->complete())
+    early->look(tile, lights);
+  const bool lamps = !lights.empty();
+  std::vector<PixelError> errors;
+  if (!film.errors().empty()) {
+    errors.resize(sums.size());
+    if (gathering.error)
+      tileErrors(tile.width(), sums, replicates, errors);
+    else
+      for (size_t i = 0; i < sums.size(); i++) errors[i] = independentError(sums[i]);
+  }
+  std::vector<PilotPixel> asked(pilot ? sums.size() : 0);
+  size_t i = 0;
+  for (uint32_t y = tile.y0; y < tile.y1; y++)
+    for (uint32_t x = tile.x0; x < tile.x1; x++, i++) {
+      PixelError* error = errors.empty() ? nullptr : &errors[i];
+      if (pilot)
+        asked[i] = pilotPixel(errors[i], lamps ? &lights[i] : nullptr);
+      else if (error && lamps)
+        openrt::addLight(lights[i], *error);
+      if (show) film.store(x, y, sums[i], lamps ? &lights[i] : nullptr, error);
+    }
+  if (pilot) judge(*pilot, asked, errors);
+}
+
+// What the tile does next. Under its lock.
+void FrameWork::Impl::judge(const FrameSchedule::Out& pilot, const std::vector<PilotPixel>& pixels,
+                            const std::vector<PixelError>& errors) {
+  const uint32_t tile = pilot.job.number;
+  if (pilot.further) {
+    const Pilots::Verdict verdict = pilots->judge(tile, pixels, pilot.until);
+    std::lock_guard lock(mutex);
+    follow(tile, verdict);
+    return;
+  }
+  pilots->note(tile, pixels, errors);
+  {
+    std::lock_guard lock(mutex);
+    if (!schedule.firstPilotDone()) return;
+  }
+  const std::vector<Pilots::Verdict> verdicts = pilots->judgeAll(); // no other thread has anything of it
+  std::lock_guard lock(mutex);
+  for (uint32_t i = 0; i < count; i++) follow(i, verdicts[i]);
+}
+
+// Under `mutex`.
+void FrameWork::Impl::follow(uint32_t tile, const Pilots::Verdict& verdict) {
+  if (verdict.pilot)
+    schedule.pilotAgain(tile, verdict.samples);
+  else
+    schedule.decided(tile, verdict.samples);
+}
+
+// All samples of this stage are there, and all of the light. Under the tile's lock.
+void FrameWork::Impl::finish(const FrameSchedule::Out& out, const SumBlock& all, TileState& state) {
+  const bool pilot = out.stage == Stage::pilot, show = !pilot || (schedule.rounds() && !out.further);
+  const bool asks = pilot && pilots;
+  store(grid.at(out.job.number), all.sums, out.job.replicates, show, asks ? &out : nullptr);
+  state.shown |= show;
+  if (!pilot) state.ledger = all.ledger;
+  if (!pilot || asks) return;
+  std::lock_guard lock(mutex); // it was for the clock
+  schedule.decided(out.job.number, frame.samples);
+}
+
+void FrameWork::Impl::addSamples(const FrameSchedule::Out& out, JobResult& result) {
+  const Job& job = out.job;
+  TileState& state = tiles[job.number];
+  std::lock_guard tileLock(state.mutex);
+  SumBlock block{job.first, job.count, std::move(result.sums), result.ledger}, room;
+  state.sums.join(block, gathering, job.replicates);
+  const uint32_t reach = state.sums.reach(&block);
+  const bool complete = reach == out.until;
+  const bool showsParts = schedule.rounds() && !out.further;
+  const SumBlock* all = complete || showsParts ? state.sums.fold(&block, room, gathering, job.replicates) : nullptr;
+  if (complete && lit()) {
+    finish(out, *all, state);
+    state.sums.clear();
+  } else {
+    if (all && showsParts) {
+      store(grid.at(job.number), all->sums, job.replicates, true);
+      state.shown = true;
+      if (out.stage == Stage::samples) state.ledger = all->ledger;
+    }
+    if (complete) state.sums.clear();
+    state.sums.keep(complete ? *all : block, gathering);
+    if (complete) {
+      std::lock_guard lock(mutex);
+      waiting.push_back(out);
+    }
+  }
+  result.sums = std::move(block.sums); // memory for the next job
+}
+
+void FrameWork::Impl::addLight(const FrameSchedule::Out& out, JobResult& result) {
+  (out.stage == Stage::early ? early : light)->add(out.job.number, std::move(result.light));
+  if (!light->complete()) return;
+  std::lock_guard lock(mutex);
+  schedule.lit();
+}
+
+// Tiles that have waited for light; several threads may be at it.
+void FrameWork::Impl::settleWaiting() {
+  if (!lit()) return;
+  std::unique_lock lock(mutex);
+  while (!waiting.empty() && !cancelled) {
+    const FrameSchedule::Out out = waiting.front();
+    waiting.pop_front();
+    busy++;
+    lock.unlock();
+    {
+      TileState& state = tiles[out.job.number];
+      std::lock_guard tileLock(state.mutex);
+      SumBlock all;
+      state.sums.fold(nullptr, all, gathering, out.job.replicates);
+      finish(out, all, state);
+      state.sums.clear();
+    }
+    lock.lock();
+    busy--;
+  }
+}
+
+// What is to be done after each change.
+void FrameWork::Impl::settle() {
+  settleWaiting();
+  bool last = false;
+  {
+    std::lock_guard lock(mutex);
+    last = !finishing && busy == 0 && (cancelled || (schedule.over() && waiting.empty()));
+    finishing |= last;
+  }
+  if (last) {
+    {
+      std::unique_lock alone(ending);
+      film.finishErrors();
+      const Ledger whole = wholeLedger();
+      for (uint32_t i = 0; i < count; i++) film.distrust(grid.at(i), tiles[i].ledger.missedByChance(whole, pathsOf(i)));
+    }
+    std::lock_guard lock(mutex);
+    over = true;
+  }
+  tell();
+}
+
+void FrameWork::Impl::tell() {
+  std::function<void()> call;
+  {
+    std::lock_guard lock(mutex);
+    if (!waited && !over) return;
+    waited = false;
+    call = changed;
+  }
+  if (call) call();
+}
+
+FrameWork::FrameWork(const edit::FrameSettingsT& settings, const FrameFacts& facts, uint32_t crew)
+    : impl_(std::make_unique<Impl>(settings, facts, crew)) {
+  impl_->settle();
+}
+FrameWork::~FrameWork() = default;
+
+FrameWork::Next FrameWork::next(Job& job, uint32_t largest) {
+  Impl& m = *impl_;
+  std::unique_lock lock(m.mutex);
+  if (!m.waiting.empty() && m.lit()) {
+    lock.unlock();
+    const FlushDenormals flush;
+    m.settle();
+    lock.lock();
+  }
+  if (m.over) return Next::over;
+  if (!m.cancelled && m.schedule.next(job, largest, now())) return Next::job;
+  m.waited = true;
+  return Next::wait;
+}
+
+void FrameWork::order(std::vector<uint32_t> tiles) {
+  std::lock_guard lock(impl_->mutex);
+  impl_->schedule.order(std::move(tiles));
+}
+
+uint32_t FrameWork::upcoming() const {
+  std::lock_guard lock(impl_->mutex);
+  return impl_->schedule.upcoming();
+}
+
+void FrameWork::giveBack(const Job& job) {
+  {
+    std::lock_guard lock(impl_->mutex);
+    impl_->schedule.giveBack(job);
+  }
+  impl_->tell();
+}
+
+bool FrameWork::take(const Job& job, JobResult&& result) {
+  Impl& m = *impl_;
+  std::optional<FrameSchedule::Out> out;
+  {
+    std::lock_guard lock(m.mutex);
+    if (m.cancelled || !m.fits(job, result)) return false;
+    out = m.schedule.claim(job);
+    if (!out) return false;
+    m.busy++;
+    m.counters.camera += result.counters.camera, m.counters.shadow += result.counters.shadow;
+    m.counters.secondary += result.counters.secondary;
+    m.counters.faults.add(result.counters.faults);
+  }
+  const FlushDenormals flush;
+  if (job.kind == Job::Kind::light)
+    m.addLight(*out, result);
+  else
+    m.addSamples(*out, result);
+  {
+    std::lock_guard lock(m.mutex);
+    m.schedule.done(*out, now());
+    m.busy--;
+  }
+  m.settle();
+  return true;
+}
+
+void FrameWork::cancel() {
+  {
+    std::lock_guard lock(impl_->mutex);
+    impl_->cancelled = true;
+  }
+  impl_->settle();
+}
+
+bool FrameWork::over() const {
+  std::lock_guard lock(impl_->mutex);
+  return impl_->over;
+}
+
+void FrameWork::onChange(std::function<void()> changed) {
+  std::lock_guard lock(impl_->mutex);
+  impl_->changed = std::move(changed);
+}
+
+uint32_t FrameWork::tiles() const { return impl_->count; }
+Tile FrameWork::tile(uint32_t number) const { return impl_->grid.at(number); }
+
+double FrameWork::undone() const {
+  std::lock_guard lock(impl_->mutex);
+  return impl_->cancelled ? 0 : impl_->schedule.undone();
+}
+
+float FrameWork::progress() const {
+  std::lock_guard lock(impl_->mutex);
+  return impl_->over ? 1.0f : impl_->schedule.progress(now());
+}
+
+bool FrameWork::snapshot(uint32_t channel, std::span<float> out) const {
+  std::shared_lock notEnding(impl_->ending);
+  if (!impl_->film.clear(channel, out)) return false;
+  for (uint32_t i = 0; i < impl_->count; i++) { // who merges the next one's samples does not wait for long
+    std::lock_guard lock(impl_->tiles[i].mutex);
+    if (impl_->tiles[i].shown) impl_->film.copy(channel, tile(i), out);
+  }
+  return true;
+}
+
+const Film& FrameWork::film() const { return impl_->film; }
+
+RayCounters FrameWork::counters() const {
+  std::lock_guard lock(impl_->mutex);
+  return impl_->counters;
+}
+
+void FrameWork::describeError(RTstats& stats) const {
+  stats.errorLevel = 0.95;
+  if (impl_->film.errors().empty()) return;
+  double paths = 0;
+  for (uint32_t i = 0; i < impl_->count; i++) paths += impl_->pathsOf(i);
+  const Ledger whole = impl_->wholeLedger();
+  const double missed = whole.missedByChance(whole, paths);
+  const ErrorSummary s = impl_->film.errors().summary(missed);
+  stats.errorMean = s.mean;
+  stats.errorMeanInterval = s.meanInterval;
+  stats.errorUnmet = missed;
+  stats.errorHalfWidth = s.halfWidth, stats.errorP99 = s.p99;
+  stats.errorPixels = s.pixels, stats.errorTrusted = s.trusted;
+  const bool many = impl_->schedule.timed() || replicatesOf(impl_->frame, impl_->frame.samples, 0).many();
+  std::snprintf(stats.errorMethod, sizeof stats.errorMethod, "%s", many ? "replicated nets, Student's t" : "sample variance");
+}
+
+void FrameWork::describeLedger(RTstats& stats) const {
+  Ledger all;
+  for (uint32_t i = 0; i < impl_->count; i++) all.addMean(impl_->tiles[i].ledger);
+  const double pixels = std::max(double(impl_->frame.width) * impl_->frame.height, 1.0);
+  stats.cutByDepth = all.cutByDepth / pixels, stats.cutByEnergy = all.cutByEnergy / pixels;
+  stats.clipped = all.clipped / pixels;
+}
+
+} // namespace openrt

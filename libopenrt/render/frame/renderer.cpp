@@ -1,0 +1,92 @@
+// renderer.cpp: see renderer.h. The picture does not depend on which thread does what (frame_work.h).
+#include "render/frame/renderer.h"
+
+#include <algorithm>
+#include <bit>
+#include <chrono>
+#include <exception>
+
+#include "render/frame/job_runner.h"
+
+namespace openrt {
+namespace {
+
+double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+// Samples of a job at most: a picture of few tiles has work for all threads, too, until its end.
+uint32_t largestJob(const edit::FrameSettingsT& frame, uint32_t tiles, uint32_t threads) {
+  constexpr uint32_t jobsOfThread = 8;
+  if (threads < 2 || tiles >= jobsOfThread * threads) return ~0u;
+  return std::max(uint32_t(uint64_t(frame.samples) * tiles / (jobsOfThread * threads)), fewestOfLeaves);
+}
+
+} // namespace
+
+Frame::Frame(std::shared_ptr<const RenderScene> scene, uint32_t threads)
+    : scene_(std::move(scene)), work_(scene_->frame, factsOf(*scene_), threads), started_(now()) {
+  work_.onChange([this] {
+    {
+      std::lock_guard lock(mutex_);
+      changes_++;
+    }
+    changed_.notify_all();
+  });
+  const uint32_t tiles = std::max(work_.tiles(), 1u), largest = largestJob(scene_->frame, tiles, threads);
+  const uint64_t jobs = uint64_t(tiles) * std::max(scene_->frame.samples / std::max(largest, 1u), 1u);
+  for (uint64_t i = 0; i < std::min<uint64_t>(threads, jobs); i++) threads_.emplace_back([this, largest] { work(largest); });
+}
+
+Frame::~Frame() {
+  cancel();
+  wait();
+}
+
+void Frame::cancel() {
+  cancelled_ = true;
+  {
+    std::lock_guard lock(mutex_);
+    changes_++;
+  }
+  changed_.notify_all();
+}
+
+void Frame::wait() {
+  if (threads_.empty()) return;
+  for (auto& thread : threads_) thread.join();
+  threads_.clear();
+  if (cancelled_) work_.cancel();
+  work_.counters().faults.report(scene_->host.logCallback, scene_->host.logUser);
+}
+
+void Frame::work(uint32_t largest) {
+  try {
+    JobRunner runner(scene_);
+    Job job;
+    JobResult result;
+    while (!cancelled_) {
+      uint64_t seen = 0;
+      {
+        std::lock_guard lock(mutex_);
+        seen = changes_;
+      }
+      const FrameWork::Next next = work_.next(job, largest);
+      if (next == FrameWork::Next::over) break;
+      if (next == FrameWork::Next::job) {
+        if (runner.run(job, cancelled_, result)) work_.take(job, std::move(result));
+        continue;
+      }
+      std::unique_lock lock(mutex_);
+      changed_.wait(lock, [&] { return changes_ != seen; });
+    }
+    std::lock_guard lock(mutex_);
+    seconds_ = std::max(seconds_, now() - started_);
+  } catch (const std::exception& e) {
+    {
+      std::lock_guard lock(mutex_);
+      failure_ = e.what();
+    }
+    cancel();
+  }
+}
+
+} // namespace openrt

@@ -1,0 +1,217 @@
+// result_codec.cpp: see result_codec.h.
+#include "render/frame/result_codec.h"
+
+#include <bit>
+#include <cmath>
+#include <cstring>
+
+#include "openrt/openrt.h"
+
+namespace openrt {
+namespace {
+
+static_assert(std::endian::native == std::endian::little);
+
+enum class Form : uint8_t { one, floats, all };
+
+struct Field { // of PixelSums
+  size_t offset, bytes, count;
+};
+#define FIELD(name)                                                                                                              \
+  Field { offsetof(PixelSums, name), sizeof(*elements(&PixelSums::name)), countOf(&PixelSums::name) }
+template <class T, size_t n> T* elements(T (PixelSums::*)[n]);
+template <class T> T* elements(T PixelSums::*);
+template <class T, size_t n> constexpr size_t countOf(T (PixelSums::*)[n]) { return n; }
+template <class T> constexpr size_t countOf(T PixelSums::*) { return 1; }
+
+std::vector<Field> fieldsOf(const edit::FrameSettingsT& frame) {
+  const Gathering gathering = gatheringOf(frame);
+  std::vector<Field> fields{FIELD(rgba)};
+  if (frame.channels & RT_DEPTH) fields.push_back(FIELD(depth));
+  if (frame.channels & RT_POSITION) fields.push_back(FIELD(position));
+  if (frame.channels & RT_NAME) fields.push_back(FIELD(name));
+  if (gathering.spread) fields.insert(fields.end(), {FIELD(first), FIELD(delta), FIELD(delta2)});
+  if (frame.channels & RT_NORMAL) fields.push_back(FIELD(normal));
+  if (frame.channels & RT_ALBEDO) fields.push_back(FIELD(albedo));
+  if (gathering.error)
+    fields.insert(fields.end(),
+                  {FIELD(closed), FIELD(closed2), FIELD(closed3), FIELD(closed4), FIELD(grey), FIELD(largest), FIELD(random)});
+  return fields;
+}
+#undef FIELD
+
+void put(std::vector<std::byte>& out, const void* from, size_t bytes) {
+  const size_t at = out.size();
+  out.resize(at + bytes);
+  std::memcpy(out.data() + at, from, bytes);
+}
+
+// Whether nothing is lost; denormal floats are not trusted, which some threads take for zeros.
+bool fits(double x, float& f) {
+  f = static_cast<float>(x);
+  const uint32_t bits = std::bit_cast<uint32_t>(f);
+  if ((bits & 0x7f800000u) == 0 && (bits & 0x7fffffu) != 0) return false;
+  return std::bit_cast<uint64_t>(double(f)) == std::bit_cast<uint64_t>(x);
+}
+
+void putField(std::vector<std::byte>& out, const std::vector<PixelSums>& sums, size_t offset, size_t bytes) {
+  const auto at = [&](size_t i) { return reinterpret_cast<const std::byte*>(&sums[i]) + offset; };
+  bool same = true, floats = bytes == sizeof(double);
+  for (size_t i = 0; i < sums.size() && (same || floats); i++) {
+    same = same && std::memcmp(at(i), at(0), bytes) == 0;
+    if (!floats) continue;
+    double x;
+    float f;
+    std::memcpy(&x, at(i), sizeof x);
+    floats = fits(x, f);
+  }
+  const Form form = same ? Form::one : floats ? Form::floats : Form::all;
+  out.push_back(std::byte(form));
+  if (form == Form::one) return put(out, at(0), bytes);
+  for (size_t i = 0; i < sums.size(); i++) {
+    if (form == Form::all) {
+      put(out, at(i), bytes);
+      continue;
+    }
+    double x;
+    std::memcpy(&x, at(i), sizeof x);
+    const auto f = static_cast<float>(x);
+    put(out, &f, sizeof f);
+  }
+}
+
+class Source {
+ public:
+  explicit Source(std::span<const std::byte> bytes) : left_(bytes) {}
+  bool get(void* to, size_t bytes) {
+    const std::byte* from = skip(bytes);
+    if (from) std::memcpy(to, from, bytes);
+    return from;
+  }
+  // So many bytes; null: there are fewer.
+  const std::byte* skip(size_t bytes) {
+    if (bytes > left_.size()) return nullptr;
+    const std::byte* at = left_.data();
+    left_ = left_.subspan(bytes);
+    return at;
+  }
+  bool empty() const { return left_.empty(); }
+
+ private:
+  std::span<const std::byte> left_;
+};
+
+bool getLedger(Source& source, Ledger& ledger) {
+  double v[9];
+  if (!source.get(v, sizeof v)) return false;
+  ledger.cutByDepth = v[0], ledger.cutByEnergy = v[1], ledger.clipped = v[2];
+  ledger.chance = {v[3], v[4], v[5]}, ledger.chanceSky = {v[6], v[7], v[8]};
+  return true;
+}
+
+// sums: null: only looked at.
+bool getField(Source& source, std::vector<PixelSums>* sums, size_t pixels, size_t offset, size_t bytes, bool flag) {
+  uint8_t form = 0;
+  if (!source.get(&form, 1) || form > uint8_t(Form::all) || (Form(form) == Form::floats && bytes != sizeof(double))) return false;
+  const size_t each = Form(form) == Form::floats ? sizeof(float) : bytes, count = Form(form) == Form::one ? 1 : pixels;
+  const std::byte* from = source.skip(each * count);
+  if (!from) return false;
+  for (size_t i = 0; flag && i < count; i++)
+    if (from[i] > std::byte(1)) return false;
+  for (size_t i = 0; sums && i < pixels; i++) {
+    const std::byte* value = from + (count == 1 ? 0 : i * each);
+    std::byte* to = reinterpret_cast<std::byte*>(&(*sums)[i]) + offset;
+    if (each == bytes) {
+      std::memcpy(to, value, bytes);
+      continue;
+    }
+    float f;
+    std::memcpy(&f, value, sizeof f);
+    const double x = f;
+    std::memcpy(to, &x, sizeof x);
+  }
+  return true;
+}
+
+bool getTile(const edit::FrameSettingsT& frame, Source source, std::vector<PixelSums>* sums, size_t pixels) {
+  for (const Field& field : fieldsOf(frame))
+    for (size_t k = 0; k < field.count; k++)
+      if (!getField(source, sums, pixels, field.offset + k * field.bytes, field.bytes,
+                    field.offset == offsetof(PixelSums, random)))
+        return false;
+  return source.empty();
+}
+
+bool zero(float f) { return std::bit_cast<uint32_t>(f) == 0; }
+
+void putLight(std::vector<std::byte>& out, const std::vector<float>& light) {
+  constexpr size_t fewest = 4; // zeros that make a run of their own
+  for (size_t i = 0; i < light.size();) {
+    size_t begin = i;
+    while (begin < light.size() && zero(light[begin])) begin++;
+    if (begin == light.size()) return;
+    size_t end = begin, zeros = 0;
+    for (; end < light.size() && zeros < fewest; end++) zeros = zero(light[end]) ? zeros + 1 : 0;
+    end -= zeros;
+    const uint32_t run[2] = {uint32_t(begin - i), uint32_t(end - begin)};
+    put(out, run, sizeof run);
+    put(out, &light[begin], (end - begin) * sizeof(float));
+    i = end;
+  }
+}
+
+// light: null: only looked at.
+bool getLight(Source source, size_t size, float* light) {
+  for (size_t at = 0; !source.empty();) {
+    uint32_t run[2];
+    if (!source.get(run, sizeof run) || run[1] == 0 || run[0] > size - at || run[1] > size - at - run[0]) return false;
+    const std::byte* from = source.skip(run[1] * sizeof(float));
+    if (!from) return false;
+    at += run[0];
+    if (light) std::memcpy(light + at, from, run[1] * sizeof(float));
+    at += run[1];
+  }
+  return true;
+}
+
+} // namespace
+
+std::vector<std::byte> encodeResult(const edit::FrameSettingsT& frame, const Job& job, const JobResult& result) {
+  std::vector<std::byte> out;
+  const Ledger& l = result.ledger;
+  const double ledger[9] = {l.cutByDepth, l.cutByEnergy,     l.clipped,        l.chance.light, l.chance.rays,
+                            l.chance.met, l.chanceSky.light, l.chanceSky.rays, l.chanceSky.met};
+  put(out, ledger, sizeof ledger);
+  if (job.kind == Job::Kind::light) {
+    putLight(out, result.light);
+    return out;
+  }
+  for (const Field& field : fieldsOf(frame))
+    for (size_t k = 0; k < field.count; k++) putField(out, result.sums, field.offset + k * field.bytes, field.bytes);
+  return out;
+}
+
+bool decodeResult(const edit::FrameSettingsT& frame, const Job& job, const Tile& tile, std::span<const std::byte> bytes,
+                  JobResult& result) {
+  Source source(bytes);
+  result.ledger = {};
+  if (!getLedger(source, result.ledger)) return false;
+  if (job.kind == Job::Kind::light) {
+    const size_t size = size_t(frame.width) * frame.height * 3;
+    if (!getLight(source, size, nullptr)) return false;
+    result.sums.clear();
+    result.light.assign(size, 0.0f);
+    return getLight(source, size, result.light.data());
+  }
+  const size_t pixels = tile.pixels();
+  if (!getTile(frame, source, nullptr, pixels)) return false; // before memory is taken
+  result.ledger.samples = job.count;
+  result.light.clear();
+  result.sums.assign(pixels, {});
+  const Replicates& parts = job.replicates;
+  const bool closed = gatheringOf(frame).error && parts.many() && job.count >= parts.size();
+  for (PixelSums& s : result.sums) s.samples = job.count, s.replicates = closed ? job.count / parts.size() : 0;
+  return getTile(frame, source, &result.sums, pixels);
+}
+
+} // namespace openrt

@@ -1,0 +1,275 @@
+// emissive_shapes.cpp: see emissive_shapes.h. What a shape sends out is asked of its shader, head on, at a few places.
+#include "render/lights/emissive_shapes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/surface/batch.h"
+#include "shading/running.h"
+
+namespace openrt {
+namespace {
+
+constexpr uint32_t batchSize = 1024;
+
+double luminance(const float c[3]) {
+  const double l = 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2];
+  return std::isfinite(l) && l > 0 ? std::min(l, 1e30) : 0;
+}
+
+double areaOf(const float p[3][3], float normal[3]) {
+  double a[3], b[3];
+  for (int k = 0; k < 3; k++) a[k] = double(p[1][k]) - p[0][k], b[k] = double(p[2][k]) - p[0][k];
+  const double n[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+  const double length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+  for (int k = 0; k < 3; k++) normal[k] = float(length > 0 ? n[k] / length : 0);
+  return length / 2;
+}
+
+// A map that turns corners the other way around: the kernel's normal does not turn with them.
+bool mirrors(const Record& r) { return r.instanced && determinantOf(r.toRender) < 0; }
+
+// Rays that meet places of a record head on.
+struct Looks {
+  Rays rays;
+  RayHits hits;
+  uint32_t* order;
+  uint32_t count = 0;
+
+  Looks(Arena& arena, uint32_t capacity) {
+    rays.allocate(arena, capacity);
+    hits.allocate(arena, capacity);
+    order = arena.take<uint32_t>(padded(capacity));
+  }
+  void add(const float place[3], const float towards[3]) { // towards: where the ray comes from, unit
+    for (int k = 0; k < 3; k++) rays.org[k][count] = place[k] + towards[k], rays.dir[k][count] = -towards[k];
+    hits.t[count] = 1;
+    order[count] = count;
+    count++;
+  }
+};
+
+// What n places send towards where they are looked at from.
+RtsSurface answer(const RenderScene& scene, uint32_t record, const Looks& looks, Arena& arena) {
+  const Record& r = scene.records[record];
+  const uint32_t n = looks.count;
+  const auto* travelled = arena.takeZero<float>(padded(n));
+  const Points points = makePoints(scene, looks.rays, looks.hits, looks.order, n, travelled, arena);
+  RtsSurface surface{};
+  for (auto& e : surface.emission) e = arena.takeZero<float>(padded(n));
+  RayCounters counters;
+  RtsBatch batch;
+  batch.scene = &scene, batch.arena = &arena, batch.counters = &counters, batch.points = &points;
+  const RunningShader running(*(*scene.shaders)[r.shader].shaderClass);
+  (*scene.shaders)[r.shader].shaderClass->surface(&scene.host, &batch, &points.hits, &surface);
+  return surface;
+}
+
+// Its luminance.
+void ask(const RenderScene& scene, uint32_t record, const Looks& looks, Arena& arena, double* out) {
+  const RtsSurface surface = answer(scene, record, looks, arena);
+  for (uint32_t i = 0; i < looks.count; i++) {
+    const float c[3] = {surface.emission[0][i], surface.emission[1][i], surface.emission[2][i]};
+    out[i] = luminance(c);
+  }
+}
+
+// As the kernel gives it: of an instance in its own frame, up to its length the inverse transpose of kernelNormal's map.
+void kernelNormal(const Record& r, const float normal[3], float out[3]) {
+  for (int k = 0; k < 3; k++) out[k] = normal[k];
+  if (!r.instanced) return;
+  for (int k = 0; k < 3; k++)
+    out[k] = r.toRender.r[0][k] * normal[0] + r.toRender.r[1][k] * normal[1] + r.toRender.r[2][k] * normal[2];
+}
+
+// Mean emission of triangles, of either side. Where colours or pictures may vary, of four places.
+void askTriangles(const RenderScene& scene, uint32_t record, std::span<const EmissiveShapes::Shape> shapes, bool otherSide,
+                  Arena& arena, double* out) {
+  const Record& r = scene.records[record];
+  static constexpr float at[4][2] = {{1.0f / 3, 1.0f / 3}, {1.0f / 6, 1.0f / 6}, {2.0f / 3, 1.0f / 6}, {1.0f / 6, 2.0f / 3}};
+  const bool mirrored = mirrors(r);
+  const uint32_t places = r.texCoords || r.colors || r.parameterCount ? 4 : 1;
+  ArenaScope scope(arena);
+  Looks looks(arena, uint32_t(shapes.size()) * places);
+  for (const EmissiveShapes::Shape& s : shapes) {
+    float normal[3], towards[3], kernel[3];
+    areaOf(s.corner, normal);
+    for (int k = 0; k < 3; k++) towards[k] = otherSide ? -normal[k] : normal[k];
+    kernelNormal(r, normal, kernel);
+    for (uint32_t p = 0; p < places; p++) {
+      const uint32_t i = looks.count;
+      const float u = at[p][0], v = at[p][1];
+      float place[3];
+      for (int k = 0; k < 3; k++) {
+        place[k] = (1 - u - v) * s.corner[0][k] + u * s.corner[1][k] + v * s.corner[2][k];
+        looks.hits.ng[k][i] = kernel[k];
+      }
+      looks.hits.u[i] = mirrored ? v : u, looks.hits.v[i] = mirrored ? u : v;
+      looks.hits.record[i] = record, looks.hits.primitive[i] = s.primitive;
+      looks.add(place, towards);
+    }
+  }
+  auto* each = arena.take<double>(looks.count);
+  ask(scene, record, looks, arena, each);
+  for (uint32_t i = 0; i < looks.count; i++) out[i / places] += each[i] / places;
+}
+
+// The same of a sphere's outside, at the ends of its axes.
+double askSphere(const RenderScene& scene, uint32_t record, Arena& arena) {
+  const Record& r = scene.records[record];
+  ArenaScope scope(arena);
+  Looks looks(arena, 6);
+  for (int axis = 0; axis < 3; axis++)
+    for (const float sign : {1.0f, -1.0f}) {
+      float place[3], towards[3], length = 0;
+      for (int k = 0; k < 3; k++) {
+        place[k] = r.toRender.r[k][3] + sign * r.toRender.r[k][axis];
+        towards[k] = sign * r.normalMatrix[k][axis];
+        length += towards[k] * towards[k];
+      }
+      for (float& x : towards) x /= std::sqrt(length);
+      const uint32_t i = looks.count;
+      for (int k = 0; k < 3; k++) looks.hits.ng[k][i] = towards[k];
+      looks.hits.u[i] = looks.hits.v[i] = 0, looks.hits.record[i] = record, looks.hits.primitive[i] = 0;
+      looks.add(place, towards);
+    }
+  double each[6], sum = 0;
+  ask(scene, record, looks, arena, each);
+  for (double x : each) sum += x / 6;
+  return sum;
+}
+
+LightBounds triangleBounds(const EmissiveShapes::Shape& s, double front, double back) {
+  LightBounds b;
+  float normal[3];
+  const double area = areaOf(s.corner, normal);
+  for (int k = 0; k < 3; k++) {
+    b.low[k] = std::min({s.corner[0][k], s.corner[1][k], s.corner[2][k]});
+    b.high[k] = std::max({s.corner[0][k], s.corner[1][k], s.corner[2][k]});
+    b.axis[k] = front > 0 ? normal[k] : -normal[k];
+  }
+  b.cosineNormals = 1;
+  b.bothSides = front > 0 && back > 0;
+  const double intensity = std::max(front, back) * area;
+  b.intensity = std::isfinite(intensity) ? float(std::min(intensity, 1e30)) : 0;
+  return b;
+}
+
+LightBounds sphereBounds(const Record& r, double outside) {
+  LightBounds b;
+  double disc = 0; // area of the largest shadow, about
+  for (int k = 0; k < 3; k++) {
+    const auto& m = r.toRender.r[k];
+    const double half = std::sqrt(double(m[0]) * m[0] + double(m[1]) * m[1] + double(m[2]) * m[2]);
+    b.low[k] = float(m[3] - half), b.high[k] = float(m[3] + half);
+    disc = std::max(disc, M_PI * half * half);
+  }
+  const double intensity = outside * disc;
+  b.intensity = std::isfinite(intensity) ? float(std::min(intensity, 1e30)) : 0;
+  return b;
+}
+
+} // namespace
+
+void cornersOf(const Record& r, uint32_t primitive, float out[3][3]) {
+  for (int c = 0; c < 3; c++) {
+    const float* v = r.vertices + 3 * size_t(r.indices[3 * size_t(primitive) + c]);
+    for (int k = 0; k < 3; k++) {
+      const float* m = r.toRender.r[k];
+      out[c][k] = r.instanced ? m[0] * v[0] + m[1] * v[1] + m[2] * v[2] + m[3] : v[k] * r.scale;
+    }
+  }
+}
+
+EmissiveShapes::EmissiveShapes(const RenderScene& scene) : firstOf_(scene.records.size(), none) {
+  std::vector<LightBounds> bounds;
+  for (uint32_t id = 0; id < scene.records.size(); id++) add(scene, id, bounds);
+  tree_.build(bounds);
+}
+
+void EmissiveShapes::add(const RenderScene& scene, uint32_t id, std::vector<LightBounds>& bounds) {
+  const Record& r = scene.records[id];
+  const ShaderSlot& shader = (*scene.shaders)[r.shader];
+  if (!(shader.traits & RTS_EMISSIVE) || !shader.shaderClass->surface) return;
+  Arena arena;
+  if (r.primitive == edit::Primitive::Sphere) {
+    const double outside = askSphere(scene, id, arena); // inside, a surface's own directions meet it
+    firstOf_[id] = uint32_t(shapes_.size());
+    brightest_ = std::max(brightest_, outside);
+    bounds.push_back(sphereBounds(r, outside));
+    shapes_.push_back({id, 0, uint8_t(outside > 0 ? 1 : 0), true, {}, false, 4 * bounds.back().intensity});
+    return;
+  }
+  if (r.primitive != edit::Primitive::Triangles || !r.vertices) return;
+  firstOf_[id] = uint32_t(shapes_.size());
+  std::vector<double> front, back;
+  const bool mirrored = mirrors(r);
+  for (uint32_t first = 0; first < r.primitives; first += batchSize) {
+    const uint32_t n = std::min(batchSize, r.primitives - first);
+    const size_t begin = shapes_.size();
+    for (uint32_t i = 0; i < n; i++) {
+      Shape& s = shapes_.emplace_back(Shape{id, first + i, 0, false, {}, mirrored, 0});
+      cornersOf(r, s.primitive, s.corner);
+      if (mirrored) std::swap(s.corner[1], s.corner[2]);
+    }
+    front.assign(n, 0), back.assign(n, 0);
+    const std::span<const Shape> shapes(shapes_.data() + begin, n);
+    askTriangles(scene, id, shapes, false, arena, front.data());
+    askTriangles(scene, id, shapes, true, arena, back.data());
+    if (r.cull) std::fill_n((r.flip ? front : back).begin(), n, 0.0); // that side is not there
+    for (uint32_t i = 0; i < n; i++) {
+      Shape& s = shapes_[begin + i];
+      brightest_ = std::max({brightest_, front[i], back[i]});
+      bounds.push_back(triangleBounds(s, front[i], back[i]));
+      if (bounds.back().intensity > 0) s.sides = uint8_t((front[i] > 0 ? 1 : 0) | (back[i] > 0 ? 2 : 0));
+      s.power = bounds.back().intensity * (s.sides == 3 ? 2.0f : 1.0f);
+    }
+  }
+}
+
+EmissiveShapes::Place EmissiveShapes::place(const RenderScene& scene, uint32_t number, float u, float v) const {
+  const Shape& s = shapes_[number];
+  Place p{};
+  if (!s.sphere) {
+    const float root = std::sqrt(u); // uniform on the triangle
+    p.u = root * (1 - v), p.v = root * v;
+    for (int k = 0; k < 3; k++) p.position[k] = (1 - p.u - p.v) * s.corner[0][k] + p.u * s.corner[1][k] + p.v * s.corner[2][k];
+    p.area = areaOf(s.corner, p.normal);
+    return p;
+  }
+  const Record& r = scene.records[s.record];
+  const double z = 1 - 2.0 * u, round = std::sqrt(std::max(0.0, 1 - z * z)), phi = 2 * M_PI * v;
+  const double l[3] = {round * std::cos(phi), round * std::sin(phi), z};
+  double length = 0, n[3];
+  const auto& m = r.toRender.r;
+  for (int k = 0; k < 3; k++) {
+    p.position[k] = float(m[k][0] * l[0] + m[k][1] * l[1] + m[k][2] * l[2] + m[k][3]);
+    n[k] = r.fromRender.r[0][k] * l[0] + r.fromRender.r[1][k] * l[1] + r.fromRender.r[2][k] * l[2]; // by the inverse transpose
+    length += n[k] * n[k];
+  }
+  length = std::sqrt(length);
+  for (int k = 0; k < 3; k++) p.normal[k] = float(n[k] / length);
+  p.area = 4 * M_PI * std::fabs(determinantOf(r.toRender)) * length; // an element of area grows by |det M| |M^-T n|
+  return p;
+}
+
+void EmissiveShapes::radiance(const RenderScene& scene, uint32_t number, const Place& place, const float towards[3], Arena& arena,
+                              float out[3]) const {
+  const Shape& s = shapes_[number];
+  ArenaScope scope(arena);
+  Looks looks(arena, 1);
+  float kernel[3];
+  if (s.sphere)
+    std::copy_n(place.normal, 3, kernel);
+  else
+    kernelNormal(scene.records[s.record], place.normal, kernel);
+  for (int k = 0; k < 3; k++) looks.hits.ng[k][0] = kernel[k];
+  looks.hits.u[0] = s.swapped ? place.v : place.u, looks.hits.v[0] = s.swapped ? place.u : place.v;
+  looks.hits.record[0] = s.record, looks.hits.primitive[0] = s.primitive;
+  looks.add(place.position, towards);
+  const RtsSurface surface = answer(scene, s.record, looks, arena);
+  for (int k = 0; k < 3; k++)
+    out[k] = surface.emission[k][0] > 0 && std::isfinite(surface.emission[k][0]) ? surface.emission[k][0] : 0;
+}
+
+} // namespace openrt

@@ -1,0 +1,162 @@
+// illumination.cpp: see illumination.h.
+#include "render/lights/illumination.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "render/surface/faults.h"
+#include "render/lights/shadows.h"
+#include "render/path/tile.h"
+#include "shading/running.h"
+
+namespace openrt {
+namespace {
+
+constexpr uint32_t lightPair = 0x6c696768u; // of random points: apart from those of shaders
+constexpr uint32_t none = ~0u;
+
+// Null where every light of the set is asked.
+const ManyLights* manyOf(const RtsBatch& batch) {
+  if (!batch.tracer || !batch.scene->manyLights) return nullptr;
+  const ManyLights& many = (*batch.scene->manyLights)[batch.lightSet];
+  return many.chooses() ? &many : nullptr;
+}
+
+const LightSlot& lightOf(const RtsBatch& batch, uint32_t i) {
+  const ManyLights* many = manyOf(batch);
+  return batch.scene->lights[many ? many->always()[i] : batch.scene->lightSets[batch.lightSet][i]];
+}
+
+void pointsToLocal(const Affine& m, uint32_t n, const float* const p[3], float* const out[3]) {
+  for (int k = 0; k < 3; k++) {
+    const float a = m.r[k][0], b = m.r[k][1], c = m.r[k][2], d = m.r[k][3];
+    const float *x = p[0], *y = p[1], *z = p[2];
+    float* o = out[k];
+    for (uint32_t i = 0; i < n; i++) o[i] = a * x[i] + b * y[i] + c * z[i] + d;
+  }
+}
+
+// Light-space vectors to unit vectors in render space; reach: their length there.
+void directionsToRender(const Affine& m, uint32_t n, float* const v[3], float* reach) {
+  for (uint32_t i = 0; i < n; i++) {
+    const float x = v[0][i], y = v[1][i], z = v[2][i];
+    const float a = m.r[0][0] * x + m.r[0][1] * y + m.r[0][2] * z;
+    const float b = m.r[1][0] * x + m.r[1][1] * y + m.r[1][2] * z;
+    const float c = m.r[2][0] * x + m.r[2][1] * y + m.r[2][2] * z;
+    const float l = std::sqrt(a * a + b * b + c * c);
+    const float k = l > 0 && l <= 1e30f ? 1 / l : 0.0f;
+    v[0][i] = a * k, v[1][i] = b * k, v[2][i] = c * k;
+    reach[i] = k > 0 ? l : 0.0f;
+  }
+}
+
+// One light at places, up to whole groups of lanes. The arrays of out are written; whether it is parallel.
+bool ask(RtsBatch& batch, const LightSlot& light, uint32_t count, const float* const position[3], float* const local[3],
+         RtsIllumination& out, float* reach) {
+  const uint32_t n = padded(count);
+  pointsToLocal(light.toLocal, n, position, local);
+  for (float* a : out.ambient) std::fill_n(a, n, 0.0f);
+  out.directional = 0;
+  const float* places[3] = {local[0], local[1], local[2]};
+  {
+    const RunningShader running(*light.shader.shaderClass);
+    light.shader.shaderClass->illuminate(&batch.scene->host, &batch, light.shader.params, n, places, &out);
+  }
+  checkAnswer(*light.shader.shaderClass, batch, count,
+              {out.toLight[0], out.toLight[1], out.toLight[2], out.color[0], out.color[1], out.color[2], out.ambient[0],
+               out.ambient[1], out.ambient[2]});
+  directionsToRender(light.fromLocal, n, out.toLight, reach);
+  return out.directional != 0;
+}
+
+// A light for each hit; the hits of each light are asked together.
+void askChosen(RtsBatch& batch, const ManyLights& many, const RtsHits& hits, RtsIllumination& out) {
+  Arena& arena = *batch.arena;
+  const uint32_t n = hits.count;
+  batch.chosen = arena.take<uint32_t>(padded(n));
+  ArenaScope scope(arena);
+  float* square[2] = {arena.take<float>(padded(n)), arena.take<float>(padded(n))};
+  batch.tracer->randomPoints(batch, lightPair, square);
+  auto* probability = arena.take<float>(n);
+  auto* order = arena.take<uint32_t>(n);
+  uint32_t lit = 0;
+  for (int k = 0; k < 3; k++)
+    for (float* a : {out.toLight[k], out.color[k], out.ambient[k]}) std::fill_n(a, padded(n), 0.0f);
+  std::fill_n(batch.reach, padded(n), 0.0f);
+  for (uint32_t i = 0; i < n; i++) {
+    const float place[3] = {hits.position[0][i], hits.position[1][i], hits.position[2][i]};
+    const float normal[3] = {hits.normal[0][i], hits.normal[1][i], hits.normal[2][i]};
+    const ManyLights::Choice c = many.choose(place, normal, double(square[0][i]) + double(square[1][i]) * 0x1p-24);
+    batch.chosen[i] = c.probability > 0 ? c.light : none;
+    probability[i] = c.probability;
+    if (c.probability > 0) order[lit++] = i;
+  }
+  std::sort(order, order + lit, [&](uint32_t a, uint32_t b) {
+    return batch.chosen[a] != batch.chosen[b] ? batch.chosen[a] < batch.chosen[b] : a < b;
+  });
+  for (uint32_t begin = 0, end; begin < lit; begin = end) {
+    const uint32_t light = batch.chosen[order[begin]];
+    for (end = begin + 1; end < lit && batch.chosen[order[end]] == light;) end++;
+    const uint32_t m = end - begin, size = padded(m);
+    ArenaScope inner(arena);
+    RtsIllumination part{};
+    float *position[3], *local[3];
+    for (int k = 0; k < 3; k++) {
+      position[k] = arena.take<float>(size), local[k] = arena.take<float>(size);
+      part.toLight[k] = arena.take<float>(size), part.color[k] = arena.take<float>(size),
+      part.ambient[k] = arena.take<float>(size);
+      for (uint32_t i = 0; i < size; i++) position[k][i] = hits.position[k][order[begin + std::min(i, m - 1)]];
+    }
+    auto* reach = arena.take<float>(size);
+    const float* const places[3] = {position[0], position[1], position[2]};
+    const bool parallel = ask(batch, batch.scene->lights[light], m, places, local, part, reach);
+    for (uint32_t i = 0; i < m; i++) {
+      const uint32_t to = order[begin + i];
+      for (int k = 0; k < 3; k++) {
+        out.toLight[k][to] = part.toLight[k][i];
+        out.color[k][to] = part.color[k][i] / probability[to], out.ambient[k][to] = part.ambient[k][i] / probability[to];
+      }
+      batch.reach[to] = parallel ? std::numeric_limits<float>::infinity() : reach[i];
+    }
+  }
+}
+
+} // namespace
+
+// The arrays are made here: callers release what they take for each light.
+uint32_t lightCount(RtsBatch& batch) {
+  if (batch.points) makeRoomForLight(batch, batch.points->hits.count);
+  const ManyLights* many = manyOf(batch);
+  return uint32_t(many ? many->always().size() + 1 : batch.scene->lightSets[batch.lightSet].size());
+}
+
+void illuminateHits(RtsBatch& batch, uint32_t i, const RtsHits& hits, RtsIllumination& out) {
+  makeRoomForLight(batch, hits.count);
+  for (int k = 0; k < 3; k++) out.toLight[k] = batch.toLight[k], out.color[k] = batch.color[k], out.ambient[k] = batch.ambient[k];
+  batch.current = i;
+  batch.chosen = nullptr;
+  if (const ManyLights* many = manyOf(batch); many && i == many->always().size()) {
+    askChosen(batch, *many, hits, out);
+    out.directional = 0;
+    batch.directional = false;
+    return;
+  }
+  batch.directional = ask(batch, lightOf(batch, i), hits.count, hits.position, batch.local, out, batch.reach);
+}
+
+void shadowHits(RtsBatch& batch, uint32_t i, const RtsHits& hits, const uint8_t* wanted, RtsIllumination& light) {
+  if (!batch.scene->frame.shadows || batch.current != i || &hits != &batch.points->hits) return;
+  if (!batch.chosen) {
+    if (!(lightOf(batch, i).shader.traits & RTS_NO_SHADOW)) castShadows(batch, wanted, light);
+    return;
+  }
+  ArenaScope scope(*batch.arena);
+  auto* casts = batch.arena->take<uint8_t>(padded(hits.count));
+  for (uint32_t h = 0; h < hits.count; h++)
+    casts[h] = batch.chosen[h] == none || (batch.scene->lights[batch.chosen[h]].shader.traits & RTS_NO_SHADOW) ? 0 : wanted[h];
+  castShadows(batch, casts, light);
+}
+
+} // namespace openrt

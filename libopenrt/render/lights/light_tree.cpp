@@ -1,0 +1,338 @@
+// light_tree.cpp: see light_tree.h.
+#include "render/lights/light_tree.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace openrt {
+namespace {
+
+constexpr uint32_t bins = 12;
+constexpr uint32_t none = ~0u;
+constexpr uint32_t balanceFrom = 28; // deeper nodes are halved: bounds the depth
+
+double dot(const float a[3], const float b[3]) { return double(a[0]) * b[0] + double(a[1]) * b[1] + double(a[2]) * b[2]; }
+
+// The smallest cone about both (S. Glassner's construction, as in PBR 3.8.4), a little wider for its own rounding.
+void uniteCones(LightBounds& a, const LightBounds& b) {
+  if (a.cosineNormals <= -1 || b.cosineNormals <= -1) {
+    a.cosineNormals = -1;
+    return;
+  }
+  const double along = dot(a.axis, b.axis);
+  if (b.cosineNormals >= 1 && along >= a.cosineNormals) return; // most often: one normal more within the cone
+  const double first = std::acos(std::clamp(double(a.cosineNormals), -1.0, 1.0));
+  const double second = std::acos(std::clamp(double(b.cosineNormals), -1.0, 1.0));
+  const double between = std::acos(std::clamp(along, -1.0, 1.0));
+  if (std::min(between + second, M_PI) <= first) return;
+  if (std::min(between + first, M_PI) <= second) {
+    std::copy_n(b.axis, 3, a.axis);
+    a.cosineNormals = b.cosineNormals;
+    return;
+  }
+  const double half = (first + between + second) / 2, turn = half - first, sine = std::sin(between);
+  if (half >= M_PI || !(sine > 1e-7)) { // opposite axes have no middle
+    a.cosineNormals = -1;
+    return;
+  }
+  double axis[3], square = 0; // from the first axis towards the second
+  for (int k = 0; k < 3; k++) {
+    axis[k] = (std::sin(between - turn) * a.axis[k] + std::sin(turn) * b.axis[k]) / sine;
+    square += axis[k] * axis[k];
+  }
+  for (int k = 0; k < 3; k++) a.axis[k] = float(axis[k] / std::sqrt(square));
+  a.cosineNormals = float(std::cos(std::min(half + 1e-6, M_PI)));
+}
+
+void unite(LightBounds& a, const LightBounds& b) {
+  for (int k = 0; k < 3; k++) a.low[k] = std::min(a.low[k], b.low[k]), a.high[k] = std::max(a.high[k], b.high[k]);
+  uniteCones(a, b);
+  a.cosineBeyond = std::min(a.cosineBeyond, b.cosineBeyond);
+  a.bothSides |= b.bothSides;
+  a.intensity += b.intensity, a.irradiance += b.irradiance;
+  a.reach = std::max(a.reach, b.reach);
+}
+
+// Of a split: strength times the directions lit times the surface of the box. Flat boxes get a little depth.
+double cost(const LightBounds& b, const double size[3]) {
+  const double normals = std::acos(std::clamp(double(b.cosineNormals), -1.0, 1.0));
+  const double all = std::min(normals + std::acos(std::clamp(double(b.cosineBeyond), -1.0, 1.0)), M_PI);
+  const double directions = 2 * M_PI * (1 - std::cos(normals)) + M_PI / 2 *
+                                                                     (2 * all * std::sin(normals) - std::cos(normals - 2 * all) -
+                                                                      2 * normals * std::sin(normals) + std::cos(normals));
+  double d[3];
+  const double least = 1e-3 * std::max({size[0], size[1], size[2]});
+  for (int k = 0; k < 3; k++) d[k] = std::max(double(b.high[k]) - b.low[k], least);
+  return (double(b.intensity) + b.irradiance) * directions * (d[0] * d[1] + d[1] * d[2] + d[2] * d[0]);
+}
+
+struct Range {
+  uint32_t begin, end, parent, steps; // parent: its second child is this one; none: a first child, or the root
+};
+
+// A binary tree first.
+struct Twig {
+  LightBounds bounds;
+  uint32_t next, steps; // the second child (the first one follows the twig), or the light; from the root
+  bool leaf;
+};
+
+class Builder {
+ public:
+  Builder(std::span<const LightBounds> lights, std::vector<uint32_t>& order) : lights_(lights), order_(order) {}
+  // Where the range is cut in two, its lights in order before and after.
+  uint32_t split(const Range& range, const LightBounds& whole) {
+    const uint32_t middle = (range.begin + range.end) / 2;
+    float low[3], high[3];
+    std::fill_n(low, 3, std::numeric_limits<float>::infinity());
+    std::fill_n(high, 3, -std::numeric_limits<float>::infinity());
+    for (uint32_t i = range.begin; i < range.end; i++)
+      for (int k = 0; k < 3; k++)
+        low[k] = std::min(low[k], centre(order_[i], k)), high[k] = std::max(high[k], centre(order_[i], k));
+    int widest = 0;
+    for (int k = 1; k < 3; k++)
+      if (high[k] - low[k] > high[widest] - low[widest]) widest = k;
+    if (!(high[widest] - low[widest] > 0)) return middle; // all in one place
+    double best = std::numeric_limits<double>::infinity();
+    int dimension = -1;
+    uint32_t cut = 0;
+    const bool all = range.end - range.begin <= 1u << 14; // of many only the widest extent is tried
+    for (int k = 0; k < 3 && range.steps < balanceFrom; k++)
+      if ((all || k == widest) && high[k] > low[k]) tryCuts(range, whole, k, low[k], high[k], best, dimension, cut);
+    const auto first = order_.begin() + range.begin, last = order_.begin() + range.end;
+    if (dimension >= 0) {
+      const auto found = std::stable_partition(
+          first, last, [&](uint32_t i) { return bin(i, dimension, low[dimension], high[dimension]) <= cut; });
+      if (found != first && found != last) return uint32_t(found - order_.begin());
+    }
+    std::nth_element(first, order_.begin() + middle, last, [&](uint32_t a, uint32_t b) {
+      const float x = centre(a, widest), y = centre(b, widest);
+      return x != y ? x < y : a < b;
+    });
+    return middle;
+  }
+
+ private:
+  float centre(uint32_t i, int k) const { return lights_[i].low[k] / 2 + lights_[i].high[k] / 2; }
+  uint32_t bin(uint32_t i, int k, float low, float high) const {
+    return std::min(uint32_t((double(centre(i, k)) - low) / (double(high) - low) * bins), bins - 1);
+  }
+  void tryCuts(const Range& range, const LightBounds& whole, int k, float low, float high, double& best, int& dimension,
+               uint32_t& cut) const {
+    LightBounds in[bins];
+    bool used[bins] = {};
+    for (uint32_t i = range.begin; i < range.end; i++) {
+      const uint32_t b = bin(order_[i], k, low, high);
+      if (used[b])
+        unite(in[b], lights_[order_[i]]);
+      else
+        in[b] = lights_[order_[i]], used[b] = true;
+    }
+    double size[3];
+    for (int j = 0; j < 3; j++) size[j] = double(whole.high[j]) - whole.low[j];
+    const double longest = std::max({size[0], size[1], size[2]}), factor = longest / std::max(size[k], 1e-3 * longest);
+    const auto add = [](LightBounds& sum, bool& any, const LightBounds& more) {
+      if (any)
+        unite(sum, more);
+      else
+        sum = more, any = true;
+    };
+    bool any = false, anyAbove = false;
+    LightBounds sum, above;
+    double belowCost[bins];
+    for (uint32_t b = 0; b < bins; b++) {
+      if (used[b]) add(sum, any, in[b]);
+      belowCost[b] = any ? cost(sum, size) : 0;
+    }
+    for (uint32_t b = bins - 1; b > 0; b--) {
+      if (used[b]) add(above, anyAbove, in[b]);
+      if (!anyAbove) continue;
+      const double c = factor * (belowCost[b - 1] + cost(above, size));
+      if (belowCost[b - 1] > 0 && c < best) best = c, dimension = k, cut = b - 1;
+    }
+  }
+
+  std::span<const LightBounds> lights_;
+  std::vector<uint32_t>& order_;
+};
+
+std::vector<Twig> makeTwigs(std::span<const LightBounds> lights, std::vector<uint32_t>& order) {
+  std::vector<Twig> twigs;
+  twigs.reserve(2 * order.size() - 1);
+  Builder builder(lights, order);
+  std::vector<Range> left{{0, uint32_t(order.size()), none, 0}};
+  while (!left.empty()) { // depth first, the first child first: it follows its parent
+    const Range range = left.back();
+    left.pop_back();
+    const auto number = uint32_t(twigs.size());
+    if (range.parent != none) twigs[range.parent].next = number;
+    Twig twig{lights[order[range.begin]], order[range.begin], range.steps, range.end - range.begin == 1};
+    for (uint32_t i = range.begin + 1; i < range.end; i++) unite(twig.bounds, lights[order[i]]);
+    twigs.push_back(twig);
+    if (twig.leaf) continue;
+    const uint32_t middle = builder.split(range, twig.bounds);
+    left.push_back({middle, range.end, number, range.steps + 1});
+    left.push_back({range.begin, middle, none, range.steps + 1});
+  }
+  return twigs;
+}
+
+constexpr float slack = 1e-5f; // of cosines: bounds must hold whatever rounds
+
+} // namespace
+
+// Strongest twigs first are replaced by their children until a node is full.
+void LightTree::build(std::span<const LightBounds> lights) {
+  nodes_.clear();
+  depth_ = 0;
+  places_.assign(lights.size(), {none, 0});
+  std::vector<uint32_t> order;
+  for (uint32_t i = 0; i < lights.size(); i++)
+    if (lights[i].intensity > 0 || lights[i].irradiance > 0) order.push_back(i);
+  if (order.empty()) return;
+  const std::vector<Twig> twigs = makeTwigs(lights, order);
+  struct Todo {
+    uint32_t twig, parent, slot, depth;
+  };
+  std::vector<Todo> left{{0, none, 0, 1}};
+  for (size_t next = 0; next < left.size(); next++) {
+    const Todo todo = left[next];
+    const auto number = uint32_t(nodes_.size());
+    Node& node = nodes_.emplace_back();
+    node = {};
+    node.parent = todo.parent, node.slot = todo.slot;
+    if (todo.parent != none) nodes_[todo.parent].child[todo.slot] = number;
+    depth_ = std::max(depth_, todo.depth);
+    uint32_t children[width] = {todo.twig}, count = 1;
+    while (count < width) {
+      uint32_t strongest = none;
+      float most = -1;
+      for (uint32_t i = 0; i < count; i++) {
+        const Twig& t = twigs[children[i]];
+        const float strength = t.bounds.intensity + t.bounds.irradiance;
+        if (!t.leaf && strength > most) most = strength, strongest = i;
+      }
+      if (strongest == none) break;
+      const uint32_t opened = children[strongest];
+      children[strongest] = opened + 1, children[count++] = twigs[opened].next;
+    }
+    for (uint32_t i = 0; i < count; i++) {
+      const Twig& t = twigs[children[i]];
+      fill(number, i, t.bounds);
+      nodes_[number].leaf[i] = t.leaf;
+      if (t.leaf)
+        nodes_[number].child[i] = t.next, places_[t.next] = {number, i};
+      else
+        left.push_back({children[i], number, i, todo.depth + 1});
+    }
+  }
+}
+
+void LightTree::fill(uint32_t number, uint32_t i, const LightBounds& b) {
+  Node& node = nodes_[number];
+  double diagonal = 0;
+  for (int k = 0; k < 3; k++) {
+    node.centre[k][i] = b.low[k] / 2 + b.high[k] / 2;
+    const double half = std::max(double(b.high[k]) - node.centre[k][i], double(node.centre[k][i]) - b.low[k]);
+    diagonal += half * half;
+    node.axis[k][i] = b.axis[k];
+  }
+  node.radius2[i] = float(std::min(diagonal * (1 + 1e-6), 3e38));
+  const double far = double(b.reach) * (1 + 1e-5) + std::sqrt(diagonal);
+  node.reach2[i] = far < 1e19 ? float(far * far * (1 + 1e-6)) : std::numeric_limits<float>::infinity();
+  node.cosine[i] = b.cosineNormals;
+  node.sine[i] = float(std::sqrt(std::max(0.0, 1 - double(b.cosineNormals) * b.cosineNormals)));
+  node.beyond[i] = b.cosineBeyond, node.both[i] = b.bothSides ? 1 : 0;
+  node.intensity[i] = b.intensity, node.irradiance[i] = b.irradiance, node.used[i] = 1;
+}
+
+struct LightTree::Query {
+  float place[3], normal[3];
+  float facing;     // added to the cosine at the receiver: 2 where its side does not matter
+  float cut, least; // of that cosine: below the one nothing arrives, and it counts as the other at least
+  Query(const float from[3], const float* side, Side meaning) {
+    for (int k = 0; k < 3; k++) place[k] = from[k], normal[k] = side ? side[k] : 0;
+    facing = side ? 0 : 2;
+    cut = meaning == Side::only ? -slack : -2, least = meaning == Side::only ? slack : 0.1f;
+  }
+};
+
+// A bound of the irradiance of each child at a place that faces where the light comes from, up to the nearness of the box. One
+// loop without calls or branches: it goes into vector lanes.
+void LightTree::measure(const Node& node, const Query& q, float* __restrict out) {
+  const auto larger = [](float a, float b) { return a > b ? a : b; };
+  for (uint32_t i = 0; i < width; i++) {
+    const float x = q.place[0] - node.centre[0][i], y = q.place[1] - node.centre[1][i], z = q.place[2] - node.centre[2][i];
+    const float square = x * x + y * y + z * z, radius2 = node.radius2[i];
+    const bool within = square <= radius2 * (1 + 1e-5f);
+    const float inverse = 1 / std::sqrt(within ? 1.0f : square);
+    // The cone about the box as seen from the place.
+    const float cosBox = std::sqrt(larger(1 - radius2 * inverse * inverse, 0)) - slack;
+    const float sinBox = std::sqrt(larger(1 - cosBox * cosBox, 0));
+    // Of all directions that leave the box towards the place the one nearest to the cone of normals.
+    const float along = (x * node.axis[0][i] + y * node.axis[1][i] + z * node.axis[2][i]) * inverse;
+    const float axial = larger(along, -along * node.both[i] - (1 - node.both[i]) * 2);
+    const float across = std::sqrt(larger(1 - axial * axial, 0));
+    const float cosine = node.cosine[i], sine = node.sine[i];
+    const float cosLess = axial * cosine + across * sine, sinLess = across * cosine - axial * sine;
+    const float cosX = axial > cosine ? 1.0f : cosLess, sinX = axial > cosine ? 0.0f : sinLess;
+    const float leavesBeside = cosX * cosBox + sinX * sinBox;
+    const float leaves = ((cosX > cosBox) | within) ? 1.0f : leavesBeside, atLeast = larger(leaves, slack);
+    const float leaving = leaves < node.beyond[i] - slack ? 0.0f : atLeast;
+    // And of all that arrive the one nearest to the receiver's normal.
+    const float facing = q.facing - (x * q.normal[0] + y * q.normal[1] + z * q.normal[2]) * inverse;
+    const float aside = std::sqrt(larger(1 - facing * facing, 0));
+    const float arrivesBeside = facing * cosBox + aside * sinBox;
+    const float arrives = ((facing > cosBox) | within) ? 1.0f : arrivesBeside, enough = larger(arrives, q.least);
+    const float arriving = arrives < q.cut ? 0.0f : enough;
+    const float falling = node.intensity[i] / larger(larger(square, radius2), 1e-37f);
+    const float sum = larger(falling + node.irradiance[i], 1e-30f), strength = sum < 1e30f ? sum : 1e30f;
+    const float used = node.used[i], lit = square <= node.reach2[i] ? used : 0.0f;
+    out[i] = lit * leaving * arriving * strength;
+  }
+}
+
+LightTree::Choice LightTree::choose(const float place[3], const float* normal, double pick, Side side) const {
+  if (nodes_.empty()) return {};
+  const Query query(place, normal, side);
+  double probability = 1;
+  for (uint32_t at = 0;;) {
+    const Node& node = nodes_[at];
+    float each[width];
+    measure(node, query, each);
+    double sum = 0;
+    for (const float m : each) sum += double(m);
+    if (!(sum > 0)) return {};
+    double target = pick * sum;
+    uint32_t slot = 0, last = 0;
+    for (uint32_t i = 0; i < width; i++)
+      if (each[i] > 0) last = i;
+    while (slot < last && !(target < double(each[slot]))) target -= double(each[slot++]);
+    probability *= double(each[slot]) / sum;
+    if (node.leaf[slot]) return {node.child[slot], float(probability)};
+    pick = std::clamp(target / double(each[slot]), 0.0, 1 - 0x1p-53);
+    at = node.child[slot];
+  }
+}
+
+float LightTree::probability(const float place[3], const float* normal, uint32_t light) const {
+  if (nodes_.empty() || places_[light].node == none) return 0;
+  const Query query(place, normal, Side::only);
+  double probability = 1;
+  Place at = places_[light];
+  for (;;) {
+    const Node& node = nodes_[at.node];
+    float each[width];
+    measure(node, query, each);
+    double sum = 0;
+    for (const float m : each) sum += double(m);
+    if (!(sum > 0)) return 0;
+    probability *= double(each[at.slot]) / sum;
+    if (node.parent == none) return float(probability);
+    at = {node.parent, node.slot};
+  }
+}
+
+} // namespace openrt

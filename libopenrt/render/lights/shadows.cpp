@@ -1,0 +1,135 @@
+// shadows.cpp: shadow rays of a batch, compacted: first against all that is opaque, then, for the rays that got through and
+// only if the scene has anything transparent, through the transparent surfaces one after the other.
+#include "render/lights/shadows.h"
+#include "shading/running.h"
+
+#include <cmath>
+#include <limits>
+
+namespace openrt {
+namespace {
+
+// A ray for every wanted lane that light can reach at all.
+ShadowRays makeRays(RtsBatch& batch, const uint8_t* wanted, const RtsIllumination& light) {
+  const RtsHits& hits = batch.points->hits;
+  ShadowRays s;
+  s.rays.allocate(*batch.arena, hits.count);
+  s.lane = batch.arena->take<uint32_t>(hits.count);
+  uint32_t n = 0;
+  for (uint32_t i = 0; i < hits.count; i++) {
+    if (!wanted[i] || !(batch.directional || batch.reach[i] > 0)) continue;
+    if (!(light.color[0][i] != 0 || light.color[1][i] != 0 || light.color[2][i] != 0)) continue;
+    const float l[3] = {light.toLight[0][i], light.toLight[1][i], light.toLight[2][i]};
+    float g[3] = {hits.geometric[0][i], hits.geometric[1][i], hits.geometric[2][i]};
+    float p[3] = {hits.position[0][i], hits.position[1][i], hits.position[2][i]}, origin[3];
+    // The facet faces away, the smooth surface does not: the ray starts on the smooth surface, or behind where it is flat.
+    // Light that comes through the surface (2) arrives from behind.
+    const bool away = g[0] * l[0] + g[1] * l[1] + g[2] * l[2] < 0;
+    if (away && (wanted[i] == 2 || !liftToSmooth(*batch.scene, *batch.points, i, p))) g[0] = -g[0], g[1] = -g[1], g[2] = -g[2];
+    offsetPoint(p, g, batch.points->error[i], origin);
+    for (int k = 0; k < 3; k++) s.rays.org[k][n] = origin[k], s.rays.dir[k][n] = l[k];
+    s.rays.tnear[n] = 0;
+    s.rays.tfar[n] = batch.directional ? std::numeric_limits<float>::infinity() : batch.reach[i] * (1 - 0x1p-20f);
+    s.lane[n++] = i;
+  }
+  s.rays.count = n;
+  return s;
+}
+
+void scaleColor(float* const color[3], uint32_t lane, float r, float g, float b) {
+  color[0][lane] *= r, color[1][lane] *= g, color[2][lane] *= b;
+}
+
+// Keeps the rays whose flag is 0.
+void compact(ShadowRays& s, const uint8_t* drop) {
+  uint32_t n = 0;
+  for (uint32_t i = 0; i < s.rays.count; i++) {
+    if (drop[i]) continue;
+    for (int k = 0; k < 3; k++) s.rays.org[k][n] = s.rays.org[k][i], s.rays.dir[k][n] = s.rays.dir[k][i];
+    s.rays.tnear[n] = s.rays.tnear[i], s.rays.tfar[n] = s.rays.tfar[i];
+    s.lane[n++] = s.lane[i];
+  }
+  s.rays.count = n;
+}
+
+// One transparent surface further along every ray; rays that meet none are done.
+void passSurface(const RtsBatch& batch, ShadowRays& s, RayHits& found, uint8_t* done, float* const color[3]) {
+  const RenderScene& scene = *batch.scene;
+  Arena& arena = *batch.arena;
+  ArenaScope scope(arena);
+  scene.kernel->intersect(s.rays, maskTransparent, Coherence::incoherent, found);
+  uint32_t n = 0;
+  auto* met = arena.take<uint32_t>(s.rays.count + 1);
+  for (uint32_t i = 0; i < s.rays.count; i++) {
+    done[i] = found.record[i] == noHit;
+    if (!done[i]) met[n++] = i;
+  }
+  if (n == 0) return;
+  auto* order = arena.take<uint32_t>(n);
+  auto* travelled = arena.takeZero<float>(s.rays.count);
+  std::vector<uint32_t> counts;
+  std::vector<BucketRange> ranges;
+  sortByBucket(scene, found, met, n, order, counts, ranges);
+  for (const BucketRange& range : ranges) {
+    const uint32_t m = range.end - range.begin;
+    const Points points = makePoints(scene, s.rays, found, order + range.begin, m, travelled, arena);
+    float* through[3];
+    for (auto& a : through) a = arena.takeZero<float>(padded(m));
+    const RtsClass& shaderClass = *scene.buckets[range.bucket].shaderClass;
+    RtsBatch inner = batch;
+    inner.tracer = nullptr;
+    inner.points = &points;
+    // What mirrors and glass do with light is not guessed where it is followed.
+    if (shaderClass.transmit && !(scene.lightSources && shaderClass.surface && shaderClass.medium)) {
+      const RunningShader running(shaderClass);
+      shaderClass.transmit(&scene.host, &inner, &points.hits, through);
+    }
+    for (uint32_t i = 0; i < m; i++) {
+      const uint32_t ray = order[range.begin + i];
+      float t[3];
+      for (int k = 0; k < 3; k++) t[k] = through[k][i] > 0 ? std::fmin(through[k][i], 1.0f) : 0.0f; // NaN: opaque
+      scaleColor(color, s.lane[ray], t[0], t[1], t[2]);
+      if (t[0] + t[1] + t[2] < 1e-6f) {
+        done[ray] = 1;
+        continue;
+      }
+      const float p[3] = {points.hits.position[0][i], points.hits.position[1][i], points.hits.position[2][i]};
+      const float g[3] = {-points.hits.geometric[0][i], -points.hits.geometric[1][i], -points.hits.geometric[2][i]};
+      float origin[3];
+      offsetPoint(p, g, points.error[i], origin);
+      for (int k = 0; k < 3; k++) s.rays.org[k][ray] = origin[k];
+      s.rays.tfar[ray] -= found.t[ray];
+      if (!(s.rays.tfar[ray] > 0)) done[ray] = 1;
+    }
+  }
+}
+
+} // namespace
+
+void passShadows(const RtsBatch& batch, ShadowRays& s, float* const color[3]) {
+  if (s.rays.count == 0) return;
+  ArenaScope scope(*batch.arena);
+  const RenderScene& scene = *batch.scene;
+  batch.counters->shadow += s.rays.count;
+  auto* blocked = batch.arena->take<uint8_t>(s.rays.count);
+  scene.kernel->occluded(s.rays, maskOpaque, Coherence::coherent, blocked);
+  for (uint32_t i = 0; i < s.rays.count; i++)
+    if (blocked[i]) scaleColor(color, s.lane[i], 0, 0, 0);
+  if (!scene.transparentShadows) return;
+  compact(s, blocked);
+  RayHits found;
+  found.allocate(*batch.arena, s.rays.count);
+  for (uint32_t pass = 0; s.rays.count && pass < scene.frame.depth; pass++) {
+    passSurface(batch, s, found, blocked, color);
+    compact(s, blocked);
+  }
+  for (uint32_t i = 0; i < s.rays.count; i++) scaleColor(color, s.lane[i], 0, 0, 0); // beyond the depth: dark, as documented
+}
+
+void castShadows(RtsBatch& batch, const uint8_t* wanted, RtsIllumination& light) {
+  ArenaScope scope(*batch.arena);
+  ShadowRays s = makeRays(batch, wanted, light);
+  passShadows(batch, s, light.color);
+}
+
+} // namespace openrt

@@ -1,0 +1,156 @@
+// sky_sampler.cpp: see sky_sampler.h.
+#include "render/lights/sky_sampler.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+
+#include "render/surface/batch.h"
+#include "shading/running.h"
+
+namespace openrt {
+namespace {
+
+constexpr uint32_t coarsest = 512, finest = 4096; // columns
+
+double luminance(const float c[3]) {
+  const double l = 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2];
+  return std::isfinite(l) && l > 0 ? std::min(l, 1e30) : 0;
+}
+
+// As many columns as the widest picture has texels around: a single one goes around, one of several covers a quarter.
+uint32_t columnsFor(const RenderScene& scene) {
+  const ShaderSlot& environment = scene.environment.shader;
+  uint32_t widest = 0, pictures = 0;
+  for (uint32_t i = 0; i < environment.shaderClass->paramCount; i++) {
+    const RtsParam& param = environment.shaderClass->params[i];
+    if (param.type != RTS_TEXTURE) continue;
+    RtsTexture number;
+    std::memcpy(&number, static_cast<const char*>(environment.params) + param.offset, sizeof number);
+    if (number == 0 || number >= scene.textures->size()) continue;
+    widest = std::max(widest, (*scene.textures)[number].width());
+    pictures++;
+  }
+  return std::bit_ceil(std::clamp((pictures > 1 ? 4 : 1) * std::min(widest, finest), coarsest, finest));
+}
+
+} // namespace
+
+double SkySampler::solidAngle(uint32_t row) const {
+  return 2 * M_PI / columns_ * (std::cos(M_PI * row / rows_) - std::cos(M_PI * (row + 1) / rows_));
+}
+
+// Mean radiance of the cells from four places in each.
+void SkySampler::measure(const RenderScene& scene, std::vector<float>& cells) const {
+  const ShaderSlot& environment = scene.environment.shader;
+  Arena arena;
+  const uint32_t n = 4 * columns_;
+  float *d[3], *rgba[4];
+  for (auto& a : d) a = arena.take<float>(n);
+  for (auto& a : rgba) a = arena.take<float>(n);
+  std::vector<double> turn(2 * size_t(n));
+  for (uint32_t i = 0; i < n; i++) {
+    const double phi = 2 * M_PI * (i / 4 + (i / 2 % 2 ? 0.75 : 0.25)) / columns_;
+    turn[2 * i] = std::cos(phi), turn[2 * i + 1] = std::sin(phi);
+  }
+  RayCounters counters;
+  for (uint32_t row = 0; row < rows_; row++) {
+    ArenaScope scope(arena);
+    RtsBatch batch;
+    batch.scene = &scene, batch.arena = &arena, batch.counters = &counters;
+    const double theta[2] = {M_PI * (row + 0.25) / rows_, M_PI * (row + 0.75) / rows_};
+    const double sine[2] = {std::sin(theta[0]), std::sin(theta[1])}, cosine[2] = {std::cos(theta[0]), std::cos(theta[1])};
+    for (uint32_t i = 0; i < n; i++)
+      d[0][i] = float(sine[i % 2] * turn[2 * i]), d[1][i] = float(cosine[i % 2]), d[2][i] = float(sine[i % 2] * turn[2 * i + 1]);
+    for (auto& a : rgba) std::fill_n(a, n, 0.0f);
+    const float* directions[3] = {d[0], d[1], d[2]};
+    {
+      const RunningShader running(*environment.shaderClass);
+      environment.shaderClass->miss(&scene.host, &batch, environment.params, n, directions, rgba);
+    }
+    for (uint32_t column = 0; column < columns_; column++) {
+      double mean = 0;
+      for (uint32_t i = 4 * column; i < 4 * column + 4; i++) {
+        const float c[3] = {rgba[0][i], rgba[1][i], rgba[2][i]};
+        mean += luminance(c) / 4;
+      }
+      cells[size_t(row) * columns_ + column] = float(mean);
+    }
+  }
+}
+
+bool SkySampler::shines(const RenderScene& scene) {
+  SkySampler coarse;
+  coarse.columns_ = 64, coarse.rows_ = 8; // four places in each
+  std::vector<float> cells(size_t(coarse.columns_) * coarse.rows_);
+  coarse.measure(scene, cells);
+  return std::any_of(cells.begin(), cells.end(), [](float mean) { return mean > 0; });
+}
+
+SkySampler::SkySampler(const RenderScene& scene) {
+  const ShaderSlot& environment = scene.environment.shader;
+  if (!environment.shaderClass || !environment.shaderClass->miss) return;
+  columns_ = columnsFor(scene), rows_ = columns_ / 2;
+  std::vector<float> cells(size_t(columns_) * rows_);
+  measure(scene, cells);
+  for (const float mean : cells) brightest_ = std::max(brightest_, double(mean));
+  // A cell beside a much brighter one may hold some of it between the places that were looked at.
+  const auto beside = [&](uint32_t row, uint32_t column) {
+    float most = 0;
+    for (int y = -1; y <= 1; y++)
+      for (int x = -1; x <= 1; x++) {
+        const uint32_t r = uint32_t(std::clamp(int(row) + y, 0, int(rows_) - 1)),
+                       c = (column + columns_ + uint32_t(x)) % columns_;
+        most = std::max(most, cells[size_t(r) * columns_ + c]);
+      }
+    return most;
+  };
+  inRow_.resize(cells.size());
+  byRow_.resize(rows_);
+  std::vector<double> mass(columns_);
+  for (uint32_t row = 0; row < rows_; row++) {
+    double sum = 0;
+    for (uint32_t column = 0; column < columns_; column++)
+      mass[column] = sum += std::max(double(cells[size_t(row) * columns_ + column]), double(beside(row, column)) / 16);
+    float* shares = inRow_.data() + size_t(row) * columns_;
+    for (uint32_t column = 0; column < columns_; column++) shares[column] = sum > 0 ? float(mass[column] / sum) : 0;
+    byRow_[row] = total_ += sum * solidAngle(row);
+  }
+  for (double& share : byRow_) share /= total_ > 0 ? total_ : 1;
+}
+
+float SkySampler::cellDensity(uint32_t row, uint32_t column) const {
+  const float* shares = inRow_.data() + size_t(row) * columns_;
+  const double inRow = double(shares[column]) - (column ? shares[column - 1] : 0.0f);
+  return float((byRow_[row] - (row ? byRow_[row - 1] : 0.0)) * inRow / solidAngle(row));
+}
+
+// What is left of u and v after they have chosen row and column places the direction within the cell.
+float SkySampler::sample(double u, double v, float direction[3]) const {
+  if (!usable()) return 0;
+  const auto row = uint32_t(std::min(std::upper_bound(byRow_.begin(), byRow_.end(), v) - byRow_.begin(), ptrdiff_t(rows_) - 1));
+  const float* shares = inRow_.data() + size_t(row) * columns_;
+  const auto column = uint32_t(std::min(std::upper_bound(shares, shares + columns_, u) - shares, ptrdiff_t(columns_) - 1));
+  const double before = row ? byRow_[row - 1] : 0, left = column ? shares[column - 1] : 0;
+  const double down = std::clamp((v - before) / (byRow_[row] - before), 0.0, 1.0);
+  const double along = std::clamp((u - left) / (shares[column] - left), 0.0, 1.0);
+  const double top = std::cos(M_PI * row / rows_), bottom = std::cos(M_PI * (row + 1) / rows_);
+  const double y = top + (bottom - top) * down, phi = 2 * M_PI * (column + along) / columns_;
+  const double s = std::sqrt(std::max(0.0, 1 - y * y));
+  direction[0] = float(s * std::cos(phi)), direction[1] = float(y), direction[2] = float(s * std::sin(phi));
+  return cellDensity(row, column);
+}
+
+float SkySampler::density(const float d[3]) const {
+  if (!usable()) return 0;
+  const double theta = std::acos(std::clamp(double(d[1]), -1.0, 1.0));
+  double phi = std::atan2(double(d[2]), double(d[0]));
+  if (phi < 0) phi += 2 * M_PI;
+  if (!(theta >= 0) || !(phi >= 0)) return 0;
+  const uint32_t row = std::min(uint32_t(theta / M_PI * rows_), rows_ - 1),
+                 column = std::min(uint32_t(phi / (2 * M_PI) * columns_), columns_ - 1);
+  return cellDensity(row, column);
+}
+
+} // namespace openrt

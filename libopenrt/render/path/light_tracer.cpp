@@ -1,0 +1,395 @@
+// light_tracer.cpp: see light_tracer.h.
+#include "render/path/light_tracer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "render/surface/scatter.h"
+#include "render/lights/shadows.h"
+#include "render/surface/ways.h"
+#include "shading/running.h"
+
+namespace openrt {
+namespace {
+
+constexpr uint32_t pathsInFlight = 4096, rouletteFrom = 4;
+enum Pair : uint32_t { which, place, aim, first, perLevel = 4 }; // of random numbers: at the lamp, then by level
+enum Use : uint32_t { direction, choice, lens };
+
+// Flux meets a surface by its true cosines, lobes count those at their normals: E. Veach, 1997, 5.3.
+float tilt(const RtsLobe& lobe, const RtsHits& hits, uint32_t i, const float out[3]) {
+  const float n[3] = {lobe.normal[0][i], lobe.normal[1][i], lobe.normal[2][i]};
+  const float g[3] = {hits.geometric[0][i], hits.geometric[1][i], hits.geometric[2][i]};
+  const float d[3] = {hits.direction[0][i], hits.direction[1][i], hits.direction[2][i]};
+  const float t = dot3(n, d) * dot3(g, out) / (dot3(g, d) * dot3(n, out));
+  return std::isfinite(t) ? std::fabs(t) : 0.0f;
+}
+
+} // namespace
+
+LightTracer::LightTracer(const RenderScene& scene, const LightSources& sources)
+    : scene_(scene), sources_(sources), width_(scene.frame.width), height_(scene.frame.height) {
+  const double determinant = determinantOf(scene.camera.toLocal);
+  cameraArea_ = std::cbrt(determinant * determinant);
+}
+
+void LightTracer::sampleAt(const RayState& state, uint32_t pair, float out[2]) const {
+  PairSampler(~0u, pair + state.branch, seed_)(first_ + state.path, out[0], out[1]);
+}
+
+bool LightTracer::trace(uint32_t paths, uint32_t seed, const std::atomic<bool>& stop) {
+  picture_.assign(size_t(width_) * height_ * 3, 0.0f);
+  seed_ = seed;
+  scale_ = 1.0 / paths;
+  for (uint32_t first = 0, n; first < paths; first += n) {
+    if (stop) return false;
+    n = std::min(pathsInFlight, paths - first);
+    begin(first, n);
+  }
+  return true;
+}
+
+void LightTracer::begin(uint32_t firstPath, uint32_t n) {
+  ArenaScope scope(arena_);
+  first_ = firstPath;
+  level_ = 0;
+  rays_.allocate(arena_, n);
+  states_ = arena_.take<RayState>(padded(n));
+  starts_.clear();
+  departures_.assign(n, {});
+  queue_.clear();
+  for (uint32_t i = 0; i < n; i++) {
+    const RayState state{.path = i};
+    float pick[2], where[2], towards[2];
+    sampleAt(state, Pair::which, pick), sampleAt(state, Pair::place, where), sampleAt(state, Pair::aim, towards);
+    starts_.push_back(sources_.begin(scene_, pick[0] + pick[1] * 0x1p-24, where, towards));
+    const LightSources::Start& start = starts_.back();
+    if (!(start.weight > 0) || !std::isfinite(start.weight)) continue;
+    QueuedRay& ray = queue_.emplace_back();
+    std::copy_n(start.origin, 3, ray.origin);
+    std::copy_n(start.direction, 3, ray.direction);
+    ray.state = state;
+  }
+  while (!queue_.empty() && level_ < scene_.frame.depth) { // the surface that the camera sees is one more
+    next_.clear();
+    load(uint32_t(queue_.size()));
+    counters_.secondary += queue_.size();
+    step(uint32_t(queue_.size()));
+    queue_.swap(next_);
+    level_++;
+  }
+}
+
+void LightTracer::load(uint32_t n) {
+  rays_.count = n;
+  for (uint32_t i = 0; i < padded(n); i++) {
+    const QueuedRay& ray = queue_[std::min(i, n - 1)];
+    for (int k = 0; k < 3; k++) rays_.org[k][i] = ray.origin[k], rays_.dir[k][i] = ray.direction[k];
+    rays_.tnear[i] = 0, rays_.tfar[i] = std::numeric_limits<float>::infinity();
+    states_[i] = ray.state;
+  }
+}
+
+void LightTracer::step(uint32_t n) {
+  ArenaScope scope(arena_);
+  RayHits hits;
+  hits.allocate(arena_, n);
+  scene_.kernel->intersect(rays_, maskAll, Coherence::incoherent, hits);
+  lookThroughBacks(scene_, arena_, counters_, rays_, hits);
+  absorbOnTheWay(scene_, rays_, hits, states_);
+  auto *met = arena_.take<uint32_t>(n), *order = arena_.take<uint32_t>(n);
+  auto* travelled = arena_.takeZero<float>(padded(n));
+  uint32_t mets = 0;
+  for (uint32_t i = 0; i < n; i++) {
+    if (hits.record[i] == noHit) continue;
+    const uint32_t traits = (*scene_.shaders)[scene_.records[hits.record[i]].shader].traits;
+    if (states_[i].course == Course::straight && !(traits & (RTS_SPECULAR | RTS_TRANSPARENT))) continue;
+    departures_[states_[i].path].way += double(hits.t[i]);
+    met[mets++] = i;
+  }
+  std::vector<BucketRange> ranges;
+  sortByBucket(scene_, hits, met, mets, order, counts_, ranges);
+  for (const BucketRange& range : ranges) {
+    ArenaScope inner(arena_);
+    const uint32_t* lanes = order + range.begin;
+    const Points points = makePoints(scene_, rays_, hits, lanes, range.end - range.begin, travelled, arena_);
+    const RtsClass& shaderClass = *scene_.buckets[range.bucket].shaderClass;
+    if (shaderClass.surface)
+      scatter(points, lanes, shaderClass);
+    else if (shaderClass.transmit)
+      pass(points, lanes, shaderClass);
+  }
+}
+
+RtsBatch LightTracer::makeBatch(const Points& points) {
+  RtsBatch batch;
+  batch.scene = &scene_;
+  batch.arena = &arena_;
+  batch.counters = &counters_;
+  batch.points = &points;
+  return batch;
+}
+
+// A surface that answers for itself lets light pass, and returns none.
+void LightTracer::pass(const Points& points, const uint32_t* order, const RtsClass& shaderClass) {
+  const uint32_t n = points.hits.count;
+  RtsBatch batch = makeBatch(points);
+  float* through[3];
+  for (auto& a : through) a = arena_.takeZero<float>(padded(n));
+  {
+    const RunningShader running(shaderClass);
+    shaderClass.transmit(&scene_.host, &batch, &points.hits, through);
+  }
+  for (uint32_t i = 0; i < n; i++) {
+    RayState state = states_[order[i]];
+    const float d[3] = {points.hits.direction[0][i], points.hits.direction[1][i], points.hits.direction[2][i]};
+    for (int k = 0; k < 3; k++) state.throughput[k] *= through[k][i] > 0 ? std::min(through[k][i], 1.0f) : 0.0f;
+    if (largest(state.throughput) > 0) push(points, i, state, d);
+  }
+}
+
+// The flux that a light without extent sends on a straight way to a place.
+void LightTracer::lampFlux(const Points& points, const LightSources::Start& start, const float at[3], float flux[3]) {
+  const LightSlot& light = scene_.lights[start.light];
+  ArenaScope scope(arena_);
+  float* local[3];
+  RtsIllumination out{};
+  for (int k = 0; k < 3; k++) {
+    local[k] = arena_.take<float>(lanes);
+    const float* m = light.toLocal.r[k];
+    std::fill_n(local[k], lanes, m[0] * at[0] + m[1] * at[1] + m[2] * at[2] + m[3]);
+    out.toLight[k] = arena_.takeZero<float>(lanes);
+    out.color[k] = arena_.takeZero<float>(lanes), out.ambient[k] = arena_.takeZero<float>(lanes);
+  }
+  RtsBatch batch = makeBatch(points);
+  const float* places[3] = {local[0], local[1], local[2]};
+  const RunningShader running(*light.shader.shaderClass);
+  light.shader.shaderClass->illuminate(&scene_.host, &batch, light.shader.params, 1, places, &out);
+  double way = 0;
+  for (int k = 0; k < 3; k++) way += std::pow(double(at[k]) - start.origin[k], 2);
+  const double scale = M_PI * start.weight * (start.parallel ? 1 : way); // a colour is the radiance of white paper
+  for (int k = 0; k < 3; k++) {
+    flux[k] = float(out.color[k][0] * scale);
+    if (!(flux[k] > 0) || !std::isfinite(flux[k])) flux[k] = 0;
+  }
+}
+
+// The flux that the lamp sends along a ray that has met its first surface.
+bool LightTracer::leaveLamp(const Points& points, uint32_t i, RayState& state) {
+  const LightSources::Start& start = starts_[state.path];
+  Departure& departure = departures_[state.path];
+  float flux[3] = {0, 0, 0};
+  if (start.shape != LightSources::none) {
+    scene_.emitters.shapes()->radiance(scene_, start.shape, start.place, start.direction, arena_, flux);
+    for (float& x : flux) x = float(x * start.weight);
+  } else {
+    const float at[3] = {points.hits.position[0][i], points.hits.position[1][i], points.hits.position[2][i]};
+    lampFlux(points, start, at, flux);
+    std::copy_n(flux, 3, departure.flux);
+    departure.settled = start.parallel;
+  }
+  for (int k = 0; k < 3; k++) state.throughput[k] *= flux[k] > 0 && std::isfinite(flux[k]) ? flux[k] : 0.0f;
+  return largest(state.throughput) > 0;
+}
+
+// Asks the light at the end of the unfolded way, in the direction that the path has left it in. A light that falls with the
+// square of the distance has the same flux everywhere: what differs there is rounding.
+void LightTracer::attenuate(const Points& points, uint32_t path) {
+  const LightSources::Start& start = starts_[path];
+  Departure& departure = departures_[path];
+  float at[3], flux[3];
+  for (int k = 0; k < 3; k++) at[k] = float(start.origin[k] + departure.way * start.direction[k]);
+  lampFlux(points, start, at, flux);
+  for (int k = 0; k < 3; k++) {
+    const float change = departure.flux[k] > 0 ? flux[k] / departure.flux[k] : 0.0f;
+    const bool rounding = departure.flux[k] > 0 && start.endless && std::fabs(change - 1) < 1e-3f;
+    departure.attenuation[k] = rounding || !std::isfinite(change) ? 1.0f : change;
+  }
+}
+
+void LightTracer::scatter(const Points& points, const uint32_t* order, const RtsClass& shaderClass) {
+  const RtsHits& hits = points.hits;
+  const uint32_t n = hits.count;
+  RtsSurface surface{};
+  for (auto& e : surface.emission) e = arena_.takeZero<float>(padded(n));
+  RtsBatch batch = makeBatch(points);
+  batch.states = states_, batch.order = order;
+  {
+    const RunningShader running(shaderClass);
+    shaderClass.surface(&scene_.host, &batch, &hits, &surface);
+  }
+  Boundaries boundaries{nullptr, nullptr};
+  if (shaderClass.medium) meetBoundaries(batch, states_, boundaries);
+  bool scatters = false;
+  for (uint32_t l = 0; l < batch.lobeCount; l++) scatters |= scatteringOf(batch.lobes[l]) != nullptr;
+  const uint32_t* all = arena_.takeNumbers(n);
+  auto* connected = arena_.take<uint32_t>(n);
+  uint32_t count = 0;
+  for (uint32_t i = 0; i < n; i++)
+    if (const RayState& state = states_[order[i]]; state.course != Course::straight) {
+      connected[count++] = i;
+      if (scatters && !departures_[state.path].settled) attenuate(points, state.path);
+    }
+  if (count && scatters) connect(batch, connected, count);
+  const LobeSamples* samples[RTS_MAX_LOBES] = {};
+  for (uint32_t l = 0; count && l < batch.lobeCount; l++) {
+    if (!scatteringOf(batch.lobes[l])) continue;
+    float* square[2] = {arena_.take<float>(n), arena_.take<float>(n)};
+    for (uint32_t i = 0; i < n; i++) {
+      float uv[2];
+      sampleAt(states_[order[i]], Pair::first + Pair::perLevel * level_ + Use::direction + (l ? hash(l, 0x6c6f6265u) : 0), uv);
+      square[0][i] = uv[0], square[1][i] = uv[1];
+    }
+    auto* made = new (arena_.take<LobeSamples>(1)) LobeSamples(arena_, n, &batch);
+    made->sample(batch.lobes[l], hits, n, all, square);
+    samples[l] = made;
+  }
+  for (uint32_t i = 0; i < n; i++) {
+    RayState& state = states_[order[i]];
+    if (boundaries.crossing && !boundaries.crossing[i].seen) { // nothing is there for light
+      RayState on = state;
+      on.media = boundaries.crossing[i].behind;
+      const float d[3] = {hits.direction[0][i], hits.direction[1][i], hits.direction[2][i]};
+      push(points, i, on, d);
+      continue;
+    }
+    goOn(batch, i, samples, boundaries);
+  }
+}
+
+// One of the ways on, in proportion to what they carry. From the lamp only bent ones count.
+void LightTracer::goOn(const RtsBatch& batch, uint32_t i, const LobeSamples* const samples[], const Boundaries& boundaries) {
+  const Points& points = *batch.points;
+  RayState state = states_[batch.order[i]];
+  const bool first = state.course == Course::straight;
+  Ways ways(points.hits, i, boundaries.eta ? boundaries.eta[i] : nullptr, state.channel, true);
+  for (uint32_t l = 0; l < batch.lobeCount; l++)
+    if (!first || !scatteringOf(batch.lobes[l])) ways.add(l, batch.lobes[l], first ? nullptr : samples[l]);
+  float carried[Ways::maximum], sum = 0;
+  for (uint32_t w = 0; w < ways.count; w++) sum += carried[w] = largest(ways.list[w].share);
+  if (!(sum > 0)) return;
+  float uv[2];
+  sampleAt(state, Pair::first + Pair::perLevel * level_ + Use::choice, uv);
+  const uint32_t chosen = chooseAmong(carried, ways.count, uv[0] * sum);
+  const Way& way = ways.list[chosen];
+  if (!(carried[chosen] > 0) || way.lost) return;
+  double kept = carried[chosen] / sum;
+  if (level_ >= rouletteFrom) {
+    const float stay = std::min(1.0f, sum);
+    if (uv[1] >= stay) return;
+    kept *= stay;
+  }
+  if (Departure& departure = departures_[state.path]; scatteringOf(batch.lobes[way.lobe]) && !departure.settled) {
+    for (int k = 0; k < 3; k++) state.throughput[k] *= departure.attenuation[k];
+    departure = {};
+  }
+  const float turned = way.bent ? tilt(batch.lobes[way.lobe], points.hits, i, way.direction) : 1.0f;
+  for (int k = 0; k < 3; k++) state.throughput[k] *= float(way.weight[k] * turned / kept);
+  state.channel = way.channel;
+  float towards = 0;
+  for (int k = 0; k < 3; k++) towards += points.hits.geometric[k][i] * way.direction[k];
+  if (towards < 0 && boundaries.crossing) state.media = boundaries.crossing[i].behind;
+  if (first && way.bent) {
+    if (!leaveLamp(points, i, state)) return;
+    state.course = Course::mirrored;
+  }
+  push(points, i, state, way.direction);
+}
+
+void LightTracer::push(const Points& points, uint32_t i, const RayState& state, const float way[3]) {
+  if (!(largest(state.throughput) > 0) || !std::isfinite(largest(state.throughput))) return;
+  QueuedRay& ray = next_.emplace_back();
+  liftPoint(points, i, way, ray.origin);
+  std::copy_n(way, 3, ray.direction);
+  ray.state = state;
+}
+
+// Light that goes straight from the hits into the camera.
+void LightTracer::connect(const RtsBatch& batch, const uint32_t* hitNumbers, uint32_t n) {
+  const ShaderSlot& camera = scene_.camera.shader;
+  ArenaScope scope(arena_);
+  const Points& points = *batch.points;
+  const RtsHits& hits = points.hits;
+  const uint32_t size = padded(n);
+  float *local[3], *uv[2], *towards[3];
+  RtsProjection seen{};
+  for (int k = 0; k < 3; k++) {
+    local[k] = arena_.take<float>(size), towards[k] = arena_.take<float>(size), seen.toEye[k] = arena_.takeZero<float>(size);
+    const float* m = scene_.camera.toLocal.r[k];
+    for (uint32_t i = 0; i < size; i++) {
+      const uint32_t h = hitNumbers[std::min(i, n - 1)];
+      local[k][i] = m[0] * hits.position[0][h] + m[1] * hits.position[1][h] + m[2] * hits.position[2][h] + m[3];
+    }
+  }
+  for (int k = 0; k < 2; k++) uv[k] = arena_.take<float>(size), seen.xy[k] = arena_.takeZero<float>(size);
+  for (uint32_t i = 0; i < size; i++) {
+    float at[2];
+    sampleAt(states_[batch.order[hitNumbers[std::min(i, n - 1)]]], Pair::first + Pair::perLevel * level_ + Use::lens, at);
+    uv[0][i] = at[0], uv[1][i] = at[1];
+  }
+  seen.weight = arena_.takeZero<float>(size);
+  const float *place[3] = {local[0], local[1], local[2]}, *square[2] = {uv[0], uv[1]};
+  const float extent[2] = {float(width_), float(height_)};
+  RtsBatch asking = batch;
+  {
+    const RunningShader running(*camera.shaderClass);
+    camera.shaderClass->project(&scene_.host, &asking, camera.params, n, place, square, extent, &seen);
+  }
+  float* distance = arena_.take<float>(size);
+  const auto& m = scene_.camera.fromLocal.r;
+  for (uint32_t i = 0; i < n; i++) {
+    float v[3];
+    for (int k = 0; k < 3; k++) v[k] = m[k][0] * seen.toEye[0][i] + m[k][1] * seen.toEye[1][i] + m[k][2] * seen.toEye[2][i];
+    distance[i] = std::sqrt(dot3(v, v));
+    for (int k = 0; k < 3; k++) towards[k][i] = v[k] / distance[i];
+  }
+  float* sent[3];
+  for (auto& a : sent) a = arena_.takeZero<float>(size);
+  LobeAnswers answers(arena_, n, &batch);
+  for (uint32_t l = 0; l < batch.lobeCount; l++) {
+    const RtsLobe& lobe = batch.lobes[l];
+    if (!scatteringOf(lobe)) continue;
+    answers.evaluate(lobe, hits, n, hitNumbers, towards);
+    for (uint32_t i = 0; i < n; i++) {
+      const uint32_t h = hitNumbers[i];
+      const float out[3] = {towards[0][i], towards[1][i], towards[2][i]};
+      const float g[3] = {hits.geometric[0][h], hits.geometric[1][h], hits.geometric[2][h]};
+      float w[3];
+      if (!weightAt(lobe, h, w) || (!scatteringOf(lobe)->transmits && !(dot3(g, out) > 0))) continue;
+      const float factor = tilt(lobe, hits, h, out) * seen.weight[i];
+      for (int k = 0; k < 3; k++) sent[k][i] += w[k] * answers.value[k][i] * factor;
+    }
+  }
+  // Of rough boundaries radiance in the denser medium is meant, of which flux knows nothing: eyes are in the open.
+  ShadowRays rays;
+  rays.rays.allocate(arena_, n);
+  rays.lane = arena_.take<uint32_t>(n);
+  uint32_t count = 0;
+  for (uint32_t i = 0; i < n; i++) {
+    const uint32_t h = hitNumbers[i];
+    if (!(seen.weight[i] > 0) || !(sent[0][i] > 0 || sent[1][i] > 0 || sent[2][i] > 0)) continue;
+    const float way[3] = {towards[0][i], towards[1][i], towards[2][i]};
+    float origin[3];
+    liftPoint(points, h, way, origin);
+    for (int k = 0; k < 3; k++) rays.rays.org[k][count] = origin[k], rays.rays.dir[k][count] = towards[k][i];
+    rays.rays.tnear[count] = 0;
+    rays.rays.tfar[count] = seen.parallel ? std::numeric_limits<float>::infinity() : distance[i];
+    rays.lane[count++] = i;
+  }
+  rays.rays.count = count;
+  passShadows(batch, rays, sent);
+  for (uint32_t i = 0; i < n; i++) {
+    const float x = seen.xy[0][i], y = seen.xy[1][i];
+    if (!(seen.weight[i] > 0) || !(x >= 0 && y >= 0 && x < extent[0] && y < extent[1])) continue;
+    const RayState& state = states_[batch.order[hitNumbers[i]]];
+    const float* attenuation = departures_[state.path].attenuation;
+    float* pixel = &picture_[3 * (size_t(y) * width_ + size_t(x))];
+    for (int k = 0; k < 3; k++) {
+      const double light = double(state.throughput[k]) * attenuation[k] * sent[k][i] * cameraArea_ * scale_;
+      if (std::isfinite(light)) pixel[k] += float(light);
+    }
+  }
+}
+
+} // namespace openrt

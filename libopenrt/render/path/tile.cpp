@@ -1,0 +1,411 @@
+// tile.cpp: see tile.h. Every sum has a fixed order, so a tile's pixels do not depend on who renders it.
+#include "render/path/tile.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "render/path/paths.h"
+#include "render/path/sampler.h"
+#include "render/surface/surfaces.h"
+#include "shading/running.h"
+
+namespace openrt {
+
+namespace {
+constexpr uint32_t pathsInFlight = 4096;
+} // namespace
+
+TileRenderer::TileRenderer(const RenderScene& scene)
+    : scene_(scene), width_(scene.frame.width), gathering_(gatheringOf(scene.frame)), brightest_(scene.emitters.brightest()),
+      brightestSky_(scene.emitters.brightestSky()) {}
+
+void TileRenderer::begin(const Tile& tile) {
+  if (tile == tile_) return;
+  tile_ = tile;
+  pixels_.clear(), places_.clear();
+  for (uint32_t by = tile.y0; by < tile.y1; by += 4)
+    for (uint32_t bx = tile.x0; bx < tile.x1; bx += 4)
+      for (uint32_t y = by; y < std::min(by + 4, tile.y1); y++)
+        for (uint32_t x = bx; x < std::min(bx + 4, tile.x1); x++) {
+          pixels_.push_back(y * width_ + x);
+          places_.push_back((y - tile.y0) * tile.width() + x - tile.x0);
+        }
+}
+
+// What a path meets may depend on those beside it, where faces coincide: a leaf's waves are always the same.
+bool TileRenderer::render(const Tile& tile, const Replicates& replicates, bool centred, uint32_t first, uint32_t samples,
+                          std::span<PixelSums> sums, const std::atomic<bool>& stop) {
+  begin(tile);
+  ledger_ = {};
+  replicates_ = replicates, centred_ = centred, leaf_ = first, sums_ = sums, stop_ = &stop;
+  ledger_.samples += samples;
+  const uint32_t most = std::clamp(std::bit_floor(pathsInFlight / uint32_t(pixels_.size())), 1u, largestWave);
+  for (uint32_t s = first, end = first + samples; s < end;) {
+    if (stopped()) return false;
+    const uint32_t n = std::min(most, end - s);
+    wave(s, n);
+    s += n;
+  }
+  return !stopped(); // a wave may have been broken off
+}
+
+// Working storage of n paths; film: with what the picture's channels want of their first surfaces.
+void TileRenderer::allocate(Paths& paths, uint32_t n, bool film) {
+  const uint32_t size = padded(n);
+  paths.state = arena_.take<RayState>(size);
+  paths.travelled = arena_.takeZero<float>(size);
+  const auto optional = [&](uint32_t channel) { return film && has(channel) ? arena_.takeZero<float>(size) : nullptr; };
+  for (int k = 0; k < 3; k++) {
+    paths.radiance[k] = arena_.takeZero<float>(size);
+    paths.normal[k] = optional(RT_NORMAL), paths.albedo[k] = optional(RT_ALBEDO), paths.position[k] = optional(RT_POSITION);
+  }
+  paths.alpha = arena_.takeZero<float>(size);
+  paths.depth = optional(RT_DEPTH);
+  if (paths.depth) std::fill_n(paths.depth, size, std::numeric_limits<float>::infinity());
+  paths.name = arena_.takeZero<uint32_t>(size);
+  paths.first = arena_.take<uint8_t>(size);
+  std::fill_n(paths.first, size, uint8_t(film));
+  paths.hits.allocate(arena_, n);
+  for (auto* list : {&paths.missed, &paths.met, &paths.order}) *list = arena_.take<uint32_t>(size);
+}
+
+void TileRenderer::wave(uint32_t firstSample, uint32_t samples) {
+  ArenaScope scope(arena_);
+  const uint32_t n = uint32_t(pixels_.size()) * samples;
+  firstSample_ = firstSample, samples_ = samples;
+  Paths paths;
+  paths.rays.allocate(arena_, n);
+  allocate(paths, n, true);
+  random_ = arena_.takeZero<uint8_t>(padded(n));
+  makeCameraRays(paths, firstSample);
+  for (uint32_t i = 0; i < n; i++) paths.state[i] = RayState{.path = i};
+  level_ = 0;
+  if (scene_.transport.shaderClass) {
+    askTransport(paths);
+  } else {
+    counters_.camera += n;
+    follow(paths, n);
+  }
+  addToPixels(paths, firstSample, samples);
+}
+
+// The rays that are loaded, then bounce by bounce what becomes of them, in portions of at most n, so that a path's sums have one
+// order.
+void TileRenderer::follow(Paths& paths, uint32_t n) {
+  traceWave(paths);
+  for (level_++; !next_.empty() && level_ <= scene_.frame.depth; level_++) {
+    queue_.swap(next_);
+    next_.clear();
+    counters_.secondary += queue_.size();
+    for (size_t begin = 0; begin < queue_.size() && !stopped(); begin += n) {
+      loadRays(paths, begin, uint32_t(std::min<size_t>(n, queue_.size() - begin)));
+      traceWave(paths);
+    }
+  }
+  for (const QueuedRay& ray : next_) ledger_.cutByDepth += sumOf(ray.state.throughput);
+  next_.clear();
+}
+
+void TileRenderer::loadRays(Paths& paths, size_t begin, uint32_t n) {
+  paths.rays.count = n;
+  for (uint32_t i = 0; i < padded(n); i++) {
+    const QueuedRay& ray = queue_[begin + std::min(i, n - 1)];
+    for (int k = 0; k < 3; k++) paths.rays.org[k][i] = ray.origin[k], paths.rays.dir[k][i] = ray.direction[k];
+    paths.rays.tnear[i] = 0;
+    paths.rays.tfar[i] = std::numeric_limits<float>::infinity();
+    paths.state[i] = ray.state;
+    paths.travelled[i] = ray.state.travelled;
+  }
+}
+
+void TileRenderer::traceWave(Paths& paths) {
+  const Coherence coherence = level_ == 0 ? Coherence::coherent : Coherence::incoherent;
+  scene_.kernel->intersect(paths.rays, maskAll, coherence, paths.hits);
+  lookThroughBacks(scene_, arena_, counters_, paths.rays, paths.hits);
+  absorbOnTheWay(scene_, paths.rays, paths.hits, paths.state);
+  uint32_t misses = 0, mets = 0;
+  for (uint32_t i = 0; i < paths.rays.count; i++)
+    (paths.hits.record[i] == noHit ? paths.missed[misses++] : paths.met[mets++]) = i;
+  background(paths, paths.missed, misses);
+  sortByBucket(scene_, paths.hits, paths.met, mets, paths.order, counts_, ranges_);
+  std::vector<BucketRange> ranges;
+  ranges.swap(ranges_); // shaders may trace in their turn
+  for (const BucketRange& range : ranges) shadeRange(paths, paths.hits, range, paths.order + range.begin);
+  ranges.swap(ranges_);
+}
+
+RtsBatch TileRenderer::makeBatch() {
+  RtsBatch batch;
+  batch.scene = &scene_, batch.arena = &arena_, batch.counters = &counters_;
+  batch.tracer = this;
+  return batch;
+}
+
+RtsBatch TileRenderer::makeBatch(const Paths& paths, const Points& points, const uint32_t* order) {
+  RtsBatch batch = makeBatch();
+  batch.points = &points;
+  batch.states = paths.state, batch.order = order;
+  return batch;
+}
+
+void TileRenderer::makeCameraRays(Paths& paths, uint32_t firstSample) {
+  const uint32_t n = paths.rays.count, size = padded(n);
+  const uint32_t samples = n / uint32_t(pixels_.size());
+  ArenaScope scope(arena_);
+  float* xy[2] = {arena_.take<float>(size), arena_.take<float>(size)};
+  RtsRays local;
+  for (int k = 0; k < 3; k++) local.origin[k] = arena_.takeZero<float>(size), local.direction[k] = arena_.takeZero<float>(size);
+  uint32_t lane = 0;
+  for (uint32_t pixel : pixels_) {
+    PairSampler sampler(pixel, 0, replicates_.seedOf(firstSample));
+    const float x = float(pixel % width_), y = float(pixel / width_);
+    for (uint32_t sample = firstSample; sample < firstSample + samples; sample++, lane++) {
+      float dx = 0.5f, dy = 0.5f; // centred
+      const uint32_t index = replicates_.indexOf(sample);
+      if (index == 0 && sample > firstSample) sampler = PairSampler(pixel, 0, replicates_.seedOf(sample));
+      if (!centred_) sampler(index, dx, dy);
+      xy[0][lane] = x + dx, xy[1][lane] = y + dy;
+    }
+  }
+  for (; lane < size; lane++) xy[0][lane] = xy[0][n - 1], xy[1][lane] = xy[1][n - 1];
+  for (uint32_t i = 0; i < size; i++) {
+    paths.rays.tnear[i] = 0;
+    paths.rays.tfar[i] = std::numeric_limits<float>::infinity();
+  }
+  const float* points[2] = {xy[0], xy[1]};
+  const float extent[2] = {float(width_), float(scene_.frame.height)};
+  RtsBatch batch = makeBatch();
+  batch.rays = n;
+  const ShaderSlot& camera = scene_.camera.shader;
+  {
+    const RunningShader running(*camera.shaderClass);
+    camera.shaderClass->generate(&scene_.host, &batch, camera.params, n, points, extent, &local);
+  }
+  const Affine& m = scene_.camera.fromLocal;
+  for (uint32_t i = 0; i < size; i++) {
+    const float ox = local.origin[0][i], oy = local.origin[1][i], oz = local.origin[2][i];
+    const float dx = local.direction[0][i], dy = local.direction[1][i], dz = local.direction[2][i];
+    float d[3];
+    for (int k = 0; k < 3; k++) {
+      paths.rays.org[k][i] = m.r[k][0] * ox + m.r[k][1] * oy + m.r[k][2] * oz + m.r[k][3];
+      d[k] = m.r[k][0] * dx + m.r[k][1] * dy + m.r[k][2] * dz;
+    }
+    const float s = 1 / std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+    for (int k = 0; k < 3; k++) paths.rays.dir[k][i] = d[k] * s;
+  }
+}
+
+// What the environment shows in the directions of rays: local unit directions and rgba, padded.
+void TileRenderer::skyAt(const Rays& rays, const uint32_t* lanes, uint32_t n, float* direction[3], float* rgba[4]) {
+  const uint32_t size = padded(n);
+  for (int k = 0; k < 3; k++) direction[k] = arena_.take<float>(size);
+  for (int k = 0; k < 4; k++) rgba[k] = arena_.takeZero<float>(size);
+  const Affine& m = scene_.environment.toLocal;
+  for (uint32_t i = 0; i < size; i++) {
+    const uint32_t lane = lanes[std::min(i, n - 1)];
+    const float x = rays.dir[0][lane], y = rays.dir[1][lane], z = rays.dir[2][lane];
+    float d[3];
+    for (int k = 0; k < 3; k++) d[k] = m.r[k][0] * x + m.r[k][1] * y + m.r[k][2] * z;
+    const float s = 1 / std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+    for (int k = 0; k < 3; k++) direction[k][i] = d[k] * s;
+  }
+  const ShaderSlot& environment = scene_.environment.shader;
+  RtsBatch batch = makeBatch();
+  const float* directions[3] = {direction[0], direction[1], direction[2]};
+  const RunningShader running(*environment.shaderClass);
+  environment.shaderClass->miss(&scene_.host, &batch, environment.params, n, directions, rgba);
+  checkAnswer(*environment.shaderClass, batch, n, {rgba[0], rgba[1], rgba[2], rgba[3]});
+}
+
+void TileRenderer::background(Paths& paths, const uint32_t* missed, uint32_t n) {
+  const ShaderSlot& environment = scene_.environment.shader;
+  if (n == 0 || !environment.shaderClass || !environment.shaderClass->miss) return;
+  ArenaScope scope(arena_);
+  float *direction[3], *rgba[4];
+  skyAt(paths.rays, missed, n, direction, rgba);
+  for (uint32_t i = 0; i < n; i++) {
+    const RayState& ray = paths.state[missed[i]];
+    float weight = 0, share = 1;
+    if (ray.density > 0 && scene_.emitters.any()) { // the sky might have been chosen just so
+      const float d[3] = {direction[0][i], direction[1][i], direction[2][i]};
+      share = ray.density / (ray.density + scene_.emitters.skyDensity(ray.from, d));
+    }
+    if (ray.byChance) {
+      const float light[3] = {rgba[0][i], rgba[1][i], rgba[2][i]};
+      chanceOf(ray).meet(light, brightestFor(ray));
+    }
+    for (int k = 0; k < 3; k++) {
+      if (std::isfinite(rgba[k][i])) paths.radiance[k][ray.path] += ray.throughput[k] * share * rgba[k][i];
+      weight += ray.throughput[k];
+    }
+    if (!ray.bent) paths.alpha[ray.path] += weight / 3 * rgba[3][i];
+  }
+}
+
+// Along mirror images and through lenses the length of the path counts, as seen in the ray's direction.
+void TileRenderer::attenuate(const Points& points, const Paths& paths, const uint32_t* order, float* fog[4]) {
+  const ShaderSlot& environment = scene_.environment.shader;
+  fog[3] = nullptr;
+  if (!environment.shaderClass || !environment.shaderClass->attenuate) return;
+  const uint32_t n = points.hits.count, size = padded(n);
+  float* fromEye[3];
+  for (auto& a : fromEye) a = arena_.take<float>(size);
+  const Affine& m = scene_.environment.toLocal;
+  const RtsHits& h = points.hits;
+  for (uint32_t i = 0; i < size; i++) {
+    const bool bent = paths.state[order[std::min(i, n - 1)]].bent;
+    float way[3];
+    for (int j = 0; j < 3; j++) way[j] = bent ? h.direction[j][i] * h.distance[i] : h.position[j][i] - scene_.eye[j];
+    for (int k = 0; k < 3; k++) fromEye[k][i] = m.r[k][0] * way[0] + m.r[k][1] * way[1] + m.r[k][2] * way[2];
+  }
+  for (int k = 0; k < 4; k++) fog[k] = arena_.takeZero<float>(size);
+  RtsBatch batch = makeBatch();
+  const float* vectors[3] = {fromEye[0], fromEye[1], fromEye[2]};
+  const RunningShader running(*environment.shaderClass);
+  environment.shaderClass->attenuate(&scene_.host, &batch, environment.params, n, vectors, fog, fog[3]);
+}
+
+void TileRenderer::shadeRange(Paths& paths, const RayHits& hits, const BucketRange& range, const uint32_t* order) {
+  ArenaScope scope(arena_);
+  const uint32_t n = range.end - range.begin, size = padded(n);
+  const Points points = makePoints(scene_, paths.rays, hits, order, n, paths.travelled, arena_);
+  const Bucket& bucket = scene_.buckets[range.bucket];
+  // Of a class that answers both ways path tracing asks for lobes.
+  if (bucket.shaderClass->surface && (!bucket.shaderClass->shade || scene_.frame.transport >= RT_TRANSPORT_PATH))
+    return scatterRange(paths, points, bucket, order);
+  RtsShading shaded;
+  for (int k = 0; k < 3; k++) {
+    shaded.radiance[k] = arena_.takeZero<float>(size);
+    shaded.transmission[k] = arena_.takeZero<float>(size);
+    shaded.albedo[k] = has(RT_ALBEDO) ? arena_.takeZero<float>(size) : nullptr;
+  }
+  {
+    ArenaScope inner(arena_);
+    RtsBatch batch = makeBatch(paths, points, order);
+    batch.lightSet = bucket.lightSet;
+    const RunningShader running(*bucket.shaderClass);
+    bucket.shaderClass->shade(&scene_.host, &batch, &points.hits, &shaded);
+    checkAnswer(*bucket.shaderClass, batch, shaded);
+  }
+  float* fog[4];
+  attenuate(points, paths, order, fog);
+  const float* airlight[4] = {fog[0], fog[1], fog[2], fog[3]};
+  gather(points, shaded, order, paths, airlight);
+}
+
+// Adds what was shaded to the paths and sends on those that something lets through.
+void TileRenderer::gather(const Points& points, const RtsShading& shaded, const uint32_t* order, Paths& paths,
+                          const float* fog[4]) {
+  for (uint32_t i = 0; i < points.hits.count; i++) {
+    const RayState& ray = paths.state[order[i]];
+    float transmission[3], covered = 0, through = 0;
+    for (int k = 0; k < 3; k++) {
+      const float t = shaded.transmission[k][i];
+      transmission[k] = t > 0 ? std::min(t, 1.0f) : 0.0f;
+      float radiance = std::isfinite(shaded.radiance[k][i]) ? shaded.radiance[k][i] : 0.0f;
+      if (fog[3]) radiance = fog[3][i] * radiance + (1 - fog[3][i]) * fog[k][i] * (1 - transmission[k]);
+      paths.radiance[k][ray.path] += ray.throughput[k] * radiance;
+      covered += ray.throughput[k] * (1 - transmission[k]);
+      through += ray.throughput[k] * transmission[k];
+    }
+    if (!ray.bent) paths.alpha[ray.path] += covered / 3;
+    if (paths.first[ray.path]) noteFirst(points, i, ray.path, shaded.albedo, paths);
+    if (through <= 1e-6f) {
+      ledger_.cutByEnergy += double(through);
+      continue;
+    }
+    Step on{.density = 0,
+            .bent = false,
+            .split = false,
+            .through = false,
+            .channel = ray.channel,
+            .branch = ray.branch,
+            .media = ray.media};
+    for (int k = 0; k < 3; k++) on.direction[k] = points.hits.direction[k][i], on.weight[k] = transmission[k];
+    push(points, i, order[i], on, paths);
+  }
+}
+
+// The auxiliary channels show the first surface.
+void TileRenderer::noteFirst(const Points& points, uint32_t i, uint32_t path, float* const albedo[3], Paths& paths) {
+  const RtsHits& h = points.hits;
+  paths.first[path] = 0;
+  paths.name[path] = scene_.records[points.record[i]].name;
+  float along = 0;
+  for (int k = 0; k < 3; k++) {
+    along += (h.position[k][i] - scene_.eye[k]) * scene_.viewAxis[k];
+    if (paths.normal[k]) paths.normal[k][path] = h.normal[k][i];
+    if (paths.albedo[k]) paths.albedo[k][path] = albedo[k][i];
+    if (paths.position[k]) paths.position[k][path] = float(h.position[k][i] + scene_.origin[k]);
+  }
+  if (paths.depth) paths.depth[path] = along;
+}
+
+// Another ray of the path, from the side of the surface that its direction leads to.
+void TileRenderer::push(const Points& points, uint32_t i, uint32_t lane, const Step& step, Paths& paths) {
+  const RtsHits& h = points.hits;
+  const RayState& from = paths.state[lane];
+  QueuedRay& ray = next_.emplace_back();
+  liftPoint(points, i, step.direction, ray.origin);
+  ray.state = from;
+  for (int k = 0; k < 3; k++) {
+    ray.direction[k] = step.direction[k];
+    ray.state.throughput[k] = from.throughput[k] * step.weight[k];
+  }
+  ray.state.travelled = h.distance[i];
+  ray.state.density = step.density;
+  if (step.density > 0) ray.state.from = receiverOf(points, i, step.through);
+  if (step.bent) {
+    if (from.course == Course::straight)
+      ray.state.course = step.density > 0 ? Course::scattered : Course::mirrored;
+    else if (from.course != Course::mirrored)
+      ray.state.course = step.density > 0 ? Course::scattered : Course::through;
+    ray.state.scattered |= step.density > 0 ? 1 : 0;
+    ray.state.byChance = ray.state.scattered && !(step.density > 0) ? 1 : 0;
+    if (ray.state.byChance) chanceOf(ray.state).send(ray.state.throughput, brightestFor(ray.state));
+  }
+  ray.state.bent |= step.bent ? 1 : 0;
+  ray.state.branch = step.branch;
+  ray.state.channel = step.channel;
+  ray.state.media = step.media;
+  if (step.split && ray.state.splits < 255) ray.state.splits++;
+}
+
+void TileRenderer::addToPixels(const Paths& paths, uint32_t firstSample, uint32_t samples) {
+  const float limit = scene_.frame.clamp;
+  for (size_t pixel = 0; pixel < pixels_.size(); pixel++) {
+    PixelSums& sums = sums_[places_[pixel]];
+    for (uint32_t s = 0; s < samples; s++) {
+      const size_t i = pixel * samples + s;
+      float radiance[3] = {paths.radiance[0][i], paths.radiance[1][i], paths.radiance[2][i]};
+      for (float& r : radiance) {
+        if (!(limit > 0 && r > limit)) continue;
+        ledger_.clipped += double(r) - double(limit);
+        r = limit;
+      }
+      if (gathering_.spread)
+        sums.add(radiance, paths.alpha[i]);
+      else
+        sums.addColor(radiance, paths.alpha[i]);
+      if (gathering_.error) {
+        sums.addTails(radiance);
+        sums.random |= random_[i] != 0;
+        const uint32_t next = firstSample + s + 1; // replicates larger than the leaf are closed where leaves merge
+        if (replicates_.many() && replicates_.indexOf(next) == 0 && next - leaf_ >= replicates_.size()) sums.closeReplicate();
+      }
+      for (int k = 0; k < 3; k++) {
+        if (paths.normal[k]) sums.normal[k] += paths.normal[k][i];
+        if (paths.albedo[k]) sums.albedo[k] += paths.albedo[k][i];
+      }
+      if (firstSample + s) continue;
+      if (paths.depth) sums.depth = paths.depth[i];
+      if (paths.position[0])
+        for (int k = 0; k < 3; k++) sums.position[k] = paths.position[k][i];
+      sums.name = has(RT_NAME) ? float(paths.name[i]) : 0.0f;
+    }
+  }
+}
+
+} // namespace openrt

@@ -1,0 +1,164 @@
+// trace.cpp: what shaders and transports ask of the renderer itself: random points, light along rays, what rays meet, what lies
+// between. Part of TileRenderer; the host's functions (host.cpp) come here. [render]
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "render/path/paths.h"
+#include "render/path/sampler.h"
+#include "render/lights/shadows.h"
+#include "render/surface/surfaces.h"
+#include "shading/running.h"
+
+namespace openrt {
+namespace {
+
+constexpr uint32_t maxNesting = 64;
+constexpr uint32_t shaderPairs = 0x73686164; // apart from the pairs that transports use
+constexpr float infinite = std::numeric_limits<float>::infinity();
+
+uint32_t pointsOf(const RtsBatch& batch) { return batch.points ? batch.points->hits.count : batch.rays; }
+
+// Rays of a request that belong to a point of the batch; to: number of the request, by ray.
+Rays raysOf(const RtsBatch& batch, const RtsRequest& request, uint32_t* to) {
+  Rays rays;
+  rays.allocate(*batch.arena, request.count);
+  uint32_t n = 0;
+  for (uint32_t i = 0; i < request.count; i++) {
+    const uint32_t hit = request.hit[i];
+    if (hit >= pointsOf(batch) || (!request.origin[0] && !batch.points)) continue;
+    float d[3], origin[3];
+    for (int k = 0; k < 3; k++) d[k] = request.direction[k][i];
+    if (request.origin[0]) {
+      for (int k = 0; k < 3; k++) origin[k] = request.origin[k][i];
+    } else {
+      liftPoint(*batch.points, hit, d, origin);
+    }
+    for (int k = 0; k < 3; k++) rays.org[k][n] = origin[k], rays.dir[k][n] = d[k];
+    rays.tnear[n] = 0, rays.tfar[n] = request.length ? request.length[i] : infinite;
+    to[n++] = i;
+  }
+  rays.count = n;
+  return rays;
+}
+
+} // namespace
+
+void TileRenderer::randomPoints(const RtsBatch& batch, uint32_t pair, float* const square[2]) {
+  for (uint32_t i = 0; i < pointsOf(batch); i++) {
+    const RayState* ray = batch.order ? &batch.states[batch.order[i]] : nullptr;
+    const uint32_t key = hash(shaderPairs + pair, ray ? pairOf(*ray, Draw::direction) : 0);
+    sampleAt(ray ? ray->path : i, key, square[0][i], square[1][i]);
+    if (!centred_ || ray) noteRandom(ray ? ray->path : i);
+  }
+}
+
+void TileRenderer::noteRandom(uint32_t path) { random_[root_ ? root_[path] : path] = 1; }
+
+// The rays are the camera rays of a small wave of their own, within the one that is being shaded.
+void TileRenderer::trace(RtsBatch& batch, const RtsRequest& request, float* const rgba[4]) {
+  for (int k = 0; k < 4; k++)
+    if (rgba[k]) std::fill_n(rgba[k], request.count, 0.0f);
+  if (request.count == 0 || nesting_ == maxNesting || level_ >= scene_.frame.depth) return;
+  if (!batch.requests) batch.requests = arena_.takeZero<uint32_t>(pointsOf(batch)); // it lives as long as the batch
+  ArenaScope scope(arena_);
+  auto* to = arena_.take<uint32_t>(request.count);
+  Paths paths;
+  paths.rays = raysOf(batch, request, to);
+  const uint32_t n = paths.rays.count;
+  if (n == 0) return;
+  allocate(paths, n, false);
+  auto* root = arena_.take<uint32_t>(n);
+  for (uint32_t i = 0; i < n; i++) {
+    const uint32_t hit = request.hit[to[i]];
+    const RayState parent = batch.order ? batch.states[batch.order[hit]] : RayState{.path = hit};
+    root[i] = root_ ? root_[parent.path] : parent.path;
+    RayState& state = paths.state[i] = RayState{.path = i};
+    state.branch = hash(parent.branch + ++batch.requests[hit], level_ + 1);
+    state.media = parent.media, state.channel = parent.channel;
+    if (batch.points) paths.travelled[i] = state.travelled = batch.points->hits.distance[hit];
+  }
+  for (uint32_t i = n; i < padded(n); i++) paths.state[i] = paths.state[n - 1];
+  const uint32_t* const outerRoot = root_;
+  const uint32_t outerLevel = level_;
+  RayQueue outerQueue, outerNext;
+  outerQueue.swap(queue_), outerNext.swap(next_);
+  root_ = root;
+  nesting_++;
+  level_ += batch.points ? 1 : 0;
+  (batch.points ? counters_.secondary : counters_.camera) += n;
+  follow(paths, n);
+  nesting_--;
+  root_ = outerRoot, level_ = outerLevel;
+  outerQueue.swap(queue_), outerNext.swap(next_);
+  for (uint32_t i = 0; i < n; i++) {
+    for (int k = 0; k < 3; k++)
+      if (rgba[k]) rgba[k][to[i]] = paths.radiance[k][i];
+    if (rgba[3]) rgba[3][to[i]] = paths.alpha[i];
+  }
+}
+
+void TileRenderer::findHit(const RtsBatch& batch, const RtsRequest& request, RtsFound& out) {
+  if (out.distance) std::fill_n(out.distance, request.count, infinite);
+  if (request.count == 0) return;
+  ArenaScope scope(arena_);
+  auto* to = arena_.take<uint32_t>(request.count);
+  const Rays rays = raysOf(batch, request, to);
+  RayHits found;
+  found.allocate(arena_, rays.count);
+  counters_.secondary += rays.count;
+  scene_.kernel->intersect(rays, maskAll, Coherence::incoherent, found);
+  lookThroughBacks(scene_, arena_, counters_, rays, found);
+  auto* met = arena_.take<uint32_t>(rays.count);
+  uint32_t n = 0;
+  for (uint32_t i = 0; i < rays.count; i++)
+    if (found.record[i] != noHit) met[n++] = i;
+  if (n == 0) return;
+  const auto* travelled = arena_.takeZero<float>(padded(rays.count));
+  const Points points = makePoints(scene_, rays, found, met, n, travelled, arena_);
+  for (uint32_t i = 0; i < n; i++) {
+    const uint32_t r = to[met[i]];
+    if (out.distance) out.distance[r] = points.hits.segment[i];
+    if (out.name) out.name[r] = scene_.records[points.record[i]].name;
+    for (int k = 0; k < 3; k++) {
+      if (out.position[k]) out.position[k][r] = points.hits.position[k][i];
+      if (out.geometric[k]) out.geometric[k][r] = points.hits.geometric[k][i];
+      if (out.normal[k]) out.normal[k][r] = points.hits.normal[k][i];
+    }
+  }
+}
+
+void TileRenderer::occluded(const RtsBatch& batch, const RtsRequest& request, float* const transmission[3]) {
+  for (int k = 0; k < 3; k++) std::fill_n(transmission[k], request.count, 1.0f);
+  if (request.count == 0) return;
+  ArenaScope scope(arena_);
+  ShadowRays rays;
+  rays.lane = arena_.take<uint32_t>(request.count);
+  rays.rays = raysOf(batch, request, rays.lane);
+  passShadows(batch, rays, transmission);
+}
+
+// A transport shader instead of the engine's own.
+void TileRenderer::askTransport(Paths& paths) {
+  ArenaScope scope(arena_);
+  const uint32_t n = paths.rays.count;
+  float* rgba[4];
+  for (auto& a : rgba) a = arena_.takeZero<float>(padded(n));
+  RtsRequest request{};
+  request.count = n, request.hit = arena_.takeNumbers(n);
+  for (int k = 0; k < 3; k++) request.origin[k] = paths.rays.org[k], request.direction[k] = paths.rays.dir[k];
+  RtsBatch batch = makeBatch();
+  batch.rays = n;
+  {
+    const RunningShader running(*scene_.transport.shaderClass);
+    scene_.transport.shaderClass->radiance(&scene_.host, &batch, scene_.transport.params, &request, rgba);
+  }
+  checkAnswer(*scene_.transport.shaderClass, batch, n, {rgba[0], rgba[1], rgba[2], rgba[3]});
+  for (uint32_t i = 0; i < n; i++) {
+    for (int k = 0; k < 3; k++)
+      if (std::isfinite(rgba[k][i])) paths.radiance[k][i] = rgba[k][i];
+    if (std::isfinite(rgba[3][i])) paths.alpha[i] = rgba[3][i];
+  }
+}
+
+} // namespace openrt

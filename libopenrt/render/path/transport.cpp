@@ -1,0 +1,152 @@
+// transport.cpp: see transport.h.
+#include "render/path/transport.h"
+
+#include <cstring>
+
+#include "render/render_scene.h"
+
+namespace openrt {
+namespace {
+
+constexpr uint32_t light = hasLamps | hasEmitters | hasGlow | hasSky;
+
+// The choice. Rows are tried from the top; a row whose `from` is the transport chosen so far replaces it. A transport is chosen
+// only where it leaves out nothing that surfaces of lobes do with light. Surfaces that answer by themselves are drawn as their
+// own rule says (VRML97's lighting model) until something that is meant as light shines on them.
+struct Choice {
+  RTenum from;
+  uint32_t all, any; // bits that must all be there; of which at least one must be there (0: no such condition)
+  RTenum to;
+  const char* reason; // {}: class that set the first bit of `all`, [] : of `any`
+};
+constexpr Choice choices[] = {
+    {RT_TRANSPORT_AUTO, asksForAll, 0, RT_TRANSPORT_PATH, "{} asks for the light of other surfaces"},
+    {RT_TRANSPORT_AUTO, hasScattering, hasEmitters | hasGlow, RT_TRANSPORT_PATH, "{} scatters the light that [] sends out"},
+    {RT_TRANSPORT_AUTO, hasScattering, hasSky, RT_TRANSPORT_PATH, "{} scatters the light of the sky"},
+    {RT_TRANSPORT_AUTO, hasScattering, hasLamps, RT_TRANSPORT_PATH, "{} scatters light of lamps from surface to surface"},
+    {RT_TRANSPORT_AUTO, hasShading, hasEmitters, RT_TRANSPORT_PATH, "{} is lit by [], which sends out light"},
+    {RT_TRANSPORT_AUTO, hasShading, hasSkyLight, RT_TRANSPORT_PATH, "{} is lit by the environment []"},
+    {RT_TRANSPORT_PATH, hasMirrors | hasStarts | hasProjection, 0, RT_TRANSPORT_LIGHT, ", and {} mirrors or refracts"},
+    {RT_TRANSPORT_AUTO, hasMirrors, 0, RT_TRANSPORT_WHITTED, "{} mirrors or refracts; nothing asks for light between surfaces"},
+    {RT_TRANSPORT_AUTO, hasLobes, 0, RT_TRANSPORT_WHITTED, "{} answers in lobes; nothing asks for light between surfaces"},
+    {RT_TRANSPORT_AUTO, 0, 0, RT_TRANSPORT_DIRECT, "no surface asks for more than the lights"},
+};
+
+// What a transport leaves out of a scene, whoever has chosen it.
+struct Omission {
+  uint32_t transports; // 1 << RT_TRANSPORT_*
+  uint32_t all, any;
+  uint32_t leaves; // RT_LEAVES_*
+};
+constexpr uint32_t direct = 1u << RT_TRANSPORT_DIRECT, whitted = 1u << RT_TRANSPORT_WHITTED, path = 1u << RT_TRANSPORT_PATH,
+                   lightPaths = 1u << RT_TRANSPORT_LIGHT;
+constexpr Omission omissions[] = {
+    {direct, hasMirrors, 0, RT_LEAVES_IMAGES},
+    {direct | whitted, hasScattering, light, RT_LEAVES_BETWEEN},
+    {direct | whitted, hasShading, light, RT_LEAVES_BETWEEN},
+    {direct | whitted, hasScattering, hasEmitters | hasGlow, RT_LEAVES_EMITTERS},
+    {direct | whitted, hasShading, hasEmitters, RT_LEAVES_EMITTERS},
+    {direct | whitted, hasScattering, hasSky, RT_LEAVES_SKY},
+    {direct | whitted, hasShading, hasSkyLight, RT_LEAVES_SKY},
+    {path | lightPaths, hasMirrors | hasLamps | hasScattering, 0, RT_LEAVES_CAUSTICS},
+    {path | lightPaths, hasMirrors | hasLamps | hasShading, 0, RT_LEAVES_CAUSTICS},
+};
+
+bool holds(uint32_t bits, uint32_t all, uint32_t any) { return (bits & all) == all && (any == 0 || (bits & any)); }
+
+const char* firstOf(const SceneContents& contents, uint32_t bits) {
+  for (uint32_t b = 0; b < contentsBits; b++)
+    if ((bits & contents.bits & (1u << b)) && contents.who[b]) return contents.who[b];
+  return "a shader";
+}
+
+std::string reasonOf(const Choice& row, const SceneContents& contents) {
+  std::string text;
+  for (const char* c = row.reason; *c; c++)
+    if (const bool subject = !std::strncmp(c, "{}", 2); subject || !std::strncmp(c, "[]", 2))
+      text += firstOf(contents, subject ? row.all : row.any), c++;
+    else
+      text += *c;
+  return text;
+}
+
+// The environment is asked on a coarse grid; one that looks black there is measured, as a lamp may lie between the places.
+bool shines(const RenderScene& scene, const RenderScene* before) {
+  const ShaderSlot& environment = scene.environment.shader;
+  if (!environment.shaderClass || !environment.shaderClass->miss) return false;
+  if (before && before->skyKnown && before->textures == scene.textures &&
+      before->environment.shader.params == environment.params &&
+      before->environment.shader.shaderClass == environment.shaderClass)
+    return before->skyShines;
+  return SkySampler::shines(scene) || SkySampler(scene).usable();
+}
+
+} // namespace
+
+SceneContents contentsOf(RenderScene& scene, const RenderScene* before) {
+  SceneContents c;
+  const auto set = [&c](uint32_t bits, const char* name) {
+    for (uint32_t b = 0; b < contentsBits; b++)
+      if ((bits & ~c.bits) & (1u << b)) c.who[b] = name;
+    c.bits |= bits;
+  };
+  const Record* last = nullptr;
+  for (const Record& record : scene.records) {
+    const bool values = record.parameterCount > 0;
+    if (last && last->shader == record.shader && (last->parameterCount > 0) == values) continue;
+    last = &record;
+    const ShaderSlot& shader = (*scene.shaders)[record.shader];
+    const RtsClass& shaderClass = *shader.shaderClass;
+    if (!shaderClass.surface) continue; // answers by itself whatever the transport is
+    // Values of a geometry may make a surface scatter that does not by its shader's own.
+    const bool scatters = values || !(shader.traits & (RTS_NO_SCATTER | RTS_UNLIT));
+    const bool emits = shader.traits & RTS_EMISSIVE;
+    uint32_t bits = shader.traits & RTS_SPECULAR ? uint32_t(hasMirrors) : 0u;
+    if (shaderClass.shade)
+      bits |= (scatters ? hasShading : 0u) | (emits ? hasGlow : 0u);
+    else
+      bits |= hasLobes | (scatters ? hasScattering : 0u) | (emits ? hasEmitters : 0u);
+    if (emits) bits |= hasStarts;
+    if (shader.traits & RTS_GLOBAL) bits |= asksForAll;
+    set(bits, shaderClass.name);
+  }
+  for (const LightSlot& lamp : scene.lights)
+    set(hasLamps | (lamp.shader.shaderClass->extent ? hasStarts : 0u), lamp.shader.shaderClass->name);
+  const RtsClass* camera = scene.camera.shader.shaderClass;
+  if (camera && camera->project) set(hasProjection, camera->name);
+  const ShaderSlot& environment = scene.environment.shader;
+  const bool backdrop = environment.traits & RTS_BACKDROP;
+  scene.skyKnown = environment.shaderClass && ((c.bits & hasScattering) || ((c.bits & hasShading) && !backdrop));
+  scene.skyShines = scene.skyKnown && shines(scene, before);
+  if (scene.skyShines) set(hasSky | (backdrop ? 0u : hasSkyLight), environment.shaderClass->name);
+  return c;
+}
+
+TransportChoice chooseTransport(RenderScene& scene, const RenderScene* before) {
+  const SceneContents contents = contentsOf(scene, before);
+  TransportChoice choice;
+  choice.transport = scene.frame.transport;
+  if (scene.transport.shaderClass) {
+    if (!choice.transport) choice.transport = RT_TRANSPORT_PATH;
+    choice.reason = std::string("the transport shader ") + scene.transport.shaderClass->name;
+    return choice;
+  }
+  if (choice.transport != RT_TRANSPORT_AUTO) {
+    choice.reason = "asked for";
+  } else {
+    for (const Choice& row : choices) {
+      if (row.from != choice.transport || !holds(contents.bits, row.all, row.any)) continue;
+      choice.transport = row.to;
+      choice.reason += reasonOf(row, contents);
+    }
+  }
+  for (const Omission& row : omissions)
+    if ((row.transports & (1u << choice.transport)) && holds(contents.bits, row.all, row.any)) choice.leavesOut |= row.leaves;
+  if (choice.leavesOut & RT_LEAVES_CAUSTICS) {
+    const bool followed = choice.transport == RT_TRANSPORT_LIGHT && (contents.bits & hasProjection);
+    for (const LightSlot& lamp : scene.lights) choice.unreached += !followed || !lamp.shader.shaderClass->extent;
+  }
+  return choice;
+}
+
+} // namespace openrt

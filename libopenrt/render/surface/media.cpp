@@ -1,0 +1,44 @@
+// media.cpp: see media.h.
+#include "render/surface/media.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace openrt {
+
+uint16_t mediumOf(const MediaStack& stack, std::span<const RtsMedium> media) {
+  uint16_t top = 0;
+  for (uint16_t m : stack)
+    if (m && (!top || media[m - 1].priority >= media[top - 1].priority)) top = m;
+  return top;
+}
+
+Crossing cross(const MediaStack& stack, uint16_t medium, bool back, std::span<const RtsMedium> media) {
+  Crossing c{stack, mediumOf(stack, media), 0, true, false};
+  if (back) {
+    const auto last = std::find(c.behind.rbegin(), c.behind.rend(), medium);
+    c.unknown = last == c.behind.rend();
+    if (!c.unknown) {
+      std::rotate(last.base() - 1, last.base(), c.behind.end());
+      c.behind.back() = 0;
+    }
+    c.to = mediumOf(c.behind, media);
+    c.seen = !c.to || media[c.to - 1].priority <= media[medium - 1].priority;
+    if (c.unknown || c.seen) c.from = medium;
+    return c;
+  }
+  c.seen = !c.from || media[c.from - 1].priority <= media[medium - 1].priority;
+  if (const auto free = std::find(c.behind.begin(), c.behind.end(), uint16_t(0)); free != c.behind.end()) *free = medium;
+  c.to = medium;
+  return c;
+}
+
+void absorb(uint16_t medium, float length, std::span<const RtsMedium> media, float colour[3]) {
+  if (!medium) return;
+  for (int k = 0; k < 3; k++) {
+    const float a = media[medium - 1].absorption[k];
+    if (a != 0) colour[k] *= std::exp(-a * length);
+  }
+}
+
+} // namespace openrt

@@ -1,0 +1,260 @@
+// scatter.cpp: surfaces described by lobes: light from the lights, then the rays that go on. The other half of TileRenderer.
+//
+// Transports. Direct: lights alone. Whitted: every mirror image and refraction is followed, deterministically, until a branch
+// carries less than the frame's energy cut of the camera ray. Path: also a direction from each lobe that scatters; where a path
+// has split already one way is chosen with a probability in proportion to what it carries, and from the fourth surface on Russian
+// roulette ends paths.
+#include "render/surface/scatter.h"
+
+#include <algorithm>
+
+#include "render/path/paths.h"
+#include "render/path/sampler.h"
+#include "render/lights/shadows.h"
+#include "render/surface/surfaces.h"
+#include "render/surface/ways.h"
+#include "shading/running.h"
+
+namespace openrt {
+namespace {
+
+constexpr uint32_t rouletteFrom = 3;
+
+} // namespace
+
+// A light's colour is the radiance of a white Lambert surface that faces it (openrts.h), so pi of it arrive.
+void TileRenderer::addLights(RtsBatch& batch, const RtsHits& hits, float* const radiance[3]) {
+  uint32_t scattering = 0;
+  for (uint32_t l = 0; l < batch.lobeCount; l++) scattering += scatteringOf(batch.lobes[l]) != nullptr;
+  const uint32_t lights = scattering ? scene_.host.lights(&batch) : 0, n = hits.count;
+  if (lights == 0) return;
+  makeRoomForLight(batch, n);
+  ArenaScope scope(arena_);
+  const uint32_t* all = arena_.takeNumbers(n);
+  auto* wanted = arena_.take<uint8_t>(padded(n));
+  LobeAnswers answers(arena_, n, &batch);
+  float* response[3];
+  for (auto& a : response) a = arena_.take<float>(n);
+  for (uint32_t light = 0; light < lights; light++) {
+    ArenaScope inner(arena_);
+    RtsIllumination from{};
+    scene_.host.illuminate(&batch, light, &hits, &from);
+    for (auto* a : response) std::fill_n(a, n, 0.0f);
+    std::fill_n(wanted, n, uint8_t(0));
+    for (uint32_t l = 0; l < batch.lobeCount; l++) {
+      const RtsLobe& lobe = batch.lobes[l];
+      if (!scatteringOf(lobe)) continue;
+      answers.evaluate(lobe, hits, n, all, from.toLight);
+      for (uint32_t i = 0; i < n; i++) {
+        float w[3];
+        if (!weightAt(lobe, i, w)) continue;
+        float side = 0, sum = 0;
+        for (int k = 0; k < 3; k++) {
+          response[k][i] += w[k] *= answers.value[k][i];
+          sum += w[k], side += lobe.normal[k][i] * from.toLight[k][i];
+        }
+        if (sum > 0) wanted[i] = side > 0 ? 1 : 2;
+      }
+    }
+    scene_.host.shadow(&batch, light, &hits, wanted, &from);
+    for (int k = 0; k < 3; k++)
+      for (uint32_t i = 0; i < n; i++)
+        if (wanted[i]) radiance[k][i] += response[k][i] * float(M_PI) * from.color[k][i];
+  }
+}
+
+void TileRenderer::scatterRange(Paths& paths, const Points& points, const Bucket& bucket, const uint32_t* order) {
+  const RtsHits& hits = points.hits;
+  const uint32_t size = padded(hits.count);
+  RtsSurface surface;
+  float* radiance[3];
+  for (int k = 0; k < 3; k++) {
+    radiance[k] = surface.emission[k] = arena_.takeZero<float>(size);
+    surface.albedo[k] = has(RT_ALBEDO) ? arena_.takeZero<float>(size) : nullptr;
+  }
+  RtsBatch batch = makeBatch(paths, points, order);
+  batch.lightSet = bucket.lightSet;
+  {
+    const RunningShader running(*bucket.shaderClass);
+    bucket.shaderClass->surface(&scene_.host, &batch, &hits, &surface);
+  }
+  checkAnswer(*bucket.shaderClass, batch, surface);
+  Boundaries boundaries{nullptr, nullptr};
+  if (bucket.shaderClass->medium) meetBoundaries(batch, paths.state, boundaries);
+  for (uint32_t i = 0; i < hits.count; i++) {
+    const float share = boundaries.crossing && !boundaries.crossing[i].seen ? 0 : chanceMet(paths.state[order[i]], points, i);
+    for (int k = 0; k < 3; k++) radiance[k][i] *= share;
+    if (const RayState& ray = paths.state[order[i]]; share > 0 && ray.byChance) {
+      const float light[3] = {radiance[0][i], radiance[1][i], radiance[2][i]};
+      chanceOf(ray).meet(light, brightestFor(ray));
+    }
+  }
+  addLights(batch, hits, radiance);
+  const bool path = scene_.frame.transport >= RT_TRANSPORT_PATH;
+  const bool emitters = path && scene_.emitters.any() && level_ < scene_.frame.depth;
+  Random random{};
+  float* choices[2] = {};
+  if (path) {
+    random = randomOf(paths, order, hits.count);
+    draw(random, Draw::choice, 0, choices);
+  }
+  const LobeSamples* samples[RTS_MAX_LOBES] = {};
+  float* chance[RTS_MAX_LOBES] = {};
+  for (uint32_t l = 0; path && l < batch.lobeCount; l++) {
+    if (!scatteringOf(batch.lobes[l])) continue;
+    samples[l] = sampleLobe(batch, l, hits, random);
+    if (emitters) chance[l] = arena_.takeZero<float>(size);
+  }
+  for (uint32_t i = 0; i < hits.count; i++) {
+    if (boundaries.crossing && !boundaries.crossing[i].seen)
+      passOn(points, i, order[i], boundaries.crossing[i], paths);
+    else
+      sendOn(batch, points, i, order[i], paths, samples, boundaries, choices, chance);
+  }
+  if (emitters) addEmitters(batch, points, order, paths, random, chance, boundaries.crossing, radiance);
+  float* fog[4];
+  attenuate(points, paths, order, fog);
+  for (uint32_t i = 0; i < hits.count; i++) {
+    const RayState& ray = paths.state[order[i]];
+    float clear[3] = {0, 0, 0}, seen[3] = {0, 0, 0}, covered = 0; // straight behind; there, in mirrors and through lenses
+    const bool unseen = boundaries.crossing && !boundaries.crossing[i].seen;
+    for (uint32_t l = 0; l < batch.lobeCount; l++) {
+      float w[3];
+      if (scatteringOf(batch.lobes[l]) || !weightAt(batch.lobes[l], i, w)) continue;
+      for (int k = 0; k < 3; k++) seen[k] += w[k], clear[k] += batch.lobes[l].kind == RTS_LOBE_TRANSPARENT ? w[k] : 0.0f;
+    }
+    for (int k = 0; k < 3; k++) {
+      if (unseen) seen[k] = clear[k] = 1;
+      float light = std::isfinite(radiance[k][i]) ? radiance[k][i] : 0.0f;
+      // Fog counts the whole length of a path: what is seen beyond brings the air's light of the way to here with it.
+      if (fog[3]) light = fog[3][i] * light + (1 - fog[3][i]) * fog[k][i] * (1 - std::min(seen[k], 1.0f));
+      paths.radiance[k][ray.path] += ray.throughput[k] * light;
+      covered += ray.throughput[k] * (1 - std::min(clear[k], 1.0f));
+    }
+    if (!ray.bent) paths.alpha[ray.path] += covered / 3;
+    if (paths.first[ray.path] && !unseen) noteFirst(points, i, ray.path, surface.albedo, paths);
+  }
+}
+
+// The share of a surface's own light that belongs to the ray: the rest comes from those who choose places on emitters.
+float TileRenderer::chanceMet(const RayState& ray, const Points& points, uint32_t i) const {
+  const uint32_t lane = points.order[i], record = points.rayHits->record[lane], primitive = points.rayHits->primitive[lane];
+  const RtsHits& h = points.hits;
+  const float direction[3] = {h.direction[0][i], h.direction[1][i], h.direction[2][i]};
+  if (scene_.lightSources && ray.course == Course::through && scene_.emitters.sends(record, primitive, direction)) return 0;
+  if (!(ray.density > 0)) return 1;
+  const float chosen = scene_.emitters.density(ray.from, record, primitive, direction, h.segment[i]);
+  return std::isfinite(chosen) ? ray.density / (ray.density + chosen) : 0.0f;
+}
+
+void TileRenderer::sampleAt(uint32_t path, uint32_t pair, float& u, float& v) const {
+  if (root_) path = root_[path];
+  const uint32_t sample = firstSample_ + path % samples_;
+  PairSampler(pixels_[path / samples_], pair, replicates_.seedOf(sample))(replicates_.indexOf(sample), u, v);
+}
+
+TileRenderer::Random TileRenderer::randomOf(const Paths& paths, const uint32_t* order, uint32_t n) {
+  Random random{n, arena_.take<uint32_t>(n), arena_.take<uint32_t>(n), arena_.take<uint32_t>(n)};
+  for (uint32_t i = 0; i < n; i++) {
+    const RayState& ray = paths.state[order[i]];
+    const uint32_t path = root_ ? root_[ray.path] : ray.path, sample = firstSample_ + path % samples_;
+    random.key[i] = hash(pixels_[path / samples_], replicates_.seedOf(sample));
+    random.index[i] = replicates_.indexOf(sample);
+    random.pair[i] = pairOf(ray, Draw::direction);
+  }
+  return random;
+}
+
+void TileRenderer::draw(const Random& random, Draw what, uint32_t apart, float* square[2]) {
+  for (int k = 0; k < 2; k++) square[k] = arena_.take<float>(random.count);
+  samplePairs(random.count, random.key, random.pair, uint32_t(what) - uint32_t(Draw::direction) + apart, random.index, square[0],
+              square[1]);
+}
+
+// A direction for every hit from a lobe that scatters.
+const LobeSamples* TileRenderer::sampleLobe(const RtsBatch& batch, uint32_t l, const RtsHits& hits, const Random& random) {
+  auto* samples = new (arena_.take<LobeSamples>(1)) LobeSamples(arena_, hits.count, &batch);
+  ArenaScope scope(arena_);
+  const uint32_t* all = arena_.takeNumbers(hits.count);
+  float* square[2];
+  draw(random, Draw::direction, l ? hash(l, 0x6c6f6265u) : 0, square);
+  samples->sample(batch.lobes[l], hits, hits.count, all, square);
+  return samples;
+}
+
+// Straight through a boundary that is not there for light.
+void TileRenderer::passOn(const Points& points, uint32_t i, uint32_t lane, const Crossing& crossing, Paths& paths) {
+  const RayState& ray = paths.state[lane];
+  Step step{.weight = {1, 1, 1},
+            .density = 0,
+            .bent = false,
+            .split = false,
+            .through = false,
+            .channel = ray.channel,
+            .branch = ray.branch};
+  for (int k = 0; k < 3; k++) step.direction[k] = points.hits.direction[k][i];
+  step.media = crossing.behind;
+  push(points, i, lane, step, paths);
+}
+
+// The rays that go on from hit i: all of them, or one of them chosen. chance: of each lobe's direction to be followed; it must
+// not depend on the directions themselves, which light from emitters is weighed against.
+void TileRenderer::sendOn(const RtsBatch& batch, const Points& points, uint32_t i, uint32_t lane, Paths& paths,
+                          const LobeSamples* const samples[], const Boundaries& boundaries, float* const choices[2],
+                          float* const chance[]) {
+  const RayState ray = paths.state[lane];
+  const bool path = scene_.frame.transport >= RT_TRANSPORT_PATH, direct = scene_.frame.transport == RT_TRANSPORT_DIRECT;
+  Ways ways(points.hits, i, boundaries.eta ? boundaries.eta[i] : nullptr, ray.channel);
+  for (uint32_t l = 0; l < batch.lobeCount; l++) {
+    if (direct && batch.lobes[l].kind != RTS_LOBE_TRANSPARENT) continue;
+    ways.add(l, batch.lobes[l], samples[l]);
+    if (samples[l]) noteRandom(ray.path);
+  }
+  float carried[Ways::maximum], sum = 0;
+  for (uint32_t w = 0; w < ways.count; w++) {
+    const Way& way = ways.list[w];
+    const float left[3] = {way.share[0] * ray.throughput[0], way.share[1] * ray.throughput[1], way.share[2] * ray.throughput[2]};
+    sum += carried[w] = largest(left);
+  }
+  if (!(sum > 0)) return;
+  const bool all = !path || ways.count == 1 || ray.splits == 0;
+  for (uint32_t w = 0; w < ways.count; w++)
+    if (chance[ways.list[w].lobe]) chance[ways.list[w].lobe][i] = all ? 1 : carried[w] / sum;
+  const float choice = path ? choices[0][i] : 0, survival = path ? choices[1][i] : 0;
+  const auto send = [&](uint32_t w, float probability) {
+    const Way& way = ways.list[w];
+    if (way.lost) return;
+    float kept = probability;
+    if (path && level_ >= rouletteFrom) {
+      const float stay = std::min(1.0f, carried[w] / probability);
+      if (stay < 1) noteRandom(ray.path);
+      if (survival >= stay) return;
+      kept *= stay;
+    } else if (!path && carried[w] < scene_.frame.energyCut) {
+      for (int k = 0; k < 3; k++) ledger_.cutByEnergy += double(way.share[k]) * double(ray.throughput[k]);
+      return;
+    }
+    Step step{.density = way.density * probability,
+              .bent = way.bent,
+              .split = ways.count > 1,
+              .through = way.density > 0 && transmitsAt(batch, i),
+              .channel = way.channel,
+              .branch = w == 0 ? ray.branch : hash(ray.branch + w, level_ + 1)};
+    float towards = 0;
+    for (int k = 0; k < 3; k++) {
+      step.direction[k] = way.direction[k], step.weight[k] = way.weight[k] / kept;
+      towards += points.hits.geometric[k][i] * way.direction[k];
+    }
+    step.media = towards < 0 && boundaries.crossing ? boundaries.crossing[i].behind : ray.media;
+    push(points, i, lane, step, paths);
+  };
+  if (all) {
+    for (uint32_t w = 0; w < ways.count; w++) send(w, 1);
+    return;
+  }
+  noteRandom(ray.path);
+  const uint32_t chosen = chooseAmong(carried, ways.count, choice * sum);
+  if (carried[chosen] > 0) send(chosen, carried[chosen] / sum);
+}
+
+} // namespace openrt

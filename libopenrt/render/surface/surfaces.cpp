@@ -1,0 +1,117 @@
+// surfaces.cpp: see surfaces.h.
+#include "render/surface/surfaces.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace openrt {
+
+void lookThroughBacks(const RenderScene& scene, Arena& arena, RayCounters& counters, const Rays& rays, RayHits& hits) {
+  ArenaScope scope(arena);
+  auto* lanes = arena.take<uint32_t>(rays.count);
+  uint32_t n = 0;
+  for (uint32_t i = 0; i < rays.count; i++)
+    if (hits.record[i] != noHit && culled(scene, rays, hits, i)) lanes[n++] = i;
+  if (n == 0) return;
+  Rays again;
+  again.allocate(arena, n);
+  RayHits found;
+  found.allocate(arena, n);
+  for (uint32_t i = 0; i < n; i++) {
+    const uint32_t lane = lanes[i];
+    for (int k = 0; k < 3; k++) again.org[k][i] = rays.org[k][lane], again.dir[k][i] = rays.dir[k][lane];
+    again.tnear[i] = rays.tnear[lane], again.tfar[i] = rays.tfar[lane];
+  }
+  counters.secondary += n;
+  scene.kernel->intersectFronts(again, maskAll, found);
+  for (uint32_t i = 0; i < n; i++) {
+    const uint32_t lane = lanes[i];
+    hits.t[lane] = found.t[i], hits.u[lane] = found.u[i], hits.v[lane] = found.v[i];
+    for (int k = 0; k < 3; k++) hits.ng[k][lane] = found.ng[k][i];
+    hits.record[lane] = found.record[i], hits.primitive[lane] = found.primitive[i];
+  }
+}
+
+namespace {
+
+uint16_t mediumAt(const RenderScene& scene, uint32_t record) { return (*scene.shaders)[scene.records[record].shader].medium; }
+
+// Where two bodies share a face a ray meets one of the two, and is then led beyond the other: both are crossed at once. A ray
+// looks for the other's face within the bounds of the errors.
+void crossSharedFaces(const RtsBatch& batch, Crossing* crossings) {
+  const RenderScene& scene = *batch.scene;
+  const Points& points = *batch.points;
+  const RtsHits& hits = points.hits;
+  Arena& arena = *batch.arena;
+  ArenaScope scope(arena);
+  Rays rays;
+  rays.allocate(arena, hits.count);
+  auto *hit = arena.take<uint32_t>(hits.count), *own = arena.take<uint32_t>(hits.count);
+  uint32_t n = 0;
+  for (uint32_t i = 0; i < hits.count; i++) {
+    if (!mediumAt(scene, points.record[i])) continue;
+    float cosine = 0;
+    for (int k = 0; k < 3; k++) cosine -= hits.geometric[k][i] * hits.direction[k][i];
+    const float reach = 2 * points.error[i] / std::max(cosine, 1e-3f); // two bounds along the normal
+    for (int k = 0; k < 3; k++) {
+      rays.org[k][n] = hits.position[k][i] - reach * hits.direction[k][i];
+      rays.dir[k][n] = hits.direction[k][i];
+    }
+    rays.tnear[n] = 0, rays.tfar[n] = 2 * reach;
+    own[n] = points.record[i], hit[n++] = i;
+  }
+  if (n == 0) return;
+  rays.count = n;
+  RayHits found;
+  found.allocate(arena, n);
+  scene.kernel->intersectOthers(rays, own, found);
+  for (uint32_t r = 0; r < n; r++) {
+    const uint16_t medium = found.record[r] == noHit ? uint16_t(0) : mediumAt(scene, found.record[r]);
+    if (!medium) continue;
+    const uint32_t i = hit[r];
+    Crossing& c = crossings[i];
+    const Crossing other = cross(c.behind, medium, metFromBehind(scene, rays, found, r), scene.shaders->media());
+    c.behind = other.behind, c.to = mediumOf(c.behind, scene.shaders->media());
+    c.seen = c.from != c.to;
+    points.error[i] *= 4; // beyond both
+  }
+}
+
+} // namespace
+
+void meetBoundaries(RtsBatch& batch, RayState* states, Boundaries& out) {
+  const RenderScene& scene = *batch.scene;
+  const Points& points = *batch.points;
+  const RtsHits& hits = points.hits;
+  const std::span<const RtsMedium> media = scene.shaders->media();
+  out.crossing = batch.arena->take<Crossing>(hits.count);
+  out.eta = batch.arena->take<float[3]>(hits.count);
+  for (uint32_t i = 0; i < hits.count; i++) {
+    const uint16_t medium = mediumAt(scene, points.record[i]);
+    const RayState& ray = states[batch.order[i]];
+    Crossing& c = out.crossing[i] = {ray.media, 0, 0, true, false};
+    if (medium) c = cross(ray.media, medium, hits.flags[i] & RTS_HIT_BACK, media);
+  }
+  if (media.size() > 1) crossSharedFaces(batch, out.crossing);
+  for (uint32_t i = 0; i < hits.count; i++) {
+    RayState& ray = states[batch.order[i]];
+    const Crossing& c = out.crossing[i];
+    if (c.unknown) absorb(c.from, hits.segment[i], media, ray.throughput);
+    for (int k = 0; k < 3; k++) out.eta[i][k] = indexOf(c.from, k, media) / indexOf(c.to, k, media);
+    for (uint32_t l = 0; l < batch.lobeCount; l++) {
+      if (!c.seen)
+        for (auto* weight : batch.lobes[l].weight) weight[i] = 0;
+      if (batch.lobes[l].kind == RTS_LOBE_ROUGH_DIELECTRIC)
+        batch.lobes[l].parameter[0][i] = out.eta[i][ray.channel ? ray.channel - 1 : 1];
+    }
+  }
+}
+
+void absorbOnTheWay(const RenderScene& scene, const Rays& rays, const RayHits& hits, RayState* states) {
+  const std::span<const RtsMedium> media = scene.shaders->media();
+  if (media.empty()) return;
+  for (uint32_t i = 0; i < rays.count; i++) // nothing is left of light that comes from infinity through what absorbs
+    absorb(mediumOf(states[i].media, media), std::min(hits.t[i], 1e30f), media, states[i].throughput);
+}
+
+} // namespace openrt

@@ -1,0 +1,132 @@
+// camera.cpp: see camera.h.
+#include "libpicture/camera.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <numbers>
+
+namespace picture {
+
+namespace {
+
+struct Vec {
+  double x, y, z;
+};
+Vec cross(Vec a, Vec b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
+double length(Vec a) { return std::hypot(a.x, a.y, a.z); }
+Vec divided(Vec a, double s) { return {a.x / s, a.y / s, a.z / s}; }
+
+// The axis that is farthest from the direction v.
+Vec acrossAxis(Vec v) {
+  const double x = std::abs(v.x), y = std::abs(v.y), z = std::abs(v.z);
+  if (x <= y && x <= z) return {1, 0, 0};
+  return y <= z ? Vec{0, 1, 0} : Vec{0, 0, 1};
+}
+
+} // namespace
+
+bool lookAtMatrix(const LookAt& view, double matrix[16]) {
+  const double* p = view.position;
+  Vec back{p[0] - view.target[0], p[1] - view.target[1], p[2] - view.target[2]};
+  const double distance = length(back);
+  if (!(distance > 0) || !std::isfinite(distance)) return false;
+  back = divided(back, distance);
+  Vec up{view.up[0], view.up[1], view.up[2]};
+  up = length(up) > 0 ? divided(up, length(up)) : Vec{0, 1, 0};
+  Vec right = cross(up, back);
+  if (length(right) < 1e-9) right = cross(acrossAxis(back), back);
+  right = divided(right, length(right));
+  up = cross(back, right);
+  const double columns[16] = {right.x, right.y, right.z, 0, up.x, up.y, up.z, 0, back.x, back.y, back.z, 0, p[0], p[1], p[2], 1};
+  std::copy_n(columns, 16, matrix);
+  return true;
+}
+
+double verticalAngle(double smaller, double aspect) {
+  return aspect >= 1 ? smaller : 2 * std::atan(std::tan(smaller / 2) / aspect);
+}
+
+namespace {
+
+// Turns a camera and its place about an axis through the middle of the bounds.
+void turn(xvrml::CameraSettings& camera, const xvrml::Bounds& bounds, xvrml::Axis axis, double angle) {
+  const int along = int(axis) % 3, first = (along + 1) % 3, second = (along + 2) % 3;
+  const auto middle = [&](int i) { return bounds.empty ? 0 : (bounds.minimum[i] + bounds.maximum[i]) / 2; };
+  const double a = middle(first), b = middle(second);
+  const double c = std::cos(angle), s = int(axis) < 3 ? std::sin(angle) : -std::sin(angle);
+  for (size_t column = 0; column < 4; ++column) {
+    double* v = camera.matrix + 4 * column;
+    const double x = v[first] - (column == 3 ? a : 0), y = v[second] - (column == 3 ? b : 0);
+    v[first] = c * x - s * y + (column == 3 ? a : 0);
+    v[second] = s * x + c * y + (column == 3 ? b : 0);
+  }
+}
+
+// A model from three quarters, or a figure in the x-y plane from the front.
+xvrml::CameraSettings modelCamera(const xvrml::OpenRTMapper& mapper, const View& view, double fovy, double aspect) {
+  double axes[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+  if (view.up) {
+    xvrml::threeQuarterView(*view.up, axes);
+  } else if (const xvrml::UpGuess guess = mapper.guessUp(); !guess.frontal) {
+    xvrml::threeQuarterView(guess.axis, axes);
+  }
+  return xvrml::cameraAround(mapper.boundingSphere(), axes, fovy, aspect);
+}
+
+} // namespace
+
+bool lookAtMatrix(const View& view, double matrix[16]) {
+  if (!view.lookAt) return false;
+  LookAt look = *view.lookAt;
+  if (view.up && !look.saysUp) xvrml::upVector(*view.up, look.up);
+  return lookAtMatrix(look, matrix);
+}
+
+static constexpr const char* axisNames[] = {"x", "y", "z", "-x", "-y", "-z"};
+
+std::optional<xvrml::Axis> axisNamed(std::string_view name) {
+  if (name.size() == 2 && name.starts_with('+')) name.remove_prefix(1);
+  for (size_t i = 0; i < std::size(axisNames); ++i)
+    if (name == axisNames[i]) return xvrml::Axis(i);
+  return {};
+}
+
+const char* axisName(xvrml::Axis axis) { return axisNames[size_t(axis)]; }
+
+xvrml::Axis upOf(const xvrml::OpenRTMapper& mapper, const View& view) {
+  if (view.up) return *view.up;
+  return mapper.boundViewpoint() >= 0 ? xvrml::Axis::y : mapper.guessUp().axis;
+}
+
+xvrml::CameraSettings chooseCamera(const xvrml::OpenRTMapper& mapper, const View& view, double aspect) {
+  constexpr double radians = std::numbers::pi / 180;
+  const double smaller = view.fov ? *view.fov * radians : std::numbers::pi / 4; // a Viewpoint's default
+  const double fovy = verticalAngle(smaller, aspect);
+  xvrml::CameraSettings camera;
+  if (view.pinhole) {
+    std::copy_n(view.pinhole->matrix, 16, camera.matrix);
+    camera.fovy = view.pinhole->fovy;
+    return camera;
+  }
+  if (view.lookAt) {
+    lookAtMatrix(view, camera.matrix);
+    camera.fovy = fovy;
+    if (view.fit) camera = xvrml::cameraAround(mapper.boundingSphere(), camera.matrix, fovy, aspect);
+  } else if (view.viewer && !view.viewpoint && !view.fit) {
+    camera = *view.viewer;
+    if (view.fov) camera.fovy = fovy;
+  } else if (view.viewpoint || (!view.fit && mapper.boundViewpoint() >= 0)) {
+    camera = mapper.viewpointCamera(view.viewpoint.value_or(size_t(std::max(0, mapper.boundViewpoint()))));
+    if (view.fov) camera.fovy = fovy;
+  } else if (mapper.boundViewpoint() >= 0 && !view.up) {
+    camera = mapper.fitCamera(fovy);
+  } else {
+    camera = modelCamera(mapper, view, fovy, aspect);
+  }
+  if (view.turn != 0) turn(camera, mapper.bounds(), upOf(mapper, view), view.turn);
+  if (view.shader) camera.shader = view.shader.get();
+  return camera;
+}
+
+} // namespace picture

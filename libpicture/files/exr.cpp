@@ -1,0 +1,93 @@
+// exr.cpp: OpenEXR into memory: one part, 32 bit floats, ZIP, planes named as oiiotool and tev group them, the names behind
+// the numbers of channel id as a JSON object in the string attribute idNames. Nothing that changes from run to run is written.
+// [any thread]
+#include <stdexcept>
+
+#include <ImfChannelList.h>
+#include <ImfChromaticities.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfIO.h>
+#include <ImfOutputFile.h>
+#include <ImfStandardAttributes.h>
+#include <ImfStringAttribute.h>
+#include <fmt/format.h>
+
+#include "openrt/openrt.h"
+#include "libpicture/files/picture.h"
+
+namespace picture {
+
+namespace {
+
+class MemoryStream : public Imf::OStream {
+ public:
+  explicit MemoryStream(std::string& out) : OStream("picture.exr"), out_(out) {}
+  void write(const char bytes[], int count) override {
+    if (position_ + size_t(count) > out_.size()) out_.resize(position_ + size_t(count));
+    out_.replace(position_, size_t(count), bytes, size_t(count));
+    position_ += size_t(count);
+  }
+  uint64_t tellp() override { return position_; }
+  void seekp(uint64_t position) override { position_ = position; }
+
+ private:
+  std::string& out_;
+  size_t position_ = 0;
+};
+
+std::string nameTable(const std::vector<std::string>& names) {
+  std::string text = "{";
+  for (size_t i = 1; i < names.size(); ++i) {
+    text += fmt::format("{}\"{}\":\"", i > 1 ? "," : "", i);
+    for (char c : names[i]) {
+      if (c == '"' || c == '\\')
+        text += '\\', text += c;
+      else if (static_cast<unsigned char>(c) < 0x20)
+        text += fmt::format("\\u{:04x}", int(c));
+      else
+        text += c;
+    }
+    text += '"';
+  }
+  return text + "}";
+}
+
+Imf::Header makeHeader(const Picture& picture) {
+  Imf::Header header(picture.width, picture.height);
+  header.compression() = Imf::ZIP_COMPRESSION;
+  header.insert("software", Imf::StringAttribute(
+                                fmt::format("vv {}.{}.{}", OPENRT_VERSION_MAJOR, OPENRT_VERSION_MINOR, OPENRT_VERSION_PATCH)));
+  header.insert("colour", Imf::StringAttribute(picture.linear ? "linear" : "vrml97"));
+  if (picture.linear) Imf::addChromaticities(header, Imf::Chromaticities()); // Rec. 709
+  if (picture.planes.count(RT_NAME)) header.insert("idNames", Imf::StringAttribute(nameTable(picture.names)));
+  return header;
+}
+
+} // namespace
+
+std::string encodeExr(const Picture& picture) {
+  std::string out;
+  try {
+    Imf::Header header = makeHeader(picture);
+    Imf::FrameBuffer frame;
+    for (const Channel& channel : channelTable()) {
+      auto plane = picture.planes.find(channel.bit);
+      if (plane == picture.planes.end()) continue;
+      const size_t pixel = size_t(channel.components) * sizeof(float);
+      for (int c = 0; c < channel.components; ++c) {
+        const std::string name(channel.exr[c]);
+        header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+        char* base = reinterpret_cast<char*>(const_cast<float*>(plane->second.data() + c));
+        frame.insert(name, Imf::Slice(Imf::FLOAT, base, pixel, pixel * size_t(picture.width)));
+      }
+    }
+    MemoryStream stream(out);
+    Imf::OutputFile file(stream, header);
+    file.setFrameBuffer(frame);
+    file.writePixels(picture.height);
+  } catch (const std::exception& error) { throw std::runtime_error(std::string("OpenEXR: ") + error.what()); }
+  return out;
+}
+
+} // namespace picture

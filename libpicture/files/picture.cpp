@@ -1,0 +1,160 @@
+// picture.cpp: the table of channels, display colours, and the two formats that need no library (PPM, PFM).
+#include "libpicture/files/picture.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <stdexcept>
+
+#include "openrt/openrt.h"
+
+namespace picture {
+
+namespace {
+
+constexpr Channel table[] = {
+    {"rgba", RT_RGBA, 4, {"R", "G", "B", "A"}, "mean radiance and coverage"},
+    {"z", RT_DEPTH, 1, {"Z"}, "distance along the view axis, infinite where nothing is hit"},
+    {"normal", RT_NORMAL, 3, {"N.X", "N.Y", "N.Z"}, "mean shading normal in world space"},
+    {"albedo", RT_ALBEDO, 3, {"albedo.R", "albedo.G", "albedo.B"}, "mean surface colour"},
+    {"position", RT_POSITION, 3, {"P.X", "P.Y", "P.Z"}, "world-space position of the first hit"},
+    {"id", RT_NAME, 1, {"id"}, "number of the Shape hit; the table of names is in the attribute idNames"},
+    {"samples", RT_SAMPLES, 1, {"samples"}, "samples taken"},
+    {"variance", RT_VARIANCE, 3, {"variance.R", "variance.G", "variance.B"}, "sample variance of the radiance"},
+    {"error", RT_ERROR, 3, {"error.R", "error.G", "error.B"}, "half-width of the 95 % interval of each colour"},
+    {"trust", RT_TRUST, 1, {"trust"}, "1 where that interval can be trusted, else 0"},
+};
+
+// The curve of IEC 61966-2-1, from linear to display values.
+float srgb(float v) { return v <= 0.0031308f ? 12.92f * v : 1.055f * std::pow(v, 1 / 2.4f) - 0.055f; }
+
+uint8_t rounded(float v) { return uint8_t(v * 255 + 0.5f); }
+
+// The curve as bytes: pictures are looked at thirty times a second. Which byte a number becomes is looked up near it and found by
+// comparing, so that it is the one that the formula gives.
+class CurveBytes {
+ public:
+  CurveBytes() {
+    for (uint32_t byte = 1; byte < 256; byte++) least_[byte] = leastOf(uint8_t(byte));
+    least_[256] = std::numeric_limits<float>::infinity();
+    for (uint32_t i = 0; i < places; i++) near_[i] = rounded(srgb(float(i) / places));
+  }
+  // 0 < v < 1
+  uint8_t of(float v) const {
+    uint32_t byte = near_[uint32_t(v * places)];
+    while (v >= least_[byte + 1]) byte++;
+    return uint8_t(byte);
+  }
+
+ private:
+  // The smallest number that becomes this byte, among floats in the order of their bits.
+  static float leastOf(uint8_t byte) {
+    uint32_t below = 0, from = std::bit_cast<uint32_t>(1.0f);
+    while (from - below > 1) {
+      const uint32_t middle = below + (from - below) / 2;
+      (rounded(srgb(std::bit_cast<float>(middle))) >= byte ? from : below) = middle;
+    }
+    return std::bit_cast<float>(from);
+  }
+  static constexpr uint32_t places = 4096;
+  float least_[257] = {};
+  uint8_t near_[places];
+};
+
+uint8_t displayByte(float v, bool linear) {
+  static const CurveBytes curve;
+  if (!(v > 0)) return 0; // also NaN
+  if (v >= 1) return 255;
+  return linear ? curve.of(v) : rounded(v);
+}
+
+const std::vector<float>& colours(const Picture& picture) {
+  auto found = picture.planes.find(RT_RGBA);
+  if (found == picture.planes.end()) throw std::runtime_error("the picture has no channel rgba");
+  return found->second;
+}
+
+std::string encodePpm(const Picture& picture) {
+  std::string out = "P6\n" + std::to_string(picture.width) + " " + std::to_string(picture.height) + "\n255\n";
+  std::vector<uint8_t> bytes = displayBytes(picture);
+  out.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  return out;
+}
+
+// Portable float map: rows from the bottom up; the sign of the third number says little-endian.
+std::string encodePfm(const Picture& picture) {
+  static_assert(std::endian::native == std::endian::little);
+  std::string out = "PF\n" + std::to_string(picture.width) + " " + std::to_string(picture.height) + "\n-1.0\n";
+  const std::vector<float>& rgba = colours(picture);
+  const size_t width = size_t(picture.width);
+  std::vector<float> row(width * 3);
+  for (int y = picture.height; y-- > 0;) {
+    const float* from = rgba.data() + size_t(y) * width * 4;
+    for (size_t x = 0; x < width; ++x) std::copy_n(from + 4 * x, 3, row.data() + 3 * x);
+    out.append(reinterpret_cast<const char*>(row.data()), row.size() * sizeof(float));
+  }
+  return out;
+}
+
+} // namespace
+
+std::span<const Channel> channelTable() { return table; }
+
+const Channel* findChannel(std::string_view name) {
+  for (const Channel& channel : table)
+    if (channel.name == name) return &channel;
+  return nullptr;
+}
+
+std::optional<Format> formatNamed(std::string_view name) {
+  std::string lower(name);
+  std::transform(lower.begin(), lower.end(), lower.begin(),
+                 [](unsigned char c) { return c < 128 ? char(std::tolower(c)) : char(c); });
+  if (lower == "png") return Format::png;
+  if (lower == "jpg" || lower == "jpeg") return Format::jpeg;
+  if (lower == "exr") return Format::exr;
+  if (lower == "ppm") return Format::ppm;
+  if (lower == "pfm") return Format::pfm;
+  return {};
+}
+
+std::optional<Format> formatOf(std::string_view path) {
+  size_t dot = path.rfind('.');
+  if (dot == path.npos || path.find('/', dot) != path.npos) return {};
+  return formatNamed(path.substr(dot + 1));
+}
+
+std::vector<uint8_t> displayBytes(const Picture& picture) {
+  const std::vector<float>& rgba = colours(picture);
+  std::vector<uint8_t> bytes(rgba.size() / 4 * 3);
+  for (size_t i = 0; i < rgba.size() / 4; ++i)
+    for (size_t c = 0; c < 3; ++c) bytes[3 * i + c] = displayByte(rgba[4 * i + c], picture.linear);
+  return bytes;
+}
+
+std::vector<uint8_t> displayBytesAlpha(const Picture& picture) {
+  const std::vector<float>& rgba = colours(picture);
+  std::vector<uint8_t> bytes(rgba.size());
+  for (size_t i = 0; i < rgba.size(); i += 4) {
+    const float alpha = rgba[i + 3];
+    bytes[i + 3] = displayByte(alpha, false);
+    for (size_t c = 0; c < 3; ++c)
+      bytes[i + c] = alpha > 0 ? displayByte(rgba[i + c] / std::min(alpha, 1.0f), picture.linear) : 0;
+  }
+  return bytes;
+}
+
+std::string encode(const Picture& picture, Format format) {
+  switch (format) {
+  case Format::png: return encodePng(picture);
+  case Format::jpeg: return encodeJpeg(picture);
+  case Format::exr: return encodeExr(picture);
+  case Format::ppm: return encodePpm(picture);
+  case Format::pfm: return encodePfm(picture);
+  }
+  throw std::runtime_error("unknown picture format");
+}
+
+} // namespace picture

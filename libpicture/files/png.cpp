@@ -1,0 +1,50 @@
+// png.cpp: PNG through libpng, 8 bit red, green, blue, perhaps alpha, into memory. [any thread]
+#include <csetjmp>
+#include <stdexcept>
+
+#include <png.h>
+
+#include "libpicture/files/picture.h"
+
+namespace picture {
+
+namespace {
+
+void append(png_structp png, png_bytep bytes, size_t size) {
+  // An exception must not cross libpng's C frames.
+  try {
+    static_cast<std::string*>(png_get_io_ptr(png))->append(reinterpret_cast<const char*>(bytes), size);
+  } catch (...) { png_error(png, "out of memory"); }
+}
+
+void nothing(png_structp) {}
+void silent(png_structp, png_const_charp) {}
+
+// False on an error. Holds only C values across libpng's longjmp.
+bool write(png_structp png, png_infop info, std::string* out, uint8_t* bytes, int width, int height, bool alpha) {
+  if (setjmp(png_jmpbuf(png))) return false;
+  png_set_write_fn(png, out, append, nothing);
+  png_set_user_limits(png, 0x7fffffff, 0x7fffffff);
+  png_set_IHDR(png, info, png_uint_32(width), png_uint_32(height), 8, alpha ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB,
+               PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+  png_set_sRGB(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
+  png_write_info(png, info);
+  for (int y = 0; y < height; ++y) png_write_row(png, bytes + size_t(y) * size_t(width) * (alpha ? 4 : 3));
+  png_write_end(png, info);
+  return true;
+}
+
+} // namespace
+
+std::string encodePng(const Picture& picture) {
+  std::vector<uint8_t> bytes = picture.transparent ? displayBytesAlpha(picture) : displayBytes(picture);
+  std::string out;
+  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, silent);
+  png_infop info = png ? png_create_info_struct(png) : nullptr;
+  const bool done = info && write(png, info, &out, bytes.data(), picture.width, picture.height, picture.transparent);
+  png_destroy_write_struct(&png, &info);
+  if (!done) throw std::runtime_error("PNG: the picture cannot be encoded");
+  return out;
+}
+
+} // namespace picture

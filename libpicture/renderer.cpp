@@ -1,0 +1,310 @@
+// renderer.cpp: see renderer.h.
+#include "libpicture/renderer.h"
+
+#include <algorithm>
+#include <atomic>
+#include <charconv>
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "libpicture/cluster.h"
+#include "libpicture/stage.h"
+
+namespace picture {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr int maxInFlight = 64;
+constexpr size_t inFlightBytes = size_t(2) << 30, pixelBytes = 128; // of all frames in flight; of a pixel, about
+
+double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+// A frame that was started, and what can be said of it only then.
+struct Flight {
+  RenderResult result{};
+  std::vector<std::string> names;
+};
+
+} // namespace
+
+bool worthRounds(const RenderSettings& settings) {
+  constexpr int samples = 64;
+  constexpr int64_t pixels = int64_t(2) << 20;
+  return !settings.cluster && settings.samples >= samples && int64_t(settings.width) * settings.height <= pixels;
+}
+
+struct Renderer::Impl {
+  Stage stage;
+  Watch watch;
+
+  // Between the threads. `task` is set by the caller and cleared by the render thread when it is done.
+  std::mutex mutex;
+  std::condition_variable changed;
+  std::function<void()> task;
+  std::exception_ptr failure;
+  bool ending = false;
+  std::string wrong; // with the end; empty: nothing
+  std::atomic<bool> cancelled{false};
+  std::thread thread;
+
+  // The calling thread, and the render thread while that waits.
+  std::deque<Flight> flights;
+  Clock::time_point lastEnd; // of a frame
+
+  Impl(xvrml::World& world, xvrml::Browser* browser, const RenderSettings& settings, Watch w)
+      : stage(world, browser, settings), watch(std::move(w)) {}
+
+  void loop() {
+    std::unique_lock lock(mutex);
+    for (;;) {
+      changed.wait(lock, [&] { return task || ending; });
+      if (!task) break;
+      lock.unlock();
+      try {
+        task();
+      } catch (...) { failure = std::current_exception(); }
+      lock.lock();
+      task = nullptr;
+      changed.notify_all();
+    }
+    lock.unlock();
+    wrong = stage.close();
+  }
+
+  // Runs `work` on the render thread; meanwhile calls the watch.
+  void run(std::function<void()> work) {
+    std::exception_ptr stopped;
+    std::unique_lock lock(mutex);
+    failure = nullptr;
+    task = std::move(work);
+    changed.notify_all();
+    while (!changed.wait_for(lock, std::chrono::milliseconds(50), [&] { return !task; })) {
+      const RTcontext context = stage.context();
+      // Again and again: a cancellation before the frame has started would be lost.
+      if (cancelled && context) rtCancel(context);
+      if (!watch || stopped) continue;
+      const float progress = context ? rtProgress(context) : 0;
+      lock.unlock();
+      try {
+        if (watch(progress)) cancelled = true;
+      } catch (...) {
+        stopped = std::current_exception();
+        cancelled = true;
+      }
+      lock.lock();
+    }
+    if (stopped) std::rethrow_exception(stopped);
+    if (failure) std::rethrow_exception(std::exchange(failure, nullptr));
+  }
+
+  void noteCamera(RenderResult& result) const {
+    result.camera = stage.shown();
+    result.ownRays = std::exchange(result.camera.shader, nullptr) != nullptr;
+  }
+
+  void start(const View& view) {
+    const auto begin = Clock::now();
+    stage.prepare(view);
+    Flight flight;
+    flight.result.mapSeconds = secondsSince(begin) + stage.takeMeshSeconds();
+    flight.result.map = stage.mapper()->stats();
+    if (stage.settings.channels & RT_NAME) {
+      flight.names = stage.mapper()->names();
+      flight.result.nodes = stage.mapper()->nodes();
+    }
+    noteCamera(flight.result);
+    stage.setUpFrame();
+    rtQuality(RT_FRAMES_IN_FLIGHT, maxInFlight);
+    if (flights.empty()) lastEnd = Clock::now();
+    rtSwapBuffers();
+    throwOnError("rendering");
+    flights.push_back(std::move(flight));
+  }
+
+  void finish(RenderResult& result) {
+    const Flight flight = std::move(flights.front());
+    flights.pop_front();
+    rtFinishFrame();
+    throwOnError("rendering");
+    result = flight.result;
+    result.renderSeconds = secondsSince(lastEnd); // of frames that overlap: what they add
+    lastEnd = Clock::now();
+    stage.passOn();
+    result.interrupted = cancelled;
+    stage.readChannels(stage.settings, result.picture, &flight.names);
+    stage.describe(stage.settings, result);
+    result.map = flight.result.map;
+  }
+
+  void render(const View& view, RenderResult& result) {
+    auto start = Clock::now();
+    stage.prepare(view);
+    result.mapSeconds = secondsSince(start) + stage.takeMeshSeconds(); // meshes are made once, with the first picture
+    noteCamera(result);
+    stage.setUpFrame();
+    start = Clock::now();
+    rtRender();
+    throwOnError("rendering");
+    result.renderSeconds = secondsSince(start);
+    stage.passOn(); // the browser's thread waits
+    result.interrupted = cancelled;
+    stage.readChannels(stage.settings, result.picture);
+    stage.describe(stage.settings, result);
+    if (stage.settings.channels & RT_NAME) result.nodes = stage.mapper()->nodes();
+  }
+};
+
+Renderer::Renderer(xvrml::World& world, const RenderSettings& settings, Watch watch)
+    : impl_(std::make_unique<Impl>(world, nullptr, settings, std::move(watch))) {
+  begin();
+}
+
+Renderer::Renderer(xvrml::Browser& browser, const RenderSettings& settings, Watch watch)
+    : impl_(std::make_unique<Impl>(browser.world(), &browser, settings, std::move(watch))) {
+  impl_->stage.collect(); // the mapper begins with the world as it is now
+  begin();
+}
+
+void Renderer::begin() {
+  impl_->thread = std::thread([impl = impl_.get()] { impl->loop(); });
+  try {
+    impl_->run([this] { impl_->stage.open([this] { return impl_->cancelled.load(); }); });
+  } catch (...) {
+    end();
+    throw;
+  }
+}
+
+Renderer::~Renderer() { end(); }
+
+void Renderer::close() {
+  end();
+  if (!impl_->wrong.empty()) throw RenderError(impl_->wrong, RT_IO_ERROR);
+}
+
+void Renderer::end() {
+  {
+    std::lock_guard lock(impl_->mutex);
+    impl_->ending = true;
+  }
+  impl_->changed.notify_all();
+  if (impl_->thread.joinable()) impl_->thread.join();
+}
+
+void Renderer::change(const std::function<void(RenderSettings&)>& change) { change(impl_->stage.settings); }
+
+void Renderer::setWatch(Watch watch) { impl_->watch = std::move(watch); }
+
+const std::vector<xvrml::ViewpointInfo>& Renderer::viewpoints() {
+  const News news = impl_->stage.collect();
+  impl_->run([&] { impl_->stage.apply(news); });
+  return impl_->stage.mapper()->viewpoints();
+}
+
+xvrml::Bounds Renderer::bounds() {
+  xvrml::Bounds bounds;
+  const News news = impl_->stage.collect();
+  impl_->run([&] {
+    impl_->stage.apply(news);
+    bounds = impl_->stage.mapper()->bounds();
+  });
+  return bounds;
+}
+
+Renderer::Place Renderer::placeOf(const View& view) {
+  checkViewpoint(view);
+  Place place;
+  const News news = impl_->stage.collect();
+  impl_->run([&] {
+    impl_->stage.apply(news);
+    place.camera = impl_->stage.cameraOf(view);
+    const xvrml::OpenRTMapper& mapper = *impl_->stage.mapper();
+    place.up = upOf(mapper, view);
+    if (!view.up && mapper.boundViewpoint() < 0) place.reason = mapper.guessUp().reason;
+  });
+  return place;
+}
+
+void Renderer::prepare(const View& view) {
+  const News news = impl_->stage.collect();
+  impl_->run([&] {
+    impl_->stage.apply(news);
+    impl_->stage.prepare(view);
+  });
+}
+
+std::vector<xvrml::ExplainedObject> Renderer::explain() {
+  std::vector<xvrml::ExplainedObject> objects;
+  impl_->run([&] { objects = impl_->stage.mapper()->explain(); });
+  return objects;
+}
+
+bool Renderer::snapshot(Picture& picture) { return impl_->stage.snapshot(picture, impl_->stage.settings.channels); }
+
+void Renderer::checkViewpoint(const View& view) {
+  if (view.viewpoint && *view.viewpoint >= viewpoints().size())
+    throw RenderError(fmt::format("there is no viewpoint {}: the world has {}", *view.viewpoint, viewpoints().size()));
+}
+
+void Renderer::start(const View& view) {
+  checkViewpoint(view);
+  if (impl_->flights.empty()) impl_->cancelled = false;
+  const News news = impl_->stage.collect();
+  impl_->run([&] {
+    impl_->stage.apply(news);
+    impl_->start(view);
+  });
+}
+
+RenderResult Renderer::finish() {
+  if (impl_->flights.empty()) throw RenderError("no frame is in flight");
+  RenderResult result{};
+  impl_->run([&] { impl_->finish(result); });
+  return result;
+}
+
+size_t Renderer::flying() const { return impl_->flights.size(); }
+
+size_t Renderer::overlap() const {
+  const RenderSettings& settings = impl_->stage.settings;
+  if (!settings.cluster) return 1;
+  // A frame has a place for the sums of all its channels, and a copy of them.
+  const size_t bytes = size_t(settings.width) * size_t(settings.height) * pixelBytes;
+  const size_t most = std::clamp(inFlightBytes / bytes, size_t(2), size_t(maxInFlight));
+  const std::string& split = settings.cluster->settings().split;
+  const bool shared = split == "tiles" || split == "samples";
+  return shared ? 2 : std::clamp(settings.cluster->alive() + 1, size_t(2), most);
+}
+
+RenderResult Renderer::render(const View& view) {
+  checkViewpoint(view);
+  RenderResult result{};
+  impl_->cancelled = false;
+  const News news = impl_->stage.collect();
+  impl_->run([&] {
+    impl_->stage.apply(news);
+    impl_->render(view, result);
+  });
+  return result;
+}
+
+int findViewpoint(const std::vector<xvrml::ViewpointInfo>& viewpoints, const std::string& name) {
+  for (size_t i = 0; i < viewpoints.size(); ++i)
+    if (!name.empty() && viewpoints[i].name == name) return int(i);
+  for (size_t i = 0; i < viewpoints.size(); ++i)
+    if (!name.empty() && viewpoints[i].description == name) return int(i);
+  size_t number = 0;
+  auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
+  if (error == std::errc() && end == name.data() + name.size() && number < viewpoints.size()) return int(number);
+  return -1;
+}
+
+} // namespace picture

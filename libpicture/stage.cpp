@@ -1,0 +1,265 @@
+// stage.cpp: see stage.h.
+#include "libpicture/stage.h"
+
+#include <chrono>
+#include <new>
+#include <numbers>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "libpicture/cluster.h"
+#include "libpicture/files/radiance.h"
+
+namespace picture {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// "rtRender: why" -> "why": of what is wrong with workers, not with a call.
+std::string withoutCall(const std::string& message) {
+  const size_t colon = message.find(": ");
+  return message.starts_with("rt") && colon != message.npos ? message.substr(colon + 2) : message;
+}
+
+double aspectOf(const RenderSettings& settings) { return double(settings.width) / settings.height; }
+
+// Room for each channel that is wanted; fill says whether it could be filled.
+template <class Fill> bool fillChannels(const RenderSettings& settings, uint32_t channels, Picture& picture, const Fill& fill) {
+  for (const Channel& channel : channelTable()) {
+    if (!(channels & channel.bit)) continue;
+    std::vector<float>& plane = picture.planes[channel.bit];
+    plane.resize(size_t(settings.width) * size_t(settings.height) * size_t(channel.components));
+    if (!fill(channel.bit, plane)) return false;
+  }
+  return true;
+}
+
+} // namespace
+
+void throwOnError(const char* doing) {
+  const RTenum code = rtGetError();
+  if (code == RT_CLUSTER_ERROR) throw RenderError(withoutCall(rtGetErrorMessage()), code);
+  if (code != RT_NO_ERROR) throw RenderError(fmt::format("{}: {}", doing, rtGetErrorMessage()), code);
+}
+
+std::string contextConfiguration(const RenderSettings& settings) {
+  std::string config = fmt::format(" threads={}", settings.threads);
+  if (!settings.record.empty()) addQuoted(config, "record", settings.record);
+  if (!settings.shaderPath.empty()) addQuoted(config, "shaderpath", settings.shaderPath);
+  return config;
+}
+
+RTcontext newContext(const std::string& configuration) {
+  if (const RTcontext made = rtNewContext(configuration.c_str())) return made;
+  const RTenum code = rtGetError();
+  throw RenderError(withoutCall(rtGetErrorMessage()), code);
+}
+
+Stage::Stage(xvrml::World& world, xvrml::Browser* browser, const RenderSettings& s)
+    : settings(s), world_(&world), browser_(browser) {}
+
+// Errors of calls become diagnostics in the mapper; here only what the exit code depends on.
+void Stage::note(RTenum error, const char*, void* self) {
+  auto& stage = *static_cast<Stage*>(self);
+  stage.pluginMissing_ |= error == RT_PLUGIN_ERROR;
+  stage.memoryExhausted_ |= error == RT_OUT_OF_MEMORY;
+}
+
+// What the engine says: shaders that cannot be rendered, answers that were not finite. Called on render threads too.
+void Stage::listen(int level, const char* text, void* self) {
+  auto& stage = *static_cast<Stage*>(self);
+  constexpr size_t most = 100;
+  const std::lock_guard lock(stage.heardMutex_);
+  if (level >= 2 && stage.heard_.size() < most) stage.heard_.emplace_back(text);
+}
+
+void Stage::passOn() {
+  std::vector<std::string> news;
+  {
+    const std::lock_guard lock(heardMutex_);
+    news.swap(heard_);
+  }
+  for (const std::string& text : news) world_->diagnostics.warn({}, text);
+}
+
+void Stage::open(const std::function<bool()>& stop) {
+  if (settings.cluster) {
+    const auto listener = [this](int level, const char* text) { listen(level, text, this); };
+    const RTcontext lent = settings.cluster->borrow(listener, stop);
+    if (!lent) throw RenderError("given up: the cluster makes another picture");
+    borrowed_ = true;
+    context_ = lent;
+  } else {
+    context_ = newContext("backend=" + settings.backend + contextConfiguration(settings));
+    rtLogCallback(listen, this);
+  }
+  rtErrorCallback(note, this);
+  try {
+    makeMapper();
+  } catch (...) {
+    close();
+    throw;
+  }
+}
+
+std::string Stage::close() {
+  if (borrowed_) rtCancel(context_); // a frame that nobody will see
+  mapper_.reset();
+  if (borrowed_ && environment_) {
+    rtUseEnvironment(0);
+    rtDeleteShader(environment_);
+    rtDeleteTexture(environmentTexture_);
+  }
+  environment_ = environmentTexture_ = 0;
+  const RTcontext context = context_.exchange(nullptr);
+  if (std::exchange(borrowed_, false)) {
+    settings.cluster->giveBack();
+    return "";
+  }
+  while (rtGetError() != RT_NO_ERROR) {}
+  rtDeleteContext(context);
+  return rtGetError() == RT_NO_ERROR ? "" : rtGetErrorMessage();
+}
+
+void Stage::makeMapper() {
+  const auto begin = Clock::now();
+  xvrml::MapOptions options;
+  options.linearColor = settings.linear;
+  options.headlight = settings.headlight;
+  options.aspect = aspectOf(settings);
+  mapper_.reset(); // before the next one: both would own the context's scene
+  mapper_ = std::make_unique<xvrml::OpenRTMapper>(*world_, options);
+  mapper_->setMultiplyTextures(settings.multiplyTextures);
+  meshSeconds_ += std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+double Stage::takeMeshSeconds() { return std::exchange(meshSeconds_, 0); }
+
+News Stage::collect() {
+  News news;
+  if (!browser_) return news;
+  news.changes = browser_->takeChanges();
+  news.otherWorld = std::exchange(generation_, browser_->generation()) != browser_->generation();
+  if (news.otherWorld) world_ = &browser_->world();
+  news.bound = browser_->bound();
+  news.camera = browser_->camera(aspectOf(settings));
+  return news;
+}
+
+void Stage::apply(const News& news) {
+  if (!browser_) return;
+  if (news.otherWorld)
+    makeMapper();
+  else
+    mapper_->update(news.changes);
+  mapper_->bind(news.bound);
+  viewer_.reset();
+  if (news.bound.viewpoint) viewer_ = news.camera;
+}
+
+xvrml::CameraSettings Stage::cameraOf(const View& view) const {
+  View seen = view;
+  if (!seen.viewer) seen.viewer = viewer_;
+  return chooseCamera(*mapper_, seen, aspectOf(settings));
+}
+
+void Stage::prepare(const View& view) {
+  mapper_->setHeadlight(settings.headlight);
+  mapper_->setModelLight(settings.environment.empty());
+  mapper_->setBackground(settings.background.kind == Background::Kind::world); // else alpha is what the shapes cover
+  readBackground();
+  shown_ = cameraOf(view);
+  mapper_->map(shown_);
+  if (view.pinhole) {
+    rtLoadMatrixd(view.pinhole->sheared);
+    rtPerspective(view.pinhole->fovy * 180 / std::numbers::pi);
+  }
+  useEnvironment();
+  if (memoryExhausted_) throw std::bad_alloc();
+}
+
+void Stage::readBackground() {
+  if (background_ == settings.background) return;
+  backcloth_ = Backcloth(settings.background, settings.linear);
+  background_ = settings.background;
+}
+
+// Light from all around that the user gives. The mapper sets its own when that has changed.
+void Stage::useEnvironment() {
+  if (settings.environment.empty()) return;
+  if (environment_ == 0) {
+    const xvrml::RadianceImage around = readRadiance(settings.environment);
+    rtGenTextures(1, &environmentTexture_);
+    rtBindTexture(environmentTexture_);
+    rtTexImage2D(3, around.width, around.height, RT_FLOAT, around.rgb.data());
+    rtTexParameteri(RT_TEXTURE_WRAP_T, RT_CLAMP_TO_EDGE);
+    environment_ = rtNewShader(rtNewShaderClass("EnvironmentMap", nullptr));
+    rtBindShader(environment_);
+    rtParameterTexture(rtParameterHandle("texture"), environmentTexture_);
+    rtParameter1f(rtParameterHandle("intensity"), float(settings.environmentIntensity));
+    rtBindShader(0);
+  }
+  rtLoadIdentity();
+  rtUseEnvironment(environment_);
+  throwOnError("environment");
+}
+
+void Stage::setUpFrame() {
+  rtFrameBuffer(settings.width, settings.height, settings.channels);
+  rtQuality(RT_SAMPLES_PER_PIXEL, settings.samples);
+  rtQuality(RT_MAX_DEPTH, settings.depth);
+  rtQuality(RT_SEED, settings.seed);
+  rtQuality(RT_SHADOWS, settings.shadows ? 1 : 0);
+  rtQuality(RT_TRANSPORT, settings.transport);
+  rtQuality(RT_PROGRESSIVE, settings.progressive ? 1 : 0);
+  rtQualityf(RT_TARGET_ERROR, settings.error);
+  rtQualityf(RT_TIME_LIMIT, settings.timeLimit);
+  rtQualityf(RT_ENERGY_CUT, settings.energyCut >= 0 ? settings.energyCut : 1.0 / 4096);
+  rtQualityf(RT_CLAMP, settings.clamp);
+  throwOnError("frame");
+}
+
+void Stage::describe(const RenderSettings& frame, Picture& picture, uint32_t channels) const {
+  picture.width = frame.width;
+  picture.height = frame.height;
+  picture.linear = frame.linear;
+  picture.transparent = frame.background.kind == Background::Kind::none;
+  if (channels & RT_NAME) picture.names = mapper_->names();
+}
+
+bool Stage::snapshot(Picture& picture, uint32_t channels) const {
+  const RTcontext context = context_;
+  const auto copied = [&](uint32_t channel, std::vector<float>& plane) {
+    return rtSnapshot(context, channel, plane.data(), plane.size()) != 0;
+  };
+  if (!context) return false;
+  // Tiles go on being finished: where there are samples there is to be the rest, too.
+  if (!fillChannels(settings, channels & RT_SAMPLES, picture, copied)) return false;
+  if (!fillChannels(settings, channels & ~uint32_t(RT_SAMPLES), picture, copied)) return false;
+  describe(settings, picture, channels);
+  if (channels & RT_RGBA) backcloth_.putBehind(picture.planes[RT_RGBA], settings.width, settings.height);
+  return true;
+}
+
+void Stage::readChannels(const RenderSettings& frame, Picture& picture, const std::vector<std::string>* names) const {
+  describe(frame, picture, frame.channels);
+  if (names && (frame.channels & RT_NAME)) picture.names = *names;
+  fillChannels(frame, frame.channels, picture, [](uint32_t channel, std::vector<float>& plane) {
+    rtReadPixels(channel, plane.data(), plane.size());
+    throwOnError("reading the picture");
+    return true;
+  });
+  if (frame.channels & RT_RGBA) backcloth_.putBehind(picture.planes[RT_RGBA], frame.width, frame.height);
+}
+
+void Stage::describe(const RenderSettings& frame, RenderResult& result) const {
+  result.map = mapper_->stats();
+  result.missing = pluginMissing_ || result.map.missingTextures > 0;
+  result.stats.size = sizeof result.stats;
+  rtGetStats(&result.stats);
+  if (frame.cluster) result.workers = frame.cluster->workers();
+}
+
+} // namespace picture

@@ -1,0 +1,43 @@
+// transport.cpp: see transport.h.
+#include "libpicture/transport.h"
+
+#include <iterator>
+#include <utility>
+
+namespace picture {
+
+namespace {
+constexpr const char* names[] = {"auto", "direct", "whitted", "path", "light"}; // by RT_TRANSPORT_*
+}
+
+std::optional<int> transportNamed(std::string_view name) {
+  for (size_t i = 0; i < std::size(names); ++i)
+    if (name == names[i]) return int(i);
+  return std::nullopt;
+}
+
+const char* transportName(RTenum transport) { return transport < std::size(names) ? names[transport] : "plug-in"; }
+
+std::vector<LeftOut> leftOutBy(RTenum transport, uint32_t leaves) {
+  static constexpr std::pair<uint32_t, LeftOut> table[] = {
+      {RT_LEAVES_IMAGES, {"mirror_images", "mirror images and what is behind glass"}},
+      {RT_LEAVES_BETWEEN, {"interreflection", "light that goes from surface to surface"}},
+      {RT_LEAVES_EMITTERS, {"emitters", "light of emitters on other surfaces"}},
+      {RT_LEAVES_SKY, {"sky", "light of the sky on surfaces"}},
+      {RT_LEAVES_CAUSTICS, {"caustics", "light of lamps without extent that comes by way of mirrors or glass"}},
+  };
+  std::vector<LeftOut> list;
+  for (const auto& [bit, left] : table)
+    if (leaves & bit) list.push_back(left);
+  if (transport == RT_TRANSPORT_LIGHT && (leaves & RT_LEAVES_CAUSTICS))
+    list.back().text = "light of lamps without extent that comes by way of mirrors or glass and is itself seen that way";
+  return list;
+}
+
+std::vector<std::string> leftOutNames(const RTstats& stats) {
+  std::vector<std::string> names;
+  for (const LeftOut& left : leftOutBy(stats.transport, stats.transportLeavesOut)) names.emplace_back(left.name);
+  return names;
+}
+
+} // namespace picture

@@ -1,0 +1,151 @@
+// binding.cpp: see binding.h. The rules are numbered as in clause 4.6.10 and, for Viewpoints, 6.53.
+#include "behaviour/viewer/binding.h"
+
+#include <algorithm>
+#include <unordered_set>
+
+#include "behaviour/builtin.h"
+#include "behaviour/viewer/interaction.h"
+#include "event/hierarchy.h"
+#include "nodes/viewpoint.h"
+#include "graph/field_access.h"
+
+namespace xvrml {
+
+size_t Binding::typeOf(const Node& node) {
+  const int index = node.type().index;
+  return isViewpoint(&node)                          ? 0
+         : index == nodes::Background::typeIndex     ? 1
+         : index == nodes::ORTBackground::typeIndex  ? 1
+         : index == nodes::Fog::typeIndex            ? 2
+         : index == nodes::NavigationInfo::typeIndex ? 3
+                                                     : types;
+}
+
+void Binding::tell(Node& node, bool bound) {
+  engine_.send(node, "isBound", bound);
+  engine_.send(node, "bindTime", engine_.now()); // Viewpoints have one
+  engine_.changed(node, *node.type().find("set_bind"));
+}
+
+// Rules a and b: the old one's isBound FALSE, then the new one's TRUE, both at the same time.
+void Binding::push(size_t type, Node& node) {
+  Stack& stack = stacks_[type];
+  NodeRef old(top(type));
+  std::erase_if(stack, [&](const Entry& e) { return e.node.get() == &node; });
+  stack.push_back({NodeRef(&node), isInScene(node)});
+  if (type == 0) viewer_.bind(old.get(), &node);
+  if (old) tell(*old, false);
+  tell(node, true);
+}
+
+// Rule c. A node that is not on top leaves without a word.
+void Binding::remove(size_t type, size_t index) {
+  Stack& stack = stacks_[type];
+  const NodeRef node = stack[index].node;
+  const bool wasTop = index + 1 == stack.size();
+  if (!wasTop) {
+    stack.erase(stack.begin() + ptrdiff_t(index));
+    if (type == 0) viewer_.forget(*node);
+    return;
+  }
+  stack.pop_back();
+  const NodeRef next(top(type));
+  if (type == 0) viewer_.unbind(*node, next.get());
+  tell(*node, false);
+  if (next) tell(*next, true);
+}
+
+void Binding::set(Node& node, bool bound) {
+  const size_t type = typeOf(node);
+  if (type == types) return;
+  if (bound) {
+    if (top(type) != &node) push(type, node);
+    return;
+  }
+  Stack& stack = stacks_[type];
+  for (size_t i = 0; i < stack.size(); ++i)
+    if (stack[i].node.get() == &node) return remove(type, i);
+}
+
+bool Binding::dropAbsent() {
+  bool dropped = false;
+  for (size_t type = 0; type < types; ++type) {
+    for (size_t i = 0; i < stacks_[type].size();) { // from below: a node that is gone must not be bound in between
+      Entry& entry = stacks_[type][i];
+      const bool there = isInScene(*entry.node);
+      if (!there && entry.inScene) {
+        remove(type, i);
+        dropped = true;
+        continue;
+      }
+      entry.inScene = there;
+      ++i;
+    }
+  }
+  return dropped;
+}
+
+namespace {
+
+// Calls visit for each node of a scope in the order of the file; where it returns false what is below is left out.
+template <class Visit> void walkScope(const Scope& scope, Visit&& visit) {
+  std::unordered_set<const Node*> seen;
+  std::vector<Node*> open, below;
+  for (size_t i = scope.roots.size(); i-- > 0;) open.push_back(scope.roots[i].get());
+  while (!open.empty()) {
+    Node* node = open.back();
+    open.pop_back();
+    if (!node || !seen.insert(node).second || !visit(*node)) continue;
+    below.clear();
+    childrenInHierarchy(*node, below);
+    open.insert(open.end(), below.rbegin(), below.rend());
+  }
+}
+
+} // namespace
+
+void Binding::bindFirst(const Scope& scope) {
+  std::array<Node*, types> first{};
+  walkScope(scope, [&](Node& node) {
+    if (const size_t type = typeOf(node); type != types && !first[type]) first[type] = &node;
+    return node.type().index != nodes::Inline::typeIndex;
+  });
+  if (stacks_[0].empty()) viewer_.restart();
+  for (size_t type = 0; type < types; ++type)
+    if (first[type] && stacks_[type].empty()) push(type, *first[type]);
+  viewer_.begin();
+}
+
+std::vector<Node*> Binding::viewpoints(const Scope& scope) {
+  std::vector<Node*> list;
+  walkScope(scope, [&](Node& node) {
+    if (typeOf(node) == 0) list.push_back(&node);
+    return true;
+  });
+  return list;
+}
+
+void Binding::forget(const Node& node) {
+  const size_t type = typeOf(node);
+  if (type == types) return;
+  std::erase_if(stacks_[type], [&](const Entry& entry) { return entry.node.get() == &node; });
+  if (type == 0) viewer_.forget(node);
+}
+
+BoundNodes Binding::bound() const { return {top(0), top(1), top(2), top(3)}; }
+
+namespace {
+
+void receive(Events& events, Node& node, const FieldInfo& in, const Value& value) {
+  if (in.name == "set_bind") interactionOf(events).binding.set(node, std::get<bool>(value));
+}
+
+} // namespace
+
+void addBindingBehaviours(const AddBehaviour& add) {
+  for (const NodeType* type : nodeTypes())
+    if (type->is("bindable")) add(*type, {.receive = receive});
+}
+
+} // namespace xvrml

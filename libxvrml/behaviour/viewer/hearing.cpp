@@ -1,0 +1,62 @@
+// hearing.cpp: what the viewer of a running world hears: its Sounds (clause 6.42), where they stand. See xvrml/media.h.
+// [the browser's thread]
+#include <unordered_set>
+
+#include "behaviour/viewer/interaction.h"
+#include "event/hierarchy.h"
+#include "xvrml/browser.h"
+#include "xvrml/media.h"
+
+namespace xvrml {
+namespace {
+
+std::vector<Node*> soundsBelow(const Scope& scope) {
+  std::vector<Node*> found, open;
+  std::unordered_set<const Node*> seen;
+  for (const NodeRef& root : scope.roots)
+    if (root) open.push_back(root.get());
+  while (!open.empty()) {
+    Node* node = open.back();
+    open.pop_back();
+    if (!node || !seen.insert(node).second) continue;
+    if (node->type().index == nodes::Sound::typeIndex) found.push_back(node);
+    childrenInHierarchy(*node, open);
+  }
+  return found;
+}
+
+Vec3f narrow(const Vector& v) { return {float(v.x), float(v.y), float(v.z)}; }
+
+} // namespace
+
+std::vector<Heard> heardIn(Browser& browser) {
+  constexpr size_t places = 16; // of one Sound that count
+  auto& engine = static_cast<Engine&>(browser.events());
+  Interaction& interaction = interactionOf(engine);
+  if (interaction.soundsStructure != engine.structure()) {
+    interaction.soundsStructure = engine.structure();
+    interaction.sounds = soundsBelow(browser.world().scope);
+  }
+  std::vector<Heard> heard;
+  Matrix toViewer;
+  const Matrix view = interaction.viewer.view();
+  if (interaction.sounds.empty() || !invert(view, toViewer)) return heard;
+  for (Node* node : interaction.sounds) {
+    const auto& sound = *nodeCast<nodes::Sound>(node);
+    const Node* source = renderedNode(sound.source.get());
+    if (!source) continue;
+    const Playing playing = playingOf(*source);
+    if (!playing.clip) continue;
+    for (const Path& path : pathsTo(*node, places)) {
+      const Matrix toWorld = localToWorld(path);
+      Matrix toLocal;
+      if (!isChosen(path) || !invert(toWorld, toLocal)) continue;
+      const Vector eye = transformPoint(toLocal, transformPoint(view, Vector(0)));
+      const Vector place = transformPoint(toViewer, transformPoint(toWorld, vector(sound.location)));
+      heard.push_back({node, playing, soundLevels(sound, narrow(eye), narrow(place))});
+    }
+  }
+  return heard;
+}
+
+} // namespace xvrml

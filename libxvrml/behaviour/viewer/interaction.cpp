@@ -1,0 +1,52 @@
+// interaction.cpp: what happens in the world, handed to those who keep something of it. See interaction.h.
+#include "behaviour/viewer/interaction.h"
+
+namespace xvrml {
+
+std::unique_ptr<EngineObserver> makeInteraction(Engine& engine) { return std::make_unique<Interaction>(engine); }
+
+void Interaction::began(const Scope& scope) {
+  this->scope = &scope;
+  navigation.rest();
+  binding.bindFirst(scope);
+}
+
+void Interaction::changed(Node& node, const FieldInfo& field) {
+  switch (field.change) {
+  case Change::transform:
+  case Change::geometry:
+  case Change::children: picker.changed(node); break;
+  default: break;
+  }
+  moved_ |= field.change == Change::transform || field.change == Change::view || field.change == Change::children;
+}
+
+void Interaction::forgotten(const Node& node) {
+  picker.forgotten(node);
+  binding.forget(node);
+  pointer.forget(node);
+}
+
+void Interaction::ticked() {
+  navigation.ticked();
+  viewer.ticked();
+}
+
+bool Interaction::settled() {
+  bool sent = false;
+  if (structure_ != engine.structure()) {
+    structure_ = engine.structure();
+    sent = binding.dropAbsent();
+    sent |= pointer.dropAbsent();
+  }
+  if (std::exchange(moved_, false)) viewer.settled();
+  // Clause 6.53: regions that a jump leaves or enters say so at the time of the binding.
+  if (viewer.takeJump()) {
+    navigation.rest();
+    engine.lookNow();
+    sent = true;
+  }
+  return sent;
+}
+
+} // namespace xvrml

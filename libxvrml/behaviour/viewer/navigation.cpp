@@ -1,0 +1,163 @@
+// navigation.cpp: the viewer of a running world on the move: what NavigationInfo says, what he runs into, keys. See navigation.h.
+#include "behaviour/viewer/navigation.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "behaviour/viewer/interaction.h"
+#include "nodes/viewpoint.h"
+
+namespace xvrml {
+
+// Lengths are those of the coordinate system that the bound Viewpoint stands in (6.29), up is its y axis (6.53).
+Avatar Navigator::avatar() const {
+  Avatar a;
+  const auto* info = nodeCast<nodes::NavigationInfo>(interaction_.binding.bound().navigationInfo);
+  const Matrix outside = interaction_.viewer.surroundings();
+  const double scale = std::cbrt(std::abs(determinant(outside)));
+  if (info) {
+    const auto length = [&](size_t i, double otherwise) {
+      return i < info->avatarSize.size() && info->avatarSize[i] >= 0 ? double(info->avatarSize[i]) : otherwise;
+    };
+    a.distance = length(0, a.distance);
+    a.height = length(1, a.height);
+    a.step = length(2, a.step);
+    a.speed = info->speed;
+  }
+  if (scale > 0 && std::isfinite(scale))
+    for (double* v : {&a.distance, &a.height, &a.step, &a.speed, &a.gravity}) *v *= scale;
+  const bool guided = interaction_.binding.bound().viewpoint != nullptr;
+  const Vector up = guided ? transformDirection(outside, {0, 1, 0}) : up_;
+  if (up.length() > 0) a.up = up.normalized();
+  return a;
+}
+
+bool Navigator::meet(const PickRay& ray, bool touch, double& t, Vector& normal) {
+  Hit hit;
+  if (!interaction_.picker.pick(ray, {.collision = true, .bothSides = true}, interaction_.viewer.view(),
+                                interaction_.scope->roots, hit))
+    return false;
+  t = hit.t;
+  normal = hit.normal;
+  if (touch)
+    for (const Hit::Step& step : hit.path)
+      if (step.node->type().index == nodes::Collision::typeIndex)
+        interaction_.engine.send(*step.node, "collideTime", interaction_.engine.now());
+  return true;
+}
+
+// What EXAMINE goes round: a place in the middle of the picture, so that what is looked at stays in view, as far away as the
+// middle of the Shape that is seen there, or else of the world. Of a world that does not lie ahead its middle.
+Vector Navigator::centerOf(const Matrix& view) {
+  Picker& picker = interaction_.picker;
+  const Vector eye(view.x[3][0], view.x[3][1], view.x[3][2]), back(view.x[2][0], view.x[2][1], view.x[2][2]);
+  const auto& roots = interaction_.scope->roots;
+  PickBox box = picker.bounds(roots);
+  if (box.empty()) return eye - back * 10;
+  Vector center = (box.low + box.high) / 2;
+  if (Hit hit; picker.pick({eye, -back}, {.bothSides = true}, view, roots, hit)) {
+    box = picker.bounds({NodeRef(hit.path.back().node)});
+    center = transformPoint(hit.path.back().toWorld, (box.low + box.high) / 2);
+  }
+  if (const double ahead = (eye - center).dot(back); ahead > 0) return eye - back * ahead;
+  return (eye - center).length() > 0 ? center : eye - back;
+}
+
+void Navigator::move(const NavigationInput& input, double seconds) {
+  if (!interaction_.scope || interaction_.viewer.inTransition()) return;
+  motion_.view = interaction_.viewer.view();
+  const Obstacle obstacle = [this](const PickRay& ray, bool touch, double& t, Vector& normal) {
+    return meet(ray, touch, t, normal);
+  };
+  Motion to = motion_;
+  switch (type()) {
+  case Navigation::none: return;
+  case Navigation::walk: to = walk(motion_, input, seconds, avatar(), obstacle); break;
+  case Navigation::fly: to = fly(motion_, input, seconds, avatar(), obstacle); break;
+  case Navigation::examine:
+    if (!hasCenter_) motion_.center = centerOf(motion_.view);
+    hasCenter_ = true;
+    to = examine(motion_, input, seconds, avatar());
+    break;
+  }
+  if (!finite(to.view)) return;
+  const bool moved = to.view != motion_.view;
+  motion_ = to;
+  if (moved) interaction_.viewer.moveTo(to.view);
+}
+
+namespace {
+
+struct Known {
+  std::string_view name;
+  Navigation type;
+};
+constexpr Known known[] = {
+    {"NONE", Navigation::none}, {"WALK", Navigation::walk}, {"FLY", Navigation::fly}, {"EXAMINE", Navigation::examine}};
+
+} // namespace
+
+Navigation Navigator::type() const {
+  const auto* info = nodeCast<nodes::NavigationInfo>(interaction_.binding.bound().navigationInfo);
+  const MFString standard{"WALK", "ANY"};
+  const MFString& list = info ? info->type : standard;
+  const auto lists = [&](std::string_view name) { return std::find(list.begin(), list.end(), name) != list.end(); };
+  if (hasChosen_)
+    for (const Known& k : known)
+      if (k.type == chosen_ && (lists(k.name) || lists("ANY"))) return chosen_;
+  for (const std::string& name : list) {
+    if (name == "ANY") return Navigation::walk;
+    for (const Known& k : known)
+      if (k.name == name) return k.type;
+  }
+  return Navigation::none;
+}
+
+bool Navigator::choose(Navigation wanted) {
+  chosen_ = wanted;
+  hasChosen_ = true;
+  hasCenter_ = false;
+  motion_.fall = 0;
+  return type() == wanted;
+}
+
+void Navigator::key(Key key, bool pressed) {
+  if (!pressed) {
+    held_.erase(key);
+    return;
+  }
+  if (key == Key::home) return interaction_.viewer.reset();
+  if (key != Key::pageUp && key != Key::pageDown) {
+    held_.insert(key);
+    return;
+  }
+  std::vector<Node*> all = interaction_.binding.viewpoints(*interaction_.scope), list;
+  for (Node* node : all)
+    if (!viewpointFields(node)->description.empty()) list.push_back(node);
+  if (list.empty()) list = all;
+  if (list.empty()) return;
+  const auto at = std::find(list.begin(), list.end(), interaction_.binding.bound().viewpoint);
+  const size_t count = list.size(), i = size_t(at - list.begin());
+  const size_t next = key == Key::pageDown ? (at == list.end() ? 0 : (i + 1) % count) : (i + count - 1) % count;
+  interaction_.binding.set(*list[at == list.end() && key == Key::pageUp ? count - 1 : next], true);
+}
+
+void Navigator::ticked() {
+  const double now = interaction_.engine.now(), seconds = now - lastTick_;
+  lastTick_ = now;
+  const auto held = [&](Key key) { return held_.contains(key) ? 1.0 : 0.0; };
+  const double across = held(Key::right) - held(Key::left), along = held(Key::up) - held(Key::down);
+  if (!(seconds > 0) || (across == 0 && along == 0)) return;
+  NavigationInput input;
+  const double speed = held_.contains(Key::shift) ? 4 : 1;
+  if (held_.contains(Key::alt)) {
+    input.right = across * speed;
+    input.up = along * speed;
+  } else {
+    input.turn = -across;
+    input.ahead = along * speed;
+  }
+  move(input, seconds);
+}
+
+} // namespace xvrml

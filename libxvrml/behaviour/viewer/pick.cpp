@@ -1,0 +1,206 @@
+// pick.cpp: see pick.h. The walk has a stack of its own: nesting costs no C++ stack.
+#include "behaviour/viewer/pick.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "behaviour/viewer/descend.h"
+#include "event/hierarchy.h"
+#include "xvrml/browser.h"
+#include "xvrml/nodes.h"
+
+namespace xvrml {
+namespace {
+
+constexpr size_t maximumSteps = 4'000'000; // nodes one ray may visit: what events have built has no limit of its own
+
+// What may be seen below a node, whatever the viewer does (LODs: all levels), and proxies.
+void partsOf(Node& node, std::vector<Node*>& parts) {
+  if (node.type().index == nodes::Shape::typeIndex) return;
+  if (const auto* choice = nodeCast<nodes::Switch>(&node)) {
+    if (choice->whichChoice >= 0 && size_t(choice->whichChoice) < choice->choice.size())
+      parts.push_back(choice->choice[size_t(choice->whichChoice)].get());
+    return;
+  }
+  childrenInHierarchy(node, parts);
+}
+
+// What is met below a node by a ray of these rules.
+void metBelow(Node& node, const PickRules& rules, const Matrix& toWorld, const Matrix& view, std::vector<Node*>& parts) {
+  if (const auto* lod = nodeCast<nodes::LOD>(&node)) {
+    if (!lod->level.empty()) parts.push_back(lod->level[levelFor(*lod, toWorld, view)].get());
+  } else if (auto* collision = nodeCast<nodes::Collision>(&node)) {
+    if (rules.collision && !collision->collide) return;
+    if (rules.collision && collision->proxy) return parts.push_back(collision->proxy.get());
+    for (const NodeRef& child : collision->children) parts.push_back(child.get());
+  } else {
+    partsOf(node, parts);
+  }
+}
+
+} // namespace
+
+void Picker::changed(Node& first) {
+  if (entries_.empty()) return;
+  std::vector<Node*> open{&first};
+  while (!open.empty()) {
+    Node* node = open.back();
+    open.pop_back();
+    const auto found = entries_.find(node);
+    // Nothing is known above a group or Shape that nothing is known of.
+    if (found != entries_.end())
+      entries_.erase(found);
+    else if (node != &first && (node->type().index == nodes::Shape::typeIndex || node->type().is("grouping")))
+      continue;
+    if (!node->live) continue;
+    for (Node* parent : liveOf(*node)->parents) open.push_back(parent);
+  }
+}
+
+const PickMesh* Picker::meshOf(Node& node) {
+  const auto& shape = static_cast<nodes::Shape&>(node);
+  Node* geometry = renderedNode(shape.geometry.get());
+  if (!geometry) return nullptr;
+  Entry& entry = entries_[geometry];
+  if (!entry.mesh)
+    entry.mesh = std::make_unique<PickMesh>(*geometry, engine_.browser() ? &engine_.browser()->world().options.limits : nullptr);
+  return entry.mesh.get();
+}
+
+PickBox Picker::boundsFromParts(Node& node, const std::vector<Node*>& parts) {
+  PickBox box;
+  if (node.type().index == nodes::Shape::typeIndex) {
+    if (const PickMesh* mesh = meshOf(node)) box = mesh->bounds();
+    return box;
+  }
+  for (Node* part : parts)
+    if (part) box.extend(entries_[part].bounds);
+  if (box.empty()) return box;
+  PickBox outer;
+  if (node.type().index == nodes::Transform::typeIndex) {
+    Matrix inner;
+    if (innerMatrix(node, Matrix(), Matrix(), inner)) outer.extend(box, inner);
+  } else if (node.type().index == nodes::Billboard::typeIndex) { // however it is turned
+    const Vector far(std::max(std::abs(box.low.x), std::abs(box.high.x)), std::max(std::abs(box.low.y), std::abs(box.high.y)),
+                     std::max(std::abs(box.low.z), std::abs(box.high.z)));
+    outer.extend(Vector(far.length()));
+    outer.extend(Vector(-far.length()));
+  } else {
+    return box;
+  }
+  outer.pad();
+  return outer;
+}
+
+const PickBox& Picker::boundsOf(Node& first) {
+  if (const auto found = entries_.find(&first); found != entries_.end() && found->second.known) return found->second.bounds;
+  std::vector<Node*> open{&first}, parts;
+  while (!open.empty()) {
+    Node* node = open.back();
+    if (entries_[node].known) {
+      open.pop_back();
+      continue;
+    }
+    parts.clear();
+    partsOf(*node, parts);
+    bool ready = true;
+    for (Node* part : parts) {
+      if (!part || entries_[part].known) continue;
+      open.push_back(part);
+      ready = false;
+    }
+    if (!ready) continue;
+    const PickBox box = boundsFromParts(*node, parts);
+    Entry& entry = entries_[node];
+    entry.bounds = box;
+    entry.known = true;
+    open.pop_back();
+  }
+  return entries_[&first].bounds;
+}
+
+PickBox Picker::bounds(const std::vector<NodeRef>& roots) {
+  PickBox box;
+  for (const NodeRef& root : roots)
+    if (root) box.extend(boundsOf(*root));
+  return box;
+}
+
+bool Picker::pick(const PickRay& whole, const PickRules& rules, const Matrix& view, const std::vector<NodeRef>& roots, Hit& hit) {
+  const double probe = whole.origin.dot(whole.origin) + whole.direction.dot(whole.direction);
+  if (!std::isfinite(probe) || !(whole.direction.length() > 0)) return false;
+  constexpr uint32_t none = ~0u, stale = none - 1;
+  struct Visit {
+    Node* node;
+    uint32_t parent; // in `way`
+  };
+  PickRay ray = whole;
+  std::vector<Visit> open;
+  std::vector<Hit::Step> way; // from a root down to where the walk is
+  std::vector<Node*> parts;
+  bool found = false;
+  MeshHit best{};
+  for (size_t i = roots.size(); i-- > 0;)
+    if (roots[i]) open.push_back({roots[i].get(), none});
+  // Rays are moved into the coordinate system of a parent once, not once for each of its children.
+  uint32_t movedFor = stale;
+  PickRay moved = ray;
+  bool movable = true;
+  for (size_t steps = 0; !open.empty() && steps < maximumSteps; ++steps) {
+    const Visit visit = open.back();
+    open.pop_back();
+    way.resize(visit.parent + 1); // what lies beyond has been left; none + 1 is 0
+    const Matrix outside = visit.parent == none ? Matrix() : way[visit.parent].toWorld;
+    if (visit.parent != movedFor) {
+      Matrix toLocal;
+      movable = invert(outside, toLocal);
+      moved = {transformPoint(toLocal, whole.origin), transformDirection(toLocal, whole.direction), whole.nearest,
+               whole.farthest};
+      movedFor = visit.parent;
+    }
+    if (!movable) continue;
+    moved.farthest = ray.farthest;
+    if (!moved.meets(boundsOf(*visit.node))) continue;
+    if (visit.node->type().index == nodes::Shape::typeIndex) {
+      MeshHit meshHit;
+      const PickMesh* mesh = meshOf(*visit.node);
+      if (!mesh || !mesh->intersect(moved, rules.bothSides, meshHit) || (found && meshHit.t >= best.t)) continue;
+      best = meshHit;
+      ray.farthest = best.t;
+      found = true;
+      hit.path = way;
+      hit.path.push_back({visit.node, outside});
+      continue;
+    }
+    Matrix inner;
+    if (!innerMatrix(*visit.node, outside, view, inner)) continue;
+    parts.clear();
+    metBelow(*visit.node, rules, outside, view, parts);
+    const uint32_t index = uint32_t(way.size());
+    way.push_back({visit.node, inner});
+    if (movedFor == index) movedFor = stale; // another node has taken the place
+    for (size_t i = parts.size(); i-- > 0;)
+      if (parts[i]) open.push_back({parts[i], index});
+  }
+  if (!found) return false;
+  hit.t = best.t;
+  hit.point = whole.at(best.t);
+  hit.texCoord = best.texCoord;
+  // Normals move by the inverse's transpose.
+  Matrix inverse;
+  invert(hit.path.back().toWorld, inverse);
+  hit.normal = transformDirection(inverse.transposed(), best.normal).normalized();
+  return true;
+}
+
+Matrix Picker::toWorld(const std::vector<Node*>& path, const Matrix& view) {
+  Matrix matrix;
+  for (const Node* node : path) {
+    Matrix inner;
+    if (!innerMatrix(*node, matrix, view, inner) && !finite(inner)) return matrix;
+    matrix = inner;
+  }
+  return matrix;
+}
+
+} // namespace xvrml

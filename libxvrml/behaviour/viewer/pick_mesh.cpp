@@ -1,0 +1,191 @@
+// pick_mesh.cpp: rays against triangles and spheres, in double precision. See pick_mesh.h.
+#include "behaviour/viewer/pick_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+namespace xvrml {
+
+void PickBox::extend(const Vector& p) {
+  for (int i = 0; i < 3; ++i) {
+    low[i] = std::min(low[i], p[i]);
+    high[i] = std::max(high[i], p[i]);
+  }
+}
+
+void PickBox::extend(const PickBox& b) {
+  if (b.empty()) return;
+  extend(b.low);
+  extend(b.high);
+}
+
+void PickBox::extend(const PickBox& b, const Matrix& m) {
+  if (b.empty()) return;
+  for (int corner = 0; corner < 8; ++corner)
+    extend(
+        transformPoint(m, {corner & 1 ? b.high.x : b.low.x, corner & 2 ? b.high.y : b.low.y, corner & 4 ? b.high.z : b.low.z}));
+}
+
+void PickBox::pad() {
+  if (empty()) return;
+  const double size =
+      std::max({std::abs(low.x), std::abs(low.y), std::abs(low.z), std::abs(high.x), std::abs(high.y), std::abs(high.z)});
+  const double margin = 1e-9 * size + 1e-30;
+  low -= Vector(margin);
+  high += Vector(margin);
+}
+
+bool PickRay::meets(const PickBox& box) const {
+  if (box.empty()) return false;
+  double enter = nearest, leave = farthest;
+  for (int i = 0; i < 3; ++i) {
+    if (direction[i] == 0) {
+      if (!(origin[i] >= box.low[i] && origin[i] <= box.high[i])) return false;
+      continue;
+    }
+    double a = (box.low[i] - origin[i]) / direction[i], b = (box.high[i] - origin[i]) / direction[i];
+    if (a > b) std::swap(a, b);
+    enter = std::max(enter, a);
+    leave = std::min(leave, b);
+    if (!(enter <= leave)) return false;
+  }
+  return true;
+}
+
+PickMesh::PickMesh(Node& geometry, const Limits* limits)
+    : mesh_(buildMesh(geometry, {.needTexCoords = true, .limits = limits, .diagnostics = nullptr})) {
+  if (mesh_.kind == Mesh::Kind::sphere) {
+    bounds_.extend(Vector(mesh_.radius));
+    bounds_.extend(Vector(-double(mesh_.radius)));
+  } else if (mesh_.kind == Mesh::Kind::triangles) {
+    const size_t triangles = mesh_.indices.size() / 3;
+    for (const uint32_t i : mesh_.indices) {
+      if (i >= mesh_.points.size()) { // cannot be: builders check
+        mesh_.kind = Mesh::Kind::empty;
+        return;
+      }
+      const Vector p = vector(mesh_.points[i]);
+      if (std::isfinite(p.x + p.y + p.z)) bounds_.extend(p);
+    }
+    if (triangles > 64) split();
+  }
+  bounds_.pad();
+}
+
+Vector PickMesh::corner(uint32_t triangle, int k) const {
+  return vector(mesh_.points[mesh_.indices[size_t(triangle) * 3 + size_t(k)]]);
+}
+
+// Halves of equal numbers along the longest side: as deep as the logarithm of the number of triangles.
+void PickMesh::split() {
+  order_.resize(mesh_.indices.size() / 3);
+  std::iota(order_.begin(), order_.end(), 0u);
+  knots_.push_back({{}, 0, uint32_t(order_.size()), 0});
+  for (size_t k = 0; k < knots_.size(); ++k) {
+    Knot knot = knots_[k];
+    PickBox middles;
+    for (uint32_t i = knot.first; i < knot.first + knot.count; ++i) {
+      for (int c = 0; c < 3; ++c) knot.box.extend(corner(order_[i], c));
+      middles.extend(corner(order_[i], 0) + corner(order_[i], 1) + corner(order_[i], 2));
+    }
+    knot.box.pad();
+    const Vector size = middles.empty() ? Vector(0) : middles.high - middles.low;
+    if (knot.count > 8 && !middles.empty()) {
+      const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+      const auto begin = order_.begin() + knot.first;
+      const uint32_t half = knot.count / 2;
+      const auto key = [&](uint32_t t) {
+        const double v = corner(t, 0)[axis] + corner(t, 1)[axis] + corner(t, 2)[axis];
+        return std::isfinite(v) ? v : 0;
+      };
+      std::nth_element(begin, begin + half, begin + knot.count, [&](uint32_t a, uint32_t b) { return key(a) < key(b); });
+      knot.next = uint32_t(knots_.size());
+      knots_.push_back({{}, knot.first, half, 0});
+      knots_.push_back({{}, knot.first + half, knot.count - half, 0});
+      knot.count = 0;
+    }
+    knots_[k] = knot;
+  }
+}
+
+// Textures wrap anticlockwise, seen from above, from the back of the sphere (clause 6.43).
+bool PickMesh::sphere(const PickRay& ray, bool bothSides, MeshHit& hit) const {
+  const double radius = mesh_.radius, a = ray.direction.dot(ray.direction);
+  if (!(a > 0)) return false;
+  const double nearest = -ray.origin.dot(ray.direction) / a;
+  const Vector foot = ray.at(nearest); // the root's argument is small beside the terms of the usual formula
+  const double rest = radius * radius - foot.dot(foot);
+  if (!(rest >= 0)) return false;
+  const double half = std::sqrt(rest / a);
+  double t = nearest - half;
+  if (!(t >= ray.nearest && t <= ray.farthest)) {
+    t = nearest + half;
+    if (!bothSides || !(t >= ray.nearest && t <= ray.farthest)) return false;
+  }
+  hit.t = t;
+  hit.normal = ray.at(t) / radius;
+  const double turn = std::atan2(-hit.normal.x, -hit.normal.z) / (2 * std::numbers::pi);
+  hit.texCoord = {float(turn < 0 ? turn + 1 : turn),
+                  float(0.5 + std::asin(std::clamp(hit.normal.y, -1.0, 1.0)) / std::numbers::pi)};
+  return true;
+}
+
+// T. Moeller, B. Trumbore: Fast, minimum storage ray/triangle intersection (1997).
+bool PickMesh::triangle(uint32_t index, PickRay& ray, bool bothSides, MeshHit& hit) const {
+  const Vector a = corner(index, 0), ab = corner(index, 1) - a, ac = corner(index, 2) - a;
+  const Vector p = ray.direction.cross(ac);
+  const double d = ab.dot(p);
+  if (d == 0 || !std::isfinite(d)) return false;
+  const bool front = (d > 0) == mesh_.ccw;
+  if (!front && mesh_.solid && !bothSides) return false;
+  const Vector s = ray.origin - a;
+  const double u = s.dot(p) / d;
+  if (!(u >= 0 && u <= 1)) return false;
+  const Vector q = s.cross(ab);
+  const double v = ray.direction.dot(q) / d;
+  if (!(v >= 0 && u + v <= 1)) return false;
+  const double t = ac.dot(q) / d;
+  if (!(t >= ray.nearest && t <= ray.farthest)) return false;
+  ray.farthest = hit.t = t;
+  const uint32_t i[3] = {mesh_.indices[size_t(index) * 3], mesh_.indices[size_t(index) * 3 + 1],
+                         mesh_.indices[size_t(index) * 3 + 2]};
+  const double w = 1 - u - v;
+  Vector normal(0);
+  if (!mesh_.normals.empty())
+    normal = vector(mesh_.normals[i[0]]) * w + vector(mesh_.normals[i[1]]) * u + vector(mesh_.normals[i[2]]) * v;
+  if (!(normal.length() > 0) || !std::isfinite(normal.length())) normal = ab.cross(ac) * (mesh_.ccw ? 1 : -1);
+  hit.normal = normal.normalized();
+  hit.texCoord = {};
+  if (!mesh_.texCoords.empty()) {
+    const Vec2f &ta = mesh_.texCoords[i[0]], &tb = mesh_.texCoords[i[1]], &tc = mesh_.texCoords[i[2]];
+    hit.texCoord = {float(ta.x * w + tb.x * u + tc.x * v), float(ta.y * w + tb.y * u + tc.y * v)};
+  }
+  return true;
+}
+
+bool PickMesh::intersect(const PickRay& whole, bool bothSides, MeshHit& hit) const {
+  if (mesh_.kind == Mesh::Kind::sphere) return sphere(whole, bothSides, hit);
+  if (mesh_.kind != Mesh::Kind::triangles) return false;
+  PickRay ray = whole;
+  bool found = false;
+  if (knots_.empty()) {
+    for (uint32_t i = 0; i < mesh_.indices.size() / 3; ++i) found |= triangle(i, ray, bothSides, hit);
+    return found;
+  }
+  std::vector<uint32_t> open{0};
+  while (!open.empty()) {
+    const Knot& knot = knots_[open.back()];
+    open.pop_back();
+    if (!ray.meets(knot.box)) continue;
+    if (knot.count == 0) {
+      open.push_back(knot.next + 1);
+      open.push_back(knot.next);
+    }
+    for (uint32_t i = 0; i < knot.count; ++i) found |= triangle(order_[knot.first + i], ray, bothSides, hit);
+  }
+  return found;
+}
+
+} // namespace xvrml

@@ -1,0 +1,212 @@
+// pointer.cpp: see pointer.h.
+#include "behaviour/viewer/pointer.h"
+
+#include <algorithm>
+
+#include "behaviour/builtin.h"
+#include "behaviour/viewer/interaction.h"
+#include "event/hierarchy.h"
+#include "xvrml/browser.h"
+#include "xvrml/nodes.h"
+
+namespace xvrml {
+namespace {
+
+bool isTouch(const Node& node) { return node.type().index == nodes::TouchSensor::typeIndex; }
+
+bool isEnabledSensor(Node& node) {
+  if (const auto* touch = nodeCast<nodes::TouchSensor>(&node)) return touch->enabled;
+  if (const auto* plane = nodeCast<nodes::PlaneSensor>(&node)) return plane->enabled;
+  if (const auto* sphere = nodeCast<nodes::SphereSensor>(&node)) return sphere->enabled;
+  if (const auto* cylinder = nodeCast<nodes::CylinderSensor>(&node)) return cylinder->enabled;
+  return false;
+}
+
+const std::vector<NodeRef>* childrenOf(Node& node) {
+  if (const Scope* content = inlineScope(node)) return &content->roots;
+  if (node.type().index < 0 || !node.type().is("parent")) return nullptr;
+  const FieldInfo* children = node.type().find("children");
+  return children && children->type == FieldType::MFNode ? static_cast<MFNode*>(node.storage(*children)) : nullptr;
+}
+
+bool holds(const std::vector<NodeRef>& list, const Node& node) {
+  return std::any_of(list.begin(), list.end(), [&](const NodeRef& n) { return n.get() == &node; });
+}
+
+Vec3f narrow(const Vector& v) { return {float(v.x), float(v.y), float(v.z)}; }
+
+} // namespace
+
+// The lowest group above the geometry that has an enabled sensor among its children wins; all its sensors do (4.6.7.3).
+std::vector<Pointer::Candidate> Pointer::candidatesOf(const Hit& hit) const {
+  std::vector<Candidate> found;
+  const auto look = [&](const std::vector<NodeRef>& siblings, const Matrix& toWorld) {
+    for (const NodeRef& sibling : siblings)
+      if (Node* node = renderedNode(sibling.get()); node && isEnabledSensor(*node)) found.push_back({NodeRef(node), toWorld});
+  };
+  for (size_t i = hit.path.size(); i-- > 0 && found.empty();) {
+    const Hit::Step& step = hit.path[i];
+    if (const auto* children = childrenOf(*step.node)) look(*children, step.toWorld);
+    if (auto* anchor = nodeCast<nodes::Anchor>(step.node); anchor && !anchor->url.empty())
+      found.push_back({NodeRef(anchor), step.toWorld});
+  }
+  if (found.empty() && interaction_.scope) look(interaction_.scope->roots, Matrix());
+  return found;
+}
+
+bool Pointer::isOver(const Node& sensor) const { return holds(over_, sensor); }
+
+// While something has grabbed the pointer no other sensor makes events (4.6.7.3).
+void Pointer::setOver(const std::vector<Candidate>& candidates) {
+  const auto mayChange = [&](const Node& sensor) {
+    return active_.empty() ||
+           std::any_of(active_.begin(), active_.end(), [&](const Active& a) { return a.sensor.get() == &sensor; });
+  };
+  const auto under = [&](const Node& sensor) {
+    return std::any_of(candidates.begin(), candidates.end(), [&](const Candidate& c) { return c.sensor.get() == &sensor; });
+  };
+  std::erase_if(over_, [&](const NodeRef& sensor) {
+    if (!mayChange(*sensor) || under(*sensor)) return false;
+    if (isTouch(*sensor)) interaction_.engine.send(*sensor, "isOver", false);
+    return true;
+  });
+  for (const Candidate& c : candidates) {
+    if (!mayChange(*c.sensor) || isOver(*c.sensor)) continue;
+    over_.push_back(c.sensor);
+    if (isTouch(*c.sensor)) interaction_.engine.send(*c.sensor, "isOver", true);
+  }
+}
+
+// In the sensor's coordinate system; normals move by the transpose of what moves points the other way (6.51).
+void Pointer::touch(const Candidate& candidate, const Hit& hit) {
+  Matrix toLocal;
+  if (!invert(candidate.toWorld, toLocal)) return;
+  Engine& engine = interaction_.engine;
+  engine.send(*candidate.sensor, "hitPoint_changed", narrow(transformPoint(toLocal, hit.point)));
+  engine.send(*candidate.sensor, "hitNormal_changed",
+              narrow(transformDirection(candidate.toWorld.transposed(), hit.normal).normalized()));
+  engine.send(*candidate.sensor, "hitTexCoord_changed", hit.texCoord);
+}
+
+void Pointer::press(const std::vector<Candidate>& candidates, const PickRay& ray, const Hit& hit) {
+  for (const Candidate& c : candidates) {
+    Matrix toLocal;
+    if (!invert(c.toWorld, toLocal)) continue;
+    const PickRay local{transformPoint(toLocal, ray.origin), transformDirection(toLocal, ray.direction)};
+    active_.push_back({c.sensor, toLocal, beginDrag(*c.sensor, local, transformPoint(toLocal, hit.point))});
+    interaction_.engine.send(*c.sensor, "isActive", true); // an Anchor has none
+  }
+}
+
+void Pointer::release(bool click) {
+  Engine& engine = interaction_.engine;
+  for (const Active& a : std::exchange(active_, {})) {
+    engine.send(*a.sensor, "isActive", false);
+    if (a.drag) a.drag->end(engine);
+    if (!click || !isOver(*a.sensor)) continue;
+    if (isTouch(*a.sensor)) engine.send(*a.sensor, "touchTime", engine.now());
+    if (a.sensor->type().index == nodes::Anchor::typeIndex) clicked_.push_back(a.sensor);
+  }
+}
+
+void Pointer::point(const PickRay& ray, bool button) {
+  Engine& engine = interaction_.engine;
+  if (engine.settling() || !interaction_.scope) return; // a listener must not move the pointer
+  Hit hit;
+  const bool hits = interaction_.picker.pick(ray, {}, interaction_.viewer.view(), interaction_.scope->roots, hit);
+  const std::vector<Candidate> candidates = hits ? candidatesOf(hit) : std::vector<Candidate>();
+  const bool moved = !pointed_ || ray.origin != last_.origin || ray.direction != last_.direction;
+  engine.beginCascade(engine.now());
+  if (moved) {
+    setOver(candidates);
+    for (const Candidate& c : candidates)
+      if (isTouch(*c.sensor) && isOver(*c.sensor)) touch(c, hit);
+    for (const Active& a : active_)
+      if (a.drag) a.drag->move(engine, {transformPoint(a.toLocal, ray.origin), transformDirection(a.toLocal, ray.direction)});
+  }
+  if (button && !button_) {
+    setOver(candidates); // what has moved under a pointer at rest counts when it is pressed
+    press(candidates, ray, hit);
+  } else if (!button && button_) {
+    release(true);
+    setOver(candidates);
+  }
+  button_ = button;
+  last_ = ray;
+  pointed_ = true;
+  engine.settle();
+  for (const NodeRef& anchor : std::exchange(clicked_, {}))
+    if (engine.browser()) engine.browser()->activate(*anchor);
+}
+
+void Pointer::leave() {
+  Engine& engine = interaction_.engine;
+  if (engine.settling()) return;
+  engine.beginCascade(engine.now());
+  release(false);
+  setOver({});
+  button_ = pointed_ = false;
+  engine.settle();
+}
+
+// A sensor that is disabled lets go at once (4.6.7.3); one that is enabled waits for the pointer to move.
+void Pointer::enabledChanged(Node& sensor) {
+  Engine& engine = interaction_.engine;
+  if (isEnabledSensor(sensor)) return;
+  const NodeRef keep(&sensor);
+  std::erase_if(active_, [&](const Active& a) {
+    if (a.sensor.get() != &sensor) return false;
+    engine.send(sensor, "isActive", false);
+    if (a.drag) a.drag->end(engine);
+    return true;
+  });
+  std::erase_if(over_, [&](const NodeRef& o) {
+    if (o.get() != &sensor) return false;
+    if (isTouch(sensor)) engine.send(sensor, "isOver", false);
+    return true;
+  });
+}
+
+bool Pointer::dropAbsent() {
+  Engine& engine = interaction_.engine;
+  bool dropped = false;
+  std::erase_if(active_, [&](const Active& a) {
+    if (isInScene(*a.sensor)) return false;
+    engine.send(*a.sensor, "isActive", false);
+    if (a.drag) a.drag->end(engine);
+    return dropped = true;
+  });
+  std::erase_if(over_, [&](const NodeRef& o) {
+    if (isInScene(*o)) return false;
+    if (isTouch(*o)) engine.send(*o, "isOver", false);
+    return dropped = true;
+  });
+  return dropped;
+}
+
+void Pointer::forget(const Node& sensor) {
+  std::erase_if(active_, [&](const Active& a) { return a.sensor.get() == &sensor; });
+  std::erase_if(over_, [&](const NodeRef& o) { return o.get() == &sensor; });
+}
+
+std::vector<NodeRef> Pointer::sensors() const {
+  if (active_.empty()) return over_;
+  std::vector<NodeRef> list;
+  for (const Active& a : active_) list.push_back(a.sensor);
+  return list;
+}
+
+namespace {
+
+void receive(Events& events, Node& node, const FieldInfo& in, const Value&) {
+  if (in.name == "enabled") interactionOf(events).pointer.enabledChanged(node);
+}
+
+} // namespace
+
+void addPointingBehaviours(const AddBehaviour& add) {
+  for (const NodeType* type : nodeTypes())
+    if (type->is("pointingSensor")) add(*type, {.receive = receive});
+}
+
+} // namespace xvrml

@@ -1,0 +1,163 @@
+// viewer.cpp: see viewer.h.
+#include "behaviour/viewer/viewer.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Imath/ImathMatrixAlgo.h>
+#include <Imath/ImathQuat.h>
+
+#include "behaviour/viewer/binding.h"
+#include "event/hierarchy.h"
+#include "nodes/viewpoint.h"
+#include "xvrml/world.h"
+
+namespace xvrml {
+namespace {
+
+using Quaternion = Imath::Quatd;
+
+Vector place(const Matrix& m) { return {m.x[3][0], m.x[3][1], m.x[3][2]}; }
+
+// Between two views: the eye on a straight line, the turn about one axis at constant speed; s in [0,1].
+Matrix between(const Matrix& a, const Matrix& b, double s) {
+  const Quaternion p = Imath::extractQuat(a), q = Imath::extractQuat(b);
+  Matrix m = Imath::slerpShortestArc(p, q, s).toMatrix44();
+  if (!finite(m)) m = rotationOnly(b);
+  const Vector eye = place(a) * (1 - s) + place(b) * s;
+  m.x[3][0] = eye.x, m.x[3][1] = eye.y, m.x[3][2] = eye.z;
+  return m;
+}
+
+Matrix above(const Node* node) {
+  if (!node) return {};
+  const std::vector<Path> paths = pathsTo(*node, 1);
+  const Matrix m = paths.empty() ? Matrix() : localToWorld(paths[0]);
+  return finite(m) ? m : Matrix();
+}
+
+} // namespace
+
+Node* Viewer::bound() const { return binding_.bound().viewpoint; }
+
+Matrix Viewer::surroundings() const { return above(bound()); }
+
+// A world that squashes its Viewpoint has no way back from the world to it: the view is then kept in a rigid system.
+Matrix Viewer::placeOf(const Node* viewpoint) const {
+  const auto fields = viewpointFields(viewpoint);
+  if (!fields) return translation({0, 0, 10}); // the default Viewpoint of 6.53
+  const Matrix m = compose(above(viewpoint), compose(translation(vector(fields->position)), rotation(fields->orientation)));
+  Matrix inverse;
+  return invert(m, inverse) ? m : rigid(m);
+}
+
+Matrix Viewer::leavingPlace(const Node* viewpoint) const {
+  return viewpoint && !isInScene(*viewpoint) ? lastPlace_ : placeOf(viewpoint);
+}
+
+void Viewer::settled() {
+  if (const Node* viewpoint = bound()) lastPlace_ = placeOf(viewpoint);
+}
+
+Matrix Viewer::target() const { return rigid(compose(placeOf(bound()), offset_)); }
+
+Matrix Viewer::view() const { return shown(target()); }
+
+CameraSettings Viewer::camera(double aspect) const {
+  CameraSettings camera;
+  toArray(view(), camera.matrix);
+  const auto fields = viewpointFields(bound());
+  camera.fovy = verticalFieldOfView(fields ? fields->fieldOfView : 0.785398f, aspect);
+  if (fields) camera.shader = renderedNode(fields->shader);
+  return camera;
+}
+
+// With scale above the Viewpoint the offset is no rotation and translation alone, but what leads back to the very same view.
+void Viewer::keep(const Matrix& view, const Node* viewpoint) {
+  Matrix inverse;
+  offset_ = invert(placeOf(viewpoint), inverse) ? compose(inverse, view) : Matrix();
+  hasLast_ = false;
+}
+
+void Viewer::moveTo(const Matrix& view) {
+  if (!finite(view)) return;
+  const bool tracked = hasLast_;
+  keep(view, bound());
+  hasLast_ = tracked;
+  moving_.running = false;
+}
+
+void Viewer::reset() {
+  const Matrix from = view();
+  offset_ = Matrix();
+  jump(from);
+}
+
+void Viewer::jump(const Matrix& from) {
+  jumped_ = true;
+  hasLast_ = false;
+  moving_ = {transition_ > 0, engine_.now(), from};
+}
+
+// Rule b of 6.53. The caller has put `to` on the stack; the view is still that below `from`.
+void Viewer::bind(Node* from, Node* to) {
+  const Matrix seen = shown(rigid(compose(leavingPlace(from), offset_)));
+  saved_[from] = offset_;
+  saved_.erase(to);
+  if (!begun_) { // nothing has been seen yet: jump FALSE has no view to keep
+    offset_ = Matrix();
+  } else if (const auto next = viewpointFields(to); next && !next->jump) {
+    keep(seen, to);
+    moving_.running = false;
+  } else {
+    offset_ = Matrix();
+    jump(seen);
+  }
+}
+
+// Rule c: back to where the viewer was, as seen from the next Viewpoint; if the one that leaves has jump FALSE, no jump.
+void Viewer::unbind(Node& from, Node* to) {
+  const Matrix seen = shown(rigid(compose(leavingPlace(&from), offset_)));
+  const auto saved = saved_.find(to);
+  if (const auto left = viewpointFields(&from); !left || left->jump) {
+    offset_ = saved == saved_.end() ? Matrix() : saved->second;
+    jump(seen);
+  } else {
+    keep(seen, to);
+    moving_.running = false;
+  }
+  saved_.erase(to);
+  saved_.erase(&from);
+}
+
+void Viewer::restart() {
+  offset_ = Matrix();
+  saved_.clear();
+  moving_.running = begun_ = hasLast_ = false;
+}
+
+void Viewer::forget(const Node& viewpoint) { saved_.erase(&viewpoint); }
+
+Matrix Viewer::shown(const Matrix& to) const {
+  if (!moving_.running) return to;
+  const double s = std::clamp((engine_.now() - moving_.start) / transition_, 0.0, 1.0);
+  return between(moving_.from, to, s * s * (3 - 2 * s));
+}
+
+void Viewer::setTransition(double seconds) {
+  transition_ = std::isfinite(seconds) ? std::max(seconds, 0.0) : 0;
+  moving_.running = false;
+}
+
+void Viewer::ticked() {
+  if (moving_.running && engine_.now() >= moving_.start + transition_) moving_.running = false;
+  const double step = engine_.now() - lastTick_;
+  const Vector now = place(offset_);
+  if (!(step > 0) && hasLast_) return;
+  speed_ = hasLast_ ? (now - lastOffset_).length() / step : 0;
+  lastOffset_ = now;
+  lastTick_ = engine_.now();
+  hasLast_ = true;
+}
+
+} // namespace xvrml

@@ -1,0 +1,214 @@
+// text.cpp: Text and FontStyle (clauses 6.20, 6.47): lines of glyphs in the plane z = 0.
+#include <algorithm>
+
+#include "geometry/builders.h"
+#include "geometry/text/fonts.h"
+#include "geometry/vector_math.h"
+#include "xvrml/world.h"
+
+namespace xvrml {
+namespace {
+
+enum class Justify : uint8_t { first, begin, middle, end };
+
+Justify justifyFrom(const MFString& values, size_t i, Faults& faults) {
+  // Nothing said: BEGIN along the line, FIRST across the lines.
+  Justify otherwise = i == 0 ? Justify::begin : Justify::first;
+  if (i >= values.size() || values[i].empty()) return otherwise;
+  if (values[i] == "FIRST") return Justify::first;
+  if (values[i] == "BEGIN") return Justify::begin;
+  if (values[i] == "MIDDLE") return Justify::middle;
+  if (values[i] == "END") return Justify::end;
+  faults.note("FontStyle.justify knows FIRST, BEGIN, MIDDLE and END only");
+  return otherwise;
+}
+
+// FontStyle's fields, checked; the defaults where there is none.
+struct Style {
+  std::vector<std::string> families;
+  bool bold = false, italic = false, horizontal = true, leftToRight = true, topToBottom = true;
+  double size = 1, spacing = 1;
+  Justify major = Justify::begin, minor = Justify::first;
+  std::string language;
+
+  Style(const nodes::FontStyle* node, Faults& faults) {
+    if (!node) return;
+    families = node->family;
+    const std::string& style = node->style;
+    bold = style == "BOLD" || style == "BOLDITALIC";
+    italic = style == "ITALIC" || style == "BOLDITALIC";
+    if (!bold && !italic && style != "PLAIN" && !style.empty())
+      faults.note("FontStyle.style knows PLAIN, BOLD, ITALIC and BOLDITALIC only");
+    horizontal = node->horizontal;
+    leftToRight = node->leftToRight;
+    topToBottom = node->topToBottom;
+    size = node->size;
+    spacing = node->spacing;
+    major = justifyFrom(node->justify, 0, faults);
+    minor = justifyFrom(node->justify, 1, faults);
+    language = node->language;
+  }
+
+  TextDirection direction() const {
+    if (horizontal) return leftToRight ? TextDirection::leftToRight : TextDirection::rightToLeft;
+    return topToBottom ? TextDirection::topToBottom : TextDirection::bottomToTop;
+  }
+};
+
+// A line with its glyphs between 0 and `length` along the line's axis (whichever way they advance) and its stretch.
+struct Line {
+  ShapedLine shaped;
+  double length = 0; // em, along the axis, before stretching
+  double stretch = 1;
+  double start = 0; // smallest coordinate along the axis, em, after stretching
+};
+
+class Layout {
+ public:
+  Layout(const nodes::Text& node, const Style& style, Font& font, const MeshOptions& options, Faults& faults)
+      : node_(node), style_(style), font_(font), limit_(triangleLimit(options)), faults_(faults) {}
+
+  Mesh run() {
+    shapeLines();
+    fitLengths();
+    placeAcross();
+    for (size_t i = 0; i < lines_.size() && !full_; i++) addLine(i);
+    if (mesh_.ownIndices.empty()) return {};
+    mesh_.kind = Mesh::Kind::triangles;
+    mesh_.solid = false; // seen from both sides (clause 6.47)
+    mesh_.viewOwn();
+    return std::move(mesh_);
+  }
+
+ private:
+  void shapeLines() {
+    for (const std::string& string : node_.string) {
+      Line line;
+      if (string.size() < (1u << 30)) line.shaped = font_.shape(string, style_.direction(), style_.language);
+      line.length = std::abs(style_.horizontal ? line.shaped.advanceX : line.shaped.advanceY);
+      lines_.push_back(std::move(line));
+    }
+  }
+
+  // length stretches each line, maxExtent then compresses all alike (clause 6.47).
+  void fitLengths() {
+    double longest = 0;
+    for (size_t i = 0; i < lines_.size(); i++) {
+      double wanted = i < node_.length.size() ? node_.length[i] / style_.size : 0;
+      if (wanted > 0 && std::isfinite(wanted) && lines_[i].length > 0) lines_[i].stretch = wanted / lines_[i].length;
+      longest = std::max(longest, lines_[i].length * lines_[i].stretch);
+    }
+    double most = node_.maxExtent / style_.size;
+    double factor = most > 0 && longest > most ? most / longest : 1;
+    for (Line& line : lines_) {
+      line.stretch *= factor;
+      line.start = startAlong(line.length * line.stretch);
+    }
+  }
+
+  // Major alignment, a line at a time: what of it lies at 0 (tables of clause 6.20.3).
+  double startAlong(double length) const {
+    bool towardsPlus = style_.horizontal ? style_.leftToRight : !style_.topToBottom;
+    switch (style_.major) {
+    case Justify::middle: return -length / 2;
+    case Justify::end: return towardsPlus ? -length : 0;
+    default: return towardsPlus ? 0 : -length;
+    }
+  }
+
+  // Minor alignment, the whole block: `offset_` is where the first line's baseline (horizontal) or left edge (vertical) lies.
+  void placeAcross() {
+    double extra = double(lines_.size() - 1) * style_.spacing;
+    if (style_.horizontal) {
+      step_ = style_.topToBottom ? -style_.spacing : style_.spacing;
+      double top = font_.ascender(), bottom = font_.descender(); // of a line, from its baseline
+      double high = style_.topToBottom ? top : top + extra, low = style_.topToBottom ? bottom - extra : bottom;
+      switch (style_.minor) {
+      case Justify::first: offset_ = 0; break;
+      case Justify::begin: offset_ = style_.topToBottom ? -high : -low; break;
+      case Justify::middle: offset_ = -(high + low) / 2; break;
+      case Justify::end: offset_ = style_.topToBottom ? -low : -high; break;
+      }
+      return;
+    }
+    step_ = style_.leftToRight ? style_.spacing : -style_.spacing;
+    double left = style_.leftToRight ? 0 : -extra, right = style_.leftToRight ? 1 + extra : 1; // columns are one em wide
+    switch (style_.minor) {
+    case Justify::middle: offset_ = -(left + right) / 2; break;
+    case Justify::end: offset_ = style_.leftToRight ? -right : -left; break;
+    default: offset_ = style_.leftToRight ? -left : -right; break;
+    }
+  }
+
+  // Glyph origins in em: along the line stretched, across it from the baseline (vertical: the column's middle).
+  V2d place(const Line& line, size_t index, const V2d& p) const {
+    double across = offset_ + double(index) * step_;
+    if (style_.horizontal) return {line.start + p.x * line.stretch, across + p.y};
+    // The pen runs down from 0 (or up from 0): the line's lowest point is at -length (or 0).
+    double low = line.shaped.advanceY < 0 ? -line.length : 0;
+    return {across + 0.5 + p.x, line.start + (p.y - low) * line.stretch};
+  }
+
+  void addLine(size_t index) {
+    const Line& line = lines_[index];
+    // Where the texture has its origin: that of the first string (clause 6.47).
+    V2d origin = place(lines_[0], 0, V2d(0, 0));
+    for (const PlacedGlyph& placed : line.shaped.glyphs) {
+      const GlyphMesh& glyph = font_.glyph(placed.glyph);
+      if ((mesh_.ownIndices.size() + glyph.indices.size()) / 3 > limit_) {
+        faults_.add(Fault::overLimit, index);
+        full_ = true;
+        return;
+      }
+      uint32_t first = uint32_t(mesh_.ownPoints.size());
+      for (const Vec2f& p : glyph.points) {
+        V2d at = place(line, index, {placed.x + p.x, placed.y + p.y});
+        mesh_.ownPoints.push_back({float(at.x * style_.size), float(at.y * style_.size), 0});
+        mesh_.ownTexCoords.push_back({float(at.x - origin.x), float(at.y - origin.y)});
+      }
+      for (size_t i = 0; i + 2 < glyph.indices.size(); i += 3) addTriangle(first, &glyph.indices[i]);
+    }
+  }
+
+  // Strong compression can leave a triangle without area.
+  void addTriangle(uint32_t first, const uint32_t* at) {
+    const auto& p = mesh_.ownPoints;
+    if (hasArea(p[first + at[0]], p[first + at[1]], p[first + at[2]]))
+      mesh_.ownIndices.insert(mesh_.ownIndices.end(), {first + at[0], first + at[1], first + at[2]});
+  }
+
+  const nodes::Text& node_;
+  const Style& style_;
+  Font& font_;
+  uint64_t limit_;
+  Faults& faults_;
+  std::vector<Line> lines_;
+  double offset_ = 0, step_ = 0;
+  bool full_ = false;
+  Mesh mesh_;
+};
+
+} // namespace
+
+Mesh buildText(const nodes::Text& node, const MeshOptions& options, Faults& faults) {
+  if (node.string.empty()) return {};
+  Style style(nodeCast<nodes::FontStyle>(renderedNode(node.fontStyle.get())), faults);
+  if (!(style.size > 0) || !(style.size < 1e30) || !(std::abs(style.spacing) < 1e30)) {
+    faults.note("FontStyle.size must be positive and spacing finite; nothing is drawn");
+    return {};
+  }
+  std::lock_guard lock(fontsMutex());
+  Font* font = findFont(style.families, style.bold, style.italic, style.language);
+  if (!font) {
+    faults.note("no font is installed (fonts-dejavu-core on Debian); nothing is drawn");
+    return {};
+  }
+  Mesh mesh = Layout(node, style, *font, options, faults).run();
+  if (!allFinite(mesh.points) || !allFinite(mesh.texCoords)) {
+    faults.note("text is too large; nothing is drawn");
+    return {};
+  }
+  return mesh;
+}
+
+} // namespace xvrml

@@ -1,0 +1,32 @@
+#include "graph/node_kinds.h"
+
+#include <algorithm>
+
+namespace xvrml {
+
+const Node* firstNode(const ProtoDeclaration* declaration) {
+  if (declaration->isExtern) declaration = declaration->resolved.get();
+  return declaration && !declaration->body.roots.empty() ? declaration->body.roots[0].get() : nullptr;
+}
+
+const NodeType* effectiveType(const Node& node) {
+  const Node* current = &node;
+  // Instances of instances; their number is bounded by the depth of prototypes declared before one another.
+  while (const auto* instance = dynamic_cast<const ProtoInstance*>(current)) {
+    current = firstNode(instance->declaration.get());
+    if (!current) return nullptr;
+  }
+  return &current->type();
+}
+
+bool typeAccepted(std::string_view nodeTypes, const NodeType& type) {
+  while (!nodeTypes.empty()) {
+    const size_t end = std::min(nodeTypes.find(' '), nodeTypes.size());
+    const std::string_view name = nodeTypes.substr(0, end);
+    if (!name.empty() && (type.name == name || type.is(name))) return true;
+    nodeTypes.remove_prefix(std::min(end + 1, nodeTypes.size()));
+  }
+  return false;
+}
+
+} // namespace xvrml

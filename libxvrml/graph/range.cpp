@@ -1,0 +1,161 @@
+#include "graph/range.h"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "base/rotation.h"
+#include "graph/field_access.h"
+
+namespace xvrml {
+namespace {
+
+// Returns true if the bound is a multiple of pi/2 other than 0: files have such angles rounded (1.571, 1.5708, 6.28319).
+bool isAngleBound(double bound) {
+  const double quarters = bound / (std::numbers::pi / 2);
+  return std::abs(quarters) >= 1 && std::abs(quarters) <= 8 && std::abs(quarters - std::round(quarters)) < 1e-6;
+}
+
+// Returns how far beyond a bound a number may be and still mean the bound.
+double slackAt(double bound) {
+  constexpr double rounded = 5.1e-4; // half of the third decimal, and what a float adds
+  constexpr double single = 1e-6;    // about eight units in the last place of a float
+  return isAngleBound(bound) ? rounded : single * std::abs(bound);
+}
+
+template <class T> bool inside(T number, const FieldRange& range) {
+  const T minimum = static_cast<T>(range.minimum), maximum = static_cast<T>(range.maximum);
+  return (range.minimumOpen ? number > minimum : number >= minimum) && (range.maximumOpen ? number < maximum : number <= maximum);
+}
+
+// Integers are compared as doubles: infinity is no integer.
+bool inside(int32_t number, const FieldRange& range) { return inside(static_cast<double>(number), range); }
+
+// Brings a number that means a bound to that bound, or to the nearest number inside if the range is open there. Returns false if
+// it is outside and means no bound.
+template <class T> bool round(T& number, const FieldRange& range) {
+  if (inside(number, range)) return true;
+  if constexpr (std::is_floating_point_v<T>) {
+    const auto means = [number](double bound) { return std::abs(static_cast<double>(number) - bound) <= slackAt(bound); };
+    const T minimum = static_cast<T>(range.minimum), maximum = static_cast<T>(range.maximum);
+    if (number > maximum && means(range.maximum) && (!range.maximumOpen || isAngleBound(range.maximum)))
+      return number = range.maximumOpen ? std::nextafter(maximum, T(0)) : maximum, true;
+    if (number < minimum && means(range.minimum) && !range.minimumOpen) return number = minimum, true;
+    if (range.maximumOpen && number == maximum && isAngleBound(range.maximum))
+      return number = std::nextafter(maximum, T(0)), true;
+  }
+  return false;
+}
+
+template <class T> void clampToClosed(T& number, const FieldRange& range) {
+  const double value = static_cast<double>(number);
+  if (!range.minimumOpen && value < range.minimum) number = static_cast<T>(range.minimum);
+  if (!range.maximumOpen && value > range.maximum) number = static_cast<T>(range.maximum);
+}
+
+template <class T> bool isAlso(T number, const FieldRange& range) { return static_cast<double>(number) == range.also; }
+
+// The numbers of a value that the range speaks of; rotations are normalised instead.
+template <class T> struct Numbers;
+template <> struct Numbers<float> { static constexpr int count = 1; };
+template <> struct Numbers<double> { static constexpr int count = 1; };
+template <> struct Numbers<int32_t> { static constexpr int count = 1; };
+template <> struct Numbers<Vec2f> { static constexpr int count = 2; };
+template <> struct Numbers<Vec3f> { static constexpr int count = 3; };
+template <> struct Numbers<Color> { static constexpr int count = 3; };
+template <class T>
+concept Numeric = requires {
+  Numbers<T>::count;
+};
+
+template <Numeric T> auto* first(T& value) {
+  if constexpr (Numbers<T>::count == 1)
+    return &value;
+  else
+    return &reinterpret_cast<float&>(value);
+}
+
+template <Numeric T> bool enforce(T& value, const FieldRange& range) {
+  auto* numbers = first(value);
+  const auto end = numbers + Numbers<T>::count;
+  if (std::all_of(numbers, end, [&](auto number) { return inside(number, range); })) return true;
+  if (std::all_of(numbers, end, [&](auto number) { return isAlso(number, range); })) return true;
+  bool good = true;
+  std::for_each(numbers, end, [&](auto& number) { good = round(number, range) && good; });
+  if (good) return true;
+  std::for_each(numbers, end, [&](auto& number) { clampToClosed(number, range); });
+  return false;
+}
+
+// The numbers of a value as a file has them.
+template <Numeric T> std::string textOf(T value) {
+  std::string text;
+  auto* numbers = first(value);
+  for (int i = 0; i < Numbers<T>::count; ++i) text += fmt::format("{}{}", i ? " " : "", numbers[i]);
+  return text;
+}
+
+// "pi/2" for what nobody knows as 1.5707963267948966.
+std::string boundText(double bound) {
+  if (!isAngleBound(bound)) return fmt::format("{}", bound);
+  const int quarters = int(std::lround(bound / (std::numbers::pi / 2)));
+  const std::string sign = quarters < 0 ? "-" : "";
+  const int n = std::abs(quarters);
+  if (n % 2 != 0) return fmt::format("{}{}pi/2", sign, n == 1 ? "" : std::to_string(n));
+  return fmt::format("{}{}pi", sign, n == 2 ? "" : std::to_string(n / 2));
+}
+
+} // namespace
+
+bool enforceRange(const FieldInfo& field, void* storage, RangeFault* fault) {
+  if (hasNormalizedAxes(field)) {
+    normalizeAxes(field.type, storage);
+    return true;
+  }
+  const auto tell = [fault](const auto& given, const auto& used, size_t index) {
+    if (fault && fault->count++ == 0) fault->given = textOf(given), fault->used = textOf(used), fault->index = index;
+  };
+  return visitStorage(field.type, storage, [&](auto& value) {
+    using T = std::remove_reference_t<decltype(value)>;
+    if constexpr (Numeric<T>) {
+      const T given = value;
+      if (enforce(value, field.range)) return true;
+      if constexpr (Numbers<T>::count == 1) {
+        if (!inside(value, field.range)) value = std::get<T>(field.defaultValue);
+      }
+      tell(given, value, 0);
+      return false;
+    } else if constexpr (requires { requires Numeric<typename T::value_type>; }) {
+      bool good = true;
+      for (size_t i = 0; i < value.size(); ++i) {
+        const auto given = value[i];
+        if (enforce(value[i], field.range)) continue;
+        good = false;
+        tell(given, value[i], i);
+      }
+      return good;
+    } else {
+      return true;
+    }
+  });
+}
+
+std::string describe(const FieldRange& range) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const std::string low = range.minimum == -infinity ? "(-inf" : (range.minimumOpen ? '(' : '[') + boundText(range.minimum);
+  const std::string high = range.maximum == infinity ? "inf)" : boundText(range.maximum) + (range.maximumOpen ? ')' : ']');
+  return low + "," + high + (range.also == range.also ? fmt::format(" or {}", range.also) : "");
+}
+
+std::string describe(const NodeType& type, const FieldInfo& field, const RangeFault& fault) {
+  const bool list = field.type >= FieldType::MFColor;
+  const std::string where = list ? fmt::format("{}.{}[{}]", type.name, field.name, fault.index) : type.name + "." + field.name;
+  const std::string done = fault.given == fault.used ? "is left as it is, and what cannot be drawn is left out"
+                                                     : fmt::format("becomes {}", fault.used);
+  return fmt::format("{}: {} is outside of its range {} and {}{}", where, fault.given, describe(field.range), done,
+                     fault.count > 1 ? fmt::format(", as do {} further elements", fault.count - 1) : "");
+}
+
+} // namespace xvrml

@@ -1,0 +1,96 @@
+// extent.cpp: see extent.h. Shapes are measured by their vertices; a shared item once, its box then stands for it.
+#include "mapper/extent.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace xvrml::mapper {
+namespace {
+
+struct Step {
+  ItemId item;
+  int32_t place;
+  Matrix matrix;
+};
+
+class Measure {
+ public:
+  Measure(Graph& graph, const Places& places) : graph_(graph), places_(places), boxes_(graph.items.size()) {}
+
+  Bounds all() {
+    // Children stand before parents, so a shared item's shared parts have been measured when it is met.
+    for (const ItemId id : graph_.order)
+      if (shared(id)) boxes_[id] = below({id, none, Matrix()});
+    return below({Graph::root, 0, Matrix()});
+  }
+
+  // How far from a point something lies; after all().
+  double reach(const Vector& center) {
+    center_ = &center;
+    below({Graph::root, 0, Matrix()});
+    return reach_;
+  }
+
+ private:
+  bool shared(ItemId id) const {
+    const Item& item = graph_.items[id];
+    return item.own != Own::none && !item.placed && item.parentCount > 1;
+  }
+
+  // Of an item's content, without its own matrix.
+  Bounds below(const Step& first) {
+    Bounds bounds;
+    std::vector<Step> open{first};
+    while (!open.empty()) {
+      const Step step = open.back();
+      open.pop_back();
+      const Item& item = graph_.items[step.item];
+      if (item.kind == Kind::shape && center_) reach_ = std::max(reach_, graph_.meshes.reach(item.mesh, step.matrix, *center_));
+      if (item.kind == Kind::shape && !center_) graph_.meshes.grow(bounds, item.mesh, step.matrix);
+      const size_t count = item.kind == Kind::lod ? std::min(item.children.size(), size_t(1)) : item.children.size();
+      for (size_t c = 0; c < count; ++c) {
+        const ItemId child = item.children[c];
+        if (!graph_.items[child].draws) continue;
+        const int32_t at = step.place == none ? none : places_.children[places_.all[size_t(step.place)].firstChild + c];
+        const Matrix inside = graph_.below(step.matrix, graph_.items[child]);
+        if (at == none && shared(child))
+          growBy(bounds, boxes_[child], inside);
+        else
+          open.push_back({child, at, at == none ? inside : compose(inside, places_.turns[size_t(at)])});
+      }
+    }
+    return bounds;
+  }
+
+  void growBy(Bounds& bounds, const Bounds& box, const Matrix& matrix) {
+    if (!center_) return growByBox(bounds, box, matrix);
+    for (int corner = 0; corner < 8 && !box.empty; ++corner) {
+      auto side = [&](int axis) { return corner & (1 << axis) ? box.maximum[axis] : box.minimum[axis]; };
+      const double far = (transformPoint(matrix, {side(0), side(1), side(2)}) - *center_).length();
+      if (std::isfinite(far)) reach_ = std::max(reach_, far);
+    }
+  }
+
+  Graph& graph_;
+  const Places& places_;
+  std::vector<Bounds> boxes_;
+  const Vector* center_ = nullptr; // set: how far it is from there is measured, not the bounds
+  double reach_ = 0;
+};
+
+} // namespace
+
+Bounds boundsOf(Graph& graph, const Places& places) { return Measure(graph, places).all(); }
+
+BoundingSphere sphereOf(Graph& graph, const Places& places, const Bounds& bounds) {
+  BoundingSphere sphere;
+  if (bounds.empty) return sphere;
+  for (int i = 0; i < 3; ++i) sphere.center[i] = bounds.minimum[i] + (bounds.maximum[i] - bounds.minimum[i]) / 2;
+  Measure measure(graph, places);
+  measure.all();
+  sphere.radius = measure.reach(Vector(sphere.center[0], sphere.center[1], sphere.center[2]));
+  sphere.empty = false;
+  return sphere;
+}
+
+} // namespace xvrml::mapper

@@ -1,0 +1,134 @@
+// plans.cpp: what each node type means for the picture: the dispatch table by type index, one small function a type. Called
+// while the render graph is built, on the mapper's thread.
+#include <algorithm>
+#include <span>
+
+#include "mapper/graph/graph.h"
+#include "xvrml/nodes.h"
+
+namespace xvrml::mapper {
+namespace {
+
+void group(Plan& plan, const MFNode& children) {
+  plan.kind = Kind::group;
+  plan.add(children);
+}
+
+void planGroup(PlanContext&, Node& node, Plan& plan) { group(plan, static_cast<nodes::Group&>(node).children); }
+void planAnchor(PlanContext&, Node& node, Plan& plan) { group(plan, static_cast<nodes::Anchor&>(node).children); }
+// The proxy is for collision detection only (clause 6.8).
+void planCollision(PlanContext&, Node& node, Plan& plan) { group(plan, static_cast<nodes::Collision&>(node).children); }
+
+void planTransform(PlanContext&, Node& node, Plan& plan) {
+  auto& t = static_cast<nodes::Transform&>(node);
+  group(plan, t.children);
+  plan.matrix = transformMatrix({t.center, t.translation, t.scale, t.rotation, t.scaleOrientation});
+}
+
+// Clause 6.46: whichChoice below 0 or beyond the last choice draws nothing.
+void planSwitch(PlanContext&, Node& node, Plan& plan) {
+  auto& s = static_cast<nodes::Switch&>(node);
+  plan.kind = Kind::group;
+  if (s.whichChoice >= 0 && size_t(s.whichChoice) < s.choice.size())
+    plan.children.push_back(s.choice[size_t(s.whichChoice)].get());
+}
+
+void planLod(PlanContext&, Node& node, Plan& plan) {
+  plan.kind = Kind::lod;
+  plan.keepEmpty = true;
+  plan.add(static_cast<nodes::LOD&>(node).level);
+}
+
+void planBillboard(PlanContext&, Node& node, Plan& plan) {
+  plan.kind = Kind::billboard;
+  plan.add(static_cast<nodes::Billboard&>(node).children);
+}
+
+// Content that comes later (Browser::loadInline) gets an object of its own, so that nothing else is made anew then.
+void planInline(PlanContext& context, Node& node, Plan& plan) {
+  plan.kind = Kind::group;
+  plan.isInline = true;
+  const Scope* scope = inlineScope(node);
+  plan.awaited = !scope && !context.world.options.loadInlines && !static_cast<nodes::Inline&>(node).url.empty();
+  if (scope) plan.add(scope->roots);
+}
+
+void planStatic(PlanContext&, Node& node, Plan& plan) {
+  group(plan, static_cast<nodes::ORTStatic&>(node).children);
+  plan.hint = Hint::merge;
+}
+void planInstance(PlanContext&, Node& node, Plan& plan) {
+  group(plan, static_cast<nodes::ORTInstance&>(node).children);
+  plan.hint = Hint::instantiate;
+}
+
+void planShape(PlanContext&, Node& node, Plan& plan) {
+  if (renderedNode(static_cast<nodes::Shape&>(node).geometry.get())) plan.kind = Kind::shape;
+}
+
+// A light that is off lights nothing (clause 4.6.6); it is not there unless events may turn it on (summary.cpp).
+template <class Light> void planLight(Node& node, Kind kind, Plan& plan) {
+  plan.kind = kind;
+  plan.on = static_cast<Light&>(node).on;
+}
+void planDirectionalLight(PlanContext&, Node& node, Plan& plan) {
+  planLight<nodes::DirectionalLight>(node, Kind::directionalLight, plan);
+}
+void planPointLight(PlanContext&, Node& node, Plan& plan) { planLight<nodes::PointLight>(node, Kind::localLight, plan); }
+void planSpotLight(PlanContext&, Node& node, Plan& plan) { planLight<nodes::SpotLight>(node, Kind::localLight, plan); }
+
+void planOrtLight(PlanContext&, Node& node, Plan& plan) { planLight<nodes::ORTLight>(node, Kind::localLight, plan); }
+
+void planViewpoint(PlanContext&, Node&, Plan& plan) { plan.kind = Kind::viewpoint; }
+void planBackground(PlanContext&, Node&, Plan& plan) { plan.kind = Kind::background; }
+void planFog(PlanContext&, Node&, Plan& plan) { plan.kind = Kind::fog; }
+void planNavigationInfo(PlanContext&, Node&, Plan& plan) { plan.kind = Kind::navigationInfo; }
+
+std::vector<PlanFunction>& table() {
+  static std::vector<PlanFunction> plans = [] {
+    std::vector<PlanFunction> t(nodeTypes().size(), nullptr);
+    auto set = [&](int index, PlanFunction plan) {
+      if (size_t(index) >= t.size()) t.resize(size_t(index) + 1, nullptr);
+      t[size_t(index)] = plan;
+    };
+    set(nodes::Group::typeIndex, planGroup);
+    set(nodes::Anchor::typeIndex, planAnchor);
+    set(nodes::Collision::typeIndex, planCollision);
+    set(nodes::Transform::typeIndex, planTransform);
+    set(nodes::Switch::typeIndex, planSwitch);
+    set(nodes::LOD::typeIndex, planLod);
+    set(nodes::Billboard::typeIndex, planBillboard);
+    set(nodes::Inline::typeIndex, planInline);
+    set(nodes::ORTStatic::typeIndex, planStatic);
+    set(nodes::ORTInstance::typeIndex, planInstance);
+    set(nodes::Shape::typeIndex, planShape);
+    set(nodes::DirectionalLight::typeIndex, planDirectionalLight);
+    set(nodes::PointLight::typeIndex, planPointLight);
+    set(nodes::SpotLight::typeIndex, planSpotLight);
+    set(nodes::ORTLight::typeIndex, planOrtLight);
+    set(nodes::Viewpoint::typeIndex, planViewpoint);
+    set(nodes::ORTViewpoint::typeIndex, planViewpoint);
+    set(nodes::ORTBackground::typeIndex, planBackground);
+    set(nodes::Background::typeIndex, planBackground);
+    set(nodes::Fog::typeIndex, planFog);
+    set(nodes::NavigationInfo::typeIndex, planNavigationInfo);
+    return t;
+  }();
+  return plans;
+}
+
+} // namespace
+
+PlanFunction planOf(const NodeType& type) {
+  const std::vector<PlanFunction>& plans = table();
+  return type.index >= 0 && size_t(type.index) < plans.size() ? plans[size_t(type.index)] : nullptr;
+}
+
+void setPlan(const NodeType& type, PlanFunction plan) {
+  if (type.index < 0) return;
+  std::vector<PlanFunction>& plans = table();
+  if (size_t(type.index) >= plans.size()) plans.resize(size_t(type.index) + 1, nullptr);
+  plans[size_t(type.index)] = plan;
+}
+
+} // namespace xvrml::mapper

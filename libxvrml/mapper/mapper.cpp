@@ -1,0 +1,211 @@
+// mapper.cpp: OpenRTMapper: the order of the steps from a world to rt* calls, frame by frame. See xvrml/openrt.h.
+#include <algorithm>
+#include <new>
+#include <numbers>
+
+#include "mapper/extent.h"
+#include "mapper/mapper_impl.h"
+#include "mapper/model.h"
+
+namespace xvrml {
+
+using namespace mapper;
+
+OpenRTMapper::Impl::Impl(World& w, const MapOptions& o)
+    : world(w), options(o), graph(w), places(w), textures(w, o.linearColor), custom(w, classes, textures),
+      surfaces(w, o.linearColor, classes, textures, custom), objects(w, o.linearColor, graph, places, surfaces),
+      lights(w, o.linearColor, classes, custom), environment(w, o.linearColor, classes, textures, custom),
+      camera(cameraOf(nullptr, Matrix(), o.aspect)) {
+  summarise(graph, world.diagnostics);
+  std::vector<Place> gone;
+  places.build(graph, gone);
+  places.follow(graph, camera); // what is below billboards: as seen from the default view
+  rebind();
+}
+
+OpenRTMapper::Impl::~Impl() {
+  if (!context || rtGetCurrent() != context) return;
+  try {
+    lights.clear(places);
+    objects.clear();
+    environment.clear();
+    surfaces.clear();
+    custom.clear();
+    textures.clear();
+  } catch (const std::bad_alloc&) {} // what is left goes with the context
+}
+
+void OpenRTMapper::Impl::rebind() {
+  if (!given) {
+    bound = firstBound(graph, places);
+    return;
+  }
+  BoundNodes nodes;
+  nodes.viewpoint = given->viewpoint.get(), nodes.background = given->background.get();
+  nodes.fog = given->fog.get(), nodes.navigationInfo = given->navigationInfo.get();
+  bound = boundTo(graph, places, nodes);
+}
+
+CameraSettings OpenRTMapper::Impl::cameraAt(int32_t place) const {
+  if (place == none) return cameraOf(nullptr, Matrix(), options.aspect);
+  const Place& p = places.all[size_t(place)];
+  return cameraOf(graph.items[p.item].node.get(), p.world, options.aspect);
+}
+
+bool OpenRTMapper::Impl::headlight() const {
+  if (options.headlight != MapOptions::Headlight::automatic) return options.headlight == MapOptions::Headlight::on;
+  return hasHeadlight(bound);
+}
+
+const std::vector<int32_t>& OpenRTMapper::Impl::viewpointPlaces() {
+  if (!viewsStale) return viewpointPlaces_;
+  viewsStale = false;
+  places.follow(graph, camera);
+  viewpointPlaces_.clear();
+  viewpoints_ = listViewpoints(graph, places, viewpointPlaces_);
+  return viewpointPlaces_;
+}
+
+const std::vector<ViewpointInfo>& OpenRTMapper::Impl::viewpoints() {
+  viewpointPlaces();
+  return viewpoints_;
+}
+
+const Bounds& OpenRTMapper::Impl::bounds() {
+  if (boundsStale) {
+    places.follow(graph, camera);
+    bounds_ = boundsOf(graph, places);
+    sphereStale = true;
+  }
+  boundsStale = false;
+  return bounds_;
+}
+
+const BoundingSphere& OpenRTMapper::Impl::sphere() {
+  const Bounds& box = bounds();
+  if (sphereStale) sphere_ = sphereOf(graph, places, box);
+  sphereStale = false;
+  return sphere_;
+}
+
+bool OpenRTMapper::Impl::lightsModel() {
+  if (!modelLight || options.headlight != MapOptions::Headlight::automatic || bound.viewpoint) return false;
+  if (lightStale) leavesLightOpen_ = leavesLightOpen(graph, bound);
+  lightStale = false;
+  return leavesLightOpen_;
+}
+
+OpenRTMapper::OpenRTMapper(World& world, const MapOptions& options) : impl_(std::make_unique<Impl>(world, options)) {}
+OpenRTMapper::~OpenRTMapper() = default;
+
+const std::vector<ViewpointInfo>& OpenRTMapper::viewpoints() const { return impl_->viewpoints(); }
+
+int OpenRTMapper::boundViewpoint() const {
+  const std::vector<int32_t>& places = impl_->viewpointPlaces();
+  const auto found = std::find(places.begin(), places.end(), impl_->bound.viewpointPlace);
+  return found == places.end() ? -1 : int(found - places.begin());
+}
+
+CameraSettings OpenRTMapper::viewpointCamera(size_t index) const {
+  const std::vector<int32_t>& places = impl_->viewpointPlaces();
+  return impl_->cameraAt(index < places.size() ? places[index] : none);
+}
+
+CameraSettings OpenRTMapper::fitCamera(double fovy) const {
+  const CameraSettings first = viewpointCamera(size_t(std::max(0, boundViewpoint())));
+  return cameraAround(impl_->bounds(), first.matrix, fovy, impl_->options.aspect);
+}
+
+void OpenRTMapper::setMultiplyTextures(bool multiply) { impl_->surfaces.multiplyTextures = multiply; }
+void OpenRTMapper::setHeadlight(MapOptions::Headlight headlight) { impl_->options.headlight = headlight; }
+
+void OpenRTMapper::setModelLight(bool on) { impl_->modelLight = on; }
+
+void OpenRTMapper::setBackground(bool on) { impl_->background = on; }
+
+Bounds OpenRTMapper::bounds() const { return impl_->bounds(); }
+
+BoundingSphere OpenRTMapper::boundingSphere() const { return impl_->sphere(); }
+
+UpGuess OpenRTMapper::guessUp() const { return mapper::guessUp(impl_->world, impl_->graph, impl_->bounds()); }
+
+void OpenRTMapper::bind(const BoundNodes& nodes) {
+  const Bound before = impl_->bound;
+  impl_->given = boundTo(impl_->graph, impl_->places, nodes);
+  impl_->bound = *impl_->given;
+  impl_->lightStale |= before.navigationInfo != impl_->bound.navigationInfo || before.background != impl_->bound.background;
+}
+
+void OpenRTMapper::update(const FieldChanges& changes) { impl_->update(changes); }
+
+void OpenRTMapper::map(const CameraSettings& camera) {
+  Impl& m = *impl_;
+  report(m.world.diagnostics, {}, "before the world was mapped");
+  m.camera = camera;
+  m.places.follow(m.graph, camera);
+  Bound around = m.bound;
+  if (!m.background) around.background = {}, around.backgroundPlace = none;
+  m.environment.follow(m.places, around);
+  m.objects.follow();
+  m.lights.follow(m.graph, m.places);
+  m.lights.atCamera(m.lightsModel() ? CameraLight::model : m.headlight() ? CameraLight::head : CameraLight::none, camera);
+  m.graph.meshes.release(); // the context has its own copy
+  m.useCamera(camera);
+  m.custom.sweep();
+}
+
+void OpenRTMapper::Impl::useCamera(const CameraSettings& settings) {
+  const double degrees = settings.fovy * 180 / std::numbers::pi;
+  rtLoadMatrixd(settings.matrix);
+  RTid shader = 0;
+  if (auto* node = nodeCast<nodes::ORTShader>(settings.shader)) // its own: other views may have another angle
+    shader = custom.of(*node, RT_CAMERA, node, [&](ShaderSetup& setup, const ShaderClass& shaderClass) {
+      if (shaderClass.has("fovy") && settings.fovy > 0) setup.number("fovy", float(degrees));
+      if (shaderClass.has("height") && settings.fovy == 0) setup.number("height", float(settings.height));
+    });
+  if (shader != 0)
+    rtUseCamera(shader);
+  else if (settings.fovy == 0)
+    rtOrtho(settings.height);
+  else
+    rtPerspective(degrees);
+  report(world.diagnostics, settings.shader ? settings.shader->source : SourcePosition(), "camera");
+}
+
+MapStats OpenRTMapper::stats() const {
+  Impl& m = *impl_;
+  if (m.countsStale) recount(m.graph);
+  m.countsStale = false;
+  const Item& root = m.graph.items[Graph::root];
+  MapStats s;
+  s.shapes = root.shapes;
+  s.triangles = root.triangles;
+  s.lights = m.lights.count();
+  s.textures = m.textures.count();
+  s.objects = m.objects.objects();
+  s.instances = m.objects.instances();
+  s.missingTextures = m.textures.missing();
+  s.objectsDefined = m.objects.definitions();
+  s.instancesMoved = m.objects.moves();
+  s.parametersSet =
+      m.surfaces.parametersSet() + m.custom.parametersSet() + m.lights.parametersSet() + m.environment.parametersSet();
+  s.texturesLoaded = m.textures.loaded();
+  s.lightsChanged = m.lights.changes();
+  s.regroupings = m.regroupings;
+  return s;
+}
+
+const std::vector<std::string>& OpenRTMapper::names() const {
+  if (impl_->namesStale) impl_->names = impl_->graph.shapeNames();
+  impl_->namesStale = false;
+  return impl_->names;
+}
+
+std::vector<NodeRef> OpenRTMapper::nodes() const {
+  std::vector<NodeRef> nodes;
+  nodes.reserve(impl_->graph.shapes.size());
+  for (const ItemId id : impl_->graph.shapes) nodes.push_back(id == 0 ? NodeRef() : impl_->graph.items[id].node);
+  return nodes;
+}
+
+} // namespace xvrml

@@ -1,0 +1,304 @@
+// meshes.cpp: see meshes.h.
+#include "mapper/meshes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include <xxhash.h>
+
+#include "mapper/graph/cost.h"
+
+namespace xvrml::mapper {
+namespace {
+
+constexpr uint64_t smallestCompared = 5; // primitives: less is never worth an instance, see cost.h
+
+template <class T> uint64_t hashed(std::span<const T> values, uint64_t seed) {
+  return XXH3_64bits_withSeed(values.data(), values.size_bytes(), seed + values.size());
+}
+
+uint64_t contentHash(const Mesh& m) {
+  const uint64_t flags = uint64_t(m.kind) | uint64_t(m.solid) << 8 | uint64_t(m.ccw) << 9;
+  return hashed(m.colors, hashed(m.texCoords, hashed(m.normals, hashed(m.indices, hashed(m.points, flags)))));
+}
+
+double reachOf(const Mesh& m) {
+  float reach = m.kind == Mesh::Kind::sphere ? m.radius : 0;
+  for (const Vec3f& p : m.points) // not by NaN, which fails every comparison
+    for (const float v : {p.x, p.y, p.z}) reach = std::abs(v) > reach && std::isfinite(v) ? std::abs(v) : reach;
+  return double(reach);
+}
+
+uint64_t ownBytes(const Mesh& m) {
+  return m.ownPoints.capacity() * sizeof(Vec3f) + m.ownNormals.capacity() * sizeof(Vec3f) +
+         m.ownColors.capacity() * sizeof(Color) + m.ownTexCoords.capacity() * sizeof(Vec2f) +
+         m.ownIndices.capacity() * sizeof(uint32_t);
+}
+
+template <class T> bool equalBytes(std::span<const T> a, std::span<const T> b) {
+  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size_bytes()) == 0);
+}
+
+} // namespace
+
+int32_t Meshes::add(Node& geometry, bool textured) {
+  const auto [it, fresh] = index_.try_emplace(&geometry, int32_t(entries_.size()));
+  if (fresh && !free_.empty()) {
+    it->second = free_.back();
+    free_.pop_back();
+  } else if (fresh) {
+    entries_.emplace_back();
+  }
+  const int32_t mesh = it->second;
+  if (fresh) entries_[size_t(mesh)].geometry = NodeRef(&geometry);
+  if (textured) needTexture(mesh);
+  count(mesh, 1);
+  return mesh;
+}
+
+void Meshes::drop(int32_t mesh) {
+  count(mesh, -1);
+  Entry& entry = entries_[size_t(mesh)];
+  if (entry.users > 0) return;
+  leave(mesh);
+  index_.erase(entry.geometry.get());
+  entry = Entry();
+  dropped_.push_back(mesh);
+}
+
+void Meshes::recycle() {
+  free_.insert(free_.end(), dropped_.begin(), dropped_.end());
+  dropped_.clear();
+}
+
+void Meshes::count(int32_t mesh, int32_t users) {
+  Entry& entry = entries_[size_t(mesh)];
+  entry.users += uint32_t(users);
+  if (entry.group != none_) groups_[size_t(entry.group)].users += uint32_t(users);
+}
+
+int32_t Meshes::equal(int32_t mesh) const {
+  const int32_t group = entries_[size_t(mesh)].group;
+  return group == none_ ? mesh : groups_[size_t(group)].first;
+}
+
+uint32_t Meshes::users(int32_t mesh) const {
+  const Entry& entry = entries_[size_t(mesh)];
+  return entry.group == none_ ? entry.users : groups_[size_t(entry.group)].users;
+}
+
+int32_t Meshes::find(const Node* geometry) const {
+  const auto found = index_.find(geometry);
+  return found == index_.end() ? none_ : found->second;
+}
+
+bool Meshes::needTexture(int32_t mesh) {
+  Entry& entry = entries_[size_t(mesh)];
+  if (entry.textured) return false;
+  entry.textured = true;
+  if (!entry.known) return false;
+  changed(mesh);
+  return true;
+}
+
+void Meshes::changed(int32_t mesh) {
+  leave(mesh);
+  Entry& entry = entries_[size_t(mesh)];
+  entry.mesh.reset();
+  entry.known = false;
+}
+
+void Meshes::setDynamic(int32_t mesh, bool dynamic) {
+  Entry& entry = entries_[size_t(mesh)];
+  if (entry.dynamic == dynamic) return;
+  entry.dynamic = dynamic;
+  if (dynamic)
+    leave(mesh);
+  else
+    entry.known = false; // listed when it is built again
+}
+
+const Mesh& Meshes::get(int32_t mesh) {
+  Entry& entry = entries_[size_t(mesh)];
+  if (entry.mesh) return *entry.mesh;
+  Diagnostics silent; // what is wrong with a geometry was said when it was built first
+  Limits limits = world_.options.limits;
+  if (!entry.known) entry.triangles = ration_.budget().left() / (bytesWhileBuilt + bytesOfPrimitive);
+  const bool scarce = entry.triangles < limits.triangles;
+  if (scarce) limits.triangles = entry.triangles;
+  const std::string name = scarce ? ration_.budget().name() : std::string();
+  MeshOptions options{entry.textured, &limits, entry.said ? &silent : &world_.diagnostics, name};
+  entry.mesh = std::make_unique<Mesh>(buildMesh(*entry.geometry, options));
+  if (!ration_.take(ownBytes(*entry.mesh), entry.geometry->source)) *entry.mesh = Mesh();
+  entry.said = true;
+  built_.push_back(mesh);
+  if (entry.known) return *entry.mesh;
+  entry.known = true;
+  const size_t corners = entry.mesh->indices.size();
+  entry.extent.reach = reachOf(*entry.mesh);
+  entry.extent.kind = entry.mesh->kind;
+  switch (entry.mesh->kind) {
+  case Mesh::Kind::empty: entry.extent.primitives = 0; break;
+  case Mesh::Kind::triangles: entry.extent.primitives = corners / 3; break;
+  case Mesh::Kind::lines: entry.extent.primitives = corners / 2; break;
+  case Mesh::Kind::points: entry.extent.primitives = corners; break;
+  case Mesh::Kind::sphere: entry.extent.primitives = 1; break;
+  }
+  if (!entry.dynamic && entry.extent.kind == Mesh::Kind::triangles && entry.extent.primitives >= smallestCompared) join(mesh);
+  return *entries_[size_t(mesh)].mesh;
+}
+
+bool Meshes::sameContent(int32_t a, int32_t b) {
+  const Mesh &m = get(a), &n = get(b);
+  return m.kind == n.kind && m.solid == n.solid && m.ccw == n.ccw && equalBytes(m.points, n.points) &&
+         equalBytes(m.indices, n.indices) && equalBytes(m.normals, n.normals) && equalBytes(m.texCoords, n.texCoords) &&
+         equalBytes(m.colors, n.colors);
+}
+
+int32_t Meshes::newGroup(uint64_t hash) {
+  int32_t id = freeGroup_;
+  if (id == none_) {
+    id = int32_t(groups_.size());
+    groups_.emplace_back();
+  } else {
+    freeGroup_ = groups_[size_t(id)].next;
+  }
+  const auto [it, fresh] = byContent_.try_emplace(hash, id);
+  groups_[size_t(id)] = Group{hash, 0, none_, fresh ? none_ : it->second};
+  it->second = id;
+  return id;
+}
+
+// Equal hashes are only a hint: the arrays are compared.
+void Meshes::join(int32_t mesh) {
+  Entry& entry = entries_[size_t(mesh)];
+  const uint64_t hash = contentHash(*entry.mesh);
+  const auto known = byContent_.find(hash);
+  int32_t id = known == byContent_.end() ? none_ : known->second;
+  while (id != none_ && !sameContent(mesh, groups_[size_t(id)].first)) id = groups_[size_t(id)].next;
+  if (id == none_) id = newGroup(hash);
+  Group& group = groups_[size_t(id)];
+  if (group.first == none_) {
+    group.first = mesh;
+  } else { // behind the first
+    entry.previous = group.first;
+    entry.next = entries_[size_t(group.first)].next;
+    if (entry.next != none_) entries_[size_t(entry.next)].previous = mesh;
+    entries_[size_t(group.first)].next = mesh;
+  }
+  entry.group = id;
+  group.users += entry.users;
+}
+
+void Meshes::leave(int32_t mesh) {
+  Entry& entry = entries_[size_t(mesh)];
+  if (entry.group == none_) return;
+  Group& group = groups_[size_t(entry.group)];
+  group.users -= entry.users;
+  if (entry.next != none_) entries_[size_t(entry.next)].previous = entry.previous;
+  if (entry.previous != none_) entries_[size_t(entry.previous)].next = entry.next;
+  if (group.first == mesh) group.first = entry.next;
+  if (group.first == none_) {
+    int32_t* link = &byContent_[group.hash];
+    while (*link != entry.group) link = &groups_[size_t(*link)].next;
+    *link = group.next;
+    if (byContent_[group.hash] == none_) byContent_.erase(group.hash);
+    group.next = freeGroup_;
+    freeGroup_ = entry.group;
+  }
+  entry.group = entry.next = entry.previous = none_;
+}
+
+Meshes::Extent Meshes::extent(int32_t mesh) {
+  if (!entries_[size_t(mesh)].known) get(mesh);
+  return entries_[size_t(mesh)].extent;
+}
+
+void Meshes::release() {
+  for (const int32_t mesh : built_) entries_[size_t(mesh)].mesh.reset();
+  built_.clear();
+  ration_.clear();
+}
+
+void growByPoint(Bounds& bounds, const Vector& p) {
+  if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) return;
+  for (int i = 0; i < 3; ++i) {
+    bounds.minimum[i] = bounds.empty ? p[i] : std::min(bounds.minimum[i], p[i]);
+    bounds.maximum[i] = bounds.empty ? p[i] : std::max(bounds.maximum[i], p[i]);
+  }
+  bounds.empty = false;
+}
+
+void growByBox(Bounds& bounds, const Bounds& box, const Matrix& matrix) {
+  if (box.empty) return;
+  for (int corner = 0; corner < 8; ++corner) {
+    auto side = [&](int axis) { return corner & (1 << axis) ? box.maximum[axis] : box.minimum[axis]; };
+    growByPoint(bounds, transformPoint(matrix, {side(0), side(1), side(2)}));
+  }
+}
+
+void Meshes::grow(Bounds& bounds, int32_t mesh, const Matrix& matrix) {
+  const Mesh& m = get(mesh);
+  if (m.kind == Mesh::Kind::sphere) {
+    // An ellipsoid's extent along a world axis is the length of that row of the linear part.
+    const Vector center = transformPoint(matrix, Vector(0));
+    Vector reach;
+    for (int i = 0; i < 3; ++i) reach[i] = m.radius * Vector(matrix.x[0][i], matrix.x[1][i], matrix.x[2][i]).length();
+    growByPoint(bounds, center - reach);
+    growByPoint(bounds, center + reach);
+    return;
+  }
+  // A Coordinate node may hold points, perhaps very many, that this geometry does not use.
+  if (m.indices.size() < m.points.size()) {
+    for (const uint32_t index : m.indices)
+      if (index < m.points.size()) growByPoint(bounds, transformPoint(matrix, vector(m.points[index])));
+    return;
+  }
+  std::vector<uint8_t> used(m.points.size());
+  for (const uint32_t index : m.indices)
+    if (index < used.size()) used[index] = 1;
+  for (size_t i = 0; i < used.size(); ++i)
+    if (used[i]) growByPoint(bounds, transformPoint(matrix, vector(m.points[i])));
+}
+
+double Meshes::reach(int32_t mesh, const Matrix& matrix, const Vector& from) {
+  const Mesh& m = get(mesh);
+  double far = 0;
+  if (m.kind == Mesh::Kind::sphere) {
+    double longest = 0;
+    for (int axis = 0; axis < 3; ++axis)
+      longest = std::max(longest, Vector(matrix.x[axis][0], matrix.x[axis][1], matrix.x[axis][2]).length());
+    far = (transformPoint(matrix, Vector(0)) - from).length() + m.radius * longest;
+    return std::isfinite(far) ? far : 0;
+  }
+  for (const uint32_t index : m.indices) {
+    if (index >= m.points.size()) continue;
+    const double length = (transformPoint(matrix, vector(m.points[index])) - from).length();
+    if (length > far && std::isfinite(length)) far = length;
+  }
+  return far;
+}
+
+void compact(const Mesh& mesh, Mesh& out) {
+  std::vector<uint32_t> used(mesh.indices.begin(), mesh.indices.end());
+  std::sort(used.begin(), used.end());
+  used.erase(std::unique(used.begin(), used.end()), used.end());
+  while (!used.empty() && used.back() >= mesh.points.size()) used.pop_back();
+  out = Mesh();
+  out.kind = mesh.kind;
+  out.solid = mesh.solid;
+  out.ccw = mesh.ccw;
+  for (const uint32_t i : used) {
+    out.ownPoints.push_back(mesh.points[i]);
+    if (!mesh.normals.empty()) out.ownNormals.push_back(mesh.normals[i]);
+    if (!mesh.texCoords.empty()) out.ownTexCoords.push_back(mesh.texCoords[i]);
+    if (!mesh.colors.empty()) out.ownColors.push_back(mesh.colors[i]);
+  }
+  out.ownIndices.reserve(mesh.indices.size());
+  for (const uint32_t i : mesh.indices)
+    out.ownIndices.push_back(uint32_t(std::lower_bound(used.begin(), used.end(), i) - used.begin()));
+  out.viewOwn();
+}
+
+} // namespace xvrml::mapper

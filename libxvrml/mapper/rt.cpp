@@ -1,0 +1,38 @@
+// rt.cpp: see rt.h.
+#include "mapper/rt.h"
+
+#include <cmath>
+
+namespace xvrml::mapper {
+
+bool report(Diagnostics& diagnostics, const SourcePosition& where, std::string_view what) {
+  bool fine = true;
+  for (int i = 0; i < 8 && rtGetError() != RT_NO_ERROR; ++i) {
+    diagnostics.error(where, std::string(what) + ": " + rtGetErrorMessage());
+    fine = false;
+  }
+  return fine;
+}
+
+namespace {
+float decode(float v) { return v <= 0.04045f ? v / 12.92f : float(std::pow((double(v) + 0.055) / 1.055, 2.4)); }
+} // namespace
+
+Color convert(Color c, bool linear) { return linear ? Color{decode(c.r), decode(c.g), decode(c.b)} : c; }
+
+const ShaderClass& ShaderClasses::find(const std::string& name, const std::string& library) {
+  const auto [it, fresh] = classes_.try_emplace(library + '\n' + name);
+  ShaderClass& found = it->second;
+  if (!fresh) return found;
+  found.id = rtNewShaderClass(name.c_str(), library.empty() ? nullptr : library.c_str());
+  int count = 0;
+  if (found.id != 0) rtGetShaderClass(found.id, &found.role, &count);
+  for (int i = 0; i < count; ++i) {
+    RTparameterInfo info{};
+    rtGetParameterInfo(found.id, i, &info);
+    if (info.name) found.parameters.emplace(info.name, info.type);
+  }
+  return found;
+}
+
+} // namespace xvrml::mapper

@@ -1,0 +1,181 @@
+// appearance.cpp: see appearance.h. The lighting model is that of clause 4.14; the parameters are those of the class VRML97.
+#include "mapper/shading/appearance.h"
+
+#include <optional>
+
+#include "xvrml/nodes.h"
+
+namespace xvrml::mapper {
+namespace {
+
+// The parts of an Appearance or ORTAppearance, prototype instances resolved.
+struct Parts {
+  nodes::Material* material = nullptr;
+  Node* texture = nullptr;
+  nodes::TextureTransform* textureTransform = nullptr;
+  nodes::ORTShader* shader = nullptr;
+};
+
+template <class T> void surfaceParts(const T& appearance, Parts& parts) {
+  parts.material = nodeCast<nodes::Material>(renderedNode(appearance.material.get()));
+  parts.texture = renderedNode(appearance.texture.get());
+  parts.textureTransform = nodeCast<nodes::TextureTransform>(renderedNode(appearance.textureTransform.get()));
+}
+
+Parts partsOf(Node* appearance) {
+  Parts parts;
+  Node* node = renderedNode(appearance);
+  if (auto* plain = nodeCast<nodes::Appearance>(node)) {
+    surfaceParts(*plain, parts);
+  } else if (auto* custom = nodeCast<nodes::ORTAppearance>(node)) {
+    surfaceParts(*custom, parts);
+    parts.shader = nodeCast<nodes::ORTShader>(renderedNode(custom->shader.get()));
+  }
+  return parts;
+}
+
+} // namespace
+
+bool isTextured(Node* appearance) {
+  const Parts parts = partsOf(appearance);
+  return parts.texture || parts.shader;
+}
+
+namespace {
+// Clause 4.14; a Material that is missing means: not lit.
+void setMaterial(ShaderSetup& shader, const nodes::Material* m, bool linear) {
+  shader.integer("lit", m ? 1 : 0);
+  if (!m) return;
+  shader.color("diffuseColor", convert(m->diffuseColor, linear));
+  shader.color("emissiveColor", convert(m->emissiveColor, linear));
+  shader.color("specularColor", convert(m->specularColor, linear));
+  shader.number("ambientIntensity", m->ambientIntensity, 0, 1);
+  shader.number("shininess", m->shininess, 0, 1);
+  shader.number("transparency", m->transparency, 0, 1);
+}
+} // namespace
+
+Surface Surfaces::of(Node* appearance, bool lines) {
+  Node* node = renderedNode(appearance);
+  const auto [it, fresh] = (lines ? lines_ : surfaces_).try_emplace(node);
+  Entry& entry = it->second;
+  if (!fresh) return entry.surface;
+  entry.appearance = NodeRef(node);
+  entry.textured = isTextured(node);
+  entry.counted = ration_.take(bytesOfSurface, node ? node->source : SourcePosition());
+  if (!entry.counted) return entry.surface;
+  if (lines)
+    entry.own = (entry.surface = makeLines(node)).shader;
+  else
+    makeSurface(entry);
+  return entry.surface;
+}
+
+// Clauses 6.24 and 6.36: unlit, in the colours of the geometry, else in emissiveColor.
+Surface Surfaces::makeLines(Node* appearance) {
+  Surface surface;
+  ShaderSetup shader(classes_.get("VRML97", ""));
+  surface.shader = shader.id();
+  shader.integer("lit", 0);
+  if (const nodes::Material* material = partsOf(appearance).material)
+    surface.lineColor = convert(material->emissiveColor, linear_);
+  report(world_.diagnostics, appearance ? appearance->source : SourcePosition(), "appearance of lines or points");
+  return surface;
+}
+
+// The shader of an ORTAppearance. Where the class has parameters that the appearance has fields for, as VRML97 has, it gets
+// their values: texture and textureTransform, those of a Material.
+RTid Surfaces::customSurface(Node& appearance, nodes::ORTShader& node) {
+  const Parts parts = partsOf(&appearance);
+  if (!parts.texture && !parts.textureTransform && !parts.material) return custom_.of(node, RT_SURFACE);
+  const RTid texture = textures_.ofNode(parts.texture);
+  const CustomShaders::Preset preset = [&](ShaderSetup& shader, const ShaderClass& shaderClass) {
+    const auto takes = [&](const char* name, RTenum type) {
+      const auto found = shaderClass.parameters.find(name);
+      return found != shaderClass.parameters.end() && found->second == type;
+    };
+    if (takes("texture", RT_PARAM_TEXTURE))
+      shader.texture("texture", texture);
+    else if (parts.texture && shader.fresh())
+      world_.diagnostics.warn(parts.texture->source,
+                              "the shader " + node.name + " has no parameter texture: the picture is not used");
+    if (const nodes::TextureTransform* t = parts.textureTransform; takes("textureTransform", RT_PARAM_MATRIX))
+      shader.matrix("textureTransform", t ? textureMatrix(t->center, t->rotation, t->scale, t->translation) : Matrix());
+    if (const nodes::Material* m = parts.material) {
+      const auto color = [&](const char* name, const Color& value) {
+        if (takes(name, RT_PARAM_COLOR)) shader.color(name, convert(value, linear_));
+      };
+      const auto number = [&](const char* name, float value) {
+        if (takes(name, RT_PARAM_FLOAT)) shader.number(name, value, 0, 1);
+      };
+      color(takes("diffuseColor", RT_PARAM_COLOR) ? "diffuseColor" : "color", m->diffuseColor); // of Plastic, CarPaint
+      color("emissiveColor", m->emissiveColor);
+      color("specularColor", m->specularColor);
+      number("ambientIntensity", m->ambientIntensity);
+      number("shininess", m->shininess);
+      number("transparency", m->transparency);
+    }
+  };
+  return custom_.of(node, RT_SURFACE, &appearance, preset);
+}
+
+// Makes the surface, or gives the shader that it has its new parameters.
+void Surfaces::makeSurface(Entry& entry) {
+  const Parts parts = partsOf(entry.appearance.get());
+  if (parts.shader) {
+    if (const RTid shader = customSurface(*entry.appearance, *parts.shader)) {
+      entry.surface.shader = shader;
+      return;
+    }
+  }
+  const RTid texture = textures_.ofNode(parts.texture); // may bind another texture, but no shader
+  std::optional<ShaderSetup> setup;
+  if (entry.own == 0)
+    setup.emplace(classes_.get("VRML97", ""));
+  else
+    setup.emplace(entry.own, sets_);
+  ShaderSetup& shader = *setup;
+  entry.own = entry.surface.shader = shader.id();
+  const nodes::Material standard(*findNodeType("Material"));
+  const bool fallback = parts.shader != nullptr; // a shader that could not be had: shaded as a default Material
+  setMaterial(shader, parts.material ? parts.material : fallback ? &standard : nullptr, linear_);
+  if (texture != 0 || !shader.fresh()) shader.texture("texture", texture);
+  if (multiplyTextures && shader.fresh()) shader.integer("multiplyTexture", 1);
+  if (const nodes::TextureTransform* t = parts.textureTransform; t && texture != 0)
+    shader.matrix("textureTransform", textureMatrix(t->center, t->rotation, t->scale, t->translation));
+  else if (!shader.fresh())
+    shader.matrix("textureTransform", Matrix());
+  report(world_.diagnostics, entry.appearance ? entry.appearance->source : SourcePosition(), "appearance");
+}
+
+Surfaces::Effect Surfaces::update(Node& appearance) {
+  Effect effect;
+  if (const auto it = surfaces_.find(&appearance); it != surfaces_.end()) {
+    const RTid before = it->second.surface.shader;
+    if (it->second.counted) makeSurface(it->second);
+    effect.other = it->second.surface.shader != before;
+    const bool textured = isTextured(&appearance);
+    effect.textured = textured && !it->second.textured;
+    it->second.textured = textured;
+  }
+  if (const auto it = lines_.find(&appearance); it != lines_.end()) {
+    const nodes::Material* material = partsOf(&appearance).material;
+    const Color color = material ? convert(material->emissiveColor, linear_) : Surface().lineColor;
+    effect.colored = !(color == it->second.surface.lineColor);
+    it->second.surface.lineColor = color;
+  }
+  return effect;
+}
+
+void Surfaces::clear() {
+  for (const Entries* entries : {&surfaces_, &lines_})
+    for (const auto& [node, entry] : *entries) forget(entry);
+}
+
+void Surfaces::forget(const Entry& entry) {
+  if (entry.counted) ration_.give(bytesOfSurface);
+  if (entry.own != 0) rtDeleteShader(entry.own);
+  if (entry.appearance) custom_.forget(*entry.appearance);
+}
+
+} // namespace xvrml::mapper

@@ -1,0 +1,178 @@
+// custom_shaders.cpp: see custom_shaders.h.
+#include "mapper/shading/custom_shaders.h"
+
+#include <algorithm>
+#include <exception>
+#include <utility>
+
+#include "base/regular_file.h"
+
+namespace xvrml::mapper {
+namespace {
+
+const char* roleName(RTenum role) {
+  switch (role) {
+  case RT_LIGHT: return "light";
+  case RT_CAMERA: return "camera";
+  case RT_ENVIRONMENT: return "environment";
+  default: return "surface shader";
+  }
+}
+
+// The whole of a regular file of text; why not, if that cannot be.
+std::string readText(const std::string& path, uint64_t limit, std::string& text) {
+  try {
+    const RegularFile file(path);
+    if (file.size() > limit) return path + " is longer than " + std::to_string(limit) + " bytes";
+    text.resize(size_t(file.size()));
+    if (file.read(0, text.data(), text.size()) != text.size()) return path + " became shorter while it was read";
+  } catch (const std::exception& failure) { return path + ": " + failure.what(); }
+  return text.find('\0') == text.npos ? "" : path + " is not a text";
+}
+
+} // namespace
+
+bool CustomShaders::take(Made& made, uint64_t bytes) {
+  if (!ration_.take(bytes, made.node->source)) return false;
+  made.bytes += bytes;
+  return true;
+}
+
+std::vector<ShaderOption> CustomShaders::optionsOf(Made& made, std::vector<std::string>& errors) {
+  ration_.give(std::exchange(made.bytes, 0));
+  std::vector<ShaderOption> options = parseShaderOptions(static_cast<const nodes::ORTShader&>(*made.node).options, errors);
+  uint64_t bytes = 0;
+  for (const ShaderOption& option : options)
+    bytes += bytesOfOption + option.name.size() + copiesOfOption * (option.text.size() + option.numbers.size() * sizeof(float));
+  if (!take(made, bytes)) options.clear();
+  return options;
+}
+
+void CustomShaders::setOption(const ShaderOption& option, Made& made, RTenum role) {
+  const Node& node = *made.node;
+  const int handle = rtParameterHandle(option.name.c_str());
+  const std::vector<float>& n = option.numbers;
+  switch (option.type) {
+  case ShaderOption::Type::integer:
+  case ShaderOption::Type::boolean: return rtParameter1i(handle, option.integer);
+  case ShaderOption::Type::text: return rtParameterString(handle, option.text.c_str());
+  case ShaderOption::Type::texture: { // the zenith of a picture all around must not blend with its nadir
+    const RTid texture = textures_.ofUrls({option.text}, node, true, role != RT_ENVIRONMENT);
+    return rtParameterTexture(handle, texture == 0 && role == RT_ENVIRONMENT ? textures_.black() : texture);
+  }
+  case ShaderOption::Type::list: return rtParameterfv(handle, n.size(), n.data());
+  case ShaderOption::Type::file: {
+    constexpr uint64_t longest = 1 << 24; // of a text that a parameter holds
+    const std::string& base = node.source.file ? *node.source.file : world_.path;
+    const ResolvedUrl resolved = resolveUrl(option.text, base, world_.options);
+    std::string text, why = resolved.error;
+    if (why.empty()) why = readText(resolved.path, std::min(longest, world_.options.limits.fileBytes), text);
+    if (!why.empty()) return world_.diagnostics.error(node.source, "ORTShader: option " + option.name + ": " + why);
+    if (take(made, copiesOfOption * text.size())) rtParameterString(handle, text.c_str());
+    return;
+  }
+  case ShaderOption::Type::color:
+  case ShaderOption::Type::floats: break;
+  }
+  switch (n.size()) {
+  case 1: return rtParameter1f(handle, n[0]);
+  case 2: return rtParameter2f(handle, n[0], n[1]);
+  case 3: return rtParameter3f(handle, n[0], n[1], n[2]);
+  case 4: return rtParameter4f(handle, n[0], n[1], n[2], n[3]);
+  case 16: return rtParameter16f(handle, n.data());
+  }
+}
+
+RTid CustomShaders::of(nodes::ORTShader& node, RTenum role, const Node* user, const Preset& preset) {
+  const auto [it, fresh] = made_.try_emplace({&node, user});
+  Made& made = it->second;
+  if (fresh) {
+    made.node = NodeRef(&node);
+    make(made, role, preset);
+  } else if (made.stale || (preset && made.shader != 0)) {
+    refresh(made, role, preset);
+  }
+  made.stale = false;
+  return made.shader;
+}
+
+// Class `name` of the library `file` (empty: stock).
+void CustomShaders::make(Made& made, RTenum role, const Preset& preset) {
+  const auto& node = static_cast<const nodes::ORTShader&>(*made.node);
+  made.shader = 0;
+  made.name = node.name;
+  made.file = node.file;
+  made.options.clear();
+  const ShaderClass& shaderClass = classes_.find(node.name, node.file);
+  if (!report(world_.diagnostics, node.source, "ORTShader") || shaderClass.id == 0) return;
+  if (shaderClass.role != role) {
+    const std::string an = role == RT_ENVIRONMENT ? " is not an " : " is not a ";
+    world_.diagnostics.error(node.source, "ORTShader: " + node.name + an + roleName(role));
+    return;
+  }
+  std::vector<std::string> errors;
+  const std::vector<ShaderOption> options = optionsOf(made, errors);
+  if (told_.insert(&node).second)
+    for (const std::string& error : errors) world_.diagnostics.error(node.source, "ORTShader " + node.name + ": " + error);
+  ShaderSetup shader(shaderClass.id);
+  made.shader = shader.id();
+  if (preset) preset(shader, shaderClass);
+  report(world_.diagnostics, node.source, "ORTShader " + node.name);
+  for (const ShaderOption& option : options) {
+    made.options.push_back(option.name);
+    setOption(option, made, role);
+    report(world_.diagnostics, node.source, "ORTShader " + node.name + ", option " + option.name);
+  }
+}
+
+// The same class and the same options: new values. Else a new shader takes its place.
+void CustomShaders::refresh(Made& made, RTenum role, const Preset& preset) {
+  const auto& node = static_cast<const nodes::ORTShader&>(*made.node);
+  std::vector<std::string> errors, names;
+  const std::vector<ShaderOption> options = optionsOf(made, errors);
+  for (const ShaderOption& option : options) names.push_back(option.name);
+  if (made.shader == 0 || made.name != node.name || made.file != node.file || names != made.options || !errors.empty()) {
+    const RTid before = made.shader;
+    make(made, role, preset);
+    if (before != 0) replaced_.push_back(before);
+    return;
+  }
+  const ShaderClass& shaderClass = classes_.find(node.name, node.file);
+  ShaderSetup shader(made.shader, sets_);
+  if (preset) preset(shader, shaderClass);
+  for (const ShaderOption& option : options) {
+    setOption(option, made, role);
+    ++sets_;
+  }
+  report(world_.diagnostics, node.source, "ORTShader " + node.name);
+}
+
+void CustomShaders::changed(const Node& node) {
+  told_.erase(&node);
+  for (auto it = made_.lower_bound({&node, nullptr}); it != made_.end() && it->first.first == &node; ++it)
+    it->second.stale = true;
+}
+
+void CustomShaders::forget(const Node& user) {
+  std::erase_if(made_, [&](const auto& entry) {
+    if (entry.first.second != &user) return false;
+    if (entry.second.shader != 0) rtDeleteShader(entry.second.shader);
+    ration_.give(entry.second.bytes);
+    return true;
+  });
+}
+
+void CustomShaders::sweep() {
+  for (const RTid shader : replaced_) rtDeleteShader(shader);
+  replaced_.clear();
+}
+
+void CustomShaders::clear() {
+  sweep();
+  for (const auto& [key, made] : made_)
+    if (made.shader != 0) rtDeleteShader(made.shader);
+  made_.clear();
+  ration_.clear();
+}
+
+} // namespace xvrml::mapper

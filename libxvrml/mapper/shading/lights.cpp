@@ -1,0 +1,205 @@
+// lights.cpp: see lights.h. Clauses 4.6.6 (lights and their scope), 6.16, 6.35 and 6.45.
+#include "mapper/shading/lights.h"
+
+#include <algorithm>
+#include <span>
+
+#include "mapper/model.h"
+#include "xvrml/nodes.h"
+
+namespace xvrml::mapper {
+namespace {
+Vec3f notNegative(Vec3f v) { return {std::max(v.x, 0.0f), std::max(v.y, 0.0f), std::max(v.z, 0.0f)}; }
+
+void set(ShaderSetup& s, const nodes::DirectionalLight& light, bool linear) {
+  s.color("color", convert(light.color, linear));
+  s.number("intensity", light.intensity, 0);
+  s.number("ambientIntensity", light.ambientIntensity, 0);
+  s.vector("direction", light.direction);
+}
+
+template <class PlacedLight> void setPlaced(ShaderSetup& s, const PlacedLight& light, bool linear) {
+  s.color("color", convert(light.color, linear));
+  s.number("intensity", light.intensity, 0);
+  s.number("ambientIntensity", light.ambientIntensity, 0);
+  s.vector("location", light.location);
+  s.vector("attenuation", notNegative(light.attenuation));
+  s.number("radius", light.radius, 0);
+}
+
+void set(ShaderSetup& s, const Node& node, bool linear) {
+  if (node.type().index == nodes::DirectionalLight::typeIndex)
+    return set(s, static_cast<const nodes::DirectionalLight&>(node), linear);
+  if (node.type().index == nodes::PointLight::typeIndex) return setPlaced(s, static_cast<const nodes::PointLight&>(node), linear);
+  auto& spot = static_cast<const nodes::SpotLight&>(node);
+  setPlaced(s, spot, linear);
+  s.vector("direction", spot.direction);
+  s.number("beamWidth", spot.beamWidth, 0, 3.1415927f);
+  s.number("cutOffAngle", spot.cutOffAngle, 0, 3.1415927f);
+}
+
+bool isCustom(const Node& light) { return light.type().index == nodes::ORTLight::typeIndex; }
+
+const char* classOf(const Node& light) {
+  if (light.type().index == nodes::DirectionalLight::typeIndex) return "VRML97DirectionalLight";
+  return light.type().index == nodes::PointLight::typeIndex ? "VRML97PointLight" : "VRML97SpotLight";
+}
+} // namespace
+
+RTid Lights::shaderOf(Node& light) {
+  const auto [it, fresh] = shaders_.try_emplace(&light);
+  if (fresh && isCustom(light)) {
+    auto* shader = nodeCast<nodes::ORTShader>(renderedNode(static_cast<nodes::ORTLight&>(light).shader.get()));
+    it->second = {shader ? custom_.of(*shader, RT_LIGHT) : 0, false};
+  } else if (fresh) {
+    if (!ration_.take(bytesOfLightShader, light.source)) {
+      shaders_.erase(it);
+      return 0;
+    }
+    ShaderSetup setup(classes_.get(classOf(light), ""));
+    set(setup, light, linear_);
+    it->second = {setup.id(), true};
+    report(world_.diagnostics, light.source, light.type().name);
+  }
+  return it->second.shader;
+}
+
+void Lights::changed(Node& light) {
+  const auto found = shaders_.find(&light);
+  if (found == shaders_.end()) return; // read when it is turned on
+  if (isCustom(light)) {
+    const RTid before = found->second.shader;
+    shaders_.erase(found);
+    if (shaderOf(light) != before) remade_.insert(&light);
+    return;
+  }
+  ShaderSetup setup(found->second.shader, sets_);
+  set(setup, light, linear_);
+  report(world_.diagnostics, light.source, light.type().name);
+}
+
+void Lights::takeAway(RTid& light, uint64_t bytes) {
+  if (light == 0) return;
+  rtRemoveLight(light);
+  light = 0;
+  ration_.give(bytes);
+  ++changes_;
+}
+
+void Lights::remove(const std::vector<Place>& gone) {
+  for (Place place : gone) takeAway(place.light);
+}
+
+void Lights::clear(Places& places) {
+  for (Place& place : places.all) takeAway(place.light);
+  takeFromCamera();
+  for (const auto& [node, known] : shaders_)
+    if (known.own) rtDeleteShader(known.shader);
+  if (headlight_.shader != 0) rtDeleteShader(headlight_.shader);
+  for (const AtCamera& one : modelLights_)
+    if (one.shader != 0) rtDeleteShader(one.shader);
+}
+
+void Lights::forget(const Graph& graph) {
+  std::erase_if(shaders_, [&](const auto& known) {
+    if (graph.find(known.first) != 0) return false;
+    if (known.second.own) {
+      rtDeleteShader(known.second.shader);
+      ration_.give(bytesOfLightShader);
+    }
+    return true;
+  });
+}
+
+// The order in which lights are made is that in which they are summed up: it has to be the order of the places, whatever was
+// there before. Lights behind a new one are made again.
+void Lights::follow(const Graph& graph, Places& places) {
+  count_ = 0;
+  bool behindNew = false;
+  for (Place& place : places.all) {
+    const Item& item = graph.items[place.item];
+    if (!isLight(item.kind)) continue;
+    if (!place.active || !item.on || !finite(place.world)) {
+      takeAway(place.light);
+      continue;
+    }
+    ++count_;
+    if (behindNew || remade_.contains(item.node.get())) takeAway(place.light);
+    behindNew |= place.light == 0;
+    makeOrMove(place, item);
+    // A DirectionalLight shines on the descendants of its parent group only. The group's object holds nothing else: see
+    // Places. At the top level of the file that is everything.
+    if (item.kind == Kind::directionalLight && place.light != 0 && place.parent != 0) scope(place, places);
+  }
+  remade_.clear();
+  if (behindNew) takeFromCamera();
+}
+
+void Lights::makeOrMove(Place& place, const Item& item) {
+  if (place.light != 0 && place.lightMatrix == place.world) return;
+  if (place.light == 0) {
+    const bool allowed = ration_.take(bytesOfLight, item.node->source);
+    const RTid shader = allowed ? shaderOf(*item.node) : 0; // a light that is left out takes no shader either
+    if (shader == 0) {
+      if (allowed) ration_.give(bytesOfLight);
+      --count_;
+      return;
+    }
+    load(place.world);
+    place.light = rtUseLight(shader);
+    if (place.light == 0) ration_.give(bytesOfLight);
+    place.lightScope = 0;
+  } else {
+    rtLightMatrix(place.light, data(place.world));
+  }
+  place.lightMatrix = place.world;
+  ++changes_;
+  report(world_.diagnostics, item.node->source, item.node->type().name);
+}
+
+void Lights::scope(Place& place, const Places& places) {
+  const RTid scope = places.all[places.splitAbove(place.parent)].instance;
+  if (scope == 0) return takeAway(place.light); // the group itself could not be placed: nothing is there to shine on
+  if (scope == place.lightScope) return;
+  rtLightScope(place.light, scope);
+  place.lightScope = scope;
+  ++changes_;
+}
+
+void Lights::takeFromCamera() {
+  takeAway(headlight_.light, 0);
+  for (AtCamera& one : modelLights_) takeAway(one.light, 0);
+}
+
+void Lights::atCamera(CameraLight light, const CameraSettings& camera) {
+  static constexpr Lamp headlamp[] = {{{0, 0, -1}, 1}};
+  if (light != atCamera_) takeFromCamera();
+  atCamera_ = light;
+  if (light == CameraLight::none) return;
+  const bool head = light == CameraLight::head;
+  const std::span<const Lamp> lamps = head ? std::span<const Lamp>(headlamp) : std::span<const Lamp>(modelLamps);
+  const std::span<AtCamera> used = head ? std::span<AtCamera>(&headlight_, 1) : std::span<AtCamera>(modelLights_);
+  const Matrix view = rigid(fromArray(camera.matrix));
+  for (size_t i = 0; i < used.size(); ++i) {
+    AtCamera& one = used[i];
+    ++count_;
+    if (one.light != 0) {
+      if (view != view_) rtLightMatrix(one.light, data(view));
+      continue;
+    }
+    if (one.shader == 0) {
+      ShaderSetup s(classes_.get("VRML97DirectionalLight", ""));
+      s.vector("direction", lamps[i].direction);
+      if (lamps[i].intensity != 1) s.number("intensity", lamps[i].intensity, 0);
+      s.integer("shadows", 0);
+      one.shader = s.id();
+    }
+    load(view);
+    one.light = rtUseLight(one.shader);
+    ++changes_;
+  }
+  view_ = view;
+  report(world_.diagnostics, {}, "headlight");
+}
+
+} // namespace xvrml::mapper

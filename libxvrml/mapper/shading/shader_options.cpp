@@ -1,0 +1,120 @@
+// shader_options.cpp: see shader_options.h.
+//   options := { option };  option := type name value*;  as many values as the type says.
+#include "mapper/shading/shader_options.h"
+
+#include <charconv>
+#include <cmath>
+#include <optional>
+
+namespace xvrml::mapper {
+namespace {
+
+class Words {
+ public:
+  explicit Words(std::string_view text) : rest_(text) {}
+  std::optional<std::string_view> peek() const { return Words(*this).next(); }
+  std::optional<std::string_view> next() {
+    const size_t start = rest_.find_first_not_of(" \t\r\n,");
+    if (start == std::string_view::npos) return std::nullopt;
+    rest_.remove_prefix(start);
+    const bool quoted = rest_.front() == '\'';
+    const size_t end = quoted ? rest_.find('\'', 1) : rest_.find_first_of(" \t\r\n,");
+    const std::string_view word = rest_.substr(quoted ? 1 : 0, end == std::string_view::npos ? end : quoted ? end - 1 : end);
+    rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : quoted ? end + 1 : end);
+    return word;
+  }
+
+ private:
+  std::string_view rest_;
+};
+
+template <class T> bool number(std::string_view word, T& out) {
+  if (word.starts_with('+')) word.remove_prefix(1);
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), out);
+  return error == std::errc() && end == word.data() + word.size();
+}
+
+int floatsOf(std::string_view type) {
+  if (type == "1f" || type == "2f" || type == "3f" || type == "4f") return type[0] - '0';
+  return type == "16f" ? 16 : type == "color" ? 3 : 0;
+}
+
+// Reads the values of one option; the error, or empty.
+std::string readValues(Words& words, std::string_view type, ShaderOption& option) {
+  const auto missing = [&] { return "option " + option.name + ": too few values for " + std::string(type); };
+  if (const int count = floatsOf(type)) {
+    option.type = type == "color" ? ShaderOption::Type::color : ShaderOption::Type::floats;
+    for (int i = 0; i < count; ++i) {
+      const auto word = words.next();
+      float value = 0;
+      if (!word) return missing();
+      if (!number(*word, value) || !std::isfinite(value))
+        return "option " + option.name + ": '" + std::string(*word) + "' is not a number";
+      option.numbers.push_back(value);
+    }
+    return {};
+  }
+  if (type == "floats") {
+    option.type = ShaderOption::Type::list;
+    float value = 0;
+    for (auto word = words.peek(); word && number(*word, value) && std::isfinite(value); word = words.peek()) {
+      option.numbers.push_back(value);
+      words.next();
+    }
+    return {};
+  }
+  const auto word = words.next();
+  if (!word) return missing();
+  if (type == "1i") {
+    option.type = ShaderOption::Type::integer;
+    return number(*word, option.integer) ? "" : "option " + option.name + ": '" + std::string(*word) + "' is not an integer";
+  }
+  if (type == "bool") {
+    option.type = ShaderOption::Type::boolean;
+    option.integer = *word == "true" || *word == "TRUE" || *word == "1";
+    const bool known = option.integer || *word == "false" || *word == "FALSE" || *word == "0";
+    return known ? "" : "option " + option.name + ": '" + std::string(*word) + "' is neither true nor false";
+  }
+  option.type = type == "string" ? ShaderOption::Type::text
+                : type == "file" ? ShaderOption::Type::file
+                                 : ShaderOption::Type::texture;
+  option.text = *word;
+  return {};
+}
+
+bool knownType(std::string_view type) {
+  return floatsOf(type) > 0 || type == "1i" || type == "bool" || type == "string" || type == "texture" || type == "file" ||
+         type == "floats";
+}
+
+} // namespace
+
+std::vector<ShaderOption> parseShaderOptions(const MFString& options, std::vector<std::string>& errors) {
+  std::vector<ShaderOption> result;
+  for (const std::string& text : options) {
+    Words words(text);
+    while (const auto type = words.next()) {
+      const auto name = words.next();
+      if (!knownType(*type) || !name) {
+        errors.push_back(name ? "option type '" + std::string(*type) +
+                                    "': expected 1i 1f 2f 3f 4f 16f bool color string texture file or floats"
+                              : "option '" + std::string(*type) + "' has no name");
+        break; // the rest of this string cannot be made sense of
+      }
+      if (result.size() == maximumShaderOptions) {
+        errors.push_back("more than " + std::to_string(maximumShaderOptions) + " options; the rest is left out");
+        return result;
+      }
+      ShaderOption option;
+      option.name = *name;
+      if (std::string error = readValues(words, *type, option); !error.empty()) {
+        errors.push_back(std::move(error));
+        break;
+      }
+      result.push_back(std::move(option));
+    }
+  }
+  return result;
+}
+
+} // namespace xvrml::mapper

@@ -1,0 +1,204 @@
+// textures.cpp: see textures.h.
+#include "mapper/shading/textures.h"
+
+#include <algorithm>
+#include <exception>
+#include <stdexcept>
+
+#include "image/decoders.h"
+#include "xvrml/media.h"
+#include "xvrml/nodes.h"
+
+namespace xvrml::mapper {
+
+namespace {
+
+bool usable(const Image& image) {
+  if (image.width <= 0 || image.height <= 0 || image.components < 1 || image.components > 4) return false;
+  return image.pixels.size() >= size_t(image.width) * size_t(image.height) * size_t(image.components);
+}
+
+bool usable(const RadianceImage& image) { return image.width > 0 && image.height > 0; }
+
+// A node that gives its picture itself, now: the picture, or null if it has none at present.
+struct OwnImage {
+  const Image* image = nullptr;
+  bool repeatS = true, repeatT = true;
+};
+bool ownImage(Node& node, OwnImage& own) {
+  if (auto* pixels = nodeCast<nodes::PixelTexture>(&node)) {
+    own = {pixels->image.components > 0 ? &pixels->image : nullptr, pixels->repeatS, pixels->repeatT};
+    return true;
+  }
+  if (auto* movie = nodeCast<nodes::MovieTexture>(&node)) {
+    own = {currentImage(node), movie->repeatS, movie->repeatT};
+    return true;
+  }
+  return false;
+}
+
+} // namespace
+
+RTid Textures::ofNode(Node* texture) {
+  Node* node = renderedNode(texture);
+  if (!node) return 0;
+  const auto [it, fresh] = nodes_.try_emplace(node, Known{NodeRef(node), 0});
+  if (!fresh) return it->second.id;
+  const RTid id = makeNode(*node);
+  return nodes_[node].id = id;
+}
+
+RTid Textures::makeNode(Node& node) {
+  if (auto* image = nodeCast<nodes::ImageTexture>(&node)) return ofUrls(image->url, node, image->repeatS, image->repeatT);
+  RTid id = 0;
+  if (OwnImage own; ownImage(node, own)) {
+    try {
+      if (own.image) id = make(*own.image, own.repeatS, own.repeatT);
+    } catch (const std::runtime_error& failure) {
+      world_.diagnostics.error(node.source, node.type().name + ": no picture: " + failure.what());
+    }
+    if (!node.live && nodeCast<nodes::MovieTexture>(&node))
+      world_.diagnostics.warn(node.source, "MovieTexture: films play in a running world; the surface is drawn without it");
+    report(world_.diagnostics, node.source, node.type().name);
+  } else {
+    world_.diagnostics.warn(node.source, node.type().name + " is not a texture that can be drawn");
+  }
+  return id;
+}
+
+void Textures::clear() {
+  std::vector<RTid> ids;
+  for (const auto& [node, known] : nodes_) ids.push_back(known.id);
+  for (const auto& [file, made] : files_) ids.push_back(made.first);
+  std::sort(ids.begin(), ids.end());
+  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+  for (const RTid id : ids)
+    if (id != 0) rtDeleteTexture(id);
+  share_.clear();
+}
+
+bool Textures::changed(Node& node) {
+  const auto found = nodes_.find(&node);
+  if (found == nodes_.end()) return false; // read when it is first used
+  const RTid before = found->second.id;
+  if (OwnImage own; before != 0 && ownImage(node, own) && own.image && usable(*own.image)) {
+    rtBindTexture(before);
+    try {
+      upload(before, *own.image);
+    } catch (const std::runtime_error& failure) { // the picture before stays
+      world_.diagnostics.error(node.source, node.type().name + ": no picture: " + failure.what());
+    }
+    report(world_.diagnostics, node.source, node.type().name);
+    return false;
+  }
+  if (OwnImage own; before != 0 && ownImage(node, own)) { // it has none any more
+    remove(before);
+    --count_;
+  }
+  const RTid id = makeNode(node);
+  nodes_[&node].id = id;
+  return id != before;
+}
+
+RTid Textures::ofUrls(const MFString& urls, const Node& node, bool repeatS, bool repeatT) {
+  const std::string& base = node.source.file ? *node.source.file : world_.path;
+  std::string error;
+  for (const std::string& url : urls) {
+    const ResolvedUrl resolved = resolveUrl(url, base, world_.options);
+    std::string why = resolved.error;
+    if (why.empty())
+      if (const RTid id = ofFile(resolved.path, repeatS, repeatT, why)) return id;
+    if (error.empty()) error = why.find(url) == std::string::npos ? url + ": " + why : why;
+  }
+  if (urls.empty()) return 0;
+  ++missing_;
+  world_.diagnostics.warn(node.source, node.type().name + ": no picture: " + error);
+  return 0;
+}
+
+RTid Textures::black() {
+  RTid& texture = files_[{std::string(), false, false}].first; // no file has an empty path
+  if (texture == 0) {
+    RadianceImage texel;
+    texel.width = texel.height = 1;
+    texel.rgb.assign(3, 0.0f);
+    texture = make(texel, false, false);
+  }
+  return texture;
+}
+
+RTid Textures::ofFile(const std::string& path, bool repeatS, bool repeatT, std::string& error) {
+  const auto [it, fresh] = files_.try_emplace({path, repeatS, repeatT}, 0, std::string());
+  auto& [id, why] = it->second;
+  if (fresh) {
+    try {
+      const Limits& limits = world_.options.limits;
+      const ImageRoom room{limits, this->room(), share_.budget().get()};
+      const std::vector<uint8_t> bytes = readPictureFile(path, room);
+      id = looksLikeRadiance(bytes.data(), bytes.size())
+               ? make(decodeRadiance(bytes.data(), bytes.size(), limits), repeatS, repeatT)
+               : make(decodeImage(bytes.data(), bytes.size(), room), repeatS, repeatT);
+      if (id == 0 && rtGetError() != RT_NO_ERROR) why = rtGetErrorMessage();
+    } catch (const std::exception& failure) { why = failure.what(); }
+  }
+  error = why;
+  return id;
+}
+
+// What pictures of files hold in all: 4 bytes for each pixel that a single one may have.
+uint64_t Textures::room() const {
+  const uint64_t pixels = world_.options.limits.imagePixels;
+  const uint64_t most = pixels > ~uint64_t(0) / 4 ? ~uint64_t(0) : 4 * pixels;
+  return most - std::min(most, share_.bytes());
+}
+
+void Textures::remove(RTid texture) {
+  rtDeleteTexture(texture);
+  if (const auto found = bytes_.find(texture); found != bytes_.end()) {
+    share_.give(found->second);
+    bytes_.erase(found);
+  }
+}
+
+// Counts the bytes of a texture's pixels from now on.
+void Textures::take(RTid texture, uint64_t wanted) {
+  uint64_t& bytes = bytes_[texture];
+  if (wanted > bytes && !share_.take(wanted - bytes))
+    throw std::runtime_error("with all that the world holds " + std::to_string(wanted) + " bytes are more than " +
+                             share_.budget()->name());
+  if (wanted < bytes) share_.give(bytes - wanted);
+  bytes = wanted;
+}
+
+void Textures::upload(RTid texture, const Image& image) {
+  take(texture, image.pixels.size());
+  rtTexImage2D(image.components, image.width, image.height, RT_UNSIGNED_BYTE, image.pixels.data());
+  ++loaded_;
+}
+
+void Textures::upload(RTid texture, const RadianceImage& image) {
+  take(texture, image.rgb.size() * sizeof(float));
+  rtTexImage2D(3, image.width, image.height, RT_FLOAT, image.rgb.data());
+  ++loaded_;
+}
+
+template <class Picture> RTid Textures::make(const Picture& image, bool repeatS, bool repeatT) {
+  if (!usable(image)) return 0;
+  RTid id = 0;
+  rtGenTextures(1, &id);
+  if (id == 0) return 0;
+  rtBindTexture(id);
+  try {
+    upload(id, image);
+  } catch (...) {
+    remove(id);
+    throw;
+  }
+  rtTexParameteri(RT_TEXTURE_WRAP_S, repeatS ? RT_REPEAT : RT_CLAMP_TO_EDGE);
+  rtTexParameteri(RT_TEXTURE_WRAP_T, repeatT ? RT_REPEAT : RT_CLAMP_TO_EDGE);
+  rtTexParameteri(RT_TEXTURE_SRGB, srgb_ ? 1 : 0);
+  ++count_;
+  return id;
+}
+
+} // namespace xvrml::mapper

@@ -1,0 +1,176 @@
+// shapes.cpp: what is written into an open object: instances of the objects below, shapes with their arrays as they are, the
+// matrix, the surface. The other half of Objects.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "mapper/graph/objects.h"
+#include "xvrml/nodes.h"
+
+namespace xvrml::mapper {
+
+namespace {
+RTenum modeOf(Mesh::Kind kind) {
+  return kind == Mesh::Kind::lines ? RT_LINES : kind == Mesh::Kind::points ? RT_POINTS : RT_TRIANGLES;
+}
+} // namespace
+
+void Objects::enter(ItemId id, int32_t at, const Matrix& matrix) {
+  const Item& item = graph_.items[id];
+  if (at == none && !item.draws) return;
+  if (at != none && places_.all[size_t(at)].split) {
+    Place& place = places_.all[size_t(at)];
+    const bool turns = item.kind == Kind::billboard && live_;
+    place.base = matrix;
+    place.instance = instantiate(partOfPlace(size_t(at)), compose(graph_.below(matrix, item), places_.turns[size_t(at)]), 0,
+                                 item.moves || turns);
+  } else if (at == none && item.own != Own::none) {
+    const RTid instance = instantiate(partOfItem(id), graph_.below(matrix, item), 0, item.moves);
+    if (item.moves) keep(id, instance, matrix);
+  } else {
+    stack_.push_back({id, at, graph_.below(matrix, item)});
+  }
+}
+
+void Objects::expand(const Step& step) {
+  const Item& item = graph_.items[step.item];
+  if (item.kind == Kind::shape) return writeShape(step.item, step.matrix);
+  const bool oneLevel = item.kind == Kind::lod; // one that has no place of its own: see summarise
+  for (size_t c = oneLevel ? std::min(item.children.size(), size_t(1)) : item.children.size(); c-- > 0;) {
+    const int32_t at = step.place == none ? none : places_.children[places_.all[size_t(step.place)].firstChild + c];
+    enter(item.children[c], at, step.matrix);
+  }
+}
+
+void Objects::drain() {
+  while (!stack_.empty()) {
+    const Step step = stack_.back();
+    stack_.pop_back();
+    expand(step);
+  }
+}
+
+// Is something of this extent, placed by this matrix, beyond what float coordinates can say? Tells it, too.
+bool Objects::tooFar(const Matrix& matrix, double reach, const SourcePosition& where, const std::string& what) {
+  constexpr double most = 1e38;
+  double far = 0;
+  for (int i = 0; i < 3; ++i) {
+    const double turned = std::abs(matrix.x[0][i]) + std::abs(matrix.x[1][i]) + std::abs(matrix.x[2][i]);
+    far = std::max(far, std::abs(matrix.x[3][i]) + turned * reach);
+    if (!(far <= most)) far = std::numeric_limits<double>::infinity(); // NaN too
+  }
+  if (far <= most) {
+    Part& part = parts_[size_t(writing_)];
+    part.reach = std::max(part.reach, far);
+    return false;
+  }
+  world_.diagnostics.warn(where, what + " is larger than 1e38, or further away, by the Transforms around it; it is left out");
+  return true;
+}
+
+// dynamic: events or the camera will move it.
+RTid Objects::instantiate(int32_t id, const Matrix& matrix, uint32_t number, bool dynamic) {
+  const Part& used = parts_[size_t(id)];
+  const NodeRef node = used.of == Part::Of::mesh ? NodeRef(&graph_.meshes.geometry(used.mesh)) : graph_.items[used.item].node;
+  const SourcePosition where = node ? node->source : SourcePosition();
+  const bool usable = !tooFar(matrix, used.reach, where, node ? node->type().name : "the world");
+  if (!usable && !dynamic) return 0;
+  const uint64_t flat = std::max<uint64_t>(used.flat + (used.drawCalls > 0), 1);
+  const uint64_t bytes = multiplySaturating(flat, bytesOfInstance);
+  if (!ration_.take(bytes, where)) return 0;
+  rtLoadName(number);
+  load(usable ? matrix : scaling(Vector(0)));
+  const RTid instance = rtInstantiateObject(parts_[size_t(id)].object);
+  if (instance == 0) {
+    ration_.give(bytes);
+    report(world_.diagnostics, {}, "a group cannot be placed");
+    return 0;
+  }
+  if (dynamic) rtInstanceHint(instance, RT_DYNAMIC);
+  Part& part = parts_[size_t(writing_)];
+  part.uses.push_back(id);
+  part.bytes += bytes;
+  part.flat = addSaturating(part.flat, flat);
+  ++parts_[size_t(id)].instances;
+  ++instances_;
+  return instance;
+}
+
+void Objects::keep(ItemId item, RTid instance, const Matrix& base) {
+  if (instance == 0) return;
+  placed_[item].push_back({instance, writing_, base});
+  parts_[size_t(writing_)].moving.push_back(item);
+}
+
+// What a shape draws has the shape's number as its name, also in an object that holds many shapes or has many instances: the id
+// channel tells them apart.
+void Objects::writeShape(ItemId id, const Matrix& matrix) {
+  const Item& item = graph_.items[id];
+  Node* appearance = static_cast<nodes::Shape&>(*item.node).appearance.get();
+  if (item.viaMesh) {
+    const int32_t part = partOfMesh(graph_.meshes.equal(item.mesh));
+    const RTid instance = instantiate(part, matrix, item.number, false);
+    if (instance != 0) rtInstanceShader(instance, surfaces_.of(appearance, false).shader);
+    if (item.recolored) keep(id, instance, matrix);
+  } else {
+    const Meshes::Extent extent = graph_.meshes.extent(item.mesh);
+    if (extent.primitives == 0 || tooFar(matrix, extent.reach, item.node->source, "Shape")) return;
+    const Surface surface = surfaces_.of(appearance, item.lines);
+    rtLoadName(item.number);
+    load(matrix);
+    if (!draw(item.mesh, surface, isTextured(appearance))) return;
+  }
+  ++parts_[size_t(writing_)].shapes;
+  report(world_.diagnostics, item.node->source, "Shape");
+}
+
+// False if the world's budget does not allow it.
+bool Objects::draw(int32_t mesh, const Surface& surface, bool textured) {
+  const Meshes::Extent extent = graph_.meshes.extent(mesh);
+  if (extent.primitives == 0) return true;
+  const uint64_t bytes = addSaturating(multiplySaturating(extent.primitives, bytesOfPrimitive), bytesOfShape);
+  if (!ration_.take(bytes, graph_.meshes.geometry(mesh).source)) return false;
+  const Mesh& m = graph_.meshes.get(mesh);
+  Part& part = parts_[size_t(writing_)];
+  part.bytes += bytes;
+  part.primitives += extent.primitives;
+  if (m.kind == Mesh::Kind::triangles) part.triangles += extent.primitives;
+  ++part.drawCalls;
+  rtBindShader(surface.shader);
+  (m.solid ? rtEnable : rtDisable)(RT_CULL_FACE);
+  (m.ccw ? rtDisable : rtEnable)(RT_CW_FRONT);
+  if (m.kind == Mesh::Kind::sphere) {
+    rtSphere(m.radius);
+  } else if (m.indices.size() < m.points.size()) { // a Coordinate that several geometries share: each takes its part
+    Mesh used;
+    compact(m, used);
+    drawArrays(used, surface, textured);
+  } else {
+    drawArrays(m, surface, textured);
+  }
+  rtBindShader(0);
+  return true;
+}
+
+void Objects::drawArrays(const Mesh& m, const Surface& surface, bool textured) {
+  rtVertexPointer(3, RT_FLOAT, sizeof(Vec3f), m.points.data());
+  rtNormalPointer(RT_FLOAT, sizeof(Vec3f), m.normals.empty() ? nullptr : m.normals.data());
+  rtTexCoordPointer(2, RT_FLOAT, sizeof(Vec2f), textured && !m.texCoords.empty() ? m.texCoords.data() : nullptr);
+  const bool plain = m.colors.empty() && m.kind != Mesh::Kind::triangles; // lines and points take the material's emissive colour
+  if (!m.colors.empty() && !linear_) {
+    rtColorPointer(3, RT_FLOAT, sizeof(Color), m.colors.data());
+  } else if (!m.colors.empty() || plain) {
+    colors_.clear();
+    colors_.reserve(3 * m.points.size());
+    for (size_t i = 0; i < m.points.size(); ++i) {
+      const Color c = plain ? surface.lineColor : convert(m.colors[i], true);
+      colors_.insert(colors_.end(), {c.r, c.g, c.b});
+    }
+    rtColorPointer(3, RT_FLOAT, 0, colors_.data());
+  } else {
+    rtColorPointer(3, RT_FLOAT, 0, nullptr);
+  }
+  rtDrawElements(modeOf(m.kind), m.indices.size(), m.indices.data(), m.points.size());
+}
+
+} // namespace xvrml::mapper

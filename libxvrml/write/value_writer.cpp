@@ -1,0 +1,119 @@
+// value_writer.cpp: see value_writer.h.
+#include "write/value_writer.h"
+
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "graph/field_access.h"
+
+namespace xvrml {
+namespace {
+
+constexpr size_t lineWidth = 120;
+
+template <class T> void writeFinite(std::string& out, T number) {
+  if (std::isnan(number)) number = 0;
+  if (std::isinf(number)) number = std::copysign(std::numeric_limits<T>::max(), number);
+  char buffer[64];
+  out.append(buffer, std::to_chars(buffer, buffer + sizeof buffer, number).ptr);
+}
+
+void writeTuple(std::string& out, std::initializer_list<float> numbers) {
+  bool first = true;
+  for (const float number : numbers) {
+    if (!std::exchange(first, false)) out += ' ';
+    writeNumber(out, number);
+  }
+}
+
+void write(std::string& out, bool value) { out += value ? "TRUE" : "FALSE"; }
+void write(std::string& out, float value) { writeNumber(out, value); }
+void write(std::string& out, double value) { writeNumber(out, value); }
+void write(std::string& out, int32_t value) { writeNumber(out, value); }
+void write(std::string& out, const std::string& value) { writeString(out, value); }
+void write(std::string& out, const Vec2f& v) { writeTuple(out, {v.x, v.y}); }
+void write(std::string& out, const Vec3f& v) { writeTuple(out, {v.x, v.y, v.z}); }
+void write(std::string& out, const Color& c) { writeTuple(out, {c.r, c.g, c.b}); }
+void write(std::string& out, const Rotation& r) { writeTuple(out, {r.x, r.y, r.z, r.angle}); }
+
+// Tuples are set apart by commas; single numbers need none.
+template <class T> constexpr std::string_view separator = std::is_class_v<T> ? ", " : " ";
+
+template <class T> void writeList(std::string& out, const std::vector<T>& values, size_t indent) {
+  size_t lineStart = out.size();
+  out += "[ ";
+  for (size_t i = 0; i < values.size(); ++i) {
+    if (out.size() - lineStart > lineWidth) {
+      while (out.back() == ' ') out.pop_back();
+      out += '\n';
+      lineStart = out.size();
+      out.append(indent + 2, ' ');
+    }
+    write(out, values[i]);
+    if (i + 1 < values.size()) out += separator<T>;
+  }
+  out += " ]";
+}
+
+void writeImage(std::string& out, const Image& image, size_t indent) {
+  out += fmt::format("{} {} {}", image.width, image.height, image.components);
+  if (image.components < 1) return;
+  size_t lineStart = out.size();
+  const uint64_t pixels = uint64_t(std::max(image.width, 0)) * uint64_t(std::max(image.height, 0));
+  for (uint64_t i = 0; i < pixels; ++i) {
+    uint32_t pixel = 0;
+    for (uint64_t c = 0; c < uint64_t(image.components); ++c) {
+      const uint64_t at = i * uint64_t(image.components) + c;
+      pixel = pixel << 8 | (at < image.pixels.size() ? image.pixels[at] : 0u);
+    }
+    if (out.size() - lineStart > lineWidth || i % uint64_t(image.width) == 0) {
+      out += '\n';
+      lineStart = out.size();
+      out.append(indent + 2, ' ');
+    } else {
+      out += ' ';
+    }
+    fmt::format_to(std::back_inserter(out), "0x{:0{}x}", pixel, 2 * image.components);
+  }
+}
+
+} // namespace
+
+void writeNumber(std::string& out, float number) { writeFinite(out, number); }
+void writeNumber(std::string& out, double number) { writeFinite(out, number); }
+void writeNumber(std::string& out, int32_t number) {
+  char buffer[16];
+  out.append(buffer, std::to_chars(buffer, buffer + sizeof buffer, number).ptr);
+}
+
+void writeString(std::string& out, std::string_view text) {
+  out += '"';
+  for (const char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += c;
+  }
+  out += '"';
+}
+
+void writeValue(std::string& out, FieldType type, const void* storage, size_t indent) {
+  visitStorage(type, const_cast<void*>(storage), [&](auto& value) {
+    using T = std::remove_reference_t<decltype(value)>;
+    if constexpr (std::is_same_v<T, Image>) {
+      writeImage(out, value, indent);
+    } else if constexpr (std::is_same_v<T, NodeRef> || std::is_same_v<T, MFNode>) {
+      // Nodes are the writer's.
+    } else if constexpr (std::is_same_v<T, std::string>) {
+      writeString(out, value);
+    } else if constexpr (requires { typename T::value_type; }) {
+      writeList(out, value, indent);
+    } else {
+      write(out, value);
+    }
+  });
+}
+
+} // namespace xvrml

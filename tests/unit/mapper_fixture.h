@@ -1,0 +1,129 @@
+// mapper_fixture.h: a running world, its engine and its mapper in a context of their own.
+#pragma once
+
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "behaviour/viewer/interaction.h"
+#include "openrt/openrt.h"
+#include "xvrml/nodes.h"
+#include "xvrml/mapper.h"
+
+namespace xvrml::test {
+
+// Calls made by a frame.
+struct Cost {
+  uint64_t defined = 0, moved = 0, parameters = 0, textures = 0, regroupings = 0, lights = 0;
+  bool operator==(const Cost&) const = default;
+};
+inline constexpr Cost nothing{};
+inline std::ostream& operator<<(std::ostream& out, const Cost& c) {
+  return out << c.defined << " defined, " << c.moved << " moved, " << c.parameters << " parameters, " << c.textures
+             << " textures, " << c.regroupings << " regroupings, " << c.lights << " lights";
+}
+
+class MapRunning : public testing::Test {
+ protected:
+  void SetUp() override {
+    context_ = rtNewContext("threads=1");
+    ASSERT_NE(context_, nullptr) << (rtGetError(), rtGetErrorMessage());
+  }
+  void TearDown() override {
+    mapper_.reset();
+    engine_.reset();
+    rtDeleteContext(context_);
+  }
+
+  void load(const std::string& body) {
+    mapper_.reset();
+    engine_.reset();
+    world_ = loadWorldFromMemory("#VRML V2.0 utf8\n" + body, "test.wrl");
+    for (const Diagnostic& d : world_->diagnostics.list()) ADD_FAILURE() << d.text();
+    engine_ = std::make_unique<Engine>(world_->diagnostics, makeInteraction);
+    engine_->adoptScope(world_->scope, true);
+    mapper_ = std::make_unique<OpenRTMapper>(*world_, MapOptions());
+    frame();
+  }
+  Node& node(const std::string& name) {
+    const auto found = world_->scope.names.find(name);
+    EXPECT_NE(found, world_->scope.names.end()) << name;
+    return *found->second;
+  }
+  void send(const std::string& name, const std::string& in, Value value) {
+    EXPECT_TRUE(engine_->dispatch(node(name), in, std::move(value))) << name << "." << in;
+  }
+  // One root node from text, part of the world's engine when it is sent somewhere.
+  NodeRef make(const std::string& text) {
+    scraps_.push_back(loadWorldFromMemory("#VRML V2.0 utf8\n" + text, "scrap.wrl"));
+    return scraps_.back()->scope.roots.at(0);
+  }
+
+  // Maps what has changed and renders; the scene as the engine has it.
+  RTstats frame() {
+    mapper_->update(engine_->takeChanges());
+    mapper_->map(mapper_->viewpointCamera(0));
+    rtFrameBuffer(1, 1, RT_RGBA);
+    rtRender();
+    EXPECT_EQ(rtGetError(), RTenum(RT_NO_ERROR)) << rtGetErrorMessage();
+    RTstats stats{};
+    stats.size = sizeof stats;
+    rtGetStats(&stats);
+    return stats;
+  }
+
+  // Of the frame that shows what was sent before.
+  Cost cost() {
+    const MapStats before = mapper_->stats();
+    last_ = frame();
+    const MapStats s = mapper_->stats();
+    return {s.objectsDefined - before.objectsDefined, s.instancesMoved - before.instancesMoved,
+            s.parametersSet - before.parametersSet,   s.texturesLoaded - before.texturesLoaded,
+            s.regroupings - before.regroupings,       s.lightsChanged - before.lightsChanged};
+  }
+
+  // What the objects are, in an order that does not depend on when they were made.
+  static std::vector<std::string> structure(const OpenRTMapper& mapper) {
+    std::vector<std::string> lines;
+    for (const ExplainedObject& o : mapper.explain())
+      lines.push_back(o.name + " | " + o.reason + " | " + std::to_string(o.triangles) + " " + std::to_string(o.shapes) + " " +
+                      std::to_string(o.instances));
+    std::sort(lines.begin(), lines.end());
+    return lines;
+  }
+  const ExplainedObject* explained(const std::string& reason) {
+    list_ = mapper_->explain();
+    for (const ExplainedObject& o : list_)
+      if (o.reason.find(reason) != std::string::npos) return &o;
+    return nullptr;
+  }
+
+  static std::string repeat(const std::string& text, int times) {
+    std::string result;
+    for (int i = 0; i < times; ++i) result += text;
+    return result;
+  }
+  // An ElevationGrid of 2 n^2 triangles.
+  static std::string grid(int n) {
+    return "ElevationGrid { xDimension " + std::to_string(n + 1) + " zDimension " + std::to_string(n + 1) + " height [" +
+           repeat("0 ", (n + 1) * (n + 1)) + "] }";
+  }
+  // A set of two triangles of its own.
+  static std::string square(const std::string& name, const std::string& more = "") {
+    return "DEF " + name + " IndexedFaceSet { coord DEF " + name + "C Coordinate { point [ -1 -1 0, 1 -1 0, 1 1 0, -1 1 0 ] } " +
+           "coordIndex [ 0 1 2 3 -1 ] " + more + " }";
+  }
+
+  RTcontext context_ = nullptr;
+  std::vector<std::unique_ptr<World>> scraps_;
+  std::unique_ptr<World> world_;
+  std::unique_ptr<Engine> engine_;
+  std::unique_ptr<OpenRTMapper> mapper_;
+  std::vector<ExplainedObject> list_;
+  RTstats last_{}; // after cost()
+};
+
+} // namespace xvrml::test

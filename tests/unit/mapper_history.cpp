@@ -1,0 +1,135 @@
+// What the objects and the picture are must not depend on how the world came to be as it is: a world mapped once and changed
+// many times is compared with the same world mapped from nothing, after each of many random changes.
+#include <cstring>
+#include <random>
+
+#include "unit/mapper_fixture.h"
+
+using namespace xvrml;
+using namespace xvrml::test;
+
+namespace {
+
+constexpr int width = 48, height = 36;
+
+class MapHistory : public MapRunning, public testing::WithParamInterface<int> {
+ protected:
+  static std::vector<float> picture(OpenRTMapper& mapper, const CameraSettings& camera) {
+    mapper.map(camera);
+    rtFrameBuffer(width, height, RT_RGBA);
+    rtQuality(RT_SAMPLES_PER_PIXEL, 2);
+    rtRender();
+    std::vector<float> pixels(size_t(4) * width * height);
+    rtReadPixels(RT_RGBA, pixels.data(), pixels.size());
+    EXPECT_EQ(rtGetError(), RTenum(RT_NO_ERROR)) << rtGetErrorMessage();
+    return pixels;
+  }
+
+  void expectAsFromNothing(const std::string& what) {
+    mapper_->update(engine_->takeChanges());
+    const CameraSettings camera = mapper_->viewpointCamera(0);
+    const std::vector<float> changed = picture(*mapper_, camera);
+    const std::vector<std::string> structureChanged = structure(*mapper_);
+    RTcontext other = rtNewContext("threads=1");
+    {
+      OpenRTMapper fresh(*world_, MapOptions());
+      const std::vector<float> scratch = picture(fresh, camera);
+      EXPECT_EQ(structureChanged, structure(fresh)) << what;
+      size_t different = 0;
+      float largest = 0;
+      for (size_t i = 0; i < scratch.size(); ++i) {
+        different += std::memcmp(&scratch[i], &changed[i], sizeof(float)) != 0;
+        largest = std::max(largest, std::abs(scratch[i] - changed[i]));
+      }
+      EXPECT_EQ(different, 0u) << what << ", by at most " << largest;
+      EXPECT_EQ(mapper_->stats().triangles, fresh.stats().triangles) << what;
+      EXPECT_EQ(mapper_->stats().lights, fresh.stats().lights) << what;
+      EXPECT_EQ(mapper_->viewpoints().size(), fresh.viewpoints().size()) << what;
+    }
+    rtDeleteContext(other);
+    rtMakeCurrent(context_);
+  }
+
+  std::mt19937 random_;
+  float number(double low, double high) { return float(std::uniform_real_distribution<double>(low, high)(random_)); }
+  size_t below(size_t n) { return std::uniform_int_distribution<size_t>(0, n - 1)(random_); }
+  Vec3f vector(double reach) { return {number(-reach, reach), number(-reach, reach), number(-reach, reach)}; }
+  Color color() { return {number(0, 1), number(0, 1), number(0, 1)}; }
+};
+
+std::string world(const std::string& grid) {
+  return "Viewpoint { position 0 2 14 }\nDEF Sky Background { skyColor 0.1 0.1 0.3 }\nDEF Mist Fog { visibilityRange 80 }\n"
+         "DEF Sun DirectionalLight { direction -1 -2 -1 intensity 0.6 }\n"
+         "DEF T0 Transform { translation -3 0 0 children [\n"
+         "  DEF Ball Shape { appearance DEF A0 Appearance { material DEF M0 Material { diffuseColor 1 0.2 0.1 } } geometry "
+         "Sphere { } }\n"
+         "  DEF T1 Transform { translation 0 2 0 children [ DEF Lamp PointLight { location 0 1 1 on FALSE } Shape { appearance "
+         "    DEF A1 Appearance { material DEF M1 Material { diffuseColor 0.2 0.4 1 } } geometry DEF F IndexedFaceSet { coord "
+         "DEF FC "
+         "    Coordinate { point [ -1 -1 0, 1 -1 0, 1 1 0, -1 1 0 ] } coordIndex [ 0 1 2 3 -1 ] solid FALSE } } ] } ] }\n"
+         "DEF G0 Group { children [ DEF T2 Transform { translation 3 0 0 children [ USE Ball DEF Small DirectionalLight { "
+         "intensity "
+         "  0.3 direction 1 0 -1 } ] } ] }\n"
+         "DEF Tree Transform { translation 0 -2 -2 children Shape { appearance USE A0 geometry DEF Bush " +
+         grid +
+         " } }\n"
+         "DEF Wood Group { children [ Transform { translation -4 0 0 children USE Tree } Transform { translation 4 0 0 children "
+         "USE Tree } ] }\n"
+         "DEF S Switch { whichChoice 0 choice [ Shape { appearance USE A1 geometry Cone { } } DEF SG Group { children [ USE Tree "
+         "  PointLight { location 0 3 3 } ] } DEF BB Billboard { children Shape { appearance USE A0 geometry USE F } } ] }\n"
+         "DEF L LOD { range [ 10 ] level [ Shape { appearance USE A0 geometry Box { } } DEF Far Transform { translation 0 4 0 "
+         "children "
+         "  Shape { appearance USE A1 geometry Cylinder { } } } ] }\n"
+         "DEF Lines Shape { appearance DEF AL Appearance { material DEF ML Material { emissiveColor 1 1 0 } } geometry "
+         "IndexedLineSet "
+         "  { coord DEF LC Coordinate { point [ -5 -3 0, 5 -3 0, 5 4 0 ] } coordIndex [ 0 1 2 -1 ] } }\n"
+         "DEF Still Group { children [ Shape { appearance USE A1 geometry USE F } Shape { geometry DEF Cube Box { size 1 1 1 } } "
+         "] }\n"
+         "DEF Merged ORTStatic { children DEF T3 Transform { translation 0 -3 2 children Shape { geometry Box { size 3 0.5 1 } } "
+         "} }\n"
+         "DEF Pic Switch { choice [ Shape { appearance DEF AP Appearance { texture DEF P PixelTexture { image 2 1 3 0xFF8040 "
+         "0x2040FF } "
+         "  } } ] }\n";
+}
+
+TEST_P(MapHistory, ChangedAndMappedFromNothingAreTheSame) {
+  load(world(grid(32)));
+  random_.seed(unsigned(GetParam()));
+  expectAsFromNothing("at first");
+  const std::vector<std::string> transforms{"T0", "T1", "T2", "T3", "Tree", "Far"},
+      groups{"G0", "Wood", "SG", "Still", "BB", "Merged", "T1"};
+  const std::vector<std::string> children{"Ball", "Tree", "Lines", "L", "T2", "Far", "Small", "S"};
+  for (int step = 0; step < 40; ++step) {
+    std::string what = "seed " + std::to_string(GetParam()) + ", step " + std::to_string(step) + ": ";
+    for (size_t n = 1 + below(2); n-- > 0;) {
+      const auto change = [&](const std::string& name, const std::string& in, Value value) {
+        what += name + "." + in + " ";
+        send(name, in, std::move(value));
+      };
+      switch (below(16)) {
+      case 0: change(transforms[below(6)], "set_translation", vector(4)); break;
+      case 1: change(transforms[below(6)], "set_rotation", Rotation{0, 1, 0, number(0, 6)}); break;
+      case 2: change("FC", "set_point", MFVec3f{vector(1), vector(1), vector(1), vector(1)}); break;
+      case 3: change(below(2) ? "M0" : "M1", "set_diffuseColor", color()); break;
+      case 4: change("ML", "set_emissiveColor", color()); break;
+      case 5: change("S", "set_whichChoice", int32_t(below(4)) - 1); break;
+      case 6: change(groups[below(7)], "addChildren", MFNode{NodeRef(&node(children[below(8)]))}); break;
+      case 7: change(groups[below(7)], "removeChildren", MFNode{NodeRef(&node(children[below(8)]))}); break;
+      case 8: change("Lamp", "set_on", below(2) == 0); break;
+      case 9: change("Small", "set_intensity", number(0, 1)); break;
+      case 10: change("Sky", "set_skyColor", MFColor{color()}); break;
+      case 11: change("Mist", "set_visibilityRange", number(0, 100)); break;
+      case 12: change("A1", "set_texture", below(2) ? NodeRef(&node("P")) : NodeRef()); break;
+      case 13: change("Ball", "set_appearance", NodeRef(&node(below(2) ? "A0" : "A1"))); break;
+      case 14: change("Ball", "set_geometry", NodeRef(&node(below(2) ? "Cube" : "Bush"))); break;
+      case 15: change("P", "set_image", Image{1, 1, 3, {uint8_t(below(255)), 9, 9}}); break;
+      }
+    }
+    expectAsFromNothing(what);
+    if (HasFailure()) return;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, MapHistory, testing::Range(0, 12));
+
+} // namespace
