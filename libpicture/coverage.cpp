@@ -45,32 +45,41 @@ class Count {
         double truth = reference_.colours[k];
         if (others > 0) truth = (truth * reference_.worth + sum_[k] - mine) / (reference_.worth + others);
         if (k == 3 * i) one(shot, i, mine - truth, wider, truth);
-        error += std::fabs(mine - truth) / wider, all += std::fabs(mine);
-        if (!shot.variance.empty())
-          square_ += (mine - truth) * (mine - truth) / wider / wider, variance_ += double(shot.variance[k]) / shot.samples;
+        error += std::fabs(mine - truth) / wider;
+        all += std::fabs(mine);
+        if (!shot.variance.empty()) {
+          square_ += (mine - truth) * (mine - truth) / wider / wider;
+          variance_ += double(shot.variance[k]) / shot.samples;
+        }
       }
       off += std::min(1.0, error / all) / double(pixels_);
     }
     c_.meanError += off / count;
-    c_.shots++, c_.promiseHeld += std::fabs(off - shot.promised) <= shot.promisedInterval;
+    c_.shots++;
+    c_.promiseHeld += std::fabs(off - shot.promised) <= shot.promisedInterval;
     c_.promiseBelow += off < shot.promised - shot.promisedInterval;
-    c_.promised += shot.promised / count, c_.promisedInterval += shot.promisedInterval / count;
+    c_.promised += shot.promised / count;
+    c_.promisedInterval += shot.promisedInterval / count;
   }
 
   void one(const Shot& shot, size_t i, double off, double wider, double truth) {
     double half = double(shot.half[3 * i]) * wider;
     if (!reference_.half.empty()) half = std::hypot(half, double(reference_.half[3 * i]));
     const bool held = std::fabs(off) <= half + 1e-6 * std::fabs(truth); // sums of floats have rounding errors of their own
-    c_.pixels++, c_.held += held;
+    c_.pixels++;
+    c_.held += held;
     if (shot.trust[i] == 0) return;
     c_.trusted++;
     if (half == 0) {
-      c_.exact++, c_.exactHeld += held;
+      c_.exact++;
+      c_.exactHeld += held;
       return;
     }
-    c_.heldTrusted += held, c_.halfWidth += half;
+    c_.heldTrusted += held;
+    c_.halfWidth += half;
     auto& tile = tiles_[i / width_ / edge_ * columns_ + i % width_ / edge_];
-    tile.first += held, tile.second++;
+    tile.first += held;
+    tile.second++;
   }
 
   // Of the mean over the picture: independent from seed to seed.
@@ -80,7 +89,10 @@ class Count {
     for (const Shot& shot : shots_) {
       double off = 0;
       for (size_t k = 0; k < 3 * pixels_; k++) off += colour(shot.rgba, k) - reference_.colours[k];
-      if (all > 0) sum += off / all, sum2 += off / all * (off / all);
+      if (all > 0) {
+        sum += off / all;
+        sum2 += off / all * (off / all);
+      }
     }
     const double count = double(shots_.size());
     c_.bias = sum / count;
@@ -127,19 +139,25 @@ Difference compare(const std::vector<float>& rgba, const std::vector<float>& ref
     d.notFinite += !finite;
     for (size_t k = 4 * i; finite && k < 4 * i + 3; k++) {
       const double r = double(reference[k]), e = double(rgba[k]) - r;
-      sum += e, square += e * e;
-      off.push_back(std::fabs(e)), relative.push_back(e * e / (r * r + .01));
+      sum += e;
+      square += e * e;
+      off.push_back(std::fabs(e));
+      relative.push_back(e * e / (r * r + .01));
     }
   }
   if (off.empty()) return d;
   const double n = double(off.size());
-  d.rmse = std::sqrt(square / n), d.bias = sum / n;
+  d.rmse = std::sqrt(square / n);
+  d.bias = sum / n;
   d.biasInterval = n > 1 ? 1.96 * std::sqrt(std::max(0.0, square / n - d.bias * d.bias) / (n - 1)) : 0;
   for (double r : relative) d.relMse += r / n;
   const double limit = at(relative, .999);
   double kept = 0, count = 0;
   for (double r : relative)
-    if (r <= limit) kept += r, count++;
+    if (r <= limit) {
+      kept += r;
+      count++;
+    }
   d.trimmedRelMse = kept / count;
   d.largest = *std::max_element(off.begin(), off.end());
   d.p999 = at(off, .999);

@@ -242,8 +242,10 @@ struct LiveRenderer::Impl {
     if (now() != State::idle && now() != State::ready) throw std::logic_error("a frame is in flight");
     stage.passOn();
     stage.settings = given;
-    stage.settings.width = frame.width, stage.settings.height = frame.height;
-    stage.settings.samples = frame.samples, stage.settings.progressive = given.progressive && frame.samples > 1;
+    stage.settings.width = frame.width;
+    stage.settings.height = frame.height;
+    stage.settings.samples = frame.samples;
+    stage.settings.progressive = given.progressive && frame.samples > 1;
     stage.settings.channels |= shownChannels;
     started = Clock::now();
     progress = 0;
@@ -273,15 +275,21 @@ struct LiveRenderer::Impl {
   void show(const Picture& picture, LivePicture& out) {
     const std::vector<float>& samples = picture.planes.at(RT_SAMPLES);
     out = {};
-    out.width = picture.width, out.height = picture.height;
+    out.width = picture.width;
+    out.height = picture.height;
     out.rgb = displayBytes(picture);
     double sum = 0;
     size_t covered = 0;
-    for (const float s : samples) sum += double(s), covered += s > 0;
+    for (const float s : samples) {
+      sum += double(s);
+      covered += s > 0;
+    }
     out.samples = sum / double(samples.size());
     out.covered = double(covered) / double(samples.size());
     if (covered < samples.size()) fillFrom(before, samples, out);
-    before.width = out.width, before.height = out.height, before.rgb = out.rgb;
+    before.width = out.width;
+    before.height = out.height;
+    before.rgb = out.rgb;
   }
 
   bool look(LivePicture& out) {
@@ -289,11 +297,13 @@ struct LiveRenderer::Impl {
     const std::shared_ptr<const Made> finished = nextUnseen();
     if (!finished) return alone() && lookAhead(out);
     show(finished->picture, out);
-    out.seconds = finished->seconds, out.alone = finished->alone;
+    out.seconds = finished->seconds;
+    out.alone = finished->alone;
     out.finished = finished->whole;
     out.ended = true;
     out.overhead = std::max(0.0, finished->seconds - finished->result.stats.renderSeconds);
-    out.map = finished->result.map, out.stats = finished->result.stats;
+    out.map = finished->result.map;
+    out.stats = finished->result.stats;
     return true;
   }
 

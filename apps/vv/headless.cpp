@@ -5,18 +5,18 @@
 
 #include <fmt/format.h>
 
+#include "libpicture/files/atomic_file.h"
+#include "options/shader_text.h"
+#include "outputs.h"
+#include "pictures.h"
 #include "report/cluster_report.h"
 #include "report/describe.h"
 #include "report/engine_list.h"
 #include "report/messages.h"
-#include "outputs.h"
-#include "libpicture/files/atomic_file.h"
-#include "pictures.h"
 #include "report/problems.h"
 #include "report/progress.h"
 #include "report/report.h"
 #include "report/shader_list.h"
-#include "options/shader_text.h"
 #include "signals.h"
 #include "timeline.h"
 #include "watched.h"
@@ -38,9 +38,18 @@ class Headless {
   }
 
   int run() {
-    if (options_.listShaders) return writeOut(listShaders(options_.render.shaderPath, options_.json)), exitDone;
-    if (options_.listEngines) return writeOut(listEngines(options_.running.scriptPath, options_.json)), exitDone;
-    if (options_.listNodes && options_.input.empty()) return writeOut(listNodes(nullptr, options_.json)), exitDone;
+    if (options_.listShaders) {
+      writeOut(listShaders(options_.render.shaderPath, options_.json));
+      return exitDone;
+    }
+    if (options_.listEngines) {
+      writeOut(listEngines(options_.running.scriptPath, options_.json));
+      return exitDone;
+    }
+    if (options_.listNodes && options_.input.empty()) {
+      writeOut(listNodes(nullptr, options_.json));
+      return exitDone;
+    }
     checkOutputs(options_);
     browser_ = startWorld(readWorld(options_.input, options_.load), options_, problems_);
     const xvrml::World& world = browser_->world();

@@ -3,12 +3,12 @@
 #include <exception>
 #include <new>
 
-#include "report/cluster_report.h"
-#include "report/describe.h"
 #include "enough_stack.h"
 #include "headless.h"
-#include "report/messages.h"
 #include "options/options.h"
+#include "report/cluster_report.h"
+#include "report/describe.h"
+#include "report/messages.h"
 #include "signals.h"
 #include "window/input/keys.h"
 #include "window/window.h"
@@ -23,9 +23,18 @@ std::string quoted(int argc, char** argv) {
 
 int run(int argc, char** argv) {
   vv::Options options = vv::readCommandLine(argc, argv);
-  if (options.help) return vv::writeOut(vv::helpText()), vv::exitDone;
-  if (options.version) return vv::writeOut("vv " + vv::version() + "\n"), vv::exitDone;
-  if (options.listKeys) return vv::writeOut(vv::listKeys()), vv::exitDone;
+  if (options.help) {
+    vv::writeOut(vv::helpText());
+    return vv::exitDone;
+  }
+  if (options.version) {
+    vv::writeOut("vv " + vv::version() + "\n");
+    return vv::exitDone;
+  }
+  if (options.listKeys) {
+    vv::writeOut(vv::listKeys());
+    return vv::exitDone;
+  }
   vv::joinCluster(options);
   if (options.opensWindow()) return vv::runWindow(options, {argv + 1, argv + argc});
   return vv::runHeadless(options, quoted(argc, argv));

@@ -8,8 +8,8 @@
 
 #include <unistd.h>
 
-#include "openrt/openrt.h"
 #include "libpicture/files/atomic_file.h"
+#include "openrt/openrt.h"
 #include "options/values.h"
 
 namespace vv {
@@ -47,7 +47,11 @@ void put(const char* text) {
 void onCrash(int number) {
   const char* const name = number == SIGSEGV ? "SIGSEGV" : number == SIGBUS ? "SIGBUS" : number == SIGFPE ? "SIGFPE" : "SIGILL";
   const char* const shader = rtRunningShader();
-  put("vv: crash ("), put(name), put(shader ? ") in the shader " : "), not in a shader"), put(shader ? shader : ""), put("\n");
+  put("vv: crash (");
+  put(name);
+  put(shader ? ") in the shader " : "), not in a shader");
+  put(shader ? shader : "");
+  put("\n");
   picture::removeTemporary();
   ::signal(number, SIG_DFL);
   ::raise(number);

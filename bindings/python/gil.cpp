@@ -82,7 +82,10 @@ ReleaseGil::ReleaseGil() {
     Sections& s = sections();
     const std::scoped_lock lock(s.mutex);
     ends = s.state != State::runs && s.ending != std::this_thread::get_id() && awaitedHere == 0 && insideHere == 0;
-    if (!ends) s.inside++, insideHere++;
+    if (!ends) {
+      s.inside++;
+      insideHere++;
+    }
   }
   state_ = PyEval_SaveThread();
   while (ends) ::pause(); // until the process ends

@@ -7,8 +7,8 @@
 #include <pybind11/stl.h>
 
 #include "cluster_object.h"
-#include "numbers.h"
 #include "libpicture/transport.h"
+#include "numbers.h"
 #include "picture_object.h"
 
 using namespace xvrml;
@@ -129,7 +129,10 @@ picture::View::Pinhole pinholeOf(const py::object& given, int width, int height)
     const double x = pose[4 * i], y = -pose[4 * i + 1], z = -pose[4 * i + 2];
     const double columns[] = {x, y, z, pose[4 * i + 3]};
     const double sheared[] = {x * fy / fx, y + x * skew / fx, z - x * right - y * up, pose[4 * i + 3]};
-    for (size_t k = 0; k < 4; ++k) camera.matrix[4 * k + i] = columns[k], camera.sheared[4 * k + i] = sheared[k];
+    for (size_t k = 0; k < 4; ++k) {
+      camera.matrix[4 * k + i] = columns[k];
+      camera.sheared[4 * k + i] = sheared[k];
+    }
   }
   camera.matrix[15] = camera.sheared[15] = 1;
   return camera;

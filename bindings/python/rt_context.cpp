@@ -26,7 +26,10 @@ RtContext::RtContext(const std::string& config) {
     const ReleaseGil release;
     const RTcontext before = rtGetCurrent();
     handle = rtNewContext(config.c_str());
-    if (!handle) code = rtGetError(), text = rtGetErrorMessage();
+    if (!handle) {
+      code = rtGetError();
+      text = rtGetErrorMessage();
+    }
     rtMakeCurrent(before);
   }
   if (!handle) raise(code, text);

@@ -51,7 +51,8 @@ template <class F> void parallel(size_t count, const F& f) {
 void pack(const float* from, float near, float far, RTray& to) {
   std::memcpy(to.origin, from, sizeof to.origin);
   std::memcpy(to.direction, from + 3, sizeof to.direction);
-  to.tnear = near, to.tfar = far;
+  to.tnear = near;
+  to.tfar = far;
 }
 
 // What all lists of hits have; pointers into the arrays.
@@ -73,7 +74,8 @@ struct Hits {
     primitiveTo[i] = met ? hit.primitive : invalid;
     instanceTo[i] = met ? hit.instance : 0;
     nameTo[i] = met ? hit.name : 0;
-    uvTo[2 * i] = hit.u, uvTo[2 * i + 1] = hit.v;
+    uvTo[2 * i] = hit.u;
+    uvTo[2 * i + 1] = hit.v;
     std::memcpy(normalTo + 3 * i, hit.normal, sizeof hit.normal);
   }
   py::dict dict() const {
@@ -187,7 +189,10 @@ py::dict listIntersections(const RtContextPtr& self, const py::object& given, fl
     parallel(n, [&](size_t i) { pack(from + 6 * (begin + i), near, far, packed[i]); });
     rtListHits(n, packed.data(), places.data(), found.data());
     parallel(n, [&](size_t i) {
-      for (size_t k = places[i]; k < places[i + 1]; ++k) hits.take(base + k, found[k]), idTo[base + k] = int64_t(begin + i);
+      for (size_t k = places[i]; k < places[i + 1]; ++k) {
+        hits.take(base + k, found[k]);
+        idTo[base + k] = int64_t(begin + i);
+      }
     });
   });
   py::dict out = hits.dict();

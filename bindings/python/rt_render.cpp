@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
-#include "objects.h"
 #include "libpicture/transport.h"
+#include "objects.h"
 #include "picture_object.h"
 #include "rt_objects.h"
 
@@ -59,7 +59,8 @@ py::object render(const RtContextPtr& self, const std::pair<int, int>& size, std
   rtQuality(RT_SHADOWS, shadows);
   use.check();
   const auto read = [&] {
-    picture.width = size.first, picture.height = size.second;
+    picture.width = size.first;
+    picture.height = size.second;
     for (const picture::Channel& channel : picture::channelTable()) {
       if (!(bits & channel.bit)) continue;
       std::vector<float>& plane = picture.planes[channel.bit];

@@ -9,10 +9,14 @@ static RTid square(RTid shader) {
   RTid object = rtBeginObject(0);
   rtBindShader(shader);
   rtBegin(RT_QUADS);
-  rtTexCoord2f(0, 0), rtVertex3f(-0.9f, -0.9f, 0);
-  rtTexCoord2f(1, 0), rtVertex3f(0.9f, -0.9f, 0);
-  rtTexCoord2f(1, 1), rtVertex3f(0.9f, 0.9f, 0);
-  rtTexCoord2f(0, 1), rtVertex3f(-0.9f, 0.9f, 0);
+  rtTexCoord2f(0, 0);
+  rtVertex3f(-0.9f, -0.9f, 0);
+  rtTexCoord2f(1, 0);
+  rtVertex3f(0.9f, -0.9f, 0);
+  rtTexCoord2f(1, 1);
+  rtVertex3f(0.9f, 0.9f, 0);
+  rtTexCoord2f(0, 1);
+  rtVertex3f(-0.9f, 0.9f, 0);
   rtEnd();
   rtEndObject();
   return object;

@@ -15,7 +15,9 @@ int main(int argc, char** argv) {
   rtLoadName(2);
   rtTranslated(1.6, 0, 0);
   rtBegin(RT_TRIANGLES);
-  rtVertex3f(-0.7f, -0.7f, 0), rtVertex3f(0.7f, -0.7f, 0), rtVertex3f(0, 0.7f, 0);
+  rtVertex3f(-0.7f, -0.7f, 0);
+  rtVertex3f(0.7f, -0.7f, 0);
+  rtVertex3f(0, 0.7f, 0);
   rtEnd();
   rtEndObject();
   RTid instance = rtInstantiateObject(object);

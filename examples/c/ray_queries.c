@@ -45,7 +45,8 @@ int main(int argc, char** argv) {
     worst = fmax(worst, fabs(height - terrain(rays[i].origin[0], rays[i].origin[2])));
     rays[i].origin[1] = height;
     for (int k = 0; k < 3; k++) rays[i].direction[k] = lamp[k] - rays[i].origin[k];
-    rays[i].tnear = 1e-3f, rays[i].tfar = 1; /* from the ground to the lamp: the direction's length is the unit of t */
+    rays[i].tnear = 1e-3f;
+    rays[i].tfar = 1; /* from the ground to the lamp: the direction's length is the unit of t */
   }
   rtOccludedRays(side * side, rays, shadowed);
   int dark = 0;

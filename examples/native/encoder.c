@@ -46,5 +46,7 @@ void encoder_close(void) { stepsOfTurn = 0; }
 void heat(float speed, float limit, float rgb[3]) {
   float t = fabsf(speed) / limit;
   if (t > 1) t = 1;
-  rgb[0] = t, rgb[1] = 0.25f * (1 - t), rgb[2] = 1 - t;
+  rgb[0] = t;
+  rgb[1] = 0.25f * (1 - t);
+  rgb[2] = 1 - t;
 }

@@ -88,13 +88,16 @@ class CommitMaker {
     }
     forEachDirty(scene_.classes, [&](RTid id, ShaderClassState& state) {
       edit::ShaderClassT e;
-      e.id = id, e.name = state.name, e.library = state.library;
+      e.id = id;
+      e.name = state.name;
+      e.library = state.library;
       add(std::move(e));
     });
     forEachDirty(scene_.shaders, [&](RTid id, ShaderState& state) {
       if (!state.committed) {
         edit::ShaderT e;
-        e.id = id, e.shaderClass = state.shaderClass;
+        e.id = id;
+        e.shaderClass = state.shaderClass;
         add(e);
       }
       for (const auto& [index, parameter] : state.parameters) add(edit::ParameterT(parameter));
@@ -128,7 +131,8 @@ class CommitMaker {
   void addObjects() {
     forEachDirty(scene_.objects, [&](RTid id, ObjectState& state) {
       edit::ObjectT e;
-      e.id = id, e.dynamic = state.dynamic;
+      e.id = id;
+      e.dynamic = state.dynamic;
       for (const BuiltGeometry& built : state.geometries) e.geometries.push_back(toEditGeometry(built));
       add(std::move(e));
     });
@@ -137,9 +141,15 @@ class CommitMaker {
   void addInstances() {
     forEachDirty(scene_.instances, [&](RTid id, InstanceState& state) {
       edit::InstanceT e;
-      e.id = id, e.parent = state.parent, e.object = state.object, e.shader = state.shader;
+      e.id = id;
+      e.parent = state.parent;
+      e.object = state.object;
+      e.shader = state.shader;
       e.matrix = toEdit(state.matrix);
-      e.visible = state.visible, e.userData = state.userData, e.name = state.name, e.dynamic = state.dynamic;
+      e.visible = state.visible;
+      e.userData = state.userData;
+      e.name = state.name;
+      e.dynamic = state.dynamic;
       add(std::move(e));
     });
   }
@@ -147,7 +157,9 @@ class CommitMaker {
   void addLights() {
     forEachDirty(scene_.lights, [&](RTid id, LightState& state) {
       edit::LightT e;
-      e.id = id, e.shader = state.shader, e.scope = state.scope;
+      e.id = id;
+      e.shader = state.shader;
+      e.scope = state.scope;
       e.matrix = toEdit(state.matrix);
       add(std::move(e));
     });

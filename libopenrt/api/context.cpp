@@ -10,7 +10,8 @@ namespace openrt {
 
 void LogSink::set(RTlogCallback callback, void* user) {
   const std::lock_guard lock(mutex_);
-  callback_ = callback, user_ = user;
+  callback_ = callback;
+  user_ = user;
 }
 
 void LogSink::forward(int level, const char* message, void* self) {

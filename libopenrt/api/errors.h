@@ -31,7 +31,10 @@ inline void require(bool condition, RTenum code, const char* message) {
 class ErrorState {
  public:
   void record(RTenum code, const char* function, const char* text) noexcept;
-  void setCallback(RTerrorCallback callback, void* user) { callback_ = callback, user_ = user; }
+  void setCallback(RTerrorCallback callback, void* user) {
+    callback_ = callback;
+    user_ = user;
+  }
   // Returns the error and clears it; its text goes into the thread's last message.
   RTenum take() noexcept;
 

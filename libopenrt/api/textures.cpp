@@ -31,8 +31,10 @@ void setImage(Context& c, int components, int width, int height, RTenum type, co
     for (size_t i = 0; i < values; i++) require(std::isfinite(texels->as<float>()[i]), RT_INVALID_VALUE, "a texel is not finite");
   c.scene.textures.touch(c.boundTexture, state);
   edit::TextureT& d = state.description;
-  d.components = static_cast<uint32_t>(components), d.width = static_cast<uint32_t>(width);
-  d.height = static_cast<uint32_t>(height), d.isFloat = type == RT_FLOAT;
+  d.components = static_cast<uint32_t>(components);
+  d.width = static_cast<uint32_t>(width);
+  d.height = static_cast<uint32_t>(height);
+  d.isFloat = type == RT_FLOAT;
   state.texels = std::move(texels);
 }
 

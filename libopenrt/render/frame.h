@@ -19,12 +19,18 @@ template <class T> inline void basisOf(const T n[3], T s[3], T t[3]) {
   const T square = v[0] * v[0] + v[1] * v[1] + v[2] * v[2], scale = square > 0 ? 2 / square : T(0);
   const T a = scale * (n[0] * first[0] + n[1] * first[1] + n[2] * first[2]);
   const T b = scale * (n[0] * second[0] + n[1] * second[1] + n[2] * second[2]);
-  for (int k = 0; k < 3; k++) s[k] = first[k] - a * v[k], t[k] = second[k] - b * v[k];
+  for (int k = 0; k < 3; k++) {
+    s[k] = first[k] - a * v[k];
+    t[k] = second[k] - b * v[k];
+  }
   if (square > T(0.01)) return;
   // Near the jump the sum has lost digits: the frame is made orthogonal again.
   const T along = s[0] * n[0] + s[1] * n[1] + s[2] * n[2];
   T length = 0;
-  for (int k = 0; k < 3; k++) s[k] -= along * n[k], length += s[k] * s[k];
+  for (int k = 0; k < 3; k++) {
+    s[k] -= along * n[k];
+    length += s[k] * s[k];
+  }
   length = std::sqrt(length);
   for (int k = 0; k < 3; k++) s[k] /= length;
   for (int k = 0; k < 3; k++) t[k] = n[(k + 1) % 3] * s[(k + 2) % 3] - n[(k + 2) % 3] * s[(k + 1) % 3];

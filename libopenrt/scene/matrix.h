@@ -27,7 +27,11 @@ struct Matrix4d {
   Vec3d vector(const Vec3d& v) const { return column(0) * v.x + column(1) * v.y + column(2) * v.z; }
   Vec3d point(const Vec3d& p) const { return vector(p) + column(3); }
   double determinant() const { return dot(column(0), cross(column(1), column(2))); }
-  void translate(const Vec3d& t) { m[12] += t.x, m[13] += t.y, m[14] += t.z; }
+  void translate(const Vec3d& t) {
+    m[12] += t.x;
+    m[13] += t.y;
+    m[14] += t.z;
+  }
 
   bool finite() const {
     for (double v : m)

@@ -16,8 +16,12 @@ Matrix4d toMatrix(const edit::Matrix* matrix) {
 } // namespace
 
 void SceneChanges::add(const SceneChanges& more) {
-  structure |= more.structure, shaders |= more.shaders, textures |= more.textures;
-  lights |= more.lights, camera |= more.camera, frame |= more.frame;
+  structure |= more.structure;
+  shaders |= more.shaders;
+  textures |= more.textures;
+  lights |= more.lights;
+  camera |= more.camera;
+  frame |= more.frame;
   parameters.insert(parameters.end(), more.parameters.begin(), more.parameters.end());
   moved.insert(moved.end(), more.moved.begin(), more.moved.end());
   redefined.insert(redefined.end(), more.redefined.begin(), more.redefined.end());

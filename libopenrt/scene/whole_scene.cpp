@@ -58,12 +58,15 @@ class Writer {
   void addShaders() {
     for (const auto& [id, name] : scene_.classes) {
       edit::ShaderClassT e;
-      e.id = id, e.name = name.name, e.library = name.library;
+      e.id = id;
+      e.name = name.name;
+      e.library = name.library;
       add(std::move(e));
     }
     for (const auto& [id, values] : scene_.shaders) {
       edit::ShaderT e;
-      e.id = id, e.shaderClass = values.shaderClass;
+      e.id = id;
+      e.shaderClass = values.shaderClass;
       add(std::move(e));
       for (const auto& [index, parameter] : values.parameters) add(edit::ParameterT(parameter));
     }
@@ -75,13 +78,20 @@ class Writer {
     e->shader = shader(g.shader);
     e->name = g.name;
     e->matrix = openrt::toEdit(g.matrix);
-    e->cull = g.cull, e->clockwise = g.clockwise, e->width = g.width;
-    e->points = number(g.points), e->indices = number(g.indices), e->normals = number(g.normals);
-    e->texCoords = number(g.texCoords), e->colors = number(g.colors);
+    e->cull = g.cull;
+    e->clockwise = g.clockwise;
+    e->width = g.width;
+    e->points = number(g.points);
+    e->indices = number(g.indices);
+    e->normals = number(g.normals);
+    e->texCoords = number(g.texCoords);
+    e->colors = number(g.colors);
     for (const GeometryParameter& own : g.parameters) {
       if (e->shader == 0) break; // they belong to its class
       auto p = std::make_unique<edit::GeometryParameterT>();
-      p->index = own.index, p->perVertex = own.perVertex, p->values = number(own.values);
+      p->index = own.index;
+      p->perVertex = own.perVertex;
+      p->values = number(own.values);
       e->parameters.push_back(std::move(p));
     }
     return e;
@@ -90,7 +100,8 @@ class Writer {
   void addObjects() {
     for (const auto& [id, object] : scene_.objects) {
       edit::ObjectT e;
-      e.id = id, e.dynamic = object.dynamic;
+      e.id = id;
+      e.dynamic = object.dynamic;
       for (const Geometry& geometry : object.geometries) e.geometries.push_back(toEdit(geometry));
       add(std::move(e));
     }
@@ -100,9 +111,15 @@ class Writer {
     for (const auto& [id, instance] : scene_.instances) {
       if (!scene_.objects.contains(instance.object) || (instance.parent && !scene_.objects.contains(instance.parent))) continue;
       edit::InstanceT e;
-      e.id = id, e.parent = instance.parent, e.object = instance.object, e.shader = shader(instance.shader);
+      e.id = id;
+      e.parent = instance.parent;
+      e.object = instance.object;
+      e.shader = shader(instance.shader);
       e.matrix = openrt::toEdit(instance.matrix);
-      e.visible = instance.visible, e.userData = instance.userData, e.name = instance.name, e.dynamic = instance.dynamic;
+      e.visible = instance.visible;
+      e.userData = instance.userData;
+      e.name = instance.name;
+      e.dynamic = instance.dynamic;
       add(std::move(e));
     }
   }
@@ -111,7 +128,9 @@ class Writer {
     for (const auto& [id, light] : scene_.lights) {
       if (!shader(light.shader)) continue;
       edit::LightT e;
-      e.id = id, e.shader = light.shader, e.scope = light.scope;
+      e.id = id;
+      e.shader = light.shader;
+      e.scope = light.scope;
       e.matrix = openrt::toEdit(light.matrix);
       add(std::move(e));
     }

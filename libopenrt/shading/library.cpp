@@ -92,7 +92,8 @@ void keepHandles(LoadedClass& fresh, const LoadedClass& before) {
       continue;
     }
     RtsParam gone = before.params[i]; // what its text is, goes with the former library at the earliest when nobody asks any more
-    gone.name = "", gone.text = "no longer declared";
+    gone.name = "";
+    gone.text = "no longer declared";
     gone.offset = uint32_t(size);
     size += (parameterBytes(gone.type) + 15) / 16 * 16;
     params.push_back(gone);
@@ -104,10 +105,13 @@ void keepHandles(LoadedClass& fresh, const LoadedClass& before) {
     frequency.push_back(frequencyOf(fresh, j));
     names.emplace_back(fresh.params[j].name);
   }
-  fresh.mergedParams = std::move(params), fresh.mergedFrequency = std::move(frequency), fresh.mergedNames = std::move(names);
+  fresh.mergedParams = std::move(params);
+  fresh.mergedFrequency = std::move(frequency);
+  fresh.mergedNames = std::move(names);
   fresh.paramSize = uint32_t(size);
   fresh.paramCount = uint32_t(fresh.mergedParams.size());
-  fresh.params = fresh.mergedParams.data(), fresh.frequency = fresh.mergedFrequency.data();
+  fresh.params = fresh.mergedParams.data();
+  fresh.frequency = fresh.mergedFrequency.data();
 }
 
 } // namespace

@@ -117,8 +117,11 @@ class Export {
               {"cull", g.cull},
               {"clockwise", g.clockwise}};
     if (g.primitive == edit::Primitive::Sphere) m["radius"] = g.width;
-    m["points"] = place(g.points), m["indices"] = place(g.indices), m["normals"] = place(g.normals);
-    m["texCoords"] = place(g.texCoords), m["colors"] = place(g.colors);
+    m["points"] = place(g.points);
+    m["indices"] = place(g.indices);
+    m["normals"] = place(g.normals);
+    m["texCoords"] = place(g.texCoords);
+    m["colors"] = place(g.colors);
     return m;
   }
 

@@ -13,8 +13,8 @@
 #include <ImfStringAttribute.h>
 #include <fmt/format.h>
 
-#include "openrt/openrt.h"
 #include "libpicture/files/picture.h"
+#include "openrt/openrt.h"
 
 namespace picture {
 
@@ -41,9 +41,10 @@ std::string nameTable(const std::vector<std::string>& names) {
   for (size_t i = 1; i < names.size(); ++i) {
     text += fmt::format("{}\"{}\":\"", i > 1 ? "," : "", i);
     for (char c : names[i]) {
-      if (c == '"' || c == '\\')
-        text += '\\', text += c;
-      else if (static_cast<unsigned char>(c) < 0x20)
+      if (c == '"' || c == '\\') {
+        text += '\\';
+        text += c;
+      } else if (static_cast<unsigned char>(c) < 0x20)
         text += fmt::format("\\u{:04x}", int(c));
       else
         text += c;

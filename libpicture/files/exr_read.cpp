@@ -10,8 +10,8 @@
 #include <ImfInputFile.h>
 #include <fmt/format.h>
 
-#include "openrt/openrt.h"
 #include "libpicture/files/picture.h"
+#include "openrt/openrt.h"
 
 namespace picture {
 
@@ -46,7 +46,8 @@ Picture readExr(const std::string& path) {
     if (width < 1 || height < 1 || width > 65536 || height > 65536 || width * height > (int64_t(1) << 28))
       throw std::runtime_error(fmt::format("{} x {} pixels", width, height));
     Picture picture;
-    picture.width = int(width), picture.height = int(height);
+    picture.width = int(width);
+    picture.height = int(height);
     std::vector<const Channel*> channels;
     for (const Channel& channel : channelTable())
       if (channel.bit & (RT_RGBA | RT_ERROR | RT_TRUST) && file.header().channels().findChannel(channel.exr[0].data()))

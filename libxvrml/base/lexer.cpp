@@ -35,7 +35,8 @@ uint32_t countLines(const char* from, const char* to, const char* end) {
     const ptrdiff_t block = std::min<ptrdiff_t>(to - from, 240);
     uint8_t sum = 0;
     for (ptrdiff_t i = 0; i < block; ++i) sum += (from[i] == '\n') | ((from[i] == '\r') & (from[i + 1] != '\n'));
-    lines += sum, from += block;
+    lines += sum;
+    from += block;
   }
   return lines;
 }
@@ -124,10 +125,22 @@ void Lexer::lex() {
   if (p < end_) {
     const unsigned char c = static_cast<unsigned char>(*p);
     switch (c) {
-    case '{': kind = TokenKind::braceOpen, ++p; break;
-    case '}': kind = TokenKind::braceClose, ++p; break;
-    case '[': kind = TokenKind::bracketOpen, ++p; break;
-    case ']': kind = TokenKind::bracketClose, ++p; break;
+    case '{':
+      kind = TokenKind::braceOpen;
+      ++p;
+      break;
+    case '}':
+      kind = TokenKind::braceClose;
+      ++p;
+      break;
+    case '[':
+      kind = TokenKind::bracketOpen;
+      ++p;
+      break;
+    case ']':
+      kind = TokenKind::bracketClose;
+      ++p;
+      break;
     case '"':
       kind = TokenKind::string;
       p = lexString(p, valid);
@@ -137,7 +150,8 @@ void Lexer::lex() {
         kind = TokenKind::identifier;
         while (p < end_ && isIdentifierRest(static_cast<unsigned char>(*p))) ++p;
       } else if (c == '.' && !(p + 1 < end_ && isDigit(p[1]))) {
-        kind = TokenKind::period, ++p;
+        kind = TokenKind::period;
+        ++p;
       } else if (isDigit(*p) || c == '+' || c == '-' || c == '.') {
         kind = TokenKind::number;
         p = lexNumber(p, valid);
@@ -208,7 +222,8 @@ std::string describe(const Token& token) {
   if (text.size() > shown) {
     size_t cut = shown;
     while (cut > 0 && isContinuationByte(text[cut])) --cut;
-    text = text.substr(0, cut), more = "...";
+    text = text.substr(0, cut);
+    more = "...";
   }
   if (token.kind == TokenKind::invalid && !token.text.empty() && token.text[0] == '"')
     return "a string without its closing quote";

@@ -25,13 +25,13 @@ Table& table() {
 // Calls with the list if the field holds one of numbers.
 template <class F> bool withNumbers(FieldType type, void* storage, const F& f) {
   switch (type) {
-  case FieldType::MFColor: return f(*static_cast<MFColor*>(storage)), true;
-  case FieldType::MFFloat: return f(*static_cast<MFFloat*>(storage)), true;
-  case FieldType::MFInt32: return f(*static_cast<MFInt32*>(storage)), true;
-  case FieldType::MFRotation: return f(*static_cast<MFRotation*>(storage)), true;
-  case FieldType::MFTime: return f(*static_cast<MFTime*>(storage)), true;
-  case FieldType::MFVec2f: return f(*static_cast<MFVec2f*>(storage)), true;
-  case FieldType::MFVec3f: return f(*static_cast<MFVec3f*>(storage)), true;
+  case FieldType::MFColor: f(*static_cast<MFColor*>(storage)); return true;
+  case FieldType::MFFloat: f(*static_cast<MFFloat*>(storage)); return true;
+  case FieldType::MFInt32: f(*static_cast<MFInt32*>(storage)); return true;
+  case FieldType::MFRotation: f(*static_cast<MFRotation*>(storage)); return true;
+  case FieldType::MFTime: f(*static_cast<MFTime*>(storage)); return true;
+  case FieldType::MFVec2f: f(*static_cast<MFVec2f*>(storage)); return true;
+  case FieldType::MFVec3f: f(*static_cast<MFVec3f*>(storage)); return true;
   default: return false;
   }
 }

@@ -81,7 +81,10 @@ Rotation blend(const Rotation& first, const Rotation& second, float t) {
   const auto [x, y] = arcWeights(std::acos(std::clamp(cosine, -1.0, 1.0)), t);
   V3d v = a.v * x + b.v * y;
   double w = a.w * x + b.w * y;
-  if (w < 0) v = -v, w = -w;
+  if (w < 0) {
+    v = -v;
+    w = -w;
+  }
   const double length = v.length();
   const V3d axis = unit(v);
   if (axis == V3d(0)) { // no rotation: any axis, so one of the ends'

@@ -109,7 +109,9 @@ GeometryArrays geometryArrays(Node& geometry, int sphereSteps, const Limits& lim
   arrays.normals.assign(mesh.normals.begin(), mesh.normals.end());
   arrays.texCoords.assign(mesh.texCoords.begin(), mesh.texCoords.end());
   arrays.colors.assign(mesh.colors.begin(), mesh.colors.end());
-  arrays.solid = mesh.solid, arrays.ccw = mesh.ccw, arrays.radius = mesh.radius;
+  arrays.solid = mesh.solid;
+  arrays.ccw = mesh.ccw;
+  arrays.radius = mesh.radius;
   if (arrays.kind == GeometryArrays::Kind::sphere && sphereSteps > 1) cutSphere(arrays, sphereSteps);
   return arrays;
 }

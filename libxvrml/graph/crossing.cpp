@@ -6,9 +6,9 @@
 
 #include <fmt/format.h>
 
+#include "graph/field_access.h"
 #include "graph/node_kinds.h"
 #include "graph/range.h"
-#include "graph/field_access.h"
 
 namespace xvrml {
 namespace {
@@ -49,7 +49,10 @@ bool reaches(Node& top, const Node& target) {
     if (!instance) continue;
     for (const NodeRef& root : instance->body.roots) add(root);
     for (const IsConnection& connection : instance->is) add(connection.node);
-    for (const Route& route : instance->body.routes) add(route.from), add(route.to);
+    for (const Route& route : instance->body.routes) {
+      add(route.from);
+      add(route.to);
+    }
   }
   return false;
 }

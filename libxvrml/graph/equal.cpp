@@ -106,7 +106,8 @@ class Comparison {
     std::vector<Key> left, right;
     for (const Route& r : a) left.emplace_back(number(r.from), r.fromField, number(r.to), r.toField);
     for (const Route& r : b) right.emplace_back(number(partner(r.from)), r.fromField, number(partner(r.to)), r.toField);
-    std::sort(left.begin(), left.end()), std::sort(right.begin(), right.end());
+    std::sort(left.begin(), left.end());
+    std::sort(right.begin(), right.end());
     return left == right || fail("routes", left.size(), right.size());
   }
 
@@ -115,7 +116,8 @@ class Comparison {
     std::vector<Key> left, right;
     for (const IsConnection& c : a) left.emplace_back(number(c.node), c.field, c.interfaceName);
     for (const IsConnection& c : b) right.emplace_back(number(partner(c.node)), c.field, c.interfaceName);
-    std::sort(left.begin(), left.end()), std::sort(right.begin(), right.end());
+    std::sort(left.begin(), left.end());
+    std::sort(right.begin(), right.end());
     return left == right || fail("IS", left.size(), right.size());
   }
 

@@ -103,7 +103,10 @@ Expander::PlanPtr Expander::plan(const ProtoPtr& declaration, const SourcePositi
   plan->computing = true;
   std::vector<Node*> roots;
   for (const NodeRef& root : declaration->body.roots) roots.push_back(root.get());
-  for (const Route& route : declaration->body.routes) roots.push_back(route.from.get()), roots.push_back(route.to.get());
+  for (const Route& route : declaration->body.routes) {
+    roots.push_back(route.from.get());
+    roots.push_back(route.to.get());
+  }
   collectNodes(roots, plan->nodes, plan->index);
   markShared(*plan, *declaration);
   plan->expandedNodes = plan->nodes.size();
@@ -155,7 +158,10 @@ void Expander::markShared(Plan& plan, const ProtoDeclaration& declaration) const
     if (const auto found = plan.index.find(node.get()); found != plan.index.end()) plan.shared[found->second] = false;
   };
   for (const IsConnection& connection : declaration.is) exclude(connection.node);
-  for (const Route& route : declaration.body.routes) exclude(route.from), exclude(route.to);
+  for (const Route& route : declaration.body.routes) {
+    exclude(route.from);
+    exclude(route.to);
+  }
   // What holds something that is not shared is not shared either.
   std::vector<std::vector<uint32_t>> holders(plan.nodes.size());
   std::vector<uint32_t> changed;
@@ -167,7 +173,10 @@ void Expander::markShared(Plan& plan, const ProtoDeclaration& declaration) const
     const uint32_t node = changed.back();
     changed.pop_back();
     for (const uint32_t holder : holders[node]) {
-      if (plan.shared[holder]) plan.shared[holder] = false, changed.push_back(holder);
+      if (plan.shared[holder]) {
+        plan.shared[holder] = false;
+        changed.push_back(holder);
+      }
     }
   }
 }

@@ -41,7 +41,10 @@ template <class Range> std::string suggestion(std::string_view name, const Range
   for (const auto& item : known) {
     const std::string& candidate = nameOf(item);
     const size_t d = editDistance(name, candidate);
-    if (d < distance) distance = d, best = &candidate;
+    if (d < distance) {
+      distance = d;
+      best = &candidate;
+    }
   }
   return best ? "; did you mean '" + *best + "'?" : "";
 }

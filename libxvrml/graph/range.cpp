@@ -40,11 +40,18 @@ template <class T> bool round(T& number, const FieldRange& range) {
   if constexpr (std::is_floating_point_v<T>) {
     const auto means = [number](double bound) { return std::abs(static_cast<double>(number) - bound) <= slackAt(bound); };
     const T minimum = static_cast<T>(range.minimum), maximum = static_cast<T>(range.maximum);
-    if (number > maximum && means(range.maximum) && (!range.maximumOpen || isAngleBound(range.maximum)))
-      return number = range.maximumOpen ? std::nextafter(maximum, T(0)) : maximum, true;
-    if (number < minimum && means(range.minimum) && !range.minimumOpen) return number = minimum, true;
-    if (range.maximumOpen && number == maximum && isAngleBound(range.maximum))
-      return number = std::nextafter(maximum, T(0)), true;
+    if (number > maximum && means(range.maximum) && (!range.maximumOpen || isAngleBound(range.maximum))) {
+      number = range.maximumOpen ? std::nextafter(maximum, T(0)) : maximum;
+      return true;
+    }
+    if (number < minimum && means(range.minimum) && !range.minimumOpen) {
+      number = minimum;
+      return true;
+    }
+    if (range.maximumOpen && number == maximum && isAngleBound(range.maximum)) {
+      number = std::nextafter(maximum, T(0));
+      return true;
+    }
   }
   return false;
 }
@@ -115,7 +122,11 @@ bool enforceRange(const FieldInfo& field, void* storage, RangeFault* fault) {
     return true;
   }
   const auto tell = [fault](const auto& given, const auto& used, size_t index) {
-    if (fault && fault->count++ == 0) fault->given = textOf(given), fault->used = textOf(used), fault->index = index;
+    if (fault && fault->count++ == 0) {
+      fault->given = textOf(given);
+      fault->used = textOf(used);
+      fault->index = index;
+    }
   };
   return visitStorage(field.type, storage, [&](auto& value) {
     using T = std::remove_reference_t<decltype(value)>;

@@ -107,7 +107,10 @@ Header readHeader(Reader& in) {
     if (size < 0) refuse("an attribute of a negative size");
     Reader value(in.take(size_t(size)));
     if (name == "channels") header.channels = readChannels(value);
-    if (name == "compression") header.compression = readCompression(value.byte()), compression = true;
+    if (name == "compression") {
+      header.compression = readCompression(value.byte());
+      compression = true;
+    }
     if (name == "dataWindow") {
       header.x0 = value.integer();
       header.y0 = value.integer();

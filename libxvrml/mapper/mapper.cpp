@@ -41,8 +41,10 @@ void OpenRTMapper::Impl::rebind() {
     return;
   }
   BoundNodes nodes;
-  nodes.viewpoint = given->viewpoint.get(), nodes.background = given->background.get();
-  nodes.fog = given->fog.get(), nodes.navigationInfo = given->navigationInfo.get();
+  nodes.viewpoint = given->viewpoint.get();
+  nodes.background = given->background.get();
+  nodes.fog = given->fog.get();
+  nodes.navigationInfo = given->navigationInfo.get();
   bound = boundTo(graph, places, nodes);
 }
 
@@ -144,7 +146,10 @@ void OpenRTMapper::map(const CameraSettings& camera) {
   m.camera = camera;
   m.places.follow(m.graph, camera);
   Bound around = m.bound;
-  if (!m.background) around.background = {}, around.backgroundPlace = none;
+  if (!m.background) {
+    around.background = {};
+    around.backgroundPlace = none;
+  }
   m.environment.follow(m.places, around);
   m.objects.follow();
   m.lights.follow(m.graph, m.places);

@@ -252,7 +252,8 @@ FieldTarget Builder::openField(const Token& name) {
   } else {
     frame.given.push_back(name.text);
   }
-  frame.field = field, frame.fieldAt = name.at();
+  frame.field = field;
+  frame.fieldAt = name.at();
   if (auto* instance = dynamic_cast<ProtoInstance*>(&node)) instance->give(*field);
   void* storage = node.storage(*field);
   if (field->type == FieldType::SFNode) {

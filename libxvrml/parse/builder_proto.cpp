@@ -4,9 +4,9 @@
 
 #include <fmt/format.h>
 
-#include "parse/builder.h"
 #include "graph/field_access.h"
 #include "graph/inline_node.h"
+#include "parse/builder.h"
 
 namespace xvrml {
 
@@ -69,7 +69,11 @@ FieldTarget Builder::openDeclaration(Access access, FieldType type, const Token&
   declaration.hasValue = hasValue;
   declaration.scoped = false;
   FieldInfo& field = declaration.field;
-  field.name = name.text, field.type = type, field.access = access, field.change = Change::none, field.offset = 0;
+  field.name = name.text;
+  field.type = type;
+  field.access = access;
+  field.change = Change::none;
+  field.offset = 0;
   field.defaultValue = defaultValue(type);
   const uint64_t limit = state_.options.limits.interfaceFields;
   declaration.accepted = target.fields.size() < limit;

@@ -7,9 +7,9 @@
 #include <fmt/format.h>
 
 #include "enough_stack.h"
-#include "parse/builder.h"
 #include "graph/field_access.h"
 #include "graph/inline_node.h"
+#include "parse/builder.h"
 #include "parse/parser.h"
 #include "parse/urn.h"
 
@@ -231,7 +231,10 @@ void Loader::checkSize(Scope& scope) {
       if (!size.done && size.nodes == 1 && !below.empty()) {
         size.nodes = 0; // its children have been asked for
         for (Node* child : below) {
-          if (!sizes[child].done && child != node) stack.push_back(child), ready = false;
+          if (!sizes[child].done && child != node) {
+            stack.push_back(child);
+            ready = false;
+          }
         }
       }
       if (!ready) continue;

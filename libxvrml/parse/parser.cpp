@@ -95,7 +95,10 @@ bool Parser::node(const Token* def) {
 // A text that ends early keeps what was read of its open nodes.
 bool Parser::nodeBody(const Token& type) {
   while (!isClosing() && !lexer_.accept(TokenKind::braceClose)) {
-    if (lexer_.peek().is(TokenKind::end)) return failAtEnd(type), true;
+    if (lexer_.peek().is(TokenKind::end)) {
+      failAtEnd(type);
+      return true;
+    }
     if (!nodeBodyElement()) return false;
   }
   return true;

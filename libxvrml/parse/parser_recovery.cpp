@@ -104,7 +104,10 @@ bool Parser::nodeInBody(const Token& first) {
   } else {
     node = nodeAhead(named);
   }
-  if (!node) return lexer_.next(), false;
+  if (!node) {
+    lexer_.next();
+    return false;
+  }
   if (takers_.back().kind != Taker::Kind::interface && sink_.wouldTake(takers_.back().receiver, named.text, use)) {
     closeNodesBefore(first, fmt::format("the node {}", describe(named)));
     return true;
@@ -158,7 +161,8 @@ bool Parser::closeListBefore(const Token& brace) {
   const SourcePosition begin = sink_.openNodePlace();
   lexer_.error(brace.at(), fmt::format("']' is missing before the '}}' of {}, which begins in line {}, column {}",
                                        describe(open_.back()), begin.line, begin.column));
-  ++takers_.front().braces, ++brackets_; // if it was this brace that was too many
+  ++takers_.front().braces;
+  ++brackets_; // if it was this brace that was too many
   return true;
 }
 

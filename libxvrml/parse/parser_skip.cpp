@@ -42,7 +42,8 @@ bool Parser::skipNested(char opened, bool inList) {
   std::string open(1, opened);
   uint64_t lists = opened == '[', bodies = opened == 's'; // of [ and of s among them
   const auto pop = [&] {
-    lists -= open.back() == '[', bodies -= open.back() == 's';
+    lists -= open.back() == '[';
+    bodies -= open.back() == 's';
     open.pop_back();
   };
   TokenKind previous = TokenKind::invalid;
@@ -55,7 +56,10 @@ bool Parser::skipNested(char opened, bool inList) {
       bodies += previous == TokenKind::bracketClose;
       open += previous == TokenKind::bracketClose ? 's' : '{';
       break;
-    case TokenKind::bracketOpen: open += '[', ++lists; break;
+    case TokenKind::bracketOpen:
+      open += '[';
+      ++lists;
+      break;
     case TokenKind::bracketClose:
       if (lists == 0 && inList) return true;
       if (lists > 0) {

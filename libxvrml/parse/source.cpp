@@ -161,7 +161,8 @@ Source Source::open(const std::string& path, const Limits& limits, const BudgetP
     if (size > 0) {
       void* mapping = mmap(nullptr, size, PROT_READ, MAP_PRIVATE, file.number, 0);
       if (mapping != MAP_FAILED) {
-        source.mapping_ = mapping, source.mappedBytes_ = size;
+        source.mapping_ = mapping;
+        source.mappedBytes_ = size;
         madvise(mapping, size, MADV_SEQUENTIAL);
         source.text_ = {static_cast<const char*>(mapping), size};
       } else {

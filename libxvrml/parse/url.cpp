@@ -110,12 +110,18 @@ ResolvedUrl resolveUrl(std::string_view url, std::string_view baseFile, const Lo
 // "data:[type][;parameter]...[;base64],bytes"
 bool decodeDataUrl(std::string_view url, uint64_t most, DataUrl& out, std::string& why) {
   const size_t comma = url.find(',');
-  if (urlScheme(url) != "data" || comma == url.npos) return why = "no data: URL", false;
+  if (urlScheme(url) != "data" || comma == url.npos) {
+    why = "no data: URL";
+    return false;
+  }
   std::string_view head = url.substr(5, comma - 5), body = url.substr(comma + 1);
   out.bytes.clear();
   out.type.clear();
   for (const char c : head.substr(0, head.find(';'))) out.type += c >= 'A' && c <= 'Z' ? char(c + 32) : c;
-  if (body.size() > 3 * most) return why = fmt::format("a data: URL of more than {} bytes", most), false;
+  if (body.size() > 3 * most) {
+    why = fmt::format("a data: URL of more than {} bytes", most);
+    return false;
+  }
   if (!head.ends_with(";base64")) {
     for (size_t i = 0; i < body.size(); ++i) { // %00 is a byte like any other here
       const int high = body[i] == '%' && i + 2 < body.size() ? hexDigit(body[i + 1]) : -1;
@@ -130,14 +136,20 @@ bool decodeDataUrl(std::string_view url, uint64_t most, DataUrl& out, std::strin
     for (const char c : body) {
       if (c == '=' || c == ' ' || c == '\t' || c == '\r' || c == '\n') continue;
       const size_t digit = digits.find(c);
-      if (digit == digits.npos) return why = "a data: URL that is not base64", false;
+      if (digit == digits.npos) {
+        why = "a data: URL that is not base64";
+        return false;
+      }
       bits = bits << 6 | uint32_t(digit);
       if ((count += 6) < 8) continue;
       count -= 8;
       out.bytes += char(bits >> count & 0xff);
     }
   }
-  if (out.bytes.size() > most) return why = fmt::format("a data: URL of more than {} bytes", most), false;
+  if (out.bytes.size() > most) {
+    why = fmt::format("a data: URL of more than {} bytes", most);
+    return false;
+  }
   return true;
 }
 

@@ -85,7 +85,10 @@ XsResult ScriptHost::beginCall(Script& script, wire::Op op, wire::Writer& messag
   const ProcessRef process = script.process;
   enter(script);
   if (!process->begin(message)) {
-    if (process->dead()) return script.stopped = script.wasStopped, again;
+    if (process->dead()) {
+      script.stopped = script.wasStopped;
+      return again;
+    }
     log(script, 3, 0, fmt::format("{}: longer than a message to a process may be", wire::functionName(op)));
     return leave(script, wire::functionName(op), XS_FAILED);
   }

@@ -81,7 +81,10 @@ struct HostTable {
       if (!take(host, script, value, out->type, taken))
         return refuse(script, XS_WRONG_TYPE, fmt::format("{}: {}", name, script.error));
       for (Script::Output& output : script.outputs)
-        if (!output.to && output.field == out) return output.value = std::move(taken), XS_OK;
+        if (!output.to && output.field == out) {
+          output.value = std::move(taken);
+          return XS_OK;
+        }
       script.outputs.push_back({{}, out, std::move(taken)});
       return XS_OK;
     });

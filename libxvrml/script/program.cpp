@@ -67,16 +67,25 @@ bool ProgramFinder::fileProgram(const std::string& url, const std::string& base,
   const ResolvedUrl resolved = resolveUrl(url, base, options);
   const std::string suffix = suffixOf(url);
   program.engine = suffix.empty() ? nullptr : engines_.bySuffix(suffix);
-  if (!program.engine && suffix.empty())
-    return append(reasons_, fmt::format("'{}': no known kind of program", url.substr(0, 100))), false;
+  if (!program.engine && suffix.empty()) {
+    append(reasons_, fmt::format("'{}': no known kind of program", url.substr(0, 100)));
+    return false;
+  }
   if (!usable(program.engine, suffix)) return false;
-  if (!resolved.error.empty()) return append(reasons_, resolved.error), false;
+  if (!resolved.error.empty()) {
+    append(reasons_, resolved.error);
+    return false;
+  }
   try {
     program.text = Source::open(resolved.path, options.limits, nullptr).text();
-  } catch (const LoadError& error) { return append(reasons_, error.diagnostic.text()), false; }
-  if (program.text.size() > options.limits.stringBytes)
-    return append(reasons_, fmt::format("'{}' is longer than limit stringBytes={}", resolved.path, options.limits.stringBytes)),
-           false;
+  } catch (const LoadError& error) {
+    append(reasons_, error.diagnostic.text());
+    return false;
+  }
+  if (program.text.size() > options.limits.stringBytes) {
+    append(reasons_, fmt::format("'{}' is longer than limit stringBytes={}", resolved.path, options.limits.stringBytes));
+    return false;
+  }
   program.start = {std::make_shared<const std::string>(resolved.path), 1, 0};
   return true;
 }
@@ -84,7 +93,10 @@ bool ProgramFinder::fileProgram(const std::string& url, const std::string& base,
 bool ProgramFinder::dataProgram(std::string_view url, const LoadOptions& options, ScriptProgram& program) {
   DataUrl data;
   std::string why;
-  if (!decodeDataUrl(url, options.limits.stringBytes, data, why)) return append(reasons_, why), false;
+  if (!decodeDataUrl(url, options.limits.stringBytes, data, why)) {
+    append(reasons_, why);
+    return false;
+  }
   program.engine = data.type.empty() ? nullptr : engines_.byMimeType(data.type);
   if (!usable(program.engine, "data:" + data.type.substr(0, 100))) return false;
   program.text = std::move(data.bytes);

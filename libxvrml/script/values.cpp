@@ -33,10 +33,22 @@ bool isUtf8(std::string_view text) {
 }
 
 // One element from the ABI's array; its type there.
-bool element(const XsValue& v, size_t i, bool& out) { return out = v.of.ints[i] != 0, true; }
-bool element(const XsValue& v, size_t i, int32_t& out) { return out = v.of.ints[i], true; }
-bool element(const XsValue& v, size_t i, float& out) { return out = v.of.floats[i], true; }
-bool element(const XsValue& v, size_t i, double& out) { return out = v.of.doubles[i], true; }
+bool element(const XsValue& v, size_t i, bool& out) {
+  out = v.of.ints[i] != 0;
+  return true;
+}
+bool element(const XsValue& v, size_t i, int32_t& out) {
+  out = v.of.ints[i];
+  return true;
+}
+bool element(const XsValue& v, size_t i, float& out) {
+  out = v.of.floats[i];
+  return true;
+}
+bool element(const XsValue& v, size_t i, double& out) {
+  out = v.of.doubles[i];
+  return true;
+}
 template <class T>
 requires(sizeof(T) % sizeof(float) == 0 &&
          std::is_trivially_copyable_v<T>) bool element(const XsValue& v, size_t i,
@@ -55,29 +67,47 @@ struct Taker {
   bool one(size_t i, NodeRef& out) {
     const XsNode number = value.of.nodes[i];
     Node* node = number ? handles.find(number) : nullptr;
-    if (number && !node) return why = fmt::format("the Script does not know a node {}", number), false;
+    if (number && !node) {
+      why = fmt::format("the Script does not know a node {}", number);
+      return false;
+    }
     out = NodeRef(node);
     return true;
   }
   bool one(size_t i, Image& out) {
     const XsImage& image = value.of.images[i];
-    if (image.width < 0 || image.height < 0 || image.components < 0 || image.components > 4)
-      return why = fmt::format("no image: {} x {} x {}", image.width, image.height, image.components), false;
+    if (image.width < 0 || image.height < 0 || image.components < 0 || image.components > 4) {
+      why = fmt::format("no image: {} x {} x {}", image.width, image.height, image.components);
+      return false;
+    }
     const uint64_t pixels = uint64_t(image.width) * uint64_t(image.height), bytes = pixels * uint64_t(image.components);
-    if (pixels > limits.imagePixels) return why = fmt::format("more than limit imagePixels={}", limits.imagePixels), false;
-    if (bytes > 0 && !image.pixels) return why = "an image without pixels", false;
-    out.width = image.width, out.height = image.height, out.components = image.components;
+    if (pixels > limits.imagePixels) {
+      why = fmt::format("more than limit imagePixels={}", limits.imagePixels);
+      return false;
+    }
+    if (bytes > 0 && !image.pixels) {
+      why = "an image without pixels";
+      return false;
+    }
+    out.width = image.width;
+    out.height = image.height;
+    out.components = image.components;
     out.pixels.assign(image.pixels, image.pixels + (image.pixels ? bytes : 0));
     return true;
   }
   template <class T> bool one(size_t i, T& out) { return element(value, i, out); }
   template <class T> bool all(T& out) {
-    if (value.count != 1) return why = fmt::format("a single value has {} elements", value.count), false;
+    if (value.count != 1) {
+      why = fmt::format("a single value has {} elements", value.count);
+      return false;
+    }
     return one(0, out);
   }
   template <class T> bool all(std::vector<T>& out) {
-    if (value.count > limits.arrayElements)
-      return why = fmt::format("more than limit arrayElements={}", limits.arrayElements), false;
+    if (value.count > limits.arrayElements) {
+      why = fmt::format("more than limit arrayElements={}", limits.arrayElements);
+      return false;
+    }
     out.resize(value.count);
     for (size_t i = 0; i < value.count; ++i)
       if (!one(i, out[i])) return false;
@@ -133,24 +163,39 @@ void LentValue::clear() {
 }
 
 bool takeText(const XsString& text, const Limits& limits, std::string& out, std::string& why) {
-  if (text.bytes > limits.stringBytes) return why = fmt::format("longer than limit stringBytes={}", limits.stringBytes), false;
-  if (text.bytes > 0 && !text.data) return why = "a text without characters", false;
+  if (text.bytes > limits.stringBytes) {
+    why = fmt::format("longer than limit stringBytes={}", limits.stringBytes);
+    return false;
+  }
+  if (text.bytes > 0 && !text.data) {
+    why = "a text without characters";
+    return false;
+  }
   const std::string_view characters(text.data ? text.data : "", text.bytes);
-  if (!isUtf8(characters)) return why = "a text that is no UTF-8", false;
+  if (!isUtf8(characters)) {
+    why = "a text that is no UTF-8";
+    return false;
+  }
   out = characters;
   return true;
 }
 
 bool takeValue(const XsValue* value, FieldType wanted, const Handles& handles, const Limits& limits, Value& out,
                std::string& why) {
-  if (!value) return why = "no value", false;
+  if (!value) {
+    why = "no value";
+    return false;
+  }
   if (value->type != xsType(wanted)) {
     const bool known = value->type >= XS_SFBOOL && value->type <= XS_MFVEC3F;
     why = fmt::format("expected {}, got {}", fieldTypeName(wanted),
                       known ? fieldTypeName(FieldType(value->type - XS_SFBOOL)) : "an unknown type");
     return false;
   }
-  if (value->count > 0 && !value->of.data) return why = "a value without data", false;
+  if (value->count > 0 && !value->of.data) {
+    why = "a value without data";
+    return false;
+  }
   out = defaultValue(wanted);
   return std::visit([&](auto& v) { return Taker{*value, handles, limits, why}.all(v); }, out);
 }

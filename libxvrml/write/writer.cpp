@@ -37,7 +37,10 @@ class Names {
     std::unordered_map<const Node*, size_t> uses;
     for (Node* root : roots) ++uses[root];
     for (Node* node : nodes) forEachChild(*node, [&](NodeRef& child, const FieldInfo&) { ++uses[child.get()]; });
-    for (const Route& route : routes) uses[route.from.get()] += 2, uses[route.to.get()] += 2;
+    for (const Route& route : routes) {
+      uses[route.from.get()] += 2;
+      uses[route.to.get()] += 2;
+    }
     std::unordered_map<std::string, int> given;
     for (Node* node : nodes) {
       if (node->defName.empty()) continue;
@@ -101,7 +104,10 @@ class Writer {
   }
 
  private:
-  void line() { text += '\n', text.append(indent_, ' '); }
+  void line() {
+    text += '\n';
+    text.append(indent_, ' ');
+  }
 
   // Prototypes stand before the first node that is one of theirs, in their order: a name may be declared again later.
   static size_t lastPrototypeOf(Node* root, const std::unordered_map<const ProtoDeclaration*, size_t>& prototypes) {

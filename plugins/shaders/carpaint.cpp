@@ -70,7 +70,10 @@ struct CarPaint : rts::Surface<CarPaint> {
       const uint32_t h = pattern::hash(cx, cy, cz), g = pattern::mix(h + 1), e = pattern::mix(h + 2);
       const rts::Vec3 d = p - rts::Vec3{float(cx) + pattern::unit(h), float(cy) + pattern::unit(g), float(cz) + pattern::unit(e)};
       const float distance = rts::dot(d, d);
-      if (distance < nearest) nearest = distance, flake = h;
+      if (distance < nearest) {
+        nearest = distance;
+        flake = h;
+      }
     }
     if (!(pattern::unit(pattern::mix(flake + 3)) < flakes)) return false;
     // Slopes of a rough surface: GGX's tangent from one number, its direction from another.

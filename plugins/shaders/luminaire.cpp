@@ -64,7 +64,8 @@ struct Luminaire : rts::LightSource<Luminaire> {
   }
   rts::Extent extent() const {
     rts::Extent e;
-    e.position = location, e.direction = down;
+    e.position = location;
+    e.direction = down;
     e.power = flux * *intensity * (color->r + color->g + color->b) / 3;
     return e;
   }

@@ -73,9 +73,11 @@ class SphereHistogram {
     for (const size_t b : order) {
       const double e = expected.bins[b] * scale;
       if (e == 0 && seen_[b] > 0) return 0; // a direction that cannot be
-      pooledSeen += seen_[b], pooled += e;
+      pooledSeen += seen_[b];
+      pooled += e;
       if (pooled < 5) continue;
-      x += (pooledSeen - pooled) * (pooledSeen - pooled) / pooled, bins++;
+      x += (pooledSeen - pooled) * (pooledSeen - pooled) / pooled;
+      bins++;
       pooledSeen = pooled = 0;
     }
     return bins < 2 ? 1 : test::chiSquareTail(x, bins - 1);

@@ -20,7 +20,8 @@ class DebugRules : public SmallScene {
   RTid placed() { return rtInstantiateObject(square()); }
   // The rule has spoken once so far, with this in its text.
   void expect(const char* rule, const char* part) {
-    picture(1), picture(1);
+    picture(1);
+    picture(1);
     EXPECT_EQ(log.count(std::string("debug: ") + rule + ": "), 1u) << all();
     EXPECT_TRUE(log.has(part)) << all();
   }
@@ -81,7 +82,8 @@ TEST_F(DebugRules, SingularMatrix) {
 }
 
 TEST_F(DebugRules, NeverPlaced) {
-  placed(), square();
+  placed();
+  square();
   expect("never-placed", "rtInstantiateObject");
 }
 
@@ -89,7 +91,8 @@ TEST_F(DebugRules, Redefined) {
   const RTid plain = square(), hinted = rtBeginObject(0);
   rtEndObject();
   rtObjectHint(hinted, RT_DYNAMIC);
-  rtInstantiateObject(plain), rtInstantiateObject(hinted);
+  rtInstantiateObject(plain);
+  rtInstantiateObject(hinted);
   for (int i = 0; i < 6; i++) {
     for (RTid object : {plain, hinted}) {
       rtBeginObject(object);
@@ -106,7 +109,9 @@ TEST_F(DebugRules, Redefined) {
 
 TEST_F(DebugRules, UnusedShaders) {
   placed();
-  shader("Everything", "everything"), shader("Lamp", "everything"), shader("Sky", "everything");
+  shader("Everything", "everything");
+  shader("Lamp", "everything");
+  shader("Sky", "everything");
   picture(1);
   EXPECT_EQ(log.count("debug: unused-shader: "), 3u) << all();
   EXPECT_TRUE(log.has("(Everything) is on no geometry: call rtBindShader")) << all();
@@ -162,7 +167,8 @@ TEST_F(DebugRules, LightsThatReachNothing) {
   rtLightMatrix(light, away);
   expect("useless-light", "its radius is 3.0");
   rtLightScope(rtUseLight(lamp), instance);
-  rtDeleteInstance(instance), placed();
+  rtDeleteInstance(instance);
+  placed();
   picture(1);
   EXPECT_TRUE(log.has("rtLightScope was deleted")) << all();
 }
@@ -170,14 +176,18 @@ TEST_F(DebugRules, LightsThatReachNothing) {
 TEST_F(DebugRules, FarFromTheOrigin) {
   const RTid doubles = rtBeginObject(0);
   rtBegin(RT_TRIANGLES);
-  rtVertex3d(1e6, 0, 0.1), rtVertex3d(1e6 + 1, 0, 0), rtVertex3d(1e6, 1, 0);
+  rtVertex3d(1e6, 0, 0.1);
+  rtVertex3d(1e6 + 1, 0, 0);
+  rtVertex3d(1e6, 1, 0);
   rtEnd();
   rtEndObject();
   rtInstantiateObject(doubles);
   expectSilence();
   const RTid floats = rtBeginObject(0);
   rtBegin(RT_TRIANGLES);
-  rtVertex3f(1e6f, 0, 0), rtVertex3f(1e6f + 1, 0, 0), rtVertex3f(1e6f, 1, 0);
+  rtVertex3f(1e6f, 0, 0);
+  rtVertex3f(1e6f + 1, 0, 0);
+  rtVertex3f(1e6f, 1, 0);
   rtEnd();
   rtEndObject();
   rtInstantiateObject(floats);

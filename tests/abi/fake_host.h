@@ -130,12 +130,19 @@ inline void addFacts(RtsHost& host) {
   };
   const auto vectors = [](RtsBatch* b, float* const first[3], float* const second[3]) {
     for (uint32_t i = 0; i < fake(b).hitCount; i++)
-      for (uint32_t k = 0; k < 3; k++) first[k][i] = float(i) + 0.1f * float(k), second[k][i] = 10 + first[k][i];
+      for (uint32_t k = 0; k < 3; k++) {
+        first[k][i] = float(i) + 0.1f * float(k);
+        second[k][i] = 10 + first[k][i];
+      }
   };
   host.local = vectors;
   host.derivatives = vectors;
   host.ids = [](RtsBatch* b, uint32_t* name, uint32_t* instance, uint32_t* primitive) {
-    for (uint32_t i = 0; i < fake(b).hitCount; i++) name[i] = 100 + i, instance[i] = 200 + i, primitive[i] = 300 + i;
+    for (uint32_t i = 0; i < fake(b).hitCount; i++) {
+      name[i] = 100 + i;
+      instance[i] = 200 + i;
+      primitive[i] = 300 + i;
+    }
   };
   host.path = [](RtsBatch* b, uint32_t* depth, float* const throughput[3]) {
     for (uint32_t i = 0; i < fake(b).hitCount; i++) {

@@ -78,7 +78,9 @@ void crashWith(const char* className, int transport, const std::string& config, 
     signal(SIGSEGV, nameTheShader);
     rtNewContext(config.c_str());
     rtQuality(RT_TRANSPORT, transport);
-    rtTranslated(0, 0, 10), rtOrtho(2), rtLoadIdentity();
+    rtTranslated(0, 0, 10);
+    rtOrtho(2);
+    rtLoadIdentity();
     rtBindShader(rtNewShader(rtNewShaderClass(className, "faulty")));
     const RTid object = rtBeginObject(0);
     rtSphere(0.5f);

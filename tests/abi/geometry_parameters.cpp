@@ -16,8 +16,12 @@ class GeometryParameters : public SmallScene {
   void SetUp() override {
     SmallScene::SetUp();
     id = shader("Varying", "varying");
-    show = rtParameterHandle("show"), color = rtParameterHandle("color"), weight = rtParameterHandle("weight");
-    pair = rtParameterHandle("pair"), triple = rtParameterHandle("triple"), quad = rtParameterHandle("quad");
+    show = rtParameterHandle("show");
+    color = rtParameterHandle("color");
+    weight = rtParameterHandle("weight");
+    pair = rtParameterHandle("pair");
+    triple = rtParameterHandle("triple");
+    quad = rtParameterHandle("quad");
     matrix = rtParameterHandle("matrix");
   }
   RTid id = 0;
@@ -27,7 +31,9 @@ class GeometryParameters : public SmallScene {
 // The triangle (-1,-1) (1,-1) (-1,1): at pixel x, y of n the corners have these weights.
 void weights(int x, int y, int n, double w[3]) {
   const double u = (x + 0.5) / n, v = 1 - (y + 0.5) / n;
-  w[0] = 1 - u - v, w[1] = u, w[2] = v;
+  w[0] = 1 - u - v;
+  w[1] = u;
+  w[2] = v;
 }
 
 TEST_F(GeometryParameters, AColourByVertexInterpolatesExactly) {
@@ -61,8 +67,11 @@ TEST_F(GeometryParameters, ByTriangleItIsConstantAndOfTheVertexThatCompletesIt) 
   const RTid object = rtBeginObject(0);
   rtBegin(RT_TRIANGLES);
   rtParameter3f(triple, 5, 6, 7);
-  rtVertex3f(-1, -1, 0), rtVertex3f(1, -1, 0), rtVertex3f(-1, 1, 0);
-  rtVertex3f(1, -1, 0), rtVertex3f(1, 1, 0);
+  rtVertex3f(-1, -1, 0);
+  rtVertex3f(1, -1, 0);
+  rtVertex3f(-1, 1, 0);
+  rtVertex3f(1, -1, 0);
+  rtVertex3f(1, 1, 0);
   rtParameter3f(triple, 8, 9, 10);
   rtVertex3f(-1, 1, 0);
   rtEnd();
@@ -105,12 +114,18 @@ TEST_F(GeometryParameters, UntilTheFirstCallTheShadersOwnValueHolds) {
   rtRender(); // the shader's value is committed: it holds all the same
   const RTid object = rtBeginObject(0);
   rtBegin(RT_TRIANGLES);
-  rtVertex3f(-1, -1, 0), rtVertex3f(1, -1, 0), rtVertex3f(-1, 1, 0);
+  rtVertex3f(-1, -1, 0);
+  rtVertex3f(1, -1, 0);
+  rtVertex3f(-1, 1, 0);
   rtParameter3f(color, 1, 1, 1);
-  rtVertex3f(1, -1, 0), rtVertex3f(1, 1, 0), rtVertex3f(-1, 1, 0);
+  rtVertex3f(1, -1, 0);
+  rtVertex3f(1, 1, 0);
+  rtVertex3f(-1, 1, 0);
   rtEnd();
   rtBegin(RT_TRIANGLES); // a later list of the object goes on with what was set
-  rtVertex3f(-1, -1, 1), rtVertex3f(-0.5f, -1, 1), rtVertex3f(-1, -0.5f, 1);
+  rtVertex3f(-1, -1, 1);
+  rtVertex3f(-0.5f, -1, 1);
+  rtVertex3f(-1, -0.5f, 1);
   rtEnd();
   rtEndObject();
   rtInstantiateObject(object);
@@ -178,8 +193,10 @@ TEST_F(GeometryParameters, LinesAndNestedAndMovedObjectsHaveThemToo) {
   const RTid object = rtBeginObject(0);
   rtLineWidth(4);
   rtBegin(RT_LINES);
-  rtParameter3f(color, 0, 0, 0), rtVertex3f(-1, 0, 0);
-  rtParameter3f(color, 1, 1, 1), rtVertex3f(1, 0, 0);
+  rtParameter3f(color, 0, 0, 0);
+  rtVertex3f(-1, 0, 0);
+  rtParameter3f(color, 1, 1, 1);
+  rtVertex3f(1, 0, 0);
   rtEnd();
   rtEndObject();
   const RTid line = rtInstantiateObject(object);
@@ -189,13 +206,18 @@ TEST_F(GeometryParameters, LinesAndNestedAndMovedObjectsHaveThemToo) {
 
   const RTid square = rtBeginObject(0);
   rtBegin(RT_QUADS);
-  rtParameter3f(color, 0, 0, 1), rtVertex3f(-1, -1, 0);
-  rtParameter3f(color, 1, 0, 1), rtVertex3f(1, -1, 0), rtVertex3f(1, 1, 0);
-  rtParameter3f(color, 0, 0, 1), rtVertex3f(-1, 1, 0);
+  rtParameter3f(color, 0, 0, 1);
+  rtVertex3f(-1, -1, 0);
+  rtParameter3f(color, 1, 0, 1);
+  rtVertex3f(1, -1, 0);
+  rtVertex3f(1, 1, 0);
+  rtParameter3f(color, 0, 0, 1);
+  rtVertex3f(-1, 1, 0);
   rtEnd();
   rtEndObject();
   const RTid group = rtBeginObject(0);
-  rtScaled(0.5, 0.5, 1), rtTranslated(1, 0, 0);
+  rtScaled(0.5, 0.5, 1);
+  rtTranslated(1, 0, 0);
   rtInstantiateObject(square);
   rtEndObject();
   const RTid place = rtInstantiateObject(group);
@@ -279,11 +301,14 @@ TEST_F(GeometryParameters, ARecordingReplaysToTheSameBytes) {
     context = rtNewContext(("threads=1 record=" + path + " shaderpath=\"" + folders() + "\"").c_str());
     ASSERT_NE(context, nullptr);
     rtQuality(RT_SAMPLES_PER_PIXEL, 1);
-    rtTranslated(0, 0, 10), rtOrtho(2), rtLoadIdentity();
+    rtTranslated(0, 0, 10);
+    rtOrtho(2);
+    rtLoadIdentity();
     shader("Varying", "varying");
     const RTid object = rtBeginObject(0);
     rtBegin(RT_QUADS);
-    rtParameter3f(color, 0.5f, 0.25f, 1), rtParameter2f(pair, 1, 2);
+    rtParameter3f(color, 0.5f, 0.25f, 1);
+    rtParameter2f(pair, 1, 2);
     squareVertices();
     rtEnd();
     rtEndObject();

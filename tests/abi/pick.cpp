@@ -24,7 +24,8 @@ class Pick : public SmallScene {
 };
 
 TEST_F(Pick, AgreesWithARayQuery) {
-  rtTranslated(0.3, -0.2, 3), rtRotated(10, 0, 1, 0);
+  rtTranslated(0.3, -0.2, 3);
+  rtRotated(10, 0, 1, 0);
   rtPerspective(40);
   rtFrameBuffer(40, 20, RT_RGBA);
   rtRender();
@@ -64,7 +65,8 @@ TEST_F(Pick, AgreesWithARayQuery) {
 
 TEST_F(Pick, SeesThroughBacksThatAreNotThere) {
   const RTid object = rtBeginObject(0);
-  rtEnable(RT_CULL_FACE), rtEnable(RT_CW_FRONT);
+  rtEnable(RT_CULL_FACE);
+  rtEnable(RT_CW_FRONT);
   rtLoadName(8);
   rtTranslated(0, 0, 1);
   rtBegin(RT_QUADS);
@@ -89,7 +91,8 @@ TEST_F(Pick, FarFromTheWorldsOriginItIsAsExactAsThePicture) {
   rtEnd();
   rtEndObject();
   const RTid far = rtInstantiateObject(object);
-  rtTranslated(0, 0, 10), rtOrtho(2);
+  rtTranslated(0, 0, 10);
+  rtOrtho(2);
   rtFrameBuffer(16, 16, RT_RGBA);
   rtRender();
   RThit hit{};

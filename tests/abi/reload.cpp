@@ -22,7 +22,9 @@ class Reload : public SmallScene {
     install(1);
     SmallScene::SetUp();
     id = shader("Versioned", "version");
-    color = rtParameterHandle("color"), gone = rtParameterHandle("gone"), shift = rtParameterHandle("shift");
+    color = rtParameterHandle("color");
+    gone = rtParameterHandle("gone");
+    shift = rtParameterHandle("shift");
     const RTid object = rtBeginObject(0);
     rtBegin(RT_QUADS);
     squareVertices();
@@ -69,11 +71,13 @@ TEST_F(Reload, TheNewFunctionsHaveTheValuesOfTheOldNames) {
   // Handles stay, names are looked up anew, and what is gone is there without a name and without effect.
   EXPECT_EQ(rtParameterHandle("color"), color);
   rtParameter3f(color, 0, 0, 0);
-  rtParameter1f(gone, 5), rtParameter1f(shift, 5);
+  rtParameter1f(gone, 5);
+  rtParameter1f(shift, 5);
   EXPECT_NEAR(picture(1)[0], 0.5f, 1e-6);
   const int fresh = rtParameterHandle("shift");
   EXPECT_NE(fresh, shift);
-  rtParameter2f(fresh, 0.75f, 0), rtParameter1f(rtParameterHandle("gain"), 3);
+  rtParameter2f(fresh, 0.75f, 0);
+  rtParameter1f(rtParameterHandle("gain"), 3);
   EXPECT_NEAR(picture(1)[0], 0.75f, 1e-6);
   EXPECT_EQ(rtGetError(), RTenum(RT_NO_ERROR));
   EXPECT_EQ(rtParameterHandle("gone"), -1);

@@ -111,7 +111,8 @@ struct Batch {
       hits.direction[c] = in[3 + c].data();
       hits.geometric[c] = in[6 + c].data();
       hits.normal[c] = in[9 + c].data();
-      out[c] = Lanes(n), out[3 + c] = Lanes(n);
+      out[c] = Lanes(n);
+      out[3 + c] = Lanes(n);
       shading.radiance[c] = out[c].data();
       shading.transmission[c] = out[3 + c].data();
     }

@@ -109,7 +109,9 @@ rts::Color furnace(const std::vector<LobeAtHit>& lobes, int side) {
         const rts::Sample s = lobe.sample({u, v});
         if (!(s.density > 0)) continue;
         const double clear = rts::dot(s.direction, lobe.normal()) < 0 ? 1 / (double(eta) * eta) : 1;
-        sum[0] += clear * s.quotient.r, sum[1] += clear * s.quotient.g, sum[2] += clear * s.quotient.b;
+        sum[0] += clear * s.quotient.r;
+        sum[1] += clear * s.quotient.g;
+        sum[2] += clear * s.quotient.b;
       }
     const double n = double(side) * side;
     all = all + lobe.weight() * rts::Color{float(sum[0] / n), float(sum[1] / n), float(sum[2] / n)};

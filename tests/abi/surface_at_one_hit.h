@@ -102,7 +102,10 @@ class SurfaceAtOneHit {
     host_.local = [](RtsBatch* b, float* const position[3], float* const normal[3]) {
       const rts::Vec3 p = static_cast<Host&>(fake(b)).place;
       const float at[3] = {p.x, p.y, p.z};
-      for (uint32_t k = 0; k < 3; k++) position[k][0] = at[k], normal[k][0] = k == 2;
+      for (uint32_t k = 0; k < 3; k++) {
+        position[k][0] = at[k];
+        normal[k][0] = k == 2;
+      }
     };
     host_.place = place;
     class_.surface(&host_, host_.batch(), &hits_, &out_);

@@ -46,7 +46,8 @@ void drawNoon() {
   const RTid trunk = box(paint(.3f, .25f, .2f), .05, .6, .05), crown = ball(paint(.1f, .3f, .1f), .3f);
   for (unsigned i = 0; i < 5; i++) {
     const double x = 3 * chance(i, 0) - 1.5, z = -2 * chance(i, 1);
-    put(trunk, x, .1, z, 0), put(crown, x, .8, z, 0);
+    put(trunk, x, .1, z, 0);
+    put(crown, x, .8, z, 0);
   }
   eyeAt(.5, 1.4, 4, 38);
 }
@@ -98,8 +99,9 @@ void drawPassage() {
   rtScaled(1, 1, 3);
   roomOf(tan, white, white, white, white);
   rtPopMatrix();
-  put(box(white, .8, 1, .05), -.2, 0, 1.2, 0), put(box(white, .8, 1, .05), .2, 0, 0, 0),
-      put(box(white, .8, 1, .05), -.2, 0, -1.2, 0);
+  put(box(white, .8, 1, .05), -.2, 0, 1.2, 0);
+  put(box(white, .8, 1, .05), .2, 0, 0, 0);
+  put(box(white, .8, 1, .05), -.2, 0, -1.2, 0);
   lampAbove(0, .95, -2.2, .3, 50);
   eyeAt(.85, .1, 2.8, 50);
 }

@@ -16,7 +16,8 @@ struct Held { // of a promise: how many scenes
   int held = 0, all = 0;
   std::string not_;
   void add(bool good, const std::string& name) {
-    all++, held += good;
+    all++;
+    held += good;
     if (!good) not_ += (not_.empty() ? "" : ", ") + name;
   }
 };

@@ -36,7 +36,10 @@ void square(RTid shader, double half) {
   const RTid object = rtBeginObject(0);
   rtBindShader(shader);
   rtBegin(RT_QUADS);
-  rtVertex3d(-half, -half, 0), rtVertex3d(half, -half, 0), rtVertex3d(half, half, 0), rtVertex3d(-half, half, 0);
+  rtVertex3d(-half, -half, 0);
+  rtVertex3d(half, -half, 0);
+  rtVertex3d(half, half, 0);
+  rtVertex3d(-half, half, 0);
   rtEnd();
   rtEndObject();
   rtBindShader(0);
@@ -52,7 +55,9 @@ RTid box(RTid shader, double x, double y, double z) {
       for (int corner = 0; corner < 4; corner++) {
         const int a = corner == 1 || corner == 2 ? 1 : -1, b = corner >= 2 ? 1 : -1;
         double v[3];
-        v[axis] = side, v[(axis + 1) % 3] = side * a, v[(axis + 2) % 3] = b;
+        v[axis] = side;
+        v[(axis + 1) % 3] = side * a;
+        v[(axis + 2) % 3] = b;
         rtVertex3d(x * v[0], y * v[1], z * v[2]);
       }
   rtEnd();
@@ -102,8 +107,11 @@ void roomOf(RTid floor, RTid ceiling, RTid left, RTid right, RTid back) {
     square(shader, 1);
     rtPopMatrix();
   };
-  wall(0, 1, 0, 0, back), wall(-90, 1, 0, 0, floor), wall(90, 1, 0, 0, ceiling);
-  wall(90, 0, 1, 0, left), wall(-90, 0, 1, 0, right);
+  wall(0, 1, 0, 0, back);
+  wall(-90, 1, 0, 0, floor);
+  wall(90, 1, 0, 0, ceiling);
+  wall(90, 0, 1, 0, left);
+  wall(-90, 0, 1, 0, right);
 }
 
 void sky(int colors, const float* color, const float* angle, double tilt, float turnOfAxis) {
@@ -134,7 +142,9 @@ void eyeAt(double x, double y, double z, double degrees) {
 
 void lensAt(double x, double y, double z, double degrees, float radius, float focus) {
   const RTid lens = shaderOf("ThinLens");
-  set(lens, "fovy", float(degrees)), set(lens, "radius", radius), set(lens, "focus", focus);
+  set(lens, "fovy", float(degrees));
+  set(lens, "radius", radius);
+  set(lens, "focus", focus);
   rtPushMatrix();
   rtLookAt(x, y, z, 0, 0, 0, 0, 1, 0);
   rtUseCamera(lens);

@@ -134,7 +134,8 @@ void drawTexture() {
   rtBegin(RT_QUADS);
   for (int i = 0; i < 4; i++) {
     const int x = i == 1 || i == 2 ? 1 : -1, z = i >= 2 ? -1 : 1;
-    rtTexCoord2f(6.f * float(x), 6.f * float(z)), rtVertex3d(5 * x, 0, 5 * z);
+    rtTexCoord2f(6.f * float(x), 6.f * float(z));
+    rtVertex3d(5 * x, 0, 5 * z);
   }
   rtEnd();
   rtEndObject();

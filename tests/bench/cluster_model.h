@@ -43,7 +43,8 @@ class CostMap {
       at = end;
       return x;
     };
-    width_ = uint32_t(number()), height_ = uint32_t(number());
+    width_ = uint32_t(number());
+    height_ = uint32_t(number());
     cells_.resize(size_t(width_) * height_);
     for (double& c : cells_) c = number();
     normalise();
@@ -94,7 +95,8 @@ class CostMap {
 struct Server {
   double free = 0, busy = 0;
   double take(double now, double seconds) {
-    free = std::max(free, now) + seconds, busy += seconds;
+    free = std::max(free, now) + seconds;
+    busy += seconds;
     return free;
   }
 };
@@ -128,7 +130,10 @@ class Results {
   explicit Results(const edit::FrameSettingsT& frame) : frame_(frame) {}
   Frames make(uint64_t session, Epoch epoch, const LeasedJob& job, size_t pixels, double seconds) {
     message::Result result;
-    result.epoch = epoch, result.lease = job.lease, result.seconds = seconds, result.bytes = bytes(job, pixels);
+    result.epoch = epoch;
+    result.lease = job.lease;
+    result.seconds = seconds;
+    result.bytes = bytes(job, pixels);
     return encode(session, std::move(result));
   }
 
@@ -141,7 +146,8 @@ class Results {
       result.sums.resize(pixels);
       for (PixelSums& s : result.sums) {
         for (double& c : s.rgba) c = double(random() >> 11) * 0x1p-50;
-        s.rgba[3] = job.job.count, s.samples = job.job.count;
+        s.rgba[3] = job.job.count;
+        s.samples = job.job.count;
       }
       known = encodeResult(frame_, job.job, result);
     }

@@ -101,7 +101,8 @@ class Simulation {
       if (before == finished_ || finished_ != unmeasured()) continue;
       began = idleFrom_ = lastEnd_;
       outcome.first = ends_.front() - firstCommit_;
-      mark_ = counts(), idleBegin_ = idleGaps_ = idleEnd_ = 0;
+      mark_ = counts();
+      idleBegin_ = idleGaps_ = idleEnd_ = 0;
     }
     if (finished_ < o_.frames) throw std::runtime_error("the simulation has come to a halt");
     const Counts end = counts();
@@ -113,12 +114,15 @@ class Simulation {
     }
     outcome.frame = all / n;
     outcome.efficiency = o_.work / power / outcome.frame;
-    outcome.begin = idleBegin_ / power / all, outcome.gaps = idleGaps_ / power / all, outcome.end = idleEnd_ / power / all;
+    outcome.begin = idleBegin_ / power / all;
+    outcome.gaps = idleGaps_ / power / all;
+    outcome.end = idleEnd_ / power / all;
     outcome.master = (end.cpu - mark_.cpu) / all;
     outcome.merging = (end.merging - mark_.merging) / all / std::max(o_.mergers, 1u);
     outcome.network = std::max(end.in - mark_.in, end.out - mark_.out) * 8 / o_.network / all;
     outcome.socket = (end.socket - mark_.socket) / all;
-    outcome.in = (end.in - mark_.in) / all, outcome.out = (end.out - mark_.out) / all;
+    outcome.in = (end.in - mark_.in) / all;
+    outcome.out = (end.out - mark_.out) / all;
     outcome.jobs = double(end.jobs - mark_.jobs) / all;
     outcome.perJob = (end.work - mark_.work) / double(std::max<uint64_t>(end.jobs - mark_.jobs, 1));
     outcome.again = (master_->totals().reissued - mark_.again) / uint64_t(n);
@@ -160,8 +164,12 @@ class Simulation {
 
   static edit::FrameSettingsT settingsOf(const Options& o) {
     edit::FrameSettingsT f;
-    f.width = o.width, f.height = o.height, f.samples = o.samples, f.depth = 5;
-    f.channels = RT_RGBA, f.transport = RT_TRANSPORT_PATH;
+    f.width = o.width;
+    f.height = o.height;
+    f.samples = o.samples;
+    f.depth = 5;
+    f.channels = RT_RGBA;
+    f.transport = RT_TRANSPORT_PATH;
     f.tile = uint8_t(std::min(o.tile, 128u));
     return f;
   }
@@ -200,7 +208,9 @@ class Simulation {
   }
   void turn() {
     constexpr size_t most = 256; // messages before anything is handed out
-    turnBegan_ = events_.now, turnCpu_ = cpuSeconds(), paused_ = 0;
+    turnBegan_ = events_.now;
+    turnCpu_ = cpuSeconds();
+    paused_ = 0;
     for (size_t i = 0; i < most && !inbox_.empty(); i++) {
       const Call call = std::move(inbox_.front());
       inbox_.pop_front();
@@ -208,7 +218,8 @@ class Simulation {
     }
     const double next = master_->advance(clock());
     const double took = clock() - turnBegan_;
-    masterCpu_ += took, masterFree_ = turnBegan_ + took;
+    masterCpu_ += took;
+    masterFree_ = turnBegan_ + took;
     if (!o_.ideal) master_->busy(took);
     look();
     awake_ = false;
@@ -250,7 +261,9 @@ class Simulation {
       if (!state.over) return;
       if (!state.failure.empty()) throw std::runtime_error(state.failure);
       master_->forget(epoch);
-      oldest_ = epoch + 1, finished_++, lastEnd_ = masterFree_;
+      oldest_ = epoch + 1;
+      finished_++;
+      lastEnd_ = masterFree_;
       ends_.push_back(lastEnd_);
       if (finished_ < o_.frames) commit();
     }
@@ -288,7 +301,10 @@ class Simulation {
     Machine& m = workers_[w];
     Message message;
     if (const std::string wrong = decode(std::move(frames), message); !wrong.empty()) throw std::runtime_error(wrong);
-    if (const auto* welcome = std::get_if<message::Welcome>(&message.body)) m.session = welcome->session, joined_++;
+    if (const auto* welcome = std::get_if<message::Welcome>(&message.body)) {
+      m.session = welcome->session;
+      joined_++;
+    }
     if (const auto* scene = std::get_if<message::Scene>(&message.body)) {
       reply(w, message::Need{scene->epoch, {}});
       if (scene->prepare) m.queue.push_back({{}, scene->epoch, true});
@@ -322,7 +338,9 @@ class Simulation {
         events_.at(events_.now + o_.prepare * m.speed, [this, w, item] {
           workers_[w].preparing = false;
           message::Ready ready;
-          ready.epoch = item.epoch, ready.facts.camera = true, ready.transport = RT_TRANSPORT_PATH;
+          ready.epoch = item.epoch;
+          ready.facts.camera = true;
+          ready.transport = RT_TRANSPORT_PATH;
           reply(w, std::move(ready));
           begin(w);
         });
@@ -367,7 +385,8 @@ class Simulation {
     m.running.erase(found);
     m.idle.push_back(events_.now);
     if (item.epoch > m.dropped) {
-      jobs_++, work_ += seconds;
+      jobs_++;
+      work_ += seconds;
       const size_t pixels = grid_.at(item.job.job.number).pixels();
       size_t& bytes = resultBytes_[{pixels, item.job.job.count}]; // what is in it is made when it is looked at: less is kept
       if (bytes == 0) bytes = sizeOf(results_.make(m.session, item.epoch, item.job, pixels, seconds));

@@ -89,7 +89,8 @@ class Looking {
       const double asked = secondsSince(begin);
       const vv::FrameSize size = pacing.next(options_.width, options_.height, true, 64);
       LiveFrame frame = whole(size.samples);
-      frame.width = size.width, frame.height = size.height;
+      frame.width = size.width;
+      frame.height = size.height;
       frame.view.viewer = turned(.2 * std::sin(asked));
       const LivePicture picture = finish(frame);
       pacing.took(size, picture.seconds, picture.alone, picture.overhead, picture.samples);
@@ -97,7 +98,8 @@ class Looking {
       const double frameTime = 1 / options_.fps;
       if (now - last < frameTime) std::this_thread::sleep_for(std::chrono::duration<double>(frameTime - (now - last)));
       if (asked > options_.seconds / 4) { // when it has settled
-        intervals.push_back(std::max(now - last, frameTime)), latencies.push_back(now - asked);
+        intervals.push_back(std::max(now - last, frameTime));
+        latencies.push_back(now - asked);
         sizes.push_back(size);
         overhead += picture.overhead;
       }
@@ -128,7 +130,8 @@ class Looking {
         if (!picture.finished) continue;
         pacing.took({picture.width, picture.height, 1}, picture.seconds, picture.alone, picture.overhead, picture.samples);
         if (now < settled) continue;
-        ends.push_back(now), seconds.push_back(picture.seconds);
+        ends.push_back(now);
+        seconds.push_back(picture.seconds);
         pixels.push_back(double(picture.width) * picture.height * picture.samples);
       }
     };
@@ -142,7 +145,8 @@ class Looking {
       vv::FrameSize size = pacing.next(options_.width, options_.height, true, 64);
       if (!paced) size = {options_.width, options_.height, 1};
       LiveFrame frame = whole(size.samples);
-      frame.width = size.width, frame.height = size.height;
+      frame.width = size.width;
+      frame.height = size.height;
       frame.view.viewer = turned(.2 * std::sin(now));
       next = std::max(next + period, now);
       live_.start(frame);
@@ -167,7 +171,8 @@ class Looking {
       live_.cancel();
       while (live_.state() != State::idle) std::this_thread::sleep_for(std::chrono::microseconds(100));
       const double took = secondsSince(begin);
-      most = std::max(most, took), all += took;
+      most = std::max(most, took);
+      all += took;
     }
     fmt::print("  given up    in {:.1f} ms (longest {:.1f})\n", 1000 * all / times, 1000 * most);
   }
@@ -203,13 +208,17 @@ class Looking {
  private:
   static RenderSettings settings(const Options& o, std::shared_ptr<Cluster> cluster) {
     RenderSettings s;
-    s.width = o.width, s.height = o.height, s.threads = o.threads;
+    s.width = o.width;
+    s.height = o.height;
+    s.threads = o.threads;
     s.cluster = std::move(cluster);
     return s;
   }
   LiveFrame whole(int samples) const {
     LiveFrame frame;
-    frame.width = options_.width, frame.height = options_.height, frame.samples = samples;
+    frame.width = options_.width;
+    frame.height = options_.height;
+    frame.samples = samples;
     return frame;
   }
   xvrml::CameraSettings turned(double angle) const {
@@ -217,7 +226,8 @@ class Looking {
     const double cosine = std::cos(angle), sine = std::sin(angle);
     for (int k = 0; k < 3; k++) {
       const double x = camera_.matrix[k], z = camera_.matrix[8 + k];
-      c.matrix[k] = cosine * x - sine * z, c.matrix[8 + k] = sine * x + cosine * z;
+      c.matrix[k] = cosine * x - sine * z;
+      c.matrix[8 + k] = sine * x + cosine * z;
     }
     return c;
   }
@@ -234,7 +244,8 @@ class Looking {
     live_.change([&](RenderSettings& s) { s.progressive = progressive; });
     const std::clock_t begin = std::clock();
     LiveFrame frame = whole(samples);
-    frame.width = (frame.width + 1) / 2, frame.height = (frame.height + 1) / 2;
+    frame.width = (frame.width + 1) / 2;
+    frame.height = (frame.height + 1) / 2;
     finish(frame);
     const double seconds = double(std::clock() - begin) / CLOCKS_PER_SEC;
     live_.change([&](RenderSettings& s) { s.progressive = true; });

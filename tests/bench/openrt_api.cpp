@@ -35,7 +35,10 @@ void beginEnd(benchmark::State& state) {
     rtBegin(RT_TRIANGLES);
     for (size_t i = 0; i < vertices; i++) {
       if (state.range(0) >= 1) rtNormal3f(0, 0, 1);
-      if (state.range(0) >= 2) rtTexCoord2f(0.5f, 0.5f), rtColor3f(1, 0, 0);
+      if (state.range(0) >= 2) {
+        rtTexCoord2f(0.5f, 0.5f);
+        rtColor3f(1, 0, 0);
+      }
       rtVertex3f(float(i), float(i % 3 == 1), float(i % 3 == 2));
     }
     rtEnd();
@@ -55,7 +58,9 @@ void beginEndPerTriangle(benchmark::State& state) {
     const RTid object = rtBeginObject(0);
     for (size_t i = 0; i < triangles; i++) {
       rtBegin(RT_TRIANGLES);
-      rtVertex3f(float(i), 0, 0), rtVertex3f(float(i + 1), 0, 0), rtVertex3f(float(i), 1, 0);
+      rtVertex3f(float(i), 0, 0);
+      rtVertex3f(float(i + 1), 0, 0);
+      rtVertex3f(float(i), 1, 0);
       rtEnd();
     }
     rtEndObject();

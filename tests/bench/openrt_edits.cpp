@@ -188,7 +188,8 @@ void forest(benchmark::State& state) {
     }
     look(0);
     rtRender();
-    bytes = double(stats().bvhBytes) / 1e6, resident = residentMegabytes() - before;
+    bytes = double(stats().bvhBytes) / 1e6;
+    resident = residentMegabytes() - before;
     rtDeleteContext(context);
   }
   state.counters["bvhMB"] = bytes;

@@ -82,8 +82,12 @@ void ring() {
     };
     for (int i = 0; i < around; i++)
       for (int j = 0; j < across; j++) {
-        vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1);
-        vertex(i, j), vertex(i + 1, j + 1), vertex(i, j + 1);
+        vertex(i, j);
+        vertex(i + 1, j);
+        vertex(i + 1, j + 1);
+        vertex(i, j);
+        vertex(i + 1, j + 1);
+        vertex(i, j + 1);
       }
   });
 }

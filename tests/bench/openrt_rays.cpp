@@ -82,8 +82,12 @@ struct Raw {
       const float nl = 1 / std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
       const float side = n[0] * d[0] + n[1] * d[1] + n[2] * d[2] > 0 ? -nl : nl;
       float w2 = 0;
-      for (int k = 0; k < 3; k++)
-        n[k] *= side, p[k] = float(eye[k]) + r.ray.tfar * d[k] + 1e-4f * n[k], w[k] = light[k] - p[k], w2 += w[k] * w[k];
+      for (int k = 0; k < 3; k++) {
+        n[k] *= side;
+        p[k] = float(eye[k]) + r.ray.tfar * d[k] + 1e-4f * n[k];
+        w[k] = light[k] - p[k];
+        w2 += w[k] * w[k];
+      }
       const float distance = std::sqrt(w2), cosine = (n[0] * w[0] + n[1] * w[1] + n[2] * w[2]) / distance;
       if (cosine <= 0) continue;
       RTCRay shadow{p[0], p[1], p[2], 0, w[0] / distance, w[1] / distance, w[2] / distance, 0, distance, ~0u, 0, 0};
@@ -161,7 +165,8 @@ void direct(benchmark::State& state, int threads, bool robust, int dynamic = 0, 
     rtRender();
     const double c = seconds();
     state.SetIterationTime(c - b);
-    rawTime += b - a, ourTime += c - b;
+    rawTime += b - a;
+    ourTime += c - b;
   }
   rtReadPixels(RT_RGBA, ours.data(), ours.size());
   double difference = 0;

@@ -57,10 +57,15 @@ __attribute__((visibility("default"))) double raw_cast(const void* scene, const 
         q.hit.primID = RTC_INVALID_GEOMETRY_ID;
         q.hit.u = q.hit.v = q.hit.Ng_x = q.hit.Ng_y = q.hit.Ng_z = 0;
         raw::intersect(s, q);
-        t[i] = q.ray.tfar, primitive[i] = q.hit.primID, uv[2 * i] = q.hit.u, uv[2 * i + 1] = q.hit.v;
+        t[i] = q.ray.tfar;
+        primitive[i] = q.hit.primID;
+        uv[2 * i] = q.hit.u;
+        uv[2 * i + 1] = q.hit.v;
         const float l = std::sqrt(q.hit.Ng_x * q.hit.Ng_x + q.hit.Ng_y * q.hit.Ng_y + q.hit.Ng_z * q.hit.Ng_z);
         const float k = l > 0 ? 1 / l : 0;
-        normal[3 * i] = k * q.hit.Ng_x, normal[3 * i + 1] = k * q.hit.Ng_y, normal[3 * i + 2] = k * q.hit.Ng_z;
+        normal[3 * i] = k * q.hit.Ng_x;
+        normal[3 * i + 1] = k * q.hit.Ng_y;
+        normal[3 * i + 2] = k * q.hit.Ng_z;
       }
   };
   std::vector<std::thread> pool;

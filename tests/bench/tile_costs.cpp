@@ -28,12 +28,15 @@ void print(const char* recording, uint32_t samples) {
   constexpr uint32_t edge = 16;
   ShaderRegistry shaders(shaderFolders({}));
   BackendOptions options;
-  options.threads = 1, options.shaders = &shaders;
+  options.threads = 1;
+  options.shaders = &shaders;
   LocalBackend backend(options);
   const auto reader = openRecording(recording, &shaders);
   while (const auto commit = reader->next()) backend.apply(commit);
   auto scene = std::make_shared<RenderScene>(*backend.prepared());
-  scene->frame.tile = edge, scene->frame.samples = samples, scene->frame.progressive = false;
+  scene->frame.tile = edge;
+  scene->frame.samples = samples;
+  scene->frame.progressive = false;
   FrameWork work(scene->frame, FrameFacts{true, false}, 1); // light from lamps is no tile's
   JobRunner runner(scene);
   const std::atomic<bool> never{false};

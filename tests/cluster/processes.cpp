@@ -157,7 +157,11 @@ TEST(ClusterProcesses, AnAnimationIsTheSameFrameByFrame) {
     const Context context("threads=1");
     World world;
     world.look(look);
-    for (int i = 0; i < frames; i++) world.move(.1 * i), rtRender(), alone.push_back(pixels(look));
+    for (int i = 0; i < frames; i++) {
+      world.move(.1 * i);
+      rtRender();
+      alone.push_back(pixels(look));
+    }
   }
   for (const char* how : {"split=auto", "split=frames", "split=samples local=0"}) {
     SCOPED_TRACE(how);
@@ -253,7 +257,8 @@ TEST(ClusterProcesses, ARecordingBesideIsThatOfTheSameScene) {
   }
   const auto bytes = [](const std::filesystem::path& path) { return std::filesystem::file_size(path); };
   EXPECT_EQ(bytes(file), bytes(alone));
-  std::filesystem::remove(file), std::filesystem::remove(alone);
+  std::filesystem::remove(file);
+  std::filesystem::remove(alone);
 }
 
 TEST(ClusterProcesses, RequiredWorkersThatAreMissingAreAnError) {

@@ -71,7 +71,8 @@ World::World() {
   rtLoadName(1);
   rtDrawElements(RT_TRIANGLES, corners.size(), corners.data(), points.size() / 3);
   rtEndObject();
-  rtVertexPointer(3, RT_FLOAT, 0, nullptr), rtTexCoordPointer(2, RT_FLOAT, 0, nullptr);
+  rtVertexPointer(3, RT_FLOAT, 0, nullptr);
+  rtTexCoordPointer(2, RT_FLOAT, 0, nullptr);
   rtInstantiateObject(floor);
 
   rtBindShader(surface_);

@@ -24,7 +24,9 @@ std::vector<std::string> filesOfClass(const std::string& wanted) {
   for (std::string line; std::getline(table, line);) {
     std::istringstream columns(line);
     std::string folder, path, type;
-    std::getline(columns, folder, '\t'), std::getline(columns, path, '\t'), std::getline(columns, type, '\t');
+    std::getline(columns, folder, '\t');
+    std::getline(columns, path, '\t');
+    std::getline(columns, type, '\t');
     if (type == wanted) paths.push_back(corpusFolder() + '/' + folder + '/' + path);
   }
   return paths;

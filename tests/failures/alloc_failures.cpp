@@ -227,7 +227,10 @@ class Sweep {
       std::printf("fault: without any failure: another picture each time\n");
       return 1;
     }
-    if (tally_.all == 0) std::printf("%llu allocations\n", static_cast<unsigned long long>(all)), std::fflush(stdout);
+    if (tally_.all == 0) {
+      std::printf("%llu allocations\n", static_cast<unsigned long long>(all));
+      std::fflush(stdout);
+    }
     tally_.all = all;
     constexpr uint64_t few = 120;
     const uint64_t last = std::min(options_.to, all), step = options_.quick ? std::max<uint64_t>(1, all / few) : 1;
@@ -247,7 +250,10 @@ class Sweep {
   static constexpr size_t batch = 8; // failures between two looks at whether all is as before
 
   Outcome attempt(uint64_t number) {
-    if (options_.verbose) std::printf("%llu\n", static_cast<unsigned long long>(number)), std::fflush(stdout);
+    if (options_.verbose) {
+      std::printf("%llu\n", static_cast<unsigned long long>(number));
+      std::fflush(stdout);
+    }
     tally_.at = number;
     failing_allocator::arm(number);
     Outcome outcome = work(path_);
@@ -320,7 +326,10 @@ bool watch(Sweep& sweep, Tally& tally) {
     while (waitpid(process, &status, WNOHANG) == 0) {
       const timespec pause = {0, 50'000'000};
       nanosleep(&pause, nullptr);
-      if (const uint64_t next = tally.next; next != last) last = next, since = time(nullptr);
+      if (const uint64_t next = tally.next; next != last) {
+        last = next;
+        since = time(nullptr);
+      }
       if (time(nullptr) - since <= patience) continue;
       hangs = true;
       kill(process, SIGKILL);

@@ -61,7 +61,10 @@ struct Game {
     const auto add = [&](auto&& edit) { commit->edits.edits.emplace_back(new edit::EditT)->any.Set(std::move(edit)); };
     if (in.flip()) {
       edit::TextureT texture;
-      texture.id = uint32_t(epoch + 1), texture.components = 4, texture.width = texture.height = 2, texture.texels = 10 + epoch;
+      texture.id = uint32_t(epoch + 1);
+      texture.components = 4;
+      texture.width = texture.height = 2;
+      texture.texels = 10 + epoch;
       commit->arrays[texture.texels] = array;
       add(std::move(texture));
     }
@@ -69,8 +72,12 @@ struct Game {
     constexpr uint32_t channels[] = {RT_RGBA, RT_RGBA | RT_VARIANCE, RT_RGBA | RT_ERROR,
                                      RT_RGBA | RT_DEPTH | RT_POSITION | RT_NAME | RT_NORMAL | RT_ALBEDO | RT_ERROR};
     constexpr uint32_t samples[] = {1, 4, 40, 128};
-    frame.width = 7, frame.height = 5, frame.tile = 4, frame.depth = 2;
-    frame.channels = channels[in.below(4)], frame.samples = samples[in.below(4)];
+    frame.width = 7;
+    frame.height = 5;
+    frame.tile = 4;
+    frame.depth = 2;
+    frame.channels = channels[in.below(4)];
+    frame.samples = samples[in.below(4)];
     frame.transport = uint8_t(in.below(RT_TRANSPORT_LIGHT + 1));
     frame.progressive = in.flip();
     if (in.flip()) frame.targetError = 0.1f;
@@ -95,11 +102,25 @@ struct Game {
     const double a = in.real(), b = in.real(), c = in.real();
     for (PixelSums& s : result.sums)
       for (size_t k = 0; k < 3; k++) {
-        s.rgba[k] = a, s.first[k] = b, s.delta[k] = c, s.delta2[k] = a, s.normal[k] = b, s.albedo[k] = c;
-        s.closed[k] = a, s.closed2[k] = b, s.closed3[k] = c, s.closed4[k] = a, s.grey[k] = b;
-        s.largest[k] = float(c), s.position[k] = float(a), s.name = float(b), s.depth = float(c), s.random = true;
+        s.rgba[k] = a;
+        s.first[k] = b;
+        s.delta[k] = c;
+        s.delta2[k] = a;
+        s.normal[k] = b;
+        s.albedo[k] = c;
+        s.closed[k] = a;
+        s.closed2[k] = b;
+        s.closed3[k] = c;
+        s.closed4[k] = a;
+        s.grey[k] = b;
+        s.largest[k] = float(c);
+        s.position[k] = float(a);
+        s.name = float(b);
+        s.depth = float(c);
+        s.random = true;
       }
-    result.sums[0].rgba[0] = b, result.sums[0].delta[0] = a; // not all pixels the same
+    result.sums[0].rgba[0] = b;
+    result.sums[0].delta[0] = a; // not all pixels the same
     std::vector<std::byte> bytes = encodeResult(frame, job, result);
     if (in.below(8) == 0 && !bytes.empty()) bytes[in.raw<uint16_t>() % bytes.size()] = std::byte(in.byte());
     return bytes;
@@ -110,7 +131,8 @@ struct Game {
     switch (in.below(12)) {
     case 0: {
       message::Hello hello;
-      hello.library = "fuzz", hello.host = std::string(in.below(200), 'h');
+      hello.library = "fuzz";
+      hello.host = std::string(in.below(200), 'h');
       hello.threads = uint32_t(in.number());
       return hello;
     }
@@ -134,10 +156,13 @@ struct Game {
     message::Result result;
     Job job;
     if (side.jobs.empty() || in.byte() > 250) {
-      result.epoch = of, result.lease = in.number();
+      result.epoch = of;
+      result.lease = in.number();
     } else {
       const auto& [given, leased] = side.jobs[in.below(side.jobs.size())];
-      result.epoch = given, result.lease = leased.lease, job = leased.job;
+      result.epoch = given;
+      result.lease = leased.lease;
+      job = leased.job;
     }
     result.seconds = in.real();
     result.camera = in.number();
@@ -179,7 +204,8 @@ struct Game {
         side.there = true;
         master->joined(peer, "somewhere", now);
         message::Hello hello;
-        hello.library = "fuzz", hello.threads = uint32_t(1 + in.below(4));
+        hello.library = "fuzz";
+        hello.threads = uint32_t(1 + in.below(4));
         master->message(peer, encode(0, std::move(hello)), now);
       } else {
         say(peer, side);
@@ -198,7 +224,8 @@ struct Game {
     state.work->film().read(RT_RGBA, out);
     RTstats stats{};
     stats.size = sizeof stats;
-    state.work->describeError(stats), state.work->describeLedger(stats);
+    state.work->describeError(stats);
+    state.work->describeLedger(stats);
     if (state.over) master->forget(of);
   }
 };
@@ -211,6 +238,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   game.commit();
   while (!game.in.empty()) game.step();
   for (Epoch epoch = 1; epoch <= game.epoch; epoch++) game.look(epoch);
-  game.master->totals(), game.master->workers();
+  game.master->totals();
+  game.master->workers();
   return 0;
 }

@@ -37,7 +37,10 @@ void take(message::Scene& scene) {
 void take(const message::Result& result) {
   for (const uint32_t channels : {uint32_t(RT_RGBA), uint32_t(RT_RGBA | RT_DEPTH | RT_NORMAL | RT_VARIANCE | RT_ERROR)}) {
     edit::FrameSettingsT frame;
-    frame.width = 5, frame.height = 3, frame.samples = 8, frame.channels = channels;
+    frame.width = 5;
+    frame.height = 3;
+    frame.samples = 8;
+    frame.channels = channels;
     Job job;
     job.count = 8;
     JobResult out;

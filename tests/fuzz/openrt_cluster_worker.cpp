@@ -58,14 +58,19 @@ struct Game final : Machine {
     const auto add = [&](auto&& edit) { all.edits.emplace_back(new edit::EditT)->any.Set(std::move(edit)); };
     if (in.byte() < 250) {
       edit::FrameSettingsT settings;
-      settings.width = uint32_t(1 + in.number()), settings.height = uint32_t(1 + in.number());
-      settings.channels = RT_RGBA | RT_DEPTH, settings.samples = uint32_t(1 + in.number()), settings.depth = 2;
+      settings.width = uint32_t(1 + in.number());
+      settings.height = uint32_t(1 + in.number());
+      settings.channels = RT_RGBA | RT_DEPTH;
+      settings.samples = uint32_t(1 + in.number());
+      settings.depth = 2;
       add(std::move(settings));
     }
     for (size_t i = in.below(4); i > 0; i--) {
       edit::TextureT texture;
-      texture.id = uint32_t(in.number()), texture.components = 4;
-      texture.width = texture.height = uint32_t(in.below(arrays)), texture.texels = 1 + in.below(arrays);
+      texture.id = uint32_t(in.number());
+      texture.components = 4;
+      texture.width = texture.height = uint32_t(in.below(arrays));
+      texture.texels = 1 + in.below(arrays);
       if (in.byte() < 250) scene.arrays.push_back(name(texture.texels, in.below(arrays)));
       add(std::move(texture));
     }
@@ -93,8 +98,11 @@ struct Game final : Machine {
       message::Jobs m{of, {}};
       for (size_t i = in.below(5); i > 0; i--) {
         LeasedJob job{in.number(), {}};
-        job.job.kind = Job::Kind(in.below(2)), job.job.number = uint32_t(in.number());
-        job.job.first = uint32_t(in.number()), job.job.count = uint32_t(in.number()), job.job.replicates.shift = in.byte() & 31;
+        job.job.kind = Job::Kind(in.below(2));
+        job.job.number = uint32_t(in.number());
+        job.job.first = uint32_t(in.number());
+        job.job.count = uint32_t(in.number());
+        job.job.replicates.shift = in.byte() & 31;
         m.jobs.push_back(job);
       }
       return m;
@@ -125,8 +133,10 @@ struct Game final : Machine {
       const auto [epoch, settings] = toPrepare.front();
       toPrepare.pop_front();
       Prepared prepared;
-      prepared.facts.camera = in.flip(), prepared.facts.lamps = in.flip();
-      prepared.frame = settings, prepared.frame.transport = RT_TRANSPORT_DIRECT;
+      prepared.facts.camera = in.flip();
+      prepared.facts.lamps = in.flip();
+      prepared.frame = settings;
+      prepared.frame.transport = RT_TRANSPORT_DIRECT;
       if (in.byte() > 230) return worker.failed(epoch, "why");
       return worker.ready(epoch, prepared);
     }

@@ -23,7 +23,8 @@ void check(const Mesh& mesh) {
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) try {
   LoadOptions options;
-  options.limits.expandedNodes = 10'000, options.limits.triangles = 100'000;
+  options.limits.expandedNodes = 10'000;
+  options.limits.triangles = 100'000;
   const std::string text = "#VRML V2.0 utf8\n" + std::string(reinterpret_cast<const char*>(data), size);
   const auto world = loadWorldFromMemory(text, "fuzz.wrl", options);
   Diagnostics diagnostics;

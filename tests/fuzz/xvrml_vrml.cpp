@@ -3,7 +3,9 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) try {
   xvrml::LoadOptions options;
-  options.limits.expandedNodes = 100'000, options.limits.worldBytes = 32 << 20, options.limits.inflateBytes = 4 << 20;
+  options.limits.expandedNodes = 100'000;
+  options.limits.worldBytes = 32 << 20;
+  options.limits.inflateBytes = 4 << 20;
   const auto world = xvrml::loadWorldFromMemory({reinterpret_cast<const char*>(data), size}, "fuzz.wrl", options);
   const std::string text = xvrml::writeWorld(*world);
   const auto again = xvrml::loadWorldFromMemory(text, "fuzz.wrl", options);

@@ -206,7 +206,8 @@ TEST(VrmlGroups, InstancesLookLikeCopies) {
     return body;
   };
   SceneOptions options;
-  options.width = 64, options.height = 48;
+  options.width = 64;
+  options.height = 48;
   Scene shared(world(true), options), copied(world(false), options);
   const CameraSettings camera = Scene::at(0, 0, 12, 0.8);
   const std::vector<Pixel> a = shared.render(camera), b = copied.render(camera);

@@ -81,7 +81,10 @@ void noteComparison(double got, double expected, double tolerance) {
   const double off = std::fabs(got - expected), ratio = tolerance > 0 ? off / tolerance : off > 0 ? INFINITY : 0;
   current.comparisons++;
   if (ratio <= current.ratio) return;
-  current.got = got, current.expected = expected, current.tolerance = tolerance, current.ratio = ratio;
+  current.got = got;
+  current.expected = expected;
+  current.tolerance = tolerance;
+  current.ratio = ratio;
 }
 
 void noteRays(uint64_t rays) { current.rays += rays; }

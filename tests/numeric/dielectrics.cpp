@@ -209,7 +209,8 @@ class Prism : public Dielectrics {
       rtBegin(RT_QUADS);
       for (const auto& corner : {std::array{-1., -1.}, {1., -1.}, {1., 1.}, {-1., 1.}}) {
         double v[3] = {1, 1, 1};
-        v[colour] = scale / 2 + about + 6 * corner[0], v[(colour + 1) % 3] = 6 * corner[1];
+        v[colour] = scale / 2 + about + 6 * corner[0];
+        v[(colour + 1) % 3] = 6 * corner[1];
         rtVertex3d(v[0], v[1], v[2]);
       }
       rtEnd();

@@ -9,7 +9,11 @@ using EditMemory = Scene;
 void patch(RTid object, int n) {
   rtBeginObject(object);
   rtBegin(RT_TRIANGLES);
-  for (int i = 0; i < n; i++) rtVertex3d(i, 0, 0), rtVertex3d(i + 1, 0, 0), rtVertex3d(i, 1, i % 3);
+  for (int i = 0; i < n; i++) {
+    rtVertex3d(i, 0, 0);
+    rtVertex3d(i + 1, 0, 0);
+    rtVertex3d(i, 1, i % 3);
+  }
   rtEnd();
   rtSphere(2);
   rtEndObject();

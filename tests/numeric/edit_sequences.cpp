@@ -143,10 +143,16 @@ class EditSequences : public testing::TestWithParam<int> {
       }
       define(w, t, hints);
     }
-    for (Place& p : w.places) emit(w, p, hints), emitLight(p);
+    for (Place& p : w.places) {
+      emit(w, p, hints);
+      emitLight(p);
+    }
     const RTid floor = rtBeginObject(0);
     rtBegin(RT_QUADS);
-    rtVertex3f(-9, -3, 9), rtVertex3f(9, -3, 9), rtVertex3f(9, -3, -9), rtVertex3f(-9, -3, -9);
+    rtVertex3f(-9, -3, 9);
+    rtVertex3f(9, -3, 9);
+    rtVertex3f(9, -3, -9);
+    rtVertex3f(-9, -3, -9);
     rtEnd();
     rtEndObject();
     rtInstantiateObject(floor);
@@ -163,7 +169,8 @@ class EditSequences : public testing::TestWithParam<int> {
 
   void start(World& w) {
     for (int i = 0; i < 6; i++) w.things.push_back({below(10), below(4) == 0, {}, 0});
-    w.things[0].shape = 3, w.things[0].dynamic = false; // many triangles
+    w.things[0].shape = 3;
+    w.things[0].dynamic = false; // many triangles
     for (int i = 0; i < 3; i++) {
       Thing group{below(2) ? -1 : below(10), below(5) == 0, {}, 0};
       for (int k = 1 + below(3); k > 0; k--) group.children.push_back(randomPlace(below(w.things.size()), 2));
@@ -197,7 +204,8 @@ class EditSequences : public testing::TestWithParam<int> {
     }
     case 3: {
       Place& p = anyPlace(w);
-      p.visible = !p.visible, p.dynamic = true;
+      p.visible = !p.visible;
+      p.dynamic = true;
       rtInstanceVisible(p.id, p.visible);
       break;
     }
@@ -226,7 +234,9 @@ class EditSequences : public testing::TestWithParam<int> {
       }
       break;
     case 7:
-      w.eye[0] = uniform(-14, 14), w.eye[1] = uniform(0, 8), w.eye[2] = uniform(4, 14);
+      w.eye[0] = uniform(-14, 14);
+      w.eye[1] = uniform(0, 8);
+      w.eye[2] = uniform(4, 14);
       look(w);
       break;
     case 8:

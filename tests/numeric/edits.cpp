@@ -85,7 +85,10 @@ TEST_F(Edits, RedefiningADynamicObjectBuildsItAlone) {
   const auto redefine = [&](double half) {
     rtBeginObject(object);
     rtBegin(RT_QUADS);
-    rtVertex3d(-half, -half, 0), rtVertex3d(half, -half, 0), rtVertex3d(half, half, 0), rtVertex3d(-half, half, 0);
+    rtVertex3d(-half, -half, 0);
+    rtVertex3d(half, -half, 0);
+    rtVertex3d(half, half, 0);
+    rtVertex3d(-half, half, 0);
     rtEnd();
     rtEndObject();
   };
@@ -273,7 +276,8 @@ TEST_F(Edits, LinesMoveWithTheirInstance) {
   rtBindShader(Shader("VRML97").setInt("lit", 0));
   rtLineWidth(2);
   rtBegin(RT_LINES);
-  rtVertex3f(-1, 0, 0), rtVertex3f(1, 0, 0);
+  rtVertex3f(-1, 0, 0);
+  rtVertex3f(1, 0, 0);
   rtEnd();
   rtEndObject();
   rtBindShader(0);

@@ -186,7 +186,8 @@ TEST_F(EnclosedLamps, ThePictureDoesNotDependOnThreads) {
     const RTcontext context = rtNewContext(config);
     rtLoadIdentity();
     place(square(floor(false), 3));
-    ball(.1), ball(.3);
+    ball(.1);
+    ball(.3);
     use(lamp(true, {.5, .3, .2}));
     rtPushMatrix();
     rtLoadIdentity();

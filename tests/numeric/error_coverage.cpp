@@ -67,7 +67,9 @@ TEST_F(ErrorBars, HoldAtEdges) {
 
 TEST_F(ErrorBars, WhatOnlySomePathsMeetIsTrustedWhereEnoughDo) { // lamps are not aimed at behind glass: paths must find them
   audit::Scenario s = scenario("pane");
-  s.reference = 0, s.samples = 32, s.exact = 1;
+  s.reference = 0;
+  s.samples = 32;
+  s.exact = 1;
   const double few = audit::measure(s, 4, 16).trustedShare();
   EXPECT_LT(few, .7);
   s.samples = 256;
@@ -166,7 +168,8 @@ TEST_F(ErrorBars, ATargetIsReachedWithoutBias) {
     const std::vector<float> rgba = read(RT_RGBA, 4 * 256);
     double off = 0; // of the picture's mean
     for (size_t i = 0; i < 256; i++) off += (double(rgba[4 * i]) - truth[4 * i]) / 256;
-    sum += off, square += off * off;
+    sum += off;
+    square += off * off;
     for (float n : read(RT_SAMPLES, 256)) samples += n / 256 / seeds;
   }
   const double m = sum / seeds, error = std::sqrt((square / seeds - m * m) / (seeds - 1));
@@ -201,7 +204,8 @@ TEST_F(ErrorBars, ATargetIsReachedUnderATinyLamp) {
         EXPECT_LE(taken, most);
         EXPECT_LE(paths, taken + 32 + most / 3.0);
         EXPECT_TRUE(most != 64 || taken == 64) << "out of reach";
-        reached += stats().errorHalfWidth <= target, all += taken == float(most);
+        reached += stats().errorHalfWidth <= target;
+        all += taken == float(most);
       }
     }
     EXPECT_GE(reached, glass ? 4 : 6); // few paths meet the spot: a picture may meet more noise than its pilots
@@ -225,7 +229,8 @@ TEST_F(ErrorBars, StoppingDoesNotBiasWhatIsRare) {
       const std::vector<float> rgba = read(RT_RGBA, 4 * 64);
       for (size_t i = 0; i < 64; i++) mean += double(rgba[4 * i]) / 64;
       for (float n : read(RT_SAMPLES, 64)) samples += double(n) / 64 / seeds;
-      sum += mean, square += mean * mean;
+      sum += mean;
+      square += mean * mean;
     }
     const double m = sum / seeds;
     return std::array{m, (square / seeds - m * m) / (seeds - 1)};

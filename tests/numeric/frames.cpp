@@ -42,7 +42,10 @@ class Frames : public Scene {
     for (int seed = 1; seed <= seeds; seed++) {
       rtQuality(RT_SEED, seed);
       const std::vector<float> rgba = picture(edge);
-      for (size_t i = 0; i < sum.size(); i++) sum[i] += double(rgba[4 * i]), squares[i] += std::pow(double(rgba[4 * i]), 2);
+      for (size_t i = 0; i < sum.size(); i++) {
+        sum[i] += double(rgba[4 * i]);
+        squares[i] += std::pow(double(rgba[4 * i]), 2);
+      }
     }
     for (size_t i = 0; i < sum.size(); i++) {
       const double mean = sum[i] / seeds;

@@ -38,7 +38,8 @@ TEST_F(GlobalLight, G5RouletteDoesNotChangeTheMean) { // Le / (1 - rho), of whic
   for (int seed = 1; seed <= seeds; seed++) {
     rtQuality(RT_SEED, seed);
     const double m = mean(picture(8));
-    sum += m, square += m * m;
+    sum += m;
+    square += m * m;
   }
   const double m = sum / seeds, error = std::sqrt(std::max(0.0, square / seeds - m * m) / (seeds - 1));
   EXPECT_NEAR(m, 1, 4 * error);

@@ -43,7 +43,8 @@ TEST_F(HardCases, N9OfTwoInOnePlaceTheSameIsSeen) {
   std::vector<float> first;
   for (const char* threads : {"threads=1", "threads=2", "threads=8"}) {
     RTcontext before = rtGetCurrent(), context = rtNewContext(threads);
-    place(square(glow(1, 0, 0))), place(square(glow(0, 1, 0)));
+    place(square(glow(1, 0, 0)));
+    place(square(glow(0, 1, 0)));
     rtPushMatrix();
     rtTranslated(0, 0, 5);
     rtRotated(20, 1, 1, 0);
@@ -62,7 +63,10 @@ TEST_F(HardCases, N10TinyThingsOnAHugePlane) {
   place(square(glow(1, 1, 1), 1e7));
   const RTid object = rtBeginObject(0);
   rtBegin(RT_QUADS);
-  rtVertex3d(-5e-4, -5e-4, 1e-3), rtVertex3d(5e-4, -5e-4, 1e-3), rtVertex3d(5e-4, 5e-4, 1e-3), rtVertex3d(-5e-4, 5e-4, 1e-3);
+  rtVertex3d(-5e-4, -5e-4, 1e-3);
+  rtVertex3d(5e-4, -5e-4, 1e-3);
+  rtVertex3d(5e-4, 5e-4, 1e-3);
+  rtVertex3d(-5e-4, 5e-4, 1e-3);
   rtEnd();
   rtEndObject();
   std::vector<RTray> rays;
@@ -86,7 +90,10 @@ TEST_F(HardCases, N11LongThinStripsAreClosed) {
   for (int i = 0; i < strips; i++) {
     const double y = 1e-2 * i;
     rtBegin(RT_QUADS);
-    rtVertex3d(-5e4, y, 0), rtVertex3d(5e4, y, 0), rtVertex3d(5e4, 1e-2 * (i + 1), 0), rtVertex3d(-5e4, 1e-2 * (i + 1), 0);
+    rtVertex3d(-5e4, y, 0);
+    rtVertex3d(5e4, y, 0);
+    rtVertex3d(5e4, 1e-2 * (i + 1), 0);
+    rtVertex3d(-5e4, 1e-2 * (i + 1), 0);
     rtEnd();
   }
   rtEndObject();
@@ -114,7 +121,12 @@ RTid coarseBall(RTid shader) {
     rtVertex3d(x, y, z);
   };
   for (int ring = 0; ring < 12; ring++)
-    for (int k = 0; k < 24; k++) corner(ring, k), corner(ring, k + 1), corner(ring + 1, k + 1), corner(ring + 1, k);
+    for (int k = 0; k < 24; k++) {
+      corner(ring, k);
+      corner(ring, k + 1);
+      corner(ring + 1, k + 1);
+      corner(ring + 1, k);
+    }
   rtEnd();
   rtEndObject();
   rtBindShader(0);
@@ -156,12 +168,18 @@ TEST_F(HardCases, N15NormalsOfNoLengthStandForTheFace) {
   rtBindShader(Shader("VRML97"));
   rtBegin(RT_QUADS);
   rtNormal3f(0, 0, 0);
-  rtVertex3d(-1, -1, 0), rtVertex3d(1, -1, 0), rtVertex3d(1, 1, 0), rtVertex3d(-1, 1, 0);
+  rtVertex3d(-1, -1, 0);
+  rtVertex3d(1, -1, 0);
+  rtVertex3d(1, 1, 0);
+  rtVertex3d(-1, 1, 0);
   rtEnd();
   rtBegin(RT_TRIANGLES); // to nothing between two corners
-  rtNormal3f(0, 0, 1), rtVertex3d(2, -1, 0);
-  rtNormal3f(0, 0, -1), rtVertex3d(4, -1, 0);
-  rtNormal3f(0, 0, 1), rtVertex3d(2, 1, 0);
+  rtNormal3f(0, 0, 1);
+  rtVertex3d(2, -1, 0);
+  rtNormal3f(0, 0, -1);
+  rtVertex3d(4, -1, 0);
+  rtNormal3f(0, 0, 1);
+  rtVertex3d(2, 1, 0);
   rtEnd();
   rtEndObject();
   rtBindShader(0);
@@ -176,7 +194,8 @@ TEST_F(HardCases, N21EyesInOddPlacesSeeNumbers) {
   const RTid ball = rtBeginObject(0);
   rtSphere(1);
   rtEndObject();
-  place(ball), place(square(Shader("Glass"), 3));
+  place(ball);
+  place(square(Shader("Glass"), 3));
   for (const double fov : {.001 * 180 / pi, 60., 3.1 * 180 / pi})
     for (const double z : {0., 1., .5, -1e-7}) { // in the middle, on the surface, inside, in the plane
       rtPushMatrix();

@@ -60,7 +60,8 @@ TEST_F(Huge, TheGroundMayBeASphereOfAnyRadius) {
         worst = std::max(worst, std::fabs(double(hit.t) - expected) / expected);
         uint8_t blocked[2];
         RTray before = ray, beyond = ray;
-        before.tfar = hit.t * .99f, beyond.tfar = hit.t * 1.01f;
+        before.tfar = hit.t * .99f;
+        beyond.tfar = hit.t * 1.01f;
         rtOccludedRays(1, &before, blocked);
         rtOccludedRays(1, &beyond, blocked + 1);
         EXPECT_FALSE(blocked[0]) << radius << " ray " << i;
@@ -145,8 +146,10 @@ TEST_F(Huge, WhatIsFarAwayChangesNothingElse) {
     const std::vector<float> with = picture(48);
     size_t other = 0;
     float worst = 0;
-    for (size_t i = 0; i < alone.size(); i++)
-      other += std::fabs(alone[i] - with[i]) > 1e-5f, worst = std::max(worst, std::fabs(alone[i] - with[i]));
+    for (size_t i = 0; i < alone.size(); i++) {
+      other += std::fabs(alone[i] - with[i]) > 1e-5f;
+      worst = std::max(worst, std::fabs(alone[i] - with[i]));
+    }
     EXPECT_EQ(other, 0u) << "of " << alone.size() << " at " << far << ", by " << worst;
     rtDeleteInstance(thing);
   }

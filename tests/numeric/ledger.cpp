@@ -112,7 +112,10 @@ TEST_F(Ledger, LightsThatPathsCannotReachThroughGlass) {
 TEST_F(Ledger, N6WrongHitsOnSliversAreRejectedAndCounted) {
   constexpr int triangles = 200, each = 20;
   uint32_t state = 1;
-  const auto random = [&] { return state = state * 1664525u + 1013904223u, double(state >> 8) / 16777216 - .5; };
+  const auto random = [&] {
+    state = state * 1664525u + 1013904223u;
+    return double(state >> 8) / 16777216 - .5;
+  };
   const auto direction = [&] {
     const double v[3] = {random(), random(), random()}, l = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
     return Vec{v[0] / l, v[1] / l, v[2] / l};

@@ -198,7 +198,9 @@ TEST_F(AreaLights, R7ATriangle) {
   const RTid object = rtBeginObject(0);
   rtBindShader(glowing(1));
   rtBegin(RT_TRIANGLES);
-  rtVertex3f(1, 0, 1), rtVertex3f(0, 1, 1), rtVertex3f(-1, -1, 1);
+  rtVertex3f(1, 0, 1);
+  rtVertex3f(0, 1, 1);
+  rtVertex3f(-1, -1, 1);
   rtEnd();
   rtEndObject();
   rtBindShader(0);
@@ -219,7 +221,9 @@ TEST_F(AreaLights, R11ALightSeenFromBehindItsCulledBackIsNotThere) {
   rtEnable(RT_CULL_FACE);
   rtBindShader(lamp);
   rtBegin(RT_TRIANGLES);
-  rtVertex3f(1, 0, 1), rtVertex3f(0, 1, 1), rtVertex3f(-1, -1, 1); // faces up
+  rtVertex3f(1, 0, 1);
+  rtVertex3f(0, 1, 1);
+  rtVertex3f(-1, -1, 1); // faces up
   rtEnd();
   rtEndObject();
   rtBindShader(0);

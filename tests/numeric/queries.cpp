@@ -42,7 +42,9 @@ class Queries : public Scene {
       const Vec middle = any(1);
       for (int c = 0; c < 3; c++) {
         const Vec p = middle + any(0.3);
-        points[9 * t + 3 * c] = float(p.x), points[9 * t + 3 * c + 1] = float(p.y), points[9 * t + 3 * c + 2] = float(p.z);
+        points[9 * t + 3 * c] = float(p.x);
+        points[9 * t + 3 * c + 1] = float(p.y);
+        points[9 * t + 3 * c + 2] = float(p.z);
       }
     }
     const RTid object = rtBeginObject(0);

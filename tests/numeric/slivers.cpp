@@ -87,7 +87,10 @@ double leaves(const Box& box, Vec from, Vec d, double& grazing) {
   for (int k = 0; k < 3; k++) {
     if (v[k] == 0) continue;
     const double t = ((v[k] > 0 ? h[k] : -h[k]) - o[k]) / v[k];
-    if (t < end) end = t, grazing = std::fabs(v[k]);
+    if (t < end) {
+      end = t;
+      grazing = std::fabs(v[k]);
+    }
   }
   return end;
 }
@@ -105,7 +108,10 @@ class Slivers : public Scene {
     const double h[3] = {box.half.x, box.half.y, box.half.z};
     for (size_t i = 0; i < count; i++) {
       double p[3], q[3];
-      for (int k = 0; k < 3; k++) p[k] = .95 * h[k] * random(-1, 1), q[k] = 1.2 * h[k] * random(-1, 1);
+      for (int k = 0; k < 3; k++) {
+        p[k] = .95 * h[k] * random(-1, 1);
+        q[k] = 1.2 * h[k] * random(-1, 1);
+      }
       Vec to{q[0], q[1], q[2]};
       if (i % 3 == 0) to = Vec{p[0], p[1], p[2]} + random.direction();
       if (i % 3 == 1) { // a face, met at the far end of a long way
@@ -116,7 +122,8 @@ class Slivers : public Scene {
         p[face] = towards * std::max(h[face] - way * sine, -.9 * h[face]);
         Vec d;
         double v[3] = {0, 0, 0};
-        v[along] = side, v[face] = towards * sine;
+        v[along] = side;
+        v[face] = towards * sine;
         d = {v[0], v[1], v[2]};
         to = Vec{p[0], p[1], p[2]} + d * way;
       }
@@ -187,7 +194,8 @@ TEST_F(Slivers, NoRayLeavesAClosedBox) {
       for (size_t i = 0; i < count; i++) {
         if (all[i].depth < 40 * ulp * 3 * ratio) continue; // its own rounding may put it outside
         inside++;
-        left += !std::isfinite(hits[i].t), open += !occluded[i];
+        left += !std::isfinite(hits[i].t);
+        open += !occluded[i];
       }
       EXPECT_EQ(left, 0u) << what << (dynamic ? " dynamic" : "") << " of " << inside;
       EXPECT_EQ(open, 0u) << what << (dynamic ? " dynamic" : "") << " of " << inside;
@@ -371,7 +379,10 @@ TEST_F(Slivers, ATrueHitIsNeverLostAndIsWhereItIs) {
     std::vector<RTray> rays;
     for (int i = 0; i < 60; i++) {
       double a = random(0, 1), b = random(0, 1);
-      if (a + b > 1) a = 1 - a, b = 1 - b;
+      if (a + b > 1) {
+        a = 1 - a;
+        b = 1 - b;
+      }
       const float *p = points.data(), *q = p + 3, *r = q + 3;
       double to[3];
       for (int k = 0; k < 3; k++) to[k] = (1 - a - b) * double(p[k]) + a * double(q[k]) + b * double(r[k]);

@@ -8,7 +8,8 @@ XS_EXPORT const uint32_t xsPlugin = XS_MAGIC;
 #else
 
 static XsResult create(const XsHost* host, const XsScriptInfo* info, XsInterpreter* made) {
-  (void)host, (void)info;
+  (void)host;
+  (void)info;
   *made = 1;
   return XS_OK;
 }

@@ -38,7 +38,8 @@ static void outcome(const Interpreter* self, const char* what, int worked) {
 /* --- That does not end --- */
 
 static void spin(Interpreter* self, const char* argument) {
-  (void)self, (void)argument;
+  (void)self;
+  (void)argument;
   for (;;) sink++;
 }
 static void calls(Interpreter* self, const char* argument) { /* asks the host for ever and takes no answer for one */
@@ -58,7 +59,8 @@ static void slow(Interpreter* self, const char* argument) { /* MILLISECONDS of s
 /* --- That takes what it can get --- */
 
 static void bomb(Interpreter* self, const char* argument) {
-  (void)self, (void)argument;
+  (void)self;
+  (void)argument;
   for (;;) {
     char* block = malloc(1 << 20);
     if (!block) abort();
@@ -73,15 +75,20 @@ static int deeper(volatile char* above) {
 }
 static void recurse(Interpreter* self, const char* argument) {
   volatile char top[1] = {0};
-  (void)self, (void)argument;
+  (void)self;
+  (void)argument;
   sink = deeper(top);
 }
 static void crash(Interpreter* self, const char* argument) {
-  (void)self, (void)argument;
+  (void)self;
+  (void)argument;
   raise(SIGSEGV);
   abort();
 }
-static void leave(Interpreter* self, const char* argument) { (void)self, _exit(atoi(argument)); }
+static void leave(Interpreter* self, const char* argument) {
+  (void)self;
+  _exit(atoi(argument));
+}
 
 /* --- That reaches out --- */
 
@@ -104,7 +111,10 @@ static void forks(Interpreter* self, const char* argument) {
   if (child == 0) _exit(0);
   outcome(self, "fork", child > 0);
 }
-static void signals(Interpreter* self, const char* argument) { (void)argument, outcome(self, "kill", kill(getppid(), 0) == 0); }
+static void signals(Interpreter* self, const char* argument) {
+  (void)argument;
+  outcome(self, "kill", kill(getppid(), 0) == 0);
+}
 static void raises(Interpreter* self, const char* argument) { /* the limits again */
   const struct rlimit most = {RLIM_INFINITY, RLIM_INFINITY};
   (void)argument;
@@ -113,7 +123,10 @@ static void raises(Interpreter* self, const char* argument) { /* the limits agai
 static void environment(Interpreter* self, const char* argument) { say(self, getenv(argument) ? "set" : "not set"); }
 static int libraryPath; /* whether the process was given one, before it gave up all it may do */
 __attribute__((constructor)) static void loaded(void) { libraryPath = getenv("LD_LIBRARY_PATH") != NULL; }
-static void given(Interpreter* self, const char* argument) { (void)argument, say(self, libraryPath ? "given" : "not given"); }
+static void given(Interpreter* self, const char* argument) {
+  (void)argument;
+  say(self, libraryPath ? "given" : "not given");
+}
 static void descriptors(Interpreter* self, const char* argument) { /* how many are open beside the standard ones and the socket */
   int open = 0;
   char line[40];
@@ -186,11 +199,23 @@ static void destroy(XsInterpreter interpreter) {
   run(interpreter, "destroy");
   free((void*)(uintptr_t)interpreter);
 }
-static XsResult initialize(XsInterpreter interpreter, double time) { return (void)time, run(interpreter, "initialize"); }
+static XsResult initialize(XsInterpreter interpreter, double time) {
+  (void)time;
+  return run(interpreter, "initialize");
+}
 static XsResult event(XsInterpreter interpreter, const XsEvent* event) { return run(interpreter, event->name); }
-static XsResult processed(XsInterpreter interpreter, double time) { return (void)time, run(interpreter, "eventsProcessed"); }
-static XsResult shutDown(XsInterpreter interpreter, double time) { return (void)time, run(interpreter, "shutdown"); }
-static XsResult tick(XsInterpreter interpreter, double time) { return (void)time, run(interpreter, "tick"); }
+static XsResult processed(XsInterpreter interpreter, double time) {
+  (void)time;
+  return run(interpreter, "eventsProcessed");
+}
+static XsResult shutDown(XsInterpreter interpreter, double time) {
+  (void)time;
+  return run(interpreter, "shutdown");
+}
+static XsResult tick(XsInterpreter interpreter, double time) {
+  (void)time;
+  return run(interpreter, "tick");
+}
 
 static const char* const schemes[] = {"hostile", NULL};
 static const XsEngine engine = {sizeof(XsEngine), 0,          "hostile", "misbehaves, for tests",

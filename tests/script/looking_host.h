@@ -37,16 +37,40 @@ struct Looking : XsHost {
     }
   }
   Looking() : XsHost{} {
-    send = write = [](const XsHost*, XsNode, const char* n, const XsValue* v) { return look(n), look(v), XS_OK; };
-    post = [](const XsHost*, XsNode, XsNode, const char* n, const XsValue* v) { return look(n), look(v), XS_OK; };
-    read = [](const XsHost*, XsNode, XsNode, const char* n, XsValue* v) { return look(n), *v = {XS_MFINT32, 0, {}}, XS_OK; };
-    describe = [](const XsHost*, XsNode, XsNode, XsNodeInfo* i) { return i->typeName = i->defName = "x", XS_OK; };
+    send = write = [](const XsHost*, XsNode, const char* n, const XsValue* v) {
+      look(n);
+      look(v);
+      return XS_OK;
+    };
+    post = [](const XsHost*, XsNode, XsNode, const char* n, const XsValue* v) {
+      look(n);
+      look(v);
+      return XS_OK;
+    };
+    read = [](const XsHost*, XsNode, XsNode, const char* n, XsValue* v) {
+      look(n);
+      *v = {XS_MFINT32, 0, {}};
+      return XS_OK;
+    };
+    describe = [](const XsHost*, XsNode, XsNode, XsNodeInfo* i) {
+      i->typeName = i->defName = "x";
+      return XS_OK;
+    };
     field = [](const XsHost*, XsNode, XsNode, uint32_t, XsField*) { return XS_NO_FIELD; };
-    findField = [](const XsHost*, XsNode, XsNode, const char* n, XsField*) { return look(n), XS_NO_FIELD; };
+    findField = [](const XsHost*, XsNode, XsNode, const char* n, XsField*) {
+      look(n);
+      return XS_NO_FIELD;
+    };
     retain = release = [](const XsHost*, XsNode, XsNode) { return XS_OK; };
-    getName = getVersion = getWorldUrl = lastError = [](const XsHost*, XsNode, XsString* s) { return *s = {"x", 1}, XS_OK; };
+    getName = getVersion = getWorldUrl = lastError = [](const XsHost*, XsNode, XsString* s) {
+      *s = {"x", 1};
+      return XS_OK;
+    };
     getCurrentSpeed = getCurrentFrameRate = [](const XsHost*, XsNode) { return 1.0; };
-    setDescription = [](const XsHost*, XsNode, XsString s) { return look(s), XS_OK; };
+    setDescription = [](const XsHost*, XsNode, XsString s) {
+      look(s);
+      return XS_OK;
+    };
     replaceWorld = [](const XsHost*, XsNode, uint32_t count, const XsNode* nodes) {
       for (uint32_t i = 0; nodes && i < count; ++i) sum += nodes[i];
       return XS_OK;
@@ -58,11 +82,19 @@ struct Looking : XsHost {
     };
     createVrmlFromUrl = [](const XsHost*, XsNode, uint32_t n, const XsString* a, XsNode, const char* in) {
       for (uint32_t i = 0; a && i < n; ++i) look(a[i]);
-      return look(in), XS_OK;
+      look(in);
+      return XS_OK;
     };
-    createVrmlFromString = [](const XsHost*, XsNode, XsString s, XsValue* v) { return look(s), *v = {XS_MFINT32, 0, {}}, XS_OK; };
-    addRoute =
-        deleteRoute = [](const XsHost*, XsNode, XsNode, const char* a, XsNode, const char* b) { return look(a), look(b), XS_OK; };
+    createVrmlFromString = [](const XsHost*, XsNode, XsString s, XsValue* v) {
+      look(s);
+      *v = {XS_MFINT32, 0, {}};
+      return XS_OK;
+    };
+    addRoute = deleteRoute = [](const XsHost*, XsNode, XsNode, const char* a, XsNode, const char* b) {
+      look(a);
+      look(b);
+      return XS_OK;
+    };
     log = [](const XsHost*, XsNode, int32_t, uint32_t, XsString s) { look(s); };
   }
 };

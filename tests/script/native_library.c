@@ -12,9 +12,19 @@ int32_t invert(int32_t yes) { return !yes; }
 int64_t wide(int64_t x, uint8_t small) { return x * 1000 + small; }
 
 float length2(const float v[3]) { return v[0] * v[0] + v[1] * v[1] + v[2] * v[2]; }
-void swap2(const float* v, float* out) { out[0] = v[1], out[1] = v[0]; }
-void shift3(const float* v, float by, float* out) { out[0] = v[0] + by, out[1] = v[1] + by, out[2] = v[2] + by; }
-void turn(const float* r, float* out) { memcpy(out, r, 4 * sizeof(float)), out[3] += 1; }
+void swap2(const float* v, float* out) {
+  out[0] = v[1];
+  out[1] = v[0];
+}
+void shift3(const float* v, float by, float* out) {
+  out[0] = v[0] + by;
+  out[1] = v[1] + by;
+  out[2] = v[2] + by;
+}
+void turn(const float* r, float* out) {
+  memcpy(out, r, 4 * sizeof(float));
+  out[3] += 1;
+}
 
 /* All numbers of a list and one more; *count is the room, then the number of elements. */
 void more_floats(const float* v, uint32_t n, float* out, uint32_t* count) {
@@ -51,7 +61,10 @@ int solve(const float* target, float* joints) {
   for (int i = 0; i < 3; ++i) joints[i] = target[i] * 10;
   return target[0] >= 0;
 }
-int status(float x, float* out) { return *out = x, x < 0 ? -1 : 0; }
+int status(float x, float* out) {
+  *out = x;
+  return x < 0 ? -1 : 0;
+}
 void smooth(float x, float* state, float* out) { *out = *state = (*state + x) / 2; }
 void read_double(int channel, double* out) { *out = channel + 0.5; }
 
@@ -92,7 +105,14 @@ int hello(const XsHost* host, XsNode self, double time) {
 
 /* Found by their names: a counter that has something new every second time it is asked. */
 static int32_t asked, started;
-void initialize(int32_t from) { started = from, asked = 0; }
-int poll(int32_t from, int32_t* count) { return (void)from, *count = started + ++asked, asked % 2 == 0; }
+void initialize(int32_t from) {
+  started = from;
+  asked = 0;
+}
+int poll(int32_t from, int32_t* count) {
+  (void)from;
+  *count = started + ++asked;
+  return asked % 2 == 0;
+}
 int32_t set_from(int32_t value, int32_t from) { return started = value + from; }
 void shutdown(int32_t from) { printf("%s", from < 0 ? "negative\n" : ""); }

@@ -31,14 +31,16 @@ class FakeWork final : public JobSource {
     if (tile_ == next_.size()) return FrameWork::Next::wait;
     uint32_t& from = next_[at(tile_)];
     job = Job{};
-    job.number = at(tile_), job.first = from;
+    job.number = at(tile_);
+    job.first = from;
     job.count = std::min(largest, end - from);
     from += job.count;
     undone_ -= double(job.count) * pixels_;
     return FrameWork::Next::job;
   }
   void giveBack(const Job& job) override {
-    back_.push_back(job), given++;
+    back_.push_back(job);
+    given++;
     undone_ += double(job.count) * pixels_;
   }
   double undone() const override { return undone_; }
@@ -57,7 +59,10 @@ class FakeWork final : public JobSource {
   }
   bool over() const { return done_ == uint64_t(samples_) * taken_.size(); }
 
-  void round(uint32_t samples) { until = samples, tile_ = 0; } // so many are given out as yet
+  void round(uint32_t samples) {
+    until = samples;
+    tile_ = 0;
+  } // so many are given out as yet
 
   uint32_t given = 0; // back
 
@@ -95,7 +100,10 @@ struct Bench {
     std::vector<WorkerId> moved;
     WorkerId w;
     Epoch e;
-    while (s.move(now, w, e)) s.ready(w, e, now), moved.push_back(w);
+    while (s.move(now, w, e)) {
+      s.ready(w, e, now);
+      moved.push_back(w);
+    }
     return moved;
   }
   std::vector<Handout> handOut() {

@@ -45,7 +45,10 @@ struct LoneWorker {
 message::Scene emptyScene(Epoch epoch) {
   edit::EditsT edits;
   edit::FrameSettingsT frame;
-  frame.width = frame.height = 8, frame.channels = RT_RGBA, frame.samples = 4, frame.depth = 2;
+  frame.width = frame.height = 8;
+  frame.channels = RT_RGBA;
+  frame.samples = 4;
+  frame.depth = 2;
   edits.edits.emplace_back(new edit::EditT)->any.Set(std::move(frame));
   edits.render = true;
   return {epoch, epoch == 1, true, {}, {}, packEdits(edits)};

@@ -7,9 +7,9 @@
 
 #include <gtest/gtest.h>
 
-#include "backend/cluster/net/greeting.h"
 #include "backend/cluster/master/hosts.h"
 #include "backend/cluster/master/master.h"
+#include "backend/cluster/net/greeting.h"
 #include "backend/record/edits_bytes.h"
 #include "backend/record/validator.h"
 #include "render/frame/result_codec.h"
@@ -22,8 +22,12 @@ using namespace openrt::cluster;
 
 message::Hello greeting() {
   message::Hello hello;
-  hello.library = "0.1.0", hello.isa = "avx2", hello.kernel = "Embree 3", hello.platform = "glibc 2.36";
-  hello.api = 1, hello.shaderAbi = 0x10002;
+  hello.library = "0.1.0";
+  hello.isa = "avx2";
+  hello.kernel = "Embree 3";
+  hello.platform = "glibc 2.36";
+  hello.api = 1;
+  hello.shaderAbi = 0x10002;
   hello.threads = 2;
   hello.host = "somewhere";
   return hello;
@@ -113,7 +117,10 @@ struct FakeWorker {
         commit.arrays[name.id] = arrays.at(name.hash);
       }
       unpackEdits(next.edits, commit.edits);
-      if (next.whole) scene = Scene(), validator = std::make_unique<CommitValidator>(nullptr);
+      if (next.whole) {
+        scene = Scene();
+        validator = std::make_unique<CommitValidator>(nullptr);
+      }
       ASSERT_NO_THROW(validator->check(commit));
       scene.apply(commit);
       const Epoch at = next.epoch;
@@ -142,7 +149,10 @@ struct FakeWorker {
     const FrameWork geometry(frame, FrameFacts{true, false}, 1); // knows the tiles
     const JobResult made = samplesOf(frame, job.job, geometry.tile(job.job.number));
     message::Result result;
-    result.epoch = at, result.lease = job.lease, result.seconds = made.seconds, result.camera = made.counters.camera;
+    result.epoch = at;
+    result.lease = job.lease;
+    result.seconds = made.seconds;
+    result.camera = made.counters.camera;
     result.bytes = encodeResult(frame, job.job, made);
     if (cut) result.bytes.pop_back();
     say(std::move(result));
@@ -166,7 +176,10 @@ class ClusterMaster : public testing::TestWithParam<int> {
       options.results = [this](std::function<void()> heavy, MasterOptions::Then then) {
         elsewhere.push_back({std::move(heavy), std::move(then)});
       };
-    options.close = [this](Peer peer, const std::string& why) { worker(peer).refused = why, worker(peer).gone = true; };
+    options.close = [this](Peer peer, const std::string& why) {
+      worker(peer).refused = why;
+      worker(peer).gone = true;
+    };
     master = std::make_unique<Master>(
         options, [this](Peer peer, Frames&& frames) { return post(peer, std::move(frames)); }, nullptr);
   }
@@ -187,7 +200,8 @@ class ClusterMaster : public testing::TestWithParam<int> {
   }
   void lose(FakeWorker& lost) {
     lost.gone = true;
-    lost.toMaster.clear(), lost.toWorker.clear();
+    lost.toMaster.clear();
+    lost.toWorker.clear();
     master->left(lost.peer, "silence", now);
   }
 
@@ -259,8 +273,12 @@ class ClusterMaster : public testing::TestWithParam<int> {
     }
     add(std::move(object));
     edit::FrameSettingsT settings;
-    settings.width = 70, settings.height = 37, settings.channels = RT_RGBA | RT_SAMPLES;
-    settings.samples = frame % 3 == 1 ? 100 : 3, settings.depth = 5, settings.seed = uint32_t(frame);
+    settings.width = 70;
+    settings.height = 37;
+    settings.channels = RT_RGBA | RT_SAMPLES;
+    settings.samples = frame % 3 == 1 ? 100 : 3;
+    settings.depth = 5;
+    settings.seed = uint32_t(frame);
     settings.tile = 8;
     add(edit::FrameSettingsT(settings));
     commit->edits.render = true;
@@ -342,15 +360,18 @@ TEST_P(ClusterMaster, AllLostAndOthersComeInMidFrame) {
   for (int i = 0; i < 100; i++) step();
   EXPECT_FALSE(over(1));
   master->commit(2, edits(2), true, now);
-  join(), join();
+  join();
+  join();
   ASSERT_TRUE(runUntil([&] { return over(1) && over(2); }));
-  expectSame(1), expectSame(2);
+  expectSame(1);
+  expectSame(2);
   EXPECT_EQ(master->totals().workers, 2u);
   EXPECT_EQ(master->workers().at(0).alive, 0);
 }
 
 TEST_P(ClusterMaster, AnArrayIsSentOnceToEach) {
-  join(), join();
+  join();
+  join();
   for (Epoch epoch = 1; epoch <= 6; epoch++) master->commit(epoch, edits(int(epoch)), true, now);
   ASSERT_TRUE(runUntil([&] { return over(6); }));
   // Points of 0, 1, 2 (frames 1 and 2, 3 to 5, 6) for two geometries, and the corners; but a worker may have left frames out.
@@ -441,7 +462,8 @@ TEST_P(ClusterMaster, ResultsThatAreNoneAreBorneThreeTimes) {
 }
 
 TEST_P(ClusterMaster, ACancelledFrameIsOverAtOnceAndTheNextIsRight) {
-  join(), join();
+  join();
+  join();
   master->commit(1, edits(1), true, now);
   if (GetParam() % 2) {
     ASSERT_TRUE(runUntil([&] {

@@ -14,7 +14,8 @@ namespace {
 // One of each, with all that it can hold.
 std::vector<message::Body> oneOfEach() {
   message::Ready ready{5, {true, false}, RT_TRANSPORT_PATH, {}};
-  ready.stats.size = sizeof ready.stats, ready.stats.triangles = 77;
+  ready.stats.size = sizeof ready.stats;
+  ready.stats.triangles = 77;
   std::strcpy(ready.stats.isa, "avx2");
   message::Result result{5, 9, 0.25, 1, 2, 3, {{"Phong", "vrml97", 0, 4}}, someBytes(1000)};
   message::Jobs jobs{5, {}};

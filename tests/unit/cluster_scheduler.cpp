@@ -421,14 +421,18 @@ TEST(Scheduler, framesAreOneWorkersEach) {
 
 TEST(Scheduler, othersHelpAtTheEndOfFrames) {
   Bench b({.split = Split::frames});
-  b.frame(1, 4), b.frame(2, 1000);
+  b.frame(1, 4);
+  b.frame(2, 1000);
   b.workers(1, 2, 1);
   for (size_t i = 0; i < 20; i++) { // costs are known, and much is left of the second frame
     b.handOut();
     if (i < b.out.size() && b.out[i].epoch == 1) b.done(b.out[i], 1);
   }
   for (size_t i = 0; i < b.out.size() && !b.work[1]->over(); i++)
-    if (b.out[i].epoch == 1) b.done(b.out[i], 1), b.handOut();
+    if (b.out[i].epoch == 1) {
+      b.done(b.out[i], 1);
+      b.handOut();
+    }
   b.s.end(1);
   for (const Handout& h : b.out)
     if (h.epoch == 2) {

@@ -112,7 +112,8 @@ struct Turmoil {
     if (what == 17 && !out.empty()) {
       const Handout h = pick(out, which)->second;
       b.s.failed(h.worker, h.epoch, h.job.lease, b.now);
-      past.push_back(h), out.erase(h.job.lease);
+      past.push_back(h);
+      out.erase(h.job.lease);
     }
     if (what == 18 && !machines.empty() && which % 3 == 0) {
       const auto m = pick(machines, which);
@@ -149,7 +150,10 @@ struct Turmoil {
       b.now += step;
       prepared(here);
       const auto mine = std::find_if(out.begin(), out.end(), [&](const auto& o) { return o.second.worker == here; });
-      if (mine != out.end()) deliver(Handout(mine->second), step), progressed = b.now;
+      if (mine != out.end()) {
+        deliver(Handout(mine->second), step);
+        progressed = b.now;
+      }
       RC_ASSERT(b.now < progressed + promised + soon);
     }
     RC_ASSERT(b.work.empty());

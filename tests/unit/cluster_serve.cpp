@@ -24,7 +24,8 @@ class Service {
   Service(const ShaderRegistry& shaders, WireOptions wire, bool once = false) {
     ServeOptions options;
     options.wire = std::move(wire);
-    options.backend.threads = 2, options.backend.shaders = &shaders;
+    options.backend.threads = 2;
+    options.backend.shaders = &shaders;
     options.once = once;
     service_ = std::make_unique<WorkerService>(options);
     thread_ = std::thread([this] {
@@ -100,15 +101,18 @@ struct Master {
     for (Job job;;) {
       message::Jobs jobs{epoch, {}};
       FrameWork::Next what = FrameWork::Next::job;
-      while (out.size() < 8 && (what = work.next(job, 32)) == FrameWork::Next::job)
-        jobs.jobs.push_back({++lease, job}), out[lease] = job;
+      while (out.size() < 8 && (what = work.next(job, 32)) == FrameWork::Next::job) {
+        jobs.jobs.push_back({++lease, job});
+        out[lease] = job;
+      }
       if (!jobs.jobs.empty()) say(std::move(jobs));
       if (out.empty() && what == FrameWork::Next::over) break;
       const auto result = next<message::Result>();
       const Job& done = out.at(result.lease);
       JobResult r;
       EXPECT_TRUE(decodeResult(settings, done, work.tile(done.number), result.bytes, r));
-      r.seconds = result.seconds, r.counters.camera = result.camera;
+      r.seconds = result.seconds;
+      r.counters.camera = result.camera;
       EXPECT_TRUE(work.take(done, std::move(r)));
       out.erase(result.lease);
     }
@@ -131,7 +135,8 @@ class Serve : public testing::Test {
   });
   std::vector<float> expected(size_t count) {
     BackendOptions options;
-    options.threads = 1, options.shaders = &shaders;
+    options.threads = 1;
+    options.shaders = &shaders;
     const auto backend = makeLocalBackend(options);
     for (size_t i = 0; i < count; i++) backend->apply(commits[i]);
     backend->start();

@@ -72,7 +72,8 @@ const std::map<Way, const char*> names = {{Way::nobody, "nobody"},
 struct Pictures final : WorkerSink {
   Pictures() {
     BackendOptions options;
-    options.threads = 1, options.shaders = &shaders;
+    options.threads = 1;
+    options.shaders = &shaders;
     {
       const auto backend = makeLocalBackend(options);
       RTstats stats{};
@@ -132,7 +133,8 @@ class Useless {
     if (way == Way::deaf || way == Way::nobody) {
       socket_ = socket(AF_INET, SOCK_STREAM, 0);
       sockaddr_in where{};
-      where.sin_family = AF_INET, where.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+      where.sin_family = AF_INET;
+      where.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
       socklen_t size = sizeof where;
       EXPECT_EQ(bind(socket_, reinterpret_cast<sockaddr*>(&where), size), 0);
       if (way == Way::deaf) { EXPECT_EQ(listen(socket_, 16), 0); }
@@ -163,7 +165,12 @@ class Useless {
         }
       }
       Event event = wire_->receive(0.02);
-      if (event.kind == Event::Kind::joined) peer_ = event.peer, session_ = 0, joined_ = steadyNow(), greet();
+      if (event.kind == Event::Kind::joined) {
+        peer_ = event.peer;
+        session_ = 0;
+        joined_ = steadyNow();
+        greet();
+      }
       if (event.kind == Event::Kind::message) hear(read(std::move(event)));
       if (session_ != 0 && way_ == Way::comesAndGoes && steadyNow() > joined_ + 0.2) die();
       if (session_ != 0 && way_ == Way::readyForEver && epoch_ > 0 && steadyNow() > told_ + 0.1) ready();
@@ -192,14 +199,20 @@ class Useless {
       if (way_ == Way::refuses) return say(message::Failed{scene->epoch, "shader library vrml97 is another file here"});
       if (scene->prepare && way_ != Way::neverReady) ready();
     }
-    if (const auto* prepare = std::get_if<message::Prepare>(&m.body)) epoch_ = prepare->epoch, ready();
+    if (const auto* prepare = std::get_if<message::Prepare>(&m.body)) {
+      epoch_ = prepare->epoch;
+      ready();
+    }
     if (const auto* jobs = std::get_if<message::Jobs>(&m.body)) work(*jobs);
   }
   void ready() {
     const auto found = pictures().prepared.find(epoch_);
     if (found == pictures().prepared.end()) return; // scenes of a session that began in the middle
     message::Ready m;
-    m.epoch = epoch_, m.facts = found->second.facts, m.transport = found->second.frame.transport, m.stats = found->second.stats;
+    m.epoch = epoch_;
+    m.facts = found->second.facts;
+    m.transport = found->second.frame.transport;
+    m.stats = found->second.stats;
     if (way_ == Way::liesAboutScene) m.stats.triangles++;
     told_ = steadyNow();
     say(std::move(m));
@@ -210,13 +223,19 @@ class Useless {
     if (way_ != Way::answersNonsense && way_ != Way::answersOthers) return;
     for (const LeasedJob& job : jobs.jobs) {
       message::Result m;
-      m.epoch = jobs.epoch, m.lease = job.lease + (way_ == Way::answersOthers ? 1000000 : 0), m.seconds = 0.001;
+      m.epoch = jobs.epoch;
+      m.lease = job.lease + (way_ == Way::answersOthers ? 1000000 : 0);
+      m.seconds = 0.001;
       m.bytes = someBytes(64, uint32_t(job.lease));
       say(std::move(m));
     }
   }
   void say(message::Body&& body) { wire_->send(peer_, encode(session_, std::move(body))); }
-  void die() { wire_.reset(), session_ = 0, epoch_ = 0; }
+  void die() {
+    wire_.reset();
+    session_ = 0;
+    epoch_ = 0;
+  }
 
   Way way_;
   std::string address_;
@@ -244,7 +263,8 @@ Outcome render(std::vector<Way> ways, ClusterOptions cluster) {
   for (const Way way : ways) cluster.workers.push_back((workers.emplace_back(std::make_unique<Useless>(way)))->address());
   Outcome out;
   BackendOptions options;
-  options.threads = 1, options.shaders = &pictures().shaders;
+  options.threads = 1;
+  options.shaders = &pictures().shaders;
   struct Log {
     std::mutex mutex;
     std::string text;
@@ -315,7 +335,8 @@ TEST(Useless, aMasterThatLeavesAllToOthersHelpsInTime) {
 TEST(Useless, threadsHereDoWhatNobodyElseDoes) {
   for (const char* split : {"auto", "frames"}) {
     ClusterOptions cluster;
-    cluster.local = 1, cluster.split = split;
+    cluster.local = 1;
+    cluster.split = split;
     for (const auto& [way, out] : renderAll(cluster)) {
       EXPECT_TRUE(out.right) << names.at(way) << ", " << split;
       EXPECT_EQ(out.failure, "") << names.at(way) << ", " << split;
@@ -326,7 +347,8 @@ TEST(Useless, threadsHereDoWhatNobodyElseDoes) {
 
 TEST(Useless, whereAWorkerIsRequiredThePictureIsMadeOrRefusedInTime) {
   ClusterOptions cluster;
-  cluster.local = 0, cluster.require = 1;
+  cluster.local = 0;
+  cluster.require = 1;
   for (const auto& [way, out] : renderAll(cluster)) {
     EXPECT_LT(out.longest, promised + slack) << names.at(way);
     EXPECT_TRUE(!out.failure.empty() || out.right) << names.at(way);

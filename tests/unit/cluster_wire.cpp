@@ -298,7 +298,8 @@ TEST(Wire, beatsKeepTheIdleAliveAndMeasureTheWay) {
   WireOptions options = listening();
   options.silence = 2;
   Wire& door = wires.add(options);
-  options = calling(door), options.silence = 2;
+  options = calling(door);
+  options.silence = 2;
   Wire& caller = wires.add(options);
   const Peer there = wires.next(caller, Kind::joined).peer;
   for (const double end = steadyNow() + 3; steadyNow() < end;) wires.serve();
@@ -316,7 +317,8 @@ TEST(Wire, threeMessagesThatAreNoneCloseThePeer) {
     Bare bare(door);
     bare.send(hello());
     EXPECT_NE(wires.next(door, Kind::message).peer, 0u);
-    bare.send(junk), bare.send(junk);
+    bare.send(junk);
+    bare.send(junk);
     bare.send(hello());
     EXPECT_NE(wires.next(door, Kind::message).peer, 0u); // two are forgiven
     bare.send(junk);
@@ -352,7 +354,8 @@ TEST(Wire, headersThatAreCut) {
   const Wire& door = wires.add(listening());
   Bare bare(door);
   Frames whole = hello();
-  bare.send(whole), bare.send(whole); // twice the same: both arrive, what they mean is not the wire's
+  bare.send(whole);
+  bare.send(whole); // twice the same: both arrive, what they mean is not the wire's
   EXPECT_NE(wires.next(door, Kind::message).peer, 0u);
   EXPECT_NE(wires.next(door, Kind::message).peer, 0u);
   for (int i = 0; i < 3; i++) {

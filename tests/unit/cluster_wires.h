@@ -35,7 +35,8 @@ inline KeyRing freshKeys(const Folder& folder, const std::string& name) {
 
 // Patient: machines that are busy are no failure. What is silent is not gone for long, so that nobody is lost by the way.
 inline WireOptions patient(WireOptions options) {
-  options.heartbeat = 0.05, options.silence = 60;
+  options.heartbeat = 0.05;
+  options.silence = 60;
   return options;
 }
 inline WireOptions listening(const KeyRing& keys = {}, const std::string& where = "127.0.0.1:0") {

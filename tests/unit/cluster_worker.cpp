@@ -72,10 +72,16 @@ struct TinyScene {
     edit::EditsT edits;
     const auto add = [&](auto&& edit) { edits.edits.emplace_back(new edit::EditT)->any.Set(std::move(edit)); };
     edit::FrameSettingsT frame;
-    frame.width = frame.height = 8, frame.channels = RT_RGBA, frame.samples = 4, frame.depth = 2;
+    frame.width = frame.height = 8;
+    frame.channels = RT_RGBA;
+    frame.samples = 4;
+    frame.depth = 2;
     add(std::move(frame));
     edit::TextureT texture;
-    texture.id = 1, texture.components = 4, texture.width = texture.height = 2, texture.texels = 10;
+    texture.id = 1;
+    texture.components = 4;
+    texture.width = texture.height = 2;
+    texture.texels = 10;
     add(std::move(texture));
     edits.render = true;
     message = {epoch, whole, true, {{10, 16, hash()}}, {}, packEdits(edits)};
@@ -90,7 +96,10 @@ struct TinyScene {
 Prepared prepared() {
   Prepared p;
   p.facts.camera = true;
-  p.frame.width = p.frame.height = 8, p.frame.channels = RT_RGBA, p.frame.samples = 4, p.frame.depth = 2;
+  p.frame.width = p.frame.height = 8;
+  p.frame.channels = RT_RGBA;
+  p.frame.samples = 4;
+  p.frame.depth = 2;
   p.frame.transport = RT_TRANSPORT_DIRECT;
   return p;
 }
@@ -103,7 +112,8 @@ void makeReady(Rig& rig, Epoch epoch = 1, Epoch machines = 1) {
   rig.tell(scene.message);
   rig.tell(scene.piece());
   rig.worker.ready(machines, prepared());
-  rig.said.clear(), rig.machine.told.clear();
+  rig.said.clear();
+  rig.machine.told.clear();
 }
 
 using Told = std::vector<std::string>;
@@ -201,7 +211,9 @@ TEST(Worker, scenesWaitForTheirArraysInTheirOrder) {
   Rig rig;
   rig.greet();
   const TinyScene first(1, 1), second(2, 2), third(3, 1);
-  rig.tell(first.message), rig.tell(second.message), rig.tell(third.message);
+  rig.tell(first.message);
+  rig.tell(second.message);
+  rig.tell(third.message);
   ASSERT_EQ(rig.said.size(), 3u);
   EXPECT_TRUE(std::get<message::Need>(rig.said[2].second.body).arrays.empty()) << "asked for already";
   rig.tell(message::Prepare{3});
@@ -226,7 +238,8 @@ TEST(Worker, editsThatBreakARuleAreRefusedUntilAWholeSceneComes) {
   EXPECT_TRUE(std::holds_alternative<message::Failed>(rig.said.at(1).second.body));
   EXPECT_EQ(rig.machine.all(), Told{});
   const TinyScene good(3);
-  rig.tell(good.message), rig.tell(good.piece());
+  rig.tell(good.message);
+  rig.tell(good.piece());
   EXPECT_EQ(rig.machine.all(), Told{"scene 3 whole prepare"});
 }
 
@@ -234,7 +247,8 @@ TEST(Worker, editsThatAreNoneAreRefused) {
   Rig rig;
   rig.greet();
   TinyScene junk(1);
-  junk.message.edits = someBytes(200), junk.message.arrays.clear();
+  junk.message.edits = someBytes(200);
+  junk.message.arrays.clear();
   rig.tell(junk.message);
   EXPECT_TRUE(std::holds_alternative<message::Failed>(rig.said.at(1).second.body));
 }
@@ -273,7 +287,8 @@ TEST(Worker, jobsAreDoneAndTheirResultsSent) {
   EXPECT_EQ(rig.machine.all(), Told{"work 1 2"});
   JobResult result;
   result.sums.resize(64);
-  result.seconds = 0.5, result.counters.camera = 256;
+  result.seconds = 0.5;
+  result.counters.camera = 256;
   rig.worker.done(1, rig.machine.jobs[1], std::move(result));
   const auto sent = rig.answer<message::Result>();
   EXPECT_EQ(sent.lease, 101u);
@@ -344,8 +359,9 @@ TEST(Worker, aMessageThatCannotBeReadEndsTheSession) {
 TEST(Worker, nonsenseIsCounted) {
   Rig rig;
   rig.greet();
-  rig.tell(message::Need{1, {}}), rig.tell(message::Hello{.threads = 1}); // what only workers say
-  rig.tell(TinyScene(1).piece());                                         // that nobody asked for
+  rig.tell(message::Need{1, {}});
+  rig.tell(message::Hello{.threads = 1}); // what only workers say
+  rig.tell(TinyScene(1).piece());         // that nobody asked for
   rig.tell(message::Prepare{1});
   rig.tell(message::Welcome{protocolVersion, 7, 0.1f, 0.5f});
   EXPECT_EQ(rig.badOnes.size(), 5u);

@@ -66,7 +66,10 @@ class Sink final : public WorkerSink {
 
 class WorkerCoreTest : public testing::Test {
  protected:
-  WorkerCoreTest() : shaders(shaderFolders("")) { options.threads = 3, options.shaders = &shaders; }
+  WorkerCoreTest() : shaders(shaderFolders("")) {
+    options.threads = 3;
+    options.shaders = &shaders;
+  }
 
   // A room, and commits that change it: the camera, a frame of other settings.
   static Commits commits(const test::Settings& settings) {
@@ -90,7 +93,10 @@ class WorkerCoreTest : public testing::Test {
       std::vector<LeasedJob> jobs;
       LeasedJob next;
       FrameWork::Next what;
-      while ((what = work.next(next.job, 32)) == FrameWork::Next::job) next.lease = ++lease, jobs.push_back(next);
+      while ((what = work.next(next.job, 32)) == FrameWork::Next::job) {
+        next.lease = ++lease;
+        jobs.push_back(next);
+      }
       if (what == FrameWork::Next::over) break;
       core.work(epoch, jobs);
       if (!sink.wait(before + std::max<size_t>(jobs.size(), 1))) ADD_FAILURE() << "nothing comes";

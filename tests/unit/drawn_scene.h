@@ -124,7 +124,8 @@ class Room {
  public:
   explicit Room(const Settings& settings, uint32_t threads = 1) : shaders_(shaderFolders("")) {
     BackendOptions options;
-    options.threads = threads, options.shaders = &shaders_;
+    options.threads = threads;
+    options.shaders = &shaders_;
     backend_ = std::make_unique<LocalBackend>(options);
     for (const auto& commit : drawn([&] {
            drawRoom();

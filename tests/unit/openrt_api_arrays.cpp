@@ -234,8 +234,11 @@ TEST_F(Arrays, EqualArraysTravelOnce) {
 TEST_F(Arrays, AMillionVerticesArriveWhole) {
   constexpr size_t count = 999999;
   Floats points(3 * count);
-  for (size_t i = 0; i < count; i++)
-    points[3 * i] = float(i), points[3 * i + 1] = float(i % 3 == 1), points[3 * i + 2] = float(i % 3 == 2);
+  for (size_t i = 0; i < count; i++) {
+    points[3 * i] = float(i);
+    points[3 * i + 1] = float(i % 3 == 1);
+    points[3 * i + 2] = float(i % 3 == 2);
+  }
   rtBeginObject(0);
   rtVertexPointer(3, RT_FLOAT, 0, points.data());
   rtDrawArrays(RT_TRIANGLES, 0, count);

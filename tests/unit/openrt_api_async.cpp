@@ -26,7 +26,10 @@ class Async : public testing::Test {
     rtParameter3f(emissive, 0.5f, 0, 0);
     object = rtBeginObject(0);
     rtBegin(RT_QUADS);
-    rtVertex3f(-9, -9, 0), rtVertex3f(9, -9, 0), rtVertex3f(9, 9, 0), rtVertex3f(-9, 9, 0);
+    rtVertex3f(-9, -9, 0);
+    rtVertex3f(9, -9, 0);
+    rtVertex3f(9, 9, 0);
+    rtVertex3f(-9, 9, 0);
     rtEnd();
     rtEndObject();
     instance = rtInstantiateObject(object);

@@ -331,20 +331,27 @@ class EveryCall : public ApiTest {
   void SetUp() override {
     ApiTest::SetUp();
     w.context = handle;
-    w.object = triangleObject(), w.instance = rtInstantiateObject(w.object);
+    w.object = triangleObject();
+    w.instance = rtInstantiateObject(w.object);
     const auto make = [](const char* name, const char* library) { return rtNewShader(rtNewShaderClass(name, library)); };
     w.surfaceClass = rtNewShaderClass("Everything", "everything");
-    w.lamp = make("Lamp", "everything"), w.eye = make("Eye", "everything"), w.sky = make("Sky", "everything");
+    w.lamp = make("Lamp", "everything");
+    w.eye = make("Eye", "everything");
+    w.sky = make("Sky", "everything");
     w.varying = make("Varying", "varying");
     w.surface = make("Everything", "everything");
     w.light = rtUseLight(w.lamp);
     rtUseCamera(w.eye);
     rtGenTextures(1, &w.texture);
     rtBindShader(w.varying);
-    w.whole = rtParameterHandle("whole"), w.color = rtParameterHandle("color");
+    w.whole = rtParameterHandle("whole");
+    w.color = rtParameterHandle("color");
     rtBindShader(w.surface);
-    w.count = rtParameterHandle("count"), w.number = rtParameterHandle("strength"), w.list = rtParameterHandle("list");
-    w.text = rtParameterHandle("text"), w.image = rtParameterHandle("texture");
+    w.count = rtParameterHandle("count");
+    w.number = rtParameterHandle("strength");
+    w.list = rtParameterHandle("list");
+    w.text = rtParameterHandle("text");
+    w.image = rtParameterHandle("texture");
     commit();
   }
   World w;
@@ -367,7 +374,11 @@ TEST_F(EveryCall, WrongArgumentsAndStatesAreErrorsThatChangeNothing) {
     SCOPED_TRACE(std::string(each.name) + ", line " + std::to_string(i) + " of the table");
     RTid object = 0;
     if (each.state != Outside) object = rtBeginObject(0);
-    if (each.state == List) rtBindShader(w.varying), rtBegin(RT_TRIANGLES), rtVertex3f(0, 0, 0);
+    if (each.state == List) {
+      rtBindShader(w.varying);
+      rtBegin(RT_TRIANGLES);
+      rtVertex3f(0, 0, 0);
+    }
     std::vector<double> before = currentMatrix();
     EXPECT_EQ(rtGetError(), RTenum(RT_NO_ERROR)) << rtGetErrorMessage();
     each.call(w);
@@ -378,7 +389,8 @@ TEST_F(EveryCall, WrongArgumentsAndStatesAreErrorsThatChangeNothing) {
     EXPECT_EQ(rtGetCurrent(), handle);
     EXPECT_EQ(currentMatrix(), before);
     if (each.state == List) {
-      rtVertex3f(1, 0, 0), rtVertex3f(0, 1, 0);
+      rtVertex3f(1, 0, 0);
+      rtVertex3f(0, 1, 0);
       rtEnd();
       rtBindShader(w.surface);
     }
@@ -402,7 +414,9 @@ TEST_F(EveryCall, TheFirstErrorSticksAndTheCallbackHearsAll) {
   std::vector<std::string> heard;
   rtErrorCallback([](RTenum, const char* text, void* user) { static_cast<std::vector<std::string>*>(user)->emplace_back(text); },
                   &heard);
-  rtEnd(), rtDeleteObject(foreign), rtNewShader(foreign);
+  rtEnd();
+  rtDeleteObject(foreign);
+  rtNewShader(foreign);
   EXPECT_EQ(heard.size(), 3u);
   EXPECT_EQ(rtGetError(), RTenum(RT_INVALID_OPERATION));
   EXPECT_EQ(std::string(rtGetErrorMessage()), heard.at(0));

@@ -102,7 +102,8 @@ TEST_F(Frames, ReadingIsChecked) {
 
 TEST_F(Frames, StatisticsMergeBothSides) {
   const RTid object = triangleObject();
-  rtInstantiateObject(object), rtInstantiateObject(object);
+  rtInstantiateObject(object);
+  rtInstantiateObject(object);
   RTid textures[3];
   rtGenTextures(3, textures);
   RTstats stats;
@@ -168,7 +169,10 @@ TEST_F(Frames, EditsComeInTheirOrder) {
   rtParameter1i(0, 1);
   rtBindTexture(textures[1]);
   rtTexImage2D(1, 1, 1, RT_UNSIGNED_BYTE, &texel);
-  rtDeleteTexture(textures[0]), rtDeleteShader(oldShader), rtDeleteObject(oldObject), rtRemoveLight(oldLight);
+  rtDeleteTexture(textures[0]);
+  rtDeleteShader(oldShader);
+  rtDeleteObject(oldObject);
+  rtRemoveLight(oldLight);
   EXPECT_FAILS(RT_INVALID_ID, rtDeleteInstance(oldInstance)); // went with its object
 
   using edit::Any;
@@ -196,7 +200,8 @@ TEST_F(Frames, ABackendThatPipelinesHasTheNextFrameBeforeItIsAskedForTheLast) {
     return stats.frame;
   };
   float pixels[32];
-  rtSwapBuffers(), rtSwapBuffers();
+  rtSwapBuffers();
+  rtSwapBuffers();
   EXPECT_EQ(course(), "aswas");
   EXPECT_EQ(finished(), 1u);
   EXPECT_EQ(rtFinishFrame(), 1);
@@ -205,12 +210,15 @@ TEST_F(Frames, ABackendThatPipelinesHasTheNextFrameBeforeItIsAskedForTheLast) {
   EXPECT_EQ(finished(), 2u);
 
   captured->pipelines = true;
-  rtSwapBuffers(), rtSwapBuffers();
+  rtSwapBuffers();
+  rtSwapBuffers();
   EXPECT_EQ(course(), "asasw");
   EXPECT_EQ(finished(), 3u);
   rtQuality(RT_FRAMES_IN_FLIGHT, 3);
   rtFrameBuffer(8, 2, RT_RGBA);
-  rtSwapBuffers(), rtSwapBuffers(), rtSwapBuffers();
+  rtSwapBuffers();
+  rtSwapBuffers();
+  rtSwapBuffers();
   EXPECT_EQ(course(), "asasasw");
   EXPECT_EQ(finished(), 4u);
   rtReadPixels(RT_RGBA, pixels, 32); // of the former size
@@ -225,7 +233,8 @@ TEST_F(Frames, ABackendThatPipelinesHasTheNextFrameBeforeItIsAskedForTheLast) {
 // The backend does not know yet of a frame that is being handed over; a cancellation of that time reaches it all the same.
 TEST_F(Frames, ACancellationWhileAFrameIsBegunIsForThatFrame) {
   const auto course = [&](const char* cancelIn, void (*call)()) {
-    captured->cancelIn = cancelIn, captured->course.clear();
+    captured->cancelIn = cancelIn;
+    captured->course.clear();
     call();
     return captured->course;
   };
@@ -245,7 +254,8 @@ TEST_F(Frames, ACancellationWhileAFrameIsBegunIsForThatFrame) {
 
 TEST_F(Frames, AFrameThatFailsIsNotTheFinishedOne) {
   captured->pipelines = true;
-  rtSwapBuffers(), rtSwapBuffers();
+  rtSwapBuffers();
+  rtSwapBuffers();
   captured->failNextWait = true;
   EXPECT_FAILS(RT_CLUSTER_ERROR, rtSwapBuffers());
   RTstats stats{};

@@ -12,9 +12,15 @@ class OwnParameters : public ApiTest {
     ApiTest::SetUp();
     shader = rtNewShader(rtNewShaderClass("Varying", "varying"));
     rtBindShader(shader);
-    color = rtParameterHandle("color"), weight = rtParameterHandle("weight"), pair = rtParameterHandle("pair");
+    color = rtParameterHandle("color");
+    weight = rtParameterHandle("weight");
+    pair = rtParameterHandle("pair");
   }
-  static void triangle() { rtVertex3f(0, 0, 0), rtVertex3f(1, 0, 0), rtVertex3f(0, 1, 0); }
+  static void triangle() {
+    rtVertex3f(0, 0, 0);
+    rtVertex3f(1, 0, 0);
+    rtVertex3f(0, 1, 0);
+  }
   static const std::vector<std::unique_ptr<edit::GeometryT>>& geometries(const Commit& c) {
     return edits<edit::ObjectT>(c).at(0)->geometries;
   }
@@ -32,9 +38,12 @@ using Floats = std::vector<float>;
 TEST_F(OwnParameters, AreLatchedByTheVerticesThatFollow) {
   rtBeginObject(0);
   rtBegin(RT_TRIANGLES);
-  rtParameter1f(weight, 1), rtVertex3f(0, 0, 0);
-  rtParameter1f(weight, 2), rtVertex3f(1, 0, 0);
-  rtParameter1f(weight, 3), rtVertex3f(0, 1, 0);
+  rtParameter1f(weight, 1);
+  rtVertex3f(0, 0, 0);
+  rtParameter1f(weight, 2);
+  rtVertex3f(1, 0, 0);
+  rtParameter1f(weight, 3);
+  rtVertex3f(0, 1, 0);
   rtEnd();
   rtEndObject();
   const Commit& c = commit();
@@ -48,7 +57,8 @@ TEST_F(OwnParameters, ListsThatHaveTheSameAreOneGeometry) {
   rtBeginObject(0);
   for (int i = 0; i < 100; i++) {
     rtBegin(RT_TRIANGLES);
-    rtParameter2f(pair, float(i), 0), rtParameter1f(weight, float(-i));
+    rtParameter2f(pair, float(i), 0);
+    rtParameter1f(weight, float(-i));
     triangle();
     rtEnd();
   }
@@ -71,7 +81,8 @@ TEST_F(OwnParameters, OneThatIsNewStartsAnotherGeometry) {
   triangle();
   rtParameter1f(weight, 8); // in the middle: what came before has the shader's own value
   triangle();
-  rtParameter3f(color, 1, 0, 0), rtNormal3f(0, 0, 1);
+  rtParameter3f(color, 1, 0, 0);
+  rtNormal3f(0, 0, 1);
   triangle();
   rtEnd();
   rtBindShader(0); // another shader: nothing of it
@@ -131,9 +142,14 @@ TEST_F(OwnParameters, ByTriangleTheyAreOfTheVertexThatCompletesIt) {
 TEST_F(OwnParameters, DegenerateTrianglesTakeTheirValuesAlong) {
   rtBeginObject(0);
   rtBegin(RT_TRIANGLES);
-  rtParameter2f(pair, 1, 1), triangle();
-  rtParameter2f(pair, 2, 2), rtVertex3f(0, 0, 0), rtVertex3f(0, 0, 0), rtVertex3f(0, 1, 0);
-  rtParameter2f(pair, 3, 3), triangle();
+  rtParameter2f(pair, 1, 1);
+  triangle();
+  rtParameter2f(pair, 2, 2);
+  rtVertex3f(0, 0, 0);
+  rtVertex3f(0, 0, 0);
+  rtVertex3f(0, 1, 0);
+  rtParameter2f(pair, 3, 3);
+  triangle();
   rtEnd();
   rtEndObject();
   const Commit& c = commit();
@@ -182,7 +198,8 @@ TEST_F(OwnParameters, BadValuesOfArraysAreErrorsWhereTheyAreUsed) {
 TEST_F(OwnParameters, OfAShaderThatIsDeletedAreDropped) {
   rtBeginObject(0);
   rtBegin(RT_TRIANGLES);
-  rtParameter1f(weight, 1), triangle();
+  rtParameter1f(weight, 1);
+  triangle();
   rtEnd();
   rtEndObject();
   rtDeleteShader(shader);
@@ -213,7 +230,9 @@ TEST_F(OwnParameters, VerticesFarApartInDoubleKeepTheirs) {
   for (const double x : {1e7, 2e9}) {
     rtBegin(RT_TRIANGLES);
     rtParameter1f(weight, float(x));
-    rtVertex3d(x, 0.1, 0), rtVertex3d(x + 1, 0, 0), rtVertex3d(x, 1, 0);
+    rtVertex3d(x, 0.1, 0);
+    rtVertex3d(x + 1, 0, 0);
+    rtVertex3d(x, 1, 0);
     rtEnd();
   }
   rtEndObject();

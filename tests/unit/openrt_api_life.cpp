@@ -160,7 +160,9 @@ struct Heard {
 };
 void hear(RTenum error, const char* message, void* user) {
   Heard& heard = *static_cast<Heard*>(user);
-  heard.calls++, heard.error = error, heard.text = message;
+  heard.calls++;
+  heard.error = error;
+  heard.text = message;
 }
 void throwSomething(RTenum, const char*, void*) { throw 1; }
 

@@ -71,7 +71,10 @@ TEST_F(ApiTest, PushAndPop) {
 TEST_F(ApiTest, TheStackHoldsAtLeastAThousandAndOverflowsCleanly) {
   int pushed = 0;
   rtTranslated(5, 0, 0);
-  while (rtGetError() == RT_NO_ERROR && pushed < 1000000) rtPushMatrix(), pushed++;
+  while (rtGetError() == RT_NO_ERROR && pushed < 1000000) {
+    rtPushMatrix();
+    pushed++;
+  }
   EXPECT_GE(pushed, 1000);
   EXPECT_LT(pushed, 1000000);
   for (int i = 0; i < pushed - 1; i++) rtPopMatrix(); // the last push failed
@@ -85,7 +88,8 @@ TEST_F(ApiTest, LoadAndMultiplyInBothTypes) {
   float f[16];
   double d[16];
   for (int i = 0; i < 16; i++) d[i] = f[i] = static_cast<float>(identity[i]);
-  f[12] = 0.1f, d[12] = 0.1;
+  f[12] = 0.1f;
+  d[12] = 0.1;
   rtLoadMatrixf(f);
   rtMultMatrixd(d);
   EXPECT_EQ(currentMatrix()[12], double(0.1f) + 0.1);
@@ -107,8 +111,13 @@ TEST_F(ApiTest, BadMatricesAreErrorsAndChangeNothing) {
   const std::vector<double> before = currentMatrix();
   double m[16], projective[16];
   float f[16];
-  for (int i = 0; i < 16; i++) m[i] = projective[i] = identity[i], f[i] = static_cast<float>(identity[i]);
-  m[5] = nan, f[5] = std::numeric_limits<float>::infinity(), projective[11] = -1;
+  for (int i = 0; i < 16; i++) {
+    m[i] = projective[i] = identity[i];
+    f[i] = static_cast<float>(identity[i]);
+  }
+  m[5] = nan;
+  f[5] = std::numeric_limits<float>::infinity();
+  projective[11] = -1;
   EXPECT_FAILS(RT_INVALID_VALUE, rtLoadMatrixd(m));
   EXPECT_FAILS(RT_INVALID_VALUE, rtMultMatrixd(m));
   EXPECT_FAILS(RT_INVALID_VALUE, rtLoadMatrixf(f));

@@ -221,11 +221,13 @@ TEST_F(Objects, ABadMatrixLeavesTheInstanceAlone) {
   std::copy(matrix, matrix + 16, bad);
   bad[0] = std::nan("");
   EXPECT_FAILS(RT_INVALID_VALUE, rtInstanceMatrix(instance, bad));
-  bad[0] = 1, bad[15] = 2;
+  bad[0] = 1;
+  bad[15] = 2;
   EXPECT_FAILS(RT_INVALID_VALUE, rtInstanceMatrix(instance, bad));
   EXPECT_FAILS(RT_INVALID_VALUE, rtInstanceMatrix(instance, nullptr));
   EXPECT_TRUE(commit().edits.edits.empty());
-  bad[15] = 1, bad[0] = 0; // singular: drawn as nothing
+  bad[15] = 1;
+  bad[0] = 0; // singular: drawn as nothing
   rtInstanceMatrix(instance, bad);
   EXPECT_EQ(commit().edits.edits.size(), 1u);
 }

@@ -101,9 +101,13 @@ TEST_F(Primitives, AttributesAreLatchedByVertices) {
   rtBeginObject(0);
   const float normal[3] = {0, 1, 0}, color[4] = {0.1f, 0.2f, 0.3f, 0.4f}, st[2] = {0.5f, 0.75f};
   rtBegin(RT_TRIANGLES);
-  rtNormal3f(0, 0, 1), rtTexCoord2f(0, 1), rtColor3f(1, 0, 0);
+  rtNormal3f(0, 0, 1);
+  rtTexCoord2f(0, 1);
+  rtColor3f(1, 0, 0);
   rtVertex3f(0, 0, 0);
-  rtNormal3fv(normal), rtTexCoord2fv(st), rtColor4fv(color);
+  rtNormal3fv(normal);
+  rtTexCoord2fv(st);
+  rtColor4fv(color);
   rtVertex3f(1, 0, 0);
   rtVertex3f(0, 1, 0);
   rtEnd();
@@ -120,8 +124,10 @@ TEST_F(Primitives, AnAttributeThatComesLateLeavesEarlierVerticesUnset) {
   rtEnd();
   rtBegin(RT_TRIANGLES);
   rtVertex3f(0, 0, 1);
-  rtColor4f(0, 1, 0, 0.5f), rtNormal3f(1, 0, 0);
-  rtVertex3f(1, 0, 1), rtVertex3f(0, 1, 1);
+  rtColor4f(0, 1, 0, 0.5f);
+  rtNormal3f(1, 0, 0);
+  rtVertex3f(1, 0, 1);
+  rtVertex3f(0, 1, 1);
   rtEnd();
   rtBegin(RT_TRIANGLES); // joins: the same attributes
   curve(3);
@@ -152,10 +158,19 @@ TEST_F(Primitives, ADefinitionForgetsTheAttributesBeforeIt) {
 
 TEST_F(Primitives, StateIsLatchedAtBegin) {
   rtBeginObject(0);
-  rtTranslated(1, 2, 3), rtLoadName(7), rtEnable(RT_CULL_FACE), rtEnable(RT_CW_FRONT), rtPointSize(3), rtLineWidth(5);
+  rtTranslated(1, 2, 3);
+  rtLoadName(7);
+  rtEnable(RT_CULL_FACE);
+  rtEnable(RT_CW_FRONT);
+  rtPointSize(3);
+  rtLineWidth(5);
   rtBegin(RT_POINTS);
   curve(1);
-  rtLoadIdentity(), rtLoadName(8), rtDisable(RT_CULL_FACE), rtDisable(RT_CW_FRONT), rtPointSize(4);
+  rtLoadIdentity();
+  rtLoadName(8);
+  rtDisable(RT_CULL_FACE);
+  rtDisable(RT_CW_FRONT);
+  rtPointSize(4);
   curve(1);
   rtEnd();
   const edit::GeometryT& g = only();
@@ -186,27 +201,49 @@ TEST_F(Primitives, EachChangeOfStateStartsAGeometry) {
     curve(3);
     rtEnd();
   };
-  list(RT_TRIANGLES), rtLoadName(1), list(RT_TRIANGLES);
-  rtTranslated(1, 0, 0), list(RT_TRIANGLES);
-  rtEnable(RT_CULL_FACE), list(RT_TRIANGLES);
-  rtEnable(RT_CW_FRONT), list(RT_TRIANGLES);
-  list(RT_LINE_STRIP), rtLineWidth(2), list(RT_LINE_STRIP);
-  rtPointSize(9), list(RT_LINE_STRIP); // means nothing to lines
-  rtColor3f(1, 1, 1), list(RT_LINE_STRIP);
+  list(RT_TRIANGLES);
+  rtLoadName(1);
+  list(RT_TRIANGLES);
+  rtTranslated(1, 0, 0);
+  list(RT_TRIANGLES);
+  rtEnable(RT_CULL_FACE);
+  list(RT_TRIANGLES);
+  rtEnable(RT_CW_FRONT);
+  list(RT_TRIANGLES);
+  list(RT_LINE_STRIP);
+  rtLineWidth(2);
+  list(RT_LINE_STRIP);
+  rtPointSize(9);
+  list(RT_LINE_STRIP); // means nothing to lines
+  rtColor3f(1, 1, 1);
+  list(RT_LINE_STRIP);
   EXPECT_EQ(end().geometries.size(), 8u);
 }
 
 TEST_F(Primitives, DegenerateOnesAreDroppedAndCounted) {
   rtBeginObject(0);
   rtBegin(RT_TRIANGLES);
-  rtVertex3f(0, 0, 0), rtVertex3f(1, 0, 0), rtVertex3f(1, 0, 0); // two corners in one place
-  rtVertex3f(0, 0, 0), rtVertex3f(1, 2, 3), rtVertex3f(3, 6, 9); // collinear
-  rtVertex3f(0.1f, 0.1f, 0.1f), rtVertex3f(0.2f, 0.2f, 0.2f), rtVertex3f(0.7f, 0.7f, 0.7f);
-  rtVertex3f(0, 0, 0), rtVertex3f(1, 0, 0), rtVertex3f(0.5f, 1e-30f, 0); // thin, but there
-  rtVertex3f(5, 5, 5), rtVertex3f(5, 5, 5), rtVertex3f(5, 5, 5);
+  rtVertex3f(0, 0, 0);
+  rtVertex3f(1, 0, 0);
+  rtVertex3f(1, 0, 0); // two corners in one place
+  rtVertex3f(0, 0, 0);
+  rtVertex3f(1, 2, 3);
+  rtVertex3f(3, 6, 9); // collinear
+  rtVertex3f(0.1f, 0.1f, 0.1f);
+  rtVertex3f(0.2f, 0.2f, 0.2f);
+  rtVertex3f(0.7f, 0.7f, 0.7f);
+  rtVertex3f(0, 0, 0);
+  rtVertex3f(1, 0, 0);
+  rtVertex3f(0.5f, 1e-30f, 0); // thin, but there
+  rtVertex3f(5, 5, 5);
+  rtVertex3f(5, 5, 5);
+  rtVertex3f(5, 5, 5);
   rtEnd();
   rtBegin(RT_LINES);
-  rtVertex3f(1, 1, 1), rtVertex3f(1, 1, 1), rtVertex3f(1, 1, 1), rtVertex3f(1, 1, 2);
+  rtVertex3f(1, 1, 1);
+  rtVertex3f(1, 1, 1);
+  rtVertex3f(1, 1, 1);
+  rtVertex3f(1, 1, 2);
   rtEnd();
   const edit::ObjectT& object = end();
   ASSERT_EQ(object.geometries.size(), 2u);
@@ -241,7 +278,8 @@ TEST_F(Primitives, BadVerticesAreErrorsAndAddNothing) {
   EXPECT_FAILS(RT_INVALID_VALUE, rtTexCoord2fv(nullptr));
   EXPECT_FAILS(RT_INVALID_VALUE, rtColor3fv(nullptr));
   EXPECT_FAILS(RT_INVALID_VALUE, rtColor4fv(nullptr));
-  rtVertex3f(1, 0, 0), rtVertex3f(0, 1, 0);
+  rtVertex3f(1, 0, 0);
+  rtVertex3f(0, 1, 0);
   rtEnd();
   const edit::GeometryT& g = only();
   EXPECT_EQ(contents<float>(*last, g.points), (std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0}));
@@ -288,7 +326,8 @@ TEST_F(Primitives, Spheres) {
   EXPECT_FAILS(RT_INVALID_VALUE, rtSphere(0));
   EXPECT_FAILS(RT_INVALID_VALUE, rtSphere(-1));
   EXPECT_FAILS(RT_INVALID_VALUE, rtSphere(std::nanf("")));
-  rtTranslated(1, 2, 3), rtLoadName(4);
+  rtTranslated(1, 2, 3);
+  rtLoadName(4);
   rtSphere(2.5f);
   const edit::GeometryT& g = only();
   EXPECT_EQ(g.primitive, edit::Primitive::Sphere);
@@ -310,7 +349,9 @@ std::vector<double> positions(const Commit& c, const edit::GeometryT& g) {
 TEST_F(Primitives, DoublesThatFloatHoldsAreKeptAsTheyAre) {
   rtBeginObject(0);
   rtBegin(RT_TRIANGLES);
-  rtVertex3d(0.5, 0.25, 1e6), rtVertex3d(1, 0, 0), rtVertex3d(0, 1, 0);
+  rtVertex3d(0.5, 0.25, 1e6);
+  rtVertex3d(1, 0, 0);
+  rtVertex3d(0, 1, 0);
   rtEnd();
   const edit::GeometryT& g = only();
   EXPECT_EQ(contents<float>(*last, g.points), (std::vector<float>{0.5f, 0.25f, 1e6f, 1, 0, 0, 0, 1, 0}));
@@ -322,7 +363,9 @@ TEST_F(Primitives, DoublesFarFromTheOriginStayApart) {
   const double x = 6378137.123456789, y = -1234567.987654321, z = 42.000000001;
   rtBeginObject(0);
   rtBegin(RT_TRIANGLES);
-  rtVertex3d(x, y, z), rtVertex3d(x + 0.001, y, z), rtVertex3d(x, y + 0.002, z);
+  rtVertex3d(x, y, z);
+  rtVertex3d(x + 0.001, y, z);
+  rtVertex3d(x, y + 0.002, z);
   rtEnd();
   const edit::GeometryT& g = only();
   const std::vector<double> world = positions(*last, g);
@@ -335,7 +378,10 @@ TEST_F(Primitives, ShortFractionsFarOutAreExact) {
   rtBeginObject(0);
   rtBegin(RT_QUADS);
   const double x = 1e9 + 0.25;
-  rtVertex3d(x, 0.5, 0), rtVertex3d(x + 8.5, 0.5, 0), rtVertex3d(x + 8.5, 3.75, 0), rtVertex3d(x, 3.75, 0);
+  rtVertex3d(x, 0.5, 0);
+  rtVertex3d(x + 8.5, 0.5, 0);
+  rtVertex3d(x + 8.5, 3.75, 0);
+  rtVertex3d(x, 3.75, 0);
   rtEnd();
   const edit::GeometryT& g = only();
   EXPECT_EQ(positions(*last, g), (std::vector<double>{x, 0.5, 0, x + 8.5, 0.5, 0, x + 8.5, 3.75, 0, x, 3.75, 0}));
@@ -345,7 +391,9 @@ TEST_F(Primitives, NeighboursInDoubleMergeAndDistantOnesDoNot) {
   rtBeginObject(0);
   const auto triangle = [](double x) {
     rtBegin(RT_TRIANGLES);
-    rtVertex3d(x, 0.1, 0), rtVertex3d(x + 1, 0.1, 0), rtVertex3d(x, 1.1, 0);
+    rtVertex3d(x, 0.1, 0);
+    rtVertex3d(x + 1, 0.1, 0);
+    rtVertex3d(x, 1.1, 0);
     rtEnd();
   };
   for (int i = 0; i < 10; i++) triangle(1e7 + 0.3 + i);
@@ -381,7 +429,9 @@ TEST_F(Primitives, TheMatrixGoesBeforeTheOrigin) {
   rtBeginObject(0);
   rtRotated(90, 0, 0, 1);
   rtBegin(RT_TRIANGLES);
-  rtVertex3d(1e8 + 0.1, 0, 0), rtVertex3d(1e8 + 1.1, 0, 0), rtVertex3d(1e8 + 0.1, 1, 0);
+  rtVertex3d(1e8 + 0.1, 0, 0);
+  rtVertex3d(1e8 + 1.1, 0, 0);
+  rtVertex3d(1e8 + 0.1, 1, 0);
   rtEnd();
   const edit::GeometryT& g = only();
   const std::vector<double> m = matrixOf(*g.matrix);

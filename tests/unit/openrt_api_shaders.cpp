@@ -174,7 +174,9 @@ TEST_F(Shaders, RolesTakeTheirKindOnly) {
   EXPECT_FAILS(RT_INVALID_ID, rtUseCamera(4711));
   rtTranslated(1, 2, 3);
   const RTid light = rtUseLight(lamp);
-  rtUseCamera(eye), rtUseEnvironment(sky), rtDefaultShader(surface);
+  rtUseCamera(eye);
+  rtUseEnvironment(sky);
+  rtDefaultShader(surface);
   const Commit& c = commit();
   EXPECT_EQ(edits<edit::LightT>(c).at(0)->id, light);
   EXPECT_EQ(matrixOf(*edits<edit::LightT>(c)[0]->matrix)[12], 1.0);
@@ -219,7 +221,8 @@ TEST_F(Shaders, StockCameras) {
   EXPECT_FAILS(RT_INVALID_VALUE, rtPerspective(NAN));
   EXPECT_FAILS(RT_INVALID_VALUE, rtOrtho(0));
   EXPECT_FAILS(RT_INVALID_VALUE, rtOrtho(INFINITY));
-  rtPushMatrix(), rtScaled(1, 0, 1);
+  rtPushMatrix();
+  rtScaled(1, 0, 1);
   EXPECT_FAILS(RT_INVALID_VALUE, rtPerspective(40)); // flat
   rtPopMatrix();
   rtPerspective(40);
@@ -247,9 +250,12 @@ TEST_F(Shaders, DeletingAShaderEndsItsRoles) {
   const RTid instance = rtInstantiateObject(triangleObject());
   rtInstanceShader(instance, surface);
   const RTid light = rtUseLight(lamp);
-  rtUseCamera(eye), rtDefaultShader(surface);
+  rtUseCamera(eye);
+  rtDefaultShader(surface);
   commit();
-  rtDeleteShader(surface), rtDeleteShader(lamp), rtDeleteShader(eye);
+  rtDeleteShader(surface);
+  rtDeleteShader(lamp);
+  rtDeleteShader(eye);
   EXPECT_FAILS(RT_INVALID_ID, rtBindShader(surface));
   EXPECT_FAILS(RT_INVALID_OPERATION, rtParameterHandle("x")); // it was bound
   EXPECT_FAILS(RT_INVALID_ID, rtRemoveLight(light));

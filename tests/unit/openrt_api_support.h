@@ -48,10 +48,14 @@ class CaptureBackend final : public Backend {
     happens('w');
     if (std::exchange(captured_->failNextWait, false)) throw ClusterError("2 workers are needed, there is 1");
   }
-  void cancel() override { captured_->cancels++, captured_->course += 'c'; }
+  void cancel() override {
+    captured_->cancels++;
+    captured_->course += 'c';
+  }
   std::vector<RTworker> workers() const override {
     std::vector<RTworker> workers(2);
-    workers[0].threads = 3, workers[1].threads = 4;
+    workers[0].threads = 3;
+    workers[1].threads = 4;
     return workers;
   }
   float progress() const override { return 0.25f; }
@@ -59,7 +63,10 @@ class CaptureBackend final : public Backend {
     for (size_t i = 0; i < out.size(); i++) out[i] = static_cast<float>(channel);
     return true;
   }
-  void stats(RTstats& stats) const override { stats.cameraRays = 42, stats.degenerate = 1; }
+  void stats(RTstats& stats) const override {
+    stats.cameraRays = 42;
+    stats.degenerate = 1;
+  }
   void castRays(std::span<const RTray>, std::span<RThit> hits) override {
     for (RThit& hit : hits) hit.t = 7;
   }
@@ -150,7 +157,9 @@ inline std::vector<double> currentMatrix() {
 inline RTid triangleObject() {
   const RTid object = rtBeginObject(0);
   rtBegin(RT_TRIANGLES);
-  rtVertex3f(0, 0, 0), rtVertex3f(1, 0, 0), rtVertex3f(0, 1, 0);
+  rtVertex3f(0, 0, 0);
+  rtVertex3f(1, 0, 0);
+  rtVertex3f(0, 1, 0);
   rtEnd();
   rtEndObject();
   return object;

@@ -15,7 +15,8 @@ template <class T> void put(Commit& commit, T edit) {
 
 edit::ObjectT object(uint32_t id, bool withGeometry, bool dynamic = false) {
   edit::ObjectT o;
-  o.id = id, o.dynamic = dynamic;
+  o.id = id;
+  o.dynamic = dynamic;
   if (withGeometry) {
     auto g = std::make_unique<edit::GeometryT>();
     g->primitive = edit::Primitive::Sphere;
@@ -27,7 +28,10 @@ edit::ObjectT object(uint32_t id, bool withGeometry, bool dynamic = false) {
 
 edit::InstanceT instance(uint32_t id, uint32_t parent, uint32_t object, double x, bool dynamic = false) {
   edit::InstanceT i;
-  i.id = id, i.parent = parent, i.object = object, i.dynamic = dynamic;
+  i.id = id;
+  i.parent = parent;
+  i.object = object;
+  i.dynamic = dynamic;
   const double m[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, x, 0, 0, 1};
   i.matrix = std::make_unique<edit::Matrix>(flatbuffers::span<const double, 16>(m));
   return i;

@@ -110,7 +110,10 @@ TEST(Error, whereNothingIsRandomEqualSamplesAreExact) {
 
 TEST(Error, pixelsThatDifferByChanceShareTheirVariance) {
   std::vector<PixelSums> sums;
-  for (uint32_t i = 0; i < 25; i++) sums.push_back(sumsOf(calmSamples(i), sixteen)), sums.back().random = true;
+  for (uint32_t i = 0; i < 25; i++) {
+    sums.push_back(sumsOf(calmSamples(i), sixteen));
+    sums.back().random = true;
+  }
   std::vector<PixelError> errors(25);
   tileErrors(5, sums, sixteen, errors);
   // Standard deviation of a sample sqrt(4 / 12); of the middle pixel's interval little is left to chance.
@@ -124,7 +127,8 @@ TEST(Error, whereNoiseIsAsStrongAsTheLightVariancesArePooledRelativeToIt) { // a
   for (uint32_t y = 0; y < 5; y++, scale /= 4)
     for (uint32_t x = 0; x < 5; x++) {
       std::vector<float> samples = calmSamples(5 * y + x, scale);
-      sums.push_back(sumsOf(samples, sixteen)), sums.back().random = true;
+      sums.push_back(sumsOf(samples, sixteen));
+      sums.back().random = true;
     }
   std::vector<PixelError> errors(25);
   tileErrors(5, sums, sixteen, errors);
@@ -159,7 +163,11 @@ TEST(Error, aConstantPixelBesideAnEdgeIsInDoubt) {
   for (size_t i = 0; i < 15; i++) {
     PixelError e;
     e.mean[0] = i % 5 < 3 ? 0.0f : 1.0f;
-    e.samples = 30, e.trusted = e.constant = true, e.relative = 0, e.noise.finished = true, e.noise.scale = 1;
+    e.samples = 30;
+    e.trusted = e.constant = true;
+    e.relative = 0;
+    e.noise.finished = true;
+    e.noise.scale = 1;
     map.store(i, e);
   }
   std::vector<size_t> changed;
@@ -184,6 +192,7 @@ TEST(Error, replicatesOnlyWhereTheErrorIsAskedFor) {
   EXPECT_EQ(replicatesOf(frame, 1000, 0).size(), 32u); // 31 and a part
   frame.replicates = 1;
   EXPECT_FALSE(replicatesOf(frame, 1024, 0).many());
-  frame.channels = RT_RGBA, frame.replicates = 8;
+  frame.channels = RT_RGBA;
+  frame.replicates = 8;
   EXPECT_EQ(replicatesOf(frame, 64, 0).size(), 8u);
 }

@@ -268,7 +268,9 @@ TEST(FrameWorkByHand, CancelledItHoldsWhatIsFinished) {
 
 TEST(FrameWorkByHand, WithoutACameraItIsOver) {
   edit::FrameSettingsT frame;
-  frame.width = frame.height = 8, frame.channels = RT_RGBA, frame.samples = 1;
+  frame.width = frame.height = 8;
+  frame.channels = RT_RGBA;
+  frame.samples = 1;
   FrameWork work(frame, {}, 2);
   Job job;
   EXPECT_EQ(work.next(job), FrameWork::Next::over);

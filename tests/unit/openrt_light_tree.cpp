@@ -28,8 +28,10 @@ LightBounds patch(std::mt19937& random, float size) {
   float length = 0;
   for (int k = 0; k < 3; k++) {
     const float middle = 4 * unit(random);
-    b.low[k] = middle - size, b.high[k] = middle + size;
-    b.axis[k] = unit(random), length += b.axis[k] * b.axis[k];
+    b.low[k] = middle - size;
+    b.high[k] = middle + size;
+    b.axis[k] = unit(random);
+    length += b.axis[k] * b.axis[k];
   }
   for (float& a : b.axis) a /= std::sqrt(length);
   b.cosineNormals = 1;
@@ -92,21 +94,30 @@ TEST(LightTree, LightThatArrivesIsNeverImpossible) {
       LightBounds b = patch(random, i % 3 ? .3f : 0.0f);
       if (i % 4 == 0) b.bothSides = true;
       if (i % 5 == 0) b.reach = 3;
-      if (i % 7 == 0) b.cosineBeyond = 1, b.cosineNormals = .7f; // a spot light
+      if (i % 7 == 0) {
+        b.cosineBeyond = 1;
+        b.cosineNormals = .7f;
+      } // a spot light
       lights.push_back(b);
     }
     LightTree tree;
     tree.build(lights);
     for (int place = 0; place < 200; place++) {
       float p[3], n[3], length = 0;
-      for (int k = 0; k < 3; k++) p[k] = 5 * unit(random), n[k] = unit(random), length += n[k] * n[k];
+      for (int k = 0; k < 3; k++) {
+        p[k] = 5 * unit(random);
+        n[k] = unit(random);
+        length += n[k] * n[k];
+      }
       for (float& x : n) x /= std::sqrt(length);
       for (uint32_t i = 0; i < lights.size(); i++) { // from a place within its box
         const LightBounds& b = lights[i];
         double way[3], square = 0, leaving = 0, facing = 0;
         for (int k = 0; k < 3; k++) {
           way[k] = p[k] - (b.low[k] + (b.high[k] - b.low[k]) * (.5 + .5 * double(unit(random))));
-          square += way[k] * way[k], leaving += way[k] * b.axis[k], facing -= way[k] * n[k];
+          square += way[k] * way[k];
+          leaving += way[k] * b.axis[k];
+          facing -= way[k] * n[k];
         }
         if (b.bothSides) leaving = std::fabs(leaving);
         const bool lit = b.cosineBeyond == 1 ? leaving > double(b.cosineNormals) * std::sqrt(square) : leaving > 0;
@@ -163,7 +174,8 @@ TEST(LightTree, SameLightsSameTree) {
   std::vector<LightBounds> lights;
   for (int i = 0; i < 5000; i++) lights.push_back(patch(random, .01f));
   LightTree a, b;
-  a.build(lights), b.build(lights);
+  a.build(lights);
+  b.build(lights);
   const float p[3] = {1, 2, 3};
   for (uint32_t i = 0; i < lights.size(); i += 37) ASSERT_EQ(a.probability(p, nullptr, i), b.probability(p, nullptr, i));
 }

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "render/surface/lobes.h"
 #include "render/path/sampler.h"
+#include "render/surface/lobes.h"
 #include "render/surface/scatter.h"
 
 namespace {
@@ -22,10 +22,17 @@ struct Bench {
 
   Bench(RtsLobeKind kind, float first, float second, double degrees) {
     const double a = degrees * M_PI / 180;
-    direction[0] = float(-std::sin(a)), direction[1] = 0, direction[2] = float(-std::cos(a));
-    parameter[0] = first, parameter[1] = second;
+    direction[0] = float(-std::sin(a));
+    direction[1] = 0;
+    direction[2] = float(-std::cos(a));
+    parameter[0] = first;
+    parameter[1] = second;
     lobe.kind = kind;
-    for (int k = 0; k < 3; k++) lobe.weight[k] = &weight[k], lobe.normal[k] = &normal[k], hits.direction[k] = &direction[k];
+    for (int k = 0; k < 3; k++) {
+      lobe.weight[k] = &weight[k];
+      lobe.normal[k] = &normal[k];
+      hits.direction[k] = &direction[k];
+    }
     for (int k = 0; k < 2; k++) lobe.parameter[k] = &parameter[k];
     hits.count = 1;
   }
@@ -34,8 +41,10 @@ struct Bench {
     const uint32_t n = edge * edge;
     std::vector<float> u(n), v(n);
     const std::vector<uint32_t> hit(n, 0);
-    for (uint32_t i = 0; i < n; i++)
-      u[i] = (float(i % edge) + .5f) / float(edge), v[i] = (float(i / edge) + toUnit(hash(i))) / float(edge);
+    for (uint32_t i = 0; i < n; i++) {
+      u[i] = (float(i % edge) + .5f) / float(edge);
+      v[i] = (float(i / edge) + toUnit(hash(i))) / float(edge);
+    }
     const float* square[2] = {u.data(), v.data()};
     LobeSamples samples(arena, n);
     samples.sample(lobe, hits, n, hit.data(), square);
@@ -44,7 +53,8 @@ struct Bench {
     double sum = 0, some = 0;
     for (uint32_t i = 0; i < n; i++) {
       if (!(samples.density[i] > 0)) continue;
-      some++, sum += samples.value[0][i];
+      some++;
+      sum += samples.value[0][i];
       const float d[3] = {samples.direction[0][i], samples.direction[1][i], samples.direction[2][i]};
       EXPECT_NEAR(dot3(d, d), 1, 1e-5);
       // Evaluated again from the rounded direction: near a narrow lobe's axis digits are lost.
@@ -65,14 +75,19 @@ struct Bench {
       const double theta = M_PI * (row + .5) / rows, s = std::sin(theta);
       for (uint32_t c = 0; c < columns; c++) {
         const double phi = 2 * M_PI * (c + .5) / columns;
-        d[0][c] = float(s * std::cos(phi)), d[1][c] = float(s * std::sin(phi)), d[2][c] = float(std::cos(theta));
+        d[0][c] = float(s * std::cos(phi));
+        d[1][c] = float(s * std::sin(phi));
+        d[2][c] = float(std::cos(theta));
       }
       const float* directions[3] = {d[0].data(), d[1].data(), d[2].data()};
       ArenaScope scope(arena);
       LobeAnswers answers(arena, columns);
       answers.evaluate(lobe, hits, columns, hit.data(), directions);
       const double cell = 2 * M_PI / columns * M_PI / rows * s;
-      for (uint32_t c = 0; c < columns; c++) value += answers.value[0][c] * cell, density += answers.density[c] * cell;
+      for (uint32_t c = 0; c < columns; c++) {
+        value += answers.value[0][c] * cell;
+        density += answers.density[c] * cell;
+      }
     }
     return {value, density};
   }

@@ -33,7 +33,8 @@ template <class Sample> Outcome pictures(int count, Sample sample, double (*trut
       for (uint32_t s = 0; s < perPixel; s++) {
         const auto x = float(sample(random, i));
         const float radiance[3] = {x, x, x};
-        sums[i].add(radiance, 1), sums[i].addTails(radiance);
+        sums[i].add(radiance, 1);
+        sums[i].addTails(radiance);
         if (sixteen.indexOf(s + 1) == 0) sums[i].closeReplicate();
       }
       sums[i].random = true;
@@ -46,8 +47,10 @@ template <class Sample> Outcome pictures(int count, Sample sample, double (*trut
     for (const PixelError& e : errors) noise.push_back(e.noise);
     const std::vector<float> doubted(pixels, std::numeric_limits<float>::quiet_NaN());
     const PictureError e = pictureError(edge, noise, doubted);
-    out.inside += std::fabs(off - e.mean) <= e.interval, out.above += off > e.mean + e.interval;
-    out.said += e.mean / count, out.was += off / count;
+    out.inside += std::fabs(off - e.mean) <= e.interval;
+    out.above += off > e.mean + e.interval;
+    out.said += e.mean / count;
+    out.was += off / count;
   }
   printf("said %.4f, was %.4f, %d of %d inside, %d above\n", out.said, out.was, out.inside, count, out.above);
   return out;
@@ -91,7 +94,10 @@ TEST(PictureError, ofLightOverManyDecades) {
 
 TEST(PictureError, ofWhatIsCompletelyUnknownAnythingIsSaid) {
   std::vector<PixelNoise> noise(4);
-  for (PixelNoise& p : noise) p.finished = p.random = true, p.scale = .03f;
+  for (PixelNoise& p : noise) {
+    p.finished = p.random = true;
+    p.scale = .03f;
+  }
   const std::vector<float> doubted(4, std::numeric_limits<float>::quiet_NaN());
   const PictureError e = pictureError(2, noise, doubted);
   EXPECT_DOUBLE_EQ(e.mean, .5);
@@ -100,8 +106,13 @@ TEST(PictureError, ofWhatIsCompletelyUnknownAnythingIsSaid) {
 
 TEST(PictureError, aPlainBackgroundBehindALensIsNotAnError) { // equal samples of random paths
   std::vector<PixelNoise> noise(256);
-  for (PixelNoise& p : noise) p.finished = p.random = true, p.scale = 1.03f, p.largest = 1.0f / 64;
-  noise[17].own = .1f, noise[17].second = .004f;
+  for (PixelNoise& p : noise) {
+    p.finished = p.random = true;
+    p.scale = 1.03f;
+    p.largest = 1.0f / 64;
+  }
+  noise[17].own = .1f;
+  noise[17].second = .004f;
   const std::vector<float> doubted(256, std::numeric_limits<float>::quiet_NaN());
   const PictureError e = pictureError(16, noise, doubted);
   EXPECT_NEAR(e.mean, .1 / 1.03 / 256, 1e-4);
@@ -110,7 +121,11 @@ TEST(PictureError, aPlainBackgroundBehindALensIsNotAnError) { // equal samples o
 
 TEST(PictureError, pixelsInDoubtHoldAnEdgeOrNone) { // a tenth of them does, and then they are wrong altogether
   std::vector<PixelNoise> noise(256);
-  for (PixelNoise& p : noise) p.finished = true, p.scale = .03f, p.own = 1;
+  for (PixelNoise& p : noise) {
+    p.finished = true;
+    p.scale = .03f;
+    p.own = 1;
+  }
   const std::vector<float> doubted(256, .1f);
   const PictureError e = pictureError(16, noise, doubted);
   EXPECT_NEAR(e.mean, .1, 1e-6);

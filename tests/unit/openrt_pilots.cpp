@@ -14,14 +14,26 @@ namespace {
 class PilotsOf : public testing::Test {
  protected:
   PilotsOf() {
-    frame_.width = 16, frame_.height = 8, frame_.tile = 8, frame_.samples = 4096, frame_.targetError = .1f;
+    frame_.width = 16;
+    frame_.height = 8;
+    frame_.tile = 8;
+    frame_.samples = 4096;
+    frame_.targetError = .1f;
     frame_.channels = RT_RGBA;
   }
   static PixelError error(float relative, bool trusted, bool constant, float colour = 1) {
     PixelError e;
-    for (int k = 0; k < 3; k++) e.mean[k] = colour, e.halfWidth[k] = relative * (colour + .01f);
-    e.noise.scale = 3 * colour + .03f, e.noise.finished = true, e.noise.random = !constant;
-    e.samples = 32, e.trusted = trusted, e.constant = constant, e.relative = std::min(relative, 1.0f);
+    for (int k = 0; k < 3; k++) {
+      e.mean[k] = colour;
+      e.halfWidth[k] = relative * (colour + .01f);
+    }
+    e.noise.scale = 3 * colour + .03f;
+    e.noise.finished = true;
+    e.noise.random = !constant;
+    e.samples = 32;
+    e.trusted = trusted;
+    e.constant = constant;
+    e.relative = std::min(relative, 1.0f);
     return e;
   }
   void note(Pilots& pilots, uint32_t tile, const PixelError& e) {
@@ -35,7 +47,8 @@ class PilotsOf : public testing::Test {
   }
   std::vector<Pilots::Verdict> judgeAll(const PixelError& left, const PixelError& right, bool timed = false) {
     Pilots pilots(frame_, TileGrid(frame_), timed);
-    note(pilots, 0, left), note(pilots, 1, right);
+    note(pilots, 0, left);
+    note(pilots, 1, right);
     return pilots.judgeAll();
   }
   edit::FrameSettingsT frame_;
@@ -76,7 +89,8 @@ TEST_F(PilotsOf, TheyAreAThirdOfTheSamplesAtMost) {
   for (const uint32_t most : {33u, 64u, 100u, 256u, 1000u, 4096u, 65536u}) {
     frame_.samples = most;
     Pilots pilots(frame_, TileGrid(frame_), false);
-    note(pilots, 0, error(2, false, false)), note(pilots, 1, error(2, false, false));
+    note(pilots, 0, error(2, false, false));
+    note(pilots, 1, error(2, false, false));
     Pilots::Verdict v = pilots.judgeAll()[0];
     uint32_t all = 0;
     for (std::vector<PixelError> errors(64, error(2, false, false)); v.pilot; v = pilots.judge(0, pixels(errors), v.samples)) {
@@ -97,7 +111,8 @@ TEST_F(PilotsOf,
        ConstantPixelsBesideAnEdgeCount) { // those at the border, and between the tiles: their bound falls as 1 / samples
   Pilots pilots(frame_, TileGrid(frame_), false);
   std::vector<PixelError> black(64, error(0, true, true, 0));
-  note(pilots, 0, black[0]), note(pilots, 1, error(0, true, true, 1));
+  note(pilots, 0, black[0]);
+  note(pilots, 1, error(0, true, true, 1));
   const auto v = pilots.judgeAll();
   expect(v[0], 64, true);
   expect(v[1], 32, false); // by 3 / N * 3 / 3.03
@@ -115,6 +130,7 @@ TEST_F(PilotsOf, PathsFromLampsDoNotGoAwayBySamples) {
   Pilots pilots(frame_, TileGrid(frame_), false);
   const std::vector<PilotPixel> all(64, p);
   const std::vector<PixelError> errors(64, e);
-  pilots.note(0, all, errors), pilots.note(1, all, errors);
+  pilots.note(0, all, errors);
+  pilots.note(1, all, errors);
   expect(pilots.judgeAll()[0], 64, false);
 }

@@ -106,18 +106,34 @@ struct Example {
       : texture(add(edits, edit::TextureT())), surfaceClass(add(edits, edit::ShaderClassT())),
         surface(add(edits, edit::ShaderT())), parameter(add(edits, edit::ParameterT())), object(add(edits, edit::ObjectT())),
         geometry(makeGeometry(object)), instance(add(edits, edit::InstanceT())), frame(add(edits, edit::FrameSettingsT())) {
-    texture.id = 1, texture.components = 1, texture.width = texture.height = 2, texture.texels = 3;
-    surfaceClass.id = 2, surfaceClass.name = "Everything", surfaceClass.library = "everything";
-    surface.id = 3, surface.shaderClass = 2;
-    parameter.shader = 3, parameter.index = 1, parameter.floats = {0.5f};
+    texture.id = 1;
+    texture.components = 1;
+    texture.width = texture.height = 2;
+    texture.texels = 3;
+    surfaceClass.id = 2;
+    surfaceClass.name = "Everything";
+    surfaceClass.library = "everything";
+    surface.id = 3;
+    surface.shaderClass = 2;
+    parameter.shader = 3;
+    parameter.index = 1;
+    parameter.floats = {0.5f};
     object.id = 4;
-    instance.id = 5, instance.object = 4, instance.matrix = identity();
-    frame.width = frame.height = 4, frame.channels = RT_RGBA, frame.samples = 1;
+    instance.id = 5;
+    instance.object = 4;
+    instance.matrix = identity();
+    frame.width = frame.height = 4;
+    frame.channels = RT_RGBA;
+    frame.samples = 1;
     edits.render = true;
   }
   static edit::GeometryT& makeGeometry(edit::ObjectT& object) {
     auto g = std::make_unique<edit::GeometryT>();
-    g->matrix = identity(), g->points = 1, g->indices = 2, g->width = 1, g->shader = 3;
+    g->matrix = identity();
+    g->points = 1;
+    g->indices = 2;
+    g->width = 1;
+    g->shader = 3;
     object.geometries.push_back(std::move(g));
     return *object.geometries.back();
   }
@@ -307,7 +323,8 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"CameraAsSurface",
               [](Example& e) {
                 e.surfaceClass.name = "Eye";
-                e.parameter.index = 0, e.parameter.shader = 99;
+                e.parameter.index = 0;
+                e.parameter.shader = 99;
               },
               "unknown id 99"},
         Fault{"UnknownClass", [](Example& e) { e.surfaceClass.name = "Absent"; }, "has no class \"Absent\""},
@@ -340,21 +357,25 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"LightWithoutShader",
               [](Example& e) {
                 edit::LightT light;
-                light.id = 8, light.matrix = identity();
+                light.id = 8;
+                light.matrix = identity();
                 add(e.edits, std::move(light));
               },
               "unknown id 0"},
         Fault{"SurfaceAsLight",
               [](Example& e) {
                 edit::LightT light;
-                light.id = 8, light.shader = 3, light.matrix = identity();
+                light.id = 8;
+                light.shader = 3;
+                light.matrix = identity();
                 add(e.edits, std::move(light));
               },
               "in a role of another kind"},
         Fault{"SurfaceAsCamera",
               [](Example& e) {
                 edit::CameraT camera;
-                camera.shader = 3, camera.matrix = identity();
+                camera.shader = 3;
+                camera.matrix = identity();
                 add(e.edits, std::move(camera));
               },
               "in a role of another kind"},
@@ -363,9 +384,12 @@ INSTANTIATE_TEST_SUITE_P(
 
 // Parameters of a geometry: the colours of Varying are its points, which lie within 0 .. 1.
 void giveParameter(Example& e, uint32_t index = 2, bool perVertex = true, uint64_t values = 1) {
-  e.surfaceClass.name = "Varying", e.surfaceClass.library = "varying";
+  e.surfaceClass.name = "Varying";
+  e.surfaceClass.library = "varying";
   auto own = std::make_unique<edit::GeometryParameterT>();
-  own->index = index, own->perVertex = perVertex, own->values = values;
+  own->index = index;
+  own->perVertex = perVertex;
+  own->values = values;
   e.geometry.parameters.push_back(std::move(own));
 }
 
@@ -378,7 +402,8 @@ TEST_F(Recording, ParametersOfGeometryAreChecked) {
       {"good by vertex", "", [](Example& e) { giveParameter(e); }},
       {"good by triangle", "",
        [](Example& e) {
-         giveParameter(e, 5, false, 4), e.extra = {1, 2, 3};
+         giveParameter(e, 5, false, 4);
+         e.extra = {1, 2, 3};
        }},
       {"no such parameter", "a parameter that its class does not have", [](Example& e) { giveParameter(e, 99); }},
       {"another frequency", "cannot have like that", [](Example& e) { giveParameter(e, 2, false); }},
@@ -389,23 +414,46 @@ TEST_F(Recording, ParametersOfGeometryAreChecked) {
       {"too many", "of a wrong size", [](Example& e) { giveParameter(e, 3); }},
       {"one float too many", "of a wrong size",
        [](Example& e) {
-         giveParameter(e, 5, false, 4), e.extra = {1, 2, 3, 4};
+         giveParameter(e, 5, false, 4);
+         e.extra = {1, 2, 3, 4};
        }},
-      {"nothing in it", "of a wrong size", [](Example& e) { giveParameter(e, 5, false, 4), e.extra.emplace(); }},
-      {"out of range", "is outside", [](Example& e) { giveParameter(e), e.points[3] = 2; }},
+      {"nothing in it", "of a wrong size",
+       [](Example& e) {
+         giveParameter(e, 5, false, 4);
+         e.extra.emplace();
+       }},
+      {"out of range", "is outside",
+       [](Example& e) {
+         giveParameter(e);
+         e.points[3] = 2;
+       }},
       {"not finite", "not finite",
        [](Example& e) {
-         giveParameter(e, 5, false, 4), e.extra = {1, std::numeric_limits<float>::infinity(), 3};
+         giveParameter(e, 5, false, 4);
+         e.extra = {1, std::numeric_limits<float>::infinity(), 3};
        }},
-      {"twice", "twice", [](Example& e) { giveParameter(e), giveParameter(e); }},
-      {"of no shader", "parameters of no shader", [](Example& e) { giveParameter(e), e.geometry.shader = 0; }},
+      {"twice", "twice",
+       [](Example& e) {
+         giveParameter(e);
+         giveParameter(e);
+       }},
+      {"of no shader", "parameters of no shader",
+       [](Example& e) {
+         giveParameter(e);
+         e.geometry.shader = 0;
+       }},
       {"of a sphere", "a sphere with parameters",
        [](Example& e) {
          giveParameter(e);
-         e.geometry.primitive = edit::Primitive::Sphere, e.geometry.points = e.geometry.indices = 0;
+         e.geometry.primitive = edit::Primitive::Sphere;
+         e.geometry.points = e.geometry.indices = 0;
        }},
       {"of another class", "cannot have like that",
-       [](Example& e) { giveParameter(e), e.surfaceClass.name = "Everything", e.surfaceClass.library = "everything"; }},
+       [](Example& e) {
+         giveParameter(e);
+         e.surfaceClass.name = "Everything";
+         e.surfaceClass.library = "everything";
+       }},
   };
   for (const auto& c : cases) {
     const std::string text = after(c.change);

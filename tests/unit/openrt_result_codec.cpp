@@ -16,7 +16,10 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::nume
 
 edit::FrameSettingsT frameOf(uint32_t channels) {
   edit::FrameSettingsT frame;
-  frame.width = 40, frame.height = 40, frame.channels = channels, frame.samples = 64;
+  frame.width = 40;
+  frame.height = 40;
+  frame.channels = channels;
+  frame.samples = 64;
   return frame;
 }
 
@@ -52,9 +55,17 @@ JobResult resultOf(const edit::FrameSettingsT& frame, const Job& job, uint32_t s
       if (frame.channels & RT_POSITION) s.position[k] = float(value());
       if (frame.channels & RT_NORMAL) s.normal[k] = value();
       if (frame.channels & RT_ALBEDO) s.albedo[k] = value();
-      if (g.spread) s.first[k] = value(), s.delta[k] = value(), s.delta2[k] = value();
+      if (g.spread) {
+        s.first[k] = value();
+        s.delta[k] = value();
+        s.delta2[k] = value();
+      }
       if (!g.error) continue;
-      s.closed[k] = value(), s.closed2[k] = value(), s.closed3[k] = value(), s.closed4[k] = value(), s.grey[k] = value();
+      s.closed[k] = value();
+      s.closed2[k] = value();
+      s.closed3[k] = value();
+      s.closed4[k] = value();
+      s.grey[k] = value();
       s.largest[k] = float(value());
     }
     s.random = g.error && random() % 2;

@@ -27,7 +27,9 @@ edit::ObjectT object(uint32_t id, bool withGeometry) {
 
 edit::InstanceT instance(uint32_t id, uint32_t parent, uint32_t object, double x = 0, double scale = 1) {
   edit::InstanceT i;
-  i.id = id, i.parent = parent, i.object = object;
+  i.id = id;
+  i.parent = parent;
+  i.object = object;
   const double m[16] = {scale, 0, 0, 0, 0, scale, 0, 0, 0, 0, scale, 0, x, 0, 0, 1};
   i.matrix = std::make_unique<edit::Matrix>(flatbuffers::span<const double, 16>(m));
   return i;
@@ -68,8 +70,10 @@ TEST(Flatten, outermostShaderAndInnermostUserData) {
   put(commit, object(1, true));
   put(commit, object(2, false));
   auto inner = instance(10, 2, 1), outer = instance(11, 0, 2);
-  inner.shader = 7, outer.shader = 8;
-  inner.userData = 70, outer.userData = 80;
+  inner.shader = 7;
+  outer.shader = 8;
+  inner.userData = 70;
+  outer.userData = 80;
   put(commit, std::move(inner));
   put(commit, std::move(outer));
   Scene scene;
@@ -113,7 +117,8 @@ TEST(Flatten, scopedLightsShineBelowTheirInstanceOnly) {
   put(commit, instance(11, 0, 1));
   edit::LightT all, some;
   all.id = 20;
-  some.id = 21, some.scope = 11;
+  some.id = 21;
+  some.scope = 11;
   put(commit, std::move(all));
   put(commit, std::move(some));
   Scene scene;

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "render/frame.h"
-#include "render/path/sampler.h"
 #include "render/lights/spherical.h"
+#include "render/path/sampler.h"
 
 using namespace openrt;
 
@@ -185,7 +185,8 @@ TEST(Spherical, SolidAnglesAreLessNoisyThanAreas) {
       double d[3], distance;
       if (t.sample(u, v, d, distance)) {
         const double e = 2 * d[2] / t.density(d);
-        sums[0][0] += e, sums[0][1] += e * e;
+        sums[0][0] += e;
+        sums[0][1] += e * e;
       }
       const double root = std::sqrt(double(u)), w[3] = {1 - root, root * (1 - v), root * v};
       double way[3], square = 0;
@@ -194,7 +195,8 @@ TEST(Spherical, SolidAnglesAreLessNoisyThanAreas) {
         square += way[k] * way[k];
       }
       const double e = way[2] * way[2] / (square * square); // area 1 x both cosines over the square of the distance
-      sums[1][0] += e, sums[1][1] += e * e;
+      sums[1][0] += e;
+      sums[1][1] += e * e;
     }
     double variance[2];
     for (int i = 0; i < 2; i++) variance[i] = sums[i][1] / (1 << 14) - std::pow(sums[i][0] / (1 << 14), 2);
@@ -264,13 +266,17 @@ template <class T> void checkFrames(double tolerance) {
   for (int i = 0; i < 200000; i++) {
     double d[3] = {normal(random), normal(random), i % 3 ? normal(random) : 0.0}, other[3], length = 0, otherLength = 0;
     for (int k = 0; k < 3; k++) length += d[k] * d[k];
-    for (int k = 0; k < 3; k++)
-      d[k] /= std::sqrt(length), other[k] = d[k] + 1e-3 * normal(random), otherLength += other[k] * other[k];
+    for (int k = 0; k < 3; k++) {
+      d[k] /= std::sqrt(length);
+      other[k] = d[k] + 1e-3 * normal(random);
+      otherLength += other[k] * other[k];
+    }
     const T n[3] = {T(d[0]), T(d[1]), T(d[2])};
     T s[3], t[3], near[3], beside[3];
     const T m[3] = {T(other[0] / std::sqrt(otherLength)), T(other[1] / std::sqrt(otherLength)),
                     T(other[2] / std::sqrt(otherLength))};
-    basisOf(n, s, t), basisOf(m, near, beside);
+    basisOf(n, s, t);
+    basisOf(m, near, beside);
     const auto dot = [](const T a[3], const T b[3]) { return double(a[0] * b[0] + a[1] * b[1] + a[2] * b[2]); };
     for (const double zero : {dot(s, t), dot(s, n), dot(t, n), dot(s, s) - 1, dot(t, t) - 1}) ASSERT_NEAR(zero, 0, tolerance);
     const T across[3] = {s[1] * t[2] - s[2] * t[1], s[2] * t[0] - s[0] * t[2], s[0] * t[1] - s[1] * t[0]};

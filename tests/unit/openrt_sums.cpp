@@ -27,7 +27,10 @@ Samples samplesOf(uint32_t count, uint32_t seed) {
 void add(PixelSums& sums, const std::array<float, 3>& sample) {
   sums.add(sample.data(), sample[0]);
   sums.addTails(sample.data());
-  for (int k = 0; k < 3; k++) sums.normal[k] += sample[size_t(k)], sums.albedo[k] += 1 - sample[size_t(k)];
+  for (int k = 0; k < 3; k++) {
+    sums.normal[k] += sample[size_t(k)];
+    sums.albedo[k] += 1 - sample[size_t(k)];
+  }
 }
 
 // As the wavefront gathers a leaf.
@@ -37,7 +40,8 @@ SumBlock leafOf(const Samples& samples, uint32_t first, uint32_t count, const Re
     add(block.sums[0], samples[s]);
     if (replicates.many() && replicates.indexOf(s + 1) == 0 && s + 1 - first >= replicates.size()) block.sums[0].closeReplicate();
   }
-  block.ledger.samples = count, block.ledger.clipped = double(samples[first][0]);
+  block.ledger.samples = count;
+  block.ledger.clipped = double(samples[first][0]);
   return block;
 }
 

@@ -123,11 +123,17 @@ class WholeScene : public ApiTest, public testing::WithParamInterface<int> {
   // Objects contain only objects with smaller numbers.
   void define(RTid id) {
     const RTid made = rtBeginObject(id);
-    for (size_t i = random() % 3; i > 0; i--) place(), geometry();
+    for (size_t i = random() % 3; i > 0; i--) {
+      place();
+      geometry();
+    }
     std::vector<RTid> inner;
     for (RTid o : objects)
       if (o < made) inner.push_back(o);
-    for (size_t i = random() % 3; i > 0 && !inner.empty(); i--) place(), rtInstantiateObject(any(inner));
+    for (size_t i = random() % 3; i > 0 && !inner.empty(); i--) {
+      place();
+      rtInstantiateObject(any(inner));
+    }
     rtEndObject();
     if (!id) objects.push_back(made);
   }
@@ -151,20 +157,33 @@ class WholeScene : public ApiTest, public testing::WithParamInterface<int> {
   void change() {
     const RTid instance = any(instances);
     switch (random() % 16) {
-    case 0: surfaces.push_back(rtNewShader(rtNewShaderClass("VRML97", nullptr))), parameters(surfaces.back()); break;
+    case 0:
+      surfaces.push_back(rtNewShader(rtNewShaderClass("VRML97", nullptr)));
+      parameters(surfaces.back());
+      break;
     case 1: parameters(any(surfaces)); break;
     case 2:
     case 3: define(0); break;
     case 4: define(any(objects)); break;
     case 5:
     case 6:
-      if (!objects.empty()) place(), instances.push_back(rtInstantiateObject(any(objects)));
+      if (!objects.empty()) {
+        place();
+        instances.push_back(rtInstantiateObject(any(objects)));
+      }
       break;
     case 7:
-      if (instance) place(), rtGetMatrixd(matrix), rtInstanceMatrix(instance, matrix);
+      if (instance) {
+        place();
+        rtGetMatrixd(matrix);
+        rtInstanceMatrix(instance, matrix);
+      }
       break;
     case 8:
-      if (instance) rtInstanceVisible(instance, random() % 3 != 0), rtInstanceUserData(instance, random());
+      if (instance) {
+        rtInstanceVisible(instance, random() % 3 != 0);
+        rtInstanceUserData(instance, random());
+      }
       break;
     case 9:
       if (instance) rtInstanceShader(instance, any(surfaces) == varying ? 0 : any(surfaces));
@@ -173,7 +192,10 @@ class WholeScene : public ApiTest, public testing::WithParamInterface<int> {
       if (const RTid gone = take(instances)) rtDeleteInstance(gone);
       break;
     case 11:
-      if (surfaces.size() > 3 && surfaces.back() != varying) rtDeleteShader(surfaces.back()), surfaces.pop_back();
+      if (surfaces.size() > 3 && surfaces.back() != varying) {
+        rtDeleteShader(surfaces.back());
+        surfaces.pop_back();
+      }
       break;
     case 12:
       place();
@@ -185,13 +207,18 @@ class WholeScene : public ApiTest, public testing::WithParamInterface<int> {
       break;
     case 14: {
       RTid id = random() % 2 ? any(textures) : 0;
-      if (!id) rtGenTextures(1, &id), textures.push_back(id);
+      if (!id) {
+        rtGenTextures(1, &id);
+        textures.push_back(id);
+      }
       image(id);
       break;
     }
     case 15:
       rtFrameBuffer(20 + int(random() % 9), 16, RT_RGBA | RT_DEPTH | RT_NAME);
-      rtLoadIdentity(), rtTranslatef(0, 0, 6), rtPerspective(40 + double(random() % 20));
+      rtLoadIdentity();
+      rtTranslatef(0, 0, 6);
+      rtPerspective(40 + double(random() % 20));
       break;
     }
     rtBindShader(0);
@@ -205,11 +232,16 @@ class WholeScene : public ApiTest, public testing::WithParamInterface<int> {
     rtBindShader(varying);
     varyingColor = rtParameterHandle("color");
     rtBindShader(0);
-    rtLoadIdentity(), rtTranslatef(0, 0, 6), rtPerspective(45);
-    rtLoadIdentity(), rtTranslatef(3, 4, 5), lights.push_back(rtUseLight(lamp));
+    rtLoadIdentity();
+    rtTranslatef(0, 0, 6);
+    rtPerspective(45);
+    rtLoadIdentity();
+    rtTranslatef(3, 4, 5);
+    lights.push_back(rtUseLight(lamp));
   }
   std::vector<float> picture(Backend& backend, const Scene& scene) {
-    backend.start(), backend.wait();
+    backend.start();
+    backend.wait();
     std::vector<float> pixels(size_t(scene.frame.width) * scene.frame.height * 6);
     const size_t n = pixels.size() / 6;
     EXPECT_TRUE(backend.read(RT_RGBA, {pixels.data(), 4 * n}) && backend.read(RT_DEPTH, {pixels.data() + 4 * n, n}));
@@ -237,8 +269,13 @@ TEST_P(WholeScene, IsTheSceneHoweverItCameToBe) {
     for (int k = 0; k < 4; k++) change();
     commit();
     const auto edits = captured->commits.back();
-    seen.apply(*edits), seeing->apply(edits);
-    if (late.frame.width) validator->check(*edits), late.apply(*edits), joining->apply(edits);
+    seen.apply(*edits);
+    seeing->apply(edits);
+    if (late.frame.width) {
+      validator->check(*edits);
+      late.apply(*edits);
+      joining->apply(edits);
+    }
     if (step % 7 == 5) { // somebody joins
       const auto whole = wholeScene(seen);
       validator = std::make_unique<CommitValidator>(&captured->shaders);

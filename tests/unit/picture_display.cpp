@@ -4,8 +4,8 @@
 #include <bit>
 #include <cmath>
 
-#include "openrt/openrt.h"
 #include "libpicture/files/picture.h"
+#include "openrt/openrt.h"
 
 using namespace picture;
 
@@ -13,7 +13,9 @@ namespace {
 
 std::vector<uint8_t> bytesOf(const std::vector<float>& values, bool linear) {
   Picture picture;
-  picture.width = int(values.size()), picture.height = 1, picture.linear = linear;
+  picture.width = int(values.size());
+  picture.height = 1;
+  picture.linear = linear;
   for (const float v : values) picture.planes[RT_RGBA].insert(picture.planes[RT_RGBA].end(), {v, 0, 1, 1});
   const std::vector<uint8_t> rgb = displayBytes(picture);
   std::vector<uint8_t> out;

@@ -40,7 +40,9 @@ RenderSettings settingsOf(uint32_t channels = RT_RGBA) {
 
 LiveFrame frameOf(int width = 64, int height = 48, int samples = 4) {
   LiveFrame frame;
-  frame.width = width, frame.height = height, frame.samples = samples;
+  frame.width = width;
+  frame.height = height;
+  frame.samples = samples;
   return frame;
 }
 
@@ -62,7 +64,9 @@ LivePicture finish(LiveRenderer& live, const LiveFrame& frame) {
 }
 
 RenderResult still(xvrml::Browser& browser, RenderSettings settings, const LiveFrame& frame) {
-  settings.width = frame.width, settings.height = frame.height, settings.samples = frame.samples;
+  settings.width = frame.width;
+  settings.height = frame.height;
+  settings.samples = frame.samples;
   return Renderer(browser, settings).render(frame.view);
 }
 

@@ -52,7 +52,9 @@ RenderSettings clustered() {
 
 LiveFrame frameOf(int width = 64, int height = 48, int samples = 4) {
   LiveFrame frame;
-  frame.width = width, frame.height = height, frame.samples = samples;
+  frame.width = width;
+  frame.height = height;
+  frame.samples = samples;
   return frame;
 }
 
@@ -80,7 +82,9 @@ LivePicture finish(LiveRenderer& live, const LiveFrame& frame) {
 
 Picture still(xvrml::Browser& browser, const LiveFrame& frame) {
   RenderSettings settings = alone();
-  settings.width = frame.width, settings.height = frame.height, settings.samples = frame.samples;
+  settings.width = frame.width;
+  settings.height = frame.height;
+  settings.samples = frame.samples;
   return Renderer(browser, settings).render(frame.view).picture;
 }
 

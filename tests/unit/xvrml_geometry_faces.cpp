@@ -118,7 +118,10 @@ TEST(GeometryFaces, HolesBridgedByADoubledEdgeStayOpen) {
   EXPECT_NEAR(frontArea(mesh), 12, 1e-6);
   for (size_t t = 0; t < mesh.indices.size() / 3; t++) { // no triangle reaches into the hole
     double x = 0, y = 0;
-    for (size_t e = 0; e < 3; e++) x += at(mesh, 3 * t + e)[0] / 3, y += at(mesh, 3 * t + e)[1] / 3;
+    for (size_t e = 0; e < 3; e++) {
+      x += at(mesh, 3 * t + e)[0] / 3;
+      y += at(mesh, 3 * t + e)[1] / 3;
+    }
     EXPECT_FALSE(x > 1 && x < 3 && y > 1 && y < 3);
   }
   // The same in one list of shared points.

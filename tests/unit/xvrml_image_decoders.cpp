@@ -246,7 +246,10 @@ TEST(ImageDamage, HeadersCostNoMemory) {
       for (const uint8_t type : {uint8_t(0), uint8_t(2), uint8_t(6)}) files.push_back(pngHeader(width, height, 16, type));
   Bytes jpeg = makeJpeg(16, 16, 3, true, smooth); // progressive: all coefficients are in memory
   for (size_t i = 0; i + 8 < jpeg.size(); i++)
-    if (jpeg[i] == 0xff && jpeg[i + 1] == 0xc2) jpeg[i + 5] = jpeg[i + 7] = 0x40, jpeg[i + 6] = jpeg[i + 8] = 0;
+    if (jpeg[i] == 0xff && jpeg[i + 1] == 0xc2) {
+      jpeg[i + 5] = jpeg[i + 7] = 0x40;
+      jpeg[i + 6] = jpeg[i + 8] = 0;
+    }
   files.push_back(jpeg);
   Bytes gif = makeGif(2, 2, {{}}, paletteIndex); // a small picture on a large screen
   gif[7] = gif[9] = 0x40;

@@ -79,8 +79,10 @@ Bytes makeHdr(int width, int height, bool runs) {
     }
     append(out, Bytes{2, 2, uint8_t(width >> 8), uint8_t(width)});
     for (const Bytes& p : planes) {
-      out.push_back(uint8_t(width - 2)), out.insert(out.end(), p.begin(), p.end() - 2); // as they are
-      out.push_back(130), out.push_back(p.back());                                      // a run of two
+      out.push_back(uint8_t(width - 2));
+      out.insert(out.end(), p.begin(), p.end() - 2); // as they are
+      out.push_back(130);
+      out.push_back(p.back()); // a run of two
     }
   }
   return out;
@@ -111,10 +113,13 @@ Bytes pack(const Bytes& plain, int compression) {
     for (size_t i = 0; i < split.size();) {
       size_t n = 1;
       while (i + n < split.size() && split[i + n] == split[i] && n < 128) n++;
-      if (n > 2)
-        out.push_back(uint8_t(n - 1)), out.push_back(split[i]);
-      else
-        out.push_back(uint8_t(-int(n))), out.insert(out.end(), split.begin() + ptrdiff_t(i), split.begin() + ptrdiff_t(i + n));
+      if (n > 2) {
+        out.push_back(uint8_t(n - 1));
+        out.push_back(split[i]);
+      } else {
+        out.push_back(uint8_t(-int(n)));
+        out.insert(out.end(), split.begin() + ptrdiff_t(i), split.begin() + ptrdiff_t(i + n));
+      }
       i += n;
     }
   } else {
@@ -134,11 +139,15 @@ void attribute(Bytes& out, const std::string& name, const std::string& type, con
 
 Bytes makeExr(const Exr& e) {
   Bytes out, channels, window, blocks;
-  word(out, 20000630), word(out, 2 | e.flags);
+  word(out, 20000630);
+  word(out, 2 | e.flags);
   const std::string names = (e.grey ? "Y" : "BGR") + e.more;
   for (const char name : names) {
     append(channels, std::string(1, name) + '\0');
-    word(channels, e.kind), word(channels, 0), word(channels, 1), word(channels, 1);
+    word(channels, e.kind);
+    word(channels, 0);
+    word(channels, 1);
+    word(channels, 1);
   }
   channels.push_back(0);
   for (const int v : {e.x0, e.y0, e.x0 + e.width - 1, e.y0 + e.height - 1}) word(window, uint32_t(v));
@@ -161,7 +170,8 @@ Bytes makeExr(const Exr& e) {
             word(plain, e.kind ? std::bit_cast<uint32_t>(v) : uint32_t(v));
         }
     const Bytes packed = pack(plain, e.compression);
-    word(block, uint32_t(e.y0 + b * lines)), word(block, uint32_t(packed.size()));
+    word(block, uint32_t(e.y0 + b * lines));
+    word(block, uint32_t(packed.size()));
     append(block, packed);
     made.push_back(block);
   }
@@ -173,7 +183,10 @@ Bytes makeExr(const Exr& e) {
     at += made[b].size();
     append(blocks, made[b]);
   }
-  for (const uint64_t o : offsets) word(out, uint32_t(o)), word(out, uint32_t(o >> 32));
+  for (const uint64_t o : offsets) {
+    word(out, uint32_t(o));
+    word(out, uint32_t(o >> 32));
+  }
   append(out, blocks);
   return out;
 }

@@ -202,7 +202,10 @@ std::string wrapped(std::string_view text, size_t indent, size_t width) {
       out += "\n" + std::string(indent, ' ');
       column = 0;
     }
-    if (column) out += ' ', ++column;
+    if (column) {
+      out += ' ';
+      ++column;
+    }
     out += word;
     column += word.size();
   }

@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "report/describe.h"
 #include "libpicture/nearest.h"
+#include "report/describe.h"
 #include "shader_text.h"
 #include "values.h"
 #include "xvrml/nodes.h"
@@ -71,7 +71,9 @@ void give(const std::vector<nodes::Shape*>& shapes, const NodeRef& shader, World
       appearance = NodeRef(type.create(type));
       auto& own = static_cast<nodes::ORTAppearance&>(*appearance);
       const Parts parts = partsOf(before);
-      own.material = parts.material, own.texture = parts.texture, own.textureTransform = parts.textureTransform;
+      own.material = parts.material;
+      own.texture = parts.texture;
+      own.textureTransform = parts.textureTransform;
       own.shader = shader;
       own.source = shader->source;
       if (before) own.defName = before->defName;

@@ -134,7 +134,10 @@ picture::LookAt readCamera(std::string_view text) {
     if (parts.size() != 2 && parts.size() != 3) throw UsageError("");
     readTriple(parts[0], camera.position);
     readTriple(parts[1], camera.target);
-    if (parts.size() == 3) readTriple(parts[2], camera.up), camera.saysUp = true;
+    if (parts.size() == 3) {
+      readTriple(parts[2], camera.up);
+      camera.saysUp = true;
+    }
   } catch (const UsageError&) {
     throw UsageError(
         fmt::format("position, target and, if wanted, up vector as px,py,pz:tx,ty,tz:ux,uy,uz were expected, not \"{}\"", text));

@@ -82,7 +82,9 @@ bool Audit::run(const picture::View& view) {
     const int most = int(std::min(65536.0, referenceWorth * samples_));
     renderer_.change([&](picture::RenderSettings& s) {
       s.seed = (options_.render.seed + referenceSeed) & 0x7fffffff;
-      s.samples = most, s.error = 0, s.channels = RT_RGBA;
+      s.samples = most;
+      s.error = 0;
+      s.channels = RT_RGBA;
     });
     const picture::RenderResult result = render(view, "reference");
     if (result.interrupted) return false;

@@ -41,7 +41,8 @@ void Pacing::took(const FrameSize& frame, double seconds, double alone, double o
     // begun less often, (seconds + alone) / 2 does: then they are in time, and how much larger they could be is not known, since
     // it may be the link that takes the time.
     const double apart = std::max(seconds, inTime * (seconds + alone)) / 2, light = seconds - overhead;
-    seconds = std::min(seconds, apart), overhead = std::max(0.0, seconds - light);
+    seconds = std::min(seconds, apart);
+    overhead = std::max(0.0, seconds - light);
   }
   // What has become slower counts at once for the most part: a frame that is late is seen, one that could have been better is
   // not.
@@ -55,7 +56,8 @@ void Pacing::took(const FrameSize& frame, double seconds, double alone, double o
 }
 
 FrameSize Pacing::next(int width, int height, bool moving, int samples) {
-  width = std::max(width, 1), height = std::max(height, 1);
+  width = std::max(width, 1);
+  height = std::max(height, 1);
   const bool begins = moving && !moving_;
   moving_ = moving;
   if (!moving) return {width, height, std::max(samples, 1)};
@@ -80,7 +82,10 @@ FrameSize Pacing::next(int width, int height, bool moving, int samples) {
     step_ = std::max(smallest, step_ - 1);
     calm_ = 0;
   } else if (step_ < best && seconds(step_ + 1) <= roomFor * budget) {
-    if (++calm_ >= patience) ++step_, calm_ = 0;
+    if (++calm_ >= patience) {
+      ++step_;
+      calm_ = 0;
+    }
   } else
     calm_ = 0;
   FrameSize frame = at(step_, width, height);

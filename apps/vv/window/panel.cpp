@@ -34,9 +34,15 @@ uint32_t nextCharacter(std::string_view& text) {
   const uint32_t first = byte(0);
   const size_t length = first < 0x80 ? 1 : first >= 0xf0 ? 4 : first >= 0xe0 ? 3 : first >= 0xc0 ? 2 : 0;
   uint32_t character = length == 1 ? first : length == 0 || length > text.size() ? 0xfffd : first & (0x7fu >> length);
-  if (character == 0xfffd) return text.remove_prefix(1), character;
+  if (character == 0xfffd) {
+    text.remove_prefix(1);
+    return character;
+  }
   for (size_t i = 1; i < length; ++i) {
-    if ((byte(i) & 0xc0) != 0x80) return text.remove_prefix(1), 0xfffd;
+    if ((byte(i) & 0xc0) != 0x80) {
+      text.remove_prefix(1);
+      return 0xfffd;
+    }
     character = character << 6 | (byte(i) & 0x3f);
   }
   text.remove_prefix(length);

@@ -159,18 +159,30 @@ void Pilot::move(double seconds) {
     const double dx = speedOf(x_ - pressed_.x), dy = speedOf(y_ - pressed_.y);
     wanted = dx != 0 || dy != 0;
     switch (meaning(pressed_)) {
-    case Button::left: input.ahead = dy, input.turn = -dx; break;
-    case Button::right: input.right = dx, input.up = dy; break;
-    case Button::middle: input.tilt = dy, input.turn = -dx; break;
+    case Button::left:
+      input.ahead = dy;
+      input.turn = -dx;
+      break;
+    case Button::right:
+      input.right = dx;
+      input.up = dy;
+      break;
+    case Button::middle:
+      input.tilt = dy;
+      input.turn = -dx;
+      break;
     }
   }
   const auto held = [&](const char* key) { return held_.contains(key) ? 1.0 : 0.0; };
   const double across = held("Right") - held("Left"), along = held("Up") - held("Down"), speed = shift_ ? 4 : 1;
   wanted = wanted || across != 0 || along != 0;
-  if (alt_)
-    input.right += across * speed, input.up += along * speed;
-  else
-    input.turn -= across, input.ahead += along * speed;
+  if (alt_) {
+    input.right += across * speed;
+    input.up += along * speed;
+  } else {
+    input.turn -= across;
+    input.ahead += along * speed;
+  }
   if (wanted)
     navigate(input, seconds);
   else if (falls_)
@@ -294,7 +306,8 @@ Action Pilot::handle(const InputEvent& event) {
   case Kind::press:
   case Kind::release: {
     const double dx = event.x - x_, dy = event.y - y_;
-    x_ = event.x, y_ = event.y;
+    x_ = event.x;
+    y_ = event.y;
     inside_ = true;
     if (event.kind == Kind::press) {
       press(event);
@@ -314,14 +327,16 @@ Action Pilot::handle(const InputEvent& event) {
     break;
   case Kind::wheel: wheel(event); break;
   case Kind::down:
-    shift_ = event.shift, alt_ = event.alt;
+    shift_ = event.shift;
+    alt_ = event.alt;
     if (event.text == "Left" || event.text == "Right" || event.text == "Up" || event.text == "Down") {
       held_.insert(event.text);
       break;
     }
     return press(actionOf(event));
   case Kind::up:
-    shift_ = event.shift, alt_ = event.alt;
+    shift_ = event.shift;
+    alt_ = event.alt;
     held_.erase(event.text);
     break;
   case Kind::viewpoint:

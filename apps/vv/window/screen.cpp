@@ -9,8 +9,8 @@
 #include <SDL.h>
 #include <fmt/format.h>
 
-#include "printable.h"
 #include "options/values.h"
+#include "printable.h"
 
 namespace vv {
 
@@ -24,7 +24,9 @@ namespace {
 bool isTextKey(const std::string& key) { return key == "[" || key == "]" || key == "?"; }
 
 void setModifiers(InputEvent& event, int modifiers) {
-  event.shift = modifiers & KMOD_SHIFT, event.control = modifiers & KMOD_CTRL, event.alt = modifiers & KMOD_ALT;
+  event.shift = modifiers & KMOD_SHIFT;
+  event.control = modifiers & KMOD_CTRL;
+  event.alt = modifiers & KMOD_ALT;
 }
 
 // OpenGL without a graphics processor takes the time that the rays need, and more of it than SDL's own drawing.
@@ -48,7 +50,8 @@ struct Texture {
   bool fit(SDL_Renderer* renderer, uint32_t format, int w, int h) {
     if (texture && width == w && height == h) return true;
     drop();
-    width = w, height = h;
+    width = w;
+    height = h;
     texture = SDL_CreateTexture(renderer, format, SDL_TEXTUREACCESS_STREAMING, w, h);
     return texture != nullptr;
   }
@@ -80,7 +83,8 @@ struct Screen::Impl {
     SDL_GetWindowSize(window, &w, &h);
     InputEvent event;
     event.kind = kind;
-    event.x = (2 * x + 1.0) / std::max(1, w) - 1, event.y = 1 - (2 * y + 1.0) / std::max(1, h);
+    event.x = (2 * x + 1.0) / std::max(1, w) - 1;
+    event.y = 1 - (2 * y + 1.0) / std::max(1, h);
     setModifiers(event, SDL_GetModState());
     return event;
   }
@@ -242,7 +246,10 @@ void Screen::present() {
     if (!panel.texture) continue;
     SDL_Rect at{0, 0, panel.width, panel.height};
     if (place == bottom) at.y = h - panel.height;
-    if (place == middle) at.x = (w - panel.width) / 2, at.y = (h - panel.height) / 2;
+    if (place == middle) {
+      at.x = (w - panel.width) / 2;
+      at.y = (h - panel.height) / 2;
+    }
     SDL_RenderCopy(r, panel.texture, nullptr, &at);
   }
   SDL_RenderPresent(r);

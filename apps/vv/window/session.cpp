@@ -11,8 +11,8 @@
 #include "report/describe.h"
 #include "report/messages.h"
 #include "timeline.h"
-#include "window/saving.h"
 #include "window/input/view_command.h"
+#include "window/saving.h"
 #include "world_start.h"
 
 namespace vv {
@@ -90,7 +90,8 @@ void Session::begin(int width, int height, const std::optional<Place>& place, co
 }
 
 void Session::resize(int width, int height) {
-  width_ = std::max(1, width), height_ = std::max(1, height);
+  width_ = std::max(1, width);
+  height_ = std::max(1, height);
   pilot_.setAspect(double(width_) / height_);
 }
 
@@ -233,9 +234,10 @@ void Session::start(bool moving) {
   const bool presenting = fit_ == Fit::wanted && fitAsAtFirst_;
   if (const auto view = presenting ? pilot_.beginning(options_.view) : std::nullopt)
     frame.view = *view;
-  else if (presenting && !begun_)
-    frame.view.fit = true, frame.view.fov = options_.view.fov;
-  else
+  else if (presenting && !begun_) {
+    frame.view.fit = true;
+    frame.view.fov = options_.view.fov;
+  } else
     frame.view.viewer = pilot_.camera();
   shown_ = pilot_.camera();
   if (shownHeadlight_ != pilot_.headlight()) {
@@ -249,7 +251,9 @@ void Session::start(bool moving) {
   if (!moving) gap_ = 0;
   lastStart_ = now;
   frame_ = pacing_.next(width_, height_, moving, options_.render.samples);
-  frame.width = frame_.width, frame.height = frame_.height, frame.samples = frame_.samples;
+  frame.width = frame_.width;
+  frame.height = frame_.height;
+  frame.samples = frame_.samples;
   moving_ = moving;
   refined_ = !moving;
   renderer_.start(frame);
@@ -266,9 +270,12 @@ bool Session::look(picture::LivePicture& picture) {
     pacing_.took({picture.width, picture.height, 1}, picture.seconds, picture.alone, picture.overhead, picture.samples);
   const RTstats stats = picture.finished ? picture.stats : facts_.stats;
   const xvrml::MapStats map = picture.finished ? picture.map : facts_.map;
-  facts_.width = picture.width, facts_.height = picture.height;
-  facts_.samples = picture.samples, facts_.finished = picture.finished;
-  facts_.stats = stats, facts_.map = map;
+  facts_.width = picture.width;
+  facts_.height = picture.height;
+  facts_.samples = picture.samples;
+  facts_.finished = picture.finished;
+  facts_.stats = stats;
+  facts_.map = map;
   return shown;
 }
 
@@ -318,16 +325,24 @@ std::string Session::takeMessage() {
 SessionFacts Session::facts() const {
   SessionFacts facts;
   facts.frameRate = moving_ && gap_ > 0 ? 1 / gap_ : 0;
-  facts.width = facts_.width, facts.height = facts_.height;
-  facts.samples = facts_.samples, facts.wanted = moving_ ? 0 : options_.render.samples;
-  facts.stats = facts_.stats, facts.map = facts_.map, facts.finished = facts_.finished;
+  facts.width = facts_.width;
+  facts.height = facts_.height;
+  facts.samples = facts_.samples;
+  facts.wanted = moving_ ? 0 : options_.render.samples;
+  facts.stats = facts_.stats;
+  facts.map = facts_.map;
+  facts.finished = facts_.finished;
   const xvrml::Diagnostics& d = browser_->world().diagnostics;
-  facts.errors = d.errors(), facts.warnings = d.warnings();
+  facts.errors = d.errors();
+  facts.warnings = d.warnings();
   if (!d.list().empty()) facts.lastProblem = d.list().back().text();
   facts.navigation = navigationName(browser_->navigation());
   facts.description = browser_->description();
   facts.loading = !inlines_.empty();
-  if (const auto& cluster = options_.render.cluster) facts.cluster = true, facts.workers = cluster->workers();
+  if (const auto& cluster = options_.render.cluster) {
+    facts.cluster = true;
+    facts.workers = cluster->workers();
+  }
   return facts;
 }
 

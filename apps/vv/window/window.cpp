@@ -14,11 +14,11 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "libpicture/files/atomic_file.h"
+#include "options/shader_text.h"
 #include "report/cluster_report.h"
 #include "report/messages.h"
-#include "libpicture/files/atomic_file.h"
 #include "report/progress.h"
-#include "options/shader_text.h"
 #include "signals.h"
 #include "watched.h"
 #include "window/overlay.h"
@@ -104,7 +104,8 @@ class Window {
   void goOn() {
     if (!session_) return;
     if (screen_.width() != width_ || screen_.height() != height_) {
-      width_ = screen_.width(), height_ = screen_.height();
+      width_ = screen_.width();
+      height_ = screen_.height();
       session_->resize(width_, height_);
     }
     for (const InputEvent& event : std::exchange(input_, {})) session_->handle(event);
@@ -141,9 +142,10 @@ class Window {
     if (answer.world) {
       try {
         begin(std::move(answer.world), answer.fragment);
-      } catch (const Failure& failure) { wrong = failure.text, code = failure.code; } catch (const std::exception& error) {
-        wrong = error.what();
-      }
+      } catch (const Failure& failure) {
+        wrong = failure.text;
+        code = failure.code;
+      } catch (const std::exception& error) { wrong = error.what(); }
     }
     if (wrong.empty()) return;
     sayError(wrong);
@@ -160,7 +162,8 @@ class Window {
     calls.openUrl = [this](const std::vector<std::string>& urls, const std::string& base) { open({urls, base, {}}, false); };
     if (record_.is_open()) calls.record = [this](double time, const InputEvent& event) { record(inputLine(time, event)); };
     auto fresh = std::make_unique<Session>(std::move(world), options_, problems_, std::move(calls), options_.script.get());
-    width_ = screen_.width(), height_ = screen_.height();
+    width_ = screen_.width();
+    height_ = screen_.height();
     fresh->begin(width_, height_, place, fragment);
     mixer_.set({});
     session_ = std::move(fresh); // the former ends here
@@ -210,7 +213,10 @@ class Window {
     case Action::saveExr: save(event, action == Action::save ? "png" : "exr"); break;
     case Action::command: command(); break;
     case Action::reload: reload(); break;
-    case Action::overlay: level_ = OverlayLevel((int(level_) + 1) % 3), shownAt_ = -1; break;
+    case Action::overlay:
+      level_ = OverlayLevel((int(level_) + 1) % 3);
+      shownAt_ = -1;
+      break;
     case Action::help: showHelp(!help_); break;
     case Action::fullScreen: screen_.toggleFullScreen(); break;
     case Action::quit:

@@ -20,7 +20,9 @@ LoadAnswer load(const LoadRequest& request) {
     std::string path = url, why;
     if (!request.base.empty()) {
       const xvrml::ResolvedUrl resolved = xvrml::resolveUrl(url, request.base, request.options);
-      path = resolved.path, why = resolved.error, answer.fragment = resolved.fragment;
+      path = resolved.path;
+      why = resolved.error;
+      answer.fragment = resolved.fragment;
     }
     try {
       if (why.empty()) answer.world = readWorld(path, request.options);

@@ -107,7 +107,9 @@ ArrayPtr widePoints(const DrawCall& call, Matrix4d& matrix) {
   float* out = reinterpret_cast<float*>(array->data());
   for (size_t i = 0; i < call.vertexCount; i++, out += 3) {
     const Vec3d p = used[i] ? loadPoint(call.points, i) - origin : Vec3d();
-    out[0] = static_cast<float>(p.x), out[1] = static_cast<float>(p.y), out[2] = static_cast<float>(p.z);
+    out[0] = static_cast<float>(p.x);
+    out[1] = static_cast<float>(p.y);
+    out[2] = static_cast<float>(p.z);
   }
   if (!bounds.exact) matrix = matrix * translation(origin.x, origin.y, origin.z);
   return array;

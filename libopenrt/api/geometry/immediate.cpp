@@ -12,21 +12,27 @@ template <class... Values> bool finite(Values... values) { return (std::isfinite
 void setNormal(Context& c, float x, float y, float z) {
   require(finite(x, y, z), RT_INVALID_VALUE, "a component is not finite");
   VertexState& v = c.currentAttributes();
-  v.normal[0] = x, v.normal[1] = y, v.normal[2] = z;
+  v.normal[0] = x;
+  v.normal[1] = y;
+  v.normal[2] = z;
   v.present |= HasNormal;
 }
 
 void setTexCoord(Context& c, float s, float t) {
   require(finite(s, t), RT_INVALID_VALUE, "a coordinate is not finite");
   VertexState& v = c.currentAttributes();
-  v.texCoord[0] = s, v.texCoord[1] = t;
+  v.texCoord[0] = s;
+  v.texCoord[1] = t;
   v.present |= HasTexCoord;
 }
 
 void setColor(Context& c, float r, float g, float b, float a) {
   require(finite(r, g, b, a), RT_INVALID_VALUE, "a component is not finite");
   VertexState& v = c.currentAttributes();
-  v.color[0] = r, v.color[1] = g, v.color[2] = b, v.color[3] = a;
+  v.color[0] = r;
+  v.color[1] = g;
+  v.color[2] = b;
+  v.color[3] = a;
   v.present |= HasColor;
 }
 

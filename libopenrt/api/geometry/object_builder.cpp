@@ -22,7 +22,10 @@ bool fitsFloat(double v) { return static_cast<double>(static_cast<float>(v)) == 
 
 void WideBounds::add(const Vec3d& p) {
   exact = exact && fitsFloat(p.x) && fitsFloat(p.y) && fitsFloat(p.z);
-  if (!any) low = high = p, any = true;
+  if (!any) {
+    low = high = p;
+    any = true;
+  }
   low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
   high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
 }

@@ -69,7 +69,9 @@ template <class VertexOf, class Kept> uint32_t* writeIndices(RTenum mode, size_t
       degenerate++;
       return;
     }
-    out[0] = a, out[1] = b, out[2] = c;
+    out[0] = a;
+    out[1] = b;
+    out[2] = c;
     out += 3;
     kept(number);
   };
@@ -80,7 +82,8 @@ template <class VertexOf, class Kept> uint32_t* writeIndices(RTenum mode, size_t
       degenerate++;
       return;
     }
-    out[0] = a, out[1] = b;
+    out[0] = a;
+    out[1] = b;
     out += 2;
     kept(number);
   };
@@ -105,10 +108,16 @@ template <class VertexOf, class Kept> uint32_t* writeIndices(RTenum mode, size_t
     for (size_t i = 1; i + 1 < count; i++) triangle(0, i, i + 1);
     break;
   case RT_QUADS:
-    for (size_t i = 0; i + 3 < count; i += 4) triangle(i, i + 1, i + 2), triangle(i, i + 2, i + 3);
+    for (size_t i = 0; i + 3 < count; i += 4) {
+      triangle(i, i + 1, i + 2);
+      triangle(i, i + 2, i + 3);
+    }
     break;
   case RT_QUAD_STRIP: // the quad is 0 1 3 2
-    for (size_t i = 0; i + 3 < count; i += 2) triangle(i, i + 1, i + 3), triangle(i, i + 3, i + 2);
+    for (size_t i = 0; i + 3 < count; i += 2) {
+      triangle(i, i + 1, i + 3);
+      triangle(i, i + 3, i + 2);
+    }
     break;
   default: break;
   }

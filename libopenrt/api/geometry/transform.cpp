@@ -57,13 +57,17 @@ Matrix4d checkedMatrix(const double* m) {
 
 Matrix4d translation(double x, double y, double z) {
   Matrix4d matrix;
-  matrix.m[12] = x, matrix.m[13] = y, matrix.m[14] = z;
+  matrix.m[12] = x;
+  matrix.m[13] = y;
+  matrix.m[14] = z;
   return matrix;
 }
 
 Matrix4d scaling(double x, double y, double z) {
   Matrix4d matrix;
-  matrix.m[0] = x, matrix.m[5] = y, matrix.m[10] = z;
+  matrix.m[0] = x;
+  matrix.m[5] = y;
+  matrix.m[10] = z;
   return matrix;
 }
 

@@ -24,7 +24,10 @@ void VertexBuffer::reserve(size_t capacity) {
   Floats colors = attributes_ & HasColor ? grown(colors_, 4, capacity) : nullptr;
   Floats parameters = attributes_ & HasParameters ? grown(parameters_, parameterFloats_, capacity) : nullptr;
   parameters_ = std::move(parameters);
-  points_ = std::move(points), normals_ = std::move(normals), texCoords_ = std::move(texCoords), colors_ = std::move(colors);
+  points_ = std::move(points);
+  normals_ = std::move(normals);
+  texCoords_ = std::move(texCoords);
+  colors_ = std::move(colors);
   capacity_ = capacity;
 }
 
@@ -34,9 +37,18 @@ void VertexBuffer::addAttributes(uint8_t attributes) {
   Floats texCoords = added & HasTexCoord ? std::make_unique_for_overwrite<float[]>(2 * capacity_) : nullptr;
   Floats colors = added & HasColor ? std::make_unique_for_overwrite<float[]>(4 * capacity_) : nullptr;
   const VertexState unset;
-  if (added & HasNormal) std::fill_n(normals.get(), 3 * count_, unset.normal[0]), normals_ = std::move(normals);
-  if (added & HasTexCoord) std::fill_n(texCoords.get(), 2 * count_, unset.texCoord[0]), texCoords_ = std::move(texCoords);
-  if (added & HasColor) std::fill_n(colors.get(), 4 * count_, unset.color[0]), colors_ = std::move(colors);
+  if (added & HasNormal) {
+    std::fill_n(normals.get(), 3 * count_, unset.normal[0]);
+    normals_ = std::move(normals);
+  }
+  if (added & HasTexCoord) {
+    std::fill_n(texCoords.get(), 2 * count_, unset.texCoord[0]);
+    texCoords_ = std::move(texCoords);
+  }
+  if (added & HasColor) {
+    std::fill_n(colors.get(), 4 * count_, unset.color[0]);
+    colors_ = std::move(colors);
+  }
   attributes_ |= added;
 }
 
@@ -69,7 +81,11 @@ void VertexBuffer::dropFront(size_t n) {
   const auto shift = [n, rest](const Floats& data, size_t components) {
     if (data) std::memmove(data.get(), data.get() + components * n, components * rest * sizeof(float));
   };
-  shift(points_, 3), shift(normals_, 3), shift(texCoords_, 2), shift(colors_, 4), shift(parameters_, parameterFloats_);
+  shift(points_, 3);
+  shift(normals_, 3);
+  shift(texCoords_, 2);
+  shift(colors_, 4);
+  shift(parameters_, parameterFloats_);
   count_ = rest;
 }
 

@@ -33,7 +33,9 @@ class VertexBuffer {
     if (count_ == capacity_) [[unlikely]]
       reserve(capacity_ ? 2 * capacity_ : 256);
     float* p = points_.get() + 3 * count_;
-    p[0] = x, p[1] = y, p[2] = z;
+    p[0] = x;
+    p[1] = y;
+    p[2] = z;
     if (attributes_) appendAttributes(state);
     count_++;
   }
@@ -61,15 +63,21 @@ class VertexBuffer {
   void appendAttributes(const VertexState& state) {
     if (attributes_ & HasNormal) {
       float* n = normals_.get() + 3 * count_;
-      n[0] = state.normal[0], n[1] = state.normal[1], n[2] = state.normal[2];
+      n[0] = state.normal[0];
+      n[1] = state.normal[1];
+      n[2] = state.normal[2];
     }
     if (attributes_ & HasTexCoord) {
       float* t = texCoords_.get() + 2 * count_;
-      t[0] = state.texCoord[0], t[1] = state.texCoord[1];
+      t[0] = state.texCoord[0];
+      t[1] = state.texCoord[1];
     }
     if (attributes_ & HasColor) {
       float* c = colors_.get() + 4 * count_;
-      c[0] = state.color[0], c[1] = state.color[1], c[2] = state.color[2], c[3] = state.color[3];
+      c[0] = state.color[0];
+      c[1] = state.color[1];
+      c[2] = state.color[2];
+      c[3] = state.color[3];
     }
     if (attributes_ & HasParameters)
       std::copy_n(state.parameters, parameterFloats_, parameters_.get() + parameterFloats_ * count_);

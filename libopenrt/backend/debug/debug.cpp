@@ -28,7 +28,10 @@ class DebugBackend final : public Backend, public ForwardedQueries {
         if (history.definitions++ == 0) history.hinted = object->dynamic;
         fresh_.insert(object->id);
       }
-      if (const auto* deleted = entry->any.AsDeleteObject()) histories_.erase(deleted->id), fresh_.erase(deleted->id);
+      if (const auto* deleted = entry->any.AsDeleteObject()) {
+        histories_.erase(deleted->id);
+        fresh_.erase(deleted->id);
+      }
     }
     changed_ |= changes.any();
     renderer_->apply(std::move(commit));

@@ -21,10 +21,13 @@ void farFromOrigin(uint32_t id, const Object& object, const Facts&, const Report
     double low[3] = {1e300, 1e300, 1e300}, high[3] = {-1e300, -1e300, -1e300}, reach = 0, extent = 0;
     for (size_t i = 0; i < g.points->count<float>(); i++) {
       const double v = g.points->as<float>()[i];
-      low[i % 3] = std::min(low[i % 3], v), high[i % 3] = std::max(high[i % 3], v);
+      low[i % 3] = std::min(low[i % 3], v);
+      high[i % 3] = std::max(high[i % 3], v);
     }
-    for (int k = 0; k < 3; k++)
-      extent = std::max(extent, high[k] - low[k]), reach = std::max({reach, std::fabs(low[k]), std::fabs(high[k])});
+    for (int k = 0; k < 3; k++) {
+      extent = std::max(extent, high[k] - low[k]);
+      reach = std::max({reach, std::fabs(low[k]), std::fabs(high[k])});
+    }
     if (extent > 0 && reach * 0x1p-23 * steps > extent)
       report(id, nameOf("object", id) + " is " + std::to_string(extent) + " large and " + std::to_string(reach) +
                      " away from the origin of its coordinates in float, which are too coarse there: give them in double "

@@ -85,7 +85,10 @@ struct Bounds {
   double low[3] = {1e300, 1e300, 1e300}, high[3] = {-1e300, -1e300, -1e300};
   void add(const Vec3d& p) {
     const double c[3] = {p.x, p.y, p.z};
-    for (int k = 0; k < 3; k++) low[k] = std::min(low[k], c[k]), high[k] = std::max(high[k], c[k]);
+    for (int k = 0; k < 3; k++) {
+      low[k] = std::min(low[k], c[k]);
+      high[k] = std::max(high[k], c[k]);
+    }
   }
   bool empty() const { return !(low[0] <= high[0]); }
   double distance(const Vec3d& p) const {
@@ -160,7 +163,10 @@ void uselessLights(const Facts& f, const Report& report) {
       report(id, name + " has the intensity 0: remove it with rtRemoveLight, or give it another one");
     if (!valueOf(f, light.shader, "radius", RTS_FLOAT, radius) || !valueOf(f, light.shader, "location", RTS_VEC3, place))
       continue;
-    if (!known) world = boundsOf(f.scene), known = true;
+    if (!known) {
+      world = boundsOf(f.scene);
+      known = true;
+    }
     if (world.empty()) continue;
     const double scale =
         std::max({length(light.matrix.column(0)), length(light.matrix.column(1)), length(light.matrix.column(2))});

@@ -69,9 +69,18 @@ double nextTo(const SeenTriangle& s, const Vec3d& d, unsigned edges, Meeting& at
     at.t = t;
     return true;
   };
-  if (nearer(0, s.a, s.c)) at.u = 0, at.v = share;
-  if (nearer(1, s.a, s.b)) at.u = share, at.v = 0;
-  if (nearer(2, s.b, s.c)) at.u = 1 - share, at.v = share;
+  if (nearer(0, s.a, s.c)) {
+    at.u = 0;
+    at.v = share;
+  }
+  if (nearer(1, s.a, s.b)) {
+    at.u = share;
+    at.v = 0;
+  }
+  if (nearer(2, s.b, s.c)) {
+    at.u = 1 - share;
+    at.v = share;
+  }
   return best;
 }
 
@@ -120,7 +129,9 @@ void settle(const Record& r, uint32_t primitive, const Vec3d& origin, const Vec3
   Meeting at;
   if (!meets(seen, d, at) && !std::isfinite(nextTo(seen, d, 7, at))) return;
   if (!std::isfinite(at.t) || !std::isfinite(at.u) || !std::isfinite(at.v)) return;
-  t = std::clamp(float(at.t), near, far), u = float(at.u), v = float(at.v);
+  t = std::clamp(float(at.t), near, far);
+  u = float(at.u);
+  v = float(at.v);
 }
 
 } // namespace openrt

@@ -43,7 +43,11 @@ inline void normalToRender(const Record& r, const float kernel[3], float out[3])
 // distance. normal: across the triangle, of any length, in the frame of the direction; in floats, as it is asked of every hit.
 inline bool grazes(const float normal[3], const float direction[3]) {
   float along = 0, n = 0, d = 0;
-  for (int k = 0; k < 3; k++) along += normal[k] * direction[k], n += normal[k] * normal[k], d += direction[k] * direction[k];
+  for (int k = 0; k < 3; k++) {
+    along += normal[k] * direction[k];
+    n += normal[k] * normal[k];
+    d += direction[k] * direction[k];
+  }
   return !(along * along > 0x1p-12f * n * d); // also where these leave the range of floats
 }
 

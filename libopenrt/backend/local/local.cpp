@@ -94,7 +94,8 @@ void LocalBackend::bringUpToDate(RenderScene& next) {
                    options_.logUser);
   } else {
     if (c.lights) { // no light is scoped, nor was: there is but this set
-      flat_.lightSets.clear(), flat_.setNumbers.clear();
+      flat_.lightSets.clear();
+      flat_.setNumbers.clear();
       flat_.lightSet(unscopedLights(scene_));
     }
     moved = replace(scene_, flat_, c.moved);
@@ -103,7 +104,9 @@ void LocalBackend::bringUpToDate(RenderScene& next) {
   scopedLights_ = scoped;
 
   const Vec3d origin = builder_.survey.origin(eye());
-  next.origin[0] = origin.x, next.origin[1] = origin.y, next.origin[2] = origin.z;
+  next.origin[0] = origin.x;
+  next.origin[1] = origin.y;
+  next.origin[2] = origin.z;
   makeCamera(next, origin);
   const PixelFootprint pixel = footprint(next);
   const BuildInput input{scene_, flat_, *next.shaders, origin, builder_.survey.scale(origin), pixel};
@@ -127,7 +130,8 @@ void LocalBackend::makeShaders(RenderScene& next) const {
   next.host.diagnose = options_.diagnose;
   const bool kept = snapshot_ && !changes_.shaders && !changes_.textures;
   if (kept && changes_.parameters.empty()) {
-    next.textures = snapshot_->textures, next.shaders = snapshot_->shaders;
+    next.textures = snapshot_->textures;
+    next.shaders = snapshot_->shaders;
     next.host.textures = next.textures.get();
     return;
   }
@@ -160,13 +164,19 @@ void LocalBackend::makeCamera(RenderScene& next, const Vec3d& origin) const {
   if (!next.camera.shader.shaderClass) return;
   const Vec3d axis = scene_.camera.matrix.column(2) * (-1 / length(scene_.camera.matrix.column(2)));
   const double a[3] = {axis.x, axis.y, axis.z};
-  for (int k = 0; k < 3; k++) next.eye[k] = next.camera.fromLocal.r[k][3], next.viewAxis[k] = float(a[k]);
+  for (int k = 0; k < 3; k++) {
+    next.eye[k] = next.camera.fromLocal.r[k][3];
+    next.viewAxis[k] = float(a[k]);
+  }
 }
 
 // How far apart two neighbouring pixels' rays are in the middle of the picture: lines and points are pixels wide.
 PixelFootprint LocalBackend::footprint(const RenderScene& next) const {
   PixelFootprint result;
-  for (int k = 0; k < 3; k++) result.eye[k] = next.eye[k], result.axis[k] = next.viewAxis[k];
+  for (int k = 0; k < 3; k++) {
+    result.eye[k] = next.eye[k];
+    result.axis[k] = next.viewAxis[k];
+  }
   const ShaderSlot& camera = next.camera.shader;
   if (!camera.shaderClass) return result;
   Arena arena;
@@ -175,13 +185,21 @@ PixelFootprint LocalBackend::footprint(const RenderScene& next) const {
     for (int k = 0; k < 3; k++) group[k] = arena.takeZero<float>(lanes);
   for (auto& a : xy) a = arena.takeZero<float>(lanes);
   const float size[2] = {float(next.frame.width), float(next.frame.height)};
-  for (uint32_t i = 0; i < lanes; i++) xy[0][i] = size[0] / 2, xy[1][i] = size[1] / 2 + (i == 1 ? 1.0f : 0.0f);
+  for (uint32_t i = 0; i < lanes; i++) {
+    xy[0][i] = size[0] / 2;
+    xy[1][i] = size[1] / 2 + (i == 1 ? 1.0f : 0.0f);
+  }
   const float* points[2] = {xy[0], xy[1]};
   RtsRays rays;
-  for (int k = 0; k < 3; k++) rays.origin[k] = org[k], rays.direction[k] = dir[k];
+  for (int k = 0; k < 3; k++) {
+    rays.origin[k] = org[k];
+    rays.direction[k] = dir[k];
+  }
   RtsBatch batch;
   RayCounters counters;
-  batch.scene = &next, batch.arena = &arena, batch.counters = &counters;
+  batch.scene = &next;
+  batch.arena = &arena;
+  batch.counters = &counters;
   batch.rays = lanes;
   {
     const RunningShader running(*camera.shaderClass);
@@ -266,14 +284,16 @@ bool LocalBackend::read(RTenum channel, std::span<float> out) const {
 void LocalBackend::stats(RTstats& s) const {
   if (accel_) {
     const AccelBuilder::Counts counts = builder_.count(*accel_, flat_);
-    s.triangles = counts.triangles, s.uniqueTriangles = counts.uniqueTriangles;
+    s.triangles = counts.triangles;
+    s.uniqueTriangles = counts.uniqueTriangles;
     s.degenerate += counts.degenerate;
     s.rejectedRays = accel_->rejectedRays;
     s.rejectedInstances = flat_.rejected + counts.rejectedInstances;
   }
   if (finished_) {
     const RayCounters counters = finished_->work().counters();
-    s.cameraRays = counters.camera, s.shadowRays = counters.shadow;
+    s.cameraRays = counters.camera;
+    s.shadowRays = counters.shadow;
     s.secondaryRays = counters.secondary;
     s.renderSeconds = finished_->seconds();
     s.shaderFaults = counters.faults.count(Fault::notFinite);
@@ -284,7 +304,8 @@ void LocalBackend::stats(RTstats& s) const {
   s.unreachedLights = unreachedLights_;
   s.transportLeavesOut = transportLeavesOut_;
   std::snprintf(s.transportReason, sizeof s.transportReason, "%s", transportReason_.c_str());
-  s.objectBuilds = builder_.objectBuilds, s.topLevelBuilds = builder_.topLevelBuilds;
+  s.objectBuilds = builder_.objectBuilds;
+  s.topLevelBuilds = builder_.topLevelBuilds;
   s.commitSeconds = commitSeconds_;
   s.buildSeconds = buildSeconds_;
   s.wrongHits = device_->wrongHits;
@@ -300,14 +321,20 @@ bool LocalBackend::cameraRay(double x, double y, float origin[3], float directio
   if (!camera.shaderClass || snapshot_->frame.width == 0) return false;
   Arena arena;
   RtsRays local;
-  for (int k = 0; k < 3; k++) local.origin[k] = arena.takeZero<float>(lanes), local.direction[k] = arena.takeZero<float>(lanes);
+  for (int k = 0; k < 3; k++) {
+    local.origin[k] = arena.takeZero<float>(lanes);
+    local.direction[k] = arena.takeZero<float>(lanes);
+  }
   float* xy[2] = {arena.take<float>(lanes), arena.take<float>(lanes)};
-  std::fill_n(xy[0], lanes, float(x)), std::fill_n(xy[1], lanes, float(y));
+  std::fill_n(xy[0], lanes, float(x));
+  std::fill_n(xy[1], lanes, float(y));
   const float* points[2] = {xy[0], xy[1]};
   const float size[2] = {float(snapshot_->frame.width), float(snapshot_->frame.height)};
   RtsBatch batch;
   RayCounters counters;
-  batch.scene = snapshot_.get(), batch.arena = &arena, batch.counters = &counters;
+  batch.scene = snapshot_.get();
+  batch.arena = &arena;
+  batch.counters = &counters;
   batch.rays = lanes; // no sampler: random places are in the middle
   {
     const RunningShader running(*camera.shaderClass);

@@ -36,8 +36,10 @@ void addSphere(const EmissiveShapes::Shape& shape, const Record& r, std::vector<
   for (int axis = 0; axis < 3; axis++)
     for (const double sign : {-1.0, 1.0}) {
       Probe p{{r.toRender.r[0][3], r.toRender.r[1][3], r.toRender.r[2][3]}, {}, 0, shape.record};
-      for (int k = 0; k < 3; k++)
-        p.direction[k] = sign * double(r.toRender.r[k][axis]), p.skip += p.direction[k] * p.direction[k];
+      for (int k = 0; k < 3; k++) {
+        p.direction[k] = sign * double(r.toRender.r[k][axis]);
+        p.skip += p.direction[k] * p.direction[k];
+      }
       p.skip = std::sqrt(p.skip);
       if (!(p.skip > 0)) continue;
       for (double& d : p.direction) d /= p.skip;
@@ -54,7 +56,8 @@ double stepOff(const Record& r, uint32_t primitive, const Probe& p, double t, do
     largest[k] = std::fabs(p.origin[k] + t * p.direction[k]);
     if (r.primitive == edit::Primitive::Triangles)
       for (const auto& c : corner) largest[k] = std::max(largest[k], std::fabs(double(c[k])));
-    along += largest[k] * std::fabs(p.direction[k]), all = std::max(all, largest[k]);
+    along += largest[k] * std::fabs(p.direction[k]);
+    all = std::max(all, largest[k]);
   }
   unit = 0x1p-23 * along;
   return 7 * 0x1p-24 * std::max(along, 0x1p-6 * all);
@@ -78,10 +81,14 @@ std::string warnOfNearLamps(const RenderScene& scene) {
   Arena arena;
   Rays rays;
   RayHits hits;
-  rays.allocate(arena, uint32_t(probes.size())), hits.allocate(arena, uint32_t(probes.size()));
+  rays.allocate(arena, uint32_t(probes.size()));
+  hits.allocate(arena, uint32_t(probes.size()));
   auto* own = arena.take<uint32_t>(padded(uint32_t(probes.size())));
   for (uint32_t i = 0; i < probes.size(); i++) {
-    for (int k = 0; k < 3; k++) rays.org[k][i] = float(probes[i].origin[k]), rays.dir[k][i] = float(probes[i].direction[k]);
+    for (int k = 0; k < 3; k++) {
+      rays.org[k][i] = float(probes[i].origin[k]);
+      rays.dir[k][i] = float(probes[i].direction[k]);
+    }
     rays.tnear[i] = 0;
     rays.tfar[i] = std::numeric_limits<float>::infinity();
     own[i] = probes[i].record;

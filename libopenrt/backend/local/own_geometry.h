@@ -22,15 +22,26 @@ struct Lane {
 inline bool takeHit(const RTCIntersectFunctionNArguments* a, unsigned i, double t, double u, double v, const Vec3d& normal) {
   RTCRayN* rays = RTCRayHitN_RayN(a->rayhit, a->N);
   RTCHit hit{};
-  hit.Ng_x = float(normal.x), hit.Ng_y = float(normal.y), hit.Ng_z = float(normal.z);
-  hit.u = float(u), hit.v = float(v);
-  hit.primID = a->primID, hit.geomID = a->geomID, hit.instID[0] = a->context->instID[0];
+  hit.Ng_x = float(normal.x);
+  hit.Ng_y = float(normal.y);
+  hit.Ng_z = float(normal.z);
+  hit.u = float(u);
+  hit.v = float(v);
+  hit.primID = a->primID;
+  hit.geomID = a->geomID;
+  hit.instID[0] = a->context->instID[0];
   if (const auto* context = static_cast<const QueryContext*>(a->context); context->takes) {
     RTCRay ray{};
-    ray.org_x = RTCRayN_org_x(rays, a->N, i), ray.org_y = RTCRayN_org_y(rays, a->N, i), ray.org_z = RTCRayN_org_z(rays, a->N, i);
-    ray.dir_x = RTCRayN_dir_x(rays, a->N, i), ray.dir_y = RTCRayN_dir_y(rays, a->N, i), ray.dir_z = RTCRayN_dir_z(rays, a->N, i);
-    ray.tnear = RTCRayN_tnear(rays, a->N, i), ray.tfar = float(t);
-    ray.mask = RTCRayN_mask(rays, a->N, i), ray.id = RTCRayN_id(rays, a->N, i);
+    ray.org_x = RTCRayN_org_x(rays, a->N, i);
+    ray.org_y = RTCRayN_org_y(rays, a->N, i);
+    ray.org_z = RTCRayN_org_z(rays, a->N, i);
+    ray.dir_x = RTCRayN_dir_x(rays, a->N, i);
+    ray.dir_y = RTCRayN_dir_y(rays, a->N, i);
+    ray.dir_z = RTCRayN_dir_z(rays, a->N, i);
+    ray.tnear = RTCRayN_tnear(rays, a->N, i);
+    ray.tfar = float(t);
+    ray.mask = RTCRayN_mask(rays, a->N, i);
+    ray.id = RTCRayN_id(rays, a->N, i);
     RTCHit seen = hit;
     int valid = -1;
     const RTCFilterFunctionNArguments one{
@@ -40,9 +51,13 @@ inline bool takeHit(const RTCIntersectFunctionNArguments* a, unsigned i, double 
   }
   RTCHitN* hits = RTCRayHitN_HitN(a->rayhit, a->N);
   RTCRayN_tfar(rays, a->N, i) = float(t);
-  RTCHitN_Ng_x(hits, a->N, i) = hit.Ng_x, RTCHitN_Ng_y(hits, a->N, i) = hit.Ng_y, RTCHitN_Ng_z(hits, a->N, i) = hit.Ng_z;
-  RTCHitN_u(hits, a->N, i) = hit.u, RTCHitN_v(hits, a->N, i) = hit.v;
-  RTCHitN_primID(hits, a->N, i) = hit.primID, RTCHitN_geomID(hits, a->N, i) = hit.geomID;
+  RTCHitN_Ng_x(hits, a->N, i) = hit.Ng_x;
+  RTCHitN_Ng_y(hits, a->N, i) = hit.Ng_y;
+  RTCHitN_Ng_z(hits, a->N, i) = hit.Ng_z;
+  RTCHitN_u(hits, a->N, i) = hit.u;
+  RTCHitN_v(hits, a->N, i) = hit.v;
+  RTCHitN_primID(hits, a->N, i) = hit.primID;
+  RTCHitN_geomID(hits, a->N, i) = hit.geomID;
   RTCHitN_instID(hits, a->N, i, 0) = hit.instID[0];
   return true;
 }

@@ -43,7 +43,8 @@ void LocalBackend::loadRays(std::span<const RTray> rays, size_t first, Rays& to)
       to.org[k][i] = float(ray.origin[k] - snapshot_->origin[k]);
       to.dir[k][i] = ray.direction[k];
     }
-    to.tnear[i] = ray.tnear, to.tfar[i] = ray.tfar;
+    to.tnear[i] = ray.tnear;
+    to.tfar[i] = ray.tfar;
   }
 }
 
@@ -73,10 +74,15 @@ RThit LocalBackend::hitOf(const RayHits& found, uint32_t i) const {
   hit.t = std::numeric_limits<float>::infinity();
   if (found.record[i] == noHit) return hit;
   const Record& r = accel_->records[found.record[i]];
-  hit.t = found.t[i], hit.u = found.u[i], hit.v = found.v[i];
+  hit.t = found.t[i];
+  hit.u = found.u[i];
+  hit.v = found.v[i];
   const float ng[3] = {found.ng[0][i], found.ng[1][i], found.ng[2][i]};
   worldNormal(r, ng, hit.normal);
-  hit.instance = r.instance, hit.name = r.name, hit.primitive = found.primitive[i], hit.userData = r.userData;
+  hit.instance = r.instance;
+  hit.name = r.name;
+  hit.primitive = found.primitive[i];
+  hit.userData = r.userData;
   return hit;
 }
 
@@ -106,9 +112,14 @@ void LocalBackend::listHits(std::span<const RTray> rays, std::span<const size_t>
       if (i - first[ray] >= passed.size()) continue;
       const Accel::Passed& p = passed[i - first[ray]];
       const Record& r = accel_->records[p.record];
-      hit.t = p.t, hit.u = p.u, hit.v = p.v;
+      hit.t = p.t;
+      hit.u = p.u;
+      hit.v = p.v;
       worldNormal(r, p.ng, hit.normal);
-      hit.instance = r.instance, hit.name = r.name, hit.primitive = p.primitive, hit.userData = r.userData;
+      hit.instance = r.instance;
+      hit.name = r.name;
+      hit.primitive = p.primitive;
+      hit.userData = r.userData;
     }
   });
 }
@@ -125,9 +136,17 @@ void LocalBackend::closestPoints(std::span<const float> points, float radius, st
       Accel::Nearest found;
       if (!accel_->nearest(place, radius, round, found)) continue;
       const Record& r = accel_->records[found.record];
-      out.distance = float(found.distance), out.u = float(found.u), out.v = float(found.v);
-      for (int k = 0; k < 3; k++) out.point[k] = float(found.point[k] + origin[k]), out.normal[k] = float(found.normal[k]);
-      out.instance = r.instance, out.name = r.name, out.primitive = found.primitive, out.userData = r.userData;
+      out.distance = float(found.distance);
+      out.u = float(found.u);
+      out.v = float(found.v);
+      for (int k = 0; k < 3; k++) {
+        out.point[k] = float(found.point[k] + origin[k]);
+        out.normal[k] = float(found.normal[k]);
+      }
+      out.instance = r.instance;
+      out.name = r.name;
+      out.primitive = found.primitive;
+      out.userData = r.userData;
     }
   });
 }
@@ -140,8 +159,12 @@ bool LocalBackend::pick(double x, double y, RThit& hit) {
   ray.allocate(arena, 1);
   float origin[3], direction[3];
   if (!cameraRay(x, y, origin, direction)) return false;
-  for (int k = 0; k < 3; k++) ray.org[k][0] = origin[k], ray.dir[k][0] = direction[k];
-  ray.tnear[0] = 0, ray.tfar[0] = std::numeric_limits<float>::infinity();
+  for (int k = 0; k < 3; k++) {
+    ray.org[k][0] = origin[k];
+    ray.dir[k][0] = direction[k];
+  }
+  ray.tnear[0] = 0;
+  ray.tfar[0] = std::numeric_limits<float>::infinity();
   RayHits found;
   found.allocate(arena, 1);
   accel_->intersect(ray, maskAll, Coherence::incoherent, found);

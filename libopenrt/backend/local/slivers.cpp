@@ -66,7 +66,8 @@ void boundsOf(const RTCBoundsFunctionArguments* a) {
   // As much wider as a gap that is closed (above) may be beside it.
   const auto wide = [](double x, double y, double z, float& low, float& high) {
     const double slack = 0x1p-21 * std::max({std::fabs(x), std::fabs(y), std::fabs(z)});
-    low = float(std::min({x, y, z}) - slack), high = float(std::max({x, y, z}) + slack);
+    low = float(std::min({x, y, z}) - slack);
+    high = float(std::max({x, y, z}) + slack);
   };
   wide(p.x, q.x, r.x, a->bounds_o->lower_x, a->bounds_o->upper_x);
   wide(p.y, q.y, r.y, a->bounds_o->lower_y, a->bounds_o->upper_y);

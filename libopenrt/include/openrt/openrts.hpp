@@ -233,7 +233,10 @@ class Closures {
   // A lobe of one's own (see lobeFunctions).
   template <class L> void custom(Color weight, const L& lobe);
   // The normal of the lobes that follow for this hit; at first the hit's. Unit, on the side of the geometric one.
-  void normal(Vec3 unit) { normal_ = unit, bent_ = true; }
+  void normal(Vec3 unit) {
+    normal_ = unit;
+    bent_ = true;
+  }
 
   void emission(Color radiance) {
     const float c[3] = {radiance.r, radiance.g, radiance.b};
@@ -275,7 +278,11 @@ class Closures {
     if (count_ == RTS_MAX_LOBES) return nullptr;
     const bool own = host_->minor >= 2 && host_->customLobe;
     RtsLobe* made = !functions ? host_->lobe(batch_, kind) : own ? host_->customLobe(batch_, functions, floats) : nullptr;
-    if (made) lobes_[count_] = made, functions_[count_] = functions, free_[count_++] = false;
+    if (made) {
+      lobes_[count_] = made;
+      functions_[count_] = functions;
+      free_[count_++] = false;
+    }
     return made;
   }
 

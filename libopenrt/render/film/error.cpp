@@ -60,9 +60,18 @@ Spread spreadOf(const PixelSums& s, int k, double size) {
 // What the windows sum up.
 struct Cell {
   double count = 0, variance = 0, variance2 = 0, uncertainty = 0, fourth = 0;
-  void scale(double s) { variance *= s, variance2 *= s * s, uncertainty *= s * s, fourth *= s * s; }
+  void scale(double s) {
+    variance *= s;
+    variance2 *= s * s;
+    uncertainty *= s * s;
+    fourth *= s * s;
+  }
   void add(const Cell& c) {
-    count += c.count, variance += c.variance, variance2 += c.variance2, uncertainty += c.uncertainty, fourth += c.fourth;
+    count += c.count;
+    variance += c.variance;
+    variance2 += c.variance2;
+    uncertainty += c.uncertainty;
+    fourth += c.fourth;
   }
 };
 
@@ -112,8 +121,10 @@ struct Rare {
     double second = s.grey[0] - sum * m;
     if (!(second > 1e-12 * std::fabs(s.grey[0]))) second = 0; // of the subtraction
     const double g4 = s.grey[2] - 4 * m * s.grey[1] + 6 * m * m * s.grey[0] - 3 * n * m * m * m * m;
-    square2 += second * second / n, fourth += std::max(g4, 0.0);
-    variance += n > 1 ? second / (n * (n - 1)) : 0, pixels++;
+    square2 += second * second / n;
+    fourth += std::max(g4, 0.0);
+    variance += n > 1 ? second / (n * (n - 1)) : 0;
+    pixels++;
     for (int k = 0; k < 3; k++) largest[k] = std::max(largest[k], s.largest[k]);
   }
   // For light that a fraction p of n samples meets fourth / square2 is n / (1 + n p).
@@ -212,7 +223,8 @@ class TileErrors {
           for (uint32_t u = x - std::min(x, 1u); u <= std::min(x + 1, width_ - 1); u++) {
             const size_t at = size_t(v) * width_ + u;
             if (pixels_[at].random != random || out_[at].constant) continue;
-            sum += std::fabs(double(out_[at].mean[k])), n++;
+            sum += std::fabs(double(out_[at].mean[k]));
+            n++;
           }
         if (sum > 0) out[size_t(y) * width_ + x] = sum / n;
       }
@@ -294,7 +306,9 @@ PixelError independentError(const PixelSums& s) {
   }
   e.samples = s.samples;
   e.constant = s.samples > 1 && !varies && !s.random;
-  e.noise.scale = scaleOf(e.mean), e.noise.random = s.random, e.noise.finished = true;
+  e.noise.scale = scaleOf(e.mean);
+  e.noise.random = s.random;
+  e.noise.finished = true;
   finish(e);
   return e;
 }
@@ -310,14 +324,20 @@ void addLight(const LightSums& light, PixelError& e) {
     const double w = light.variance[k], h = student95(LightImage::parts - 1) * std::sqrt(w);
     e.mean[k] += float(light.mean[k]);
     e.halfWidth[k] = float(std::hypot(double(e.halfWidth[k]), h));
-    half += double(e.halfWidth[k]), lamps += h;
+    half += double(e.halfWidth[k]);
+    lamps += h;
     own += meanError(w, LightImage::parts - 1);
-    e.noise.second += float(w), e.noise.square += float(w * w), e.noise.third += float(w * std::sqrt(w / met)),
-        e.noise.fourth += float(w * w / met);
+    e.noise.second += float(w);
+    e.noise.square += float(w * w);
+    e.noise.third += float(w * std::sqrt(w / met));
+    e.noise.fourth += float(w * w / met);
   }
   e.noise.own = std::hypot(e.noise.own, float(own));
   e.noise.scale = scaleOf(e.mean);
-  if (lamps > 0) e.constant = false, e.noise.random = true;
+  if (lamps > 0) {
+    e.constant = false;
+    e.noise.random = true;
+  }
   if (lamps > negligible * half && light.hits < fewestPaths) e.trusted = false; // few paths have met the pixel
   e.relative = relativeError(half, e.mean);
 }

@@ -68,7 +68,10 @@ void ErrorMap::range(uint32_t x, uint32_t y, float out[3]) const {
     for (uint32_t i = x - std::min(x, 2u); i <= std::min(x + 2, width_ - 1); i++) {
       const Seen& there = seen_[size_t(j) * width_ + i];
       if (there.samples == 0) continue;
-      for (int k = 0; k < 3; k++) low[k] = std::min(low[k], there.mean[k]), high[k] = std::max(high[k], there.mean[k]);
+      for (int k = 0; k < 3; k++) {
+        low[k] = std::min(low[k], there.mean[k]);
+        high[k] = std::max(high[k], there.mean[k]);
+      }
     }
   for (int k = 0; k < 3; k++) out[k] = high[k] - low[k];
 }
@@ -99,7 +102,8 @@ void ErrorMap::doubtConstants(const std::function<void(size_t pixel, const float
       double sum = 0, behind = 0;
       for (int k = 0; k < 3; k++) {
         behind += part * double(half[k]);
-        half[k] = float(part * double(border(x, y) ? std::max(range_[k], half[k]) : half[k])), sum += double(half[k]);
+        half[k] = float(part * double(border(x, y) ? std::max(range_[k], half[k]) : half[k]));
+        sum += double(half[k]);
       }
       const float edge = relativeError(behind, here.mean);
       doubted_[pixel] = relativeError(expectedOfBound(here.samples) * behind, here.mean);

@@ -18,10 +18,15 @@ struct ChanceLight {
   double rays = 0;  // their number
   double met = 0;   // how many have met something at least half as bright as that one
 
-  void add(const ChanceLight& c) { light += c.light, rays += c.rays, met += c.met; }
+  void add(const ChanceLight& c) {
+    light += c.light;
+    rays += c.rays;
+    met += c.met;
+  }
   void send(const float throughput[3], double brightest) {
     if (!(brightest > 0)) return;
-    light += sumOf(throughput) * brightest, rays++;
+    light += sumOf(throughput) * brightest;
+    rays++;
   }
   void meet(const float radiance[3], double brightest) {
     if (luminanceOf(radiance) >= .5 * brightest) met++;
@@ -45,15 +50,23 @@ struct Ledger {                           // summed over the colours
   uint64_t samples = 0;                   // a pixel of the tile
 
   void add(const Ledger& l) {
-    cutByDepth += l.cutByDepth, cutByEnergy += l.cutByEnergy, clipped += l.clipped, samples += l.samples;
-    chance.add(l.chance), chanceSky.add(l.chanceSky);
+    cutByDepth += l.cutByDepth;
+    cutByEnergy += l.cutByEnergy;
+    clipped += l.clipped;
+    samples += l.samples;
+    chance.add(l.chance);
+    chanceSky.add(l.chanceSky);
   }
   // Of a tile of so many samples to that of one: its pixels' sum. Light by chance is of the samples, and not divided.
   void addMean(const Ledger& l) {
     if (l.samples == 0) return;
     const double n = double(l.samples);
-    cutByDepth += l.cutByDepth / n, cutByEnergy += l.cutByEnergy / n, clipped += l.clipped / n, samples = 1;
-    chance.add(l.chance), chanceSky.add(l.chanceSky);
+    cutByDepth += l.cutByDepth / n;
+    cutByEnergy += l.cutByEnergy / n;
+    clipped += l.clipped / n;
+    samples = 1;
+    chance.add(l.chance);
+    chanceSky.add(l.chanceSky);
   }
   // Radiance that the mean of so many paths may lack, colours summed, where `all` is the sum over the whole picture.
   double missedByChance(const Ledger& all, double paths) const {

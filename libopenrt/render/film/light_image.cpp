@@ -49,7 +49,9 @@ LightSums LightImage::at(uint32_t x, uint32_t y) const {
     for (uint32_t j = y - std::min(y, reach); j <= std::min(y + reach, height_ - 1); j++)
       for (uint32_t i = x - std::min(x, reach); i <= std::min(x + reach, width_ - 1); i++) {
         const Pixel& p = pixels_[size_t(j) * width_ + i];
-        mean += p.mean[k], variance += this->variance(p, k), count++;
+        mean += p.mean[k];
+        variance += this->variance(p, k);
+        count++;
       }
     out.mean[k] = pixel.mean[k];
     out.variance[k] = std::max(variance / count, this->variance(pixel, k));

@@ -54,7 +54,11 @@ double cappedMean(double expected) {
 struct Cumulants { // summed over pixels, relative
   double pixels = 0, second = 0, third = 0, fourth = 0, square = 0;
   void add(const Cumulants& c) {
-    pixels += c.pixels, second += c.second, third += c.third, fourth += c.fourth, square += c.square;
+    pixels += c.pixels;
+    second += c.second;
+    third += c.third;
+    fourth += c.fourth;
+    square += c.square;
   }
   double jumps() const { // among these pixels
     if (!(second > 0)) return 0;
@@ -114,7 +118,10 @@ class Whole {
       if (!random(i)) continue;
       // Relative to the colours around: else those that have met something would count for less.
       double scale = 0, n = 0;
-      window(i, 1, [&](size_t at) { scale += double(pixels_[at].scale), n++; });
+      window(i, 1, [&](size_t at) {
+        scale += double(pixels_[at].scale);
+        n++;
+      });
       scale /= n;
       const PixelNoise& p = pixels_[i];
       largest_ = std::max(largest_, double(p.largest));
@@ -140,7 +147,8 @@ class Whole {
     Cumulants c;
     uint32_t reach = 0;
     for (uint32_t r : reaches) {
-      c = {}, reach = r;
+      c = {};
+      reach = r;
       window(i, r, [&](size_t at) { c.add(own_[at]); });
       if (c.jumps() >= fewestJumps) break;
     }
@@ -152,15 +160,21 @@ class Whole {
     const TailShape shape = few ? allShape_ : c.shape(seconds_, met);
     double lack = 0, all = 0; // pixels
     if (shape.missing > 0)
-      window(i, reach, [&](size_t at) { all++, without += lacking(at, met), lack += lacking(at, met) > 0 ? 1 : 0; });
+      window(i, reach, [&](size_t at) {
+        all++;
+        without += lacking(at, met);
+        lack += lacking(at, met) > 0 ? 1 : 0;
+      });
     const double alike = std::max(1.0, all - lack) * shape.without; // so many of those that lack are of the kind that meets jumps
     const double expected = double(p.own) * shape.factor;
     corrected_ += std::fabs(expected - double(p.own)) / double(p.scale);
     missing_[i] = without > 0 ? shape.missing : 0;
-    spread_[i] = missing_[i] * expected, stay_[i] = expected - spread_[i];
+    spread_[i] = missing_[i] * expected;
+    stay_[i] = expected - spread_[i];
     // None of these lacks a larger part of its light than what is wrong with the pixel that tells of it.
     if (without > 0) part_[i] = std::min(spread_[i] / without, std::min(1.0, alike / lack) * expected / double(p.scale));
-    reach_[i] = reach, met_[i] = met;
+    reach_[i] = reach;
+    met_[i] = met;
   }
 
   void distribute() {
@@ -183,7 +197,9 @@ class Whole {
       if (!p.finished) continue;
       n++;
       if (!std::isnan(doubted_[i])) {
-        kept[i] = double(doubted_[i]), out.mean += kept[i], doubts += kept[i];
+        kept[i] = double(doubted_[i]);
+        out.mean += kept[i];
+        doubts += kept[i];
         continue;
       }
       if (random(i) && nothing) {
@@ -212,7 +228,8 @@ class Whole {
       double v = varianceOfNormal * (1 - 2 * missing_[i]) * k * k + scattered * scattered;
       if (!std::isnan(doubted_[i]))
         v = kept[i] * std::max(0.0, double(pixels_[i].own) - kept[i]); // own: its error if there is an edge
-      variance += v, fourth += v * v;
+      variance += v;
+      fourth += v * v;
     }
     const double freedom = fourth > 0 ? variance * variance / fourth : 1;
     const double chance = student95(std::max(1.0, freedom - 1)) * std::sqrt(variance), unsure = unsureShape * corrected_;
@@ -220,8 +237,10 @@ class Whole {
     // How many of the pixels in doubt hold an edge is the scene's: from none to twice as many.
     out.interval = std::sqrt(chance * chance + unsure * unsure + common * common + unseen * unseen + doubts * doubts);
     // Where nothing at all has been met it may be anything.
-    out.mean += .5 * unknown, out.interval += .5 * unknown;
-    out.mean /= n, out.interval /= n;
+    out.mean += .5 * unknown;
+    out.interval += .5 * unknown;
+    out.mean /= n;
+    out.interval /= n;
     out.interval = std::min(out.interval, std::max(out.mean, 1 - out.mean)); // it is between 0 and 1
     return out;
   }
@@ -251,11 +270,13 @@ TailShape tailShape(double variance, double jumps) {
   for (uint32_t k = 0; k <= most; k++, probability *= jumps / k) {
     const double e = foldedMean(k - jumps, normal), own = meanOfNormal * std::sqrt(normal * normal + k);
     if (k == 0) out.missing = probability * std::max(0.0, e - own);
-    error += probability * e, told += probability * own;
+    error += probability * e;
+    told += probability * own;
   }
   if (!(told > 0) || !(error > 0)) return {};
   out.without = 1 / std::expm1(jumps);
-  out.factor = std::max(1.0, error / told), out.missing = std::min(.5, out.missing / error);
+  out.factor = std::max(1.0, error / told);
+  out.missing = std::min(.5, out.missing / error);
   return out;
 }
 

@@ -137,12 +137,15 @@ std::vector<Pilots::Verdict> Pilots::judgeAll() {
     const uint32_t x = i % columns, y = i / columns;
     double sum = 0, n = 0;
     for (uint32_t v = y - std::min(y, 1u); v <= std::min(y + 1, rows - 1); v++)
-      for (uint32_t u = x - std::min(x, 1u); u <= std::min(x + 1, columns - 1); u++)
-        sum += opinions[v * columns + u].unknown, n++;
+      for (uint32_t u = x - std::min(x, 1u); u <= std::min(x + 1, columns - 1); u++) {
+        sum += opinions[v * columns + u].unknown;
+        n++;
+      }
     out.push_back(verdict(opinions[i], std::max(opinions[i].unknown, sum / n), samplesOfPilot));
   }
   map_ = {};
-  first_ = {}, scale_ = {};
+  first_ = {};
+  scale_ = {};
   return out;
 }
 

@@ -59,7 +59,9 @@ void startSums(std::vector<PixelSums>& sums, size_t pixels, const Gathering& gat
 void PixelSums::closeReplicate() {
   for (int k = 0; k < 3; k++) {
     const double sum = delta[k] - closed[k], square = sum * sum;
-    closed2[k] += square, closed3[k] += square * sum, closed4[k] += square * square;
+    closed2[k] += square;
+    closed3[k] += square * sum;
+    closed4[k] += square * square;
     closed[k] = delta[k];
   }
   replicates++;
@@ -67,7 +69,10 @@ void PixelSums::closeReplicate() {
 
 void PixelSums::merge(const PixelSums& l, const Gathering& gathering, const Replicates& parts) {
   for (int k = 0; k < 4; k++) rgba[k] += l.rgba[k];
-  for (int k = 0; k < 3 && gathering.surface; k++) normal[k] += l.normal[k], albedo[k] += l.albedo[k];
+  for (int k = 0; k < 3 && gathering.surface; k++) {
+    normal[k] += l.normal[k];
+    albedo[k] += l.albedo[k];
+  }
   if (gathering.spread) {
     const double n = l.samples;
     double c[3]; // what has to be added to the differences
@@ -78,7 +83,8 @@ void PixelSums::merge(const PixelSums& l, const Gathering& gathering, const Repl
     }
     if (gathering.error) mergeTails(*this, l, c, double(parts.size()));
   }
-  samples += l.samples, replicates += l.replicates;
+  samples += l.samples;
+  replicates += l.replicates;
   // Larger than its leaves: none of it is closed yet.
   if (gathering.error && parts.many() && replicates == 0 && samples == parts.size()) closeReplicate();
 }
@@ -106,7 +112,9 @@ uint32_t blockFrom(uint32_t first, uint32_t end, uint32_t largest) {
 
 void TileSums::unpack(const Kept& from, SumBlock& to, const Gathering& gathering) {
   const size_t bytes = keptBytes(gathering);
-  to.first = from.first, to.count = from.count, to.ledger = from.ledger;
+  to.first = from.first;
+  to.count = from.count;
+  to.ledger = from.ledger;
   to.sums.resize(from.bytes.size() / bytes);
   for (size_t i = 0; i < to.sums.size(); i++) std::memcpy(static_cast<void*>(&to.sums[i]), &from.bytes[i * bytes], bytes);
 }

@@ -58,7 +58,9 @@ struct PixelSums { // of one pixel, samples added in their order
       largest[k] = largest[k] < radiance[k] ? radiance[k] : largest[k];
     }
     const double grey2 = grey1 * grey1;
-    grey[0] += grey2, grey[1] += grey2 * grey1, grey[2] += grey2 * grey2;
+    grey[0] += grey2;
+    grey[1] += grey2 * grey1;
+    grey[2] += grey2 * grey2;
   }
   void closeReplicate();
   // Adds the samples that follow; a replicate that they complete is closed.

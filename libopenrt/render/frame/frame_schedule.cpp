@@ -58,7 +58,10 @@ double FrameSchedule::costOf(const TileGrid& grid, const Job& job) {
 }
 
 void FrameSchedule::give(const Out& out, Job& job, double now) {
-  if (!begun_ && out.job.kind == Job::Kind::samples) begun_ = true, began_ = now;
+  if (!begun_ && out.job.kind == Job::Kind::samples) {
+    begun_ = true;
+    began_ = now;
+  }
   job = out.job;
   if (out.stage != Stage::early) undone_ -= costOf(grid_, job);
   if (job.kind == Job::Kind::samples) outNow_++;
@@ -95,10 +98,14 @@ bool FrameSchedule::nextLight(Job& job, double now) {
   Out out;
   out.job.kind = Job::Kind::light;
   if (nextEarly_ < earlyUntil_) {
-    out.stage = Stage::early, out.job.number = nextEarly_++, out.job.count = earlyPaths_;
+    out.stage = Stage::early;
+    out.job.number = nextEarly_++;
+    out.job.count = earlyPaths_;
     out.job.replicates.seed = hash(frame_.seed, earlySeed + out.job.number);
   } else if (nextPart_ < partsUntil_) {
-    out.stage = Stage::light, out.job.number = nextPart_++, out.job.count = partPaths_;
+    out.stage = Stage::light;
+    out.job.number = nextPart_++;
+    out.job.count = partPaths_;
     out.job.replicates.seed = hash(frame_.seed, lightSeed + out.job.number);
   } else {
     return false;
@@ -110,7 +117,9 @@ bool FrameSchedule::nextLight(Job& job, double now) {
 // The next block of a tile's samples, from there to the end of its round; from is moved on.
 void FrameSchedule::giveBlock(Job& job, Out out, uint32_t tile, uint32_t& from, uint32_t end, uint32_t largest, double now) {
   const bool pilot = out.stage == Stage::pilot;
-  out.job.number = tile, out.job.first = from, out.job.count = blockFrom(from, end, largest);
+  out.job.number = tile;
+  out.job.first = from;
+  out.job.count = blockFrom(from, end, largest);
   out.job.centred = out.until == 1 && (pilot || !rounds_);
   if (pilot)
     out.job.replicates = replicatesOf(frame_, out.until, hash(frame_.seed, out.further ? furtherSeed + out.until : pilotSeed));
@@ -178,7 +187,8 @@ void FrameSchedule::giveBack(const Job& job) {
 
 void FrameSchedule::decided(uint32_t tile, uint32_t wanted) {
   const double saved = double(frame_.samples - wanted) * double(grid_.at(tile).pixels());
-  undone_ -= saved, all_ -= saved;
+  undone_ -= saved;
+  all_ -= saved;
   wanted_[tile] = wanted;
   undecided_--;
   if (!rounds_) ready_.push_back({tile, 0, 0});
@@ -206,8 +216,11 @@ bool FrameSchedule::endRound(double now) {
   if (ended_) return false;
   if (earlyUntil_ == 0 && partsUntil_ == 0) earlyUntil_ = lamps_ ? earlyParts_ : 0; // the first round has gone without
   wantLight();
-  outBefore_ = outNow_, outNow_ = 0, round_++;
-  nextTile_ = 0, from_ = first_;
+  outBefore_ = outNow_;
+  outNow_ = 0;
+  round_++;
+  nextTile_ = 0;
+  from_ = first_;
   skipTiles();
   return true;
 }

@@ -10,10 +10,10 @@
 #include <shared_mutex>
 
 #include "render/film/error.h"
-#include "render/flush_denormals.h"
-#include "render/frame/frame_schedule.h"
 #include "render/film/light_image.h"
 #include "render/film/pilots.h"
+#include "render/flush_denormals.h"
+#include "render/frame/frame_schedule.h"
 
 namespace openrt {
 namespace {
@@ -301,7 +301,8 @@ bool FrameWork::take(const Job& job, JobResult&& result) {
     out = m.schedule.claim(job);
     if (!out) return false;
     m.busy++;
-    m.counters.camera += result.counters.camera, m.counters.shadow += result.counters.shadow;
+    m.counters.camera += result.counters.camera;
+    m.counters.shadow += result.counters.shadow;
     m.counters.secondary += result.counters.secondary;
     m.counters.faults.add(result.counters.faults);
   }
@@ -378,8 +379,10 @@ void FrameWork::describeError(RTstats& stats) const {
   stats.errorMean = s.mean;
   stats.errorMeanInterval = s.meanInterval;
   stats.errorUnmet = missed;
-  stats.errorHalfWidth = s.halfWidth, stats.errorP99 = s.p99;
-  stats.errorPixels = s.pixels, stats.errorTrusted = s.trusted;
+  stats.errorHalfWidth = s.halfWidth;
+  stats.errorP99 = s.p99;
+  stats.errorPixels = s.pixels;
+  stats.errorTrusted = s.trusted;
   const bool many = impl_->schedule.timed() || replicatesOf(impl_->frame, impl_->frame.samples, 0).many();
   std::snprintf(stats.errorMethod, sizeof stats.errorMethod, "%s", many ? "replicated nets, Student's t" : "sample variance");
 }
@@ -388,7 +391,8 @@ void FrameWork::describeLedger(RTstats& stats) const {
   Ledger all;
   for (uint32_t i = 0; i < impl_->count; i++) all.addMean(impl_->tiles[i].ledger);
   const double pixels = std::max(double(impl_->frame.width) * impl_->frame.height, 1.0);
-  stats.cutByDepth = all.cutByDepth / pixels, stats.cutByEnergy = all.cutByEnergy / pixels;
+  stats.cutByDepth = all.cutByDepth / pixels;
+  stats.cutByEnergy = all.cutByEnergy / pixels;
   stats.clipped = all.clipped / pixels;
 }
 

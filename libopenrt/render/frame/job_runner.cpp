@@ -61,7 +61,10 @@ bool JobRunner::Impl::samples(const Job& job, const std::atomic<bool>& stop, Job
   };
   for (uint32_t at = job.first, end = job.first + job.count; at < end;) {
     SumBlock leaf{.first = at, .count = leafEnd(at, end, scene->frame.samples) - at, .sums = {}, .ledger = {}};
-    if (!spare.empty()) leaf.sums = std::move(spare.back()), spare.pop_back();
+    if (!spare.empty()) {
+      leaf.sums = std::move(spare.back());
+      spare.pop_back();
+    }
     startSums(leaf.sums, tile.pixels(), gathering);
     if (!tiles.render(tile, job.replicates, job.centred, leaf.first, leaf.count, leaf.sums, stop)) return false;
     leaf.ledger = tiles.ledger();
@@ -74,7 +77,8 @@ bool JobRunner::Impl::samples(const Job& job, const std::atomic<bool>& stop, Job
     stack.push_back(std::move(leaf));
   }
   for (size_t i = 1; i < stack.size(); i++) append(stack[0], stack[i]);
-  result.sums = std::move(stack[0].sums), result.ledger = stack[0].ledger;
+  result.sums = std::move(stack[0].sums);
+  result.ledger = stack[0].ledger;
   stack.clear();
   return true;
 }

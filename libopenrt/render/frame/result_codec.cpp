@@ -104,8 +104,11 @@ class Source {
 bool getLedger(Source& source, Ledger& ledger) {
   double v[9];
   if (!source.get(v, sizeof v)) return false;
-  ledger.cutByDepth = v[0], ledger.cutByEnergy = v[1], ledger.clipped = v[2];
-  ledger.chance = {v[3], v[4], v[5]}, ledger.chanceSky = {v[6], v[7], v[8]};
+  ledger.cutByDepth = v[0];
+  ledger.cutByEnergy = v[1];
+  ledger.clipped = v[2];
+  ledger.chance = {v[3], v[4], v[5]};
+  ledger.chanceSky = {v[6], v[7], v[8]};
   return true;
 }
 
@@ -210,7 +213,10 @@ bool decodeResult(const edit::FrameSettingsT& frame, const Job& job, const Tile&
   result.sums.assign(pixels, {});
   const Replicates& parts = job.replicates;
   const bool closed = gatheringOf(frame).error && parts.many() && job.count >= parts.size();
-  for (PixelSums& s : result.sums) s.samples = job.count, s.replicates = closed ? job.count / parts.size() : 0;
+  for (PixelSums& s : result.sums) {
+    s.samples = job.count;
+    s.replicates = closed ? job.count / parts.size() : 0;
+  }
   return getTile(frame, source, &result.sums, pixels);
 }
 

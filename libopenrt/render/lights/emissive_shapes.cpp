@@ -19,7 +19,10 @@ double luminance(const float c[3]) {
 
 double areaOf(const float p[3][3], float normal[3]) {
   double a[3], b[3];
-  for (int k = 0; k < 3; k++) a[k] = double(p[1][k]) - p[0][k], b[k] = double(p[2][k]) - p[0][k];
+  for (int k = 0; k < 3; k++) {
+    a[k] = double(p[1][k]) - p[0][k];
+    b[k] = double(p[2][k]) - p[0][k];
+  }
   const double n[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
   const double length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
   for (int k = 0; k < 3; k++) normal[k] = float(length > 0 ? n[k] / length : 0);
@@ -42,7 +45,10 @@ struct Looks {
     order = arena.take<uint32_t>(padded(capacity));
   }
   void add(const float place[3], const float towards[3]) { // towards: where the ray comes from, unit
-    for (int k = 0; k < 3; k++) rays.org[k][count] = place[k] + towards[k], rays.dir[k][count] = -towards[k];
+    for (int k = 0; k < 3; k++) {
+      rays.org[k][count] = place[k] + towards[k];
+      rays.dir[k][count] = -towards[k];
+    }
     hits.t[count] = 1;
     order[count] = count;
     count++;
@@ -59,7 +65,10 @@ RtsSurface answer(const RenderScene& scene, uint32_t record, const Looks& looks,
   for (auto& e : surface.emission) e = arena.takeZero<float>(padded(n));
   RayCounters counters;
   RtsBatch batch;
-  batch.scene = &scene, batch.arena = &arena, batch.counters = &counters, batch.points = &points;
+  batch.scene = &scene;
+  batch.arena = &arena;
+  batch.counters = &counters;
+  batch.points = &points;
   const RunningShader running(*(*scene.shaders)[r.shader].shaderClass);
   (*scene.shaders)[r.shader].shaderClass->surface(&scene.host, &batch, &points.hits, &surface);
   return surface;
@@ -104,8 +113,10 @@ void askTriangles(const RenderScene& scene, uint32_t record, std::span<const Emi
         place[k] = (1 - u - v) * s.corner[0][k] + u * s.corner[1][k] + v * s.corner[2][k];
         looks.hits.ng[k][i] = kernel[k];
       }
-      looks.hits.u[i] = mirrored ? v : u, looks.hits.v[i] = mirrored ? u : v;
-      looks.hits.record[i] = record, looks.hits.primitive[i] = s.primitive;
+      looks.hits.u[i] = mirrored ? v : u;
+      looks.hits.v[i] = mirrored ? u : v;
+      looks.hits.record[i] = record;
+      looks.hits.primitive[i] = s.primitive;
       looks.add(place, towards);
     }
   }
@@ -130,7 +141,9 @@ double askSphere(const RenderScene& scene, uint32_t record, Arena& arena) {
       for (float& x : towards) x /= std::sqrt(length);
       const uint32_t i = looks.count;
       for (int k = 0; k < 3; k++) looks.hits.ng[k][i] = towards[k];
-      looks.hits.u[i] = looks.hits.v[i] = 0, looks.hits.record[i] = record, looks.hits.primitive[i] = 0;
+      looks.hits.u[i] = looks.hits.v[i] = 0;
+      looks.hits.record[i] = record;
+      looks.hits.primitive[i] = 0;
       looks.add(place, towards);
     }
   double each[6], sum = 0;
@@ -161,7 +174,8 @@ LightBounds sphereBounds(const Record& r, double outside) {
   for (int k = 0; k < 3; k++) {
     const auto& m = r.toRender.r[k];
     const double half = std::sqrt(double(m[0]) * m[0] + double(m[1]) * m[1] + double(m[2]) * m[2]);
-    b.low[k] = float(m[3] - half), b.high[k] = float(m[3] + half);
+    b.low[k] = float(m[3] - half);
+    b.high[k] = float(m[3] + half);
     disc = std::max(disc, M_PI * half * half);
   }
   const double intensity = outside * disc;
@@ -212,7 +226,8 @@ void EmissiveShapes::add(const RenderScene& scene, uint32_t id, std::vector<Ligh
       cornersOf(r, s.primitive, s.corner);
       if (mirrored) std::swap(s.corner[1], s.corner[2]);
     }
-    front.assign(n, 0), back.assign(n, 0);
+    front.assign(n, 0);
+    back.assign(n, 0);
     const std::span<const Shape> shapes(shapes_.data() + begin, n);
     askTriangles(scene, id, shapes, false, arena, front.data());
     askTriangles(scene, id, shapes, true, arena, back.data());
@@ -232,7 +247,8 @@ EmissiveShapes::Place EmissiveShapes::place(const RenderScene& scene, uint32_t n
   Place p{};
   if (!s.sphere) {
     const float root = std::sqrt(u); // uniform on the triangle
-    p.u = root * (1 - v), p.v = root * v;
+    p.u = root * (1 - v);
+    p.v = root * v;
     for (int k = 0; k < 3; k++) p.position[k] = (1 - p.u - p.v) * s.corner[0][k] + p.u * s.corner[1][k] + p.v * s.corner[2][k];
     p.area = areaOf(s.corner, p.normal);
     return p;
@@ -264,8 +280,10 @@ void EmissiveShapes::radiance(const RenderScene& scene, uint32_t number, const P
   else
     kernelNormal(scene.records[s.record], place.normal, kernel);
   for (int k = 0; k < 3; k++) looks.hits.ng[k][0] = kernel[k];
-  looks.hits.u[0] = s.swapped ? place.v : place.u, looks.hits.v[0] = s.swapped ? place.u : place.v;
-  looks.hits.record[0] = s.record, looks.hits.primitive[0] = s.primitive;
+  looks.hits.u[0] = s.swapped ? place.v : place.u;
+  looks.hits.v[0] = s.swapped ? place.u : place.v;
+  looks.hits.record[0] = s.record;
+  looks.hits.primitive[0] = s.primitive;
   looks.add(place.position, towards);
   const RtsSurface surface = answer(scene, s.record, looks, arena);
   for (int k = 0; k < 3; k++)

@@ -14,7 +14,10 @@ namespace openrt {
 Receiver TileRenderer::receiverOf(const Points& points, uint32_t i, bool through) const {
   Receiver from;
   float p[3], n[3];
-  for (int k = 0; k < 3; k++) p[k] = points.hits.position[k][i], n[k] = points.hits.geometric[k][i];
+  for (int k = 0; k < 3; k++) {
+    p[k] = points.hits.position[k][i];
+    n[k] = points.hits.geometric[k][i];
+  }
   for (int k = 0; k < 3 && !through; k++) from.normal[k] = n[k];
   offsetPoint(p, n, points.error[i], from.position);
   return from;
@@ -42,10 +45,13 @@ uint32_t TileRenderer::weigh(const RtsBatch& batch, const RtsHits& hits, float* 
   for (uint32_t r = 0; r < n; r++) {
     if (!(response[0][r] > 0 || response[1][r] > 0 || response[2][r] > 0)) continue;
     for (int k = 0; k < 3; k++) {
-      rays.org[k][left] = rays.org[k][r], rays.dir[k][left] = rays.dir[k][r];
+      rays.org[k][left] = rays.org[k][r];
+      rays.dir[k][left] = rays.dir[k][r];
       response[k][left] = response[k][r];
     }
-    rays.tnear[left] = rays.tnear[r], rays.tfar[left] = rays.tfar[r], hitOf[left] = hitOf[r];
+    rays.tnear[left] = rays.tnear[r];
+    rays.tfar[left] = rays.tfar[r];
+    hitOf[left] = hitOf[r];
     sights[left++] = sights[r];
   }
   return left;
@@ -73,7 +79,10 @@ void TileRenderer::addEmitters(const RtsBatch& batch, const Points& points, cons
     if (!(sight.density > 0)) continue;
     float origin[3];
     liftPoint(points, i, sight.direction, origin);
-    for (int k = 0; k < 3; k++) rays.org[k][n] = origin[k], rays.dir[k][n] = sight.direction[k];
+    for (int k = 0; k < 3; k++) {
+      rays.org[k][n] = origin[k];
+      rays.dir[k][n] = sight.direction[k];
+    }
     rays.tnear[n] = 0;
     rays.tfar[n] = sight.distance * (1 + 0x1p-10f);
     hitOf[n] = i;

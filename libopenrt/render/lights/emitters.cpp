@@ -5,9 +5,9 @@
 #include <cmath>
 #include <limits>
 
+#include "render/lights/spherical.h"
 #include "render/render_scene.h"
 #include "render/surface/scatter.h"
-#include "render/lights/spherical.h"
 
 namespace openrt {
 namespace {
@@ -96,7 +96,8 @@ Sight Emitters::choose(const Receiver& from, double pick, float u, float v) cons
     const LightTree::Choice choice = shapes_->tree().choose(from.position, normal, std::min(left, 1 - 0x1p-53));
     if (!(choice.probability > 0)) return {};
     const EmissiveShapes::Shape& shape = (*shapes_)[choice.light];
-    sight.record = shape.record, sight.primitive = shape.primitive;
+    sight.record = shape.record;
+    sight.primitive = shape.primitive;
     double way[3], distance = 0;
     const double alone = densityOf(shape, from, u, v, way, distance, sight.rim);
     sight.density = float((1 - double(share_)) * double(choice.probability) * alone);

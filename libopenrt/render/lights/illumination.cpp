@@ -6,9 +6,9 @@
 #include <limits>
 #include <vector>
 
-#include "render/surface/faults.h"
 #include "render/lights/shadows.h"
 #include "render/path/tile.h"
+#include "render/surface/faults.h"
 #include "shading/running.h"
 
 namespace openrt {
@@ -47,7 +47,9 @@ void directionsToRender(const Affine& m, uint32_t n, float* const v[3], float* r
     const float c = m.r[2][0] * x + m.r[2][1] * y + m.r[2][2] * z;
     const float l = std::sqrt(a * a + b * b + c * c);
     const float k = l > 0 && l <= 1e30f ? 1 / l : 0.0f;
-    v[0][i] = a * k, v[1][i] = b * k, v[2][i] = c * k;
+    v[0][i] = a * k;
+    v[1][i] = b * k;
+    v[2][i] = c * k;
     reach[i] = k > 0 ? l : 0.0f;
   }
 }
@@ -104,8 +106,10 @@ void askChosen(RtsBatch& batch, const ManyLights& many, const RtsHits& hits, Rts
     RtsIllumination part{};
     float *position[3], *local[3];
     for (int k = 0; k < 3; k++) {
-      position[k] = arena.take<float>(size), local[k] = arena.take<float>(size);
-      part.toLight[k] = arena.take<float>(size), part.color[k] = arena.take<float>(size),
+      position[k] = arena.take<float>(size);
+      local[k] = arena.take<float>(size);
+      part.toLight[k] = arena.take<float>(size);
+      part.color[k] = arena.take<float>(size);
       part.ambient[k] = arena.take<float>(size);
       for (uint32_t i = 0; i < size; i++) position[k][i] = hits.position[k][order[begin + std::min(i, m - 1)]];
     }
@@ -116,7 +120,8 @@ void askChosen(RtsBatch& batch, const ManyLights& many, const RtsHits& hits, Rts
       const uint32_t to = order[begin + i];
       for (int k = 0; k < 3; k++) {
         out.toLight[k][to] = part.toLight[k][i];
-        out.color[k][to] = part.color[k][i] / probability[to], out.ambient[k][to] = part.ambient[k][i] / probability[to];
+        out.color[k][to] = part.color[k][i] / probability[to];
+        out.ambient[k][to] = part.ambient[k][i] / probability[to];
       }
       batch.reach[to] = parallel ? std::numeric_limits<float>::infinity() : reach[i];
     }
@@ -134,7 +139,11 @@ uint32_t lightCount(RtsBatch& batch) {
 
 void illuminateHits(RtsBatch& batch, uint32_t i, const RtsHits& hits, RtsIllumination& out) {
   makeRoomForLight(batch, hits.count);
-  for (int k = 0; k < 3; k++) out.toLight[k] = batch.toLight[k], out.color[k] = batch.color[k], out.ambient[k] = batch.ambient[k];
+  for (int k = 0; k < 3; k++) {
+    out.toLight[k] = batch.toLight[k];
+    out.color[k] = batch.color[k];
+    out.ambient[k] = batch.ambient[k];
+  }
   batch.current = i;
   batch.chosen = nullptr;
   if (const ManyLights* many = manyOf(batch); many && i == many->always().size()) {

@@ -49,7 +49,10 @@ void LightSources::aimAtMirrors(const RenderScene& scene) {
   std::fill_n(low, 3, std::numeric_limits<double>::infinity());
   std::fill_n(high, 3, -std::numeric_limits<double>::infinity());
   const auto add = [&](const float p[3]) {
-    for (int k = 0; k < 3; k++) low[k] = std::min(low[k], double(p[k])), high[k] = std::max(high[k], double(p[k]));
+    for (int k = 0; k < 3; k++) {
+      low[k] = std::min(low[k], double(p[k]));
+      high[k] = std::max(high[k], double(p[k]));
+    }
   };
   for (const Record& r : scene.records) {
     if (!((*scene.shaders)[r.shader].traits & RTS_SPECULAR)) continue;
@@ -88,9 +91,10 @@ void LightSources::standBack(const RenderScene& scene) {
 }
 
 LightSources::LightSources(const RenderScene& scene, const RenderScene* before) {
-  if (before && before->lightSources && sameMirrors(scene, *before))
-    std::copy_n(before->lightSources->centre_, 3, centre_), radius_ = before->lightSources->radius_;
-  else
+  if (before && before->lightSources && sameMirrors(scene, *before)) {
+    std::copy_n(before->lightSources->centre_, 3, centre_);
+    radius_ = before->lightSources->radius_;
+  } else
     aimAtMirrors(scene);
   if (!(radius_ > 0)) return;
   standBack(scene);
@@ -130,7 +134,8 @@ LightSources::Start LightSources::begin(const RenderScene& scene, double pick, c
   const Source& source = sources_[i];
   const double probability = (cumulative_[i] - (i ? cumulative_[i - 1] : 0)) / cumulative_.back();
   Start start;
-  start.light = source.light, start.shape = source.shape;
+  start.light = source.light;
+  start.shape = source.shape;
   float axis[3];
   if (source.light != none) {
     const RtsExtent& e = source.extent;

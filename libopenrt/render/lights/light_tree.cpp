@@ -47,11 +47,15 @@ void uniteCones(LightBounds& a, const LightBounds& b) {
 }
 
 void unite(LightBounds& a, const LightBounds& b) {
-  for (int k = 0; k < 3; k++) a.low[k] = std::min(a.low[k], b.low[k]), a.high[k] = std::max(a.high[k], b.high[k]);
+  for (int k = 0; k < 3; k++) {
+    a.low[k] = std::min(a.low[k], b.low[k]);
+    a.high[k] = std::max(a.high[k], b.high[k]);
+  }
   uniteCones(a, b);
   a.cosineBeyond = std::min(a.cosineBeyond, b.cosineBeyond);
   a.bothSides |= b.bothSides;
-  a.intensity += b.intensity, a.irradiance += b.irradiance;
+  a.intensity += b.intensity;
+  a.irradiance += b.irradiance;
   a.reach = std::max(a.reach, b.reach);
 }
 
@@ -89,8 +93,10 @@ class Builder {
     std::fill_n(low, 3, std::numeric_limits<float>::infinity());
     std::fill_n(high, 3, -std::numeric_limits<float>::infinity());
     for (uint32_t i = range.begin; i < range.end; i++)
-      for (int k = 0; k < 3; k++)
-        low[k] = std::min(low[k], centre(order_[i], k)), high[k] = std::max(high[k], centre(order_[i], k));
+      for (int k = 0; k < 3; k++) {
+        low[k] = std::min(low[k], centre(order_[i], k));
+        high[k] = std::max(high[k], centre(order_[i], k));
+      }
     int widest = 0;
     for (int k = 1; k < 3; k++)
       if (high[k] - low[k] > high[widest] - low[widest]) widest = k;
@@ -127,8 +133,10 @@ class Builder {
       const uint32_t b = bin(order_[i], k, low, high);
       if (used[b])
         unite(in[b], lights_[order_[i]]);
-      else
-        in[b] = lights_[order_[i]], used[b] = true;
+      else {
+        in[b] = lights_[order_[i]];
+        used[b] = true;
+      }
     }
     double size[3];
     for (int j = 0; j < 3; j++) size[j] = double(whole.high[j]) - whole.low[j];
@@ -136,8 +144,10 @@ class Builder {
     const auto add = [](LightBounds& sum, bool& any, const LightBounds& more) {
       if (any)
         unite(sum, more);
-      else
-        sum = more, any = true;
+      else {
+        sum = more;
+        any = true;
+      }
     };
     bool any = false, anyAbove = false;
     LightBounds sum, above;
@@ -150,7 +160,11 @@ class Builder {
       if (used[b]) add(above, anyAbove, in[b]);
       if (!anyAbove) continue;
       const double c = factor * (belowCost[b - 1] + cost(above, size));
-      if (belowCost[b - 1] > 0 && c < best) best = c, dimension = k, cut = b - 1;
+      if (belowCost[b - 1] > 0 && c < best) {
+        best = c;
+        dimension = k;
+        cut = b - 1;
+      }
     }
   }
 
@@ -202,7 +216,8 @@ void LightTree::build(std::span<const LightBounds> lights) {
     const auto number = uint32_t(nodes_.size());
     Node& node = nodes_.emplace_back();
     node = {};
-    node.parent = todo.parent, node.slot = todo.slot;
+    node.parent = todo.parent;
+    node.slot = todo.slot;
     if (todo.parent != none) nodes_[todo.parent].child[todo.slot] = number;
     depth_ = std::max(depth_, todo.depth);
     uint32_t children[width] = {todo.twig}, count = 1;
@@ -212,19 +227,24 @@ void LightTree::build(std::span<const LightBounds> lights) {
       for (uint32_t i = 0; i < count; i++) {
         const Twig& t = twigs[children[i]];
         const float strength = t.bounds.intensity + t.bounds.irradiance;
-        if (!t.leaf && strength > most) most = strength, strongest = i;
+        if (!t.leaf && strength > most) {
+          most = strength;
+          strongest = i;
+        }
       }
       if (strongest == none) break;
       const uint32_t opened = children[strongest];
-      children[strongest] = opened + 1, children[count++] = twigs[opened].next;
+      children[strongest] = opened + 1;
+      children[count++] = twigs[opened].next;
     }
     for (uint32_t i = 0; i < count; i++) {
       const Twig& t = twigs[children[i]];
       fill(number, i, t.bounds);
       nodes_[number].leaf[i] = t.leaf;
-      if (t.leaf)
-        nodes_[number].child[i] = t.next, places_[t.next] = {number, i};
-      else
+      if (t.leaf) {
+        nodes_[number].child[i] = t.next;
+        places_[t.next] = {number, i};
+      } else
         left.push_back({children[i], number, i, todo.depth + 1});
     }
   }
@@ -244,8 +264,11 @@ void LightTree::fill(uint32_t number, uint32_t i, const LightBounds& b) {
   node.reach2[i] = far < 1e19 ? float(far * far * (1 + 1e-6)) : std::numeric_limits<float>::infinity();
   node.cosine[i] = b.cosineNormals;
   node.sine[i] = float(std::sqrt(std::max(0.0, 1 - double(b.cosineNormals) * b.cosineNormals)));
-  node.beyond[i] = b.cosineBeyond, node.both[i] = b.bothSides ? 1 : 0;
-  node.intensity[i] = b.intensity, node.irradiance[i] = b.irradiance, node.used[i] = 1;
+  node.beyond[i] = b.cosineBeyond;
+  node.both[i] = b.bothSides ? 1 : 0;
+  node.intensity[i] = b.intensity;
+  node.irradiance[i] = b.irradiance;
+  node.used[i] = 1;
 }
 
 struct LightTree::Query {
@@ -253,9 +276,13 @@ struct LightTree::Query {
   float facing;     // added to the cosine at the receiver: 2 where its side does not matter
   float cut, least; // of that cosine: below the one nothing arrives, and it counts as the other at least
   Query(const float from[3], const float* side, Side meaning) {
-    for (int k = 0; k < 3; k++) place[k] = from[k], normal[k] = side ? side[k] : 0;
+    for (int k = 0; k < 3; k++) {
+      place[k] = from[k];
+      normal[k] = side ? side[k] : 0;
+    }
     facing = side ? 0 : 2;
-    cut = meaning == Side::only ? -slack : -2, least = meaning == Side::only ? slack : 0.1f;
+    cut = meaning == Side::only ? -slack : -2;
+    least = meaning == Side::only ? slack : 0.1f;
   }
 };
 

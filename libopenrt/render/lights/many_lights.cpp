@@ -41,9 +41,11 @@ bool place(const RenderScene& scene, uint32_t number, Placed& out) {
   out.stretch = 0;
   const auto& m = slot.fromLocal.r;
   for (int i = 0; i < 3; i++) {
-    out.position[i] = m[i][3], out.axis[i] = 0;
+    out.position[i] = m[i][3];
+    out.axis[i] = 0;
     for (int k = 0; k < 3; k++) {
-      out.position[i] += m[i][k] * e.position[k], out.axis[i] += m[i][k] * e.direction[k];
+      out.position[i] += m[i][k] * e.position[k];
+      out.axis[i] += m[i][k] * e.direction[k];
       out.stretch += double(m[i][k]) * m[i][k];
       for (int j = 0; j < 3; j++) gram[k][j] += double(m[i][k]) * m[i][j];
     }
@@ -66,7 +68,8 @@ void measure(const RenderScene& scene, const Placed& p, float distance, Arena& a
   for (int k = 0; k < 3; k++) {
     local[k] = arena.takeZero<float>(lanes);
     light.toLight[k] = arena.takeZero<float>(lanes);
-    light.color[k] = arena.takeZero<float>(lanes), light.ambient[k] = arena.takeZero<float>(lanes);
+    light.color[k] = arena.takeZero<float>(lanes);
+    light.ambient[k] = arena.takeZero<float>(lanes);
     for (uint32_t i = 0; i < lanes; i++) {
       const auto& m = slot.toLocal.r[k];
       local[k][i] = m[3];
@@ -76,7 +79,9 @@ void measure(const RenderScene& scene, const Placed& p, float distance, Arena& a
   const float* const places[3] = {local[0], local[1], local[2]};
   RayCounters counters;
   RtsBatch batch;
-  batch.scene = &scene, batch.arena = &arena, batch.counters = &counters;
+  batch.scene = &scene;
+  batch.arena = &arena;
+  batch.counters = &counters;
   {
     const RunningShader running(*slot.shader.shaderClass);
     slot.shader.shaderClass->illuminate(&scene.host, &batch, slot.shader.params, 2, places, &light);
@@ -90,7 +95,10 @@ void measure(const RenderScene& scene, const Placed& p, float distance, Arena& a
 
 LightBounds boundsOf(const RenderScene& scene, const Placed& p, float distance, Arena& arena) {
   LightBounds b;
-  for (int k = 0; k < 3; k++) b.low[k] = b.high[k] = p.position[k], b.axis[k] = p.axis[k];
+  for (int k = 0; k < 3; k++) {
+    b.low[k] = b.high[k] = p.position[k];
+    b.axis[k] = p.axis[k];
+  }
   b.cosineNormals = p.similar && p.extent.cosine > -1 ? std::min(p.extent.cosine, 1.0f) : -1;
   b.cosineBeyond = 1; // light leaves within the cone alone
   const double reach = double(p.extent.radius) * p.stretch;
@@ -104,7 +112,8 @@ LightBounds boundsOf(const RenderScene& scene, const Placed& p, float distance, 
   const double mean =
       double(p.extent.power) / solidAngle / M_PI * p.stretch * p.stretch; // intensity in units of the light's space
   const double falling = std::max((seen[0] - flat) * near * near, flat > 0 ? 0 : mean);
-  b.intensity = float(std::min(falling, 1e30)), b.irradiance = float(std::min(flat, 1e30));
+  b.intensity = float(std::min(falling, 1e30));
+  b.irradiance = float(std::min(flat, 1e30));
   return b;
 }
 

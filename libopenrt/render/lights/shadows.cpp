@@ -25,9 +25,16 @@ ShadowRays makeRays(RtsBatch& batch, const uint8_t* wanted, const RtsIlluminatio
     // The facet faces away, the smooth surface does not: the ray starts on the smooth surface, or behind where it is flat.
     // Light that comes through the surface (2) arrives from behind.
     const bool away = g[0] * l[0] + g[1] * l[1] + g[2] * l[2] < 0;
-    if (away && (wanted[i] == 2 || !liftToSmooth(*batch.scene, *batch.points, i, p))) g[0] = -g[0], g[1] = -g[1], g[2] = -g[2];
+    if (away && (wanted[i] == 2 || !liftToSmooth(*batch.scene, *batch.points, i, p))) {
+      g[0] = -g[0];
+      g[1] = -g[1];
+      g[2] = -g[2];
+    }
     offsetPoint(p, g, batch.points->error[i], origin);
-    for (int k = 0; k < 3; k++) s.rays.org[k][n] = origin[k], s.rays.dir[k][n] = l[k];
+    for (int k = 0; k < 3; k++) {
+      s.rays.org[k][n] = origin[k];
+      s.rays.dir[k][n] = l[k];
+    }
     s.rays.tnear[n] = 0;
     s.rays.tfar[n] = batch.directional ? std::numeric_limits<float>::infinity() : batch.reach[i] * (1 - 0x1p-20f);
     s.lane[n++] = i;
@@ -37,7 +44,9 @@ ShadowRays makeRays(RtsBatch& batch, const uint8_t* wanted, const RtsIlluminatio
 }
 
 void scaleColor(float* const color[3], uint32_t lane, float r, float g, float b) {
-  color[0][lane] *= r, color[1][lane] *= g, color[2][lane] *= b;
+  color[0][lane] *= r;
+  color[1][lane] *= g;
+  color[2][lane] *= b;
 }
 
 // Keeps the rays whose flag is 0.
@@ -45,8 +54,12 @@ void compact(ShadowRays& s, const uint8_t* drop) {
   uint32_t n = 0;
   for (uint32_t i = 0; i < s.rays.count; i++) {
     if (drop[i]) continue;
-    for (int k = 0; k < 3; k++) s.rays.org[k][n] = s.rays.org[k][i], s.rays.dir[k][n] = s.rays.dir[k][i];
-    s.rays.tnear[n] = s.rays.tnear[i], s.rays.tfar[n] = s.rays.tfar[i];
+    for (int k = 0; k < 3; k++) {
+      s.rays.org[k][n] = s.rays.org[k][i];
+      s.rays.dir[k][n] = s.rays.dir[k][i];
+    }
+    s.rays.tnear[n] = s.rays.tnear[i];
+    s.rays.tfar[n] = s.rays.tfar[i];
     s.lane[n++] = s.lane[i];
   }
   s.rays.count = n;

@@ -52,17 +52,23 @@ void SkySampler::measure(const RenderScene& scene, std::vector<float>& cells) co
   std::vector<double> turn(2 * size_t(n));
   for (uint32_t i = 0; i < n; i++) {
     const double phi = 2 * M_PI * (i / 4 + (i / 2 % 2 ? 0.75 : 0.25)) / columns_;
-    turn[2 * i] = std::cos(phi), turn[2 * i + 1] = std::sin(phi);
+    turn[2 * i] = std::cos(phi);
+    turn[2 * i + 1] = std::sin(phi);
   }
   RayCounters counters;
   for (uint32_t row = 0; row < rows_; row++) {
     ArenaScope scope(arena);
     RtsBatch batch;
-    batch.scene = &scene, batch.arena = &arena, batch.counters = &counters;
+    batch.scene = &scene;
+    batch.arena = &arena;
+    batch.counters = &counters;
     const double theta[2] = {M_PI * (row + 0.25) / rows_, M_PI * (row + 0.75) / rows_};
     const double sine[2] = {std::sin(theta[0]), std::sin(theta[1])}, cosine[2] = {std::cos(theta[0]), std::cos(theta[1])};
-    for (uint32_t i = 0; i < n; i++)
-      d[0][i] = float(sine[i % 2] * turn[2 * i]), d[1][i] = float(cosine[i % 2]), d[2][i] = float(sine[i % 2] * turn[2 * i + 1]);
+    for (uint32_t i = 0; i < n; i++) {
+      d[0][i] = float(sine[i % 2] * turn[2 * i]);
+      d[1][i] = float(cosine[i % 2]);
+      d[2][i] = float(sine[i % 2] * turn[2 * i + 1]);
+    }
     for (auto& a : rgba) std::fill_n(a, n, 0.0f);
     const float* directions[3] = {d[0], d[1], d[2]};
     {
@@ -82,7 +88,8 @@ void SkySampler::measure(const RenderScene& scene, std::vector<float>& cells) co
 
 bool SkySampler::shines(const RenderScene& scene) {
   SkySampler coarse;
-  coarse.columns_ = 64, coarse.rows_ = 8; // four places in each
+  coarse.columns_ = 64;
+  coarse.rows_ = 8; // four places in each
   std::vector<float> cells(size_t(coarse.columns_) * coarse.rows_);
   coarse.measure(scene, cells);
   return std::any_of(cells.begin(), cells.end(), [](float mean) { return mean > 0; });
@@ -91,7 +98,8 @@ bool SkySampler::shines(const RenderScene& scene) {
 SkySampler::SkySampler(const RenderScene& scene) {
   const ShaderSlot& environment = scene.environment.shader;
   if (!environment.shaderClass || !environment.shaderClass->miss) return;
-  columns_ = columnsFor(scene), rows_ = columns_ / 2;
+  columns_ = columnsFor(scene);
+  rows_ = columns_ / 2;
   std::vector<float> cells(size_t(columns_) * rows_);
   measure(scene, cells);
   for (const float mean : cells) brightest_ = std::max(brightest_, double(mean));
@@ -138,7 +146,9 @@ float SkySampler::sample(double u, double v, float direction[3]) const {
   const double top = std::cos(M_PI * row / rows_), bottom = std::cos(M_PI * (row + 1) / rows_);
   const double y = top + (bottom - top) * down, phi = 2 * M_PI * (column + along) / columns_;
   const double s = std::sqrt(std::max(0.0, 1 - y * y));
-  direction[0] = float(s * std::cos(phi)), direction[1] = float(y), direction[2] = float(s * std::sin(phi));
+  direction[0] = float(s * std::cos(phi));
+  direction[1] = float(y);
+  direction[2] = float(s * std::sin(phi));
   return cellDensity(row, column);
 }
 

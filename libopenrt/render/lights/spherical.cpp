@@ -11,7 +11,9 @@ namespace {
 double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 void cross(const double a[3], const double b[3], double out[3]) {
-  out[0] = a[1] * b[2] - a[2] * b[1], out[1] = a[2] * b[0] - a[0] * b[2], out[2] = a[0] * b[1] - a[1] * b[0];
+  out[0] = a[1] * b[2] - a[2] * b[1];
+  out[1] = a[2] * b[0] - a[0] * b[2];
+  out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
 bool normalize(double v[3]) {
@@ -36,7 +38,8 @@ void aboutAxis(const double axis[3], double below, double turn, double out[3]) {
 SphericalTriangle::SphericalTriangle(const float corner[3][3], const float eye[3]) {
   double a[3], b[3];
   for (int k = 0; k < 3; k++) {
-    a[k] = double(corner[1][k]) - corner[0][k], b[k] = double(corner[2][k]) - corner[0][k];
+    a[k] = double(corner[1][k]) - corner[0][k];
+    b[k] = double(corner[2][k]) - corner[0][k];
     for (int c = 0; c < 3; c++) corner_[c][k] = double(corner[c][k]) - eye[k];
   }
   cross(a, b, normal_);
@@ -121,7 +124,10 @@ bool SphericalTriangle::atRim(const double direction[3], double distance) const 
   for (int c = 0; c < 3; c++) {
     const double *from = corner_[(c + 1) % 3], *to = corner_[(c + 2) % 3];
     double edge[3], way[3], turn[3];
-    for (int k = 0; k < 3; k++) edge[k] = to[k] - from[k], way[k] = place[k] - from[k];
+    for (int k = 0; k < 3; k++) {
+      edge[k] = to[k] - from[k];
+      way[k] = place[k] - from[k];
+    }
     cross(edge, way, turn);
     // dot(turn, normal) / |normal| is the distance from the edge times its length; a turn of the ray moves the place by more the
     // flatter it meets the plane.
@@ -135,7 +141,8 @@ SphericalEllipsoid::SphericalEllipsoid(const float toLocal[3][4], const float to
   for (int i = 0; i < 3; i++) {
     eye_[i] = toLocal[i][3];
     for (int k = 0; k < 3; k++) {
-      toLocal_[i][k] = toLocal[i][k], toRender_[i][k] = toRender[i][k];
+      toLocal_[i][k] = toLocal[i][k];
+      toRender_[i][k] = toRender[i][k];
       eye_[i] += double(toLocal[i][k]) * eye[k];
     }
   }

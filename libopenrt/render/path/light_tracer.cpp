@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "render/surface/scatter.h"
 #include "render/lights/shadows.h"
+#include "render/surface/scatter.h"
 #include "render/surface/ways.h"
 #include "shading/running.h"
 
@@ -62,7 +62,9 @@ void LightTracer::begin(uint32_t firstPath, uint32_t n) {
   for (uint32_t i = 0; i < n; i++) {
     const RayState state{.path = i};
     float pick[2], where[2], towards[2];
-    sampleAt(state, Pair::which, pick), sampleAt(state, Pair::place, where), sampleAt(state, Pair::aim, towards);
+    sampleAt(state, Pair::which, pick);
+    sampleAt(state, Pair::place, where);
+    sampleAt(state, Pair::aim, towards);
     starts_.push_back(sources_.begin(scene_, pick[0] + pick[1] * 0x1p-24, where, towards));
     const LightSources::Start& start = starts_.back();
     if (!(start.weight > 0) || !std::isfinite(start.weight)) continue;
@@ -85,8 +87,12 @@ void LightTracer::load(uint32_t n) {
   rays_.count = n;
   for (uint32_t i = 0; i < padded(n); i++) {
     const QueuedRay& ray = queue_[std::min(i, n - 1)];
-    for (int k = 0; k < 3; k++) rays_.org[k][i] = ray.origin[k], rays_.dir[k][i] = ray.direction[k];
-    rays_.tnear[i] = 0, rays_.tfar[i] = std::numeric_limits<float>::infinity();
+    for (int k = 0; k < 3; k++) {
+      rays_.org[k][i] = ray.origin[k];
+      rays_.dir[k][i] = ray.direction[k];
+    }
+    rays_.tnear[i] = 0;
+    rays_.tfar[i] = std::numeric_limits<float>::infinity();
     states_[i] = ray.state;
   }
 }
@@ -160,7 +166,8 @@ void LightTracer::lampFlux(const Points& points, const LightSources::Start& star
     const float* m = light.toLocal.r[k];
     std::fill_n(local[k], lanes, m[0] * at[0] + m[1] * at[1] + m[2] * at[2] + m[3]);
     out.toLight[k] = arena_.takeZero<float>(lanes);
-    out.color[k] = arena_.takeZero<float>(lanes), out.ambient[k] = arena_.takeZero<float>(lanes);
+    out.color[k] = arena_.takeZero<float>(lanes);
+    out.ambient[k] = arena_.takeZero<float>(lanes);
   }
   RtsBatch batch = makeBatch(points);
   const float* places[3] = {local[0], local[1], local[2]};
@@ -214,7 +221,8 @@ void LightTracer::scatter(const Points& points, const uint32_t* order, const Rts
   RtsSurface surface{};
   for (auto& e : surface.emission) e = arena_.takeZero<float>(padded(n));
   RtsBatch batch = makeBatch(points);
-  batch.states = states_, batch.order = order;
+  batch.states = states_;
+  batch.order = order;
   {
     const RunningShader running(shaderClass);
     shaderClass.surface(&scene_.host, &batch, &hits, &surface);
@@ -239,7 +247,8 @@ void LightTracer::scatter(const Points& points, const uint32_t* order, const Rts
     for (uint32_t i = 0; i < n; i++) {
       float uv[2];
       sampleAt(states_[order[i]], Pair::first + Pair::perLevel * level_ + Use::direction + (l ? hash(l, 0x6c6f6265u) : 0), uv);
-      square[0][i] = uv[0], square[1][i] = uv[1];
+      square[0][i] = uv[0];
+      square[1][i] = uv[1];
     }
     auto* made = new (arena_.take<LobeSamples>(1)) LobeSamples(arena_, n, &batch);
     made->sample(batch.lobes[l], hits, n, all, square);
@@ -315,18 +324,24 @@ void LightTracer::connect(const RtsBatch& batch, const uint32_t* hitNumbers, uin
   float *local[3], *uv[2], *towards[3];
   RtsProjection seen{};
   for (int k = 0; k < 3; k++) {
-    local[k] = arena_.take<float>(size), towards[k] = arena_.take<float>(size), seen.toEye[k] = arena_.takeZero<float>(size);
+    local[k] = arena_.take<float>(size);
+    towards[k] = arena_.take<float>(size);
+    seen.toEye[k] = arena_.takeZero<float>(size);
     const float* m = scene_.camera.toLocal.r[k];
     for (uint32_t i = 0; i < size; i++) {
       const uint32_t h = hitNumbers[std::min(i, n - 1)];
       local[k][i] = m[0] * hits.position[0][h] + m[1] * hits.position[1][h] + m[2] * hits.position[2][h] + m[3];
     }
   }
-  for (int k = 0; k < 2; k++) uv[k] = arena_.take<float>(size), seen.xy[k] = arena_.takeZero<float>(size);
+  for (int k = 0; k < 2; k++) {
+    uv[k] = arena_.take<float>(size);
+    seen.xy[k] = arena_.takeZero<float>(size);
+  }
   for (uint32_t i = 0; i < size; i++) {
     float at[2];
     sampleAt(states_[batch.order[hitNumbers[std::min(i, n - 1)]]], Pair::first + Pair::perLevel * level_ + Use::lens, at);
-    uv[0][i] = at[0], uv[1][i] = at[1];
+    uv[0][i] = at[0];
+    uv[1][i] = at[1];
   }
   seen.weight = arena_.takeZero<float>(size);
   const float *place[3] = {local[0], local[1], local[2]}, *square[2] = {uv[0], uv[1]};
@@ -372,7 +387,10 @@ void LightTracer::connect(const RtsBatch& batch, const uint32_t* hitNumbers, uin
     const float way[3] = {towards[0][i], towards[1][i], towards[2][i]};
     float origin[3];
     liftPoint(points, h, way, origin);
-    for (int k = 0; k < 3; k++) rays.rays.org[k][count] = origin[k], rays.rays.dir[k][count] = towards[k][i];
+    for (int k = 0; k < 3; k++) {
+      rays.rays.org[k][count] = origin[k];
+      rays.rays.dir[k][count] = towards[k][i];
+    }
     rays.rays.tnear[count] = 0;
     rays.rays.tfar[count] = seen.parallel ? std::numeric_limits<float>::infinity() : distance[i];
     rays.lane[count++] = i;

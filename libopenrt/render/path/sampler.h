@@ -65,7 +65,9 @@ class PairSampler {
  public:
   PairSampler(uint32_t pixel, uint32_t pair, uint32_t seed) {
     const uint32_t key = hash(hash(pixel, seed), pair);
-    order_ = hash(key, 0x68bc21ebu), x_ = hash(key, 0x02e5be93u), y_ = hash(key, 0x967a889bu);
+    order_ = hash(key, 0x68bc21ebu);
+    x_ = hash(key, 0x02e5be93u);
+    y_ = hash(key, 0x967a889bu);
   }
   void operator()(uint32_t index, float& x, float& y) const {
     const uint32_t shuffled = reverseBits(scrambleReversed(reverseBits(index), order_)); // decorrelates the pairs of a pixel

@@ -24,7 +24,8 @@ TileRenderer::TileRenderer(const RenderScene& scene)
 void TileRenderer::begin(const Tile& tile) {
   if (tile == tile_) return;
   tile_ = tile;
-  pixels_.clear(), places_.clear();
+  pixels_.clear();
+  places_.clear();
   for (uint32_t by = tile.y0; by < tile.y1; by += 4)
     for (uint32_t bx = tile.x0; bx < tile.x1; bx += 4)
       for (uint32_t y = by; y < std::min(by + 4, tile.y1); y++)
@@ -39,7 +40,11 @@ bool TileRenderer::render(const Tile& tile, const Replicates& replicates, bool c
                           std::span<PixelSums> sums, const std::atomic<bool>& stop) {
   begin(tile);
   ledger_ = {};
-  replicates_ = replicates, centred_ = centred, leaf_ = first, sums_ = sums, stop_ = &stop;
+  replicates_ = replicates;
+  centred_ = centred;
+  leaf_ = first;
+  sums_ = sums;
+  stop_ = &stop;
   ledger_.samples += samples;
   const uint32_t most = std::clamp(std::bit_floor(pathsInFlight / uint32_t(pixels_.size())), 1u, largestWave);
   for (uint32_t s = first, end = first + samples; s < end;) {
@@ -59,7 +64,9 @@ void TileRenderer::allocate(Paths& paths, uint32_t n, bool film) {
   const auto optional = [&](uint32_t channel) { return film && has(channel) ? arena_.takeZero<float>(size) : nullptr; };
   for (int k = 0; k < 3; k++) {
     paths.radiance[k] = arena_.takeZero<float>(size);
-    paths.normal[k] = optional(RT_NORMAL), paths.albedo[k] = optional(RT_ALBEDO), paths.position[k] = optional(RT_POSITION);
+    paths.normal[k] = optional(RT_NORMAL);
+    paths.albedo[k] = optional(RT_ALBEDO);
+    paths.position[k] = optional(RT_POSITION);
   }
   paths.alpha = arena_.takeZero<float>(size);
   paths.depth = optional(RT_DEPTH);
@@ -74,7 +81,8 @@ void TileRenderer::allocate(Paths& paths, uint32_t n, bool film) {
 void TileRenderer::wave(uint32_t firstSample, uint32_t samples) {
   ArenaScope scope(arena_);
   const uint32_t n = uint32_t(pixels_.size()) * samples;
-  firstSample_ = firstSample, samples_ = samples;
+  firstSample_ = firstSample;
+  samples_ = samples;
   Paths paths;
   paths.rays.allocate(arena_, n);
   allocate(paths, n, true);
@@ -112,7 +120,10 @@ void TileRenderer::loadRays(Paths& paths, size_t begin, uint32_t n) {
   paths.rays.count = n;
   for (uint32_t i = 0; i < padded(n); i++) {
     const QueuedRay& ray = queue_[begin + std::min(i, n - 1)];
-    for (int k = 0; k < 3; k++) paths.rays.org[k][i] = ray.origin[k], paths.rays.dir[k][i] = ray.direction[k];
+    for (int k = 0; k < 3; k++) {
+      paths.rays.org[k][i] = ray.origin[k];
+      paths.rays.dir[k][i] = ray.direction[k];
+    }
     paths.rays.tnear[i] = 0;
     paths.rays.tfar[i] = std::numeric_limits<float>::infinity();
     paths.state[i] = ray.state;
@@ -138,7 +149,9 @@ void TileRenderer::traceWave(Paths& paths) {
 
 RtsBatch TileRenderer::makeBatch() {
   RtsBatch batch;
-  batch.scene = &scene_, batch.arena = &arena_, batch.counters = &counters_;
+  batch.scene = &scene_;
+  batch.arena = &arena_;
+  batch.counters = &counters_;
   batch.tracer = this;
   return batch;
 }
@@ -146,7 +159,8 @@ RtsBatch TileRenderer::makeBatch() {
 RtsBatch TileRenderer::makeBatch(const Paths& paths, const Points& points, const uint32_t* order) {
   RtsBatch batch = makeBatch();
   batch.points = &points;
-  batch.states = paths.state, batch.order = order;
+  batch.states = paths.state;
+  batch.order = order;
   return batch;
 }
 
@@ -156,7 +170,10 @@ void TileRenderer::makeCameraRays(Paths& paths, uint32_t firstSample) {
   ArenaScope scope(arena_);
   float* xy[2] = {arena_.take<float>(size), arena_.take<float>(size)};
   RtsRays local;
-  for (int k = 0; k < 3; k++) local.origin[k] = arena_.takeZero<float>(size), local.direction[k] = arena_.takeZero<float>(size);
+  for (int k = 0; k < 3; k++) {
+    local.origin[k] = arena_.takeZero<float>(size);
+    local.direction[k] = arena_.takeZero<float>(size);
+  }
   uint32_t lane = 0;
   for (uint32_t pixel : pixels_) {
     PairSampler sampler(pixel, 0, replicates_.seedOf(firstSample));
@@ -166,10 +183,14 @@ void TileRenderer::makeCameraRays(Paths& paths, uint32_t firstSample) {
       const uint32_t index = replicates_.indexOf(sample);
       if (index == 0 && sample > firstSample) sampler = PairSampler(pixel, 0, replicates_.seedOf(sample));
       if (!centred_) sampler(index, dx, dy);
-      xy[0][lane] = x + dx, xy[1][lane] = y + dy;
+      xy[0][lane] = x + dx;
+      xy[1][lane] = y + dy;
     }
   }
-  for (; lane < size; lane++) xy[0][lane] = xy[0][n - 1], xy[1][lane] = xy[1][n - 1];
+  for (; lane < size; lane++) {
+    xy[0][lane] = xy[0][n - 1];
+    xy[1][lane] = xy[1][n - 1];
+  }
   for (uint32_t i = 0; i < size; i++) {
     paths.rays.tnear[i] = 0;
     paths.rays.tfar[i] = std::numeric_limits<float>::infinity();
@@ -323,7 +344,10 @@ void TileRenderer::gather(const Points& points, const RtsShading& shaded, const 
             .channel = ray.channel,
             .branch = ray.branch,
             .media = ray.media};
-    for (int k = 0; k < 3; k++) on.direction[k] = points.hits.direction[k][i], on.weight[k] = transmission[k];
+    for (int k = 0; k < 3; k++) {
+      on.direction[k] = points.hits.direction[k][i];
+      on.weight[k] = transmission[k];
+    }
     push(points, i, order[i], on, paths);
   }
 }

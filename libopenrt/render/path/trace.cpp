@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "render/lights/shadows.h"
 #include "render/path/paths.h"
 #include "render/path/sampler.h"
-#include "render/lights/shadows.h"
 #include "render/surface/surfaces.h"
 #include "shading/running.h"
 
@@ -34,8 +34,12 @@ Rays raysOf(const RtsBatch& batch, const RtsRequest& request, uint32_t* to) {
     } else {
       liftPoint(*batch.points, hit, d, origin);
     }
-    for (int k = 0; k < 3; k++) rays.org[k][n] = origin[k], rays.dir[k][n] = d[k];
-    rays.tnear[n] = 0, rays.tfar[n] = request.length ? request.length[i] : infinite;
+    for (int k = 0; k < 3; k++) {
+      rays.org[k][n] = origin[k];
+      rays.dir[k][n] = d[k];
+    }
+    rays.tnear[n] = 0;
+    rays.tfar[n] = request.length ? request.length[i] : infinite;
     to[n++] = i;
   }
   rays.count = n;
@@ -75,22 +79,26 @@ void TileRenderer::trace(RtsBatch& batch, const RtsRequest& request, float* cons
     root[i] = root_ ? root_[parent.path] : parent.path;
     RayState& state = paths.state[i] = RayState{.path = i};
     state.branch = hash(parent.branch + ++batch.requests[hit], level_ + 1);
-    state.media = parent.media, state.channel = parent.channel;
+    state.media = parent.media;
+    state.channel = parent.channel;
     if (batch.points) paths.travelled[i] = state.travelled = batch.points->hits.distance[hit];
   }
   for (uint32_t i = n; i < padded(n); i++) paths.state[i] = paths.state[n - 1];
   const uint32_t* const outerRoot = root_;
   const uint32_t outerLevel = level_;
   RayQueue outerQueue, outerNext;
-  outerQueue.swap(queue_), outerNext.swap(next_);
+  outerQueue.swap(queue_);
+  outerNext.swap(next_);
   root_ = root;
   nesting_++;
   level_ += batch.points ? 1 : 0;
   (batch.points ? counters_.secondary : counters_.camera) += n;
   follow(paths, n);
   nesting_--;
-  root_ = outerRoot, level_ = outerLevel;
-  outerQueue.swap(queue_), outerNext.swap(next_);
+  root_ = outerRoot;
+  level_ = outerLevel;
+  outerQueue.swap(queue_);
+  outerNext.swap(next_);
   for (uint32_t i = 0; i < n; i++) {
     for (int k = 0; k < 3; k++)
       if (rgba[k]) rgba[k][to[i]] = paths.radiance[k][i];
@@ -145,8 +153,12 @@ void TileRenderer::askTransport(Paths& paths) {
   float* rgba[4];
   for (auto& a : rgba) a = arena_.takeZero<float>(padded(n));
   RtsRequest request{};
-  request.count = n, request.hit = arena_.takeNumbers(n);
-  for (int k = 0; k < 3; k++) request.origin[k] = paths.rays.org[k], request.direction[k] = paths.rays.dir[k];
+  request.count = n;
+  request.hit = arena_.takeNumbers(n);
+  for (int k = 0; k < 3; k++) {
+    request.origin[k] = paths.rays.org[k];
+    request.direction[k] = paths.rays.dir[k];
+  }
   RtsBatch batch = makeBatch();
   batch.rays = n;
   {

@@ -63,9 +63,10 @@ const char* firstOf(const SceneContents& contents, uint32_t bits) {
 std::string reasonOf(const Choice& row, const SceneContents& contents) {
   std::string text;
   for (const char* c = row.reason; *c; c++)
-    if (const bool subject = !std::strncmp(c, "{}", 2); subject || !std::strncmp(c, "[]", 2))
-      text += firstOf(contents, subject ? row.all : row.any), c++;
-    else
+    if (const bool subject = !std::strncmp(c, "{}", 2); subject || !std::strncmp(c, "[]", 2)) {
+      text += firstOf(contents, subject ? row.all : row.any);
+      c++;
+    } else
       text += *c;
   return text;
 }

@@ -84,7 +84,10 @@ void checkLobe(RtsLobe& lobe, const RtsHits& hits, uint8_t* bad) {
       if (std::isfinite(values[i])) continue;
       bad[i] = 1;
       values[i] = 0;
-      for (int k = 0; k < 3; k++) lobe.weight[k][i] = 0, lobe.normal[k][i] = hits.normal[k][i];
+      for (int k = 0; k < 3; k++) {
+        lobe.weight[k][i] = 0;
+        lobe.normal[k][i] = hits.normal[k][i];
+      }
     }
   }
 }
@@ -98,7 +101,10 @@ void clear(std::initializer_list<float*> arrays, uint32_t n, uint8_t* bad) {
   for (float* values : arrays) {
     if (!values || allFinite(values, n)) continue;
     for (uint32_t i = 0; i < n; i++)
-      if (!std::isfinite(values[i])) values[i] = 0, bad[i] = 1;
+      if (!std::isfinite(values[i])) {
+        values[i] = 0;
+        bad[i] = 1;
+      }
   }
 }
 

@@ -131,7 +131,8 @@ void evaluateGlossy(const RtsLobe* lobe, const RtsHits* hits, uint32_t n, const 
   for (uint32_t i = 0; i < n; i++) {
     const Frame frame(*lobe, hit[i]);
     const Vec v = toEye(frame, *hits, hit[i]), w = towards(frame, direction, i);
-    put(value, i, 0), density[i] = 0;
+    put(value, i, 0);
+    density[i] = 0;
     if (!(v.z > 0) || !(w.z > 0)) continue;
     const Glossy g(*lobe, hit[i]);
     const Vec h = unit(v + w);
@@ -146,7 +147,9 @@ void sampleGlossy(const RtsLobe* lobe, const RtsHits* hits, uint32_t n, const ui
   for (uint32_t i = 0; i < n; i++) {
     const Frame frame(*lobe, hit[i]);
     const Vec v = toEye(frame, *hits, hit[i]);
-    put(quotient, i, 0), put(direction, i, 0), density[i] = 0;
+    put(quotient, i, 0);
+    put(direction, i, 0);
+    density[i] = 0;
     if (!(v.z > 0)) continue;
     const Glossy g(*lobe, hit[i]);
     const Vec h = g.facets.visible(v, square[0][i], square[1][i]);
@@ -195,7 +198,8 @@ void evaluateBoundary(const RtsLobe* lobe, const RtsHits* hits, uint32_t n, cons
     const Frame frame(*lobe, hit[i]);
     double f, p;
     Boundary(*lobe, hit[i]).answer(toEye(frame, *hits, hit[i]), towards(frame, direction, i), f, p);
-    put(value, i, f), density[i] = float(p);
+    put(value, i, f);
+    density[i] = float(p);
   }
 }
 
@@ -204,7 +208,9 @@ void sampleBoundary(const RtsLobe* lobe, const RtsHits* hits, uint32_t n, const 
   for (uint32_t i = 0; i < n; i++) {
     const Frame frame(*lobe, hit[i]);
     const Vec v = toEye(frame, *hits, hit[i]);
-    put(quotient, i, 0), put(direction, i, 0), density[i] = 0;
+    put(quotient, i, 0);
+    put(direction, i, 0);
+    density[i] = 0;
     if (!(v.z > 0)) continue;
     const Boundary b(*lobe, hit[i]);
     const Vec h = b.facets.visible(v, square[0][i], square[1][i]);
@@ -275,7 +281,10 @@ template <class F> void callCustom(const RtsBatch* batch, const F& f) {
 void checkCustom(const RtsBatch* batch, std::initializer_list<float*> arrays, uint32_t n) {
   uint64_t bad = 0;
   for (float* a : arrays)
-    for (uint32_t i = 0; i < n; i++) bad += !std::isfinite(a[i]), a[i] = checked(a[i]);
+    for (uint32_t i = 0; i < n; i++) {
+      bad += !std::isfinite(a[i]);
+      a[i] = checked(a[i]);
+    }
   const RtsClass* shaderClass = bad ? classOf(batch) : nullptr;
   if (shaderClass) batch->counters->faults.add(*shaderClass, Fault::notFinite, bad);
 }

@@ -41,7 +41,9 @@ bool normalize(float v[3]) {
   const float s = 1 / largest; // first into range: squares neither overflow nor vanish
   const float x = v[0] * s, y = v[1] * s, z = v[2] * s;
   const float k = 1 / std::sqrt(x * x + y * y + z * z);
-  v[0] = x * k, v[1] = y * k, v[2] = z * k;
+  v[0] = x * k;
+  v[1] = y * k;
+  v[2] = z * k;
   return true;
 }
 
@@ -72,7 +74,11 @@ void triangle(const Record& r, const RayHits& hits, uint32_t lane, Local& h) {
     applyBound(r.toRender, p, e, h.p, h.bound);
     apply(r.kernelNormal, kernel, h.ng);
   } else {
-    for (int k = 0; k < 3; k++) h.p[k] = p[k] * r.scale, h.bound[k] = e[k] * r.scale, h.ng[k] = kernel[k];
+    for (int k = 0; k < 3; k++) {
+      h.p[k] = p[k] * r.scale;
+      h.bound[k] = e[k] * r.scale;
+      h.ng[k] = kernel[k];
+    }
   }
   if (r.normals) {
     float n[3];
@@ -92,10 +98,17 @@ void sphere(const Record& r, const Rays& rays, const RayHits& hits, uint32_t lan
     bound[k] = gammaOf(8) * (std::fabs(rays.org[k][lane]) + std::fabs(step));
   }
   applyBound(r.fromRender, p, none, l, ignored);
-  if (!normalize(l)) l[0] = 0, l[1] = 0, l[2] = 1;
+  if (!normalize(l)) {
+    l[0] = 0;
+    l[1] = 0;
+    l[2] = 1;
+  }
   const float e[3] = {gammaOf(5), gammaOf(5), gammaOf(5)};
   if (metInDouble(r)) // t is right to its last bit: near to the ray's origin the place is known far better than the radius
-    for (int k = 0; k < 3; k++) h.p[k] = p[k], h.bound[k] = bound[k];
+    for (int k = 0; k < 3; k++) {
+      h.p[k] = p[k];
+      h.bound[k] = bound[k];
+    }
   else
     applyBound(r.toRender, l, e, h.p, h.bound);
   apply(r.normalMatrix, l, h.ng);
@@ -240,14 +253,22 @@ Points makePoints(const RenderScene& scene, const Rays& rays, const RayHits& hit
   RtsHits& to = points.hits;
   to.count = n;
   for (int k = 0; k < 3; k++) {
-    to.position[k] = out.position[k], to.direction[k] = out.direction[k];
-    to.geometric[k] = out.geometric[k], to.normal[k] = out.normal[k];
+    to.position[k] = out.position[k];
+    to.direction[k] = out.direction[k];
+    to.geometric[k] = out.geometric[k];
+    to.normal[k] = out.normal[k];
   }
-  to.uv[0] = out.uv[0], to.uv[1] = out.uv[1];
+  to.uv[0] = out.uv[0];
+  to.uv[1] = out.uv[1];
   for (int k = 0; k < 4; k++) to.color[k] = out.color[k];
-  to.distance = out.distance, to.segment = out.segment, to.flags = out.flags, to.params = out.params;
-  points.error = out.error, points.record = out.record;
-  points.rayHits = &hits, points.order = order;
+  to.distance = out.distance;
+  to.segment = out.segment;
+  to.flags = out.flags;
+  to.params = out.params;
+  points.error = out.error;
+  points.record = out.record;
+  points.rayHits = &hits;
+  points.order = order;
   return points;
 }
 

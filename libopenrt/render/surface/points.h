@@ -67,7 +67,8 @@ inline void offsetPoint(const float p[3], const float n[3], float error, float o
 inline void liftPoint(const Points& points, uint32_t i, const float direction[3], float out[3]) {
   float p[3], n[3], towards = 0;
   for (int k = 0; k < 3; k++) {
-    p[k] = points.hits.position[k][i], n[k] = points.hits.geometric[k][i];
+    p[k] = points.hits.position[k][i];
+    n[k] = points.hits.geometric[k][i];
     towards += n[k] * direction[k];
   }
   const float side = towards > 0 ? 1.0f : -1.0f;

@@ -8,9 +8,9 @@
 
 #include <algorithm>
 
+#include "render/lights/shadows.h"
 #include "render/path/paths.h"
 #include "render/path/sampler.h"
-#include "render/lights/shadows.h"
 #include "render/surface/surfaces.h"
 #include "render/surface/ways.h"
 #include "shading/running.h"
@@ -51,7 +51,8 @@ void TileRenderer::addLights(RtsBatch& batch, const RtsHits& hits, float* const 
         float side = 0, sum = 0;
         for (int k = 0; k < 3; k++) {
           response[k][i] += w[k] *= answers.value[k][i];
-          sum += w[k], side += lobe.normal[k][i] * from.toLight[k][i];
+          sum += w[k];
+          side += lobe.normal[k][i] * from.toLight[k][i];
         }
         if (sum > 0) wanted[i] = side > 0 ? 1 : 2;
       }
@@ -121,7 +122,10 @@ void TileRenderer::scatterRange(Paths& paths, const Points& points, const Bucket
     for (uint32_t l = 0; l < batch.lobeCount; l++) {
       float w[3];
       if (scatteringOf(batch.lobes[l]) || !weightAt(batch.lobes[l], i, w)) continue;
-      for (int k = 0; k < 3; k++) seen[k] += w[k], clear[k] += batch.lobes[l].kind == RTS_LOBE_TRANSPARENT ? w[k] : 0.0f;
+      for (int k = 0; k < 3; k++) {
+        seen[k] += w[k];
+        clear[k] += batch.lobes[l].kind == RTS_LOBE_TRANSPARENT ? w[k] : 0.0f;
+      }
     }
     for (int k = 0; k < 3; k++) {
       if (unseen) seen[k] = clear[k] = 1;
@@ -242,7 +246,8 @@ void TileRenderer::sendOn(const RtsBatch& batch, const Points& points, uint32_t 
               .branch = w == 0 ? ray.branch : hash(ray.branch + w, level_ + 1)};
     float towards = 0;
     for (int k = 0; k < 3; k++) {
-      step.direction[k] = way.direction[k], step.weight[k] = way.weight[k] / kept;
+      step.direction[k] = way.direction[k];
+      step.weight[k] = way.weight[k] / kept;
       towards += points.hits.geometric[k][i] * way.direction[k];
     }
     step.media = towards < 0 && boundaries.crossing ? boundaries.crossing[i].behind : ray.media;

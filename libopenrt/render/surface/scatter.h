@@ -36,7 +36,10 @@ inline double fresnel(double cosine, double eta, double& cosineBehind) {
 // Snell's law in vectors; d towards the surface, n against it.
 inline void refractAt(const float d[3], const float n[3], double eta, double cosine, double cosineBehind, float out[3]) {
   double length = 0, r[3];
-  for (int k = 0; k < 3; k++) r[k] = eta * d[k] + (eta * cosine - cosineBehind) * n[k], length += r[k] * r[k];
+  for (int k = 0; k < 3; k++) {
+    r[k] = eta * d[k] + (eta * cosine - cosineBehind) * n[k];
+    length += r[k] * r[k];
+  }
   const double s = length > 0 ? 1 / std::sqrt(length) : 0; // unit again: errors of a long chain must not grow
   for (int k = 0; k < 3; k++) out[k] = float(r[k] * s);
 }

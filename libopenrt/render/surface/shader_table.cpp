@@ -53,7 +53,9 @@ ShaderTable::ShaderTable(const Scene& scene, const ShaderRegistry& registry, con
     slots->emplace_hint(slots->end(), id, slot);
     make(slot++, registry.find(name->second.name, name->second.library), &values, textureIndex, host);
   }
-  slots_.resize(slot), blocks_.resize(slot), classes_.resize(slot);
+  slots_.resize(slot);
+  blocks_.resize(slot);
+  classes_.resize(slot);
   slotOf_ = std::move(slots);
 }
 
@@ -137,7 +139,10 @@ bool ShaderTable::make(uint32_t number, const RtsClass& shaderClass, const Shade
       block.prepared = &shaderClass;
       if (const char* message = shaderClass.prepare(&host, block.bytes.get())) {
         if (host.log) host.log(&host, 3, (std::string("shader ") + shaderClass.name + ": " + message).c_str());
-        if (number != 0) slots_[number] = slots_[0], blocks_[number] = blocks_[0];
+        if (number != 0) {
+          slots_[number] = slots_[0];
+          blocks_[number] = blocks_[0];
+        }
         return false;
       }
     }

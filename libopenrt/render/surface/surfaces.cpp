@@ -19,16 +19,23 @@ void lookThroughBacks(const RenderScene& scene, Arena& arena, RayCounters& count
   found.allocate(arena, n);
   for (uint32_t i = 0; i < n; i++) {
     const uint32_t lane = lanes[i];
-    for (int k = 0; k < 3; k++) again.org[k][i] = rays.org[k][lane], again.dir[k][i] = rays.dir[k][lane];
-    again.tnear[i] = rays.tnear[lane], again.tfar[i] = rays.tfar[lane];
+    for (int k = 0; k < 3; k++) {
+      again.org[k][i] = rays.org[k][lane];
+      again.dir[k][i] = rays.dir[k][lane];
+    }
+    again.tnear[i] = rays.tnear[lane];
+    again.tfar[i] = rays.tfar[lane];
   }
   counters.secondary += n;
   scene.kernel->intersectFronts(again, maskAll, found);
   for (uint32_t i = 0; i < n; i++) {
     const uint32_t lane = lanes[i];
-    hits.t[lane] = found.t[i], hits.u[lane] = found.u[i], hits.v[lane] = found.v[i];
+    hits.t[lane] = found.t[i];
+    hits.u[lane] = found.u[i];
+    hits.v[lane] = found.v[i];
     for (int k = 0; k < 3; k++) hits.ng[k][lane] = found.ng[k][i];
-    hits.record[lane] = found.record[i], hits.primitive[lane] = found.primitive[i];
+    hits.record[lane] = found.record[i];
+    hits.primitive[lane] = found.primitive[i];
   }
 }
 
@@ -57,8 +64,10 @@ void crossSharedFaces(const RtsBatch& batch, Crossing* crossings) {
       rays.org[k][n] = hits.position[k][i] - reach * hits.direction[k][i];
       rays.dir[k][n] = hits.direction[k][i];
     }
-    rays.tnear[n] = 0, rays.tfar[n] = 2 * reach;
-    own[n] = points.record[i], hit[n++] = i;
+    rays.tnear[n] = 0;
+    rays.tfar[n] = 2 * reach;
+    own[n] = points.record[i];
+    hit[n++] = i;
   }
   if (n == 0) return;
   rays.count = n;
@@ -71,7 +80,8 @@ void crossSharedFaces(const RtsBatch& batch, Crossing* crossings) {
     const uint32_t i = hit[r];
     Crossing& c = crossings[i];
     const Crossing other = cross(c.behind, medium, metFromBehind(scene, rays, found, r), scene.shaders->media());
-    c.behind = other.behind, c.to = mediumOf(c.behind, scene.shaders->media());
+    c.behind = other.behind;
+    c.to = mediumOf(c.behind, scene.shaders->media());
     c.seen = c.from != c.to;
     points.error[i] *= 4; // beyond both
   }

@@ -9,7 +9,10 @@ namespace openrt {
 
 Ways::Ways(const RtsHits& hits, uint32_t hit, const float* eta, uint8_t channel, bool fromLamp)
     : hit_(hit), eta_(eta), channel_(channel), fromLamp_(fromLamp) {
-  for (int k = 0; k < 3; k++) d_[k] = hits.direction[k][hit], g_[k] = hits.geometric[k][hit];
+  for (int k = 0; k < 3; k++) {
+    d_[k] = hits.direction[k][hit];
+    g_[k] = hits.geometric[k][hit];
+  }
 }
 
 void Ways::add(uint32_t number, const RtsLobe& lobe, const LobeSamples* samples) {
@@ -40,8 +43,15 @@ void Ways::add(uint32_t number, const RtsLobe& lobe, const LobeSamples* samples)
 
 Way& Ways::put(const float direction[3], const float w[3], float factor) {
   Way& way = list[count++];
-  for (int k = 0; k < 3; k++) way.direction[k] = direction[k], way.share[k] = way.weight[k] = w[k] * factor;
-  way.density = 0, way.lobe = lobe_, way.channel = channel_, way.bent = true, way.lost = false;
+  for (int k = 0; k < 3; k++) {
+    way.direction[k] = direction[k];
+    way.share[k] = way.weight[k] = w[k] * factor;
+  }
+  way.density = 0;
+  way.lobe = lobe_;
+  way.channel = channel_;
+  way.bent = true;
+  way.lost = false;
   return way;
 }
 

@@ -15,7 +15,11 @@ constexpr double steepest = 85 * std::numbers::pi / 180; // looking up or down w
 
 Vector axis(const Matrix& m, int i) { return {m.x[i][0], m.x[i][1], m.x[i][2]}; }
 Vector eyeOf(const Matrix& m) { return axis(m, 3); }
-void setEye(Matrix& m, const Vector& eye) { m.x[3][0] = eye.x, m.x[3][1] = eye.y, m.x[3][2] = eye.z; }
+void setEye(Matrix& m, const Vector& eye) {
+  m.x[3][0] = eye.x;
+  m.x[3][1] = eye.y;
+  m.x[3][2] = eye.z;
+}
 
 Matrix turned(const Matrix& view, const Vector& about, const Vector& point, double angle) {
   return compose(compose(translation(point), rotation(about, angle)), compose(translation(-point), view));

@@ -25,7 +25,9 @@ Matrix between(const Matrix& a, const Matrix& b, double s) {
   Matrix m = Imath::slerpShortestArc(p, q, s).toMatrix44();
   if (!finite(m)) m = rotationOnly(b);
   const Vector eye = place(a) * (1 - s) + place(b) * s;
-  m.x[3][0] = eye.x, m.x[3][1] = eye.y, m.x[3][2] = eye.z;
+  m.x[3][0] = eye.x;
+  m.x[3][1] = eye.y;
+  m.x[3][2] = eye.z;
   return m;
 }
 

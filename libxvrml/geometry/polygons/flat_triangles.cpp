@@ -61,7 +61,10 @@ class Flips {
     double longest = -1;
     for (int i = 0; i < 3; ++i) {
       const double now = length(t[(i + 2) % 3], t[i]);
-      if (now > longest) longest = now, best = i;
+      if (now > longest) {
+        longest = now;
+        best = i;
+      }
     }
     return {t[best], t[(best + 1) % 3], t[(best + 2) % 3]};
   }

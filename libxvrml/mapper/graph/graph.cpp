@@ -170,7 +170,10 @@ void Graph::drop(ItemId id) {
   known_.erase(item.node.get());
   ration_.give(bytesOfItem);
   if (item.mesh != none) meshes.drop(item.mesh);
-  if (item.number != 0) shapes[item.number] = 0, freeNumbers_.push_back(item.number);
+  if (item.number != 0) {
+    shapes[item.number] = 0;
+    freeNumbers_.push_back(item.number);
+  }
   const int32_t part = item.part; // Objects clears it away
   item = Item();
   item.part = part;
@@ -182,7 +185,10 @@ void Graph::linkParents() {
   size_t links = 0;
   for (const ItemId id : order)
     for (const ItemId child : items[id].children)
-      if (child != 0) ++items[child].parentCount, ++links;
+      if (child != 0) {
+        ++items[child].parentCount;
+        ++links;
+      }
   parents.resize(links);
   uint32_t first = 0;
   for (const ItemId id : order) {

@@ -70,8 +70,13 @@ void Places::inherit(std::vector<Place>& before, const std::vector<int32_t>& chi
     if (to.item != from.item) return false;
     match[now] = then;
     goesOn[size_t(then)] = 1;
-    to.drawn = from.drawn, to.part = from.part, to.instance = from.instance, to.base = from.base;
-    to.light = from.light, to.lightScope = from.lightScope, to.lightMatrix = from.lightMatrix;
+    to.drawn = from.drawn;
+    to.part = from.part;
+    to.instance = from.instance;
+    to.base = from.base;
+    to.light = from.light;
+    to.lightScope = from.lightScope;
+    to.lightMatrix = from.lightMatrix;
     return true;
   };
   if (!before.empty()) take(0, 0);

@@ -79,8 +79,10 @@ void Environment::follow(const Places& places, const Bound& bound) {
   const Matrix fogMatrix = bound.fog ? worldOf(bound.fogPlace) : Matrix();
   const bool others = bound.background != background_ || bound.fog != fog_, turned = matrix != matrix_;
   if (!others && !stale_ && !turned && fogMatrix == fogMatrix_) return;
-  background_ = bound.background, fog_ = bound.fog;
-  matrix_ = matrix, fogMatrix_ = fogMatrix;
+  background_ = bound.background;
+  fog_ = bound.fog;
+  matrix_ = matrix;
+  fogMatrix_ = fogMatrix;
   stale_ = false;
   if (others) clear();
   if (!background_ && !fog_) return;

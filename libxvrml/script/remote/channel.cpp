@@ -50,7 +50,10 @@ bool Channel::send(std::string_view message) {
 Channel::Got Channel::some(char* to, size_t room, Clock::time_point until, size_t& got) {
   for (;;) {
     const ssize_t count = recv(socket_, to, room, until == never ? 0 : MSG_DONTWAIT);
-    if (count > 0) return got = size_t(count), Got::message;
+    if (count > 0) {
+      got = size_t(count);
+      return Got::message;
+    }
     if (count == 0) return Got::closed;
     if (errno == EAGAIN) {
       if (!wait(socket_, POLLIN, until)) return Got::nothing;

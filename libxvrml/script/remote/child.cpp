@@ -45,8 +45,14 @@ bool usable(const fs::path& program, std::string& why) {
 }
 
 struct Actions {
-  Actions() { posix_spawn_file_actions_init(&files), posix_spawnattr_init(&attributes); }
-  ~Actions() { posix_spawn_file_actions_destroy(&files), posix_spawnattr_destroy(&attributes); }
+  Actions() {
+    posix_spawn_file_actions_init(&files);
+    posix_spawnattr_init(&attributes);
+  }
+  ~Actions() {
+    posix_spawn_file_actions_destroy(&files);
+    posix_spawnattr_destroy(&attributes);
+  }
   Actions(const Actions&) = delete;
   Actions& operator=(const Actions&) = delete;
   posix_spawn_file_actions_t files;

@@ -84,7 +84,10 @@ void ScriptProcess::kill(std::string why) {
 
 bool ScriptProcess::begin(Writer& call) {
   if (dead() || !call.finish()) return false;
-  if (!channel_->send(call.bytes())) return lost(State::died, {}), false;
+  if (!channel_->send(call.bytes())) {
+    lost(State::died, {});
+    return false;
+  }
   busy_ = true;
   follows_ = call.header().op == uint16_t(Op::create) && (call.header().flags & Flags::thenInitialize);
   callBegins();
@@ -160,7 +163,10 @@ ScriptProcess::State ScriptProcess::serve(double first, double next, Clock::time
 bool ScriptProcess::answer(const Message& message, double time) {
   answer_.begin(Op::answer, message.header.script, time);
   const Served served = wire::serve(HostFunctions{}, host_, message, answer_);
-  if (!served.good) return lost(State::died, "broke the protocol"), false;
+  if (!served.good) {
+    lost(State::died, "broke the protocol");
+    return false;
+  }
   if (!served.answers) return true;
   if (!answer_.finish()) {
     answer_.begin(Op::answer, message.header.script, time);
@@ -168,7 +174,10 @@ bool ScriptProcess::answer(const Message& message, double time) {
     answer_.put("longer than a message to a process may be");
     answer_.finish();
   }
-  if (!channel_->send(answer_.bytes())) return lost(State::died, {}), false;
+  if (!channel_->send(answer_.bytes())) {
+    lost(State::died, {});
+    return false;
+  }
   return true;
 }
 

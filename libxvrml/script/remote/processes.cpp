@@ -19,8 +19,14 @@ bool ScriptProcesses::start(const ProcessSettings& settings) {
 
 ProcessRef ScriptProcesses::choose(const ProcessSettings& settings, size_t coming, std::string& why) {
   const std::string key = settings.library + ":" + settings.engine;
-  if (const auto known = unusable_.find(key); known != unusable_.end()) return why = known->second, nullptr;
-  if (ended_ >= mostEnded) return why = std::to_string(ended_) + " processes have been ended by programs of this world", nullptr;
+  if (const auto known = unusable_.find(key); known != unusable_.end()) {
+    why = known->second;
+    return nullptr;
+  }
+  if (ended_ >= mostEnded) {
+    why = std::to_string(ended_) + " processes have been ended by programs of this world";
+    return nullptr;
+  }
   std::erase_if(all_, [](const ProcessRef& process) { return process->dead(); });
   const auto fits = [&](const ProcessRef& p) {
     return p->settings().library == settings.library && p->settings().engine == settings.engine;

@@ -35,7 +35,10 @@ bool limitResources(std::string& why) {
                {RLIMIT_NOFILE, lowestFree >= 0 ? rlim_t(lowestFree) : 0, "files"}};
   for (const auto& limit : table) {
     const rlimit both{limit.most, limit.most};
-    if (setrlimit(limit.resource, &both) != 0) return why = std::string("cannot limit ") + limit.name, false;
+    if (setrlimit(limit.resource, &both) != 0) {
+      why = std::string("cannot limit ") + limit.name;
+      return false;
+    }
   }
   return true;
 }
@@ -94,7 +97,10 @@ constexpr int allowed[] = {SCMP_SYS(brk),
 
 bool filterCalls(std::string& why) {
   scmp_filter_ctx filter = seccomp_init(SCMP_ACT_ERRNO(EPERM));
-  if (!filter) return why = "no filter of system calls", false;
+  if (!filter) {
+    why = "no filter of system calls";
+    return false;
+  }
   int error = seccomp_attr_set(filter, SCMP_FLTATR_CTL_TSYNC, 1); // threads that an engine has made in prepare(), too
   seccomp_attr_set(filter, SCMP_FLTATR_CTL_OPTIMIZE, 2);
   for (const int call : allowed)
@@ -133,7 +139,10 @@ bool closeCage(std::string& why) {
   static char* empty[] = {nullptr}; // not clearenv(): Tcl wants a list
   environ = empty;
   if (!limitResources(why)) return false;
-  if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) return why = "no way to give up privileges", false;
+  if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) {
+    why = "no way to give up privileges";
+    return false;
+  }
   return filterCalls(why);
 }
 

@@ -75,7 +75,10 @@ template <class R, class... A, R (*XsHost::*Member)(const XsHost*, XsNode, A...)
   static R pass(Forward& host, XsNode self, A... arguments) {
     Guest* guest = host.find(self);
     if (!guest) return R(XS_NO_NODE);
-    const auto refuse = [&](XsResult why, const char* text) { return guest->error = text, R(why); };
+    const auto refuse = [&](XsResult why, const char* text) {
+      guest->error = text;
+      return R(why);
+    };
     if (counted && host.spend(stepsOfCall)) return refuse(XS_STOPPED, "the Script's time is up");
     if (!(present(arguments) && ...)) return refuse(XS_FAILED, "no place for the answer");
     Writer& out = host.writer_;

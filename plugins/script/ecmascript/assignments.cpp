@@ -76,13 +76,23 @@ class Tokens {
       while (isNamePart(peek()) || peek() == '.' || ((peek() == '+' || peek() == '-') && (text_[at_ - 1] | 0x20) == 'e')) ++at_;
       return Token::Kind::literal;
     }
-    if (c == '"' || c == '\'') return quoted(c), Token::Kind::literal;
-    if (c == '/' && patternMayStand()) return pattern(), Token::Kind::literal;
+    if (c == '"' || c == '\'') {
+      quoted(c);
+      return Token::Kind::literal;
+    }
+    if (c == '/' && patternMayStand()) {
+      pattern();
+      return Token::Kind::literal;
+    }
     static constexpr std::string_view signs[] = {">>>=", "===", "!==", ">>>", "<<=", ">>=", "==", "!=", "<=", ">=", "&&", "||",
                                                  "++",   "--",  "+=",  "-=",  "*=",  "/=",  "%=", "&=", "|=", "^=", "=>"};
     for (const std::string_view sign : signs)
-      if (begins(sign)) return at_ += sign.size(), Token::Kind::sign;
-    return ++at_, Token::Kind::sign;
+      if (begins(sign)) {
+        at_ += sign.size();
+        return Token::Kind::sign;
+      }
+    ++at_;
+    return Token::Kind::sign;
   }
 
   void quoted(char quote) {

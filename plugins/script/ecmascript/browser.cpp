@@ -124,7 +124,10 @@ duk_ret_t copyOf(duk_context* ctx) {
       pushImage(ctx, self, sf->v, {});
       return 1;
     }
-    if (sf->type != XS_SFIMAGE) sf->place = {}, sf->hasParent = 0; // made for this very access
+    if (sf->type != XS_SFIMAGE) {
+      sf->place = {};
+      sf->hasParent = 0;
+    } // made for this very access
   } else if (const MfData* mf = mfData(ctx, 0); mf && isLive(self, mf->place)) {
     pushMfFrom(ctx, self, 0, mf->type, "assignment");
     return 1;

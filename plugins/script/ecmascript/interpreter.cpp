@@ -56,7 +56,10 @@ void release(void* account, void* memory) {
 
 void* reallocate(void* account, void* memory, duk_size_t bytes) {
   if (!memory) return allocate(account, bytes);
-  if (bytes == 0) return release(account, memory), nullptr;
+  if (bytes == 0) {
+    release(account, memory);
+    return nullptr;
+  }
   Interpreter& self = *static_cast<Interpreter*>(account);
   const duk_size_t old = blockOf(memory)->bytes;
   if (bytes > SIZE_MAX - sizeof(Block) || (bytes > old && !fits(self, bytes - old))) return nullptr;
@@ -86,7 +89,10 @@ void giveUp(void* account, const char* message) {
 // nargs: what the function finds on its stack; its error is told.
 bool guarded(Interpreter& self, duk_safe_call_function function, void* data, const char* during) {
   duk_context* ctx = self.ctx;
-  if (duk_safe_call(ctx, function, data, 0, 1) == DUK_EXEC_SUCCESS) return duk_pop(ctx), true;
+  if (duk_safe_call(ctx, function, data, 0, 1) == DUK_EXEC_SUCCESS) {
+    duk_pop(ctx);
+    return true;
+  }
   if (!self.stopped) {
     const auto report = [](duk_context* c, void* text) -> duk_ret_t {
       reportError(Interpreter::of(c), static_cast<const char*>(text));
@@ -103,7 +109,10 @@ XsResult enter(Interpreter& self, duk_safe_call_function function, void* data, c
   if (self.stopped) return XS_OK; // nothing of the program runs any more, neither does shutdown
   ++self.call;
   self.texts.clear();
-  if (setjmp(self.fatal)) return self.fatalSet = false, XS_FAILED;
+  if (setjmp(self.fatal)) {
+    self.fatalSet = false;
+    return XS_FAILED;
+  }
   self.fatalSet = true;
   bool good = guarded(self, function, data, during);
   if (!self.stopped && flush) good = guarded(self, flushSlots, &self, "sending events") && good;

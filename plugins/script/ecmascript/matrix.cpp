@@ -100,10 +100,16 @@ bool invert(const Matrix& from, Matrix& out) { // Gauss and Jordan, with pivots
     std::swap(a.m[pivot], a.m[column]);
     std::swap(out.m[pivot], out.m[column]);
     const double scale = 1 / a.m[column][column];
-    for (int j = 0; j < 4; ++j) a.m[column][j] *= scale, out.m[column][j] *= scale;
+    for (int j = 0; j < 4; ++j) {
+      a.m[column][j] *= scale;
+      out.m[column][j] *= scale;
+    }
     for (int i = 0; i < 4; ++i) {
       const double factor = i == column ? 0 : a.m[i][column];
-      for (int j = 0; j < 4; ++j) a.m[i][j] -= factor * a.m[column][j], out.m[i][j] -= factor * out.m[column][j];
+      for (int j = 0; j < 4; ++j) {
+        a.m[i][j] -= factor * a.m[column][j];
+        out.m[i][j] -= factor * out.m[column][j];
+      }
     }
   }
   return true;
@@ -145,16 +151,24 @@ Matrix nearestRotation(const Matrix& linear) {
 void axisOf(const Matrix& q, double* r) {
   const double x = q.m[1][2] - q.m[2][1], y = q.m[2][0] - q.m[0][2], z = q.m[0][1] - q.m[1][0];
   const double sine = std::sqrt(x * x + y * y + z * z), trace = q.m[0][0] + q.m[1][1] + q.m[2][2];
-  r[0] = 0, r[1] = 0, r[2] = 1, r[3] = 0;
+  r[0] = 0;
+  r[1] = 0;
+  r[2] = 1;
+  r[3] = 0;
   if (sine > 1e-9) {
-    r[0] = x / sine, r[1] = y / sine, r[2] = z / sine;
+    r[0] = x / sine;
+    r[1] = y / sine;
+    r[2] = z / sine;
     r[3] = std::atan2(sine, trace - 1);
   } else if (trace < 0) { // half a turn: the axis is in the columns of q + 1
     int k = 0;
     for (int i = 1; i < 3; ++i)
       if (q.m[i][i] > q.m[k][k]) k = i;
     double length = 0;
-    for (int i = 0; i < 3; ++i) r[i] = q.m[k][i] + (i == k ? 1 : 0), length += r[i] * r[i];
+    for (int i = 0; i < 3; ++i) {
+      r[i] = q.m[k][i] + (i == k ? 1 : 0);
+      length += r[i] * r[i];
+    }
     for (int i = 0; i < 3; ++i) r[i] /= std::sqrt(length);
     r[3] = std::acos(-1.0);
   }

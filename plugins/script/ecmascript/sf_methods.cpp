@@ -139,7 +139,9 @@ Quaternion quaternionOf(const double* r) {
 void rotationOf(Quaternion q, double* r) {
   const double s = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z);
   const bool none = !(s > 1e-12 * std::fabs(q.w));
-  r[0] = none ? 0 : q.x / s, r[1] = none ? 0 : q.y / s, r[2] = none ? 1 : q.z / s;
+  r[0] = none ? 0 : q.x / s;
+  r[1] = none ? 0 : q.y / s;
+  r[2] = none ? 1 : q.z / s;
   r[3] = none ? 0 : 2 * std::atan2(s, q.w);
 }
 
@@ -195,7 +197,10 @@ duk_ret_t slerp(duk_context* ctx) {
   const Quaternion a = quaternionOf(from->v);
   Quaternion b = quaternionOf(to);
   double cosine = a.x * b.x + a.y * b.y + a.z * b.z + a.w * b.w;
-  if (cosine < 0) b = {-b.x, -b.y, -b.z, -b.w}, cosine = -cosine;
+  if (cosine < 0) {
+    b = {-b.x, -b.y, -b.z, -b.w};
+    cosine = -cosine;
+  }
   const double angle = std::acos(std::min(cosine, 1.0)), sine = std::sin(angle);
   const bool near = sine < 1e-6;
   const double wa = near ? 1 - t : std::sin((1 - t) * angle) / sine, wb = near ? t : std::sin(t * angle) / sine;

@@ -56,11 +56,18 @@ void rotationBetween(const double* a, const double* b, double* out) {
   const double dot = a[0] * b[0] + a[1] * b[1] + a[2] * b[2], sine = std::sqrt(x * x + y * y + z * z);
   if (!(sine > 1e-12 * la * lb)) { // in line: any axis square to them
     const bool alongX = std::fabs(a[0]) > 0.9 * la;
-    x = alongX ? a[2] : 0, y = alongX ? 0 : -a[2], z = alongX ? -a[0] : a[1];
-    if (dot >= 0 || la * lb == 0) x = y = 0, z = 1;
+    x = alongX ? a[2] : 0;
+    y = alongX ? 0 : -a[2];
+    z = alongX ? -a[0] : a[1];
+    if (dot >= 0 || la * lb == 0) {
+      x = y = 0;
+      z = 1;
+    }
   }
   const double length = std::sqrt(x * x + y * y + z * z);
-  out[0] = x / length, out[1] = y / length, out[2] = z / length;
+  out[0] = x / length;
+  out[1] = y / length;
+  out[2] = z / length;
   out[3] = la * lb > 0 ? std::atan2(sine, dot) : 0;
 }
 

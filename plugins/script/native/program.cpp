@@ -186,7 +186,10 @@ class Reader {
     if (std::isalpha(static_cast<unsigned char>(text_[at_]))) {
       const size_t from = at_;
       type = typeNamed(name("an argument"));
-      if (type == Number::none || !more() || text_[at_] == ',' || text_[at_] == ')') at_ = from, type = Number::none;
+      if (type == Number::none || !more() || text_[at_] == ',' || text_[at_] == ')') {
+        at_ = from;
+        type = Number::none;
+      }
       more();
     }
     const char c = at_ < text_.size() ? text_[at_] : ' ';

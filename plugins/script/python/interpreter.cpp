@@ -111,7 +111,10 @@ template <class Work> XsResult Interpreter::run(Work&& work) {
 XsResult Interpreter::failed(py::error_already_set& error, bool stopped) {
   uint32_t line = 0;
   const std::string text = describe(error, line);
-  if (stopped) return log(3, line, "stopped here: the function has taken too long"), XS_STOPPED;
+  if (stopped) {
+    log(3, line, "stopped here: the function has taken too long");
+    return XS_STOPPED;
+  }
   if (error.matches(PyExc_SystemExit)) {
     ended_ = true;
     log(1, line, "the Script has ended itself (" + text + ")");
@@ -155,7 +158,10 @@ void Interpreter::log(int32_t severity, uint32_t line, const std::string& text) 
 XsResult Interpreter::load() {
   const bool shares = host_->size >= sizeof(XsHost) && host_->object && host_->number;
   browser_ = shares ? reinterpret_cast<uintptr_t>(host_->object(host_, info_.self, 0)) : 0;
-  if (!browser_) return log(3, 0, "Scripts in Python run in the browser's own process only"), XS_FAILED;
+  if (!browser_) {
+    log(3, 0, "Scripts in Python run in the browser's own process only");
+    return XS_FAILED;
+  }
   ++scriptsOf()[browser_];
   try {
     binding_ = binding();
@@ -179,9 +185,10 @@ XsResult Interpreter::load() {
       py::list path = py::module_::import("sys").attr("path");
       if (!path.contains(folder)) path.append(folder);
     }
-  } catch (const StartError& error) { return log(3, 0, error.what()), XS_FAILED; } catch (py::error_already_set& error) {
-    return failed(error, false);
-  }
+  } catch (const StartError& error) {
+    log(3, 0, error.what());
+    return XS_FAILED;
+  } catch (py::error_already_set& error) { return failed(error, false); }
   return run([&] {
     py::object text = toText(info_.text);
     if (!file_) text = dedented(text);

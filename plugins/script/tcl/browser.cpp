@@ -16,7 +16,10 @@ int giveText(Interpreter& i, XsResult (*get)(const XsHost*, XsNode, XsString*)) 
   Tcl_SetObjResult(i.tcl(), tclText({text.data, size_t(text.bytes)}).get());
   return TCL_OK;
 }
-int giveNumber(Interpreter& i, double number) { return Tcl_SetObjResult(i.tcl(), Tcl_NewDoubleObj(number)), TCL_OK; }
+int giveNumber(Interpreter& i, double number) {
+  Tcl_SetObjResult(i.tcl(), Tcl_NewDoubleObj(number));
+  return TCL_OK;
+}
 
 int getName(Interpreter& i, Words, int) { return giveText(i, i.host()->getName); }
 int getVersion(Interpreter& i, Words, int) { return giveText(i, i.host()->getVersion); }
@@ -30,7 +33,10 @@ int setDescription(Interpreter& i, Words words, int) {
   return i.answer(i.host()->setDescription(i.host(), i.self(), view(text)));
 }
 
-int print(Interpreter& i, Words words, int) { return i.log(0, 0, hostText(words[0])), TCL_OK; }
+int print(Interpreter& i, Words words, int) {
+  i.log(0, 0, hostText(words[0]));
+  return TCL_OK;
+}
 
 int replaceWorld(Interpreter& i, Words words, int) {
   Converted nodes;
@@ -49,7 +55,8 @@ int loadURL(Interpreter& i, Words words, int count) {
 int node(Interpreter& i, Tcl_Obj* word, XsNode& found) {
   Converted one;
   if (fromTcl(i, word, XS_SFNODE, one) != TCL_OK) return TCL_ERROR;
-  return found = one.nodes[0], TCL_OK;
+  found = one.nodes[0];
+  return TCL_OK;
 }
 
 int createVrmlFromURL(Interpreter& i, Words words, int) {
@@ -102,12 +109,18 @@ const Function functions[] = {{"getName", 0, 0, nullptr, getName},
 
 int browserCommand(ClientData data, Tcl_Interp* tcl, int count, Tcl_Obj* const words[]) {
   int index;
-  if (count < 2) return Tcl_WrongNumArgs(tcl, 1, words, "function ?arg ...?"), TCL_ERROR;
+  if (count < 2) {
+    Tcl_WrongNumArgs(tcl, 1, words, "function ?arg ...?");
+    return TCL_ERROR;
+  }
   if (Tcl_GetIndexFromObjStruct(tcl, words[1], functions, sizeof(Function), "function", TCL_EXACT, &index) != TCL_OK)
     return TCL_ERROR;
   const Function& function = functions[index];
   const int arguments = count - 2;
-  if (arguments < function.least || arguments > function.most) return Tcl_WrongNumArgs(tcl, 2, words, function.usage), TCL_ERROR;
+  if (arguments < function.least || arguments > function.most) {
+    Tcl_WrongNumArgs(tcl, 2, words, function.usage);
+    return TCL_ERROR;
+  }
   return function.run(*static_cast<Interpreter*>(data), words + 2, arguments);
 }
 

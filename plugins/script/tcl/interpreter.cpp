@@ -61,9 +61,13 @@ XsResult Interpreter::create() {
   Tcl_DeleteCommand(tcl_, "::xvrml_procedure");
   Tcl_Eval(tcl_, "expr {srand(1)}"); // the same world at each start
   if (trusted()) {
-    if (makeTrusted(*this) != TCL_OK) return log(3, 0, Tcl_GetStringResult(tcl_)), XS_FAILED;
+    if (makeTrusted(*this) != TCL_OK) {
+      log(3, 0, Tcl_GetStringResult(tcl_));
+      return XS_FAILED;
+    }
   } else if (!makeSafe(*this)) {
-    return log(3, 0, std::string("no safe interpreter: ") + Tcl_GetStringResult(tcl_)), XS_FAILED;
+    log(3, 0, std::string("no safe interpreter: ") + Tcl_GetStringResult(tcl_));
+    return XS_FAILED;
   }
   addOutput(*this);
   addTimers(*this);
@@ -89,7 +93,10 @@ void Interpreter::startClock() {
   Tcl_Time until;
   Tcl_GetTime(&until);
   until.usec += microsecondsAtOnce;
-  if (until.usec >= 1'000'000) until.sec += 1, until.usec -= 1'000'000;
+  if (until.usec >= 1'000'000) {
+    until.sec += 1;
+    until.usec -= 1'000'000;
+  }
   Tcl_LimitSetTime(tcl_, &until);
   Tcl_LimitTypeSet(tcl_, TCL_LIMIT_TIME);
 }

@@ -22,7 +22,8 @@ int get(Interpreter& interpreter, XsNode node, Tcl_Obj* const* words) {
 
 int set(Interpreter& interpreter, XsNode node, Tcl_Obj* const* words) {
   if (interpreter.isRunning()) return setField(interpreter, node, Tcl_GetString(words[2]), words[3]);
-  return interpreter.later(node, Tcl_GetString(words[2]), words[3]), TCL_OK;
+  interpreter.later(node, Tcl_GetString(words[2]), words[3]);
+  return TCL_OK;
 }
 
 bool describe(Interpreter& interpreter, XsNode node, XsNodeInfo& info, int& code) {
@@ -83,11 +84,17 @@ const Subcommand subcommands[] = {{"get", 1, "field", get},      {"set", 2, "fie
 int nodeCommand(ClientData data, Tcl_Interp* tcl, int count, Tcl_Obj* const words[]) {
   const NodeCommand command = *static_cast<NodeCommand*>(data); // `release` ends it
   int index;
-  if (count < 2) return Tcl_WrongNumArgs(tcl, 1, words, "option ?arg ...?"), TCL_ERROR;
+  if (count < 2) {
+    Tcl_WrongNumArgs(tcl, 1, words, "option ?arg ...?");
+    return TCL_ERROR;
+  }
   if (Tcl_GetIndexFromObjStruct(tcl, words[1], subcommands, sizeof(Subcommand), "option", TCL_EXACT, &index) != TCL_OK)
     return TCL_ERROR;
   const Subcommand& sub = subcommands[index];
-  if (count != 2 + sub.arguments) return Tcl_WrongNumArgs(tcl, 2, words, sub.usage), TCL_ERROR;
+  if (count != 2 + sub.arguments) {
+    Tcl_WrongNumArgs(tcl, 2, words, sub.usage);
+    return TCL_ERROR;
+  }
   return sub.run(*command.interpreter, command.node, words);
 }
 

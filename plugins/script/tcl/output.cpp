@@ -12,8 +12,10 @@ int putsCommand(ClientData data, Tcl_Interp* tcl, int count, Tcl_Obj* const word
   Interpreter& interpreter = *static_cast<Interpreter*>(data);
   const bool noNewline = count > 2 && std::strcmp(Tcl_GetString(words[1]), "-nonewline") == 0;
   const int first = noNewline ? 2 : 1;
-  if (count - first < 1 || count - first > 2)
-    return Tcl_WrongNumArgs(tcl, 1, words, "?-nonewline? ?channelId? string"), TCL_ERROR;
+  if (count - first < 1 || count - first > 2) {
+    Tcl_WrongNumArgs(tcl, 1, words, "?-nonewline? ?channelId? string");
+    return TCL_ERROR;
+  }
   if (count - first == 2) {
     const std::string channel = Tcl_GetString(words[first]);
     if (channel != "stdout" && channel != "stderr") {
@@ -29,14 +31,20 @@ int putsCommand(ClientData data, Tcl_Interp* tcl, int count, Tcl_Obj* const word
   }
   std::string& line = interpreter.unfinishedLine;
   const std::string text = hostText(words[count - 1]);
-  if (noNewline && line.size() + text.size() <= longestLine) return line += text, TCL_OK;
+  if (noNewline && line.size() + text.size() <= longestLine) {
+    line += text;
+    return TCL_OK;
+  }
   interpreter.log(0, 0, line + text);
   line.clear();
   return TCL_OK;
 }
 
 int exitCommand(ClientData data, Tcl_Interp* tcl, int count, Tcl_Obj* const words[]) {
-  if (count > 2) return Tcl_WrongNumArgs(tcl, 1, words, "?returnCode?"), TCL_ERROR;
+  if (count > 2) {
+    Tcl_WrongNumArgs(tcl, 1, words, "?returnCode?");
+    return TCL_ERROR;
+  }
   static_cast<Interpreter*>(data)->exit();
   return TCL_OK;
 }

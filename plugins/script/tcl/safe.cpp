@@ -57,8 +57,10 @@ int refuse(ClientData data, Tcl_Interp* tcl, int, Tcl_Obj* const[]) {
 // package require Tcl is harmless, and often written.
 int package(ClientData data, Tcl_Interp* tcl, int count, Tcl_Obj* const words[]) {
   const bool wanted = count >= 3 && std::strcmp(Tcl_GetString(words[1]), "require") == 0;
-  if (wanted && std::strcmp(Tcl_GetString(words[2]), "Tcl") == 0)
-    return Tcl_SetObjResult(tcl, Tcl_NewStringObj(TCL_PATCH_LEVEL, -1)), TCL_OK;
+  if (wanted && std::strcmp(Tcl_GetString(words[2]), "Tcl") == 0) {
+    Tcl_SetObjResult(tcl, Tcl_NewStringObj(TCL_PATCH_LEVEL, -1));
+    return TCL_OK;
+  }
   if (!wanted) return refuse(data, tcl, count, words);
   Tcl_SetObjResult(tcl, Tcl_ObjPrintf("package %s: only in a world that is trusted", Tcl_GetString(words[2])));
   Tcl_SetErrorCode(tcl, "XVRML", "TRUST", nullptr);

@@ -64,7 +64,10 @@ int info(Interpreter& interpreter, int count, Tcl_Obj* const* words) {
 
 int afterCommand(ClientData data, Tcl_Interp* tcl, int count, Tcl_Obj* const words[]) {
   Interpreter& interpreter = *static_cast<Interpreter*>(data);
-  if (count < 2) return Tcl_WrongNumArgs(tcl, 1, words, "option ?arg ...?"), TCL_ERROR;
+  if (count < 2) {
+    Tcl_WrongNumArgs(tcl, 1, words, "option ?arg ...?");
+    return TCL_ERROR;
+  }
   const char* option = Tcl_GetString(words[1]);
   if (std::strcmp(option, "cancel") == 0 && count > 2) return cancel(interpreter, count - 2, words + 2);
   if (std::strcmp(option, "idle") == 0 && count > 2) return add(interpreter, 0, count - 2, words + 2);
@@ -76,7 +79,10 @@ int afterCommand(ClientData data, Tcl_Interp* tcl, int count, Tcl_Obj* const wor
   }
   milliseconds = std::max<Tcl_WideInt>(milliseconds, 0);
   if (count > 2) return add(interpreter, double(milliseconds) / 1000, count - 2, words + 2);
-  if (interpreter.trusted() && interpreter.hasTk() && milliseconds <= longestSleep) return Tcl_Sleep(int(milliseconds)), TCL_OK;
+  if (interpreter.trusted() && interpreter.hasTk() && milliseconds <= longestSleep) {
+    Tcl_Sleep(int(milliseconds));
+    return TCL_OK;
+  }
   Tcl_SetObjResult(tcl, Tcl_NewStringObj("after without a script would stop the world", -1));
   return TCL_ERROR;
 }

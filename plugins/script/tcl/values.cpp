@@ -136,7 +136,8 @@ struct Reader {
     case XS_SFBOOL: {
       int yes;
       if (Tcl_GetBooleanFromObj(nullptr, object, &yes) != TCL_OK) return wrong("a boolean", object);
-      return out.ints.push_back(yes), TCL_OK;
+      out.ints.push_back(yes);
+      return TCL_OK;
     }
     case XS_SFINT32: {
       int32_t i = 0;
@@ -147,12 +148,13 @@ struct Reader {
       return one(object, d) == TCL_OK ? (out.doubles.push_back(d), TCL_OK) : TCL_ERROR;
     }
     case XS_SFFLOAT: return tuple(&object);
-    case XS_SFSTRING: return out.texts.push_back(hostText(object)), TCL_OK;
+    case XS_SFSTRING: out.texts.push_back(hostText(object)); return TCL_OK;
     case XS_SFIMAGE: return image(object);
     case XS_SFNODE: {
       XsNode node = 0;
       if (!nodeOf(interpreter, object, node)) return wrong("the name of a node or NULL", object);
-      return out.nodes.push_back(node), TCL_OK;
+      out.nodes.push_back(node);
+      return TCL_OK;
     }
     default: {
       static constexpr const char* expected[] = {"", "", "2 numbers", "3 numbers", "4 numbers"};
@@ -214,7 +216,10 @@ Object toTcl(Interpreter& interpreter, const XsValue& value) {
 
 int fromTcl(Interpreter& interpreter, Tcl_Obj* object, XsType type, Converted& out) {
   const XsTypeInfo* kind = xsTypeInfo(type);
-  if (!kind) return Tcl_SetObjResult(interpreter.tcl(), Tcl_NewStringObj("a value of an unknown type", -1)), TCL_ERROR;
+  if (!kind) {
+    Tcl_SetObjResult(interpreter.tcl(), Tcl_NewStringObj("a value of an unknown type", -1));
+    return TCL_ERROR;
+  }
   const Object keep(object); // lists may be turned into something else under way
   const Reader reader{interpreter, kind->name, *kind, out};
   out.value.type = type;

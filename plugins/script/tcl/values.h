@@ -25,7 +25,10 @@ class Object {
   }
   Object(const Object& other) : Object(other.object_) {}
   Object(Object&& other) noexcept : object_(std::exchange(other.object_, nullptr)) {}
-  Object& operator=(Object other) noexcept { return std::swap(object_, other.object_), *this; }
+  Object& operator=(Object other) noexcept {
+    std::swap(object_, other.object_);
+    return *this;
+  }
   ~Object() {
     if (object_) Tcl_DecrRefCount(object_);
   }

@@ -176,7 +176,11 @@ static XsResult browser(Call* c) { /* OUT: an MFString of what it knows */
   snprintf(url, sizeof url, "%s", s.data);
   snprintf(speed, sizeof speed, "%g", host->getCurrentSpeed(host, self));
   snprintf(rate, sizeof rate, "%g", host->getCurrentFrameRate(host, self));
-  list[0] = text(name), list[1] = text(version), list[2] = text(url), list[3] = text(speed), list[4] = text(rate);
+  list[0] = text(name);
+  list[1] = text(version);
+  list[2] = text(url);
+  list[3] = text(speed);
+  list[4] = text(rate);
   const XsValue value = strings(list, 5, XS_MFSTRING);
   return answer(c, host->send(host, self, c->words[1], &value));
 }
@@ -229,11 +233,18 @@ static XsResult now(Call* c) { /* OUT: SFTime */
   return answer(c, c->self->host->send(c->self->host, c->self->info->self, c->words[1], &value));
 }
 
-static XsResult print(Call* c) { return say(c->self, 0, 0, c->rest), XS_OK; }
-static XsResult error(Call* c) { /* LINE TEXT */
-  return say(c->self, 3, (uint32_t)atoi(c->words[1]), c->rest + strlen(c->words[1]) + 1), XS_FAILED;
+static XsResult print(Call* c) {
+  say(c->self, 0, 0, c->rest);
+  return XS_OK;
 }
-static XsResult fail(Call* c) { return (void)c, XS_FAILED; }
+static XsResult error(Call* c) { /* LINE TEXT */
+  say(c->self, 3, (uint32_t)atoi(c->words[1]), c->rest + strlen(c->words[1]) + 1);
+  return XS_FAILED;
+}
+static XsResult fail(Call* c) {
+  (void)c;
+  return XS_FAILED;
+}
 static XsResult loop(Call* c) { /* for ever */
   while (!c->self->host->shouldStop(c->self->host, c->self->info->self, 1000)) {}
   return XS_STOPPED;
@@ -330,13 +341,23 @@ static XsResult createInterpreter(const XsHost* host, const XsScriptInfo* info, 
   return result;
 }
 static void destroyInterpreter(XsInterpreter interpreter) { free((void*)(uintptr_t)interpreter); }
-static XsResult initialize(XsInterpreter interpreter, double time) { return (void)time, run(interpreter, "initialize", NULL); }
+static XsResult initialize(XsInterpreter interpreter, double time) {
+  (void)time;
+  return run(interpreter, "initialize", NULL);
+}
 static XsResult event(XsInterpreter interpreter, const XsEvent* event) { return run(interpreter, event->name, event); }
 static XsResult processed(XsInterpreter interpreter, double time) {
-  return (void)time, run(interpreter, "eventsProcessed", NULL);
+  (void)time;
+  return run(interpreter, "eventsProcessed", NULL);
 }
-static XsResult shutdown(XsInterpreter interpreter, double time) { return (void)time, run(interpreter, "shutdown", NULL); }
-static XsResult tick(XsInterpreter interpreter, double time) { return (void)time, run(interpreter, "tick", NULL); }
+static XsResult shutdown(XsInterpreter interpreter, double time) {
+  (void)time;
+  return run(interpreter, "shutdown", NULL);
+}
+static XsResult tick(XsInterpreter interpreter, double time) {
+  (void)time;
+  return run(interpreter, "tick", NULL);
+}
 
 static const char* const schemes[] = {"test", NULL};
 static const char* const mimeTypes[] = {"text/x-test", NULL};

@@ -8,14 +8,18 @@
 static void crash(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, RtsShading* out) {
   volatile uintptr_t place = 16; /* no page is there */
   volatile float* const nowhere = (volatile float*)place;
-  (void)host, (void)batch, (void)hits, (void)out;
+  (void)host;
+  (void)batch;
+  (void)hits;
+  (void)out;
   *nowhere = 1;
 }
 
 /* Never ends where x is above 0. */
 static void hang(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, RtsShading* out) {
   static volatile int sink;
-  (void)host, (void)batch;
+  (void)host;
+  (void)batch;
   for (uint32_t i = 0; i < hits->count; i++) {
     while (hits->position[0][i] > 0) sink++;
     out->radiance[0][i] = 0.5f;
@@ -35,7 +39,10 @@ static void notANumber(const RtsHost* host, RtsBatch* batch, const RtsHits* hits
 static void nanLobe(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, RtsSurface* out) {
   RtsLobe* const lobe = host->lobe(batch, RTS_LOBE_DIFFUSE);
   for (uint32_t i = 0; i < hits->count; i++) {
-    for (int k = 0; k < 3; k++) out->emission[k][i] = 0.25f, lobe->weight[k][i] = 0.5f;
+    for (int k = 0; k < 3; k++) {
+      out->emission[k][i] = 0.25f;
+      lobe->weight[k][i] = 0.5f;
+    }
     lobe->normal[1][i] = NAN;
   }
 }
@@ -55,19 +62,34 @@ static void veil(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, RtsS
 static void gloss(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, RtsSurface* out) {
   RtsLobe* const lobe = host->lobe(batch, RTS_LOBE_GLOSSY);
   (void)out;
-  for (uint32_t i = 0; i < hits->count; i++) lobe->weight[0][i] = 0.5f, lobe->parameter[0][i] = 0.3f;
+  for (uint32_t i = 0; i < hits->count; i++) {
+    lobe->weight[0][i] = 0.5f;
+    lobe->parameter[0][i] = 0.3f;
+  }
 }
 
 /* A lobe of its own whose functions go wrong. */
 static void badEvaluate(const RtsLobe* lobe, const RtsHits* hits, uint32_t n, const uint32_t* hit,
                         const float* const direction[3], float* const value[3], float* density) {
-  (void)lobe, (void)hits, (void)hit, (void)direction;
-  for (uint32_t i = 0; i < n; i++) value[0][i] = NAN, value[1][i] = value[2][i] = 0.25f, density[i] = 1;
+  (void)lobe;
+  (void)hits;
+  (void)hit;
+  (void)direction;
+  for (uint32_t i = 0; i < n; i++) {
+    value[0][i] = NAN;
+    value[1][i] = value[2][i] = 0.25f;
+    density[i] = 1;
+  }
 }
 static void badSample(const RtsLobe* lobe, const RtsHits* hits, uint32_t n, const uint32_t* hit, const float* const square[2],
                       float* const direction[3], float* const quotient[3], float* density) {
   volatile uintptr_t place = 16;
-  (void)lobe, (void)hits, (void)hit, (void)square, (void)direction, (void)quotient;
+  (void)lobe;
+  (void)hits;
+  (void)hit;
+  (void)square;
+  (void)direction;
+  (void)quotient;
   for (uint32_t i = 0; i < n; i++) density[i] = *(volatile float*)place;
 }
 static const RtsLobeFunctions badFunctions = {sizeof(RtsLobeFunctions), 0, badEvaluate, badSample};
@@ -79,7 +101,8 @@ static void badLobe(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, R
 }
 
 static uint32_t nothingScatters(const RtsHost* host, const void* params) {
-  (void)host, (void)params;
+  (void)host;
+  (void)params;
   return RTS_NO_SCATTER;
 }
 static void scatter(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, RtsSurface* out) {

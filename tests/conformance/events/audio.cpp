@@ -161,7 +161,11 @@ TEST(Wav, WhatIsCutOffOrDamagedIsRefusedOrReadAsFarAsItGoes) {
 
 TEST(Sound, IsAtFullIntensityWithinTheInnerEllipsoid) {
   auto s = std::make_unique<nodes::Sound>();
-  s->minFront = 4, s->minBack = 1, s->maxFront = 20, s->maxBack = 5, s->intensity = 0.5f;
+  s->minFront = 4;
+  s->minBack = 1;
+  s->maxFront = 20;
+  s->maxBack = 5;
+  s->intensity = 0.5f;
   for (const Vec3f at : {Vec3f{0, 0, 0}, Vec3f{0, 0, 3.99f}, Vec3f{0, 0, -0.99f}}) EXPECT_EQ(soundGain(*s, at), 0.5);
   EXPECT_LT(soundGain(*s, {0, 0, 4.01f}), 0.5);
   EXPECT_LT(soundGain(*s, {0, 0, -1.01f}), 0.5);
@@ -169,7 +173,10 @@ TEST(Sound, IsAtFullIntensityWithinTheInnerEllipsoid) {
 
 TEST(Sound, FallsLinearlyInDecibelsToMinusTwentyAtTheOuterEllipsoid) {
   auto s = std::make_unique<nodes::Sound>();
-  s->minFront = 4, s->minBack = 1, s->maxFront = 20, s->maxBack = 5;
+  s->minFront = 4;
+  s->minBack = 1;
+  s->maxFront = 20;
+  s->maxBack = 5;
   for (double part : {0.25, 0.5, 1.0}) {
     EXPECT_NEAR(20 * std::log10(soundGain(*s, {0, 0, float(4 + 16 * part)})), -20 * part, 1e-4);
     EXPECT_NEAR(20 * std::log10(soundGain(*s, {0, 0, float(-1 - 4 * part)})), -20 * part, 1e-4);
@@ -180,7 +187,10 @@ TEST(Sound, FallsLinearlyInDecibelsToMinusTwentyAtTheOuterEllipsoid) {
 
 TEST(Sound, ItsLocationIsAFocusOfTheEllipsoids) { // sideways: the half parameter 2 f b / (f + b)
   auto s = std::make_unique<nodes::Sound>();
-  s->minFront = 4, s->minBack = 1, s->maxFront = 20, s->maxBack = 5;
+  s->minFront = 4;
+  s->minBack = 1;
+  s->maxFront = 20;
+  s->maxBack = 5;
   EXPECT_EQ(soundGain(*s, {1.59f, 0, 0}), 1);
   EXPECT_LT(soundGain(*s, {1.61f, 0, 0}), 1);
   EXPECT_NEAR(soundGain(*s, {0, 8, 0}), 0.1, 1e-6);
@@ -193,7 +203,10 @@ TEST(Sound, ItsLocationIsAFocusOfTheEllipsoids) { // sideways: the half paramete
 
 TEST(Sound, PointsInItsDirectionFromItsLocation) {
   auto s = std::make_unique<nodes::Sound>();
-  s->minFront = 4, s->minBack = 1, s->maxFront = 20, s->maxBack = 5;
+  s->minFront = 4;
+  s->minBack = 1;
+  s->maxFront = 20;
+  s->maxBack = 5;
   s->location = {100, 0, 0};
   s->direction = {-3, 0, 0};
   EXPECT_EQ(soundGain(*s, {96.5f, 0, 0}), 1);

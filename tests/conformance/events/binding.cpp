@@ -49,7 +49,10 @@ TEST(Binding, TheOrderIsThatOfTheFileEvenWhereAPrototypesFieldsAreConnected) {
 
 TEST(Binding, BothEventsOfASwapHaveOneTimeAndTheOldNodesComesFirst) {
   Running r("DEF A Viewpoint {} DEF B Viewpoint {}");
-  for (const char* name : {"A", "B"}) r.log(name, "isBound"), r.log(name, "bindTime");
+  for (const char* name : {"A", "B"}) {
+    r.log(name, "isBound");
+    r.log(name, "bindTime");
+  }
   r.browser.tick(3);
   r.set("B", "set_bind", true);
   EXPECT_EQ(r.take(), (Log{"3 A.isBound FALSE", "3 A.bindTime 3", "3 B.isBound TRUE", "3 B.bindTime 3"}));

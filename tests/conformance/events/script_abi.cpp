@@ -68,7 +68,10 @@ TEST(ScriptAbi, RefusalsNameWhatIsWrong) {
   static const char* const drive[] = {"c", nullptr};
   static const char* const blank[] = {"", nullptr};
   const auto has = [](const std::string& text, const char* part) { return text.find(part) != text.npos; };
-  EXPECT_EQ(refusal([](XsPlugin& p, XsEngine&) { p.major = 7, p.minor = 3; }),
+  EXPECT_EQ(refusal([](XsPlugin& p, XsEngine&) {
+              p.major = 7;
+              p.minor = 3;
+            }),
             "script library abc.so: made for script ABI 7.3; this library has 1.1");
   EXPECT_TRUE(has(refusal([](XsPlugin& p, XsEngine&) { p.magic = 1; }), "wrong magic number"));
   EXPECT_TRUE(has(refusal([](XsPlugin& p, XsEngine&) { p.size += 8; }), "claims a plug-in structure of"));

@@ -323,7 +323,10 @@ TEST_F(ScriptProcess, FramesGoOnWhileAScriptLoops) {
     }
     EXPECT_LT(frames, 2000);
     EXPECT_GT(frames, 10) << program;
-    for (int i = 0; i < 10; ++i) r.browser.tick(r.browser.now() + 1.0 / 60), usleep(2000);
+    for (int i = 0; i < 10; ++i) {
+      r.browser.tick(r.browser.now() + 1.0 / 60);
+      usleep(2000);
+    }
     EXPECT_GE(int(r.take().size()), frames / 2) << program; // the other Script; in each of them, where nothing else runs
   }
 }
@@ -460,7 +463,8 @@ TEST_F(ScriptProcess, ProcessesEndWithTheProgram) {
   waitpid(child, nullptr, 0);
   for (int i = 0; i < 1000 && runs(process); ++i) usleep(5000);
   EXPECT_FALSE(runs(process));
-  close(pipes[0]), close(pipes[1]);
+  close(pipes[0]);
+  close(pipes[1]);
 }
 
 // A program that waits for whatever child of it ends takes the helpers' ends away.

@@ -61,7 +61,10 @@ class TclChess : public Tcl {
         const char c = board[row * 8 + file];
         empty = c == '.' ? empty + 1 : empty;
         const bool last = file == 7 || board[row * 8 + file + 1] != '.';
-        if (c == '.' && last) fen += char('0' + empty), empty = 0;
+        if (c == '.' && last) {
+          fen += char('0' + empty);
+          empty = 0;
+        }
         if (c != '.') fen += c;
       }
     }

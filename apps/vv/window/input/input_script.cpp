@@ -70,7 +70,10 @@ InputEvent readEvent(const std::string& name, Line& line, double& x, double& y) 
   if (!found) throw UsageError(fmt::format("there is no event \"{}\"", name));
   event.kind = found->kind;
   switch (event.kind) {
-  case Kind::move: x = readPlace(line.next("a place")), y = readPlace(line.next("a place")); break;
+  case Kind::move:
+    x = readPlace(line.next("a place"));
+    y = readPlace(line.next("a place"));
+    break;
   case Kind::press:
   case Kind::release: {
     const std::string button = line.next("a button");
@@ -80,7 +83,8 @@ InputEvent readEvent(const std::string& name, Line& line, double& x, double& y) 
     const auto at = line.rest.tellg();
     std::string word;
     if (line.rest >> word && word != "shift" && word != "ctrl" && word != "alt") {
-      x = readPlace(word), y = readPlace(line.next("a place"));
+      x = readPlace(word);
+      y = readPlace(line.next("a place"));
     } else {
       line.rest.clear();
       line.rest.seekg(at);
@@ -100,7 +104,8 @@ InputEvent readEvent(const std::string& name, Line& line, double& x, double& y) 
   case Kind::leave:
   case Kind::quit: break;
   }
-  event.x = x, event.y = y;
+  event.x = x;
+  event.y = y;
   std::string more;
   if (line.rest >> more) throw UsageError(fmt::format("\"{}\" was not expected", more));
   return event;

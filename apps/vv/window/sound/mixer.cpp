@@ -20,7 +20,10 @@ void Mixer::set(const std::vector<xvrml::Heard>& heard) {
 // The world's clock and the device's drift, and ticks come late: only what is far off jumps.
 void Mixer::follow(std::vector<Voice>& fresh) {
   constexpr double farOff = 0.2; // seconds
-  for (Voice& voice : voices_) voice.wanted = false, voice.next = {};
+  for (Voice& voice : voices_) {
+    voice.wanted = false;
+    voice.next = {};
+  }
   for (Voice& one : fresh) {
     const auto found = std::find_if(voices_.begin(), voices_.end(), [&](const Voice& v) {
       return v.sound == one.sound && v.place == one.place && v.playing.clip == one.playing.clip;

@@ -14,9 +14,9 @@
 #include <thread>
 
 #include "backend/backend.h"
-#include "backend/cluster/net/greeting.h"
 #include "backend/cluster/master/hosts.h"
 #include "backend/cluster/master/master.h"
+#include "backend/cluster/net/greeting.h"
 #include "backend/surface_queries.h"
 #include "render/frame/threads.h"
 
@@ -201,11 +201,14 @@ class ClusterBackend final : public Backend, public SurfaceQueries, private Work
     const size_t size = s.size;
     if (const Master::FrameState& state = finished_.state; state.work) {
       s = state.prepared.stats; // of the scene
-      s.size = size, s.degenerate += degenerate;
+      s.size = size;
+      s.degenerate += degenerate;
       for (char* text : {s.isa + sizeof s.isa, s.kernel + sizeof s.kernel, s.transportReason + sizeof s.transportReason})
         text[-1] = '\0'; // a worker may have said it
       const RayCounters counters = state.work->counters();
-      s.cameraRays = counters.camera, s.shadowRays = counters.shadow, s.secondaryRays = counters.secondary;
+      s.cameraRays = counters.camera;
+      s.shadowRays = counters.shadow;
+      s.secondaryRays = counters.secondary;
       s.shaderFaults = counters.faults.count(Fault::notFinite);
       s.renderSeconds = finished_.ended - finished_.begun;
       s.transport = state.prepared.frame.transport;
@@ -220,10 +223,14 @@ class ClusterBackend final : public Backend, public SurfaceQueries, private Work
       const std::lock_guard lock(mutex_);
       totals = totals_;
     }
-    s.workers = totals.workers, s.threads = totals.threads;
-    s.tilesRemote = totals.jobsRemote, s.tilesLocal = totals.jobsHere;
-    s.reissued = totals.reissued, s.duplicates = totals.duplicates;
-    s.bytesSent = totals.bytesSent, s.bytesReceived = totals.bytesReceived;
+    s.workers = totals.workers;
+    s.threads = totals.threads;
+    s.tilesRemote = totals.jobsRemote;
+    s.tilesLocal = totals.jobsHere;
+    s.reissued = totals.reissued;
+    s.duplicates = totals.duplicates;
+    s.bytesSent = totals.bytesSent;
+    s.bytesReceived = totals.bytesReceived;
   }
 
   std::vector<RTworker> workers() const override {
@@ -406,7 +413,8 @@ class ClusterBackend final : public Backend, public SurfaceQueries, private Work
         if (flight.state.work) works.push_back(flight.state.work);
       }
       if (const double now = clockNow(); ended || now > counted_ + often) {
-        totals_ = master_->totals(), workers_ = master_->workers();
+        totals_ = master_->totals();
+        workers_ = master_->workers();
         counted_ = now;
       }
     }

@@ -13,19 +13,24 @@ constexpr double priorJobs = 8; // as many jobs of this frame count as much as a
 
 JobCosts JobCosts::ofNextFrame() const {
   JobCosts next;
-  next.median_ = median_, next.dear_ = dear_;
+  next.median_ = median_;
+  next.dear_ = dear_;
   if (jobs_ == 0) {
-    next.priorSeconds_ = priorSeconds_, next.priorUnits_ = priorUnits_;
+    next.priorSeconds_ = priorSeconds_;
+    next.priorUnits_ = priorUnits_;
   } else {
     const double share = std::min(1.0, priorJobs / jobs_);
-    next.priorSeconds_ = seconds_ * share, next.priorUnits_ = units_ * share;
+    next.priorSeconds_ = seconds_ * share;
+    next.priorUnits_ = units_ * share;
   }
   return next;
 }
 
 void JobCosts::add(double units, double seconds) {
   if (!(units > 0) || !(seconds >= 0) || !std::isfinite(seconds)) return;
-  seconds_ += seconds, units_ += units, jobs_++;
+  seconds_ += seconds;
+  units_ += units;
+  jobs_++;
   const double bin = (std::log2(std::max(seconds / units, 0x1p-43)) - lowest) * perOctave;
   counts_[size_t(std::clamp(bin, 0.0, double(counts_.size() - 1)))]++;
   if (jobs_ < next_) return;

@@ -115,7 +115,8 @@ void Master::doneHere(Epoch epoch, const LeasedJob& job, JobResult&& result, dou
     return;
   }
   const auto arrival = std::make_shared<Arrival>();
-  arrival->epoch = epoch, arrival->job = job;
+  arrival->epoch = epoch;
+  arrival->job = job;
   arrival->result = std::move(result);
   m.arrive(*entry, arrival, now);
 }
@@ -157,7 +158,10 @@ double Master::advance(double now) {
   double next = std::numeric_limits<double>::infinity();
   bool ended = false;
   for (auto& [epoch, entry] : m.frames) // those with a time limit end by themselves
-    if (!entry.state.over && entry.complete()) m.end(epoch), ended = true;
+    if (!entry.state.over && entry.complete()) {
+      m.end(epoch);
+      ended = true;
+    }
   if (ended) m.settle();
   if (m.enough(now)) {
     m.handOut(now);
@@ -180,7 +184,8 @@ void Master::busy(double seconds) {
   Impl& m = *impl_;
   if (m.jobsSince == 0) return; // scenes and the like
   const double keep = std::exp(-m.jobsSince / memory);
-  m.busySeconds = m.busySeconds * keep + seconds, m.busyJobs = m.busyJobs * keep + m.jobsSince;
+  m.busySeconds = m.busySeconds * keep + seconds;
+  m.busyJobs = m.busyJobs * keep + m.jobsSince;
   m.jobsSince = 0;
   m.scheduler.pace(m.busySeconds / m.busyJobs);
 }
@@ -209,12 +214,16 @@ void Master::forget(Epoch epoch) {
 Master::Totals Master::totals() const {
   Totals t;
   t.workers = impl_->alive();
-  t.jobsRemote = impl_->jobsRemote, t.jobsHere = impl_->jobsHere;
-  t.reissued = impl_->scheduler.reissued(), t.duplicates = impl_->scheduler.duplicates();
-  t.bytesSent = impl_->goneSent, t.bytesReceived = impl_->goneReceived;
+  t.jobsRemote = impl_->jobsRemote;
+  t.jobsHere = impl_->jobsHere;
+  t.reissued = impl_->scheduler.reissued();
+  t.duplicates = impl_->scheduler.duplicates();
+  t.bytesSent = impl_->goneSent;
+  t.bytesReceived = impl_->goneReceived;
   t.threads = impl_->options.localThreads;
   for (const auto& [peer, remote] : impl_->remotes) {
-    t.bytesSent += remote.bytesSent, t.bytesReceived += remote.bytesReceived;
+    t.bytesSent += remote.bytesSent;
+    t.bytesReceived += remote.bytesReceived;
     if (remote.welcome) t.threads += remote.threads;
   }
   return t;

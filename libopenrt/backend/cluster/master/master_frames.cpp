@@ -48,8 +48,12 @@ void Master::Impl::bring(WorkerId worker, Epoch epoch) {
       continue;
     }
     message::Scene scene;
-    scene.epoch = step.epoch, scene.whole = step.whole, scene.prepare = prepare;
-    scene.arrays = step.parcel->arrays, scene.libraries = step.parcel->libraries, scene.edits = step.parcel->edits;
+    scene.epoch = step.epoch;
+    scene.whole = step.whole;
+    scene.prepare = prepare;
+    scene.arrays = step.parcel->arrays;
+    scene.libraries = step.parcel->libraries;
+    scene.edits = step.parcel->edits;
     remote->offered[step.epoch] = step.parcel->offers;
     say(*remote, std::move(scene));
   }
@@ -68,7 +72,8 @@ void Master::Impl::ready(WorkerId worker, const std::string& who, Epoch epoch, c
   FrameEntry* entry = unfinished(epoch);
   if (!entry) return scheduler.ready(worker, epoch, now);
   Prepared prepared;
-  prepared.facts = facts, prepared.stats = stats;
+  prepared.facts = facts;
+  prepared.stats = stats;
   prepared.frame = entry->settings;
   prepared.frame.transport = uint8_t(transport);
   if (entry->state.work && !agree(*entry, worker, who, prepared, now)) return;
@@ -114,8 +119,11 @@ void Master::Impl::result(Remote& remote, message::Result&& message, double now)
   }
   if (!remote.arriving.insert(message.lease).second) return; // it says so twice
   const auto arrival = std::make_shared<Arrival>();
-  arrival->worker = remote.id, arrival->epoch = message.epoch, arrival->job = {message.lease, *job};
-  arrival->result.counters.camera = message.camera, arrival->result.counters.shadow = message.shadow;
+  arrival->worker = remote.id;
+  arrival->epoch = message.epoch;
+  arrival->job = {message.lease, *job};
+  arrival->result.counters.camera = message.camera;
+  arrival->result.counters.shadow = message.shadow;
   arrival->result.counters.secondary = message.secondary;
   if (options.local.shaders) arrival->result.counters.faults = faultsFrom(message.faults, *options.local.shaders);
   arrival->result.seconds = message.seconds;
@@ -131,7 +139,8 @@ void Arrival::merge() {
     message = {};
   }
   if (fits) first = work->take(job.job, std::move(result));
-  result.sums = {}, result.light = {}; // memory is given back here, not by the master's thread
+  result.sums = {};
+  result.light = {}; // memory is given back here, not by the master's thread
 }
 
 // What others may do at the same time: the picture does not depend on who comes first.

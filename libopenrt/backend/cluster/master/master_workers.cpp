@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "backend/cluster/net/greeting.h"
 #include "backend/cluster/master/master_state.h"
+#include "backend/cluster/net/greeting.h"
 
 namespace openrt::cluster {
 namespace {
@@ -74,7 +74,8 @@ void Master::Impl::hello(Remote& remote, message::Hello&& hello, double now) {
 
 void Master::Impl::depart(Remote& remote, double now) {
   waiting.erase(remote.peer);
-  goneSent += remote.bytesSent, goneReceived += remote.bytesReceived;
+  goneSent += remote.bytesSent;
+  goneReceived += remote.bytesReceived;
   if (remote.welcome) {
     RTworker last = describe(remote, false);
     last.lost += scheduler.tally(remote.id).out;
@@ -85,7 +86,9 @@ void Master::Impl::depart(Remote& remote, double now) {
   }
   remote.welcome = false;
   remote.outbox.clear();
-  remote.offered.clear(), remote.out.clear(), remote.arriving.clear();
+  remote.offered.clear();
+  remote.out.clear();
+  remote.arriving.clear();
   remote.bytesSent = remote.bytesReceived = remote.rays = 0;
 }
 
@@ -155,10 +158,16 @@ RTworker Master::Impl::describe(const Remote& remote, bool isAlive) const {
   w.size = sizeof(w);
   std::snprintf(w.name, sizeof w.name, "%s", remote.name().c_str());
   const WorkerTally& tally = scheduler.tally(remote.id);
-  w.threads = remote.threads, w.alive = isAlive;
-  w.jobs = tally.jobs, w.late = tally.late, w.lost = tally.lost;
-  w.bytesSent = remote.bytesSent, w.bytesReceived = remote.bytesReceived, w.rays = remote.rays;
-  w.busySeconds = tally.busy, w.latency = tally.latency;
+  w.threads = remote.threads;
+  w.alive = isAlive;
+  w.jobs = tally.jobs;
+  w.late = tally.late;
+  w.lost = tally.lost;
+  w.bytesSent = remote.bytesSent;
+  w.bytesReceived = remote.bytesReceived;
+  w.rays = remote.rays;
+  w.busySeconds = tally.busy;
+  w.latency = tally.latency;
   return w;
 }
 

@@ -19,7 +19,12 @@ class Outbox {
   bool flush(uint64_t session, const Send& send);
   bool empty() const { return piece_.empty() && messages_.empty() && arrays_.empty(); }
   bool overfull() const { return messages_.size() > limits::outboxMessages || bytes_ > limits::outboxBytes; }
-  void clear() { piece_.clear(), messages_.clear(), arrays_.clear(), bytes_ = 0; }
+  void clear() {
+    piece_.clear();
+    messages_.clear();
+    arrays_.clear();
+    bytes_ = 0;
+  }
 
  private:
   struct Waiting {

@@ -20,7 +20,8 @@ OfferPtr Packer::offer(const ArrayPtr& array) {
   OfferPtr offer = known.lock();
   if (!offer) {
     offer = std::make_shared<Offer>();
-    offer->array = array, offer->hash = hash;
+    offer->array = array;
+    offer->hash = hash;
     known = offer;
   }
   return offer;
@@ -57,7 +58,10 @@ ParcelPtr Packer::pack(std::shared_ptr<const Commit> commit) {
     if (!array) continue;
     const OfferPtr offer = this->offer(array);
     parcel->arrays.push_back({id, array->size(), offer->hash});
-    if (distinct.emplace(offer->hash, offer).second) parcel->offers.push_back(offer), parcel->bytes += array->size();
+    if (distinct.emplace(offer->hash, offer).second) {
+      parcel->offers.push_back(offer);
+      parcel->bytes += array->size();
+    }
   }
   addLibraries(*commit, *parcel);
   parcel->commit = std::move(commit);

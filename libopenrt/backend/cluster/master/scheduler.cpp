@@ -36,7 +36,10 @@ void Scheduler::Impl::forget(Frame& f, Lease lease, bool lost) {
   flight->second.holders.erase(lease);
   if (!flight->second.holders.empty()) return;
   f.work->giveBack(flight->second.job);
-  if (flight->second.seconds > 0) f.aheadUnits += flight->second.units, f.aheadSeconds += flight->second.seconds;
+  if (flight->second.seconds > 0) {
+    f.aheadUnits += flight->second.units;
+    f.aheadSeconds += flight->second.seconds;
+  }
   f.maybe = true;
   unschedule(f, held.flight, flight->second);
   f.flights.erase(flight);
@@ -98,7 +101,8 @@ bool Scheduler::Impl::done(Frame& f, Lease lease, double seconds, double now) {
   else
     w.tally.latency = std::min(w.tally.latency, beyond);
   if (!held.flight) {
-    w.tally.late++, duplicates++;
+    w.tally.late++;
+    duplicates++;
     sort(w);
     return false;
   }
@@ -131,7 +135,10 @@ Scheduler::~Scheduler() = default;
 void Scheduler::join(WorkerId worker, uint32_t threads, bool here, double now, bool reserve) {
   leave(worker, now);
   Worker& w = impl_->workers[worker];
-  w.id = worker, w.threads = std::clamp(threads, 1u, 1u << 16), w.here = here, w.reserve = reserve;
+  w.id = worker;
+  w.threads = std::clamp(threads, 1u, 1u << 16);
+  w.here = here;
+  w.reserve = reserve;
   w.heard = now;
   impl_->reserves += w.reserve;
   impl_->enter(w, 0, true);
@@ -150,7 +157,8 @@ void Scheduler::announce(Epoch epoch, double now) {
   f.split = s.splitOf();
   f.wholeTiles = s.options.split == Split::tiles;
   f.spread = s.options.split == Split::samples;
-  f.costs = s.costs.ofNextFrame(), f.light = s.light.ofNextFrame();
+  f.costs = s.costs.ofNextFrame();
+  f.light = s.light.ofNextFrame();
   s.moves = true;
   if (const auto g = s.groups.find(epoch); g != s.groups.end()) // who has its scene already
     for (const WorkerId id : g->second.members) s.sort(s.workers.at(id));

@@ -28,11 +28,14 @@ void Scheduler::Impl::plan(Frame& f) {
   std::vector<float> cost(tiles);
   for (uint32_t i = 0; i < tiles; i++) {
     const float pixels = float(f.work->pixels(i));
-    order[i] = i, cost[i] = f.places[i] * pixels;
-    f.aheadUnits += pixels, f.aheadSeconds += cost[i];
+    order[i] = i;
+    cost[i] = f.places[i] * pixels;
+    f.aheadUnits += pixels;
+    f.aheadSeconds += cost[i];
   }
   const double samples = f.work->undone() / std::max(f.aheadUnits, 1.0);
-  f.aheadUnits *= samples, f.aheadSeconds *= samples;
+  f.aheadUnits *= samples;
+  f.aheadSeconds *= samples;
   std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return cost[a] > cost[b]; });
   // Those that take less time than a job should are no use at the end, where the master would be asked for too many of them.
   const double least = std::max(options.shortest, spare * pace * threads) / samples;
@@ -160,8 +163,12 @@ bool Scheduler::Impl::reissue(Frame& f, Group& g, double now, Handout& out) {
     });
     if (idle == g.idle.end()) return false;
     for (const Lease l : flight.holders) // one that has not even been heard of since gets less
-      if (Worker& w = workers.at(f.leases.at(l).worker); w.heard < flight.since) w.slips = std::min(w.slips + 1, 8u), sort(w);
-    flight.again++, reissued++;
+      if (Worker& w = workers.at(f.leases.at(l).worker); w.heard < flight.since) {
+        w.slips = std::min(w.slips + 1, 8u);
+        sort(w);
+      }
+    flight.again++;
+    reissued++;
     hand(f, workers.at(idle->second), id, true, now, out);
     return true;
   }
@@ -207,10 +214,12 @@ bool Scheduler::Impl::next(double now, Handout& out) {
       flight.units = std::max(1.0, double(job.count) * (ofLight ? 1 : f.work->pixels(job.number)));
       if (!ofLight) {
         flight.seconds = f.place(job.number) * flight.units;
-        f.lastUnits = flight.units, f.lastSeconds = flight.seconds;
-        if (flight.seconds > 0)
-          f.aheadUnits = std::max(f.aheadUnits - flight.units, 0.0),
+        f.lastUnits = flight.units;
+        f.lastSeconds = flight.seconds;
+        if (flight.seconds > 0) {
+          f.aheadUnits = std::max(f.aheadUnits - flight.units, 0.0);
           f.aheadSeconds = std::max(f.aheadSeconds - flight.seconds, 0.0);
+        }
       }
       hand(f, *w, lastFlight, false, now, out);
       if (f.exhausted()) moves = true;

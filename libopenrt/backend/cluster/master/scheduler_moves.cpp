@@ -13,7 +13,8 @@ void Scheduler::Impl::weigh(const Worker& w, int sign) {
   if (w.tally.blocked) return;
   if (w.tied()) rescuers += uint32_t(sign);
   if (w.reserve) return;
-  usable += uint32_t(sign), threads += uint32_t(sign) * w.threads;
+  usable += uint32_t(sign);
+  threads += uint32_t(sign) * w.threads;
   if (!w.unable) groups[w.epoch].threads += uint32_t(sign) * w.threads;
 }
 
@@ -22,8 +23,10 @@ void Scheduler::Impl::depart(Worker& w) {
   if (it == groups.end() || it->second.members.erase(w.id) == 0) return;
   weigh(w, -1);
   Group& g = it->second;
-  g.movable.erase(w.id), g.tied.erase(w.id);
-  g.room.erase({w.roomKey, w.id}), g.idle.erase({w.idleKey, w.id});
+  g.movable.erase(w.id);
+  g.tied.erase(w.id);
+  g.room.erase({w.roomKey, w.id});
+  g.idle.erase({w.idleKey, w.id});
   w.roomKey = w.idleKey = never;
   if (g.able.erase(w.id) && g.able.empty()) sortTied(w.epoch); // a reserve has its turn
   if (g.members.empty() && !frames.contains(w.epoch)) groups.erase(it);
@@ -33,7 +36,8 @@ void Scheduler::Impl::depart(Worker& w) {
 void Scheduler::Impl::enter(Worker& w, Epoch epoch, bool ready) {
   depart(w);
   if (epoch != w.epoch) w.unable = false;
-  w.epoch = epoch, w.ready = ready;
+  w.epoch = epoch;
+  w.ready = ready;
   Group& g = groups[epoch];
   g.members.insert(w.id);
   if (w.tied())
@@ -50,7 +54,8 @@ void Scheduler::Impl::sort(Worker& w) {
   const auto it = groups.find(w.epoch);
   if (it == groups.end()) return;
   Group& g = it->second;
-  g.room.erase({w.roomKey, w.id}), g.idle.erase({w.idleKey, w.id});
+  g.room.erase({w.roomKey, w.id});
+  g.idle.erase({w.idleKey, w.id});
   w.roomKey = w.idleKey = never;
   const Frame* f = frame(w.epoch);
   if (!f || !w.ready || !w.usable()) return;
@@ -140,7 +145,8 @@ bool Scheduler::Impl::move(double now, WorkerId& worker, Epoch& epoch) {
     Worker& w = workers.at(id);
     w.asked = now;
     enter(w, to, false);
-    worker = id, epoch = to;
+    worker = id;
+    epoch = to;
     return true;
   };
   for (const auto& [at, g] : groups) {

@@ -26,7 +26,8 @@ void Flow::look(int fd, double now, double window) {
   if (now - since_ < window) return;
   const uint64_t bytes = received(fd);
   flowing_ = double(bytes - bytes_) >= least * (now - since_);
-  since_ = now, bytes_ = bytes;
+  since_ = now;
+  bytes_ = bytes;
 }
 
 } // namespace openrt::cluster

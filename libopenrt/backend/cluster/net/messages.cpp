@@ -57,9 +57,16 @@ struct Encoder {
   void operator()(message::Unknown&&) {}
   void operator()(message::Hello&& m) {
     auto& t = make<wire::HelloT>();
-    t.protocol = m.protocol, t.library = cut(m.library), t.api = m.api, t.shaderAbi = m.shaderAbi;
-    t.isa = cut(m.isa), t.kernel = cut(m.kernel), t.platform = cut(m.platform);
-    t.threads = m.threads, t.host = cut(m.host), t.process = m.process;
+    t.protocol = m.protocol;
+    t.library = cut(m.library);
+    t.api = m.api;
+    t.shaderAbi = m.shaderAbi;
+    t.isa = cut(m.isa);
+    t.kernel = cut(m.kernel);
+    t.platform = cut(m.platform);
+    t.threads = m.threads;
+    t.host = cut(m.host);
+    t.process = m.process;
   }
   void operator()(message::Need&& m) {
     auto& t = make<wire::NeedT>();
@@ -68,21 +75,32 @@ struct Encoder {
   }
   void operator()(message::Ready&& m) {
     auto& t = make<wire::ReadyT>();
-    t.epoch = m.epoch, t.camera = m.facts.camera, t.lamps = m.facts.lamps, t.transport = m.transport;
+    t.epoch = m.epoch;
+    t.camera = m.facts.camera;
+    t.lamps = m.facts.lamps;
+    t.transport = m.transport;
     t.stats.resize(sizeof m.stats);
     std::memcpy(t.stats.data(), &m.stats, sizeof m.stats);
   }
   void operator()(message::Failed&& m) {
     auto& t = make<wire::FailedT>();
-    t.epoch = m.epoch, t.why = cut(std::move(m.why));
+    t.epoch = m.epoch;
+    t.why = cut(std::move(m.why));
   }
   void operator()(message::Result&& m) {
     auto& t = make<wire::ResultT>();
-    t.epoch = m.epoch, t.lease = m.lease, t.seconds = m.seconds;
-    t.cameraRays = m.camera, t.shadowRays = m.shadow, t.secondaryRays = m.secondary;
+    t.epoch = m.epoch;
+    t.lease = m.lease;
+    t.seconds = m.seconds;
+    t.cameraRays = m.camera;
+    t.shadowRays = m.shadow;
+    t.secondaryRays = m.secondary;
     for (message::Fault& fault : m.faults) {
       auto& f = *t.faults.emplace_back(std::make_unique<wire::FaultT>());
-      f.name = cut(std::move(fault.name)), f.library = cut(std::move(fault.library)), f.kind = fault.kind, f.hits = fault.hits;
+      f.name = cut(std::move(fault.name));
+      f.library = cut(std::move(fault.library));
+      f.kind = fault.kind;
+      f.hits = fault.hits;
     }
     t.bytes = m.bytes.size();
     t.hash = XXH3_64bits(m.bytes.data(), m.bytes.size());
@@ -99,19 +117,26 @@ struct Encoder {
   }
   void operator()(message::Log&& m) {
     auto& t = make<wire::LogT>();
-    t.level = m.level, t.text = cut(std::move(m.text));
+    t.level = m.level;
+    t.text = cut(std::move(m.text));
   }
   void operator()(message::Welcome&& m) {
     auto& t = make<wire::WelcomeT>();
-    t.protocol = m.protocol, t.session = m.session, t.heartbeat = m.heartbeat, t.silence = m.silence;
+    t.protocol = m.protocol;
+    t.session = m.session;
+    t.heartbeat = m.heartbeat;
+    t.silence = m.silence;
   }
   void operator()(message::Scene&& m) {
     auto& t = make<wire::SceneT>();
-    t.epoch = m.epoch, t.whole = m.whole, t.prepare = m.prepare;
+    t.epoch = m.epoch;
+    t.whole = m.whole;
+    t.prepare = m.prepare;
     for (const message::ArrayName& name : m.arrays) t.arrays.emplace_back(name.id, name.bytes, to(name.hash));
     for (message::Library& library : m.libraries) {
       auto& l = *t.libraries.emplace_back(std::make_unique<wire::LibraryT>());
-      l.name = cut(std::move(library.name)), l.hash = std::make_unique<wire::Hash>(to(library.hash));
+      l.name = cut(std::move(library.name));
+      l.hash = std::make_unique<wire::Hash>(to(library.hash));
     }
     t.hash = XXH3_64bits(m.edits.data(), m.edits.size());
     append(bulk, std::move(m.edits), largestMessage);
@@ -119,7 +144,9 @@ struct Encoder {
   void operator()(message::Piece&& m) {
     auto& t = make<wire::PieceT>();
     t.hash = std::make_unique<wire::Hash>(to(m.hash));
-    t.bytes = m.bytes, t.stored = m.stored, t.offset = m.offset;
+    t.bytes = m.bytes;
+    t.stored = m.stored;
+    t.offset = m.offset;
     bulk.push_back(std::move(m.data));
   }
   void operator()(message::Prepare&& m) { make<wire::PrepareT>().epoch = m.epoch; }
@@ -135,7 +162,8 @@ struct Encoder {
   void operator()(message::Drop&& m) { make<wire::DropT>().epoch = m.epoch; }
   void operator()(message::Beat&& m) {
     auto& t = make<wire::BeatT>();
-    t.sent = m.sent, t.answer = m.answer;
+    t.sent = m.sent;
+    t.answer = m.answer;
   }
   void operator()(message::Bye&& m) { make<wire::ByeT>().why = cut(std::move(m.why)); }
 };

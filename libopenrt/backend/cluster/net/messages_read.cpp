@@ -76,9 +76,16 @@ std::vector<std::byte> joined(Frames& frames) {
 }
 
 void read(const wire::Hello& t, Frames&, message::Hello& m) {
-  m.protocol = t.protocol(), m.library = text(t.library()), m.api = t.api(), m.shaderAbi = t.shaderAbi();
-  m.isa = text(t.isa()), m.kernel = text(t.kernel()), m.platform = text(t.platform());
-  m.threads = t.threads(), m.host = text(t.host()), m.process = t.process();
+  m.protocol = t.protocol();
+  m.library = text(t.library());
+  m.api = t.api();
+  m.shaderAbi = t.shaderAbi();
+  m.isa = text(t.isa());
+  m.kernel = text(t.kernel());
+  m.platform = text(t.platform());
+  m.threads = t.threads();
+  m.host = text(t.host());
+  m.process = t.process();
   demand(m.threads >= 1 && m.threads <= 65536, "an impossible number of threads");
 }
 
@@ -95,14 +102,23 @@ template <size_t n> void terminate(char (&text)[n]) {
 }
 
 void read(const wire::Ready& t, Frames&, message::Ready& m) {
-  m.epoch = t.epoch(), m.facts.camera = t.camera(), m.facts.lamps = t.lamps(), m.transport = t.transport();
+  m.epoch = t.epoch();
+  m.facts.camera = t.camera();
+  m.facts.lamps = t.lamps();
+  m.transport = t.transport();
   demand(m.transport <= RT_TRANSPORT_LIGHT, "an unknown transport");
   if (t.stats()) std::memcpy(&m.stats, t.stats()->data(), std::min<size_t>(t.stats()->size(), sizeof m.stats));
   m.stats.size = sizeof m.stats;
-  terminate(m.stats.isa), terminate(m.stats.kernel), terminate(m.stats.errorMethod), terminate(m.stats.transportReason);
+  terminate(m.stats.isa);
+  terminate(m.stats.kernel);
+  terminate(m.stats.errorMethod);
+  terminate(m.stats.transportReason);
 }
 
-void read(const wire::Failed& t, Frames&, message::Failed& m) { m.epoch = t.epoch(), m.why = text(t.why()); }
+void read(const wire::Failed& t, Frames&, message::Failed& m) {
+  m.epoch = t.epoch();
+  m.why = text(t.why());
+}
 
 // Frames of chunks; sizes follow from that of the whole.
 std::vector<std::byte> unpackResult(const Frames& frames, uint64_t bytes) {
@@ -123,8 +139,12 @@ std::vector<std::byte> unpackResult(const Frames& frames, uint64_t bytes) {
 }
 
 void read(const wire::Result& t, Frames& frames, message::Result& m) {
-  m.epoch = t.epoch(), m.lease = t.lease(), m.seconds = t.seconds();
-  m.camera = t.cameraRays(), m.shadow = t.shadowRays(), m.secondary = t.secondaryRays();
+  m.epoch = t.epoch();
+  m.lease = t.lease();
+  m.seconds = t.seconds();
+  m.camera = t.cameraRays();
+  m.shadow = t.shadowRays();
+  m.secondary = t.secondaryRays();
   demand(m.seconds >= 0 && std::isfinite(m.seconds), "a result after an impossible time");
   demand(t.bytes() <= limits::resultBytes, "a result that is too large");
   if (t.faults()) {
@@ -132,7 +152,9 @@ void read(const wire::Result& t, Frames& frames, message::Result& m) {
     for (const wire::Fault* fault : *t.faults())
       m.faults.push_back({text(fault->name()), text(fault->library()), fault->kind(), fault->hits()});
   }
-  m.packed.bytes = t.bytes(), m.packed.hash = t.hash(), m.packed.lz4 = t.packed();
+  m.packed.bytes = t.bytes();
+  m.packed.hash = t.hash();
+  m.packed.lz4 = t.packed();
   m.packed.frames.swap(frames); // the header that is read here lies in them
 }
 
@@ -147,16 +169,24 @@ void unpackBytes(message::Result& m) {
   demand(XXH3_64bits(m.bytes.data(), m.bytes.size()) == m.packed.hash, "a result with a wrong checksum");
 }
 
-void read(const wire::Log& t, Frames&, message::Log& m) { m.level = std::clamp(t.level(), 0, 3), m.text = text(t.text()); }
+void read(const wire::Log& t, Frames&, message::Log& m) {
+  m.level = std::clamp(t.level(), 0, 3);
+  m.text = text(t.text());
+}
 
 void read(const wire::Welcome& t, Frames&, message::Welcome& m) {
-  m.protocol = t.protocol(), m.session = t.session(), m.heartbeat = t.heartbeat(), m.silence = t.silence();
+  m.protocol = t.protocol();
+  m.session = t.session();
+  m.heartbeat = t.heartbeat();
+  m.silence = t.silence();
   demand(m.heartbeat >= 0.01f && m.heartbeat <= 60 && m.silence >= 0.02f && m.silence <= 600 && m.heartbeat < m.silence,
          "impossible heartbeats");
 }
 
 void read(const wire::Scene& t, Frames& frames, message::Scene& m) {
-  m.epoch = t.epoch(), m.whole = t.whole(), m.prepare = t.prepare();
+  m.epoch = t.epoch();
+  m.whole = t.whole();
+  m.prepare = t.prepare();
   demand(m.epoch != 0 && m.epoch <= limits::epochs, "a scene without a number, or with too large a one");
   demand(bulkBytes(frames) <= limits::editBytes, "too many edits");
   uint64_t sum = 0;
@@ -178,7 +208,10 @@ void read(const wire::Scene& t, Frames& frames, message::Scene& m) {
 }
 
 void read(const wire::Piece& t, Frames& frames, message::Piece& m) {
-  m.hash = from(t.hash()), m.bytes = t.bytes(), m.stored = t.stored(), m.offset = t.offset();
+  m.hash = from(t.hash());
+  m.bytes = t.bytes();
+  m.stored = t.stored();
+  m.offset = t.offset();
   const size_t here = frames[1].size();
   demand(m.bytes <= limits::arrayBytes && plausible(m.bytes, m.stored), "an array of an impossible size");
   demand(m.offset < m.stored && m.offset % pieceBytes == 0 && here == std::min<uint64_t>(pieceBytes, m.stored - m.offset),
@@ -203,7 +236,10 @@ void read(const wire::Jobs& t, Frames&, message::Jobs& m) {
 }
 
 void read(const wire::Drop& t, Frames&, message::Drop& m) { m.epoch = t.epoch(); }
-void read(const wire::Beat& t, Frames&, message::Beat& m) { m.sent = t.sent(), m.answer = t.answer(); }
+void read(const wire::Beat& t, Frames&, message::Beat& m) {
+  m.sent = t.sent();
+  m.answer = t.answer();
+}
 void read(const wire::Bye& t, Frames&, message::Bye& m) { m.why = text(t.why()); }
 
 // How many bulk frames a kind has.

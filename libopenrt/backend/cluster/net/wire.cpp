@@ -63,7 +63,9 @@ Wire::Impl::~Impl() {
 
 void Wire::Impl::push(Event::Kind kind, Peer peer, std::string text) {
   Event& event = events.emplace_back();
-  event.kind = kind, event.peer = peer, event.text = std::move(text);
+  event.kind = kind;
+  event.peer = peer;
+  event.text = std::move(text);
 }
 
 // Said once in a while only, and not by crowds: who knocks is not ours to choose.
@@ -162,7 +164,10 @@ void Wire::bad(Peer peer, const std::string& why) {
   if (Impl::PeerState* state = impl_->find(peer); state && !state->gone) impl_->countBad(*state, why, steadyNow());
 }
 
-void Wire::pace(double heartbeat, double silence) { impl_->heartbeat = heartbeat, impl_->silence = silence; }
+void Wire::pace(double heartbeat, double silence) {
+  impl_->heartbeat = heartbeat;
+  impl_->silence = silence;
+}
 
 std::string Wire::address() const {
   if (!impl_->door) return {};

@@ -58,11 +58,16 @@ void Wire::Impl::readCall(Call& call, double now) {
     if (h->kind == Kind::closed) end = "nobody answers; trying again";
     if (h->kind == Kind::disconnected) end = "the connection was closed";
     if (h->kind != Kind::opened || call.peer) continue;
-    call.failures = 0, call.joined = now, call.told.clear();
+    call.failures = 0;
+    call.joined = now;
+    call.told.clear();
     PeerState& peer = peers[++lastPeer];
     peer.id = call.peer = lastPeer;
-    peer.call = &call, peer.fd = call.fd, peer.address = call.address.shown();
-    peer.heard = now, peer.met = true;
+    peer.call = &call;
+    peer.fd = call.fd;
+    peer.address = call.address.shown();
+    peer.heard = now;
+    peer.met = true;
     push(Event::Kind::joined, peer.id, peer.address);
     sendTo(peer, encode(0, message::Beat{now, false}), now); // so that the other side knows of us
     peer.asked = now;
@@ -90,7 +95,8 @@ void Wire::Impl::hangUp(Call& call, double delay, bool sayBye) {
   if (call.socket && sayBye) call.socket->set(zmq::sockopt::linger, byeMilliseconds);
   call.socket.reset();
   call.lookup.reset();
-  call.peer = 0, call.fd = -1;
+  call.peer = 0;
+  call.fd = -1;
   call.next = steadyNow() + delay;
 }
 

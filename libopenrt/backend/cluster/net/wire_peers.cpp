@@ -92,7 +92,10 @@ Wire::Impl::PeerState& Wire::Impl::caller(const std::string& route, int fd, cons
   }
   watchCallers(); // whoever had this file before has been told of by now
   PeerState& peer = peers[++lastPeer];
-  peer.id = lastPeer, peer.route = route, peer.fd = fd, peer.address = address.empty() ? "this machine" : address;
+  peer.id = lastPeer;
+  peer.route = route;
+  peer.fd = fd;
+  peer.address = address.empty() ? "this machine" : address;
   peer.heard = now;
   routes[route] = peer.id;
   if (fd >= 0) callersByFd[fd] = peer.id;
@@ -134,7 +137,9 @@ void Wire::Impl::take(PeerState& peer, Frames&& frames, bool tooMany, double now
   if (!std::exchange(peer.met, true)) push(Event::Kind::joined, peer.id, peer.address);
   if (wire::Any(kind) != wire::Any::Beat && wire::Any(kind) != wire::Any::Bye) {
     Event& event = events.emplace_back();
-    event.kind = Event::Kind::message, event.peer = peer.id, event.frames = std::move(frames);
+    event.kind = Event::Kind::message;
+    event.peer = peer.id;
+    event.frames = std::move(frames);
     return;
   }
   Message message;

@@ -47,7 +47,8 @@ struct ArrayStream::Impl {
 
   void begin(uint64_t allStored) {
     array = std::make_shared<Array>(bytes);
-    zstd.reset(ZSTD_createDStream()), state.reset(XXH3_createState());
+    zstd.reset(ZSTD_createDStream());
+    state.reset(XXH3_createState());
     if (!zstd || !state) throw std::bad_alloc();
     XXH3_128bits_reset(state.get());
     stored = allStored;
@@ -55,7 +56,8 @@ struct ArrayStream::Impl {
 };
 
 ArrayStream::ArrayStream(const Hash& hash, uint64_t bytes) : impl_(std::make_unique<Impl>()) {
-  impl_->hash = hash, impl_->bytes = bytes;
+  impl_->hash = hash;
+  impl_->bytes = bytes;
 }
 ArrayStream::~ArrayStream() = default;
 ArrayStream::ArrayStream(ArrayStream&&) noexcept = default;

@@ -39,7 +39,9 @@ struct WorkerService::Impl final : WorkerSink, Machine {
     WorkerOptions w;
     w.self = identity(stats);
     w.self.threads = core->threads();
-    w.shaders = options.backend.shaders, w.cacheBytes = options.cacheBytes, w.log = options.log;
+    w.shaders = options.backend.shaders;
+    w.cacheBytes = options.cacheBytes;
+    w.log = options.log;
     worker = std::make_unique<Worker>(w, link(), *this);
   }
   ~Impl() override { core.reset(); } // nothing is told any more
@@ -50,7 +52,10 @@ struct WorkerService::Impl final : WorkerSink, Machine {
               say({peer, std::move(frames), {}});
             },
             [this, does](Peer peer, const std::string& why) {
-              does(peer, [=, this](Wire& w) { w.close(peer, why), alive.erase(peer); });
+              does(peer, [=, this](Wire& w) {
+                w.close(peer, why);
+                alive.erase(peer);
+              });
             },
             [does](Peer peer, const std::string& why) { does(peer, [=](Wire& w) { w.bad(peer, why); }); },
             [this, does](double heartbeat, double silence) {

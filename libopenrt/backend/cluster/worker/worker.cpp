@@ -29,7 +29,9 @@ void Worker::say(message::Body&& body) { link_.send(peer_, encode(session_, std:
 
 void Worker::joined(Peer peer, const std::string& address, double now) {
   if (peer_ != 0) return link_.close(peer, "busy: this worker serves another master");
-  peer_ = peer, address_ = address, asked_ = now;
+  peer_ = peer;
+  address_ = address;
+  asked_ = now;
   link_.send(peer, encode(0, message::Hello(options_.self)));
 }
 
@@ -43,9 +45,19 @@ void Worker::left(Peer peer, const std::string& why, double) {
 
 // What is out is given up; arrays stay.
 void Worker::endSession() {
-  if (serving()) machine_.drop(newest_), link_.pace(0, 0);
-  peer_ = 0, session_ = 0, base_ = newest_, logged_ = 0;
-  coming_.clear(), streams_.clear(), frames_.clear(), leases_.clear(), unanswered_.clear();
+  if (serving()) {
+    machine_.drop(newest_);
+    link_.pace(0, 0);
+  }
+  peer_ = 0;
+  session_ = 0;
+  base_ = newest_;
+  logged_ = 0;
+  coming_.clear();
+  streams_.clear();
+  frames_.clear();
+  leases_.clear();
+  unanswered_.clear();
   begun_ = unansweredBytes_ = 0;
   broken_ = "no scene has come yet";
   validator_.reset();
@@ -157,7 +169,10 @@ void Worker::ready(Epoch epoch, const Prepared& prepared) {
   frames_[epoch] = prepared.frame;
   if (frames_.size() > mostFrames) frames_.erase(frames_.begin());
   message::Ready m;
-  m.epoch = epoch - base_, m.facts = prepared.facts, m.transport = prepared.frame.transport, m.stats = prepared.stats;
+  m.epoch = epoch - base_;
+  m.facts = prepared.facts;
+  m.transport = prepared.frame.transport;
+  m.stats = prepared.stats;
   say(std::move(m));
 }
 
@@ -174,8 +189,12 @@ void Worker::done(Epoch epoch, const LeasedJob& job, JobResult&& result) {
   const auto frame = frames_.find(epoch);
   if (frame == frames_.end()) return; // dropped meanwhile
   message::Result m;
-  m.epoch = epoch - base_, m.lease = job.lease, m.seconds = result.seconds;
-  m.camera = result.counters.camera, m.shadow = result.counters.shadow, m.secondary = result.counters.secondary;
+  m.epoch = epoch - base_;
+  m.lease = job.lease;
+  m.seconds = result.seconds;
+  m.camera = result.counters.camera;
+  m.shadow = result.counters.shadow;
+  m.secondary = result.counters.secondary;
   m.faults = faultsOf(result.counters.faults);
   m.bytes = encodeResult(frame->second, job.job, result);
   say(std::move(m));

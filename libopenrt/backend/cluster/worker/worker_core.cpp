@@ -85,7 +85,8 @@ WorkerCore::Impl::~Impl() {
     closing = true;
     for (uint32_t i = 0; i < count; i++) running[i].stop = true;
   }
-  jobsCame.notify_all(), controlCame.notify_all();
+  jobsCame.notify_all();
+  controlCame.notify_all();
   for (std::thread& thread : threads) thread.join();
 }
 
@@ -94,7 +95,8 @@ void WorkerCore::Impl::push(Command&& command) {
     std::lock_guard lock(mutex);
     queue.push_back(std::move(command));
   }
-  jobsCame.notify_one(), controlCame.notify_one();
+  jobsCame.notify_one();
+  controlCame.notify_one();
 }
 
 void WorkerCore::Impl::tellFailed(Epoch epoch, const std::string& why) {
@@ -114,7 +116,8 @@ void WorkerCore::Impl::work(uint32_t thread) {
     const Command command = std::move(queue.front());
     queue.pop_front();
     busy++;
-    mine.epoch = command.epoch, mine.stop = false;
+    mine.epoch = command.epoch;
+    mine.stop = false;
     const bool here = scene && command.epoch == applied;
     lock.unlock();
     try {
@@ -207,13 +210,17 @@ uint32_t WorkerCore::threads() const { return impl_->count; }
 void WorkerCore::scene(Epoch epoch, std::shared_ptr<const Commit> commit, bool whole, bool prepare) {
   Command command;
   command.kind = Command::Kind::scene;
-  command.epoch = epoch, command.commit = std::move(commit), command.whole = whole, command.prepare = prepare;
+  command.epoch = epoch;
+  command.commit = std::move(commit);
+  command.whole = whole;
+  command.prepare = prepare;
   impl_->push(std::move(command));
 }
 
 void WorkerCore::prepare(Epoch epoch) {
   Command command;
-  command.kind = Command::Kind::prepare, command.epoch = epoch;
+  command.kind = Command::Kind::prepare;
+  command.epoch = epoch;
   impl_->push(std::move(command));
 }
 
@@ -222,7 +229,8 @@ void WorkerCore::work(Epoch epoch, std::span<const LeasedJob> jobs) {
     std::lock_guard lock(impl_->mutex);
     for (const LeasedJob& job : jobs) {
       Command& command = impl_->queue.emplace_back();
-      command.epoch = epoch, command.job = job;
+      command.epoch = epoch;
+      command.job = job;
     }
   }
   impl_->jobsCame.notify_all();
@@ -233,15 +241,18 @@ void WorkerCore::drop(Epoch epoch) {
   std::erase_if(impl_->queue, [&](const Command& c) { return c.kind == Command::Kind::job && c.epoch <= epoch; });
   for (uint32_t i = 0; i < impl_->count; i++)
     if (impl_->running[i].epoch != 0 && impl_->running[i].epoch <= epoch) impl_->running[i].stop = true;
-  impl_->jobsCame.notify_all(), impl_->controlCame.notify_one();
+  impl_->jobsCame.notify_all();
+  impl_->controlCame.notify_one();
 }
 
 void WorkerCore::ask(const std::function<void(Backend&)>& question) {
   bool answered = false;
   std::exception_ptr failure;
   Command command;
-  command.kind = Command::Kind::question, command.question = &question;
-  command.answered = &answered, command.failure = &failure;
+  command.kind = Command::Kind::question;
+  command.question = &question;
+  command.answered = &answered;
+  command.failure = &failure;
   impl_->push(std::move(command));
   std::unique_lock lock(impl_->mutex);
   impl_->answers.wait(lock, [&] { return answered; });

@@ -76,7 +76,8 @@ void Worker::prepare(const message::Prepare& m) {
   }
   if (coming_.size() >= 2 * limits::scenesAtOnce) return giveUp("it asks for more scenes than can be made");
   Coming& coming = coming_.emplace_back();
-  coming.scene.epoch = m.epoch, coming.prepareOnly = true;
+  coming.scene.epoch = m.epoch;
+  coming.prepareOnly = true;
 }
 
 void Worker::applyComing() {

@@ -39,7 +39,8 @@ std::shared_ptr<Accel> AccelBuilder::build(const BuildInput& input) {
   const auto accel = std::make_shared<Accel>();
   begin(*accel, input);
   accel->device_ = device_;
-  accel->origin_ = input.origin, accel->scale_ = float(input.scale);
+  accel->origin_ = input.origin;
+  accel->scale_ = float(input.scale);
   buckets_.clear();
   layOut();
   accel->static_ = staticBody();
@@ -78,7 +79,8 @@ void AccelBuilder::layOut() {
   accel_->placed_.resize(clusters.size());
   for (uint32_t c = 0; c < clusters.size(); c++) {
     const PartInfo& part = survey.parts()[clusters[c].part];
-    accel_->placed_[c].firstRecord = uint32_t(records), accel_->placed_[c].firstSlot = uint32_t(slots);
+    accel_->placed_[c].firstRecord = uint32_t(records);
+    accel_->placed_[c].firstSlot = uint32_t(slots);
     records += part.entries();
     slots += Slots(part, clusters[c].part == 0).end;
   }
@@ -202,7 +204,10 @@ void AccelBuilder::finish() {
     if (!placed.shown) continue;
     const PartInfo& part = survey.parts()[in_->flat.clusters[c].part];
     a.hasTransparent |= placed.transparent;
-    if (placed.instances) instances = true, masks |= maskOpaque | maskTransparent;
+    if (placed.instances) {
+      instances = true;
+      masks |= maskOpaque | maskTransparent;
+    }
     if (part.lines || part.points) masks |= maskThin;
   }
   a.topLevel_ = {&a.top_, masks, instances};
@@ -211,7 +216,8 @@ void AccelBuilder::finish() {
     topLevelBuilds++;
   }
   changed_ = false;
-  in_ = nullptr, accel_ = nullptr;
+  in_ = nullptr;
+  accel_ = nullptr;
 }
 
 AccelBuilder::Counts AccelBuilder::count(const Accel& accel, const Flattened& flat) const {

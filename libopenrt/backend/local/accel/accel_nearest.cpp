@@ -49,15 +49,18 @@ void eigen(double a[3][3], double v[3][3]) {
         const double c = 1 / std::sqrt(t * t + 1), s = t * c;
         for (int k = 0; k < 3; k++) {
           const double x = a[k][p], y = a[k][q];
-          a[k][p] = c * x - s * y, a[k][q] = s * x + c * y;
+          a[k][p] = c * x - s * y;
+          a[k][q] = s * x + c * y;
         }
         for (int k = 0; k < 3; k++) {
           const double x = a[p][k], y = a[q][k];
-          a[p][k] = c * x - s * y, a[q][k] = s * x + c * y;
+          a[p][k] = c * x - s * y;
+          a[q][k] = s * x + c * y;
         }
         for (int k = 0; k < 3; k++) {
           const double x = v[k][p], y = v[k][q];
-          v[k][p] = c * x - s * y, v[k][q] = s * x + c * y;
+          v[k][p] = c * x - s * y;
+          v[k][q] = s * x + c * y;
         }
       }
 }
@@ -165,7 +168,8 @@ bool Accel::measure(const Found& found, const Vec3d& p, Nearest& best) const {
     for (Vec3d& c : corner) c = r.instanced ? moved(r.toRender, c) : c * double(r.scale);
     const Weights w = closestOnTriangle(p, corner[0], corner[1], corner[2]);
     at = corner[0] * w[0] + corner[1] * w[1] + corner[2] * w[2];
-    u = w[1], v = w[2];
+    u = w[1];
+    v = w[2];
   } else {
     return false;
   }
@@ -201,7 +205,10 @@ bool Accel::nearest(const double place[3], double distance, std::span<const uint
     if (!level->masks) continue;
     PointSearch search{this, level, {place[0], place[1], place[2]}, &out};
     RTCPointQuery query;
-    query.x = p[0], query.y = p[1], query.z = p[2], query.time = 0;
+    query.x = p[0];
+    query.y = p[1];
+    query.z = p[2];
+    query.time = 0;
     query.radius = float(std::min(out.distance * scale_ * (1 + 1e-6), double(std::numeric_limits<float>::infinity())));
     RTCPointQueryContext context;
     rtcInitPointQueryContext(&context);

@@ -16,7 +16,11 @@ void normalMatrixOf(const Matrix4d& m, float out[3][3]) {
   double largest = 0;
   for (const Vec3d& v : r) largest = std::max({largest, std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
   const double s = (m.determinant() < 0 ? -1 : 1) / (largest > 0 ? largest : 1);
-  for (int j = 0; j < 3; j++) out[0][j] = float(r[j].x * s), out[1][j] = float(r[j].y * s), out[2][j] = float(r[j].z * s);
+  for (int j = 0; j < 3; j++) {
+    out[0][j] = float(r[j].x * s);
+    out[1][j] = float(r[j].y * s);
+    out[2][j] = float(r[j].z * s);
+  }
 }
 
 void setInstance(Record& r, const Matrix4d& kernelToRender) {
@@ -59,12 +63,17 @@ Record AccelBuilder::recordOf(const Inherited& path, const Geometry& g, const Ma
   // A body that light passes through has an inside, whatever its maker thought of its backs.
   r.cull = g.cull && !in_->shaders[r.shader].shaderClass->medium;
   r.bucket = bucketOf(r.shader, path.lightSet);
-  r.name = g.name ? g.name : path.name, r.instance = path.instance, r.userData = path.userData;
+  r.name = g.name ? g.name : path.name;
+  r.instance = path.instance;
+  r.userData = path.userData;
   r.indices = g.indices ? g.indices->as<uint32_t>() : nullptr;
   r.normals = g.normals ? g.normals->as<float>() : nullptr;
   r.texCoords = g.texCoords ? g.texCoords->as<float>() : nullptr;
   r.colors = g.colors ? g.colors->as<float>() : nullptr;
-  if (carriesParameters(g, r.shader)) r.parameters = g.parameters.data(), r.parameterCount = uint32_t(g.parameters.size());
+  if (carriesParameters(g, r.shader)) {
+    r.parameters = g.parameters.data();
+    r.parameterCount = uint32_t(g.parameters.size());
+  }
   r.scale = 1 / accel_->scale_;
   normalMatrixOf(toRender, r.normalMatrix);
   return r;

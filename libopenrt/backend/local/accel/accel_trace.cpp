@@ -56,8 +56,12 @@ uint32_t load(const Rays& rays, const float* ends, uint32_t first, float scale, 
     const bool present = lane < rays.count;
     refused += present & !good;
     valid[i] = (present & good) ? -1 : 0;
-    to.org_x[i] = good ? ox * scale : 0, to.org_y[i] = good ? oy * scale : 0, to.org_z[i] = good ? oz * scale : 0;
-    to.dir_x[i] = good ? dx : 0, to.dir_y[i] = good ? dy : 0, to.dir_z[i] = good ? dz : 1;
+    to.org_x[i] = good ? ox * scale : 0;
+    to.org_y[i] = good ? oy * scale : 0;
+    to.org_z[i] = good ? oz * scale : 0;
+    to.dir_x[i] = good ? dx : 0;
+    to.dir_y[i] = good ? dy : 0;
+    to.dir_z[i] = good ? dz : 1;
     to.tnear[i] = good ? near * scale : 0;
     to.tfar[i] = good ? far * scale : 0;
     to.time[i] = 0;
@@ -141,7 +145,9 @@ template <class Packet> void Accel::intersectPackets(const Level& level, const R
       hits.t[lane] = packet.ray.tfar[i] * unscale;
       hits.u[lane] = packet.hit.u[i];
       hits.v[lane] = packet.hit.v[i];
-      hits.ng[0][lane] = packet.hit.Ng_x[i], hits.ng[1][lane] = packet.hit.Ng_y[i], hits.ng[2][lane] = packet.hit.Ng_z[i];
+      hits.ng[0][lane] = packet.hit.Ng_x[i];
+      hits.ng[1][lane] = packet.hit.Ng_y[i];
+      hits.ng[2][lane] = packet.hit.Ng_z[i];
       settleGrazing(records[found.record], rays, first ? rays.tfar[lane] : ends[i], hits, lane);
     }
   }
@@ -226,7 +232,10 @@ void Accel::bounds(float low[3], float high[3]) const {
     RTCBounds b;
     rtcGetSceneBounds(level->scene->scene, &b);
     const float l[3] = {b.lower_x, b.lower_y, b.lower_z}, h[3] = {b.upper_x, b.upper_y, b.upper_z};
-    for (int k = 0; k < 3; k++) low[k] = std::min(low[k], l[k] / scale_), high[k] = std::max(high[k], h[k] / scale_);
+    for (int k = 0; k < 3; k++) {
+      low[k] = std::min(low[k], l[k] / scale_);
+      high[k] = std::max(high[k], h[k] / scale_);
+    }
   }
 }
 

@@ -35,8 +35,14 @@ Box boundsOf(const Geometry& geometry) {
     const size_t n = geometry.points->count<float>() / 3;
     float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
     for (size_t i = 0; i < n; i++)
-      for (int k = 0; k < 3; k++) low[k] = std::min(low[k], p[3 * i + k]), high[k] = std::max(high[k], p[3 * i + k]);
-    if (n) local.add({low[0], low[1], low[2]}), local.add({high[0], high[1], high[2]});
+      for (int k = 0; k < 3; k++) {
+        low[k] = std::min(low[k], p[3 * i + k]);
+        high[k] = std::max(high[k], p[3 * i + k]);
+      }
+    if (n) {
+      local.add({low[0], low[1], low[2]});
+      local.add({high[0], high[1], high[2]});
+    }
   }
   result.add(local, geometry.matrix);
   return result;

@@ -66,8 +66,14 @@ PartInfo Survey::weigh(const Scene& scene, const ScenePart& part, bool root) con
     for (uint32_t g = 0; g < geometries.size(); g++) {
       DrawnAs drawn = DrawnAs::baked;
       switch (geometries[g].primitive) {
-      case edit::Primitive::Lines: info.lines = true, drawn = DrawnAs::thin; break;
-      case edit::Primitive::Points: info.points = true, drawn = DrawnAs::thin; break;
+      case edit::Primitive::Lines:
+        info.lines = true;
+        drawn = DrawnAs::thin;
+        break;
+      case edit::Primitive::Points:
+        info.points = true;
+        drawn = DrawnAs::thin;
+        break;
       case edit::Primitive::Sphere:
         if (!heavy && !root && !similarity(item.matrix * geometries[g].matrix)) drawn = DrawnAs::ellipsoid;
         break;
@@ -83,7 +89,9 @@ PartInfo Survey::weigh(const Scene& scene, const ScenePart& part, bool root) con
 }
 
 void Survey::take(const Scene& scene, const Flattened& flat) {
-  uses_.clear(), partOf_.clear(), parts_.clear();
+  uses_.clear();
+  partOf_.clear();
+  parts_.clear();
   for (const ScenePart& part : flat.parts)
     for (const Item& item : part.items)
       if (uses_[item.object]++ == 0) measure(scene, item.object);
@@ -104,8 +112,10 @@ void Survey::take(const Scene& scene, const Flattened& flat) {
     const auto& geometries = scene.objects.at(item.object).geometries;
     const auto& boxes = objects_.at(item.object).boxes;
     const double growth = largestColumn(item.matrix);
-    for (size_t g = 0; g < geometries.size(); g++)
-      sizes[exponent(halfDiagonal(boxes[g]) * growth)] += geometries[g].primitives(), total += geometries[g].primitives();
+    for (size_t g = 0; g < geometries.size(); g++) {
+      sizes[exponent(halfDiagonal(boxes[g]) * growth)] += geometries[g].primitives();
+      total += geometries[g].primitives();
+    }
   }
   detail_ = 200;
   uint64_t below = 0;
@@ -152,7 +162,10 @@ uint64_t Survey::uniqueTriangles() const {
 Box Survey::bounds() const {
   Box all;
   for (const Box& box : boxes_)
-    if (!box.empty()) all.add(box.low), all.add(box.high);
+    if (!box.empty()) {
+      all.add(box.low);
+      all.add(box.high);
+    }
   return all;
 }
 
