@@ -1,5 +1,6 @@
-// enough_stack.h: runs a program on a stack that is large enough, however small the one is that the shell gave it (ulimit -s).
-// Worlds may nest a thousand nodes, and files within files; what walks over them recurses.
+// enough_stack.h: runs a program on a stack that is large enough, however small the one is that the
+// shell gave it (ulimit -s). Worlds may nest a thousand nodes, and files within files; what walks
+// over them recurses.
 #pragma once
 
 #include <exception>
@@ -16,7 +17,8 @@ inline size_t stackLeft() {
     pthread_attr_t attributes;
     void* place = nullptr;
     size_t bytes = 0;
-    if (pthread_getattr_np(pthread_self(), &attributes) != 0) return static_cast<const char*>(nullptr);
+    if (pthread_getattr_np(pthread_self(), &attributes) != 0)
+      return static_cast<const char*>(nullptr);
     pthread_attr_getstack(&attributes, &place, &bytes);
     pthread_attr_destroy(&attributes);
     return static_cast<const char*>(place);
@@ -25,8 +27,8 @@ inline size_t stackLeft() {
   return lowest && &here > lowest ? size_t(&here - lowest) : 0;
 }
 
-// Runs work() on this thread if so many bytes of its stack are left, else on a thread of its own while this one waits. Returns
-// what it returns, and throws what it throws.
+// Runs work() on this thread if so many bytes of its stack are left, else on a thread of its own
+// while this one waits. Returns what it returns, and throws what it throws.
 template <class Work> auto onStackOf(size_t bytes, const Work& work) -> decltype(work()) {
   const size_t left = stackLeft();
   if (left == 0 || left >= bytes) return work();
@@ -54,8 +56,9 @@ template <class Work> auto onStackOf(size_t bytes, const Work& work) -> decltype
   return std::move(*job.result);
 }
 
-// Runs a function on this thread, if its stack is or can grow to 8 MB, else on one that has such a stack; threads that are made
-// later have it as well. Returns what the function returns; it must not throw. Called by main() before there are other threads.
+// Runs a function on this thread, if its stack is or can grow to 8 MB, else on one that has such a
+// stack; threads that are made later have it as well. Returns what the function returns; it must
+// not throw. Called by main() before there are other threads.
 inline int withEnoughStack(const std::function<int()>& run) {
   constexpr rlim_t enough = rlim_t(8) << 20;
   pthread_attr_t attributes;

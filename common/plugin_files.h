@@ -1,6 +1,6 @@
-// plugin_files.h: where plug-ins may come from, and what may be believed of their files: configured folders only, bare names
-// only, nothing that another user owns, may write or replace. Used by whoever loads plug-ins: shaders (libopenrt), script engines
-// (libxvrml). Stateless; any thread.
+// plugin_files.h: where plug-ins may come from, and what may be believed of their files: configured
+// folders only, bare names only, nothing that another user owns, may write or replace. Used by
+// whoever loads plug-ins: shaders (libopenrt), script engines (libxvrml). Stateless; any thread.
 #pragma once
 
 #include <algorithm>
@@ -26,29 +26,33 @@ namespace plugin_files {
 
 namespace fs = std::filesystem;
 
-// "libX.so", "X.so", "libX" and "X" all name X. Throws std::runtime_error for anything that is or could be a path; what: kind of
-// library, for the message.
+// "libX.so", "X.so", "libX" and "X" all name X. Throws std::runtime_error for anything that is or
+// could be a path; what: kind of library, for the message.
 inline std::string bareName(std::string_view name, const char* what) {
   constexpr size_t maxLength = 200;
   const bool plain = !name.empty() && name.size() <= maxLength && name.front() != '.' &&
-                     name.find_first_of(std::string_view("/\\\0", 3)) == name.npos && name.find("..") == name.npos;
+                     name.find_first_of(std::string_view("/\\\0", 3)) == name.npos &&
+                     name.find("..") == name.npos;
   if (!plain) {
     const std::string_view shown = name.substr(0, std::min(maxLength, name.find('\0')));
-    throw std::runtime_error(std::string(what) + " \"" + std::string(shown) + "\": only a bare name is allowed, no path");
+    throw std::runtime_error(std::string(what) + " \"" + std::string(shown) +
+                             "\": only a bare name is allowed, no path");
   }
   if (name.ends_with(".so")) name.remove_suffix(3);
   if (name.starts_with("lib") && name.size() > 3) name.remove_prefix(3);
   return std::string(name);
 }
 
-// Whether a group has one member only, the owner: where the umask is 002, every user has a group of the same name. In a container
-// that does not know the user of a folder of the host, equal numbers count.
+// Whether a group has one member only, the owner: where the umask is 002, every user has a group of
+// the same name. In a container that does not know the user of a folder of the host, equal numbers
+// count.
 inline bool isPrivateGroup(uid_t owner, gid_t group) {
   std::vector<char> userText(1 << 14), groupText(1 << 16);
   passwd user{}, *foundUser = nullptr;
   ::group members{}, *foundGroup = nullptr;
   getpwuid_r(owner, &user, userText.data(), userText.size(), &foundUser);
-  if (getgrgid_r(group, &members, groupText.data(), groupText.size(), &foundGroup) != 0) return false; // too many members
+  if (getgrgid_r(group, &members, groupText.data(), groupText.size(), &foundGroup) != 0)
+    return false; // too many members
   if (!foundUser || !foundGroup) return !foundUser && !foundGroup && owner == group;
   if (std::strcmp(user.pw_name, members.gr_name) != 0) return false;
   for (char** name = members.gr_mem; name && *name; ++name)
@@ -56,8 +60,8 @@ inline bool isPrivateGroup(uid_t owner, gid_t group) {
   return true;
 }
 
-// The library with this function: its owner, and the folders in which it lies. Whoever can replace one of them can replace the
-// library itself, and needs no plug-in for that.
+// The library with this function: its owner, and the folders in which it lies. Whoever can replace
+// one of them can replace the library itself, and needs no plug-in for that.
 struct ThisLibrary {
   uid_t owner = 0;
   std::set<std::string> folders;
@@ -77,10 +81,11 @@ inline ThisLibrary thisLibrary() {
   return result;
 }
 
-// Returns why code in a file or folder could be somebody else's, or nothing. It and all folders above it belong to root, to the
-// user who runs the program or to the owner of this library, and nobody else may write to them. "Else" is a group, too, unless it
-// is the owner's own. A folder like /tmp, where only the owner of an entry may replace it (the sticky bit), may lie above it. The
-// folders of this library are not asked. Links are followed first.
+// Returns why code in a file or folder could be somebody else's, or nothing. It and all folders
+// above it belong to root, to the user who runs the program or to the owner of this library, and
+// nobody else may write to them. "Else" is a group, too, unless it is the owner's own. A folder
+// like /tmp, where only the owner of an entry may replace it (the sticky bit), may lie above it.
+// The folders of this library are not asked. Links are followed first.
 inline std::string objection(const std::string& fileOrFolder) {
   std::error_code error;
   const fs::path place = fs::canonical(fileOrFolder, error);
@@ -94,7 +99,8 @@ inline std::string objection(const std::string& fileOrFolder) {
     const uid_t owner = info.st_uid;
     if (owner != 0 && owner != geteuid() && owner != library.owner)
       return (itself ? "it" : at.string() + ", above it,") + " belongs to another user";
-    const bool open = (info.st_mode & S_IWOTH) || ((info.st_mode & S_IWGRP) && !isPrivateGroup(info.st_uid, info.st_gid));
+    const bool open = (info.st_mode & S_IWOTH) ||
+                      ((info.st_mode & S_IWGRP) && !isPrivateGroup(info.st_uid, info.st_gid));
     if (open && (itself || !(info.st_mode & S_ISVTX)))
       return "others may write to " + (itself ? std::string("it") : at.string() + ", above it");
     if (!at.has_relative_path()) return {};
@@ -107,18 +113,21 @@ inline bool trusted(const std::string& folder) {
   return fs::is_directory(folder, ignored) && objection(folder).empty();
 }
 
-// Throws std::runtime_error for a library that could be somebody else's; what: kind of library, for the message.
+// Throws std::runtime_error for a library that could be somebody else's; what: kind of library, for
+// the message.
 inline void checkFile(const std::string& path, const char* what) {
   if (const std::string why = objection(path); !why.empty())
-    throw std::runtime_error(std::string(what) + " " + path + " is refused: " + why +
-                             (why.starts_with("others") ? " (chmod go-w takes that right away)" : ""));
+    throw std::runtime_error(
+        std::string(what) + " " + path + " is refused: " + why +
+        (why.starts_with("others") ? " (chmod go-w takes that right away)" : ""));
 }
 
 // Size of the object that an exported symbol names; 0 if it is not known.
 inline size_t exportedBytes(void* symbol) {
   Dl_info info{};
   ElfW(Sym)* entry = nullptr;
-  if (dladdr1(symbol, &info, reinterpret_cast<void**>(&entry), RTLD_DL_SYMENT) == 0 || !entry || info.dli_saddr != symbol)
+  if (dladdr1(symbol, &info, reinterpret_cast<void**>(&entry), RTLD_DL_SYMENT) == 0 || !entry ||
+      info.dli_saddr != symbol)
     return 0;
   return entry->st_size;
 }
@@ -141,9 +150,11 @@ inline void appendList(std::vector<std::string>& folders, std::string_view list)
   }
 }
 
-// Folders of a process, in the order in which they are searched: configured ones (colon-separated), those of an environment
-// variable, and ../lib/SUBFOLDER or SUBFOLDER beside the library that holds the object `here` and beside the program.
-inline std::vector<std::string> folders(std::string_view configured, const char* environmentVariable, const char* subfolder,
+// Folders of a process, in the order in which they are searched: configured ones (colon-separated),
+// those of an environment variable, and ../lib/SUBFOLDER or SUBFOLDER beside the library that holds
+// the object `here` and beside the program.
+inline std::vector<std::string> folders(std::string_view configured,
+                                        const char* environmentVariable, const char* subfolder,
                                         const void* here) {
   std::vector<std::string> result;
   appendList(result, configured);
@@ -151,7 +162,8 @@ inline std::vector<std::string> folders(std::string_view configured, const char*
   std::vector<fs::path> own;
   std::error_code error;
   Dl_info info{};
-  if (dladdr(here, &info) != 0 && info.dli_fname && std::string_view(info.dli_fname).find('/') != std::string_view::npos) {
+  if (dladdr(here, &info) != 0 && info.dli_fname &&
+      std::string_view(info.dli_fname).find('/') != std::string_view::npos) {
     const fs::path library = fs::canonical(info.dli_fname, error);
     if (!error) own.push_back(library.parent_path());
   }
@@ -160,7 +172,8 @@ inline std::vector<std::string> folders(std::string_view configured, const char*
   for (const fs::path& place : own)
     for (const fs::path& candidate : {place / "../lib" / subfolder, place / subfolder}) {
       const fs::path folder = fs::canonical(candidate, error);
-      if (!error && std::find(result.begin(), result.end(), folder.string()) == result.end()) result.push_back(folder.string());
+      if (!error && std::find(result.begin(), result.end(), folder.string()) == result.end())
+        result.push_back(folder.string());
     }
   return result;
 }

@@ -1,5 +1,6 @@
-// printable.h: text by strangers (names, titles and strings of a world, of a recording, of another machine) for a terminal, which
-// would obey the control characters in it. Used by every program before it writes such text. Stateless; any thread.
+// printable.h: text by strangers (names, titles and strings of a world, of a recording, of another
+// machine) for a terminal, which would obey the control characters in it. Used by every program
+// before it writes such text. Stateless; any thread.
 #pragma once
 
 #include <cstdio>
@@ -8,10 +9,12 @@
 
 namespace printable_text {
 
-// Returns the length of the UTF-8 character at the beginning of text, 1 to 4; 0: there is none (overlong, half a pair, cut,
-// alone).
+// Returns the length of the UTF-8 character at the beginning of text, 1 to 4; 0: there is none
+// (overlong, half a pair, cut, alone).
 inline size_t utf8Length(std::string_view text) {
-  const auto byte = [&](size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u; };
+  const auto byte = [&](size_t i) {
+    return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u;
+  };
   const unsigned first = byte(0);
   size_t length = 0;
   if (first < 0x80)
@@ -27,21 +30,26 @@ inline size_t utf8Length(std::string_view text) {
   return length;
 }
 
-// Returns the length of the control character at the beginning of text: C0 (but the line feed and the tab), DEL, C1 in UTF-8.
+// Returns the length of the control character at the beginning of text: C0 (but the line feed and
+// the tab), DEL, C1 in UTF-8.
 inline size_t controlLength(std::string_view text) {
-  const auto byte = [&](size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u; };
+  const auto byte = [&](size_t i) {
+    return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u;
+  };
   if ((byte(0) < 0x20 && byte(0) != '\n' && byte(0) != '\t') || byte(0) == 0x7f) return 1;
   return byte(0) == 0xc2 && byte(1) >= 0x80 && byte(1) < 0xa0 ? 2 : 0;
 }
 
 } // namespace printable_text
 
-// Returns text in which control characters and bytes that are no UTF-8 are shown as \x1b. Lines stay lines.
+// Returns text in which control characters and bytes that are no UTF-8 are shown as \x1b. Lines
+// stay lines.
 inline std::string printable(std::string_view text) {
   std::string out;
   out.reserve(text.size());
   while (!text.empty()) {
-    const size_t control = printable_text::controlLength(text), length = control ? 0 : printable_text::utf8Length(text);
+    const size_t control = printable_text::controlLength(text),
+                 length = control ? 0 : printable_text::utf8Length(text);
     const size_t hidden = control ? control : length ? 0 : 1;
     for (size_t i = 0; i < hidden; ++i) {
       char code[8];
@@ -54,7 +62,8 @@ inline std::string printable(std::string_view text) {
   return out;
 }
 
-// Returns text that is JSON with the control characters in its strings as \u009b: JSON itself asks that of those below 0x20 only.
+// Returns text that is JSON with the control characters in its strings as \u009b: JSON itself asks
+// that of those below 0x20 only.
 inline std::string printableJson(std::string_view text) {
   std::string out;
   out.reserve(text.size());

@@ -1,4 +1,5 @@
-// background.cpp: see background.h. Names of colours: CSS Color Module 4, its sixteen basic ones and orange.
+// background.cpp: Names of colours: CSS Color Module 4, its sixteen basic ones
+// and orange.
 #include "libpicture/background.h"
 
 #include <algorithm>
@@ -22,13 +23,16 @@ struct Named {
   unsigned rgb;
 };
 constexpr Named colours[] = {
-    {"black", 0x000000},  {"silver", 0xc0c0c0}, {"gray", 0x808080},   {"grey", 0x808080},    {"white", 0xffffff},
-    {"maroon", 0x800000}, {"red", 0xff0000},    {"purple", 0x800080}, {"fuchsia", 0xff00ff}, {"magenta", 0xff00ff},
-    {"green", 0x008000},  {"lime", 0x00ff00},   {"olive", 0x808000},  {"yellow", 0xffff00},  {"navy", 0x000080},
-    {"blue", 0x0000ff},   {"teal", 0x008080},   {"aqua", 0x00ffff},   {"cyan", 0x00ffff},    {"orange", 0xffa500},
+    {"black", 0x000000},   {"silver", 0xc0c0c0},  {"gray", 0x808080},  {"grey", 0x808080},
+    {"white", 0xffffff},   {"maroon", 0x800000},  {"red", 0xff0000},   {"purple", 0x800080},
+    {"fuchsia", 0xff00ff}, {"magenta", 0xff00ff}, {"green", 0x008000}, {"lime", 0x00ff00},
+    {"olive", 0x808000},   {"yellow", 0xffff00},  {"navy", 0x000080},  {"blue", 0x0000ff},
+    {"teal", 0x008080},    {"aqua", 0x00ffff},    {"cyan", 0x00ffff},  {"orange", 0xffa500},
 };
 
-float linearOf(float v) { return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f); }
+float linearOf(float v) {
+  return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f);
+}
 
 [[noreturn]] void refuse(const std::string& text) {
   throw std::invalid_argument(fmt::format("{} was expected, not \"{}\"", backgroundForms, text));
@@ -42,8 +46,10 @@ std::array<float, 3> hexadecimal(const std::string& text) {
   unsigned rgb = 0;
   const char *begin = text.data() + 1, *end = text.data() + text.size();
   const auto read = std::from_chars(begin, end, rgb, 16);
-  if (read.ec != std::errc() || read.ptr != end || (text.size() != 4 && text.size() != 7)) refuse(text);
-  if (text.size() == 4) rgb = (rgb >> 8 & 15) * 0x110000 + (rgb >> 4 & 15) * 0x1100 + (rgb & 15) * 0x11;
+  if (read.ec != std::errc() || read.ptr != end || (text.size() != 4 && text.size() != 7))
+    refuse(text);
+  if (text.size() == 4)
+    rgb = (rgb >> 8 & 15) * 0x110000 + (rgb >> 4 & 15) * 0x1100 + (rgb & 15) * 0x11;
   return unpacked(rgb);
 }
 
@@ -59,7 +65,9 @@ std::array<float, 3> triple(const std::string& text) {
   return out;
 }
 
-bool isRadiance(std::string_view suffix) { return suffix == "exr" || suffix == "hdr" || suffix == "pfm"; }
+bool isRadiance(std::string_view suffix) {
+  return suffix == "exr" || suffix == "hdr" || suffix == "pfm";
+}
 
 std::string suffixOf(const std::string& path) {
   const size_t dot = path.rfind('.');
@@ -79,7 +87,8 @@ Background readBackground(const std::string& text) {
     if (low == one.name) return {Kind::colour, unpacked(one.rgb), {}};
   if (low.starts_with('#')) return {Kind::colour, hexadecimal(low), {}};
   const std::string suffix = suffixOf(text);
-  if (isRadiance(suffix) || suffix == "png" || suffix == "jpg" || suffix == "jpeg" || suffix == "gif")
+  if (isRadiance(suffix) || suffix == "png" || suffix == "jpg" || suffix == "jpeg" ||
+      suffix == "gif")
     return {Kind::file, {}, text};
   if (low.find(',') != low.npos) return {Kind::colour, triple(low), {}};
   refuse(text);
@@ -127,12 +136,17 @@ void Backcloth::read(const std::string& file, bool linear) {
 }
 
 void Backcloth::colourAt(double x, double y, float rgb[3]) const {
-  const double left = std::clamp(x - 0.5, 0.0, width_ - 1.0), top = std::clamp(y - 0.5, 0.0, height_ - 1.0);
-  const int x0 = int(left), y0 = int(top), x1 = std::min(x0 + 1, width_ - 1), y1 = std::min(y0 + 1, height_ - 1);
+  const double left = std::clamp(x - 0.5, 0.0, width_ - 1.0),
+               top = std::clamp(y - 0.5, 0.0, height_ - 1.0);
+  const int x0 = int(left), y0 = int(top), x1 = std::min(x0 + 1, width_ - 1),
+            y1 = std::min(y0 + 1, height_ - 1);
   const float u = float(left - x0), v = float(top - y0);
-  const auto at = [&](int column, int row) { return rgb_.data() + (size_t(row) * size_t(width_) + size_t(column)) * 3; };
+  const auto at = [&](int column, int row) {
+    return rgb_.data() + (size_t(row) * size_t(width_) + size_t(column)) * 3;
+  };
   for (int c = 0; c < 3; ++c) {
-    const float above = at(x0, y0)[c] * (1 - u) + at(x1, y0)[c] * u, below = at(x0, y1)[c] * (1 - u) + at(x1, y1)[c] * u;
+    const float above = at(x0, y0)[c] * (1 - u) + at(x1, y0)[c] * u,
+                below = at(x0, y1)[c] * (1 - u) + at(x1, y1)[c] * u;
     rgb[c] = above * (1 - v) + below * v;
   }
 }
@@ -140,7 +154,8 @@ void Backcloth::colourAt(double x, double y, float rgb[3]) const {
 // Each pixel is the mean of as many places as the picture has pixels there, up to 8 x 8.
 void Backcloth::putBehind(std::vector<float>& rgba, int width, int height) const {
   if (width_ == 0) return;
-  const double scale = std::min(double(width_) / width, double(height_) / height); // its pixels for one of the frame
+  const double scale =
+      std::min(double(width_) / width, double(height_) / height); // its pixels for one of the frame
   const double left = (width_ - scale * width) / 2, top = (height_ - scale * height) / 2;
   const int parts = std::clamp(int(std::ceil(scale)), 1, 8);
   for (int y = 0; y < height; ++y)
@@ -151,7 +166,8 @@ void Backcloth::putBehind(std::vector<float>& rgba, int width, int height) const
       if (!(open > 0)) continue;
       float sum[3] = {}, one[3];
       for (int i = 0; i < parts * parts; ++i) {
-        colourAt(left + scale * (x + (i % parts + 0.5) / parts), top + scale * (y + (i / parts + 0.5) / parts), one);
+        colourAt(left + scale * (x + (i % parts + 0.5) / parts),
+                 top + scale * (y + (i / parts + 0.5) / parts), one);
         for (int c = 0; c < 3; ++c) sum[c] += one[c];
       }
       for (int c = 0; c < 3; ++c) pixel[c] += open * sum[c] / float(parts * parts);

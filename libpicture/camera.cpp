@@ -1,4 +1,3 @@
-// camera.cpp: see camera.h.
 #include "libpicture/camera.h"
 
 #include <algorithm>
@@ -13,7 +12,9 @@ namespace {
 struct Vec {
   double x, y, z;
 };
-Vec cross(Vec a, Vec b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
+Vec cross(Vec a, Vec b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
 double length(Vec a) { return std::hypot(a.x, a.y, a.z); }
 Vec divided(Vec a, double s) { return {a.x / s, a.y / s, a.z / s}; }
 
@@ -38,7 +39,8 @@ bool lookAtMatrix(const LookAt& view, double matrix[16]) {
   if (length(right) < 1e-9) right = cross(acrossAxis(back), back);
   right = divided(right, length(right));
   up = cross(back, right);
-  const double columns[16] = {right.x, right.y, right.z, 0, up.x, up.y, up.z, 0, back.x, back.y, back.z, 0, p[0], p[1], p[2], 1};
+  const double columns[16] = {right.x, right.y, right.z, 0, up.x, up.y, up.z, 0,
+                              back.x,  back.y,  back.z,  0, p[0], p[1], p[2], 1};
   std::copy_n(columns, 16, matrix);
   return true;
 }
@@ -50,9 +52,12 @@ double verticalAngle(double smaller, double aspect) {
 namespace {
 
 // Turns a camera and its place about an axis through the middle of the bounds.
-void turn(xvrml::CameraSettings& camera, const xvrml::Bounds& bounds, xvrml::Axis axis, double angle) {
+void turn(xvrml::CameraSettings& camera, const xvrml::Bounds& bounds, xvrml::Axis axis,
+          double angle) {
   const int along = int(axis) % 3, first = (along + 1) % 3, second = (along + 2) % 3;
-  const auto middle = [&](int i) { return bounds.empty ? 0 : (bounds.minimum[i] + bounds.maximum[i]) / 2; };
+  const auto middle = [&](int i) {
+    return bounds.empty ? 0 : (bounds.minimum[i] + bounds.maximum[i]) / 2;
+  };
   const double a = middle(first), b = middle(second);
   const double c = std::cos(angle), s = int(axis) < 3 ? std::sin(angle) : -std::sin(angle);
   for (size_t column = 0; column < 4; ++column) {
@@ -64,7 +69,8 @@ void turn(xvrml::CameraSettings& camera, const xvrml::Bounds& bounds, xvrml::Axi
 }
 
 // A model from three quarters, or a figure in the x-y plane from the front.
-xvrml::CameraSettings modelCamera(const xvrml::OpenRTMapper& mapper, const View& view, double fovy, double aspect) {
+xvrml::CameraSettings modelCamera(const xvrml::OpenRTMapper& mapper, const View& view, double fovy,
+                                  double aspect) {
   double axes[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
   if (view.up) {
     xvrml::threeQuarterView(*view.up, axes);
@@ -99,9 +105,11 @@ xvrml::Axis upOf(const xvrml::OpenRTMapper& mapper, const View& view) {
   return mapper.boundViewpoint() >= 0 ? xvrml::Axis::y : mapper.guessUp().axis;
 }
 
-xvrml::CameraSettings chooseCamera(const xvrml::OpenRTMapper& mapper, const View& view, double aspect) {
+xvrml::CameraSettings chooseCamera(const xvrml::OpenRTMapper& mapper, const View& view,
+                                   double aspect) {
   constexpr double radians = std::numbers::pi / 180;
-  const double smaller = view.fov ? *view.fov * radians : std::numbers::pi / 4; // a Viewpoint's default
+  const double smaller =
+      view.fov ? *view.fov * radians : std::numbers::pi / 4; // a Viewpoint's default
   const double fovy = verticalAngle(smaller, aspect);
   xvrml::CameraSettings camera;
   if (view.pinhole) {
@@ -112,12 +120,14 @@ xvrml::CameraSettings chooseCamera(const xvrml::OpenRTMapper& mapper, const View
   if (view.lookAt) {
     lookAtMatrix(view, camera.matrix);
     camera.fovy = fovy;
-    if (view.fit) camera = xvrml::cameraAround(mapper.boundingSphere(), camera.matrix, fovy, aspect);
+    if (view.fit)
+      camera = xvrml::cameraAround(mapper.boundingSphere(), camera.matrix, fovy, aspect);
   } else if (view.viewer && !view.viewpoint && !view.fit) {
     camera = *view.viewer;
     if (view.fov) camera.fovy = fovy;
   } else if (view.viewpoint || (!view.fit && mapper.boundViewpoint() >= 0)) {
-    camera = mapper.viewpointCamera(view.viewpoint.value_or(size_t(std::max(0, mapper.boundViewpoint()))));
+    camera = mapper.viewpointCamera(
+        view.viewpoint.value_or(size_t(std::max(0, mapper.boundViewpoint()))));
     if (view.fov) camera.fovy = fovy;
   } else if (mapper.boundViewpoint() >= 0 && !view.up) {
     camera = mapper.fitCamera(fovy);

@@ -1,4 +1,3 @@
-// cluster.cpp: see cluster.h.
 #include "libpicture/cluster.h"
 
 #include <chrono>
@@ -24,7 +23,8 @@ constexpr auto patience = std::chrono::milliseconds(50);
 } // namespace
 
 void addQuoted(std::string& configuration, const char* key, const std::string& value) {
-  if (value.find('"') != value.npos) throw RenderError(fmt::format("{}: a double quote is not possible in {}", key, value));
+  if (value.find('"') != value.npos)
+    throw RenderError(fmt::format("{}: a double quote is not possible in {}", key, value));
   configuration += fmt::format(" {}=\"{}\"", key, value);
 }
 
@@ -64,7 +64,8 @@ struct Cluster::Impl {
   }
 };
 
-Cluster::Cluster(const ClusterSettings& settings, const RenderSettings& rendering) : impl_(std::make_unique<Impl>()) {
+Cluster::Cluster(const ClusterSettings& settings, const RenderSettings& rendering)
+    : impl_(std::make_unique<Impl>()) {
   impl_->settings = settings;
   const RTcontext before = rtGetCurrent();
   impl_->context = newContext(clusterConfiguration(settings) + contextConfiguration(rendering));

@@ -1,6 +1,7 @@
-// cluster.h: other machines that render, too (docs/cluster.md): one OpenRT context that calls them, kept while worlds and
-// renderers come and go, so that workers stay connected and keep what they were sent. A renderer borrows the context as long as
-// it lives; the next one waits for it. Made by vv and by the Python class Cluster. [any thread, but for what says otherwise]
+// cluster.h: other machines that render, too (docs/cluster.md): one OpenRT context that calls them,
+// kept while worlds and renderers come and go, so that workers stay connected and keep what they
+// were sent. A renderer borrows the context as long as it lives; the next one waits for it. Made by
+// vv and by the Python class Cluster. [any thread, but for what says otherwise]
 #pragma once
 
 #include <cstddef>
@@ -41,7 +42,8 @@ struct ClusterNote { // what the engine says of its workers
 
 class Cluster {
  public:
-  // Begins to call the workers and returns at once. rendering: threads and shader path of the context. Throws RenderError.
+  // Begins to call the workers and returns at once. rendering: threads and shader path of the
+  // context. Throws RenderError.
   Cluster(const ClusterSettings& settings, const RenderSettings& rendering);
   ~Cluster();
   Cluster(const Cluster&) = delete;
@@ -51,15 +53,16 @@ class Cluster {
   // Machines as they are now, this one and those that have left included.
   std::vector<RTworker> workers() const;
   size_t alive() const; // without this one
-  // Waits until `count` are there. False: not within so many seconds, or `stop`, asked 20 times a second, said true.
+  // Waits until `count` are there. False: not within so many seconds, or `stop`, asked 20 times a
+  // second, said true.
   bool wait(size_t count, double seconds, const std::function<bool()>& stop = {}) const;
   // Since the last call.
   std::vector<ClusterNote> takeNotes();
 
   // --- For a stage ---
   using Listener = std::function<void(int level, const char* text)>;
-  // The context, current on this thread, as if it were new, as soon as nobody else has it; null: `stop` said true before.
-  // listener: gets what the engine says of the scene.
+  // The context, current on this thread, as if it were new, as soon as nobody else has it; null:
+  // `stop` said true before. listener: gets what the engine says of the scene.
   RTcontext borrow(Listener listener, const std::function<bool()>& stop);
   void giveBack(); // on the same thread; what was in the scene is gone
 

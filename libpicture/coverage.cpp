@@ -1,4 +1,3 @@
-// coverage.cpp: see coverage.h.
 #include "libpicture/coverage.h"
 
 #include <algorithm>
@@ -12,9 +11,11 @@ double colour(const std::vector<float>& rgba, size_t k) { return double(rgba[k /
 
 class Count {
  public:
-  Count(const std::vector<Shot>& shots, const Reference& reference, int width, int height, int tileEdge)
-      : shots_(shots), reference_(reference), width_(size_t(width)), pixels_(size_t(width) * size_t(height)),
-        edge_(size_t(tileEdge)), columns_((size_t(width) + edge_ - 1) / edge_),
+  Count(const std::vector<Shot>& shots, const Reference& reference, int width, int height,
+        int tileEdge)
+      : shots_(shots), reference_(reference), width_(size_t(width)),
+        pixels_(size_t(width) * size_t(height)), edge_(size_t(tileEdge)),
+        columns_((size_t(width) + edge_ - 1) / edge_),
         tiles_(columns_ * ((size_t(height) + edge_ - 1) / edge_)) {}
 
   Coverage run() {
@@ -35,15 +36,18 @@ class Count {
 
  private:
   void add(const Shot& shot) {
-    const double count = double(shots_.size()), others = std::isinf(reference_.worth) ? 0 : count - 1;
-    const double wider = std::isinf(reference_.worth) ? 1 : std::sqrt(1 + 1 / (reference_.worth + others));
+    const double count = double(shots_.size()),
+                 others = std::isinf(reference_.worth) ? 0 : count - 1;
+    const double wider =
+        std::isinf(reference_.worth) ? 1 : std::sqrt(1 + 1 / (reference_.worth + others));
     double off = 0;
     for (size_t i = 0; i < pixels_; i++) {
       double error = 0, all = .03;
       for (size_t k = 3 * i; k < 3 * i + 3; k++) {
         const double mine = colour(shot.rgba, k);
         double truth = reference_.colours[k];
-        if (others > 0) truth = (truth * reference_.worth + sum_[k] - mine) / (reference_.worth + others);
+        if (others > 0)
+          truth = (truth * reference_.worth + sum_[k] - mine) / (reference_.worth + others);
         if (k == 3 * i) one(shot, i, mine - truth, wider, truth);
         error += std::fabs(mine - truth) / wider;
         all += std::fabs(mine);
@@ -65,7 +69,9 @@ class Count {
   void one(const Shot& shot, size_t i, double off, double wider, double truth) {
     double half = double(shot.half[3 * i]) * wider;
     if (!reference_.half.empty()) half = std::hypot(half, double(reference_.half[3 * i]));
-    const bool held = std::fabs(off) <= half + 1e-6 * std::fabs(truth); // sums of floats have rounding errors of their own
+    const bool held =
+        std::fabs(off) <=
+        half + 1e-6 * std::fabs(truth); // sums of floats have rounding errors of their own
     c_.pixels++;
     c_.held += held;
     if (shot.trust[i] == 0) return;
@@ -96,8 +102,10 @@ class Count {
     }
     const double count = double(shots_.size());
     c_.bias = sum / count;
-    const double v = std::max(0.0, sum2 / count - c_.bias * c_.bias) * count / std::max(count - 1, 1.0);
-    c_.biasInterval = count > 1 ? 2 * std::sqrt(v * (1 / count + 1 / reference_.worth)) : 1; // the reference has an error too
+    const double v =
+        std::max(0.0, sum2 / count - c_.bias * c_.bias) * count / std::max(count - 1, 1.0);
+    c_.biasInterval = count > 1 ? 2 * std::sqrt(v * (1 / count + 1 / reference_.worth))
+                                : 1; // the reference has an error too
   }
 
   const std::vector<Shot>& shots_;
@@ -117,7 +125,9 @@ double at(std::vector<double>& values, double share) {
 
 } // namespace
 
-double Coverage::share() const { return intervals() ? double(heldTrusted) / double(intervals()) : 0; }
+double Coverage::share() const {
+  return intervals() ? double(heldTrusted) / double(intervals()) : 0;
+}
 
 double Coverage::shareInterval() const {
   if (!intervals()) return 1;
@@ -125,7 +135,8 @@ double Coverage::shareInterval() const {
   return z / (1 + z * z / n) * std::sqrt(p * (1 - p) / n + z * z / (4 * n * n));
 }
 
-Coverage countCoverage(const std::vector<Shot>& shots, const Reference& reference, int width, int height, int tileEdge) {
+Coverage countCoverage(const std::vector<Shot>& shots, const Reference& reference, int width,
+                       int height, int tileEdge) {
   return Count(shots, reference, width, height, tileEdge).run();
 }
 
@@ -135,7 +146,8 @@ Difference compare(const std::vector<float>& rgba, const std::vector<float>& ref
   double sum = 0, square = 0;
   for (size_t i = 0; i < rgba.size() / 4; i++) {
     bool finite = true;
-    for (size_t k = 4 * i; k < 4 * i + 3; k++) finite = finite && std::isfinite(rgba[k]) && std::isfinite(reference[k]);
+    for (size_t k = 4 * i; k < 4 * i + 3; k++)
+      finite = finite && std::isfinite(rgba[k]) && std::isfinite(reference[k]);
     d.notFinite += !finite;
     for (size_t k = 4 * i; finite && k < 4 * i + 3; k++) {
       const double r = double(reference[k]), e = double(rgba[k]) - r;
@@ -149,7 +161,8 @@ Difference compare(const std::vector<float>& rgba, const std::vector<float>& ref
   const double n = double(off.size());
   d.rmse = std::sqrt(square / n);
   d.bias = sum / n;
-  d.biasInterval = n > 1 ? 1.96 * std::sqrt(std::max(0.0, square / n - d.bias * d.bias) / (n - 1)) : 0;
+  d.biasInterval =
+      n > 1 ? 1.96 * std::sqrt(std::max(0.0, square / n - d.bias * d.bias) / (n - 1)) : 0;
   for (double r : relative) d.relMse += r / n;
   const double limit = at(relative, .999);
   double kept = 0, count = 0;

@@ -1,6 +1,7 @@
-// live.cpp: see live.h. The browser's thread and the render thread meet in `state`: who has the world, and in `mutex`: the
-// frame that is wanted and those that have ended. The settings are the browser's thread's but for the time of mapping; what
-// belongs to a frame in flight is in its Flight.
+// live.cpp: The browser's thread and the render thread meet in `state`: who has the
+// world, and in `mutex`: the frame that is wanted and those that have ended. The settings are the
+// browser's thread's but for the time of mapping; what belongs to a frame in flight is in its
+// Flight.
 #include "libpicture/live.h"
 
 #include <algorithm>
@@ -22,14 +23,18 @@ namespace picture {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-double between(Clock::time_point start, Clock::time_point end) { return std::chrono::duration<double>(end - start).count(); }
+double between(Clock::time_point start, Clock::time_point end) {
+  return std::chrono::duration<double>(end - start).count();
+}
 double secondsSince(Clock::time_point start) { return between(start, Clock::now()); }
 
-// Looking takes time that light could be traced in: a part of it at most, and not more often than anybody sees.
+// Looking takes time that light could be traced in: a part of it at most, and not more often than
+// anybody sees.
 constexpr double leastBetweenLooks = 0.008, restPerLook = 8; // seconds; as long as that many looks
 constexpr uint32_t shownChannels = RT_RGBA | RT_SAMPLES;
 constexpr size_t mostOverlapping = 2;
-// How often it is asked whether a frame has ended behind which another one may still be started: who waits for it cannot do that.
+// How often it is asked whether a frame has ended behind which another one may still be started:
+// who waits for it cannot do that.
 constexpr std::chrono::milliseconds patience(1);
 
 struct Wanted {
@@ -66,8 +71,10 @@ void fillFrom(const LivePicture& before, const std::vector<float>& samples, Live
       const size_t pixel = size_t(y) * size_t(out.width) + size_t(x);
       if (samples[pixel] > 0) continue;
       const size_t row = size_t(y) * size_t(before.height) / size_t(out.height);
-      const size_t from = row * size_t(before.width) + size_t(x) * size_t(before.width) / size_t(out.width);
-      std::copy_n(before.rgb.begin() + std::ptrdiff_t(3 * from), 3, out.rgb.begin() + std::ptrdiff_t(3 * pixel));
+      const size_t from =
+          row * size_t(before.width) + size_t(x) * size_t(before.width) / size_t(out.width);
+      std::copy_n(before.rgb.begin() + std::ptrdiff_t(3 * from), 3,
+                  out.rgb.begin() + std::ptrdiff_t(3 * pixel));
     }
 }
 
@@ -85,8 +92,9 @@ struct LiveRenderer::Impl {
   std::condition_variable changed;
   std::optional<Wanted> wanted;
   bool ending = false;
-  std::shared_ptr<const Made> made;               // the last one
-  std::deque<std::shared_ptr<const Made>> unseen; // that look() has not given yet: as many as may be in flight
+  std::shared_ptr<const Made> made; // the last one
+  std::deque<std::shared_ptr<const Made>>
+      unseen; // that look() has not given yet: as many as may be in flight
   std::string failure;
 
   // The render thread alone.
@@ -103,12 +111,14 @@ struct LiveRenderer::Impl {
   std::thread thread;
 
   Impl(xvrml::Browser& browser, const RenderSettings& settings)
-      : given(settings), stage(browser.world(), &browser, settings), most(settings.cluster ? mostOverlapping : 1) {
+      : given(settings), stage(browser.world(), &browser, settings),
+        most(settings.cluster ? mostOverlapping : 1) {
     given.progressive = true;
   }
 
   // --- The render thread ---
-  // While another frame may be started the oldest one is not waited for: that would keep the newer one waiting.
+  // While another frame may be started the oldest one is not waited for: that would keep the newer
+  // one waiting.
   void loop() {
     const auto news = [this] { return wanted || ending; };
     std::unique_lock lock(mutex);
@@ -144,17 +154,22 @@ struct LiveRenderer::Impl {
     try {
       work();
       return {};
-    } catch (const std::bad_alloc&) { return "not enough memory"; } catch (const std::exception& e) {
-      return e.what();
-    } catch (...) { return "it could not be rendered"; }
+    } catch (const std::bad_alloc&) {
+      return "not enough memory";
+    } catch (const std::exception& e) { return e.what(); } catch (...) {
+      return "it could not be rendered";
+    }
   }
 
-  // Under the mutex, when a frame has been begun or has ended. One that was wanted meanwhile keeps its state.
+  // Under the mutex, when a frame has been begun or has ended. One that was wanted meanwhile keeps
+  // its state.
   void settle(std::string wrong) {
     if (!wrong.empty()) failure = std::move(wrong);
     flying = flights.size() + (wanted ? 1 : 0);
     if (wanted) return;
-    const State now = flights.empty() ? State::idle : flights.size() < most ? State::ready : State::rendering;
+    const State now = flights.empty()         ? State::idle
+                      : flights.size() < most ? State::ready
+                                              : State::rendering;
     state.store(now, std::memory_order_release);
   }
 
@@ -200,10 +215,12 @@ struct LiveRenderer::Impl {
     stage.readChannels(flight.settings, result->picture, &flight.names);
     stage.describe(flight.settings, result->result);
     result->result.map = flight.map;
-    result->whole = !cancelled || all(result->picture.planes.at(RT_SAMPLES), float(flight.settings.samples));
+    result->whole =
+        !cancelled || all(result->picture.planes.at(RT_SAMPLES), float(flight.settings.samples));
     const Clock::time_point end = Clock::now();
     result->seconds = between(flight.started, end);
-    result->alone = between(std::max(flight.started, lastEnd), flights.empty() ? end : flights.front().started);
+    result->alone =
+        between(std::max(flight.started, lastEnd), flights.empty() ? end : flights.front().started);
     lastEnd = end;
     return result;
   }
@@ -239,7 +256,8 @@ struct LiveRenderer::Impl {
   }
 
   void start(const LiveFrame& frame) {
-    if (now() != State::idle && now() != State::ready) throw std::logic_error("a frame is in flight");
+    if (now() != State::idle && now() != State::ready)
+      throw std::logic_error("a frame is in flight");
     stage.passOn();
     stage.settings = given;
     stage.settings.width = frame.width;
@@ -315,10 +333,13 @@ struct LiveRenderer::Impl {
     const float now = rtProgress(context);
     if (now <= progress || !stage.snapshot(seen, shownChannels)) return false;
     if (now < 1) progress = now; // 1 also before it has begun
-    if (!std::any_of(seen.planes[RT_SAMPLES].begin(), seen.planes[RT_SAMPLES].end(), [](float s) { return s > 0; })) return false;
+    if (!std::any_of(seen.planes[RT_SAMPLES].begin(), seen.planes[RT_SAMPLES].end(),
+                     [](float s) { return s > 0; }))
+      return false;
     show(seen, out);
     const double took = secondsSince(begin), rest = std::max(leastBetweenLooks, restPerLook * took);
-    nextLook = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(rest));
+    nextLook = Clock::now() +
+               std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(rest));
     out.seconds = secondsSince(started);
     return true;
   }
@@ -355,17 +376,22 @@ bool LiveRenderer::look(LivePicture& picture) { return impl_->look(picture); }
 
 bool LiveRenderer::copy(Picture& picture) { return impl_->copy(picture); }
 
-void LiveRenderer::change(const std::function<void(RenderSettings&)>& change) { change(impl_->given); }
+void LiveRenderer::change(const std::function<void(RenderSettings&)>& change) {
+  change(impl_->given);
+}
 
 const std::vector<xvrml::ViewpointInfo>& LiveRenderer::viewpoints() const {
   static const std::vector<xvrml::ViewpointInfo> none;
   return impl_->stage.mapper() ? impl_->stage.mapper()->viewpoints() : none;
 }
 
-xvrml::Bounds LiveRenderer::bounds() const { return impl_->stage.mapper() ? impl_->stage.mapper()->bounds() : xvrml::Bounds{}; }
+xvrml::Bounds LiveRenderer::bounds() const {
+  return impl_->stage.mapper() ? impl_->stage.mapper()->bounds() : xvrml::Bounds{};
+}
 
 xvrml::CameraSettings LiveRenderer::cameraOf(const View& view, double aspect) const {
-  return impl_->stage.mapper() ? chooseCamera(*impl_->stage.mapper(), view, aspect) : xvrml::CameraSettings{};
+  return impl_->stage.mapper() ? chooseCamera(*impl_->stage.mapper(), view, aspect)
+                               : xvrml::CameraSettings{};
 }
 
 xvrml::Axis LiveRenderer::upOf(const View& view) const {

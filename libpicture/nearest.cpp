@@ -1,4 +1,3 @@
-// nearest.cpp: see nearest.h.
 #include "libpicture/nearest.h"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-// renderer.cpp: see renderer.h.
 #include "libpicture/renderer.h"
 
 #include <algorithm>
@@ -23,9 +22,12 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 constexpr int maxInFlight = 64;
-constexpr size_t inFlightBytes = size_t(2) << 30, pixelBytes = 128; // of all frames in flight; of a pixel, about
+constexpr size_t inFlightBytes = size_t(2) << 30,
+                 pixelBytes = 128; // of all frames in flight; of a pixel, about
 
-double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+double secondsSince(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 // A frame that was started, and what can be said of it only then.
 struct Flight {
@@ -38,14 +40,16 @@ struct Flight {
 bool worthRounds(const RenderSettings& settings) {
   constexpr int samples = 64;
   constexpr int64_t pixels = int64_t(2) << 20;
-  return !settings.cluster && settings.samples >= samples && int64_t(settings.width) * settings.height <= pixels;
+  return !settings.cluster && settings.samples >= samples &&
+         int64_t(settings.width) * settings.height <= pixels;
 }
 
 struct Renderer::Impl {
   Stage stage;
   Watch watch;
 
-  // Between the threads. `task` is set by the caller and cleared by the render thread when it is done.
+  // Between the threads. `task` is set by the caller and cleared by the render thread when it is
+  // done.
   std::mutex mutex;
   std::condition_variable changed;
   std::function<void()> task;
@@ -147,7 +151,8 @@ struct Renderer::Impl {
   void render(const View& view, RenderResult& result) {
     auto start = Clock::now();
     stage.prepare(view);
-    result.mapSeconds = secondsSince(start) + stage.takeMeshSeconds(); // meshes are made once, with the first picture
+    result.mapSeconds = secondsSince(start) +
+                        stage.takeMeshSeconds(); // meshes are made once, with the first picture
     noteCamera(result);
     stage.setUpFrame();
     start = Clock::now();
@@ -199,7 +204,9 @@ void Renderer::end() {
   if (impl_->thread.joinable()) impl_->thread.join();
 }
 
-void Renderer::change(const std::function<void(RenderSettings&)>& change) { change(impl_->stage.settings); }
+void Renderer::change(const std::function<void(RenderSettings&)>& change) {
+  change(impl_->stage.settings);
+}
 
 void Renderer::setWatch(Watch watch) { impl_->watch = std::move(watch); }
 
@@ -247,11 +254,14 @@ std::vector<xvrml::ExplainedObject> Renderer::explain() {
   return objects;
 }
 
-bool Renderer::snapshot(Picture& picture) { return impl_->stage.snapshot(picture, impl_->stage.settings.channels); }
+bool Renderer::snapshot(Picture& picture) {
+  return impl_->stage.snapshot(picture, impl_->stage.settings.channels);
+}
 
 void Renderer::checkViewpoint(const View& view) {
   if (view.viewpoint && *view.viewpoint >= viewpoints().size())
-    throw RenderError(fmt::format("there is no viewpoint {}: the world has {}", *view.viewpoint, viewpoints().size()));
+    throw RenderError(fmt::format("there is no viewpoint {}: the world has {}", *view.viewpoint,
+                                  viewpoints().size()));
 }
 
 void Renderer::start(const View& view) {
@@ -303,7 +313,8 @@ int findViewpoint(const std::vector<xvrml::ViewpointInfo>& viewpoints, const std
     if (!name.empty() && viewpoints[i].description == name) return int(i);
   size_t number = 0;
   auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
-  if (error == std::errc() && end == name.data() + name.size() && number < viewpoints.size()) return int(number);
+  if (error == std::errc() && end == name.data() + name.size() && number < viewpoints.size())
+    return int(number);
   return -1;
 }
 

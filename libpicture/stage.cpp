@@ -1,4 +1,3 @@
-// stage.cpp: see stage.h.
 #include "libpicture/stage.h"
 
 #include <chrono>
@@ -26,7 +25,8 @@ std::string withoutCall(const std::string& message) {
 double aspectOf(const RenderSettings& settings) { return double(settings.width) / settings.height; }
 
 // Room for each channel that is wanted; fill says whether it could be filled.
-template <class Fill> bool fillChannels(const RenderSettings& settings, uint32_t channels, Picture& picture, const Fill& fill) {
+template <class Fill> bool fillChannels(const RenderSettings& settings, uint32_t channels,
+                                        Picture& picture, const Fill& fill) {
   for (const Channel& channel : channelTable()) {
     if (!(channels & channel.bit)) continue;
     std::vector<float>& plane = picture.planes[channel.bit];
@@ -41,7 +41,8 @@ template <class Fill> bool fillChannels(const RenderSettings& settings, uint32_t
 void throwOnError(const char* doing) {
   const RTenum code = rtGetError();
   if (code == RT_CLUSTER_ERROR) throw RenderError(withoutCall(rtGetErrorMessage()), code);
-  if (code != RT_NO_ERROR) throw RenderError(fmt::format("{}: {}", doing, rtGetErrorMessage()), code);
+  if (code != RT_NO_ERROR)
+    throw RenderError(fmt::format("{}: {}", doing, rtGetErrorMessage()), code);
 }
 
 std::string contextConfiguration(const RenderSettings& settings) {
@@ -67,7 +68,8 @@ void Stage::note(RTenum error, const char*, void* self) {
   stage.memoryExhausted_ |= error == RT_OUT_OF_MEMORY;
 }
 
-// What the engine says: shaders that cannot be rendered, answers that were not finite. Called on render threads too.
+// What the engine says: shaders that cannot be rendered, answers that were not finite. Called on
+// render threads too.
 void Stage::listen(int level, const char* text, void* self) {
   auto& stage = *static_cast<Stage*>(self);
   constexpr size_t most = 100;
@@ -168,7 +170,8 @@ xvrml::CameraSettings Stage::cameraOf(const View& view) const {
 void Stage::prepare(const View& view) {
   mapper_->setHeadlight(settings.headlight);
   mapper_->setModelLight(settings.environment.empty());
-  mapper_->setBackground(settings.background.kind == Background::Kind::world); // else alpha is what the shapes cover
+  mapper_->setBackground(settings.background.kind ==
+                         Background::Kind::world); // else alpha is what the shapes cover
   readBackground();
   shown_ = cameraOf(view);
   mapper_->map(shown_);
@@ -239,11 +242,13 @@ bool Stage::snapshot(Picture& picture, uint32_t channels) const {
   if (!fillChannels(settings, channels & RT_SAMPLES, picture, copied)) return false;
   if (!fillChannels(settings, channels & ~uint32_t(RT_SAMPLES), picture, copied)) return false;
   describe(settings, picture, channels);
-  if (channels & RT_RGBA) backcloth_.putBehind(picture.planes[RT_RGBA], settings.width, settings.height);
+  if (channels & RT_RGBA)
+    backcloth_.putBehind(picture.planes[RT_RGBA], settings.width, settings.height);
   return true;
 }
 
-void Stage::readChannels(const RenderSettings& frame, Picture& picture, const std::vector<std::string>* names) const {
+void Stage::readChannels(const RenderSettings& frame, Picture& picture,
+                         const std::vector<std::string>* names) const {
   describe(frame, picture, frame.channels);
   if (names && (frame.channels & RT_NAME)) picture.names = *names;
   fillChannels(frame, frame.channels, picture, [](uint32_t channel, std::vector<float>& plane) {
@@ -251,7 +256,8 @@ void Stage::readChannels(const RenderSettings& frame, Picture& picture, const st
     throwOnError("reading the picture");
     return true;
   });
-  if (frame.channels & RT_RGBA) backcloth_.putBehind(picture.planes[RT_RGBA], frame.width, frame.height);
+  if (frame.channels & RT_RGBA)
+    backcloth_.putBehind(picture.planes[RT_RGBA], frame.width, frame.height);
 }
 
 void Stage::describe(const RenderSettings& frame, RenderResult& result) const {

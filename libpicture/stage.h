@@ -1,6 +1,7 @@
-// stage.h: what is rendered and how: one OpenRT context, the mapper that fills it with a world, and the settings of its frames.
-// Owned by the renderers (renderer.cpp, live.cpp), each of which has a thread for it: the context's. What happens to a running
-// world comes over as News, which are collected on the browser's thread.
+// stage.h: what is rendered and how: one OpenRT context, the mapper that fills it with a world, and
+// the settings of its frames. Owned by the renderers (renderer.cpp, live.cpp), each of which has a
+// thread for it: the context's. What happens to a running world comes over as News, which are
+// collected on the browser's thread.
 #pragma once
 
 #include <atomic>
@@ -15,7 +16,8 @@
 
 namespace picture {
 
-// What happened to a world since the last call. It holds on to nodes: to be used and given up while the browser is at rest.
+// What happened to a world since the last call. It holds on to nodes: to be used and given up while
+// the browser is at rest.
 struct News {
   bool otherWorld = false;
   xvrml::FieldChanges changes;
@@ -39,7 +41,8 @@ class Stage {
   void passOn();
 
   // --- On the context's thread ---
-  // The context and the mapper; throws RenderError. stop: asked while a cluster is in use by others; true: give up.
+  // The context and the mapper; throws RenderError. stop: asked while a cluster is in use by
+  // others; true: give up.
   void open(const std::function<bool()>& stop = {});
   // Ends the context. Returns why a recording is not whole; empty where all is well.
   std::string close();
@@ -50,9 +53,10 @@ class Stage {
   void prepare(const View& view);
   // The size, channels and quality of the next frame, from the settings.
   void setUpFrame();
-  // The channels of the frame that is finished, whose settings these were. names: as they were when it was started; null: as
-  // they are.
-  void readChannels(const RenderSettings& frame, Picture& picture, const std::vector<std::string>* names = nullptr) const;
+  // The channels of the frame that is finished, whose settings these were. names: as they were when
+  // it was started; null: as they are.
+  void readChannels(const RenderSettings& frame, Picture& picture,
+                    const std::vector<std::string>* names = nullptr) const;
   void describe(const RenderSettings& frame, RenderResult& result) const; // statistics of it
   const xvrml::CameraSettings& shown() const { return shown_; }           // by the last prepare()
   const xvrml::OpenRTMapper* mapper() const { return mapper_.get(); }
@@ -60,8 +64,8 @@ class Stage {
 
   // --- On any thread ---
   RTcontext context() const { return context_; } // null: not yet
-  // Channels of the frame in flight as far as it is finished; false: there is none. The settings must be its own, and the
-  // mapper at rest.
+  // Channels of the frame in flight as far as it is finished; false: there is none. The settings
+  // must be its own, and the mapper at rest.
   bool snapshot(Picture& picture, uint32_t channels) const;
 
  private:

@@ -1,4 +1,3 @@
-// transport.cpp: see transport.h.
 #include "libpicture/transport.h"
 
 #include <iterator>
@@ -16,7 +15,9 @@ std::optional<int> transportNamed(std::string_view name) {
   return std::nullopt;
 }
 
-const char* transportName(RTenum transport) { return transport < std::size(names) ? names[transport] : "plug-in"; }
+const char* transportName(RTenum transport) {
+  return transport < std::size(names) ? names[transport] : "plug-in";
+}
 
 std::vector<LeftOut> leftOutBy(RTenum transport, uint32_t leaves) {
   static constexpr std::pair<uint32_t, LeftOut> table[] = {
@@ -24,19 +25,22 @@ std::vector<LeftOut> leftOutBy(RTenum transport, uint32_t leaves) {
       {RT_LEAVES_BETWEEN, {"interreflection", "light that goes from surface to surface"}},
       {RT_LEAVES_EMITTERS, {"emitters", "light of emitters on other surfaces"}},
       {RT_LEAVES_SKY, {"sky", "light of the sky on surfaces"}},
-      {RT_LEAVES_CAUSTICS, {"caustics", "light of lamps without extent that comes by way of mirrors or glass"}},
+      {RT_LEAVES_CAUSTICS,
+       {"caustics", "light of lamps without extent that comes by way of mirrors or glass"}},
   };
   std::vector<LeftOut> list;
   for (const auto& [bit, left] : table)
     if (leaves & bit) list.push_back(left);
   if (transport == RT_TRANSPORT_LIGHT && (leaves & RT_LEAVES_CAUSTICS))
-    list.back().text = "light of lamps without extent that comes by way of mirrors or glass and is itself seen that way";
+    list.back().text = "light of lamps without extent that comes by way of mirrors or glass and is "
+                       "itself seen that way";
   return list;
 }
 
 std::vector<std::string> leftOutNames(const RTstats& stats) {
   std::vector<std::string> names;
-  for (const LeftOut& left : leftOutBy(stats.transport, stats.transportLeavesOut)) names.emplace_back(left.name);
+  for (const LeftOut& left : leftOutBy(stats.transport, stats.transportLeavesOut))
+    names.emplace_back(left.name);
   return names;
 }
 

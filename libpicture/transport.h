@@ -13,7 +13,7 @@ namespace picture {
 inline constexpr const char* transportNames = "auto, direct, whitted, path or light";
 
 std::optional<int> transportNamed(std::string_view name); // RT_TRANSPORT_*
-const char* transportName(RTenum transport);              // "path" of RT_TRANSPORT_PATH ...; "plug-in" of others
+const char* transportName(RTenum transport); // "path" of RT_TRANSPORT_PATH ...; "plug-in" of others
 
 // A kind of light that a transport leaves out of a scene.
 struct LeftOut {

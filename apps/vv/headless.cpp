@@ -1,4 +1,3 @@
-// headless.cpp: see headless.h.
 #include "headless.h"
 
 #include <new>
@@ -27,14 +26,17 @@ namespace vv {
 
 namespace {
 
-// After the first SIGINT or SIGTERM the process has ended, also while a shader hangs. Supervisors wait as long (docker stop: 10).
+// After the first SIGINT or SIGTERM the process has ended, also while a shader hangs. Supervisors
+// wait as long (docker stop: 10).
 constexpr unsigned interruptSeconds = 9;
 
 class Headless {
  public:
-  Headless(const Options& options, const std::string& commandLine) : options_(options), commandLine_(commandLine) {
+  Headless(const Options& options, const std::string& commandLine)
+      : options_(options), commandLine_(commandLine) {
     if (!options_.cameraShader.empty())
-      options_.view.shader = readShader(options_.cameraShader, "--camera-shader", RT_CAMERA, options_.render.shaderPath);
+      options_.view.shader = readShader(options_.cameraShader, "--camera-shader", RT_CAMERA,
+                                        options_.render.shaderPath);
   }
 
   int run() {
@@ -57,7 +59,8 @@ class Headless {
     if (options_.strict && Problems::any(world)) return exitProblems;
     if (!options_.write.empty()) writeText(options_.write, xvrml::writeWorld(world));
     if (options_.check) return check();
-    if (options_.info || options_.listNodes || options_.listViewpoints || options_.explain) inspect();
+    if (options_.info || options_.listNodes || options_.listViewpoints || options_.explain)
+      inspect();
     int code = exitDone;
     if (options_.makesPictures()) {
       deferInterrupt(true, interruptSeconds);
@@ -68,7 +71,9 @@ class Headless {
   }
 
   // The files that the world was made of; empty if it could not be loaded.
-  std::vector<std::string> files() const { return browser_ ? usedFiles(browser_->world()) : std::vector<std::string>{}; }
+  std::vector<std::string> files() const {
+    return browser_ ? usedFiles(browser_->world()) : std::vector<std::string>{};
+  }
 
  private:
   picture::RenderSettings withoutPicture() const {
@@ -79,19 +84,22 @@ class Headless {
     return settings;
   }
 
-  // Also maps the world, into nothing: what is wrong with its geometry and its textures shows only there. With --time or
+  // Also maps the world, into nothing: what is wrong with its geometry and its textures shows only
+  // there. With --time or
   // --frames the world runs that far.
   int check() {
     {
       picture::Renderer renderer(*browser_, withoutPicture());
       WorldClock clock(*browser_, options_.fps);
       const Timeline timeline(options_);
-      for (size_t i = 0; i < timeline.size() && clock.advance(timeline[i].time); ++i) renderer.prepare(options_.view);
+      for (size_t i = 0; i < timeline.size() && clock.advance(timeline[i].time); ++i)
+        renderer.prepare(options_.view);
     }
     problems_.tell(browser_->world());
     const xvrml::World& world = browser_->world();
     const xvrml::Diagnostics& d = world.diagnostics;
-    if (!options_.quiet) say(fmt::format("vv: {}: {} errors, {} warnings", world.path, d.errors(), d.warnings()));
+    if (!options_.quiet)
+      say(fmt::format("vv: {}: {} errors, {} warnings", world.path, d.errors(), d.warnings()));
     return Problems::any(world) ? exitProblems : exitDone;
   }
 
@@ -108,8 +116,8 @@ class Headless {
     } else {
       const picture::Renderer::Place place = renderer.placeOf(options_.view);
       const std::string up = picture::axisName(place.up);
-      writeOut(describeWorld(world, renderer.viewpoints(), renderer.bounds(), {up, place.reason}, options_.running.scriptPath,
-                             options_.json));
+      writeOut(describeWorld(world, renderer.viewpoints(), renderer.bounds(), {up, place.reason},
+                             options_.running.scriptPath, options_.json));
     }
   }
 

@@ -1,4 +1,3 @@
-// outputs.cpp: see outputs.h.
 #include "outputs.h"
 
 #include <filesystem>
@@ -8,8 +7,8 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "options/names.h"
 #include "libpicture/files/atomic_file.h"
+#include "options/names.h"
 #include "timeline.h"
 #include "watched.h"
 
@@ -23,14 +22,17 @@ struct Named {
   std::string option, path;
 };
 
-// Every file that is written, as far as its name is known: the first picture of a sequence. Not of --viewpoint all.
+// Every file that is written, as far as its name is known: the first picture of a sequence. Not of
+// --viewpoint all.
 std::vector<Named> outputsOf(const Options& options) {
   const std::optional<long long> frame =
       options.isSequence() ? std::optional(Timeline(options)[0].frame.value_or(0)) : std::nullopt;
   std::vector<Named> all;
   for (const Output& output : options.outputs)
     if (!options.allViewpoints())
-      all.push_back({"-o", pathFor(output.path, {"", output.film != picture::FilmKind::none ? std::nullopt : frame})});
+      all.push_back(
+          {"-o", pathFor(output.path,
+                         {"", output.film != picture::FilmKind::none ? std::nullopt : frame})});
   if (!options.allViewpoints() || options.isSequence()) all.push_back({"--stats", options.stats});
   all.push_back({"--write", options.write});
   all.push_back({"--record", options.render.record});
@@ -40,11 +42,14 @@ std::vector<Named> outputsOf(const Options& options) {
 }
 
 std::vector<Named> inputsOf(const Options& options) {
-  std::vector<Named> all = {
-      {"the world that is read", options.input},      {"the picture of --environment", options.render.environment},
-      {"the script of --input", options.inputScript}, {"the picture of --compare", options.compare},
-      {"the file of --key", options.cluster.key},     {"the file of --allow-keys", options.cluster.allow}};
-  if (options.cluster.workers.starts_with('@')) all.push_back({"the file of --workers", options.cluster.workers.substr(1)});
+  std::vector<Named> all = {{"the world that is read", options.input},
+                            {"the picture of --environment", options.render.environment},
+                            {"the script of --input", options.inputScript},
+                            {"the picture of --compare", options.compare},
+                            {"the file of --key", options.cluster.key},
+                            {"the file of --allow-keys", options.cluster.allow}};
+  if (options.cluster.workers.starts_with('@'))
+    all.push_back({"the file of --workers", options.cluster.workers.substr(1)});
   for (const std::string& shader : options.shaders) // DEF=CLASS:texture=@FILE
     for (size_t at = shader.find("=@"); at != shader.npos; at = shader.find("=@", at + 1))
       all.push_back({"a file of --shader", shader.substr(at + 2, shader.find(':', at) - at - 2)});
@@ -70,7 +75,8 @@ void refuseKept(const Options& options) {
 
 void checkOutputs(const Options& options) {
   for (const Output& output : options.outputs) {
-    if (output.path == "-" && ::isatty(STDOUT_FILENO)) throw Failure{exitUsage, "-o -: a picture is not written to a terminal"};
+    if (output.path == "-" && ::isatty(STDOUT_FILENO))
+      throw Failure{exitUsage, "-o -: a picture is not written to a terminal"};
     if (output.film == picture::FilmKind::none) continue;
     if (const std::string why = picture::whyNoFilm(output.film); !why.empty())
       throw Failure{exitRender, output.path + ": " + why};
@@ -81,8 +87,8 @@ void checkOutputs(const Options& options) {
     if (place.empty()) continue;
     const auto [found, fresh] = taken.try_emplace(place, output.option);
     if (!fresh)
-      throw Failure{exitUsage,
-                    fmt::format("{} and {} name one file, {}: each needs its own", found->second, output.option, output.path)};
+      throw Failure{exitUsage, fmt::format("{} and {} name one file, {}: each needs its own",
+                                           found->second, output.option, output.path)};
   }
   for (const Named& input : inputsOf(options)) picture::keepFile(input.path, input.option);
   refuseKept(options);
@@ -93,11 +99,13 @@ void keepFilesOf(const xvrml::World& world, const Options& options) {
   refuseKept(options);
 }
 
-// Without a file of the output's name there is nothing to be replaced, and no need to walk over all of the world.
+// Without a file of the output's name there is nothing to be replaced, and no need to walk over all
+// of the world.
 void keepFilesOf(const xvrml::World& world, const std::string& output) {
   std::error_code error;
   if (!fs::is_regular_file(output, error)) return;
-  for (const std::string& file : usedFiles(world)) picture::keepFile(file, "a file that the world is made of");
+  for (const std::string& file : usedFiles(world))
+    picture::keepFile(file, "a file that the world is made of");
 }
 
 } // namespace vv

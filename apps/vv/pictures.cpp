@@ -1,4 +1,3 @@
-// pictures.cpp: see pictures.h.
 #include "pictures.h"
 
 #include <algorithm>
@@ -10,15 +9,15 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "libpicture/files/atomic_file.h"
+#include "libpicture/nearest.h"
+#include "options/names.h"
+#include "outputs.h"
 #include "report/audit.h"
 #include "report/cluster_report.h"
 #include "report/describe.h"
 #include "report/hints.h"
 #include "report/messages.h"
-#include "options/names.h"
-#include "outputs.h"
-#include "libpicture/files/atomic_file.h"
-#include "libpicture/nearest.h"
 #include "report/progress.h"
 #include "report/report.h"
 #include "signals.h"
@@ -30,7 +29,9 @@ namespace vv {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+double secondsSince(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 constexpr int stuckSeconds = 4; // from an interrupt until a render that has not stopped is given up
 
@@ -41,8 +42,10 @@ struct Job {
 };
 
 // The views of one moment.
-std::vector<Job> chooseJobs(const Options& options, const std::vector<xvrml::ViewpointInfo>& viewpoints) {
-  if (options.viewpoint.empty() || (options.allViewpoints() && viewpoints.empty())) return {{options.view, {}}};
+std::vector<Job> chooseJobs(const Options& options,
+                            const std::vector<xvrml::ViewpointInfo>& viewpoints) {
+  if (options.viewpoint.empty() || (options.allViewpoints() && viewpoints.empty()))
+    return {{options.view, {}}};
   std::vector<Job> jobs;
   if (options.allViewpoints()) {
     std::set<std::string> taken;
@@ -66,12 +69,15 @@ std::vector<Job> chooseJobs(const Options& options, const std::vector<xvrml::Vie
       names.push_back(v.name);
       names.push_back(v.description);
       const std::string& shown = v.name.empty() ? v.description : v.name;
-      if (i < 20) known += fmt::format("{}{}{}", i ? ", " : "", i, shown.empty() ? "" : " " + oneLine(shown));
+      if (i < 20)
+        known += fmt::format("{}{}{}", i ? ", " : "", i, shown.empty() ? "" : " " + oneLine(shown));
     }
     const std::string near = picture::nearest(options.viewpoint, names);
-    throw Failure{exitUsage, fmt::format("--viewpoint: the world has no \"{}\"{}; {}", options.viewpoint,
-                                         near.empty() ? "" : fmt::format(" (did you mean {}?)", near),
-                                         viewpoints.empty() ? "it has no viewpoints" : "its viewpoints are " + known)};
+    throw Failure{
+        exitUsage,
+        fmt::format("--viewpoint: the world has no \"{}\"{}; {}", options.viewpoint,
+                    near.empty() ? "" : fmt::format(" (did you mean {}?)", near),
+                    viewpoints.empty() ? "it has no viewpoints" : "its viewpoints are " + known)};
   }
   jobs.push_back({options.view, {}});
   jobs.back().view.viewpoint = size_t(index);
@@ -80,19 +86,22 @@ std::vector<Job> chooseJobs(const Options& options, const std::vector<xvrml::Vie
 
 class Pictures {
  public:
-  Pictures(const Options& options, const std::string& commandLine, xvrml::Browser& browser, Problems& problems)
+  Pictures(const Options& options, const std::string& commandLine, xvrml::Browser& browser,
+           Problems& problems)
       : options_(options), commandLine_(commandLine), browser_(browser), problems_(problems) {}
 
   int make() {
     picture::RenderSettings settings = options_.render;
-    if (!options_.stats.empty() && !options_.isSequence()) settings.channels |= RT_VARIANCE; // then RTstats has the error
-    if (settings.error > 0) settings.channels |= RT_SAMPLES;                                 // whyMissed()
+    if (!options_.stats.empty() && !options_.isSequence())
+      settings.channels |= RT_VARIANCE;                      // then RTstats has the error
+    if (settings.error > 0) settings.channels |= RT_SAMPLES; // whyMissed()
     warnOfAlpha();
     settings.progressive = !options_.isSequence() && picture::worthRounds(settings);
     const Timeline timeline(options_);
     if (options_.script) beginScript(settings);
     WorldClock clock([this](double time) { tick(time); }, options_.fps);
-    if (!clock.advance(timeline[0].time)) return stopped("vv: interrupted before the first picture");
+    if (!clock.advance(timeline[0].time))
+      return stopped("vv: interrupted before the first picture");
     if (!renderer_) renderer_ = std::make_unique<picture::Renderer>(browser_, settings);
     picture::Renderer& renderer = *renderer_;
     renderer.setWatch([this](float fraction) { return watch(fraction); });
@@ -100,8 +109,10 @@ class Pictures {
     for (size_t i = 0; i < timeline.size(); ++i) {
       const Moment moment = timeline[i];
       if (!clock.advance(moment.time))
-        return flights_.empty() ? stopped("vv: interrupted; the pictures so far are saved") : land();
-      std::vector<Job> jobs = pilot_ ? std::vector<Job>{scriptedJob()} : chooseJobs(options_, renderer.viewpoints());
+        return flights_.empty() ? stopped("vv: interrupted; the pictures so far are saved")
+                                : land();
+      std::vector<Job> jobs =
+          pilot_ ? std::vector<Job>{scriptedJob()} : chooseJobs(options_, renderer.viewpoints());
       views_ = jobs.size();
       for (Job& job : jobs) {
         job.name.frame = moment.frame;
@@ -119,12 +130,17 @@ class Pictures {
  private:
   // Warns if no file keeps the transparency that was asked for.
   void warnOfAlpha() const {
-    if (options_.quiet || options_.render.background.kind != picture::Background::Kind::none || options_.outputs.empty()) return;
-    const bool kept = std::any_of(options_.outputs.begin(), options_.outputs.end(), [](const Output& output) {
-      return output.film == picture::FilmKind::none &&
-             (output.format == picture::Format::png || output.format == picture::Format::exr);
-    });
-    if (!kept) sayWarning("--background none: only png and exr keep what is transparent; it is black in the other files");
+    if (options_.quiet || options_.render.background.kind != picture::Background::Kind::none ||
+        options_.outputs.empty())
+      return;
+    const bool kept =
+        std::any_of(options_.outputs.begin(), options_.outputs.end(), [](const Output& output) {
+          return output.film == picture::FilmKind::none &&
+                 (output.format == picture::Format::png || output.format == picture::Format::exr);
+        });
+    if (!kept)
+      sayWarning("--background none: only png and exr keep what is transparent; it is black in the "
+                 "other files");
   }
 
   // What is recorded is whole only now. The renderer goes with it.
@@ -132,17 +148,20 @@ class Pictures {
     if (!options_.render.record.empty() && renderer_) renderer_->close();
   }
 
-  // The user of --input: where he looks from. Whether he has all of the world in view only the renderer knows.
+  // The user of --input: where he looks from. Whether he has all of the world in view only the
+  // renderer knows.
   void beginScript(const picture::RenderSettings& settings) {
     renderer_ = std::make_unique<picture::Renderer>(browser_, settings);
     pilot_ = std::make_unique<Pilot>(browser_, 0, options_.view.fov);
     pilot_->setAspect(double(options_.render.width) / options_.render.height);
     if (pilot_->begin(options_.view, options_.viewpoint)) present();
     pilot_->smooth();
-    replay_ = std::make_unique<Replay>(*pilot_, *options_.script, [this](const InputEvent&, Action action) {
-      if (action == Action::frameAll) pilot_->frameAll(renderer_->bounds());
-      if (action == Action::beginAgain) present();
-    });
+    replay_ = std::make_unique<Replay>(*pilot_, *options_.script,
+                                       [this](const InputEvent&, Action action) {
+                                         if (action == Action::frameAll)
+                                           pilot_->frameAll(renderer_->bounds());
+                                         if (action == Action::beginAgain) present();
+                                       });
   }
 
   void present() {
@@ -166,7 +185,9 @@ class Pictures {
     renderer_->change([this](picture::RenderSettings& s) {
       const std::optional<bool> switched = pilot_->headlight();
       s.headlight = options_.render.headlight;
-      if (switched) s.headlight = *switched ? xvrml::MapOptions::Headlight::on : xvrml::MapOptions::Headlight::off;
+      if (switched)
+        s.headlight =
+            *switched ? xvrml::MapOptions::Headlight::on : xvrml::MapOptions::Headlight::off;
     });
     return job;
   }
@@ -175,7 +196,8 @@ class Pictures {
     tellNotes();
     if (progress_) {
       const double all = double(moments_ * views_);
-      progress_->show(float((double(done_) + double(fraction)) / std::max(1.0, all)), workersText(options_.render.cluster.get()));
+      progress_->show(float((double(done_) + double(fraction)) / std::max(1.0, all)),
+                      workersText(options_.render.cluster.get()));
     }
     saveWanted_ |= takeSaveRequest();
     picture::Picture soFar;
@@ -187,8 +209,9 @@ class Pictures {
     return interrupted();
   }
 
-  // The render was told to stop, and does not: a shader hangs, and with it whoever waits for it. What there is of the picture is
-  // saved from here. (An alarm ends the process if even that hangs: deferInterrupt.)
+  // The render was told to stop, and does not: a shader hangs, and with it whoever waits for it.
+  // What there is of the picture is saved from here. (An alarm ends the process if even that hangs:
+  // deferInterrupt.)
   [[noreturn]] void giveUp(picture::Picture& soFar) {
     progress_.reset();
     const bool saved = !flights_.empty() && renderer_->snapshot(soFar);
@@ -206,12 +229,14 @@ class Pictures {
   // What is said of workers, between the pictures of a progress bar.
   void tellNotes() {
     if (!options_.render.cluster) return;
-    const std::vector<std::string> lines = noteLines(options_.render.cluster->takeNotes(), options_.verbose, options_.quiet);
+    const std::vector<std::string> lines =
+        noteLines(options_.render.cluster->takeNotes(), options_.verbose, options_.quiet);
     if (progress_ && !lines.empty()) progress_->clear();
     for (const std::string& line : lines) say(line);
   }
 
-  // As many frames as there is somebody to work at are under way at a time; they are saved in their order.
+  // As many frames as there is somebody to work at are under way at a time; they are saved in their
+  // order.
   int makeOne(const Job& job, const Moment& moment) {
     if (options_.audit) return auditOne(job);
     if (!progress_) progress_ = std::make_unique<Progress>(job.name.text(), options_.quiet);
@@ -235,7 +260,8 @@ class Pictures {
     if (progress_) progress_->clear();
     tellNotes();
     problems_.tell(browser_.world());
-    if (options_.strict && Problems::any(browser_.world())) return result.missing ? exitMissing : exitProblems;
+    if (options_.strict && Problems::any(browser_.world()))
+      return result.missing ? exitMissing : exitProblems;
     finish(flight.job, flight.moment, result);
     return interrupted() ? stopped("vv: interrupted; the picture so far is saved") : exitDone;
   }
@@ -251,7 +277,8 @@ class Pictures {
     problems_.tell(browser_.world());
     if (!finished) return stopped("vv: interrupted before the audit was finished");
     writeOut(audit.text());
-    for (const Output& output : options_.outputs) picture::writeFile(pathFor(output.path, job.name), audit.encode(output.format));
+    for (const Output& output : options_.outputs)
+      picture::writeFile(pathFor(output.path, job.name), audit.encode(output.format));
     return audit.good() ? exitDone : exitProblems;
   }
 
@@ -285,7 +312,9 @@ class Pictures {
       const std::string path = pathFor(output.path, {job.name.viewpoint, {}});
       auto& film = films_[path];
       try {
-        if (!film) film = std::make_unique<picture::Film>(output.film, made.width, made.height, options_.fps);
+        if (!film)
+          film =
+              std::make_unique<picture::Film>(output.film, made.width, made.height, options_.fps);
         film->add(picture::displayBytes(made));
       } catch (const std::runtime_error& error) {
         throw Failure{exitRender, fmt::format("cannot make {}: {}", path, error.what())};
@@ -306,28 +335,34 @@ class Pictures {
     writePictures(job, result.picture);
     if (!result.interrupted) addToFilms(job, result.picture);
     const double writeSeconds = secondsSince(start);
-    if (!options_.compare.empty() && !result.interrupted) writeOut(compareText(result.picture, options_.compare));
+    if (!options_.compare.empty() && !result.interrupted)
+      writeOut(compareText(result.picture, options_.compare));
     if (options_.verbose)
-      say(fmt::format("vv: {}{}{} triangles, mapped in {}, rendered in {}, written in {}", job.name.text(),
-                      job.name.text().empty() ? "" : ": ", result.stats.triangles, duration(result.mapSeconds),
-                      duration(result.renderSeconds), duration(writeSeconds)));
+      say(fmt::format("vv: {}{}{} triangles, mapped in {}, rendered in {}, written in {}",
+                      job.name.text(), job.name.text().empty() ? "" : ": ", result.stats.triangles,
+                      duration(result.mapSeconds), duration(result.renderSeconds),
+                      duration(writeSeconds)));
     if (options_.verbose && done_ == moments_ * views_) tellLast(result);
     const bool nothing = !options_.quiet && !result.interrupted && showsNothing(result.picture);
     anythingShown_ = anythingShown_ || !nothing;
     // The last picture of a sequence speaks for all of them.
     const bool hints = !options_.isSequence() || (done_ == moments_ * views_ && !anythingShown_);
     if (nothing && hints && flights_.empty())
-      if (const std::string hint = hintFor(options_, job.view, result, *renderer_); !hint.empty()) say("vv: " + hint);
+      if (const std::string hint = hintFor(options_, job.view, result, *renderer_); !hint.empty())
+        say("vv: " + hint);
     const RTstats& s = result.stats;
-    if (options_.render.error > 0 && !result.interrupted && s.errorPixels > 0 && s.errorHalfWidth > 1.001 * options_.render.error)
-      sayWarning(fmt::format("{}{}the error is {:.3g} %, not {:.3g} %: {}", job.name.text(), job.name.text().empty() ? "" : ": ",
-                             100 * s.errorHalfWidth, 100 * options_.render.error, whyMissed(result)));
+    if (options_.render.error > 0 && !result.interrupted && s.errorPixels > 0 &&
+        s.errorHalfWidth > 1.001 * options_.render.error)
+      sayWarning(fmt::format("{}{}the error is {:.3g} %, not {:.3g} %: {}", job.name.text(),
+                             job.name.text().empty() ? "" : ": ", 100 * s.errorHalfWidth,
+                             100 * options_.render.error, whyMissed(result)));
     if (options_.stats.empty()) return;
     if (options_.isSequence())
       frames_.add(job.name, moment.time, result, writeSeconds);
     else
       writeText(options_.stats == "-" ? "-" : pathFor(options_.stats, job.name),
-                statsJson(options_, commandLine_, running(), result, {writeSeconds, secondsSince(start_)}));
+                statsJson(options_, commandLine_, running(), result,
+                          {writeSeconds, secondsSince(start_)}));
   }
 
   RunningWorld running() const { return {browser_.world(), browser_.scripts()}; }
@@ -336,8 +371,8 @@ class Pictures {
   void tellLast(const picture::RenderResult& result) {
     for (const std::string& line : clusterLines(result)) say(line);
     if (const xvrml::ScriptCounts counts = browser_.scripts(); counts.started > 0)
-      say(fmt::format("vv: {} of {} Scripts run; {} calls have taken {}", counts.started, counts.scripts, counts.calls,
-                      duration(counts.seconds)));
+      say(fmt::format("vv: {} of {} Scripts run; {} calls have taken {}", counts.started,
+                      counts.scripts, counts.calls, duration(counts.seconds)));
   }
 
   // Why a picture has not reached --error, from the samples that it took.
@@ -347,20 +382,23 @@ class Pictures {
     double full = 0, largest = 0; // share of the pixels; samples of one
     if (samples != result.picture.planes.end() && !samples->second.empty()) {
       const std::vector<float>& all = samples->second;
-      full = double(std::count_if(all.begin(), all.end(), [&](float n) { return n >= most; })) / double(all.size());
+      full = double(std::count_if(all.begin(), all.end(), [&](float n) { return n >= most; })) /
+             double(all.size());
       largest = double(*std::max_element(all.begin(), all.end()));
     }
     if (full > 0)
-      return fmt::format("{:.3g} % of its pixels have taken {} samples, the most allowed; --spp allows more", 100 * full,
-                         options_.render.samples);
+      return fmt::format(
+          "{:.3g} % of its pixels have taken {} samples, the most allowed; --spp allows more",
+          100 * full, options_.render.samples);
     if (options_.render.timeLimit > 0) return "--time-limit has ended it";
-    const std::string taken = fmt::format("its pixels have taken at most {:.0f} of the {} samples allowed, ", largest, most);
+    const std::string taken = fmt::format(
+        "its pixels have taken at most {:.0f} of the {} samples allowed, ", largest, most);
     if (result.stats.transport == RT_TRANSPORT_LIGHT)
-      return taken +
-             "and paths from lamps, whose number --error does not change; --spp N without --error takes N of both a pixel";
-    return taken +
-           "which were enough in the pilots that decide it, and this picture has met more noise than they have; a smaller "
-           "--error takes more";
+      return taken + "and paths from lamps, whose number --error does not change; --spp N without "
+                     "--error takes N of both a pixel";
+    return taken + "which were enough in the pilots that decide it, and this picture has met more "
+                   "noise than they have; a smaller "
+                   "--error takes more";
   }
 
   void finishSequence() {
@@ -370,7 +408,8 @@ class Pictures {
     }
     films_.clear();
     if (!options_.stats.empty() && options_.isSequence())
-      writeText(options_.stats, frames_.json(options_, commandLine_, running(), secondsSince(start_)));
+      writeText(options_.stats,
+                frames_.json(options_, commandLine_, running(), secondsSince(start_)));
   }
 
   const Options& options_;
@@ -408,7 +447,8 @@ picture::Picture wantedPart(const picture::Picture& made, uint32_t channels) {
   return wanted;
 }
 
-int makePictures(const Options& options, const std::string& commandLine, xvrml::Browser& browser, Problems& problems) {
+int makePictures(const Options& options, const std::string& commandLine, xvrml::Browser& browser,
+                 Problems& problems) {
   return Pictures(options, commandLine, browser, problems).make();
 }
 

@@ -1,4 +1,5 @@
-// pictures.h: the pictures that the command line asks for: views, frames, turntables, files and films. [main thread]
+// pictures.h: the pictures that the command line asks for: views, frames, turntables, files and
+// films. [main thread]
 #pragma once
 
 #include "options/options.h"
@@ -7,7 +8,8 @@
 namespace vv {
 
 // Returns an exit code. Throws Failure, picture::RenderError and what writing throws.
-int makePictures(const Options& options, const std::string& commandLine, xvrml::Browser& browser, Problems& problems);
+int makePictures(const Options& options, const std::string& commandLine, xvrml::Browser& browser,
+                 Problems& problems);
 
 // The channels that were asked for, without those that only the statistics need.
 picture::Picture wantedPart(const picture::Picture& made, uint32_t channels);

@@ -1,4 +1,3 @@
-// signals.cpp: see signals.h.
 #include "signals.h"
 
 #include <atomic>
@@ -43,9 +42,13 @@ void put(const char* text) {
   if (::write(STDERR_FILENO, text, std::strlen(text)) < 0) return; // nobody left to tell
 }
 
-// Says whose fault it may be, then lets the crash take its course. Only what a signal handler may call.
+// Says whose fault it may be, then lets the crash take its course. Only what a signal handler may
+// call.
 void onCrash(int number) {
-  const char* const name = number == SIGSEGV ? "SIGSEGV" : number == SIGBUS ? "SIGBUS" : number == SIGFPE ? "SIGFPE" : "SIGILL";
+  const char* const name = number == SIGSEGV  ? "SIGSEGV"
+                           : number == SIGBUS ? "SIGBUS"
+                           : number == SIGFPE ? "SIGFPE"
+                                              : "SIGILL";
   const char* const shader = rtRunningShader();
   put("vv: crash (");
   put(name);

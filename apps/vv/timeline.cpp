@@ -1,4 +1,3 @@
-// timeline.cpp: see timeline.h.
 #include "timeline.h"
 
 #include <numbers>
@@ -8,13 +7,15 @@
 namespace vv {
 
 Timeline::Timeline(const Options& options) : options_(options) {
-  if (options.frames) count_ = size_t((options.frames->last - options.frames->first) / options.frames->step) + 1;
+  if (options.frames)
+    count_ = size_t((options.frames->last - options.frames->first) / options.frames->step) + 1;
   if (options.turntable > 0) count_ = size_t(options.turntable);
 }
 
 Moment Timeline::operator[](size_t i) const {
   if (options_.frames) {
-    const long long frame = options_.frames->first + static_cast<long long>(i) * options_.frames->step;
+    const long long frame =
+        options_.frames->first + static_cast<long long>(i) * options_.frames->step;
     return {double(frame) / options_.fps, frame};
   }
   Moment moment{options_.time.value_or(0)};

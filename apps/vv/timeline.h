@@ -1,5 +1,6 @@
-// timeline.h: which moments of a world are pictured, and how its clock gets there: in steps of 1/fps from 0, so that the world
-// at frame N is the same whether the frames before it are pictured or not. No wall clock. [main thread]
+// timeline.h: which moments of a world are pictured, and how its clock gets there: in steps of
+// 1/fps from 0, so that the world at frame N is the same whether the frames before it are pictured
+// or not. No wall clock. [main thread]
 #pragma once
 
 #include <functional>
@@ -29,9 +30,11 @@ class Timeline {
 
 class WorldClock {
  public:
-  WorldClock(xvrml::Browser& browser, double fps) : WorldClock([&browser](double time) { browser.tick(time); }, fps) {}
+  WorldClock(xvrml::Browser& browser, double fps)
+      : WorldClock([&browser](double time) { browser.tick(time); }, fps) {}
   // tick: what a step is.
-  WorldClock(std::function<void(double time)> tick, double fps) : tick_(std::move(tick)), fps_(fps) {}
+  WorldClock(std::function<void(double time)> tick, double fps)
+      : tick_(std::move(tick)), fps_(fps) {}
   // Steps up to `time`, which is not before the last one. False, and not there, after an interrupt.
   bool advance(double time);
 

@@ -1,4 +1,3 @@
-// watched.cpp: see watched.h.
 #include "watched.h"
 
 #include <chrono>
@@ -10,8 +9,8 @@
 
 #include <sys/stat.h>
 
-#include "report/describe.h"
 #include "folder_files.h"
+#include "report/describe.h"
 
 namespace vv {
 
@@ -21,16 +20,19 @@ std::vector<std::string> usedFiles(const xvrml::World& world) {
     const std::string base = node.source.file ? *node.source.file : world.path;
     files.insert(base);
     for (const xvrml::FieldInfo& field : node.type().fields) {
-      const bool value = field.access == xvrml::Access::field || field.access == xvrml::Access::exposedField;
+      const bool value =
+          field.access == xvrml::Access::field || field.access == xvrml::Access::exposedField;
       if (!value || field.type != xvrml::FieldType::MFString) continue;
       if (!field.name.ends_with("url") && !field.name.ends_with("Url")) continue;
       for (const std::string& url : *static_cast<const xvrml::MFString*>(node.storage(field)))
-        if (auto resolved = xvrml::resolveUrl(url, base, world.options); resolved.error.empty()) files.insert(resolved.path);
+        if (auto resolved = xvrml::resolveUrl(url, base, world.options); resolved.error.empty())
+          files.insert(resolved.path);
     }
   });
   for (const xvrml::ProtoPtr& prototype : world.scope.prototypes)
     for (const std::string& url : prototype->urls)
-      if (auto resolved = xvrml::resolveUrl(url, prototype->baseUrl, world.options); resolved.error.empty())
+      if (auto resolved = xvrml::resolveUrl(url, prototype->baseUrl, world.options);
+          resolved.error.empty())
         files.insert(resolved.path);
   return {files.begin(), files.end()};
 }
@@ -61,7 +63,8 @@ timespec Watched::now() {
 void Watched::add(const std::vector<std::string>& files, timespec read) {
   for (const std::string& file : files) {
     const Stamp stamp = stampOf(file);
-    const bool since = std::pair(stamp.seconds, stamp.nanoseconds) > std::pair<long long, long long>(read.tv_sec, read.tv_nsec);
+    const bool since = std::pair(stamp.seconds, stamp.nanoseconds) >
+                       std::pair<long long, long long>(read.tv_sec, read.tv_nsec);
     files_.try_emplace(file, since ? Stamp{} : stamp);
   }
 }

@@ -1,4 +1,3 @@
-// world_start.cpp: see world_start.h.
 #include "world_start.h"
 
 #include <cerrno>
@@ -8,9 +7,9 @@
 #include <unistd.h>
 
 #include "options/definitions.h"
+#include "options/shader_changes.h"
 #include "report/messages.h"
 #include "report/progress.h"
-#include "options/shader_changes.h"
 
 namespace vv {
 
@@ -26,39 +25,48 @@ std::string readStandardInput(uint64_t limit) {
     if (got == 0) return bytes;
     bytes.append(block, size_t(got));
     if (bytes.size() > limit)
-      throw Failure{exitInput, fmt::format("standard input is longer than the limit fileBytes ({})", limit)};
+      throw Failure{exitInput,
+                    fmt::format("standard input is longer than the limit fileBytes ({})", limit)};
   }
 }
 
 // Scripts start while the Browser is made: that is shown if it takes long.
-std::unique_ptr<xvrml::Browser> startScripts(std::unique_ptr<xvrml::World> world, const Options& options) {
-  const auto progress = std::make_shared<std::unique_ptr<Progress>>(std::make_unique<Progress>("Scripts", options.quiet));
+std::unique_ptr<xvrml::Browser> startScripts(std::unique_ptr<xvrml::World> world,
+                                             const Options& options) {
+  const auto progress = std::make_shared<std::unique_ptr<Progress>>(
+      std::make_unique<Progress>("Scripts", options.quiet));
   xvrml::RunOptions run = options.run;
   run.epoch = options.epoch.value_or(xvrml::worldEpoch);
-  run.onScriptStart = [progress](const xvrml::ScriptCounts& counts) { // later ones are started in the midst of other things
-    if (*progress && counts.scripts > 0) (*progress)->show(1 - float(counts.waiting) / float(counts.scripts));
+  run.onScriptStart = [progress](const xvrml::ScriptCounts& counts) { // later ones are started in
+                                                                      // the midst of other things
+    if (*progress && counts.scripts > 0)
+      (*progress)->show(1 - float(counts.waiting) / float(counts.scripts));
   };
   const auto begin = std::chrono::steady_clock::now();
   auto browser = std::make_unique<xvrml::Browser>(std::move(world), options.running, 0, run);
   progress->reset();
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  const double seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   if (const xvrml::ScriptCounts counts = browser->scripts(); options.verbose && counts.scripts > 0)
-    say(fmt::format("vv: {} of {} Scripts started in {}", counts.started, counts.scripts, duration(seconds)));
+    say(fmt::format("vv: {} of {} Scripts started in {}", counts.started, counts.scripts,
+                    duration(seconds)));
   return browser;
 }
 
 } // namespace
 
-std::unique_ptr<xvrml::World> readWorld(const std::string& path, const xvrml::LoadOptions& options) {
+std::unique_ptr<xvrml::World> readWorld(const std::string& path,
+                                        const xvrml::LoadOptions& options) {
   if (path != "-") return xvrml::loadWorld(path, options);
   return xvrml::loadWorldFromMemory(readStandardInput(options.limits.fileBytes), "-", options);
 }
 
-std::unique_ptr<xvrml::Browser> startWorld(std::unique_ptr<xvrml::World> world, const Options& options, Problems& problems) {
+std::unique_ptr<xvrml::Browser> startWorld(std::unique_ptr<xvrml::World> world,
+                                           const Options& options, Problems& problems) {
   problems.tell(*world);
   if (options.verbose)
-    say(fmt::format("vv: {} nodes, parsed in {}, Inlines and prototypes in {}", world->nodeCount, duration(world->times.parse),
-                    duration(world->times.load)));
+    say(fmt::format("vv: {} nodes, parsed in {}, Inlines and prototypes in {}", world->nodeCount,
+                    duration(world->times.parse), duration(world->times.load)));
   const std::vector<Definition> definitions = readDefinitions(options.definitions, *world);
   for (const Definition& d : definitions)
     if (!d.asEvent) d.node->set(*d.field, d.value);

@@ -1,5 +1,6 @@
-// browser.cpp: the Python class Browser: a World that runs. Time, events, the pointer and the viewer are arguments; callbacks of
-// listeners run on the calling thread. Called with the GIL held; what runs the world releases it.
+// browser.cpp: the Python class Browser: a World that runs. Time, events, the pointer and the
+// viewer are arguments; callbacks of listeners run on the calling thread. Called with the GIL held;
+// what runs the world releases it.
 #include <array>
 #include <cmath>
 
@@ -17,12 +18,15 @@ namespace {
 struct BrowserObject : WorldObject {};
 using BrowserPtr = std::shared_ptr<BrowserObject>;
 
-BrowserPtr makeBrowser(const py::object& source, double start, const py::object& limits, bool allowAbsolute,
-                       const py::object& scriptPath, bool trust, double epoch, bool directOutputAlways) {
+BrowserPtr makeBrowser(const py::object& source, double start, const py::object& limits,
+                       bool allowAbsolute, const py::object& scriptPath, bool trust, double epoch,
+                       bool directOutputAlways) {
   if (!(start >= -latestTime && start < latestTime))
-    throw py::value_error(fmt::format("start: a number between -{0} and {0} was expected, not {1}", latestTime, start));
+    throw py::value_error(fmt::format("start: a number between -{0} and {0} was expected, not {1}",
+                                      latestTime, start));
   if (!(epoch > -1 && epoch < latestTime)) // also NaN; as --epoch of vv
-    throw py::value_error(fmt::format("epoch: a number between -1 and {} was expected, not {}", latestTime, epoch));
+    throw py::value_error(
+        fmt::format("epoch: a number between -1 and {} was expected, not {}", latestTime, epoch));
   BrowserOptions options;
   if (!scriptPath.is_none()) options.scriptPath = toPath(scriptPath);
   options.trustScripts = trust;
@@ -37,12 +41,15 @@ BrowserPtr makeBrowser(const py::object& source, double start, const py::object&
 
 void tick(const BrowserPtr& self, double time) {
   if (!(time >= self->running->now() && time < latestTime)) // also NaN
-    throw py::value_error(fmt::format("tick: a time from {} to {} expected, not {}", self->running->now(), latestTime, time));
+    throw py::value_error(fmt::format("tick: a time from {} to {} expected, not {}",
+                                      self->running->now(), latestTime, time));
   const auto lock = self->lock();
   self->change([&] { self->running->tick(time); });
 }
 
-py::object node(const BrowserPtr& self, const std::string& name) { return asNode(self, self->running->node(name)); }
+py::object node(const BrowserPtr& self, const std::string& name) {
+  return asNode(self, self->running->node(name));
+}
 
 Node& own(const BrowserPtr& self, const NodeObject& node) {
   if (!sameWorld(node.world(), self)) throw py::value_error("a node of this browser expected");
@@ -100,13 +107,15 @@ py::array camera(const BrowserPtr& self, double aspect) {
   if (!(aspect > 0)) throw py::value_error("camera: aspect: a number above 0 expected");
   const CameraSettings settings = self->running->camera(aspect);
   py::array_t<double> matrix({4, 4}); // rows as on paper: column vectors
-  for (size_t i = 0; i < 16; ++i) matrix.mutable_at(py::ssize_t(i % 4), py::ssize_t(i / 4)) = settings.matrix[i];
+  for (size_t i = 0; i < 16; ++i)
+    matrix.mutable_at(py::ssize_t(i % 4), py::ssize_t(i / 4)) = settings.matrix[i];
   return matrix;
 }
 
 using Triple = std::array<double, 3>;
 
-py::object pick(const BrowserPtr& self, const Triple& origin, const Triple& direction, bool bothSides) {
+py::object pick(const BrowserPtr& self, const Triple& origin, const Triple& direction,
+                bool bothSides) {
   PickOptions options;
   options.bothSides = bothSides;
   PickHit hit;
@@ -123,8 +132,8 @@ py::object pick(const BrowserPtr& self, const Triple& origin, const Triple& dire
   return out;
 }
 
-template <class Kind>
-Kind named(const char* what, const std::string& name, std::initializer_list<std::pair<const char*, Kind>> all) {
+template <class Kind> Kind named(const char* what, const std::string& name,
+                                 std::initializer_list<std::pair<const char*, Kind>> all) {
   std::string known;
   for (const auto& [one, kind] : all) {
     if (name == one) return kind;
@@ -134,9 +143,11 @@ Kind named(const char* what, const std::string& name, std::initializer_list<std:
 }
 
 Navigation navigationOf(const std::string& name) {
-  return named<Navigation>(
-      "navigation", name,
-      {{"none", Navigation::none}, {"walk", Navigation::walk}, {"fly", Navigation::fly}, {"examine", Navigation::examine}});
+  return named<Navigation>("navigation", name,
+                           {{"none", Navigation::none},
+                            {"walk", Navigation::walk},
+                            {"fly", Navigation::fly},
+                            {"examine", Navigation::examine}});
 }
 
 const char* navigationName(Navigation kind) {
@@ -157,7 +168,8 @@ Key keyOf(const std::string& name) {
                      {"alt", Key::alt}});
 }
 
-void navigate(const BrowserPtr& self, double dt, double ahead, double right, double up, double turn, double tilt, double roll) {
+void navigate(const BrowserPtr& self, double dt, double ahead, double right, double up, double turn,
+              double tilt, double roll) {
   if (!(dt >= 0)) throw py::value_error("navigate: dt: seconds from 0 on expected");
   const auto lock = self->lock();
   self->change([&] { self->running->navigate({ahead, right, up, turn, tilt, roll}, dt); });
@@ -168,22 +180,29 @@ void navigate(const BrowserPtr& self, double dt, double ahead, double right, dou
 void defineBrowser(py::module_& module) {
   py::class_<BrowserObject, WorldObject, BrowserPtr>(
       module, "Browser",
-      "A world that runs: tick(time) moves its clock, assigning a node's field sends an event. It has no clock of its own.")
-      .def(py::init(&makeBrowser), py::arg("source"), py::kw_only(), py::arg("start") = 0.0, py::arg("limits") = py::none(),
-           py::arg("allow_absolute") = false, py::arg("script_path") = py::none(), py::arg("trust") = false,
+      "A world that runs: tick(time) moves its clock, assigning a node's field sends an event. It "
+      "has no clock of its own.")
+      .def(py::init(&makeBrowser), py::arg("source"), py::kw_only(), py::arg("start") = 0.0,
+           py::arg("limits") = py::none(), py::arg("allow_absolute") = false,
+           py::arg("script_path") = py::none(), py::arg("trust") = false,
            py::arg("epoch") = worldEpoch, py::arg("direct_output_always") = false,
-           "source: as of load(). The world comes alive at time `start`, in seconds after `epoch`, which is in seconds since "
+           "source: as of load(). The world comes alive at time `start`, in seconds after `epoch`, "
+           "which is in seconds since "
            "1970: "
-           "nodes and Scripts see epoch + time. direct_output_always: Scripts without directOutput TRUE may change nodes, as in "
+           "nodes and Scripts see epoch + time. direct_output_always: Scripts without directOutput "
+           "TRUE may change nodes, as in "
            "browsers "
            "of 1997.")
       .def_property_readonly(
-          "now", [](const BrowserPtr& self) { return self->running->now(); }, "Time in seconds after `epoch`.")
+          "now", [](const BrowserPtr& self) { return self->running->now(); },
+          "Time in seconds after `epoch`.")
       .def_property_readonly(
           "generation", [](const BrowserPtr& self) { return self->running->generation(); },
           "Grows with every world that takes the place of the former.")
-      .def("tick", tick, py::arg("time"), "Time has come to `time`: sensors send, routes carry, until nothing is left to do.")
-      .def("node", node, py::arg("name"), "The node that a DEF name of the file means; None if there is none.")
+      .def("tick", tick, py::arg("time"),
+           "Time has come to `time`: sensors send, routes carry, until nothing is left to do.")
+      .def("node", node, py::arg("name"),
+           "The node that a DEF name of the file means; None if there is none.")
       .def("create_node", createNode, py::arg("type"), "A new node; keywords are its fields.")
       .def(
           "add_root",
@@ -200,10 +219,14 @@ void defineBrowser(py::module_& module) {
           },
           py::arg("node"))
       .def("create_vrml_from_string", createFromString, py::arg("text"),
-           "Nodes of a VRML text, which needs no header. Raises ParseError if nothing of it can be used.")
-      .def("load_url", loadUrl, py::arg("urls"), "Another world instead of this one; if none can be read all stays as it is.")
+           "Nodes of a VRML text, which needs no header. Raises ParseError if nothing of it can be "
+           "used.")
+      .def("load_url", loadUrl, py::arg("urls"),
+           "Another world instead of this one; if none can be read all stays as it is.")
       .def("replace_world", replaceWorld, py::arg("nodes"), "These nodes instead of all others.")
-      .def_property_readonly("bound", bound, "The bound viewpoint, background, fog and navigation_info; None: there is none.")
+      .def_property_readonly(
+          "bound", bound,
+          "The bound viewpoint, background, fog and navigation_info; None: there is none.")
       .def(
           "bind_viewpoint",
           [](const BrowserPtr& self, const std::string& name) {
@@ -213,9 +236,11 @@ void defineBrowser(py::module_& module) {
             return done;
           },
           py::arg("name"), "By DEF name or description; False if there is none.")
-      .def("camera", camera, py::arg("aspect") = 4.0 / 3, "Where the viewer is: camera to world, 4x4 for column vectors.")
+      .def("camera", camera, py::arg("aspect") = 4.0 / 3,
+           "Where the viewer is: camera to world, 4x4 for column vectors.")
       .def(
-          "set_transition", [](const BrowserPtr& self, double seconds) { self->running->setTransition(seconds); },
+          "set_transition",
+          [](const BrowserPtr& self, double seconds) { self->running->setTransition(seconds); },
           py::arg("seconds"), "World seconds that a jump to another viewpoint takes; 0: none.")
       .def(
           "pointer",
@@ -227,14 +252,17 @@ void defineBrowser(py::module_& module) {
             });
           },
           py::arg("x"), py::arg("y"), py::arg("button") = false, py::arg("aspect") = 4.0 / 3,
-          "The pointer is at (x, y) of the picture, from -1 at the left and bottom to 1 at the right and top.")
+          "The pointer is at (x, y) of the picture, from -1 at the left and bottom to 1 at the "
+          "right and top.")
       .def(
           "pointer_ray",
           [](const BrowserPtr& self, const Triple& origin, const Triple& direction, bool button) {
             const auto lock = self->lock();
-            self->change([&] { self->running->pointerRay(origin.data(), direction.data(), button); });
+            self->change(
+                [&] { self->running->pointerRay(origin.data(), direction.data(), button); });
           },
-          py::arg("origin"), py::arg("direction"), py::arg("button") = false, "The pointer as a ray in the world.")
+          py::arg("origin"), py::arg("direction"), py::arg("button") = false,
+          "The pointer as a ray in the world.")
       .def(
           "pointer_leave",
           [](const BrowserPtr& self) {
@@ -245,13 +273,16 @@ void defineBrowser(py::module_& module) {
       .def_property_readonly("sensors_at_pointer",
                              [](const BrowserPtr& self) {
                                py::list list;
-                               for (const NodeRef& sensor : self->running->sensorsAtPointer()) list.append(asNode(self, sensor));
+                               for (const NodeRef& sensor : self->running->sensorsAtPointer())
+                                 list.append(asNode(self, sensor));
                                return py::tuple(list);
                              })
       .def("pick", pick, py::arg("origin"), py::arg("direction"), py::arg("both_sides") = false,
-           "The nearest thing along a ray, as a dict with distance, point, normal, tex_coord and path; None if there is none.")
-      .def("navigate", navigate, py::arg("dt"), py::kw_only(), py::arg("ahead") = 0.0, py::arg("right") = 0.0,
-           py::arg("up") = 0.0, py::arg("turn") = 0.0, py::arg("tilt") = 0.0, py::arg("roll") = 0.0,
+           "The nearest thing along a ray, as a dict with distance, point, normal, tex_coord and "
+           "path; None if there is none.")
+      .def("navigate", navigate, py::arg("dt"), py::kw_only(), py::arg("ahead") = 0.0,
+           py::arg("right") = 0.0, py::arg("up") = 0.0, py::arg("turn") = 0.0,
+           py::arg("tilt") = 0.0, py::arg("roll") = 0.0,
            "Moves the viewer for dt seconds; numbers from -1 to 1.")
       .def(
           "key",
@@ -262,8 +293,11 @@ void defineBrowser(py::module_& module) {
           },
           py::arg("name"), py::arg("pressed"))
       .def_property(
-          "navigation", [](const BrowserPtr& self) { return navigationName(self->running->navigation()); },
-          [](const BrowserPtr& self, const std::string& name) { self->running->setNavigation(navigationOf(name)); },
+          "navigation",
+          [](const BrowserPtr& self) { return navigationName(self->running->navigation()); },
+          [](const BrowserPtr& self, const std::string& name) {
+            self->running->setNavigation(navigationOf(name));
+          },
           "The way of moving: none, walk, fly or examine.")
       .def("load_inlines",
            [](const BrowserPtr& self) {
@@ -273,6 +307,7 @@ void defineBrowser(py::module_& module) {
              return loaded;
            })
       .def("__repr__", [](const BrowserPtr& self) {
-        return toText(fmt::format("<Browser {} at {} s>", self->graph().path, self->running->now()));
+        return toText(
+            fmt::format("<Browser {} at {} s>", self->graph().path, self->running->now()));
       });
 }

@@ -1,4 +1,4 @@
-// cluster.cpp: see cluster_object.h. Called with the GIL held; what waits releases it.
+// cluster.cpp: Called with the GIL held; what waits releases it.
 #include <chrono>
 #include <optional>
 #include <utility>
@@ -13,13 +13,15 @@ namespace {
 
 // Owned by the module for the life of the interpreter.
 PyObject* clusterError = nullptr;
-PyObject* scope = nullptr; // contextvars.ContextVar: the innermost Cluster that a `with` holds, or None
+PyObject* scope =
+    nullptr; // contextvars.ContextVar: the innermost Cluster that a `with` holds, or None
 
 struct ClusterObject {
   std::shared_ptr<picture::Cluster> cluster; // null: closed
   picture::ClusterSettings settings;
-  std::weak_ptr<WorldObject> holder; // the world that was rendered last, and may go on having the context
-  std::vector<py::object> tokens;    // of the scopes, innermost last
+  std::weak_ptr<WorldObject>
+      holder; // the world that was rendered last, and may go on having the context
+  std::vector<py::object> tokens; // of the scopes, innermost last
 
   const picture::Cluster& open() const {
     if (!cluster) throw py::value_error("the cluster is closed");
@@ -34,7 +36,8 @@ std::string workersOf(const py::object& given) {
   if (py::isinstance<py::str>(given)) return fromText(given);
   std::string list;
   for (const py::handle one : given) {
-    if (!py::isinstance<py::str>(one)) throw py::type_error("workers: 'HOST[:PORT]', a list of these or '@FILE' expected");
+    if (!py::isinstance<py::str>(one))
+      throw py::type_error("workers: 'HOST[:PORT]', a list of these or '@FILE' expected");
     const std::string name = fromText(one);
     if (name.empty() || name.find_first_of(", \t\r\n") != name.npos)
       throw py::value_error("workers: 'HOST[:PORT]' expected, not '" + name + "'");
@@ -45,18 +48,21 @@ std::string workersOf(const py::object& given) {
 
 std::string pathOf(const py::object& given) { return given.is_none() ? "" : toPath(given); }
 
-ClusterPtr make(const py::object& workers, const py::object& key, const py::object& listen, const py::object& allowKeys,
-                std::optional<int> localThreads, const std::string& split, int require, bool tolerant,
+ClusterPtr make(const py::object& workers, const py::object& key, const py::object& listen,
+                const py::object& allowKeys, std::optional<int> localThreads,
+                const std::string& split, int require, bool tolerant,
                 const py::object& shaderPath) {
   picture::ClusterSettings settings;
   settings.workers = workersOf(workers);
   if (!listen.is_none()) settings.listen = fromText(listen);
   settings.key = pathOf(key);
   settings.allow = pathOf(allowKeys);
-  if (localThreads && (*localThreads < 0 || *localThreads > 1024)) throw py::value_error("local_threads: 0 to 1024 expected");
+  if (localThreads && (*localThreads < 0 || *localThreads > 1024))
+    throw py::value_error("local_threads: 0 to 1024 expected");
   settings.localThreads = localThreads.value_or(-1);
   if (split != "auto" && split != "tiles" && split != "samples" && split != "frames")
-    throw py::value_error("split: 'auto', 'tiles', 'samples' or 'frames' expected, not '" + split + "'");
+    throw py::value_error("split: 'auto', 'tiles', 'samples' or 'frames' expected, not '" + split +
+                          "'");
   settings.split = split;
   if (require < 0 || require > 65536) throw py::value_error("require: 0 to 65536 expected");
   settings.require = require;
@@ -118,8 +124,9 @@ void waitFor(const ClusterPtr& self, size_t count, double timeout) {
   }
   if (signalled) throw py::error_already_set();
   if (there) return;
-  PyErr_SetString(PyExc_TimeoutError,
-                  fmt::format("{} of {} workers are there after {:g} s", cluster->alive(), count, timeout).c_str());
+  PyErr_SetString(PyExc_TimeoutError, fmt::format("{} of {} workers are there after {:g} s",
+                                                  cluster->alive(), count, timeout)
+                                          .c_str());
   throw py::error_already_set();
 }
 
@@ -129,7 +136,8 @@ std::string text(const ClusterPtr& self) {
 }
 
 std::string workerText(const RTworker& w) {
-  return fmt::format("<Worker {}: {} threads, {} tiles{}>", w.name, w.threads, w.jobs, w.alive ? "" : ", gone");
+  return fmt::format("<Worker {}: {} threads, {} tiles{}>", w.name, w.threads, w.jobs,
+                     w.alive ? "" : ", gone");
 }
 
 } // namespace
@@ -137,7 +145,8 @@ std::string workerText(const RTworker& w) {
 std::shared_ptr<picture::Cluster> clusterFor(const py::object& given, const WorldPtr& world) {
   const py::object chosen = given.is_none() ? py::object(py::handle(scope).attr("get")()) : given;
   if (chosen.is_none()) return nullptr;
-  if (!py::isinstance<ClusterObject>(chosen)) throw py::type_error("cluster: a Cluster or None expected");
+  if (!py::isinstance<ClusterObject>(chosen))
+    throw py::type_error("cluster: a Cluster or None expected");
   const ClusterPtr cluster = chosen.cast<ClusterPtr>();
   cluster->open();
   if (cluster->holder.lock() != world) release(*cluster);
@@ -146,8 +155,9 @@ std::shared_ptr<picture::Cluster> clusterFor(const py::object& given, const Worl
 }
 
 void defineCluster(py::module_& module) {
-  clusterError = PyErr_NewExceptionWithDoc("xvrml.ClusterError", "Workers are missing; or an address or a key is of no use.",
-                                           module.attr("RenderError").ptr(), nullptr);
+  clusterError = PyErr_NewExceptionWithDoc(
+      "xvrml.ClusterError", "Workers are missing; or an address or a key is of no use.",
+      module.attr("RenderError").ptr(), nullptr);
   if (!clusterError) throw py::error_already_set();
   module.add_object("ClusterError", clusterError);
   py::register_exception_translator([](std::exception_ptr failure) {
@@ -158,40 +168,54 @@ void defineCluster(py::module_& module) {
       PyErr_SetString(clusterError, error.what());
     }
   });
-  scope = py::module_::import("contextvars").attr("ContextVar")("xvrml_cluster", py::arg("default") = py::none()).release().ptr();
+  scope = py::module_::import("contextvars")
+              .attr("ContextVar")("xvrml_cluster", py::arg("default") = py::none())
+              .release()
+              .ptr();
 
   py::class_<RTworker>(module, "Worker", "What one machine of a cluster has done since it joined.")
       .def_property_readonly(
-          "name", [](const RTworker& w) { return toText(w.name); }, "Host and address; 'here': this process.")
+          "name", [](const RTworker& w) { return toText(w.name); },
+          "Host and address; 'here': this process.")
       .def_property_readonly("here", [](const RTworker& w) { return picture::isHere(w); })
       .def_property_readonly(
-          "alive", [](const RTworker& w) { return w.alive != 0; }, "False: it has left, or was refused.")
+          "alive", [](const RTworker& w) { return w.alive != 0; },
+          "False: it has left, or was refused.")
       .def_readonly("threads", &RTworker::threads)
       .def_readonly("tiles", &RTworker::jobs, "Jobs done: tiles, or parts of their samples.")
-      .def_readonly("late", &RTworker::late, "Results that came when somebody else had done the job.")
+      .def_readonly("late", &RTworker::late,
+                    "Results that came when somebody else had done the job.")
       .def_readonly("lost", &RTworker::lost, "Jobs that were taken away because it left.")
       .def_readonly("rays", &RTworker::rays)
       .def_readonly("bytes_sent", &RTworker::bytesSent)
       .def_readonly("bytes_received", &RTworker::bytesReceived)
       .def_readonly("busy_seconds", &RTworker::busySeconds, "Of all its threads.")
-      .def_readonly("latency", &RTworker::latency, "Seconds that a job is under way beyond the work.")
+      .def_readonly("latency", &RTworker::latency,
+                    "Seconds that a job is under way beyond the work.")
       .def("__repr__", workerText);
   py::class_<ClusterObject, ClusterPtr>(
       module, "Cluster",
       "Machines that render together: `with Cluster([\"a:7447\", \"b\"], key=\"cluster.key\")`. "
       "The pictures of renders inside have the same bytes as without (docs/cluster.md).")
-      .def(py::init(&make), py::arg("workers") = py::none(), py::kw_only(), py::arg("key") = py::none(),
-           py::arg("listen") = py::none(), py::arg("allow_keys") = py::none(), py::arg("local_threads") = py::none(),
-           py::arg("split") = "auto", py::arg("require") = 0, py::arg("tolerant") = false, py::arg("shader_path") = py::none(),
-           "workers: addresses of openrt-worker --listen, or '@FILE'; listen: where workers call in. Begins to call and returns "
-           "at "
-           "once. require: renders raise ClusterError while fewer workers are there for 10 seconds.")
+      .def(
+          py::init(&make), py::arg("workers") = py::none(), py::kw_only(),
+          py::arg("key") = py::none(), py::arg("listen") = py::none(),
+          py::arg("allow_keys") = py::none(), py::arg("local_threads") = py::none(),
+          py::arg("split") = "auto", py::arg("require") = 0, py::arg("tolerant") = false,
+          py::arg("shader_path") = py::none(),
+          "workers: addresses of openrt-worker --listen, or '@FILE'; listen: where workers call "
+          "in. Begins to call and returns "
+          "at "
+          "once. require: renders raise ClusterError while fewer workers are there for 10 seconds.")
       .def("__enter__", enter)
       .def("__exit__", leave)
       .def("close", closeCluster, "Says goodbye to the workers; the end of the with block does it.")
-      .def_property_readonly("workers", workers, "A Worker for each machine that has joined, those that left and this one too.")
+      .def_property_readonly(
+          "workers", workers,
+          "A Worker for each machine that has joined, those that left and this one too.")
       .def("wait", waitFor, py::arg("count") = 1, py::arg("timeout") = 10.0,
-           "Waits until so many workers are there; raises TimeoutError if they are not in time. A render needs no wait: workers "
+           "Waits until so many workers are there; raises TimeoutError if they are not in time. A "
+           "render needs no wait: workers "
            "may join in its middle.")
       .def("__repr__", text);
 }

@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "objects.h"
 #include "libpicture/nearest.h"
+#include "objects.h"
 #include "xvrml/viewed.h"
 
 using namespace xvrml;
@@ -48,16 +48,20 @@ std::string expectation(FieldType type) {
 struct Target {
   const FieldInfo& field;
   const NodeObject& owner;
-  mutable WorldPtr place = nullptr; // of a loose owner: the world of the first of its nodes that is in one
+  mutable WorldPtr place =
+      nullptr; // of a loose owner: the world of the first of its nodes that is in one
 
   std::string text() const {
-    return fmt::format("{}.{} ({}): {} expected", owner.node->type().name, field.name, fieldTypeName(field.type),
-                       expectation(field.type));
+    return fmt::format("{}.{} ({}): {} expected", owner.node->type().name, field.name,
+                       fieldTypeName(field.type), expectation(field.type));
   }
   [[noreturn]] void wrongType(const py::handle& got) const {
-    throw py::type_error(fmt::format("{}, not {}", text(), std::string(py::str(py::type::handle_of(got).attr("__name__")))));
+    throw py::type_error(fmt::format(
+        "{}, not {}", text(), std::string(py::str(py::type::handle_of(got).attr("__name__")))));
   }
-  [[noreturn]] void wrongValue(const std::string& why) const { throw py::value_error(text() + ", " + why); }
+  [[noreturn]] void wrongValue(const std::string& why) const {
+    throw py::value_error(text() + ", " + why);
+  }
 
   void checkFinite(double v) const {
     if (!std::isfinite(v)) wrongValue("not infinity or NaN");
@@ -66,8 +70,8 @@ struct Target {
   void checkRange(double v) const {
     const FieldRange& r = field.range;
     checkFinite(v);
-    const bool wide = field.type == FieldType::SFTime || field.type == FieldType::MFTime || field.type == FieldType::SFInt32 ||
-                      field.type == FieldType::MFInt32;
+    const bool wide = field.type == FieldType::SFTime || field.type == FieldType::MFTime ||
+                      field.type == FieldType::SFInt32 || field.type == FieldType::MFInt32;
     const auto rounded = [wide](double number) { return wide ? number : double(float(number)); };
     const double number = rounded(v), minimum = rounded(r.minimum), maximum = rounded(r.maximum);
     const bool low = r.minimumOpen ? number <= minimum : number < minimum;
@@ -78,11 +82,14 @@ struct Target {
   }
 };
 
-std::string shapeText(const py::array& array) { return "not of shape " + std::string(py::str(array.attr("shape"))); }
+std::string shapeText(const py::array& array) {
+  return "not of shape " + std::string(py::str(array.attr("shape")));
+}
 
 // Any array-like of numbers; text, objects and complex numbers are of the wrong type.
 py::array numbersOf(const py::handle& object, const Target& target, const char* kinds) {
-  if (py::isinstance<py::str>(object) || py::isinstance<py::bytes>(object) || object.is_none()) target.wrongType(object);
+  if (py::isinstance<py::str>(object) || py::isinstance<py::bytes>(object) || object.is_none())
+    target.wrongType(object);
   py::array array;
   try {
     array = py::array(py::module_::import("numpy").attr("asarray")(object));
@@ -93,7 +100,8 @@ py::array numbersOf(const py::handle& object, const Target& target, const char* 
   const char kind = std::string(py::str(array.dtype().attr("kind")))[0];
   if (array.size() > 0 && !std::strchr(kinds, kind)) {
     if (kind == 'O') target.wrongType(object);
-    throw py::type_error(fmt::format("{}, not an array of {}", target.text(), std::string(py::str(array.dtype()))));
+    throw py::type_error(
+        fmt::format("{}, not an array of {}", target.text(), std::string(py::str(array.dtype()))));
   }
   return array;
 }
@@ -108,7 +116,8 @@ float single(double v, const Target& target, bool free = false) {
   return f;
 }
 
-// The axes of rotations are normalised by the node, as everywhere (docs/decisions/0042); 0 0 0 stays and turns nothing.
+// The axes of rotations are normalised by the node, as everywhere (docs/decisions/0042); 0 0 0
+// stays and turns nothing.
 template <class T> constexpr bool isFree = std::is_same_v<T, Rotation>;
 
 template <class T> T fixed(const py::handle& object, const Target& target) {
@@ -128,7 +137,8 @@ template <class T> std::vector<T> rows(const py::handle& object, const Target& t
   if (!fits) target.wrongValue(shapeText(array));
   std::vector<T> list(size_t(array.shape(0)));
   float* out = reinterpret_cast<float*>(list.data());
-  for (size_t i = 0; i < size_t(array.size()); ++i) out[i] = single(array.data()[i], target, isFree<T>);
+  for (size_t i = 0; i < size_t(array.size()); ++i)
+    out[i] = single(array.data()[i], target, isFree<T>);
   return list;
 }
 
@@ -177,7 +187,8 @@ int32_t integer(const py::handle& object, const Target& target) {
 }
 
 double number(const py::handle& object, const Target& target) {
-  if (PyBool_Check(object.ptr()) || !PyNumber_Check(object.ptr()) || PyComplex_Check(object.ptr())) target.wrongType(object);
+  if (PyBool_Check(object.ptr()) || !PyNumber_Check(object.ptr()) || PyComplex_Check(object.ptr()))
+    target.wrongType(object);
   const double v = PyFloat_AsDouble(object.ptr());
   if (v == -1 && PyErr_Occurred()) {
     PyErr_Clear();
@@ -207,7 +218,8 @@ Image image(const py::handle& object, const Target& target) {
   if (any.size() == 0) return {};
   if (any.ndim() != 2 && any.ndim() != 3) target.wrongValue(shapeText(any));
   const py::ssize_t components = any.ndim() == 3 ? any.shape(2) : 1;
-  const bool fits = components >= 1 && components <= 4 && any.shape(0) <= 65536 && any.shape(1) <= 65536;
+  const bool fits =
+      components >= 1 && components <= 4 && any.shape(0) <= 65536 && any.shape(1) <= 65536;
   if (!fits) target.wrongValue(shapeText(any));
   Dense<int64_t> array(any);
   Image result{int32_t(any.shape(1)), int32_t(any.shape(0)), int32_t(components), {}};
@@ -221,11 +233,14 @@ Image image(const py::handle& object, const Target& target) {
   return result;
 }
 
-// True if a field of these node types (names and abstract types, blank-separated; empty: any) takes the node.
+// True if a field of these node types (names and abstract types, blank-separated; empty: any) takes
+// the node.
 bool accepts(const std::string& nodeTypes, const Node& node) {
   if (nodeTypes.empty()) return true;
   const std::string padded = " " + nodeTypes + " ";
-  auto listed = [&](const std::string& name) { return padded.find(" " + name + " ") != padded.npos; };
+  auto listed = [&](const std::string& name) {
+    return padded.find(" " + name + " ") != padded.npos;
+  };
   Node* rendered = renderedNode(const_cast<Node*>(&node));
   for (const Node* one : {&node, static_cast<const Node*>(rendered)}) {
     if (!one) continue;
@@ -244,7 +259,8 @@ NodeRef nodeOf(const py::handle& object, const Target& target) {
   const WorldPtr& place = target.place ? target.place : to;
   if (!from->loose() && !sameWorld(from, place)) target.wrongValue("of the same world");
   if (!accepts(target.field.nodeTypes, *given.node))
-    target.wrongValue(fmt::format("one of {}, not {}", target.field.nodeTypes, given.node->type().name));
+    target.wrongValue(
+        fmt::format("one of {}, not {}", target.field.nodeTypes, given.node->type().name));
   given.heldByNone = false;
   return given.node;
 }
@@ -263,7 +279,8 @@ template <class T> py::object readOnly(const T* data, std::vector<py::ssize_t> s
 }
 
 template <class T> py::object rowsToPython(const std::vector<T>& list) {
-  return readOnly(reinterpret_cast<const float*>(list.data()), {py::ssize_t(list.size()), py::ssize_t(width<T>)});
+  return readOnly(reinterpret_cast<const float*>(list.data()),
+                  {py::ssize_t(list.size()), py::ssize_t(width<T>)});
 }
 
 struct ToPython {
@@ -283,7 +300,8 @@ struct ToPython {
     const size_t row = size_t(v.width) * size_t(v.components);
     std::vector<uint8_t> flipped;
     for (size_t y = size_t(v.height); y-- > 0 && row;)
-      flipped.insert(flipped.end(), v.pixels.begin() + std::ptrdiff_t(y * row), v.pixels.begin() + std::ptrdiff_t((y + 1) * row));
+      flipped.insert(flipped.end(), v.pixels.begin() + std::ptrdiff_t(y * row),
+                     v.pixels.begin() + std::ptrdiff_t((y + 1) * row));
     if (flipped.empty()) return readOnly(flipped.data(), {0, 0, 0});
     return readOnly(flipped.data(), {v.height, v.width, v.components});
   }
@@ -291,9 +309,15 @@ struct ToPython {
   py::object operator()(const MFVec2f& v) const { return rowsToPython(v); }
   py::object operator()(const MFVec3f& v) const { return rowsToPython(v); }
   py::object operator()(const MFRotation& v) const { return rowsToPython(v); }
-  py::object operator()(const MFFloat& v) const { return readOnly(v.data(), {py::ssize_t(v.size())}); }
-  py::object operator()(const MFTime& v) const { return readOnly(v.data(), {py::ssize_t(v.size())}); }
-  py::object operator()(const MFInt32& v) const { return readOnly(v.data(), {py::ssize_t(v.size())}); }
+  py::object operator()(const MFFloat& v) const {
+    return readOnly(v.data(), {py::ssize_t(v.size())});
+  }
+  py::object operator()(const MFTime& v) const {
+    return readOnly(v.data(), {py::ssize_t(v.size())});
+  }
+  py::object operator()(const MFInt32& v) const {
+    return readOnly(v.data(), {py::ssize_t(v.size())});
+  }
   py::object operator()(const MFString& v) const {
     py::tuple out(v.size());
     for (size_t i = 0; i < v.size(); ++i) out[i] = toText(v[i]);
@@ -326,7 +350,8 @@ void below(Node& node, std::vector<Node*>& out) {
     if (field.type == FieldType::SFNode)
       out.push_back(static_cast<const NodeRef*>(node.storage(field))->get());
     else if (field.type == FieldType::MFNode)
-      for (const NodeRef& one : *static_cast<const MFNode*>(node.storage(field))) out.push_back(one.get());
+      for (const NodeRef& one : *static_cast<const MFNode*>(node.storage(field)))
+        out.push_back(one.get());
   }
 }
 
@@ -339,7 +364,8 @@ py::str toText(const std::string& bytes) {
 }
 
 std::string fromText(const py::handle& text) {
-  auto bytes = py::reinterpret_steal<py::bytes>(PyUnicode_AsEncodedString(text.ptr(), "utf-8", "surrogateescape"));
+  auto bytes = py::reinterpret_steal<py::bytes>(
+      PyUnicode_AsEncodedString(text.ptr(), "utf-8", "surrogateescape"));
   if (!bytes) throw py::error_already_set();
   return std::string(bytes);
 }
@@ -361,7 +387,9 @@ std::string toPath(const py::handle& path) {
   return py::isinstance<py::bytes>(text) ? std::string(py::bytes(text)) : fromText(text);
 }
 
-py::object toPython(const Value& value, const WorldPtr& world) { return std::visit(ToPython{world}, value); }
+py::object toPython(const Value& value, const WorldPtr& world) {
+  return std::visit(ToPython{world}, value);
+}
 
 py::object fieldToPython(const NodeObject& object, const FieldInfo& field) {
   std::shared_ptr<const ViewedField> view = viewField(*object.node, field);
@@ -383,7 +411,8 @@ void joinWorlds(const NodeObject& owner, const py::handle& object) {
   if (py::isinstance<NodeObject>(object)) {
     const WorldPtr to = owner.world(), from = object.cast<const NodeObject&>().world();
     if (from == to) return;
-    // The one that stands for fewer joins the other, so that the way from any node to its world stays short.
+    // The one that stands for fewer joins the other, so that the way from any node to its world
+    // stays short.
     if (from->loose() && (!to->loose() || from->rank <= to->rank)) {
       to->rank += from->rank == to->rank;
       from->joined = to;
@@ -397,7 +426,8 @@ void joinWorlds(const NodeObject& owner, const py::handle& object) {
 }
 
 void refuseLoops(const NodeObject& owner, const FieldInfo& field, const Value& value) {
-  if (owner.heldByNone && owner.world()->loose()) return; // neither the value nor what is below it holds the owner
+  if (owner.heldByNone && owner.world()->loose())
+    return; // neither the value nor what is below it holds the owner
   std::vector<Node*> open;
   if (const auto* one = std::get_if<NodeRef>(&value)) open.push_back(one->get());
   if (const auto* many = std::get_if<MFNode>(&value))
@@ -408,7 +438,8 @@ void refuseLoops(const NodeObject& owner, const FieldInfo& field, const Value& v
     open.pop_back();
     if (!node || !met.insert(node).second) continue;
     if (node == owner.node.get())
-      throw py::value_error(fmt::format("{}.{}: the node would hold itself", owner.node->type().name, field.name));
+      throw py::value_error(
+          fmt::format("{}.{}: the node would hold itself", owner.node->type().name, field.name));
     below(*node, open);
   }
 }

@@ -1,4 +1,5 @@
-// film.cpp: the Python class Film: pictures or arrays become a film file. Called with the GIL held; encoding releases it.
+// film.cpp: the Python class Film: pictures or arrays become a film file. Called with the GIL held;
+// encoding releases it.
 #include <cstring>
 #include <memory>
 #include <optional>
@@ -6,22 +7,24 @@
 #include <fmt/format.h>
 
 #include "gil.h"
-#include "objects.h"
 #include "libpicture/files/atomic_file.h"
 #include "libpicture/files/film.h"
+#include "objects.h"
 #include "picture_object.h"
 
 namespace {
 
 class FilmObject {
  public:
-  FilmObject(const py::object& file, double fps) : path_(toPath(file)), kind_(picture::filmOf(path_)), fps_(fps) {
+  FilmObject(const py::object& file, double fps)
+      : path_(toPath(file)), kind_(picture::filmOf(path_)), fps_(fps) {
     if (kind_ == picture::FilmKind::none)
-      throw py::value_error(
-          fmt::format("a file name with one of the suffixes {} expected, not {}", picture::filmSuffixes, path_));
+      throw py::value_error(fmt::format("a file name with one of the suffixes {} expected, not {}",
+                                        picture::filmSuffixes, path_));
     if (!(fps > 0 && fps < 1e6)) throw py::value_error("fps: above 0 expected");
     raiseOsError(picture::whyNotWritable(path_));
-    if (const std::string why = picture::whyNoFilm(kind_); !why.empty()) throw std::runtime_error(path_ + ": " + why);
+    if (const std::string why = picture::whyNoFilm(kind_); !why.empty())
+      throw std::runtime_error(path_ + ": " + why);
   }
 
   void add(const py::object& shown) {
@@ -36,9 +39,11 @@ class FilmObject {
       return append(bytes.data(), made.width, made.height);
     }
     const auto array = py::array::ensure(shown);
-    if (!array || array.ndim() != 3 || array.shape(2) != 3 || !py::isinstance<py::array_t<uint8_t>>(array))
+    if (!array || array.ndim() != 3 || array.shape(2) != 3 ||
+        !py::isinstance<py::array_t<uint8_t>>(array))
       throw py::type_error("a Picture or an array of uint8 of shape (height, width, 3) expected");
-    const auto rows = py::array_t<uint8_t, py::array::c_style | py::array::forcecast>::ensure(array);
+    const auto rows =
+        py::array_t<uint8_t, py::array::c_style | py::array::forcecast>::ensure(array);
     append(rows.data(), int(array.shape(1)), int(array.shape(0)));
   }
 
@@ -70,8 +75,8 @@ class FilmObject {
  private:
   void append(const uint8_t* rgb, int width, int height) {
     if (film_ && (width != width_ || height != height_))
-      throw py::value_error(
-          fmt::format("all pictures of a film have one size: {}x{}, not {}x{}", width_, height_, width, height));
+      throw py::value_error(fmt::format("all pictures of a film have one size: {}x{}, not {}x{}",
+                                        width_, height_, width, height));
     ReleaseGil release;
     if (!film_) film_ = std::make_unique<picture::Film>(kind_, width, height, fps_);
     width_ = width;
@@ -90,13 +95,15 @@ class FilmObject {
 } // namespace
 
 void defineFilm(py::module_& module) {
-  py::class_<FilmObject>(
-      module, "Film",
-      "A film file made of pictures: Film('turn.mp4', fps=25), then add() for each picture and close(), or as a "
-      "context manager. The suffix (mp4, webm, gif) says the format. Nothing is written before close().")
+  py::class_<FilmObject>(module, "Film",
+                         "A film file made of pictures: Film('turn.mp4', fps=25), then add() for "
+                         "each picture and close(), or as a "
+                         "context manager. The suffix (mp4, webm, gif) says the format. Nothing is "
+                         "written before close().")
       .def(py::init<const py::object&, double>(), py::arg("path"), py::arg("fps") = 25.0)
-      .def("add", &FilmObject::add, py::arg("picture"),
-           "Appends a Picture, or an array of uint8 of shape (height, width, 3). All have one size.")
+      .def(
+          "add", &FilmObject::add, py::arg("picture"),
+          "Appends a Picture, or an array of uint8 of shape (height, width, 3). All have one size.")
       .def("close", &FilmObject::close, "Writes the file. A film without a picture is not written.")
       .def("__enter__", [](py::object self) { return self; })
       .def("__exit__", &FilmObject::exit)

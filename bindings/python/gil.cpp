@@ -1,5 +1,5 @@
-// gil.cpp: see gil.h. A hook of atexit does the waiting: it runs after threads that are no daemons have been joined, and before
-// the interpreter refuses its lock to those that are.
+// gil.cpp: A hook of atexit does the waiting: it runs after threads that are no daemons
+// have been joined, and before the interpreter refuses its lock to those that are.
 #include "gil.h"
 
 #include <chrono>
@@ -44,9 +44,11 @@ void asked(int inside) {
   s.inside += inside;
 }
 
-template <class Condition> bool waitFor(std::chrono::milliseconds longest, const Condition& condition) {
+template <class Condition>
+bool waitFor(std::chrono::milliseconds longest, const Condition& condition) {
   using Clock = std::chrono::steady_clock;
-  for (const auto end = Clock::now() + longest;; std::this_thread::sleep_for(std::chrono::milliseconds(2))) {
+  for (const auto end = Clock::now() + longest;;
+       std::this_thread::sleep_for(std::chrono::milliseconds(2))) {
     {
       const std::scoped_lock lock(sections().mutex);
       if (condition()) return true;
@@ -55,7 +57,8 @@ template <class Condition> bool waitFor(std::chrono::milliseconds longest, const
   }
 }
 
-// Renders stop within a fraction of a second, because their watch says so; a file that is being read goes on.
+// Renders stop within a fraction of a second, because their watch says so; a file that is being
+// read goes on.
 void endInterpreter() {
   using std::chrono::seconds;
   Sections& s = sections();
@@ -70,7 +73,8 @@ void endInterpreter() {
     const std::scoped_lock lock(s.mutex);
     s.state = State::ended;
   }
-  waitFor(seconds(60), [&] { return s.asking == 0; }); // they get it soon: this thread does not have it
+  waitFor(seconds(60),
+          [&] { return s.asking == 0; }); // they get it soon: this thread does not have it
   PyEval_RestoreThread(state);
 }
 
@@ -81,7 +85,8 @@ ReleaseGil::ReleaseGil() {
   {
     Sections& s = sections();
     const std::scoped_lock lock(s.mutex);
-    ends = s.state != State::runs && s.ending != std::this_thread::get_id() && awaitedHere == 0 && insideHere == 0;
+    ends = s.state != State::runs && s.ending != std::this_thread::get_id() && awaitedHere == 0 &&
+           insideHere == 0;
     if (!ends) {
       s.inside++;
       insideHere++;

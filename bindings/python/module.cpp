@@ -6,9 +6,9 @@
 #include <unistd.h>
 
 #include "cluster_object.h"
+#include "libpicture/renderer.h"
 #include "objects.h"
 #include "openrt/openrt.h"
-#include "libpicture/renderer.h"
 #include "xvrml/node_plugin.h"
 
 using namespace xvrml;
@@ -34,10 +34,12 @@ void setParseError(const Diagnostic& d) {
 void setLimits(Limits& limits, const py::dict& given) {
   for (const auto& [key, value] : given) {
     const std::string name = py::str(key);
-    const unsigned long long number = py::isinstance<py::int_>(value) ? PyLong_AsUnsignedLongLong(value.ptr()) : 0;
+    const unsigned long long number =
+        py::isinstance<py::int_>(value) ? PyLong_AsUnsignedLongLong(value.ptr()) : 0;
     if (!py::isinstance<py::int_>(value) || PyErr_Occurred()) {
       PyErr_Clear();
-      throw py::value_error("limits: " + name + ": a whole number of 64 bits expected, not negative");
+      throw py::value_error("limits: " + name +
+                            ": a whole number of 64 bits expected, not negative");
     }
     if (setLimit(limits, name, number)) continue;
     std::vector<std::string> names;
@@ -84,7 +86,8 @@ py::list loadPlugins(const py::object& path) {
   return lines;
 }
 
-// X.__new__(X) makes an object without anything in it; pybind11 would give its methods memory that nobody has initialised.
+// X.__new__(X) makes an object without anything in it; pybind11 would give its methods memory that
+// nobody has initialised.
 void refuseEmptyObjects(const py::module_& module) {
   for (const auto& [name, value] : py::reinterpret_borrow<py::dict>(module.attr("__dict__")))
     if (PyType_Check(value.ptr()))
@@ -94,22 +97,26 @@ void refuseEmptyObjects(const py::module_& module) {
         };
 }
 
-// pickle and copy call the class that all classes are below, which pybind11 answers with an exception through Python's C.
+// pickle and copy call the class that all classes are below, which pybind11 answers with an
+// exception through Python's C.
 PyObject* newObject(PyTypeObject* type, PyObject*, PyObject*) {
   try {
     if (!py::detail::all_type_info(type).empty()) return py::detail::make_new_instance(type);
-    PyErr_Format(PyExc_TypeError, "objects of %s alone cannot be made, copied or pickled", type->tp_name);
+    PyErr_Format(PyExc_TypeError, "objects of %s alone cannot be made, copied or pickled",
+                 type->tp_name);
   } catch (const std::exception& error) { PyErr_SetString(PyExc_RuntimeError, error.what()); }
   return nullptr;
 }
 
 } // namespace
 
-std::unique_ptr<World> loadSource(const py::object& source, const py::object& limits, bool allowAbsolute) {
+std::unique_ptr<World> loadSource(const py::object& source, const py::object& limits,
+                                  bool allowAbsolute) {
   LoadOptions options;
   options.allowAbsolute = allowAbsolute;
   if (!limits.is_none()) {
-    if (!py::isinstance<py::dict>(limits)) throw py::type_error("limits: a dict of names and numbers expected");
+    if (!py::isinstance<py::dict>(limits))
+      throw py::type_error("limits: a dict of names and numbers expected");
     setLimits(options.limits, limits.cast<py::dict>());
   }
   std::string bytes, name = "<memory>";
@@ -137,8 +144,9 @@ std::unique_ptr<World> loadSource(const py::object& source, const py::object& li
 PYBIND11_MODULE(_xvrml, module) {
   watchInterpreter();
   reinterpret_cast<PyTypeObject*>(py::detail::get_internals().instance_base)->tp_new = newObject;
-  parseError = PyErr_NewExceptionWithDoc("xvrml.ParseError", "Nothing of a world can be used; file, line and column say where.",
-                                         PyExc_ValueError, nullptr);
+  parseError = PyErr_NewExceptionWithDoc(
+      "xvrml.ParseError", "Nothing of a world can be used; file, line and column say where.",
+      PyExc_ValueError, nullptr);
   if (!parseError) throw py::error_already_set();
   module.add_object("ParseError", parseError);
   py::register_exception_translator([](std::exception_ptr failure) {
@@ -146,11 +154,14 @@ PYBIND11_MODULE(_xvrml, module) {
       if (failure) std::rethrow_exception(failure);
     } catch (const LoadError& error) { setParseError(error.diagnostic); }
   });
-  // Functions check what they are given; a conversion that none of them has checked is still a matter of the caller's value.
+  // Functions check what they are given; a conversion that none of them has checked is still a
+  // matter of the caller's value.
   py::register_exception_translator([](std::exception_ptr failure) {
     try {
       if (failure) std::rethrow_exception(failure);
-    } catch (const py::cast_error&) { PyErr_SetString(PyExc_TypeError, "a value has a type or a size that is not expected"); }
+    } catch (const py::cast_error&) {
+      PyErr_SetString(PyExc_TypeError, "a value has a type or a size that is not expected");
+    }
   });
   py::register_exception<picture::RenderError>(module, "RenderError", PyExc_RuntimeError);
   defineCluster(module);
@@ -164,13 +175,15 @@ PYBIND11_MODULE(_xvrml, module) {
   defineRt(module);
   refuseEmptyObjects(module);
   refuseEmptyObjects(module.attr("rt"));
-  module.attr("__version__") = fmt::format("{}.{}.{}", OPENRT_VERSION_MAJOR, OPENRT_VERSION_MINOR, OPENRT_VERSION_PATCH);
-  module.def(
-      "load_node_plugins", loadPlugins, py::arg("path") = py::none(),
-      "Loads the node plug-ins of these folders (separated by colons), of $XVRML_NODE_PATH and of the installation. Returns a "
-      "line for each that is refused.");
-  module.def(
-      "load", load, py::arg("source"), py::kw_only(), py::arg("limits") = py::none(), py::arg("allow_absolute") = false,
-      "Loads a world from a file name, bytes or a file object. Raises ParseError or OSError; problems of single nodes are in "
-      "World.warnings.");
+  module.attr("__version__") =
+      fmt::format("{}.{}.{}", OPENRT_VERSION_MAJOR, OPENRT_VERSION_MINOR, OPENRT_VERSION_PATCH);
+  module.def("load_node_plugins", loadPlugins, py::arg("path") = py::none(),
+             "Loads the node plug-ins of these folders (separated by colons), of $XVRML_NODE_PATH "
+             "and of the installation. Returns a "
+             "line for each that is refused.");
+  module.def("load", load, py::arg("source"), py::kw_only(), py::arg("limits") = py::none(),
+             py::arg("allow_absolute") = false,
+             "Loads a world from a file name, bytes or a file object. Raises ParseError or "
+             "OSError; problems of single nodes are in "
+             "World.warnings.");
 }

@@ -1,5 +1,5 @@
-// node.cpp: the Python class Node and a class below it for every node type: attributes are fields, found in the type's table.
-// Called with the GIL held.
+// node.cpp: the Python class Node and a class below it for every node type: attributes are fields,
+// found in the type's table. Called with the GIL held.
 #include <memory>
 #include <unordered_map>
 
@@ -13,7 +13,9 @@ using namespace xvrml;
 
 namespace {
 
-bool holdsValue(const FieldInfo& field) { return field.access == Access::field || field.access == Access::exposedField; }
+bool holdsValue(const FieldInfo& field) {
+  return field.access == Access::field || field.access == Access::exposedField;
+}
 
 const FieldInfo* findValue(const Node& node, const std::string& name) {
   const FieldInfo* field = node.type().find(name);
@@ -25,7 +27,8 @@ const FieldInfo* findValue(const Node& node, const std::string& name) {
   std::vector<std::string> names;
   for (const FieldInfo& field : node.type().fields)
     if (holdsValue(field) || events) names.push_back(field.name);
-  throw py::attribute_error(fmt::format("{} has no field {}{}", node.type().name, name, didYouMean(name, names)));
+  throw py::attribute_error(
+      fmt::format("{} has no field {}{}", node.type().name, name, didYouMean(name, names)));
 }
 
 py::object value(const NodeObject& self, const FieldInfo& field) {
@@ -45,13 +48,15 @@ py::object getAttribute(const NodeObject& self, const std::string& name) {
   return toPython(browser->get(*self.node, name), world);
 }
 
-// Whether a node in the body of an instance takes a value of the interface as an event alone: a Script's eventIn.
+// Whether a node in the body of an instance takes a value of the interface as an event alone: a
+// Script's eventIn.
 bool takesEvent(const ProtoInstance& instance, const std::string& name) {
   for (const IsConnection& connection : instance.is) {
     if (connection.interfaceName != name) continue;
     const FieldInfo* in = connection.node->type().findEventIn(connection.field);
     const auto* inner = dynamic_cast<const ProtoInstance*>(connection.node.get());
-    if ((in && in->access == Access::eventIn) || (inner && takesEvent(*inner, connection.field))) return true;
+    if ((in && in->access == Access::eventIn) || (inner && takesEvent(*inner, connection.field)))
+      return true;
   }
   return false;
 }
@@ -109,7 +114,8 @@ template <class Get> auto unlessField(const char* name, Get get) {
 py::object fieldTypes(const NodeObject& self) {
   py::dict types;
   for (const FieldInfo& field : self.node->type().fields)
-    if (holdsValue(field)) types[toText(field.name)] = py::str(std::string(fieldTypeName(field.type)));
+    if (holdsValue(field))
+      types[toText(field.name)] = py::str(std::string(fieldTypeName(field.type)));
   return types;
 }
 
@@ -123,11 +129,13 @@ py::list directory(const NodeObject& self) {
 
 std::string describe(const NodeObject& self) {
   const Node& node = *self.node;
-  return fmt::format("<{}{}{}>", node.defName.empty() ? "" : "DEF " + node.defName + " ", node.type().name,
+  return fmt::format("<{}{}{}>", node.defName.empty() ? "" : "DEF " + node.defName + " ",
+                     node.type().name,
                      node.source.line ? fmt::format(" at line {}", node.source.line) : "");
 }
 
-// Classes by node type, owned by the module for the life of the interpreter. A plug-in's are made when it is loaded.
+// Classes by node type, owned by the module for the life of the interpreter. A plug-in's are made
+// when it is loaded.
 auto& classes() {
   static auto& all = *new std::unordered_map<const NodeType*, PyTypeObject*>();
   return all;
@@ -140,7 +148,8 @@ std::string description(const NodeType& type) {
   text += "\n";
   for (const FieldInfo& field : type.fields) {
     const char* kind[] = {"field", "exposedField", "eventIn", "eventOut"};
-    text += fmt::format("{} ({} {}): {}\n", field.name, kind[size_t(field.access)], fieldTypeName(field.type), field.text);
+    text += fmt::format("{} ({} {}): {}\n", field.name, kind[size_t(field.access)],
+                        fieldTypeName(field.type), field.text);
   }
   return text;
 }
@@ -154,25 +163,29 @@ PyTypeObject* classOf(const NodeType& type) {
   members["__doc__"] = toText(description(type));
   members["__module__"] = "xvrml";
   const py::handle base(reinterpret_cast<PyObject*>(nodeClass));
-  py::object made =
-      py::reinterpret_borrow<py::object>(py::type::handle_of(base))(toText(type.name), py::make_tuple(base), members);
+  py::object made = py::reinterpret_borrow<py::object>(py::type::handle_of(base))(
+      toText(type.name), py::make_tuple(base), members);
   return known = reinterpret_cast<PyTypeObject*>(made.release().ptr());
 }
 
 py::dict nodeClasses() {
   py::dict all;
   for (const NodeType* type : nodeTypes())
-    all[toText(type->name)] = py::reinterpret_borrow<py::object>(reinterpret_cast<PyObject*>(classOf(*type)));
+    all[toText(type->name)] =
+        py::reinterpret_borrow<py::object>(reinterpret_cast<PyObject*>(classOf(*type)));
   return all;
 }
 
-// The constructor of all classes: keywords are fields. The node is in no world until it is put into one.
+// The constructor of all classes: keywords are fields. The node is in no world until it is put into
+// one.
 void makeLoose(py::detail::value_and_holder& self, const py::kwargs& fields) {
   const NodeType* type = nullptr;
   for (PyTypeObject* one = Py_TYPE(self.inst); one && !type; one = one->tp_base)
     for (const auto& [known, its] : classes())
       if (its == one) type = known;
-  if (!type) throw py::type_error("Node is the class of all nodes: make one of a type, as xvrml.Box(size=(1, 2, 3))");
+  if (!type)
+    throw py::type_error(
+        "Node is the class of all nodes: make one of a type, as xvrml.Box(size=(1, 2, 3))");
   NodeRef node = makeNode(*type);
   if (!node) throw py::type_error(type->name + " nodes come from files alone");
   auto made = std::make_unique<NodeObject>(std::make_shared<WorldObject>(), std::move(node));
@@ -197,10 +210,10 @@ py::object asNode(const WorldPtr& world, const NodeRef& node) {
 }
 
 void defineNode(py::module_& module) {
-  py::class_<NodeObject> all(
-      module, "Node",
-      "A node. Its fields are attributes: numbers of lists are read-only arrays of what the field holds now; assigning changes "
-      "the node.");
+  py::class_<NodeObject> all(module, "Node",
+                             "A node. Its fields are attributes: numbers of lists are read-only "
+                             "arrays of what the field holds now; assigning changes "
+                             "the node.");
   nodeClass = reinterpret_cast<PyTypeObject*>(all.ptr());
   module.def("_node_classes", nodeClasses);
   all.def("__init__", makeLoose, py::detail::is_new_style_constructor())
@@ -208,17 +221,27 @@ void defineNode(py::module_& module) {
           "node_type", [](const NodeObject& self) { return toText(self.node->type().name); },
           "The name of the node's type, e.g. 'Transform'.")
       .def_property_readonly(
-          "type", unlessField("type", [](const NodeObject& self) { return py::object(toText(self.node->type().name)); }),
+          "type",
+          unlessField(
+              "type",
+              [](const NodeObject& self) { return py::object(toText(self.node->type().name)); }),
           "node_type, but for nodes with a field of this name (NavigationInfo): that field.")
-      .def_property_readonly("fields", unlessField("fields", fieldTypes), "The fields and their types, as a dict.")
-      .def_property_readonly(
-          "def_name", unlessField("def_name", [](const NodeObject& self) { return py::object(toText(self.node->defName)); }),
-          "The node's DEF name, '' if it has none.")
+      .def_property_readonly("fields", unlessField("fields", fieldTypes),
+                             "The fields and their types, as a dict.")
+      .def_property_readonly("def_name",
+                             unlessField("def_name",
+                                         [](const NodeObject& self) {
+                                           return py::object(toText(self.node->defName));
+                                         }),
+                             "The node's DEF name, '' if it has none.")
       .def("__getattr__", getAttribute)
       .def("__setattr__", setAttribute)
       .def("__dir__", directory)
       .def("__repr__", [](const NodeObject& self) { return toText(describe(self)); })
       .def(
-          "__eq__", [](const NodeObject& self, const NodeObject& other) { return self.node == other.node; }, py::is_operator())
-      .def("__hash__", [](const NodeObject& self) { return std::hash<const void*>()(self.node.get()); });
+          "__eq__",
+          [](const NodeObject& self, const NodeObject& other) { return self.node == other.node; },
+          py::is_operator())
+      .def("__hash__",
+           [](const NodeObject& self) { return std::hash<const void*>()(self.node.get()); });
 }

@@ -1,12 +1,13 @@
-// picture.cpp: the Python class Picture: planes as numpy arrays that share the picture's memory. Called with the GIL held.
+// picture.cpp: the Python class Picture: planes as numpy arrays that share the picture's memory.
+// Called with the GIL held.
 #include <cstring>
 
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
-#include "objects.h"
 #include "libpicture/files/atomic_file.h"
 #include "libpicture/transport.h"
+#include "objects.h"
 #include "picture_object.h"
 
 void describePicture(py::dict& stats, const RTstats& s) {
@@ -34,7 +35,8 @@ void describePicture(py::dict& stats, const RTstats& s) {
 
 namespace {
 
-// The plane without a copy; it keeps the picture alive, and what is written into it is saved by save().
+// The plane without a copy; it keeps the picture alive, and what is written into it is saved by
+// save().
 py::array floats(const py::object& self, const picture::Channel& channel) {
   picture::Picture& p = self.cast<PictureObject&>().picture;
   std::vector<py::ssize_t> shape{p.height, p.width};
@@ -45,7 +47,8 @@ py::array floats(const py::object& self, const picture::Channel& channel) {
 py::array counts(const picture::Picture& p, const picture::Channel& channel) {
   const std::vector<float>& plane = p.planes.at(channel.bit);
   py::array_t<uint32_t> array({p.height, p.width});
-  for (size_t i = 0; i < plane.size(); ++i) array.mutable_data()[i] = plane[i] > 0 ? uint32_t(plane[i]) : 0;
+  for (size_t i = 0; i < plane.size(); ++i)
+    array.mutable_data()[i] = plane[i] > 0 ? uint32_t(plane[i]) : 0;
   return array;
 }
 
@@ -69,7 +72,8 @@ py::object item(const py::object& self, const py::object& key) {
 py::array errorBars(const py::object& self) {
   const picture::Channel& channel = *picture::findChannel("error");
   if (!self.cast<const PictureObject&>().picture.planes.count(channel.bit))
-    throw py::attribute_error("the picture was made without error bars: render(error=0.02) or channels=('error',) makes some");
+    throw py::attribute_error("the picture was made without error bars: render(error=0.02) or "
+                              "channels=('error',) makes some");
   return floats(self, channel);
 }
 
@@ -90,7 +94,8 @@ void save(const PictureObject& self, const py::object& file) {
   const std::string path = toPath(file);
   const auto format = picture::formatOf(path);
   if (!format)
-    throw py::value_error(fmt::format("a file name with one of the suffixes {} expected, not {}", picture::formatNames, path));
+    throw py::value_error(fmt::format("a file name with one of the suffixes {} expected, not {}",
+                                      picture::formatNames, path));
   std::string failure;
   {
     const ReleaseGil release;
@@ -111,15 +116,16 @@ py::tuple names(const PictureObject& self) {
 py::object nodes(PictureObject& self) {
   if (self.nodeList) return self.nodeList;
   py::tuple out(self.nodes.size());
-  for (size_t i = 0; i < self.nodes.size(); ++i) out[i] = asNode(self.nodes[i].world(), self.nodes[i].node);
+  for (size_t i = 0; i < self.nodes.size(); ++i)
+    out[i] = asNode(self.nodes[i].world(), self.nodes[i].node);
   return self.nodeList = out;
 }
 
 py::object camera(PictureObject& self) {
   if (!self.camera && self.place.fovy > 0)
     self.camera = py::module_::import("xvrml._camera")
-                      .attr("_of")(std::vector<double>(self.place.matrix, self.place.matrix + 16), self.place.fovy,
-                                   self.picture.width, self.picture.height);
+                      .attr("_of")(std::vector<double>(self.place.matrix, self.place.matrix + 16),
+                                   self.place.fovy, self.picture.width, self.picture.height);
   return self.camera ? self.camera : py::none();
 }
 
@@ -132,19 +138,23 @@ py::tuple channels(const PictureObject& self) {
 
 constexpr int pickleVersion = 2; // 1 had no camera
 
-// What pickle keeps: version, size, whether linear, names, time, stats, {name of channel: numbers}, camera.
+// What pickle keeps: version, size, whether linear, names, time, stats, {name of channel: numbers},
+// camera.
 py::tuple pickled(const py::object& self) {
   PictureObject& object = self.cast<PictureObject&>();
   py::dict planes;
   for (const picture::Channel& channel : picture::channelTable())
-    if (object.picture.planes.count(channel.bit)) planes[py::str(std::string(channel.name))] = floats(self, channel);
-  return py::make_tuple(pickleVersion, object.picture.width, object.picture.height, object.picture.linear, names(object),
-                        object.time, object.stats, planes, camera(object));
+    if (object.picture.planes.count(channel.bit))
+      planes[py::str(std::string(channel.name))] = floats(self, channel);
+  return py::make_tuple(pickleVersion, object.picture.width, object.picture.height,
+                        object.picture.linear, names(object), object.time, object.stats, planes,
+                        camera(object));
 }
 
 PictureObject unpickled(const py::tuple& state) {
   const auto refuse = [] { throw py::value_error("this is no pickled Picture of this version"); };
-  const int version = state.empty() || !py::isinstance<py::int_>(state[0]) ? 0 : state[0].cast<int>();
+  const int version =
+      state.empty() || !py::isinstance<py::int_>(state[0]) ? 0 : state[0].cast<int>();
   if (version < 1 || version > pickleVersion || state.size() != (version == 1 ? 8 : 9)) refuse();
   PictureObject object;
   picture::Picture& made = object.picture;
@@ -157,9 +167,11 @@ PictureObject unpickled(const py::tuple& state) {
   object.stats = state[6].cast<py::dict>();
   for (const auto& [name, numbers] : state[7].cast<py::dict>()) {
     const picture::Channel* const channel = picture::findChannel(fromText(name));
-    const auto plane = py::array_t<float, py::array::c_style | py::array::forcecast>::ensure(numbers);
+    const auto plane =
+        py::array_t<float, py::array::c_style | py::array::forcecast>::ensure(numbers);
     const auto pixels = size_t(made.width) * size_t(made.height);
-    if (!channel || !plane || size_t(plane.size()) != pixels * size_t(channel->components)) refuse();
+    if (!channel || !plane || size_t(plane.size()) != pixels * size_t(channel->components))
+      refuse();
     made.planes[channel->bit].assign(plane.data(), plane.data() + plane.size());
   }
   if (!made.planes.count(RT_RGBA)) refuse();
@@ -173,34 +185,51 @@ PictureObject unpickled(const py::tuple& state) {
 } // namespace
 
 void definePicture(py::module_& module) {
-  py::class_<PictureObject>(module, "Picture", "A rendered picture. picture['z'] is a channel, picture[...] indexes the colours.")
-      .def_property_readonly("array", rgba, "Red, green, blue, alpha: float32 of shape (height, width, 4), first row at the top.")
+  py::class_<PictureObject>(
+      module, "Picture",
+      "A rendered picture. picture['z'] is a channel, picture[...] indexes the colours.")
       .def_property_readonly(
-          "error", errorBars,
-          "Half-widths of the 95 % intervals of red, green, blue: float32 of shape (height, width, 3). Only in "
-          "pictures that were made with an error or this channel.")
-      .def_property_readonly(
-          "camera", camera,
-          "The Pinhole that it was made with; None for cameras that are none (orthographic ones, ORTViewpoints).")
-      .def_readonly("time", &PictureObject::time, "Seconds since the world was loaded: the moment that it shows.")
-      .def_property_readonly("display", display, "What a screen shows: uint8 of shape (height, width, 3).")
+          "array", rgba,
+          "Red, green, blue, alpha: float32 of shape (height, width, 4), first row at the top.")
+      .def_property_readonly("error", errorBars,
+                             "Half-widths of the 95 % intervals of red, green, blue: float32 of "
+                             "shape (height, width, 3). Only in "
+                             "pictures that were made with an error or this channel.")
+      .def_property_readonly("camera", camera,
+                             "The Pinhole that it was made with; None for cameras that are none "
+                             "(orthographic ones, ORTViewpoints).")
+      .def_readonly("time", &PictureObject::time,
+                    "Seconds since the world was loaded: the moment that it shows.")
+      .def_property_readonly("display", display,
+                             "What a screen shows: uint8 of shape (height, width, 3).")
       .def_property_readonly("shape",
-                             [](const PictureObject& self) { return py::make_tuple(self.picture.height, self.picture.width, 4); })
+                             [](const PictureObject& self) {
+                               return py::make_tuple(self.picture.height, self.picture.width, 4);
+                             })
       .def_property_readonly("channels", channels, "Names of the channels.")
       .def_property_readonly("nodes", nodes,
-                             "The Shape for each number of channel 'id': picture.nodes[picture['id'][row, column]]; None for 0. "
-                             "Empty in pictures without this channel, and in copies and pickled ones: nodes belong to the world.")
-      .def_property_readonly(
-          "names", names,
-          "A name for each number of channel 'id': the Shape's DEF name, else that of the nearest group above it, "
-          "else 'Shape'; '' for 0.")
+                             "The Shape for each number of channel 'id': "
+                             "picture.nodes[picture['id'][row, column]]; None for 0. "
+                             "Empty in pictures without this channel, and in copies and pickled "
+                             "ones: nodes belong to the world.")
+      .def_property_readonly("names", names,
+                             "A name for each number of channel 'id': the Shape's DEF name, else "
+                             "that of the nearest group above it, "
+                             "else 'Shape'; '' for 0.")
       .def_readonly("stats", &PictureObject::stats, "Counts and seconds of this render.")
-      .def_property_readonly("colour", [](const PictureObject& self) { return self.picture.linear ? "linear" : "vrml97"; })
+      .def_property_readonly(
+          "colour",
+          [](const PictureObject& self) { return self.picture.linear ? "linear" : "vrml97"; })
       .def("__getitem__", item)
       .def("__array__", asArray, py::arg("dtype") = py::none(), py::arg("copy") = py::none())
-      .def("save", save, py::arg("path"), "Writes a file; the suffix (exr, png, jpg, ppm, pfm) says the format.")
-      .def("_repr_png_", [](const PictureObject& self) { return py::bytes(picture::encode(self.picture, picture::Format::png)); })
+      .def("save", save, py::arg("path"),
+           "Writes a file; the suffix (exr, png, jpg, ppm, pfm) says the format.")
+      .def("_repr_png_",
+           [](const PictureObject& self) {
+             return py::bytes(picture::encode(self.picture, picture::Format::png));
+           })
       .def(py::pickle(&pickled, &unpickled))
-      .def("__repr__",
-           [](const PictureObject& self) { return fmt::format("<Picture {}x{}>", self.picture.width, self.picture.height); });
+      .def("__repr__", [](const PictureObject& self) {
+        return fmt::format("<Picture {}x{}>", self.picture.width, self.picture.height);
+      });
 }

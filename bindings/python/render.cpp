@@ -1,5 +1,5 @@
-// render.cpp: World.render(): options checked, a picture made without the GIL, Ctrl-C and progress watched. Called with the GIL
-// held.
+// render.cpp: World.render(): options checked, a picture made without the GIL, Ctrl-C and progress
+// watched. Called with the GIL held.
 #include <array>
 #include <cmath>
 
@@ -17,11 +17,14 @@ namespace {
 
 int inRange(const char* name, long long value, long long minimum, long long maximum) {
   if (value < minimum || value > maximum)
-    throw py::value_error(fmt::format("{}: {} to {} expected, not {}", name, minimum, maximum, value));
+    throw py::value_error(
+        fmt::format("{}: {} to {} expected, not {}", name, minimum, maximum, value));
   return int(value);
 }
 
-std::string typeOf(const py::handle& value) { return py::str(py::type::handle_of(value).attr("__name__")); }
+std::string typeOf(const py::handle& value) {
+  return py::str(py::type::handle_of(value).attr("__name__"));
+}
 
 // Width and height, any whole numbers.
 std::pair<long long, long long> sizeOf(const py::object& size) {
@@ -29,7 +32,8 @@ std::pair<long long, long long> sizeOf(const py::object& size) {
     const auto sides = size.cast<std::vector<long long>>();
     if (sides.size() == 2) return {sides[0], sides[1]};
   } catch (const py::cast_error&) {}
-  const std::string text = "size: (width, height) expected, whole numbers from 1 to 65536, not " + std::string(py::repr(size));
+  const std::string text = "size: (width, height) expected, whole numbers from 1 to 65536, not " +
+                           std::string(py::repr(size));
   if (py::isinstance<py::str>(size) || !PySequence_Check(size.ptr())) throw py::type_error(text);
   throw py::value_error(text);
 }
@@ -62,9 +66,11 @@ picture::LookAt posed(const std::vector<std::vector<double>>& rows) {
     }
   double handed = 0;
   for (size_t i = 0; i < 3; ++i)
-    handed += rows[i][0] * (rows[(i + 1) % 3][1] * rows[(i + 2) % 3][2] - rows[(i + 2) % 3][1] * rows[(i + 1) % 3][2]);
+    handed += rows[i][0] * (rows[(i + 1) % 3][1] * rows[(i + 2) % 3][2] -
+                            rows[(i + 2) % 3][1] * rows[(i + 1) % 3][2]);
   if (off > 1e-4 || handed < 0)
-    throw py::value_error("camera: the 4x4 matrix must turn and move only, with 0 0 0 1 as its last row");
+    throw py::value_error(
+        "camera: the 4x4 matrix must turn and move only, with 0 0 0 1 as its last row");
   for (size_t i = 0; i < 3; ++i) {
     camera.position[i] = rows[i][3];
     camera.target[i] = rows[i][3] - rows[i][2];
@@ -96,9 +102,9 @@ picture::LookAt cameraOf(const py::object& given) {
     for (const auto& row : rows)
       if (row.size() != 3) throw py::cast_error();
     if (isRotation(given, rows))
-      throw py::value_error(
-          "camera: a 3x3 rotation does not say where the camera stands: a 4x4 matrix from camera to world expected; position, "
-          "target and up are given as a tuple");
+      throw py::value_error("camera: a 3x3 rotation does not say where the camera stands: a 4x4 "
+                            "matrix from camera to world expected; position, "
+                            "target and up are given as a tuple");
     camera.saysUp = rows.size() == 3;
     double* targets[] = {camera.position, camera.target, camera.up};
     for (size_t i = 0; i < rows.size(); ++i) {
@@ -108,19 +114,21 @@ picture::LookAt cameraOf(const py::object& given) {
       }
     }
   } catch (const py::cast_error&) {
-    throw py::value_error(
-        "camera: a Pinhole, a 4x4 matrix from camera to world, or (position, target) or (position, target, up) of 3 numbers each "
-        "expected, not " +
-        shown(given));
+    throw py::value_error("camera: a Pinhole, a 4x4 matrix from camera to world, or (position, "
+                          "target) or (position, target, up) of 3 numbers each "
+                          "expected, not " +
+                          shown(given));
   }
-  if (!picture::lookAtMatrix(camera, matrix)) throw py::value_error("camera: position and target are the same point");
+  if (!picture::lookAtMatrix(camera, matrix))
+    throw py::value_error("camera: position and target are the same point");
   return camera;
 }
 
-// A Pinhole (xvrml/_camera.py). The rays of a symmetric camera with square pixels, of the same focal length fy, are sheared until
-// they are its own.
+// A Pinhole (xvrml/_camera.py). The rays of a symmetric camera with square pixels, of the same
+// focal length fy, are sheared until they are its own.
 picture::View::Pinhole pinholeOf(const py::object& given, int width, int height) {
-  const auto [numbers, pose] = given.attr("_numbers")().cast<std::pair<std::array<double, 5>, std::array<double, 16>>>();
+  const auto [numbers, pose] =
+      given.attr("_numbers")().cast<std::pair<std::array<double, 5>, std::array<double, 16>>>();
   const auto [fx, fy, cx, cy, skew] = numbers;
   picture::View::Pinhole camera{};
   camera.fovy = 2 * std::atan(height / 2.0 / fy);
@@ -128,7 +136,8 @@ picture::View::Pinhole pinholeOf(const py::object& given, int width, int height)
   for (size_t i = 0; i < 3; ++i) { // the pose's y runs down and its z ahead
     const double x = pose[4 * i], y = -pose[4 * i + 1], z = -pose[4 * i + 2];
     const double columns[] = {x, y, z, pose[4 * i + 3]};
-    const double sheared[] = {x * fy / fx, y + x * skew / fx, z - x * right - y * up, pose[4 * i + 3]};
+    const double sheared[] = {x * fy / fx, y + x * skew / fx, z - x * right - y * up,
+                              pose[4 * i + 3]};
     for (size_t k = 0; k < 4; ++k) {
       camera.matrix[4 * k + i] = columns[k];
       camera.sheared[4 * k + i] = sheared[k];
@@ -138,7 +147,8 @@ picture::View::Pinhole pinholeOf(const py::object& given, int width, int height)
   return camera;
 }
 
-// The renderer measures along the middle of the picture, which is not the view axis where the principal point lies elsewhere.
+// The renderer measures along the middle of the picture, which is not the view axis where the
+// principal point lies elsewhere.
 void measureAlongAxis(const picture::View::Pinhole& camera, picture::Picture& picture) {
   const std::vector<float>& position = picture.planes.at(RT_POSITION);
   std::vector<float>& depth = picture.planes.at(RT_DEPTH);
@@ -162,11 +172,15 @@ picture::Background backgroundOf(const py::object& given) {
     try {
       const auto rgb = given.cast<std::array<double, 3>>();
       text = fmt::format("{},{},{}", rgb[0], rgb[1], rgb[2]);
-    } catch (const py::cast_error&) { throw py::value_error(fmt::format("background: {} expected", picture::backgroundForms)); }
+    } catch (const py::cast_error&) {
+      throw py::value_error(fmt::format("background: {} expected", picture::backgroundForms));
+    }
   }
   try {
     return picture::readBackground(text);
-  } catch (const std::invalid_argument& error) { throw py::value_error(std::string("background: ") + error.what()); }
+  } catch (const std::invalid_argument& error) {
+    throw py::value_error(std::string("background: ") + error.what());
+  }
 }
 
 // Index of the viewpoint asked for by name or number.
@@ -179,13 +193,15 @@ size_t viewpointIndex(const std::vector<ViewpointInfo>& list, const py::object& 
       throw py::index_error(fmt::format("viewpoint: the world has {}", list.size()));
     return size_t(index);
   }
-  if (!py::isinstance<py::str>(wanted)) throw py::type_error("viewpoint: a name, a number or None expected");
+  if (!py::isinstance<py::str>(wanted))
+    throw py::type_error("viewpoint: a name, a number or None expected");
   const std::string name = fromText(wanted);
   const int index = picture::findViewpoint(list, name);
   if (index >= 0) return size_t(index);
   std::vector<std::string> known;
   for (const ViewpointInfo& v : list) known.push_back(v.name.empty() ? v.description : v.name);
-  throw py::key_error(fmt::format("viewpoint: the world has no {}{}", name, didYouMean(name, known)));
+  throw py::key_error(
+      fmt::format("viewpoint: the world has no {}{}", name, didYouMean(name, known)));
 }
 
 py::dict statsOf(const World& world, const picture::RenderResult& result) {
@@ -211,18 +227,21 @@ py::dict statsOf(const World& world, const picture::RenderResult& result) {
   return stats;
 }
 
-py::object render(const WorldPtr& self, const py::object& size, std::optional<long long> spp, const py::object& viewpoint,
-                  const py::object& camera, bool fit, std::optional<double> fov, long long seed, long long threads, bool shadows,
-                  const std::string& colour, const py::object& headlight, long long depth, const py::object& channels,
-                  const std::string& transport, double error, double timeLimit, double clamp, const py::object& cluster,
-                  const py::object& progress, bool multiplyTextures, const std::optional<std::string>& up,
-                  const py::object& background) {
+py::object render(const WorldPtr& self, const py::object& size, std::optional<long long> spp,
+                  const py::object& viewpoint, const py::object& camera, bool fit,
+                  std::optional<double> fov, long long seed, long long threads, bool shadows,
+                  const std::string& colour, const py::object& headlight, long long depth,
+                  const py::object& channels, const std::string& transport, double error,
+                  double timeLimit, double clamp, const py::object& cluster,
+                  const py::object& progress, bool multiplyTextures,
+                  const std::optional<std::string>& up, const py::object& background) {
   picture::RenderSettings settings;
   settings.multiplyTextures = multiplyTextures;
   const auto [width, height] = sizeOf(size);
   settings.width = inRange("size", width, 1, 65536);
   settings.height = inRange("size", height, 1, 65536);
-  if (int64_t(settings.width) * settings.height > (int64_t(1) << 28)) throw py::value_error("size: at most 2^28 pixels expected");
+  if (int64_t(settings.width) * settings.height > (int64_t(1) << 28))
+    throw py::value_error("size: at most 2^28 pixels expected");
   settings.seed = inRange("seed", seed, 0, 2147483647);
   settings.threads = inRange("threads", threads, 0, 1024);
   settings.depth = inRange("depth", depth, 0, 10000);
@@ -232,7 +251,9 @@ py::object render(const WorldPtr& self, const py::object& size, std::optional<lo
   settings.linear = colour == "linear";
   settings.headlight = headlightOf(headlight);
   const std::optional<int> following = picture::transportNamed(transport);
-  if (!following) throw py::value_error(fmt::format("transport: {} expected, not '{}'", picture::transportNames, transport));
+  if (!following)
+    throw py::value_error(
+        fmt::format("transport: {} expected, not '{}'", picture::transportNames, transport));
   settings.transport = *following;
   const auto limited = [](const char* name, double value, double maximum) {
     if (value >= 0 && value <= maximum) return value;
@@ -241,10 +262,14 @@ py::object render(const WorldPtr& self, const py::object& size, std::optional<lo
   settings.error = limited("error", error, 1);
   settings.timeLimit = limited("time_limit", timeLimit, 1e6);
   settings.clamp = limited("clamp", clamp, 1e30);
-  const long long most = settings.timeLimit > 0 ? 65536 : settings.error > 0 ? 4096 : settings.samples;
+  const long long most = settings.timeLimit > 0 ? 65536
+                         : settings.error > 0   ? 4096
+                                                : settings.samples;
   settings.samples = inRange("spp", spp.value_or(most), 1, 65536);
   settings.channels =
-      channels.is_none() ? uint32_t(RT_RGBA | RT_DEPTH | (settings.error > 0 ? RT_ERROR | RT_TRUST : 0)) : channelsOf(channels);
+      channels.is_none()
+          ? uint32_t(RT_RGBA | RT_DEPTH | (settings.error > 0 ? RT_ERROR | RT_TRUST : 0))
+          : channelsOf(channels);
 
   settings.progressive = picture::worthRounds(settings);
 
@@ -252,8 +277,10 @@ py::object render(const WorldPtr& self, const py::object& size, std::optional<lo
   const bool pinhole = py::hasattr(camera, "_numbers");
   if (!viewpoint.is_none() && (!camera.is_none() || fit))
     throw py::value_error("viewpoint: not with camera or fit, which look from elsewhere");
-  if (pinhole && (fit || fov)) throw py::value_error("camera: a Pinhole says all of the view: not with fit or fov");
-  if (fov && !(*fov > 0 && *fov < 180)) throw py::value_error("fov: an angle between 0 and 180 degrees expected");
+  if (pinhole && (fit || fov))
+    throw py::value_error("camera: a Pinhole says all of the view: not with fit or fov");
+  if (fov && !(*fov > 0 && *fov < 180))
+    throw py::value_error("fov: an angle between 0 and 180 degrees expected");
   if (pinhole)
     view.pinhole = pinholeOf(camera, settings.width, settings.height);
   else if (!camera.is_none())
@@ -270,7 +297,8 @@ py::object render(const WorldPtr& self, const py::object& size, std::optional<lo
   settings.cluster = clusterFor(cluster, self); // before the lock: it may wait for another world
   picture::RenderResult result;
   const auto lock = self->lockDrawing();
-  if (self->drawingNow) throw picture::RenderError("a picture is being made: its progress cannot make another");
+  if (self->drawingNow)
+    throw picture::RenderError("a picture is being made: its progress cannot make another");
   struct Drawing { // from here on changes of this thread are refused, those of others wait
     WorldObject& world;
     explicit Drawing(WorldObject& w) : world(w) { world.drawingNow = true; }
@@ -312,7 +340,8 @@ py::object render(const WorldPtr& self, const py::object& size, std::optional<lo
         bar);
   } catch (py::error_already_set& stopped) {
     if (py::hasattr(bar, "close")) bar.attr("close")();
-    if (!result.picture.planes.empty()) stopped.value().attr("image") = pictureOf(); // as far as it was finished
+    if (!result.picture.planes.empty())
+      stopped.value().attr("image") = pictureOf(); // as far as it was finished
     throw;
   }
   if (py::hasattr(bar, "close")) bar.attr("close")();
@@ -325,13 +354,17 @@ uint32_t channelsOf(const py::object& list) {
   uint32_t bits = RT_RGBA;
   const bool one = py::isinstance<py::str>(list);
   if (!one && !PySequence_Check(list.ptr()) && !PyAnySet_Check(list.ptr()))
-    throw py::type_error("channels: a name or several expected, not an object of the class " + typeOf(list));
+    throw py::type_error("channels: a name or several expected, not an object of the class " +
+                         typeOf(list));
   for (const py::handle name : one ? py::object(py::make_tuple(list)) : list) {
-    const picture::Channel* channel = py::isinstance<py::str>(name) ? picture::findChannel(fromText(name)) : nullptr;
+    const picture::Channel* channel =
+        py::isinstance<py::str>(name) ? picture::findChannel(fromText(name)) : nullptr;
     if (!channel) {
       std::string known;
-      for (const picture::Channel& c : picture::channelTable()) known += (known.empty() ? "" : ", ") + std::string(c.name);
-      throw py::value_error(fmt::format("channels: out of {} expected, not {}", known, std::string(py::str(name))));
+      for (const picture::Channel& c : picture::channelTable())
+        known += (known.empty() ? "" : ", ") + std::string(c.name);
+      throw py::value_error(
+          fmt::format("channels: out of {} expected, not {}", known, std::string(py::str(name))));
     }
     bits |= channel->bit;
   }
@@ -342,10 +375,13 @@ py::object progressOf(const py::object& given) {
   if (given.is_none() || given.ptr() == Py_False) return py::none();
   if (given.ptr() == Py_True) return py::module_::import("xvrml._progress").attr("Bar")();
   if (PyCallable_Check(given.ptr())) return given;
-  throw py::type_error("progress: True, False, None or a function expected, not an object of the class " + typeOf(given));
+  throw py::type_error(
+      "progress: True, False, None or a function expected, not an object of the class " +
+      typeOf(given));
 }
 
-void interruptible(const std::function<void(picture::Watch watch)>& work, const py::object& progress) {
+void interruptible(const std::function<void(picture::Watch watch)>& work,
+                   const py::object& progress) {
   if (interpreterEnds()) throw std::runtime_error("the interpreter is ending");
   bool stopped = false, signalled = false;
   std::exception_ptr failure;
@@ -376,19 +412,26 @@ void interruptible(const std::function<void(picture::Watch watch)>& work, const 
 
 void defineRender(py::object worldClass) {
   auto world = py::reinterpret_borrow<py::class_<WorldObject, WorldPtr>>(worldClass);
-  world.def(
-      "render", render, py::arg("size") = py::make_tuple(800, 600), py::arg("spp") = py::none(),
-      py::arg("viewpoint") = py::none(), py::arg("camera") = py::none(), py::arg("fit") = false, py::arg("fov") = py::none(),
-      py::arg("seed") = 0, py::arg("threads") = 0, py::arg("shadows") = true, py::arg("colour") = "linear",
-      py::arg("headlight") = "auto", py::arg("depth") = 25, py::arg("channels") = py::none(), py::arg("transport") = "auto",
-      py::arg("error") = 0.0, py::arg("time_limit") = 0.0, py::arg("clamp") = 0.0, py::arg("cluster") = py::none(),
-      py::arg("progress") = py::none(), py::arg("multiply_textures") = false, py::arg("up") = py::none(),
-      py::arg("background") = py::none(),
-      "Renders the world as it is now; of one that runs, the scene is kept from one picture to the next. Options as those of "
-      "the program vv. spp: samples a pixel, 16; with an error at most so many, 4096; with a time limit 65536. channels: "
-      "rgba and z, and with an error also error and trust. progress: True for a bar, or a function that is called with the "
-      "fraction done. Ctrl-C raises KeyboardInterrupt; its attribute image is what was finished. camera: a Pinhole, a 4x4 matrix "
-      "from camera to world (looking along -z, +y up), or (position, target) or (position, target, up); with fit only its "
-      "direction "
-      "counts. up: the axis that is up ('z', '-y' ...) in a world without Viewpoint. background: 'none', a colour or a file.");
+  world.def("render", render, py::arg("size") = py::make_tuple(800, 600),
+            py::arg("spp") = py::none(), py::arg("viewpoint") = py::none(),
+            py::arg("camera") = py::none(), py::arg("fit") = false, py::arg("fov") = py::none(),
+            py::arg("seed") = 0, py::arg("threads") = 0, py::arg("shadows") = true,
+            py::arg("colour") = "linear", py::arg("headlight") = "auto", py::arg("depth") = 25,
+            py::arg("channels") = py::none(), py::arg("transport") = "auto", py::arg("error") = 0.0,
+            py::arg("time_limit") = 0.0, py::arg("clamp") = 0.0, py::arg("cluster") = py::none(),
+            py::arg("progress") = py::none(), py::arg("multiply_textures") = false,
+            py::arg("up") = py::none(), py::arg("background") = py::none(),
+            "Renders the world as it is now; of one that runs, the scene is kept from one picture "
+            "to the next. Options as those of "
+            "the program vv. spp: samples a pixel, 16; with an error at most so many, 4096; with a "
+            "time limit 65536. channels: "
+            "rgba and z, and with an error also error and trust. progress: True for a bar, or a "
+            "function that is called with the "
+            "fraction done. Ctrl-C raises KeyboardInterrupt; its attribute image is what was "
+            "finished. camera: a Pinhole, a 4x4 matrix "
+            "from camera to world (looking along -z, +y up), or (position, target) or (position, "
+            "target, up); with fit only its "
+            "direction "
+            "counts. up: the axis that is up ('z', '-y' ...) in a world without Viewpoint. "
+            "background: 'none', a colour or a file.");
 }

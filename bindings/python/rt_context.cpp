@@ -98,28 +98,35 @@ void RtUse::commit() const {
 std::array<double, 16> rtMatrix(const py::object& rows, const std::string& name) {
   std::array<double, 16> m{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
   if (rows.is_none()) return m;
-  const py::array_t<double, py::array::c_style | py::array::forcecast> given(numberArray(rows, name, "a 4x4 matrix"));
+  const py::array_t<double, py::array::c_style | py::array::forcecast> given(
+      numberArray(rows, name, "a 4x4 matrix"));
   if (given.ndim() != 2 || given.shape(0) != 4 || given.shape(1) != 4)
-    throw py::value_error(name + ": a 4x4 matrix expected, not of shape " + fromText(py::str(given.attr("shape"))));
+    throw py::value_error(name + ": a 4x4 matrix expected, not of shape " +
+                          fromText(py::str(given.attr("shape"))));
   for (size_t i = 0; i < 16; ++i) m[i] = given.at(py::ssize_t(i % 4), py::ssize_t(i / 4));
   return m;
 }
 
 void defineRt(py::module_& parent) {
   py::module_ module = parent.def_submodule("rt", "OpenRT contexts; use xvrml.rt.");
-  rtError = PyErr_NewExceptionWithDoc("xvrml.rt.Error", "A call that OpenRT refused.", PyExc_RuntimeError, nullptr);
+  rtError = PyErr_NewExceptionWithDoc("xvrml.rt.Error", "A call that OpenRT refused.",
+                                      PyExc_RuntimeError, nullptr);
   if (!rtError) throw py::error_already_set();
   module.add_object("Error", rtError);
-  py::class_<RtContext, RtContextPtr> context(module, "Context", "An OpenRT context: one scene and what renders it.");
+  py::class_<RtContext, RtContextPtr> context(module, "Context",
+                                              "An OpenRT context: one scene and what renders it.");
   context
       .def(py::init([](int threads, const std::string& config) {
-             if (threads < 0 || threads > 1024) throw py::value_error("threads: 0 to 1024 expected");
-             return std::make_shared<RtContext>("threads=" + std::to_string(threads) + " " + config);
+             if (threads < 0 || threads > 1024)
+               throw py::value_error("threads: 0 to 1024 expected");
+             return std::make_shared<RtContext>("threads=" + std::to_string(threads) + " " +
+                                                config);
            }),
            py::arg("threads") = 0, py::kw_only(), py::arg("config") = "",
            "threads: 0: as many as the process may use. config: as of rtNewContext.")
       .def(
-          "close", [](RtContext& self) { self.close(); }, "Ends it and everything in it. Ends by itself with its last variable.")
+          "close", [](RtContext& self) { self.close(); },
+          "Ends it and everything in it. Ends by itself with its last variable.")
       .def_property_readonly("closed", [](const RtContext& self) { return !self.handle; })
       .def("__enter__", [](const RtContextPtr& self) { return self; })
       .def("__exit__", [](RtContext& self, const py::args&) { self.close(); });

@@ -1,5 +1,6 @@
-// rt_objects.h: the C++ side of the Python module xvrml.rt: an OpenRT context and what is in it. A context is current on a thread
-// only while a call for it runs there; one call at a time, others wait without the GIL.
+// rt_objects.h: the C++ side of the Python module xvrml.rt: an OpenRT context and what is in it. A
+// context is current on a thread only while a call for it runs there; one call at a time, others
+// wait without the GIL.
 #pragma once
 
 #include <array>
@@ -23,9 +24,10 @@ struct RtContext {
   void close();
   RTcontext handle = nullptr;
   Awaited<std::mutex> mutex;
-  bool dirty = true;                // edits that no query has seen yet
-  std::atomic<bool> drawing{false}; // a picture is made on behalf of the thread that holds the mutex
-  std::thread::id owner;            // that thread
+  bool dirty = true; // edits that no query has seen yet
+  std::atomic<bool> drawing{
+      false};            // a picture is made on behalf of the thread that holds the mutex
+  std::thread::id owner; // that thread
 };
 using RtContextPtr = std::shared_ptr<RtContext>;
 
@@ -60,7 +62,8 @@ struct RtShader : RtThing {
   std::string name;
 };
 
-// A 4x4 matrix for column vectors, as on paper; None: the identity. name: of the argument, for messages.
+// A 4x4 matrix for column vectors, as on paper; None: the identity. name: of the argument, for
+// messages.
 std::array<double, 16> rtMatrix(const py::object& rows, const std::string& name = "matrix");
 
 void defineRtScene(py::module_& module);

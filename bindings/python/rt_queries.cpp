@@ -1,5 +1,6 @@
-// rt_queries.cpp: ray and point queries of xvrml.rt over arrays: (..., 6) in, a dict of (...) arrays out. Worked off in chunks
-// that stay in the caches, each packed, traced and unpacked by all threads, without the GIL.
+// rt_queries.cpp: ray and point queries of xvrml.rt over arrays: (..., 6) in, a dict of (...)
+// arrays out. Worked off in chunks that stay in the caches, each packed, traced and unpacked by all
+// threads, without the GIL.
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
@@ -30,7 +31,8 @@ struct Rows { // of numbers, whatever shape is before the last side
     const std::string expected = fmt::format("numbers of shape (..., {})", width);
     values = Floats(numberArray(given, name, expected));
     if (values.ndim() < 1 || values.shape(values.ndim() - 1) != width)
-      throw py::value_error(name + (": " + expected) + " expected, not of shape " + fromText(py::str(values.attr("shape"))));
+      throw py::value_error(name + (": " + expected) + " expected, not of shape " +
+                            fromText(py::str(values.attr("shape"))));
     shape.assign(values.shape(), values.shape() + values.ndim() - 1);
     count = size_t(values.size() / width);
   }
@@ -62,10 +64,12 @@ struct Hits {
   float *tTo, *uvTo, *normalTo;
   uint32_t *geometryTo, *primitiveTo, *instanceTo, *nameTo;
   explicit Hits(const Shape& shape)
-      : t(like<float>(shape)), uv(like<float>(shape, 2)), normal(like<float>(shape, 3)), geometry(like<uint32_t>(shape)),
-        primitive(like<uint32_t>(shape)), instance(like<uint32_t>(shape)), name(like<uint32_t>(shape)), tTo(t.mutable_data()),
-        uvTo(uv.mutable_data()), normalTo(normal.mutable_data()), geometryTo(geometry.mutable_data()),
-        primitiveTo(primitive.mutable_data()), instanceTo(instance.mutable_data()), nameTo(name.mutable_data()) {}
+      : t(like<float>(shape)), uv(like<float>(shape, 2)), normal(like<float>(shape, 3)),
+        geometry(like<uint32_t>(shape)), primitive(like<uint32_t>(shape)),
+        instance(like<uint32_t>(shape)), name(like<uint32_t>(shape)), tTo(t.mutable_data()),
+        uvTo(uv.mutable_data()), normalTo(normal.mutable_data()),
+        geometryTo(geometry.mutable_data()), primitiveTo(primitive.mutable_data()),
+        instanceTo(instance.mutable_data()), nameTo(name.mutable_data()) {}
 
   void take(size_t i, const RThit& hit) const {
     const bool met = hit.t < infinity;
@@ -104,7 +108,8 @@ template <class F> void inChunks(const RtUse& use, size_t count, const F& f) {
 }
 
 void checkEnds(float near, float far) {
-  if (!(near >= 0 && far >= near)) throw py::value_error("tnear, tfar: 0 <= tnear <= tfar expected");
+  if (!(near >= 0 && far >= near))
+    throw py::value_error("tnear, tfar: 0 <= tnear <= tfar expected");
 }
 
 py::dict castRays(const RtContextPtr& self, const py::object& given, float near, float far) {
@@ -153,7 +158,8 @@ std::vector<uint32_t> counted(const RtUse& use, const Rows& rays, float near, fl
   return counts;
 }
 
-py::array countIntersections(const RtContextPtr& self, const py::object& given, float near, float far) {
+py::array countIntersections(const RtContextPtr& self, const py::object& given, float near,
+                             float far) {
   const Rows rays(given, "rays", 6);
   checkEnds(near, far);
   const RtUse use(self, false);
@@ -164,7 +170,8 @@ py::array countIntersections(const RtContextPtr& self, const py::object& given, 
   return out;
 }
 
-py::dict listIntersections(const RtContextPtr& self, const py::object& given, float near, float far) {
+py::dict listIntersections(const RtContextPtr& self, const py::object& given, float near,
+                           float far) {
   const Rows rays(given, "rays", 6);
   checkEnds(near, far);
   const RtUse use(self, false);
@@ -183,7 +190,8 @@ py::dict listIntersections(const RtContextPtr& self, const py::object& given, fl
   const float* from = rays.values.data();
   inChunks(use, rays.count, [&](size_t begin, size_t n) {
     const size_t base = first[begin];
-    places.assign(first.begin() + std::ptrdiff_t(begin), first.begin() + std::ptrdiff_t(begin + n + 1));
+    places.assign(first.begin() + std::ptrdiff_t(begin),
+                  first.begin() + std::ptrdiff_t(begin + n + 1));
     for (size_t& place : places) place -= base;
     found.resize(places.back());
     parallel(n, [&](size_t i) { pack(from + 6 * (begin + i), near, far, packed[i]); });
@@ -215,10 +223,12 @@ py::dict closestPoints(const RtContextPtr& self, const py::object& given, float 
     rtClosestPoints(n, from + 3 * first, radius, found.data());
     parallel(n, [&](size_t i) {
       const RTclosest& c = found[i];
-      RThit hit{c.distance, c.u, c.v, {c.normal[0], c.normal[1], c.normal[2]}, c.instance, c.name, c.primitive, c.userData};
+      RThit hit{c.distance, c.u,    c.v,         {c.normal[0], c.normal[1], c.normal[2]},
+                c.instance, c.name, c.primitive, c.userData};
       hits.take(first + i, hit);
       for (int k = 0; k < 3; ++k)
-        whereTo[3 * (first + i) + size_t(k)] = c.distance < infinity ? c.point[k] : std::numeric_limits<float>::quiet_NaN();
+        whereTo[3 * (first + i) + size_t(k)] =
+            c.distance < infinity ? c.point[k] : std::numeric_limits<float>::quiet_NaN();
     });
   });
   py::dict out = hits.dict();
@@ -232,19 +242,27 @@ py::dict closestPoints(const RtContextPtr& self, const py::object& given, float 
 
 void defineRtQueries(py::class_<RtContext, RtContextPtr>& context) {
   context
-      .def("cast_rays", castRays, py::arg("rays"), py::kw_only(), py::arg("tnear") = 0.0f, py::arg("tfar") = infinity,
-           "Nearest hits of rays (..., 6): origin and direction. A dict of arrays: t_hit (infinite: nothing), geometry_ids "
-           "(Instance.user_data), primitive_ids, primitive_uvs, primitive_normals, instance_ids, names.")
-      .def("test_occlusions", testOcclusions, py::arg("rays"), py::kw_only(), py::arg("tnear") = 0.0f, py::arg("tfar") = infinity,
-           "Whether anything lies between tnear and tfar: bool of shape (...).")
-      .def("count_intersections", countIntersections, py::arg("rays"), py::kw_only(), py::arg("tnear") = 0.0f,
-           py::arg("tfar") = infinity, "How many surfaces each ray passes: int32 of shape (...).")
-      .def("list_intersections", listIntersections, py::arg("rays"), py::kw_only(), py::arg("tnear") = 0.0f,
+      .def("cast_rays", castRays, py::arg("rays"), py::kw_only(), py::arg("tnear") = 0.0f,
            py::arg("tfar") = infinity,
-           "All surfaces that the rays pass, nearest first: as cast_rays, of shape (n,), with ray_ids and ray_splits: those of "
+           "Nearest hits of rays (..., 6): origin and direction. A dict of arrays: t_hit "
+           "(infinite: nothing), geometry_ids "
+           "(Instance.user_data), primitive_ids, primitive_uvs, primitive_normals, instance_ids, "
+           "names.")
+      .def("test_occlusions", testOcclusions, py::arg("rays"), py::kw_only(),
+           py::arg("tnear") = 0.0f, py::arg("tfar") = infinity,
+           "Whether anything lies between tnear and tfar: bool of shape (...).")
+      .def("count_intersections", countIntersections, py::arg("rays"), py::kw_only(),
+           py::arg("tnear") = 0.0f, py::arg("tfar") = infinity,
+           "How many surfaces each ray passes: int32 of shape (...).")
+      .def("list_intersections", listIntersections, py::arg("rays"), py::kw_only(),
+           py::arg("tnear") = 0.0f, py::arg("tfar") = infinity,
+           "All surfaces that the rays pass, nearest first: as cast_rays, of shape (n,), with "
+           "ray_ids and ray_splits: those of "
            "ray "
            "i are ray_splits[i] to ray_splits[i + 1].")
-      .def("compute_closest_points", closestPoints, py::arg("query_points"), py::kw_only(), py::arg("radius") = infinity,
-           "The nearest surface point of each of the points (..., 3), not farther than radius: points (NaN: none), distances, "
+      .def("compute_closest_points", closestPoints, py::arg("query_points"), py::kw_only(),
+           py::arg("radius") = infinity,
+           "The nearest surface point of each of the points (..., 3), not farther than radius: "
+           "points (NaN: none), distances, "
            "geometry_ids, primitive_ids, primitive_uvs, primitive_normals, instance_ids, names.");
 }

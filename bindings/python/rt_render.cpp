@@ -1,5 +1,5 @@
-// rt_render.cpp: Context.render() of xvrml.rt: the frame is made on a thread of its own, so that the calling one can look for
-// Ctrl-C and report progress. Called with the GIL held.
+// rt_render.cpp: Context.render() of xvrml.rt: the frame is made on a thread of its own, so that
+// the calling one can look for Ctrl-C and report progress. Called with the GIL held.
 #include <chrono>
 #include <condition_variable>
 
@@ -31,19 +31,23 @@ void renderWatched(RtContext& context, const picture::Watch& watch) {
   while (!changed.wait_for(lock, std::chrono::milliseconds(50), [&] { return done; })) {
     lock.unlock();
     stopped = stopped || watch(rtProgress(context.handle));
-    if (stopped) rtCancel(context.handle); // again and again: one before the frame has started would be lost
+    if (stopped)
+      rtCancel(context.handle); // again and again: one before the frame has started would be lost
     lock.lock();
   }
   lock.unlock();
   thread.join();
 }
 
-py::object render(const RtContextPtr& self, const std::pair<int, int>& size, std::optional<int> spp, double error,
-                  double timeLimit, int depth, int seed, const std::string& transport, bool shadows, const py::object& channels,
-                  const py::object& progress) {
+py::object render(const RtContextPtr& self, const std::pair<int, int>& size, std::optional<int> spp,
+                  double error, double timeLimit, int depth, int seed, const std::string& transport,
+                  bool shadows, const py::object& channels, const py::object& progress) {
   const std::optional<int> following = picture::transportNamed(transport);
-  if (!following) throw py::value_error(fmt::format("transport: {} expected, not '{}'", picture::transportNames, transport));
-  uint32_t bits = uint32_t(RT_RGBA | (channels.is_none() ? RT_DEPTH | (error > 0 ? RT_ERROR | RT_TRUST : 0) : 0));
+  if (!following)
+    throw py::value_error(
+        fmt::format("transport: {} expected, not '{}'", picture::transportNames, transport));
+  uint32_t bits = uint32_t(
+      RT_RGBA | (channels.is_none() ? RT_DEPTH | (error > 0 ? RT_ERROR | RT_TRUST : 0) : 0));
   if (!channels.is_none()) bits |= channelsOf(channels);
   const py::object bar = progressOf(progress);
   auto made = std::make_unique<PictureObject>();
@@ -116,8 +120,10 @@ py::object render(const RtContextPtr& self, const std::pair<int, int>& size, std
 } // namespace
 
 void defineRtRender(py::class_<RtContext, RtContextPtr>& context) {
-  context.def("render", render, py::arg("size") = std::pair<int, int>(800, 600), py::arg("spp") = py::none(), py::kw_only(),
-              py::arg("error") = 0.0, py::arg("time_limit") = 0.0, py::arg("depth") = 25, py::arg("seed") = 0,
-              py::arg("transport") = "auto", py::arg("shadows") = true, py::arg("channels") = py::none(),
-              py::arg("progress") = py::none(), "A picture of the scene, as World.render makes one of a world.");
+  context.def("render", render, py::arg("size") = std::pair<int, int>(800, 600),
+              py::arg("spp") = py::none(), py::kw_only(), py::arg("error") = 0.0,
+              py::arg("time_limit") = 0.0, py::arg("depth") = 25, py::arg("seed") = 0,
+              py::arg("transport") = "auto", py::arg("shadows") = true,
+              py::arg("channels") = py::none(), py::arg("progress") = py::none(),
+              "A picture of the scene, as World.render makes one of a world.");
 }

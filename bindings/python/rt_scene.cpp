@@ -1,5 +1,6 @@
-// rt_scene.cpp: what is in a context of xvrml.rt: meshes from arrays, instances, shaders and their parameters, lights, camera,
-// textures. Called with the GIL held; what takes long releases it.
+// rt_scene.cpp: what is in a context of xvrml.rt: meshes from arrays, instances, shaders and their
+// parameters, lights, camera, textures. Called with the GIL held; what takes long releases it.
+// Longer than 500 lines because it binds one class.
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
@@ -12,17 +13,21 @@ namespace {
 
 template <class T> using Dense = py::array_t<T, py::array::c_style | py::array::forcecast>;
 
-template <class T> Dense<T> rows(const py::object& given, const char* name, py::ssize_t width, py::ssize_t count = -1) {
-  const std::string expected = fmt::format("numbers of shape ({}, {})", count < 0 ? "n" : std::to_string(count), width);
+template <class T> Dense<T> rows(const py::object& given, const char* name, py::ssize_t width,
+                                 py::ssize_t count = -1) {
+  const std::string expected =
+      fmt::format("numbers of shape ({}, {})", count < 0 ? "n" : std::to_string(count), width);
   const py::array numbers = numberArray(given, name, expected, std::is_integral_v<T>);
   if (numbers.ndim() != 2 || numbers.shape(1) != width || (count >= 0 && numbers.shape(0) != count))
-    throw py::value_error(name + (": " + expected) + " expected, not of shape " + fromText(py::str(numbers.attr("shape"))));
+    throw py::value_error(name + (": " + expected) + " expected, not of shape " +
+                          fromText(py::str(numbers.attr("shape"))));
   return Dense<T>(numbers);
 }
 
 // The value as one of our objects.
 template <class T> const T& thing(const py::handle& value, const char* name, const char* expected) {
-  if (!py::isinstance<T>(value)) throw py::type_error(fmt::format("{}: {} expected, not {}", name, expected, shown(value)));
+  if (!py::isinstance<T>(value))
+    throw py::type_error(fmt::format("{}: {} expected, not {}", name, expected, shown(value)));
   return value.cast<const T&>();
 }
 
@@ -45,8 +50,9 @@ struct Opened { // an object's definition
   }
 };
 
-RtObject mesh(const RtContextPtr& self, const py::object& vertices, const py::object& faces, const py::object& normals,
-              const py::object& texcoords, const py::object& colors, const py::object& shader, uint32_t name, bool cull) {
+RtObject mesh(const RtContextPtr& self, const py::object& vertices, const py::object& faces,
+              const py::object& normals, const py::object& texcoords, const py::object& colors,
+              const py::object& shader, uint32_t name, bool cull) {
   const bool wide = py::isinstance<py::array_t<double>>(vertices);
   Dense<double> precise;
   Dense<float> single;
@@ -61,7 +67,8 @@ RtObject mesh(const RtContextPtr& self, const py::object& vertices, const py::ob
     corners = Dense<uint32_t>(given.size());
     for (py::ssize_t i = 0; i < given.size(); ++i) {
       const int64_t v = given.data()[i];
-      if (v < 0 || v >= count) throw py::value_error(fmt::format("faces: {} is no vertex: there are {}", v, count));
+      if (v < 0 || v >= count)
+        throw py::value_error(fmt::format("faces: {} is no vertex: there are {}", v, count));
       corners.mutable_data()[i] = uint32_t(v);
     }
   }
@@ -79,7 +86,8 @@ RtObject mesh(const RtContextPtr& self, const py::object& vertices, const py::ob
     if (surface) rtBindShader(surface->id);
     rtLoadName(name);
     (cull ? rtEnable : rtDisable)(RT_CULL_FACE);
-    rtVertexPointer(3, wide ? RT_DOUBLE : RT_FLOAT, 0, wide ? static_cast<const void*>(precise.data()) : single.data());
+    rtVertexPointer(3, wide ? RT_DOUBLE : RT_FLOAT, 0,
+                    wide ? static_cast<const void*>(precise.data()) : single.data());
     if (n.size()) rtNormalPointer(RT_FLOAT, 0, n.data());
     if (t.size()) rtTexCoordPointer(2, RT_FLOAT, 0, t.data());
     if (c.size()) rtColorPointer(3, RT_FLOAT, 0, c.data());
@@ -103,9 +111,11 @@ py::object keptTriangles(const py::object& vertices, const py::object& faces) {
   for (size_t i = 0; i < total; ++i) {
     const uint32_t* at = corners.data() + 3 * i;
     for (int k = 0; k < 3; ++k)
-      if (py::ssize_t(at[k]) >= points.shape(0)) throw py::value_error("faces: a vertex that is not there");
+      if (py::ssize_t(at[k]) >= points.shape(0))
+        throw py::value_error("faces: a vertex that is not there");
     const float* p = points.data();
-    if (!openrt::degenerateTriangle(p + 3 * size_t(at[0]), p + 3 * size_t(at[1]), p + 3 * size_t(at[2])))
+    if (!openrt::degenerateTriangle(p + 3 * size_t(at[0]), p + 3 * size_t(at[1]),
+                                    p + 3 * size_t(at[2])))
       kept.push_back(uint32_t(i));
   }
   if (kept.size() == total) return py::none();
@@ -133,7 +143,8 @@ RtObject group(const RtContextPtr& self, const py::iterable& parts) {
   for (const py::handle part : parts) {
     if (!py::isinstance<py::sequence>(part) || py::len(part) != 2)
       throw py::type_error("parts: pairs of an Object and its matrix expected, not " + shown(part));
-    const auto& object = thing<RtObject>(part[py::int_(0)], "parts", "pairs of an Object and its matrix");
+    const auto& object =
+        thing<RtObject>(part[py::int_(0)], "parts", "pairs of an Object and its matrix");
     if (object.context != self) throw py::value_error("parts: an object of another context");
     all.emplace_back(object.id, rtMatrix(part[py::int_(1)]));
   }
@@ -151,8 +162,8 @@ RtObject group(const RtContextPtr& self, const py::iterable& parts) {
   return made;
 }
 
-RtInstance instance(const RtContextPtr& self, const RtObject& object, const py::object& matrix, const py::object& shader,
-                    uint32_t name, uint64_t userData, bool dynamic) {
+RtInstance instance(const RtContextPtr& self, const RtObject& object, const py::object& matrix,
+                    const py::object& shader, uint32_t name, uint64_t userData, bool dynamic) {
   if (object.context != self) throw py::value_error("instance: an object of another context");
   const RtShader* surface = shaderOf(self, shader);
   const auto m = rtMatrix(matrix);
@@ -207,24 +218,28 @@ void setParameter(const RtShader& self, const std::string& name, const py::objec
     rtGetError();
     std::vector<std::string> known;
     for (const RTparameterInfo& p : parametersOf(self)) known.emplace_back(p.name);
-    throw py::key_error(fmt::format("{} has no parameter {}{}", self.name, name, didYouMean(name, known)));
+    throw py::key_error(
+        fmt::format("{} has no parameter {}{}", self.name, name, didYouMean(name, known)));
   }
   RTparameterInfo info{};
   rtGetParameterInfo(self.shaderClass, handle, &info);
   const std::string label = self.name + "." + name;
   const auto wrongType = [&] {
-    throw py::type_error(fmt::format("{}: {} expected, not {}", label, parameterText(info.type), shown(value)));
+    throw py::type_error(
+        fmt::format("{}: {} expected, not {}", label, parameterText(info.type), shown(value)));
   };
   const auto numbers = [&](py::ssize_t count) {
     Dense<float> array(numberArray(value, label, parameterText(info.type)));
     if (count >= 0 && array.size() != count)
-      throw py::value_error(fmt::format("{}: {} expected, not {} of them", label, parameterText(info.type), array.size()));
+      throw py::value_error(fmt::format("{}: {} expected, not {} of them", label,
+                                        parameterText(info.type), array.size()));
     return array;
   };
   try {
     switch (info.type) {
     case RT_PARAM_INT:
-      rtParameter1i(handle, py::isinstance<py::bool_>(value) ? int(value.cast<bool>()) : value.cast<int>());
+      rtParameter1i(handle,
+                    py::isinstance<py::bool_>(value) ? int(value.cast<bool>()) : value.cast<int>());
       break;
     case RT_PARAM_FLOAT: rtParameter1f(handle, value.cast<float>()); break;
     case RT_PARAM_VEC2: {
@@ -261,7 +276,8 @@ void setParameter(const RtShader& self, const std::string& name, const py::objec
       break;
     case RT_PARAM_TEXTURE: {
       const auto& texture = thing<RtTexture>(value, label.c_str(), parameterText(info.type));
-      if (texture.context != self.context) throw py::value_error(label + ": a texture of another context");
+      if (texture.context != self.context)
+        throw py::value_error(label + ": a texture of another context");
       rtParameterTexture(handle, texture.id);
       break;
     }
@@ -271,22 +287,26 @@ void setParameter(const RtShader& self, const std::string& name, const py::objec
   use.check();
 }
 
-RtShader shader(const RtContextPtr& self, const std::string& name, const py::object& library, const py::kwargs& parameters) {
+RtShader shader(const RtContextPtr& self, const std::string& name, const py::object& library,
+                const py::kwargs& parameters) {
   RtShader made;
   {
     const std::string folder = library.is_none() ? "" : fromText(library);
     const RtUse use(self);
-    const RTid shaderClass = rtNewShaderClass(name.c_str(), library.is_none() ? nullptr : folder.c_str());
+    const RTid shaderClass =
+        rtNewShaderClass(name.c_str(), library.is_none() ? nullptr : folder.c_str());
     use.check();
     made = {{self, rtNewShader(shaderClass)}, shaderClass, name};
     use.check();
   }
-  for (const auto& [key, value] : parameters) setParameter(made, fromText(key), py::reinterpret_borrow<py::object>(value));
+  for (const auto& [key, value] : parameters)
+    setParameter(made, fromText(key), py::reinterpret_borrow<py::object>(value));
   return made;
 }
 
 py::dict parameters(const RtShader& self) {
-  constexpr const char* types[] = {"", "int", "float", "vec2", "vec3", "vec4", "color", "matrix", "floats", "string", "texture"};
+  constexpr const char* types[] = {"",      "int",    "float",  "vec2",   "vec3",   "vec4",
+                                   "color", "matrix", "floats", "string", "texture"};
   const RtUse use(self.context, false);
   py::dict all;
   for (const RTparameterInfo& p : parametersOf(self))
@@ -294,17 +314,20 @@ py::dict parameters(const RtShader& self) {
   return all;
 }
 
-RtTexture texture(const RtContextPtr& self, const py::object& pixels, bool srgb, const std::string& wrap,
-                  const std::string& filter) {
-  const py::array any = numberArray(pixels, "pixels", "an array of shape (height, width, components)");
+RtTexture texture(const RtContextPtr& self, const py::object& pixels, bool srgb,
+                  const std::string& wrap, const std::string& filter) {
+  const py::array any =
+      numberArray(pixels, "pixels", "an array of shape (height, width, components)");
   if (any.ndim() != 2 && any.ndim() != 3)
     throw py::value_error("texture: pixels of shape (height, width, components) expected");
   const py::ssize_t components = any.ndim() == 3 ? any.shape(2) : 1;
   const bool bytes = py::isinstance<py::array_t<uint8_t>>(any);
-  if (components < 1 || components > 4 || any.shape(0) < 1 || any.shape(1) < 1 || any.shape(0) > 65536 || any.shape(1) > 65536)
+  if (components < 1 || components > 4 || any.shape(0) < 1 || any.shape(1) < 1 ||
+      any.shape(0) > 65536 || any.shape(1) > 65536)
     throw py::value_error("texture: pixels of shape (height, width, 1 to 4) expected");
   if ((wrap != "repeat" && wrap != "clamp") || (filter != "linear" && filter != "nearest"))
-    throw py::value_error("texture: wrap 'repeat' or 'clamp', filter 'linear' or 'nearest' expected");
+    throw py::value_error(
+        "texture: wrap 'repeat' or 'clamp', filter 'linear' or 'nearest' expected");
   // Rows from the top in Python, from the bottom in OpenRT.
   const py::object turned = any[py::make_tuple(py::slice(py::none(), py::none(), py::int_(-1)))];
   Dense<uint8_t> small;
@@ -317,7 +340,8 @@ RtTexture texture(const RtContextPtr& self, const py::object& pixels, bool srgb,
   RtTexture made{{self, 0}};
   rtGenTextures(1, &made.id);
   rtBindTexture(made.id);
-  rtTexImage2D(int(components), int(any.shape(1)), int(any.shape(0)), bytes ? RT_UNSIGNED_BYTE : RT_FLOAT,
+  rtTexImage2D(int(components), int(any.shape(1)), int(any.shape(0)),
+               bytes ? RT_UNSIGNED_BYTE : RT_FLOAT,
                bytes ? static_cast<const void*>(small.data()) : large.data());
   rtTexParameteri(RT_TEXTURE_SRGB, srgb);
   for (const RTenum side : {RT_TEXTURE_WRAP_S, RT_TEXTURE_WRAP_T})
@@ -336,10 +360,12 @@ struct Placed { // the current matrix of a role
   ~Placed() { rtPopMatrix(); }
 };
 
-RtLight light(const RtContextPtr& self, const RtShader& shader, const py::object& matrix, const py::object& scope) {
+RtLight light(const RtContextPtr& self, const RtShader& shader, const py::object& matrix,
+              const py::object& scope) {
   if (shader.context != self) throw py::value_error("light: a shader of another context");
   const auto m = rtMatrix(matrix);
-  const RTid instance = scope.is_none() ? 0 : thing<RtInstance>(scope, "scope", "an Instance or None").id;
+  const RTid instance =
+      scope.is_none() ? 0 : thing<RtInstance>(scope, "scope", "an Instance or None").id;
   const RtUse use(self);
   const Placed placed(m);
   RtLight made{{self, rtUseLight(shader.id)}};
@@ -348,8 +374,9 @@ RtLight light(const RtContextPtr& self, const RtShader& shader, const py::object
   return made;
 }
 
-void camera(const RtContextPtr& self, const std::array<double, 3>& eye, const std::array<double, 3>& at,
-            const std::array<double, 3>& up, double fov, std::optional<double> height) {
+void camera(const RtContextPtr& self, const std::array<double, 3>& eye,
+            const std::array<double, 3>& at, const std::array<double, 3>& up, double fov,
+            std::optional<double> height) {
   const RtUse use(self);
   const Placed placed(rtMatrix(py::none()));
   rtLookAt(eye[0], eye[1], eye[2], at[0], at[1], at[2], up[0], up[1], up[2]);
@@ -360,7 +387,8 @@ void camera(const RtContextPtr& self, const std::array<double, 3>& eye, const st
   use.check();
 }
 
-void role(const RtContextPtr& self, const py::object& shader, const py::object& matrix, void (*take)(RTid)) {
+void role(const RtContextPtr& self, const py::object& shader, const py::object& matrix,
+          void (*take)(RTid)) {
   const RtShader* given = shaderOf(self, shader);
   const auto m = rtMatrix(matrix);
   const RtUse use(self);
@@ -382,8 +410,11 @@ template <class F> auto call(F f) {
 void defineRtScene(py::module_& module) {
   using namespace pybind11::literals;
   const py::object none = py::none();
-  const auto unread = [](const RtThing&) -> py::object { throw py::attribute_error("it can be assigned, not read"); };
-  py::class_<RtThing>(module, "_Thing").def_readonly("id", &RtThing::id, "The number in the C API.");
+  const auto unread = [](const RtThing&) -> py::object {
+    throw py::attribute_error("it can be assigned, not read");
+  };
+  py::class_<RtThing>(module, "_Thing")
+      .def_readonly("id", &RtThing::id, "The number in the C API.");
   py::class_<RtObject, RtThing>(module, "Object", "Geometry that instances place.")
       .def("delete", call(rtDeleteObject), "Instances of it vanish with it.");
   py::class_<RtInstance, RtThing>(module, "Instance", "An object where it stands.")
@@ -429,39 +460,54 @@ void defineRtScene(py::module_& module) {
         rtLightMatrix(self.id, m.data());
         use.check();
       });
-  py::class_<RtShader, RtThing>(module, "Shader", "A shader; shader['reflectance'] = 0.5 sets a parameter.")
+  py::class_<RtShader, RtThing>(module, "Shader",
+                                "A shader; shader['reflectance'] = 0.5 sets a parameter.")
       .def("__setitem__", setParameter, "name"_a, "value"_a)
       .def_property_readonly("parameters", parameters, "Names of the parameters: (type, text).")
       .def_readonly("name", &RtShader::name, "Its class.")
       .def("delete", call(rtDeleteShader));
   py::object type = module.attr("Context");
   py::reinterpret_borrow<py::class_<RtContext, RtContextPtr>>(type)
-      .def("mesh", mesh, "vertices"_a, "faces"_a = none, py::kw_only(), "normals"_a = none, "texcoords"_a = none,
-           "colors"_a = none, "shader"_a = none, "name"_a = 0, "cull"_a = false,
-           "An object of triangles: vertices (n, 3) in float32 or float64, faces (m, 3); without faces every three vertices are "
+      .def("mesh", mesh, "vertices"_a, "faces"_a = none, py::kw_only(), "normals"_a = none,
+           "texcoords"_a = none, "colors"_a = none, "shader"_a = none, "name"_a = 0,
+           "cull"_a = false,
+           "An object of triangles: vertices (n, 3) in float32 or float64, faces (m, 3); without "
+           "faces every three vertices are "
            "one. normals, texcoords and colors by vertex. cull: back faces are not there.")
-      .def("sphere", sphere, "radius"_a, py::kw_only(), "shader"_a = none, "name"_a = 0, "An exact sphere about the origin.")
+      .def("sphere", sphere, "radius"_a, py::kw_only(), "shader"_a = none, "name"_a = 0,
+           "An exact sphere about the origin.")
       .def("group", group, "parts"_a, "An object of others: pairs of an object and its matrix.")
-      .def("instance", instance, "object"_a, "matrix"_a = none, py::kw_only(), "shader"_a = none, "name"_a = 0, "user_data"_a = 0,
-           "dynamic"_a = false, "Places an object in the scene. dynamic: it will move.")
+      .def("instance", instance, "object"_a, "matrix"_a = none, py::kw_only(), "shader"_a = none,
+           "name"_a = 0, "user_data"_a = 0, "dynamic"_a = false,
+           "Places an object in the scene. dynamic: it will move.")
       .def("shader", shader, "name"_a, "library"_a = none,
-           "A shader of a class of the stock shaders, or of a plug-in library; keywords are its parameters.")
-      .def("texture", texture, "pixels"_a, py::kw_only(), "srgb"_a = false, "wrap"_a = "repeat", "filter"_a = "linear",
-           "A texture of bytes or floats, first row at the top.")
+           "A shader of a class of the stock shaders, or of a plug-in library; keywords are its "
+           "parameters.")
+      .def("texture", texture, "pixels"_a, py::kw_only(), "srgb"_a = false, "wrap"_a = "repeat",
+           "filter"_a = "linear", "A texture of bytes or floats, first row at the top.")
       .def("light", light, "shader"_a, "matrix"_a = none, py::kw_only(), "scope"_a = none,
            "Turns a light shader on. scope: an instance that alone it shines on.")
-      .def("camera", camera, "eye"_a, "at"_a, "up"_a = std::array<double, 3>{0, 1, 0}, "fov"_a = 45.0, py::kw_only(),
-           "height"_a = none, "The camera looks from eye to at; fov: vertical angle in degrees. height: orthographic, so high.")
+      .def("camera", camera, "eye"_a, "at"_a, "up"_a = std::array<double, 3>{0, 1, 0},
+           "fov"_a = 45.0, py::kw_only(), "height"_a = none,
+           "The camera looks from eye to at; fov: vertical angle in degrees. height: orthographic, "
+           "so high.")
       .def(
           "camera_shader",
-          [](const RtContextPtr& self, const py::object& s, const py::object& m) { role(self, s, m, rtUseCamera); }, "shader"_a,
-          "matrix"_a = none, "A camera of a shader instead.")
+          [](const RtContextPtr& self, const py::object& s, const py::object& m) {
+            role(self, s, m, rtUseCamera);
+          },
+          "shader"_a, "matrix"_a = none, "A camera of a shader instead.")
       .def(
           "environment",
-          [](const RtContextPtr& self, const py::object& s, const py::object& m) { role(self, s, m, rtUseEnvironment); },
+          [](const RtContextPtr& self, const py::object& s, const py::object& m) {
+            role(self, s, m, rtUseEnvironment);
+          },
           "shader"_a, "matrix"_a = none, "What rays see that hit nothing; None: nothing.")
       .def(
-          "default_shader", [](const RtContextPtr& self, const py::object& s) { role(self, s, py::none(), rtDefaultShader); },
+          "default_shader",
+          [](const RtContextPtr& self, const py::object& s) {
+            role(self, s, py::none(), rtDefaultShader);
+          },
           "shader"_a, "The surface of geometry that has none.");
   module.def("_kept_triangles", keptTriangles);
 }

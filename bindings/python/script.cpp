@@ -1,5 +1,6 @@
-// script.cpp: what the script engine of Python (plugins/script/python) takes from this module, so that a Script sees the same
-// Node objects as a program: functions whose names begin with _script_. The engine hands over addresses that its host gave it
+// script.cpp: what the script engine of Python (plugins/script/python) takes from this module, so
+// that a Script sees the same Node objects as a program: functions whose names begin with _script_.
+// The engine hands over addresses that its host gave it
 // (`object` of xvrml/xscript.h). Called with the GIL held.
 #include <unordered_map>
 
@@ -9,10 +10,12 @@ using namespace xvrml;
 
 namespace {
 
-// The world as a Script sees it. It does not hold the browser: the browser holds the Script, which keeps nodes.
+// The world as a Script sees it. It does not hold the browser: the browser holds the Script, which
+// keeps nodes.
 struct ScriptWorld : WorldObject {
   Browser* scripted;
-  const bool foreign; // the browser is no object of this module: nobody here knows when it may be changed
+  const bool
+      foreign; // the browser is no object of this module: nobody here knows when it may be changed
   ScriptWorld(Browser* browser, LocksPtr known) : scripted(browser), foreign(!known) {
     if (known) locks = std::move(known);
   }
@@ -24,10 +27,12 @@ struct ScriptWorld : WorldObject {
   bool loose() const override { return false; }
   const char* frozen() const override {
     return !scripted ? "the Script that was given this node has ended"
-           : foreign ? "only the functions of a Script can change nodes here, on the thread on which they are called"
+           : foreign ? "only the functions of a Script can change nodes here, on the thread on "
+                       "which they are called"
                      : nullptr;
   }
-  std::shared_ptr<picture::Renderer> renderer(const picture::RenderSettings&, picture::Watch) override {
+  std::shared_ptr<picture::Renderer> renderer(const picture::RenderSettings&,
+                                              picture::Watch) override {
     throw picture::RenderError("a Script cannot render");
   }
 };
@@ -63,7 +68,8 @@ AllLocks& allLocks() {
   return all;
 }
 
-// handler(browser, node, field, value) -> whether a Script is running there; owned by the module for the life of the interpreter.
+// handler(browser, node, field, value) -> whether a Script is running there; owned by the module
+// for the life of the interpreter.
 PyObject* assignHandler = nullptr;
 
 py::object wrap(uintptr_t browserAddress, uintptr_t nodeAddress) {
@@ -90,15 +96,18 @@ void end(uintptr_t browserAddress) {
 
 } // namespace
 
-void scriptsLock(const Browser* browser, LocksPtr locks) { allLocks().set(browser, std::move(locks)); }
+void scriptsLock(const Browser* browser, LocksPtr locks) {
+  allLocks().set(browser, std::move(locks));
+}
 
 MakingBrowser::MakingBrowser(LocksPtr locks) { making = std::move(locks); }
 MakingBrowser::~MakingBrowser() { making.reset(); }
 
 bool scriptAssigns(const NodeObject& node, const std::string& field, const py::handle& value) {
   if (!assignHandler) return false;
-  return py::reinterpret_borrow<py::object>(assignHandler)(reinterpret_cast<uintptr_t>(node.world()->browser()),
-                                                           reinterpret_cast<uintptr_t>(node.node.get()), field, value)
+  return py::reinterpret_borrow<py::object>(assignHandler)(
+             reinterpret_cast<uintptr_t>(node.world()->browser()),
+             reinterpret_cast<uintptr_t>(node.node.get()), field, value)
       .cast<bool>();
 }
 

@@ -1,5 +1,5 @@
-// shapes.cpp: the Python class Mesh and World.meshes(): what of a world is drawn, as arrays. Called with the GIL held, which is
-// released while geometry is made.
+// shapes.cpp: the Python class Mesh and World.meshes(): what of a world is drawn, as arrays. Called
+// with the GIL held, which is released while geometry is made.
 #include <array>
 #include <cstring>
 #include <map>
@@ -24,17 +24,20 @@ struct Keeper {
 };
 
 // A view of shared arrays: nothing of them changes any more.
-template <class T, class From> py::array view(const MeshObject& self, const std::vector<From>& list, py::ssize_t width) {
+template <class T, class From>
+py::array view(const MeshObject& self, const std::vector<From>& list, py::ssize_t width) {
   const auto rows = py::ssize_t(list.size() * sizeof(From) / sizeof(T)) / width;
   std::vector<py::ssize_t> shape{rows};
   if (width > 1) shape.push_back(width);
-  py::capsule keeper(new Keeper{self.arrays}, [](void* held) { delete static_cast<Keeper*>(held); });
+  py::capsule keeper(new Keeper{self.arrays},
+                     [](void* held) { delete static_cast<Keeper*>(held); });
   py::array_t<T> array(std::move(shape), reinterpret_cast<const T*>(list.data()), keeper);
   array.attr("setflags")(py::arg("write") = false);
   return array;
 }
 
-template <class T, class From> py::object viewOrNone(const MeshObject& self, const std::vector<From>& list, py::ssize_t width) {
+template <class T, class From>
+py::object viewOrNone(const MeshObject& self, const std::vector<From>& list, py::ssize_t width) {
   return list.empty() ? py::object(py::none()) : py::object(view<T>(self, list, width));
 }
 
@@ -45,13 +48,16 @@ const char* kindOf(const MeshObject& self) {
 
 py::array faces(const MeshObject& self) {
   const auto kind = self.arrays->kind;
-  const py::ssize_t corners = kind == GeometryArrays::Kind::triangles ? 3 : kind == GeometryArrays::Kind::lines ? 2 : 1;
+  const py::ssize_t corners = kind == GeometryArrays::Kind::triangles ? 3
+                              : kind == GeometryArrays::Kind::lines   ? 2
+                                                                      : 1;
   return view<uint32_t>(self, self.arrays->indices, corners);
 }
 
 py::array matrixOf(const MeshObject& self) {
   py::array_t<double> matrix({4, 4}); // rows as on paper: column vectors
-  for (size_t i = 0; i < 16; ++i) matrix.mutable_at(py::ssize_t(i % 4), py::ssize_t(i / 4)) = self.matrix[i];
+  for (size_t i = 0; i < 16; ++i)
+    matrix.mutable_at(py::ssize_t(i % 4), py::ssize_t(i / 4)) = self.matrix[i];
   return matrix;
 }
 
@@ -84,7 +90,9 @@ py::list meshes(const WorldPtr& self, int spheres, const py::object& view) {
     shapes = placedShapes(world, view.is_none() ? nullptr : camera.data());
     for (const PlacedShape& shape : shapes) {
       Arrays& arrays = made[shape.geometry.get()];
-      if (!arrays) arrays = std::make_shared<GeometryArrays>(geometryArrays(*shape.geometry, spheres, world.options.limits));
+      if (!arrays)
+        arrays = std::make_shared<GeometryArrays>(
+            geometryArrays(*shape.geometry, spheres, world.options.limits));
     }
   }
   py::list out;
@@ -101,35 +109,49 @@ py::list meshes(const WorldPtr& self, int spheres, const py::object& view) {
 } // namespace
 
 void defineShapes(py::module_& module) {
-  py::class_<MeshObject>(module, "Mesh",
-                         "What a Shape looks like where it stands: arrays that share the mesh's memory, read-only.")
+  py::class_<MeshObject>(
+      module, "Mesh",
+      "What a Shape looks like where it stands: arrays that share the mesh's memory, read-only.")
       .def_property_readonly(
-          "node", [](const MeshObject& self) { return asNode(self.shape.world(), self.shape.node); }, "The Shape.")
+          "node",
+          [](const MeshObject& self) { return asNode(self.shape.world(), self.shape.node); },
+          "The Shape.")
       .def_property_readonly("kind", kindOf, "'triangles', 'lines', 'points' or 'sphere'.")
-      .def_property_readonly("matrix", matrixOf, "Its coordinates to the world's, 4x4 for column vectors.")
+      .def_property_readonly("matrix", matrixOf,
+                             "Its coordinates to the world's, 4x4 for column vectors.")
       .def_property_readonly(
-          "vertices", [](const MeshObject& self) { return view<float>(self, self.arrays->points, 3); },
+          "vertices",
+          [](const MeshObject& self) { return view<float>(self, self.arrays->points, 3); },
           "Points in its own coordinates: float32 of shape (n, 3).")
-      .def_property_readonly("world_vertices", placed, "Points in world coordinates: float64 of shape (n, 3), made anew.")
-      .def_property_readonly("faces", faces, "Vertices of each triangle (m, 3), line segment (m, 2) or point (m,): uint32.")
+      .def_property_readonly("world_vertices", placed,
+                             "Points in world coordinates: float64 of shape (n, 3), made anew.")
       .def_property_readonly(
-          "normals", [](const MeshObject& self) { return viewOrNone<float>(self, self.arrays->normals, 3); },
+          "faces", faces,
+          "Vertices of each triangle (m, 3), line segment (m, 2) or point (m,): uint32.")
+      .def_property_readonly(
+          "normals",
+          [](const MeshObject& self) { return viewOrNone<float>(self, self.arrays->normals, 3); },
           "By vertex, float32 of shape (n, 3); None: each face has its own.")
       .def_property_readonly(
-          "texcoords", [](const MeshObject& self) { return viewOrNone<float>(self, self.arrays->texCoords, 2); },
+          "texcoords",
+          [](const MeshObject& self) { return viewOrNone<float>(self, self.arrays->texCoords, 2); },
           "By vertex, float32 of shape (n, 2), or None.")
       .def_property_readonly(
-          "colors", [](const MeshObject& self) { return viewOrNone<float>(self, self.arrays->colors, 3); },
+          "colors",
+          [](const MeshObject& self) { return viewOrNone<float>(self, self.arrays->colors, 3); },
           "By vertex, float32 of shape (n, 3), or None.")
       .def_property_readonly(
           "radius", [](const MeshObject& self) { return self.arrays->radius; }, "Of a sphere.")
       .def_property_readonly(
-          "solid", [](const MeshObject& self) { return self.arrays->solid; }, "Back faces are not drawn.")
+          "solid", [](const MeshObject& self) { return self.arrays->solid; },
+          "Back faces are not drawn.")
       .def_property_readonly(
-          "ccw", [](const MeshObject& self) { return self.arrays->ccw; }, "Faces run counter-clockwise.");
+          "ccw", [](const MeshObject& self) { return self.arrays->ccw; },
+          "Faces run counter-clockwise.");
   py::object world = module.attr("World");
   py::reinterpret_borrow<py::class_<WorldObject, WorldPtr>>(world).def(
       "meshes", meshes, py::kw_only(), py::arg("spheres") = 32, py::arg("view") = py::none(),
-      "Everything that is drawn, as a list of Mesh. spheres: how many parts from pole to pole a Sphere is cut into; 0: it stays "
+      "Everything that is drawn, as a list of Mesh. spheres: how many parts from pole to pole a "
+      "Sphere is cut into; 0: it stays "
       "one. view: camera to world, for levels of detail and billboards.");
 }

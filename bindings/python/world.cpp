@@ -1,14 +1,14 @@
-// world.cpp: the Python class World: names, problems, what is in it, events, writing. Called with the GIL held; what takes long
-// releases it.
+// world.cpp: the Python class World: names, problems, what is in it, events, writing. Called with
+// the GIL held; what takes long releases it.
 #include <algorithm>
 #include <optional>
 
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
-#include "objects.h"
 #include "libpicture/files/atomic_file.h"
 #include "libpicture/nearest.h"
+#include "objects.h"
 
 using namespace xvrml;
 
@@ -55,7 +55,8 @@ picture::RenderSettings withoutPicture() {
   return settings;
 }
 
-// In Python the matrix of a viewpoint is its pose, where render(viewpoint=...) looks from, rather than that of its parent.
+// In Python the matrix of a viewpoint is its pose, where render(viewpoint=...) looks from, rather
+// than that of its parent.
 std::vector<ViewpointInfo> viewpoints(const WorldPtr& self) {
   std::vector<ViewpointInfo> list;
   const auto lock = self->lock();
@@ -97,9 +98,11 @@ void setTime(const WorldPtr& self, double time) {
   Browser& browser = self->live();
   const auto lock = self->lock();
   if (!(time < latestTime)) // also NaN
-    throw py::value_error(fmt::format("time: a number of seconds below {} expected, not {}", latestTime, time));
+    throw py::value_error(
+        fmt::format("time: a number of seconds below {} expected, not {}", latestTime, time));
   if (time < browser.now())
-    throw py::value_error(fmt::format("time: from {} on expected, not {}: it does not go back", browser.now(), time));
+    throw py::value_error(
+        fmt::format("time: from {} on expected, not {}: it does not go back", browser.now(), time));
   self->change([&] { browser.tick(time); });
 }
 
@@ -111,39 +114,48 @@ Node& own(const WorldPtr& self, const NodeObject& node) {
 std::string nearestEvent(const Node& node, const std::string& name, bool out) {
   std::vector<std::string> known;
   for (const FieldInfo& field : node.type().fields)
-    if (field.access == Access::exposedField || field.access == (out ? Access::eventOut : Access::eventIn))
+    if (field.access == Access::exposedField ||
+        field.access == (out ? Access::eventOut : Access::eventIn))
       known.push_back(field.name);
   return didYouMean(name, known);
 }
 
-uint64_t listen(const WorldPtr& self, const NodeObject& object, const std::string& event, py::function function) {
+uint64_t listen(const WorldPtr& self, const NodeObject& object, const std::string& event,
+                py::function function) {
   Node& from = own(self, object);
   if (!from.type().findEventOut(event))
-    throw py::attribute_error(fmt::format("{} has no eventOut {}{}", from.type().name, event, nearestEvent(from, event, true)));
+    throw py::attribute_error(fmt::format("{} has no eventOut {}{}", from.type().name, event,
+                                          nearestEvent(from, event, true)));
   return self->listen(object.node, event, std::move(function));
 }
 
 // Routes are in the list that is written, too.
-bool route(const WorldPtr& self, const NodeObject& from, const std::string& out, const NodeObject& to, const std::string& in,
-           bool add) {
+bool route(const WorldPtr& self, const NodeObject& from, const std::string& out,
+           const NodeObject& to, const std::string& in, bool add) {
   Node &source = own(self, from), &target = own(self, to);
   const FieldInfo *sends = source.type().findEventOut(out), *takes = target.type().findEventIn(in);
   if (!sends)
-    throw py::attribute_error(fmt::format("{} has no eventOut {}{}", source.type().name, out, nearestEvent(source, out, true)));
+    throw py::attribute_error(fmt::format("{} has no eventOut {}{}", source.type().name, out,
+                                          nearestEvent(source, out, true)));
   if (!takes)
-    throw py::attribute_error(fmt::format("{} has no eventIn {}{}", target.type().name, in, nearestEvent(target, in, false)));
+    throw py::attribute_error(fmt::format("{} has no eventIn {}{}", target.type().name, in,
+                                          nearestEvent(target, in, false)));
   if (sends->type != takes->type)
-    throw py::type_error(fmt::format("{} is {}, {} is {}", out, fieldTypeName(sends->type), in, fieldTypeName(takes->type)));
+    throw py::type_error(fmt::format("{} is {}, {} is {}", out, fieldTypeName(sends->type), in,
+                                     fieldTypeName(takes->type)));
   const auto lock = self->lock();
   std::vector<Route>& written = self->graph().scope.routes;
   const auto found = std::find_if(written.begin(), written.end(), [&](const Route& r) {
-    return r.from == from.node && r.to == to.node && source.type().findEventOut(r.fromField) == sends &&
+    return r.from == from.node && r.to == to.node &&
+           source.type().findEventOut(r.fromField) == sends &&
            target.type().findEventIn(r.toField) == takes;
   });
   bool done = add || found != written.end();
   if (Browser* browser = self->browser())
-    self->change(
-        [&] { done = add ? browser->addRoute(source, out, target, in) : browser->deleteRoute(source, out, target, in); });
+    self->change([&] {
+      done = add ? browser->addRoute(source, out, target, in)
+                 : browser->deleteRoute(source, out, target, in);
+    });
   if (!add && found != written.end()) written.erase(found);
   if (add && done && found == written.end()) written.push_back({from.node, out, to.node, in, {}});
   return done;
@@ -157,16 +169,19 @@ void setName(const WorldPtr& self, const NodeObject& node, const std::string& na
   if (!good) throw py::value_error(fmt::format("name: '{}' cannot be a DEF name", name));
   if (const auto found = names.find(name); found != names.end() && found->second != node.node)
     throw py::value_error(fmt::format("name: the world has a node called {}", name));
-  if (const auto former = names.find(node.node->defName); former != names.end() && former->second == node.node)
+  if (const auto former = names.find(node.node->defName);
+      former != names.end() && former->second == node.node)
     names.erase(former);
   node.node->defName = name;
   names[name] = node.node;
 }
 
-const NodeObject& add(const WorldPtr& self, const NodeObject& added, const std::optional<std::string>& name) {
+const NodeObject& add(const WorldPtr& self, const NodeObject& added,
+                      const std::optional<std::string>& name) {
   const WorldPtr from = added.world();
   self->graph(); // or raises
-  if (!from->loose() && !sameWorld(from, self)) throw py::value_error("the node is in another world");
+  if (!from->loose() && !sameWorld(from, self))
+    throw py::value_error("the node is in another world");
   const auto lock = self->lock();
   if (name) setName(self, added, *name);
   if (from->loose()) from->joined = self;
@@ -202,14 +217,17 @@ void setAttribute(const py::object& self, const py::str& name, const py::object&
     std::vector<std::string> known;
     for (const py::handle one : py::reinterpret_steal<py::list>(PyObject_Dir(type.ptr())))
       if (!fromText(one).starts_with("_")) known.push_back(fromText(one));
-    throw py::attribute_error(fmt::format("a World has no attribute {}{}", fromText(name), didYouMean(fromText(name), known)));
+    throw py::attribute_error(fmt::format("a World has no attribute {}{}", fromText(name),
+                                          didYouMean(fromText(name), known)));
   }
-  if (PyObject_GenericSetAttr(self.ptr(), name.ptr(), value.ptr()) != 0) throw py::error_already_set();
+  if (PyObject_GenericSetAttr(self.ptr(), name.ptr(), value.ptr()) != 0)
+    throw py::error_already_set();
 }
 
 py::array matrixOf(const ViewpointInfo& v) {
   py::array_t<double> matrix({4, 4}); // rows as on paper: column vectors
-  for (size_t i = 0; i < 16; ++i) matrix.mutable_at(py::ssize_t(i % 4), py::ssize_t(i / 4)) = v.matrix[i];
+  for (size_t i = 0; i < 16; ++i)
+    matrix.mutable_at(py::ssize_t(i % 4), py::ssize_t(i / 4)) = v.matrix[i];
   return matrix;
 }
 
@@ -217,79 +235,103 @@ py::array matrixOf(const ViewpointInfo& v) {
 
 void defineWorld(py::module_& module) {
   py::class_<Diagnostic>(module, "Diagnostic", "A problem of a world, with its place.")
-      .def_property_readonly("severity", [](const Diagnostic& d) { return severityName(d.severity); })
+      .def_property_readonly("severity",
+                             [](const Diagnostic& d) { return severityName(d.severity); })
       .def_property_readonly("file", [](const Diagnostic& d) { return toText(d.file); })
       .def_readonly("line", &Diagnostic::line)
       .def_readonly("column", &Diagnostic::column)
       .def_property_readonly("message", [](const Diagnostic& d) { return toText(d.message); })
       .def("__str__", [](const Diagnostic& d) { return toText(d.text()); })
-      .def("__repr__", [](const Diagnostic& d) { return toText("<" + d.text().substr(0, d.text().find('\n')) + ">"); });
+      .def("__repr__", [](const Diagnostic& d) {
+        return toText("<" + d.text().substr(0, d.text().find('\n')) + ">");
+      });
   py::class_<ViewpointInfo>(module, "ViewpointInfo", "A viewpoint of a world.")
       .def_property_readonly(
-          "name", [](const ViewpointInfo& v) { return toText(v.name); }, "DEF name, '' if it has none.")
-      .def_property_readonly("description", [](const ViewpointInfo& v) { return toText(v.description); })
-      .def_property_readonly("matrix", matrixOf,
-                             "Its pose: camera to world, 4x4 for column vectors, looking along -z with +y up, as "
-                             "render(camera=...) takes it.")
-      .def("__repr__",
-           [](const ViewpointInfo& v) { return toText("<Viewpoint " + (v.name.empty() ? v.description : v.name) + ">"); });
+          "name", [](const ViewpointInfo& v) { return toText(v.name); },
+          "DEF name, '' if it has none.")
+      .def_property_readonly("description",
+                             [](const ViewpointInfo& v) { return toText(v.description); })
+      .def_property_readonly(
+          "matrix", matrixOf,
+          "Its pose: camera to world, 4x4 for column vectors, looking along -z with +y up, as "
+          "render(camera=...) takes it.")
+      .def("__repr__", [](const ViewpointInfo& v) {
+        return toText("<Viewpoint " + (v.name.empty() ? v.description : v.name) + ">");
+      });
   py::class_<WorldObject, WorldPtr> world(
       module, "World",
-      "A world; World() is an empty one. world['NAME'] is the node that DEF NAME names. It stands still until its time or its "
+      "A world; World() is an empty one. world['NAME'] is the node that DEF NAME names. It stands "
+      "still until its time or its "
       "events are asked for.",
       py::dynamic_attr());
   world.def(py::init(&emptyWorld))
       .def_property_readonly(
-          "path", [](const WorldPtr& self) { return toText(self->graph().path); }, "The file that it comes from.")
-      .def_property_readonly("warnings", warnings, "Every problem found so far, in order: errors too.")
+          "path", [](const WorldPtr& self) { return toText(self->graph().path); },
+          "The file that it comes from.")
+      .def_property_readonly("warnings", warnings,
+                             "Every problem found so far, in order: errors too.")
       .def_property_readonly("names", names, "DEF names of the file.")
       .def_property_readonly("roots", roots, "Nodes of the file's top level.")
       .def_property_readonly("viewpoints", viewpoints, "Viewpoints in the order of the file.")
-      .def_property(
-          "time", now, setTime,
-          "Seconds since the world was loaded. Assigning lets time pass: sensors send, routes carry, Scripts run, until "
-          "nothing is left to do. It does not go back.")
+      .def_property("time", now, setTime,
+                    "Seconds since the world was loaded. Assigning lets time pass: sensors send, "
+                    "routes carry, Scripts run, until "
+                    "nothing is left to do. It does not go back.")
       .def_property_readonly(
-          "epoch", [](const WorldPtr& self) { return self->browser() ? self->browser()->epoch() : worldEpoch; },
-          "Time 0 in the world's own time, seconds since 1970: assign epoch + time to a startTime to start something now.")
+          "epoch",
+          [](const WorldPtr& self) {
+            return self->browser() ? self->browser()->epoch() : worldEpoch;
+          },
+          "Time 0 in the world's own time, seconds since 1970: assign epoch + time to a startTime "
+          "to start something now.")
       .def("__getitem__",
            [](const WorldPtr& self, const py::object& name) {
              if (!py::isinstance<py::str>(name))
-               throw py::type_error("a world is asked by the DEF name of a node, which is a string");
+               throw py::type_error(
+                   "a world is asked by the DEF name of a node, which is a string");
              return getNode(self, fromText(name));
            })
       .def("__contains__",
            [](const WorldPtr& self, const py::object& name) {
-             return py::isinstance<py::str>(name) && self->graph().scope.names.count(fromText(name)) > 0;
+             return py::isinstance<py::str>(name) &&
+                    self->graph().scope.names.count(fromText(name)) > 0;
            })
       .def("__iter__", [](const WorldPtr& self) { return py::iter(names(self)); })
       .def("__len__", [](const WorldPtr& self) { return self->graph().scope.names.size(); })
       .def("__bool__", [](const WorldPtr&) { return true; })
       .def("__setattr__", setAttribute)
-      .def("add", add, py::arg("node"), py::arg("name") = py::none(), py::return_value_policy::reference,
-           "Puts a node into the world, at the top level, under a DEF name if one is given. Returns the node.")
+      .def("add", add, py::arg("node"), py::arg("name") = py::none(),
+           py::return_value_policy::reference,
+           "Puts a node into the world, at the top level, under a DEF name if one is given. "
+           "Returns the node.")
       .def("remove", removeNode, py::arg("node"), "Takes a node from the top level.")
       .def("listen", listen, py::arg("node"), py::arg("event"), py::arg("callback"),
-           "Calls callback(value, time) whenever an eventOut or exposedField has sent: after the events that belong together, on "
+           "Calls callback(value, time) whenever an eventOut or exposedField has sent: after the "
+           "events that belong together, on "
            "the thread that made them happen. Returns a number for unlisten.")
       .def(
           "unlisten",
-          [](const WorldPtr& self, const NodeObject& node, uint64_t number) { self->unlisten(own(self, node), number); },
+          [](const WorldPtr& self, const NodeObject& node, uint64_t number) {
+            self->unlisten(own(self, node), number);
+          },
           py::arg("node"), py::arg("number"))
       .def(
           "add_route",
-          [](const WorldPtr& self, const NodeObject& from, const std::string& out, const NodeObject& to, const std::string& in) {
-            return route(self, from, out, to, in, true);
-          },
-          py::arg("from_node"), py::arg("out"), py::arg("to_node"), py::arg("in_"), "Adds a route; one that exists stays one.")
+          [](const WorldPtr& self, const NodeObject& from, const std::string& out,
+             const NodeObject& to,
+             const std::string& in) { return route(self, from, out, to, in, true); },
+          py::arg("from_node"), py::arg("out"), py::arg("to_node"), py::arg("in_"),
+          "Adds a route; one that exists stays one.")
       .def(
           "delete_route",
-          [](const WorldPtr& self, const NodeObject& from, const std::string& out, const NodeObject& to, const std::string& in) {
-            return route(self, from, out, to, in, false);
-          },
-          py::arg("from_node"), py::arg("out"), py::arg("to_node"), py::arg("in_"), "False if there was no such route.")
+          [](const WorldPtr& self, const NodeObject& from, const std::string& out,
+             const NodeObject& to,
+             const std::string& in) { return route(self, from, out, to, in, false); },
+          py::arg("from_node"), py::arg("out"), py::arg("to_node"), py::arg("in_"),
+          "False if there was no such route.")
       .def("to_vrml", toVrml, "The world as VRML97 text.")
       .def("save", save, py::arg("path"), "Writes the world as a VRML97 file.")
-      .def("__repr__", [](const WorldPtr& self) { return toText("<World " + self->graph().path + ">"); });
+      .def("__repr__",
+           [](const WorldPtr& self) { return toText("<World " + self->graph().path + ">"); });
   defineRender(world);
 }

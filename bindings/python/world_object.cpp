@@ -1,4 +1,5 @@
-// world_object.cpp: what is behind the Python class World: how it comes alive, who may change it when, callbacks after events.
+// world_object.cpp: what is behind the Python class World: how it comes alive, who may change it
+// when, callbacks after events.
 #include <algorithm>
 #include <filesystem>
 #include <utility>
@@ -19,14 +20,15 @@ struct Count {
   ~Count() { --number; }
 };
 
-// In a wheel the engine for Scripts in Python lies beside this module, where no program without a Python finds it.
+// In a wheel the engine for Scripts in Python lies beside this module, where no program without a
+// Python finds it.
 BrowserOptions withOwnEngines(BrowserOptions options) {
   static const char here = 0;
   std::error_code error;
   Dl_info info{};
   if (dladdr(&here, &info) == 0 || !info.dli_fname) return options;
-  const std::filesystem::path folder =
-      std::filesystem::canonical(std::filesystem::path(info.dli_fname).parent_path() / "scripts", error);
+  const std::filesystem::path folder = std::filesystem::canonical(
+      std::filesystem::path(info.dli_fname).parent_path() / "scripts", error);
   if (!error) options.scriptPath += (options.scriptPath.empty() ? "" : ":") + folder.string();
   return options;
 }
@@ -57,12 +59,14 @@ Browser& WorldObject::live() {
   return *running;
 }
 
-void WorldObject::run(std::unique_ptr<World> made, const BrowserOptions& options, double start, const RunOptions& more) {
+void WorldObject::run(std::unique_ptr<World> made, const BrowserOptions& options, double start,
+                      const RunOptions& more) {
   const MakingBrowser making(locks); // its Scripts begin at once
   locks->callbacks = this;
   change([&] {
     running = std::make_unique<Browser>(std::move(made), withOwnEngines(options), start, more);
-    for (const auto& [node, field] : std::exchange(early, {})) running->set(*node, field, running->get(*node, field));
+    for (const auto& [node, field] : std::exchange(early, {}))
+      running->set(*node, field, running->get(*node, field));
   });
   scriptsLock(running.get(), locks);
 }
@@ -81,8 +85,10 @@ void WorldObject::change(const std::function<void()>& work) {
   if (own && depth_ == 0 && own->depth_ == 0 && !own->delivering_) own->deliver();
 }
 
-std::shared_ptr<picture::Renderer> WorldObject::renderer(const picture::RenderSettings& settings, picture::Watch watch) {
-  if (depth_ > 0) throw picture::RenderError("a Script cannot render: the events are still under way");
+std::shared_ptr<picture::Renderer> WorldObject::renderer(const picture::RenderSettings& settings,
+                                                         picture::Watch watch) {
+  if (depth_ > 0)
+    throw picture::RenderError("a Script cannot render: the events are still under way");
   if (!running) return std::make_shared<picture::Renderer>(graph(), settings, std::move(watch));
   if (drawing_ && drawn_ == settings) {
     drawing_->setWatch(std::move(watch));
@@ -107,7 +113,8 @@ WorldObject::Changing WorldObject::lock() {
     locked.graph = std::unique_lock(locks->graph);
     sweep();
   }
-  if (drawingNow) throw py::value_error("the world cannot be changed while a picture of it is made");
+  if (drawingNow)
+    throw py::value_error("the world cannot be changed while a picture of it is made");
   if (const char* why = frozen()) throw py::value_error(why);
   return locked;
 }
@@ -126,10 +133,12 @@ uint64_t WorldObject::listen(const NodeRef& node, const std::string& event, py::
   Browser& browser = live();
   const auto locked = lock();
   const auto number = std::make_shared<uint64_t>(0);
-  *number = browser.listen(*node, event, [this, number](Node&, const FieldInfo&, const Value& value) {
-    heard_.push_back({*number, value, running->now()});
-  });
-  // Callbacks belong to the Python object, where the garbage collector sees them: what they refer to may be the world itself.
+  *number =
+      browser.listen(*node, event, [this, number](Node&, const FieldInfo&, const Value& value) {
+        heard_.push_back({*number, value, running->now()});
+      });
+  // Callbacks belong to the Python object, where the garbage collector sees them: what they refer
+  // to may be the world itself.
   py::dict own = py::cast(shared_from_this()).attr("__dict__");
   if (!own.contains("_callbacks")) own["_callbacks"] = py::dict();
   own["_callbacks"][py::int_(*number)] = std::move(callback);
@@ -157,12 +166,14 @@ void WorldObject::deliver() {
   } const delivering(*this);
   const WorldPtr self = shared_from_this();
   for (int round = 0; !heard_.empty(); ++round) {
-    if (round == maximumRounds) throw std::runtime_error("callbacks keep making events that call them");
+    if (round == maximumRounds)
+      throw std::runtime_error("callbacks keep making events that call them");
     for (const Heard& one : std::exchange(heard_, {})) {
       py::dict own = py::cast(self).attr("__dict__");
       if (!own.contains("_callbacks")) return;
       const py::object callback = own["_callbacks"].attr("get")(one.callback);
-      if (!callback.is_none()) callback(toPython(one.value, self), one.time); // unlisten() may have come first
+      if (!callback.is_none())
+        callback(toPython(one.value, self), one.time); // unlisten() may have come first
     }
   }
 }

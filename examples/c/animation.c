@@ -1,6 +1,6 @@
-/* animation.c: a turning wheel of six balls. Frames overlap: rtSwapBuffers hands over the next positions and gives back the
- * picture of those before, which is written while the next one is being made.
- * usage: animation [picture.ppm] */
+/* animation.c: a turning wheel of six balls. Frames overlap: rtSwapBuffers hands over the next
+ * positions and gives back the picture of those before, which is written while the next one is
+ * being made. usage: animation [picture.ppm] */
 #include "picture.h"
 
 enum { width = 160, height = 120, balls = 6, frames = 12 };
@@ -21,7 +21,8 @@ int main(int argc, char** argv) {
   }
   rtEndObject();
   RTid turning = rtInstantiateObject(wheel);
-  rtInstanceHint(turning, RT_DYNAMIC); /* its matrix will change: then a change costs next to nothing */
+  rtInstanceHint(turning,
+                 RT_DYNAMIC); /* its matrix will change: then a change costs next to nothing */
 
   rtTranslated(0, 0, 4);
   rtUseLight(rtNewShader(rtNewShaderClass("VRML97DirectionalLight", NULL)));
@@ -46,6 +47,7 @@ int main(int argc, char** argv) {
   rtExit();
   if (argc > 1 && !writePicture(argv[1], width, height, rgba)) return 1;
   printf("%d frames, %d structures built\n", frames, (int)stats.objectBuilds);
-  /* A ball was there in the first frame and not halfway to the next one's place; nothing was built for the later frames. */
+  /* A ball was there in the first frame and not halfway to the next one's place; nothing was built
+   * for the later frames. */
   return !failed && seen[0] > 0.1f && seen[frames / 2] == 0 && stats.objectBuilds <= 2 ? 0 : 2;
 }

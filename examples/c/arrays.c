@@ -1,5 +1,5 @@
-/* arrays.c: a hilly surface of 80,000 triangles from arrays with indices, moved between two frames without being sent again.
- * usage: arrays [picture.ppm] */
+/* arrays.c: a hilly surface of 80,000 triangles from arrays with indices, moved between two frames
+ * without being sent again. usage: arrays [picture.ppm] */
 #include <openrt/openrt.h>
 
 #include <stdio.h>
@@ -18,7 +18,8 @@ static Vertex hill(int column, int row) {
   const float pi = 3.14159265f;
   float x = 2.0f * (float)column / (side - 1) - 1, z = 2.0f * (float)row / (side - 1) - 1;
   float y = 0.2f * sinf(pi * 2 * x) * cosf(pi * z);
-  float dx = 0.2f * pi * 2 * cosf(pi * 2 * x) * cosf(pi * z), dz = -0.2f * pi * sinf(pi * 2 * x) * sinf(pi * z);
+  float dx = 0.2f * pi * 2 * cosf(pi * 2 * x) * cosf(pi * z),
+        dz = -0.2f * pi * sinf(pi * 2 * x) * sinf(pi * z);
   Vertex v = {{x, y, z}, {-dx, 1, -dz}, {0.5f + y, 0.8f, 0.3f - y}};
   return v;
 }
@@ -59,7 +60,8 @@ int main(int argc, char** argv) {
   rtReadPixels(RT_DEPTH, depth, width * height);
   float before = depth[height / 2 * width + width / 2];
 
-  /* The next frame costs one edit: the instance's matrix moves it by one unit, straight away from the camera. */
+  /* The next frame costs one edit: the instance's matrix moves it by one unit, straight away from
+   * the camera. */
   const double further[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, -0.447214, -0.894427, 1};
   rtInstanceMatrix(instance, further);
   rtRender();

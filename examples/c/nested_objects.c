@@ -1,6 +1,6 @@
-/* nested_objects.c: objects that contain objects: a ball, a row of balls, a square of rows and a cube of squares, 5^3 balls of
- * one definition; then the one row is defined anew, and every copy changes.
- * usage: nested_objects [picture.ppm] */
+/* nested_objects.c: objects that contain objects: a ball, a row of balls, a square of rows and a
+ * cube of squares, 5^3 balls of one definition; then the one row is defined anew, and every copy
+ * changes. usage: nested_objects [picture.ppm] */
 #include <openrt/openrt.h>
 
 #include <stdio.h>
@@ -56,7 +56,8 @@ int main(int argc, char** argv) {
 
   rtLoadIdentity();
   rtLookAt(7, 5, 9, 0, 0, 0, 0, 1, 0);
-  rtUseLight(rtNewShader(rtNewShaderClass("VRML97DirectionalLight", NULL))); /* shines where the camera looks */
+  rtUseLight(rtNewShader(
+      rtNewShaderClass("VRML97DirectionalLight", NULL))); /* shines where the camera looks */
   rtPerspective(35);
   rtFrameBuffer(width, height, RT_RGBA);
 

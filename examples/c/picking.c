@@ -1,5 +1,5 @@
-/* picking.c: what is under a pixel: names of primitives, instances, barycentrics. The picture is the channel of names.
- * usage: picking [picture.ppm] */
+/* picking.c: what is under a pixel: names of primitives, instances, barycentrics. The picture is
+ * the channel of names. usage: picking [picture.ppm] */
 #include "picture.h"
 
 enum { width = 160, height = 120 };
@@ -38,9 +38,11 @@ int main(int argc, char** argv) {
     }
   RThit hit;
   int met = rtPick(116, 62, &hit);
-  printf("instance %u, name %u, primitive %u, user data %u, at %g, corner weights %g %g %g\n", hit.instance, hit.name,
-         hit.primitive, (unsigned)hit.userData, hit.t, 1 - hit.u - hit.v, hit.u, hit.v);
-  int right = met && hit.instance == instance && hit.name == 2 && hit.userData == 4711 && fabsf(hit.t - 5) < 0.2f;
+  printf("instance %u, name %u, primitive %u, user data %u, at %g, corner weights %g %g %g\n",
+         hit.instance, hit.name, hit.primitive, (unsigned)hit.userData, hit.t, 1 - hit.u - hit.v,
+         hit.u, hit.v);
+  int right = met && hit.instance == instance && hit.name == 2 && hit.userData == 4711 &&
+              fabsf(hit.t - 5) < 0.2f;
   int nothing = rtPick(1, 1, &hit) == 0 && isinf(hit.t);
   rtExit();
   for (int i = 0; i < width * height; i++)

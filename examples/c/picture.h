@@ -1,5 +1,5 @@
-/* picture.h: what the C examples share: a context with its messages on stderr, and a rendered frame written as a PPM file
- * (linear colour to the sRGB curve, 8 bits). */
+/* picture.h: what the C examples share: a context with its messages on stderr, and a rendered frame
+ * written as a PPM file (linear colour to the sRGB curve, 8 bits). */
 #ifndef EXAMPLES_PICTURE_H
 #define EXAMPLES_PICTURE_H
 
@@ -17,7 +17,8 @@ static void printError(RTenum error, const char* message, void* user) {
   fprintf(stderr, "%s\n", message);
 }
 
-/* A context; options such as --rt-threads=1 or --rt-backend=debug:local are taken out of argv. failed is set by errors. */
+/* A context; options such as --rt-threads=1 or --rt-backend=debug:local are taken out of argv.
+ * failed is set by errors. */
 static inline int start(int* argc, char** argv, int* failed) {
   *failed = 0;
   rtInit(argc, argv);

@@ -1,6 +1,6 @@
-/* ray_queries.c: rays without a picture: the height of a terrain below a grid of points, and what of it a lamp reaches. The
- * picture is a map: bright is high, red lies in the shadow.
- * usage: ray_queries [picture.ppm] */
+/* ray_queries.c: rays without a picture: the height of a terrain below a grid of points, and what
+ * of it a lamp reaches. The picture is a map: bright is high, red lies in the shadow. usage:
+ * ray_queries [picture.ppm] */
 #include "picture.h"
 
 enum { side = 100, cells = 40 };
@@ -9,7 +9,9 @@ static RThit hits[side * side];
 static uint8_t shadowed[side * side];
 static float rgba[side * side * 4];
 
-static float terrain(float x, float z) { return 0.15f * sinf(9 * x) * cosf(7 * z) + 0.3f * expf(-20 * (x * x + z * z)); }
+static float terrain(float x, float z) {
+  return 0.15f * sinf(9 * x) * cosf(7 * z) + 0.3f * expf(-20 * (x * x + z * z));
+}
 
 int main(int argc, char** argv) {
   int failed;
@@ -33,7 +35,8 @@ int main(int argc, char** argv) {
   rtRender();
 
   for (int i = 0; i < side * side; i++) {
-    float x = 2 * ((float)(i % side) + 0.5f) / side - 1, z = 2 * ((float)(i / side) + 0.5f) / side - 1;
+    float x = 2 * ((float)(i % side) + 0.5f) / side - 1,
+          z = 2 * ((float)(i / side) + 0.5f) / side - 1;
     RTray down = {{x, 2, z}, 0, {0, -1, 0}, INFINITY};
     rays[i] = down;
   }
@@ -58,6 +61,7 @@ int main(int argc, char** argv) {
   }
   rtExit();
   if (argc > 1 && !writePicture(argv[1], side, side, rgba)) return 1;
-  printf("heights are off by at most %.4f, %d of %d points lie in the shadow\n", worst, dark, side * side);
+  printf("heights are off by at most %.4f, %d of %d points lie in the shadow\n", worst, dark,
+         side * side);
   return !failed && worst < 0.02 && dark > 50 && dark < side * side / 2 ? 0 : 2;
 }

@@ -1,6 +1,6 @@
-/* recording.c: what a program hands over is written to a file while it is rendered; `openrt-replay FILE -o DIR` makes the same
- * pictures of it later, elsewhere, without the program. Recording the same scene twice makes the same bytes.
- * usage: recording FILE.rec [picture.ppm] */
+/* recording.c: what a program hands over is written to a file while it is rendered; `openrt-replay
+ * FILE -o DIR` makes the same pictures of it later, elsewhere, without the program. Recording the
+ * same scene twice makes the same bytes. usage: recording FILE.rec [picture.ppm] */
 #include "picture.h"
 
 #include <stdlib.h>
@@ -55,8 +55,10 @@ int main(int argc, char** argv) {
   if (!draw(argv[1])) return 1;
   char* after = contents(argv[1], &second);
   if (argc > 2 && !writePicture(argv[2], width, height, rgba)) return 1;
-  int same = before && after && first == second && first > 0 && memcmp(before, after, (size_t)first) == 0;
-  printf("two frames in %ld bytes, %s\n", first, same ? "the same each time" : "not the same each time");
+  int same =
+      before && after && first == second && first > 0 && memcmp(before, after, (size_t)first) == 0;
+  printf("two frames in %ld bytes, %s\n", first,
+         same ? "the same each time" : "not the same each time");
   free(before);
   free(after);
   return same && first < 4096 ? 0 : 2;

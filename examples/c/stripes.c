@@ -1,5 +1,6 @@
-/* stripes.c: a shader plug-in: stripes across the texture coordinate s, of a colour that every vertex may have its own of. It
- * includes one header and links against nothing; custom_shader.c and vertex_parameters.c use it. */
+/* stripes.c: a shader plug-in: stripes across the texture coordinate s, of a colour that every
+ * vertex may have its own of. It includes one header and links against nothing; custom_shader.c and
+ * vertex_parameters.c use it. */
 #include <openrt/openrts.h>
 
 #include <math.h>
@@ -10,7 +11,13 @@ typedef struct Parameters {
 } Parameters;
 
 static const RtsParam parameters[] = {
-    {"color", RTS_COLOR, offsetof(Parameters, color), {1, 1, 1}, 0, 1, "of the stripes; between them a quarter of it"},
+    {"color",
+     RTS_COLOR,
+     offsetof(Parameters, color),
+     {1, 1, 1},
+     0,
+     1,
+     "of the stripes; between them a quarter of it"},
     {"count", RTS_FLOAT, offsetof(Parameters, count), {8}, 1, 1000, "stripes from s = 0 to s = 1"},
 };
 static const uint8_t frequency[] = {RTS_PER_VERTEX, RTS_PER_SHADER};
@@ -36,4 +43,5 @@ static const RtsClass stripes = {.size = sizeof(RtsClass),
                                  .shade = shade,
                                  .frequency = frequency};
 static const RtsClass* const classes[] = {&stripes};
-RTS_EXPORT const RtsPlugin rtsPlugin = {RTS_MAGIC, RTS_ABI_MAJOR, RTS_ABI_MINOR, sizeof(RtsPlugin), 1, classes};
+RTS_EXPORT const RtsPlugin rtsPlugin = {RTS_MAGIC, RTS_ABI_MAJOR, RTS_ABI_MINOR, sizeof(RtsPlugin),
+                                        1,         classes};

@@ -1,5 +1,5 @@
-/* textures.c: an image on a square and on a ball, by texture coordinates, with repeated and with clamped edges.
- * usage: textures [picture.ppm] */
+/* textures.c: an image on a square and on a ball, by texture coordinates, with repeated and with
+ * clamped edges. usage: textures [picture.ppm] */
 #include "picture.h"
 
 enum { width = 320, height = 160, size = 8 };
@@ -21,7 +21,8 @@ int main(int argc, char** argv) {
   unsigned char texels[size][size][3];
   for (int t = 0; t < size; t++)
     for (int s = 0; s < size; s++)
-      for (int k = 0; k < 3; k++) texels[t][s][k] = (unsigned char)((s + t) % 2 ? 230 : k == 0 ? 160 : 20);
+      for (int k = 0; k < 3; k++)
+        texels[t][s][k] = (unsigned char)((s + t) % 2 ? 230 : k == 0 ? 160 : 20);
   RTid board;
   rtGenTextures(1, &board);
   rtBindTexture(board);
@@ -59,7 +60,8 @@ int main(int argc, char** argv) {
   rtExit();
   if (argc > 1 && !writePicture(argv[1], width, height, rgba)) return 1;
 
-  /* Two neighbouring fields in the lower row of the square: the left one is dark red, the right one bright. */
+  /* Two neighbouring fields in the lower row of the square: the left one is dark red, the right one
+   * bright. */
   const float *dark = rgba + 4 * (139 * width + 28), *bright = dark + 4 * 17;
   printf("dark %g %g, bright %g %g\n", dark[0], dark[1], bright[0], bright[1]);
   return !failed && dark[0] > 0.1f && dark[1] < 0.05f && bright[1] > 0.5f ? 0 : 2;

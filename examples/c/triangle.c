@@ -1,5 +1,5 @@
-/* triangle.c: the smallest picture: one object with one triangle, three colours, a lamp and a camera.
- * usage: triangle [picture.ppm] */
+/* triangle.c: the smallest picture: one object with one triangle, three colours, a lamp and a
+ * camera. usage: triangle [picture.ppm] */
 #include <openrt/openrt.h>
 
 #include <stdio.h>
@@ -41,5 +41,6 @@ int main(int argc, char** argv) {
   if (argc > 1 && !writePicture(argv[1], width, height, rgba)) return 1;
   /* The middle of the picture is inside the triangle and lit, its corner is empty. */
   const float* middle = rgba + 4 * (height / 2 * width + width / 2);
-  return !failed && middle[0] > 0.1f && middle[1] > 0.1f && middle[2] > 0.1f && rgba[0] == 0 ? 0 : 2;
+  return !failed && middle[0] > 0.1f && middle[1] > 0.1f && middle[2] > 0.1f && rgba[0] == 0 ? 0
+                                                                                             : 2;
 }

@@ -1,5 +1,6 @@
-/* vertex_parameters.c: a parameter of a shader by vertex: between rtBegin and rtEnd, and from an array. With the plug-in
- * stripes.c. usage: vertex_parameters --rt-shaderpath=FOLDER [picture.ppm]      FOLDER holds stripes.so */
+/* vertex_parameters.c: a parameter of a shader by vertex: between rtBegin and rtEnd, and from an
+ * array. With the plug-in stripes.c. usage: vertex_parameters --rt-shaderpath=FOLDER [picture.ppm]
+ * FOLDER holds stripes.so */
 #include "picture.h"
 
 enum { width = 200, height = 100 };
@@ -8,7 +9,8 @@ static float rgba[width * height * 4];
 int main(int argc, char** argv) {
   int failed;
   if (!start(&argc, argv, &failed)) return 1;
-  const float corners[4][3] = {{-0.9f, -0.9f, 0}, {0.9f, -0.9f, 0}, {0.9f, 0.9f, 0}, {-0.9f, 0.9f, 0}};
+  const float corners[4][3] = {
+      {-0.9f, -0.9f, 0}, {0.9f, -0.9f, 0}, {0.9f, 0.9f, 0}, {-0.9f, 0.9f, 0}};
   const float places[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
   const float colors[4][3] = {{1, 0, 0}, {0, 0, 1}, {0, 0, 1}, {1, 0, 0}};
   rtBindShader(rtNewShader(rtNewShaderClass("Stripes", "stripes")));
@@ -49,8 +51,10 @@ int main(int argc, char** argv) {
   if (argc > 1 && !writePicture(argv[1], width, height, rgba)) return 1;
   int same = 1;
   for (int y = 0; y < height; y++)
-    for (int x = 0; x < width / 2; x++) same &= fabsf(rgba[4 * (y * width + x)] - rgba[4 * (y * width + x + width / 2)]) < 1e-5f;
-  const float* quarter = rgba + 4 * (height / 2 * width + 28); /* a quarter of the way from red to blue */
+    for (int x = 0; x < width / 2; x++)
+      same &= fabsf(rgba[4 * (y * width + x)] - rgba[4 * (y * width + x + width / 2)]) < 1e-5f;
+  const float* quarter =
+      rgba + 4 * (height / 2 * width + 28); /* a quarter of the way from red to blue */
   printf("a quarter of the way: %g 0 %g\n", quarter[0], quarter[2]);
   return !failed && same && quarter[0] > 2.5f * quarter[2] && quarter[2] > 0 ? 0 : 2;
 }

@@ -1,5 +1,6 @@
-/* encoder.c: the driver of a rotary encoder, as a C library that knows nothing of VRML: open, read, close. There is no encoder
- * here: a motor is simulated that runs up, and hunts a little. gauge.wrl draws it.
+/* encoder.c: the driver of a rotary encoder, as a C library that knows nothing of VRML: open, read,
+ * close. There is no encoder here: a motor is simulated that runs up, and hunts a little. gauge.wrl
+ * draws it.
  *
  *   cc -std=c99 -shared -fPIC encoder.c -o libencoder.so -lm
  *   XVRML_NATIVE_PATH=$PWD vv gauge.wrl --trust --time 2 -o gauge.png
@@ -10,10 +11,14 @@
 
 static int32_t stepsOfTurn; /* 0: closed */
 static int32_t lastCount;
-static double firstTime, lastTime; /* of readings, in seconds since 1970; lastCount tells whether there were any */
+static double firstTime,
+    lastTime; /* of readings, in seconds since 1970; lastCount tells whether there were any */
 
-/* Returns the turns that the real machine's shaft would have made `time` seconds after the motor was switched on. */
-static double shaft(double time) { return 0.75 * (time - (1 - exp(-time))) + 0.02 * sin(11 * time); }
+/* Returns the turns that the real machine's shaft would have made `time` seconds after the motor
+ * was switched on. */
+static double shaft(double time) {
+  return 0.75 * (time - (1 - exp(-time))) + 0.02 * sin(11 * time);
+}
 
 /* device: "simulated:..." is the only one that there is; steps: of one turn. */
 int encoder_open(const char* device, int32_t steps) {
@@ -23,7 +28,8 @@ int encoder_open(const char* device, int32_t steps) {
   return 1;
 }
 
-/* The needle's rotation (axis and angle) and the turns per second. 1 if the encoder has moved by a step since it was read last.
+/* The needle's rotation (axis and angle) and the turns per second. 1 if the encoder has moved by a
+ * step since it was read last.
  */
 int encoder_read(double time, float rotation[4], float* speed) {
   if (!stepsOfTurn) return 0;
@@ -34,7 +40,9 @@ int encoder_read(double time, float rotation[4], float* speed) {
   rotation[0] = rotation[1] = 0;
   rotation[2] = -1; /* clockwise, seen from the front */
   rotation[3] = (float)(6.283185307179586 * count / stepsOfTurn);
-  *speed = time > lastTime && lastCount != INT32_MIN ? (float)((count - lastCount) / (stepsOfTurn * (time - lastTime))) : 0;
+  *speed = time > lastTime && lastCount != INT32_MIN
+               ? (float)((count - lastCount) / (stepsOfTurn * (time - lastTime)))
+               : 0;
   lastCount = count;
   lastTime = time;
   return 1;

@@ -24,8 +24,8 @@ NodeRef expandSpring(const Node& node) {
   const int steps = spring.turns * stepsPerTurn;
   for (int i = 0; i <= steps; ++i) {
     const float angle = circle * float(i) / float(stepsPerTurn);
-    tube->spine.push_back(
-        {spring.radius * std::cos(angle), spring.height * float(i) / float(steps), spring.radius * std::sin(angle)});
+    tube->spine.push_back({spring.radius * std::cos(angle), spring.height * float(i) / float(steps),
+                           spring.radius * std::sin(angle)});
   }
   tube->creaseAngle = 1.5f;
   return made;
@@ -51,6 +51,9 @@ void receiveCounter(Events& events, Node& node, const FieldInfo& in, const Value
 
 } // namespace
 
-const xvrml::NodeImplementation xvrml::nodes::Spring::implementation = {.behaviour = {}, .expand = expandSpring};
-const xvrml::NodeImplementation xvrml::nodes::Hanging::implementation = {.behaviour = {}, .expand = expandHanging};
-const xvrml::NodeImplementation xvrml::nodes::Counter::implementation = {.behaviour = {.receive = receiveCounter}};
+const xvrml::NodeImplementation xvrml::nodes::Spring::implementation = {.behaviour = {},
+                                                                        .expand = expandSpring};
+const xvrml::NodeImplementation xvrml::nodes::Hanging::implementation = {.behaviour = {},
+                                                                         .expand = expandHanging};
+const xvrml::NodeImplementation xvrml::nodes::Counter::implementation = {
+    .behaviour = {.receive = receiveCounter}};

@@ -1,13 +1,14 @@
-/* formula.c: a script engine for a language of one kind of statement, NAME = EXPRESSION: a template for engines of your own
- * (docs/script-engines.md). Scheme "formula:", files "*.formula".
+/* formula.c: a script engine for a language of one kind of statement, NAME = EXPRESSION: a template
+ * for engines of your own (docs/script-engines.md). Scheme "formula:", files "*.formula".
  *
  *   DEF Wave Script {
  *     eventIn SFTime time  field SFFloat height 2  eventOut SFFloat y
  *     url "formula: y = height * sin(3 * time)"
  *   }
  *
- * Names are the Script's fields and events of the types SFBool, SFInt32, SFFloat and SFTime, and those of functions. Whenever
- * events have come, all statements are run in their order. See xvrml/xscript.h; everything is called on the browser's thread.
+ * Names are the Script's fields and events of the types SFBool, SFInt32, SFFloat and SFTime, and
+ * those of functions. Whenever events have come, all statements are run in their order. See
+ * xvrml/xscript.h; everything is called on the browser's thread.
  */
 #include <ctype.h>
 #include <math.h>
@@ -33,7 +34,8 @@ typedef struct Formula {
   double values[];          /* of info->fields, the last ones */
 } Formula;
 
-/* --- Messages: the host adds the name of the file and counts the line from where the program stands in it --- */
+/* --- Messages: the host adds the name of the file and counts the line from where the program
+ * stands in it --- */
 
 static XsResult fail(Formula* f, const char* what, const char* name, size_t length) {
   char text[200];
@@ -70,13 +72,15 @@ static XsResult give(Formula* f, const XsField* field, double number) {
     value.of.doubles = &number;
   else
     value.of.ints = &whole;
-  const XsResult result = (field->access == XS_EVENT_OUT ? host->send : host->write)(host, f->info->self, field->name, &value);
+  const XsResult result = (field->access == XS_EVENT_OUT ? host->send : host->write)(
+      host, f->info->self, field->name, &value);
   if (result == XS_OK || result == XS_STOPPED) return result;
   host->lastError(host, f->info->self, &why);
   return fail(f, "", why.data, why.bytes);
 }
 
-/* --- The language: a parser that computes while it reads; with `run` 0 it only reads, which `create` does to find errors --- */
+/* --- The language: a parser that computes while it reads; with `run` 0 it only reads, which
+ * `create` does to find errors --- */
 
 static const struct {
   const char* name;
@@ -116,8 +120,8 @@ static XsResult factor(Formula* f, double* result) {
   XsResult answer;
   f->steps++;
   blanks(f);
-  if (f->at < f->end &&
-      (isdigit((unsigned char)*f->at) || *f->at == '.')) { /* the host's texts end with a zero byte: strtod stops */
+  if (f->at < f->end && (isdigit((unsigned char)*f->at) ||
+                         *f->at == '.')) { /* the host's texts end with a zero byte: strtod stops */
     char* rest;
     *result = strtod(f->at, &rest);
     if (rest == f->at) return fail(f, "a number was expected", "", 0);
@@ -176,8 +180,10 @@ static XsResult statement(Formula* f, int run) {
   double result = 0;
   const size_t length = name(f, &word);
   const XsField* field = fieldNamed(f, word, length);
-  if (!field || field->access == XS_EVENT_IN) return fail(f, "no field or eventOut of the Script: ", word, length);
-  if (field->type != XS_SFBOOL && field->type != XS_SFINT32 && field->type != XS_SFFLOAT && field->type != XS_SFTIME)
+  if (!field || field->access == XS_EVENT_IN)
+    return fail(f, "no field or eventOut of the Script: ", word, length);
+  if (field->type != XS_SFBOOL && field->type != XS_SFINT32 && field->type != XS_SFFLOAT &&
+      field->type != XS_SFTIME)
     return fail(f, "not of type SFBool, SFInt32, SFFloat or SFTime: ", word, length);
   if (!take(f, '=')) return fail(f, "'=' was expected behind ", word, length);
   const XsResult answer = sum(f, &result);
@@ -237,7 +243,8 @@ static XsResult eventsProcessed(XsInterpreter interpreter, double time) {
   f->due = 0;
   for (uint32_t i = 0; i < f->info->fieldCount; i++) { /* others may have changed a field */
     const XsField* field = &f->info->fields[i];
-    if (field->access == XS_FIELD && f->host->read(f->host, f->info->self, f->info->self, field->name, &value) == XS_OK)
+    if (field->access == XS_FIELD &&
+        f->host->read(f->host, f->info->self, f->info->self, field->name, &value) == XS_OK)
       f->values[i] = numberOf(&value);
   }
   return program(f, 1);
@@ -245,8 +252,9 @@ static XsResult eventsProcessed(XsInterpreter interpreter, double time) {
 
 static const char* const schemes[] = {"formula", NULL};
 static const char* const suffixes[] = {".formula", NULL};
-/* XS_HARMLESS: a program ends soon, takes no memory, and reaches nothing but the host's functions. Leave it out where you cannot
- * promise that: programs of untrusted worlds then run in a process of their own. */
+/* XS_HARMLESS: a program ends soon, takes no memory, and reaches nothing but the host's functions.
+ * Leave it out where you cannot promise that: programs of untrusted worlds then run in a process of
+ * their own. */
 static const XsEngine engine = {.size = sizeof(XsEngine),
                                 .flags = XS_HARMLESS,
                                 .name = "formula",
@@ -258,4 +266,5 @@ static const XsEngine engine = {.size = sizeof(XsEngine),
                                 .event = event,
                                 .eventsProcessed = eventsProcessed};
 static const XsEngine* const engines[] = {&engine};
-XS_EXPORT const XsPlugin xsPlugin = {XS_MAGIC, XS_ABI_MAJOR, XS_ABI_MINOR, sizeof(XsPlugin), 1, engines};
+XS_EXPORT const XsPlugin xsPlugin = {XS_MAGIC, XS_ABI_MAJOR, XS_ABI_MINOR, sizeof(XsPlugin),
+                                     1,        engines};

@@ -1,5 +1,6 @@
-// commit.cpp: turns the state of the scene into the edits of one commit, in the order that scene_state.h fixes. All memory is
-// taken in make(), before settle() marks the edits as sent: a commit that fails leaves the scene as it was.
+// commit.cpp: turns the state of the scene into the edits of one commit, in the order that
+// scene_state.h fixes. All memory is taken in make(), before settle() marks the edits as sent: a
+// commit that fails leaves the scene as it was.
 #include <algorithm>
 #include <cstring>
 #include <unordered_map>
@@ -59,14 +60,17 @@ class CommitMaker {
       if (State* state = table.find(id)) f(id, *state);
   }
 
-  // Arrays with the same bytes travel once: a coordinate list that several geometries share, the corners of equal boxes.
+  // Arrays with the same bytes travel once: a coordinate list that several geometries share, the
+  // corners of equal boxes.
   ArrayId addArray(const ArrayPtr& array) {
     if (!array) return 0;
     const uint64_t hash = XXH3_64bits(array->data(), array->size());
     const auto [first, last] = known_.equal_range(hash);
     for (auto it = first; it != last; ++it) {
       const Array& known = *commit_->arrays.at(it->second);
-      if (known.size() == array->size() && std::memcmp(known.data(), array->data(), array->size()) == 0) return it->second;
+      if (known.size() == array->size() &&
+          std::memcmp(known.data(), array->data(), array->size()) == 0)
+        return it->second;
     }
     commit_->arrays.emplace(scene_.nextArray_, array);
     known_.emplace(hash, scene_.nextArray_);
@@ -107,7 +111,8 @@ class CommitMaker {
   std::unique_ptr<edit::GeometryT> toEditGeometry(const BuiltGeometry& built) {
     auto e = std::make_unique<edit::GeometryT>();
     e->primitive = built.primitive;
-    e->shader = scene_.shaders.find(built.state.shader) ? built.state.shader : 0; // may be deleted since it was latched
+    e->shader = scene_.shaders.find(built.state.shader) ? built.state.shader
+                                                        : 0; // may be deleted since it was latched
     e->name = built.state.name;
     e->matrix = toEdit(built.state.matrix);
     e->cull = built.state.cull;
@@ -133,7 +138,8 @@ class CommitMaker {
       edit::ObjectT e;
       e.id = id;
       e.dynamic = state.dynamic;
-      for (const BuiltGeometry& built : state.geometries) e.geometries.push_back(toEditGeometry(built));
+      for (const BuiltGeometry& built : state.geometries)
+        e.geometries.push_back(toEditGeometry(built));
       add(std::move(e));
     });
   }
@@ -200,15 +206,16 @@ class CommitMaker {
   }
 
   void settle() noexcept {
-    settleTable(scene_.objects, [](ObjectState& s) { std::vector<BuiltGeometry>().swap(s.geometries); });
+    settleTable(scene_.objects,
+                [](ObjectState& s) { std::vector<BuiltGeometry>().swap(s.geometries); });
     settleTable(scene_.instances, [](InstanceState&) {});
     settleTable(scene_.classes, [](ShaderClassState&) {});
     settleTable(scene_.shaders, [](ShaderState& s) { s.parameters.clear(); });
     settleTable(scene_.textures, [](TextureState& s) { s.texels.reset(); });
     settleTable(scene_.lights, [](LightState&) {});
     scene_.generationDirty = false;
-    scene_.camera.dirty = scene_.environment.dirty = scene_.defaultShader.dirty = scene_.transport.dirty = scene_.frameDirty =
-        false;
+    scene_.camera.dirty = scene_.environment.dirty = scene_.defaultShader.dirty =
+        scene_.transport.dirty = scene_.frameDirty = false;
   }
 
   SceneState& scene_;
@@ -216,6 +223,8 @@ class CommitMaker {
   std::unordered_multimap<uint64_t, ArrayId> known_; // of this commit, by hash
 };
 
-std::shared_ptr<const Commit> SceneState::takeCommit(bool render) { return CommitMaker(*this).make(render); }
+std::shared_ptr<const Commit> SceneState::takeCommit(bool render) {
+  return CommitMaker(*this).make(render);
+}
 
 } // namespace openrt

@@ -1,4 +1,5 @@
-// config.cpp: grammar  options ::= { blank } [ key "=" ( '"' { any but '"' } '"' | { any but blank } ) { blank } ... ]
+// config.cpp: grammar  options ::= { blank } [ key "=" ( '"' { any but '"' } '"' | { any but blank
+// } ) { blank } ... ]
 #include "api/config.h"
 
 #include <algorithm>
@@ -16,7 +17,8 @@ uint32_t parseNumber(std::string_view key, std::string_view text, uint32_t most)
   uint32_t value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (text.empty() || error != std::errc() || end != text.data() + text.size() || value > most)
-    fail(RT_INVALID_VALUE, std::string(key) + "=" + std::string(text) + ": expected a number from 0 to " + std::to_string(most));
+    fail(RT_INVALID_VALUE, std::string(key) + "=" + std::string(text) +
+                               ": expected a number from 0 to " + std::to_string(most));
   return value;
 }
 
@@ -26,14 +28,16 @@ BackendKind parseBackend(std::string_view text) {
   if (text == "record") return BackendKind::Record;
   if (text == "cluster") return BackendKind::Cluster;
   fail(RT_INVALID_VALUE,
-       "backend=" + std::string(text) + ": expected local, null, record or cluster, or debug: and one of these");
+       "backend=" + std::string(text) +
+           ": expected local, null, record or cluster, or debug: and one of these");
 }
 
 // Takes one value off the front of the text.
 std::string_view takeValue(std::string_view& text, std::string_view key) {
   if (text.starts_with('"')) {
     const size_t end = text.find('"', 1);
-    if (end == text.npos) fail(RT_INVALID_VALUE, std::string(key) + ": the closing quote is missing");
+    if (end == text.npos)
+      fail(RT_INVALID_VALUE, std::string(key) + ": the closing quote is missing");
     const std::string_view value = text.substr(1, end - 1);
     text.remove_prefix(end + 1);
     if (!text.empty() && blanks.find(text.front()) == blanks.npos)
@@ -48,7 +52,8 @@ std::string_view takeValue(std::string_view& text, std::string_view key) {
 } // namespace
 
 void ContextConfig::set(std::string_view key, std::string_view value) {
-  if (value.find('\0') != value.npos) fail(RT_INVALID_VALUE, std::string(key) + ": a null character in its value");
+  if (value.find('\0') != value.npos)
+    fail(RT_INVALID_VALUE, std::string(key) + ": a null character in its value");
   constexpr std::string_view debugging = "debug:";
   if (key == "backend") {
     const bool wrapped = value.starts_with(debugging);
@@ -65,17 +70,19 @@ void ContextConfig::set(std::string_view key, std::string_view value) {
   else if (setCluster(key, value))
     clusterKey_ = key;
   else
-    fail(RT_INVALID_VALUE,
-         "unknown option \"" + std::string(key) +
-             "\"; known are backend, threads, file, record, shaderpath, and of backend=cluster workers, listen, "
-             "key, allow, local, split, require, tolerant");
+    fail(RT_INVALID_VALUE, "unknown option \"" + std::string(key) +
+                               "\"; known are backend, threads, file, record, shaderpath, and of "
+                               "backend=cluster workers, listen, "
+                               "key, allow, local, split, require, tolerant");
 }
 
 bool ContextConfig::setCluster(std::string_view key, std::string_view value) {
   if (key == "workers") {
     for (size_t begin = 0; begin <= value.size();) {
       const size_t end = std::min(value.find(',', begin), value.size());
-      if (end == begin) fail(RT_INVALID_VALUE, "workers=" + std::string(value) + ": expected HOST[:PORT],... or @FILE");
+      if (end == begin)
+        fail(RT_INVALID_VALUE,
+             "workers=" + std::string(value) + ": expected HOST[:PORT],... or @FILE");
       cluster.workers.emplace_back(value.substr(begin, end - begin));
       begin = end + 1;
     }
@@ -90,7 +97,8 @@ bool ContextConfig::setCluster(std::string_view key, std::string_view value) {
   else if (key == "split") {
     constexpr std::string_view known[] = {"auto", "tiles", "samples", "frames"};
     if (std::find(std::begin(known), std::end(known), value) == std::end(known))
-      fail(RT_INVALID_VALUE, "split=" + std::string(value) + ": expected auto, tiles, samples or frames");
+      fail(RT_INVALID_VALUE,
+           "split=" + std::string(value) + ": expected auto, tiles, samples or frames");
     cluster.split = value;
   } else if (key == "require")
     cluster.require = parseNumber(key, value, maxWorkers);
@@ -102,12 +110,17 @@ bool ContextConfig::setCluster(std::string_view key, std::string_view value) {
 }
 
 void ContextConfig::check() const {
-  if (backend == BackendKind::Record && file.empty()) fail(RT_INVALID_VALUE, "backend=record needs file=PATH");
-  if (backend == BackendKind::Record && !record.empty()) fail(RT_INVALID_VALUE, "record=PATH is for backends that render");
-  if (backend != BackendKind::Record && !file.empty()) fail(RT_INVALID_VALUE, "file=PATH is for backend=record");
-  if (backend != BackendKind::Cluster && !clusterKey_.empty()) fail(RT_INVALID_VALUE, clusterKey_ + "= is for backend=cluster");
+  if (backend == BackendKind::Record && file.empty())
+    fail(RT_INVALID_VALUE, "backend=record needs file=PATH");
+  if (backend == BackendKind::Record && !record.empty())
+    fail(RT_INVALID_VALUE, "record=PATH is for backends that render");
+  if (backend != BackendKind::Record && !file.empty())
+    fail(RT_INVALID_VALUE, "file=PATH is for backend=record");
+  if (backend != BackendKind::Cluster && !clusterKey_.empty())
+    fail(RT_INVALID_VALUE, clusterKey_ + "= is for backend=cluster");
   if (backend == BackendKind::Cluster && cluster.workers.empty() && cluster.listen.empty())
-    fail(RT_INVALID_VALUE, "backend=cluster needs workers=HOST[:PORT],... or listen=ADDRESS[:PORT], or both");
+    fail(RT_INVALID_VALUE,
+         "backend=cluster needs workers=HOST[:PORT],... or listen=ADDRESS[:PORT], or both");
 }
 
 ContextConfig parseConfig(std::string_view text) {

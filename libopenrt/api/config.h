@@ -1,4 +1,5 @@
-// config.h: the options of a context, read from the text that rtNewContext takes. Application thread.
+// config.h: the options of a context, read from the text that rtNewContext takes. Application
+// thread.
 #pragma once
 
 #include <cstdint>
@@ -27,7 +28,7 @@ struct ContextConfig {
 
  private:
   bool setCluster(std::string_view key, std::string_view value); // false: no such key
-  std::string clusterKey_;                                       // one that only backend=cluster has; empty: none was set
+  std::string clusterKey_; // one that only backend=cluster has; empty: none was set
 };
 
 // Reads blank-separated key=value pairs; a value with blanks stands in double quotes.

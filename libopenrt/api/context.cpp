@@ -1,5 +1,5 @@
-// context.cpp: construction of a context, what primitives latch, and the course of frames. Application thread but for
-// cancel, progress and the log sink.
+// context.cpp: construction of a context, what primitives latch, and the course of frames.
+// Application thread but for cancel, progress and the log sink.
 #include "api/context.h"
 
 #include <utility>
@@ -27,7 +27,8 @@ void LogSink::forward(int level, const char* message, void* self) {
 Context::Context(const ContextConfig& config) : Context(config, nullptr) { makeBackend(config); }
 
 Context::Context(const ContextConfig& config, std::unique_ptr<Backend> backend)
-    : registry_(std::make_unique<ShaderRegistry>(shaderFolders(config.shaderPath))), backend_(std::move(backend)) {}
+    : registry_(std::make_unique<ShaderRegistry>(shaderFolders(config.shaderPath))),
+      backend_(std::move(backend)) {}
 
 Context::~Context() { close(); }
 
@@ -71,12 +72,14 @@ std::exception_ptr Context::close() noexcept {
 }
 
 Definition& Context::openDefinition() {
-  require(definition.has_value(), RT_INVALID_OPERATION, "not between rtBeginObject and rtEndObject");
+  require(definition.has_value(), RT_INVALID_OPERATION,
+          "not between rtBeginObject and rtEndObject");
   return *definition;
 }
 
 void Context::requireOutsideList() const {
-  require(!definition || !definition->builder.inList(), RT_INVALID_OPERATION, "between rtBegin and rtEnd");
+  require(!definition || !definition->builder.inList(), RT_INVALID_OPERATION,
+          "between rtBegin and rtEnd");
 }
 
 void Context::requireOutsideDefinition() const {
@@ -103,27 +106,35 @@ int Context::reloadShaders(const char* function) {
   std::vector<std::string> problems;
   const int reloaded = registry_->reload(problems);
   if (reloaded > 0)
-    scene.shadersReloaded([&](const std::string& name, const std::string& library) { return &registry_->find(name, library); });
-  std::erase_if(parameterArrays, [&](ParameterArray& array) { // where the parameter may still have values of geometry's own
-    const RtsClass& table = *scene.shaderClass(array.shaderClass).table;
-    OwnParameter& own = array.from.parameter;
-    array.from.declared = &table.params[own.index];
-    const uint8_t frequency = table.frequency ? table.frequency[own.index] : uint8_t(RTS_PER_SHADER);
-    own.perVertex = frequency == RTS_PER_VERTEX;
-    return frequency == RTS_PER_SHADER;
-  });
-  for (const std::string& problem : problems) errors.record(RT_PLUGIN_ERROR, function, problem.c_str());
+    scene.shadersReloaded([&](const std::string& name, const std::string& library) {
+      return &registry_->find(name, library);
+    });
+  std::erase_if(
+      parameterArrays,
+      [&](ParameterArray& array) { // where the parameter may still have values of geometry's own
+        const RtsClass& table = *scene.shaderClass(array.shaderClass).table;
+        OwnParameter& own = array.from.parameter;
+        array.from.declared = &table.params[own.index];
+        const uint8_t frequency =
+            table.frequency ? table.frequency[own.index] : uint8_t(RTS_PER_SHADER);
+        own.perVertex = frequency == RTS_PER_VERTEX;
+        return frequency == RTS_PER_SHADER;
+      });
+  for (const std::string& problem : problems)
+    errors.record(RT_PLUGIN_ERROR, function, problem.c_str());
   return reloaded;
 }
 
 RTid Context::stockCamera(const char* className, RTid& cached) {
   if (cached && scene.shaders.find(cached)) return cached;
   const RtsClass& table = findClass(className, "");
-  if (table.kind != RTS_CAMERA) fail(RT_PLUGIN_ERROR, std::string("the stock class ") + className + " is no camera class");
+  if (table.kind != RTS_CAMERA)
+    fail(RT_PLUGIN_ERROR, std::string("the stock class ") + className + " is no camera class");
   return cached = scene.newShader(scene.newShaderClass(table, className, ""));
 }
 
-// Hands the edits over. A backend that fails to take them is offered the same edits again by the next commit.
+// Hands the edits over. A backend that fails to take them is offered the same edits again by the
+// next commit.
 void Context::commit() {
   unsent_.reserve(unsent_.size() + 1);
   unsent_.push_back(scene.takeCommit(true));
@@ -151,8 +162,8 @@ bool Context::forgetCancel() {
   return std::exchange(cancelled_, false);
 }
 
-// A cancellation that comes while edits are handed over and structures are built is for this frame, too, though the backend does
-// not know of it yet.
+// A cancellation that comes while edits are handed over and structures are built is for this frame,
+// too, though the backend does not know of it yet.
 void Context::begin() {
   commit();
   start();

@@ -1,5 +1,6 @@
-// context.h: everything behind one RTcontext. Used on the application's thread; rtCancel and rtProgress reach the backend from
-// any thread under backendMutex_, and the log sink is called by render threads.
+// context.h: everything behind one RTcontext. Used on the application's thread; rtCancel and
+// rtProgress reach the backend from any thread under backendMutex_, and the log sink is called by
+// render threads.
 #pragma once
 
 #include <deque>
@@ -54,7 +55,8 @@ class Context {
   Context(const Context&) = delete;
   Context& operator=(const Context&) = delete;
 
-  // Frees everything; the context answers no call afterwards. Returns why a recording is not whole; null where all is well.
+  // Frees everything; the context answers no call afterwards. Returns why a recording is not whole;
+  // null where all is well.
   std::exception_ptr close() noexcept;
   bool open() const { return open_; }
 
@@ -78,13 +80,14 @@ class Context {
   std::vector<RTid>* openChildren() { return definition ? &definition->children : nullptr; }
   void requireOutsideList() const;
   void requireOutsideDefinition() const;
-  // What a primitive of this mode latches now; RT_INVALID_OPERATION if the bound shader is no surface shader.
+  // What a primitive of this mode latches now; RT_INVALID_OPERATION if the bound shader is no
+  // surface shader.
   GeometryState latch(edit::Primitive primitive);
   // The stock camera class's shader, made when it is first asked for.
   RTid stockCamera(const char* className, RTid& cached);
   const RtsClass& findClass(std::string_view className, std::string_view library) const;
-  // Loads the libraries anew whose files have changed; returns how many. A failure is recorded and does not keep the others from
-  // it.
+  // Loads the libraries anew whose files have changed; returns how many. A failure is recorded and
+  // does not keep the others from it.
   int reloadShaders(const char* function);
 
   // Frames.
@@ -114,9 +117,10 @@ class Context {
 
   std::unique_ptr<ShaderRegistry> registry_;
   std::unique_ptr<Backend> backend_;
-  std::mutex backendMutex_;                           // cancel and progress against close; cancelled_
-  std::vector<std::shared_ptr<const Commit>> unsent_; // made, but the backend could not take them yet
-  bool cancelled_ = false;                            // since the frame being begun was asked for
+  std::mutex backendMutex_; // cancel and progress against close; cancelled_
+  std::vector<std::shared_ptr<const Commit>>
+      unsent_;             // made, but the backend could not take them yet
+  bool cancelled_ = false; // since the frame being begun was asked for
   bool everCommitted_ = false, open_ = true;
   std::deque<edit::FrameSettingsT> flying_; // of the frames in flight, oldest first
   std::optional<edit::FrameSettingsT> finished_;

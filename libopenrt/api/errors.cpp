@@ -1,4 +1,5 @@
-// errors.cpp: the sticky error and the translation of exceptions into error numbers. Application thread.
+// errors.cpp: the sticky error and the translation of exceptions into error numbers. Application
+// thread.
 #include "api/errors.h"
 
 #include <cstdio>
@@ -46,15 +47,19 @@ const char* lastErrorMessage() noexcept { return lastMessage; }
 void recordCurrentException(ErrorState& errors, const char* function) noexcept {
   try {
     throw;
-  } catch (const ApiError& e) { errors.record(e.code(), function, e.what()); } catch (const std::bad_alloc&) {
+  } catch (const ApiError& e) {
+    errors.record(e.code(), function, e.what());
+  } catch (const std::bad_alloc&) {
     errors.record(RT_OUT_OF_MEMORY, function, "out of memory");
   } catch (const std::length_error&) {
     errors.record(RT_OUT_OF_MEMORY, function, "more elements than an array can hold");
-  } catch (const ClusterError& e) { errors.record(RT_CLUSTER_ERROR, function, e.what()); } catch (const std::system_error& e) {
+  } catch (const ClusterError& e) {
+    errors.record(RT_CLUSTER_ERROR, function, e.what());
+  } catch (const std::system_error& e) {
     errors.record(RT_IO_ERROR, function, e.what());
-  } catch (const std::exception& e) { errors.record(RT_INVALID_OPERATION, function, e.what()); } catch (...) {
-    errors.record(RT_INVALID_OPERATION, function, "an unknown exception");
-  }
+  } catch (const std::exception& e) {
+    errors.record(RT_INVALID_OPERATION, function, e.what());
+  } catch (...) { errors.record(RT_INVALID_OPERATION, function, "an unknown exception"); }
 }
 
 } // namespace openrt

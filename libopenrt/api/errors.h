@@ -1,5 +1,6 @@
-// errors.h: how a call of the API fails. Inner functions throw; the guard (guard.h) turns what they throw into the sticky error
-// of the current context, or of the thread where no context is current. Application thread only.
+// errors.h: how a call of the API fails. Inner functions throw; the guard (guard.h) turns what they
+// throw into the sticky error of the current context, or of the thread where no context is current.
+// Application thread only.
 #pragma once
 
 #include <exception>
@@ -21,13 +22,16 @@ class ApiError : public std::exception {
   std::string message_;
 };
 
-[[noreturn]] inline void fail(RTenum code, std::string message) { throw ApiError(code, std::move(message)); }
+[[noreturn]] inline void fail(RTenum code, std::string message) {
+  throw ApiError(code, std::move(message));
+}
 inline void require(bool condition, RTenum code, const char* message) {
   if (!condition) [[unlikely]]
     fail(code, message);
 }
 
-// The first error since it was last taken. Texts live in fixed storage: reporting that memory is short takes none.
+// The first error since it was last taken. Texts live in fixed storage: reporting that memory is
+// short takes none.
 class ErrorState {
  public:
   void record(RTenum code, const char* function, const char* text) noexcept;

@@ -23,7 +23,8 @@ void setFrameBuffer(Context& c, int width, int height, uint32_t channels) {
   require(width >= 1 && height >= 1 && width <= maxSide && height <= maxSide &&
               static_cast<size_t>(width) * static_cast<size_t>(height) <= maxPixels,
           RT_INVALID_VALUE, "a frame has 1 to 65536 pixels a side and at most 2^28 in all");
-  require(channels != 0 && (channels & ~allChannels) == 0, RT_INVALID_VALUE, "no channel, or one that is unknown");
+  require(channels != 0 && (channels & ~allChannels) == 0, RT_INVALID_VALUE,
+          "no channel, or one that is unknown");
   c.scene.frame.width = static_cast<uint32_t>(width);
   c.scene.frame.height = static_cast<uint32_t>(height);
   c.scene.frame.channels = channels;
@@ -32,7 +33,9 @@ void setFrameBuffer(Context& c, int width, int height, uint32_t channels) {
 
 void setQuality(Context& c, RTenum name, int value) {
   edit::FrameSettingsT& frame = c.scene.frame;
-  const auto within = [value](int low, int high) { require(value >= low && value <= high, RT_INVALID_VALUE, "out of range"); };
+  const auto within = [value](int low, int high) {
+    require(value >= low && value <= high, RT_INVALID_VALUE, "out of range");
+  };
   switch (name) {
   case RT_FRAMES_IN_FLIGHT: // how frames are asked for, not what they are
     within(1, 64);
@@ -64,7 +67,8 @@ void setQuality(Context& c, RTenum name, int value) {
     frame.progressive = value == 1;
     break;
   case RT_TILE_SIZE:
-    require(value == 0 || (value >= int(smallestTile) && value <= int(largestTile)), RT_INVALID_VALUE, "out of range");
+    require(value == 0 || (value >= int(smallestTile) && value <= int(largestTile)),
+            RT_INVALID_VALUE, "out of range");
     frame.tile = static_cast<uint8_t>(value);
     break;
   default: fail(RT_INVALID_ENUM, "unknown quality " + std::to_string(name));
@@ -74,7 +78,9 @@ void setQuality(Context& c, RTenum name, int value) {
 
 void setQuality(Context& c, RTenum name, double value) {
   edit::FrameSettingsT& frame = c.scene.frame;
-  const auto within = [value](double high) { require(value >= 0 && value <= high, RT_INVALID_VALUE, "out of range"); };
+  const auto within = [value](double high) {
+    require(value >= 0 && value <= high, RT_INVALID_VALUE, "out of range");
+  };
   switch (name) {
   case RT_TARGET_ERROR:
     within(1);
@@ -100,12 +106,15 @@ void setQuality(Context& c, RTenum name, double value) {
 void readPixels(Context& c, RTenum channel, float* out, size_t count) {
   const size_t components = componentsOf(channel);
   const edit::FrameSettingsT& frame = c.finishedFrame();
-  require((frame.channels & channel) != 0, RT_INVALID_OPERATION, "the frame was rendered without this channel");
+  require((frame.channels & channel) != 0, RT_INVALID_OPERATION,
+          "the frame was rendered without this channel");
   const size_t needed = components * frame.width * frame.height;
   require(out != nullptr, RT_INVALID_VALUE, "the pointer is NULL");
   if (count < needed)
-    fail(RT_INVALID_VALUE, "room for " + std::to_string(count) + " floats; the channel has " + std::to_string(needed));
-  require(c.backend().read(channel, {out, needed}), RT_INVALID_OPERATION, "the backend has no such channel");
+    fail(RT_INVALID_VALUE, "room for " + std::to_string(count) + " floats; the channel has " +
+                               std::to_string(needed));
+  require(c.backend().read(channel, {out, needed}), RT_INVALID_OPERATION,
+          "the backend has no such channel");
 }
 
 void getStats(Context& c, RTstats* out) {
@@ -146,10 +155,12 @@ void occludedRays(Context& c, size_t count, const RTray* rays, uint8_t* occluded
 
 int pick(Context& c, double x, double y, RThit* hit) {
   require(hit != nullptr, RT_INVALID_VALUE, "the pointer is NULL");
-  require(std::isfinite(x) && std::isfinite(y) && std::fabs(x) <= 1e9 && std::fabs(y) <= 1e9, RT_INVALID_VALUE,
-          "the place is not finite, or far outside any picture");
-  require(c.scene.frame.width > 0, RT_INVALID_OPERATION, "no frame buffer: call rtFrameBuffer first");
-  require(c.scene.camera.shader != 0, RT_INVALID_OPERATION, "no camera: call rtUseCamera, rtPerspective or rtOrtho first");
+  require(std::isfinite(x) && std::isfinite(y) && std::fabs(x) <= 1e9 && std::fabs(y) <= 1e9,
+          RT_INVALID_VALUE, "the place is not finite, or far outside any picture");
+  require(c.scene.frame.width > 0, RT_INVALID_OPERATION,
+          "no frame buffer: call rtFrameBuffer first");
+  require(c.scene.camera.shader != 0, RT_INVALID_OPERATION,
+          "no camera: call rtUseCamera, rtPerspective or rtOrtho first");
   RThit found{};
   require(c.everCommitted() && c.backend().pick(x, y, found), RT_INVALID_OPERATION,
           "no frame with a camera was committed yet: call rtRender or rtSwapBuffers first");

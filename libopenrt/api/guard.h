@@ -1,4 +1,5 @@
-// guard.h: the one way into the library from C: finds the current context, and lets no exception out.
+// guard.h: the one way into the library from C: finds the current context, and lets no exception
+// out.
 #pragma once
 
 #include <utility>
@@ -9,8 +10,10 @@ namespace openrt {
 
 void reportNoContext(const char* function) noexcept;
 
-// Runs body(context). Where that throws, or no context is current, records the error and returns `failure`.
-template <class Result, class Body> Result guarded(const char* function, Result failure, Body&& body) noexcept {
+// Runs body(context). Where that throws, or no context is current, records the error and returns
+// `failure`.
+template <class Result, class Body>
+Result guarded(const char* function, Result failure, Body&& body) noexcept {
   Context* const context = currentContext;
   if (!context || !context->open()) [[unlikely]] {
     reportNoContext(function);

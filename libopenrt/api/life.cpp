@@ -1,5 +1,5 @@
-// life.cpp: contexts and errors: rtNewContext, rtMakeCurrent, rtInit, rtGetError and their kin, and the table of live contexts,
-// by which a handle is known to be genuine on any thread.
+// life.cpp: contexts and errors: rtNewContext, rtMakeCurrent, rtInit, rtGetError and their kin, and
+// the table of live contexts, by which a handle is known to be genuine on any thread.
 #include <cstring>
 #include <mutex>
 #include <new>
@@ -45,17 +45,22 @@ void makeCurrent(std::shared_ptr<Context> context) {
   currentHandle = std::move(context);
 }
 
-ErrorState& errorsHere() noexcept { return currentContext && currentContext->open() ? currentContext->errors : threadErrors(); }
+ErrorState& errorsHere() noexcept {
+  return currentContext && currentContext->open() ? currentContext->errors : threadErrors();
+}
 
 // For calls that need no current context.
-template <class Result, class Body> Result guardedAnywhere(const char* function, Result failure, Body&& body) noexcept {
+template <class Result, class Body>
+Result guardedAnywhere(const char* function, Result failure, Body&& body) noexcept {
   try {
     return body();
   } catch (...) { recordCurrentException(errorsHere(), function); }
   return failure;
 }
 
-RTcontext newContext(const ContextConfig& config) { return adoptContext(std::make_shared<Context>(config)); }
+RTcontext newContext(const ContextConfig& config) {
+  return adoptContext(std::make_shared<Context>(config));
+}
 
 void deleteContext(RTcontext handle) {
   std::shared_ptr<Context> context;
@@ -83,7 +88,8 @@ ContextConfig configFromArguments(int argc, char** argv, std::vector<char*>& kep
     }
     const std::string_view option = argument.substr(prefix.size());
     const size_t equals = option.find('=');
-    if (equals == option.npos) fail(RT_INVALID_VALUE, "expected --rt-KEY=VALUE, not " + std::string(argument));
+    if (equals == option.npos)
+      fail(RT_INVALID_VALUE, "expected --rt-KEY=VALUE, not " + std::string(argument));
     config.set(option.substr(0, equals), option.substr(equals + 1));
   }
   config.check();
@@ -101,7 +107,8 @@ void initialise(int* argc, char** argv) {
     live().initial = made;
   }
   if (!arguments) return;
-  const bool terminated = static_cast<int>(kept.size()) < *argc; // room for the closing NULL of a main's argv
+  const bool terminated =
+      static_cast<int>(kept.size()) < *argc; // room for the closing NULL of a main's argv
   std::copy(kept.begin(), kept.end(), argv);
   if (terminated) argv[kept.size()] = nullptr;
   *argc = static_cast<int>(kept.size());
@@ -143,7 +150,8 @@ void rtLogCallback(RTlogCallback callback, void* user) {
 }
 
 RTcontext rtNewContext(const char* config) {
-  return guardedAnywhere("rtNewContext", RTcontext(), [&] { return newContext(parseConfig(config ? config : "")); });
+  return guardedAnywhere("rtNewContext", RTcontext(),
+                         [&] { return newContext(parseConfig(config ? config : "")); });
 }
 
 void rtMakeCurrent(RTcontext context) {
@@ -155,7 +163,9 @@ void rtMakeCurrent(RTcontext context) {
   });
 }
 
-RTcontext rtGetCurrent(void) { return currentContext && currentContext->open() ? handleOf(currentContext) : nullptr; }
+RTcontext rtGetCurrent(void) {
+  return currentContext && currentContext->open() ? handleOf(currentContext) : nullptr;
+}
 
 void rtDeleteContext(RTcontext context) {
   if (!context) return;
@@ -205,12 +215,15 @@ size_t rtGetWorkers(RTcontext context, RTworker* out, size_t count) {
     if (!found) fail(RT_INVALID_VALUE, "not a context");
     if (!out && count > 0) fail(RT_INVALID_VALUE, "the pointer is NULL");
     const size_t size = count > 0 ? out->size : sizeof(RTworker);
-    if (size < sizeof(size_t)) fail(RT_INVALID_VALUE, "set size to sizeof(RTworker) before the call");
+    if (size < sizeof(size_t))
+      fail(RT_INVALID_VALUE, "set size to sizeof(RTworker) before the call");
     const std::vector<RTworker> workers = found->workers();
-    for (size_t i = 0; i < std::min(count, workers.size()); i++) { // an older program's structures are smaller
+    for (size_t i = 0; i < std::min(count, workers.size());
+         i++) { // an older program's structures are smaller
       RTworker worker = workers[i];
       worker.size = size;
-      std::memcpy(reinterpret_cast<std::byte*>(out) + i * size, &worker, std::min(size, sizeof(worker)));
+      std::memcpy(reinterpret_cast<std::byte*>(out) + i * size, &worker,
+                  std::min(size, sizeof(worker)));
     }
     return workers.size();
   });

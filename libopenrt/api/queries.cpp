@@ -1,4 +1,5 @@
-// queries.cpp: rtCountHits, rtListHits, rtClosestPoints: arguments checked, then the backend's own. [app]
+// queries.cpp: rtCountHits, rtListHits, rtClosestPoints: arguments checked, then the backend's own.
+// [app]
 #include "api/guard.h"
 #include "backend/surface_queries.h"
 
@@ -8,7 +9,8 @@ namespace {
 // Of the backend, if anything was committed and it has surfaces.
 class CommittedQueries final : public ForwardedQueries {
  public:
-  explicit CommittedQueries(Context& c) : target_(c.everCommitted() ? dynamic_cast<SurfaceQueries*>(&c.backend()) : nullptr) {}
+  explicit CommittedQueries(Context& c)
+      : target_(c.everCommitted() ? dynamic_cast<SurfaceQueries*>(&c.backend()) : nullptr) {}
 
  private:
   SurfaceQueries* target() const override { return target_; }
@@ -23,12 +25,14 @@ void countHits(Context& c, size_t count, const RTray* rays, uint32_t* counts) {
 void listHits(Context& c, size_t count, const RTray* rays, const size_t* first, RThit* hits) {
   require((rays && first) || count == 0, RT_INVALID_VALUE, "a pointer is NULL");
   if (count == 0) return;
-  for (size_t i = 0; i < count; i++) require(first[i] <= first[i + 1], RT_INVALID_VALUE, "the numbers of `first` fall");
+  for (size_t i = 0; i < count; i++)
+    require(first[i] <= first[i + 1], RT_INVALID_VALUE, "the numbers of `first` fall");
   require(hits || first[count] == 0, RT_INVALID_VALUE, "a pointer is NULL");
   CommittedQueries(c).listHits({rays, count}, {first, count + 1}, {hits, first[count]});
 }
 
-void closestPoints(Context& c, size_t count, const float* points, float radius, RTclosest* closest) {
+void closestPoints(Context& c, size_t count, const float* points, float radius,
+                   RTclosest* closest) {
   require((points && closest) || count == 0, RT_INVALID_VALUE, "a pointer is NULL");
   require(radius > 0, RT_INVALID_VALUE, "the radius is not above 0");
   CommittedQueries(c).closestPoints({points, 3 * count}, radius, {closest, count});

@@ -1,8 +1,9 @@
-// roles.cpp: what shaders are used for: lights, the camera, the environment, the default surface. Application thread.
+// roles.cpp: what shaders are used for: lights, the camera, the environment, the default surface.
+// Application thread.
 #include <cmath>
 
-#include "api/guard.h"
 #include "api/geometry/transform.h"
+#include "api/guard.h"
 
 using namespace openrt;
 
@@ -19,15 +20,18 @@ void requireFrame(const Matrix4d& matrix) {
   require(matrix.determinant() != 0, RT_INVALID_VALUE, "the current matrix is singular");
 }
 
-void useStockCamera(Context& c, const char* className, RTid& cached, const char* parameterName, double value) {
+void useStockCamera(Context& c, const char* className, RTid& cached, const char* parameterName,
+                    double value) {
   c.requireOutsideDefinition();
   requireFrame(c.matrices.top());
   const RTid shader = c.stockCamera(className, cached);
   const RtsClass& table = c.scene.classOf(c.scene.shader(shader));
   uint32_t index = 0;
-  while (index < table.paramCount && std::string_view(table.params[index].name) != parameterName) index++;
+  while (index < table.paramCount && std::string_view(table.params[index].name) != parameterName)
+    index++;
   if (index == table.paramCount || table.params[index].type != RTS_FLOAT)
-    fail(RT_PLUGIN_ERROR, std::string("the stock class ") + className + " has no float parameter " + parameterName);
+    fail(RT_PLUGIN_ERROR,
+         std::string("the stock class ") + className + " has no float parameter " + parameterName);
   edit::ParameterT e;
   e.index = index;
   e.floats = {static_cast<float>(value)};
@@ -97,14 +101,16 @@ void rtDefaultShader(RTid shader) {
 
 void rtPerspective(double fovyDegrees) {
   guarded("rtPerspective", [&](Context& c) {
-    require(fovyDegrees > 0 && fovyDegrees < 180, RT_INVALID_VALUE, "the field of view must lie between 0 and 180 degrees");
+    require(fovyDegrees > 0 && fovyDegrees < 180, RT_INVALID_VALUE,
+            "the field of view must lie between 0 and 180 degrees");
     useStockCamera(c, "PerspectiveCamera", c.perspectiveCamera, "fovy", fovyDegrees);
   });
 }
 
 void rtOrtho(double height) {
   guarded("rtOrtho", [&](Context& c) {
-    require(std::isfinite(static_cast<float>(height)) && height > 0, RT_INVALID_VALUE, "the height must be positive and finite");
+    require(std::isfinite(static_cast<float>(height)) && height > 0, RT_INVALID_VALUE,
+            "the height must be positive and finite");
     useStockCamera(c, "OrthographicCamera", c.orthographicCamera, "height", height);
   });
 }

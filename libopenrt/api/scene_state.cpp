@@ -1,4 +1,5 @@
-// scene_state.cpp: making, finding and deleting things; every function reserves what it needs before it changes anything.
+// scene_state.cpp: making, finding and deleting things; every function reserves what it needs
+// before it changes anything.
 #include "api/scene_state.h"
 
 #include <limits>
@@ -14,7 +15,8 @@ template <class State> State& lookup(Table<State>& table, RTid id, const char* k
 
 // Makes the next push_back infallible, with amortised growth.
 void makeRoom(std::vector<RTid>& ids, size_t more = 1) {
-  if (ids.capacity() - ids.size() < more) ids.reserve(std::max(ids.size() + more, 2 * ids.capacity()));
+  if (ids.capacity() - ids.size() < more)
+    ids.reserve(std::max(ids.size() + more, 2 * ids.capacity()));
 }
 
 template <class State> State& insert(Table<State>& table, RTid id) {
@@ -41,12 +43,13 @@ void SceneState::requireKind(RTid id, RtsKind kind) {
   if (id == 0) return;
   const RtsClass& table = classOf(shader(id));
   if (table.kind != kind)
-    fail(RT_INVALID_OPERATION, std::string("the shader's class ") + table.name + " is a " + names[table.kind] + " class, not a " +
-                                   names[kind] + " class");
+    fail(RT_INVALID_OPERATION, std::string("the shader's class ") + table.name + " is a " +
+                                   names[table.kind] + " class, not a " + names[kind] + " class");
 }
 
 RTid SceneState::newId() {
-  if (nextId_ == std::numeric_limits<RTid>::max()) fail(RT_OUT_OF_MEMORY, "all 2^32 ids are used up");
+  if (nextId_ == std::numeric_limits<RTid>::max())
+    fail(RT_OUT_OF_MEMORY, "all 2^32 ids are used up");
   return nextId_++;
 }
 
@@ -69,7 +72,8 @@ RTid SceneState::newInstance(const InstanceState& fresh) {
   return id;
 }
 
-RTid SceneState::newShaderClass(const RtsClass& table, std::string_view name, std::string_view library) {
+RTid SceneState::newShaderClass(const RtsClass& table, std::string_view name,
+                                std::string_view library) {
   for (const auto& [id, state] : classes.entries)
     if (state.name == name && state.library == library) return id;
   ShaderClassState fresh{&table, std::string(name), std::string(library)};
@@ -104,7 +108,8 @@ RTid SceneState::newLight(RTid shaderId, const Matrix4d& matrix) {
   return id;
 }
 
-void SceneState::defineObject(RTid id, std::vector<BuiltGeometry> geometries, const std::vector<RTid>& children) {
+void SceneState::defineObject(RTid id, std::vector<BuiltGeometry> geometries,
+                              const std::vector<RTid>& children) {
   ObjectState& state = object(id);
   std::vector<RTid> fresh = children;
   makeRoom(instances.deleted, state.children.size());
@@ -183,9 +188,11 @@ void SceneState::deleteShader(RTid id) {
 void SceneState::deleteTexture(RTid id) { textures.erase(id, texture(id)); }
 void SceneState::deleteLight(RTid id) { lights.erase(id, light(id)); }
 
-void SceneState::shadersReloaded(const std::function<const RtsClass*(const std::string&, const std::string&)>& find) {
+void SceneState::shadersReloaded(
+    const std::function<const RtsClass*(const std::string&, const std::string&)>& find) {
   std::vector<std::pair<ShaderClassState*, const RtsClass*>> tables;
-  for (auto& [id, state] : classes.entries) tables.emplace_back(&state, find(state.name, state.library));
+  for (auto& [id, state] : classes.entries)
+    tables.emplace_back(&state, find(state.name, state.library));
   for (const auto& [state, table] : tables) state->table = table;
   shaderGeneration++;
   generationDirty = true;
@@ -195,9 +202,11 @@ void SceneState::setParameter(RTid id, edit::ParameterT parameter) {
   ShaderState& state = shader(id);
   shaders.touch(id, state);
   parameter.shader = id;
-  constexpr size_t largestType = 16;             // a matrix
-  const size_t floats = parameter.floats.size(); // kept for surfaces alone: only geometry has values of its own
-  if (floats > 0 && floats <= largestType && classOf(state).kind == RTS_SURFACE) state.values[parameter.index] = parameter.floats;
+  constexpr size_t largestType = 16; // a matrix
+  const size_t floats =
+      parameter.floats.size(); // kept for surfaces alone: only geometry has values of its own
+  if (floats > 0 && floats <= largestType && classOf(state).kind == RTS_SURFACE)
+    state.values[parameter.index] = parameter.floats;
   const uint32_t index = parameter.index;
   state.parameters.insert_or_assign(index, std::move(parameter));
 }

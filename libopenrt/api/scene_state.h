@@ -1,5 +1,6 @@
-// scene_state.h: what the application has said about the scene: tables by id, and the edits that the next commit carries.
-// The latest state of an id is what a commit sends, however often it changed. Application thread.
+// scene_state.h: what the application has said about the scene: tables by id, and the edits that
+// the next commit carries. The latest state of an id is what a commit sends, however often it
+// changed. Application thread.
 //
 // Order of the edits in a commit, made so that a backend applies them one after the other:
 //   1. DeleteLight, DeleteInstance            nothing but a light's scope refers to them
@@ -9,9 +10,10 @@
 //   5. Instance                               new and changed ones, of the scene and of objects
 //   6. Light, Camera, Environment, DefaultShader, Transport, FrameSettings
 //   7. DeleteObject, DeleteShader, DeleteTexture
-// An edit may keep naming a deleted thing: a shader of geometry is then the default one, a texture is texture 0, a light
-// whose scope is gone shines on nothing. A commit carries the arrays that it names for the first time; an array lives in a
-// backend as long as an object or a texture there names it.
+// An edit may keep naming a deleted thing: a shader of geometry is then the default one, a texture
+// is texture 0, a light whose scope is gone shines on nothing. A commit carries the arrays that it
+// names for the first time; an array lives in a backend as long as an object or a texture there
+// names it.
 #pragma once
 
 #include <functional>
@@ -58,7 +60,8 @@ struct ShaderClassState {
 struct ShaderState {
   RTid shaderClass = 0;
   std::map<uint32_t, edit::ParameterT> parameters; // set since the last commit, by index
-  std::map<uint32_t, std::vector<float>> values;   // ever set, of numbers: geometry may have values of its own
+  std::map<uint32_t, std::vector<float>>
+      values; // ever set, of numbers: geometry may have values of its own
   bool dirty = false, committed = false;
 };
 
@@ -112,7 +115,9 @@ class SceneState {
   ShaderState& shader(RTid id);
   TextureState& texture(RTid id);
   LightState& light(RTid id);
-  const RtsClass& classOf(const ShaderState& shader) { return *shaderClass(shader.shaderClass).table; }
+  const RtsClass& classOf(const ShaderState& shader) {
+    return *shaderClass(shader.shaderClass).table;
+  }
   // RT_INVALID_OPERATION if the shader is of another kind; 0 passes where none is allowed.
   void requireKind(RTid shader, RtsKind kind);
 
@@ -125,7 +130,8 @@ class SceneState {
   RTid newLight(RTid shader, const Matrix4d& matrix);
 
   // Ends the definition of an object: its geometry and children take the place of the former ones.
-  void defineObject(RTid id, std::vector<BuiltGeometry> geometries, const std::vector<RTid>& children);
+  void defineObject(RTid id, std::vector<BuiltGeometry> geometries,
+                    const std::vector<RTid>& children);
   // Whether the object inner is, or contains, the object outer.
   bool contains(RTid inner, RTid outer);
 
@@ -135,10 +141,14 @@ class SceneState {
   void deleteTexture(RTid id);
   void deleteLight(RTid id);
 
-  void setRole(RoleState& role, RTid shader, const Matrix4d& matrix) { role = {shader, matrix, true}; }
+  void setRole(RoleState& role, RTid shader, const Matrix4d& matrix) {
+    role = {shader, matrix, true};
+  }
   void setParameter(RTid shader, edit::ParameterT parameter);
-  // Libraries were loaded anew: looks every class up again and tells the backends with the next commit.
-  void shadersReloaded(const std::function<const RtsClass*(const std::string& name, const std::string& library)>& find);
+  // Libraries were loaded anew: looks every class up again and tells the backends with the next
+  // commit.
+  void shadersReloaded(const std::function<const RtsClass*(const std::string& name,
+                                                           const std::string& library)>& find);
 
   // All edits since the last one; they count as committed when it returns. (commit.cpp)
   std::shared_ptr<const Commit> takeCommit(bool render);

@@ -1,5 +1,5 @@
-// shaders.cpp: shader classes, shaders and their parameters, by the tables that the classes publish. Parameters of triangles and
-// vertices: geometry_parameters.cpp. Application thread.
+// shaders.cpp: shader classes, shaders and their parameters, by the tables that the classes
+// publish. Parameters of triangles and vertices: geometry_parameters.cpp. Application thread.
 #include <cfloat>
 #include <cstring>
 #include <initializer_list>
@@ -14,8 +14,9 @@ using namespace openrt;
 
 static_assert(RT_PER_TRIANGLE == int(RTS_PER_TRIANGLE) && RT_PER_VERTEX == int(RTS_PER_VERTEX) &&
               RT_TRANSPORT_SHADER == int(RTS_TRANSPORT));
-static_assert(RT_PARAM_INT == int(RTS_INT) && RT_PARAM_TEXTURE == int(RTS_TEXTURE) && RT_PARAM_FLOATS == int(RTS_FLOATS) &&
-              RT_PARAM_COLOR == int(RTS_COLOR) && RT_SURFACE == int(RTS_SURFACE) && RT_ENVIRONMENT == int(RTS_ENVIRONMENT));
+static_assert(RT_PARAM_INT == int(RTS_INT) && RT_PARAM_TEXTURE == int(RTS_TEXTURE) &&
+              RT_PARAM_FLOATS == int(RTS_FLOATS) && RT_PARAM_COLOR == int(RTS_COLOR) &&
+              RT_SURFACE == int(RTS_SURFACE) && RT_ENVIRONMENT == int(RTS_ENVIRONMENT));
 
 namespace {
 
@@ -26,12 +27,14 @@ ShaderState& bound(Context& c) {
   return c.scene.shader(c.boundShader);
 }
 
-// The bound shader's parameter with this handle, which must be of one of these types. It is set outside lists of vertices.
+// The bound shader's parameter with this handle, which must be of one of these types. It is set
+// outside lists of vertices.
 const RtsParam& parameter(Context& c, int handle, std::initializer_list<RtsType> types) {
   const RtsClass& table = c.scene.classOf(bound(c));
   const RtsParam& param = declaredParameter(table, handle, types);
   if (inList(c))
-    fail(RT_INVALID_OPERATION, std::string("parameter ") + param.name + " of the class " + table.name +
+    fail(RT_INVALID_OPERATION, std::string("parameter ") + param.name + " of the class " +
+                                   table.name +
                                    " is of the whole shader: not between rtBegin and rtEnd");
   return param;
 }
@@ -47,7 +50,8 @@ edit::ParameterT edited(int handle) {
   return e;
 }
 
-void setFloats(Context& c, int handle, std::initializer_list<RtsType> types, std::span<const float> values) {
+void setFloats(Context& c, int handle, std::initializer_list<RtsType> types,
+               std::span<const float> values) {
   if (setOwnValue(c, handle, types, values)) return;
   const RtsParam& param = parameter(c, handle, types);
   refuse(valueProblem(param, values));
@@ -61,7 +65,8 @@ int parameterHandle(Context& c, const char* name) {
   require(name && *name, RT_INVALID_VALUE, "the name is NULL or empty");
   for (uint32_t i = 0; i < table.paramCount; i++)
     if (std::strcmp(table.params[i].name, name) == 0) return static_cast<int>(i);
-  fail(RT_INVALID_PARAMETER, std::string("the class ") + table.name + " has no parameter \"" + name + "\"");
+  fail(RT_INVALID_PARAMETER,
+       std::string("the class ") + table.name + " has no parameter \"" + name + "\"");
 }
 
 } // namespace
@@ -84,7 +89,8 @@ int rtReloadShaders(void) {
 const char* rtRunningShader(void) { return runningShader(); }
 
 RTid rtNewShader(RTid shaderClass) {
-  return guarded("rtNewShader", RTid(0), [&](Context& c) { return c.scene.newShader(shaderClass); });
+  return guarded("rtNewShader", RTid(0),
+                 [&](Context& c) { return c.scene.newShader(shaderClass); });
 }
 
 void rtBindShader(RTid shader) {
@@ -123,7 +129,9 @@ void rtParameter2f(int handle, float x, float y) {
 }
 
 void rtParameter3f(int handle, float x, float y, float z) {
-  guarded("rtParameter3f", [&](Context& c) { setFloats(c, handle, {RTS_VEC3, RTS_COLOR}, {{x, y, z}}); });
+  guarded("rtParameter3f", [&](Context& c) {
+    setFloats(c, handle, {RTS_VEC3, RTS_COLOR}, {{x, y, z}});
+  });
 }
 
 void rtParameter4f(int handle, float x, float y, float z, float w) {

@@ -18,17 +18,20 @@ TextureState& bound(Context& c) {
 
 void setImage(Context& c, int components, int width, int height, RTenum type, const void* pixels) {
   TextureState& state = bound(c);
-  require(type == RT_UNSIGNED_BYTE || type == RT_FLOAT, RT_INVALID_ENUM, "the type must be RT_UNSIGNED_BYTE or RT_FLOAT");
+  require(type == RT_UNSIGNED_BYTE || type == RT_FLOAT, RT_INVALID_ENUM,
+          "the type must be RT_UNSIGNED_BYTE or RT_FLOAT");
   require(components >= 1 && components <= 4, RT_INVALID_VALUE, "an image has 1 to 4 components");
   require(width >= 1 && height >= 1 && width <= maxSide && height <= maxSide &&
               static_cast<size_t>(width) * static_cast<size_t>(height) <= maxTexels,
           RT_INVALID_VALUE, "an image has 1 to 65536 pixels a side and at most 2^28 in all");
   require(pixels != nullptr, RT_INVALID_VALUE, "the pixels are NULL");
-  const size_t values = static_cast<size_t>(width) * static_cast<size_t>(height) * static_cast<size_t>(components);
+  const size_t values =
+      static_cast<size_t>(width) * static_cast<size_t>(height) * static_cast<size_t>(components);
   auto texels = std::make_shared<Array>(values * (type == RT_FLOAT ? sizeof(float) : 1));
   std::memcpy(texels->data(), pixels, texels->size());
   if (type == RT_FLOAT)
-    for (size_t i = 0; i < values; i++) require(std::isfinite(texels->as<float>()[i]), RT_INVALID_VALUE, "a texel is not finite");
+    for (size_t i = 0; i < values; i++)
+      require(std::isfinite(texels->as<float>()[i]), RT_INVALID_VALUE, "a texel is not finite");
   c.scene.textures.touch(c.boundTexture, state);
   edit::TextureT& d = state.description;
   d.components = static_cast<uint32_t>(components);
@@ -40,7 +43,8 @@ void setImage(Context& c, int components, int width, int height, RTenum type, co
 
 edit::Wrap wrapOf(int value) {
   if (value == RT_REPEAT) return edit::Wrap::Repeat;
-  require(value == RT_CLAMP_TO_EDGE, RT_INVALID_ENUM, "the wrap must be RT_REPEAT or RT_CLAMP_TO_EDGE");
+  require(value == RT_CLAMP_TO_EDGE, RT_INVALID_ENUM,
+          "the wrap must be RT_REPEAT or RT_CLAMP_TO_EDGE");
   return edit::Wrap::Clamp;
 }
 
@@ -51,7 +55,8 @@ void setParameter(Context& c, RTenum name, int value) {
   case RT_TEXTURE_WRAP_S: changed.wrapS = wrapOf(value); break;
   case RT_TEXTURE_WRAP_T: changed.wrapT = wrapOf(value); break;
   case RT_TEXTURE_MAG_FILTER:
-    require(value == RT_NEAREST || value == RT_LINEAR, RT_INVALID_ENUM, "the filter must be RT_NEAREST or RT_LINEAR");
+    require(value == RT_NEAREST || value == RT_LINEAR, RT_INVALID_ENUM,
+            "the filter must be RT_NEAREST or RT_LINEAR");
     changed.nearest = value == RT_NEAREST;
     break;
   case RT_TEXTURE_SRGB:
@@ -60,7 +65,8 @@ void setParameter(Context& c, RTenum name, int value) {
     break;
   default: fail(RT_INVALID_ENUM, "unknown texture parameter " + std::to_string(name));
   }
-  const bool hasImage = state.texels || changed.texels != 0; // before its image there is nothing to send
+  const bool hasImage =
+      state.texels || changed.texels != 0; // before its image there is nothing to send
   if (hasImage) c.scene.textures.touch(c.boundTexture, state);
   state.description = changed;
 }
@@ -89,7 +95,8 @@ void rtBindTexture(RTid texture) {
 }
 
 void rtTexImage2D(int components, int width, int height, RTenum type, const void* pixels) {
-  guarded("rtTexImage2D", [&](Context& c) { setImage(c, components, width, height, type, pixels); });
+  guarded("rtTexImage2D",
+          [&](Context& c) { setImage(c, components, width, height, type, pixels); });
 }
 
 void rtTexParameteri(RTenum name, int value) {

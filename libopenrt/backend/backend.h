@@ -44,9 +44,11 @@ class ClusterError : public std::runtime_error {
 class Backend {
  public:
   virtual ~Backend() = default;
-  // True: apply() and start() may be called while frames are in flight, which are finished in their order.
+  // True: apply() and start() may be called while frames are in flight, which are finished in their
+  // order.
   virtual bool pipelines() const { return false; }
-  // Takes the edits over; they hold from the next start() on. Never called while a frame is in flight, if !pipelines().
+  // Takes the edits over; they hold from the next start() on. Never called while a frame is in
+  // flight, if !pipelines().
   virtual void apply(std::shared_ptr<const Commit> commit) = 0;
   // Starts a frame of the committed scene; returns at once.
   virtual void start() = 0;
@@ -54,17 +56,21 @@ class Backend {
   virtual void wait() = 0;
   virtual void cancel() = 0;          // [any] all frames in flight
   virtual float progress() const = 0; // [any] 0..1, of the (oldest) frame in flight
-  // One channel of the (oldest) frame in flight, its finished tiles; false if there is no such channel or frame. [any]
+  // One channel of the (oldest) frame in flight, its finished tiles; false if there is no such
+  // channel or frame. [any]
   virtual bool snapshot(RTenum, std::span<float>) const { return false; }
-  // One channel of the finished frame, first row at the top; false if there is no such channel or frame.
+  // One channel of the finished frame, first row at the top; false if there is no such channel or
+  // frame.
   virtual bool read(RTenum channel, std::span<float> out) const = 0;
   virtual void stats(RTstats& stats) const = 0;
   virtual std::vector<RTworker> workers() const { return {}; } // [any] of a cluster
   virtual void castRays(std::span<const RTray> rays, std::span<RThit> hits) = 0;
   virtual void occludedRays(std::span<const RTray> rays, std::span<uint8_t> occluded) = 0;
-  // What the committed camera sees at a place of the picture, as castRays; false if no camera or no frame is committed.
+  // What the committed camera sees at a place of the picture, as castRays; false if no camera or no
+  // frame is committed.
   virtual bool pick(double x, double y, RThit& hit) = 0;
-  // Ends the file that is written, if one is: throws where it is not whole. No call but the destructor may follow.
+  // Ends the file that is written, if one is: throws where it is not whole. No call but the
+  // destructor may follow.
   virtual void finish() {}
 };
 
@@ -72,10 +78,13 @@ class Backend {
 std::unique_ptr<Backend> makeLocalBackend(const BackendOptions& options);
 std::unique_ptr<Backend> makeRecordBackend(const BackendOptions& options);
 std::unique_ptr<Backend> makeNullBackend(const BackendOptions& options);
-std::unique_ptr<Backend> makeClusterBackend(const BackendOptions& options, const ClusterOptions& cluster); // or ClusterError
+std::unique_ptr<Backend> makeClusterBackend(const BackendOptions& options,
+                                            const ClusterOptions& cluster); // or ClusterError
 // Passes everything on to the backend that renders and explains misuse to options.log.
-std::unique_ptr<Backend> makeDebugBackend(const BackendOptions& options, std::unique_ptr<Backend> renderer);
+std::unique_ptr<Backend> makeDebugBackend(const BackendOptions& options,
+                                          std::unique_ptr<Backend> renderer);
 // Writes the recording options.file and passes everything on to the backend that renders.
-std::unique_ptr<Backend> makeTeeBackend(const BackendOptions& options, std::unique_ptr<Backend> renderer);
+std::unique_ptr<Backend> makeTeeBackend(const BackendOptions& options,
+                                        std::unique_ptr<Backend> renderer);
 
 } // namespace openrt

@@ -1,4 +1,3 @@
-// surface_queries.cpp: see surface_queries.h.
 #include "backend/surface_queries.h"
 
 #include <algorithm>
@@ -11,14 +10,16 @@ void ForwardedQueries::countHits(std::span<const RTray> rays, std::span<uint32_t
   std::fill(counts.begin(), counts.end(), 0u);
 }
 
-void ForwardedQueries::listHits(std::span<const RTray> rays, std::span<const size_t> first, std::span<RThit> hits) {
+void ForwardedQueries::listHits(std::span<const RTray> rays, std::span<const size_t> first,
+                                std::span<RThit> hits) {
   if (SurfaceQueries* to = target()) return to->listHits(rays, first, hits);
   RThit nothing{};
   nothing.t = std::numeric_limits<float>::infinity();
   std::fill(hits.begin(), hits.end(), nothing);
 }
 
-void ForwardedQueries::closestPoints(std::span<const float> points, float radius, std::span<RTclosest> closest) {
+void ForwardedQueries::closestPoints(std::span<const float> points, float radius,
+                                     std::span<RTclosest> closest) {
   if (SurfaceQueries* to = target()) return to->closestPoints(points, radius, closest);
   RTclosest nothing{};
   nothing.distance = std::numeric_limits<float>::infinity();

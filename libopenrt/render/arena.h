@@ -1,4 +1,5 @@
-// arena.h: structure-of-arrays storage of one render thread: aligned blocks cut from large chunks, released in reverse order.
+// arena.h: structure-of-arrays storage of one render thread: aligned blocks cut from large chunks,
+// released in reverse order.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
-// flush_denormals.h: within a block of code denormal floats are zero, as the ray kernels want it: for all that makes or rounds a
-// picture's numbers, so that these do not depend on the thread.
+// flush_denormals.h: within a block of code denormal floats are zero, as the ray kernels want it:
+// for all that makes or rounds a picture's numbers, so that these do not depend on the thread.
 #pragma once
 
 #include <xmmintrin.h>

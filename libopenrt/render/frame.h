@@ -1,9 +1,11 @@
 // frame.h: two unit vectors at right angles to a third. Pure functions. [any thread]
 //
-// No such frame is continuous over all directions. Where it jumps, neighbouring samples choose unrelated places on a lamp, which
-// makes noise. T. Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017, jumps along the whole circle z = 0,
-// on which walls and lamps often lie; rounding alone then decides on a side. Here a fixed frame is reflected at the plane between
-// its third axis and -n, which is continuous but in one direction, chosen so that hardly anything is built along it.
+// No such frame is continuous over all directions. Where it jumps, neighbouring samples choose
+// unrelated places on a lamp, which makes noise. T. Duff et al., "Building an Orthonormal Basis,
+// Revisited", JCGT 6(1), 2017, jumps along the whole circle z = 0, on which walls and lamps often
+// lie; rounding alone then decides on a side. Here a fixed frame is reflected at the plane between
+// its third axis and -n, which is continuous but in one direction, chosen so that hardly anything
+// is built along it.
 #pragma once
 
 #include <cmath>
@@ -12,9 +14,12 @@ namespace openrt {
 
 // Writes s and t so that s, t and the unit vector n are a right-handed orthonormal frame.
 template <class T> inline void basisOf(const T n[3], T s[3], T t[3]) {
-  static constexpr T pole[3] = {T(-0.66499826946907159), T(-0.11246117974981107), T(0.73832904903736574)};
-  static constexpr T first[3] = {T(0.74560472389174559), T(-0.043022056127687142), T(0.66499826946907159)};
-  static constexpr T second[3] = {T(-0.043022056127687142), T(0.99272432514562003), T(0.11246117974981107)};
+  static constexpr T pole[3] = {T(-0.66499826946907159), T(-0.11246117974981107),
+                                T(0.73832904903736574)};
+  static constexpr T first[3] = {T(0.74560472389174559), T(-0.043022056127687142),
+                                 T(0.66499826946907159)};
+  static constexpr T second[3] = {T(-0.043022056127687142), T(0.99272432514562003),
+                                  T(0.11246117974981107)};
   const T v[3] = {n[0] + pole[0], n[1] + pole[1], n[2] + pole[2]};
   const T square = v[0] * v[0] + v[1] * v[1] + v[2] * v[2], scale = square > 0 ? 2 / square : T(0);
   const T a = scale * (n[0] * first[0] + n[1] * first[1] + n[2] * first[2]);
@@ -33,7 +38,8 @@ template <class T> inline void basisOf(const T n[3], T s[3], T t[3]) {
   }
   length = std::sqrt(length);
   for (int k = 0; k < 3; k++) s[k] /= length;
-  for (int k = 0; k < 3; k++) t[k] = n[(k + 1) % 3] * s[(k + 2) % 3] - n[(k + 2) % 3] * s[(k + 1) % 3];
+  for (int k = 0; k < 3; k++)
+    t[k] = n[(k + 1) % 3] * s[(k + 2) % 3] - n[(k + 2) % 3] * s[(k + 1) % 3];
 }
 
 } // namespace openrt

@@ -1,5 +1,6 @@
-// huge_spheres.h: which spheres are so large that single precision cannot tell where a ray meets them: it errs by about 1e-7 of
-// the radius, which is more than what stands on them is high. They are met in double precision. [any]
+// huge_spheres.h: which spheres are so large that single precision cannot tell where a ray meets
+// them: it errs by about 1e-7 of the radius, which is more than what stands on them is high. They
+// are met in double precision. [any]
 #pragma once
 
 #include <algorithm>
@@ -12,7 +13,8 @@ namespace openrt {
 inline constexpr double hugeRadius = 1e4;
 
 inline bool isHugeSphere(const Matrix4d& unitToKernel) {
-  return std::max({length(unitToKernel.column(0)), length(unitToKernel.column(1)), length(unitToKernel.column(2))}) >= hugeRadius;
+  return std::max({length(unitToKernel.column(0)), length(unitToKernel.column(1)),
+                   length(unitToKernel.column(2))}) >= hugeRadius;
 }
 // The same of its record: what is an instance keeps to the kernels' own precision.
 inline bool metInDouble(const Record& r) {

@@ -1,5 +1,6 @@
-// rays.h: batches of rays between the wavefront (render/) and whoever intersects them (backend/local). Structures of arrays in
-// render space: the world's axes and units, origin at the camera.
+// rays.h: batches of rays between the wavefront (render/) and whoever intersects them
+// (backend/local). Structures of arrays in render space: the world's axes and units, origin at the
+// camera.
 #pragma once
 
 #include <cstdint>
@@ -38,8 +39,8 @@ struct RayHits {
   float* t;
   float* u;
   float* v;
-  float* ng[3];        // geometric normal as the kernel gives it: not unit, in the frame of the record
-  uint32_t* record;    // index of the Record hit, or noHit
+  float* ng[3];     // geometric normal as the kernel gives it: not unit, in the frame of the record
+  uint32_t* record; // index of the Record hit, or noHit
   uint32_t* primitive; // in the record's geometry
 
   void allocate(Arena& arena, uint32_t capacity) {
@@ -55,19 +56,23 @@ struct RayHits {
 
 enum class Coherence : uint8_t { coherent, incoherent };
 
-// Thread-safe. A ray that is not finite, has no direction or an interval that is no interval hits nothing and is counted.
+// Thread-safe. A ray that is not finite, has no direction or an interval that is no interval hits
+// nothing and is counted.
 class Intersector {
  public:
   virtual ~Intersector() = default;
-  virtual void intersect(const Rays& rays, uint32_t mask, Coherence coherence, RayHits& hits) const = 0;
-  // The same, but the backs of culled surfaces are not there. Slower: for the rays whose first hit is such a back.
+  virtual void intersect(const Rays& rays, uint32_t mask, Coherence coherence,
+                         RayHits& hits) const = 0;
+  // The same, but the backs of culled surfaces are not there. Slower: for the rays whose first hit
+  // is such a back.
   virtual void intersectFronts(const Rays& rays, uint32_t mask, RayHits& hits) const = 0;
   // Nearest hits on other records than one for each ray.
   virtual void intersectOthers(const Rays& rays, const uint32_t* record, RayHits& hits) const = 0;
   // Of all there is; low > high where nothing is. [any]
   virtual void bounds(float low[3], float high[3]) const = 0;
   // 1 where something lies within the ray's interval.
-  virtual void occluded(const Rays& rays, uint32_t mask, Coherence coherence, uint8_t* blocked) const = 0;
+  virtual void occluded(const Rays& rays, uint32_t mask, Coherence coherence,
+                        uint8_t* blocked) const = 0;
 };
 
 } // namespace openrt

@@ -1,5 +1,5 @@
-// records.h: what the renderer needs to know of one placed geometry to turn a hit into a shading point. Made by a backend
-// when it builds a scene, immutable while a frame renders.
+// records.h: what the renderer needs to know of one placed geometry to turn a hit into a shading
+// point. Made by a backend when it builds a scene, immutable while a frame renders.
 #pragma once
 
 #include <cstdint>
@@ -31,9 +31,12 @@ inline double determinantOf(const Affine& map) {
 inline Affine inverseOf(const Affine& m) {
   const auto& r = m.r;
   const float c[3][3] = {
-      {r[1][1] * r[2][2] - r[1][2] * r[2][1], r[0][2] * r[2][1] - r[0][1] * r[2][2], r[0][1] * r[1][2] - r[0][2] * r[1][1]},
-      {r[1][2] * r[2][0] - r[1][0] * r[2][2], r[0][0] * r[2][2] - r[0][2] * r[2][0], r[0][2] * r[1][0] - r[0][0] * r[1][2]},
-      {r[1][0] * r[2][1] - r[1][1] * r[2][0], r[0][1] * r[2][0] - r[0][0] * r[2][1], r[0][0] * r[1][1] - r[0][1] * r[1][0]}};
+      {r[1][1] * r[2][2] - r[1][2] * r[2][1], r[0][2] * r[2][1] - r[0][1] * r[2][2],
+       r[0][1] * r[1][2] - r[0][2] * r[1][1]},
+      {r[1][2] * r[2][0] - r[1][0] * r[2][2], r[0][0] * r[2][2] - r[0][2] * r[2][0],
+       r[0][2] * r[1][0] - r[0][0] * r[1][2]},
+      {r[1][0] * r[2][1] - r[1][1] * r[2][0], r[0][1] * r[2][0] - r[0][0] * r[2][1],
+       r[0][0] * r[1][1] - r[0][1] * r[1][0]}};
   const float determinant = r[0][0] * c[0][0] + r[0][1] * c[1][0] + r[0][2] * c[2][0];
   Affine out{};
   if (determinant == 0) return out;
@@ -46,7 +49,8 @@ inline Affine inverseOf(const Affine& m) {
 
 struct Record {
   edit::Primitive primitive = edit::Primitive::Triangles;
-  bool instanced = false; // vertices are in the kernel's object frame and `toRender` applies; else in render space times `scale`
+  bool instanced = false; // vertices are in the kernel's object frame and `toRender` applies; else
+                          // in render space times `scale`
   bool cull = false;
   bool flip = false;   // the kernel's geometric normal points to the back
   uint32_t shader = 0; // index into ShaderTable
@@ -54,17 +58,20 @@ struct Record {
   uint32_t name = 0, instance = 0;
   uint32_t primitives = 0; // triangles, segments, points
   uint64_t userData = 0;
-  const float* vertices = nullptr;               // stride 3, as the kernel sees them
-  const uint32_t* indices = nullptr;             // into vertices and attributes
-  const float* normals = nullptr;                // stride 3, in the geometry's local frame
-  const float* texCoords = nullptr;              // stride 2
-  const float* colors = nullptr;                 // stride 4
-  const GeometryParameter* parameters = nullptr; // values of shader parameters of its own; usable as they are
+  const float* vertices = nullptr;   // stride 3, as the kernel sees them
+  const uint32_t* indices = nullptr; // into vertices and attributes
+  const float* normals = nullptr;    // stride 3, in the geometry's local frame
+  const float* texCoords = nullptr;  // stride 2
+  const float* colors = nullptr;     // stride 4
+  const GeometryParameter* parameters =
+      nullptr; // values of shader parameters of its own; usable as they are
   uint32_t parameterCount = 0;
-  float scale = 1;          // not instanced: vertices x scale = render space
-  Affine toRender;          // instanced: kernel's frame -> render space; sphere: unit-sphere frame -> render space
+  float scale = 1; // not instanced: vertices x scale = render space
+  Affine toRender; // instanced: kernel's frame -> render space; sphere: unit-sphere frame -> render
+                   // space
   Affine fromRender;        // sphere: its inverse
-  float normalMatrix[3][3]; // normals of the geometry -> render space (inverse transpose), not normalised
+  float normalMatrix[3][3]; // normals of the geometry -> render space (inverse transpose), not
+                            // normalised
   Affine toObject;          // render space -> frame of the object that has the geometry
   float kernelNormal[3][3]; // instanced: the kernel's geometric normal -> render space
 };

@@ -1,4 +1,5 @@
-// channels.h: the channels of a picture (openrt.h) and their floats per pixel; one table for the front end and the film.
+// channels.h: the channels of a picture (openrt.h) and their floats per pixel; one table for the
+// front end and the film.
 #pragma once
 
 #include <cstdint>
@@ -7,8 +8,8 @@
 
 namespace openrt {
 
-inline constexpr uint32_t allChannels =
-    RT_RGBA | RT_DEPTH | RT_NORMAL | RT_ALBEDO | RT_POSITION | RT_NAME | RT_SAMPLES | RT_VARIANCE | RT_ERROR | RT_TRUST;
+inline constexpr uint32_t allChannels = RT_RGBA | RT_DEPTH | RT_NORMAL | RT_ALBEDO | RT_POSITION |
+                                        RT_NAME | RT_SAMPLES | RT_VARIANCE | RT_ERROR | RT_TRUST;
 inline constexpr uint32_t channelBits = 10;
 
 // Limits of a frame's quality (openrt.h).

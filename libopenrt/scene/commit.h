@@ -1,6 +1,7 @@
-// commit.h: what travels from the API's front end to a backend: a list of edits (edits.fbs) and the bulk arrays they name.
-// Made on the application's thread, immutable afterwards, read by backends on any thread. The order of the edits and what they
-// may name: api/scene_state.h; backend/record/validator.h checks both.
+// commit.h: what travels from the API's front end to a backend: a list of edits (edits.fbs) and the
+// bulk arrays they name. Made on the application's thread, immutable afterwards, read by backends
+// on any thread. The order of the edits and what they may name: api/scene_state.h;
+// backend/record/validator.h checks both.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +14,8 @@
 
 namespace openrt {
 
-// Bytes of one bulk array, 64-byte aligned, followed by 64 readable bytes (ray kernels read past the end). Immutable once shared.
+// Bytes of one bulk array, 64-byte aligned, followed by 64 readable bytes (ray kernels read past
+// the end). Immutable once shared.
 class Array {
  public:
   explicit Array(size_t bytes);

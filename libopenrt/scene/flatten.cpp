@@ -1,5 +1,6 @@
-// flatten.cpp: a depth-first walk of the instances with a stack of its own: depth costs no call stack. Subtrees without
-// geometry are pruned, so that a doubling tower of empty objects costs nothing.
+// flatten.cpp: a depth-first walk of the instances with a stack of its own: depth costs no call
+// stack. Subtrees without geometry are pruned, so that a doubling tower of empty objects costs
+// nothing.
 #include "scene/flatten.h"
 
 #include <algorithm>
@@ -18,7 +19,8 @@ class Flattener {
 
   Flattened run() {
     partOf(0);
-    for (size_t part = 0; part < result_.parts.size() && !result_.truncated; part++) walk(uint32_t(part));
+    for (size_t part = 0; part < result_.parts.size() && !result_.truncated; part++)
+      walk(uint32_t(part));
     placeAll();
     return std::move(result_);
   }
@@ -103,7 +105,8 @@ class Flattener {
     const uint32_t id = children[top.next++];
     const Instance& instance = scene_.instances.at(id);
     if (!(instance.visible || instance.dynamic) || !drawable(instance.object)) return;
-    const Inherited path = result_.inherit(top.path, {id, instance.shader, lightSetOf(id), instance.name, instance.userData});
+    const Inherited path = result_.inherit(
+        top.path, {id, instance.shader, lightSetOf(id), instance.name, instance.userData});
     const auto object = scene_.objects.find(instance.object);
     if (instance.dynamic || (object != scene_.objects.end() && object->second.dynamic)) {
       const uint32_t part = partOf(instance.object);
@@ -148,7 +151,8 @@ class Flattener {
     std::sort(result_.clustersOf.begin(), result_.clustersOf.end());
   }
 
-  // Too many: what has been placed below cluster c and after it goes, so that every cluster has all its children or none.
+  // Too many: what has been placed below cluster c and after it goes, so that every cluster has all
+  // its children or none.
   void truncate(uint32_t c) {
     result_.truncated = true;
     const uint32_t kept = result_.clusters[c].firstChild;
@@ -187,7 +191,8 @@ uint32_t Flattened::unite(uint32_t a, uint32_t b) {
   if (a == b || b == 0) return a;
   if (a == 0) return b;
   std::vector<uint32_t> all;
-  std::set_union(lightSets[a].begin(), lightSets[a].end(), lightSets[b].begin(), lightSets[b].end(), std::back_inserter(all));
+  std::set_union(lightSets[a].begin(), lightSets[a].end(), lightSets[b].begin(), lightSets[b].end(),
+                 std::back_inserter(all));
   return lightSet(all);
 }
 
@@ -198,9 +203,9 @@ uint32_t Flattened::lightSet(const std::vector<uint32_t>& ids) {
 }
 
 Inherited Flattened::inherit(const Inherited& outer, const Inherited& inner) {
-  return {outer.instance ? outer.instance : inner.instance, outer.shader ? outer.shader : inner.shader,
-          unite(outer.lightSet, inner.lightSet), inner.name ? inner.name : outer.name,
-          inner.userData ? inner.userData : outer.userData};
+  return {outer.instance ? outer.instance : inner.instance,
+          outer.shader ? outer.shader : inner.shader, unite(outer.lightSet, inner.lightSet),
+          inner.name ? inner.name : outer.name, inner.userData ? inner.userData : outer.userData};
 }
 
 std::vector<uint32_t> unscopedLights(const Scene& scene) {
@@ -212,10 +217,12 @@ std::vector<uint32_t> unscopedLights(const Scene& scene) {
 
 Flattened flatten(const Scene& scene) { return Flattener(scene).run(); }
 
-std::vector<uint32_t> replace(const Scene& scene, Flattened& flat, const std::vector<uint32_t>& instances) {
+std::vector<uint32_t> replace(const Scene& scene, Flattened& flat,
+                              const std::vector<uint32_t>& instances) {
   std::vector<uint32_t> found;
   for (uint32_t id : instances) {
-    auto it = std::lower_bound(flat.clustersOf.begin(), flat.clustersOf.end(), std::make_pair(id, 0u));
+    auto it =
+        std::lower_bound(flat.clustersOf.begin(), flat.clustersOf.end(), std::make_pair(id, 0u));
     for (; it != flat.clustersOf.end() && it->first == id; ++it) found.push_back(it->second);
   }
   std::sort(found.begin(), found.end());
@@ -231,7 +238,8 @@ std::vector<uint32_t> replace(const Scene& scene, Flattened& flat, const std::ve
       all.push_back(c);
       const Cluster& cluster = flat.clusters[c];
       if (cluster.firstChild == Flattener::none) continue;
-      for (size_t s = 0; s < flat.parts[cluster.part].sockets.size(); s++) open.push_back(cluster.firstChild + uint32_t(s));
+      for (size_t s = 0; s < flat.parts[cluster.part].sockets.size(); s++)
+        open.push_back(cluster.firstChild + uint32_t(s));
     }
   }
   std::sort(all.begin(), all.end());

@@ -1,4 +1,5 @@
-// matrix.h: 4x4 matrices in double, column-major as in the API; affine use. Header-only, any thread.
+// matrix.h: 4x4 matrices in double, column-major as in the API; affine use. Header-only, any
+// thread.
 #pragma once
 
 #include <array>
@@ -66,10 +67,12 @@ inline Matrix4d operator*(const Matrix4d& a, const Matrix4d& b) {
 inline Matrix4d inverse(const Matrix4d& a) {
   const Vec3d c0 = a.column(0), c1 = a.column(1), c2 = a.column(2);
   const double d = 1 / a.determinant();
-  const Vec3d r0 = cross(c1, c2) * d, r1 = cross(c2, c0) * d, r2 = cross(c0, c1) * d; // rows of the inverse
+  const Vec3d r0 = cross(c1, c2) * d, r1 = cross(c2, c0) * d,
+              r2 = cross(c0, c1) * d; // rows of the inverse
   const Vec3d t = a.translation();
   Matrix4d r;
-  r.m = {r0.x, r1.x, r2.x, 0, r0.y, r1.y, r2.y, 0, r0.z, r1.z, r2.z, 0, -dot(r0, t), -dot(r1, t), -dot(r2, t), 1};
+  r.m = {r0.x, r1.x, r2.x, 0, r0.y,        r1.y,        r2.y,        0,
+         r0.z, r1.z, r2.z, 0, -dot(r0, t), -dot(r1, t), -dot(r2, t), 1};
   return r;
 }
 

@@ -95,8 +95,10 @@ void Scene::applyEdit(const edit::AnyUnion& any, SceneChanges& changes) {
     break;
   case Any::Parameter: {
     const auto& p = *any.AsParameter();
-    if (auto found = shaders.find(p.shader); found != shaders.end()) found->second.parameters[p.index] = p;
-    if (changes.parameters.empty() || changes.parameters.back() != p.shader) changes.parameters.push_back(p.shader);
+    if (auto found = shaders.find(p.shader); found != shaders.end())
+      found->second.parameters[p.index] = p;
+    if (changes.parameters.empty() || changes.parameters.back() != p.shader)
+      changes.parameters.push_back(p.shader);
     break;
   }
   case Any::DeleteShader:
@@ -158,8 +160,9 @@ void Scene::placeInstance(const edit::InstanceT& edit, SceneChanges& changes) {
     return;
   }
   Instance& known = found->second;
-  const bool placeOnly = known.dynamic && next.dynamic && known.parent == next.parent && known.object == next.object &&
-                         known.shader == next.shader && known.userData == next.userData && known.name == next.name;
+  const bool placeOnly = known.dynamic && next.dynamic && known.parent == next.parent &&
+                         known.object == next.object && known.shader == next.shader &&
+                         known.userData == next.userData && known.name == next.name;
   if (placeOnly)
     changes.moved.push_back(edit.id);
   else
@@ -182,7 +185,9 @@ void Scene::dropChildren(uint32_t object) {
   const auto list = children_.find(object);
   if (list == children_.end()) return;
   for (uint32_t id : list->second)
-    if (const auto found = instances.find(id); found != instances.end() && found->second.parent == object) instances.erase(found);
+    if (const auto found = instances.find(id);
+        found != instances.end() && found->second.parent == object)
+      instances.erase(found);
   children_.erase(list);
 }
 
@@ -215,7 +220,8 @@ void Scene::replaceObject(const edit::ObjectT& object, SceneChanges& changes) {
                                  array(g->colors),
                                  {}});
     for (const auto& p : g->parameters)
-      if (p) target.geometries.back().parameters.push_back({p->index, p->perVertex, array(p->values)});
+      if (p)
+        target.geometries.back().parameters.push_back({p->index, p->perVertex, array(p->values)});
   }
   dropChildren(object.id);
 }

@@ -1,5 +1,6 @@
-// scene.h: the committed scene as tables by id: what commits (scene/commit.h) add up to. A backend owns one and applies
-// commits between frames; the renderer reads it while nobody writes. Maps are ordered, so every walk has one order.
+// scene.h: the committed scene as tables by id: what commits (scene/commit.h) add up to. A backend
+// owns one and applies commits between frames; the renderer reads it while nobody writes. Maps are
+// ordered, so every walk has one order.
 #pragma once
 
 #include <array>
@@ -13,7 +14,8 @@
 
 namespace openrt {
 
-// Values of a shader parameter of a geometry's own, as many floats as its type has for every vertex or primitive.
+// Values of a shader parameter of a geometry's own, as many floats as its type has for every vertex
+// or primitive.
 struct GeometryParameter {
   uint32_t index = 0; // in the class's table
   bool perVertex = false;
@@ -59,7 +61,8 @@ struct Role { // camera, environment
 
 struct ShaderValues {
   uint32_t shaderClass = 0;
-  std::map<uint32_t, edit::ParameterT> parameters; // by index in the class's table; those that were set
+  std::map<uint32_t, edit::ParameterT>
+      parameters; // by index in the class's table; those that were set
 };
 
 struct TextureImage {
@@ -73,22 +76,26 @@ struct ShaderClassName {
 
 // What a commit touched: decides what a backend makes anew.
 struct SceneChanges {
-  bool structure = false; // instances made, deleted, or changed in more than their place; objects made or deleted
+  bool structure = false; // instances made, deleted, or changed in more than their place; objects
+                          // made or deleted
   bool shaders = false;   // made, deleted, or another default; not their parameters
   bool textures = false, lights = false, camera = false, frame = false;
   std::vector<uint32_t> parameters; // shaders of which some were set
-  std::vector<uint32_t> moved;      // dynamic instances whose matrix or visibility changed, and nothing else
-  std::vector<uint32_t> redefined;  // dynamic objects that were defined before, without instances in them
+  std::vector<uint32_t>
+      moved; // dynamic instances whose matrix or visibility changed, and nothing else
+  std::vector<uint32_t>
+      redefined; // dynamic objects that were defined before, without instances in them
   bool any() const {
-    return structure || shaders || textures || lights || camera || frame || !parameters.empty() || !moved.empty() ||
-           !redefined.empty();
+    return structure || shaders || textures || lights || camera || frame || !parameters.empty() ||
+           !moved.empty() || !redefined.empty();
   }
   void add(const SceneChanges& more);
 };
 
 class Scene {
  public:
-  // Applies a commit; edits that name unknown ids are ignored (the front end and the reader of recordings check them).
+  // Applies a commit; edits that name unknown ids are ignored (the front end and the reader of
+  // recordings check them).
   SceneChanges apply(const Commit& commit);
 
   std::map<uint32_t, TextureImage> textures;
@@ -115,8 +122,9 @@ class Scene {
   void deleteObject(uint32_t id);
   void dropChildren(uint32_t object);
   void sortChildren();
-  std::map<ArrayId, std::weak_ptr<const Array>> arrays_; // alive as long as something of the scene uses them
-  size_t arraysSwept_ = 0;                               // how many there were after the last sweep
+  std::map<ArrayId, std::weak_ptr<const Array>>
+      arrays_;             // alive as long as something of the scene uses them
+  size_t arraysSwept_ = 0; // how many there were after the last sweep
   uint64_t version_ = 0;
   std::map<ArrayId, ArrayPtr> arriving_; // of the commit being applied
   std::map<uint32_t, std::vector<uint32_t>> children_;

@@ -1,4 +1,5 @@
-// whole_scene.cpp: writes the tables of a scene as edits, in an order in which everything is there before it is named.
+// whole_scene.cpp: writes the tables of a scene as edits, in an order in which everything is there
+// before it is named.
 #include "scene/whole_scene.h"
 
 #include <unordered_map>
@@ -109,7 +110,9 @@ class Writer {
 
   void addInstances() {
     for (const auto& [id, instance] : scene_.instances) {
-      if (!scene_.objects.contains(instance.object) || (instance.parent && !scene_.objects.contains(instance.parent))) continue;
+      if (!scene_.objects.contains(instance.object) ||
+          (instance.parent && !scene_.objects.contains(instance.parent)))
+        continue;
       edit::InstanceT e;
       e.id = id;
       e.parent = instance.parent;

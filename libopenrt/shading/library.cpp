@@ -1,4 +1,4 @@
-// library.cpp: see library.h. Called by the registry under its lock.
+// library.cpp: Called by the registry under its lock.
 #include "shading/library.h"
 
 #include <cerrno>
@@ -28,13 +28,15 @@ namespace {
   throw std::runtime_error("shader library " + path + ": " + why);
 }
 
-// A copy of a file in a folder of its own that nobody else may write to; both are gone with the object: what is loaded stays.
+// A copy of a file in a folder of its own that nobody else may write to; both are gone with the
+// object: what is loaded stays.
 class PrivateCopy {
  public:
   PrivateCopy(const std::string& path, const std::string& name) {
     std::error_code error;
     std::string folder = (plugin_files::fs::temp_directory_path(error) / "openrt-XXXXXX").string();
-    if (error || !mkdtemp(folder.data())) failed(path, std::string("no folder for a copy: ") + std::strerror(errno));
+    if (error || !mkdtemp(folder.data()))
+      failed(path, std::string("no folder for a copy: ") + std::strerror(errno));
     folder_ = folder;
     file_ = folder_ / (name + ".so");
     if (!plugin_files::fs::copy_file(path, file_, error)) {
@@ -55,11 +57,13 @@ class PrivateCopy {
   plugin_files::fs::path folder_, file_;
 };
 
-// The loader takes a file for loaded that it knows by its name, even if another one lies there now. In a process with several
-// registries, or after one is gone and its libraries could not be unloaded, that is not seen by this registry alone.
+// The loader takes a file for loaded that it knows by its name, even if another one lies there now.
+// In a process with several registries, or after one is gone and its libraries could not be
+// unloaded, that is not seen by this registry alone.
 bool replacedSinceLoaded(const std::string& path, const FileStamp& stamp) {
   static std::mutex mutex;
-  static std::map<std::string, FileStamp>& loaded = *new std::map<std::string, FileStamp>; // outlives every registry
+  static std::map<std::string, FileStamp>& loaded =
+      *new std::map<std::string, FileStamp>; // outlives every registry
   const std::lock_guard lock(mutex);
   return !(loaded.try_emplace(path, stamp).first->second == stamp);
 }
@@ -69,7 +73,9 @@ const std::string& nameOf(const LoadedClass& c, uint32_t i, std::string& storage
   return storage = c.params[i].name;
 }
 
-uint8_t frequencyOf(const RtsClass& c, uint32_t i) { return c.frequency ? c.frequency[i] : uint8_t(RTS_PER_SHADER); }
+uint8_t frequencyOf(const RtsClass& c, uint32_t i) {
+  return c.frequency ? c.frequency[i] : uint8_t(RTS_PER_SHADER);
+}
 
 // Puts the parameters of a class into the places that they had in the table before.
 void keepHandles(LoadedClass& fresh, const LoadedClass& before) {
@@ -82,7 +88,8 @@ void keepHandles(LoadedClass& fresh, const LoadedClass& before) {
   for (uint32_t i = 0; i < before.paramCount; i++) {
     const std::string name = nameOf(before, i, storage);
     uint32_t j = 0;
-    while (j < fresh.paramCount && (placed[j] || fresh.params[j].name != name || fresh.params[j].type != before.params[i].type))
+    while (j < fresh.paramCount && (placed[j] || fresh.params[j].name != name ||
+                                    fresh.params[j].type != before.params[i].type))
       j++;
     names.push_back(name);
     if (j < fresh.paramCount) {
@@ -91,7 +98,8 @@ void keepHandles(LoadedClass& fresh, const LoadedClass& before) {
       frequency.push_back(frequencyOf(fresh, j));
       continue;
     }
-    RtsParam gone = before.params[i]; // what its text is, goes with the former library at the earliest when nobody asks any more
+    RtsParam gone = before.params[i]; // what its text is, goes with the former library at the
+                                      // earliest when nobody asks any more
     gone.name = "";
     gone.text = "no longer declared";
     gone.offset = uint32_t(size);
@@ -132,7 +140,8 @@ void ShaderLibrary::open(const std::string& file) {
 void ShaderLibrary::readClasses() {
   void* symbol = dlsym(handle, RTS_ENTRY_NAME);
   if (!symbol) failed(path, "exports no " RTS_ENTRY_NAME ", so it is no shader plug-in");
-  for (const RtsClass& c : checkPlugin(static_cast<const RtsPlugin*>(symbol), plugin_files::exportedBytes(symbol), path)) {
+  for (const RtsClass& c : checkPlugin(static_cast<const RtsPlugin*>(symbol),
+                                       plugin_files::exportedBytes(symbol), path)) {
     auto loaded = std::make_unique<LoadedClass>();
     static_cast<RtsClass&>(*loaded) = c;
     loaded->minor = static_cast<const RtsPlugin*>(symbol)->minor;
@@ -156,7 +165,8 @@ ShaderLibrary::ShaderLibrary(std::string bareName, std::string file)
   }
 }
 
-ShaderLibrary::ShaderLibrary(std::string bareName, std::string file, const ShaderLibrary& before, uint32_t number)
+ShaderLibrary::ShaderLibrary(std::string bareName, std::string file, const ShaderLibrary& before,
+                             uint32_t number)
     : name(std::move(bareName)), path(std::move(file)), stamp(FileStamp::of(path)) {
   plugin_files::checkFile(path, "shader library");
   {
@@ -173,7 +183,8 @@ ShaderLibrary::ShaderLibrary(std::string bareName, std::string file, const Shade
         keepHandles(*same, *former);
         same->found = former->found.load();
       } else if (former->found) {
-        failed(path, std::string("its class ") + former->name + (same ? " is of another kind now" : " is gone") + ", but in use");
+        failed(path, std::string("its class ") + former->name +
+                         (same ? " is of another kind now" : " is gone") + ", but in use");
       }
     }
   } catch (...) {

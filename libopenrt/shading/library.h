@@ -1,5 +1,6 @@
-// library.h: one loaded shader library: its handle, its classes as the host sees them, and how its tables follow from those of
-// the file that it replaces. Made and owned by the registry under its lock; its classes are read by any thread.
+// library.h: one loaded shader library: its handle, its classes as the host sees them, and how its
+// tables follow from those of the file that it replaces. Made and owned by the registry under its
+// lock; its classes are read by any thread.
 #pragma once
 
 #include <memory>
@@ -31,13 +32,16 @@ struct ShaderLibrary {
   std::vector<std::unique_ptr<LoadedClass>> classes;
 
   ShaderLibrary(std::string bareName, std::string file);
-  // In place of another one: from a private copy of the file, because the loader knows files by name and number.
-  ShaderLibrary(std::string bareName, std::string file, const ShaderLibrary& before, uint32_t number);
+  // In place of another one: from a private copy of the file, because the loader knows files by
+  // name and number.
+  ShaderLibrary(std::string bareName, std::string file, const ShaderLibrary& before,
+                uint32_t number);
   ~ShaderLibrary();
   ShaderLibrary(const ShaderLibrary&) = delete;
   ShaderLibrary& operator=(const ShaderLibrary&) = delete;
 
-  // Null: it has none of this name. One that was found must be there, of the same kind, in whatever replaces the library.
+  // Null: it has none of this name. One that was found must be there, of the same kind, in whatever
+  // replaces the library.
   const RtsClass* find(std::string_view className) const;
 
  private:

@@ -11,7 +11,8 @@ std::string problem(const RtsParam& param, double value) {
   if (!std::isfinite(value)) return what + "not finite";
   if (param.minimum == 0 && param.maximum == 0) return {}; // no range
   if (value >= param.minimum && value <= param.maximum) return {};
-  return what + std::to_string(value) + " is outside " + std::to_string(param.minimum) + " .. " + std::to_string(param.maximum);
+  return what + std::to_string(value) + " is outside " + std::to_string(param.minimum) + " .. " +
+         std::to_string(param.maximum);
 }
 
 } // namespace

@@ -1,5 +1,5 @@
-// parameters.h: what values a class's parameter takes. Used by the API for what an application sets, and by the reader of
-// recordings for what a file claims. Pure functions.
+// parameters.h: what values a class's parameter takes. Used by the API for what an application
+// sets, and by the reader of recordings for what a file claims. Pure functions.
 #pragma once
 
 #include <span>
@@ -9,7 +9,8 @@
 
 namespace openrt {
 
-// Floats that a parameter of this type has; 0 for types of another kind and for lists, which have any number.
+// Floats that a parameter of this type has; 0 for types of another kind and for lists, which have
+// any number.
 size_t parameterFloats(RtsType type);
 
 // Why the parameter cannot have these values, or an empty text: not finite, or out of its range.

@@ -1,4 +1,5 @@
-// plugin_check.cpp: the rules of the shader ABI, one function a table. Called by the registry under its lock.
+// plugin_check.cpp: the rules of the shader ABI, one function a table. Called by the registry under
+// its lock.
 #include "shading/plugin_check.h"
 
 #include <algorithm>
@@ -13,14 +14,17 @@ namespace {
 
 constexpr uint32_t maxVaryingBytes = 1 << 14; // every hit then has a copy of the structure
 constexpr uint32_t maxClasses = 1024, maxParameters = 4096, maxParameterBytes = 1 << 20;
-// A class reaches at least to its parameter table; everything behind that is functions, absent in older minors.
+// A class reaches at least to its parameter table; everything behind that is functions, absent in
+// older minors.
 constexpr size_t minClassSize = offsetof(RtsClass, traits);
 
 [[noreturn]] void refuse(const std::string& path, const std::string& why) {
   throw std::runtime_error("shader library " + path + ": " + why);
 }
 
-std::string version(unsigned major, unsigned minor) { return std::to_string(major) + "." + std::to_string(minor); }
+std::string version(unsigned major, unsigned minor) {
+  return std::to_string(major) + "." + std::to_string(minor);
+}
 
 size_t parameterAlignment(RtsType type) {
   switch (type) {
@@ -33,15 +37,16 @@ size_t parameterAlignment(RtsType type) {
 // The part of a plug-in that says whether the rest may be read at all.
 void checkHeader(const RtsPlugin* plugin, size_t symbolBytes, const std::string& path) {
   if (symbolBytes != 0 && symbolBytes < sizeof(RtsPlugin))
-    refuse(path, "its " RTS_ENTRY_NAME " has " + std::to_string(symbolBytes) + " bytes; a plug-in's has at least " +
-                     std::to_string(sizeof(RtsPlugin)));
+    refuse(path, "its " RTS_ENTRY_NAME " has " + std::to_string(symbolBytes) +
+                     " bytes; a plug-in's has at least " + std::to_string(sizeof(RtsPlugin)));
   if (plugin->magic != RTS_MAGIC) refuse(path, "not a shader plug-in (wrong magic number)");
   if (plugin->major != RTS_ABI_MAJOR || plugin->minor > RTS_ABI_MINOR)
-    refuse(path, "made for shader ABI " + version(plugin->major, plugin->minor) + "; this library has " +
-                     version(RTS_ABI_MAJOR, RTS_ABI_MINOR));
+    refuse(path, "made for shader ABI " + version(plugin->major, plugin->minor) +
+                     "; this library has " + version(RTS_ABI_MAJOR, RTS_ABI_MINOR));
   if (plugin->size != sizeof(RtsPlugin))
     refuse(path, "claims a plug-in structure of " + std::to_string(plugin->size) + " bytes; ABI " +
-                     version(plugin->major, plugin->minor) + " has " + std::to_string(sizeof(RtsPlugin)));
+                     version(plugin->major, plugin->minor) + " has " +
+                     std::to_string(sizeof(RtsPlugin)));
   if (plugin->classCount == 0 || plugin->classCount > maxClasses || !plugin->classes)
     refuse(path, "claims " + std::to_string(plugin->classCount) + " shader classes");
 }
@@ -50,10 +55,13 @@ void checkParameter(const RtsParam& param, uint32_t paramSize, const std::string
   if (!param.name || !*param.name) throw std::runtime_error(where + ": a parameter without a name");
   const std::string what = where + ": parameter " + param.name;
   const size_t bytes = parameterBytes(param.type);
-  if (bytes == 0) throw std::runtime_error(what + ": unknown type " + std::to_string(static_cast<unsigned>(param.type)));
+  if (bytes == 0)
+    throw std::runtime_error(what + ": unknown type " +
+                             std::to_string(static_cast<unsigned>(param.type)));
   if (param.offset > paramSize || bytes > paramSize - param.offset)
     throw std::runtime_error(what + ": lies outside the parameter structure");
-  if (param.offset % parameterAlignment(param.type) != 0) throw std::runtime_error(what + ": badly aligned");
+  if (param.offset % parameterAlignment(param.type) != 0)
+    throw std::runtime_error(what + ": badly aligned");
   for (float value : param.defaultValue)
     if (!std::isfinite(value)) throw std::runtime_error(what + ": a default that is not finite");
   if (!(param.minimum <= param.maximum)) throw std::runtime_error(what + ": its range is empty");
@@ -62,54 +70,67 @@ void checkParameter(const RtsParam& param, uint32_t paramSize, const std::string
 void checkParameters(const RtsClass& shaderClass, const std::string& where) {
   if (shaderClass.paramSize > maxParameterBytes || shaderClass.paramCount > maxParameters ||
       (shaderClass.paramCount > 0 && !shaderClass.params))
-    throw std::runtime_error(where + ": claims " + std::to_string(shaderClass.paramCount) + " parameters in " +
-                             std::to_string(shaderClass.paramSize) + " bytes");
+    throw std::runtime_error(where + ": claims " + std::to_string(shaderClass.paramCount) +
+                             " parameters in " + std::to_string(shaderClass.paramSize) + " bytes");
   std::set<std::string> names;
   std::vector<std::pair<size_t, size_t>> ranges;
   for (uint32_t i = 0; i < shaderClass.paramCount; i++) {
     const RtsParam& param = shaderClass.params[i];
     checkParameter(param, shaderClass.paramSize, where);
-    if (!names.insert(param.name).second) throw std::runtime_error(where + ": two parameters called " + param.name);
+    if (!names.insert(param.name).second)
+      throw std::runtime_error(where + ": two parameters called " + param.name);
     ranges.emplace_back(param.offset, param.offset + parameterBytes(param.type));
-    const uint8_t frequency = shaderClass.frequency ? shaderClass.frequency[i] : uint8_t(RTS_PER_SHADER);
+    const uint8_t frequency =
+        shaderClass.frequency ? shaderClass.frequency[i] : uint8_t(RTS_PER_SHADER);
     const bool numbers = param.type >= RTS_FLOAT && param.type <= RTS_MATRIX;
     if (frequency != RTS_PER_SHADER && shaderClass.paramSize > maxVaryingBytes)
-      throw std::runtime_error(where + ": parameter " + param.name + ": cannot change by hit in a structure of " +
-                               std::to_string(shaderClass.paramSize) + " bytes; at most " + std::to_string(maxVaryingBytes));
+      throw std::runtime_error(where + ": parameter " + param.name +
+                               ": cannot change by hit in a structure of " +
+                               std::to_string(shaderClass.paramSize) + " bytes; at most " +
+                               std::to_string(maxVaryingBytes));
     if (frequency > RTS_PER_VERTEX || (frequency != RTS_PER_SHADER && !numbers))
       throw std::runtime_error(where + ": parameter " + param.name + ": cannot change that often");
   }
   std::sort(ranges.begin(), ranges.end());
   for (size_t i = 1; i < ranges.size(); i++)
-    if (ranges[i].first < ranges[i - 1].second) throw std::runtime_error(where + ": two parameters share bytes");
+    if (ranges[i].first < ranges[i - 1].second)
+      throw std::runtime_error(where + ": two parameters share bytes");
 }
 
 void checkFunctions(const RtsClass& shaderClass, const std::string& where) {
   const char* missing = nullptr;
   switch (shaderClass.kind) {
-  case RTS_SURFACE: missing = shaderClass.shade || shaderClass.surface ? nullptr : "shade or surface"; break;
+  case RTS_SURFACE:
+    missing = shaderClass.shade || shaderClass.surface ? nullptr : "shade or surface";
+    break;
   case RTS_LIGHT: missing = shaderClass.illuminate ? nullptr : "illuminate"; break;
   case RTS_CAMERA: missing = shaderClass.generate ? nullptr : "generate"; break;
   case RTS_ENVIRONMENT: break; // both of its functions may be absent
   case RTS_TRANSPORT: missing = shaderClass.radiance ? nullptr : "radiance"; break;
-  default: throw std::runtime_error(where + ": unknown kind " + std::to_string(static_cast<unsigned>(shaderClass.kind)));
+  default:
+    throw std::runtime_error(where + ": unknown kind " +
+                             std::to_string(static_cast<unsigned>(shaderClass.kind)));
   }
   if (missing) throw std::runtime_error(where + ": lacks the function " + missing);
 }
 
 // Bytes of a class structure of ABI 1.minor.
 size_t classBytes(unsigned minor) {
-  return minor == 0 ? offsetof(RtsClass, surface) : minor == 1 ? offsetof(RtsClass, frequency) : sizeof(RtsClass);
+  return minor == 0   ? offsetof(RtsClass, surface)
+         : minor == 1 ? offsetof(RtsClass, frequency)
+                      : sizeof(RtsClass);
 }
 
 RtsClass checkClass(const RtsClass* theirs, unsigned minor, const std::string& path) {
   if (!theirs) refuse(path, "an empty entry in its table of classes");
   if (theirs->size < minClassSize || theirs->size > sizeof(RtsClass))
-    refuse(path, "claims a class structure of " + std::to_string(theirs->size) + " bytes; this library knows " +
-                     std::to_string(minClassSize) + " to " + std::to_string(sizeof(RtsClass)));
+    refuse(path, "claims a class structure of " + std::to_string(theirs->size) +
+                     " bytes; this library knows " + std::to_string(minClassSize) + " to " +
+                     std::to_string(sizeof(RtsClass)));
   if (theirs->size > classBytes(minor))
-    refuse(path, "claims a class structure of " + std::to_string(theirs->size) + " bytes; that of ABI " +
-                     version(RTS_ABI_MAJOR, minor) + " has " + std::to_string(classBytes(minor)));
+    refuse(path, "claims a class structure of " + std::to_string(theirs->size) +
+                     " bytes; that of ABI " + version(RTS_ABI_MAJOR, minor) + " has " +
+                     std::to_string(classBytes(minor)));
   RtsClass ours{};
   // Whole pointers only: half a function pointer would be a wild one.
   std::memcpy(&ours, theirs, theirs->size / sizeof(void*) * sizeof(void*));
@@ -141,13 +162,15 @@ size_t parameterBytes(RtsType type) {
   return 0;
 }
 
-std::vector<RtsClass> checkPlugin(const RtsPlugin* plugin, size_t symbolBytes, const std::string& path) {
+std::vector<RtsClass> checkPlugin(const RtsPlugin* plugin, size_t symbolBytes,
+                                  const std::string& path) {
   checkHeader(plugin, symbolBytes, path);
   std::vector<RtsClass> classes;
   std::set<std::string> names;
   for (uint32_t i = 0; i < plugin->classCount; i++) {
     classes.push_back(checkClass(plugin->classes[i], plugin->minor, path));
-    if (!names.insert(classes.back().name).second) refuse(path, std::string("two classes called ") + classes.back().name);
+    if (!names.insert(classes.back().name).second)
+      refuse(path, std::string("two classes called ") + classes.back().name);
   }
   return classes;
 }

@@ -1,5 +1,6 @@
-// registry.cpp: finds shader libraries by bare name in the configured folders, and loads them (library.h).
-// Called by the front end on the application's thread and by backends on theirs; one lock.
+// registry.cpp: finds shader libraries by bare name in the configured folders, and loads them
+// (library.h). Called by the front end on the application's thread and by backends on theirs; one
+// lock.
 #include "shading/registry.h"
 
 #include <algorithm>
@@ -40,7 +41,8 @@ const ShaderRegistry::Library* ShaderRegistry::load(const std::string& bareName)
 
 std::string ShaderRegistry::fileOf(const std::string& bareName) const {
   for (const std::string& folder : folders_) {
-    std::string file = plugin_files::trusted(folder) ? plugin_files::file(folder, bareName) : std::string();
+    std::string file =
+        plugin_files::trusted(folder) ? plugin_files::file(folder, bareName) : std::string();
     if (!file.empty()) return file;
   }
   return {};
@@ -53,7 +55,8 @@ int ShaderRegistry::reload(std::vector<std::string>& problems) {
     const std::string file = fileOf(library->name);
     if (!file.empty() && FileStamp::of(file) == library->stamp) continue;
     try {
-      if (file.empty()) throw std::runtime_error("shader library " + library->path + ": its file is gone");
+      if (file.empty())
+        throw std::runtime_error("shader library " + library->path + ": its file is gone");
       auto fresh = std::make_unique<Library>(library->name, file, *library, ++reloads_);
       replaced_.push_back(nullptr);
       replaced_.back() = std::exchange(library, std::move(fresh));
@@ -101,18 +104,23 @@ const RtsClass* ShaderRegistry::loaded(std::string_view name, std::string_view b
   return nullptr;
 }
 
-const RtsClass& ShaderRegistry::find(std::string_view name, std::string_view library, const Library*& from) const {
+const RtsClass& ShaderRegistry::find(std::string_view name, std::string_view library,
+                                     const Library*& from) const {
   if (!library.empty()) {
     const Library* found = from = load(plugin_files::bareName(library, "shader library"));
-    if (!found) throw std::runtime_error("shader library \"" + std::string(library) + "\" not found in: " + searched());
+    if (!found)
+      throw std::runtime_error("shader library \"" + std::string(library) +
+                               "\" not found in: " + searched());
     if (const RtsClass* shaderClass = found->find(name)) return *shaderClass;
     std::string has;
     for (const auto& c : found->classes) has += (has.empty() ? "" : ", ") + std::string(c->name);
-    throw std::runtime_error("shader library " + found->path + " has no class \"" + std::string(name) + "\"; it has: " + has);
+    throw std::runtime_error("shader library " + found->path + " has no class \"" +
+                             std::string(name) + "\"; it has: " + has);
   }
   const std::string own = lowerCase(name);
-  const bool plain =
-      !own.empty() && std::all_of(own.begin(), own.end(), [](unsigned char c) { return std::isalnum(c) || c == '_'; });
+  const bool plain = !own.empty() && std::all_of(own.begin(), own.end(), [](unsigned char c) {
+    return std::isalnum(c) || c == '_';
+  });
   from = plain ? load(own) : nullptr;
   if (from)
     if (const RtsClass* shaderClass = from->find(name)) return *shaderClass;
@@ -120,7 +128,8 @@ const RtsClass& ShaderRegistry::find(std::string_view name, std::string_view lib
   if (stock)
     if (const RtsClass* shaderClass = stock->find(name)) return *shaderClass;
   throw std::runtime_error("no stock shader class \"" + std::string(name) + "\"" +
-                           (stock ? "" : " (the stock library vrml97 is missing)") + "; looked in: " + searched());
+                           (stock ? "" : " (the stock library vrml97 is missing)") +
+                           "; looked in: " + searched());
 }
 
 std::vector<std::string> shaderFolders(std::string_view configured) {

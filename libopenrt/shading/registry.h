@@ -1,7 +1,8 @@
-// registry.h: shader classes by name and library. Loads plug-ins (dlopen) from the configured folders only, checks their
-// ABI, and keeps them loaded for the life of the registry, also those that a newer file has replaced: frames in flight, and
-// scenes that have not been committed since, go on with the former functions. Used by the front end (parameter tables) and by the
-// local backend (functions). Thread-safe after construction for lookups of classes already loaded.
+// registry.h: shader classes by name and library. Loads plug-ins (dlopen) from the configured
+// folders only, checks their ABI, and keeps them loaded for the life of the registry, also those
+// that a newer file has replaced: frames in flight, and scenes that have not been committed since,
+// go on with the former functions. Used by the front end (parameter tables) and by the local
+// backend (functions). Thread-safe after construction for lookups of classes already loaded.
 #pragma once
 
 #include <memory>
@@ -22,21 +23,23 @@ class ShaderRegistry {
   ShaderRegistry(const ShaderRegistry&) = delete;
   ShaderRegistry& operator=(const ShaderRegistry&) = delete;
 
-  // library "" means a stock class: the folders' plug-in that bears the class's name in lower case, or the stock plug-in
-  // `vrml97`, which also brings the stock lights, cameras and environments. Throws std::runtime_error: what was looked for and
-  // where.
+  // library "" means a stock class: the folders' plug-in that bears the class's name in lower case,
+  // or the stock plug-in `vrml97`, which also brings the stock lights, cameras and environments.
+  // Throws std::runtime_error: what was looked for and where.
   const RtsClass& find(std::string_view name, std::string_view library) const;
 
-  // Loads the libraries anew whose files are not those that were loaded; find() then answers with the new tables. Handles stay:
-  // a parameter keeps its index as long as its name and type are declared, new ones come behind; one that is gone stays in the
-  // table without a name, behind what the plug-in knows of the structure. Returns how many; the others stay as they were, with a
-  // line in `problems` each.
+  // Loads the libraries anew whose files are not those that were loaded; find() then answers with
+  // the new tables. Handles stay: a parameter keeps its index as long as its name and type are
+  // declared, new ones come behind; one that is gone stays in the table without a name, behind what
+  // the plug-in knows of the structure. Returns how many; the others stay as they were, with a line
+  // in `problems` each.
   int reload(std::vector<std::string>& problems);
   // Files of the libraries in use, as they are found now.
   std::vector<std::string> files() const;
   // Bare name of the library that find() answers from; throws as it does.
   std::string libraryOf(std::string_view name, std::string_view library) const;
-  // The file that a library of this bare name was loaded from, or would be; empty: there is none, or this is no bare name.
+  // The file that a library of this bare name was loaded from, or would be; empty: there is none,
+  // or this is no bare name.
   std::string locate(std::string_view bareName) const;
   // A class of a library that is loaded already; null: none.
   const RtsClass* loaded(std::string_view name, std::string_view bareName) const;
@@ -54,7 +57,8 @@ class ShaderRegistry {
   uint32_t reloads_ = 0; // names the private copies
 };
 
-// Folders of a process: configured ones (colon-separated), $OPENRT_SHADER_PATH, the folder beside the library
+// Folders of a process: configured ones (colon-separated), $OPENRT_SHADER_PATH, the folder beside
+// the library
 // (../lib/openrt/shaders).
 std::vector<std::string> shaderFolders(std::string_view configured);
 

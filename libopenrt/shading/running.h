@@ -1,5 +1,6 @@
-// running.h: which shader class runs on this thread, for handlers of crashes. Whoever calls a function of a class puts a
-// RunningShader beside the call. Any thread; runningShader() is async-signal-safe.
+// running.h: which shader class runs on this thread, for handlers of crashes. Whoever calls a
+// function of a class puts a RunningShader beside the call. Any thread; runningShader() is
+// async-signal-safe.
 #pragma once
 
 #include <atomic>
@@ -21,9 +22,13 @@ struct LoadedClass : RtsClass {
   std::vector<std::string> mergedNames; // by parameter, also of those that are gone
 };
 
-inline const char* labelOf(const RtsClass& shaderClass) { return static_cast<const LoadedClass&>(shaderClass).label.c_str(); }
+inline const char* labelOf(const RtsClass& shaderClass) {
+  return static_cast<const LoadedClass&>(shaderClass).label.c_str();
+}
 
-inline uint16_t minorOf(const RtsClass& shaderClass) { return static_cast<const LoadedClass&>(shaderClass).minor; }
+inline uint16_t minorOf(const RtsClass& shaderClass) {
+  return static_cast<const LoadedClass&>(shaderClass).minor;
+}
 
 // No lazy allocation of the thread's storage: a signal handler may come first.
 #if defined(__GNUC__) && !defined(_WIN32)

@@ -1,5 +1,6 @@
-// texture.cpp: bilinear and nearest look-up. Bytes stay bytes in memory and are decoded by a table texel by texel, before they
-// are mixed: mixing encoded values would darken every edge. See texture.h.
+// texture.cpp: bilinear and nearest look-up. Bytes stay bytes in memory and are decoded by a table
+// texel by texel, before they are mixed: mixing encoded values would darken every edge. See
+// texture.h.
 #include "shading/texture.h"
 
 #include <algorithm>
@@ -15,11 +16,14 @@ namespace {
 using Decoding = std::array<float, 256>;
 
 // IEC 61966-2-1.
-double srgbToLinear(double v) { return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4); }
+double srgbToLinear(double v) {
+  return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
+}
 
 Decoding makeDecoding(bool srgb) {
   Decoding table;
-  for (int i = 0; i < 256; i++) table[i] = static_cast<float>(srgb ? srgbToLinear(i / 255.0) : i / 255.0);
+  for (int i = 0; i < 256; i++)
+    table[i] = static_cast<float>(srgb ? srgbToLinear(i / 255.0) : i / 255.0);
   return table;
 }
 
@@ -28,15 +32,17 @@ const Decoding& decoding(bool srgb) {
   return srgb ? encoded : linear;
 }
 
-// Where the lanes of a small piece of a batch lie along one axis: the two texels around them and the share of the second. Worked
-// out for all lanes at once, without calls, so that the loops go into vector lanes.
+// Where the lanes of a small piece of a batch lie along one axis: the two texels around them and
+// the share of the second. Worked out for all lanes at once, without calls, so that the loops go
+// into vector lanes.
 constexpr uint32_t piece = 64;
 struct Places {
   int32_t first[piece], second[piece];
   float share[piece];
 };
 
-// Coordinates in texels, 0..size. Whole numbers are taken off by conversion; beyond 2^23 a float has no fraction to keep.
+// Coordinates in texels, 0..size. Whole numbers are taken off by conversion; beyond 2^23 a float
+// has no fraction to keep.
 void place(uint32_t n, const float* u, const Texture::Axis& axis, float* out) {
   const auto size = static_cast<float>(axis.size);
   if (axis.clamp) {
@@ -82,7 +88,9 @@ void sampleNothing(const Texture&, uint32_t n, const float* const[2], float* con
     for (uint32_t i = 0; i < n; i++) rgba[c][i] = 1.0f;
 }
 
-constexpr bool isAlpha(int component, int components) { return component == 3 || (component == 1 && components == 2); }
+constexpr bool isAlpha(int component, int components) {
+  return component == 3 || (component == 1 && components == 2);
+}
 
 template <int components> void spread(const float* value, uint32_t i, float* const rgba[4]) {
   constexpr bool grey = components <= 2;
@@ -94,16 +102,19 @@ template <int components> void spread(const float* value, uint32_t i, float* con
 
 bool fits(const edit::TextureT& d, const ArrayPtr& texels) {
   constexpr uint32_t maxSide = 1u << 23; // halves of texels are exact in float
-  if (!texels || d.components < 1 || d.components > 4 || d.width < 1 || d.height < 1 || d.width > maxSide || d.height > maxSide)
+  if (!texels || d.components < 1 || d.components > 4 || d.width < 1 || d.height < 1 ||
+      d.width > maxSide || d.height > maxSide)
     return false;
-  const uint64_t bytes = uint64_t(d.width) * d.height * d.components * (d.isFloat ? sizeof(float) : 1);
+  const uint64_t bytes =
+      uint64_t(d.width) * d.height * d.components * (d.isFloat ? sizeof(float) : 1);
   return texels->size() >= bytes;
 }
 
 } // namespace
 
 template <class Texel, int components, bool single>
-void Texture::sampleAs(const Texture& texture, uint32_t n, const float* const uv[2], float* const rgba[4]) {
+void Texture::sampleAs(const Texture& texture, uint32_t n, const float* const uv[2],
+                       float* const rgba[4]) {
   const Texel* texels = texture.texels_->as<Texel>();
   const float* decode = texture.decode_;
   const float* alpha = decoding(false).data();
@@ -112,9 +123,13 @@ void Texture::sampleAs(const Texture& texture, uint32_t n, const float* const uv
     if constexpr (std::is_same_v<Texel, float>)
       return texels[index + static_cast<size_t>(c)];
     else
-      return (isAlpha(c, components) ? alpha : decode)[static_cast<size_t>(texels[index + static_cast<size_t>(c)])];
+      return (isAlpha(c, components)
+                  ? alpha
+                  : decode)[static_cast<size_t>(texels[index + static_cast<size_t>(c)])];
   };
-  const auto index = [&](int32_t x, int32_t y) { return (static_cast<size_t>(y) * width + static_cast<size_t>(x)) * components; };
+  const auto index = [&](int32_t x, int32_t y) {
+    return (static_cast<size_t>(y) * width + static_cast<size_t>(x)) * components;
+  };
   Places s, t;
   for (uint32_t begin = 0; begin < n; begin += piece) {
     const uint32_t count = std::min(piece, n - begin);

@@ -1,6 +1,6 @@
-// openrt_replay.cpp: the program openrt-replay: renders a recording again and writes one of its frames. Reads the file on the
-// main thread; the local backend brings its own.
-// Exit codes: 0 done, 1 render failed or picture not written, 2 usage, 3 recording missing or unusable.
+// openrt_replay.cpp: the program openrt-replay: renders a recording again and writes one of its
+// frames. Reads the file on the main thread; the local backend brings its own. Exit codes: 0 done,
+// 1 render failed or picture not written, 2 usage, 3 recording missing or unusable.
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
@@ -38,10 +38,13 @@ struct Picture {
 
 void log(int level, const char* message, void*) {
   static const char* const names[] = {"debug", "info", "warning", "error"};
-  if (level >= 2) std::fprintf(stderr, "openrt-replay: %s: %s\n", names[level > 3 ? 3 : level], printable(message).c_str());
+  if (level >= 2)
+    std::fprintf(stderr, "openrt-replay: %s: %s\n", names[level > 3 ? 3 : level],
+                 printable(message).c_str());
 }
 
-// Colour PFM: three floats a pixel, little-endian, rows from the bottom up. Written beside its name and renamed.
+// Colour PFM: three floats a pixel, little-endian, rows from the bottom up. Written beside its name
+// and renamed.
 bool writePfm(const Picture& picture, const std::string& path) {
   const std::string partial = path + ".partial";
   std::FILE* file = std::fopen(partial.c_str(), "wbe");
@@ -66,13 +69,16 @@ void printStats(const Backend& backend, uint64_t frames) {
   RTstats s{};
   s.size = sizeof(s);
   backend.stats(s);
-  std::printf("{\"frames\": %llu, \"triangles\": %llu, \"cameraRays\": %llu, \"shadowRays\": %llu, \"secondaryRays\": %llu,\n"
-              " \"commitSeconds\": %g, \"buildSeconds\": %g, \"renderSeconds\": %g, \"threads\": %u, \"isa\": \"%s\", "
+  std::printf("{\"frames\": %llu, \"triangles\": %llu, \"cameraRays\": %llu, \"shadowRays\": %llu, "
+              "\"secondaryRays\": %llu,\n"
+              " \"commitSeconds\": %g, \"buildSeconds\": %g, \"renderSeconds\": %g, \"threads\": "
+              "%u, \"isa\": \"%s\", "
               "\"kernel\": \"%s\"}\n",
               static_cast<unsigned long long>(frames), static_cast<unsigned long long>(s.triangles),
-              static_cast<unsigned long long>(s.cameraRays), static_cast<unsigned long long>(s.shadowRays),
-              static_cast<unsigned long long>(s.secondaryRays), s.commitSeconds, s.buildSeconds, s.renderSeconds, s.threads,
-              s.isa, s.kernel);
+              static_cast<unsigned long long>(s.cameraRays),
+              static_cast<unsigned long long>(s.shadowRays),
+              static_cast<unsigned long long>(s.secondaryRays), s.commitSeconds, s.buildSeconds,
+              s.renderSeconds, s.threads, s.isa, s.kernel);
 }
 
 int complain(ExitCode code, const std::string& message) {
@@ -82,15 +88,21 @@ int complain(ExitCode code, const std::string& message) {
 
 std::optional<Options> parseOptions(int argc, char** argv, int& exitCode) {
   Options options;
-  CLI::App app("Renders a recording made with backend=record or record=PATH and writes a frame as PFM.", "openrt-replay");
+  CLI::App app(
+      "Renders a recording made with backend=record or record=PATH and writes a frame as PFM.",
+      "openrt-replay");
   app.add_option("recording", options.recording, "the file to replay")->required();
   app.add_option("-o,--output", options.output, "the picture to write (.pfm)");
-  app.add_option("--frame", options.frame, "which frame, from 1 (default: the last)")->check(CLI::PositiveNumber);
-  app.add_option("--threads", options.threads, "render threads (default: as many as the process may use)")
+  app.add_option("--frame", options.frame, "which frame, from 1 (default: the last)")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--threads", options.threads,
+                 "render threads (default: as many as the process may use)")
       ->check(CLI::Range(0, 1024));
-  app.add_option("--shader-path", options.shaderPath, "folders with shader libraries, separated by colons");
+  app.add_option("--shader-path", options.shaderPath,
+                 "folders with shader libraries, separated by colons");
   app.add_option("--export", options.exported,
-                 "write the scene of the frame for other programs (JSON; arrays beside it in FILE.bin), render nothing");
+                 "write the scene of the frame for other programs (JSON; arrays beside it in "
+                 "FILE.bin), render nothing");
   app.add_flag("--stats", options.stats, "print counts and times as JSON");
   try {
     app.parse(argc, argv);
@@ -101,7 +113,8 @@ std::optional<Options> parseOptions(int argc, char** argv, int& exitCode) {
   return options;
 }
 
-// Applies commits and renders their frames, up to the one asked for. Messages of the reader leave as they are thrown.
+// Applies commits and renders their frames, up to the one asked for. Messages of the reader leave
+// as they are thrown.
 class Replay {
  public:
   Replay(RecordingReader& reader, Backend& backend) : reader_(reader), backend_(backend) {}
@@ -126,7 +139,8 @@ class Replay {
   std::optional<Picture> picture() const {
     Picture picture{settings_.width, settings_.height, {}};
     picture.rgba.resize(size_t(settings_.width) * settings_.height * 4);
-    if (!(settings_.channels & RT_RGBA) || !backend_.read(RT_RGBA, picture.rgba)) return std::nullopt;
+    if (!(settings_.channels & RT_RGBA) || !backend_.read(RT_RGBA, picture.rgba))
+      return std::nullopt;
     return picture;
   }
 
@@ -156,7 +170,8 @@ int run(const Options& options) {
   for (const std::string& written : {options.output, options.exported}) {
     std::error_code none; // one of them is not there: they are not the same
     if (!written.empty() && std::filesystem::equivalent(written, options.recording, none))
-      return complain(Usage, written + ": it is the recording that is read; another name is needed");
+      return complain(Usage,
+                      written + ": it is the recording that is read; another name is needed");
   }
   const ShaderRegistry shaders(shaderFolders(options.shaderPath));
   std::unique_ptr<RecordingReader> reader;
@@ -172,15 +187,18 @@ int run(const Options& options) {
   Replay replay(*reader, *backend);
   bool more = true;
   try {
-    while (more && (options.frame == 0 || replay.frames() < options.frame)) more = replay.renderNext();
+    while (more && (options.frame == 0 || replay.frames() < options.frame))
+      more = replay.renderNext();
   } catch (const BadRecording& e) { return complain(InputUnusable, e.what()); }
   if (options.stats) printStats(*backend, replay.frames());
   if (replay.frames() < std::max<uint64_t>(options.frame, 1))
-    return complain(InputUnusable, options.recording + ": has " + std::to_string(replay.frames()) + " frames");
+    return complain(InputUnusable,
+                    options.recording + ": has " + std::to_string(replay.frames()) + " frames");
   if (options.output.empty()) return Done;
   const std::optional<Picture> picture = replay.picture();
   if (!picture) return complain(RenderFailed, "the frame has no colour channel");
-  if (!writePfm(*picture, options.output)) return complain(RenderFailed, options.output + ": cannot be written");
+  if (!writePfm(*picture, options.output))
+    return complain(RenderFailed, options.output + ": cannot be written");
   return Done;
 }
 
@@ -193,7 +211,8 @@ int main(int argc, char** argv) {
     try {
       const std::optional<Options> options = parseOptions(argc, argv, exitCode);
       if (options) exitCode = run(*options);
-      if (exitCode == Done && !outputWritten()) return int(complain(RenderFailed, "standard output cannot be written"));
+      if (exitCode == Done && !outputWritten())
+        return int(complain(RenderFailed, "standard output cannot be written"));
       return exitCode;
     } catch (const std::exception& e) { return int(complain(RenderFailed, e.what())); }
   });

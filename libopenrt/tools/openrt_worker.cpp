@@ -1,7 +1,7 @@
-// openrt_worker.cpp: the program openrt-worker: lends this machine's threads to masters (backend=cluster, vv --workers). Options
-// and signals here; the work in backend/cluster/worker/serve.h.
-// Exit codes: 0 done (also by SIGTERM), 1 something failed, 2 usage, 3 key file missing or unusable, 75 a port that is taken, or
-// out of memory; 130 by SIGINT.
+// openrt_worker.cpp: the program openrt-worker: lends this machine's threads to masters
+// (backend=cluster, vv --workers). Options and signals here; the work in
+// backend/cluster/worker/serve.h. Exit codes: 0 done (also by SIGTERM), 1 something failed, 2
+// usage, 3 key file missing or unusable, 75 a port that is taken, or out of memory; 130 by SIGINT.
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -27,7 +27,14 @@ namespace {
 using namespace openrt;
 using namespace openrt::cluster;
 
-enum ExitCode { Done = 0, Failed = 1, Usage = 2, KeysUnusable = 3, TryAgain = 75, Interrupted = 130 };
+enum ExitCode {
+  Done = 0,
+  Failed = 1,
+  Usage = 2,
+  KeysUnusable = 3,
+  TryAgain = 75,
+  Interrupted = 130
+};
 
 constexpr const char* here = "127.0.0.1:7447";
 constexpr unsigned graceSeconds = 1; // from a signal to the end, whatever happens
@@ -43,7 +50,8 @@ WorkerService* service = nullptr; // for the signal handler
 volatile std::sig_atomic_t signalled = 0;
 
 extern "C" void onSignal(int number) {
-  if (signalled || number == SIGALRM || !service) _exit(signalled == SIGTERM || number == SIGTERM ? Done : Interrupted);
+  if (signalled || number == SIGALRM || !service)
+    _exit(signalled == SIGTERM || number == SIGTERM ? Done : Interrupted);
   signalled = number;
   alarm(graceSeconds);
   service->stop();
@@ -58,24 +66,37 @@ std::optional<Options> parseOptions(int argc, char** argv, int& exitCode) {
   Options o;
   CLI::App app("Lends this machine to masters: renders parts of their pictures.", "openrt-worker");
   auto* listen = app.add_option("--listen", o.listen,
-                                "wait for masters at [ADDRESS][:PORT] (default 127.0.0.1:7447; port 0: any that is free)")
+                                "wait for masters at [ADDRESS][:PORT] (default 127.0.0.1:7447; "
+                                "port 0: any that is free)")
                      ->expected(0, 1);
-  app.add_option("--connect", o.connect, "call a master that listens at HOST[:PORT], again and again")->excludes(listen);
-  app.add_option("--key", o.key, "key file; needed beyond this machine, the same one or one that the other side allows");
-  app.add_option("--allow", o.allow, "file of public keys that are let in besides one's own, one a line");
-  app.add_option("--new-key", o.newKey, "make a key file (never over an existing one), print its public key, and end");
-  app.add_option("--threads", o.threads, "threads that work (default: as many as the process may use)")
+  app.add_option("--connect", o.connect,
+                 "call a master that listens at HOST[:PORT], again and again")
+      ->excludes(listen);
+  app.add_option(
+      "--key", o.key,
+      "key file; needed beyond this machine, the same one or one that the other side allows");
+  app.add_option("--allow", o.allow,
+                 "file of public keys that are let in besides one's own, one a line");
+  app.add_option("--new-key", o.newKey,
+                 "make a key file (never over an existing one), print its public key, and end");
+  app.add_option("--threads", o.threads,
+                 "threads that work (default: as many as the process may use)")
       ->check(CLI::Range(0, 1024));
-  app.add_option("--shader-path", o.shaderPath, "folders with shader libraries, separated by colons");
-  app.add_option("--cache", o.cache, "megabytes of arrays that are kept for the next scene (default 1024)")
+  app.add_option("--shader-path", o.shaderPath,
+                 "folders with shader libraries, separated by colons");
+  app.add_option("--cache", o.cache,
+                 "megabytes of arrays that are kept for the next scene (default 1024)")
       ->check(CLI::Range(size_t(0), size_t(1) << 24));
   app.add_flag("--once", o.once, "end when the first master has left");
   app.add_flag("-q,--quiet", o.quiet, "say nothing but errors");
-  app.set_version_flag("--version", std::string("openrt-worker ") + std::to_string(OPENRT_VERSION_MAJOR) + "." +
-                                        std::to_string(OPENRT_VERSION_MINOR) + "." + std::to_string(OPENRT_VERSION_PATCH));
+  app.set_version_flag("--version", std::string("openrt-worker ") +
+                                        std::to_string(OPENRT_VERSION_MAJOR) + "." +
+                                        std::to_string(OPENRT_VERSION_MINOR) + "." +
+                                        std::to_string(OPENRT_VERSION_PATCH));
   try {
     app.parse(argc, argv);
-    if (!o.allow.empty() && o.key.empty()) throw CLI::ValidationError("--allow", "of no use without --key");
+    if (!o.allow.empty() && o.key.empty())
+      throw CLI::ValidationError("--allow", "of no use without --key");
   } catch (const CLI::ParseError& e) {
     exitCode = app.exit(e, std::cout, std::cerr) == 0 ? Done : Usage;
     return std::nullopt;
@@ -87,11 +108,14 @@ std::optional<Options> parseOptions(int argc, char** argv, int& exitCode) {
 void report(bool quiet, int level, const std::string& text) {
   static const char* const names[] = {"debug", "info", "warning", "error"};
   if (level >= (quiet ? 3 : 1))
-    std::fprintf(stderr, "openrt-worker: %s: %s\n", names[level > 3 ? 3 : level], printable(text).c_str());
+    std::fprintf(stderr, "openrt-worker: %s: %s\n", names[level > 3 ? 3 : level],
+                 printable(text).c_str());
 }
 
 // The exit code of what only prints.
-int printed() { return outputWritten() ? int(Done) : complain(Failed, "standard output cannot be written"); }
+int printed() {
+  return outputWritten() ? int(Done) : complain(Failed, "standard output cannot be written");
+}
 
 int newKey(const std::string& path) {
   try {
@@ -112,7 +136,9 @@ int serve(const Options& o) {
   options.backend.shaders = &shaders;
   options.cacheBytes = o.cache << 20;
   options.once = o.once;
-  options.log = [quiet = o.quiet](int level, const std::string& text) { report(quiet, level, text); };
+  options.log = [quiet = o.quiet](int level, const std::string& text) {
+    report(quiet, level, text);
+  };
   WorkerService worker(options);
   service = &worker;
   if (!o.quiet) {
@@ -135,11 +161,13 @@ int run(int argc, char** argv) {
     const std::optional<Options> options = parseOptions(argc, argv, exitCode);
     if (!options) return exitCode == Done ? printed() : exitCode;
     return options->newKey.empty() ? serve(*options) : newKey(options->newKey);
-  } catch (const std::system_error& e) { return complain(TryAgain, e.what()); } catch (const std::bad_alloc&) {
+  } catch (const std::system_error& e) {
+    return complain(TryAgain, e.what());
+  } catch (const std::bad_alloc&) {
     return complain(TryAgain, "out of memory");
-  } catch (const std::runtime_error& e) { return complain(Usage, e.what()); } catch (const std::exception& e) {
-    return complain(Failed, e.what());
-  }
+  } catch (const std::runtime_error& e) {
+    return complain(Usage, e.what());
+  } catch (const std::exception& e) { return complain(Failed, e.what()); }
 }
 
 } // namespace

@@ -1,4 +1,3 @@
-// scene_export.cpp: see scene_export.h.
 #include "tools/scene_export.h"
 
 #include <cerrno>
@@ -32,7 +31,8 @@ uint32_t floatsOf(RtsType type) {
   }
 }
 
-// A file that is written beside its name and renamed when it is whole. Throws std::runtime_error that names it.
+// A file that is written beside its name and renamed when it is whole. Throws std::runtime_error
+// that names it.
 class Output {
  public:
   explicit Output(const std::string& path)
@@ -57,7 +57,9 @@ class Output {
   }
 
  private:
-  [[noreturn]] void fail() const { throw std::runtime_error(path_ + " cannot be written: " + std::strerror(errno)); }
+  [[noreturn]] void fail() const {
+    throw std::runtime_error(path_ + " cannot be written: " + std::strerror(errno));
+  }
   std::string path_, temporary_;
   std::FILE* file_;
   bool named_ = false;
@@ -77,13 +79,16 @@ class Export {
                   {"depth", scene_.frame.depth}}}};
     all["meshes"] = meshes();
     all["lights"] = Json::array();
-    for (const auto& [id, light] : scene_.lights) all["lights"].push_back(role(light.shader, light.matrix));
+    for (const auto& [id, light] : scene_.lights)
+      all["lights"].push_back(role(light.shader, light.matrix));
     all["camera"] = role(scene_.camera.shader, scene_.camera.matrix);
     all["environment"] = role(scene_.environment.shader, scene_.environment.matrix);
     all["shaders"] = Json::object();
-    for (const auto& [id, values] : scene_.shaders) all["shaders"][std::to_string(id)] = shader(values);
+    for (const auto& [id, values] : scene_.shaders)
+      all["shaders"][std::to_string(id)] = shader(values);
     all["textures"] = Json::object();
-    for (const auto& [id, texture] : scene_.textures) all["textures"][std::to_string(id)] = image(texture);
+    for (const auto& [id, texture] : scene_.textures)
+      all["textures"][std::to_string(id)] = image(texture);
     const std::string text = all.dump(1, ' ', false, Json::error_handler_t::replace);
     Output scene(path_);
     scene.write(text.data(), text.size());
@@ -94,7 +99,9 @@ class Export {
   }
 
  private:
-  static Json role(uint32_t shader, const Matrix4d& matrix) { return {{"shader", shader}, {"matrix", matrix.m}}; }
+  static Json role(uint32_t shader, const Matrix4d& matrix) {
+    return {{"shader", shader}, {"matrix", matrix.m}};
+  }
 
   // Where an array lies in the file of arrays; each is written once.
   Json place(const ArrayPtr& array) {
@@ -138,13 +145,15 @@ class Export {
       const Open at = open.back();
       open.pop_back();
       if (const auto object = scene_.objects.find(at.object); object != scene_.objects.end())
-        for (const Geometry& g : object->second.geometries) list.push_back(mesh(g, at.matrix, at.shader));
+        for (const Geometry& g : object->second.geometries)
+          list.push_back(mesh(g, at.matrix, at.shader));
       if (list.size() > limit) throw std::runtime_error("more than a million placed geometries");
       const std::vector<uint32_t>& children = scene_.childrenOf(at.object);
       for (size_t i = children.size(); i-- > 0;) {
         const Instance& instance = scene_.instances.at(children[i]);
         const uint32_t shader = at.shader ? at.shader : instance.shader; // the outermost counts
-        if (instance.visible) open.push_back({instance.object, shader, at.matrix * instance.matrix});
+        if (instance.visible)
+          open.push_back({instance.object, shader, at.matrix * instance.matrix});
       }
     }
     return list;
@@ -156,9 +165,13 @@ class Export {
     Json parameters = Json::object();
     for (uint32_t i = 0; i < c.paramCount; i++) {
       const auto set = values.parameters.find(i);
-      parameters[c.params[i].name] = value(c.params[i], set == values.parameters.end() ? nullptr : &set->second);
+      parameters[c.params[i].name] =
+          value(c.params[i], set == values.parameters.end() ? nullptr : &set->second);
     }
-    return {{"class", name.name}, {"library", name.library}, {"kind", kindName(c.kind)}, {"parameters", std::move(parameters)}};
+    return {{"class", name.name},
+            {"library", name.library},
+            {"kind", kindName(c.kind)},
+            {"parameters", std::move(parameters)}};
   }
 
   static Json value(const RtsParam& p, const edit::ParameterT* set) {

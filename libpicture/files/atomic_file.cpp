@@ -1,4 +1,3 @@
-// atomic_file.cpp: see atomic_file.h.
 #include "libpicture/files/atomic_file.h"
 
 #include <atomic>
@@ -25,7 +24,9 @@ std::map<std::pair<dev_t, ino_t>, std::string> kept; // what they are
 
 std::string whyKept(const std::string& path, const struct stat& info) {
   const auto found = kept.find({info.st_dev, info.st_ino});
-  return found == kept.end() ? "" : "cannot write " + path + ": it is " + found->second + "; another name is needed";
+  return found == kept.end()
+             ? ""
+             : "cannot write " + path + ": it is " + found->second + "; another name is needed";
 }
 
 [[noreturn]] void fail(const std::string& path, int reason) {
@@ -118,7 +119,8 @@ void writeFile(const std::string& path, std::string_view bytes) {
 
 void keepFile(const std::string& path, const std::string& what) {
   struct stat info;
-  if (::stat(path.c_str(), &info) == 0 && S_ISREG(info.st_mode)) kept.try_emplace({info.st_dev, info.st_ino}, what);
+  if (::stat(path.c_str(), &info) == 0 && S_ISREG(info.st_mode))
+    kept.try_emplace({info.st_dev, info.st_ino}, what);
 }
 
 std::string whyNotWritable(const std::string& path) {

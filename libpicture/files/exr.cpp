@@ -1,6 +1,6 @@
-// exr.cpp: OpenEXR into memory: one part, 32 bit floats, ZIP, planes named as oiiotool and tev group them, the names behind
-// the numbers of channel id as a JSON object in the string attribute idNames. Nothing that changes from run to run is written.
-// [any thread]
+// exr.cpp: OpenEXR into memory: one part, 32 bit floats, ZIP, planes named as oiiotool and tev
+// group them, the names behind the numbers of channel id as a JSON object in the string attribute
+// idNames. Nothing that changes from run to run is written. [any thread]
 #include <stdexcept>
 
 #include <ImfChannelList.h>
@@ -57,11 +57,13 @@ std::string nameTable(const std::vector<std::string>& names) {
 Imf::Header makeHeader(const Picture& picture) {
   Imf::Header header(picture.width, picture.height);
   header.compression() = Imf::ZIP_COMPRESSION;
-  header.insert("software", Imf::StringAttribute(
-                                fmt::format("vv {}.{}.{}", OPENRT_VERSION_MAJOR, OPENRT_VERSION_MINOR, OPENRT_VERSION_PATCH)));
+  header.insert("software",
+                Imf::StringAttribute(fmt::format("vv {}.{}.{}", OPENRT_VERSION_MAJOR,
+                                                 OPENRT_VERSION_MINOR, OPENRT_VERSION_PATCH)));
   header.insert("colour", Imf::StringAttribute(picture.linear ? "linear" : "vrml97"));
   if (picture.linear) Imf::addChromaticities(header, Imf::Chromaticities()); // Rec. 709
-  if (picture.planes.count(RT_NAME)) header.insert("idNames", Imf::StringAttribute(nameTable(picture.names)));
+  if (picture.planes.count(RT_NAME))
+    header.insert("idNames", Imf::StringAttribute(nameTable(picture.names)));
   return header;
 }
 
@@ -87,7 +89,9 @@ std::string encodeExr(const Picture& picture) {
     Imf::OutputFile file(stream, header);
     file.setFrameBuffer(frame);
     file.writePixels(picture.height);
-  } catch (const std::exception& error) { throw std::runtime_error(std::string("OpenEXR: ") + error.what()); }
+  } catch (const std::exception& error) {
+    throw std::runtime_error(std::string("OpenEXR: ") + error.what());
+  }
   return out;
 }
 

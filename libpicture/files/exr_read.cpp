@@ -1,5 +1,5 @@
-// exr_read.cpp: the colours of an OpenEXR file, for comparisons, and its error bars if it has any. Files are the user's own,
-// named on the command line; never one that a world names. [any thread]
+// exr_read.cpp: the colours of an OpenEXR file, for comparisons, and its error bars if it has any.
+// Files are the user's own, named on the command line; never one that a world names. [any thread]
 #include <algorithm>
 #include <stdexcept>
 
@@ -18,18 +18,22 @@ namespace picture {
 namespace {
 
 // Appends rows y, y+1 ... to the planes of these channels.
-void readRows(Imf::InputFile& file, const Imath::Box2i& window, const std::vector<const Channel*>& channels, int64_t y,
-              int64_t rows, Picture& picture) {
+void readRows(Imf::InputFile& file, const Imath::Box2i& window,
+              const std::vector<const Channel*>& channels, int64_t y, int64_t rows,
+              Picture& picture) {
   Imf::FrameBuffer frame;
   for (const Channel* channel : channels) {
     std::vector<float>& plane = picture.planes[channel->bit];
-    const size_t pixel = size_t(channel->components) * sizeof(float), row = pixel * size_t(picture.width);
+    const size_t pixel = size_t(channel->components) * sizeof(float),
+                 row = pixel * size_t(picture.width);
     plane.resize(size_t(picture.width) * size_t(y + rows) * size_t(channel->components));
     for (int c = 0; c < channel->components; ++c) {
       char* base = reinterpret_cast<char*>(plane.data() + c);
       // OpenEXR counts from the window's corner on, which may be anywhere.
-      base -= std::ptrdiff_t(window.min.x) * std::ptrdiff_t(pixel) + std::ptrdiff_t(window.min.y) * std::ptrdiff_t(row);
-      frame.insert(std::string(channel->exr[c]), Imf::Slice(Imf::FLOAT, base, pixel, row, 1, 1, c == 3 ? 1.0 : 0.0));
+      base -= std::ptrdiff_t(window.min.x) * std::ptrdiff_t(pixel) +
+              std::ptrdiff_t(window.min.y) * std::ptrdiff_t(row);
+      frame.insert(std::string(channel->exr[c]),
+                   Imf::Slice(Imf::FLOAT, base, pixel, row, 1, 1, c == 3 ? 1.0 : 0.0));
     }
   }
   file.setFrameBuffer(frame);
@@ -42,26 +46,34 @@ Picture readExr(const std::string& path) {
   try {
     Imf::InputFile file(path.c_str());
     const Imath::Box2i window = file.header().dataWindow();
-    const int64_t width = int64_t(window.max.x) - window.min.x + 1, height = int64_t(window.max.y) - window.min.y + 1;
-    if (width < 1 || height < 1 || width > 65536 || height > 65536 || width * height > (int64_t(1) << 28))
+    const int64_t width = int64_t(window.max.x) - window.min.x + 1,
+                  height = int64_t(window.max.y) - window.min.y + 1;
+    if (width < 1 || height < 1 || width > 65536 || height > 65536 ||
+        width * height > (int64_t(1) << 28))
       throw std::runtime_error(fmt::format("{} x {} pixels", width, height));
     Picture picture;
     picture.width = int(width);
     picture.height = int(height);
     std::vector<const Channel*> channels;
     for (const Channel& channel : channelTable())
-      if (channel.bit & (RT_RGBA | RT_ERROR | RT_TRUST) && file.header().channels().findChannel(channel.exr[0].data()))
+      if (channel.bit & (RT_RGBA | RT_ERROR | RT_TRUST) &&
+          file.header().channels().findChannel(channel.exr[0].data()))
         channels.push_back(&channel);
-    if (channels.empty() || channels[0]->bit != RT_RGBA) throw std::runtime_error("there is no channel R");
-    // The planes grow with the rows that come: a header that promises much and a file that holds little cost little.
+    if (channels.empty() || channels[0]->bit != RT_RGBA)
+      throw std::runtime_error("there is no channel R");
+    // The planes grow with the rows that come: a header that promises much and a file that holds
+    // little cost little.
     constexpr int64_t pixelsAtOnce = 1 << 20;
-    const int64_t rowsAtOnce = std::max<int64_t>(pixelsAtOnce / width, 256); // a block of the widest compression has 256 rows
+    const int64_t rowsAtOnce = std::max<int64_t>(
+        pixelsAtOnce / width, 256); // a block of the widest compression has 256 rows
     for (int64_t y = 0; y < height; y += rowsAtOnce) {
       const int64_t rows = std::min(rowsAtOnce, height - y);
       readRows(file, window, channels, y, rows, picture);
     }
     return picture;
-  } catch (const std::exception& error) { throw std::runtime_error(fmt::format("{}: {}", path, error.what())); }
+  } catch (const std::exception& error) {
+    throw std::runtime_error(fmt::format("{}: {}", path, error.what()));
+  }
 }
 
 } // namespace picture

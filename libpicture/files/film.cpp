@@ -1,4 +1,3 @@
-// film.cpp: see film.h.
 #include "libpicture/files/film.h"
 
 #include <cmath>
@@ -18,16 +17,21 @@ FilmKind filmOf(std::string_view path) {
 
 std::string whyNoFilm(FilmKind kind) {
   if (kind == FilmKind::gif || libavEncodes(kind)) return "";
-  return "this build has no encoder of such films (it lacks the ffmpeg libraries, or they lack it); a name that ends in .gif, or "
+  return "this build has no encoder of such films (it lacks the ffmpeg libraries, or they lack "
+         "it); a name that ends in .gif, or "
          "'picture-{frame:4}.png' for single pictures, works";
 }
 
-Film::Film(FilmKind kind, int width, int height, double fps) : bytes_(size_t(width) * size_t(height) * 3) {
+Film::Film(FilmKind kind, int width, int height, double fps)
+    : bytes_(size_t(width) * size_t(height) * 3) {
   if (width < 1 || height < 1 || width > 16384 || height > 16384)
-    throw std::runtime_error(fmt::format("a film of {}x{} pixels cannot be made: 1x1 to 16384x16384", width, height));
-  if (!(fps > 0) || !std::isfinite(fps)) throw std::runtime_error("a film needs a number of pictures a second above 0");
+    throw std::runtime_error(
+        fmt::format("a film of {}x{} pixels cannot be made: 1x1 to 16384x16384", width, height));
+  if (!(fps > 0) || !std::isfinite(fps))
+    throw std::runtime_error("a film needs a number of pictures a second above 0");
   if (const std::string why = whyNoFilm(kind); !why.empty()) throw std::runtime_error(why);
-  encoder_ = kind == FilmKind::gif ? makeGifEncoder(width, height, fps) : makeLibavEncoder(kind, width, height, fps);
+  encoder_ = kind == FilmKind::gif ? makeGifEncoder(width, height, fps)
+                                   : makeLibavEncoder(kind, width, height, fps);
 }
 
 void Film::add(std::span<const uint8_t> rgb) {

@@ -1,6 +1,7 @@
-// film.h: a sequence of pictures as the bytes of a film: MP4 and WebM by the ffmpeg libraries where the build has them, animated
-// GIF by giflib always. vv and the Python binding write the bytes with writeFile() when the film is finished, so that a file is
-// whole or not there. Same pictures, same bytes. [one thread at a time for each Film]
+// film.h: a sequence of pictures as the bytes of a film: MP4 and WebM by the ffmpeg libraries where
+// the build has them, animated GIF by giflib always. vv and the Python binding write the bytes with
+// writeFile() when the film is finished, so that a file is whole or not there. Same pictures, same
+// bytes. [one thread at a time for each Film]
 #pragma once
 
 #include <cstdint>
@@ -17,7 +18,8 @@ inline constexpr std::string_view filmSuffixes = "mp4, webm, gif";
 // Returns the kind of film that a file name's suffix says; none for every other suffix.
 FilmKind filmOf(std::string_view path);
 
-// Returns why this build cannot make such a film, as a clause that says what to do instead; "" if it can.
+// Returns why this build cannot make such a film, as a clause that says what to do instead; "" if
+// it can.
 std::string whyNoFilm(FilmKind kind);
 
 // What makes a film of one kind; film_gif.cpp and film_libav.cpp hold one each.
@@ -30,12 +32,15 @@ class FilmEncoder {
 
 class Film {
  public:
-  // width, height: of all pictures, in pixels (1 to 16384); fps: pictures a second, above 0. MP4 and WebM halve the resolution of
-  // colour, so an odd width or height gets a black column or row. Throws std::runtime_error.
+  // width, height: of all pictures, in pixels (1 to 16384); fps: pictures a second, above 0. MP4
+  // and WebM halve the resolution of colour, so an odd width or height gets a black column or row.
+  // Throws std::runtime_error.
   Film(FilmKind kind, int width, int height, double fps);
-  // Appends a picture: red, green, blue of 8 bits, first row at the top, width * height * 3 bytes. Throws std::runtime_error.
+  // Appends a picture: red, green, blue of 8 bits, first row at the top, width * height * 3 bytes.
+  // Throws std::runtime_error.
   void add(std::span<const uint8_t> rgb);
-  // Returns the bytes of the file; nothing can be added afterwards. Throws std::runtime_error if there is no picture.
+  // Returns the bytes of the file; nothing can be added afterwards. Throws std::runtime_error if
+  // there is no picture.
   std::string finish();
 
  private:
@@ -45,7 +50,8 @@ class Film {
 
 // Returns an encoder of animated GIF.
 std::unique_ptr<FilmEncoder> makeGifEncoder(int width, int height, double fps);
-// Returns an encoder of MP4 or WebM, or null in a build without the ffmpeg libraries. Throws std::runtime_error.
+// Returns an encoder of MP4 or WebM, or null in a build without the ffmpeg libraries. Throws
+// std::runtime_error.
 std::unique_ptr<FilmEncoder> makeLibavEncoder(FilmKind kind, int width, int height, double fps);
 // Returns whether makeLibavEncoder() can make this kind.
 bool libavEncodes(FilmKind kind);

@@ -1,6 +1,6 @@
-// film_gif.cpp: animated GIF by giflib. Each picture has a palette of its own, made by median cut (Heckbert, "Color image
-// quantization for frame buffer display", 1982), and its colours are dithered by error diffusion (Floyd and Steinberg, 1976). See
-// film.h.
+// film_gif.cpp: animated GIF by giflib. Each picture has a palette of its own, made by median cut
+// (Heckbert, "Color image quantization for frame buffer display", 1982), and its colours are
+// dithered by error diffusion (Floyd and Steinberg, 1976). See film.h.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -65,7 +65,8 @@ std::vector<Cell> histogram(std::span<const uint8_t> rgb) {
     ++cell.count;
     for (size_t k = 0; k < 3; ++k) cell.sum[k] += rgb[i + k];
   }
-  std::copy_if(all.begin(), all.end(), std::back_inserter(used), [](const Cell& cell) { return cell.count > 0; });
+  std::copy_if(all.begin(), all.end(), std::back_inserter(used),
+               [](const Cell& cell) { return cell.count > 0; });
   return used;
 }
 
@@ -74,7 +75,8 @@ std::vector<GifColorType> medianCut(std::span<const uint8_t> rgb) {
   std::vector<Box> boxes{{0, cells.size()}};
   measure(boxes[0], cells);
   while (boxes.size() < mostColours) {
-    const auto largest = std::max_element(boxes.begin(), boxes.end(), [](const Box& a, const Box& b) { return a.size < b.size; });
+    const auto largest = std::max_element(
+        boxes.begin(), boxes.end(), [](const Box& a, const Box& b) { return a.size < b.size; });
     if (largest->size == 0) break; // every box is one cell
     Box& box = *largest;
     const auto axis = size_t(box.axis);
@@ -84,7 +86,8 @@ std::vector<GifColorType> medianCut(std::span<const uint8_t> rgb) {
     for (size_t i = box.first; i < box.last; ++i) half += cells[i].count;
     half /= 2;
     size_t cut = box.first + 1; // both parts hold at least a cell
-    for (before = cells[box.first].count; cut + 1 < box.last && before < half; ++cut) before += cells[cut].count;
+    for (before = cells[box.first].count; cut + 1 < box.last && before < half; ++cut)
+      before += cells[cut].count;
     Box second{cut, box.last};
     box.last = cut;
     measure(box, cells);
@@ -99,7 +102,9 @@ std::vector<GifColorType> medianCut(std::span<const uint8_t> rgb) {
       count += cells[i].count;
       for (size_t k = 0; k < 3; ++k) sum[k] += cells[i].sum[k];
     }
-    const auto mean = [&](size_t k) { return GifByteType((sum[k] + count / 2) / std::max<uint64_t>(count, 1)); };
+    const auto mean = [&](size_t k) {
+      return GifByteType((sum[k] + count / 2) / std::max<uint64_t>(count, 1));
+    };
     palette.push_back({mean(0), mean(1), mean(2)});
   }
   return palette;
@@ -108,10 +113,12 @@ std::vector<GifColorType> medianCut(std::span<const uint8_t> rgb) {
 // Finds the nearest colour of a palette; what was found is kept by cells of the histogram's size.
 class Nearest {
  public:
-  explicit Nearest(const std::vector<GifColorType>& palette) : palette_(palette), known_(size_t(levels) * levels * levels, -1) {}
+  explicit Nearest(const std::vector<GifColorType>& palette)
+      : palette_(palette), known_(size_t(levels) * levels * levels, -1) {}
   int operator()(const std::array<int, 3>& colour) {
     const size_t cell =
-        (size_t(colour[0] >> (8 - bits)) * levels + size_t(colour[1] >> (8 - bits))) * levels + size_t(colour[2] >> (8 - bits));
+        (size_t(colour[0] >> (8 - bits)) * levels + size_t(colour[1] >> (8 - bits))) * levels +
+        size_t(colour[2] >> (8 - bits));
     if (known_[cell] < 0) known_[cell] = int16_t(search(colour));
     return known_[cell];
   }
@@ -120,7 +127,8 @@ class Nearest {
   int search(const std::array<int, 3>& colour) const {
     int best = 0, least = std::numeric_limits<int>::max();
     for (size_t i = 0; i < palette_.size(); ++i) {
-      const int r = colour[0] - palette_[i].Red, g = colour[1] - palette_[i].Green, b = colour[2] - palette_[i].Blue;
+      const int r = colour[0] - palette_[i].Red, g = colour[1] - palette_[i].Green,
+                b = colour[2] - palette_[i].Blue;
       const int distance = 2 * r * r + 4 * g * g + b * b;
       if (distance >= least) continue;
       least = distance;
@@ -135,7 +143,8 @@ class Nearest {
 std::vector<GifPixelType> dithered(std::span<const uint8_t> rgb, int width, int height,
                                    const std::vector<GifColorType>& palette) {
   std::vector<GifPixelType> out(size_t(width) * size_t(height));
-  std::vector<std::array<int, 3>> here(size_t(width) + 2), below(size_t(width) + 2); // errors, in sixteenths
+  std::vector<std::array<int, 3>> here(size_t(width) + 2),
+      below(size_t(width) + 2); // errors, in sixteenths
   Nearest nearest(palette);
   for (int y = 0; y < height; ++y) {
     std::swap(here, below);
@@ -144,11 +153,13 @@ std::vector<GifPixelType> dithered(std::span<const uint8_t> rgb, int width, int 
       const size_t i = size_t(y) * size_t(width) + size_t(x);
       const auto column = size_t(x) + 1;
       std::array<int, 3> wanted;
-      for (size_t k = 0; k < 3; ++k) wanted[k] = std::clamp(int(rgb[3 * i + k]) + (here[column][k] + 8) / 16, 0, 255);
+      for (size_t k = 0; k < 3; ++k)
+        wanted[k] = std::clamp(int(rgb[3 * i + k]) + (here[column][k] + 8) / 16, 0, 255);
       const int index = nearest(wanted);
       out[i] = GifPixelType(index);
       const GifColorType& got = palette[size_t(index)];
-      const std::array<int, 3> error{wanted[0] - got.Red, wanted[1] - got.Green, wanted[2] - got.Blue};
+      const std::array<int, 3> error{wanted[0] - got.Red, wanted[1] - got.Green,
+                                     wanted[2] - got.Blue};
       for (size_t k = 0; k < 3; ++k) {
         here[column + 1][k] += 7 * error[k];
         below[column - 1][k] += 3 * error[k];
@@ -162,7 +173,8 @@ std::vector<GifPixelType> dithered(std::span<const uint8_t> rgb, int width, int 
 
 int append(GifFileType* gif, const GifByteType* bytes, int count) {
   try {
-    static_cast<std::string*>(gif->UserData)->append(reinterpret_cast<const char*>(bytes), size_t(count));
+    static_cast<std::string*>(gif->UserData)
+        ->append(reinterpret_cast<const char*>(bytes), size_t(count));
   } catch (const std::bad_alloc&) { return 0; }
   return count;
 }
@@ -196,11 +208,13 @@ class GifEncoder : public FilmEncoder {
     // A GIF counts hundredths of a second: delays differ by one, so that their sum does not drift.
     const double end = std::round(double(++pictures_) * 100 / fps_), length = end - shown_;
     shown_ = end;
-    GraphicsControlBlock control{DISPOSE_DO_NOT, false, int(std::clamp(length, 2.0, 65535.0)), NO_TRANSPARENT_COLOR};
+    GraphicsControlBlock control{DISPOSE_DO_NOT, false, int(std::clamp(length, 2.0, 65535.0)),
+                                 NO_TRANSPARENT_COLOR};
     GifByteType extension[4];
     EGifGCBToExtension(&control, extension);
-    bool good = EGifPutExtension(gif_, GRAPHICS_EXT_FUNC_CODE, sizeof extension, extension) == GIF_OK &&
-                EGifPutImageDesc(gif_, 0, 0, width_, height_, false, map) == GIF_OK;
+    bool good =
+        EGifPutExtension(gif_, GRAPHICS_EXT_FUNC_CODE, sizeof extension, extension) == GIF_OK &&
+        EGifPutImageDesc(gif_, 0, 0, width_, height_, false, map) == GIF_OK;
     GifFreeMapObject(map);
     for (int y = 0; good && y < height_; ++y)
       good = EGifPutLine(gif_, pixels.data() + size_t(y) * size_t(width_), width_) == GIF_OK;

@@ -1,5 +1,5 @@
-// film_libav.cpp: MP4 (H.264, or MPEG-4 where the libraries have no encoder of H.264) and WebM (VP9 or VP8) by the ffmpeg
-// libraries, into memory. See film.h.
+// film_libav.cpp: MP4 (H.264, or MPEG-4 where the libraries have no encoder of H.264) and WebM (VP9
+// or VP8) by the ffmpeg libraries, into memory. See film.h.
 #include "libpicture/files/film.h"
 
 #ifndef PICTURE_WITH_FFMPEG
@@ -90,7 +90,9 @@ struct Memory {
   static int64_t seek(void* opaque, int64_t offset, int whence) {
     Memory& file = *static_cast<Memory*>(opaque);
     if (whence == AVSEEK_SIZE) return int64_t(file.bytes.size());
-    const int64_t from = whence == SEEK_SET ? 0 : whence == SEEK_CUR ? int64_t(file.at) : int64_t(file.bytes.size());
+    const int64_t from = whence == SEEK_SET   ? 0
+                         : whence == SEEK_CUR ? int64_t(file.at)
+                                              : int64_t(file.bytes.size());
     if (from + offset < 0) return AVERROR(EINVAL);
     file.at = size_t(from + offset);
     return int64_t(file.at);
@@ -99,17 +101,21 @@ struct Memory {
 
 class LibavEncoder : public FilmEncoder {
  public:
-  LibavEncoder(FilmKind kind, int width, int height, double fps) : width_(width), height_(height), row_(size_t(width) * 3) {
+  LibavEncoder(FilmKind kind, int width, int height, double fps)
+      : width_(width), height_(height), row_(size_t(width) * 3) {
     av_log_set_level(AV_LOG_QUIET); // a library never prints
     const Codec& codec = *codecOf(kind);
     AVFormatContext* format = nullptr;
-    check(avformat_alloc_output_context2(&format, nullptr, kind == FilmKind::mp4 ? "mp4" : "webm", nullptr), "container");
+    check(avformat_alloc_output_context2(&format, nullptr, kind == FilmKind::mp4 ? "mp4" : "webm",
+                                         nullptr),
+          "container");
     format_.reset(format);
     constexpr int buffer = 1 << 16;
-    io_.reset(made(avio_alloc_context(static_cast<unsigned char*>(made(av_malloc(buffer))), buffer, 1, &memory_, nullptr,
-                                      Memory::write, Memory::seek)));
+    io_.reset(made(avio_alloc_context(static_cast<unsigned char*>(made(av_malloc(buffer))), buffer,
+                                      1, &memory_, nullptr, Memory::write, Memory::seek)));
     format_->pb = io_.get();
-    format_->flags |= AVFMT_FLAG_CUSTOM_IO | AVFMT_FLAG_BITEXACT; // no dates and no versions: same pictures, same bytes
+    format_->flags |= AVFMT_FLAG_CUSTOM_IO |
+                      AVFMT_FLAG_BITEXACT; // no dates and no versions: same pictures, same bytes
     openCodec(codec, fps);
     stream_ = made(avformat_new_stream(format_.get(), nullptr));
     stream_->time_base = codec_->time_base;
@@ -122,7 +128,8 @@ class LibavEncoder : public FilmEncoder {
   void add(std::span<const uint8_t> rgb) override {
     check(av_frame_make_writable(frame_.get()), "frame");
     for (int y = 0; y < height_; ++y)
-      std::memcpy(padded_.data() + size_t(y) * size_t(codec_->width) * 3, rgb.data() + size_t(y) * row_, row_);
+      std::memcpy(padded_.data() + size_t(y) * size_t(codec_->width) * 3,
+                  rgb.data() + size_t(y) * row_, row_);
     const uint8_t* const planes[] = {padded_.data()};
     const int strides[] = {codec_->width * 3};
     sws_scale(scaler_.get(), planes, strides, 0, codec_->height, frame_->data, frame_->linesize);
@@ -167,9 +174,10 @@ class LibavEncoder : public FilmEncoder {
 
   // From red, green, blue to the film's colours (ITU-R BT.709, 16 to 235).
   void openScaler() {
-    scaler_.reset(
-        made(sws_getContext(codec_->width, codec_->height, AV_PIX_FMT_RGB24, codec_->width, codec_->height, AV_PIX_FMT_YUV420P,
-                            SWS_BICUBIC | SWS_ACCURATE_RND | SWS_BITEXACT, nullptr, nullptr, nullptr)));
+    scaler_.reset(made(sws_getContext(codec_->width, codec_->height, AV_PIX_FMT_RGB24,
+                                      codec_->width, codec_->height, AV_PIX_FMT_YUV420P,
+                                      SWS_BICUBIC | SWS_ACCURATE_RND | SWS_BITEXACT, nullptr,
+                                      nullptr, nullptr)));
     const int* const bt709 = sws_getCoefficients(SWS_CS_ITU709);
     sws_setColorspaceDetails(scaler_.get(), bt709, 1, bt709, 0, 0, 1 << 16, 1 << 16);
     padded_.resize(size_t(codec_->width) * size_t(codec_->height) * 3);

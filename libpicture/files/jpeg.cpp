@@ -27,7 +27,8 @@ void fail(j_common_ptr info) {
 void silent(j_common_ptr, int) {}
 
 // False on an error, with errors.message set. Holds only C values across libjpeg's longjmp.
-bool write(ErrorManager& errors, uint8_t* bytes, int width, int height, unsigned char** out, unsigned long* size) {
+bool write(ErrorManager& errors, uint8_t* bytes, int width, int height, unsigned char** out,
+           unsigned long* size) {
   jpeg_compress_struct info;
   info.err = jpeg_std_error(&errors.base);
   errors.base.error_exit = fail;
@@ -44,7 +45,8 @@ bool write(ErrorManager& errors, uint8_t* bytes, int width, int height, unsigned
   info.in_color_space = JCS_RGB;
   jpeg_set_defaults(&info);
   jpeg_set_quality(&info, 95, TRUE);
-  info.comp_info[0].h_samp_factor = info.comp_info[0].v_samp_factor = 1; // thin coloured lines survive
+  info.comp_info[0].h_samp_factor = info.comp_info[0].v_samp_factor =
+      1; // thin coloured lines survive
   jpeg_start_compress(&info, TRUE);
   while (info.next_scanline < info.image_height) {
     JSAMPROW row = bytes + size_t(info.next_scanline) * size_t(width) * 3;

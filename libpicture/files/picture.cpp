@@ -1,4 +1,5 @@
-// picture.cpp: the table of channels, display colours, and the two formats that need no library (PPM, PFM).
+// picture.cpp: the table of channels, display colours, and the two formats that need no library
+// (PPM, PFM).
 #include "libpicture/files/picture.h"
 
 #include <algorithm>
@@ -20,20 +21,34 @@ constexpr Channel table[] = {
     {"normal", RT_NORMAL, 3, {"N.X", "N.Y", "N.Z"}, "mean shading normal in world space"},
     {"albedo", RT_ALBEDO, 3, {"albedo.R", "albedo.G", "albedo.B"}, "mean surface colour"},
     {"position", RT_POSITION, 3, {"P.X", "P.Y", "P.Z"}, "world-space position of the first hit"},
-    {"id", RT_NAME, 1, {"id"}, "number of the Shape hit; the table of names is in the attribute idNames"},
+    {"id",
+     RT_NAME,
+     1,
+     {"id"},
+     "number of the Shape hit; the table of names is in the attribute idNames"},
     {"samples", RT_SAMPLES, 1, {"samples"}, "samples taken"},
-    {"variance", RT_VARIANCE, 3, {"variance.R", "variance.G", "variance.B"}, "sample variance of the radiance"},
-    {"error", RT_ERROR, 3, {"error.R", "error.G", "error.B"}, "half-width of the 95 % interval of each colour"},
+    {"variance",
+     RT_VARIANCE,
+     3,
+     {"variance.R", "variance.G", "variance.B"},
+     "sample variance of the radiance"},
+    {"error",
+     RT_ERROR,
+     3,
+     {"error.R", "error.G", "error.B"},
+     "half-width of the 95 % interval of each colour"},
     {"trust", RT_TRUST, 1, {"trust"}, "1 where that interval can be trusted, else 0"},
 };
 
 // The curve of IEC 61966-2-1, from linear to display values.
-float srgb(float v) { return v <= 0.0031308f ? 12.92f * v : 1.055f * std::pow(v, 1 / 2.4f) - 0.055f; }
+float srgb(float v) {
+  return v <= 0.0031308f ? 12.92f * v : 1.055f * std::pow(v, 1 / 2.4f) - 0.055f;
+}
 
 uint8_t rounded(float v) { return uint8_t(v * 255 + 0.5f); }
 
-// The curve as bytes: pictures are looked at thirty times a second. Which byte a number becomes is looked up near it and found by
-// comparing, so that it is the one that the formula gives.
+// The curve as bytes: pictures are looked at thirty times a second. Which byte a number becomes is
+// looked up near it and found by comparing, so that it is the one that the formula gives.
 class CurveBytes {
  public:
   CurveBytes() {
@@ -77,7 +92,8 @@ const std::vector<float>& colours(const Picture& picture) {
 }
 
 std::string encodePpm(const Picture& picture) {
-  std::string out = "P6\n" + std::to_string(picture.width) + " " + std::to_string(picture.height) + "\n255\n";
+  std::string out =
+      "P6\n" + std::to_string(picture.width) + " " + std::to_string(picture.height) + "\n255\n";
   std::vector<uint8_t> bytes = displayBytes(picture);
   out.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   return out;
@@ -86,7 +102,8 @@ std::string encodePpm(const Picture& picture) {
 // Portable float map: rows from the bottom up; the sign of the third number says little-endian.
 std::string encodePfm(const Picture& picture) {
   static_assert(std::endian::native == std::endian::little);
-  std::string out = "PF\n" + std::to_string(picture.width) + " " + std::to_string(picture.height) + "\n-1.0\n";
+  std::string out =
+      "PF\n" + std::to_string(picture.width) + " " + std::to_string(picture.height) + "\n-1.0\n";
   const std::vector<float>& rgba = colours(picture);
   const size_t width = size_t(picture.width);
   std::vector<float> row(width * 3);
@@ -141,7 +158,8 @@ std::vector<uint8_t> displayBytesAlpha(const Picture& picture) {
     const float alpha = rgba[i + 3];
     bytes[i + 3] = displayByte(alpha, false);
     for (size_t c = 0; c < 3; ++c)
-      bytes[i + c] = alpha > 0 ? displayByte(rgba[i + c] / std::min(alpha, 1.0f), picture.linear) : 0;
+      bytes[i + c] =
+          alpha > 0 ? displayByte(rgba[i + c] / std::min(alpha, 1.0f), picture.linear) : 0;
   }
   return bytes;
 }

@@ -13,7 +13,8 @@ namespace {
 void append(png_structp png, png_bytep bytes, size_t size) {
   // An exception must not cross libpng's C frames.
   try {
-    static_cast<std::string*>(png_get_io_ptr(png))->append(reinterpret_cast<const char*>(bytes), size);
+    static_cast<std::string*>(png_get_io_ptr(png))
+        ->append(reinterpret_cast<const char*>(bytes), size);
   } catch (...) { png_error(png, "out of memory"); }
 }
 
@@ -21,15 +22,18 @@ void nothing(png_structp) {}
 void silent(png_structp, png_const_charp) {}
 
 // False on an error. Holds only C values across libpng's longjmp.
-bool write(png_structp png, png_infop info, std::string* out, uint8_t* bytes, int width, int height, bool alpha) {
+bool write(png_structp png, png_infop info, std::string* out, uint8_t* bytes, int width, int height,
+           bool alpha) {
   if (setjmp(png_jmpbuf(png))) return false;
   png_set_write_fn(png, out, append, nothing);
   png_set_user_limits(png, 0x7fffffff, 0x7fffffff);
-  png_set_IHDR(png, info, png_uint_32(width), png_uint_32(height), 8, alpha ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB,
-               PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+  png_set_IHDR(png, info, png_uint_32(width), png_uint_32(height), 8,
+               alpha ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
+               PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
   png_set_sRGB(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
   png_write_info(png, info);
-  for (int y = 0; y < height; ++y) png_write_row(png, bytes + size_t(y) * size_t(width) * (alpha ? 4 : 3));
+  for (int y = 0; y < height; ++y)
+    png_write_row(png, bytes + size_t(y) * size_t(width) * (alpha ? 4 : 3));
   png_write_end(png, info);
   return true;
 }
@@ -37,11 +41,13 @@ bool write(png_structp png, png_infop info, std::string* out, uint8_t* bytes, in
 } // namespace
 
 std::string encodePng(const Picture& picture) {
-  std::vector<uint8_t> bytes = picture.transparent ? displayBytesAlpha(picture) : displayBytes(picture);
+  std::vector<uint8_t> bytes =
+      picture.transparent ? displayBytesAlpha(picture) : displayBytes(picture);
   std::string out;
   png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, silent);
   png_infop info = png ? png_create_info_struct(png) : nullptr;
-  const bool done = info && write(png, info, &out, bytes.data(), picture.width, picture.height, picture.transparent);
+  const bool done = info && write(png, info, &out, bytes.data(), picture.width, picture.height,
+                                  picture.transparent);
   png_destroy_write_struct(&png, &info);
   if (!done) throw std::runtime_error("PNG: the picture cannot be encoded");
   return out;

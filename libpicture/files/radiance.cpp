@@ -1,10 +1,9 @@
-// radiance.cpp: see radiance.h.
 #include "libpicture/files/radiance.h"
 
 #include <stdexcept>
 
-#include "openrt/openrt.h"
 #include "libpicture/files/picture.h"
+#include "openrt/openrt.h"
 
 namespace picture {
 

@@ -1,4 +1,5 @@
-// budget.cpp: see budget.h. Budgets are kept beside the worlds: class World is public, and its layout stays as programs know it.
+// budget.cpp: Budgets are kept beside the worlds: class World is public, and its
+// layout stays as programs know it.
 #include "base/budget.h"
 
 #include <algorithm>
@@ -47,7 +48,8 @@ uint64_t defaultWorldBytes() {
     most = std::min(most, readNumber("/sys/fs/cgroup/memory.max"));
     most = std::min(most, readNumber("/sys/fs/cgroup/memory/memory.limit_in_bytes"));
     rlimit space{};
-    if (getrlimit(RLIMIT_AS, &space) == 0 && space.rlim_cur != RLIM_INFINITY) most = std::min(most, uint64_t(space.rlim_cur));
+    if (getrlimit(RLIMIT_AS, &space) == 0 && space.rlim_cur != RLIM_INFINITY)
+      most = std::min(most, uint64_t(space.rlim_cur));
     return std::max<uint64_t>(most / 8, 256ull << 20);
   }();
   return bytes;

@@ -1,6 +1,6 @@
-// budget.h: the memory that one world may take: everything made from its files draws from one budget (limit worldBytes). What is
-// drawn is an estimate by constants that were measured, the same on every machine, so that a world near its limit loses the same
-// nodes each time. [any thread]
+// budget.h: the memory that one world may take: everything made from its files draws from one
+// budget (limit worldBytes). What is drawn is an estimate by constants that were measured, the same
+// on every machine, so that a world near its limit loses the same nodes each time. [any thread]
 #pragma once
 
 #include <atomic>
@@ -43,7 +43,9 @@ class Share {
  public:
   Share() = default;
   explicit Share(BudgetPtr budget) : budget_(std::move(budget)) {}
-  Share(Share&& other) noexcept : budget_(std::move(other.budget_)), bytes_(other.bytes_) { other.bytes_ = 0; }
+  Share(Share&& other) noexcept : budget_(std::move(other.budget_)), bytes_(other.bytes_) {
+    other.bytes_ = 0;
+  }
   Share& operator=(Share&& other) noexcept {
     std::swap(budget_, other.budget_);
     std::swap(bytes_, other.bytes_);
@@ -75,11 +77,13 @@ class Share {
   uint64_t bytes_ = 0;
 };
 
-// Returns an eighth of the memory that this process may use: of the machine, of its control group (cgroup v2 or v1), or of its
-// address space (ulimit -v), whichever is least; 256 MiB at least. Read once.
+// Returns an eighth of the memory that this process may use: of the machine, of its control group
+// (cgroup v2 or v1), or of its address space (ulimit -v), whichever is least; 256 MiB at least.
+// Read once.
 uint64_t defaultWorldBytes();
 
-// Returns the budget of a world, made when it is first asked for by the limit in world.options. It ends with the world.
+// Returns the budget of a world, made when it is first asked for by the limit in world.options. It
+// ends with the world.
 BudgetPtr budgetOf(const World& world);
 // Gives a world that is about to be loaded the budget of another one, of which it becomes part.
 void setBudget(const World& world, BudgetPtr budget);

@@ -1,4 +1,5 @@
-// diagnostics.cpp: messages with a place. A Diagnostics object belongs to the thread that loads its world.
+// diagnostics.cpp: messages with a place. A Diagnostics object belongs to the thread that loads its
+// world.
 #include "xvrml/diagnostics.h"
 
 #include <string_view>
@@ -16,8 +17,8 @@ std::string_view severityName(Severity severity) {
   return "error";
 }
 
-// Blanks up to the character `column` (from 1): tabs stay tabs and UTF-8 continuation bytes take no room, so that the caret
-// stands below its character on a terminal.
+// Blanks up to the character `column` (from 1): tabs stay tabs and UTF-8 continuation bytes take no
+// room, so that the caret stands below its character on a terminal.
 std::string caretIndent(std::string_view line, size_t column) {
   std::string indent;
   for (const char c : line) {
@@ -28,13 +29,15 @@ std::string caretIndent(std::string_view line, size_t column) {
   return indent;
 }
 
-// What a file says goes to a terminal: control characters (C0 but the tab, DEL, C1 in UTF-8) become one question mark each.
+// What a file says goes to a terminal: control characters (C0 but the tab, DEL, C1 in UTF-8) become
+// one question mark each.
 std::string printable(std::string_view text) {
   std::string result;
   result.reserve(text.size());
   for (size_t i = 0; i < text.size(); ++i) {
     const auto byte = static_cast<unsigned char>(text[i]);
-    const bool c1 = byte == 0xc2 && i + 1 < text.size() && static_cast<unsigned char>(text[i + 1]) < 0xa0;
+    const bool c1 =
+        byte == 0xc2 && i + 1 < text.size() && static_cast<unsigned char>(text[i + 1]) < 0xa0;
     const bool control = (byte < 0x20 && byte != '\t') || byte == 0x7f || c1;
     result += byte == '\n' ? ' ' : control ? '?' : text[i];
     i += c1;
@@ -43,7 +46,9 @@ std::string printable(std::string_view text) {
 }
 
 Diagnostic at(Severity severity, const SourcePosition& where, std::string message) {
-  return {severity, where.file ? *where.file : std::string(), where.line, where.column, std::move(message), {}};
+  return {severity,           where.file ? *where.file : std::string(),
+          where.line,         where.column,
+          std::move(message), {}};
 }
 
 } // namespace
@@ -61,7 +66,8 @@ std::string Diagnostic::text() const {
   if (sourceLine.empty()) return result;
   result += '\n' + printable(sourceLine);
   const size_t place = caret > 0 ? caret : column; // a long line is shown in part
-  if (place > 0 && place <= sourceLine.size() + 1) result += '\n' + caretIndent(sourceLine, place) + '^';
+  if (place > 0 && place <= sourceLine.size() + 1)
+    result += '\n' + caretIndent(sourceLine, place) + '^';
   return result;
 }
 
@@ -80,6 +86,8 @@ void Diagnostics::warn(const SourcePosition& where, std::string message) {
   add(at(Severity::warning, where, std::move(message)));
 }
 
-void Diagnostics::error(const SourcePosition& where, std::string message) { add(at(Severity::error, where, std::move(message))); }
+void Diagnostics::error(const SourcePosition& where, std::string message) {
+  add(at(Severity::error, where, std::move(message)));
+}
 
 } // namespace xvrml

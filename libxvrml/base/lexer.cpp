@@ -14,27 +14,34 @@ namespace {
 constexpr std::array<bool, 256> makeIdentifierRest() {
   std::array<bool, 256> table{};
   for (int c = 0x21; c < 256; ++c) table[c] = true;
-  for (unsigned char c : {'"', '#', '\'', ',', '.', '[', '\\', ']', '{', '}', '\x7f'}) table[c] = false;
+  for (unsigned char c : {'"', '#', '\'', ',', '.', '[', '\\', ']', '{', '}', '\x7f'})
+    table[c] = false;
   return table;
 }
 constexpr auto identifierRest = makeIdentifierRest();
 
 constexpr bool isDigit(char c) { return c >= '0' && c <= '9'; }
-constexpr bool isHexDigit(char c) { return isDigit(c) || (c >= 'a' && c <= 'f') || (c >= 'A' && c <= 'F'); }
+constexpr bool isHexDigit(char c) {
+  return isDigit(c) || (c >= 'a' && c <= 'f') || (c >= 'A' && c <= 'F');
+}
 constexpr bool isContinuationByte(char c) { return (static_cast<unsigned char>(c) & 0xc0) == 0x80; }
 
 uint32_t countCharacters(const char* from, const char* to) {
-  return static_cast<uint32_t>(std::count_if(from, to, [](char c) { return !isContinuationByte(c); }));
+  return static_cast<uint32_t>(
+      std::count_if(from, to, [](char c) { return !isContinuationByte(c); }));
 }
 
-// Ends of lines (LF, CR or CR LF) in [from, to), by blocks small enough for byte sums so that compilers vectorise it.
+// Ends of lines (LF, CR or CR LF) in [from, to), by blocks small enough for byte sums so that
+// compilers vectorise it.
 uint32_t countLines(const char* from, const char* to, const char* end) {
-  if (from < to && to == end) return countLines(from, to - 1, end) + (to[-1] == '\n' || to[-1] == '\r'); // no byte after it
+  if (from < to && to == end)
+    return countLines(from, to - 1, end) + (to[-1] == '\n' || to[-1] == '\r'); // no byte after it
   uint32_t lines = 0;
   while (from < to) {
     const ptrdiff_t block = std::min<ptrdiff_t>(to - from, 240);
     uint8_t sum = 0;
-    for (ptrdiff_t i = 0; i < block; ++i) sum += (from[i] == '\n') | ((from[i] == '\r') & (from[i + 1] != '\n'));
+    for (ptrdiff_t i = 0; i < block; ++i)
+      sum += (from[i] == '\n') | ((from[i] == '\r') & (from[i + 1] != '\n'));
     lines += sum;
     from += block;
   }
@@ -54,16 +61,20 @@ const char* endOfLine(const char* p, const char* end) {
 } // namespace
 
 bool isIdentifierRest(unsigned char c) { return identifierRest[c]; }
-bool isIdentifierStart(unsigned char c) { return identifierRest[c] && !isDigit(static_cast<char>(c)) && c != '+' && c != '-'; }
+bool isIdentifierStart(unsigned char c) {
+  return identifierRest[c] && !isDigit(static_cast<char>(c)) && c != '+' && c != '-';
+}
 
 bool isIdentifier(std::string_view text) {
   return !text.empty() && isIdentifierStart(static_cast<unsigned char>(text[0])) &&
-         std::all_of(text.begin(), text.end(), [](char c) { return isIdentifierRest(static_cast<unsigned char>(c)); });
+         std::all_of(text.begin(), text.end(),
+                     [](char c) { return isIdentifierRest(static_cast<unsigned char>(c)); });
 }
 
-Lexer::Lexer(std::string_view bytes, std::shared_ptr<const std::string> file, Diagnostics& diagnostics)
-    : begin_(bytes.data()), end_(bytes.data() + bytes.size()), position_(begin_), file_(std::move(file)),
-      diagnostics_(diagnostics), mark_(begin_) {}
+Lexer::Lexer(std::string_view bytes, std::shared_ptr<const std::string> file,
+             Diagnostics& diagnostics)
+    : begin_(bytes.data()), end_(bytes.data() + bytes.size()), position_(begin_),
+      file_(std::move(file)), diagnostics_(diagnostics), mark_(begin_) {}
 
 const char* Lexer::skipComments(const char* p) {
   for (; p < end_; ++p) {
@@ -76,7 +87,8 @@ const char* Lexer::skipComments(const char* p) {
   return p;
 }
 
-// float ::= ([+/-]?((([0-9]+(\.)?)|([0-9]*\.[0-9]+))([eE][+\-]?[0-9]+)?)).   int32 ::= ([+\-]?(([0-9]+)|(0[xX][0-9a-fA-F]+)))
+// float ::= ([+/-]?((([0-9]+(\.)?)|([0-9]*\.[0-9]+))([eE][+\-]?[0-9]+)?)).   int32 ::=
+// ([+\-]?(([0-9]+)|(0[xX][0-9a-fA-F]+)))
 const char* Lexer::lexNumber(const char* p, bool& valid) const {
   if (*p == '+' || *p == '-') ++p;
   const char* digits = p;
@@ -210,8 +222,8 @@ void Lexer::report(Severity severity, const char* at, std::string message) {
   while (from < at && isContinuationByte(*from)) ++from;
   const char* to = endOfLine(at, end_ - at > after ? at + after : end_);
   while (to < end_ && to > at && isContinuationByte(*to)) --to;
-  diagnostics_.add({severity, file_ ? *file_ : std::string(), where.line, where.column, std::move(message), std::string(from, to),
-                    countCharacters(from, at) + 1});
+  diagnostics_.add({severity, file_ ? *file_ : std::string(), where.line, where.column,
+                    std::move(message), std::string(from, to), countCharacters(from, at) + 1});
 }
 
 std::string describe(const Token& token) {

@@ -1,5 +1,6 @@
-// lexer.h: the tokens of VRML97 text (ISO/IEC 14772-1 Annex A) as views over the bytes; nothing is copied or stored.
-// Used by the value parser, the file parser and nodegen. One lexer per text, on one thread. The bytes must outlive it.
+// lexer.h: the tokens of VRML97 text (ISO/IEC 14772-1 Annex A) as views over the bytes; nothing is
+// copied or stored. Used by the value parser, the file parser and nodegen. One lexer per text, on
+// one thread. The bytes must outlive it.
 #pragma once
 
 #include <array>
@@ -30,14 +31,17 @@ struct Token {
   std::string_view text; // strings with their quotes; empty but placed at the end of the text
   const char* at() const { return text.data(); }
   bool is(TokenKind k) const { return kind == k; }
-  bool is(std::string_view keyword) const { return kind == TokenKind::identifier && text == keyword; }
+  bool is(std::string_view keyword) const {
+    return kind == TokenKind::identifier && text == keyword;
+  }
 };
 
 namespace lexer_detail {
 enum : uint8_t { space = 1, separator = 2 };
 constexpr std::array<uint8_t, 256> makeClasses() {
   std::array<uint8_t, 256> classes{};
-  for (const unsigned char c : {' ', '\n', '\t', '\r', ',', '\f', '\v'}) classes[c] = space | separator;
+  for (const unsigned char c : {' ', '\n', '\t', '\r', ',', '\f', '\v'})
+    classes[c] = space | separator;
   for (const unsigned char c : {'[', ']', '{', '}', '"', '#'}) classes[c] = separator;
   return classes;
 }
@@ -45,9 +49,13 @@ inline constexpr auto classes = makeClasses();
 } // namespace lexer_detail
 
 // White space and commas.
-constexpr bool isVrmlSpace(char c) { return lexer_detail::classes[static_cast<unsigned char>(c)] & lexer_detail::space; }
+constexpr bool isVrmlSpace(char c) {
+  return lexer_detail::classes[static_cast<unsigned char>(c)] & lexer_detail::space;
+}
 // Bytes at which a number or a word ends.
-constexpr bool isVrmlSeparator(char c) { return lexer_detail::classes[static_cast<unsigned char>(c)] & lexer_detail::separator; }
+constexpr bool isVrmlSeparator(char c) {
+  return lexer_detail::classes[static_cast<unsigned char>(c)] & lexer_detail::separator;
+}
 bool isIdentifierStart(unsigned char c); // IdFirstChar
 bool isIdentifierRest(unsigned char c);  // IdRestChars
 bool isIdentifier(std::string_view text);
@@ -70,10 +78,12 @@ class Lexer {
     peeked_ = false;
     return true;
   }
-  // The next token read as a name where the grammar wants one: takes what real files write (1stRoom, a.b, it's), which the
-  // grammar forbids; such a token is of kind invalid. Structure ({ } [ ] " and the end) is returned as it is.
+  // The next token read as a name where the grammar wants one: takes what real files write
+  // (1stRoom, a.b, it's), which the grammar forbids; such a token is of kind invalid. Structure ({
+  // } [ ] " and the end) is returned as it is.
   Token nextName();
-  // The last comment skipped before the next token, without its #; empty if there was none before it.
+  // The last comment skipped before the next token, without its #; empty if there was none before
+  // it.
   std::string_view comment() {
     peek();
     return comment_;
@@ -92,10 +102,15 @@ class Lexer {
     return p < end_ && *p == '#' ? skipComments(p) : p;
   }
 
-  // Line and column (in characters, from 1) of a place in the text. Costs the distance from the place asked for before.
+  // Line and column (in characters, from 1) of a place in the text. Costs the distance from the
+  // place asked for before.
   SourcePosition place(const char* at);
-  void error(const char* at, std::string message) { report(Severity::error, at, std::move(message)); }
-  void warn(const char* at, std::string message) { report(Severity::warning, at, std::move(message)); }
+  void error(const char* at, std::string message) {
+    report(Severity::error, at, std::move(message));
+  }
+  void warn(const char* at, std::string message) {
+    report(Severity::warning, at, std::move(message));
+  }
   Diagnostics& diagnostics() { return diagnostics_; }
 
  private:

@@ -1,4 +1,5 @@
-// limits.cpp: the limits by name, for messages and for `vv --limit NAME=VALUE`. Pure functions, any thread.
+// limits.cpp: the limits by name, for messages and for `vv --limit NAME=VALUE`. Pure functions, any
+// thread.
 #include "xvrml/limits.h"
 
 #include <array>
@@ -13,11 +14,13 @@ constexpr std::array<LimitInfo, 13> table = {{
     {"expandedNodes", &Limits::expandedNodes, "nodes after all prototypes and USEs are expanded"},
     {"worldBytes", &Limits::worldBytes,
      "estimated memory of everything made from a world's files; 0: an eighth of the machine's"},
-    {"interfaceFields", &Limits::interfaceFields, "declarations of one PROTO, EXTERNPROTO or Script"},
+    {"interfaceFields", &Limits::interfaceFields,
+     "declarations of one PROTO, EXTERNPROTO or Script"},
     {"stringBytes", &Limits::stringBytes, "bytes of one string"},
     {"arrayElements", &Limits::arrayElements, "numbers in one multiple-valued field"},
     {"fileBytes", &Limits::fileBytes, "bytes of one file, unpacked"},
-    {"inflateRatio", &Limits::inflateRatio, "unpacked over packed size of a file above 1 MiB unpacked"},
+    {"inflateRatio", &Limits::inflateRatio,
+     "unpacked over packed size of a file above 1 MiB unpacked"},
     {"inflateBytes", &Limits::inflateBytes, "bytes a packed file may unpack to"},
     {"imagePixels", &Limits::imagePixels, "pixels of one image"},
     {"triangles", &Limits::triangles, "triangles made by one geometry node"},

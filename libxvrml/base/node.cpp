@@ -1,5 +1,6 @@
-// node.cpp: generic access to nodes through their tables. Everybody who does not know a node's struct reads and writes its
-// fields here: parser, writer, router, prototypes, bindings. A node is used by one thread at a time.
+// node.cpp: generic access to nodes through their tables. Everybody who does not know a node's
+// struct reads and writes its fields here: parser, writer, router, prototypes, bindings. A node is
+// used by one thread at a time.
 #include "xvrml/node.h"
 
 #include <algorithm>
@@ -21,13 +22,15 @@ template <size_t I> void store(void* storage, Value&& value) {
   *static_cast<ValueType<I>*>(storage) = std::get<I>(std::move(value));
 }
 
-template <size_t... I> Value loadByType(size_t type, const void* storage, std::index_sequence<I...>) {
+template <size_t... I>
+Value loadByType(size_t type, const void* storage, std::index_sequence<I...>) {
   using Function = Value (*)(const void*);
   static constexpr Function functions[] = {&load<I>...};
   return functions[type](storage);
 }
 
-template <size_t... I> void storeByType(size_t type, void* storage, Value&& value, std::index_sequence<I...>) {
+template <size_t... I>
+void storeByType(size_t type, void* storage, Value&& value, std::index_sequence<I...>) {
   using Function = void (*)(void*, Value&&);
   static constexpr Function functions[] = {&store<I>...};
   functions[type](storage, std::move(value));
@@ -35,14 +38,17 @@ template <size_t... I> void storeByType(size_t type, void* storage, Value&& valu
 
 constexpr auto allTypes = std::make_index_sequence<fieldTypeCount>();
 
-bool hasStorage(const FieldInfo& field) { return field.access == Access::field || field.access == Access::exposedField; }
+bool hasStorage(const FieldInfo& field) {
+  return field.access == Access::field || field.access == Access::exposedField;
+}
 
 const FieldInfo* findWith(const NodeType& type, std::string_view name, Access access) {
   const FieldInfo* field = type.find(name);
   return field && field->access == access ? field : nullptr;
 }
 
-// Looks numbers up in a range; float fields compare with the range's ends as floats, so that 1.5707964 is within pi/2.
+// Looks numbers up in a range; float fields compare with the range's ends as floats, so
+// that 1.5707964 is within pi/2.
 class RangeCheck {
  public:
   explicit RangeCheck(const FieldRange& range) : range_(range) {}
@@ -55,7 +61,8 @@ class RangeCheck {
   bool operator()(const Color& c) const { return all({c.r, c.g, c.b}); }
   bool operator()(const Rotation& r) const { return all({r.x, r.y, r.z}); }
   template <class T> bool operator()(const std::vector<T>& values) const {
-    return std::all_of(values.begin(), values.end(), [this](const T& value) { return (*this)(value); });
+    return std::all_of(values.begin(), values.end(),
+                       [this](const T& value) { return (*this)(value); });
   }
   bool operator()(bool) const { return true; }
   bool operator()(const std::string&) const { return true; }
@@ -72,8 +79,10 @@ class RangeCheck {
   // The exceptional number counts only where all have it: bboxSize -1 -1 -1.
   bool all(std::initializer_list<float> numbers) const {
     const auto exceptional = [this](float number) { return number == float(range_.also); };
-    if (std::any_of(numbers.begin(), numbers.end(), exceptional)) return std::all_of(numbers.begin(), numbers.end(), exceptional);
-    return std::all_of(numbers.begin(), numbers.end(), [this](float number) { return contains<float>(number); });
+    if (std::any_of(numbers.begin(), numbers.end(), exceptional))
+      return std::all_of(numbers.begin(), numbers.end(), exceptional);
+    return std::all_of(numbers.begin(), numbers.end(),
+                       [this](float number) { return contains<float>(number); });
   }
 
   const FieldRange& range_;
@@ -97,12 +106,14 @@ const FieldInfo* NodeType::find(std::string_view fieldName) const {
   return nullptr;
 }
 
-// Clause 4.7: an exposedField x takes events as x and as set_x. Clause 4.10.2: in a route the set_ of an eventIn may be left
-// out. The exact name comes first, so a node may have both `x` and `set_x`.
+// Clause 4.7: an exposedField x takes events as x and as set_x. Clause 4.10.2: in a route the set_
+// of an eventIn may be left out. The exact name comes first, so a node may have both `x` and
+// `set_x`.
 const FieldInfo* NodeType::findEventIn(std::string_view eventName) const {
   if (const FieldInfo* field = findWith(*this, eventName, Access::eventIn)) return field;
   if (const FieldInfo* field = findWith(*this, eventName, Access::exposedField)) return field;
-  if (eventName.starts_with(setPrefix)) return findWith(*this, eventName.substr(setPrefix.size()), Access::exposedField);
+  if (eventName.starts_with(setPrefix))
+    return findWith(*this, eventName.substr(setPrefix.size()), Access::exposedField);
   return findWith(*this, std::string(setPrefix).append(eventName), Access::eventIn);
 }
 
@@ -110,7 +121,8 @@ const FieldInfo* NodeType::findEventOut(std::string_view eventName) const {
   if (const FieldInfo* field = findWith(*this, eventName, Access::eventOut)) return field;
   if (const FieldInfo* field = findWith(*this, eventName, Access::exposedField)) return field;
   if (eventName.ends_with(changedSuffix))
-    return findWith(*this, eventName.substr(0, eventName.size() - changedSuffix.size()), Access::exposedField);
+    return findWith(*this, eventName.substr(0, eventName.size() - changedSuffix.size()),
+                    Access::exposedField);
   return findWith(*this, std::string(eventName).append(changedSuffix), Access::eventOut);
 }
 
@@ -129,8 +141,8 @@ bool Node::set(const FieldInfo& field, Value value) {
   return true;
 }
 
-// A node's destructor releases its children. Those whose last reference goes meanwhile wait in a list until it returns: a
-// chain of a million nodes would otherwise need a million stack frames.
+// A node's destructor releases its children. Those whose last reference goes meanwhile wait in a
+// list until it returns: a chain of a million nodes would otherwise need a million stack frames.
 void Node::destroy(Node* node) noexcept {
   if (node->live) node->live->forget(node->live); // its fields are still there
   thread_local std::vector<Node*>* waiting = nullptr;

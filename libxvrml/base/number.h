@@ -1,5 +1,6 @@
-// number.h: VRML97 numbers from text (Annex A.4), correctly rounded: a branch-poor path for the short plain decimals that fill
-// big arrays, fast_float for the rest. Used by the value parser's loops. [any thread]
+// number.h: VRML97 numbers from text (Annex A.4), correctly rounded: a branch-poor path for the
+// short plain decimals that fill big arrays, fast_float for the rest. Used by the value parser's
+// loops. [any thread]
 #pragma once
 
 #include <bit>
@@ -17,10 +18,12 @@ enum class NumberError : uint8_t { none, notANumber, outOfRange };
 namespace number_detail {
 
 inline constexpr double powersOfTen[] = {1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8};
-inline constexpr uint32_t integerPowersOfTen[] = {1, 10, 100, 1000, 10000, 100000, 1000000, 10000000, 100000000};
+inline constexpr uint32_t integerPowersOfTen[] = {1,      10,      100,      1000,     10000,
+                                                  100000, 1000000, 10000000, 100000000};
 
-// Up to eight digits at p (eight bytes are read): how many there are, and their value. Eight digits at a time as in Lemire,
-// "Number parsing at a gigabyte per second" (2021), with the run's length found by a bit scan instead of a loop.
+// Up to eight digits at p (eight bytes are read): how many there are, and their value. Eight digits
+// at a time as in Lemire, "Number parsing at a gigabyte per second" (2021), with the run's length
+// found by a bit scan instead of a loop.
 struct Digits {
   uint32_t value;
   int count;
@@ -30,15 +33,18 @@ inline Digits readDigits(const char* p) {
   uint64_t bytes = 0;
   std::memcpy(&bytes, p, 8);
   bytes ^= 0x3030303030303030; // digits become 0..9
-  // A byte above 9 gets its top bit set: either it has a high nibble, or adding 0x76 to it carries into bit 7.
+  // A byte above 9 gets its top bit set: either it has a high nibble, or adding 0x76 to it carries
+  // into bit 7.
   const uint64_t other = ((bytes & 0x7f7f7f7f7f7f7f7f) + 0x7676767676767676) | bytes;
   const uint64_t marks = other & 0x8080808080808080;
   const int count = marks ? std::countr_zero(marks) >> 3 : 8;
   if (count == 0) return {0, 0};
   bytes <<= 64 - 8 * count; // leading zeros
   bytes = bytes * 10 + (bytes >> 8);
-  constexpr uint64_t mask = 0x000000ff000000ff, mul1 = 0x000f424000000064, mul2 = 0x0000271000000001;
-  return {static_cast<uint32_t>((((bytes & mask) * mul1) + (((bytes >> 16) & mask) * mul2)) >> 32), count};
+  constexpr uint64_t mask = 0x000000ff000000ff, mul1 = 0x000f424000000064,
+                     mul2 = 0x0000271000000001;
+  return {static_cast<uint32_t>((((bytes & mask) * mul1) + (((bytes >> 16) & mask) * mul2)) >> 32),
+          count};
 }
 
 constexpr bool isDigit(char c) { return c >= '0' && c <= '9'; }
@@ -47,7 +53,8 @@ template <class T> NumberError readSlow(const char*& p, const char* end, T& out)
   const char* start = p;
   if (start < end && *start == '+') ++start;
   const char* first = start < end && *start == '-' && start == p ? start + 1 : start;
-  if (first >= end || !(isDigit(*first) || *first == '.')) return NumberError::notANumber; // refuses nan, inf, +-1
+  if (first >= end || !(isDigit(*first) || *first == '.'))
+    return NumberError::notANumber; // refuses nan, inf, +-1
   const auto result = fast_float::from_chars(start, end, out);
   if (result.ptr == start) return NumberError::notANumber;
   p = result.ptr;
@@ -56,8 +63,8 @@ template <class T> NumberError readSlow(const char*& p, const char* end, T& out)
 
 } // namespace number_detail
 
-// Reads the longest number at p and moves p behind it. On an error p is untouched or behind the number out of range.
-// Underflow gives the nearest representable number.
+// Reads the longest number at p and moves p behind it. On an error p is untouched or behind the
+// number out of range. Underflow gives the nearest representable number.
 inline NumberError readNumber(const char*& p, const char* end, float& out) {
   using namespace number_detail;
   if (end - p > 24) {
@@ -74,8 +81,9 @@ inline NumberError readNumber(const char*& p, const char* end, float& out) {
       mantissa = mantissa * integerPowersOfTen[decimals] + fraction.value;
       q += decimals;
     }
-    // At most 15 digits and no more to come: mantissa and power are exact doubles, so their quotient is correctly rounded
-    // (Clinger 1990). Rounding it again to float is right unless it stands exactly half way between two floats.
+    // At most 15 digits and no more to come: mantissa and power are exact doubles, so their
+    // quotient is correctly rounded (Clinger 1990). Rounding it again to float is right unless it
+    // stands exactly half way between two floats.
     const int digits = whole.count + decimals;
     if (digits > 0 && digits <= 15 && !isDigit(*q) && *q != 'e' && *q != 'E' && *q != '.') {
       const double value = static_cast<double>(mantissa) / powersOfTen[decimals];
@@ -89,7 +97,9 @@ inline NumberError readNumber(const char*& p, const char* end, float& out) {
   return readSlow(p, end, out);
 }
 
-inline NumberError readNumber(const char*& p, const char* end, double& out) { return number_detail::readSlow(p, end, out); }
+inline NumberError readNumber(const char*& p, const char* end, double& out) {
+  return number_detail::readSlow(p, end, out);
+}
 
 // Decimal or 0x hexadecimal; eight hexadecimal digits are the bits (0xFFFFFFFF is -1).
 inline NumberError readNumber(const char*& p, const char* end, int32_t& out) {

@@ -1,4 +1,5 @@
-// regular_file.cpp: see regular_file.h. O_NONBLOCK lets the open of a pipe return at once; it means nothing for regular files.
+// regular_file.cpp: O_NONBLOCK lets the open of a pipe return at once; it means
+// nothing for regular files.
 #include "base/regular_file.h"
 
 #include <algorithm>
@@ -26,7 +27,8 @@ RegularFile::RegularFile(const std::string& path)
   if (!known || !S_ISREG(status.st_mode)) {
     ::close(descriptor_);
     if (!known) fail(reason);
-    throw std::runtime_error(S_ISDIR(status.st_mode) ? "a folder, not a file" : "not a regular file");
+    throw std::runtime_error(S_ISDIR(status.st_mode) ? "a folder, not a file"
+                                                     : "not a regular file");
   }
   size_ = uint64_t(std::max<off_t>(status.st_size, 0));
   modified_ = int64_t(status.st_mtim.tv_sec) * 1'000'000'000 + status.st_mtim.tv_nsec;
@@ -38,7 +40,8 @@ size_t RegularFile::read(uint64_t at, void* to, size_t count) const {
   size_t done = 0;
   while (done < count) {
     constexpr size_t most = 1 << 30; // Linux reads at most 2 GiB at once
-    const ssize_t got = ::pread(descriptor_, static_cast<char*>(to) + done, std::min(count - done, most), off_t(at + done));
+    const ssize_t got = ::pread(descriptor_, static_cast<char*>(to) + done,
+                                std::min(count - done, most), off_t(at + done));
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) fail(errno);
     if (got == 0) break;

@@ -1,5 +1,5 @@
-// types.cpp: names and neutral values of the 20 field types (ISO/IEC 14772-1 clause 5). Pure functions, any thread; used by
-// the parser, the writer, nodegen and the bindings.
+// types.cpp: names and neutral values of the 20 field types (ISO/IEC 14772-1 clause 5). Pure
+// functions, any thread; used by the parser, the writer, nodegen and the bindings.
 #include "xvrml/types.h"
 
 #include <array>
@@ -11,13 +11,16 @@ namespace xvrml {
 namespace {
 
 constexpr std::array<std::string_view, fieldTypeCount> typeNames = {
-    "SFBool",  "SFColor", "SFFloat", "SFImage", "SFInt32", "SFNode",     "SFRotation", "SFString", "SFTime",  "SFVec2f",
-    "SFVec3f", "MFColor", "MFFloat", "MFInt32", "MFNode",  "MFRotation", "MFString",   "MFTime",   "MFVec2f", "MFVec3f"};
+    "SFBool",   "SFColor",    "SFFloat",  "SFImage", "SFInt32", "SFNode",  "SFRotation",
+    "SFString", "SFTime",     "SFVec2f",  "SFVec3f", "MFColor", "MFFloat", "MFInt32",
+    "MFNode",   "MFRotation", "MFString", "MFTime",  "MFVec2f", "MFVec3f"};
 
 static_assert(std::variant_size_v<Value> == fieldTypeCount);
 static_assert(std::is_same_v<std::variant_alternative_t<size_t(FieldType::SFNode), Value>, SFNode>);
-static_assert(std::is_same_v<std::variant_alternative_t<size_t(FieldType::SFVec3f), Value>, SFVec3f>);
-static_assert(std::is_same_v<std::variant_alternative_t<size_t(FieldType::MFVec3f), Value>, MFVec3f>);
+static_assert(
+    std::is_same_v<std::variant_alternative_t<size_t(FieldType::SFVec3f), Value>, SFVec3f>);
+static_assert(
+    std::is_same_v<std::variant_alternative_t<size_t(FieldType::MFVec3f), Value>, MFVec3f>);
 
 template <size_t... I> Value defaultOf(size_t type, std::index_sequence<I...>) {
   Value value;
@@ -42,6 +45,8 @@ bool fieldTypeFromName(std::string_view name, FieldType& type) {
   return false;
 }
 
-Value defaultValue(FieldType type) { return defaultOf(size_t(type), std::make_index_sequence<fieldTypeCount>()); }
+Value defaultValue(FieldType type) {
+  return defaultOf(size_t(type), std::make_index_sequence<fieldTypeCount>());
+}
 
 } // namespace xvrml

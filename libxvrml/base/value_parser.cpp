@@ -56,7 +56,9 @@ template <class T> auto* numbers(T& value) {
   }
 }
 
-inline bool endsNumber(const char* p, const char* end) { return p == end || isVrmlSeparator(*p) || *p == '+' || *p == '-'; }
+inline bool endsNumber(const char* p, const char* end) {
+  return p == end || isVrmlSeparator(*p) || *p == '+' || *p == '-';
+}
 
 } // namespace
 
@@ -73,7 +75,8 @@ bool ValueParser::failFound(const Token& found, std::string_view expected) {
 bool ValueParser::take(const char* at, uint64_t bytes) {
   if (!budget_ || budget_->take(bytes)) return true;
   if (std::exchange(refused_, true)) return false;
-  return fail(at, fmt::format("the world takes more memory than {}; values beyond are left out", budget_->name()));
+  return fail(at, fmt::format("the world takes more memory than {}; values beyond are left out",
+                              budget_->name()));
 }
 
 // One number at p, which is not white space. Moves p behind it.
@@ -92,14 +95,16 @@ template <class Scalar> bool ValueParser::scalar(const char*& p, Scalar& out, Fi
     // Some writers put 1.0 where an integer belongs.
     float real = 0;
     p = start;
-    if (readNumber(p, lexer_.end(), real) == NumberError::none && endsNumber(p, lexer_.end()) && std::trunc(real) == real &&
-        std::abs(real) < 16777216.0f) {
-      lexer_.warn(start, fmt::format("{} is not an integer as {} wants; read as {}", describe(found), name, real));
+    if (readNumber(p, lexer_.end(), real) == NumberError::none && endsNumber(p, lexer_.end()) &&
+        std::trunc(real) == real && std::abs(real) < 16777216.0f) {
+      lexer_.warn(start, fmt::format("{} is not an integer as {} wants; read as {}",
+                                     describe(found), name, real));
       out = static_cast<Scalar>(real);
       return true;
     }
   }
-  const bool whole = isMultiple(type) || type == FieldType::SFFloat || type == FieldType::SFInt32 || type == FieldType::SFTime;
+  const bool whole = isMultiple(type) || type == FieldType::SFFloat || type == FieldType::SFInt32 ||
+                     type == FieldType::SFTime;
   return failFound(found, fmt::format("a{} {} of {}", std::is_integral_v<Scalar> ? "n" : "",
                                       std::is_integral_v<Scalar> ? "integer"
                                       : whole                    ? "number"
@@ -140,15 +145,17 @@ bool ValueParser::single(std::string& out) {
   if (!token.is(TokenKind::string)) return failFound(token, "a string in double quotes");
   lexer_.next();
   if (token.text.size() > limits_.stringBytes) {
-    return fail(token.at(),
-                fmt::format("string of {} bytes: more than limit stringBytes={}", token.text.size(), limits_.stringBytes));
+    return fail(token.at(), fmt::format("string of {} bytes: more than limit stringBytes={}",
+                                        token.text.size(), limits_.stringBytes));
   }
-  if (token.text.size() > 2 * sizeof(std::string) && !take(token.at(), token.text.size())) return false;
+  if (token.text.size() > 2 * sizeof(std::string) && !take(token.at(), token.text.size()))
+    return false;
   out = unescape(token.text);
   return true;
 }
 
-// sfimageValue ::= int32 int32 int32 ... (clause 5.5: width, height, components, then one number a pixel)
+// sfimageValue ::= int32 int32 int32 ... (clause 5.5: width, height, components, then one number a
+// pixel)
 bool ValueParser::single(Image& out) {
   const char* start = lexer_.skipSpace(lexer_.cursor());
   int32_t header[3];
@@ -160,12 +167,14 @@ bool ValueParser::single(Image& out) {
   lexer_.seek(p);
   const auto [width, height, components] = header;
   if (width < 0 || height < 0)
-    return fail(start, fmt::format("SFImage of {} x {} pixels: sizes are not negative", width, height));
-  if (components < 0 || components > 4) return fail(start, fmt::format("SFImage of {} components: expected 0 to 4", components));
+    return fail(start,
+                fmt::format("SFImage of {} x {} pixels: sizes are not negative", width, height));
+  if (components < 0 || components > 4)
+    return fail(start, fmt::format("SFImage of {} components: expected 0 to 4", components));
   const uint64_t pixels = components > 0 ? uint64_t(width) * uint64_t(height) : 0;
   if (pixels > limits_.imagePixels) {
-    return fail(start,
-                fmt::format("SFImage of {} x {} pixels: more than limit imagePixels={}", width, height, limits_.imagePixels));
+    return fail(start, fmt::format("SFImage of {} x {} pixels: more than limit imagePixels={}",
+                                   width, height, limits_.imagePixels));
   }
   if (!take(start, pixels * uint64_t(components))) return false;
   out = {width, height, components, {}};
@@ -175,7 +184,8 @@ bool ValueParser::single(Image& out) {
     p = lexer_.skipSpace(p);
     const char* at = p;
     int32_t number = 0;
-    if (readNumber(p, lexer_.end(), number) == NumberError::outOfRange && *at != '-') { // a 32-bit pixel in decimal
+    if (readNumber(p, lexer_.end(), number) == NumberError::outOfRange &&
+        *at != '-') { // a 32-bit pixel in decimal
       double real = 0;
       p = at;
       if (readNumber(p, lexer_.end(), real) == NumberError::none && real < 4294967296.0)
@@ -202,13 +212,17 @@ bool ValueParser::single(NodeRef& out) {
   return true;
 }
 
-// Capacity from the density of the first elements, so that a big array is not copied while it grows.
-template <class T> void ValueParser::reserve(std::vector<T>& out, const char* from, const char* to) {
+// Capacity from the density of the first elements, so that a big array is not copied while it
+// grows.
+template <class T>
+void ValueParser::reserve(std::vector<T>& out, const char* from, const char* to) {
   const char* close = static_cast<const char*>(std::memchr(to, ']', lexer_.end() - to));
   if (!close) close = lexer_.end();
-  const double perByte = static_cast<double>(out.size()) / static_cast<double>(std::max<ptrdiff_t>(to - from, 1));
+  const double perByte =
+      static_cast<double>(out.size()) / static_cast<double>(std::max<ptrdiff_t>(to - from, 1));
   const double rest = perByte * static_cast<double>(close - to) * 1.05;
-  out.reserve(out.size() + static_cast<size_t>(std::min(rest, static_cast<double>(limits_.arrayElements))) + 16);
+  out.reserve(out.size() +
+              static_cast<size_t>(std::min(rest, static_cast<double>(limits_.arrayElements))) + 16);
 }
 
 // mfXValue ::= sfXValue | [ ] | [ sfXValues ]
@@ -227,21 +241,24 @@ template <class T> bool ValueParser::multiple(std::vector<T>& out) {
       for (int i = 0; i < Tuple<T>::size; ++i) {
         if (i > 0 && (p = lexer_.skipSpace(p)) < lexer_.end() && *p == ']') {
           lexer_.seek(p);
-          return fail(start, fmt::format("{} number{} left over: {} takes {} each", i, i > 1 ? "s" : "",
-                                         fieldTypeName(Tuple<T>::type), Tuple<T>::size));
+          return fail(start,
+                      fmt::format("{} number{} left over: {} takes {} each", i, i > 1 ? "s" : "",
+                                  fieldTypeName(Tuple<T>::type), Tuple<T>::size));
         }
         if (!scalar(p, components[i], Tuple<T>::type)) return false;
       }
       if (out.size() * Tuple<T>::size >= limits_.arrayElements) {
         lexer_.seek(p);
-        return fail(start, fmt::format("more numbers in one field than limit arrayElements={}", limits_.arrayElements));
+        return fail(start, fmt::format("more numbers in one field than limit arrayElements={}",
+                                       limits_.arrayElements));
       }
     } else {
       lexer_.seek(p);
       if (!single(value)) return false;
       p = lexer_.cursor();
       if (out.size() >= limits_.arrayElements) {
-        return fail(start, fmt::format("more values in one field than limit arrayElements={}", limits_.arrayElements));
+        return fail(start, fmt::format("more values in one field than limit arrayElements={}",
+                                       limits_.arrayElements));
       }
     }
     if (out.size() == taken) { // as far as the vector grows now
@@ -300,7 +317,8 @@ std::string unescape(std::string_view token) {
   std::string text;
   text.reserve(token.size());
   for (size_t i = 0; i < token.size(); ++i) {
-    if (token[i] == '\\' && i + 1 < token.size() && (token[i + 1] == '"' || token[i + 1] == '\\')) ++i;
+    if (token[i] == '\\' && i + 1 < token.size() && (token[i + 1] == '"' || token[i + 1] == '\\'))
+      ++i;
     text += token[i];
   }
   return text;

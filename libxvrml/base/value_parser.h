@@ -1,5 +1,6 @@
-// value_parser.h: field values of ISO/IEC 14772-1 clause 5 from text into typed storage. Used by the file parser (big arrays are
-// read straight into a node's vectors) and by nodegen (defaults). On the lexer's thread.
+// value_parser.h: field values of ISO/IEC 14772-1 clause 5 from text into typed storage. Used by
+// the file parser (big arrays are read straight into a node's vectors) and by nodegen (defaults).
+// On the lexer's thread.
 #pragma once
 
 #include "base/budget.h"
@@ -11,10 +12,12 @@ namespace xvrml {
 class ValueParser {
  public:
   // budget: what the values draw their memory from; null: nothing is counted.
-  ValueParser(Lexer& lexer, const Limits& limits, Budget* budget = nullptr) : lexer_(lexer), limits_(limits), budget_(budget) {}
+  ValueParser(Lexer& lexer, const Limits& limits, Budget* budget = nullptr)
+      : lexer_(lexer), limits_(limits), budget_(budget) {}
 
-  // Reads a value into *storage, which is of the C++ type of `type`. SFNode takes NULL and MFNode [ ] only: nodes are the file
-  // parser's. False after an error was reported; the lexer then stands at or behind what was wrong, the storage is unspecified.
+  // Reads a value into *storage, which is of the C++ type of `type`. SFNode takes NULL and MFNode [
+  // ] only: nodes are the file parser's. False after an error was reported; the lexer then stands
+  // at or behind what was wrong, the storage is unspecified.
   bool parse(FieldType type, void* storage);
   bool parse(FieldType type, Value& value);
 
@@ -37,7 +40,8 @@ class ValueParser {
   bool refused_ = false; // by the budget: said once
 };
 
-// The characters a string token stands for: \" and \\ are undone, other backslashes stay (clause 5.9).
+// The characters a string token stands for: \" and \\ are undone, other backslashes stay
+// (clause 5.9).
 std::string unescape(std::string_view token);
 
 } // namespace xvrml

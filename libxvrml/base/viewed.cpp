@@ -1,4 +1,5 @@
-// viewed.cpp: see xvrml/viewed.h. A table by the place of the field's storage: there is one view of each value at most.
+// viewed.cpp: A table by the place of the field's storage: there is one view of
+// each value at most.
 #include "xvrml/viewed.h"
 
 #include <atomic>
@@ -36,7 +37,9 @@ template <class F> bool withNumbers(FieldType type, void* storage, const F& f) {
   }
 }
 
-bool holdsValue(const FieldInfo& field) { return field.access == Access::field || field.access == Access::exposedField; }
+bool holdsValue(const FieldInfo& field) {
+  return field.access == Access::field || field.access == Access::exposedField;
+}
 
 } // namespace
 
@@ -57,7 +60,8 @@ ViewedField::~ViewedField() {
 }
 
 std::shared_ptr<const ViewedField> viewField(Node& node, const FieldInfo& field) {
-  if (!holdsValue(field) || !withNumbers(field.type, node.storage(field), [](const auto&) {})) return nullptr;
+  if (!holdsValue(field) || !withNumbers(field.type, node.storage(field), [](const auto&) {}))
+    return nullptr;
   Table& all = table();
   std::shared_ptr<ViewedField> made; // ends after the lock
   const std::scoped_lock lock(all.mutex);
@@ -80,7 +84,9 @@ void leaveToViews(Node& node, const FieldInfo& field) {
   all.byStorage.erase(found);
   all.size = all.byStorage.size();
   // A vector that is moved keeps its elements where they are.
-  if (view) withNumbers(field.type, node.storage(field), [&](auto& list) { view->kept_ = std::move(list); });
+  if (view)
+    withNumbers(field.type, node.storage(field),
+                [&](auto& list) { view->kept_ = std::move(list); });
 }
 
 } // namespace xvrml

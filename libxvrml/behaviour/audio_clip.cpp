@@ -1,4 +1,5 @@
-// audio_clip.cpp: AudioClip (clause 6.4): duration_changed and isActive; the samples for xvrml/media.h.
+// audio_clip.cpp: AudioClip (clause 6.4): duration_changed and isActive; the samples for
+// xvrml/media.h.
 #include <exception>
 #include <stdexcept>
 
@@ -25,7 +26,8 @@ struct State : Media {
   }
   TimeFields fields(const Node& node) const override {
     const auto& n = static_cast<const nodes::AudioClip&>(node);
-    return {n.startTime, n.stopTime, duration > 0 && n.pitch > 0 ? duration / n.pitch : 0, n.loop, true};
+    return {n.startTime, n.stopTime, duration > 0 && n.pitch > 0 ? duration / n.pitch : 0, n.loop,
+            true};
   }
   void play(Events&, Node&, const TimeStep& step) override { position = step.fraction * duration; }
 
@@ -36,18 +38,22 @@ struct State : Media {
   Diagnostics* diagnostics = nullptr;
 };
 
-std::unique_ptr<NodeState> begin(Events& events, Node& node) { return beginMedia(events, node, std::make_unique<State>()); }
+std::unique_ptr<NodeState> begin(Events& events, Node& node) {
+  return beginMedia(events, node, std::make_unique<State>());
+}
 
 } // namespace
 
 Playing playingOf(const Node& node) {
-  if (node.type().index != nodes::AudioClip::typeIndex || !node.live || !liveOf(node)->part) return {};
+  if (node.type().index != nodes::AudioClip::typeIndex || !node.live || !liveOf(node)->part)
+    return {};
   auto* state = static_cast<State*>(liveOf(node)->part->state.get());
   if (!state || !state->time.active() || state->path.empty()) return {};
   if (!state->clip) {
     try {
       state->clip = std::make_shared<Clip>(readWav(state->path, [&](uint64_t bytes) {
-        if (!state->share.take(bytes)) throw std::runtime_error(tooMuch(bytes, *state->share.budget()));
+        if (!state->share.take(bytes))
+          throw std::runtime_error(tooMuch(bytes, *state->share.budget()));
       }));
     } catch (const std::exception& failure) {
       state->diagnostics->warn(node.source, "AudioClip: no sound: " + std::string(failure.what()));
@@ -59,6 +65,8 @@ Playing playingOf(const Node& node) {
   return {state->clip, state->position, clip.pitch, clip.loop};
 }
 
-void addAudioClipBehaviours(const AddBehaviour& add) { addMedia(add, nodes::AudioClip::nodeType(), begin); }
+void addAudioClipBehaviours(const AddBehaviour& add) {
+  addMedia(add, nodes::AudioClip::nodeType(), begin);
+}
 
 } // namespace xvrml

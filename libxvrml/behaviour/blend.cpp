@@ -1,4 +1,4 @@
-// blend.cpp: see blend.h. In double: the arguments are floats of any size.
+// blend.cpp: In double: the arguments are floats of any size.
 #include "behaviour/blend.h"
 
 #include <algorithm>
@@ -54,7 +54,9 @@ std::pair<double, double> arcWeights(double angle, double t) {
 }
 
 // Of two unit vectors; exact also where their product is near 1 or -1 (Kahan).
-double angleBetween(const V3d& a, const V3d& b) { return 2 * std::atan2((a - b).length(), (a + b).length()); }
+double angleBetween(const V3d& a, const V3d& b) {
+  return 2 * std::atan2((a - b).length(), (a + b).length());
+}
 
 } // namespace
 
@@ -89,7 +91,8 @@ Rotation blend(const Rotation& first, const Rotation& second, float t) {
   const V3d axis = unit(v);
   if (axis == V3d(0)) { // no rotation: any axis, so one of the ends'
     const V3d kept = unit(V3d(first.x, first.y, first.z));
-    return kept == V3d(0) ? Rotation{0, 0, 1, 0} : Rotation{float(kept.x), float(kept.y), float(kept.z), 0};
+    return kept == V3d(0) ? Rotation{0, 0, 1, 0}
+                          : Rotation{float(kept.x), float(kept.y), float(kept.z), 0};
   }
   return {float(axis.x), float(axis.y), float(axis.z), float(2 * std::atan2(length, w))};
 }
@@ -101,7 +104,8 @@ Vec3f blendNormals(const Vec3f& first, const Vec3f& second, float t) {
   if (a == V3d(0)) return {0, 0, 0};
   const double angle = angleBetween(a, b);
   if (angle > M_PI - 1e-6) { // opposite: half a turn about an axis that depends on a alone
-    const V3d side = unit(std::abs(a.x) < 0.7 ? a.cross(V3d(1, 0, 0)) : a.cross(V3d(0, 1, 0))).cross(a);
+    const V3d side =
+        unit(std::abs(a.x) < 0.7 ? a.cross(V3d(1, 0, 0)) : a.cross(V3d(0, 1, 0))).cross(a);
     return toVec3f(a * std::cos(M_PI * t) + side * std::sin(M_PI * t));
   }
   const auto [x, y] = arcWeights(angle, t);

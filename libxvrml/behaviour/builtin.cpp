@@ -1,4 +1,3 @@
-// builtin.cpp: see builtin.h.
 #include "behaviour/builtin.h"
 
 namespace xvrml {

@@ -1,4 +1,5 @@
-// builtin.h: the behaviours of the standard's nodes, one function a file; the list is in builtin.cpp.
+// builtin.h: the behaviours of the standard's nodes, one function a file; the list is in
+// builtin.cpp.
 #pragma once
 
 #include <functional>
@@ -11,8 +12,9 @@ using AddBehaviour = std::function<void(const NodeType& type, const Behaviour& b
 
 void addBuiltinBehaviours(const AddBehaviour& add);
 
-void addBindingBehaviours(const AddBehaviour& add);  // Viewpoint, NavigationInfo, Background, Fog
-void addPointingBehaviours(const AddBehaviour& add); // TouchSensor, PlaneSensor, SphereSensor, CylinderSensor
+void addBindingBehaviours(const AddBehaviour& add); // Viewpoint, NavigationInfo, Background, Fog
+void addPointingBehaviours(
+    const AddBehaviour& add); // TouchSensor, PlaneSensor, SphereSensor, CylinderSensor
 void addRegionBehaviours(const AddBehaviour& add);   // ProximitySensor, VisibilitySensor
 void addInlineBehaviours(const AddBehaviour& add);   // set_url loads
 void addGroupingBehaviours(const AddBehaviour& add); // addChildren, removeChildren

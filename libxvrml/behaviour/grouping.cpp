@@ -6,21 +6,25 @@
 namespace xvrml {
 namespace {
 
-// children is an exposedField: what changes it sends children_changed. What is there already is not added again; what is not
-// there cannot be removed. Both make no event.
+// children is an exposedField: what changes it sends children_changed. What is there already is not
+// added again; what is not there cannot be removed. Both make no event.
 void receive(Events& events, Node& node, const FieldInfo& in, const Value& value) {
   const bool adds = in.name == "addChildren";
   if (!adds && in.name != "removeChildren") return;
   const FieldInfo& children = *node.type().find("children");
   auto list = std::get<MFNode>(node.get(children));
   const MFNode before = list;
-  const auto holds = [&](const NodeRef& child) { return std::find(list.begin(), list.end(), child) != list.end(); };
+  const auto holds = [&](const NodeRef& child) {
+    return std::find(list.begin(), list.end(), child) != list.end();
+  };
   const auto& named = std::get<MFNode>(value);
   if (adds) {
     for (const NodeRef& child : named)
       if (child && !holds(child)) list.push_back(child);
   } else {
-    std::erase_if(list, [&](const NodeRef& child) { return std::find(named.begin(), named.end(), child) != named.end(); });
+    std::erase_if(list, [&](const NodeRef& child) {
+      return std::find(named.begin(), named.end(), child) != named.end();
+    });
   }
   if (!events.store(node, children, std::move(list))) return;
   const Value now = node.get(children); // a node that cannot be a child has been left out

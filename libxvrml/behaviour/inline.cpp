@@ -1,4 +1,3 @@
-// inline.cpp: see inline.h.
 #include "behaviour/inline.h"
 
 #include <unordered_set>
@@ -18,7 +17,8 @@ std::vector<std::string> enclosingFiles(const Node& node) {
   const std::vector<Path> paths = pathsTo(node, 1);
   if (paths.empty()) return {node.source.file ? *node.source.file : std::string()};
   for (const Node* step : paths[0])
-    if (step->type().index == nodes::Inline::typeIndex) files.push_back(step->source.file ? *step->source.file : std::string());
+    if (step->type().index == nodes::Inline::typeIndex)
+      files.push_back(step->source.file ? *step->source.file : std::string());
   return files;
 }
 
@@ -29,12 +29,14 @@ bool loadInlineContent(Engine& engine, Node& node) {
   if (!inlineNode || !engine.browser()) return false;
   World& world = engine.browser()->world();
   engine.contentLeaves(node);
-  const std::shared_ptr<const Scope> old = std::exchange(inlineNode->content, nullptr); // ends when nothing refers to it here
+  const std::shared_ptr<const Scope> old =
+      std::exchange(inlineNode->content, nullptr); // ends when nothing refers to it here
   inlineNode->share.clear();
   const BudgetPtr budget = budgetOf(world);
   const uint64_t before = budget->used();
   Loader(world, world.options).loadLate(*inlineNode, enclosingFiles(node));
-  if (const uint64_t after = budget->used(); after > before) inlineNode->share.adopt(budget, after - before);
+  if (const uint64_t after = budget->used(); after > before)
+    inlineNode->share.adopt(budget, after - before);
   engine.contentLoaded(node);
   engine.changed(node, fieldOf<nodes::Inline>("url"));
   return inlineNode->content != nullptr;
@@ -51,7 +53,8 @@ uint64_t loadInlinesBelow(Engine& engine, const Scope& scope) {
     open.pop_back();
     if (!node || !seen.insert(node).second) continue;
     const auto* inlineNode = dynamic_cast<const InlineNode*>(node);
-    if (inlineNode && !inlineNode->content && !inlineNode->url.empty()) loaded += loadInlineContent(engine, *node);
+    if (inlineNode && !inlineNode->content && !inlineNode->url.empty())
+      loaded += loadInlineContent(engine, *node);
     childrenInHierarchy(*node, open);
   }
   return loaded;
@@ -65,6 +68,8 @@ void receive(Events& events, Node& node, const FieldInfo& in, const Value&) {
 
 } // namespace
 
-void addInlineBehaviours(const AddBehaviour& add) { add(nodes::Inline::nodeType(), {.receive = receive}); }
+void addInlineBehaviours(const AddBehaviour& add) {
+  add(nodes::Inline::nodeType(), {.receive = receive});
+}
 
 } // namespace xvrml

@@ -1,4 +1,5 @@
-// interpolators.cpp: the six interpolators (clauses 4.6.8, 6.10, 6.13, 6.31, 6.32, 6.37, 6.39): set_fraction makes value_changed.
+// interpolators.cpp: the six interpolators (clauses 4.6.8, 6.10, 6.13, 6.31, 6.32, 6.37, 6.39):
+// set_fraction makes value_changed.
 #include <algorithm>
 #include <cmath>
 #include <type_traits>
@@ -16,14 +17,16 @@ struct State : NodeState {
   bool warned = false; // that key and keyValue do not fit
 };
 
-// Where a fraction lies: between values `left` and `left` + 1, at `t` of the way; t 0: the value itself.
+// Where a fraction lies: between values `left` and `left` + 1, at `t` of the way; t 0: the value
+// itself.
 struct Place {
   size_t left;
   float t;
 };
 
-// Clause 4.6.8: below the first key its value, above the last key the last; at a key given several times the last of its
-// values (the limit from the right), except at the ends. Keys that decrease give some value, never an access out of bounds.
+// Clause 4.6.8: below the first key its value, above the last key the last; at a key given several
+// times the last of its values (the limit from the right), except at the ends. Keys that decrease
+// give some value, never an access out of bounds.
 Place locate(const float* keys, size_t count, float fraction) {
   if (fraction <= keys[0]) return {0, 0};
   if (fraction >= keys[count - 1]) return {count - 1, 0};
@@ -36,7 +39,8 @@ Place locate(const float* keys, size_t count, float fraction) {
 }
 
 template <class T> T between(const T* values, Place place) {
-  return place.t == 0 ? values[place.left] : blend(values[place.left], values[place.left + 1], place.t);
+  return place.t == 0 ? values[place.left]
+                      : blend(values[place.left], values[place.left + 1], place.t);
 }
 
 // How many keys can be used, and how many values belong to each. Nothing if there are none.
@@ -49,10 +53,12 @@ template <class Interpolator> Shape shapeOf(Events& events, Interpolator& node, 
   const bool fits = lists ? values % keys == 0 : values == keys;
   if (auto* state = static_cast<State*>(events.state(node)); !fits && state && !state->warned) {
     state->warned = true;
-    events.diagnostics().warn(node.source, fmt::format("{}: {} keys but {} values: {} (4.6.8)", node.type().name, keys, values,
-                                                       values > keys ? "values in excess are ignored"
-                                                       : lists       ? "nothing is sent"
-                                                                     : "keys in excess are ignored"));
+    events.diagnostics().warn(node.source,
+                              fmt::format("{}: {} keys but {} values: {} (4.6.8)", node.type().name,
+                                          keys, values,
+                                          values > keys ? "values in excess are ignored"
+                                          : lists       ? "nothing is sent"
+                                                        : "keys in excess are ignored"));
   }
   if (lists) return values < keys ? Shape{} : Shape{keys, values / keys};
   return {std::min(keys, values), 1};
@@ -62,19 +68,22 @@ template <class Interpolator> void evaluate(Events& events, Interpolator& node, 
   const Shape shape = shapeOf(events, node, false);
   if (shape.keys == 0) return;
   static const FieldInfo& out = fieldOf<Interpolator>("value_changed");
-  events.send(node, out, between(node.keyValue.data(), locate(node.key.data(), shape.keys, fraction)));
+  events.send(node, out,
+              between(node.keyValue.data(), locate(node.key.data(), shape.keys, fraction)));
 }
 
 // CoordinateInterpolator, NormalInterpolator: perKey values for each key, one after the other.
 template <class Interpolator>
-void evaluateLists(Events& events, Interpolator& node, float fraction, Vec3f (*blendOne)(const Vec3f&, const Vec3f&, float)) {
+void evaluateLists(Events& events, Interpolator& node, float fraction,
+                   Vec3f (*blendOne)(const Vec3f&, const Vec3f&, float)) {
   const Shape shape = shapeOf(events, node, true);
   if (shape.keys == 0) return;
   const Place place = locate(node.key.data(), shape.keys, fraction);
   const Vec3f* left = node.keyValue.data() + place.left * shape.perKey;
   MFVec3f result(left, left + shape.perKey);
   if (place.t != 0)
-    for (size_t i = 0; i < shape.perKey; ++i) result[i] = blendOne(left[i], left[i + shape.perKey], place.t);
+    for (size_t i = 0; i < shape.perKey; ++i)
+      result[i] = blendOne(left[i], left[i + shape.perKey], place.t);
   static const FieldInfo& out = fieldOf<Interpolator>("value_changed");
   events.send(node, out, std::move(result));
 }
@@ -93,14 +102,16 @@ template <class Interpolator> void presetFirst(Events& events, Interpolator& nod
   if constexpr (std::is_same_v<Interpolator, nodes::CoordinateInterpolator> ||
                 std::is_same_v<Interpolator, nodes::NormalInterpolator>) {
     const size_t perKey = node.key.empty() ? 0 : node.keyValue.size() / node.key.size();
-    events.preset(node, out, MFVec3f(node.keyValue.begin(), node.keyValue.begin() + ptrdiff_t(perKey)));
+    events.preset(node, out,
+                  MFVec3f(node.keyValue.begin(), node.keyValue.begin() + ptrdiff_t(perKey)));
   } else {
     events.preset(node, out, node.keyValue[0]);
   }
 }
 
 // A new key or keyValue makes no event of its own: only set_fraction does.
-template <class Interpolator> void receive(Events& events, Node& node, const FieldInfo& in, const Value& value) {
+template <class Interpolator>
+void receive(Events& events, Node& node, const FieldInfo& in, const Value& value) {
   static const FieldInfo& fraction = fieldOf<Interpolator>("set_fraction");
   auto& interpolator = static_cast<Interpolator&>(node);
   if (&in != &fraction)

@@ -1,4 +1,3 @@
-// media.cpp: see media.h.
 #include "behaviour/media.h"
 
 #include <cmath>
@@ -20,13 +19,17 @@ void send(Events& events, Node& node, Media& media, const TimeStep& step) {
   if (step.ends) events.send(node, "isActive", false);
 }
 
-bool mayTurn(const Events& events, const Node& node) { return !events.hasSent(node, *node.type().find("isActive")); }
+bool mayTurn(const Events& events, const Node& node) {
+  return !events.hasSent(node, *node.type().find("isActive"));
+}
 
 bool isRate(const FieldInfo& field) { return field.name == "pitch" || field.name == "speed"; }
 
 bool accept(Events& events, Node& node, const FieldInfo& field, const Value& value) {
   const Media& media = mediaOf(events, node);
-  if (isRate(field) && (media.time.active() || !inRange(field, value) || !std::isfinite(std::get<SFFloat>(value)))) return false;
+  if (isRate(field) &&
+      (media.time.active() || !inRange(field, value) || !std::isfinite(std::get<SFFloat>(value))))
+    return false;
   return media.time.accepts(media.fields(node), field, value);
 }
 
@@ -37,7 +40,8 @@ void receive(Events& events, Node& node, const FieldInfo& in, const Value&) {
     events.send(node, "duration_changed", media.duration);
   }
   const TimeFields fields = media.fields(node);
-  const TimeStep step = media.time.fieldChanged(fields, events.now(), mayTurn(events, node), in.name == "startTime");
+  const TimeStep step =
+      media.time.fieldChanged(fields, events.now(), mayTurn(events, node), in.name == "startTime");
   send(events, node, media, step);
   events.wantTicks(node, media.time.wantsTicks(fields, events.now()));
 }
@@ -51,7 +55,8 @@ void tick(Events& events, Node& node) {
 
 } // namespace
 
-void addMedia(const AddBehaviour& add, const NodeType& type, std::unique_ptr<NodeState> (*begin)(Events&, Node&)) {
+void addMedia(const AddBehaviour& add, const NodeType& type,
+              std::unique_ptr<NodeState> (*begin)(Events&, Node&)) {
   add(type, {.begin = begin, .accept = accept, .receive = receive, .tick = tick});
 }
 
@@ -69,23 +74,30 @@ const LoadOptions& loadOptions(const Events& events) {
   return events.browser() ? events.browser()->world().options : defaults;
 }
 
-Share mediaShare(const Events& events) { return events.browser() ? Share(budgetOf(events.browser()->world())) : Share(); }
-
-std::string tooMuch(uint64_t bytes, const Budget& budget) {
-  return fmt::format("with all that the world holds its {} bytes are more than {}", bytes, budget.name());
+Share mediaShare(const Events& events) {
+  return events.browser() ? Share(budgetOf(events.browser()->world())) : Share();
 }
 
-bool readFirst(Events& events, const Node& node, const MFString& urls, const std::function<bool(const std::string& path)>& read) {
+std::string tooMuch(uint64_t bytes, const Budget& budget) {
+  return fmt::format("with all that the world holds its {} bytes are more than {}", bytes,
+                     budget.name());
+}
+
+bool readFirst(Events& events, const Node& node, const MFString& urls,
+               const std::function<bool(const std::string& path)>& read) {
   std::string error;
   for (const std::string& url : urls) {
-    const ResolvedUrl resolved = resolveUrl(url, node.source.file ? *node.source.file : std::string(), loadOptions(events));
+    const ResolvedUrl resolved =
+        resolveUrl(url, node.source.file ? *node.source.file : std::string(), loadOptions(events));
     std::string why = resolved.error;
     try {
       if (why.empty() && read(resolved.path)) return true;
     } catch (const std::exception& failure) { why = failure.what(); }
     if (error.empty()) error = why.find(url) == std::string::npos ? url + ": " + why : why;
   }
-  if (!urls.empty()) events.diagnostics().warn(node.source, fmt::format("{}: nothing to play: {}", node.type().name, error));
+  if (!urls.empty())
+    events.diagnostics().warn(node.source,
+                              fmt::format("{}: nothing to play: {}", node.type().name, error));
   return false;
 }
 

@@ -1,4 +1,5 @@
-// movie_texture.cpp: MovieTexture (clause 6.28): its events, and which picture of the film it shows; decoded when asked for.
+// movie_texture.cpp: MovieTexture (clause 6.28): its events, and which picture of the film it
+// shows; decoded when asked for.
 #include <atomic>
 #include <exception>
 #include <stdexcept>
@@ -12,7 +13,8 @@
 namespace xvrml {
 namespace {
 
-// Pixels of all films that are being decoded, in this process: a world may not open thousands of large ones.
+// Pixels of all films that are being decoded, in this process: a world may not open thousands of
+// large ones.
 std::atomic<uint64_t> openPixels{0};
 
 struct State : Media {
@@ -25,35 +27,43 @@ struct State : Media {
     wanted = shown = none;
     limits = loadOptions(events).limits;
     share = mediaShare(events);
-    readFirst(events, node, static_cast<nodes::MovieTexture&>(node).url, [&](const std::string& path) {
-      if (decodesFilms()) {
-        auto read = FilmData::read(path, limits);
-        if (!share.take(read->bytes())) throw std::runtime_error(tooMuch(read->bytes(), *share.budget()));
-        film = std::move(read);
-      } else { // a picture at least, if it is a GIF
-        try {
-          image = readImage(path, {limits, ~uint64_t(0), share.budget().get()});
-        } catch (const std::exception&) { FilmData::read(path, limits); } // says why
-        wanted = shown = 0;
-        events.diagnostics().warn(node.source, "MovieTexture: the first picture only: this build has no decoder of films");
-      }
-      return true;
-    });
+    readFirst(events, node, static_cast<nodes::MovieTexture&>(node).url,
+              [&](const std::string& path) {
+                if (decodesFilms()) {
+                  auto read = FilmData::read(path, limits);
+                  if (!share.take(read->bytes()))
+                    throw std::runtime_error(tooMuch(read->bytes(), *share.budget()));
+                  film = std::move(read);
+                } else { // a picture at least, if it is a GIF
+                  try {
+                    image = readImage(path, {limits, ~uint64_t(0), share.budget().get()});
+                  } catch (const std::exception&) { FilmData::read(path, limits); } // says why
+                  wanted = shown = 0;
+                  events.diagnostics().warn(
+                      node.source,
+                      "MovieTexture: the first picture only: this build has no decoder of films");
+                }
+                return true;
+              });
     if (film) wanted = static_cast<nodes::MovieTexture&>(node).speed < 0 ? film->pictures() - 1 : 0;
     return film ? film->duration() : -1;
   }
 
   TimeFields fields(const Node& node) const override {
     const auto& n = static_cast<const nodes::MovieTexture&>(node);
-    return {n.startTime, n.stopTime, duration > 0 ? duration / std::abs(double(n.speed)) : 0, n.loop, true};
+    return {n.startTime, n.stopTime, duration > 0 ? duration / std::abs(double(n.speed)) : 0,
+            n.loop, true};
   }
 
   void play(Events& events, Node& node, const TimeStep& step) override {
     if (!film) return;
     const auto& n = static_cast<const nodes::MovieTexture&>(node);
-    // The end of a cycle is the beginning of the next one; where none follows the last picture stays.
+    // The end of a cycle is the beginning of the next one; where none follows the last picture
+    // stays.
     const double fraction = step.fraction == 1 && n.loop && !step.ends ? 0 : step.fraction;
-    const size_t picture = n.speed == 0 ? 0 : film->pictureAt(n.speed < 0 ? duration * (1 - fraction) : duration * fraction);
+    const size_t picture = n.speed == 0 ? 0
+                                        : film->pictureAt(n.speed < 0 ? duration * (1 - fraction)
+                                                                      : duration * fraction);
     if (picture == wanted) return;
     wanted = picture;
     events.changed(node, fieldOf<nodes::MovieTexture>("url"));
@@ -97,16 +107,21 @@ struct State : Media {
   uint64_t counted = 0;               // of openPixels
 };
 
-std::unique_ptr<NodeState> begin(Events& events, Node& node) { return beginMedia(events, node, std::make_unique<State>()); }
+std::unique_ptr<NodeState> begin(Events& events, Node& node) {
+  return beginMedia(events, node, std::make_unique<State>());
+}
 
 } // namespace
 
 const Image* currentImage(const Node& node) {
-  if (node.type().index != nodes::MovieTexture::typeIndex || !node.live || !liveOf(node)->part) return nullptr;
+  if (node.type().index != nodes::MovieTexture::typeIndex || !node.live || !liveOf(node)->part)
+    return nullptr;
   auto* state = static_cast<State*>(liveOf(node)->part->state.get());
   return state ? state->picture() : nullptr;
 }
 
-void addMovieTextureBehaviours(const AddBehaviour& add) { addMedia(add, nodes::MovieTexture::nodeType(), begin); }
+void addMovieTextureBehaviours(const AddBehaviour& add) {
+  addMedia(add, nodes::MovieTexture::nodeType(), begin);
+}
 
 } // namespace xvrml

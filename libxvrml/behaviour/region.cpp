@@ -1,5 +1,6 @@
-// region.cpp: ProximitySensor and VisibilitySensor (clauses 6.38, 6.54): boxes that the viewer is in, or sees. They look once a
-// tick, after its events, and at jumps. A sensor that is USEd senses the union of its boxes.
+// region.cpp: ProximitySensor and VisibilitySensor (clauses 6.38, 6.54): boxes that the viewer is
+// in, or sees. They look once a tick, after its events, and at jumps. A sensor that is USEd senses
+// the union of its boxes.
 #include <array>
 #include <cmath>
 
@@ -44,13 +45,16 @@ void setActive(Events& events, Node& node, bool active) {
 }
 
 // The way to the viewer from the first of the sensor's boxes that he is in.
-bool viewerInside(const Node& node, const Region& region, const Matrix& view, Matrix& viewerToSensor) {
+bool viewerInside(const Node& node, const Region& region, const Matrix& view,
+                  Matrix& viewerToSensor) {
   for (const Path& path : pathsTo(node)) {
     Matrix toLocal;
     if (!invert(Picker::toWorld(path, view), toLocal)) continue;
     viewerToSensor = compose(toLocal, view);
     const Vector p = transformPoint(viewerToSensor, Vector(0)) - region.center;
-    if (std::abs(p.x) <= region.half.x && std::abs(p.y) <= region.half.y && std::abs(p.z) <= region.half.z) return true;
+    if (std::abs(p.x) <= region.half.x && std::abs(p.y) <= region.half.y &&
+        std::abs(p.z) <= region.half.z)
+      return true;
   }
   return false;
 }
@@ -59,9 +63,11 @@ void lookProximity(Events& events, Node& node) {
   auto& state = static_cast<RegionState&>(*events.state(node));
   const auto& sensor = static_cast<nodes::ProximitySensor&>(node);
   const Region region = regionOf(sensor);
-  const bool senses = sensor.enabled && sensor.size != Vec3f(); // 6.38: a box without any extent senses nothing
+  const bool senses =
+      sensor.enabled && sensor.size != Vec3f(); // 6.38: a box without any extent senses nothing
   Matrix viewer;
-  const bool inside = senses && viewerInside(node, region, interactionOf(events).viewer.view(), viewer);
+  const bool inside =
+      senses && viewerInside(node, region, interactionOf(events).viewer.view(), viewer);
   const bool entered = inside && !state.active;
   if (inside != state.active) setActive(events, node, inside);
   if (!inside) return;
@@ -69,12 +75,14 @@ void lookProximity(Events& events, Node& node) {
   const Vec3f position{float(p.x), float(p.y), float(p.z)};
   const Rotation orientation = rotationOf(viewer);
   if (entered || position != state.position) events.send(node, "position_changed", position);
-  if (entered || orientation != state.orientation) events.send(node, "orientation_changed", orientation);
+  if (entered || orientation != state.orientation)
+    events.send(node, "orientation_changed", orientation);
   state.position = position;
   state.orientation = orientation;
 }
 
-// The part of a convex polygon on the inner side of a plane through the eye (Sutherland and Hodgman 1974).
+// The part of a convex polygon on the inner side of a plane through the eye (Sutherland and Hodgman
+// 1974).
 void clip(std::vector<Vector>& polygon, const Vector& inwards) {
   std::vector<Vector> kept;
   for (size_t i = 0; i < polygon.size(); ++i) {
@@ -91,10 +99,12 @@ bool seen(const Region& region, const Matrix& toCamera, double fovy, double aspe
   std::array<Vector, 8> corner;
   for (int i = 0; i < 8; ++i)
     corner[size_t(i)] =
-        transformPoint(toCamera, region.center + Vector(region.half.x * (i & 1 ? 1 : -1), region.half.y * (i & 2 ? 1 : -1),
+        transformPoint(toCamera, region.center + Vector(region.half.x * (i & 1 ? 1 : -1),
+                                                        region.half.y * (i & 2 ? 1 : -1),
                                                         region.half.z * (i & 4 ? 1 : -1)));
   const double y = std::tan(fovy / 2), x = y * aspect;
-  const std::array<Vector, 5> planes{Vector(1, 0, -x), Vector(-1, 0, -x), Vector(0, 1, -y), Vector(0, -1, -y), Vector(0, 0, -1)};
+  const std::array<Vector, 5> planes{Vector(1, 0, -x), Vector(-1, 0, -x), Vector(0, 1, -y),
+                                     Vector(0, -1, -y), Vector(0, 0, -1)};
   constexpr std::array<std::array<size_t, 4>, 6> faces{
       {{0, 1, 3, 2}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 3, 7, 5}}};
   for (const auto& face : faces) {
@@ -105,7 +115,8 @@ bool seen(const Region& region, const Matrix& toCamera, double fovy, double aspe
   Matrix toBox;
   if (!invert(toCamera, toBox)) return false;
   const Vector p = transformPoint(toBox, Vector(0)) - region.center;
-  return std::abs(p.x) <= region.half.x && std::abs(p.y) <= region.half.y && std::abs(p.z) <= region.half.z;
+  return std::abs(p.x) <= region.half.x && std::abs(p.y) <= region.half.y &&
+         std::abs(p.z) <= region.half.z;
 }
 
 void lookVisibility(Events& events, Node& node) {
@@ -119,9 +130,11 @@ void lookVisibility(Events& events, Node& node) {
     Matrix toCamera;
     if (invert(view, toCamera))
       for (const Path& path : pathsTo(node))
-        visible = visible || seen(region, compose(toCamera, Picker::toWorld(path, view)), camera.fovy, interaction.aspect);
+        visible = visible || seen(region, compose(toCamera, Picker::toWorld(path, view)),
+                                  camera.fovy, interaction.aspect);
   }
-  if (visible != static_cast<RegionState&>(*events.state(node)).active) setActive(events, node, visible);
+  if (visible != static_cast<RegionState&>(*events.state(node)).active)
+    setActive(events, node, visible);
 }
 
 std::unique_ptr<NodeState> begin(Events& events, Node& node) {
@@ -131,15 +144,18 @@ std::unique_ptr<NodeState> begin(Events& events, Node& node) {
 
 // A sensor that is disabled says so at once (4.6.7.2).
 void receive(Events& events, Node& node, const FieldInfo& in, const Value& value) {
-  if (in.name == "enabled" && !std::get<bool>(value) && static_cast<RegionState&>(*events.state(node)).active)
+  if (in.name == "enabled" && !std::get<bool>(value) &&
+      static_cast<RegionState&>(*events.state(node)).active)
     setActive(events, node, false);
 }
 
 } // namespace
 
 void addRegionBehaviours(const AddBehaviour& add) {
-  add(nodes::ProximitySensor::nodeType(), {.begin = begin, .receive = receive, .look = lookProximity});
-  add(nodes::VisibilitySensor::nodeType(), {.begin = begin, .receive = receive, .look = lookVisibility});
+  add(nodes::ProximitySensor::nodeType(),
+      {.begin = begin, .receive = receive, .look = lookProximity});
+  add(nodes::VisibilitySensor::nodeType(),
+      {.begin = begin, .receive = receive, .look = lookVisibility});
 }
 
 } // namespace xvrml

@@ -1,4 +1,4 @@
-// shapes.cpp: see xvrml/build.h. The walk has a stack of its own: nesting costs no C++ stack.
+// shapes.cpp: The walk has a stack of its own: nesting costs no C++ stack.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -35,7 +35,8 @@ void cutSphere(GeometryArrays& arrays, int steps) {
   for (uint32_t r = 0; r <= rings; ++r)
     for (uint32_t a = 0; a <= around; ++a) {
       const double up = std::numbers::pi * r / rings, turn = 2 * std::numbers::pi * a / around;
-      const Vec3f n{float(-std::sin(up) * std::sin(turn)), float(-std::cos(up)), float(-std::sin(up) * std::cos(turn))};
+      const Vec3f n{float(-std::sin(up) * std::sin(turn)), float(-std::cos(up)),
+                    float(-std::sin(up) * std::cos(turn))};
       arrays.points.push_back({radius * n.x, radius * n.y, radius * n.z});
       arrays.normals.push_back(n);
       arrays.texCoords.push_back({float(a) / float(around), float(r) / float(rings)});
@@ -72,13 +73,15 @@ std::vector<PlacedShape> placedShapes(const World& world, const double* view) {
   for (size_t i = roots.size(); i-- > 0;)
     if (roots[i]) open.push_back({roots[i].get(), none});
   for (size_t visits = 0; !open.empty(); ++visits) {
-    if (visits == maximumVisits) throw std::length_error("the world has more than 4,000,000 nodes where they are drawn");
+    if (visits == maximumVisits)
+      throw std::length_error("the world has more than 4,000,000 nodes where they are drawn");
     const Visit visit = open.back();
     open.pop_back();
     way.resize(visit.parent + 1); // none + 1 is 0
     path.resize(visit.parent + 1);
     const Matrix outside = visit.parent == none ? Matrix() : way[visit.parent];
-    if (std::find(path.begin(), path.end(), visit.node) != path.end()) continue; // holds itself: a program has made it so
+    if (std::find(path.begin(), path.end(), visit.node) != path.end())
+      continue; // holds itself: a program has made it so
     if (auto* shape = nodeCast<nodes::Shape>(visit.node)) {
       Node* geometry = renderedNode(shape->geometry.get());
       if (!geometry) continue;
@@ -100,7 +103,8 @@ std::vector<PlacedShape> placedShapes(const World& world, const double* view) {
 }
 
 GeometryArrays geometryArrays(Node& geometry, int sphereSteps, const Limits& limits) {
-  const Mesh mesh = buildMesh(geometry, {.needTexCoords = true, .limits = &limits, .diagnostics = nullptr});
+  const Mesh mesh =
+      buildMesh(geometry, {.needTexCoords = true, .limits = &limits, .diagnostics = nullptr});
   GeometryArrays arrays;
   arrays.kind = GeometryArrays::Kind(mesh.kind);
   static_assert(int(GeometryArrays::Kind::sphere) == int(Mesh::Kind::sphere));
@@ -112,7 +116,8 @@ GeometryArrays geometryArrays(Node& geometry, int sphereSteps, const Limits& lim
   arrays.solid = mesh.solid;
   arrays.ccw = mesh.ccw;
   arrays.radius = mesh.radius;
-  if (arrays.kind == GeometryArrays::Kind::sphere && sphereSteps > 1) cutSphere(arrays, sphereSteps);
+  if (arrays.kind == GeometryArrays::Kind::sphere && sphereSteps > 1)
+    cutSphere(arrays, sphereSteps);
   return arrays;
 }
 

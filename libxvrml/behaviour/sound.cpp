@@ -9,8 +9,9 @@
 namespace xvrml {
 namespace {
 
-// Distance from the focus at the location to the ellipsoid that reaches `front` ahead and `back` behind, at an angle to the
-// direction: with a = (front + back) / 2 and c = (front - back) / 2 the polar form (a^2 - c^2) / (a - c cosine).
+// Distance from the focus at the location to the ellipsoid that reaches `front` ahead and `back`
+// behind, at an angle to the direction: with a = (front + back) / 2 and c = (front - back) / 2 the
+// polar form (a^2 - c^2) / (a - c cosine).
 double radius(double front, double back, double cosine) {
   if (!(front > 0 && back > 0)) return 0;
   return 2 * front * back / (front + back - (front - back) * cosine);
@@ -23,14 +24,16 @@ Distances distances(const nodes::Sound& sound, const Vec3f& viewer) {
   const Vector way = vector(viewer) - vector(sound.location), direction = vector(sound.direction);
   const double length = way.length(), product = length * direction.length();
   const double cosine = product > 0 ? std::clamp(way.dot(direction) / product, -1.0, 1.0) : 1;
-  return {length, radius(sound.minFront, sound.minBack, cosine), radius(sound.maxFront, sound.maxBack, cosine)};
+  return {length, radius(sound.minFront, sound.minBack, cosine),
+          radius(sound.maxFront, sound.maxBack, cosine)};
 }
 
 // A sample of one channel at a place in frames.
 double sampleAt(const Clip& clip, double place, int channel, bool loop) {
   const size_t frames = clip.frames(), at = size_t(place), next = at + 1 < frames ? at + 1 : 0;
   const double a = clip.samples[at * size_t(clip.channels) + size_t(channel)];
-  const double b = next == 0 && !loop ? 0 : clip.samples[next * size_t(clip.channels) + size_t(channel)];
+  const double b =
+      next == 0 && !loop ? 0 : clip.samples[next * size_t(clip.channels) + size_t(channel)];
   return a + (b - a) * (place - double(at));
 }
 
@@ -68,7 +71,8 @@ void mix(const Playing& playing, const SoundLevels& levels, double rate, std::sp
       place = std::fmod(place, frames);
     }
     stereo[i] += float(levels.left * sampleAt(clip, place, 0, playing.loop));
-    stereo[i + 1] += float(levels.right * sampleAt(clip, place, std::min(1, clip.channels - 1), playing.loop));
+    stereo[i + 1] +=
+        float(levels.right * sampleAt(clip, place, std::min(1, clip.channels - 1), playing.loop));
   }
 }
 

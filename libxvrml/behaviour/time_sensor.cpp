@@ -12,8 +12,9 @@ struct State : NodeState {
 
 // The rows of TimeSensor that are sent, looked up once.
 struct Rows {
-  const FieldInfo &isActive = row("isActive"), &cycleTime = row("cycleTime"), &fraction = row("fraction_changed"),
-                  &time = row("time"), &startTime = row("startTime");
+  const FieldInfo &isActive = row("isActive"), &cycleTime = row("cycleTime"),
+                  &fraction = row("fraction_changed"), &time = row("time"),
+                  &startTime = row("startTime");
   static const FieldInfo& row(std::string_view name) { return fieldOf<nodes::TimeSensor>(name); }
 };
 const Rows& rows() {
@@ -26,7 +27,9 @@ TimeFields fieldsOf(const Node& node) {
   return {sensor.startTime, sensor.stopTime, sensor.cycleInterval, sensor.loop, sensor.enabled};
 }
 
-TimeDependent& machine(Events& events, Node& node) { return static_cast<State*>(events.state(node))->time; }
+TimeDependent& machine(Events& events, Node& node) {
+  return static_cast<State*>(events.state(node))->time;
+}
 
 // In the order of 6.50: active first and inactive last, the events of the moment between.
 void send(Events& events, Node& node, const TimeStep& step) {
@@ -74,7 +77,8 @@ void tick(Events& events, Node& node) {
 } // namespace
 
 void addTimeSensorBehaviours(const AddBehaviour& add) {
-  add(nodes::TimeSensor::nodeType(), {.begin = begin, .accept = accept, .receive = receive, .tick = tick});
+  add(nodes::TimeSensor::nodeType(),
+      {.begin = begin, .accept = accept, .receive = receive, .tick = tick});
 }
 
 } // namespace xvrml

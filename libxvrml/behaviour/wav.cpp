@@ -1,4 +1,4 @@
-// wav.cpp: see wav.h. Sizes in the file are not trusted: a chunk ends with the file at the latest.
+// wav.cpp: Sizes in the file are not trusted: a chunk ends with the file at the latest.
 #include "behaviour/wav.h"
 
 #include <algorithm>
@@ -35,27 +35,31 @@ class File {
 
 bool is(const uint8_t* bytes, const char* name) { return std::memcmp(bytes, name, 4) == 0; }
 
-void readFormat(const uint8_t* p, uint64_t bytes, WavInfo& info, uint32_t& bytesPerSecond, uint32_t& frameBytes) {
+void readFormat(const uint8_t* p, uint64_t bytes, WavInfo& info, uint32_t& bytesPerSecond,
+                uint32_t& frameBytes) {
   info.format = int(little(p, 2));
   info.channels = int(little(p + 2, 2));
   info.rate = little(p + 4, 4);
   bytesPerSecond = little(p + 8, 4);
   frameBytes = little(p + 12, 2);
   info.bits = int(little(p + 14, 2));
-  if (info.format == 0xfffe && bytes >= 26) info.format = int(little(p + 24, 2)); // extensible: the first bytes of a GUID
+  if (info.format == 0xfffe && bytes >= 26)
+    info.format = int(little(p + 24, 2)); // extensible: the first bytes of a GUID
 }
 
 WavInfo readHeader(File& file) {
   uint8_t head[40] = {};
   if (!file.read(0, head, 12)) throw std::runtime_error("the file is no sound");
   if (is(head, "MThd")) throw std::runtime_error("MIDI is not played");
-  if (!is(head, "RIFF") || !is(head + 8, "WAVE")) throw std::runtime_error("the file is no WAVE sound");
+  if (!is(head, "RIFF") || !is(head + 8, "WAVE"))
+    throw std::runtime_error("the file is no WAVE sound");
   WavInfo info;
   uint32_t bytesPerSecond = 0, frameBytes = 0;
   bool hasFormat = false, hasData = false;
   int chunks = 0;
   for (uint64_t at = 12; !(hasFormat && hasData) && file.read(at, head, 8) && ++chunks < 1000;) {
-    const uint64_t begin = at + 8, bytes = std::min<uint64_t>(little(head + 4, 4), file.size() - begin);
+    const uint64_t begin = at + 8,
+                   bytes = std::min<uint64_t>(little(head + 4, 4), file.size() - begin);
     if (is(head, "data")) {
       hasData = true;
       info.dataAt = begin;
@@ -66,7 +70,8 @@ WavInfo readHeader(File& file) {
     }
     at = begin + bytes + bytes % 2;
   }
-  if (!hasFormat || !hasData || info.channels == 0 || !(info.rate > 0)) throw std::runtime_error("damaged WAVE sound");
+  if (!hasFormat || !hasData || info.channels == 0 || !(info.rate > 0))
+    throw std::runtime_error("damaged WAVE sound");
   const bool plain = info.format == 1 || info.format == 3;
   if (plain && info.bits > 0) frameBytes = uint32_t((info.bits + 7) / 8 * info.channels);
   if (plain && frameBytes > 0)
@@ -101,15 +106,18 @@ Clip readWav(const std::string& path, const std::function<void(uint64_t bytes)>&
   const WavInfo info = readHeader(file);
   const int bytes = (info.bits + 7) / 8;
   if (!(info.format == 1 && bytes >= 1 && bytes <= 4) && !(info.format == 3 && bytes == 4))
-    throw std::runtime_error(fmt::format("WAVE sound of format {} with {} bits is not decoded", info.format, info.bits));
+    throw std::runtime_error(
+        fmt::format("WAVE sound of format {} with {} bits is not decoded", info.format, info.bits));
   if (info.dataBytes > maximumClipBytes) throw std::runtime_error("the sound is too large");
   if (reserve) reserve(info.dataBytes / uint64_t(bytes) * sizeof(float));
   std::vector<uint8_t> raw(info.dataBytes);
-  if (!file.read(info.dataAt, raw.data(), raw.size())) throw std::runtime_error("damaged WAVE sound");
+  if (!file.read(info.dataAt, raw.data(), raw.size()))
+    throw std::runtime_error("damaged WAVE sound");
   Clip clip{info.channels, info.rate, {}};
   const size_t frames = raw.size() / size_t(bytes * info.channels);
   clip.samples.resize(frames * size_t(info.channels));
-  for (size_t i = 0; i < clip.samples.size(); ++i) clip.samples[i] = sample(raw.data() + i * size_t(bytes), info.format, bytes);
+  for (size_t i = 0; i < clip.samples.size(); ++i)
+    clip.samples[i] = sample(raw.data() + i * size_t(bytes), info.format, bytes);
   return clip;
 }
 

@@ -1,4 +1,3 @@
-// browser.cpp: see xvrml/browser.h.
 #include <algorithm>
 #include <stdexcept>
 
@@ -13,7 +12,8 @@ namespace xvrml {
 Browser::Browser(std::unique_ptr<World> world, BrowserOptions options, double start)
     : Browser(std::move(world), std::move(options), start, RunOptions()) {}
 
-Browser::Browser(std::unique_ptr<World> world, BrowserOptions options, double start, const RunOptions& run)
+Browser::Browser(std::unique_ptr<World> world, BrowserOptions options, double start,
+                 const RunOptions& run)
     : impl_(std::make_unique<Impl>(*this, std::move(world), options, run)) {
   impl_->time = start;
   impl_->engine->beginCascade(impl_->run.epoch + start);
@@ -36,7 +36,9 @@ void Browser::tick(double time) {
 }
 FieldChanges Browser::takeChanges() { return impl_->engine->takeChanges(); }
 bool Browser::hasChanges() const { return impl_->engine->hasChanges(); }
-ScriptCounts Browser::scripts() const { return impl_->scripts ? impl_->scripts->counts() : ScriptCounts{}; }
+ScriptCounts Browser::scripts() const {
+  return impl_->scripts ? impl_->scripts->counts() : ScriptCounts{};
+}
 uint64_t Browser::generation() const { return impl_->generation; }
 
 NodeRef Browser::node(std::string_view name) const {
@@ -45,7 +47,8 @@ NodeRef Browser::node(std::string_view name) const {
   return found == names.end() ? NodeRef() : found->second;
 }
 
-// Stores a field, and if it is of a prototype's instance also in the body: what takes events there gets one.
+// Stores a field, and if it is of a prototype's instance also in the body: what takes events there
+// gets one.
 static bool storeField(Engine& engine, Node& node, const FieldInfo& field, Value value) {
   if (!engine.store(node, field, std::move(value))) return false;
   std::vector<std::pair<ProtoInstance*, const FieldInfo*>> open;
@@ -58,7 +61,9 @@ static bool storeField(Engine& engine, Node& node, const FieldInfo& field, Value
     open.pop_back();
     for (const IsConnection& connection : instance->is) {
       const FieldInfo* to = connection.node->type().find(connection.field);
-      if (connection.interfaceName != from->name || !to || !holdsValue(*to) || to->type != from->type) continue;
+      if (connection.interfaceName != from->name || !to || !holdsValue(*to) ||
+          to->type != from->type)
+        continue;
       if (to->access == Access::exposedField)
         engine.post(*connection.node, *to, instance->get(*from));
       else if (engine.store(*connection.node, *to, instance->get(*from)))
@@ -81,9 +86,12 @@ bool Browser::set(Node& node, std::string_view field, Value value) {
 }
 
 Value Browser::get(const Node& node, std::string_view field) const {
-  if (const FieldInfo* plain = node.type().find(field); plain && holdsValue(*plain)) return node.get(*plain);
-  if (const FieldInfo* out = node.type().findEventOut(field)) return impl_->engine->lastSent(node, *out);
-  throw std::invalid_argument(fmt::format("{} has no field or eventOut '{}'", node.type().name, field));
+  if (const FieldInfo* plain = node.type().find(field); plain && holdsValue(*plain))
+    return node.get(*plain);
+  if (const FieldInfo* out = node.type().findEventOut(field))
+    return impl_->engine->lastSent(node, *out);
+  throw std::invalid_argument(
+      fmt::format("{} has no field or eventOut '{}'", node.type().name, field));
 }
 
 uint64_t Browser::listen(Node& node, std::string_view out, Callback callback) {
@@ -95,7 +103,8 @@ void Browser::unlisten(Node& node, uint64_t number) { impl_->engine->unlisten(no
 
 NodeRef Browser::createNode(std::string_view name) {
   const NodeType* type = findNodeType(name);
-  if (!type || type->name == "Script") throw std::invalid_argument(fmt::format("'{}' is not a node type that can be made", name));
+  if (!type || type->name == "Script")
+    throw std::invalid_argument(fmt::format("'{}' is not a node type that can be made", name));
   NodeRef node = makeStaticNode(*type);
   impl_->engine->adopt(*node);
   return node;

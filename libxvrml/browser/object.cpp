@@ -1,5 +1,6 @@
-// object.cpp: the Browser object that Scripts and programs see (ISO/IEC 14772-1 4.12.10): what it knows, what it loads, and how
-// one world takes the place of another. See xvrml/browser.h. [the browser's thread]
+// object.cpp: the Browser object that Scripts and programs see (ISO/IEC 14772-1 4.12.10): what it
+// knows, what it loads, and how one world takes the place of another. See xvrml/browser.h. [the
+// browser's thread]
 #include <fmt/format.h>
 
 #include "behaviour/viewer/interaction.h"
@@ -18,7 +19,8 @@ std::vector<NodeRef> breakCycles(const std::vector<NodeRef>& cyclic) {
       continue;
     }
     for (const FieldInfo& field : node->type().fields)
-      if (holdsNodes(field)) visitStorage(field.type, node->storage(field), [](auto& value) { value = {}; });
+      if (holdsNodes(field))
+        visitStorage(field.type, node->storage(field), [](auto& value) { value = {}; });
   }
   return kept;
 }
@@ -29,8 +31,9 @@ void append(Diagnostics& to, const Diagnostics& from) {
 
 // The first of the URLs that is a world, or null after a warning.
 // budget: of the world that it becomes part of; null: it has one of its own.
-std::unique_ptr<World> loadFirst(const std::vector<std::string>& urls, const std::string& base, const LoadOptions& options,
-                                 Diagnostics& diagnostics, const SourcePosition& where, std::string_view what,
+std::unique_ptr<World> loadFirst(const std::vector<std::string>& urls, const std::string& base,
+                                 const LoadOptions& options, Diagnostics& diagnostics,
+                                 const SourcePosition& where, std::string_view what,
                                  std::string* fragment, const BudgetPtr& budget) {
   std::string reasons;
   for (const std::string& url : urls) {
@@ -38,19 +41,22 @@ std::unique_ptr<World> loadFirst(const std::vector<std::string>& urls, const std
     std::string reason = resolved.error;
     if (reason.empty()) {
       try {
-        auto loaded = budget ? loadWorldInto(budget, resolved.path, options) : loadWorld(resolved.path, options);
+        auto loaded = budget ? loadWorldInto(budget, resolved.path, options)
+                             : loadWorld(resolved.path, options);
         if (fragment) *fragment = resolved.fragment;
         return loaded;
       } catch (const LoadError& error) { reason = error.diagnostic.text(); }
     }
     if (reasons.size() < 400) reasons += (reasons.empty() ? "" : "; ") + reason;
   }
-  diagnostics.warn(where, fmt::format("{}: {}", what, reasons.empty() ? "it names no URL" : reasons));
+  diagnostics.warn(where,
+                   fmt::format("{}: {}", what, reasons.empty() ? "it names no URL" : reasons));
   return nullptr;
 }
 
-// What programs make is checked against the budget while it is made. It is not counted afterwards: a world that makes and drops
-// nodes for hours would come to its end otherwise. The number of nodes that live bounds it (limit expandedNodes).
+// What programs make is checked against the budget while it is made. It is not counted afterwards:
+// a world that makes and drops nodes for hours would come to its end otherwise. The number of nodes
+// that live bounds it (limit expandedNodes).
 class Passing {
  public:
   explicit Passing(const World& world) : budget_(budgetOf(world)), before_(budget_->used()) {}
@@ -66,8 +72,10 @@ class Passing {
 
 } // namespace
 
-Browser::Impl::Impl(Browser& browser, std::unique_ptr<World> world, const BrowserOptions& options, const RunOptions& run)
-    : options(options), run(run), world(std::move(world)), engine(std::make_unique<Engine>(this->world->diagnostics, makeInteraction, &browser)) {
+Browser::Impl::Impl(Browser& browser, std::unique_ptr<World> world, const BrowserOptions& options,
+                    const RunOptions& run)
+    : options(options), run(run), world(std::move(world)),
+      engine(std::make_unique<Engine>(this->world->diagnostics, makeInteraction, &browser)) {
   engine->maximumEvents = options.maximumEvents;
   if (!options.runScripts) return;
   scripts = std::make_unique<ScriptHost>(browser, *engine, *this->world, this->options, this->run);
@@ -96,7 +104,8 @@ void Browser::Impl::workOff() {
 
 SourcePosition Browser::Impl::asking() const {
   const Node* script = scripts ? scripts->runningNode() : nullptr;
-  return script ? script->source : SourcePosition{std::make_shared<const std::string>(world->path), 0, 0};
+  return script ? script->source
+                : SourcePosition{std::make_shared<const std::string>(world->path), 0, 0};
 }
 
 MFNode Browser::Impl::adopt(World& loaded) {
@@ -111,7 +120,8 @@ MFNode Browser::Impl::adopt(World& loaded) {
   return nodes;
 }
 
-void Browser::Impl::become(Scope scope, const std::vector<NodeRef>& kept, std::vector<NodeRef> cyclic) {
+void Browser::Impl::become(Scope scope, const std::vector<NodeRef>& kept,
+                           std::vector<NodeRef> cyclic) {
   engine->keepOnly(kept);
   for (NodeRef& node : breakCycles(world->cyclic)) cyclic.push_back(std::move(node));
   world->cyclic = std::move(cyclic);
@@ -136,38 +146,42 @@ MFNode Browser::createVrmlFromString(std::string_view text) {
   LoadOptions options = impl_->world->options;
   uint64_t& most = options.limits.expandedNodes;
   most -= std::min<uint64_t>(most, impl_->engine->nodes());
-  const auto loaded =
-      loadFragment(text, impl_->world->path + " (createVrmlFromString)", options, Passing(*impl_->world).budget());
+  const auto loaded = loadFragment(text, impl_->world->path + " (createVrmlFromString)", options,
+                                   Passing(*impl_->world).budget());
   MFNode nodes = impl_->adopt(*loaded);
   impl_->settle();
   return nodes;
 }
 
-void Browser::createVrmlFromUrl(const std::vector<std::string>& urls, Node& node, std::string_view eventIn,
-                                const std::string& base) {
-  impl_->later([this, urls, to = NodeRef(&node), in = std::string(eventIn), base = base.empty() ? impl_->world->path : base,
-                where = impl_->asking()] {
+void Browser::createVrmlFromUrl(const std::vector<std::string>& urls, Node& node,
+                                std::string_view eventIn, const std::string& base) {
+  impl_->later([this, urls, to = NodeRef(&node), in = std::string(eventIn),
+                base = base.empty() ? impl_->world->path : base, where = impl_->asking()] {
     World& world = *impl_->world;
-    const auto loaded =
-        loadFirst(urls, base, world.options, world.diagnostics, where, "createVrmlFromURL", nullptr, Passing(world).budget());
+    const auto loaded = loadFirst(urls, base, world.options, world.diagnostics, where,
+                                  "createVrmlFromURL", nullptr, Passing(world).budget());
     if (!loaded || !to->live) return;
     MFNode nodes = impl_->adopt(*loaded);
     impl_->engine->dispatch(*to, in, std::move(nodes));
   });
 }
 
-void Browser::loadUrl(const std::vector<std::string>& urls, const std::vector<std::string>& parameters, const std::string& base) {
-  impl_->later([this, urls, parameters, base = base.empty() ? impl_->world->path : base, where = impl_->asking()] {
+void Browser::loadUrl(const std::vector<std::string>& urls,
+                      const std::vector<std::string>& parameters, const std::string& base) {
+  impl_->later([this, urls, parameters, base = base.empty() ? impl_->world->path : base,
+                where = impl_->asking()] {
     if (impl_->options.loadUrl && impl_->options.loadUrl(urls, parameters, base)) return;
     const auto bind = [&](const std::string& name) {
       const NodeRef view = node(name);
       if (!view || !impl_->engine->dispatch(*view, "set_bind", true))
-        impl_->world->diagnostics.warn(where, fmt::format("loadURL: there is no viewpoint '{}'", name.substr(0, 100)));
+        impl_->world->diagnostics.warn(
+            where, fmt::format("loadURL: there is no viewpoint '{}'", name.substr(0, 100)));
     };
     World& world = *impl_->world;
     if (!urls.empty() && urls[0].starts_with('#')) return bind(urls[0].substr(1));
     std::string fragment;
-    const auto loaded = loadFirst(urls, base, world.options, world.diagnostics, where, "loadURL", &fragment, nullptr);
+    const auto loaded = loadFirst(urls, base, world.options, world.diagnostics, where, "loadURL",
+                                  &fragment, nullptr);
     if (!loaded) return;
     append(world.diagnostics, loaded->diagnostics);
     setBudget(world, budgetOf(*loaded));

@@ -8,18 +8,21 @@
 namespace xvrml {
 
 struct Browser::Impl {
-  Impl(Browser& browser, std::unique_ptr<World> world, const BrowserOptions& options, const RunOptions& run);
+  Impl(Browser& browser, std::unique_ptr<World> world, const BrowserOptions& options,
+       const RunOptions& run);
   void settle() { // what has been made outside of a cascade
     if (engine->settling()) return;
     engine->beginCascade(engine->now());
     engine->settle();
   }
-  // Does what had to wait for the end of a cascade. Much of it waits for the next call: a world may load itself for ever.
+  // Does what had to wait for the end of a cascade. Much of it waits for the next call: a world may
+  // load itself for ever.
   void workOff();
   void later(std::function<void()> job);
   SourcePosition asking() const; // the Script that calls, else the world's file
-  MFNode adopt(World& loaded); // what has been loaded beside the world
-  void become(Scope scope, const std::vector<NodeRef>& kept, std::vector<NodeRef> cyclic); // another world
+  MFNode adopt(World& loaded);   // what has been loaded beside the world
+  void become(Scope scope, const std::vector<NodeRef>& kept,
+              std::vector<NodeRef> cyclic); // another world
 
   BrowserOptions options;
   RunOptions run;

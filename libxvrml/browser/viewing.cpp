@@ -1,4 +1,5 @@
-// viewing.cpp: the Browser's members about the viewer: binding, camera, rays, pointer, navigation, Inlines. See xvrml/browser.h.
+// viewing.cpp: the Browser's members about the viewer: binding, camera, rays, pointer, navigation,
+// Inlines. See xvrml/browser.h.
 #include <cmath>
 
 #include "behaviour/inline.h"
@@ -17,7 +18,9 @@ PickRay rayOf(const double origin[3], const double direction[3]) {
 
 BoundNodes Browser::bound() const { return interactionOf(*impl_->engine).binding.bound(); }
 
-CameraSettings Browser::camera(double aspect) const { return interactionOf(*impl_->engine).viewer.camera(aspect); }
+CameraSettings Browser::camera(double aspect) const {
+  return interactionOf(*impl_->engine).viewer.camera(aspect);
+}
 
 void Browser::placeViewer(const double view[16]) {
   Engine& engine = *impl_->engine;
@@ -32,10 +35,13 @@ void Browser::placeViewer(const double view[16]) {
 void Browser::setUp(const double up[3]) {
   const Vector v(up[0], up[1], up[2]);
   const double length = v.length();
-  if (length > 0 && std::isfinite(length)) interactionOf(*impl_->engine).navigation.setUp(v / length);
+  if (length > 0 && std::isfinite(length))
+    interactionOf(*impl_->engine).navigation.setUp(v / length);
 }
 
-void Browser::setTransition(double seconds) { interactionOf(*impl_->engine).viewer.setTransition(seconds); }
+void Browser::setTransition(double seconds) {
+  interactionOf(*impl_->engine).viewer.setTransition(seconds);
+}
 
 std::vector<ViewpointName> Browser::viewpoints() const {
   std::vector<ViewpointName> list;
@@ -54,18 +60,24 @@ bool Browser::bindViewpoint(std::string_view name) {
   return false;
 }
 
-bool Browser::pick(const double origin[3], const double direction[3], const PickOptions& options, PickHit& out) {
+bool Browser::pick(const double origin[3], const double direction[3], const PickOptions& options,
+                   PickHit& out) {
   Interaction& interaction = interactionOf(*impl_->engine);
   PickRay ray = rayOf(origin, direction);
   ray.nearest = options.nearest;
   ray.farthest = options.farthest;
   Hit hit;
-  if (!interaction.picker.pick(ray, {options.collision, options.bothSides}, interaction.viewer.view(), impl_->world->scope.roots,
-                               hit))
+  if (!interaction.picker.pick(ray, {options.collision, options.bothSides},
+                               interaction.viewer.view(), impl_->world->scope.roots, hit))
     return false;
-  out = {hit.t, {hit.point.x, hit.point.y, hit.point.z}, {hit.normal.x, hit.normal.y, hit.normal.z}, hit.texCoord, {}};
+  out = {hit.t,
+         {hit.point.x, hit.point.y, hit.point.z},
+         {hit.normal.x, hit.normal.y, hit.normal.z},
+         hit.texCoord,
+         {}};
   for (const Hit::Step& step : hit.path)
-    toArray(step.toWorld, out.path.emplace_back(PickHit::Step{NodeRef(step.node), {}}).toWorld.data());
+    toArray(step.toWorld,
+            out.path.emplace_back(PickHit::Step{NodeRef(step.node), {}}).toWorld.data());
   return true;
 }
 
@@ -79,7 +91,9 @@ void Browser::pointer(double x, double y, bool button) {
   const Matrix view = fromArray(camera.matrix);
   const double size = std::tan(camera.fovy / 2);
   interaction.pointer.point(
-      {transformPoint(view, Vector(0)), transformDirection(view, {x * size * interaction.aspect, y * size, -1})}, button);
+      {transformPoint(view, Vector(0)),
+       transformDirection(view, {x * size * interaction.aspect, y * size, -1})},
+      button);
   impl_->workOff(); // a Script may have asked for another world
 }
 
@@ -93,7 +107,9 @@ void Browser::pointerLeave() {
   impl_->workOff();
 }
 
-std::vector<NodeRef> Browser::sensorsAtPointer() const { return interactionOf(*impl_->engine).pointer.sensors(); }
+std::vector<NodeRef> Browser::sensorsAtPointer() const {
+  return interactionOf(*impl_->engine).pointer.sensors();
+}
 
 void Browser::activate(Node& node) {
   const auto* anchor = nodeCast<nodes::Anchor>(&node);
@@ -104,7 +120,9 @@ void Browser::activate(Node& node) {
   loadUrl(anchor->url, anchor->parameter, anchor->source.file ? *anchor->source.file : "");
 }
 
-void Browser::onAnchor(std::function<void(Node& anchor)> callback) { impl_->onAnchor = std::move(callback); }
+void Browser::onAnchor(std::function<void(Node& anchor)> callback) {
+  impl_->onAnchor = std::move(callback);
+}
 
 void Browser::navigate(const NavigationInput& input, double dt) {
   Engine& engine = *impl_->engine;
@@ -126,7 +144,9 @@ void Browser::key(Key key, bool pressed) {
 
 Navigation Browser::navigation() const { return interactionOf(*impl_->engine).navigation.type(); }
 
-bool Browser::setNavigation(Navigation type) { return interactionOf(*impl_->engine).navigation.choose(type); }
+bool Browser::setNavigation(Navigation type) {
+  return interactionOf(*impl_->engine).navigation.choose(type);
+}
 
 bool Browser::loadInline(Node& inlineNode) {
   Engine& engine = *impl_->engine;

@@ -11,7 +11,8 @@ namespace xvrml {
 Engine::Engine(Diagnostics& diagnostics, const MakeObserver& makeObserver, Browser* browser)
     : Events(diagnostics, browser), observer(makeObserver(*this)) {}
 
-// An eventOut sends once in a cascade (4.10.3, 4.10.4). Without anybody to receive it only its last value is kept.
+// An eventOut sends once in a cascade (4.10.3, 4.10.4). Without anybody to receive it only its last
+// value is kept.
 void Events::send(Node& from, const FieldInfo& out, Value value) {
   auto& engine = static_cast<Engine&>(*this);
   if (value.index() != size_t(out.type)) return;
@@ -55,7 +56,9 @@ Value Events::lastSent(const Node& node, const FieldInfo& out) const {
   return state ? state->last : defaultValue(out.type);
 }
 
-NodeState* Events::state(Node& node) const { return node.live && liveOf(node)->part ? liveOf(node)->part->state.get() : nullptr; }
+NodeState* Events::state(Node& node) const {
+  return node.live && liveOf(node)->part ? liveOf(node)->part->state.get() : nullptr;
+}
 
 void Events::wantTicks(Node& node, bool wanted) {
   auto& engine = static_cast<Engine&>(*this);
@@ -89,7 +92,8 @@ void Engine::settle() {
     while (scriptsBegin_ || !queue_.empty()) {
       if (++inCascade_ > maximumEvents) {
         if (!overflow_)
-          diagnostics_.warn({}, fmt::format("more than {} events at time {}: the rest is dropped", maximumEvents, now_));
+          diagnostics_.warn({}, fmt::format("more than {} events at time {}: the rest is dropped",
+                                            maximumEvents, now_));
         overflow_ = true;
         queue_.clear();
         if (scripts) scripts->drop();
@@ -129,13 +133,15 @@ void Engine::leave(Event& event) {
     for (const auto& [number, listener] : listeners)
       if (listener.first == event.field) listener.second(node, *event.field, event.value);
   }
-  if (event.field->access == Access::eventOut) part(node).out(*event.field).last = std::move(event.value);
+  if (event.field->access == Access::eventOut)
+    part(node).out(*event.field).last = std::move(event.value);
 }
 
 void Engine::arrive(Node& node, const FieldInfo& in, const Value& value) {
   ++delivered_;
   if (node.type().index >= 0) return arriveAtStatic(node, in, value);
-  if (auto* instance = dynamic_cast<ProtoInstance*>(&node)) return arriveAtInstance(*instance, in, value);
+  if (auto* instance = dynamic_cast<ProtoInstance*>(&node))
+    return arriveAtInstance(*instance, in, value);
   auto& script = static_cast<ScriptNode&>(node);
   if (in.access == Access::exposedField && store(node, in, value)) send(node, in, value);
   if (scripts) scripts->receive(script, in, value);
@@ -149,7 +155,8 @@ void Engine::arriveAtStatic(Node& node, const FieldInfo& in, const Value& value)
     if (!store(node, in, value)) return;
     send(node, in, holdsNodes(in) || hasNormalizedAxes(in) ? node.get(in) : value);
   } else if (in.name.starts_with("set_")) {
-    if (const FieldInfo* field = node.type().find(std::string_view(in.name).substr(4)); field && field->type == in.type)
+    if (const FieldInfo* field = node.type().find(std::string_view(in.name).substr(4));
+        field && field->type == in.type)
       store(node, *field, value);
   }
   if (behaviour && behaviour->receive) behaviour->receive(*this, node, in, value);
@@ -161,7 +168,8 @@ void Engine::arriveAtInstance(ProtoInstance& instance, const FieldInfo& in, cons
   for (const Link& link : part(instance).links) {
     if (link.kind != Link::Kind::intoBody || link.out != &in || !link.to) continue;
     for (const Link& back : part(*link.to).links) // it will send the value back
-      kept |= back.instance == &instance && back.in == &in && back.out == link.in && link.in->access == Access::exposedField;
+      kept |= back.instance == &instance && back.in == &in && back.out == link.in &&
+              link.in->access == Access::exposedField;
     queue_.push_back({link.to, link.in, value, true});
   }
   if (!kept && in.access == Access::exposedField) relay(instance, in, value, true);
@@ -182,7 +190,8 @@ bool Engine::dispatch(Node& to, std::string_view in, Value value) {
   return true;
 }
 
-// Nodes may end, and others begin, while the functions run: those there were at the beginning and still are get called.
+// Nodes may end, and others begin, while the functions run: those there were at the beginning and
+// still are get called.
 void Engine::callAll(const Watchers& watchers, void (*Behaviour::*function)(Events&, Node&)) {
   std::vector<NodeRef> nodes;
   nodes.reserve(watchers.size());

@@ -1,5 +1,6 @@
-// expansions.cpp: keeps what nodes of plug-ins stand for up to date in a running world. A new answer is compared with the former
-// one: equal parts stay as they are, the others get new values, so that only they are changes for those who draw. See engine.h.
+// expansions.cpp: keeps what nodes of plug-ins stand for up to date in a running world. A new
+// answer is compared with the former one: equal parts stay as they are, the others get new values,
+// so that only they are changes for those who draw. See engine.h.
 #include <algorithm>
 
 #include "event/engine.h"
@@ -11,7 +12,8 @@ namespace {
 
 // A node of the former answer that can take the place of one in the new answer.
 bool canTakeOver(const NodeRef& old, const NodeRef& fresh) {
-  return old && fresh && &old->type() == &fresh->type() && isMadeByPlugin(*old) && isMadeByPlugin(*fresh) && !fresh->live;
+  return old && fresh && &old->type() == &fresh->type() && isMadeByPlugin(*old) &&
+         isMadeByPlugin(*fresh) && !fresh->live;
 }
 
 bool sameNodes(const MFNode& old, const MFNode& fresh) {
@@ -22,7 +24,8 @@ bool sameNodes(const MFNode& old, const MFNode& fresh) {
 } // namespace
 
 void Engine::renewExpansions() {
-  // One that stands for a node of another plug-in outdates that one; more rounds than plug-ins nest are none.
+  // One that stands for a node of another plug-in outdates that one; more rounds than plug-ins nest
+  // are none.
   for (int round = 0; !outdated_.empty() && round < 32; ++round) {
     std::vector<NodeRef> nodes = std::exchange(outdated_, {});
     std::sort(nodes.begin(), nodes.end(), [](const NodeRef& a, const NodeRef& b) {
@@ -47,7 +50,8 @@ void Engine::renewExpansion(Node& node) {
     adopt(*fresh);
     linkChild(node, *fresh);
   }
-  // For those who hold the node, or the prototype instance it stands in, their field has another value.
+  // For those who hold the node, or the prototype instance it stands in, their field has another
+  // value.
   std::vector<Node*> open{&node};
   for (size_t i = 0; i < open.size() && i < 10'000; ++i) {
     const Node* child = open[i];
@@ -64,7 +68,8 @@ void Engine::renewExpansion(Node& node) {
   }
 }
 
-// The former nodes get the new ones' values; those that are no values but made nodes are compared in turn.
+// The former nodes get the new ones' values; those that are no values but made nodes are compared
+// in turn.
 void Engine::takeOver(Node& old, Node& fresh) {
   std::vector<std::pair<NodeRef, NodeRef>> open{{NodeRef(&old), NodeRef(&fresh)}};
   while (!open.empty()) {

@@ -1,4 +1,3 @@
-// hierarchy.cpp: see hierarchy.h.
 #include "event/hierarchy.h"
 
 #include <algorithm>
@@ -76,7 +75,8 @@ Matrix localToWorld(const Path& path) {
   Matrix matrix;
   for (Node* node : path)
     if (const auto* t = nodeCast<nodes::Transform>(node))
-      matrix = compose(matrix, transformMatrix({t->center, t->translation, t->scale, t->rotation, t->scaleOrientation}));
+      matrix = compose(matrix, transformMatrix({t->center, t->translation, t->scale, t->rotation,
+                                                t->scaleOrientation}));
   return matrix;
 }
 
@@ -84,7 +84,8 @@ bool isChosen(const Path& path) {
   for (size_t i = 0; i + 1 < path.size(); ++i) {
     const auto* choice = nodeCast<nodes::Switch>(path[i]);
     if (!choice) continue;
-    const bool exists = choice->whichChoice >= 0 && size_t(choice->whichChoice) < choice->choice.size();
+    const bool exists =
+        choice->whichChoice >= 0 && size_t(choice->whichChoice) < choice->choice.size();
     if (!exists || choice->choice[size_t(choice->whichChoice)].get() != path[i + 1]) return false;
   }
   return true;

@@ -1,5 +1,6 @@
-// live.h: what a running world knows of a node: where it hangs, and its part in the events. Made when the node becomes part of
-// the world, gone with the node or the world. Only event/ writes here. [the browser's thread]
+// live.h: what a running world knows of a node: where it hangs, and its part in the events. Made
+// when the node becomes part of the world, gone with the node or the world. Only event/ writes
+// here. [the browser's thread]
 #pragma once
 
 #include <cstdint>
@@ -16,15 +17,18 @@ namespace xvrml {
 
 class Engine;
 
-// From an eventOut to an eventIn of another node, or across a prototype's border (clause 4.8.2: IS).
+// From an eventOut to an eventIn of another node, or across a prototype's border (clause 4.8.2:
+// IS).
 struct Link {
-  // keepsField: no events: a field of the instance has the value of the exposedField that IS it, for whoever writes the world.
+  // keepsField: no events: a field of the instance has the value of the exposedField that IS it,
+  // for whoever writes the world.
   enum class Kind : uint8_t { route, intoBody, outOfBody, keepsField };
   const FieldInfo* out;
   NodeRef to; // null: deleted, swept after the cascade
   const FieldInfo* in;
   Kind kind = Kind::route;
-  ProtoInstance* instance = nullptr; // outOfBody, keepsField: instead of `to`: it holds its body, which must not hold it
+  ProtoInstance* instance =
+      nullptr; // outOfBody, keepsField: instead of `to`: it holds its body, which must not hold it
 
   bool carriesOut() const { return kind == Kind::route || kind == Kind::outOfBody; }
   bool leads() const { return to || instance; }
@@ -38,12 +42,13 @@ struct Participant {
     uint64_t cascade = 0; // the last one it sent in
     Value last;           // of an eventOut
   };
-  std::vector<Link> links;                                                           // by their order of making
-  std::vector<Out> outs;                                                             // those that have sent
+  std::vector<Link> links; // by their order of making
+  std::vector<Out> outs;   // those that have sent
   std::vector<std::pair<uint64_t, std::pair<const FieldInfo*, Listener>>> listeners; // by number
-  std::vector<std::pair<Change, std::string>> reasons;                               // of the bits in Live::reach
+  std::vector<std::pair<Change, std::string>> reasons; // of the bits in Live::reach
   std::unique_ptr<NodeState> state;
-  std::set<std::tuple<const FieldInfo*, const Node*, const FieldInfo*, Link::Kind>> index; // of links, if there are many
+  std::set<std::tuple<const FieldInfo*, const Node*, const FieldInfo*, Link::Kind>>
+      index; // of links, if there are many
 
   bool holds(const Link& link) const;
   void add(Link link);
@@ -59,7 +64,8 @@ struct Live : LiveBase {
   uint16_t reach = 0;         // see xvrml/change.h
   bool root = false;          // of the world
   uint64_t changed = 0;       // fields already in the list of changes, by index in the type
-  std::vector<Node*> parents; // nodes that have it among their children, once for each time; bodies and Inlines included
+  std::vector<Node*> parents; // nodes that have it among their children, once for each time; bodies
+                              // and Inlines included
   std::unique_ptr<Participant> part;
 };
 

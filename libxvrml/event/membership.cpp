@@ -1,4 +1,5 @@
-// membership.cpp: who is part of a running world: adoption of nodes and scopes, parents, and the end of nodes. See engine.h.
+// membership.cpp: who is part of a running world: adoption of nodes and scopes, parents, and the
+// end of nodes. See engine.h.
 #include <algorithm>
 #include <new>
 #include <utility>
@@ -7,8 +8,8 @@
 
 #include "event/engine.h"
 #include "event/hierarchy.h"
-#include "graph/node_kinds.h"
 #include "graph/field_access.h"
+#include "graph/node_kinds.h"
 
 namespace xvrml {
 
@@ -56,7 +57,8 @@ void Engine::forget(LiveBase* base) noexcept {
   engine.observer->forgotten(*live->node);
   if (live->node->type().index < 0) {
     if (auto* instance = dynamic_cast<ProtoInstance*>(live->node)) engine.disconnectBody(*instance);
-    if (auto* script = dynamic_cast<ScriptNode*>(live->node); script && engine.scripts) engine.scripts->end(*script);
+    if (auto* script = dynamic_cast<ScriptNode*>(live->node); script && engine.scripts)
+      engine.scripts->end(*script);
   }
   engine.lives_[live->slot] = engine.lives_.back();
   engine.lives_[live->slot]->slot = live->slot;
@@ -67,8 +69,8 @@ void Engine::forget(LiveBase* base) noexcept {
   if (part) engine.bury(std::move(part));
 }
 
-// Links may hold the last reference to the next node, and so on down a long chain of routes: one after the other, not one
-// within the other.
+// Links may hold the last reference to the next node, and so on down a long chain of routes: one
+// after the other, not one within the other.
 void Engine::bury(std::unique_ptr<Participant> part) noexcept {
   try {
     buried_.push_back(std::move(part));
@@ -107,7 +109,8 @@ void Engine::enter(Node& first, Newcomers& newcomers) {
     if (auto* instance = dynamic_cast<ProtoInstance*>(&node)) {
       newcomers.instances.push_back(instance);
       newcomers.scopes.push_back(&instance->body);
-      for (size_t i = 1; i < instance->body.roots.size(); ++i) below.push_back(instance->body.roots[i].get());
+      for (size_t i = 1; i < instance->body.roots.size(); ++i)
+        below.push_back(instance->body.roots[i].get());
       for (const IsConnection& c : instance->is) below.push_back(c.node.get());
     }
     if (node.type().index < 0 || node.type().expand)
@@ -125,17 +128,20 @@ void Engine::enterScope(const Scope& scope, Newcomers& newcomers) {
   newcomers.scopes.push_back(&scope);
 }
 
-// Parents, prototypes' borders, routes, behaviours, in this order: each needs those before it for all newcomers.
+// Parents, prototypes' borders, routes, behaviours, in this order: each needs those before it for
+// all newcomers.
 void Engine::complete(Newcomers& newcomers) {
   std::vector<Node*> below;
-  for (size_t done = 0, scopes = 0; done < newcomers.nodes.size() || scopes < newcomers.scopes.size();) {
+  for (size_t done = 0, scopes = 0;
+       done < newcomers.nodes.size() || scopes < newcomers.scopes.size();) {
     for (; done < newcomers.nodes.size(); ++done) {
       below.clear();
       childrenInHierarchy(*newcomers.nodes[done], below);
       for (Node* child : below)
         if (child) linkChild(*newcomers.nodes[done], *child);
     }
-    for (; scopes < newcomers.scopes.size(); ++scopes) { // a route may hold nodes that nothing else does
+    for (; scopes < newcomers.scopes.size();
+         ++scopes) { // a route may hold nodes that nothing else does
       for (const Route& route : newcomers.scopes[scopes]->routes) {
         if (route.from) enter(*route.from, newcomers);
         if (route.to) enter(*route.to, newcomers);
@@ -151,7 +157,8 @@ void Engine::complete(Newcomers& newcomers) {
       if (!scripts) continue;
       scripts->begin(*script);
       scriptsBegin_ = true;
-    } else if (const Behaviour* behaviour = behaviourOf(node->type()); behaviour && behaviour->begin) {
+    } else if (const Behaviour* behaviour = behaviourOf(node->type());
+               behaviour && behaviour->begin) {
       part(*node).state = behaviour->begin(*this, *node);
     }
   }
@@ -182,7 +189,8 @@ void Engine::contentLoaded(Node& inlineNode) {
     if (root) linkChild(inlineNode, *root);
 }
 
-// Routes hold their nodes: those of content that goes would keep it alive. An Inline that shares its content has none.
+// Routes hold their nodes: those of content that goes would keep it alive. An Inline that shares
+// its content has none.
 void Engine::contentLeaves(Node& inlineNode) {
   const Scope* content = inlineScope(inlineNode);
   if (!content || !inlineNode.live) return;
@@ -205,7 +213,8 @@ void Engine::keepOnly(const std::vector<NodeRef>& kept) {
     below.clear();
     childrenInHierarchy(node, below);
     for (Node* child : below) mark(child);
-    if (node.type().index < 0) forEachChild(node, [&](NodeRef& child, const FieldInfo&) { mark(child.get()); });
+    if (node.type().index < 0)
+      forEachChild(node, [&](NodeRef& child, const FieldInfo&) { mark(child.get()); });
     if (const auto* instance = dynamic_cast<ProtoInstance*>(&node)) {
       for (const NodeRef& root : instance->body.roots) mark(root.get());
       for (const IsConnection& c : instance->is) mark(c.node.get());
@@ -243,7 +252,8 @@ void Engine::removeRoot(Node& node) {
 
 void Engine::rootsChanged() {
   ++structure_;
-  const bool known = std::any_of(changes_.begin(), changes_.end(), [](const FieldChange& c) { return !c.node; });
+  const bool known =
+      std::any_of(changes_.begin(), changes_.end(), [](const FieldChange& c) { return !c.node; });
   if (!known) changes_.push_back({NodeRef(), nullptr});
 }
 
@@ -272,8 +282,8 @@ bool Events::store(Node& node, const FieldInfo& field, Value value) {
     const auto refused = [&](const NodeRef& child) {
       const NodeType* type = child ? effectiveType(*child) : nullptr;
       if (!type || field.nodeTypes.empty() || typeAccepted(field.nodeTypes, *type)) return false;
-      diagnostics_.warn(node.source,
-                        fmt::format("{} of {} takes {}, not {}", field.name, node.type().name, field.nodeTypes, type->name));
+      diagnostics_.warn(node.source, fmt::format("{} of {} takes {}, not {}", field.name,
+                                                 node.type().name, field.nodeTypes, type->name));
       return true;
     };
     if (auto* one = std::get_if<NodeRef>(&value); one && refused(*one)) return false;
@@ -281,7 +291,8 @@ bool Events::store(Node& node, const FieldInfo& field, Value value) {
     if (auto* many = std::get_if<MFNode>(&value))
       std::erase_if(*many, [&](const NodeRef& child) { return child ? refused(child) : !keeps; });
     if (inHierarchy && engine.wouldLoop(node, value)) {
-      diagnostics_.warn(node.source, fmt::format("{} of {} would hold the node itself (4.4.4)", field.name, node.type().name));
+      diagnostics_.warn(node.source, fmt::format("{} of {} would hold the node itself (4.4.4)",
+                                                 field.name, node.type().name));
       return false;
     }
     const auto each = [](const Value& nodes, const auto& visit) {

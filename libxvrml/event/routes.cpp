@@ -1,4 +1,5 @@
-// routes.cpp: links between nodes: ROUTEs, the borders of prototypes, listeners; what events can reach. See engine.h.
+// routes.cpp: links between nodes: ROUTEs, the borders of prototypes, listeners; what events can
+// reach. See engine.h.
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -10,15 +11,20 @@
 namespace xvrml {
 namespace {
 
-std::string nameOf(const Node& node) { return node.defName.empty() ? node.type().name : node.defName; }
+std::string nameOf(const Node& node) {
+  return node.defName.empty() ? node.type().name : node.defName;
+}
 
 bool isSame(const Link& a, const Link& b) {
-  return a.out == b.out && a.to == b.to && a.in == b.in && a.kind == b.kind && a.instance == b.instance;
+  return a.out == b.out && a.to == b.to && a.in == b.in && a.kind == b.kind &&
+         a.instance == b.instance;
 }
 
 // From so many links on a search through all would make a wide fan-out quadratic.
 constexpr size_t manyLinks = 64;
-auto keyOf(const Link& l) { return std::make_tuple(l.out, static_cast<const Node*>(l.to.get()), l.in, l.kind); }
+auto keyOf(const Link& l) {
+  return std::make_tuple(l.out, static_cast<const Node*>(l.to.get()), l.in, l.kind);
+}
 
 } // namespace
 
@@ -60,10 +66,12 @@ bool Engine::addRoute(Node& from, std::string_view out, Node& to, std::string_vi
   const FieldInfo* source = from.type().findEventOut(out);
   const FieldInfo* target = to.type().findEventIn(in);
   if (!source || !target || source->type != target->type) {
-    const std::string why = !source   ? fmt::format("{} has no eventOut '{}'", from.type().name, out)
+    const std::string why = !source ? fmt::format("{} has no eventOut '{}'", from.type().name, out)
                             : !target ? fmt::format("{} has no eventIn '{}'", to.type().name, in)
-                                      : fmt::format("{} is not {}", fieldTypeName(source->type), fieldTypeName(target->type));
-    diagnostics_.warn(from.source, fmt::format("no route from {}.{} to {}.{}: {}", nameOf(from), out, nameOf(to), in, why));
+                                      : fmt::format("{} is not {}", fieldTypeName(source->type),
+                                                    fieldTypeName(target->type));
+    diagnostics_.warn(from.source, fmt::format("no route from {}.{} to {}.{}: {}", nameOf(from),
+                                               out, nameOf(to), in, why));
     return false;
   }
   const Link link{source, NodeRef(&to), target, Link::Kind::route};
@@ -93,7 +101,8 @@ bool Engine::deleteRoute(Node& from, std::string_view out, Node& to, std::string
 
 void Engine::sweep() {
   for (const NodeRef& node : std::exchange(swept_, {}))
-    if (node->live && liveOf(*node)->part) std::erase_if(liveOf(*node)->part->links, [](const Link& l) { return !l.leads(); });
+    if (node->live && liveOf(*node)->part)
+      std::erase_if(liveOf(*node)->part->links, [](const Link& l) { return !l.leads(); });
 }
 
 // Whether nothing else in the body IS the same field: the field could not have the values of both.
@@ -103,8 +112,9 @@ static bool isAlone(const ProtoInstance& instance, const IsConnection& connectio
   });
 }
 
-// A value of a node in a body is that of the instance's field or exposedField that it IS, and of those around it. Without events:
-// of these an eventOut sends one at a time (4.10.3), but a field may be stored more often.
+// A value of a node in a body is that of the instance's field or exposedField that it IS, and of
+// those around it. Without events: of these an eventOut sends one at a time (4.10.3), but a field
+// may be stored more often.
 void Engine::mirror(Node& first, const FieldInfo& stored) {
   std::vector<std::pair<Node*, const FieldInfo*>> open{{&first, &stored}};
   while (!open.empty()) {
@@ -129,15 +139,18 @@ void Engine::connectBody(ProtoInstance& instance) {
     if (!interface || !c.node->live) continue;
     if (interface->access == Access::field) {
       const FieldInfo* of = c.node->type().find(c.field);
-      if (of && of->type == interface->type && of->access == Access::exposedField && isAlone(instance, c))
+      if (of && of->type == interface->type && of->access == Access::exposedField &&
+          isAlone(instance, c))
         addLink(*c.node, {of, {}, interface, Link::Kind::keepsField, &instance});
       continue;
     }
     if (interface->access != Access::eventOut)
-      if (const FieldInfo* in = c.node->type().findEventIn(c.field); in && in->type == interface->type)
+      if (const FieldInfo* in = c.node->type().findEventIn(c.field);
+          in && in->type == interface->type)
         addLink(instance, {interface, c.node, in, Link::Kind::intoBody});
     if (interface->access != Access::eventIn)
-      if (const FieldInfo* out = c.node->type().findEventOut(c.field); out && out->type == interface->type)
+      if (const FieldInfo* out = c.node->type().findEventOut(c.field);
+          out && out->type == interface->type)
         addLink(*c.node, {out, {}, interface, Link::Kind::outOfBody, &instance});
   }
 }
@@ -173,7 +186,8 @@ void Engine::markReach(Node& first, const FieldInfo& firstIn, const std::string&
     if (dynamic_cast<ProtoInstance*>(node)) {
       if (!live.part) continue;
       for (const Link& link : live.part->links)
-        if (link.kind == Link::Kind::intoBody && link.out == in && link.to) open.emplace_back(link.to.get(), link.in);
+        if (link.kind == Link::Kind::intoBody && link.out == in && link.to)
+          open.emplace_back(link.to.get(), link.in);
     } else if (in->change != Change::none && !(live.reach >> int(in->change) & 1)) {
       live.reach |= uint16_t(1 << int(in->change));
       part(*node).reasons.emplace_back(in->change, reason);

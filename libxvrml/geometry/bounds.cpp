@@ -13,8 +13,10 @@ static void extend(Box3& box, const Vec3f& p) {
     box = {p, p, false};
     return;
   }
-  box.minimum = {std::min(box.minimum.x, p.x), std::min(box.minimum.y, p.y), std::min(box.minimum.z, p.z)};
-  box.maximum = {std::max(box.maximum.x, p.x), std::max(box.maximum.y, p.y), std::max(box.maximum.z, p.z)};
+  box.minimum = {std::min(box.minimum.x, p.x), std::min(box.minimum.y, p.y),
+                 std::min(box.minimum.z, p.z)};
+  box.maximum = {std::max(box.maximum.x, p.x), std::max(box.maximum.y, p.y),
+                 std::max(box.maximum.z, p.z)};
 }
 
 Box3 boundsOf(std::span<const Vec3f> points, std::span<const uint32_t> indices) {

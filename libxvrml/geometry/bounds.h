@@ -1,5 +1,6 @@
-// bounds.h: bounding boxes of points and meshes, over those points only that are drawn (a Coordinate may hold the points of
-// many shapes). Used for default texture mapping and to fit a camera.
+// bounds.h: bounding boxes of points and meshes, over those points only that are drawn (a
+// Coordinate may hold the points of many shapes). Used for default texture mapping and to fit a
+// camera.
 #pragma once
 
 #include <cstdint>

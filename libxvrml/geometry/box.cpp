@@ -5,7 +5,8 @@
 namespace xvrml {
 namespace {
 
-// A side by its lower left corner and its edges to the right and up, as seen from outside with the texture upright.
+// A side by its lower left corner and its edges to the right and up, as seen from outside with the
+// texture upright.
 struct Side {
   V3f corner, right, up;
 };
@@ -27,7 +28,8 @@ Mesh buildBox(const nodes::Box& node, const MeshOptions&, Faults& faults) {
     faults.note("size is not finite; nothing is drawn");
     return mesh;
   }
-  if (!(node.size.x > 0 && node.size.y > 0 && node.size.z > 0)) faults.note("size must be positive");
+  if (!(node.size.x > 0 && node.size.y > 0 && node.size.z > 0))
+    faults.note("size must be positive");
   for (const Side& side : sides) {
     uint32_t first = uint32_t(mesh.ownPoints.size());
     for (auto [s, t] : {std::pair{0.f, 0.f}, {1.f, 0.f}, {1.f, 1.f}, {0.f, 1.f}}) {
@@ -36,7 +38,8 @@ Mesh buildBox(const nodes::Box& node, const MeshOptions&, Faults& faults) {
     }
     const auto& p = mesh.ownPoints;
     if (hasArea(p[first], p[first + 1], p[first + 2])) // a box without height has only two sides
-      mesh.ownIndices.insert(mesh.ownIndices.end(), {first, first + 1, first + 2, first, first + 2, first + 3});
+      mesh.ownIndices.insert(mesh.ownIndices.end(),
+                             {first, first + 1, first + 2, first, first + 2, first + 3});
   }
   if (mesh.ownIndices.empty()) return Mesh();
   mesh.kind = Mesh::Kind::triangles;

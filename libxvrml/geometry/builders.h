@@ -1,4 +1,5 @@
-// builders.h: one function a geometry node; buildMesh (mesh.cpp) chooses among them. Called on the caller's thread.
+// builders.h: one function a geometry node; buildMesh (mesh.cpp) chooses among them. Called on the
+// caller's thread.
 #pragma once
 
 #include "geometry/faults.h"
@@ -11,14 +12,18 @@ Mesh buildBox(const nodes::Box& node, const MeshOptions& options, Faults& faults
 Mesh buildCone(const nodes::Cone& node, const MeshOptions& options, Faults& faults);
 Mesh buildCylinder(const nodes::Cylinder& node, const MeshOptions& options, Faults& faults);
 Mesh buildSphere(const nodes::Sphere& node, const MeshOptions& options, Faults& faults);
-Mesh buildIndexedFaceSet(const nodes::IndexedFaceSet& node, const MeshOptions& options, Faults& faults);
-Mesh buildIndexedLineSet(const nodes::IndexedLineSet& node, const MeshOptions& options, Faults& faults);
+Mesh buildIndexedFaceSet(const nodes::IndexedFaceSet& node, const MeshOptions& options,
+                         Faults& faults);
+Mesh buildIndexedLineSet(const nodes::IndexedLineSet& node, const MeshOptions& options,
+                         Faults& faults);
 Mesh buildPointSet(const nodes::PointSet& node, const MeshOptions& options, Faults& faults);
-Mesh buildElevationGrid(const nodes::ElevationGrid& node, const MeshOptions& options, Faults& faults);
+Mesh buildElevationGrid(const nodes::ElevationGrid& node, const MeshOptions& options,
+                        Faults& faults);
 Mesh buildExtrusion(const nodes::Extrusion& node, const MeshOptions& options, Faults& faults);
 Mesh buildText(const nodes::Text& node, const MeshOptions& options, Faults& faults);
 
-// The arrays of property nodes, empty for NULL and for a node of another type. May be a prototype instance.
+// The arrays of property nodes, empty for NULL and for a node of another type. May be a prototype
+// instance.
 std::span<const Vec3f> coordinates(const NodeRef& node);
 std::span<const Vec3f> normalVectors(const NodeRef& node);
 std::span<const Color> colorValues(const NodeRef& node);

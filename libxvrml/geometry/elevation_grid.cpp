@@ -1,4 +1,5 @@
-// elevation_grid.cpp: ElevationGrid (clause 6.17): a grid of heights over the xz plane as quadrilaterals.
+// elevation_grid.cpp: ElevationGrid (clause 6.17): a grid of heights over the xz plane as
+// quadrilaterals.
 #include "geometry/builders.h"
 #include "geometry/polygons/face_set.h"
 
@@ -6,8 +7,8 @@ namespace xvrml {
 namespace {
 
 // Attributes of a grid lie one to one beside its points or its quadrilaterals.
-template <class T> void bind(Attribute<T>& attribute, std::span<const T> values, bool perVertex, size_t points, uint32_t faces,
-                             Fault fault, Faults& faults) {
+template <class T> void bind(Attribute<T>& attribute, std::span<const T> values, bool perVertex,
+                             size_t points, uint32_t faces, Fault fault, Faults& faults) {
   using Per = typename Attribute<T>::Per;
   if (values.empty()) return;
   attribute.values = values;
@@ -17,27 +18,34 @@ template <class T> void bind(Attribute<T>& attribute, std::span<const T> values,
     return;
   }
   attribute.index.resize(faces);
-  for (uint32_t face = 0; face < faces; face++) attribute.index[face] = face < values.size() ? face : noValue;
+  for (uint32_t face = 0; face < faces; face++)
+    attribute.index[face] = face < values.size() ? face : noValue;
   if (values.size() < faces) faults.add(fault, values.size());
 }
 
 } // namespace
 
-Mesh buildElevationGrid(const nodes::ElevationGrid& node, const MeshOptions& options, Faults& faults) {
-  if (!(node.xSpacing > 0 && node.zSpacing > 0)) faults.note("xSpacing and zSpacing must be positive");
+Mesh buildElevationGrid(const nodes::ElevationGrid& node, const MeshOptions& options,
+                        Faults& faults) {
+  if (!(node.xSpacing > 0 && node.zSpacing > 0))
+    faults.note("xSpacing and zSpacing must be positive");
   if (!isFinite(node.xSpacing) || !isFinite(node.zSpacing)) return {};
   int64_t columns = node.xDimension, rows = node.zDimension;
   if (columns <= 0 || rows <= 0) return {}; // an empty grid is allowed
   // Each is below 2^31, so products stay within 64 bits.
   if (int64_t(node.height.size()) < columns * rows) {
-    faults.note("height has " + std::to_string(node.height.size()) + " values where xDimension and zDimension ask for " +
+    faults.note("height has " + std::to_string(node.height.size()) +
+                " values where xDimension and zDimension ask for " +
                 std::to_string(columns * rows) +
-                (int64_t(node.height.size()) < 2 * columns ? "; nothing is drawn" : "; only whole rows are drawn"));
+                (int64_t(node.height.size()) < 2 * columns ? "; nothing is drawn"
+                                                           : "; only whole rows are drawn"));
     rows = int64_t(node.height.size()) / columns;
   }
   if (columns < 2 || rows < 2) return {};
-  if (uint64_t(2 * (columns - 1) * (rows - 1)) > triangleLimit(options) || columns * rows >= int64_t(noValue / 4)) {
-    faults.note("more triangles than " + std::string(triangleLimitName(options)) + " allows; nothing is drawn");
+  if (uint64_t(2 * (columns - 1) * (rows - 1)) > triangleLimit(options) ||
+      columns * rows >= int64_t(noValue / 4)) {
+    faults.note("more triangles than " + std::string(triangleLimitName(options)) +
+                " allows; nothing is drawn");
     return {};
   }
 
@@ -45,7 +53,8 @@ Mesh buildElevationGrid(const nodes::ElevationGrid& node, const MeshOptions& opt
   set.ownPoints.reserve(size_t(columns * rows));
   for (int64_t j = 0; j < rows; j++)
     for (int64_t i = 0; i < columns; i++)
-      set.ownPoints.push_back({float(double(node.xSpacing) * double(i)), node.height[size_t(i + j * columns)],
+      set.ownPoints.push_back({float(double(node.xSpacing) * double(i)),
+                               node.height[size_t(i + j * columns)],
                                float(double(node.zSpacing) * double(j))});
   set.points = set.ownPoints;
   uint32_t faces = uint32_t((columns - 1) * (rows - 1)), width = uint32_t(columns);
@@ -62,14 +71,19 @@ Mesh buildElevationGrid(const nodes::ElevationGrid& node, const MeshOptions& opt
   set.solid = node.solid;
   set.ccw = node.ccw;
   set.creaseAngle = node.creaseAngle;
-  bind(set.colors, colorValues(node.color), node.colorPerVertex, set.points.size(), faces, Fault::colorMissing, faults);
-  bind(set.normals, normalVectors(node.normal), node.normalPerVertex, set.points.size(), faces, Fault::normalMissing, faults);
-  bind(set.texCoords, textureCoordinates(node.texCoord), true, set.points.size(), faces, Fault::texCoordMissing, faults);
-  if (options.needTexCoords && set.texCoords.values.empty()) { // the whole texture, S along x and T along z
+  bind(set.colors, colorValues(node.color), node.colorPerVertex, set.points.size(), faces,
+       Fault::colorMissing, faults);
+  bind(set.normals, normalVectors(node.normal), node.normalPerVertex, set.points.size(), faces,
+       Fault::normalMissing, faults);
+  bind(set.texCoords, textureCoordinates(node.texCoord), true, set.points.size(), faces,
+       Fault::texCoordMissing, faults);
+  if (options.needTexCoords &&
+      set.texCoords.values.empty()) { // the whole texture, S along x and T along z
     set.texCoords.own.reserve(set.points.size());
     for (int64_t j = 0; j < rows; j++)
       for (int64_t i = 0; i < columns; i++)
-        set.texCoords.own.push_back({float(double(i) / double(columns - 1)), float(double(j) / double(node.zDimension - 1))});
+        set.texCoords.own.push_back({float(double(i) / double(columns - 1)),
+                                     float(double(j) / double(node.zDimension - 1))});
     set.texCoords.values = set.texCoords.own;
     set.texCoords.per = Attribute<Vec2f>::Per::point;
   }

@@ -18,21 +18,24 @@ V3d rotate(const Rotation& r, const V3d& v) {
 class Sweep {
  public:
   Sweep(const nodes::Extrusion& node, const MeshOptions& options, Faults& faults)
-      : node_(node), options_(options), faults_(faults), spine_(node.spine), section_(node.crossSection) {}
+      : node_(node), options_(options), faults_(faults), spine_(node.spine),
+        section_(node.crossSection) {}
 
   Mesh run() {
     if (spine_.size() < 2 || section_.size() < 2) {
       faults_.note("spine and crossSection need two points at least; nothing is drawn");
       return {};
     }
-    if (!allFinite(std::span<const Vec3f>(spine_)) || !allFinite(std::span<const Vec2f>(section_))) {
+    if (!allFinite(std::span<const Vec3f>(spine_)) ||
+        !allFinite(std::span<const Vec2f>(section_))) {
       faults_.note("spine or crossSection is not finite; nothing is drawn");
       return {};
     }
     // 64 bits: sizes are below 2^32 each.
     uint64_t points = uint64_t(spine_.size()) * section_.size() + 2 * section_.size();
     if (points > triangleLimit(options_) / 2 + 4 || points >= noValue / 4) {
-      faults_.note("more triangles than " + std::string(triangleLimitName(options_)) + " allows; nothing is drawn");
+      faults_.note("more triangles than " + std::string(triangleLimitName(options_)) +
+                   " allows; nothing is drawn");
       return {};
     }
     closedSection_ = section_.size() > 2 && section_.front() == section_.back();
@@ -77,7 +80,8 @@ class Sweep {
       x = inFrame(x) * scale.x;
       z = inFrame(z) * scale.y;
       for (size_t j = 0; j < columns_; j++)
-        set_.ownPoints.push_back(toVec3f(origin + x * double(section_[j].x) + z * double(section_[j].y)));
+        set_.ownPoints.push_back(
+            toVec3f(origin + x * double(section_[j].x) + z * double(section_[j].y)));
     }
   }
 
@@ -95,14 +99,16 @@ class Sweep {
       set_.texCoords.per = Attribute<Vec2f>::Per::corner;
       for (size_t i = 0; i < rows_; i++)
         for (size_t j = 0; j < steps; j++)
-          set_.texCoords.own.push_back({float(double(j) / double(steps - 1)), float(double(i) / double(rows_ - 1))});
+          set_.texCoords.own.push_back(
+              {float(double(j) / double(steps - 1)), float(double(i) / double(rows_ - 1))});
     }
     set_.faceStart.push_back(0);
     size_t realRows = joined_ ? rows_ - 1 : rows_;
     for (size_t i = 0; i + 1 < rows_; i++)
       for (size_t j = 0; j + 1 < steps; j++) {
         auto corner = [&](size_t r, size_t c) {
-          return std::pair{uint32_t((r % realRows) * columns_ + c % columns_), uint32_t(r * steps + c)};
+          return std::pair{uint32_t((r % realRows) * columns_ + c % columns_),
+                           uint32_t(r * steps + c)};
         };
         addFace({corner(i, j), corner(i, j + 1), corner(i + 1, j + 1), corner(i + 1, j)});
       }
@@ -113,7 +119,8 @@ class Sweep {
   void makeCap(size_t rowIndex, bool begin) {
     size_t count = columns_;
     if (count < 3) return;
-    uint32_t firstPoint = uint32_t(set_.ownPoints.size()), firstTexCoord = uint32_t(set_.texCoords.own.size());
+    uint32_t firstPoint = uint32_t(set_.ownPoints.size()),
+             firstTexCoord = uint32_t(set_.texCoords.own.size());
     for (size_t j = 0; j < count; j++) set_.ownPoints.push_back(Vec3f(row(rowIndex)[j]));
     if (options_.needTexCoords) { // the cross-section itself, its larger side from 0 to 1
       Vec2f low = section_[0], high = section_[0];
@@ -123,9 +130,9 @@ class Sweep {
       }
       double size = std::max(double(high.x) - low.x, double(high.y) - low.y);
       for (size_t j = 0; j < count; j++)
-        set_.texCoords.own.push_back(
-            size > 0 ? Vec2f{float((double(section_[j].x) - low.x) / size), float((double(section_[j].y) - low.y) / size)}
-                     : Vec2f{});
+        set_.texCoords.own.push_back(size > 0 ? Vec2f{float((double(section_[j].x) - low.x) / size),
+                                                      float((double(section_[j].y) - low.y) / size)}
+                                              : Vec2f{});
     }
     size_t before = set_.corners.size();
     for (size_t j = 0; j < count; j++) {

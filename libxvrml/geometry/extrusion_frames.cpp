@@ -1,5 +1,6 @@
-// extrusion_frames.cpp: the rules of 6.18.2 and 6.18.3 for the axes of the spine-aligned cross-section planes. Coincident spine
-// points share a frame, so the rules run over the different points only.
+// extrusion_frames.cpp: the rules of 6.18.2 and 6.18.3 for the axes of the spine-aligned
+// cross-section planes. Coincident spine points share a frame, so the rules run over the different
+// points only.
 #include "geometry/extrusion_frames.h"
 
 namespace xvrml {
@@ -17,7 +18,8 @@ V3d rotateFromY(const V3d& to, const V3d& v) {
 
 SpineFrame frame(const V3d& y, const V3d& z) {
   V3d x = unit(y.cross(z));
-  if (x == none) { // z along y, where z was taken over from a distant point: the frame of a straight spine
+  if (x == none) { // z along y, where z was taken over from a distant point: the frame of a
+                   // straight spine
     x = rotateFromY(y, {1, 0, 0});
   }
   return {x, y, unit(x.cross(y))};
@@ -44,7 +46,8 @@ std::vector<V3d> zAxes(const std::vector<V3d>& p, bool closed) {
   size_t n = p.size();
   auto cross = [](const V3d& a, const V3d& b) {
     V3d u = unit(a), v = unit(b), c = u.cross(v);
-    return c.dot(c) > 1e-14 ? unit(c) : none; // float coordinates on a line rarely are so to the last bit
+    return c.dot(c) > 1e-14 ? unit(c)
+                            : none; // float coordinates on a line rarely are so to the last bit
   };
   std::vector<V3d> axes(n, none);
   for (size_t i = 1; i + 1 < n; i++) axes[i] = cross(p[i + 1] - p[i], p[i - 1] - p[i]);
@@ -63,7 +66,9 @@ std::vector<SpineFrame> spineFrames(std::span<const Vec3f> spine, bool closed) {
     placeOf.push_back(p.size() - 1);
   }
   size_t n = p.size();
-  if (n < 2) return std::vector<SpineFrame>(spine.size(), {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}); // a surface of revolution
+  if (n < 2)
+    return std::vector<SpineFrame>(spine.size(),
+                                   {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}); // a surface of revolution
   std::vector<V3d> y = yAxes(p, closed), z = zAxes(p, closed);
 
   size_t defined = 0;
@@ -72,7 +77,8 @@ std::vector<SpineFrame> spineFrames(std::span<const Vec3f> spine, bool closed) {
   if (defined == n) { // all on one line: the xz plane turned from +y to the line
     V3d along = unit(p[n - 1] - p[0]);
     if (along == none) along = unit(p[1] - p[0]);
-    for (auto& f : frames) f = {rotateFromY(along, {1, 0, 0}), along, rotateFromY(along, {0, 0, 1})};
+    for (auto& f : frames)
+      f = {rotateFromY(along, {1, 0, 0}), along, rotateFromY(along, {0, 0, 1})};
   } else {
     // Where z is not defined it is that of the point before, or of the first point that has one.
     for (size_t i = 0; i < defined; i++) z[i] = z[defined];

@@ -1,4 +1,5 @@
-// extrusion_frames.h: the spine-aligned cross-section planes of an Extrusion (clauses 6.18.2 and 6.18.3).
+// extrusion_frames.h: the spine-aligned cross-section planes of an Extrusion (clauses 6.18.2
+// and 6.18.3).
 #pragma once
 
 #include <span>
@@ -8,7 +9,8 @@
 
 namespace xvrml {
 
-// Unit axes at right angles: the cross-section's x and z lie along x and z, y points along the spine.
+// Unit axes at right angles: the cross-section's x and z lie along x and z, y points along the
+// spine.
 struct SpineFrame {
   V3d x, y, z;
 };

@@ -27,7 +27,8 @@ bool Faults::any() const {
 // Points, lines and faces without area are seen with or without them the same.
 bool Faults::invisible() const {
   for (size_t i = 0; i < entries_.size(); i++)
-    if (entries_[i].count && Fault(i) != Fault::fewVertices && Fault(i) != Fault::noArea) return false;
+    if (entries_[i].count && Fault(i) != Fault::fewVertices && Fault(i) != Fault::noArea)
+      return false;
   return notes_.empty();
 }
 
@@ -39,7 +40,8 @@ void Faults::report(const Node& node, Diagnostics* diagnostics, std::string_view
     const Entry& entry = entries_[i];
     if (!entry.count) continue;
     const std::string_view which = i == size_t(Fault::overLimit) ? limit : "";
-    append(fmt::format("{} {}{} (first at index {})", entry.count, faultTexts[i], which, entry.first));
+    append(
+        fmt::format("{} {}{} (first at index {})", entry.count, faultTexts[i], which, entry.first));
   }
   for (const std::string& note : notes_) append(note);
   Diagnostic d;

@@ -1,5 +1,6 @@
-// faults.h: counts what one geometry node has wrong and says it in a single warning, so that a file of a million bad faces
-// gives one line a node. Made on the stack by each builder, on the caller's thread.
+// faults.h: counts what one geometry node has wrong and says it in a single warning, so that a file
+// of a million bad faces gives one line a node. Made on the stack by each builder, on the caller's
+// thread.
 #pragma once
 
 #include <array>
@@ -34,8 +35,8 @@ class Faults {
   }
   void note(std::string text) { notes_.push_back(std::move(text)); }
   bool any() const;
-  // Gives one warning at the node's place, none if nothing was wrong; a note if only that is dropped which nobody can see.
-  // limit: what Fault::overLimit speaks of.
+  // Gives one warning at the node's place, none if nothing was wrong; a note if only that is
+  // dropped which nobody can see. limit: what Fault::overLimit speaks of.
   void report(const Node& node, Diagnostics* diagnostics, std::string_view limit) const;
 
  private:

@@ -1,5 +1,5 @@
-// indexed_face_set.cpp: IndexedFaceSet (clause 6.23): faces and attribute indices out of the lists of the node, with a direct
-// way for large sets of triangles.
+// indexed_face_set.cpp: IndexedFaceSet (clause 6.23): faces and attribute indices out of the lists
+// of the node, with a direct way for large sets of triangles.
 #include <algorithm>
 
 #include "geometry/builders.h"
@@ -9,7 +9,8 @@
 namespace xvrml {
 namespace {
 
-// How an index list, a value list and a flag give each face or corner its value (colorIndex, color, colorPerVertex and so on).
+// How an index list, a value list and a flag give each face or corner its value (colorIndex, color,
+// colorPerVertex and so on).
 struct Binding {
   bool perVertex = true;
   std::span<const int32_t> index; // empty: coordIndex (a vertex), or the faces in order
@@ -43,14 +44,17 @@ template <class T> struct Bound {
     else if (!binding.perVertex)
       attribute.per = Per::face;
     else
-      attribute.per = binding.index.empty() && attribute.values.size() >= points ? Per::point : Per::corner;
+      attribute.per =
+          binding.index.empty() && attribute.values.size() >= points ? Per::point : Per::corner;
     binding.values = attribute.values.size();
   }
   void corner(uint64_t place, int32_t point, Faults& faults) {
-    if (attribute.per == Attribute<T>::Per::corner) attribute.index.push_back(binding.ofCorner(place, point, faults));
+    if (attribute.per == Attribute<T>::Per::corner)
+      attribute.index.push_back(binding.ofCorner(place, point, faults));
   }
   void face(uint64_t face, Faults& faults) {
-    if (attribute.per == Attribute<T>::Per::face) attribute.index.push_back(binding.ofFace(face, faults));
+    if (attribute.per == Attribute<T>::Per::face)
+      attribute.index.push_back(binding.ofFace(face, faults));
   }
 };
 
@@ -58,7 +62,8 @@ class FaceReader {
  public:
   FaceReader(const nodes::IndexedFaceSet& node, FaceSet& set, Faults& faults)
       : node_(node), set_(set),
-        faults_(faults), colors_{set.colors, {node.colorPerVertex, node.colorIndex, 0, Fault::colorMissing}},
+        faults_(faults), colors_{set.colors,
+                                 {node.colorPerVertex, node.colorIndex, 0, Fault::colorMissing}},
         normals_{set.normals, {node.normalPerVertex, node.normalIndex, 0, Fault::normalMissing}},
         texCoords_{set.texCoords, {true, node.texCoordIndex, 0, Fault::texCoordMissing}} {
     colors_.start(set.points.size());
@@ -93,7 +98,8 @@ class FaceReader {
     places_.clear();
     for (size_t i = begin; i < end; i++)
       if (places_.empty() || index[places_.back()] != index[i]) places_.push_back(i);
-    while (places_.size() > 1 && index[places_.back()] == index[places_.front()]) places_.pop_back();
+    while (places_.size() > 1 && index[places_.back()] == index[places_.front()])
+      places_.pop_back();
     if (places_.size() < 3) {
       faults_.add(Fault::fewVertices, begin);
       return;
@@ -120,16 +126,20 @@ class FaceReader {
 };
 
 // Triangles only, all sound: their indices. False at the first thing that needs a closer look.
-bool plainTriangles(std::span<const int32_t> index, std::span<const Vec3f> points, std::vector<uint32_t>& out) {
+bool plainTriangles(std::span<const int32_t> index, std::span<const Vec3f> points,
+                    std::vector<uint32_t>& out) {
   size_t n = index.size();
   if (n == 0 || (n % 4 != 0 && n % 4 != 3)) return false;
   size_t triangles = (n + 1) / 4;
   uint32_t limit = uint32_t(std::min<size_t>(points.size(), INT32_MAX));
   out.resize(3 * triangles);
   for (size_t t = 0; t < triangles; t++) {
-    uint32_t a = uint32_t(index[4 * t]), b = uint32_t(index[4 * t + 1]), c = uint32_t(index[4 * t + 2]);
+    uint32_t a = uint32_t(index[4 * t]), b = uint32_t(index[4 * t + 1]),
+             c = uint32_t(index[4 * t + 2]);
     bool ended = 4 * t + 3 == n || index[4 * t + 3] == -1;
-    if (!ended || a >= limit || b >= limit || c >= limit || !hasArea(points[a], points[b], points[c])) return false;
+    if (!ended || a >= limit || b >= limit || c >= limit ||
+        !hasArea(points[a], points[b], points[c]))
+      return false;
     out[3 * t] = a;
     out[3 * t + 1] = b;
     out[3 * t + 2] = c;
@@ -137,9 +147,13 @@ bool plainTriangles(std::span<const int32_t> index, std::span<const Vec3f> point
   return true;
 }
 
-// Points as they are in the node, for flat triangles without colours or texture coordinates of their own.
-bool buildInPlace(const nodes::IndexedFaceSet& node, std::span<const Vec3f> points, const MeshOptions& options, Mesh& mesh) {
-  if (node.coordIndex.size() / 4 + 1 > triangleLimit(options) || points.size() / 4 > node.coordIndex.size()) return false;
+// Points as they are in the node, for flat triangles without colours or texture coordinates of
+// their own.
+bool buildInPlace(const nodes::IndexedFaceSet& node, std::span<const Vec3f> points,
+                  const MeshOptions& options, Mesh& mesh) {
+  if (node.coordIndex.size() / 4 + 1 > triangleLimit(options) ||
+      points.size() / 4 > node.coordIndex.size())
+    return false;
   if (!allFinite(points) || !plainTriangles(node.coordIndex, points, mesh.ownIndices)) {
     mesh.ownIndices.clear();
     return false;
@@ -158,7 +172,8 @@ bool buildInPlace(const nodes::IndexedFaceSet& node, std::span<const Vec3f> poin
 
 } // namespace
 
-Mesh buildIndexedFaceSet(const nodes::IndexedFaceSet& node, const MeshOptions& options, Faults& faults) {
+Mesh buildIndexedFaceSet(const nodes::IndexedFaceSet& node, const MeshOptions& options,
+                         Faults& faults) {
   FaceSet set;
   set.points = coordinates(node.coord);
   if (node.coordIndex.empty()) return {};
@@ -171,7 +186,8 @@ Mesh buildIndexedFaceSet(const nodes::IndexedFaceSet& node, const MeshOptions& o
   set.texCoords.values = textureCoordinates(node.texCoord);
   bool flat = set.normals.values.empty() && !(node.creaseAngle > 0);
   Mesh mesh;
-  if (flat && set.colors.values.empty() && set.texCoords.values.empty() && buildInPlace(node, set.points, options, mesh))
+  if (flat && set.colors.values.empty() && set.texCoords.values.empty() &&
+      buildInPlace(node, set.points, options, mesh))
     return mesh;
 
   set.solid = node.solid;

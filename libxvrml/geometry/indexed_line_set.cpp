@@ -1,4 +1,5 @@
-// indexed_line_set.cpp: IndexedLineSet (clause 6.24): polylines to segments, colours a vertex or a polyline.
+// indexed_line_set.cpp: IndexedLineSet (clause 6.24): polylines to segments, colours a vertex or a
+// polyline.
 #include "geometry/builders.h"
 #include "geometry/vector_math.h"
 
@@ -8,10 +9,12 @@ namespace {
 class LineReader {
  public:
   LineReader(const nodes::IndexedLineSet& node, Faults& faults)
-      : node_(node), faults_(faults), points_(coordinates(node.coord)), colors_(colorValues(node.color)) {
+      : node_(node), faults_(faults), points_(coordinates(node.coord)),
+        colors_(colorValues(node.color)) {
     // Colours beside the points need no vertices of their own.
     ownVertices_ = !allFinite(points_) || !allFinite(colors_) ||
-                   (!colors_.empty() && (!node.colorPerVertex || !node.colorIndex.empty() || colors_.size() < points_.size()));
+                   (!colors_.empty() && (!node.colorPerVertex || !node.colorIndex.empty() ||
+                                         colors_.size() < points_.size()));
   }
 
   Mesh run() {
@@ -58,7 +61,8 @@ class LineReader {
     uint32_t previous = 0;
     size_t previousPlace = end, segments = 0;
     for (size_t i = begin; i < end; i++) {
-      if (previousPlace != end && points_[size_t(node_.coordIndex[previousPlace])] == points_[size_t(node_.coordIndex[i])])
+      if (previousPlace != end &&
+          points_[size_t(node_.coordIndex[previousPlace])] == points_[size_t(node_.coordIndex[i])])
         continue; // no length
       uint32_t vertex = addVertex(i, line);
       if (previousPlace != end) {

@@ -48,19 +48,23 @@ Matrix transformMatrix(const TransformFields& f) {
   Matrix m = compose(translation(vector(f.translation) + vector(f.center)), rotation(f.rotation));
   if (scales) {
     const Rotation& o = f.scaleOrientation;
-    m = compose(m, compose(rotation(o), compose(scaling(vector(f.scale)), rotation(Vector(o.x, o.y, o.z), -double(o.angle)))));
+    m = compose(m,
+                compose(rotation(o), compose(scaling(vector(f.scale)),
+                                             rotation(Vector(o.x, o.y, o.z), -double(o.angle)))));
   }
   return compose(m, translation(-vector(f.center)));
 }
 
 Matrix textureMatrix(Vec2f center, float angle, Vec2f scale, Vec2f offset) {
-  const Matrix c = translation({center.x, center.y, 0}), back = translation({-double(center.x), -double(center.y), 0});
+  const Matrix c = translation({center.x, center.y, 0}),
+               back = translation({-double(center.x), -double(center.y), 0});
   const Matrix turn = compose(scaling({scale.x, scale.y, 1}), rotation(Vector(0, 0, 1), angle));
   return compose(compose(back, turn), compose(c, translation({offset.x, offset.y, 0})));
 }
 
 Vector transformDirection(const Matrix& m, const Vector& v) {
-  return {v.x * m.x[0][0] + v.y * m.x[1][0] + v.z * m.x[2][0], v.x * m.x[0][1] + v.y * m.x[1][1] + v.z * m.x[2][1],
+  return {v.x * m.x[0][0] + v.y * m.x[1][0] + v.z * m.x[2][0],
+          v.x * m.x[0][1] + v.y * m.x[1][1] + v.z * m.x[2][1],
           v.x * m.x[0][2] + v.y * m.x[1][2] + v.z * m.x[2][2]};
 }
 
@@ -116,7 +120,8 @@ bool invert(const Matrix& m, Matrix& inverse) {
 Matrix rigid(const Matrix& m) {
   if (!finite(m)) return {};
   const Vector z = row(m, 2), y = row(m, 1);
-  if (z.length() > 0) return frameAbout(z.normalized(), y.length() > 0 ? y : Vector(0, 1, 0), row(m, 3));
+  if (z.length() > 0)
+    return frameAbout(z.normalized(), y.length() > 0 ? y : Vector(0, 1, 0), row(m, 3));
   return translation(row(m, 3));
 }
 
@@ -129,7 +134,8 @@ Matrix rotationOnly(const Matrix& m) {
 Matrix billboardMatrix(const Vector& axisOfRotation, const Vector& viewer, const Vector& up) {
   const double distance = viewer.length();
   if (!(distance > 0) || !std::isfinite(distance)) return {};
-  if (!(axisOfRotation.length() > 0)) return frameAbout(viewer / distance, up.length() > 0 ? up : Vector(0, 1, 0), Vector(0));
+  if (!(axisOfRotation.length() > 0))
+    return frameAbout(viewer / distance, up.length() > 0 ? up : Vector(0, 1, 0), Vector(0));
   // Turn about the axis until the local z axis lies in the plane of the axis and the viewer.
   const Vector a = axisOfRotation.normalized();
   const Vector z(0, 0, 1), zFlat = z - a * a.dot(z), vFlat = viewer - a * a.dot(viewer);

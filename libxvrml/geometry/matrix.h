@@ -1,7 +1,9 @@
-// matrix.h: the transformations of VRML nodes in double precision, and what the camera makes of them. Pure functions, any thread.
+// matrix.h: the transformations of VRML nodes in double precision, and what the camera makes of
+// them. Pure functions, any thread.
 //
-// A Matrix is Imath's row-vector matrix; its 16 numbers in memory are at the same time OpenRT's column-major matrix acting on
-// column vectors. To keep the standard's notation, compose(a, b) is "a times b" for column vectors: b acts first.
+// A Matrix is Imath's row-vector matrix; its 16 numbers in memory are at the same time OpenRT's
+// column-major matrix acting on column vectors. To keep the standard's notation, compose(a, b) is
+// "a times b" for column vectors: b acts first.
 #pragma once
 
 #include <Imath/ImathMatrix.h>
@@ -44,15 +46,18 @@ double determinant(const Matrix& m);
 // The affine inverse; false if there is none.
 bool invert(const Matrix& m, Matrix& inverse);
 
-// Rotation and translation alone: the axes of m made orthonormal, z first, then y. Scale does not distort a view (clause 6.53).
+// Rotation and translation alone: the axes of m made orthonormal, z first, then y. Scale does not
+// distort a view (clause 6.53).
 Matrix rigid(const Matrix& m);
 // Rotation alone (Background: clause 6.5).
 Matrix rotationOnly(const Matrix& m);
 
-// Billboard (clause 6.6): what turns the local frame for a viewer at `viewer` whose up direction is `up`, both local.
+// Billboard (clause 6.6): what turns the local frame for a viewer at `viewer` whose up direction is
+// `up`, both local.
 Matrix billboardMatrix(const Vector& axisOfRotation, const Vector& viewer, const Vector& up);
 
-// Vertical angle of view of a Viewpoint whose fieldOfView is meant for the smaller side of the picture (clause 6.53).
+// Vertical angle of view of a Viewpoint whose fieldOfView is meant for the smaller side of the
+// picture (clause 6.53).
 double verticalFieldOfView(double fieldOfView, double aspect);
 
 } // namespace xvrml

@@ -1,4 +1,5 @@
-// mesh.cpp: from a geometry node to the function that knows it, and the views of a Mesh on its own arrays.
+// mesh.cpp: from a geometry node to the function that knows it, and the views of a Mesh on its own
+// arrays.
 #include "geometry/mesh.h"
 
 #include "geometry/builders.h"
@@ -34,7 +35,8 @@ std::span<const Vec2f> textureCoordinates(const NodeRef& node) {
   return coordinate ? std::span<const Vec2f>(coordinate->point) : std::span<const Vec2f>();
 }
 
-template <class T> static bool tryBuild(Node* node, Mesh (*build)(const T&, const MeshOptions&, Faults&),
+template <class T> static bool tryBuild(Node* node,
+                                        Mesh (*build)(const T&, const MeshOptions&, Faults&),
                                         const MeshOptions& options, Mesh& mesh, Faults& faults) {
   auto* typed = nodeCast<T>(node);
   if (typed) mesh = build(*typed, options, faults);
@@ -46,11 +48,16 @@ Mesh buildMesh(Node& geometry, const MeshOptions& options) {
   Node* node = renderedNode(&geometry);
   if (!node) return mesh;
   Faults faults;
-  tryBuild(node, buildIndexedFaceSet, options, mesh, faults) || tryBuild(node, buildBox, options, mesh, faults) ||
-      tryBuild(node, buildCone, options, mesh, faults) || tryBuild(node, buildCylinder, options, mesh, faults) ||
-      tryBuild(node, buildSphere, options, mesh, faults) || tryBuild(node, buildIndexedLineSet, options, mesh, faults) ||
-      tryBuild(node, buildPointSet, options, mesh, faults) || tryBuild(node, buildElevationGrid, options, mesh, faults) ||
-      tryBuild(node, buildExtrusion, options, mesh, faults) || tryBuild(node, buildText, options, mesh, faults);
+  tryBuild(node, buildIndexedFaceSet, options, mesh, faults) ||
+      tryBuild(node, buildBox, options, mesh, faults) ||
+      tryBuild(node, buildCone, options, mesh, faults) ||
+      tryBuild(node, buildCylinder, options, mesh, faults) ||
+      tryBuild(node, buildSphere, options, mesh, faults) ||
+      tryBuild(node, buildIndexedLineSet, options, mesh, faults) ||
+      tryBuild(node, buildPointSet, options, mesh, faults) ||
+      tryBuild(node, buildElevationGrid, options, mesh, faults) ||
+      tryBuild(node, buildExtrusion, options, mesh, faults) ||
+      tryBuild(node, buildText, options, mesh, faults);
   faults.report(*node, options.diagnostics, triangleLimitName(options));
   return mesh;
 }

@@ -1,5 +1,6 @@
-// mesh.h: what a geometry node becomes: flat arrays that the OpenRT mapper hands on. Built by pure functions, one file a
-// node, on the caller's thread; what is degenerate or out of range is dropped with one warning a node.
+// mesh.h: what a geometry node becomes: flat arrays that the OpenRT mapper hands on. Built by pure
+// functions, one file a node, on the caller's thread; what is degenerate or out of range is dropped
+// with one warning a node.
 #pragma once
 
 #include <cstdint>
@@ -20,8 +21,9 @@ struct Color4 {
 struct Mesh {
   enum class Kind : uint8_t { empty, triangles, lines, points, sphere };
   Kind kind = Kind::empty;
-  // Views into the node's own arrays where they can be used as they are, else into the owned vectors below. One entry per
-  // vertex; normals, texCoords and colors are empty or as long as points.
+  // Views into the node's own arrays where they can be used as they are, else into the owned
+  // vectors below. One entry per vertex; normals, texCoords and colors are empty or as long as
+  // points.
   std::span<const Vec3f> points;
   std::span<const uint32_t> indices; // 3 a triangle, 2 a line segment, 1 a point
   std::span<const Vec3f> normals;    // empty: flat, the face's own normal
@@ -44,14 +46,17 @@ struct Mesh {
 };
 
 struct MeshOptions {
-  bool needTexCoords = false; // the shape has a texture: make the default mapping where the node gives none
+  bool needTexCoords =
+      false; // the shape has a texture: make the default mapping where the node gives none
   const Limits* limits = nullptr;
   Diagnostics* diagnostics = nullptr;
-  std::string_view limitName = {}; // what limits->triangles follows from, for messages; empty: the limit 'triangles'
+  std::string_view limitName =
+      {}; // what limits->triangles follows from, for messages; empty: the limit 'triangles'
 };
 
-// The mesh of any geometry node (Box ... Text); kind empty for a node that is none or has nothing to draw. The node must
-// outlive the mesh. coord, color, normal and texCoord children may be prototype instances (renderedNode).
+// The mesh of any geometry node (Box ... Text); kind empty for a node that is none or has nothing
+// to draw. The node must outlive the mesh. coord, color, normal and texCoord children may be
+// prototype instances (renderedNode).
 Mesh buildMesh(Node& geometry, const MeshOptions& options);
 
 } // namespace xvrml

@@ -20,7 +20,8 @@ Mesh buildPointSet(const nodes::PointSet& node, const MeshOptions&, Faults& faul
   if (mesh.ownIndices.size() < points.size()) { // only what can be drawn
     for (uint32_t& index : mesh.ownIndices) {
       mesh.ownPoints.push_back(points[index]);
-      if (!colors.empty()) mesh.ownColors.push_back(index < colors.size() ? colors[index] : Color{1, 1, 1});
+      if (!colors.empty())
+        mesh.ownColors.push_back(index < colors.size() ? colors[index] : Color{1, 1, 1});
     }
     std::iota(mesh.ownIndices.begin(), mesh.ownIndices.end(), 0);
     mesh.viewOwn();
@@ -34,7 +35,8 @@ Mesh buildPointSet(const nodes::PointSet& node, const MeshOptions&, Faults& faul
     } else if (!colors.empty())
       mesh.colors = colors.first(points.size());
   }
-  if (!colors.empty() && colors.size() < points.size()) faults.add(Fault::colorMissing, colors.size());
+  if (!colors.empty() && colors.size() < points.size())
+    faults.add(Fault::colorMissing, colors.size());
   if (!allFinite(mesh.colors)) {
     mesh.ownColors.assign(mesh.colors.begin(), mesh.colors.end());
     for (Color& color : mesh.ownColors)

@@ -31,13 +31,15 @@ void addTriangle(Mesh& mesh, uint32_t a, uint32_t b, uint32_t c) {
 }
 
 void addDisc(Mesh& mesh, float y, float radius, bool up) {
-  // The texture is upright when the top is tilted towards +z (up), or the bottom towards it (down): t runs to -z or to +z.
+  // The texture is upright when the top is tilted towards +z (up), or the bottom towards it (down):
+  // t runs to -z or to +z.
   const Vec3f normal{0, up ? 1.f : -1.f, 0};
   const uint32_t centre = uint32_t(mesh.ownPoints.size());
   addVertex(mesh, {0, y, 0}, normal, {0.5f, 0.5f});
   for (int i = 0; i < roundSegments; i++) {
     Vec2f at = aroundAxis(double(i) / roundSegments);
-    addVertex(mesh, {at.x * radius, y, at.y * radius}, normal, {0.5f + at.x / 2, 0.5f + (up ? -at.y : at.y) / 2});
+    addVertex(mesh, {at.x * radius, y, at.y * radius}, normal,
+              {0.5f + at.x / 2, 0.5f + (up ? -at.y : at.y) / 2});
   }
   for (uint32_t i = 0; i < roundSegments; i++) {
     uint32_t a = centre + 1 + i, b = centre + 1 + (i + 1) % roundSegments;

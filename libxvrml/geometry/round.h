@@ -1,4 +1,5 @@
-// round.h: the parts of Cone and Cylinder: vertices around the y axis with exact normals and the textures of the standard.
+// round.h: the parts of Cone and Cylinder: vertices around the y axis with exact normals and the
+// textures of the standard.
 #pragma once
 
 #include "geometry/mesh.h"
@@ -8,7 +9,8 @@ namespace xvrml {
 // Silhouettes of a circle of 64 sides are off by 0.12 % of the radius at most.
 inline constexpr int roundSegments = 64;
 
-// (x, z) of the unit circle at fraction s of the way round: from the back (-z), counterclockwise as seen from above.
+// (x, z) of the unit circle at fraction s of the way round: from the back (-z), counterclockwise as
+// seen from above.
 Vec2f aroundAxis(double s);
 
 void addVertex(Mesh& mesh, const Vec3f& point, const Vec3f& normal, const Vec2f& texCoord);

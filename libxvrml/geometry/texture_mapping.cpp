@@ -6,7 +6,8 @@
 
 namespace xvrml {
 
-std::vector<Vec2f> defaultTextureMapping(std::span<const Vec3f> points, std::span<const uint32_t> indices) {
+std::vector<Vec2f> defaultTextureMapping(std::span<const Vec3f> points,
+                                         std::span<const uint32_t> indices) {
   std::vector<Vec2f> mapping(points.size());
   Box3 box = boundsOf(points, indices);
   if (box.empty) return mapping;

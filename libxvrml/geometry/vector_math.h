@@ -1,4 +1,5 @@
-// vector_math.h: between the scene graph's plain vectors and Imath's; checks for finite numbers. Used by geometry/ only.
+// vector_math.h: between the scene graph's plain vectors and Imath's; checks for finite numbers.
+// Used by geometry/ only.
 #pragma once
 
 #include <Imath/ImathVec.h>
@@ -22,8 +23,12 @@ inline Vec3f toVec3f(const V3f& v) { return {v.x, v.y, v.z}; }
 
 inline bool isFinite(float v) { return std::isfinite(v); }
 inline bool isFinite(const Vec2f& v) { return std::isfinite(v.x) && std::isfinite(v.y); }
-inline bool isFinite(const Vec3f& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
-inline bool isFinite(const Color& v) { return std::isfinite(v.r) && std::isfinite(v.g) && std::isfinite(v.b); }
+inline bool isFinite(const Vec3f& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+inline bool isFinite(const Color& v) {
+  return std::isfinite(v.r) && std::isfinite(v.g) && std::isfinite(v.b);
+}
 
 // x * 0 is 0 for every finite x, else NaN: a sum of products keeps the loop free of branches.
 template <class T> bool allFinite(std::span<const T> values) {
@@ -41,11 +46,13 @@ template <class T> bool allFinite(std::span<const T> values) {
 inline V3d unit(const V3d& v) {
   double largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
   if (!(largest > 0) || !std::isfinite(largest)) return {0, 0, 0};
-  V3d scaled = v / largest; // squares of the smallest and largest floats' products would leave the range otherwise
+  V3d scaled = v / largest; // squares of the smallest and largest floats' products would leave the
+                            // range otherwise
   return scaled / std::sqrt(scaled.dot(scaled));
 }
 
-// Twice the area of a triangle is zero exactly when it has none: products of differences of floats in double.
+// Twice the area of a triangle is zero exactly when it has none: products of differences of floats
+// in double.
 inline bool hasArea(const Vec3f& a, const Vec3f& b, const Vec3f& c) {
   V3f u = toV3f(b) - toV3f(a), v = toV3f(c) - toV3f(a);
   V3f quick = u.cross(v);

@@ -1,4 +1,3 @@
-// crossing.cpp: see crossing.h.
 #include "graph/crossing.h"
 
 #include <filesystem>
@@ -17,7 +16,8 @@ bool isUrlField(const FieldInfo& field) {
   return field.type == FieldType::MFString && (field.name == "url" || field.name.ends_with("Url"));
 }
 
-// A relative URL written in the file of the instance, for a node that stands in another file (4.5.3).
+// A relative URL written in the file of the instance, for a node that stands in another file
+// (4.5.3).
 void rebaseUrls(MFString& urls, const std::string& from, const std::string& to) {
   namespace fs = std::filesystem;
   const fs::path fromFolder = fs::path(from).lexically_normal().parent_path();
@@ -27,13 +27,14 @@ void rebaseUrls(MFString& urls, const std::string& from, const std::string& to) 
   if (step.empty() || step == ".") return;
   for (std::string& url : urls) {
     const size_t colon = url.find(':');
-    const bool relative = !url.empty() && url[0] != '/' && url[0] != '#' && (colon == url.npos || url.find('/') < colon);
+    const bool relative = !url.empty() && url[0] != '/' && url[0] != '#' &&
+                          (colon == url.npos || url.find('/') < colon);
     if (relative) url = (step / url).string();
   }
 }
 
-// Whether `target` hangs below `top`, fields of Scripts and prototype instances left out. Asked only where a node
-// may be part of itself.
+// Whether `target` hangs below `top`, fields of Scripts and prototype instances left out. Asked
+// only where a node may be part of itself.
 bool reaches(Node& top, const Node& target) {
   std::unordered_set<const Node*> seen{&top};
   std::vector<Node*> open{&top};
@@ -44,7 +45,8 @@ bool reaches(Node& top, const Node& target) {
     Node& node = *open.back();
     open.pop_back();
     if (&node == &target) return true;
-    if (node.type().index >= 0) forEachChild(node, [&](NodeRef& child, const FieldInfo&) { add(child); });
+    if (node.type().index >= 0)
+      forEachChild(node, [&](NodeRef& child, const FieldInfo&) { add(child); });
     const auto* instance = dynamic_cast<const ProtoInstance*>(&node);
     if (!instance) continue;
     for (const NodeRef& root : instance->body.roots) add(root);
@@ -61,14 +63,17 @@ bool reaches(Node& top, const Node& target) {
 bool takes(const Crossing& c, const NodeRef& child, Diagnostics& diagnostics) {
   if (!child) return true;
   if (c.findLoops && c.node.type().index >= 0 && reaches(*child, c.node)) {
-    diagnostics.error(c.instance.source,
-                      fmt::format("the value of {} would make a node its own descendant (4.4.4)", c.from.name));
+    diagnostics.error(
+        c.instance.source,
+        fmt::format("the value of {} would make a node its own descendant (4.4.4)", c.from.name));
     return false;
   }
   const NodeType* type = effectiveType(*child);
   if (!type || c.to.nodeTypes.empty() || typeAccepted(c.to.nodeTypes, *type)) return true;
-  diagnostics.error(child->source, fmt::format("'{}' cannot be in field {} of {} that {} stands for: expected {}", type->name,
-                                               c.to.name, c.node.type().name, c.from.name, c.to.nodeTypes));
+  diagnostics.error(child->source,
+                    fmt::format("'{}' cannot be in field {} of {} that {} stands for: expected {}",
+                                type->name, c.to.name, c.node.type().name, c.from.name,
+                                c.to.nodeTypes));
   return false;
 }
 
@@ -79,13 +84,16 @@ void giveAcross(const Crossing& c, const Value& value, Diagnostics& diagnostics)
     using T = std::remove_reference_t<decltype(target)>;
     target = std::get<T>(value);
     if constexpr (std::is_same_v<T, MFString>) {
-      const bool foreign = isUrlField(c.to) && c.instance.isGiven(c.from) && c.instance.source.file && c.node.source.file;
+      const bool foreign = isUrlField(c.to) && c.instance.isGiven(c.from) &&
+                           c.instance.source.file && c.node.source.file;
       if (foreign) rebaseUrls(target, *c.instance.source.file, *c.node.source.file);
     } else if constexpr (std::is_same_v<T, NodeRef>) {
       if (!takes(c, target, diagnostics)) target = {};
     } else if constexpr (std::is_same_v<T, MFNode>) {
       const bool keeps = keepsNull(c.to) || c.node.type().index < 0;
-      std::erase_if(target, [&](const NodeRef& child) { return child ? !takes(c, child, diagnostics) : !keeps; });
+      std::erase_if(target, [&](const NodeRef& child) {
+        return child ? !takes(c, child, diagnostics) : !keeps;
+      });
     }
   });
   if (!holdsNodes(c.to) && c.to.range.bounded()) enforceRange(c.to, c.node.storage(c.to));

@@ -1,5 +1,6 @@
-// equal.cpp: are two graphs the same? Nodes are matched one to one as they are met, so sharing must be the same too; bodies of
-// prototype instances follow from their declarations and are not compared. [the thread that owns both]
+// equal.cpp: are two graphs the same? Nodes are matched one to one as they are met, so sharing must
+// be the same too; bodies of prototype instances follow from their declarations and are not
+// compared. [the thread that owns both]
 #include <algorithm>
 #include <tuple>
 #include <unordered_map>
@@ -17,9 +18,11 @@ class Comparison {
   std::string difference;
 
   bool scopes(const Scope& a, const Scope& b) {
-    if (a.prototypes.size() != b.prototypes.size()) return fail("number of prototypes", a.prototypes.size(), b.prototypes.size());
+    if (a.prototypes.size() != b.prototypes.size())
+      return fail("number of prototypes", a.prototypes.size(), b.prototypes.size());
     for (size_t i = 0; i < a.prototypes.size(); ++i) {
-      if (!prototypes(*a.prototypes[i], *b.prototypes[i])) return at("PROTO " + a.prototypes[i]->type->name);
+      if (!prototypes(*a.prototypes[i], *b.prototypes[i]))
+        return at("PROTO " + a.prototypes[i]->type->name);
     }
     if (!nodeLists(a.roots, b.roots)) return at("roots");
     return routes(a.routes, b.routes) && names(a, b);
@@ -46,13 +49,17 @@ class Comparison {
 
   bool types(const NodeType& a, const NodeType& b, bool defaults) {
     if (a.name != b.name) return fail("type", a.name, b.name);
-    if (a.fields.size() != b.fields.size()) return fail("number of fields", a.fields.size(), b.fields.size());
+    if (a.fields.size() != b.fields.size())
+      return fail("number of fields", a.fields.size(), b.fields.size());
     for (size_t i = 0; i < a.fields.size(); ++i) {
       const FieldInfo &x = a.fields[i], &y = b.fields[i];
-      if (x.name != y.name || x.type != y.type || x.access != y.access) return fail("field", x.name, y.name);
+      if (x.name != y.name || x.type != y.type || x.access != y.access)
+        return fail("field", x.name, y.name);
       if (!defaults || !holdsValue(x)) continue;
       const bool same = std::visit(
-          [&](const auto& value) { return values(value, std::get<std::remove_cvref_t<decltype(value)>>(y.defaultValue)); },
+          [&](const auto& value) {
+            return values(value, std::get<std::remove_cvref_t<decltype(value)>>(y.defaultValue));
+          },
           x.defaultValue);
       if (!same) return at(x.name);
     }
@@ -63,7 +70,8 @@ class Comparison {
     if (!a || !b) return (!a && !b) || fail("a node and NULL");
     const auto [first, newA] = matchA_.try_emplace(a.get(), b.get());
     const auto [second, newB] = matchB_.try_emplace(b.get(), a.get());
-    if (first->second != b.get() || second->second != a.get()) return fail("nodes are shared otherwise");
+    if (first->second != b.get() || second->second != a.get())
+      return fail("nodes are shared otherwise");
     if (!newA && !newB) return true;
     order_.emplace(a.get(), order_.size());
     if (a->defName != b->defName) return fail("DEF", a->defName, b->defName);
@@ -72,7 +80,8 @@ class Comparison {
       const FieldInfo &x = a->type().fields[i], &y = b->type().fields[i];
       if (!holdsValue(x)) continue;
       const bool same = visitStorage(x.type, a->storage(x), [&](auto& value) {
-        return values(value, *static_cast<const std::remove_reference_t<decltype(value)>*>(b->storage(y)));
+        return values(value,
+                      *static_cast<const std::remove_reference_t<decltype(value)>*>(b->storage(y)));
       });
       if (!same) return at(fmt::format("{} {}.{}", a->defName, a->type().name, x.name));
     }
@@ -104,8 +113,10 @@ class Comparison {
   bool routes(const std::vector<Route>& a, const std::vector<Route>& b) {
     using Key = std::tuple<size_t, std::string, size_t, std::string>;
     std::vector<Key> left, right;
-    for (const Route& r : a) left.emplace_back(number(r.from), r.fromField, number(r.to), r.toField);
-    for (const Route& r : b) right.emplace_back(number(partner(r.from)), r.fromField, number(partner(r.to)), r.toField);
+    for (const Route& r : a)
+      left.emplace_back(number(r.from), r.fromField, number(r.to), r.toField);
+    for (const Route& r : b)
+      right.emplace_back(number(partner(r.from)), r.fromField, number(partner(r.to)), r.toField);
     std::sort(left.begin(), left.end());
     std::sort(right.begin(), right.end());
     return left == right || fail("routes", left.size(), right.size());
@@ -115,18 +126,21 @@ class Comparison {
     using Key = std::tuple<size_t, std::string, std::string>;
     std::vector<Key> left, right;
     for (const IsConnection& c : a) left.emplace_back(number(c.node), c.field, c.interfaceName);
-    for (const IsConnection& c : b) right.emplace_back(number(partner(c.node)), c.field, c.interfaceName);
+    for (const IsConnection& c : b)
+      right.emplace_back(number(partner(c.node)), c.field, c.interfaceName);
     std::sort(left.begin(), left.end());
     std::sort(right.begin(), right.end());
     return left == right || fail("IS", left.size(), right.size());
   }
 
   bool names(const Scope& a, const Scope& b) {
-    if (a.names.size() != b.names.size()) return fail("number of names", a.names.size(), b.names.size());
+    if (a.names.size() != b.names.size())
+      return fail("number of names", a.names.size(), b.names.size());
     for (const auto& [name, node] : a.names) {
       const auto other = b.names.find(name);
       if (other == b.names.end()) return fail("name", name, std::string("none"));
-      if (number(node) != number(partner(other->second))) return fail(fmt::format("name {} means another node", name));
+      if (number(node) != number(partner(other->second)))
+        return fail(fmt::format("name {} means another node", name));
     }
     return true;
   }

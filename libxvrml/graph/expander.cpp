@@ -1,4 +1,3 @@
-// expander.cpp: see expander.h.
 #include "graph/expander.h"
 
 #include <unordered_set>
@@ -13,8 +12,8 @@
 namespace xvrml {
 namespace {
 
-// Nodes that events, names and the viewer never single out: what is drawn, and how it is placed. If no connection, route or
-// Script reaches them they are the same in every copy.
+// Nodes that events, names and the viewer never single out: what is drawn, and how it is placed. If
+// no connection, route or Script reaches them they are the same in every copy.
 bool isPassive(const Node& node) {
   const NodeType& type = node.type();
   if (type.index < 0) return false;
@@ -34,7 +33,9 @@ void appendNodes(const Value& value, std::vector<Node*>& nodes) {
 uint64_t valueBytes(FieldType type, const void* storage) {
   return visitStorage(type, const_cast<void*>(storage), [](auto& value) -> uint64_t {
     using T = std::remove_reference_t<decltype(value)>;
-    const auto outside = [](const std::string& text) { return text.size() > 15 ? text.size() + 1 : 0; };
+    const auto outside = [](const std::string& text) {
+      return text.size() > 15 ? text.size() + 1 : 0;
+    };
     if constexpr (std::is_same_v<T, std::string>) {
       return outside(value);
     } else if constexpr (std::is_same_v<T, Image>) {
@@ -60,13 +61,16 @@ uint64_t nodeBytes(Node& node) {
   return bytes;
 }
 
-void collectNodes(const std::vector<Node*>& roots, std::vector<Node*>& nodes, std::unordered_map<const Node*, uint32_t>& index) {
+void collectNodes(const std::vector<Node*>& roots, std::vector<Node*>& nodes,
+                  std::unordered_map<const Node*, uint32_t>& index) {
   const auto add = [&](Node* node) {
-    if (node && index.try_emplace(node, static_cast<uint32_t>(nodes.size())).second) nodes.push_back(node);
+    if (node && index.try_emplace(node, static_cast<uint32_t>(nodes.size())).second)
+      nodes.push_back(node);
   };
   for (size_t i = nodes.size(); Node * root : roots) {
     add(root);
-    for (; i < nodes.size(); ++i) forEachChild(*nodes[i], [&](NodeRef& child, const FieldInfo&) { add(child.get()); });
+    for (; i < nodes.size(); ++i)
+      forEachChild(*nodes[i], [&](NodeRef& child, const FieldInfo&) { add(child.get()); });
   }
 }
 
@@ -80,7 +84,8 @@ bool Expander::addNested(Plan& plan, ProtoInstance& nested, const SourcePosition
   if (!inner) return true; // stands for nothing
   const PlanPtr innerPlan = this->plan(inner, where);
   if (!innerPlan->usable) {
-    if (innerPlan->computing && nested.declaration->isExtern) nested.declaration->resolved = nullptr; // no cycle of owners
+    if (innerPlan->computing && nested.declaration->isExtern)
+      nested.declaration->resolved = nullptr; // no cycle of owners
     return false;
   }
   plan.expandedNodes = saturatingAdd(plan.expandedNodes, innerPlan->expandedNodes);
@@ -93,7 +98,8 @@ Expander::PlanPtr Expander::plan(const ProtoPtr& declaration, const SourcePositi
   const std::string& name = declaration->type->name;
   if (known) {
     if (known->computing) {
-      state_.diagnostics.error(where, fmt::format("prototype '{}' contains an instance of itself (4.8.3)", name));
+      state_.diagnostics.error(
+          where, fmt::format("prototype '{}' contains an instance of itself (4.8.3)", name));
     }
     return known;
   }
@@ -113,15 +119,19 @@ Expander::PlanPtr Expander::plan(const ProtoPtr& declaration, const SourcePositi
   bool good = true;
   const uint64_t limit = state_.options.limits.protoDepth;
   if (++depth_ > limit) {
-    state_.diagnostics.error(where, fmt::format("prototypes within prototypes deeper than limit protoDepth={}", limit));
+    state_.diagnostics.error(
+        where, fmt::format("prototypes within prototypes deeper than limit protoDepth={}", limit));
     good = false;
   }
-  for (size_t i = 0; i < plan->nodes.size(); ++i) plan->ownBytes += plan->shared[i] ? 0 : nodeBytes(*plan->nodes[i]);
-  plan->ownBytes += bytesOfConnection * declaration->is.size() + bytesOfRoute * declaration->body.routes.size() +
+  for (size_t i = 0; i < plan->nodes.size(); ++i)
+    plan->ownBytes += plan->shared[i] ? 0 : nodeBytes(*plan->nodes[i]);
+  plan->ownBytes += bytesOfConnection * declaration->is.size() +
+                    bytesOfRoute * declaration->body.routes.size() +
                     bytesOfName * declaration->body.names.size();
   plan->bytes = plan->ownBytes;
   for (size_t i = 0; good && i < plan->nodes.size(); ++i) {
-    if (auto* nested = dynamic_cast<ProtoInstance*>(plan->nodes[i])) good = addNested(*plan, *nested, where);
+    if (auto* nested = dynamic_cast<ProtoInstance*>(plan->nodes[i]))
+      good = addNested(*plan, *nested, where);
   }
   good = good && addDefaults(*plan, where);
   --depth_;
@@ -133,13 +143,16 @@ Expander::PlanPtr Expander::plan(const ProtoPtr& declaration, const SourcePositi
 // The nodes an interface has as defaults are copied for each instance too.
 bool Expander::addDefaults(Plan& plan, const SourcePosition& where) {
   std::vector<Node*> roots, nodes;
-  for (const FieldInfo& field : plan.declaration->type->fields) appendNodes(field.defaultValue, roots);
+  for (const FieldInfo& field : plan.declaration->type->fields)
+    appendNodes(field.defaultValue, roots);
   std::unordered_map<const Node*, uint32_t> index;
   collectNodes(roots, nodes, index);
   plan.expandedNodes = saturatingAdd(plan.expandedNodes, nodes.size());
   for (Node* node : nodes) {
     plan.bytes = saturatingAdd(plan.bytes, nodeBytes(*node));
-    if (auto* nested = dynamic_cast<ProtoInstance*>(node); nested && !addNested(plan, *nested, where)) return false;
+    if (auto* nested = dynamic_cast<ProtoInstance*>(node);
+        nested && !addNested(plan, *nested, where))
+      return false;
   }
   return true;
 }
@@ -153,9 +166,11 @@ void Expander::markShared(Plan& plan, const ProtoDeclaration& declaration) const
   std::vector<Node*> byScript;
   collectNodes(script, byScript, reached);
   plan.shared.resize(plan.nodes.size());
-  for (size_t i = 0; i < plan.nodes.size(); ++i) plan.shared[i] = isPassive(*plan.nodes[i]) && !reached.contains(plan.nodes[i]);
+  for (size_t i = 0; i < plan.nodes.size(); ++i)
+    plan.shared[i] = isPassive(*plan.nodes[i]) && !reached.contains(plan.nodes[i]);
   const auto exclude = [&](const NodeRef& node) {
-    if (const auto found = plan.index.find(node.get()); found != plan.index.end()) plan.shared[found->second] = false;
+    if (const auto found = plan.index.find(node.get()); found != plan.index.end())
+      plan.shared[found->second] = false;
   };
   for (const IsConnection& connection : declaration.is) exclude(connection.node);
   for (const Route& route : declaration.body.routes) {
@@ -167,7 +182,9 @@ void Expander::markShared(Plan& plan, const ProtoDeclaration& declaration) const
   std::vector<uint32_t> changed;
   for (uint32_t i = 0; i < plan.nodes.size(); ++i) {
     if (!plan.shared[i]) changed.push_back(i);
-    forEachChild(*plan.nodes[i], [&](NodeRef& child, const FieldInfo&) { holders[plan.index.at(child.get())].push_back(i); });
+    forEachChild(*plan.nodes[i], [&](NodeRef& child, const FieldInfo&) {
+      holders[plan.index.at(child.get())].push_back(i);
+    });
   }
   while (!changed.empty()) {
     const uint32_t node = changed.back();
@@ -200,7 +217,8 @@ NodeRef Expander::copyNode(Node& original) {
   return copy;
 }
 
-void Expander::copyFields(const Node& original, Node& copy, const std::unordered_map<const Node*, uint32_t>& index,
+void Expander::copyFields(const Node& original, Node& copy,
+                          const std::unordered_map<const Node*, uint32_t>& index,
                           const std::vector<NodeRef>& copies) {
   const auto mapped = [&](const NodeRef& node) {
     const auto found = index.find(node.get());
@@ -223,8 +241,10 @@ void Expander::copyFields(const Node& original, Node& copy, const std::unordered
   }
 }
 
-std::vector<NodeRef> Expander::copyAll(const std::vector<Node*>& nodes, const std::unordered_map<const Node*, uint32_t>& index,
-                                       const std::vector<bool>& shared, std::vector<NodeRef>& inlines) {
+std::vector<NodeRef> Expander::copyAll(const std::vector<Node*>& nodes,
+                                       const std::unordered_map<const Node*, uint32_t>& index,
+                                       const std::vector<bool>& shared,
+                                       std::vector<NodeRef>& inlines) {
   std::vector<NodeRef> copies;
   copies.reserve(nodes.size());
   for (size_t i = 0; i < nodes.size(); ++i)
@@ -258,8 +278,10 @@ Value Expander::copyDefault(const FieldInfo& declared, std::vector<NodeRef>& inl
   return value;
 }
 
-// Values the instance does not give come from the declaration (all of them for an EXTERNPROTO, whose interface has none).
-void Expander::completeFields(ProtoInstance& instance, const ProtoDeclaration& definition, std::vector<NodeRef>& inlines) {
+// Values the instance does not give come from the declaration (all of them for an EXTERNPROTO,
+// whose interface has none).
+void Expander::completeFields(ProtoInstance& instance, const ProtoDeclaration& definition,
+                              std::vector<NodeRef>& inlines) {
   for (const FieldInfo& field : instance.type().fields) {
     if (!holdsValue(field) || instance.isGiven(field)) continue;
     const FieldInfo* declared = definition.type->find(field.name);
@@ -276,15 +298,19 @@ void Expander::expandOne(ProtoInstance& instance, std::vector<NodeRef>& inlines)
   const Limits& limits = state_.options.limits;
   const std::string& name = definition->type->name;
   if (saturatingAdd(state_.world.nodeCount, plan->expandedNodes) > limits.expandedNodes) {
-    state_.diagnostics.error(instance.source,
-                             fmt::format("prototype '{}' expands to {} nodes: more than limit expandedNodes={}; not expanded",
-                                         name, plan->expandedNodes, limits.expandedNodes));
+    state_.diagnostics.error(
+        instance.source,
+        fmt::format(
+            "prototype '{}' expands to {} nodes: more than limit expandedNodes={}; not expanded",
+            name, plan->expandedNodes, limits.expandedNodes));
     return;
   }
   if (plan->bytes > state_.budget.left() || !state_.budget.take(plan->ownBytes)) {
-    state_.diagnostics.error(instance.source, fmt::format("copies of prototype '{}' take, with all that the world holds, more "
-                                                          "memory than {}; not expanded",
-                                                          name, state_.budget.name()));
+    state_.diagnostics.error(
+        instance.source,
+        fmt::format("copies of prototype '{}' take, with all that the world holds, more "
+                    "memory than {}; not expanded",
+                    name, state_.budget.name()));
     return;
   }
   completeFields(instance, *definition, inlines);
@@ -297,7 +323,8 @@ void Expander::expandOne(ProtoInstance& instance, std::vector<NodeRef>& inlines)
   body.prototypes = definition->body.prototypes;
   for (const NodeRef& root : definition->body.roots) body.roots.push_back(map(root));
   for (const Route& route : definition->body.routes) {
-    body.routes.push_back({map(route.from), route.fromField, map(route.to), route.toField, route.source});
+    body.routes.push_back(
+        {map(route.from), route.fromField, map(route.to), route.toField, route.source});
     ++state_.routes;
   }
   for (const auto& [key, node] : definition->body.names) body.names.emplace(key, map(node));
@@ -319,8 +346,10 @@ void Expander::expand(const std::vector<NodeRef>& instances, std::vector<NodeRef
 }
 
 // "field IS name": the instance's value becomes that of the node in its body (4.8.2).
-void Expander::applyConnections(ProtoInstance& instance, const ProtoDeclaration& definition, std::vector<NodeRef>& inlines) {
-  std::unordered_map<std::string_view, Value> undeclared; // what an EXTERNPROTO's interface leaves out has its default
+void Expander::applyConnections(ProtoInstance& instance, const ProtoDeclaration& definition,
+                                std::vector<NodeRef>& inlines) {
+  std::unordered_map<std::string_view, Value>
+      undeclared; // what an EXTERNPROTO's interface leaves out has its default
   for (const IsConnection& connection : instance.is) {
     const FieldInfo* to = connection.node->type().find(connection.field);
     if (!to || !holdsValue(*to)) continue;
@@ -330,9 +359,12 @@ void Expander::applyConnections(ProtoInstance& instance, const ProtoDeclaration&
       continue;
     }
     const FieldInfo* declared = definition.type->find(connection.interfaceName);
-    if (!declared || !holdsValue(*declared) || declared->type != to->type || &definition == instance.declaration.get()) continue;
+    if (!declared || !holdsValue(*declared) || declared->type != to->type ||
+        &definition == instance.declaration.get())
+      continue;
     auto found = undeclared.find(declared->name);
-    if (found == undeclared.end()) found = undeclared.emplace(declared->name, copyDefault(*declared, inlines)).first;
+    if (found == undeclared.end())
+      found = undeclared.emplace(declared->name, copyDefault(*declared, inlines)).first;
     connect(instance, *declared, found->second, connection);
   }
 }
@@ -341,18 +373,22 @@ void Expander::holdsItself(const NodeRef& node) {
   if (state_.cycleHolders.insert(node.get()).second) state_.world.cyclic.push_back(node);
 }
 
-void Expander::connect(const ProtoInstance& instance, const FieldInfo& from, const Value& value, const IsConnection& connection) {
+void Expander::connect(const ProtoInstance& instance, const FieldInfo& from, const Value& value,
+                       const IsConnection& connection) {
   Node& node = *connection.node;
   const FieldInfo& to = *node.type().find(connection.field);
   if (auto* inner = dynamic_cast<ProtoInstance*>(&node)) inner->give(to);
   if (!state_.entered.empty() && node.type().index < 0 && holdsNodes(to))
     holdsItself(connection.node); // it may: more is not known
-  const void* const given = std::visit([](const auto& alternative) -> const void* { return &alternative; }, value);
+  const void* const given =
+      std::visit([](const auto& alternative) -> const void* { return &alternative; }, value);
   if (!state_.budget.take(valueBytes(to.type, given))) {
     if (!std::exchange(state_.full, true))
-      state_.diagnostics.error(instance.source, fmt::format("the world takes more memory than {}; values of prototype '{}' from "
-                                                            "{} on are left out",
-                                                            state_.budget.name(), instance.type().name, from.name));
+      state_.diagnostics.error(
+          instance.source,
+          fmt::format("the world takes more memory than {}; values of prototype '{}' from "
+                      "{} on are left out",
+                      state_.budget.name(), instance.type().name, from.name));
     return;
   }
   const Crossing crossing{instance, from, node, to, !state_.entered.empty()};

@@ -1,5 +1,6 @@
-// expander.h: prototype instances get their copy of the prototype's body (ISO/IEC 14772-1 4.8.3). Used by the loader once a file
-// has been parsed; what an instance would cost is added up before anything is made.
+// expander.h: prototype instances get their copy of the prototype's body (ISO/IEC 14772-1 4.8.3).
+// Used by the loader once a file has been parsed; what an instance would cost is added up before
+// anything is made.
 #pragma once
 
 #include <functional>
@@ -11,7 +12,8 @@ namespace xvrml {
 
 class Expander {
  public:
-  // resolve finds the declaration behind an EXTERNPROTO (null, with a message, if it cannot be found).
+  // resolve finds the declaration behind an EXTERNPROTO (null, with a message, if it cannot be
+  // found).
   using Resolve = std::function<ProtoPtr(ProtoDeclaration&)>;
   Expander(LoadState& state, Resolve resolve) : state_(state), resolve_(std::move(resolve)) {}
 
@@ -37,16 +39,22 @@ class Expander {
   bool addDefaults(Plan& plan, const SourcePosition& where);
   void markShared(Plan& plan, const ProtoDeclaration& declaration) const;
   void expandOne(ProtoInstance& instance, std::vector<NodeRef>& inlines);
-  void completeFields(ProtoInstance& instance, const ProtoDeclaration& definition, std::vector<NodeRef>& inlines);
-  void holdsItself(const NodeRef& node); // a Script or instance whose fields may hold what it is part of
+  void completeFields(ProtoInstance& instance, const ProtoDeclaration& definition,
+                      std::vector<NodeRef>& inlines);
+  void
+  holdsItself(const NodeRef& node); // a Script or instance whose fields may hold what it is part of
   NodeRef copyNode(Node& original);
-  void copyFields(const Node& original, Node& copy, const std::unordered_map<const Node*, uint32_t>& index,
+  void copyFields(const Node& original, Node& copy,
+                  const std::unordered_map<const Node*, uint32_t>& index,
                   const std::vector<NodeRef>& copies);
-  std::vector<NodeRef> copyAll(const std::vector<Node*>& nodes, const std::unordered_map<const Node*, uint32_t>& index,
+  std::vector<NodeRef> copyAll(const std::vector<Node*>& nodes,
+                               const std::unordered_map<const Node*, uint32_t>& index,
                                const std::vector<bool>& shared, std::vector<NodeRef>& inlines);
   Value copyDefault(const FieldInfo& declared, std::vector<NodeRef>& inlines);
-  void applyConnections(ProtoInstance& instance, const ProtoDeclaration& definition, std::vector<NodeRef>& inlines);
-  void connect(const ProtoInstance& instance, const FieldInfo& from, const Value& value, const IsConnection& connection);
+  void applyConnections(ProtoInstance& instance, const ProtoDeclaration& definition,
+                        std::vector<NodeRef>& inlines);
+  void connect(const ProtoInstance& instance, const FieldInfo& from, const Value& value,
+               const IsConnection& connection);
 
   LoadState& state_;
   Resolve resolve_;
@@ -55,11 +63,14 @@ class Expander {
   uint64_t depth_ = 0;
 };
 
-// Every node that the given ones hold in their fields, themselves first, each once. A loop: graphs may be deep.
-void collectNodes(const std::vector<Node*>& roots, std::vector<Node*>& nodes, std::unordered_map<const Node*, uint32_t>& index);
+// Every node that the given ones hold in their fields, themselves first, each once. A loop: graphs
+// may be deep.
+void collectNodes(const std::vector<Node*>& roots, std::vector<Node*>& nodes,
+                  std::unordered_map<const Node*, uint32_t>& index);
 // Rough size of a node in memory, with the values of its fields.
 uint64_t nodeBytes(Node& node);
-// Rough size of a field's value beyond the storage in its node: elements of lists, long strings, pixels.
+// Rough size of a field's value beyond the storage in its node: elements of lists, long strings,
+// pixels.
 uint64_t valueBytes(FieldType type, const void* storage);
 
 } // namespace xvrml

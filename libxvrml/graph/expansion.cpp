@@ -1,4 +1,3 @@
-// expansion.cpp: see expansion.h.
 #include "graph/expansion.h"
 
 #include <unordered_set>
@@ -8,7 +7,8 @@
 namespace xvrml {
 namespace {
 
-// Is `node` part of what hangs below `top`? Only what a plug-in made is searched: a field's own nodes cannot hold their owner.
+// Is `node` part of what hangs below `top`? Only what a plug-in made is searched: a field's own
+// nodes cannot hold their owner.
 bool holds(Node& top, const Node& node) {
   std::unordered_set<const Node*> seen{&top};
   std::vector<Node*> open{&top};

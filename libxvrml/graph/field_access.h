@@ -1,5 +1,5 @@
-// field_access.h: typed access to the fields of any node through its table; used by the builder, the prototype instancer, the
-// writer and the comparison. [any thread that owns the node]
+// field_access.h: typed access to the fields of any node through its table; used by the builder,
+// the prototype instancer, the writer and the comparison. [any thread that owns the node]
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,8 @@
 namespace xvrml {
 
 // Calls visit with a typed reference to the storage of a field of this type.
-template <class Visitor> decltype(auto) visitStorage(FieldType type, void* storage, Visitor&& visit) {
+template <class Visitor>
+decltype(auto) visitStorage(FieldType type, void* storage, Visitor&& visit) {
   switch (type) {
   case FieldType::SFBool: return visit(*static_cast<SFBool*>(storage));
   case FieldType::SFColor: return visit(*static_cast<SFColor*>(storage));
@@ -35,7 +36,9 @@ template <class Visitor> decltype(auto) visitStorage(FieldType type, void* stora
   return visit(*static_cast<MFVec3f*>(storage));
 }
 
-inline bool holdsValue(const FieldInfo& field) { return field.access == Access::field || field.access == Access::exposedField; }
+inline bool holdsValue(const FieldInfo& field) {
+  return field.access == Access::field || field.access == Access::exposedField;
+}
 constexpr std::string_view accessName(Access access) {
   constexpr std::string_view names[] = {"field", "exposedField", "eventIn", "eventOut"};
   return names[static_cast<size_t>(access)];
@@ -44,8 +47,11 @@ inline bool holdsNodes(const FieldInfo& field) {
   return holdsValue(field) && (field.type == FieldType::SFNode || field.type == FieldType::MFNode);
 }
 
-// Lists in which a node's place counts keep NULL (Switch.choice, LOD.level); in others it stands for nothing.
-inline bool keepsNull(const FieldInfo& field) { return field.name == "choice" || field.name == "level"; }
+// Lists in which a node's place counts keep NULL (Switch.choice, LOD.level); in others it stands
+// for nothing.
+inline bool keepsNull(const FieldInfo& field) {
+  return field.name == "choice" || field.name == "level";
+}
 
 // Calls visit(NodeRef&, const FieldInfo&) for each node a node's own fields hold, NULL left out.
 template <class Visitor> void forEachChild(Node& node, Visitor&& visit) {
@@ -62,6 +68,8 @@ template <class Visitor> void forEachChild(Node& node, Visitor&& visit) {
   }
 }
 
-constexpr uint64_t saturatingAdd(uint64_t a, uint64_t b) { return a + b < a ? ~uint64_t(0) : a + b; }
+constexpr uint64_t saturatingAdd(uint64_t a, uint64_t b) {
+  return a + b < a ? ~uint64_t(0) : a + b;
+}
 
 } // namespace xvrml

@@ -1,4 +1,3 @@
-// inline_node.cpp: see inline_node.h.
 #include "graph/inline_node.h"
 
 #include "graph/field_access.h"

@@ -1,5 +1,5 @@
-// inline_node.h: how nodes are made while a world is loaded: Inline nodes carry what they loaded, Scripts a table of their own.
-// Used by the builder, the prototype instancer and the loader.
+// inline_node.h: how nodes are made while a world is loaded: Inline nodes carry what they loaded,
+// Scripts a table of their own. Used by the builder, the prototype instancer and the loader.
 #pragma once
 
 #include "base/budget.h"
@@ -11,7 +11,7 @@ namespace xvrml {
 struct InlineNode : nodes::Inline {
   using nodes::Inline::Inline;
   std::shared_ptr<const Scope> content; // null until it is loaded
-  Share share;                          // of the world's budget: content that a running world has loaded
+  Share share; // of the world's budget: content that a running world has loaded
 };
 
 // A node of a type of the registry other than Script.

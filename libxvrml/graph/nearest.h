@@ -9,7 +9,8 @@
 
 namespace xvrml {
 
-// Edits (insert, delete, replace, letter case counts half) that turn a into b, in halves; names are short.
+// Edits (insert, delete, replace, letter case counts half) that turn a into b, in halves; names are
+// short.
 inline size_t editDistance(std::string_view a, std::string_view b) {
   std::vector<size_t> row(b.size() + 1);
   for (size_t j = 0; j <= b.size(); ++j) row[j] = 2 * j;
@@ -17,7 +18,9 @@ inline size_t editDistance(std::string_view a, std::string_view b) {
   for (size_t i = 1; i <= a.size(); ++i) {
     size_t diagonal = std::exchange(row[0], 2 * i);
     for (size_t j = 1; j <= b.size(); ++j) {
-      const size_t replace = diagonal + (a[i - 1] == b[j - 1] ? 0 : lower(a[i - 1]) == lower(b[j - 1]) ? 1 : 2);
+      const size_t replace = diagonal + (a[i - 1] == b[j - 1]                 ? 0
+                                         : lower(a[i - 1]) == lower(b[j - 1]) ? 1
+                                                                              : 2);
       diagonal = row[j];
       row[j] = std::min({replace, row[j - 1] + 2, row[j] + 2});
     }
@@ -37,7 +40,8 @@ template <class T> const std::string& nameOf(const T& item) {
 template <class Range> std::string suggestion(std::string_view name, const Range& known) {
   if (name.size() > 64) return {};
   const std::string* best = nullptr;
-  size_t distance = 2 * (name.size() / 3) + 1; // none for a name of one or two letters, but for their case
+  size_t distance =
+      2 * (name.size() / 3) + 1; // none for a name of one or two letters, but for their case
   for (const auto& item : known) {
     const std::string& candidate = nameOf(item);
     const size_t d = editDistance(name, candidate);

@@ -6,12 +6,14 @@ namespace xvrml {
 
 const Node* firstNode(const ProtoDeclaration* declaration) {
   if (declaration->isExtern) declaration = declaration->resolved.get();
-  return declaration && !declaration->body.roots.empty() ? declaration->body.roots[0].get() : nullptr;
+  return declaration && !declaration->body.roots.empty() ? declaration->body.roots[0].get()
+                                                         : nullptr;
 }
 
 const NodeType* effectiveType(const Node& node) {
   const Node* current = &node;
-  // Instances of instances; their number is bounded by the depth of prototypes declared before one another.
+  // Instances of instances; their number is bounded by the depth of prototypes declared before one
+  // another.
   while (const auto* instance = dynamic_cast<const ProtoInstance*>(current)) {
     current = firstNode(instance->declaration.get());
     if (!current) return nullptr;

@@ -12,10 +12,12 @@
 namespace xvrml {
 namespace {
 
-// Returns true if the bound is a multiple of pi/2 other than 0: files have such angles rounded (1.571, 1.5708, 6.28319).
+// Returns true if the bound is a multiple of pi/2 other than 0: files have such angles rounded
+// (1.571, 1.5708, 6.28319).
 bool isAngleBound(double bound) {
   const double quarters = bound / (std::numbers::pi / 2);
-  return std::abs(quarters) >= 1 && std::abs(quarters) <= 8 && std::abs(quarters - std::round(quarters)) < 1e-6;
+  return std::abs(quarters) >= 1 && std::abs(quarters) <= 8 &&
+         std::abs(quarters - std::round(quarters)) < 1e-6;
 }
 
 // Returns how far beyond a bound a number may be and still mean the bound.
@@ -27,20 +29,26 @@ double slackAt(double bound) {
 
 template <class T> bool inside(T number, const FieldRange& range) {
   const T minimum = static_cast<T>(range.minimum), maximum = static_cast<T>(range.maximum);
-  return (range.minimumOpen ? number > minimum : number >= minimum) && (range.maximumOpen ? number < maximum : number <= maximum);
+  return (range.minimumOpen ? number > minimum : number >= minimum) &&
+         (range.maximumOpen ? number < maximum : number <= maximum);
 }
 
 // Integers are compared as doubles: infinity is no integer.
-bool inside(int32_t number, const FieldRange& range) { return inside(static_cast<double>(number), range); }
+bool inside(int32_t number, const FieldRange& range) {
+  return inside(static_cast<double>(number), range);
+}
 
-// Brings a number that means a bound to that bound, or to the nearest number inside if the range is open there. Returns false if
-// it is outside and means no bound.
+// Brings a number that means a bound to that bound, or to the nearest number inside if the range is
+// open there. Returns false if it is outside and means no bound.
 template <class T> bool round(T& number, const FieldRange& range) {
   if (inside(number, range)) return true;
   if constexpr (std::is_floating_point_v<T>) {
-    const auto means = [number](double bound) { return std::abs(static_cast<double>(number) - bound) <= slackAt(bound); };
+    const auto means = [number](double bound) {
+      return std::abs(static_cast<double>(number) - bound) <= slackAt(bound);
+    };
     const T minimum = static_cast<T>(range.minimum), maximum = static_cast<T>(range.maximum);
-    if (number > maximum && means(range.maximum) && (!range.maximumOpen || isAngleBound(range.maximum))) {
+    if (number > maximum && means(range.maximum) &&
+        (!range.maximumOpen || isAngleBound(range.maximum))) {
       number = range.maximumOpen ? std::nextafter(maximum, T(0)) : maximum;
       return true;
     }
@@ -62,7 +70,9 @@ template <class T> void clampToClosed(T& number, const FieldRange& range) {
   if (!range.maximumOpen && value > range.maximum) number = static_cast<T>(range.maximum);
 }
 
-template <class T> bool isAlso(T number, const FieldRange& range) { return static_cast<double>(number) == range.also; }
+template <class T> bool isAlso(T number, const FieldRange& range) {
+  return static_cast<double>(number) == range.also;
+}
 
 // The numbers of a value that the range speaks of; rotations are normalised instead.
 template <class T> struct Numbers;
@@ -155,18 +165,25 @@ bool enforceRange(const FieldInfo& field, void* storage, RangeFault* fault) {
 
 std::string describe(const FieldRange& range) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
-  const std::string low = range.minimum == -infinity ? "(-inf" : (range.minimumOpen ? '(' : '[') + boundText(range.minimum);
-  const std::string high = range.maximum == infinity ? "inf)" : boundText(range.maximum) + (range.maximumOpen ? ')' : ']');
+  const std::string low = range.minimum == -infinity
+                              ? "(-inf"
+                              : (range.minimumOpen ? '(' : '[') + boundText(range.minimum);
+  const std::string high = range.maximum == infinity
+                               ? "inf)"
+                               : boundText(range.maximum) + (range.maximumOpen ? ')' : ']');
   return low + "," + high + (range.also == range.also ? fmt::format(" or {}", range.also) : "");
 }
 
 std::string describe(const NodeType& type, const FieldInfo& field, const RangeFault& fault) {
   const bool list = field.type >= FieldType::MFColor;
-  const std::string where = list ? fmt::format("{}.{}[{}]", type.name, field.name, fault.index) : type.name + "." + field.name;
-  const std::string done = fault.given == fault.used ? "is left as it is, and what cannot be drawn is left out"
-                                                     : fmt::format("becomes {}", fault.used);
-  return fmt::format("{}: {} is outside of its range {} and {}{}", where, fault.given, describe(field.range), done,
-                     fault.count > 1 ? fmt::format(", as do {} further elements", fault.count - 1) : "");
+  const std::string where = list ? fmt::format("{}.{}[{}]", type.name, field.name, fault.index)
+                                 : type.name + "." + field.name;
+  const std::string done = fault.given == fault.used
+                               ? "is left as it is, and what cannot be drawn is left out"
+                               : fmt::format("becomes {}", fault.used);
+  return fmt::format(
+      "{}: {} is outside of its range {} and {}{}", where, fault.given, describe(field.range), done,
+      fault.count > 1 ? fmt::format(", as do {} further elements", fault.count - 1) : "");
 }
 
 } // namespace xvrml

@@ -1,4 +1,5 @@
-// range.h: ranges of field values (the intervals that the standard prints beside each field). [any thread that owns the nodes]
+// range.h: ranges of field values (the intervals that the standard prints beside each field). [any
+// thread that owns the nodes]
 #pragma once
 
 #include <cstddef>
@@ -9,9 +10,10 @@
 
 namespace xvrml {
 
-// Brings numbers outside of a field's range back: to a closed end of the range; a single number beyond an open end to the
-// default. Other values beyond an open end stay for those who draw them. Numbers that are a bound as files round it are
-// not outside. False if something was outside; fault, which may be null, says what.
+// Brings numbers outside of a field's range back: to a closed end of the range; a single number
+// beyond an open end to the default. Other values beyond an open end stay for those who draw them.
+// Numbers that are a bound as files round it are not outside. False if something was outside;
+// fault, which may be null, says what.
 struct RangeFault {
   uint64_t count = 0;      // values that were outside
   size_t index = 0;        // of the first one in its list

@@ -21,7 +21,8 @@ Node* renderedNode(Node* node) {
   return node;
 }
 
-// A Script's field may hold a node that contains the Script: such owners of themselves are let go by hand.
+// A Script's field may hold a node that contains the Script: such owners of themselves are let go
+// by hand.
 World::~World() {
   forgetBudget(*this);
   for (const NodeRef& node : cyclic) {

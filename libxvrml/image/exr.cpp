@@ -1,7 +1,8 @@
-// exr.cpp: OpenEXR pictures that worlds name. Reads the simple half of the format and nothing else: one part, scan lines, without
-// compression, run-length coded or deflated. OpenEXR's own library reads all of it, but its list of vulnerabilities is long and
-// the copies of distributions are old, so files that anybody may have made are kept from it (docs/decisions/0038). The format:
-// "OpenEXR File Layout", openexr.com. [any thread]
+// exr.cpp: OpenEXR pictures that worlds name. Reads the simple half of the format and nothing else:
+// one part, scan lines, without compression, run-length coded or deflated. OpenEXR's own library
+// reads all of it, but its list of vulnerabilities is long and the copies of distributions are old,
+// so files that anybody may have made are kept from it (docs/decisions/0038). The format: "OpenEXR
+// File Layout", openexr.com. [any thread]
 #include <fmt/format.h>
 #include <zlib.h>
 
@@ -40,7 +41,8 @@ class Reader {
     return low | uint64_t(word()) << 32;
   }
   std::string_view text() { // ends with a zero byte
-    const auto begin = bytes_.begin() + ptrdiff_t(at_), end = std::find(begin, bytes_.end(), uint8_t(0));
+    const auto begin = bytes_.begin() + ptrdiff_t(at_),
+               end = std::find(begin, bytes_.end(), uint8_t(0));
     if (end == bytes_.end() || end - begin > 255) refuse("a name in the header does not end");
     const Bytes found = take(size_t(end - begin) + 1);
     return {reinterpret_cast<const char*>(found.data()), found.size() - 1};
@@ -85,9 +87,11 @@ std::vector<Channel> readChannels(Reader in) {
 }
 
 Compression readCompression(uint8_t number) {
-  static constexpr const char* names[] = {"NONE", "RLE", "ZIPS", "ZIP", "PIZ", "PXR24", "B44", "B44A", "DWAA", "DWAB"};
+  static constexpr const char* names[] = {"NONE",  "RLE", "ZIPS", "ZIP",  "PIZ",
+                                          "PXR24", "B44", "B44A", "DWAA", "DWAB"};
   if (number > 3)
-    refuse(fmt::format("compressed by {}; worlds read NONE, RLE, ZIPS and ZIP (convert it, or give it with --environment)",
+    refuse(fmt::format("compressed by {}; worlds read NONE, RLE, ZIPS and ZIP (convert it, or give "
+                       "it with --environment)",
                        number < std::size(names) ? names[number] : "an unknown method"));
   return Compression(number);
 }
@@ -123,7 +127,8 @@ Header readHeader(Reader& in) {
   bool colours[3] = {};
   for (const Channel& c : header.channels)
     for (int k = 0; k < 3; k++) colours[k] |= c.colour == k || c.colour == 3;
-  if (!colours[0] || !colours[1] || !colours[2]) refuse("there are no channels R, G and B and none Y");
+  if (!colours[0] || !colours[1] || !colours[2])
+    refuse("there are no channels R, G and B and none Y");
   return header;
 }
 
@@ -148,20 +153,23 @@ std::vector<uint8_t> expandRuns(Bytes packed, size_t size) {
 // The lines of a block as they were before compression.
 std::vector<uint8_t> unpack(Bytes packed, size_t size, Compression compression) {
   std::vector<uint8_t> bytes;
-  if (packed.size() == size || compression == Compression::none) { // stored as it is where compression did not pay
+  if (packed.size() == size ||
+      compression == Compression::none) { // stored as it is where compression did not pay
     bytes.assign(packed.begin(), packed.end());
   } else if (compression == Compression::runs) {
     bytes = expandRuns(packed, size);
   } else {
     bytes.resize(size);
     uLongf written = uLongf(size);
-    if (uncompress(bytes.data(), &written, packed.data(), uLong(packed.size())) != Z_OK) refuse("a block cannot be inflated");
+    if (uncompress(bytes.data(), &written, packed.data(), uLong(packed.size())) != Z_OK)
+      refuse("a block cannot be inflated");
     bytes.resize(written);
   }
   if (bytes.size() != size) refuse("a block of a wrong size");
   if (packed.size() == size || compression == Compression::none) return bytes;
-  for (size_t i = 1; i < size; i++) bytes[i] = uint8_t(bytes[i - 1] + bytes[i] - 128); // differences
-  std::vector<uint8_t> woven(size);                                                    // first all even bytes, then the odd ones
+  for (size_t i = 1; i < size; i++)
+    bytes[i] = uint8_t(bytes[i - 1] + bytes[i] - 128); // differences
+  std::vector<uint8_t> woven(size);                    // first all even bytes, then the odd ones
   for (size_t i = 0; i < size; i++) woven[i] = bytes[i % 2 ? (size + 1) / 2 + i / 2 : i / 2];
   return woven;
 }
@@ -176,7 +184,8 @@ float halfToFloat(uint16_t h) {
 
 float sampleAt(const uint8_t* p, Samples kind) {
   if (kind == Samples::half) return halfToFloat(uint16_t(p[0] | p[1] << 8));
-  const uint32_t bits = uint32_t(p[0]) | uint32_t(p[1]) << 8 | uint32_t(p[2]) << 16 | uint32_t(p[3]) << 24;
+  const uint32_t bits =
+      uint32_t(p[0]) | uint32_t(p[1]) << 8 | uint32_t(p[2]) << 16 | uint32_t(p[3]) << 24;
   return kind == Samples::single ? std::bit_cast<float>(bits) : float(bits);
 }
 
@@ -197,11 +206,14 @@ RadianceImage decodeExr(std::span<const uint8_t> bytes, const Limits& limits) {
   const size_t blocks = (height + lines - 1) / lines;
   std::vector<uint64_t> offsets;
   for (size_t b = 0; b < blocks; b++) offsets.push_back(in.offset()); // as many as the file holds
-  for (size_t b = 0; b < blocks; b++) { // in whatever order they lie, the table lists them from the top
+  for (size_t b = 0; b < blocks;
+       b++) { // in whatever order they lie, the table lists them from the top
     if (offsets[b] > bytes.size()) refuse("a block beyond the end of the file");
     Reader block(bytes.subspan(size_t(offsets[b])));
-    const size_t first = b * lines, count = std::min(lines, height - first), size = lineBytes * count;
-    if (int64_t(block.integer()) != header.y0 + int64_t(first)) refuse("a block of lines that is not where it should be");
+    const size_t first = b * lines, count = std::min(lines, height - first),
+                 size = lineBytes * count;
+    if (int64_t(block.integer()) != header.y0 + int64_t(first))
+      refuse("a block of lines that is not where it should be");
     const int32_t packed = block.integer();
     if (packed < 0 || size_t(packed) > size) refuse("a block of a wrong size");
     const std::vector<uint8_t> plain = unpack(block.take(size_t(packed)), size, header.compression);

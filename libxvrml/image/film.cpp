@@ -1,5 +1,6 @@
-// film.cpp: see film.h. All compressed pictures are read into memory once: any of them can then be reached from the key picture
-// before it without the seeking of containers, which is inexact, and in the same way on every machine.
+// film.cpp: All compressed pictures are read into memory once: any of them can then be
+// reached from the key picture before it without the seeking of containers, which is inexact, and
+// in the same way on every machine.
 #include "image/film.h"
 
 #include <stdexcept>
@@ -29,11 +30,13 @@ namespace {
 constexpr uint64_t maximumFilmBytes = 256ull << 20; // compressed
 constexpr size_t maximumPictures = 1'000'000;
 constexpr uint64_t maximumWork = 2'000'000'000; // pixels decoded on the way to one picture
-// What films of VRML worlds are made of; nothing that plays lists, opens other files or reads subtitles.
+// What films of VRML worlds are made of; nothing that plays lists, opens other files or reads
+// subtitles.
 constexpr char formats[] = "mpeg,mpegvideo,avi,mov,mp4,m4v,gif";
-constexpr AVCodecID codecs[] = {AV_CODEC_ID_MPEG1VIDEO, AV_CODEC_ID_MPEG2VIDEO, AV_CODEC_ID_MPEG4,   AV_CODEC_ID_H264,
-                                AV_CODEC_ID_MJPEG,      AV_CODEC_ID_GIF,        AV_CODEC_ID_CINEPAK, AV_CODEC_ID_INDEO3,
-                                AV_CODEC_ID_MSVIDEO1,   AV_CODEC_ID_RAWVIDEO,   AV_CODEC_ID_SVQ1};
+constexpr AVCodecID codecs[] = {
+    AV_CODEC_ID_MPEG1VIDEO, AV_CODEC_ID_MPEG2VIDEO, AV_CODEC_ID_MPEG4,   AV_CODEC_ID_H264,
+    AV_CODEC_ID_MJPEG,      AV_CODEC_ID_GIF,        AV_CODEC_ID_CINEPAK, AV_CODEC_ID_INDEO3,
+    AV_CODEC_ID_MSVIDEO1,   AV_CODEC_ID_RAWVIDEO,   AV_CODEC_ID_SVQ1};
 
 struct Deleter {
   void operator()(AVFormatContext* c) const { avformat_close_input(&c); }
@@ -52,7 +55,9 @@ template <class T> using Owned = std::unique_ptr<T, Deleter>;
 [[noreturn]] void fail(const std::string& why) { throw std::runtime_error(why); }
 
 // A decoder keeps up to 16 pictures at once, of which the smallest file can ask for the largest.
-uint64_t maximumPixels(const Limits& limits) { return std::min<uint64_t>(limits.imagePixels / 16, INT32_MAX); }
+uint64_t maximumPixels(const Limits& limits) {
+  return std::min<uint64_t>(limits.imagePixels / 16, INT32_MAX);
+}
 
 // Where the library reads.
 struct Input {
@@ -79,7 +84,9 @@ int64_t seekBytes(void* opaque, int64_t offset, int whence) {
   return input.at = from + offset;
 }
 
-int openNothing(AVFormatContext*, AVIOContext**, const char*, int, AVDictionary**) { return AVERROR(EPERM); }
+int openNothing(AVFormatContext*, AVIOContext**, const char*, int, AVDictionary**) {
+  return AVERROR(EPERM);
+}
 
 // Of MPEG-1 and -2: 1 I, 2 P, 3 B; 0 if the packet holds no picture (ISO/IEC 11172-2 2.4.2.5).
 int pictureType(const AVPacket& packet) {
@@ -117,10 +124,12 @@ void FilmData::Impl::demux(AVFormatContext& format, AVStream& stream) {
       continue;
     }
     bytes += uint64_t(packet->size);
-    if (bytes > maximumFilmBytes || packets.size() >= maximumPictures) fail("the film is too large");
+    if (bytes > maximumFilmBytes || packets.size() >= maximumPictures)
+      fail("the film is too large");
     if (av_packet_make_refcounted(packet.get()) < 0) fail("no memory for the film");
     // The pictures of a GIF are drawn over one another.
-    key.push_back(packets.empty() || (packet->flags & AV_PKT_FLAG_KEY && stream.codecpar->codec_id != AV_CODEC_ID_GIF));
+    key.push_back(packets.empty() || (packet->flags & AV_PKT_FLAG_KEY &&
+                                      stream.codecpar->codec_id != AV_CODEC_ID_GIF));
     packets.push_back(std::move(packet));
     packet.reset(av_packet_alloc());
   }
@@ -149,9 +158,11 @@ void FilmData::Impl::sortMpeg() {
 void FilmData::Impl::sortByTime() {
   std::vector<size_t> byTime(packets.size());
   for (size_t i = 0; i < byTime.size(); ++i) byTime[i] = i;
-  const bool timed = std::all_of(packets.begin(), packets.end(), [](const auto& p) { return p->pts != AV_NOPTS_VALUE; });
+  const bool timed = std::all_of(packets.begin(), packets.end(),
+                                 [](const auto& p) { return p->pts != AV_NOPTS_VALUE; });
   if (timed)
-    std::stable_sort(byTime.begin(), byTime.end(), [&](size_t a, size_t b) { return packets[a]->pts < packets[b]->pts; });
+    std::stable_sort(byTime.begin(), byTime.end(),
+                     [&](size_t a, size_t b) { return packets[a]->pts < packets[b]->pts; });
   order.assign(packets.size(), 0);
   for (size_t i = 0; i < byTime.size(); ++i) order[byTime[i]] = i;
 }
@@ -191,14 +202,17 @@ std::unique_ptr<FilmData::Impl> load(const RegularFile& file, const Limits& limi
   Input input{file};
   constexpr int bufferBytes = 64 << 10;
   auto* buffer = static_cast<unsigned char*>(av_malloc(bufferBytes));
-  Owned<AVIOContext> io(buffer ? avio_alloc_context(buffer, bufferBytes, 0, &input, readBytes, nullptr, seekBytes) : nullptr);
+  Owned<AVIOContext> io(
+      buffer ? avio_alloc_context(buffer, bufferBytes, 0, &input, readBytes, nullptr, seekBytes)
+             : nullptr);
   AVFormatContext* context = avformat_alloc_context();
   if (!io || !context) fail("no memory for the film");
   context->pb = io.get();
   context->flags |= AVFMT_FLAG_CUSTOM_IO;
   context->io_open = openNothing;
   context->format_whitelist = av_strdup(formats);
-  if (avformat_open_input(&context, "", nullptr, nullptr) < 0) fail("the file is no film of a known kind"); // frees context
+  if (avformat_open_input(&context, "", nullptr, nullptr) < 0)
+    fail("the file is no film of a known kind"); // frees context
   const Owned<AVFormatContext> format(context);
   {
     std::vector<AVDictionary*> options(format->nb_streams, nullptr);
@@ -206,7 +220,8 @@ std::unique_ptr<FilmData::Impl> load(const RegularFile& file, const Limits& limi
       av_dict_set_int(&o, "max_pixels", int64_t(maximumPixels(limits)), 0);
       av_dict_set_int(&o, "threads", 1, 0);
     }
-    const int found = avformat_find_stream_info(format.get(), options.empty() ? nullptr : options.data());
+    const int found =
+        avformat_find_stream_info(format.get(), options.empty() ? nullptr : options.data());
     for (AVDictionary*& o : options) av_dict_free(&o);
     if (found < 0) fail("damaged film");
   }
@@ -216,22 +231,25 @@ std::unique_ptr<FilmData::Impl> load(const RegularFile& file, const Limits& limi
   const AVCodecID codec = stream.codecpar->codec_id;
   if (std::find(std::begin(codecs), std::end(codecs), codec) == std::end(codecs))
     fail(fmt::format("films of type {} are not decoded", avcodec_get_name(codec)));
-  const auto width = uint64_t(std::max(stream.codecpar->width, 0)), height = uint64_t(std::max(stream.codecpar->height, 0));
+  const auto width = uint64_t(std::max(stream.codecpar->width, 0)),
+             height = uint64_t(std::max(stream.codecpar->height, 0));
   checkImageSize(width, height, limits, "film");
   if (width * height > maximumPixels(limits))
-    fail(fmt::format("film picture of {} x {} pixels is beyond a sixteenth of the limit 'imagePixels' ({})", width, height,
-                     limits.imagePixels));
+    fail(fmt::format(
+        "film picture of {} x {} pixels is beyond a sixteenth of the limit 'imagePixels' ({})",
+        width, height, limits.imagePixels));
 
   auto impl = std::make_unique<FilmData::Impl>();
   impl->parameters.reset(avcodec_parameters_alloc());
-  if (!impl->parameters || avcodec_parameters_copy(impl->parameters.get(), stream.codecpar) < 0) fail("no memory for the film");
+  if (!impl->parameters || avcodec_parameters_copy(impl->parameters.get(), stream.codecpar) < 0)
+    fail("no memory for the film");
   double rate = av_q2d(av_guess_frame_rate(format.get(), &stream, nullptr));
   if (!(rate > 0 && rate <= 1000)) rate = 25;
   impl->demux(*format, stream);
   const bool mpeg = codec == AV_CODEC_ID_MPEG1VIDEO || codec == AV_CODEC_ID_MPEG2VIDEO;
   mpeg ? impl->sortMpeg() : impl->sortByTime();
-  const bool timed =
-      std::all_of(impl->packets.begin(), impl->packets.end(), [](const auto& p) { return p->pts != AV_NOPTS_VALUE; });
+  const bool timed = std::all_of(impl->packets.begin(), impl->packets.end(),
+                                 [](const auto& p) { return p->pts != AV_NOPTS_VALUE; });
   impl->timeBy(stream, mpeg || !timed ? rate : 0);
   if (!(impl->duration > 0)) impl->timeBy(stream, rate);
   return impl;
@@ -261,7 +279,8 @@ void dropOpaqueAlpha(Image& image) {
   const size_t count = image.pixels.size() / 4;
   for (size_t i = 0; i < count; ++i)
     if (image.pixels[4 * i + 3] != 255) return;
-  for (size_t i = 0; i < count; ++i) std::copy_n(image.pixels.data() + 4 * i, 3, image.pixels.data() + 3 * i);
+  for (size_t i = 0; i < count; ++i)
+    std::copy_n(image.pixels.data() + 4 * i, 3, image.pixels.data() + 3 * i);
   image.pixels.resize(3 * count);
   image.components = 3;
 }
@@ -314,14 +333,16 @@ bool FilmReader::Impl::send() {
 
 bool FilmReader::Impl::convert(Image& image) {
   const int width = frame->width, height = frame->height;
-  if (width <= 0 || height <= 0 || uint64_t(width) * uint64_t(height) > maximumPixels(limits)) return false;
+  if (width <= 0 || height <= 0 || uint64_t(width) * uint64_t(height) > maximumPixels(limits))
+    return false;
   const auto source = AVPixelFormat(frame->format);
   const AVPixFmtDescriptor* description = av_pix_fmt_desc_get(source);
   const bool alpha = description && description->flags & AV_PIX_FMT_FLAG_ALPHA;
   const AVPixelFormat target = alpha ? AV_PIX_FMT_RGBA : AV_PIX_FMT_RGB24;
-  constexpr int flags = SWS_BILINEAR | SWS_FULL_CHR_H_INT | SWS_FULL_CHR_H_INP | SWS_ACCURATE_RND | SWS_BITEXACT;
-  converter.reset(
-      sws_getCachedContext(converter.release(), width, height, source, width, height, target, flags, nullptr, nullptr, nullptr));
+  constexpr int flags =
+      SWS_BILINEAR | SWS_FULL_CHR_H_INT | SWS_FULL_CHR_H_INP | SWS_ACCURATE_RND | SWS_BITEXACT;
+  converter.reset(sws_getCachedContext(converter.release(), width, height, source, width, height,
+                                       target, flags, nullptr, nullptr, nullptr));
   uint8_t* planes[4] = {};
   int strides[4] = {};
   if (!converter || av_image_alloc(planes, strides, width, height, target, 64) < 0) return false;
@@ -333,13 +354,15 @@ bool FilmReader::Impl::convert(Image& image) {
   const size_t row = size_t(width) * size_t(components);
   image.pixels.resize(row * size_t(height));
   for (int y = 0; y < height; ++y)
-    std::copy_n(planes[0] + ptrdiff_t(strides[0]) * y, row, image.pixels.data() + row * size_t(height - 1 - y));
+    std::copy_n(planes[0] + ptrdiff_t(strides[0]) * y, row,
+                image.pixels.data() + row * size_t(height - 1 - y));
   av_freep(&planes[0]);
   if (alpha) dropOpaqueAlpha(image);
   return true;
 }
 
-FilmReader::FilmReader(std::shared_ptr<const FilmData> film, const Limits& limits) : impl_(std::make_unique<Impl>()) {
+FilmReader::FilmReader(std::shared_ptr<const FilmData> film, const Limits& limits)
+    : impl_(std::make_unique<Impl>()) {
   impl_->film = std::move(film);
   impl_->limits = limits;
   const AVCodecParameters* parameters = impl_->film->impl().parameters.get();
@@ -361,7 +384,8 @@ bool FilmReader::read(size_t picture, Image& image) {
   Impl& r = *impl_;
   picture = std::min(picture, r.film->pictures() - 1);
   r.seek(picture);
-  const uint64_t each = uint64_t(std::max(r.decoder->width, 1)) * uint64_t(std::max(r.decoder->height, 1));
+  const uint64_t each =
+      uint64_t(std::max(r.decoder->width, 1)) * uint64_t(std::max(r.decoder->height, 1));
   for (uint64_t work = 0;;) {
     const int result = avcodec_receive_frame(r.decoder.get(), r.frame.get());
     if (result == AVERROR_EOF) return false;
@@ -370,7 +394,8 @@ bool FilmReader::read(size_t picture, Image& image) {
       work += each;
       continue;
     }
-    const int64_t number = r.frame->pts != AV_NOPTS_VALUE ? r.frame->pts : r.frame->best_effort_timestamp;
+    const int64_t number =
+        r.frame->pts != AV_NOPTS_VALUE ? r.frame->pts : r.frame->best_effort_timestamp;
     r.expected = size_t(std::max<int64_t>(number, 0)) + 1;
     if (r.expected > picture || work > maximumWork) return r.convert(image);
   }

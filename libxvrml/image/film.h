@@ -1,5 +1,6 @@
-// film.h: films that worlds name (MPEG-1, MPEG-2, AVI, QuickTime and MP4, animated GIF), picture by picture. Decoded by the
-// ffmpeg libraries where the build has them. A Film is for one thread; FilmData may be shared.
+// film.h: films that worlds name (MPEG-1, MPEG-2, AVI, QuickTime and MP4, animated GIF), picture by
+// picture. Decoded by the ffmpeg libraries where the build has them. A Film is for one thread;
+// FilmData may be shared.
 #pragma once
 
 #include <memory>
@@ -13,8 +14,8 @@ namespace xvrml {
 // A film's compressed pictures in memory: what several readers share. Immutable.
 class FilmData {
  public:
-  // Throws std::runtime_error saying what is wrong: missing, no film, damaged, too large, or that this build decodes none. No
-  // other file than `path` is opened, whatever the film refers to.
+  // Throws std::runtime_error saying what is wrong: missing, no film, damaged, too large, or that
+  // this build decodes none. No other file than `path` is opened, whatever the film refers to.
   static std::shared_ptr<const FilmData> read(const std::string& path, const Limits& limits);
   ~FilmData();
   double duration() const; // seconds, above 0
@@ -36,8 +37,8 @@ class FilmReader {
  public:
   FilmReader(std::shared_ptr<const FilmData> film, const Limits& limits);
   ~FilmReader();
-  // Rows from the bottom up, 3 components, or 4 if the film has transparency. What cannot be decoded leaves the image as it was
-  // and is false.
+  // Rows from the bottom up, 3 components, or 4 if the film has transparency. What cannot be
+  // decoded leaves the image as it was and is false.
   bool read(size_t picture, Image& image);
 
  private:

@@ -1,4 +1,5 @@
-// gif.cpp: the first picture of a GIF by giflib, record by record, so that nothing beyond it is read.
+// gif.cpp: the first picture of a GIF by giflib, record by record, so that nothing beyond it is
+// read.
 #include <gif_lib.h>
 
 #include <algorithm>
@@ -43,7 +44,8 @@ void readExtension(GifFileType* gif, int& transparent) {
   check(gif, DGifGetExtension(gif, &code, &block));
   while (block) {
     GraphicsControlBlock control;
-    if (code == GRAPHICS_EXT_FUNC_CODE && DGifExtensionToGCB(block[0], block + 1, &control) == GIF_OK)
+    if (code == GRAPHICS_EXT_FUNC_CODE &&
+        DGifExtensionToGCB(block[0], block + 1, &control) == GIF_OK)
       transparent = control.TransparentColor;
     check(gif, DGifGetExtensionNext(gif, &block));
   }
@@ -65,23 +67,28 @@ std::vector<uint8_t> readIndices(GifFileType* gif) {
   size_t from = 0;
   for (int pass = 0; pass < 4; pass++)
     for (size_t y = starts[pass]; y < height; y += steps[pass], from++)
-      std::copy_n(inOrder.begin() + ptrdiff_t(from * width), width, indices.begin() + ptrdiff_t(y * width));
+      std::copy_n(inOrder.begin() + ptrdiff_t(from * width), width,
+                  indices.begin() + ptrdiff_t(y * width));
   return indices;
 }
 
 Image paint(GifFileType* gif, const std::vector<uint8_t>& indices, int transparent) {
   const ColorMapObject* map = gif->Image.ColorMap ? gif->Image.ColorMap : gif->SColorMap;
   if (!map || !map->Colors) damaged("no colour table");
-  const int64_t left = gif->Image.Left, top = gif->Image.Top, width = gif->Image.Width, height = gif->Image.Height;
+  const int64_t left = gif->Image.Left, top = gif->Image.Top, width = gif->Image.Width,
+                height = gif->Image.Height;
   Image image;
   image.width = gif->SWidth;
   image.height = gif->SHeight;
-  bool covers = left <= 0 && top <= 0 && left + width >= image.width && top + height >= image.height;
-  bool seen = transparent >= 0 && std::find(indices.begin(), indices.end(), uint8_t(transparent)) != indices.end();
+  bool covers =
+      left <= 0 && top <= 0 && left + width >= image.width && top + height >= image.height;
+  bool seen = transparent >= 0 &&
+              std::find(indices.begin(), indices.end(), uint8_t(transparent)) != indices.end();
   image.components = covers && !seen ? 3 : 4;
   image.pixels.assign(size_t(image.width) * size_t(image.height) * size_t(image.components), 0);
   for (int64_t y = std::max<int64_t>(0, -top); y < height && y + top < image.height; y++) {
-    uint8_t* row = image.pixels.data() + size_t(image.height - 1 - (y + top)) * size_t(image.width) * size_t(image.components);
+    uint8_t* row = image.pixels.data() + size_t(image.height - 1 - (y + top)) *
+                                             size_t(image.width) * size_t(image.components);
     for (int64_t x = std::max<int64_t>(0, -left); x < width && x + left < image.width; x++) {
       int index = indices[size_t(y * width + x)];
       if (index == transparent) continue;
@@ -114,17 +121,21 @@ Image decodeGif(std::span<const uint8_t> bytes, const ImageRoom& room) {
     else
       damaged("no picture in it");
   }
-  // The size of the screen is checked before any pixel is made, that of the picture before any is read.
+  // The size of the screen is checked before any pixel is made, that of the picture before any is
+  // read.
   check(gif.get(), DGifGetImageHeader(gif.get()));
   if (gif->SWidth <= 0 || gif->SHeight <= 0) { // some writers leave the screen out
     gif->SWidth = gif->Image.Width;
     gif->SHeight = gif->Image.Height;
   }
-  const uint64_t width = uint64_t(std::max(gif->SWidth, 0)), height = uint64_t(std::max(gif->SHeight, 0));
-  const uint64_t pictureWidth = uint64_t(std::max(gif->Image.Width, 0)), pictureHeight = uint64_t(std::max(gif->Image.Height, 0));
+  const uint64_t width = uint64_t(std::max(gif->SWidth, 0)),
+                 height = uint64_t(std::max(gif->SHeight, 0));
+  const uint64_t pictureWidth = uint64_t(std::max(gif->Image.Width, 0)),
+                 pictureHeight = uint64_t(std::max(gif->Image.Height, 0));
   checkImageSize(pictureWidth, pictureHeight, room.limits, "GIF");
   checkImageSize(width, height, 4, 2 * pictureWidth * pictureHeight, room, "GIF");
-  // A code of 12 bits stands for fewer than 4096 pixels. A screen may be larger than the picture on it, in reason.
+  // A code of 12 bits stands for fewer than 4096 pixels. A screen may be larger than the picture on
+  // it, in reason.
   checkFileSize(bytes.size(), pictureWidth * pictureHeight / 2731, "GIF");
   constexpr uint64_t freeScreen = 4 << 20;
   if (width * height > freeScreen) checkFileSize(bytes.size(), width * height / 2731, "GIF");

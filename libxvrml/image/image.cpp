@@ -12,31 +12,36 @@
 namespace xvrml {
 
 void checkImageSize(uint64_t width, uint64_t height, const Limits& limits, const char* format) {
-  if (width == 0 || height == 0) throw std::runtime_error(fmt::format("{} picture without pixels", format));
+  if (width == 0 || height == 0)
+    throw std::runtime_error(fmt::format("{} picture without pixels", format));
   if (width > maximumImageSide || height > maximumImageSide)
-    throw std::runtime_error(fmt::format("{} picture of {} x {} pixels: a side has at most {}, see the limit 'imagePixels' ({})",
-                                         format, width, height, maximumImageSide, limits.imagePixels));
+    throw std::runtime_error(fmt::format(
+        "{} picture of {} x {} pixels: a side has at most {}, see the limit 'imagePixels' ({})",
+        format, width, height, maximumImageSide, limits.imagePixels));
   if (width * height > limits.imagePixels)
-    throw std::runtime_error(fmt::format("{} picture of {} x {} pixels is beyond the limit 'imagePixels' ({})", format, width,
-                                         height, limits.imagePixels));
+    throw std::runtime_error(
+        fmt::format("{} picture of {} x {} pixels is beyond the limit 'imagePixels' ({})", format,
+                    width, height, limits.imagePixels));
 }
 
-void checkImageSize(uint64_t width, uint64_t height, uint64_t components, uint64_t working, const ImageRoom& room,
-                    const char* format) {
+void checkImageSize(uint64_t width, uint64_t height, uint64_t components, uint64_t working,
+                    const ImageRoom& room, const char* format) {
   checkImageSize(width, height, room.limits, format);
   const uint64_t bytes = width * height * components; // below 2^35: see maximumImageSide
   if (bytes > room.bytes)
-    throw std::runtime_error(fmt::format("{} picture of {} x {} pixels takes {} bytes: all pictures of a world together take at "
-                                         "most 4 bytes for each pixel of the limit 'imagePixels' ({})",
-                                         format, width, height, bytes, room.limits.imagePixels));
+    throw std::runtime_error(fmt::format(
+        "{} picture of {} x {} pixels takes {} bytes: all pictures of a world together take at "
+        "most 4 bytes for each pixel of the limit 'imagePixels' ({})",
+        format, width, height, bytes, room.limits.imagePixels));
   if (room.budget && bytes + working > room.budget->left())
-    throw std::runtime_error(
-        fmt::format("{} picture of {} x {} pixels takes {} bytes: with all that the world holds more than {}", format, width,
-                    height, bytes + working, room.budget->name()));
+    throw std::runtime_error(fmt::format(
+        "{} picture of {} x {} pixels takes {} bytes: with all that the world holds more than {}",
+        format, width, height, bytes + working, room.budget->name()));
 }
 
 void checkFileSize(uint64_t fileBytes, uint64_t leastBytes, const char* format) {
-  if (fileBytes < leastBytes) throw std::runtime_error(fmt::format("damaged {} picture: too short for its size", format));
+  if (fileBytes < leastBytes)
+    throw std::runtime_error(fmt::format("damaged {} picture: too short for its size", format));
 }
 
 void flipRows(Image& image) {
@@ -56,17 +61,21 @@ Image decodeImage(const uint8_t* bytes, size_t size, const ImageRoom& room) {
   if (startsWith("\xff\xd8\xff")) return decodeJpeg(content, room);
   if (startsWith("GIF87a") || startsWith("GIF89a")) return decodeGif(content, room);
   if (size == 0) throw std::runtime_error("the file is empty");
-  if (looksLikeRadiance(bytes, size)) throw std::runtime_error("a picture of radiance cannot be used here");
-  throw std::runtime_error("not a PNG, JPEG or GIF picture, nor one of radiance (.hdr, .pfm, .exr)");
+  if (looksLikeRadiance(bytes, size))
+    throw std::runtime_error("a picture of radiance cannot be used here");
+  throw std::runtime_error(
+      "not a PNG, JPEG or GIF picture, nor one of radiance (.hdr, .pfm, .exr)");
 }
 
 std::vector<uint8_t> readPictureFile(const std::string& path, const ImageRoom& room) {
   const RegularFile file(path);
   if (file.size() > room.limits.fileBytes)
-    throw std::runtime_error(fmt::format("{} bytes are beyond the limit 'fileBytes' ({})", file.size(), room.limits.fileBytes));
+    throw std::runtime_error(fmt::format("{} bytes are beyond the limit 'fileBytes' ({})",
+                                         file.size(), room.limits.fileBytes));
   if (room.budget && file.size() > room.budget->left())
     throw std::runtime_error(
-        fmt::format("{} bytes are, with all that the world holds, more than {}", file.size(), room.budget->name()));
+        fmt::format("{} bytes are, with all that the world holds, more than {}", file.size(),
+                    room.budget->name()));
   std::vector<uint8_t> bytes(size_t(file.size()) + 1);
   bytes.resize(file.read(0, bytes.data(), size_t(file.size())));
   return bytes;

@@ -1,5 +1,5 @@
-// jpeg.cpp: JPEG by libjpeg. Its errors return by longjmp, so nothing with a destructor lives in the function that may be left
-// so.
+// jpeg.cpp: JPEG by libjpeg. Its errors return by longjmp, so nothing with a destructor lives in
+// the function that may be left so.
 #include <cstddef>
 #include <cstdio>
 
@@ -40,8 +40,8 @@ JpegReader* readerOf(j_common_ptr jpeg) { return static_cast<JpegReader*>(jpeg->
 void onMessage(j_common_ptr jpeg, int level) {
   if (level >= 0) return;
   int code = jpeg->err->msg_code;
-  if (code == JWRN_JPEG_EOF || code == JWRN_HIT_MARKER || code == JWRN_HUFF_BAD_CODE || code == JWRN_ARITH_BAD_CODE ||
-      code == JWRN_BOGUS_PROGRESSION)
+  if (code == JWRN_JPEG_EOF || code == JWRN_HIT_MARKER || code == JWRN_HUFF_BAD_CODE ||
+      code == JWRN_ARITH_BAD_CODE || code == JWRN_BOGUS_PROGRESSION)
     onError(jpeg);
 }
 
@@ -99,7 +99,9 @@ void appendRow(JpegReader& reader) {
   // Ink to light; programs by Adobe write it the other way round and say so.
   bool inverted = reader.jpeg.saw_Adobe_marker;
   for (size_t x = 0; x + 3 < reader.row.size(); x += 4) {
-    auto light = [&](size_t i) { return unsigned(inverted ? reader.row[x + i] : 255 - reader.row[x + i]); };
+    auto light = [&](size_t i) {
+      return unsigned(inverted ? reader.row[x + i] : 255 - reader.row[x + i]);
+    };
     for (size_t i = 0; i < 3; i++) pixels.push_back(uint8_t((light(i) * light(3) + 127) / 255));
   }
 }
@@ -120,7 +122,8 @@ Image decodeJpeg(std::span<const uint8_t> bytes, const ImageRoom& room) {
   // Pictures of several scans have all their coefficients in memory, two bytes each.
   const bool scans = reader.jpeg.progressive_mode || jpeg_has_multiple_scans(&reader.jpeg);
   const uint64_t working = scans ? 2 * width * height * uint64_t(reader.jpeg.num_components) : 0;
-  checkImageSize(width, height, reader.jpeg.jpeg_color_space == JCS_GRAYSCALE ? 1 : 3, working, room, "JPEG");
+  checkImageSize(width, height, reader.jpeg.jpeg_color_space == JCS_GRAYSCALE ? 1 : 3, working,
+                 room, "JPEG");
   // A block of 8 x 8 pixels takes one bit at least, but for the arithmetic code.
   if (!reader.jpeg.arith_code) checkFileSize(bytes.size(), width * height / 512, "JPEG");
   constexpr uint64_t rows = 16 << 20; // what the library needs beside the coefficients

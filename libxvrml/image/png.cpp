@@ -1,4 +1,5 @@
-// png.cpp: PNG by libpng. Its errors return by longjmp, so nothing with a destructor lives in the function that may be left so.
+// png.cpp: PNG by libpng. Its errors return by longjmp, so nothing with a destructor lives in the
+// function that may be left so.
 #include <png.h>
 
 #include <algorithm>
@@ -62,7 +63,8 @@ bool start(PngReader& reader) {
   return true;
 }
 
-// Reads all rows, the last one of the picture first in memory. What follows the pixels in the file does not matter.
+// Reads all rows, the last one of the picture first in memory. What follows the pixels in the file
+// does not matter.
 bool readRows(PngReader& reader, png_bytep pixels, size_t rowBytes, size_t height, int passes) {
   if (setjmp(reader.escape)) return false;
   for (int pass = 0; pass < passes; pass++)
@@ -70,10 +72,12 @@ bool readRows(PngReader& reader, png_bytep pixels, size_t rowBytes, size_t heigh
   return true;
 }
 
-// Returns the bytes a pixel has once it is decoded: palettes become RGB, a tRNS chunk becomes alpha.
+// Returns the bytes a pixel has once it is decoded: palettes become RGB, a tRNS chunk becomes
+// alpha.
 uint64_t decodedComponents(const PngReader& reader) {
   const int type = png_get_color_type(reader.png, reader.info);
-  const bool alpha = type & PNG_COLOR_MASK_ALPHA || png_get_valid(reader.png, reader.info, PNG_INFO_tRNS);
+  const bool alpha =
+      type & PNG_COLOR_MASK_ALPHA || png_get_valid(reader.png, reader.info, PNG_INFO_tRNS);
   return (type & PNG_COLOR_MASK_COLOR ? 3u : 1u) + (alpha ? 1u : 0u);
 }
 
@@ -89,7 +93,8 @@ Image decodePng(std::span<const uint8_t> bytes, const ImageRoom& room) {
     if (!fine) throw std::runtime_error(std::string("damaged PNG picture: ") + reader.message);
   };
   check(readHeader(reader));
-  uint64_t width = png_get_image_width(reader.png, reader.info), height = png_get_image_height(reader.png, reader.info);
+  uint64_t width = png_get_image_width(reader.png, reader.info),
+           height = png_get_image_height(reader.png, reader.info);
   checkImageSize(width, height, decodedComponents(reader), 0, room, "PNG");
   // Deflate packs 1032 to 1 at best: more rows than that cannot be in the file.
   checkFileSize(bytes.size(), png_get_rowbytes(reader.png, reader.info) * height / 1032, "PNG");
@@ -99,7 +104,8 @@ Image decodePng(std::span<const uint8_t> bytes, const ImageRoom& room) {
   image.height = int32_t(height);
   image.components = png_get_channels(reader.png, reader.info);
   size_t rowBytes = size_t(width) * size_t(image.components);
-  if (png_get_rowbytes(reader.png, reader.info) != rowBytes) throw std::runtime_error("PNG picture of an unknown kind");
+  if (png_get_rowbytes(reader.png, reader.info) != rowBytes)
+    throw std::runtime_error("PNG picture of an unknown kind");
   image.pixels.resize(rowBytes * size_t(height));
   check(readRows(reader, image.pixels.data(), rowBytes, size_t(height), reader.passes));
   return std::move(image);

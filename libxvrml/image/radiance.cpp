@@ -1,5 +1,6 @@
-// radiance.cpp: see xvrml/radiance.h. RGBE: G. Ward, "Real Pixels", Graphics Gems II, with the run-length code of later Radiance
-// files. Memory grows with what the file holds, and not with what its header promises.
+// radiance.cpp: RGBE: G. Ward, "Real Pixels", Graphics Gems II, with the
+// run-length code of later Radiance files. Memory grows with what the file holds, and not with what
+// its header promises.
 #include "xvrml/radiance.h"
 
 #include <fmt/format.h>
@@ -28,7 +29,8 @@ class Reader {
  public:
   explicit Reader(Bytes bytes) : bytes_(bytes) {}
   std::string_view line() {
-    const auto begin = bytes_.begin() + ptrdiff_t(at_), end = std::find(begin, bytes_.end(), uint8_t('\n'));
+    const auto begin = bytes_.begin() + ptrdiff_t(at_),
+               end = std::find(begin, bytes_.end(), uint8_t('\n'));
     if (end == bytes_.end() || end - begin > 4096) refuse("the header does not end");
     at_ += size_t(end - begin) + 1;
     return {reinterpret_cast<const char*>(&*begin), size_t(end - begin)};
@@ -70,13 +72,16 @@ RadianceImage decodePfm(Bytes bytes, const Limits& limits) {
   image.rgb.resize(count);
   std::memcpy(image.rgb.data(), in.rest().data(), count * 4);
   if (scale > 0) // the other end first
-    for (float& v : image.rgb) v = std::bit_cast<float>(__builtin_bswap32(std::bit_cast<uint32_t>(v)));
+    for (float& v : image.rgb)
+      v = std::bit_cast<float>(__builtin_bswap32(std::bit_cast<uint32_t>(v)));
   return image;
 }
 
-void readRow(Reader& in, size_t width, std::vector<uint8_t>& row) { // four planes, one after the other
+void readRow(Reader& in, size_t width,
+             std::vector<uint8_t>& row) { // four planes, one after the other
   const uint8_t head[4] = {in.next(), in.next(), in.next(), in.next()};
-  if (width < 8 || width > 32767 || head[0] != 2 || head[1] != 2 || size_t(head[2] << 8 | head[3]) != width) { // no runs
+  if (width < 8 || width > 32767 || head[0] != 2 || head[1] != 2 ||
+      size_t(head[2] << 8 | head[3]) != width) { // no runs
     for (size_t x = 0; x < width; x++)
       for (size_t c = 0; c < 4; c++) row[c * width + x] = x == 0 ? head[c] : in.next();
     return;
@@ -112,7 +117,8 @@ RadianceImage decodeHdr(Bytes bytes, const Limits& limits) {
     readRow(in, w, row);
     for (size_t x = 0; x < w; x++)
       for (size_t c = 0; c < 3; c++)
-        image.rgb.push_back(row[3 * w + x] ? float(std::ldexp(row[c * w + x] + 0.5, row[3 * w + x] - 136)) : 0.0f);
+        image.rgb.push_back(
+            row[3 * w + x] ? float(std::ldexp(row[c * w + x] + 0.5, row[3 * w + x] - 136)) : 0.0f);
   }
   flipRows(image);
   return image;
@@ -122,9 +128,11 @@ RadianceImage decodeHdr(Bytes bytes, const Limits& limits) {
 
 void checkRadianceSize(int64_t width, int64_t height, const Limits& limits) {
   if (width < 1 || height < 1) refuse(fmt::format("a picture of {} x {} pixels", width, height));
-  if (width > 65536 || height > 65536 || uint64_t(width) * uint64_t(height) > limits.imagePixels / 4)
-    refuse(fmt::format("{} x {} pixels of radiance are beyond a quarter of the limit 'imagePixels' ({})", width, height,
-                       limits.imagePixels));
+  if (width > 65536 || height > 65536 ||
+      uint64_t(width) * uint64_t(height) > limits.imagePixels / 4)
+    refuse(fmt::format(
+        "{} x {} pixels of radiance are beyond a quarter of the limit 'imagePixels' ({})", width,
+        height, limits.imagePixels));
 }
 
 void flipRows(RadianceImage& image) {
@@ -137,13 +145,14 @@ void flipRows(RadianceImage& image) {
 
 bool looksLikeRadiance(const uint8_t* bytes, size_t size) {
   const Bytes content(bytes, size);
-  return startsWith(content, "#?") || startsWith(content, "PF\n") || startsWith(content, "PF\r\n") ||
-         startsWith(content, "\x76\x2f\x31\x01");
+  return startsWith(content, "#?") || startsWith(content, "PF\n") ||
+         startsWith(content, "PF\r\n") || startsWith(content, "\x76\x2f\x31\x01");
 }
 
 RadianceImage decodeRadiance(const uint8_t* bytes, size_t size, const Limits& limits) {
   const Bytes content(bytes, size);
-  if (!looksLikeRadiance(bytes, size)) refuse("is no picture of radiance (OpenEXR, Radiance or colour PFM)");
+  if (!looksLikeRadiance(bytes, size))
+    refuse("is no picture of radiance (OpenEXR, Radiance or colour PFM)");
   RadianceImage image = content[0] == '#'   ? decodeHdr(content, limits)
                         : content[0] == 'P' ? decodePfm(content, limits)
                                             : decodeExr(content, limits);

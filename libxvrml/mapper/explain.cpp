@@ -1,4 +1,5 @@
-// explain.cpp: OpenRTMapper::explain(): each object with its path of names and the reason why it is one.
+// explain.cpp: OpenRTMapper::explain(): each object with its path of names and the reason why it is
+// one.
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -18,13 +19,15 @@ constexpr uint64_t bytesOfDraw = 1200; // of a draw call, beside its arrays
 std::string ownName(const Graph& graph, const Item& item) {
   if (item.name != 0) return graph.names[item.name];
   if (!item.node) return "world";
-  return item.node->source.line == 0 ? item.node->type().name
-                                     : fmt::format("{}:{}", item.node->type().name, item.node->source.line);
+  return item.node->source.line == 0
+             ? item.node->type().name
+             : fmt::format("{}:{}", item.node->type().name, item.node->source.line);
 }
 
 std::string pathOf(const Graph& graph, ItemId id) {
   std::vector<std::string> names{ownName(graph, graph.items[id])};
-  for (size_t steps = 0; steps < 1000 && graph.items[id].parentCount > 0 && names.size() < longestPath; ++steps) {
+  for (size_t steps = 0;
+       steps < 1000 && graph.items[id].parentCount > 0 && names.size() < longestPath; ++steps) {
     id = graph.parents[graph.items[id].firstParent];
     if (graph.items[id].name != 0) names.push_back(graph.names[graph.items[id].name]);
   }
@@ -34,7 +37,8 @@ std::string pathOf(const Graph& graph, ItemId id) {
 }
 
 std::string megabytes(uint64_t bytes) {
-  return bytes >= 10'000'000 ? fmt::format("{} MB", bytes / 1'000'000) : fmt::format("{} kB", (bytes + 999) / 1000);
+  return bytes >= 10'000'000 ? fmt::format("{} MB", bytes / 1'000'000)
+                             : fmt::format("{} kB", (bytes + 999) / 1000);
 }
 
 std::string used(const Graph& graph, const Part& part, uint64_t primitives) {
@@ -52,7 +56,9 @@ std::string reasonOf(const Node& node, Change kind) {
 std::string reasonBelow(Node& node, Change kind) {
   if (reaches(node, kind)) return reasonOf(node, kind);
   for (const FieldInfo& field : node.type().fields) {
-    if (field.type != FieldType::SFNode || (field.access != Access::field && field.access != Access::exposedField)) continue;
+    if (field.type != FieldType::SFNode ||
+        (field.access != Access::field && field.access != Access::exposedField))
+      continue;
     Node* held = renderedNode(static_cast<NodeRef*>(node.storage(field))->get());
     if (held && reaches(*held, kind)) return reasonOf(*held, kind);
   }
@@ -65,9 +71,13 @@ std::string ofItem(const Graph& graph, const Item& item, const Part& part) {
   case Own::wanted: return "split: ORTInstance";
   case Own::merged: return "merged: ORTStatic";
   case Own::transform: return reasonOf(*item.node, Change::transform);
-  case Own::children: return item.awaited ? "split: it is still to be loaded" : reasonOf(*item.node, Change::children);
+  case Own::children:
+    return item.awaited ? "split: it is still to be loaded"
+                        : reasonOf(*item.node, Change::children);
   case Own::appearance: return "split: events reach the colour of its lines";
-  case Own::geometry: return reasonBelow(*renderedNode(static_cast<nodes::Shape&>(*item.node).geometry.get()), Change::geometry);
+  case Own::geometry:
+    return reasonBelow(*renderedNode(static_cast<nodes::Shape&>(*item.node).geometry.get()),
+                       Change::geometry);
   case Own::none: break;
   }
   return {};
@@ -102,30 +112,34 @@ std::vector<ExplainedObject> OpenRTMapper::explain() const {
     ExplainedObject object;
     object.triangles = part.triangles;
     object.shapes = part.shapes;
-    object.bytes = part.primitives * bytesOfPrimitive + part.drawCalls * bytesOfDraw + part.uses.size() * bytesOfInstance;
+    object.bytes = part.primitives * bytesOfPrimitive + part.drawCalls * bytesOfDraw +
+                   part.uses.size() * bytesOfInstance;
     object.instances = part.instances;
     if (part.of == Part::Of::mesh) {
       Node& geometry = m.graph.meshes.geometry(part.mesh);
       const ItemId shape = shapeOf[size_t(part.mesh)];
-      object.name =
-          (shape == 0 ? "" : pathOf(m.graph, shape) + "/") +
-          (geometry.defName.empty() ? fmt::format("{}:{}", geometry.type().name, geometry.source.line) : geometry.defName);
+      object.name = (shape == 0 ? "" : pathOf(m.graph, shape) + "/") +
+                    (geometry.defName.empty()
+                         ? fmt::format("{}:{}", geometry.type().name, geometry.source.line)
+                         : geometry.defName);
       const uint32_t equal = geometries[size_t(part.mesh)];
       if (m.graph.meshes.dynamic(part.mesh))
         object.reason = reasonBelow(geometry, Change::geometry);
       else if (shape != 0 && part.instances < 2 && m.graph.items[shape].recolored)
         object.reason = reasonOf(*m.graph.items[shape].node, Change::appearance);
       else
-        object.reason =
-            used(m.graph, part, part.primitives) + (equal > 1 ? fmt::format(", {} geometries equal by content", equal) : "");
+        object.reason = used(m.graph, part, part.primitives) +
+                        (equal > 1 ? fmt::format(", {} geometries equal by content", equal) : "");
     } else {
       const Item& item = m.graph.items[part.item];
       object.name = pathOf(m.graph, part.item);
-      object.reason = part.of == Part::Of::place ? ofPlace(m.graph, item, part) : ofItem(m.graph, item, part);
+      object.reason =
+          part.of == Part::Of::place ? ofPlace(m.graph, item, part) : ofItem(m.graph, item, part);
     }
     list.push_back(std::move(object));
   }
-  std::stable_sort(list.begin(), list.end(), [](const auto& a, const auto& b) { return a.triangles > b.triangles; });
+  std::stable_sort(list.begin(), list.end(),
+                   [](const auto& a, const auto& b) { return a.triangles > b.triangles; });
   return list;
 }
 

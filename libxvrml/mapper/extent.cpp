@@ -1,4 +1,5 @@
-// extent.cpp: see extent.h. Shapes are measured by their vertices; a shared item once, its box then stands for it.
+// extent.cpp: Shapes are measured by their vertices; a shared item once, its box then
+// stands for it.
 #include "mapper/extent.h"
 
 #include <algorithm>
@@ -15,10 +16,12 @@ struct Step {
 
 class Measure {
  public:
-  Measure(Graph& graph, const Places& places) : graph_(graph), places_(places), boxes_(graph.items.size()) {}
+  Measure(Graph& graph, const Places& places)
+      : graph_(graph), places_(places), boxes_(graph.items.size()) {}
 
   Bounds all() {
-    // Children stand before parents, so a shared item's shared parts have been measured when it is met.
+    // Children stand before parents, so a shared item's shared parts have been measured when it is
+    // met.
     for (const ItemId id : graph_.order)
       if (shared(id)) boxes_[id] = below({id, none, Matrix()});
     return below({Graph::root, 0, Matrix()});
@@ -45,18 +48,23 @@ class Measure {
       const Step step = open.back();
       open.pop_back();
       const Item& item = graph_.items[step.item];
-      if (item.kind == Kind::shape && center_) reach_ = std::max(reach_, graph_.meshes.reach(item.mesh, step.matrix, *center_));
+      if (item.kind == Kind::shape && center_)
+        reach_ = std::max(reach_, graph_.meshes.reach(item.mesh, step.matrix, *center_));
       if (item.kind == Kind::shape && !center_) graph_.meshes.grow(bounds, item.mesh, step.matrix);
-      const size_t count = item.kind == Kind::lod ? std::min(item.children.size(), size_t(1)) : item.children.size();
+      const size_t count =
+          item.kind == Kind::lod ? std::min(item.children.size(), size_t(1)) : item.children.size();
       for (size_t c = 0; c < count; ++c) {
         const ItemId child = item.children[c];
         if (!graph_.items[child].draws) continue;
-        const int32_t at = step.place == none ? none : places_.children[places_.all[size_t(step.place)].firstChild + c];
+        const int32_t at = step.place == none
+                               ? none
+                               : places_.children[places_.all[size_t(step.place)].firstChild + c];
         const Matrix inside = graph_.below(step.matrix, graph_.items[child]);
         if (at == none && shared(child))
           growBy(bounds, boxes_[child], inside);
         else
-          open.push_back({child, at, at == none ? inside : compose(inside, places_.turns[size_t(at)])});
+          open.push_back(
+              {child, at, at == none ? inside : compose(inside, places_.turns[size_t(at)])});
       }
     }
     return bounds;
@@ -65,7 +73,9 @@ class Measure {
   void growBy(Bounds& bounds, const Bounds& box, const Matrix& matrix) {
     if (!center_) return growByBox(bounds, box, matrix);
     for (int corner = 0; corner < 8 && !box.empty; ++corner) {
-      auto side = [&](int axis) { return corner & (1 << axis) ? box.maximum[axis] : box.minimum[axis]; };
+      auto side = [&](int axis) {
+        return corner & (1 << axis) ? box.maximum[axis] : box.minimum[axis];
+      };
       const double far = (transformPoint(matrix, {side(0), side(1), side(2)}) - *center_).length();
       if (std::isfinite(far)) reach_ = std::max(reach_, far);
     }
@@ -85,7 +95,8 @@ Bounds boundsOf(Graph& graph, const Places& places) { return Measure(graph, plac
 BoundingSphere sphereOf(Graph& graph, const Places& places, const Bounds& bounds) {
   BoundingSphere sphere;
   if (bounds.empty) return sphere;
-  for (int i = 0; i < 3; ++i) sphere.center[i] = bounds.minimum[i] + (bounds.maximum[i] - bounds.minimum[i]) / 2;
+  for (int i = 0; i < 3; ++i)
+    sphere.center[i] = bounds.minimum[i] + (bounds.maximum[i] - bounds.minimum[i]) / 2;
   Measure measure(graph, places);
   measure.all();
   sphere.radius = measure.reach(Vector(sphere.center[0], sphere.center[1], sphere.center[2]));

@@ -6,7 +6,8 @@
 
 namespace xvrml::mapper {
 
-// World bounds with every billboard and level of detail as the places now have it; for LODs the highest level.
+// World bounds with every billboard and level of detail as the places now have it; for LODs the
+// highest level.
 Bounds boundsOf(Graph& graph, const Places& places);
 // The sphere about the middle of these bounds.
 BoundingSphere sphereOf(Graph& graph, const Places& places, const Bounds& bounds);

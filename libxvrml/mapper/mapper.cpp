@@ -1,4 +1,5 @@
-// mapper.cpp: OpenRTMapper: the order of the steps from a world to rt* calls, frame by frame. See xvrml/openrt.h.
+// mapper.cpp: OpenRTMapper: the order of the steps from a world to rt* calls, frame by frame. See
+// xvrml/openrt.h.
 #include <algorithm>
 #include <new>
 #include <numbers>
@@ -12,9 +13,10 @@ namespace xvrml {
 using namespace mapper;
 
 OpenRTMapper::Impl::Impl(World& w, const MapOptions& o)
-    : world(w), options(o), graph(w), places(w), textures(w, o.linearColor), custom(w, classes, textures),
-      surfaces(w, o.linearColor, classes, textures, custom), objects(w, o.linearColor, graph, places, surfaces),
-      lights(w, o.linearColor, classes, custom), environment(w, o.linearColor, classes, textures, custom),
+    : world(w), options(o), graph(w), places(w), textures(w, o.linearColor),
+      custom(w, classes, textures), surfaces(w, o.linearColor, classes, textures, custom),
+      objects(w, o.linearColor, graph, places, surfaces), lights(w, o.linearColor, classes, custom),
+      environment(w, o.linearColor, classes, textures, custom),
       camera(cameraOf(nullptr, Matrix(), o.aspect)) {
   summarise(graph, world.diagnostics);
   std::vector<Place> gone;
@@ -55,7 +57,8 @@ CameraSettings OpenRTMapper::Impl::cameraAt(int32_t place) const {
 }
 
 bool OpenRTMapper::Impl::headlight() const {
-  if (options.headlight != MapOptions::Headlight::automatic) return options.headlight == MapOptions::Headlight::on;
+  if (options.headlight != MapOptions::Headlight::automatic)
+    return options.headlight == MapOptions::Headlight::on;
   return hasHeadlight(bound);
 }
 
@@ -91,13 +94,15 @@ const BoundingSphere& OpenRTMapper::Impl::sphere() {
 }
 
 bool OpenRTMapper::Impl::lightsModel() {
-  if (!modelLight || options.headlight != MapOptions::Headlight::automatic || bound.viewpoint) return false;
+  if (!modelLight || options.headlight != MapOptions::Headlight::automatic || bound.viewpoint)
+    return false;
   if (lightStale) leavesLightOpen_ = leavesLightOpen(graph, bound);
   lightStale = false;
   return leavesLightOpen_;
 }
 
-OpenRTMapper::OpenRTMapper(World& world, const MapOptions& options) : impl_(std::make_unique<Impl>(world, options)) {}
+OpenRTMapper::OpenRTMapper(World& world, const MapOptions& options)
+    : impl_(std::make_unique<Impl>(world, options)) {}
 OpenRTMapper::~OpenRTMapper() = default;
 
 const std::vector<ViewpointInfo>& OpenRTMapper::viewpoints() const { return impl_->viewpoints(); }
@@ -118,8 +123,12 @@ CameraSettings OpenRTMapper::fitCamera(double fovy) const {
   return cameraAround(impl_->bounds(), first.matrix, fovy, impl_->options.aspect);
 }
 
-void OpenRTMapper::setMultiplyTextures(bool multiply) { impl_->surfaces.multiplyTextures = multiply; }
-void OpenRTMapper::setHeadlight(MapOptions::Headlight headlight) { impl_->options.headlight = headlight; }
+void OpenRTMapper::setMultiplyTextures(bool multiply) {
+  impl_->surfaces.multiplyTextures = multiply;
+}
+void OpenRTMapper::setHeadlight(MapOptions::Headlight headlight) {
+  impl_->options.headlight = headlight;
+}
 
 void OpenRTMapper::setModelLight(bool on) { impl_->modelLight = on; }
 
@@ -129,13 +138,16 @@ Bounds OpenRTMapper::bounds() const { return impl_->bounds(); }
 
 BoundingSphere OpenRTMapper::boundingSphere() const { return impl_->sphere(); }
 
-UpGuess OpenRTMapper::guessUp() const { return mapper::guessUp(impl_->world, impl_->graph, impl_->bounds()); }
+UpGuess OpenRTMapper::guessUp() const {
+  return mapper::guessUp(impl_->world, impl_->graph, impl_->bounds());
+}
 
 void OpenRTMapper::bind(const BoundNodes& nodes) {
   const Bound before = impl_->bound;
   impl_->given = boundTo(impl_->graph, impl_->places, nodes);
   impl_->bound = *impl_->given;
-  impl_->lightStale |= before.navigationInfo != impl_->bound.navigationInfo || before.background != impl_->bound.background;
+  impl_->lightStale |= before.navigationInfo != impl_->bound.navigationInfo ||
+                       before.background != impl_->bound.background;
 }
 
 void OpenRTMapper::update(const FieldChanges& changes) { impl_->update(changes); }
@@ -153,7 +165,10 @@ void OpenRTMapper::map(const CameraSettings& camera) {
   m.environment.follow(m.places, around);
   m.objects.follow();
   m.lights.follow(m.graph, m.places);
-  m.lights.atCamera(m.lightsModel() ? CameraLight::model : m.headlight() ? CameraLight::head : CameraLight::none, camera);
+  m.lights.atCamera(m.lightsModel() ? CameraLight::model
+                    : m.headlight() ? CameraLight::head
+                                    : CameraLight::none,
+                    camera);
   m.graph.meshes.release(); // the context has its own copy
   m.useCamera(camera);
   m.custom.sweep();
@@ -163,11 +178,14 @@ void OpenRTMapper::Impl::useCamera(const CameraSettings& settings) {
   const double degrees = settings.fovy * 180 / std::numbers::pi;
   rtLoadMatrixd(settings.matrix);
   RTid shader = 0;
-  if (auto* node = nodeCast<nodes::ORTShader>(settings.shader)) // its own: other views may have another angle
-    shader = custom.of(*node, RT_CAMERA, node, [&](ShaderSetup& setup, const ShaderClass& shaderClass) {
-      if (shaderClass.has("fovy") && settings.fovy > 0) setup.number("fovy", float(degrees));
-      if (shaderClass.has("height") && settings.fovy == 0) setup.number("height", float(settings.height));
-    });
+  if (auto* node = nodeCast<nodes::ORTShader>(
+          settings.shader)) // its own: other views may have another angle
+    shader =
+        custom.of(*node, RT_CAMERA, node, [&](ShaderSetup& setup, const ShaderClass& shaderClass) {
+          if (shaderClass.has("fovy") && settings.fovy > 0) setup.number("fovy", float(degrees));
+          if (shaderClass.has("height") && settings.fovy == 0)
+            setup.number("height", float(settings.height));
+        });
   if (shader != 0)
     rtUseCamera(shader);
   else if (settings.fovy == 0)
@@ -192,8 +210,8 @@ MapStats OpenRTMapper::stats() const {
   s.missingTextures = m.textures.missing();
   s.objectsDefined = m.objects.definitions();
   s.instancesMoved = m.objects.moves();
-  s.parametersSet =
-      m.surfaces.parametersSet() + m.custom.parametersSet() + m.lights.parametersSet() + m.environment.parametersSet();
+  s.parametersSet = m.surfaces.parametersSet() + m.custom.parametersSet() +
+                    m.lights.parametersSet() + m.environment.parametersSet();
   s.texturesLoaded = m.textures.loaded();
   s.lightsChanged = m.lights.changes();
   s.regroupings = m.regroupings;
@@ -209,7 +227,8 @@ const std::vector<std::string>& OpenRTMapper::names() const {
 std::vector<NodeRef> OpenRTMapper::nodes() const {
   std::vector<NodeRef> nodes;
   nodes.reserve(impl_->graph.shapes.size());
-  for (const ItemId id : impl_->graph.shapes) nodes.push_back(id == 0 ? NodeRef() : impl_->graph.items[id].node);
+  for (const ItemId id : impl_->graph.shapes)
+    nodes.push_back(id == 0 ? NodeRef() : impl_->graph.items[id].node);
   return nodes;
 }
 

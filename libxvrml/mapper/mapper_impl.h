@@ -1,13 +1,14 @@
-// mapper_impl.h: what an OpenRTMapper is made of. Shared by mapper.cpp (frames), update.cpp (changes) and explain.cpp.
+// mapper_impl.h: what an OpenRTMapper is made of. Shared by mapper.cpp (frames), update.cpp
+// (changes) and explain.cpp.
 #pragma once
 
 #include <optional>
 
+#include "mapper/graph/objects.h"
+#include "mapper/graph/places.h"
 #include "mapper/shading/appearance.h"
 #include "mapper/shading/custom_shaders.h"
 #include "mapper/shading/lights.h"
-#include "mapper/graph/objects.h"
-#include "mapper/graph/places.h"
 #include "mapper/views.h"
 #include "xvrml/mapper.h"
 

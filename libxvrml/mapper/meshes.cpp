@@ -1,4 +1,3 @@
-// meshes.cpp: see meshes.h.
 #include "mapper/meshes.h"
 
 #include <algorithm>
@@ -20,13 +19,15 @@ template <class T> uint64_t hashed(std::span<const T> values, uint64_t seed) {
 
 uint64_t contentHash(const Mesh& m) {
   const uint64_t flags = uint64_t(m.kind) | uint64_t(m.solid) << 8 | uint64_t(m.ccw) << 9;
-  return hashed(m.colors, hashed(m.texCoords, hashed(m.normals, hashed(m.indices, hashed(m.points, flags)))));
+  return hashed(m.colors,
+                hashed(m.texCoords, hashed(m.normals, hashed(m.indices, hashed(m.points, flags)))));
 }
 
 double reachOf(const Mesh& m) {
   float reach = m.kind == Mesh::Kind::sphere ? m.radius : 0;
   for (const Vec3f& p : m.points) // not by NaN, which fails every comparison
-    for (const float v : {p.x, p.y, p.z}) reach = std::abs(v) > reach && std::isfinite(v) ? std::abs(v) : reach;
+    for (const float v : {p.x, p.y, p.z})
+      reach = std::abs(v) > reach && std::isfinite(v) ? std::abs(v) : reach;
   return double(reach);
 }
 
@@ -37,7 +38,8 @@ uint64_t ownBytes(const Mesh& m) {
 }
 
 template <class T> bool equalBytes(std::span<const T> a, std::span<const T> b) {
-  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size_bytes()) == 0);
+  return a.size() == b.size() &&
+         (a.empty() || std::memcmp(a.data(), b.data(), a.size_bytes()) == 0);
 }
 
 } // namespace
@@ -124,7 +126,8 @@ const Mesh& Meshes::get(int32_t mesh) {
   if (entry.mesh) return *entry.mesh;
   Diagnostics silent; // what is wrong with a geometry was said when it was built first
   Limits limits = world_.options.limits;
-  if (!entry.known) entry.triangles = ration_.budget().left() / (bytesWhileBuilt + bytesOfPrimitive);
+  if (!entry.known)
+    entry.triangles = ration_.budget().left() / (bytesWhileBuilt + bytesOfPrimitive);
   const bool scarce = entry.triangles < limits.triangles;
   if (scarce) limits.triangles = entry.triangles;
   const std::string name = scarce ? ration_.budget().name() : std::string();
@@ -145,14 +148,17 @@ const Mesh& Meshes::get(int32_t mesh) {
   case Mesh::Kind::points: entry.extent.primitives = corners; break;
   case Mesh::Kind::sphere: entry.extent.primitives = 1; break;
   }
-  if (!entry.dynamic && entry.extent.kind == Mesh::Kind::triangles && entry.extent.primitives >= smallestCompared) join(mesh);
+  if (!entry.dynamic && entry.extent.kind == Mesh::Kind::triangles &&
+      entry.extent.primitives >= smallestCompared)
+    join(mesh);
   return *entries_[size_t(mesh)].mesh;
 }
 
 bool Meshes::sameContent(int32_t a, int32_t b) {
   const Mesh &m = get(a), &n = get(b);
-  return m.kind == n.kind && m.solid == n.solid && m.ccw == n.ccw && equalBytes(m.points, n.points) &&
-         equalBytes(m.indices, n.indices) && equalBytes(m.normals, n.normals) && equalBytes(m.texCoords, n.texCoords) &&
+  return m.kind == n.kind && m.solid == n.solid && m.ccw == n.ccw &&
+         equalBytes(m.points, n.points) && equalBytes(m.indices, n.indices) &&
+         equalBytes(m.normals, n.normals) && equalBytes(m.texCoords, n.texCoords) &&
          equalBytes(m.colors, n.colors);
 }
 
@@ -176,7 +182,8 @@ void Meshes::join(int32_t mesh) {
   const uint64_t hash = contentHash(*entry.mesh);
   const auto known = byContent_.find(hash);
   int32_t id = known == byContent_.end() ? none_ : known->second;
-  while (id != none_ && !sameContent(mesh, groups_[size_t(id)].first)) id = groups_[size_t(id)].next;
+  while (id != none_ && !sameContent(mesh, groups_[size_t(id)].first))
+    id = groups_[size_t(id)].next;
   if (id == none_) id = newGroup(hash);
   Group& group = groups_[size_t(id)];
   if (group.first == none_) {
@@ -233,7 +240,9 @@ void growByPoint(Bounds& bounds, const Vector& p) {
 void growByBox(Bounds& bounds, const Bounds& box, const Matrix& matrix) {
   if (box.empty) return;
   for (int corner = 0; corner < 8; ++corner) {
-    auto side = [&](int axis) { return corner & (1 << axis) ? box.maximum[axis] : box.minimum[axis]; };
+    auto side = [&](int axis) {
+      return corner & (1 << axis) ? box.maximum[axis] : box.minimum[axis];
+    };
     growByPoint(bounds, transformPoint(matrix, {side(0), side(1), side(2)}));
   }
 }
@@ -244,7 +253,8 @@ void Meshes::grow(Bounds& bounds, int32_t mesh, const Matrix& matrix) {
     // An ellipsoid's extent along a world axis is the length of that row of the linear part.
     const Vector center = transformPoint(matrix, Vector(0));
     Vector reach;
-    for (int i = 0; i < 3; ++i) reach[i] = m.radius * Vector(matrix.x[0][i], matrix.x[1][i], matrix.x[2][i]).length();
+    for (int i = 0; i < 3; ++i)
+      reach[i] = m.radius * Vector(matrix.x[0][i], matrix.x[1][i], matrix.x[2][i]).length();
     growByPoint(bounds, center - reach);
     growByPoint(bounds, center + reach);
     return;
@@ -252,7 +262,8 @@ void Meshes::grow(Bounds& bounds, int32_t mesh, const Matrix& matrix) {
   // A Coordinate node may hold points, perhaps very many, that this geometry does not use.
   if (m.indices.size() < m.points.size()) {
     for (const uint32_t index : m.indices)
-      if (index < m.points.size()) growByPoint(bounds, transformPoint(matrix, vector(m.points[index])));
+      if (index < m.points.size())
+        growByPoint(bounds, transformPoint(matrix, vector(m.points[index])));
     return;
   }
   std::vector<uint8_t> used(m.points.size());
@@ -268,7 +279,8 @@ double Meshes::reach(int32_t mesh, const Matrix& matrix, const Vector& from) {
   if (m.kind == Mesh::Kind::sphere) {
     double longest = 0;
     for (int axis = 0; axis < 3; ++axis)
-      longest = std::max(longest, Vector(matrix.x[axis][0], matrix.x[axis][1], matrix.x[axis][2]).length());
+      longest = std::max(longest,
+                         Vector(matrix.x[axis][0], matrix.x[axis][1], matrix.x[axis][2]).length());
     far = (transformPoint(matrix, Vector(0)) - from).length() + m.radius * longest;
     return std::isfinite(far) ? far : 0;
   }
@@ -297,7 +309,8 @@ void compact(const Mesh& mesh, Mesh& out) {
   }
   out.ownIndices.reserve(mesh.indices.size());
   for (const uint32_t i : mesh.indices)
-    out.ownIndices.push_back(uint32_t(std::lower_bound(used.begin(), used.end(), i) - used.begin()));
+    out.ownIndices.push_back(
+        uint32_t(std::lower_bound(used.begin(), used.end(), i) - used.begin()));
   out.viewOwn();
 }
 

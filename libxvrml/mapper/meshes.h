@@ -1,5 +1,5 @@
-// meshes.h: the meshes of a world, one per geometry node however many shapes use it, and which of them are equal. Built when
-// first asked for, by the mapper.
+// meshes.h: the meshes of a world, one per geometry node however many shapes use it, and which of
+// them are equal. Built when first asked for, by the mapper.
 #pragma once
 
 #include <memory>
@@ -16,7 +16,8 @@ namespace xvrml::mapper {
 class Meshes {
  public:
   explicit Meshes(World& world) : world_(world), ration_(world, "meshes") {}
-  // The number of a geometry node's mesh, with one user more. textured: a shape that uses it has a texture.
+  // The number of a geometry node's mesh, with one user more. textured: a shape that uses it has a
+  // texture.
   int32_t add(Node& geometry, bool textured);
   void drop(int32_t mesh); // one user less
   // Numbers that have no user any more. They name nothing else until recycle().
@@ -47,7 +48,8 @@ class Meshes {
   uint32_t users(int32_t mesh) const;
   // Grows bounds by the mesh under a matrix.
   void grow(Bounds& bounds, int32_t mesh, const Matrix& matrix);
-  // Returns how far from a point the mesh under a matrix reaches; of a sphere that is not round at least so far.
+  // Returns how far from a point the mesh under a matrix reaches; of a sphere that is not round at
+  // least so far.
   double reach(int32_t mesh, const Matrix& matrix, const Vector& from);
   // Forgets the arrays; get() would build them again.
   void release();

@@ -1,4 +1,3 @@
-// model.cpp: see model.h.
 #include "mapper/model.h"
 
 #include <algorithm>
@@ -14,17 +13,19 @@
 namespace xvrml::mapper {
 namespace {
 
-// Programs that write VRML, by words of the comments at the top of their files and of WorldInfo, and the axis that is up in what
-// they write. The first word that occurs counts.
+// Programs that write VRML, by words of the comments at the top of their files and of WorldInfo,
+// and the axis that is up in what they write. The first word that occurs counts.
 struct Exporter {
   std::string_view word;
   Axis up;
 };
 constexpr Exporter exporters[] = {
-    {"kicad", Axis::z},      {"stepup", Axis::z},      {"pcbnew", Axis::z},      {"freecad", Axis::z},  {"openscad", Axis::z},
-    {"cadquery", Axis::z},   {"opencascade", Axis::z}, {"catia", Axis::z},       {"openhrp", Axis::z},  {"choreonoid", Axis::z},
-    {"blender", Axis::y},    {"3d studio", Axis::y},   {"cosmoworlds", Axis::y}, {"wings 3d", Axis::y}, {"titania", Axis::y},
-    {"white_dune", Axis::y}, {"x3dtovrml97", Axis::y},
+    {"kicad", Axis::z},       {"stepup", Axis::z},      {"pcbnew", Axis::z},
+    {"freecad", Axis::z},     {"openscad", Axis::z},    {"cadquery", Axis::z},
+    {"opencascade", Axis::z}, {"catia", Axis::z},       {"openhrp", Axis::z},
+    {"choreonoid", Axis::z},  {"blender", Axis::y},     {"3d studio", Axis::y},
+    {"cosmoworlds", Axis::y}, {"wings 3d", Axis::y},    {"titania", Axis::y},
+    {"white_dune", Axis::y},  {"x3dtovrml97", Axis::y},
 };
 
 constexpr double near = 0.02;   // of an extent: stands on 0, lies about 0
@@ -45,7 +46,8 @@ const Exporter* exporterIn(std::string_view text) {
 }
 
 bool isFrom(const nodes::Background& sky) {
-  return !sky.groundColor.empty() || sky.skyColor.size() > 1 || !sky.backUrl.empty() || !sky.frontUrl.empty();
+  return !sky.groundColor.empty() || sky.skyColor.size() > 1 || !sky.backUrl.empty() ||
+         !sky.frontUrl.empty();
 }
 
 // Joints of OpenHRP and Choreonoid: robots with z up. The Joint of H-Anim has no axis.
@@ -57,17 +59,21 @@ bool hasRobotJoints(const World& world) {
   return false;
 }
 
-// Nodes that VRML itself orients along y, and geometry that hands write and exporters do not. "": there is none.
+// Nodes that VRML itself orients along y, and geometry that hands write and exporters do not. "":
+// there is none.
 std::string writtenAlongY(const World& world, const Graph& graph) {
   for (const NodeRef& root : world.scope.roots) {
-    if (const auto* info = nodeCast<nodes::NavigationInfo>(root); info && !info->type.empty() && info->type.front() == "WALK")
+    if (const auto* info = nodeCast<nodes::NavigationInfo>(root);
+        info && !info->type.empty() && info->type.front() == "WALK")
       return "NavigationInfo has WALK as its first type";
-    if (const auto* sky = nodeCast<nodes::Background>(root); sky && isFrom(*sky)) return "Background has a ground or a sky";
+    if (const auto* sky = nodeCast<nodes::Background>(root); sky && isFrom(*sky))
+      return "Background has a ground or a sky";
   }
   for (const ItemId id : graph.order) {
     const Item& item = graph.items[id];
     if (item.kind != Kind::shape) continue;
-    const Node* geometry = renderedNode(static_cast<const nodes::Shape&>(*item.node).geometry.get());
+    const Node* geometry =
+        renderedNode(static_cast<const nodes::Shape&>(*item.node).geometry.get());
     if (!geometry) continue;
     const int type = geometry->type().index;
     if (type != nodes::IndexedFaceSet::typeIndex && type != nodes::IndexedLineSet::typeIndex &&
@@ -89,7 +95,9 @@ UpGuess fromBounds(const Bounds& b) {
   if (extent[1] <= plane * largest) return {Axis::y, "it lies in the x-z plane"};
   const auto standsOn = [&](int i) { return std::abs(b.minimum[i]) <= near * extent[i]; };
   const auto liesAbout = [&](int i) { return std::abs(middle[i]) <= near * extent[i]; };
-  const auto isPlate = [&](int i) { return extent[i] < plate * std::min(extent[(i + 1) % 3], extent[(i + 2) % 3]); };
+  const auto isPlate = [&](int i) {
+    return extent[i] < plate * std::min(extent[(i + 1) % 3], extent[(i + 2) % 3]);
+  };
   if (standsOn(2) != standsOn(1)) {
     if (standsOn(2)) return {Axis::z, "it stands on z = 0"};
     return {Axis::y, "it stands on y = 0"};
@@ -109,9 +117,11 @@ UpGuess guessUp(const World& world, const Graph& graph, const Bounds& bounds) {
   if (bounds.empty) return {Axis::y, "nothing is drawn"};
   const UpGuess shape = fromBounds(bounds);
   const auto written = [&](const Exporter& one, const char* where) {
-    return UpGuess{one.up, where + (" names " + std::string(one.word)), one.up == Axis::y && shape.frontal};
+    return UpGuess{one.up, where + (" names " + std::string(one.word)),
+                   one.up == Axis::y && shape.frontal};
   };
-  if (const Exporter* one = exporterIn(openingComments(world))) return written(*one, "the file's comment");
+  if (const Exporter* one = exporterIn(openingComments(world)))
+    return written(*one, "the file's comment");
   for (const NodeRef& root : world.scope.roots) {
     const auto* info = nodeCast<nodes::WorldInfo>(root);
     if (!info) continue;
@@ -120,7 +130,8 @@ UpGuess guessUp(const World& world, const Graph& graph, const Bounds& bounds) {
     if (const Exporter* one = exporterIn(text)) return written(*one, "WorldInfo");
   }
   if (hasRobotJoints(world)) return {Axis::z, "its prototype Joint has a jointAxis"};
-  if (const std::string why = writtenAlongY(world, graph); !why.empty()) return {Axis::y, why, shape.frontal};
+  if (const std::string why = writtenAlongY(world, graph); !why.empty())
+    return {Axis::y, why, shape.frontal};
   return shape;
 }
 
@@ -130,7 +141,8 @@ bool leavesLightOpen(const Graph& graph, const Bound& bound) {
     const Item& item = graph.items[id];
     if (isLight(item.kind)) return false;
     if (item.kind != Kind::shape) continue;
-    const Node* appearance = renderedNode(static_cast<const nodes::Shape&>(*item.node).appearance.get());
+    const Node* appearance =
+        renderedNode(static_cast<const nodes::Shape&>(*item.node).appearance.get());
     if (appearance && appearance->type().index == nodes::ORTAppearance::typeIndex) return false;
   }
   return true;
@@ -153,21 +165,23 @@ void upVector(Axis axis, double up[3]) {
   for (int i = 0; i < 3; ++i) up[i] = v[i];
 }
 
-// The front is where an eye stands for which x is to the right: +z of a model with y up, -y of one with z up. Where x is up, z is
-// the front as with y.
+// The front is where an eye stands for which x is to the right: +z of a model with y up, -y of one
+// with z up. Where x is up, z is the front as with y.
 void threeQuarterView(Axis axis, double view[16]) {
   constexpr double side = 35 * std::numbers::pi / 180, above = 25 * std::numbers::pi / 180;
   const Vector top = towards(axis);
   const Vector front = int(axis) % 3 == 2 ? Vector(0, int(axis) == 2 ? -1 : 1, 0) : Vector(0, 0, 1);
   const Vector aside = top.cross(front);
-  const Vector back =
-      front * (std::cos(side) * std::cos(above)) + aside * (std::sin(side) * std::cos(above)) + top * std::sin(above);
+  const Vector back = front * (std::cos(side) * std::cos(above)) +
+                      aside * (std::sin(side) * std::cos(above)) + top * std::sin(above);
   const Vector right = top.cross(back).normalized(), up = back.cross(right);
-  const double columns[16] = {right.x, right.y, right.z, 0, up.x, up.y, up.z, 0, back.x, back.y, back.z, 0, 0, 0, 0, 1};
+  const double columns[16] = {right.x, right.y, right.z, 0, up.x, up.y, up.z, 0,
+                              back.x,  back.y,  back.z,  0, 0,    0,    0,    1};
   std::copy_n(columns, 16, view);
 }
 
-CameraSettings cameraAround(const BoundingSphere& sphere, const double view[16], double fovy, double aspect) {
+CameraSettings cameraAround(const BoundingSphere& sphere, const double view[16], double fovy,
+                            double aspect) {
   constexpr double margin = 1.05;
   CameraSettings camera = mapper::cameraOf(nullptr, Matrix(), aspect);
   camera.fovy = fovy >= 0 && fovy < 3.14 ? fovy : camera.fovy;
@@ -185,7 +199,8 @@ CameraSettings cameraAround(const BoundingSphere& sphere, const double view[16],
   }
   const Matrix axes = rotationOnly(fromArray(view));
   const Vector center(sphere.center[0], sphere.center[1], sphere.center[2]);
-  toArray(compose(translation(center + transformDirection(axes, Vector(0, 0, distance))), axes), camera.matrix);
+  toArray(compose(translation(center + transformDirection(axes, Vector(0, 0, distance))), axes),
+          camera.matrix);
   return camera;
 }
 

@@ -1,4 +1,3 @@
-// rt.cpp: see rt.h.
 #include "mapper/rt.h"
 
 #include <cmath>
@@ -15,10 +14,14 @@ bool report(Diagnostics& diagnostics, const SourcePosition& where, std::string_v
 }
 
 namespace {
-float decode(float v) { return v <= 0.04045f ? v / 12.92f : float(std::pow((double(v) + 0.055) / 1.055, 2.4)); }
+float decode(float v) {
+  return v <= 0.04045f ? v / 12.92f : float(std::pow((double(v) + 0.055) / 1.055, 2.4));
+}
 } // namespace
 
-Color convert(Color c, bool linear) { return linear ? Color{decode(c.r), decode(c.g), decode(c.b)} : c; }
+Color convert(Color c, bool linear) {
+  return linear ? Color{decode(c.r), decode(c.g), decode(c.b)} : c;
+}
 
 const ShaderClass& ShaderClasses::find(const std::string& name, const std::string& library) {
   const auto [it, fresh] = classes_.try_emplace(library + '\n' + name);

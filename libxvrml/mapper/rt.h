@@ -1,5 +1,5 @@
-// rt.h: the mapper's side of OpenRT calls: errors become diagnostics with a place, parameters are set by name. On the thread
-// that holds the context.
+// rt.h: the mapper's side of OpenRT calls: errors become diagnostics with a place, parameters are
+// set by name. On the thread that holds the context.
 #pragma once
 
 #include <algorithm>
@@ -41,12 +41,17 @@ class ShaderClasses {
   std::unordered_map<std::string, ShaderClass> classes_;
 };
 
-// A shader being set up: bound for the life of the object; every setter names a parameter its class declares.
+// A shader being set up: bound for the life of the object; every setter names a parameter its class
+// declares.
 class ShaderSetup {
  public:
-  explicit ShaderSetup(RTid shaderClass) : shader_(rtNewShader(shaderClass)) { rtBindShader(shader_); }
+  explicit ShaderSetup(RTid shaderClass) : shader_(rtNewShader(shaderClass)) {
+    rtBindShader(shader_);
+  }
   // One that is there already, to be changed. sets: counts the parameters that are set.
-  ShaderSetup(RTid shader, uint64_t& sets) : shader_(shader), sets_(&sets) { rtBindShader(shader_); }
+  ShaderSetup(RTid shader, uint64_t& sets) : shader_(shader), sets_(&sets) {
+    rtBindShader(shader_);
+  }
   ~ShaderSetup() { rtBindShader(0); }
   ShaderSetup(const ShaderSetup&) = delete;
   ShaderSetup& operator=(const ShaderSetup&) = delete;
@@ -56,12 +61,15 @@ class ShaderSetup {
   void integer(const char* name, int v) { rtParameter1i(handle(name), v); }
   void number(const char* name, float v) { rtParameter1f(handle(name), v); }
   // The nearest value in the field's range: parsers warn of others.
-  void number(const char* name, float v, float low, float high = std::numeric_limits<float>::max()) {
+  void number(const char* name, float v, float low,
+              float high = std::numeric_limits<float>::max()) {
     number(name, std::clamp(v, low, high));
   }
   void vector(const char* name, Vec3f v) { rtParameter3f(handle(name), v.x, v.y, v.z); }
   void color(const char* name, Color c) { rtParameter3f(handle(name), c.r, c.g, c.b); }
-  void floats(const char* name, std::span<const float> v) { rtParameterfv(handle(name), v.size(), v.data()); }
+  void floats(const char* name, std::span<const float> v) {
+    rtParameterfv(handle(name), v.size(), v.data());
+  }
   void texture(const char* name, RTid texture) { rtParameterTexture(handle(name), texture); }
   void matrix(const char* name, const Matrix& m) {
     float f[16];

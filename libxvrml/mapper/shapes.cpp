@@ -1,5 +1,5 @@
-// shapes.cpp: what is written into an open object: instances of the objects below, shapes with their arrays as they are, the
-// matrix, the surface. The other half of Objects.
+// shapes.cpp: what is written into an open object: instances of the objects below, shapes with
+// their arrays as they are, the matrix, the surface. The other half of Objects.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,7 +11,9 @@ namespace xvrml::mapper {
 
 namespace {
 RTenum modeOf(Mesh::Kind kind) {
-  return kind == Mesh::Kind::lines ? RT_LINES : kind == Mesh::Kind::points ? RT_POINTS : RT_TRIANGLES;
+  return kind == Mesh::Kind::lines    ? RT_LINES
+         : kind == Mesh::Kind::points ? RT_POINTS
+                                      : RT_TRIANGLES;
 }
 } // namespace
 
@@ -22,7 +24,8 @@ void Objects::enter(ItemId id, int32_t at, const Matrix& matrix) {
     Place& place = places_.all[size_t(at)];
     const bool turns = item.kind == Kind::billboard && live_;
     place.base = matrix;
-    place.instance = instantiate(partOfPlace(size_t(at)), compose(graph_.below(matrix, item), places_.turns[size_t(at)]), 0,
+    place.instance = instantiate(partOfPlace(size_t(at)),
+                                 compose(graph_.below(matrix, item), places_.turns[size_t(at)]), 0,
                                  item.moves || turns);
   } else if (at == none && item.own != Own::none) {
     const RTid instance = instantiate(partOfItem(id), graph_.below(matrix, item), 0, item.moves);
@@ -36,8 +39,11 @@ void Objects::expand(const Step& step) {
   const Item& item = graph_.items[step.item];
   if (item.kind == Kind::shape) return writeShape(step.item, step.matrix);
   const bool oneLevel = item.kind == Kind::lod; // one that has no place of its own: see summarise
-  for (size_t c = oneLevel ? std::min(item.children.size(), size_t(1)) : item.children.size(); c-- > 0;) {
-    const int32_t at = step.place == none ? none : places_.children[places_.all[size_t(step.place)].firstChild + c];
+  for (size_t c = oneLevel ? std::min(item.children.size(), size_t(1)) : item.children.size();
+       c-- > 0;) {
+    const int32_t at = step.place == none
+                           ? none
+                           : places_.children[places_.all[size_t(step.place)].firstChild + c];
     enter(item.children[c], at, step.matrix);
   }
 }
@@ -50,12 +56,15 @@ void Objects::drain() {
   }
 }
 
-// Is something of this extent, placed by this matrix, beyond what float coordinates can say? Tells it, too.
-bool Objects::tooFar(const Matrix& matrix, double reach, const SourcePosition& where, const std::string& what) {
+// Is something of this extent, placed by this matrix, beyond what float coordinates can say? Tells
+// it, too.
+bool Objects::tooFar(const Matrix& matrix, double reach, const SourcePosition& where,
+                     const std::string& what) {
   constexpr double most = 1e38;
   double far = 0;
   for (int i = 0; i < 3; ++i) {
-    const double turned = std::abs(matrix.x[0][i]) + std::abs(matrix.x[1][i]) + std::abs(matrix.x[2][i]);
+    const double turned =
+        std::abs(matrix.x[0][i]) + std::abs(matrix.x[1][i]) + std::abs(matrix.x[2][i]);
     far = std::max(far, std::abs(matrix.x[3][i]) + turned * reach);
     if (!(far <= most)) far = std::numeric_limits<double>::infinity(); // NaN too
   }
@@ -64,14 +73,17 @@ bool Objects::tooFar(const Matrix& matrix, double reach, const SourcePosition& w
     part.reach = std::max(part.reach, far);
     return false;
   }
-  world_.diagnostics.warn(where, what + " is larger than 1e38, or further away, by the Transforms around it; it is left out");
+  world_.diagnostics.warn(
+      where,
+      what + " is larger than 1e38, or further away, by the Transforms around it; it is left out");
   return true;
 }
 
 // dynamic: events or the camera will move it.
 RTid Objects::instantiate(int32_t id, const Matrix& matrix, uint32_t number, bool dynamic) {
   const Part& used = parts_[size_t(id)];
-  const NodeRef node = used.of == Part::Of::mesh ? NodeRef(&graph_.meshes.geometry(used.mesh)) : graph_.items[used.item].node;
+  const NodeRef node = used.of == Part::Of::mesh ? NodeRef(&graph_.meshes.geometry(used.mesh))
+                                                 : graph_.items[used.item].node;
   const SourcePosition where = node ? node->source : SourcePosition();
   const bool usable = !tooFar(matrix, used.reach, where, node ? node->type().name : "the world");
   if (!usable && !dynamic) return 0;
@@ -102,8 +114,8 @@ void Objects::keep(ItemId item, RTid instance, const Matrix& base) {
   parts_[size_t(writing_)].moving.push_back(item);
 }
 
-// What a shape draws has the shape's number as its name, also in an object that holds many shapes or has many instances: the id
-// channel tells them apart.
+// What a shape draws has the shape's number as its name, also in an object that holds many shapes
+// or has many instances: the id channel tells them apart.
 void Objects::writeShape(ItemId id, const Matrix& matrix) {
   const Item& item = graph_.items[id];
   Node* appearance = static_cast<nodes::Shape&>(*item.node).appearance.get();
@@ -128,7 +140,8 @@ void Objects::writeShape(ItemId id, const Matrix& matrix) {
 bool Objects::draw(int32_t mesh, const Surface& surface, bool textured) {
   const Meshes::Extent extent = graph_.meshes.extent(mesh);
   if (extent.primitives == 0) return true;
-  const uint64_t bytes = addSaturating(multiplySaturating(extent.primitives, bytesOfPrimitive), bytesOfShape);
+  const uint64_t bytes =
+      addSaturating(multiplySaturating(extent.primitives, bytesOfPrimitive), bytesOfShape);
   if (!ration_.take(bytes, graph_.meshes.geometry(mesh).source)) return false;
   const Mesh& m = graph_.meshes.get(mesh);
   Part& part = parts_[size_t(writing_)];
@@ -141,7 +154,8 @@ bool Objects::draw(int32_t mesh, const Surface& surface, bool textured) {
   (m.ccw ? rtDisable : rtEnable)(RT_CW_FRONT);
   if (m.kind == Mesh::Kind::sphere) {
     rtSphere(m.radius);
-  } else if (m.indices.size() < m.points.size()) { // a Coordinate that several geometries share: each takes its part
+  } else if (m.indices.size() <
+             m.points.size()) { // a Coordinate that several geometries share: each takes its part
     Mesh used;
     compact(m, used);
     drawArrays(used, surface, textured);
@@ -155,8 +169,11 @@ bool Objects::draw(int32_t mesh, const Surface& surface, bool textured) {
 void Objects::drawArrays(const Mesh& m, const Surface& surface, bool textured) {
   rtVertexPointer(3, RT_FLOAT, sizeof(Vec3f), m.points.data());
   rtNormalPointer(RT_FLOAT, sizeof(Vec3f), m.normals.empty() ? nullptr : m.normals.data());
-  rtTexCoordPointer(2, RT_FLOAT, sizeof(Vec2f), textured && !m.texCoords.empty() ? m.texCoords.data() : nullptr);
-  const bool plain = m.colors.empty() && m.kind != Mesh::Kind::triangles; // lines and points take the material's emissive colour
+  rtTexCoordPointer(2, RT_FLOAT, sizeof(Vec2f),
+                    textured && !m.texCoords.empty() ? m.texCoords.data() : nullptr);
+  const bool plain =
+      m.colors.empty() &&
+      m.kind != Mesh::Kind::triangles; // lines and points take the material's emissive colour
   if (!m.colors.empty() && !linear_) {
     rtColorPointer(3, RT_FLOAT, sizeof(Color), m.colors.data());
   } else if (!m.colors.empty() || plain) {

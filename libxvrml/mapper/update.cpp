@@ -1,9 +1,10 @@
-// update.cpp: from changed fields to the least that has to be done, by their kind of change. Called by the mapper between
-// frames, on its thread.
+// update.cpp: from changed fields to the least that has to be done, by their kind of change. Called
+// by the mapper between frames, on its thread.
 //
-// What events were known to reach has been kept apart when the world was grouped (summary.cpp), so a change touches instances,
-// one object or a shader's parameters. What nothing was known to reach is part of something larger: the first change of it
-// regroups (the engine now says that it is reached), later ones are cheap.
+// What events were known to reach has been kept apart when the world was grouped (summary.cpp), so
+// a change touches instances, one object or a shader's parameters. What nothing was known to reach
+// is part of something larger: the first change of it regroups (the engine now says that it is
+// reached), later ones are cheap.
 #include <algorithm>
 #include <unordered_set>
 
@@ -26,11 +27,14 @@ struct OpenRTMapper::Impl::Work {
 namespace {
 
 bool isAppearance(const Node& node) {
-  return node.type().index == nodes::Appearance::typeIndex || node.type().index == nodes::ORTAppearance::typeIndex;
+  return node.type().index == nodes::Appearance::typeIndex ||
+         node.type().index == nodes::ORTAppearance::typeIndex;
 }
 
-// Upwards through everything that is no group and no shape, prototype instances included: visit says where to go on.
-template <class Visit> void climb(Node& first, std::unordered_set<const Node*>& visited, const Visit& visit) {
+// Upwards through everything that is no group and no shape, prototype instances included: visit
+// says where to go on.
+template <class Visit>
+void climb(Node& first, std::unordered_set<const Node*>& visited, const Visit& visit) {
   std::vector<Node*> open{&first};
   while (!open.empty()) {
     Node* node = open.back();
@@ -121,7 +125,8 @@ void OpenRTMapper::Impl::reshaped(Work& work, Node& first) {
     eachShape(graph, node, [&](ItemId shape) {
       const Item& item = graph.items[shape];
       if (!expected && !item.merged) work.regroup = true;
-      if (!expected || item.merged || item.own != Own::none || !item.viaMesh) work.rewrite.push_back(shape);
+      if (!expected || item.merged || item.own != Own::none || !item.viaMesh)
+        work.rewrite.push_back(shape);
     });
     return false;
   });
@@ -170,14 +175,17 @@ void OpenRTMapper::Impl::newSurfaces(Work& work) {
 // The shape's mesh has texture coordinates from now on, if its appearance wants them.
 void OpenRTMapper::Impl::textured(Work& work, ItemId shape) {
   const Item& item = graph.items[shape];
-  if (!isTextured(static_cast<nodes::Shape&>(*item.node).appearance.get()) || !graph.meshes.needTexture(item.mesh)) return;
+  if (!isTextured(static_cast<nodes::Shape&>(*item.node).appearance.get()) ||
+      !graph.meshes.needTexture(item.mesh))
+    return;
   work.meshes.push_back(item.mesh);
   work.regroup = true; // it is not equal any more to those without
 }
 
 void OpenRTMapper::Impl::relit(Work& work, Node& node) {
   const ItemId id = graph.find(&node);
-  if (id == 0 || !isLight(graph.items[id].kind)) return; // the headlight of a NavigationInfo is read with every frame
+  if (id == 0 || !isLight(graph.items[id].kind))
+    return; // the headlight of a NavigationInfo is read with every frame
   graph.readLight(id);
   lights.changed(node);
   if (graph.items[id].on && !graph.items[id].placed) work.regroup = true;

@@ -32,24 +32,28 @@ Bound firstBound(const Graph& graph, const Places& places) {
 
 Bound boundTo(const Graph& graph, const Places& places, const BoundNodes& nodes) {
   Bound bound;
-  const auto find = [&](Node* written, std::initializer_list<int> types, NodeRef& node, int32_t* place) {
+  const auto find = [&](Node* written, std::initializer_list<int> types, NodeRef& node,
+                        int32_t* place) {
     Node* rendered = written ? renderedNode(written) : nullptr;
-    if (!rendered || std::find(types.begin(), types.end(), rendered->type().index) == types.end()) return;
+    if (!rendered || std::find(types.begin(), types.end(), rendered->type().index) == types.end())
+      return;
     node = NodeRef(rendered);
     if (!place) return;
     places.each(graph.find(rendered), [&](int32_t at) {
       if (*place == none) *place = at;
     });
   };
-  find(nodes.viewpoint, {nodes::Viewpoint::typeIndex, nodes::ORTViewpoint::typeIndex}, bound.viewpoint, &bound.viewpointPlace);
-  find(nodes.background, {nodes::Background::typeIndex, nodes::ORTBackground::typeIndex}, bound.background,
-       &bound.backgroundPlace);
+  find(nodes.viewpoint, {nodes::Viewpoint::typeIndex, nodes::ORTViewpoint::typeIndex},
+       bound.viewpoint, &bound.viewpointPlace);
+  find(nodes.background, {nodes::Background::typeIndex, nodes::ORTBackground::typeIndex},
+       bound.background, &bound.backgroundPlace);
   find(nodes.fog, {nodes::Fog::typeIndex}, bound.fog, &bound.fogPlace);
   find(nodes.navigationInfo, {nodes::NavigationInfo::typeIndex}, bound.navigationInfo, nullptr);
   return bound;
 }
 
-std::vector<ViewpointInfo> listViewpoints(const Graph& graph, const Places& places, std::vector<int32_t>& place) {
+std::vector<ViewpointInfo> listViewpoints(const Graph& graph, const Places& places,
+                                          std::vector<int32_t>& place) {
   std::vector<ViewpointInfo> list;
   for (size_t i = 0; i < places.all.size(); ++i) {
     const Item& item = graph.items[places.all[i].item];
@@ -76,7 +80,8 @@ CameraSettings cameraOf(const Node* node, const Matrix& parent, double aspect) {
     fieldOfView = viewpoint->fieldOfView;
     camera.shader = renderedNode(viewpoint->shader);
   }
-  toArray(rigid(compose(parent, compose(translation(vector(position)), rotation(orientation)))), camera.matrix);
+  toArray(rigid(compose(parent, compose(translation(vector(position)), rotation(orientation)))),
+          camera.matrix);
   camera.fovy = verticalFieldOfView(fieldOfView, aspect);
   return camera;
 }
@@ -86,8 +91,10 @@ struct Extents {
   double x = 0, y = 0, front = 0;
 };
 
-// How far the corners reach from the centre, in the view's axes, and for a perspective how far away the eye must be.
-Extents measure(const Bounds& b, const Matrix& view, const Vector& center, double tanX, double tanY) {
+// How far the corners reach from the centre, in the view's axes, and for a perspective how far away
+// the eye must be.
+Extents measure(const Bounds& b, const Matrix& view, const Vector& center, double tanX,
+                double tanY) {
   Extents e;
   const Vector axis[3] = {{view.x[0][0], view.x[0][1], view.x[0][2]},
                           {view.x[1][0], view.x[1][1], view.x[1][2]},
@@ -113,7 +120,8 @@ bool hasHeadlight(const Bound& bound) {
 
 namespace xvrml {
 
-CameraSettings cameraAround(const Bounds& bounds, const double view[16], double fovy, double aspect) {
+CameraSettings cameraAround(const Bounds& bounds, const double view[16], double fovy,
+                            double aspect) {
   CameraSettings camera = mapper::cameraOf(nullptr, Matrix(), aspect);
   camera.fovy = fovy >= 0 && fovy < 3.14 ? fovy : camera.fovy;
   const double margin = 1.1, ratio = aspect > 0 ? aspect : 1;
@@ -134,7 +142,8 @@ CameraSettings cameraAround(const Bounds& bounds, const double view[16], double 
     if (!(camera.height > 0)) camera.height = 1;
   }
   if (!(distance > 0)) distance = 1;
-  toArray(compose(translation(center + transformDirection(axes, Vector(0, 0, distance))), axes), camera.matrix);
+  toArray(compose(translation(center + transformDirection(axes, Vector(0, 0, distance))), axes),
+          camera.matrix);
   return camera;
 }
 

@@ -1,5 +1,5 @@
-// check.cpp: what specifications must hold together, and the fields' attributes that come from abstract types. Runs once,
-// after all files are read and before anything is written.
+// check.cpp: what specifications must hold together, and the fields' attributes that come from
+// abstract types. Runs once, after all files are read and before anything is written.
 #include <algorithm>
 #include <set>
 #include <tuple>
@@ -11,7 +11,9 @@
 namespace xvrml::nodegen {
 namespace {
 
-std::string place(const SourcePosition& source) { return fmt::format("{}:{}", *source.file, source.line); }
+std::string place(const SourcePosition& source) {
+  return fmt::format("{}:{}", *source.file, source.line);
+}
 
 const FieldSpec* findField(const TypeSpec& type, std::string_view name) {
   for (const FieldSpec& field : type.fields)
@@ -40,12 +42,19 @@ class Checker {
     std::map<std::string, const Component*> components;
     for (const Component& component : model_.components) {
       if (!components.emplace(component.name, &component).second)
-        model_.diagnostics.add({Severity::error, {}, 0, 0, fmt::format("two files describe component {}", component.name), {}});
+        model_.diagnostics.add({Severity::error,
+                                {},
+                                0,
+                                0,
+                                fmt::format("two files describe component {}", component.name),
+                                {}});
     }
     // Nodes and abstract types share one name space, or `accepts` would be ambiguous.
     eachType([this](TypeSpec& type) {
       const auto [known, isNew] = types_.emplace(type.name, &type);
-      if (!isNew) model_.error(type.source, fmt::format("{} is defined at {} already", type.name, place(known->second->source)));
+      if (!isNew)
+        model_.error(type.source, fmt::format("{} is defined at {} already", type.name,
+                                              place(known->second->source)));
     });
   }
 
@@ -54,14 +63,16 @@ class Checker {
     if (found == types_.end()) {
       model_.error(reference.source, fmt::format("unknown abstract type {}", reference.name));
     } else if (!found->second->isAbstract) {
-      model_.error(reference.source, fmt::format("{} is a node, not an abstract type", reference.name));
+      model_.error(reference.source,
+                   fmt::format("{} is a node, not an abstract type", reference.name));
     } else {
       return found->second;
     }
     return nullptr;
   }
 
-  // All abstract types above, nearest first, each once. Parents are few: breadth first over the names.
+  // All abstract types above, nearest first, each once. Parents are few: breadth first over the
+  // names.
   void resolveRoles(TypeSpec& type) {
     std::vector<const TypeSpec*> ancestors;
     addParents(type, ancestors, true);
@@ -92,12 +103,14 @@ class Checker {
     for (const FieldSpec& field : type.fields) {
       if (!names.emplace(field.name, &field).second)
         model_.error(field.source, fmt::format("{} has a field {} already", type.name, field.name));
-      if (field.name == type.name) model_.error(field.source, "a field cannot have the name of its node");
+      if (field.name == type.name)
+        model_.error(field.source, "a field cannot have the name of its node");
       // Clause 4.7: an exposedField x is also an eventIn set_x and an eventOut x_changed.
       if (field.access != Access::exposedField) continue;
       for (const std::string& event : {"set_" + field.name, field.name + "_changed"}) {
         if (const FieldSpec* other = findField(type, event))
-          model_.error(other->source, fmt::format("{} is part of the exposedField {} already", event, field.name));
+          model_.error(other->source,
+                       fmt::format("{} is part of the exposedField {} already", event, field.name));
       }
     }
   }
@@ -114,19 +127,22 @@ class Checker {
     }
   }
 
-  // A node prints the whole interface, as the standard does; what the fields of its abstract types mean is said there once.
+  // A node prints the whole interface, as the standard does; what the fields of its abstract types
+  // mean is said there once.
   void inherit(TypeSpec& type, const TypeSpec& role) {
     for (const FieldSpec& above : role.fields) {
-      const auto field =
-          std::find_if(type.fields.begin(), type.fields.end(), [&](const FieldSpec& f) { return f.name == above.name; });
+      const auto field = std::find_if(type.fields.begin(), type.fields.end(),
+                                      [&](const FieldSpec& f) { return f.name == above.name; });
       if (field == type.fields.end()) {
-        model_.error(type.source, fmt::format("{} lacks the {} {} {} of {}", type.name, accessName(above.access),
-                                              fieldTypeName(above.type), above.name, role.name));
+        model_.error(type.source,
+                     fmt::format("{} lacks the {} {} {} of {}", type.name, accessName(above.access),
+                                 fieldTypeName(above.type), above.name, role.name));
         continue;
       }
       if (field->type != above.type || field->access != above.access) {
-        model_.error(field->source, fmt::format("{} is declared as {} {} {}", role.name, accessName(above.access),
-                                                fieldTypeName(above.type), above.name));
+        model_.error(field->source,
+                     fmt::format("{} is declared as {} {} {}", role.name, accessName(above.access),
+                                 fieldTypeName(above.type), above.name));
       }
       if (field->text.empty()) field->text = above.text;
       if (!field->change) field->change = above.change;
@@ -135,23 +151,28 @@ class Checker {
   }
 
   void checkAttributes(const TypeSpec& type, FieldSpec& field) {
-    if (field.text.empty()) model_.error(field.source, fmt::format("{} of {} has no description", field.name, type.name));
+    if (field.text.empty())
+      model_.error(field.source, fmt::format("{} of {} has no description", field.name, type.name));
     if (field.access == Access::eventOut) {
       if (field.change && field.changeSource.line)
         model_.error(field.changeSource, "an eventOut is not written: it changes nothing");
       field.change = Change::none;
     } else if (!field.change) {
-      model_.error(field.source, fmt::format("{} of {} does not say what it changes", field.name, type.name));
+      model_.error(field.source,
+                   fmt::format("{} of {} does not say what it changes", field.name, type.name));
     }
     const bool holdsNodes = field.type == FieldType::SFNode || field.type == FieldType::MFNode;
     if (holdsNodes && field.accepts.empty())
-      model_.error(field.source, fmt::format("{} of {} does not say which nodes it accepts", field.name, type.name));
+      model_.error(field.source, fmt::format("{} of {} does not say which nodes it accepts",
+                                             field.name, type.name));
     if (!holdsNodes && !field.accepts.empty()) {
       model_.error(field.accepts.front().source,
-                   fmt::format("{} is of type {}: it accepts no nodes", field.name, fieldTypeName(field.type)));
+                   fmt::format("{} is of type {}: it accepts no nodes", field.name,
+                               fieldTypeName(field.type)));
     }
     for (const Reference& name : field.accepts) {
-      if (!types_.count(name.name) && reported_.insert({*name.source.file, name.source.line, name.source.column}).second)
+      if (!types_.count(name.name) &&
+          reported_.insert({*name.source.file, name.source.line, name.source.column}).second)
         model_.error(name.source, fmt::format("unknown node or abstract type {}", name.name));
     }
   }
@@ -162,13 +183,14 @@ class Checker {
     info.type = field.type;
     info.range = *field.range;
     if (!inRange(info, field.value))
-      model_.error(field.valueSource,
-                   fmt::format("default {} of {} is outside {}", field.valueText, field.name, field.rangeText));
+      model_.error(field.valueSource, fmt::format("default {} of {} is outside {}", field.valueText,
+                                                  field.name, field.rangeText));
   }
 
   Model& model_;
   std::map<std::string, TypeSpec*, std::less<>> types_;
-  std::set<std::tuple<std::string, uint32_t, uint32_t>> reported_; // places of unknown names, which many nodes may inherit
+  std::set<std::tuple<std::string, uint32_t, uint32_t>>
+      reported_; // places of unknown names, which many nodes may inherit
 };
 
 } // namespace

@@ -11,18 +11,30 @@ namespace {
 
 // Keywords of C++20, and the names that every generated struct has besides its fields.
 constexpr auto reserved = std::to_array<std::string_view>(
-    {"alignas",   "alignof",      "and",       "and_eq",   "asm",          "auto",     "bitand",        "bitor",
-     "bool",      "break",        "case",      "catch",    "char",         "char16_t", "char32_t",      "char8_t",
-     "class",     "co_await",     "co_return", "co_yield", "compl",        "concept",  "const",         "const_cast",
-     "consteval", "constexpr",    "constinit", "continue", "decltype",     "default",  "delete",        "do",
-     "double",    "dynamic_cast", "else",      "enum",     "explicit",     "export",   "extern",        "false",
-     "float",     "for",          "friend",    "goto",     "if",           "inline",   "int",           "long",
-     "mutable",   "namespace",    "new",       "nodeType", "noexcept",     "not",      "not_eq",        "nullptr",
-     "operator",  "or",           "or_eq",     "private",  "protected",    "public",   "register",      "reinterpret_cast",
-     "requires",  "return",       "short",     "signed",   "sizeof",       "static",   "static_assert", "static_cast",
-     "struct",    "switch",       "template",  "this",     "thread_local", "throw",    "true",          "try",
-     "typeIndex", "typedef",      "typeid",    "typename", "union",        "unsigned", "using",         "virtual",
-     "void",      "volatile",     "wchar_t",   "while",    "xor",          "xor_eq"});
+    {"alignas",      "alignof",      "and",           "and_eq",
+     "asm",          "auto",         "bitand",        "bitor",
+     "bool",         "break",        "case",          "catch",
+     "char",         "char16_t",     "char32_t",      "char8_t",
+     "class",        "co_await",     "co_return",     "co_yield",
+     "compl",        "concept",      "const",         "const_cast",
+     "consteval",    "constexpr",    "constinit",     "continue",
+     "decltype",     "default",      "delete",        "do",
+     "double",       "dynamic_cast", "else",          "enum",
+     "explicit",     "export",       "extern",        "false",
+     "float",        "for",          "friend",        "goto",
+     "if",           "inline",       "int",           "long",
+     "mutable",      "namespace",    "new",           "nodeType",
+     "noexcept",     "not",          "not_eq",        "nullptr",
+     "operator",     "or",           "or_eq",         "private",
+     "protected",    "public",       "register",      "reinterpret_cast",
+     "requires",     "return",       "short",         "signed",
+     "sizeof",       "static",       "static_assert", "static_cast",
+     "struct",       "switch",       "template",      "this",
+     "thread_local", "throw",        "true",          "try",
+     "typeIndex",    "typedef",      "typeid",        "typename",
+     "union",        "unsigned",     "using",         "virtual",
+     "void",         "volatile",     "wchar_t",       "while",
+     "xor",          "xor_eq"});
 static_assert(std::is_sorted(reserved.begin(), reserved.end()));
 
 // The shortest literal that is exactly the number.
@@ -40,14 +52,22 @@ struct Initializer {
   std::string operator()(int32_t value) const { return std::to_string(value); }
   std::string operator()(const std::string& value) const { return cppString(value); }
   std::string operator()(const NodeRef&) const { return {}; }
-  std::string operator()(const Vec2f& v) const { return fmt::format("{}, {}", literal(v.x), literal(v.y)); }
-  std::string operator()(const Vec3f& v) const { return fmt::format("{}, {}, {}", literal(v.x), literal(v.y), literal(v.z)); }
-  std::string operator()(const Color& c) const { return fmt::format("{}, {}, {}", literal(c.r), literal(c.g), literal(c.b)); }
+  std::string operator()(const Vec2f& v) const {
+    return fmt::format("{}, {}", literal(v.x), literal(v.y));
+  }
+  std::string operator()(const Vec3f& v) const {
+    return fmt::format("{}, {}, {}", literal(v.x), literal(v.y), literal(v.z));
+  }
+  std::string operator()(const Color& c) const {
+    return fmt::format("{}, {}, {}", literal(c.r), literal(c.g), literal(c.b));
+  }
   std::string operator()(const Rotation& r) const {
-    return fmt::format("{}, {}, {}, {}", literal(r.x), literal(r.y), literal(r.z), literal(r.angle));
+    return fmt::format("{}, {}, {}, {}", literal(r.x), literal(r.y), literal(r.z),
+                       literal(r.angle));
   }
   std::string operator()(const Image& image) const {
-    return fmt::format("{}, {}, {}, {{{}}}", image.width, image.height, image.components, fmt::join(image.pixels, ", "));
+    return fmt::format("{}, {}, {}, {{{}}}", image.width, image.height, image.components,
+                       fmt::join(image.pixels, ", "));
   }
   std::string operator()(const MFNode&) const { return {}; }
   template <class T> std::string operator()(const std::vector<T>& values) const {
@@ -64,14 +84,18 @@ struct Initializer {
 } // namespace
 
 std::string cppMember(const FieldSpec& field) {
-  return std::binary_search(reserved.begin(), reserved.end(), std::string_view(field.name)) ? field.name + '_' : field.name;
+  return std::binary_search(reserved.begin(), reserved.end(), std::string_view(field.name))
+             ? field.name + '_'
+             : field.name;
 }
 
 std::string cppInitializer(const Value& value) {
-  if (value == defaultValue(FieldType(value.index())) && value.index() != size_t(FieldType::SFRotation)) {
+  if (value == defaultValue(FieldType(value.index())) &&
+      value.index() != size_t(FieldType::SFRotation)) {
     // Numbers and truth values are written out, as a reader of the header wants to see them.
-    const bool empty = isMultiple(FieldType(value.index())) || value.index() == size_t(FieldType::SFNode) ||
-                       value.index() == size_t(FieldType::SFString) || value.index() == size_t(FieldType::SFImage);
+    const bool empty =
+        isMultiple(FieldType(value.index())) || value.index() == size_t(FieldType::SFNode) ||
+        value.index() == size_t(FieldType::SFString) || value.index() == size_t(FieldType::SFImage);
     if (empty) return {};
   }
   return std::visit(Initializer(), value);

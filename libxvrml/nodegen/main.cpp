@@ -1,4 +1,5 @@
-// main.cpp: nodegen, the generator of node code. Reads .node files and writes what it is asked for; see docs/nodegen.md.
+// main.cpp: nodegen, the generator of node code. Reads .node files and writes what it is asked for;
+// see docs/nodegen.md.
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -29,24 +30,35 @@ int fail(ExitCode code, const std::string& message) {
 }
 
 void describe(CLI::App& app, Options& options) {
-  app.description("Writes the code, reference and Python stub of the nodes described in .node files.");
-  app.add_option("specification", options.specifications, "files to generate from, in this order")->required();
-  app.add_option("--import", options.imports, "a file read for its abstract types alone; may be given several times")
+  app.description(
+      "Writes the code, reference and Python stub of the nodes described in .node files.");
+  app.add_option("specification", options.specifications, "files to generate from, in this order")
+      ->required();
+  app.add_option("--import", options.imports,
+                 "a file read for its abstract types alone; may be given several times")
       ->allow_extra_args(false);
-  app.add_option("-o,--output", options.output, "folder for xvrml/nodes.h, nodes_<component>.cpp and nodes_list.cpp");
+  app.add_option("-o,--output", options.output,
+                 "folder for xvrml/nodes.h, nodes_<component>.cpp and nodes_list.cpp");
   app.add_option("--reference", options.reference, "file for the node reference, in Markdown");
   app.add_option("--stub", options.stub, "file for the Python stub of the node classes");
-  auto* skeleton = app.add_option("--skeleton", options.skeleton, "node to write a first source of its behaviour for");
-  app.add_option("--skeleton-file", options.skeletonFile, "file for the skeleton, which must not exist; default: <node>.cpp")
+  auto* skeleton = app.add_option("--skeleton", options.skeleton,
+                                  "node to write a first source of its behaviour for");
+  app.add_option("--skeleton-file", options.skeletonFile,
+                 "file for the skeleton, which must not exist; default: <node>.cpp")
       ->needs(skeleton);
   app.add_option("--plugin", options.plugin,
-                 "write for a node plug-in of this name: <plugin>_nodes.h, nodes_<component>.cpp and <plugin>_plugin.cpp")
+                 "write for a node plug-in of this name: <plugin>_nodes.h, nodes_<component>.cpp "
+                 "and <plugin>_plugin.cpp")
       ->check([](const std::string& name) {
-        const bool good = xvrml::isIdentifier(name) &&
-                          name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_") == name.npos;
-        return good ? std::string() : "--plugin: a name of letters, digits and _ was expected, not '" + name + "'";
+        const bool good =
+            xvrml::isIdentifier(name) &&
+            name.find_first_not_of(
+                "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_") == name.npos;
+        return good ? std::string()
+                    : "--plugin: a name of letters, digits and _ was expected, not '" + name + "'";
       });
-  app.footer("Exit codes: 0 done, 2 wrong use, 3 a file cannot be read, 4 a specification is wrong, 5 a file cannot be written.");
+  app.footer("Exit codes: 0 done, 2 wrong use, 3 a file cannot be read, 4 a specification is "
+             "wrong, 5 a file cannot be written.");
 }
 
 bool holds(const std::filesystem::path& path, const std::string& text) {
@@ -54,8 +66,8 @@ bool holds(const std::filesystem::path& path, const std::string& text) {
   return stream && std::string(std::istreambuf_iterator<char>(stream), {}) == text;
 }
 
-// A half-written file would be compiled: it is written beside its place and moved there. One that would be the same is left
-// alone: nothing is compiled anew.
+// A half-written file would be compiled: it is written beside its place and moved there. One that
+// would be the same is left alone: nothing is compiled anew.
 bool writeFile(const std::filesystem::path& path, const std::string& text) {
   if (holds(path, text)) return true;
   std::error_code error;
@@ -73,23 +85,30 @@ bool writeFile(const std::filesystem::path& path, const std::string& text) {
 }
 
 bool writeCode(const Model& model, const std::filesystem::path& folder, const std::string& plugin) {
-  bool good = plugin.empty() ? writeFile(folder / "xvrml" / "nodes.h", writeHeader(model, plugin)) &&
-                                   writeFile(folder / "nodes_list.cpp", writeList(model))
-                             : writeFile(folder / (plugin + "_nodes.h"), writeHeader(model, plugin)) &&
-                                   writeFile(folder / (plugin + "_plugin.cpp"), writePlugin(model, plugin));
+  bool good = plugin.empty()
+                  ? writeFile(folder / "xvrml" / "nodes.h", writeHeader(model, plugin)) &&
+                        writeFile(folder / "nodes_list.cpp", writeList(model))
+                  : writeFile(folder / (plugin + "_nodes.h"), writeHeader(model, plugin)) &&
+                        writeFile(folder / (plugin + "_plugin.cpp"), writePlugin(model, plugin));
   for (const Component& component : model.components) {
     if (component.imported) continue;
-    good = good && writeFile(folder / fmt::format("nodes_{}.cpp", component.name), writeTables(component, plugin));
+    good = good && writeFile(folder / fmt::format("nodes_{}.cpp", component.name),
+                             writeTables(component, plugin));
   }
   return good;
 }
 
 int writeSkeletonFile(const Model& model, const Options& options) {
   const TypeSpec* type = model.find(options.skeleton);
-  if (!type || type->isAbstract) return fail(usage, fmt::format("--skeleton: there is no node {}", options.skeleton));
-  const std::string path = options.skeletonFile.empty() ? options.skeleton + ".cpp" : options.skeletonFile;
-  if (std::filesystem::exists(path)) return fail(unwritable, fmt::format("{} exists: a skeleton is written once", path));
-  return writeFile(path, writeSkeleton(*type, options.plugin)) ? success : fail(unwritable, fmt::format("cannot write {}", path));
+  if (!type || type->isAbstract)
+    return fail(usage, fmt::format("--skeleton: there is no node {}", options.skeleton));
+  const std::string path =
+      options.skeletonFile.empty() ? options.skeleton + ".cpp" : options.skeletonFile;
+  if (std::filesystem::exists(path))
+    return fail(unwritable, fmt::format("{} exists: a skeleton is written once", path));
+  return writeFile(path, writeSkeleton(*type, options.plugin))
+             ? success
+             : fail(unwritable, fmt::format("cannot write {}", path));
 }
 
 int run(const Options& options) {
@@ -105,7 +124,8 @@ int run(const Options& options) {
   };
   if (!readAll(options.imports, true) || !readAll(options.specifications, false)) return unreadable;
   if (model.diagnostics.errors() == 0) check(model);
-  for (const xvrml::Diagnostic& diagnostic : model.diagnostics.list()) fmt::print(stderr, "{}\n", diagnostic.text());
+  for (const xvrml::Diagnostic& diagnostic : model.diagnostics.list())
+    fmt::print(stderr, "{}\n", diagnostic.text());
   if (model.diagnostics.errors() > 0) return badSpecification;
 
   if (!options.output.empty() && !writeCode(model, options.output, options.plugin))

@@ -6,11 +6,13 @@
 namespace xvrml::nodegen {
 namespace {
 
-constexpr std::array<std::string_view, 4> accessNames = {"field", "exposedField", "eventIn", "eventOut"};
-constexpr std::array<std::string_view, 9> changeNames = {"none",     "transform", "geometry", "appearance", "shader",
-                                                         "children", "light",     "view",     "time"};
+constexpr std::array<std::string_view, 4> accessNames = {"field", "exposedField", "eventIn",
+                                                         "eventOut"};
+constexpr std::array<std::string_view, 9> changeNames = {
+    "none", "transform", "geometry", "appearance", "shader", "children", "light", "view", "time"};
 
-template <class Names, class Enum> bool fromName(const Names& names, std::string_view name, Enum& out) {
+template <class Names, class Enum>
+bool fromName(const Names& names, std::string_view name, Enum& out) {
   for (size_t i = 0; i < names.size(); ++i) {
     if (names[i] != name) continue;
     out = Enum(i);
@@ -32,12 +34,17 @@ std::string_view lineOf(std::string_view text, uint32_t line) {
 
 std::string_view accessName(Access access) { return accessNames[size_t(access)]; }
 std::string_view changeName(Change change) { return changeNames[size_t(change)]; }
-bool accessFromName(std::string_view name, Access& access) { return fromName(accessNames, name, access); }
-bool changeFromName(std::string_view name, Change& change) { return fromName(changeNames, name, change); }
+bool accessFromName(std::string_view name, Access& access) {
+  return fromName(accessNames, name, access);
+}
+bool changeFromName(std::string_view name, Change& change) {
+  return fromName(changeNames, name, change);
+}
 
 void Model::error(const SourcePosition& source, std::string message) {
-  Diagnostic diagnostic{
-      Severity::error, source.file ? *source.file : std::string(), source.line, source.column, std::move(message), {}};
+  Diagnostic diagnostic{Severity::error,    source.file ? *source.file : std::string(),
+                        source.line,        source.column,
+                        std::move(message), {}};
   if (const auto text = texts.find(diagnostic.file); text != texts.end())
     diagnostic.sourceLine = lineOf(text->second, source.line);
   diagnostics.add(std::move(diagnostic));

@@ -1,5 +1,5 @@
-// model.h: node specifications in memory: what the reader of .node files fills, the checks complete and the writers print.
-// One Model per run of nodegen, on one thread.
+// model.h: node specifications in memory: what the reader of .node files fills, the checks complete
+// and the writers print. One Model per run of nodegen, on one thread.
 #pragma once
 
 #include <map>
@@ -74,7 +74,8 @@ std::string_view changeName(Change change);
 bool accessFromName(std::string_view name, Access& access);
 bool changeFromName(std::string_view name, Change& change);
 
-// Reads a file into a new component of the model. False if it cannot be read; what is wrong inside is in model.diagnostics.
+// Reads a file into a new component of the model. False if it cannot be read; what is wrong inside
+// is in model.diagnostics.
 bool readSpecification(const std::string& path, bool imported, Model& model);
 
 // Resolves abstract types and completes the fields from them; reports what does not fit together.

@@ -34,7 +34,8 @@ class RangeReader {
   }
 
   void skipBlanks() {
-    while (at_ < text_.size() && (text_[at_] == ' ' || text_[at_] == '\t' || text_[at_] == '\r')) ++at_;
+    while (at_ < text_.size() && (text_[at_] == ' ' || text_[at_] == '\t' || text_[at_] == '\r'))
+      ++at_;
   }
 
   bool accept(char c) {
@@ -70,9 +71,10 @@ class RangeReader {
       range.maximumOpen = false;
     else
       return fail("expected ) or ] at the end of the range");
-    const bool infinite = (range.minimum == -infinity && !range.minimumOpen) || (range.maximum == infinity && !range.maximumOpen);
-    const bool empty =
-        range.minimum > range.maximum || (range.minimum == range.maximum && (range.minimumOpen || range.maximumOpen));
+    const bool infinite = (range.minimum == -infinity && !range.minimumOpen) ||
+                          (range.maximum == infinity && !range.maximumOpen);
+    const bool empty = range.minimum > range.maximum ||
+                       (range.minimum == range.maximum && (range.minimumOpen || range.maximumOpen));
     if (!infinite && !empty) return true;
     at_ = start;
     return fail(infinite ? "a range is open at inf: write ( or )" : "the range is empty");
@@ -85,7 +87,8 @@ class RangeReader {
     if (!readInterval(angle)) return false;
     if (rotation && !angle.bounded()) return true;
     at_ = start;
-    return fail(rotation ? "the angle of a rotation is unbounded: expected (-inf,inf)" : "only rotations have two ranges");
+    return fail(rotation ? "the angle of a rotation is unbounded: expected (-inf,inf)"
+                         : "only rotations have two ranges");
   }
 
   // number ::= [ "-" ] ( "inf" | digits [ "pi" ] | "pi" ) [ "/" digits ]
@@ -101,14 +104,16 @@ class RangeReader {
     if (!digits && !pi) return fail("expected a number, pi or inf");
     if (pi) out = (digits ? out : 1) * std::numbers::pi;
     double divisor = 1;
-    if (accept('/') && (!readDigits(divisor) || divisor == 0)) return fail("expected a number other than 0 after /");
+    if (accept('/') && (!readDigits(divisor) || divisor == 0))
+      return fail("expected a number other than 0 after /");
     out = (negative ? -out : out) / divisor;
     return true;
   }
 
   bool readDigits(double& out) {
     const char* const first = text_.data() + at_;
-    const auto [end, error] = std::from_chars(first, text_.data() + text_.size(), out, std::chars_format::fixed);
+    const auto [end, error] =
+        std::from_chars(first, text_.data() + text_.size(), out, std::chars_format::fixed);
     if (error != std::errc() || !std::isfinite(out)) return false;
     at_ += size_t(end - first);
     return true;

@@ -1,5 +1,6 @@
-// reader.cpp: .node files into a Model. The words, numbers, strings and values are those of VRML97, so the library's lexer and
-// value parser read them; the notation is explained in docs/nodegen.md. Called by main once per file.
+// reader.cpp: .node files into a Model. The words, numbers, strings and values are those of VRML97,
+// so the library's lexer and value parser read them; the notation is explained in docs/nodegen.md.
+// Called by main once per file.
 #include <algorithm>
 #include <fstream>
 #include <iterator>
@@ -47,8 +48,10 @@ std::string squeeze(std::string_view text) {
 
 class Reader {
  public:
-  Reader(std::string_view text, std::shared_ptr<const std::string> file, Model& model, Component& component)
-      : lexer_(text, std::move(file), model.diagnostics), values_(lexer_, limits_), gap_(text.data()), component_(component) {}
+  Reader(std::string_view text, std::shared_ptr<const std::string> file, Model& model,
+         Component& component)
+      : lexer_(text, std::move(file), model.diagnostics), values_(lexer_, limits_),
+        gap_(text.data()), component_(component) {}
 
   // file ::= "component" string { stanza }
   void read() {
@@ -71,12 +74,14 @@ class Reader {
     TypeSpec type;
     type.component = component_.name;
     type.isAbstract = acceptWord("abstract");
-    readName(type.name, type.source, type.isAbstract ? "the name of an abstract type" : "the name of a node, or abstract");
+    readName(type.name, type.source,
+             type.isAbstract ? "the name of an abstract type" : "the name of a node, or abstract");
     if (acceptWord(":")) {
       do readName(type.parents.emplace_back(), "an abstract type");
       while (lexer_.peek().is(TokenKind::identifier));
     } else if (!type.isAbstract) {
-      fail(lexer_.peek(), fmt::format("expected : and the abstract types of {}, found {}", type.name, describe(lexer_.peek())));
+      fail(lexer_.peek(), fmt::format("expected : and the abstract types of {}, found {}",
+                                      type.name, describe(lexer_.peek())));
     }
     if (type.isAbstract) type.text = readText("what the abstract type stands for");
     if (!type.isAbstract || lexer_.peek().is(TokenKind::braceOpen)) readBody(type);
@@ -86,10 +91,12 @@ class Reader {
   void readBody(TypeSpec& type) {
     expect(TokenKind::braceOpen, "{");
     if (!type.isAbstract) {
-      if (acceptWord("clause")) type.clause = take(TokenKind::number, "the number of a clause").text;
+      if (acceptWord("clause"))
+        type.clause = take(TokenKind::number, "the number of a clause").text;
       type.text = readText("what the node is");
     }
-    while (!lexer_.peek().is(TokenKind::braceClose)) type.fields.push_back(readField(type.isAbstract));
+    while (!lexer_.peek().is(TokenKind::braceClose))
+      type.fields.push_back(readField(type.isAbstract));
     take();
   }
 
@@ -98,7 +105,8 @@ class Reader {
     FieldSpec field;
     const Token access = take();
     if (!accessFromName(access.text, field.access))
-      fail(access, fmt::format("expected field, exposedField, eventIn, eventOut or }}, found {}", describe(access)));
+      fail(access, fmt::format("expected field, exposedField, eventIn, eventOut or }}, found {}",
+                               describe(access)));
     const Token type = take();
     if (!fieldTypeFromName(type.text, field.type))
       fail(type, fmt::format("expected a field type, SFBool to MFVec3f, found {}", describe(type)));
@@ -113,7 +121,8 @@ class Reader {
     const char* const start = lexer_.peek().at();
     field.valueSource = lexer_.place(start);
     if (isWord(lexer_.peek()) || lexer_.peek().is(TokenKind::braceClose))
-      fail(lexer_.peek(), fmt::format("expected the default of {}, found {}", field.name, describe(lexer_.peek())));
+      fail(lexer_.peek(), fmt::format("expected the default of {}, found {}", field.name,
+                                      describe(lexer_.peek())));
     lookAtComments(start);
     if (!values_.parse(field.type, field.value)) throw Failed();
     gap_ = lexer_.cursor();
@@ -131,10 +140,13 @@ class Reader {
     if (!looksLikeRange(comment)) return;
     gap_ = p;
     const char* const range = start + comment.find_first_not_of(" \t");
-    if (isAbstract) failAt(range, "ranges stand with the defaults, in the nodes of the abstract type");
-    if (!takesRange(field.type)) failAt(range, fmt::format("a field of type {} has no range", fieldTypeName(field.type)));
+    if (isAbstract)
+      failAt(range, "ranges stand with the defaults, in the nodes of the abstract type");
+    if (!takesRange(field.type))
+      failAt(range, fmt::format("a field of type {} has no range", fieldTypeName(field.type)));
     size_t offset = 0;
-    const bool rotation = field.type == FieldType::SFRotation || field.type == FieldType::MFRotation;
+    const bool rotation =
+        field.type == FieldType::SFRotation || field.type == FieldType::MFRotation;
     const std::string problem = parseRange(comment, rotation, field.range.emplace(), offset);
     if (!problem.empty()) failAt(start + offset, problem);
     field.rangeText = squeeze(comment);
@@ -168,7 +180,8 @@ class Reader {
       return true;
     }
     if (!token.is("accepts")) return false;
-    if (!field.accepts.empty()) fail(token, fmt::format("{} says twice what it accepts", field.name));
+    if (!field.accepts.empty())
+      fail(token, fmt::format("{} says twice what it accepts", field.name));
     take();
     do readName(field.accepts.emplace_back(), "a node or an abstract type");
     while (lexer_.peek().is(TokenKind::identifier) && !isWord(lexer_.peek()));
@@ -179,7 +192,8 @@ class Reader {
     const Token kind = take();
     Change change = Change::none;
     if (!changeFromName(kind.text, change)) {
-      fail(kind, fmt::format("expected none, transform, geometry, appearance, shader, children, light, view or time, found {}",
+      fail(kind, fmt::format("expected none, transform, geometry, appearance, shader, children, "
+                             "light, view or time, found {}",
                              describe(kind)));
     }
     field.change = change;
@@ -188,29 +202,36 @@ class Reader {
 
   static bool isWord(const Token& token) {
     Access access = Access::field;
-    return token.is(TokenKind::identifier) &&
-           (token.text == "change" || token.text == "accepts" || accessFromName(token.text, access));
+    return token.is(TokenKind::identifier) && (token.text == "change" || token.text == "accepts" ||
+                                               accessFromName(token.text, access));
   }
 
   // Names become names of C++ and Python: letters, digits and underscores.
   void readName(std::string& name, SourcePosition& source, std::string_view what) {
     const Token token = take(TokenKind::identifier, what);
     for (const char c : token.text) {
-      const bool fits = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
-      if (!fits) fail(token, fmt::format("a name is made of letters, digits and _, unlike {}", describe(token)));
+      const bool fits =
+          (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+      if (!fits)
+        fail(token,
+             fmt::format("a name is made of letters, digits and _, unlike {}", describe(token)));
     }
     name = token.text;
     source = lexer_.place(token.at());
   }
-  void readName(Reference& reference, std::string_view what) { readName(reference.name, reference.source, what); }
+  void readName(Reference& reference, std::string_view what) {
+    readName(reference.name, reference.source, what);
+  }
 
   std::string readText(std::string_view what) {
     const Token token = take(TokenKind::string, fmt::format("a string: {}", what));
     std::string text = unescape(token.text);
     if (text.empty()) fail(token, fmt::format("expected {}, found an empty string", what));
     // It becomes a comment in C++ and Python.
-    const bool control = std::any_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < ' '; });
-    if (control || text.back() == '\\') fail(token, "a description is one line of text that does not end with a backslash");
+    const bool control = std::any_of(text.begin(), text.end(),
+                                     [](char c) { return static_cast<unsigned char>(c) < ' '; });
+    if (control || text.back() == '\\')
+      fail(token, "a description is one line of text that does not end with a backslash");
     return text;
   }
 
@@ -232,7 +253,9 @@ class Reader {
 
   void expect(TokenKind kind, std::string_view what) { take(kind, what); }
   void expectWord(std::string_view word, std::string_view what) {
-    if (!acceptWord(word)) fail(lexer_.peek(), fmt::format("expected {}: {}, found {}", word, what, describe(lexer_.peek())));
+    if (!acceptWord(word))
+      fail(lexer_.peek(),
+           fmt::format("expected {}: {}, found {}", word, what, describe(lexer_.peek())));
   }
   bool acceptWord(std::string_view word) {
     if (!lexer_.peek().is(word)) return false;
@@ -240,7 +263,8 @@ class Reader {
     return true;
   }
 
-  // A range in a comment that belongs to no field would be lost without a word: between two tokens there is none.
+  // A range in a comment that belongs to no field would be lost without a word: between two tokens
+  // there is none.
   void lookAtComments(const char* to) {
     for (const char* p = gap_; p < to; ++p) {
       if (*p != '#') continue;
@@ -249,13 +273,15 @@ class Reader {
       gap_ = p;
       const std::string_view comment(start, size_t(p - start));
       if (looksLikeRange(comment))
-        failAt(start + comment.find_first_not_of(" \t"), "a range stands on the line of its field's default");
+        failAt(start + comment.find_first_not_of(" \t"),
+               "a range stands on the line of its field's default");
     }
     gap_ = to;
   }
 
   [[noreturn]] void fail(const Token& token, std::string message) {
-    if (!token.is(TokenKind::invalid)) lexer_.error(token.at(), std::move(message)); // the lexer has reported invalid ones
+    if (!token.is(TokenKind::invalid))
+      lexer_.error(token.at(), std::move(message)); // the lexer has reported invalid ones
     throw Failed();
   }
   [[noreturn]] void failAt(const char* at, std::string message) {

@@ -1,4 +1,5 @@
-// write_cpp.cpp: the generated C++: a header of structs, a source of constant tables per component, and the list of types.
+// write_cpp.cpp: the generated C++: a header of structs, a source of constant tables per component,
+// and the list of types.
 #include <cmath>
 
 #include <fmt/format.h>
@@ -8,32 +9,42 @@
 namespace xvrml::nodegen {
 namespace {
 
-constexpr std::string_view notice = "// Written by nodegen from the .node files: change those, not this.\n";
+constexpr std::string_view notice =
+    "// Written by nodegen from the .node files: change those, not this.\n";
 
 std::string clauseText(const TypeSpec& type) {
-  return type.clause.empty() ? std::string() : fmt::format(" ISO/IEC 14772-1 clause {}.", type.clause);
+  return type.clause.empty() ? std::string()
+                             : fmt::format(" ISO/IEC 14772-1 clause {}.", type.clause);
 }
 
 std::string writeMember(const FieldSpec& field) {
   const std::string initializer = cppInitializer(field.value);
-  const std::string declaration = fmt::format("{} {}{};", fieldTypeName(field.type), cppMember(field),
-                                              initializer.empty() ? std::string() : '{' + initializer + '}');
-  const std::string range = field.rangeText.empty() || !field.range->bounded() ? std::string() : ' ' + field.rangeText;
-  return fmt::format("  {} ///< {}{}: {}\n", declaration, accessName(field.access), range, field.text);
+  const std::string declaration =
+      fmt::format("{} {}{};", fieldTypeName(field.type), cppMember(field),
+                  initializer.empty() ? std::string() : '{' + initializer + '}');
+  const std::string range =
+      field.rangeText.empty() || !field.range->bounded() ? std::string() : ' ' + field.rangeText;
+  return fmt::format("  {} ///< {}{}: {}\n", declaration, accessName(field.access), range,
+                     field.text);
 }
 
 // A plug-in's types get their numbers when it is loaded, and have room for what they stand for.
-constexpr std::string_view pluginMembers = "  static int typeIndex;\n  static const NodeType& nodeType();\n"
-                                           "  static const NodeImplementation implementation; // in the plug-in's own source\n"
-                                           "  NodeRef* expansion() override { return &standsFor_; }\n";
+constexpr std::string_view pluginMembers =
+    "  static int typeIndex;\n  static const NodeType& nodeType();\n"
+    "  static const NodeImplementation implementation; // in the plug-in's own source\n"
+    "  NodeRef* expansion() override { return &standsFor_; }\n";
 
 std::string writeStruct(const TypeSpec& type, int index, bool plugin) {
-  std::string text = fmt::format("/// {}{}\nstruct {} : Node {{\n", type.text, clauseText(type), type.name);
+  std::string text =
+      fmt::format("/// {}{}\nstruct {} : Node {{\n", type.text, clauseText(type), type.name);
   if (plugin)
     text += pluginMembers;
   else
-    text += fmt::format("  static constexpr int typeIndex = {};\n  static const NodeType& nodeType();\n", index);
-  text += fmt::format("  {0}() : Node(nodeType()) {{}}\n  explicit {0}(const NodeType& t) : Node(t) {{}}\n", type.name);
+    text += fmt::format(
+        "  static constexpr int typeIndex = {};\n  static const NodeType& nodeType();\n", index);
+  text += fmt::format(
+      "  {0}() : Node(nodeType()) {{}}\n  explicit {0}(const NodeType& t) : Node(t) {{}}\n",
+      type.name);
   std::string members;
   for (const FieldSpec& field : type.fields)
     if (field.hasStorage()) members += writeMember(field);
@@ -49,15 +60,17 @@ std::string number(double value) {
 std::string writeRange(const std::optional<FieldRange>& range) {
   if (!range || !range->bounded()) return "{}";
   const std::string also = std::isnan(range->also) ? std::string() : ", " + number(range->also);
-  return fmt::format("{{{}, {}, {}, {}{}}}", number(range->minimum), number(range->maximum), range->minimumOpen,
-                     range->maximumOpen, also);
+  return fmt::format("{{{}, {}, {}, {}{}}}", number(range->minimum), number(range->maximum),
+                     range->minimumOpen, range->maximumOpen, also);
 }
 
 std::string writeRow(const TypeSpec& type, const FieldSpec& field) {
-  const std::string offset = field.hasStorage() ? fmt::format("offsetof({}, {})", type.name, cppMember(field)) : "0";
-  return fmt::format("    {{{}, FieldType::{}, Access::{}, Change::{}, {}, {}, {}, {}}},\n", cppString(field.name),
-                     fieldTypeName(field.type), accessName(field.access), changeName(*field.change), offset,
-                     writeRange(field.range), cppString(joinNames(field.accepts)), cppString(field.text));
+  const std::string offset =
+      field.hasStorage() ? fmt::format("offsetof({}, {})", type.name, cppMember(field)) : "0";
+  return fmt::format("    {{{}, FieldType::{}, Access::{}, Change::{}, {}, {}, {}, {}}},\n",
+                     cppString(field.name), fieldTypeName(field.type), accessName(field.access),
+                     changeName(*field.change), offset, writeRange(field.range),
+                     cppString(joinNames(field.accepts)), cppString(field.text));
 }
 
 std::string writeTable(const TypeSpec& type) {
@@ -68,26 +81,29 @@ std::string writeTable(const TypeSpec& type) {
     for (const FieldSpec& field : type.fields) rows += writeRow(type, field);
     rows += "};\n";
   }
-  rows += fmt::format("constexpr NodeRow rowOf{0} = {{{1}, {2}, {3}, {4}, {5}, {6}, createNode<{0}>}};\n\n", type.name,
-                      cppString(type.name), cppString(fmt::format("{}", fmt::join(type.roles, " "))), cppString(type.component),
-                      cppString(type.clause), cppString(type.text), fields);
+  rows += fmt::format(
+      "constexpr NodeRow rowOf{0} = {{{1}, {2}, {3}, {4}, {5}, {6}, createNode<{0}>}};\n\n",
+      type.name, cppString(type.name), cppString(fmt::format("{}", fmt::join(type.roles, " "))),
+      cppString(type.component), cppString(type.clause), cppString(type.text), fields);
   return rows;
 }
 
 std::string libraryFunctions(const TypeSpec& type) {
-  return fmt::format("const NodeType& {0}::nodeType() {{\n  static const NodeType type = makeNodeType(rowOf{0}, typeIndex);\n"
+  return fmt::format("const NodeType& {0}::nodeType() {{\n  static const NodeType type = "
+                     "makeNodeType(rowOf{0}, typeIndex);\n"
                      "  return type;\n}}\n\n",
                      type.name);
 }
 
 std::string pluginFunctions(const TypeSpec& type) {
-  return fmt::format(
-      "int {0}::typeIndex = -1;\nstatic const NodeType* typeOf{0} = nullptr;\n"
-      "const NodeType& {0}::nodeType() {{ return *typeOf{0}; }}\n"
-      "static void register{0}(const NodeType& type) {{\n  typeOf{0} = &type;\n  {0}::typeIndex = type.index;\n}}\n"
-      "NodePluginRow pluginRowOf{0}();\n"
-      "NodePluginRow pluginRowOf{0}() {{ return {{&rowOf{0}, &{0}::implementation, register{0}}}; }}\n\n",
-      type.name);
+  return fmt::format("int {0}::typeIndex = -1;\nstatic const NodeType* typeOf{0} = nullptr;\n"
+                     "const NodeType& {0}::nodeType() {{ return *typeOf{0}; }}\n"
+                     "static void register{0}(const NodeType& type) {{\n  typeOf{0} = &type;\n  "
+                     "{0}::typeIndex = type.index;\n}}\n"
+                     "NodePluginRow pluginRowOf{0}();\n"
+                     "NodePluginRow pluginRowOf{0}() {{ return {{&rowOf{0}, &{0}::implementation, "
+                     "register{0}}}; }}\n\n",
+                     type.name);
 }
 
 template <class Function> void eachNode(const Component& component, Function function) {
@@ -104,12 +120,13 @@ template <class Function> void eachNode(const Model& model, Function function) {
 
 std::string writeHeader(const Model& model, const std::string& plugin) {
   std::string text(notice);
-  text += fmt::format(
-      "// A struct per node, with a member per field and exposedField. Use nodeCast<nodes::Box>(node) to get at them.\n"
-      "#pragma once\n\n#include \"xvrml/{}.h\"\n\nnamespace xvrml::nodes {{\n\n",
-      plugin.empty() ? "node" : "node_plugin");
+  text += fmt::format("// A struct per node, with a member per field and exposedField. Use "
+                      "nodeCast<nodes::Box>(node) to get at them.\n"
+                      "#pragma once\n\n#include \"xvrml/{}.h\"\n\nnamespace xvrml::nodes {{\n\n",
+                      plugin.empty() ? "node" : "node_plugin");
   int index = 0;
-  eachNode(model, [&](const TypeSpec& type) { text += writeStruct(type, index++, !plugin.empty()); });
+  eachNode(model,
+           [&](const TypeSpec& type) { text += writeStruct(type, index++, !plugin.empty()); });
   return text + "} // namespace xvrml::nodes\n";
 }
 
@@ -119,7 +136,8 @@ std::string writeTables(const Component& component, const std::string& plugin) {
   text += "#include <cstddef>\n\n";
   text += plugin.empty() ? "#include \"xvrml/node_table.h\"\n#include \"xvrml/nodes.h\"\n\n"
                          : fmt::format("#include \"{}_nodes.h\"\n\n", plugin);
-  text += "#pragma GCC diagnostic ignored \"-Winvalid-offsetof\" // one base, not virtual: GCC and Clang define it\n\n"
+  text += "#pragma GCC diagnostic ignored \"-Winvalid-offsetof\" // one base, not virtual: GCC and "
+          "Clang define it\n\n"
           "namespace xvrml::nodes {\nnamespace {\n\n"
           "[[maybe_unused]] constexpr double inf = std::numeric_limits<double>::infinity();\n\n";
   std::string functions;
@@ -132,10 +150,14 @@ std::string writeTables(const Component& component, const std::string& plugin) {
 
 std::string writeList(const Model& model) {
   std::string text(notice);
-  text += "// All node types, in the order of their typeIndex.\n#include <span>\n\n#include \"xvrml/nodes.h\"\n\n"
+  text += "// All node types, in the order of their typeIndex.\n#include <span>\n\n#include "
+          "\"xvrml/nodes.h\"\n\n"
           "namespace xvrml::nodes {\n\nstd::span<const NodeType* const> builtinNodeTypes();\n\n"
-          "std::span<const NodeType* const> builtinNodeTypes() {\n  static const NodeType* const types[] = {\n";
-  eachNode(model, [&](const TypeSpec& type) { text += fmt::format("      &{}::nodeType(),\n", type.name); });
+          "std::span<const NodeType* const> builtinNodeTypes() {\n  static const NodeType* const "
+          "types[] = {\n";
+  eachNode(model, [&](const TypeSpec& type) {
+    text += fmt::format("      &{}::nodeType(),\n", type.name);
+  });
   return text + "  };\n  return types;\n}\n\n} // namespace xvrml::nodes\n";
 }
 
@@ -145,15 +167,19 @@ std::string writePlugin(const Model& model, const std::string& plugin) {
     declarations += fmt::format("NodePluginRow pluginRowOf{}();\n", type.name);
     rows += fmt::format("    pluginRowOf{}(),\n", type.name);
   });
-  text += fmt::format("// What the plug-in {0} exports.\n#include \"{0}_nodes.h\"\n\nnamespace xvrml::nodes {{\n{1}}} "
+  text += fmt::format("// What the plug-in {0} exports.\n#include \"{0}_nodes.h\"\n\nnamespace "
+                      "xvrml::nodes {{\n{1}}} "
                       "// namespace xvrml::nodes\n\nnamespace {{\nusing namespace xvrml::nodes;\n"
                       "const xvrml::NodePluginRow rows[] = {{\n{2}}};\n}} // namespace\n\n",
                       plugin, declarations, rows);
-  return text + "XVRML_NODE_PLUGIN = {xvrml::nodePluginMagic,\n    xvrml::nodePluginMajor,\n    xvrml::nodePluginMinor,\n"
-                "    sizeof(xvrml::NodePlugin),\n    XVRML_CXX_ABI,\n    {xvrml::nodePluginSizes[0], xvrml::nodePluginSizes[1], "
-                "xvrml::nodePluginSizes[2], xvrml::nodePluginSizes[3],\n     xvrml::nodePluginSizes[4], "
-                "xvrml::nodePluginSizes[5], xvrml::nodePluginSizes[6], xvrml::nodePluginSizes[7]},\n"
-                "    sizeof rows / sizeof rows[0],\n    rows};\n";
+  return text +
+         "XVRML_NODE_PLUGIN = {xvrml::nodePluginMagic,\n    xvrml::nodePluginMajor,\n    "
+         "xvrml::nodePluginMinor,\n"
+         "    sizeof(xvrml::NodePlugin),\n    XVRML_CXX_ABI,\n    {xvrml::nodePluginSizes[0], "
+         "xvrml::nodePluginSizes[1], "
+         "xvrml::nodePluginSizes[2], xvrml::nodePluginSizes[3],\n     xvrml::nodePluginSizes[4], "
+         "xvrml::nodePluginSizes[5], xvrml::nodePluginSizes[6], xvrml::nodePluginSizes[7]},\n"
+         "    sizeof rows / sizeof rows[0],\n    rows};\n";
 }
 
 } // namespace xvrml::nodegen

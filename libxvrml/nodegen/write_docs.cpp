@@ -19,24 +19,31 @@ std::string cell(std::string_view text) {
   return result;
 }
 
-std::string code(std::string_view text) { return text.empty() ? std::string() : fmt::format("`{}`", text); }
+std::string code(std::string_view text) {
+  return text.empty() ? std::string() : fmt::format("`{}`", text);
+}
 
 std::string referenceRow(const FieldSpec& field) {
-  return fmt::format("| {} {} **{}** | {} | {} | {} | {} | {} |\n", accessName(field.access), fieldTypeName(field.type),
-                     cell(field.name), code(field.valueText), code(field.rangeText), cell(joinNames(field.accepts)),
+  return fmt::format("| {} {} **{}** | {} | {} | {} | {} | {} |\n", accessName(field.access),
+                     fieldTypeName(field.type), cell(field.name), code(field.valueText),
+                     code(field.rangeText), cell(joinNames(field.accepts)),
                      changeName(*field.change), cell(field.text));
 }
 
 std::string referenceOf(const TypeSpec& type) {
-  const std::string clause = type.clause.empty() ? "" : fmt::format(" ISO/IEC 14772-1 clause {}.", type.clause);
-  std::string text = fmt::format("### {}\n\n{}{} Roles: {}.\n\n", type.name, type.text, clause, fmt::join(type.roles, ", "));
+  const std::string clause =
+      type.clause.empty() ? "" : fmt::format(" ISO/IEC 14772-1 clause {}.", type.clause);
+  std::string text = fmt::format("### {}\n\n{}{} Roles: {}.\n\n", type.name, type.text, clause,
+                                 fmt::join(type.roles, ", "));
   if (type.fields.empty()) return text;
-  text += "| interface | default | range | accepts | changes | meaning |\n| --- | --- | --- | --- | --- | --- |\n";
+  text += "| interface | default | range | accepts | changes | meaning |\n| --- | --- | --- | --- "
+          "| --- | --- |\n";
   for (const FieldSpec& field : type.fields) text += referenceRow(field);
   return text + '\n';
 }
 
-// What the binding returns when a field is read and what it takes: any array of the shape, list of rows and so on.
+// What the binding returns when a field is read and what it takes: any array of the shape, list of
+// rows and so on.
 constexpr std::string_view stubPrologue =
     R"("""Node classes of xvrml. Written by nodegen from the .node files.
 
@@ -81,9 +88,10 @@ MFVec3f = Field[npt.NDArray[np.float32], npt.ArrayLike]
 // A field whose name Python keeps for itself has no attribute: it is named in a comment.
 bool isPythonKeyword(std::string_view name) {
   constexpr auto keywords = std::to_array<std::string_view>(
-      {"False",  "None",     "True", "and",    "as",      "assert", "async",  "await",  "break", "class",  "continue", "def",
-       "del",    "elif",     "else", "except", "finally", "for",    "from",   "global", "if",    "import", "in",       "is",
-       "lambda", "nonlocal", "not",  "or",     "pass",    "raise",  "return", "try",    "while", "with",   "yield"});
+      {"False", "None",     "True",  "and",    "as",   "assert", "async",  "await",    "break",
+       "class", "continue", "def",   "del",    "elif", "else",   "except", "finally",  "for",
+       "from",  "global",   "if",    "import", "in",   "is",     "lambda", "nonlocal", "not",
+       "or",    "pass",     "raise", "return", "try",  "while",  "with",   "yield"});
   return std::find(keywords.begin(), keywords.end(), name) != keywords.end();
 }
 
@@ -113,25 +121,30 @@ std::string_view written(FieldType type) {
 
 // Fields, then events, which have values in a running world.
 std::string stubOf(const TypeSpec& type) {
-  std::string text = fmt::format("\nclass {}(Node):\n    \"\"\"{}\"\"\"\n", type.name, docString(type.text)), keywords;
+  std::string text = fmt::format("\nclass {}(Node):\n    \"\"\"{}\"\"\"\n", type.name,
+                                 docString(type.text)),
+              keywords;
   for (const bool events : {false, true})
     for (const FieldSpec& field : type.fields) {
       if (field.hasStorage() == events) continue;
       const bool keyword = isPythonKeyword(field.name);
-      text += fmt::format("    {}{}: {}  # {}{}\n", keyword ? "# " : "", field.name, fieldTypeName(field.type),
+      text += fmt::format("    {}{}: {}  # {}{}\n", keyword ? "# " : "", field.name,
+                          fieldTypeName(field.type),
                           events ? fmt::format("{}: ", accessName(field.access)) : "", field.text);
-      if (!events && !keyword) keywords += fmt::format(", {}: {} = ...", field.name, written(field.type));
+      if (!events && !keyword)
+        keywords += fmt::format(", {}: {} = ...", field.name, written(field.type));
     }
   if (type.name != "Script") // from files alone
-    text += fmt::format("    def __init__(self{}{}) -> None: ...\n", keywords.empty() ? "" : ", *", keywords);
+    text += fmt::format("    def __init__(self{}{}) -> None: ...\n", keywords.empty() ? "" : ", *",
+                        keywords);
   return text;
 }
 
 } // namespace
 
 std::string writeReference(const Model& model) {
-  std::string text =
-      "# Node reference\n\nWritten by nodegen from the `.node` files. *Changes* says what a write makes the renderer do.\n\n";
+  std::string text = "# Node reference\n\nWritten by nodegen from the `.node` files. *Changes* "
+                     "says what a write makes the renderer do.\n\n";
   for (const Component& component : model.components) {
     if (component.imported) continue;
     text += fmt::format("## {}\n\n", component.title);

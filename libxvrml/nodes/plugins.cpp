@@ -19,26 +19,34 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string sizesText(const uint32_t (&sizes)[8]) { return fmt::format("{}", fmt::join(sizes, " ")); }
+std::string sizesText(const uint32_t (&sizes)[8]) {
+  return fmt::format("{}", fmt::join(sizes, " "));
+}
 
-// Why a plug-in cannot be used; empty if nothing speaks against it. Reads nothing behind `size` or a wrong version.
+// Why a plug-in cannot be used; empty if nothing speaks against it. Reads nothing behind `size` or
+// a wrong version.
 std::string whyRefused(const NodePlugin& plugin) {
-  if (plugin.magic != nodePluginMagic) return fmt::format("its {} does not begin as one", nodePluginSymbol);
+  if (plugin.magic != nodePluginMagic)
+    return fmt::format("its {} does not begin as one", nodePluginSymbol);
   if (plugin.major != nodePluginMajor || plugin.minor > nodePluginMinor)
-    return fmt::format("it is made for version {}.{} of the node plug-in interface, this library has {}.{}", plugin.major,
-                       plugin.minor, nodePluginMajor, nodePluginMinor);
+    return fmt::format(
+        "it is made for version {}.{} of the node plug-in interface, this library has {}.{}",
+        plugin.major, plugin.minor, nodePluginMajor, nodePluginMinor);
   if (plugin.size < sizeof(NodePlugin))
-    return fmt::format("its description has {} bytes, {} were expected", plugin.size, sizeof(NodePlugin));
+    return fmt::format("its description has {} bytes, {} were expected", plugin.size,
+                       sizeof(NodePlugin));
   if (!plugin.abi || std::string_view(plugin.abi) != XVRML_CXX_ABI)
-    return fmt::format("it is built for the C++ library \"{}\", this one for \"{}\"", plugin.abi ? plugin.abi : "",
-                       XVRML_CXX_ABI);
+    return fmt::format("it is built for the C++ library \"{}\", this one for \"{}\"",
+                       plugin.abi ? plugin.abi : "", XVRML_CXX_ABI);
   if (!std::equal(std::begin(plugin.sizes), std::end(plugin.sizes), std::begin(nodePluginSizes)))
-    return fmt::format("it is built with headers of another version: sizes {}, expected {}", sizesText(plugin.sizes),
-                       sizesText(nodePluginSizes));
+    return fmt::format("it is built with headers of another version: sizes {}, expected {}",
+                       sizesText(plugin.sizes), sizesText(nodePluginSizes));
   for (uint32_t i = 0; i < plugin.count; ++i) {
     const NodePluginRow& one = plugin.rows[i];
-    if (!one.row || !one.row->create || !one.registered) return fmt::format("row {} of its nodes is incomplete", i);
-    if (findNodeType(one.row->name)) return fmt::format("there is a node type {} already", one.row->name);
+    if (!one.row || !one.row->create || !one.registered)
+      return fmt::format("row {} of its nodes is incomplete", i);
+    if (findNodeType(one.row->name))
+      return fmt::format("there is a node type {} already", one.row->name);
   }
   return "";
 }
@@ -72,7 +80,8 @@ std::string loadOne(const std::string& path) {
     return fmt::format("node plug-in {}: {}", path, reason ? reason : "cannot be loaded");
   }
   const auto* plugin = static_cast<const NodePlugin*>(::dlsym(handle, nodePluginSymbol));
-  std::string reason = plugin ? whyRefused(*plugin) : fmt::format("it exports no {}", nodePluginSymbol);
+  std::string reason =
+      plugin ? whyRefused(*plugin) : fmt::format("it exports no {}", nodePluginSymbol);
   if (reason.empty() && !registerNodes(*plugin)) reason = "two of its nodes have one name";
   if (reason.empty()) return "";
   ::dlclose(handle);
@@ -94,7 +103,8 @@ std::vector<std::string> loadNodePlugins(std::string_view first) {
   for (const std::string& folder : nodePluginFolders(first)) {
     const std::vector<std::string> files = filesOfFolder(folder, ".so");
     if (!files.empty() && !plugin_files::trusted(folder)) {
-      refused.push_back(fmt::format("node plug-ins in {} are refused: {}", folder, plugin_files::objection(folder)));
+      refused.push_back(fmt::format("node plug-ins in {} are refused: {}", folder,
+                                    plugin_files::objection(folder)));
       continue;
     }
     for (const std::string& file : files) {

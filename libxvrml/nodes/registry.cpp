@@ -1,5 +1,6 @@
-// registry.cpp: node types by name and by number. The tables come from generated code; later ones, of plug-ins, go the same
-// way. Types are added before they are used and never removed, so what nodeTypes() returned stays valid.  [any thread]
+// registry.cpp: node types by name and by number. The tables come from generated code; later ones,
+// of plug-ins, go the same way. Types are added before they are used and never removed, so what
+// nodeTypes() returned stays valid.  [any thread]
 #include "nodes/registry.h"
 
 #include <atomic>
@@ -20,7 +21,8 @@ struct Snapshot {
 class Registry {
  public:
   static Registry& instance() {
-    static Registry& registry = *new Registry(); // never destroyed: worlds may outlive static objects
+    static Registry& registry =
+        *new Registry(); // never destroyed: worlds may outlive static objects
     return registry;
   }
 
@@ -30,7 +32,8 @@ class Registry {
     const std::scoped_lock lock(mutex_);
     auto next = std::make_unique<Snapshot>(current());
     for (const NodeType* type : types) {
-      if (type->index != int(next->types.size()) || !next->byName.emplace(type->name, type).second) return false;
+      if (type->index != int(next->types.size()) || !next->byName.emplace(type->name, type).second)
+        return false;
       next->types.push_back(type);
     }
     current_.store(next.get(), std::memory_order_release);
@@ -46,7 +49,8 @@ class Registry {
   }
 
   std::mutex mutex_;
-  std::vector<std::unique_ptr<const Snapshot>> snapshots_; // earlier ones are kept for those who read them
+  std::vector<std::unique_ptr<const Snapshot>>
+      snapshots_; // earlier ones are kept for those who read them
   std::atomic<const Snapshot*> current_;
 };
 
@@ -63,18 +67,28 @@ std::vector<std::string> splitWords(std::string_view words) {
 } // namespace
 
 NodeType makeNodeType(const NodeRow& row, int index) {
-  NodeType type{row.name, index, splitWords(row.roles), row.component, row.text, {}, row.create, row.clause};
+  NodeType type{row.name,   index,     splitWords(row.roles), row.component, row.text, {},
+                row.create, row.clause};
   type.fields.reserve(row.fields.size());
   for (const FieldRow& field : row.fields) {
-    type.fields.push_back(
-        {field.name, field.type, field.access, field.change, field.offset, {}, field.range, field.nodeTypes, field.text});
+    type.fields.push_back({field.name,
+                           field.type,
+                           field.access,
+                           field.change,
+                           field.offset,
+                           {},
+                           field.range,
+                           field.nodeTypes,
+                           field.text});
   }
   const std::unique_ptr<Node> fresh(row.create(type));
   for (FieldInfo& field : type.fields) field.defaultValue = fresh->get(field);
   return type;
 }
 
-bool addNodeTypes(std::span<const NodeType* const> types) { return Registry::instance().add(types); }
+bool addNodeTypes(std::span<const NodeType* const> types) {
+  return Registry::instance().add(types);
+}
 
 std::span<const NodeType* const> nodeTypes() { return Registry::instance().current().types; }
 

@@ -7,8 +7,8 @@
 
 namespace xvrml {
 
-// Adds types whose index is their place behind those there are. False, and nothing added, if an index does not fit or a name
-// is taken. The types must live for ever.  [any thread]
+// Adds types whose index is their place behind those there are. False, and nothing added, if an
+// index does not fit or a name is taken. The types must live for ever.  [any thread]
 bool addNodeTypes(std::span<const NodeType* const> types);
 
 namespace nodes {

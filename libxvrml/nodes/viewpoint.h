@@ -1,4 +1,5 @@
-// viewpoint.h: what Viewpoint and ORTViewpoint have in common, for whoever looks through one. [any thread]
+// viewpoint.h: what Viewpoint and ORTViewpoint have in common, for whoever looks through one. [any
+// thread]
 #pragma once
 
 #include <optional>
@@ -18,7 +19,8 @@ struct ViewpointFields {
 };
 
 inline bool isViewpoint(const Node* node) {
-  return node && (node->type().index == nodes::Viewpoint::typeIndex || node->type().index == nodes::ORTViewpoint::typeIndex);
+  return node && (node->type().index == nodes::Viewpoint::typeIndex ||
+                  node->type().index == nodes::ORTViewpoint::typeIndex);
 }
 
 inline std::optional<ViewpointFields> viewpointFields(const Node* node) {
@@ -26,7 +28,8 @@ inline std::optional<ViewpointFields> viewpointFields(const Node* node) {
     return ViewpointFields{v.position, v.orientation, v.fieldOfView, v.jump, v.description, shader};
   };
   if (!isViewpoint(node)) return std::nullopt;
-  if (node->type().index == nodes::Viewpoint::typeIndex) return of(static_cast<const nodes::Viewpoint&>(*node), nullptr);
+  if (node->type().index == nodes::Viewpoint::typeIndex)
+    return of(static_cast<const nodes::Viewpoint&>(*node), nullptr);
   const auto& own = static_cast<const nodes::ORTViewpoint&>(*node);
   return of(own, own.shader.get());
 }

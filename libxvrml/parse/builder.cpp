@@ -1,5 +1,5 @@
-// builder.cpp: nodes and their fields. See builder.h; names, routes and IS are in builder_names.cpp, prototypes in
-// builder_proto.cpp.
+// builder.cpp: nodes and their fields. See builder.h; names, routes and IS are in
+// builder_names.cpp, prototypes in builder_proto.cpp.
 #include "parse/builder.h"
 
 #include <utility>
@@ -16,14 +16,15 @@
 
 namespace xvrml {
 
-Builder::Builder(Lexer& lexer, LoadState& state, ParsedFile& file) : lexer_(lexer), state_(state), file_(file) {
+Builder::Builder(Lexer& lexer, LoadState& state, ParsedFile& file)
+    : lexer_(lexer), state_(state), file_(file) {
   pushScope(&file.scope, nullptr, nullptr);
 }
 
 Builder::Mark Builder::mark() const {
   const ScopeFrame& frame = scopes_.back();
-  return {file_.instances.size(), file_.inlines.size(), frame.defined.size(), frame.scope->routes.size(),
-          frame.proto ? frame.proto->is.size() : 0};
+  return {file_.instances.size(), file_.inlines.size(), frame.defined.size(),
+          frame.scope->routes.size(), frame.proto ? frame.proto->is.size() : 0};
 }
 
 void Builder::rollBack(const Mark& mark) {
@@ -32,7 +33,8 @@ void Builder::rollBack(const Mark& mark) {
   file_.inlines.resize(mark.inlines);
   for (size_t i = mark.names; i < frame.defined.size(); ++i) {
     const auto name = frame.scope->names.find(frame.defined[i]);
-    const auto before = name == frame.scope->names.end() ? frame.earlier.end() : frame.earlier.find(name->second.get());
+    const auto before = name == frame.scope->names.end() ? frame.earlier.end()
+                                                         : frame.earlier.find(name->second.get());
     if (before != frame.earlier.end()) {
       name->second = before->second; // the node that had the name before has it again
       continue;
@@ -45,12 +47,15 @@ void Builder::rollBack(const Mark& mark) {
   if (frame.proto) frame.proto->is.resize(mark.connections);
 }
 
-bool Builder::isScript() const { return nodes_.size() > scopes_.back().outerNodes && nodes_.back().scriptType; }
+bool Builder::isScript() const {
+  return nodes_.size() > scopes_.back().outerNodes && nodes_.back().scriptType;
+}
 
 // Makes the node of a type, or says why it cannot.
 bool Builder::makeNode(const Token& type, NodeFrame& frame) {
   if (isBeingDeclared(type.text)) {
-    lexer_.error(type.at(), fmt::format("prototype {} contains an instance of itself (4.8.3)", describe(type)));
+    lexer_.error(type.at(), fmt::format("prototype {} contains an instance of itself (4.8.3)",
+                                        describe(type)));
     return false;
   }
   if (ProtoPtr proto = findPrototype(type.text)) {
@@ -62,7 +67,8 @@ bool Builder::makeNode(const Token& type, NodeFrame& frame) {
     if (isLost(type.text)) {
       lexer_.warn(type.at(), fmt::format("no node: prototype {} was left out", describe(type)));
     } else {
-      lexer_.error(type.at(), fmt::format("{} is not a known node type{}", describe(type), suggestion(type.text, nodeTypes())));
+      lexer_.error(type.at(), fmt::format("{} is not a known node type{}", describe(type),
+                                          suggestion(type.text, nodeTypes())));
     }
     return false;
   }
@@ -80,8 +86,9 @@ bool Builder::makeNode(const Token& type, NodeFrame& frame) {
 bool Builder::takes(uint64_t bytes, const Token& at) {
   if (state_.budget.take(bytes)) return true;
   if (!std::exchange(state_.full, true))
-    lexer_.error(at.at(), fmt::format("the world takes more memory than {}; nodes from {} on are left out", state_.budget.name(),
-                                      describe(at)));
+    lexer_.error(at.at(),
+                 fmt::format("the world takes more memory than {}; nodes from {} on are left out",
+                             state_.budget.name(), describe(at)));
   return false;
 }
 
@@ -90,7 +97,8 @@ bool Builder::openNode(const Token& type, const Token* def) {
   const uint64_t limit = state_.options.limits.expandedNodes;
   bool made = false;
   if (state_.world.nodeCount >= limit) {
-    lexer_.error(type.at(), fmt::format("more nodes than limit expandedNodes={}; {} is left out", limit, describe(type)));
+    lexer_.error(type.at(), fmt::format("more nodes than limit expandedNodes={}; {} is left out",
+                                        limit, describe(type)));
   } else if (!takes((def ? bytesOfName + def->text.size() : 0), type)) {
     made = false;
   } else {
@@ -122,18 +130,21 @@ void Builder::closeNode(bool good) {
   nodes_.pop_back();
   const uint64_t limit = state_.options.limits.expandedNodes;
   if (good && frame.expanded > limit) {
-    lexer_.error(frame.type.at(),
-                 fmt::format("{} stands for {} nodes with all that is USEd in it: more than limit expandedNodes={}",
-                             describe(frame.type), frame.expanded, limit));
+    lexer_.error(
+        frame.type.at(),
+        fmt::format(
+            "{} stands for {} nodes with all that is USEd in it: more than limit expandedNodes={}",
+            describe(frame.type), frame.expanded, limit));
     good = false;
   }
   if (!good) return rollBack(frame.mark);
   if (frame.expanded > 1) expanded_.emplace(frame.node.get(), frame.expanded);
-  // A node that is good, but in a wrong place, keeps its names: a later USE may have a right one. In a prototype's body only if
-  // nothing of it is connected to the interface.
+  // A node that is good, but in a wrong place, keeps its names: a later USE may have a right one.
+  // In a prototype's body only if nothing of it is connected to the interface.
   const Mark now = mark();
   const bool keeps = now.names > frame.mark.names && now.connections == frame.mark.connections;
-  if (!accepts(receivers_.back(), frame.type, *frame.node, keeps ? "; what DEF names in it can be USEd" : "")) {
+  if (!accepts(receivers_.back(), frame.type, *frame.node,
+               keeps ? "; what DEF names in it can be USEd" : "")) {
     keeps ? keepNames(frame.mark) : rollBack(frame.mark);
   } else if (!place(frame.type, frame.node, frame.expanded)) {
     rollBack(frame.mark);
@@ -145,7 +156,9 @@ uint64_t Builder::expandedCount(const Node* node) const {
   return found == expanded_.end() ? 1 : found->second;
 }
 
-SourcePosition Builder::openNodePlace() const { return nodes_.empty() ? SourcePosition() : nodes_.back().node->source; }
+SourcePosition Builder::openNodePlace() const {
+  return nodes_.empty() ? SourcePosition() : nodes_.back().node->source;
+}
 
 const NodeType* Builder::typeNamed(std::string_view name) const {
   const ProtoPtr proto = findPrototype(name);
@@ -178,18 +191,22 @@ bool Builder::suits(const Receiver& receiver, const NodeType* type) const {
   return !type || wanted.empty() || typeAccepted(wanted, *type);
 }
 
-bool Builder::accepts(const Receiver& receiver, const Token& at, const Node& node, std::string_view remedy) {
+bool Builder::accepts(const Receiver& receiver, const Token& at, const Node& node,
+                      std::string_view remedy) {
   const NodeType* type = effectiveType(node);
   if (suits(receiver, type)) return true;
   const bool root = receiver.kind == Receiver::Kind::roots;
   const std::string_view wanted = wantedBy(receiver);
   const std::string stands = type == &node.type() ? "" : fmt::format(" ({})", type->name);
   if (root) {
-    lexer_.error(at.at(), fmt::format("{}{} cannot stand at the root of a file: expected a child node (4.6.5){}", describe(at),
-                                      stands, remedy));
+    lexer_.error(
+        at.at(),
+        fmt::format("{}{} cannot stand at the root of a file: expected a child node (4.6.5){}",
+                    describe(at), stands, remedy));
   } else {
-    lexer_.error(at.at(), fmt::format("{}{} cannot be in field {} of {}: expected {}{}", describe(at), stands,
-                                      receiver.field->name, receiver.holder->type().name, wanted, remedy));
+    lexer_.error(at.at(), fmt::format("{}{} cannot be in field {} of {}: expected {}{}",
+                                      describe(at), stands, receiver.field->name,
+                                      receiver.holder->type().name, wanted, remedy));
   }
   return false;
 }
@@ -203,10 +220,12 @@ bool Builder::deliver(const Token& at, const NodeRef& node, uint64_t expanded) {
 bool Builder::place(const Token& at, const NodeRef& node, uint64_t expanded) {
   Receiver& receiver = receivers_.back();
   const bool root = receiver.kind == Receiver::Kind::roots;
-  uint64_t& sum = root || nodes_.empty() || receiver.holder == nullptr ? scope().expanded : nodes_.back().expanded;
+  uint64_t& sum = root || nodes_.empty() || receiver.holder == nullptr ? scope().expanded
+                                                                       : nodes_.back().expanded;
   const uint64_t limit = state_.options.limits.expandedNodes;
   if (root && saturatingAdd(sum, expanded) > limit) {
-    lexer_.error(at.at(), fmt::format("more nodes, shared ones counted at each use, than limit expandedNodes={}; {} is left out",
+    lexer_.error(at.at(), fmt::format("more nodes, shared ones counted at each use, than limit "
+                                      "expandedNodes={}; {} is left out",
                                       limit, describe(at)));
     return false;
   }
@@ -223,14 +242,17 @@ void Builder::nullNode(const Token& token) {
   const Receiver& receiver = receivers_.back();
   if (receiver.kind == Receiver::Kind::single)
     *static_cast<NodeRef*>(receiver.storage) = {};
-  else if (!receiver.field || keepsNull(*receiver.field) || (receiver.holder && receiver.holder->type().index < 0))
-    static_cast<MFNode*>(receiver.storage)->emplace_back(); // an interface's value may become such a list
+  else if (!receiver.field || keepsNull(*receiver.field) ||
+           (receiver.holder && receiver.holder->type().index < 0))
+    static_cast<MFNode*>(receiver.storage)
+        ->emplace_back(); // an interface's value may become such a list
   else
     lexer_.warn(token.at(), "NULL is no node of a list; it is left out");
 }
 
 bool Builder::hasField(std::string_view name) const {
-  return nodes_.size() > scopes_.back().outerNodes && nodes_.back().node->type().find(name) != nullptr;
+  return nodes_.size() > scopes_.back().outerNodes &&
+         nodes_.back().node->type().find(name) != nullptr;
 }
 
 FieldTarget Builder::openField(const Token& name) {
@@ -243,12 +265,15 @@ FieldTarget Builder::openField(const Token& name) {
     return {};
   }
   if (!holdsValue(*field)) {
-    lexer_.error(name.at(), fmt::format("{} is an {} of {}: it has no value in a file", describe(name),
-                                        field->access == Access::eventIn ? "eventIn" : "eventOut", node.type().name));
+    lexer_.error(name.at(),
+                 fmt::format("{} is an {} of {}: it has no value in a file", describe(name),
+                             field->access == Access::eventIn ? "eventIn" : "eventOut",
+                             node.type().name));
     return {};
   }
   if (std::find(frame.given.begin(), frame.given.end(), name.text) != frame.given.end()) {
-    lexer_.warn(name.at(), fmt::format("field {} is given twice; the last one counts", describe(name)));
+    lexer_.warn(name.at(),
+                fmt::format("field {} is given twice; the last one counts", describe(name)));
   } else {
     frame.given.push_back(name.text);
   }
@@ -283,17 +308,22 @@ void Builder::closeField(bool good) {
   NodeFrame& frame = nodes_.back();
   const FieldInfo& field = *frame.field;
   if (frame.scriptType && field.name == "url" && good)
-    static_cast<ScriptNode&>(*frame.node).urlLines = linesOfStrings(frame.fieldAt + field.name.size());
+    static_cast<ScriptNode&>(*frame.node).urlLines =
+        linesOfStrings(frame.fieldAt + field.name.size());
   if (holdsNodes(field)) {
     receivers_.pop_back();
   } else if (good && hasNormalizedAxes(field)) {
     Rotation first;
     const size_t outside = normalizeAxes(field.type, frame.node->storage(field), &first);
     if (outside > 0)
-      lexer_.warn(frame.fieldAt, fmt::format("{}.{}: the axis {} {} {} has length {:.3g}, not 1; {} normalised",
-                                             frame.node->type().name, field.name, first.x, first.y, first.z, axisLength(first),
-                                             outside == 1 ? "it is" : fmt::format("it and {} more are", outside - 1)));
-  } else if (RangeFault fault; good && field.range.bounded() && !enforceRange(field, frame.node->storage(field), &fault)) {
+      lexer_.warn(
+          frame.fieldAt,
+          fmt::format("{}.{}: the axis {} {} {} has length {:.3g}, not 1; {} normalised",
+                      frame.node->type().name, field.name, first.x, first.y, first.z,
+                      axisLength(first),
+                      outside == 1 ? "it is" : fmt::format("it and {} more are", outside - 1)));
+  } else if (RangeFault fault; good && field.range.bounded() &&
+                               !enforceRange(field, frame.node->storage(field), &fault)) {
     lexer_.warn(frame.fieldAt, xvrml::describe(frame.node->type(), field, fault));
   }
 }

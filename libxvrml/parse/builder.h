@@ -1,5 +1,5 @@
-// builder.h: makes the scene graph from what the parser reports: nodes, names, prototypes, routes, with all checks that need to
-// know node types. One builder per file, on the thread that loads.
+// builder.h: makes the scene graph from what the parser reports: nodes, names, prototypes, routes,
+// with all checks that need to know node types. One builder per file, on the thread that loads.
 #pragma once
 
 #include <deque>
@@ -30,7 +30,8 @@ class Builder : public ParseSink {
   bool hasField(std::string_view name) const override;
   void closeField(bool good) override;
   void connect(const Token& field, const Token& interfaceName) override;
-  FieldTarget openDeclaration(Access access, FieldType type, const Token& name, bool hasValue) override;
+  FieldTarget openDeclaration(Access access, FieldType type, const Token& name,
+                              bool hasValue) override;
   void closeDeclaration(bool good) override;
   void openProto(const Token& name) override;
   void openProtoBody() override;
@@ -41,7 +42,8 @@ class Builder : public ParseSink {
   void route(const Token& keyword, const RouteNames& names) override;
 
  private:
-  // Sizes of the lists that grow while a node is read: what came in since is taken back if the node is lost.
+  // Sizes of the lists that grow while a node is read: what came in since is taken back if the node
+  // is lost.
   struct Mark {
     size_t instances, inlines, names, routes, connections;
   };
@@ -78,7 +80,8 @@ class Builder : public ParseSink {
     std::unordered_map<std::string_view, ProtoPtr> types;
     std::unordered_set<std::string_view> lost;
     std::vector<std::string_view> defined;
-    std::unordered_set<std::string_view> placed; // names by which USE or ROUTE has given a node a place
+    std::unordered_set<std::string_view>
+        placed; // names by which USE or ROUTE has given a node a place
     // The names within each node that stands in a wrong place, with their nodes.
     std::vector<std::vector<std::pair<std::string_view, NodeRef>>> misplaced;
     std::unordered_map<const Node*, NodeRef> earlier; // that had a node's name before it
@@ -101,7 +104,8 @@ class Builder : public ParseSink {
   bool place(const Token& at, const NodeRef& node, uint64_t expanded);
   std::string_view wantedBy(const Receiver& receiver) const;
   bool suits(const Receiver& receiver, const NodeType* type) const;
-  bool accepts(const Receiver& receiver, const Token& at, const Node& node, std::string_view remedy);
+  bool accepts(const Receiver& receiver, const Token& at, const Node& node,
+               std::string_view remedy);
   std::vector<uint32_t> linesOfStrings(const char* from);
   uint64_t expandedCount(const Node* node) const;
   ProtoPtr findPrototype(std::string_view name) const;
@@ -120,7 +124,7 @@ class Builder : public ParseSink {
   std::vector<NodeFrame> nodes_;
   std::vector<Receiver> receivers_;
   std::unordered_map<const Node*, uint64_t> expanded_; // where more than 1
-  const NodeType* fullInterface_ = nullptr;            // the last one that declares more than the limit
+  const NodeType* fullInterface_ = nullptr; // the last one that declares more than the limit
 };
 
 } // namespace xvrml

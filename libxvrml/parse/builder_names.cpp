@@ -1,21 +1,26 @@
-// builder_names.cpp: name spaces of files and prototypes: DEF and USE, routes, IS (ISO/IEC 14772-1 4.4.6, 4.6.2, 4.8.2, 4.10.2).
-// See builder.h.
+// builder_names.cpp: name spaces of files and prototypes: DEF and USE, routes, IS (ISO/IEC
+// 14772-1 4.4.6, 4.6.2, 4.8.2, 4.10.2). See builder.h.
 #include <fmt/format.h>
 
-#include "parse/builder.h"
 #include "graph/field_access.h"
 #include "graph/nearest.h"
+#include "parse/builder.h"
 
 namespace xvrml {
 namespace {
 
-// Table 4.4: which declarations of a prototype's interface a node's field or event may be connected to.
-bool mayConnect(Access ofNode, Access ofInterface) { return ofNode == Access::exposedField || ofNode == ofInterface; }
+// Table 4.4: which declarations of a prototype's interface a node's field or event may be connected
+// to.
+bool mayConnect(Access ofNode, Access ofInterface) {
+  return ofNode == Access::exposedField || ofNode == ofInterface;
+}
 
-// What a connection that Table 4.4 forbids can still mean: one half of an exposedField. Empty: nothing.
+// What a connection that Table 4.4 forbids can still mean: one half of an exposedField. Empty:
+// nothing.
 std::string_view whatIsMeant(Access ofNode, Access ofInterface) {
   if (ofInterface != Access::exposedField) return {};
-  if (ofNode == Access::field) return "it takes the value that the instance is given, and no events";
+  if (ofNode == Access::field)
+    return "it takes the value that the instance is given, and no events";
   return ofNode == Access::eventIn ? "it takes the events" : "it sends the events";
 }
 
@@ -53,18 +58,22 @@ void Builder::popScope() {
 void Builder::keepNames(const Mark& mark) {
   auto& names = scope().misplaced.emplace_back();
   for (size_t i = mark.names; i < scope().defined.size(); ++i)
-    if (const auto found = scope().scope->names.find(scope().defined[i]); found != scope().scope->names.end())
+    if (const auto found = scope().scope->names.find(scope().defined[i]);
+        found != scope().scope->names.end())
       names.emplace_back(scope().defined[i], found->second);
 }
 
-// Drops the names of nodes in wrong places to which no USE and no ROUTE has given a better one: these nodes are in no world, and
-// what is written of the world has no place for them. A node that had the name before has it again.
+// Drops the names of nodes in wrong places to which no USE and no ROUTE has given a better one:
+// these nodes are in no world, and what is written of the world has no place for them. A node that
+// had the name before has it again.
 void Builder::dropUnplacedNames() {
   ScopeFrame& frame = scope();
   std::unordered_set<const Node*> dropped;
   std::vector<std::string_view> theirs;
   for (const auto& names : frame.misplaced) {
-    if (std::any_of(names.begin(), names.end(), [&](const auto& one) { return frame.placed.contains(one.first); })) continue;
+    if (std::any_of(names.begin(), names.end(),
+                    [&](const auto& one) { return frame.placed.contains(one.first); }))
+      continue;
     for (const auto& [name, node] : names) {
       dropped.insert(node.get());
       theirs.push_back(name);
@@ -86,11 +95,13 @@ void Builder::dropUnplacedNames() {
 void Builder::lostName(const Token& name) { scope().lost.insert(name.text); }
 
 bool Builder::isLost(std::string_view name) const {
-  return std::any_of(scopes_.begin(), scopes_.end(), [&](const ScopeFrame& frame) { return frame.lost.contains(name); });
+  return std::any_of(scopes_.begin(), scopes_.end(),
+                     [&](const ScopeFrame& frame) { return frame.lost.contains(name); });
 }
 
 bool Builder::isOpen(const Node* node) const {
-  return std::any_of(nodes_.rbegin(), nodes_.rend(), [&](const NodeFrame& frame) { return frame.node.get() == node; });
+  return std::any_of(nodes_.rbegin(), nodes_.rend(),
+                     [&](const NodeFrame& frame) { return frame.node.get() == node; });
 }
 
 // The node that a name means here, or null after a message.
@@ -103,14 +114,17 @@ NodeRef Builder::findName(const Token& name) {
     return {};
   }
   std::string hint = suggestion(name.text, namesOf(*scope().scope));
-  if (inTemplate() && scopes_.front().scope->names.contains(name.text)) hint = "; a prototype has names of its own (4.8.4)";
-  lexer_.error(name.at(), fmt::format("no node is named {} by a DEF above{}", describe(name), hint));
+  if (inTemplate() && scopes_.front().scope->names.contains(name.text))
+    hint = "; a prototype has names of its own (4.8.4)";
+  lexer_.error(name.at(),
+               fmt::format("no node is named {} by a DEF above{}", describe(name), hint));
   return {};
 }
 
-// USE nodeNameId. Only the transformation hierarchy must have no cycle (4.4.4), and what a Script or a prototype instance holds
-// in its fields is no part of it: a node may be used within itself if there is one on the way. Whether a prototype puts the field
-// into its body is found out when it is expanded.
+// USE nodeNameId. Only the transformation hierarchy must have no cycle (4.4.4), and what a Script
+// or a prototype instance holds in its fields is no part of it: a node may be used within itself if
+// there is one on the way. Whether a prototype puts the field into its body is found out when it is
+// expanded.
 void Builder::useNode(const Token& name) {
   const NodeRef node = findName(name);
   if (!node) return;
@@ -124,7 +138,10 @@ void Builder::useNode(const Token& name) {
     if (frame->node == node) break;
   }
   if (!between || !receivers_.back().holder) {
-    lexer_.error(name.at(), fmt::format("{} is USEd inside itself: a node cannot be its own descendant (4.4.4)", describe(name)));
+    lexer_.error(
+        name.at(),
+        fmt::format("{} is USEd inside itself: a node cannot be its own descendant (4.4.4)",
+                    describe(name)));
     return;
   }
   if (!deliver(name, node, 0)) return;
@@ -139,25 +156,31 @@ void Builder::route(const Token& keyword, const RouteNames& names) {
   if (!from || !to) return;
   const FieldInfo* out = from->type().findEventOut(names.fromField.text);
   if (!out) {
-    lexer_.error(names.fromField.at(), fmt::format("{} has no eventOut {}", from->type().name, describe(names.fromField)));
+    lexer_.error(names.fromField.at(), fmt::format("{} has no eventOut {}", from->type().name,
+                                                   describe(names.fromField)));
   }
   const FieldInfo* in = to->type().findEventIn(names.toField.text);
-  if (!in) lexer_.error(names.toField.at(), fmt::format("{} has no eventIn {}", to->type().name, describe(names.toField)));
+  if (!in)
+    lexer_.error(names.toField.at(),
+                 fmt::format("{} has no eventIn {}", to->type().name, describe(names.toField)));
   if (!out || !in) return;
   if (out->type != in->type) {
     lexer_.error(names.toField.at(),
-                 fmt::format("a route joins events of one type: {} is {}, {} is {}", describe(names.fromField),
-                             fieldTypeName(out->type), describe(names.toField), fieldTypeName(in->type)));
+                 fmt::format("a route joins events of one type: {} is {}, {} is {}",
+                             describe(names.fromField), fieldTypeName(out->type),
+                             describe(names.toField), fieldTypeName(in->type)));
     return;
   }
   if (!takes(bytesOfRoute, keyword)) return;
   ++state_.routes;
   scope().placed.insert({names.from.text, names.to.text});
-  scope().scope->routes.push_back(
-      {from, std::string(names.fromField.text), to, std::string(names.toField.text), lexer_.place(keyword.at())});
+  scope().scope->routes.push_back({from, std::string(names.fromField.text), to,
+                                   std::string(names.toField.text), lexer_.place(keyword.at())});
 }
 
-Builder::ScopeFrame* Builder::protoFrame() { return scope().proto && !scope().proto->isExtern ? &scope() : nullptr; }
+Builder::ScopeFrame* Builder::protoFrame() {
+  return scope().proto && !scope().proto->isExtern ? &scope() : nullptr;
+}
 
 void Builder::connect(const Token& name, const Token& interfaceName) {
   NodeFrame& frame = nodes_.back();
@@ -172,33 +195,39 @@ void Builder::connect(const Token& name, const Token& interfaceName) {
       access = Access::eventOut;
   }
   if (!field) {
-    lexer_.error(name.at(),
-                 fmt::format("{} has no field or event {}{}", type.name, describe(name), suggestion(name.text, type.fields)));
+    lexer_.error(name.at(), fmt::format("{} has no field or event {}{}", type.name, describe(name),
+                                        suggestion(name.text, type.fields)));
     return;
   }
   ScopeFrame* proto = protoFrame();
   if (!proto) {
-    lexer_.error(name.at(), fmt::format("{} IS {}: IS stands in the body of a prototype only (4.8.2)", describe(name),
-                                        describe(interfaceName)));
+    lexer_.error(name.at(),
+                 fmt::format("{} IS {}: IS stands in the body of a prototype only (4.8.2)",
+                             describe(name), describe(interfaceName)));
     return;
   }
   const FieldInfo* declared = proto->protoType->find(interfaceName.text);
   if (!declared) {
-    lexer_.error(interfaceName.at(), fmt::format("prototype {} declares no {}{}", proto->protoType->name, describe(interfaceName),
-                                                 suggestion(interfaceName.text, proto->protoType->fields)));
+    lexer_.error(interfaceName.at(),
+                 fmt::format("prototype {} declares no {}{}", proto->protoType->name,
+                             describe(interfaceName),
+                             suggestion(interfaceName.text, proto->protoType->fields)));
     return;
   }
   if (declared->type != field->type) {
     lexer_.error(interfaceName.at(),
-                 fmt::format("IS joins one type: {} of {} is {}, {} of the interface is {}", describe(name), type.name,
-                             fieldTypeName(field->type), describe(interfaceName), fieldTypeName(declared->type)));
+                 fmt::format("IS joins one type: {} of {} is {}, {} of the interface is {}",
+                             describe(name), type.name, fieldTypeName(field->type),
+                             describe(interfaceName), fieldTypeName(declared->type)));
     return;
   }
   if (!mayConnect(access, declared->access)) {
     const std::string_view meant = whatIsMeant(access, declared->access);
     lexer_.error(interfaceName.at(),
-                 fmt::format("{} {} of {} cannot be {} {} of the interface (4.8.2){}{}", accessName(access), describe(name),
-                             type.name, accessName(declared->access), describe(interfaceName), meant.empty() ? "" : ": ", meant));
+                 fmt::format("{} {} of {} cannot be {} {} of the interface (4.8.2){}{}",
+                             accessName(access), describe(name), type.name,
+                             accessName(declared->access), describe(interfaceName),
+                             meant.empty() ? "" : ": ", meant));
     if (meant.empty()) return;
   }
   proto->proto->is.push_back({frame.node, std::string(name.text), std::string(interfaceName.text)});

@@ -1,5 +1,5 @@
-// builder_proto.cpp: PROTO and EXTERNPROTO declarations and the interfaces of Scripts (ISO/IEC 14772-1 4.8, 4.9, 6.40). See
-// builder.h.
+// builder_proto.cpp: PROTO and EXTERNPROTO declarations and the interfaces of Scripts (ISO/IEC
+// 14772-1 4.8, 4.9, 6.40). See builder.h.
 #include <utility>
 
 #include <fmt/format.h>
@@ -10,7 +10,8 @@
 
 namespace xvrml {
 
-// A prototype's name is known from the end of its declaration to the end of the scope that holds it, prototypes within included.
+// A prototype's name is known from the end of its declaration to the end of the scope that holds
+// it, prototypes within included.
 ProtoPtr Builder::findPrototype(std::string_view name) const {
   for (auto frame = scopes_.rbegin(); frame != scopes_.rend(); ++frame) {
     const auto found = frame->types.find(name);
@@ -20,8 +21,9 @@ ProtoPtr Builder::findPrototype(std::string_view name) const {
 }
 
 bool Builder::isBeingDeclared(std::string_view name) const {
-  return std::any_of(scopes_.begin(), scopes_.end(),
-                     [&](const ScopeFrame& frame) { return frame.protoType && frame.protoType->name == name; });
+  return std::any_of(scopes_.begin(), scopes_.end(), [&](const ScopeFrame& frame) {
+    return frame.protoType && frame.protoType->name == name;
+  });
 }
 
 // Where interface declarations go: the Script or the prototype that is open, whichever is inner.
@@ -30,11 +32,13 @@ NodeType* Builder::declaringType() {
   return scope().protoType.get();
 }
 
-// Names of an interface differ, and an exposedField x takes set_x and x_changed as well (4.7). Writers that spell these out
-// beside it mean no harm if the types agree.
-bool Builder::declarationConflicts(const NodeType& type, const FieldInfo& field, const Token& name) {
+// Names of an interface differ, and an exposedField x takes set_x and x_changed as well (4.7).
+// Writers that spell these out beside it mean no harm if the types agree.
+bool Builder::declarationConflicts(const NodeType& type, const FieldInfo& field,
+                                   const Token& name) {
   const auto report = [&] {
-    lexer_.error(name.at(), fmt::format("{} is declared already in the interface of {} (4.7)", describe(name), type.name));
+    lexer_.error(name.at(), fmt::format("{} is declared already in the interface of {} (4.7)",
+                                        describe(name), type.name));
     return true;
   };
   if (type.find(field.name)) return report();
@@ -50,19 +54,21 @@ bool Builder::declarationConflicts(const NodeType& type, const FieldInfo& field,
   const std::string& text = field.name;
   imply("set_" + text, field.access == Access::exposedField);
   imply(text + "_changed", field.access == Access::exposedField);
-  if (text.starts_with("set_")) imply(text.substr(4), field.access == Access::eventIn && exposed(text.substr(4)));
+  if (text.starts_with("set_"))
+    imply(text.substr(4), field.access == Access::eventIn && exposed(text.substr(4)));
   if (text.ends_with("_changed")) {
     const std::string stem = text.substr(0, text.size() - 8);
     imply(stem, field.access == Access::eventOut && exposed(stem));
   }
   if (!implied) return false;
   if (implied->type != field.type) return report();
-  lexer_.warn(name.at(),
-              fmt::format("{} and {} of {} declare the same event twice (4.7)", describe(name), implied->name, type.name));
+  lexer_.warn(name.at(), fmt::format("{} and {} of {} declare the same event twice (4.7)",
+                                     describe(name), implied->name, type.name));
   return false;
 }
 
-FieldTarget Builder::openDeclaration(Access access, FieldType type, const Token& name, bool hasValue) {
+FieldTarget Builder::openDeclaration(Access access, FieldType type, const Token& name,
+                                     bool hasValue) {
   NodeType& target = *declaringType();
   Declaration& declaration = declarations_.emplace_back();
   declaration.at = name.at();
@@ -78,8 +84,10 @@ FieldTarget Builder::openDeclaration(Access access, FieldType type, const Token&
   const uint64_t limit = state_.options.limits.interfaceFields;
   declaration.accepted = target.fields.size() < limit;
   if (!declaration.accepted && std::exchange(fullInterface_, &target) != &target)
-    lexer_.error(name.at(), fmt::format("{} declares more than limit interfaceFields={}; those from {} on are left out",
-                                        target.name, limit, describe(name)));
+    lexer_.error(
+        name.at(),
+        fmt::format("{} declares more than limit interfaceFields={}; those from {} on are left out",
+                    target.name, limit, describe(name)));
   declaration.accepted = declaration.accepted && !declarationConflicts(target, field, name);
   if (declaration.accepted) declaration.accepted = takes(bytesOfDeclaration, name);
   void* storage = std::visit([](auto& value) -> void* { return &value; }, field.defaultValue);
@@ -106,16 +114,19 @@ FieldTarget Builder::openDeclaration(Access access, FieldType type, const Token&
 void Builder::closeDeclaration(bool good) {
   Declaration declaration = std::move(declarations_.back());
   declarations_.pop_back();
-  const bool nodeValue = declaration.field.type == FieldType::SFNode || declaration.field.type == FieldType::MFNode;
+  const bool nodeValue =
+      declaration.field.type == FieldType::SFNode || declaration.field.type == FieldType::MFNode;
   if (declaration.hasValue && nodeValue) receivers_.pop_back();
   if (declaration.scoped) {
-    // Prototypes declared within a default value live with the declaration that has it; their names stay in the value.
+    // Prototypes declared within a default value live with the declaration that has it; their names
+    // stay in the value.
     std::vector<ProtoPtr> local = std::move(scope().scope->prototypes);
     popScope();
     std::vector<ProtoPtr>& outer = scopes_[scopes_.size() - 2].scope->prototypes;
     outer.insert(outer.end(), local.begin(), local.end());
   }
-  if (good && declaration.accepted && !isScript()) addField(*scope().protoType, std::move(declaration.field));
+  if (good && declaration.accepted && !isScript())
+    addField(*scope().protoType, std::move(declaration.field));
 }
 
 void Builder::openProto(const Token& name) {
@@ -139,7 +150,9 @@ void Builder::closeProto(bool good) {
   popScope();
   if (!good) return;
   if (!proto->isExtern && proto->body.roots.empty()) {
-    state_.diagnostics.warn(proto->source, fmt::format("the body of prototype '{}' has no node (4.8.3)", proto->type->name));
+    state_.diagnostics.warn(
+        proto->source,
+        fmt::format("the body of prototype '{}' has no node (4.8.3)", proto->type->name));
   }
   scope().scope->prototypes.push_back(proto);
   // The key is a view of the type's own name, which lives as long as the frame's pointer to it.

@@ -1,4 +1,3 @@
-// loader.cpp: see loader.h.
 #include "parse/loader.h"
 
 #include <filesystem>
@@ -35,8 +34,10 @@ double secondsSince(std::chrono::steady_clock::time_point start) {
 } // namespace
 
 Loader::Loader(World& world, const LoadOptions& options)
-    : world_(world), budget_(budgetOf(world)), state_{world, options, world.diagnostics, *budget_, {}},
-      expander_(state_, [this](ProtoDeclaration& declaration) { return resolveExtern(declaration); }) {}
+    : world_(world),
+      budget_(budgetOf(world)), state_{world, options, world.diagnostics, *budget_, {}},
+      expander_(state_,
+                [this](ProtoDeclaration& declaration) { return resolveExtern(declaration); }) {}
 
 void Loader::load(const Source& source, const std::string& name, bool header) {
   const auto start = std::chrono::steady_clock::now();
@@ -60,7 +61,8 @@ void Loader::loadLate(InlineNode& node, const std::vector<std::string>& enclosin
   loadInline(node, enclosing.size());
 }
 
-void Loader::parse(const Source& source, const std::shared_ptr<const std::string>& name, ParsedFile& file) {
+void Loader::parse(const Source& source, const std::shared_ptr<const std::string>& name,
+                   ParsedFile& file) {
   Lexer lexer(source.text(), name, state_.diagnostics);
   Builder builder(lexer, state_, file);
   Parser(lexer, state_.options.limits, builder, budget_.get()).vrmlScene();
@@ -78,30 +80,36 @@ void Loader::loadInline(InlineNode& node, uint64_t depth) {
   if (node.url.empty() || node.content) return;
   std::string reasons;
   for (const std::string& url : node.url) {
-    const ResolvedUrl resolved = resolveUrl(url, node.source.file ? *node.source.file : "", state_.options);
+    const ResolvedUrl resolved =
+        resolveUrl(url, node.source.file ? *node.source.file : "", state_.options);
     std::string reason = resolved.error;
     if (reason.empty() && loadInlineFrom(node, resolved.path, depth, reason)) return;
     if (!reason.empty()) addReason(reasons, reason);
   }
-  if (!reasons.empty()) state_.diagnostics.warn(node.source, fmt::format("Inline is empty: {}", reasons));
+  if (!reasons.empty())
+    state_.diagnostics.warn(node.source, fmt::format("Inline is empty: {}", reasons));
 }
 
 // True if it is settled: loaded, or refused with a message.
-bool Loader::loadInlineFrom(InlineNode& node, const std::string& path, uint64_t depth, std::string& reason) {
+bool Loader::loadInlineFrom(InlineNode& node, const std::string& path, uint64_t depth,
+                            std::string& reason) {
   const Limits& limits = state_.options.limits;
   const std::string key = canonical(path);
   InlinedFile& known = inlined_[key];
   if (known.reading) {
-    state_.diagnostics.error(node.source, fmt::format("Inline of '{}', which contains this Inline itself", path));
+    state_.diagnostics.error(
+        node.source, fmt::format("Inline of '{}', which contains this Inline itself", path));
     return true;
   }
   if (depth > limits.inlineDepth) {
-    state_.diagnostics.error(node.source,
-                             fmt::format("Inlines within Inlines deeper than limit inlineDepth={}", limits.inlineDepth));
+    state_.diagnostics.error(
+        node.source,
+        fmt::format("Inlines within Inlines deeper than limit inlineDepth={}", limits.inlineDepth));
     return true;
   }
   if (known.content) {
-    const bool copy = known.changing && copied_ + known.bytes <= std::min(mostCopied, budget_->left());
+    const bool copy =
+        known.changing && copied_ + known.bytes <= std::min(mostCopied, budget_->left());
     if (!copy) {
       node.content = known.content;
       return true;
@@ -130,13 +138,15 @@ bool Loader::loadInlineFrom(InlineNode& node, const std::string& path, uint64_t 
   }
 }
 
-// EXTERNPROTO: the first of its URLs that can be read and has the prototype (4.9.3). Null, with one message, if there is none.
+// EXTERNPROTO: the first of its URLs that can be read and has the prototype (4.9.3). Null, with one
+// message, if there is none.
 ProtoPtr Loader::resolveExtern(ProtoDeclaration& declaration) {
   if (declaration.resolved || !tried_.insert(&declaration).second) return declaration.resolved;
   const std::string& name = declaration.type->name;
   if (resolving_ >= state_.options.limits.inlineDepth) {
-    state_.diagnostics.error(declaration.source, fmt::format("files of prototypes deeper than limit inlineDepth={}",
-                                                             state_.options.limits.inlineDepth));
+    state_.diagnostics.error(declaration.source,
+                             fmt::format("files of prototypes deeper than limit inlineDepth={}",
+                                         state_.options.limits.inlineDepth));
     return nullptr;
   }
   std::string reasons;
@@ -163,7 +173,8 @@ ProtoPtr Loader::resolveExtern(ProtoDeclaration& declaration) {
     addReason(reasons, reason);
   }
   if (declaration.urls.empty()) reasons = "it names no URL";
-  state_.diagnostics.warn(declaration.source, fmt::format("EXTERNPROTO '{}' is not loaded: {}", name, reasons));
+  state_.diagnostics.warn(declaration.source,
+                          fmt::format("EXTERNPROTO '{}' is not loaded: {}", name, reasons));
   return nullptr;
 }
 
@@ -185,25 +196,30 @@ ProtoPtr Loader::findIn(const std::string& path, const std::string& name, std::s
   for (const ProtoPtr& proto : library->scope.prototypes) {
     if (name.empty() || proto->type->name == name) return proto;
   }
-  reason =
-      name.empty() ? fmt::format("'{}' declares no prototype", path) : fmt::format("'{}' declares no prototype '{}'", path, name);
+  reason = name.empty() ? fmt::format("'{}' declares no prototype", path)
+                        : fmt::format("'{}' declares no prototype '{}'", path, name);
   return nullptr;
 }
 
-// 4.9.2: the interface of an EXTERNPROTO is a subset of the PROTO's. What is not in it leads nowhere; the rest works.
+// 4.9.2: the interface of an EXTERNPROTO is a subset of the PROTO's. What is not in it leads
+// nowhere; the rest works.
 void Loader::checkInterface(const ProtoDeclaration& wanted, const ProtoDeclaration& found) {
   for (const FieldInfo& field : wanted.type->fields) {
     const FieldInfo* declared = found.type->find(field.name);
     if (declared && declared->type == field.type && declared->access == field.access) continue;
-    const std::string place = found.source.file ? fmt::format("{}:{}", *found.source.file, found.source.line) : "";
-    state_.diagnostics.error(wanted.source, fmt::format("EXTERNPROTO '{}' declares {} {} '{}' {} the prototype in {}",
-                                                        wanted.type->name, accessName(field.access), fieldTypeName(field.type),
-                                                        field.name, declared ? "otherwise than" : "that is not in", place));
+    const std::string place =
+        found.source.file ? fmt::format("{}:{}", *found.source.file, found.source.line) : "";
+    state_.diagnostics.error(
+        wanted.source,
+        fmt::format("EXTERNPROTO '{}' declares {} {} '{}' {} the prototype in {}",
+                    wanted.type->name, accessName(field.access), fieldTypeName(field.type),
+                    field.name, declared ? "otherwise than" : "that is not in", place));
   }
 }
 
-// With all prototypes and Inlines in place: no root may stand for more nodes than the limit, counting shared ones at each use,
-// nor nest deeper than those who walk the graph can bear. A loop over a stack of its own.
+// With all prototypes and Inlines in place: no root may stand for more nodes than the limit,
+// counting shared ones at each use, nor nest deeper than those who walk the graph can bear. A loop
+// over a stack of its own.
 void Loader::checkSize(Scope& scope) {
   struct Size {
     uint64_t nodes = 1, depth = 1;
@@ -212,7 +228,8 @@ void Loader::checkSize(Scope& scope) {
   std::unordered_map<Node*, Size> sizes;
   const auto children = [](Node* node, std::vector<Node*>& out) {
     // What Scripts and instances hold in fields is drawn where a body holds it.
-    if (node->type().index >= 0) forEachChild(*node, [&](NodeRef& child, const FieldInfo&) { out.push_back(child.get()); });
+    if (node->type().index >= 0)
+      forEachChild(*node, [&](NodeRef& child, const FieldInfo&) { out.push_back(child.get()); });
     if (const auto* instance = dynamic_cast<ProtoInstance*>(node)) {
       for (const NodeRef& root : instance->body.roots) out.push_back(root.get());
     }
@@ -255,15 +272,18 @@ void Loader::checkSize(Scope& scope) {
   const uint64_t limit = state_.options.limits.expandedNodes;
   std::erase_if(scope.roots, [&](const NodeRef& root) {
     const Size size = measure(root.get());
-    const bool large = saturatingAdd(sum, size.nodes) > limit, deep = size.depth > Parser::maximumNesting;
+    const bool large = saturatingAdd(sum, size.nodes) > limit,
+               deep = size.depth > Parser::maximumNesting;
     if (large)
-      state_.diagnostics.error(
-          root->source, fmt::format("more nodes with all prototypes and Inlines than limit expandedNodes={}; {} is left out",
-                                    limit, root->type().name));
+      state_.diagnostics.error(root->source,
+                               fmt::format("more nodes with all prototypes and Inlines than limit "
+                                           "expandedNodes={}; {} is left out",
+                                           limit, root->type().name));
     else if (deep)
-      state_.diagnostics.error(
-          root->source, fmt::format("nodes nested {} deep with all prototypes and Inlines, {} at most can be; {} is left out",
-                                    size.depth, Parser::maximumNesting, root->type().name));
+      state_.diagnostics.error(root->source,
+                               fmt::format("nodes nested {} deep with all prototypes and Inlines, "
+                                           "{} at most can be; {} is left out",
+                                           size.depth, Parser::maximumNesting, root->type().name));
     else
       sum += size.nodes;
     return large || deep;
@@ -272,12 +292,14 @@ void Loader::checkSize(Scope& scope) {
 
 namespace {
 
-// Bytes for nodes that are nested as deep as they may be, in a debug build too; a release build takes 0.6 kB a level.
+// Bytes for nodes that are nested as deep as they may be, in a debug build too; a release build
+// takes 0.6 kB a level.
 constexpr size_t deepestStack = size_t(6) << 20;
 
-template <class MakeSource> std::unique_ptr<World> loadFrom(const std::string& name, const LoadOptions& options,
-                                                            MakeSource makeSource, bool header = true,
-                                                            const BudgetPtr& budget = nullptr) {
+template <class MakeSource>
+std::unique_ptr<World> loadFrom(const std::string& name, const LoadOptions& options,
+                                MakeSource makeSource, bool header = true,
+                                const BudgetPtr& budget = nullptr) {
   try {
     auto world = std::make_unique<World>();
     world->path = name;
@@ -288,29 +310,39 @@ template <class MakeSource> std::unique_ptr<World> loadFrom(const std::string& n
       Loader(*world, world->options).load(source, name, header);
       return std::move(world);
     });
-  } catch (const std::bad_alloc&) { throw LoadError{{Severity::error, name, 0, 0, "not enough memory", {}, 0}}; }
+  } catch (const std::bad_alloc&) {
+    throw LoadError{{Severity::error, name, 0, 0, "not enough memory", {}, 0}};
+  }
 }
 
 } // namespace
 
 std::unique_ptr<World> loadWorld(const std::string& path, const LoadOptions& options) {
-  return loadFrom(path, options, [&](const BudgetPtr& budget) { return Source::open(path, options.limits, budget); });
+  return loadFrom(path, options, [&](const BudgetPtr& budget) {
+    return Source::open(path, options.limits, budget);
+  });
 }
 
-std::unique_ptr<World> loadWorldFromMemory(std::string_view bytes, const std::string& name, const LoadOptions& options) {
-  return loadFrom(name, options,
-                  [&](const BudgetPtr& budget) { return Source::fromMemory(bytes, name, options.limits, budget); });
+std::unique_ptr<World> loadWorldFromMemory(std::string_view bytes, const std::string& name,
+                                           const LoadOptions& options) {
+  return loadFrom(name, options, [&](const BudgetPtr& budget) {
+    return Source::fromMemory(bytes, name, options.limits, budget);
+  });
 }
 
-std::unique_ptr<World> loadWorldInto(const BudgetPtr& budget, const std::string& path, const LoadOptions& options) {
+std::unique_ptr<World> loadWorldInto(const BudgetPtr& budget, const std::string& path,
+                                     const LoadOptions& options) {
   return loadFrom(
-      path, options, [&](const BudgetPtr& its) { return Source::open(path, options.limits, its); }, true, budget);
+      path, options, [&](const BudgetPtr& its) { return Source::open(path, options.limits, its); },
+      true, budget);
 }
 
-std::unique_ptr<World> loadFragment(std::string_view text, const std::string& name, const LoadOptions& options,
-                                    const BudgetPtr& budget) {
+std::unique_ptr<World> loadFragment(std::string_view text, const std::string& name,
+                                    const LoadOptions& options, const BudgetPtr& budget) {
   return loadFrom(
-      name, options, [&](const BudgetPtr& its) { return Source::fromMemory(text, name, options.limits, its); }, false, budget);
+      name, options,
+      [&](const BudgetPtr& its) { return Source::fromMemory(text, name, options.limits, its); },
+      false, budget);
 }
 
 } // namespace xvrml

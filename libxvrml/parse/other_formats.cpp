@@ -1,4 +1,4 @@
-// other_formats.cpp: see other_formats.h. The signatures are those of each format's specification.
+// other_formats.cpp: The signatures are those of each format's specification.
 #include "parse/other_formats.h"
 
 #include <algorithm>
@@ -12,7 +12,9 @@ namespace {
 // How much of a text is searched for a word that tells its format.
 constexpr size_t searched = 4096;
 
-bool holds(std::string_view bytes, std::string_view word) { return bytes.substr(0, searched).find(word) != bytes.npos; }
+bool holds(std::string_view bytes, std::string_view word) {
+  return bytes.substr(0, searched).find(word) != bytes.npos;
+}
 
 std::string_view withoutBlanks(std::string_view bytes) {
   const size_t first = bytes.find_first_not_of(" \t\r\n");
@@ -20,8 +22,10 @@ std::string_view withoutBlanks(std::string_view bytes) {
 }
 
 bool beginsWithoutCase(std::string_view bytes, std::string_view word) {
-  return bytes.size() >= word.size() && std::equal(word.begin(), word.end(), bytes.begin(), [](char a, char b) {
-           return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b));
+  return bytes.size() >= word.size() &&
+         std::equal(word.begin(), word.end(), bytes.begin(), [](char a, char b) {
+           return std::tolower(static_cast<unsigned char>(a)) ==
+                  std::tolower(static_cast<unsigned char>(b));
          });
 }
 
@@ -33,7 +37,9 @@ bool isBinaryStl(std::string_view bytes) {
   return count > 0 && uint64_t(84) + uint64_t(50) * count == bytes.size();
 }
 
-bool isAsciiStl(std::string_view bytes) { return bytes.starts_with("solid") && holds(bytes, "facet"); }
+bool isAsciiStl(std::string_view bytes) {
+  return bytes.starts_with("solid") && holds(bytes, "facet");
+}
 
 // Lines of vertices ("v 1 2 3") among comments and groups, and nothing else at first.
 bool isObj(std::string_view bytes) {
@@ -43,14 +49,16 @@ bool isObj(std::string_view bytes) {
     const std::string_view current = withoutBlanks(bytes.substr(0, end));
     bytes.remove_prefix(std::min(end + 1, bytes.size()));
     if (current.starts_with("mtllib ") || current.starts_with("v ")) return true;
-    const bool passed = current.empty() || current[0] == '#' || current.starts_with("o ") || current.starts_with("g ");
+    const bool passed = current.empty() || current[0] == '#' || current.starts_with("o ") ||
+                        current.starts_with("g ");
     if (!passed) return false;
   }
   return false;
 }
 
 bool isGltfText(std::string_view bytes) {
-  return withoutBlanks(bytes).starts_with('{') && holds(bytes, "\"asset\"") && holds(bytes, "\"version\"");
+  return withoutBlanks(bytes).starts_with('{') && holds(bytes, "\"asset\"") &&
+         holds(bytes, "\"version\"");
 }
 
 // 3D Studio's main chunk holds its own length.
@@ -72,33 +80,45 @@ struct Signature {
 };
 
 const Signature signatures[] = {
-    {[](std::string_view b) { return b.starts_with("#X3D"); }, {"an X3D world (classic encoding)", saveIt}},
+    {[](std::string_view b) { return b.starts_with("#X3D"); },
+     {"an X3D world (classic encoding)", saveIt}},
     {[](std::string_view b) { return withoutBlanks(b).starts_with('<') && holds(b, "<X3D"); },
      {"an X3D world (XML encoding)", saveIt}},
     {[](std::string_view b) { return withoutBlanks(b).starts_with('{') && holds(b, "\"X3D\""); },
      {"an X3D world (JSON encoding)", saveIt}},
-    {[](std::string_view b) { return b.starts_with("#Inventor"); }, {"an Open Inventor file", saveIt}},
+    {[](std::string_view b) { return b.starts_with("#Inventor"); },
+     {"an Open Inventor file", saveIt}},
     {[](std::string_view b) { return withoutBlanks(b).starts_with('<') && holds(b, "<COLLADA"); },
      {"a COLLADA document", exportIt}},
-    {[](std::string_view b) { return b.starts_with("glTF"); }, {"a binary glTF model (.glb)", exportIt}},
+    {[](std::string_view b) { return b.starts_with("glTF"); },
+     {"a binary glTF model (.glb)", exportIt}},
     {isGltfText, {"a glTF model", exportIt}},
     {isAsciiStl, {"an STL mesh", exportIt}},
     {isBinaryStl, {"an STL mesh", exportIt}},
-    {[](std::string_view b) { return b.starts_with("ply\n") || b.starts_with("ply\r"); }, {"a PLY mesh", exportIt}},
-    {[](std::string_view b) { return b.starts_with("OFF\n") || b.starts_with("OFF\r"); }, {"an OFF mesh", exportIt}},
+    {[](std::string_view b) { return b.starts_with("ply\n") || b.starts_with("ply\r"); },
+     {"a PLY mesh", exportIt}},
+    {[](std::string_view b) { return b.starts_with("OFF\n") || b.starts_with("OFF\r"); },
+     {"an OFF mesh", exportIt}},
     {isObj, {"a Wavefront OBJ mesh", exportIt}},
     {is3ds, {"a 3D Studio mesh", exportIt}},
-    {[](std::string_view b) { return b.starts_with("Kaydara FBX Binary"); }, {"an FBX scene", exportIt}},
-    {[](std::string_view b) { return b.starts_with("BLENDER"); }, {"a Blender file", "export it as VRML97 (.wrl) from Blender"}},
-    {[](std::string_view b) { return b.starts_with("#usda") || b.starts_with("PXR-USDC"); }, {"a USD scene", exportIt}},
+    {[](std::string_view b) { return b.starts_with("Kaydara FBX Binary"); },
+     {"an FBX scene", exportIt}},
+    {[](std::string_view b) { return b.starts_with("BLENDER"); },
+     {"a Blender file", "export it as VRML97 (.wrl) from Blender"}},
+    {[](std::string_view b) { return b.starts_with("#usda") || b.starts_with("PXR-USDC"); },
+     {"a USD scene", exportIt}},
     {[](std::string_view b) { return b.starts_with("ISO-10303-21"); },
      {"a STEP model", "export it as VRML97 (.wrl) from the CAD program, for example FreeCAD"}},
     {[](std::string_view b) { return b.starts_with("(kicad_pcb"); },
      {"a KiCad board", "export it from KiCad: File > Export > VRML, or kicad-cli pcb export vrml"}},
-    {[](std::string_view b) { return b.starts_with("\x89PNG") || b.starts_with("\xff\xd8\xff") || b.starts_with("GIF8"); },
+    {[](std::string_view b) {
+       return b.starts_with("\x89PNG") || b.starts_with("\xff\xd8\xff") || b.starts_with("GIF8");
+     },
      {"a picture", "name the world that shows it, or write one with an ImageTexture"}},
-    {[](std::string_view b) { return b.starts_with("PK\x03\x04"); }, {"a ZIP archive", "unpack it and name the .wrl file in it"}},
-    {[](std::string_view b) { return b.starts_with("%PDF"); }, {"a PDF document", "name a .wrl file"}},
+    {[](std::string_view b) { return b.starts_with("PK\x03\x04"); },
+     {"a ZIP archive", "unpack it and name the .wrl file in it"}},
+    {[](std::string_view b) { return b.starts_with("%PDF"); },
+     {"a PDF document", "name a .wrl file"}},
     {[](std::string_view b) {
        const std::string_view text = withoutBlanks(b);
        return beginsWithoutCase(text, "<!doctype html") || beginsWithoutCase(text, "<html");

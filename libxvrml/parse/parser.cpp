@@ -1,5 +1,6 @@
-// parser.cpp: nodes, fields and routes of the VRML97 grammar (ISO/IEC 14772-1 Annex A.2). See parser.h; prototypes and recovery
-// are in parser_proto.cpp, parser_recovery.cpp and parser_skip.cpp.
+// parser.cpp: nodes, fields and routes of the VRML97 grammar (ISO/IEC 14772-1 Annex A.2). See
+// parser.h; prototypes and recovery are in parser_proto.cpp, parser_recovery.cpp and
+// parser_skip.cpp.
 #include "parse/parser.h"
 
 #include <algorithm>
@@ -10,7 +11,8 @@
 namespace xvrml {
 
 Parser::Parser(Lexer& lexer, const Limits& limits, ParseSink& sink, Budget* budget)
-    : lexer_(lexer), values_(lexer, limits, budget), sink_(sink), nesting_(std::min(limits.nesting, maximumNesting)) {}
+    : lexer_(lexer), values_(lexer, limits, budget), sink_(sink),
+      nesting_(std::min(limits.nesting, maximumNesting)) {}
 
 // vrmlScene ::= statements
 void Parser::vrmlScene() { statements(TokenKind::end); }
@@ -67,8 +69,10 @@ bool Parser::node(const Token* def) {
     if (!bodyFollows(type)) return false; // else as if the brace had been there
   }
   if (depth_ >= nesting_) {
-    lexer_.error(type.at(), fmt::format("nodes nested deeper than limit nesting={}{}; {} is left out", nesting_,
-                                        nesting_ == maximumNesting ? " (the most there can be)" : "", describe(type)));
+    lexer_.error(type.at(),
+                 fmt::format("nodes nested deeper than limit nesting={}{}; {} is left out",
+                             nesting_, nesting_ == maximumNesting ? " (the most there can be)" : "",
+                             describe(type)));
     if (def) sink_.lostName(*def);
     if (opens) lexer_.next();
     skipBlock();
@@ -91,8 +95,8 @@ bool Parser::node(const Token* def) {
   return true;
 }
 
-// nodeBody ::= nodeBodyElement | nodeBodyElement nodeBody | empty      (up to and with the closing brace)
-// A text that ends early keeps what was read of its open nodes.
+// nodeBody ::= nodeBodyElement | nodeBodyElement nodeBody | empty      (up to and with the closing
+// brace) A text that ends early keeps what was read of its open nodes.
 bool Parser::nodeBody(const Token& type) {
   while (!isClosing() && !lexer_.accept(TokenKind::braceClose)) {
     if (lexer_.peek().is(TokenKind::end)) {
@@ -104,7 +108,8 @@ bool Parser::nodeBody(const Token& type) {
   return true;
 }
 
-// nodeBodyElement ::= fieldId fieldValue | fieldId IS fieldId | eventInId IS eventInId | eventOutId IS eventOutId
+// nodeBodyElement ::= fieldId fieldValue | fieldId IS fieldId | eventInId IS eventInId | eventOutId
+// IS eventOutId
 //                   | routeStatement | protoStatement
 bool Parser::nodeBodyElement() {
   const Token token = lexer_.peek();
@@ -124,7 +129,9 @@ bool Parser::field() {
     sink_.connect(id, interfaceName);
     return true;
   }
-  if ((lexer_.peek().is(TokenKind::braceOpen) || id.text == "DEF" || id.text == "USE") && nodeInBody(id)) return true;
+  if ((lexer_.peek().is(TokenKind::braceOpen) || id.text == "DEF" || id.text == "USE") &&
+      nodeInBody(id))
+    return true;
   const FieldTarget target = sink_.openField(id);
   if (!target.known) {
     skipField();
@@ -133,7 +140,8 @@ bool Parser::field() {
   const bool listOfValues = isMultiple(target.type) && lexer_.peek().is(TokenKind::bracketOpen);
   bool good = fieldValue(target);
   // A list that the next field follows: the values of it are there, its bracket is not.
-  if (!good && listOfValues) good = lexer_.peek().is(TokenKind::identifier) && sink_.hasField(lexer_.peek().text);
+  if (!good && listOfValues)
+    good = lexer_.peek().is(TokenKind::identifier) && sink_.hasField(lexer_.peek().text);
   sink_.closeField(good);
   return good;
 }
@@ -198,10 +206,12 @@ bool Parser::routeStatement() {
   return true;
 }
 
-// nodeNameId . eventId; a name with periods of its own (which DEF lets pass with a warning) ends at the last one.
+// nodeNameId . eventId; a name with periods of its own (which DEF lets pass with a warning) ends at
+// the last one.
 bool Parser::routeEnd(Token& node, Token& field) {
   const Token token = lexer_.nextName();
-  if (!token.is(TokenKind::identifier) && !token.is(TokenKind::invalid)) return fail(token, "NODE.event");
+  if (!token.is(TokenKind::identifier) && !token.is(TokenKind::invalid))
+    return fail(token, "NODE.event");
   const size_t period = token.text.rfind('.');
   if (period == std::string_view::npos) { // white space around the period
     node = token;

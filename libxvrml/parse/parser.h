@@ -1,5 +1,6 @@
-// parser.h: the grammar of VRML97 (ISO/IEC 14772-1 Annex A.2), one function per production, against an abstract sink. Reports
-// what is wrong and goes on at the next node. Recursive by nodes; limits.nesting and maximumNesting bound the stack. [any thread]
+// parser.h: the grammar of VRML97 (ISO/IEC 14772-1 Annex A.2), one function per production, against
+// an abstract sink. Reports what is wrong and goes on at the next node. Recursive by nodes;
+// limits.nesting and maximumNesting bound the stack. [any thread]
 #pragma once
 
 #include <vector>
@@ -11,7 +12,8 @@ namespace xvrml {
 
 // Whether a token begins a declaration of an interface.
 inline bool declares(const Token& token) {
-  return token.is("field") || token.is("eventIn") || token.is("eventOut") || token.is("exposedField");
+  return token.is("field") || token.is("eventIn") || token.is("eventOut") ||
+         token.is("exposedField");
 }
 
 class Parser {
@@ -25,17 +27,19 @@ class Parser {
   void vrmlScene();
 
  private:
-  // What takes complete nodes where the text stands: statements of the file or of a prototype's body, the list of a field, a
-  // value in a prototype's interface. An error closes open nodes up to the innermost of these, never beyond.
+  // What takes complete nodes where the text stands: statements of the file or of a prototype's
+  // body, the list of a field, a value in a prototype's interface. An error closes open nodes up to
+  // the innermost of these, never beyond.
   struct Taker {
     enum class Kind : uint8_t { statements, list, interface } kind;
     size_t nodes;        // that were open when it began
     size_t receiver;     // the sink's number for it
-    uint64_t braces = 0; // that may come without a partner: one was taken as missing, or an opening one was passed over
+    uint64_t braces = 0; // that may come without a partner: one was taken as missing, or an opening
+                         // one was passed over
   };
 
-  // Each returns false after an error, with the lexer at the same depth of braces as before: the caller skips to where it knows
-  // on.
+  // Each returns false after an error, with the lexer at the same depth of braces as before: the
+  // caller skips to where it knows on.
   void statements(TokenKind end);
   bool statement();
   bool nodeStatement();
@@ -92,9 +96,10 @@ class Parser {
   bool endReported_ = false;
   std::vector<Taker> takers_;
   std::vector<Token> open_; // types of the nodes that are being read
-  size_t keep_ = SIZE_MAX;  // open nodes that stay open; those within them end where the text stands
-  uint64_t brackets_ = 0;   // closing ones that may come without a partner: their lists were taken as closed
-  bool listEnded_ = false;  // a list was taken as closed before the field that follows
+  size_t keep_ = SIZE_MAX; // open nodes that stay open; those within them end where the text stands
+  uint64_t brackets_ =
+      0; // closing ones that may come without a partner: their lists were taken as closed
+  bool listEnded_ = false; // a list was taken as closed before the field that follows
 };
 
 } // namespace xvrml

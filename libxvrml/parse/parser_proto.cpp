@@ -1,4 +1,5 @@
-// parser_proto.cpp: prototypes and interface declarations of the VRML97 grammar (Annex A.2), and Script bodies. See parser.h.
+// parser_proto.cpp: prototypes and interface declarations of the VRML97 grammar (Annex A.2), and
+// Script bodies. See parser.h.
 #include <fmt/format.h>
 
 #include "parse/parser.h"
@@ -27,7 +28,8 @@ bool accessFromName(std::string_view text, Access& access) {
 bool Parser::protoStatement() {
   const Token keyword = lexer_.next();
   if (depth_ >= nesting_) {
-    lexer_.error(keyword.at(), fmt::format("prototypes nested deeper than limit nesting={}", nesting_));
+    lexer_.error(keyword.at(),
+                 fmt::format("prototypes nested deeper than limit nesting={}", nesting_));
     return false;
   }
   ++depth_;
@@ -70,7 +72,8 @@ bool Parser::externproto() {
   return good;
 }
 
-// interfaceDeclarations ::= interfaceDeclaration | interfaceDeclaration interfaceDeclarations | empty      (with its brackets)
+// interfaceDeclarations ::= interfaceDeclaration | interfaceDeclaration interfaceDeclarations |
+// empty      (with its brackets)
 bool Parser::interfaceDeclarations(bool isExtern) {
   if (!lexer_.accept(TokenKind::bracketOpen)) {
     fail(lexer_.peek(), "[ and the interface");
@@ -80,9 +83,11 @@ bool Parser::interfaceDeclarations(bool isExtern) {
   bool good = true;
   while (good && !lexer_.accept(TokenKind::bracketClose)) {
     const Token token = lexer_.peek();
-    const bool ends = isExtern ? token.is(TokenKind::string) || token.is(TokenKind::bracketOpen) : token.is(TokenKind::braceOpen);
+    const bool ends = isExtern ? token.is(TokenKind::string) || token.is(TokenKind::bracketOpen)
+                               : token.is(TokenKind::braceOpen);
     if (ends) {
-      lexer_.error(token.at(), fmt::format("']' is missing before {}", isExtern ? "the URLs" : "the prototype's body"));
+      lexer_.error(token.at(), fmt::format("']' is missing before {}",
+                                           isExtern ? "the URLs" : "the prototype's body"));
       break;
     }
     good = interfaceDeclaration(isExtern);
@@ -91,9 +96,10 @@ bool Parser::interfaceDeclarations(bool isExtern) {
   return good;
 }
 
-// interfaceDeclaration ::= restrictedInterfaceDeclaration | exposedField fieldType fieldId fieldValue
-// restrictedInterfaceDeclaration ::= eventIn fieldType eventInId | eventOut fieldType eventOutId | field fieldType fieldId
-// fieldValue externInterfaceDeclaration: the same without values
+// interfaceDeclaration ::= restrictedInterfaceDeclaration | exposedField fieldType fieldId
+// fieldValue restrictedInterfaceDeclaration ::= eventIn fieldType eventInId | eventOut fieldType
+// eventOutId | field fieldType fieldId fieldValue externInterfaceDeclaration: the same without
+// values
 bool Parser::interfaceDeclaration(bool isExtern) {
   const Token keyword = lexer_.peek();
   Access access;
@@ -103,7 +109,8 @@ bool Parser::interfaceDeclaration(bool isExtern) {
   lexer_.next();
   FieldType type;
   const Token typeName = lexer_.peek();
-  if (!typeName.is(TokenKind::identifier) || !fieldTypeFromName(typeName.text, type)) return fail(typeName, "a field type");
+  if (!typeName.is(TokenKind::identifier) || !fieldTypeFromName(typeName.text, type))
+    return fail(typeName, "a field type");
   lexer_.next();
   Token id;
   if (!name(id, "a name for the interface")) return false;
@@ -114,8 +121,10 @@ bool Parser::interfaceDeclaration(bool isExtern) {
   return good;
 }
 
-// scriptBodyElement ::= nodeBodyElement | restrictedInterfaceDeclaration | eventIn fieldType eventInId IS eventInId
-//                     | eventOut fieldType eventOutId IS eventOutId | field fieldType fieldId IS fieldId
+// scriptBodyElement ::= nodeBodyElement | restrictedInterfaceDeclaration | eventIn fieldType
+// eventInId IS eventInId
+//                     | eventOut fieldType eventOutId IS eventOutId | field fieldType fieldId IS
+//                     fieldId
 bool Parser::scriptBodyElement() {
   const Token keyword = lexer_.next();
   Access access;
@@ -133,9 +142,9 @@ bool Parser::scriptBodyElement() {
   Token id;
   if (!name(id, "a name for the interface")) return false;
   if (exposed)
-    lexer_.error(keyword.at(),
-                 fmt::format("a Script declares field, eventIn and eventOut, not exposedField (6.40): {} is read as a field",
-                             describe(id)));
+    lexer_.error(keyword.at(), fmt::format("a Script declares field, eventIn and eventOut, not "
+                                           "exposedField (6.40): {} is read as a field",
+                                           describe(id)));
   const bool isConnection = lexer_.peek().is("IS");
   const bool hasValue = access == Access::field && !isConnection;
   const FieldTarget target = sink_.openDeclaration(access, type, id, hasValue);

@@ -1,5 +1,5 @@
-// parser_recovery.cpp: messages of the parser, and how it goes on where a brace, a bracket or a name is missing or too much. What
-// only skips text is in parser_skip.cpp. See parser.h.
+// parser_recovery.cpp: messages of the parser, and how it goes on where a brace, a bracket or a
+// name is missing or too much. What only skips text is in parser_skip.cpp. See parser.h.
 #include <algorithm>
 #include <utility>
 
@@ -11,22 +11,25 @@ namespace xvrml {
 
 namespace {
 
-// Statements that X3D has and VRML97 has not, and what a world lacks without them. Nothing that is seen depends on most of them.
+// Statements that X3D has and VRML97 has not, and what a world lacks without them. Nothing that is
+// seen depends on most of them.
 struct X3dStatement {
   std::string_view keyword;
   const char* lost; // null: nothing
 };
-constexpr X3dStatement x3dStatements[] = {{"PROFILE", nullptr},
-                                          {"COMPONENT", nullptr},
-                                          {"META", nullptr},
-                                          {"UNIT", "lengths and angles are taken as metres and radians"},
-                                          {"IMPORT", "the name that it brings is unknown"},
-                                          {"EXPORT", "the name stays the file's own"}};
+constexpr X3dStatement x3dStatements[] = {
+    {"PROFILE", nullptr},
+    {"COMPONENT", nullptr},
+    {"META", nullptr},
+    {"UNIT", "lengths and angles are taken as metres and radians"},
+    {"IMPORT", "the name that it brings is unknown"},
+    {"EXPORT", "the name stays the file's own"}};
 
 const X3dStatement* x3dStatement(const Token& token) {
   if (!token.is(TokenKind::identifier)) return nullptr;
-  const auto found = std::find_if(std::begin(x3dStatements), std::end(x3dStatements),
-                                  [&](const X3dStatement& one) { return one.keyword == token.text; });
+  const auto found =
+      std::find_if(std::begin(x3dStatements), std::end(x3dStatements),
+                   [&](const X3dStatement& one) { return one.keyword == token.text; });
   return found == std::end(x3dStatements) ? nullptr : found;
 }
 
@@ -38,7 +41,8 @@ bool Parser::isX3dStatement(const Token& token) { return x3dStatement(token) != 
 bool Parser::leaveOutX3d(const Token& keyword) {
   const X3dStatement* statement = x3dStatement(keyword);
   if (!statement) return false;
-  const std::string text = fmt::format("{} is a statement of X3D, not of VRML97: it is left out", statement->keyword);
+  const std::string text =
+      fmt::format("{} is a statement of X3D, not of VRML97: it is left out", statement->keyword);
   if (statement->lost)
     lexer_.error(keyword.at(), fmt::format("{}; {}", text, statement->lost));
   else
@@ -58,12 +62,14 @@ void Parser::failAtEnd(const Token& opened) {
   fail(lexer_.peek(), fmt::format("}} of {} opened in line {}", describe(opened), line));
 }
 
-// A name the grammar forbids but files use is taken with a warning: nothing else could be meant where only a name may stand.
+// A name the grammar forbids but files use is taken with a warning: nothing else could be meant
+// where only a name may stand.
 bool Parser::name(Token& out, const char* what) {
   const Token token = lexer_.peek();
   out = lexer_.nextName();
   if (out.is(TokenKind::identifier)) return true;
-  const bool control = std::any_of(out.text.begin(), out.text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; });
+  const bool control = std::any_of(out.text.begin(), out.text.end(),
+                                   [](unsigned char c) { return c < 0x20 || c == 0x7f; });
   if (!out.is(TokenKind::invalid) || control || (!out.text.empty() && out.text[0] == '"')) {
     lexer_.seek(token.at()); // a brace belongs to whoever counts them
     return fail(token, what);
@@ -77,19 +83,24 @@ void Parser::closeNodesBefore(const Token& at, std::string_view what) {
   Taker& taker = takers_.back();
   const size_t nodes = open_.size() - taker.nodes;
   const SourcePosition begin = sink_.openNodePlace();
-  const std::string more = nodes == 1   ? std::string()
-                           : nodes == 2 ? ", nor is the node around it"
-                                        : fmt::format(", nor are the {} nodes around it", nodes - 1);
-  lexer_.error(at.at(), fmt::format("'}}' is missing before {}: {}, which begins in line {}, column {}, is not closed{}", what,
-                                    describe(open_.back()), begin.line, begin.column, more));
+  const std::string more = nodes == 1 ? std::string()
+                           : nodes == 2
+                               ? ", nor is the node around it"
+                               : fmt::format(", nor are the {} nodes around it", nodes - 1);
+  lexer_.error(
+      at.at(),
+      fmt::format(
+          "'}}' is missing before {}: {}, which begins in line {}, column {}, is not closed{}",
+          what, describe(open_.back()), begin.line, begin.column, more));
   keep_ = taker.nodes;
-  // If it was no brace that was missing but something else, the braces are still to come: within the list, or where it was ended
-  // too early, at the end of all.
+  // If it was no brace that was missing but something else, the braces are still to come: within
+  // the list, or where it was ended too early, at the end of all.
   (at.is(TokenKind::bracketClose) ? takers_.front() : taker).braces += nodes;
 }
 
-// A node of a known type where a field is expected, which begins with this token: the brace before it is missing, unless what
-// takes nodes here cannot hold it. False, with the token consumed, if it is something else.
+// A node of a known type where a field is expected, which begins with this token: the brace before
+// it is missing, unless what takes nodes here cannot hold it. False, with the token consumed, if it
+// is something else.
 bool Parser::nodeInBody(const Token& first) {
   if (sink_.hasField(first.text)) return false;
   lexer_.seek(first.at());
@@ -108,17 +119,20 @@ bool Parser::nodeInBody(const Token& first) {
     lexer_.next();
     return false;
   }
-  if (takers_.back().kind != Taker::Kind::interface && sink_.wouldTake(takers_.back().receiver, named.text, use)) {
+  if (takers_.back().kind != Taker::Kind::interface &&
+      sink_.wouldTake(takers_.back().receiver, named.text, use)) {
     closeNodesBefore(first, fmt::format("the node {}", describe(named)));
     return true;
   }
-  lexer_.error(first.at(), fmt::format("expected a field or }}, found the node {}: it is left out", describe(named)));
+  lexer_.error(first.at(), fmt::format("expected a field or }}, found the node {}: it is left out",
+                                       describe(named)));
   if (use) {
     lexer_.next();
     lexer_.nextName();
     return true;
   }
-  for (Token token = lexer_.next(); !token.is(TokenKind::braceOpen); token = lexer_.next()) noteLost(token);
+  for (Token token = lexer_.next(); !token.is(TokenKind::braceOpen); token = lexer_.next())
+    noteLost(token);
   skipBlock();
   return true;
 }
@@ -131,7 +145,8 @@ bool Parser::nodeAhead(Token& type) {
     lexer_.nextName();
     type = lexer_.next();
   }
-  const bool ahead = type.is(TokenKind::identifier) && lexer_.peek().is(TokenKind::braceOpen) && sink_.typeNamed(type.text);
+  const bool ahead = type.is(TokenKind::identifier) && lexer_.peek().is(TokenKind::braceOpen) &&
+                     sink_.typeNamed(type.text);
   lexer_.seek(start);
   return ahead;
 }
@@ -140,11 +155,12 @@ bool Parser::nodeAhead(Token& type) {
 bool Parser::bodyFollows(const Token& type) {
   const NodeType* known = sink_.typeNamed(type.text);
   const Token next = lexer_.peek();
-  return known && (next.is(TokenKind::braceClose) || (next.is(TokenKind::identifier) && known->find(next.text)));
+  return known && (next.is(TokenKind::braceClose) ||
+                   (next.is(TokenKind::identifier) && known->find(next.text)));
 }
 
-// Whether a list of nodes ends before this token, which stands where a node may: it is the next field of the node that has the
-// list. The lexer then stands at the token again.
+// Whether a list of nodes ends before this token, which stands where a node may: it is the next
+// field of the node that has the list. The lexer then stands at the token again.
 bool Parser::endsList(const Token& token, bool hasDef) {
   const Taker& taker = takers_.back();
   if (hasDef || taker.kind != Taker::Kind::list || open_.size() != taker.nodes) return false;
@@ -157,16 +173,20 @@ bool Parser::endsList(const Token& token, bool hasDef) {
 // A closing brace in a list of nodes: the list ends before it.
 bool Parser::closeListBefore(const Token& brace) {
   const Taker& around = takers_[takers_.size() - 2];
-  if (around.kind == Taker::Kind::interface && around.nodes == open_.size()) return fail(brace, "a node or ]"); // no node's list
+  if (around.kind == Taker::Kind::interface && around.nodes == open_.size())
+    return fail(brace, "a node or ]"); // no node's list
   const SourcePosition begin = sink_.openNodePlace();
-  lexer_.error(brace.at(), fmt::format("']' is missing before the '}}' of {}, which begins in line {}, column {}",
-                                       describe(open_.back()), begin.line, begin.column));
+  lexer_.error(
+      brace.at(),
+      fmt::format("']' is missing before the '}}' of {}, which begins in line {}, column {}",
+                  describe(open_.back()), begin.line, begin.column));
   ++takers_.front().braces;
   ++brackets_; // if it was this brace that was too many
   return true;
 }
 
-// What cannot begin a field. Braces and brackets are put right; after anything else the node is left out.
+// What cannot begin a field. Braces and brackets are put right; after anything else the node is
+// left out.
 bool Parser::strayInBody(const Token& token) {
   if (token.is(TokenKind::bracketClose)) {
     if (takers_.back().kind != Taker::Kind::statements) {
@@ -210,14 +230,16 @@ bool Parser::strayInStatements(const Token& token, TokenKind end) {
   return true;
 }
 
-// Behind a brace that opens nothing: it alone is passed over if what follows can stand here without it, else all that it holds.
+// Behind a brace that opens nothing: it alone is passed over if what follows can stand here without
+// it, else all that it holds.
 void Parser::passBrace(bool inNode) {
   const Token next = lexer_.peek();
   Token type;
   if (!inNode && lexer_.accept(TokenKind::braceClose)) return;
   bool here = next.is("ROUTE") || next.is("PROTO") || next.is("EXTERNPROTO");
   if (inNode)
-    here = here || next.is(TokenKind::braceClose) || (next.is(TokenKind::identifier) && sink_.hasField(next.text)) ||
+    here = here || next.is(TokenKind::braceClose) ||
+           (next.is(TokenKind::identifier) && sink_.hasField(next.text)) ||
            (sink_.isScript() && declares(next));
   else
     here = here || next.is("USE") || (next.is(TokenKind::identifier) && nodeAhead(type));

@@ -1,5 +1,6 @@
-// parser_skip.cpp: where the parser goes on after an error that leaves something out, and which names are lost. All loops, no
-// recursion: a million open braces are skipped like any other text. See parser.h.
+// parser_skip.cpp: where the parser goes on after an error that leaves something out, and which
+// names are lost. All loops, no recursion: a million open braces are skipped like any other text.
+// See parser.h.
 #include <string>
 
 #include "parse/parser.h"
@@ -8,10 +9,11 @@ namespace xvrml {
 
 namespace {
 
-// Whether a field's value may end with such a token. Words are left out: they may be the name of a field, too.
+// Whether a field's value may end with such a token. Words are left out: they may be the name of a
+// field, too.
 bool endsValue(TokenKind kind) {
-  return kind == TokenKind::braceClose || kind == TokenKind::bracketClose || kind == TokenKind::number ||
-         kind == TokenKind::string;
+  return kind == TokenKind::braceClose || kind == TokenKind::bracketClose ||
+         kind == TokenKind::number || kind == TokenKind::string;
 }
 
 // The last token of what skipOne() passes over.
@@ -34,10 +36,10 @@ void Parser::skipBlock(char kind) {
   if (!skipNested(kind, takers_.back().kind != Taker::Kind::statements)) fail(lexer_.peek(), "}");
 }
 
-// From behind an opening brace or bracket to behind its partner. opened: { the body of a node, s that of a prototype, [ a list.
-// What is missing within is found out as in text that is read: the end of the file, a bracket of a list around it (inList), a
-// node where only a field may stand, and a brace before a bracket's partner end it, and stay to be read. False at the end of the
-// file.
+// From behind an opening brace or bracket to behind its partner. opened: { the body of a node, s
+// that of a prototype, [ a list. What is missing within is found out as in text that is read: the
+// end of the file, a bracket of a list around it (inList), a node where only a field may stand, and
+// a brace before a bracket's partner end it, and stay to be read. False at the end of the file.
 bool Parser::skipNested(char opened, bool inList) {
   std::string open(1, opened);
   uint64_t lists = opened == '[', bodies = opened == 's'; // of [ and of s among them
@@ -88,8 +90,8 @@ bool Parser::skipNested(char opened, bool inList) {
   return true;
 }
 
-// The value of a field nobody knows: up to the next field of the node that is known, the end of the node, or a node that cannot
-// be a part of the value.
+// The value of a field nobody knows: up to the next field of the node that is known, the end of the
+// node, or a node that cannot be a part of the value.
 void Parser::skipField() {
   const bool inList = takers_.back().kind != Taker::Kind::statements;
   TokenKind previous = TokenKind::invalid;
@@ -100,7 +102,9 @@ void Parser::skipField() {
     if (token.is(TokenKind::bracketClose) && inList) return;
     if (token.is(TokenKind::identifier) && !first) {
       Token type;
-      if (token.is("ROUTE") || token.is("PROTO") || token.is("EXTERNPROTO") || sink_.hasField(token.text)) return;
+      if (token.is("ROUTE") || token.is("PROTO") || token.is("EXTERNPROTO") ||
+          sink_.hasField(token.text))
+        return;
       if (endsValue(previous) && nodeAhead(type)) return;
     }
     skipOne();
@@ -108,8 +112,8 @@ void Parser::skipField() {
   }
 }
 
-// A declaration in a Script whose type nobody knows: up to the next declaration or field of the Script, or its end. The rest of
-// the Script still runs.
+// A declaration in a Script whose type nobody knows: up to the next declaration or field of the
+// Script, or its end. The rest of the Script still runs.
 void Parser::skipDeclaration() {
   const bool inList = takers_.back().kind != Taker::Kind::statements;
   for (;;) {
@@ -121,8 +125,9 @@ void Parser::skipDeclaration() {
   }
 }
 
-// After an error in a prototype's interface: behind its body, which opens with the first brace that follows a bracket outside of
-// any node of a default value. A node that follows a bracket shows that there is no body.
+// After an error in a prototype's interface: behind its body, which opens with the first brace that
+// follows a bracket outside of any node of a default value. A node that follows a bracket shows
+// that there is no body.
 void Parser::skipProto() {
   TokenKind previous = TokenKind::invalid;
   for (;;) {
@@ -144,7 +149,8 @@ void Parser::skipProto() {
 // One token, or all that its brace or bracket holds.
 void Parser::skipOne() {
   const Token token = lexer_.next();
-  if (token.is(TokenKind::braceOpen)) skipNested('{', takers_.back().kind != Taker::Kind::statements);
+  if (token.is(TokenKind::braceOpen))
+    skipNested('{', takers_.back().kind != Taker::Kind::statements);
   if (token.is(TokenKind::bracketOpen)) skipNested('[', true);
   noteLost(token);
 }
@@ -153,7 +159,9 @@ void Parser::skipOne() {
 void Parser::skipToNode() {
   for (;;) {
     const Token token = lexer_.peek();
-    if (token.is(TokenKind::end) || token.is(TokenKind::braceClose) || token.is(TokenKind::bracketClose)) return;
+    if (token.is(TokenKind::end) || token.is(TokenKind::braceClose) ||
+        token.is(TokenKind::bracketClose))
+      return;
     if (token.is("DEF") || token.is("USE") || token.is("NULL")) return;
     if (token.is(TokenKind::identifier)) {
       lexer_.next();
@@ -176,12 +184,13 @@ void Parser::skipToStatement(TokenKind end) {
       continue;
     }
     if (token.is(TokenKind::identifier)) {
-      if (token.text == "DEF" || token.text == "USE" || token.text == "PROTO" || token.text == "EXTERNPROTO" ||
-          token.text == "ROUTE")
+      if (token.text == "DEF" || token.text == "USE" || token.text == "PROTO" ||
+          token.text == "EXTERNPROTO" || token.text == "ROUTE")
         return;
       const char* before = token.at();
       lexer_.next();
-      const bool isNode = lexer_.peek().is(TokenKind::braceOpen) && isIdentifierStart(static_cast<unsigned char>(token.text[0]));
+      const bool isNode = lexer_.peek().is(TokenKind::braceOpen) &&
+                          isIdentifierStart(static_cast<unsigned char>(token.text[0]));
       if (isNode || isX3dStatement(token)) return lexer_.seek(before);
       continue;
     }

@@ -1,4 +1,3 @@
-// set_field.cpp: see xvrml/set_field.h.
 #include "xvrml/set_field.h"
 
 #include "base/budget.h"
@@ -14,12 +13,14 @@ namespace {
 // An Inline has got another url.
 void loadAgain(World& world, InlineNode& node) {
   if (!world.options.loadInlines) return;
-  const std::shared_ptr<const Scope> old = std::exchange(node.content, nullptr); // ends when nothing refers to it here
+  const std::shared_ptr<const Scope> old =
+      std::exchange(node.content, nullptr); // ends when nothing refers to it here
   node.share.clear();
   const BudgetPtr budget = budgetOf(world);
   const uint64_t before = budget->used();
   Loader(world, world.options).loadLate(node, {node.source.file ? *node.source.file : world.path});
-  if (const uint64_t after = budget->used(); after > before) node.share.adopt(budget, after - before);
+  if (const uint64_t after = budget->used(); after > before)
+    node.share.adopt(budget, after - before);
 }
 
 } // namespace
@@ -31,15 +32,19 @@ bool setField(World& world, Node& node, std::string_view name, Value value) {
   while (!open.empty()) {
     const auto [one, from] = open.back();
     open.pop_back();
-    if (auto* inlineNode = dynamic_cast<InlineNode*>(one); inlineNode && from->name == "url") loadAgain(world, *inlineNode);
+    if (auto* inlineNode = dynamic_cast<InlineNode*>(one); inlineNode && from->name == "url")
+      loadAgain(world, *inlineNode);
     auto* instance = dynamic_cast<ProtoInstance*>(one);
     if (!instance) continue;
     instance->give(*from);
     for (const IsConnection& connection : instance->is) {
       const FieldInfo* to = connection.node->type().find(connection.field);
-      if (connection.interfaceName != from->name || !to || !holdsValue(*to) || to->type != from->type) continue;
+      if (connection.interfaceName != from->name || !to || !holdsValue(*to) ||
+          to->type != from->type)
+        continue;
       if (isMultiple(to->type)) leaveToViews(*connection.node, *to);
-      giveAcross({*instance, *from, *connection.node, *to, true}, instance->get(*from), world.diagnostics);
+      giveAcross({*instance, *from, *connection.node, *to, true}, instance->get(*from),
+                 world.diagnostics);
       if (NodeRef* standsFor = connection.node->expansion()) *standsFor = {}; // it is asked again
       open.emplace_back(connection.node.get(), to);
     }

@@ -1,5 +1,6 @@
-// sink.h: what the grammar says to whoever listens. The parser knows tokens and productions only; the builder (one sink) knows
-// node types, names and prototypes. Calls nest as the text does; every open is followed by its close, also after errors.
+// sink.h: what the grammar says to whoever listens. The parser knows tokens and productions only;
+// the builder (one sink) knows node types, names and prototypes. Calls nest as the text does; every
+// open is followed by its close, also after errors.
 #pragma once
 
 #include "base/lexer.h"
@@ -18,15 +19,17 @@ class ParseSink {
  public:
   virtual ~ParseSink() = default;
 
-  // node ::= nodeTypeId { nodeBody }. def: its DEF name or null. False: the type is not known, the body will be skipped and the
-  // node is not closed. good: false if the body could not be read.
+  // node ::= nodeTypeId { nodeBody }. def: its DEF name or null. False: the type is not known, the
+  // body will be skipped and the node is not closed. good: false if the body could not be read.
   virtual bool openNode(const Token& type, const Token* def) = 0;
   virtual void closeNode(bool good) = 0;
   virtual SourcePosition openNodePlace() const = 0; // where the innermost open node begins
-  // The interface of a node type that is known here: a prototype's or the standard's; null: there is none of that name.
+  // The interface of a node type that is known here: a prototype's or the standard's; null: there
+  // is none of that name.
   virtual const NodeType* typeNamed(std::string_view name) const = 0;
-  // A number for what takes complete nodes now (a file, a body, a field), good until it ends; and whether it would take a node of
-  // the named type, or with `use` the node that is DEFined by that name.
+  // A number for what takes complete nodes now (a file, a body, a field), good until it ends; and
+  // whether it would take a node of the named type, or with `use` the node that is DEFined by that
+  // name.
   virtual size_t receiver() const = 0;
   virtual bool wouldTake(size_t receiver, std::string_view name, bool use) const = 0;
   virtual bool isScript() const = 0; // the open node takes scriptBodyElements
@@ -42,8 +45,10 @@ class ParseSink {
   // id IS interfaceId in the open node.
   virtual void connect(const Token& field, const Token& interfaceName) = 0;
 
-  // An interface declaration of the open PROTO, EXTERNPROTO or Script. With hasValue a value follows, as in openField.
-  virtual FieldTarget openDeclaration(Access access, FieldType type, const Token& name, bool hasValue) = 0;
+  // An interface declaration of the open PROTO, EXTERNPROTO or Script. With hasValue a value
+  // follows, as in openField.
+  virtual FieldTarget openDeclaration(Access access, FieldType type, const Token& name,
+                                      bool hasValue) = 0;
   virtual void closeDeclaration(bool good) = 0;
 
   virtual void openProto(const Token& name) = 0;

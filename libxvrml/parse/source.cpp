@@ -1,4 +1,3 @@
-// source.cpp: see source.h.
 #include "parse/source.h"
 
 #include <algorithm>
@@ -48,13 +47,15 @@ void readAll(int descriptor, const std::string& name, const Limits& limits, Held
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) refuse(name, fmt::format("cannot be read: {}", std::strerror(errno)));
     bytes.keep(had + static_cast<size_t>(got));
-    if (bytes.text().size() > limits.fileBytes) refuse(name, fmt::format("longer than limit fileBytes={}", limits.fileBytes));
+    if (bytes.text().size() > limits.fileBytes)
+      refuse(name, fmt::format("longer than limit fileBytes={}", limits.fileBytes));
     if (got == 0) return bytes.fit();
   }
 }
 
 // Inflates all gzip members; refuses damage only if nothing came out: a cut file shows what it has.
-void inflateAll(std::string_view packed, const std::string& name, const Limits& limits, std::string& damage, HeldText& out) {
+void inflateAll(std::string_view packed, const std::string& name, const Limits& limits,
+                std::string& damage, HeldText& out) {
   z_stream stream{};
   if (inflateInit2(&stream, 15 + 16) != Z_OK) refuse(name, "no memory to unpack it");
   struct End {
@@ -68,7 +69,9 @@ void inflateAll(std::string_view packed, const std::string& name, const Limits& 
   int status = Z_OK;
   while (status != Z_STREAM_END || used < packed.size()) {
     if (status == Z_STREAM_END) { // another member, or padding
-      if (packed.size() - used < 2 || packed.substr(used, 2) != "\x1f\x8b" || inflateReset(&stream) != Z_OK) break;
+      if (packed.size() - used < 2 || packed.substr(used, 2) != "\x1f\x8b" ||
+          inflateReset(&stream) != Z_OK)
+        break;
     }
     const size_t had = out.text().size();
     const size_t step = std::min<size_t>(std::max<size_t>(1 << 16, had / 4), 64 << 20);
@@ -83,15 +86,18 @@ void inflateAll(std::string_view packed, const std::string& name, const Limits& 
     used += offered - stream.avail_in;
     out.keep(had + step - stream.avail_out);
     if (out.text().size() > most) {
-      const char* limit = most == limits.inflateBytes ? "inflateBytes" : most == limits.fileBytes ? "fileBytes" : "inflateRatio";
+      const char* limit = most == limits.inflateBytes ? "inflateBytes"
+                          : most == limits.fileBytes  ? "fileBytes"
+                                                      : "inflateRatio";
       const uint64_t value = most == limits.inflateBytes ? limits.inflateBytes
                              : most == limits.fileBytes  ? limits.fileBytes
                                                          : limits.inflateRatio;
       refuse(name, fmt::format("unpacks to more than limit {}={} allows", limit, value));
     }
     if (status != Z_OK && status != Z_STREAM_END) {
-      damage = status == Z_BUF_ERROR ? "the gzip data ends early"
-                                     : fmt::format("damaged gzip data: {}", stream.msg ? stream.msg : "unknown");
+      damage = status == Z_BUF_ERROR
+                   ? "the gzip data ends early"
+                   : fmt::format("damaged gzip data: {}", stream.msg ? stream.msg : "unknown");
       if (out.text().empty()) refuse(name, damage);
       break;
     }
@@ -101,7 +107,9 @@ void inflateAll(std::string_view packed, const std::string& name, const Limits& 
 
 bool isGzip(std::string_view bytes) { return bytes.starts_with("\x1f\x8b"); }
 
-std::string_view firstLine(std::string_view text) { return text.substr(0, text.find_first_of("\r\n")); }
+std::string_view firstLine(std::string_view text) {
+  return text.substr(0, text.find_first_of("\r\n"));
+}
 
 // Does a text without a header look like VRML97? A node, or one of the statements' keywords.
 bool looksLikeVrml(std::string_view text) {
@@ -110,7 +118,8 @@ bool looksLikeVrml(std::string_view text) {
   Lexer lexer(text, nullptr, none);
   const Token first = lexer.next();
   if (!first.is(TokenKind::identifier)) return false;
-  if (first.text == "DEF" || first.text == "PROTO" || first.text == "EXTERNPROTO") return lexer.peek().is(TokenKind::identifier);
+  if (first.text == "DEF" || first.text == "PROTO" || first.text == "EXTERNPROTO")
+    return lexer.peek().is(TokenKind::identifier);
   return lexer.peek().is(TokenKind::braceOpen);
 }
 
@@ -141,7 +150,8 @@ void HeldText::fit() {
 }
 
 std::string HeldText::tooMuch() const {
-  return "takes, with all that the world holds, more than " + (share_.budget() ? share_.budget()->name() : std::string());
+  return "takes, with all that the world holds, more than " +
+         (share_.budget() ? share_.budget()->name() : std::string());
 }
 
 Source Source::open(const std::string& path, const Limits& limits, const BudgetPtr& budget) {
@@ -153,11 +163,14 @@ Source Source::open(const std::string& path, const Limits& limits, const BudgetP
     Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
     if (file.number < 0) refuse(path, fmt::format("cannot be opened: {}", std::strerror(errno)));
     struct stat status {};
-    if (fstat(file.number, &status) != 0) refuse(path, fmt::format("cannot be read: {}", std::strerror(errno)));
+    if (fstat(file.number, &status) != 0)
+      refuse(path, fmt::format("cannot be read: {}", std::strerror(errno)));
     if (S_ISDIR(status.st_mode)) refuse(path, "is a folder, not a world");
     if (!S_ISREG(status.st_mode)) refuse(path, "is not a regular file");
     const auto size = static_cast<uint64_t>(status.st_size);
-    if (size > limits.fileBytes) refuse(path, fmt::format("has {} bytes: more than limit fileBytes={}", size, limits.fileBytes));
+    if (size > limits.fileBytes)
+      refuse(path,
+             fmt::format("has {} bytes: more than limit fileBytes={}", size, limits.fileBytes));
     if (size > 0) {
       void* mapping = mmap(nullptr, size, PROT_READ, MAP_PRIVATE, file.number, 0);
       if (mapping != MAP_FAILED) {
@@ -175,9 +188,11 @@ Source Source::open(const std::string& path, const Limits& limits, const BudgetP
   return source;
 }
 
-Source Source::fromMemory(std::string_view bytes, const std::string& name, const Limits& limits, const BudgetPtr& budget) {
+Source Source::fromMemory(std::string_view bytes, const std::string& name, const Limits& limits,
+                          const BudgetPtr& budget) {
   if (bytes.size() > limits.fileBytes)
-    refuse(name, fmt::format("has {} bytes: more than limit fileBytes={}", bytes.size(), limits.fileBytes));
+    refuse(name, fmt::format("has {} bytes: more than limit fileBytes={}", bytes.size(),
+                             limits.fileBytes));
   Source source(budget);
   source.text_ = bytes;
   source.unpack(name, limits, budget);
@@ -196,21 +211,26 @@ void Source::unpack(const std::string& name, const Limits& limits, const BudgetP
 
 Source::Source(Source&& other) noexcept
     : text_(other.text_), held_(std::move(other.held_)), damage_(std::move(other.damage_)),
-      mapping_(std::exchange(other.mapping_, nullptr)), mappedBytes_(other.mappedBytes_), byteOrderMark_(other.byteOrderMark_) {}
+      mapping_(std::exchange(other.mapping_, nullptr)), mappedBytes_(other.mappedBytes_),
+      byteOrderMark_(other.byteOrderMark_) {}
 
 Source::~Source() {
   if (mapping_) munmap(mapping_, mappedBytes_);
 }
 
 // "#VRML V2.0 utf8 [optional comment] <line terminator>"
-void Source::checkHeader(const std::shared_ptr<const std::string>& file, Diagnostics& diagnostics) const {
+void Source::checkHeader(const std::shared_ptr<const std::string>& file,
+                         Diagnostics& diagnostics) const {
   constexpr std::string_view exact = "#VRML V2.0 utf8";
   const auto ends = [](std::string_view rest) {
     return rest.empty() || rest[0] == ' ' || rest[0] == '\t' || rest[0] == '\n' || rest[0] == '\r';
   };
   if (!damage_.empty()) diagnostics.warn({file, 0, 0}, damage_);
-  const auto warn = [&](std::string message) { diagnostics.warn({file, 1, 1}, std::move(message)); };
-  if (byteOrderMark_) warn("the file begins with a byte-order mark, which a VRML97 header does not have; ignored");
+  const auto warn = [&](std::string message) {
+    diagnostics.warn({file, 1, 1}, std::move(message));
+  };
+  if (byteOrderMark_)
+    warn("the file begins with a byte-order mark, which a VRML97 header does not have; ignored");
   if (text_.starts_with(exact) && ends(text_.substr(exact.size()))) return;
   // The first lines that say something: blank lines and other comments before the header happen.
   std::string_view rest = text_;
@@ -219,29 +239,35 @@ void Source::checkHeader(const std::shared_ptr<const std::string>& file, Diagnos
     const bool comment = current.starts_with('#');
     if (comment && current.find("VRML") != current.npos) {
       if (current.find("V1.0") != current.npos) {
-        refuse(
-            *file,
-            "is a VRML 1.0 file; this browser reads VRML97 (#VRML V2.0 utf8). A converter such as vrml1tovrml2 makes one of it",
-            1);
+        refuse(*file,
+               "is a VRML 1.0 file; this browser reads VRML97 (#VRML V2.0 utf8). A converter such "
+               "as vrml1tovrml2 makes one of it",
+               1);
       }
       if (current.find("2.0") != current.npos) {
-        return warn(fmt::format("the file does not begin with exactly '{}'; read as VRML97 all the same", exact));
+        return warn(fmt::format(
+            "the file does not begin with exactly '{}'; read as VRML97 all the same", exact));
       }
-      refuse(*file, fmt::format("is not VRML97: expected '{}', found '{}'", exact, current.substr(0, 60)), 1);
+      refuse(*file,
+             fmt::format("is not VRML97: expected '{}', found '{}'", exact, current.substr(0, 60)),
+             1);
     }
-    if (comment && (current.starts_with("#X3D") || current.starts_with("#Inventor"))) refuseOther(*file, rest);
+    if (comment && (current.starts_with("#X3D") || current.starts_with("#Inventor")))
+      refuseOther(*file, rest);
     if (!comment && current.find_first_not_of(" \t,") != current.npos) break;
     rest.remove_prefix(std::min(rest.size(), current.size() + 1));
   }
   if (otherFormat(text_)) refuseOther(*file, text_);
-  if (looksLikeVrml(text_)) return warn(fmt::format("the header '{}' is missing; read as VRML97 all the same", exact));
+  if (looksLikeVrml(text_))
+    return warn(fmt::format("the header '{}' is missing; read as VRML97 all the same", exact));
   if (text_.empty()) refuse(*file, fmt::format("is empty: expected '{}'", exact));
   refuse(*file, fmt::format("is not a VRML97 world: expected it to begin with '{}'", exact), 1);
 }
 
 namespace {
 
-// The deleter of a file's name: what is known of the file goes with the name that all its nodes hold.
+// The deleter of a file's name: what is known of the file goes with the name that all its nodes
+// hold.
 struct NameDeleter {
   std::string comments;
   void operator()(const std::string* name) const { delete name; }
@@ -257,7 +283,8 @@ std::shared_ptr<const std::string> Source::nameWithComments(const std::string& n
     const std::string_view line = firstLine(rest);
     const size_t begin = line.find_first_not_of(" \t\r,");
     if (begin != line.npos && line[begin] != '#') break;
-    if (begin != line.npos) comments += std::string(line.substr(begin + 1, most - comments.size())) + "\n";
+    if (begin != line.npos)
+      comments += std::string(line.substr(begin + 1, most - comments.size())) + "\n";
     rest.remove_prefix(std::min(rest.size(), line.size() + 1));
   }
   return {new std::string(name), NameDeleter{std::move(comments)}};
@@ -265,7 +292,9 @@ std::shared_ptr<const std::string> Source::nameWithComments(const std::string& n
 
 std::string_view openingComments(const World& world) {
   for (const NodeRef& root : world.scope.roots)
-    if (const NameDeleter* known = root ? std::get_deleter<NameDeleter>(root->source.file) : nullptr) return known->comments;
+    if (const NameDeleter* known =
+            root ? std::get_deleter<NameDeleter>(root->source.file) : nullptr)
+      return known->comments;
   return {};
 }
 

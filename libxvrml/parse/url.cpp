@@ -1,6 +1,6 @@
-// url.cpp: where the URLs of a world lead: relative ones to files beside the file that holds them (ISO/IEC 14772-1 4.5.3),
-// absolute ones only if asked for, the network nowhere. Pure but for a look at the disk; any thread; used by the loader and the
-// mapper.
+// url.cpp: where the URLs of a world lead: relative ones to files beside the file that holds them
+// (ISO/IEC 14772-1 4.5.3), absolute ones only if asked for, the network nowhere. Pure but for a
+// look at the disk; any thread; used by the loader and the mapper.
 #include <algorithm>
 #include <filesystem>
 
@@ -45,13 +45,17 @@ std::string urlScheme(std::string_view url) {
   std::string name(url.substr(0, colon));
   for (char& c : name) {
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c + 32);
-    if (!((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '+' || c == '-' || c == '.')) return {};
+    if (!((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '+' || c == '-' || c == '.'))
+      return {};
   }
   return name;
 }
 
-ResolvedUrl resolveUrl(std::string_view url, std::string_view baseFile, const LoadOptions& options) {
-  const auto refuse = [&](std::string_view why) { return ResolvedUrl{{}, {}, fmt::format("'{}': {}", url.substr(0, 100), why)}; };
+ResolvedUrl resolveUrl(std::string_view url, std::string_view baseFile,
+                       const LoadOptions& options) {
+  const auto refuse = [&](std::string_view why) {
+    return ResolvedUrl{{}, {}, fmt::format("'{}': {}", url.substr(0, 100), why)};
+  };
   constexpr std::string_view blanks = " \t\r\n";
   const size_t first = url.find_first_not_of(blanks);
   if (first == url.npos) return refuse("the URL is empty");
@@ -65,7 +69,8 @@ ResolvedUrl resolveUrl(std::string_view url, std::string_view baseFile, const Lo
     path.remove_prefix(5);
     if (path.starts_with("//")) path.remove_prefix(2);
     if (path.starts_with("localhost/")) path.remove_prefix(9);
-    if (!options.allowAbsolute) return refuse("file: URLs are not followed unless absolute paths are allowed");
+    if (!options.allowAbsolute)
+      return refuse("file: URLs are not followed unless absolute paths are allowed");
   } else if (kind.size() == 1) {
     return refuse("paths with a drive letter are not followed");
   } else if (kind == "urn") {
@@ -87,21 +92,24 @@ ResolvedUrl resolveUrl(std::string_view url, std::string_view baseFile, const Lo
   std::string literal(path);
   std::replace(decoded.begin(), decoded.end(), '\\', '/'); // written on Windows
   if (decoded.starts_with('/')) absolute = true;
-  if (absolute && !options.allowAbsolute) return refuse("absolute paths are not followed unless allowed");
+  if (absolute && !options.allowAbsolute)
+    return refuse("absolute paths are not followed unless allowed");
   if (decoded.empty()) { // "#name": the file itself
     if (baseFile == "-") return refuse("standard input cannot be read twice");
     result.path = baseFile;
     return result;
   }
   const size_t slash = baseFile.rfind('/');
-  const std::string folder = absolute || slash == baseFile.npos ? "" : std::string(baseFile.substr(0, slash + 1));
+  const std::string folder =
+      absolute || slash == baseFile.npos ? "" : std::string(baseFile.substr(0, slash + 1));
   result.path = folder + decoded;
   if (result.path == "-") result.path = "./-"; // a file, not standard input
   if (exists(result.path)) return result;
   // A file whose very name holds %20 or a backslash, or one with a query.
   if (exists(folder + literal))
     result.path = folder + literal;
-  else if (const size_t query = decoded.find('?'); query != decoded.npos && exists(folder + decoded.substr(0, query))) {
+  else if (const size_t query = decoded.find('?');
+           query != decoded.npos && exists(folder + decoded.substr(0, query))) {
     result.path = folder + decoded.substr(0, query);
   }
   return result;
@@ -117,7 +125,8 @@ bool decodeDataUrl(std::string_view url, uint64_t most, DataUrl& out, std::strin
   std::string_view head = url.substr(5, comma - 5), body = url.substr(comma + 1);
   out.bytes.clear();
   out.type.clear();
-  for (const char c : head.substr(0, head.find(';'))) out.type += c >= 'A' && c <= 'Z' ? char(c + 32) : c;
+  for (const char c : head.substr(0, head.find(';')))
+    out.type += c >= 'A' && c <= 'Z' ? char(c + 32) : c;
   if (body.size() > 3 * most) {
     why = fmt::format("a data: URL of more than {} bytes", most);
     return false;
@@ -130,7 +139,8 @@ bool decodeDataUrl(std::string_view url, uint64_t most, DataUrl& out, std::strin
       if (low >= 0) i += 2;
     }
   } else {
-    constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    constexpr std::string_view digits =
+        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     uint32_t bits = 0;
     int count = 0;
     for (const char c : body) {

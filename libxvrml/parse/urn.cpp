@@ -1,4 +1,3 @@
-// urn.cpp: see urn.h.
 #include "parse/urn.h"
 
 #include "graph/inline_node.h"
@@ -21,7 +20,8 @@ ProtoPtr builtinPrototype(std::string_view url, const NodeType& wanted) {
   const NodeRef node = makeStaticNode(*type);
   for (FieldInfo field : type->fields) {
     const FieldInfo* declared = wanted.find(field.name);
-    if (declared && declared->type == field.type && field.access == Access::exposedField) field.access = declared->access;
+    if (declared && declared->type == field.type && field.access == Access::exposedField)
+      field.access = declared->access;
     field.change = Change::none;
     proto->is.push_back({node, field.name, field.name});
     addField(*interface, std::move(field));

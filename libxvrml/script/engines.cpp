@@ -1,4 +1,3 @@
-// engines.cpp: see engines.h.
 #include "script/engines.h"
 
 #include <map>
@@ -30,7 +29,9 @@ const std::vector<XsEngine>& libraryEngines(const std::string& path) {
   Libraries& all = libraries();
   const std::scoped_lock lock(all.mutex);
   const auto known = all.byPath.find(path);
-  return known != all.byPath.end() ? known->second : all.byPath.emplace(path, loadScriptLibrary(path)).first->second;
+  return known != all.byPath.end()
+             ? known->second
+             : all.byPath.emplace(path, loadScriptLibrary(path)).first->second;
 }
 
 } // namespace
@@ -48,7 +49,9 @@ void ScriptEngines::load(const std::string& path) {
 
 void ScriptEngines::loadNamed(std::string_view name) {
   for (const std::string& folder : folders_) {
-    const std::string file = plugin_files::trusted(folder) ? plugin_files::file(folder, std::string(name)) : std::string();
+    const std::string file = plugin_files::trusted(folder)
+                                 ? plugin_files::file(folder, std::string(name))
+                                 : std::string();
     if (!file.empty()) return load(file);
   }
 }
@@ -61,7 +64,8 @@ void ScriptEngines::loadAll() {
   }
 }
 
-const XsEngine* ScriptEngines::find(Names names, std::string_view wanted, std::string_view libraryName) {
+const XsEngine* ScriptEngines::find(Names names, std::string_view wanted,
+                                    std::string_view libraryName) {
   const auto known = [&]() -> const XsEngine* {
     for (const auto* engines : loaded_)
       for (const XsEngine& engine : *engines)
@@ -94,9 +98,15 @@ std::string libraryOf(const XsEngine& engine) {
   return {};
 }
 
-const XsEngine* ScriptEngines::byScheme(std::string_view scheme) { return find(&XsEngine::schemes, scheme, scheme); }
-const XsEngine* ScriptEngines::byMimeType(std::string_view type) { return find(&XsEngine::mimeTypes, type, {}); }
-const XsEngine* ScriptEngines::bySuffix(std::string_view suffix) { return find(&XsEngine::suffixes, suffix, {}); }
+const XsEngine* ScriptEngines::byScheme(std::string_view scheme) {
+  return find(&XsEngine::schemes, scheme, scheme);
+}
+const XsEngine* ScriptEngines::byMimeType(std::string_view type) {
+  return find(&XsEngine::mimeTypes, type, {});
+}
+const XsEngine* ScriptEngines::bySuffix(std::string_view suffix) {
+  return find(&XsEngine::suffixes, suffix, {});
+}
 
 std::vector<std::string> scriptFolders(std::string_view configured) {
   static const char here = 0;

@@ -1,5 +1,6 @@
-// engines.h: which script engine serves a protocol: looks through the configured folders, loads plug-ins (dlopen), checks their
-// ABI. Loaded libraries stay for the life of the process. One object per world, on the browser's thread; libraries are shared.
+// engines.h: which script engine serves a protocol: looks through the configured folders, loads
+// plug-ins (dlopen), checks their ABI. Loaded libraries stay for the life of the process. One
+// object per world, on the browser's thread; libraries are shared.
 #pragma once
 
 #include <string>
@@ -16,8 +17,9 @@ class ScriptEngines {
   // folders: in the order they are searched.
   explicit ScriptEngines(std::vector<std::string> folders) : folders_(std::move(folders)) {}
 
-  // The first engine that serves a URL scheme ("javascript"), a MIME type or a file suffix (".js"), all in lower case; null if
-  // there is none. A library that bears the scheme's name is tried before all others.
+  // The first engine that serves a URL scheme ("javascript"), a MIME type or a file suffix (".js"),
+  // all in lower case; null if there is none. A library that bears the scheme's name is tried
+  // before all others.
   const XsEngine* byScheme(std::string_view scheme);
   const XsEngine* byMimeType(std::string_view type);
   const XsEngine* bySuffix(std::string_view suffix);
@@ -44,7 +46,8 @@ class ScriptEngines {
 // The file that an engine found by these functions has come from; "" if it was not.
 std::string libraryOf(const XsEngine& engine);
 
-// Folders of a process: configured ones (colon-separated), $XVRML_SCRIPT_PATH, the folder beside the library
+// Folders of a process: configured ones (colon-separated), $XVRML_SCRIPT_PATH, the folder beside
+// the library
 // (../lib/xvrml/scripts).
 std::vector<std::string> scriptFolders(std::string_view configured);
 

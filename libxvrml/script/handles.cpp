@@ -1,4 +1,3 @@
-// handles.cpp: see handles.h.
 #include "script/handles.h"
 
 #include <utility>

@@ -1,6 +1,7 @@
-// handles.h: the nodes that a Script knows, as numbers. A number is good while the engine's function runs in which it was given
-// out, longer if it is retained; a Script's own node has a number that is always good and holds no reference. One table per
-// Script; numbers are never used twice. [the browser's thread]
+// handles.h: the nodes that a Script knows, as numbers. A number is good while the engine's
+// function runs in which it was given out, longer if it is retained; a Script's own node has a
+// number that is always good and holds no reference. One table per Script; numbers are never used
+// twice. [the browser's thread]
 #pragma once
 
 #include <unordered_map>
@@ -12,7 +13,8 @@ namespace xvrml {
 
 class Handles {
  public:
-  Handles(Node* own, XsNode ownNumber, XsNode& lastNumber) : own_(own), ownNumber_(ownNumber), last_(lastNumber) {}
+  Handles(Node* own, XsNode ownNumber, XsNode& lastNumber)
+      : own_(own), ownNumber_(ownNumber), last_(lastNumber) {}
 
   // 0 for NULL, and when the Script has too many.
   XsNode give(Node* node);

@@ -33,7 +33,8 @@ uint64_t bytesOf(const Value& value) {
 
 } // namespace
 
-ScriptHost::ScriptHost(Browser& browser, Engine& engine, World& world, const BrowserOptions& options, const RunOptions& run)
+ScriptHost::ScriptHost(Browser& browser, Engine& engine, World& world,
+                       const BrowserOptions& options, const RunOptions& run)
     : browser_(browser), engine_(engine), world_(world), options_(options), run_(run),
       programs_(scriptFolders(options.scriptPath), world.diagnostics, options.trustScripts),
       table_(std::make_unique<Table>(*this)), patience_(options.scriptPatience) {}
@@ -43,7 +44,8 @@ ScriptHost::~ScriptHost() {
   ending_ = closing_ = true;
   constexpr double grace = 0.25; // nobody waits longer for a window to close
   patience_ = options_.scriptPatience > 0 ? grace : 0;
-  endBy_ = wire::Clock::now() + std::chrono::milliseconds(int64_t(1000 * std::clamp(options_.scriptSeconds, grace, 1e6)));
+  endBy_ = wire::Clock::now() + std::chrono::milliseconds(
+                                    int64_t(1000 * std::clamp(options_.scriptSeconds, grace, 1e6)));
   try {
     finish();
   } catch (const std::bad_alloc&) {} // the others end all the same
@@ -54,7 +56,8 @@ ScriptHost::~ScriptHost() {
     stop(*script);
   }
   processes_.reset();
-  scripts_.clear(); // handles may be the last to hold nodes, and nodes Scripts: nothing of them runs any more
+  scripts_.clear(); // handles may be the last to hold nodes, and nodes Scripts: nothing of them
+                    // runs any more
 }
 
 const XsHost* ScriptHost::table() const { return table_.get(); }
@@ -127,7 +130,8 @@ XsResult ScriptHost::plainCall(Script& script, wire::Op op, Function function) {
     message_.begin(op, script.number, engine_.now());
     return callRemote(script, op, message_);
   }
-  return call(script, wire::functionName(op), [&] { return (script.engine->*function)(script.interpreter, engine_.now()); });
+  return call(script, wire::functionName(op),
+              [&] { return (script.engine->*function)(script.interpreter, engine_.now()); });
 }
 
 void ScriptHost::flush(Script& script) {
@@ -166,7 +170,8 @@ void ScriptHost::receive(ScriptNode& node, const FieldInfo& in, const Value& val
   queue(script, in, value);
 }
 
-// While a function of the Script takes its time in its process, events come with every tick: they must not become ever more.
+// While a function of the Script takes its time in its process, events come with every tick: they
+// must not become ever more.
 void ScriptHost::queue(Script& script, const FieldInfo& in, const Value& value) {
   constexpr size_t mostEvents = 1000;
   constexpr uint64_t mostBytes = 64 << 20;
@@ -175,17 +180,19 @@ void ScriptHost::queue(Script& script, const FieldInfo& in, const Value& value) 
   script.waiting.push_back({&in, value, bytes});
   script.waitingBytes += bytes;
   if (script.ready()) return; // they leave in this cascade
-  while (script.waiting.size() > mostEvents || (script.waitingBytes > mostBytes && script.waiting.size() > 1)) {
+  while (script.waiting.size() > mostEvents ||
+         (script.waitingBytes > mostBytes && script.waiting.size() > 1)) {
     script.waitingBytes -= script.waiting.front().bytes;
     script.waiting.pop_front();
-    if (script.dropped++ == 0) log(script, 2, 0, "is still busy: the oldest of the events that wait for it are dropped");
+    if (script.dropped++ == 0)
+      log(script, 2, 0, "is still busy: the oldest of the events that wait for it are dropped");
   }
 }
 
 void ScriptHost::deliver(Script& script, const FieldInfo& in, const Value& value) {
   if (!script.ready() || !script.engine->event) return;
-  const auto named =
-      std::find_if(script.fields.begin(), script.fields.end(), [&](const XsField& f) { return f.name == in.name; });
+  const auto named = std::find_if(script.fields.begin(), script.fields.end(),
+                                  [&](const XsField& f) { return f.name == in.name; });
   const auto index = uint32_t(named - script.fields.begin());
   LentValue event;
   const XsValue& lent = event.lend(value, script.handles);
@@ -202,7 +209,8 @@ void ScriptHost::deliver(Script& script, const FieldInfo& in, const Value& value
   });
 }
 
-// mustEvaluate FALSE: events wait until nothing else is left to do in the cascade; they keep their order.
+// mustEvaluate FALSE: events wait until nothing else is left to do in the cascade; they keep their
+// order.
 bool ScriptHost::eventsProcessed() {
   if (spent()) stopAll();
   if (due_.empty()) return false;
@@ -224,12 +232,14 @@ void ScriptHost::drain(Key key, Script& script) {
   script.owed = script.busy() || script.expected; // then when it has returned
   if (script.owed) return;
   if (!script.waiting.empty() && script.ready()) due_[key] = true; // it has been started anew
-  if (script.ready() && !spent()) plainCall(script, wire::Op::eventsProcessed, &XsEngine::eventsProcessed);
+  if (script.ready() && !spent())
+    plainCall(script, wire::Op::eventsProcessed, &XsEngine::eventsProcessed);
 }
 
 void ScriptHost::drop() {
   for (const auto& [key, waits] : std::exchange(due_, {}))
-    if (const auto found = scripts_.find(key); found != scripts_.end()) found->second->waiting.clear();
+    if (const auto found = scripts_.find(key); found != scripts_.end())
+      found->second->waiting.clear();
 }
 
 void ScriptHost::tick() {
@@ -242,11 +252,13 @@ void ScriptHost::tick() {
   if (processes_) serveLate();
   for (const Key key : std::vector<Key>(ticking_)) {
     const auto found = scripts_.find(key);
-    if (found != scripts_.end() && found->second->ready() && !spent()) plainCall(*found->second, wire::Op::tick, &XsEngine::tick);
+    if (found != scripts_.end() && found->second->ready() && !spent())
+      plainCall(*found->second, wire::Op::tick, &XsEngine::tick);
   }
 }
 
-// The node is being destroyed, in the middle of whatever let go of it: a copy keeps its fields until shutdown can be called.
+// The node is being destroyed, in the middle of whatever let go of it: a copy keeps its fields
+// until shutdown can be called.
 void ScriptHost::end(ScriptNode& node) noexcept {
   const auto found = scripts_.find(liveOf(node)->order);
   if (found == scripts_.end()) return;
@@ -258,7 +270,8 @@ void ScriptHost::end(ScriptNode& node) noexcept {
     auto* ghost = new ScriptNode(node.typePtr);
     script->ghost = NodeRef(ghost);
     ghost->values = std::move(node.values);
-    node.values = std::vector<Value>(ghost->values.size()); // those who read them meanwhile find some
+    node.values =
+        std::vector<Value>(ghost->values.size()); // those who read them meanwhile find some
     for (const FieldInfo& field : node.type().fields)
       if (holdsValue(field)) node.values[field.offset] = defaultValue(field.type);
     ghost->source = node.source;
@@ -294,7 +307,8 @@ Script* ScriptHost::find(XsNode self) {
 bool ScriptHost::overBudget(Script& script, uint64_t steps) {
   script.steps = saturatingAdd(script.steps, steps);
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - script.since;
-  const bool late = !script.process && taken.count() > options_.scriptSeconds; // a process has a clock of its own
+  const bool late =
+      !script.process && taken.count() > options_.scriptSeconds; // a process has a clock of its own
   if (script.steps > options_.scriptSteps || late) script.stopped = true;
   return script.stopped;
 }
@@ -304,8 +318,12 @@ void ScriptHost::log(Script& script, int severity, uint32_t line, const std::str
   script.failed = script.failed || severity >= 3;
   if (severity <= 0 && options_.print) return options_.print(text);
   std::unordered_set<std::string>& told = severity >= 3 ? script.failures : script.told;
-  const size_t apart = severity <= 0 ? told.size() : 0; // each line that is printed counts, what is wrong is told once
-  if (told.size() > most || !told.insert(fmt::format("{} {} {}", line, apart, text.substr(0, 2000))).second) return;
+  const size_t apart = severity <= 0
+                           ? told.size()
+                           : 0; // each line that is printed counts, what is wrong is told once
+  if (told.size() > most ||
+      !told.insert(fmt::format("{} {} {}", line, apart, text.substr(0, 2000))).second)
+    return;
   Diagnostic d;
   d.severity = severity <= 1 ? Severity::note : severity == 2 ? Severity::warning : Severity::error;
   const SourcePosition& place = line > 0 ? script.start : script.node->source;
@@ -314,7 +332,8 @@ void ScriptHost::log(Script& script, int severity, uint32_t line, const std::str
   d.column = line > 0 ? 0 : place.column;
   const std::string& name = script.node->defName;
   d.message = told.size() > most ? "Script: more messages than can be read; the rest is left out"
-                                 : fmt::format("Script{}{}: {}", name.empty() ? "" : " ", name, text.substr(0, 2000));
+                                 : fmt::format("Script{}{}: {}", name.empty() ? "" : " ", name,
+                                               text.substr(0, 2000));
   world_.diagnostics.add(std::move(d));
 }
 

@@ -1,6 +1,7 @@
-// host.h: runs the Script nodes of a world (ISO/IEC 14772-1 4.12): finds their engines, brings them events, takes theirs. The
-// engine of events calls it; scripts call the world through the table of functions in host_table.cpp. Owned by the Browser, ends
-// before the engine of events. [the browser's thread]
+// host.h: runs the Script nodes of a world (ISO/IEC 14772-1 4.12): finds their engines, brings them
+// events, takes theirs. The engine of events calls it; scripts call the world through the table of
+// functions in host_table.cpp. Owned by the Browser, ends before the engine of events. [the
+// browser's thread]
 #pragma once
 
 #include <chrono>
@@ -18,7 +19,8 @@ namespace xvrml {
 
 // A Script node that has an interpreter, or will have one at its turn.
 struct Script {
-  Script(ScriptNode& node, XsNode self, XsNode& lastNumber) : node(&node), self(self), handles(&node, self, lastNumber) {}
+  Script(ScriptNode& node, XsNode self, XsNode& lastNumber)
+      : node(&node), self(self), handles(&node, self, lastNumber) {}
 
   struct Waiting { // an event that has not been brought yet
     const FieldInfo* in;
@@ -49,10 +51,11 @@ struct Script {
   std::vector<XsField> fields;
 
   // Its interpreter in another process (script/remote)
-  ProcessRef process;    // null: it is in this one
-  uint32_t number = 0;   // of the interpreter there
-  wire::Op pending{};    // the function that is running there; 0: none
-  bool ahead = false;    // that is `create`, and the Script's turn to start has not come: nobody looks after it yet
+  ProcessRef process;  // null: it is in this one
+  uint32_t number = 0; // of the interpreter there
+  wire::Op pending{};  // the function that is running there; 0: none
+  bool ahead = false; // that is `create`, and the Script's turn to start has not come: nobody looks
+                      // after it yet
   bool expected = false; // will be started, again or for the first time: events wait
   int restarts = 0;
   bool owed = false; // eventsProcessed, when the call under way has returned
@@ -70,15 +73,17 @@ struct Script {
   std::string lentText, error;
   std::deque<Waiting> waiting;
   std::vector<Output> outputs;
-  std::unordered_set<std::string> told;     // what it has printed, and warnings, each of them once
-  std::unordered_set<std::string> failures; // errors, each once: what a Script prints cannot hide them
-  bool counted = false;                     // in ScriptCounts::started, which restarts leave as it is
+  std::unordered_set<std::string> told; // what it has printed, and warnings, each of them once
+  std::unordered_set<std::string>
+      failures;         // errors, each once: what a Script prints cannot hide them
+  bool counted = false; // in ScriptCounts::started, which restarts leave as it is
 };
 
 class ScriptHost : public ScriptRunner {
  public:
   struct Table; // the XsHost that scripts get, with the way back to this
-  ScriptHost(Browser& browser, Engine& engine, World& world, const BrowserOptions& options, const RunOptions& run);
+  ScriptHost(Browser& browser, Engine& engine, World& world, const BrowserOptions& options,
+             const RunOptions& run);
   ~ScriptHost() override; // shuts all down
   ScriptHost(const ScriptHost&) = delete;
   ScriptHost& operator=(const ScriptHost&) = delete;
@@ -102,8 +107,10 @@ class ScriptHost : public ScriptRunner {
   using Key = uint32_t; // order of the nodes in the world
 
   // Answers of calls beside those of XsResult
-  static constexpr auto later = XsResult(0x7ffffff0); // the function is still running in its process; see tick
-  static constexpr auto again = XsResult(0x7ffffff1); // its process was gone before: it is started anew
+  static constexpr auto later =
+      XsResult(0x7ffffff0); // the function is still running in its process; see tick
+  static constexpr auto again =
+      XsResult(0x7ffffff1); // its process was gone before: it is started anew
 
   // Starting Scripts: host_start.cpp
   void startAhead();
@@ -157,7 +164,8 @@ class ScriptHost : public ScriptRunner {
   void spend(std::chrono::steady_clock::duration time, double processor);
   void spendOfAll();
   bool spent() const {
-    return options_.scriptPatience <= 0 && (used_ >= run_.worldScriptSeconds || waited_ >= mostWaiting * run_.worldScriptSeconds);
+    return options_.scriptPatience <= 0 &&
+           (used_ >= run_.worldScriptSeconds || waited_ >= mostWaiting * run_.worldScriptSeconds);
   }
   void stopAll();
   void markReach(Script& script);
@@ -175,16 +183,17 @@ class ScriptHost : public ScriptRunner {
   size_t ahead_ = 0;                           // how many of them startAhead() has dealt with
   size_t sentAhead_ = 0;                       // how many are ahead of their turn
   std::vector<std::unique_ptr<Script>> ended_; // their nodes have been destroyed
-  std::map<Key, bool> due_;                    // eventsProcessed is due; true: there are events waiting
+  std::map<Key, bool> due_; // eventsProcessed is due; true: there are events waiting
   std::vector<Key> ticking_;
   std::vector<Key> late_;                      // to be started when their processes are not busy
   std::unique_ptr<ScriptProcesses> processes_; // null until one is needed
-  std::unordered_set<std::string> unusable_;   // engines of which it has been told that they have no process
+  std::unordered_set<std::string>
+      unusable_; // engines of which it has been told that they have no process
   wire::Writer message_;
   uint32_t interpreters_ = 0; // in processes, ever
-  double patience_;           // seconds that calls may still wait before the next tick; below 0: hardly any
-  // Of RunOptions::worldScriptSeconds: processor time, so that a busy machine stops no Script that an idle one lets run. What
-  // sleeps uses none: waiting is bounded, too.
+  double patience_; // seconds that calls may still wait before the next tick; below 0: hardly any
+  // Of RunOptions::worldScriptSeconds: processor time, so that a busy machine stops no Script that
+  // an idle one lets run. What sleeps uses none: waiting is bounded, too.
   static constexpr double mostWaiting = 10;
   double used_ = 0, waited_ = 0;   // seconds: of the processor, on the wall
   std::optional<double> lastTick_; // the world's time then

@@ -1,5 +1,6 @@
-// host_remote.cpp: Scripts whose interpreters are in other processes: how they are called, waited for, looked after while they
-// take their time, and what becomes of them when their process ends. Part of ScriptHost; see host.h.
+// host_remote.cpp: Scripts whose interpreters are in other processes: how they are called, waited
+// for, looked after while they take their time, and what becomes of them when their process ends.
+// Part of ScriptHost; see host.h.
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -11,8 +12,8 @@ namespace xvrml {
 namespace {
 
 constexpr double forEver = 1e9;
-// A tick gives all functions that are still running together so much time for what they ask of the host, and each so much to ask
-// for more.
+// A tick gives all functions that are still running together so much time for what they ask of the
+// host, and each so much to ask for more.
 constexpr auto tickShare = std::chrono::milliseconds(5);
 constexpr double linger = 0.0002;
 constexpr int mostRestarts = 3;
@@ -32,8 +33,8 @@ bool ScriptHost::isolated(const XsEngine& engine) const {
 
 ProcessRef ScriptHost::chooseProcess(const XsEngine& engine, size_t coming, std::string& why) {
   if (!processes_) processes_ = std::make_unique<ScriptProcesses>(*table_);
-  const ProcessSettings settings{libraryOf(engine), engine.name, options_.scriptSteps, options_.scriptSeconds,
-                                 options_.scriptMemory};
+  const ProcessSettings settings{libraryOf(engine), engine.name, options_.scriptSteps,
+                                 options_.scriptSeconds, options_.scriptMemory};
   return processes_->choose(settings, coming, why);
 }
 
@@ -44,7 +45,8 @@ XsResult ScriptHost::createRemote(Script& script) {
   if (!process) {
     if (unusable_.insert(engine.name).second)
       log(script, 3, 0,
-          fmt::format("no process for programs of engine {}: {}; Scripts of this engine do nothing", engine.name, why));
+          fmt::format("no process for programs of engine {}: {}; Scripts of this engine do nothing",
+                      engine.name, why));
     return XS_FAILED;
   }
   if (process->busy()) {
@@ -58,7 +60,8 @@ XsResult ScriptHost::createRemote(Script& script) {
   return result == later ? waitFor(script) : result;
 }
 
-// Sends all that its process needs to make the interpreter, and to go on with initialize if the engine has that.
+// Sends all that its process needs to make the interpreter, and to go on with initialize if the
+// engine has that.
 XsResult ScriptHost::beginCreate(Script& script, const ProcessRef& process) {
   XsScriptInfo& info = script.info;
   info.flags &= ~uint32_t(XS_TRUSTED | XS_NETWORK); // they can do nothing there
@@ -80,7 +83,8 @@ XsResult ScriptHost::beginCreate(Script& script, const ProcessRef& process) {
 
 // --- Calls ---
 
-// Sends a call. Answers `later`, or `again` if the process is dead: nobody's function was running there.
+// Sends a call. Answers `later`, or `again` if the process is dead: nobody's function was running
+// there.
 XsResult ScriptHost::beginCall(Script& script, wire::Op op, wire::Writer& message) {
   const ProcessRef process = script.process;
   enter(script);
@@ -89,7 +93,8 @@ XsResult ScriptHost::beginCall(Script& script, wire::Op op, wire::Writer& messag
       script.stopped = script.wasStopped;
       return again;
     }
-    log(script, 3, 0, fmt::format("{}: longer than a message to a process may be", wire::functionName(op)));
+    log(script, 3, 0,
+        fmt::format("{}: longer than a message to a process may be", wire::functionName(op)));
     return leave(script, wire::functionName(op), XS_FAILED);
   }
   script.pending = op;
@@ -108,7 +113,8 @@ wire::Clock::time_point ScriptHost::patienceEnds() const {
   // When it is used up, calls that are answered at once still are.
   const double least = patience_ > -options_.scriptPatience ? 0.001 : 0;
   const std::chrono::duration<double> patience(std::clamp(patience_, least, 1e6));
-  return std::min(endBy_, wire::Clock::now() + std::chrono::duration_cast<wire::Clock::duration>(patience));
+  return std::min(endBy_,
+                  wire::Clock::now() + std::chrono::duration_cast<wire::Clock::duration>(patience));
 }
 
 // Calls between two ticks share one patience: a thousand slow Scripts cost no more than one.
@@ -119,11 +125,13 @@ XsResult ScriptHost::waitFor(Script& script) {
   const auto taken = wire::Clock::now() - start;
   if (options_.scriptPatience > 0) patience_ -= std::chrono::duration<double>(taken).count();
   const double seconds = std::chrono::duration<double>(taken).count();
-  spend(taken, process->dead() ? std::min(seconds, options_.scriptSeconds) : process->takeProcessorTime());
+  spend(taken,
+        process->dead() ? std::min(seconds, options_.scriptSeconds) : process->takeProcessorTime());
   return result;
 }
 
-XsResult ScriptHost::serveCall(Script& script, double first, double next, wire::Clock::time_point until) {
+XsResult ScriptHost::serveCall(Script& script, double first, double next,
+                               wire::Clock::time_point until) {
   const NodeRef keep(script.node);
   const ProcessRef process = script.process;
   Script* const outer = std::exchange(running_, &script);
@@ -159,8 +167,9 @@ void ScriptHost::lose(Script& script, wire::Op op, bool tooLong) {
   script.outputs.clear();
   script.waiting.clear();
   log(script, 3, 1,
-      tooLong ? fmt::format("{} took too long: the Script is stopped", function)
-              : fmt::format("{}: its process {}: the Script is stopped", function, process->death()));
+      tooLong
+          ? fmt::format("{} took too long: the Script is stopped", function)
+          : fmt::format("{}: its process {}: the Script is stopped", function, process->death()));
   detach(script);
   processes_->programEnded();
   restartAll(*process);
@@ -182,7 +191,8 @@ void ScriptHost::restartAll(const ScriptProcess& gone) {
   for (const auto& [key, script] : scripts_)
     if (script->process.get() == &gone) keys.push_back(key);
   for (const Key key : keys)
-    if (const auto found = scripts_.find(key); found != scripts_.end()) restart(key, *found->second, gone.death());
+    if (const auto found = scripts_.find(key); found != scripts_.end())
+      restart(key, *found->second, gone.death());
 }
 
 void ScriptHost::restart(Key key, Script& script, const std::string& why) {
@@ -194,7 +204,8 @@ void ScriptHost::restart(Key key, Script& script, const std::string& why) {
   if (++script.restarts > mostRestarts) {
     script.stopped = true;
     script.waiting.clear();
-    return log(script, 3, 1, fmt::format("the process that it runs in {} again: the Script is stopped", why));
+    return log(script, 3, 1,
+               fmt::format("the process that it runs in {} again: the Script is stopped", why));
   }
   log(script, 2, 1, fmt::format("the process that it runs in {}: it is started anew", why));
   script.nextUrl = 0;
@@ -218,7 +229,9 @@ void ScriptHost::stopRemote(Script& script) {
   const ProcessRef process = script.process;
   const bool running = script.pending != wire::Op{};
   if (running) {
-    log(script, 1, 0, fmt::format("{} was still running when the Script ended", wire::functionName(script.pending)));
+    log(script, 1, 0,
+        fmt::format("{} was still running when the Script ended",
+                    wire::functionName(script.pending)));
     process->orphaned = true;
   }
   detach(script);
@@ -231,13 +244,16 @@ void ScriptHost::stopRemote(Script& script) {
   if (beginning_.empty()) processes_->trim();
 }
 
-// The world ends: a few Scripts of those that follow on `from` begin to shut down, each in a process where nothing else runs.
+// The world ends: a few Scripts of those that follow on `from` begin to shut down, each in a
+// process where nothing else runs.
 void ScriptHost::shutDownAhead(Key from) {
   if (spent() || wire::Clock::now() >= endBy_) return;
   size_t left = ScriptProcesses::most;
   for (auto next = scripts_.upper_bound(from); next != scripts_.end() && left > 0; ++next, --left) {
     Script& script = *next->second;
-    if (!script.process || !script.engine || !script.engine->shutdown || script.busy() || script.process->dead()) continue;
+    if (!script.process || !script.engine || !script.engine->shutdown || script.busy() ||
+        script.process->dead())
+      continue;
     message_.begin(wire::Op::shutdown, script.number, engine_.now());
     beginCall(script, wire::Op::shutdown, message_);
   }
@@ -249,7 +265,8 @@ void ScriptHost::discard(const ProcessRef& process, double first, wire::Clock::t
     if (process->busy()) {
       if (!process->orphaned) return; // somebody waits for that
       Script* const outer = std::exchange(running_, nullptr);
-      const ScriptProcess::State state = process->serve(first, std::max(first, linger), until, engine_.now());
+      const ScriptProcess::State state =
+          process->serve(first, std::max(first, linger), until, engine_.now());
       running_ = outer;
       if (state == ScriptProcess::State::running) return;
       process->orphaned = false;
@@ -277,16 +294,20 @@ void ScriptHost::serveLate() {
     Script& script = *found->second;
     const wire::Op op = script.pending;
     const auto now = wire::Clock::now();
-    const XsResult result = serveCall(script, 0, linger, now + std::max(wire::Clock::duration{}, (end - now) / int64_t(left)));
+    const XsResult result = serveCall(
+        script, 0, linger, now + std::max(wire::Clock::duration{}, (end - now) / int64_t(left)));
     if (result == later) continue;
     if (op == wire::Op::create && !created(script, result)) start(script);
   }
-  for (const ProcessRef& process : std::vector<ProcessRef>(processes_->all())) discard(process, 0, end);
+  for (const ProcessRef& process : std::vector<ProcessRef>(processes_->all()))
+    discard(process, 0, end);
   if (beginning_.empty()) processes_->trim();
   for (const auto& [key, script] : scripts_) // that waited for that, or for others in their process
-    if (script->process && !script->busy() && (script->owed || !script->waiting.empty())) due_[key] = true;
+    if (script->process && !script->busy() && (script->owed || !script->waiting.empty()))
+      due_[key] = true;
   const auto idle = [](const ProcessRef& process) { return !process->busy(); };
-  if (late_.empty() || std::none_of(processes_->all().begin(), processes_->all().end(), idle)) return;
+  if (late_.empty() || std::none_of(processes_->all().begin(), processes_->all().end(), idle))
+    return;
   for (const Key key : std::exchange(late_, {})) beginning_.push_back(key);
   engine_.scriptsBegin();
 }

@@ -1,5 +1,5 @@
-// host_start.cpp: how Scripts start: one after the other as far as the world can tell, side by side in their processes. Part of
-// ScriptHost; see host.h. [the browser's thread]
+// host_start.cpp: how Scripts start: one after the other as far as the world can tell, side by side
+// in their processes. Part of ScriptHost; see host.h. [the browser's thread]
 #include <algorithm>
 #include <thread>
 
@@ -16,7 +16,8 @@ bool flagOf(const ScriptNode& node, std::string_view name) {
   return field && field->type == FieldType::SFBool && std::get<bool>(node.get(*field));
 }
 
-// Two for each processor: one computes while the browser answers another. More would only take time and memory from each other.
+// Two for each processor: one computes while the browser answers another. More would only take time
+// and memory from each other.
 size_t sideBySide() {
   const size_t processors = std::max(1u, std::thread::hardware_concurrency());
   return std::clamp<size_t>(2 * processors, 4, ScriptProcesses::most);
@@ -55,8 +56,9 @@ bool ScriptHost::initializeNext() {
   return true;
 }
 
-// A process makes an interpreter and runs initialize() while the browser looks after others. All that a program asks of the
-// browser waits for the Script's turn: the world sees the same calls in the same order as if each had been sent at its turn.
+// A process makes an interpreter and runs initialize() while the browser looks after others. All
+// that a program asks of the browser waits for the Script's turn: the world sees the same calls in
+// the same order as if each had been sent at its turn.
 void ScriptHost::startAhead() {
   static const size_t most = sideBySide();
   for (; ahead_ < beginning_.size() && sentAhead_ < most; ++ahead_) {
@@ -68,7 +70,8 @@ void ScriptHost::startAhead() {
   }
 }
 
-// False if it has to wait for a process. What cannot be sent ahead, or goes wrong, is done again at the Script's turn.
+// False if it has to wait for a process. What cannot be sent ahead, or goes wrong, is done again at
+// the Script's turn.
 bool ScriptHost::sendAhead(Script& script) {
   if (options_.scriptIsolation == BrowserOptions::Isolation::never) return true;
   ScriptProgram program = programs_.peek(*script.node, world_.options);
@@ -129,14 +132,16 @@ bool ScriptHost::created(Script& script, XsResult result) {
     return false;
   }
   counts_.started += !std::exchange(script.counted, true);
-  const bool initializing = script.pending == wire::Op::initialize; // its process has gone on by itself
+  const bool initializing =
+      script.pending == wire::Op::initialize; // its process has gone on by itself
   if (!script.ghost) {
     if (script.flag(XS_DIRECT_OUTPUT)) markReach(script);
     if (script.engine->tick) ticking_.push_back(liveOf(*script.node)->order);
   }
   if (initializing) {
     waitFor(script);
-  } else if (!script.ghost && !spent()) { // else the program has let go of the last that held its own node
+  } else if (!script.ghost &&
+             !spent()) { // else the program has let go of the last that held its own node
     plainCall(script, wire::Op::initialize, &XsEngine::initialize);
   }
   return true;
@@ -151,12 +156,16 @@ void ScriptHost::describe(Script& script, ScriptProgram program) {
   script.origin = script.start.file ? *script.start.file : world_.path;
   script.fields.clear();
   for (const FieldInfo& field : script.node->type().fields)
-    if (Script::isOwn(field)) script.fields.push_back({field.name.c_str(), xsType(field.type), xsAccess(field.access)});
+    if (Script::isOwn(field))
+      script.fields.push_back({field.name.c_str(), xsType(field.type), xsAccess(field.access)});
   XsScriptInfo& info = script.info;
   info.size = sizeof(XsScriptInfo);
-  info.flags = (flagOf(*script.node, "directOutput") || run_.directOutputAlways ? uint32_t(XS_DIRECT_OUTPUT) : 0u) |
-               (flagOf(*script.node, "mustEvaluate") ? uint32_t(XS_MUST_EVALUATE) : 0u) |
-               (options_.trustScripts ? uint32_t(XS_TRUSTED) : 0u) | (options_.allowNetwork ? uint32_t(XS_NETWORK) : 0u);
+  info.flags =
+      (flagOf(*script.node, "directOutput") || run_.directOutputAlways ? uint32_t(XS_DIRECT_OUTPUT)
+                                                                       : 0u) |
+      (flagOf(*script.node, "mustEvaluate") ? uint32_t(XS_MUST_EVALUATE) : 0u) |
+      (options_.trustScripts ? uint32_t(XS_TRUSTED) : 0u) |
+      (options_.allowNetwork ? uint32_t(XS_NETWORK) : 0u);
   info.self = script.self;
   info.scheme = script.scheme.c_str();
   info.origin = script.origin.c_str();
@@ -196,7 +205,8 @@ ScriptCounts ScriptHost::counts() const {
   ScriptCounts counts = counts_;
   counts.waiting = beginning_.size() + late_.size();
   for (const auto& [key, script] : scripts_) {
-    const bool starting = script->pending == wire::Op::create || script->pending == wire::Op::initialize;
+    const bool starting =
+        script->pending == wire::Op::create || script->pending == wire::Op::initialize;
     counts.waiting += starting && !script->ahead;
   }
   return counts;
@@ -242,9 +252,11 @@ void ScriptHost::stopAll() {
   const double limit = run_.worldScriptSeconds;
   Diagnostic d;
   d.file = world_.path;
-  d.message = fmt::format("Scripts have taken {:.1f} s together, limit worldScriptSeconds={}: {} of {} Scripts are stopped "
+  d.message = fmt::format("Scripts have taken {:.1f} s together, limit worldScriptSeconds={}: {} "
+                          "of {} Scripts are stopped "
                           "(vv --limit worldScriptSeconds={} lets them run longer)",
-                          used_ >= limit ? used_ : waited_, limit, stopped, counts_.scripts, std::max(10 * limit, 60.0));
+                          used_ >= limit ? used_ : waited_, limit, stopped, counts_.scripts,
+                          std::max(10 * limit, 60.0));
   world_.diagnostics.add(std::move(d));
 }
 

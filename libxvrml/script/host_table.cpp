@@ -1,5 +1,5 @@
-// host_table.cpp: what Scripts may call: every function of XsHost. Nothing they hand over is believed; nothing throws across the
-// border. See xvrml/xscript.h. [the browser's thread]
+// host_table.cpp: what Scripts may call: every function of XsHost. Nothing they hand over is
+// believed; nothing throws across the border. See xvrml/xscript.h. [the browser's thread]
 #include "script/host_table.h"
 
 #include <new>
@@ -26,8 +26,10 @@ struct HostTable {
       ScriptHost& host = hostOf(table);
       Script* script = host.find(self);
       if (!script) return XS_NO_NODE;
-      if (host.running_ != script) return refuse(*script, XS_NOT_ALLOWED, "no function of this Script is running");
-      if (host.overBudget(*script, stepsOfCall)) return refuse(*script, XS_STOPPED, "the Script's time is up");
+      if (host.running_ != script)
+        return refuse(*script, XS_NOT_ALLOWED, "no function of this Script is running");
+      if (host.overBudget(*script, stepsOfCall))
+        return refuse(*script, XS_STOPPED, "the Script's time is up");
       return body(host, *script);
     } catch (const std::exception& error) {
       Script* script = hostOf(table).find(self);
@@ -37,24 +39,29 @@ struct HostTable {
   // The same for functions that change something: not while the Script ends.
   template <class Body> static XsResult act(Host table, XsNode self, Body&& body) {
     return enter(table, self, [&](ScriptHost& host, Script& script) {
-      if (host.ending_ || script.ghost) return refuse(script, XS_NOT_ALLOWED, "the Script is being shut down");
+      if (host.ending_ || script.ghost)
+        return refuse(script, XS_NOT_ALLOWED, "the Script is being shut down");
       return body(host, script);
     });
   }
   template <class Body> static XsResult withNode(Script& script, XsNode number, Body&& body) {
     Node* node = script.handles.find(number);
-    if (!node) return refuse(script, XS_NO_NODE, number ? fmt::format("the Script does not know a node {}", number) : "NULL");
+    if (!node)
+      return refuse(script, XS_NO_NODE,
+                    number ? fmt::format("the Script does not know a node {}", number) : "NULL");
     return body(*node);
   }
   static XsResult noField(Script& script, const Node& node, const char* what, const char* name) {
-    return refuse(script, XS_NO_FIELD, fmt::format("{} has no {} '{}'", node.type().name, what, name ? name : ""));
+    return refuse(script, XS_NO_FIELD,
+                  fmt::format("{} has no {} '{}'", node.type().name, what, name ? name : ""));
   }
   static XsResult giveText(Script& script, std::string text, XsString* out) {
     script.lentText = std::move(text);
     *out = {script.lentText.c_str(), script.lentText.size()};
     return XS_OK;
   }
-  static bool take(ScriptHost& host, Script& script, const XsValue* value, FieldType type, Value& out) {
+  static bool take(ScriptHost& host, Script& script, const XsValue* value, FieldType type,
+                   Value& out) {
     return takeValue(value, type, script.handles, host.world_.options.limits, out, script.error);
   }
   static std::string text(ScriptHost& host, const XsString& from) {
@@ -64,19 +71,23 @@ struct HostTable {
   }
   static std::vector<std::string> texts(ScriptHost& host, uint32_t count, const XsString* from) {
     constexpr uint32_t most = 10'000;
-    if (count > most || (count > 0 && !from)) throw std::runtime_error(fmt::format("a list of {} texts", count));
+    if (count > most || (count > 0 && !from))
+      throw std::runtime_error(fmt::format("a list of {} texts", count));
     std::vector<std::string> out;
     for (uint32_t i = 0; i < count; ++i) out.push_back(text(host, from[i]));
     return out;
   }
-  static std::string baseOf(const Script& script) { return script.node->source.file ? *script.node->source.file : std::string(); }
+  static std::string baseOf(const Script& script) {
+    return script.node->source.file ? *script.node->source.file : std::string();
+  }
 
   // --- Own fields and events ---
 
   static XsResult send(Host table, XsNode self, const char* name, const XsValue* value) {
     return act(table, self, [&](ScriptHost& host, Script& script) {
       const FieldInfo* out = name ? script.node->type().find(name) : nullptr;
-      if (!out || out->access != Access::eventOut) return noField(script, *script.node, "eventOut", name);
+      if (!out || out->access != Access::eventOut)
+        return noField(script, *script.node, "eventOut", name);
       Value taken;
       if (!take(host, script, value, out->type, taken))
         return refuse(script, XS_WRONG_TYPE, fmt::format("{}: {}", name, script.error));
@@ -93,13 +104,15 @@ struct HostTable {
   static XsResult write(Host table, XsNode self, const char* name, const XsValue* value) {
     return act(table, self, [&](ScriptHost& host, Script& script) {
       const FieldInfo* field = name ? script.node->type().find(name) : nullptr;
-      const bool own = field && field->access == Access::field && field->name != "directOutput" && field->name != "mustEvaluate";
+      const bool own = field && field->access == Access::field && field->name != "directOutput" &&
+                       field->name != "mustEvaluate";
       if (!own) return noField(script, *script.node, "field that it may write,", name);
       Value taken;
       if (!take(host, script, value, field->type, taken))
         return refuse(script, XS_WRONG_TYPE, fmt::format("{}: {}", name, script.error));
-      return host.engine_.store(*script.node, *field, std::move(taken)) ? XS_OK
-                                                                        : refuse(script, XS_FAILED, "not a value it can have");
+      return host.engine_.store(*script.node, *field, std::move(taken))
+                 ? XS_OK
+                 : refuse(script, XS_FAILED, "not a value it can have");
     });
   }
 
@@ -109,7 +122,8 @@ struct HostTable {
     const Node& node = *script.node;
     const FieldInfo* field = node.type().find(name);
     if (!field) field = node.type().findEventOut(name);
-    if (!field || field->access == Access::eventIn) return noField(script, node, "field or eventOut", name);
+    if (!field || field->access == Access::eventIn)
+      return noField(script, node, "field or eventOut", name);
     Value value = holdsValue(*field) ? node.get(*field) : host.engine_.lastSent(node, *field);
     for (const Script::Output& output : script.outputs)
       if (!output.to && output.field == field) value = output.value;
@@ -130,7 +144,8 @@ struct HostTable {
     });
   }
 
-  static XsResult post(Host table, XsNode self, XsNode number, const char* name, const XsValue* value) {
+  static XsResult post(Host table, XsNode self, XsNode number, const char* name,
+                       const XsValue* value) {
     return act(table, self, [&](ScriptHost& host, Script& script) {
       return withNode(script, number, [&](Node& node) {
         if (&node != script.node && !script.flag(XS_DIRECT_OUTPUT))
@@ -140,7 +155,8 @@ struct HostTable {
         Value taken;
         if (!take(host, script, value, in->type, taken))
           return refuse(script, XS_WRONG_TYPE, fmt::format("{}: {}", name, script.error));
-        if (script.outputs.size() >= host.engine_.maximumEvents) return refuse(script, XS_FAILED, "too many events");
+        if (script.outputs.size() >= host.engine_.maximumEvents)
+          return refuse(script, XS_FAILED, "too many events");
         script.outputs.push_back({NodeRef(&node), in, std::move(taken)});
         return XS_OK;
       });
@@ -148,14 +164,17 @@ struct HostTable {
   }
 
   static XsResult needsDirectOutput(ScriptHost& host, Script& script, const char* what) {
-    host.log(script, 2, 0, fmt::format("{} needs directOutput TRUE (6.40); ignored, --compat scripts allows it", what));
+    host.log(script, 2, 0,
+             fmt::format("{} needs directOutput TRUE (6.40); ignored, --compat scripts allows it",
+                         what));
     return refuse(script, XS_NOT_ALLOWED, fmt::format("{} needs directOutput TRUE", what));
   }
 
   static XsResult describe(Host table, XsNode self, XsNode number, XsNodeInfo* out) {
     return enter(table, self, [&](ScriptHost&, Script& script) {
       return withNode(script, number, [&](Node& node) {
-        if (!out || out->size < sizeof(XsNodeInfo)) return refuse(script, XS_FAILED, "XsNodeInfo without its size");
+        if (!out || out->size < sizeof(XsNodeInfo))
+          return refuse(script, XS_FAILED, "XsNodeInfo without its size");
         script.lentText = node.defName;
         out->fieldCount = uint32_t(node.type().fields.size());
         out->typeName = node.type().name.c_str();
@@ -165,7 +184,8 @@ struct HostTable {
     });
   }
 
-  static XsResult giveField(Script& script, const Node& node, const FieldInfo* field, const char* name, XsField* out) {
+  static XsResult giveField(Script& script, const Node& node, const FieldInfo* field,
+                            const char* name, XsField* out) {
     if (!field || !out) return noField(script, node, "field or event", name);
     *out = {field->name.c_str(), xsType(field->type), xsAccess(field->access)};
     return XS_OK;
@@ -174,11 +194,13 @@ struct HostTable {
     return enter(table, self, [&](ScriptHost&, Script& script) {
       return withNode(script, number, [&](Node& node) {
         const auto& fields = node.type().fields;
-        return giveField(script, node, index < fields.size() ? &fields[index] : nullptr, "of that number", out);
+        return giveField(script, node, index < fields.size() ? &fields[index] : nullptr,
+                         "of that number", out);
       });
     });
   }
-  static XsResult findField(Host table, XsNode self, XsNode number, const char* name, XsField* out) {
+  static XsResult findField(Host table, XsNode self, XsNode number, const char* name,
+                            XsField* out) {
     return enter(table, self, [&](ScriptHost&, Script& script) {
       return withNode(script, number, [&](Node& node) {
         const NodeType& type = node.type();
@@ -192,10 +214,13 @@ struct HostTable {
 
   static XsResult retain(Host table, XsNode self, XsNode number) {
     return enter(table, self, [&](ScriptHost&, Script& script) {
-      return script.handles.retain(number) ? XS_OK : refuse(script, XS_NO_NODE, fmt::format("no node {}", number));
+      return script.handles.retain(number)
+                 ? XS_OK
+                 : refuse(script, XS_NO_NODE, fmt::format("no node {}", number));
     });
   }
-  // Also while no function runs: languages with garbage collection let go when they like. What is let go of waits for a call.
+  // Also while no function runs: languages with garbage collection let go when they like. What is
+  // let go of waits for a call.
   static XsResult release(Host table, XsNode self, XsNode number) {
     Script* script = hostOf(table).find(self);
     try {
@@ -206,15 +231,25 @@ struct HostTable {
   // --- The Browser object ---
 
   static XsResult getName(Host table, XsNode self, XsString* out) {
-    return enter(table, self, [&](ScriptHost& host, Script& script) { return giveText(script, host.browser_.name(), out); });
+    return enter(table, self, [&](ScriptHost& host, Script& script) {
+      return giveText(script, host.browser_.name(), out);
+    });
   }
   static XsResult getVersion(Host table, XsNode self, XsString* out) {
-    return enter(table, self, [&](ScriptHost& host, Script& script) { return giveText(script, host.browser_.version(), out); });
+    return enter(table, self, [&](ScriptHost& host, Script& script) {
+      return giveText(script, host.browser_.version(), out);
+    });
   }
-  static double getCurrentSpeed(Host table, XsNode) { return hostOf(table).browser_.currentSpeed(); }
-  static double getCurrentFrameRate(Host table, XsNode) { return hostOf(table).browser_.currentFrameRate(); }
+  static double getCurrentSpeed(Host table, XsNode) {
+    return hostOf(table).browser_.currentSpeed();
+  }
+  static double getCurrentFrameRate(Host table, XsNode) {
+    return hostOf(table).browser_.currentFrameRate();
+  }
   static XsResult getWorldUrl(Host table, XsNode self, XsString* out) {
-    return enter(table, self, [&](ScriptHost& host, Script& script) { return giveText(script, host.browser_.worldUrl(), out); });
+    return enter(table, self, [&](ScriptHost& host, Script& script) {
+      return giveText(script, host.browser_.worldUrl(), out);
+    });
   }
   static XsResult setDescription(Host table, XsNode self, XsString description) {
     return act(table, self, [&](ScriptHost& host, Script&) {
@@ -233,19 +268,21 @@ struct HostTable {
       return XS_OK;
     });
   }
-  static XsResult loadUrl(Host table, XsNode self, uint32_t urlCount, const XsString* urls, uint32_t parameterCount,
-                          const XsString* parameters) {
+  static XsResult loadUrl(Host table, XsNode self, uint32_t urlCount, const XsString* urls,
+                          uint32_t parameterCount, const XsString* parameters) {
     return act(table, self, [&](ScriptHost& host, Script& script) {
-      host.browser_.loadUrl(texts(host, urlCount, urls), texts(host, parameterCount, parameters), baseOf(script));
+      host.browser_.loadUrl(texts(host, urlCount, urls), texts(host, parameterCount, parameters),
+                            baseOf(script));
       return XS_OK;
     });
   }
-  static XsResult createVrmlFromUrl(Host table, XsNode self, uint32_t urlCount, const XsString* urls, XsNode number,
-                                    const char* eventIn) {
+  static XsResult createVrmlFromUrl(Host table, XsNode self, uint32_t urlCount,
+                                    const XsString* urls, XsNode number, const char* eventIn) {
     return act(table, self, [&](ScriptHost& host, Script& script) {
       return withNode(script, number, [&](Node& node) {
         const FieldInfo* in = eventIn ? node.type().findEventIn(eventIn) : nullptr;
-        if (!in || in->type != FieldType::MFNode) return noField(script, node, "eventIn of type MFNode", eventIn);
+        if (!in || in->type != FieldType::MFNode)
+          return noField(script, node, "eventIn of type MFNode", eventIn);
         host.browser_.createVrmlFromUrl(texts(host, urlCount, urls), node, eventIn, baseOf(script));
         return XS_OK;
       });
@@ -254,34 +291,47 @@ struct HostTable {
   static XsResult createVrmlFromString(Host table, XsNode self, XsString vrml, XsValue* out) {
     return act(table, self, [&](ScriptHost& host, Script& script) {
       try {
-        *out = script.lent.lend(host.browser_.createVrmlFromString(text(host, vrml)), script.handles);
+        *out =
+            script.lent.lend(host.browser_.createVrmlFromString(text(host, vrml)), script.handles);
         return XS_OK;
-      } catch (const LoadError& error) { return refuse(script, XS_FAILED, error.diagnostic.text()); }
+      } catch (const LoadError& error) {
+        return refuse(script, XS_FAILED, error.diagnostic.text());
+      }
     });
   }
 
-  template <class Change>
-  static XsResult changeRoute(Host table, XsNode self, XsNode from, const char* out, XsNode to, const char* in, Change&& change) {
+  template <class Change> static XsResult changeRoute(Host table, XsNode self, XsNode from,
+                                                      const char* out, XsNode to, const char* in,
+                                                      Change&& change) {
     return act(table, self, [&](ScriptHost& host, Script& script) {
       return withNode(script, from, [&](Node& source) {
         return withNode(script, to, [&](Node& target) {
           const bool own = &source == script.node && &target == script.node;
-          if (!own && !script.flag(XS_DIRECT_OUTPUT)) return needsDirectOutput(host, script, "a change of routes");
-          if (!out || !source.type().findEventOut(out)) return noField(script, source, "eventOut", out);
+          if (!own && !script.flag(XS_DIRECT_OUTPUT))
+            return needsDirectOutput(host, script, "a change of routes");
+          if (!out || !source.type().findEventOut(out))
+            return noField(script, source, "eventOut", out);
           if (!in || !target.type().findEventIn(in)) return noField(script, target, "eventIn", in);
-          return change(host.browser_, source, target) ? XS_OK : refuse(script, XS_FAILED, "no such route, or types differ");
+          return change(host.browser_, source, target)
+                     ? XS_OK
+                     : refuse(script, XS_FAILED, "no such route, or types differ");
         });
       });
     });
   }
-  static XsResult addRoute(Host table, XsNode self, XsNode from, const char* out, XsNode to, const char* in) {
+  static XsResult addRoute(Host table, XsNode self, XsNode from, const char* out, XsNode to,
+                           const char* in) {
     return changeRoute(table, self, from, out, to, in,
-                       [&](Browser& browser, Node& source, Node& target) { return browser.addRoute(source, out, target, in); });
+                       [&](Browser& browser, Node& source, Node& target) {
+                         return browser.addRoute(source, out, target, in);
+                       });
   }
-  static XsResult deleteRoute(Host table, XsNode self, XsNode from, const char* out, XsNode to, const char* in) {
-    return changeRoute(table, self, from, out, to, in, [&](Browser& browser, Node& source, Node& target) {
-      return browser.deleteRoute(source, out, target, in);
-    });
+  static XsResult deleteRoute(Host table, XsNode self, XsNode from, const char* out, XsNode to,
+                              const char* in) {
+    return changeRoute(table, self, from, out, to, in,
+                       [&](Browser& browser, Node& source, Node& target) {
+                         return browser.deleteRoute(source, out, target, in);
+                       });
   }
 
   // --- Time, messages ---
@@ -311,11 +361,14 @@ struct HostTable {
     ScriptHost& host = hostOf(table);
     Script* script = host.find(self);
     if (!script || !script->flag(XS_TRUSTED)) return nullptr;
-    return number ? static_cast<void*>(script->handles.find(number)) : static_cast<void*>(&host.browser_);
+    return number ? static_cast<void*>(script->handles.find(number))
+                  : static_cast<void*>(&host.browser_);
   }
   static XsNode number(Host table, XsNode self, void* object) {
     Script* script = hostOf(table).find(self);
-    return script && script->flag(XS_TRUSTED) && object ? script->handles.give(static_cast<Node*>(object)) : 0;
+    return script && script->flag(XS_TRUSTED) && object
+               ? script->handles.give(static_cast<Node*>(object))
+               : 0;
   }
 };
 

@@ -1,4 +1,4 @@
-// library.cpp: see library.h. Part of the library and of xvrml-script-host.
+// library.cpp: Part of the library and of xvrml-script-host.
 #include "script/library.h"
 
 #include <stdexcept>
@@ -14,13 +14,16 @@ std::vector<XsEngine> loadScriptLibrary(const std::string& path) {
   void* handle = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (!handle) {
     const char* reason = dlerror();
-    throw std::runtime_error("script library " + path + ": " + (reason ? reason : "cannot be loaded"));
+    throw std::runtime_error("script library " + path + ": " +
+                             (reason ? reason : "cannot be loaded"));
   }
   try {
     void* symbol = dlsym(handle, XS_ENTRY_NAME);
     if (!symbol)
-      throw std::runtime_error("script library " + path + ": exports no " XS_ENTRY_NAME ", so it is no script plug-in");
-    return checkScriptPlugin(static_cast<const XsPlugin*>(symbol), plugin_files::exportedBytes(symbol), path);
+      throw std::runtime_error("script library " + path +
+                               ": exports no " XS_ENTRY_NAME ", so it is no script plug-in");
+    return checkScriptPlugin(static_cast<const XsPlugin*>(symbol),
+                             plugin_files::exportedBytes(symbol), path);
   } catch (...) {
     dlclose(handle);
     throw;

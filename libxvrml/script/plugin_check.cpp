@@ -21,30 +21,38 @@ constexpr size_t leastEngine = offsetof(XsEngine, initialize);
 
 void checkHeader(const XsPlugin* plugin, size_t symbolBytes, const std::string& path) {
   if (symbolBytes != 0 && symbolBytes < sizeof(XsPlugin))
-    refuse(path, fmt::format("its " XS_ENTRY_NAME " has {} bytes; a plug-in's has at least {}", symbolBytes, sizeof(XsPlugin)));
+    refuse(path, fmt::format("its " XS_ENTRY_NAME " has {} bytes; a plug-in's has at least {}",
+                             symbolBytes, sizeof(XsPlugin)));
   if (plugin->magic != XS_MAGIC) refuse(path, "not a script plug-in (wrong magic number)");
   if (plugin->major != XS_ABI_MAJOR || plugin->minor > XS_ABI_MINOR)
-    refuse(path, fmt::format("made for script ABI {}.{}; this library has {}.{}", plugin->major, plugin->minor, XS_ABI_MAJOR,
-                             XS_ABI_MINOR));
+    refuse(path, fmt::format("made for script ABI {}.{}; this library has {}.{}", plugin->major,
+                             plugin->minor, XS_ABI_MAJOR, XS_ABI_MINOR));
   if (plugin->size != sizeof(XsPlugin))
-    refuse(path, fmt::format("claims a plug-in structure of {} bytes; ABI {}.{} has {}", plugin->size, plugin->major,
-                             plugin->minor, sizeof(XsPlugin)));
+    refuse(path, fmt::format("claims a plug-in structure of {} bytes; ABI {}.{} has {}",
+                             plugin->size, plugin->major, plugin->minor, sizeof(XsPlugin)));
   if (plugin->engineCount == 0 || plugin->engineCount > maximumEngines || !plugin->engines)
     refuse(path, fmt::format("claims {} script engines", plugin->engineCount));
 }
 
-bool isSchemeCharacter(char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '+' || c == '-' || c == '.'; }
+bool isSchemeCharacter(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '+' || c == '-' || c == '.';
+}
 
 // A list of names in lower case; returns how many there are.
-size_t checkNames(const char* const* names, const char* what, bool scheme, const std::string& where) {
+size_t checkNames(const char* const* names, const char* what, bool scheme,
+                  const std::string& where) {
   size_t count = 0;
   for (; names && names[count]; ++count) {
-    if (count == maximumNames) throw std::runtime_error(fmt::format("{}: its list of {} does not end", where, what));
+    if (count == maximumNames)
+      throw std::runtime_error(fmt::format("{}: its list of {} does not end", where, what));
     const std::string_view name = names[count];
     bool good = !name.empty() && name.size() <= 100;
-    for (const char c : name) good = good && (scheme ? isSchemeCharacter(c) : c > ' ' && c < 127 && !(c >= 'A' && c <= 'Z'));
+    for (const char c : name)
+      good =
+          good && (scheme ? isSchemeCharacter(c) : c > ' ' && c < 127 && !(c >= 'A' && c <= 'Z'));
     if (!good || (scheme && name.size() < 2)) // one letter is a drive in old paths
-      throw std::runtime_error(fmt::format("{}: '{}' is no name for its {}", where, name.substr(0, 100), what));
+      throw std::runtime_error(
+          fmt::format("{}: '{}' is no name for its {}", where, name.substr(0, 100), what));
   }
   return count;
 }
@@ -52,8 +60,8 @@ size_t checkNames(const char* const* names, const char* what, bool scheme, const
 XsEngine checkEngine(const XsEngine* theirs, const std::string& path) {
   if (!theirs) refuse(path, "an empty entry in its table of engines");
   if (theirs->size < leastEngine || theirs->size > sizeof(XsEngine))
-    refuse(path, fmt::format("claims an engine structure of {} bytes; this library knows {} to {}", theirs->size, leastEngine,
-                             sizeof(XsEngine)));
+    refuse(path, fmt::format("claims an engine structure of {} bytes; this library knows {} to {}",
+                             theirs->size, leastEngine, sizeof(XsEngine)));
   XsEngine ours{};
   // Whole pointers only: half a function pointer would be a wild one.
   std::memcpy(&ours, theirs, theirs->size / sizeof(void*) * sizeof(void*));
@@ -64,7 +72,8 @@ XsEngine checkEngine(const XsEngine* theirs, const std::string& path) {
   const size_t names = checkNames(ours.schemes, "URL schemes", true, where) +
                        checkNames(ours.mimeTypes, "MIME types", false, where) +
                        checkNames(ours.suffixes, "file suffixes", false, where);
-  if (names == 0) throw std::runtime_error(where + ": serves no URL scheme, MIME type or file suffix");
+  if (names == 0)
+    throw std::runtime_error(where + ": serves no URL scheme, MIME type or file suffix");
   const char* missing = !ours.create ? "create" : !ours.destroy ? "destroy" : nullptr;
   if (missing) throw std::runtime_error(fmt::format("{}: lacks the function {}", where, missing));
   return ours;
@@ -72,10 +81,12 @@ XsEngine checkEngine(const XsEngine* theirs, const std::string& path) {
 
 } // namespace
 
-std::vector<XsEngine> checkScriptPlugin(const XsPlugin* plugin, size_t symbolBytes, const std::string& path) {
+std::vector<XsEngine> checkScriptPlugin(const XsPlugin* plugin, size_t symbolBytes,
+                                        const std::string& path) {
   checkHeader(plugin, symbolBytes, path);
   std::vector<XsEngine> engines;
-  for (uint32_t i = 0; i < plugin->engineCount; ++i) engines.push_back(checkEngine(plugin->engines[i], path));
+  for (uint32_t i = 0; i < plugin->engineCount; ++i)
+    engines.push_back(checkEngine(plugin->engines[i], path));
   return engines;
 }
 

@@ -1,4 +1,3 @@
-// program.cpp: see program.h.
 #include "script/program.h"
 
 #include <algorithm>
@@ -13,8 +12,10 @@ namespace {
 
 // Schemes that say where a file is, not in which language it is written.
 bool isPlace(std::string_view scheme) {
-  constexpr std::string_view places[] = {"", "file", "http", "https", "ftp", "gopher", "urn", "mailto"};
-  return scheme.size() == 1 || std::find(std::begin(places), std::end(places), scheme) != std::end(places);
+  constexpr std::string_view places[] = {"",    "file",   "http", "https",
+                                         "ftp", "gopher", "urn",  "mailto"};
+  return scheme.size() == 1 ||
+         std::find(std::begin(places), std::end(places), scheme) != std::end(places);
 }
 
 std::string suffixOf(std::string_view path) {
@@ -39,17 +40,22 @@ void append(std::string& reasons, std::string_view reason) {
 bool ProgramFinder::usable(const XsEngine* engine, const std::string& protocol) {
   if (!engine) {
     std::string found;
-    for (const XsEngine* one : engines_.all()) found += (found.empty() ? "" : ", ") + std::string(one->name);
-    missing_.emplace_back(
-        protocol, fmt::format("no script engine for '{}' is installed (looked in: {}; found: {}); Scripts of this protocol "
-                              "stay silent",
-                              protocol, engines_.searched(), found.empty() ? "none" : found));
+    for (const XsEngine* one : engines_.all())
+      found += (found.empty() ? "" : ", ") + std::string(one->name);
+    missing_.emplace_back(protocol, fmt::format("no script engine for '{}' is installed (looked "
+                                                "in: {}; found: {}); Scripts of this protocol "
+                                                "stay silent",
+                                                protocol, engines_.searched(),
+                                                found.empty() ? "none" : found));
     return false;
   }
   if ((engine->flags & XS_NEEDS_TRUST) && !trusted_) {
-    missing_.emplace_back(protocol, fmt::format("'{}' is run by engine {}, whose programs can do whatever the user can: only in "
-                                                "worlds that are trusted (vv --trust); Scripts of this protocol stay silent",
-                                                protocol, engine->name));
+    missing_.emplace_back(
+        protocol,
+        fmt::format(
+            "'{}' is run by engine {}, whose programs can do whatever the user can: only in "
+            "worlds that are trusted (vv --trust); Scripts of this protocol stay silent",
+            protocol, engine->name));
     return false;
   }
   return true;
@@ -62,8 +68,8 @@ bool ProgramFinder::inlineProgram(const std::string& url, size_t colon, ScriptPr
   return true;
 }
 
-bool ProgramFinder::fileProgram(const std::string& url, const std::string& base, const LoadOptions& options,
-                                ScriptProgram& program) {
+bool ProgramFinder::fileProgram(const std::string& url, const std::string& base,
+                                const LoadOptions& options, ScriptProgram& program) {
   const ResolvedUrl resolved = resolveUrl(url, base, options);
   const std::string suffix = suffixOf(url);
   program.engine = suffix.empty() ? nullptr : engines_.bySuffix(suffix);
@@ -83,14 +89,16 @@ bool ProgramFinder::fileProgram(const std::string& url, const std::string& base,
     return false;
   }
   if (program.text.size() > options.limits.stringBytes) {
-    append(reasons_, fmt::format("'{}' is longer than limit stringBytes={}", resolved.path, options.limits.stringBytes));
+    append(reasons_, fmt::format("'{}' is longer than limit stringBytes={}", resolved.path,
+                                 options.limits.stringBytes));
     return false;
   }
   program.start = {std::make_shared<const std::string>(resolved.path), 1, 0};
   return true;
 }
 
-bool ProgramFinder::dataProgram(std::string_view url, const LoadOptions& options, ScriptProgram& program) {
+bool ProgramFinder::dataProgram(std::string_view url, const LoadOptions& options,
+                                ScriptProgram& program) {
   DataUrl data;
   std::string why;
   if (!decodeDataUrl(url, options.limits.stringBytes, data, why)) {
@@ -109,14 +117,16 @@ void ProgramFinder::tellMissing(const ScriptNode& script) {
   if (!reasons_.empty()) diagnostics_.warn(script.source, "Script does nothing: " + reasons_);
 }
 
-ScriptProgram ProgramFinder::find(const ScriptNode& script, const LoadOptions& options, size_t first) {
+ScriptProgram ProgramFinder::find(const ScriptNode& script, const LoadOptions& options,
+                                  size_t first) {
   ScriptProgram program = peek(script, options, first);
   tellRefusals();
   if (!program.engine) tellMissing(script);
   return program;
 }
 
-ScriptProgram ProgramFinder::peek(const ScriptNode& script, const LoadOptions& options, size_t first) {
+ScriptProgram ProgramFinder::peek(const ScriptNode& script, const LoadOptions& options,
+                                  size_t first) {
   missing_.clear();
   reasons_.clear();
   const FieldInfo* field = script.type().find("url");
@@ -131,13 +141,16 @@ ScriptProgram ProgramFinder::peek(const ScriptNode& script, const LoadOptions& o
     std::string scheme = urlScheme(trimmed);
     if (scheme == "data") {
       if (!dataProgram(trimmed, options, program)) continue;
-      program.start = {script.source.file, i < script.urlLines.size() ? script.urlLines[i] : script.source.line, 0};
+      program.start = {script.source.file,
+                       i < script.urlLines.size() ? script.urlLines[i] : script.source.line, 0};
     } else if (isPlace(scheme)) {
       if (!fileProgram(url, base, options, program)) continue;
     } else {
       program.scheme = std::move(scheme);
       const uint32_t line = i < script.urlLines.size() ? script.urlLines[i] : script.source.line;
-      program.start = {script.source.file, line + uint32_t(std::count(url.begin(), url.begin() + long(start), '\n')), 0};
+      program.start = {script.source.file,
+                       line + uint32_t(std::count(url.begin(), url.begin() + long(start), '\n')),
+                       0};
       if (!inlineProgram(url, start + program.scheme.size(), program)) continue;
     }
     program.url = i;

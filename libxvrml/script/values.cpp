@@ -1,4 +1,3 @@
-// values.cpp: see values.h.
 #include "script/values.h"
 
 #include <cstring>
@@ -13,7 +12,9 @@ XsString view(const std::string& text) { return {text.c_str(), text.size()}; }
 // RFC 3629: no overlong forms, no surrogates, at most U+10FFFF.
 bool isUtf8(std::string_view text) {
   for (size_t i = 0; i < text.size();) {
-    const auto byte = [&](size_t k) { return i + k < text.size() ? static_cast<unsigned char>(text[i + k]) : 0u; };
+    const auto byte = [&](size_t k) {
+      return i + k < text.size() ? static_cast<unsigned char>(text[i + k]) : 0u;
+    };
     const unsigned first = byte(0);
     const size_t length = first < 0x80                    ? 1
                           : first >= 0xc2 && first < 0xe0 ? 2
@@ -24,8 +25,8 @@ bool isUtf8(std::string_view text) {
     for (size_t k = 1; k < length; ++k)
       if ((byte(k) & 0xc0) != 0x80) return false;
     const unsigned second = byte(1);
-    if ((first == 0xe0 && second < 0xa0) || (first == 0xed && second > 0x9f) || (first == 0xf0 && second < 0x90) ||
-        (first == 0xf4 && second > 0x8f))
+    if ((first == 0xe0 && second < 0xa0) || (first == 0xed && second > 0x9f) ||
+        (first == 0xf0 && second < 0x90) || (first == 0xf4 && second > 0x8f))
       return false;
     i += length;
   }
@@ -50,9 +51,9 @@ bool element(const XsValue& v, size_t i, double& out) {
   return true;
 }
 template <class T>
-requires(sizeof(T) % sizeof(float) == 0 &&
-         std::is_trivially_copyable_v<T>) bool element(const XsValue& v, size_t i,
-                                                       T& out) { // Vec2f, Vec3f, Color, Rotation: tuples of floats
+requires(sizeof(T) % sizeof(float) == 0 && std::is_trivially_copyable_v<T>) bool element(
+    const XsValue& v, size_t i,
+    T& out) { // Vec2f, Vec3f, Color, Rotation: tuples of floats
   std::memcpy(static_cast<void*>(&out), v.of.floats + i * (sizeof(T) / sizeof(float)), sizeof(T));
   return true;
 }
@@ -80,7 +81,8 @@ struct Taker {
       why = fmt::format("no image: {} x {} x {}", image.width, image.height, image.components);
       return false;
     }
-    const uint64_t pixels = uint64_t(image.width) * uint64_t(image.height), bytes = pixels * uint64_t(image.components);
+    const uint64_t pixels = uint64_t(image.width) * uint64_t(image.height),
+                   bytes = pixels * uint64_t(image.components);
     if (pixels > limits.imagePixels) {
       why = fmt::format("more than limit imagePixels={}", limits.imagePixels);
       return false;
@@ -180,16 +182,17 @@ bool takeText(const XsString& text, const Limits& limits, std::string& out, std:
   return true;
 }
 
-bool takeValue(const XsValue* value, FieldType wanted, const Handles& handles, const Limits& limits, Value& out,
-               std::string& why) {
+bool takeValue(const XsValue* value, FieldType wanted, const Handles& handles, const Limits& limits,
+               Value& out, std::string& why) {
   if (!value) {
     why = "no value";
     return false;
   }
   if (value->type != xsType(wanted)) {
     const bool known = value->type >= XS_SFBOOL && value->type <= XS_MFVEC3F;
-    why = fmt::format("expected {}, got {}", fieldTypeName(wanted),
-                      known ? fieldTypeName(FieldType(value->type - XS_SFBOOL)) : "an unknown type");
+    why =
+        fmt::format("expected {}, got {}", fieldTypeName(wanted),
+                    known ? fieldTypeName(FieldType(value->type - XS_SFBOOL)) : "an unknown type");
     return false;
   }
   if (value->count > 0 && !value->of.data) {

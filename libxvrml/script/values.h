@@ -1,5 +1,5 @@
-// values.h: field values across the border of the script ABI: the host's Value as typed arrays, and arrays that a Script hands
-// over, checked, as a Value. [the browser's thread]
+// values.h: field values across the border of the script ABI: the host's Value as typed arrays, and
+// arrays that a Script hands over, checked, as a Value. [the browser's thread]
 #pragma once
 
 #include "script/handles.h"
@@ -29,10 +29,10 @@ class LentValue {
   XsValue view_{};
 };
 
-// False, and why, if it is not a good value of this type: another type, wrong counts, missing arrays, text that is no UTF-8,
-// nodes that the Script does not know.
-bool takeValue(const XsValue* value, FieldType wanted, const Handles& handles, const Limits& limits, Value& out,
-               std::string& why);
+// False, and why, if it is not a good value of this type: another type, wrong counts, missing
+// arrays, text that is no UTF-8, nodes that the Script does not know.
+bool takeValue(const XsValue* value, FieldType wanted, const Handles& handles, const Limits& limits,
+               Value& out, std::string& why);
 bool takeText(const XsString& text, const Limits& limits, std::string& out, std::string& why);
 
 } // namespace xvrml

@@ -1,4 +1,3 @@
-// value_text.cpp: see xvrml/value_text.h.
 #include "xvrml/value_text.h"
 
 #include <fmt/format.h>
@@ -7,17 +6,20 @@
 
 namespace xvrml {
 
-std::optional<Value> parseValue(FieldType type, std::string_view text, std::string& problem, const Limits& limits) {
+std::optional<Value> parseValue(FieldType type, std::string_view text, std::string& problem,
+                                const Limits& limits) {
   Diagnostics diagnostics;
   Lexer lexer(text, std::make_shared<const std::string>("value"), diagnostics);
   Value value = defaultValue(type);
   const bool good = ValueParser(lexer, limits).parse(type, value);
   if (!good || !diagnostics.list().empty()) {
-    problem = diagnostics.list().empty() ? fmt::format("no {}", fieldTypeName(type)) : diagnostics.list().front().message;
+    problem = diagnostics.list().empty() ? fmt::format("no {}", fieldTypeName(type))
+                                         : diagnostics.list().front().message;
     return std::nullopt;
   }
   if (const Token rest = lexer.next(); !rest.is(TokenKind::end)) {
-    problem = fmt::format("expected one {}, found {} behind it", fieldTypeName(type), describe(rest));
+    problem =
+        fmt::format("expected one {}, found {} behind it", fieldTypeName(type), describe(rest));
     return std::nullopt;
   }
   return value;

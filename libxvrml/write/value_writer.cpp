@@ -1,4 +1,3 @@
-// value_writer.cpp: see value_writer.h.
 #include "write/value_writer.h"
 
 #include <charconv>

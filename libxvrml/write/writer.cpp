@@ -1,5 +1,6 @@
-// writer.cpp: a world as VRML97 text. What was loaded from other files stays a reference to them; bodies of prototype instances
-// are not written, their declarations are. Pure function of the world. [the thread that owns the world]
+// writer.cpp: a world as VRML97 text. What was loaded from other files stays a reference to them;
+// bodies of prototype instances are not written, their declarations are. Pure function of the
+// world. [the thread that owns the world]
 #include <span>
 #include <unordered_map>
 #include <unordered_set>
@@ -23,7 +24,8 @@ using Connections = std::unordered_map<const Node*, std::vector<const IsConnecti
 std::string nameText(const std::string& name) {
   if (isIdentifier(name)) return name;
   std::string text;
-  for (const char c : name) text += isVrmlSeparator(c) || static_cast<unsigned char>(c) < 0x20 ? '_' : c;
+  for (const char c : name)
+    text += isVrmlSeparator(c) || static_cast<unsigned char>(c) < 0x20 ? '_' : c;
   return text;
 }
 
@@ -36,7 +38,8 @@ class Names {
     collectNodes(roots, nodes, index);
     std::unordered_map<const Node*, size_t> uses;
     for (Node* root : roots) ++uses[root];
-    for (Node* node : nodes) forEachChild(*node, [&](NodeRef& child, const FieldInfo&) { ++uses[child.get()]; });
+    for (Node* node : nodes)
+      forEachChild(*node, [&](NodeRef& child, const FieldInfo&) { ++uses[child.get()]; });
     for (const Route& route : routes) {
       uses[route.from.get()] += 2;
       uses[route.to.get()] += 2;
@@ -83,14 +86,16 @@ class Writer {
     std::vector<Node*> roots;
     for (const NodeRef& root : scope.roots) roots.push_back(root.get());
     Names names(roots, scope.routes);
-    // Routes stand at the end, but those of repeated names as soon as both nodes do, while the names mean them.
+    // Routes stand at the end, but those of repeated names as soon as both nodes do, while the
+    // names mean them.
     std::vector<const Route*> early, late;
     for (const Route& route : scope.routes) {
       const bool repeated = names.isRepeated(route.from.get()) || names.isRepeated(route.to.get());
       (repeated ? early : late).push_back(&route);
     }
     std::unordered_map<const ProtoDeclaration*, size_t> prototypes;
-    for (size_t i = 0; i < scope.prototypes.size(); ++i) prototypes.emplace(scope.prototypes[i].get(), i + 1);
+    for (size_t i = 0; i < scope.prototypes.size(); ++i)
+      prototypes.emplace(scope.prototypes[i].get(), i + 1);
     size_t declared = 0;
     for (Node* root : roots) {
       const size_t needed = lastPrototypeOf(root, prototypes);
@@ -109,8 +114,11 @@ class Writer {
     text.append(indent_, ' ');
   }
 
-  // Prototypes stand before the first node that is one of theirs, in their order: a name may be declared again later.
-  static size_t lastPrototypeOf(Node* root, const std::unordered_map<const ProtoDeclaration*, size_t>& prototypes) {
+  // Prototypes stand before the first node that is one of theirs, in their order: a name may be
+  // declared again later.
+  static size_t
+  lastPrototypeOf(Node* root,
+                  const std::unordered_map<const ProtoDeclaration*, size_t>& prototypes) {
     size_t last = 0;
     if (prototypes.empty()) return last;
     std::vector<Node*> nodes;
@@ -129,7 +137,8 @@ class Writer {
     const Node *from = route.from.get(), *to = route.to.get();
     if (!names.isWritten(from) || !names.isWritten(to)) return false;
     line();
-    text += fmt::format("ROUTE {}.{} TO {}.{}", *names.find(from), route.fromField, *names.find(to), route.toField);
+    text += fmt::format("ROUTE {}.{} TO {}.{}", *names.find(from), route.fromField, *names.find(to),
+                        route.toField);
     return true;
   }
 
@@ -163,7 +172,8 @@ class Writer {
     const bool value = holdsValue(field) && (declared ? own.empty() : hasOwnValue(node, field));
     if (value || declared) {
       line();
-      if (declared) text += fmt::format("{} {} ", accessName(field.access), fieldTypeName(field.type));
+      if (declared)
+        text += fmt::format("{} {} ", accessName(field.access), fieldTypeName(field.type));
       text += field.name;
       if (value && hasNormalizedAxes(field)) // a program may have written to the struct
         visitStorage(field.type, node.storage(field), [&](auto copy) {
@@ -182,7 +192,8 @@ class Writer {
     }
   }
 
-  static std::span<const IsConnection* const> connectionsOf(const Node& node, const Connections* connections) {
+  static std::span<const IsConnection* const> connectionsOf(const Node& node,
+                                                            const Connections* connections) {
     if (!connections) return {};
     const auto found = connections->find(&node);
     return found == connections->end() ? std::span<const IsConnection* const>() : found->second;
@@ -242,11 +253,13 @@ class Writer {
 
   void prototype(const ProtoDeclaration& declaration) {
     line();
-    text += fmt::format("{} {} [", declaration.isExtern ? "EXTERNPROTO" : "PROTO", nameText(declaration.type->name));
+    text += fmt::format("{} {} [", declaration.isExtern ? "EXTERNPROTO" : "PROTO",
+                        nameText(declaration.type->name));
     indent_ += 2;
     for (const FieldInfo& field : declaration.type->fields) {
       line();
-      text += fmt::format("{} {} {}", accessName(field.access), fieldTypeName(field.type), field.name);
+      text +=
+          fmt::format("{} {} {}", accessName(field.access), fieldTypeName(field.type), field.name);
       if (declaration.isExtern || !holdsValue(field)) continue;
       Value value = field.defaultValue; // nodes are shared, not copied
       std::vector<Node*> roots;
@@ -255,7 +268,8 @@ class Writer {
         for (const NodeRef& node : *many) roots.push_back(node.get());
       }
       Names names(roots, {});
-      fieldValue(std::visit([](auto& stored) -> void* { return &stored; }, value), field.type, names, nullptr);
+      fieldValue(std::visit([](auto& stored) -> void* { return &stored; }, value), field.type,
+                 names, nullptr);
     }
     indent_ -= 2;
     if (!declaration.type->fields.empty()) line();
@@ -266,7 +280,8 @@ class Writer {
       return;
     }
     Connections connections;
-    for (const IsConnection& connection : declaration.is) connections[connection.node.get()].push_back(&connection);
+    for (const IsConnection& connection : declaration.is)
+      connections[connection.node.get()].push_back(&connection);
     text += " {";
     indent_ += 2;
     scope(declaration.body, &connections);

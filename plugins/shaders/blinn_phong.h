@@ -1,5 +1,5 @@
-// blinn_phong.h: the highlight of VRML97 (ISO/IEC 14772-1 clause 4.14) as a lobe that is reciprocal and keeps energy. Shared by
-// Phong and VRML97. Pure functions. [render]
+// blinn_phong.h: the highlight of VRML97 (ISO/IEC 14772-1 clause 4.14) as a lobe that is reciprocal
+// and keeps energy. Shared by Phong and VRML97. Pure functions. [render]
 #pragma once
 
 #include <cmath>
@@ -8,17 +8,18 @@
 
 namespace blinn_phong {
 
-// The response (N.H)^n times this reflects all of the light that comes along the normal: its inverse is the integral of
-// (N.H)^n cos over the hemisphere for that direction, (F. Giesen, "Phong Normalization Factor Derivations", 2009). For all
-// others it reflects less.
+// The response (N.H)^n times this reflects all of the light that comes along the normal: its
+// inverse is the integral of (N.H)^n cos over the hemisphere for that direction, (F. Giesen, "Phong
+// Normalization Factor Derivations", 2009). For all others it reflects less.
 inline float normalisation(float exponent) {
   return (exponent + 2) * (exponent + 4) / (8 * rts::pi * (std::exp2(-exponent / 2) + exponent));
 }
-// The fraction of light along the normal that a highlight reflects whose brightest point is `height`, as VRML97 has it: a light's
-// colour is the radiance of a white matt surface.
+// The fraction of light along the normal that a highlight reflects whose brightest point is
+// `height`, as VRML97 has it: a light's colour is the radiance of a white matt surface.
 inline float reflectance(float exponent) { return 1 / (rts::pi * normalisation(exponent)); }
 
-inline constexpr float sharpest = 1e6f; // larger exponents: a float's halfway vectors have no more digits
+inline constexpr float sharpest =
+    1e6f; // larger exponents: a float's halfway vectors have no more digits
 
 struct Lobe {
   float exponent;
@@ -39,7 +40,8 @@ struct Lobe {
   rts::Vec3 sample(rts::Vec3 toEye, rts::Vec2 square, rts::Vec3 normal) const {
     // 1 - cos^2 by expm1 and log: for sharp highlights the cosine is 1 to all digits.
     const float sine2 = -std::expm1(2 / (power() + 1) * std::log(std::fmax(square.y, 1e-30f)));
-    const float sine = std::sqrt(std::fmin(1.0f, std::fmax(0.0f, sine2))), phi = 2 * rts::pi * square.x;
+    const float sine = std::sqrt(std::fmin(1.0f, std::fmax(0.0f, sine2))),
+                phi = 2 * rts::pi * square.x;
     const float z = std::sqrt(std::fmax(0.0f, 1 - sine * sine));
     const rts::Vec3 h = rts::Frame(normal).toWorld({sine * std::cos(phi), sine * std::sin(phi), z});
     return rts::normalize(2 * rts::dot(toEye, h) * h - toEye);

@@ -6,9 +6,16 @@ namespace {
 
 struct Checker : rts::Surface<Checker> {
   static constexpr const char* text = "carved from cubes of two colours";
-  rts::Param<rts::Color> even{"even", {0.8f, 0.8f, 0.8f}, "fraction of light scattered by the cube at the origin, 0..1", 0, 1};
+  rts::Param<rts::Color> even{"even",
+                              {0.8f, 0.8f, 0.8f},
+                              "fraction of light scattered by the cube at the origin, 0..1",
+                              0,
+                              1};
   rts::Param<rts::Color> odd{"odd", {0.1f, 0.1f, 0.1f}, "that of its neighbours, 0..1", 0, 1};
-  rts::Param<rts::Vec3> size{"size", {1, 1, 1}, "edges of the cubes, in units of the object; 0: no change along this axis"};
+  rts::Param<rts::Vec3> size{
+      "size",
+      {1, 1, 1},
+      "edges of the cubes, in units of the object; 0: no change along this axis"};
   rts::Param<float> coating{"coating", 1, "index of refraction of a clear coating; 1: none", 1, 3};
 
   uint32_t needs() const { return coating > 1.001f ? RTS_SPECULAR | RTS_GLOSSY : 0; }

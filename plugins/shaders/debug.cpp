@@ -1,20 +1,25 @@
-// debug.cpp: shows what a shader sees of a hit as a colour, whatever the light. For people who look for mistakes in geometry;
-// also the example of a shader written with openrts.hpp.
+// debug.cpp: shows what a shader sees of a hit as a colour, whatever the light. For people who look
+// for mistakes in geometry; also the example of a shader written with openrts.hpp.
 #include "openrt/openrts.hpp"
 #include "pattern.h"
 
 namespace {
 
 struct Debug : rts::Surface<Debug> {
-  static constexpr const char* text = "shows normals, texture coordinates, sides, ids, distances as colours";
+  static constexpr const char* text =
+      "shows normals, texture coordinates, sides, ids, distances as colours";
   rts::Param<int32_t> show{"show", 0,
-                           "0: shading normal, 1: geometric normal, 2: texture coordinates, 3: front green, back red, 4: name, "
+                           "0: shading normal, 1: geometric normal, 2: texture coordinates, 3: "
+                           "front green, back red, 4: name, "
                            "5: instance, 6: triangle, "
-                           "7: distance, 8: surfaces met before, 9, 10: direction of growing s, t, 11: place in the object, 12: "
+                           "7: distance, 8: surfaces met before, 9, 10: direction of growing s, t, "
+                           "11: place in the object, 12: "
                            "colour of the geometry",
                            0, 12};
-  rts::Param<float> scale{"scale", 1, "distance, depth or length of the object that is one: white, or a turn of the colours",
-                          1e-30f, 1e30f};
+  rts::Param<float> scale{
+      "scale", 1,
+      "distance, depth or length of the object that is one: white, or a turn of the colours",
+      1e-30f, 1e30f};
 
   rts::Shaded shade(const rts::Hit& hit) const {
     const rts::Color c = color(hit);
@@ -23,7 +28,9 @@ struct Debug : rts::Surface<Debug> {
 
  private:
   // -1..1 becomes 0..1.
-  static rts::Color ofNormal(rts::Vec3 n) { return {0.5f + 0.5f * n.x, 0.5f + 0.5f * n.y, 0.5f + 0.5f * n.z}; }
+  static rts::Color ofNormal(rts::Vec3 n) {
+    return {0.5f + 0.5f * n.x, 0.5f + 0.5f * n.y, 0.5f + 0.5f * n.z};
+  }
   static float fraction(float x) { return x - std::floor(x); }
   // Any number a colour of its own; 0 black.
   static rts::Color ofId(uint32_t id) {

@@ -5,8 +5,8 @@ namespace {
 
 struct Diffuse : rts::Surface<Diffuse> {
   static constexpr const char* text = "scatters light evenly; may send out light of its own";
-  rts::Param<rts::Color> reflectance{"reflectance", {0.8f, 0.8f, 0.8f}, "fraction of light scattered, 0..1", 0, 1,
-                                     rts::PerVertex};
+  rts::Param<rts::Color> reflectance{
+      "reflectance", {0.8f, 0.8f, 0.8f}, "fraction of light scattered, 0..1", 0, 1, rts::PerVertex};
   rts::Param<rts::Color> emission{"emission", {0, 0, 0}, "radiance sent out"};
   rts::Param<rts::Texture> texture{"texture", "multiplies reflectance"};
 
@@ -14,8 +14,8 @@ struct Diffuse : rts::Surface<Diffuse> {
   uint32_t needs() const { return rts::largest(reflectance) > 0 ? 0 : RTS_NO_SCATTER; }
   void surface(const rts::Hit& hit, rts::Closures& out) const {
     const rts::Vec4 texel = hit.sample(texture, hit.uv);
-    const rts::Color albedo =
-        *reflectance * rts::Color{texel.x, texel.y, texel.z} * rts::Color{hit.color.x, hit.color.y, hit.color.z};
+    const rts::Color albedo = *reflectance * rts::Color{texel.x, texel.y, texel.z} *
+                              rts::Color{hit.color.x, hit.color.y, hit.color.z};
     out.diffuse(albedo);
     out.emission(emission);
     out.albedo(albedo);

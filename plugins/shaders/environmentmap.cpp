@@ -1,5 +1,6 @@
-// environmentmap.cpp: light from all around as one picture: columns of equal longitude, rows of equal latitude. In the local
-// space +y is up; the middle of the picture lies towards -z, its right half towards +x. Thread tag [render].
+// environmentmap.cpp: light from all around as one picture: columns of equal longitude, rows of
+// equal latitude. In the local space +y is up; the middle of the picture lies towards -z, its right
+// half towards +x. Thread tag [render].
 #include <cstddef>
 
 #include "openrt/openrts.h"
@@ -26,8 +27,20 @@ const RtsParam params[] = {
      0.0f,
      0.0f,
      "radiance all around, top row at +y; wrapping: repeat, clamp"},
-    {"color", RTS_COLOR, offsetof(Params, color), {1.0f, 1.0f, 1.0f}, 0.0f, 0.0f, "multiplies the picture"},
-    {"intensity", RTS_FLOAT, offsetof(Params, intensity), {1.0f}, 0.0f, 1e9f, "multiplies the picture"},
+    {"color",
+     RTS_COLOR,
+     offsetof(Params, color),
+     {1.0f, 1.0f, 1.0f},
+     0.0f,
+     0.0f,
+     "multiplies the picture"},
+    {"intensity",
+     RTS_FLOAT,
+     offsetof(Params, intensity),
+     {1.0f},
+     0.0f,
+     1e9f,
+     "multiplies the picture"},
     {"rotation",
      RTS_FLOAT,
      offsetof(Params, rotation),
@@ -37,8 +50,9 @@ const RtsParam params[] = {
      "of the picture about +y, counter-clockwise seen from above, radians"},
 };
 
-VRML97_CLONES void places(float rotation, uint32_t n, const float* __restrict x, const float* __restrict y,
-                          const float* __restrict z, float* __restrict u, float* __restrict v) {
+VRML97_CLONES void places(float rotation, uint32_t n, const float* __restrict x,
+                          const float* __restrict y, const float* __restrict z, float* __restrict u,
+                          float* __restrict v) {
   constexpr float pi = 3.14159265358979f;
   for (uint32_t i = 0; i < n; i++) {
     const float across = x[i] < 0.0f ? -x[i] : x[i];
@@ -53,7 +67,8 @@ VRML97_CLONES void scale(float factor, uint32_t n, float* __restrict c) {
   for (uint32_t i = 0; i < n; i++) c[i] = c[i] * factor;
 }
 
-void miss(const RtsHost* host, RtsBatch* batch, const void* values, uint32_t n, const float* const d[3], float* const rgba[4]) {
+void miss(const RtsHost* host, RtsBatch* batch, const void* values, uint32_t n,
+          const float* const d[3], float* const rgba[4]) {
   if (n == 0) return;
   const auto& p = *static_cast<const Params*>(values);
   const uint32_t lanes = wholeLanes(n);
@@ -85,5 +100,6 @@ const RtsClass* const classes[] = {&environmentMap};
 
 extern "C" {
 extern RTS_EXPORT const RtsPlugin rtsPlugin;
-const RtsPlugin rtsPlugin = {RTS_MAGIC, RTS_ABI_MAJOR, RTS_ABI_MINOR, sizeof(RtsPlugin), 1, classes};
+const RtsPlugin rtsPlugin = {RTS_MAGIC, RTS_ABI_MAJOR, RTS_ABI_MINOR, sizeof(RtsPlugin),
+                             1,         classes};
 }

@@ -1,29 +1,44 @@
-// glass.cpp: a clear solid body with a smooth surface. Its faces point outwards: what is met from behind is met inside.
+// glass.cpp: a clear solid body with a smooth surface. Its faces point outwards: what is met from
+// behind is met inside.
 #include "openrt/openrts.hpp"
 
 namespace {
 
 struct Glass : rts::Surface<Glass> {
-  static constexpr const char* text = "clear glass: Fresnel reflection and refraction, absorption and dispersion inside";
+  static constexpr const char* text =
+      "clear glass: Fresnel reflection and refraction, absorption and dispersion inside";
   static constexpr uint32_t needs = RTS_SPECULAR | RTS_NO_SCATTER;
-  rts::Param<float> index{"index", 1.5f, "index of refraction (of yellow light, 587.6 nm), > 0", 0.1f, 10};
-  rts::Param<float> abbe{"abbe", 0, "Abbe number: how little the index depends on the colour (crown 60, flint 30); 0: not at all",
-                         0, 1000};
+  rts::Param<float> index{"index", 1.5f, "index of refraction (of yellow light, 587.6 nm), > 0",
+                          0.1f, 10};
+  rts::Param<float> abbe{
+      "abbe", 0,
+      "Abbe number: how little the index depends on the colour (crown 60, flint 30); 0: not at all",
+      0, 1000};
   rts::Param<rts::Color> indexByColor{
-      "indexByColor", {0, 0, 0}, "index of red, green and blue; where above 0 instead of the above", 0, 10};
-  rts::Param<rts::Color> absorption{"absorption", {0, 0, 0}, "of light inside, per unit of length in the world (Beer-Lambert)"};
+      "indexByColor",
+      {0, 0, 0},
+      "index of red, green and blue; where above 0 instead of the above",
+      0,
+      10};
+  rts::Param<rts::Color> absorption{
+      "absorption", {0, 0, 0}, "of light inside, per unit of length in the world (Beer-Lambert)"};
   rts::Param<rts::Color> tint{"tint", {1, 1, 1}, "of all light that meets the surface, 0..1", 0, 1};
-  rts::Param<int32_t> priority{"priority", 0, "where bodies overlap the one of the highest is there"};
-  rts::Param<int32_t> shadow{"shadow", 0, "1: opaque to the straight rays that ask for lights; 0: lets them through unbent", 0,
-                             1};
+  rts::Param<int32_t> priority{"priority", 0,
+                               "where bodies overlap the one of the highest is there"};
+  rts::Param<int32_t> shadow{
+      "shadow", 0,
+      "1: opaque to the straight rays that ask for lights; 0: lets them through unbent", 0, 1};
 
   rts::Medium medium() const {
-    return {{indexAt(0.6114f, indexByColor->r), indexAt(0.5491f, indexByColor->g), indexAt(0.4642f, indexByColor->b)},
+    return {{indexAt(0.6114f, indexByColor->r), indexAt(0.5491f, indexByColor->g),
+             indexAt(0.4642f, indexByColor->b)},
             absorption,
             priority};
   }
   void surface(const rts::Hit& hit, rts::Closures& out) const {
-    out.dielectric(tint, hit.back() ? float(index) : 1 / float(index)); // where media are known the indices are theirs
+    out.dielectric(tint, hit.back()
+                             ? float(index)
+                             : 1 / float(index)); // where media are known the indices are theirs
     out.albedo({1, 1, 1});
   }
   // Light on the straight way through: what a surface met head on lets pass.
@@ -34,14 +49,16 @@ struct Glass : rts::Surface<Glass> {
   }
 
  private:
-  // Cauchy's equation n = A + B / w^2 through the index of the d line and that of the lines F and C, by which E. Abbe's number is
-  // defined; at the dominant wavelengths (micrometres) of the primaries of sRGB.
+  // Cauchy's equation n = A + B / w^2 through the index of the d line and that of the lines F and
+  // C, by which E. Abbe's number is defined; at the dominant wavelengths (micrometres) of the
+  // primaries of sRGB.
   float indexAt(float wavelength, float given) const {
     if (given > 0) return given;
     if (!(abbe > 0)) return index;
     constexpr double d = 0.58756, f = 0.48613, c = 0.65627;
     const double b = (double(index) - 1) / (double(abbe) * (1 / (f * f) - 1 / (c * c)));
-    return static_cast<float>(index + b * (1 / (double(wavelength) * double(wavelength)) - 1 / (d * d)));
+    return static_cast<float>(index +
+                              b * (1 / (double(wavelength) * double(wavelength)) - 1 / (d * d)));
   }
 };
 

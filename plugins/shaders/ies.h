@@ -1,5 +1,6 @@
-// ies.h: measured luminaires: the text of ANSI/IES LM-63 files (1986, 1991, 1995, 2002, 2019) of photometric type C, and the
-// intensity in a direction. The text comes from anywhere: sizes are bounded, every fault has a message. Pure functions.
+// ies.h: measured luminaires: the text of ANSI/IES LM-63 files (1986, 1991, 1995, 2002, 2019) of
+// photometric type C, and the intensity in a direction. The text comes from anywhere: sizes are
+// bounded, every fault has a message. Pure functions.
 #pragma once
 
 #include <algorithm>
@@ -23,8 +24,12 @@ class Photometry {
   float intensity(double down, double around) const {
     if (down < double(vertical.front()) || down > double(vertical.back())) return 0;
     const Place v = placeOf(vertical, down), h = placeOf(horizontal, folded(around));
-    const auto at = [&](size_t column, size_t row) { return double(candela[column * vertical.size() + row]); };
-    const auto along = [&](size_t column) { return at(column, v.first) * (1 - v.share) + at(column, v.second) * v.share; };
+    const auto at = [&](size_t column, size_t row) {
+      return double(candela[column * vertical.size() + row]);
+    };
+    const auto along = [&](size_t column) {
+      return at(column, v.first) * (1 - v.share) + at(column, v.second) * v.share;
+    };
     return float(along(h.first) * (1 - h.share) + along(h.second) * h.share);
   }
   float largest() const { return *std::max_element(candela.begin(), candela.end()); }
@@ -34,7 +39,8 @@ class Photometry {
     double sum = 0;
     for (int row = 0; row < rows; row++) {
       const double down = 180.0 * (row + .5) / rows, sine = std::sin(down * M_PI / 180);
-      for (int column = 0; column < columns; column++) sum += double(intensity(down, 360.0 * (column + .5) / columns)) * sine;
+      for (int column = 0; column < columns; column++)
+        sum += double(intensity(down, 360.0 * (column + .5) / columns)) * sine;
     }
     return sum * (M_PI / rows) * (2 * M_PI / columns);
   }
@@ -50,7 +56,9 @@ class Photometry {
     const size_t last = angles.size() - 1;
     if (at >= double(angles[last])) {
       const double gap = double(angles[0]) + 360 - double(angles[last]);
-      return gap > 0 && at > double(angles[last]) ? Place{last, 0, (at - double(angles[last])) / gap} : Place{last, last, 0};
+      return gap > 0 && at > double(angles[last])
+                 ? Place{last, 0, (at - double(angles[last])) / gap}
+                 : Place{last, last, 0};
     }
     const auto above = std::upper_bound(angles.begin(), angles.end(), float(at), std::less<>());
     const size_t i = std::clamp<size_t>(size_t(above - angles.begin()), 1, last);
@@ -63,7 +71,8 @@ class Photometry {
     if (around < 0) around += 360;
     const double first = double(horizontal.front()), last = double(horizontal.back());
     if (horizontal.size() == 1) return first;
-    if (first == 90) return around >= 90 && around <= 270 ? around : around < 90 ? 180 - around : 540 - around;
+    if (first == 90)
+      return around >= 90 && around <= 270 ? around : around < 90 ? 180 - around : 540 - around;
     if (last > 180) return around;
     if (around > 180) around = 360 - around;
     return last == 90 && around > 90 ? 180 - around : around;
@@ -76,7 +85,8 @@ class Reader {
   Reader(std::string_view text, int line) : rest_(text), line_(line) {}
   int line() const { return line_; }
   bool number(double& out) {
-    while (!rest_.empty() && (rest_[0] == ' ' || rest_[0] == '\t' || rest_[0] == '\r' || rest_[0] == '\n' || rest_[0] == ',')) {
+    while (!rest_.empty() && (rest_[0] == ' ' || rest_[0] == '\t' || rest_[0] == '\r' ||
+                              rest_[0] == '\n' || rest_[0] == ',')) {
       line_ += rest_[0] == '\n';
       rest_.remove_prefix(1);
     }
@@ -90,7 +100,8 @@ class Reader {
     out.clear();
     for (size_t i = 0; i < count; i++) {
       double value;
-      if (!number(value) || !std::isfinite(value * factor) || std::fabs(value * factor) > 1e30) return false;
+      if (!number(value) || !std::isfinite(value * factor) || std::fabs(value * factor) > 1e30)
+        return false;
       out.push_back(float(value * factor));
     }
     return true;
@@ -102,21 +113,26 @@ class Reader {
 };
 
 inline bool rising(const std::vector<float>& angles) {
-  return std::adjacent_find(angles.begin(), angles.end(), [](float a, float b) { return !(a < b); }) == angles.end();
+  return std::adjacent_find(angles.begin(), angles.end(),
+                            [](float a, float b) { return !(a < b); }) == angles.end();
 }
 
 // Null, or what is wrong; line: of the text, where.
 inline const char* parse(std::string_view text, Photometry& out, int& line) {
   line = 1;
   if (text.empty()) return "no profile: give the text of an IES LM-63 file";
-  // Up to the line TILT=...: keywords, which are not needed. Only the oldest two kinds have a factor where later ones have 1.
-  const bool factorLater = text.substr(0, 5) != "IESNA" && text.substr(0, 4) != "IES:" ? true : text.substr(0, 7) == "IESNA91";
+  // Up to the line TILT=...: keywords, which are not needed. Only the oldest two kinds have a
+  // factor where later ones have 1.
+  const bool factorLater = text.substr(0, 5) != "IESNA" && text.substr(0, 4) != "IES:"
+                               ? true
+                               : text.substr(0, 7) == "IESNA91";
   std::string_view tilt;
   for (;; line++) {
     const size_t end = text.find('\n');
     std::string_view here = text.substr(0, end);
     text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
-    while (!here.empty() && (here.back() == '\r' || here.back() == ' ' || here.back() == '\t')) here.remove_suffix(1);
+    while (!here.empty() && (here.back() == '\r' || here.back() == ' ' || here.back() == '\t'))
+      here.remove_suffix(1);
     while (!here.empty() && (here.front() == ' ' || here.front() == '\t')) here.remove_prefix(1);
     if (here.substr(0, 5) == "TILT=") {
       tilt = here.substr(5);
@@ -124,10 +140,13 @@ inline const char* parse(std::string_view text, Photometry& out, int& line) {
     }
     if (text.empty()) return "not an IES file: there is no line TILT=";
   }
-  if (tilt == "INCLUDE") return "TILT=INCLUDE is not supported: the lamp's output would depend on how the luminaire hangs";
+  if (tilt == "INCLUDE")
+    return "TILT=INCLUDE is not supported: the lamp's output would depend on how the luminaire "
+           "hangs";
   if (tilt != "NONE") return "TILT names a file; only TILT=NONE is supported";
   Reader reader(text, line + 1);
-  double head[13]; // lamps, lumens, multiplier, angles, type, units, size, ballast and its later factor, watts
+  double head[13]; // lamps, lumens, multiplier, angles, type, units, size, ballast and its later
+                   // factor, watts
   for (double& value : head) {
     const bool good = reader.number(value);
     line = reader.line();
@@ -135,8 +154,9 @@ inline const char* parse(std::string_view text, Photometry& out, int& line) {
   }
   const double factor = head[2] * head[10] * (factorLater ? head[11] : 1);
   if (!(factor >= 0)) return "a negative multiplier or ballast factor";
-  if (!(head[3] >= 1 && head[3] <= double(maxAngles)) || !(head[4] >= 1 && head[4] <= double(maxAngles)) ||
-      head[3] != std::floor(head[3]) || head[4] != std::floor(head[4]) || head[3] * head[4] > double(maxValues))
+  if (!(head[3] >= 1 && head[3] <= double(maxAngles)) ||
+      !(head[4] >= 1 && head[4] <= double(maxAngles)) || head[3] != std::floor(head[3]) ||
+      head[4] != std::floor(head[4]) || head[3] * head[4] > double(maxValues))
     return "the number of angles is out of range: 1 to 4096 each, 2^20 values";
   if (head[5] != 1) return "only photometric type C (1) is supported";
   const auto rows = size_t(head[3]), columns = size_t(head[4]);
@@ -150,7 +170,8 @@ inline const char* parse(std::string_view text, Photometry& out, int& line) {
   else if (!rising(out.horizontal) || out.horizontal.front() < 0 || out.horizontal.back() > 360)
     message = "horizontal angles must rise from 0 to 360 degrees";
   else if (const float first = out.horizontal.front(), last = out.horizontal.back();
-           columns > 1 && !(first == 0 && (last == 90 || last >= 180)) && !(first == 90 && last == 270))
+           columns > 1 && !(first == 0 && (last == 90 || last >= 180)) &&
+           !(first == 90 && last == 270))
     message = "horizontal angles must run from 0 to 0, 90, 180 or 360 degrees, or from 90 to 270";
   else if (!reader.numbers(rows * columns, factor, out.candela))
     message = "a candela value is missing, no number, or too large";

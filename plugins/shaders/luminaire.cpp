@@ -8,14 +8,19 @@
 namespace {
 
 struct Luminaire : rts::LightSource<Luminaire> {
-  static constexpr const char* text = "a measured luminaire: one candela is a radiant intensity of 1";
-  rts::Param<rts::String> profile{"profile", "text of an ANSI/IES LM-63 file of photometric type C, TILT=NONE"};
+  static constexpr const char* text =
+      "a measured luminaire: one candela is a radiant intensity of 1";
+  rts::Param<rts::String> profile{
+      "profile", "text of an ANSI/IES LM-63 file of photometric type C, TILT=NONE"};
   rts::Param<rts::Color> color{"color", {1, 1, 1}, "multiplies the measured intensity"};
   rts::Param<float> intensity{"intensity", 1, "multiplies the measured intensity", 0, 1e9f};
   rts::Param<rts::Vec3> location{"location", {0, 0, 0}, "place of the photometric centre"};
-  rts::Param<rts::Vec3> direction{"direction", {0, 0, -1}, "towards vertical angle 0: down, as the luminaire hangs"};
+  rts::Param<rts::Vec3> direction{
+      "direction", {0, 0, -1}, "towards vertical angle 0: down, as the luminaire hangs"};
   rts::Param<rts::Vec3> reference{
-      "reference", {1, 0, 0}, "towards horizontal angle 0; angles grow counter-clockwise seen from above"};
+      "reference",
+      {1, 0, 0},
+      "towards horizontal angle 0; angles grow counter-clockwise seen from above"};
 
   // Made by prepare.
   const ies::Photometry* photometry;
@@ -41,7 +46,9 @@ struct Luminaire : rts::LightSource<Luminaire> {
     if (!(rts::length(down) > 0)) down = {0, 0, -1};
     const rts::Vec3 other = std::fabs(down.x) < .9f ? rts::Vec3{1, 0, 0} : rts::Vec3{0, 1, 0};
     const rts::Vec3 given = *reference - rts::dot(*reference, down) * down;
-    zero = rts::normalize(rts::length(given) > 1e-6f * rts::length(*reference) ? given : other - rts::dot(other, down) * down);
+    zero = rts::normalize(rts::length(given) > 1e-6f * rts::length(*reference)
+                              ? given
+                              : other - rts::dot(other, down) * down);
     ninety = rts::cross(zero, down); // up x zero
     flux = float(made->flux());
     return nullptr;
@@ -58,8 +65,10 @@ struct Luminaire : rts::LightSource<Luminaire> {
     const double square = d * d + x * x + y * y;
     if (!photometry || !(square > 1e-30)) return {};
     constexpr double degrees = 180 / M_PI;
-    const double vertical = std::atan2(std::sqrt(x * x + y * y), d) * degrees, horizontal = std::atan2(y, x) * degrees;
-    const double seen = double(photometry->intensity(vertical, horizontal)) * double(*intensity) / (M_PI * square);
+    const double vertical = std::atan2(std::sqrt(x * x + y * y), d) * degrees,
+                 horizontal = std::atan2(y, x) * degrees;
+    const double seen =
+        double(photometry->intensity(vertical, horizontal)) * double(*intensity) / (M_PI * square);
     return {-way, *color * float(std::fmin(seen, 1e30)), {}};
   }
   rts::Extent extent() const {

@@ -1,4 +1,5 @@
-// marble.cpp: a body carved from marble: veins that turbulence bends. K. Perlin, "An Image Synthesizer", SIGGRAPH 1985.
+// marble.cpp: a body carved from marble: veins that turbulence bends. K. Perlin, "An Image
+// Synthesizer", SIGGRAPH 1985.
 #include "coat.h"
 #include "pattern.h"
 
@@ -6,9 +7,11 @@ namespace {
 
 struct Marble : rts::Surface<Marble> {
   static constexpr const char* text = "carved from marble: bent veins, polish";
-  rts::Param<rts::Color> stone{"stone", {0.85f, 0.84f, 0.8f}, "fraction of light that the stone scatters, 0..1", 0, 1};
+  rts::Param<rts::Color> stone{
+      "stone", {0.85f, 0.84f, 0.8f}, "fraction of light that the stone scatters, 0..1", 0, 1};
   rts::Param<rts::Color> vein{"vein", {0.25f, 0.27f, 0.3f}, "that of the veins, 0..1", 0, 1};
-  rts::Param<rts::Vec3> across{"across", {1, 0.6f, 0.2f}, "direction across the veins, in the object's space"};
+  rts::Param<rts::Vec3> across{
+      "across", {1, 0.6f, 0.2f}, "direction across the veins, in the object's space"};
   rts::Param<float> veins{"veins", 2, "veins per unit of length", 0, 1e6f};
   rts::Param<float> turbulence{"turbulence", 2, "how far the veins are bent, in veins", 0, 10};
   rts::Param<float> sharpness{"sharpness", 4, "how thin the veins are, >= 1", 1, 64};

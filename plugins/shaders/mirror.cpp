@@ -6,7 +6,8 @@ namespace {
 struct Mirror : rts::Surface<Mirror> {
   static constexpr const char* text = "a perfect mirror of one reflectance in all directions";
   static constexpr uint32_t needs = RTS_SPECULAR | RTS_NO_SCATTER;
-  rts::Param<rts::Color> reflectance{"reflectance", {0.9f, 0.9f, 0.9f}, "fraction reflected, 0..1", 0, 1};
+  rts::Param<rts::Color> reflectance{
+      "reflectance", {0.9f, 0.9f, 0.9f}, "fraction reflected, 0..1", 0, 1};
 
   void surface(const rts::Hit&, rts::Closures& out) const {
     out.reflection(reflectance);

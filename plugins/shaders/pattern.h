@@ -1,5 +1,6 @@
-// pattern.h: numbers from places, for patterns that are carved from bodies: hashes of cells, gradient noise. Shared by Wood,
-// Marble, Checker and CarPaint. Pure functions of the place, the same on every machine; any float is allowed. [render]
+// pattern.h: numbers from places, for patterns that are carved from bodies: hashes of cells,
+// gradient noise. Shared by Wood, Marble, Checker and CarPaint. Pure functions of the place, the
+// same on every machine; any float is allowed. [render]
 #pragma once
 
 #include <cmath>
@@ -10,7 +11,9 @@
 namespace pattern {
 
 // The cell that a coordinate lies in. Beyond 2^24 cells a float has no places within them.
-inline int32_t cell(float x) { return std::fabs(x) < 16777216.0f ? static_cast<int32_t>(std::floor(x)) : 0; }
+inline int32_t cell(float x) {
+  return std::fabs(x) < 16777216.0f ? static_cast<int32_t>(std::floor(x)) : 0;
+}
 
 // Mixes three whole numbers into one: the finaliser of A. Appleby's MurmurHash3 after each.
 inline uint32_t mix(uint32_t h) {
@@ -29,7 +32,8 @@ inline float unit(uint32_t h) { return static_cast<float>(h >> 8) * 0x1p-24f; } 
 inline float noise(rts::Vec3 p) {
   const int32_t x = cell(p.x), y = cell(p.y), z = cell(p.z);
   const rts::Vec3 f{p.x - float(x), p.y - float(y), p.z - float(z)};
-  if (!(f.x >= 0 && f.x <= 1 && f.y >= 0 && f.y <= 1 && f.z >= 0 && f.z <= 1)) return 0; // too far out
+  if (!(f.x >= 0 && f.x <= 1 && f.y >= 0 && f.y <= 1 && f.z >= 0 && f.z <= 1))
+    return 0; // too far out
   const auto fade = [](float t) { return t * t * t * (t * (t * 6 - 15) + 10); };
   const auto slope = [&](int32_t i, int32_t j, int32_t k) {
     const uint32_t h = hash(x + i, y + j, z + k) & 15;
@@ -40,7 +44,8 @@ inline float noise(rts::Vec3 p) {
   const float u = fade(f.x), v = fade(f.y), w = fade(f.z);
   const auto mixed = [](float t, float a, float b) { return a + t * (b - a); };
   const auto layer = [&](int32_t k) {
-    return mixed(v, mixed(u, slope(0, 0, k), slope(1, 0, k)), mixed(u, slope(0, 1, k), slope(1, 1, k)));
+    return mixed(v, mixed(u, slope(0, 0, k), slope(1, 0, k)),
+                 mixed(u, slope(0, 1, k), slope(1, 1, k)));
   };
   return mixed(w, layer(0), layer(1));
 }
@@ -51,15 +56,18 @@ inline float turbulence(rts::Vec3 p, int octaves) {
   for (int i = 0; i < octaves; i++) {
     sum += strength * std::fabs(noise(p));
     strength *= 0.5f;
-    p = 2 * p + rts::Vec3{17.3f, 5.1f, 9.7f}; // whole coordinates must not coincide: noise is 0 there
+    p = 2 * p +
+        rts::Vec3{17.3f, 5.1f, 9.7f}; // whole coordinates must not coincide: noise is 0 there
   }
   return sum;
 }
 
-inline rts::Color between(rts::Color a, rts::Color b, float t) { return a + (b - a) * std::fmin(1.0f, std::fmax(0.0f, t)); }
+inline rts::Color between(rts::Color a, rts::Color b, float t) {
+  return a + (b - a) * std::fmin(1.0f, std::fmax(0.0f, t));
+}
 
-// The place of a hit in its object, a thousandth of a cell beneath the surface: a face in the plane between two cells has one of
-// them.
+// The place of a hit in its object, a thousandth of a cell beneath the surface: a face in the plane
+// between two cells has one of them.
 inline rts::Vec3 beneath(const rts::Hit& hit, float cellSize) {
   const rts::Hit::Local local = hit.local();
   return local.position - rts::normalize(local.normal) * (1e-3f * cellSize);

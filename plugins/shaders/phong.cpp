@@ -1,24 +1,30 @@
-// phong.cpp: a matt surface with a highlight. It looks like VRML97's, but may be used where light goes from surface to surface.
+// phong.cpp: a matt surface with a highlight. It looks like VRML97's, but may be used where light
+// goes from surface to surface.
 #include "blinn_phong.h"
 
 namespace {
 
 struct Phong : rts::Surface<Phong> {
-  static constexpr const char* text = "even scattering and a Blinn-Phong highlight; reciprocal, keeps energy";
-  rts::Param<rts::Color> diffuseColor{"diffuseColor", {0.6f, 0.6f, 0.6f}, "fraction of light scattered evenly, 0..1", 0, 1,
-                                      rts::PerVertex};
-  rts::Param<rts::Color> specularColor{"specularColor",
-                                       {0.3f, 0.3f, 0.3f},
-                                       "fraction of light in the highlight, 0..1; with diffuseColor it is scaled to at most 1",
-                                       0,
-                                       1};
-  rts::Param<float> shininess{"shininess", 0.2f, "exponent of the highlight over 128, as in VRML97", 0, 7812.5f};
+  static constexpr const char* text =
+      "even scattering and a Blinn-Phong highlight; reciprocal, keeps energy";
+  rts::Param<rts::Color> diffuseColor{
+      "diffuseColor", {0.6f, 0.6f, 0.6f}, "fraction of light scattered evenly, 0..1", 0, 1,
+      rts::PerVertex};
+  rts::Param<rts::Color> specularColor{
+      "specularColor",
+      {0.3f, 0.3f, 0.3f},
+      "fraction of light in the highlight, 0..1; with diffuseColor it is scaled to at most 1",
+      0,
+      1};
+  rts::Param<float> shininess{"shininess", 0.2f, "exponent of the highlight over 128, as in VRML97",
+                              0, 7812.5f};
   rts::Param<rts::Texture> texture{"texture", "multiplies diffuseColor"};
 
   uint32_t needs() const { return rts::largest(specularColor) > 0 ? RTS_GLOSSY : 0; }
   void surface(const rts::Hit& hit, rts::Closures& out) const {
     const rts::Vec4 t = hit.sample(texture, hit.uv);
-    const rts::Color albedo = *diffuseColor * rts::Color{t.x, t.y, t.z} * rts::Color{hit.color.x, hit.color.y, hit.color.z};
+    const rts::Color albedo = *diffuseColor * rts::Color{t.x, t.y, t.z} *
+                              rts::Color{hit.color.x, hit.color.y, hit.color.z};
     const rts::Color both = albedo + *specularColor;
     const rts::Color scale{kept(both.r), kept(both.g), kept(both.b)};
     out.diffuse(scale * albedo);

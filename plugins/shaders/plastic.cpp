@@ -7,7 +7,8 @@
 
 namespace {
 
-constexpr int knots = 14; // of the table of what a rough boundary lets through, evenly over the root of the cosine
+constexpr int knots =
+    14; // of the table of what a rough boundary lets through, evenly over the root of the cosine
 
 struct Boundary { // one facet of it
   float index;
@@ -39,7 +40,8 @@ template <int n> std::array<Node, n> gauss() {
   return nodes;
 }
 
-// The body under a rough boundary, with T from a table: f = T(in) T(out) / (pi mean T), white. The same rule for both directions.
+// The body under a rough boundary, with T from a table: f = T(in) T(out) / (pi mean T), white. The
+// same rule for both directions.
 struct RoughMatt {
   float mean, table[knots];
 
@@ -58,24 +60,32 @@ struct RoughMatt {
     const float value = through(in) * through(rts::dot(toEye, normal)) * in / (rts::pi * mean);
     return {value, value, value};
   }
-  float density(rts::Vec3, rts::Vec3 direction, rts::Vec3 normal) const { return coat::cosineDensity(direction, normal); }
-  rts::Vec3 sample(rts::Vec3, rts::Vec2 square, rts::Vec3 normal) const { return coat::cosineDirection(square, normal); }
+  float density(rts::Vec3, rts::Vec3 direction, rts::Vec3 normal) const {
+    return coat::cosineDensity(direction, normal);
+  }
+  rts::Vec3 sample(rts::Vec3, rts::Vec2 square, rts::Vec3 normal) const {
+    return coat::cosineDirection(square, normal);
+  }
 };
 
 struct Plastic : rts::Surface<Plastic> {
-  static constexpr const char* text = "coloured body under a clear boundary, smooth or rough; keeps energy";
-  rts::Param<rts::Color> color{"color", {0.6f, 0.1f, 0.1f}, "fraction of light that the body scatters, 0..1", 0,
-                               1,       rts::PerVertex};
-  rts::Param<float> index{"index", 1.5f, "index of refraction of the clear part; 1: no boundary", 1, 3};
-  rts::Param<float> roughness{"roughness", 0, "width of the distribution of slopes (alpha of GGX); 0: smooth", 0, 1};
+  static constexpr const char* text =
+      "coloured body under a clear boundary, smooth or rough; keeps energy";
+  rts::Param<rts::Color> color{
+      "color", {0.6f, 0.1f, 0.1f}, "fraction of light that the body scatters, 0..1", 0,
+      1,       rts::PerVertex};
+  rts::Param<float> index{"index", 1.5f, "index of refraction of the clear part; 1: no boundary", 1,
+                          3};
+  rts::Param<float> roughness{
+      "roughness", 0, "width of the distribution of slopes (alpha of GGX); 0: smooth", 0, 1};
   rts::Param<rts::Texture> texture{"texture", "multiplies color"};
 
   uint32_t needs() const {
     if (!(index > 1.001f)) return 0;
     return rough() ? RTS_GLOSSY : RTS_SPECULAR | RTS_GLOSSY;
   }
-  // What the rough boundary does not reflect goes to the body, also what facets throw at each other: a white body under it
-  // reflects all light, to about 3e-4.
+  // What the rough boundary does not reflect goes to the body, also what facets throw at each
+  // other: a white body under it reflects all light, to about 3e-4.
   const char* prepare() {
     if (!rough()) return nullptr;
     const microfacet::Rough<Boundary> boundary{roughness, {index}};
@@ -84,18 +94,21 @@ struct Plastic : rts::Surface<Plastic> {
       const float reflectance = reflected(boundary, {std::sqrt(std::fmax(0.0f, 1 - z * z)), 0, z});
       body_.table[j] = std::fmin(1.0f, std::fmax(0.0f, 1 - reflectance));
     }
-    double mean = 0; // of 2 c T(c) dc = 4 r^3 T dr, r the root; a polynomial of degree 6 between two knots
+    double mean =
+        0; // of 2 c T(c) dc = 4 r^3 T dr, r the root; a polynomial of degree 6 between two knots
     for (int j = 0; j + 1 < knots; j++)
       for (const Node& node : gauss<4>()) {
         const double r = (j + node.place) / (knots - 1);
-        mean += node.weight / (knots - 1) * 4 * r * r * r * double(RoughMatt::at(body_.table, float(r)));
+        mean += node.weight / (knots - 1) * 4 * r * r * r *
+                double(RoughMatt::at(body_.table, float(r)));
       }
     body_.mean = static_cast<float>(mean);
     return nullptr;
   }
   void surface(const rts::Hit& hit, rts::Closures& out) const {
     const rts::Vec4 t = hit.sample(texture, hit.uv);
-    const rts::Color albedo = *color * rts::Color{t.x, t.y, t.z} * rts::Color{hit.color.x, hit.color.y, hit.color.z};
+    const rts::Color albedo =
+        *color * rts::Color{t.x, t.y, t.z} * rts::Color{hit.color.x, hit.color.y, hit.color.z};
     if (!rough() || !(body_.mean > 0)) return coat::add(hit, out, albedo, index);
     out.albedo(albedo);
     out.custom({1, 1, 1}, microfacet::Rough<Boundary>{roughness, {index}});
@@ -109,7 +122,8 @@ struct Plastic : rts::Surface<Plastic> {
     double sum = 0;
     for (const Node& node : gauss<40>())
       for (int a = 0; a < around; a++) {
-        const rts::Sample s = boundary.sample(o, {(float(a) + 0.5f) / (2 * around), float(node.place)}, {0, 0, 1});
+        const rts::Sample s =
+            boundary.sample(o, {(float(a) + 0.5f) / (2 * around), float(node.place)}, {0, 0, 1});
         if (s.density > 0) sum += node.weight / around * double(s.quotient.r);
       }
     return static_cast<float>(sum);

@@ -1,9 +1,11 @@
-// reflector.cpp: the inside of a headlamp: metal under a thin clear lacquer, nearly polished, dusty.
+// reflector.cpp: the inside of a headlamp: metal under a thin clear lacquer, nearly polished,
+// dusty.
 #include "microfacet.h"
 
 namespace {
 
-// Metal below a layer that light crosses back and forth without loss; the reflections are summed, phases are not.
+// Metal below a layer that light crosses back and forth without loss; the reflections are summed,
+// phases are not.
 struct Lacquered {
   rts::Color n, k;
   float index; // of the layer; up to 1: none
@@ -23,13 +25,21 @@ struct Lacquered {
 };
 
 struct Reflector : rts::Surface<Reflector> {
-  static constexpr const char* text = "headlamp reflector: metal under clear lacquer, nearly polished, with dust on it";
-  rts::Param<rts::Color> n{"n", {1.35f, 0.96f, 0.62f}, "real part of the metal's index, by colour (default: aluminium)", 0, 20};
-  rts::Param<rts::Color> k{"k", {7.47f, 6.4f, 5.3f}, "imaginary part of the metal's index, by colour", 0, 20};
+  static constexpr const char* text =
+      "headlamp reflector: metal under clear lacquer, nearly polished, with dust on it";
+  rts::Param<rts::Color> n{"n",
+                           {1.35f, 0.96f, 0.62f},
+                           "real part of the metal's index, by colour (default: aluminium)",
+                           0,
+                           20};
+  rts::Param<rts::Color> k{
+      "k", {7.47f, 6.4f, 5.3f}, "imaginary part of the metal's index, by colour", 0, 20};
   rts::Param<float> lacquer{"lacquer", 1.5f, "index of refraction of the lacquer; 1: none", 1, 3};
-  rts::Param<float> roughness{"roughness", 0, "width of the distribution of slopes (alpha of GGX); 0: polished", 0, 1};
+  rts::Param<float> roughness{
+      "roughness", 0, "width of the distribution of slopes (alpha of GGX); 0: polished", 0, 1};
   rts::Param<float> dust{"dust", 0, "fraction of the surface that is covered", 0, 1};
-  rts::Param<rts::Color> dustColor{"dustColor", {0.3f, 0.27f, 0.22f}, "fraction of light that dust scatters, 0..1", 0, 1};
+  rts::Param<rts::Color> dustColor{
+      "dustColor", {0.3f, 0.27f, 0.22f}, "fraction of light that dust scatters, 0..1", 0, 1};
 
   uint32_t needs() const {
     if (roughness > microfacet::smoothest) return RTS_GLOSSY;

@@ -1,16 +1,21 @@
-// roughglass.cpp: ground or frosted glass: a clear body whose surface is rough. Faces point outwards.
+// roughglass.cpp: ground or frosted glass: a clear body whose surface is rough. Faces point
+// outwards.
 #include "openrt/openrts.hpp"
 
 namespace {
 
 struct RoughGlass : rts::Surface<RoughGlass> {
-  static constexpr const char* text = "ground glass: refraction and reflection at a rough surface, absorption inside";
+  static constexpr const char* text =
+      "ground glass: refraction and reflection at a rough surface, absorption inside";
   static constexpr uint32_t needs = RTS_GLOSSY;
   rts::Param<float> index{"index", 1.5f, "index of refraction, > 0", 0.1f, 10};
-  rts::Param<float> roughness{"roughness", 0.2f, "width of the distribution of slopes (alpha of GGX)", 0, 1};
-  rts::Param<rts::Color> absorption{"absorption", {0, 0, 0}, "of light inside, per unit of length in the world (Beer-Lambert)"};
+  rts::Param<float> roughness{"roughness", 0.2f,
+                              "width of the distribution of slopes (alpha of GGX)", 0, 1};
+  rts::Param<rts::Color> absorption{
+      "absorption", {0, 0, 0}, "of light inside, per unit of length in the world (Beer-Lambert)"};
   rts::Param<rts::Color> tint{"tint", {1, 1, 1}, "of all light that meets the surface, 0..1", 0, 1};
-  rts::Param<int32_t> priority{"priority", 0, "where bodies overlap the one of the highest is there"};
+  rts::Param<int32_t> priority{"priority", 0,
+                               "where bodies overlap the one of the highest is there"};
 
   rts::Medium medium() const { return {{index, index, index}, absorption, priority}; }
   void surface(const rts::Hit& hit, rts::Closures& out) const {

@@ -5,8 +5,10 @@
 namespace {
 
 struct Wood : rts::Surface<Wood> {
-  static constexpr const char* text = "carved from wood: rings about an axis, grain along it, varnish";
-  rts::Param<rts::Color> light{"light", {0.62f, 0.38f, 0.18f}, "fraction of light that early wood scatters, 0..1", 0, 1};
+  static constexpr const char* text =
+      "carved from wood: rings about an axis, grain along it, varnish";
+  rts::Param<rts::Color> light{
+      "light", {0.62f, 0.38f, 0.18f}, "fraction of light that early wood scatters, 0..1", 0, 1};
   rts::Param<rts::Color> dark{"dark", {0.3f, 0.14f, 0.05f}, "that of late wood, 0..1", 0, 1};
   rts::Param<rts::Vec3> axis{"axis", {0, 1, 0}, "direction of the trunk, in the object's space"};
   rts::Param<rts::Vec3> pith{"pith", {0, 0, 0}, "a point of the middle of the trunk"};
@@ -27,10 +29,12 @@ struct Wood : rts::Surface<Wood> {
     const rts::Vec3 local = rts::Frame(a).toLocal(p);
     const float across = std::sqrt(local.x * local.x + local.y * local.y);
     // Slow along the trunk: fibres run with it.
-    const float ring = across + wobble * pattern::turbulence({0.3f * local.x, 0.3f * local.y, 0.05f * local.z}, 3);
+    const float ring =
+        across + wobble * pattern::turbulence({0.3f * local.x, 0.3f * local.y, 0.05f * local.z}, 3);
     const float phase = ring - std::floor(ring);
     // Early wood turns into late wood slowly, and ends at once.
-    const float late = std::fabs(phase) < 2 ? phase * phase * (phase < 0.9f ? 1 : 10 * (1 - phase)) : 0;
+    const float late =
+        std::fabs(phase) < 2 ? phase * phase * (phase < 0.9f ? 1 : 10 * (1 - phase)) : 0;
     const float fine = 0.5f + 0.5f * pattern::noise({12 * local.x, 12 * local.y, 0.6f * local.z});
     const rts::Color plain = pattern::between(light, dark, late);
     return plain * (1 - 0.5f * grain * fine);

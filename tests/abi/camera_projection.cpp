@@ -1,5 +1,6 @@
-// camera_projection.cpp: every stock camera's `project` undoes its `generate`, and its weight is what openrts.h says: pixels
-// covered per unit of area, at the point, of a surface that faces the eye; by finite differences of the projection itself.
+// camera_projection.cpp: every stock camera's `project` undoes its `generate`, and its weight is
+// what openrts.h says: pixels covered per unit of area, at the point, of a surface that faces the
+// eye; by finite differences of the projection itself.
 #include <cmath>
 #include <string>
 
@@ -21,7 +22,9 @@ struct Point {
 };
 Point operator+(Point a, Point b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 Point operator*(Point a, double s) { return {a.x * s, a.y * s, a.z * s}; }
-Point cross(Point a, Point b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
+Point cross(Point a, Point b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
 double length(Point a) { return std::sqrt(a.x * a.x + a.y * a.y + a.z * a.z); }
 
 const float size[2] = {320, 200};
@@ -44,20 +47,24 @@ struct Projected {
 
 Projected project(const RtsClass& c, const ParamBlock& p, Point at) {
   LensHost host;
-  Lanes in[5] = {Lanes(1, float(at.x)), Lanes(1, float(at.y)), Lanes(1, float(at.z)), Lanes(1, lens[0]), Lanes(1, lens[1])};
+  Lanes in[5] = {Lanes(1, float(at.x)), Lanes(1, float(at.y)), Lanes(1, float(at.z)),
+                 Lanes(1, lens[0]), Lanes(1, lens[1])};
   const float* const local[3] = {in[0].data(), in[1].data(), in[2].data()};
   const float* const square[2] = {in[3].data(), in[4].data()};
-  Lanes lanes[6] = {Lanes(1, -7.f), Lanes(1, -7.f), Lanes(1, -7.f), Lanes(1, -7.f), Lanes(1, -7.f), Lanes(1, -7.f)};
+  Lanes lanes[6] = {Lanes(1, -7.f), Lanes(1, -7.f), Lanes(1, -7.f),
+                    Lanes(1, -7.f), Lanes(1, -7.f), Lanes(1, -7.f)};
   RtsProjection out{};
   for (size_t k = 0; k < 2; k++) out.xy[k] = lanes[k].data();
   for (size_t k = 0; k < 3; k++) out.toEye[k] = lanes[2 + k].data();
   out.weight = lanes[5].data();
   out.parallel = 9;
   c.project(&host, host.batch(), p.get(), 1, local, square, size, &out);
-  return {lanes[0][0], lanes[1][0], lanes[5][0], {lanes[2][0], lanes[3][0], lanes[4][0]}, out.parallel};
+  return {
+      lanes[0][0], lanes[1][0], lanes[5][0], {lanes[2][0], lanes[3][0], lanes[4][0]}, out.parallel};
 }
 
-void generate(const RtsClass& c, const ParamBlock& p, double x, double y, Point& origin, Point& direction) {
+void generate(const RtsClass& c, const ParamBlock& p, double x, double y, Point& origin,
+              Point& direction) {
   LensHost host;
   Lanes in[2] = {Lanes(1, float(x)), Lanes(1, float(y))};
   const float* const xy[2] = {in[0].data(), in[1].data()};
@@ -108,7 +115,8 @@ TEST(CameraProjection, UndoesGenerate) {
   }
 }
 
-// A small square that faces the eye, by central differences of the projection: its pixels over its area.
+// A small square that faces the eye, by central differences of the projection: its pixels over its
+// area.
 TEST(CameraProjection, WeightIsPixelsPerUnitOfAreaThatFacesTheEye) {
   for (const Case& c : cases) {
     const RtsClass& kind = camera(c.name);
@@ -116,7 +124,8 @@ TEST(CameraProjection, WeightIsPixelsPerUnitOfAreaThatFacesTheEye) {
     for (const auto& [x, y] : pixels)
       for (const double t : {0.7, 40.0}) {
         Point o{}, d{};
-        generate(kind, p, std::min(std::max(x, 10.0), 310.0), std::min(std::max(y, 10.0), 190.0), o, d);
+        generate(kind, p, std::min(std::max(x, 10.0), 310.0), std::min(std::max(y, 10.0), 190.0), o,
+                 d);
         const Point at = o + d * t;
         const Projected here = project(kind, p, at);
         const Point eye = here.toEye * (1 / length(here.toEye));
@@ -125,8 +134,10 @@ TEST(CameraProjection, WeightIsPixelsPerUnitOfAreaThatFacesTheEye) {
         const double step = 3 / std::sqrt(here.weight); // 3 pixels
         const Projected a = project(kind, p, at + u * step), b = project(kind, p, at + u * -step);
         const Projected e = project(kind, p, at + v * step), f = project(kind, p, at + v * -step);
-        const double area = std::fabs((a.x - b.x) * (e.y - f.y) - (a.y - b.y) * (e.x - f.x)) / (4 * step * step);
-        EXPECT_NEAR(area, here.weight, 4e-3 * here.weight) << c.name << " pixel " << x << " " << y << " distance " << t;
+        const double area =
+            std::fabs((a.x - b.x) * (e.y - f.y) - (a.y - b.y) * (e.x - f.x)) / (4 * step * step);
+        EXPECT_NEAR(area, here.weight, 4e-3 * here.weight)
+            << c.name << " pixel " << x << " " << y << " distance " << t;
       }
   }
 }
@@ -142,9 +153,10 @@ TEST(CameraProjection, NothingOutsideThePictureOrBehind) {
       EXPECT_EQ(project(kind, p, {NAN, 0, 1}).weight, 0);
       continue;
     }
-    for (const Point at : {Point{0, 0, 1}, Point{0, 0, 0}, Point{1e6, 0, -1}, Point{0, -1e6, -1}, Point{NAN, 0, -1},
-                           Point{0, INFINITY, -1}, Point{0, 0, -INFINITY}})
-      EXPECT_EQ(project(kind, p, at).weight, 0) << c.name << " " << at.x << " " << at.y << " " << at.z;
+    for (const Point at : {Point{0, 0, 1}, Point{0, 0, 0}, Point{1e6, 0, -1}, Point{0, -1e6, -1},
+                           Point{NAN, 0, -1}, Point{0, INFINITY, -1}, Point{0, 0, -INFINITY}})
+      EXPECT_EQ(project(kind, p, at).weight, 0)
+          << c.name << " " << at.x << " " << at.y << " " << at.z;
   }
 }
 
@@ -156,7 +168,8 @@ TEST(Lens, RaysMeetInThePlaneInFocus) {
     p.set("radius", {radius});
     Point o{}, d{}, pinhole{}, straight{};
     generate(camera("ThinLens"), p, 70, 20, o, d);
-    generate(camera("PerspectiveCamera"), ParamBlock(camera("PerspectiveCamera")), 70, 20, pinhole, straight);
+    generate(camera("PerspectiveCamera"), ParamBlock(camera("PerspectiveCamera")), 70, 20, pinhole,
+             straight);
     const Point meets = o + d * (4 / -d.z), expected = straight * (4 / -straight.z);
     EXPECT_NEAR(meets.x, expected.x, 2e-6);
     EXPECT_NEAR(meets.y, expected.y, 2e-6);
@@ -209,7 +222,11 @@ TEST(Panorama, AxesAndEdges) {
   const struct {
     double x, y;
     Point direction;
-  } looks[] = {{160, 100, {0, 0, -1}}, {240, 100, {1, 0, 0}}, {80, 100, {-1, 0, 0}}, {160, 0, {0, 1, 0}}, {0, 100, {0, 0, 1}}};
+  } looks[] = {{160, 100, {0, 0, -1}},
+               {240, 100, {1, 0, 0}},
+               {80, 100, {-1, 0, 0}},
+               {160, 0, {0, 1, 0}},
+               {0, 100, {0, 0, 1}}};
   for (const auto& look : looks) {
     generate(camera("Panorama"), p, look.x, look.y, o, d);
     EXPECT_NEAR(length(d + look.direction * -1), 0, 1e-6) << look.x;

@@ -1,5 +1,6 @@
-// chi_square.h: directions counted in 80 x 160 bins of the sphere, against a density: Pearson's test, bins of fewer than 5
-// expected pooled (the rules of pbrt's and Mitsuba's tests of reflection).
+// chi_square.h: directions counted in 80 x 160 bins of the sphere, against a density: Pearson's
+// test, bins of fewer than 5 expected pooled (the rules of pbrt's and Mitsuba's tests of
+// reflection).
 #pragma once
 
 #include <algorithm>
@@ -12,8 +13,8 @@
 
 namespace openrt::test {
 
-// The probability that a chi-square variable exceeds x: 1 - P(k / 2, x / 2), by the series or the continued fraction of the
-// incomplete gamma function (M. Abramowitz, I. Stegun, 6.5.29, 6.5.31).
+// The probability that a chi-square variable exceeds x: 1 - P(k / 2, x / 2), by the series or the
+// continued fraction of the incomplete gamma function (M. Abramowitz, I. Stegun, 6.5.29, 6.5.31).
 inline double chiSquareTail(double x, double degrees) {
   const double a = degrees / 2, y = x / 2;
   if (!(y > 0)) return 1;
@@ -43,12 +44,15 @@ struct Expected {
 
 class SphereHistogram {
  public:
-  static constexpr int across = 80, around = 160; // equal steps of the angle from the axis, which crowds bins there
+  static constexpr int across = 80,
+                       around =
+                           160; // equal steps of the angle from the axis, which crowds bins there
   explicit SphereHistogram(rts::Vec3 axis) : frame_(axis), seen_(across * around) {}
 
   void count(rts::Vec3 direction) {
     const rts::Vec3 d = frame_.toLocal(direction);
-    const double theta = std::acos(std::clamp(double(d.z), -1.0, 1.0)), phi = std::atan2(d.y, d.x) + M_PI;
+    const double theta = std::acos(std::clamp(double(d.z), -1.0, 1.0)),
+                 phi = std::atan2(d.y, d.x) + M_PI;
     const int i = std::clamp(int(theta / M_PI * across), 0, across - 1),
               j = std::clamp(int(phi / (2 * M_PI) * around), 0, around - 1);
     seen_[size_t(i * around + j)]++;
@@ -57,8 +61,10 @@ class SphereHistogram {
     Expected e{std::vector<double>(seen_.size()), 0};
     for (int i = 0; i < across; i++)
       for (int j = 0; j < around; j++) {
-        const Bin bin{M_PI * i / across, M_PI / across, 2 * M_PI * j / around - M_PI, 2 * M_PI / around};
-        e.total += e.bins[size_t(i * around + j)] = integral(density, bin, rule(density, bin, 2), 0);
+        const Bin bin{M_PI * i / across, M_PI / across, 2 * M_PI * j / around - M_PI,
+                      2 * M_PI / around};
+        e.total += e.bins[size_t(i * around + j)] =
+            integral(density, bin, rule(density, bin, 2), 0);
       }
     return e;
   }
@@ -66,7 +72,8 @@ class SphereHistogram {
   double chiSquareTail(const Expected& expected, double samples, double lost) const {
     std::vector<size_t> order(seen_.size());
     std::iota(order.begin(), order.end(), size_t(0));
-    std::sort(order.begin(), order.end(), [&](size_t a, size_t b) { return expected.bins[a] < expected.bins[b]; });
+    std::sort(order.begin(), order.end(),
+              [&](size_t a, size_t b) { return expected.bins[a] < expected.bins[b]; });
     double pooledSeen = 0, pooled = 0, x = 0;
     int bins = 0;
     const double given = samples - lost, scale = expected.total > 0 ? given / expected.total : 0;
@@ -93,20 +100,25 @@ class SphereHistogram {
     for (int i = 0; i < n; i++) {
       const double t = b.theta + b.height * (i + .5) / n, s = std::sin(t);
       // The area of each part is exact: the density alone is approximated.
-      const double area = (std::cos(b.theta + b.height * i / n) - std::cos(b.theta + b.height * (i + 1) / n)) * b.width / n;
+      const double area =
+          (std::cos(b.theta + b.height * i / n) - std::cos(b.theta + b.height * (i + 1) / n)) *
+          b.width / n;
       for (int j = 0; j < n; j++) {
         const double p = b.phi + b.width * (j + .5) / n;
-        sum += area * density(frame_.toWorld({float(s * std::cos(p)), float(s * std::sin(p)), float(std::cos(t))}));
+        sum += area * density(frame_.toWorld(
+                          {float(s * std::cos(p)), float(s * std::sin(p)), float(std::cos(t))}));
       }
     }
     return sum;
   }
-  double integral(const std::function<double(rts::Vec3)>& density, const Bin& b, double coarse, int depth) const {
+  double integral(const std::function<double(rts::Vec3)>& density, const Bin& b, double coarse,
+                  int depth) const {
     const double fine = rule(density, b, 4);
     if (depth == 6 || std::fabs(fine - coarse) < 1e-7 + 2e-3 * fine) return fine;
     double sum = 0;
     for (int k = 0; k < 4; k++) {
-      const Bin part{b.theta + (k & 1) * b.height / 2, b.height / 2, b.phi + (k >> 1) * b.width / 2, b.width / 2};
+      const Bin part{b.theta + (k & 1) * b.height / 2, b.height / 2, b.phi + (k >> 1) * b.width / 2,
+                     b.width / 2};
       sum += integral(density, part, rule(density, part, 2), depth + 1);
     }
     return sum;

@@ -1,4 +1,5 @@
-// debug_rules.cpp: backend=debug:NAME. Each rule speaks at its misuse, once, and is silent where the same is done right.
+// debug_rules.cpp: backend=debug:NAME. Each rule speaks at its misuse, once, and is silent where
+// the same is done right.
 #include "small_scene.h"
 
 namespace {
@@ -240,7 +241,8 @@ TEST(DebugConfiguration, WrapsAnyBackend) {
     EXPECT_NE(context, nullptr) << good;
     rtDeleteContext(context);
   }
-  for (const char* bad : {"backend=debug", "backend=debug:", "backend=debug:debug:local", "backend=debug:x"}) {
+  for (const char* bad :
+       {"backend=debug", "backend=debug:", "backend=debug:debug:local", "backend=debug:x"}) {
     EXPECT_EQ(rtNewContext(bad), nullptr) << bad;
     EXPECT_EQ(rtGetError(), RTenum(RT_INVALID_VALUE)) << bad;
   }

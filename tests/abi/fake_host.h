@@ -1,5 +1,6 @@
-// fake_host.h: the smallest host a shader can run in, for tests of plug-ins without a renderer: constant textures, lights given
-// as numbers, lobes, scratch memory, rays that meet a floor, and a record of what the shader asked for.
+// fake_host.h: the smallest host a shader can run in, for tests of plug-ins without a renderer:
+// constant textures, lights given as numbers, lobes, scratch memory, rays that meet a floor, and a
+// record of what the shader asked for.
 #pragma once
 
 #include <array>
@@ -19,7 +20,9 @@ class Lanes {
  public:
   explicit Lanes(uint32_t n = 0, float value = 0) { assign(std::vector<float>(n, value)); }
   Lanes(std::vector<float> values) { assign(std::move(values)); }
-  float* data() { return reinterpret_cast<float*>((reinterpret_cast<uintptr_t>(memory_.data()) + 63) / 64 * 64); }
+  float* data() {
+    return reinterpret_cast<float*>((reinterpret_cast<uintptr_t>(memory_.data()) + 63) / 64 * 64);
+  }
   float& operator[](size_t i) { return data()[i]; }
 
  private:
@@ -69,7 +72,8 @@ struct FakeHost : RtsHost {
 
 inline FakeHost& fake(RtsBatch* batch) { return *reinterpret_cast<FakeHost*>(batch); }
 
-inline RtsLobe* FakeHost::newLobe(RtsLobeKind kind, const RtsLobeFunctions* functions, uint32_t floats) {
+inline RtsLobe* FakeHost::newLobe(RtsLobeKind kind, const RtsLobeFunctions* functions,
+                                  uint32_t floats) {
   if (lobes.size() == RTS_MAX_LOBES) return nullptr;
   FakeLobe& lobe = lobes.emplace_back();
   for (Lanes& m : lobe.memory) m = Lanes(hitCount);
@@ -108,7 +112,9 @@ inline void addRays(RtsHost& host) {
       if (out->distance) out->distance[i] = t;
       if (!std::isfinite(t)) continue;
       for (uint32_t k = 0; k < 3; k++) {
-        if (out->position[k]) out->position[k][i] = (rays->origin[0] ? rays->origin[k][i] : 0) + t * rays->direction[k][i];
+        if (out->position[k])
+          out->position[k][i] =
+              (rays->origin[0] ? rays->origin[k][i] : 0) + t * rays->direction[k][i];
         if (out->geometric[k]) out->geometric[k][i] = k == 2;
         if (out->normal[k]) out->normal[k][i] = k == 2;
       }
@@ -117,7 +123,8 @@ inline void addRays(RtsHost& host) {
   };
   host.occluded = [](RtsBatch* b, const RtsRequest* rays, float* const transmission[3]) {
     for (uint32_t i = 0; i < rays->count; i++)
-      for (uint32_t k = 0; k < 3; k++) transmission[k][i] = std::isfinite(fakeDistance(fake(b), rays, i)) ? 0 : 1;
+      for (uint32_t k = 0; k < 3; k++)
+        transmission[k][i] = std::isfinite(fakeDistance(fake(b), rays, i)) ? 0 : 1;
   };
 }
 
@@ -126,7 +133,8 @@ inline void addFacts(RtsHost& host) {
   host.random = [](RtsBatch* b, uint32_t pair, float* const square[2]) {
     fake(b).randomCalls++;
     for (uint32_t i = 0; i < fake(b).hitCount; i++)
-      for (uint32_t k = 0; k < 2; k++) square[k][i] = 0.1f * float(pair) + 0.01f * float(k) + 0.001f * float(i);
+      for (uint32_t k = 0; k < 2; k++)
+        square[k][i] = 0.1f * float(pair) + 0.01f * float(k) + 0.001f * float(i);
   };
   const auto vectors = [](RtsBatch* b, float* const first[3], float* const second[3]) {
     for (uint32_t i = 0; i < fake(b).hitCount; i++)
@@ -172,7 +180,8 @@ inline FakeHost::FakeHost() : RtsHost{} {
       out->ambient[c] = host.light[6 + c].data();
     }
   };
-  shadow = [](RtsBatch* b, uint32_t i, const RtsHits* hits, const uint8_t* wanted, RtsIllumination* light) {
+  shadow = [](RtsBatch* b, uint32_t i, const RtsHits* hits, const uint8_t* wanted,
+              RtsIllumination* light) {
     FakeHost& host = fake(b);
     host.shadowCalls++;
     for (uint32_t k = 0; k < hits->count; k++) {
@@ -182,13 +191,15 @@ inline FakeHost::FakeHost() : RtsHost{} {
     }
   };
   // u moves the red component, so that tests see which coordinates arrive.
-  sample = [](RtsBatch* b, RtsTexture texture, uint32_t n, const float* const uv[2], float* const rgba[4]) {
+  sample = [](RtsBatch* b, RtsTexture texture, uint32_t n, const float* const uv[2],
+              float* const rgba[4]) {
     FakeHost& host = fake(b);
     host.sampleCalls++;
     const float white[4] = {1, 1, 1, 1};
     const float* value = texture == 0 ? white : host.textures[texture - 1].rgba;
     for (size_t c = 0; c < 4; c++)
-      for (uint32_t i = 0; i < n; i++) rgba[c][i] = value[c] + (c == 0 && texture != 0 ? 10 * uv[0][i] + 100 * uv[1][i] : 0);
+      for (uint32_t i = 0; i < n; i++)
+        rgba[c][i] = value[c] + (c == 0 && texture != 0 ? 10 * uv[0][i] + 100 * uv[1][i] : 0);
   };
   RtsHost::components = [](const RtsHost* h, RtsTexture texture) {
     return texture == 0 ? 0u : static_cast<const FakeHost*>(h)->textures[texture - 1].components;
@@ -197,12 +208,15 @@ inline FakeHost::FakeHost() : RtsHost{} {
     fake(b).memory.emplace_back(n, 1e30f); // not initialised means: nothing to rely on
     return fake(b).memory.back().data();
   };
-  log = [](const RtsHost* h, int, const char*) { static_cast<FakeHost*>(const_cast<RtsHost*>(h))->messages++; };
+  log = [](const RtsHost* h, int, const char*) {
+    static_cast<FakeHost*>(const_cast<RtsHost*>(h))->messages++;
+  };
   RtsHost::lobe = [](RtsBatch* b, RtsLobeKind kind) {
     return kind == RTS_LOBE_CUSTOM ? nullptr : fake(b).newLobe(kind, nullptr, 0);
   };
   customLobe = [](RtsBatch* b, const RtsLobeFunctions* functions, uint32_t floats) {
-    return floats > RTS_MAX_LOBE_FLOATS ? nullptr : fake(b).newLobe(RTS_LOBE_CUSTOM, functions, floats);
+    return floats > RTS_MAX_LOBE_FLOATS ? nullptr
+                                        : fake(b).newLobe(RTS_LOBE_CUSTOM, functions, floats);
   };
   addRays(*this);
   addFacts(*this);
@@ -211,7 +225,8 @@ inline FakeHost::FakeHost() : RtsHost{} {
 // A parameter struct with a class's defaults.
 class ParamBlock {
  public:
-  explicit ParamBlock(const RtsClass& shaderClass) : class_(shaderClass), bytes_(shaderClass.paramSize / 8 + 1) {
+  explicit ParamBlock(const RtsClass& shaderClass)
+      : class_(shaderClass), bytes_(shaderClass.paramSize / 8 + 1) {
     for (uint32_t i = 0; i < class_.paramCount; i++) {
       const RtsParam& p = class_.params[i];
       if (p.type == RTS_INT)
@@ -226,12 +241,15 @@ class ParamBlock {
     const RtsParam& p = find(name);
     if (p.type == RTS_FLOATS) {
       lists_.push_back(std::move(v));
-      write<RtsFloats>(p.offset, {lists_.back().data(), static_cast<uint32_t>(lists_.back().size())});
+      write<RtsFloats>(p.offset,
+                       {lists_.back().data(), static_cast<uint32_t>(lists_.back().size())});
     } else {
       std::memcpy(data() + p.offset, v.data(), floats(p.type) * sizeof(float));
     }
   }
-  void setInt(const char* name, int v) { write<int32_t>(find(name).offset, v); } // integers and textures
+  void setInt(const char* name, int v) {
+    write<int32_t>(find(name).offset, v);
+  } // integers and textures
   const void* get() const { return bytes_.data(); }
   void* get() { return bytes_.data(); }
 
@@ -252,7 +270,9 @@ class ParamBlock {
     throw std::runtime_error(std::string("no parameter ") + name);
   }
   char* data() { return reinterpret_cast<char*>(bytes_.data()); }
-  template <class T> void write(uint32_t offset, T value) { std::memcpy(data() + offset, &value, sizeof value); }
+  template <class T> void write(uint32_t offset, T value) {
+    std::memcpy(data() + offset, &value, sizeof value);
+  }
 
   const RtsClass& class_;
   std::vector<uint64_t> bytes_;

@@ -29,7 +29,8 @@ TEST_F(Faults, NaNInRadianceIsZeroCountedAndNamedOnceAFrame) {
   const std::vector<float> pixels = picture(4);
   for (size_t i = 0; i < 16; i++) {
     const bool left = i % 4 < 2;
-    for (int k = 0; k < 3; k++) EXPECT_EQ(pixels[4 * i + size_t(k)], left && k < 2 ? 0.0f : 0.5f) << i << " " << k;
+    for (int k = 0; k < 3; k++)
+      EXPECT_EQ(pixels[4 * i + size_t(k)], left && k < 2 ? 0.0f : 0.5f) << i << " " << k;
   }
   EXPECT_EQ(stats().shaderFaults, 8u);
   EXPECT_EQ(log.count("shader Nan of faulty answered with NaN or infinity"), 1u);
@@ -68,7 +69,8 @@ void nameTheShader(int number) {
 }
 
 // What a process says that renders with the shader, and how it ends.
-void crashWith(const char* className, int transport, const std::string& config, std::string& text, int& status) {
+void crashWith(const char* className, int transport, const std::string& config, std::string& text,
+               int& status) {
   int ends[2];
   ASSERT_EQ(pipe(ends), 0);
   const pid_t child = fork();
@@ -92,7 +94,8 @@ void crashWith(const char* className, int transport, const std::string& config, 
   }
   close(ends[1]);
   char buffer[256];
-  for (ssize_t n = 0; (n = ::read(ends[0], buffer, sizeof buffer)) > 0;) text.append(buffer, size_t(n));
+  for (ssize_t n = 0; (n = ::read(ends[0], buffer, sizeof buffer)) > 0;)
+    text.append(buffer, size_t(n));
   close(ends[0]);
   ASSERT_EQ(waitpid(child, &status, 0), child);
 }
@@ -105,7 +108,8 @@ TEST_F(Faults, ACrashCanBeNamed) {
   for (const auto& each : cases) {
     std::string text;
     int status = 0;
-    crashWith(each.name, each.transport, config() + " shaderpath=\"" + folders() + "\"", text, status);
+    crashWith(each.name, each.transport, config() + " shaderpath=\"" + folders() + "\"", text,
+              status);
     EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGSEGV) << each.name << " " << status;
     EXPECT_EQ(text, std::string(each.name) + " of faulty");
   }
@@ -118,7 +122,8 @@ TEST_F(Faults, NaNInALobeOfItsOwnIsCounted) {
   rtQuality(RT_TRANSPORT, RT_TRANSPORT_DIRECT);
   const std::vector<float> pixels = picture(2);
   EXPECT_EQ(pixels[0], 0.0f);
-  EXPECT_NEAR(pixels[1], 0.5 * 0.25 * 3.14159265, 1e-6); // the light gives white paper a radiance of 1: an irradiance of pi
+  EXPECT_NEAR(pixels[1], 0.5 * 0.25 * 3.14159265,
+              1e-6); // the light gives white paper a radiance of 1: an irradiance of pi
   EXPECT_GT(stats().shaderFaults, 0u);
   EXPECT_EQ(log.count("shader BadLobe of faulty"), 1u);
 }
@@ -136,14 +141,18 @@ TEST_F(Diagnosed, TraitsThatKeepSilent) {
   rtTranslated(0, 0, 1);
   square("SilentGloss");
   picture(2);
-  EXPECT_EQ(log.count("shader SilentGloss of faulty has glossy lobes, but its traits lack RTS_GLOSSY"), 1u);
+  EXPECT_EQ(
+      log.count("shader SilentGloss of faulty has glossy lobes, but its traits lack RTS_GLOSSY"),
+      1u);
   EXPECT_FALSE(log.has("SilentLamp of faulty has emission")); // hidden by the others
 }
 
 TEST_F(Diagnosed, ScatteringThatTraitsExclude) {
   square("SilentScatter");
   picture(2);
-  EXPECT_EQ(log.count("shader SilentScatter of faulty has lobes that scatter, but its traits have RTS_NO_SCATTER"), 1u);
+  EXPECT_EQ(log.count("shader SilentScatter of faulty has lobes that scatter, but its traits have "
+                      "RTS_NO_SCATTER"),
+            1u);
 }
 
 TEST_F(Diagnosed, EmissionAndTransparencyThatAreNotAnnounced) {
@@ -151,8 +160,12 @@ TEST_F(Diagnosed, EmissionAndTransparencyThatAreNotAnnounced) {
   rtTranslated(0, 0, 1);
   square("SilentVeil");
   picture(2);
-  EXPECT_EQ(log.count("shader SilentVeil of faulty lets light through, but its traits lack RTS_TRANSPARENT"), 1u);
-  EXPECT_EQ(log.count("shader SilentLamp of faulty has emission, but its traits lack RTS_EMISSIVE"), 1u);
+  EXPECT_EQ(
+      log.count(
+          "shader SilentVeil of faulty lets light through, but its traits lack RTS_TRANSPARENT"),
+      1u);
+  EXPECT_EQ(log.count("shader SilentLamp of faulty has emission, but its traits lack RTS_EMISSIVE"),
+            1u);
 }
 
 } // namespace

@@ -1,4 +1,5 @@
-// geometry_parameters.cpp: values of shader parameters by vertex and by triangle, through to the picture.
+// geometry_parameters.cpp: values of shader parameters by vertex and by triangle, through to the
+// picture.
 #include <cstdio>
 #include <fstream>
 #include <iterator>
@@ -56,8 +57,10 @@ TEST_F(GeometryParameters, AColourByVertexInterpolatesExactly) {
       weights(x, y, n, w);
       const bool inside = w[0] > 1e-6;
       for (int k = 0; k < 3 && std::fabs(w[0]) > 1e-6; k++) {
-        const double expected = inside ? w[0] * colors[0][k] + w[1] * colors[1][k] + w[2] * colors[2][k] : 0;
-        EXPECT_NEAR(pixels[size_t(4) * (y * n + x) + k], expected, 2e-6) << x << " " << y << " " << k;
+        const double expected =
+            inside ? w[0] * colors[0][k] + w[1] * colors[1][k] + w[2] * colors[2][k] : 0;
+        EXPECT_NEAR(pixels[size_t(4) * (y * n + x) + k], expected, 2e-6)
+            << x << " " << y << " " << k;
       }
     }
 }
@@ -82,7 +85,8 @@ TEST_F(GeometryParameters, ByTriangleItIsConstantAndOfTheVertexThatCompletesIt) 
     for (int x = 0; x < 4; x++) {
       if (x == y) continue; // on the edge between them
       const float expected = x < y ? 5.0f : 8.0f;
-      for (int k = 0; k < 3; k++) EXPECT_EQ(pixels[size_t(4) * (y * 4 + x) + k], expected + float(k)) << x << " " << y;
+      for (int k = 0; k < 3; k++)
+        EXPECT_EQ(pixels[size_t(4) * (y * 4 + x) + k], expected + float(k)) << x << " " << y;
     }
 }
 
@@ -139,7 +143,11 @@ TEST_F(GeometryParameters, ArraysByVertexAndByTriangle) {
   const float points[5][3] = {{9, 9, 9}, {-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
   const struct {
     float color[3], spare;
-  } colors[5] = {{{2, 2, 2}, 0}, {{0, 0, 0}, 0}, {{1, 0, 0}, 0}, {{1, 1, 0}, 0}, {{0, 1, 0}, 0}}; // the first is not used
+  } colors[5] = {{{2, 2, 2}, 0},
+                 {{0, 0, 0}, 0},
+                 {{1, 0, 0}, 0},
+                 {{1, 1, 0}, 0},
+                 {{0, 1, 0}, 0}}; // the first is not used
   const float triples[3][3] = {{1, 2, 3}, {-1, -1, -1}, {4, 5, 6}};
   const uint32_t indices[9] = {1, 2, 3, 1, 1, 2, 1, 3, 4}; // the middle one is degenerate
   rtVertexPointer(3, RT_FLOAT, 0, points);
@@ -184,7 +192,8 @@ TEST_F(GeometryParameters, AreOfTheClassAlone) {
   rtInstanceShader(instance, other);
   EXPECT_NEAR(picture(1)[0], 0.05f, 1e-6);
   rtInstanceShader(instance, 0);
-  rtDeleteShader(id); // the geometry falls back to the default surface: nothing of the values is left
+  rtDeleteShader(
+      id); // the geometry falls back to the default surface: nothing of the values is left
   rtDefaultShader(other);
   EXPECT_NEAR(picture(1)[0], 0.05f, 1e-6);
 }
@@ -228,7 +237,8 @@ TEST_F(GeometryParameters, LinesAndNestedAndMovedObjectsHaveThemToo) {
   picture(16);
   rtInstanceMatrix(place, m); // the same: nothing changes
   EXPECT_NEAR(picture(16)[4 * (8 * 16 + 4)], 4.5 / 8, 1e-6);
-  EXPECT_LE(stats().objectBuilds, before.objectBuilds + 2); // it became dynamic; the parameters cost nothing more
+  EXPECT_LE(stats().objectBuilds,
+            before.objectBuilds + 2); // it became dynamic; the parameters cost nothing more
 }
 
 TEST_F(GeometryParameters, EditsCostWhatTheyChange) {
@@ -250,7 +260,8 @@ TEST_F(GeometryParameters, EditsCostWhatTheyChange) {
   }
   EXPECT_EQ(picture(1)[0], 0.25f);
   const RTstats first = stats();
-  rtParameter3f(color, 1, 1, 1); // the shader's own value: nothing is built, and the geometry keeps its own
+  rtParameter3f(color, 1, 1,
+                1); // the shader's own value: nothing is built, and the geometry keeps its own
   EXPECT_EQ(picture(1)[0], 0.25f);
   EXPECT_EQ(stats().objectBuilds, first.objectBuilds);
   EXPECT_EQ(stats().topLevelBuilds, first.topLevelBuilds);
@@ -289,16 +300,19 @@ TEST_F(GeometryParameters, StockClassesHaveThem) {
     rtEndObject();
     rtInstantiateObject(object);
     const std::vector<float> pixels = picture(4);
-    for (int x = 0; x < 4; x++) EXPECT_NEAR(pixels[size_t(4) * (4 + x)], 0.5 * (x + 0.5) / 4, 1e-5) << transport << " " << x;
+    for (int x = 0; x < 4; x++)
+      EXPECT_NEAR(pixels[size_t(4) * (4 + x)], 0.5 * (x + 0.5) / 4, 1e-5) << transport << " " << x;
   }
 }
 
 TEST_F(GeometryParameters, ARecordingReplaysToTheSameBytes) {
   rtDeleteContext(context);
-  const std::string path = std::string(::testing::TempDir()) + "openrt_parameters_" + std::to_string(::getpid());
+  const std::string path =
+      std::string(::testing::TempDir()) + "openrt_parameters_" + std::to_string(::getpid());
   std::vector<char> bytes[2];
   for (int pass = 0; pass < 2; pass++) {
-    context = rtNewContext(("threads=1 record=" + path + " shaderpath=\"" + folders() + "\"").c_str());
+    context =
+        rtNewContext(("threads=1 record=" + path + " shaderpath=\"" + folders() + "\"").c_str());
     ASSERT_NE(context, nullptr);
     rtQuality(RT_SAMPLES_PER_PIXEL, 1);
     rtTranslated(0, 0, 10);

@@ -47,7 +47,8 @@ TEST_F(SmallScene, AMirrorOfAbi11IsFollowed) {
   EXPECT_EQ(stats().transport, RTenum(RT_TRANSPORT_WHITTED));
 }
 
-INSTANTIATE_TEST_SUITE_P(Abi, OlderMinors, testing::Values("older_class", "minor_0", "minor_1", "class_truncated"),
+INSTANTIATE_TEST_SUITE_P(Abi, OlderMinors,
+                         testing::Values("older_class", "minor_0", "minor_1", "class_truncated"),
                          [](const auto& info) { return std::string(info.param); });
 
 } // namespace

@@ -1,4 +1,5 @@
-// pick.cpp: rtPick is the camera's ray: the same as a ray query along it, and what the picture shows.
+// pick.cpp: rtPick is the camera's ray: the same as a ray query along it, and what the picture
+// shows.
 #include <memory>
 
 #include "small_scene.h"

@@ -1,5 +1,6 @@
-// prepare.cpp: shaders that work something out of their parameters: once for each new set, undone when it goes, and what happens
-// to values that a class refuses. Through the C API, with the plug-in prepared.cc.
+// prepare.cpp: shaders that work something out of their parameters: once for each new set, undone
+// when it goes, and what happens to values that a class refuses. Through the C API, with the
+// plug-in prepared.cc.
 #include <dlfcn.h>
 
 #include <string>
@@ -19,7 +20,8 @@ class Prepare : public testing::Test {
     const std::string config = "threads=1 shaderpath=" + std::string(OPENRT_TEST_PLUGINS);
     context_ = rtNewContext(config.c_str());
     ASSERT_NE(context_, nullptr);
-    rtLogCallback([](int, const char* text, void*) { logged += std::string(text) + "\n"; }, nullptr);
+    rtLogCallback([](int, const char* text, void*) { logged += std::string(text) + "\n"; },
+                  nullptr);
     rtQuality(RT_SAMPLES_PER_PIXEL, 1);
     rtFrameBuffer(1, 1, RT_RGBA);
     shader_ = rtNewShader(rtNewShaderClass("Tripled", "prepared"));

@@ -1,4 +1,5 @@
-// reload.cpp: shader libraries loaded anew while a program runs: the file in the folder is replaced by another version.
+// reload.cpp: shader libraries loaded anew while a program runs: the file in the folder is replaced
+// by another version.
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -44,7 +45,9 @@ class Reload : public SmallScene {
   }
   void install(int version) {
     put([&](const fs::path& to) {
-      fs::copy_file(std::string(OPENRT_TEST_PLUGINS) + "/versions/" + std::to_string(version) + "/version.so", to);
+      fs::copy_file(std::string(OPENRT_TEST_PLUGINS) + "/versions/" + std::to_string(version) +
+                        "/version.so",
+                    to);
     });
   }
   fs::path folder;
@@ -64,11 +67,13 @@ TEST_F(Reload, TheNewFunctionsHaveTheValuesOfTheOldNames) {
   EXPECT_NEAR(picture(1)[0], 0.375f, 1e-6);
   install(2);
   EXPECT_EQ(rtReloadShaders(), 1);
-  const std::vector<float> pixel = picture(1); // gain 2 x the colour that was set + the new default of the new type
+  const std::vector<float> pixel =
+      picture(1); // gain 2 x the colour that was set + the new default of the new type
   EXPECT_NEAR(pixel[0], 1.0f, 1e-6);
   EXPECT_NEAR(pixel[1], 1.5f, 1e-6);
   EXPECT_NEAR(pixel[2], 2.5f, 1e-6);
-  // Handles stay, names are looked up anew, and what is gone is there without a name and without effect.
+  // Handles stay, names are looked up anew, and what is gone is there without a name and without
+  // effect.
   EXPECT_EQ(rtParameterHandle("color"), color);
   rtParameter3f(color, 0, 0, 0);
   rtParameter1f(gone, 5);
@@ -101,12 +106,15 @@ TEST_F(Reload, AFailureKeepsTheOldOne) {
   put([](const fs::path& to) { std::ofstream(to) << "no library\n"; });
   EXPECT_EQ(rtReloadShaders(), 0);
   EXPECT_EQ(rtGetError(), RTenum(RT_PLUGIN_ERROR));
-  EXPECT_NE(std::string(rtGetErrorMessage()).find("rtReloadShaders: shader library"), std::string::npos) << rtGetErrorMessage();
+  EXPECT_NE(std::string(rtGetErrorMessage()).find("rtReloadShaders: shader library"),
+            std::string::npos)
+      << rtGetErrorMessage();
   EXPECT_NEAR(picture(1)[0], 0.5f, 1e-6);
   install(3); // without the class
   EXPECT_EQ(rtReloadShaders(), 0);
   EXPECT_EQ(rtGetError(), RTenum(RT_PLUGIN_ERROR));
-  EXPECT_NE(std::string(rtGetErrorMessage()).find("its class Versioned is gone"), std::string::npos) << rtGetErrorMessage();
+  EXPECT_NE(std::string(rtGetErrorMessage()).find("its class Versioned is gone"), std::string::npos)
+      << rtGetErrorMessage();
   EXPECT_NEAR(picture(1)[0], 0.5f, 1e-6);
   fs::remove(folder / "version.so");
   EXPECT_EQ(rtReloadShaders(), 0);

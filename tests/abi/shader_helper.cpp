@@ -1,5 +1,5 @@
-// shader_helper.cpp: openrts.hpp: the tables it makes of small classes, and what its loops hand to them and back. Also the
-// plug-in Debug, which is written with it.
+// shader_helper.cpp: openrts.hpp: the tables it makes of small classes, and what its loops hand to
+// them and back. Also the plug-in Debug, which is written with it.
 #include "openrt/openrts.hpp"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,9 @@ struct Lambert : rts::Surface<Lambert> {
     const float cosine = rts::dot(hit.normal, light.toLight);
     return cosine > 0 ? cosine * (*color * light.color) + light.ambient : rts::Color{};
   }
-  rts::Color transmit(const rts::Hit& hit) const { return {hit.uv.x, hit.color.y, hit.back() ? 1.0f : 0.0f}; }
+  rts::Color transmit(const rts::Hit& hit) const {
+    return {hit.uv.x, hit.color.y, hit.back() ? 1.0f : 0.0f};
+  }
 };
 
 struct Flat : rts::Surface<Flat> {
@@ -37,7 +39,9 @@ struct Flat : rts::Surface<Flat> {
 struct Sun : rts::LightSource<Sun> {
   static constexpr bool directional = true, shadows = false;
   rts::Param<rts::Vec3> to{"to", {0, 1, 0}, "towards the sun"};
-  rts::Illumination illuminate(rts::Vec3 point) const { return {to, {point.x, point.y, point.z}, {1, 1, 1}}; }
+  rts::Illumination illuminate(rts::Vec3 point) const {
+    return {to, {point.x, point.y, point.z}, {1, 1, 1}};
+  }
 };
 
 struct Lamp : rts::LightSource<Lamp> {
@@ -106,7 +110,8 @@ TEST(ShaderHelper, TraitsFollowFromTheFunctions) {
 
 // Hits whose every array holds a number of its own.
 struct NumberedHits {
-  explicit NumberedHits(uint32_t n, const void* params) : flags(n + RTS_LANES, 0), pointers(n + RTS_LANES, params) {
+  explicit NumberedHits(uint32_t n, const void* params)
+      : flags(n + RTS_LANES, 0), pointers(n + RTS_LANES, params) {
     for (size_t k = 0; k < 19; k++) {
       lanes[k] = Lanes(n);
       for (uint32_t i = 0; i < n; i++) lanes[k][i] = float(k) + float(i) * 0.01f;
@@ -148,7 +153,8 @@ TEST(ShaderHelper, EveryHitIsShadedAndLit) {
   c.shade(&host, host.batch(), &in.hits, &shading);
   for (uint32_t i = 0; i < n; i++) {
     const float normalZ = in.lanes[11][i];
-    EXPECT_FLOAT_EQ(out[0][i], 1 + normalZ * .5f * 1 + 1) << i; // white texel + colour x light x visibility + ambient
+    EXPECT_FLOAT_EQ(out[0][i], 1 + normalZ * .5f * 1 + 1)
+        << i; // white texel + colour x light x visibility + ambient
     EXPECT_FLOAT_EQ(out[1][i], in.lanes[18][i] + normalZ * .25f + 1);
     EXPECT_FLOAT_EQ(out[2][i], in.lanes[1][i] + normalZ * 1 + 1);
     EXPECT_FLOAT_EQ(out[4][i], .5f);
@@ -190,7 +196,8 @@ TEST(ShaderHelper, LightsCamerasAndEnvironments) {
   EXPECT_EQ(light.directional, 1);
   EXPECT_EQ(out[1][2], 1);
   EXPECT_EQ(out[5][1], 8);
-  const ParamBlock lamp(helperClass("Lamp")), pixel(helperClass("Pixel")), haze(helperClass("Haze"));
+  const ParamBlock lamp(helperClass("Lamp")), pixel(helperClass("Pixel")),
+      haze(helperClass("Haze"));
   helperClass("Lamp").illuminate(&host, host.batch(), lamp.get(), 3, in, &light);
   EXPECT_EQ(light.directional, 0);
   EXPECT_EQ(out[2][2], -9);
@@ -218,8 +225,10 @@ TEST(ShaderHelper, LightsCamerasAndEnvironments) {
 TEST(DebugShader, ShowsNormalsCoordinatesAndSides) {
   const ShaderRegistry registry(shaderFolders(""));
   const RtsClass& c = registry.find("Debug", "debug");
-  for (const auto& [show, r, g, b] :
-       {std::tuple{0, 5.0f, 5.5f, 6.0f}, {1, 3.5f, 4.0f, 4.5f}, {2, .01f, .01f, .0f}, {3, 1.0f, .0f, .0f}}) {
+  for (const auto& [show, r, g, b] : {std::tuple{0, 5.0f, 5.5f, 6.0f},
+                                      {1, 3.5f, 4.0f, 4.5f},
+                                      {2, .01f, .01f, .0f},
+                                      {3, 1.0f, .0f, .0f}}) {
     ParamBlock p(c);
     p.setInt("show", show);
     NumberedHits in(2, p.get());

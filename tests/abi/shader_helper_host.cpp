@@ -1,5 +1,6 @@
-// shader_helper_host.cpp: openrts.hpp since ABI 1.2: lobes of a class's own, media, rays and facts of a hit, frequencies,
-// prepare, extents, projections, transports; and that all of it is harmless on a host that is older.
+// shader_helper_host.cpp: openrts.hpp since ABI 1.2: lobes of a class's own, media, rays and facts
+// of a hit, frequencies, prepare, extents, projections, transports; and that all of it is harmless
+// on a host that is older.
 #include "openrt/openrts.hpp"
 
 #include <gtest/gtest.h>
@@ -16,7 +17,9 @@ struct Echo {
     return {a * rts::dot(direction, normal), b, toEye.z};
   }
   float density(rts::Vec3, rts::Vec3 direction, rts::Vec3) const { return direction.z; }
-  rts::Sample sample(rts::Vec3, rts::Vec2 square, rts::Vec3 normal) const { return {normal, {square.x, square.y, a}, 4}; }
+  rts::Sample sample(rts::Vec3, rts::Vec2 square, rts::Vec3 normal) const {
+    return {normal, {square.x, square.y, a}, 4};
+  }
 };
 struct Plain { // no floats, and a sample that is a direction alone
   static constexpr bool transmits = true;
@@ -58,21 +61,27 @@ struct Asking : rts::Surface<Asking> {
     case 1: return {hit.occluded({0, 0, -1}, .5f), hit.occluded({0, 0, -1}), {}};
     case 2: {
       const rts::Found found = hit.findHit({1, 2, 3}, {0, 0, -1});
-      return {
-          {found.position.z, found.distance, float(found.name)}, {float(hit.findHit({0, 0, 1}).any()), found.normal.z, 0}, {}};
+      return {{found.position.z, found.distance, float(found.name)},
+              {float(hit.findHit({0, 0, 1}).any()), found.normal.z, 0},
+              {}};
     }
     case 3: {
-      const rts::Vec2 a = hit.random(0), b = hit.random(3), again = hit.random(3), none = hit.random(4);
+      const rts::Vec2 a = hit.random(0), b = hit.random(3), again = hit.random(3),
+                      none = hit.random(4);
       return {{a.x, a.y, b.x}, {b.y, again.x, none.x}, {}};
     }
     case 4: {
       const auto local = hit.local();
       const auto slopes = hit.derivatives();
-      return {{local.position.x, local.position.y, local.normal.x}, {slopes.alongS.x, slopes.alongT.y, hit.error()}, {}};
+      return {{local.position.x, local.position.y, local.normal.x},
+              {slopes.alongS.x, slopes.alongT.y, hit.error()},
+              {}};
     }
     default: {
       const auto ids = hit.ids();
-      return {{float(ids.name), float(ids.instance), float(ids.primitive)}, {float(hit.depth()), hit.throughput().b, 0}, {}};
+      return {{float(ids.name), float(ids.instance), float(ids.primitive)},
+              {float(hit.depth()), hit.throughput().b, 0},
+              {}};
     }
     }
   }
@@ -274,7 +283,10 @@ TEST(ShaderHelper12, ExtentsAndProjections) {
   const float* local[3] = {x.data(), y.data(), z.data()};
   const float* lens[2] = {u.data(), u.data()};
   const float size[2] = {10, 100};
-  RtsProjection projection{{out[0].data(), out[1].data()}, {out[2].data(), out[3].data(), out[4].data()}, out[5].data(), 0};
+  RtsProjection projection{{out[0].data(), out[1].data()},
+                           {out[2].data(), out[3].data(), out[4].data()},
+                           out[5].data(),
+                           0};
   eye.project(&host, host.batch(), q.get(), 2, local, lens, size, &projection);
   EXPECT_EQ(out[0][1], 20);
   EXPECT_EQ(out[1][1], 400);
@@ -291,7 +303,11 @@ TEST(ShaderHelper12, TransportsFollowCameraRays) {
   const ParamBlock p(c);
   Lanes zero(3), down(std::vector<float>{-1, 1, -1}), ends(std::vector<float>{10, 10, .5f}), out[4];
   for (Lanes& o : out) o = Lanes(3);
-  RtsRequest rays{3, nullptr, {zero.data(), zero.data(), zero.data()}, {zero.data(), zero.data(), down.data()}, ends.data()};
+  RtsRequest rays{3,
+                  nullptr,
+                  {zero.data(), zero.data(), zero.data()},
+                  {zero.data(), zero.data(), down.data()},
+                  ends.data()};
   float* rgba[4] = {out[0].data(), out[1].data(), out[2].data(), out[3].data()};
   c.radiance(&host, host.batch(), p.get(), &rays, rgba);
   EXPECT_EQ(out[1][0], .5f);

@@ -1,6 +1,7 @@
-// shader_physics.cpp: what every surface of the stock must keep, whatever its parameters: energy, reciprocity, densities that
-// belong to what is sampled (chi-square), finite numbers everywhere (accuracy catalogue A1, "BRDF checks"). The surfaces run as
-// plug-ins in the fake host; the engine's own kinds of lobes answer through render/surface/lobes.h.
+// shader_physics.cpp: what every surface of the stock must keep, whatever its parameters: energy,
+// reciprocity, densities that belong to what is sampled (chi-square), finite numbers everywhere
+// (accuracy catalogue A1, "BRDF checks"). The surfaces run as plug-ins in the fake host; the
+// engine's own kinds of lobes answer through render/surface/lobes.h.
 #include <cfloat>
 #include <cmath>
 #include <numeric>
@@ -17,8 +18,11 @@ namespace {
 
 // Lobes of the engine that no surface of the stock has.
 struct Glossy : rts::Surface<Glossy> {
-  rts::Param<float> alpha{"alpha", .3f, "width"}, eta{"eta", 0, "index outside over inside; 0: every facet reflects all"};
-  void surface(const rts::Hit&, rts::Closures& out) const { out.glossy({1, .5f, .25f}, alpha, eta); }
+  rts::Param<float> alpha{"alpha", .3f, "width"},
+      eta{"eta", 0, "index outside over inside; 0: every facet reflects all"};
+  void surface(const rts::Hit&, rts::Closures& out) const {
+    out.glossy({1, .5f, .25f}, alpha, eta);
+  }
 };
 
 const RtsClass& classNamed(const std::string& name) {
@@ -40,9 +44,15 @@ const std::vector<Case> cases = {
     {"DiffuseWhite", "Diffuse", {{"reflectance", {1, 1, 1}}}, true},
     {"Phong", "Phong", {}},
     {"PhongSharp", "Phong", {{"specularColor", {1, 1, 1}}, {"shininess", {4}}}},
-    {"PhongFlat", "Phong", {{"diffuseColor", {0, 0, 0}}, {"specularColor", {1, 1, 1}}, {"shininess", {0}}}},
-    {"PhongBroad", "Phong", {{"diffuseColor", {0, 0, 0}}, {"specularColor", {1, 1, 1}}, {"shininess", {.02f}}}},
-    {"PhongMiddle", "Phong", {{"diffuseColor", {0, 0, 0}}, {"specularColor", {1, 1, 1}}, {"shininess", {.2f}}}},
+    {"PhongFlat",
+     "Phong",
+     {{"diffuseColor", {0, 0, 0}}, {"specularColor", {1, 1, 1}}, {"shininess", {0}}}},
+    {"PhongBroad",
+     "Phong",
+     {{"diffuseColor", {0, 0, 0}}, {"specularColor", {1, 1, 1}}, {"shininess", {.02f}}}},
+    {"PhongMiddle",
+     "Phong",
+     {{"diffuseColor", {0, 0, 0}}, {"specularColor", {1, 1, 1}}, {"shininess", {.2f}}}},
     {"PhongFull", "Phong", {{"diffuseColor", {1, .5f, 0}}, {"specularColor", {1, 1, 1}}}},
     {"Mirror", "Mirror", {}},
     {"Metal", "Metal", {}},
@@ -59,7 +69,9 @@ const std::vector<Case> cases = {
     {"PlasticRough40", "Plastic", {whiteColor, {"roughness", {.4f}}}, true},
     {"PlasticRough100", "Plastic", {whiteColor, {"roughness", {1}}}, true},
     {"CarPaint", "CarPaint", {{"flakeSize", {.1f}}}},
-    {"CarPaintFlakes", "CarPaint", {{"flakes", {1}}, {"flakeSize", {.1f}}, {"flakeColor", {1, 1, 1}}}},
+    {"CarPaintFlakes",
+     "CarPaint",
+     {{"flakes", {1}}, {"flakeSize", {.1f}}, {"flakeColor", {1, 1, 1}}}},
     {"CarPaintWhite", "CarPaint", {{"flakes", {0}}, whiteColor}, true},
     {"Wood", "Wood", {}},
     {"WoodVarnished", "Wood", {{"varnish", {1.5f}}}},
@@ -74,10 +86,14 @@ const std::vector<Case> cases = {
     {"EngineGlossy100", "Glossy", {{"alpha", {1}}, {"eta", {1.5f}}}},
     {"Vrml97", "VRML97", {}},
     {"Vrml97Shiny", "VRML97", {{"specularColor", {1, .5f, .2f}}, {"shininess", {.5f}}}},
-    {"Vrml97Overfull", "VRML97", {{"diffuseColor", {1, 1, 1}}, {"specularColor", {5, 5, 5}}, {"shininess", {.05f}}}},
+    {"Vrml97Overfull",
+     "VRML97",
+     {{"diffuseColor", {1, 1, 1}}, {"specularColor", {5, 5, 5}}, {"shininess", {.05f}}}},
     {"Vrml97Clear", "VRML97", {{"diffuseColor", {1, 1, 1}}, {"transparency", {.3f}}}, true},
     {"Vrml97Unlit", "VRML97", {{"lit", {0}}}},
-    {"GlobalIllumination", "GlobalIllumination", {{"specularColor", {.5f, .5f, .5f}}, {"transparency", {.5f}}}},
+    {"GlobalIllumination",
+     "GlobalIllumination",
+     {{"specularColor", {.5f, .5f, .5f}}, {"transparency", {.5f}}}},
     {"RoughGlass", "RoughGlass", {{"roughness", {.05f}}}},
     {"RoughGlass40", "RoughGlass", {{"roughness", {.4f}}}},
     {"RoughGlass100", "RoughGlass", {{"roughness", {1}}}},
@@ -90,8 +106,9 @@ class ShaderPhysics : public testing::TestWithParam<Case> {
   SurfaceAtOneHit surface{classNamed(GetParam().shader), GetParam().settings};
 };
 
-// All light that a white surrounding sends to the eye: of the lobes that know one direction their weights, of the others the
-// integral of their values, by their own samples. What has crossed the boundary was compressed by eta^2: that is undone.
+// All light that a white surrounding sends to the eye: of the lobes that know one direction their
+// weights, of the others the integral of their values, by their own samples. What has crossed the
+// boundary was compressed by eta^2: that is undone.
 rts::Color furnace(const std::vector<LobeAtHit>& lobes, int side) {
   rts::Color all;
   for (const LobeAtHit& lobe : lobes) {
@@ -103,7 +120,8 @@ rts::Color furnace(const std::vector<LobeAtHit>& lobes, int side) {
     const float eta = lobe.kind() == RTS_LOBE_ROUGH_DIELECTRIC ? lobe.lobe->parameter[0][0] : 1;
     for (int a = 0; a < side; a++)
       for (int b = 0; b < side; b++) {
-        // Shifted by an irrational part of a cell: a choice by further digits must not meet the grid.
+        // Shifted by an irrational part of a cell: a choice by further digits must not meet the
+        // grid.
         const float u = (float(a) + .5f) / float(side),
                     v = (float(b) + std::fmod(.618034f * float(a * side + b), 1.f)) / float(side);
         const rts::Sample s = lobe.sample({u, v});
@@ -131,14 +149,15 @@ TEST_P(ShaderPhysics, ReflectsNoMoreThanItGets) {
   }
 }
 
-// The response f = weight x value / cosine is the same for the way back. Light through boundaries obeys another law (scaled by
-// the square of the index) and is tested where the engine's lobes are.
+// The response f = weight x value / cosine is the same for the way back. Light through boundaries
+// obeys another law (scaled by the square of the index) and is tested where the engine's lobes are.
 TEST_P(ShaderPhysics, TheWayBackIsTheSame) {
   Random random(7);
   int compared = 0;
   for (int k = 0; k < 10000; k++) {
     const auto direction = [&] {
-      const float z = std::fmax(.02f, random()), phi = 2 * rts::pi * random(), s = std::sqrt(1 - z * z);
+      const float z = std::fmax(.02f, random()), phi = 2 * rts::pi * random(),
+                  s = std::sqrt(1 - z * z);
       return rts::Vec3{s * std::cos(phi), s * std::sin(phi), z};
     };
     const rts::Vec3 a = direction(), b = direction(), place = places[k % 3];
@@ -151,7 +170,8 @@ TEST_P(ShaderPhysics, TheWayBackIsTheSame) {
       for (const LobeAtHit& lobe : surface.lobes(eye, place)) {
         if (!lobe.scatters()) continue;
         const float cosine = rts::dot(light, lobe.normal());
-        all.push_back({cosine > 0 ? lobe.weight() * lobe.value(light) / cosine : rts::Color{}, lobe.normal()});
+        all.push_back({cosine > 0 ? lobe.weight() * lobe.value(light) / cosine : rts::Color{},
+                       lobe.normal()});
       }
       return all;
     };
@@ -159,10 +179,12 @@ TEST_P(ShaderPhysics, TheWayBackIsTheSame) {
     ASSERT_EQ(there.size(), back.size());
     for (size_t l = 0; l < there.size(); l++) {
       const rts::Vec3 n = there[l].normal;
-      if (rts::length(n - back[l].normal) > 0 || rts::dot(a, n) < .01f || rts::dot(b, n) < .01f) continue; // a flake behind
+      if (rts::length(n - back[l].normal) > 0 || rts::dot(a, n) < .01f || rts::dot(b, n) < .01f)
+        continue; // a flake behind
       compared++;
       const float f = there[l].f.g, g = back[l].f.g;
-      ASSERT_NEAR(f, g, 1e-5f * std::fmax(std::fmax(f, g), 1e-3f)) << "pair " << k << ", lobe " << l;
+      ASSERT_NEAR(f, g, 1e-5f * std::fmax(std::fmax(f, g), 1e-3f))
+          << "pair " << k << ", lobe " << l;
     }
   }
   if (compared == 0) GTEST_SKIP() << "no lobe that scatters";
@@ -170,8 +192,10 @@ TEST_P(ShaderPhysics, TheWayBackIsTheSame) {
 
 const float viewAngles[] = {0, 35, 70, 85};
 
-TEST_P(ShaderPhysics, SamplesFallAsTheirDensitySays) {                          // chi-square over 80 x 160 bins of the sphere
-  const double level = 1 - std::pow(1 - .01, 1.0 / (double(cases.size()) * 8)); // Sidak: 1 % for all together
+TEST_P(ShaderPhysics,
+       SamplesFallAsTheirDensitySays) { // chi-square over 80 x 160 bins of the sphere
+  const double level =
+      1 - std::pow(1 - .01, 1.0 / (double(cases.size()) * 8)); // Sidak: 1 % for all together
   int tested = 0;
   for (const float angle : viewAngles) {
     const std::vector<LobeAtHit> lobes = surface.lobes(towards(angle, 20), places[0]);
@@ -196,7 +220,8 @@ TEST_P(ShaderPhysics, SamplesFallAsTheirDensitySays) {                          
         return double(p);
       };
       const Expected expected = seen.expect(density);
-      EXPECT_NEAR(expected.total + lost / n, 1, 4 * std::sqrt(lost / n / n) + 2e-3) << "lobe " << l << " at " << angle;
+      EXPECT_NEAR(expected.total + lost / n, 1, 4 * std::sqrt(lost / n / n) + 2e-3)
+          << "lobe " << l << " at " << angle;
       const double p = seen.chiSquareTail(expected, n, lost);
       EXPECT_GT(p, level) << "lobe " << l << " at " << angle << " degrees";
     }
@@ -215,19 +240,24 @@ TEST_P(ShaderPhysics, QuotientsAreValuesOverDensities) {
         const rts::Sample s = lobe.sample({u, v});
         if (!(s.density > 0)) continue;
         EXPECT_NEAR(rts::length(s.direction), 1, 1e-5);
-        if (std::fabs(rts::dot(s.direction, lobe.normal())) < 1e-3f) continue; // the cosine's own rounding
+        if (std::fabs(rts::dot(s.direction, lobe.normal())) < 1e-3f)
+          continue; // the cosine's own rounding
         float density = 0;
         const rts::Color value = lobe.value(s.direction, &density);
         ASSERT_NEAR(density, s.density, 5e-3f * s.density) << angle << " degrees, sample " << k;
-        ASSERT_NEAR(value.g, s.quotient.g * s.density, 5e-3f * std::fmax(value.g, 1e-3f)) << angle << " degrees, sample " << k;
+        ASSERT_NEAR(value.g, s.quotient.g * s.density, 5e-3f * std::fmax(value.g, 1e-3f))
+            << angle << " degrees, sample " << k;
       }
     }
   }
 }
 
 TEST_P(ShaderPhysics, EverythingIsFinite) {
-  const rts::Vec3 extremes[] = {{1, 0, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}, towards(89.9999), towards(90.0001), {0, 0, 0}};
-  const auto finite = [](rts::Color c) { return std::isfinite(c.r) && std::isfinite(c.g) && std::isfinite(c.b); };
+  const rts::Vec3 extremes[] = {{1, 0, 0},        {0, -1, 0},       {0, 0, 1}, {0, 0, -1},
+                                towards(89.9999), towards(90.0001), {0, 0, 0}};
+  const auto finite = [](rts::Color c) {
+    return std::isfinite(c.r) && std::isfinite(c.g) && std::isfinite(c.b);
+  };
   for (const rts::Vec3 eye : extremes)
     for (const rts::Vec3 place : {rts::Vec3{0, 0, 0}, rts::Vec3{1e30f, -1e30f, 3e9f}})
       for (const LobeAtHit& lobe : surface.lobes(eye, place)) {
@@ -236,7 +266,8 @@ TEST_P(ShaderPhysics, EverythingIsFinite) {
         if (!lobe.scatters()) continue;
         for (const rts::Vec3 d : extremes) {
           float density = 0;
-          EXPECT_TRUE(finite(lobe.value(d, &density))) << d.x << " " << d.y << " " << d.z << " from " << eye.x << " " << eye.z;
+          EXPECT_TRUE(finite(lobe.value(d, &density)))
+              << d.x << " " << d.y << " " << d.z << " from " << eye.x << " " << eye.z;
           EXPECT_TRUE(std::isfinite(density) && density >= 0);
         }
         for (const float u : {0.f, .5f, 1 - 0x1p-24f})
@@ -255,17 +286,20 @@ TEST(Facets, NearlyPolishedIsFinite) {
       SurfaceAtOneHit surface(shader, {{"roughness", {roughness}}});
       for (const float angle : {0.f, 45.f, 89.99f, 90.f}) {
         const rts::Color all = furnace(surface.lobes(towards(angle)), 16);
-        EXPECT_TRUE(all.g >= 0 && all.g <= 1 + 1e-3f) << shader << " " << roughness << " at " << angle << ": " << all.g;
+        EXPECT_TRUE(all.g >= 0 && all.g <= 1 + 1e-3f)
+            << shader << " " << roughness << " at " << angle << ": " << all.g;
       }
       // As good as polished: what a polished one reflects.
       SurfaceAtOneHit polished(shader, {{"roughness", {0}}});
-      const float smooth = furnace(polished.lobes(towards(45)), 16).g, nearly = furnace(surface.lobes(towards(45)), 16).g;
+      const float smooth = furnace(polished.lobes(towards(45)), 16).g,
+                  nearly = furnace(surface.lobes(towards(45)), 16).g;
       EXPECT_NEAR(nearly, smooth, 6e-3f) << shader << " " << roughness;
     }
 }
 
-// Light that crosses a rough boundary: f(a, b) / n_a^2 is the same both ways (E. Veach, "Robust Monte Carlo Methods for Light
-// Transport Simulation", 1997, 5.2), whether seen from outside or from inside.
+// Light that crosses a rough boundary: f(a, b) / n_a^2 is the same both ways (E. Veach, "Robust
+// Monte Carlo Methods for Light Transport Simulation", 1997, 5.2), whether seen from outside or
+// from inside.
 TEST(RoughBoundary, TheWayBackIsTheSameScaledByTheIndices) {
   for (const float roughness : {.1f, .4f, 1.f}) {
     SurfaceAtOneHit surface("RoughGlass", {{"roughness", {roughness}}});
@@ -273,7 +307,8 @@ TEST(RoughBoundary, TheWayBackIsTheSameScaledByTheIndices) {
     int compared = 0;
     for (int k = 0; k < 3000; k++) {
       const auto direction = [&] {
-        const float z = std::fmax(.05f, random()), phi = 2 * rts::pi * random(), s = std::sqrt(1 - z * z);
+        const float z = std::fmax(.05f, random()), phi = 2 * rts::pi * random(),
+                    s = std::sqrt(1 - z * z);
         return rts::Vec3{s * std::cos(phi), s * std::sin(phi), z};
       };
       const rts::Vec3 out = direction(), in = direction(); // each on its own side
@@ -283,16 +318,19 @@ TEST(RoughBoundary, TheWayBackIsTheSameScaledByTheIndices) {
       if (there == 0 && back == 0) continue;
       compared++;
       const float f = there, g = back / (1.5f * 1.5f);
-      // Floats of narrow lobes: a rounded facet's normal is off by some 1e-7, which the distribution magnifies by 1 / roughness.
-      ASSERT_NEAR(f, g, (1e-5f + 2e-6f / roughness) * std::fmax(std::fmax(f, g), 1e-2f)) << roughness << " pair " << k;
+      // Floats of narrow lobes: a rounded facet's normal is off by some 1e-7, which the
+      // distribution magnifies by 1 / roughness.
+      ASSERT_NEAR(f, g, (1e-5f + 2e-6f / roughness) * std::fmax(std::fmax(f, g), 1e-2f))
+          << roughness << " pair " << k;
     }
     EXPECT_GT(compared, 300) << roughness;
   }
 }
 
-// The facets that are seen from a direction cover just what is seen of the surface: the weak white furnace of E. Heitz (JCGT
-// 3(2), 2014, eq. 53), with facets that reflect all, before any of their light is hidden: the integral of D G1 / (4 cos o) over
-// all mirror images, also those below the horizon.
+// The facets that are seen from a direction cover just what is seen of the surface: the weak white
+// furnace of E. Heitz (JCGT 3(2), 2014, eq. 53), with facets that reflect all, before any of their
+// light is hidden: the integral of D G1 / (4 cos o) over all mirror images, also those below the
+// horizon.
 TEST(Facets, WeakWhiteFurnace) {
   for (const float alpha : {.02f, .1f, .3f, .6f, 1.f})
     for (const float angle : {0.f, 30.f, 60.f, 80.f, 89.f}) {
@@ -300,7 +338,8 @@ TEST(Facets, WeakWhiteFurnace) {
       const rts::Vec3 o = towards(angle);
       double sum = 0;
       const int across = 2000, around = 128;
-      for (int i = 0; i < across; i++) { // tangents of the facets' angles by their distribution u, crowded towards steep ones
+      for (int i = 0; i < across; i++) { // tangents of the facets' angles by their distribution u,
+                                         // crowded towards steep ones
         const double w = 1 - (i + .5) / across, tangent = alpha * std::sqrt((1 - w * w) / (w * w));
         const double c = 1 / std::sqrt(1 + tangent * tangent);
         const double s = tangent * c;
@@ -309,7 +348,8 @@ TEST(Facets, WeakWhiteFurnace) {
           const double phi = 2 * M_PI * (j + .5) / around;
           const rts::Vec3 h{float(s * std::cos(phi)), float(s * std::sin(phi)), float(c)};
           const double seen = std::max(0.f, rts::dot(o, h));
-          ring += ggx.seen(o, h) * 4 * seen / (ggx.facets(h) * c); // density of the mirror images, over that of these points
+          ring += ggx.seen(o, h) * 4 * seen /
+                  (ggx.facets(h) * c); // density of the mirror images, over that of these points
         }
         sum += ring * 2 * w / around / across;
       }
@@ -317,15 +357,19 @@ TEST(Facets, WeakWhiteFurnace) {
     }
 }
 
-// ISO/IEC 14772-1's highlight is kept as it looks: with the light in the mirror direction both give OS, here times N.L.
+// ISO/IEC 14772-1's highlight is kept as it looks: with the light in the mirror direction both give
+// OS, here times N.L.
 TEST(Vrml97Lobes, AHighlightIsAsBrightAsTheStandardSays) {
   for (const float shininess : {0.f, .02f, .2f, 1.f}) {
-    SurfaceAtOneHit surface("VRML97",
-                            {{"diffuseColor", {0, 0, 0}}, {"specularColor", {.4f, .2f, .1f}}, {"shininess", {shininess}}});
+    SurfaceAtOneHit surface("VRML97", {{"diffuseColor", {0, 0, 0}},
+                                       {"specularColor", {.4f, .2f, .1f}},
+                                       {"shininess", {shininess}}});
     for (const float angle : {0.f, 30.f, 60.f}) {
       rts::Color sum;
       for (const LobeAtHit& lobe : surface.lobes(towards(angle)))
-        if (lobe.scatters()) sum = sum + lobe.weight() * lobe.value(towards(-angle)) * rts::pi; // a light's colour is radiance
+        if (lobe.scatters())
+          sum = sum + lobe.weight() * lobe.value(towards(-angle)) *
+                          rts::pi; // a light's colour is radiance
       const float cosine = std::cos(angle * rts::pi / 180);
       EXPECT_NEAR(sum.r, .4f * cosine, 1e-4f) << shininess << " at " << angle;
       EXPECT_NEAR(sum.b, .1f * cosine, 1e-4f) << shininess << " at " << angle;
@@ -334,7 +378,8 @@ TEST(Vrml97Lobes, AHighlightIsAsBrightAsTheStandardSays) {
 }
 
 TEST(Vrml97Lobes, EmissionAndOpacity) {
-  SurfaceAtOneHit surface("GlobalIllumination", {{"emissiveColor", {2, 1, 0}}, {"transparency", {.25f}}});
+  SurfaceAtOneHit surface("GlobalIllumination",
+                          {{"emissiveColor", {2, 1, 0}}, {"transparency", {.25f}}});
   const std::vector<LobeAtHit> lobes = surface.lobes({0, 0, 1});
   EXPECT_FLOAT_EQ(surface.emission().r, 1.5f);
   EXPECT_FLOAT_EQ(surface.emission().g, .75f);
@@ -344,11 +389,13 @@ TEST(Vrml97Lobes, EmissionAndOpacity) {
   EXPECT_EQ(lobes[1].kind(), RTS_LOBE_TRANSPARENT);
   EXPECT_FLOAT_EQ(lobes[1].weight().r, .25f);
   const RtsClass& c = surface.shaderClass();
-  EXPECT_EQ(c.traits(&surface.host(), surface.params()), unsigned(RTS_GLOBAL | RTS_TRANSPARENT | RTS_EMISSIVE));
+  EXPECT_EQ(c.traits(&surface.host(), surface.params()),
+            unsigned(RTS_GLOBAL | RTS_TRANSPARENT | RTS_EMISSIVE));
   EXPECT_EQ(c.shade, nullptr);
 }
 
-INSTANTIATE_TEST_SUITE_P(Stock, ShaderPhysics, testing::ValuesIn(cases), [](const auto& info) { return info.param.name; });
+INSTANTIATE_TEST_SUITE_P(Stock, ShaderPhysics, testing::ValuesIn(cases),
+                         [](const auto& info) { return info.param.name; });
 
 } // namespace
 } // namespace openrt::test

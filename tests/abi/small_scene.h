@@ -1,5 +1,5 @@
-// small_scene.h: a context with the test plug-ins and the stock shaders, one ray down -z a pixel, and what it logs. Through the
-// public C API only.
+// small_scene.h: a context with the test plug-ins and the stock shaders, one ray down -z a pixel,
+// and what it logs. Through the public C API only.
 #pragma once
 
 #include <cmath>
@@ -20,7 +20,9 @@ struct Log {
     for (const std::string& line : lines) n += line.find(part) != line.npos;
     return n;
   }
-  static void take(int, const char* text, void* self) { static_cast<Log*>(self)->lines.emplace_back(text); }
+  static void take(int, const char* text, void* self) {
+    static_cast<Log*>(self)->lines.emplace_back(text);
+  }
 };
 
 class SmallScene : public testing::Test {

@@ -1,5 +1,6 @@
-// surface_at_one_hit.h: a surface shader of a plug-in, with parameters, at one hit of the plane z = 0: which lobes it has there,
-// and how these answer light. For tests of energy, reciprocity and sampling that hold for every shader.
+// surface_at_one_hit.h: a surface shader of a plug-in, with parameters, at one hit of the plane z =
+// 0: which lobes it has there, and how these answer light. For tests of energy, reciprocity and
+// sampling that hold for every shader.
 #pragma once
 
 #include <cmath>
@@ -54,7 +55,8 @@ class SurfaceAtOneHit {
  public:
   SurfaceAtOneHit(const char* name, const std::vector<Setting>& settings)
       : SurfaceAtOneHit(registry().find(name, ""), settings) {}
-  SurfaceAtOneHit(const RtsClass& shaderClass, const std::vector<Setting>& settings) : class_(shaderClass), params_(class_) {
+  SurfaceAtOneHit(const RtsClass& shaderClass, const std::vector<Setting>& settings)
+      : class_(shaderClass), params_(class_) {
     for (const Setting& s : settings) {
       const RtsParam* p = nullptr;
       for (uint32_t i = 0; i < class_.paramCount; i++)
@@ -72,7 +74,8 @@ class SurfaceAtOneHit {
   SurfaceAtOneHit(const SurfaceAtOneHit&) = delete;
   SurfaceAtOneHit& operator=(const SurfaceAtOneHit&) = delete;
 
-  // The lobes for a direction to the eye; valid until the next call. place: in the frame of the object.
+  // The lobes for a direction to the eye; valid until the next call. place: in the frame of the
+  // object.
   std::vector<LobeAtHit> lobes(rts::Vec3 toEye, rts::Vec3 place = {}, bool back = false) {
     host_.lobes.clear();
     host_.memory.clear();

@@ -1,5 +1,6 @@
-// vrml97_places.cpp: the lights, cameras and the environment of the stock plug-in in a fake host, against values worked out in
-// double from ISO/IEC 14772-1 clauses 4.14, 6.5, 6.16, 6.19, 6.33 and 6.41.
+// vrml97_places.cpp: the lights, cameras and the environment of the stock plug-in in a fake host,
+// against values worked out in double from ISO/IEC 14772-1 clauses 4.14, 6.5, 6.16, 6.19, 6.33
+// and 6.41.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -55,7 +56,10 @@ Lit illuminate(const char* name, const ParamBlock& p, Vec point) {
   stock(name).illuminate(&host, host.batch(), p.get(), 1, at.in, &out);
   EXPECT_FLOAT_EQ(out.color[1][0], 0.5f * out.color[0][0]) << "tests use colours of (1, .5, 0)";
   EXPECT_EQ(out.color[2][0], 0.0f);
-  return {out.color[0][0], out.ambient[0][0], {out.toLight[0][0], out.toLight[1][0], out.toLight[2][0]}, out.directional};
+  return {out.color[0][0],
+          out.ambient[0][0],
+          {out.toLight[0][0], out.toLight[1][0], out.toLight[2][0]},
+          out.directional};
 }
 
 ParamBlock block(const char* name) {
@@ -115,9 +119,16 @@ TEST(Vrml97Lights, SpotFallsOffBetweenItsAngles) { // V6
   p.set("beamWidth", {.3f});
   p.set("cutOffAngle", {.6f});
   p.set("direction", {0, 0, -5}); // any length
-  for (const auto& [angle, wanted] :
-       {std::pair{.45, .5}, {.3, 1.0}, {.6, 0.0}, {.0, 1.0}, {.301, .99666667}, {.599, .0033333}, {.61, 0.0}, {3.1, 0.0}}) {
-    const Lit l = illuminate("VRML97SpotLight", p, {float(7 * std::sin(angle)), 0, float(-7 * std::cos(angle))});
+  for (const auto& [angle, wanted] : {std::pair{.45, .5},
+                                      {.3, 1.0},
+                                      {.6, 0.0},
+                                      {.0, 1.0},
+                                      {.301, .99666667},
+                                      {.599, .0033333},
+                                      {.61, 0.0},
+                                      {3.1, 0.0}}) {
+    const Lit l = illuminate("VRML97SpotLight", p,
+                             {float(7 * std::sin(angle)), 0, float(-7 * std::cos(angle))});
     EXPECT_NEAR(l.direct, wanted, 2e-6) << angle;
   }
 }
@@ -127,8 +138,10 @@ TEST(Vrml97Lights, NarrowSpotsKeepTheirDigits) {
   p.set("beamWidth", {.0f});
   p.set("cutOffAngle", {1e-3f});
   for (const double angle : {1e-4, 2.5e-4, 9e-4})
-    EXPECT_NEAR(illuminate("VRML97SpotLight", p, {0, float(std::sin(angle)), float(-std::cos(angle))}).direct, 1 - angle * 1e3,
-                1e-5);
+    EXPECT_NEAR(
+        illuminate("VRML97SpotLight", p, {0, float(std::sin(angle)), float(-std::cos(angle))})
+            .direct,
+        1 - angle * 1e3, 1e-5);
 }
 
 TEST(Vrml97Lights, TheDefaultSpotIsAHardCone) {
@@ -152,7 +165,8 @@ struct Colour {
   float r, g, b, a;
 };
 
-std::vector<Colour> miss(const ParamBlock& p, std::vector<Vec> directions, FakeHost&& host = FakeHost()) {
+std::vector<Colour> miss(const ParamBlock& p, std::vector<Vec> directions,
+                         FakeHost&& host = FakeHost()) {
   for (Vec& d : directions) {
     const float length = std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z);
     d = {d.x / length, d.y / length, d.z / length};
@@ -163,13 +177,15 @@ std::vector<Colour> miss(const ParamBlock& p, std::vector<Vec> directions, FakeH
   float* rgba[4] = {lanes[0].data(), lanes[1].data(), lanes[2].data(), lanes[3].data()};
   stock("VRML97Environment").miss(&host, host.batch(), p.get(), n, in.in, rgba);
   std::vector<Colour> out;
-  for (uint32_t i = 0; i < n; i++) out.push_back({lanes[0][i], lanes[1][i], lanes[2][i], lanes[3][i]});
+  for (uint32_t i = 0; i < n; i++)
+    out.push_back({lanes[0][i], lanes[1][i], lanes[2][i], lanes[3][i]});
   return out;
 }
 
 // The direction at an angle from the zenith.
 Vec zenith(double angle, double around = 0.7) {
-  return {float(std::sin(angle) * std::cos(around)), float(std::cos(angle)), float(std::sin(angle) * std::sin(around))};
+  return {float(std::sin(angle) * std::cos(around)), float(std::cos(angle)),
+          float(std::sin(angle) * std::sin(around))};
 }
 
 TEST(Vrml97Background, OneColourAndNone) {
@@ -186,7 +202,8 @@ TEST(Vrml97Background, SkyBandsAreInterpolatedAndTheLastGoesToTheNadir) {
   ParamBlock p(stock("VRML97Environment"));
   p.set("skyColor", {0, 0, 0, 1, 0, 0, 1, 1, 0});
   p.set("skyAngle", {1, 1.5f});
-  const auto c = miss(p, {zenith(0), zenith(.25), zenith(.999), zenith(1.25), zenith(1.6), zenith(3.14)});
+  const auto c =
+      miss(p, {zenith(0), zenith(.25), zenith(.999), zenith(1.25), zenith(1.6), zenith(3.14)});
   EXPECT_NEAR(c[0].r, 0, 1e-6);
   EXPECT_NEAR(c[1].r, .25, 1e-6);
   EXPECT_NEAR(c[2].r, .999, 1e-6);
@@ -201,7 +218,8 @@ TEST(Vrml97Background, GroundCoversUpToItsLastAngle) {
   p.set("groundColor", {1, 0, 0, 0, 1, 0});
   p.set("groundAngle", {1.0f});
   const double pi = 3.14159265358979;
-  const auto c = miss(p, {zenith(pi), zenith(pi - .5), zenith(pi - .999), zenith(pi - 1.001), zenith(1)});
+  const auto c =
+      miss(p, {zenith(pi), zenith(pi - .5), zenith(pi - .999), zenith(pi - 1.001), zenith(1)});
   EXPECT_NEAR(c[0].r, 1, 1e-6);
   EXPECT_NEAR(c[1].g, .5, 1e-6);
   EXPECT_NEAR(c[2].g, .999, 1e-5);
@@ -218,7 +236,8 @@ TEST(Vrml97Background, AnglesOutOfOrderOrRangeAreHarmless) {
       EXPECT_TRUE(c.r >= 0 && c.r <= 1 && c.g >= 0 && c.g <= 1 && c.b >= 0 && c.b <= 1) << a;
       EXPECT_EQ(c.a, 1);
     }
-  EXPECT_NEAR(miss(p, {zenith(1)})[0].r, .5, 1e-6); // towards the second colour at 2; the third starts there too
+  EXPECT_NEAR(miss(p, {zenith(1)})[0].r, .5,
+              1e-6); // towards the second colour at 2; the third starts there too
 }
 
 TEST(Vrml97Background, PicturesLieWhereTheHeadTurns) {
@@ -228,9 +247,12 @@ TEST(Vrml97Background, PicturesLieWhereTheHeadTurns) {
     Vec direction;
     float s, t;
   } looks[] = {
-      {"frontTexture", {.5f, .25f, -1}, .75f, .625f}, {"backTexture", {.5f, .25f, 1}, .25f, .625f},
-      {"leftTexture", {-1, .25f, .5f}, .25f, .625f},  {"rightTexture", {1, .25f, .5f}, .75f, .625f},
-      {"topTexture", {.5f, 1, .25f}, .75f, .625f},    {"bottomTexture", {.5f, -1, .25f}, .75f, .375f},
+      {"frontTexture", {.5f, .25f, -1}, .75f, .625f},
+      {"backTexture", {.5f, .25f, 1}, .25f, .625f},
+      {"leftTexture", {-1, .25f, .5f}, .25f, .625f},
+      {"rightTexture", {1, .25f, .5f}, .75f, .625f},
+      {"topTexture", {.5f, 1, .25f}, .75f, .625f},
+      {"bottomTexture", {.5f, -1, .25f}, .75f, .375f},
   };
   for (const auto& look : looks) {
     ParamBlock p(stock("VRML97Environment"));
@@ -261,7 +283,8 @@ float fraction(const ParamBlock& p, Vec fromEye, float* red = nullptr) {
   Arrays in({fromEye});
   Lanes lanes[4] = {Lanes(1), Lanes(1), Lanes(1), Lanes(1, 9.0f)};
   float* color[3] = {lanes[0].data(), lanes[1].data(), lanes[2].data()};
-  stock("VRML97Environment").attenuate(&host, host.batch(), p.get(), 1, in.in, color, lanes[3].data());
+  stock("VRML97Environment")
+      .attenuate(&host, host.batch(), p.get(), 1, in.in, color, lanes[3].data());
   if (red) *red = lanes[0][0];
   return lanes[3][0];
 }
@@ -323,7 +346,8 @@ TEST(Vrml97Cameras, PerspectiveLooksDownTheAxisWithItsAngleAtTheEdge) {
   EXPECT_EQ(d.y, 0);
   EXPECT_EQ(d.z, -1);
   EXPECT_EQ(o.x, 0);
-  generate(p, "PerspectiveCamera", {100, 0, 0}, o, d); // the middle of the upper edge: 30 degrees up
+  generate(p, "PerspectiveCamera", {100, 0, 0}, o,
+           d); // the middle of the upper edge: 30 degrees up
   EXPECT_NEAR(d.y, .5, 1e-6);
   EXPECT_NEAR(d.z, -std::sqrt(.75), 1e-6);
   generate(p, "PerspectiveCamera", {200, 50, 0}, o, d); // the right edge is twice as far out

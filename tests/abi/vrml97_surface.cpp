@@ -1,5 +1,6 @@
-// vrml97_surface.cpp: the surface of the stock plug-in, loaded as a plug-in, run in a fake host: both tables of ISO/IEC 14772-1
-// clause 4.14.3, the lighting equation, traits and transmission. Values of the equation are worked out in double.
+// vrml97_surface.cpp: the surface of the stock plug-in, loaded as a plug-in, run in a fake host:
+// both tables of ISO/IEC 14772-1 clause 4.14.3, the lighting equation, traits and transmission.
+// Values of the equation are worked out in double.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -25,7 +26,8 @@ void expectRgb(Rgb got, Rgb wanted, double relative = 1e-5) {
   EXPECT_NEAR(got.b, wanted.b, relative * std::max(1e-3f, std::fabs(wanted.b)));
 }
 
-// One batch of hits of a surface in the plane z = 0, seen from +z, each lane with parameters of its own.
+// One batch of hits of a surface in the plane z = 0, seen from +z, each lane with parameters of its
+// own.
 struct Hits {
   explicit Hits(std::vector<const void*> parameters)
       : count(static_cast<uint32_t>(parameters.size())), params(std::move(parameters)) {
@@ -102,11 +104,14 @@ Rgb transmit(FakeHost& host, Hits& hits, size_t lane = 0) {
 }
 
 constexpr float degree = 0.017453292519943295f;
-FakeLight lightAt(float degrees) { return {{std::sin(degrees * degree), 0, std::cos(degrees * degree)}}; }
+FakeLight lightAt(float degrees) {
+  return {{std::sin(degrees * degree), 0, std::cos(degrees * degree)}};
+}
 
 TEST(Vrml97Surface, DiffuseFollowsTheCosine) { // V1
   const ParamBlock p(surface());
-  for (const auto& [angle, wanted] : {std::pair{0.0f, 0.8f}, {60.0f, 0.4f}, {90.0f, 0.0f}, {120.0f, 0.0f}}) {
+  for (const auto& [angle, wanted] :
+       {std::pair{0.0f, 0.8f}, {60.0f, 0.4f}, {90.0f, 0.0f}, {120.0f, 0.0f}}) {
     FakeHost host;
     host.shining = {lightAt(angle)};
     Hits hits({p.get()});
@@ -116,7 +121,8 @@ TEST(Vrml97Surface, DiffuseFollowsTheCosine) { // V1
 
 TEST(Vrml97Surface, AmbientPartIsNotShadowedAndNeedsNoFacing) { // V4
   ParamBlock p(surface());
-  for (const auto& [angle, visible, wanted] : {std::tuple{0.0f, 1.0f, 0.88f}, {90.0f, 1.0f, 0.08f}, {0.0f, 0.0f, 0.08f}}) {
+  for (const auto& [angle, visible, wanted] :
+       {std::tuple{0.0f, 1.0f, 0.88f}, {90.0f, 1.0f, 0.08f}, {0.0f, 0.0f, 0.08f}}) {
     FakeHost host;
     host.shining = {lightAt(angle)};
     for (float& a : host.shining[0].ambient) a = 0.5f;
@@ -127,8 +133,10 @@ TEST(Vrml97Surface, AmbientPartIsNotShadowedAndNeedsNoFacing) { // V4
 }
 
 TEST(Vrml97Surface, HighlightOfBlinn) { // V5: the half vector is at half the light's angle
-  for (const auto& [half, shininess, wanted] :
-       {std::tuple{10.0f, 0.2f, 0.675768f}, {10.0f, 1.0f, 0.140925f}, {5.0f, 0.2f, 0.907010f}, {0.0f, 1.0f, 1.0f}}) {
+  for (const auto& [half, shininess, wanted] : {std::tuple{10.0f, 0.2f, 0.675768f},
+                                                {10.0f, 1.0f, 0.140925f},
+                                                {5.0f, 0.2f, 0.907010f},
+                                                {0.0f, 1.0f, 1.0f}}) {
     ParamBlock p(surface());
     p.set("diffuseColor", {0, 0, 0});
     p.set("specularColor", {1, 0.5f, 0});
@@ -153,7 +161,8 @@ TEST(Vrml97Surface, HighlightAgainstDoublePrecision) {
       const FakeLight& l = host.shining[0];
       const double hx = l.toLight[0], hz = l.toLight[2] + 1.0, cosine = hz / std::hypot(hx, hz);
       const double wanted = std::pow(cosine, 128.0 * shininess);
-      EXPECT_NEAR(shade(host, hits).light().r, wanted, 1e-5 * std::max(wanted, 1e-3)) << shininess << ' ' << angle;
+      EXPECT_NEAR(shade(host, hits).light().r, wanted, 1e-5 * std::max(wanted, 1e-3))
+          << shininess << ' ' << angle;
     }
 }
 
@@ -178,12 +187,14 @@ TEST(Vrml97Surface, ShininessZeroIsOneOnTheLitSide) {
   FakeHost host;
   host.shining = {lightAt(89)};
   Hits hits({p.get()});
-  hits.direction[0][0] = 0.999f; // seen so flat from the other side that N.H is below 0: the power of 0 is still 1
+  hits.direction[0][0] =
+      0.999f; // seen so flat from the other side that N.H is below 0: the power of 0 is still 1
   hits.direction[2][0] = 0.04f;
   expectRgb(shade(host, hits).light(), {1, 1, 1});
 }
 
-// Rows of tables 4.5 and 4.6 of the standard: what the diffuse colour (or the unlit colour) and A become.
+// Rows of tables 4.5 and 4.6 of the standard: what the diffuse colour (or the unlit colour) and A
+// become.
 struct Row {
   int components;
   bool coloured, lit;
@@ -217,15 +228,18 @@ TEST(Vrml97Surface, EveryRowOfTheTextureTables) { // V9
       {4, true, false, rgb, texelAlpha},
   };
   for (const Row& row : rows) {
-    SCOPED_TRACE(testing::Message() << row.components << " components, coloured " << row.coloured << ", lit " << row.lit);
+    SCOPED_TRACE(testing::Message() << row.components << " components, coloured " << row.coloured
+                                    << ", lit " << row.lit);
     ParamBlock p(surface());
     p.set("transparency", {transparency});
     p.setInt("lit", row.lit ? 1 : 0);
     FakeHost host;
     if (row.components <= 2)
-      host.textures = {{uint32_t(row.components), {.5f, .5f, .5f, row.components == 2 ? texelAlpha : 1}}};
+      host.textures = {
+          {uint32_t(row.components), {.5f, .5f, .5f, row.components == 2 ? texelAlpha : 1}}};
     else
-      host.textures = {{uint32_t(row.components), {rgb.r, rgb.g, rgb.b, row.components == 4 ? texelAlpha : 1}}};
+      host.textures = {
+          {uint32_t(row.components), {rgb.r, rgb.g, rgb.b, row.components == 4 ? texelAlpha : 1}}};
     if (row.components) p.setInt("texture", 1);
     host.shining = {lightAt(0)};
     Hits hits({p.get()});
@@ -238,7 +252,8 @@ TEST(Vrml97Surface, EveryRowOfTheTextureTables) { // V9
     expectRgb(transmit(host, hits), {1 - A, 1 - A, 1 - A});
     const bool transparent = A < 1;
     const unsigned unlit = RTS_UNLIT | RTS_EMISSIVE | RTS_NO_SCATTER;
-    EXPECT_EQ(surface().traits(&host, p.get()), (transparent ? unsigned(RTS_TRANSPARENT) : 0u) | (row.lit ? 0u : unlit));
+    EXPECT_EQ(surface().traits(&host, p.get()),
+              (transparent ? unsigned(RTS_TRANSPARENT) : 0u) | (row.lit ? 0u : unlit));
   }
 }
 
@@ -310,7 +325,8 @@ TEST(Vrml97Surface, TextureCoordinatesAreTransformed) {
   ParamBlock p(surface());
   p.setInt("lit", 0);
   p.setInt("texture", 1);
-  p.set("textureTransform", {0, 2, 0, 0, 3, 0, 0, 0, 0, 0, 1, 0, .5f, .25f, 0, 1}); // s' = 3 t + .5, t' = 2 s + .25
+  p.set("textureTransform",
+        {0, 2, 0, 0, 3, 0, 0, 0, 0, 0, 1, 0, .5f, .25f, 0, 1}); // s' = 3 t + .5, t' = 2 s + .25
   FakeHost host;
   host.textures = {{3, {0, 0, 0, 1}}};
   Hits hits({p.get()});
@@ -324,7 +340,8 @@ TEST(Vrml97Surface, MixedBatchesOfManyTextures) {
   FakeHost host;
   std::deque<ParamBlock> blocks;
   std::vector<const void*> params;
-  for (uint32_t k = 0; k < 7; k++) host.textures.push_back({1 + k % 4, {.1f * float(k), .2f, .3f, .5f}});
+  for (uint32_t k = 0; k < 7; k++)
+    host.textures.push_back({1 + k % 4, {.1f * float(k), .2f, .3f, .5f}});
   for (uint32_t i = 0; i < n; i++) {
     blocks.emplace_back(surface());
     blocks.back().setInt("lit", 0);

@@ -1,4 +1,3 @@
-// coverage.cpp: see coverage.h.
 #include "audit/coverage.h"
 
 #include "openrt/openrt.h"
@@ -47,11 +46,14 @@ Coverage Judge::measure(int samples, int seeds) {
   rtFrameBuffer(edge_, edge_, RT_RGBA | RT_ERROR | RT_TRUST | RT_VARIANCE);
   rtQuality(RT_SAMPLES_PER_PIXEL, samples);
   std::vector<picture::Shot> shots;
-  for (int seed = 1; seed <= seeds; seed++) shots.push_back(shoot(size_t(edge_) * size_t(edge_), samples, seed));
+  for (int seed = 1; seed <= seeds; seed++)
+    shots.push_back(shoot(size_t(edge_) * size_t(edge_), samples, seed));
   return picture::countCoverage(shots, reference_, edge_, edge_, tileEdge);
 }
 
-Coverage measure(const Scenario& s, int seeds, int edge) { return Judge(s, edge).measure(s.samples, seeds); }
+Coverage measure(const Scenario& s, int seeds, int edge) {
+  return Judge(s, edge).measure(s.samples, seeds);
+}
 
 const std::vector<Scenario>& scenarios() {
   static const std::vector<Scenario> all = [] {

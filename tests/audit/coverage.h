@@ -1,6 +1,7 @@
-// coverage.h: how often the error bars of pictures hold: small scenes of each kind of difficulty, rendered with many seeds and
-// compared with a long render of another seed and with each other. Through the public C API only. For the numeric tests (few
-// seeds) and the program `audit` (many). One context, on the calling thread.
+// coverage.h: how often the error bars of pictures hold: small scenes of each kind of difficulty,
+// rendered with many seeds and compared with a long render of another seed and with each other.
+// Through the public C API only. For the numeric tests (few seeds) and the program `audit` (many).
+// One context, on the calling thread.
 #pragma once
 
 #include <cstdint>
@@ -32,7 +33,8 @@ using Coverage = picture::Coverage;
 // One scene, for pictures of several numbers of samples: what is true of it is made once.
 class Judge {
  public:
-  // In the current context, whose quality other than samples, transport and seed is left as it is. edge: pixels.
+  // In the current context, whose quality other than samples, transport and seed is left as it is.
+  // edge: pixels.
   Judge(const Scenario& scenario, int edge);
   // Renders with seeds 1 .. seeds.
   Coverage measure(int samples, int seeds);
@@ -42,6 +44,7 @@ class Judge {
   const int edge_;
   picture::Reference reference_;
 };
-Coverage measure(const Scenario& scenario, int seeds, int edge = 16); // with the scene's own number of samples
+Coverage measure(const Scenario& scenario, int seeds,
+                 int edge = 16); // with the scene's own number of samples
 
 } // namespace audit

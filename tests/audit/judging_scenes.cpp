@@ -1,5 +1,6 @@
-// judging_scenes.cpp: hard scenes of the audit that may only judge: no limit and no rule of libopenrt/render was chosen or
-// changed because of what they show. Those that may set limits are in scenes.cpp and training_scenes.cpp.
+// judging_scenes.cpp: hard scenes of the audit that may only judge: no limit and no rule of
+// libopenrt/render was chosen or changed because of what they show. Those that may set limits are
+// in scenes.cpp and training_scenes.cpp.
 #include <cmath>
 
 #include "audit/coverage.h"
@@ -32,18 +33,21 @@ void drawPlates() {
     rtPopMatrix();
   }
   static const float half[] = {.01f, .05f, .15f, .4f};
-  for (int i = 0; i < 4; i++) put(ball(diffuse(.1f / (half[i] * half[i]), 0), half[i]), .7 * i - 1.05, 1.6, .4, 0);
+  for (int i = 0; i < 4; i++)
+    put(ball(diffuse(.1f / (half[i] * half[i]), 0), half[i]), .7 * i - 1.05, 1.6, .4, 0);
   eyeAt(0, .2, 4.5, 40);
 }
 
 // A sky with a sun that is half a degree wide, a pool of glass, a mirror and trees.
 void drawNoon() {
-  const float colors[] = {40000, 39000, 36000, .3f, .5f, .9f, .8f, .8f, .7f}, angle[] = {.0046f, 1.4f};
+  const float colors[] = {40000, 39000, 36000, .3f, .5f, .9f, .8f, .8f, .7f},
+              angle[] = {.0046f, 1.4f};
   sky(3, colors, angle, -35, .7f);
   floorAt(-.5, paint(.4f, .35f, .3f), 20);
   put(box(shaderOf("Glass"), .8, .15, .8), .6, -.34, .3, 20);
   put(box(shaderOf("Mirror"), .02, .6, .6), -1.2, .1, 0, 30);
-  const RTid trunk = box(paint(.3f, .25f, .2f), .05, .6, .05), crown = ball(paint(.1f, .3f, .1f), .3f);
+  const RTid trunk = box(paint(.3f, .25f, .2f), .05, .6, .05),
+             crown = ball(paint(.1f, .3f, .1f), .3f);
   for (unsigned i = 0; i < 5; i++) {
     const double x = 3 * chance(i, 0) - 1.5, z = -2 * chance(i, 1);
     put(trunk, x, .1, z, 0);
@@ -147,14 +151,22 @@ void drawRing() {
 
 const std::vector<Scenario>& judgingScenes() {
   static const std::vector<Scenario> table = {
-      {"bulb", "a lamp of a ten-thousandth, a ball of glass", RT_TRANSPORT_PATH, 64, 65536, 0, .1, "", drawBulb},
-      {"plates", "rough metal and lamps of four sizes", RT_TRANSPORT_PATH, 64, 32768, 0, .3, "", drawPlates},
-      {"noon", "a sun of half a degree, glass, a mirror", RT_TRANSPORT_PATH, 64, 65536, 0, .1, "light is rare", drawNoon},
-      {"absorbing", "rough glass that absorbs, fog", RT_TRANSPORT_PATH, 64, 32768, 0, .1, "", drawAbsorbing},
-      {"twigs", "twigs and bulbs through a lens", RT_TRANSPORT_PATH, 64, 32768, 0, .1, "", drawTwigs},
-      {"passage", "a passage with three bends", RT_TRANSPORT_PATH, 64, 65536, 0, .1, "", drawPassage},
-      {"keyhole", "a room lit through a hole", RT_TRANSPORT_PATH, 64, 65536, 0, .1, "", drawKeyhole},
-      {"ring", "a ring of metal, its caustic", RT_TRANSPORT_PATH, 64, 65536, 0, .1, "light is rare", drawRing},
+      {"bulb", "a lamp of a ten-thousandth, a ball of glass", RT_TRANSPORT_PATH, 64, 65536, 0, .1,
+       "", drawBulb},
+      {"plates", "rough metal and lamps of four sizes", RT_TRANSPORT_PATH, 64, 32768, 0, .3, "",
+       drawPlates},
+      {"noon", "a sun of half a degree, glass, a mirror", RT_TRANSPORT_PATH, 64, 65536, 0, .1,
+       "light is rare", drawNoon},
+      {"absorbing", "rough glass that absorbs, fog", RT_TRANSPORT_PATH, 64, 32768, 0, .1, "",
+       drawAbsorbing},
+      {"twigs", "twigs and bulbs through a lens", RT_TRANSPORT_PATH, 64, 32768, 0, .1, "",
+       drawTwigs},
+      {"passage", "a passage with three bends", RT_TRANSPORT_PATH, 64, 65536, 0, .1, "",
+       drawPassage},
+      {"keyhole", "a room lit through a hole", RT_TRANSPORT_PATH, 64, 65536, 0, .1, "",
+       drawKeyhole},
+      {"ring", "a ring of metal, its caustic", RT_TRANSPORT_PATH, 64, 65536, 0, .1, "light is rare",
+       drawRing},
   };
   return table;
 }

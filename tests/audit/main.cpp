@@ -1,6 +1,7 @@
-// main.cpp: `audit [SEEDS [EDGE [NAME]]]`: do the error bars hold? For each scene with 64 and with 512 samples: the share of
-// pixels that are trusted, the coverage of their 95 % intervals with its own interval, its 5th percentile over tiles, and how
-// many pictures were off by errorMean +- errorMeanInterval. Then which promises hold. Exit code 1 where one does not.
+// main.cpp: `audit [SEEDS [EDGE [NAME]]]`: do the error bars hold? For each scene with 64 and with
+// 512 samples: the share of pixels that are trusted, the coverage of their 95 % intervals with its
+// own interval, its 5th percentile over tiles, and how many pictures were off by errorMean +-
+// errorMeanInterval. Then which promises hold. Exit code 1 where one does not.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -21,13 +22,16 @@ struct Held { // of a promise: how many scenes
     if (!good) not_ += (not_.empty() ? "" : ", ") + name;
   }
 };
-Held coverage{"of the trusted intervals 93 to 97 % hold", 0, 0, {}}, tiles{"in 95 % of the tiles at least 90 % do", 0, 0, {}},
+Held coverage{"of the trusted intervals 93 to 97 % hold", 0, 0, {}},
+    tiles{"in 95 % of the tiles at least 90 % do", 0, 0, {}},
     exact{"of the pixels called exact one in a thousand is not", 0, 0, {}},
     whole{"the picture is off by errorMean +- errorMeanInterval in 90 % of the pictures", 0, 0, {}},
     safe{"it is off by at most their sum in 95 % of the pictures", 0, 0, {}};
 
 // Share of so many is at least p, or less by chance (three standard errors).
-bool atLeast(double share, double p, double count) { return share + 3 * std::sqrt(p * (1 - p) / count) >= p; }
+bool atLeast(double share, double p, double count) {
+  return share + 3 * std::sqrt(p * (1 - p) / count) >= p;
+}
 
 void print(const audit::Scenario& s, const char* use, int samples, const audit::Coverage& c) {
   std::string wrong;
@@ -38,22 +42,25 @@ void print(const audit::Scenario& s, const char* use, int samples, const audit::
   };
   const double shots = double(c.shots);
   if (c.intervals() > 0) {
-    judge(coverage, c.share() + c.shareInterval() >= .93 && c.share() - c.shareInterval() <= .97, "coverage");
+    judge(coverage, c.share() + c.shareInterval() >= .93 && c.share() - c.shareInterval() <= .97,
+          "coverage");
     judge(tiles, c.worstTiles >= .90, "tiles");
   }
   judge(exact, double(c.exact - c.exactHeld) <= double(c.exact) / 1000, "exact");
   judge(whole, atLeast(c.promiseShare(), .90, shots), "mean error");
   judge(safe, atLeast(double(c.promiseHeld + c.promiseBelow) / shots, .95, shots), "unsafe");
-  std::printf(
-      "%-10s %-8s %5d %8.1f%% %6.1f%% %5llu  %.4f +- %.4f  %.3f  %.4f  %.5f  %.5f +- %.5f  %.3f  %+.5f +- %.5f  %.3f %s\n",
-      s.name.c_str(), use, samples, 100 - 100 * c.trustedShare(), 100 * double(c.exact) / double(c.pixels),
-      static_cast<unsigned long long>(c.exact - c.exactHeld), c.share(), c.shareInterval(), c.worstTiles,
-      double(c.held) / double(c.pixels), c.meanError, c.promised, c.promisedInterval, c.promiseShare(), c.bias, c.biasInterval,
-      c.cost, wrong.c_str());
+  std::printf("%-10s %-8s %5d %8.1f%% %6.1f%% %5llu  %.4f +- %.4f  %.3f  %.4f  %.5f  %.5f +- %.5f  "
+              "%.3f  %+.5f +- %.5f  %.3f %s\n",
+              s.name.c_str(), use, samples, 100 - 100 * c.trustedShare(),
+              100 * double(c.exact) / double(c.pixels),
+              static_cast<unsigned long long>(c.exact - c.exactHeld), c.share(), c.shareInterval(),
+              c.worstTiles, double(c.held) / double(c.pixels), c.meanError, c.promised,
+              c.promisedInterval, c.promiseShare(), c.bias, c.biasInterval, c.cost, wrong.c_str());
   std::fflush(stdout);
 }
 
-bool run(const std::vector<audit::Scenario>& scenes, const char* use, int seeds, int edge, const std::string& only) {
+bool run(const std::vector<audit::Scenario>& scenes, const char* use, int seeds, int edge,
+         const std::string& only) {
   for (const audit::Scenario& s : scenes) {
     if (!only.empty() && s.name != only && only != use) continue;
     RTcontext context = rtNewContext(nullptr);
@@ -77,14 +84,17 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "usage: audit [SEEDS [EDGE [NAME|training|judging]]]\n");
     return 2;
   }
-  std::printf("%-10s %-8s %5s %9s %7s %5s  %-16s  %-5s  %-6s  %-7s  %-18s  %-5s  %-20s  %s\n", "scene", "use", "spp", "untrusted",
-              "exact", "wrong", "coverage", "tiles", "of all", "off by", "said", "in it", "bias", "cost");
-  if (!run(audit::firstScenes(), "training", seeds, edge, only) || !run(audit::trainingScenes(), "training", seeds, edge, only) ||
+  std::printf("%-10s %-8s %5s %9s %7s %5s  %-16s  %-5s  %-6s  %-7s  %-18s  %-5s  %-20s  %s\n",
+              "scene", "use", "spp", "untrusted", "exact", "wrong", "coverage", "tiles", "of all",
+              "off by", "said", "in it", "bias", "cost");
+  if (!run(audit::firstScenes(), "training", seeds, edge, only) ||
+      !run(audit::trainingScenes(), "training", seeds, edge, only) ||
       !run(audit::judgingScenes(), "judging", seeds, edge, only))
     return 1;
   bool good = true;
   for (const Held& h : {coverage, tiles, exact, whole, safe}) {
-    std::printf("# %d of %d: %s%s%s\n", h.held, h.all, h.promise, h.not_.empty() ? "" : "; not at ", h.not_.c_str());
+    std::printf("# %d of %d: %s%s%s\n", h.held, h.all, h.promise, h.not_.empty() ? "" : "; not at ",
+                h.not_.c_str());
     good &= h.held == h.all;
   }
   return good ? 0 : 1;

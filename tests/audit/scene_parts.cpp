@@ -1,11 +1,12 @@
-// scene_parts.cpp: see scene_parts.h.
 #include "audit/scene_parts.h"
 
 #include <cstdint>
 
 namespace audit {
 
-RTid shaderOf(const char* shaderClass) { return rtNewShader(rtNewShaderClass(shaderClass, nullptr)); }
+RTid shaderOf(const char* shaderClass) {
+  return rtNewShader(rtNewShaderClass(shaderClass, nullptr));
+}
 
 void colored(RTid shader, const char* parameter, float r, float g, float b) {
   rtBindShader(shader);

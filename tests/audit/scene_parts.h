@@ -1,5 +1,5 @@
-// scene_parts.h: what the scenes of the audit are made of, through the public C API into the current context. Matrices are the
-// current one's. One thread.
+// scene_parts.h: what the scenes of the audit are made of, through the public C API into the
+// current context. Matrices are the current one's. One thread.
 #pragma once
 
 #include "openrt/openrt.h"
@@ -18,7 +18,8 @@ RTid ball(RTid shader, float radius);
 void put(RTid object, double x, double y, double z, double turn);          // turn: degrees about +y
 void lampAbove(double x, double y, double z, double half, float radiance); // faces -y
 void floorAt(double y, RTid shader, double half);                          // faces +y
-void roomOf(RTid floor, RTid ceiling, RTid left, RTid right, RTid back);   // of half-width 1 about the origin, open to +z
+void roomOf(RTid floor, RTid ceiling, RTid left, RTid right,
+            RTid back); // of half-width 1 about the origin, open to +z
 void sky(int colors, const float* color, const float* angle, double tilt,
          float turnOfAxis); // tilt: degrees about (1, 0, turnOfAxis)
 

@@ -1,5 +1,6 @@
-// scenes.cpp: the first scenes of the audit: each kind of difficulty once, small, through the public C API. They may set limits,
-// as those of training_scenes.cpp may, and those of judging_scenes.cpp may not.
+// scenes.cpp: the first scenes of the audit: each kind of difficulty once, small, through the
+// public C API. They may set limits, as those of training_scenes.cpp may, and those of
+// judging_scenes.cpp may not.
 #include <cmath>
 
 #include "audit/coverage.h"
@@ -81,9 +82,11 @@ void drawRoom() {
   rtPopMatrix();
 }
 
-// The Cornell box in its usual proportions: red and green walls, two white boxes, a lamp in the ceiling.
+// The Cornell box in its usual proportions: red and green walls, two white boxes, a lamp in the
+// ceiling.
 void drawCornell() {
-  const RTid white = paint(.73f, .73f, .73f), red = paint(.65f, .05f, .05f), green = paint(.12f, .45f, .15f);
+  const RTid white = paint(.73f, .73f, .73f), red = paint(.65f, .05f, .05f),
+             green = paint(.12f, .45f, .15f);
   roomOf(white, white, red, green, white);
   lampAbove(0, .998, 0, .24, 17);
   put(box(white, .3, .6, .3), -.33, -.4, -.3, 17);
@@ -109,10 +112,12 @@ void drawClutter() {
   rtBindShader(0);
   rtUseEnvironment(env);
   floorAt(0, paint(.5f, .45f, .4f), 30);
-  const RTid cube = box(paint(.7f, .3f, .1f), .12, .25, .12), marble = ball(paint(.2f, .3f, .7f), .17f);
+  const RTid cube = box(paint(.7f, .3f, .1f), .12, .25, .12),
+             marble = ball(paint(.2f, .3f, .7f), .17f);
   for (int i = 0; i < 100; i++) {
     const double x = (i % 10 - 4.5) * .5, z = (i / 10 - 4.5) * .5;
-    put(i * 7 % 3 ? cube : marble, x + .1 * std::sin(i * 1.7), i * 7 % 3 ? .25 : .17, z + .1 * std::cos(i * 2.3), 37. * i);
+    put(i * 7 % 3 ? cube : marble, x + .1 * std::sin(i * 1.7), i * 7 % 3 ? .25 : .17,
+        z + .1 * std::cos(i * 2.3), 37. * i);
   }
   lampAbove(-2, 2.5, 1, .5, 6);
   eyeAt(2.5, 2.2, 3.5, 40);
@@ -182,7 +187,8 @@ void drawMirrors() {
   put(box(rtNewShader(rtNewShaderClass("Glass", nullptr)), .5, .5, .03), -.3, -.3, .6, 20);
 }
 
-// A small lamp behind a pane: lamps are not aimed at through glass, so that one path in four hundred meets it.
+// A small lamp behind a pane: lamps are not aimed at through glass, so that one path in four
+// hundred meets it.
 void drawPane() {
   square(diffuse(0, .8f), 10);
   const RTid glass = rtNewShader(rtNewShaderClass("Glass", nullptr));
@@ -202,19 +208,30 @@ void drawPane() {
 constexpr const char* edgesAlone = "pixels beside an edge that show none are not known to be exact";
 constexpr const char* byChance = "light by way of glass or mirrors is met by chance";
 const std::vector<Scenario> table = {
-    {"edges", "stripes seen directly: the area's average alone", RT_TRANSPORT_DIRECT, 64, 16384, 0, .3, edgesAlone, drawEdges},
-    {"furnace", "a closed box that glows, closed form", RT_TRANSPORT_PATH, 256, 0, 1, .9, "", drawFurnace},
+    {"edges", "stripes seen directly: the area's average alone", RT_TRANSPORT_DIRECT, 64, 16384, 0,
+     .3, edgesAlone, drawEdges},
+    {"furnace", "a closed box that glows, closed form", RT_TRANSPORT_PATH, 256, 0, 1, .9, "",
+     drawFurnace},
     {"lamp", "a floor under a large lamp", RT_TRANSPORT_PATH, 64, 8192, 0, .9, "", drawLamp},
-    {"small lamp", "a lamp that few directions meet", RT_TRANSPORT_PATH, 64, 8192, 0, .9, "", drawSmallLamp},
-    {"tiny lamp", "a lamp that one direction in a thousand meets", RT_TRANSPORT_PATH, 64, 8192, 0, .8, "", drawTinyLamp},
-    {"room", "light between walls, edges, soft shadows", RT_TRANSPORT_PATH, 512, 16384, 0, .9, "", drawRoom},
-    {"cornell", "the Cornell box with its two boxes", RT_TRANSPORT_PATH, 256, 16384, 0, .85, "", drawCornell},
-    {"glass ball", "a caustic under a glass ball", RT_TRANSPORT_PATH, 256, 16384, 0, .5, byChance, drawGlassBall},
-    {"clutter", "a hundred instances under a sky and a lamp", RT_TRANSPORT_PATH, 128, 16384, 0, .9, "", drawClutter},
-    {"texture", "a chequered floor seen flat", RT_TRANSPORT_PATH, 128, 8192, 0, .75, edgesAlone, drawTexture},
-    {"lamps", "fifty small lamps, posts between them", RT_TRANSPORT_PATH, 128, 16384, 0, .8, "", drawManyLamps},
+    {"small lamp", "a lamp that few directions meet", RT_TRANSPORT_PATH, 64, 8192, 0, .9, "",
+     drawSmallLamp},
+    {"tiny lamp", "a lamp that one direction in a thousand meets", RT_TRANSPORT_PATH, 64, 8192, 0,
+     .8, "", drawTinyLamp},
+    {"room", "light between walls, edges, soft shadows", RT_TRANSPORT_PATH, 512, 16384, 0, .9, "",
+     drawRoom},
+    {"cornell", "the Cornell box with its two boxes", RT_TRANSPORT_PATH, 256, 16384, 0, .85, "",
+     drawCornell},
+    {"glass ball", "a caustic under a glass ball", RT_TRANSPORT_PATH, 256, 16384, 0, .5, byChance,
+     drawGlassBall},
+    {"clutter", "a hundred instances under a sky and a lamp", RT_TRANSPORT_PATH, 128, 16384, 0, .9,
+     "", drawClutter},
+    {"texture", "a chequered floor seen flat", RT_TRANSPORT_PATH, 128, 8192, 0, .75, edgesAlone,
+     drawTexture},
+    {"lamps", "fifty small lamps, posts between them", RT_TRANSPORT_PATH, 128, 16384, 0, .8, "",
+     drawManyLamps},
     {"sun", "a dim sky with a small sun", RT_TRANSPORT_PATH, 128, 16384, 0, .9, "", drawSun},
-    {"mirrors", "the Cornell box with a mirror ball and a pane", RT_TRANSPORT_PATH, 256, 16384, 0, .5, byChance, drawMirrors},
+    {"mirrors", "the Cornell box with a mirror ball and a pane", RT_TRANSPORT_PATH, 256, 16384, 0,
+     .5, byChance, drawMirrors},
     {"pane", "a small lamp behind glass", RT_TRANSPORT_PATH, 64, 65536, 0, .2, byChance, drawPane},
 };
 

@@ -1,5 +1,6 @@
-// training_scenes.cpp: hard scenes of the audit that may set limits: the rules of libopenrt/render/film/error.cpp and error_map.cpp
-// were made while looking at these, and at those of scenes.cpp. Those of judging_scenes.cpp were not.
+// training_scenes.cpp: hard scenes of the audit that may set limits: the rules of
+// libopenrt/render/film/error.cpp and error_map.cpp were made while looking at these, and at those
+// of scenes.cpp. Those of judging_scenes.cpp were not.
 #include <cmath>
 
 #include "audit/coverage.h"
@@ -8,7 +9,8 @@
 namespace audit {
 namespace {
 
-// A small lamp behind a thick ball of glass that lights a floor: few paths meet it, and the floor has little other light.
+// A small lamp behind a thick ball of glass that lights a floor: few paths meet it, and the floor
+// has little other light.
 void drawCaustic() {
   floorAt(-1, paint(.5f, .5f, .5f), 5);
   put(ball(shaderOf("Glass"), .6f), 0, 0, 0, 0);
@@ -17,7 +19,8 @@ void drawCaustic() {
   eyeAt(2.2, 1.8, 2.6, 42);
 }
 
-// A lamp one thousandth above a floor: of what is seen the near end is lit a thousand million times as much as the far one.
+// A lamp one thousandth above a floor: of what is seen the near end is lit a thousand million times
+// as much as the far one.
 void drawDecades() {
   square(diffuse(0, .6f), 10);
   rtPushMatrix();
@@ -49,7 +52,8 @@ void drawFiveHundred() {
   const RTid post = box(paint(.5f, .4f, .3f), .1, .4, .1);
   for (unsigned i = 0; i < 500; i++) {
     const double strength = std::exp(6 * chance(i, 3));
-    lampAbove(6 * chance(i, 0) - 3, .6 + 1.2 * chance(i, 1), 6 * chance(i, 2) - 3, .015, float(strength));
+    lampAbove(6 * chance(i, 0) - 3, .6 + 1.2 * chance(i, 1), 6 * chance(i, 2) - 3, .015,
+              float(strength));
     if (i % 25 == 0) put(post, 4 * chance(i, 4) - 2, .4, 4 * chance(i, 5) - 2, 11. * i);
   }
   eyeAt(1, 2, 4.2, 45);
@@ -59,7 +63,8 @@ void drawFiveHundred() {
 void drawFocus() {
   for (unsigned i = 0; i < 12; i++) {
     const RTid shader = i % 3 == 0 ? diffuse(float(1 + i), 0) : paint(.8f, .3f, .2f);
-    put(ball(shader, i % 3 == 0 ? .05f : .3f), 3 * chance(i, 0) - 1.5, 1.6 * chance(i, 1) - .8, 4 - 9 * chance(i, 2), 0);
+    put(ball(shader, i % 3 == 0 ? .05f : .3f), 3 * chance(i, 0) - 1.5, 1.6 * chance(i, 1) - .8,
+        4 - 9 * chance(i, 2), 0);
   }
   lampAbove(0, 3, 1, .6, 8);
   lensAt(0, 0, 6, 30, .25f, 6);
@@ -94,7 +99,8 @@ void drawSlit() {
   rtRotated(180, 0, 1, 0);
   square(white, 1);
   rtPopMatrix();
-  const RTid lid = box(white, .96, .02, 1.4); // hides the lamp; light comes by way of the ceiling and the side
+  const RTid lid =
+      box(white, .96, .02, 1.4); // hides the lamp; light comes by way of the ceiling and the side
   put(lid, -.1, .6, 0, 0);
   lampAbove(-.3, .9, 0, .3, 30);
   eyeAt(.2, -.2, 1.3, 70);
@@ -104,13 +110,20 @@ void drawSlit() {
 
 const std::vector<Scenario>& trainingScenes() {
   static const std::vector<Scenario> table = {
-      {"caustic", "a small lamp behind a ball of glass", RT_TRANSPORT_PATH, 64, 65536, 0, .1, "light is rare", drawCaustic},
-      {"decades", "a floor lit over nine decades", RT_TRANSPORT_PATH, 64, 16384, 0, .5, "", drawDecades},
-      {"leaves", "layers of small leaves before the sky", RT_TRANSPORT_PATH, 64, 16384, 0, .3, "", drawLeaves},
-      {"500 lamps", "five hundred lamps of different strength", RT_TRANSPORT_PATH, 64, 32768, 0, .3, "", drawFiveHundred},
-      {"focus", "depth of field: balls before and behind", RT_TRANSPORT_PATH, 64, 16384, 0, .1, "", drawFocus},
-      {"dispersion", "stripes through a wedge of glass", RT_TRANSPORT_PATH, 64, 16384, 0, .1, "", drawDispersion},
-      {"slit", "a room lit by way of a slit", RT_TRANSPORT_PATH, 64, 65536, 0, .1, "light is rare", drawSlit},
+      {"caustic", "a small lamp behind a ball of glass", RT_TRANSPORT_PATH, 64, 65536, 0, .1,
+       "light is rare", drawCaustic},
+      {"decades", "a floor lit over nine decades", RT_TRANSPORT_PATH, 64, 16384, 0, .5, "",
+       drawDecades},
+      {"leaves", "layers of small leaves before the sky", RT_TRANSPORT_PATH, 64, 16384, 0, .3, "",
+       drawLeaves},
+      {"500 lamps", "five hundred lamps of different strength", RT_TRANSPORT_PATH, 64, 32768, 0, .3,
+       "", drawFiveHundred},
+      {"focus", "depth of field: balls before and behind", RT_TRANSPORT_PATH, 64, 16384, 0, .1, "",
+       drawFocus},
+      {"dispersion", "stripes through a wedge of glass", RT_TRANSPORT_PATH, 64, 16384, 0, .1, "",
+       drawDispersion},
+      {"slit", "a room lit by way of a slit", RT_TRANSPORT_PATH, 64, 65536, 0, .1, "light is rare",
+       drawSlit},
   };
   return table;
 }

@@ -1,6 +1,6 @@
-// cluster_model.h: what the simulator of a cluster (cluster_sim.cpp) is made of besides the real master: links with a bandwidth
-// and a latency, machines that sleep instead of rendering, a picture whose places cost different amounts. Time is virtual; that
-// of the master alone is measured.
+// cluster_model.h: what the simulator of a cluster (cluster_sim.cpp) is made of besides the real
+// master: links with a bandwidth and a latency, machines that sleep instead of rendering, a picture
+// whose places cost different amounts. Time is virtual; that of the master alone is measured.
 #pragma once
 
 #include <algorithm>
@@ -29,7 +29,8 @@ using namespace openrt::cluster;
 // What a sample costs where, relative to the mean of the picture: cells, row by row.
 class CostMap {
  public:
-  // A file: width, height, then the cells' seconds (any unit), as numbers of text; lines that begin with # are comments.
+  // A file: width, height, then the cells' seconds (any unit), as numbers of text; lines that begin
+  // with # are comments.
   explicit CostMap(const std::string& file) {
     std::ifstream in(file);
     std::string line, all;
@@ -39,7 +40,9 @@ class CostMap {
     const auto number = [&] {
       char* end = nullptr;
       const double x = std::strtod(at, &end);
-      if (end == at || !(x >= 0)) throw std::runtime_error(file + ": width, height and their product of numbers are expected");
+      if (end == at || !(x >= 0))
+        throw std::runtime_error(file +
+                                 ": width, height and their product of numbers are expected");
       at = end;
       return x;
     };
@@ -49,16 +52,18 @@ class CostMap {
     for (double& c : cells_) c = number();
     normalise();
   }
-  // A third of the picture is background at a tenth of the cost; the rest is log-normal (sigma 0.5), with eight hot spots of ten
-  // times the cost, a fortieth of the picture's width in radius.
+  // A third of the picture is background at a tenth of the cost; the rest is log-normal (sigma
+  // 0.5), with eight hot spots of ten times the cost, a fortieth of the picture's width in radius.
   CostMap() : width_(120), height_(68), cells_(size_t(width_) * height_) {
     std::mt19937 random(7);
     std::vector<std::pair<double, double>> spots;
     const auto uniform = [&] { return double(random()) / 4294967296.0; };
-    for (int i = 0; i < 8; i++) spots.push_back({width_ * uniform(), height_ * (0.35 + 0.6 * uniform())});
+    for (int i = 0; i < 8; i++)
+      spots.push_back({width_ * uniform(), height_ * (0.35 + 0.6 * uniform())});
     for (uint32_t y = 0; y < height_; y++)
       for (uint32_t x = 0; x < width_; x++) {
-        const double normal = std::sqrt(-2 * std::log(uniform() + 1e-12)) * std::cos(6.283185307 * uniform());
+        const double normal =
+            std::sqrt(-2 * std::log(uniform() + 1e-12)) * std::cos(6.283185307 * uniform());
         double cost = y * 3 < height_ ? 0.1 : std::exp(0.5 * normal);
         for (const auto& [sx, sy] : spots) {
           const double r = std::hypot(x - sx, y - sy) / (width_ / 40.0);
@@ -76,7 +81,8 @@ class CostMap {
       for (int i = 0; i < steps; i++) {
         const double x = (tile.x0 + (i + 0.5) / steps * (tile.x1 - tile.x0)) / width;
         const double y = (tile.y0 + (j + 0.5) / steps * (tile.y1 - tile.y0)) / height;
-        sum += cells_[size_t(std::min(y * height_, height_ - 1.0)) * width_ + size_t(std::min(x * width_, width_ - 1.0))];
+        sum += cells_[size_t(std::min(y * height_, height_ - 1.0)) * width_ +
+                      size_t(std::min(x * width_, width_ - 1.0))];
       }
     return sum / (steps * steps);
   }
@@ -103,7 +109,9 @@ struct Server {
 
 class Events {
  public:
-  void at(double when, std::function<void()> what) { queue_.push({when, next_++, std::move(what)}); }
+  void at(double when, std::function<void()> what) {
+    queue_.push({when, next_++, std::move(what)});
+  }
   bool empty() const { return queue_.empty(); }
   double now = 0;
   void step() {
@@ -118,13 +126,16 @@ class Events {
     double when;
     uint64_t number;
     std::function<void()> what;
-    bool operator<(const Event& e) const { return when != e.when ? when > e.when : number > e.number; }
+    bool operator<(const Event& e) const {
+      return when != e.when ? when > e.when : number > e.number;
+    }
   };
   std::priority_queue<Event> queue_;
   uint64_t next_ = 0;
 };
 
-// Results as bytes: sums of random pixels, encoded as a worker does; the same for all tiles of a size, but for their leases.
+// Results as bytes: sums of random pixels, encoded as a worker does; the same for all tiles of a
+// size, but for their leases.
 class Results {
  public:
   explicit Results(const edit::FrameSettingsT& frame) : frame_(frame) {}

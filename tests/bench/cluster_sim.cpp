@@ -1,6 +1,7 @@
-// cluster_sim.cpp: bench_cluster_sim drives the real master (scheduler, protocol, decoding, merging) with up to 4,096 workers
-// that only sleep, over modelled links, and prints how long a frame takes and what limits it (docs/cluster-scaling.md). The
-// network's and the workers' time is virtual; the master's own is what it takes here, on one thread, and is added to the virtual
+// cluster_sim.cpp: bench_cluster_sim drives the real master (scheduler, protocol, decoding,
+// merging) with up to 4,096 workers that only sleep, over modelled links, and prints how long a
+// frame takes and what limits it (docs/cluster-scaling.md). The network's and the workers' time is
+// virtual; the master's own is what it takes here, on one thread, and is added to the virtual
 // clock.
 #include <cstdlib>
 #include <map>
@@ -12,25 +13,32 @@ namespace {
 using namespace sim;
 
 std::string limitOf(const Simulation::Outcome& o) {
-  const std::pair<double, const char*> used[] = {
-      {o.master, "master's thread"}, {o.merging, "merging"}, {o.network, "network"}, {o.socket, "socket thread"}};
+  const std::pair<double, const char*> used[] = {{o.master, "master's thread"},
+                                                 {o.merging, "merging"},
+                                                 {o.network, "network"},
+                                                 {o.socket, "socket thread"}};
   const auto most = *std::max_element(std::begin(used), std::end(used));
   if (o.efficiency >= 0.95) return "workers";
   if (most.first >= 0.8) return most.second;
   return o.end > o.gaps ? "end of frame" : std::string("bursts, ") + most.second;
 }
 
-// Shares of the workers' time: what they do (efficiency), wait for at a frame's beginning, in it and at its end, do in vain.
+// Shares of the workers' time: what they do (efficiency), wait for at a frame's beginning, in it
+// and at its end, do in vain.
 void print(const Options& o) {
   const CostMap costs = o.costs.empty() ? CostMap() : CostMap(o.costs);
   std::printf(
-      "%ux%u, %u samples, %s, %g s of one thread a frame; workers of %u threads; master %g Gbit/s, links %g Gbit/s, %g ms; "
+      "%ux%u, %u samples, %s, %g s of one thread a frame; workers of %u threads; master %g Gbit/s, "
+      "links %g Gbit/s, %g ms; "
       "%s\n",
-      o.width, o.height, o.samples, o.tile ? ("tiles of " + std::to_string(o.tile) + " pixels").c_str() : "ordinary tiles",
+      o.width, o.height, o.samples,
+      o.tile ? ("tiles of " + std::to_string(o.tile) + " pixels").c_str() : "ordinary tiles",
       o.work, o.threads, o.network * 1e-9, o.link * 1e-9, o.latency * 1e3,
       o.ideal ? "the master takes no time"
-              : ("the master's time is measured, " + std::to_string(o.mergers) + " threads merge").c_str());
-  std::printf("| workers | first (ms) | frame (ms) | efficiency | begin | gaps | end | vain | jobs/s | mean job (ms) | again | "
+              : ("the master's time is measured, " + std::to_string(o.mergers) + " threads merge")
+                    .c_str());
+  std::printf("| workers | first (ms) | frame (ms) | efficiency | begin | gaps | end | vain | "
+              "jobs/s | mean job (ms) | again | "
               "in (MB/s) | "
               "out (MB/s) | master | merging | network | socket | limit |\n|");
   for (int i = 0; i < 17; i++) std::printf(" ---: |");
@@ -38,12 +46,13 @@ void print(const Options& o) {
   for (const uint32_t n : o.workers) {
     Simulation simulation(o, costs, n);
     const Simulation::Outcome r = simulation.run();
-    std::printf("| %u | %.1f | %.1f | %.1f %% | %.1f %% | %.1f %% | %.1f %% | %.1f %% |", n, r.first * 1e3, r.frame * 1e3,
-                r.efficiency * 100, r.begin * 100, r.gaps * 100, r.end * 100,
-                (1 - r.efficiency - r.begin - r.gaps - r.end) * 100);
-    std::printf(" %.0f | %.2f | %llu | %.1f | %.2f | %.0f %% | %.0f %% | %.0f %% | %.0f %% | %s |\n", r.jobs, r.perJob * 1e3,
-                static_cast<unsigned long long>(r.again), r.in * 1e-6, r.out * 1e-6, r.master * 100, r.merging * 100,
-                r.network * 100, r.socket * 100, limitOf(r).c_str());
+    std::printf("| %u | %.1f | %.1f | %.1f %% | %.1f %% | %.1f %% | %.1f %% | %.1f %% |", n,
+                r.first * 1e3, r.frame * 1e3, r.efficiency * 100, r.begin * 100, r.gaps * 100,
+                r.end * 100, (1 - r.efficiency - r.begin - r.gaps - r.end) * 100);
+    std::printf(
+        " %.0f | %.2f | %llu | %.1f | %.2f | %.0f %% | %.0f %% | %.0f %% | %.0f %% | %s |\n",
+        r.jobs, r.perJob * 1e3, static_cast<unsigned long long>(r.again), r.in * 1e-6, r.out * 1e-6,
+        r.master * 100, r.merging * 100, r.network * 100, r.socket * 100, limitOf(r).c_str());
     std::fflush(stdout);
   }
 }
@@ -65,7 +74,8 @@ bool set(Options& o, const std::string& name, const std::string& value) {
       {"workers",
        [&] {
          o.workers.clear();
-         for (size_t at = 0; at < value.size(); at = value.find(',', at) == value.npos ? value.size() : value.find(',', at) + 1)
+         for (size_t at = 0; at < value.size();
+              at = value.find(',', at) == value.npos ? value.size() : value.find(',', at) + 1)
            o.workers.push_back(uint32_t(std::strtoul(value.c_str() + at, nullptr, 10)));
        }},
       {"threads", [&] { o.threads = uint32_t(std::stoul(value)); }},
@@ -114,7 +124,8 @@ int main(int argc, char** argv) {
     for (int i = 1; i < argc; i++) {
       const std::string argument = argv[i];
       const size_t equals = argument.find('=');
-      if (equals == argument.npos || !set(options, argument.substr(0, equals), argument.substr(equals + 1))) {
+      if (equals == argument.npos ||
+          !set(options, argument.substr(0, equals), argument.substr(equals + 1))) {
         std::fputs(usage, stderr);
         return 2;
       }

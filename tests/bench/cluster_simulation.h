@@ -1,5 +1,6 @@
-// cluster_simulation.h: a cluster of which the master is real and all else is a model (cluster_model.h): links, workers that
-// sleep, the threads that merge. Of bench_cluster_sim (cluster_sim.cpp); one thread's.
+// cluster_simulation.h: a cluster of which the master is real and all else is a model
+// (cluster_model.h): links, workers that sleep, the threads that merge. Of bench_cluster_sim
+// (cluster_sim.cpp); one thread's.
 #pragma once
 
 #include <time.h>
@@ -17,18 +18,21 @@ namespace sim {
 struct Options {
   std::vector<uint32_t> workers{1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096};
   uint32_t threads = 16, width = 1920, height = 1080, samples = 1024, tile = 0, frames = 3;
-  double work = 2048;                    // seconds of one thread for a frame
-  double network = 10e9;                 // bits a second, of the master
-  double link = 10e9;                    // of a worker
-  double latency = 50e-6;                // seconds, one way
-  double perMessage = 2e-6, perByte = 0; // seconds that the master's socket thread takes (--curve: encrypting, too)
-  double receive = 2.5e-6, send = 1e-6, copy = 5e-10, handOver = 5e-7; // of the master's thread: ZeroMQ's calls for a message,
-                                                                       // for a byte of it; a result that is given to others
-  uint32_t mergers = 4;   // threads of the master that unpack and merge results; 0: its thread does it
-  double prepare = 0;     // seconds for a scene
-  double noise = 0;       // what a job costs differs from the frame before: sigma of its logarithm
-  double slow = 0;        // share of workers that are four times slower
-  bool ideal = false;     // the master takes no time: what is lost is the schedule's
+  double work = 2048;     // seconds of one thread for a frame
+  double network = 10e9;  // bits a second, of the master
+  double link = 10e9;     // of a worker
+  double latency = 50e-6; // seconds, one way
+  double perMessage = 2e-6,
+         perByte = 0; // seconds that the master's socket thread takes (--curve: encrypting, too)
+  double receive = 2.5e-6, send = 1e-6, copy = 5e-10,
+         handOver = 5e-7; // of the master's thread: ZeroMQ's calls for a message,
+                          // for a byte of it; a result that is given to others
+  uint32_t mergers =
+      4;              // threads of the master that unpack and merge results; 0: its thread does it
+  double prepare = 0; // seconds for a scene
+  double noise = 0;   // what a job costs differs from the frame before: sigma of its logarithm
+  double slow = 0;    // share of workers that are four times slower
+  bool ideal = false; // the master takes no time: what is lost is the schedule's
   bool pipelined = false; // the next frame is begun with the last
   std::string costs;
   SchedulerOptions schedule;
@@ -54,7 +58,8 @@ class Simulation {
  public:
   Simulation(const Options& o, const CostMap& costs, uint32_t workers)
       : o_(o), settings_(settingsOf(o)), grid_(settings_), results_(settings_), workers_(workers) {
-    for (uint32_t i = 0; i < grid_.count(); i++) cost_.push_back(costs.of(grid_.at(i), o.width, o.height));
+    for (uint32_t i = 0; i < grid_.count(); i++)
+      cost_.push_back(costs.of(grid_.at(i), o.width, o.height));
     double sum = 0;
     for (uint32_t i = 0; i < grid_.count(); i++) sum += cost_[i] * double(grid_.at(i).pixels());
     for (double& c : cost_) c *= o.work / sum / o.samples; // seconds of a pixel's sample
@@ -69,9 +74,12 @@ class Simulation {
           merge();
         });
       };
-    options.close = [](Peer, const std::string& why) { throw std::runtime_error("a worker was refused: " + why); };
+    options.close = [](Peer, const std::string& why) {
+      throw std::runtime_error("a worker was refused: " + why);
+    };
     master_ = std::make_unique<Master>(
-        options, [this](Peer peer, Frames&& frames) { return send(peer, std::move(frames)); }, nullptr);
+        options, [this](Peer peer, Frames&& frames) { return send(peer, std::move(frames)); },
+        nullptr);
     for (uint32_t i = 0; i < workers; i++) {
       workers_[i].speed = i < o.slow * workers ? 4 : 1;
       workers_[i].idle.resize(o.threads);
@@ -83,7 +91,8 @@ class Simulation {
   }
 
   struct Outcome {
-    double frame = 0, efficiency = 0, master = 0, merging = 0, network = 0, socket = 0, in = 0, out = 0, jobs = 0, perJob = 0;
+    double frame = 0, efficiency = 0, master = 0, merging = 0, network = 0, socket = 0, in = 0,
+           out = 0, jobs = 0, perJob = 0;
     double first = 0;                    // frame, of which nobody knew what it costs
     double begin = 0, gaps = 0, end = 0; // shares of the workers' time that nothing is done in
     uint64_t again = 0;
@@ -159,7 +168,8 @@ class Simulation {
   };
   using Call = std::function<void(double now)>;
 
-  // The first frame finds out what it costs; where frames overlap the next ones profit from that it takes long.
+  // The first frame finds out what it costs; where frames overlap the next ones profit from that it
+  // takes long.
   uint32_t unmeasured() const { return o_.pipelined ? 3 : 1; }
 
   static edit::FrameSettingsT settingsOf(const Options& o) {
@@ -181,7 +191,8 @@ class Simulation {
     return h;
   }
   Counts counts() const {
-    return {masterCpu_, mergingCpu_, socket_.busy, bytesIn_, bytesOut_, work_, jobs_, master_->totals().reissued};
+    return {masterCpu_, mergingCpu_, socket_.busy, bytesIn_,
+            bytesOut_,  work_,       jobs_,        master_->totals().reissued};
   }
 
   void commit() {
@@ -194,7 +205,8 @@ class Simulation {
     atMaster([this, epoch, commit](double now) { master_->commit(epoch, commit, true, now); });
   }
 
-  // The master's thread: calls wait for it; it takes what has come, and then hands out, as the backend's thread does.
+  // The master's thread: calls wait for it; it takes what has come, and then hands out, as the
+  // backend's thread does.
   void atMaster(Call call) {
     inbox_.push_back(std::move(call));
     if (!awake_) wakeMaster(events_.now);
@@ -228,7 +240,8 @@ class Simulation {
     else if (std::isfinite(next))
       sleep(std::max(next, masterFree_));
   }
-  // The threads that merge: what they do is done here at once, and takes them the time that it takes here.
+  // The threads that merge: what they do is done here at once, and takes them the time that it
+  // takes here.
   void merge() {
     while (mergersBusy_ < o_.mergers && !merging_.empty()) {
       const Merging next = std::move(merging_.front());
@@ -279,11 +292,13 @@ class Simulation {
     const double when = clock(), begin = cpuSeconds() - clockCost_;
     const double bytes = double(sizeOf(frames));
     bytesOut_ += bytes;
-    const double sent = nicOut_.take(socket_.take(when, o_.perMessage + bytes * o_.perByte), bytes * 8 / o_.network);
+    const double sent = nicOut_.take(socket_.take(when, o_.perMessage + bytes * o_.perByte),
+                                     bytes * 8 / o_.network);
     Machine& m = workers_[peer - 1];
     const double there = m.in.take(sent + o_.latency, bytes * 8 / o_.link);
-    events_.at(there,
-               [this, peer, frames = std::make_shared<Frames>(std::move(frames))] { arrived(peer - 1, std::move(*frames)); });
+    events_.at(there, [this, peer, frames = std::make_shared<Frames>(std::move(frames))] {
+      arrived(peer - 1, std::move(*frames));
+    });
     paused_ += cpuSeconds() - begin;
     return true;
   }
@@ -293,14 +308,16 @@ class Simulation {
     events_.at(left + o_.latency, [this, size, call = std::move(call)] {
       const double here = nicIn_.take(events_.now, size * 8 / o_.network);
       bytesIn_ += size;
-      events_.at(socket_.take(here, o_.perMessage + size * o_.perByte), [this, call] { atMaster(call); });
+      events_.at(socket_.take(here, o_.perMessage + size * o_.perByte),
+                 [this, call] { atMaster(call); });
     });
   }
 
   void arrived(uint32_t w, Frames&& frames) {
     Machine& m = workers_[w];
     Message message;
-    if (const std::string wrong = decode(std::move(frames), message); !wrong.empty()) throw std::runtime_error(wrong);
+    if (const std::string wrong = decode(std::move(frames), message); !wrong.empty())
+      throw std::runtime_error(wrong);
     if (const auto* welcome = std::get_if<message::Welcome>(&message.body)) {
       m.session = welcome->session;
       joined_++;
@@ -309,12 +326,14 @@ class Simulation {
       reply(w, message::Need{scene->epoch, {}});
       if (scene->prepare) m.queue.push_back({{}, scene->epoch, true});
     }
-    if (const auto* prepare = std::get_if<message::Prepare>(&message.body)) m.queue.push_back({{}, prepare->epoch, true});
+    if (const auto* prepare = std::get_if<message::Prepare>(&message.body))
+      m.queue.push_back({{}, prepare->epoch, true});
     if (const auto* jobs = std::get_if<message::Jobs>(&message.body))
       for (const LeasedJob& job : jobs->jobs) m.queue.push_back({job, jobs->epoch, false});
     if (const auto* drop = std::get_if<message::Drop>(&message.body)) {
       m.dropped = std::max(m.dropped, drop->epoch);
-      std::erase_if(m.queue, [&](const Item& item) { return !item.scene && item.epoch <= drop->epoch; });
+      std::erase_if(m.queue,
+                    [&](const Item& item) { return !item.scene && item.epoch <= drop->epoch; });
       for (const auto& [number, running] : m.running)
         if (running.item.epoch <= drop->epoch) giveUp(w, number, running);
     }
@@ -348,15 +367,17 @@ class Simulation {
       }
       use(m, events_.now);
       const openrt::Job& job = item.job.job;
-      const double differs = o_.noise > 0 ? std::exp(o_.noise * normal_(random_) - o_.noise * o_.noise / 2) : 1;
-      const double seconds = cost_[job.number] * double(grid_.at(job.number).pixels()) * job.count * m.speed * differs;
+      const double differs =
+          o_.noise > 0 ? std::exp(o_.noise * normal_(random_) - o_.noise * o_.noise / 2) : 1;
+      const double seconds =
+          cost_[job.number] * double(grid_.at(job.number).pixels()) * job.count * m.speed * differs;
       const uint64_t number = ++lastRunning_;
       m.running[number] = {item, seconds, events_.now + seconds};
       events_.at(events_.now + seconds, [this, w, number] { finished(w, number); });
     }
   }
-  // A thread that has been idle gets something to do. When a frame ends in between: what is before is its end, what is behind is
-  // the beginning of the next one.
+  // A thread that has been idle gets something to do. When a frame ends in between: what is before
+  // is its end, what is behind is the beginning of the next one.
   void use(Machine& m, double now) {
     const double since = std::max(m.idle.back(), idleFrom_);
     m.idle.pop_back();
@@ -369,10 +390,12 @@ class Simulation {
       idleBegin_ += (now - *end) / m.speed;
     }
   }
-  // A job that nobody wants any more: its thread looks up after each bounce, a wave is a leaf of samples.
+  // A job that nobody wants any more: its thread looks up after each bounce, a wave is a leaf of
+  // samples.
   void giveUp(uint32_t w, uint64_t number, const Running& running) {
     constexpr double leaf = 32, bounces = 4;
-    const double until = events_.now + running.seconds / running.item.job.job.count * leaf / bounces;
+    const double until =
+        events_.now + running.seconds / running.item.job.job.count * leaf / bounces;
     if (until >= running.until) return;
     events_.at(until, [this, w, number] { finished(w, number); });
   }
@@ -388,8 +411,10 @@ class Simulation {
       jobs_++;
       work_ += seconds;
       const size_t pixels = grid_.at(item.job.job.number).pixels();
-      size_t& bytes = resultBytes_[{pixels, item.job.job.count}]; // what is in it is made when it is looked at: less is kept
-      if (bytes == 0) bytes = sizeOf(results_.make(m.session, item.epoch, item.job, pixels, seconds));
+      size_t& bytes = resultBytes_[{
+          pixels, item.job.job.count}]; // what is in it is made when it is looked at: less is kept
+      if (bytes == 0)
+        bytes = sizeOf(results_.make(m.session, item.epoch, item.job, pixels, seconds));
       toMaster(w, bytes, [this, w, item, pixels, seconds](double now) {
         const double began = cpuSeconds() - clockCost_;
         Frames frames = results_.make(workers_[w].session, item.epoch, item.job, pixels, seconds);
@@ -413,7 +438,8 @@ class Simulation {
   Server nicIn_, nicOut_, socket_;
   bool awake_ = false;
   uint64_t wakes_ = 0, jobs_ = 0;
-  double masterFree_ = 0, masterCpu_ = 0, turnBegan_ = 0, turnCpu_ = 0, paused_ = 0, bytesIn_ = 0, bytesOut_ = 0, work_ = 0;
+  double masterFree_ = 0, masterCpu_ = 0, turnBegan_ = 0, turnCpu_ = 0, paused_ = 0, bytesIn_ = 0,
+         bytesOut_ = 0, work_ = 0;
   uint32_t joined_ = 0, finished_ = 0;
   Epoch lastEpoch_ = 0, oldest_ = 1;
   double lastEnd_ = 0;

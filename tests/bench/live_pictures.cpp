@@ -1,9 +1,11 @@
-// What vv's window does, without a window: frames a second while the viewer moves, the sizes that this takes, how long a change
-// of the camera takes to be seen, and what progressive refinement costs. Worlds: the arguments, or a few of examples/scenes.
+// What vv's window does, without a window: frames a second while the viewer moves, the sizes that
+// this takes, how long a change of the camera takes to be seen, and what progressive refinement
+// costs. Worlds: the arguments, or a few of examples/scenes.
 //
 //   bench_live [--size=WxH] [--fps=N] [--threads=N] [--seconds=N] [WORLD...]
 //
-// On a cluster, frames that overlap and one at a time by turns, in the window's way and at the full size as often as it goes:
+// On a cluster, frames that overlap and one at a time by turns, in the window's way and at the full
+// size as often as it goes:
 //
 //   bench_live --workers=HOST:PORT,... [--local-threads=N] ...
 #include <algorithm>
@@ -36,7 +38,9 @@ struct Options {
   std::vector<std::string> worlds;
 };
 
-double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+double secondsSince(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
 void nap() { std::this_thread::sleep_for(std::chrono::microseconds(500)); }
 
 Options read(int argc, char** argv) {
@@ -44,18 +48,22 @@ Options read(int argc, char** argv) {
   for (int i = 1; i < argc; i++) {
     const std::string a = argv[i];
     if (std::sscanf(a.c_str(), "--size=%dx%d", &o.width, &o.height) == 2) continue;
-    if (std::sscanf(a.c_str(), "--fps=%lf", &o.fps) == 1 || std::sscanf(a.c_str(), "--seconds=%lf", &o.seconds) == 1) continue;
+    if (std::sscanf(a.c_str(), "--fps=%lf", &o.fps) == 1 ||
+        std::sscanf(a.c_str(), "--seconds=%lf", &o.seconds) == 1)
+      continue;
     if (std::sscanf(a.c_str(), "--local-threads=%d", &o.cluster.localThreads) == 1) continue;
     if (a.starts_with("--workers=")) {
       o.cluster.workers = a.substr(a.find('=') + 1);
       continue;
     }
-    if (std::sscanf(a.c_str(), "--threads=%d", &o.threads) == 1 || a.starts_with("--benchmark_")) continue; // make bench's
+    if (std::sscanf(a.c_str(), "--threads=%d", &o.threads) == 1 || a.starts_with("--benchmark_"))
+      continue; // make bench's
     o.worlds.push_back(a);
   }
   if (o.worlds.empty())
     for (const char* name : {"board", "globe", "still_life", "headlight", "car", "chess"})
-      if (const std::string path = fmt::format("examples/scenes/{}.wrl", name); std::filesystem::exists(path))
+      if (const std::string path = fmt::format("examples/scenes/{}.wrl", name);
+          std::filesystem::exists(path))
         o.worlds.push_back(path);
   return o;
 }
@@ -63,7 +71,8 @@ Options read(int argc, char** argv) {
 class Looking {
  public:
   Looking(const std::string& path, const Options& options, std::shared_ptr<Cluster> cluster)
-      : options_(options), browser_(xvrml::loadWorld(path)), live_(browser_, settings(options, std::move(cluster))), path_(path) {
+      : options_(options), browser_(xvrml::loadWorld(path)),
+        live_(browser_, settings(options, std::move(cluster))), path_(path) {
     first_ = Clock::now();
     LiveFrame frame = whole(1);
     frame.view.fit = browser_.viewpoints().empty();
@@ -73,11 +82,13 @@ class Looking {
     if (frame.view.fit) {
       const xvrml::Bounds b = live_.bounds();
       const double size = std::max({b.maximum[0] - b.minimum[0], b.maximum[1] - b.minimum[1], .01});
-      for (int k = 0; k < 3; k++) camera_.matrix[12 + k] = (b.minimum[k] + b.maximum[k]) / 2 + (k == 2 ? 1.5 * size : 0);
+      for (int k = 0; k < 3; k++)
+        camera_.matrix[12 + k] = (b.minimum[k] + b.maximum[k]) / 2 + (k == 2 ? 1.5 * size : 0);
     }
   }
 
-  // The viewer turns to and fro. One picture follows the other; each shows where the viewer is when it is begun.
+  // The viewer turns to and fro. One picture follows the other; each shows where the viewer is when
+  // it is begun.
   void move() {
     vv::Pacing pacing(options_.fps);
     std::vector<double> intervals, latencies;
@@ -96,7 +107,8 @@ class Looking {
       pacing.took(size, picture.seconds, picture.alone, picture.overhead, picture.samples);
       const double now = secondsSince(begin);
       const double frameTime = 1 / options_.fps;
-      if (now - last < frameTime) std::this_thread::sleep_for(std::chrono::duration<double>(frameTime - (now - last)));
+      if (now - last < frameTime)
+        std::this_thread::sleep_for(std::chrono::duration<double>(frameTime - (now - last)));
       if (asked > options_.seconds / 4) { // when it has settled
         intervals.push_back(std::max(now - last, frameTime));
         latencies.push_back(now - asked);
@@ -107,12 +119,13 @@ class Looking {
     }
     if (sizes.empty()) return;
     const vv::FrameSize typical = sizes[sizes.size() / 2];
-    fmt::print(
-        "  moving      {:5.1f} frames/s at {}x{}, {} samples; change to picture {:.0f} ms (longest {:.0f}), of these {:.1f} "
-        "ms before light is traced; {} sizes\n",
-        double(intervals.size()) / sum(intervals), typical.width, typical.height, typical.samples,
-        1000 * sum(latencies) / double(latencies.size()), 1000 * *std::max_element(latencies.begin(), latencies.end()),
-        1000 * overhead / double(sizes.size()), changes(sizes) + 1);
+    fmt::print("  moving      {:5.1f} frames/s at {}x{}, {} samples; change to picture {:.0f} ms "
+               "(longest {:.0f}), of these {:.1f} "
+               "ms before light is traced; {} sizes\n",
+               double(intervals.size()) / sum(intervals), typical.width, typical.height,
+               typical.samples, 1000 * sum(latencies) / double(latencies.size()),
+               1000 * *std::max_element(latencies.begin(), latencies.end()),
+               1000 * overhead / double(sizes.size()), changes(sizes) + 1);
   }
 
   // As a window on a cluster does it. paced: not more often than fps, and sizes that allow for it.
@@ -128,7 +141,8 @@ class Looking {
     const auto look = [&] {
       while (live_.look(picture)) {
         if (!picture.finished) continue;
-        pacing.took({picture.width, picture.height, 1}, picture.seconds, picture.alone, picture.overhead, picture.samples);
+        pacing.took({picture.width, picture.height, 1}, picture.seconds, picture.alone,
+                    picture.overhead, picture.samples);
         if (now < settled) continue;
         ends.push_back(now);
         seconds.push_back(picture.seconds);
@@ -154,8 +168,9 @@ class Looking {
     while (live_.state() != State::idle) nap();
     while (live_.look(picture)) {}
     if (ends.size() < 2) return;
-    fmt::print("  {} {:<16} {:5.1f} frames/s of {:.0f} samples; start to end {:.0f} ms\n", paced ? "paced" : "whole",
-               overlapping ? "overlapping" : "one at a time", double(ends.size() - 1) / (ends.back() - ends.front()),
+    fmt::print("  {} {:<16} {:5.1f} frames/s of {:.0f} samples; start to end {:.0f} ms\n",
+               paced ? "paced" : "whole", overlapping ? "overlapping" : "one at a time",
+               double(ends.size() - 1) / (ends.back() - ends.front()),
                sum(pixels) / double(pixels.size()), 1000 * sum(seconds) / double(seconds.size()));
   }
 
@@ -169,7 +184,8 @@ class Looking {
       std::this_thread::sleep_for(std::chrono::milliseconds(30 + 17 * i));
       const Clock::time_point begin = Clock::now();
       live_.cancel();
-      while (live_.state() != State::idle) std::this_thread::sleep_for(std::chrono::microseconds(100));
+      while (live_.state() != State::idle)
+        std::this_thread::sleep_for(std::chrono::microseconds(100));
       const double took = secondsSince(begin);
       most = std::max(most, took);
       all += took;
@@ -191,16 +207,18 @@ class Looking {
     }
     live_.cancel();
     while (live_.state() != State::idle) nap();
-    fmt::print("  still       all of it after {:.0f} ms; a frame of 1 sample takes {:.0f} ms\n", 1000 * covered, 1000 * one);
+    fmt::print("  still       all of it after {:.0f} ms; a frame of 1 sample takes {:.0f} ms\n",
+               1000 * covered, 1000 * one);
   }
 
   void rounds(int samples) {
     double taken[2] = {1e9, 1e9};
     for (int i = 0; i < 2; i++)
-      for (const bool progressive : {false, true}) taken[progressive] = std::min(taken[progressive], cost(samples, progressive));
-    fmt::print(
-        "  {:2} samples  of half the size each way: in one go {:.2f} s of processor time, progressive {:.2f} s ({:+.1f} %)\n",
-        samples, taken[0], taken[1], 100 * (taken[1] / taken[0] - 1));
+      for (const bool progressive : {false, true})
+        taken[progressive] = std::min(taken[progressive], cost(samples, progressive));
+    fmt::print("  {:2} samples  of half the size each way: in one go {:.2f} s of processor time, "
+               "progressive {:.2f} s ({:+.1f} %)\n",
+               samples, taken[0], taken[1], 100 * (taken[1] / taken[0] - 1));
   }
 
   void tell() const { fmt::print("{}: first picture after {:.2f} s\n", path_, firstPicture_); }

@@ -1,6 +1,6 @@
-// mapper_edits.cpp: what a change of a running world costs in the mapper, by kind and by the number of objects: the null backend,
-// so that neither acceleration structures nor pictures are counted. A move must cost the same beside 10 objects and beside
-// 10,000.
+// mapper_edits.cpp: what a change of a running world costs in the mapper, by kind and by the number
+// of objects: the null backend, so that neither acceleration structures nor pictures are counted. A
+// move must cost the same beside 10 objects and beside 10,000.
 #include <memory>
 #include <string>
 
@@ -16,18 +16,22 @@ using namespace xvrml;
 
 // n moving objects, a material, a coordinate and a switch that events reach.
 std::string body(int64_t n) {
-  std::string text = "#VRML V2.0 utf8\nViewpoint { position 0 0 200 }\nDEF I PositionInterpolator { }\n";
+  std::string text =
+      "#VRML V2.0 utf8\nViewpoint { position 0 0 200 }\nDEF I PositionInterpolator { }\n";
   std::string routes;
   for (int64_t i = 0; i < n; ++i) {
     const std::string name = "T" + std::to_string(i);
-    text += "DEF " + name + " Transform { translation " + std::to_string(i % 100) + " " + std::to_string(i / 100) +
-            " 0 children Shape { appearance Appearance { material DEF M" + std::to_string(i) +
-            " Material { } } geometry Box { size .5 .5 .5 } } }\n";
+    text += "DEF " + name + " Transform { translation " + std::to_string(i % 100) + " " +
+            std::to_string(i / 100) + " 0 children Shape { appearance Appearance { material DEF M" +
+            std::to_string(i) + " Material { } } geometry Box { size .5 .5 .5 } } }\n";
     routes += "ROUTE I.value_changed TO " + name + ".set_translation\n";
   }
-  text += "Shape { geometry IndexedFaceSet { coord DEF C Coordinate { point [ 0 0 0, 1 0 0, 0 1 0 ] } coordIndex [ 0 1 2 ] } }\n"
-          "DEF S Switch { whichChoice 0 choice [ Shape { geometry Box { } } Shape { geometry Cone { } } ] }\n"
-          "DEF K CoordinateInterpolator { }\nDEF N Script { eventOut SFInt32 out }\nDEF L PointLight { }\n";
+  text += "Shape { geometry IndexedFaceSet { coord DEF C Coordinate { point [ 0 0 0, 1 0 0, 0 1 0 "
+          "] } coordIndex [ 0 1 2 ] } }\n"
+          "DEF S Switch { whichChoice 0 choice [ Shape { geometry Box { } } Shape { geometry Cone "
+          "{ } } ] }\n"
+          "DEF K CoordinateInterpolator { }\nDEF N Script { eventOut SFInt32 out }\nDEF L "
+          "PointLight { }\n";
   return text + routes + "ROUTE K.value_changed TO C.set_point\nROUTE N.out TO S.set_whichChoice\n";
 }
 
@@ -38,7 +42,8 @@ struct Running {
   std::unique_ptr<OpenRTMapper> mapper;
   CameraSettings camera;
 
-  explicit Running(int64_t n, const char* backend = "backend=null") : context(rtNewContext(backend)) {
+  explicit Running(int64_t n, const char* backend = "backend=null")
+      : context(rtNewContext(backend)) {
     world = loadWorldFromMemory(body(n), "edits.wrl");
     engine = std::make_unique<Engine>(world->diagnostics, makeInteraction);
     engine->adoptScope(world->scope, true);
@@ -76,8 +81,8 @@ template <class Send> void edit(benchmark::State& state, const Send& send) {
     running.show();
   }
   const MapStats after = running.mapper->stats();
-  state.counters["defined"] =
-      benchmark::Counter(double(after.objectsDefined - before.objectsDefined), benchmark::Counter::kAvgIterations);
+  state.counters["defined"] = benchmark::Counter(
+      double(after.objectsDefined - before.objectsDefined), benchmark::Counter::kAvgIterations);
   state.SetLabel(std::to_string(after.objects) + " objects");
 }
 
@@ -85,13 +90,19 @@ void Nothing(benchmark::State& state) {
   edit(state, [](Running&, int) {});
 }
 void MoveOne(benchmark::State& state) {
-  edit(state, [](Running& r, int i) { r.send("T3", "set_translation", Vec3f{float(i % 7), 1, 2}); });
+  edit(state, [](Running& r, int i) {
+    r.send("T3", "set_translation", Vec3f{float(i % 7), 1, 2});
+  });
 }
 void Material(benchmark::State& state) {
-  edit(state, [](Running& r, int i) { r.send("M3", "set_diffuseColor", Color{float(i % 7) / 7, 1, 0}); });
+  edit(state, [](Running& r, int i) {
+    r.send("M3", "set_diffuseColor", Color{float(i % 7) / 7, 1, 0});
+  });
 }
 void Coordinates(benchmark::State& state) {
-  edit(state, [](Running& r, int i) { r.send("C", "set_point", MFVec3f{{0, 0, 0}, {1, float(i % 7), 0}, {0, 1, 0}}); });
+  edit(state, [](Running& r, int i) {
+    r.send("C", "set_point", MFVec3f{{0, 0, 0}, {1, float(i % 7), 0}, {0, 1, 0}});
+  });
 }
 void Light(benchmark::State& state) {
   edit(state, [](Running& r, int i) { r.send("L", "set_intensity", float(i % 7) / 7); });
@@ -131,8 +142,8 @@ void MoveOneAndRender(benchmark::State& state) {
     running.frame();
   }
   rtGetStats(&after);
-  state.counters["objectBuilds"] =
-      benchmark::Counter(double(after.objectBuilds - before.objectBuilds), benchmark::Counter::kAvgIterations);
+  state.counters["objectBuilds"] = benchmark::Counter(
+      double(after.objectBuilds - before.objectBuilds), benchmark::Counter::kAvgIterations);
 }
 BENCHMARK(MoveOneAndRender)->Arg(10)->Arg(10'000)->Unit(benchmark::kMillisecond);
 

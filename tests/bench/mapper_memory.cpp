@@ -1,5 +1,6 @@
-// mapper_memory.cpp: what grouping and instancing are worth: frames of 20,000 small static shapes merged and each an object of its
-// own; memory of a forest of 10,000 USEs beside what it would be written out.
+// mapper_memory.cpp: what grouping and instancing are worth: frames of 20,000 small static shapes
+// merged and each an object of its own; memory of a forest of 10,000 USEs beside what it would be
+// written out.
 #include <cmath>
 #include <fstream>
 #include <malloc.h>
@@ -31,7 +32,8 @@ struct Still {
   std::unique_ptr<Engine> engine; // it runs: what its routes reach stands alone
   std::unique_ptr<OpenRTMapper> mapper;
 
-  Still(const std::string& body, const char* config, int width, int height) : context(rtNewContext(config)) {
+  Still(const std::string& body, const char* config, int width, int height)
+      : context(rtNewContext(config)) {
     world = loadWorldFromMemory("#VRML V2.0 utf8\n" + body, "still.wrl");
     engine = std::make_unique<Engine>(world->diagnostics, makeInteraction);
     engine->adoptScope(world->scope, true);
@@ -48,22 +50,27 @@ struct Still {
   }
 };
 
-// 20,000 pyramids in a square: merged into one object; each an object of its own (ORTInstance), which the backend may merge
-// again; each moved by a ROUTE, which it may not.
+// 20,000 pyramids in a square: merged into one object; each an object of its own (ORTInstance),
+// which the backend may merge again; each moved by a ROUTE, which it may not.
 enum Grouping { merged, objects, moving };
 
 std::string town(int64_t grouping) {
-  std::string body = "Viewpoint { position 0 60 120 orientation 1 0 0 -0.5 }\nPointLight { location 0 100 50 radius 1000 }\n"
+  std::string body = "Viewpoint { position 0 60 120 orientation 1 0 0 -0.5 }\nPointLight { "
+                     "location 0 100 50 radius 1000 }\n"
                      "DEF I PositionInterpolator { }\n";
   std::string routes;
   for (int i = 0; i < 20'000; ++i) {
     const std::string name = "T" + std::to_string(i);
     const double x = i % 141 - 70, z = i / 141 - 70;
-    body += "DEF " + name + " Transform { translation " + std::to_string(x) + " 0 " + std::to_string(z) + " children " +
+    body += "DEF " + name + " Transform { translation " + std::to_string(x) + " 0 " +
+            std::to_string(z) + " children " +
             (grouping == objects ? "ORTInstance { children " : "") +
-            "Shape { appearance Appearance { material Material { diffuseColor " + std::to_string(i % 10 / 10.0) +
-            " .5 .5 } } geometry IndexedFaceSet { coord Coordinate { point [ -.4 0 -.4, .4 0 -.4, .4 0 .4, -.4 0 .4, 0 " +
-            std::to_string(0.5 + i % 13 / 6.0) + " 0 ] } coordIndex [ 0 4 1 -1 1 4 2 -1 2 4 3 -1 3 4 0 -1 ] } }" +
+            "Shape { appearance Appearance { material Material { diffuseColor " +
+            std::to_string(i % 10 / 10.0) +
+            " .5 .5 } } geometry IndexedFaceSet { coord Coordinate { point [ -.4 0 -.4, .4 0 -.4, "
+            ".4 0 .4, -.4 0 .4, 0 " +
+            std::to_string(0.5 + i % 13 / 6.0) +
+            " 0 ] } coordIndex [ 0 4 1 -1 1 4 2 -1 2 4 3 -1 3 4 0 -1 ] } }" +
             (grouping == objects ? " }" : "") + " }\n";
     if (grouping == moving) routes += "ROUTE I.value_changed TO " + name + ".set_scale\n";
   }
@@ -81,22 +88,30 @@ void Town(benchmark::State& state) {
   state.counters["MB"] = memory / 1e6;
   state.SetLabel(std::to_string(still.mapper->stats().objects) + " objects");
 }
-BENCHMARK(Town)->ArgName("grouping")->Arg(merged)->Arg(objects)->Arg(moving)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(Town)
+    ->ArgName("grouping")
+    ->Arg(merged)
+    ->Arg(objects)
+    ->Arg(moving)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
 
 // A tree of 10,082 triangles; n of them.
 std::string forest(int n) {
-  std::string body =
-      "Viewpoint { position 0 400 4000 orientation 1 0 0 -0.1 }\nDEF Tree Group { children Shape { geometry ElevationGrid { "
-      "xDimension 72 zDimension 72 height [ ";
-  for (int i = 0; i < 72 * 72; ++i) body += std::to_string(3 + 3 * std::sin(i * 0.37) * std::cos(i % 72 * 0.21)) + " ";
+  std::string body = "Viewpoint { position 0 400 4000 orientation 1 0 0 -0.1 }\nDEF Tree Group { "
+                     "children Shape { geometry ElevationGrid { "
+                     "xDimension 72 zDimension 72 height [ ";
+  for (int i = 0; i < 72 * 72; ++i)
+    body += std::to_string(3 + 3 * std::sin(i * 0.37) * std::cos(i % 72 * 0.21)) + " ";
   body += "] } } }\n";
   for (int i = 1; i < n; ++i)
-    body += "Transform { translation " + std::to_string(i % 100 * 80 - 4000) + " 0 " + std::to_string(-i / 100 * 80) +
-            " children USE Tree }\n";
+    body += "Transform { translation " + std::to_string(i % 100 * 80 - 4000) + " 0 " +
+            std::to_string(-i / 100 * 80) + " children USE Tree }\n";
   return body;
 }
 
-// Memory of the whole process above what it was; written out it would be the triangles times what one takes in the first tree.
+// Memory of the whole process above what it was; written out it would be the triangles times what
+// one takes in the first tree.
 void Forest(benchmark::State& state) {
   const int n = int(state.range(0));
   const double before = residentBytes();
@@ -118,8 +133,8 @@ void Shapes(benchmark::State& state) {
   std::string body;
   for (int i = 0; i < n; ++i)
     body += "Transform { translation " + std::to_string(i % 300) + " " + std::to_string(i / 300) +
-            " 0 children Shape { appearance Appearance { material Material { diffuseColor .5 " + std::to_string(i % 100 / 100.0) +
-            " .5 } } geometry Box { size .5 .5 .5 } } }\n";
+            " 0 children Shape { appearance Appearance { material Material { diffuseColor .5 " +
+            std::to_string(i % 100 / 100.0) + " .5 } } geometry Box { size .5 .5 .5 } } }\n";
   const double before = residentBytes();
   RTcontext context = rtNewContext("threads=1");
   std::unique_ptr<World> world = loadWorldFromMemory("#VRML V2.0 utf8\n" + body, "shapes.wrl");

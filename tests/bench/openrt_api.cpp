@@ -1,5 +1,5 @@
-// openrt_api.cpp: what the API itself costs, with the null backend: begin/end in vertices per second, arrays against a bare
-// memcpy of the same bytes, commits of moved instances.
+// openrt_api.cpp: what the API itself costs, with the null backend: begin/end in vertices per
+// second, arrays against a bare memcpy of the same bytes, commits of moved instances.
 #include <cstring>
 #include <vector>
 
@@ -26,7 +26,8 @@ void countVertices(benchmark::State& state, size_t vertices) {
   state.SetItemsProcessed(state.iterations() * static_cast<int64_t>(vertices));
 }
 
-// One list of many triangles. Argument: attributes (0 none, 1 a normal, 2 normal, texture coordinate and colour).
+// One list of many triangles. Argument: attributes (0 none, 1 a normal, 2 normal, texture
+// coordinate and colour).
 void beginEnd(benchmark::State& state) {
   constexpr size_t vertices = 3 * 200000;
   const NullContext context;
@@ -76,7 +77,8 @@ struct Mesh { // a grid of 2 side^2 triangles
   std::vector<uint32_t> indices;
   explicit Mesh(uint32_t side) {
     for (uint32_t y = 0; y <= side; y++)
-      for (uint32_t x = 0; x <= side; x++) points.insert(points.end(), {float(x), float(y), float((x * y) % 7)});
+      for (uint32_t x = 0; x <= side; x++)
+        points.insert(points.end(), {float(x), float(y), float((x * y) % 7)});
     for (uint32_t y = 0; y < side; y++)
       for (uint32_t x = 0; x < side; x++) {
         const uint32_t a = y * (side + 1) + x, b = a + 1, c = a + side + 1, d = c + 1;
@@ -104,7 +106,8 @@ BENCHMARK(drawElements)->Unit(benchmark::kMillisecond);
 
 void drawArrays(benchmark::State& state) {
   std::vector<float> points;
-  for (size_t i = 0; i < 3 * 400000; i++) points.insert(points.end(), {float(i), float(i % 3 == 1), float(i % 3 == 2)});
+  for (size_t i = 0; i < 3 * 400000; i++)
+    points.insert(points.end(), {float(i), float(i % 3 == 1), float(i % 3 == 2)});
   const NullContext context;
   rtVertexPointer(3, RT_FLOAT, 0, points.data());
   for (auto _ : state) {
@@ -123,7 +126,8 @@ BENCHMARK(drawArrays)->Unit(benchmark::kMillisecond);
 void bareCopy(benchmark::State& state) {
   const Mesh mesh(636);
   for (auto _ : state) {
-    std::vector<char> points(mesh.points.size() * sizeof(float)), indices(mesh.indices.size() * sizeof(uint32_t));
+    std::vector<char> points(mesh.points.size() * sizeof(float)),
+        indices(mesh.indices.size() * sizeof(uint32_t));
     std::memcpy(points.data(), mesh.points.data(), points.size());
     std::memcpy(indices.data(), mesh.indices.data(), indices.size());
     benchmark::DoNotOptimize(points.data());

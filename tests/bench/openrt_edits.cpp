@@ -1,5 +1,6 @@
-// What an edit costs: rtRender of a picture of one pixel after it, in a scene of so many dynamic objects beside a static terrain
-// of 20,000 triangles. The counters say what was built a step. And the memory of a forest of instances.
+// What an edit costs: rtRender of a picture of one pixel after it, in a scene of so many dynamic
+// objects beside a static terrain of 20,000 triangles. The counters say what was built a step. And
+// the memory of a forest of instances.
 #include <cmath>
 #include <cstdio>
 #include <vector>
@@ -18,7 +19,9 @@ RTid grid(RTid object, int n, double size, double phase) {
     for (int x = 0; x <= n; x++) {
       const double u = size * (double(x) / n - .5), v = size * (double(y) / n - .5);
       points.insert(points.end(),
-                    {float(u), float(.02 * size * std::sin(9 * u / size + phase) * std::cos(7 * v / size)), float(v)});
+                    {float(u),
+                     float(.02 * size * std::sin(9 * u / size + phase) * std::cos(7 * v / size)),
+                     float(v)});
       const auto i = uint32_t(y * (n + 1) + x), w = uint32_t(n + 1);
       if (x < n && y < n) indices.insert(indices.end(), {i, i + w, i + 1, i + 1, i + w, i + w + 1});
     }
@@ -50,7 +53,8 @@ RTstats stats() {
 
 class EditScene {
  public:
-  // same: all dynamic instances are of one object of 128 triangles; else each has its own, with a shader of its own.
+  // same: all dynamic instances are of one object of 128 triangles; else each has its own, with a
+  // shader of its own.
   EditScene(int64_t count, bool same) : context_(rtNewContext("threads=2")) {
     rtFrameBuffer(1, 1, RT_RGBA);
     rtQuality(RT_SAMPLES_PER_PIXEL, 1);
@@ -109,21 +113,27 @@ void nothing(benchmark::State& state) {
   edit(state, true, [](EditScene&, int) {});
 }
 void moveOne(benchmark::State& state) {
-  edit(state, true, [](EditScene& s, int i) { place(s.instances[size_t(i * 7) % s.instances.size()], i % 50, 3, i % 31); });
+  edit(state, true, [](EditScene& s, int i) {
+    place(s.instances[size_t(i * 7) % s.instances.size()], i % 50, 3, i % 31);
+  });
 }
 void moveAll(benchmark::State& state) {
   edit(state, true, [](EditScene& s, int i) {
-    for (size_t k = 0; k < s.instances.size(); k++) place(s.instances[k], double(k % 100) - 50, 2 + i % 5, double(k / 100) - 50);
+    for (size_t k = 0; k < s.instances.size(); k++)
+      place(s.instances[k], double(k % 100) - 50, 2 + i % 5, double(k / 100) - 50);
   });
 }
 void hideOne(benchmark::State& state) {
   edit(state, true, [](EditScene& s, int i) { rtInstanceVisible(s.instances[0], i % 2); });
 }
 void moveOneOfDifferent(benchmark::State& state) {
-  edit(state, false, [](EditScene& s, int i) { place(s.instances[size_t(i * 7) % s.instances.size()], i % 50, 3, i % 31); });
+  edit(state, false, [](EditScene& s, int i) {
+    place(s.instances[size_t(i * 7) % s.instances.size()], i % 50, 3, i % 31);
+  });
 }
 void redefineOne(benchmark::State& state) {
-  edit(state, false, [](EditScene& s, int i) { grid(s.objects[size_t(i) % s.objects.size()], 8, 1, i); });
+  edit(state, false,
+       [](EditScene& s, int i) { grid(s.objects[size_t(i) % s.objects.size()], 8, 1, i); });
 }
 void parameter(benchmark::State& state) {
   edit(state, true, [](EditScene& s, int i) {
@@ -148,7 +158,8 @@ void addAndDelete(benchmark::State& state) {
     place(s.instances.back(), i % 40, 3, 0);
   });
 }
-void buildAll(benchmark::State& state) { // the camera leaves the cell of the grid of origins: everything static is rounded anew
+void buildAll(benchmark::State& state) { // the camera leaves the cell of the grid of origins:
+                                         // everything static is rounded anew
   edit(state, true, [](EditScene&, int i) { look(i % 2 ? 3000 : 0); });
 }
 

@@ -1,6 +1,7 @@
-// Error over time of light from lamps, by path tracing through the C API: relMSE (mean of (I - R)^2 / (R^2 + 0.01) over pixels
-// and colours) at 16 samples a pixel against a picture of many, and its product with the CPU seconds of a frame: lower is
-// better, and independent of the number of samples as long as the square of errors falls as their number grows. One thread.
+// Error over time of light from lamps, by path tracing through the C API: relMSE (mean of (I - R)^2
+// / (R^2 + 0.01) over pixels and colours) at 16 samples a pixel against a picture of many, and its
+// product with the CPU seconds of a frame: lower is better, and independent of the number of
+// samples as long as the square of errors falls as their number grows. One thread.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -58,8 +59,12 @@ void room() {
     quad({{-1, 2, -1}, {1, 2, -1}, {1, 2, 1}, {-1, 2, 1}});
     quad({{-1, 0, -1}, {1, 0, -1}, {1, 2, -1}, {-1, 2, -1}});
   });
-  shape(matt(.63f, .06f, .05f), RT_QUADS, [] { quad({{-1, 0, 1}, {-1, 0, -1}, {-1, 2, -1}, {-1, 2, 1}}); });
-  shape(matt(.14f, .45f, .09f), RT_QUADS, [] { quad({{1, 0, -1}, {1, 0, 1}, {1, 2, 1}, {1, 2, -1}}); });
+  shape(matt(.63f, .06f, .05f), RT_QUADS, [] {
+    quad({{-1, 0, 1}, {-1, 0, -1}, {-1, 2, -1}, {-1, 2, 1}});
+  });
+  shape(matt(.14f, .45f, .09f), RT_QUADS, [] {
+    quad({{1, 0, -1}, {1, 0, 1}, {1, 2, 1}, {1, 2, -1}});
+  });
   box(-.35f, -.3f, .3f, 1.2f, 18);
   box(.35f, .35f, .3f, .6f, -17);
 }
@@ -97,7 +102,10 @@ void tubes() {
   room();
   for (const float x : {-.97f, -.3f, .3f, .97f})
     shape(matt(0, 0, 0, 10), RT_QUADS, [x] {
-      quad({{x - .02f, 1.97f, -.9f}, {x + .02f, 1.97f, -.9f}, {x + .02f, 1.97f, .9f}, {x - .02f, 1.97f, .9f}});
+      quad({{x - .02f, 1.97f, -.9f},
+            {x + .02f, 1.97f, -.9f},
+            {x + .02f, 1.97f, .9f},
+            {x - .02f, 1.97f, .9f}});
     });
 }
 
@@ -106,8 +114,8 @@ void thousandLights() {
   for (int i = 0; i < 1000; i++) {
     const RTid light = rtNewShader(rtNewShaderClass("VRML97PointLight", nullptr));
     rtBindShader(light);
-    rtParameter3f(rtParameterHandle("location"), float(i % 10) * .2f - .9f, float(i / 10 % 10) * .19f + .1f,
-                  float(i / 100) * .2f - .9f);
+    rtParameter3f(rtParameterHandle("location"), float(i % 10) * .2f - .9f,
+                  float(i / 10 % 10) * .19f + .1f, float(i / 100) * .2f - .9f);
     rtParameter3f(rtParameterHandle("attenuation"), 0, 0, 1e3f);
     rtParameter1f(rtParameterHandle("intensity"), i % 7 ? .5f : 4.f);
     rtBindShader(0);
@@ -156,9 +164,17 @@ void lamps(benchmark::State& state, void (*scene)(), int reference) {
   rtDeleteContext(context);
 }
 
-BENCHMARK_CAPTURE(lamps, cornell, cornell, referenceSamples)->Unit(benchmark::kMillisecond)->Iterations(6);
-BENCHMARK_CAPTURE(lamps, ring_of_4000_triangles, ring, referenceSamples)->Unit(benchmark::kMillisecond)->Iterations(6);
-BENCHMARK_CAPTURE(lamps, tubes_near_walls, tubes, referenceSamples)->Unit(benchmark::kMillisecond)->Iterations(6);
-BENCHMARK_CAPTURE(lamps, a_thousand_lights, thousandLights, 256)->Unit(benchmark::kMillisecond)->Iterations(2);
+BENCHMARK_CAPTURE(lamps, cornell, cornell, referenceSamples)
+    ->Unit(benchmark::kMillisecond)
+    ->Iterations(6);
+BENCHMARK_CAPTURE(lamps, ring_of_4000_triangles, ring, referenceSamples)
+    ->Unit(benchmark::kMillisecond)
+    ->Iterations(6);
+BENCHMARK_CAPTURE(lamps, tubes_near_walls, tubes, referenceSamples)
+    ->Unit(benchmark::kMillisecond)
+    ->Iterations(6);
+BENCHMARK_CAPTURE(lamps, a_thousand_lights, thousandLights, 256)
+    ->Unit(benchmark::kMillisecond)
+    ->Iterations(2);
 
 } // namespace

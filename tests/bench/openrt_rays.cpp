@@ -1,6 +1,7 @@
-// The case "direct": 808,000 triangles, one point light, hard shadows, 640x480: the wavefront through the API and the VRML97
-// shader plug-in against a loop of raw Embree on the same rays (one camera ray and one shadow ray at a time, shading inlined,
-// default mode and robust mode). The counter `ratio` of the API's line is measured in the same run: raw time over ours.
+// The case "direct": 808,000 triangles, one point light, hard shadows, 640x480: the wavefront
+// through the API and the VRML97 shader plug-in against a loop of raw Embree on the same rays (one
+// camera ray and one shadow ray at a time, shading inlined, default mode and robust mode). The
+// counter `ratio` of the API's line is measured in the same run: raw time over ours.
 #include <benchmark/benchmark.h>
 
 #include <atomic>
@@ -25,7 +26,9 @@ struct Terrain {
     for (int z = 0; z <= edge; z++)
       for (int x = 0; x <= edge; x++) {
         const float u = float(x) / edge * 10 - 5, v = float(z) / edge * 10 - 5;
-        points.insert(points.end(), {u, 0.4f * std::sin(3 * u) * std::cos(2 * v) + 0.02f * std::sin(40 * u + 30 * v), v});
+        points.insert(
+            points.end(),
+            {u, 0.4f * std::sin(3 * u) * std::cos(2 * v) + 0.02f * std::sin(40 * u + 30 * v), v});
       }
     for (int z = 0; z < edge; z++)
       for (int x = 0; x < edge; x++) {
@@ -45,10 +48,10 @@ struct Raw {
   explicit Raw(bool robust) {
     if (robust) rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
     RTCGeometry g = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* p = static_cast<float*>(
-        rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, terrain().points.size() / 3));
-    auto* i = static_cast<uint32_t*>(
-        rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, terrain().indices.size() / 3));
+    auto* p = static_cast<float*>(rtcSetNewGeometryBuffer(
+        g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, terrain().points.size() / 3));
+    auto* i = static_cast<uint32_t*>(rtcSetNewGeometryBuffer(
+        g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, terrain().indices.size() / 3));
     std::copy(terrain().points.begin(), terrain().points.end(), p);
     std::copy(terrain().indices.begin(), terrain().indices.end(), i);
     rtcCommitGeometry(g);
@@ -69,12 +72,14 @@ struct Raw {
     for (uint32_t s = 0; s < spp; s++) {
       float dx, dy;
       openrt::PairSampler(y * width + x, 0, 0)(s, dx, dy);
-      const float a = (float(x) + dx - width / 2) * scale, b = -(float(y) + dy - height / 2) * scale;
+      const float a = (float(x) + dx - width / 2) * scale,
+                  b = -(float(y) + dy - height / 2) * scale;
       float d[3] = {a, f[1] + b * up[1], f[2] + b * up[2]};
       const float l = 1 / std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
       for (float& c : d) c *= l;
       RTCRayHit r{};
-      r.ray = {float(eye[0]), float(eye[1]), float(eye[2]), 0, d[0], d[1], d[2], 0, INFINITY, ~0u, 0, 0};
+      r.ray = {
+          float(eye[0]), float(eye[1]), float(eye[2]), 0, d[0], d[1], d[2], 0, INFINITY, ~0u, 0, 0};
       r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
       raw::intersect(scene, r);
       if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID) continue;
@@ -88,9 +93,11 @@ struct Raw {
         w[k] = light[k] - p[k];
         w2 += w[k] * w[k];
       }
-      const float distance = std::sqrt(w2), cosine = (n[0] * w[0] + n[1] * w[1] + n[2] * w[2]) / distance;
+      const float distance = std::sqrt(w2),
+                  cosine = (n[0] * w[0] + n[1] * w[1] + n[2] * w[2]) / distance;
       if (cosine <= 0) continue;
-      RTCRay shadow{p[0], p[1], p[2], 0, w[0] / distance, w[1] / distance, w[2] / distance, 0, distance, ~0u, 0, 0};
+      RTCRay shadow{p[0],     p[1], p[2], 0, w[0] / distance, w[1] / distance, w[2] / distance, 0,
+                    distance, ~0u,  0,    0};
       raw::occluded(scene, shadow);
       if (shadow.tfar >= 0) sum += 0.8f * cosine;
     }
@@ -106,7 +113,8 @@ struct Raw {
         for (int i; (i = next++) < (width / tile) * (height / tile);) {
           const int x0 = i % (width / tile) * tile, y0 = i / (width / tile) * tile;
           for (int y = y0; y < y0 + tile; y++)
-            for (int x = x0; x < x0 + tile; x++) image[size_t(y) * width + x] = pixel(uint32_t(x), uint32_t(y));
+            for (int x = x0; x < x0 + tile; x++)
+              image[size_t(y) * width + x] = pixel(uint32_t(x), uint32_t(y));
         }
       });
     for (auto& thread : pool) thread.join();
@@ -116,7 +124,8 @@ struct Raw {
 void drawScene() {
   const RTid object = rtBeginObject(0);
   rtVertexPointer(3, RT_FLOAT, 0, terrain().points.data());
-  rtDrawElements(RT_TRIANGLES, terrain().indices.size(), terrain().indices.data(), terrain().points.size() / 3);
+  rtDrawElements(RT_TRIANGLES, terrain().indices.size(), terrain().indices.data(),
+                 terrain().points.size() / 3);
   rtEndObject();
   rtInstantiateObject(object);
   const RTid lamp = rtNewShader(rtNewShaderClass("VRML97PointLight", nullptr));
@@ -131,9 +140,12 @@ void drawScene() {
   rtQuality(RT_SAMPLES_PER_PIXEL, spp);
 }
 
-double seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+double seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 
-// Small dynamic objects: beside the view, or under the terrain where the rays pass their boxes but do not meet them.
+// Small dynamic objects: beside the view, or under the terrain where the rays pass their boxes but
+// do not meet them.
 void drawDynamic(int count, bool inView) {
   rtBindShader(0);
   const RTid ball = rtBeginObject(0);
@@ -142,7 +154,8 @@ void drawDynamic(int count, bool inView) {
   rtDrawElements(RT_TRIANGLES, 9, corners, terrain().points.size() / 3);
   rtEndObject();
   for (int i = 0; i < count; i++) {
-    const double s = .02, x = inView ? (i % 100) / 12. - 4 : 50 + i % 100, z = inView ? (i / 100) / 12. - 4 : 50;
+    const double s = .02, x = inView ? (i % 100) / 12. - 4 : 50 + i % 100,
+                 z = inView ? (i / 100) / 12. - 4 : 50;
     const double m[16] = {s, 0, 0, 0, 0, s, 0, 0, 0, 0, s, 0, x, -1, z, 1};
     const RTid instance = rtInstantiateObject(ball);
     rtInstanceMatrix(instance, m);
@@ -150,7 +163,8 @@ void drawDynamic(int count, bool inView) {
   }
 }
 
-void direct(benchmark::State& state, int threads, bool robust, int dynamic = 0, bool inView = false) {
+void direct(benchmark::State& state, int threads, bool robust, int dynamic = 0,
+            bool inView = false) {
   const Raw raw(robust);
   std::vector<float> image(size_t(width) * height), ours(size_t(width) * height * 4);
   rtNewContext(("threads=" + std::to_string(threads)).c_str());
@@ -175,7 +189,8 @@ void direct(benchmark::State& state, int threads, bool robust, int dynamic = 0, 
   stats.size = sizeof stats;
   rtGetStats(&stats);
   state.counters["ratio"] = rawTime / ourTime;
-  state.counters["Mrays/s"] = double(stats.cameraRays + stats.shadowRays) * double(state.iterations()) / ourTime / 1e6;
+  state.counters["Mrays/s"] =
+      double(stats.cameraRays + stats.shadowRays) * double(state.iterations()) / ourTime / 1e6;
   state.counters["mean_difference"] = difference / double(image.size());
   if (rtGetError() != RT_NO_ERROR) state.SkipWithError(rtGetErrorMessage());
   rtDeleteContext(rtGetCurrent());
@@ -183,10 +198,22 @@ void direct(benchmark::State& state, int threads, bool robust, int dynamic = 0, 
 
 } // namespace
 
-BENCHMARK_CAPTURE(direct, one_thread_against_robust, 1, true)->UseManualTime()->Iterations(5)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(direct, one_thread_against_default, 1, false)->UseManualTime()->Iterations(5)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(direct, two_threads_against_robust, 2, true)->UseManualTime()->Iterations(5)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(direct, beside_one_dynamic_object, 1, true, 1)->UseManualTime()->Iterations(5)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(direct, one_thread_against_robust, 1, true)
+    ->UseManualTime()
+    ->Iterations(5)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(direct, one_thread_against_default, 1, false)
+    ->UseManualTime()
+    ->Iterations(5)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(direct, two_threads_against_robust, 2, true)
+    ->UseManualTime()
+    ->Iterations(5)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(direct, beside_one_dynamic_object, 1, true, 1)
+    ->UseManualTime()
+    ->Iterations(5)
+    ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(direct, above_100_dynamic_objects, 1, true, 100, true)
     ->UseManualTime()
     ->Iterations(5)

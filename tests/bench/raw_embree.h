@@ -1,4 +1,5 @@
-// raw_embree.h: one ray at a time through Embree 3 or 4, in its default manner: what the benchmarks measure the project against.
+// raw_embree.h: one ray at a time through Embree 3 or 4, in its default manner: what the benchmarks
+// measure the project against.
 #pragma once
 
 #if __has_include(<embree3/rtcore.h>) // the order of cmake/Dependencies.cmake

@@ -1,5 +1,6 @@
-// raw_rays.cpp: a loop of raw Embree over rays, one rtcIntersect1 each, as a library for tools/bench_rays.py: what ray queries
-// from Python are measured against. Results are written as cast_rays gives them.
+// raw_rays.cpp: a loop of raw Embree over rays, one rtcIntersect1 each, as a library for
+// tools/bench_rays.py: what ray queries from Python are measured against. Results are written as
+// cast_rays gives them.
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -13,7 +14,9 @@
 
 namespace {
 
-double seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+double seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 
 struct Raw {
   RTCDevice device = rtcNewDevice(nullptr);
@@ -24,15 +27,17 @@ struct Raw {
 
 extern "C" {
 
-__attribute__((visibility("default"))) void* raw_scene(const float* vertices, size_t n, const uint32_t* triangles, size_t m,
-                                                       int robust) {
+__attribute__((visibility("default"))) void*
+raw_scene(const float* vertices, size_t n, const uint32_t* triangles, size_t m, int robust) {
   auto* raw = new Raw;
   if (robust) rtcSetSceneFlags(raw->scene, RTC_SCENE_FLAG_ROBUST);
   RTCGeometry g = rtcNewGeometry(raw->device, RTC_GEOMETRY_TYPE_TRIANGLE);
   std::copy_n(vertices, 3 * n,
-              static_cast<float*>(rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, n)));
+              static_cast<float*>(
+                  rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, n)));
   std::copy_n(triangles, 3 * m,
-              static_cast<uint32_t*>(rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, m)));
+              static_cast<uint32_t*>(
+                  rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, m)));
   rtcCommitGeometry(g);
   rtcAttachGeometry(raw->scene, g);
   rtcReleaseGeometry(g);
@@ -41,8 +46,10 @@ __attribute__((visibility("default"))) void* raw_scene(const float* vertices, si
 }
 
 // rays: 6 floats each. Returns the seconds it took.
-__attribute__((visibility("default"))) double raw_cast(const void* scene, const float* rays, size_t count, int threads, float* t,
-                                                       uint32_t* primitive, float* uv, float* normal) {
+__attribute__((visibility("default"))) double raw_cast(const void* scene, const float* rays,
+                                                       size_t count, int threads, float* t,
+                                                       uint32_t* primitive, float* uv,
+                                                       float* normal) {
   const RTCScene s = static_cast<const Raw*>(scene)->scene;
   const double begin = seconds();
   std::atomic<size_t> next{0};
@@ -52,7 +59,8 @@ __attribute__((visibility("default"))) double raw_cast(const void* scene, const 
       for (size_t i = first; i < std::min(first + block, count); i++) {
         const float* r = rays + 6 * i;
         RTCRayHit q;
-        q.ray = {r[0], r[1], r[2], 0, r[3], r[4], r[5], 0, std::numeric_limits<float>::infinity(), ~0u, 0, 0};
+        q.ray = {r[0], r[1], r[2], 0, r[3], r[4], r[5], 0, std::numeric_limits<float>::infinity(),
+                 ~0u,  0,    0};
         q.hit.geomID = RTC_INVALID_GEOMETRY_ID;
         q.hit.primID = RTC_INVALID_GEOMETRY_ID;
         q.hit.u = q.hit.v = q.hit.Ng_x = q.hit.Ng_y = q.hit.Ng_z = 0;
@@ -61,7 +69,8 @@ __attribute__((visibility("default"))) double raw_cast(const void* scene, const 
         primitive[i] = q.hit.primID;
         uv[2 * i] = q.hit.u;
         uv[2 * i + 1] = q.hit.v;
-        const float l = std::sqrt(q.hit.Ng_x * q.hit.Ng_x + q.hit.Ng_y * q.hit.Ng_y + q.hit.Ng_z * q.hit.Ng_z);
+        const float l =
+            std::sqrt(q.hit.Ng_x * q.hit.Ng_x + q.hit.Ng_y * q.hit.Ng_y + q.hit.Ng_z * q.hit.Ng_z);
         const float k = l > 0 ? 1 / l : 0;
         normal[3 * i] = k * q.hit.Ng_x;
         normal[3 * i + 1] = k * q.hit.Ng_y;

@@ -1,6 +1,7 @@
-// tile_costs.cpp: bench_tile_costs RECORDING [SAMPLES]: what each tile of a recording's last frame costs one thread, in
-// microseconds of a pixel's sample, as bench_cluster_sim reads it (costs=FILE), on standard output. Processor time, so that it
-// may be taken on a machine that does other things as well.
+// tile_costs.cpp: bench_tile_costs RECORDING [SAMPLES]: what each tile of a recording's last frame
+// costs one thread, in microseconds of a pixel's sample, as bench_cluster_sim reads it
+// (costs=FILE), on standard output. Processor time, so that it may be taken on a machine that does
+// other things as well.
 #include <time.h>
 
 #include <atomic>
@@ -42,12 +43,13 @@ void print(const char* recording, uint32_t samples) {
   const std::atomic<bool> never{false};
   JobResult result;
   const uint32_t columns = (scene->frame.width + edge - 1) / edge;
-  std::printf("# microseconds of a pixel's sample, %ux%u, tiles of %u; bench_tile_costs\n%u %u\n", scene->frame.width,
-              scene->frame.height, edge, columns, work.tiles() / columns);
+  std::printf("# microseconds of a pixel's sample, %ux%u, tiles of %u; bench_tile_costs\n%u %u\n",
+              scene->frame.width, scene->frame.height, edge, columns, work.tiles() / columns);
   for (Job job; work.next(job) == FrameWork::Next::job;) {
     const double began = cpuSeconds();
     runner.run(job, never, result);
-    const double perSample = (cpuSeconds() - began) / double(work.tile(job.number).pixels() * job.count);
+    const double perSample =
+        (cpuSeconds() - began) / double(work.tile(job.number).pixels() * job.count);
     std::printf("%.2f%c", perSample * 1e6, (job.number + 1) % columns ? ' ' : '\n');
   }
 }

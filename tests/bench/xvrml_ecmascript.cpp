@@ -1,6 +1,7 @@
-// xvrml_ecmascript.cpp: the ECMAScript engine in the browser's process: events into a trivial Script, a Script that reads and
-// writes each of 10,000 points, arrays of numbers, starts, and memory of one interpreter (counter `bytes`). An item is an event,
-// a point, a number, a Script. See docs/benchmarks.md.
+// xvrml_ecmascript.cpp: the ECMAScript engine in the browser's process: events into a trivial
+// Script, a Script that reads and writes each of 10,000 points, arrays of numbers, starts, and
+// memory of one interpreter (counter `bytes`). An item is an event, a point, a number, a Script.
+// See docs/benchmarks.md.
 #include <string>
 
 #include <benchmark/benchmark.h>
@@ -16,8 +17,9 @@ using namespace xvrml;
 struct Bench {
   explicit Bench(const std::string& vrml)
       : browser(loadWorldFromMemory("#VRML V2.0 utf8\n" + vrml, "bench.wrl"),
-                BrowserOptions{
-                    .scriptPath = XVRML_SCRIPTS, .scriptSeconds = 60, .scriptIsolation = BrowserOptions::Isolation::never}) {}
+                BrowserOptions{.scriptPath = XVRML_SCRIPTS,
+                               .scriptSeconds = 60,
+                               .scriptIsolation = BrowserOptions::Isolation::never}) {}
   // One event into S.in an iteration.
   void run(benchmark::State& state, int64_t items) {
     const NodeRef node = browser.node("S");
@@ -34,17 +36,23 @@ struct Bench {
 };
 
 std::string script(const std::string& fields, const std::string& program) {
-  return fmt::format("DEF S Script {{ directOutput TRUE eventIn SFFloat go {} url \"javascript:{}\" }} ", fields, program);
+  return fmt::format(
+      "DEF S Script {{ directOutput TRUE eventIn SFFloat go {} url \"javascript:{}\" }} ", fields,
+      program);
 }
 
-void event(benchmark::State& state) { Bench(script("eventOut SFFloat out", "function go(v) { out = v }")).run(state, 1); }
+void event(benchmark::State& state) {
+  Bench(script("eventOut SFFloat out", "function go(v) { out = v }")).run(state, 1);
+}
 void vectorEvent(benchmark::State& state) {
-  Bench(script("eventOut SFVec3f out field SFVec3f at 1 2 3", "function go(v) { out = new SFVec3f(at.x, at.y + v, at.z) }"))
+  Bench(script("eventOut SFVec3f out field SFVec3f at 1 2 3",
+               "function go(v) { out = new SFVec3f(at.x, at.y + v, at.z) }"))
       .run(state, 1);
 }
 void nodeEvent(benchmark::State& state) {
   Bench("DEF T Transform { } " +
-        script("field SFNode t USE T", "function go(v) { t.translation = t.translation.add(new SFVec3f(v, 0, 0)) }"))
+        script("field SFNode t USE T",
+               "function go(v) { t.translation = t.translation.add(new SFVec3f(v, 0, 0)) }"))
       .run(state, 1);
 }
 
@@ -57,7 +65,8 @@ constexpr int pointCount = 10'000, numberCount = 100'000;
 
 void mfVec3f(benchmark::State& state) {
   Bench(script("field MFVec3f p [" + points(pointCount) + "] eventOut MFVec3f out",
-               "function go(v) { var a = p, o = new MFVec3f(), n = a.length; o.length = n; for (var i = 0; i < n; i++) { var q = "
+               "function go(v) { var a = p, o = new MFVec3f(), n = a.length; o.length = n; for "
+               "(var i = 0; i < n; i++) { var q = "
                "a[i]; "
                "o[i] = new SFVec3f(q.x, q.y + v, q.z) } out = o }"))
       .run(state, pointCount);
@@ -65,30 +74,37 @@ void mfVec3f(benchmark::State& state) {
 // The slow way: field and eventOut are asked for at each element.
 void mfVec3fElements(benchmark::State& state) {
   Bench(script("field MFVec3f p [" + points(pointCount) + "] eventOut MFVec3f out",
-               "function go(v) { for (var i = 0; i < p.length; i++) out[i] = new SFVec3f(p[i].x, p[i].y + v, p[i].z) }"))
+               "function go(v) { for (var i = 0; i < p.length; i++) out[i] = new SFVec3f(p[i].x, "
+               "p[i].y + v, p[i].z) }"))
       .run(state, pointCount);
 }
 void nodePoints(benchmark::State& state) {
-  Bench("Shape { geometry PointSet { coord DEF C Coordinate { point [" + points(pointCount) + "] } } } " +
-        script("field SFNode c USE C",
-               "function go(v) { var a = c.point, n = a.length; for (var i = 0; i < n; i++) a[i].y = v; c.point = a }"))
+  Bench("Shape { geometry PointSet { coord DEF C Coordinate { point [" + points(pointCount) +
+        "] } } } " +
+        script("field SFNode c USE C", "function go(v) { var a = c.point, n = a.length; for (var i "
+                                       "= 0; i < n; i++) a[i].y = v; c.point = a }"))
       .run(state, pointCount);
 }
 void mfFloat(benchmark::State& state) {
-  Bench(script("eventOut MFFloat out field MFFloat f []", fmt::format("function initialize() {{ f.length = {} }} function go(v) "
-                                                                      "{{ var a = f, n = a.length, s = 0; for (var i = 0; i < n; "
-                                                                      "i++) {{ s += a[i]; a[i] = s }} out = a }}",
-                                                                      numberCount)))
+  Bench(script("eventOut MFFloat out field MFFloat f []",
+               fmt::format("function initialize() {{ f.length = {} }} function go(v) "
+                           "{{ var a = f, n = a.length, s = 0; for (var i = 0; i < n; "
+                           "i++) {{ s += a[i]; a[i] = s }} out = a }}",
+                           numberCount)))
       .run(state, numberCount);
 }
 // A long list that arrives, one number of which is read.
 void tableLookup(benchmark::State& state) {
   Bench(script("eventOut SFFloat out field MFFloat f []",
-               fmt::format("function initialize() {{ f.length = {} }} function go(v) {{ out = f[77] + v }}", numberCount)))
+               fmt::format(
+                   "function initialize() {{ f.length = {} }} function go(v) {{ out = f[77] + v }}",
+                   numberCount)))
       .run(state, 1);
 }
 void sums(benchmark::State& state) {
-  Bench(script("eventOut SFFloat out", "function go(v) { var s = 0; for (var i = 0; i < 100000; i++) s += i * v; out = s }"))
+  Bench(
+      script("eventOut SFFloat out",
+             "function go(v) { var s = 0; for (var i = 0; i < 100000; i++) s += i * v; out = s }"))
       .run(state, 100'000);
 }
 
@@ -96,7 +112,8 @@ void starts(benchmark::State& state) {
   const int64_t count = state.range(0);
   std::string world;
   for (int64_t i = 0; i < count; ++i)
-    world += fmt::format("Script {{ eventIn SFFloat go url \"javascript:function go(v) {{ }}\" }}\n");
+    world +=
+        fmt::format("Script {{ eventIn SFFloat go url \"javascript:function go(v) {{ }}\" }}\n");
   double bytes = 0;
   for (auto _ : state) {
     const size_t before = mallinfo2().uordblks;

@@ -1,6 +1,6 @@
-// xvrml_events.cpp: events per second through 100,000 routes: in a chain, from one to all, from all to one, and in a chain
-// through the borders of prototypes. An item is an event that has arrived. Target: 5 million a second in chains
-// (docs/benchmarks.md).
+// xvrml_events.cpp: events per second through 100,000 routes: in a chain, from one to all, from all
+// to one, and in a chain through the borders of prototypes. An item is an event that has arrived.
+// Target: 5 million a second in chains (docs/benchmarks.md).
 #include <string>
 
 #include <benchmark/benchmark.h>
@@ -16,9 +16,11 @@ constexpr int routes = 100'000;
 
 struct Bench {
   explicit Bench(const std::string& vrml)
-      : browser(loadWorldFromMemory("#VRML V2.0 utf8\n" + vrml, "bench.wrl"), BrowserOptions{.maximumEvents = 10'000'000}) {}
+      : browser(loadWorldFromMemory("#VRML V2.0 utf8\n" + vrml, "bench.wrl"),
+                BrowserOptions{.maximumEvents = 10'000'000}) {}
   // One event into node `first` an iteration; perIteration arrivals follow.
-  void run(benchmark::State& state, std::string_view first, std::string_view field, int64_t perIteration) {
+  void run(benchmark::State& state, std::string_view first, std::string_view field,
+           int64_t perIteration) {
     const NodeRef node = browser.node(first);
     float value = 0;
     for (auto _ : state) {
@@ -40,13 +42,15 @@ std::string lights(int count) {
 
 void chain(benchmark::State& state) {
   std::string world = lights(routes);
-  for (int i = 0; i < routes; ++i) world += fmt::format("ROUTE M{}.intensity TO M{}.intensity\n", i, i + 1);
+  for (int i = 0; i < routes; ++i)
+    world += fmt::format("ROUTE M{}.intensity TO M{}.intensity\n", i, i + 1);
   Bench(world).run(state, "M0", "intensity", routes + 1);
 }
 
 void fanOut(benchmark::State& state) {
   std::string world = lights(routes);
-  for (int i = 0; i < routes; ++i) world += fmt::format("ROUTE M{}.intensity TO M{}.intensity\n", routes, i);
+  for (int i = 0; i < routes; ++i)
+    world += fmt::format("ROUTE M{}.intensity TO M{}.intensity\n", routes, i);
   Bench(world).run(state, fmt::format("M{}", routes), "intensity", routes + 1);
 }
 
@@ -55,7 +59,9 @@ void fanIn(benchmark::State& state) {
   std::string world = lights(routes / 2 + 1);
   const int last = routes / 2 + 1, source = routes / 2;
   for (int i = 0; i < source; ++i)
-    world += fmt::format("ROUTE M{}.intensity TO M{}.intensity ROUTE M{}.intensity TO M{}.intensity\n", source, i, i, last);
+    world +=
+        fmt::format("ROUTE M{}.intensity TO M{}.intensity ROUTE M{}.intensity TO M{}.intensity\n",
+                    source, i, i, last);
   Bench(world).run(state, fmt::format("M{}", source), "intensity", routes + 1);
 }
 
@@ -71,8 +77,10 @@ void prototypes(benchmark::State& state) {
 void interpolators(benchmark::State& state) {
   constexpr int count = routes / 10;
   std::string world;
-  for (int i = 0; i <= count; ++i) world += fmt::format("DEF M{} ScalarInterpolator {{ key [ 0 1 ] keyValue [ 0 1 ] }}\n", i);
-  for (int i = 0; i < count; ++i) world += fmt::format("ROUTE M{}.value_changed TO M{}.set_fraction\n", i, i + 1);
+  for (int i = 0; i <= count; ++i)
+    world += fmt::format("DEF M{} ScalarInterpolator {{ key [ 0 1 ] keyValue [ 0 1 ] }}\n", i);
+  for (int i = 0; i < count; ++i)
+    world += fmt::format("ROUTE M{}.value_changed TO M{}.set_fraction\n", i, i + 1);
   Bench(world).run(state, "M0", "set_fraction", count + 1);
 }
 
@@ -81,8 +89,9 @@ void timeSensors(benchmark::State& state) {
   constexpr int count = 10'000;
   std::string world;
   for (int i = 0; i < count; ++i)
-    world += fmt::format(
-        "DEF T{} TimeSensor {{ loop TRUE }} DEF L{} PointLight {{ }} ROUTE T{}.fraction_changed TO L{}.intensity\n", i, i, i, i);
+    world += fmt::format("DEF T{} TimeSensor {{ loop TRUE }} DEF L{} PointLight {{ }} ROUTE "
+                         "T{}.fraction_changed TO L{}.intensity\n",
+                         i, i, i, i);
   Bench bench(world);
   double time = 1;
   for (auto _ : state) {

@@ -1,5 +1,6 @@
-// xvrml_geometry.cpp: from an IndexedFaceSet of 800,000 triangles to a mesh: flat triangles in place run at the memory's speed;
-// creases and colours of faces take time in proportion to the faces.
+// xvrml_geometry.cpp: from an IndexedFaceSet of 800,000 triangles to a mesh: flat triangles in
+// place run at the memory's speed; creases and colours of faces take time in proportion to the
+// faces.
 #include <cmath>
 #include <memory>
 
@@ -30,19 +31,22 @@ struct BigFaceSet {
     make<nodes::Color>("Color", color)->color.resize(2 * cells * cells);
     for (int j = 0; j <= cells; j++)
       for (int i = 0; i <= cells; i++)
-        points->point.push_back({float(i) * 0.01f, std::sin(float(i) * 0.05f) * std::cos(float(j) * 0.03f), float(j) * 0.01f});
+        points->point.push_back({float(i) * 0.01f,
+                                 std::sin(float(i) * 0.05f) * std::cos(float(j) * 0.03f),
+                                 float(j) * 0.01f});
     for (int j = 0; j < cells; j++)
       for (int i = 0; i < cells; i++) {
         const int a = j * row + i;
-        faces->coordIndex.insert(faces->coordIndex.end(), {a, a + row, a + row + 1, -1, a, a + row + 1, a + 1, -1});
+        faces->coordIndex.insert(faces->coordIndex.end(),
+                                 {a, a + row, a + row + 1, -1, a, a + row + 1, a + 1, -1});
       }
     faces->coord = coordinate;
   }
 
   void run(benchmark::State& state) {
     for (auto _ : state) benchmark::DoNotOptimize(buildMesh(*node, {}).indices.size());
-    state.counters["triangles"] =
-        benchmark::Counter(double(faces->coordIndex.size() / 4), benchmark::Counter::kIsIterationInvariantRate);
+    state.counters["triangles"] = benchmark::Counter(double(faces->coordIndex.size() / 4),
+                                                     benchmark::Counter::kIsIterationInvariantRate);
   }
 };
 

@@ -1,5 +1,6 @@
-// xvrml_parser.cpp: how fast worlds are read, against a bare scan for numbers by std::from_chars over the same bytes in the same
-// run, which does nothing else: the target is two thirds of it, or 200 MB/s (docs/benchmarks.md).
+// xvrml_parser.cpp: how fast worlds are read, against a bare scan for numbers by std::from_chars
+// over the same bytes in the same run, which does nothing else: the target is two thirds of it, or
+// 200 MB/s (docs/benchmarks.md).
 #include <charconv>
 #include <cmath>
 #include <string>
@@ -15,17 +16,20 @@ namespace {
 const std::string& bigFaceSet() {
   static const std::string text = [] {
     constexpr int cells = 632, row = cells + 1;
-    std::string out = "#VRML V2.0 utf8\nShape { geometry IndexedFaceSet { coord Coordinate { point [\n";
+    std::string out =
+        "#VRML V2.0 utf8\nShape { geometry IndexedFaceSet { coord Coordinate { point [\n";
     for (int j = 0; j <= cells; ++j) {
       for (int i = 0; i <= cells; ++i) {
-        out += fmt::format("{:.6g} {:.6g} {:.6g},\n", i * 0.01 - 3.16, std::sin(i * 0.05) * std::cos(j * 0.03), j * 0.01 - 3.16);
+        out += fmt::format("{:.6g} {:.6g} {:.6g},\n", i * 0.01 - 3.16,
+                           std::sin(i * 0.05) * std::cos(j * 0.03), j * 0.01 - 3.16);
       }
     }
     out += "] } coordIndex [\n";
     for (int j = 0; j < cells; ++j) {
       for (int i = 0; i < cells; ++i) {
         const int a = j * row + i;
-        out += fmt::format("{}, {}, {}, -1,\n{}, {}, {}, -1,\n", a, a + row, a + row + 1, a, a + row + 1, a + 1);
+        out += fmt::format("{}, {}, {}, -1,\n{}, {}, {}, -1,\n", a, a + row, a + row + 1, a,
+                           a + row + 1, a + 1);
       }
     }
     return out + "] } }\n";
@@ -38,7 +42,8 @@ const std::string& manyNodes() {
   static const std::string text = [] {
     std::string out = "#VRML V2.0 utf8\nDEF S Shape { geometry Box { } }\n";
     for (int i = 0; i < 50'000; ++i)
-      out += fmt::format("Transform {{ translation {} 0 {} children [ USE S ] }}\n", i % 100, i / 100);
+      out +=
+          fmt::format("Transform {{ translation {} 0 {} children [ USE S ] }}\n", i % 100, i / 100);
     return out;
   }();
   return text;
@@ -61,7 +66,8 @@ void scanNumbers(benchmark::State& state) {
     for (const char *p = text.data(), *end = p + text.size(); p < end;) {
       float number = 0;
       const bool starts = (*p >= '0' && *p <= '9') || *p == '-' || *p == '.';
-      const auto result = starts ? std::from_chars(p, end, number) : std::from_chars_result{p, std::errc::invalid_argument};
+      const auto result = starts ? std::from_chars(p, end, number)
+                                 : std::from_chars_result{p, std::errc::invalid_argument};
       p = result.ec == std::errc() ? result.ptr : p + 1;
       sum += number;
     }
@@ -78,8 +84,12 @@ void write(benchmark::State& state) {
 }
 
 BENCHMARK(scanNumbers)->Name("parser/fromCharsScan")->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(load, bigFaceSet, bigFaceSet)->Name("parser/bigFaceSet")->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(load, manyNodes, manyNodes)->Name("parser/manyNodes")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(load, bigFaceSet, bigFaceSet)
+    ->Name("parser/bigFaceSet")
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(load, manyNodes, manyNodes)
+    ->Name("parser/manyNodes")
+    ->Unit(benchmark::kMillisecond);
 BENCHMARK(write)->Name("writer/bigFaceSet")->Unit(benchmark::kMillisecond);
 
 } // namespace

@@ -1,5 +1,6 @@
-// xvrml_picking.cpp: what a motion of the pointer costs: a ray among 10,000 shapes of one group, among 10,000 in a tree of
-// groups, into one mesh of half a million triangles; and a ray after one of the shapes has moved.
+// xvrml_picking.cpp: what a motion of the pointer costs: a ray among 10,000 shapes of one group,
+// among 10,000 in a tree of groups, into one mesh of half a million triangles; and a ray after one
+// of the shapes has moved.
 #include <string>
 
 #include <benchmark/benchmark.h>
@@ -11,11 +12,14 @@ namespace {
 
 using namespace xvrml;
 
-std::unique_ptr<World> load(const std::string& vrml) { return loadWorldFromMemory("#VRML V2.0 utf8\n" + vrml, "bench.wrl"); }
+std::unique_ptr<World> load(const std::string& vrml) {
+  return loadWorldFromMemory("#VRML V2.0 utf8\n" + vrml, "bench.wrl");
+}
 
 std::string shapeAt(int x, int y) {
-  return fmt::format("DEF T{}_{} Transform {{ translation {} {} 0 children Shape {{ geometry Box {{ }} }} }}\n", x, y, 3 * x,
-                     3 * y);
+  return fmt::format(
+      "DEF T{}_{} Transform {{ translation {} {} 0 children Shape {{ geometry Box {{ }} }} }}\n", x,
+      y, 3 * x, 3 * y);
 }
 
 void shoot(Browser& browser, benchmark::State& state, bool moves) {
@@ -67,10 +71,10 @@ void moving(benchmark::State& state) {
 void mesh(benchmark::State& state) {
   std::string heights;
   for (int i = 0; i < 500 * 500; ++i) heights += i % 3 ? "0 " : "1 ";
-  Browser browser(
-      load("Transform { rotation 1 0 0 1.5707963 translation 0 300 0 children Shape { geometry ElevationGrid { xDimension 500 "
-           "zDimension 500 solid FALSE height [ " +
-           heights + "] } } }"));
+  Browser browser(load("Transform { rotation 1 0 0 1.5707963 translation 0 300 0 children Shape { "
+                       "geometry ElevationGrid { xDimension 500 "
+                       "zDimension 500 solid FALSE height [ " +
+                       heights + "] } } }"));
   shoot(browser, state, false);
 }
 

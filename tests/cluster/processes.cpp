@@ -1,5 +1,5 @@
-// processes.cpp: pictures with the help of real worker processes on loopback: the same bytes as one thread whoever takes part,
-// whenever they come and however they go.
+// processes.cpp: pictures with the help of real worker processes on loopback: the same bytes as one
+// thread whoever takes part, whenever they come and however they go.
 #include <cmath>
 #include <csignal>
 #include <cstdio>
@@ -25,7 +25,8 @@ Workers start(int count) {
 
 // Waits until so many workers have joined.
 void join(uint32_t count) {
-  EXPECT_TRUE(until([&] { return statistics().workers >= count; })) << statistics().workers << " of " << count << " workers";
+  EXPECT_TRUE(until([&] { return statistics().workers >= count; }))
+      << statistics().workers << " of " << count << " workers";
 }
 
 uint64_t jobsOf(const std::vector<RTworker>& workers) {
@@ -40,8 +41,9 @@ TEST(ClusterProcesses, AnyNumberOfWorkersMakesTheSameBytes) {
     for (int count = 0; count <= 3; count++) {
       SCOPED_TRACE(count);
       const Workers helping = start(count);
-      const Context context("backend=cluster threads=1 " +
-                            (count ? calling(helping) : "listen=127.0.0.1:" + std::to_string(freePort())));
+      const Context context(
+          "backend=cluster threads=1 " +
+          (count ? calling(helping) : "listen=127.0.0.1:" + std::to_string(freePort())));
       World world;
       world.look(look);
       join(uint32_t(count));
@@ -72,7 +74,9 @@ TEST(ClusterProcesses, WithoutThreadsOfItsOwnTheMasterLeavesAllToTheWorkers) {
 }
 
 // More than the test waits for if nobody helps, but not much.
-Look longer() { return {.width = 120, .height = 90, .samples = 256, .channels = RT_RGBA | RT_ERROR | RT_SAMPLES}; }
+Look longer() {
+  return {.width = 120, .height = 90, .samples = 256, .channels = RT_RGBA | RT_ERROR | RT_SAMPLES};
+}
 
 TEST(ClusterProcesses, WhoJoinsInMidFrameHelps) {
   const Picture one = expected(longer());
@@ -93,7 +97,8 @@ TEST(ClusterProcesses, AWorkerThatIsKilledInMidFrameIsMadeUpFor) {
   for (int victims : {1, 3}) {
     SCOPED_TRACE(victims);
     Workers helping = start(3);
-    Context context("backend=cluster threads=1 local=" + std::string(victims == 1 ? "0 " : "1 ") + calling(helping));
+    Context context("backend=cluster threads=1 local=" + std::string(victims == 1 ? "0 " : "1 ") +
+                    calling(helping));
     World world;
     world.look(longer());
     join(3);
@@ -123,7 +128,8 @@ TEST(ClusterProcesses, AllGoneAndNoThreadsOfItsOwnTheMasterFinishesAllTheSame) {
 }
 
 TEST(ClusterProcesses, NobodyToCallIsNoReasonToFail) {
-  Context context("backend=cluster local=0 threads=1 workers=127.0.0.1:" + std::to_string(freePort()));
+  Context context("backend=cluster local=0 threads=1 workers=127.0.0.1:" +
+                  std::to_string(freePort()));
   World world;
   rtRender();
   EXPECT_EQ(different(pixels({}), expected({})), 0u);
@@ -151,7 +157,8 @@ TEST(ClusterProcesses, AWorkerThatIsStoppedIsLeftOutUntilItGoesOn) {
 
 TEST(ClusterProcesses, AnAnimationIsTheSameFrameByFrame) {
   constexpr int frames = 100;
-  const Look look{.width = 32, .height = 24, .samples = 2, .channels = RT_RGBA | RT_DEPTH | RT_NAME};
+  const Look look{
+      .width = 32, .height = 24, .samples = 2, .channels = RT_RGBA | RT_DEPTH | RT_NAME};
   std::vector<Picture> alone;
   {
     const Context context("threads=1");
@@ -211,12 +218,14 @@ TEST(ClusterProcesses, RaysAreAskedAboutTheLastScene) {
   std::vector<RThit> lists[2];
   RTclosest closest[2];
   for (int i = 0; i < 2; i++) {
-    const Context context(i == 0 ? "threads=1" : "backend=cluster threads=1 local=0 " + calling(helping));
+    const Context context(i == 0 ? "threads=1"
+                                 : "backend=cluster threads=1 local=0 " + calling(helping));
     World world;
     rtSwapBuffers();
     world.move(1.3);
     rtSwapBuffers(); // in flight, perhaps with the one before
-    const RTray rays[2] = {{{0, 0, 6}, 0, {0, -.1f, -1}, INFINITY}, {{-2.5f, 9, 0}, 0, {0, -1, 0}, INFINITY}};
+    const RTray rays[2] = {{{0, 0, 6}, 0, {0, -.1f, -1}, INFINITY},
+                           {{-2.5f, 9, 0}, 0, {0, -1, 0}, INFINITY}};
     rtCastRays(2, rays, hits[i]);
     EXPECT_EQ(rtPick(30, 22, &hits[i][2]), 1);
     uint8_t occluded[2];
@@ -241,11 +250,13 @@ TEST(ClusterProcesses, RaysAreAskedAboutTheLastScene) {
 }
 
 TEST(ClusterProcesses, ARecordingBesideIsThatOfTheSameScene) {
-  const auto file = std::filesystem::temp_directory_path() / ("openrt_cluster_" + std::to_string(getpid()) + ".ortr");
+  const auto file = std::filesystem::temp_directory_path() /
+                    ("openrt_cluster_" + std::to_string(getpid()) + ".ortr");
   const auto alone = file.string() + "2";
   {
     const Workers helping = start(1);
-    const Context context("backend=cluster threads=1 record=" + file.string() + " " + calling(helping));
+    const Context context("backend=cluster threads=1 record=" + file.string() + " " +
+                          calling(helping));
     World world;
     rtRender();
     EXPECT_EQ(different(pixels({}), expected({})), 0u);
@@ -255,32 +266,41 @@ TEST(ClusterProcesses, ARecordingBesideIsThatOfTheSameScene) {
     World world;
     rtRender();
   }
-  const auto bytes = [](const std::filesystem::path& path) { return std::filesystem::file_size(path); };
+  const auto bytes = [](const std::filesystem::path& path) {
+    return std::filesystem::file_size(path);
+  };
   EXPECT_EQ(bytes(file), bytes(alone));
   std::filesystem::remove(file);
   std::filesystem::remove(alone);
 }
 
 TEST(ClusterProcesses, RequiredWorkersThatAreMissingAreAnError) {
-  const Context context("backend=cluster threads=1 require=2 workers=127.0.0.1:" + std::to_string(freePort()));
+  const Context context("backend=cluster threads=1 require=2 workers=127.0.0.1:" +
+                        std::to_string(freePort()));
   World world;
   rtSwapBuffers();
-  EXPECT_TRUE(until([&] { return rtProgress(context.handle) == 1; })); // who waits without waiting hears of it, too
+  EXPECT_TRUE(until([&] {
+    return rtProgress(context.handle) == 1;
+  })); // who waits without waiting hears of it, too
   rtFinishFrame();
   EXPECT_EQ(rtGetError(), RTenum(RT_CLUSTER_ERROR));
-  EXPECT_NE(std::string(rtGetErrorMessage()).find("2 workers are needed, there are 0"), std::string::npos) << rtGetErrorMessage();
+  EXPECT_NE(std::string(rtGetErrorMessage()).find("2 workers are needed, there are 0"),
+            std::string::npos)
+      << rtGetErrorMessage();
 }
 
 TEST(ClusterConfig, WhatCannotWorkIsSaidAtOnce) {
   for (const char* config :
-       {"backend=cluster workers=@/nonexistent/hosts", "backend=cluster workers=203.0.113.9", "backend=cluster listen=0.0.0.0",
-        "backend=cluster workers=127.0.0.1 key=/nonexistent/key", "backend=cluster workers=127.0.0.1 allow=/nonexistent/list"}) {
+       {"backend=cluster workers=@/nonexistent/hosts", "backend=cluster workers=203.0.113.9",
+        "backend=cluster listen=0.0.0.0", "backend=cluster workers=127.0.0.1 key=/nonexistent/key",
+        "backend=cluster workers=127.0.0.1 allow=/nonexistent/list"}) {
     EXPECT_EQ(rtNewContext(config), nullptr) << config;
     EXPECT_EQ(rtGetError(), RTenum(RT_CLUSTER_ERROR)) << config << ": " << rtGetErrorMessage();
   }
   rtNewContext("backend=cluster workers=203.0.113.9");
   rtGetError();
-  EXPECT_NE(std::string(rtGetErrorMessage()).find("--new-key"), std::string::npos) << rtGetErrorMessage();
+  EXPECT_NE(std::string(rtGetErrorMessage()).find("--new-key"), std::string::npos)
+      << rtGetErrorMessage();
 }
 
 } // namespace

@@ -1,4 +1,3 @@
-// support.cpp: see support.h.
 #include "cluster/support.h"
 
 #include <algorithm>
@@ -22,9 +21,11 @@ Context::Context(const std::string& config) {
     rtGetError();
     throw std::runtime_error(rtGetErrorMessage());
   }
-  rtLogCallback([](int level, const char* text,
-                   void* user) { static_cast<Context*>(user)->log.push_back(std::to_string(level) + " " + text); },
-                this);
+  rtLogCallback(
+      [](int level, const char* text, void* user) {
+        static_cast<Context*>(user)->log.push_back(std::to_string(level) + " " + text);
+      },
+      this);
 }
 
 Context::~Context() {
@@ -34,7 +35,8 @@ Context::~Context() {
 }
 
 bool Context::said(const std::string& part) const {
-  return std::any_of(log.begin(), log.end(), [&](const std::string& line) { return line.find(part) != line.npos; });
+  return std::any_of(log.begin(), log.end(),
+                     [&](const std::string& line) { return line.find(part) != line.npos; });
 }
 
 World::World() {
@@ -60,10 +62,12 @@ World::World() {
   for (int z = 0; z <= n; z++)
     for (int x = 0; x <= n; x++) {
       const float u = float(x) / n, v = float(z) / n;
-      points.insert(points.end(), {12 * u - 6, .2f * std::sin(17 * u) * std::cos(13 * v) - 1, 12 * v - 8});
+      points.insert(points.end(),
+                    {12 * u - 6, .2f * std::sin(17 * u) * std::cos(13 * v) - 1, 12 * v - 8});
       coordinates.insert(coordinates.end(), {u, v});
       const auto i = uint32_t(z * (n + 1) + x);
-      if (x < n && z < n) corners.insert(corners.end(), {i, i + n + 1, i + 1, i + 1, i + n + 1, i + n + 2});
+      if (x < n && z < n)
+        corners.insert(corners.end(), {i, i + n + 1, i + 1, i + 1, i + n + 1, i + n + 2});
     }
   rtVertexPointer(3, RT_FLOAT, 0, points.data());
   rtTexCoordPointer(2, RT_FLOAT, 0, coordinates.data());
@@ -118,7 +122,8 @@ void World::move(double time) {
     rtLoadName(3);
     rtBegin(RT_TRIANGLE_FAN);
     for (int k = 0; k < sides; k++)
-      rtVertex3f(float(std::cos(6.28 * k / sides)), float(std::sin(6.28 * k / sides)), .1f * float(k));
+      rtVertex3f(float(std::cos(6.28 * k / sides)), float(std::sin(6.28 * k / sides)),
+                 .1f * float(k));
     rtEnd();
     rtEndObject();
   }
@@ -135,9 +140,10 @@ Picture pixels(const Look& look) {
   Picture all;
   for (uint32_t channel = 1; channel <= look.channels; channel <<= 1) {
     if (!(look.channels & channel)) continue;
-    const size_t components = channel == RT_RGBA                                                           ? 4
-                              : (channel & (RT_NORMAL | RT_ALBEDO | RT_POSITION | RT_VARIANCE | RT_ERROR)) ? 3
-                                                                                                           : 1;
+    const size_t components =
+        channel == RT_RGBA                                                           ? 4
+        : (channel & (RT_NORMAL | RT_ALBEDO | RT_POSITION | RT_VARIANCE | RT_ERROR)) ? 3
+                                                                                     : 1;
     const size_t before = all.size();
     all.resize(before + components * n);
     rtReadPixels(channel, all.data() + before, components * n);
@@ -154,7 +160,8 @@ Picture expected(const Look& look, double time) {
     World world;
     world.look(look);
     rtRender();
-    if (time != 0) { // what moves is dynamic from then on, and differs in last bits from what was always there
+    if (time != 0) { // what moves is dynamic from then on, and differs in last bits from what was
+                     // always there
       world.move(time);
       rtRender();
     }

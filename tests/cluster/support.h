@@ -1,5 +1,5 @@
-// support.h: for tests of the cluster: a scene that asks for everything that travels, its pictures as bytes, and worker processes
-// on loopback that can be stopped, killed and started again.
+// support.h: for tests of the cluster: a scene that asks for everything that travels, its pictures
+// as bytes, and worker processes on loopback that can be stopped, killed and started again.
 #pragma once
 
 #include <chrono>
@@ -17,8 +17,8 @@ namespace cluster_test {
 
 using namespace std::chrono_literals;
 
-inline constexpr uint32_t allChannels =
-    RT_RGBA | RT_DEPTH | RT_NORMAL | RT_ALBEDO | RT_POSITION | RT_NAME | RT_SAMPLES | RT_VARIANCE | RT_ERROR | RT_TRUST;
+inline constexpr uint32_t allChannels = RT_RGBA | RT_DEPTH | RT_NORMAL | RT_ALBEDO | RT_POSITION |
+                                        RT_NAME | RT_SAMPLES | RT_VARIANCE | RT_ERROR | RT_TRUST;
 
 struct Look { // of a frame
   int width = 61, height = 45;
@@ -47,7 +47,8 @@ class World {
  public:
   World(); // in the current context
   void look(const Look& look);
-  void move(double time); // edits of an animation: matrices, a parameter, the camera, now and then geometry
+  void move(double time); // edits of an animation: matrices, a parameter, the camera, now and then
+                          // geometry
   void slow(int depth);   // paths of many bounces between mirrors: a frame that takes its time
 
  private:
@@ -94,7 +95,8 @@ template <class Workers> std::string calling(const Workers& workers) {
 }
 // Until it is so; false: not within so many seconds.
 template <class F> bool until(const F& condition, double seconds = 20) {
-  for (const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);;) {
+  for (const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
+       ;) {
     if (condition()) return true;
     if (std::chrono::steady_clock::now() > end) return false;
     std::this_thread::sleep_for(5ms);

@@ -1,5 +1,6 @@
-// corpus.cpp: real files of many authors (the corpus beside the repository, or $OPENRT_CORPUS; skipped where there is none):
-// what each class of them must do, and that all survive writing and reading again.
+// corpus.cpp: real files of many authors (the corpus beside the repository, or $OPENRT_CORPUS;
+// skipped where there is none): what each class of them must do, and that all survive writing and
+// reading again.
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
@@ -17,7 +18,8 @@ std::string corpusFolder() {
   return folder ? folder : "../shared/corpus";
 }
 
-// Paths of a class (second column: path, third: class of FEATURES.tsv); empty if there is no corpus.
+// Paths of a class (second column: path, third: class of FEATURES.tsv); empty if there is no
+// corpus.
 std::vector<std::string> filesOfClass(const std::string& wanted) {
   std::vector<std::string> paths;
   std::ifstream table(corpusFolder() + "/FEATURES.tsv");
@@ -51,7 +53,7 @@ void expectRoundTrip(const World& world, const std::string& path) {
   EXPECT_EQ(writeWorld(*again), text) << path;
 }
 
-#define REQUIRE_CORPUS(files)                                                                                                    \
+#define REQUIRE_CORPUS(files)                                                                      \
   if (files.empty()) GTEST_SKIP() << "no corpus at " << corpusFolder()
 
 TEST(Corpus, StrictFilesLoadAndRoundTrip) {
@@ -63,12 +65,14 @@ TEST(Corpus, StrictFilesLoadAndRoundTrip) {
       const auto world = loadWorld(path);
       silent += world->diagnostics.errors() == 0;
       for (const Diagnostic& diagnostic : world->diagnostics.list()) {
-        EXPECT_TRUE(diagnostic.severity != Severity::error || diagnostic.line > 0) << diagnostic.text();
+        EXPECT_TRUE(diagnostic.severity != Severity::error || diagnostic.line > 0)
+            << diagnostic.text();
       }
       expectRoundTrip(*world, path);
     } catch (const LoadError& error) { ADD_FAILURE() << error.diagnostic.text(); }
   }
-  // Some of them use fields of X3D or break rules; what was counted when the parser was written must not get worse.
+  // Some of them use fields of X3D or break rules; what was counted when the parser was written
+  // must not get worse.
   EXPECT_GE(silent, files.size() * 85 / 100);
 }
 
@@ -110,7 +114,8 @@ TEST(Corpus, Vrml1IsRefused) {
       loadWorld(path);
       ADD_FAILURE() << path << " was read";
     } catch (const LoadError& error) {
-      EXPECT_NE(error.diagnostic.message.find("VRML 1.0"), std::string::npos) << error.diagnostic.text();
+      EXPECT_NE(error.diagnostic.message.find("VRML 1.0"), std::string::npos)
+          << error.diagnostic.text();
       EXPECT_EQ(error.diagnostic.line, 1u);
     }
   }

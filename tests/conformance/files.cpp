@@ -1,5 +1,7 @@
-// files.cpp: the files of good/ load without a word and survive writing; those of bad/ give the messages their second line says:
-// "# expect LINE:COLUMN SEVERITY MESSAGE | ...". The names of the files say which rule they are about.
+// files.cpp: the files of good/ load without a word and survive writing; those of bad/ give the
+// messages their second line says:
+// "# expect LINE:COLUMN SEVERITY MESSAGE | ...". The names of the files say which rule they are
+// about.
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -92,8 +94,10 @@ TEST_P(Bad, SaysWhatIsWrongAndWhere) {
   EXPECT_GT(world->diagnostics.errors(), 0u);
 }
 
-INSTANTIATE_TEST_SUITE_P(Conformance, Good, testing::ValuesIn(filesOf("tests/conformance/good")), testName);
-INSTANTIATE_TEST_SUITE_P(Conformance, Bad, testing::ValuesIn(filesOf("tests/conformance/bad")), testName);
+INSTANTIATE_TEST_SUITE_P(Conformance, Good, testing::ValuesIn(filesOf("tests/conformance/good")),
+                         testName);
+INSTANTIATE_TEST_SUITE_P(Conformance, Bad, testing::ValuesIn(filesOf("tests/conformance/bad")),
+                         testName);
 
 TEST(ConformanceFiles, ThereAreEnough) {
   EXPECT_GE(filesOf("tests/conformance/good").size(), 60u);

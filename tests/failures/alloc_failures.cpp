@@ -1,11 +1,13 @@
-// alloc_failures.cpp: every allocation fails once. A small world with textures, text, prototypes, an Inline, a Script that adds
-// and removes nodes, instances and moving parts is loaded, run, drawn and written; then again for each allocation that the
-// project's libraries make on the way, with this one failing. What must hold each time: the process lives and does not hang; an
-// error is told by an exception, a message or rtGetError(), or the picture is the same as ever; what was allocated is freed; the
-// next picture is right again. Allocations that Embree, TBB and other libraries make for themselves never fail here.
+// alloc_failures.cpp: every allocation fails once. A small world with textures, text, prototypes,
+// an Inline, a Script that adds and removes nodes, instances and moving parts is loaded, run, drawn
+// and written; then again for each allocation that the project's libraries make on the way, with
+// this one failing. What must hold each time: the process lives and does not hang; an error is told
+// by an exception, a message or rtGetError(), or the picture is the same as ever; what was
+// allocated is freed; the next picture is right again. Allocations that Embree, TBB and other
+// libraries make for themselves never fail here.
 //
-// The work is done in a process of its own: where it crashes or hangs, that is told, and another one goes on with the next
-// number.
+// The work is done in a process of its own: where it crashes or hangs, that is told, and another
+// one goes on with the next number.
 //
 // alloc_failures [--quick] [--from N] [--to N] [--here] [--verbose]
 //   --quick        every n-th allocation only, about 120 of them
@@ -103,7 +105,8 @@ DEF Program Script {
 }
 ROUTE Program.out TO Moving.place
 )";
-constexpr char partText[] = "#VRML V2.0 utf8\nTransform { translation 0 2.5 0 children Shape { geometry Cone { } } }\n";
+constexpr char partText[] =
+    "#VRML V2.0 utf8\nTransform { translation 0 2.5 0 children Shape { geometry Cone { } } }\n";
 
 struct Outcome {
   bool threw = false;
@@ -111,7 +114,9 @@ struct Outcome {
   std::string messages;
   std::vector<float> pixels;
   std::string written; // the world, as a file
-  bool same(const Outcome& other) const { return pixels == other.pixels && written == other.written; }
+  bool same(const Outcome& other) const {
+    return pixels == other.pixels && written == other.written;
+  }
   bool told() const { return threw || error != RT_NO_ERROR || !messages.empty(); }
 };
 
@@ -192,24 +197,28 @@ Options parse(int argc, char** argv) {
 
 // What the working processes have found, in memory that they share with the one that watches them.
 struct Tally {
-  std::atomic<uint64_t> all{0}, next{1}, at{0}; // allocations: how many, the next to fail, the one that fails (0: none)
+  std::atomic<uint64_t> all{0}, next{1},
+      at{0}; // allocations: how many, the next to fail, the one that fails (0: none)
   std::atomic<uint64_t> runs{0}, threw{0}, errors{0}, messages{0}, same{0}, faults{0};
 };
 static_assert(std::atomic<uint64_t>::is_always_lock_free);
 
 void fault(Tally& tally, uint64_t number, const std::string& what) {
   ++tally.faults;
-  std::printf("fault: allocation %llu: %s\n", static_cast<unsigned long long>(number), what.c_str());
+  std::printf("fault: allocation %llu: %s\n", static_cast<unsigned long long>(number),
+              what.c_str());
   std::fflush(stdout);
 }
 
 // Lets one allocation after the other fail, from tally.next on. [a working process]
 class Sweep {
  public:
-  Sweep(std::string path, const Options& options, Tally& tally) : path_(std::move(path)), options_(options), tally_(tally) {}
+  Sweep(std::string path, const Options& options, Tally& tally)
+      : path_(std::move(path)), options_(options), tally_(tally) {}
 
   int run() {
-    for (int i = 0; i < 3; ++i) reference_ = work(path_); // fills what is kept for the life of the process: fonts, plug-ins
+    for (int i = 0; i < 3; ++i)
+      reference_ = work(path_); // fills what is kept for the life of the process: fonts, plug-ins
     if (reference_.told() || reference_.pixels.empty()) {
       std::printf("fault: without any failure: %s\n", reference_.messages.c_str());
       return 1;
@@ -233,12 +242,14 @@ class Sweep {
     }
     tally_.all = all;
     constexpr uint64_t few = 120;
-    const uint64_t last = std::min(options_.to, all), step = options_.quick ? std::max<uint64_t>(1, all / few) : 1;
+    const uint64_t last = std::min(options_.to, all),
+                   step = options_.quick ? std::max<uint64_t>(1, all / few) : 1;
     while (tally_.next <= last) {
       const int64_t before = failing_allocator::blocks();
       std::vector<uint64_t> tried;
       while (tried.size() < batch && tally_.next <= last) {
-        tried.push_back(tally_.next.fetch_add(step)); // where this one ends the process, the next begins behind it
+        tried.push_back(tally_.next.fetch_add(
+            step)); // where this one ends the process, the next begins behind it
         count(tried.back(), attempt(tried.back()));
       }
       if (!isSound(before)) lookAtEach(tried);
@@ -275,11 +286,13 @@ class Sweep {
       ++tally_.same;
     else
       fault(tally_, number,
-            outcome.pixels == reference_.pixels ? "another file, and nothing told" : "another picture, and nothing told");
+            outcome.pixels == reference_.pixels ? "another file, and nothing told"
+                                                : "another picture, and nothing told");
   }
 
-  // Without a failure: the picture is right, and nothing is left behind. A cache that was being filled may hold something for the
-  // first time; that this run fills it, too, shows that it was not lost.
+  // Without a failure: the picture is right, and nothing is left behind. A cache that was being
+  // filled may hold something for the first time; that this run fills it, too, shows that it was
+  // not lost.
   bool isSound(int64_t before) {
     const bool same = work(path_).same(reference_);
     return same && failing_allocator::blocks() <= before;
@@ -292,8 +305,8 @@ class Sweep {
       const std::string messages = attempt(number).messages;
       if (const Outcome next = work(path_); !next.same(reference_))
         fault(tally_, number,
-              "the next picture is wrong: error " + std::to_string(next.error) + (next.threw ? ", thrown; " : "; ") +
-                  next.messages);
+              "the next picture is wrong: error " + std::to_string(next.error) +
+                  (next.threw ? ", thrown; " : "; ") + next.messages);
       if (const int64_t more = failing_allocator::blocks() - before; more > 0)
         fault(tally_, number, std::to_string(more) + " blocks are not freed; " + messages);
     }
@@ -305,8 +318,8 @@ class Sweep {
   Outcome reference_;
 };
 
-// Has the work done by processes, one after the other, and says how those end that do not return. Returns false where nothing
-// can be tried.
+// Has the work done by processes, one after the other, and says how those end that do not return.
+// Returns false where nothing can be tried.
 bool watch(Sweep& sweep, Tally& tally) {
   constexpr int patience = 120; // seconds for one allocation: the machine may be busy
   constexpr uint64_t mostDeaths = 50;
@@ -340,7 +353,8 @@ bool watch(Sweep& sweep, Tally& tally) {
     ++deaths;
     const uint64_t at = tally.at.exchange(0);
     if (at == 0) return false;
-    fault(tally, at, hangs ? "hangs" : std::string("ends the process: ") + strsignal(WTERMSIG(status)));
+    fault(tally, at,
+          hangs ? "hangs" : std::string("ends the process: ") + strsignal(WTERMSIG(status)));
   }
   std::printf("fault: too many processes have ended\n");
   return false;
@@ -354,7 +368,8 @@ int main(int argc, char** argv) {
   std::ofstream(folder + "/world.wrl") << worldText;
   std::ofstream(folder + "/part.wrl") << partText;
   std::filesystem::copy_file(FAILURES_PICTURE, folder + "/picture.png");
-  void* const shared = mmap(nullptr, sizeof(Tally), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  void* const shared =
+      mmap(nullptr, sizeof(Tally), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   if (shared == MAP_FAILED) return 1;
   Tally& tally = *new (shared) Tally;
   const Options options = parse(argc, argv);
@@ -362,9 +377,12 @@ int main(int argc, char** argv) {
   Sweep sweep(folder + "/world.wrl", options, tally);
   const bool finished = options.here ? sweep.run() == 0 : watch(sweep, tally);
   std::filesystem::remove_all(folder);
-  const auto count = [](const std::atomic<uint64_t>& n) { return static_cast<unsigned long long>(n); };
-  std::printf(
-      "%llu failed, told by an exception: %llu, by rtGetError: %llu, by a message: %llu, without effect: %llu; %llu faults\n",
-      count(tally.runs), count(tally.threw), count(tally.errors), count(tally.messages), count(tally.same), count(tally.faults));
+  const auto count = [](const std::atomic<uint64_t>& n) {
+    return static_cast<unsigned long long>(n);
+  };
+  std::printf("%llu failed, told by an exception: %llu, by rtGetError: %llu, by a message: %llu, "
+              "without effect: %llu; %llu faults\n",
+              count(tally.runs), count(tally.threw), count(tally.errors), count(tally.messages),
+              count(tally.same), count(tally.faults));
   return !finished || tally.faults > 0 || tally.runs == 0;
 }

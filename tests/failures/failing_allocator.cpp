@@ -1,6 +1,6 @@
-// failing_allocator.cpp: see failing_allocator.h. The program's operator new and malloc take the place of everybody's. Who asks
-// is told by the return address; where the standard library asks for somebody (std::string, std::vector out of line), by the
-// stack.
+// failing_allocator.cpp: The program's operator new and malloc take the
+// place of everybody's. Who asks is told by the return address; where the standard library asks for
+// somebody (std::string, std::vector out of line), by the stack.
 #include "failures/failing_allocator.h"
 
 #include <atomic>
@@ -38,10 +38,11 @@ std::atomic<uint64_t> count{0}, target{0};
 std::atomic<int64_t> live{0};
 thread_local bool inside = false;
 
-// Libraries of the build tree are the project's. Of others the C libraries that decode pictures and glyphs take part with malloc.
+// Libraries of the build tree are the project's. Of others the C libraries that decode pictures and
+// glyphs take part with malloc.
 Owner ownerOf(const char* path) {
   if (!path || !*path) return Owner::other; // the test
-  char real[PATH_MAX]; // without the .. of a run path
+  char real[PATH_MAX];                      // without the .. of a run path
   if (realpath(path, real)) path = real;
   if (std::strstr(path, FAILURES_BUILD "/")) return Owner::project;
   const char* name = std::strrchr(path, '/');
@@ -110,7 +111,8 @@ void* allocate(size_t size, size_t alignment, const void* caller) {
   if (counted && fails()) return nullptr;
   const size_t front = alignment > headerBytes ? alignment : headerBytes;
   if (size > SIZE_MAX - front) return nullptr;
-  void* whole = alignment > headerBytes ? __libc_memalign(alignment, size + front) : __libc_malloc(size + front);
+  void* whole = alignment > headerBytes ? __libc_memalign(alignment, size + front)
+                                        : __libc_malloc(size + front);
   if (!whole) return nullptr;
   auto* block = static_cast<char*>(whole) + front;
   std::memcpy(block - sizeof counted, &counted, sizeof counted);
@@ -169,11 +171,21 @@ int64_t blocks() { return live; }
 #define CALLER __builtin_return_address(0)
 void* operator new(size_t size) { return orThrow(allocate(size, 0, CALLER)); }
 void* operator new[](size_t size) { return orThrow(allocate(size, 0, CALLER)); }
-void* operator new(size_t size, const std::nothrow_t&) noexcept { return allocate(size, 0, CALLER); }
-void* operator new[](size_t size, const std::nothrow_t&) noexcept { return allocate(size, 0, CALLER); }
-void* operator new(size_t size, std::align_val_t a) { return orThrow(allocate(size, size_t(a), CALLER)); }
-void* operator new[](size_t size, std::align_val_t a) { return orThrow(allocate(size, size_t(a), CALLER)); }
-void* operator new(size_t size, std::align_val_t a, const std::nothrow_t&) noexcept { return allocate(size, size_t(a), CALLER); }
+void* operator new(size_t size, const std::nothrow_t&) noexcept {
+  return allocate(size, 0, CALLER);
+}
+void* operator new[](size_t size, const std::nothrow_t&) noexcept {
+  return allocate(size, 0, CALLER);
+}
+void* operator new(size_t size, std::align_val_t a) {
+  return orThrow(allocate(size, size_t(a), CALLER));
+}
+void* operator new[](size_t size, std::align_val_t a) {
+  return orThrow(allocate(size, size_t(a), CALLER));
+}
+void* operator new(size_t size, std::align_val_t a, const std::nothrow_t&) noexcept {
+  return allocate(size, size_t(a), CALLER);
+}
 void* operator new[](size_t size, std::align_val_t a, const std::nothrow_t&) noexcept {
   return allocate(size, size_t(a), CALLER);
 }
@@ -185,11 +197,19 @@ void operator delete(void* block, const std::nothrow_t&) noexcept { release(bloc
 void operator delete[](void* block, const std::nothrow_t&) noexcept { release(block, 0); }
 void operator delete(void* block, std::align_val_t a) noexcept { release(block, size_t(a)); }
 void operator delete[](void* block, std::align_val_t a) noexcept { release(block, size_t(a)); }
-void operator delete(void* block, size_t, std::align_val_t a) noexcept { release(block, size_t(a)); }
-void operator delete[](void* block, size_t, std::align_val_t a) noexcept { release(block, size_t(a)); }
+void operator delete(void* block, size_t, std::align_val_t a) noexcept {
+  release(block, size_t(a));
+}
+void operator delete[](void* block, size_t, std::align_val_t a) noexcept {
+  release(block, size_t(a));
+}
 
 extern "C" {
 void* malloc(size_t size) { return decoderFails(CALLER) ? nullptr : __libc_malloc(size); }
-void* calloc(size_t n, size_t size) { return decoderFails(CALLER) ? nullptr : __libc_calloc(n, size); }
-void* realloc(void* block, size_t size) { return decoderFails(CALLER) ? nullptr : __libc_realloc(block, size); }
+void* calloc(size_t n, size_t size) {
+  return decoderFails(CALLER) ? nullptr : __libc_calloc(n, size);
+}
+void* realloc(void* block, size_t size) {
+  return decoderFails(CALLER) ? nullptr : __libc_realloc(block, size);
+}
 }

@@ -1,10 +1,12 @@
-/* write_failures.c: a library for LD_PRELOAD that makes one write to a file fail as on a full disk. write_failures.py uses it.
+/* write_failures.c: a library for LD_PRELOAD that makes one write to a file fail as on a full disk.
+ * write_failures.py uses it.
  *
- * Calls that can fail for want of space are counted: open and fopen that make a file, write, writev and pwrite to regular files,
- * fwrite, fflush and fclose of streams on such files, close and fsync of them, rename. Standard output and standard error are
- * not counted. WRITE_FAILURE=N makes the N-th of them fail with ENOSPC (0: none).
- * WRITE_FAILURE_STICKS=1 makes all after it fail as well, except for those that give space back. The number of calls so far is
- * kept in the file named by WRITE_FAILURE_COUNT, which is itself not counted; one process at a time. */
+ * Calls that can fail for want of space are counted: open and fopen that make a file, write, writev
+ * and pwrite to regular files, fwrite, fflush and fclose of streams on such files, close and fsync
+ * of them, rename. Standard output and standard error are not counted. WRITE_FAILURE=N makes the
+ * N-th of them fail with ENOSPC (0: none). WRITE_FAILURE_STICKS=1 makes all after it fail as well,
+ * except for those that give space back. The number of calls so far is kept in the file named by
+ * WRITE_FAILURE_COUNT, which is itself not counted; one process at a time. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>
@@ -54,8 +56,8 @@ static int fails(void) {
   return 1;
 }
 
-#define REAL(result, name, ...)                                                                                                  \
-  static result (*real)(__VA_ARGS__);                                                                                            \
+#define REAL(result, name, ...)                                                                    \
+  static result (*real)(__VA_ARGS__);                                                              \
   if (!real) *(void**)&real = dlsym(RTLD_NEXT, name)
 
 static int absent(const char* path) {

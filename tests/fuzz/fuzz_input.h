@@ -1,5 +1,5 @@
-// fuzz_input.h: what a fuzzer's bytes are taken for: small numbers, often the same ones, so that messages fit together; zeros
-// once the bytes have come to an end.
+// fuzz_input.h: what a fuzzer's bytes are taken for: small numbers, often the same ones, so that
+// messages fit together; zeros once the bytes have come to an end.
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,6 @@
-// openrt_cluster_master.cpp: a master whose workers have a key and bad intentions: they say anything in any order, most of it
-// well formed, while the application commits, cancels and reads frames. Input: what happens, one thing after the other.
+// openrt_cluster_master.cpp: a master whose workers have a key and bad intentions: they say
+// anything in any order, most of it well formed, while the application commits, cancels and reads
+// frames. Input: what happens, one thing after the other.
 #include <map>
 
 #include "backend/cluster/master/master.h"
@@ -36,12 +37,14 @@ struct Game {
     options.schedule.split = Split(in.below(4));
     options.local.log = [](int, const char*, void*) {};
     options.close = [this](Peer peer, const std::string&) { sides[peer] = {}; };
-    options.background = options.results = [this](std::function<void()> heavy, MasterOptions::Then then) {
-      heavy();
-      later.push_back(std::move(then));
-    };
+    options.background =
+        options.results = [this](std::function<void()> heavy, MasterOptions::Then then) {
+          heavy();
+          later.push_back(std::move(then));
+        };
     master = std::make_unique<Master>(
-        options, [this](Peer peer, Frames&& frames) { return hear(peer, std::move(frames)); }, nullptr);
+        options, [this](Peer peer, Frames&& frames) { return hear(peer, std::move(frames)); },
+        nullptr);
   }
 
   // What the master says.
@@ -49,8 +52,10 @@ struct Game {
     Side& side = sides[peer];
     if (side.full) return false;
     Message m;
-    if (!decode(std::move(frames), m).empty()) __builtin_trap(); // it must not say what is no message
-    if (const auto* welcome = std::get_if<message::Welcome>(&m.body)) side.session = welcome->session;
+    if (!decode(std::move(frames), m).empty())
+      __builtin_trap(); // it must not say what is no message
+    if (const auto* welcome = std::get_if<message::Welcome>(&m.body))
+      side.session = welcome->session;
     if (const auto* jobs = std::get_if<message::Jobs>(&m.body))
       for (const LeasedJob& job : jobs->jobs) side.jobs.emplace_back(jobs->epoch, job);
     return true;
@@ -58,7 +63,9 @@ struct Game {
 
   void commit() {
     auto commit = std::make_shared<Commit>();
-    const auto add = [&](auto&& edit) { commit->edits.edits.emplace_back(new edit::EditT)->any.Set(std::move(edit)); };
+    const auto add = [&](auto&& edit) {
+      commit->edits.edits.emplace_back(new edit::EditT)->any.Set(std::move(edit));
+    };
     if (in.flip()) {
       edit::TextureT texture;
       texture.id = uint32_t(epoch + 1);
@@ -70,7 +77,8 @@ struct Game {
     }
     edit::FrameSettingsT frame;
     constexpr uint32_t channels[] = {RT_RGBA, RT_RGBA | RT_VARIANCE, RT_RGBA | RT_ERROR,
-                                     RT_RGBA | RT_DEPTH | RT_POSITION | RT_NAME | RT_NORMAL | RT_ALBEDO | RT_ERROR};
+                                     RT_RGBA | RT_DEPTH | RT_POSITION | RT_NAME | RT_NORMAL |
+                                         RT_ALBEDO | RT_ERROR};
     constexpr uint32_t samples[] = {1, 4, 40, 128};
     frame.width = 7;
     frame.height = 5;
@@ -122,7 +130,8 @@ struct Game {
     result.sums[0].rgba[0] = b;
     result.sums[0].delta[0] = a; // not all pixels the same
     std::vector<std::byte> bytes = encodeResult(frame, job, result);
-    if (in.below(8) == 0 && !bytes.empty()) bytes[in.raw<uint16_t>() % bytes.size()] = std::byte(in.byte());
+    if (in.below(8) == 0 && !bytes.empty())
+      bytes[in.raw<uint16_t>() % bytes.size()] = std::byte(in.byte());
     return bytes;
   }
 
@@ -139,11 +148,13 @@ struct Game {
     case 1: {
       message::Need need{of, {}};
       for (size_t i = in.below(4); i > 0; i--)
-        need.arrays.push_back(in.flip() ? hashOf({array->data(), array->size()}) : Hash{in.number(), 0});
+        need.arrays.push_back(in.flip() ? hashOf({array->data(), array->size()})
+                                        : Hash{in.number(), 0});
       return need;
     }
     case 2: {
-      message::Ready ready{of, {in.byte() < 250, in.flip()}, uint8_t(in.below(RT_TRANSPORT_LIGHT + 1)), {}};
+      message::Ready ready{
+          of, {in.byte() < 250, in.flip()}, uint8_t(in.below(RT_TRANSPORT_LIGHT + 1)), {}};
       ready.stats.triangles = in.below(8) == 0;
       return ready;
     }

@@ -1,5 +1,6 @@
-// openrt_cluster_messages.cpp: what a master or a worker may be sent, from bytes: framing, headers, edits, pieces of arrays,
-// results of jobs. Input: frame after frame, each with its length in two bytes; what is left is the last one.
+// openrt_cluster_messages.cpp: what a master or a worker may be sent, from bytes: framing, headers,
+// edits, pieces of arrays, results of jobs. Input: frame after frame, each with its length in two
+// bytes; what is left is the last one.
 #include <array>
 
 #include "backend/cluster/net/messages.h"
@@ -35,7 +36,8 @@ void take(message::Scene& scene) {
 
 // As the master does, for frames of several kinds.
 void take(const message::Result& result) {
-  for (const uint32_t channels : {uint32_t(RT_RGBA), uint32_t(RT_RGBA | RT_DEPTH | RT_NORMAL | RT_VARIANCE | RT_ERROR)}) {
+  for (const uint32_t channels :
+       {uint32_t(RT_RGBA), uint32_t(RT_RGBA | RT_DEPTH | RT_NORMAL | RT_VARIANCE | RT_ERROR)}) {
     edit::FrameSettingsT frame;
     frame.width = 5;
     frame.height = 3;

@@ -1,5 +1,6 @@
-// openrt_cluster_worker.cpp: a worker whose master has a key and bad intentions: scenes, pieces of arrays and jobs in any order,
-// most of them well formed, while the machine answers or fails. Input: what happens, one thing after the other.
+// openrt_cluster_worker.cpp: a worker whose master has a key and bad intentions: scenes, pieces of
+// arrays and jobs in any order, most of them well formed, while the machine answers or fails.
+// Input: what happens, one thing after the other.
 #include <deque>
 
 #include "backend/cluster/worker/worker.h"
@@ -30,14 +31,15 @@ struct Game final : Machine {
   Worker worker;
 
   explicit Game(std::span<const std::byte> bytes)
-      : in(bytes),
-        worker({.self = {.library = "fuzz", .threads = 2}, .cacheBytes = 256},
-               {[](Peer, Frames&& frames) {
-                  Message m;
-                  if (!decode(std::move(frames), m).empty()) __builtin_trap(); // it must not say what is no message
-                },
-                [this](Peer, const std::string&) { peer = 0; }, [](Peer, const std::string&) {}, [](double, double) {}},
-               *this) {}
+      : in(bytes), worker({.self = {.library = "fuzz", .threads = 2}, .cacheBytes = 256},
+                          {[](Peer, Frames&& frames) {
+                             Message m;
+                             if (!decode(std::move(frames), m).empty())
+                               __builtin_trap(); // it must not say what is no message
+                           },
+                           [this](Peer, const std::string&) { peer = 0; },
+                           [](Peer, const std::string&) {}, [](double, double) {}},
+                          *this) {}
 
   void scene(Epoch epoch, std::shared_ptr<const Commit> commit, bool, bool prepare) override {
     for (const auto& entry : commit->edits.edits)
@@ -55,7 +57,9 @@ struct Game final : Machine {
   std::vector<std::byte> edits(message::Scene& scene) {
     if (in.below(8) == 0) return in.bytes(1000);
     edit::EditsT all;
-    const auto add = [&](auto&& edit) { all.edits.emplace_back(new edit::EditT)->any.Set(std::move(edit)); };
+    const auto add = [&](auto&& edit) {
+      all.edits.emplace_back(new edit::EditT)->any.Set(std::move(edit));
+    };
     if (in.byte() < 250) {
       edit::FrameSettingsT settings;
       settings.width = uint32_t(1 + in.number());
@@ -112,7 +116,8 @@ struct Game final : Machine {
       const auto array = arrayOf(in.below(arrays));
       const Hash hash = hashOf({array->data(), array->size()});
       auto packed = packArray({array->data(), array->size()});
-      if (in.byte() > 240 && !packed.empty()) packed[in.below(packed.size())] = std::byte(in.byte());
+      if (in.byte() > 240 && !packed.empty())
+        packed[in.below(packed.size())] = std::byte(in.byte());
       message::Piece piece = pieceOf(hash, array->size(), packed, 0);
       if (in.byte() > 250) piece.bytes = in.number();
       if (in.byte() > 250) piece.stored = in.number();
@@ -165,7 +170,8 @@ struct Game final : Machine {
     if (!worker.serving()) {
       worker.joined(peer = 1, "somewhere", 0);
       session = 1 + in.below(3);
-      worker.message(peer, encode(session, message::Welcome{protocolVersion, session, 0.1f, 0.5f}), 0);
+      worker.message(peer, encode(session, message::Welcome{protocolVersion, session, 0.1f, 0.5f}),
+                     0);
     }
     message::Body body = anything();
     worker.message(peer, encode(session, std::move(body)), 0);

@@ -1,4 +1,5 @@
-// picture_radiance.cpp: any bytes as a picture of radiance: RGBE and PFM by their first byte. libFuzzer calls this on one thread.
+// picture_radiance.cpp: any bytes as a picture of radiance: RGBE and PFM by their first byte.
+// libFuzzer calls this on one thread.
 #include <cstdint>
 #include <cstdio>
 #include <stdexcept>
@@ -13,9 +14,12 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) try {
   if (size == 0) return 0;
   const FuzzFile file(data + 1, size - 1);
   // The suffix says the format: a link has one.
-  const std::string link = "/dev/shm/openrt-fuzz-" + std::to_string(::getpid()) + (data[0] & 1 ? ".hdr" : ".pfm");
+  const std::string link =
+      "/dev/shm/openrt-fuzz-" + std::to_string(::getpid()) + (data[0] & 1 ? ".hdr" : ".pfm");
   ::unlink(link.c_str());
-  if (::symlink(("/proc/" + std::to_string(::getpid()) + file.path().substr(10)).c_str(), link.c_str()) != 0) return 0;
+  if (::symlink(("/proc/" + std::to_string(::getpid()) + file.path().substr(10)).c_str(),
+                link.c_str()) != 0)
+    return 0;
   struct Remove {
     const std::string& link;
     ~Remove() { ::unlink(link.c_str()); }

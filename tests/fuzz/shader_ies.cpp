@@ -1,5 +1,5 @@
-// shader_ies.cpp: any text as a measured luminaire. What is accepted gives a finite intensity in every direction. libFuzzer calls
-// this on one thread.
+// shader_ies.cpp: any text as a measured luminaire. What is accepted gives a finite intensity in
+// every direction. libFuzzer calls this on one thread.
 #include <cmath>
 #include <string_view>
 
@@ -11,6 +11,8 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   if (ies::parse({reinterpret_cast<const char*>(data), size}, measured, line)) return 0;
   for (double down = 0; down <= 180; down += 7.5)
     for (double around = -360; around <= 720; around += 22.5)
-      if (const float candela = measured.intensity(down, around); !std::isfinite(candela) || candela < 0) __builtin_trap();
+      if (const float candela = measured.intensity(down, around);
+          !std::isfinite(candela) || candela < 0)
+        __builtin_trap();
   return 0;
 }

@@ -1,5 +1,5 @@
-// vv_input_script.cpp: any text as a script of --input; what is read can be written and read again. libFuzzer calls this on one
-// thread.
+// vv_input_script.cpp: any text as a script of --input; what is read can be written and read again.
+// libFuzzer calls this on one thread.
 #include <cstdint>
 #include <string>
 
@@ -7,7 +7,8 @@
 #include "window/input/input_script.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) try {
-  const vv::InputScript script = vv::parseInputScript({reinterpret_cast<const char*>(data), size}, "fuzz");
+  const vv::InputScript script =
+      vv::parseInputScript({reinterpret_cast<const char*>(data), size}, "fuzz");
   std::string again;
   for (const vv::TimedInput& one : script.events) again += vv::inputLine(one.time, one.event);
   if (vv::parseInputScript(again, "again").events.size() != script.events.size()) __builtin_trap();

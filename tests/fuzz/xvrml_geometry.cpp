@@ -1,5 +1,5 @@
-// xvrml_geometry.cpp: any bytes as the body of a world: every geometry node in it becomes a mesh, which must be sound.
-// libFuzzer calls this on one thread.
+// xvrml_geometry.cpp: any bytes as the body of a world: every geometry node in it becomes a mesh,
+// which must be sound. libFuzzer calls this on one thread.
 #include <cmath>
 #include <string>
 
@@ -25,10 +25,12 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) try {
   LoadOptions options;
   options.limits.expandedNodes = 10'000;
   options.limits.triangles = 100'000;
-  const std::string text = "#VRML V2.0 utf8\n" + std::string(reinterpret_cast<const char*>(data), size);
+  const std::string text =
+      "#VRML V2.0 utf8\n" + std::string(reinterpret_cast<const char*>(data), size);
   const auto world = loadWorldFromMemory(text, "fuzz.wrl", options);
   Diagnostics diagnostics;
   for (const NodeRef& root : world->scope.roots)
-    for (bool textured : {false, true}) check(buildMesh(*root, {textured, &options.limits, &diagnostics}));
+    for (bool textured : {false, true})
+      check(buildMesh(*root, {textured, &options.limits, &diagnostics}));
   return 0;
 } catch (const xvrml::LoadError&) { return 0; }

@@ -1,5 +1,5 @@
-// xvrml_image.cpp: any bytes as a picture. The first byte chooses the format, so that the fuzzer need not find its magic number.
-// libFuzzer calls this on one thread.
+// xvrml_image.cpp: any bytes as a picture. The first byte chooses the format, so that the fuzzer
+// need not find its magic number. libFuzzer calls this on one thread.
 #include <cstdint>
 #include <cstring>
 #include <stdexcept>
@@ -10,12 +10,14 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) try {
   if (size == 0) return 0;
-  static const char* const magic[] = {"", "\x89PNG\r\n\x1a\n", "\xff\xd8\xff", "GIF89a", "#?RGBE\n", "PF\n", "\x76\x2f\x31\x01",
-                                      ""};
+  static const char* const magic[] = {
+      "", "\x89PNG\r\n\x1a\n", "\xff\xd8\xff", "GIF89a", "#?RGBE\n", "PF\n", "\x76\x2f\x31\x01",
+      ""};
   const char* start = magic[data[0] & 7];
   std::vector<uint8_t> bytes(start, start + std::strlen(start));
   bytes.insert(bytes.end(), data + 1, data + size);
-  // The limits as they are: run-fuzz.sh bounds the memory, so that a decoder that allocates by what a header says is found.
+  // The limits as they are: run-fuzz.sh bounds the memory, so that a decoder that allocates by what
+  // a header says is found.
   if (size > 16384) return 0; // packs no more than 200 MB
   const xvrml::Limits limits{};
   if (xvrml::looksLikeRadiance(bytes.data(), bytes.size())) {
@@ -26,6 +28,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) try {
     return 0;
   }
   const xvrml::Image image = xvrml::decodeImage(bytes.data(), bytes.size(), limits);
-  if (image.pixels.size() != size_t(image.width) * size_t(image.height) * size_t(image.components)) __builtin_trap();
+  if (image.pixels.size() != size_t(image.width) * size_t(image.height) * size_t(image.components))
+    __builtin_trap();
   return 0;
 } catch (const std::runtime_error&) { return 0; }

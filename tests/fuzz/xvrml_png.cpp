@@ -7,6 +7,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) try {
   xvrml::Limits limits;
   limits.imagePixels = 1 << 20;
   const xvrml::Image image = xvrml::decodePng({data, size}, xvrml::ImageRoom{limits});
-  if (image.pixels.size() != size_t(image.width) * size_t(image.height) * size_t(image.components)) __builtin_trap();
+  if (image.pixels.size() != size_t(image.width) * size_t(image.height) * size_t(image.components))
+    __builtin_trap();
   return 0;
 } catch (const std::runtime_error&) { return 0; }

@@ -1,5 +1,5 @@
-// xvrml_script_messages.cpp: what a helper process for Scripts may say to the browser, from bytes: framing, calls of the host's
-// functions, values.
+// xvrml_script_messages.cpp: what a helper process for Scripts may say to the browser, from bytes:
+// framing, calls of the host's functions, values.
 #include "../script/looking_host.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {

@@ -1,4 +1,5 @@
-// xvrml_wav.cpp: any bytes as a sound. What the header says fits the samples that come out. libFuzzer calls this on one thread.
+// xvrml_wav.cpp: any bytes as a sound. What the header says fits the samples that come out.
+// libFuzzer calls this on one thread.
 #include <stdexcept>
 
 #include "behaviour/wav.h"

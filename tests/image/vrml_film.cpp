@@ -1,4 +1,5 @@
-// vrml_film.cpp: a film on a surface: the picture of the world's time is what is seen (clause 6.28).
+// vrml_film.cpp: a film on a surface: the picture of the world's time is what is seen
+// (clause 6.28).
 #include <filesystem>
 #include <fstream>
 #include <unistd.h>
@@ -15,9 +16,10 @@ namespace {
 // An animated GIF of two pictures of one pixel, a second each: red, then green.
 std::string redThenGreen() {
   std::string out = "GIF89a";
-  out += std::string("\1\0\1\0\xf0\0\0", 7) + std::string("\xff\0\0\0\xff\0", 6); // 1 x 1, a palette of two
+  out += std::string("\1\0\1\0\xf0\0\0", 7) +
+         std::string("\xff\0\0\0\xff\0", 6); // 1 x 1, a palette of two
   for (int i = 0; i < 2; ++i) {
-    out += std::string("\x21\xf9\4\0\x64\0\0\0", 8);                           // 100 hundredths of a second
+    out += std::string("\x21\xf9\4\0\x64\0\0\0", 8); // 100 hundredths of a second
     out += std::string("\x2c\0\0\0\0\1\0\1\0\0", 10) + std::string("\2\2", 2); // the whole picture
     out += std::string(i == 0 ? "\x44\1\0" : "\x4c\1\0", 3);                   // clear, colour, end
   }
@@ -25,15 +27,19 @@ std::string redThenGreen() {
 }
 
 TEST(FilmPicture, ASurfaceShowsThePictureOfTheTime) {
-  const auto folder = std::filesystem::path(testing::TempDir()) / fmt::format("xvrml_film_{}", getpid());
+  const auto folder =
+      std::filesystem::path(testing::TempDir()) / fmt::format("xvrml_film_{}", getpid());
   std::filesystem::create_directories(folder);
   std::ofstream(folder / "film.gif", std::ios::binary) << redThenGreen();
   const std::string vrml =
-      "#VRML V2.0 utf8\n" + dark + square("Appearance { texture DEF M MovieTexture { startTime 1 loop TRUE url \"film.gif\" } }");
+      "#VRML V2.0 utf8\n" + dark +
+      square(
+          "Appearance { texture DEF M MovieTexture { startTime 1 loop TRUE url \"film.gif\" } }");
   RTcontext context = rtNewContext("threads=1");
   ASSERT_NE(context, nullptr);
   {
-    Browser browser(loadWorldFromMemory(vrml, folder / "world.wrl"), BrowserOptions(), 0, RunOptions{.epoch = 0});
+    Browser browser(loadWorldFromMemory(vrml, folder / "world.wrl"), BrowserOptions(), 0,
+                    RunOptions{.epoch = 0});
     OpenRTMapper mapper(browser.world(), MapOptions());
     rtFrameBuffer(1, 1, RT_RGBA);
     const auto seen = [&](double time) {
@@ -55,7 +61,8 @@ TEST(FilmPicture, ASurfaceShowsThePictureOfTheTime) {
       browser.set(*browser.node("M"), "set_stopTime", 4.5);
       EXPECT_STREQ(seen(9), "green"); // it keeps the last one
     }
-    for (const Diagnostic& d : browser.world().diagnostics.list()) EXPECT_FALSE(decodesFilms()) << d.text();
+    for (const Diagnostic& d : browser.world().diagnostics.list())
+      EXPECT_FALSE(decodesFilms()) << d.text();
   }
   rtDeleteContext(context);
   std::filesystem::remove_all(folder);

@@ -1,4 +1,5 @@
-// Groups, scopes, views and names through VRML text and the ray tracer: what is seen straight ahead of a camera.
+// Groups, scopes, views and names through VRML text and the ray tracer: what is seen straight ahead
+// of a camera.
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -32,8 +33,10 @@ TEST(VrmlGroups, DirectionalLightAtTheTopShinesOnEverything) {
 }
 
 TEST(VrmlGroups, ScopesNest) {
-  Scene scene(dark + "Transform { translation 0 1 0 children [ Transform { translation 0 -1 0 children [ " + sun +
-              moved(-3, plain) + "Group { children [ " + sun + moved(0, plain) + " ] } ] } ] }\n" + moved(3, plain));
+  Scene scene(
+      dark + "Transform { translation 0 1 0 children [ Transform { translation 0 -1 0 children [ " +
+      sun + moved(-3, plain) + "Group { children [ " + sun + moved(0, plain) + " ] } ] } ] }\n" +
+      moved(3, plain));
   EXPECT_NEAR(redAt(scene, -3), 0.8, 1e-5);
   EXPECT_NEAR(redAt(scene, 0), 1.6, 1e-5);
   EXPECT_NEAR(redAt(scene, 3), 0, 1e-6);
@@ -41,7 +44,8 @@ TEST(VrmlGroups, ScopesNest) {
 
 TEST(VrmlGroups, AScopedLightReachesInstancesOfSharedGroups) {
   const std::string grid = "Shape { appearance " + material() +
-                           " geometry ElevationGrid { xDimension 41 zDimension 41 xSpacing 0.05 zSpacing 0.05 height [ " +
+                           " geometry ElevationGrid { xDimension 41 zDimension 41 xSpacing 0.05 "
+                           "zSpacing 0.05 height [ " +
                            [] {
                              std::string zeros;
                              for (int i = 0; i < 41 * 41; ++i) zeros += "0 ";
@@ -50,8 +54,10 @@ TEST(VrmlGroups, AScopedLightReachesInstancesOfSharedGroups) {
                            "] } }";
   // The grid faces +y: it is turned to face the camera.
   const std::string tree =
-      "Transform { rotation 1 0 0 1.5707963 children Transform { translation -1 0 -1 children " + grid + " } }";
-  Scene scene(dark + "Group { children [ " + sun + moved(-3, "DEF T " + tree) + moved(0, "USE T") + " ] }\n" + moved(3, "USE T"));
+      "Transform { rotation 1 0 0 1.5707963 children Transform { translation -1 0 -1 children " +
+      grid + " } }";
+  Scene scene(dark + "Group { children [ " + sun + moved(-3, "DEF T " + tree) + moved(0, "USE T") +
+              " ] }\n" + moved(3, "USE T"));
   EXPECT_NEAR(redAt(scene, -3.01), 0.8, 1e-5);
   EXPECT_NEAR(redAt(scene, 0.01), 0.8, 1e-5);
   EXPECT_NEAR(redAt(scene, 3.01), 0, 1e-6);
@@ -59,15 +65,20 @@ TEST(VrmlGroups, AScopedLightReachesInstancesOfSharedGroups) {
 }
 
 TEST(VrmlGroups, AUsedGroupTakesItsLightAlong) {
-  Scene scene(dark + moved(-3, "DEF L Group { children [ DirectionalLight { direction 0 1 -1 } " + plain + " ] }") +
-              "Transform { translation 3 0 0 rotation 0 0 1 1 children USE L }\n" + moved(0, plain));
+  Scene scene(dark +
+              moved(-3, "DEF L Group { children [ DirectionalLight { direction 0 1 -1 } " + plain +
+                            " ] }") +
+              "Transform { translation 3 0 0 rotation 0 0 1 1 children USE L }\n" +
+              moved(0, plain));
   EXPECT_NEAR(redAt(scene, -3), 0.8 / std::sqrt(2.0), 1e-5);
   EXPECT_NEAR(redAt(scene, 3), 0.8 / std::sqrt(2.0), 1e-5);
   EXPECT_NEAR(redAt(scene, 0), 0, 1e-6);
 }
 
 TEST(VrmlGroups, PointAndSpotLightsAreNotScoped) {
-  Scene scene(dark + "Group { children [ PointLight { location 3 0 2 } ] }\nGroup { children SpotLight { location -3 0 2 } }\n" +
+  Scene scene(dark +
+              "Group { children [ PointLight { location 3 0 2 } ] }\nGroup { children SpotLight { "
+              "location -3 0 2 } }\n" +
               moved(-3, plain) + moved(3, plain));
   EXPECT_NEAR(redAt(scene, 3), 0.8, 0.3) << "and a little from the spot, if it reached";
   EXPECT_GT(redAt(scene, -3), 0.8);
@@ -79,11 +90,13 @@ TEST(VrmlGroups, SwitchIsAScopeOfItsOwn) {
 }
 
 TEST(VrmlGroups, AnInlineIsAScopeAndItsBindablesAreNotBoundFirst) {
-  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "vrml_inline_scope";
+  const std::filesystem::path folder =
+      std::filesystem::path(testing::TempDir()) / "vrml_inline_scope";
   std::filesystem::create_directories(folder);
-  std::ofstream(folder / "part.wrl") << "#VRML V2.0 utf8\n"
-                                     << sun << "Viewpoint { position 9 9 9 }\nBackground { skyColor 1 0 0 }\n"
-                                     << moved(-3, plain);
+  std::ofstream(folder / "part.wrl")
+      << "#VRML V2.0 utf8\n"
+      << sun << "Viewpoint { position 9 9 9 }\nBackground { skyColor 1 0 0 }\n"
+      << moved(-3, plain);
   std::ofstream(folder / "whole.wrl") << "#VRML V2.0 utf8\n"
                                       << dark << "Inline { url \"part.wrl\" }\n"
                                       << moved(3, plain) << "DEF Mine Viewpoint { }\n";
@@ -115,8 +128,9 @@ TEST(VrmlGroups, HeadlightFollowsTheCamera) {
 }
 
 TEST(VrmlGroups, BillboardsTurnToEveryCamera) {
-  Scene scene("Transform { translation 5 0 0 rotation 0 1 0 2 children Billboard { axisOfRotation 0 0 0 children " + plain +
-              " } }");
+  Scene scene("Transform { translation 5 0 0 rotation 0 1 0 2 children Billboard { axisOfRotation "
+              "0 0 0 children " +
+              plain + " } }");
   const double angles[] = {0, 1, 2.5, 4};
   for (const double angle : angles) {
     const double s = std::sin(angle), c = std::cos(angle);
@@ -128,15 +142,16 @@ TEST(VrmlGroups, BillboardsTurnToEveryCamera) {
 }
 
 TEST(VrmlGroups, ViewpointsSeeFromTheirPlace) {
-  Scene scene("Transform { translation 50 0 0 rotation 0 1 0 1.5707963 scale 3 3 3 children [ Viewpoint { position 0 0 2 "
+  Scene scene("Transform { translation 50 0 0 rotation 0 1 0 1.5707963 scale 3 3 3 children [ "
+              "Viewpoint { position 0 0 2 "
               "fieldOfView 0.1 } " +
               square(material("emissiveColor 0.5 0 0 diffuseColor 0 0 0")) + " ] }");
   EXPECT_NEAR(scene.render()[0].r, 0.5, 1e-6);
 }
 
 TEST(VrmlGroups, BackgroundTurnsWithItsParentsButDoesNotMove) {
-  const std::string sky =
-      "Background { skyColor [ 1 0 0, 0 1 0, 0 0 1 ] skyAngle [ 1.0, 2.0 ] groundColor [ 0 1 1, 1 1 0 ] groundAngle 0.5 }";
+  const std::string sky = "Background { skyColor [ 1 0 0, 0 1 0, 0 0 1 ] skyAngle [ 1.0, 2.0 ] "
+                          "groundColor [ 0 1 1, 1 1 0 ] groundAngle 0.5 }";
   Scene upright(sky);
   CameraSettings up = Scene::at(0, 0, 0, 1e-5);
   const double toZenith[] = {1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0};
@@ -145,20 +160,25 @@ TEST(VrmlGroups, BackgroundTurnsWithItsParentsButDoesNotMove) {
   const Pixel horizon = upright.render(Scene::at(0, 0, 0, 1e-5))[0];
   EXPECT_NEAR(horizon.g, 2 - 1.5707963, 1e-5);
   EXPECT_NEAR(horizon.b, 1.5707963 - 1, 1e-5);
-  Scene turned("Transform { translation 1 2 3 scale 9 9 9 rotation 1 0 0 -1.5707963 children " + sky + " }");
+  Scene turned("Transform { translation 1 2 3 scale 9 9 9 rotation 1 0 0 -1.5707963 children " +
+               sky + " }");
   EXPECT_NEAR(turned.render(Scene::at(0, 0, 0, 1e-5))[0].r, 1, 1e-5) << "the zenith lies along -z";
 }
 
 TEST(VrmlGroups, NamesOfSharedThings) {
   std::string heights;
   for (int i = 0; i < 50 * 50; ++i) heights += "0 ";
-  const std::string turn = "Transform { rotation 1 0 0 1.5707963 children Transform { translation -1.01 0 -1.02 children ";
-  const std::string grid = "ElevationGrid { xDimension 50 zDimension 50 xSpacing 0.05 zSpacing 0.05 height [ " + heights + "] }";
+  const std::string turn = "Transform { rotation 1 0 0 1.5707963 children Transform { translation "
+                           "-1.01 0 -1.02 children ";
+  const std::string grid =
+      "ElevationGrid { xDimension 50 zDimension 50 xSpacing 0.05 zSpacing 0.05 height [ " +
+      heights + "] }";
   SceneOptions options;
   options.channels = RT_RGBA | RT_NAME;
   Scene scene(moved(-3, "DEF First " + turn + "Shape { geometry DEF G " + grid + " } } }") +
                   moved(0, "DEF Second " + turn + "Shape { geometry USE G } } }") +
-                  moved(3, "DEF Third Group { children USE First }") + moved(6, turn + "DEF Leaf Shape { geometry USE G } } }") +
+                  moved(3, "DEF Third Group { children USE First }") +
+                  moved(6, turn + "DEF Leaf Shape { geometry USE G } } }") +
                   moved(9, square("NULL")),
               options);
   const auto nameAt = [&](double x) {
@@ -175,14 +195,16 @@ TEST(VrmlGroups, NamesOfSharedThings) {
 
 TEST(VrmlGroups, SolidFacesAndWinding) {
   const auto seen = [](const std::string& more, const std::string& transform = "") {
-    return ahead("Transform { " + transform + " children " + square(material(), more) + " }").r > 0.5;
+    return ahead("Transform { " + transform + " children " + square(material(), more) + " }").r >
+           0.5;
   };
   EXPECT_TRUE(seen(""));
   EXPECT_FALSE(seen("ccw FALSE"));
   EXPECT_TRUE(seen("ccw FALSE solid FALSE"));
   EXPECT_FALSE(seen("", "rotation 0 1 0 3.14159265"));
   EXPECT_TRUE(seen("solid FALSE", "rotation 0 1 0 3.14159265"));
-  Scene mirrored("Transform { scale -1 1 1 children " + plain + " }"); // outside of the field's range: said, and drawn
+  Scene mirrored("Transform { scale -1 1 1 children " + plain +
+                 " }"); // outside of the field's range: said, and drawn
   EXPECT_NEAR(redAt(mirrored, 0), 0.8, 1e-5) << "a mirrored front is a front";
   EXPECT_EQ(mirrored.world->diagnostics.warnings(), 1u);
 }
@@ -190,19 +212,25 @@ TEST(VrmlGroups, SolidFacesAndWinding) {
 // A group that is shared is seen as one that is written out, also under a mirror.
 TEST(VrmlGroups, InstancesLookLikeCopies) {
   std::string heights;
-  for (int i = 1; i < 60 * 60; ++i) heights += std::to_string(0.1 * std::sin(i % 60 * 0.3) * std::cos(i / 60 * 0.2)) + " ";
+  for (int i = 1; i < 60 * 60; ++i)
+    heights += std::to_string(0.1 * std::sin(i % 60 * 0.3) * std::cos(i / 60 * 0.2)) + " ";
   int made = 0; // a number at the end that nobody sees: equal meshes would be shared
   const auto grid = [&](const std::string& name) {
-    return "DEF " + name + " Transform { rotation 1 0.1 0 1.4 translation -1.5 -0.2 0 children Shape { appearance " +
+    return "DEF " + name +
+           " Transform { rotation 1 0.1 0 1.4 translation -1.5 -0.2 0 children Shape { "
+           "appearance " +
            material("specularColor 1 1 1") +
-           " geometry ElevationGrid { xDimension 60 zDimension 60 xSpacing 0.05 zSpacing 0.05 creaseAngle 1 height [ " + heights +
-           std::to_string(1e-5 * ++made) + "] } } }\n";
+           " geometry ElevationGrid { xDimension 60 zDimension 60 xSpacing 0.05 zSpacing 0.05 "
+           "creaseAngle 1 height [ " +
+           heights + std::to_string(1e-5 * ++made) + "] } } }\n";
   };
   const auto world = [&](bool shared) {
     std::string body = dark + "PointLight { location 3 4 6 }\n" + grid("A");
-    for (const char* field : {"translation 3 0 0", "translation -3 0 0 rotation 0 0 1 2", "scale -1 1 1 translation 0 -3 0",
-                              "scale 1 -0.5 2 translation 0 3 0"})
-      body += std::string("Transform { ") + field + " children " + (shared ? "USE A" : grid("B")) + " }\n";
+    for (const char* field :
+         {"translation 3 0 0", "translation -3 0 0 rotation 0 0 1 2",
+          "scale -1 1 1 translation 0 -3 0", "scale 1 -0.5 2 translation 0 3 0"})
+      body += std::string("Transform { ") + field + " children " + (shared ? "USE A" : grid("B")) +
+              " }\n";
     return body;
   };
   SceneOptions options;
@@ -219,13 +247,14 @@ TEST(VrmlGroups, InstancesLookLikeCopies) {
     different += std::abs(a[i].r - b[i].r) > 1e-3f;
   }
   EXPECT_GT(lit, a.size() / 8);
-  EXPECT_LE(different, a.size() / 100) << "but for a few pixels at edges and in the shadows of edges";
+  EXPECT_LE(different, a.size() / 100)
+      << "but for a few pixels at edges and in the shadows of edges";
 }
 
 TEST(VrmlGroups, SpheresAreTexturedFromTheBackCounterClockwise) {
-  const std::string ball =
-      dark + "Shape { appearance Appearance { texture PixelTexture { image 4 1 3 0xFF0000 0x00FF00 0x0000FF 0xFFFFFF } } "
-             "geometry Sphere { radius 2 } }";
+  const std::string ball = dark + "Shape { appearance Appearance { texture PixelTexture { image 4 "
+                                  "1 3 0xFF0000 0x00FF00 0x0000FF 0xFFFFFF } } "
+                                  "geometry Sphere { radius 2 } }";
   Scene scene(ball);
   const auto at = [&](double x) { return scene.render(Scene::at(x, 0, 10, 1e-5))[0]; };
   const Pixel left = at(-2 * std::sin(0.7853982)), right = at(2 * std::sin(0.7853982));
@@ -235,7 +264,8 @@ TEST(VrmlGroups, SpheresAreTexturedFromTheBackCounterClockwise) {
 
 TEST(VrmlGroups, TextureTransformMovesThePicture) {
   const auto look = [](const std::string& transform) {
-    return ahead(square("Appearance { texture PixelTexture { image 4 1 3 0xFF0000 0x00FF00 0x0000FF 0xFFFFFF } textureTransform "
+    return ahead(square("Appearance { texture PixelTexture { image 4 1 3 0xFF0000 0x00FF00 "
+                        "0x0000FF 0xFFFFFF } textureTransform "
                         "TextureTransform { " +
                             transform + " } }",
                         "", 1));
@@ -244,7 +274,8 @@ TEST(VrmlGroups, TextureTransformMovesThePicture) {
   EXPECT_NEAR(look("translation -0.125 0").g, 1, 1e-3);
   EXPECT_NEAR(look("translation 0.125 0").b, 1, 1e-3);
   EXPECT_NEAR(look("scale 0.25 1").r, 1, 1e-3);
-  EXPECT_NEAR(look("rotation 3.14159265 translation -0.125 0").b, 1, 1e-3) << "s = -0.375 repeats at 0.625";
+  EXPECT_NEAR(look("rotation 3.14159265 translation -0.125 0").b, 1, 1e-3)
+      << "s = -0.375 repeats at 0.625";
 }
 
 } // namespace

@@ -1,5 +1,5 @@
-// Worlds of VRML97 under path tracing: shapes with an emissiveColor are lamps however the mapper groups them, light goes from
-// surface to surface, and VRML's own lights do what they do without.
+// Worlds of VRML97 under path tracing: shapes with an emissiveColor are lamps however the mapper
+// groups them, light goes from surface to surface, and VRML's own lights do what they do without.
 #include <cmath>
 
 #include "image/vrml_scene.h"
@@ -9,7 +9,8 @@ using namespace xvrml::test;
 namespace {
 
 // Mean of the picture that a narrow view along -z from (0 0 z) shows.
-double seen(const std::string& body, double z, int transport, int samples = 1024, double fovy = 1e-5) {
+double seen(const std::string& body, double z, int transport, int samples = 1024,
+            double fovy = 1e-5) {
   SceneOptions options;
   options.samples = samples;
   Scene scene(dark + body, options);
@@ -34,8 +35,8 @@ double factor(double h) {
 
 TEST(VrmlPaths, EmissiveShapesLightOthers) {
   for (const double half : {0.2, 2.0})
-    EXPECT_NEAR(seen(square(material()) + lamp(square(glow, "", half)), 10, RT_TRANSPORT_PATH), 0.8 * factor(half),
-                0.02 * factor(half))
+    EXPECT_NEAR(seen(square(material()) + lamp(square(glow, "", half)), 10, RT_TRANSPORT_PATH),
+                0.8 * factor(half), 0.02 * factor(half))
         << half;
 }
 
@@ -52,33 +53,43 @@ TEST(VrmlPaths, HoweverTheyAreGrouped) {
       "LOD { level [ " + shape + " ] }",
   };
   for (const std::string& group : grouped) {
-    const std::string children = group.find(" Transform") == group.npos ? group : "[ " + group + " ]";
-    EXPECT_NEAR(seen(floor + lamp(children), 10, RT_TRANSPORT_PATH), expected, 0.02 * expected) << group;
+    const std::string children =
+        group.find(" Transform") == group.npos ? group : "[ " + group + " ]";
+    EXPECT_NEAR(seen(floor + lamp(children), 10, RT_TRANSPORT_PATH), expected, 0.02 * expected)
+        << group;
   }
 }
 
 TEST(VrmlPaths, AnAppearanceThatTwoShapesShareGlowsInBoth) {
   const std::string two = lamp("[ DEF L " + square("DEF A " + glow, "", 0.5) + " ]") +
-                          "Transform { translation 0 0 1 rotation 1 0 0 3.14159265 children " + square("USE A", "", 0.5) + " }";
-  EXPECT_NEAR(seen(square(material()) + two, 10, RT_TRANSPORT_PATH), 0.8 * factor(0.5), 0.02) << "one behind the other";
+                          "Transform { translation 0 0 1 rotation 1 0 0 3.14159265 children " +
+                          square("USE A", "", 0.5) + " }";
+  EXPECT_NEAR(seen(square(material()) + two, 10, RT_TRANSPORT_PATH), 0.8 * factor(0.5), 0.02)
+      << "one behind the other";
 }
 
 TEST(VrmlPaths, AFurnaceIsEvenlyBright) { // emission .5, reflectance .5
-  const std::string walls =
-      "Shape { appearance " + material("diffuseColor .5 .5 .5 emissiveColor .5 .5 .5") +
-      " geometry IndexedFaceSet { solid FALSE coord Coordinate { point [ -4 -4 4, 4 -4 4, 4 4 4, -4 4 4, -4 -4 "
-      "-4, 4 -4 -4, 4 4 -4, -4 4 -4 ] } coordIndex [ 0 1 2 3 -1 5 4 7 6 -1 1 5 6 2 -1 4 0 3 7 -1 3 2 6 7 -1 4 "
-      "5 1 0 -1 ] } }\n";
+  const std::string walls = "Shape { appearance " +
+                            material("diffuseColor .5 .5 .5 emissiveColor .5 .5 .5") +
+                            " geometry IndexedFaceSet { solid FALSE coord Coordinate { point [ -4 "
+                            "-4 4, 4 -4 4, 4 4 4, -4 4 4, -4 -4 "
+                            "-4, 4 -4 -4, 4 4 -4, -4 4 -4 ] } coordIndex [ 0 1 2 3 -1 5 4 7 6 -1 1 "
+                            "5 6 2 -1 4 0 3 7 -1 3 2 6 7 -1 4 "
+                            "5 1 0 -1 ] } }\n";
   const std::string ball = "Transform { translation .3 .2 -1 children Shape { appearance " +
-                           material("diffuseColor .5 .5 .5 emissiveColor .5 .5 .5") + " geometry Sphere { radius .8 } } }\n";
+                           material("diffuseColor .5 .5 .5 emissiveColor .5 .5 .5") +
+                           " geometry Sphere { radius .8 } } }\n";
   EXPECT_NEAR(seen(walls + ball, 2, RT_TRANSPORT_PATH, 1024, 1.2), 1, 0.01);
 }
 
 TEST(VrmlPaths, LightsOfVrmlDoWhatTheyDoWithout) {
-  for (const std::string light : {"PointLight { location 1 0 2 attenuation 0 0 .5 }", "DirectionalLight { direction 1 0 -1 }",
-                                  "SpotLight { location 0 1 3 direction 0 -1 -3 beamWidth .3 cutOffAngle .6 }"}) {
+  for (const std::string light :
+       {"PointLight { location 1 0 2 attenuation 0 0 .5 }", "DirectionalLight { direction 1 0 -1 }",
+        "SpotLight { location 0 1 3 direction 0 -1 -3 beamWidth .3 cutOffAngle .6 }"}) {
     const std::string body = light + "\n" + square(material("diffuseColor .6 .6 .6"));
-    EXPECT_NEAR(seen(body, 10, RT_TRANSPORT_PATH, 16), seen(body, 10, RT_TRANSPORT_DIRECT, 16), 1e-4) << light;
+    EXPECT_NEAR(seen(body, 10, RT_TRANSPORT_PATH, 16), seen(body, 10, RT_TRANSPORT_DIRECT, 16),
+                1e-4)
+        << light;
   }
 }
 

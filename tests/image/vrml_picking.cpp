@@ -1,4 +1,5 @@
-// vrml_picking.cpp: what a ray of the pointer meets is what is drawn: Browser::pick against the pictures of the ray tracer.
+// vrml_picking.cpp: what a ray of the pointer meets is what is drawn: Browser::pick against the
+// pictures of the ray tracer.
 #include <cmath>
 
 #include "image/vrml_scene.h"
@@ -7,7 +8,8 @@
 namespace xvrml::test {
 namespace {
 
-// Every geometry that has a surface, turned, stretched, culled, chosen by distance, facing the viewer.
+// Every geometry that has a surface, turned, stretched, culled, chosen by distance, facing the
+// viewer.
 const std::string everything = R"(
 Viewpoint { position 0 3 16 orientation 1 0 0 -0.15 }
 Transform { translation -6 3 0 rotation 1 1 0 0.7 children Shape { geometry Box { size 2 1 3 } } }
@@ -41,27 +43,33 @@ TEST(Picking, MeetsWhatIsDrawn) {
   Browser browser(loadWorldFromMemory("#VRML V2.0 utf8\n" + everything, "scene.wrl"));
   const CameraSettings camera = browser.camera(4.0 / 3);
   scene.render(camera);
-  const std::vector<float> depth = scene.channel(RT_DEPTH, 1), place = scene.channel(RT_POSITION, 3);
+  const std::vector<float> depth = scene.channel(RT_DEPTH, 1),
+                           place = scene.channel(RT_POSITION, 3);
   int drawn = 0, differ = 0, invented = 0;
   for (size_t p = 0; p < depth.size(); ++p) {
     PickHit hit;
     double direction[3];
     if (std::isfinite(depth[p])) {
       ++drawn;
-      for (size_t k = 0; k < 3; ++k) direction[k] = double(place[3 * p + k]) - camera.matrix[12 + k];
+      for (size_t k = 0; k < 3; ++k)
+        direction[k] = double(place[3 * p + k]) - camera.matrix[12 + k];
       const bool meets = browser.pick(camera.matrix + 12, direction, {}, hit);
       differ += !meets || std::abs(hit.distance - 1) > 1e-4;
       continue;
     }
-    // Rows begin at the top. Where the ray in the pixel went is not known: pixels at edges are left out.
+    // Rows begin at the top. Where the ray in the pixel went is not known: pixels at edges are left
+    // out.
     const int x = int(p) % options.width, y = int(p) / options.width;
     bool edge = x == 0 || y == 0 || x == options.width - 1 || y == options.height - 1;
     for (int dy = -1; dy <= 1 && !edge; ++dy)
-      for (int dx = -1; dx <= 1; ++dx) edge |= std::isfinite(depth[p + size_t(dy * options.width + dx)]);
+      for (int dx = -1; dx <= 1; ++dx)
+        edge |= std::isfinite(depth[p + size_t(dy * options.width + dx)]);
     if (edge) continue;
     const double size = std::tan(camera.fovy / 2);
-    const double u = ((x + 0.5) / options.width * 2 - 1) * size * 4 / 3, v = (1 - (y + 0.5) / options.height * 2) * size;
-    for (int k = 0; k < 3; ++k) direction[k] = camera.matrix[k] * u + camera.matrix[4 + k] * v - camera.matrix[8 + k];
+    const double u = ((x + 0.5) / options.width * 2 - 1) * size * 4 / 3,
+                 v = (1 - (y + 0.5) / options.height * 2) * size;
+    for (int k = 0; k < 3; ++k)
+      direction[k] = camera.matrix[k] * u + camera.matrix[4 + k] * v - camera.matrix[8 + k];
     invented += browser.pick(camera.matrix + 12, direction, {}, hit);
   }
   EXPECT_GT(drawn, 1000);

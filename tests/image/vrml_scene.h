@@ -1,4 +1,5 @@
-// vrml_scene.h: renders a few lines of VRML for tests: one context, one world, colours as written, no curve.
+// vrml_scene.h: renders a few lines of VRML for tests: one context, one world, colours as written,
+// no curve.
 #pragma once
 
 #include <memory>
@@ -86,7 +87,8 @@ class Scene {
   RTcontext context_ = nullptr;
 };
 
-// What a camera at (0 0 z) sees straight ahead, through an angle too small for the place in the pixel to matter.
+// What a camera at (0 0 z) sees straight ahead, through an angle too small for the place in the
+// pixel to matter.
 inline Pixel ahead(const std::string& body, double z = 10, const SceneOptions& options = {}) {
   Scene scene(body, options);
   const Pixel pixel = scene.render(Scene::at(0, 0, z, 1e-5))[0];
@@ -97,11 +99,16 @@ inline Pixel ahead(const std::string& body, double z = 10, const SceneOptions& o
 inline const std::string dark = "NavigationInfo { headlight FALSE }\n";
 
 // A square of side 2 at z = 0 that faces +z.
-inline std::string square(const std::string& appearance, const std::string& more = "", double half = 1) {
+inline std::string square(const std::string& appearance, const std::string& more = "",
+                          double half = 1) {
   const std::string h = std::to_string(half);
-  return "Shape { appearance " + appearance + " geometry IndexedFaceSet { coord Coordinate { point [ -" + h + " -" + h + " 0, " +
-         h + " -" + h + " 0, " + h + " " + h + " 0, -" + h + " " + h + " 0 ] } coordIndex [ 0 1 2 3 -1 ] " + more + " } }\n";
+  return "Shape { appearance " + appearance +
+         " geometry IndexedFaceSet { coord Coordinate { point [ -" + h + " -" + h + " 0, " + h +
+         " -" + h + " 0, " + h + " " + h + " 0, -" + h + " " + h +
+         " 0 ] } coordIndex [ 0 1 2 3 -1 ] " + more + " } }\n";
 }
-inline std::string material(const std::string& fields = "") { return "Appearance { material Material { " + fields + " } }"; }
+inline std::string material(const std::string& fields = "") {
+  return "Appearance { material Material { " + fields + " } }";
+}
 
 } // namespace xvrml::test

@@ -6,7 +6,8 @@ using namespace xvrml;
 
 namespace {
 
-constexpr NodeRow row = {"Box", "geometry", "bad", "", "A name that is taken.", {}, createNode<nodes::Box>};
+constexpr NodeRow row = {
+    "Box", "geometry", "bad", "", "A name that is taken.", {}, createNode<nodes::Box>};
 void registered(const NodeType&) {}
 const NodePluginRow rows[] = {{&row, nullptr, registered}};
 
@@ -49,8 +50,9 @@ XVRML_NODE_PLUGIN = {magic,
                      minor,
                      size,
                      abi,
-                     {nodeSize, nodePluginSizes[1], nodePluginSizes[2], nodePluginSizes[3], nodePluginSizes[4],
-                      nodePluginSizes[5], nodePluginSizes[6], nodePluginSizes[7]},
+                     {nodeSize, nodePluginSizes[1], nodePluginSizes[2], nodePluginSizes[3],
+                      nodePluginSizes[4], nodePluginSizes[5], nodePluginSizes[6],
+                      nodePluginSizes[7]},
                      1,
                      rows};
 #else

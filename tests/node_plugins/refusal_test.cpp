@@ -1,4 +1,5 @@
-// refusal_test.cpp: plug-ins that do not fit are refused with a line that names what they have and what was expected.
+// refusal_test.cpp: plug-ins that do not fit are refused with a line that names what they have and
+// what was expected.
 #include <filesystem>
 
 #include <gtest/gtest.h>
@@ -30,14 +31,18 @@ TEST(NodePluginRefusals, EachNamesBothSides) {
   EXPECT_EQ(nodeTypes().size(), before);
 }
 
-TEST(NodePluginRefusals, AMissingFolderIsNone) { EXPECT_TRUE(loadNodePlugins("/nonexistent/folder").empty()); }
+TEST(NodePluginRefusals, AMissingFolderIsNone) {
+  EXPECT_TRUE(loadNodePlugins("/nonexistent/folder").empty());
+}
 
 TEST(NodePluginRefusals, FoldersThatOthersMayWriteTo) {
   namespace fs = std::filesystem;
-  const fs::path folder = fs::path(testing::TempDir()) / ("node_plugins_" + std::to_string(::getpid()));
+  const fs::path folder =
+      fs::path(testing::TempDir()) / ("node_plugins_" + std::to_string(::getpid()));
   fs::create_directories(folder);
   fs::permissions(folder, fs::perms::all);
-  fs::copy_file(fs::path(BAD_PLUGINS) / "MAGIC.so", folder / "x.so", fs::copy_options::overwrite_existing);
+  fs::copy_file(fs::path(BAD_PLUGINS) / "MAGIC.so", folder / "x.so",
+                fs::copy_options::overwrite_existing);
   const std::vector<std::string> refused = loadNodePlugins(folder.string());
   fs::remove_all(folder);
   ASSERT_EQ(refused.size(), 1u);

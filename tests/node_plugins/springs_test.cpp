@@ -1,11 +1,12 @@
-// springs_test.cpp: the example plug-in (examples/nodes): its nodes are parsed, written, routed, drawn and kept up to date.
+// springs_test.cpp: the example plug-in (examples/nodes): its nodes are parsed, written, routed,
+// drawn and kept up to date.
 #include <gtest/gtest.h>
 
 #include "geometry/mesh.h"
 #include "xvrml/browser.h"
+#include "xvrml/mapper.h"
 #include "xvrml/node_plugin.h"
 #include "xvrml/nodes.h"
-#include "xvrml/mapper.h"
 
 namespace {
 
@@ -13,7 +14,9 @@ using namespace xvrml;
 
 class Springs : public testing::Test {
  protected:
-  static void SetUpTestSuite() { EXPECT_EQ(loadNodePlugins(GOOD_PLUGINS), std::vector<std::string>()); }
+  static void SetUpTestSuite() {
+    EXPECT_EQ(loadNodePlugins(GOOD_PLUGINS), std::vector<std::string>());
+  }
 
   void run(const std::string& text) {
     auto world = loadWorldFromMemory("#VRML V2.0 utf8\n" + text, "test");
@@ -21,7 +24,9 @@ class Springs : public testing::Test {
     browser = std::make_unique<Browser>(std::move(world));
   }
   Node& node(const char* name) { return *browser->node(name); }
-  const nodes::Extrusion& tube() { return *nodeCast<nodes::Extrusion>(renderedNode(&node("Coil"))); }
+  const nodes::Extrusion& tube() {
+    return *nodeCast<nodes::Extrusion>(renderedNode(&node("Coil")));
+  }
 
   std::unique_ptr<Browser> browser;
 };
@@ -44,9 +49,13 @@ TEST_F(Springs, AreReadCheckedAndWritten) {
   const std::string text = writeWorld(browser->world());
   EXPECT_NE(text.find("turns 3"), text.npos);
   std::string difference;
-  EXPECT_TRUE(equalScopes(loadWorldFromMemory(text, "again")->scope, browser->world().scope, &difference)) << difference;
-  const auto wrong = loadWorldFromMemory("#VRML V2.0 utf8\nSpring { }\nShape { geometry Spring { turns 0 coils 2 } }", "wrong");
-  EXPECT_EQ(wrong->diagnostics.errors() + wrong->diagnostics.warnings(), 3u); // no child, out of range, no such field
+  EXPECT_TRUE(
+      equalScopes(loadWorldFromMemory(text, "again")->scope, browser->world().scope, &difference))
+      << difference;
+  const auto wrong = loadWorldFromMemory(
+      "#VRML V2.0 utf8\nSpring { }\nShape { geometry Spring { turns 0 coils 2 } }", "wrong");
+  EXPECT_EQ(wrong->diagnostics.errors() + wrong->diagnostics.warnings(),
+            3u); // no child, out of range, no such field
 }
 
 TEST_F(Springs, StandForAnExtrusion) {
@@ -67,10 +76,10 @@ TEST_F(Springs, OfAWorldThatStandsStillFollowItsFields) {
 }
 
 TEST_F(Springs, AreMovedByRoutesAndOnlyWhatDiffersChanges) {
-  run(std::string(coil) +
-      "DEF Clock TimeSensor { loop TRUE cycleInterval 1 }\n"
-      "DEF Stretch ScalarInterpolator { key [ 0 1 ] keyValue [ 2 6 ] }\n"
-      "ROUTE Clock.fraction_changed TO Stretch.set_fraction\nROUTE Stretch.value_changed TO Coil.set_height\n");
+  run(std::string(coil) + "DEF Clock TimeSensor { loop TRUE cycleInterval 1 }\n"
+                          "DEF Stretch ScalarInterpolator { key [ 0 1 ] keyValue [ 2 6 ] }\n"
+                          "ROUTE Clock.fraction_changed TO Stretch.set_fraction\nROUTE "
+                          "Stretch.value_changed TO Coil.set_height\n");
   const Node* before = &tube();
   EXPECT_TRUE(reaches(tube(), Change::geometry)) << "must not be merged with what stands still";
   browser->tick(0);
@@ -90,7 +99,8 @@ TEST_F(Springs, AreMovedByRoutesAndOnlyWhatDiffersChanges) {
 }
 
 TEST_F(Springs, HoldTheFieldsOwnChildren) {
-  run("DEF Hook Hanging { length 1 children DEF Weight Transform { children Shape { geometry Box { } } } }");
+  run("DEF Hook Hanging { length 1 children DEF Weight Transform { children Shape { geometry Box { "
+      "} } } }");
   auto* place = nodeCast<nodes::Transform>(renderedNode(&node("Hook")));
   ASSERT_TRUE(place);
   EXPECT_EQ(place->children.at(0).get(), &node("Weight"));
@@ -115,7 +125,8 @@ TEST_F(Springs, CannotHoldThemselves) {
 }
 
 TEST_F(Springs, WorkInsidePrototypes) {
-  run("PROTO Bed [ exposedField SFFloat h 1 ] { Shape { geometry Spring { height IS h turns 2 } } }\n"
+  run("PROTO Bed [ exposedField SFFloat h 1 ] { Shape { geometry Spring { height IS h turns 2 } } "
+      "}\n"
       "DEF A Bed { h 3 } DEF B Bed { }");
   const auto top = [&](const char* name) {
     auto* shape = nodeCast<nodes::Shape>(renderedNode(&node(name)));
@@ -132,7 +143,8 @@ TEST_F(Springs, CounterBehaves) {
   run("DEF Clock TimeSensor { loop TRUE cycleInterval 1 } DEF Count Counter { value 10 }\n"
       "ROUTE Clock.cycleTime TO Count.count");
   int told = 0;
-  browser->listen(node("Count"), "value_changed", [&](Node&, const FieldInfo&, const Value&) { ++told; });
+  browser->listen(node("Count"), "value_changed",
+                  [&](Node&, const FieldInfo&, const Value&) { ++told; });
   for (int i = 0; i <= 50; ++i) browser->tick(i * 0.1);
   const int counted = std::get<SFInt32>(browser->get(node("Count"), "value"));
   EXPECT_GE(counted, 15);

@@ -10,16 +10,20 @@ class Backs : public Scene {
  protected:
   static Shader glowing(Vec color) {
     Shader s("VRML97");
-    s.setInt("lit", 1).set("emissiveColor", {color.x, color.y, color.z}).set("diffuseColor", {0, 0, 0});
+    s.setInt("lit", 1)
+        .set("emissiveColor", {color.x, color.y, color.z})
+        .set("diffuseColor", {0, 0, 0});
     return s;
   }
-  // Two triangles that are slightly askew, so that rounding decides which of two in the same place is met.
+  // Two triangles that are slightly askew, so that rounding decides which of two in the same place
+  // is met.
   static void quad(RTid shader, bool reversed) {
     rtBindShader(shader);
-    const float a[3] = {-3.1f, -2.7f, 0.13f}, b[3] = {3.3f, -2.9f, -0.29f}, c[3] = {2.9f, 3.1f, 0.17f},
-                d[3] = {-2.8f, 2.6f, 0.41f};
+    const float a[3] = {-3.1f, -2.7f, 0.13f}, b[3] = {3.3f, -2.9f, -0.29f},
+                c[3] = {2.9f, 3.1f, 0.17f}, d[3] = {-2.8f, 2.6f, 0.41f};
     rtBegin(RT_TRIANGLES);
-    for (const float* v : reversed ? std::vector<const float*>{c, b, a, d, c, a} : std::vector<const float*>{a, b, c, a, c, d})
+    for (const float* v : reversed ? std::vector<const float*>{c, b, a, d, c, a}
+                                   : std::vector<const float*>{a, b, c, a, c, d})
       rtVertex3fv(v);
     rtEnd();
   }
@@ -39,7 +43,8 @@ class Backs : public Scene {
   static void expectAll(const std::vector<float>& pixels, Vec color) {
     size_t wrong = 0;
     for (size_t i = 0; i < pixels.size(); i += 4)
-      wrong += pixels[i] != float(color.x) || pixels[i + 1] != float(color.y) || pixels[i + 2] != float(color.z);
+      wrong += pixels[i] != float(color.x) || pixels[i + 1] != float(color.y) ||
+               pixels[i + 2] != float(color.z);
     EXPECT_EQ(wrong, 0u) << "of " << pixels.size() / 4 << " pixels";
   }
 };
@@ -105,7 +110,8 @@ TEST_F(Backs, anEyeWithinThePlaneOfAFace) {
   rtEnable(RT_CULL_FACE);
   rtBindShader(ground);
   rtBegin(RT_QUADS);
-  for (const auto& c : {Vec{-50, 0, -50}, Vec{-50, 0, 50}, Vec{50, 0, 50}, Vec{50, 0, -50}}) rtVertex3d(c.x, c.y, c.z);
+  for (const auto& c : {Vec{-50, 0, -50}, Vec{-50, 0, 50}, Vec{50, 0, 50}, Vec{50, 0, -50}})
+    rtVertex3d(c.x, c.y, c.z);
   rtEnd();
   rtEndObject();
   rtInstantiateObject(object);
@@ -134,7 +140,8 @@ TEST_F(Backs, bodiesOfGlassKeepTheirBacks) {
     rtBindShader(glass);
     rtBegin(RT_QUADS);
     for (const float z : {0.5f, -0.5f}) // a slab of thickness 1, wider than the picture
-      for (int i = 0; i < 4; i++) rtVertex3f((i == 0 || i == 3) == (z > 0) ? -9.0f : 9.0f, i < 2 ? -9.0f : 9.0f, z);
+      for (int i = 0; i < 4; i++)
+        rtVertex3f((i == 0 || i == 3) == (z > 0) ? -9.0f : 9.0f, i < 2 ? -9.0f : 9.0f, z);
     rtEnd();
     rtTranslatef(0, 0, -3);
     rtScalef(4, 4, 1);
@@ -145,7 +152,8 @@ TEST_F(Backs, bodiesOfGlassKeepTheirBacks) {
     rtDeleteInstance(instance);
   }
   EXPECT_EQ(pictures[0], pictures[1]);
-  expectClose(pictures[1][4 * 36 + 1], std::exp(-0.5), 1e-2); // nearly head on, and the ray ends beyond the slab
+  expectClose(pictures[1][4 * 36 + 1], std::exp(-0.5),
+              1e-2); // nearly head on, and the ray ends beyond the slab
 }
 
 } // namespace

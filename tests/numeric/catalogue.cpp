@@ -1,5 +1,6 @@
-// catalogue.cpp: see catalogue.h. A listener of the test program; tools/accuracy.py makes the tables of docs/accuracy.md of its
-// lines, which begin with "accuracy" and have their parts between tabs.
+// catalogue.cpp: A listener of the test program; tools/accuracy.py makes the
+// tables of docs/accuracy.md of its lines, which begin with "accuracy" and have their parts between
+// tabs.
 #include "numeric/catalogue.h"
 
 #include <chrono>
@@ -18,7 +19,8 @@ struct Current {
 };
 Current current;
 
-// Ids of tests that do not begin with theirs. accuracy.md of the design, part A; V: the lighting of VRML97.
+// Ids of tests that do not begin with theirs. accuracy.md of the design, part A; V: the lighting of
+// VRML97.
 const std::map<std::string, const char*> ids = {
     {"Watertight.NoRandomRayLeavesAClosedBall", "N3"},
     {"Watertight.FewRaysAimedAtVerticesLeave", "N4"},
@@ -59,14 +61,19 @@ std::string idOf(const testing::TestInfo& test) {
 }
 
 class Lines : public testing::EmptyTestEventListener {
-  void OnTestStart(const testing::TestInfo&) override { current = {.began = std::chrono::steady_clock::now()}; }
+  void OnTestStart(const testing::TestInfo&) override {
+    current = {.began = std::chrono::steady_clock::now()};
+  }
   void OnTestEnd(const testing::TestInfo& test) override {
     const std::string id = idOf(test);
     if (id.empty()) return;
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - current.began).count();
-    std::printf("accuracy\t%s\t%s.%s\t%.9g\t%.9g\t%.3g\t%llu\t%s\t%.3f\t%llu\n", id.c_str(), test.test_suite_name(), test.name(),
-                current.expected, current.got, current.tolerance, static_cast<unsigned long long>(current.comparisons),
-                test.result()->Passed() ? "pass" : "FAIL", seconds, static_cast<unsigned long long>(current.rays));
+    const double seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - current.began).count();
+    std::printf("accuracy\t%s\t%s.%s\t%.9g\t%.9g\t%.3g\t%llu\t%s\t%.3f\t%llu\n", id.c_str(),
+                test.test_suite_name(), test.name(), current.expected, current.got,
+                current.tolerance, static_cast<unsigned long long>(current.comparisons),
+                test.result()->Passed() ? "pass" : "FAIL", seconds,
+                static_cast<unsigned long long>(current.rays));
   }
 };
 
@@ -78,7 +85,9 @@ const bool listening = [] {
 } // namespace
 
 void noteComparison(double got, double expected, double tolerance) {
-  const double off = std::fabs(got - expected), ratio = tolerance > 0 ? off / tolerance : off > 0 ? INFINITY : 0;
+  const double off = std::fabs(got - expected), ratio = tolerance > 0 ? off / tolerance
+                                                        : off > 0     ? INFINITY
+                                                                      : 0;
   current.comparisons++;
   if (ratio <= current.ratio) return;
   current.got = got;

@@ -1,5 +1,6 @@
-// dielectrics.cpp: bodies of glass and water, one within, beside or across another, their absorption and dispersion, against
-// closed forms (accuracy catalogue D4, D6, D11, D19), through the C API.
+// dielectrics.cpp: bodies of glass and water, one within, beside or across another, their
+// absorption and dispersion, against closed forms (accuracy catalogue D4, D6, D11, D19), through
+// the C API.
 #include "numeric/support.h"
 
 namespace numeric {
@@ -32,7 +33,9 @@ class Dielectrics : public Scene {
   }
 };
 
-double reflectance(double from, double to) { return std::pow((from - to) / (from + to), 2); } // head on
+double reflectance(double from, double to) {
+  return std::pow((from - to) / (from + to), 2);
+} // head on
 // Of plane boundaries one behind another, with all reflections between them.
 double through(std::initializer_list<double> reflectances) {
   double sum = 0;
@@ -44,7 +47,8 @@ TEST_F(Dielectrics, D4AbsorptionFollowsBeerAndLambert) {
   for (const double length : {1e-6, .5, 1., 2.}) {
     Shader dye = glass(1);
     dye.set("absorption", {1, .5, 0});
-    const RTid top = placeAt(length, square(dye)), bottom = placeAt(0, square(dye), true), lamp = placeAt(-1, square(glowing(1)));
+    const RTid top = placeAt(length, square(dye)), bottom = placeAt(0, square(dye), true),
+               lamp = placeAt(-1, square(glowing(1)));
     expectColor(look(0, 0, 10), {std::exp(-length), std::exp(-length / 2), 1});
     for (const RTid i : {top, bottom, lamp}) rtDeleteInstance(i);
   }
@@ -61,7 +65,8 @@ TEST_F(Dielectrics, D4FiftyOpticalDepthsAreDark) {
 
 class NestedDielectrics : public Dielectrics, public testing::WithParamInterface<bool> {
  protected:
-  // A layer of glass on one of water with a lamp below; how far the glass reaches into the water. Made in either order.
+  // A layer of glass on one of water with a lamp below; how far the glass reaches into the water.
+  // Made in either order.
   void layers(double overlap, int glassPriority, int waterPriority) {
     const Shader crown = glass(1.5, glassPriority), water = glass(1.33, waterPriority);
     if (GetParam()) slab(1, 0, water);
@@ -105,7 +110,8 @@ TEST_P(NestedDielectrics, D11ASharedFaceHasItsPlaceAtAnyDistance) {
   expectGrey(render(), through({airGlass, glassWater, waterAir}), 2e-5);
 }
 
-TEST_P(NestedDielectrics, D11AGapIsAir) { // light that interferes is not followed: two boundaries more
+TEST_P(NestedDielectrics,
+       D11AGapIsAir) { // light that interferes is not followed: two boundaries more
   layers(-1e-3, 1, 0);
   expectGrey(look(), through({airGlass, airGlass, waterAir, waterAir}), 2e-5);
 }
@@ -129,10 +135,12 @@ TEST_P(NestedDielectrics, D11WhatIsWithinABodyOfHigherPriorityIsNotSeen) {
   expectGrey(look(), through({airGlass, airGlass}), 2e-5);
 }
 
-INSTANTIATE_TEST_SUITE_P(EitherOrder, NestedDielectrics, testing::Bool(),
-                         [](const auto& info) { return info.param ? "WaterMadeFirst" : "GlassMadeFirst"; });
+INSTANTIATE_TEST_SUITE_P(EitherOrder, NestedDielectrics, testing::Bool(), [](const auto& info) {
+  return info.param ? "WaterMadeFirst" : "GlassMadeFirst";
+});
 
-// A slab under a white sky is as white as the sky from every angle: what is reflected and what goes through add up.
+// A slab under a white sky is as white as the sky from every angle: what is reflected and what goes
+// through add up.
 TEST_F(Dielectrics, D19EverythingIsReflectedOrGoesThrough) {
   environment(1);
   const RTid crown = glass(1.5), face = square(crown, 1e4);
@@ -151,8 +159,8 @@ TEST_F(Dielectrics, D19EverythingIsReflectedOrGoesThrough) {
   }
 }
 
-// A white floor under a clear pane under a white sky is white: what shadow rays find through the pane and what paths find must
-// not both count.
+// A white floor under a clear pane under a white sky is white: what shadow rays find through the
+// pane and what paths find must not both count.
 TEST_F(Dielectrics, G1LightThroughAPaneCountsOnce) {
   environment(1);
   slab(1, .5, glass(1.5));
@@ -161,7 +169,8 @@ TEST_F(Dielectrics, G1LightThroughAPaneCountsOnce) {
   rtQuality(RT_TRANSPORT, RT_TRANSPORT_PATH);
   rtQuality(RT_MAX_DEPTH, 200);
   rtQuality(RT_SAMPLES_PER_PIXEL, 8192);
-  EXPECT_NEAR(look(0, 0, .25).g, 1, .02); // seen from below the pane, whose edges are ten units away
+  EXPECT_NEAR(look(0, 0, .25).g, 1,
+              .02); // seen from below the pane, whose edges are ten units away
 }
 
 // Where the ray through a prism meets planes far below tells by how much it was turned.
@@ -191,14 +200,15 @@ class Prism : public Dielectrics {
   static double deviation(int colour, double expected) {
     double x[2];
     const double depth[2] = {40, 80};
-    for (int k = 0; k < 2; k++) x[k] = placeAt(depth[k], colour, -(depth[k] - 2) * std::tan(expected * degree));
+    for (int k = 0; k < 2; k++)
+      x[k] = placeAt(depth[k], colour, -(depth[k] - 2) * std::tan(expected * degree));
     return std::atan((x[0] - x[1]) / (depth[1] - depth[0])) / degree;
   }
 
  private:
   static constexpr double scale = 1024;
-  // Debug shows the fraction of each coordinate in a colour: the plane is turned so that x is the one that this colour shows. It
-  // is small: light that goes other ways misses it.
+  // Debug shows the fraction of each coordinate in a colour: the plane is turned so that x is the
+  // one that this colour shows. It is small: light that goes other ways misses it.
   static double placeAt(double depth, int colour, double about) {
     Shader ruler("Debug");
     ruler.setInt("show", 11).set("scale", {scale});
@@ -254,7 +264,8 @@ TEST_F(Prism, D6EachColourGoesItsOwnWay) {
   const double index[3] = {1.5, 1.52, 1.55};
   Shader flint = glass(1.5);
   prism(flint.set("indexByColor", {index[0], index[1], index[2]}), 50);
-  for (int k = 0; k < 3; k++) EXPECT_NEAR(deviation(k, turned(index[k], 50)), turned(index[k], 50), 2e-4) << k;
+  for (int k = 0; k < 3; k++)
+    EXPECT_NEAR(deviation(k, turned(index[k], 50)), turned(index[k], 50), 2e-4) << k;
 }
 
 TEST_F(Prism, D6AnAbbeNumberSpreadsTheColours) { // Cauchy's equation at 611.4, 549.1 and 464.2 nm

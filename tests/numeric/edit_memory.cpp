@@ -1,4 +1,5 @@
-// edit_memory.cpp: edits leave nothing behind: after many of them the ray kernels hold what they held after the first.
+// edit_memory.cpp: edits leave nothing behind: after many of them the ray kernels hold what they
+// held after the first.
 #include "numeric/support.h"
 
 namespace numeric {

@@ -1,6 +1,6 @@
-// edit_sequences.cpp: a picture is a function of the committed scene and its hints, not of how the scene came to be: random
-// sequences of edits, rendered after each, against the last state made at once, byte for byte; and against the same without
-// hints, where only roundings differ.
+// edit_sequences.cpp: a picture is a function of the committed scene and its hints, not of how the
+// scene came to be: random sequences of edits, rendered after each, against the last state made at
+// once, byte for byte; and against the same without hints, where only roundings differ.
 #include <cstring>
 #include <random>
 
@@ -36,13 +36,16 @@ struct World {
 class EditSequences : public testing::TestWithParam<int> {
  protected:
   std::mt19937 random{unsigned(GetParam())};
-  double uniform(double low, double high) { return low + (high - low) * double(random() >> 8) / double(1 << 24); }
+  double uniform(double low, double high) {
+    return low + (high - low) * double(random() >> 8) / double(1 << 24);
+  }
   int below(size_t n) { return int(random() % n); }
 
   void randomMatrix(double* m, double spread) {
     rtPushMatrix();
     rtLoadIdentity();
-    rtTranslated(uniform(-spread, spread), uniform(-spread / 2, spread / 2), uniform(-spread, spread));
+    rtTranslated(uniform(-spread, spread), uniform(-spread / 2, spread / 2),
+                 uniform(-spread, spread));
     rtRotated(uniform(0, 360), uniform(-1, 1), 1, uniform(-1, 1));
     rtScaled(uniform(.3, 1.2), uniform(.3, 1.2), below(5) ? uniform(.3, 1.2) : -1);
     rtGetMatrixd(m);
@@ -58,7 +61,8 @@ class EditSequences : public testing::TestWithParam<int> {
     return p;
   }
 
-  // Definitions of leaves: triangles, a sphere, lines, many triangles (shared ones become instances), and mixtures.
+  // Definitions of leaves: triangles, a sphere, lines, many triangles (shared ones become
+  // instances), and mixtures.
   static void draw(const World& w, int shape) {
     std::mt19937 r{unsigned(shape)};
     const auto number = [&r] { return float(r() >> 8) / float(1 << 23) - 1; };
@@ -84,9 +88,11 @@ class EditSequences : public testing::TestWithParam<int> {
       for (int y = 0; y <= n; y++)
         for (int x = 0; x <= n; x++) {
           const float u = 2 * float(x) / n - 1, v = 2 * float(y) / n - 1;
-          points.insert(points.end(), {u, .3f * std::sin(3 * u + float(shape)) * std::cos(4 * v), v});
+          points.insert(points.end(),
+                        {u, .3f * std::sin(3 * u + float(shape)) * std::cos(4 * v), v});
           const auto i = uint32_t(y * (n + 1) + x);
-          if (x < n && y < n) indices.insert(indices.end(), {i, i + n + 1, i + 1, i + 1, i + n + 1, i + n + 2});
+          if (x < n && y < n)
+            indices.insert(indices.end(), {i, i + n + 1, i + 1, i + 1, i + n + 1, i + n + 2});
         }
       rtVertexPointer(3, RT_FLOAT, 0, points.data());
       rtDrawElements(RT_TRIANGLES, indices.size(), indices.data(), points.size() / 3);
@@ -103,7 +109,8 @@ class EditSequences : public testing::TestWithParam<int> {
   }
   static void emitLight(Place& p) {
     if (!p.scopedLight) return;
-    p.light = rtUseLight(Shader("VRML97DirectionalLight").set("direction", {1, -.5, -.3}).set("intensity", {.5}));
+    p.light = rtUseLight(
+        Shader("VRML97DirectionalLight").set("direction", {1, -.5, -.3}).set("intensity", {.5}));
     rtLightScope(p.light, p.id);
   }
   static void define(World& w, Thing& t, bool hints) {
@@ -134,7 +141,9 @@ class EditSequences : public testing::TestWithParam<int> {
                  Shader("VRML97").set("diffuseColor", {.9, .8, .3}).set("transparency", {.4})};
     setColor(w);
     rtUseLight(Shader("VRML97PointLight").set("location", {3, 8, 6}));
-    rtUseLight(Shader("VRML97DirectionalLight").set("direction", {-.3, -1, -.4}).set("ambientIntensity", {.3}));
+    rtUseLight(Shader("VRML97DirectionalLight")
+                   .set("direction", {-.3, -1, -.4})
+                   .set("ambientIntensity", {.3}));
     for (Thing& t : w.things) {
       t.id = 0;
       if (t.dynamic && hints) { // a hint holds from the next definition on
@@ -173,11 +182,13 @@ class EditSequences : public testing::TestWithParam<int> {
     w.things[0].dynamic = false; // many triangles
     for (int i = 0; i < 3; i++) {
       Thing group{below(2) ? -1 : below(10), below(5) == 0, {}, 0};
-      for (int k = 1 + below(3); k > 0; k--) group.children.push_back(randomPlace(below(w.things.size()), 2));
+      for (int k = 1 + below(3); k > 0; k--)
+        group.children.push_back(randomPlace(below(w.things.size()), 2));
       w.things.push_back(std::move(group));
     }
     for (int i = 0; i < 10; i++) w.places.push_back(randomPlace(below(w.things.size()), 5));
-    for (int i = 0; i < 3; i++) w.places.push_back(randomPlace(0, 5)); // these share an instance's structure
+    for (int i = 0; i < 3; i++)
+      w.places.push_back(randomPlace(0, 5)); // these share an instance's structure
     w.places[1].scopedLight = below(2);
     if (!w.things[7].children.empty()) w.things[7].children[0].scopedLight = below(2);
   }
@@ -250,7 +261,8 @@ class EditSequences : public testing::TestWithParam<int> {
     int count = 0;
     for (size_t i = 0; i < a.size(); i += 4) {
       bool same = true;
-      for (size_t c = i; c < i + 4; c++) same = same && std::fabs(a[c] - b[c]) <= 1e-5f + 1e-4f * std::fabs(b[c]);
+      for (size_t c = i; c < i + 4; c++)
+        same = same && std::fabs(a[c] - b[c]) <= 1e-5f + 1e-4f * std::fabs(b[c]);
       count += !same;
     }
     return count;
@@ -279,7 +291,8 @@ TEST_P(EditSequences, TheLastPictureIsThatOfTheLastState) {
   rtDeleteContext(rtGetCurrent());
 
   emit(again, false, 1);
-  EXPECT_LE(different(rendered(), last), width * height / 100); // samples on edges fall to either side
+  EXPECT_LE(different(rendered(), last),
+            width * height / 100); // samples on edges fall to either side
   rtDeleteContext(rtGetCurrent());
 }
 

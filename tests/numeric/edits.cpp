@@ -1,5 +1,6 @@
-// edits.cpp: what an edit costs, counted in acceleration structures built, and that it shows: against closed forms, and against
-// the same scene made static. Sequences of edits against scenes made at once: edit_sequences.cpp.
+// edits.cpp: what an edit costs, counted in acceleration structures built, and that it shows:
+// against closed forms, and against the same scene made static. Sequences of edits against scenes
+// made at once: edit_sequences.cpp.
 #include "numeric/support.h"
 
 namespace numeric {
@@ -22,12 +23,15 @@ class Edits : public Scene {
   struct Built {
     uint64_t objects, topLevels;
     bool operator==(const Built&) const = default;
-    friend void PrintTo(const Built& b, std::ostream* out) { *out << b.objects << " objects, " << b.topLevels << " top levels"; }
+    friend void PrintTo(const Built& b, std::ostream* out) {
+      *out << b.objects << " objects, " << b.topLevels << " top levels";
+    }
   };
   Built built() {
     rtRender();
     const RTstats now = stats();
-    const Built result{now.objectBuilds - last_.objectBuilds, now.topLevelBuilds - last_.topLevelBuilds};
+    const Built result{now.objectBuilds - last_.objectBuilds,
+                       now.topLevelBuilds - last_.topLevelBuilds};
     last_ = now;
     return result;
   }
@@ -127,7 +131,8 @@ TEST_F(Edits, WhatIsNoGeometryBuildsNothing) {
 TEST_F(Edits, HiddenThingsCostNothingUntilTheyAreSeen) {
   const RTid s = square(Shader("VRML97"), 1);
   const RTid shown = placeAt(s, at(0), RT_DYNAMIC);
-  const RTid hidden = placeAt(square(Shader("VRML97").set("diffuseColor", {.4, .4, .4}), 1), at(0), RT_DYNAMIC);
+  const RTid hidden =
+      placeAt(square(Shader("VRML97").set("diffuseColor", {.4, .4, .4}), 1), at(0), RT_DYNAMIC);
   rtInstanceVisible(hidden, 0);
   EXPECT_EQ(built(), (Built{1, 1}));
   expectGrey(look(), .8);

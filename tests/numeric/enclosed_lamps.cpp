@@ -1,5 +1,6 @@
-// enclosed_lamps.cpp: RT_TRANSPORT_LIGHT with lights without extent behind glass and mirrors: their attenuation is that of the
-// whole way to the first surface that scatters. Glass of index 1 is not seen, so the picture is that of straight shadow rays.
+// enclosed_lamps.cpp: RT_TRANSPORT_LIGHT with lights without extent behind glass and mirrors: their
+// attenuation is that of the whole way to the first surface that scatters. Glass of index 1 is not
+// seen, so the picture is that of straight shadow rays.
 #include <cmath>
 #include <string>
 #include <vector>
@@ -23,12 +24,14 @@ class EnclosedLamps : public Scene {
   }
   static Shader lamp(bool spot, const std::vector<double>& attenuation) {
     Shader s(spot ? "VRML97SpotLight" : "VRML97PointLight");
-    s.set("location", {0, 0, lampAt}).set("attenuation", {attenuation[0], attenuation[1], attenuation[2]});
+    s.set("location", {0, 0, lampAt})
+        .set("attenuation", {attenuation[0], attenuation[1], attenuation[2]});
     if (spot) s.set("direction", {.2, 0, -1}).set("beamWidth", {.3}).set("cutOffAngle", {.7});
     return s;
   }
   static Shader floor(bool material) {
-    return material ? Shader("VRML97").set("diffuseColor", {.5, .5, .5}) : Shader("Diffuse").set("reflectance", {.5, .5, .5});
+    return material ? Shader("VRML97").set("diffuseColor", {.5, .5, .5})
+                    : Shader("Diffuse").set("reflectance", {.5, .5, .5});
   }
   static RTid ball(double radius, double z = lampAt) {
     const RTid object = rtBeginObject(0);
@@ -74,14 +77,19 @@ TEST_P(EnclosedLampsOnFloors, GlassOfIndexOneTakesNoLight) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    All, EnclosedLampsOnFloors,
-    testing::Values(Case{"PointConstant", false, false, {1, 0, 0}}, Case{"PointBySquare", false, false, {0, 0, 1}},
-                    Case{"PointOfAllTerms", false, false, {.5, .3, .2}}, Case{"SpotConstant", true, false, {1, 0, 0}},
-                    Case{"SpotBySquare", true, false, {0, 0, 1}}, Case{"PointConstantOnVrml97", false, true, {1, 0, 0}},
-                    Case{"PointBySquareOnVrml97", false, true, {0, 0, 1}}, Case{"SpotConstantOnVrml97", true, true, {1, 0, 0}},
-                    Case{"SpotBySquareOnVrml97", true, true, {0, 0, 1}}),
-    [](const testing::TestParamInfo<Case>& of) { return std::string(of.param.name); });
+INSTANTIATE_TEST_SUITE_P(All, EnclosedLampsOnFloors,
+                         testing::Values(Case{"PointConstant", false, false, {1, 0, 0}},
+                                         Case{"PointBySquare", false, false, {0, 0, 1}},
+                                         Case{"PointOfAllTerms", false, false, {.5, .3, .2}},
+                                         Case{"SpotConstant", true, false, {1, 0, 0}},
+                                         Case{"SpotBySquare", true, false, {0, 0, 1}},
+                                         Case{"PointConstantOnVrml97", false, true, {1, 0, 0}},
+                                         Case{"PointBySquareOnVrml97", false, true, {0, 0, 1}},
+                                         Case{"SpotConstantOnVrml97", true, true, {1, 0, 0}},
+                                         Case{"SpotBySquareOnVrml97", true, true, {0, 0, 1}}),
+                         [](const testing::TestParamInfo<Case>& of) {
+                           return std::string(of.param.name);
+                         });
 
 TEST_F(EnclosedLamps, ABallBetweenTheLampAndTheFloor) { // one part of the light passes it
   place(square(floor(false), 3));
@@ -90,7 +98,8 @@ TEST_F(EnclosedLamps, ABallBetweenTheLampAndTheFloor) { // one part of the light
   expectAsThroughAir();
 }
 
-// A light without shadows shines straight through the glass: what reaches the floor by way of the glass must not come on top.
+// A light without shadows shines straight through the glass: what reaches the floor by way of the
+// glass must not come on top.
 TEST_F(EnclosedLamps, ALightWithoutShadowsCountsOnce) {
   place(square(floor(false), 3));
   use(lamp(false, {1, 0, 0}).setInt("shadows", 0));
@@ -134,7 +143,8 @@ TEST_F(EnclosedLamps, AMeasuredLuminaireInGlass) { // it falls with the square o
   place(square(floor(false), 3));
   Shader s("Luminaire");
   s.set("location", {0, 0, lampAt});
-  const std::string profile = "IESNA:LM-63-2002\nTILT=NONE\n1 1000 1 3 1 1 2 0 0 0\n1 1 1\n0 45 90\n0\n10 5 0\n";
+  const std::string profile =
+      "IESNA:LM-63-2002\nTILT=NONE\n1 1000 1 3 1 1 2 0 0 0\n1 1 1\n0 45 90\n0\n10 5 0\n";
   rtBindShader(s);
   rtParameterString(rtParameterHandle("profile"), profile.c_str());
   rtBindShader(0);
@@ -143,7 +153,8 @@ TEST_F(EnclosedLamps, AMeasuredLuminaireInGlass) { // it falls with the square o
   expectAsThroughAir();
 }
 
-// A mirror under the lamp lights a ceiling as the lamp's image would, with the attenuation at the distance of the image.
+// A mirror under the lamp lights a ceiling as the lamp's image would, with the attenuation at the
+// distance of the image.
 TEST_F(EnclosedLamps, AMirrorShowsTheLampAtItsImage) {
   constexpr double ceilingAt = 2, height = 1.5, reflectance = .8, x = .7, reach = .5;
   const double attenuation[3] = {.2, .4, .1};

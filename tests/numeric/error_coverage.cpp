@@ -1,5 +1,6 @@
-// error_coverage.cpp: the promise of the error bars, checked: of the trusted 95 % intervals 93 to 97 % hold. Few seeds and small
-// pictures; `make audit` has many. And what a picture says of itself as a whole, and how frames stop.
+// error_coverage.cpp: the promise of the error bars, checked: of the trusted 95 % intervals 93 to
+// 97 % hold. Few seeds and small pictures; `make audit` has many. And what a picture says of itself
+// as a whole, and how frames stop.
 #include <algorithm>
 #include <cstring>
 #include <utility>
@@ -23,8 +24,8 @@ class ErrorBars : public Scene {
     audit::Scenario s = scenario(name);
     if (s.reference) s.reference = reference;
     const audit::Coverage c = audit::measure(s, seeds, edge);
-    printf("%-10s %llu intervals, coverage %.4f +- %.4f, trusted %.3f\n", name.c_str(), (unsigned long long)c.intervals(),
-           c.share(), c.shareInterval(), c.trustedShare());
+    printf("%-10s %llu intervals, coverage %.4f +- %.4f, trusted %.3f\n", name.c_str(),
+           (unsigned long long)c.intervals(), c.share(), c.shareInterval(), c.trustedShare());
     return c;
   }
   static void expectTrue(const audit::Coverage& c) {
@@ -47,7 +48,8 @@ TEST_F(ErrorBars, HoldUnderALamp) {
   EXPECT_NEAR(c.meanError, c.promised, .1 * c.promised); // of the whole picture
 }
 
-TEST_F(ErrorBars, HoldUnderASmallLamp) { // one replicate in a few meets the lamp by itself: neighbours tell of those that do not
+TEST_F(ErrorBars, HoldUnderASmallLamp) { // one replicate in a few meets the lamp by itself:
+                                         // neighbours tell of those that do not
   const audit::Coverage c = measure("small lamp", 20, 8192, 8);
   expectTrue(c);
   EXPECT_GT(c.trustedShare(), .9);
@@ -65,7 +67,8 @@ TEST_F(ErrorBars, HoldAtEdges) {
   EXPECT_LT(double(c.exact - c.exactHeld), .01 * double(c.pixels));
 }
 
-TEST_F(ErrorBars, WhatOnlySomePathsMeetIsTrustedWhereEnoughDo) { // lamps are not aimed at behind glass: paths must find them
+TEST_F(ErrorBars, WhatOnlySomePathsMeetIsTrustedWhereEnoughDo) { // lamps are not aimed at behind
+                                                                 // glass: paths must find them
   audit::Scenario s = scenario("pane");
   s.reference = 0;
   s.samples = 32;
@@ -79,16 +82,18 @@ TEST_F(ErrorBars, WhatOnlySomePathsMeetIsTrustedWhereEnoughDo) { // lamps are no
   rtMakeCurrent(before);
 }
 
-// Of scenes that may set limits, some of a kind that once was wrong: light that few paths meet (said too little), a lens before
-// black and a wedge that splits the colours (too much). `make audit` has all of them and many seeds.
+// Of scenes that may set limits, some of a kind that once was wrong: light that few paths meet
+// (said too little), a lens before black and a wedge that splits the colours (too much). `make
+// audit` has all of them and many seeds.
 TEST_F(ErrorBars, PicturesAreOffByWhatIsSaid) {
   for (const char* name : {"caustic", "focus", "dispersion", "leaves"}) {
     RTcontext before = rtGetCurrent(), other = rtNewContext(nullptr);
     audit::Scenario s = scenario(name);
     s.reference = 8192;
     const audit::Coverage c = audit::Judge(s, 8).measure(64, 8);
-    printf("%-10s off by %.4f, said %.4f +- %.4f, %llu of %llu in it\n", name, c.meanError, c.promised, c.promisedInterval,
-           (unsigned long long)c.promiseHeld, (unsigned long long)c.shots);
+    printf("%-10s off by %.4f, said %.4f +- %.4f, %llu of %llu in it\n", name, c.meanError,
+           c.promised, c.promisedInterval, (unsigned long long)c.promiseHeld,
+           (unsigned long long)c.shots);
     EXPECT_GE(c.promiseHeld, 6u) << name;
     EXPECT_GT(c.promised, .4 * c.meanError) << name;
     EXPECT_LT(c.promised, 4 * c.meanError) << name;
@@ -97,14 +102,16 @@ TEST_F(ErrorBars, PicturesAreOffByWhatIsSaid) {
   }
 }
 
-// The light of a lamp of a ten-thousandth that comes through a ball of glass is there, and next to no path meets it: no sample
-// tells of it. That it may be missing is said, also where the eye sees the floor through glass.
+// The light of a lamp of a ten-thousandth that comes through a ball of glass is there, and next to
+// no path meets it: no sample tells of it. That it may be missing is said, also where the eye sees
+// the floor through glass.
 TEST_F(ErrorBars, WhatIsMetByChanceAndWasNotMetIsInTheInterval) {
   const RTid white = audit::paint(.7f, .7f, .7f), glass = audit::shaderOf("Glass");
   const auto picture = [](RTenum transport) {
     rtQuality(RT_TRANSPORT, transport);
     rtRender();
-    printf("%.4f +- %.4f, unmet %.4g\n", stats().errorMean, stats().errorMeanInterval, stats().errorUnmet);
+    printf("%.4f +- %.4f, unmet %.4g\n", stats().errorMean, stats().errorMeanInterval,
+           stats().errorUnmet);
     return stats();
   };
   audit::floorAt(-1, white, 10);
@@ -124,7 +131,8 @@ TEST_F(ErrorBars, WhatIsMetByChanceAndWasNotMetIsInTheInterval) {
   EXPECT_GT(ball.errorUnmet, 1);
   EXPECT_GT(ball.errorMean + ball.errorMeanInterval, .5);
   EXPECT_LE(ball.errorMean + ball.errorMeanInterval, 1 + 1e-9);
-  audit::put(audit::box(glass, 2, .01, 2), 0, 1.2, 1, 0); // before the eye: then paths from lamps do not reach it
+  audit::put(audit::box(glass, 2, .01, 2), 0, 1.2, 1,
+             0); // before the eye: then paths from lamps do not reach it
   EXPECT_GT(picture(RT_TRANSPORT_LIGHT).errorUnmet, 1);
 }
 
@@ -177,9 +185,10 @@ TEST_F(ErrorBars, ATargetIsReachedWithoutBias) {
   EXPECT_LT(samples, 4096);
 }
 
-// A ball of a ten-thousandth lights a floor before black, by itself and through a ball of glass. The pixels at the border of the
-// black, which may hold a corner of the floor, count, too: the first pilot of a tile does not know them. So does the spot under
-// the glass, that few paths meet. Samples are taken until the target is reached, or all that are allowed.
+// A ball of a ten-thousandth lights a floor before black, by itself and through a ball of glass.
+// The pixels at the border of the black, which may hold a corner of the floor, count, too: the
+// first pilot of a tile does not know them. So does the spot under the glass, that few paths meet.
+// Samples are taken until the target is reached, or all that are allowed.
 TEST_F(ErrorBars, ATargetIsReachedUnderATinyLamp) {
   const RTid white = audit::paint(.7f, .7f, .7f);
   audit::floorAt(-1, white, 10);
@@ -199,8 +208,8 @@ TEST_F(ErrorBars, ATargetIsReachedUnderATinyLamp) {
         const std::vector<float> samples = read(RT_SAMPLES, 256);
         const float taken = *std::max_element(samples.begin(), samples.end());
         const double paths = double(stats().cameraRays) / 256;
-        printf("target %.2f: half-width %.4f of %.0f samples at most, %.0f with pilots\n", target, stats().errorHalfWidth,
-               double(taken), paths);
+        printf("target %.2f: half-width %.4f of %.0f samples at most, %.0f with pilots\n", target,
+               stats().errorHalfWidth, double(taken), paths);
         EXPECT_LE(taken, most);
         EXPECT_LE(paths, taken + 32 + most / 3.0);
         EXPECT_TRUE(most != 64 || taken == 64) << "out of reach";
@@ -208,33 +217,37 @@ TEST_F(ErrorBars, ATargetIsReachedUnderATinyLamp) {
         all += taken == float(most);
       }
     }
-    EXPECT_GE(reached, glass ? 4 : 6); // few paths meet the spot: a picture may meet more noise than its pilots
+    EXPECT_GE(reached,
+              glass ? 4
+                    : 6); // few paths meet the spot: a picture may meet more noise than its pilots
     EXPECT_GE(all, 6);
   }
 }
 
-// A pilot that has missed the lamp takes too few samples, which then miss it too: if they knew of each other, pictures would be
-// too dark.
+// A pilot that has missed the lamp takes too few samples, which then miss it too: if they knew of
+// each other, pictures would be too dark.
 TEST_F(ErrorBars, StoppingDoesNotBiasWhatIsRare) {
   scenario("pane").draw();
   rtQuality(RT_TRANSPORT, RT_TRANSPORT_PATH);
   rtFrameBuffer(8, 8, RT_RGBA | RT_SAMPLES);
-  const auto means = [](int first, int seeds, double& samples) { // mean of the pictures, and the square of its standard error
-    double sum = 0, square = 0;
-    samples = 0;
-    for (int seed = first; seed < first + seeds; seed++) {
-      rtQuality(RT_SEED, seed);
-      rtRender();
-      double mean = 0;
-      const std::vector<float> rgba = read(RT_RGBA, 4 * 64);
-      for (size_t i = 0; i < 64; i++) mean += double(rgba[4 * i]) / 64;
-      for (float n : read(RT_SAMPLES, 64)) samples += double(n) / 64 / seeds;
-      sum += mean;
-      square += mean * mean;
-    }
-    const double m = sum / seeds;
-    return std::array{m, (square / seeds - m * m) / (seeds - 1)};
-  };
+  const auto means =
+      [](int first, int seeds,
+         double& samples) { // mean of the pictures, and the square of its standard error
+        double sum = 0, square = 0;
+        samples = 0;
+        for (int seed = first; seed < first + seeds; seed++) {
+          rtQuality(RT_SEED, seed);
+          rtRender();
+          double mean = 0;
+          const std::vector<float> rgba = read(RT_RGBA, 4 * 64);
+          for (size_t i = 0; i < 64; i++) mean += double(rgba[4 * i]) / 64;
+          for (float n : read(RT_SAMPLES, 64)) samples += double(n) / 64 / seeds;
+          sum += mean;
+          square += mean * mean;
+        }
+        const double m = sum / seeds;
+        return std::array{m, (square / seeds - m * m) / (seeds - 1)};
+      };
   double taken = 0, wanted = 0;
   rtQuality(RT_SAMPLES_PER_PIXEL, 1024);
   const auto fixed = means(1, 20, taken);
@@ -244,8 +257,8 @@ TEST_F(ErrorBars, StoppingDoesNotBiasWhatIsRare) {
   EXPECT_LT(wanted, 4000);
   EXPECT_GT(wanted, 32);
   const double error = std::sqrt(fixed[1] + stopped[1]);
-  printf("mean %.5f, stopped %.5f, bias %+.5f +- %.5f, samples %.0f\n", fixed[0], stopped[0], stopped[0] - fixed[0], 2 * error,
-         wanted);
+  printf("mean %.5f, stopped %.5f, bias %+.5f +- %.5f, samples %.0f\n", fixed[0], stopped[0],
+         stopped[0] - fixed[0], 2 * error, wanted);
   EXPECT_NEAR(stopped[0], fixed[0], 3.3 * error);
   EXPECT_LT(error, .15 * fixed[0]);
 }

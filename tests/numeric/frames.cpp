@@ -1,5 +1,6 @@
-// frames.cpp: places on lamps and directions are chosen in a frame built about an axis. Where such a frame jumped, a line of the
-// picture had several times the error of the rest: the error must be even.
+// frames.cpp: places on lamps and directions are chosen in a frame built about an axis. Where such
+// a frame jumped, a line of the picture had several times the error of the rest: the error must be
+// even.
 #include <algorithm>
 #include <vector>
 
@@ -19,7 +20,8 @@ class Frames : public Scene {
   }
   static Shader matt(double reflectance, double radiance = 0) {
     Shader s("Diffuse");
-    return s.set("reflectance", {reflectance, reflectance, reflectance}).set("emission", {radiance, radiance, radiance});
+    return s.set("reflectance", {reflectance, reflectance, reflectance})
+        .set("emission", {radiance, radiance, radiance});
   }
   static RTid ball(const Shader& shader, double radius) {
     const RTid object = rtBeginObject(0);
@@ -64,7 +66,8 @@ class Frames : public Scene {
     }
     std::vector<double> sorted = rows;
     std::sort(sorted.begin(), sorted.end());
-    for (int y = 0; y < edge; y++) EXPECT_LT(rows[size_t(y)], 1.6 * sorted[edge / 2]) << "row " << y;
+    for (int y = 0; y < edge; y++)
+      EXPECT_LT(rows[size_t(y)], 1.6 * sorted[edge / 2]) << "row " << y;
   }
 };
 
@@ -86,7 +89,8 @@ TEST_F(Frames, ABallBesideAWall) {
 TEST_F(Frames, ASmoothBallUnderASky) {
   ball(matt(.5), 1);
   Shader sky("VRML97Environment");
-  rtUseEnvironment(sky.setList("skyColor", {.2f, .2f, .2f, 1, 1, 1, 3, 3, 3}).setList("skyAngle", {1.2f, 2.4f}));
+  rtUseEnvironment(
+      sky.setList("skyColor", {.2f, .2f, .2f, 1, 1, 1, 3, 3, 3}).setList("skyAngle", {1.2f, 2.4f}));
   camera({3, 0, 0}, {0, 0, 0}, {0, 0, 1}, .5);
   expectEvenRows(deviations());
 }
@@ -101,7 +105,8 @@ TEST_F(Frames, AWallThatIsTurnedByNothing) {
     rtPopMatrix();
   }
   Shader sky("VRML97Environment");
-  rtUseEnvironment(sky.setList("skyColor", {.2f, .2f, .2f, 1, 1, 1, 3, 3, 3}).setList("skyAngle", {1.2f, 2.4f}));
+  rtUseEnvironment(
+      sky.setList("skyColor", {.2f, .2f, .2f, 1, 1, 1, 3, 3, 3}).setList("skyAngle", {1.2f, 2.4f}));
   camera({3, 0, 0}, {0, 0, 0}, {0, 1, 0}, 1); // the middle row is where the two walls meet
   expectEvenRows(deviations());
 }

@@ -1,4 +1,5 @@
-// global_light.cpp: light between surfaces against closed forms: G5, G6, G7 of the accuracy catalogue.
+// global_light.cpp: light between surfaces against closed forms: G5, G6, G7 of the accuracy
+// catalogue.
 #include "numeric/support.h"
 
 namespace numeric {
@@ -6,7 +7,8 @@ namespace {
 
 class GlobalLight : public Scene {
  protected:
-  // The six faces of a cube of edge 1 about the origin, facing inwards; the first, at -z, has a shader of its own.
+  // The six faces of a cube of edge 1 about the origin, facing inwards; the first, at -z, has a
+  // shader of its own.
   static void cube(RTid first, RTid others) {
     for (int i = 0; i < 6; i++) {
       rtPushMatrix();
@@ -24,8 +26,10 @@ class GlobalLight : public Scene {
   }
 };
 
-TEST_F(GlobalLight, G5RouletteDoesNotChangeTheMean) { // Le / (1 - rho), of which roulette sees all but the first terms
-  const Shader wall = Shader("Diffuse").set("emission", {.05, .05, .05}).set("reflectance", {.95, .95, .95});
+TEST_F(GlobalLight, G5RouletteDoesNotChangeTheMean) { // Le / (1 - rho), of which roulette sees all
+                                                      // but the first terms
+  const Shader wall =
+      Shader("Diffuse").set("emission", {.05, .05, .05}).set("reflectance", {.95, .95, .95});
   cube(wall, wall);
   rtPushMatrix();
   rtPerspective(90);
@@ -41,7 +45,8 @@ TEST_F(GlobalLight, G5RouletteDoesNotChangeTheMean) { // Le / (1 - rho), of whic
     sum += m;
     square += m * m;
   }
-  const double m = sum / seeds, error = std::sqrt(std::max(0.0, square / seeds - m * m) / (seeds - 1));
+  const double m = sum / seeds,
+               error = std::sqrt(std::max(0.0, square / seeds - m * m) / (seeds - 1));
   EXPECT_NEAR(m, 1, 4 * error);
   EXPECT_LT(error, .01);
 }
@@ -61,7 +66,8 @@ TEST_F(GlobalLight, G6RadiosityOfACube) { // the sum is exact: what is sent out 
     sum += face[i] = mean(picture(8));
   }
   EXPECT_NEAR(sum, 2, 4e-3);
-  // A solve with 16x16 patches a face, towards many; with one radiosity for each face: 1.0909, .1817, .1818.
+  // A solve with 16x16 patches a face, towards many; with one radiosity for each face: 1.0909,
+  // .1817, .1818.
   EXPECT_NEAR(face[0], 1.1055, .01 * 1.1055);
   EXPECT_NEAR(face[2], .1700, .02 * .1700);
   for (const int side : {1, 3, 4, 5}) EXPECT_NEAR(face[side], .1813, .01 * .1813);

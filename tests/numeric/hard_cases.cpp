@@ -1,5 +1,5 @@
-// hard_cases.cpp: geometry where single precision is hard put to it: N5, N9, N10, N11, N14, N15, N21, N22 of the accuracy
-// catalogue.
+// hard_cases.cpp: geometry where single precision is hard put to it: N5, N9, N10, N11, N14, N15,
+// N21, N22 of the accuracy catalogue.
 #include <cstring>
 #include <limits>
 #include <random>
@@ -23,7 +23,9 @@ class HardCases : public Scene {
   }
 };
 
-TEST_F(HardCases, N5AHorizonAtGrazingAngles) { // a plane of 1e4 from one above it: it ends 1e-4 below the horizon
+TEST_F(
+    HardCases,
+    N5AHorizonAtGrazingAngles) { // a plane of 1e4 from one above it: it ends 1e-4 below the horizon
   rtPushMatrix();
   rtRotated(-90, 1, 0, 0);
   place(square(glow(1, 1, 1), 1e4));
@@ -100,7 +102,8 @@ TEST_F(HardCases, N11LongThinStripsAreClosed) {
   place(object);
   rtRender();
   std::mt19937 random(7);
-  std::uniform_real_distribution<double> along(-4.9e4, 4.9e4), across(1e-6, 1e-2 * strips - 1e-6), tilt(-.3, .3);
+  std::uniform_real_distribution<double> along(-4.9e4, 4.9e4), across(1e-6, 1e-2 * strips - 1e-6),
+      tilt(-.3, .3);
   std::vector<RTray> rays;
   for (int i = 0; i < 200000; i++) {
     const float x = float(along(random)), y = float(across(random)), a = float(tilt(random));
@@ -115,8 +118,8 @@ RTid coarseBall(RTid shader) {
   rtBindShader(shader);
   rtBegin(RT_QUADS);
   const auto corner = [](int ring, int k) {
-    const double a = pi * ring / 12, b = 2 * pi * k / 24, x = std::sin(a) * std::cos(b), y = std::cos(a),
-                 z = std::sin(a) * std::sin(b);
+    const double a = pi * ring / 12, b = 2 * pi * k / 24, x = std::sin(a) * std::cos(b),
+                 y = std::cos(a), z = std::sin(a) * std::sin(b);
     rtNormal3f(float(x), float(y), float(z));
     rtVertex3d(x, y, z);
   };
@@ -153,7 +156,8 @@ TEST_F(HardCases, N14ATerminatorOfSmoothNormals) {
   const std::vector<float> coarse = picture(32);
   EXPECT_NEAR(mean(coarse), mean(truth), .03 * mean(truth)); // of which 1.5 % are the silhouette's
   for (size_t i = 0; i < truth.size(); i += 4) {
-    const double x = (double(i / 4 % 32) + .5) / 16 - 1, y = 1 - (double(i / 4 / 32) + .5) / 16, z2 = 1 - x * x - y * y;
+    const double x = (double(i / 4 % 32) + .5) / 16 - 1, y = 1 - (double(i / 4 / 32) + .5) / 16,
+                 z2 = 1 - x * x - y * y;
     if (z2 < .25) continue;
     const double cosine = (x + .2 * std::sqrt(z2)) / std::sqrt(1.04);
     if (cosine < -.28) { // more than one facet behind the terminator
@@ -197,7 +201,8 @@ TEST_F(HardCases, N21EyesInOddPlacesSeeNumbers) {
   place(ball);
   place(square(Shader("Glass"), 3));
   for (const double fov : {.001 * 180 / pi, 60., 3.1 * 180 / pi})
-    for (const double z : {0., 1., .5, -1e-7}) { // in the middle, on the surface, inside, in the plane
+    for (const double z :
+         {0., 1., .5, -1e-7}) { // in the middle, on the surface, inside, in the plane
       rtPushMatrix();
       rtTranslated(0, 0, z);
       rtPerspective(fov);

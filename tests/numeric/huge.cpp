@@ -1,5 +1,6 @@
-// huge.cpp: things of sizes that single precision cannot hold beside each other: the ground as a sphere under an eye at a man's
-// height, and a thing so far away that nobody sees it, which must change nothing.
+// huge.cpp: things of sizes that single precision cannot hold beside each other: the ground as a
+// sphere under an eye at a man's height, and a thing so far away that nobody sees it, which must
+// change nothing.
 #include <limits>
 
 #include "numeric/support.h"
@@ -11,7 +12,8 @@ constexpr float infinity = std::numeric_limits<float>::infinity();
 
 class Huge : public Scene {
  protected:
-  // A sphere that touches the plane y = 0 from below at the origin; squashed: its height is a quarter of its width.
+  // A sphere that touches the plane y = 0 from below at the origin; squashed: its height is a
+  // quarter of its width.
   static RTid ground(double radius, bool squashed, RTid shader) {
     rtPushMatrix();
     rtLoadIdentity();
@@ -29,9 +31,12 @@ class Huge : public Scene {
   // Where a ray from (x, y, 0) meets it, by the half of the equation that keeps its digits.
   static double meets(double radius, bool squashed, Vec from, Vec d) {
     const long double s = squashed ? 4 : 1, r = static_cast<long double>(radius);
-    const long double o[3] = {from.x, s * from.y, from.z}, v[3] = {d.x, s * d.y, d.z}; // about the point of contact
-    const long double a = v[0] * v[0] + v[1] * v[1] + v[2] * v[2], b = o[0] * v[0] + (o[1] + r) * v[1] + o[2] * v[2];
-    const long double c = o[0] * o[0] + o[1] * o[1] + o[2] * o[2] + 2 * r * o[1], root = b * b - a * c;
+    const long double o[3] = {from.x, s * from.y, from.z},
+                      v[3] = {d.x, s * d.y, d.z}; // about the point of contact
+    const long double a = v[0] * v[0] + v[1] * v[1] + v[2] * v[2],
+                      b = o[0] * v[0] + (o[1] + r) * v[1] + o[2] * v[2];
+    const long double c = o[0] * o[0] + o[1] * o[1] + o[2] * o[2] + 2 * r * o[1],
+                      root = b * b - a * c;
     if (root < 0) return HUGE_VAL;
     const long double q = -(b + (b < 0 ? -sqrtl(root) : sqrtl(root)));
     return static_cast<double>(b < 0 ? c / q : q / a);
@@ -47,15 +52,16 @@ TEST_F(Huge, TheGroundMayBeASphereOfAnyRadius) {
       double worst = 0;
       for (int i = 0; i < 400; i++) {
         const double down = .04 + 1.5 * i / 400, around = .7 * i;
-        const RTray ray{
-            {float(.1 * i), 2, 0},
-            0,
-            {float(std::cos(down) * std::cos(around)), float(-std::sin(down)), float(std::cos(down) * std::sin(around))},
-            infinity};
+        const RTray ray{{float(.1 * i), 2, 0},
+                        0,
+                        {float(std::cos(down) * std::cos(around)), float(-std::sin(down)),
+                         float(std::cos(down) * std::sin(around))},
+                        infinity};
         RThit hit;
         rtCastRays(1, &ray, &hit);
-        const double expected = meets(radius, squashed, {double(ray.origin[0]), 2, 0},
-                                      {double(ray.direction[0]), double(ray.direction[1]), double(ray.direction[2])});
+        const double expected =
+            meets(radius, squashed, {double(ray.origin[0]), 2, 0},
+                  {double(ray.direction[0]), double(ray.direction[1]), double(ray.direction[2])});
         ASSERT_TRUE(std::isfinite(hit.t)) << radius << " " << squashed << " ray " << i;
         worst = std::max(worst, std::fabs(double(hit.t) - expected) / expected);
         uint8_t blocked[2];
@@ -136,7 +142,8 @@ TEST_F(Huge, WhatIsFarAwayChangesNothingElse) {
   const std::vector<float> alone = picture(48);
   EXPECT_GT(mean(alone), .02);
   for (const double far : {1e6, 1e12, 1e16, 1e19, 1e20, 1e25}) {
-    const RTid object = rtBeginObject(0); // its place is part of the object: an instance there would be refused
+    const RTid object =
+        rtBeginObject(0); // its place is part of the object: an instance there would be refused
     rtTranslated(0, far, 0);
     rtBindShader(white);
     rtSphere(1);
@@ -155,12 +162,14 @@ TEST_F(Huge, WhatIsFarAwayChangesNothingElse) {
   }
 }
 
-// A lamp over a floor so large that rays step farther off it than the lamp is away: said once, with the distance that is needed.
-// Not where there is room, nor of a lamp that touches the floor.
+// A lamp over a floor so large that rays step farther off it than the lamp is away: said once, with
+// the distance that is needed. Not where there is room, nor of a lamp that touches the floor.
 TEST_F(Huge, ALampTooNearToBeSeenIsWarnedOf) {
   static std::vector<std::string> said;
   said.clear();
-  rtLogCallback([](int level, const char* message, void*) { said.emplace_back(std::to_string(level) + message); }, nullptr);
+  rtLogCallback([](int level, const char* message,
+                   void*) { said.emplace_back(std::to_string(level) + message); },
+                nullptr);
   rtQuality(RT_TRANSPORT, RT_TRANSPORT_PATH);
   Shader floor("Diffuse"), lamp("Diffuse");
   lamp.set("emission", {1, 1, 1});

@@ -1,5 +1,6 @@
-// invariance.cpp: the same scene somewhere else or of another size gives the same picture: N1, N2 and G10 of the accuracy
-// catalogue. Lights measure in their own space, so their attenuation grows with the scene.
+// invariance.cpp: the same scene somewhere else or of another size gives the same picture: N1, N2
+// and G10 of the accuracy catalogue. Lights measure in their own space, so their attenuation grows
+// with the scene.
 #include <algorithm>
 #include <functional>
 
@@ -12,7 +13,8 @@ class Invariance : public Scene {
  protected:
   static constexpr int size = 32;
 
-  // Floor, a tilted square with a shadow, a sphere, a near lamp, fog; everything under the current matrix.
+  // Floor, a tilted square with a shadow, a sphere, a near lamp, fog; everything under the current
+  // matrix.
   static std::vector<float> picture(const std::function<void()>& placement) {
     std::vector<RTid> made;
     rtLoadIdentity();
@@ -34,7 +36,8 @@ class Invariance : public Scene {
     rtBindShader(0);
     put(ball, -.7, -.3, 0, 0, 1);
     const RTid lamp = use(point({1, 3, 2}, {0, 0, .1}).set("intensity", {1.5}));
-    const RTid sun = use(directional({-.3, -1, -.4}).set("intensity", {.3}).set("ambientIntensity", {.3}));
+    const RTid sun =
+        use(directional({-.3, -1, -.4}).set("intensity", {.3}).set("ambientIntensity", {.3}));
     rtTranslated(0, .5, 5);
     rtPerspective(40);
     rtFrameBuffer(size, size, RT_RGBA);
@@ -48,14 +51,16 @@ class Invariance : public Scene {
     return pixels;
   }
 
-  // Pixels that differ by more than the tolerance. A sample on a silhouette or a shadow's edge may fall to the other side.
+  // Pixels that differ by more than the tolerance. A sample on a silhouette or a shadow's edge may
+  // fall to the other side.
   static int different(const std::vector<float>& a, const std::vector<float>& b, double relative) {
     int count = 0;
     for (size_t i = 0; i < a.size(); i += 4) {
       bool same = true;
       for (size_t c = 0; c < 4; c++)
         same = same &&
-               std::fabs(a[i + c] - b[i + c]) <= relative * std::max(.1f, std::max(std::fabs(a[i + c]), std::fabs(b[i + c])));
+               std::fabs(a[i + c] - b[i + c]) <=
+                   relative * std::max(.1f, std::max(std::fabs(a[i + c]), std::fabs(b[i + c])));
       count += !same;
     }
     return count;

@@ -1,6 +1,6 @@
-// lamps.cpp: light of emitting shapes, of many lights and inside spheres, by path tracing, against closed forms (accuracy
-// catalogue R4 to R12, G3, G9, form factors), through the C API. A white surface under irradiance E shows E / pi: the form factor
-// of the lamp, if that has radiance 1.
+// lamps.cpp: light of emitting shapes, of many lights and inside spheres, by path tracing, against
+// closed forms (accuracy catalogue R4 to R12, G3, G9, form factors), through the C API. A white
+// surface under irradiance E shows E / pi: the form factor of the lamp, if that has radiance 1.
 #include "numeric/support.h"
 
 #include <cstdio>
@@ -11,11 +11,14 @@ namespace {
 
 constexpr double degree = pi / 180;
 
-Vec cross(Vec a, Vec b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
+Vec cross(Vec a, Vec b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
 double dot(Vec a, Vec b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 double length(Vec a) { return std::sqrt(dot(a, a)); }
 
-// R7: Lambert's formula for a polygon seen from the origin by a surface that faces z, all of it above; over pi.
+// R7: Lambert's formula for a polygon seen from the origin by a surface that faces z, all of it
+// above; over pi.
 double polygon(const std::vector<Vec>& v) {
   double sum = 0;
   for (size_t i = 0; i < v.size(); i++) {
@@ -54,7 +57,8 @@ class Lamps : public Scene {
   }
   static Shader matt(double reflectance, double radiance = 0) {
     Shader s("Diffuse");
-    s.set("reflectance", {reflectance, reflectance, reflectance}).set("emission", {radiance, radiance, radiance});
+    s.set("reflectance", {reflectance, reflectance, reflectance})
+        .set("emission", {radiance, radiance, radiance});
     return s;
   }
   static RTid floor(double half = 100) { return place(square(matt(1), half)); }
@@ -85,10 +89,13 @@ class Lamps : public Scene {
     constexpr int n = 512;
     const double out = r * std::sqrt(2 * pi / n / std::sin(2 * pi / n));
     std::vector<Vec> v;
-    for (int i = 0; i < n; i++) v.push_back({out * std::cos(2 * pi * i / n), out * std::sin(2 * pi * i / n), z});
+    for (int i = 0; i < n; i++)
+      v.push_back({out * std::cos(2 * pi * i / n), out * std::sin(2 * pi * i / n), z});
     return v;
   }
-  static double lit(double x = 0) { return look(x, 0, .001).g; } // from below what hangs over the floor
+  static double lit(double x = 0) {
+    return look(x, 0, .001).g;
+  } // from below what hangs over the floor
   static void expectQ(const char* id, double got, double expected, double tolerance) {
     std::printf("%-10s expected %.8f got %.8f tolerance %.1e\n", id, expected, got, tolerance);
     EXPECT_NEAR(got, expected, tolerance * std::max(expected, .1)) << id;
@@ -131,7 +138,8 @@ TEST_F(Lamps, R6ASphere) {
   }
 }
 
-TEST_F(Lamps, R6AnEllipsoidIsSeenAsItsOutline) { // a cone that touches it: a disc of radius a c / sqrt(d^2 - c^2), seen from d
+TEST_F(Lamps, R6AnEllipsoidIsSeenAsItsOutline) { // a cone that touches it: a disc of radius a c /
+                                                 // sqrt(d^2 - c^2), seen from d
   floor();
   rtPushMatrix();
   rtTranslated(0, 0, 3);
@@ -205,7 +213,8 @@ TEST_F(Lamps, R11NothingArrivesAndItIsZero) {
 
 TEST_F(Lamps, R11NoLightBeyondItsRadius) {
   floor();
-  for (int i = 0; i < 40; i++) use(Shader("VRML97PointLight").set("location", {0, 0, 2}).set("radius", {1.9}));
+  for (int i = 0; i < 40; i++)
+    use(Shader("VRML97PointLight").set("location", {0, 0, 2}).set("radius", {1.9}));
   EXPECT_EQ(lit(), 0);
 }
 
@@ -243,7 +252,8 @@ TEST_F(Lamps, R12ManyLightsOfAllKindsAddUp) {
     const double strength = .01 * (1 + i % 5);
     Shader light(i % 3 ? "VRML97PointLight" : "VRML97SpotLight");
     light.set("location", {x, y, z}).set("attenuation", {0, 0, 1}).set("intensity", {strength});
-    if (i % 3 == 0) light.set("direction", {0, 0, -1}).set("cutOffAngle", {.8}).set("beamWidth", {.8});
+    if (i % 3 == 0)
+      light.set("direction", {0, 0, -1}).set("cutOffAngle", {.8}).set("beamWidth", {.8});
     use(light);
     if (i % 3 == 0 && z < std::sqrt(d2) * std::cos(.8)) continue;
     expected += strength / d2 * z / std::sqrt(d2);
@@ -285,14 +295,16 @@ TEST_F(Lamps, TwoLampsInOnePlaceAreOne) { // of which the kernel sees one
   expectQ("in one place", lit(), .75227469 / pi, 2e-3);
 }
 
-TEST_F(Lamps, LampsThatAreMirroredAndTurned) { // one-sided by culling; the sides must be told apart as the kernel does
+TEST_F(Lamps, LampsThatAreMirroredAndTurned) { // one-sided by culling; the sides must be told apart
+                                               // as the kernel does
   floor();
   for (const double flip : {1., -1.}) {
     const RTid object = rtBeginObject(0);
     rtEnable(RT_CULL_FACE);
     rtBindShader(matt(0, 1));
     rtBegin(RT_QUADS);
-    for (const auto& c : {std::array{-.5, .5}, {.5, .5}, {.5, -.5}, {-.5, -.5}}) rtVertex3d(c[0], c[1], 0); // faces down
+    for (const auto& c : {std::array{-.5, .5}, {.5, .5}, {.5, -.5}, {-.5, -.5}})
+      rtVertex3d(c[0], c[1], 0); // faces down
     rtEnd();
     rtDisable(RT_CULL_FACE);
     rtEndObject();
@@ -365,7 +377,8 @@ TEST_F(Lamps, FormFactorOfDiscs) {
   expectQ("discs", f * 2.01 * 2.01 / pi, .38196601, 2e-3);
 }
 
-// The eye is inside; the whole sphere sees the source. G3: of the total the indirect part is the same everywhere.
+// The eye is inside; the whole sphere sees the source. G3: of the total the indirect part is the
+// same everywhere.
 TEST_F(Lamps, G3AnIntegratingSphere) {
   rtQuality(RT_MAX_DEPTH, 60);
   rtQuality(RT_SAMPLES_PER_PIXEL, 16384);
@@ -374,8 +387,8 @@ TEST_F(Lamps, G3AnIntegratingSphere) {
   for (const double off : {0., 2.}) {
     const double c = 32; // colour of the light: intensity over pi
     const RTid source = use(point({off, 0, 0}, {0, 0, 1}).set("intensity", {c}));
-    const double direct =
-        rho * c / (radius * radius + off * off) * radius / std::sqrt(radius * radius + off * off); // seen at (0,0,-4)
+    const double direct = rho * c / (radius * radius + off * off) * radius /
+                          std::sqrt(radius * radius + off * off); // seen at (0,0,-4)
     const double indirect = rho * rho * c / (radius * radius * (1 - rho));
     expectQ(off > 0 ? "G3 off" : "G3 centre", double(lookFrom(1).g), direct + indirect, 2e-3);
     rtRemoveLight(source);

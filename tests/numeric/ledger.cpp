@@ -1,5 +1,6 @@
-// ledger.cpp: what pictures leave out on purpose, and say so: RTstats.cutByDepth, cutByEnergy, clipped, unreachedLights,
-// wrongHits. N18 of the accuracy catalogue, and the checks of slivers (N6).
+// ledger.cpp: what pictures leave out on purpose, and say so: RTstats.cutByDepth, cutByEnergy,
+// clipped, unreachedLights, wrongHits. N18 of the accuracy catalogue, and the checks of slivers
+// (N6).
 #include "numeric/support.h"
 
 namespace numeric {
@@ -9,7 +10,8 @@ class Ledger : public Scene {
  protected:
   // A mirror that looks at another: every image is followed.
   static void mirrors(double reflectance) {
-    const Shader mirror = Shader("Mirror").set("reflectance", {reflectance, reflectance, reflectance});
+    const Shader mirror =
+        Shader("Mirror").set("reflectance", {reflectance, reflectance, reflectance});
     place(square(mirror));
     rtPushMatrix();
     rtTranslated(0, 0, 5);
@@ -57,7 +59,8 @@ TEST_F(Ledger, N18ClampingSaysWhatItTakesAway) {
   expectClose(stats().clipped, 3);
 }
 
-TEST_F(Ledger, N18WhatIsClippedIsWhatIsMissing) { // of a noisy picture: clamped and not clamped see the same paths
+TEST_F(Ledger, N18WhatIsClippedIsWhatIsMissing) { // of a noisy picture: clamped and not clamped see
+                                                  // the same paths
   const Shader floor("Diffuse");
   place(square(floor));
   Shader lamp("Diffuse");
@@ -107,8 +110,8 @@ TEST_F(Ledger, LightsThatPathsCannotReachThroughGlass) {
   rtDeleteInstance(pane);
 }
 
-// Triangles 10 units long and 1e-4 high in odd directions, met at grazing angles 2 % beside their end: single precision finds
-// some.
+// Triangles 10 units long and 1e-4 high in odd directions, met at grazing angles 2 % beside their
+// end: single precision finds some.
 TEST_F(Ledger, N6WrongHitsOnSliversAreRejectedAndCounted) {
   constexpr int triangles = 200, each = 20;
   uint32_t state = 1;
@@ -117,10 +120,13 @@ TEST_F(Ledger, N6WrongHitsOnSliversAreRejectedAndCounted) {
     return double(state >> 8) / 16777216 - .5;
   };
   const auto direction = [&] {
-    const double v[3] = {random(), random(), random()}, l = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+    const double v[3] = {random(), random(), random()},
+                 l = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
     return Vec{v[0] / l, v[1] / l, v[2] / l};
   };
-  const auto sum = [](Vec a, double s, Vec b) { return Vec{a.x + s * b.x, a.y + s * b.y, a.z + s * b.z}; };
+  const auto sum = [](Vec a, double s, Vec b) {
+    return Vec{a.x + s * b.x, a.y + s * b.y, a.z + s * b.z};
+  };
   const auto across = [](Vec a, Vec b) {
     const Vec c{a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
     const double l = std::sqrt(c.x * c.x + c.y * c.y + c.z * c.z);
@@ -128,7 +134,8 @@ TEST_F(Ledger, N6WrongHitsOnSliversAreRejectedAndCounted) {
   };
   uint64_t found = 0, wrong = 0;
   for (int t = 0; t < triangles; t++) {
-    const Vec along = direction(), up = across(along, direction()), normal = across(along, up), from = direction();
+    const Vec along = direction(), up = across(along, direction()), normal = across(along, up),
+              from = direction();
     const Vec end = sum(from, 10, along), tip = sum(end, 1e-4, up);
     const RTid object = rtBeginObject(0);
     rtBegin(RT_TRIANGLES);
@@ -143,7 +150,8 @@ TEST_F(Ledger, N6WrongHitsOnSliversAreRejectedAndCounted) {
       const Vec d = sum(sum({}, std::cos(grazing), along), -std::sin(grazing), normal);
       const auto towards = [&](double share, double height, double far = 3) {
         const Vec at = sum(sum(from, 10 * share, along), height, up), o = sum(at, -far, d);
-        return RTray{{float(o.x), float(o.y), float(o.z)}, 0, {float(d.x), float(d.y), float(d.z)}, 1e30f};
+        return RTray{
+            {float(o.x), float(o.y), float(o.z)}, 0, {float(d.x), float(d.y), float(d.z)}, 1e30f};
       };
       beside.push_back(towards(1.002 + .05 * i / each, 1e-4 * (i + .5) / each, 300));
       on.push_back(towards(.9, .45e-4));
@@ -158,9 +166,10 @@ TEST_F(Ledger, N6WrongHitsOnSliversAreRejectedAndCounted) {
   }
   EXPECT_EQ(wrong, 0u);
   EXPECT_GT(stats().wrongHits, 0u) << "nothing was rejected";
-  EXPECT_GT(found, triangles * each / 4u); // a ray in floats may pass beside what is 1e-4 high: measured
-  printf("slivers: %.3f of the rays found, %llu wrong hits rejected\n", double(found) / (triangles * each),
-         static_cast<unsigned long long>(stats().wrongHits));
+  EXPECT_GT(found,
+            triangles * each / 4u); // a ray in floats may pass beside what is 1e-4 high: measured
+  printf("slivers: %.3f of the rays found, %llu wrong hits rejected\n",
+         double(found) / (triangles * each), static_cast<unsigned long long>(stats().wrongHits));
 }
 
 } // namespace

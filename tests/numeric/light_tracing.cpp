@@ -1,4 +1,5 @@
-// light_tracing.cpp: RT_TRANSPORT_LIGHT: what lamps send by way of mirrors and lenses, against closed forms and path tracing.
+// light_tracing.cpp: RT_TRANSPORT_LIGHT: what lamps send by way of mirrors and lenses, against
+// closed forms and path tracing.
 #include <cmath>
 #include <vector>
 
@@ -15,7 +16,8 @@ class LightTracing : public Scene {
   }
   static Shader diffuse(double radiance, double reflectance) {
     Shader s("Diffuse");
-    s.set("reflectance", {reflectance, reflectance, reflectance}).set("emission", {radiance, radiance, radiance});
+    s.set("reflectance", {reflectance, reflectance, reflectance})
+        .set("emission", {radiance, radiance, radiance});
     return s;
   }
   static void at(double x, double y, double z, RTid object, bool down = false) {
@@ -25,7 +27,8 @@ class LightTracing : public Scene {
     place(object);
     rtPopMatrix();
   }
-  static void cameraAt(double x, double y, double z, double toX, double toY, double toZ, double fovy) {
+  static void cameraAt(double x, double y, double z, double toX, double toY, double toZ,
+                       double fovy) {
     rtPushMatrix();
     rtLoadIdentity();
     rtLookAt(x, y, z, toX, toY, toZ, 0, 1, 0);
@@ -40,8 +43,8 @@ class LightTracing : public Scene {
   }
 };
 
-// A lamp over a mirror lights a ceiling as the lamp and its image would. The camera looks at a part of the ceiling, aside of
-// both.
+// A lamp over a mirror lights a ceiling as the lamp and its image would. The camera looks at a part
+// of the ceiling, aside of both.
 TEST_F(LightTracing, AMirrorSendsOnTheLightOfItsImage) {
   const double half = .05, lampAt = 1, ceilingAt = 2, reflectance = .8, radiance = 100, x = .7;
   Shader mirror("Mirror");
@@ -65,7 +68,8 @@ TEST_F(LightTracing, AMirrorSendsOnTheLightOfItsImage) {
       direct += from(px, py, ceilingAt - lampAt) / (n * n);
       mirrored += reflectance * from(px, py, ceilingAt + lampAt) / (n * n);
     }
-  const double light = mean(picture(4, 32768)), before = .5 / pi * direct, expected = .5 / pi * (direct + mirrored);
+  const double light = mean(picture(4, 32768)), before = .5 / pi * direct,
+               expected = .5 / pi * (direct + mirrored);
   EXPECT_NEAR(light, expected, .02 * (expected - before) + .001 * expected);
   EXPECT_EQ(stats().transport, RTenum(RT_TRANSPORT_LIGHT));
 }

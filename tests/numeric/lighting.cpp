@@ -1,5 +1,6 @@
-// lighting.cpp: the lighting equation of VRML97 (ISO/IEC 14772-1 clause 4.14) through the C API and the renderer: test points
-// V1 to V6, V8, V11 and V12, and irradiance R1 to R3, of the accuracy catalogue.
+// lighting.cpp: the lighting equation of VRML97 (ISO/IEC 14772-1 clause 4.14) through the C API and
+// the renderer: test points V1 to V6, V8, V11 and V12, and irradiance R1 to R3, of the accuracy
+// catalogue.
 #include "numeric/support.h"
 
 namespace numeric {
@@ -19,7 +20,8 @@ class Lighting : public Scene {
 
 TEST_F(Lighting, V1DirectionalFollowsTheCosine) {
   RTid light = 0;
-  for (const auto& [angle, expected] : {std::pair{0, .8}, {60, .4}, {90, 0.}, {120, 0.}, {180, 0.}}) {
+  for (const auto& [angle, expected] :
+       {std::pair{0, .8}, {60, .4}, {90, 0.}, {120, 0.}, {180, 0.}}) {
     only(light, tilted(angle));
     expectGrey(look(), expected);
   }
@@ -53,7 +55,8 @@ TEST_F(Lighting, V4AmbientPart) {
 
 TEST_F(Lighting, V6SpotBetweenItsAngles) {
   RTid light = 0;
-  for (const auto& [angle, factor] : {std::pair{.45, .5}, {.3, 1.}, {.6, 0.}, {0., 1.}, {.62, 0.}}) {
+  for (const auto& [angle, factor] :
+       {std::pair{.45, .5}, {.3, 1.}, {.6, 0.}, {0., 1.}, {.62, 0.}}) {
     Shader spot("VRML97SpotLight");
     spot.set("beamWidth", {.3}).set("cutOffAngle", {.6}).set("location", {0, 0, 2});
     spot.set("direction", {std::sin(angle), 0, -std::cos(angle)});
@@ -81,9 +84,13 @@ TEST_F(Lighting, V8DistanceIsTheLightsOwn) {
 }
 
 TEST_F(Lighting, V8ConeAndDistanceUnderNonUniformScale) {
-  // Scaled by 3 along z: the point (1, 0, 0) lies at local (1, 0, -1) from the light, 45 degrees off its axis, at sqrt 2.
+  // Scaled by 3 along z: the point (1, 0, 0) lies at local (1, 0, -1) from the light, 45 degrees
+  // off its axis, at sqrt 2.
   Shader spot("VRML97SpotLight");
-  spot.set("attenuation", {0, 0, 1}).set("beamWidth", {.5}).set("cutOffAngle", {1}).set("location", {0, 0, 1});
+  spot.set("attenuation", {0, 0, 1})
+      .set("beamWidth", {.5})
+      .set("cutOffAngle", {1})
+      .set("location", {0, 0, 1});
   rtPushMatrix();
   rtScaled(1, 1, 3);
   use(spot);
@@ -140,7 +147,10 @@ TEST_F(Lighting, R2DirectionalAtEveryAngle) {
 TEST_F(Lighting, R3SpotAcrossItsCone) {
   const double h = 2, beam = .3, cut = .9;
   Shader spot("VRML97SpotLight");
-  spot.set("attenuation", {0, 0, 1}).set("beamWidth", {beam}).set("cutOffAngle", {cut}).set("location", {0, 0, h});
+  spot.set("attenuation", {0, 0, 1})
+      .set("beamWidth", {beam})
+      .set("cutOffAngle", {cut})
+      .set("location", {0, 0, h});
   use(spot);
   for (const double angle : {0., .29, .3, .31, .6, .89, .899, .901, 1.2}) {
     const double x = h * std::tan(angle), d2 = h * h + x * x;
@@ -169,7 +179,9 @@ TEST_F(Lighting, ALightInTheSurfaceIsANumber) {
   EXPECT_TRUE(std::isfinite(look().r));
 }
 
-TEST_F(Scene, V5Highlights) { // the half vector is at half the light's angle, as the view is along the normal
+TEST_F(
+    Scene,
+    V5Highlights) { // the half vector is at half the light's angle, as the view is along the normal
   const struct {
     double half, shininess, expected;
   } points[] = {{10, .2, .675768}, {10, 1, .140925}, {5, .2, .907010}, {0, 1, 1}};
@@ -177,7 +189,9 @@ TEST_F(Scene, V5Highlights) { // the half vector is at half the light's angle, a
     const double exact = std::pow(std::cos(p.half * pi / 180), 128 * p.shininess);
     EXPECT_NEAR(exact, p.expected, 1e-6);
     Shader s("VRML97");
-    s.set("diffuseColor", {0, 0, 0}).set("specularColor", {1, .5, 0}).set("shininess", {p.shininess});
+    s.set("diffuseColor", {0, 0, 0})
+        .set("specularColor", {1, .5, 0})
+        .set("shininess", {p.shininess});
     const RTid instance = place(square(s)), light = use(tilted(2 * p.half));
     expectColor(look(), {exact, exact / 2, 0});
     rtDeleteInstance(instance);

@@ -1,5 +1,5 @@
-// lobes.cpp: surfaces described by lobes against closed forms: mirrors, glass, metal, furnaces (accuracy catalogue D1 to D15, G1,
-// G2, G4), through the C API.
+// lobes.cpp: surfaces described by lobes against closed forms: mirrors, glass, metal, furnaces
+// (accuracy catalogue D1 to D15, G1, G2, G4), through the C API.
 #include "numeric/support.h"
 
 namespace numeric {
@@ -13,7 +13,8 @@ class Lobes : public Scene {
   }
   static Shader glowing(double radiance, double reflectance = 0) {
     Shader s("Diffuse");
-    s.set("reflectance", {reflectance, reflectance, reflectance}).set("emission", {radiance, radiance, radiance});
+    s.set("reflectance", {reflectance, reflectance, reflectance})
+        .set("emission", {radiance, radiance, radiance});
     return s;
   }
   static void slab(double top, double bottom, RTid glass) {
@@ -76,7 +77,8 @@ TEST_F(Lobes, D3FresnelAtFortyFiveDegreesAveragedAtEachBoundary) {
 TEST_F(Lobes, MetalReflectsByItsComplexIndex) {
   Shader metal("Metal");
   metal.set("n", {.96, .96, .2}).set("k", {6.69, 6.69, 3.912});
-  const double expected[][3] = {{0, .920984, .952221}, {45, .917204, .950317}, {60, .906746, 0}, {80, .867619, .948525}};
+  const double expected[][3] = {
+      {0, .920984, .952221}, {45, .917204, .950317}, {60, .906746, 0}, {80, .867619, .948525}};
   for (const auto& row : expected) {
     rtPushMatrix();
     rtRotated(row[0], 0, 1, 0);
@@ -90,8 +92,8 @@ TEST_F(Lobes, MetalReflectsByItsComplexIndex) {
   }
 }
 
-// D13: the eye looks into a corner of 90 / n degrees; here two mirrors face each other and the sky is seen past the edge of the
-// upper one: each image of it is dimmer by the reflectance.
+// D13: the eye looks into a corner of 90 / n degrees; here two mirrors face each other and the sky
+// is seen past the edge of the upper one: each image of it is dimmer by the reflectance.
 TEST_F(Lobes, D13EveryImageIsDimmerByTheReflectance) {
   Shader mirror("Mirror");
   environment(1);
@@ -109,7 +111,8 @@ TEST_F(Lobes, D13EveryImageIsDimmerByTheReflectance) {
   rtOrtho(1e-6);
   rtPopMatrix();
   const Rgba pixel = render();
-  expectGrey(pixel, std::pow(.9, 21), 1e-5); // ten pairs, and the lower one once more on the way out
+  expectGrey(pixel, std::pow(.9, 21),
+             1e-5); // ten pairs, and the lower one once more on the way out
 }
 
 TEST_F(Lobes, AMirrorShowsTheSkyTimesItsReflectance) {
@@ -122,14 +125,17 @@ TEST_F(Lobes, AMirrorShowsTheSkyTimesItsReflectance) {
   EXPECT_EQ(pixel.a, 1);
 }
 
-TEST_F(Lobes, AStackOfPanesHasItsClosedForm) { // D15: N boundaries, all orders: T = (1 - R) / (1 + (N - 1) R)
+TEST_F(
+    Lobes,
+    AStackOfPanesHasItsClosedForm) { // D15: N boundaries, all orders: T = (1 - R) / (1 + (N - 1) R)
   rtQuality(RT_MAX_DEPTH, 200);
   for (int pane = 0; pane < 3; ++pane) slab(2 + pane, 1.5 + pane, Shader("Glass"));
   placeAt(0, square(glowing(1)));
   expectGrey(look(), (1 - R) / (1 + 5 * R), 1e-3);
 }
 
-TEST_F(Lobes, GlassIsInvisibleInAFurnace) { // G1: what is reflected and what is refracted add up to all
+TEST_F(Lobes,
+       GlassIsInvisibleInAFurnace) { // G1: what is reflected and what is refracted add up to all
   Shader glass("Glass");
   const RTid ball = rtBeginObject(0);
   rtBindShader(glass);
@@ -211,7 +217,8 @@ TEST_F(AreaLights, R7ATriangle) {
 TEST_F(AreaLights, TwoLightsOfUnequalPowerAddUp) {
   placeAt(1, square(glowing(1), .5), true);
   placeAt(2, square(glowing(30), .01), true);
-  const double small = 30 * .02 * .02 / 4; // far away: area over the square of the distance, over pi
+  const double small =
+      30 * .02 * .02 / 4; // far away: area over the square of the distance, over pi
   EXPECT_NEAR(lit(), .75227469 / pi, 1e-3 + small / pi) << "the nearer one hides the other";
 }
 
@@ -247,7 +254,9 @@ TEST_F(AreaLights, G1AWhitePlaneUnderAWhiteSkyIsWhite) {
   EXPECT_NEAR(lit(), 1, 1e-3);
 }
 
-TEST_F(AreaLights, ThePartsThatEitherWayFindsAddUpWhateverTheSize) { // both halves of multiple importance sampling
+TEST_F(
+    AreaLights,
+    ThePartsThatEitherWayFindsAddUpWhateverTheSize) { // both halves of multiple importance sampling
   for (const double half : {.05, .5, 5.}) {
     const RTid lamp = square(glowing(1), half);
     rtPushMatrix();
@@ -256,7 +265,8 @@ TEST_F(AreaLights, ThePartsThatEitherWayFindsAddUpWhateverTheSize) { // both hal
     const RTid placed = place(lamp);
     rtPopMatrix();
     // Four times the corner of a half x half rectangle at height 1.
-    const double s = std::sqrt(1 + half * half), f = 2 / pi * 2 * (half / s) * std::atan(half / s) / 2;
+    const double s = std::sqrt(1 + half * half),
+                 f = 2 / pi * 2 * (half / s) * std::atan(half / s) / 2;
     EXPECT_NEAR(lit(), 2 * f, std::max(2.5e-4, 1e-3 * f)) << half;
     rtDeleteInstance(placed);
   }
@@ -265,7 +275,8 @@ TEST_F(AreaLights, ThePartsThatEitherWayFindsAddUpWhateverTheSize) { // both hal
 TEST_F(Lobes, SeveralLightsAddUpInEveryColour) {
   place(square(Shader("Diffuse").set("reflectance", {.8, .6, .4})));
   const double colors[3][3] = {{.1, .2, .3}, {.4, 0, .1}, {0, .3, .2}};
-  for (const auto& c : colors) rtUseLight(Shader("VRML97DirectionalLight").set("color", {c[0], c[1], c[2]}));
+  for (const auto& c : colors)
+    rtUseLight(Shader("VRML97DirectionalLight").set("color", {c[0], c[1], c[2]}));
   for (const int transport : {RT_TRANSPORT_DIRECT, RT_TRANSPORT_WHITTED, RT_TRANSPORT_PATH}) {
     rtQuality(RT_TRANSPORT, transport);
     expectColor(look(), {.8 * .5, .6 * .5, .4 * .6});

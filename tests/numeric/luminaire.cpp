@@ -1,4 +1,5 @@
-// luminaire.cpp: stock classes Luminaire and EnvironmentMap against closed forms, through the C API.
+// luminaire.cpp: stock classes Luminaire and EnvironmentMap against closed forms, through the C
+// API.
 #include "numeric/support.h"
 
 namespace numeric {
@@ -12,9 +13,12 @@ class StockLights : public Scene {
     white.set("reflectance", {1, 1, 1});
     place(square(white, 100));
   }
-  static Shader luminaire(const std::string& candela) { // vertical 0, 60, 120; horizontal 0, 90, 180, 270
+  static Shader
+  luminaire(const std::string& candela) { // vertical 0, 60, 120; horizontal 0, 90, 180, 270
     Shader s("Luminaire");
-    const std::string text = "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 3 4 1 2 0 0 0\n1 1 100\n0 60 120\n0 90 180 270\n" + candela;
+    const std::string text =
+        "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 3 4 1 2 0 0 0\n1 1 100\n0 60 120\n0 90 180 270\n" +
+        candela;
     rtBindShader(s);
     rtParameterString(rtParameterHandle("profile"), text.c_str());
     rtBindShader(0);
@@ -67,7 +71,8 @@ TEST_F(StockLights, ATextThatIsNoProfileIsNotRenderedAndSaidSo) {
   EXPECT_NE(said.find("Luminaire"), std::string::npos) << said;
   EXPECT_NE(said.find("line 2: TILT=INCLUDE"), std::string::npos) << said;
   rtBindShader(s); // another value and it is there
-  rtParameterString(rtParameterHandle("profile"), "IESNA91\nTILT=NONE\n1 1 1 1 1 1 1 0 0 0 1 1 1 0 0 3.14159265");
+  rtParameterString(rtParameterHandle("profile"),
+                    "IESNA91\nTILT=NONE\n1 1 1 1 1 1 1 0 0 0 1 1 1 0 0 3.14159265");
   rtBindShader(0);
   rtPushMatrix();
   rtTranslated(0, 0, 1);
@@ -79,7 +84,8 @@ TEST_F(StockLights, ATextThatIsNoProfileIsNotRenderedAndSaidSo) {
 // A small bright spot in a dark picture of the sky, found by sampling.
 TEST_F(StockLights, ASmallSunInAPictureOfTheSky) {
   constexpr int width = 1024, height = 512;
-  // 45 degrees from +z: below +y by 45 degrees, at -z turned by half a turn; rows run from the bottom up.
+  // 45 degrees from +z: below +y by 45 degrees, at -z turned by half a turn; rows run from the
+  // bottom up.
   constexpr int row = 383, column = 0;
   std::vector<float> texels(size_t(width) * height * 3, 0.0f);
   for (int k = 0; k < 3; k++) texels[size_t(3 * (row * width + column) + k)] = 1e5f;
@@ -91,10 +97,12 @@ TEST_F(StockLights, ASmallSunInAPictureOfTheSky) {
   rtQuality(RT_TRANSPORT, RT_TRANSPORT_PATH);
   rtQuality(RT_MAX_DEPTH, 1);
   rtQuality(RT_SAMPLES_PER_PIXEL, 16384);
-  // Bilinear look-up makes a tent of it, as heavy as one texel. theta: from +y; phi: from -z towards +x.
+  // Bilinear look-up makes a tent of it, as heavy as one texel. theta: from +y; phi: from -z
+  // towards +x.
   const double theta = pi * (1 - (row + .5) / height), phi = 2 * pi * ((column + .5) / width - .5);
   const double solidAngle = 2 * pi / width * pi / height * std::sin(theta);
-  const double expected = 1e5 * solidAngle / pi * (-std::sin(theta) * std::cos(phi)); // the floor faces +z
+  const double expected =
+      1e5 * solidAngle / pi * (-std::sin(theta) * std::cos(phi)); // the floor faces +z
   ASSERT_GT(expected, .1);
   expectGrey(look(0, 0, .001), expected, 2e-3);
 }
@@ -103,7 +111,8 @@ TEST_F(StockLights, APictureOfTheSkyIsTurnedAndScaled) {
   constexpr int width = 8, height = 4;
   std::vector<float> texels;
   for (int i = 0; i < width * height; i++)
-    for (int k = 0; k < 3; k++) texels.push_back(i % width < width / 2 ? 1.0f : 3.0f); // left half, right half
+    for (int k = 0; k < 3; k++)
+      texels.push_back(i % width < width / 2 ? 1.0f : 3.0f); // left half, right half
   RTid picture = 0;
   rtGenTextures(1, &picture);
   rtBindTexture(picture);

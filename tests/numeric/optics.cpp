@@ -1,5 +1,6 @@
-// optics.cpp: where rays go that glass and mirrors turn: D5, D7, D9, D14 of the accuracy catalogue. What is behind tells by its
-// colour where it was met: a square whose corners have the numbers of their places.
+// optics.cpp: where rays go that glass and mirrors turn: D5, D7, D9, D14 of the accuracy catalogue.
+// What is behind tells by its colour where it was met: a square whose corners have the numbers of
+// their places.
 #include "numeric/support.h"
 
 namespace numeric {
@@ -40,7 +41,8 @@ class Optics : public Scene {
 };
 
 TEST_F(Optics, D5ASlabShiftsAndDoesNotTurn) {
-  const double expected[3][2] = {{30, .193814}, {45, .329142}, {60, .512472}}; // per thickness, across the ray
+  const double expected[3][2] = {
+      {30, .193814}, {45, .329142}, {60, .512472}}; // per thickness, across the ray
   const RTid face = square(Shader("Glass"), 6);
   for (const auto& e : expected) {
     RTid faces[2];
@@ -84,14 +86,16 @@ TEST_F(Optics, D9WhatIsInWaterSeemsNearer) {
   rtOrtho(1e-6);
   rtPopMatrix();
   const Rgba seen = render();
-  const double x = (double(seen.r) / double(seen.b) - .5) * 2 * half; // the ray would meet the surface at x = 0
+  const double x =
+      (double(seen.r) / double(seen.b) - .5) * 2 * half; // the ray would meet the surface at x = 0
   EXPECT_NEAR(std::fabs(x) / (depth * std::tan(angle)), 1 / 1.5, 2e-4);
   rtDeleteInstance(placed);
 }
 
 TEST_F(Optics, D14ACornerOfMirrorsSendsBack) {
   const RTid mirror = square(Shader("Mirror").set("reflectance", {1, 1, 1}), 5);
-  for (int axis = 0; axis < 3; axis++) { // three planes through the origin, facing the positive octant
+  for (int axis = 0; axis < 3;
+       axis++) { // three planes through the origin, facing the positive octant
     rtPushMatrix();
     if (axis == 0) rtRotated(90, 0, 1, 0);
     if (axis == 1) rtRotated(-90, 1, 0, 0);

@@ -1,4 +1,5 @@
-// picture.cpp: what lies where in a picture: orientation, the channels beside colour, the background around the eye.
+// picture.cpp: what lies where in a picture: orientation, the channels beside colour, the
+// background around the eye.
 #include <limits>
 
 #include "numeric/support.h"
@@ -9,7 +10,9 @@ namespace {
 class Picture : public Scene {
  protected:
   static constexpr int width = 4, height = 2;
-  static RTid glow(Vec c) { return Shader("VRML97").set("diffuseColor", {0, 0, 0}).set("emissiveColor", {c.x, c.y, c.z}); }
+  static RTid glow(Vec c) {
+    return Shader("VRML97").set("diffuseColor", {0, 0, 0}).set("emissiveColor", {c.x, c.y, c.z});
+  }
   static void placeAt(RTid object, double x, double y, double z) {
     rtPushMatrix();
     rtTranslated(x, y, z);
@@ -107,7 +110,8 @@ TEST_F(Picture, SpheresAreExact) {
   rtEndObject();
   place(object);
   use(tilted(0));
-  for (const double x : {0., .5, 1., 1.5, 1.9, 1.99}) expectClose(look(x).r, .8 * std::sqrt(1 - x * x / 4), 1e-5, .05);
+  for (const double x : {0., .5, 1., 1.5, 1.9, 1.99})
+    expectClose(look(x).r, .8 * std::sqrt(1 - x * x / 4), 1e-5, .05);
   EXPECT_EQ(look(2.0001).a, 0);
   EXPECT_EQ(look(1.4143, 1.4143).a, 0);
 }
@@ -157,12 +161,14 @@ TEST_F(Background, EveryPictureWhereItBelongs) {
     const char* name;
     Vec direction, colour;
   } faces[] = {
-      {"frontTexture", {0, 0, -1}, {1, 0, 0}}, {"backTexture", {0, 0, 1}, {0, 1, 0}}, {"leftTexture", {-1, 0, 0}, {0, 0, 1}},
-      {"rightTexture", {1, 0, 0}, {1, 1, 0}},  {"topTexture", {0, 1, 0}, {1, 0, 1}},  {"bottomTexture", {0, -1, 0}, {0, 1, 1}},
+      {"frontTexture", {0, 0, -1}, {1, 0, 0}}, {"backTexture", {0, 0, 1}, {0, 1, 0}},
+      {"leftTexture", {-1, 0, 0}, {0, 0, 1}},  {"rightTexture", {1, 0, 0}, {1, 1, 0}},
+      {"topTexture", {0, 1, 0}, {1, 0, 1}},    {"bottomTexture", {0, -1, 0}, {0, 1, 1}},
   };
   Shader air("VRML97Environment");
   air.setList("skyColor", {.5f, .5f, .5f});
-  for (const auto& f : faces) air.setTexture(f.name, texture(3, {float(f.colour.x), float(f.colour.y), float(f.colour.z)}));
+  for (const auto& f : faces)
+    air.setTexture(f.name, texture(3, {float(f.colour.x), float(f.colour.y), float(f.colour.z)}));
   rtUseEnvironment(air);
   for (const auto& f : faces) expectColor(towards(f.direction), f.colour);
   air.setTexture("frontTexture", texture(4, {1, 1, 1, .25f}));

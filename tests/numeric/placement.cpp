@@ -1,5 +1,5 @@
-// placement.cpp: light scopes and nested instances under matrices of every kind: what is lit, and where normals point, against
-// matrices composed in double here.
+// placement.cpp: light scopes and nested instances under matrices of every kind: what is lit, and
+// where normals point, against matrices composed in double here.
 #include "numeric/support.h"
 
 namespace numeric {
@@ -85,18 +85,24 @@ Matrix turning(double degrees) { // about y, as rtRotate
   return {{{c, 0, s}, {0, 1, 0}, {-s, 0, c}}};
 }
 
-Vec cross(Vec a, Vec b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
+Vec cross(Vec a, Vec b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
 
-// Unit normal of the image of the plane with normal n: the cofactor matrix, which is the inverse transpose times the determinant.
+// Unit normal of the image of the plane with normal n: the cofactor matrix, which is the inverse
+// transpose times the determinant.
 Vec normalUnder(const Matrix& a, Vec n) {
   const auto row = [&](int i) { return Vec{a.m[i][0], a.m[i][1], a.m[i][2]}; };
   const Vec c0 = cross(row(1), row(2)), c1 = cross(row(2), row(0)), c2 = cross(row(0), row(1));
-  const Vec v{c0.x * n.x + c0.y * n.y + c0.z * n.z, c1.x * n.x + c1.y * n.y + c1.z * n.z, c2.x * n.x + c2.y * n.y + c2.z * n.z};
-  const double l = std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z) * (v.z < 0 ? -1 : 1); // towards the camera
+  const Vec v{c0.x * n.x + c0.y * n.y + c0.z * n.z, c1.x * n.x + c1.y * n.y + c1.z * n.z,
+              c2.x * n.x + c2.y * n.y + c2.z * n.z};
+  const double l =
+      std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z) * (v.z < 0 ? -1 : 1); // towards the camera
   return {v.x / l, v.y / l, v.z / l};
 }
 
-// A square through the origin with normal (1, 0, 2), turned as (2, 0, -1) and y; with or without normals of its own.
+// A square through the origin with normal (1, 0, 2), turned as (2, 0, -1) and y; with or without
+// normals of its own.
 RTid slope(RTid shader, bool normals) {
   const RTid object = rtBeginObject(0);
   rtBindShader(shader);
@@ -121,13 +127,15 @@ void apply(const Matrix& a) {
 TEST_F(Placement, NormalsUnderNestedScalesAndMirrors) {
   use(tilted(0));
   const Shader s("VRML97");
-  const Matrix outers[] = {scaling(1, 1, 1), scaling(3, 1, .5), scaling(1, 1, -1), scaling(-2, 1, 1), scaling(-1, -1, -1)};
-  const Matrix inners[] = {scaling(1, 1, 1), turning(20), scaling(.25, 5, 1) * turning(-35), scaling(1, -1, 2)};
+  const Matrix outers[] = {scaling(1, 1, 1), scaling(3, 1, .5), scaling(1, 1, -1),
+                           scaling(-2, 1, 1), scaling(-1, -1, -1)};
+  const Matrix inners[] = {scaling(1, 1, 1), turning(20), scaling(.25, 5, 1) * turning(-35),
+                           scaling(1, -1, 2)};
   for (const bool normals : {false, true})
     for (const Matrix& outer : outers)
       for (const Matrix& inner : inners) {
-        SCOPED_TRACE(testing::Message() << "own normals " << normals << ", outer " << (&outer - outers) << ", inner "
-                                        << (&inner - inners));
+        SCOPED_TRACE(testing::Message() << "own normals " << normals << ", outer "
+                                        << (&outer - outers) << ", inner " << (&inner - inners));
         const RTid leaf = slope(s, normals);
         const RTid middle = rtBeginObject(0);
         apply(inner);
@@ -173,7 +181,8 @@ TEST_F(Placement, AThousandNestedTurns) { // N12
   expectGrey(look(0, half * 1.00001), 0);
 }
 
-// A sphere that scales to an ellipsoid is an instance inside, however it is placed: queries give its normal in the world.
+// A sphere that scales to an ellipsoid is an instance inside, however it is placed: queries give
+// its normal in the world.
 TEST_F(Placement, NormalsOfEllipsoidsInQueries) {
   const RTid ball = rtBeginObject(0);
   rtSphere(1);

@@ -1,5 +1,6 @@
-// progressive.cpp: RT_PROGRESSIVE shows the whole picture early and ends with the bytes of the frame that is made in one go: for
-// any number of threads, samples and channels, with pilots, replicates and paths from lamps.
+// progressive.cpp: RT_PROGRESSIVE shows the whole picture early and ends with the bytes of the
+// frame that is made in one go: for any number of threads, samples and channels, with pilots,
+// replicates and paths from lamps.
 #include <algorithm>
 #include <map>
 #include <string>
@@ -42,7 +43,8 @@ class Progressive : public testing::Test {
     rtBindShader(shader);
     rtBegin(RT_QUADS);
     rtNormal3f(0, 0, 1);
-    for (const auto& c : {std::array{-half, -half}, {half, -half}, {half, half}, {-half, half}}) rtVertex3f(c[0], c[1], 0);
+    for (const auto& c : {std::array{-half, -half}, {half, -half}, {half, half}, {-half, half}})
+      rtVertex3f(c[0], c[1], 0);
     rtEnd();
     rtEndObject();
     rtBindShader(0);
@@ -56,7 +58,8 @@ class Progressive : public testing::Test {
     rtPopMatrix();
   }
 
-  // A floor of two faces in the same place, a lamp, a mirror, a ball of glass: rays that split, go on and meet ties.
+  // A floor of two faces in the same place, a lamp, a mirror, a ball of glass: rays that split, go
+  // on and meet ties.
   static void scene() {
     rtLoadIdentity();
     at(0, -1, 0, square(Shader("Diffuse").set("reflectance", {.8, .3, .2}), 4), -90);
@@ -111,8 +114,9 @@ class Progressive : public testing::Test {
       open(threads);
       const Channels got = render(s, true);
       for (const auto& [channel, plane] : expected)
-        EXPECT_TRUE(std::equal(plane.begin(), plane.end(), got.at(channel).begin(),
-                               [](float a, float b) { return a == b || (std::isnan(a) && std::isnan(b)); }))
+        EXPECT_TRUE(
+            std::equal(plane.begin(), plane.end(), got.at(channel).begin(),
+                       [](float a, float b) { return a == b || (std::isnan(a) && std::isnan(b)); }))
             << "channel " << channel << ", " << threads << " threads";
     }
   }
@@ -125,35 +129,49 @@ TEST_F(Progressive, EndsWithTheBytesOfOneGo) {
 }
 
 TEST_F(Progressive, AllChannelsHaveTheBytesOfOneGo) {
-  expectSameBytes({.samples = 37, .channels = everyChannel & ~uint32_t(RT_ERROR | RT_TRUST | RT_VARIANCE)});
+  expectSameBytes(
+      {.samples = 37, .channels = everyChannel & ~uint32_t(RT_ERROR | RT_TRUST | RT_VARIANCE)});
   expectSameBytes({.samples = 37, .channels = RT_RGBA | RT_VARIANCE});
   expectSameBytes({.samples = 72, .width = 33, .height = 20, .channels = everyChannel});
 }
 
 TEST_F(Progressive, RaysThatSplitHaveTheBytesOfOneGo) {
-  expectSameBytes({.samples = 36, .transport = RT_TRANSPORT_WHITTED, .channels = RT_RGBA | RT_NAME});
+  expectSameBytes(
+      {.samples = 36, .transport = RT_TRANSPORT_WHITTED, .channels = RT_RGBA | RT_NAME});
 }
 
 TEST_F(Progressive, ReplicatesHaveTheBytesOfOneGo) {
-  expectSameBytes({.samples = 40, .width = 20, .height = 20, .replicates = 8, .channels = everyChannel});
+  expectSameBytes(
+      {.samples = 40, .width = 20, .height = 20, .replicates = 8, .channels = everyChannel});
 }
 
 TEST_F(Progressive, ATargetErrorHasTheBytesOfOneGo) {
-  expectSameBytes({.samples = 256, .width = 34, .height = 20, .targetError = .1, .channels = everyChannel});
-  expectSameBytes({.samples = 32, .width = 34, .height = 20, .targetError = .1, .channels = everyChannel});
+  expectSameBytes(
+      {.samples = 256, .width = 34, .height = 20, .targetError = .1, .channels = everyChannel});
+  expectSameBytes(
+      {.samples = 32, .width = 34, .height = 20, .targetError = .1, .channels = everyChannel});
 }
 
 TEST_F(Progressive, PathsFromLampsHaveTheBytesOfOneGo) {
   expectSameBytes({.samples = 34, .transport = RT_TRANSPORT_LIGHT, .width = 34, .height = 20});
-  expectSameBytes(
-      {.samples = 128, .transport = RT_TRANSPORT_LIGHT, .width = 20, .height = 18, .targetError = .2, .channels = everyChannel});
+  expectSameBytes({.samples = 128,
+                   .transport = RT_TRANSPORT_LIGHT,
+                   .width = 20,
+                   .height = 18,
+                   .targetError = .2,
+                   .channels = everyChannel});
 }
 
-// Snapshots of a frame that would take minutes: all of it is there, and there is more of it by and by.
+// Snapshots of a frame that would take minutes: all of it is there, and there is more of it by and
+// by.
 TEST_F(Progressive, TheWholePictureIsSeenEarly) {
   for (const int transport : {RT_TRANSPORT_PATH, RT_TRANSPORT_LIGHT}) {
     open(2);
-    const Settings s{.samples = 65536, .transport = transport, .width = 200, .height = 150, .channels = RT_RGBA | RT_SAMPLES};
+    const Settings s{.samples = 65536,
+                     .transport = transport,
+                     .width = 200,
+                     .height = 150,
+                     .channels = RT_RGBA | RT_SAMPLES};
     set(s, true);
     rtSwapBuffers();
     std::vector<float> samples(size_t(s.width) * size_t(s.height)), rgba(4 * samples.size());
@@ -172,7 +190,8 @@ TEST_F(Progressive, TheWholePictureIsSeenEarly) {
     rtQuality(RT_SAMPLES_PER_PIXEL, 1);
     rtSwapBuffers(); // the frame above is finished now
     rtReadPixels(RT_SAMPLES, samples.data(), samples.size());
-    EXPECT_GE(*std::min_element(samples.begin(), samples.end()), least); // what was seen is not lost
+    EXPECT_GE(*std::min_element(samples.begin(), samples.end()),
+              least); // what was seen is not lost
     rtReadPixels(RT_RGBA, rgba.data(), rgba.size());
     for (size_t i = 0; i < rgba.size(); i++) ASSERT_TRUE(std::isfinite(rgba[i]));
   }
@@ -182,7 +201,8 @@ TEST_F(Progressive, TheWholePictureIsSeenEarly) {
 TEST_F(Progressive, MayBeSwitchedBetweenFrames) {
   open(2);
   const Settings s{.samples = 33}, one{.samples = 1};
-  const Channels a = render(s, true), b = render(one, true), c = render(s, false), d = render(one, false);
+  const Channels a = render(s, true), b = render(one, true), c = render(s, false),
+                 d = render(one, false);
   EXPECT_EQ(a, c);
   EXPECT_EQ(b, d);
 }

@@ -1,5 +1,5 @@
-// queries.cpp: every hit of a ray and the nearest surface point, against sums over all triangles in double precision: baked,
-// instanced under matrices that shear, moving; spheres and ellipsoids.
+// queries.cpp: every hit of a ray and the nearest surface point, against sums over all triangles in
+// double precision: baked, instanced under matrices that shear, moving; spheres and ellipsoids.
 #include <algorithm>
 #include <array>
 #include <functional>
@@ -18,7 +18,9 @@ Vec operator+(Vec a, Vec b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 Vec operator-(Vec a, Vec b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 Vec operator*(Vec a, double s) { return {a.x * s, a.y * s, a.z * s}; }
 double dot(Vec a, Vec b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-Vec cross(Vec a, Vec b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
+Vec cross(Vec a, Vec b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
 double length(Vec a) { return std::sqrt(dot(a, a)); }
 
 struct Triangle {
@@ -33,7 +35,9 @@ class Queries : public Scene {
   std::uniform_real_distribution<double> unit_{-1, 1};
   std::vector<Triangle> triangles_;
 
-  Vec any(double size) { return {size * unit_(random_), size * unit_(random_), size * unit_(random_)}; }
+  Vec any(double size) {
+    return {size * unit_(random_), size * unit_(random_), size * unit_(random_)};
+  }
 
   // An object of `count` triangles under a matrix; rounded as the API rounds.
   void add(size_t count, const std::array<double, 16>& m, bool moving, uint64_t user) {
@@ -60,7 +64,8 @@ class Queries : public Scene {
       Triangle made{{}, user, uint32_t(t)};
       for (int c = 0; c < 3; c++) {
         const float* p = &points[9 * t + 3 * c];
-        made.corner[c] = {m[0] * p[0] + m[4] * p[1] + m[8] * p[2] + m[12], m[1] * p[0] + m[5] * p[1] + m[9] * p[2] + m[13],
+        made.corner[c] = {m[0] * p[0] + m[4] * p[1] + m[8] * p[2] + m[12],
+                          m[1] * p[0] + m[5] * p[1] + m[9] * p[2] + m[13],
                           m[2] * p[0] + m[6] * p[1] + m[10] * p[2] + m[14]};
       }
       triangles_.push_back(made);
@@ -73,7 +78,8 @@ class Queries : public Scene {
   }
 };
 
-double distanceTo(const Triangle& t, const Vec& p) { // by halving the triangle's parameters: slow and simple
+double distanceTo(const Triangle& t,
+                  const Vec& p) { // by halving the triangle's parameters: slow and simple
   double best = 1e30;
   const int steps = 60;
   for (int i = 0; i <= steps; i++)
@@ -109,8 +115,10 @@ TEST_F(Queries, AllHitsAreThoseOfEveryTriangle) {
         d{rays[i].direction[0], rays[i].direction[1], rays[i].direction[2]};
     size_t expected = 0;
     for (const Triangle& t : triangles_) {
-      const Vec a = t.corner[1] - t.corner[0], b = t.corner[2] - t.corner[0], p = cross(d, b), s = o - t.corner[0];
-      const double det = dot(a, p), u = dot(s, p) / det, v = dot(d, cross(s, a)) / det, at = dot(b, cross(s, a)) / det;
+      const Vec a = t.corner[1] - t.corner[0], b = t.corner[2] - t.corner[0], p = cross(d, b),
+                s = o - t.corner[0];
+      const double det = dot(a, p), u = dot(s, p) / det, v = dot(d, cross(s, a)) / det,
+                   at = dot(b, cross(s, a)) / det;
       expected += u >= 0 && v >= 0 && u + v <= 1 && at >= 0;
     }
     wrong += expected != counts[i]; // edges
@@ -131,7 +139,8 @@ TEST_F(Queries, AllHitsAreThoseOfEveryTriangle) {
 TEST_F(Queries, FewerPlacesThanHitsGetTheNearest) {
   add(60, {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}, false, 1);
   rtRender();
-  const RTray rays[] = {{{0, 0, 5}, 0, {.01f, .02f, -1}, infinity}, {{9, 9, 9}, 0, {1, 0, 0}, infinity}};
+  const RTray rays[] = {{{0, 0, 5}, 0, {.01f, .02f, -1}, infinity},
+                        {{9, 9, 9}, 0, {1, 0, 0}, infinity}};
   uint32_t counts[2];
   rtCountHits(2, rays, counts);
   ASSERT_GT(counts[0], 1u);
@@ -166,7 +175,8 @@ TEST_F(Queries, TheNearestPointIsThatOfEveryTriangle) {
     EXPECT_NEAR(length(n), 1, 1e-5);
     for (const Triangle& t : triangles_)
       if (t.user == f.userData && t.number == f.primitive) {
-        const Vec on = t.corner[0] * (1 - f.u - f.v) + t.corner[1] * double(f.u) + t.corner[2] * double(f.v);
+        const Vec on =
+            t.corner[0] * (1 - f.u - f.v) + t.corner[1] * double(f.u) + t.corner[2] * double(f.v);
         EXPECT_NEAR(length(on - at), 0, 1e-5);
         EXPECT_NEAR(std::fabs(dot(n, t.corner[1] - t.corner[0])), 0, 1e-4);
       }
@@ -247,7 +257,8 @@ TEST_F(Queries, SpheresAndEllipsoids) {
         const double t = pi * a / 400, f = 2 * pi * b / 800;
         const double s[3] = {std::sin(t) * std::cos(f), std::sin(t) * std::sin(f), std::cos(t)};
         Vec at{stretched[0] * s[0] + 10, .5 * s[1] + .3 * s[2], s[2]};
-        best = std::min(best, length(at - Vec{places[3 * i], places[3 * i + 1], places[3 * i + 2]}));
+        best =
+            std::min(best, length(at - Vec{places[3 * i], places[3 * i + 1], places[3 * i + 2]}));
       }
     EXPECT_NEAR(found[i].distance, best, 1e-3) << i;
   }

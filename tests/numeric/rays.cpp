@@ -1,5 +1,6 @@
-// rays.cpp: ray queries where numbers are hard: watertight surfaces (N3 of the accuracy catalogue) and the guards that keep
-// hostile rays and matrices from the ray kernel, which would end the process.
+// rays.cpp: ray queries where numbers are hard: watertight surfaces (N3 of the accuracy catalogue)
+// and the guards that keep hostile rays and matrices from the ray kernel, which would end the
+// process.
 #include <cstdint>
 #include <limits>
 #include <random>
@@ -14,7 +15,8 @@ constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
 using Rays = Scene;
 
-// A closed sphere about (offset, offset, offset) whose triangles share their vertices: 39,600 of them.
+// A closed sphere about (offset, offset, offset) whose triangles share their vertices: 39,600 of
+// them.
 struct Ball {
   std::vector<double> points;
   std::vector<uint32_t> corners;
@@ -69,8 +71,10 @@ class Watertight : public Scene, public testing::WithParamInterface<double> {
     return {offset + place_(random_), offset + place_(random_), offset + place_(random_)};
   }
   static RTray ray(Vec from, Vec direction) {
-    return {
-        {float(from.x), float(from.y), float(from.z)}, 0, {float(direction.x), float(direction.y), float(direction.z)}, infinity};
+    return {{float(from.x), float(from.y), float(from.z)},
+            0,
+            {float(direction.x), float(direction.y), float(direction.z)},
+            infinity};
   }
   std::mt19937 random_{12345};
   std::uniform_real_distribution<double> place_{-.5, .5};
@@ -82,12 +86,14 @@ TEST_P(Watertight, NoRandomRayLeavesAClosedBall) { // N3
   rtRender();
   EXPECT_EQ(stats().triangles, 39600u);
   std::vector<RTray> rays;
-  for (int i = 0; i < 200000; i++) rays.push_back(ray(inside(), {direction_(random_), direction_(random_), direction_(random_)}));
+  for (int i = 0; i < 200000; i++)
+    rays.push_back(ray(inside(), {direction_(random_), direction_(random_), direction_(random_)}));
   EXPECT_EQ(misses(rays), 0u);
 }
 
-// Rays aimed exactly at vertices and at edges. Robust traversal still lets about one in a hundred through at vertices (accuracy
-// catalogue A3); the shares are recorded, and bounded so that a change of mode or builder is noticed.
+// Rays aimed exactly at vertices and at edges. Robust traversal still lets about one in a hundred
+// through at vertices (accuracy catalogue A3); the shares are recorded, and bounded so that a
+// change of mode or builder is noticed.
 TEST_P(Watertight, FewRaysAimedAtVerticesLeave) {
   const Ball ball(GetParam());
   ball.place();
@@ -95,7 +101,8 @@ TEST_P(Watertight, FewRaysAimedAtVerticesLeave) {
   std::vector<RTray> atVertices, atEdges;
   const auto vertex = [&](uint32_t k) {
     // As the scene stores it: rounded to float.
-    return Vec{float(ball.points[3 * k]), float(ball.points[3 * k + 1]), float(ball.points[3 * k + 2])};
+    return Vec{float(ball.points[3 * k]), float(ball.points[3 * k + 1]),
+               float(ball.points[3 * k + 2])};
   };
   const auto aimed = [](Vec from, Vec to) {
     from = {float(from.x), float(from.y), float(from.z)};
@@ -107,7 +114,8 @@ TEST_P(Watertight, FewRaysAimedAtVerticesLeave) {
     const Vec a = vertex(ball.corners[t]), b = vertex(ball.corners[t + 1]);
     atVertices.push_back(aimed(inside(), a));
     const double s = .5 + place_(random_);
-    atEdges.push_back(aimed(inside(), {a.x + s * (b.x - a.x), a.y + s * (b.y - a.y), a.z + s * (b.z - a.z)}));
+    atEdges.push_back(
+        aimed(inside(), {a.x + s * (b.x - a.x), a.y + s * (b.y - a.y), a.z + s * (b.z - a.z)}));
   }
   const size_t vertices = misses(atVertices), edges = misses(atEdges);
   RecordProperty("missesPerMillionAtVertices", int(vertices * 10));
@@ -133,7 +141,8 @@ TEST_F(Rays, HitsCarryWhatIsAsked) {
   const RTid instance = place(object);
   rtInstanceUserData(instance, 0x123456789abcull);
   rtRender();
-  const RTray rays[2] = {{{10.5f, 21, 35}, 0, {0, 0, -2}, infinity}, {{10.5f, 21, 35}, 0, {0, 0, 2}, infinity}};
+  const RTray rays[2] = {{{10.5f, 21, 35}, 0, {0, 0, -2}, infinity},
+                         {{10.5f, 21, 35}, 0, {0, 0, 2}, infinity}};
   RThit hits[2];
   rtCastRays(2, rays, hits);
   expectClose(hits[0].t, 2.5);
@@ -151,8 +160,11 @@ TEST_F(Rays, HitsCarryWhatIsAsked) {
 TEST_F(Rays, SegmentsEndWhereTheySay) {
   place(square(Shader("VRML97")));
   rtRender();
-  const auto down = [](float from, float tnear, float tfar) { return RTray{{0.1f, 0.2f, from}, tnear, {0, 0, -1}, tfar}; };
-  const RTray rays[4] = {down(5, 0, 4.99f), down(5, 0, 5.01f), down(5, 5.01f, 9), down(5, 4.99f, 9)};
+  const auto down = [](float from, float tnear, float tfar) {
+    return RTray{{0.1f, 0.2f, from}, tnear, {0, 0, -1}, tfar};
+  };
+  const RTray rays[4] = {down(5, 0, 4.99f), down(5, 0, 5.01f), down(5, 5.01f, 9),
+                         down(5, 4.99f, 9)};
   RThit hits[4];
   uint8_t occluded[4];
   rtCastRays(4, rays, hits);
@@ -213,7 +225,8 @@ TEST_F(Rays, HostileRaysHitNothingAndAreCounted) {
 
 TEST_F(Rays, MatricesThatAreNotFiniteAreRefused) {
   const RTid instance = place(square(Shader("VRML97")));
-  for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})
+  for (const double bad :
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})
     for (int k = 0; k < 16; k++) {
       double m[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
       m[k] = bad;
@@ -227,7 +240,8 @@ TEST_F(Rays, MatricesThatAreNotFiniteAreRefused) {
 TEST_F(Rays, SingularInstancesDrawNothing) {
   use(tilted(0));
   const RTid plane = square(Shader("VRML97"));
-  const Vec scales[] = {{0, 1, 1}, {1, 1, 0}, {0, 0, 0}, {1e-20, 1e-20, 1e-20}, {1, 1e-20, 1}, {1e30, 1e30, 1e30}};
+  const Vec scales[] = {{0, 1, 1},     {1, 1, 0},         {0, 0, 0}, {1e-20, 1e-20, 1e-20},
+                        {1, 1e-20, 1}, {1e30, 1e30, 1e30}};
   for (const Vec& s : scales) {
     SCOPED_TRACE(testing::Message() << s.x << ' ' << s.y << ' ' << s.z);
     rtPushMatrix();

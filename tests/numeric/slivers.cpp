@@ -1,5 +1,6 @@
-// slivers.cpp: closed boxes and tubes up to a million times longer than wide, in odd directions: from inside, no ray leaves; what
-// it meets is where it is by long double; and placed as a dynamic instance the same box answers the same, but for rounding.
+// slivers.cpp: closed boxes and tubes up to a million times longer than wide, in odd directions:
+// from inside, no ray leaves; what it meets is where it is by long double; and placed as a dynamic
+// instance the same box answers the same, but for rounding.
 #include <cstdint>
 #include <limits>
 #include <random>
@@ -19,14 +20,18 @@ Vec operator+(Vec a, Vec b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 Vec operator-(Vec a, Vec b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 Vec operator*(Vec a, double s) { return {a.x * s, a.y * s, a.z * s}; }
 double dot(Vec a, Vec b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-Vec cross(Vec a, Vec b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
+Vec cross(Vec a, Vec b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
 Vec unit(Vec a) { return a * (1 / std::sqrt(dot(a, a))); }
 
 // Random numbers that are the same on every machine.
 class Random {
  public:
   explicit Random(uint32_t seed) : engine_(seed) {}
-  double operator()(double low, double high) { return low + (high - low) * engine_() / 4294967296.0; }
+  double operator()(double low, double high) {
+    return low + (high - low) * engine_() / 4294967296.0;
+  }
   double sign() { return engine_() & 1 ? 1 : -1; }
   Vec direction() {
     while (true) {
@@ -46,7 +51,8 @@ Matrix turned(Random& random, double far) {
   return {x.x, x.y, x.z, 0, y.x, y.y, y.z, 0, z.x, z.y, z.z, 0, t.x, t.y, t.z, 1};
 }
 Vec apply(const Matrix& m, Vec p) {
-  return {m[0] * p.x + m[4] * p.y + m[8] * p.z + m[12], m[1] * p.x + m[5] * p.y + m[9] * p.z + m[13],
+  return {m[0] * p.x + m[4] * p.y + m[8] * p.z + m[12],
+          m[1] * p.x + m[5] * p.y + m[9] * p.z + m[13],
           m[2] * p.x + m[6] * p.y + m[10] * p.z + m[14]};
 }
 
@@ -78,11 +84,13 @@ RTid boxObject(const Box& box) {
 
 // How far a place is inside a box: of its own frame, the smallest distance to a face.
 double depth(const Box& box, Vec p) {
-  return std::min({box.half.x - std::fabs(p.x), box.half.y - std::fabs(p.y), box.half.z - std::fabs(p.z)});
+  return std::min(
+      {box.half.x - std::fabs(p.x), box.half.y - std::fabs(p.y), box.half.z - std::fabs(p.z)});
 }
 // Of a box: where the ray from inside ends; grazing: the sine of the angle with the face.
 double leaves(const Box& box, Vec from, Vec d, double& grazing) {
-  const double o[3] = {from.x, from.y, from.z}, v[3] = {d.x, d.y, d.z}, h[3] = {box.half.x, box.half.y, box.half.z};
+  const double o[3] = {from.x, from.y, from.z}, v[3] = {d.x, d.y, d.z},
+               h[3] = {box.half.x, box.half.y, box.half.z};
   double end = HUGE_VAL;
   for (int k = 0; k < 3; k++) {
     if (v[k] == 0) continue;
@@ -97,7 +105,8 @@ double leaves(const Box& box, Vec from, Vec d, double& grazing) {
 
 class Slivers : public Scene {
  protected:
-  // From inside the box of this matrix, in the world: to all sides, along its length, and grazing a face at 1 to 1e-7.
+  // From inside the box of this matrix, in the world: to all sides, along its length, and grazing a
+  // face at 1 to 1e-7.
   struct Shot {
     RTray ray;
     Vec from, direction; // as rounded, in the frame of the box
@@ -128,7 +137,10 @@ class Slivers : public Scene {
         to = Vec{p[0], p[1], p[2]} + d * way;
       }
       const Vec from = apply(m, {p[0], p[1], p[2]}), d = unit(apply(m, to) - from);
-      rays.push_back({{float(from.x), float(from.y), float(from.z)}, 0, {float(d.x), float(d.y), float(d.z)}, infinity});
+      rays.push_back({{float(from.x), float(from.y), float(from.z)},
+                      0,
+                      {float(d.x), float(d.y), float(d.z)},
+                      infinity});
     }
     return judged(box, m, rays);
   }
@@ -160,7 +172,8 @@ class Slivers : public Scene {
 
 constexpr double ratios[] = {1, 10, 100, 200, 300, 1e3, 4e3, 1e4, 1e5, 1e6};
 
-// A box of ratio:1:1 and one of ratio:ratio:1, each turned three times, once near the origin and twice away from it.
+// A box of ratio:1:1 and one of ratio:ratio:1, each turned three times, once near the origin and
+// twice away from it.
 template <class F> void forBoxes(const F& f) {
   uint32_t seed = 1;
   for (const double ratio : ratios)
@@ -169,13 +182,15 @@ template <class F> void forBoxes(const F& f) {
         Random random(seed++);
         const Box box{{ratio / 2, flat ? ratio / 2 : .5, .5}};
         const Matrix m = turned(random, turn * ratio);
-        f(box, m, random, ratio, ::testing::Message() << ratio << (flat ? " flat" : " long") << " turn " << turn);
+        f(box, m, random, ratio,
+          ::testing::Message() << ratio << (flat ? " flat" : " long") << " turn " << turn);
       }
 }
 
 TEST_F(Slivers, NoRayLeavesAClosedBox) {
   constexpr size_t count = 6000;
-  forBoxes([&](const Box& box, const Matrix& m, Random& random, double ratio, const ::testing::Message& what) {
+  forBoxes([&](const Box& box, const Matrix& m, Random& random, double ratio,
+               const ::testing::Message& what) {
     for (const bool dynamic : {false, true}) {
       rtPushMatrix();
       rtLoadIdentity();
@@ -206,7 +221,8 @@ TEST_F(Slivers, NoRayLeavesAClosedBox) {
   });
 }
 
-// Whether a place is inside the closed box whose corners are floats, by more than a thousandth of its width.
+// Whether a place is inside the closed box whose corners are floats, by more than a thousandth of
+// its width.
 bool isInside(const Box& box, const Matrix& m, Vec p) {
   const std::vector<float> points = box.points();
   const auto corner = [&](uint32_t i) {
@@ -215,7 +231,8 @@ bool isInside(const Box& box, const Matrix& m, Vec p) {
   };
   const Vec middle{m[12], m[13], m[14]};
   for (int t = 0; t < 12; t++) {
-    const Vec a = corner(boxCorners[3 * t]), b = corner(boxCorners[3 * t + 1]), c = corner(boxCorners[3 * t + 2]);
+    const Vec a = corner(boxCorners[3 * t]), b = corner(boxCorners[3 * t + 1]),
+              c = corner(boxCorners[3 * t + 2]);
     const Vec normal = unit(cross(b - a, c - a));
     const double side = dot(normal, middle - a) > 0 ? 1 : -1;
     if (side * dot(normal, p - a) < 1e-3) return false;
@@ -223,7 +240,8 @@ bool isInside(const Box& box, const Matrix& m, Vec p) {
   return true;
 }
 
-// A box of 1e6:1:1 is hardly wider than its corners' last bits: the box that floats make of it is the one that is closed.
+// A box of 1e6:1:1 is hardly wider than its corners' last bits: the box that floats make of it is
+// the one that is closed.
 TEST_F(Slivers, NoRayLeavesTheBoxOfItsRoundedCorners) {
   constexpr size_t count = 6000;
   uint32_t seed = 100;
@@ -255,10 +273,12 @@ TEST_F(Slivers, NoRayLeavesTheBoxOfItsRoundedCorners) {
       }
 }
 
-// The distance along a ray may differ by what the places of vertices and rays are rounded by, over the sine of the grazing angle.
+// The distance along a ray may differ by what the places of vertices and rays are rounded by, over
+// the sine of the grazing angle.
 TEST_F(Slivers, StaticAndDynamicBoxesDifferInTheLastBits) {
   constexpr size_t count = 6000;
-  forBoxes([&](const Box& box, const Matrix& m, Random& random, double ratio, const ::testing::Message& what) {
+  forBoxes([&](const Box& box, const Matrix& m, Random& random, double ratio,
+               const ::testing::Message& what) {
     const std::vector<Shot> all = shots(box, m, random, count);
     std::vector<RThit> found[2];
     for (const bool dynamic : {false, true}) {
@@ -284,7 +304,8 @@ TEST_F(Slivers, StaticAndDynamicBoxesDifferInTheLastBits) {
         const double t = double(hits[i].t);
         // Where rounding lets it meet the next face instead, the place is still on the box.
         const Vec at = all[i].from + all[i].direction * t;
-        const double off = std::min(std::fabs(t - expected) * grazing, std::fabs(numeric::depth(box, at)));
+        const double off =
+            std::min(std::fabs(t - expected) * grazing, std::fabs(numeric::depth(box, at)));
         if (!(off <= rounding)) wrong++;
         worst = std::max(worst, off / (3 * ratio * ulp));
       }
@@ -312,7 +333,10 @@ TEST_F(Slivers, AllQueriesSeeThem) {
     for (int i = 0; i < 500; i++) {
       const Vec at{random(-4e3, 4e3), random(-.4, .4), random(-.4, .4)};
       const Vec from = apply(m, at), d = random.direction();
-      rays.push_back({{float(from.x), float(from.y), float(from.z)}, 0, {float(d.x), float(d.y), float(d.z)}, infinity});
+      rays.push_back({{float(from.x), float(from.y), float(from.z)},
+                      0,
+                      {float(d.x), float(d.y), float(d.z)},
+                      infinity});
       points.insert(points.end(), {float(from.x), float(from.y), float(from.z)});
       away.push_back(numeric::depth(box, at));
     }
@@ -329,18 +353,22 @@ TEST_F(Slivers, AllQueriesSeeThem) {
   }
 }
 
-// One triangle, its corners as given (no matrix, the camera at the origin): what is hit follows from the numbers alone.
+// One triangle, its corners as given (no matrix, the camera at the origin): what is hit follows
+// from the numbers alone.
 struct Truth {
   long double t = 0, u = 0, v = 0, margin = -1; // the smallest weight
 };
 Truth truth(const float* corner, const RTray& ray) {
   long double p[3][3], d[3], w[3], sum = 0;
   for (int k = 0; k < 3; k++)
-    for (int j = 0; j < 3; j++) p[k][j] = static_cast<long double>(corner[3 * k + j]) - static_cast<long double>(ray.origin[j]);
+    for (int j = 0; j < 3; j++)
+      p[k][j] =
+          static_cast<long double>(corner[3 * k + j]) - static_cast<long double>(ray.origin[j]);
   for (int j = 0; j < 3; j++) d[j] = static_cast<long double>(ray.direction[j]);
   for (int k = 0; k < 3; k++) {
     const long double *a = p[(k + 1) % 3], *b = p[(k + 2) % 3];
-    w[k] = (a[1] * b[2] - a[2] * b[1]) * d[0] + (a[2] * b[0] - a[0] * b[2]) * d[1] + (a[0] * b[1] - a[1] * b[0]) * d[2];
+    w[k] = (a[1] * b[2] - a[2] * b[1]) * d[0] + (a[2] * b[0] - a[0] * b[2]) * d[1] +
+           (a[0] * b[1] - a[1] * b[0]) * d[2];
     sum += w[k];
   }
   if (sum == 0) return {};
@@ -360,9 +388,11 @@ TEST_F(Slivers, ATrueHitIsNeverLostAndIsWhereItIs) {
   double worst = 0;
   for (int t = 0; t < 2000; t++) {
     const double thin = std::pow(10, random(-6, -2.8));
-    const Vec along = random.direction(), up = unit(cross(along, random.direction())), normal = cross(along, up);
+    const Vec along = random.direction(), up = unit(cross(along, random.direction())),
+              normal = cross(along, up);
     const Vec middle = random.direction() * random(0, 2);
-    const double corners[3][2] = {{-1, 0}, {random(.5, 1), random(0, 1)}, {random(-.5, 1), random(1, 2)}};
+    const double corners[3][2] = {
+        {-1, 0}, {random(.5, 1), random(0, 1)}, {random(-.5, 1), random(1, 2)}};
     std::vector<float> points;
     for (const auto& c : corners) {
       const Vec p = middle + along * c[0] + up * (thin * c[1]);
@@ -385,11 +415,16 @@ TEST_F(Slivers, ATrueHitIsNeverLostAndIsWhereItIs) {
       }
       const float *p = points.data(), *q = p + 3, *r = q + 3;
       double to[3];
-      for (int k = 0; k < 3; k++) to[k] = (1 - a - b) * double(p[k]) + a * double(q[k]) + b * double(r[k]);
+      for (int k = 0; k < 3; k++)
+        to[k] = (1 - a - b) * double(p[k]) + a * double(q[k]) + b * double(r[k]);
       const double sine = std::pow(10, random(-7, 0)), turn = random(0, 2 * pi);
-      const Vec d = unit((along * std::cos(turn) + up * std::sin(turn)) + normal * (sine * random.sign()));
+      const Vec d =
+          unit((along * std::cos(turn) + up * std::sin(turn)) + normal * (sine * random.sign()));
       const Vec from = Vec{to[0], to[1], to[2]} - d * random(.1, 3);
-      rays.push_back({{float(from.x), float(from.y), float(from.z)}, 0, {float(d.x), float(d.y), float(d.z)}, infinity});
+      rays.push_back({{float(from.x), float(from.y), float(from.z)},
+                      0,
+                      {float(d.x), float(d.y), float(d.z)},
+                      infinity});
     }
     std::vector<RThit> hits(rays.size());
     rtCastRays(rays.size(), rays.data(), hits.data());
@@ -402,9 +437,10 @@ TEST_F(Slivers, ATrueHitIsNeverLostAndIsWhereItIs) {
           lost++;
           continue;
         }
-        const double error = std::max({std::fabs(double(static_cast<long double>(hits[i].t) - is.t)),
-                                       std::fabs(double(static_cast<long double>(hits[i].u) - is.u)),
-                                       std::fabs(double(static_cast<long double>(hits[i].v) - is.v))});
+        const double error =
+            std::max({std::fabs(double(static_cast<long double>(hits[i].t) - is.t)),
+                      std::fabs(double(static_cast<long double>(hits[i].u) - is.u)),
+                      std::fabs(double(static_cast<long double>(hits[i].v) - is.v))});
         worst = std::max(worst, error);
         off += error > 2e-6;
       } else if (is.margin < -1e-6 || is.t < -1e-6) {

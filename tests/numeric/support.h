@@ -1,5 +1,5 @@
-// support.h: scenes for tests against closed forms, through the public C API only. Class D of the accuracy catalogue: one
-// sample, no randomness in the value, relative tolerance 1e-5.
+// support.h: scenes for tests against closed forms, through the public C API only. Class D of the
+// accuracy catalogue: one sample, no randomness in the value, relative tolerance 1e-5.
 #pragma once
 
 #include <array>
@@ -43,7 +43,8 @@ inline void expectColor(const Rgba& got, Vec expected, double relative = 1e-5) {
 // A shader of a stock class, or of a library, with parameters.
 class Shader {
  public:
-  explicit Shader(const char* name, const char* library = nullptr) : id_(rtNewShader(rtNewShaderClass(name, library))) {
+  explicit Shader(const char* name, const char* library = nullptr)
+      : id_(rtNewShader(rtNewShaderClass(name, library))) {
     EXPECT_NE(id_, 0u) << name;
   }
   Shader& set(const char* name, std::initializer_list<double> values) {
@@ -141,7 +142,8 @@ class Scene : public testing::Test {
     s.set("direction", {direction.x, direction.y, direction.z});
     return s;
   }
-  // White light whose direction makes an angle with the axis -z, in the plane y = 0, coming from +x.
+  // White light whose direction makes an angle with the axis -z, in the plane y = 0, coming from
+  // +x.
   static Shader tilted(double degrees) {
     const double t = degrees * pi / 180;
     return directional({-std::sin(t), 0, -std::cos(t)});
@@ -152,7 +154,8 @@ class Scene : public testing::Test {
     return s;
   }
 
-  // What one ray straight down -z sees that passes through (x, y); the view is too narrow for its place to matter.
+  // What one ray straight down -z sees that passes through (x, y); the view is too narrow for its
+  // place to matter.
   static Rgba look(double x = 0, double y = 0, double height = 20) {
     static constexpr double narrow = 1e-6;
     rtPushMatrix();

@@ -1,5 +1,5 @@
-// surface.cpp: what a pixel shows of materials, textures, fog and transparency: V7, V9 and V10 of the accuracy catalogue, and
-// shadows, through the C API and the renderer.
+// surface.cpp: what a pixel shows of materials, textures, fog and transparency: V7, V9 and V10 of
+// the accuracy catalogue, and shadows, through the C API and the renderer.
 #include "numeric/support.h"
 
 namespace numeric {
@@ -79,16 +79,20 @@ TEST_F(Surface, V9EveryRowOfTheTextureTables) {
       {4, false, false, rgb, texel},
       {4, true, false, rgb, texel},
   };
-  const RTid textures[] = {0, texture(1, {.5f}), texture(2, {.5f, float(texel)}), texture(3, {.5f, .25f, 1}),
-                           texture(4, {.5f, .25f, 1, float(texel)})};
+  const RTid textures[] = {0, texture(1, {.5f}), texture(2, {.5f, float(texel)}),
+                           texture(3, {.5f, .25f, 1}), texture(4, {.5f, .25f, 1, float(texel)})};
   use(tilted(0));
   for (const Row& row : rows) {
-    SCOPED_TRACE(testing::Message() << row.components << " components, colours " << row.coloured << ", lit " << row.lit);
+    SCOPED_TRACE(testing::Message() << row.components << " components, colours " << row.coloured
+                                    << ", lit " << row.lit);
     Shader s("VRML97");
-    s.set("transparency", {1 - opaque}).setInt("lit", row.lit ? 1 : 0).setTexture("texture", textures[row.components]);
+    s.set("transparency", {1 - opaque})
+        .setInt("lit", row.lit ? 1 : 0)
+        .setTexture("texture", textures[row.components]);
     const RTid instance = place(square(s, 10, row.coloured ? &red : nullptr));
     const Rgba pixel = look();
-    expectColor(pixel, {row.alpha * row.colour.x, row.alpha * row.colour.y, row.alpha * row.colour.z});
+    expectColor(pixel,
+                {row.alpha * row.colour.x, row.alpha * row.colour.y, row.alpha * row.colour.z});
     expectClose(pixel.a, row.alpha);
     rtDeleteInstance(instance);
   }
@@ -98,7 +102,8 @@ TEST_F(Surface, TextureCoordinatesReachTheTexels) {
   RTid id = 0;
   rtGenTextures(1, &id);
   rtBindTexture(id);
-  const float texels[12] = {1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 1, 0}; // bottom row red, green; top row blue, yellow
+  const float texels[12] = {1, 0, 0, 0, 1, 0,
+                            0, 0, 1, 1, 1, 0}; // bottom row red, green; top row blue, yellow
   rtTexImage2D(3, 2, 2, RT_FLOAT, texels);
   rtTexParameteri(RT_TEXTURE_MAG_FILTER, RT_NEAREST);
   place(square(Shader("VRML97").setInt("lit", 0).setTexture("texture", id)));
@@ -147,7 +152,8 @@ TEST_F(Surface, V10TransparencyOverABackground) {
 }
 
 TEST_F(Surface, LayersOfGlassMultiply) {
-  const RTid pane = square(Shader("VRML97").set("transparency", {.5}).set("diffuseColor", {0, 0, 0}));
+  const RTid pane =
+      square(Shader("VRML97").set("transparency", {.5}).set("diffuseColor", {0, 0, 0}));
   for (int k = 1; k <= 4; k++) {
     rtPushMatrix();
     rtTranslated(0, 0, k);
@@ -162,7 +168,8 @@ TEST_F(Surface, ShadowsStopTheDirectPart) {
   const RTid plane = square(Shader("VRML97"));
   place(plane);
   rtPushMatrix();
-  rtTranslated(4, 0, 4); // between the light and (0, 0, 0) but not between that point and the camera
+  rtTranslated(4, 0,
+               4); // between the light and (0, 0, 0) but not between that point and the camera
   rtScaled(.1, .1, .1);
   const RTid blocker = place(plane);
   rtPopMatrix();
@@ -244,7 +251,8 @@ TEST_F(Surface, ParametersActOnWhatIsAlreadyThere) {
   expectGrey(look(), .8);
   s.set("diffuseColor", {.1, .2, .3});
   expectColor(look(), {.1, .2, .3});
-  s.set("transparency", {.5}); // now it needs another kind of shadow ray, and the path goes on behind it
+  s.set("transparency",
+        {.5}); // now it needs another kind of shadow ray, and the path goes on behind it
   Rgba pixel = look();
   expectColor(pixel, {.05, .1, .15});
   expectClose(pixel.a, .5);

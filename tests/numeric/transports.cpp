@@ -1,5 +1,6 @@
-// transports.cpp: the automatic choice of a transport, row by row of its table (render/path/transport.cpp), and what each transport
-// says it leaves out: a picture of the chosen one agrees with path tracing, and one that leaves out light is darker.
+// transports.cpp: the automatic choice of a transport, row by row of its table
+// (render/path/transport.cpp), and what each transport says it leaves out: a picture of the chosen
+// one agrees with path tracing, and one that leaves out light is darker.
 #include <functional>
 #include <vector>
 
@@ -8,9 +9,10 @@
 namespace numeric {
 namespace {
 
-constexpr RTenum direct = RT_TRANSPORT_DIRECT, whitted = RT_TRANSPORT_WHITTED, path = RT_TRANSPORT_PATH,
-                 light = RT_TRANSPORT_LIGHT;
-constexpr uint32_t images = RT_LEAVES_IMAGES, between = RT_LEAVES_BETWEEN, emitters = RT_LEAVES_EMITTERS, sky = RT_LEAVES_SKY,
+constexpr RTenum direct = RT_TRANSPORT_DIRECT, whitted = RT_TRANSPORT_WHITTED,
+                 path = RT_TRANSPORT_PATH, light = RT_TRANSPORT_LIGHT;
+constexpr uint32_t images = RT_LEAVES_IMAGES, between = RT_LEAVES_BETWEEN,
+                   emitters = RT_LEAVES_EMITTERS, sky = RT_LEAVES_SKY,
                    caustics = RT_LEAVES_CAUSTICS;
 
 struct Row {
@@ -18,8 +20,8 @@ struct Row {
   std::function<void()> world;
   RTenum chosen;
   uint32_t chosenLeaves, whittedLeaves, directLeaves; // RT_LEAVES_*
-  RTenum reference =
-      path; // the chosen one's picture has the same mean; 0: surfaces that answer by themselves have a rule of their own
+  RTenum reference = path; // the chosen one's picture has the same mean; 0: surfaces that answer by
+                           // themselves have a rule of their own
 };
 void PrintTo(const Row& row, std::ostream* out) { *out << row.name; }
 
@@ -27,13 +29,16 @@ class Transports : public Scene, public testing::WithParamInterface<Row> {
  public: // what worlds are made of
   static Shader diffuse(double reflectance, double radiance = 0) {
     Shader s("Diffuse");
-    return s.set("reflectance", {reflectance, reflectance, reflectance}).set("emission", {radiance, radiance, radiance});
+    return s.set("reflectance", {reflectance, reflectance, reflectance})
+        .set("emission", {radiance, radiance, radiance});
   }
   static Shader material(double emissive = 0) {
     Shader s("VRML97");
     return s.set("diffuseColor", {.5, .5, .5}).set("emissiveColor", {emissive, emissive, emissive});
   }
-  static Shader unlit() { return Shader("VRML97").setInt("lit", 0).set("emissiveColor", {.5, .5, .5}); }
+  static Shader unlit() {
+    return Shader("VRML97").setInt("lit", 0).set("emissiveColor", {.5, .5, .5});
+  }
   // A floor with a wall on it: light goes from one to the other.
   static void room(const Shader& shader) {
     const RTid face = square(shader, 2);
@@ -44,7 +49,8 @@ class Transports : public Scene, public testing::WithParamInterface<Row> {
     place(face);
     rtPopMatrix();
   }
-  static void tilted(const Shader& shader, double z = 1) { // beside the middle, seen and seeing the floor
+  static void tilted(const Shader& shader,
+                     double z = 1) { // beside the middle, seen and seeing the floor
     rtPushMatrix();
     rtTranslated(.7, 0, z);
     rtRotated(-40, 0, 1, 0);
@@ -104,10 +110,12 @@ TEST_P(Transports, TheChoiceLeavesNothingOutThatPathsFind) {
   const double chosen = mean(RT_TRANSPORT_AUTO, 256, 1);
   EXPECT_EQ(stats().transport, row.chosen) << stats().transportReason;
   EXPECT_EQ(stats().transportLeavesOut, row.chosenLeaves);
-  EXPECT_LT(std::string(stats().transportReason).size(), sizeof(RTstats::transportReason) - 1) << "cut off";
+  EXPECT_LT(std::string(stats().transportReason).size(), sizeof(RTstats::transportReason) - 1)
+      << "cut off";
   if (row.reference) {
     const double reference = mean(row.reference, 1024, 2);
-    expectClose(chosen, reference, row.chosen <= whitted ? 2e-3 : 2e-2); // whitted: the samples' places alone differ
+    expectClose(chosen, reference,
+                row.chosen <= whitted ? 2e-3 : 2e-2); // whitted: the samples' places alone differ
     const double plain = mean(whitted, 256, 1);
     EXPECT_EQ(stats().transportLeavesOut, row.whittedLeaves);
     if (row.whittedLeaves)

@@ -1,4 +1,5 @@
-/* flat.c: the smallest surface shader in C: one colour, no light. Built as a plug-in against the installed SDK alone. */
+/* flat.c: the smallest surface shader in C: one colour, no light. Built as a plug-in against the
+ * installed SDK alone. */
 #include <openrt/openrts.h>
 
 typedef struct Flat {
@@ -35,4 +36,5 @@ static const RtsClass flat = {.size = sizeof(RtsClass),
                               .traits = traits,
                               .shade = shade};
 static const RtsClass* const classes[] = {&flat};
-RTS_EXPORT const RtsPlugin rtsPlugin = {RTS_MAGIC, RTS_ABI_MAJOR, RTS_ABI_MINOR, sizeof(RtsPlugin), 1, classes};
+RTS_EXPORT const RtsPlugin rtsPlugin = {RTS_MAGIC, RTS_ABI_MAJOR, RTS_ABI_MINOR, sizeof(RtsPlugin),
+                                        1,         classes};

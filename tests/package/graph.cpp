@@ -4,8 +4,8 @@
 #include <xvrml/world.h>
 
 int main() {
-  auto world =
-      xvrml::loadWorldFromMemory("#VRML V2.0 utf8\nDEF Place Transform { children Shape { geometry Box { } } }\n", "memory");
+  auto world = xvrml::loadWorldFromMemory(
+      "#VRML V2.0 utf8\nDEF Place Transform { children Shape { geometry Box { } } }\n", "memory");
   auto* place = xvrml::nodeCast<xvrml::nodes::Transform>(world->scope.names.at("Place"));
   if (!place || place->children.size() != 1 || world->diagnostics.errors()) return 1;
   place->translation = {1, 2, 3};

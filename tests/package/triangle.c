@@ -1,5 +1,5 @@
-/* triangle.c: draws a triangle with the installed library and, if a folder is given, with the plug-in `flat` from there.
- * Exit code 0 if the pixels are what they must be. */
+/* triangle.c: draws a triangle with the installed library and, if a folder is given, with the
+ * plug-in `flat` from there. Exit code 0 if the pixels are what they must be. */
 #include <math.h>
 #include <openrt/openrt.h>
 #include <stdio.h>
@@ -14,7 +14,8 @@ int main(int argc, char** argv) {
   enum { width = 32, height = 24, center = (height / 2) * width + width / 2 };
   static float depth[width * height], rgba[4 * width * height];
   char config[4096];
-  snprintf(config, sizeof config, argc > 1 ? "threads=1 shaderpath=\"%s\"" : "threads=1", argc > 1 ? argv[1] : "");
+  snprintf(config, sizeof config, argc > 1 ? "threads=1 shaderpath=\"%s\"" : "threads=1",
+           argc > 1 ? argv[1] : "");
   if (!rtNewContext(config)) return failed("context");
 
   if (argc > 1) {
@@ -42,7 +43,8 @@ int main(int argc, char** argv) {
   if (fabsf(depth[center] - 5) > 1e-4f) return failed("depth of the triangle");
   if (!isinf(depth[0])) return failed("depth of nothing");
   const float* pixel = rgba + 4 * center;
-  if (argc > 1 && (pixel[0] != 0.25f || pixel[1] != 0.5f || pixel[2] != 0.75f)) return failed("colour of the plug-in");
+  if (argc > 1 && (pixel[0] != 0.25f || pixel[1] != 0.5f || pixel[2] != 0.75f))
+    return failed("colour of the plug-in");
 
   rtRender(); /* the second frame reuses everything */
   rtDeleteContext(rtGetCurrent());

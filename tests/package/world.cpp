@@ -1,4 +1,5 @@
-// world.cpp: draws a world with the installed libraries. Exit code 0 if the box is where it must be.
+// world.cpp: draws a world with the installed libraries. Exit code 0 if the box is where it must
+// be.
 #include <cmath>
 #include <cstdio>
 #include <openrt/openrt.h>
@@ -6,8 +7,8 @@
 #include <xvrml/mapper.h>
 
 int main() {
-  auto world =
-      xvrml::loadWorldFromMemory("#VRML V2.0 utf8\nViewpoint { position 0 0 6 }\nShape { geometry Box { } }\n", "memory");
+  auto world = xvrml::loadWorldFromMemory(
+      "#VRML V2.0 utf8\nViewpoint { position 0 0 6 }\nShape { geometry Box { } }\n", "memory");
   const RTcontext context = rtNewContext("threads=1");
   if (!context) return 1;
   const int width = 32, height = 24;
@@ -23,7 +24,8 @@ int main() {
   const RTenum error = rtGetError();
   if (error) std::fprintf(stderr, "world: %s\n", rtGetErrorMessage());
   rtDeleteContext(context);
-  if (error || std::fabs(depth[depth.size() / 2 + width / 2] - 5) > 1e-4F || !std::isinf(depth[0])) return 1;
+  if (error || std::fabs(depth[depth.size() / 2 + width / 2] - 5) > 1e-4F || !std::isinf(depth[0]))
+    return 1;
   std::puts("world: as it must be");
   return 0;
 }

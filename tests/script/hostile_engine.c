@@ -1,6 +1,7 @@
-/* hostile_engine.c: a script engine that does what no program may do, in scheme "hostile:". A program is lines "WHEN: COMMAND
- * ARGUMENT"; WHEN is the name of an eventIn, or create, initialize, eventsProcessed, shutdown, destroy, tick. What was tried is
- * printed with its outcome. Stands for an engine whose library has been taken over by the program it runs.
+/* hostile_engine.c: a script engine that does what no program may do, in scheme "hostile:". A
+ * program is lines "WHEN: COMMAND ARGUMENT"; WHEN is the name of an eventIn, or create, initialize,
+ * eventsProcessed, shutdown, destroy, tick. What was tried is printed with its outcome. Stands for
+ * an engine whose library has been taken over by the program it runs.
  */
 #define _GNU_SOURCE
 #include <xvrml/xscript.h>
@@ -42,14 +43,16 @@ static void spin(Interpreter* self, const char* argument) {
   (void)argument;
   for (;;) sink++;
 }
-static void calls(Interpreter* self, const char* argument) { /* asks the host for ever and takes no answer for one */
+static void calls(Interpreter* self,
+                  const char* argument) { /* asks the host for ever and takes no answer for one */
   XsValue value;
   for (;;) self->host->read(self->host, self->info->self, self->info->self, argument, &value);
 }
 static void chatter(Interpreter* self, const char* argument) {
   for (;;) say(self, argument);
 }
-static void slow(Interpreter* self, const char* argument) { /* MILLISECONDS of sleep, then prints "slept" */
+static void slow(Interpreter* self,
+                 const char* argument) { /* MILLISECONDS of sleep, then prints "slept" */
   const long ms = atol(argument);
   const struct timespec time = {ms / 1000, ms % 1000 * 1000000L};
   nanosleep(&time, NULL);
@@ -92,7 +95,9 @@ static void leave(Interpreter* self, const char* argument) {
 
 /* --- That reaches out --- */
 
-static void readFile(Interpreter* self, const char* argument) { outcome(self, "open", open(argument, O_RDONLY) >= 0); }
+static void readFile(Interpreter* self, const char* argument) {
+  outcome(self, "open", open(argument, O_RDONLY) >= 0);
+}
 static void writeFile(Interpreter* self, const char* argument) {
   outcome(self, "create", open(argument, O_CREAT | O_WRONLY, 0600) >= 0);
 }
@@ -120,14 +125,20 @@ static void raises(Interpreter* self, const char* argument) { /* the limits agai
   (void)argument;
   outcome(self, "setrlimit", setrlimit(RLIMIT_AS, &most) == 0);
 }
-static void environment(Interpreter* self, const char* argument) { say(self, getenv(argument) ? "set" : "not set"); }
+static void environment(Interpreter* self, const char* argument) {
+  say(self, getenv(argument) ? "set" : "not set");
+}
 static int libraryPath; /* whether the process was given one, before it gave up all it may do */
-__attribute__((constructor)) static void loaded(void) { libraryPath = getenv("LD_LIBRARY_PATH") != NULL; }
+__attribute__((constructor)) static void loaded(void) {
+  libraryPath = getenv("LD_LIBRARY_PATH") != NULL;
+}
 static void given(Interpreter* self, const char* argument) {
   (void)argument;
   say(self, libraryPath ? "given" : "not given");
 }
-static void descriptors(Interpreter* self, const char* argument) { /* how many are open beside the standard ones and the socket */
+static void
+descriptors(Interpreter* self,
+            const char* argument) { /* how many are open beside the standard ones and the socket */
   int open = 0;
   char line[40];
   (void)argument;
@@ -203,7 +214,9 @@ static XsResult initialize(XsInterpreter interpreter, double time) {
   (void)time;
   return run(interpreter, "initialize");
 }
-static XsResult event(XsInterpreter interpreter, const XsEvent* event) { return run(interpreter, event->name); }
+static XsResult event(XsInterpreter interpreter, const XsEvent* event) {
+  return run(interpreter, event->name);
+}
 static XsResult processed(XsInterpreter interpreter, double time) {
   (void)time;
   return run(interpreter, "eventsProcessed");
@@ -223,4 +236,5 @@ static const XsEngine engine = {sizeof(XsEngine), 0,          "hostile", "misbeh
                                 destroy,          initialize, event,     processed,
                                 shutDown,         tick,       NULL};
 static const XsEngine* const engines[] = {&engine};
-XS_EXPORT const XsPlugin xsPlugin = {XS_MAGIC, XS_ABI_MAJOR, XS_ABI_MINOR, sizeof(XsPlugin), 1, engines};
+XS_EXPORT const XsPlugin xsPlugin = {XS_MAGIC, XS_ABI_MAJOR, XS_ABI_MINOR, sizeof(XsPlugin),
+                                     1,        engines};

@@ -1,5 +1,6 @@
-// looking_host.h: a host of Scripts that looks at every byte that a helper process hands over, and calls that are answered by
-// whatever a test likes to say in the helper's place. Used by the unit tests and the fuzz target of the messages.
+// looking_host.h: a host of Scripts that looks at every byte that a helper process hands over, and
+// calls that are answered by whatever a test likes to say in the helper's place. Used by the unit
+// tests and the fuzz target of the messages.
 #pragma once
 
 #include <cstring>
@@ -29,10 +30,14 @@ struct Looking : XsHost {
         look(value->of.strings[i]);
       } else if (element.kind == wire::Kind::images) {
         const XsImage& image = value->of.images[i];
-        const uint64_t bytes = image.pixels ? uint64_t(image.width) * uint64_t(image.height) * uint64_t(image.components) : 0;
-        for (uint64_t k = 0; image.width > 0 && image.height > 0 && k < bytes; ++k) sum += image.pixels[k];
+        const uint64_t bytes = image.pixels ? uint64_t(image.width) * uint64_t(image.height) *
+                                                  uint64_t(image.components)
+                                            : 0;
+        for (uint64_t k = 0; image.width > 0 && image.height > 0 && k < bytes; ++k)
+          sum += image.pixels[k];
       } else {
-        for (uint32_t k = 0; k < element.bytes; ++k) sum += static_cast<const uint8_t*>(value->of.data)[i * element.bytes + k];
+        for (uint32_t k = 0; k < element.bytes; ++k)
+          sum += static_cast<const uint8_t*>(value->of.data)[i * element.bytes + k];
       }
     }
   }
@@ -75,12 +80,14 @@ struct Looking : XsHost {
       for (uint32_t i = 0; nodes && i < count; ++i) sum += nodes[i];
       return XS_OK;
     };
-    loadUrl = [](const XsHost*, XsNode, uint32_t n, const XsString* a, uint32_t m, const XsString* b) {
+    loadUrl = [](const XsHost*, XsNode, uint32_t n, const XsString* a, uint32_t m,
+                 const XsString* b) {
       for (uint32_t i = 0; a && i < n; ++i) look(a[i]);
       for (uint32_t i = 0; b && i < m; ++i) look(b[i]);
       return XS_OK;
     };
-    createVrmlFromUrl = [](const XsHost*, XsNode, uint32_t n, const XsString* a, XsNode, const char* in) {
+    createVrmlFromUrl = [](const XsHost*, XsNode, uint32_t n, const XsString* a, XsNode,
+                           const char* in) {
       for (uint32_t i = 0; a && i < n; ++i) look(a[i]);
       look(in);
       return XS_OK;
@@ -90,11 +97,12 @@ struct Looking : XsHost {
       *v = {XS_MFINT32, 0, {}};
       return XS_OK;
     };
-    addRoute = deleteRoute = [](const XsHost*, XsNode, XsNode, const char* a, XsNode, const char* b) {
-      look(a);
-      look(b);
-      return XS_OK;
-    };
+    addRoute =
+        deleteRoute = [](const XsHost*, XsNode, XsNode, const char* a, XsNode, const char* b) {
+          look(a);
+          look(b);
+          return XS_OK;
+        };
     log = [](const XsHost*, XsNode, int32_t, uint32_t, XsString s) { look(s); };
   }
 };
@@ -102,14 +110,17 @@ struct Looking : XsHost {
 inline ScriptProcess::State callThatGets(const std::string& bytes, std::string* death = nullptr) {
   static const Looking host;
   int ends[2];
-  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) return ScriptProcess::State::running;
+  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
+    return ScriptProcess::State::running;
   ScriptProcess process(ends[0], {"x.so", "x", 1000, 0.05, 0}, host);
-  if (write(ends[1], bytes.data(), bytes.size()) != ssize_t(bytes.size())) return ScriptProcess::State::running;
+  if (write(ends[1], bytes.data(), bytes.size()) != ssize_t(bytes.size()))
+    return ScriptProcess::State::running;
   shutdown(ends[1], SHUT_WR);
   wire::Writer call;
   call.begin(wire::Op::tick, 1);
   const bool begun = process.begin(call);
-  const auto state = begun ? process.serve(1e9, 1e9, wire::never, 0) : ScriptProcess::State::running;
+  const auto state =
+      begun ? process.serve(1e9, 1e9, wire::never, 0) : ScriptProcess::State::running;
   if (death) *death = process.death();
   close(ends[1]);
   return state;

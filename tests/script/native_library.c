@@ -1,5 +1,6 @@
-/* native_library.c: C functions as libraries have them, for the tests of the script engine `native`: numbers, vectors, lists,
- * texts, pictures and nodes in and out; functions with the names of events; a sensor to poll. Called on the browser's thread. */
+/* native_library.c: C functions as libraries have them, for the tests of the script engine
+ * `native`: numbers, vectors, lists, texts, pictures and nodes in and out; functions with the names
+ * of events; a sensor to poll. Called on the browser's thread. */
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
@@ -76,7 +77,8 @@ const char* greet(const char* name) {
 }
 void upper(const char* in, char* out, uint32_t room) {
   uint32_t i = 0;
-  for (; in[i] && i + 1 < room; ++i) out[i] = in[i] >= 'a' && in[i] <= 'z' ? (char)(in[i] - 32) : in[i];
+  for (; in[i] && i + 1 < room; ++i)
+    out[i] = in[i] >= 'a' && in[i] <= 'z' ? (char)(in[i] - 32) : in[i];
   out[i] = 0;
 }
 int32_t letters(const char* const* texts, uint32_t count) {
@@ -86,11 +88,14 @@ int32_t letters(const char* const* texts, uint32_t count) {
 }
 int32_t brightness(const XsImage* image) {
   int32_t sum = 0;
-  for (int32_t i = 0; i < image->width * image->height * image->components; ++i) sum += image->pixels[i];
+  for (int32_t i = 0; i < image->width * image->height * image->components; ++i)
+    sum += image->pixels[i];
   return sum;
 }
 XsNode same_node(XsNode node) { return node; }
-void last_node(const XsNode* nodes, uint32_t count, XsNode* out) { *out = count ? nodes[count - 1] : 0; }
+void last_node(const XsNode* nodes, uint32_t count, XsNode* out) {
+  *out = count ? nodes[count - 1] : 0;
+}
 void all_nodes(const XsNode* nodes, uint32_t count, XsNode* out, uint32_t* written) {
   memcpy(out, nodes, count * sizeof *nodes);
   *written = count;

@@ -1,5 +1,6 @@
-// cluster_fake_work.h: work of a frame without a picture, and workers without machines: what tests of the scheduler drive. Every
-// sample of every tile is counted, so that one that is taken twice or never is noticed.
+// cluster_fake_work.h: work of a frame without a picture, and workers without machines: what tests
+// of the scheduler drive. Every sample of every tile is counted, so that one that is taken twice or
+// never is noticed.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -14,7 +15,8 @@ namespace openrt::cluster {
 
 class FakeWork final : public JobSource {
  public:
-  FakeWork(uint32_t tiles, uint32_t pixels, uint32_t samples) : pixels_(pixels), samples_(samples), next_(tiles), taken_(tiles) {
+  FakeWork(uint32_t tiles, uint32_t pixels, uint32_t samples)
+      : pixels_(pixels), samples_(samples), next_(tiles), taken_(tiles) {
     for (auto& t : taken_) t.assign(samples, 0);
     undone_ = double(tiles) * pixels * samples;
   }
@@ -54,7 +56,8 @@ class FakeWork final : public JobSource {
   }
 
   void take(const Job& job) {
-    for (uint32_t i = job.first; i < job.first + job.count; i++) ASSERT_EQ(taken_[job.number][i]++, 0) << job.number << " " << i;
+    for (uint32_t i = job.first; i < job.first + job.count; i++)
+      ASSERT_EQ(taken_[job.number][i]++, 0) << job.number << " " << i;
     done_ += job.count;
   }
   bool over() const { return done_ == uint64_t(samples_) * taken_.size(); }

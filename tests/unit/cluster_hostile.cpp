@@ -1,5 +1,6 @@
-// cluster_hostile.cpp: a side that has a key and bad intentions: it asks for more than can be done, does not read, says the same
-// for ever. It is let go, and takes neither memory nor the log from the others.
+// cluster_hostile.cpp: a side that has a key and bad intentions: it asks for more than can be done,
+// does not read, says the same for ever. It is let go, and takes neither memory nor the log from
+// the others.
 #include "backend/cluster/master/master.h"
 #include "backend/cluster/master/outbox.h"
 #include "backend/cluster/worker/worker.h"
@@ -30,7 +31,8 @@ struct LoneWorker {
                {[this](Peer, Frames&& frames) {
                   Message m;
                   EXPECT_EQ(decode(std::move(frames), m), "");
-                  if (const auto* need = std::get_if<message::Need>(&m.body)) needed += need->arrays.size();
+                  if (const auto* need = std::get_if<message::Need>(&m.body))
+                    needed += need->arrays.size();
                 },
                 [this](Peer, const std::string& why) { closed.push_back(why); },
                 [this](Peer, const std::string& why) { badOnes.push_back(why); },
@@ -60,7 +62,9 @@ struct LoneMaster {
   std::unique_ptr<Master> master;
   LoneMaster() {
     MasterOptions options;
-    options.local.log = [](int, const char* text, void* user) { static_cast<std::vector<std::string>*>(user)->push_back(text); };
+    options.local.log = [](int, const char* text, void* user) {
+      static_cast<std::vector<std::string>*>(user)->push_back(text);
+    };
     options.local.logUser = &log;
     options.close = [this](Peer, const std::string& why) { closed.push_back(why); };
     master = std::make_unique<Master>(
@@ -68,7 +72,8 @@ struct LoneMaster {
         [this](Peer, Frames&& frames) {
           Message m;
           EXPECT_EQ(decode(std::move(frames), m), "");
-          if (const auto* welcome = std::get_if<message::Welcome>(&m.body)) session = welcome->session;
+          if (const auto* welcome = std::get_if<message::Welcome>(&m.body))
+            session = welcome->session;
           return true;
         },
         nullptr);
@@ -169,7 +174,8 @@ TEST(Hostile, whoSaysHelloAgainAndAgainIsLetGo) {
 
 TEST(Hostile, whoTalksToTheLogForEver) {
   LoneMaster m;
-  for (uint64_t i = 0; i < 5 * limits::logLines; i++) m.tell(message::Log{1, "line " + std::to_string(i)});
+  for (uint64_t i = 0; i < 5 * limits::logLines; i++)
+    m.tell(message::Log{1, "line " + std::to_string(i)});
   EXPECT_LT(m.log.size(), limits::logLines + 20);
 }
 
@@ -191,13 +197,15 @@ TEST(Hostile, textsAreUtf8AndMoveNoCursor) {
     EXPECT_EQ(decode(encode(1, message::Log{2, text}), out), "");
     return std::get<message::Log>(out.body).text;
   };
-  EXPECT_EQ(shown("Gr\xc3\xbc\xc3\x9f \xe2\x82\xac \xf0\x9f\x8c\x8d"), "Gr\xc3\xbc\xc3\x9f \xe2\x82\xac \xf0\x9f\x8c\x8d");
+  EXPECT_EQ(shown("Gr\xc3\xbc\xc3\x9f \xe2\x82\xac \xf0\x9f\x8c\x8d"),
+            "Gr\xc3\xbc\xc3\x9f \xe2\x82\xac \xf0\x9f\x8c\x8d");
   EXPECT_EQ(shown("a\xc2\x9b"
                   "2Jb"),
             "a  2Jb")
       << "CSI in one character";
   EXPECT_EQ(shown("\xff\xc3\x28\x80"), "\?\?(?");
-  EXPECT_EQ(shown("\xc0\xaf\xed\xa0\x80\xf5\x80\xe2\x82"), "?????????") << "overlong, half a pair, cut";
+  EXPECT_EQ(shown("\xc0\xaf\xed\xa0\x80\xf5\x80\xe2\x82"), "?????????")
+      << "overlong, half a pair, cut";
   message::Ready ready{1, {}, RT_TRANSPORT_PATH, {}};
   std::memcpy(ready.stats.isa, "a\x1b\xffz", 4);
   Message out;

@@ -50,7 +50,8 @@ TEST(Keys, filesThatOthersMayUseAreRefused) {
   makeKeyFile(folder / "key");
   for (const mode_t mode : {0640, 0604, 0620, 0610}) {
     chmod((folder / "key").c_str(), mode);
-    EXPECT_NE(thrown([&] { readKeys(folder / "key"); }).find("chmod 600"), std::string::npos) << mode;
+    EXPECT_NE(thrown([&] { readKeys(folder / "key"); }).find("chmod 600"), std::string::npos)
+        << mode;
   }
   chmod((folder / "key").c_str(), 0400);
   EXPECT_EQ(thrown([&] { readKeys(folder / "key"); }), "");
@@ -66,9 +67,13 @@ TEST(Keys, whatIsNoKeyFileIsRefusedWithItsName) {
   };
   EXPECT_NE(refused("").find(path), std::string::npos);
   EXPECT_NE(refused("public " + a.publicKey + "\n").find("not a key file"), std::string::npos);
-  EXPECT_NE(refused("public " + a.publicKey + "\nsecret short\n").find("line 2"), std::string::npos);
-  EXPECT_NE(refused("public " + a.publicKey + "\nsecret " + b.secretKey + "\n").find("does not belong"), std::string::npos);
-  EXPECT_NE(refused("public " + a.publicKey + "\npublic " + a.publicKey + "\n").find("line 2"), std::string::npos);
+  EXPECT_NE(refused("public " + a.publicKey + "\nsecret short\n").find("line 2"),
+            std::string::npos);
+  EXPECT_NE(
+      refused("public " + a.publicKey + "\nsecret " + b.secretKey + "\n").find("does not belong"),
+      std::string::npos);
+  EXPECT_NE(refused("public " + a.publicKey + "\npublic " + a.publicKey + "\n").find("line 2"),
+            std::string::npos);
   EXPECT_NE(refused(std::string("\0\1\2", 3)), "");
   EXPECT_EQ(refused("\r\n public  " + a.publicKey + "\r\nsecret\t" + a.secretKey), "");
   EXPECT_NE(thrown([&] { readKeys(folder.path); }).find("not a file"), std::string::npos);
@@ -79,8 +84,11 @@ TEST(Keys, whatIsNoKeyFileIsRefusedWithItsName) {
 TEST(Keys, listsOfThoseThatAreLetIn) {
   const Folder folder;
   const KeyRing a = freshKeys(folder, "a"), b = freshKeys(folder, "b");
-  write(folder / "allow", "# the farm\n\n" + a.publicKey + " node 1\n  public " + b.publicKey + "\n#x\n", 0644);
-  EXPECT_EQ(readKeys(folder / "a", folder / "allow").allowed, (std::vector{a.publicKey, b.publicKey}));
+  write(folder / "allow",
+        "# the farm\n\n" + a.publicKey + " node 1\n  public " + b.publicKey + "\n#x\n", 0644);
+  EXPECT_EQ(readKeys(folder / "a", folder / "allow").allowed,
+            (std::vector{a.publicKey, b.publicKey}));
   write(folder / "allow", a.publicKey + "\nnode2\n", 0644);
-  EXPECT_NE(thrown([&] { readKeys(folder / "a", folder / "allow"); }).find("line 2"), std::string::npos);
+  EXPECT_NE(thrown([&] { readKeys(folder / "a", folder / "allow"); }).find("line 2"),
+            std::string::npos);
 }

@@ -1,6 +1,8 @@
-// cluster_master.cpp: the master against workers that are made here: they speak the protocol and make up their samples by a
-// formula. Links deliver in their order, but nobody knows whose turn it is; workers are lost, come late, stand still, send
-// everything twice or send nonsense. Whatever happens, the picture is the same bytes. Time is a number, chance has a seed.
+// cluster_master.cpp: the master against workers that are made here: they speak the protocol and
+// make up their samples by a formula. Links deliver in their order, but nobody knows whose turn it
+// is; workers are lost, come late, stand still, send everything twice or send nonsense. Whatever
+// happens, the picture is the same bytes. Time is a number, chance has a seed.
+// Longer than 500 lines because the tests share one rig.
 #include <cstring>
 #include <deque>
 #include <random>
@@ -41,8 +43,11 @@ JobResult samplesOf(const edit::FrameSettingsT& frame, const Job& job, const Til
   for (uint32_t y = tile.y0; y < tile.y1; y++)
     for (uint32_t x = tile.x0; x < tile.x1; x++, at++)
       for (uint32_t s = job.first; s < job.first + job.count; s++) {
-        const uint32_t h = (x * 73856093u ^ y * 19349663u ^ s * 83492791u ^ job.replicates.seedOf(s) * 2654435761u) * 2246822519u;
-        const float radiance[3] = {float(h >> 8) * 0x1p-24f, float(h & 0xffff) / 65536, float(frame.seed)};
+        const uint32_t h = (x * 73856093u ^ y * 19349663u ^ s * 83492791u ^
+                            job.replicates.seedOf(s) * 2654435761u) *
+                           2246822519u;
+        const float radiance[3] = {float(h >> 8) * 0x1p-24f, float(h & 0xffff) / 65536,
+                                   float(frame.seed)};
         result.sums[at].addColor(radiance, 1);
       }
   result.counters.camera = result.sums.size() * job.count;
@@ -77,13 +82,15 @@ struct FakeWorker {
   void hear(Frames&& frames) {
     Message message;
     ASSERT_EQ(decode(std::move(frames), message), "");
-    if (const auto* welcome = std::get_if<message::Welcome>(&message.body)) session = welcome->session;
+    if (const auto* welcome = std::get_if<message::Welcome>(&message.body))
+      session = welcome->session;
     ASSERT_EQ(message.session, session);
     if (auto* given = std::get_if<message::Scene>(&message.body)) {
       message::Need need;
       need.epoch = given->epoch;
       for (const auto& name : given->arrays)
-        if (!arrays.contains(name.hash) && asked.insert(name.hash).second) need.arrays.push_back(name.hash);
+        if (!arrays.contains(name.hash) && asked.insert(name.hash).second)
+          need.arrays.push_back(name.hash);
       scenes.push_back(std::move(*given));
       const bool wasTwice = std::exchange(twice, false); // that would be nonsense
       say(std::move(need));
@@ -169,7 +176,9 @@ class ClusterMaster : public testing::TestWithParam<int> {
     MasterOptions options;
     options.self = greeting();
     options.require = require;
-    options.local.log = [](int, const char* text, void* user) { static_cast<std::vector<std::string>*>(user)->push_back(text); };
+    options.local.log = [](int, const char* text, void* user) {
+      static_cast<std::vector<std::string>*>(user)->push_back(text);
+    };
     options.local.logUser = &log;
     elsewhere.clear();
     if (GetParam() > 2) // threads that merge
@@ -181,7 +190,8 @@ class ClusterMaster : public testing::TestWithParam<int> {
       worker(peer).gone = true;
     };
     master = std::make_unique<Master>(
-        options, [this](Peer peer, Frames&& frames) { return post(peer, std::move(frames)); }, nullptr);
+        options, [this](Peer peer, Frames&& frames) { return post(peer, std::move(frames)); },
+        nullptr);
   }
   FakeWorker& worker(Peer peer) { return *workers.at(peer - 1); }
   bool post(Peer peer, Frames&& frames) {
@@ -251,7 +261,9 @@ class ClusterMaster : public testing::TestWithParam<int> {
       commit->edits.edits.push_back(std::move(entry));
     };
     const double identity[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
-    const auto matrix = [&] { return std::make_unique<edit::Matrix>(flatbuffers::span<const double, 16>(identity)); };
+    const auto matrix = [&] {
+      return std::make_unique<edit::Matrix>(flatbuffers::span<const double, 16>(identity));
+    };
     const auto array = [&](ArrayId id, const void* data, size_t bytes) {
       auto made = std::make_shared<Array>(bytes);
       std::memcpy(made->data(), data, bytes);
@@ -264,7 +276,8 @@ class ClusterMaster : public testing::TestWithParam<int> {
       auto geometry = std::make_unique<edit::GeometryT>();
       geometry->matrix = matrix();
       geometry->width = 1;
-      const float points[9] = {0, 0, float(frame / 3), 1, 0, 0, 0, 1, float(g)}; // some frames have the same ones
+      const float points[9] = {0, 0, float(frame / 3), 1, 0, 0,
+                               0, 1, float(g)}; // some frames have the same ones
       const uint32_t corners[3] = {0, 1, 2};
       const auto base = ArrayId(10 * frame + 4 * g + 1);
       geometry->points = array(base, points, sizeof points);
@@ -292,7 +305,8 @@ class ClusterMaster : public testing::TestWithParam<int> {
       if (const auto* settings = entry->any.AsFrameSettings()) frame = *settings;
     frame.transport = RT_TRANSPORT_DIRECT;
     FrameWork work(frame, FrameFacts{true, false}, 1);
-    for (Job job; work.next(job) == FrameWork::Next::job;) work.take(job, samplesOf(frame, job, work.tile(job.number)));
+    for (Job job; work.next(job) == FrameWork::Next::job;)
+      work.take(job, samplesOf(frame, job, work.tile(job.number)));
     return read(work);
   }
   static std::vector<float> read(const FrameWork& work) {
@@ -319,7 +333,8 @@ class ClusterMaster : public testing::TestWithParam<int> {
   double now = 1;
   std::vector<std::string> log;
   std::vector<std::unique_ptr<FakeWorker>> workers;
-  std::vector<std::pair<std::function<void()>, MasterOptions::Then>> elsewhere; // null: it is in the picture
+  std::vector<std::pair<std::function<void()>, MasterOptions::Then>>
+      elsewhere; // null: it is in the picture
   std::unique_ptr<Master> master;
 };
 
@@ -336,7 +351,8 @@ TEST_P(ClusterMaster, WhateverHappensThePicturesAreTheSame) {
     switch (below(12)) {
     case 0: join().twice = below(2); break;
     case 1:
-      if (FakeWorker& any = *workers[below(workers.size())]; !any.gone && &any != workers[0].get()) lose(any);
+      if (FakeWorker& any = *workers[below(workers.size())]; !any.gone && &any != workers[0].get())
+        lose(any);
       break;
     case 2: workers[below(workers.size())]->still ^= true; break;
     default: break;
@@ -374,7 +390,8 @@ TEST_P(ClusterMaster, AnArrayIsSentOnceToEach) {
   join();
   for (Epoch epoch = 1; epoch <= 6; epoch++) master->commit(epoch, edits(int(epoch)), true, now);
   ASSERT_TRUE(runUntil([&] { return over(6); }));
-  // Points of 0, 1, 2 (frames 1 and 2, 3 to 5, 6) for two geometries, and the corners; but a worker may have left frames out.
+  // Points of 0, 1, 2 (frames 1 and 2, 3 to 5, 6) for two geometries, and the corners; but a worker
+  // may have left frames out.
   for (const auto& each : workers) EXPECT_LE(each->arrayBytes, 3 * 2 * 36 + 12u);
 }
 
@@ -389,13 +406,16 @@ TEST_P(ClusterMaster, WhoDiffersIsRefused) {
   master->commit(1, edits(1), true, now);
   ASSERT_TRUE(runUntil([&] { return over(1); }));
   expectSame(1);
-  EXPECT_NE(mixed.refused.find("instruction set: the worker has avx512, the master avx2"), std::string::npos) << mixed.refused;
+  EXPECT_NE(mixed.refused.find("instruction set: the worker has avx512, the master avx2"),
+            std::string::npos)
+      << mixed.refused;
   EXPECT_NE(newer.refused.find("protocol"), std::string::npos);
   EXPECT_EQ(good.refused, "");
   FakeWorker& liar = join(); // has found another number of triangles
   liar.nonsense = true;
   master->commit(2, edits(2), true, now);
-  ASSERT_TRUE(runUntil([&] { return over(2) && (!liar.refused.empty() || !good.refused.empty()); }));
+  ASSERT_TRUE(
+      runUntil([&] { return over(2) && (!liar.refused.empty() || !good.refused.empty()); }));
   EXPECT_NE((liar.refused + good.refused).find("triangle"), std::string::npos);
 }
 
@@ -436,9 +456,10 @@ TEST_P(ClusterMaster, NonsenseIsBorneThreeTimes) {
   ASSERT_TRUE(runUntil([&] { return bad.session != 0 && good.session != 0; }));
   for (int i = 0; i < 3; i++) {
     EXPECT_EQ(bad.refused, "");
-    master->message(
-        bad.peer, encode(bad.session, i == 1 ? message::Body(message::Need{77, {Hash{1, 2}}}) : message::Body(message::Drop{1})),
-        now);
+    master->message(bad.peer,
+                    encode(bad.session, i == 1 ? message::Body(message::Need{77, {Hash{1, 2}}})
+                                               : message::Body(message::Drop{1})),
+                    now);
   }
   EXPECT_NE(bad.refused, "");
   ASSERT_TRUE(runUntil([&] { return over(1); }));
@@ -492,7 +513,8 @@ TEST_P(ClusterMaster, RequiredWorkersAreWaitedForAWhile) {
   master->commit(2, edits(2), true, now);
   ASSERT_TRUE(runUntil([&] { return over(2); }));
   EXPECT_TRUE(master->frame(2).missing);
-  EXPECT_NE(master->frame(2).failure.find("2 workers are needed, there is 1"), std::string::npos) << master->frame(2).failure;
+  EXPECT_NE(master->frame(2).failure.find("2 workers are needed, there is 1"), std::string::npos)
+      << master->frame(2).failure;
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, ClusterMaster, testing::Range(1, 7));

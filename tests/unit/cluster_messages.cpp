@@ -1,4 +1,5 @@
-// Messages: each comes back as it was; what is cut, changed, too large or contradicts itself is refused.
+// Messages: each comes back as it was; what is cut, changed, too large or contradicts itself is
+// refused.
 #include <cmath>
 #include <cstring>
 
@@ -22,14 +23,16 @@ std::vector<message::Body> oneOfEach() {
   jobs.jobs.push_back({11, {Job::Kind::samples, true, 2, 64, 32, {7, 4}}});
   jobs.jobs.push_back({12, {Job::Kind::light, false, 15, 0, 4000000000u, {8, 31}}});
   std::vector<message::Body> all;
-  all.emplace_back(message::Hello{1, "0.1.0", 1, 2, "avx2", "Embree", "glibc 2.36", 16, "node1", 4711});
+  all.emplace_back(
+      message::Hello{1, "0.1.0", 1, 2, "avx2", "Embree", "glibc 2.36", 16, "node1", 4711});
   all.emplace_back(message::Need{5, {{1, 2}, {3, 4}}});
   all.emplace_back(ready);
   all.emplace_back(message::Failed{5, "why"});
   all.emplace_back(result);
   all.emplace_back(message::Log{2, "text"});
   all.emplace_back(message::Welcome{protocolVersion, 42, 0.1f, 0.5f});
-  all.emplace_back(message::Scene{5, true, true, {{1, 100, {1, 2}}, {2, 200, {3, 4}}}, {{"vrml97", {5, 6}}}, someBytes(333)});
+  all.emplace_back(message::Scene{
+      5, true, true, {{1, 100, {1, 2}}, {2, 200, {3, 4}}}, {{"vrml97", {5, 6}}}, someBytes(333)});
   all.emplace_back(message::Piece{{1, 2}, 100, 50, 0, someBytes(50)});
   all.emplace_back(message::Prepare{5});
   all.emplace_back(jobs);
@@ -55,7 +58,8 @@ TEST(Messages, eachComesBackAsItWas) {
     ASSERT_EQ(decode(Frames(frames), out), "");
     EXPECT_EQ(out.session, 42u);
     ASSERT_EQ(out.body.index(), body.index());
-    EXPECT_EQ(encode(42, std::move(out.body)), frames) << "the same message makes the same bytes, kind " << body.index();
+    EXPECT_EQ(encode(42, std::move(out.body)), frames)
+        << "the same message makes the same bytes, kind " << body.index();
   }
 }
 
@@ -180,12 +184,16 @@ TEST(Messages, numbersThatCannotBe) {
   EXPECT_TRUE(refused(message::Scene{limits::epochs + 1, true, true, {}, {}, {}}));
   EXPECT_TRUE(refused(message::Scene{1, true, true, {{0, 1, {}}}, {}, {}}));
   EXPECT_TRUE(refused(message::Scene{1, true, true, {{1, limits::arrayBytes + 1, {}}}, {}, {}}));
-  EXPECT_TRUE(refused(message::Scene{1, true, true, std::vector(5, message::ArrayName{1, limits::arrayBytes, {}}), {}, {}}));
-  EXPECT_TRUE(refused(message::Piece{{}, uint64_t(1) << 33, 1000, 0, someBytes(1000)})) << "more than zstd can unpack";
+  EXPECT_TRUE(refused(message::Scene{
+      1, true, true, std::vector(5, message::ArrayName{1, limits::arrayBytes, {}}), {}, {}}));
+  EXPECT_TRUE(refused(message::Piece{{}, uint64_t(1) << 33, 1000, 0, someBytes(1000)}))
+      << "more than zstd can unpack";
   EXPECT_TRUE(refused(message::Piece{{}, 1000, 100, 1, someBytes(99)})) << "no multiple";
-  EXPECT_TRUE(refused(message::Jobs{1, std::vector<LeasedJob>(limits::jobs + 1, {1, {Job::Kind::samples, false, 0, 0, 1, {}}})}));
+  EXPECT_TRUE(refused(message::Jobs{
+      1, std::vector<LeasedJob>(limits::jobs + 1, {1, {Job::Kind::samples, false, 0, 0, 1, {}}})}));
   EXPECT_TRUE(refused(message::Jobs{1, {{1, {Job::Kind::samples, false, 0, 0, 0, {}}}}}));
-  EXPECT_TRUE(refused(message::Jobs{1, {{1, {Job::Kind::samples, false, 0, 0xffffffff, 0xffffffff, {}}}}}));
+  EXPECT_TRUE(
+      refused(message::Jobs{1, {{1, {Job::Kind::samples, false, 0, 0xffffffff, 0xffffffff, {}}}}}));
   EXPECT_TRUE(refused(message::Jobs{1, {{1, {Job::Kind(9), false, 0, 0, 1, {}}}}}));
   message::Result result{.seconds = -1};
   EXPECT_TRUE(refused(result));

@@ -1,4 +1,5 @@
 // Every rule of scheduler.h, one test each. Time is a number; nobody waits.
+// Longer than 500 lines because the tests share one rig.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -61,7 +62,8 @@ TEST(Scheduler, aSlowLinkHasMoreInFlightUpToFour) {
   EXPECT_NEAR(b.s.tally(2).latency, 0.04, 1e-9);
 }
 
-TEST(Scheduler, cheapJobsCountTogether) { // 20 microseconds each: three for a thread would be nothing
+TEST(Scheduler,
+     cheapJobsCountTogether) { // 20 microseconds each: three for a thread would be nothing
   Bench b;
   b.frame(1, 100000);
   b.workers(1, 1, 2);
@@ -181,7 +183,8 @@ TEST(Scheduler, aLostWorkersJobsAreGivenOutBeforeOthers) {
   b.s.leave(1, b.now);
   EXPECT_EQ(b.work[1]->given, 6u);
   EXPECT_EQ(b.s.tally(1).lost, 0u); // it is forgotten
-  for (const Handout& h : all) EXPECT_EQ(b.s.find(h.worker, 1, h.job.lease) == nullptr, h.worker == 1);
+  for (const Handout& h : all)
+    EXPECT_EQ(b.s.find(h.worker, 1, h.job.lease) == nullptr, h.worker == 1);
   b.workers(3, 1, 2);
   std::set<uint32_t> lost, taken;
   for (const Handout& h : all)
@@ -212,7 +215,8 @@ TEST(Scheduler, threeFailuresAndAWorkerGetsNothingMore) {
   b.workers(1, 2, 1);
   for (int i = 0; i < 3; i++) {
     b.handOut();
-    const auto mine = std::find_if(b.out.rbegin(), b.out.rend(), [&](const Handout& h) { return h.worker == 1; });
+    const auto mine =
+        std::find_if(b.out.rbegin(), b.out.rend(), [&](const Handout& h) { return h.worker == 1; });
     b.s.failed(1, 1, mine->job.lease, b.now);
   }
   EXPECT_TRUE(b.s.tally(1).blocked);
@@ -295,10 +299,12 @@ TEST(Scheduler, theNextFrameIsHandedOutBeforeTheLastJobComesHome) {
   EXPECT_EQ(b.prepare(), std::vector<WorkerId>{1}); // the last one stays, for what may be lost
   const auto second = b.handOut();
   EXPECT_FALSE(second.empty());
-  for (const Handout& h : second) EXPECT_EQ(std::pair(h.worker, h.epoch), (std::pair<WorkerId, Epoch>(1, 2)));
+  for (const Handout& h : second)
+    EXPECT_EQ(std::pair(h.worker, h.epoch), (std::pair<WorkerId, Epoch>(1, 2)));
   for (const Handout& h : first)
-    EXPECT_FALSE(h.worker == 1 && b.done(h)); // ready() has come before: it was not to work on the first any more
-  EXPECT_TRUE(b.handOut().empty());           // as much is left as worker 2 has
+    EXPECT_FALSE(h.worker == 1 &&
+                 b.done(h)); // ready() has come before: it was not to work on the first any more
+  EXPECT_TRUE(b.handOut().empty()); // as much is left as worker 2 has
   for (const Handout& h : first) b.done(h);
   EXPECT_EQ(byWorker(b.handOut()), (std::map<WorkerId, uint32_t>{{2, 4}}));
 }
@@ -317,7 +323,8 @@ TEST(Scheduler, theOneHereStaysAtTheOldestUnfinishedFrame) {
     moved.insert(w);
     EXPECT_EQ(e, 2u);
   }
-  EXPECT_EQ(moved, (std::set<WorkerId>{1, 2})); // their jobs of the first frame come before they are ready
+  EXPECT_EQ(moved,
+            (std::set<WorkerId>{1, 2})); // their jobs of the first frame come before they are ready
   for (const Handout& h : b.out) EXPECT_TRUE(b.done(h));
   b.s.end(1);
   EXPECT_EQ(b.prepare(), std::vector<WorkerId>{9});

@@ -1,4 +1,5 @@
-// What the scheduler makes of what it knows: which tiles come first, how long jobs are, how many of them wait.
+// What the scheduler makes of what it knows: which tiles come first, how long jobs are, how many of
+// them wait.
 #include <gtest/gtest.h>
 
 #include "unit/cluster_fake_work.h"
@@ -9,11 +10,13 @@ using namespace openrt::cluster;
 namespace {
 
 // Frame 1, in which tile n takes so many seconds, is done; frame 2 begins.
-void afterAFrameOf(Bench& b, const std::vector<double>& seconds, uint32_t threads, uint32_t samples = 1024) {
+void afterAFrameOf(Bench& b, const std::vector<double>& seconds, uint32_t threads,
+                   uint32_t samples = 1024) {
   b.frame(1, uint32_t(seconds.size()), 64, samples);
   b.workers(1, 1, threads);
   while (!b.work[1]->over())
-    for (const Handout& h : b.handOut()) b.done(h, seconds[h.job.job.number] / samples * h.job.job.count);
+    for (const Handout& h : b.handOut())
+      b.done(h, seconds[h.job.job.number] / samples * h.job.job.count);
   b.s.end(1);
   b.frame(2, uint32_t(seconds.size()), 64, samples);
   b.prepare();
@@ -31,7 +34,8 @@ TEST(SchedulerOrder, whatCostsMostIsDoneFirst) {
   EXPECT_EQ(order, (std::vector<uint32_t>{2, 4, 0, 5, 3, 1}));
 }
 
-TEST(SchedulerOrder, cheapTilesAreNotLeftForTheEnd) { // they are shorter than the master has time for
+TEST(SchedulerOrder,
+     cheapTilesAreNotLeftForTheEnd) { // they are shorter than the master has time for
   Bench b;
   b.s.pace(0.01);
   std::vector<double> seconds(40, .001);
@@ -45,7 +49,8 @@ TEST(SchedulerOrder, cheapTilesAreNotLeftForTheEnd) { // they are shorter than t
     }
   ASSERT_EQ(order.size(), 40u);
   for (size_t i = 34; i < 40; i++) EXPECT_EQ(order[i] % 2, 0u) << i;
-  for (size_t i = 0, cheap = 0; i < 20; i++) EXPECT_LE(cheap += order[i] % 2, i); // nor for the beginning
+  for (size_t i = 0, cheap = 0; i < 20; i++)
+    EXPECT_LE(cheap += order[i] % 2, i); // nor for the beginning
 }
 
 TEST(SchedulerOrder, noMoreJobsThanThereIsTimeFor) {

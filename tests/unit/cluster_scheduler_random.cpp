@@ -1,5 +1,6 @@
-// Whatever happens in whatever order: each sample of each frame is taken exactly once, every frame ends, nobody has more than it
-// may, and no lease is left over. What happens is a list of numbers that rapidcheck makes, and makes short if a rule breaks.
+// Whatever happens in whatever order: each sample of each frame is taken exactly once, every frame
+// ends, nobody has more than it may, and no lease is left over. What happens is a list of numbers
+// that rapidcheck makes, and makes short if a rule breaks.
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 
@@ -53,7 +54,8 @@ struct Turmoil {
   }
   void deliver(const Handout& h, double seconds) {
     const bool live = b.work.contains(h.epoch);
-    const bool first = live ? b.done(h, seconds) : b.s.done(h.worker, h.epoch, h.job.lease, seconds, b.now);
+    const bool first =
+        live ? b.done(h, seconds) : b.s.done(h.worker, h.epoch, h.job.lease, seconds, b.now);
     RC_ASSERT(live || !first);
     past.push_back(h);
     out.erase(h.job.lease);
@@ -75,7 +77,8 @@ struct Turmoil {
       RC_ASSERT(seen.insert(h.job.lease).second);
       RC_ASSERT(b.s.tally(h.worker).out <= 4 * m.threads);
       for (const auto& [lease, other] : out)
-        RC_ASSERT(!(other.worker == h.worker && other.epoch == h.epoch && other.job.job == h.job.job));
+        RC_ASSERT(
+            !(other.worker == h.worker && other.epoch == h.epoch && other.job.job == h.job.job));
       out[h.job.lease] = h;
     }
     for (const auto& [id, m] : machines) {
@@ -91,7 +94,9 @@ struct Turmoil {
     m.ready = m.preparing;
     b.s.ready(w, m.ready, b.now);
   }
-  template <class Map> auto pick(Map& map, uint32_t which) { return std::next(map.begin(), ptrdiff_t(which % map.size())); }
+  template <class Map> auto pick(Map& map, uint32_t which) {
+    return std::next(map.begin(), ptrdiff_t(which % map.size()));
+  }
 
   void step(uint32_t number) {
     const uint32_t what = number % 20, which = number / 20 % 1000;
@@ -137,7 +142,8 @@ struct Turmoil {
     for (const auto& [id, m] : machines) RC_ASSERT(b.s.tally(id).out == 0);
   }
 
-  // None of those that are there does anything any more, except the worker here: no frame waits longer than the rule says.
+  // None of those that are there does anything any more, except the worker here: no frame waits
+  // longer than the rule says.
   void finishAlone(bool reserve) {
     begin();
     const WorkerId here = ++lastWorker;
@@ -149,7 +155,8 @@ struct Turmoil {
       settle();
       b.now += step;
       prepared(here);
-      const auto mine = std::find_if(out.begin(), out.end(), [&](const auto& o) { return o.second.worker == here; });
+      const auto mine = std::find_if(out.begin(), out.end(),
+                                     [&](const auto& o) { return o.second.worker == here; });
       if (mine != out.end()) {
         deliver(Handout(mine->second), step);
         progressed = b.now;
@@ -175,7 +182,9 @@ void run(Split split, End end, const std::vector<uint32_t>& numbers) {
 void check(Split split, End end = End::all) {
   const bool held = rc::check([=] {
     const auto length = *rc::gen::inRange<size_t>(0, 400);
-    run(split, end, *rc::gen::container<std::vector<uint32_t>>(length, rc::gen::inRange<uint32_t>(0, 20000000)));
+    run(split, end,
+        *rc::gen::container<std::vector<uint32_t>>(length,
+                                                   rc::gen::inRange<uint32_t>(0, 20000000)));
   });
   EXPECT_TRUE(held);
 }
@@ -188,10 +197,12 @@ TEST(SchedulerRandom, samples) { check(Split::samples); }
 TEST(SchedulerRandom, frames) { check(Split::frames); }
 
 TEST(SchedulerRandom, onlyTheOneHereWorks) {
-  for (const Split split : {Split::automatic, Split::samples, Split::frames}) check(split, End::here);
+  for (const Split split : {Split::automatic, Split::samples, Split::frames})
+    check(split, End::here);
 }
 TEST(SchedulerRandom, onlyTheReserveWorks) {
-  for (const Split split : {Split::automatic, Split::samples, Split::frames}) check(split, End::reserve);
+  for (const Split split : {Split::automatic, Split::samples, Split::frames})
+    check(split, End::reserve);
 }
 
 TEST(SchedulerRandom, theSameCallsTheSameAnswers) {

@@ -1,5 +1,5 @@
-// A whole worker in a thread of this process, and a master of a few lines over a real wire: scenes, arrays, jobs and results go
-// across, and the picture is that of the local backend.
+// A whole worker in a thread of this process, and a master of a few lines over a real wire: scenes,
+// arrays, jobs and results go across, and the picture is that of the local backend.
 #include "backend/cluster/worker/serve.h"
 
 #include <atomic>
@@ -55,7 +55,8 @@ struct Master {
   Lease lease = 0;
   size_t pieces = 0;
 
-  Master(const WireOptions& options, const ShaderRegistry& shaders, uint64_t s) : wire(options), packer(&shaders), session(s) {
+  Master(const WireOptions& options, const ShaderRegistry& shaders, uint64_t s)
+      : wire(options), packer(&shaders), session(s) {
     const auto hello = next<message::Hello>();
     EXPECT_EQ(hello.threads, 2u);
     say(message::Welcome{protocolVersion, session, 0.1f, 60});
@@ -81,7 +82,8 @@ struct Master {
       for (const OfferPtr& offer : parcel.offers) {
         if (offer->hash != hash) continue;
         const auto packed = packArray({offer->array->data(), offer->array->size()});
-        for (size_t at = 0; at < packed.size(); at += pieceBytes, pieces++) say(pieceOf(hash, offer->array->size(), packed, at));
+        for (size_t at = 0; at < packed.size(); at += pieceBytes, pieces++)
+          say(pieceOf(hash, offer->array->size(), packed, at));
       }
   }
   std::vector<float> picture(const std::shared_ptr<const Commit>& commit, bool whole) {
@@ -148,7 +150,9 @@ class Serve : public testing::Test {
   ShaderRegistry shaders{shaderFolders("")};
 };
 
-WireOptions to(const std::string& address, const KeyRing& keys = {}) { return patient({{address}, "", keys}); }
+WireOptions to(const std::string& address, const KeyRing& keys = {}) {
+  return patient({{address}, "", keys});
+}
 
 } // namespace
 

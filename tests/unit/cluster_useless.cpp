@@ -1,5 +1,6 @@
-// cluster_useless.cpp: every way in which a worker can be useless, against a whole master over real wires: the rule of
-// docs/cluster.md is that no picture waits longer than 10 seconds without progress. The pictures are those of one thread.
+// cluster_useless.cpp: every way in which a worker can be useless, against a whole master over real
+// wires: the rule of docs/cluster.md is that no picture waits longer than 10 seconds without
+// progress. The pictures are those of one thread.
 #include <algorithm>
 #include <atomic>
 #include <condition_variable>
@@ -91,7 +92,8 @@ struct Pictures final : WorkerSink {
     WorkerCore core(options, *this);
     for (uint32_t i = 0; i < frames; i++) core.scene(i + 1, commits[i], i == 0, true);
     std::unique_lock lock(mutex);
-    EXPECT_TRUE(changed.wait_for(lock, std::chrono::seconds(60), [this] { return prepared.size() == frames; }));
+    EXPECT_TRUE(changed.wait_for(lock, std::chrono::seconds(60),
+                                 [this] { return prepared.size() == frames; }));
   }
   static std::vector<float> read(const Backend& backend) {
     std::vector<float> rgba(40 * 30 * 4);
@@ -173,7 +175,8 @@ class Useless {
       }
       if (event.kind == Event::Kind::message) hear(read(std::move(event)));
       if (session_ != 0 && way_ == Way::comesAndGoes && steadyNow() > joined_ + 0.2) die();
-      if (session_ != 0 && way_ == Way::readyForEver && epoch_ > 0 && steadyNow() > told_ + 0.1) ready();
+      if (session_ != 0 && way_ == Way::readyForEver && epoch_ > 0 && steadyNow() > told_ + 0.1)
+        ready();
     }
   }
   void greet() {
@@ -196,7 +199,8 @@ class Useless {
       message::Need need{scene->epoch, {}};
       for (const auto& array : scene->arrays) need.arrays.push_back(array.hash);
       say(std::move(need));
-      if (way_ == Way::refuses) return say(message::Failed{scene->epoch, "shader library vrml97 is another file here"});
+      if (way_ == Way::refuses)
+        return say(message::Failed{scene->epoch, "shader library vrml97 is another file here"});
       if (scene->prepare && way_ != Way::neverReady) ready();
     }
     if (const auto* prepare = std::get_if<message::Prepare>(&m.body)) {
@@ -260,7 +264,8 @@ struct Outcome {
 // Two pictures with these workers. One that waits for ever is given up after a while.
 Outcome render(std::vector<Way> ways, ClusterOptions cluster) {
   std::vector<std::unique_ptr<Useless>> workers;
-  for (const Way way : ways) cluster.workers.push_back((workers.emplace_back(std::make_unique<Useless>(way)))->address());
+  for (const Way way : ways)
+    cluster.workers.push_back((workers.emplace_back(std::make_unique<Useless>(way)))->address());
   Outcome out;
   BackendOptions options;
   options.threads = 1;
@@ -284,12 +289,14 @@ Outcome render(std::vector<Way> ways, ClusterOptions cluster) {
       std::atomic<bool> over{false};
       std::thread watch([&] {
         float before = -1;
-        for (double since = steadyNow(); !over; std::this_thread::sleep_for(std::chrono::milliseconds(20))) {
+        for (double since = steadyNow(); !over;
+             std::this_thread::sleep_for(std::chrono::milliseconds(20))) {
           const float is = backend->progress();
           if (is != before) since = steadyNow();
           before = is;
           out.longest = std::max(out.longest, steadyNow() - since);
-          if (steadyNow() - since > promised + 2 * slack) backend->cancel(); // it would wait for ever
+          if (steadyNow() - since > promised + 2 * slack)
+            backend->cancel(); // it would wait for ever
         }
       });
       try {
@@ -310,7 +317,8 @@ std::map<Way, Outcome> renderAll(const ClusterOptions& cluster) {
   pictures();
   std::map<Way, std::future<Outcome>> running;
   for (const auto& [way, name] : names)
-    running[way] = std::async(std::launch::async, [=, way = way] { return render({way}, cluster); });
+    running[way] =
+        std::async(std::launch::async, [=, way = way] { return render({way}, cluster); });
   std::map<Way, Outcome> all;
   for (auto& [way, future] : running) all[way] = future.get();
   return all;
@@ -327,7 +335,8 @@ TEST(Useless, aMasterThatLeavesAllToOthersHelpsInTime) {
     EXPECT_LT(out.longest, promised + slack) << names.at(way);
     EXPECT_NE(out.said, "") << names.at(way) << ": whoever renders alone says so";
     if (way != Way::comesAndGoes && way != Way::dies && way != Way::answersNonsense) {
-      EXPECT_LT(out.last, promised) << names.at(way) << ": a second picture does not wait as long once more";
+      EXPECT_LT(out.last, promised)
+          << names.at(way) << ": a second picture does not wait as long once more";
     }
   }
 }
@@ -353,13 +362,19 @@ TEST(Useless, whereAWorkerIsRequiredThePictureIsMadeOrRefusedInTime) {
     EXPECT_LT(out.longest, promised + slack) << names.at(way);
     EXPECT_TRUE(!out.failure.empty() || out.right) << names.at(way);
     if (way == Way::refuses || way == Way::otherVersion || way == Way::nobody) {
-      EXPECT_NE(out.failure.find("1 worker is needed"), std::string::npos) << names.at(way) << ": " << out.failure;
+      EXPECT_NE(out.failure.find("1 worker is needed"), std::string::npos)
+          << names.at(way) << ": " << out.failure;
     }
-    if (way == Way::refuses) { EXPECT_NE(out.failure.find("another file"), std::string::npos) << "it says why: " << out.failure; }
+    if (way == Way::refuses) {
+      EXPECT_NE(out.failure.find("another file"), std::string::npos)
+          << "it says why: " << out.failure;
+    }
   }
 }
 
-TEST(Useless, manyThatOnlyBeatDoNotSwallowAJob) { // a job is handed out a few times, and all of these keep it
+TEST(
+    Useless,
+    manyThatOnlyBeatDoNotSwallowAJob) { // a job is handed out a few times, and all of these keep it
   for (const uint32_t local : {0u, 1u}) {
     ClusterOptions cluster;
     cluster.local = local;

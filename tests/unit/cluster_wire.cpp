@@ -1,4 +1,5 @@
-// The wire: who is let in and who is not, what is too large, beats, losses. Real sockets on the loopback; events, not times.
+// The wire: who is let in and who is not, what is too large, beats, losses. Real sockets on the
+// loopback; events, not times.
 #include <thread>
 
 #include <netinet/in.h>
@@ -51,12 +52,14 @@ Frames beat() { return encode(0, message::Beat{1, false}); }
 Frames hello() { return encode(0, message::Hello{.library = "bare", .threads = 3}); }
 
 // Why one that calls with these keys is refused, in the words of the two sides.
-std::pair<std::string, std::string> refusals(const KeyRing& server, const KeyRing& client, const std::string& serverKey = "") {
+std::pair<std::string, std::string> refusals(const KeyRing& server, const KeyRing& client,
+                                             const std::string& serverKey = "") {
   Wires wires;
   const Wire& door = wires.add(listening(server));
   const Wire& caller = wires.add(calling(door, client, serverKey));
   const double begin = steadyNow();
-  const std::string theirs = wires.next(caller, Kind::refused).text, ours = wires.next(door, Kind::refused).text;
+  const std::string theirs = wires.next(caller, Kind::refused).text,
+                    ours = wires.next(door, Kind::refused).text;
   testing::Test::RecordProperty("milliseconds", int((steadyNow() - begin) * 1000));
   EXPECT_FALSE(wires.has(door, Kind::joined));
   EXPECT_FALSE(wires.has(caller, Kind::joined));
@@ -69,7 +72,8 @@ TEST(Wire, bothSidesJoinAndMessagesArriveAsTheyWere) {
   Wires wires;
   Wire& door = wires.add(listening());
   Wire& caller = wires.add(calling(door));
-  const Peer there = wires.next(caller, Kind::joined).peer, here = wires.next(door, Kind::joined).peer;
+  const Peer there = wires.next(caller, Kind::joined).peer,
+             here = wires.next(door, Kind::joined).peer;
   ASSERT_NE(there, 0u);
   ASSERT_NE(here, 0u);
   EXPECT_TRUE(caller.send(there, hello()));
@@ -101,7 +105,8 @@ TEST(Wire, oneCallsManyAndIsCalledByMany) {
 }
 
 TEST(Wire, addressesBeyondTheLoopbackNeedKeys) {
-  for (const char* address : {"0.0.0.0:0", "*:0", "192.0.2.1", "example.org:7447", "[2001:db8::1]:7447", "[::]:0", "128.0.0.1"}) {
+  for (const char* address : {"0.0.0.0:0", "*:0", "192.0.2.1", "example.org:7447",
+                              "[2001:db8::1]:7447", "[::]:0", "128.0.0.1"}) {
     const std::string listens = thrown([&] { Wire({{}, address, {}}); });
     EXPECT_NE(listens.find("--new-key"), std::string::npos) << address << ": " << listens;
     const std::string calls = thrown([&] { Wire({{address}, "", {}}); });
@@ -112,7 +117,8 @@ TEST(Wire, addressesBeyondTheLoopbackNeedKeys) {
 }
 
 TEST(Wire, addressesThatAreNone) {
-  for (const char* address : {"a:b", "a:70000", "[::1", "[::1]x", "a b:1", "a:1=short", "http://a:1", "a:-1", "a:0"})
+  for (const char* address :
+       {"a:b", "a:70000", "[::1", "[::1]x", "a b:1", "a:1=short", "http://a:1", "a:-1", "a:0"})
     EXPECT_NE(thrown([&] { Wire({{address}, "", {}}); }), "") << address;
 }
 
@@ -155,7 +161,9 @@ TEST(Wire, localSocketsAndIpv6) {
   for (const std::string& where : {"ipc://" + folder / "socket", std::string("[::1]:0")}) {
     Wires wires;
     std::unique_ptr<Wire> probe;
-    if (!thrown([&] { probe = std::make_unique<Wire>(listening({}, where)); }).empty() && where.starts_with("[")) continue;
+    if (!thrown([&] { probe = std::make_unique<Wire>(listening({}, where)); }).empty() &&
+        where.starts_with("["))
+      continue;
     probe.reset();
     const Wire& door = wires.add(listening({}, where));
     const Wire& caller = wires.add(calling(door));
@@ -166,7 +174,10 @@ TEST(Wire, localSocketsAndIpv6) {
 
 TEST(Wire, aPortThatIsTaken) {
   const Wire first(listening());
-  EXPECT_NE(thrown([&] { Wire({{}, first.address(), {}}); }).find("cannot listen at " + first.address()), std::string::npos);
+  EXPECT_NE(thrown([&] {
+              Wire({{}, first.address(), {}});
+            }).find("cannot listen at " + first.address()),
+            std::string::npos);
 }
 
 TEST(Wire, oneKeyForAll) {
@@ -309,8 +320,11 @@ TEST(Wire, beatsKeepTheIdleAliveAndMeasureTheWay) {
 }
 
 TEST(Wire, threeMessagesThatAreNoneCloseThePeer) {
-  const Frames bad[] = {
-      {{}}, {someBytes(40)}, {someBytes(100000)}, {std::vector<std::byte>(64)}, Frames(limits::frames + 5, someBytes(4))};
+  const Frames bad[] = {{{}},
+                        {someBytes(40)},
+                        {someBytes(100000)},
+                        {std::vector<std::byte>(64)},
+                        Frames(limits::frames + 5, someBytes(4))};
   for (const Frames& junk : bad) {
     Wires wires;
     const Wire& door = wires.add(listening());
@@ -383,14 +397,17 @@ TEST(Wire, whatIsLostRepeatedOrDamagedOnTheWayEndsThePeer) {
     if (damage == shortened) frames[1].pop_back();
     if (damage == without) frames.pop_back();
     bare.sendAsTheyAre(frames);
-    EXPECT_NE(wires.next(door, Kind::left).text.find("lost, repeated or damaged"), std::string::npos) << damage;
+    EXPECT_NE(wires.next(door, Kind::left).text.find("lost, repeated or damaged"),
+              std::string::npos)
+        << damage;
     bare.send(first);
     for (int i = 0; i < 20; i++) wires.serve();
     EXPECT_FALSE(wires.has(door, Kind::message));
   }
 }
 
-// A length that was damaged: the connection waits for a frame that never ends, and beats go into it.
+// A length that was damaged: the connection waits for a frame that never ends, and beats go into
+// it.
 TEST(Wire, beatsInAFrameThatNeverEndsAreSilence) {
   Wires wires;
   WireOptions options = listening();
@@ -403,7 +420,9 @@ TEST(Wire, beatsInAFrameThatNeverEndsAreSilence) {
   to.sin_port = htons(uint16_t(std::stoi(address.substr(address.rfind(':') + 1))));
   to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
   ASSERT_EQ(connect(fd, reinterpret_cast<sockaddr*>(&to), sizeof to), 0);
-  const auto put = [fd](const std::string& bytes) { send(fd, bytes.data(), bytes.size(), MSG_NOSIGNAL); };
+  const auto put = [fd](const std::string& bytes) {
+    send(fd, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+  };
   // ZMTP 3.0: greeting, mechanism NULL, READY.
   put(std::string("\xff\0\0\0\0\0\0\0\x01\x7f\x03\0", 12) + "NULL" + std::string(48, '\0'));
   char greeting[64];
@@ -419,7 +438,8 @@ TEST(Wire, beatsInAFrameThatNeverEndsAreSilence) {
   }
   EXPECT_NE(wires.next(door, Kind::joined).peer, 0u);
   put(std::string("\x02\0\0\0\0\x03\0\0\0", 9)); // 48 MiB are to come
-  for (const double end = steadyNow() + 30; !wires.has(door, Kind::left) && steadyNow() < end; wires.serve()) {
+  for (const double end = steadyNow() + 30; !wires.has(door, Kind::left) && steadyNow() < end;
+       wires.serve()) {
     put(std::string(100, 'b'));
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }

@@ -1,4 +1,5 @@
-// cluster_wires.h: several wires in one thread, served in turn, and what has happened to each of them so far.
+// cluster_wires.h: several wires in one thread, served in turn, and what has happened to each of
+// them so far.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -33,7 +34,8 @@ inline KeyRing freshKeys(const Folder& folder, const std::string& name) {
   return readKeys(folder / name);
 }
 
-// Patient: machines that are busy are no failure. What is silent is not gone for long, so that nobody is lost by the way.
+// Patient: machines that are busy are no failure. What is silent is not gone for long, so that
+// nobody is lost by the way.
 inline WireOptions patient(WireOptions options) {
   options.heartbeat = 0.05;
   options.silence = 60;
@@ -42,7 +44,8 @@ inline WireOptions patient(WireOptions options) {
 inline WireOptions listening(const KeyRing& keys = {}, const std::string& where = "127.0.0.1:0") {
   return patient({{}, where, keys});
 }
-inline WireOptions calling(const Wire& other, const KeyRing& keys = {}, const std::string& serverKey = "") {
+inline WireOptions calling(const Wire& other, const KeyRing& keys = {},
+                           const std::string& serverKey = "") {
   return patient({{other.address() + (serverKey.empty() ? "" : "=" + serverKey)}, "", keys});
 }
 
@@ -57,9 +60,11 @@ class Wires {
   }
   void serve() {
     for (Side& side : sides_)
-      for (Event e; (e = side.wire->receive(0.002)).kind != Event::Kind::nothing;) side.events.push_back(std::move(e));
+      for (Event e; (e = side.wire->receive(0.002)).kind != Event::Kind::nothing;)
+        side.events.push_back(std::move(e));
   }
-  // The next event of a kind that has happened to a wire, which is taken out; `nothing` after a long time.
+  // The next event of a kind that has happened to a wire, which is taken out; `nothing` after a
+  // long time.
   Event next(const Wire& wire, Event::Kind kind, double patience = 30) {
     for (const double end = steadyNow() + patience;;) {
       std::vector<Event>& events = of(wire).events;

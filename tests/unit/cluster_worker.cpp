@@ -1,4 +1,5 @@
-// A worker's session, driven by hand: a master that is the test, a machine that only writes down what it is told.
+// A worker's session, driven by hand: a master that is the test, a machine that only writes down
+// what it is told.
 #include "backend/cluster/worker/worker.h"
 
 #include "backend/record/edits_bytes.h"
@@ -16,7 +17,8 @@ struct FakeMachine final : Machine {
   std::shared_ptr<const Commit> commit;
   std::vector<LeasedJob> jobs;
   void scene(Epoch epoch, std::shared_ptr<const Commit> c, bool whole, bool prepare) override {
-    told.push_back("scene " + std::to_string(epoch) + (whole ? " whole" : "") + (prepare ? " prepare" : ""));
+    told.push_back("scene " + std::to_string(epoch) + (whole ? " whole" : "") +
+                   (prepare ? " prepare" : ""));
     commit = std::move(c);
   }
   void prepare(Epoch epoch) override { told.push_back("prepare " + std::to_string(epoch)); }
@@ -35,9 +37,12 @@ struct Rig {
   Worker worker;
   explicit Rig(const ShaderRegistry* shaders = nullptr, size_t cache = 1 << 20)
       : worker({.self = {.library = "test", .threads = 2}, .shaders = shaders, .cacheBytes = cache},
-               {[this](Peer peer, Frames&& frames) { decode(std::move(frames), said.emplace_back(peer, Message()).second); },
+               {[this](Peer peer, Frames&& frames) {
+                  decode(std::move(frames), said.emplace_back(peer, Message()).second);
+                },
                 [this](Peer peer, const std::string& why) { closed.emplace_back(peer, why); },
-                [this](Peer peer, const std::string& why) { badOnes.emplace_back(peer, why); }, [](double, double) {}},
+                [this](Peer peer, const std::string& why) { badOnes.emplace_back(peer, why); },
+                [](double, double) {}},
                machine) {}
   void tell(message::Body body, uint64_t session = 7, Peer peer = 1) {
     worker.message(peer, encode(session, std::move(body)), 0);
@@ -70,7 +75,9 @@ struct TinyScene {
   explicit TinyScene(Epoch epoch, uint8_t value = 1, bool whole = true) {
     filled(*texels, value);
     edit::EditsT edits;
-    const auto add = [&](auto&& edit) { edits.edits.emplace_back(new edit::EditT)->any.Set(std::move(edit)); };
+    const auto add = [&](auto&& edit) {
+      edits.edits.emplace_back(new edit::EditT)->any.Set(std::move(edit));
+    };
     edit::FrameSettingsT frame;
     frame.width = frame.height = 8;
     frame.channels = RT_RGBA;
@@ -104,7 +111,9 @@ Prepared prepared() {
   return p;
 }
 
-LeasedJob job(Lease lease, uint32_t tile = 0) { return {lease, {Job::Kind::samples, false, tile, 0, 4, {}}}; }
+LeasedJob job(Lease lease, uint32_t tile = 0) {
+  return {lease, {Job::Kind::samples, false, tile, 0, 4, {}}};
+}
 
 // A worker that has a scene, ready for jobs.
 void makeReady(Rig& rig, Epoch epoch = 1, Epoch machines = 1) {
@@ -215,12 +224,14 @@ TEST(Worker, scenesWaitForTheirArraysInTheirOrder) {
   rig.tell(second.message);
   rig.tell(third.message);
   ASSERT_EQ(rig.said.size(), 3u);
-  EXPECT_TRUE(std::get<message::Need>(rig.said[2].second.body).arrays.empty()) << "asked for already";
+  EXPECT_TRUE(std::get<message::Need>(rig.said[2].second.body).arrays.empty())
+      << "asked for already";
   rig.tell(message::Prepare{3});
   rig.tell(second.piece());
   EXPECT_EQ(rig.machine.all(), Told{});
   rig.tell(first.piece());
-  EXPECT_EQ(rig.machine.all(), (Told{"scene 1 whole prepare", "scene 2 whole prepare", "scene 3 whole prepare", "prepare 3"}));
+  EXPECT_EQ(rig.machine.all(), (Told{"scene 1 whole prepare", "scene 2 whole prepare",
+                                     "scene 3 whole prepare", "prepare 3"}));
 }
 
 TEST(Worker, editsThatBreakARuleAreRefusedUntilAWholeSceneComes) {
@@ -272,9 +283,11 @@ TEST(Worker, librariesAreComparedByTheirHash) {
   const std::string differs = scene(3, "vrml97", {1, 2});
   EXPECT_NE(differs.find("vrml97"), std::string::npos);
   EXPECT_NE(differs.find(hex({1, 2})), std::string::npos);
-  const size_t at = differs.find("has hash ") + 9; // what it has is said, so that people can compare
+  const size_t at =
+      differs.find("has hash ") + 9; // what it has is said, so that people can compare
   const std::string own = differs.substr(at, 32);
-  const Hash hash{std::stoull(own.substr(16), nullptr, 16), std::stoull(own.substr(0, 16), nullptr, 16)};
+  const Hash hash{std::stoull(own.substr(16), nullptr, 16),
+                  std::stoull(own.substr(0, 16), nullptr, 16)};
   EXPECT_EQ(scene(4, "vrml97", hash), "");
   EXPECT_EQ(rig.machine.all(), Told{"scene 4 whole prepare"});
 }
@@ -373,6 +386,7 @@ TEST(Worker, nonsenseIsCounted) {
   wrong.data.back() ^= std::byte(1);
   rig.tell(wrong);
   EXPECT_EQ(rig.badOnes.size(), 7u);
-  EXPECT_TRUE(std::holds_alternative<message::Failed>(rig.said.back().second.body)) << "the scene cannot be made";
+  EXPECT_TRUE(std::holds_alternative<message::Failed>(rig.said.back().second.body))
+      << "the scene cannot be made";
   EXPECT_EQ(rig.machine.all(), Told{});
 }

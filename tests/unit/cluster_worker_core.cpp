@@ -1,5 +1,5 @@
-// cluster_worker_core.cpp: a machine that does jobs: in what order commits, jobs and questions take effect, what it says of
-// failures, and that its pictures are those of the local backend.
+// cluster_worker_core.cpp: a machine that does jobs: in what order commits, jobs and questions take
+// effect, what it says of failures, and that its pictures are those of the local backend.
 #include <chrono>
 #include <condition_variable>
 #include <cstring>
@@ -172,7 +172,8 @@ TEST_F(WorkerCoreTest, DroppedJobsAreNotDone) {
   WorkerCore core(options, sink);
   core.scene(1, all[0], true, true);
   std::vector<LeasedJob> jobs;
-  for (uint32_t i = 0; i < 16; i++) jobs.push_back({i + 1, Job{.number = i, .count = 65536}}); // for hours
+  for (uint32_t i = 0; i < 16; i++)
+    jobs.push_back({i + 1, Job{.number = i, .count = 65536}}); // for hours
   core.work(1, jobs);
   ASSERT_TRUE(sink.wait(1));
   core.drop(1);
@@ -198,7 +199,8 @@ TEST_F(WorkerCoreTest, QuestionsSeeWhatWasAskedBefore) {
 TEST_F(WorkerCoreTest, FailuresAreSaid) {
   const Commits all = commits({.samples = 4});
   WorkerCore core(options, sink);
-  core.work(7, std::vector<LeasedJob>{{1, Job{.count = 4}}, {2, Job{.count = 4}}}); // of a scene that it has not
+  core.work(7, std::vector<LeasedJob>{{1, Job{.count = 4}},
+                                      {2, Job{.count = 4}}}); // of a scene that it has not
   ASSERT_TRUE(sink.wait(1));
   core.scene(8, all[0], true, true);
   core.work(8, std::vector<LeasedJob>{{3, Job{.number = 10000, .count = 4}}});

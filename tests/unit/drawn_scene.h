@@ -1,5 +1,5 @@
-// drawn_scene.h: small scenes drawn through the C API, as the commits that backends get, and prepared for rendering. For tests of
-// what goes on behind the API.
+// drawn_scene.h: small scenes drawn through the C API, as the commits that backends get, and
+// prepared for rendering. For tests of what goes on behind the API.
 #pragma once
 
 #include <array>
@@ -21,7 +21,9 @@ using Commits = std::vector<std::shared_ptr<const Commit>>;
 class KeepingBackend final : public Backend {
  public:
   explicit KeepingBackend(std::shared_ptr<Commits> commits) : commits_(std::move(commits)) {}
-  void apply(std::shared_ptr<const Commit> commit) override { commits_->push_back(std::move(commit)); }
+  void apply(std::shared_ptr<const Commit> commit) override {
+    commits_->push_back(std::move(commit));
+  }
   void start() override {}
   void wait() override {}
   void cancel() override {}
@@ -39,7 +41,8 @@ class KeepingBackend final : public Backend {
 // What `draw` commits: one for each rtRender() in it.
 inline Commits drawn(const std::function<void()>& draw) {
   auto commits = std::make_shared<Commits>();
-  const RTcontext context = adoptContext(std::make_shared<Context>(ContextConfig{}, std::make_unique<KeepingBackend>(commits)));
+  const RTcontext context = adoptContext(
+      std::make_shared<Context>(ContextConfig{}, std::make_unique<KeepingBackend>(commits)));
   draw();
   EXPECT_EQ(rtGetError(), RTenum(RT_NO_ERROR)) << rtGetErrorMessage();
   rtDeleteContext(context);
@@ -80,7 +83,8 @@ inline RTid square(RTid shader, float half) {
   rtBindShader(shader);
   rtBegin(RT_QUADS);
   rtNormal3f(0, 0, 1);
-  for (const auto& c : {std::array{-half, -half}, {half, -half}, {half, half}, {-half, half}}) rtVertex3f(c[0], c[1], 0);
+  for (const auto& c : {std::array{-half, -half}, {half, -half}, {half, half}, {-half, half}})
+    rtVertex3f(c[0], c[1], 0);
   rtEnd();
   rtEndObject();
   rtBindShader(0);
@@ -102,7 +106,8 @@ inline void lookFrom(double x, double y, double z) {
   rtPopMatrix();
 }
 
-// A floor of two faces in the same place, a lamp, a mirror, a ball of glass: rays that split, go on and meet ties.
+// A floor of two faces in the same place, a lamp, a mirror, a ball of glass: rays that split, go on
+// and meet ties.
 inline void drawRoom() {
   rtLoadIdentity();
   at(0, -1, 0, square(colored("Diffuse", "reflectance", {.8f, .3f, .2f}), 4), -90);

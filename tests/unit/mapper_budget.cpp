@@ -1,4 +1,5 @@
-// mapper_budget.cpp: what the mapper draws from the budget of a world, and the messages about shapes that would vanish in silence.
+// mapper_budget.cpp: what the mapper draws from the budget of a world, and the messages about
+// shapes that would vanish in silence.
 #include <malloc.h>
 
 #include <cstdio>
@@ -33,7 +34,8 @@ class MapBudget : public MapRunning {
   MapStats draw(const std::string& body, uint64_t room = 0) {
     const std::string text = "#VRML V2.0 utf8\n" + body;
     LoadOptions options;
-    if (room > 0) options.limits.worldBytes = budgetOf(*loadWorldFromMemory(text, "test.wrl"))->used() + room;
+    if (room > 0)
+      options.limits.worldBytes = budgetOf(*loadWorldFromMemory(text, "test.wrl"))->used() + room;
     mapper_.reset();
     world_ = loadWorldFromMemory(text, "test.wrl", options);
     mapper_ = std::make_unique<OpenRTMapper>(*world_, MapOptions());
@@ -73,7 +75,8 @@ TEST_F(MapBudget, LightsInTheApi) {
 // Lights that are left out leave nothing behind that is not counted.
 TEST_F(MapBudget, LightsThatAreLeftOut) {
   if (heap() == 0) GTEST_SKIP() << "this allocator does not tell what it holds";
-  const std::string lights = repeat("PointLight { intensity .5 attenuation 1 2 3 location 4 5 6 }\n", 5000);
+  const std::string lights =
+      repeat("PointLight { intensity .5 attenuation 1 2 3 location 4 5 6 }\n", 5000);
   draw(lights, 5000 * (bytesOfItem + bytesOfPlace) + 1'000'000);
   const uint64_t before = (mapper_.reset(), world_.reset(), heap());
   const uint64_t drawn = draw(lights, 5000 * (bytesOfItem + bytesOfPlace) + 1'000'000).lights;
@@ -98,16 +101,19 @@ TEST_F(MapBudget, LightsThatGoOut) {
 
 // Each appearance with a material has a shader of its own, and with it the texts of the options.
 TEST_F(MapBudget, OptionsOfShaders) {
-  const std::string text =
-      "Shape { appearance ORTAppearance { material Material { } shader DEF S ORTShader { name \"Diffuse\" file "
-      "\"diffuse\" options \"string note " +
-      std::string(100'000, 'x') + "\" } } geometry Box { } }\n" +
-      repeat("Shape { appearance ORTAppearance { material Material { } shader USE S } geometry Box { } }\n", 9);
+  const std::string text = "Shape { appearance ORTAppearance { material Material { } shader DEF S "
+                           "ORTShader { name \"Diffuse\" file "
+                           "\"diffuse\" options \"string note " +
+                           std::string(100'000, 'x') + "\" } } geometry Box { } }\n" +
+                           repeat("Shape { appearance ORTAppearance { material Material { } shader "
+                                  "USE S } geometry Box { } }\n",
+                                  9);
   draw(text);
   EXPECT_EQ(count(messages(*world_), "limit worldBytes="), 0u) << messages(*world_);
   EXPECT_GT(budgetOf(*world_)->used(), 10u * 200'000);
   draw(text, 1'000'000);
-  EXPECT_EQ(count(messages(*world_), "options of shaders from here on are left out"), 1u) << messages(*world_);
+  EXPECT_EQ(count(messages(*world_), "options of shaders from here on are left out"), 1u)
+      << messages(*world_);
   EXPECT_LE(budgetOf(*world_)->used(), budgetOf(*world_)->limit());
 }
 
@@ -130,8 +136,8 @@ TEST_F(MapBudget, Shapes) {
 }
 
 TEST_F(MapBudget, Instances) {
-  const std::string text = "DEF T Transform { children ORTInstance { children Shape { geometry " + grid(5) + " } } }\n" +
-                           repeat("Transform { children USE T }\n", 1000);
+  const std::string text = "DEF T Transform { children ORTInstance { children Shape { geometry " +
+                           grid(5) + " } } }\n" + repeat("Transform { children USE T }\n", 1000);
   EXPECT_GT(draw(text).instances, 1000u);
   EXPECT_EQ(messages(*world_), "");
   EXPECT_LT(draw(text, 1'500'000).instances, 1000u);
@@ -143,7 +149,8 @@ TEST_F(MapBudget, InstancesOfInstances) {
   std::string text = "DEF L0 ORTInstance { children Shape { geometry " + grid(5) + " } }\n";
   for (int i = 1; i <= 18; ++i) {
     const std::string below = "USE L" + std::to_string(i - 1);
-    text += "DEF L" + std::to_string(i) + " ORTInstance { children [ Transform { translation 1 0 0 children " + below +
+    text += "DEF L" + std::to_string(i) +
+            " ORTInstance { children [ Transform { translation 1 0 0 children " + below +
             " } Transform { children " + below + " } ] }\n";
   }
   draw(text, 100'000'000); // 2^18 instances take more
@@ -151,7 +158,8 @@ TEST_F(MapBudget, InstancesOfInstances) {
 }
 
 TEST_F(MapBudget, ComesBackWhatIsNotDrawnAnyMore) {
-  load("DEF G Group { children [ " + repeat("Shape { geometry Box { } }\n", 100) + "PointLight { } ] }\nDEF S Shape { }");
+  load("DEF G Group { children [ " + repeat("Shape { geometry Box { } }\n", 100) +
+       "PointLight { } ] }\nDEF S Shape { }");
   const uint64_t full = budgetOf(*world_)->used();
   send("G", "children", MFNode());
   frame();
@@ -169,13 +177,16 @@ TEST_F(MapBudget, ComesBackWhatIsNotDrawnAnyMore) {
 }
 
 TEST_F(MapBudget, PicturesInAll) {
-  const auto folder = std::filesystem::temp_directory_path() / ("map_budget_" + std::to_string(::getpid()));
+  const auto folder =
+      std::filesystem::temp_directory_path() / ("map_budget_" + std::to_string(::getpid()));
   std::filesystem::create_directories(folder);
   std::string text = "#VRML V2.0 utf8\n";
   for (int i = 0; i < 5; ++i) { // 48 x 48 pixels
     const std::string name = "p" + std::to_string(i) + ".png";
-    std::filesystem::copy_file("apps/vv/desktop/icon-48.png", folder / name, std::filesystem::copy_options::overwrite_existing);
-    text += "Shape { appearance Appearance { texture ImageTexture { url \"" + name + "\" } } geometry Box { } }\n";
+    std::filesystem::copy_file("apps/vv/desktop/icon-48.png", folder / name,
+                               std::filesystem::copy_options::overwrite_existing);
+    text += "Shape { appearance Appearance { texture ImageTexture { url \"" + name +
+            "\" } } geometry Box { } }\n";
   }
   std::ofstream(folder / "world.wrl") << text;
   const auto textures = [&](uint64_t imagePixels) {
@@ -192,18 +203,21 @@ TEST_F(MapBudget, PicturesInAll) {
   const uint64_t few = textures(2 * 48 * 48); // two or three of them, by their components
   EXPECT_GE(few, 2u);
   EXPECT_LT(few, 5u);
-  EXPECT_NE(messages(*world_).find("all pictures of a world together"), std::string::npos) << messages(*world_);
+  EXPECT_NE(messages(*world_).find("all pictures of a world together"), std::string::npos)
+      << messages(*world_);
   mapper_.reset();
   std::filesystem::remove_all(folder);
 }
 
 TEST_F(MapBudget, WhatIsTooFarIsTold) {
-  draw("Transform { scale 1e10 1e10 1e10 children Transform { scale 1e30 1e30 1e30 children Shape { geometry Box { } } } }\n"
+  draw("Transform { scale 1e10 1e10 1e10 children Transform { scale 1e30 1e30 1e30 children Shape "
+       "{ geometry Box { } } } }\n"
        "Shape { geometry Sphere { } }");
   EXPECT_EQ(count(messages(*world_), "larger than 1e38"), 1u) << messages(*world_);
   EXPECT_EQ(world_->diagnostics.warnings(), 1u);
   // Through an instance: neither of the two matrices alone is beyond.
-  draw("Transform { scale 1e30 1e30 1e30 children ORTInstance { children Transform { scale 1e30 1e30 1e30 children "
+  draw("Transform { scale 1e30 1e30 1e30 children ORTInstance { children Transform { scale 1e30 "
+       "1e30 1e30 children "
        "Shape { geometry " +
        grid(3) + " } } } }");
   EXPECT_GE(count(messages(*world_), "larger than 1e38"), 1u) << messages(*world_);
@@ -214,7 +228,8 @@ TEST_F(MapBudget, WhatIsTooFarIsTold) {
 
 TEST_F(MapBudget, AGridWithoutHeightsIsTold) {
   draw("Shape { geometry ElevationGrid { xDimension 20000 zDimension 20000 } }");
-  EXPECT_NE(messages(*world_).find("height has 0 values where xDimension and zDimension ask for 400000000; nothing is drawn"),
+  EXPECT_NE(messages(*world_).find("height has 0 values where xDimension and zDimension ask for "
+                                   "400000000; nothing is drawn"),
             std::string::npos)
       << messages(*world_);
   draw("Shape { geometry ElevationGrid { } }"); // nothing is asked for

@@ -10,8 +10,8 @@
 
 #include "behaviour/viewer/interaction.h"
 #include "openrt/openrt.h"
-#include "xvrml/nodes.h"
 #include "xvrml/mapper.h"
+#include "xvrml/nodes.h"
 
 namespace xvrml::test {
 
@@ -22,8 +22,9 @@ struct Cost {
 };
 inline constexpr Cost nothing{};
 inline std::ostream& operator<<(std::ostream& out, const Cost& c) {
-  return out << c.defined << " defined, " << c.moved << " moved, " << c.parameters << " parameters, " << c.textures
-             << " textures, " << c.regroupings << " regroupings, " << c.lights << " lights";
+  return out << c.defined << " defined, " << c.moved << " moved, " << c.parameters
+             << " parameters, " << c.textures << " textures, " << c.regroupings << " regroupings, "
+             << c.lights << " lights";
 }
 
 class MapRunning : public testing::Test {
@@ -89,8 +90,8 @@ class MapRunning : public testing::Test {
   static std::vector<std::string> structure(const OpenRTMapper& mapper) {
     std::vector<std::string> lines;
     for (const ExplainedObject& o : mapper.explain())
-      lines.push_back(o.name + " | " + o.reason + " | " + std::to_string(o.triangles) + " " + std::to_string(o.shapes) + " " +
-                      std::to_string(o.instances));
+      lines.push_back(o.name + " | " + o.reason + " | " + std::to_string(o.triangles) + " " +
+                      std::to_string(o.shapes) + " " + std::to_string(o.instances));
     std::sort(lines.begin(), lines.end());
     return lines;
   }
@@ -108,12 +109,13 @@ class MapRunning : public testing::Test {
   }
   // An ElevationGrid of 2 n^2 triangles.
   static std::string grid(int n) {
-    return "ElevationGrid { xDimension " + std::to_string(n + 1) + " zDimension " + std::to_string(n + 1) + " height [" +
-           repeat("0 ", (n + 1) * (n + 1)) + "] }";
+    return "ElevationGrid { xDimension " + std::to_string(n + 1) + " zDimension " +
+           std::to_string(n + 1) + " height [" + repeat("0 ", (n + 1) * (n + 1)) + "] }";
   }
   // A set of two triangles of its own.
   static std::string square(const std::string& name, const std::string& more = "") {
-    return "DEF " + name + " IndexedFaceSet { coord DEF " + name + "C Coordinate { point [ -1 -1 0, 1 -1 0, 1 1 0, -1 1 0 ] } " +
+    return "DEF " + name + " IndexedFaceSet { coord DEF " + name +
+           "C Coordinate { point [ -1 -1 0, 1 -1 0, 1 1 0, -1 1 0 ] } " +
            "coordIndex [ 0 1 2 3 -1 ] " + more + " }";
   }
 

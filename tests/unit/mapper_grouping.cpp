@@ -1,4 +1,5 @@
-// What becomes an object of its own and why: what events reach, what is used often, what is equal, what an author asks for.
+// What becomes an object of its own and why: what events reach, what is used often, what is equal,
+// what an author asks for.
 #include "mapper/graph/cost.h"
 #include "unit/mapper_fixture.h"
 
@@ -33,14 +34,16 @@ TEST_F(MapGrouping, InstancesMustReplaceMuchMoreThanThemselves) {
 }
 
 TEST_F(MapGrouping, StaticGeometryIsOneObjectAlsoWhenTheWorldRuns) {
-  load(repeat("Transform { translation 1 0 0 children " + box + " }\n", 20) + "DEF Clock TimeSensor { }");
+  load(repeat("Transform { translation 1 0 0 children " + box + " }\n", 20) +
+       "DEF Clock TimeSensor { }");
   EXPECT_EQ(reasons(), "world | merged static geometry of 20 shapes | 240 20 1\n");
 }
 
 TEST_F(MapGrouping, WhatARouteReachesStandsAlone) {
   load("DEF T Transform { children [ " + box + box + " ] }\n" + repeat(box, 5) +
        "DEF I PositionInterpolator { }\nROUTE I.value_changed TO T.set_translation\n");
-  EXPECT_EQ(reasons(), "T | split: ROUTE from I.value_changed | 24 2 1\nworld | merged static geometry of 5 shapes | 60 5 1\n");
+  EXPECT_EQ(reasons(), "T | split: ROUTE from I.value_changed | 24 2 1\nworld | merged static "
+                       "geometry of 5 shapes | 60 5 1\n");
 }
 
 TEST_F(MapGrouping, RoutesThatMoveNothingDoNotSplit) {
@@ -50,9 +53,10 @@ TEST_F(MapGrouping, RoutesThatMoveNothingDoNotSplit) {
 }
 
 TEST_F(MapGrouping, NestedTransformsNest) {
-  load(
-      "DEF A Transform { children [ " + box + " DEF B Transform { children [ " + box + " ] } ] }\n" +
-      "DEF I PositionInterpolator { }\nROUTE I.value_changed TO A.set_translation\nROUTE I.value_changed TO B.set_translation\n");
+  load("DEF A Transform { children [ " + box + " DEF B Transform { children [ " + box +
+       " ] } ] }\n" +
+       "DEF I PositionInterpolator { }\nROUTE I.value_changed TO A.set_translation\nROUTE "
+       "I.value_changed TO B.set_translation\n");
   EXPECT_EQ(objects(), 3u);
   send("B", "set_translation", Vec3f{1, 0, 0});
   EXPECT_EQ(cost(), (Cost{.moved = 1}));
@@ -82,8 +86,8 @@ TEST_F(MapGrouping, EqualGeometryThatChangesIsNotEqualAnyMore) {
     return s;
   }() + "]";
   const auto faces = [&](const std::string& name) {
-    return "Shape { geometry IndexedFaceSet { coord DEF " + name + " Coordinate { point [ 0 0 0, 1 0 0, 0 1 0 ] } " + f +
-           " } }\n";
+    return "Shape { geometry IndexedFaceSet { coord DEF " + name +
+           " Coordinate { point [ 0 0 0, 1 0 0, 0 1 0 ] } " + f + " } }\n";
   };
   load(faces("A") + faces("B") + faces("C"));
   EXPECT_EQ(frame().uniqueTriangles, 2000u);
@@ -95,9 +99,11 @@ TEST_F(MapGrouping, EqualGeometryThatChangesIsNotEqualAnyMore) {
 }
 
 TEST_F(MapGrouping, OrtStaticMergesWhatEventsReach) {
-  const std::string routes = "DEF I PositionInterpolator { }\nROUTE I.value_changed TO T.set_translation\n"
-                             "ROUTE I.value_changed TO U.set_translation\n";
-  const std::string inside = "DEF T Transform { children " + box + " } DEF U Transform { children " + box + " }";
+  const std::string routes =
+      "DEF I PositionInterpolator { }\nROUTE I.value_changed TO T.set_translation\n"
+      "ROUTE I.value_changed TO U.set_translation\n";
+  const std::string inside =
+      "DEF T Transform { children " + box + " } DEF U Transform { children " + box + " }";
   load("Group { children [ " + inside + " ] }\n" + box + routes);
   EXPECT_EQ(objects(), 3u);
   load("ORTStatic { children [ " + inside + " ] }\n" + box + routes);
@@ -109,13 +115,17 @@ TEST_F(MapGrouping, OrtStaticMergesWhatEventsReach) {
 }
 
 TEST_F(MapGrouping, OrtInstanceIsAnObjectHoweverSmall) {
-  load("DEF B ORTInstance { children " + box + " }\n" + repeat("Transform { translation 2 0 0 children USE B }\n", 3));
-  EXPECT_EQ(reasons(), "B | split: ORTInstance | 12 1 4\nworld | merged static geometry of 0 shapes | 0 0 1\n");
+  load("DEF B ORTInstance { children " + box + " }\n" +
+       repeat("Transform { translation 2 0 0 children USE B }\n", 3));
+  EXPECT_EQ(
+      reasons(),
+      "B | split: ORTInstance | 12 1 4\nworld | merged static geometry of 0 shapes | 0 0 1\n");
   EXPECT_EQ(frame().uniqueTriangles, 12u);
 }
 
 TEST_F(MapGrouping, TheInnerHintHolds) {
-  load("ORTStatic { children [ " + box + " DEF B ORTInstance { children DEF T Transform { children " + box + " } } USE B ] }\n" +
+  load("ORTStatic { children [ " + box +
+       " DEF B ORTInstance { children DEF T Transform { children " + box + " } } USE B ] }\n" +
        "DEF I PositionInterpolator { }\nROUTE I.value_changed TO T.set_translation\n");
   EXPECT_EQ(objects(), 4u) << "the world, ORTStatic, ORTInstance, T";
   send("T", "set_translation", Vec3f{5, 0, 0});
@@ -130,17 +140,20 @@ TEST_F(MapGrouping, HintsAreOrdinaryGroups) {
   EXPECT_EQ(frame().triangles, 12u);
 }
 
-// 10,000 USEs of a tree: the instances cost memory, the triangles do not. No acceleration structure: the null backend.
+// 10,000 USEs of a tree: the instances cost memory, the triangles do not. No acceleration
+// structure: the null backend.
 TEST(MapForest, IsOneObjectWithInstances) {
   RTcontext context = rtNewContext("backend=null");
-  std::string body = "DEF Tree Group { children Shape { geometry ElevationGrid { xDimension 72 zDimension 72 height [ ";
+  std::string body = "DEF Tree Group { children Shape { geometry ElevationGrid { xDimension 72 "
+                     "zDimension 72 height [ ";
   for (int i = 0; i < 72 * 72; ++i) body += std::to_string(i % 7) + " ";
   body += "] } } }\n";
   for (int i = 1; i < 10'000; ++i)
-    body += "Transform { translation " + std::to_string(i % 100 * 80) + " 0 " + std::to_string(i / 100 * 80) +
-            " children USE Tree }\n";
+    body += "Transform { translation " + std::to_string(i % 100 * 80) + " 0 " +
+            std::to_string(i / 100 * 80) + " children USE Tree }\n";
   {
-    const std::unique_ptr<World> world = loadWorldFromMemory("#VRML V2.0 utf8\n" + body, "forest.wrl");
+    const std::unique_ptr<World> world =
+        loadWorldFromMemory("#VRML V2.0 utf8\n" + body, "forest.wrl");
     OpenRTMapper mapper(*world, MapOptions());
     mapper.map(mapper.viewpointCamera(0));
     const MapStats s = mapper.stats();

@@ -1,5 +1,6 @@
-// What the objects and the picture are must not depend on how the world came to be as it is: a world mapped once and changed
-// many times is compared with the same world mapped from nothing, after each of many random changes.
+// What the objects and the picture are must not depend on how the world came to be as it is: a
+// world mapped once and changed many times is compared with the same world mapped from nothing,
+// after each of many random changes.
 #include <cstring>
 #include <random>
 
@@ -51,43 +52,63 @@ class MapHistory : public MapRunning, public testing::WithParamInterface<int> {
   }
 
   std::mt19937 random_;
-  float number(double low, double high) { return float(std::uniform_real_distribution<double>(low, high)(random_)); }
+  float number(double low, double high) {
+    return float(std::uniform_real_distribution<double>(low, high)(random_));
+  }
   size_t below(size_t n) { return std::uniform_int_distribution<size_t>(0, n - 1)(random_); }
-  Vec3f vector(double reach) { return {number(-reach, reach), number(-reach, reach), number(-reach, reach)}; }
+  Vec3f vector(double reach) {
+    return {number(-reach, reach), number(-reach, reach), number(-reach, reach)};
+  }
   Color color() { return {number(0, 1), number(0, 1), number(0, 1)}; }
 };
 
 std::string world(const std::string& grid) {
-  return "Viewpoint { position 0 2 14 }\nDEF Sky Background { skyColor 0.1 0.1 0.3 }\nDEF Mist Fog { visibilityRange 80 }\n"
+  return "Viewpoint { position 0 2 14 }\nDEF Sky Background { skyColor 0.1 0.1 0.3 }\nDEF Mist Fog "
+         "{ visibilityRange 80 }\n"
          "DEF Sun DirectionalLight { direction -1 -2 -1 intensity 0.6 }\n"
          "DEF T0 Transform { translation -3 0 0 children [\n"
-         "  DEF Ball Shape { appearance DEF A0 Appearance { material DEF M0 Material { diffuseColor 1 0.2 0.1 } } geometry "
+         "  DEF Ball Shape { appearance DEF A0 Appearance { material DEF M0 Material { "
+         "diffuseColor 1 0.2 0.1 } } geometry "
          "Sphere { } }\n"
-         "  DEF T1 Transform { translation 0 2 0 children [ DEF Lamp PointLight { location 0 1 1 on FALSE } Shape { appearance "
-         "    DEF A1 Appearance { material DEF M1 Material { diffuseColor 0.2 0.4 1 } } geometry DEF F IndexedFaceSet { coord "
+         "  DEF T1 Transform { translation 0 2 0 children [ DEF Lamp PointLight { location 0 1 1 "
+         "on FALSE } Shape { appearance "
+         "    DEF A1 Appearance { material DEF M1 Material { diffuseColor 0.2 0.4 1 } } geometry "
+         "DEF F IndexedFaceSet { coord "
          "DEF FC "
-         "    Coordinate { point [ -1 -1 0, 1 -1 0, 1 1 0, -1 1 0 ] } coordIndex [ 0 1 2 3 -1 ] solid FALSE } } ] } ] }\n"
-         "DEF G0 Group { children [ DEF T2 Transform { translation 3 0 0 children [ USE Ball DEF Small DirectionalLight { "
+         "    Coordinate { point [ -1 -1 0, 1 -1 0, 1 1 0, -1 1 0 ] } coordIndex [ 0 1 2 3 -1 ] "
+         "solid FALSE } } ] } ] }\n"
+         "DEF G0 Group { children [ DEF T2 Transform { translation 3 0 0 children [ USE Ball DEF "
+         "Small DirectionalLight { "
          "intensity "
          "  0.3 direction 1 0 -1 } ] } ] }\n"
-         "DEF Tree Transform { translation 0 -2 -2 children Shape { appearance USE A0 geometry DEF Bush " +
+         "DEF Tree Transform { translation 0 -2 -2 children Shape { appearance USE A0 geometry DEF "
+         "Bush " +
          grid +
          " } }\n"
-         "DEF Wood Group { children [ Transform { translation -4 0 0 children USE Tree } Transform { translation 4 0 0 children "
+         "DEF Wood Group { children [ Transform { translation -4 0 0 children USE Tree } Transform "
+         "{ translation 4 0 0 children "
          "USE Tree } ] }\n"
-         "DEF S Switch { whichChoice 0 choice [ Shape { appearance USE A1 geometry Cone { } } DEF SG Group { children [ USE Tree "
-         "  PointLight { location 0 3 3 } ] } DEF BB Billboard { children Shape { appearance USE A0 geometry USE F } } ] }\n"
-         "DEF L LOD { range [ 10 ] level [ Shape { appearance USE A0 geometry Box { } } DEF Far Transform { translation 0 4 0 "
+         "DEF S Switch { whichChoice 0 choice [ Shape { appearance USE A1 geometry Cone { } } DEF "
+         "SG Group { children [ USE Tree "
+         "  PointLight { location 0 3 3 } ] } DEF BB Billboard { children Shape { appearance USE "
+         "A0 geometry USE F } } ] }\n"
+         "DEF L LOD { range [ 10 ] level [ Shape { appearance USE A0 geometry Box { } } DEF Far "
+         "Transform { translation 0 4 0 "
          "children "
          "  Shape { appearance USE A1 geometry Cylinder { } } } ] }\n"
-         "DEF Lines Shape { appearance DEF AL Appearance { material DEF ML Material { emissiveColor 1 1 0 } } geometry "
+         "DEF Lines Shape { appearance DEF AL Appearance { material DEF ML Material { "
+         "emissiveColor 1 1 0 } } geometry "
          "IndexedLineSet "
-         "  { coord DEF LC Coordinate { point [ -5 -3 0, 5 -3 0, 5 4 0 ] } coordIndex [ 0 1 2 -1 ] } }\n"
-         "DEF Still Group { children [ Shape { appearance USE A1 geometry USE F } Shape { geometry DEF Cube Box { size 1 1 1 } } "
-         "] }\n"
-         "DEF Merged ORTStatic { children DEF T3 Transform { translation 0 -3 2 children Shape { geometry Box { size 3 0.5 1 } } "
+         "  { coord DEF LC Coordinate { point [ -5 -3 0, 5 -3 0, 5 4 0 ] } coordIndex [ 0 1 2 -1 ] "
          "} }\n"
-         "DEF Pic Switch { choice [ Shape { appearance DEF AP Appearance { texture DEF P PixelTexture { image 2 1 3 0xFF8040 "
+         "DEF Still Group { children [ Shape { appearance USE A1 geometry USE F } Shape { geometry "
+         "DEF Cube Box { size 1 1 1 } } "
+         "] }\n"
+         "DEF Merged ORTStatic { children DEF T3 Transform { translation 0 -3 2 children Shape { "
+         "geometry Box { size 3 0.5 1 } } "
+         "} }\n"
+         "DEF Pic Switch { choice [ Shape { appearance DEF AP Appearance { texture DEF P "
+         "PixelTexture { image 2 1 3 0xFF8040 "
          "0x2040FF } "
          "  } } ] }\n";
 }
@@ -100,7 +121,8 @@ TEST_P(MapHistory, ChangedAndMappedFromNothingAreTheSame) {
       groups{"G0", "Wood", "SG", "Still", "BB", "Merged", "T1"};
   const std::vector<std::string> children{"Ball", "Tree", "Lines", "L", "T2", "Far", "Small", "S"};
   for (int step = 0; step < 40; ++step) {
-    std::string what = "seed " + std::to_string(GetParam()) + ", step " + std::to_string(step) + ": ";
+    std::string what =
+        "seed " + std::to_string(GetParam()) + ", step " + std::to_string(step) + ": ";
     for (size_t n = 1 + below(2); n-- > 0;) {
       const auto change = [&](const std::string& name, const std::string& in, Value value) {
         what += name + "." + in + " ";
@@ -113,8 +135,12 @@ TEST_P(MapHistory, ChangedAndMappedFromNothingAreTheSame) {
       case 3: change(below(2) ? "M0" : "M1", "set_diffuseColor", color()); break;
       case 4: change("ML", "set_emissiveColor", color()); break;
       case 5: change("S", "set_whichChoice", int32_t(below(4)) - 1); break;
-      case 6: change(groups[below(7)], "addChildren", MFNode{NodeRef(&node(children[below(8)]))}); break;
-      case 7: change(groups[below(7)], "removeChildren", MFNode{NodeRef(&node(children[below(8)]))}); break;
+      case 6:
+        change(groups[below(7)], "addChildren", MFNode{NodeRef(&node(children[below(8)]))});
+        break;
+      case 7:
+        change(groups[below(7)], "removeChildren", MFNode{NodeRef(&node(children[below(8)]))});
+        break;
       case 8: change("Lamp", "set_on", below(2) == 0); break;
       case 9: change("Small", "set_intensity", number(0, 1)); break;
       case 10: change("Sky", "set_skyColor", MFColor{color()}); break;

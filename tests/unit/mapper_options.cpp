@@ -22,8 +22,9 @@ std::vector<std::string> errorsOf(const xvrml::MFString& options) {
 
 TEST(MapOptions, EveryType) {
   const auto options =
-      parse({"1i n -3", "1f a .5", "2f b 1,2", "3f reflectance .9 .9 .9", "4f d 1 2 3 4", "bool on true", "color c 1 0.5 +0.25",
-             "string s 'two words'", "texture t wood.png", "16f m 1 0 0 0 0 1 0 0 0 0 1 0 4 5 6 1"});
+      parse({"1i n -3", "1f a .5", "2f b 1,2", "3f reflectance .9 .9 .9", "4f d 1 2 3 4",
+             "bool on true", "color c 1 0.5 +0.25", "string s 'two words'", "texture t wood.png",
+             "16f m 1 0 0 0 0 1 0 0 0 0 1 0 4 5 6 1"});
   ASSERT_EQ(options.size(), 10u);
   EXPECT_EQ(options[0].type, ShaderOption::Type::integer);
   EXPECT_EQ(options[0].integer, -3);
@@ -41,7 +42,8 @@ TEST(MapOptions, EveryType) {
 }
 
 TEST(MapOptions, ListsGoOnAsLongAsNumbersFollow) {
-  const auto options = parse({"floats angle .5 1, 1.5 1f a 2", "floats none", "file ies 'a lamp.ies'"});
+  const auto options =
+      parse({"floats angle .5 1, 1.5 1f a 2", "floats none", "file ies 'a lamp.ies'"});
   ASSERT_EQ(options.size(), 4u);
   EXPECT_EQ(options[0].type, ShaderOption::Type::list);
   EXPECT_EQ(options[0].numbers, (std::vector<float>{.5f, 1, 1.5f}));
@@ -59,8 +61,9 @@ TEST(MapOptions, SeveralInOneString) {
 
 TEST(MapOptions, BadOnesAreNamedAndTheOthersKept) {
   std::vector<std::string> errors;
-  const auto options =
-      parseShaderOptions({"3f a 1 2", "5f b 1", "1f c x", "1i d 1.5", "bool e maybe", "1f", "1f f nan", "1f g 7"}, errors);
+  const auto options = parseShaderOptions(
+      {"3f a 1 2", "5f b 1", "1f c x", "1i d 1.5", "bool e maybe", "1f", "1f f nan", "1f g 7"},
+      errors);
   ASSERT_EQ(options.size(), 1u);
   EXPECT_EQ(options[0].name, "g");
   ASSERT_EQ(errors.size(), 7u);

@@ -1,4 +1,5 @@
-// What a change costs, by its kind: counted in calls, never in time. Each test says what is touched; all else must stay.
+// What a change costs, by its kind: counted in calls, never in time. Each test says what is
+// touched; all else must stay.
 #include <cmath>
 
 #include "unit/mapper_fixture.h"
@@ -19,9 +20,11 @@ class MapUpdate : public MapRunning {
            "Billboard { children Shape { geometry Cone { } } }\nPointLight { }\nViewpoint { }\n";
   }
   static std::string clock(const std::string& to) {
-    return "DEF Clock TimeSensor { }\nDEF I PositionInterpolator { }\nROUTE I.value_changed TO " + to + "\n";
+    return "DEF Clock TimeSensor { }\nDEF I PositionInterpolator { }\nROUTE I.value_changed TO " +
+           to + "\n";
   }
-  // What the second of two changes costs: the first may have promoted what nothing was known to reach.
+  // What the second of two changes costs: the first may have promoted what nothing was known to
+  // reach.
   Cost twice(const std::string& name, const std::string& in, Value first, Value second) {
     send(name, in, std::move(first));
     cost();
@@ -36,7 +39,8 @@ TEST_F(MapUpdate, NothingChangedCostsNothing) {
 }
 
 TEST_F(MapUpdate, ARoutedTransformMovesItsInstanceAlone) {
-  load(rest() + "DEF T Transform { children Shape { geometry Sphere { } } }\n" + clock("T.set_translation"));
+  load(rest() + "DEF T Transform { children Shape { geometry Sphere { } } }\n" +
+       clock("T.set_translation"));
   send("T", "set_translation", Vec3f{1, 2, 3});
   EXPECT_EQ(cost(), (Cost{.moved = 1})) << "also the first time";
   send("T", "set_rotation", Rotation{0, 1, 0, 1});
@@ -45,7 +49,8 @@ TEST_F(MapUpdate, ARoutedTransformMovesItsInstanceAlone) {
 }
 
 TEST_F(MapUpdate, ATransformThatNothingWasKnownToReachIsPromotedOnce) {
-  load(rest() + "Transform { translation 9 0 0 children DEF T Transform { children Shape { geometry Box { } } } }\n");
+  load(rest() + "Transform { translation 9 0 0 children DEF T Transform { children Shape { "
+                "geometry Box { } } } }\n");
   const uint64_t before = frame().triangles;
   send("T", "set_translation", Vec3f{1, 2, 3});
   const Cost first = cost();
@@ -58,20 +63,24 @@ TEST_F(MapUpdate, ATransformThatNothingWasKnownToReachIsPromotedOnce) {
 }
 
 TEST_F(MapUpdate, AUsedTransformMovesAtEachPlace) {
-  load(rest() + "DEF T Transform { children Shape { geometry Box { } } }\nTransform { translation 5 0 0 children USE T }\n" +
+  load(rest() +
+       "DEF T Transform { children Shape { geometry Box { } } }\nTransform { translation 5 0 0 "
+       "children USE T }\n" +
        clock("T.set_translation"));
   send("T", "set_translation", Vec3f{0, 1, 0});
   EXPECT_EQ(cost(), (Cost{.moved = 2}));
 }
 
 TEST_F(MapUpdate, TransformsAboveLightsMoveInstanceAndLight) {
-  load(rest() + "DEF T Transform { children [ PointLight { } Shape { geometry Box { } } ] }\n" + clock("T.set_translation"));
+  load(rest() + "DEF T Transform { children [ PointLight { } Shape { geometry Box { } } ] }\n" +
+       clock("T.set_translation"));
   send("T", "set_translation", Vec3f{0, 1, 0});
   EXPECT_EQ(cost(), (Cost{.moved = 1, .lights = 1}));
 }
 
 TEST_F(MapUpdate, ATransformWithAViewpointAloneIsNoObject) {
-  load("DEF T Transform { children DEF V Viewpoint { } }\nShape { geometry Box { } }\n" + clock("T.set_translation"));
+  load("DEF T Transform { children DEF V Viewpoint { } }\nShape { geometry Box { } }\n" +
+       clock("T.set_translation"));
   EXPECT_EQ(mapper_->stats().objects, 1u);
   send("T", "set_translation", Vec3f{0, 5, 0});
   EXPECT_EQ(cost(), nothing);
@@ -80,7 +89,8 @@ TEST_F(MapUpdate, ATransformWithAViewpointAloneIsNoObject) {
 }
 
 TEST_F(MapUpdate, ATransformOutOfAllNumbersAndBack) {
-  load(rest() + "DEF T Transform { children Shape { geometry Box { } } }\n" + clock("T.set_translation"));
+  load(rest() + "DEF T Transform { children Shape { geometry Box { } } }\n" +
+       clock("T.set_translation"));
   const uint64_t before = frame().triangles;
   send("T", "set_scale", Vec3f{1e38f, 1e38f, 1e38f});
   cost();
@@ -106,14 +116,16 @@ TEST_F(MapUpdate, ACoordinateRebuildsItsObjectAlone) {
 }
 
 TEST_F(MapUpdate, GeometryThatSeveralShapesUseIsRebuiltOnce) {
-  load(rest() + "Shape { geometry " + square("F") + " }\nTransform { translation 4 0 0 children Shape { geometry USE F } }\n");
+  load(rest() + "Shape { geometry " + square("F") +
+       " }\nTransform { translation 4 0 0 children Shape { geometry USE F } }\n");
   EXPECT_EQ(twice("FC", "set_point", MFVec3f{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}},
                   MFVec3f{{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}}),
             (Cost{.defined = 1}));
 }
 
 TEST_F(MapUpdate, AnIndexAndAColourAreGeometry) {
-  load(rest() + "Shape { geometry " + square("F", "color DEF K Color { color [ 1 0 0, 0 1 0, 0 0 1, 1 1 1 ] }") + " }\n");
+  load(rest() + "Shape { geometry " +
+       square("F", "color DEF K Color { color [ 1 0 0, 0 1 0, 0 0 1, 1 1 1 ] }") + " }\n");
   EXPECT_EQ(twice("K", "set_color", MFColor{{1, 0, 0}, {1, 0, 0}, {1, 0, 0}, {1, 0, 0}},
                   MFColor{{1, 1, 0}, {1, 0, 0}, {1, 0, 0}, {1, 0, 0}}),
             (Cost{.defined = 1}));
@@ -123,12 +135,14 @@ TEST_F(MapUpdate, AnIndexAndAColourAreGeometry) {
 
 TEST_F(MapUpdate, AnExtrusionsSpineIsGeometry) {
   load(rest() + "Shape { geometry DEF E Extrusion { } }\n");
-  EXPECT_EQ(twice("E", "set_spine", MFVec3f{{0, 0, 0}, {0, 2, 0}}, MFVec3f{{0, 0, 0}, {0, 2, 0}, {1, 3, 0}}),
+  EXPECT_EQ(twice("E", "set_spine", MFVec3f{{0, 0, 0}, {0, 2, 0}},
+                  MFVec3f{{0, 0, 0}, {0, 2, 0}, {1, 3, 0}}),
             (Cost{.defined = 1}));
 }
 
 TEST_F(MapUpdate, AFontIsGeometryOfItsText) {
-  load(rest() + "Shape { geometry DEF X Text { string \"a\" fontStyle DEF Style FontStyle { } } }\n");
+  load(rest() +
+       "Shape { geometry DEF X Text { string \"a\" fontStyle DEF Style FontStyle { } } }\n");
   send("X", "set_string", MFString{"b"});
   cost();
   send("X", "set_string", MFString{"bc"});
@@ -155,7 +169,8 @@ TEST_F(MapUpdate, AMaterialThatComesAndGoes) {
 
 TEST_F(MapUpdate, OptionsOfAShaderAreParametersAlone) {
   load(rest() +
-       "Shape { appearance ORTAppearance { material DEF O Material { } shader DEF S ORTShader { file \"plastic\" options [ "
+       "Shape { appearance ORTAppearance { material DEF O Material { } shader DEF S ORTShader { "
+       "file \"plastic\" options [ "
        "\"1f index 1.5\" \"1f roughness .1\" ] } } geometry " +
        grid(20) + " }\n");
   send("S", "set_options", MFString{"1f index 1.6", "1f roughness .2"});
@@ -169,7 +184,8 @@ TEST_F(MapUpdate, OptionsOfAShaderAreParametersAlone) {
 
 TEST_F(MapUpdate, AShaderOfAnotherClassRebuildsNothing) {
   load(rest() +
-       "Shape { appearance ORTAppearance { shader DEF S ORTShader { file \"plastic\" options \"1f index 1.5\" } } geometry " +
+       "Shape { appearance ORTAppearance { shader DEF S ORTShader { file \"plastic\" options \"1f "
+       "index 1.5\" } } geometry " +
        grid(20) + " }\n");
   send("S", "set_file", std::string("marble"));
   send("S", "set_options", MFString{"1f veins 3"});
@@ -180,16 +196,20 @@ TEST_F(MapUpdate, AShaderOfAnotherClassRebuildsNothing) {
 }
 
 TEST_F(MapUpdate, PixelsAreLoadedAgainAndNothingElse) {
-  load(rest() + "Shape { appearance Appearance { texture DEF P PixelTexture { image 1 1 3 0xFF0000 } } geometry " + square("F") +
-       " }\n");
+  load(rest() +
+       "Shape { appearance Appearance { texture DEF P PixelTexture { image 1 1 3 0xFF0000 } } "
+       "geometry " +
+       square("F") + " }\n");
   send("P", "set_image", Image{2, 1, 3, {255, 0, 0, 0, 255, 0}});
   EXPECT_EQ(cost(), (Cost{.textures = 1}));
 }
 
 TEST_F(MapUpdate, AFirstTextureNeedsCoordinatesTheSecondDoesNot) {
   load(rest() + "Shape { appearance DEF A Appearance { } geometry " + square("F") +
-       " }\nSwitch { choice Shape { appearance Appearance { texture DEF P PixelTexture { image 1 1 3 0xFF0000 } } } }\n"
-       "Switch { choice Shape { appearance Appearance { texture DEF Q PixelTexture { image 1 1 3 0x00FF00 } } } }\n");
+       " }\nSwitch { choice Shape { appearance Appearance { texture DEF P PixelTexture { image 1 1 "
+       "3 0xFF0000 } } } }\n"
+       "Switch { choice Shape { appearance Appearance { texture DEF Q PixelTexture { image 1 1 3 "
+       "0x00FF00 } } } }\n");
   send("A", "set_texture", NodeRef(&node("P")));
   EXPECT_GE(cost().defined, 1u);
   send("A", "set_texture", NodeRef(&node("Q")));
@@ -201,25 +221,33 @@ TEST_F(MapUpdate, AFirstTextureNeedsCoordinatesTheSecondDoesNot) {
 }
 
 TEST_F(MapUpdate, AShapeThatGetsAnotherAppearance) {
-  load(rest() + "DEF S Shape { appearance Appearance { material Material { } } geometry " + square("F") + " }\n" +
-       "Shape { appearance DEF A Appearance { material Material { diffuseColor 1 0 0 } } geometry " + square("G") + " }\n" +
-       "Shape { appearance DEF B Appearance { material Material { diffuseColor 1 1 0 } } geometry " + square("H") + " }\n");
-  EXPECT_EQ(twice("S", "set_appearance", NodeRef(&node("A")), NodeRef(&node("B"))), nothing) << "its instance has another shader";
+  load(
+      rest() + "DEF S Shape { appearance Appearance { material Material { } } geometry " +
+      square("F") + " }\n" +
+      "Shape { appearance DEF A Appearance { material Material { diffuseColor 1 0 0 } } geometry " +
+      square("G") + " }\n" +
+      "Shape { appearance DEF B Appearance { material Material { diffuseColor 1 1 0 } } geometry " +
+      square("H") + " }\n");
+  EXPECT_EQ(twice("S", "set_appearance", NodeRef(&node("A")), NodeRef(&node("B"))), nothing)
+      << "its instance has another shader";
   EXPECT_NE(explained("it has been changed"), nullptr);
 }
 
 TEST_F(MapUpdate, LinesAreRewrittenWhenTheirColourChanges) {
-  load(rest() +
-       "Shape { appearance Appearance { material DEF L Material { emissiveColor 1 0 0 } } geometry IndexedLineSet { coord "
-       "Coordinate { point [ 0 0 0, 1 1 1 ] } coordIndex [ 0 1 ] } }\n");
-  EXPECT_EQ(twice("L", "set_emissiveColor", Color{0, 1, 0}, Color{0, 0, 1}).defined, 1u) << "their own object";
+  load(rest() + "Shape { appearance Appearance { material DEF L Material { emissiveColor 1 0 0 } } "
+                "geometry IndexedLineSet { coord "
+                "Coordinate { point [ 0 0 0, 1 1 1 ] } coordIndex [ 0 1 ] } }\n");
+  EXPECT_EQ(twice("L", "set_emissiveColor", Color{0, 1, 0}, Color{0, 0, 1}).defined, 1u)
+      << "their own object";
   send("L", "set_diffuseColor", Color{0, 1, 0});
   EXPECT_EQ(cost().defined, 0u);
 }
 
 TEST_F(MapUpdate, ASwitchRegroupsItselfAlone) {
-  load(rest() + "DEF S Switch { whichChoice 0 choice [ Shape { geometry Box { } } Group { children [ Shape { geometry Box { } } "
-                "PointLight { } ] } ] }\nDEF I Script { eventOut SFInt32 value }\nROUTE I.value TO S.whichChoice\n");
+  load(rest() + "DEF S Switch { whichChoice 0 choice [ Shape { geometry Box { } } Group { children "
+                "[ Shape { geometry Box { } } "
+                "PointLight { } ] } ] }\nDEF I Script { eventOut SFInt32 value }\nROUTE I.value TO "
+                "S.whichChoice\n");
   const uint64_t with = frame().triangles;
   send("S", "set_whichChoice", 1);
   EXPECT_EQ(cost(), (Cost{.defined = 1, .regroupings = 1, .lights = 3}))
@@ -235,7 +263,8 @@ TEST_F(MapUpdate, ASwitchRegroupsItselfAlone) {
 TEST_F(MapUpdate, ChildrenComeAndGo) {
   load(rest() + "Transform { translation 1 0 0 children DEF G Group { } }\n");
   const uint64_t without = frame().triangles;
-  const NodeRef box = make("Shape { geometry Box { } }"), more = make("Transform { children Shape { geometry Box { } } }");
+  const NodeRef box = make("Shape { geometry Box { } }"),
+                more = make("Transform { children Shape { geometry Box { } } }");
   send("G", "addChildren", MFNode{box});
   EXPECT_EQ(cost().defined, 2u) << "the world, which it was part of, and its own object";
   EXPECT_EQ(last_.triangles, without + 12);
@@ -258,8 +287,8 @@ TEST_F(MapUpdate, AnInsertedTransformMovesLikeAnyOther) {
 }
 
 TEST_F(MapUpdate, AShapeWithAnotherGeometry) {
-  load(rest() +
-       "DEF S Shape { }\nSwitch { choice [ Shape { geometry DEF Ball Sphere { } } Shape { geometry DEF Cube Box { } } ] }\n");
+  load(rest() + "DEF S Shape { }\nSwitch { choice [ Shape { geometry DEF Ball Sphere { } } Shape { "
+                "geometry DEF Cube Box { } } ] }\n");
   const uint64_t without = frame().triangles;
   send("S", "set_geometry", NodeRef(&node("Cube")));
   cost();
@@ -270,10 +299,12 @@ TEST_F(MapUpdate, AShapeWithAnotherGeometry) {
 }
 
 TEST_F(MapUpdate, AGeometryAfterTheOther) {
-  load(rest() + "DEF S Shape { appearance Appearance { material Material { } } geometry Box { } }\n");
+  load(rest() +
+       "DEF S Shape { appearance Appearance { material Material { } } geometry Box { } }\n");
   const uint64_t without = frame().triangles - 12;
   Node& shape = node("S");
-  EXPECT_TRUE(engine_->dispatch(shape, "set_appearance", NodeRef())); // from here on it is an instance of its geometry
+  EXPECT_TRUE(engine_->dispatch(shape, "set_appearance",
+                                NodeRef())); // from here on it is an instance of its geometry
   EXPECT_EQ(frame().triangles, without + 12);
   for (int n = 2; n < 9; ++n) {
     const NodeRef scrap = make("Shape { geometry " + grid(n) + " }");
@@ -293,12 +324,14 @@ TEST_F(MapUpdate, ALightChangesItsParameters) {
   EXPECT_EQ(cost().lights, 1u);
   EXPECT_EQ(last_.lights, 3u);
   send("L", "set_on", true);
-  EXPECT_EQ(cost(), (Cost{.parameters = c.parameters, .lights = 3})) << "it, and the headlight again behind it";
+  EXPECT_EQ(cost(), (Cost{.parameters = c.parameters, .lights = 3}))
+      << "it, and the headlight again behind it";
   EXPECT_EQ(last_.lights, 4u);
 }
 
 TEST_F(MapUpdate, ALightThatIsTurnedOnForTheFirstTime) {
-  load(rest() + "Group { children [ DEF L DirectionalLight { on FALSE } Shape { geometry Box { } } ] }\n");
+  load(rest() +
+       "Group { children [ DEF L DirectionalLight { on FALSE } Shape { geometry Box { } } ] }\n");
   send("L", "set_on", true);
   cost();
   EXPECT_EQ(last_.lights, 4u);
@@ -306,7 +339,9 @@ TEST_F(MapUpdate, ALightThatIsTurnedOnForTheFirstTime) {
 }
 
 TEST_F(MapUpdate, TheSkyAndTheFogAreParameters) {
-  load("DEF B Background { skyColor 1 0 0 }\nDEF F Fog { visibilityRange 10 }\nDEF C Background { skyColor 0 1 0 }\n" + rest());
+  load("DEF B Background { skyColor 1 0 0 }\nDEF F Fog { visibilityRange 10 }\nDEF C Background { "
+       "skyColor 0 1 0 }\n" +
+       rest());
   send("B", "set_skyColor", MFColor{{0, 0, 1}});
   const Cost sky = cost();
   EXPECT_GT(sky.parameters, 0u);
@@ -333,21 +368,25 @@ TEST_F(MapUpdate, LevelsOfAnLodAreReplaced) {
 }
 
 TEST_F(MapUpdate, WhatIsInNoPictureCostsNothing) {
-  load(rest() + "Switch { whichChoice -1 choice DEF T Transform { children Shape { geometry DEF X Text { string \"a\" } } } }\n");
+  load(rest() + "Switch { whichChoice -1 choice DEF T Transform { children Shape { geometry DEF X "
+                "Text { string \"a\" } } } }\n");
   send("T", "set_translation", Vec3f{1, 2, 3});
   send("X", "set_string", MFString{"b"});
   EXPECT_EQ(cost(), nothing);
 }
 
 TEST_F(MapUpdate, PrototypesPassChangesOn) {
-  load(rest() +
-       "PROTO P [ exposedField SFVec3f at 0 0 0 exposedField SFColor c 1 0 0 exposedField MFVec3f points [ 0 0 0, 1 0 0, 1 1 0 ] "
-       "] {\nTransform { translation IS at children Shape { appearance Appearance { material Material { diffuseColor IS c } } "
-       "geometry IndexedFaceSet { coord Coordinate { point IS points } coordIndex [ 0 1 2 ] } } } }\nDEF X P { }\nDEF Y P { }\n");
+  load(rest() + "PROTO P [ exposedField SFVec3f at 0 0 0 exposedField SFColor c 1 0 0 exposedField "
+                "MFVec3f points [ 0 0 0, 1 0 0, 1 1 0 ] "
+                "] {\nTransform { translation IS at children Shape { appearance Appearance { "
+                "material Material { diffuseColor IS c } } "
+                "geometry IndexedFaceSet { coord Coordinate { point IS points } coordIndex [ 0 1 2 "
+                "] } } } }\nDEF X P { }\nDEF Y P { }\n");
   EXPECT_EQ(twice("X", "set_at", Vec3f{1, 0, 0}, Vec3f{2, 0, 0}), (Cost{.moved = 1}));
   send("X", "set_c", Color{0, 1, 0});
   EXPECT_EQ(cost().defined, 0u);
-  EXPECT_EQ(twice("X", "set_points", MFVec3f{{0, 0, 0}, {1, 0, 0}, {1, 2, 0}}, MFVec3f{{0, 0, 0}, {1, 0, 0}, {1, 3, 0}}),
+  EXPECT_EQ(twice("X", "set_points", MFVec3f{{0, 0, 0}, {1, 0, 0}, {1, 2, 0}},
+                  MFVec3f{{0, 0, 0}, {1, 0, 0}, {1, 3, 0}}),
             (Cost{.defined = 1}));
 }
 

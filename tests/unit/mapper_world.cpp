@@ -1,4 +1,5 @@
-// What the mapper makes of worlds, seen through its results and the engine: viewpoints, bounds, names, sharing, levels.
+// What the mapper makes of worlds, seen through its results and the engine: viewpoints, bounds,
+// names, sharing, levels.
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -62,8 +63,8 @@ std::string repeat(const std::string& text, int times) {
 
 // An ElevationGrid of 2 n^2 triangles.
 std::string grid(int n) {
-  return "ElevationGrid { xDimension " + std::to_string(n + 1) + " zDimension " + std::to_string(n + 1) + " height [" +
-         repeat("0 ", (n + 1) * (n + 1)) + "] }";
+  return "ElevationGrid { xDimension " + std::to_string(n + 1) + " zDimension " +
+         std::to_string(n + 1) + " height [" + repeat("0 ", (n + 1) * (n + 1)) + "] }";
 }
 
 TEST_F(MapWorld, AnEmptyWorldHasTheStandardsDefaults) {
@@ -83,9 +84,11 @@ TEST_F(MapWorld, AnEmptyWorldHasTheStandardsDefaults) {
 TEST_F(MapWorld, ViewpointsStandInTheOrderOfTheFileWithTheirPlaces) {
   OpenRTMapper& mapper =
       load("Group { children [ DEF A Viewpoint { description \"first\" position 1 2 3 } ] }\n"
-           "PROTO P [] { Transform { translation 5 0 0 children DEF Inner Viewpoint { position 0 0 1 } } }\n"
+           "PROTO P [] { Transform { translation 5 0 0 children DEF Inner Viewpoint { position 0 0 "
+           "1 } } }\n"
            "P { }\n"
-           "Transform { translation 0 7 0 scale 2 2 2 rotation 0 1 0 1.5707963 children DEF C Viewpoint { fieldOfView 1 } }");
+           "Transform { translation 0 7 0 scale 2 2 2 rotation 0 1 0 1.5707963 children DEF C "
+           "Viewpoint { fieldOfView 1 } }");
   ASSERT_EQ(mapper.viewpoints().size(), 3u);
   EXPECT_EQ(mapper.viewpoints()[0].name, "A");
   EXPECT_EQ(mapper.viewpoints()[0].description, "first");
@@ -94,7 +97,8 @@ TEST_F(MapWorld, ViewpointsStandInTheOrderOfTheFileWithTheirPlaces) {
   const CameraSettings c = mapper.viewpointCamera(2);
   EXPECT_NEAR(c.matrix[12], 20, 1e-5) << "position scaled by 2, then turned to +x";
   EXPECT_NEAR(c.matrix[13], 7, 1e-9);
-  EXPECT_NEAR(std::hypot(c.matrix[8], c.matrix[9], c.matrix[10]), 1, 1e-12) << "scale does not distort the view";
+  EXPECT_NEAR(std::hypot(c.matrix[8], c.matrix[9], c.matrix[10]), 1, 1e-12)
+      << "scale does not distort the view";
   EXPECT_NEAR(c.fovy, 1, 1e-6);
 }
 
@@ -104,10 +108,13 @@ TEST_F(MapWorld, FieldOfViewIsForTheSmallerSide) {
 }
 
 TEST_F(MapWorld, BoundsAreThoseOfTheShapes) {
-  const Bounds b = load("Transform { translation 10 0 0 scale 1 2 1 children [ Shape { geometry Sphere { radius 3 } } ] }\n"
-                        "Transform { rotation 0 0 1 0.78539816 children Shape { geometry Box { size 2 2 2 } } }\n"
-                        "Switch { whichChoice -1 choice Shape { geometry Box { size 100 100 100 } } }")
-                       .bounds();
+  const Bounds b =
+      load(
+          "Transform { translation 10 0 0 scale 1 2 1 children [ Shape { geometry Sphere { radius "
+          "3 } } ] }\n"
+          "Transform { rotation 0 0 1 0.78539816 children Shape { geometry Box { size 2 2 2 } } }\n"
+          "Switch { whichChoice -1 choice Shape { geometry Box { size 100 100 100 } } }")
+          .bounds();
   ASSERT_FALSE(b.empty);
   EXPECT_NEAR(b.minimum[0], -std::sqrt(2.0), 1e-6);
   EXPECT_NEAR(b.maximum[0], 13, 1e-6);
@@ -117,17 +124,20 @@ TEST_F(MapWorld, BoundsAreThoseOfTheShapes) {
 
 TEST_F(MapWorld, AFittedCameraSeesEveryCorner) {
   for (const double aspect : {0.4, 1.0, 3.0}) {
-    OpenRTMapper& mapper = load("Viewpoint { position 3 4 9 orientation 1 2 0.5 0.7 }\n"
-                                "Transform { translation 100 -20 3 children Shape { geometry Box { size 8 1 30 } } }",
-                                aspect);
+    OpenRTMapper& mapper =
+        load("Viewpoint { position 3 4 9 orientation 1 2 0.5 0.7 }\n"
+             "Transform { translation 100 -20 3 children Shape { geometry Box { size 8 1 30 } } }",
+             aspect);
     const CameraSettings c = mapper.fitCamera(0.6);
     EXPECT_EQ(c.fovy, 0.6);
     const Bounds b = mapper.bounds();
     double widest = 0;
     for (int corner = 0; corner < 8; ++corner) {
       double v[3], local[3];
-      for (int i = 0; i < 3; ++i) v[i] = (corner & (1 << i) ? b.maximum[i] : b.minimum[i]) - c.matrix[12 + i];
-      for (int i = 0; i < 3; ++i) local[i] = v[0] * c.matrix[4 * i] + v[1] * c.matrix[4 * i + 1] + v[2] * c.matrix[4 * i + 2];
+      for (int i = 0; i < 3; ++i)
+        v[i] = (corner & (1 << i) ? b.maximum[i] : b.minimum[i]) - c.matrix[12 + i];
+      for (int i = 0; i < 3; ++i)
+        local[i] = v[0] * c.matrix[4 * i] + v[1] * c.matrix[4 * i + 1] + v[2] * c.matrix[4 * i + 2];
       ASSERT_LT(local[2], 0) << "in front of the camera";
       const double y = std::abs(local[1]) / -local[2] / std::tan(0.3),
                    x = std::abs(local[0]) / -local[2] / std::tan(0.3) / aspect;
@@ -139,17 +149,20 @@ TEST_F(MapWorld, AFittedCameraSeesEveryCorner) {
 }
 
 TEST_F(MapWorld, NamesComeFromTheNearestGroup) {
-  OpenRTMapper& mapper = load("DEF Car Group { children [ Shape { geometry Box {} } DEF Wheel Shape { geometry Sphere {} } ] }\n"
+  OpenRTMapper& mapper = load("DEF Car Group { children [ Shape { geometry Box {} } DEF Wheel "
+                              "Shape { geometry Sphere {} } ] }\n"
                               "Shape { geometry Cone {} }");
   mapper.map(mapper.viewpointCamera(0));
   const std::vector<std::string>& names = mapper.names();
   EXPECT_EQ(names[0], "");
-  for (const char* name : {"Car", "Wheel", "Shape"}) EXPECT_NE(std::find(names.begin(), names.end(), name), names.end()) << name;
+  for (const char* name : {"Car", "Wheel", "Shape"})
+    EXPECT_NE(std::find(names.begin(), names.end(), name), names.end()) << name;
   expectNoMessages();
 }
 
 TEST_F(MapWorld, StaticGeometryIsOneObject) {
-  const MapStats s = map(repeat("Transform { translation 1 0 0 children Shape { appearance Appearance { material Material { } } "
+  const MapStats s = map(repeat("Transform { translation 1 0 0 children Shape { appearance "
+                                "Appearance { material Material { } } "
                                 "geometry Box { } } }\n",
                                 50));
   EXPECT_EQ(s.shapes, 50u);
@@ -172,22 +185,24 @@ TEST_F(MapWorld, AGroupUsedOftenIsOneObjectWithInstances) {
 }
 
 TEST_F(MapWorld, GeometryUsedByManyShapesIsStoredOnce) {
-  map("Shape { appearance Appearance { material Material { } } geometry DEF G " + grid(40) + " }\n" +
-      repeat("Transform { translation 1 0 0 children Shape { geometry USE G } }\n", 3));
+  map("Shape { appearance Appearance { material Material { } } geometry DEF G " + grid(40) +
+      " }\n" + repeat("Transform { translation 1 0 0 children Shape { geometry USE G } }\n", 3));
   const RTstats e = engine();
   EXPECT_EQ(e.uniqueTriangles, 3200u);
   EXPECT_EQ(e.triangles, 12800u);
 }
 
 TEST_F(MapWorld, SmallThingsUsedOftenAreMerged) {
-  const MapStats s = map("DEF B Shape { geometry Box { } }\n" + repeat("Transform { children USE B }\n", 20));
+  const MapStats s =
+      map("DEF B Shape { geometry Box { } }\n" + repeat("Transform { children USE B }\n", 20));
   EXPECT_EQ(s.objects, 1u);
   EXPECT_EQ(s.triangles, 21 * 12u);
 }
 
 TEST_F(MapWorld, AGroupWithAScopedLightIsNeverShared) {
-  const MapStats s = map("DEF Lit Group { children [ DirectionalLight { } Shape { geometry " + grid(40) + " } ] }\n" +
-                         repeat("Transform { translation 1 0 0 children USE Lit }\n", 3));
+  const MapStats s =
+      map("DEF Lit Group { children [ DirectionalLight { } Shape { geometry " + grid(40) +
+          " } ] }\n" + repeat("Transform { translation 1 0 0 children USE Lit }\n", 3));
   EXPECT_EQ(s.lights, 5u) << "one a place, and the headlight";
   EXPECT_EQ(s.objects, 5u) << "one a place, and the world";
   const RTstats e = engine();
@@ -196,8 +211,8 @@ TEST_F(MapWorld, AGroupWithAScopedLightIsNeverShared) {
 }
 
 TEST_F(MapWorld, LightsThatAreOffAreNotThere) {
-  const MapStats s =
-      map("PointLight { on FALSE } SpotLight { } DirectionalLight { on FALSE } NavigationInfo { headlight FALSE }");
+  const MapStats s = map("PointLight { on FALSE } SpotLight { } DirectionalLight { on FALSE } "
+                         "NavigationInfo { headlight FALSE }");
   EXPECT_EQ(s.lights, 1u);
   EXPECT_EQ(engine().lights, 1u);
 }
@@ -206,8 +221,9 @@ TEST_F(MapWorld, LightsThatAreOffAreNotThere) {
 TEST_F(MapWorld, DoublingChainsAreNotExpanded) {
   std::string body = "DEF G0 Shape { geometry " + grid(1) + " }\n";
   for (int i = 1; i <= 23; ++i)
-    body += "DEF G" + std::to_string(i) + " Group { children [ USE G" + std::to_string(i - 1) + " Transform { translation " +
-            std::to_string(1 << i) + " 0 0 children USE G" + std::to_string(i - 1) + " } ] }\n";
+    body += "DEF G" + std::to_string(i) + " Group { children [ USE G" + std::to_string(i - 1) +
+            " Transform { translation " + std::to_string(1 << i) + " 0 0 children USE G" +
+            std::to_string(i - 1) + " } ] }\n";
   body = "Switch { whichChoice 0 choice [ Group { } ] }\n" + body;
   LoadOptions options;
   options.limits.expandedNodes = uint64_t(1) << 40;
@@ -223,15 +239,16 @@ TEST_F(MapWorld, DoublingChainsAreNotExpanded) {
 TEST_F(MapWorld, DeepNestingIsSafe) {
   const int depth = 20000;
   LoadOptions options;
-  const std::string shallow =
-      repeat("Transform { translation 0 0 1 children ", 490) + "Shape { geometry Box { } }" + repeat("} ", 490);
+  const std::string shallow = repeat("Transform { translation 0 0 1 children ", 490) +
+                              "Shape { geometry Box { } }" + repeat("} ", 490);
   world_ = loadWorldFromMemory("#VRML V2.0 utf8\n" + shallow, "test.wrl", options);
   mapper_ = std::make_unique<OpenRTMapper>(*world_, MapOptions());
   EXPECT_NEAR(mapper_->bounds().maximum[2], 491, 1e-6);
   // Deeper than any file may be: each group names the one before.
   std::string chain = "Switch { whichChoice -1 choice [ DEF N0 Shape { geometry Box { } }\n";
   for (int i = 1; i <= depth; ++i)
-    chain += "DEF N" + std::to_string(i) + " Transform { translation 0 0 1 children USE N" + std::to_string(i - 1) + " }\n";
+    chain += "DEF N" + std::to_string(i) + " Transform { translation 0 0 1 children USE N" +
+             std::to_string(i - 1) + " }\n";
   chain += "] }\nUSE N" + std::to_string(depth) + "\n";
   options.limits.expandedNodes = uint64_t(1) << 40;
   mapper_.reset();
@@ -243,8 +260,9 @@ TEST_F(MapWorld, DeepNestingIsSafe) {
 }
 
 TEST_F(MapWorld, LevelsOfDetailFollowTheCamera) {
-  OpenRTMapper& mapper = load("LOD { range [ 5, 20 ] level [ Shape { geometry " + grid(4) + " } Shape { geometry " + grid(2) +
-                              " } Shape { geometry Box { } } ] }");
+  OpenRTMapper& mapper =
+      load("LOD { range [ 5, 20 ] level [ Shape { geometry " + grid(4) + " } Shape { geometry " +
+           grid(2) + " } Shape { geometry Box { } } ] }");
   CameraSettings camera = mapper.viewpointCamera(0);
   const std::pair<double, uint64_t> wanted[] = {{3, 32}, {5, 8}, {10, 8}, {30, 12}, {4.9, 32}};
   for (const auto& [distance, triangles] : wanted) {
@@ -256,7 +274,8 @@ TEST_F(MapWorld, LevelsOfDetailFollowTheCamera) {
 }
 
 TEST_F(MapWorld, LevelsAreMeasuredInTheirOwnSystem) {
-  OpenRTMapper& mapper = load("Transform { scale 10 10 10 children LOD { center 0 0 1 range [ 1.5 ] level [ Shape { geometry " +
+  OpenRTMapper& mapper = load("Transform { scale 10 10 10 children LOD { center 0 0 1 range [ 1.5 "
+                              "] level [ Shape { geometry " +
                               grid(2) + " } Shape { geometry Box { } } ] } }");
   CameraSettings camera = mapper.viewpointCamera(0);
   camera.matrix[14] = 20; // local distance 1
@@ -268,7 +287,8 @@ TEST_F(MapWorld, LevelsAreMeasuredInTheirOwnSystem) {
 }
 
 TEST_F(MapWorld, LightsOfLevelsThatAreNotDrawnAreOff) {
-  OpenRTMapper& mapper = load("NavigationInfo { headlight FALSE } LOD { range 5 level [ Group { children [ PointLight { } ] } "
+  OpenRTMapper& mapper = load("NavigationInfo { headlight FALSE } LOD { range 5 level [ Group { "
+                              "children [ PointLight { } ] } "
                               "Group { children [ Shape { geometry Box { } } ] } ] }");
   CameraSettings camera = mapper.viewpointCamera(0);
   mapper.map(camera);
@@ -282,8 +302,9 @@ TEST_F(MapWorld, LightsOfLevelsThatAreNotDrawnAreOff) {
 }
 
 TEST_F(MapWorld, MappingAgainKeepsWhatIsThere) {
-  OpenRTMapper& mapper = load("Billboard { children Shape { geometry Box { } } } DirectionalLight { }\n"
-                              "Group { children [ DirectionalLight { } Shape { geometry Sphere { } } ] }");
+  OpenRTMapper& mapper =
+      load("Billboard { children Shape { geometry Box { } } } DirectionalLight { }\n"
+           "Group { children [ DirectionalLight { } Shape { geometry Sphere { } } ] }");
   CameraSettings camera = mapper.viewpointCamera(0);
   mapper.map(camera);
   const RTstats first = engine();
@@ -309,7 +330,8 @@ TEST_F(MapWorld, HeadlightByOption) {
 }
 
 TEST_F(MapWorld, AMissingTextureIsSaidOnceWithItsPlace) {
-  map("Shape { appearance DEF A Appearance { material Material { } texture ImageTexture { url [ \"no.png\", \"nor.jpg\" ] } } "
+  map("Shape { appearance DEF A Appearance { material Material { } texture ImageTexture { url [ "
+      "\"no.png\", \"nor.jpg\" ] } } "
       "geometry Box { } }\nShape { appearance USE A geometry Sphere { } }");
   ASSERT_EQ(world_->diagnostics.warnings(), 1u);
   EXPECT_EQ(world_->diagnostics.list()[0].line, 2u);
@@ -317,14 +339,16 @@ TEST_F(MapWorld, AMissingTextureIsSaidOnceWithItsPlace) {
 }
 
 TEST_F(MapWorld, ABadShaderIsAnErrorWithItsPlace) {
-  map("Shape { appearance ORTAppearance { shader\n ORTShader { name \"Nothing\" file \"nosuchshader\" } } geometry Box { } }");
+  map("Shape { appearance ORTAppearance { shader\n ORTShader { name \"Nothing\" file "
+      "\"nosuchshader\" } } geometry Box { } }");
   ASSERT_EQ(world_->diagnostics.errors(), 1u);
   EXPECT_EQ(world_->diagnostics.list()[0].line, 3u);
   EXPECT_EQ(engine().triangles, 12u) << "the shape is there all the same";
 }
 
 TEST_F(MapWorld, ShaderOptionsAreParametersOfTheClass) {
-  map("Shape { appearance ORTAppearance { shader ORTShader { name \"VRML97\" options [ \"color diffuseColor 1 0 0\", \"1i lit "
+  map("Shape { appearance ORTAppearance { shader ORTShader { name \"VRML97\" options [ \"color "
+      "diffuseColor 1 0 0\", \"1i lit "
       "1\", "
       "\"1f nonsense 1\" ] } } geometry Box { } }");
   ASSERT_EQ(world_->diagnostics.errors(), 1u);
@@ -334,11 +358,14 @@ TEST_F(MapWorld, ShaderOptionsAreParametersOfTheClass) {
 TEST_F(MapWorld, HostileNumbersDoNotHarm) {
   map("Transform { scale 0 0 0 children Shape { geometry Box { } } }\n"
       "Transform { scale 1e-20 1e-20 1e-20 children Shape { geometry Sphere { } } }\n"
-      "Transform { scale 1e30 1e30 1e30 children [ DirectionalLight { } Shape { geometry Sphere { radius 1e30 } } ] }\n"
-      "Transform { scale 0 0 0 children [ Viewpoint { } Fog { visibilityRange 10 } Billboard { children Shape { geometry Box { } "
+      "Transform { scale 1e30 1e30 1e30 children [ DirectionalLight { } Shape { geometry Sphere { "
+      "radius 1e30 } } ] }\n"
+      "Transform { scale 0 0 0 children [ Viewpoint { } Fog { visibilityRange 10 } Billboard { "
+      "children Shape { geometry Box { } "
       "} } "
       "LOD { range 3 level [ Shape { geometry Box { } } ] } PointLight { } ] }\n"
-      "PointLight { attenuation 0 0 0 radius 0 } SpotLight { direction 0 0 0 beamWidth 3 cutOffAngle 0 }");
+      "PointLight { attenuation 0 0 0 radius 0 } SpotLight { direction 0 0 0 beamWidth 3 "
+      "cutOffAngle 0 }");
   engine();
   const CameraSettings c = mapper_->viewpointCamera(0);
   for (const double v : c.matrix) EXPECT_TRUE(std::isfinite(v));

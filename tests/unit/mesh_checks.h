@@ -87,12 +87,14 @@ inline void expectSound(const Mesh& mesh) {
   for (const Vec3f& p : mesh.points) wild += !finite(p.x, p.y, p.z);
   for (const Vec2f& p : mesh.texCoords) wild += !finite(p.x, p.y);
   for (const Color& c : mesh.colors) wild += !finite(c.r, c.g, c.b);
-  for (const Vec3f& n : mesh.normals) notUnit += !(std::abs(std::sqrt(n.x * n.x + n.y * n.y + n.z * n.z) - 1) < 1e-4);
+  for (const Vec3f& n : mesh.normals)
+    notUnit += !(std::abs(std::sqrt(n.x * n.x + n.y * n.y + n.z * n.z) - 1) < 1e-4);
   EXPECT_EQ(outside, 0u);
   EXPECT_EQ(wild, 0u);
   EXPECT_EQ(notUnit, 0u);
   for (size_t size : {mesh.normals.size(), mesh.texCoords.size(), mesh.colors.size()})
-    EXPECT_TRUE(size == 0 || size == mesh.points.size()) << size << " beside " << mesh.points.size();
+    EXPECT_TRUE(size == 0 || size == mesh.points.size())
+        << size << " beside " << mesh.points.size();
 }
 
 using D3 = std::array<double, 3>;
@@ -104,17 +106,23 @@ inline D3 minus(const D3& a, const D3& b) { return {a[0] - b[0], a[1] - b[1], a[
 inline D3 crossProduct(const D3& a, const D3& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
-inline double dotProduct(const D3& a, const D3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-inline double dotProduct(const D3& a, const Vec3f& b) { return a[0] * b.x + a[1] * b.y + a[2] * b.z; }
+inline double dotProduct(const D3& a, const D3& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+inline double dotProduct(const D3& a, const Vec3f& b) {
+  return a[0] * b.x + a[1] * b.y + a[2] * b.z;
+}
 inline D3 areaVector(const Mesh& mesh, size_t triangle) {
-  D3 a = at(mesh, 3 * triangle), n = crossProduct(minus(at(mesh, 3 * triangle + 1), a), minus(at(mesh, 3 * triangle + 2), a));
+  D3 a = at(mesh, 3 * triangle),
+     n = crossProduct(minus(at(mesh, 3 * triangle + 1), a), minus(at(mesh, 3 * triangle + 2), a));
   return {n[0] / 2, n[1] / 2, n[2] / 2};
 }
 
 // Positive where the triangles of a closed mesh face outwards.
 inline double signedVolume(const Mesh& mesh) {
   double sum = 0;
-  for (size_t t = 0; t < mesh.indices.size() / 3; t++) sum += dotProduct(areaVector(mesh, t), at(mesh, 3 * t)) / 3;
+  for (size_t t = 0; t < mesh.indices.size() / 3; t++)
+    sum += dotProduct(areaVector(mesh, t), at(mesh, 3 * t)) / 3;
   return mesh.ccw ? sum : -sum;
 }
 
@@ -130,7 +138,9 @@ inline double area(const Mesh& mesh) {
 // Edges, by place, that are not met by as many edges the other way: 0 for a watertight mesh.
 inline size_t openEdges(const Mesh& mesh) {
   std::map<D3, int> names;
-  auto name = [&](size_t corner) { return names.emplace(at(mesh, corner), int(names.size())).first->second; };
+  auto name = [&](size_t corner) {
+    return names.emplace(at(mesh, corner), int(names.size())).first->second;
+  };
   std::map<std::pair<int, int>, int> count;
   for (size_t t = 0; t < mesh.indices.size() / 3; t++)
     for (size_t e = 0; e < 3; e++) {

@@ -1,4 +1,5 @@
-// openrt_api_arrays.cpp: rtDrawArrays and rtDrawElements: layouts, types, what is checked and what is copied.
+// openrt_api_arrays.cpp: rtDrawArrays and rtDrawElements: layouts, types, what is checked and what
+// is copied.
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -58,7 +59,9 @@ TEST_F(Arrays, InterleavedAndUnaligned) {
   struct Vertex {
     char tag;
     float position[3], st[2], color[3];
-  } vertices[3] = {{'a', {0, 0, 0}, {0, 0}, {1, 0, 0}}, {'b', {1, 0, 0}, {1, 0}, {0, 1, 0}}, {'c', {0, 1, 0}, {0, 1}, {0, 0, 1}}};
+  } vertices[3] = {{'a', {0, 0, 0}, {0, 0}, {1, 0, 0}},
+                   {'b', {1, 0, 0}, {1, 0}, {0, 1, 0}},
+                   {'c', {0, 1, 0}, {0, 1}, {0, 0, 1}}};
 #pragma pack(pop)
   const char* base = reinterpret_cast<const char*>(vertices);
   rtBeginObject(0);
@@ -135,7 +138,8 @@ TEST_F(Arrays, AttributesWithoutAnArrayHaveTheCurrentValue) {
   rtVertexPointer(3, RT_FLOAT, 0, square);
   rtDrawArrays(RT_TRIANGLES, 0, 3);
   const edit::GeometryT& g = only();
-  EXPECT_EQ(contents<float>(*last, g.colors), (Floats{0.5f, 0.25f, 0, 1, 0.5f, 0.25f, 0, 1, 0.5f, 0.25f, 0, 1}));
+  EXPECT_EQ(contents<float>(*last, g.colors),
+            (Floats{0.5f, 0.25f, 0, 1, 0.5f, 0.25f, 0, 1, 0.5f, 0.25f, 0, 1}));
   EXPECT_EQ(g.normals, 0u);
 }
 
@@ -155,8 +159,10 @@ TEST_F(Arrays, OnlyVerticesInUseMustBeFinite) {
 
 TEST_F(Arrays, BadCallsAreErrorsAndDrawNothing) {
   const uint32_t indices[3] = {0, 1, 4};
-  const float infinite[12] = {1, 1, 1, 1, 1, 1, 1, 1, std::numeric_limits<float>::infinity(), 1, 1, 1};
-  const double wide[9] = {0, 0, 0, 1, 0, 0, 0, 1e39, 0}, notANumber[9] = {0, 0, 0, 1, 0, 0, 0, std::nan(""), 0};
+  const float infinite[12] = {1, 1, 1, 1, 1, 1, 1, 1, std::numeric_limits<float>::infinity(),
+                              1, 1, 1};
+  const double wide[9] = {0, 0, 0, 1, 0, 0, 0, 1e39, 0},
+               notANumber[9] = {0, 0, 0, 1, 0, 0, 0, std::nan(""), 0};
   rtVertexPointer(3, RT_FLOAT, 0, square);
   EXPECT_FAILS(RT_INVALID_OPERATION, rtDrawArrays(RT_TRIANGLES, 0, 3)); // no object
   rtBeginObject(0);

@@ -1,5 +1,5 @@
-// openrt_api_async.cpp: frames in flight, with the backend that renders: cancel in each phase and from another thread, progress,
-// snapshots, and edits that reach only the next frame.
+// openrt_api_async.cpp: frames in flight, with the backend that renders: cancel in each phase and
+// from another thread, progress, snapshots, and edits that reach only the next frame.
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -74,7 +74,8 @@ TEST_F(Async, SwapBuffersIsOneFrameLate) {
 TEST_F(Async, EditsInFlightReachTheNextFrameAlone) {
   rtQuality(RT_SAMPLES_PER_PIXEL, 64);
   rtSwapBuffers();
-  rtParameter3f(emissive, 1, 0, 0); // parameters, matrices, geometry, deletion: all while it renders
+  rtParameter3f(emissive, 1, 0,
+                0); // parameters, matrices, geometry, deletion: all while it renders
   const double away[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 100, 0, 0, 1};
   rtInstanceMatrix(instance, away);
   rtBeginObject(object);
@@ -159,7 +160,8 @@ TEST_F(Async, ASnapshotHoldsWhatIsFinished) {
   }
   EXPECT_GT(finished, 0u);
   rtCancel(context);
-  rtSwapBuffers(); // the frame that is in flight now is like it: cancelled by the deletion of the context
+  rtSwapBuffers(); // the frame that is in flight now is like it: cancelled by the deletion of the
+                   // context
 }
 
 TEST_F(Async, DeletingTheContextEndsItsFrame) {

@@ -1,6 +1,7 @@
-// openrt_api_every_call.cpp: every function of openrt.h in every state and with every kind of argument in which it must fail: the
-// error's number, the function's name in its text, and nothing changed. The tables are compared with the header: a function that
-// is missing in them fails.
+// openrt_api_every_call.cpp: every function of openrt.h in every state and with every kind of
+// argument in which it must fail: the error's number, the function's name in its text, and nothing
+// changed. The tables are compared with the header: a function that is missing in them fails.
+// Longer than 500 lines because it has one test for each call of the API.
 #include <cfloat>
 #include <cmath>
 #include <fstream>
@@ -21,7 +22,8 @@ constexpr float nan = NAN, inf = INFINITY;
 constexpr RTid foreign = 4711;
 
 struct World {
-  RTid object = 0, instance = 0, surfaceClass = 0, surface = 0, varying = 0, lamp = 0, eye = 0, sky = 0, texture = 0, light = 0;
+  RTid object = 0, instance = 0, surfaceClass = 0, surface = 0, varying = 0, lamp = 0, eye = 0,
+       sky = 0, texture = 0, light = 0;
   RTcontext context = nullptr;
   int number = -1, list = -1, text = -1, image = -1, count = -1, whole = -1, color = -1;
 };
@@ -41,9 +43,9 @@ struct Named {
   const char* name;
   Call call;
 };
-#define CALL(function, ...)                                                                                                      \
-  {                                                                                                                              \
-#function, [](World & w) { (void)w, function(__VA_ARGS__); }                                                                 \
+#define CALL(function, ...)                                                                        \
+  {                                                                                                \
+#function, [](World & w) { (void)w, function(__VA_ARGS__); }                                   \
   }
 
 RTid ids[2];
@@ -162,8 +164,10 @@ const Named needContext[] = {
 };
 // These need none.
 const char* const anywhere[] = {
-    "rtGetError", "rtGetErrorMessage", "rtNewContext", "rtMakeCurrent", "rtGetCurrent", "rtDeleteContext", "rtInit",
-    "rtExit",     "rtCancel",          "rtProgress",   "rtSnapshot",    "rtGetWorkers", "rtRunningShader"};
+    "rtGetError",     "rtGetErrorMessage", "rtNewContext", "rtMakeCurrent",
+    "rtGetCurrent",   "rtDeleteContext",   "rtInit",       "rtExit",
+    "rtCancel",       "rtProgress",        "rtSnapshot",   "rtGetWorkers",
+    "rtRunningShader"};
 
 enum State { Outside, Definition, List };
 struct Wrong {
@@ -172,9 +176,9 @@ struct Wrong {
   State state;
   Call call;
 };
-#define WRONG(code, state, function, ...)                                                                                        \
-  {                                                                                                                              \
-#function, code, state, [](World & w) { (void)w, function(__VA_ARGS__); }                                                    \
+#define WRONG(code, state, function, ...)                                                          \
+  {                                                                                                \
+#function, code, state, [](World & w) { (void)w, function(__VA_ARGS__); }                      \
   }
 #define VALUE RT_INVALID_VALUE
 #define OPERATION RT_INVALID_OPERATION
@@ -182,15 +186,18 @@ struct Wrong {
 #define ENUM RT_INVALID_ENUM
 #define PARAMETER RT_INVALID_PARAMETER
 
-// The surface shader of the class Everything is bound, in definitions too; in lists it is one of the class Varying.
+// The surface shader of the class Everything is bound, in definitions too; in lists it is one of
+// the class Varying.
 const Wrong wrong[] = {
     // Definitions and lists that are not open, or are.
     WRONG(OPERATION, Outside, rtBegin, RT_TRIANGLES), WRONG(ENUM, Definition, rtBegin, 99),
-    WRONG(OPERATION, List, rtBegin, RT_TRIANGLES), WRONG(OPERATION, Outside, rtEnd), WRONG(OPERATION, Definition, rtEnd),
-    WRONG(OPERATION, Outside, rtEndObject), WRONG(OPERATION, List, rtEndObject), WRONG(OPERATION, Definition, rtBeginObject, 0),
+    WRONG(OPERATION, List, rtBegin, RT_TRIANGLES), WRONG(OPERATION, Outside, rtEnd),
+    WRONG(OPERATION, Definition, rtEnd), WRONG(OPERATION, Outside, rtEndObject),
+    WRONG(OPERATION, List, rtEndObject), WRONG(OPERATION, Definition, rtBeginObject, 0),
     WRONG(OPERATION, List, rtBeginObject, 0), WRONG(ID, Outside, rtBeginObject, foreign),
     WRONG(ID, Outside, rtBeginObject, w.texture), WRONG(OPERATION, Definition, rtRender),
-    WRONG(OPERATION, Definition, rtSwapBuffers), WRONG(OPERATION, List, rtRender), WRONG(OPERATION, List, rtSwapBuffers),
+    WRONG(OPERATION, Definition, rtSwapBuffers), WRONG(OPERATION, List, rtRender),
+    WRONG(OPERATION, List, rtSwapBuffers),
     // Vertices and their attributes.
     WRONG(OPERATION, Outside, rtVertex2f, 0, 0), WRONG(OPERATION, Definition, rtVertex2f, 0, 0),
     WRONG(VALUE, List, rtVertex2f, nan, 0), WRONG(OPERATION, Definition, rtVertex3f, 0, 0, 0),
@@ -204,33 +211,43 @@ const Wrong wrong[] = {
     WRONG(VALUE, List, rtTexCoord2fv, badThree), WRONG(VALUE, Outside, rtColor3f, 0, 0, nan),
     WRONG(VALUE, Outside, rtColor3fv, nullptr), WRONG(VALUE, List, rtColor3fv, badThree),
     WRONG(VALUE, Outside, rtColor4f, 0, 0, 0, nan), WRONG(VALUE, Outside, rtColor4fv, nullptr),
-    WRONG(VALUE, List, rtColor4fv, badThree), WRONG(VALUE, Outside, rtLineWidth, 0), WRONG(VALUE, Outside, rtLineWidth, nan),
-    WRONG(VALUE, Outside, rtPointSize, -1), WRONG(VALUE, Outside, rtPointSize, inf), WRONG(ENUM, Outside, rtEnable, 1),
-    WRONG(ENUM, Outside, rtDisable, 1), WRONG(OPERATION, Outside, rtSphere, 1), WRONG(OPERATION, List, rtSphere, 1),
-    WRONG(VALUE, Definition, rtSphere, 0), WRONG(VALUE, Definition, rtSphere, nan),
+    WRONG(VALUE, List, rtColor4fv, badThree), WRONG(VALUE, Outside, rtLineWidth, 0),
+    WRONG(VALUE, Outside, rtLineWidth, nan), WRONG(VALUE, Outside, rtPointSize, -1),
+    WRONG(VALUE, Outside, rtPointSize, inf), WRONG(ENUM, Outside, rtEnable, 1),
+    WRONG(ENUM, Outside, rtDisable, 1), WRONG(OPERATION, Outside, rtSphere, 1),
+    WRONG(OPERATION, List, rtSphere, 1), WRONG(VALUE, Definition, rtSphere, 0),
+    WRONG(VALUE, Definition, rtSphere, nan),
     // Arrays.
     WRONG(VALUE, Outside, rtVertexPointer, 2, RT_FLOAT, 0, three),
     WRONG(ENUM, Outside, rtVertexPointer, 3, RT_UNSIGNED_BYTE, 0, three),
-    WRONG(VALUE, Outside, rtVertexPointer, 3, RT_FLOAT, 8, three), WRONG(ENUM, Outside, rtNormalPointer, RT_DOUBLE, 0, three),
-    WRONG(VALUE, Outside, rtNormalPointer, RT_FLOAT, 11, three), WRONG(VALUE, Outside, rtTexCoordPointer, 3, RT_FLOAT, 0, three),
-    WRONG(ENUM, Outside, rtTexCoordPointer, 2, 0, 0, three), WRONG(VALUE, Outside, rtColorPointer, 5, RT_FLOAT, 0, three),
-    WRONG(ENUM, Outside, rtColorPointer, 4, RT_DOUBLE, 0, three), WRONG(OPERATION, Outside, rtDrawArrays, RT_TRIANGLES, 0, 3),
+    WRONG(VALUE, Outside, rtVertexPointer, 3, RT_FLOAT, 8, three),
+    WRONG(ENUM, Outside, rtNormalPointer, RT_DOUBLE, 0, three),
+    WRONG(VALUE, Outside, rtNormalPointer, RT_FLOAT, 11, three),
+    WRONG(VALUE, Outside, rtTexCoordPointer, 3, RT_FLOAT, 0, three),
+    WRONG(ENUM, Outside, rtTexCoordPointer, 2, 0, 0, three),
+    WRONG(VALUE, Outside, rtColorPointer, 5, RT_FLOAT, 0, three),
+    WRONG(ENUM, Outside, rtColorPointer, 4, RT_DOUBLE, 0, three),
+    WRONG(OPERATION, Outside, rtDrawArrays, RT_TRIANGLES, 0, 3),
     WRONG(OPERATION, List, rtDrawArrays, RT_TRIANGLES, 0, 3),
     WRONG(OPERATION, Definition, rtDrawArrays, RT_TRIANGLES, 0, 3), // no array
-    WRONG(ENUM, Definition, rtDrawArrays, 77, 0, 3), WRONG(VALUE, Definition, rtDrawArrays, RT_TRIANGLES, 0, SIZE_MAX),
+    WRONG(ENUM, Definition, rtDrawArrays, 77, 0, 3),
+    WRONG(VALUE, Definition, rtDrawArrays, RT_TRIANGLES, 0, SIZE_MAX),
     WRONG(OPERATION, Outside, rtDrawElements, RT_TRIANGLES, 3, indices, 3),
     WRONG(VALUE, Definition, rtDrawElements, RT_TRIANGLES, 3, nullptr, 3),
     WRONG(OPERATION, Definition, rtDrawElements, RT_TRIANGLES, 3, indices, 3),
     // Matrices.
-    WRONG(RT_STACK_UNDERFLOW, Outside, rtPopMatrix), WRONG(RT_STACK_UNDERFLOW, Definition, rtPopMatrix),
+    WRONG(RT_STACK_UNDERFLOW, Outside, rtPopMatrix),
+    WRONG(RT_STACK_UNDERFLOW, Definition, rtPopMatrix),
     WRONG(VALUE, Outside, rtLoadMatrixf, nullptr), WRONG(VALUE, Outside, rtLoadMatrixf, notFiniteF),
     WRONG(VALUE, Outside, rtLoadMatrixd, nullptr), WRONG(VALUE, Outside, rtLoadMatrixd, projective),
     WRONG(VALUE, Outside, rtMultMatrixf, nullptr), WRONG(VALUE, Outside, rtMultMatrixf, notFiniteF),
     WRONG(VALUE, Outside, rtMultMatrixd, nullptr), WRONG(VALUE, Outside, rtMultMatrixd, notFinite),
-    WRONG(VALUE, Outside, rtTranslatef, nan, 0, 0), WRONG(VALUE, Outside, rtTranslated, 0, HUGE_VAL, 0),
+    WRONG(VALUE, Outside, rtTranslatef, nan, 0, 0),
+    WRONG(VALUE, Outside, rtTranslated, 0, HUGE_VAL, 0),
     WRONG(VALUE, Outside, rtRotatef, nan, 0, 0, 1), WRONG(VALUE, Outside, rtRotated, 10, 0, 0, 0),
     WRONG(VALUE, Outside, rtScalef, 1, inf, 1), WRONG(VALUE, Outside, rtScaled, 1, 1, double(nan)),
-    WRONG(VALUE, Outside, rtGetMatrixd, nullptr), WRONG(VALUE, Outside, rtLookAt, 0, 0, 0, 0, 0, 0, 0, 1, 0),
+    WRONG(VALUE, Outside, rtGetMatrixd, nullptr),
+    WRONG(VALUE, Outside, rtLookAt, 0, 0, 0, 0, 0, 0, 0, 1, 0),
     WRONG(VALUE, Outside, rtLookAt, 0, 0, 1, 0, 0, 0, 0, 0, 1),
     WRONG(VALUE, Outside, rtLookAt, double(nan), 0, 1, 0, 0, 0, 0, 1, 0),
     // Objects and instances.
@@ -238,93 +255,145 @@ const Wrong wrong[] = {
     WRONG(ID, Outside, rtDeleteObject, foreign), WRONG(ID, Outside, rtDeleteObject, w.instance),
     WRONG(ID, Outside, rtInstantiateObject, 0), WRONG(ID, Outside, rtInstantiateObject, w.surface),
     WRONG(OPERATION, List, rtInstantiateObject, w.object), WRONG(ID, Outside, rtDeleteInstance, 0),
-    WRONG(ID, Outside, rtDeleteInstance, w.object), WRONG(ID, Outside, rtInstanceMatrix, foreign, identity),
-    WRONG(VALUE, Outside, rtInstanceMatrix, w.instance, nullptr), WRONG(VALUE, Outside, rtInstanceMatrix, w.instance, notFinite),
-    WRONG(VALUE, Outside, rtInstanceMatrix, w.instance, projective), WRONG(ID, Outside, rtInstanceVisible, foreign, 0),
-    WRONG(ID, Outside, rtInstanceShader, foreign, 0), WRONG(ID, Outside, rtInstanceShader, w.instance, foreign),
-    WRONG(OPERATION, Outside, rtInstanceShader, w.instance, w.lamp), WRONG(ID, Outside, rtInstanceHint, foreign, RT_DYNAMIC),
-    WRONG(ENUM, Outside, rtInstanceHint, w.instance, 0), WRONG(ID, Outside, rtObjectHint, foreign, RT_DYNAMIC),
-    WRONG(ENUM, Outside, rtObjectHint, w.object, 0), WRONG(ID, Outside, rtInstanceUserData, foreign, 0),
+    WRONG(ID, Outside, rtDeleteInstance, w.object),
+    WRONG(ID, Outside, rtInstanceMatrix, foreign, identity),
+    WRONG(VALUE, Outside, rtInstanceMatrix, w.instance, nullptr),
+    WRONG(VALUE, Outside, rtInstanceMatrix, w.instance, notFinite),
+    WRONG(VALUE, Outside, rtInstanceMatrix, w.instance, projective),
+    WRONG(ID, Outside, rtInstanceVisible, foreign, 0),
+    WRONG(ID, Outside, rtInstanceShader, foreign, 0),
+    WRONG(ID, Outside, rtInstanceShader, w.instance, foreign),
+    WRONG(OPERATION, Outside, rtInstanceShader, w.instance, w.lamp),
+    WRONG(ID, Outside, rtInstanceHint, foreign, RT_DYNAMIC),
+    WRONG(ENUM, Outside, rtInstanceHint, w.instance, 0),
+    WRONG(ID, Outside, rtObjectHint, foreign, RT_DYNAMIC),
+    WRONG(ENUM, Outside, rtObjectHint, w.object, 0),
+    WRONG(ID, Outside, rtInstanceUserData, foreign, 0),
     // Shaders.
-    WRONG(VALUE, Outside, rtNewShaderClass, nullptr, nullptr), WRONG(VALUE, Outside, rtNewShaderClass, "", nullptr),
+    WRONG(VALUE, Outside, rtNewShaderClass, nullptr, nullptr),
+    WRONG(VALUE, Outside, rtNewShaderClass, "", nullptr),
     WRONG(RT_PLUGIN_ERROR, Outside, rtNewShaderClass, "Nothing", "everything"),
     WRONG(RT_PLUGIN_ERROR, Outside, rtNewShaderClass, "Nothing", "no_such_library"),
-    WRONG(RT_PLUGIN_ERROR, Outside, rtNewShaderClass, "Everything", "../everything"), WRONG(ID, Outside, rtNewShader, foreign),
-    WRONG(ID, Outside, rtNewShader, w.surface), WRONG(ID, Outside, rtBindShader, foreign), WRONG(ID, Outside, rtDeleteShader, 0),
-    WRONG(ID, Outside, rtDeleteShader, w.surfaceClass), WRONG(PARAMETER, Outside, rtParameterHandle, "nothing"),
+    WRONG(RT_PLUGIN_ERROR, Outside, rtNewShaderClass, "Everything", "../everything"),
+    WRONG(ID, Outside, rtNewShader, foreign), WRONG(ID, Outside, rtNewShader, w.surface),
+    WRONG(ID, Outside, rtBindShader, foreign), WRONG(ID, Outside, rtDeleteShader, 0),
+    WRONG(ID, Outside, rtDeleteShader, w.surfaceClass),
+    WRONG(PARAMETER, Outside, rtParameterHandle, "nothing"),
     WRONG(VALUE, Outside, rtParameterHandle, nullptr), WRONG(VALUE, Outside, rtParameterHandle, ""),
-    WRONG(PARAMETER, Outside, rtParameter1i, -1, 0), WRONG(PARAMETER, Outside, rtParameter1i, w.number, 0), // of another type
-    WRONG(VALUE, Outside, rtParameter1i, w.count, 11), WRONG(PARAMETER, Outside, rtParameter1f, 1000, 0),
-    WRONG(VALUE, Outside, rtParameter1f, w.number, 2), WRONG(VALUE, Outside, rtParameter1f, w.number, nan),
-    WRONG(PARAMETER, Outside, rtParameter2f, w.number, 0, 0), WRONG(VALUE, Outside, rtParameter2f, 2, nan, 0),
-    WRONG(PARAMETER, Outside, rtParameter3f, w.number, 0, 0, 0), WRONG(VALUE, Outside, rtParameter3f, 3, 0, 0, inf),
-    WRONG(PARAMETER, Outside, rtParameter4f, w.number, 0, 0, 0, 0), WRONG(VALUE, Outside, rtParameter4f, 4, 0, nan, 0, 0),
-    WRONG(PARAMETER, Outside, rtParameter16f, w.number, identityF), WRONG(VALUE, Outside, rtParameter16f, 6, nullptr),
-    WRONG(VALUE, Outside, rtParameter16f, 6, notFiniteF), WRONG(PARAMETER, Outside, rtParameterfv, w.number, 1, three),
-    WRONG(VALUE, Outside, rtParameterfv, w.list, 1, nullptr), WRONG(VALUE, Outside, rtParameterfv, w.list, SIZE_MAX, three),
+    WRONG(PARAMETER, Outside, rtParameter1i, -1, 0),
+    WRONG(PARAMETER, Outside, rtParameter1i, w.number, 0), // of another type
+    WRONG(VALUE, Outside, rtParameter1i, w.count, 11),
+    WRONG(PARAMETER, Outside, rtParameter1f, 1000, 0),
+    WRONG(VALUE, Outside, rtParameter1f, w.number, 2),
+    WRONG(VALUE, Outside, rtParameter1f, w.number, nan),
+    WRONG(PARAMETER, Outside, rtParameter2f, w.number, 0, 0),
+    WRONG(VALUE, Outside, rtParameter2f, 2, nan, 0),
+    WRONG(PARAMETER, Outside, rtParameter3f, w.number, 0, 0, 0),
+    WRONG(VALUE, Outside, rtParameter3f, 3, 0, 0, inf),
+    WRONG(PARAMETER, Outside, rtParameter4f, w.number, 0, 0, 0, 0),
+    WRONG(VALUE, Outside, rtParameter4f, 4, 0, nan, 0, 0),
+    WRONG(PARAMETER, Outside, rtParameter16f, w.number, identityF),
+    WRONG(VALUE, Outside, rtParameter16f, 6, nullptr),
+    WRONG(VALUE, Outside, rtParameter16f, 6, notFiniteF),
+    WRONG(PARAMETER, Outside, rtParameterfv, w.number, 1, three),
+    WRONG(VALUE, Outside, rtParameterfv, w.list, 1, nullptr),
+    WRONG(VALUE, Outside, rtParameterfv, w.list, SIZE_MAX, three),
     WRONG(VALUE, Outside, rtParameterfv, w.list, 4, three), // out of its range
-    WRONG(PARAMETER, Outside, rtParameterString, w.number, ""), WRONG(VALUE, Outside, rtParameterString, w.text, nullptr),
-    WRONG(PARAMETER, Outside, rtParameterTexture, w.number, 0), WRONG(ID, Outside, rtParameterTexture, w.image, foreign),
-    WRONG(ID, Outside, rtParameterTexture, w.image, w.object), WRONG(VALUE, List, rtParameter3f, w.color, 2, 0, 0),
-    WRONG(VALUE, List, rtParameter3f, w.color, nan, 0, 0), WRONG(PARAMETER, List, rtParameter2f, w.color, 0, 0),
+    WRONG(PARAMETER, Outside, rtParameterString, w.number, ""),
+    WRONG(VALUE, Outside, rtParameterString, w.text, nullptr),
+    WRONG(PARAMETER, Outside, rtParameterTexture, w.number, 0),
+    WRONG(ID, Outside, rtParameterTexture, w.image, foreign),
+    WRONG(ID, Outside, rtParameterTexture, w.image, w.object),
+    WRONG(VALUE, List, rtParameter3f, w.color, 2, 0, 0),
+    WRONG(VALUE, List, rtParameter3f, w.color, nan, 0, 0),
+    WRONG(PARAMETER, List, rtParameter2f, w.color, 0, 0),
     WRONG(OPERATION, List, rtParameter1f, w.whole, 0), // of the whole shader
     WRONG(OPERATION, List, rtParameter1i, 0, 0), WRONG(PARAMETER, List, rtParameter1f, 99, 0),
     WRONG(OPERATION, Outside, rtParameterPointer, w.number, 0, three), // of the whole shader
-    WRONG(PARAMETER, Outside, rtParameterPointer, -1, 0, three), WRONG(PARAMETER, Outside, rtParameterPointer, w.count, 0, three),
-    WRONG(OPERATION, List, rtParameterPointer, w.color, 0, three), WRONG(OPERATION, Definition, rtReloadShaders),
-    WRONG(ID, Outside, rtGetShaderClass, foreign, nullptr, nullptr), WRONG(ID, Outside, rtGetParameterInfo, foreign, 0, &info),
+    WRONG(PARAMETER, Outside, rtParameterPointer, -1, 0, three),
+    WRONG(PARAMETER, Outside, rtParameterPointer, w.count, 0, three),
+    WRONG(OPERATION, List, rtParameterPointer, w.color, 0, three),
+    WRONG(OPERATION, Definition, rtReloadShaders),
+    WRONG(ID, Outside, rtGetShaderClass, foreign, nullptr, nullptr),
+    WRONG(ID, Outside, rtGetParameterInfo, foreign, 0, &info),
     WRONG(PARAMETER, Outside, rtGetParameterInfo, w.surfaceClass, 10, &info),
     WRONG(VALUE, Outside, rtGetParameterInfo, w.surfaceClass, 0, nullptr),
     // Roles.
     WRONG(ID, Outside, rtUseLight, 0), WRONG(OPERATION, Outside, rtUseLight, w.surface),
-    WRONG(OPERATION, Definition, rtUseLight, w.lamp), WRONG(ID, Outside, rtLightMatrix, foreign, identity),
-    WRONG(VALUE, Outside, rtLightMatrix, w.light, nullptr), WRONG(VALUE, Outside, rtLightMatrix, w.light, notFinite),
-    WRONG(ID, Outside, rtLightScope, foreign, 0), WRONG(ID, Outside, rtLightScope, w.light, foreign),
-    WRONG(ID, Outside, rtRemoveLight, 0), WRONG(ID, Outside, rtRemoveLight, w.instance),
+    WRONG(OPERATION, Definition, rtUseLight, w.lamp),
+    WRONG(ID, Outside, rtLightMatrix, foreign, identity),
+    WRONG(VALUE, Outside, rtLightMatrix, w.light, nullptr),
+    WRONG(VALUE, Outside, rtLightMatrix, w.light, notFinite),
+    WRONG(ID, Outside, rtLightScope, foreign, 0),
+    WRONG(ID, Outside, rtLightScope, w.light, foreign), WRONG(ID, Outside, rtRemoveLight, 0),
+    WRONG(ID, Outside, rtRemoveLight, w.instance),
     WRONG(OPERATION, Outside, rtUseCamera, w.surface), WRONG(ID, Outside, rtUseCamera, foreign),
-    WRONG(OPERATION, Definition, rtUseCamera, w.eye), WRONG(OPERATION, Outside, rtUseEnvironment, w.surface),
-    WRONG(OPERATION, Definition, rtUseEnvironment, w.sky), WRONG(OPERATION, Outside, rtUseTransport, w.surface),
+    WRONG(OPERATION, Definition, rtUseCamera, w.eye),
+    WRONG(OPERATION, Outside, rtUseEnvironment, w.surface),
+    WRONG(OPERATION, Definition, rtUseEnvironment, w.sky),
+    WRONG(OPERATION, Outside, rtUseTransport, w.surface),
     WRONG(ID, Outside, rtUseTransport, foreign), WRONG(OPERATION, Outside, rtDefaultShader, w.lamp),
     WRONG(ID, Outside, rtDefaultShader, foreign), WRONG(VALUE, Outside, rtPerspective, 0),
     WRONG(VALUE, Outside, rtPerspective, 180), WRONG(OPERATION, Definition, rtPerspective, 40),
-    WRONG(VALUE, Outside, rtOrtho, -1), WRONG(VALUE, Outside, rtOrtho, double(inf)), WRONG(OPERATION, Definition, rtOrtho, 1),
+    WRONG(VALUE, Outside, rtOrtho, -1), WRONG(VALUE, Outside, rtOrtho, double(inf)),
+    WRONG(OPERATION, Definition, rtOrtho, 1),
     // Textures; none is bound.
     WRONG(VALUE, Outside, rtGenTextures, 1, nullptr), WRONG(ID, Outside, rtDeleteTexture, 0),
     WRONG(ID, Outside, rtDeleteTexture, w.object), WRONG(ID, Outside, rtBindTexture, foreign),
     WRONG(OPERATION, Outside, rtTexImage2D, 1, 1, 1, RT_UNSIGNED_BYTE, bytes),
     WRONG(OPERATION, Outside, rtTexParameteri, RT_TEXTURE_SRGB, 1),
     // Frames and queries.
-    WRONG(VALUE, Outside, rtFrameBuffer, 0, 1, RT_RGBA), WRONG(VALUE, Outside, rtFrameBuffer, 65537, 1, RT_RGBA),
-    WRONG(VALUE, Outside, rtFrameBuffer, 65536, 65536, RT_RGBA), WRONG(VALUE, Outside, rtFrameBuffer, 1, 1, 0),
+    WRONG(VALUE, Outside, rtFrameBuffer, 0, 1, RT_RGBA),
+    WRONG(VALUE, Outside, rtFrameBuffer, 65537, 1, RT_RGBA),
+    WRONG(VALUE, Outside, rtFrameBuffer, 65536, 65536, RT_RGBA),
+    WRONG(VALUE, Outside, rtFrameBuffer, 1, 1, 0),
     WRONG(VALUE, Outside, rtFrameBuffer, 1, 1, 1u << 31), WRONG(ENUM, Outside, rtQuality, 0, 0),
-    WRONG(ENUM, Outside, rtQuality, RT_CLAMP, 0), WRONG(VALUE, Outside, rtQuality, RT_SAMPLES_PER_PIXEL, 0),
-    WRONG(VALUE, Outside, rtQuality, RT_MAX_DEPTH, -1), WRONG(VALUE, Outside, rtQuality, RT_SHADOWS, 2),
-    WRONG(VALUE, Outside, rtQuality, RT_TRANSPORT, 5), WRONG(VALUE, Outside, rtQuality, RT_REPLICATES, 1025),
-    WRONG(VALUE, Outside, rtQuality, RT_PROGRESSIVE, 2), WRONG(VALUE, Outside, rtQuality, RT_FRAMES_IN_FLIGHT, 0),
-    WRONG(VALUE, Outside, rtQuality, RT_FRAMES_IN_FLIGHT, 65), WRONG(VALUE, Outside, rtQuality, RT_TILE_SIZE, 3),
-    WRONG(VALUE, Outside, rtQuality, RT_TILE_SIZE, 129), WRONG(ENUM, Outside, rtQualityf, RT_SEED, 0),
-    WRONG(VALUE, Outside, rtQualityf, RT_TARGET_ERROR, 1.5), WRONG(VALUE, Outside, rtQualityf, RT_TIME_LIMIT, -1),
-    WRONG(VALUE, Outside, rtQualityf, RT_ENERGY_CUT, double(nan)), WRONG(VALUE, Outside, rtQualityf, RT_CLAMP, double(inf)),
-    WRONG(ENUM, Outside, rtReadPixels, 3, floats, 64), WRONG(OPERATION, Outside, rtReadPixels, RT_DEPTH, floats, 64),
-    WRONG(VALUE, Outside, rtReadPixels, RT_RGBA, nullptr, 64), WRONG(VALUE, Outside, rtReadPixels, RT_RGBA, floats, 31),
-    WRONG(VALUE, Outside, rtGetStats, nullptr), WRONG(VALUE, Outside, rtGetStats, (statistics.size = 0, &statistics)),
-    WRONG(VALUE, Outside, rtPick, double(nan), 0, &hit), WRONG(VALUE, Outside, rtPick, 0, 0, nullptr),
-    WRONG(VALUE, Outside, rtCastRays, 1, nullptr, &hit), WRONG(VALUE, Outside, rtCastRays, 1, &ray, nullptr),
+    WRONG(ENUM, Outside, rtQuality, RT_CLAMP, 0),
+    WRONG(VALUE, Outside, rtQuality, RT_SAMPLES_PER_PIXEL, 0),
+    WRONG(VALUE, Outside, rtQuality, RT_MAX_DEPTH, -1),
+    WRONG(VALUE, Outside, rtQuality, RT_SHADOWS, 2),
+    WRONG(VALUE, Outside, rtQuality, RT_TRANSPORT, 5),
+    WRONG(VALUE, Outside, rtQuality, RT_REPLICATES, 1025),
+    WRONG(VALUE, Outside, rtQuality, RT_PROGRESSIVE, 2),
+    WRONG(VALUE, Outside, rtQuality, RT_FRAMES_IN_FLIGHT, 0),
+    WRONG(VALUE, Outside, rtQuality, RT_FRAMES_IN_FLIGHT, 65),
+    WRONG(VALUE, Outside, rtQuality, RT_TILE_SIZE, 3),
+    WRONG(VALUE, Outside, rtQuality, RT_TILE_SIZE, 129),
+    WRONG(ENUM, Outside, rtQualityf, RT_SEED, 0),
+    WRONG(VALUE, Outside, rtQualityf, RT_TARGET_ERROR, 1.5),
+    WRONG(VALUE, Outside, rtQualityf, RT_TIME_LIMIT, -1),
+    WRONG(VALUE, Outside, rtQualityf, RT_ENERGY_CUT, double(nan)),
+    WRONG(VALUE, Outside, rtQualityf, RT_CLAMP, double(inf)),
+    WRONG(ENUM, Outside, rtReadPixels, 3, floats, 64),
+    WRONG(OPERATION, Outside, rtReadPixels, RT_DEPTH, floats, 64),
+    WRONG(VALUE, Outside, rtReadPixels, RT_RGBA, nullptr, 64),
+    WRONG(VALUE, Outside, rtReadPixels, RT_RGBA, floats, 31),
+    WRONG(VALUE, Outside, rtGetStats, nullptr),
+    WRONG(VALUE, Outside, rtGetStats, (statistics.size = 0, &statistics)),
+    WRONG(VALUE, Outside, rtPick, double(nan), 0, &hit),
+    WRONG(VALUE, Outside, rtPick, 0, 0, nullptr),
+    WRONG(VALUE, Outside, rtCastRays, 1, nullptr, &hit),
+    WRONG(VALUE, Outside, rtCastRays, 1, &ray, nullptr),
     WRONG(VALUE, Outside, rtOccludedRays, 1, &ray, nullptr),
     // Contexts.
-    WRONG(VALUE, Outside, rtNewContext, "nonsense"), WRONG(VALUE, Outside, rtNewContext, "backend=debug:nothing"),
+    WRONG(VALUE, Outside, rtNewContext, "nonsense"),
+    WRONG(VALUE, Outside, rtNewContext, "backend=debug:nothing"),
     WRONG(VALUE, Outside, rtMakeCurrent, reinterpret_cast<RTcontext>(&ids)),
-    WRONG(VALUE, Outside, rtDeleteContext, reinterpret_cast<RTcontext>(&ids)), WRONG(VALUE, Outside, rtCancel, nullptr),
+    WRONG(VALUE, Outside, rtDeleteContext, reinterpret_cast<RTcontext>(&ids)),
+    WRONG(VALUE, Outside, rtCancel, nullptr),
     WRONG(VALUE, Outside, rtProgress, reinterpret_cast<RTcontext>(&ids)),
-    WRONG(VALUE, Outside, rtSnapshot, nullptr, RT_RGBA, floats, 64), WRONG(VALUE, Outside, rtGetWorkers, nullptr, nullptr, 0),
+    WRONG(VALUE, Outside, rtSnapshot, nullptr, RT_RGBA, floats, 64),
+    WRONG(VALUE, Outside, rtGetWorkers, nullptr, nullptr, 0),
     WRONG(VALUE, Outside, rtGetWorkers, rtGetCurrent(), nullptr, 1),
     WRONG(VALUE, Outside, rtGetWorkers, rtGetCurrent(), (worker.size = 0, &worker), 1),
-    WRONG(VALUE, Outside, rtSnapshot, w.context, RT_RGBA, nullptr, 64), WRONG(OPERATION, Outside, rtExit), // without rtInit
+    WRONG(VALUE, Outside, rtSnapshot, w.context, RT_RGBA, nullptr, 64),
+    WRONG(OPERATION, Outside, rtExit), // without rtInit
 };
 // They cannot fail but for want of a context, or cannot fail at all.
-const char* const infallible[] = {"rtErrorCallback", "rtLogCallback",   "rtLoadName",   "rtPushMatrix",
-                                  "rtLoadIdentity",  "rtGetError",      "rtGetCurrent", "rtGetErrorMessage",
-                                  "rtInit",          "rtRunningShader", "rtFinishFrame"};
+const char* const infallible[] = {"rtErrorCallback", "rtLogCallback",     "rtLoadName",
+                                  "rtPushMatrix",    "rtLoadIdentity",    "rtGetError",
+                                  "rtGetCurrent",    "rtGetErrorMessage", "rtInit",
+                                  "rtRunningShader", "rtFinishFrame"};
 
 class EveryCall : public ApiTest {
  protected:
@@ -333,7 +402,9 @@ class EveryCall : public ApiTest {
     w.context = handle;
     w.object = triangleObject();
     w.instance = rtInstantiateObject(w.object);
-    const auto make = [](const char* name, const char* library) { return rtNewShader(rtNewShaderClass(name, library)); };
+    const auto make = [](const char* name, const char* library) {
+      return rtNewShader(rtNewShaderClass(name, library));
+    };
     w.surfaceClass = rtNewShaderClass("Everything", "everything");
     w.lamp = make("Lamp", "everything");
     w.eye = make("Eye", "everything");
@@ -362,7 +433,8 @@ TEST_F(EveryCall, FailsWithoutAContext) {
   for (const Named& each : needContext) {
     each.call(w);
     EXPECT_EQ(rtGetError(), RTenum(RT_INVALID_OPERATION)) << each.name;
-    EXPECT_EQ(std::string(rtGetErrorMessage()), std::string(each.name) + ": no context is current on this thread");
+    EXPECT_EQ(std::string(rtGetErrorMessage()),
+              std::string(each.name) + ": no context is current on this thread");
   }
   rtMakeCurrent(handle);
   EXPECT_TRUE(commit().edits.edits.empty());
@@ -385,7 +457,9 @@ TEST_F(EveryCall, WrongArgumentsAndStatesAreErrorsThatChangeNothing) {
     const RTenum code = rtGetError();
     const std::string text = rtGetErrorMessage();
     EXPECT_EQ(code, each.code) << text;
-    EXPECT_TRUE(text.starts_with(std::string(each.name) + ": ") && text.size() > std::string(each.name).size() + 4) << text;
+    EXPECT_TRUE(text.starts_with(std::string(each.name) + ": ") &&
+                text.size() > std::string(each.name).size() + 4)
+        << text;
     EXPECT_EQ(rtGetCurrent(), handle);
     EXPECT_EQ(currentMatrix(), before);
     if (each.state == List) {
@@ -401,7 +475,8 @@ TEST_F(EveryCall, WrongArgumentsAndStatesAreErrorsThatChangeNothing) {
       EXPECT_EQ(geometries.size(), each.state == List ? 1u : 0u);
       for (const auto& g : geometries) {
         EXPECT_EQ(contents<float>(c, g->points), (std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0}));
-        EXPECT_TRUE(g->normals == 0 && g->texCoords == 0 && g->colors == 0 && g->parameters.empty());
+        EXPECT_TRUE(g->normals == 0 && g->texCoords == 0 && g->colors == 0 &&
+                    g->parameters.empty());
       }
       rtDeleteObject(object);
     }
@@ -412,8 +487,11 @@ TEST_F(EveryCall, WrongArgumentsAndStatesAreErrorsThatChangeNothing) {
 
 TEST_F(EveryCall, TheFirstErrorSticksAndTheCallbackHearsAll) {
   std::vector<std::string> heard;
-  rtErrorCallback([](RTenum, const char* text, void* user) { static_cast<std::vector<std::string>*>(user)->emplace_back(text); },
-                  &heard);
+  rtErrorCallback(
+      [](RTenum, const char* text, void* user) {
+        static_cast<std::vector<std::string>*>(user)->emplace_back(text);
+      },
+      &heard);
   rtEnd();
   rtDeleteObject(foreign);
   rtNewShader(foreign);
@@ -432,8 +510,10 @@ TEST(EveryCallTables, HoldEveryFunctionOfTheHeader) {
   std::set<std::string> declared, listed(std::begin(anywhere), std::end(anywhere)),
       failing(std::begin(infallible), std::end(infallible));
   const std::regex declaration("RT_API [^;(]*\\b(rt[A-Z]\\w*)\\(");
-  for (std::sregex_iterator it(header.begin(), header.end(), declaration), end; it != end; ++it) declared.insert((*it)[1]);
-  for (const Named& each : needContext) EXPECT_TRUE(listed.insert(each.name).second) << each.name << " is listed twice";
+  for (std::sregex_iterator it(header.begin(), header.end(), declaration), end; it != end; ++it)
+    declared.insert((*it)[1]);
+  for (const Named& each : needContext)
+    EXPECT_TRUE(listed.insert(each.name).second) << each.name << " is listed twice";
   for (const Wrong& each : wrong) failing.insert(each.name);
   EXPECT_GT(declared.size(), 100u);
   EXPECT_EQ(listed, declared);

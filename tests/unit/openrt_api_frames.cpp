@@ -1,4 +1,5 @@
-// openrt_api_frames.cpp: frame settings, the course of frames, reading, statistics and queries; order of the edits.
+// openrt_api_frames.cpp: frame settings, the course of frames, reading, statistics and queries;
+// order of the edits.
 #include <cmath>
 #include <cstring>
 
@@ -17,8 +18,10 @@ TEST_F(Frames, SettingsTravelWhenTheyChange) {
   rtQuality(RT_SHADOWS, 0);
   const auto found = edits<edit::FrameSettingsT>(commit());
   ASSERT_EQ(found.size(), 1u);
-  EXPECT_TRUE(found[0]->width == 320 && found[0]->height == 240 && found[0]->channels == (RT_RGBA | RT_DEPTH));
-  EXPECT_TRUE(found[0]->samples == 16 && found[0]->depth == 25 && found[0]->seed == 7 && !found[0]->shadows);
+  EXPECT_TRUE(found[0]->width == 320 && found[0]->height == 240 &&
+              found[0]->channels == (RT_RGBA | RT_DEPTH));
+  EXPECT_TRUE(found[0]->samples == 16 && found[0]->depth == 25 && found[0]->seed == 7 &&
+              !found[0]->shadows);
   EXPECT_TRUE(commit().edits.edits.empty());
   rtQuality(RT_SAMPLES_PER_PIXEL, 1);
   rtQuality(RT_MAX_DEPTH, 0);
@@ -110,7 +113,8 @@ TEST_F(Frames, StatisticsMergeBothSides) {
   std::memset(&stats, 0xff, sizeof(stats));
   stats.size = sizeof(stats);
   rtGetStats(&stats);
-  EXPECT_TRUE(stats.objects == 1 && stats.instances == 2 && stats.textures == 3 && stats.lights == 0);
+  EXPECT_TRUE(stats.objects == 1 && stats.instances == 2 && stats.textures == 3 &&
+              stats.lights == 0);
   EXPECT_EQ(stats.cameraRays, 42u);
   EXPECT_EQ(stats.degenerate, 1u);
   EXPECT_EQ(stats.size, sizeof(stats));
@@ -147,7 +151,8 @@ TEST_F(Frames, QueriesAskTheLastCommittedScene) {
 
 // The order that scene_state.h promises, whatever the order of the calls.
 TEST_F(Frames, EditsComeInTheirOrder) {
-  const RTid classes[2] = {rtNewShaderClass("Lamp", "everything"), rtNewShaderClass("Plain", "everything")};
+  const RTid classes[2] = {rtNewShaderClass("Lamp", "everything"),
+                           rtNewShaderClass("Plain", "everything")};
   const RTid oldLight = rtUseLight(rtNewShader(classes[0])), oldObject = triangleObject(),
              oldInstance = rtInstantiateObject(oldObject);
   const RTid oldShader = rtNewShader(classes[1]);
@@ -176,13 +181,15 @@ TEST_F(Frames, EditsComeInTheirOrder) {
   EXPECT_FAILS(RT_INVALID_ID, rtDeleteInstance(oldInstance)); // went with its object
 
   using edit::Any;
-  const std::vector<Any> rank = {Any::DeleteLight,  Any::DeleteInstance, Any::Texture,       Any::ShaderClass,
-                                 Any::Shader,       Any::Object,         Any::Instance,      Any::Light,
-                                 Any::Camera,       Any::Environment,    Any::DefaultShader, Any::FrameSettings,
+  const std::vector<Any> rank = {Any::DeleteLight,  Any::DeleteInstance, Any::Texture,
+                                 Any::ShaderClass,  Any::Shader,         Any::Object,
+                                 Any::Instance,     Any::Light,          Any::Camera,
+                                 Any::Environment,  Any::DefaultShader,  Any::FrameSettings,
                                  Any::DeleteObject, Any::DeleteShader,   Any::DeleteTexture};
   std::vector<size_t> seen;
   for (const auto& entry : commit().edits.edits) {
-    const Any type = entry->any.type == Any::Parameter ? Any::Shader : entry->any.type; // follow their shader
+    const Any type =
+        entry->any.type == Any::Parameter ? Any::Shader : entry->any.type; // follow their shader
     seen.push_back(size_t(std::find(rank.begin(), rank.end(), type) - rank.begin()));
   }
   EXPECT_TRUE(std::is_sorted(seen.begin(), seen.end()));
@@ -230,7 +237,8 @@ TEST_F(Frames, ABackendThatPipelinesHasTheNextFrameBeforeItIsAskedForTheLast) {
   EXPECT_EQ(rtFinishFrame(), 0);
 }
 
-// The backend does not know yet of a frame that is being handed over; a cancellation of that time reaches it all the same.
+// The backend does not know yet of a frame that is being handed over; a cancellation of that time
+// reaches it all the same.
 TEST_F(Frames, ACancellationWhileAFrameIsBegunIsForThatFrame) {
   const auto course = [&](const char* cancelIn, void (*call)()) {
     captured->cancelIn = cancelIn;
@@ -243,10 +251,12 @@ TEST_F(Frames, ACancellationWhileAFrameIsBegunIsForThatFrame) {
   EXPECT_EQ(course("s", rtRender), "asccw");
   EXPECT_EQ(course("", rtSwapBuffers), "as");
   EXPECT_EQ(course("a", rtSwapBuffers), "wacsc");
-  EXPECT_EQ(course("w", rtSwapBuffers), "wcas"); // while the frame before is waited for: that one ends, the next is whole
+  EXPECT_EQ(course("w", rtSwapBuffers),
+            "wcas"); // while the frame before is waited for: that one ends, the next is whole
   rtCancel(handle);
   EXPECT_EQ(course("", rtSwapBuffers), "was");
-  EXPECT_EQ(course("w", rtRender), "cwcascwc"); // rtRender gives up the frame before, and is given up itself
+  EXPECT_EQ(course("w", rtRender),
+            "cwcascwc"); // rtRender gives up the frame before, and is given up itself
   captured->pipelines = true;
   EXPECT_EQ(course("", rtSwapBuffers), "as");
   EXPECT_EQ(course("s", rtSwapBuffers), "asccw");
@@ -274,7 +284,8 @@ TEST_F(Frames, WorkersAreWrittenAsFarAsThereIsRoom) {
   EXPECT_EQ(rtGetWorkers(rtGetCurrent(), workers, 1), 2u);
   EXPECT_TRUE(workers[0].threads == 3 && workers[1].threads == 0);
   EXPECT_EQ(rtGetWorkers(rtGetCurrent(), workers, 3), 2u);
-  EXPECT_TRUE(workers[1].threads == 4 && workers[1].size == sizeof(RTworker) && workers[2].size == 0);
+  EXPECT_TRUE(workers[1].threads == 4 && workers[1].size == sizeof(RTworker) &&
+              workers[2].size == 0);
   struct Older { // a program that was built when there was less to tell
     size_t size;
     char name[64];

@@ -1,4 +1,5 @@
-// openrt_api_geometry_parameters.cpp: rtParameter* between rtBegin and rtEnd and rtParameterPointer, as the backend gets them.
+// openrt_api_geometry_parameters.cpp: rtParameter* between rtBegin and rtEnd and
+// rtParameterPointer, as the backend gets them.
 #include "unit/openrt_api_support.h"
 
 namespace {
@@ -65,10 +66,12 @@ TEST_F(OwnParameters, ListsThatHaveTheSameAreOneGeometry) {
   rtEndObject();
   const Commit& c = commit();
   ASSERT_EQ(geometries(c).size(), 1u);
-  const Floats pairs = valuesOf(c, *geometries(c)[0], pair), weights = valuesOf(c, *geometries(c)[0], weight);
+  const Floats pairs = valuesOf(c, *geometries(c)[0], pair),
+               weights = valuesOf(c, *geometries(c)[0], weight);
   ASSERT_EQ(pairs.size(), 200u);
   ASSERT_EQ(weights.size(), 300u);
-  for (size_t i = 0; i < 100; i++) EXPECT_TRUE(pairs[2 * i] == float(i) && weights[3 * i + 2] == -float(i)) << i;
+  for (size_t i = 0; i < 100; i++)
+    EXPECT_TRUE(pairs[2 * i] == float(i) && weights[3 * i + 2] == -float(i)) << i;
 }
 
 TEST_F(OwnParameters, OneThatIsNewStartsAnotherGeometry) {
@@ -119,9 +122,15 @@ TEST_F(OwnParameters, ByTriangleTheyAreOfTheVertexThatCompletesIt) {
     RTenum mode;
     int vertices;
     Floats expected; // number of the completing vertex
-  } const cases[] = {{RT_TRIANGLES, 6, {2, 5}},   {RT_TRIANGLE_STRIP, 5, {2, 3, 4}}, {RT_TRIANGLE_FAN, 5, {2, 3, 4}},
-                     {RT_QUADS, 8, {3, 3, 7, 7}}, {RT_QUAD_STRIP, 6, {3, 3, 5, 5}},  {RT_POLYGON, 5, {4, 4, 4}},
-                     {RT_LINES, 4, {1, 3}},       {RT_LINE_STRIP, 4, {1, 2, 3}},     {RT_POINTS, 2, {0, 1}}};
+  } const cases[] = {{RT_TRIANGLES, 6, {2, 5}},
+                     {RT_TRIANGLE_STRIP, 5, {2, 3, 4}},
+                     {RT_TRIANGLE_FAN, 5, {2, 3, 4}},
+                     {RT_QUADS, 8, {3, 3, 7, 7}},
+                     {RT_QUAD_STRIP, 6, {3, 3, 5, 5}},
+                     {RT_POLYGON, 5, {4, 4, 4}},
+                     {RT_LINES, 4, {1, 3}},
+                     {RT_LINE_STRIP, 4, {1, 2, 3}},
+                     {RT_POINTS, 2, {0, 1}}};
   for (const auto& each : cases) {
     rtBeginObject(0);
     rtBegin(each.mode);
@@ -135,7 +144,8 @@ TEST_F(OwnParameters, ByTriangleTheyAreOfTheVertexThatCompletesIt) {
     const Commit& c = commit();
     const Floats values = valuesOf(c, *geometries(c).at(0), pair);
     ASSERT_EQ(values.size(), 2 * each.expected.size()) << each.mode;
-    for (size_t i = 0; i < each.expected.size(); i++) EXPECT_EQ(values[2 * i], each.expected[i]) << each.mode << " " << i;
+    for (size_t i = 0; i < each.expected.size(); i++)
+      EXPECT_EQ(values[2 * i], each.expected[i]) << each.mode << " " << i;
   }
 }
 
@@ -157,7 +167,8 @@ TEST_F(OwnParameters, DegenerateTrianglesTakeTheirValuesAlong) {
 }
 
 TEST_F(OwnParameters, PointersAreReadByTheDrawCalls) {
-  const float points[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, weights[4] = {1, 2, 3, 4};
+  const float points[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}},
+              weights[4] = {1, 2, 3, 4};
   const float pairs[3][4] = {{1, 2, 0, 0}, {3, 4, 0, 0}, {5, 6, 0, 0}};
   rtVertexPointer(3, RT_FLOAT, 0, points);
   rtParameterPointer(weight, 0, weights);

@@ -1,5 +1,6 @@
-// openrt_api_hints.cpp: what is static and what is dynamic travels in the edits: as hinted, and by itself once something that was
-// committed moves or is redefined. Later backends and recordings see the same state.
+// openrt_api_hints.cpp: what is static and what is dynamic travels in the edits: as hinted, and by
+// itself once something that was committed moves or is redefined. Later backends and recordings see
+// the same state.
 #include "unit/openrt_api_support.h"
 
 namespace {

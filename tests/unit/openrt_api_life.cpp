@@ -10,19 +10,23 @@ using namespace openrt;
 using namespace openrt::test;
 
 TEST(ApiConfig, ReadsPairsAndQuotes) {
-  const ContextConfig config = parseConfig("  backend=record\tthreads=3 file=\"a file\" shaderpath=/a:/b ");
+  const ContextConfig config =
+      parseConfig("  backend=record\tthreads=3 file=\"a file\" shaderpath=/a:/b ");
   EXPECT_EQ(config.backend, BackendKind::Record);
   EXPECT_EQ(config.threads, 3u);
   EXPECT_EQ(config.file, "a file");
   EXPECT_EQ(config.shaderPath, "/a:/b");
   EXPECT_EQ(parseConfig("record=out.ortr backend=local").record, "out.ortr");
   EXPECT_EQ(parseConfig("").backend, BackendKind::Local);
-  const ContextConfig cluster = parseConfig("workers=a:7447,[::1]:9,@hosts.txt backend=cluster listen=127.0.0.1:0 key=k allow=l "
-                                            "local=0 split=samples require=2 tolerant=1 record=out.ortr");
+  const ContextConfig cluster = parseConfig(
+      "workers=a:7447,[::1]:9,@hosts.txt backend=cluster listen=127.0.0.1:0 key=k allow=l "
+      "local=0 split=samples require=2 tolerant=1 record=out.ortr");
   EXPECT_EQ(cluster.backend, BackendKind::Cluster);
   EXPECT_EQ(cluster.cluster.workers, (std::vector<std::string>{"a:7447", "[::1]:9", "@hosts.txt"}));
-  EXPECT_TRUE(cluster.cluster.keyFile == "k" && cluster.cluster.allowFile == "l" && cluster.cluster.listen == "127.0.0.1:0");
-  EXPECT_TRUE(cluster.cluster.local == 0u && cluster.cluster.split == "samples" && cluster.cluster.require == 2);
+  EXPECT_TRUE(cluster.cluster.keyFile == "k" && cluster.cluster.allowFile == "l" &&
+              cluster.cluster.listen == "127.0.0.1:0");
+  EXPECT_TRUE(cluster.cluster.local == 0u && cluster.cluster.split == "samples" &&
+              cluster.cluster.require == 2);
   EXPECT_TRUE(cluster.cluster.tolerant && cluster.record == "out.ortr");
   EXPECT_FALSE(parseConfig("backend=cluster workers=a").cluster.local.has_value());
 }
@@ -125,8 +129,8 @@ TEST(ApiLife, ContextsDoNotShareIds) {
 }
 
 TEST(ApiLife, InitTakesItsOptionsOutOfTheArguments) {
-  char program[] = "program", backend[] = "--rt-backend=null", other[] = "--other", threads[] = "--rt-threads=1",
-       file[] = "a.wrl";
+  char program[] = "program", backend[] = "--rt-backend=null", other[] = "--other",
+       threads[] = "--rt-threads=1", file[] = "a.wrl";
   char* argv[] = {program, backend, other, threads, file, nullptr};
   int argc = 5;
   rtInit(&argc, argv);

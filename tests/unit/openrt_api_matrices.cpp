@@ -9,7 +9,8 @@ namespace {
 using namespace openrt::test;
 
 const std::vector<double> identity = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
-constexpr double infinity = std::numeric_limits<double>::infinity(), nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double infinity = std::numeric_limits<double>::infinity(),
+                 nan = std::numeric_limits<double>::quiet_NaN();
 
 void expectMatrix(const std::vector<double>& expected, double tolerance = 0) {
   const std::vector<double> m = currentMatrix();

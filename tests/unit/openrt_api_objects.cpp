@@ -118,7 +118,8 @@ TEST_F(Objects, NoObjectContainsItself) {
   commit();
 }
 
-// a contains b becomes b contains a, within one commit: the deletion comes first, so no edit makes a cycle.
+// a contains b becomes b contains a, within one commit: the deletion comes first, so no edit makes
+// a cycle.
 TEST_F(Objects, NestingMayBeTurnedRound) {
   const RTid b = triangleObject(), a = groupOf({b});
   commit();
@@ -139,7 +140,8 @@ TEST_F(Objects, DeepNesting) {
 
 TEST_F(Objects, DeletingAnObjectTakesItsInstances) {
   const RTid leaf = triangleObject(), group = groupOf({leaf});
-  const RTid inGroup = lastChild, inScene = rtInstantiateObject(leaf), other = rtInstantiateObject(group);
+  const RTid inGroup = lastChild, inScene = rtInstantiateObject(leaf),
+             other = rtInstantiateObject(group);
   commit();
   rtDeleteObject(leaf);
   EXPECT_FAILS(RT_INVALID_ID, rtInstantiateObject(leaf));
@@ -180,7 +182,8 @@ TEST_F(Objects, DeletionWithinAnOpenDefinition) {
   const Commit& c = commit();
   const auto placed = edits<edit::InstanceT>(c);
   ASSERT_EQ(placed.size(), 2u);
-  EXPECT_TRUE(std::all_of(placed.begin(), placed.end(), [&](const auto* i) { return i->parent == group && i->object == other; }));
+  EXPECT_TRUE(std::all_of(placed.begin(), placed.end(),
+                          [&](const auto* i) { return i->parent == group && i->object == other; }));
 }
 
 TEST_F(Objects, ManyDeletionsInAnyOrder) {
@@ -199,7 +202,8 @@ TEST_F(Objects, ManyDeletionsInAnyOrder) {
 
 TEST_F(Objects, BadIdsAreErrors) {
   const RTid object = triangleObject(), instance = rtInstantiateObject(object);
-  for (RTid bad : {RTid(0), RTid(123456), instance}) EXPECT_FAILS(RT_INVALID_ID, rtInstantiateObject(bad));
+  for (RTid bad : {RTid(0), RTid(123456), instance})
+    EXPECT_FAILS(RT_INVALID_ID, rtInstantiateObject(bad));
   for (RTid bad : {RTid(0), RTid(123456), object}) {
     EXPECT_FAILS(RT_INVALID_ID, rtDeleteInstance(bad));
     EXPECT_FAILS(RT_INVALID_ID, rtInstanceMatrix(bad, matrix));

@@ -1,4 +1,5 @@
-// openrt_api_primitives.cpp: begin/end: modes, what is latched, merging, positions in double, degenerate and bad input.
+// openrt_api_primitives.cpp: begin/end: modes, what is latched, merging, positions in double,
+// degenerate and bad input.
 #include <cmath>
 #include <limits>
 
@@ -59,22 +60,24 @@ TEST_P(Modes, MakeTheseIndices) {
   EXPECT_EQ(contents<uint32_t>(*last, g.indices), GetParam().indices);
 }
 
-INSTANTIATE_TEST_SUITE_P(Api, Modes,
-                         testing::Values(ModeCase{RT_POINTS, 3, edit::Primitive::Points, {0, 1, 2}},
-                                         ModeCase{RT_LINES, 5, edit::Primitive::Lines, {0, 1, 2, 3}}, // the fifth has no partner
-                                         ModeCase{RT_LINE_STRIP, 4, edit::Primitive::Lines, {0, 1, 1, 2, 2, 3}},
-                                         ModeCase{RT_TRIANGLES, 7, edit::Primitive::Triangles, {0, 1, 2, 3, 4, 5}},
-                                         ModeCase{RT_TRIANGLE_STRIP, 5, edit::Primitive::Triangles, {0, 1, 2, 2, 1, 3, 2, 3, 4}},
-                                         ModeCase{RT_TRIANGLE_FAN, 5, edit::Primitive::Triangles, {0, 1, 2, 0, 2, 3, 0, 3, 4}},
-                                         ModeCase{RT_QUADS, 9, edit::Primitive::Triangles, {0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 7}},
-                                         ModeCase{
-                                             RT_QUAD_STRIP, 7, edit::Primitive::Triangles, {0, 1, 3, 0, 3, 2, 2, 3, 5, 2, 5, 4}},
-                                         ModeCase{RT_POLYGON, 5, edit::Primitive::Triangles, {0, 1, 2, 0, 2, 3, 0, 3, 4}}));
+INSTANTIATE_TEST_SUITE_P(
+    Api, Modes,
+    testing::Values(
+        ModeCase{RT_POINTS, 3, edit::Primitive::Points, {0, 1, 2}},
+        ModeCase{RT_LINES, 5, edit::Primitive::Lines, {0, 1, 2, 3}}, // the fifth has no partner
+        ModeCase{RT_LINE_STRIP, 4, edit::Primitive::Lines, {0, 1, 1, 2, 2, 3}},
+        ModeCase{RT_TRIANGLES, 7, edit::Primitive::Triangles, {0, 1, 2, 3, 4, 5}},
+        ModeCase{RT_TRIANGLE_STRIP, 5, edit::Primitive::Triangles, {0, 1, 2, 2, 1, 3, 2, 3, 4}},
+        ModeCase{RT_TRIANGLE_FAN, 5, edit::Primitive::Triangles, {0, 1, 2, 0, 2, 3, 0, 3, 4}},
+        ModeCase{RT_QUADS, 9, edit::Primitive::Triangles, {0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 7}},
+        ModeCase{
+            RT_QUAD_STRIP, 7, edit::Primitive::Triangles, {0, 1, 3, 0, 3, 2, 2, 3, 5, 2, 5, 4}},
+        ModeCase{RT_POLYGON, 5, edit::Primitive::Triangles, {0, 1, 2, 0, 2, 3, 0, 3, 4}}));
 
 TEST_F(Primitives, TooFewVerticesMakeNothing) {
   rtBeginObject(0);
-  for (RTenum mode : {RT_LINES, RT_LINE_STRIP, RT_TRIANGLES, RT_TRIANGLE_STRIP, RT_TRIANGLE_FAN, RT_QUADS, RT_QUAD_STRIP,
-                      RT_POLYGON, RT_POINTS}) {
+  for (RTenum mode : {RT_LINES, RT_LINE_STRIP, RT_TRIANGLES, RT_TRIANGLE_STRIP, RT_TRIANGLE_FAN,
+                      RT_QUADS, RT_QUAD_STRIP, RT_POLYGON, RT_POINTS}) {
     rtBegin(mode);
     if (mode != RT_POINTS) curve(1);
     rtEnd();
@@ -91,7 +94,8 @@ TEST_F(Primitives, VerticesKeepTheirCoordinates) {
   rtVertex3fv(v);
   rtEnd();
   const edit::GeometryT& g = only();
-  EXPECT_EQ(contents<float>(*last, g.points), (std::vector<float>{1, 2, 0, 0.1f, 0.2f, 0.3f, 4, 5, 6}));
+  EXPECT_EQ(contents<float>(*last, g.points),
+            (std::vector<float>{1, 2, 0, 0.1f, 0.2f, 0.3f, 4, 5, 6}));
   EXPECT_EQ(g.normals, 0u);
   EXPECT_EQ(g.texCoords, 0u);
   EXPECT_EQ(g.colors, 0u);
@@ -113,8 +117,10 @@ TEST_F(Primitives, AttributesAreLatchedByVertices) {
   rtEnd();
   const edit::GeometryT& g = only();
   EXPECT_EQ(contents<float>(*last, g.normals), (std::vector<float>{0, 0, 1, 0, 1, 0, 0, 1, 0}));
-  EXPECT_EQ(contents<float>(*last, g.texCoords), (std::vector<float>{0, 1, 0.5f, 0.75f, 0.5f, 0.75f}));
-  EXPECT_EQ(contents<float>(*last, g.colors), (std::vector<float>{1, 0, 0, 1, 0.1f, 0.2f, 0.3f, 0.4f, 0.1f, 0.2f, 0.3f, 0.4f}));
+  EXPECT_EQ(contents<float>(*last, g.texCoords),
+            (std::vector<float>{0, 1, 0.5f, 0.75f, 0.5f, 0.75f}));
+  EXPECT_EQ(contents<float>(*last, g.colors),
+            (std::vector<float>{1, 0, 0, 1, 0.1f, 0.2f, 0.3f, 0.4f, 0.1f, 0.2f, 0.3f, 0.4f}));
 }
 
 TEST_F(Primitives, AnAttributeThatComesLateLeavesEarlierVerticesUnset) {
@@ -137,8 +143,10 @@ TEST_F(Primitives, AnAttributeThatComesLateLeavesEarlierVerticesUnset) {
   EXPECT_EQ(object.geometries[0]->colors, 0u);
   const edit::GeometryT& g = *object.geometries[1];
   EXPECT_EQ(contents<float>(*last, g.colors),
-            (std::vector<float>{1, 1, 1, 1, 0, 1, 0, 0.5f, 0, 1, 0, 0.5f, 0, 1, 0, 0.5f, 0, 1, 0, 0.5f, 0, 1, 0, 0.5f}));
-  EXPECT_EQ(contents<float>(*last, g.normals), (std::vector<float>{0, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0}));
+            (std::vector<float>{1, 1, 1, 1,    0, 1, 0, 0.5f, 0, 1, 0, 0.5f,
+                                0, 1, 0, 0.5f, 0, 1, 0, 0.5f, 0, 1, 0, 0.5f}));
+  EXPECT_EQ(contents<float>(*last, g.normals),
+            (std::vector<float>{0, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0}));
   EXPECT_EQ(contents<uint32_t>(*last, g.indices), (Indices{0, 1, 2, 3, 4, 5}));
 }
 
@@ -191,7 +199,8 @@ TEST_F(Primitives, ListsWithTheSameStateBecomeOneGeometry) {
   EXPECT_EQ(contents<uint32_t>(*last, g.indices).size(), 500 * 3 + 500 * 6u);
   EXPECT_EQ(contents<float>(*last, g.points).size(), 12000u);
   const Indices indices = contents<uint32_t>(*last, g.indices);
-  EXPECT_EQ(Indices(indices.end() - 6, indices.end()), (Indices{3996, 3997, 3998, 3996, 3998, 3999}));
+  EXPECT_EQ(Indices(indices.end() - 6, indices.end()),
+            (Indices{3996, 3997, 3998, 3996, 3998, 3999}));
 }
 
 TEST_F(Primitives, EachChangeOfStateStartsAGeometry) {
@@ -354,7 +363,8 @@ TEST_F(Primitives, DoublesThatFloatHoldsAreKeptAsTheyAre) {
   rtVertex3d(0, 1, 0);
   rtEnd();
   const edit::GeometryT& g = only();
-  EXPECT_EQ(contents<float>(*last, g.points), (std::vector<float>{0.5f, 0.25f, 1e6f, 1, 0, 0, 0, 1, 0}));
+  EXPECT_EQ(contents<float>(*last, g.points),
+            (std::vector<float>{0.5f, 0.25f, 1e6f, 1, 0, 0, 0, 1, 0}));
   EXPECT_EQ(matrixOf(*g.matrix)[12], 0.0);
 }
 
@@ -384,7 +394,8 @@ TEST_F(Primitives, ShortFractionsFarOutAreExact) {
   rtVertex3d(x, 3.75, 0);
   rtEnd();
   const edit::GeometryT& g = only();
-  EXPECT_EQ(positions(*last, g), (std::vector<double>{x, 0.5, 0, x + 8.5, 0.5, 0, x + 8.5, 3.75, 0, x, 3.75, 0}));
+  EXPECT_EQ(positions(*last, g),
+            (std::vector<double>{x, 0.5, 0, x + 8.5, 0.5, 0, x + 8.5, 3.75, 0, x, 3.75, 0}));
 }
 
 TEST_F(Primitives, NeighboursInDoubleMergeAndDistantOnesDoNot) {

@@ -1,4 +1,5 @@
-// openrt_api_shaders.cpp: shader classes, parameters, roles and textures, with the plug-ins of tests/abi.
+// openrt_api_shaders.cpp: shader classes, parameters, roles and textures, with the plug-ins of
+// tests/abi.
 #include <cfloat>
 #include <cmath>
 
@@ -72,7 +73,8 @@ TEST_F(Shaders, EveryTypeOfParameterIsSent) {
   const RTid shader = bind();
   RTid texture = 0;
   rtGenTextures(1, &texture);
-  const float m[16] = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16}, list[3] = {1, 0.5f, -1};
+  const float m[16] = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16},
+              list[3] = {1, 0.5f, -1};
   rtParameter1i(rtParameterHandle("count"), 7);
   rtParameter1f(rtParameterHandle("strength"), 0.25f);
   rtParameter2f(rtParameterHandle("pair"), 8, 9);
@@ -300,7 +302,8 @@ TEST_F(Textures, ImageAndParametersMakeOneEdit) {
   ASSERT_EQ(edits<edit::TextureT>(c).size(), 1u);
   const edit::TextureT& t = *edits<edit::TextureT>(c)[0];
   EXPECT_EQ(t.id, texture);
-  EXPECT_TRUE(t.components == 2 && t.width == 4 && t.height == 2 && !t.isFloat && t.nearest && t.srgb);
+  EXPECT_TRUE(t.components == 2 && t.width == 4 && t.height == 2 && !t.isFloat && t.nearest &&
+              t.srgb);
   EXPECT_EQ(t.wrapS, edit::Wrap::Clamp);
   EXPECT_EQ(t.wrapT, edit::Wrap::Repeat);
   EXPECT_EQ(contents<unsigned char>(c, t.texels), std::vector<unsigned char>(bytes, bytes + 16));
@@ -323,11 +326,13 @@ TEST_F(Textures, FloatImages) {
   rtTexImage2D(4, 1, 1, RT_FLOAT, values);
   const Commit& c = commit();
   EXPECT_TRUE(edits<edit::TextureT>(c).at(0)->isFloat);
-  EXPECT_EQ(contents<float>(c, edits<edit::TextureT>(c)[0]->texels), std::vector<float>(values, values + 4));
+  EXPECT_EQ(contents<float>(c, edits<edit::TextureT>(c)[0]->texels),
+            std::vector<float>(values, values + 4));
 }
 
 TEST_F(Textures, BadCallsAreErrors) {
-  EXPECT_FAILS(RT_INVALID_OPERATION, rtTexImage2D(1, 1, 1, RT_UNSIGNED_BYTE, bytes)); // nothing bound
+  EXPECT_FAILS(RT_INVALID_OPERATION,
+               rtTexImage2D(1, 1, 1, RT_UNSIGNED_BYTE, bytes)); // nothing bound
   EXPECT_FAILS(RT_INVALID_OPERATION, rtTexParameteri(RT_TEXTURE_SRGB, 1));
   EXPECT_FAILS(RT_INVALID_ID, rtBindTexture(4711));
   EXPECT_FAILS(RT_INVALID_ID, rtDeleteTexture(0));

@@ -1,5 +1,6 @@
-// openrt_api_support.h: a backend that keeps the commits it gets, and checks each as the reader of recordings would; a fixture
-// with a context on it; small helpers to look into commits. Used by the tests of the C API.
+// openrt_api_support.h: a backend that keeps the commits it gets, and checks each as the reader of
+// recordings would; a fixture with a context on it; small helpers to look into commits. Used by the
+// tests of the C API.
 #pragma once
 
 #include <memory>
@@ -15,8 +16,10 @@
 namespace openrt::test {
 
 struct Captured {
-  explicit Captured(const std::string& plugins) : Captured(std::vector<std::string>{plugins + "/stock", plugins}) {}
-  explicit Captured(std::vector<std::string> folders) : shaders(std::move(folders)), validator(&shaders) {}
+  explicit Captured(const std::string& plugins)
+      : Captured(std::vector<std::string>{plugins + "/stock", plugins}) {}
+  explicit Captured(std::vector<std::string> folders)
+      : shaders(std::move(folders)), validator(&shaders) {}
   ShaderRegistry shaders;
   CommitValidator validator;
   std::vector<std::shared_ptr<const Commit>> commits;
@@ -46,7 +49,8 @@ class CaptureBackend final : public Backend {
   void wait() override {
     captured_->waits++;
     happens('w');
-    if (std::exchange(captured_->failNextWait, false)) throw ClusterError("2 workers are needed, there is 1");
+    if (std::exchange(captured_->failNextWait, false))
+      throw ClusterError("2 workers are needed, there is 1");
   }
   void cancel() override {
     captured_->cancels++;
@@ -94,7 +98,8 @@ class ApiTest : public testing::Test {
     captured = std::make_shared<Captured>(plugins);
     ContextConfig config;
     config.shaderPath = plugins + "/stock:" + plugins;
-    handle = adoptContext(std::make_shared<Context>(config, std::make_unique<CaptureBackend>(captured)));
+    handle =
+        adoptContext(std::make_shared<Context>(config, std::make_unique<CaptureBackend>(captured)));
     rtFrameBuffer(4, 2, RT_RGBA);
   }
   void TearDown() override {
@@ -120,7 +125,8 @@ class ApiTest : public testing::Test {
 template <class T> std::vector<const T*> edits(const Commit& commit) {
   std::vector<const T*> result;
   for (const auto& entry : commit.edits.edits)
-    if (entry->any.type == edit::AnyUnionTraits<T>::enum_value) result.push_back(static_cast<const T*>(entry->any.value));
+    if (entry->any.type == edit::AnyUnionTraits<T>::enum_value)
+      result.push_back(static_cast<const T*>(entry->any.value));
   return result;
 }
 
@@ -142,16 +148,17 @@ inline std::vector<double> currentMatrix() {
   return m;
 }
 
-// The error now pending, and its text without the number of digits that a test should not depend on.
-#define EXPECT_RT_ERROR(code)                                                                                                    \
+// The error now pending, and its text without the number of digits that a test should not depend
+// on.
+#define EXPECT_RT_ERROR(code)                                                                      \
   do { EXPECT_EQ(rtGetError(), RTenum(code)) << rtGetErrorMessage(); } while (0)
 
 // A call that must fail with this error.
-#define EXPECT_FAILS(code, call)                                                                                                 \
-  do {                                                                                                                           \
-    EXPECT_EQ(rtGetError(), RTenum(RT_NO_ERROR)) << "before " #call ": " << rtGetErrorMessage();                                 \
-    call;                                                                                                                        \
-    EXPECT_EQ(rtGetError(), RTenum(code)) << #call ": " << rtGetErrorMessage();                                                  \
+#define EXPECT_FAILS(code, call)                                                                   \
+  do {                                                                                             \
+    EXPECT_EQ(rtGetError(), RTenum(RT_NO_ERROR)) << "before " #call ": " << rtGetErrorMessage();   \
+    call;                                                                                          \
+    EXPECT_EQ(rtGetError(), RTenum(code)) << #call ": " << rtGetErrorMessage();                    \
   } while (0)
 
 inline RTid triangleObject() {

@@ -1,4 +1,5 @@
-// openrt_clusters.cpp: a scene cut at what is dynamic: parts, sockets, clusters; what a commit says it changed.
+// openrt_clusters.cpp: a scene cut at what is dynamic: parts, sockets, clusters; what a commit says
+// it changed.
 #include <gtest/gtest.h>
 
 #include "scene/flatten.h"
@@ -26,7 +27,8 @@ edit::ObjectT object(uint32_t id, bool withGeometry, bool dynamic = false) {
   return o;
 }
 
-edit::InstanceT instance(uint32_t id, uint32_t parent, uint32_t object, double x, bool dynamic = false) {
+edit::InstanceT instance(uint32_t id, uint32_t parent, uint32_t object, double x,
+                         bool dynamic = false) {
   edit::InstanceT i;
   i.id = id;
   i.parent = parent;
@@ -58,7 +60,8 @@ TEST(Clusters, WithoutDynamicThingsThereIsOne) {
 
 TEST(Clusters, CopiesOfOneObjectAreOnePart) {
   Scene scene;
-  apply(scene, object(1, true), instance(10, 0, 1, 1, true), instance(11, 0, 1, 2, true), instance(12, 0, 1, 3));
+  apply(scene, object(1, true), instance(10, 0, 1, 1, true), instance(11, 0, 1, 2, true),
+        instance(12, 0, 1, 3));
   const Flattened flat = flatten(scene);
   ASSERT_EQ(flat.parts.size(), 2u);
   EXPECT_EQ(flat.parts[0].items.size(), 1u);
@@ -68,11 +71,12 @@ TEST(Clusters, CopiesOfOneObjectAreOnePart) {
   EXPECT_EQ(flat.clusters[2].path.instance, 11u);
 }
 
-// A dynamic instance in an object with two instances, one of them dynamic: a cluster for every path.
+// A dynamic instance in an object with two instances, one of them dynamic: a cluster for every
+// path.
 TEST(Clusters, OneForEveryPath) {
   Scene scene;
-  apply(scene, object(1, true), object(2, true), instance(10, 2, 1, 1, true), instance(11, 0, 2, 10),
-        instance(12, 0, 2, 20, true));
+  apply(scene, object(1, true), object(2, true), instance(10, 2, 1, 1, true),
+        instance(11, 0, 2, 10), instance(12, 0, 2, 20, true));
   Flattened flat = flatten(scene);
   ASSERT_EQ(flat.clusters.size(), 4u);
   Ids places;
@@ -97,7 +101,8 @@ TEST(Clusters, OneForEveryPath) {
 
 TEST(Clusters, ADynamicObjectIsAPartWhereverItStands) {
   Scene scene;
-  apply(scene, object(1, true, true), object(2, true), instance(10, 2, 1, 1), instance(11, 0, 2, 10), instance(12, 0, 1, 20));
+  apply(scene, object(1, true, true), object(2, true), instance(10, 2, 1, 1),
+        instance(11, 0, 2, 10), instance(12, 0, 1, 20));
   const Flattened flat = flatten(scene);
   EXPECT_EQ(flat.parts.size(), 2u);
   EXPECT_EQ(flat.clusters.size(), 3u);
@@ -134,7 +139,8 @@ TEST(Clusters, ATowerOfDynamicDoublingsIsCutOff) {
 
 TEST(Changes, AreNamed) {
   Scene scene;
-  SceneChanges c = apply(scene, object(1, true, true), instance(10, 0, 1, 1, true), instance(11, 0, 1, 2));
+  SceneChanges c =
+      apply(scene, object(1, true, true), instance(10, 0, 1, 1, true), instance(11, 0, 1, 2));
   EXPECT_TRUE(c.structure);
   c = apply(scene, instance(10, 0, 1, 5, true));
   EXPECT_FALSE(c.structure);
@@ -153,7 +159,8 @@ TEST(Changes, AreNamed) {
 
 TEST(Changes, ListsOfChildrenFollow) {
   Scene scene;
-  apply(scene, object(1, true), object(2, false), instance(13, 2, 1, 0), instance(11, 2, 1, 0), instance(12, 0, 1, 0));
+  apply(scene, object(1, true), object(2, false), instance(13, 2, 1, 0), instance(11, 2, 1, 0),
+        instance(12, 0, 1, 0));
   EXPECT_EQ(scene.childrenOf(2), (Ids{11, 13}));
   edit::DeleteInstanceT gone;
   gone.id = 11;

@@ -52,7 +52,8 @@ TEST(Error, intervalOverTheMeansOfReplicates) { // means 1, 2, 3, 4: standard de
 }
 
 TEST(Error,
-     theLastReplicateMayBeShorter) { // sums 3 and 5, and one sample: variance of a sum 2, of the mean of 5 samples 2 / (2 * 5)
+     theLastReplicateMayBeShorter) { // sums 3 and 5, and one sample: variance of a sum 2, of the
+                                     // mean of 5 samples 2 / (2 * 5)
   const Replicates two{0, 1};
   const PixelSums sums = sumsOf({1, 2, 2, 3, 4}, two);
   EXPECT_NEAR(errorOf({&sums}, two).halfWidth[0], 12.7062 * std::sqrt(.5 * 2 / 5), 1e-5);
@@ -79,7 +80,8 @@ TEST(Error, oneSampleSaysNothing) {
   EXPECT_FALSE(e.trusted);
 }
 
-// A hundred and twenty-eight samples in sixteen replicates, normal enough; `seed` tells pixels apart.
+// A hundred and twenty-eight samples in sixteen replicates, normal enough; `seed` tells pixels
+// apart.
 std::vector<float> calmSamples(uint32_t seed, float scale = 1) {
   std::vector<float> samples;
   for (uint32_t i = 0; i < 128; i++) {
@@ -92,7 +94,8 @@ std::vector<float> calmSamples(uint32_t seed, float scale = 1) {
 const Replicates sixteen{0, 3};
 
 TEST(Error, inTheDarkAnUpperBoundFromThePixelsAround) {
-  PixelSums dark = sumsOf(std::vector<float>(128, 0.0f), sixteen), lit = sumsOf(calmSamples(1), sixteen);
+  PixelSums dark = sumsOf(std::vector<float>(128, 0.0f), sixteen),
+            lit = sumsOf(calmSamples(1), sixteen);
   dark.random = lit.random = true;
   EXPECT_TRUE(std::isinf(errorOf({&dark}, sixteen).halfWidth[0])); // nothing is known
   // Out of the window's reach: 3 / N of the largest sample, N those of the window's three pixels.
@@ -116,12 +119,15 @@ TEST(Error, pixelsThatDifferByChanceShareTheirVariance) {
   }
   std::vector<PixelError> errors(25);
   tileErrors(5, sums, sixteen, errors);
-  // Standard deviation of a sample sqrt(4 / 12); of the middle pixel's interval little is left to chance.
-  EXPECT_NEAR(errors[12].halfWidth[0], 1.96 * std::sqrt(4.0 / 12 / 128), .15 * errors[12].halfWidth[0]);
+  // Standard deviation of a sample sqrt(4 / 12); of the middle pixel's interval little is left to
+  // chance.
+  EXPECT_NEAR(errors[12].halfWidth[0], 1.96 * std::sqrt(4.0 / 12 / 128),
+              .15 * errors[12].halfWidth[0]);
   for (const PixelError& e : errors) EXPECT_TRUE(e.trusted);
 }
 
-TEST(Error, whereNoiseIsAsStrongAsTheLightVariancesArePooledRelativeToIt) { // a quarter from row to row
+TEST(Error,
+     whereNoiseIsAsStrongAsTheLightVariancesArePooledRelativeToIt) { // a quarter from row to row
   std::vector<PixelSums> sums;
   float scale = 1;
   for (uint32_t y = 0; y < 5; y++, scale /= 4)
@@ -154,8 +160,10 @@ TEST(Error, oneBrightSampleIsNotTrusted) {
   calm.random = wild.random = true;
   EXPECT_TRUE(errorOf({&calm, &calm}, sixteen).trusted);
   EXPECT_FALSE(errorOf({&wild, &calm}, sixteen).trusted);
-  EXPECT_FALSE(errorOf({&calm, &wild}, sixteen).trusted) << "its neighbour may have missed what it met";
-  EXPECT_FALSE(errorOf({&calm, &calm, &calm, &wild}, sixteen).trusted) << "also out of the window's reach";
+  EXPECT_FALSE(errorOf({&calm, &wild}, sixteen).trusted)
+      << "its neighbour may have missed what it met";
+  EXPECT_FALSE(errorOf({&calm, &calm, &calm, &wild}, sixteen).trusted)
+      << "also out of the window's reach";
 }
 
 TEST(Error, aConstantPixelBesideAnEdgeIsInDoubt) {

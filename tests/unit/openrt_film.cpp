@@ -71,9 +71,11 @@ TEST(Film, unfinishedTilesAreNothing) {
   const Tile finished{1, 0, 3, 1};
   film.copy(RT_RGBA, finished, rgba);
   film.copy(RT_DEPTH, finished, depth);
-  EXPECT_EQ(std::vector<float>(rgba.begin(), rgba.begin() + 8), (std::vector<float>{0, 0, 0, 0, 1, 2, 3, 1}));
+  EXPECT_EQ(std::vector<float>(rgba.begin(), rgba.begin() + 8),
+            (std::vector<float>{0, 0, 0, 0, 1, 2, 3, 1}));
   for (size_t i = 12; i < 24; i++) EXPECT_EQ(rgba[i], 0);
-  EXPECT_TRUE(std::isinf(depth[0]) && depth[1] == 5 && depth[2] == 5 && std::isinf(depth[3]) && std::isinf(depth[5]));
+  EXPECT_TRUE(std::isinf(depth[0]) && depth[1] == 5 && depth[2] == 5 && std::isinf(depth[3]) &&
+              std::isinf(depth[5]));
   EXPECT_FALSE(film.clear(RT_NORMAL, rgba));
   EXPECT_FALSE(film.clear(RT_RGBA, std::span(rgba).first(23)));
 }

@@ -1,5 +1,6 @@
-// openrt_frame_work.cpp: a frame's work done by hand: in any order, in pieces of any size, given back, done twice, sent as bytes.
-// The picture is always the same bytes, and those of the local backend's threads.
+// openrt_frame_work.cpp: a frame's work done by hand: in any order, in pieces of any size, given
+// back, done twice, sent as bytes. The picture is always the same bytes, and those of the local
+// backend's threads.
 #include <cstring>
 #include <map>
 #include <numeric>
@@ -32,7 +33,9 @@ bool sameBytes(const Picture& a, const Picture& b) {
   if (a.size() != b.size()) return false;
   for (const auto& [channel, plane] : a) {
     const std::vector<float>& other = b.at(channel);
-    if (plane.size() != other.size() || std::memcmp(plane.data(), other.data(), plane.size() * sizeof(float)) != 0) return false;
+    if (plane.size() != other.size() ||
+        std::memcmp(plane.data(), other.data(), plane.size() * sizeof(float)) != 0)
+      return false;
   }
   return true;
 }
@@ -62,7 +65,8 @@ class Player {
     for (;;) {
       Job job;
       FrameWork::Next next = FrameWork::Next::wait;
-      if (jobs.size() < (way.seed ? way.atOnce : 1) && (next = work_->next(job, largest())) == FrameWork::Next::job) {
+      if (jobs.size() < (way.seed ? way.atOnce : 1) &&
+          (next = work_->next(job, largest())) == FrameWork::Next::job) {
         jobs.push_back(job);
         continue;
       }
@@ -125,8 +129,10 @@ void expectTheSameInEveryWay(const Settings& settings, uint32_t ways = 3) {
   const Picture expected = plain.picture();
   for (uint32_t seed = 1; seed <= ways; seed++)
     for (const bool progressive : {false, true}) {
-      const Player played(room.scene(), {.seed = seed, .atOnce = 4 * seed * seed, .progressive = progressive});
-      EXPECT_TRUE(sameBytes(played.picture(), expected)) << "way " << seed << (progressive ? ", progressive" : "");
+      const Player played(room.scene(),
+                          {.seed = seed, .atOnce = 4 * seed * seed, .progressive = progressive});
+      EXPECT_TRUE(sameBytes(played.picture(), expected))
+          << "way " << seed << (progressive ? ", progressive" : "");
       EXPECT_EQ(played.stats.cutByDepth, plain.stats.cutByDepth);
       EXPECT_EQ(played.stats.errorMean, plain.stats.errorMean);
     }
@@ -149,24 +155,36 @@ TEST(FrameWorkByHand, SamplesInAnyPieces) {
 
 TEST(FrameWorkByHand, TilesOfAnySize) {
   for (const int tile : {4, 7, 16, 50, 128})
-    expectTheSameInEveryWay({.samples = 40, .width = 53, .height = 20, .tile = tile, .channels = RT_RGBA | RT_VARIANCE}, 1);
+    expectTheSameInEveryWay(
+        {.samples = 40, .width = 53, .height = 20, .tile = tile, .channels = RT_RGBA | RT_VARIANCE},
+        1);
 }
 
 TEST(FrameWorkByHand, AWaveHoldsAtLeastASampleOfTheLargestTile) {
-  expectTheSameInEveryWay({.samples = 2, .transport = RT_TRANSPORT_DIRECT, .width = 140, .height = 130, .tile = 128}, 1);
+  expectTheSameInEveryWay(
+      {.samples = 2, .transport = RT_TRANSPORT_DIRECT, .width = 140, .height = 130, .tile = 128},
+      1);
 }
 
-TEST(FrameWorkByHand, AllChannels) { expectTheSameInEveryWay({.samples = 200, .channels = allChannels}); }
+TEST(FrameWorkByHand, AllChannels) {
+  expectTheSameInEveryWay({.samples = 200, .channels = allChannels});
+}
 
-TEST(FrameWorkByHand, Replicates) { expectTheSameInEveryWay({.samples = 300, .channels = allChannels, .replicates = 3}); }
+TEST(FrameWorkByHand, Replicates) {
+  expectTheSameInEveryWay({.samples = 300, .channels = allChannels, .replicates = 3});
+}
 
 TEST(FrameWorkByHand, Pilots) {
-  expectTheSameInEveryWay({.samples = 1024, .width = 34, .height = 20, .channels = allChannels, .targetError = .15});
+  expectTheSameInEveryWay(
+      {.samples = 1024, .width = 34, .height = 20, .channels = allChannels, .targetError = .15});
 }
 
 TEST(FrameWorkByHand, PathsFromLamps) {
   expectTheSameInEveryWay({.samples = 130, .transport = RT_TRANSPORT_LIGHT, .channels = RT_RGBA});
-  expectTheSameInEveryWay({.samples = 256, .transport = RT_TRANSPORT_LIGHT, .channels = allChannels, .targetError = .3});
+  expectTheSameInEveryWay({.samples = 256,
+                           .transport = RT_TRANSPORT_LIGHT,
+                           .channels = allChannels,
+                           .targetError = .3});
 }
 
 TEST(FrameWorkByHand, FourHundredPicturesOfOnePixel) {
@@ -299,8 +317,10 @@ TEST(FrameWorkByHand, JobsThatAFrameDoesNotHaveAreRefused) {
   Room room({.samples = 4});
   JobRunner runner(room.scene());
   JobResult result;
-  for (const Job& job : {Job{.number = 1000, .count = 1}, Job{.count = 0}, Job{.first = 30, .count = 3}, Job{.count = ~0u},
-                         Job{.count = 4, .replicates = {0, 40}}, Job{.kind = Job::Kind::light, .count = 10}})
+  for (const Job& job :
+       {Job{.number = 1000, .count = 1}, Job{.count = 0}, Job{.first = 30, .count = 3},
+        Job{.count = ~0u}, Job{.count = 4, .replicates = {0, 40}},
+        Job{.kind = Job::Kind::light, .count = 10}})
     EXPECT_THROW(runner.run(job, never, result), std::runtime_error);
 }
 

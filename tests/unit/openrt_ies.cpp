@@ -29,15 +29,18 @@ std::string bad(const std::string& text) {
 const std::string head = "IESNA:LM-63-2002";
 
 TEST(Ies, AllDirectionsAlike) {
-  const ies::Photometry p = good(file(head, "1 1000 2 3 1 1 2 0 0 0\n.5 1 100\n0 90 180\n0\n100, 100,\r\n 100"));
+  const ies::Photometry p =
+      good(file(head, "1 1000 2 3 1 1 2 0 0 0\n.5 1 100\n0 90 180\n0\n100, 100,\r\n 100"));
   for (const double down : {0., 45., 180.})
-    for (const double around : {0., -170., 359., 720.}) EXPECT_FLOAT_EQ(p.intensity(down, around), 100);
+    for (const double around : {0., -170., 359., 720.})
+      EXPECT_FLOAT_EQ(p.intensity(down, around), 100);
   EXPECT_NEAR(p.flux(), 400 * M_PI, .1);
 }
 
 TEST(Ies, FactorsOfOldAndNewFiles) {
   const std::string rest = "1 -1 3 2 1 1 2 0 0 0\n.5 .25 100\n0 90\n0\n100 0";
-  EXPECT_FLOAT_EQ(good(file("IESNA:LM-63-1995", rest)).intensity(0, 0), 150) << "the second factor is for future use";
+  EXPECT_FLOAT_EQ(good(file("IESNA:LM-63-1995", rest)).intensity(0, 0), 150)
+      << "the second factor is for future use";
   EXPECT_FLOAT_EQ(good(file("IESNA91", rest)).intensity(0, 0), 37.5);
   EXPECT_FLOAT_EQ(good("a luminaire of 1986\nTILT=NONE\n" + rest).intensity(0, 0), 37.5);
 }
@@ -57,10 +60,12 @@ TEST(Ies, Symmetries) {
   const ies::Photometry half = good(file(head, one + "3" + two + "0 90 180  10 20 40"));
   EXPECT_NEAR(half.intensity(0, 135), 30, 1e-4);
   EXPECT_NEAR(half.intensity(0, 225), 30, 1e-4);
-  const ies::Photometry whole = good(file(head, one + "5" + two + "0 90 180 270 360  10 20 30 40 10"));
+  const ies::Photometry whole =
+      good(file(head, one + "5" + two + "0 90 180 270 360  10 20 30 40 10"));
   EXPECT_NEAR(whole.intensity(0, 225), 35, 1e-4);
   EXPECT_NEAR(whole.intensity(0, 315), 25, 1e-4);
-  const ies::Photometry open = good(file(head, one + "4" + two + "0 90 180 270  10 20 30 40")); // 360 is left out
+  const ies::Photometry open =
+      good(file(head, one + "4" + two + "0 90 180 270  10 20 30 40")); // 360 is left out
   EXPECT_NEAR(open.intensity(0, 315), 25, 1e-4);
   const ies::Photometry across = good(file(head, one + "3" + two + "90 180 270  10 20 30"));
   EXPECT_NEAR(across.intensity(0, 45), 15, 1e-4);
@@ -72,25 +77,37 @@ TEST(Ies, WhatIsWrongIsSaid) {
   EXPECT_EQ(bad(""), "no profile: give the text of an IES LM-63 file 1");
   EXPECT_EQ(bad("#VRML V2.0 utf8\nShape {}"), "not an IES file: there is no line TILT= 2");
   EXPECT_NE(bad("IESNA91\nTILT=INCLUDE\n" + numbers).find("TILT=INCLUDE"), std::string::npos);
-  EXPECT_NE(bad("IESNA91\nTILT=../../etc/passwd\n" + numbers).find("only TILT=NONE"), std::string::npos);
-  EXPECT_EQ(bad(file(head, numbers + "1")), "a candela value is missing, no number, or too large 5");
+  EXPECT_NE(bad("IESNA91\nTILT=../../etc/passwd\n" + numbers).find("only TILT=NONE"),
+            std::string::npos);
+  EXPECT_EQ(bad(file(head, numbers + "1")),
+            "a candela value is missing, no number, or too large 5");
   EXPECT_EQ(bad(file(head, numbers + "1 -1")), "a candela value is negative 5");
   EXPECT_NE(bad(file(head, numbers + "1 nan")).find("candela"), std::string::npos);
   EXPECT_NE(bad(file(head, numbers + "1 1e39")).find("candela"), std::string::npos);
-  EXPECT_NE(bad(file(head, "1 1 1 4000 4000 1 1 0 0 0 1 1 1")).find("number of angles"), std::string::npos);
-  EXPECT_NE(bad(file(head, "1 1 1 1e9 1 1 1 0 0 0 1 1 1")).find("number of angles"), std::string::npos);
-  EXPECT_NE(bad(file(head, "1 1 1 1.5 1 1 1 0 0 0 1 1 1")).find("number of angles"), std::string::npos);
-  EXPECT_NE(bad(file(head, "1 1 1 -1 1 1 1 0 0 0 1 1 1")).find("number of angles"), std::string::npos);
-  EXPECT_NE(bad(file(head, "1 1 1 2 1 2 1 0 0 0 1 1 1 0 90 0 1 1")).find("type C"), std::string::npos);
-  EXPECT_NE(bad(file(head, "1 1 1 2 1 1 1 0 0 0 1 1 1 90 0 0 1 1")).find("must rise"), std::string::npos);
-  EXPECT_NE(bad(file(head, "1 1 1 2 1 1 1 0 0 0 1 1 1 0 181 0 1 1")).find("must rise"), std::string::npos);
-  EXPECT_NE(bad(file(head, "1 1 1 1 2 1 1 0 0 0 1 1 1 0 0 45 1 1")).find("must run"), std::string::npos);
-  EXPECT_NE(bad(file(head, "1 1 -1 1 1 1 1 0 0 0 1 1 1 0 0 1")).find("negative multiplier"), std::string::npos);
+  EXPECT_NE(bad(file(head, "1 1 1 4000 4000 1 1 0 0 0 1 1 1")).find("number of angles"),
+            std::string::npos);
+  EXPECT_NE(bad(file(head, "1 1 1 1e9 1 1 1 0 0 0 1 1 1")).find("number of angles"),
+            std::string::npos);
+  EXPECT_NE(bad(file(head, "1 1 1 1.5 1 1 1 0 0 0 1 1 1")).find("number of angles"),
+            std::string::npos);
+  EXPECT_NE(bad(file(head, "1 1 1 -1 1 1 1 0 0 0 1 1 1")).find("number of angles"),
+            std::string::npos);
+  EXPECT_NE(bad(file(head, "1 1 1 2 1 2 1 0 0 0 1 1 1 0 90 0 1 1")).find("type C"),
+            std::string::npos);
+  EXPECT_NE(bad(file(head, "1 1 1 2 1 1 1 0 0 0 1 1 1 90 0 0 1 1")).find("must rise"),
+            std::string::npos);
+  EXPECT_NE(bad(file(head, "1 1 1 2 1 1 1 0 0 0 1 1 1 0 181 0 1 1")).find("must rise"),
+            std::string::npos);
+  EXPECT_NE(bad(file(head, "1 1 1 1 2 1 1 0 0 0 1 1 1 0 0 45 1 1")).find("must run"),
+            std::string::npos);
+  EXPECT_NE(bad(file(head, "1 1 -1 1 1 1 1 0 0 0 1 1 1 0 0 1")).find("negative multiplier"),
+            std::string::npos);
   EXPECT_NE(bad(file(head, "1 1 x")).find("description"), std::string::npos);
 }
 
 TEST(Ies, NoTextEndsBadly) { // every beginning of a good file, and every byte of it changed
-  const std::string text = file(head, "1 1 1 3 3 1 1 0 0 0 1 1 1 0 45 90 0 90 180 1 2 3 4 5 6 7 8 9");
+  const std::string text =
+      file(head, "1 1 1 3 3 1 1 0 0 0 1 1 1 0 45 90 0 90 180 1 2 3 4 5 6 7 8 9");
   for (size_t i = 0; i < text.size(); i++) {
     bad(text.substr(0, i));
     for (const char c : {'\0', '-', '9', '\n', '\xff'}) {
@@ -99,7 +116,8 @@ TEST(Ies, NoTextEndsBadly) { // every beginning of a good file, and every byte o
       ies::Photometry p;
       int line = 0;
       if (ies::parse(changed, p, line)) continue;
-      for (const double down : {0., 30., 100.}) EXPECT_TRUE(std::isfinite(p.intensity(down, 7 * double(i))));
+      for (const double down : {0., 30., 100.})
+        EXPECT_TRUE(std::isfinite(p.intensity(down, 7 * double(i))));
     }
   }
 }

@@ -1,5 +1,5 @@
-// The choice among many lights: probabilities that add up, that are those of the choice, near the light that arrives, and that
-// are never 0 where light does arrive.
+// The choice among many lights: probabilities that add up, that are those of the choice, near the
+// light that arrives, and that are never 0 where light does arrive.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -51,7 +51,8 @@ TEST(LightTree, R12EqualLightsAreEquallyLikely) {
     LightTree tree;
     tree.build(lights);
     const float p[3] = {0, 0, 0}, normal[3] = {0, 0, 1};
-    for (uint32_t i = 0; i < n; i += 1 + n / 7) EXPECT_NEAR(double(tree.probability(p, normal, i)) * n, 1, 1e-5) << n;
+    for (uint32_t i = 0; i < n; i += 1 + n / 7)
+      EXPECT_NEAR(double(tree.probability(p, normal, i)) * n, 1, 1e-5) << n;
     EXPECT_LT(tree.depth(), 20u);
     EXPECT_NEAR(sumOf(tree, n, p, normal), 1, 1e-5);
   }
@@ -80,7 +81,8 @@ TEST(LightTree, ProbabilitiesAddUpAndAreThoseOfTheChoice) {
       count[c.light]++;
       ASSERT_FLOAT_EQ(c.probability, tree.probability(p, normal, c.light));
     }
-    for (uint32_t i = 0; i < lights.size(); i++) // even steps of pick: exact but for one step at either end
+    for (uint32_t i = 0; i < lights.size();
+         i++) // even steps of pick: exact but for one step at either end
       ASSERT_NEAR(count[i], double(tree.probability(p, normal, i)) * draws, 1.01);
   }
 }
@@ -120,7 +122,8 @@ TEST(LightTree, LightThatArrivesIsNeverImpossible) {
           facing -= way[k] * n[k];
         }
         if (b.bothSides) leaving = std::fabs(leaving);
-        const bool lit = b.cosineBeyond == 1 ? leaving > double(b.cosineNormals) * std::sqrt(square) : leaving > 0;
+        const bool lit = b.cosineBeyond == 1 ? leaving > double(b.cosineNormals) * std::sqrt(square)
+                                             : leaving > 0;
         if (!lit || facing <= 0 || square > double(b.reach) * b.reach) continue;
         ASSERT_GT(tree.probability(p, n, i), 0) << i;
         ASSERT_GT(tree.probability(p, nullptr, i), 0) << i;
@@ -157,10 +160,12 @@ TEST(LightTree, NoLightWhereNoneReaches) {
   EXPECT_TRUE(tree.empty());
 }
 
-TEST(LightTree, LightsOfAnyPlaceMakeAShallowTree) { // each step takes one light off: halved from some depth on
+TEST(LightTree,
+     LightsOfAnyPlaceMakeAShallowTree) { // each step takes one light off: halved from some depth on
   std::vector<LightBounds> lights;
   float x = 1e-30f;
-  for (int i = 0; i < 200; i++, x *= 2) lights.push_back(pointLight(x < 1e30f ? x : 1e30f, 0, 0, 1));
+  for (int i = 0; i < 200; i++, x *= 2)
+    lights.push_back(pointLight(x < 1e30f ? x : 1e30f, 0, 0, 1));
   LightTree tree;
   tree.build(lights);
   EXPECT_LE(tree.depth(), 60u);
@@ -177,7 +182,8 @@ TEST(LightTree, SameLightsSameTree) {
   a.build(lights);
   b.build(lights);
   const float p[3] = {1, 2, 3};
-  for (uint32_t i = 0; i < lights.size(); i += 37) ASSERT_EQ(a.probability(p, nullptr, i), b.probability(p, nullptr, i));
+  for (uint32_t i = 0; i < lights.size(); i += 37)
+    ASSERT_EQ(a.probability(p, nullptr, i), b.probability(p, nullptr, i));
 }
 
 } // namespace

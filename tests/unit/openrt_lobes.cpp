@@ -1,4 +1,5 @@
-// openrt_lobes.cpp: the engine's lobes that scatter: sampling, values and densities belong together.
+// openrt_lobes.cpp: the engine's lobes that scatter: sampling, values and densities belong
+// together.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -55,15 +56,19 @@ struct Bench {
       if (!(samples.density[i] > 0)) continue;
       some++;
       sum += samples.value[0][i];
-      const float d[3] = {samples.direction[0][i], samples.direction[1][i], samples.direction[2][i]};
+      const float d[3] = {samples.direction[0][i], samples.direction[1][i],
+                          samples.direction[2][i]};
       EXPECT_NEAR(dot3(d, d), 1, 1e-5);
       // Evaluated again from the rounded direction: near a narrow lobe's axis digits are lost.
       EXPECT_NEAR(answers.density[i] / samples.density[i], 1, 2e-3) << i;
-      EXPECT_NEAR(answers.value[0][i], samples.value[0][i] * samples.density[i], 3e-3 * answers.value[0][i] + 1e-6) << i;
+      EXPECT_NEAR(answers.value[0][i], samples.value[0][i] * samples.density[i],
+                  3e-3 * answers.value[0][i] + 1e-6)
+          << i;
     }
     return {sum / n, some / n};
   }
-  // Integrals of value and density over the sphere of directions, by the midpoint rule in cos and angle.
+  // Integrals of value and density over the sphere of directions, by the midpoint rule in cos and
+  // angle.
   std::pair<double, double> integrated(uint32_t rows) {
     const uint32_t columns = rows;
     double value = 0, density = 0;
@@ -112,14 +117,16 @@ TEST_P(Lobe, WhatIsSampledIsWhatIsEvaluated) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, Lobe,
-                         testing::Values(Case{"Diffuse", RTS_LOBE_DIFFUSE, 0, 0}, Case{"Smooth", RTS_LOBE_GLOSSY, .15f, 0},
-                                         Case{"Glossy", RTS_LOBE_GLOSSY, .3f, 0}, Case{"Rough", RTS_LOBE_GLOSSY, 1, 0},
-                                         Case{"Coat", RTS_LOBE_GLOSSY, .3f, 1 / 1.5f},
-                                         Case{"Into", RTS_LOBE_ROUGH_DIELECTRIC, 1 / 1.5f, .3f},
-                                         Case{"OutOf", RTS_LOBE_ROUGH_DIELECTRIC, 1.5f, .3f},
-                                         Case{"RoughInto", RTS_LOBE_ROUGH_DIELECTRIC, 1 / 1.5f, .8f}),
-                         [](const auto& info) { return std::string(info.param.name); });
+INSTANTIATE_TEST_SUITE_P(
+    Kinds, Lobe,
+    testing::Values(Case{"Diffuse", RTS_LOBE_DIFFUSE, 0, 0},
+                    Case{"Smooth", RTS_LOBE_GLOSSY, .15f, 0},
+                    Case{"Glossy", RTS_LOBE_GLOSSY, .3f, 0}, Case{"Rough", RTS_LOBE_GLOSSY, 1, 0},
+                    Case{"Coat", RTS_LOBE_GLOSSY, .3f, 1 / 1.5f},
+                    Case{"Into", RTS_LOBE_ROUGH_DIELECTRIC, 1 / 1.5f, .3f},
+                    Case{"OutOf", RTS_LOBE_ROUGH_DIELECTRIC, 1.5f, .3f},
+                    Case{"RoughInto", RTS_LOBE_ROUGH_DIELECTRIC, 1 / 1.5f, .8f}),
+    [](const auto& info) { return std::string(info.param.name); });
 
 // Seen from both ends a reflection has the same value per cosine.
 TEST(Lobes, GlossyIsReciprocal) {
@@ -128,7 +135,8 @@ TEST(Lobes, GlossyIsReciprocal) {
   LobeAnswers a(one.arena, 1), b(one.arena, 1);
   const float to65[3] = {float(std::sin(65 * M_PI / 180)), 0, float(std::cos(65 * M_PI / 180))};
   const float to20[3] = {float(std::sin(20 * M_PI / 180)), 0, float(std::cos(20 * M_PI / 180))};
-  const float *first[3] = {&to65[0], &to65[1], &to65[2]}, *second[3] = {&to20[0], &to20[1], &to20[2]};
+  const float *first[3] = {&to65[0], &to65[1], &to65[2]},
+              *second[3] = {&to20[0], &to20[1], &to20[2]};
   a.evaluate(one.lobe, one.hits, 1, &hit, first);
   b.evaluate(other.lobe, other.hits, 1, &hit, second);
   EXPECT_NEAR(a.value[0][0] / to65[2], b.value[0][0] / to20[2], 1e-6);

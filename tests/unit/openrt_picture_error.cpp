@@ -1,4 +1,5 @@
-// openrt_picture_error.cpp: what a picture as a whole is off by, from made-up pixels whose errors are known.
+// openrt_picture_error.cpp: what a picture as a whole is off by, from made-up pixels whose errors
+// are known.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -52,7 +53,8 @@ template <class Sample> Outcome pictures(int count, Sample sample, double (*trut
     out.said += e.mean / count;
     out.was += off / count;
   }
-  printf("said %.4f, was %.4f, %d of %d inside, %d above\n", out.said, out.was, out.inside, count, out.above);
+  printf("said %.4f, was %.4f, %d of %d inside, %d above\n", out.said, out.was, out.inside, count,
+         out.above);
   return out;
 }
 
@@ -64,14 +66,18 @@ void expectHeld(const Outcome& o, int count, double slack) {
 } // namespace
 
 TEST(PictureError, ofNormalNoise) {
-  const auto sample = [](std::mt19937& r, uint32_t) { return std::uniform_real_distribution<>(.5, 1.5)(r); };
+  const auto sample = [](std::mt19937& r, uint32_t) {
+    return std::uniform_real_distribution<>(.5, 1.5)(r);
+  };
   expectHeld(pictures(60, sample, [](uint32_t) { return 1.0; }), 60, .03);
 }
 
 // One sample in so many is bright, over a floor that is lit evenly.
 TEST(PictureError, ofLightThatOnePixelInAFewHasMet) {
   for (const double chance : {.02, .005, .001}) {
-    const auto sample = [=](std::mt19937& r, uint32_t) { return std::bernoulli_distribution(chance)(r) ? 20.0 : .2; };
+    const auto sample = [=](std::mt19937& r, uint32_t) {
+      return std::bernoulli_distribution(chance)(r) ? 20.0 : .2;
+    };
     static double mean;
     mean = .2 + chance * (20 - .2);
     expectHeld(pictures(40, sample, [](uint32_t) { return mean; }), 40, .15);
@@ -80,7 +86,8 @@ TEST(PictureError, ofLightThatOnePixelInAFewHasMet) {
 
 TEST(PictureError, ofJumpsAmongNormalNoise) {
   const auto sample = [](std::mt19937& r, uint32_t) {
-    return std::uniform_real_distribution<>(0, 2)(r) + (std::bernoulli_distribution(.002)(r) ? 25.0 : 0);
+    return std::uniform_real_distribution<>(0, 2)(r) +
+           (std::bernoulli_distribution(.002)(r) ? 25.0 : 0);
   };
   expectHeld(pictures(40, sample, [](uint32_t) { return 1.05; }), 40, .15);
 }
@@ -89,7 +96,8 @@ TEST(PictureError, ofLightOverManyDecades) {
   const auto sample = [](std::mt19937& r, uint32_t i) {
     return std::pow(3.0, -double(i % edge)) * std::uniform_real_distribution<>(0, 2)(r);
   };
-  expectHeld(pictures(40, sample, [](uint32_t i) { return std::pow(3.0, -double(i % edge)); }), 40, .05);
+  expectHeld(pictures(40, sample, [](uint32_t i) { return std::pow(3.0, -double(i % edge)); }), 40,
+             .05);
 }
 
 TEST(PictureError, ofWhatIsCompletelyUnknownAnythingIsSaid) {
@@ -119,7 +127,8 @@ TEST(PictureError, aPlainBackgroundBehindALensIsNotAnError) { // equal samples o
   EXPECT_LT(e.mean + e.interval, .01);
 }
 
-TEST(PictureError, pixelsInDoubtHoldAnEdgeOrNone) { // a tenth of them does, and then they are wrong altogether
+TEST(PictureError,
+     pixelsInDoubtHoldAnEdgeOrNone) { // a tenth of them does, and then they are wrong altogether
   std::vector<PixelNoise> noise(256);
   for (PixelNoise& p : noise) {
     p.finished = true;
@@ -138,7 +147,8 @@ TEST(PictureError, whatNoPathHasMetIsBoundByTheRuleOfThree) {
   const auto missed = [&ledger] { return ledger.missedByChance(ledger, 1000); };
   EXPECT_EQ(missed(), 0);
   const float grey[] = {.1f, .1f, .1f}, bright[] = {40, 40, 40}, dim[] = {20, 20, 20};
-  for (int i = 0; i < 100; i++) ledger.chance.send(grey, 50); // .3 of radiance 50 for each of 100 rays in 1000 samples
+  for (int i = 0; i < 100; i++)
+    ledger.chance.send(grey, 50); // .3 of radiance 50 for each of 100 rays in 1000 samples
   ledger.chance.meet(dim, 50);
   EXPECT_NEAR(missed(), 2.996 * .3 * 50 / 1000, 5e-4);
   ledger.chance.meet(bright, 50); // one has met it: at most 4.74 should have, with 95 %
@@ -152,7 +162,8 @@ TEST(PictureError, whatNoPathHasMetIsBoundByTheRuleOfThree) {
   EXPECT_NEAR(tile.missedByChance(ledger, 10), .3 * 10 / 10, 1e-3);
 }
 
-TEST(PictureError, theShapeOfPureJumps) { // E|K - a| / (sqrt(2/pi) E sqrt(K)) of Poisson's K, summed by hand
+TEST(PictureError,
+     theShapeOfPureJumps) { // E|K - a| / (sqrt(2/pi) E sqrt(K)) of Poisson's K, summed by hand
   EXPECT_NEAR(tailShape(0, 1).factor, .7358 / (.79788 * .7733), .003);
   EXPECT_NEAR(tailShape(0, .01).factor, 2 / .79788, .03);
   EXPECT_NEAR(tailShape(0, .01).missing, .5, .01);

@@ -45,7 +45,8 @@ class PilotsOf : public testing::Test {
     for (PixelError& e : errors) out.push_back(pilotPixel(e, nullptr));
     return out;
   }
-  std::vector<Pilots::Verdict> judgeAll(const PixelError& left, const PixelError& right, bool timed = false) {
+  std::vector<Pilots::Verdict> judgeAll(const PixelError& left, const PixelError& right,
+                                        bool timed = false) {
     Pilots pilots(frame_, TileGrid(frame_), timed);
     note(pilots, 0, left);
     note(pilots, 1, right);
@@ -61,10 +62,11 @@ void expect(const Pilots::Verdict& v, uint32_t samples, bool pilot) {
 
 } // namespace
 
-TEST_F(PilotsOf, NoiseFallsByTheRootOfTheSamples) { // with a tenth less than the target, in steps of a quarter of an octave
+TEST_F(PilotsOf, NoiseFallsByTheRootOfTheSamples) { // with a tenth less than the target, in steps
+                                                    // of a quarter of an octave
   const auto v = judgeAll(error(.08f, true, false), error(.24f, true, false));
   expect(v[0], 32, false);
-  expect(v[1], 256, false);                                                           // 32 * (.24 / .09)^2 = 228
+  expect(v[1], 256, false); // 32 * (.24 / .09)^2 = 228
   expect(judgeAll(error(.17f, true, false), error(.1f, true, false))[0], 128, false); // 114
   expect(judgeAll(error(.1f, true, false), error(.1f, true, false))[0], 64, false);   // 39.5
 }
@@ -93,7 +95,8 @@ TEST_F(PilotsOf, TheyAreAThirdOfTheSamplesAtMost) {
     note(pilots, 1, error(2, false, false));
     Pilots::Verdict v = pilots.judgeAll()[0];
     uint32_t all = 0;
-    for (std::vector<PixelError> errors(64, error(2, false, false)); v.pilot; v = pilots.judge(0, pixels(errors), v.samples)) {
+    for (std::vector<PixelError> errors(64, error(2, false, false)); v.pilot;
+         v = pilots.judge(0, pixels(errors), v.samples)) {
       ASSERT_GT(v.samples, 0u);
       all += v.samples;
     }
@@ -108,7 +111,8 @@ TEST_F(PilotsOf, UnderATimeLimitTheFirstOneDecides) {
 }
 
 TEST_F(PilotsOf,
-       ConstantPixelsBesideAnEdgeCount) { // those at the border, and between the tiles: their bound falls as 1 / samples
+       ConstantPixelsBesideAnEdgeCount) { // those at the border, and between the tiles: their bound
+                                          // falls as 1 / samples
   Pilots pilots(frame_, TileGrid(frame_), false);
   std::vector<PixelError> black(64, error(0, true, true, 0));
   note(pilots, 0, black[0]);

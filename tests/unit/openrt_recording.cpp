@@ -1,5 +1,7 @@
-// openrt_recording.cpp: recordings: what is written is read back the same, and whatever else a file holds is refused with the
-// place of the fault. The faults are put into a good recording, with its checksums made right again where they would hide them.
+// openrt_recording.cpp: recordings: what is written is read back the same, and whatever else a file
+// holds is refused with the place of the fault. The faults are put into a good recording, with its
+// checksums made right again where they would hide them.
+// Longer than 500 lines because the tests share one format of edits.
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
@@ -23,8 +25,8 @@ using namespace openrt::test;
 namespace fs = std::filesystem;
 using Bytes = std::vector<uint8_t>;
 
-std::unique_ptr<RecordingReader> readerOf(const Bytes& bytes, const ShaderRegistry* shaders = nullptr,
-                                          RecordingLimits limits = {}) {
+std::unique_ptr<RecordingReader>
+readerOf(const Bytes& bytes, const ShaderRegistry* shaders = nullptr, RecordingLimits limits = {}) {
   std::FILE* file = std::tmpfile();
   if (!bytes.empty()) std::fwrite(bytes.data(), 1, bytes.size(), file);
   std::rewind(file);
@@ -32,7 +34,8 @@ std::unique_ptr<RecordingReader> readerOf(const Bytes& bytes, const ShaderRegist
 }
 
 // The message with which a recording is refused; empty if it is not.
-std::string refusal(const Bytes& bytes, const ShaderRegistry* shaders = nullptr, RecordingLimits limits = {}) {
+std::string refusal(const Bytes& bytes, const ShaderRegistry* shaders = nullptr,
+                    RecordingLimits limits = {}) {
   try {
     const auto reader = readerOf(bytes, shaders, limits);
     while (reader->next()) {}
@@ -57,7 +60,8 @@ Bytes header() {
 void appendArray(Bytes& bytes, uint64_t id, const void* data, size_t size) {
   Bytes packed(ZSTD_compressBound(size));
   packed.resize(ZSTD_compress(packed.data(), packed.size(), data, size, 1));
-  const recording::ChunkHeader h{recording::ChunkKind::Array, 0, id, size, packed.size(), XXH3_64bits(data, size)};
+  const recording::ChunkHeader h{recording::ChunkKind::Array, 0, id, size, packed.size(),
+                                 XXH3_64bits(data, size)};
   append(bytes, &h, sizeof(h));
   append(bytes, packed.data(), packed.size());
 }
@@ -104,8 +108,9 @@ struct Example {
 
   Example()
       : texture(add(edits, edit::TextureT())), surfaceClass(add(edits, edit::ShaderClassT())),
-        surface(add(edits, edit::ShaderT())), parameter(add(edits, edit::ParameterT())), object(add(edits, edit::ObjectT())),
-        geometry(makeGeometry(object)), instance(add(edits, edit::InstanceT())), frame(add(edits, edit::FrameSettingsT())) {
+        surface(add(edits, edit::ShaderT())), parameter(add(edits, edit::ParameterT())),
+        object(add(edits, edit::ObjectT())), geometry(makeGeometry(object)),
+        instance(add(edits, edit::InstanceT())), frame(add(edits, edit::FrameSettingsT())) {
     texture.id = 1;
     texture.components = 1;
     texture.width = texture.height = 2;
@@ -167,8 +172,10 @@ TEST_F(Recording, AGoodOneIsRead) {
 
 TEST_F(Recording, WhatTheApiWroteIsReadBackTheSame) {
   const std::string plugins = OPENRT_TEST_PLUGINS;
-  const fs::path path = fs::temp_directory_path() / ("openrt recording " + std::to_string(::getpid()));
-  const RTcontext context = rtNewContext(("backend=record file=\"" + path.string() + "\" shaderpath=" + plugins).c_str());
+  const fs::path path =
+      fs::temp_directory_path() / ("openrt recording " + std::to_string(::getpid()));
+  const RTcontext context =
+      rtNewContext(("backend=record file=\"" + path.string() + "\" shaderpath=" + plugins).c_str());
   ASSERT_NE(context, nullptr) << rtGetErrorMessage();
   std::vector<float> points(30000);
   for (size_t i = 0; i < points.size(); i++) points[i] = float((i * 7919) % 1000) / 7;
@@ -194,7 +201,8 @@ TEST_F(Recording, WhatTheApiWroteIsReadBackTheSame) {
   ASSERT_TRUE(first);
   EXPECT_TRUE(first->edits.render);
   EXPECT_EQ(edits<edit::ParameterT>(*first).at(0)->text, "some text");
-  EXPECT_EQ(contents<float>(*first, edits<edit::ObjectT>(*first).at(0)->geometries.at(0)->points), points);
+  EXPECT_EQ(contents<float>(*first, edits<edit::ObjectT>(*first).at(0)->geometries.at(0)->points),
+            points);
   const auto second = reader->next();
   ASSERT_TRUE(second);
   ASSERT_EQ(second->edits.edits.size(), 1u);
@@ -213,12 +221,14 @@ TEST_F(Recording, EveryTruncationIsNoticed) {
   const Bytes whole = Example().file();
   for (size_t size = 0; size < whole.size(); size++) {
     if (size == sizeof(recording::FileHeader)) continue; // a recording of nothing
-    const std::string text = refusal(Bytes(whole.begin(), whole.begin() + ptrdiff_t(size)), &shaders);
+    const std::string text =
+        refusal(Bytes(whole.begin(), whole.begin() + ptrdiff_t(size)), &shaders);
     EXPECT_NE(text.find("the file ends in the middle"), text.npos) << size << ": " << text;
   }
 }
 
-// The framing of zstd has bits that mean nothing; what is not refused must at least be read as it was written.
+// The framing of zstd has bits that mean nothing; what is not refused must at least be read as it
+// was written.
 TEST_F(Recording, NoFlippedBitChangesWhatIsRead) {
   const Example example;
   const Bytes whole = example.file();
@@ -229,19 +239,27 @@ TEST_F(Recording, NoFlippedBitChangesWhatIsRead) {
     if (const std::string text = refusal(damaged, &shaders); !text.empty()) continue;
     harmless++;
     const auto commit = readerOf(damaged, &shaders)->next();
-    EXPECT_EQ(contents<float>(*commit, 1), std::vector<float>(example.points, example.points + 9)) << "bit " << i;
-    EXPECT_EQ(contents<uint32_t>(*commit, 2), std::vector<uint32_t>(example.indices, example.indices + 3)) << "bit " << i;
-    EXPECT_EQ(contents<uint8_t>(*commit, 3), std::vector<uint8_t>(example.texels, example.texels + 4)) << "bit " << i;
+    EXPECT_EQ(contents<float>(*commit, 1), std::vector<float>(example.points, example.points + 9))
+        << "bit " << i;
+    EXPECT_EQ(contents<uint32_t>(*commit, 2),
+              std::vector<uint32_t>(example.indices, example.indices + 3))
+        << "bit " << i;
+    EXPECT_EQ(contents<uint8_t>(*commit, 3),
+              std::vector<uint8_t>(example.texels, example.texels + 4))
+        << "bit " << i;
   }
   EXPECT_LE(harmless, 12); // a few in the frame of each array
 }
 
 TEST_F(Recording, LimitsHold) {
   const Bytes whole = Example().file();
-  EXPECT_NE(refusal(whole, &shaders, {.arrayBytes = 35}).find("an array of 36 bytes"), std::string::npos);
-  EXPECT_NE(refusal(whole, &shaders, {.totalBytes = 50}).find("more than 50 bytes"), std::string::npos);
+  EXPECT_NE(refusal(whole, &shaders, {.arrayBytes = 35}).find("an array of 36 bytes"),
+            std::string::npos);
+  EXPECT_NE(refusal(whole, &shaders, {.totalBytes = 50}).find("more than 50 bytes"),
+            std::string::npos);
   EXPECT_NE(refusal(whole, &shaders, {.editBytes = 50}).find("edits of"), std::string::npos);
-  EXPECT_NE(refusal(whole, &shaders, {.commits = 0}).find("more than 0 commits"), std::string::npos);
+  EXPECT_NE(refusal(whole, &shaders, {.commits = 0}).find("more than 0 commits"),
+            std::string::npos);
 }
 
 // A small file that claims a terabyte must not make anybody take a terabyte.
@@ -250,8 +268,10 @@ TEST_F(Recording, ClaimedSizesAreNotBelieved) {
   recording::ChunkHeader h{recording::ChunkKind::Array, 0, 1, uint64_t(1) << 40, 64, 0};
   append(bytes, &h, sizeof(h));
   bytes.resize(bytes.size() + 64);
-  EXPECT_NE(refusal(bytes, nullptr, {.arrayBytes = uint64_t(1) << 41, .totalBytes = uint64_t(1) << 42}).find("an array of"),
-            std::string::npos);
+  EXPECT_NE(
+      refusal(bytes, nullptr, {.arrayBytes = uint64_t(1) << 41, .totalBytes = uint64_t(1) << 42})
+          .find("an array of"),
+      std::string::npos);
   bytes = header();
   h = {recording::ChunkKind::Edits, 0, 0, uint64_t(1) << 29, uint64_t(1) << 29, 0};
   append(bytes, &h, sizeof(h));
@@ -262,7 +282,8 @@ TEST_F(Recording, AnArrayShorterThanItsClaim) {
   Bytes bytes = header(), packed(100);
   const uint8_t data[8] = {};
   packed.resize(ZSTD_compress(packed.data(), packed.size(), data, sizeof(data), 1));
-  const recording::ChunkHeader h{recording::ChunkKind::Array, 0, 1, 16, packed.size(), XXH3_64bits(data, 8)};
+  const recording::ChunkHeader h{recording::ChunkKind::Array, 0, 1, 16, packed.size(),
+                                 XXH3_64bits(data, 8)};
   append(bytes, &h, sizeof(h));
   append(bytes, packed.data(), packed.size());
   EXPECT_NE(refusal(bytes).find("shorter than it claims"), std::string::npos);
@@ -305,21 +326,32 @@ const float notANumber = std::numeric_limits<float>::quiet_NaN();
 INSTANTIATE_TEST_SUITE_P(
     Recording, Faults,
     testing::Values(
-        Fault{"IndexBeyondPoints", [](Example& e) { e.indices[1] = 3; }, "an index beyond the points"},
-        Fault{"PointNotFinite", [](Example& e) { e.points[4] = notANumber; }, "a point that is not finite"},
-        Fault{"IndicesAsNormals", [](Example& e) { e.geometry.normals = 2; }, "normals that are wrong in size"},
-        Fault{"TexelsAsPoints", [](Example& e) { e.geometry.points = 3; }, "points of a wrong size"},
-        Fault{"TexelsAsIndices", [](Example& e) { e.geometry.indices = 3; }, "indices of a wrong size"},
+        Fault{"IndexBeyondPoints", [](Example& e) { e.indices[1] = 3; },
+              "an index beyond the points"},
+        Fault{"PointNotFinite", [](Example& e) { e.points[4] = notANumber; },
+              "a point that is not finite"},
+        Fault{"IndicesAsNormals", [](Example& e) { e.geometry.normals = 2; },
+              "normals that are wrong in size"},
+        Fault{"TexelsAsPoints", [](Example& e) { e.geometry.points = 3; },
+              "points of a wrong size"},
+        Fault{"TexelsAsIndices", [](Example& e) { e.geometry.indices = 3; },
+              "indices of a wrong size"},
         Fault{"UnknownArray", [](Example& e) { e.geometry.points = 77; }, "did not arrive"},
         Fault{"NoPoints", [](Example& e) { e.geometry.points = 0; }, "a geometry without vertices"},
-        Fault{"UnknownPrimitive", [](Example& e) { e.geometry.primitive = edit::Primitive(9); }, "unknown primitive"},
-        Fault{"SphereWithPoints", [](Example& e) { e.geometry.primitive = edit::Primitive::Sphere; }, "a sphere with vertices"},
+        Fault{"UnknownPrimitive", [](Example& e) { e.geometry.primitive = edit::Primitive(9); },
+              "unknown primitive"},
+        Fault{"SphereWithPoints",
+              [](Example& e) { e.geometry.primitive = edit::Primitive::Sphere; },
+              "a sphere with vertices"},
         Fault{"NoWidth", [](Example& e) { e.geometry.width = 0; }, "a width that is not positive"},
         Fault{"NoMatrix", [](Example& e) { e.geometry.matrix.reset(); }, "a matrix is missing"},
-        Fault{"MatrixOfZeros", [](Example& e) { e.instance.matrix = std::make_unique<edit::Matrix>(); }, "not affine"},
+        Fault{"MatrixOfZeros",
+              [](Example& e) { e.instance.matrix = std::make_unique<edit::Matrix>(); },
+              "not affine"},
         Fault{"UnknownShader", [](Example& e) { e.geometry.shader = 44; }, "unknown id 44"},
         Fault{"TextureAsShader", [](Example& e) { e.geometry.shader = 1; }, "unknown id 1"},
-        Fault{"LightAsSurface", [](Example& e) { e.surfaceClass.name = "Lamp"; }, "a parameter that its class does not have"},
+        Fault{"LightAsSurface", [](Example& e) { e.surfaceClass.name = "Lamp"; },
+              "a parameter that its class does not have"},
         Fault{"CameraAsSurface",
               [](Example& e) {
                 e.surfaceClass.name = "Eye";
@@ -327,27 +359,35 @@ INSTANTIATE_TEST_SUITE_P(
                 e.parameter.shader = 99;
               },
               "unknown id 99"},
-        Fault{"UnknownClass", [](Example& e) { e.surfaceClass.name = "Absent"; }, "has no class \"Absent\""},
-        Fault{"PathAsLibrary", [](Example& e) { e.surfaceClass.library = "../x"; }, "only a bare name"},
+        Fault{"UnknownClass", [](Example& e) { e.surfaceClass.name = "Absent"; },
+              "has no class \"Absent\""},
+        Fault{"PathAsLibrary", [](Example& e) { e.surfaceClass.library = "../x"; },
+              "only a bare name"},
         Fault{"ParameterRange", [](Example& e) { e.parameter.floats = {2}; }, "is outside"},
         Fault{"ParameterCount",
               [](Example& e) {
                 e.parameter.floats = {0, 0};
               },
               "a wrong number of values"},
-        Fault{"ParameterIndex", [](Example& e) { e.parameter.index = 10; }, "that its class does not have"},
+        Fault{"ParameterIndex", [](Example& e) { e.parameter.index = 10; },
+              "that its class does not have"},
         Fault{"IdTwice", [](Example& e) { e.object.id = 3; }, "names two kinds"},
         Fault{"NoId", [](Example& e) { e.object.id = 0; }, "an edit without an id"},
         Fault{"InstanceOfNothing", [](Example& e) { e.instance.object = 6; }, "unknown id 6"},
-        Fault{"ObjectInItself", [](Example& e) { e.instance.parent = 4; }, "an object that contains itself"},
+        Fault{"ObjectInItself", [](Example& e) { e.instance.parent = 4; },
+              "an object that contains itself"},
         Fault{"TextureSize", [](Example& e) { e.texture.width = 3; }, "texels of a wrong size"},
-        Fault{"TextureHuge", [](Example& e) { e.texture.width = e.texture.height = 65536; }, "impossible size"},
+        Fault{"TextureHuge", [](Example& e) { e.texture.width = e.texture.height = 65536; },
+              "impossible size"},
         Fault{"TextureWrap", [](Example& e) { e.texture.wrapS = edit::Wrap(5); }, "unknown wrap"},
-        Fault{"FrameSize", [](Example& e) { e.frame.width = 70000; }, "a frame of an impossible size"},
+        Fault{"FrameSize", [](Example& e) { e.frame.width = 70000; },
+              "a frame of an impossible size"},
         Fault{"FrameChannels", [](Example& e) { e.frame.channels = 1 << 10; }, "unknown channels"},
         Fault{"FrameSamples", [](Example& e) { e.frame.samples = 0; }, "impossible quality"},
-        Fault{"DeletedUnknown", [](Example& e) { add(e.edits, edit::DeleteLightT()).id = 5; }, "unknown id 5"},
-        Fault{"DeletedInUse", [](Example& e) { add(e.edits, edit::DeleteObjectT()).id = 4; }, "deleted before its instances"},
+        Fault{"DeletedUnknown", [](Example& e) { add(e.edits, edit::DeleteLightT()).id = 5; },
+              "unknown id 5"},
+        Fault{"DeletedInUse", [](Example& e) { add(e.edits, edit::DeleteObjectT()).id = 4; },
+              "deleted before its instances"},
         Fault{"UsedAfterDeletion",
               [](Example& e) {
                 add(e.edits, edit::DeleteTextureT()).id = 1;
@@ -379,7 +419,9 @@ INSTANTIATE_TEST_SUITE_P(
                 add(e.edits, std::move(camera));
               },
               "in a role of another kind"},
-        Fault{"EmptyEdit", [](Example& e) { e.edits.edits.push_back(std::make_unique<edit::EditT>()); }, "an empty edit"}),
+        Fault{"EmptyEdit",
+              [](Example& e) { e.edits.edits.push_back(std::make_unique<edit::EditT>()); },
+              "an empty edit"}),
     [](const auto& info) { return std::string(info.param.name); });
 
 // Parameters of a geometry: the colours of Varying are its points, which lie within 0 .. 1.
@@ -405,11 +447,14 @@ TEST_F(Recording, ParametersOfGeometryAreChecked) {
          giveParameter(e, 5, false, 4);
          e.extra = {1, 2, 3};
        }},
-      {"no such parameter", "a parameter that its class does not have", [](Example& e) { giveParameter(e, 99); }},
-      {"another frequency", "cannot have like that", [](Example& e) { giveParameter(e, 2, false); }},
+      {"no such parameter", "a parameter that its class does not have",
+       [](Example& e) { giveParameter(e, 99); }},
+      {"another frequency", "cannot have like that",
+       [](Example& e) { giveParameter(e, 2, false); }},
       {"of the whole shader", "cannot have like that", [](Example& e) { giveParameter(e, 1); }},
       {"no values", "a parameter without values", [](Example& e) { giveParameter(e, 2, true, 0); }},
-      {"an array that is not there", "did not arrive", [](Example& e) { giveParameter(e, 2, true, 77); }},
+      {"an array that is not there", "did not arrive",
+       [](Example& e) { giveParameter(e, 2, true, 77); }},
       {"too few", "of a wrong size", [](Example& e) { giveParameter(e, 2, true, 2); }},
       {"too many", "of a wrong size", [](Example& e) { giveParameter(e, 3); }},
       {"one float too many", "of a wrong size",
@@ -475,7 +520,8 @@ TEST_F(Recording, OtherFilesAreNamedAsSuch) {
   EXPECT_NE(refusal(Bytes(16, 'x')).find("not a recording"), std::string::npos);
   Bytes newer = header();
   newer[8] = 2;
-  EXPECT_NE(refusal(newer).find("a recording of version 2; this program reads version 1"), std::string::npos);
+  EXPECT_NE(refusal(newer).find("a recording of version 2; this program reads version 1"),
+            std::string::npos);
   EXPECT_THROW(openRecording("/nonexistent/file", nullptr), BadRecording);
 }
 

@@ -1,5 +1,6 @@
-// openrt_replay.cpp: a scene that changes over several frames, recorded while the local backend renders it, and the program
-// openrt-replay on the recording: every frame has the same bytes. Its exit codes.
+// openrt_replay.cpp: a scene that changes over several frames, recorded while the local backend
+// renders it, and the program openrt-replay on the recording: every frame has the same bytes. Its
+// exit codes.
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -28,7 +29,8 @@ class Replay : public testing::Test {
   void TearDown() override { fs::remove_all(folder); }
 
   int replay(const std::string& arguments) {
-    const std::string command = "'" OPENRT_REPLAY "' " + arguments + " >'" + (folder / "out").string() + "' 2>&1";
+    const std::string command =
+        "'" OPENRT_REPLAY "' " + arguments + " >'" + (folder / "out").string() + "' 2>&1";
     const int status = std::system(command.c_str());
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
@@ -42,11 +44,13 @@ class Replay : public testing::Test {
     std::string magic, w, h, scale;
     file >> magic >> w >> h >> scale;
     file.get();
-    EXPECT_EQ(magic + " " + w + " " + h + " " + scale, "PF " + std::to_string(width) + " " + std::to_string(height) + " -1.0");
+    EXPECT_EQ(magic + " " + w + " " + h + " " + scale,
+              "PF " + std::to_string(width) + " " + std::to_string(height) + " -1.0");
     Picture rows(3 * width * height), picture;
     file.read(reinterpret_cast<char*>(rows.data()), std::streamsize(rows.size() * sizeof(float)));
     EXPECT_TRUE(file.good());
-    for (int y = height; y-- > 0;) picture.insert(picture.end(), &rows[3 * width * y], &rows[3 * width * y] + 3 * width);
+    for (int y = height; y-- > 0;)
+      picture.insert(picture.end(), &rows[3 * width * y], &rows[3 * width * y] + 3 * width);
     return picture;
   }
 
@@ -59,7 +63,8 @@ Picture rendered() {
   rtReadPixels(RT_RGBA, rgba.data(), rgba.size());
   EXPECT_EQ(rtGetError(), RTenum(RT_NO_ERROR)) << rtGetErrorMessage();
   Picture picture;
-  for (size_t i = 0; i < rgba.size(); i += 4) picture.insert(picture.end(), {rgba[i], rgba[i + 1], rgba[i + 2]});
+  for (size_t i = 0; i < rgba.size(); i += 4)
+    picture.insert(picture.end(), {rgba[i], rgba[i + 1], rgba[i + 2]});
   return picture;
 }
 
@@ -69,7 +74,8 @@ bool same(const Picture& a, const Picture& b) {
 
 // Renders four frames; between them things move, change their colour, are redefined and deleted.
 std::vector<Picture> recordFrames(const fs::path& recording) {
-  const RTcontext context = rtNewContext(("threads=2 record=\"" + recording.string() + "\"").c_str());
+  const RTcontext context =
+      rtNewContext(("threads=2 record=\"" + recording.string() + "\"").c_str());
   EXPECT_NE(context, nullptr) << (rtGetError(), rtGetErrorMessage());
   std::vector<Picture> frames;
   const RTid surface = rtNewShader(rtNewShaderClass("VRML97", nullptr));
@@ -144,9 +150,12 @@ std::vector<Picture> recordFrames(const fs::path& recording) {
 TEST_F(Replay, EveryFrameHasTheSameBytes) {
   const std::vector<Picture> frames = recordFrames(folder / "a recording");
   ASSERT_EQ(frames.size(), 4u);
-  EXPECT_FALSE(same(frames[0], frames[1]) || same(frames[1], frames[2]) || same(frames[2], frames[3]));
+  EXPECT_FALSE(same(frames[0], frames[1]) || same(frames[1], frames[2]) ||
+               same(frames[2], frames[3]));
   for (int frame = 1; frame <= 4; frame++) {
-    ASSERT_EQ(replay(quoted("a recording") + " -o " + quoted("frame.pfm") + " --threads 1 --frame " + std::to_string(frame)), 0)
+    ASSERT_EQ(replay(quoted("a recording") + " -o " + quoted("frame.pfm") +
+                     " --threads 1 --frame " + std::to_string(frame)),
+              0)
         << said();
     EXPECT_TRUE(same(readPfm("frame.pfm"), frames[size_t(frame - 1)])) << "frame " << frame;
   }
@@ -156,11 +165,13 @@ TEST_F(Replay, EveryFrameHasTheSameBytes) {
 }
 
 TEST_F(Replay, ValuesOfVerticesAndAReload) {
-  const RTcontext context =
-      rtNewContext(("threads=2 shaderpath=" OPENRT_TEST_PLUGINS " record=\"" + (folder / "colours").string() + "\"").c_str());
+  const RTcontext context = rtNewContext(("threads=2 shaderpath=" OPENRT_TEST_PLUGINS " record=\"" +
+                                          (folder / "colours").string() + "\"")
+                                             .c_str());
   ASSERT_NE(context, nullptr) << (rtGetError(), rtGetErrorMessage());
   rtBindShader(rtNewShader(rtNewShaderClass("Varying", "varying")));
-  const int color = rtParameterHandle("color"), show = rtParameterHandle("show"), triple = rtParameterHandle("triple");
+  const int color = rtParameterHandle("color"), show = rtParameterHandle("show"),
+            triple = rtParameterHandle("triple");
   const RTid object = rtBeginObject(0);
   rtBegin(RT_TRIANGLE_STRIP);
   for (int i = 0; i < 12; i++) {
@@ -183,8 +194,8 @@ TEST_F(Replay, ValuesOfVerticesAndAReload) {
   rtDeleteContext(context);
   EXPECT_FALSE(same(frames[0], frames[1]));
   for (int frame = 1; frame <= 2; frame++) {
-    ASSERT_EQ(replay(quoted("colours") + " -o " + quoted("frame.pfm") + " --shader-path '" OPENRT_TEST_PLUGINS "' --frame " +
-                     std::to_string(frame)),
+    ASSERT_EQ(replay(quoted("colours") + " -o " + quoted("frame.pfm") +
+                     " --shader-path '" OPENRT_TEST_PLUGINS "' --frame " + std::to_string(frame)),
               0)
         << said();
     EXPECT_TRUE(same(readPfm("frame.pfm"), frames[size_t(frame - 1)])) << "frame " << frame;

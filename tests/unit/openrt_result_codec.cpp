@@ -1,4 +1,5 @@
-// openrt_result_codec.cpp: results of jobs as bytes: exactly what was put in comes out, and whatever else comes is refused.
+// openrt_result_codec.cpp: results of jobs as bytes: exactly what was put in comes out, and
+// whatever else comes is refused.
 #include <cstring>
 #include <limits>
 #include <random>
@@ -12,7 +13,8 @@ namespace openrt {
 namespace {
 
 constexpr Tile tile{16, 32, 29, 40};
-constexpr double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
+constexpr double nan = std::numeric_limits<double>::quiet_NaN(),
+                 inf = std::numeric_limits<double>::infinity();
 
 edit::FrameSettingsT frameOf(uint32_t channels) {
   edit::FrameSettingsT frame;
@@ -23,7 +25,8 @@ edit::FrameSettingsT frameOf(uint32_t channels) {
   return frame;
 }
 
-// Sums with everything that may be difficult in them: what a frame of these channels gathers, nothing else.
+// Sums with everything that may be difficult in them: what a frame of these channels gathers,
+// nothing else.
 JobResult resultOf(const edit::FrameSettingsT& frame, const Job& job, uint32_t seed) {
   std::mt19937 random(seed);
   const auto number = [&]() -> double {
@@ -41,10 +44,14 @@ JobResult resultOf(const edit::FrameSettingsT& frame, const Job& job, uint32_t s
   };
   const bool floats = random() % 2, same = random() % 3 == 0;
   const double one = number();
-  const auto value = [&]() -> double { return same ? one : floats ? double(float(random())) : number(); };
+  const auto value = [&]() -> double {
+    return same ? one : floats ? double(float(random())) : number();
+  };
   const Gathering g = gatheringOf(frame);
   JobResult result;
-  result.ledger = {number(), number(), number(), {number(), number(), number()}, {number(), number(), number()}, job.count};
+  result.ledger = {
+      number(), number(), number(), {number(), number(), number()}, {number(), number(), number()},
+      job.count};
   result.sums.resize(tile.pixels());
   for (PixelSums& s : result.sums) {
     s.samples = job.count;
@@ -69,22 +76,26 @@ JobResult resultOf(const edit::FrameSettingsT& frame, const Job& job, uint32_t s
       s.largest[k] = float(value());
     }
     s.random = g.error && random() % 2;
-    if (g.error && job.replicates.many() && job.count >= job.replicates.size()) s.replicates = job.count / job.replicates.size();
+    if (g.error && job.replicates.many() && job.count >= job.replicates.size())
+      s.replicates = job.count / job.replicates.size();
   }
   return result;
 }
 
-bool sameBytes(const std::vector<PixelSums>& a, const std::vector<PixelSums>& b) { // field by field: between them is nothing
+bool sameBytes(const std::vector<PixelSums>& a,
+               const std::vector<PixelSums>& b) { // field by field: between them is nothing
   if (a.size() != b.size()) return false;
   for (size_t i = 0; i < a.size(); i++)
-    if (std::memcmp(&a[i], &b[i], offsetof(PixelSums, random)) != 0 || a[i].random != b[i].random) return false;
+    if (std::memcmp(&a[i], &b[i], offsetof(PixelSums, random)) != 0 || a[i].random != b[i].random)
+      return false;
   return true;
 }
 
 TEST(ResultCodec, EveryCombinationOfChannelsComesBackExactly) {
   for (uint32_t channels = 1; channels <= allChannels; channels++) {
     const edit::FrameSettingsT frame = frameOf(channels);
-    const Job job{.number = 3, .first = 32, .count = 32, .replicates = {7, channels % 2 ? 3u : 31u}};
+    const Job job{
+        .number = 3, .first = 32, .count = 32, .replicates = {7, channels % 2 ? 3u : 31u}};
     const JobResult in = resultOf(frame, job, channels);
     const std::vector<std::byte> bytes = encodeResult(frame, job, in);
     JobResult out;
@@ -134,7 +145,8 @@ TEST(ResultCodec, LightComesBackExactly) {
 
 TEST(ResultCodec, WhatIsCutOrTooLongIsRefused) {
   const edit::FrameSettingsT frame = frameOf(allChannels);
-  const Job samples{.count = 32, .replicates = {0, 3}}, light{.kind = Job::Kind::light, .count = 10};
+  const Job samples{.count = 32, .replicates = {0, 3}},
+      light{.kind = Job::Kind::light, .count = 10};
   JobResult in = resultOf(frame, samples, 5), out;
   in.light.resize(40 * 40 * 3);
   for (size_t i = 0; i < in.light.size(); i += 40) in.light[i] = 1;
@@ -144,12 +156,14 @@ TEST(ResultCodec, WhatIsCutOrTooLongIsRefused) {
     ASSERT_TRUE(decodeResult(frame, job, tile, bytes, out));
     for (size_t size = 0; size < bytes.size(); size += 1 + size / 50) {
       const bool whole = job.kind == Job::Kind::light && size >= 72 && (size - 72) % 12 == 0;
-      EXPECT_EQ(decodeResult(frame, job, tile, std::span(bytes).first(size), out), whole) << size; // light may end in zeros
+      EXPECT_EQ(decodeResult(frame, job, tile, std::span(bytes).first(size), out), whole)
+          << size; // light may end in zeros
     }
     std::vector<std::byte> longer = bytes;
     longer.push_back(std::byte(0));
     EXPECT_FALSE(decodeResult(frame, job, tile, longer, out));
-    EXPECT_FALSE(decodeResult(frame, job, tile, std::vector<std::byte>(bytes.size()), out) && job.kind == Job::Kind::light);
+    EXPECT_FALSE(decodeResult(frame, job, tile, std::vector<std::byte>(bytes.size()), out) &&
+                 job.kind == Job::Kind::light);
   }
   // Of another tile, of another frame.
   const std::vector<std::byte> bytes = encodeResult(frame, samples, in);
@@ -160,7 +174,8 @@ TEST(ResultCodec, WhatIsCutOrTooLongIsRefused) {
 TEST(ResultCodec, RandomBytesDoNoHarm) {
   std::mt19937 random(2);
   const edit::FrameSettingsT frame = frameOf(allChannels);
-  const Job samples{.count = 32, .replicates = {0, 3}}, light{.kind = Job::Kind::light, .count = 10};
+  const Job samples{.count = 32, .replicates = {0, 3}},
+      light{.kind = Job::Kind::light, .count = 10};
   JobResult good = resultOf(frame, samples, 5), out;
   good.light.assign(40 * 40 * 3, 0.5f);
   for (const Job& job : {samples, light}) {
@@ -168,7 +183,8 @@ TEST(ResultCodec, RandomBytesDoNoHarm) {
     for (int i = 0; i < 2000; i++) {
       std::vector<std::byte> wrong = bytes;
       for (int k = 0; k < 1 + i % 5; k++)
-        wrong[random() % std::min<size_t>(wrong.size(), i % 2 ? 64 : wrong.size())] = std::byte(random());
+        wrong[random() % std::min<size_t>(wrong.size(), i % 2 ? 64 : wrong.size())] =
+            std::byte(random());
       wrong.resize(random() % (wrong.size() + 10));
       decodeResult(frame, job, tile, wrong, out);
       if (!out.sums.empty()) { ASSERT_EQ(out.sums.size(), tile.pixels()); }

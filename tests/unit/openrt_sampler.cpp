@@ -28,7 +28,8 @@ bool isNet(uint32_t pixel, uint32_t pair, uint32_t seed, int m, uint32_t first) 
 
 TEST(Sampler, firstPointsOfAPixelAreANet) {
   for (uint32_t seed = 0; seed < 20; seed++)
-    for (int m = 0; m <= 10; m++) ASSERT_TRUE(isNet(77 * seed, seed % 3, seed, m, 0)) << seed << " " << m;
+    for (int m = 0; m <= 10; m++)
+      ASSERT_TRUE(isNet(77 * seed, seed % 3, seed, m, 0)) << seed << " " << m;
 }
 
 TEST(Sampler, everyAlignedBlockIsANet) {

@@ -25,7 +25,8 @@ edit::ObjectT object(uint32_t id, bool withGeometry) {
   return o;
 }
 
-edit::InstanceT instance(uint32_t id, uint32_t parent, uint32_t object, double x = 0, double scale = 1) {
+edit::InstanceT instance(uint32_t id, uint32_t parent, uint32_t object, double x = 0,
+                         double scale = 1) {
   edit::InstanceT i;
   i.id = id;
   i.parent = parent;

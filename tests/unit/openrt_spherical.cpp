@@ -1,5 +1,5 @@
-// Directions spread over triangles and ellipsoids: solid angles against closed forms, even spread (chi-square), densities that
-// integrate to one, hard cases.
+// Directions spread over triangles and ellipsoids: solid angles against closed forms, even spread
+// (chi-square), densities that integrate to one, hard cases.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -31,7 +31,8 @@ void barycentric(const Corners& t, const double d[3], double w[3]) {
   for (int c = 0; c < 3; c++)
     for (int k = 0; k < 3; k++) m[k][c] = t.at[c][k];
   const auto det = [](double a[3][3]) {
-    return a[0][0] * (a[1][1] * a[2][2] - a[1][2] * a[2][1]) - a[0][1] * (a[1][0] * a[2][2] - a[1][2] * a[2][0]) +
+    return a[0][0] * (a[1][1] * a[2][2] - a[1][2] * a[2][1]) -
+           a[0][1] * (a[1][0] * a[2][2] - a[1][2] * a[2][0]) +
            a[0][2] * (a[1][0] * a[2][1] - a[1][1] * a[2][0]);
   };
   double sum = 0;
@@ -56,7 +57,8 @@ void expectEven(const std::vector<double>& got, const std::vector<double>& expec
   EXPECT_LT(statistic, cells + 4 * std::sqrt(2 * cells));
 }
 
-// Counts in 6 x 6 bands of two barycentric coordinates, against the density integrated by a fine grid on the plane.
+// Counts in 6 x 6 bands of two barycentric coordinates, against the density integrated by a fine
+// grid on the plane.
 void spread(const Corners& t) {
   const SphericalTriangle s(t.at, origin);
   constexpr int bands = 6, samples = 40000, fine = 240;
@@ -87,9 +89,12 @@ void spread(const Corners& t) {
           p[k] = w[0] * t.at[0][k] + w[1] * t.at[1][k] + (1 - w[0] - w[1]) * t.at[2][k];
           square += p[k] * p[k];
         }
-        const double weight = 1 / (square * std::sqrt(square)); // the plane's distance and the area are the same everywhere
+        const double weight =
+            1 / (square *
+                 std::sqrt(square)); // the plane's distance and the area are the same everywhere
         total += weight;
-        const int a = std::min(bands - 1, int(w[0] * bands)), b = std::min(bands - 1, int(w[1] * bands));
+        const int a = std::min(bands - 1, int(w[0] * bands)),
+                  b = std::min(bands - 1, int(w[1] * bands));
         expected[size_t(a * bands + b)] += weight;
       }
   for (double& e : expected) e *= samples / total;
@@ -99,15 +104,18 @@ void spread(const Corners& t) {
 TEST(Spherical, SolidAnglesHaveTheirClosedForms) {
   EXPECT_NEAR(SphericalTriangle(octant.at, origin).solidAngle(), M_PI / 2, 1e-14);
   EXPECT_NEAR(SphericalTriangle(half.at, origin).solidAngle(), 2 * M_PI, 1e-6);
-  for (const double s : {1e-3, 1e-5, 1e-7, 1e-9}) { // far away: area over the square of the distance
+  for (const double s :
+       {1e-3, 1e-5, 1e-7, 1e-9}) { // far away: area over the square of the distance
     const float e = float(s);
     const float corner[3][3] = {{-e, -e, 1}, {2 * e, -e, 1}, {-e, 2 * e, 1}};
     const double area = 4.5 * double(e) * double(e);
     EXPECT_NEAR(SphericalTriangle(corner, origin).solidAngle() / area, 1, 4 * s * s + 1e-12) << s;
   }
   // Eight octants of a cube's halves make the sphere, whatever the point in it.
-  const float v[8][3] = {{-1, -1, -1}, {1, -1, -1}, {-1, 1, -1}, {1, 1, -1}, {-1, -1, 1}, {1, -1, 1}, {-1, 1, 1}, {1, 1, 1}};
-  const int face[6][4] = {{0, 1, 3, 2}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 3, 7, 5}};
+  const float v[8][3] = {{-1, -1, -1}, {1, -1, -1}, {-1, 1, -1}, {1, 1, -1},
+                         {-1, -1, 1},  {1, -1, 1},  {-1, 1, 1},  {1, 1, 1}};
+  const int face[6][4] = {{0, 1, 3, 2}, {4, 5, 7, 6}, {0, 1, 5, 4},
+                          {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 3, 7, 5}};
   const float eye[3] = {.3f, -.9999f, .7f};
   double sum = 0;
   for (const auto& f : face)
@@ -121,14 +129,17 @@ TEST(Spherical, SolidAnglesHaveTheirClosedForms) {
 }
 
 TEST(Spherical, R11NothingOfTrianglesSeenEdgeOnOrWithoutArea) {
-  const float edgeOn[3][3] = {{1, 0, 0}, {2, 0, 0}, {1, 1, 0}}, line[3][3] = {{0, 0, 1}, {1, 1, 2}, {2, 2, 3}};
-  const float atCorner[3][3] = {{0, 0, 0}, {1, 0, 1}, {0, 1, 1}}, point[3][3] = {{1, 1, 1}, {1, 1, 1}, {1, 1, 1}};
+  const float edgeOn[3][3] = {{1, 0, 0}, {2, 0, 0}, {1, 1, 0}},
+              line[3][3] = {{0, 0, 1}, {1, 1, 2}, {2, 2, 3}};
+  const float atCorner[3][3] = {{0, 0, 0}, {1, 0, 1}, {0, 1, 1}},
+              point[3][3] = {{1, 1, 1}, {1, 1, 1}, {1, 1, 1}};
   for (const auto* corner : {edgeOn, line, atCorner, point}) {
     const SphericalTriangle t(corner, origin);
     double d[3], distance;
     EXPECT_EQ(t.solidAngle(), 0);
     EXPECT_FALSE(t.sample(.3, .7, d, distance));
-    EXPECT_EQ(t.density(corner == line ? (const double[3]){0, 0, 1} : (const double[3]){1, 0, 0}), 0);
+    EXPECT_EQ(t.density(corner == line ? (const double[3]){0, 0, 1} : (const double[3]){1, 0, 0}),
+              0);
   }
 }
 
@@ -144,7 +155,8 @@ TEST(Spherical, AHemisphereIsCoveredEvenly) { // R10: the point lies just below 
   for (int i = 0; i < 50000; i++) {
     double d[3], distance;
     if (!t.sample(unit(random), unit(random), d, distance)) continue;
-    const int ring = std::min(3, int(d[2] * 4)), turn = int((std::atan2(d[1], d[0]) / (2 * M_PI) + .5) * 16) % 16;
+    const int ring = std::min(3, int(d[2] * 4)),
+              turn = int((std::atan2(d[1], d[0]) / (2 * M_PI) + .5) * 16) % 16;
     got[size_t(16 * ring + turn)]++;
   }
   expectEven(got, expected);
@@ -167,18 +179,21 @@ TEST(Spherical, FarTrianglesAreSpreadByArea) {
   }
 }
 
-// Noise of the irradiance from a square lamp: by solid angle against by area, at one sample. Over the centre, over a corner, and
-// near.
+// Noise of the irradiance from a square lamp: by solid angle against by area, at one sample. Over
+// the centre, over a corner, and near.
 TEST(Spherical, SolidAnglesAreLessNoisyThanAreas) {
-  const double places[3][3] = {{0, 0, 1}, {.5, .5, .5}, {0, 0, .1}}; // of the eye from the lamp's middle
+  const double places[3][3] = {
+      {0, 0, 1}, {.5, .5, .5}, {0, 0, .1}}; // of the eye from the lamp's middle
   double ratio[3];
   for (int p = 0; p < 3; p++) {
     double sums[2][2] = {};
     for (uint32_t i = 0; i < 1 << 14; i++) {
-      const float half = .5f, x = float(-places[p][0]), y = float(-places[p][1]), z = float(places[p][2]);
+      const float half = .5f, x = float(-places[p][0]), y = float(-places[p][1]),
+                  z = float(places[p][2]);
       const bool second = i & 1;
-      const float corner[3][3] = {
-          {x - half, y - half, z}, {x + half, y + (second ? half : -half), z}, {x + (second ? -half : half), y + half, z}};
+      const float corner[3][3] = {{x - half, y - half, z},
+                                  {x + half, y + (second ? half : -half), z},
+                                  {x + (second ? -half : half), y + half, z}};
       float u, v;
       PairSampler(5, 6, 7)(i >> 1, u, v);
       const SphericalTriangle t(corner, origin);
@@ -194,12 +209,14 @@ TEST(Spherical, SolidAnglesAreLessNoisyThanAreas) {
         way[k] = w[0] * corner[0][k] + w[1] * corner[1][k] + w[2] * corner[2][k];
         square += way[k] * way[k];
       }
-      const double e = way[2] * way[2] / (square * square); // area 1 x both cosines over the square of the distance
+      const double e = way[2] * way[2] /
+                       (square * square); // area 1 x both cosines over the square of the distance
       sums[1][0] += e;
       sums[1][1] += e * e;
     }
     double variance[2];
-    for (int i = 0; i < 2; i++) variance[i] = sums[i][1] / (1 << 14) - std::pow(sums[i][0] / (1 << 14), 2);
+    for (int i = 0; i < 2; i++)
+      variance[i] = sums[i][1] / (1 << 14) - std::pow(sums[i][0] / (1 << 14), 2);
     EXPECT_NEAR(sums[0][0] / sums[1][0], 1, 5e-3);
     ratio[p] = variance[1] / variance[0];
     std::printf("variance by area over that by solid angle: %.2f\n", ratio[p]);
@@ -240,14 +257,16 @@ TEST(Spherical, SpheresAndEllipsoidsAreCoveredEvenly) {
   const float at3[3] = {0, 0, 3}, far[3] = {0, 0, 1e4f};
   ellipsoid(unit, at3, 2 * M_PI * (1 - std::sqrt(8.0) / 3));
   ellipsoid(unit, far, M_PI * 1e-8);
-  // A disc-like ellipsoid seen along its short axis, from far away: the solid angle of a disc with the tangent cone's radius.
+  // A disc-like ellipsoid seen along its short axis, from far away: the solid angle of a disc with
+  // the tangent cone's radius.
   const float flat[3][4] = {{2, 0, 0, 0}, {0, 2, 0, 0}, {0, 0, .5f, 0}}, above[3] = {0, 0, 3};
   const double tangent = 2 / std::sqrt(9 - .25); // of the cone's half angle: r / sqrt(h^2 - c^2)
   ellipsoid(flat, above, 2 * M_PI * (1 - 1 / std::sqrt(1 + tangent * tangent)));
 }
 
 TEST(Spherical, InsideASphereThereIsNothingToChoose) {
-  const float unit[3][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}, inside[3] = {.5f, 0, 0}, on[3] = {0, 1, 0};
+  const float unit[3][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}, inside[3] = {.5f, 0, 0},
+              on[3] = {0, 1, 0};
   for (const auto* eye : {inside, on}) {
     const SphericalEllipsoid s(unit, unit, eye);
     const double any[3] = {0, 0, 1};
@@ -264,7 +283,8 @@ template <class T> void checkFrames(double tolerance) {
   std::normal_distribution<double> normal;
   int jumps = 0;
   for (int i = 0; i < 200000; i++) {
-    double d[3] = {normal(random), normal(random), i % 3 ? normal(random) : 0.0}, other[3], length = 0, otherLength = 0;
+    double d[3] = {normal(random), normal(random), i % 3 ? normal(random) : 0.0}, other[3],
+           length = 0, otherLength = 0;
     for (int k = 0; k < 3; k++) length += d[k] * d[k];
     for (int k = 0; k < 3; k++) {
       d[k] /= std::sqrt(length);
@@ -277,9 +297,13 @@ template <class T> void checkFrames(double tolerance) {
                     T(other[2] / std::sqrt(otherLength))};
     basisOf(n, s, t);
     basisOf(m, near, beside);
-    const auto dot = [](const T a[3], const T b[3]) { return double(a[0] * b[0] + a[1] * b[1] + a[2] * b[2]); };
-    for (const double zero : {dot(s, t), dot(s, n), dot(t, n), dot(s, s) - 1, dot(t, t) - 1}) ASSERT_NEAR(zero, 0, tolerance);
-    const T across[3] = {s[1] * t[2] - s[2] * t[1], s[2] * t[0] - s[0] * t[2], s[0] * t[1] - s[1] * t[0]};
+    const auto dot = [](const T a[3], const T b[3]) {
+      return double(a[0] * b[0] + a[1] * b[1] + a[2] * b[2]);
+    };
+    for (const double zero : {dot(s, t), dot(s, n), dot(t, n), dot(s, s) - 1, dot(t, t) - 1})
+      ASSERT_NEAR(zero, 0, tolerance);
+    const T across[3] = {s[1] * t[2] - s[2] * t[1], s[2] * t[0] - s[0] * t[2],
+                         s[0] * t[1] - s[1] * t[0]};
     ASSERT_GT(dot(across, n), 0.99);
     jumps += dot(s, near) < 0.99;
   }

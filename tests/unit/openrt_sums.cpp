@@ -1,5 +1,5 @@
-// openrt_sums.cpp: sums of samples that merge block by block: what comes out, and that it does not depend on how samples were
-// divided.
+// openrt_sums.cpp: sums of samples that merge block by block: what comes out, and that it does not
+// depend on how samples were divided.
 #include <cmath>
 #include <cstring>
 #include <random>
@@ -34,11 +34,13 @@ void add(PixelSums& sums, const std::array<float, 3>& sample) {
 }
 
 // As the wavefront gathers a leaf.
-SumBlock leafOf(const Samples& samples, uint32_t first, uint32_t count, const Replicates& replicates) {
+SumBlock leafOf(const Samples& samples, uint32_t first, uint32_t count,
+                const Replicates& replicates) {
   SumBlock block{first, count, std::vector<PixelSums>(1), {}};
   for (uint32_t s = first; s < first + count; s++) {
     add(block.sums[0], samples[s]);
-    if (replicates.many() && replicates.indexOf(s + 1) == 0 && s + 1 - first >= replicates.size()) block.sums[0].closeReplicate();
+    if (replicates.many() && replicates.indexOf(s + 1) == 0 && s + 1 - first >= replicates.size())
+      block.sums[0].closeReplicate();
   }
   block.ledger.samples = count;
   block.ledger.clipped = double(samples[first][0]);
@@ -68,7 +70,8 @@ SumBlock mergedInOrder(std::vector<SumBlock> blocks, const Replicates& replicate
 }
 
 void expectNear(const double* got, const double* expected, const char* what) {
-  for (int k = 0; k < 3; k++) EXPECT_NEAR(got[k], expected[k], 1e-12 * std::fabs(expected[k])) << what << " " << k;
+  for (int k = 0; k < 3; k++)
+    EXPECT_NEAR(got[k], expected[k], 1e-12 * std::fabs(expected[k])) << what << " " << k;
 }
 
 TEST(Sums, LeavesHaveTheBordersOfProgressiveRounds) {

@@ -29,7 +29,9 @@ edit::TextureT describe(uint32_t components, uint32_t width, uint32_t height) {
   return d;
 }
 
-Texture bytes(edit::TextureT d, const std::vector<uint8_t>& texels) { return {d, arrayOf(texels.data(), texels.size())}; }
+Texture bytes(edit::TextureT d, const std::vector<uint8_t>& texels) {
+  return {d, arrayOf(texels.data(), texels.size())};
+}
 
 Texture floats(edit::TextureT d, const std::vector<float>& texels) {
   d.isFloat = true;
@@ -108,7 +110,8 @@ TEST(OpenrtTexture, BytesAreDecodedBeforeTheyAreMixed) {
   d.srgb = true;
   const Texture t = bytes(d, {0, 255});
   EXPECT_FLOAT_EQ(at(t, 0.5f, 0.5f).r, 0.5f);
-  EXPECT_NEAR(at(bytes(d, {188, 188}), 0.5f, 0.5f).r, 0.50289, 1e-5); // ((188/255 + .055) / 1.055)^2.4
+  EXPECT_NEAR(at(bytes(d, {188, 188}), 0.5f, 0.5f).r, 0.50289,
+              1e-5); // ((188/255 + .055) / 1.055)^2.4
   EXPECT_NEAR(at(bytes(d, {10, 10}), 0.5f, 0.5f).r, 10 / 255.0 / 12.92, 1e-8);
 }
 
@@ -124,7 +127,8 @@ TEST(OpenrtTexture, AlphaBytesAreNeverSrgb) {
 }
 
 TEST(OpenrtTexture, CoordinatesThatAreNotNumbersCountAsZero) {
-  const float inf = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
+  const float inf = std::numeric_limits<float>::infinity(),
+              nan = std::numeric_limits<float>::quiet_NaN();
   for (const bool clamp : {false, true})
     for (const bool nearest : {false, true}) {
       auto d = describe(1, 3, 3);
@@ -159,7 +163,8 @@ TEST(OpenrtTexture, DescriptionsThatDoNotFitSampleAsWhite) {
   const ArrayPtr array = arrayOf(texels.data(), texels.size() * sizeof(float));
   auto tooLarge = describe(3, 3, 2);
   tooLarge.isFloat = true;
-  auto wide = describe(4, 0x80000000u, 0x80000000u), empty = describe(1, 0, 5), five = describe(5, 1, 1);
+  auto wide = describe(4, 0x80000000u, 0x80000000u), empty = describe(1, 0, 5),
+       five = describe(5, 1, 1);
   for (const auto& d : {tooLarge, wide, empty, five}) {
     const Texture t(d, array);
     EXPECT_EQ(t.components(), 0u);

@@ -1,6 +1,6 @@
-// openrt_whole_scene.cpp: a scene written as one commit is the scene: after random edits through the API the tables are equal,
-// the commit keeps all rules, later edits hold on both, and a backend that saw only it makes the same bytes as one that saw
-// everything.
+// openrt_whole_scene.cpp: a scene written as one commit is the scene: after random edits through
+// the API the tables are equal, the commit keeps all rules, later edits hold on both, and a backend
+// that saw only it makes the same bytes as one that saw everything.
 #include <cstring>
 #include <random>
 
@@ -14,31 +14,41 @@ using namespace openrt::test;
 
 bool same(const Matrix4d& a, const Matrix4d& b) { return a.m == b.m; }
 bool same(const ArrayPtr& a, const ArrayPtr& b) {
-  return !a || !b ? a == b : a->size() == b->size() && std::memcmp(a->data(), b->data(), a->size()) == 0;
+  return !a || !b ? a == b
+                  : a->size() == b->size() && std::memcmp(a->data(), b->data(), a->size()) == 0;
 }
 bool same(const Role& a, const Role& b) { return a.shader == b.shader && same(a.matrix, b.matrix); }
-bool same(const Light& a, const Light& b) { return a.shader == b.shader && a.scope == b.scope && same(a.matrix, b.matrix); }
-bool same(const ShaderClassName& a, const ShaderClassName& b) { return a.name == b.name && a.library == b.library; }
+bool same(const Light& a, const Light& b) {
+  return a.shader == b.shader && a.scope == b.scope && same(a.matrix, b.matrix);
+}
+bool same(const ShaderClassName& a, const ShaderClassName& b) {
+  return a.name == b.name && a.library == b.library;
+}
 template <class Table, class T> std::string bytes(const T& table) {
   flatbuffers::FlatBufferBuilder builder;
   builder.Finish(Table::Pack(builder, &table));
   return {reinterpret_cast<const char*>(builder.GetBufferPointer()), builder.GetSize()};
 }
-bool same(const edit::ParameterT& a, const edit::ParameterT& b) { return bytes<edit::Parameter>(a) == bytes<edit::Parameter>(b); }
+bool same(const edit::ParameterT& a, const edit::ParameterT& b) {
+  return bytes<edit::Parameter>(a) == bytes<edit::Parameter>(b);
+}
 bool same(const TextureImage& a, const TextureImage& b) {
-  return bytes<edit::Texture>(a.description) == bytes<edit::Texture>(b.description) && same(a.texels, b.texels);
+  return bytes<edit::Texture>(a.description) == bytes<edit::Texture>(b.description) &&
+         same(a.texels, b.texels);
 }
 bool same(const Instance& a, const Instance& b) {
-  return a.parent == b.parent && a.object == b.object && a.shader == b.shader && a.visible == b.visible &&
-         a.userData == b.userData && a.name == b.name && a.dynamic == b.dynamic && same(a.matrix, b.matrix);
+  return a.parent == b.parent && a.object == b.object && a.shader == b.shader &&
+         a.visible == b.visible && a.userData == b.userData && a.name == b.name &&
+         a.dynamic == b.dynamic && same(a.matrix, b.matrix);
 }
 template <class T> bool same(const std::map<uint32_t, T>& a, const std::map<uint32_t, T>& b);
 bool same(const ShaderValues& a, const ShaderValues& b) {
   return a.shaderClass == b.shaderClass && same(a.parameters, b.parameters);
 }
 template <class T> bool same(const std::map<uint32_t, T>& a, const std::map<uint32_t, T>& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [](const auto& x, const auto& y) { return x.first == y.first && same(x.second, y.second); });
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const auto& x, const auto& y) {
+    return x.first == y.first && same(x.second, y.second);
+  });
 }
 
 class Comparer { // geometry names shaders that may be deleted by now: those name nothing
@@ -65,18 +75,22 @@ class Comparer { // geometry names shaders that may be deleted by now: those nam
  private:
   uint32_t known(uint32_t shader) const { return a_.shaders.contains(shader) ? shader : 0; }
   bool equal(const Object& a, const Object& b) const {
-    return a.dynamic == b.dynamic && std::equal(a.geometries.begin(), a.geometries.end(), b.geometries.begin(),
-                                                b.geometries.end(), [this](auto& x, auto& y) { return equal(x, y); });
+    return a.dynamic == b.dynamic &&
+           std::equal(a.geometries.begin(), a.geometries.end(), b.geometries.begin(),
+                      b.geometries.end(), [this](auto& x, auto& y) { return equal(x, y); });
   }
   bool equal(const Geometry& a, const Geometry& b) const {
-    return a.primitive == b.primitive && known(a.shader) == known(b.shader) && a.name == b.name && same(a.matrix, b.matrix) &&
-           a.cull == b.cull && a.clockwise == b.clockwise && a.width == b.width && same(a.points, b.points) &&
-           same(a.indices, b.indices) && same(a.normals, b.normals) && same(a.texCoords, b.texCoords) &&
+    return a.primitive == b.primitive && known(a.shader) == known(b.shader) && a.name == b.name &&
+           same(a.matrix, b.matrix) && a.cull == b.cull && a.clockwise == b.clockwise &&
+           a.width == b.width && same(a.points, b.points) && same(a.indices, b.indices) &&
+           same(a.normals, b.normals) && same(a.texCoords, b.texCoords) &&
            same(a.colors, b.colors) &&
            (known(a.shader) == 0 ||
-            std::equal(a.parameters.begin(), a.parameters.end(), b.parameters.begin(), b.parameters.end(), [](auto& x, auto& y) {
-              return x.index == y.index && x.perVertex == y.perVertex && same(x.values, y.values);
-            }));
+            std::equal(a.parameters.begin(), a.parameters.end(), b.parameters.begin(),
+                       b.parameters.end(), [](auto& x, auto& y) {
+                         return x.index == y.index && x.perVertex == y.perVertex &&
+                                same(x.values, y.values);
+                       }));
   }
   const Scene &a_, &b_;
 };
@@ -87,11 +101,14 @@ class WholeScene : public ApiTest, public testing::WithParamInterface<int> {
     captured = std::make_shared<Captured>(shaderFolders(OPENRT_TEST_PLUGINS));
     ContextConfig config;
     config.shaderPath = OPENRT_TEST_PLUGINS;
-    handle = adoptContext(std::make_shared<Context>(config, std::make_unique<CaptureBackend>(captured)));
+    handle =
+        adoptContext(std::make_shared<Context>(config, std::make_unique<CaptureBackend>(captured)));
   }
 
   std::mt19937 random{unsigned(GetParam())};
-  float number(float low, float high) { return low + (high - low) * float(random() >> 8) / float(1 << 24); }
+  float number(float low, float high) {
+    return low + (high - low) * float(random() >> 8) / float(1 << 24);
+  }
   RTid any(const std::vector<RTid>& ids) { return ids.empty() ? 0 : ids[random() % ids.size()]; }
   RTid take(std::vector<RTid>& ids) {
     if (ids.empty()) return 0;
@@ -144,7 +161,8 @@ class WholeScene : public ApiTest, public testing::WithParamInterface<int> {
       for (uint8_t& t : texels) t = uint8_t(random());
       rtTexImage2D(3, 4, 3, RT_UNSIGNED_BYTE, texels.data());
     }
-    rtTexParameteri(RT_TEXTURE_MAG_FILTER, random() % 2 ? RT_NEAREST : RT_LINEAR); // of texels that are there already, too
+    rtTexParameteri(RT_TEXTURE_MAG_FILTER,
+                    random() % 2 ? RT_NEAREST : RT_LINEAR); // of texels that are there already, too
   }
   void parameters(RTid shader) {
     if (!shader || shader == varying) return;
@@ -244,7 +262,8 @@ class WholeScene : public ApiTest, public testing::WithParamInterface<int> {
     backend.wait();
     std::vector<float> pixels(size_t(scene.frame.width) * scene.frame.height * 6);
     const size_t n = pixels.size() / 6;
-    EXPECT_TRUE(backend.read(RT_RGBA, {pixels.data(), 4 * n}) && backend.read(RT_DEPTH, {pixels.data() + 4 * n, n}));
+    EXPECT_TRUE(backend.read(RT_RGBA, {pixels.data(), 4 * n}) &&
+                backend.read(RT_DEPTH, {pixels.data() + 4 * n, n}));
     EXPECT_TRUE(backend.read(RT_NAME, {pixels.data() + 5 * n, n}));
     return pixels;
   }

@@ -22,7 +22,8 @@ struct PngKind {
 // Palette pictures: entry i is (i, 2 i, 3 i).
 Bytes makePng(int width, int height, const PngKind& kind, const Sample& sample);
 
-Bytes makeJpeg(int width, int height, int components, bool progressive, const Sample& sample); // 4: CMYK as Adobe writes it
+Bytes makeJpeg(int width, int height, int components, bool progressive,
+               const Sample& sample); // 4: CMYK as Adobe writes it
 
 struct GifFrame {
   int left = 0, top = 0, width = 0, height = 0;

@@ -1,5 +1,5 @@
-// Live pictures: they are the pictures of Renderer, come without waiting, can be given up, and leave the world alone while light
-// is traced.
+// Live pictures: they are the pictures of Renderer, come without waiting, can be given up, and
+// leave the world alone while light is traced.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -74,12 +74,14 @@ RenderResult still(xvrml::Browser& browser, RenderSettings settings, const LiveF
 LiveFrame longFrame() { return frameOf(512, 384, 65536); }
 
 uint8_t redAt(const LivePicture& picture, double x, double y) {
-  const size_t pixel = size_t(y * picture.height) * size_t(picture.width) + size_t(x * picture.width);
+  const size_t pixel =
+      size_t(y * picture.height) * size_t(picture.width) + size_t(x * picture.width);
   return picture.rgb.at(3 * pixel);
 }
 
 size_t countOf(const char* folder) {
-  return size_t(std::distance(std::filesystem::directory_iterator(folder), std::filesystem::directory_iterator()));
+  return size_t(std::distance(std::filesystem::directory_iterator(folder),
+                              std::filesystem::directory_iterator()));
 }
 
 } // namespace
@@ -129,7 +131,8 @@ TEST(Live, theFrameInFlightIsSeenAndEndsEarly) {
   LiveRenderer live(*browser, settingsOf());
   live.start(longFrame());
   LivePicture picture;
-  while (!live.look(picture) || picture.covered < 1) nap(); // hangs if the whole picture does not come early
+  while (!live.look(picture) || picture.covered < 1)
+    nap(); // hangs if the whole picture does not come early
   EXPECT_FALSE(picture.finished);
   EXPECT_LT(picture.samples, 60000);
   EXPECT_EQ(live.state(), State::rendering);
@@ -156,7 +159,8 @@ TEST(Live, cancelledAtOnceLeavesTheNextFrameWhole) {
     live.cancel();
     waitFor(live);
   }
-  EXPECT_EQ(finish(live, frameOf()).rgb, displayBytes(still(*other, settingsOf(), frameOf()).picture));
+  EXPECT_EQ(finish(live, frameOf()).rgb,
+            displayBytes(still(*other, settingsOf(), frameOf()).picture));
 }
 
 TEST(Live, canBeGivenUpInFlight) {
@@ -179,7 +183,8 @@ TEST(Live, pixelsWithoutSamplesShowThePictureBefore) {
   live.cancel();
   EXPECT_EQ(picture.width, 1600);
   EXPECT_EQ(picture.rgb.size(), size_t(1600 * 1200 * 3));
-  for (size_t i = 0; i < picture.rgb.size(); i += 3) ASSERT_GT(picture.rgb[i + 2], 0) << i; // nothing here is without blue
+  for (size_t i = 0; i < picture.rgb.size(); i += 3)
+    ASSERT_GT(picture.rgb[i + 2], 0) << i; // nothing here is without blue
 }
 
 // What happens to the world while light is traced is in the next picture, not in this one.
@@ -266,7 +271,8 @@ TEST(Live, anotherWorldIsShownAfterTheFirst) {
   EXPECT_EQ(empty.map.shapes, 0u);
 }
 
-// Threads, files, memory: all is given back. mallinfo2 counts bytes, so that nothing depends on the rest of the machine.
+// Threads, files, memory: all is given back. mallinfo2 counts bytes, so that nothing depends on the
+// rest of the machine.
 TEST(Live, framesLeaveNothingBehind) {
   const auto browser = browserOf();
   LiveRenderer live(*browser, settingsOf());
@@ -304,7 +310,9 @@ class LiveInlines : public testing::Test {
     std::filesystem::create_directories(folder_);
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
-  void write(const std::string& name, const std::string& body) { std::ofstream(folder_ / name) << "#VRML V2.0 utf8\n" << body; }
+  void write(const std::string& name, const std::string& body) {
+    std::ofstream(folder_ / name) << "#VRML V2.0 utf8\n" << body;
+  }
   std::unique_ptr<xvrml::Browser> browserOf(const std::string& name, bool inlines) {
     xvrml::LoadOptions options;
     options.loadInlines = inlines;
@@ -315,17 +323,21 @@ class LiveInlines : public testing::Test {
 
 } // namespace
 
-// Inlines that come while pictures are made cost what they bring; in the end it is the picture of the world read at once.
+// Inlines that come while pictures are made cost what they bring; in the end it is the picture of
+// the world read at once.
 TEST_F(LiveInlines, comeBitByBit) {
-  std::string world = "Viewpoint { position 0 0 12 }\n"
-                      "Shape { appearance Appearance { material Material { } } geometry Sphere { radius 0.5 } }\n";
+  std::string world =
+      "Viewpoint { position 0 0 12 }\n"
+      "Shape { appearance Appearance { material Material { } } geometry Sphere { radius 0.5 } }\n";
   constexpr int parts = 5;
   for (int i = 0; i < parts; ++i) {
-    write(fmt::format("part{}.wrl", i), fmt::format("Transform {{ translation 0 {} 0 children Shape {{ appearance Appearance {{ "
-                                                    "material Material {{ diffuseColor 0 {} 1 }} }} geometry Box {{ }} }} }}",
-                                                    i % 2, 0.2 * i));
-    world +=
-        fmt::format("Transform {{ translation {} 0 0 children DEF Part{} Inline {{ url \"part{}.wrl\" }} }}\n", 2 * i - 4, i, i);
+    write(fmt::format("part{}.wrl", i),
+          fmt::format("Transform {{ translation 0 {} 0 children Shape {{ appearance Appearance {{ "
+                      "material Material {{ diffuseColor 0 {} 1 }} }} geometry Box {{ }} }} }}",
+                      i % 2, 0.2 * i));
+    world += fmt::format(
+        "Transform {{ translation {} 0 0 children DEF Part{} Inline {{ url \"part{}.wrl\" }} }}\n",
+        2 * i - 4, i, i);
   }
   write("world.wrl", world);
   const auto browser = browserOf("world.wrl", false);

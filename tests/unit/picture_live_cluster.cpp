@@ -1,5 +1,6 @@
-// Live pictures of a cluster: frames overlap, each has its own bytes, size and time; the last one comes home by itself; both in
-// flight are given up together. The cluster is this process alone: nobody answers at its workers' address.
+// Live pictures of a cluster: frames overlap, each has its own bytes, size and time; the last one
+// comes home by itself; both in flight are given up together. The cluster is this process alone:
+// nobody answers at its workers' address.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -58,7 +59,9 @@ LiveFrame frameOf(int width = 64, int height = 48, int samples = 4) {
   return frame;
 }
 
-LiveFrame longFrame(int width = 512) { return frameOf(width, 384, 65536); } // takes as long as it is let
+LiveFrame longFrame(int width = 512) {
+  return frameOf(width, 384, 65536);
+} // takes as long as it is let
 
 void nap() { std::this_thread::sleep_for(std::chrono::microseconds(200)); }
 
@@ -97,7 +100,8 @@ void startTwo(LiveRenderer& live, const LiveFrame& first, const LiveFrame& secon
 }
 
 size_t countOf(const char* folder) {
-  return size_t(std::distance(std::filesystem::directory_iterator(folder), std::filesystem::directory_iterator()));
+  return size_t(std::distance(std::filesystem::directory_iterator(folder),
+                              std::filesystem::directory_iterator()));
 }
 
 } // namespace
@@ -105,7 +109,9 @@ size_t countOf(const char* folder) {
 // Each of another place, size and number of samples: nothing of one is in the other.
 TEST(LiveCluster, framesThatOverlapComeInTheirOrderAndAreTheStillOnes) {
   constexpr int frames = 12;
-  const auto frame = [](int i) { return frameOf(64 + 9 * (i % 4), 48 + 5 * (i % 3), 40 + 13 * (i % 3)); };
+  const auto frame = [](int i) {
+    return frameOf(64 + 9 * (i % 4), 48 + 5 * (i % 3), 40 + 13 * (i % 3));
+  };
   const auto browser = browserOf();
   LiveRenderer live(*browser, clustered());
   std::vector<LivePicture> pictures;
@@ -138,7 +144,8 @@ TEST(LiveCluster, framesThatOverlapComeInTheirOrderAndAreTheStillOnes) {
     EXPECT_TRUE(made.finished);
     EXPECT_EQ(made.samples, frame(i).samples);
     EXPECT_EQ(made.rgb, displayBytes(still(*other, frame(i))));
-    EXPECT_EQ(made.stats.cameraRays, uint64_t(made.width) * uint64_t(made.height) * uint64_t(frame(i).samples));
+    EXPECT_EQ(made.stats.cameraRays,
+              uint64_t(made.width) * uint64_t(made.height) * uint64_t(frame(i).samples));
     EXPECT_GT(made.seconds, 0);
     EXPECT_LE(made.alone, made.seconds);
     together += made.alone < made.seconds;
@@ -184,10 +191,12 @@ TEST(LiveCluster, noMoreThanTwoAreInFlight) {
   EXPECT_EQ(live.state(), State::rendering);
   EXPECT_THROW(live.start(frameOf()), std::logic_error);
   LivePicture picture;
-  for (int i = 0; i < 20; ++i, nap()) EXPECT_FALSE(live.look(picture)); // which one it would be is not known
+  for (int i = 0; i < 20; ++i, nap())
+    EXPECT_FALSE(live.look(picture)); // which one it would be is not known
 }
 
-// The older one is given up with the newer. What is finished of it is given; it does not stay in flight, and nor does the next.
+// The older one is given up with the newer. What is finished of it is given; it does not stay in
+// flight, and nor does the next.
 TEST(LiveCluster, cancellingEndsBothAndWhatIsFinishedStays) {
   const auto browser = browserOf(), other = browserOf();
   LiveRenderer live(*browser, clustered());
@@ -205,7 +214,8 @@ TEST(LiveCluster, cancellingEndsBothAndWhatIsFinishedStays) {
   EXPECT_EQ(older.covered, 1);
   EXPECT_EQ(newer.width, 400);
   EXPECT_FALSE(newer.finished);
-  for (size_t i = 0; i < newer.rgb.size(); i += 3) ASSERT_GT(newer.rgb[i + 2], 0) << i; // nothing here is without blue
+  for (size_t i = 0; i < newer.rgb.size(); i += 3)
+    ASSERT_GT(newer.rgb[i + 2], 0) << i; // nothing here is without blue
   EXPECT_FALSE(live.look(picture));
   EXPECT_EQ(finish(live, frameOf()).rgb, displayBytes(still(*other, frameOf())));
 }
@@ -274,13 +284,16 @@ TEST(LiveCluster, framesLeaveNothingBehind) {
   };
   look(300);
   constexpr int frames = 300;
-  // What grows with the frames grows in every round; a message or a connection under way when the round ends is none of it.
+  // What grows with the frames grows in every round; a message or a connection under way when the
+  // round ends is none of it.
   bool grows = true;
   for (int round = 0; round < 3 && grows; ++round) {
-    const size_t threads = countOf("/proc/self/task"), files = countOf("/proc/self/fd"), bytes = mallinfo2().uordblks;
+    const size_t threads = countOf("/proc/self/task"), files = countOf("/proc/self/fd"),
+                 bytes = mallinfo2().uordblks;
     look(frames);
     grows = countOf("/proc/self/task") > threads || mallinfo2().uordblks > bytes + 200u * frames ||
-            countOf("/proc/self/fd") > files + 2; // the address where nobody answers is tried again and again
+            countOf("/proc/self/fd") >
+                files + 2; // the address where nobody answers is tried again and again
   }
   EXPECT_FALSE(grows);
 }

@@ -1,4 +1,5 @@
-// Pacing: the frame rate holds while something moves, sizes do not flicker, and what stands still is rendered whole.
+// Pacing: the frame rate holds while something moves, sizes do not flicker, and what stands still
+// is rendered whole.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -26,7 +27,8 @@ constexpr int width = 800, height = 600;
 constexpr double full = double(width) * height;
 
 // Frames while something moves; the seconds of each.
-std::vector<double> move(Pacing& pacing, Machine& machine, int frames, std::vector<FrameSize>* sizes = nullptr) {
+std::vector<double> move(Pacing& pacing, Machine& machine, int frames,
+                         std::vector<FrameSize>* sizes = nullptr) {
   std::vector<double> out;
   for (int i = 0; i < frames; ++i) {
     const FrameSize f = pacing.next(width, height, true, 64);
@@ -38,8 +40,8 @@ std::vector<double> move(Pacing& pacing, Machine& machine, int frames, std::vect
   return out;
 }
 
-// Machines behind a link: they do one frame after the other, and the way there and back takes its time. The next frame is begun
-// with the window's next step, at most `most` are in flight.
+// Machines behind a link: they do one frame after the other, and the way there and back takes its
+// time. The next frame is begun with the window's next step, at most `most` are in flight.
 struct Link {
   double pixel, latency;
   size_t most = 2;
@@ -66,8 +68,10 @@ struct Link {
       const double start = i < most ? next : std::max(next, run.ends[i - most]);
       for (; told < i && run.ends[told] <= start; ++told) {
         const double from = told == 0 ? starts[0] : std::max(starts[told], run.ends[told - 1]);
-        const double to = told + 1 < i ? std::min(starts[told + 1], run.ends[told]) : run.ends[told];
-        pacing.took(run.sizes[told], run.ends[told] - starts[told], to - from, 0, run.sizes[told].samples);
+        const double to =
+            told + 1 < i ? std::min(starts[told + 1], run.ends[told]) : run.ends[told];
+        pacing.took(run.sizes[told], run.ends[told] - starts[told], to - from, 0,
+                    run.sizes[told].samples);
       }
       const FrameSize f = pacing.next(width, height, true, 64);
       const double wave = 1 + unsteady * (double(i * 7919 % 13) / 6 - 1);
@@ -103,13 +107,15 @@ TEST(Pacing, theFrameRateHolds) {
       const bool least = last.width == 100 && last.height == 75;
       EXPECT_TRUE(seconds.back() <= 1 / fps || least) << fps << ", " << wholePicture;
       const bool most = last.samples == 16;
-      EXPECT_TRUE(seconds.back() >= 0.3 / fps || most) << fps << ", " << wholePicture; // time is used
+      EXPECT_TRUE(seconds.back() >= 0.3 / fps || most)
+          << fps << ", " << wholePicture; // time is used
     }
 }
 
 TEST(Pacing, sizesAreBounded) {
   Machine hopeless{1};
-  for (const auto& [w, h] : {std::pair{800, 600}, {3840, 2160}, {100, 90}, {64, 64}, {10, 7}, {2000, 20}}) {
+  for (const auto& [w, h] :
+       {std::pair{800, 600}, {3840, 2160}, {100, 90}, {64, 64}, {10, 7}, {2000, 20}}) {
     Pacing pacing(30);
     FrameSize f;
     for (int i = 0; i < 30; ++i) {
@@ -122,8 +128,9 @@ TEST(Pacing, sizesAreBounded) {
       EXPECT_GE(side, (whole + 7) / 8);
       EXPECT_GE(side, std::min(whole, 64));
     }
-    EXPECT_TRUE(f.width <= (w + 7) / 8 || std::min(f.width, f.height) <= 64); // no larger than it must be
-    EXPECT_NEAR(double(f.width) / f.height, double(w) / h, .02 * w / h);      // of the same shape
+    EXPECT_TRUE(f.width <= (w + 7) / 8 ||
+                std::min(f.width, f.height) <= 64); // no larger than it must be
+    EXPECT_NEAR(double(f.width) / f.height, double(w) / h, .02 * w / h); // of the same shape
     EXPECT_EQ(f.samples, 1);
   }
 }
@@ -135,7 +142,8 @@ TEST(Pacing, cheapScenesGetMoreSamplesAtFullSize) {
   move(pacing, quick, 60, &sizes);
   EXPECT_EQ(sizes.back().width, width);
   EXPECT_GE(sizes.back().samples, 8);
-  for (int i = 0; i < 10; ++i) EXPECT_LE(pacing.next(width, height, true, 2).samples, 2); // no more than a still picture
+  for (int i = 0; i < 10; ++i)
+    EXPECT_LE(pacing.next(width, height, true, 2).samples, 2); // no more than a still picture
 }
 
 TEST(Pacing, sizesDoNotFlicker) {
@@ -160,7 +168,8 @@ TEST(Pacing, aSceneThatBecomesSlowIsFollowedAtOnceAndBackByAndBy) {
   machine.pixel /= 20;
   move(pacing, machine, 100, &sizes);
   EXPECT_EQ(sizes.back().width, width);
-  for (size_t i = 1; i < sizes.size(); ++i) EXPECT_LE(sizes[i].width, 1.3 * sizes[i - 1].width) << "a leap";
+  for (size_t i = 1; i < sizes.size(); ++i)
+    EXPECT_LE(sizes[i].width, 1.3 * sizes[i - 1].width) << "a leap";
 }
 
 TEST(Pacing, whatWasLearntWhileStillCountsWhenItMoves) {
@@ -195,11 +204,13 @@ TEST(Pacing, framesThatOverlapKeepTheRateAndTheirSize) {
   for (const double latency : {0.0, .001, .004, .01, .02, .03, .04, .06})
     for (double wholePicture = 0.002; wholePicture < 0.5; wholePicture *= 1.13) {
       Pacing pacing(fps);
-      pacing.took({width, height, 64}, 64 * wholePicture, 64 * wholePicture, 0, 64); // a refined one was seen before
+      pacing.took({width, height, 64}, 64 * wholePicture, 64 * wholePicture, 0,
+                  64); // a refined one was seen before
       const Link link{wholePicture / full, latency, 2, 0.05};
       const Link::Run run = link.move(pacing, fps, 200);
       EXPECT_LE(run.changes(), 1) << wholePicture << ", " << latency;
-      EXPECT_GE(run.rate(), .97 * std::min(fps, 2 / (latency + 1e-9))) << wholePicture << ", " << latency;
+      EXPECT_GE(run.rate(), .97 * std::min(fps, 2 / (latency + 1e-9)))
+          << wholePicture << ", " << latency;
     }
 }
 
@@ -208,7 +219,8 @@ TEST(Pacing, aSlowLinkDoesNotMakePicturesSmallWhereFramesOverlap) {
   constexpr double fps = 30, latency = .04, wholePicture = .02;
   const auto run = [&](size_t most) {
     Pacing pacing(fps);
-    pacing.took({width, height, 64}, 64 * wholePicture + latency, 64 * wholePicture + latency, 0, 64);
+    pacing.took({width, height, 64}, 64 * wholePicture + latency, 64 * wholePicture + latency, 0,
+                64);
     return Link{wholePicture / full, latency, most}.move(pacing, fps, 200);
   };
   const Link::Run overlapping = run(2), one = run(1);

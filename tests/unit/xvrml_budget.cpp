@@ -1,5 +1,5 @@
-// xvrml_budget.cpp: the budget of a world (limit worldBytes): what nodes, values, prototypes and scripts take of it, what happens
-// where it ends, and that it comes back.
+// xvrml_budget.cpp: the budget of a world (limit worldBytes): what nodes, values, prototypes and
+// scripts take of it, what happens where it ends, and that it comes back.
 #include <fmt/format.h>
 #include <zlib.h>
 
@@ -106,7 +106,8 @@ TEST(Budget, OfStrings) {
 }
 
 TEST(Budget, OfNumbersAndPixels) {
-  const std::string points = "Shape { geometry PointSet { coord Coordinate { point [" + repeated("0 0 0 ", 10'000) + "] } } }";
+  const std::string points = "Shape { geometry PointSet { coord Coordinate { point [" +
+                             repeated("0 0 0 ", 10'000) + "] } } }";
   expectRefused(*parse(points, of(100'000)), 100'000);
   EXPECT_EQ(messages(*parse(points, of(1'000'000))), "");
   expectRefused(*parse("PixelTexture { image 20000 10000 4 0 }",
@@ -131,7 +132,8 @@ TEST(Budget, OfPrototypesAndTheirFields) {
 // One list of numbers, handed to many nodes.
 TEST(Budget, OfValuesThatPrototypesCopy) {
   const std::string body = repeated("ScalarInterpolator { key IS k }\n", 200);
-  const std::string text = "PROTO P [ field MFFloat k [ ] ] { Group { } " + body + "}\nP { k [" + repeated("1 ", 10'000) + "] }";
+  const std::string text = "PROTO P [ field MFFloat k [ ] ] { Group { } " + body + "}\nP { k [" +
+                           repeated("1 ", 10'000) + "] }";
   expectRefused(*parse(text, of(2'000'000)), 2'000'000);
   EXPECT_EQ(messages(*parse(text, of(40'000'000))), "");
 }
@@ -156,7 +158,9 @@ TEST(Budget, ComesBackWithTheWorld) {
 TEST(Budget, OfTextThatIsUnpacked) {
   const std::string header = "#VRML V2.0 utf8\n", comment = "#" + std::string(600'000, 'x') + "\n";
   const std::string nodes = repeated("PointLight { }\n", 2000); // 600,000 bytes of nodes
-  const auto load = [](const std::string& text) { return loadWorldFromMemory(text, "test.wrl", of(1'000'000)); };
+  const auto load = [](const std::string& text) {
+    return loadWorldFromMemory(text, "test.wrl", of(1'000'000));
+  };
   EXPECT_EQ(messages(*load(header + comment + nodes)), ""); // a text that others hold
   EXPECT_EQ(messages(*load(gzipped(header + nodes))), "");
   const auto world = load(gzipped(header + comment + nodes));
@@ -166,7 +170,8 @@ TEST(Budget, OfTextThatIsUnpacked) {
     load(gzipped(header + comment + comment));
     ADD_FAILURE() << "a text of more bytes than the budget was unpacked";
   } catch (const LoadError& error) {
-    EXPECT_NE(error.diagnostic.text().find("limit worldBytes=1000000"), std::string::npos) << error.diagnostic.text();
+    EXPECT_NE(error.diagnostic.text().find("limit worldBytes=1000000"), std::string::npos)
+        << error.diagnostic.text();
   }
 }
 

@@ -1,4 +1,5 @@
-// IndexedFaceSet's colours, normals and texture coordinates: every combination of the flags and index lists of clause 6.23.
+// IndexedFaceSet's colours, normals and texture coordinates: every combination of the flags and
+// index lists of clause 6.23.
 #include "unit/mesh_checks.h"
 
 namespace xvrml::test {
@@ -21,14 +22,18 @@ using Corners = std::vector<float>;
 // Values numbered by their first component: the mesh's value at each corner of each face.
 template <class Values> Corners shown(const Mesh& mesh, Values valueOf) {
   Corners result;
-  const D3 wanted[2][4] = {{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{1, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}}};
+  const D3 wanted[2][4] = {{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}},
+                           {{1, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}}};
   for (auto& face : wanted)
     for (const D3& place : face) {
       float value = -1;
       for (size_t i = 0; i < mesh.indices.size(); i++) {
         size_t triangle = i / 3; // of this face?
-        double x = (at(mesh, 3 * triangle)[0] + at(mesh, 3 * triangle + 1)[0] + at(mesh, 3 * triangle + 2)[0]) / 3;
-        if ((x < 1) == (&face == &wanted[0]) && at(mesh, i) == place) value = valueOf(mesh.indices[i]);
+        double x = (at(mesh, 3 * triangle)[0] + at(mesh, 3 * triangle + 1)[0] +
+                    at(mesh, 3 * triangle + 2)[0]) /
+                   3;
+        if ((x < 1) == (&face == &wanted[0]) && at(mesh, i) == place)
+          value = valueOf(mesh.indices[i]);
       }
       result.push_back(value);
     }
@@ -48,7 +53,8 @@ MFColor numbered(int n) {
 }
 MFVec3f tilted(int n) { // unit normals told apart by 100 x
   MFVec3f normals;
-  for (int i = 0; i < n; i++) normals.push_back({float(i) / 100, 0, std::sqrt(1 - float(i * i) / 10000)});
+  for (int i = 0; i < n; i++)
+    normals.push_back({float(i) / 100, 0, std::sqrt(1 - float(i * i) / 10000)});
   return normals;
 }
 
@@ -61,11 +67,19 @@ struct Case {
 };
 
 const Case cases[] = {
-    {true, {}, 6, {0, 1, 4, 3, 1, 2, 5, 4}, 6},                               // coordIndex names them
-    {true, {5, 4, 3, 2, -1, 4, 1, 0, 3, -1}, 6, {5, 4, 3, 2, 4, 1, 0, 3}, 6}, // their own index, equal where points are shared
-    {true, {0, 1, 2, 3, -1, 4, 5, 6, 7, -1}, 8, {0, 1, 2, 3, 4, 5, 6, 7}, 8}, // ... different there: two points double
-    {false, {}, 2, {0, 0, 0, 0, 1, 1, 1, 1}, 8},                              // faces in order
-    {false, {3, 2}, 4, {3, 3, 3, 3, 2, 2, 2, 2}, 8},                          // faces by index
+    {true, {}, 6, {0, 1, 4, 3, 1, 2, 5, 4}, 6}, // coordIndex names them
+    {true,
+     {5, 4, 3, 2, -1, 4, 1, 0, 3, -1},
+     6,
+     {5, 4, 3, 2, 4, 1, 0, 3},
+     6}, // their own index, equal where points are shared
+    {true,
+     {0, 1, 2, 3, -1, 4, 5, 6, 7, -1},
+     8,
+     {0, 1, 2, 3, 4, 5, 6, 7},
+     8},                                             // ... different there: two points double
+    {false, {}, 2, {0, 0, 0, 0, 1, 1, 1, 1}, 8},     // faces in order
+    {false, {3, 2}, 4, {3, 3, 3, 3, 2, 2, 2, 2}, 8}, // faces by index
     {false, {3, 3}, 4, {3, 3, 3, 3, 3, 3, 3, 3}, 6},
 };
 
@@ -118,7 +132,8 @@ TEST(GeometryAttributes, AllThreeTogether) {
         EXPECT_EQ(reds(mesh), colors.expected);
         EXPECT_EQ(tilts(mesh), normals.expected);
         Corners s = shown(mesh, [&](uint32_t i) { return mesh.texCoords[i].x; });
-        EXPECT_EQ(s, ownTexture ? (Corners{0, 1, 2, 3, 4, 5, 0, 1}) : (Corners{0, 1, 4, 3, 1, 2, 5, 4}));
+        EXPECT_EQ(s, ownTexture ? (Corners{0, 1, 2, 3, 4, 5, 0, 1})
+                                : (Corners{0, 1, 4, 3, 1, 2, 5, 4}));
       }
 }
 
@@ -131,7 +146,8 @@ TEST(GeometryAttributes, ValuesBesideThePointsAreUsedInPlace) {
   EXPECT_EQ(mesh.points.data(), nodeCast<nodes::Coordinate>(node->coord)->point.data());
   EXPECT_EQ(mesh.colors.data(), nodeCast<nodes::Color>(node->color)->color.data());
   EXPECT_EQ(mesh.normals.data(), nodeCast<nodes::Normal>(node->normal)->vector.data());
-  EXPECT_EQ(mesh.texCoords.data(), nodeCast<nodes::TextureCoordinate>(node->texCoord)->point.data());
+  EXPECT_EQ(mesh.texCoords.data(),
+            nodeCast<nodes::TextureCoordinate>(node->texCoord)->point.data());
 }
 
 TEST(GeometryAttributes, MissingColoursAreWhite) {
@@ -175,7 +191,9 @@ TEST(GeometryAttributes, UselessNormalsBecomeTheFaces) {
         Corners expected = perVertex ? Corners{0, 0, 4, 3, 0, 2, 5, 4} : Corners(8, 0);
         EXPECT_EQ(tilts(built.mesh), expected);
         for (size_t i = 0; i < built.mesh.points.size(); i++)
-          if (built.mesh.points[i] == Vec3f{1, 0, 0} && perVertex) { EXPECT_EQ(built.mesh.normals[i].z, ccw ? 1 : -1); }
+          if (built.mesh.points[i] == Vec3f{1, 0, 0} && perVertex) {
+            EXPECT_EQ(built.mesh.normals[i].z, ccw ? 1 : -1);
+          }
       }
   Faces few = twoSquares(); // fewer normals than points
   few->normal = normal(tilted(2));
@@ -192,21 +210,25 @@ TEST(GeometryAttributes, NormalsOfAnyLengthBecomeUnit) {
   expectSound(build(node).mesh);
 }
 
-// Default mapping (clause 6.23): S along the longest side, T along the second, ties in the order X, Y, Z.
+// Default mapping (clause 6.23): S along the longest side, T along the second, ties in the order X,
+// Y, Z.
 TEST(GeometryAttributes, DefaultTextureMapping) {
   struct Expected {
     Vec3f size;
     int s, t;
   };
-  const Expected table[] = {{{4, 2, 1}, 0, 1}, {{4, 1, 2}, 0, 2}, {{2, 4, 1}, 1, 0}, {{1, 4, 2}, 1, 2}, {{2, 1, 4}, 2, 0},
-                            {{1, 2, 4}, 2, 1}, {{4, 4, 1}, 0, 1}, {{4, 1, 4}, 0, 2}, {{1, 4, 4}, 1, 2}, {{4, 4, 4}, 0, 1},
-                            {{4, 2, 2}, 0, 1}, {{2, 4, 2}, 1, 0}, {{2, 2, 4}, 2, 0}};
+  const Expected table[] = {
+      {{4, 2, 1}, 0, 1}, {{4, 1, 2}, 0, 2}, {{2, 4, 1}, 1, 0}, {{1, 4, 2}, 1, 2}, {{2, 1, 4}, 2, 0},
+      {{1, 2, 4}, 2, 1}, {{4, 4, 1}, 0, 1}, {{4, 1, 4}, 0, 2}, {{1, 4, 4}, 1, 2}, {{4, 4, 4}, 0, 1},
+      {{4, 2, 2}, 0, 1}, {{2, 4, 2}, 1, 0}, {{2, 2, 4}, 2, 0}};
   for (const Expected& e : table) {
     const float size[3] = {e.size.x, e.size.y, e.size.z};
-    Faces node("IndexedFaceSet"); // the far corner 7 and its neighbours span the box from (10, 20, 30)
+    Faces node(
+        "IndexedFaceSet"); // the far corner 7 and its neighbours span the box from (10, 20, 30)
     MFVec3f points;
     for (int i = 0; i < 8; i++)
-      points.push_back({10 + (i & 1 ? size[0] : 0), 20 + (i & 2 ? size[1] : 0), 30 + (i & 4 ? size[2] : 0)});
+      points.push_back(
+          {10 + (i & 1 ? size[0] : 0), 20 + (i & 2 ? size[1] : 0), 30 + (i & 4 ? size[2] : 0)});
     points.push_back({-99, 99, 99}); // no face uses it
     node->coord = coordinate(points);
     node->coordIndex = {0, 3, 5, -1, 6, 5, 3, -1, 7, 1, 2, -1, 4, 2, 1};
@@ -216,9 +238,11 @@ TEST(GeometryAttributes, DefaultTextureMapping) {
       Mesh mesh = build(node, true).mesh;
       expectSound(mesh);
       for (uint32_t i : mesh.indices) {
-        const float place[3] = {mesh.points[i].x - 10, mesh.points[i].y - 20, mesh.points[i].z - 30};
+        const float place[3] = {mesh.points[i].x - 10, mesh.points[i].y - 20,
+                                mesh.points[i].z - 30};
         EXPECT_NEAR(mesh.texCoords[i].x, place[e.s] / size[e.s], 1e-5);
-        EXPECT_NEAR(mesh.texCoords[i].y, place[e.t] / size[e.s], 1e-5); // same scale in both directions
+        EXPECT_NEAR(mesh.texCoords[i].y, place[e.t] / size[e.s],
+                    1e-5); // same scale in both directions
       }
     }
   }

@@ -1,5 +1,6 @@
-// Concave faces with corners in one line: every corner is a vertex of the triangles on all its sides, with its own colour, normal
-// and texture coordinate, and no edge passes a vertex by (a T-junction).
+// Concave faces with corners in one line: every corner is a vertex of the triangles on all its
+// sides, with its own colour, normal and texture coordinate, and no edge passes a vertex by (a
+// T-junction).
 #include <random>
 
 #include "unit/mesh_checks.h"
@@ -18,7 +19,9 @@ MFVec3f comb(int teeth) {
   MFVec3f points{{0, -1, 0}, {float(2 * teeth), -1, 0}};
   for (int i = teeth; i-- > 0;) {
     const auto x = float(2 * i);
-    for (const Vec3f& p : {Vec3f{x + 2, 0, 0}, Vec3f{x + 1, 0, 0}, Vec3f{x + 1, 1, 0}, Vec3f{x, 1, 0}}) points.push_back(p);
+    for (const Vec3f& p :
+         {Vec3f{x + 2, 0, 0}, Vec3f{x + 1, 0, 0}, Vec3f{x + 1, 1, 0}, Vec3f{x, 1, 0}})
+      points.push_back(p);
   }
   return points;
 }
@@ -26,7 +29,8 @@ MFVec3f comb(int teeth) {
 // The angle and axis that rounding does not keep in line.
 MFVec3f turned(MFVec3f points, double angle) {
   const double c = std::cos(angle), s = std::sin(angle);
-  for (Vec3f& p : points) p = {float(c * p.x - s * p.y), float(s * p.x + c * p.y), float(0.3 * p.x - 0.2 * p.y)};
+  for (Vec3f& p : points)
+    p = {float(c * p.x - s * p.y), float(s * p.x + c * p.y), float(0.3 * p.x - 0.2 * p.y)};
   return points;
 }
 
@@ -58,7 +62,8 @@ double length(const D3& v) { return std::sqrt(dotProduct(v, v)); }
 size_t junctions(const Mesh& mesh) {
   size_t found = 0;
   for (size_t corner = 0; corner < mesh.indices.size(); ++corner) {
-    const D3 a = at(mesh, corner), along = minus(at(mesh, corner % 3 == 2 ? corner - 2 : corner + 1), a);
+    const D3 a = at(mesh, corner),
+             along = minus(at(mesh, corner % 3 == 2 ? corner - 2 : corner + 1), a);
     for (const Vec3f& point : mesh.points) {
       const D3 to = minus({point.x, point.y, point.z}, a);
       const double t = dotProduct(to, along) / dotProduct(along, along);
@@ -75,7 +80,8 @@ void expectWhole(const MFVec3f& points, double expectedArea) {
   expectSound(mesh);
   EXPECT_EQ(junctions(mesh), 0u);
   EXPECT_NEAR(area(mesh), expectedArea, 1e-5 * expectedArea);
-  EXPECT_EQ(mesh.indices.size() / 3, points.size() - 2); // every triangulation of a polygon has so many
+  EXPECT_EQ(mesh.indices.size() / 3,
+            points.size() - 2); // every triangulation of a polygon has so many
   std::vector<bool> used(points.size());
   for (const uint32_t vertex : mesh.indices) {
     const auto number = size_t(mesh.colors[vertex].r);
@@ -93,7 +99,8 @@ TEST(GeometryCollinear, AnHKeepsTheCornersOfItsBar) { expectWhole(letterH, 3 + 3
 TEST(GeometryCollinear, HoweverItIsTurned) {
   for (int i = 1; i < 40; ++i) {
     SCOPED_TRACE(i);
-    const double stretch = std::sqrt(1 + 0.3 * 0.3 + 0.2 * 0.2); // area of the tilted plane over that of its view
+    const double stretch =
+        std::sqrt(1 + 0.3 * 0.3 + 0.2 * 0.2); // area of the tilted plane over that of its view
     expectWhole(turned(letterH, i * 0.157), 6.6 * stretch);
   }
 }

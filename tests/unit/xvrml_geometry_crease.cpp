@@ -1,4 +1,5 @@
-// creaseAngle (clause 4.6.3.5): which edges are smooth, and that generated normals are unit, to the front and finite.
+// creaseAngle (clause 4.6.3.5): which edges are smooth, and that generated normals are unit, to the
+// front and finite.
 #include "unit/mesh_checks.h"
 
 namespace xvrml::test {
@@ -10,9 +11,11 @@ constexpr float pi = std::numbers::pi_v<float>;
 Faces cube(float creaseAngle) {
   Faces node("IndexedFaceSet");
   MFVec3f points;
-  for (int i = 0; i < 8; i++) points.push_back({i & 1 ? 1.f : -1.f, i & 2 ? 1.f : -1.f, i & 4 ? 1.f : -1.f});
+  for (int i = 0; i < 8; i++)
+    points.push_back({i & 1 ? 1.f : -1.f, i & 2 ? 1.f : -1.f, i & 4 ? 1.f : -1.f});
   node->coord = coordinate(points);
-  node->coordIndex = {0, 2, 3, 1, -1, 4, 5, 7, 6, -1, 0, 1, 5, 4, -1, 2, 6, 7, 3, -1, 0, 4, 6, 2, -1, 1, 3, 7, 5, -1};
+  node->coordIndex = {0, 2, 3, 1, -1, 4, 5, 7, 6, -1, 0, 1, 5, 4, -1,
+                      2, 6, 7, 3, -1, 0, 4, 6, 2, -1, 1, 3, 7, 5, -1};
   node->creaseAngle = creaseAngle;
   return node;
 }
@@ -64,7 +67,9 @@ TEST(GeometryCrease, TheAngleOfAFoldDecides) {
     EXPECT_EQ(smooth.points.size(), 6u) << angle;
     // On the fold the smooth normal halves the angle.
     for (size_t i = 0; i < smooth.points.size(); i++)
-      if (smooth.points[i].x == 0 && smooth.points[i].z == 0) { EXPECT_NEAR(smooth.normals[i].x, std::sin(angle / 2), 1e-4); }
+      if (smooth.points[i].x == 0 && smooth.points[i].z == 0) {
+        EXPECT_NEAR(smooth.normals[i].x, std::sin(angle / 2), 1e-4);
+      }
   }
 }
 
@@ -109,19 +114,25 @@ TEST(GeometryCrease, ManyFacesAtOnePoint) {
   const int n = 100000;
   Faces node("IndexedFaceSet");
   MFVec3f points = {{0, 1, 0}};
-  for (int i = 0; i < n; i++) points.push_back({float(std::cos(2 * pi * i / n)), 0, float(-std::sin(2 * pi * i / n))});
+  for (int i = 0; i < n; i++)
+    points.push_back({float(std::cos(2 * pi * i / n)), 0, float(-std::sin(2 * pi * i / n))});
   node->coord = coordinate(points);
-  for (int i = 0; i < n; i++) node->coordIndex.insert(node->coordIndex.end(), {0, 1 + i, 1 + (i + 1) % n, -1});
+  for (int i = 0; i < n; i++)
+    node->coordIndex.insert(node->coordIndex.end(), {0, 1 + i, 1 + (i + 1) % n, -1});
   node->creaseAngle = 0.5f;
   Mesh mesh = build(node).mesh;
   expectSound(mesh);
   EXPECT_TRUE(normalsFaceFront(mesh));
   for (size_t i = 0; i < mesh.points.size(); i++)
-    if (mesh.points[i].y == 0) { EXPECT_NEAR(mesh.normals[i].y, std::sqrt(0.5), 1e-2); } // slope of the cone
+    if (mesh.points[i].y == 0) {
+      EXPECT_NEAR(mesh.normals[i].y, std::sqrt(0.5), 1e-2);
+    } // slope of the cone
   node->creaseAngle = 4;
   mesh = build(node).mesh;
   for (size_t i = 0; i < mesh.points.size(); i++)
-    if (mesh.points[i].y == 1) { EXPECT_NEAR(mesh.normals[i].y, 1, 1e-3); } // all together: the axis
+    if (mesh.points[i].y == 1) {
+      EXPECT_NEAR(mesh.normals[i].y, 1, 1e-3);
+    } // all together: the axis
 }
 
 } // namespace

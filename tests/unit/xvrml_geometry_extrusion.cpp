@@ -1,4 +1,5 @@
-// Extrusion (clause 6.18): frames, caps, scale, orientation, closed and degenerate spines, against closed forms.
+// Extrusion (clause 6.18): frames, caps, scale, orientation, closed and degenerate spines, against
+// closed forms.
 #include "unit/mesh_checks.h"
 
 namespace xvrml::test {
@@ -7,10 +8,12 @@ namespace {
 using Sweep = Made<nodes::Extrusion>;
 constexpr double pi = std::numbers::pi;
 
-MFVec2f circle(int n, double radius, bool closed = true) { // in the direction of the default crossSection
+MFVec2f circle(int n, double radius,
+               bool closed = true) { // in the direction of the default crossSection
   MFVec2f points;
   for (int i = 0; i < n; i++)
-    points.push_back({float(radius * std::cos(2 * pi * i / n)), float(-radius * std::sin(2 * pi * i / n))});
+    points.push_back(
+        {float(radius * std::cos(2 * pi * i / n)), float(-radius * std::sin(2 * pi * i / n))});
   if (closed) points.push_back(points[0]);
   return points;
 }
@@ -37,8 +40,8 @@ TEST(GeometryExtrusion, DefaultIsABox) {
 }
 
 TEST(GeometryExtrusion, StraightSpinesInAnyDirection) {
-  for (Vec3f d : {Vec3f{0, 1, 0}, Vec3f{0, -1, 0}, Vec3f{1, 0, 0}, Vec3f{-1, 0, 0}, Vec3f{0, 0, 1}, Vec3f{0, 0, -1},
-                  Vec3f{1, 2, 3}, Vec3f{-3, 0.1f, 2}})
+  for (Vec3f d : {Vec3f{0, 1, 0}, Vec3f{0, -1, 0}, Vec3f{1, 0, 0}, Vec3f{-1, 0, 0}, Vec3f{0, 0, 1},
+                  Vec3f{0, 0, -1}, Vec3f{1, 2, 3}, Vec3f{-3, 0.1f, 2}})
     for (int points : {2, 3, 7}) {
       Sweep node("Extrusion");
       node->crossSection = circle(24, 0.5);
@@ -72,7 +75,8 @@ TEST(GeometryExtrusion, ABentSpineMitresItsCorner) {
   expectSound(mesh);
   EXPECT_EQ(openEdges(mesh), 0u);
   EXPECT_GT(signedVolume(mesh), 0);
-  // Middle row: y axis along (1, 1, 0), z = (p2 - p1) x (p0 - p1) = (4,0,0) x (0,-4,0) = -z, x = y x z.
+  // Middle row: y axis along (1, 1, 0), z = (p2 - p1) x (p0 - p1) = (4,0,0) x (0,-4,0) = -z, x = y
+  // x z.
   const Vec3f& x = mesh.points[4]; // of the first section point (0.1, 0)
   EXPECT_NEAR(x.x, -0.1 / std::sqrt(2), 1e-6);
   EXPECT_NEAR(x.y, 4 + 0.1 / std::sqrt(2), 1e-6);
@@ -81,13 +85,15 @@ TEST(GeometryExtrusion, ABentSpineMitresItsCorner) {
 TEST(GeometryExtrusion, SpinesThatBendBothWaysDoNotTwist) {
   Sweep node("Extrusion"); // an S: z axes must not flip where the bend changes its sense
   node->spine.clear();
-  for (int i = 0; i <= 40; i++) node->spine.push_back({float(std::sin(i * pi / 10)), float(i) * 0.2f, 0});
+  for (int i = 0; i <= 40; i++)
+    node->spine.push_back({float(std::sin(i * pi / 10)), float(i) * 0.2f, 0});
   node->crossSection = circle(16, 0.1);
   Mesh mesh = build(node).mesh;
   expectSound(mesh);
   EXPECT_EQ(openEdges(mesh), 0u);
   EXPECT_GT(signedVolume(mesh), 0);
-  for (size_t i = 0; i + 1 < node->spine.size(); i++) { // the same section point stays on the same side
+  for (size_t i = 0; i + 1 < node->spine.size();
+       i++) { // the same section point stays on the same side
     const Vec3f &a = mesh.points[i * 16 + 4], &b = mesh.points[(i + 1) * 16 + 4];
     EXPECT_NEAR(a.z, b.z, 1e-5);
   }
@@ -98,7 +104,8 @@ TEST(GeometryExtrusion, AClosedRingIsATorus) {
   const int around = 96, section = 32;
   node->spine.clear();
   for (int i = 0; i < around; i++)
-    node->spine.push_back({float(2 * std::cos(2 * pi * i / around)), 0, float(-2 * std::sin(2 * pi * i / around))});
+    node->spine.push_back(
+        {float(2 * std::cos(2 * pi * i / around)), 0, float(-2 * std::sin(2 * pi * i / around))});
   node->spine.push_back(node->spine[0]);
   node->crossSection = circle(section, 0.5);
   for (float crease : {0.f, 1.f}) {
@@ -106,10 +113,12 @@ TEST(GeometryExtrusion, AClosedRingIsATorus) {
     Mesh mesh = build(node).mesh;
     expectSound(mesh);
     EXPECT_EQ(openEdges(mesh), 0u);
-    // Pappus: area of the section times the way of its centre; the sections stand on the corners of the spine's polygon.
+    // Pappus: area of the section times the way of its centre; the sections stand on the corners of
+    // the spine's polygon.
     double expected = polygonArea(section, 0.5) * polygonArea(around, 2) / 2 * 2;
     EXPECT_NEAR(signedVolume(mesh), expected, 0.005 * expected);
-    EXPECT_EQ(mesh.points.size(), crease > 0 ? size_t(around * section) : mesh.points.size()) << "smooth across both seams";
+    EXPECT_EQ(mesh.points.size(), crease > 0 ? size_t(around * section) : mesh.points.size())
+        << "smooth across both seams";
     if (crease > 0) { EXPECT_TRUE(normalsFaceFront(mesh)); }
   }
 }
@@ -157,15 +166,18 @@ TEST(GeometryExtrusion, OrientationTurnsAboutTheSpinePoint) {
 }
 
 TEST(GeometryExtrusion, CoincidentSpinePointsMakeASurfaceOfRevolution) {
-  Sweep node("Extrusion"); // a half circle of radius 1, right of the y axis, turned about y: a sphere
+  Sweep node(
+      "Extrusion"); // a half circle of radius 1, right of the y axis, turned about y: a sphere
   const int turns = 48, arc = 24;
   node->crossSection.clear();
-  for (int i = 0; i <= arc; i++) node->crossSection.push_back({float(std::sin(pi * i / arc)), float(std::cos(pi * i / arc))});
+  for (int i = 0; i <= arc; i++)
+    node->crossSection.push_back({float(std::sin(pi * i / arc)), float(std::cos(pi * i / arc))});
   node->crossSection.back().x = 0; // on the axis
   node->spine.assign(turns + 1, {0, 0, 0});
   node->orientation.clear();
   // The section lies in the xz plane: turned about z by steps it sweeps a sphere about z.
-  for (int i = 0; i <= turns; i++) node->orientation.push_back({0, 0, 1, i == turns ? 0 : float(2 * pi * i / turns)});
+  for (int i = 0; i <= turns; i++)
+    node->orientation.push_back({0, 0, 1, i == turns ? 0 : float(2 * pi * i / turns)});
   node->beginCap = node->endCap = false;
   Mesh mesh = build(node).mesh;
   expectSound(mesh);
@@ -176,7 +188,8 @@ TEST(GeometryExtrusion, CoincidentSpinePointsMakeASurfaceOfRevolution) {
 TEST(GeometryExtrusion, SomeCoincidentPointsShareAFrame) {
   Sweep node("Extrusion");
   node->spine = {{0, 0, 0}, {0, 0, 0}, {0, 1, 0}, {0, 1, 0}, {0, 1, 0}, {0, 2, 0}, {0, 2, 0}};
-  node->scale = {{1, 1}, {1, 1}, {1, 1}, {1, 1}, {0.5f, 0.5f}, {0.5f, 0.5f}, {0.5f, 0.5f}}; // a step
+  node->scale = {{1, 1},       {1, 1},       {1, 1},      {1, 1},
+                 {0.5f, 0.5f}, {0.5f, 0.5f}, {0.5f, 0.5f}}; // a step
   Mesh mesh = build(node).mesh;
   expectSound(mesh);
   EXPECT_EQ(openEdges(mesh), 0u);

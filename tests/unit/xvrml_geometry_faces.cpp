@@ -50,7 +50,8 @@ TEST(GeometryFaces, TrianglesUseTheNodesPoints) {
   EXPECT_TRUE(built.mesh.ownPoints.empty());
   EXPECT_EQ(std::vector<uint32_t>(built.mesh.indices.begin(), built.mesh.indices.end()),
             (std::vector<uint32_t>{0, 1, 2, 0, 2, 3}));
-  EXPECT_TRUE(built.mesh.normals.empty() && built.mesh.colors.empty() && built.mesh.texCoords.empty());
+  EXPECT_TRUE(built.mesh.normals.empty() && built.mesh.colors.empty() &&
+              built.mesh.texCoords.empty());
   node->coordIndex.pop_back(); // the last -1 may be missing
   EXPECT_EQ(build(node).mesh.indices.size(), 6u);
 }
@@ -66,7 +67,8 @@ TEST(GeometryFaces, FlagsPassOn) {
 TEST(GeometryFaces, ConvexPolygonsAreFans) {
   MFVec3f circle;
   for (int i = 0; i < 12; i++)
-    circle.push_back({float(std::cos(i * std::numbers::pi / 6)), float(std::sin(i * std::numbers::pi / 6)), 0});
+    circle.push_back(
+        {float(std::cos(i * std::numbers::pi / 6)), float(std::sin(i * std::numbers::pi / 6)), 0});
   Faces node = polygon(circle, true);
   Mesh mesh = build(node).mesh;
   EXPECT_EQ(mesh.indices.size(), 30u);
@@ -77,10 +79,10 @@ TEST(GeometryFaces, ConcavePolygonsKeepTheirArea) {
   const MFVec3f shapes[] = {
       {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {2, 1, 0}, {0, 4, 0}},            // notch
       {{0, 0, 0}, {3, 0, 0}, {3, 1, 0}, {1, 1, 0}, {1, 3, 0}, {0, 3, 0}}, // L
-      {{0, 0, 0}, {1, 0.2f, 0}, {0.2f, 0.3f, 0}, {0, 1, 0}},              // arrow: concave quadrilateral
-      {{0.2f, 0.3f, 0}, {0, 1, 0}, {0, 0, 0}, {1, 0.2f, 0}},              // the same from another corner
-      {{0, 0, 0}, {2, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}},            // straight corner
-      {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 2, 0}},                       // quadrilateral with a straight corner
+      {{0, 0, 0}, {1, 0.2f, 0}, {0.2f, 0.3f, 0}, {0, 1, 0}},   // arrow: concave quadrilateral
+      {{0.2f, 0.3f, 0}, {0, 1, 0}, {0, 0, 0}, {1, 0.2f, 0}},   // the same from another corner
+      {{0, 0, 0}, {2, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}}, // straight corner
+      {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 2, 0}}, // quadrilateral with a straight corner
       {{0, 0, 0},
        {9, 0, 0},
        {9, 5, 0},
@@ -111,7 +113,8 @@ TEST(GeometryFaces, ConcavePolygonsKeepTheirArea) {
 
 TEST(GeometryFaces, HolesBridgedByADoubledEdgeStayOpen) {
   // A square of side 4 with a square hole of side 2, joined by an edge there and back.
-  MFVec3f shape = {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}, {0, 0, 0}, {1, 1, 0}, {1, 3, 0}, {3, 3, 0}, {3, 1, 0}, {1, 1, 0}};
+  MFVec3f shape = {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}, {0, 0, 0},
+                   {1, 1, 0}, {1, 3, 0}, {3, 3, 0}, {3, 1, 0}, {1, 1, 0}};
   Faces node = polygon(shape, false);
   Mesh mesh = build(node).mesh;
   expectSound(mesh);
@@ -125,14 +128,16 @@ TEST(GeometryFaces, HolesBridgedByADoubledEdgeStayOpen) {
     EXPECT_FALSE(x > 1 && x < 3 && y > 1 && y < 3);
   }
   // The same in one list of shared points.
-  Faces shared = faceSet({{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}, {1, 1, 0}, {1, 3, 0}, {3, 3, 0}, {3, 1, 0}},
-                         {0, 1, 2, 3, 0, 4, 5, 6, 7, 4, -1});
+  Faces shared = faceSet(
+      {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}, {1, 1, 0}, {1, 3, 0}, {3, 3, 0}, {3, 1, 0}},
+      {0, 1, 2, 3, 0, 4, 5, 6, 7, 4, -1});
   shared->convex = false;
   EXPECT_NEAR(area(build(shared).mesh), 12, 1e-6);
 }
 
 TEST(GeometryFaces, SelfCrossingFacesGetTheVertexWhereTheyCross) {
-  Faces bow = polygon({{0, 0, 0}, {2, 2, 0}, {2, 0, 0}, {0, 2, 0}}, false); // figure of eight: two triangles of area 1
+  Faces bow = polygon({{0, 0, 0}, {2, 2, 0}, {2, 0, 0}, {0, 2, 0}},
+                      false); // figure of eight: two triangles of area 1
   bow->color = color({{1, 0, 0}, {1, 0, 0}, {0, 0, 1}, {0, 0, 1}});
   bow->texCoord = textureCoordinate({{0, 0}, {1, 1}, {1, 0}, {0, 1}});
   Mesh mesh = build(bow).mesh;
@@ -149,28 +154,30 @@ TEST(GeometryFaces, SelfCrossingFacesGetTheVertexWhereTheyCross) {
   // A pentagram: odd winding leaves the middle open. Its points' area by the golden ratio.
   MFVec3f star;
   for (int i = 0; i < 5; i++)
-    star.push_back({float(std::cos(i * 0.8 * std::numbers::pi)), float(std::sin(i * 0.8 * std::numbers::pi)), 0});
+    star.push_back({float(std::cos(i * 0.8 * std::numbers::pi)),
+                    float(std::sin(i * 0.8 * std::numbers::pi)), 0});
   Faces pentagram = polygon(star, true);
   double sine36 = std::sin(std::numbers::pi / 5), phi = std::numbers::phi;
-  double inner = 2.5 * std::pow(1 / (phi * phi), 2) * std::sin(0.4 * std::numbers::pi); // pentagon in the middle
-  double side = 2 * sine36 / (phi * phi);                                               // its edge
-  double tip = side * side / 4 * std::tan(0.4 * std::numbers::pi);                      // 5 tips over those edges
+  double inner = 2.5 * std::pow(1 / (phi * phi), 2) *
+                 std::sin(0.4 * std::numbers::pi);                 // pentagon in the middle
+  double side = 2 * sine36 / (phi * phi);                          // its edge
+  double tip = side * side / 4 * std::tan(0.4 * std::numbers::pi); // 5 tips over those edges
   (void)inner;
   EXPECT_NEAR(area(build(pentagram).mesh), 5 * tip, 1e-5);
 }
 
 TEST(GeometryFaces, WrongFacesAreDroppedWithOneWarning) {
-  Faces node =
-      faceSet({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {2, 2, 0}, {2, 2, 0}}, {0,  1,  2,  -1,         // good
-                                                                                   0,  1,  -1,             // two vertices
-                                                                                   0,  0,  0,  -1,         // one vertex
-                                                                                   0,  1,  17, -1,         // no such point
-                                                                                   0,  1,  -7, 2,  -1,     // nor this
-                                                                                   -1, -1,                 // nothing at all
-                                                                                   4,  5,  4,  -1,         // no extent
-                                                                                   0,  2,  4,  -1,         // on a line
-                                                                                   0,  0,  1,  2,  2,  -1, // repeated: a triangle
-                                                                                   0,  1,  2,  3});        // good, without its -1
+  Faces node = faceSet({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {2, 2, 0}, {2, 2, 0}},
+                       {0,  1,  2,  -1,         // good
+                        0,  1,  -1,             // two vertices
+                        0,  0,  0,  -1,         // one vertex
+                        0,  1,  17, -1,         // no such point
+                        0,  1,  -7, 2,  -1,     // nor this
+                        -1, -1,                 // nothing at all
+                        4,  5,  4,  -1,         // no extent
+                        0,  2,  4,  -1,         // on a line
+                        0,  0,  1,  2,  2,  -1, // repeated: a triangle
+                        0,  1,  2,  3});        // good, without its -1
   node->source.line = 42;
   Built built = build(node);
   expectSound(built.mesh);
@@ -180,7 +187,8 @@ TEST(GeometryFaces, WrongFacesAreDroppedWithOneWarning) {
   EXPECT_EQ(warning.severity, Severity::warning);
   EXPECT_EQ(warning.line, 42u);
   EXPECT_NE(warning.message.find("IndexedFaceSet"), std::string::npos);
-  EXPECT_NE(warning.message.find("2 dropped for an index without a point (first at index 13)"), std::string::npos)
+  EXPECT_NE(warning.message.find("2 dropped for an index without a point (first at index 13)"),
+            std::string::npos)
       << warning.message;
 }
 
@@ -196,7 +204,8 @@ TEST(GeometryFaces, NothingToDrawIsNoMistake) {
 }
 
 TEST(GeometryFaces, PointsThatAreNotFiniteAreNeverSeen) {
-  Faces node = faceSet({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {NAN, 0, 0}, {0, INFINITY, 0}}, {0, 1, 2, -1, 0, 1, 3, -1, 0, 1, 4, -1});
+  Faces node = faceSet({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {NAN, 0, 0}, {0, INFINITY, 0}},
+                       {0, 1, 2, -1, 0, 1, 3, -1, 0, 1, 4, -1});
   Built built = build(node);
   expectSound(built.mesh);
   EXPECT_EQ(built.mesh.indices.size(), 3u);

@@ -22,11 +22,13 @@ TEST(GeometryGrid, IsFlatTowardsPlusY) {
   expectSound(built.mesh);
   EXPECT_EQ(built.mesh.points.size(), 6u);
   EXPECT_NEAR(area(built.mesh), 4 * 3, 1e-6);
-  for (size_t t = 0; t < built.mesh.indices.size() / 3; t++) EXPECT_GT(areaVector(built.mesh, t)[1], 0);
+  for (size_t t = 0; t < built.mesh.indices.size() / 3; t++)
+    EXPECT_GT(areaVector(built.mesh, t)[1], 0);
   EXPECT_EQ(built.mesh.points[5], (Vec3f{4, 0.5f, 3}));
 }
 
-// Grid and floor enclose the sum of cells' heights: the surface is watertight and the heights are in the order x, then z.
+// Grid and floor enclose the sum of cells' heights: the surface is watertight and the heights are
+// in the order x, then z.
 TEST(GeometryGrid, HeightsRunAlongXFirst) {
   Grid node = grid(2, 3, {0, 1, 2, 3, 4, 5});
   Mesh mesh = build(node).mesh;
@@ -37,7 +39,8 @@ TEST(GeometryGrid, ColoursAndNormalsByVertexOrQuadrilateral) {
   Grid node = grid(3, 2, MFFloat(6));
   node->color = color({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {4, 0, 0}, {5, 0, 0}});
   Mesh mesh = build(node).mesh;
-  for (size_t i = 0; i < 6; i++) EXPECT_EQ(mesh.colors[i].r, mesh.points[i].x + 3 * mesh.points[i].z);
+  for (size_t i = 0; i < 6; i++)
+    EXPECT_EQ(mesh.colors[i].r, mesh.points[i].x + 3 * mesh.points[i].z);
   node->colorPerVertex = false;
   mesh = build(node).mesh;
   expectSound(mesh);

@@ -1,5 +1,5 @@
-// Geometry nodes full of nonsense, from a fixed seed: never a crash, every index in range, every number finite, one warning at
-// most.
+// Geometry nodes full of nonsense, from a fixed seed: never a crash, every index in range, every
+// number finite, one warning at most.
 #include <random>
 
 #include "unit/mesh_checks.h"
@@ -101,7 +101,8 @@ TEST(GeometryHostile, LargeSelfCrossingFaces) {
     Chaos chaos(seed);
     Made<nodes::IndexedFaceSet> node("IndexedFaceSet");
     MFVec3f points(size_t(20 + 30 * seed));
-    for (Vec3f& p : points) p = {float(chaos.below(1000)), float(chaos.below(1000)), chaos.chance(10) ? 1.f : 0.f};
+    for (Vec3f& p : points)
+      p = {float(chaos.below(1000)), float(chaos.below(1000)), chaos.chance(10) ? 1.f : 0.f};
     for (size_t i = 0; i < points.size(); i++) node->coordIndex.push_back(int32_t(i));
     node->coord = coordinate(points);
     node->creaseAngle = 1;
@@ -134,7 +135,8 @@ TEST(GeometryHostile, Extrusion) {
     if (chaos.chance(80)) node->spine = chaos.vectors(20);
     if (chaos.chance(80)) node->crossSection = chaos.vectors2(20);
     if (chaos.chance(30) && !node->spine.empty()) node->spine.push_back(node->spine[0]);
-    if (chaos.chance(30) && !node->crossSection.empty()) node->crossSection.push_back(node->crossSection[0]);
+    if (chaos.chance(30) && !node->crossSection.empty())
+      node->crossSection.push_back(node->crossSection[0]);
     if (chaos.chance(60)) node->scale = chaos.vectors2(20);
     if (chaos.chance(60)) node->orientation = chaos.rotations(20);
     node->creaseAngle = chaos.chance(50) ? chaos.number() : 0;

@@ -16,7 +16,8 @@ Lines lines(MFInt32 index) {
 using Ends = std::vector<std::pair<float, float>>; // x or red of both ends of each segment
 template <class F> Ends ends(const Mesh& mesh, F value) {
   Ends result;
-  for (size_t i = 0; i + 1 < mesh.indices.size(); i += 2) result.push_back({value(mesh.indices[i]), value(mesh.indices[i + 1])});
+  for (size_t i = 0; i + 1 < mesh.indices.size(); i += 2)
+    result.push_back({value(mesh.indices[i]), value(mesh.indices[i + 1])});
   return result;
 }
 Ends places(const Mesh& mesh) {

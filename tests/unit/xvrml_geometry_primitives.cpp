@@ -1,4 +1,5 @@
-// Box, Cone, Cylinder and Sphere against their closed forms (ISO/IEC 14772-1 clauses 6.7, 6.11, 6.14, 6.43).
+// Box, Cone, Cylinder and Sphere against their closed forms (ISO/IEC 14772-1
+// clauses 6.7, 6.11, 6.14, 6.43).
 #include "geometry/bounds.h"
 #include "unit/mesh_checks.h"
 
@@ -29,9 +30,10 @@ TEST(GeometryBox, TexturesAreUprightOnEverySide) {
   struct Expected {
     D3 normal, s, t;
   };
-  const Expected expected[] = {{{0, 0, 1}, {1, 0, 0}, {0, 1, 0}},  {{0, 0, -1}, {-1, 0, 0}, {0, 1, 0}},
-                               {{1, 0, 0}, {0, 0, -1}, {0, 1, 0}}, {{-1, 0, 0}, {0, 0, 1}, {0, 1, 0}},
-                               {{0, 1, 0}, {1, 0, 0}, {0, 0, -1}}, {{0, -1, 0}, {1, 0, 0}, {0, 0, 1}}};
+  const Expected expected[] = {
+      {{0, 0, 1}, {1, 0, 0}, {0, 1, 0}},  {{0, 0, -1}, {-1, 0, 0}, {0, 1, 0}},
+      {{1, 0, 0}, {0, 0, -1}, {0, 1, 0}}, {{-1, 0, 0}, {0, 0, 1}, {0, 1, 0}},
+      {{0, 1, 0}, {1, 0, 0}, {0, 0, -1}}, {{0, -1, 0}, {1, 0, 0}, {0, 0, 1}}};
   for (const Expected& side : expected) {
     int corners = 0;
     for (size_t t = 0; t < mesh.indices.size() / 3; t++) {
@@ -121,7 +123,8 @@ TEST(GeometryCone, IsClosedAndItsNormalsAreExact) {
   EXPECT_TRUE(normalsFaceFront(built.mesh));
   cone->bottom = false;
   Mesh side = build(cone).mesh;
-  for (size_t i = 0; i < side.points.size(); i++) EXPECT_NEAR(side.normals[i].y, 0.6, 1e-6); // 3, 4, 5
+  for (size_t i = 0; i < side.points.size(); i++)
+    EXPECT_NEAR(side.normals[i].y, 0.6, 1e-6); // 3, 4, 5
 }
 
 TEST(GeometryRound, TextureOfDiscsLooksUprightWhenTiltedTowardsTheViewer) {

@@ -1,4 +1,5 @@
-// Text and FontStyle (clauses 6.22, 6.47): extents, justification, stretching, directions, families, hostile strings.
+// Text and FontStyle (clauses 6.22, 6.47): extents, justification, stretching, directions,
+// families, hostile strings.
 #include <algorithm>
 
 #include "geometry/bounds.h"
@@ -40,7 +41,8 @@ TEST_F(GeometryText, LiesInThePlaneAndIsTwoSided) {
   EXPECT_EQ(mesh.kind, Mesh::Kind::triangles);
   EXPECT_FALSE(mesh.solid);
   for (const Vec3f& p : mesh.points) EXPECT_EQ(p.z, 0);
-  for (size_t t = 0; t < mesh.indices.size() / 3; t++) EXPECT_GT(areaVector(mesh, t)[2], 0); // front towards +z
+  for (size_t t = 0; t < mesh.indices.size() / 3; t++)
+    EXPECT_GT(areaVector(mesh, t)[2], 0); // front towards +z
   EXPECT_EQ(boundsOf(mesh).minimum.x >= -0.1, true);
 }
 
@@ -93,7 +95,8 @@ TEST_F(GeometryText, MajorJustification) {
     node->fontStyle = style;
     return boxOf(node);
   };
-  Box3 begin = box("BEGIN", true), middle = box("MIDDLE", true), end = box("END", true), right = box("BEGIN", false);
+  Box3 begin = box("BEGIN", true), middle = box("MIDDLE", true), end = box("END", true),
+       right = box("BEGIN", false);
   double bearing = begin.minimum.x; // space beside the letter
   EXPECT_GT(bearing, 0);
   EXPECT_LT(bearing, 0.2);
@@ -177,7 +180,8 @@ TEST_F(GeometryText, TextureIsOneFontHeightAtTheFirstLinesOrigin) {
   node->fontStyle = style;
   Mesh mesh = build(node, true).mesh;
   ASSERT_EQ(mesh.texCoords.size(), mesh.points.size());
-  double s0 = mesh.points[0].x / 4 - mesh.texCoords[0].x, t0 = mesh.points[0].y / 4 - mesh.texCoords[0].y;
+  double s0 = mesh.points[0].x / 4 - mesh.texCoords[0].x,
+         t0 = mesh.points[0].y / 4 - mesh.texCoords[0].y;
   for (size_t i = 0; i < mesh.points.size(); i++) {
     EXPECT_NEAR(mesh.texCoords[i].x, mesh.points[i].x / 4 - s0, 1e-5);
     EXPECT_NEAR(mesh.texCoords[i].y, mesh.points[i].y / 4 - t0, 1e-5);
@@ -197,22 +201,27 @@ TEST_F(GeometryText, FamiliesAndStyles) {
     node->fontStyle = fontStyle;
     return width(boxOf(node));
   };
-  // A typewriter's letters are equally wide, others' are not. (Between the left edges of two equal stems.)
-  EXPECT_NEAR(advance({"TYPEWRITER"}, "PLAIN", "HiiiiH"), advance({"TYPEWRITER"}, "PLAIN", "HmmmmH"), 1e-3);
+  // A typewriter's letters are equally wide, others' are not. (Between the left edges of two equal
+  // stems.)
+  EXPECT_NEAR(advance({"TYPEWRITER"}, "PLAIN", "HiiiiH"),
+              advance({"TYPEWRITER"}, "PLAIN", "HmmmmH"), 1e-3);
   EXPECT_LT(advance({"SERIF"}, "PLAIN", "HiiiiH"), 0.8 * advance({"SERIF"}, "PLAIN", "HmmmmH"));
   EXPECT_NE(advance({"SERIF"}, "PLAIN", "Hamburg"), advance({"SANS"}, "PLAIN", "Hamburg"));
   EXPECT_NE(advance({"SANS"}, "PLAIN", "Hamburg"), advance({"SANS"}, "BOLD", "Hamburg"));
   EXPECT_GT(advance({"SANS"}, "ITALIC", "Hamburg"), 1);
-  EXPECT_EQ(advance({"No Such Family Anywhere", "SANS"}, "PLAIN", "Hamburg"), advance({"SANS"}, "PLAIN", "Hamburg"));
-  EXPECT_EQ(advance({"No Such Family Anywhere"}, "PLAIN", "Hamburg"), advance({"SERIF"}, "PLAIN", "Hamburg"));
+  EXPECT_EQ(advance({"No Such Family Anywhere", "SANS"}, "PLAIN", "Hamburg"),
+            advance({"SANS"}, "PLAIN", "Hamburg"));
+  EXPECT_EQ(advance({"No Such Family Anywhere"}, "PLAIN", "Hamburg"),
+            advance({"SERIF"}, "PLAIN", "Hamburg"));
 }
 
 TEST_F(GeometryText, ManyScriptsAndHostileStrings) {
-  for (const char* string : {"Grüße Žluťoučký", "Ελληνικά", "Русский", "العربية", "日本語", "e\xcc\x81", "a\tb\nc", "\x01\x02",
-                             "\xff\xfe\xc0\x80", "\xf0\x9f\x98", "\xed\xa0\x80", " ", "",
-                             "\xe2\x80\xae"
-                             "abc",
-                             "%s%n%x"})
+  for (const char* string :
+       {"Grüße Žluťoučký", "Ελληνικά", "Русский", "العربية", "日本語", "e\xcc\x81", "a\tb\nc",
+        "\x01\x02", "\xff\xfe\xc0\x80", "\xf0\x9f\x98", "\xed\xa0\x80", " ", "",
+        "\xe2\x80\xae"
+        "abc",
+        "%s%n%x"})
     for (bool horizontal : {true, false}) {
       TextNode node = text({string, "x"});
       Style style("FontStyle");

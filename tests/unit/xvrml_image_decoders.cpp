@@ -1,4 +1,5 @@
-// PNG, JPEG and GIF against pictures made here; damaged, cut and oversized files end in an exception that says so.
+// PNG, JPEG and GIF against pictures made here; damaged, cut and oversized files end in an
+// exception that says so.
 #include <gtest/gtest.h>
 #include <png.h>
 
@@ -19,7 +20,9 @@ namespace {
 
 const Limits limits;
 
-Image decode(const Bytes& bytes, const Limits& with = limits) { return decodeImage(bytes.data(), bytes.size(), with); }
+Image decode(const Bytes& bytes, const Limits& with = limits) {
+  return decodeImage(bytes.data(), bytes.size(), with);
+}
 
 std::string refusal(const Bytes& bytes, const Limits& with = limits) {
   try {
@@ -30,7 +33,8 @@ std::string refusal(const Bytes& bytes, const Limits& with = limits) {
 
 // The component of a pixel counted from the top, as the makers do; images run from the bottom.
 int pixel(const Image& image, int x, int yFromTop, int c) {
-  return image.pixels[size_t(((image.height - 1 - yFromTop) * image.width + x) * image.components + c)];
+  return image
+      .pixels[size_t(((image.height - 1 - yFromTop) * image.width + x) * image.components + c)];
 }
 
 uint16_t pattern(int x, int y, int c) { return uint16_t((x * 7 + y * 31 + c * 85) & 255); }
@@ -43,41 +47,51 @@ void expectPattern(const Image& image, int width, int height, int components, in
   for (int y = 0; y < height; y++)
     for (int x = 0; x < width; x++)
       for (int c = 0; c < components; c++)
-        ASSERT_NEAR(pixel(image, x, y, c), pattern(x, y, c), tolerance) << x << " " << y << " " << c;
+        ASSERT_NEAR(pixel(image, x, y, c), pattern(x, y, c), tolerance)
+            << x << " " << y << " " << c;
 }
 
 TEST(ImagePng, OneToFourComponents) {
-  const int types[] = {PNG_COLOR_TYPE_GRAY, PNG_COLOR_TYPE_GRAY_ALPHA, PNG_COLOR_TYPE_RGB, PNG_COLOR_TYPE_RGB_ALPHA};
+  const int types[] = {PNG_COLOR_TYPE_GRAY, PNG_COLOR_TYPE_GRAY_ALPHA, PNG_COLOR_TYPE_RGB,
+                       PNG_COLOR_TYPE_RGB_ALPHA};
   for (int components = 1; components <= 4; components++)
     for (bool interlaced : {false, true})
       for (auto [width, height] : {std::pair{13, 9}, {1, 1}, {1, 20}, {20, 1}})
-        expectPattern(decode(makePng(width, height, {types[components - 1], 8, interlaced}, pattern)), width, height, components);
+        expectPattern(
+            decode(makePng(width, height, {types[components - 1], 8, interlaced}, pattern)), width,
+            height, components);
 }
 
 TEST(ImagePng, SixteenBitsAreRounded) {
-  Image image =
-      decode(makePng(256, 1, {PNG_COLOR_TYPE_GRAY, 16}, [](int x, int, int) { return uint16_t(x * 257 + (x < 255 ? 100 : 0)); }));
+  Image image = decode(makePng(256, 1, {PNG_COLOR_TYPE_GRAY, 16}, [](int x, int, int) {
+    return uint16_t(x * 257 + (x < 255 ? 100 : 0));
+  }));
   for (int x = 0; x < 256; x++) EXPECT_EQ(pixel(image, x, 0, 0), x);
-  image = decode(makePng(2, 1, {PNG_COLOR_TYPE_GRAY, 16}, [](int x, int, int) { return uint16_t(x ? 257 * 5 + 200 : 0); }));
+  image = decode(makePng(2, 1, {PNG_COLOR_TYPE_GRAY, 16},
+                         [](int x, int, int) { return uint16_t(x ? 257 * 5 + 200 : 0); }));
   EXPECT_EQ(pixel(image, 1, 0, 0), 6);
 }
 
 TEST(ImagePng, FewBitsAndPalettesExpand) {
   for (int bits : {1, 2, 4}) {
     int most = (1 << bits) - 1;
-    Image image = decode(makePng(most + 1, 2, {PNG_COLOR_TYPE_GRAY, bits}, [](int x, int, int) { return uint16_t(x); }));
+    Image image = decode(makePng(most + 1, 2, {PNG_COLOR_TYPE_GRAY, bits},
+                                 [](int x, int, int) { return uint16_t(x); }));
     ASSERT_EQ(image.components, 1);
     for (int x = 0; x <= most; x++) EXPECT_EQ(pixel(image, x, 1, 0), 255 * x / most);
-    image = decode(makePng(most + 1, 2, {PNG_COLOR_TYPE_PALETTE, bits}, [](int x, int, int) { return uint16_t(x); }));
+    image = decode(makePng(most + 1, 2, {PNG_COLOR_TYPE_PALETTE, bits},
+                           [](int x, int, int) { return uint16_t(x); }));
     ASSERT_EQ(image.components, 3);
     for (int x = 0; x <= most; x++) EXPECT_EQ(pixel(image, x, 0, 1), 2 * x);
   }
-  Image image = decode(makePng(4, 1, {PNG_COLOR_TYPE_PALETTE, 8, false, {0, 128}}, [](int x, int, int) { return uint16_t(x); }));
+  Image image = decode(makePng(4, 1, {PNG_COLOR_TYPE_PALETTE, 8, false, {0, 128}},
+                               [](int x, int, int) { return uint16_t(x); }));
   ASSERT_EQ(image.components, 4);
   EXPECT_EQ(pixel(image, 0, 0, 3), 0);
   EXPECT_EQ(pixel(image, 1, 0, 3), 128);
   EXPECT_EQ(pixel(image, 2, 0, 3), 255);
-  image = decode(makePng(4, 1, {PNG_COLOR_TYPE_GRAY, 8, false, {}, 2}, [](int x, int, int) { return uint16_t(x); }));
+  image = decode(makePng(4, 1, {PNG_COLOR_TYPE_GRAY, 8, false, {}, 2},
+                         [](int x, int, int) { return uint16_t(x); }));
   ASSERT_EQ(image.components, 2);
   EXPECT_EQ(pixel(image, 2, 0, 1), 0);
   EXPECT_EQ(pixel(image, 3, 0, 1), 255);
@@ -94,13 +108,16 @@ TEST(ImageJpeg, GreyAndColour) {
       ASSERT_EQ(image.height, 17);
       for (int y = 0; y < 17; y++)
         for (int x = 0; x < 21; x++)
-          for (int c = 0; c < components; c++) EXPECT_NEAR(pixel(image, x, y, c), smooth(x, y, c), 5);
+          for (int c = 0; c < components; c++)
+            EXPECT_NEAR(pixel(image, x, y, c), smooth(x, y, c), 5);
     }
 }
 
 TEST(ImageJpeg, InksBecomeLight) {
   // As Adobe writes it: 255 is no ink. Light is paper less ink, less black.
-  Image image = decode(makeJpeg(16, 16, 4, false, [](int, int, int c) { return uint16_t(c == 0 ? 200 : c == 3 ? 128 : 255); }));
+  Image image = decode(makeJpeg(16, 16, 4, false, [](int, int, int c) {
+    return uint16_t(c == 0 ? 200 : c == 3 ? 128 : 255);
+  }));
   ASSERT_EQ(image.components, 3);
   EXPECT_NEAR(pixel(image, 8, 8, 0), 200 * 128 / 255, 3);
   EXPECT_NEAR(pixel(image, 8, 8, 1), 128, 3);
@@ -112,7 +129,8 @@ TEST(ImageGif, PaletteInterlacedAndPlain) {
   for (bool interlaced : {false, true})
     for (bool own : {false, true})
       for (auto [width, height] : {std::pair{11, 19}, {1, 1}, {3, 2}}) {
-        Image image = decode(makeGif(width, height, {{0, 0, 0, 0, interlaced, -1, own}}, paletteIndex));
+        Image image =
+            decode(makeGif(width, height, {{0, 0, 0, 0, interlaced, -1, own}}, paletteIndex));
         ASSERT_EQ(image.components, 3);
         ASSERT_EQ(image.width, width);
         ASSERT_EQ(image.height, height);
@@ -126,7 +144,8 @@ TEST(ImageGif, PaletteInterlacedAndPlain) {
 }
 
 TEST(ImageGif, TransparentColourAndFirstFrameOnly) {
-  Image image = decode(makeGif(8, 4, {{0, 0, 0, 0, false, 7}, {0, 0, 0, 0, false, 3}}, paletteIndex));
+  Image image =
+      decode(makeGif(8, 4, {{0, 0, 0, 0, false, 7}, {0, 0, 0, 0, false, 3}}, paletteIndex));
   ASSERT_EQ(image.components, 4);
   for (int x = 0; x < 8; x++) EXPECT_EQ(pixel(image, x, 0, 3), x == 7 ? 0 : 255);
   // A transparent colour that no pixel has makes no alpha.
@@ -146,13 +165,15 @@ TEST(ImageGif, FrameSmallerThanTheScreen) {
 
 std::vector<std::pair<const char*, Bytes>> samples() {
   return {{"PNG", makePng(9, 7, {PNG_COLOR_TYPE_RGB_ALPHA}, pattern)},
-          {"PNG", makePng(9, 7, {PNG_COLOR_TYPE_PALETTE, 4, true, {1, 2}}, [](int x, int, int) { return uint16_t(x & 15); })},
+          {"PNG", makePng(9, 7, {PNG_COLOR_TYPE_PALETTE, 4, true, {1, 2}},
+                          [](int x, int, int) { return uint16_t(x & 15); })},
           {"JPEG", makeJpeg(20, 20, 3, false, smooth)},
           {"JPEG", makeJpeg(20, 20, 1, true, smooth)},
           {"GIF", makeGif(12, 9, {{0, 0, 0, 0, true, 7}}, paletteIndex)}};
 }
 
-// Cut anywhere, a file gives the whole picture (only trailing marks are gone) or an exception with its format's name.
+// Cut anywhere, a file gives the whole picture (only trailing marks are gone) or an exception with
+// its format's name.
 TEST(ImageDamage, CutAtEveryByte) {
   for (auto& [format, bytes] : samples()) {
     Image whole = decode(bytes);
@@ -163,7 +184,9 @@ TEST(ImageDamage, CutAtEveryByte) {
         EXPECT_EQ(decode(cut), whole) << format << " of " << size << " bytes";
       } catch (const std::runtime_error& error) {
         refused++;
-        if (size >= 8) { EXPECT_NE(std::string(error.what()).find(format), std::string::npos) << error.what(); }
+        if (size >= 8) {
+          EXPECT_NE(std::string(error.what()).find(format), std::string::npos) << error.what();
+        }
       }
     }
     EXPECT_GT(refused + 20, bytes.size()) << format;
@@ -177,10 +200,12 @@ TEST(ImageDamage, AnyByteChanged) {
   for (auto& [format, bytes] : samples())
     for (int round = 0; round < 1500; round++) {
       Bytes changed = bytes;
-      for (unsigned n = 1 + random() % 3; n; n--) changed[random() % changed.size()] = uint8_t(random());
+      for (unsigned n = 1 + random() % 3; n; n--)
+        changed[random() % changed.size()] = uint8_t(random());
       try {
         Image image = decode(changed, small);
-        EXPECT_EQ(image.pixels.size(), size_t(image.width) * size_t(image.height) * size_t(image.components));
+        EXPECT_EQ(image.pixels.size(),
+                  size_t(image.width) * size_t(image.height) * size_t(image.components));
         EXPECT_TRUE(image.components >= 1 && image.components <= 4);
       } catch (const std::runtime_error& error) { EXPECT_STRNE(error.what(), ""); }
     }
@@ -205,7 +230,8 @@ TEST(ImageDamage, PixelLimitIsCheckedFirst) {
   EXPECT_NE(refusal(gif).find("imagePixels"), std::string::npos);
 }
 
-// A file of less than 100 bytes that promises a large picture. The sum over the chunk is left out: the decoder reads it later.
+// A file of less than 100 bytes that promises a large picture. The sum over the chunk is left out:
+// the decoder reads it later.
 Bytes pngHeader(uint32_t width, uint32_t height, uint8_t depth, uint8_t type) {
   Bytes bytes = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
   const auto chunk = [&](const char* name, const Bytes& content) {
@@ -243,7 +269,8 @@ TEST(ImageDamage, HeadersCostNoMemory) {
   std::vector<Bytes> files;
   for (const uint32_t width : {0x7fffffffu, 1u << 28, 65536u, 16384u})
     for (const uint32_t height : {1u, 16384u})
-      for (const uint8_t type : {uint8_t(0), uint8_t(2), uint8_t(6)}) files.push_back(pngHeader(width, height, 16, type));
+      for (const uint8_t type : {uint8_t(0), uint8_t(2), uint8_t(6)})
+        files.push_back(pngHeader(width, height, 16, type));
   Bytes jpeg = makeJpeg(16, 16, 3, true, smooth); // progressive: all coefficients are in memory
   for (size_t i = 0; i + 8 < jpeg.size(); i++)
     if (jpeg[i] == 0xff && jpeg[i + 1] == 0xc2) {
@@ -257,12 +284,14 @@ TEST(ImageDamage, HeadersCostNoMemory) {
   for (size_t i = 0; i < files.size(); i++) {
     const long before = mostMemory();
     EXPECT_NE(refusal(files[i]), "") << i;
-    EXPECT_LT(mostMemory() - before, 32 << 10) << "kB more for file " << i << " of " << files[i].size() << " bytes";
+    EXPECT_LT(mostMemory() - before, 32 << 10)
+        << "kB more for file " << i << " of " << files[i].size() << " bytes";
   }
 }
 
 TEST(ImageDamage, RoomIsCheckedFirst) {
-  const Bytes png = makePng(100, 100, {PNG_COLOR_TYPE_RGB}, pattern), jpeg = makeJpeg(100, 100, 3, true, smooth),
+  const Bytes png = makePng(100, 100, {PNG_COLOR_TYPE_RGB}, pattern),
+              jpeg = makeJpeg(100, 100, 3, true, smooth),
               gif = makeGif(100, 100, {{}}, paletteIndex);
   for (const Bytes* bytes : {&png, &jpeg, &gif}) {
     const auto with = [&](const ImageRoom& room) -> std::string {
@@ -272,7 +301,8 @@ TEST(ImageDamage, RoomIsCheckedFirst) {
       return "";
     };
     EXPECT_EQ(with({limits, 40'000}), "");
-    EXPECT_NE(with({limits, 29'999}).find("all pictures of a world"), std::string::npos) << with({limits, 29'999});
+    EXPECT_NE(with({limits, 29'999}).find("all pictures of a world"), std::string::npos)
+        << with({limits, 29'999});
     const Budget wide(1 << 20), narrow(29'999);
     EXPECT_EQ(with({limits, 40'000, &wide}), "");
     EXPECT_NE(with({limits, 40'000, &narrow}).find("worldBytes=29999"), std::string::npos);
@@ -282,14 +312,17 @@ TEST(ImageDamage, RoomIsCheckedFirst) {
 TEST(ImageDamage, OtherFilesAreNoPictures) {
   EXPECT_NE(refusal({}).find("empty"), std::string::npos);
   std::string world = "#VRML V2.0 utf8\nShape {}\n";
-  EXPECT_NE(refusal(Bytes(world.begin(), world.end())).find("not a PNG, JPEG or GIF"), std::string::npos);
+  EXPECT_NE(refusal(Bytes(world.begin(), world.end())).find("not a PNG, JPEG or GIF"),
+            std::string::npos);
   EXPECT_NE(refusal(Bytes(1000, 0)), "");
 }
 
 TEST(ImageFiles, ContentCountsNotTheName) {
-  auto path = std::filesystem::temp_directory_path() / ("xvrml_image_" + std::to_string(::getpid()) + ".gif");
+  auto path = std::filesystem::temp_directory_path() /
+              ("xvrml_image_" + std::to_string(::getpid()) + ".gif");
   Bytes bytes = makePng(5, 4, {PNG_COLOR_TYPE_RGB}, pattern);
-  std::ofstream(path, std::ios::binary).write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
+  std::ofstream(path, std::ios::binary)
+      .write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
   expectPattern(readImage(path.string(), limits), 5, 4, 3);
   Limits small;
   small.fileBytes = 10;
@@ -298,13 +331,17 @@ TEST(ImageFiles, ContentCountsNotTheName) {
   try {
     readImage(path.string(), limits);
     ADD_FAILURE() << "the file is gone";
-  } catch (const std::runtime_error& error) { EXPECT_STREQ(error.what(), "No such file or directory"); }
-  EXPECT_THROW(readImage(std::filesystem::temp_directory_path().string(), limits), std::runtime_error);
+  } catch (const std::runtime_error& error) {
+    EXPECT_STREQ(error.what(), "No such file or directory");
+  }
+  EXPECT_THROW(readImage(std::filesystem::temp_directory_path().string(), limits),
+               std::runtime_error);
   EXPECT_THROW(readImage("/dev/null", limits), std::runtime_error);
 }
 
 TEST(ImageFiles, APipeDoesNotWait) {
-  const auto path = std::filesystem::temp_directory_path() / ("xvrml_pipe_" + std::to_string(::getpid()) + ".png");
+  const auto path = std::filesystem::temp_directory_path() /
+                    ("xvrml_pipe_" + std::to_string(::getpid()) + ".png");
   ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
   try {
     readImage(path.string(), limits);

@@ -1,4 +1,5 @@
-// xvrml_image_files.cpp: writes the pictures that the image tests read, with the libraries' own encoders.
+// xvrml_image_files.cpp: writes the pictures that the image tests read, with the libraries' own
+// encoders.
 #include <gif_lib.h>
 #include <png.h>
 
@@ -37,12 +38,15 @@ Bytes makePng(int width, int height, const PngKind& kind, const Sample& sample) 
   png_infop info = png_create_info_struct(png);
   png_set_write_fn(png, &out, appendPng, nullptr);
   png_set_IHDR(png, info, png_uint_32(width), png_uint_32(height), kind.bitDepth, kind.colorType,
-               kind.interlaced ? PNG_INTERLACE_ADAM7 : PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+               kind.interlaced ? PNG_INTERLACE_ADAM7 : PNG_INTERLACE_NONE,
+               PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
   if (kind.colorType == PNG_COLOR_TYPE_PALETTE) {
     std::vector<png_color> palette(size_t(1) << kind.bitDepth);
-    for (size_t i = 0; i < palette.size(); i++) palette[i] = {png_byte(i), png_byte(2 * i), png_byte(3 * i)};
+    for (size_t i = 0; i < palette.size(); i++)
+      palette[i] = {png_byte(i), png_byte(2 * i), png_byte(3 * i)};
     png_set_PLTE(png, info, palette.data(), int(palette.size()));
-    if (!kind.paletteAlpha.empty()) png_set_tRNS(png, info, kind.paletteAlpha.data(), int(kind.paletteAlpha.size()), nullptr);
+    if (!kind.paletteAlpha.empty())
+      png_set_tRNS(png, info, kind.paletteAlpha.data(), int(kind.paletteAlpha.size()), nullptr);
   }
   if (kind.transparentGrey >= 0) {
     png_color_16 grey{};
@@ -89,7 +93,8 @@ Bytes makeJpeg(int width, int height, int components, bool progressive, const Sa
   std::vector<JSAMPLE> row(size_t(width) * size_t(components));
   for (int y = 0; y < height; y++) {
     for (int x = 0; x < width; x++)
-      for (int c = 0; c < components; c++) row[size_t(x * components + c)] = JSAMPLE(sample(x, y, c));
+      for (int c = 0; c < components; c++)
+        row[size_t(x * components + c)] = JSAMPLE(sample(x, y, c));
     JSAMPROW pointer = row.data();
     jpeg_write_scanlines(&jpeg, &pointer, 1);
   }
@@ -107,7 +112,8 @@ Bytes makeGif(int width, int height, const std::vector<GifFrame>& frames, const 
   require(gif);
   EGifSetGifVersion(gif, true);
   ColorMapObject* map = GifMakeMapObject(64, nullptr);
-  for (int i = 0; i < 64; i++) map->Colors[i] = {GifByteType(i), GifByteType(2 * i), GifByteType(3 * i)};
+  for (int i = 0; i < 64; i++)
+    map->Colors[i] = {GifByteType(i), GifByteType(2 * i), GifByteType(3 * i)};
   ColorMapObject* own = GifMakeMapObject(64, nullptr);
   for (int i = 0; i < 64; i++) own->Colors[i] = {GifByteType(255 - i), 0, 0};
   require(EGifPutScreenDesc(gif, width, height, 8, 0, map) == GIF_OK);
@@ -119,7 +125,8 @@ Bytes makeGif(int width, int height, const std::vector<GifFrame>& frames, const 
       EGifGCBToExtension(&control, block);
       require(EGifPutExtension(gif, GRAPHICS_EXT_FUNC_CODE, 4, block) == GIF_OK);
     }
-    require(EGifPutImageDesc(gif, frame.left, frame.top, w, h, frame.interlaced, frame.ownPalette ? own : nullptr) == GIF_OK);
+    require(EGifPutImageDesc(gif, frame.left, frame.top, w, h, frame.interlaced,
+                             frame.ownPalette ? own : nullptr) == GIF_OK);
     auto put = [&](int y) {
       std::vector<GifPixelType> row;
       for (int x = 0; x < w; x++) row.push_back(GifPixelType(sample(x, y, 0)));
@@ -127,7 +134,9 @@ Bytes makeGif(int width, int height, const std::vector<GifFrame>& frames, const 
     };
     static constexpr int starts[] = {0, 4, 2, 1}, steps[] = {8, 8, 4, 2};
     for (int pass = 0; pass < (frame.interlaced ? 4 : 1); pass++)
-      for (int y = frame.interlaced ? starts[pass] : 0; y < h; y += frame.interlaced ? steps[pass] : 1) put(y);
+      for (int y = frame.interlaced ? starts[pass] : 0; y < h;
+           y += frame.interlaced ? steps[pass] : 1)
+        put(y);
   }
   EGifCloseFile(gif, &error);
   GifFreeMapObject(map);

@@ -86,7 +86,8 @@ TEST(Matrix, TextureTransform) {
   expectNear(transformPoint(scaled, {-0.5, -0.5, 0}), {-0.5, -0.5, 0});
   expectNear(transformPoint(scaled, {1, 1, 0}), {2.5, 5.5, 0});
   const Matrix all = textureMatrix({0.25f, 0.75f}, float(pi / 2), {3, 2}, {0.5f, -1});
-  // By hand for (0.1, 0.2): T (0.6,-0.8), C (0.85,-0.05), R (0.05,0.85), S (0.15,1.7), -C (-0.1,0.95).
+  // By hand for (0.1, 0.2): T (0.6,-0.8), C (0.85,-0.05), R (0.05,0.85), S (0.15,1.7), -C
+  // (-0.1,0.95).
   expectNear(transformPoint(all, {0.1f, 0.2f, 0}), {-0.1, 0.95, 0}, 1e-6);
 }
 
@@ -96,7 +97,8 @@ TEST(Matrix, BillboardTurnsItsZAxisToTheViewerAboutTheAxis) {
   expectNear(transformDirection(m, {0, 1, 0}), {0, 1, 0});
   const Matrix skew = billboardMatrix({1, 1, 0}, {2, -3, 4}, {0, 1, 0});
   const Vector axis = Vector(1, 1, 0).normalized(), z = transformDirection(skew, {0, 0, 1});
-  EXPECT_NEAR(z.dot(axis.cross(Vector(2, -3, 4))), 0, 1e-12) << "z, axis and viewer lie in one plane";
+  EXPECT_NEAR(z.dot(axis.cross(Vector(2, -3, 4))), 0, 1e-12)
+      << "z, axis and viewer lie in one plane";
   EXPECT_GT(z.dot(Vector(2, -3, 4) - axis * axis.dot(Vector(2, -3, 4))), 0);
 }
 

@@ -1,4 +1,5 @@
-// What messages about values, statements of X3D and missing files say: the value, what was done with it, and why.
+// What messages about values, statements of X3D and missing files say: the value, what was done
+// with it, and why.
 #include <gtest/gtest.h>
 
 #include "xvrml/browser.h"
@@ -9,7 +10,8 @@ namespace {
 std::vector<std::string> messagesOf(const std::string& vrml) {
   std::vector<std::string> messages;
   const auto world = loadWorldFromMemory("#VRML V2.0 utf8\n" + vrml, "test.wrl");
-  for (const Diagnostic& d : world->diagnostics.list()) messages.push_back(d.text().substr(0, d.text().find('\n')));
+  for (const Diagnostic& d : world->diagnostics.list())
+    messages.push_back(d.text().substr(0, d.text().find('\n')));
   return messages;
 }
 using Messages = std::vector<std::string>;
@@ -22,11 +24,16 @@ float number(const std::string& vrml, std::string_view field) {
 
 TEST(Messages, AnglesMayBeRounded) {
   for (const char* angle : {"1.5708", "1.571", "1.57080", "1.570797"})
-    EXPECT_EQ(messagesOf(std::string("SpotLight { cutOffAngle ") + angle + " beamWidth " + angle + " }"), Messages{}) << angle;
-  EXPECT_EQ(messagesOf("Background { groundAngle [ 0.1 1.5708 ] groundColor [ 0 0 0 0 0 0 0 0 0 ] skyAngle 3.1416 "
+    EXPECT_EQ(
+        messagesOf(std::string("SpotLight { cutOffAngle ") + angle + " beamWidth " + angle + " }"),
+        Messages{})
+        << angle;
+  EXPECT_EQ(messagesOf("Background { groundAngle [ 0.1 1.5708 ] groundColor [ 0 0 0 0 0 0 0 0 0 ] "
+                       "skyAngle 3.1416 "
                        "skyColor [ 0 0 0 0 0 0 ] }"),
             Messages{});
-  EXPECT_EQ(messagesOf("CylinderSensor { diskAngle 1.5708 maxAngle 6.28319 minAngle -6.2832 }"), Messages{});
+  EXPECT_EQ(messagesOf("CylinderSensor { diskAngle 1.5708 maxAngle 6.28319 minAngle -6.2832 }"),
+            Messages{});
   EXPECT_EQ(messagesOf("Viewpoint { fieldOfView 3.14159 }"), Messages{});
   EXPECT_EQ(number("SpotLight { cutOffAngle 1.571 }", "cutOffAngle"), 1.5707964f);
   // The range is open at pi: the nearest number below it is meant, not the default.
@@ -37,26 +44,33 @@ TEST(Messages, AnglesMayBeRounded) {
 
 TEST(Messages, RangesNameTheValueAndWhatBecomesOfIt) {
   EXPECT_EQ(messagesOf("SpotLight { cutOffAngle 1.9 }"),
-            Messages{"test.wrl:2:13: warning: SpotLight.cutOffAngle: 1.9 is outside of its range (0,pi/2] and becomes "
+            Messages{"test.wrl:2:13: warning: SpotLight.cutOffAngle: 1.9 is outside of its range "
+                     "(0,pi/2] and becomes "
                      "1.5707964"});
   EXPECT_EQ(messagesOf("PointLight { intensity 3 }"),
-            Messages{"test.wrl:2:14: warning: PointLight.intensity: 3 is outside of its range [0,1] and becomes 1"});
+            Messages{"test.wrl:2:14: warning: PointLight.intensity: 3 is outside of its range "
+                     "[0,1] and becomes 1"});
   EXPECT_EQ(messagesOf("PointLight { intensity 1.0000001 }"), Messages{});
   const Messages colors = messagesOf("Background { skyColor [ 1 1 1, 2 0 0, 0 3 0 ] }");
   ASSERT_EQ(colors.size(), 1u);
-  EXPECT_EQ(colors[0], "test.wrl:2:14: warning: Background.skyColor[1]: 2 0 0 is outside of its range [0,1] and becomes 1 0 0, "
+  EXPECT_EQ(colors[0], "test.wrl:2:14: warning: Background.skyColor[1]: 2 0 0 is outside of its "
+                       "range [0,1] and becomes 1 0 0, "
                        "as do 1 further elements");
 }
 
 TEST(Messages, StatementsOfX3dAreNamed) {
-  EXPECT_EQ(messagesOf("PROFILE Interchange\nCOMPONENT Scripting : 1\nCOMPONENT Text:2\nMETA \"title\" \"a { b\"\nShape { }"),
-            (Messages{"test.wrl:2:1: warning: PROFILE is a statement of X3D, not of VRML97: it is left out",
-                      "test.wrl:3:1: warning: COMPONENT is a statement of X3D, not of VRML97: it is left out",
-                      "test.wrl:4:1: warning: COMPONENT is a statement of X3D, not of VRML97: it is left out",
-                      "test.wrl:5:1: warning: META is a statement of X3D, not of VRML97: it is left out"}));
-  const auto world = loadWorldFromMemory("#VRML V2.0 utf8\nMETA \"a\" \"b\"\nUNIT angle deg 0.0175\nGroup { }\nEXPORT A AS B\n"
-                                         "DEF D Group { }",
-                                         "test.wrl");
+  EXPECT_EQ(
+      messagesOf("PROFILE Interchange\nCOMPONENT Scripting : 1\nCOMPONENT Text:2\nMETA \"title\" "
+                 "\"a { b\"\nShape { }"),
+      (Messages{
+          "test.wrl:2:1: warning: PROFILE is a statement of X3D, not of VRML97: it is left out",
+          "test.wrl:3:1: warning: COMPONENT is a statement of X3D, not of VRML97: it is left out",
+          "test.wrl:4:1: warning: COMPONENT is a statement of X3D, not of VRML97: it is left out",
+          "test.wrl:5:1: warning: META is a statement of X3D, not of VRML97: it is left out"}));
+  const auto world = loadWorldFromMemory(
+      "#VRML V2.0 utf8\nMETA \"a\" \"b\"\nUNIT angle deg 0.0175\nGroup { }\nEXPORT A AS B\n"
+      "DEF D Group { }",
+      "test.wrl");
   EXPECT_EQ(world->scope.roots.size(), 2u);
   EXPECT_EQ(world->diagnostics.errors(), 2u);
   EXPECT_EQ(world->diagnostics.warnings(), 1u);
@@ -64,14 +78,16 @@ TEST(Messages, StatementsOfX3dAreNamed) {
 }
 
 TEST(Messages, MissingMediaSayWhy) {
-  Browser browser(loadWorldFromMemory("#VRML V2.0 utf8\nSound { source AudioClip { url \"no.wav\" } }\nShape { appearance "
-                                      "Appearance { texture MovieTexture { url \"no.mpg\" } } }",
-                                      "test.wrl"));
+  Browser browser(loadWorldFromMemory(
+      "#VRML V2.0 utf8\nSound { source AudioClip { url \"no.wav\" } }\nShape { appearance "
+      "Appearance { texture MovieTexture { url \"no.mpg\" } } }",
+      "test.wrl"));
   browser.tick(0);
   ASSERT_EQ(browser.world().diagnostics.list().size(), 2u);
   for (const Diagnostic& d : browser.world().diagnostics.list())
     EXPECT_NE(d.message.find("nothing to play: no."), std::string::npos) << d.message;
-  EXPECT_NE(browser.world().diagnostics.list()[0].message.find("No such file or directory"), std::string::npos);
+  EXPECT_NE(browser.world().diagnostics.list()[0].message.find("No such file or directory"),
+            std::string::npos);
 }
 
 } // namespace

@@ -1,4 +1,5 @@
-// Nodes in general: references, nodes described at run time, ranges, the registry, names of types, limits and messages.
+// Nodes in general: references, nodes described at run time, ranges, the registry, names of types,
+// limits and messages.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -49,9 +50,26 @@ TEST(DynamicNode, HoldsWhatItsTypeDeclares) {
   auto type = std::make_shared<NodeType>();
   type->name = "Thing";
   type->index = -1;
-  type->fields.push_back({"go", FieldType::SFBool, Access::eventIn, Change::none, 0, {}, {}, "", ""});
-  type->fields.push_back({"title", FieldType::SFString, Access::field, Change::none, 0, std::string("none"), {}, "", ""});
-  type->fields.push_back({"points", FieldType::MFVec3f, Access::exposedField, Change::none, 1, MFVec3f{{1, 2, 3}}, {}, "", ""});
+  type->fields.push_back(
+      {"go", FieldType::SFBool, Access::eventIn, Change::none, 0, {}, {}, "", ""});
+  type->fields.push_back({"title",
+                          FieldType::SFString,
+                          Access::field,
+                          Change::none,
+                          0,
+                          std::string("none"),
+                          {},
+                          "",
+                          ""});
+  type->fields.push_back({"points",
+                          FieldType::MFVec3f,
+                          Access::exposedField,
+                          Change::none,
+                          1,
+                          MFVec3f{{1, 2, 3}},
+                          {},
+                          "",
+                          ""});
   const NodeRef node(new DynamicNode(type));
   const FieldInfo &title = *type->find("title"), &points = *type->find("points");
   EXPECT_TRUE(node->get(title) == Value(std::string("none")));
@@ -95,7 +113,8 @@ TEST(Range, EveryNumberCounts) {
   const FieldInfo axis = ranged(FieldType::SFRotation, {-1, 1, false, false});
   EXPECT_TRUE(inRange(axis, SFRotation{0, 1, 0, 100}));
   EXPECT_FALSE(inRange(axis, SFRotation{0, 2, 0, 0}));
-  const FieldInfo index = ranged(FieldType::MFInt32, {-1, std::numeric_limits<double>::infinity(), false, true});
+  const FieldInfo index =
+      ranged(FieldType::MFInt32, {-1, std::numeric_limits<double>::infinity(), false, true});
   EXPECT_TRUE(inRange(index, MFInt32{-1, 0, std::numeric_limits<int32_t>::max()}));
   EXPECT_FALSE(inRange(index, MFInt32{-2}));
 }
@@ -108,7 +127,8 @@ TEST(Range, TheExceptionHoldsForAllNumbersOrNone) {
   EXPECT_FALSE(inRange(size, SFVec3f{0, 1, 1}));
 }
 
-// The float next to pi/2 is above it: whoever writes pi/2 as well as a float can is within (0,pi/2].
+// The float next to pi/2 is above it: whoever writes pi/2 as well as a float can is within
+// (0,pi/2].
 TEST(Range, EndsAreRoundedToFloat) {
   const FieldInfo& beam = *findNodeType("SpotLight")->find("beamWidth");
   EXPECT_TRUE(inRange(beam, 1.57079637f));
@@ -157,15 +177,20 @@ TEST(Limits, AreSetByName) {
 }
 
 TEST(Diagnostic, SaysWhereAndWhat) {
-  EXPECT_EQ((Diagnostic{Severity::error, "a.wrl", 3, 5, "wrong", ""}.text()), "a.wrl:3:5: error: wrong");
-  EXPECT_EQ((Diagnostic{Severity::warning, "a.wrl", 0, 0, "odd", ""}.text()), "a.wrl: warning: odd");
+  EXPECT_EQ((Diagnostic{Severity::error, "a.wrl", 3, 5, "wrong", ""}.text()),
+            "a.wrl:3:5: error: wrong");
+  EXPECT_EQ((Diagnostic{Severity::warning, "a.wrl", 0, 0, "odd", ""}.text()),
+            "a.wrl: warning: odd");
   EXPECT_EQ((Diagnostic{Severity::note, "", 0, 0, "so", ""}.text()), "note: so");
 }
 
 TEST(Diagnostic, TheCaretStandsBelowTheColumn) {
-  EXPECT_EQ((Diagnostic{Severity::error, "f", 1, 3, "m", "ab!"}.text()), "f:1:3: error: m\nab!\n  ^");
-  EXPECT_EQ((Diagnostic{Severity::error, "f", 1, 3, "m", "\t !"}.text()), "f:1:3: error: m\n\t !\n\t ^");
-  EXPECT_EQ((Diagnostic{Severity::error, "f", 1, 3, "m", "äö!"}.text()), "f:1:3: error: m\näö!\n  ^"); // columns are characters
+  EXPECT_EQ((Diagnostic{Severity::error, "f", 1, 3, "m", "ab!"}.text()),
+            "f:1:3: error: m\nab!\n  ^");
+  EXPECT_EQ((Diagnostic{Severity::error, "f", 1, 3, "m", "\t !"}.text()),
+            "f:1:3: error: m\n\t !\n\t ^");
+  EXPECT_EQ((Diagnostic{Severity::error, "f", 1, 3, "m", "äö!"}.text()),
+            "f:1:3: error: m\näö!\n  ^"); // columns are characters
 }
 
 // Errors and other messages have room of their own: the one cannot hide the other.

@@ -1,5 +1,6 @@
-// The generator, run as a program: what it writes from small specifications, and where and how it refuses bad ones. Expected
-// outputs are made by tests/nodegen/update.sh; a bad specification says in its first lines what is to be reported.
+// The generator, run as a program: what it writes from small specifications, and where and how it
+// refuses bad ones. Expected outputs are made by tests/nodegen/update.sh; a bad specification says
+// in its first lines what is to be reported.
 #include <gtest/gtest.h>
 
 #include <sys/wait.h>
@@ -29,7 +30,9 @@ std::string readFile(const fs::path& path) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-void writeFile(const fs::path& path, const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
+void writeFile(const fs::path& path, const std::string& text) {
+  std::ofstream(path, std::ios::binary) << text;
+}
 
 struct Result {
   int code = -1;
@@ -41,13 +44,16 @@ Result run(const std::string& command) {
   FILE* pipe = popen((command + " 2>&1").c_str(), "r");
   if (!pipe) return result;
   char buffer[4096];
-  for (size_t n = 0; (n = fread(buffer, 1, sizeof buffer, pipe)) > 0;) result.output.append(buffer, n);
+  for (size_t n = 0; (n = fread(buffer, 1, sizeof buffer, pipe)) > 0;)
+    result.output.append(buffer, n);
   const int status = pclose(pipe);
   result.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   return result;
 }
 
-Result nodegen(const std::string& arguments) { return run(fmt::format("'{}' {}", NODEGEN_PROGRAM, arguments)); }
+Result nodegen(const std::string& arguments) {
+  return run(fmt::format("'{}' {}", NODEGEN_PROGRAM, arguments));
+}
 
 // A folder of its own for each test, removed at its end.
 class Nodegen : public testing::Test {
@@ -60,41 +66,51 @@ class Nodegen : public testing::Test {
   void TearDown() override { fs::remove_all(out); }
 
   void expectGolden(const std::string& name, const std::vector<fs::path>& files) {
-    const Result result = nodegen(fmt::format("{0} --output {1} --reference {1}/nodes.md --stub {1}/nodes.pyi",
-                                              (folder / (name + ".node")).string(), out.string()));
+    const Result result =
+        nodegen(fmt::format("{0} --output {1} --reference {1}/nodes.md --stub {1}/nodes.pyi",
+                            (folder / (name + ".node")).string(), out.string()));
     EXPECT_EQ(result.code, 0) << result.output;
     EXPECT_EQ(result.output, "");
     for (const fs::path& file : files)
-      EXPECT_EQ(readFile(out / file), readFile(folder / "expected" / name / (file.filename().string() + ".expected"))) << file;
+      EXPECT_EQ(readFile(out / file),
+                readFile(folder / "expected" / name / (file.filename().string() + ".expected")))
+          << file;
   }
 
   fs::path out;
 };
 
 TEST_F(Nodegen, WritesEveryFieldType) {
-  expectGolden("tiny", {"xvrml/nodes.h", "nodes_tiny.cpp", "nodes_list.cpp", "nodes.md", "nodes.pyi"});
+  expectGolden("tiny",
+               {"xvrml/nodes.h", "nodes_tiny.cpp", "nodes_list.cpp", "nodes.md", "nodes.pyi"});
 }
 
 TEST_F(Nodegen, AbstractTypesDescribeTheFieldsOfTheirNodes) {
-  expectGolden("roles", {"xvrml/nodes.h", "nodes_roles.cpp", "nodes_list.cpp", "nodes.md", "nodes.pyi"});
+  expectGolden("roles",
+               {"xvrml/nodes.h", "nodes_roles.cpp", "nodes_list.cpp", "nodes.md", "nodes.pyi"});
 }
 
 TEST_F(Nodegen, WhatItWritesCompiles) {
-  ASSERT_EQ(nodegen(fmt::format("{0}/tiny.node -o {1} --skeleton Everything --skeleton-file {1}/skeleton.cpp", folder.string(),
-                                out.string()))
-                .code,
-            0);
+  ASSERT_EQ(
+      nodegen(
+          fmt::format("{0}/tiny.node -o {1} --skeleton Everything --skeleton-file {1}/skeleton.cpp",
+                      folder.string(), out.string()))
+          .code,
+      0);
   for (const char* file : {"nodes_tiny.cpp", "nodes_list.cpp", "skeleton.cpp"}) {
-    const Result result = run(fmt::format("'{0}' -std=c++20 -fsyntax-only -Wall -Wextra -Wno-missing-field-initializers -Werror "
-                                          "-I{1} -Ilibxvrml/include {1}/{2}",
-                                          NODEGEN_COMPILER, out.string(), file));
+    const Result result = run(fmt::format(
+        "'{0}' -std=c++20 -fsyntax-only -Wall -Wextra -Wno-missing-field-initializers -Werror "
+        "-I{1} -Ilibxvrml/include {1}/{2}",
+        NODEGEN_COMPILER, out.string(), file));
     EXPECT_EQ(result.code, 0) << result.output;
   }
 }
 
 TEST_F(Nodegen, ImportedFilesGiveAbstractTypesOnly) {
-  writeFile(out / "mine.node", "component \"Mine\"\nPyramid : geometry { \"A pyramid.\" field SFFloat height 2 # (0,inf)\n"
-                               "  change geometry \"Height.\" }\n");
+  writeFile(
+      out / "mine.node",
+      "component \"Mine\"\nPyramid : geometry { \"A pyramid.\" field SFFloat height 2 # (0,inf)\n"
+      "  change geometry \"Height.\" }\n");
   const std::string specification = (out / "mine.node").string();
   EXPECT_EQ(nodegen(specification).code, 4); // geometry is unknown
   std::string imports;
@@ -103,14 +119,17 @@ TEST_F(Nodegen, ImportedFilesGiveAbstractTypesOnly) {
   const Result result = nodegen(fmt::format("{} {} -o {}", imports, specification, out.string()));
   EXPECT_EQ(result.code, 0) << result.output;
   const std::string header = readFile(out / "xvrml/nodes.h");
-  EXPECT_NE(header.find("struct Pyramid : Node {\n  static constexpr int typeIndex = 0;"), std::string::npos) << header;
+  EXPECT_NE(header.find("struct Pyramid : Node {\n  static constexpr int typeIndex = 0;"),
+            std::string::npos)
+      << header;
   EXPECT_EQ(header.find("struct Box"), std::string::npos);
   EXPECT_FALSE(fs::exists(out / "nodes_geometry.cpp"));
 }
 
 TEST_F(Nodegen, ASkeletonIsWrittenOnce) {
   const std::string file = (out / "skeleton.cpp").string();
-  const std::string arguments = fmt::format("{}/tiny.node --skeleton Everything --skeleton-file {}", folder.string(), file);
+  const std::string arguments =
+      fmt::format("{}/tiny.node --skeleton Everything --skeleton-file {}", folder.string(), file);
   EXPECT_EQ(nodegen(arguments).code, 0);
   EXPECT_EQ(readFile(file), readFile(folder / "expected/tiny/skeleton.cpp.expected"));
   writeFile(file, "mine");
@@ -131,17 +150,23 @@ TEST_F(Nodegen, WrongUseAndMissingFilesHaveExitCodesOfTheirOwn) {
   EXPECT_NE(missing.output.find("cannot read"), std::string::npos) << missing.output;
   EXPECT_EQ(nodegen(out.string()).code, 3); // a folder
   writeFile(out / "file", "");
-  EXPECT_EQ(nodegen(fmt::format("{}/tiny.node -o {}/file/folder", folder.string(), out.string())).code, 5);
+  EXPECT_EQ(
+      nodegen(fmt::format("{}/tiny.node -o {}/file/folder", folder.string(), out.string())).code,
+      5);
 }
 
 TEST_F(Nodegen, NothingIsWrittenFromABadSpecification) {
-  EXPECT_EQ(nodegen(fmt::format("{}/bad/many-errors.node -o {}/code", folder.string(), out.string())).code, 4);
+  EXPECT_EQ(
+      nodegen(fmt::format("{}/bad/many-errors.node -o {}/code", folder.string(), out.string()))
+          .code,
+      4);
   EXPECT_FALSE(fs::exists(out / "code"));
 }
 
 std::vector<std::string> badSpecifications() {
   std::vector<std::string> names;
-  for (const auto& entry : fs::directory_iterator(fs::path(BAD_SPECIFICATIONS))) names.push_back(entry.path().stem().string());
+  for (const auto& entry : fs::directory_iterator(fs::path(BAD_SPECIFICATIONS)))
+    names.push_back(entry.path().stem().string());
   std::sort(names.begin(), names.end());
   return names;
 }
@@ -155,7 +180,8 @@ TEST_P(BadSpecification, IsRefusedAtItsLine) {
   std::string expected, reported;
   for (std::string line; std::getline(specification, line);)
     if (line.starts_with("# expect ")) expected += file + ':' + line.substr(9) + '\n';
-  const Result result = run(fmt::format("cd {}/bad && '{}' {}", folder.string(), NODEGEN_PROGRAM, file));
+  const Result result =
+      run(fmt::format("cd {}/bad && '{}' {}", folder.string(), NODEGEN_PROGRAM, file));
   std::istringstream output(result.output);
   for (std::string line; std::getline(output, line);)
     if (line.find(": error: ") != std::string::npos) reported += line + '\n';
@@ -169,6 +195,7 @@ std::string caseName(const testing::TestParamInfo<std::string>& info) {
   std::replace(name.begin(), name.end(), '-', '_');
   return name;
 }
-INSTANTIATE_TEST_SUITE_P(Nodegen, BadSpecification, testing::ValuesIn(badSpecifications()), caseName);
+INSTANTIATE_TEST_SUITE_P(Nodegen, BadSpecification, testing::ValuesIn(badSpecifications()),
+                         caseName);
 
 } // namespace

@@ -1,4 +1,5 @@
-// The 54 nodes of ISO/IEC 14772-1:1997 clause 6 and the two of OpenRT, against lists typed from the standard.
+// The 54 nodes of ISO/IEC 14772-1:1997 clause 6 and the two of OpenRT, against lists typed from the
+// standard.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -86,7 +87,9 @@ int count(const NodeType& type, Access access) {
   return number;
 }
 
-bool stored(const FieldInfo& field) { return field.access == Access::field || field.access == Access::exposedField; }
+bool stored(const FieldInfo& field) {
+  return field.access == Access::field || field.access == Access::exposedField;
+}
 
 TEST(Nodes, InterfacesAreThoseOfTheStandard) {
   EXPECT_EQ(nodeTypes().size(), std::size(interfaces));
@@ -218,7 +221,8 @@ TEST(Nodes, DefaultsAreThoseOfTheStandard) {
       {"ORTShader", "options", MFString{}},
   };
   for (const Default& expected : defaults)
-    EXPECT_TRUE(defaultOf(expected.node, expected.field) == expected.value) << expected.node << '.' << expected.field;
+    EXPECT_TRUE(defaultOf(expected.node, expected.field) == expected.value)
+        << expected.node << '.' << expected.field;
 }
 
 TEST(Nodes, DefaultsAreInRangeAndInNewNodes) {
@@ -235,13 +239,17 @@ TEST(Nodes, DefaultsAreInRangeAndInNewNodes) {
   }
 }
 
-const FieldRange& rangeOf(const char* node, const char* field) { return findNodeType(node)->find(field)->range; }
+const FieldRange& rangeOf(const char* node, const char* field) {
+  return findNodeType(node)->find(field)->range;
+}
 
 TEST(Nodes, RangesAreThoseOfTheStandard) {
   const FieldRange& size = rangeOf("Box", "size"); // (0,inf)
-  EXPECT_TRUE(size.minimum == 0 && size.minimumOpen && std::isinf(size.maximum) && size.maximumOpen);
+  EXPECT_TRUE(size.minimum == 0 && size.minimumOpen && std::isinf(size.maximum) &&
+              size.maximumOpen);
   const FieldRange& colour = rangeOf("Material", "diffuseColor"); // [0,1]
-  EXPECT_TRUE(colour.minimum == 0 && !colour.minimumOpen && colour.maximum == 1 && !colour.maximumOpen);
+  EXPECT_TRUE(colour.minimum == 0 && !colour.minimumOpen && colour.maximum == 1 &&
+              !colour.maximumOpen);
   const FieldRange& angle = rangeOf("SpotLight", "cutOffAngle"); // (0,pi/2]
   EXPECT_TRUE(angle.minimum == 0 && angle.minimumOpen && !angle.maximumOpen);
   EXPECT_DOUBLE_EQ(angle.maximum, 1.5707963267948966);
@@ -258,7 +266,8 @@ TEST(Nodes, RolesAreThoseOfTheStandard) {
   std::map<std::string, int> roles;
   for (const NodeType* type : nodeTypes())
     for (const std::string& role : type->abstract) ++roles[role];
-  EXPECT_EQ(roles["child"], 32 + 5); // 4.6.5; ORTStatic, ORTInstance, ORTLight, ORTViewpoint, ORTBackground
+  EXPECT_EQ(roles["child"],
+            32 + 5); // 4.6.5; ORTStatic, ORTInstance, ORTLight, ORTViewpoint, ORTBackground
   EXPECT_EQ(roles["grouping"], 8 + 2);
   EXPECT_EQ(roles["geometry"], 10);
   EXPECT_EQ(roles["texture"], 3);
@@ -283,8 +292,12 @@ struct Maker {
   void operator()(SFImage& v) const { v = {2, 1, 1, {uint8_t(seed), 7}}; }
   void operator()(SFInt32& v) const { v = 1000 + seed; }
   void operator()(SFNode& v) const { v = NodeRef(new nodes::Group); }
-  void operator()(SFRotation& v) const { v = {std::cos(float(seed)), 0, std::sin(float(seed)), number(3)}; } // length 1
-  void operator()(SFString& v) const { v = "a string too long for a short one " + std::to_string(seed); }
+  void operator()(SFRotation& v) const {
+    v = {std::cos(float(seed)), 0, std::sin(float(seed)), number(3)};
+  } // length 1
+  void operator()(SFString& v) const {
+    v = "a string too long for a short one " + std::to_string(seed);
+  }
   void operator()(SFTime& v) const { v = 1e9 + seed; }
   void operator()(SFVec2f& v) const { v = {number(), number(1)}; }
   void operator()(SFVec3f& v) const { v = {number(), number(1), number(2)}; }
@@ -345,7 +358,8 @@ TEST(Nodes, StorageDoesNotOverlap) {
 TEST(Nodes, StructsAndTablesSpeakOfTheSameFields) {
   nodes::Material material;
   material.diffuseColor = {0.1f, 0.2f, 0.3f};
-  EXPECT_TRUE(material.get(*material.type().find("diffuseColor")) == Value(SFColor{0.1f, 0.2f, 0.3f}));
+  EXPECT_TRUE(material.get(*material.type().find("diffuseColor")) ==
+              Value(SFColor{0.1f, 0.2f, 0.3f}));
   nodes::NavigationInfo navigation; // its field `type` hides Node::type()
   EXPECT_EQ(static_cast<Node&>(navigation).type().name, "NavigationInfo");
   EXPECT_EQ(nodeCast<nodes::Material>(&material), &material);
@@ -371,7 +385,8 @@ TEST(Nodes, EventsAreFoundUnderAllTheirNames) {
   EXPECT_EQ(interpolator.findEventOut("value"), interpolator.find("value_changed"));
   const NodeType& faces = *findNodeType("IndexedFaceSet");
   EXPECT_EQ(faces.findEventIn("set_coordIndex"), faces.find("set_coordIndex"));
-  EXPECT_EQ(faces.findEventIn("coordIndex"), faces.find("set_coordIndex")); // not the field of that name
+  EXPECT_EQ(faces.findEventIn("coordIndex"),
+            faces.find("set_coordIndex")); // not the field of that name
 }
 
 } // namespace

@@ -1,5 +1,5 @@
-// xvrml_parser_limits.cpp: every limit of reading ends what it bounds with a message that names it, can be raised, and hostile
-// worlds are refused before they cost anything.
+// xvrml_parser_limits.cpp: every limit of reading ends what it bounds with a message that names it,
+// can be raised, and hostile worlds are refused before they cost anything.
 #include <fmt/format.h>
 
 #include "parse/parser.h"
@@ -16,7 +16,9 @@ std::string repeated(const std::string& text, size_t count) {
   return all;
 }
 
-std::string nested(size_t depth) { return repeated("Group { children ", depth - 1) + "Group { } " + std::string(depth - 1, '}'); }
+std::string nested(size_t depth) {
+  return repeated("Group { children ", depth - 1) + "Group { } " + std::string(depth - 1, '}');
+}
 
 TEST(ParserLimits, Nesting) {
   const auto allowed = parse(nested(1000));
@@ -38,8 +40,8 @@ TEST(ParserLimits, NestingRaisedAsFarAsTheStackBears) {
 }
 
 TEST(ParserLimits, AMillionBraces) {
-  for (const char* opening : {"Group { children ", "Group { children [ ", "Bax { ", "{ ", "[ ", "PROTO P [ ] { ",
-                              "PROTO P [ field SFNode n Group { children "}) {
+  for (const char* opening : {"Group { children ", "Group { children [ ", "Bax { ", "{ ", "[ ",
+                              "PROTO P [ ] { ", "PROTO P [ field SFNode n Group { children "}) {
     const auto world = parse(repeated(opening, 1'000'000));
     EXPECT_GT(world->diagnostics.errors(), 0u) << opening;
   }
@@ -47,7 +49,8 @@ TEST(ParserLimits, AMillionBraces) {
 
 TEST(ParserLimits, ExpandedNodesByUse) {
   std::string text = "DEF L0 Group { }\n";
-  for (int i = 1; i <= 30; ++i) text += fmt::format("DEF L{} Group {{ children [ USE L{} USE L{} ] }}\n", i, i - 1, i - 1);
+  for (int i = 1; i <= 30; ++i)
+    text += fmt::format("DEF L{} Group {{ children [ USE L{} USE L{} ] }}\n", i, i - 1, i - 1);
   const auto world = parse(text);
   EXPECT_TRUE(says(*world, "limit expandedNodes=10000000")) << messages(*world);
   EXPECT_LT(world->nodeCount, 100u);
@@ -56,7 +59,8 @@ TEST(ParserLimits, ExpandedNodesByUse) {
 TEST(ParserLimits, ExpandedNodesByPrototypes) {
   std::string text = "PROTO P0 [ ] { Group { } }\n";
   for (int i = 1; i <= 40; ++i)
-    text += fmt::format("PROTO P{} [ ] {{ Group {{ children [ P{} {{ }} P{} {{ }} ] }} }}\n", i, i - 1, i - 1);
+    text += fmt::format("PROTO P{} [ ] {{ Group {{ children [ P{} {{ }} P{} {{ }} ] }} }}\n", i,
+                        i - 1, i - 1);
   const auto world = parse(text + "P40 { } Shape { }");
   EXPECT_TRUE(says(*world, "limit expandedNodes")) << messages(*world);
   EXPECT_LT(world->nodeCount, 1000u);
@@ -70,8 +74,9 @@ TEST(ParserLimits, ExpandedNodesByPrototypes) {
 TEST(ParserLimits, ExpandedNodesByDefaultsOfPrototypes) {
   std::string text = "PROTO P0 [ ] { Group { } }\n";
   for (int i = 1; i <= 40; ++i) {
-    text +=
-        fmt::format("PROTO P{} [ field MFNode c [ P{} {{ }} P{} {{ }} ] ] {{ Group {{ children IS c }} }}\n", i, i - 1, i - 1);
+    text += fmt::format(
+        "PROTO P{} [ field MFNode c [ P{} {{ }} P{} {{ }} ] ] {{ Group {{ children IS c }} }}\n", i,
+        i - 1, i - 1);
   }
   const auto world = parse(text + "P40 { }");
   EXPECT_TRUE(says(*world, "limit expandedNodes")) << messages(*world);
@@ -80,8 +85,8 @@ TEST(ParserLimits, ExpandedNodesByDefaultsOfPrototypes) {
 
 // Fields doubled from one prototype to the next: the values are shared, their uses are counted.
 TEST(ParserLimits, ExpandedNodesByValuesOfPrototypes) {
-  std::string text =
-      "PROTO P [ field MFNode c [ ] ] { Group { children [ Group { children IS c } Group { children IS c } ] } }\n";
+  std::string text = "PROTO P [ field MFNode c [ ] ] { Group { children [ Group { children IS c } "
+                     "Group { children IS c } ] } }\n";
   text += repeated("P { c ", 30) + "Shape { } " + std::string(30, '}');
   const auto world = parse(text);
   EXPECT_TRUE(says(*world, "limit expandedNodes")) << messages(*world);
@@ -99,7 +104,8 @@ TEST(ParserLimits, ExpandedNodesOfAFlatFile) {
 TEST(ParserLimits, ProtoDepth) {
   const auto chain = [](int depth) {
     std::string text = "PROTO P0 [ ] { Group { } }\n";
-    for (int i = 1; i < depth; ++i) text += fmt::format("PROTO P{} [ ] {{ P{} {{ }} }}\n", i, i - 1);
+    for (int i = 1; i < depth; ++i)
+      text += fmt::format("PROTO P{} [ ] {{ P{} {{ }} }}\n", i, i - 1);
     return text + fmt::format("P{} {{ }}", depth - 1);
   };
   EXPECT_EQ(messages(*parse(chain(64))), "");
@@ -113,8 +119,8 @@ TEST(ParserLimits, ProtoDepth) {
 TEST(ParserLimits, DepthThroughPrototypes) {
   std::string text = "PROTO P0 [ ] { Group { } }\n";
   for (int i = 1; i < 10; ++i) {
-    text +=
-        fmt::format("PROTO P{} [ ] {{ {}P{} {{ }}{} }}\n", i, repeated("Group { children ", 500), i - 1, std::string(500, '}'));
+    text += fmt::format("PROTO P{} [ ] {{ {}P{} {{ }}{} }}\n", i,
+                        repeated("Group { children ", 500), i - 1, std::string(500, '}'));
   }
   const auto world = parse(text + "P9 { } Shape { }");
   EXPECT_TRUE(says(*world, "nested")) << messages(*world);
@@ -123,8 +129,11 @@ TEST(ParserLimits, DepthThroughPrototypes) {
 
 TEST(ParserLimits, PrototypesThatContainThemselvesThroughFiles) {
   const Folder folder;
-  folder.write("a.wrl", header + "PROTO A [ ] { EXTERNPROTO B [ ] \"b.wrl#B\" Group { children B { } } }\nA { }\n");
-  folder.write("b.wrl", header + "PROTO B [ ] { EXTERNPROTO A [ ] \"a.wrl#A\" Group { children A { } } }\n");
+  folder.write(
+      "a.wrl",
+      header + "PROTO A [ ] { EXTERNPROTO B [ ] \"b.wrl#B\" Group { children B { } } }\nA { }\n");
+  folder.write("b.wrl",
+               header + "PROTO B [ ] { EXTERNPROTO A [ ] \"a.wrl#A\" Group { children A { } } }\n");
   const auto world = loadWorld(folder.path("a.wrl"));
   EXPECT_TRUE(says(*world, "contains an instance of itself")) << messages(*world);
   folder.write("c.wrl", header + "EXTERNPROTO C [ ] \"d.wrl#C\"\nC { }\n");
@@ -147,7 +156,8 @@ TEST(ParserLimits, InlineOfItself) {
 TEST(ParserLimits, InlineDepth) {
   const Folder folder;
   for (int i = 0; i < 40; ++i)
-    folder.write(fmt::format("{}.wrl", i), header + fmt::format("Inline {{ url \"{}.wrl\" }}\n", i + 1));
+    folder.write(fmt::format("{}.wrl", i),
+                 header + fmt::format("Inline {{ url \"{}.wrl\" }}\n", i + 1));
   folder.write("40.wrl", header + "Shape { }\n");
   EXPECT_TRUE(says(*loadWorld(folder.path("0.wrl")), "limit inlineDepth=32"));
   LoadOptions options;
@@ -159,9 +169,13 @@ TEST(ParserLimits, InlineDoubling) {
   const Folder folder;
   for (int i = 0; i < 30; ++i) {
     folder.write(fmt::format("{}.wrl", i),
-                 header + fmt::format("Inline {{ url \"{}.wrl\" }} Inline {{ url \"{}.wrl\" }}\n", i + 1, i + 1));
+                 header + fmt::format("Inline {{ url \"{}.wrl\" }} Inline {{ url \"{}.wrl\" }}\n",
+                                      i + 1, i + 1));
   }
-  folder.write("30.wrl", header + "DEF T Transform { } ROUTE T.translation TO T.scale\n"); // each Inline wants its own copy
+  folder.write(
+      "30.wrl",
+      header +
+          "DEF T Transform { } ROUTE T.translation TO T.scale\n"); // each Inline wants its own copy
   const auto world = loadWorld(folder.path("0.wrl"));
   EXPECT_TRUE(says(*world, "limit expandedNodes")) << messages(*world);
 }
@@ -169,10 +183,17 @@ TEST(ParserLimits, InlineDoubling) {
 TEST(ParserLimits, ArrayElements) {
   LoadOptions options;
   options.limits.arrayElements = 9;
-  EXPECT_EQ(messages(*parse("Shape { geometry PointSet { coord Coordinate { point [ 1 2 3 4 5 6 7 8 9 ] } } }", options)), "");
-  EXPECT_TRUE(says(*parse("Shape { geometry PointSet { coord Coordinate { point [ 1 2 3 4 5 6 7 8 9 1 2 3 ] } } }", options),
+  EXPECT_EQ(messages(*parse(
+                "Shape { geometry PointSet { coord Coordinate { point [ 1 2 3 4 5 6 7 8 9 ] } } }",
+                options)),
+            "");
+  EXPECT_TRUE(says(
+      *parse(
+          "Shape { geometry PointSet { coord Coordinate { point [ 1 2 3 4 5 6 7 8 9 1 2 3 ] } } }",
+          options),
+      "limit arrayElements=9"));
+  EXPECT_TRUE(says(*parse("WorldInfo { info [" + repeated("\"\"", 10) + "] }", options),
                    "limit arrayElements=9"));
-  EXPECT_TRUE(says(*parse("WorldInfo { info [" + repeated("\"\"", 10) + "] }", options), "limit arrayElements=9"));
 }
 
 TEST(ParserLimits, InterfaceFields) {
@@ -181,7 +202,8 @@ TEST(ParserLimits, InterfaceFields) {
   LoadOptions options;
   options.limits.interfaceFields = 10;
   EXPECT_TRUE(says(*parse("Script { " + fields + "}", options), "limit interfaceFields=10"));
-  EXPECT_TRUE(says(*parse("PROTO P [ " + fields + "] { Group { } }", options), "limit interfaceFields=10"));
+  EXPECT_TRUE(
+      says(*parse("PROTO P [ " + fields + "] { Group { } }", options), "limit interfaceFields=10"));
 }
 
 std::string refusal(const std::string& path, const LoadOptions& options) {
@@ -214,8 +236,10 @@ TEST(ParserLimits, FileBytes) {
 TEST(ParserLimits, ManyOfEverything) {
   std::string text;
   for (int i = 0; i < 20'000; ++i)
-    text += fmt::format("DEF N{} Transform {{ }} PROTO Q{} [ ] {{ Group {{ }} }} Q{} {{ }}\n", i, i, i);
-  for (int i = 0; i < 20'000; ++i) text += fmt::format("ROUTE N{}.translation TO N{}.scale\n", i, 19'999 - i);
+    text +=
+        fmt::format("DEF N{} Transform {{ }} PROTO Q{} [ ] {{ Group {{ }} }} Q{} {{ }}\n", i, i, i);
+  for (int i = 0; i < 20'000; ++i)
+    text += fmt::format("ROUTE N{}.translation TO N{}.scale\n", i, 19'999 - i);
   text += "Transform { " + repeated("translation 0 0 0 ", 20'000) + "}";
   const auto world = parse(text);
   EXPECT_EQ(world->diagnostics.errors(), 0u);

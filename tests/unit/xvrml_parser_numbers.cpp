@@ -1,5 +1,5 @@
-// xvrml_parser_numbers.cpp: numbers and strings: every spelling, correct rounding, what is refused, and that what the writer
-// writes reads back equal bit for bit.
+// xvrml_parser_numbers.cpp: numbers and strings: every spelling, correct rounding, what is refused,
+// and that what the writer writes reads back equal bit for bit.
 #include <bit>
 #include <charconv>
 #include <cmath>
@@ -7,8 +7,8 @@
 
 #include "base/number.h"
 #include "base/value_parser.h"
-#include "write/value_writer.h"
 #include "unit/xvrml_parser_support.h"
+#include "write/value_writer.h"
 
 namespace {
 
@@ -55,18 +55,22 @@ TEST(ParserNumbers, EverySpellingOfAFloat) {
       {"0.00000000000000000000000000000000000000000000140129846e0", 1.40129846e-45f}};
   for (const auto& [text, expected] : spellings) {
     // At the end of the text and well before it: two ways through the reader.
-    for (const std::string& tail : {std::string(), std::string("                                ")}) {
+    for (const std::string& tail :
+         {std::string(), std::string("                                ")}) {
       const Parsed parsed = parseValue(FieldType::SFFloat, text + tail);
       ASSERT_TRUE(parsed.good) << text << parsed.message;
-      EXPECT_EQ(std::bit_cast<uint32_t>(std::get<float>(parsed.value)), std::bit_cast<uint32_t>(expected)) << text;
+      EXPECT_EQ(std::bit_cast<uint32_t>(std::get<float>(parsed.value)),
+                std::bit_cast<uint32_t>(expected))
+          << text;
     }
   }
 }
 
 TEST(ParserNumbers, WhatIsNoFloatIsRefused) {
   for (const char* text :
-       {"nan", "NaN", "inf", "-inf", "+nan",  "infinity", "1e400", "-1e39", "1.0f", "0x10",         "1e", "1e+",
-        "--1", "+-1", ".",   "-",    "1_000", "1.2.3",    "TRUE",  "\"1\"", "",     "3.4028236e38", "{",  "]"}) {
+       {"nan",   "NaN",   "inf",  "-inf",  "+nan", "infinity",     "1e400", "-1e39",
+        "1.0f",  "0x10",  "1e",   "1e+",   "--1",  "+-1",          ".",     "-",
+        "1_000", "1.2.3", "TRUE", "\"1\"", "",     "3.4028236e38", "{",     "]"}) {
     const Parsed parsed = parseValue(FieldType::SFFloat, text);
     EXPECT_FALSE(parsed.good) << text;
     EXPECT_FALSE(parsed.message.empty()) << text;
@@ -74,16 +78,27 @@ TEST(ParserNumbers, WhatIsNoFloatIsRefused) {
 }
 
 TEST(ParserNumbers, AMillionDigits) {
-  EXPECT_EQ(std::get<float>(parseValue(FieldType::SFFloat, "0." + std::string(1'000'000, '3')).value), 1.0f / 3);
+  EXPECT_EQ(
+      std::get<float>(parseValue(FieldType::SFFloat, "0." + std::string(1'000'000, '3')).value),
+      1.0f / 3);
   EXPECT_FALSE(parseValue(FieldType::SFFloat, std::string(1'000'000, '9')).good);
   EXPECT_FALSE(parseValue(FieldType::SFInt32, std::string(1'000'000, '9')).good);
-  EXPECT_EQ(std::get<int32_t>(parseValue(FieldType::SFInt32, std::string(1'000'000, '0') + "7").value), 7);
+  EXPECT_EQ(
+      std::get<int32_t>(parseValue(FieldType::SFInt32, std::string(1'000'000, '0') + "7").value),
+      7);
 }
 
 TEST(ParserNumbers, Integers) {
-  const std::pair<const char*, int32_t> spellings[] = {
-      {"0", 0},     {"-0", 0},    {"+5", 5},          {"2147483647", 2147483647}, {"-2147483648", INT32_MIN},
-      {"0x1f", 31}, {"0X1F", 31}, {"0xFFFFFFFF", -1}, {"12345678", 12345678},     {"123456789", 123456789}};
+  const std::pair<const char*, int32_t> spellings[] = {{"0", 0},
+                                                       {"-0", 0},
+                                                       {"+5", 5},
+                                                       {"2147483647", 2147483647},
+                                                       {"-2147483648", INT32_MIN},
+                                                       {"0x1f", 31},
+                                                       {"0X1F", 31},
+                                                       {"0xFFFFFFFF", -1},
+                                                       {"12345678", 12345678},
+                                                       {"123456789", 123456789}};
   for (const auto& [text, expected] : spellings) {
     for (const std::string& tail : {std::string(), std::string("                ")}) {
       const Parsed parsed = parseValue(FieldType::SFInt32, text + tail);
@@ -91,7 +106,8 @@ TEST(ParserNumbers, Integers) {
       EXPECT_EQ(std::get<int32_t>(parsed.value), expected) << text;
     }
   }
-  for (const char* text : {"2147483648", "-2147483649", "0x100000000", "0x", "1.5", "ten", "1e99"}) {
+  for (const char* text :
+       {"2147483648", "-2147483649", "0x100000000", "0x", "1.5", "ten", "1e99"}) {
     EXPECT_FALSE(parseValue(FieldType::SFInt32, text).good) << text;
   }
   const Parsed real = parseValue(FieldType::SFInt32, "3.0"); // some writers do; said, not refused
@@ -119,11 +135,18 @@ TEST(ParserNumbers, CorrectlyRounded) {
   }
 }
 
-// What lies exactly half way between two floats goes to the even one; a digit more or less decides otherwise.
+// What lies exactly half way between two floats goes to the even one; a digit more or less decides
+// otherwise.
 TEST(ParserNumbers, TiesToEven) {
-  EXPECT_EQ(std::get<float>(parseValue(FieldType::SFFloat, "16777217                        ").value), 16777216.0f);
-  EXPECT_EQ(std::get<float>(parseValue(FieldType::SFFloat, "16777219                        ").value), 16777220.0f);
-  EXPECT_EQ(std::get<float>(parseValue(FieldType::SFFloat, "16777217.0000001                ").value), 16777218.0f);
+  EXPECT_EQ(
+      std::get<float>(parseValue(FieldType::SFFloat, "16777217                        ").value),
+      16777216.0f);
+  EXPECT_EQ(
+      std::get<float>(parseValue(FieldType::SFFloat, "16777219                        ").value),
+      16777220.0f);
+  EXPECT_EQ(
+      std::get<float>(parseValue(FieldType::SFFloat, "16777217.0000001                ").value),
+      16777218.0f);
 }
 
 template <class Float, class Bits> void roundTrip(FieldType type, uint64_t seed) {
@@ -135,7 +158,8 @@ template <class Float, class Bits> void roundTrip(FieldType type, uint64_t seed)
     writeNumber(text, number);
     const Parsed parsed = parseValue(type, text);
     ASSERT_TRUE(parsed.good) << text;
-    ASSERT_EQ(std::bit_cast<Bits>(std::get<Float>(parsed.value)), std::bit_cast<Bits>(number)) << text;
+    ASSERT_EQ(std::bit_cast<Bits>(std::get<Float>(parsed.value)), std::bit_cast<Bits>(number))
+        << text;
   }
 }
 TEST(ParserNumbers, FloatsRoundTrip) { roundTrip<float, uint32_t>(FieldType::SFFloat, 1); }
@@ -151,31 +175,40 @@ TEST(ParserNumbers, WhatVrmlCannotSpellIsWrittenAsTheNearest) {
 
 TEST(ParserStrings, EscapesAndTheirWriting) {
   for (const std::string& content :
-       {std::string(), std::string("plain"), std::string("a \"b\" c"), std::string("back\\slash"), std::string("\\"),
-        std::string("\\\""), std::string("line\nline\r\n\ttab"), std::string("\xc3\xa4 \xe6\x97\xa5"), std::string("# { [ ,")}) {
+       {std::string(), std::string("plain"), std::string("a \"b\" c"), std::string("back\\slash"),
+        std::string("\\"), std::string("\\\""), std::string("line\nline\r\n\ttab"),
+        std::string("\xc3\xa4 \xe6\x97\xa5"), std::string("# { [ ,")}) {
     std::string text;
     writeString(text, content);
     const Parsed parsed = parseValue(FieldType::SFString, text);
     ASSERT_TRUE(parsed.good) << text;
     EXPECT_EQ(std::get<std::string>(parsed.value), content);
   }
-  // Only quotes and backslashes are escaped (5.9); other backslashes are themselves, as in old Windows paths.
-  EXPECT_EQ(std::get<std::string>(parseValue(FieldType::SFString, "\"c:\\textures\\n.gif\"").value), "c:\\textures\\n.gif");
+  // Only quotes and backslashes are escaped (5.9); other backslashes are themselves, as in old
+  // Windows paths.
+  EXPECT_EQ(std::get<std::string>(parseValue(FieldType::SFString, "\"c:\\textures\\n.gif\"").value),
+            "c:\\textures\\n.gif");
   EXPECT_FALSE(parseValue(FieldType::SFString, "\"open").good);
   EXPECT_FALSE(parseValue(FieldType::SFString, "\"open\\\"").good);
   Limits limits;
   limits.stringBytes = 10;
-  EXPECT_NE(parseValue(FieldType::SFString, "\"" + std::string(20, 'x') + "\"", limits).message.find("stringBytes=10"),
+  EXPECT_NE(parseValue(FieldType::SFString, "\"" + std::string(20, 'x') + "\"", limits)
+                .message.find("stringBytes=10"),
             std::string::npos);
 }
 
 TEST(ParserValues, ListsWithAndWithoutBrackets) {
-  EXPECT_EQ(std::get<MFVec3f>(parseValue(FieldType::MFVec3f, "[1 2 3,4 5 6,]").value), (MFVec3f{{1, 2, 3}, {4, 5, 6}}));
+  EXPECT_EQ(std::get<MFVec3f>(parseValue(FieldType::MFVec3f, "[1 2 3,4 5 6,]").value),
+            (MFVec3f{{1, 2, 3}, {4, 5, 6}}));
   EXPECT_EQ(std::get<MFVec3f>(parseValue(FieldType::MFVec3f, "1 2 3").value), (MFVec3f{{1, 2, 3}}));
-  EXPECT_EQ(std::get<MFVec3f>(parseValue(FieldType::MFVec3f, "[ # nothing ]\n ]").value), MFVec3f{});
-  EXPECT_EQ(std::get<MFString>(parseValue(FieldType::MFString, "[\"a\" \"b\"]").value), (MFString{"a", "b"}));
-  EXPECT_EQ(std::get<MFInt32>(parseValue(FieldType::MFInt32, "[0x10,-1]").value), (MFInt32{16, -1}));
-  EXPECT_EQ(std::get<MFTime>(parseValue(FieldType::MFTime, "[.1 1e300]").value), (MFTime{.1, 1e300}));
+  EXPECT_EQ(std::get<MFVec3f>(parseValue(FieldType::MFVec3f, "[ # nothing ]\n ]").value),
+            MFVec3f{});
+  EXPECT_EQ(std::get<MFString>(parseValue(FieldType::MFString, "[\"a\" \"b\"]").value),
+            (MFString{"a", "b"}));
+  EXPECT_EQ(std::get<MFInt32>(parseValue(FieldType::MFInt32, "[0x10,-1]").value),
+            (MFInt32{16, -1}));
+  EXPECT_EQ(std::get<MFTime>(parseValue(FieldType::MFTime, "[.1 1e300]").value),
+            (MFTime{.1, 1e300}));
   EXPECT_FALSE(parseValue(FieldType::MFVec2f, "[1 2 3]").good);
   EXPECT_FALSE(parseValue(FieldType::MFFloat, "[1 2").good);
   EXPECT_EQ(parseValue(FieldType::MFFloat, "[1 x]").rest, "x");
@@ -189,8 +222,10 @@ TEST(ParserValues, Images) {
   EXPECT_EQ(std::get<Image>(parseValue(FieldType::SFImage, "1 1 4 4294967294").value).pixels,
             (std::vector<uint8_t>{255, 255, 255, 254}));
   EXPECT_FALSE(parseValue(FieldType::SFImage, "1 2 1 0").good);
-  EXPECT_NE(parseValue(FieldType::SFImage, "65535 65535 4 0").message.find("imagePixels"), std::string::npos);
-  EXPECT_NE(parseValue(FieldType::SFImage, "2147483647 2147483647 4 0").message.find("imagePixels"), std::string::npos);
+  EXPECT_NE(parseValue(FieldType::SFImage, "65535 65535 4 0").message.find("imagePixels"),
+            std::string::npos);
+  EXPECT_NE(parseValue(FieldType::SFImage, "2147483647 2147483647 4 0").message.find("imagePixels"),
+            std::string::npos);
 }
 
 TEST(ParserPlaces, LinesOfAllKindsAndCharacters) {

@@ -1,4 +1,5 @@
-// xvrml_parser_proto.cpp: what prototype instances, EXTERNPROTOs and Inlines stand for once a world is loaded.
+// xvrml_parser_proto.cpp: what prototype instances, EXTERNPROTOs and Inlines stand for once a world
+// is loaded.
 #include "unit/xvrml_parser_support.h"
 
 namespace {
@@ -8,13 +9,15 @@ using namespace parser_test;
 const nodes::Material* materialOf(const NodeRef& root) {
   const auto* shape = nodeCast<nodes::Shape>(renderedNode(root.get()));
   return shape ? nodeCast<nodes::Material>(
-                     renderedNode(nodeCast<nodes::Appearance>(renderedNode(shape->appearance.get()))->material.get()))
+                     renderedNode(nodeCast<nodes::Appearance>(renderedNode(shape->appearance.get()))
+                                      ->material.get()))
                : nullptr;
 }
 
 const std::string painted =
     "PROTO Painted [ exposedField SFColor tint 1 0 0 field SFNode form Box { } ] {\n"
-    "  Shape { appearance Appearance { material Material { diffuseColor IS tint } } geometry IS form }\n}\n";
+    "  Shape { appearance Appearance { material Material { diffuseColor IS tint } } geometry IS "
+    "form }\n}\n";
 
 TEST(ParserProto, ValuesReachTheBody) {
   const auto world = parse(painted + "Painted { } Painted { tint 0 1 0 form Sphere { radius 4 } }");
@@ -29,11 +32,12 @@ TEST(ParserProto, ValuesReachTheBody) {
 }
 
 TEST(ParserProto, InstancesShareOnlyWhatNothingCanChange) {
-  const auto world = parse(
-      "PROTO P [ field SFColor c 1 0 0 ] {\n"
-      "  Group { children [ Shape { appearance Appearance { material Material { diffuseColor IS c } } geometry DEF G Box { } }\n"
-      "    Transform { children DEF M Shape { geometry Cone { } } } DEF T Transform { } ] }\n"
-      "  Script { field SFNode g USE M }\n ROUTE T.translation TO T.scale }\nP { } P { }");
+  const auto world =
+      parse("PROTO P [ field SFColor c 1 0 0 ] {\n"
+            "  Group { children [ Shape { appearance Appearance { material Material { diffuseColor "
+            "IS c } } geometry DEF G Box { } }\n"
+            "    Transform { children DEF M Shape { geometry Cone { } } } DEF T Transform { } ] }\n"
+            "  Script { field SFNode g USE M }\n ROUTE T.translation TO T.scale }\nP { } P { }");
   ASSERT_EQ(messages(*world), "");
   const auto* a = nodeCast<nodes::Group>(renderedNode(world->scope.roots[0].get()));
   const auto* b = nodeCast<nodes::Group>(renderedNode(world->scope.roots[1].get()));
@@ -47,19 +51,22 @@ TEST(ParserProto, InstancesShareOnlyWhatNothingCanChange) {
 }
 
 TEST(ParserProto, NestedConnectionsPassValuesOn) {
-  const auto world = parse("PROTO Inner [ field SFFloat r 1 ] { Shape { geometry Sphere { radius IS r } } }\n"
-                           "PROTO Outer [ field SFFloat size 7 ] { Inner { r IS size } }\nOuter { } Outer { size 9 }");
+  const auto world = parse(
+      "PROTO Inner [ field SFFloat r 1 ] { Shape { geometry Sphere { radius IS r } } }\n"
+      "PROTO Outer [ field SFFloat size 7 ] { Inner { r IS size } }\nOuter { } Outer { size 9 }");
   ASSERT_EQ(messages(*world), "");
   const auto radius = [&](int i) {
-    return nodeCast<nodes::Sphere>(nodeCast<nodes::Shape>(renderedNode(world->scope.roots[size_t(i)].get()))->geometry)->radius;
+    return nodeCast<nodes::Sphere>(
+               nodeCast<nodes::Shape>(renderedNode(world->scope.roots[size_t(i)].get()))->geometry)
+        ->radius;
   };
   EXPECT_EQ(radius(0), 7);
   EXPECT_EQ(radius(1), 9);
 }
 
 TEST(ParserProto, BodyRoutesAndNamesAreOfTheCopy) {
-  const auto world = parse(
-      "PROTO P [ ] { DEF T Transform { } DEF I PositionInterpolator { } ROUTE I.value_changed TO T.translation }\nP { } P { }");
+  const auto world = parse("PROTO P [ ] { DEF T Transform { } DEF I PositionInterpolator { } ROUTE "
+                           "I.value_changed TO T.translation }\nP { } P { }");
   const auto& a = dynamic_cast<ProtoInstance&>(*world->scope.roots[0]);
   const auto& b = dynamic_cast<ProtoInstance&>(*world->scope.roots[1]);
   ASSERT_EQ(a.body.routes.size(), 1u);
@@ -70,15 +77,16 @@ TEST(ParserProto, BodyRoutesAndNamesAreOfTheCopy) {
 }
 
 TEST(ParserProto, AScriptMayHoldItsOwnParent) {
-  const auto world = parse("DEF T Transform { children [ DEF S Script { field SFNode target USE T } ] }");
+  const auto world =
+      parse("DEF T Transform { children [ DEF S Script { field SFNode target USE T } ] }");
   ASSERT_EQ(messages(*world), "");
   const Node& script = *world->scope.names.at("S");
   EXPECT_EQ(field<NodeRef>(script, "target"), world->scope.names.at("T"));
 }
 
 TEST(ParserProto, AnInstanceMustNotDrawItsOwnParent) {
-  const auto world =
-      parse("PROTO P [ field MFNode c [ ] ] { Group { children IS c } }\nDEF T Transform { children [ P { c USE T } ] }");
+  const auto world = parse("PROTO P [ field MFNode c [ ] ] { Group { children IS c } }\nDEF T "
+                           "Transform { children [ P { c USE T } ] }");
   EXPECT_TRUE(says(*world, "its own descendant")) << messages(*world);
   const auto* transform = nodeCast<nodes::Transform>(world->scope.roots[0]);
   EXPECT_TRUE(nodeCast<nodes::Group>(renderedNode(transform->children[0].get()))->children.empty());
@@ -93,9 +101,10 @@ TEST(ParserProto, ValueOfTheWrongKindOfNode) {
 TEST(ParserProto, ExternprotoTakesUndeclaredDefaultsFromTheFile) {
   const Folder folder;
   folder.write("lib/painted.wrl", header + painted);
-  const auto path = folder.write(
-      "world.wrl", header + "EXTERNPROTO Painted [ exposedField SFColor tint ] [ \"urn:x\" \"lib/painted.wrl#Painted\" ]\n"
-                            "Painted { } Painted { tint 0 0 1 }\n");
+  const auto path =
+      folder.write("world.wrl", header + "EXTERNPROTO Painted [ exposedField SFColor tint ] [ "
+                                         "\"urn:x\" \"lib/painted.wrl#Painted\" ]\n"
+                                         "Painted { } Painted { tint 0 0 1 }\n");
   const auto world = loadWorld(path);
   ASSERT_EQ(messages(*world), "");
   EXPECT_EQ(materialOf(world->scope.roots[0])->diffuseColor, (Color{1, 0, 0}));
@@ -104,8 +113,8 @@ TEST(ParserProto, ExternprotoTakesUndeclaredDefaultsFromTheFile) {
 }
 
 TEST(ParserProto, ExternprotoThatIsNotThere) {
-  const auto world =
-      parse("EXTERNPROTO P [ field SFFloat x ] [ \"http://example.org/p.wrl\" \"no/such.wrl\" ]\nP { x 1 } P { } Shape { }");
+  const auto world = parse("EXTERNPROTO P [ field SFFloat x ] [ \"http://example.org/p.wrl\" "
+                           "\"no/such.wrl\" ]\nP { x 1 } P { } Shape { }");
   EXPECT_EQ(world->diagnostics.errors(), 0u);
   EXPECT_EQ(world->diagnostics.warnings(), 1u) << messages(*world); // once, however many instances
   EXPECT_TRUE(says(*world, "http: URLs are not fetched"));
@@ -115,15 +124,20 @@ TEST(ParserProto, ExternprotoThatIsNotThere) {
 
 TEST(ParserProto, UrlsOfInstancesAreOfTheirOwnFile) {
   const Folder folder;
-  folder.write("lib/p.wrl", header + "PROTO P [ exposedField MFString url \"own.png\" ] { Shape { appearance Appearance { "
-                                     "texture ImageTexture { url IS url } } } }\n");
-  const auto path = folder.write(
-      "worlds/w.wrl", header + "EXTERNPROTO P [ exposedField MFString url ] \"../lib/p.wrl\"\nP { url \"mine.png\" } P { }\n");
+  folder.write(
+      "lib/p.wrl",
+      header +
+          "PROTO P [ exposedField MFString url \"own.png\" ] { Shape { appearance Appearance { "
+          "texture ImageTexture { url IS url } } } }\n");
+  const auto path =
+      folder.write("worlds/w.wrl", header + "EXTERNPROTO P [ exposedField MFString url ] "
+                                            "\"../lib/p.wrl\"\nP { url \"mine.png\" } P { }\n");
   const auto world = loadWorld(path);
   ASSERT_EQ(messages(*world), "");
   const auto url = [&](size_t i) {
     const auto* shape = nodeCast<nodes::Shape>(renderedNode(world->scope.roots[i].get()));
-    const auto* texture = nodeCast<nodes::ImageTexture>(nodeCast<nodes::Appearance>(shape->appearance)->texture);
+    const auto* texture =
+        nodeCast<nodes::ImageTexture>(nodeCast<nodes::Appearance>(shape->appearance)->texture);
     const auto resolved = resolveUrl(texture->url.at(0), *texture->source.file, {});
     return std::filesystem::weakly_canonical(resolved.path).string();
   };
@@ -135,11 +149,10 @@ TEST(ParserInline, ContentIsSharedUnlessItChanges) {
   const Folder folder;
   folder.write("still.wrl", header + "Shape { }\n");
   folder.write("moving.wrl", header + "DEF T Transform { } ROUTE T.translation TO T.scale\n");
-  const auto path = folder.write(
-      "w.wrl",
-      header +
-          "Inline { url \"still.wrl\" } Inline { url \"still.wrl\" } Inline { url \"moving.wrl\" } Inline { url \"moving.wrl\" } "
-          "Inline { } Inline { url \"none.wrl\" }\n");
+  const auto path =
+      folder.write("w.wrl", header + "Inline { url \"still.wrl\" } Inline { url \"still.wrl\" } "
+                                     "Inline { url \"moving.wrl\" } Inline { url \"moving.wrl\" } "
+                                     "Inline { } Inline { url \"none.wrl\" }\n");
   const auto world = loadWorld(path);
   const auto content = [&](size_t i) { return inlineScope(*world->scope.roots.at(i)); };
   ASSERT_NE(content(0), nullptr);
@@ -158,7 +171,8 @@ TEST(ParserInline, WithinAPrototypeOfAnotherFile) {
   const Folder folder;
   folder.write("lib/part.wrl", header + "Shape { }\n");
   folder.write("lib/p.wrl", header + "PROTO P [ ] { Inline { url \"part.wrl\" } }\n");
-  const auto world = loadWorld(folder.write("w.wrl", header + "EXTERNPROTO P [ ] \"lib/p.wrl\"\nP { }\n"));
+  const auto world =
+      loadWorld(folder.write("w.wrl", header + "EXTERNPROTO P [ ] \"lib/p.wrl\"\nP { }\n"));
   ASSERT_EQ(messages(*world), "");
   const Scope* content = inlineScope(*renderedNode(world->scope.roots[0].get()));
   ASSERT_NE(content, nullptr);
@@ -179,11 +193,12 @@ TEST(ParserEqual, FindsDifferences) {
   EXPECT_TRUE(differs("Transform { }", "Transform { scale 1 1 2 }"));
   EXPECT_TRUE(differs("Group { }", "Group { } Group { }"));
   EXPECT_TRUE(differs("PROTO P [ ] { Group { } }", "PROTO P [ ] { Shape { } }"));
-  EXPECT_TRUE(differs("PROTO P [ field SFFloat x 1 ] { Group { } }", "PROTO P [ field SFFloat x 2 ] { Group { } }"));
+  EXPECT_TRUE(differs("PROTO P [ field SFFloat x 1 ] { Group { } }",
+                      "PROTO P [ field SFFloat x 2 ] { Group { } }"));
   EXPECT_TRUE(differs("PROTO P [ field SFVec3f x 1 1 1 ] { Transform { scale IS x } }",
                       "PROTO P [ field SFVec3f x 1 1 1 ] { Transform { translation IS x } }"));
-  EXPECT_TRUE(
-      differs("DEF A Transform { } ROUTE A.scale TO A.translation", "DEF A Transform { } ROUTE A.translation TO A.scale"));
+  EXPECT_TRUE(differs("DEF A Transform { } ROUTE A.scale TO A.translation",
+                      "DEF A Transform { } ROUTE A.translation TO A.scale"));
   EXPECT_TRUE(differs("Script { field SFFloat x 1 }", "Script { field SFFloat x 2 }"));
   EXPECT_TRUE(differs("Script { eventIn SFFloat x }", "Script { eventOut SFFloat x }"));
 }

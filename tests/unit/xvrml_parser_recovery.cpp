@@ -1,4 +1,5 @@
-// xvrml_parser_recovery.cpp: what is left of a world after an error in it: all but the node that has the error.
+// xvrml_parser_recovery.cpp: what is left of a world after an error in it: all but the node that
+// has the error.
 #include <algorithm>
 
 #include "unit/xvrml_parser_support.h"
@@ -16,8 +17,8 @@ std::vector<std::string> rootTypes(const World& world) {
 using Names = std::vector<std::string>;
 
 TEST(ParserRecovery, ABadValueLosesItsNodeOnly) {
-  const auto world =
-      parse("Group { children [ Shape { } Transform { translation 1 2 children [ Shape { } ] } WorldInfo { } ] } Group { }");
+  const auto world = parse("Group { children [ Shape { } Transform { translation 1 2 children [ "
+                           "Shape { } ] } WorldInfo { } ] } Group { }");
   EXPECT_EQ(world->diagnostics.errors(), 1u) << messages(*world);
   EXPECT_EQ(rootTypes(*world), (Names{"Group", "Group"}));
   const auto* group = nodeCast<nodes::Group>(world->scope.roots[0]);
@@ -26,16 +27,18 @@ TEST(ParserRecovery, ABadValueLosesItsNodeOnly) {
 }
 
 TEST(ParserRecovery, AnUnknownNodeIsLeftOutWithAllInIt) {
-  const auto world = parse("Group { children [ Torus { a [ 1 2 ] b Box { c { } } \"}\" } Shape { } ] }");
+  const auto world =
+      parse("Group { children [ Torus { a [ 1 2 ] b Box { c { } } \"}\" } Shape { } ] }");
   EXPECT_EQ(world->diagnostics.errors(), 1u);
   EXPECT_EQ(nodeCast<nodes::Group>(world->scope.roots[0])->children.size(), 1u);
 }
 
 TEST(ParserRecovery, AnUnknownFieldLosesNothingElse) {
-  for (const char* value : {"TRUE", "1 2 3", "[ 1 2 3 ]", "\"text\"", "USE X", "NULL", "Torus { inner { } }",
-                            "[ A { } B { children [ ] } ]", "DEF Y Shape { }"}) {
-    const auto world =
-        parse(std::string("Transform { translation 1 2 3 unknown ") + value + " scale 2 2 2 children [ Shape { } ] }");
+  for (const char* value :
+       {"TRUE", "1 2 3", "[ 1 2 3 ]", "\"text\"", "USE X", "NULL", "Torus { inner { } }",
+        "[ A { } B { children [ ] } ]", "DEF Y Shape { }"}) {
+    const auto world = parse(std::string("Transform { translation 1 2 3 unknown ") + value +
+                             " scale 2 2 2 children [ Shape { } ] }");
     EXPECT_EQ(world->diagnostics.errors(), 1u) << value << messages(*world);
     const auto* transform = nodeCast<nodes::Transform>(world->scope.roots.at(0));
     EXPECT_EQ(transform->translation, (Vec3f{1, 2, 3})) << value;
@@ -45,13 +48,15 @@ TEST(ParserRecovery, AnUnknownFieldLosesNothingElse) {
 }
 
 TEST(ParserRecovery, GarbageBetweenStatements) {
-  const auto world = parse("Group { } ] } 1 2 \"x\" Foo bar { Shape { } } } DEF G Shape { } ' . WorldInfo { }");
+  const auto world =
+      parse("Group { } ] } 1 2 \"x\" Foo bar { Shape { } } } DEF G Shape { } ' . WorldInfo { }");
   EXPECT_EQ(rootTypes(*world), (Names{"Group", "Shape", "WorldInfo"}));
   EXPECT_GE(world->diagnostics.errors(), 3u);
 }
 
 TEST(ParserRecovery, ATextThatEndsEarlyKeepsWhatWasRead) {
-  const auto world = parse("Transform { translation 1 2 3 children [ Shape { } Group { children [ Shape { }");
+  const auto world =
+      parse("Transform { translation 1 2 3 children [ Shape { } Group { children [ Shape { }");
   EXPECT_EQ(world->diagnostics.errors(), 1u) << messages(*world);
   const auto* transform = nodeCast<nodes::Transform>(world->scope.roots.at(0));
   EXPECT_EQ(transform->translation, (Vec3f{1, 2, 3}));
@@ -60,9 +65,9 @@ TEST(ParserRecovery, ATextThatEndsEarlyKeepsWhatWasRead) {
 }
 
 TEST(ParserRecovery, NamesThatWentWithANodeAreNotErrorsAgain) {
-  const auto world = parse(
-      "Torus { a DEF A Group { } } Group { children USE A } DEF B Transform { scale x children DEF C Group { } } USE B USE C "
-      "ROUTE B.translation TO C.translation");
+  const auto world = parse("Torus { a DEF A Group { } } Group { children USE A } DEF B Transform { "
+                           "scale x children DEF C Group { } } USE B USE C "
+                           "ROUTE B.translation TO C.translation");
   EXPECT_EQ(world->diagnostics.errors(), 2u) << messages(*world); // Torus and x
   EXPECT_GE(world->diagnostics.warnings(), 3u);
   EXPECT_TRUE(world->scope.names.empty());
@@ -70,8 +75,8 @@ TEST(ParserRecovery, NamesThatWentWithANodeAreNotErrorsAgain) {
 }
 
 TEST(ParserRecovery, APrototypeWithABadInterfaceIsLeftOutWhole) {
-  const auto world =
-      parse("PROTO P [ field SFFloat x one field MFNode n [ Group { } ] ] { Shape { } Group { } } P { x 2 } Group { }");
+  const auto world = parse("PROTO P [ field SFFloat x one field MFNode n [ Group { } ] ] { Shape { "
+                           "} Group { } } P { x 2 } Group { }");
   EXPECT_EQ(world->diagnostics.errors(), 1u) << messages(*world);
   EXPECT_EQ(rootTypes(*world), (Names{"Group"}));
 }
@@ -84,9 +89,9 @@ TEST(ParserRecovery, ABadNodeInAPrototypeBody) {
 }
 
 TEST(ParserRecovery, WhatNamesMayBeIsGenerous) {
-  const auto world =
-      parse("DEF 1stRoom Group { } DEF it's Group { } DEF a.b Transform { } Group { children [ USE 1stRoom USE it's ] } "
-            "ROUTE a.b.translation TO a.b.scale");
+  const auto world = parse("DEF 1stRoom Group { } DEF it's Group { } DEF a.b Transform { } Group { "
+                           "children [ USE 1stRoom USE it's ] } "
+                           "ROUTE a.b.translation TO a.b.scale");
   EXPECT_EQ(world->diagnostics.errors(), 0u) << messages(*world);
   EXPECT_GE(world->diagnostics.warnings(), 3u);
   EXPECT_EQ(world->scope.routes.size(), 1u);
@@ -95,29 +100,34 @@ TEST(ParserRecovery, WhatNamesMayBeIsGenerous) {
 }
 
 TEST(ParserRecovery, OutOfRangeValuesAreBroughtBack) {
-  const auto world = parse("Shape { appearance Appearance { material Material { diffuseColor 2 -1 0.5 transparency 3 } } "
+  const auto world = parse("Shape { appearance Appearance { material Material { diffuseColor 2 -1 "
+                           "0.5 transparency 3 } } "
                            "geometry Sphere { radius -1 } } "
                            "Viewpoint { fieldOfView 7 } Transform { scale -1 1 1 }");
   EXPECT_EQ(world->diagnostics.errors(), 0u);
   EXPECT_GE(world->diagnostics.warnings(), 4u) << messages(*world);
   const auto* shape = nodeCast<nodes::Shape>(world->scope.roots.at(0));
-  const auto* material = nodeCast<nodes::Material>(nodeCast<nodes::Appearance>(shape->appearance)->material);
+  const auto* material =
+      nodeCast<nodes::Material>(nodeCast<nodes::Appearance>(shape->appearance)->material);
   EXPECT_EQ(material->diffuseColor, (Color{1, 0, 0.5f}));
   EXPECT_EQ(material->transparency, 1.0f);
   EXPECT_EQ(nodeCast<nodes::Sphere>(shape->geometry)->radius, 1.0f);
   EXPECT_NEAR(nodeCast<nodes::Viewpoint>(world->scope.roots.at(1))->fieldOfView, 0.785398f, 1e-6);
-  EXPECT_EQ(nodeCast<nodes::Transform>(world->scope.roots.at(2))->scale, (Vec3f{-1, 1, 1})); // mirrors exist in real files
+  EXPECT_EQ(nodeCast<nodes::Transform>(world->scope.roots.at(2))->scale,
+            (Vec3f{-1, 1, 1})); // mirrors exist in real files
 }
 
 // A file must not steer the terminal that shows its errors.
 TEST(ParserRecovery, MessagesHoldNoControlCharacters) {
-  const auto world = parse("\x1b[31m\x07 \xc2\x9b"
-                           "31m Bax\x7f { } WorldInfo { title red\x1b } Group { children \"a\nb\x1b\" }");
+  const auto world =
+      parse("\x1b[31m\x07 \xc2\x9b"
+            "31m Bax\x7f { } WorldInfo { title red\x1b } Group { children \"a\nb\x1b\" }");
   EXPECT_GE(world->diagnostics.errors(), 3u);
   for (const Diagnostic& diagnostic : world->diagnostics.list()) {
     const std::string text = diagnostic.text();
-    EXPECT_TRUE(std::none_of(text.begin(), text.end(), [](unsigned char c) { return (c < 0x20 && c != '\n') || c == 0x7f; }))
-        << text;
+    EXPECT_TRUE(std::none_of(text.begin(), text.end(), [](unsigned char c) {
+      return (c < 0x20 && c != '\n') || c == 0x7f;
+    })) << text;
     EXPECT_EQ(text.find("\xc2\x9b"), std::string::npos);
   }
 }

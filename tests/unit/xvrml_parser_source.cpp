@@ -1,4 +1,5 @@
-// xvrml_parser_source.cpp: bytes and URLs: what is taken for a world, what is refused and how clearly, where URLs lead.
+// xvrml_parser_source.cpp: bytes and URLs: what is taken for a world, what is refused and how
+// clearly, where URLs lead.
 #include "unit/xvrml_parser_support.h"
 
 namespace {
@@ -13,16 +14,19 @@ std::string refusal(const std::string& bytes) {
 }
 
 TEST(ParserSource, HeadersThatAreExact) {
-  for (const char* text : {"#VRML V2.0 utf8", "#VRML V2.0 utf8\n", "#VRML V2.0 utf8 a comment\nGroup { }",
-                           "#VRML V2.0 utf8\r\nGroup { }", "#VRML V2.0 utf8\tx\n"}) {
+  for (const char* text :
+       {"#VRML V2.0 utf8", "#VRML V2.0 utf8\n", "#VRML V2.0 utf8 a comment\nGroup { }",
+        "#VRML V2.0 utf8\r\nGroup { }", "#VRML V2.0 utf8\tx\n"}) {
     EXPECT_EQ(messages(*loadWorldFromMemory(text, "f.wrl")), "") << text;
   }
 }
 
 TEST(ParserSource, HeadersThatAreNearlyRight) {
-  for (const char* text : {"#VRML    V2.0 utf8\nGroup { }", "# VRML V2.0 utf8\nGroup { }", "\n\n#VRML V2.0 utf8\nGroup { }",
-                           "#VRML V2.0\nGroup { }", "#VRMLV2.0utf8\nGroup { }", "#VRML V2.0 utf8x\nGroup { }",
-                           "\xef\xbb\xbf#VRML V2.0 utf8\nGroup { }", "Group { }", "DEF G Group { }"}) {
+  for (const char* text :
+       {"#VRML    V2.0 utf8\nGroup { }", "# VRML V2.0 utf8\nGroup { }",
+        "\n\n#VRML V2.0 utf8\nGroup { }", "#VRML V2.0\nGroup { }", "#VRMLV2.0utf8\nGroup { }",
+        "#VRML V2.0 utf8x\nGroup { }", "\xef\xbb\xbf#VRML V2.0 utf8\nGroup { }", "Group { }",
+        "DEF G Group { }"}) {
     const auto world = loadWorldFromMemory(text, "f.wrl");
     EXPECT_EQ(world->scope.roots.size(), 1u) << text;
     ASSERT_EQ(world->diagnostics.warnings(), 1u) << text;
@@ -30,7 +34,8 @@ TEST(ParserSource, HeadersThatAreNearlyRight) {
   }
 }
 
-// Files that begin as those of a known format are named; of all others the message says what was expected.
+// Files that begin as those of a known format are named; of all others the message says what was
+// expected.
 TEST(ParserSource, WhatIsNoWorldIsRefused) {
   const std::pair<std::string, const char*> cases[] = {
       {"#VRML V1.0 ascii\nSeparator { }", "VRML 1.0"},
@@ -44,7 +49,8 @@ TEST(ParserSource, WhatIsNoWorldIsRefused) {
       {"hello", "#VRML V2.0 utf8"},
       {std::string("\xff\xfe#\0V\0", 6), "#VRML V2.0 utf8"},
   };
-  for (const auto& [bytes, said] : cases) EXPECT_NE(refusal(bytes).find(said), std::string::npos) << refusal(bytes);
+  for (const auto& [bytes, said] : cases)
+    EXPECT_NE(refusal(bytes).find(said), std::string::npos) << refusal(bytes);
 }
 
 TEST(ParserSource, FilesThatCannotBeRead) {
@@ -71,7 +77,8 @@ TEST(ParserSource, DamagedGzipDataShowsWhatItHas) {
   const auto world = loadWorldFromMemory(wrongSum, "f.wrl");
   EXPECT_TRUE(says(*world, "damaged gzip data")) << messages(*world);
   EXPECT_EQ(world->scope.roots.size(), 1u);
-  EXPECT_TRUE(says(*loadWorldFromMemory(packed.substr(0, packed.size() - 5), "f.wrl"), "ends early"));
+  EXPECT_TRUE(
+      says(*loadWorldFromMemory(packed.substr(0, packed.size() - 5), "f.wrl"), "ends early"));
   EXPECT_NE(refusal(packed.substr(0, 12)), "");
   EXPECT_NE(refusal("\x1f\x8b garbage that is no deflate stream"), "");
 }
@@ -104,14 +111,16 @@ TEST(ParserUrl, RelativeToTheFileThatHoldsThem) {
 TEST(ParserUrl, WhatIsNotFollowed) {
   LoadOptions absolute;
   absolute.allowAbsolute = true;
-  for (const char* url : {"http://example.org/x.wrl", "https://example.org/x.wrl", "ftp://example.org/x",
-                          "urn:inet:example.org:x", "data:image/png;base64,AAAA", "javascript: f()", "//server/share/x.wrl",
-                          "\\\\server\\share\\x.wrl", "c:\\x.wrl", "C:/x.wrl", "", "  ", "x%00.wrl"}) {
+  for (const char* url :
+       {"http://example.org/x.wrl", "https://example.org/x.wrl", "ftp://example.org/x",
+        "urn:inet:example.org:x", "data:image/png;base64,AAAA", "javascript: f()",
+        "//server/share/x.wrl", "\\\\server\\share\\x.wrl", "c:\\x.wrl", "C:/x.wrl", "", "  ",
+        "x%00.wrl"}) {
     EXPECT_NE(resolveUrl(url, "a/w.wrl", absolute).error, "") << url;
     EXPECT_EQ(resolveUrl(url, "a/w.wrl", absolute).path, "") << url;
   }
-  for (const char* url :
-       {"/etc/passwd", "file:///etc/passwd", "FILE:/etc/passwd", "file://localhost/etc/passwd", "%2Fetc/passwd"}) {
+  for (const char* url : {"/etc/passwd", "file:///etc/passwd", "FILE:/etc/passwd",
+                          "file://localhost/etc/passwd", "%2Fetc/passwd"}) {
     EXPECT_NE(resolveUrl(url, "a/w.wrl", {}).error, "") << url;
     EXPECT_EQ(resolveUrl(url, "a/w.wrl", absolute).path, "/etc/passwd") << url;
   }

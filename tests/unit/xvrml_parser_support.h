@@ -27,7 +27,9 @@ inline std::string messages(const World& world) {
   return text;
 }
 
-inline bool says(const World& world, const std::string& fragment) { return messages(world).find(fragment) != std::string::npos; }
+inline bool says(const World& world, const std::string& fragment) {
+  return messages(world).find(fragment) != std::string::npos;
+}
 
 // A folder of its own that goes with the test.
 class Folder {

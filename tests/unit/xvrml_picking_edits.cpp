@@ -1,5 +1,6 @@
-// Picking in worlds that are edited at random: what is kept of boxes and meshes must not be older than the world. Also that
-// nothing of binding, pointer and navigation minds any order of edits: cameras stay finite.
+// Picking in worlds that are edited at random: what is kept of boxes and meshes must not be older
+// than the world. Also that nothing of binding, pointer and navigation minds any order of edits:
+// cameras stay finite.
 #include <cmath>
 #include <random>
 
@@ -40,8 +41,9 @@ constexpr const char* types[] = {"Group",
 class Editor {
  public:
   explicit Editor(unsigned seed)
-      : random_(seed),
-        browser(loadWorldFromMemory("#VRML V2.0 utf8\nViewpoint {} TouchSensor {} Shape { geometry Box {} }", "random.wrl")) {
+      : random_(seed), browser(loadWorldFromMemory(
+                           "#VRML V2.0 utf8\nViewpoint {} TouchSensor {} Shape { geometry Box {} }",
+                           "random.wrl")) {
     for (int i = 0; i < 60; ++i) {
       nodes_.push_back(make());
       if (below(3) == 0) browser.addRoot(nodes_.back());
@@ -54,7 +56,9 @@ class Editor {
     case 1: set("addChildren", MFNode{any()}); break;
     case 2: set("removeChildren", MFNode{any()}); break;
     case 3:
-    case 4: set("translation", Vec3f{number() / 3, number() / 3, below(20) ? number() : NAN}); break;
+    case 4:
+      set("translation", Vec3f{number() / 3, number() / 3, below(20) ? number() : NAN});
+      break;
     case 5: set("scale", Vec3f{number() / 3, number() / 3, below(5) ? number() : 0}); break;
     case 6: set("set_bind", below(3) != 0); break;
     case 7:
@@ -67,7 +71,9 @@ class Editor {
       set("coord", any());
       break;
     case 9:
-      set("point", MFVec3f{{number(), number(), number()}, {number(), number(), number()}, {number(), number(), number()}});
+      set("point", MFVec3f{{number(), number(), number()},
+                           {number(), number(), number()},
+                           {number(), number(), number()}});
       set("set_coordIndex", MFInt32{0, 1, 2});
       break;
     case 10:
@@ -79,7 +85,11 @@ class Editor {
     case 12: browser.pointer(number() / 10, number() / 10, below(2) == 0); break;
     case 13:
       browser.setNavigation(Navigation(below(4)));
-      browser.navigate({.ahead = number() / 10, .right = number() / 10, .turn = number() / 10, .tilt = number() / 10}, 0.1);
+      browser.navigate({.ahead = number() / 10,
+                        .right = number() / 10,
+                        .turn = number() / 10,
+                        .tilt = number() / 10},
+                       0.1);
       break;
     case 14:
       browser.key(Key(below(9)), below(2) == 0);

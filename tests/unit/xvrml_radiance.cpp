@@ -1,4 +1,5 @@
-// Pictures of radiance that worlds name: PFM, Radiance and OpenEXR from bytes made here, and what must be refused.
+// Pictures of radiance that worlds name: PFM, Radiance and OpenEXR from bytes made here, and what
+// must be refused.
 #include <gtest/gtest.h>
 #include <zlib.h>
 
@@ -36,8 +37,11 @@ std::string whyNot(const Bytes& bytes, uint64_t imagePixels = 1 << 20) {
   return "";
 }
 
-// What each pixel of a test picture holds, x from the left and y from the top; exact as half and nearly so as RGBE.
-float valueAt(int x, int y, int c) { return float(1 + x + 8 * y) * (c == 0 ? 1.0f : c == 1 ? 0.5f : 64.0f); }
+// What each pixel of a test picture holds, x from the left and y from the top; exact as half and
+// nearly so as RGBE.
+float valueAt(int x, int y, int c) {
+  return float(1 + x + 8 * y) * (c == 0 ? 1.0f : c == 1 ? 0.5f : 64.0f);
+}
 void expectPattern(const RadianceImage& image, int width, int height, double tolerance = 0) {
   ASSERT_EQ(image.width, width);
   ASSERT_EQ(image.height, height);
@@ -45,13 +49,15 @@ void expectPattern(const RadianceImage& image, int width, int height, double tol
   for (int y = 0; y < height; y++)
     for (int x = 0; x < width; x++)
       for (int c = 0; c < 3; c++) {
-        const float expected = valueAt(x, y, c), got = image.rgb[size_t(3 * ((height - 1 - y) * width + x) + c)];
+        const float expected = valueAt(x, y, c),
+                    got = image.rgb[size_t(3 * ((height - 1 - y) * width + x) + c)];
         ASSERT_NEAR(got, expected, tolerance * 64 * expected) << x << " " << y << " " << c;
       }
 }
 
 Bytes makePfm(int width, int height, bool little) {
-  Bytes out = bytesOf("PF\n" + std::to_string(width) + " " + std::to_string(height) + (little ? "\n-1.0\n" : "\n1.0\n"));
+  Bytes out = bytesOf("PF\n" + std::to_string(width) + " " + std::to_string(height) +
+                      (little ? "\n-1.0\n" : "\n1.0\n"));
   for (int y = height - 1; y >= 0; y--)
     for (int x = 0; x < width; x++)
       for (int c = 0; c < 3; c++) {
@@ -62,14 +68,15 @@ Bytes makePfm(int width, int height, bool little) {
 }
 
 Bytes makeHdr(int width, int height, bool runs) {
-  Bytes out =
-      bytesOf("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y " + std::to_string(height) + " +X " + std::to_string(width) + "\n");
+  Bytes out = bytesOf("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y " + std::to_string(height) +
+                      " +X " + std::to_string(width) + "\n");
   for (int y = 0; y < height; y++) {
     Bytes planes[4];
     for (int x = 0; x < width; x++) {
       int exponent;
       std::frexp(valueAt(x, y, 2), &exponent); // the largest
-      for (int c = 0; c < 3; c++) planes[c].push_back(uint8_t(std::ldexp(valueAt(x, y, c), 8 - exponent)));
+      for (int c = 0; c < 3; c++)
+        planes[c].push_back(uint8_t(std::ldexp(valueAt(x, y, c), 8 - exponent)));
       planes[3].push_back(uint8_t(exponent + 128));
     }
     if (!runs) {
@@ -150,7 +157,8 @@ Bytes makeExr(const Exr& e) {
     word(channels, 1);
   }
   channels.push_back(0);
-  for (const int v : {e.x0, e.y0, e.x0 + e.width - 1, e.y0 + e.height - 1}) word(window, uint32_t(v));
+  for (const int v : {e.x0, e.y0, e.x0 + e.width - 1, e.y0 + e.height - 1})
+    word(window, uint32_t(v));
   attribute(out, "channels", "chlist", channels);
   attribute(out, "compression", "compression", {uint8_t(e.compression)});
   attribute(out, "dataWindow", "box2i", window);
@@ -163,7 +171,12 @@ Bytes makeExr(const Exr& e) {
     for (int y = b * lines; y < std::min(e.height, (b + 1) * lines); y++)
       for (const char name : names)
         for (int x = 0; x < e.width; x++) {
-          const float v = name == 'A' ? 99 : valueAt(x, y, name == 'R' ? 0 : name == 'G' ? 1 : name == 'Y' ? 0 : 2);
+          const float v = name == 'A' ? 99
+                                      : valueAt(x, y,
+                                                name == 'R'   ? 0
+                                                : name == 'G' ? 1
+                                                : name == 'Y' ? 0
+                                                              : 2);
           if (e.kind == 1)
             word(plain, halfOf(v), 2);
           else
@@ -206,15 +219,20 @@ TEST(Radiance, OpenExrOfEachCompressionAndType) {
   for (const int compression : {none, rle, zips, zip})
     for (const uint32_t kind : {1u, 2u})
       for (const bool upwards : {false, true}) {
-        SCOPED_TRACE(std::to_string(compression) + " " + std::to_string(kind) + " " + std::to_string(upwards));
-        expectPattern(decode(makeExr({.compression = compression, .kind = kind, .upwards = upwards})), 8, 20);
-        expectPattern(decode(makeExr({.width = 1, .height = 1, .compression = compression, .kind = kind})), 1, 1);
+        SCOPED_TRACE(std::to_string(compression) + " " + std::to_string(kind) + " " +
+                     std::to_string(upwards));
+        expectPattern(
+            decode(makeExr({.compression = compression, .kind = kind, .upwards = upwards})), 8, 20);
+        expectPattern(
+            decode(makeExr({.width = 1, .height = 1, .compression = compression, .kind = kind})), 1,
+            1);
       }
 }
 
 TEST(Radiance, OpenExrOfGreyAndOfMoreChannels) {
   const RadianceImage grey = decode(makeExr({.width = 3, .height = 2, .kind = 2, .grey = true}));
-  for (int c = 0; c < 3; c++) EXPECT_EQ(grey.rgb[size_t(c)], valueAt(0, 1, 0)) << "bottom row first";
+  for (int c = 0; c < 3; c++)
+    EXPECT_EQ(grey.rgb[size_t(c)], valueAt(0, 1, 0)) << "bottom row first";
   expectPattern(decode(makeExr({.compression = zip, .more = "Z"})), 8, 20);
   const RadianceImage whole = decode(makeExr({.width = 2, .height = 1, .kind = 0}));
   EXPECT_EQ(whole.rgb[0], 1);
@@ -237,15 +255,17 @@ TEST(Radiance, NumbersThatAreNoRadiance) {
 }
 
 TEST(Radiance, AnEndThatComesTooEarlyIsRefusedEverywhere) {
-  for (const Bytes& whole : {makePfm(3, 3, true), makeHdr(9, 3, true), makeExr({.height = 3, .compression = zips}),
-                             makeExr({.width = 3, .height = 3, .compression = rle})})
+  for (const Bytes& whole :
+       {makePfm(3, 3, true), makeHdr(9, 3, true), makeExr({.height = 3, .compression = zips}),
+        makeExr({.width = 3, .height = 3, .compression = rle})})
     for (size_t size = 0; size < whole.size(); size++)
       ASSERT_NE(whyNot({whole.begin(), whole.begin() + ptrdiff_t(size)}), "") << size;
 }
 
-TEST(Radiance, ADamagedByteNeverLeadsAstray) { // under sanitizers; here: a picture of the right size, or a message
-  for (const Bytes& whole :
-       {makeHdr(9, 3, true), makeExr({.height = 3, .compression = zip}), makeExr({.width = 3, .height = 3, .compression = rle})})
+TEST(Radiance, ADamagedByteNeverLeadsAstray) { // under sanitizers; here: a picture of the right
+                                               // size, or a message
+  for (const Bytes& whole : {makeHdr(9, 3, true), makeExr({.height = 3, .compression = zip}),
+                             makeExr({.width = 3, .height = 3, .compression = rle})})
     for (size_t at = 0; at < whole.size(); at++)
       for (const uint8_t value : {0, 1, 127, 128, 255}) {
         Bytes bytes = whole;
@@ -269,7 +289,8 @@ TEST(Radiance, SizesBeyondTheLimit) {
 TEST(Radiance, FilesAreFoundByContent) {
   const auto path = std::filesystem::temp_directory_path() / "xvrml_radiance_test.png";
   const Bytes bytes = makePfm(3, 2, true);
-  std::ofstream(path, std::ios::binary).write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
+  std::ofstream(path, std::ios::binary)
+      .write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
   expectPattern(readRadiance(path.string()), 3, 2);
   EXPECT_THROW(readImage(path.string(), {}), std::runtime_error);
   std::filesystem::remove(path);

@@ -1,5 +1,5 @@
-// The messages between the browser and xvrml-script-host: values come out as they went in; whatever else comes from a helper ends
-// it with a message, and nothing more.
+// The messages between the browser and xvrml-script-host: values come out as they went in; whatever
+// else comes from a helper ends it with a message, and nothing more.
 #include <cstring>
 #include <random>
 
@@ -45,7 +45,9 @@ TEST(ScriptWire, EveryTypeComesOutAsItWentIn) {
       ASSERT_TRUE(out && reader.complete()) << type;
       EXPECT_EQ(out->type, type);
       ASSERT_EQ(out->count, count);
-      if (count > 0) { EXPECT_EQ(std::memcmp(out->of.data, numbers.data(), count * element.bytes), 0); }
+      if (count > 0) {
+        EXPECT_EQ(std::memcmp(out->of.data, numbers.data(), count * element.bytes), 0);
+      }
     }
   }
 }
@@ -57,7 +59,8 @@ TEST(ScriptWire, TextsAndImagesComeOutAsTheyWentIn) {
   std::vector<XsString> list;
   for (const std::string& text : texts) list.push_back({text.data(), text.size()});
   const uint8_t pixels[] = {1, 2, 3, 4, 5, 6};
-  const XsImage images[] = {{2, 1, 3, 0, pixels}, {0, 0, 0, 0, nullptr}, {5, 5, 0, 0, pixels}, {-1, 2, 9, 0, pixels}};
+  const XsImage images[] = {
+      {2, 1, 3, 0, pixels}, {0, 0, 0, 0, nullptr}, {5, 5, 0, 0, pixels}, {-1, 2, 9, 0, pixels}};
   Writer writer;
   writer.begin(Op::event);
   writer.put(valueOf(XS_MFSTRING, uint32_t(list.size()), list.data()));
@@ -127,7 +130,8 @@ std::vector<std::string> goodMessages() {
     w.header().op = uint16_t(int(Op::host) + number);
     w.put(uint64_t(1));
   };
-  for (const XsValue& value : {valueOf(XS_MFSTRING, 2, texts), valueOf(XS_MFVEC3F, 2, numbers), valueOf(XS_SFIMAGE, 1, &image)}) {
+  for (const XsValue& value : {valueOf(XS_MFSTRING, 2, texts), valueOf(XS_MFVEC3F, 2, numbers),
+                               valueOf(XS_SFIMAGE, 1, &image)}) {
     function(0);
     w.put("out");
     w.put(value);
@@ -194,7 +198,10 @@ TEST(ScriptWire, WhateverAHelperSaysNothingBreaks) {
       case 1: bytes[at] = char(1 << random() % 8 ^ bytes[at]); break;
       case 2: bytes[at / 8 * 8] = char(random() % 64); break; // a number or a length
       case 3: bytes.resize(at + 1); break;
-      case 4: std::memset(bytes.data() + at, round % 2 ? 0xff : 0, std::min<size_t>(8, bytes.size() - at)); break;
+      case 4:
+        std::memset(bytes.data() + at, round % 2 ? 0xff : 0,
+                    std::min<size_t>(8, bytes.size() - at));
+        break;
       }
     }
     if (round % 10 == 0)

@@ -1,4 +1,3 @@
-// definitions.cpp: see definitions.h.
 #include "definitions.h"
 
 #include <fmt/format.h>
@@ -22,22 +21,25 @@ std::string didYouMean(const std::string& word, const std::vector<std::string>& 
   return near.empty() ? "" : fmt::format("; did you mean {}?", near);
 }
 
-bool holdsValue(const FieldInfo& field) { return field.access == Access::field || field.access == Access::exposedField; }
+bool holdsValue(const FieldInfo& field) {
+  return field.access == Access::field || field.access == Access::exposedField;
+}
 
 NodeRef findNode(const std::string& text, const std::string& name, const World& world) {
   const auto found = world.scope.names.find(name);
   if (found != world.scope.names.end()) return found->second;
   std::vector<std::string> known;
   for (const auto& [one, node] : world.scope.names) known.push_back(one);
-  fail(text,
-       known.empty() ? "the world names no node with DEF" : fmt::format("no node is called {}{}", name, didYouMean(name, known)));
+  fail(text, known.empty() ? "the world names no node with DEF"
+                           : fmt::format("no node is called {}{}", name, didYouMean(name, known)));
 }
 
 const FieldInfo& findField(const std::string& text, const std::string& name, const Node& node) {
   const NodeType& type = node.type();
   const FieldInfo* field = type.find(name);
   if (!field) field = type.findEventIn(name);
-  if (field && field->access == Access::eventOut) fail(text, fmt::format("{} is an eventOut: {} sends it", name, type.name));
+  if (field && field->access == Access::eventOut)
+    fail(text, fmt::format("{} is an eventOut: {} sends it", name, type.name));
   if (field) return *field;
   std::vector<std::string> known;
   for (const FieldInfo& one : type.fields)
@@ -53,17 +55,22 @@ Definition readOne(const std::string& text, const World& world) {
   std::string problem;
   const std::string_view written = std::string_view(text).substr(equals + 1);
   std::optional<Value> value = parseValue(one.field->type, written, problem, world.options.limits);
-  if (!value) fail(text, fmt::format("a value of type {} was expected: {}", fieldTypeName(one.field->type), problem));
-  const bool rotates =
-      one.field->type == FieldType::SFRotation || one.field->type == FieldType::MFRotation; // axes are normalised
+  if (!value)
+    fail(text, fmt::format("a value of type {} was expected: {}", fieldTypeName(one.field->type),
+                           problem));
+  const bool rotates = one.field->type == FieldType::SFRotation ||
+                       one.field->type == FieldType::MFRotation; // axes are normalised
   if (holdsValue(*one.field) && !rotates && !inRange(*one.field, *value))
-    fail(text, fmt::format("the value is out of the range of {}.{}", one.node->type().name, one.field->name));
+    fail(text, fmt::format("the value is out of the range of {}.{}", one.node->type().name,
+                           one.field->name));
   one.value = std::move(*value);
   const bool instance = dynamic_cast<const ProtoInstance*>(one.node.get()) != nullptr;
   if (instance && one.field->access == Access::field)
-    fail(text, fmt::format("{} is a field of prototype {}, which is fixed when the file is read; an exposedField can be set",
+    fail(text, fmt::format("{} is a field of prototype {}, which is fixed when the file is read; "
+                           "an exposedField can be set",
                            one.field->name, one.node->type().name));
-  one.asEvent = one.field->access == Access::eventIn || instance || one.node->type().name == "Inline";
+  one.asEvent =
+      one.field->access == Access::eventIn || instance || one.node->type().name == "Inline";
   return one;
 }
 

@@ -1,4 +1,3 @@
-// habits.cpp: see habits.h.
 #include "habits.h"
 
 #include <algorithm>
@@ -17,7 +16,8 @@ struct Habit {
   std::string_view option, instead;
 };
 
-// Options of view3dscene, F3D, Blender, Mitsuba, LuxCore, POV-Ray and ImageMagick, by what they are called there.
+// Options of view3dscene, F3D, Blender, Mitsuba, LuxCore, POV-Ray and ImageMagick, by what they are
+// called there.
 constexpr Habit habits[] = {
     {"--resolution", "--size 800x600 sets the size of the picture"},
     {"--geometry", "--size 800x600 sets the size of the picture"},
@@ -63,22 +63,27 @@ std::string sizeHint(std::string_view text) {
   int width = 0, height = 0;
   if (apart == text.npos) {
     if (!isNumber(text, width)) return "";
-    return fmt::format(": did you mean --size {}x{}? Width and height are both needed", width, std::max(1, width * 3 / 4));
+    return fmt::format(": did you mean --size {}x{}? Width and height are both needed", width,
+                       std::max(1, width * 3 / 4));
   }
-  if (!isNumber(text.substr(0, apart), width) || !isNumber(text.substr(apart + 1), height)) return "";
+  if (!isNumber(text.substr(0, apart), width) || !isNumber(text.substr(apart + 1), height))
+    return "";
   return fmt::format(": did you mean --size {}x{}?", width, height);
 }
 
 std::string optionHint(std::string_view option) {
   for (const Habit& habit : habits)
-    if (habit.option == option) return fmt::format("there is no option {}: {}", option, habit.instead);
+    if (habit.option == option)
+      return fmt::format("there is no option {}: {}", option, habit.instead);
   return "";
 }
 
 std::string secondFileHint(const std::string& first, const std::string& second) {
   if (picture::formatOf(second) || picture::filmOf(second) != picture::FilmKind::none)
-    return fmt::format("\"{}\" looks like a picture to be written: vv {} -o {}", second, first, second);
-  return fmt::format("one world at a time: \"{}\" is one too many; in a shell: for w in {} {} ...; do vv \"$w\" -o "
+    return fmt::format("\"{}\" looks like a picture to be written: vv {} -o {}", second, first,
+                       second);
+  return fmt::format("one world at a time: \"{}\" is one too many; in a shell: for w in {} {} ...; "
+                     "do vv \"$w\" -o "
                      "\"${{w%.*}}.png\"; done",
                      second, first, second);
 }

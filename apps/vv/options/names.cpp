@@ -1,4 +1,3 @@
-// names.cpp: see names.h.
 #include "names.h"
 
 #include <cctype>
@@ -69,7 +68,8 @@ std::string pathFor(const std::string& path, const PictureName& name) {
 
 std::string fileNamePart(const std::string& name) {
   std::string part;
-  for (unsigned char c : name) part += std::isalnum(c) || c == '-' || c == '_' || c >= 0x80 ? char(c) : '_';
+  for (unsigned char c : name)
+    part += std::isalnum(c) || c == '-' || c == '_' || c >= 0x80 ? char(c) : '_';
   return part;
 }
 

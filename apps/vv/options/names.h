@@ -1,4 +1,5 @@
-// names.h: the names of the files that a run with several pictures writes: {viewpoint} and {frame:4} in them. [any thread]
+// names.h: the names of the files that a run with several pictures writes: {viewpoint} and
+// {frame:4} in them. [any thread]
 #pragma once
 
 #include <optional>
@@ -17,8 +18,8 @@ struct PictureName {
 // Throws UsageError if the braces of a {frame...} are wrong.
 void checkFramePlace(const std::string& path);
 
-// The path with {viewpoint} and {frame} (or {frame:DIGITS}) replaced; where they are missing and needed, "-NAME" and "-NUMBER"
-// (four digits) are put before the suffix.
+// The path with {viewpoint} and {frame} (or {frame:DIGITS}) replaced; where they are missing and
+// needed, "-NAME" and "-NUMBER" (four digits) are put before the suffix.
 std::string pathFor(const std::string& path, const PictureName& name);
 
 // The part of a file name that stands for a viewpoint's name.

@@ -1,4 +1,5 @@
-// options.cpp: reads the command line with CLI11 as the table of options says. The only file that includes CLI11.
+// options.cpp: reads the command line with CLI11 as the table of options says. The only file that
+// includes CLI11.
 #include "options.h"
 
 #include <algorithm>
@@ -15,7 +16,8 @@ namespace {
 
 std::string longName(const OptionInfo& option) {
   std::string_view names = option.names;
-  return std::string(names.substr(names.find("--"), names.find(',', names.find("--")) - names.find("--")));
+  return std::string(
+      names.substr(names.find("--"), names.find(',', names.find("--")) - names.find("--")));
 }
 
 void apply(const OptionInfo& option, Options& options, const std::string& value) {
@@ -49,25 +51,30 @@ std::string missingValue(std::string_view last) {
 
 // Several pictures, one after the other.
 void checkSequence(const Options& options) {
-  if (options.frames && options.time) throw UsageError("only one of --time and --frames can be used");
-  if (options.frames && options.turntable) throw UsageError("only one of --frames and --turntable can be used");
+  if (options.frames && options.time)
+    throw UsageError("only one of --time and --frames can be used");
+  if (options.frames && options.turntable)
+    throw UsageError("only one of --frames and --turntable can be used");
   if (options.isSequence() && !options.makesPictures() && !options.check)
     throw UsageError("--frames and --turntable go with -o (or, to try a world out, with --check)");
   for (const Output& output : options.outputs) {
-    if (options.isSequence() && output.path == "-") throw UsageError("a sequence needs file names, not standard output");
+    if (options.isSequence() && output.path == "-")
+      throw UsageError("a sequence needs file names, not standard output");
     if (!options.isSequence() && output.film != picture::FilmKind::none)
       throw UsageError(output.path + ": a film needs --frames or --turntable");
   }
   if (options.watch && !options.makesPictures() && !options.opensWindow())
     throw UsageError("--watch goes with -o, or with the window");
-  if (options.watch && options.input == "-") throw UsageError("--watch needs a file, not standard input");
+  if (options.watch && options.input == "-")
+    throw UsageError("--watch needs a file, not standard input");
 }
 
 // Options about workers say nothing where there are none.
 void checkCluster(const Options& options) {
   const picture::ClusterSettings& c = options.cluster;
   const auto alone = [&](bool given, const char* name) {
-    if (given && !c.used()) throw UsageError(fmt::format("{} goes with --workers or --listen-workers", name));
+    if (given && !c.used())
+      throw UsageError(fmt::format("{} goes with --workers or --listen-workers", name));
   };
   alone(!c.key.empty(), "--key");
   alone(!c.allow.empty(), "--allow-keys");
@@ -84,62 +91,77 @@ void checkCluster(const Options& options) {
 void checkTogether(Options& options) {
   if (!options.viewpoint.empty() && (options.view.lookAt || options.view.fit))
     throw UsageError("--viewpoint: not with --camera or --fit, which look from elsewhere");
-  if (!options.render.environment.empty() && options.render.background.kind != picture::Background::Kind::world)
-    throw UsageError("only one of --environment, which shows all around, and --background can be used");
-  if (options.quiet && options.verbose) throw UsageError("only one of --quiet and --verbose can be used");
+  if (!options.render.environment.empty() &&
+      options.render.background.kind != picture::Background::Kind::world)
+    throw UsageError(
+        "only one of --environment, which shows all around, and --background can be used");
+  if (options.quiet && options.verbose)
+    throw UsageError("only one of --quiet and --verbose can be used");
   int toStandardOutput = (options.stats == "-") + (options.write == "-");
   for (const Output& output : options.outputs) toStandardOutput += output.path == "-";
-  toStandardOutput += options.explain || options.info || options.listNodes || options.listViewpoints || options.listShaders ||
-                      options.listEngines;
+  toStandardOutput += options.explain || options.info || options.listNodes ||
+                      options.listViewpoints || options.listShaders || options.listEngines;
   if (toStandardOutput > 1) throw UsageError("only one thing can go to standard output");
-  const int inspections =
-      options.info + options.listNodes + options.listViewpoints + options.listShaders + options.listEngines + options.explain;
+  const int inspections = options.info + options.listNodes + options.listViewpoints +
+                          options.listShaders + options.listEngines + options.explain;
   if (options.json && inspections == 0)
-    throw UsageError("--json goes with --info, --explain, --list-nodes, --list-viewpoints, --list-shaders or --list-engines");
+    throw UsageError("--json goes with --info, --explain, --list-nodes, --list-viewpoints, "
+                     "--list-shaders or --list-engines");
   if (inspections > 1)
-    throw UsageError(
-        "only one of --info, --explain, --list-nodes, --list-viewpoints, --list-shaders and --list-engines can be used");
+    throw UsageError("only one of --info, --explain, --list-nodes, --list-viewpoints, "
+                     "--list-shaders and --list-engines can be used");
   checkSequence(options);
   if (options.stats.size() && !options.makesPictures()) throw UsageError("--stats goes with -o");
-  if (options.render.record.size() && !options.makesPictures()) throw UsageError("--record goes with -o");
+  if (options.render.record.size() && !options.makesPictures())
+    throw UsageError("--record goes with -o");
   if (options.render.record.size() && (options.allViewpoints() || options.isSequence()))
-    throw UsageError("--record keeps one picture's scene: not with --viewpoint all, --frames or --turntable");
-  if (options.audit && options.isSequence()) throw UsageError("--audit is for one picture: not with --frames or --turntable");
+    throw UsageError(
+        "--record keeps one picture's scene: not with --viewpoint all, --frames or --turntable");
+  if (options.audit && options.isSequence())
+    throw UsageError("--audit is for one picture: not with --frames or --turntable");
   if ((options.audit || options.compare.size()) && toStandardOutput)
     throw UsageError("--audit and --compare write to standard output: nothing else can go there");
   if (options.audit && options.render.timeLimit > 0)
     throw UsageError("--audit: not with --time-limit, which makes no picture twice");
   checkCluster(options);
-  if (options.check && options.makesPictures()) throw UsageError("--check makes no picture: not with -o");
+  if (options.check && options.makesPictures())
+    throw UsageError("--check makes no picture: not with -o");
   if (options.makesPictures() && options.allViewpoints())
     for (const Output& output : options.outputs)
-      if (output.path == "-") throw UsageError("--viewpoint all needs file names, not standard output");
-  if (options.opensWindow() && options.allViewpoints()) throw UsageError("--viewpoint all goes with -o");
+      if (output.path == "-")
+        throw UsageError("--viewpoint all needs file names, not standard output");
+  if (options.opensWindow() && options.allViewpoints())
+    throw UsageError("--viewpoint all goes with -o");
   if (!options.recordInput.empty() && (!options.opensWindow() || !options.inputScript.empty()))
     throw UsageError("--record-input goes with the window, and not with --input");
   if (!options.inputScript.empty() && !options.makesPictures() && !options.opensWindow())
     throw UsageError("--input goes with -o, or with the window");
   if (!options.inputScript.empty() && options.opensWindow() && options.time)
     throw UsageError("only one of --input and --time can be used in the window");
-  if (!options.inputScript.empty() && (options.audit || options.turntable || options.allViewpoints()))
+  if (!options.inputScript.empty() &&
+      (options.audit || options.turntable || options.allViewpoints()))
     throw UsageError("--input: not with --audit, --turntable or --viewpoint all");
-  const bool needsWorld = !options.opensWindow() && !options.listNodes && !options.listKeys && !options.listShaders &&
-                          !options.listEngines && !options.help && !options.version;
+  const bool needsWorld = !options.opensWindow() && !options.listNodes && !options.listKeys &&
+                          !options.listShaders && !options.listEngines && !options.help &&
+                          !options.version;
   if (needsWorld && options.input.empty())
-    throw UsageError("a world (a .wrl file, or - for standard input) was expected; vv --help tells more");
+    throw UsageError(
+        "a world (a .wrl file, or - for standard input) was expected; vv --help tells more");
 }
 
 } // namespace
 
-// An argument that may be left out is given as NAME=VALUE to the parser: what follows counts only if it begins with a digit.
+// An argument that may be left out is given as NAME=VALUE to the parser: what follows counts only
+// if it begins with a digit.
 std::vector<std::string> withOptionalArguments(int argc, char** argv) {
   std::vector<std::string> out;
   for (int i = 1; i < argc; ++i) {
     out.emplace_back(argv[i]);
     for (const OptionInfo& option : optionTable()) {
       if (option.argument[0] != '[' || out.back() != longName(option)) continue;
-      const bool given = i + 1 < argc && argv[i + 1][0] >= '0' && argv[i + 1][0] <= '9' &&
-                         std::string_view(argv[i + 1]).find_first_not_of("0123456789") == std::string_view::npos;
+      const bool given =
+          i + 1 < argc && argv[i + 1][0] >= '0' && argv[i + 1][0] <= '9' &&
+          std::string_view(argv[i + 1]).find_first_not_of("0123456789") == std::string_view::npos;
       out.back() += std::string("=") + (given ? argv[++i] : "-");
       break;
     }
@@ -158,8 +180,10 @@ Options readCommandLine(int argc, char** argv) {
   std::vector<std::vector<std::string>> values(optionTable().size());
   std::vector<CLI::Option*> added;
   for (const OptionInfo& option : optionTable()) {
-    CLI::Option* one = *option.argument ? app.add_option(option.names, values[added.size()])->allow_extra_args(false)
-                                        : app.add_flag(option.names);
+    CLI::Option* one =
+        *option.argument
+            ? app.add_option(option.names, values[added.size()])->allow_extra_args(false)
+            : app.add_flag(option.names);
     added.push_back(one);
   }
   try {
@@ -170,7 +194,8 @@ Options readCommandLine(int argc, char** argv) {
   for (const std::string& extra : app.remaining())
     if (extra.size() > 1 && extra[0] == '-') throw UsageError(unknownOption(extra));
   if (inputs.size() > 1) throw UsageError(secondFileHint(inputs[0], inputs[1]));
-  if (!app.remaining().empty()) throw UsageError(fmt::format("\"{}\" was not expected", app.remaining()[0]));
+  if (!app.remaining().empty())
+    throw UsageError(fmt::format("\"{}\" was not expected", app.remaining()[0]));
   if (!inputs.empty()) options.input = inputs[0];
   for (size_t i = 0; i < added.size(); ++i) {
     const OptionInfo& option = optionTable()[i];
@@ -184,10 +209,13 @@ Options readCommandLine(int argc, char** argv) {
   checkTogether(options);
   if (!options.inputScript.empty()) {
     options.script = std::make_shared<InputScript>(readInputScript(options.inputScript));
-    if (!options.time && !options.frames && !options.opensWindow()) options.time = options.script->end;
+    if (!options.time && !options.frames && !options.opensWindow())
+      options.time = options.script->end;
   }
   const picture::RenderSettings& render = options.render;
-  options.render.samples = options.samples.value_or(render.timeLimit > 0 ? 65536 : render.error > 0 ? 4096 : render.samples);
+  options.render.samples = options.samples.value_or(render.timeLimit > 0 ? 65536
+                                                    : render.error > 0   ? 4096
+                                                                         : render.samples);
   return options;
 }
 
@@ -216,26 +244,33 @@ std::string wrapped(std::string_view text, size_t indent, size_t width) {
 
 std::string helpText() {
   constexpr size_t indent = 26, width = 100;
-  std::string out = "vv: renders VRML97 worlds.\n\n"
-                    "  vv world.wrl                    a window to look at it; F1 there lists the keys\n"
-                    "  vv world.wrl -o picture.png     first viewpoint, or the whole world in view; shadows; 16 samples a pixel\n"
-                    "  vv world.wrl --check            say what is wrong with the world\n\n"
-                    "FILE is .wrl, .wrz or .wrl.gz; - is standard input.\n";
+  std::string out =
+      "vv: renders VRML97 worlds.\n\n"
+      "  vv world.wrl                    a window to look at it; F1 there lists the keys\n"
+      "  vv world.wrl -o picture.png     first viewpoint, or the whole world in view; shadows; 16 "
+      "samples a pixel\n"
+      "  vv world.wrl --check            say what is wrong with the world\n\n"
+      "FILE is .wrl, .wrz or .wrl.gz; - is standard input.\n";
   const char* group = "";
   for (const OptionInfo& option : optionTable()) {
     if (std::string_view(group) != option.group) out += fmt::format("\n{}\n", group = option.group);
     std::string head = "  ";
-    for (std::string_view name : split(option.names, ',')) head += fmt::format("{}{}", head.size() > 2 ? ", " : "", name);
+    for (std::string_view name : split(option.names, ','))
+      head += fmt::format("{}{}", head.size() > 2 ? ", " : "", name);
     if (*option.argument) head += fmt::format(" {}", option.argument);
     out += head;
-    out += head.size() + 1 < indent ? std::string(indent - head.size(), ' ') : "\n" + std::string(indent, ' ');
+    out += head.size() + 1 < indent ? std::string(indent - head.size(), ' ')
+                                    : "\n" + std::string(indent, ' ');
     out += wrapped(option.text, indent, width - indent) + "\n";
   }
-  return out + "\nExit codes: 0 done, 1 the picture failed, 2 usage, 3 the world is missing or unusable, 4 problems found by "
+  return out + "\nExit codes: 0 done, 1 the picture failed, 2 usage, 3 the world is missing or "
+               "unusable, 4 problems found by "
                "--check or\n"
-               "--strict, 5 a plug-in or a texture is missing under --strict, 6 too few workers under --require-workers, 75 try "
+               "--strict, 5 a plug-in or a texture is missing under --strict, 6 too few workers "
+               "under --require-workers, 75 try "
                "again,\n"
-               "130 interrupted (what was finished is saved; a second interrupt ends at once; SIGUSR1 saves and goes on).\n";
+               "130 interrupted (what was finished is saved; a second interrupt ends at once; "
+               "SIGUSR1 saves and goes on).\n";
 }
 
 } // namespace vv

@@ -1,5 +1,5 @@
-// options.h: what the command line asks for, and the one table of options that reads it and writes --help.
-// Called by main() once. [one thread]
+// options.h: what the command line asks for, and the one table of options that reads it and writes
+// --help. Called by main() once. [one thread]
 #pragma once
 
 #include <memory>
@@ -20,7 +20,8 @@ namespace vv {
 struct Output {
   std::string path; // "-": standard output
   picture::Format format = picture::Format::png;
-  picture::FilmKind film = picture::FilmKind::none; // else a file of all pictures of a sequence, and no format
+  picture::FilmKind film =
+      picture::FilmKind::none; // else a file of all pictures of a sequence, and no format
 };
 
 struct Options {
@@ -31,7 +32,8 @@ struct Options {
   std::optional<int> samples; // as asked for; render.samples is what follows
   picture::View view;
   std::optional<double> time;  // seconds since the world was loaded
-  std::optional<double> epoch; // seconds since 1970 when it is loaded; none: xvrml::worldEpoch, in the window the real time
+  std::optional<double> epoch; // seconds since 1970 when it is loaded; none: xvrml::worldEpoch, in
+                               // the window the real time
   std::optional<FrameRange> frames;
   double fps = 30;                      // of frames and films; also the steps of the world's clock
   int turntable = 0;                    // pictures around the world; 0: none
@@ -40,8 +42,8 @@ struct Options {
   std::string cameraShader;             // Class:param=value
   std::string viewpoint;                // as asked for: a name, a number or "all"
   bool check = false, strict = false;
-  bool info = false, listNodes = false, listViewpoints = false, listShaders = false, listEngines = false, explain = false,
-       json = false;
+  bool info = false, listNodes = false, listViewpoints = false, listShaders = false,
+       listEngines = false, explain = false, json = false;
   bool watch = false;
   std::string inputScript, recordInput;      // files of what a user does; empty: none
   std::shared_ptr<const InputScript> script; // what inputScript holds
@@ -59,14 +61,14 @@ struct Options {
   bool allViewpoints() const { return viewpoint == "all"; }
   bool makesPictures() const { return !outputs.empty() || !compare.empty() || audit > 0; }
   bool opensWindow() const {
-    return !makesPictures() && !check && !info && !listNodes && !listViewpoints && !listShaders && !listEngines && !listKeys &&
-           !explain && write.empty();
+    return !makesPictures() && !check && !info && !listNodes && !listViewpoints && !listShaders &&
+           !listEngines && !listKeys && !explain && write.empty();
   }
   bool isSequence() const { return frames || turntable > 0; }
 };
 
-// A row of the table. `argument` is empty for a switch, in brackets if it may be left out: then the value is "". `apply` throws
-// UsageError.
+// A row of the table. `argument` is empty for a switch, in brackets if it may be left out: then the
+// value is "". `apply` throws UsageError.
 struct OptionInfo {
   const char* names; // "-o,--output"
   const char* argument;

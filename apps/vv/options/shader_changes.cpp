@@ -1,4 +1,3 @@
-// shader_changes.cpp: see shader_changes.h.
 #include "shader_changes.h"
 
 #include <map>
@@ -23,13 +22,15 @@ using namespace xvrml;
 }
 
 Node& findNode(const std::string& text, const std::string& name, const World& world) {
-  if (const auto found = world.scope.names.find(name); found != world.scope.names.end()) return *found->second;
+  if (const auto found = world.scope.names.find(name); found != world.scope.names.end())
+    return *found->second;
   std::vector<std::string> known;
   for (const auto& [one, node] : world.scope.names) known.push_back(one);
   const std::string near = picture::nearest(name, known);
   fail(text, known.empty()
                  ? "the world names no node with DEF; * stands for all shapes"
-                 : fmt::format("no node is called {}{}", name, near.empty() ? "" : fmt::format("; did you mean {}?", near)));
+                 : fmt::format("no node is called {}{}", name,
+                               near.empty() ? "" : fmt::format("; did you mean {}?", near)));
 }
 
 // The parts of an appearance, as written.
@@ -45,7 +46,8 @@ Parts partsOf(Node* appearance) {
   return {};
 }
 
-// All shapes of the world; below: those that hold, or stand below, one of these nodes (null: all without a shader).
+// All shapes of the world; below: those that hold, or stand below, one of these nodes (null: all
+// without a shader).
 std::vector<nodes::Shape*> shapesOf(const World& world, const std::set<const Node*>* nodes) {
   std::vector<nodes::Shape*> shapes;
   forEachNode(world, [&](const Node& node) {
@@ -53,8 +55,8 @@ std::vector<nodes::Shape*> shapesOf(const World& world, const std::set<const Nod
     if (!shape) return;
     Node* appearance = renderedNode(shape->appearance.get());
     const Parts parts = partsOf(appearance);
-    if (nodes ? nodes->contains(shape) || nodes->contains(shape->appearance.get()) || nodes->contains(appearance) ||
-                    nodes->contains(parts.material.get())
+    if (nodes ? nodes->contains(shape) || nodes->contains(shape->appearance.get()) ||
+                    nodes->contains(appearance) || nodes->contains(parts.material.get())
               : !parts.shader)
       shapes.push_back(shape);
   });
@@ -86,7 +88,8 @@ void give(const std::vector<nodes::Shape*>& shapes, const NodeRef& shader, World
 
 } // namespace
 
-void changeShaders(const std::vector<std::string>& texts, const std::string& shaderPath, World& world) {
+void changeShaders(const std::vector<std::string>& texts, const std::string& shaderPath,
+                   World& world) {
   for (const std::string& text : texts) {
     const size_t equals = text.find('=');
     if (equals == text.npos || equals == 0) fail(text, "DEF=CLASS[:PARAM=VALUE...] was expected");
@@ -102,7 +105,8 @@ void changeShaders(const std::vector<std::string>& texts, const std::string& sha
       shader = readShader(text.substr(equals + 1), "--shader", RT_SURFACE, shaderPath);
     } catch (const UsageError& error) { throw Failure{exitUsage, error.what()}; }
     const std::vector<nodes::Shape*> shapes = shapesOf(world, name == "*" ? nullptr : &below);
-    if (shapes.empty() && name != "*") fail(text, fmt::format("no shape uses {} or stands below it", name));
+    if (shapes.empty() && name != "*")
+      fail(text, fmt::format("no shape uses {} or stands below it", name));
     give(shapes, shader, world);
   }
 }

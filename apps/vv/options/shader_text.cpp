@@ -1,4 +1,3 @@
-// shader_text.cpp: see shader_text.h.
 #include "shader_text.h"
 
 #include <algorithm>
@@ -31,7 +30,8 @@ struct Written {
 
 bool startsSetting(std::string_view part) {
   size_t i = 0;
-  while (i < part.size() && (std::isalnum(static_cast<unsigned char>(part[i])) || part[i] == '_')) ++i;
+  while (i < part.size() && (std::isalnum(static_cast<unsigned char>(part[i])) || part[i] == '_'))
+    ++i;
   return i > 0 && i < part.size() && part[i] == '=';
 }
 
@@ -42,11 +42,13 @@ Written readWritten(const std::string& text) {
   const size_t slash = head.find('/');
   written.library = slash == head.npos ? "" : head.substr(0, slash);
   written.name = slash == head.npos ? head : head.substr(slash + 1);
-  if (written.name.empty()) throw UsageError(fmt::format("the name of a shader class was expected, not \"{}\"", text));
+  if (written.name.empty())
+    throw UsageError(fmt::format("the name of a shader class was expected, not \"{}\"", text));
   for (size_t i = 1; i < parts.size(); ++i) {
     if (startsSetting(parts[i])) {
       const size_t equals = parts[i].find('=');
-      written.settings.push_back({std::string(parts[i].substr(0, equals)), std::string(parts[i].substr(equals + 1))});
+      written.settings.push_back(
+          {std::string(parts[i].substr(0, equals)), std::string(parts[i].substr(equals + 1))});
     } else if (!written.settings.empty()) {
       written.settings.back().value += ":" + std::string(parts[i]);
     } else {
@@ -64,7 +66,8 @@ std::vector<float> numbers(const std::string& text) {
     float value = 0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
     if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value))
-      throw UsageError(fmt::format("numbers, separated by commas, were expected, not \"{}\"", text));
+      throw UsageError(
+          fmt::format("numbers, separated by commas, were expected, not \"{}\"", text));
     list.push_back(value);
   }
   return list;
@@ -81,10 +84,12 @@ size_t countOf(RTenum type) {
   }
 }
 
-// A place of the user's own: as a URL relative to the current folder, which a world's own rules let through.
+// A place of the user's own: as a URL relative to the current folder, which a world's own rules let
+// through.
 std::string fileUrl(const std::string& path) {
   std::string url;
-  for (const char c : std::filesystem::path(path).is_absolute() ? std::filesystem::relative(path).string() : path)
+  for (const char c :
+       std::filesystem::path(path).is_absolute() ? std::filesystem::relative(path).string() : path)
     url += c == '%' ? "%25" : std::string(1, c);
   return url;
 }
@@ -99,16 +104,19 @@ std::string optionOf(const RTparameterInfo& info, const std::string& value) {
   switch (info.type) {
   case RT_PARAM_TEXTURE: return fmt::format("texture {} {}", info.name, quoted(fileUrl(value)));
   case RT_PARAM_STRING:
-    if (value.starts_with('@')) return fmt::format("file {} {}", info.name, quoted(fileUrl(value.substr(1))));
+    if (value.starts_with('@'))
+      return fmt::format("file {} {}", info.name, quoted(fileUrl(value.substr(1))));
     return fmt::format("string {} {}", info.name, quoted(value));
-  case RT_PARAM_INT: return fmt::format("1i {} {}", info.name, readInteger(value, INT32_MIN, INT32_MAX));
+  case RT_PARAM_INT:
+    return fmt::format("1i {} {}", info.name, readInteger(value, INT32_MIN, INT32_MAX));
   default: break;
   }
   std::vector<float> list = numbers(value);
   const size_t count = countOf(info.type);
   if (info.type == RT_PARAM_COLOR && list.size() == 1) list.resize(3, list[0]);
   if (info.type != RT_PARAM_FLOATS && list.size() != count)
-    throw UsageError(fmt::format("{} number{} expected, not \"{}\"", count, count == 1 ? " was" : "s were", value));
+    throw UsageError(fmt::format("{} number{} expected, not \"{}\"", count,
+                                 count == 1 ? " was" : "s were", value));
   std::string option = info.type == RT_PARAM_FLOATS ? "floats " : fmt::format("{}f ", count);
   option += info.name;
   for (const float x : list) {
@@ -123,7 +131,8 @@ std::string optionOf(const RTparameterInfo& info, const std::string& value) {
 struct Lookup {
   RTcontext context;
   explicit Lookup(const std::string& shaderPath) {
-    const std::string config = "backend=null" + (shaderPath.empty() ? "" : " shaderpath=\"" + shaderPath + "\"");
+    const std::string config =
+        "backend=null" + (shaderPath.empty() ? "" : " shaderpath=\"" + shaderPath + "\"");
     context = rtNewContext(config.c_str());
     if (!context) throw UsageError((rtGetError(), rtGetErrorMessage()));
   }
@@ -132,15 +141,20 @@ struct Lookup {
   Lookup& operator=(const Lookup&) = delete;
 };
 
-std::vector<std::string> optionsOf(const Written& written, RTenum role, const std::string& shaderPath) {
+std::vector<std::string> optionsOf(const Written& written, RTenum role,
+                                   const std::string& shaderPath) {
   const Lookup lookup(shaderPath);
-  const RTid shaderClass = rtNewShaderClass(written.name.c_str(), written.library.empty() ? nullptr : written.library.c_str());
-  if (shaderClass == 0) throw UsageError(std::string((rtGetError(), rtGetErrorMessage())) + "; vv --list-shaders lists them");
+  const RTid shaderClass = rtNewShaderClass(
+      written.name.c_str(), written.library.empty() ? nullptr : written.library.c_str());
+  if (shaderClass == 0)
+    throw UsageError(std::string((rtGetError(), rtGetErrorMessage())) +
+                     "; vv --list-shaders lists them");
   RTenum found = 0;
   int count = 0;
   rtGetShaderClass(shaderClass, &found, &count);
   if (found != role)
-    throw UsageError(fmt::format("{} is a shader for a {}, not for a {}", written.name, roleName(found), roleName(role)));
+    throw UsageError(fmt::format("{} is a shader for a {}, not for a {}", written.name,
+                                 roleName(found), roleName(role)));
   std::vector<RTparameterInfo> infos(size_t(std::max(count, 0)));
   std::vector<std::string> names, options;
   for (size_t i = 0; i < infos.size(); ++i) {
@@ -178,11 +192,13 @@ const char* roleName(RTenum role) {
 }
 
 const char* parameterTypeName(RTenum type) {
-  constexpr const char* names[] = {"int", "float", "vec2", "vec3", "vec4", "color", "matrix", "floats", "string", "texture"};
+  constexpr const char* names[] = {"int",   "float",  "vec2",   "vec3",   "vec4",
+                                   "color", "matrix", "floats", "string", "texture"};
   return type >= RT_PARAM_INT && type <= RT_PARAM_TEXTURE ? names[type - RT_PARAM_INT] : "?";
 }
 
-xvrml::NodeRef readShader(const std::string& text, const char* option, RTenum role, const std::string& shaderPath) {
+xvrml::NodeRef readShader(const std::string& text, const char* option, RTenum role,
+                          const std::string& shaderPath) {
   try {
     const Written written = readWritten(text);
     const xvrml::NodeType& type = *xvrml::findNodeType("ORTShader");
@@ -193,7 +209,9 @@ xvrml::NodeRef readShader(const std::string& text, const char* option, RTenum ro
     shader.options = optionsOf(written, role, shaderPath);
     shader.source.file = std::make_shared<std::string>(option);
     return node;
-  } catch (const UsageError& error) { throw UsageError(fmt::format("{} {}: {}", option, text, error.what())); }
+  } catch (const UsageError& error) {
+    throw UsageError(fmt::format("{} {}: {}", option, text, error.what()));
+  }
 }
 
 } // namespace vv

@@ -1,4 +1,3 @@
-// values.cpp: see values.h.
 #include "values.h"
 
 #include <algorithm>
@@ -43,14 +42,16 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
 long long readInteger(std::string_view text, long long minimum, long long maximum) {
   long long value = 0;
   if (!whole(text, value) || value < minimum || value > maximum)
-    throw UsageError(fmt::format("a whole number from {} to {} was expected, not \"{}\"", minimum, maximum, text));
+    throw UsageError(fmt::format("a whole number from {} to {} was expected, not \"{}\"", minimum,
+                                 maximum, text));
   return value;
 }
 
 double readNumber(std::string_view text, double minimum, double maximum) {
   double value = 0;
   if (!whole(text, value) || !(value > minimum && value < maximum))
-    throw UsageError(fmt::format("a number between {} and {} was expected, not \"{}\"", minimum, maximum, text));
+    throw UsageError(
+        fmt::format("a number between {} and {} was expected, not \"{}\"", minimum, maximum, text));
   return value;
 }
 
@@ -64,8 +65,10 @@ double readSeconds(std::string_view text) {
 double readShare(std::string_view text) {
   const bool percent = text.ends_with('%');
   double value = 0;
-  if (!whole(text.substr(0, text.size() - (percent ? 1 : 0)), value) || !(value > 0 && value <= (percent ? 100 : 1)))
-    throw UsageError(fmt::format("a number above 0 up to 1, or up to 100%, was expected, not \"{}\"", text));
+  if (!whole(text.substr(0, text.size() - (percent ? 1 : 0)), value) ||
+      !(value > 0 && value <= (percent ? 100 : 1)))
+    throw UsageError(
+        fmt::format("a number above 0 up to 1, or up to 100%, was expected, not \"{}\"", text));
   return percent ? value / 100 : value;
 }
 
@@ -86,8 +89,9 @@ FrameRange readFrames(std::string_view text) {
   range.last = range.first;
   if (dash != numbers.npos) fine = fine && good(numbers.substr(dash + 1), range.first, range.last);
   if (!fine)
-    throw UsageError(
-        fmt::format("FIRST-LAST or FIRST-LAST/STEP was expected, with whole numbers up to {}, not \"{}\"", most, text));
+    throw UsageError(fmt::format(
+        "FIRST-LAST or FIRST-LAST/STEP was expected, with whole numbers up to {}, not \"{}\"", most,
+        text));
   return range;
 }
 
@@ -105,7 +109,8 @@ uint64_t readCount(std::string_view text) {
   }
   uint64_t value = 0;
   if (!whole(digits, value) || value > (std::numeric_limits<uint64_t>::max() >> shift))
-    throw UsageError(fmt::format("a count was expected (digits, then k, M or G if wanted), not \"{}\"", text));
+    throw UsageError(
+        fmt::format("a count was expected (digits, then k, M or G if wanted), not \"{}\"", text));
   return value << shift;
 }
 
@@ -120,7 +125,8 @@ void readSize(std::string_view text, int& width, int& height) {
   int w = 0, h = 0;
   const bool read = parts.size() == 2 && whole(parts[0], w) && whole(parts[1], h);
   if (!read || w < 1 || h < 1 || w > 65536 || h > 65536 || int64_t(w) * h > (int64_t(1) << 28))
-    throw UsageError(fmt::format("a size such as 640x480 was expected (each side 1 to 65536, at most 2^28 pixels), not \"{}\"{}",
+    throw UsageError(fmt::format("a size such as 640x480 was expected (each side 1 to 65536, at "
+                                 "most 2^28 pixels), not \"{}\"{}",
                                  text, sizeHint(text)));
   width = w;
   height = h;
@@ -139,16 +145,19 @@ picture::LookAt readCamera(std::string_view text) {
       camera.saysUp = true;
     }
   } catch (const UsageError&) {
-    throw UsageError(
-        fmt::format("position, target and, if wanted, up vector as px,py,pz:tx,ty,tz:ux,uy,uz were expected, not \"{}\"", text));
+    throw UsageError(fmt::format("position, target and, if wanted, up vector as "
+                                 "px,py,pz:tx,ty,tz:ux,uy,uz were expected, not \"{}\"",
+                                 text));
   }
-  if (!picture::lookAtMatrix(camera, matrix)) throw UsageError("position and target are the same point");
+  if (!picture::lookAtMatrix(camera, matrix))
+    throw UsageError("position and target are the same point");
   return camera;
 }
 
 xvrml::Axis readAxis(std::string_view text) {
   std::string small(text);
-  std::transform(small.begin(), small.end(), small.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  std::transform(small.begin(), small.end(), small.begin(),
+                 [](unsigned char c) { return char(std::tolower(c)); });
   const std::optional<xvrml::Axis> axis = picture::axisNamed(small);
   if (!axis) throw UsageError(fmt::format("x, y, z, -x, -y or -z was expected, not \"{}\"", text));
   return *axis;

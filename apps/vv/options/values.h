@@ -1,4 +1,5 @@
-// values.h: strict readers of option values. Each throws UsageError saying what was expected. [any thread]
+// values.h: strict readers of option values. Each throws UsageError saying what was expected. [any
+// thread]
 #pragma once
 
 #include <cstdint>
@@ -41,8 +42,8 @@ struct FrameRange {
 
 long long readInteger(std::string_view text, long long minimum, long long maximum);
 double readNumber(std::string_view text, double minimum, double maximum); // both exclusive
-double readSeconds(std::string_view text);                                  // from 0 to a million
-double readShare(std::string_view text);                                  // above 0 up to 1, or a percentage
+double readSeconds(std::string_view text);                                // from 0 to a million
+double readShare(std::string_view text); // above 0 up to 1, or a percentage
 // A byte or item count, also with the suffixes k, M, G (powers of 1024).
 uint64_t readCount(std::string_view text);
 bool readSwitch(std::string_view text); // on, off

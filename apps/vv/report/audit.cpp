@@ -1,4 +1,3 @@
-// audit.cpp: see audit.h.
 #include "audit.h"
 
 #include <algorithm>
@@ -20,10 +19,12 @@ picture::Picture readReference(const std::string& path, int width, int height) {
   picture::Picture picture;
   try {
     picture = picture::readExr(path);
-  } catch (const std::exception& error) { throw Failure{exitInput, std::string("--compare: ") + error.what()}; }
+  } catch (const std::exception& error) {
+    throw Failure{exitInput, std::string("--compare: ") + error.what()};
+  }
   if (picture.width != width || picture.height != height)
-    throw Failure{exitInput,
-                  fmt::format("--compare: {} is {}x{}, the picture {}x{}", path, picture.width, picture.height, width, height)};
+    throw Failure{exitInput, fmt::format("--compare: {} is {}x{}, the picture {}x{}", path,
+                                         picture.width, picture.height, width, height)};
   return picture;
 }
 
@@ -38,10 +39,12 @@ std::vector<double> coloursOf(const picture::Picture& picture) {
 
 std::string compareText(const picture::Picture& made, const std::string& path) {
   const picture::Picture reference = readReference(path, made.width, made.height);
-  const picture::Difference d = picture::compare(made.planes.at(RT_RGBA), reference.planes.at(RT_RGBA));
+  const picture::Difference d =
+      picture::compare(made.planes.at(RT_RGBA), reference.planes.at(RT_RGBA));
   std::string text = fmt::format("compared with {}\n", path);
   text += fmt::format("rmse      {:.6g}\n", d.rmse);
-  text += fmt::format("relmse    {:.6g}, {:.6g} without the highest 0.1 %\n", d.relMse, d.trimmedRelMse);
+  text += fmt::format("relmse    {:.6g}, {:.6g} without the highest 0.1 %\n", d.relMse,
+                      d.trimmedRelMse);
   text += fmt::format("bias      {:+.6g} +- {:.6g}\n", d.bias, d.biasInterval);
   text += fmt::format("largest   {:.6g}, 99.9 % are below {:.6g}\n", d.largest, d.p999);
   if (d.notFinite) text += fmt::format("left out  {} pixels that are not finite\n", d.notFinite);
@@ -59,7 +62,8 @@ bool Audit::run(const picture::View& view) {
   if (!options_.compare.empty()) { // before the work
     const picture::Picture other = readReference(options_.compare, width, height);
     reference.colours = coloursOf(other);
-    if (const auto bars = other.planes.find(RT_ERROR); bars != other.planes.end()) reference.half = bars->second;
+    if (const auto bars = other.planes.find(RT_ERROR); bars != other.planes.end())
+      reference.half = bars->second;
     reference_ = options_.compare + (reference.half.empty() ? "" : " with its own error bars");
   }
   std::vector<picture::Shot> shots;
@@ -68,13 +72,14 @@ bool Audit::run(const picture::View& view) {
       s.seed = options_.render.seed + i;
       s.channels = options_.render.channels | RT_ERROR | RT_TRUST | RT_SAMPLES | RT_VARIANCE;
     });
-    picture::RenderResult result = render(view, fmt::format("picture {} of {}", i + 1, options_.audit));
+    picture::RenderResult result =
+        render(view, fmt::format("picture {} of {}", i + 1, options_.audit));
     if (result.interrupted) return false;
     auto& planes = result.picture.planes;
     double samples = 0;
     for (float n : planes[RT_SAMPLES]) samples += double(n) / double(planes[RT_SAMPLES].size());
-    shots.push_back({planes[RT_RGBA], planes[RT_ERROR], planes[RT_TRUST], planes[RT_VARIANCE], samples, result.stats.errorMean,
-                     result.stats.errorMeanInterval});
+    shots.push_back({planes[RT_RGBA], planes[RT_ERROR], planes[RT_TRUST], planes[RT_VARIANCE],
+                     samples, result.stats.errorMean, result.stats.errorMeanInterval});
     samples_ += samples / options_.audit;
     if (i == 0) first_ = std::move(result.picture);
   }
@@ -100,13 +105,16 @@ bool Audit::run(const picture::View& view) {
 std::string Audit::whatIsWrong() const {
   const picture::Coverage& c = coverage_;
   if (c.trusted * 20 < c.pixels) return "too few pixels are trusted to say anything";
-  if (c.intervals() > 0 && (c.share() + c.shareInterval() < .93 || c.share() - c.shareInterval() > .97))
+  if (c.intervals() > 0 &&
+      (c.share() + c.shareInterval() < .93 || c.share() - c.shareInterval() > .97))
     return "the coverage is not what was promised";
-  if (c.intervals() > 0 && c.worstTiles < .90) return "the coverage of the worst tiles is not what was promised";
+  if (c.intervals() > 0 && c.worstTiles < .90)
+    return "the coverage of the worst tiles is not what was promised";
   if (c.exact - c.exactHeld > c.exact / 100) return "exact pixels are not exact";
   // Of so many pictures fewer than nine in ten, by more than chance.
   const double shots = double(c.shots);
-  if (c.promiseShare() + 3 * std::sqrt(.09 / shots) < .9) return "the error of the pictures is not what was promised";
+  if (c.promiseShare() + 3 * std::sqrt(.09 / shots) < .9)
+    return "the error of the pictures is not what was promised";
   return "";
 }
 
@@ -114,19 +122,26 @@ bool Audit::good() const { return whatIsWrong().empty(); }
 
 std::string Audit::text() const {
   const picture::Coverage& c = coverage_;
-  std::string text = fmt::format("{} pictures of {:.5g} samples a pixel against {}\n", options_.audit, samples_, reference_);
-  text +=
-      fmt::format("trusted     {:.1f} % of the pixels; {:.1f} % are called exact, {} of these {} wrong\n", 100 * c.trustedShare(),
-                  100 * double(c.exact) / double(c.pixels), c.exact - c.exactHeld, c.exact - c.exactHeld == 1 ? "is" : "are");
+  std::string text = fmt::format("{} pictures of {:.5g} samples a pixel against {}\n",
+                                 options_.audit, samples_, reference_);
+  text += fmt::format(
+      "trusted     {:.1f} % of the pixels; {:.1f} % are called exact, {} of these {} wrong\n",
+      100 * c.trustedShare(), 100 * double(c.exact) / double(c.pixels), c.exact - c.exactHeld,
+      c.exact - c.exactHeld == 1 ? "is" : "are");
   if (c.intervals())
-    text +=
-        fmt::format("coverage    {:.4f} +- {:.4f} of the trusted 95 % intervals (wanted: 0.93 to 0.97); of all pixels {:.4f}\n"
-                    "tiles       5 % of those of {}x{} pixels have less than {:.3f} (wanted: at least 0.90)\n",
-                    c.share(), c.shareInterval(), double(c.held) / double(c.pixels), tileEdge, tileEdge, c.worstTiles);
-  text += fmt::format("mean error  said {:.5g} +- {:.2g}, was {:.5g}; it was what was said in {} of {} pictures\n", c.promised,
-                      c.promisedInterval, c.meanError, c.promiseHeld, c.shots);
-  text += fmt::format("bias        {:+.2g} +- {:.2g} of the picture's mean\n", c.bias, c.biasInterval);
-  if (c.cost > 0) text += fmt::format("variance    {:.3g} of that of as many independent samples\n", c.cost);
+    text += fmt::format(
+        "coverage    {:.4f} +- {:.4f} of the trusted 95 % intervals (wanted: 0.93 to 0.97); of all "
+        "pixels {:.4f}\n"
+        "tiles       5 % of those of {}x{} pixels have less than {:.3f} (wanted: at least 0.90)\n",
+        c.share(), c.shareInterval(), double(c.held) / double(c.pixels), tileEdge, tileEdge,
+        c.worstTiles);
+  text += fmt::format(
+      "mean error  said {:.5g} +- {:.2g}, was {:.5g}; it was what was said in {} of {} pictures\n",
+      c.promised, c.promisedInterval, c.meanError, c.promiseHeld, c.shots);
+  text +=
+      fmt::format("bias        {:+.2g} +- {:.2g} of the picture's mean\n", c.bias, c.biasInterval);
+  if (c.cost > 0)
+    text += fmt::format("variance    {:.3g} of that of as many independent samples\n", c.cost);
   const std::string wrong = whatIsWrong();
   return text + (wrong.empty() ? "the error bars hold\n" : "they do not hold: " + wrong + "\n");
 }

@@ -1,13 +1,13 @@
-// audit.h: pictures compared with a reference: how far one is off (--compare), and whether the error bars of many hold (--audit).
-// [one thread]
+// audit.h: pictures compared with a reference: how far one is off (--compare), and whether the
+// error bars of many hold (--audit). [one thread]
 #pragma once
 
 #include <functional>
 #include <string>
 
-#include "options/options.h"
 #include "libpicture/coverage.h"
 #include "libpicture/renderer.h"
+#include "options/options.h"
 
 namespace vv {
 
@@ -16,9 +16,12 @@ std::string compareText(const picture::Picture& made, const std::string& path);
 
 class Audit {
  public:
-  Audit(const Options& options, picture::Renderer& renderer) : options_(options), renderer_(renderer) {}
+  Audit(const Options& options, picture::Renderer& renderer)
+      : options_(options), renderer_(renderer) {}
   // Called before each picture with what it is, and with "" after the last.
-  void setProgress(std::function<void(const std::string&)> progress) { progress_ = std::move(progress); }
+  void setProgress(std::function<void(const std::string&)> progress) {
+    progress_ = std::move(progress);
+  }
   // false: interrupted.
   bool run(const picture::View& view);
   bool good() const;

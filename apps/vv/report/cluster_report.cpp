@@ -1,4 +1,3 @@
-// cluster_report.cpp: see cluster_report.h.
 #include "cluster_report.h"
 
 #include <algorithm>
@@ -20,10 +19,12 @@ std::string bytesText(uint64_t bytes) {
 }
 
 std::string lineOf(const std::string& name, const RTworker& w) {
-  std::string line = fmt::format("{:<24} {:>7} {:>9} {:>9.1f}", name, w.threads, w.jobs, double(w.rays) * 1e-6);
-  if (picture::isHere(w)) return line + fmt::format(" {:>9} {:>9} {:>9} {:>7.1f} s", "", "", "", w.busySeconds);
-  line += fmt::format(" {:>9} {:>9} {:>6.1f} ms {:>7.1f} s", bytesText(w.bytesSent), bytesText(w.bytesReceived), w.latency * 1e3,
-                      w.busySeconds);
+  std::string line =
+      fmt::format("{:<24} {:>7} {:>9} {:>9.1f}", name, w.threads, w.jobs, double(w.rays) * 1e-6);
+  if (picture::isHere(w))
+    return line + fmt::format(" {:>9} {:>9} {:>9} {:>7.1f} s", "", "", "", w.busySeconds);
+  line += fmt::format(" {:>9} {:>9} {:>6.1f} ms {:>7.1f} s", bytesText(w.bytesSent),
+                      bytesText(w.bytesReceived), w.latency * 1e3, w.busySeconds);
   if (w.late) line += fmt::format("  {} late", w.late);
   if (w.lost) line += fmt::format("  {} lost", w.lost);
   return line + (w.alive ? "" : "  gone");
@@ -39,7 +40,9 @@ void joinCluster(Options& options) {
   } catch (const picture::RenderError& error) { throw Failure{exitUsage, error.what()}; }
 }
 
-int exitCodeOf(const picture::RenderError& error) { return error.code == RT_CLUSTER_ERROR ? exitNoWorkers : exitRender; }
+int exitCodeOf(const picture::RenderError& error) {
+  return error.code == RT_CLUSTER_ERROR ? exitNoWorkers : exitRender;
+}
 
 std::string workersText(const std::vector<RTworker>& workers) {
   std::set<std::string_view> names; // who comes back is there twice
@@ -55,9 +58,12 @@ std::string workersText(const std::vector<RTworker>& workers) {
   return fmt::format("{} worker{}", alive, alive == 1 ? "" : "s");
 }
 
-std::string workersText(const picture::Cluster* cluster) { return cluster ? workersText(cluster->workers()) : ""; }
+std::string workersText(const picture::Cluster* cluster) {
+  return cluster ? workersText(cluster->workers()) : "";
+}
 
-std::vector<std::string> noteLines(const std::vector<picture::ClusterNote>& notes, bool verbose, bool quiet) {
+std::vector<std::string> noteLines(const std::vector<picture::ClusterNote>& notes, bool verbose,
+                                   bool quiet) {
   std::vector<std::string> lines;
   for (const picture::ClusterNote& note : notes) {
     if (note.level < (quiet ? 3 : verbose ? 1 : 2)) continue;
@@ -71,13 +77,16 @@ std::vector<std::string> clusterLines(const picture::RenderResult& result) {
   if (result.workers.empty()) return {};
   const RTstats& s = result.stats;
   std::vector<std::string> lines;
-  lines.push_back(fmt::format("vv: cluster: {}; {} of {} jobs by workers, {} handed out again, {} in vain, {} sent, {} received",
-                              workersText(result.workers), s.tilesRemote, s.tilesRemote + s.tilesLocal, s.reissued, s.duplicates,
+  lines.push_back(fmt::format("vv: cluster: {}; {} of {} jobs by workers, {} handed out again, {} "
+                              "in vain, {} sent, {} received",
+                              workersText(result.workers), s.tilesRemote,
+                              s.tilesRemote + s.tilesLocal, s.reissued, s.duplicates,
                               bytesText(s.bytesSent), bytesText(s.bytesReceived)));
-  lines.push_back(fmt::format("  {:<24} {:>7} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9}", "machine", "threads", "jobs", "Mray", "sent",
-                              "received", "latency", "busy"));
+  lines.push_back(fmt::format("  {:<24} {:>7} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9}", "machine",
+                              "threads", "jobs", "Mray", "sent", "received", "latency", "busy"));
   for (const RTworker& worker : result.workers)
-    lines.push_back("  " + lineOf(picture::isHere(worker) ? "this process" : oneLine(worker.name), worker));
+    lines.push_back(
+        "  " + lineOf(picture::isHere(worker) ? "this process" : oneLine(worker.name), worker));
   return lines;
 }
 

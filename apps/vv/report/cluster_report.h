@@ -1,5 +1,5 @@
-// cluster_report.h: what vv tells of the machines that help: in the progress line, of those that come and go, and of the work
-// that each has done. [main thread]
+// cluster_report.h: what vv tells of the machines that help: in the progress line, of those that
+// come and go, and of the work that each has done. [main thread]
 #pragma once
 
 #include <string>
@@ -9,8 +9,8 @@
 
 namespace vv {
 
-// Begins to call the workers that the options name: what is wrong with these is said before a world is read, and workers join
-// meanwhile. Throws Failure.
+// Begins to call the workers that the options name: what is wrong with these is said before a world
+// is read, and workers join meanwhile. Throws Failure.
 void joinCluster(Options& options);
 // Of a picture that could not be made.
 int exitCodeOf(const picture::RenderError& error);
@@ -19,8 +19,10 @@ int exitCodeOf(const picture::RenderError& error);
 std::string workersText(const picture::Cluster* cluster);
 std::string workersText(const std::vector<RTworker>& workers);
 
-// What is to be said of what the engine tells of its workers: warnings; with verbose everything, with quiet errors.
-std::vector<std::string> noteLines(const std::vector<picture::ClusterNote>& notes, bool verbose, bool quiet);
+// What is to be said of what the engine tells of its workers: warnings; with verbose everything,
+// with quiet errors.
+std::vector<std::string> noteLines(const std::vector<picture::ClusterNote>& notes, bool verbose,
+                                   bool quiet);
 
 // A table: a line for each machine; empty without a cluster.
 std::vector<std::string> clusterLines(const picture::RenderResult& result);

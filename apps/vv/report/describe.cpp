@@ -1,4 +1,3 @@
-// describe.cpp: see describe.h.
 #include "describe.h"
 
 #include <cctype>
@@ -25,7 +24,8 @@ std::string text(const Rotation& v) { return fmt::format("{} {} {} {}", v.x, v.y
 std::string text(const NodeRef& v) { return v ? v->type().name + " { }" : "NULL"; }
 std::string text(const Image& v) {
   std::string out = fmt::format("{} {} {}", v.width, v.height, v.components);
-  for (size_t i = 0; v.components > 0 && i + size_t(v.components) <= v.pixels.size(); i += size_t(v.components)) {
+  for (size_t i = 0; v.components > 0 && i + size_t(v.components) <= v.pixels.size();
+       i += size_t(v.components)) {
     out += " 0x";
     for (size_t c = 0; c < size_t(v.components); ++c) out += fmt::format("{:02X}", v.pixels[i + c]);
   }
@@ -48,7 +48,8 @@ template <class T> std::string text(const std::vector<T>& list) {
 // Without recursion: a hostile world may be a thousand nodes deep.
 class Walk {
  public:
-  Walk(const std::function<void(const Node&)>& visit, const std::function<void(const Scope&)>& enter)
+  Walk(const std::function<void(const Node&)>& visit,
+       const std::function<void(const Scope&)>& enter)
       : visit_(visit), enter_(enter) {}
 
   void through(const Scope& scope) {
@@ -69,12 +70,15 @@ class Walk {
       visit_(*node);
       for (const FieldInfo& field : node->type().fields) {
         if (field.access != Access::field && field.access != Access::exposedField) continue;
-        if (field.type == FieldType::SFNode) todo_.push_back(static_cast<const SFNode*>(node->storage(field))->get());
+        if (field.type == FieldType::SFNode)
+          todo_.push_back(static_cast<const SFNode*>(node->storage(field))->get());
         if (field.type == FieldType::MFNode)
-          for (const NodeRef& child : *static_cast<const MFNode*>(node->storage(field))) todo_.push_back(child.get());
+          for (const NodeRef& child : *static_cast<const MFNode*>(node->storage(field)))
+            todo_.push_back(child.get());
       }
       if (auto* instance = dynamic_cast<const ProtoInstance*>(node)) add(instance->body);
-      if (const Scope* content = node->type().name == "Inline" ? inlineScope(*node) : nullptr) add(*content);
+      if (const Scope* content = node->type().name == "Inline" ? inlineScope(*node) : nullptr)
+        add(*content);
     }
   }
 
@@ -91,7 +95,9 @@ class Walk {
 
 } // namespace
 
-std::string version() { return fmt::format("{}.{}.{}", OPENRT_VERSION_MAJOR, OPENRT_VERSION_MINOR, OPENRT_VERSION_PATCH); }
+std::string version() {
+  return fmt::format("{}.{}.{}", OPENRT_VERSION_MAJOR, OPENRT_VERSION_MINOR, OPENRT_VERSION_PATCH);
+}
 
 std::string valueText(const Value& value) {
   return std::visit([](const auto& v) { return text(v); }, value);
@@ -119,14 +125,18 @@ std::string scriptProtocol(const std::vector<std::string>& urls) {
   size_t start = url.find_first_not_of(" \t\r\n");
   start = start == url.npos ? url.size() : start;
   size_t end = start;
-  while (end < url.size() && (std::isalnum(static_cast<unsigned char>(url[end])) || url[end] == '+' || url[end] == '-')) ++end;
+  while (end < url.size() &&
+         (std::isalnum(static_cast<unsigned char>(url[end])) || url[end] == '+' || url[end] == '-'))
+    ++end;
   std::string scheme = url.substr(start, end - start);
   for (char& c : scheme)
     if (c >= 'A' && c <= 'Z') c = char(c - 'A' + 'a');
-  const bool place = scheme == "http" || scheme == "https" || scheme == "ftp" || scheme == "file" || scheme == "urn";
+  const bool place = scheme == "http" || scheme == "https" || scheme == "ftp" || scheme == "file" ||
+                     scheme == "urn";
   if (end < url.size() && url[end] == ':' && end > start && !place) return scheme;
   static const std::pair<std::string_view, const char*> suffixes[] = {
-      {".js", "javascript"}, {".class", "java"}, {".jar", "java"}, {".vs", "vrmlscript"}, {".tcl", "tcl"}, {".py", "python"}};
+      {".js", "javascript"}, {".class", "java"}, {".jar", "java"},
+      {".vs", "vrmlscript"}, {".tcl", "tcl"},    {".py", "python"}};
   for (const auto& [suffix, protocol] : suffixes)
     if (url.ends_with(suffix)) return protocol;
   return "file";
@@ -142,7 +152,9 @@ void countScript(const Node& node, std::map<std::string, uint64_t>& scripts) {
 
 // Bodies of prototypes, and of those that are declared in them.
 void countDeclared(const Scope& scope, WorldCounts& counts) {
-  const std::function<void(const Node&)> count = [&](const Node& node) { countScript(node, counts.declaredScripts); };
+  const std::function<void(const Node&)> count = [&](const Node& node) {
+    countScript(node, counts.declaredScripts);
+  };
   const std::function<void(const Scope&)> nothing = [](const Scope&) {};
   std::vector<const Scope*> open{&scope};
   while (!open.empty()) {
@@ -163,10 +175,13 @@ WorldCounts countWorld(const World& world) {
     ++counts.types[node.type().name];
     countScript(node, counts.scripts);
   };
-  const std::function<void(const Scope&)> enter = [&](const Scope& scope) { counts.routes += scope.routes.size(); };
+  const std::function<void(const Scope&)> enter = [&](const Scope& scope) {
+    counts.routes += scope.routes.size();
+  };
   Walk(count, enter).through(world.scope);
   countDeclared(world.scope, counts);
-  for (const ProtoPtr& prototype : world.scope.prototypes) counts.prototypes.push_back(prototype->type->name);
+  for (const ProtoPtr& prototype : world.scope.prototypes)
+    counts.prototypes.push_back(prototype->type->name);
   for (const auto& [name, node] : world.scope.names) counts.names.push_back(name);
   return counts;
 }

@@ -1,4 +1,3 @@
-// engine_list.cpp: see engine_list.h.
 #include "engine_list.h"
 
 #include <fmt/format.h>
@@ -15,8 +14,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json engineJson(const xvrml::ScriptEngineInfo& e) {
-  return {{"name", e.name},         {"text", e.text},        {"schemes", e.schemes},   {"mimeTypes", e.mimeTypes},
-          {"suffixes", e.suffixes}, {"trust", e.needsTrust}, {"harmless", e.harmless}, {"library", e.library}};
+  return {{"name", e.name},           {"text", e.text},         {"schemes", e.schemes},
+          {"mimeTypes", e.mimeTypes}, {"suffixes", e.suffixes}, {"trust", e.needsTrust},
+          {"harmless", e.harmless},   {"library", e.library}};
 }
 
 std::string engineText(const xvrml::ScriptEngineInfo& e) {
@@ -25,8 +25,8 @@ std::string engineText(const xvrml::ScriptEngineInfo& e) {
   for (const std::string& scheme : e.schemes) add(scheme + ":");
   for (const std::string& suffix : e.suffixes) add(suffix);
   for (const std::string& type : e.mimeTypes) add(type);
-  return fmt::format("{}: {}\n  serves   {}\n  worlds   {}\n  library  {}\n", e.name, e.text, serves,
-                     e.needsTrust ? "trusted ones only (--trust)" : "all", e.library);
+  return fmt::format("{}: {}\n  serves   {}\n  worlds   {}\n  library  {}\n", e.name, e.text,
+                     serves, e.needsTrust ? "trusted ones only (--trust)" : "all", e.library);
 }
 
 } // namespace
@@ -41,7 +41,10 @@ std::string listEngines(const std::string& scriptPath, bool json) {
     list.push_back(engineJson(engine));
     text += engineText(engine);
   }
-  if (json) return printableJson(Json({{"engines", std::move(list)}}).dump(2, ' ', false, Json::error_handler_t::replace)) + "\n";
+  if (json)
+    return printableJson(Json({{"engines", std::move(list)}})
+                             .dump(2, ' ', false, Json::error_handler_t::replace)) +
+           "\n";
   return text.empty() ? "no script engine is installed\n" : text;
 }
 

@@ -5,7 +5,8 @@
 
 namespace vv {
 
-// scriptPath: folders, separated by colons, before the usual ones. Libraries that are no engines are warned of.
+// scriptPath: folders, separated by colons, before the usual ones. Libraries that are no engines
+// are warned of.
 std::string listEngines(const std::string& scriptPath, bool json);
 
 } // namespace vv

@@ -1,4 +1,3 @@
-// hints.cpp: see hints.h.
 #include "hints.h"
 
 #include <algorithm>
@@ -15,7 +14,8 @@ constexpr const char* black = "the picture is black: ";
 using Headlight = xvrml::MapOptions::Headlight;
 
 // Makes a picture of one sample a pixel and sets the renderer back to what the options say.
-picture::RenderResult probe(const Options& options, const picture::View& view, picture::Renderer& renderer, Headlight headlight) {
+picture::RenderResult probe(const Options& options, const picture::View& view,
+                            picture::Renderer& renderer, Headlight headlight) {
   renderer.change([&](picture::RenderSettings& s) {
     s.samples = 1;
     s.error = 0;
@@ -40,7 +40,8 @@ bool isBlack(const picture::Picture& picture) {
 bool anythingInView(const picture::RenderResult& probe) {
   const auto depth = probe.picture.planes.find(RT_DEPTH);
   if (probe.interrupted || depth == probe.picture.planes.end()) return true;
-  return std::any_of(depth->second.begin(), depth->second.end(), [](float d) { return std::isfinite(d); });
+  return std::any_of(depth->second.begin(), depth->second.end(),
+                     [](float d) { return std::isfinite(d); });
 }
 
 } // namespace
@@ -53,21 +54,25 @@ bool showsNothing(const picture::Picture& picture) {
   return !bytes.empty();
 }
 
-std::string hintFor(const Options& options, const picture::View& view, const picture::RenderResult& result,
-                    picture::Renderer& renderer) {
+std::string hintFor(const Options& options, const picture::View& view,
+                    const picture::RenderResult& result, picture::Renderer& renderer) {
   const xvrml::Bounds bounds = renderer.bounds();
   if (bounds.empty) return "there is nothing to see: the world has no shapes that could be drawn";
   if (std::equal(bounds.minimum, bounds.minimum + 3, bounds.maximum))
     return "there is nothing to see: all shapes are scaled down to a point";
   if (!anythingInView(probe(options, view, renderer, options.render.headlight))) {
     const size_t viewpoints = renderer.viewpoints().size();
-    return fmt::format("nothing is in view from here: --fit shows all of the world{}",
-                       viewpoints > 1 ? fmt::format(", --viewpoint one of its {} viewpoints", viewpoints) : "");
+    return fmt::format(
+        "nothing is in view from here: --fit shows all of the world{}",
+        viewpoints > 1 ? fmt::format(", --viewpoint one of its {} viewpoints", viewpoints) : "");
   }
   // Black may be meant: only what really helps is proposed.
-  if (!isBlack(result.picture) || isBlack(probe(options, view, renderer, Headlight::on).picture)) return {};
-  if (result.stats.lights == 0) return std::string(black) + "the world has no light and its headlight is off; --headlight on";
-  return std::string(black) + "no light reaches what is in view; --headlight on adds one at the camera";
+  if (!isBlack(result.picture) || isBlack(probe(options, view, renderer, Headlight::on).picture))
+    return {};
+  if (result.stats.lights == 0)
+    return std::string(black) + "the world has no light and its headlight is off; --headlight on";
+  return std::string(black) +
+         "no light reaches what is in view; --headlight on adds one at the camera";
 }
 
 } // namespace vv

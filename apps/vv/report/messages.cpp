@@ -1,4 +1,3 @@
-// messages.cpp: see messages.h.
 #include "messages.h"
 
 #include <cerrno>
@@ -23,7 +22,8 @@ void sayWarning(const std::string& text) { say("vv: warning: " + text); }
 
 void writeData(const std::string& bytes) {
   try {
-    picture::writeDescriptor(STDOUT_FILENO, ::isatty(STDOUT_FILENO) ? printable(bytes) : bytes, "standard output");
+    picture::writeDescriptor(STDOUT_FILENO, ::isatty(STDOUT_FILENO) ? printable(bytes) : bytes,
+                             "standard output");
   } catch (const std::runtime_error&) {
     if (errno != EPIPE) throw;
   }

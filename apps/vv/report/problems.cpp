@@ -1,4 +1,3 @@
-// problems.cpp: see problems.h.
 #include "problems.h"
 
 #include <algorithm>
@@ -16,8 +15,11 @@ namespace {
 
 bool isDigit(char c) { return c >= '0' && c <= '9'; }
 
-// Notes are for whoever wrote the world: nothing that is seen depends on them. What Scripts print are notes, too.
-bool isDetail(const xvrml::Diagnostic& d) { return d.severity == xvrml::Severity::note && !d.message.starts_with("Script"); }
+// Notes are for whoever wrote the world: nothing that is seen depends on them. What Scripts print
+// are notes, too.
+bool isDetail(const xvrml::Diagnostic& d) {
+  return d.severity == xvrml::Severity::note && !d.message.starts_with("Script");
+}
 
 } // namespace
 
@@ -25,16 +27,20 @@ std::string kindOf(const xvrml::Diagnostic& diagnostic) {
   std::string kind(1, char('0' + int(diagnostic.severity)));
   const std::string& text = diagnostic.message;
   for (size_t i = 0; i < text.size(); ++i) {
-    const bool inName = i > 0 && (std::isalnum(static_cast<unsigned char>(text[i - 1])) || text[i - 1] == '_');
-    const bool sign = (text[i] == '-' || text[i] == '.') && i + 1 < text.size() && isDigit(text[i + 1]);
+    const bool inName =
+        i > 0 && (std::isalnum(static_cast<unsigned char>(text[i - 1])) || text[i - 1] == '_');
+    const bool sign =
+        (text[i] == '-' || text[i] == '.') && i + 1 < text.size() && isDigit(text[i + 1]);
     if (inName || (!isDigit(text[i]) && !sign)) {
       kind += text[i];
       continue;
     }
     // A number with its sign, fraction and exponent; lists of numbers are one.
-    while (i + 1 < text.size() && (isDigit(text[i + 1]) || text[i + 1] == '.' || text[i + 1] == 'e' ||
-                                   ((text[i + 1] == '-' || text[i + 1] == '+') && (text[i] == 'e')) ||
-                                   (text[i + 1] == ' ' && i + 2 < text.size() && (isDigit(text[i + 2]) || text[i + 2] == '-'))))
+    while (i + 1 < text.size() &&
+           (isDigit(text[i + 1]) || text[i + 1] == '.' || text[i + 1] == 'e' ||
+            ((text[i + 1] == '-' || text[i + 1] == '+') && (text[i] == 'e')) ||
+            (text[i + 1] == ' ' && i + 2 < text.size() &&
+             (isDigit(text[i + 2]) || text[i + 2] == '-'))))
       ++i;
     kind += '#';
   }
@@ -69,7 +75,8 @@ void Problems::tellFolded(const std::vector<xvrml::Diagnostic>& fresh) {
       told.message += fmt::format(" (and {} more like this; -v shows all)", count->second - 1);
     say(told.text());
   }
-  const size_t more = errors - std::min(errors, mostErrors) + warnings - std::min(warnings, mostWarnings);
+  const size_t more =
+      errors - std::min(errors, mostErrors) + warnings - std::min(warnings, mostWarnings);
   if (more > 0) say(fmt::format("vv: and {} more kinds of problems; -v shows all", more));
 }
 
@@ -79,7 +86,8 @@ void Problems::tell(const xvrml::World& world) {
     kinds_.clear();
   }
   const auto& list = world.diagnostics.list();
-  const std::vector<xvrml::Diagnostic> fresh(list.begin() + long(std::min(told_, list.size())), list.end());
+  const std::vector<xvrml::Diagnostic> fresh(list.begin() + long(std::min(told_, list.size())),
+                                             list.end());
   told_ = list.size();
   if (options_.verbose || options_.check) {
     for (const xvrml::Diagnostic& d : fresh)
@@ -95,7 +103,8 @@ void Problems::tell(const xvrml::World& world) {
 
 void Problems::tellEnd(const xvrml::World& world) const {
   if (options_.quiet) return;
-  if (repeated_ > 0) say(fmt::format("vv: {} more like those above came later; -v shows all", repeated_));
+  if (repeated_ > 0)
+    say(fmt::format("vv: {} more like those above came later; -v shows all", repeated_));
   const uint64_t errors = world.diagnostics.errors();
   if (errors == 0) return;
   constexpr size_t mostPlaces = 3;
@@ -109,9 +118,11 @@ void Problems::tellEnd(const xvrml::World& world) const {
     if (more) break;
     places.push_back(std::move(place));
   }
-  const std::string where = fmt::format("{}{}", fmt::join(places, ", "), more ? " and further lines" : "");
+  const std::string where =
+      fmt::format("{}{}", fmt::join(places, ", "), more ? " and further lines" : "");
   say(fmt::format("vv: {}{} is left out; --strict refuses such a world",
-                  errors == 1 ? "what the error names" : fmt::format("what the {} errors name", errors),
+                  errors == 1 ? "what the error names"
+                              : fmt::format("what the {} errors name", errors),
                   places.empty() ? "" : fmt::format(" ({})", where)));
 }
 

@@ -1,4 +1,3 @@
-// progress.cpp: see progress.h.
 #include "progress.h"
 
 #include <algorithm>
@@ -7,8 +6,8 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "messages.h"
 #include "libpicture/files/atomic_file.h"
+#include "messages.h"
 #include "printable.h"
 
 namespace vv {
@@ -18,13 +17,15 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-void writeError(const std::string& text) { (void)!::write(STDERR_FILENO, text.data(), text.size()); }
+void writeError(const std::string& text) {
+  (void)!::write(STDERR_FILENO, text.data(), text.size());
+}
 
 std::string bar(float fraction, bool colour) {
   constexpr int width = 30;
   const int done = std::clamp(int(fraction * width), 0, width);
-  return fmt::format("{}{}{}{}", colour ? "\x1b[32m" : "", std::string(size_t(done), '#'), colour ? "\x1b[0m" : "",
-                     std::string(size_t(width - done), '.'));
+  return fmt::format("{}{}{}{}", colour ? "\x1b[32m" : "", std::string(size_t(done), '#'),
+                     colour ? "\x1b[0m" : "", std::string(size_t(width - done), '.'));
 }
 
 } // namespace
@@ -36,7 +37,8 @@ std::string duration(double seconds) {
   return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
 }
 
-Progress::Progress(const std::string& what, bool quiet) : what_(printable(what)), quiet_(quiet), start_(Clock::now()) {
+Progress::Progress(const std::string& what, bool quiet)
+    : what_(printable(what)), quiet_(quiet), start_(Clock::now()) {
   const char* noColour = std::getenv("NO_COLOR");
   const char* terminal = std::getenv("TERM");
   terminal_ = ::isatty(STDERR_FILENO) && terminal && std::string_view(terminal) != "dumb";
@@ -58,10 +60,12 @@ void Progress::show(float fraction, const std::string& more) {
   fraction = std::clamp(fraction, 0.0f, 1.0f);
   const double elapsed = std::chrono::duration<double>(now - start_).count();
   std::string text = fmt::format("{:3.0f} %  {}", 100 * fraction, duration(elapsed));
-  if (fraction > 0.01f) text += fmt::format(", about {} to go", duration(elapsed / fraction * (1 - fraction)));
+  if (fraction > 0.01f)
+    text += fmt::format(", about {} to go", duration(elapsed / fraction * (1 - fraction)));
   if (!more.empty()) text += ", " + more;
   if (terminal_) {
-    writeError(fmt::format("\r{}{} {}\x1b[K", what_.empty() ? "" : what_ + " ", bar(fraction, colour_), text));
+    writeError(fmt::format("\r{}{} {}\x1b[K", what_.empty() ? "" : what_ + " ",
+                           bar(fraction, colour_), text));
     next_ = now + 100ms;
   } else {
     say(fmt::format("vv: {}{}", what_.empty() ? "" : what_ + ": ", text));

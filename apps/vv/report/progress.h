@@ -1,4 +1,5 @@
-// progress.h: how far a picture is: a bar on a terminal, elsewhere a line every few seconds. [main thread]
+// progress.h: how far a picture is: a bar on a terminal, elsewhere a line every few seconds. [main
+// thread]
 #pragma once
 
 #include <chrono>

@@ -1,4 +1,4 @@
-// report.cpp: see report.h. The only file of vv that includes nlohmann/json.
+// report.cpp: The only file of vv that includes nlohmann/json.
 #include "report.h"
 
 #include <algorithm>
@@ -25,7 +25,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // Names may hold bytes that are not UTF-8: JSON gets the replacement character for them.
-std::string dump(const Json& json) { return printableJson(json.dump(2, ' ', false, Json::error_handler_t::replace)) + "\n"; }
+std::string dump(const Json& json) {
+  return printableJson(json.dump(2, ' ', false, Json::error_handler_t::replace)) + "\n";
+}
 
 // What is said of the picture's error (openrt.h, RTstats): of the whole picture, relative.
 Json errorEstimate(const RTstats& s) {
@@ -102,19 +104,25 @@ bool holdsValue(const xvrml::FieldInfo& field) {
 Json typeJson(const xvrml::NodeType& type) {
   Json fields = Json::array();
   for (const xvrml::FieldInfo& field : type.fields) {
-    Json one = {{"name", field.name}, {"type", fieldTypeName(field.type)}, {"access", accessName(field.access)}};
+    Json one = {{"name", field.name},
+                {"type", fieldTypeName(field.type)},
+                {"access", accessName(field.access)}};
     if (holdsValue(field)) one["default"] = valueText(field.defaultValue);
     if (!field.nodeTypes.empty()) one["accepts"] = field.nodeTypes;
     if (!field.text.empty()) one["text"] = field.text;
     fields.push_back(std::move(one));
   }
-  return {{"name", type.name}, {"component", type.component}, {"text", type.text}, {"fields", std::move(fields)}};
+  return {{"name", type.name},
+          {"component", type.component},
+          {"text", type.text},
+          {"fields", std::move(fields)}};
 }
 
 std::string typeText(const xvrml::NodeType& type, std::string_view comment) {
   std::string out = fmt::format("{} {{{}{}\n", type.name, comment.empty() ? "" : " # ", comment);
   for (const xvrml::FieldInfo& field : type.fields) {
-    std::string line = fmt::format("  {:<12} {:<10} {}", accessName(field.access), fieldTypeName(field.type), field.name);
+    std::string line = fmt::format("  {:<12} {:<10} {}", accessName(field.access),
+                                   fieldTypeName(field.type), field.name);
     if (holdsValue(field)) line = fmt::format("{:<46} {}", line, valueText(field.defaultValue));
     out += line + "\n";
   }
@@ -125,7 +133,10 @@ Json viewpointsJson(const std::vector<xvrml::ViewpointInfo>& viewpoints) {
   Json list = Json::array();
   for (size_t i = 0; i < viewpoints.size(); ++i) {
     const xvrml::ViewpointInfo& v = viewpoints[i];
-    list.push_back({{"index", i}, {"name", v.name}, {"description", v.description}, {"matrix", Json(v.matrix)}});
+    list.push_back({{"index", i},
+                    {"name", v.name},
+                    {"description", v.description},
+                    {"matrix", Json(v.matrix)}});
   }
   return list;
 }
@@ -159,7 +170,10 @@ Json sceneStats(const Options& options, const std::string& commandLine, const Ru
                      {"started", running.scripts.started},
                      {"calls", running.scripts.calls},
                      {"seconds", running.scripts.seconds}};
-  json["image"] = {{"width", r.width}, {"height", r.height}, {"spp", r.samples}, {"channels", channelNames(r.channels)}};
+  json["image"] = {{"width", r.width},
+                   {"height", r.height},
+                   {"spp", r.samples},
+                   {"channels", channelNames(r.channels)}};
   return json;
 }
 
@@ -167,8 +181,12 @@ void addMachine(Json& json, const Options& options, const picture::RenderResult&
   const RTstats& s = result.stats;
   json["transport"] = transportJson(options, result.stats);
   json["error"] = errorEstimate(result.stats);
-  json["left_out"] = {{"cut_by_depth", s.cutByDepth},          {"cut_by_energy", s.cutByEnergy},  {"clipped", s.clipped},
-                      {"unreached_lights", s.unreachedLights}, {"shader_faults", s.shaderFaults}, {"wrong_hits", s.wrongHits},
+  json["left_out"] = {{"cut_by_depth", s.cutByDepth},
+                      {"cut_by_energy", s.cutByEnergy},
+                      {"clipped", s.clipped},
+                      {"unreached_lights", s.unreachedLights},
+                      {"shader_faults", s.shaderFaults},
+                      {"wrong_hits", s.wrongHits},
                       {"rejected_rays", s.rejectedRays}};
   json["memory"] = {{"peak_rss", peakMemory()}, {"bvh", s.bvhBytes}, {"scene", nullptr}};
   json["cluster"] = clusterJson(result);
@@ -184,8 +202,9 @@ Json rayStats(uint64_t camera, uint64_t shadow, uint64_t secondary, double secon
 
 } // namespace
 
-std::string statsJson(const Options& options, const std::string& commandLine, const RunningWorld& running,
-                      const picture::RenderResult& result, const RunTimes& times) {
+std::string statsJson(const Options& options, const std::string& commandLine,
+                      const RunningWorld& running, const picture::RenderResult& result,
+                      const RunTimes& times) {
   const RTstats& s = result.stats;
   const xvrml::World& world = running.world;
   Json json = sceneStats(options, commandLine, running, result);
@@ -213,13 +232,17 @@ struct SequenceStats::Impl {
 SequenceStats::SequenceStats() : impl_(std::make_unique<Impl>()) {}
 SequenceStats::~SequenceStats() = default;
 
-void SequenceStats::add(const PictureName& name, double worldTime, const picture::RenderResult& result, double writeSeconds) {
+void SequenceStats::add(const PictureName& name, double worldTime,
+                        const picture::RenderResult& result, double writeSeconds) {
   Impl& sum = *impl_;
   const RTstats& s = result.stats;
   const double build = s.commitSeconds + s.buildSeconds;
   Json frame = {{"frame", name.frame.value_or(0)}, {"world_time", worldTime}};
   if (!name.viewpoint.empty()) frame["viewpoint"] = name.viewpoint;
-  frame["time"] = {{"map", result.mapSeconds}, {"build", build}, {"render", result.renderSeconds}, {"write", writeSeconds}};
+  frame["time"] = {{"map", result.mapSeconds},
+                   {"build", build},
+                   {"render", result.renderSeconds},
+                   {"write", writeSeconds}};
   if (sum.frames.empty()) sum.first = result.renderSeconds;
   sum.frames.push_back(std::move(frame));
   sum.map += result.mapSeconds;
@@ -236,13 +259,14 @@ void SequenceStats::add(const PictureName& name, double worldTime, const picture
   sum.last.interrupted |= result.interrupted;
 }
 
-std::string SequenceStats::json(const Options& options, const std::string& commandLine, const RunningWorld& running,
-                                double totalSeconds) const {
+std::string SequenceStats::json(const Options& options, const std::string& commandLine,
+                                const RunningWorld& running, double totalSeconds) const {
   const Impl& sum = *impl_;
   const xvrml::World& world = running.world;
   Json json = sceneStats(options, commandLine, running, sum.last);
-  json["time"] = {{"parse", world.times.parse}, {"graph", world.times.load}, {"map", sum.map},     {"build", sum.build},
-                  {"first_pass", sum.first},    {"render", sum.render},      {"write", sum.write}, {"total", totalSeconds}};
+  json["time"] = {{"parse", world.times.parse}, {"graph", world.times.load}, {"map", sum.map},
+                  {"build", sum.build},         {"first_pass", sum.first},   {"render", sum.render},
+                  {"write", sum.write},         {"total", totalSeconds}};
   json["rays"] = rayStats(sum.camera, sum.shadow, sum.secondary, sum.tracing);
   addMachine(json, options, sum.last);
   json["fps"] = options.fps;
@@ -265,20 +289,24 @@ Compat compatOf(const xvrml::World& world) {
       const xvrml::FieldInfo* flag = node.type().find("directOutput");
       const bool allowed = flag && node.get(*flag) == xvrml::Value(true);
       const bool holds =
-          std::any_of(script->type().fields.begin(), script->type().fields.end(), [&](const xvrml::FieldInfo& field) {
-            if (field.access == xvrml::Access::eventIn) // it may be sent some
-              return field.type == xvrml::FieldType::SFNode || field.type == xvrml::FieldType::MFNode;
-            if (field.access != xvrml::Access::field) return false;
-            const xvrml::Value value = node.get(field);
-            const auto* one = std::get_if<xvrml::NodeRef>(&value);
-            const auto* many = std::get_if<xvrml::MFNode>(&value);
-            return (one && *one) || (many && !many->empty());
-          });
+          std::any_of(script->type().fields.begin(), script->type().fields.end(),
+                      [&](const xvrml::FieldInfo& field) {
+                        if (field.access == xvrml::Access::eventIn) // it may be sent some
+                          return field.type == xvrml::FieldType::SFNode ||
+                                 field.type == xvrml::FieldType::MFNode;
+                        if (field.access != xvrml::Access::field) return false;
+                        const xvrml::Value value = node.get(field);
+                        const auto* one = std::get_if<xvrml::NodeRef>(&value);
+                        const auto* many = std::get_if<xvrml::MFNode>(&value);
+                        return (one && *one) || (many && !many->empty());
+                      });
       compat.scripts += !allowed && holds;
     } else if (node.type().index == xvrml::nodes::Appearance::typeIndex) {
       const auto* appearance = static_cast<const xvrml::nodes::Appearance*>(&node);
-      const auto* material = xvrml::nodeCast<xvrml::nodes::Material>(xvrml::renderedNode(appearance->material.get()));
-      compat.textures += appearance->texture && material && material->diffuseColor != xvrml::Color{1, 1, 1};
+      const auto* material =
+          xvrml::nodeCast<xvrml::nodes::Material>(xvrml::renderedNode(appearance->material.get()));
+      compat.textures +=
+          appearance->texture && material && material->diffuseColor != xvrml::Color{1, 1, 1};
     }
   });
   return compat;
@@ -287,17 +315,23 @@ Compat compatOf(const xvrml::World& world) {
 std::string compatText(const Options& options, const Compat& compat) {
   std::string text;
   if (compat.scripts > 0)
-    text += fmt::format("compat scripts {}: {} without directOutput TRUE; {}\n", options.run.directOutputAlways ? "on" : "off",
-                        compat.scripts == 1 ? "1 Script holds nodes" : fmt::format("{} Scripts hold nodes", compat.scripts),
+    text += fmt::format("compat scripts {}: {} without directOutput TRUE; {}\n",
+                        options.run.directOutputAlways ? "on" : "off",
+                        compat.scripts == 1 ? "1 Script holds nodes"
+                                            : fmt::format("{} Scripts hold nodes", compat.scripts),
                         options.run.directOutputAlways
                             ? "what they do to them is done, as in browsers of 1997"
-                            : "what they do to them is ignored (6.40); --compat scripts does it, as browsers of 1997 did");
+                            : "what they do to them is ignored (6.40); --compat scripts does it, "
+                              "as browsers of 1997 did");
   if (compat.textures > 0)
-    text += fmt::format("compat textures {}: {} appearance{} with a texture and a diffuseColor that is not white; {}\n",
-                        options.render.multiplyTextures ? "on" : "off", compat.textures, compat.textures == 1 ? "" : "s",
-                        options.render.multiplyTextures
-                            ? "a colour picture multiplies it, as in X3D"
-                            : "a colour picture replaces it (4.14.3); --compat textures multiplies, as X3D does");
+    text += fmt::format(
+        "compat textures {}: {} appearance{} with a texture and a diffuseColor that is not white; "
+        "{}\n",
+        options.render.multiplyTextures ? "on" : "off", compat.textures,
+        compat.textures == 1 ? "" : "s",
+        options.render.multiplyTextures
+            ? "a colour picture multiplies it, as in X3D"
+            : "a colour picture replaces it (4.14.3); --compat textures multiplies, as X3D does");
   return text;
 }
 
@@ -322,28 +356,32 @@ std::string explainWorld(const Options& options, const xvrml::World& world, cons
                       {"shapes", o.shapes},
                       {"bytes", o.bytes},
                       {"instances", o.instances}});
-    return dump({{"transport", transportJson(options, stats)},
-                 {"compat",
-                  {{"scripts", {{"on", options.run.directOutputAlways}, {"affected", compat.scripts}}},
-                   {"textures", {{"on", options.render.multiplyTextures}, {"affected", compat.textures}}}}},
-                 {"objects", std::move(list)},
-                 {"totals",
-                  {{"objects", objects.size()},
-                   {"shapes", shapes},
-                   {"triangles", triangles},
-                   {"bytes", bytes},
-                   {"instances", instances},
-                   {"instanced_triangles", stats.triangles}}}});
+    return dump(
+        {{"transport", transportJson(options, stats)},
+         {"compat",
+          {{"scripts", {{"on", options.run.directOutputAlways}, {"affected", compat.scripts}}},
+           {"textures", {{"on", options.render.multiplyTextures}, {"affected", compat.textures}}}}},
+         {"objects", std::move(list)},
+         {"totals",
+          {{"objects", objects.size()},
+           {"shapes", shapes},
+           {"triangles", triangles},
+           {"bytes", bytes},
+           {"instances", instances},
+           {"instanced_triangles", stats.triangles}}}});
   }
-  std::string text = fmt::format("transport {}: {}\n  {}\n", picture::transportName(stats.transport), stats.transportReason,
-                                 transportClaim(stats, options.render));
+  std::string text =
+      fmt::format("transport {}: {}\n  {}\n", picture::transportName(stats.transport),
+                  stats.transportReason, transportClaim(stats, options.render));
   text += compatText(options, compat);
-  text += fmt::format("{:>10} {:>8} {:>12} {:>9}  {}\n", "triangles", "shapes", "bytes", "instances", "object: reason");
+  text += fmt::format("{:>10} {:>8} {:>12} {:>9}  {}\n", "triangles", "shapes", "bytes",
+                      "instances", "object: reason");
   for (const xvrml::ExplainedObject& o : objects)
-    text += fmt::format("{:>10} {:>8} {:>12} {:>9}  {}: {}\n", o.triangles, o.shapes, o.bytes, o.instances, oneLine(o.name),
-                        oneLine(o.reason));
-  return text + fmt::format("{:>10} {:>8} {:>12} {:>9}  {} objects, {} triangles with all instances\n", triangles, shapes, bytes,
-                            instances, objects.size(), stats.triangles);
+    text += fmt::format("{:>10} {:>8} {:>12} {:>9}  {}: {}\n", o.triangles, o.shapes, o.bytes,
+                        o.instances, oneLine(o.name), oneLine(o.reason));
+  return text +
+         fmt::format("{:>10} {:>8} {:>12} {:>9}  {} objects, {} triangles with all instances\n",
+                     triangles, shapes, bytes, instances, objects.size(), stats.triangles);
 }
 
 namespace {
@@ -370,7 +408,8 @@ std::string listNodes(const xvrml::World* world, bool json) {
       if (json)
         prototypes.push_back(typeJson(*prototype->type));
       else
-        text += typeText(*prototype->type, prototype->isExtern ? "EXTERNPROTO of " + world->path : "PROTO of " + world->path);
+        text += typeText(*prototype->type, prototype->isExtern ? "EXTERNPROTO of " + world->path
+                                                               : "PROTO of " + world->path);
     }
   }
   if (!json) return text;
@@ -383,16 +422,21 @@ std::string listViewpoints(const std::vector<xvrml::ViewpointInfo>& viewpoints, 
   if (json) return dump(viewpointsJson(viewpoints));
   std::string text;
   for (size_t i = 0; i < viewpoints.size(); ++i)
-    text +=
-        fmt::format("{}\t{}\t{}\n", i, viewpoints[i].name.empty() ? "-" : viewpoints[i].name, oneLine(viewpoints[i].description));
+    text += fmt::format("{}\t{}\t{}\n", i, viewpoints[i].name.empty() ? "-" : viewpoints[i].name,
+                        oneLine(viewpoints[i].description));
   return text;
 }
 
-std::string describeWorld(const xvrml::World& world, const std::vector<xvrml::ViewpointInfo>& viewpoints,
-                          const xvrml::Bounds& bounds, const UpAxis& up, const std::string& scriptPath, bool json) {
+std::string describeWorld(const xvrml::World& world,
+                          const std::vector<xvrml::ViewpointInfo>& viewpoints,
+                          const xvrml::Bounds& bounds, const UpAxis& up,
+                          const std::string& scriptPath, bool json) {
   const WorldCounts counts = countWorld(world);
   if (json) {
-    Json all = {{"path", world.path}, {"nodes", world.nodeCount}, {"types", Json(counts.types)}, {"routes", counts.routes}};
+    Json all = {{"path", world.path},
+                {"nodes", world.nodeCount},
+                {"types", Json(counts.types)},
+                {"routes", counts.routes}};
     all["prototypes"] = counts.prototypes;
     all["scripts"] = Json::array();
     for (const auto& [protocol, count] : scriptsByProtocol(counts))
@@ -403,25 +447,30 @@ std::string describeWorld(const xvrml::World& world, const std::vector<xvrml::Vi
     all["names"] = counts.names;
     all["viewpoints"] = viewpointsJson(viewpoints);
     all["bounds"] = nullptr;
-    if (!bounds.empty) all["bounds"] = {{"minimum", Json(bounds.minimum)}, {"maximum", Json(bounds.maximum)}};
+    if (!bounds.empty)
+      all["bounds"] = {{"minimum", Json(bounds.minimum)}, {"maximum", Json(bounds.maximum)}};
     all["up"] = {{"axis", up.axis}, {"reason", up.reason}};
     all["errors"] = world.diagnostics.errors();
     all["warnings"] = world.diagnostics.warnings();
     return dump(all);
   }
-  std::string text = fmt::format("world       {}\nnodes       {}\nroutes      {}\nprototypes  {}\nviewpoints  {}\n", world.path,
-                                 world.nodeCount, counts.routes, counts.prototypes.size(), viewpoints.size());
+  std::string text = fmt::format(
+      "world       {}\nnodes       {}\nroutes      {}\nprototypes  {}\nviewpoints  {}\n",
+      world.path, world.nodeCount, counts.routes, counts.prototypes.size(), viewpoints.size());
   if (bounds.empty)
     text += "bounds      nothing to see\n";
   else
-    text += fmt::format("bounds      {:.6g} {:.6g} {:.6g}  to  {:.6g} {:.6g} {:.6g}\n", bounds.minimum[0], bounds.minimum[1],
-                        bounds.minimum[2], bounds.maximum[0], bounds.maximum[1], bounds.maximum[2]);
+    text += fmt::format("bounds      {:.6g} {:.6g} {:.6g}  to  {:.6g} {:.6g} {:.6g}\n",
+                        bounds.minimum[0], bounds.minimum[1], bounds.minimum[2], bounds.maximum[0],
+                        bounds.maximum[1], bounds.maximum[2]);
   if (!up.reason.empty()) text += fmt::format("up          {}: {}\n", up.axis, up.reason);
   for (const auto& [protocol, count] : scriptsByProtocol(counts))
     text += fmt::format("scripts     {} {}{}: {}\n", count.first, protocol,
                         count.second ? fmt::format(", {} in prototypes", count.second) : "",
-                        xvrml::hasScriptEngine(protocol, scriptPath) ? "engine there" : "no engine for them");
-  text += fmt::format("problems    {} errors, {} warnings\n", world.diagnostics.errors(), world.diagnostics.warnings());
+                        xvrml::hasScriptEngine(protocol, scriptPath) ? "engine there"
+                                                                     : "no engine for them");
+  text += fmt::format("problems    {} errors, {} warnings\n", world.diagnostics.errors(),
+                      world.diagnostics.warnings());
   for (const auto& [type, count] : counts.types) text += fmt::format("  {:>8}  {}\n", count, type);
   return text;
 }

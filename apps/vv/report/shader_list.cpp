@@ -1,4 +1,5 @@
-// shader_list.cpp: see shader_list.h. The library checks each plug-in; here only the names of its classes are read.
+// shader_list.cpp: The library checks each plug-in; here only the names of its
+// classes are read.
 #include "shader_list.h"
 
 #include <algorithm>
@@ -15,9 +16,9 @@
 #include "messages.h"
 #include "openrt/openrt.h"
 #include "openrt/openrts.h"
+#include "options/shader_text.h"
 #include "plugin_files.h"
 #include "printable.h"
-#include "options/shader_text.h"
 
 namespace vv {
 
@@ -35,7 +36,8 @@ std::vector<File> libraries(const std::string& shaderPath) {
   std::vector<File> list;
   std::set<std::string> known;
   const void* here = reinterpret_cast<const void*>(&rtNewContext);
-  for (const std::string& folder : plugin_files::folders(shaderPath, "OPENRT_SHADER_PATH", "openrt/shaders", here)) {
+  for (const std::string& folder :
+       plugin_files::folders(shaderPath, "OPENRT_SHADER_PATH", "openrt/shaders", here)) {
     if (!plugin_files::trusted(folder)) continue;
     std::vector<std::string> names;
     for (const std::string& file : filesOfFolder(folder, ".so"))
@@ -64,14 +66,18 @@ Json defaultOf(const RTparameterInfo& info) {
   case RT_PARAM_MATRIX: count = 16; break;
   default: break;
   }
-  if (count == 1) return info.type == RT_PARAM_INT ? Json(int(info.defaultValue[0])) : number(info.defaultValue[0]);
+  if (count == 1)
+    return info.type == RT_PARAM_INT ? Json(int(info.defaultValue[0]))
+                                     : number(info.defaultValue[0]);
   Json list = Json::array();
   for (size_t i = 0; i < count; ++i) list.push_back(number(info.defaultValue[i]));
   return list;
 }
 
 const char* frequencyName(RTenum frequency) {
-  return frequency == RT_PER_VERTEX ? "vertex" : frequency == RT_PER_TRIANGLE ? "triangle" : "shader";
+  return frequency == RT_PER_VERTEX     ? "vertex"
+         : frequency == RT_PER_TRIANGLE ? "triangle"
+                                        : "shader";
 }
 
 Json classJson(const RtsClass& c, RTid id, const std::string& library) {
@@ -82,7 +88,8 @@ Json classJson(const RtsClass& c, RTid id, const std::string& library) {
   for (int i = 0; i < count; ++i) {
     RTparameterInfo info{};
     rtGetParameterInfo(id, i, &info);
-    Json one = {{"name", info.name}, {"type", parameterTypeName(info.type)}, {"default", defaultOf(info)}};
+    Json one = {
+        {"name", info.name}, {"type", parameterTypeName(info.type)}, {"default", defaultOf(info)}};
     if (info.minimum > -FLT_MAX) one["minimum"] = number(info.minimum);
     if (info.maximum < FLT_MAX) one["maximum"] = number(info.maximum);
     one["per"] = frequencyName(info.frequency);
@@ -103,8 +110,9 @@ std::string addLibrary(const File& file, Json& classes) {
   void* symbol = dlsym(handle, RTS_ENTRY_NAME);
   if (!symbol) return "exports no " RTS_ENTRY_NAME;
   const auto& plugin = *static_cast<const RtsPlugin*>(symbol);
-  if (plugin_files::exportedBytes(symbol) < sizeof(RtsPlugin) || plugin.magic != RTS_MAGIC || plugin.major != RTS_ABI_MAJOR ||
-      plugin.classCount == 0 || plugin.classCount > 10000 || !plugin.classes || !plugin.classes[0] || !plugin.classes[0]->name) {
+  if (plugin_files::exportedBytes(symbol) < sizeof(RtsPlugin) || plugin.magic != RTS_MAGIC ||
+      plugin.major != RTS_ABI_MAJOR || plugin.classCount == 0 || plugin.classCount > 10000 ||
+      !plugin.classes || !plugin.classes[0] || !plugin.classes[0]->name) {
     rtNewShaderClass("any", file.name.c_str()); // the engine knows the words for what is wrong
     return lastError();
   }
@@ -118,19 +126,23 @@ std::string addLibrary(const File& file, Json& classes) {
 
 std::string valueText(const Json& value) {
   if (value.is_null()) return "";
-  if (!value.is_array()) return value.is_number_integer() ? value.dump() : fmt::format("{}", value.get<float>());
+  if (!value.is_array())
+    return value.is_number_integer() ? value.dump() : fmt::format("{}", value.get<float>());
   std::string text;
-  for (const Json& one : value) text += fmt::format("{}{}", text.empty() ? "" : " ", one.get<float>());
+  for (const Json& one : value)
+    text += fmt::format("{}{}", text.empty() ? "" : " ", one.get<float>());
   return text;
 }
 
 std::string classText(const Json& c) {
-  std::string text = fmt::format("{} ({}, plug-in {}): {}\n", c["name"].get<std::string>(), c["kind"].get<std::string>(),
-                                 c["library"].get<std::string>(), c["text"].get<std::string>());
+  std::string text = fmt::format("{} ({}, plug-in {}): {}\n", c["name"].get<std::string>(),
+                                 c["kind"].get<std::string>(), c["library"].get<std::string>(),
+                                 c["text"].get<std::string>());
   for (const Json& p : c["parameters"]) {
     const std::string value = p["type"] == "matrix" ? "" : valueText(p["default"]);
-    text += fmt::format("  {:<8} {:<18} {:<14} {}{}\n", p["type"].get<std::string>(), p["name"].get<std::string>(), value,
-                        p["text"].get<std::string>(), p["per"] == "shader" ? "" : " (per " + p["per"].get<std::string>() + ")");
+    text += fmt::format("  {:<8} {:<18} {:<14} {}{}\n", p["type"].get<std::string>(),
+                        p["name"].get<std::string>(), value, p["text"].get<std::string>(),
+                        p["per"] == "shader" ? "" : " (per " + p["per"].get<std::string>() + ")");
   }
   return text;
 }
@@ -138,15 +150,19 @@ std::string classText(const Json& c) {
 } // namespace
 
 std::string listShaders(const std::string& shaderPath, bool json) {
-  const std::string config = "backend=null" + (shaderPath.empty() ? "" : " shaderpath=\"" + shaderPath + "\"");
+  const std::string config =
+      "backend=null" + (shaderPath.empty() ? "" : " shaderpath=\"" + shaderPath + "\"");
   RTcontext context = rtNewContext(config.c_str());
   if (!context) throw std::runtime_error(lastError());
   Json classes = Json::array();
   for (const File& file : libraries(shaderPath))
-    if (const std::string why = addLibrary(file, classes); !why.empty()) sayWarning(file.path + ": " + why);
+    if (const std::string why = addLibrary(file, classes); !why.empty())
+      sayWarning(file.path + ": " + why);
   rtDeleteContext(context);
   if (json)
-    return printableJson(Json({{"shaders", std::move(classes)}}).dump(2, ' ', false, Json::error_handler_t::replace)) + "\n";
+    return printableJson(Json({{"shaders", std::move(classes)}})
+                             .dump(2, ' ', false, Json::error_handler_t::replace)) +
+           "\n";
   std::string text;
   for (const Json& c : classes) text += classText(c);
   return text;

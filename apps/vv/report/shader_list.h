@@ -1,4 +1,5 @@
-// shader_list.h: --list-shaders: the classes of all shader plug-ins that are found, as text or JSON. [main thread]
+// shader_list.h: --list-shaders: the classes of all shader plug-ins that are found, as text or
+// JSON. [main thread]
 #pragma once
 
 #include <string>

@@ -1,4 +1,3 @@
-// transport_words.cpp: see transport_words.h.
 #include "transport_words.h"
 
 #include <fmt/format.h>
@@ -12,17 +11,20 @@ namespace {
 std::string followedBy(RTenum transport, const picture::RenderSettings& settings) {
   const char* shadows = settings.shadows ? "with shadows" : "without shadows";
   switch (transport) {
-  case RT_TRANSPORT_DIRECT: return fmt::format("light straight from lamps and emitters, {}: exact at each place", shadows);
+  case RT_TRANSPORT_DIRECT:
+    return fmt::format("light straight from lamps and emitters, {}: exact at each place", shadows);
   case RT_TRANSPORT_WHITTED:
-    return fmt::format(
-        "light straight from lamps and emitters, {}, with its reflections and refractions as far as {} surfaces and "
-        "the energy cut: exact at each place",
-        shadows, settings.depth);
+    return fmt::format("light straight from lamps and emitters, {}, with its reflections and "
+                       "refractions as far as {} surfaces and "
+                       "the energy cut: exact at each place",
+                       shadows, settings.depth);
   case RT_TRANSPORT_PATH:
-    return fmt::format("all light on ways of at most {} surfaces that paths from the camera can find: an unbiased estimate",
+    return fmt::format("all light on ways of at most {} surfaces that paths from the camera can "
+                       "find: an unbiased estimate",
                        settings.depth);
   case RT_TRANSPORT_LIGHT:
-    return fmt::format("all light on ways of at most {} surfaces, what lamps send through mirrors and lenses included: an "
+    return fmt::format("all light on ways of at most {} surfaces, what lamps send through mirrors "
+                       "and lenses included: an "
                        "unbiased estimate",
                        settings.depth);
   case RT_TRANSPORT_AUTO: return "the engine has not said how light was followed";
@@ -37,16 +39,20 @@ std::string transportClaim(const RTstats& stats, const picture::RenderSettings& 
   const auto left = picture::leftOutBy(stats.transport, stats.transportLeavesOut);
   if (!left.empty()) {
     claim += "; left out:";
-    for (size_t i = 0; i < left.size(); ++i) claim += fmt::format("{} {}", i ? "," : "", left[i].text);
+    for (size_t i = 0; i < left.size(); ++i)
+      claim += fmt::format("{} {}", i ? "," : "", left[i].text);
   } else if (stats.transport >= RT_TRANSPORT_DIRECT && stats.transport <= RT_TRANSPORT_LIGHT) {
     claim += "; no other light is left out";
   }
   constexpr double negligible = .001; // errors are relative to colours + .03
   if (stats.errorUnmet > negligible)
-    claim += fmt::format("; of the paths that only chance leads by way of mirrors or glass to an emitter few have met the "
-                         "brightest one: on average a pixel may lack radiance of up to {:.2g}, which more samples tell",
+    claim += fmt::format("; of the paths that only chance leads by way of mirrors or glass to an "
+                         "emitter few have met the "
+                         "brightest one: on average a pixel may lack radiance of up to {:.2g}, "
+                         "which more samples tell",
                          stats.errorUnmet);
-  if (settings.clamp > 0) claim += fmt::format("; samples are cut at {}, which takes light away", settings.clamp);
+  if (settings.clamp > 0)
+    claim += fmt::format("; samples are cut at {}, which takes light away", settings.clamp);
   return claim;
 }
 

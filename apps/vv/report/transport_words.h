@@ -7,7 +7,8 @@
 
 namespace vv {
 
-// Says how exact a picture is that the transport of these statistics made, and which of the scene's light it leaves out.
+// Says how exact a picture is that the transport of these statistics made, and which of the scene's
+// light it leaves out.
 std::string transportClaim(const RTstats& stats, const picture::RenderSettings& settings);
 
 } // namespace vv

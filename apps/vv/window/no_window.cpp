@@ -4,7 +4,8 @@
 namespace vv {
 
 int runWindow(const Options&, const std::vector<std::string>&) {
-  throw Failure{exitRender, "no window: vv was built without SDL; -o picture.png makes a picture without one"};
+  throw Failure{exitRender,
+                "no window: vv was built without SDL; -o picture.png makes a picture without one"};
 }
 
 } // namespace vv

@@ -1,18 +1,19 @@
-// overlay.cpp: see overlay.h.
 #include "window/overlay.h"
 
 #include <fmt/format.h>
 
+#include "libpicture/transport.h"
 #include "report/cluster_report.h"
 #include "report/describe.h"
-#include "libpicture/transport.h"
 #include "window/input/keys.h"
 
 namespace vv {
 
 namespace {
 
-std::string count(uint64_t n, const char* one, const char* many) { return fmt::format("{} {}", n, n == 1 ? one : many); }
+std::string count(uint64_t n, const char* one, const char* many) {
+  return fmt::format("{} {}", n, n == 1 ? one : many);
+}
 
 double megaraysPerSecond(const RTstats& s) {
   const double rays = double(s.cameraRays + s.shadowRays + s.secondaryRays);
@@ -23,7 +24,8 @@ std::string sampling(const SessionFacts& f) {
   if (f.frameRate > 0) return fmt::format("{:.{}f} fps", f.frameRate, f.frameRate < 9.95 ? 1 : 0);
   if (f.stats.cameraRays == 0) return "first picture ...";
   if (f.wanted <= 0) return "moving";
-  return f.finished ? fmt::format("{:.0f} samples", f.samples) : fmt::format("{:.0f} of {:.0f} samples", f.samples, f.wanted);
+  return f.finished ? fmt::format("{:.0f} samples", f.samples)
+                    : fmt::format("{:.0f} of {:.0f} samples", f.samples, f.wanted);
 }
 
 std::string problems(const SessionFacts& f) {
@@ -43,8 +45,8 @@ std::vector<std::string> workerLines(const std::vector<RTworker>& workers) {
       break;
     }
     const bool here = picture::isHere(w);
-    std::string line =
-        fmt::format("{}: {}, {} tiles", here ? "this process" : oneLine(w.name), count(w.threads, "thread", "threads"), w.jobs);
+    std::string line = fmt::format("{}: {}, {} tiles", here ? "this process" : oneLine(w.name),
+                                   count(w.threads, "thread", "threads"), w.jobs);
     if (!w.alive)
       line += ", gone";
     else if (!here)
@@ -73,11 +75,13 @@ std::vector<std::string> overlayLines(const SessionFacts& f, bool paused, Overla
   }
   std::vector<std::string> lines{first};
   lines.push_back(fmt::format("\t{} of {}, {}", count(f.stats.triangles, "triangle", "triangles"),
-                              count(f.stats.objects, "object", "objects"), count(f.stats.instances, "instance", "instances")));
-  lines.push_back(
-      fmt::format("\t{}, {}", count(f.stats.lights, "light", "lights"), count(f.map.textures, "texture", "textures")));
+                              count(f.stats.objects, "object", "objects"),
+                              count(f.stats.instances, "instance", "instances")));
+  lines.push_back(fmt::format("\t{}, {}", count(f.stats.lights, "light", "lights"),
+                              count(f.map.textures, "texture", "textures")));
   if (f.stats.transport)
-    lines.push_back(fmt::format("\t{}: {}", picture::transportName(f.stats.transport), f.stats.transportReason));
+    lines.push_back(fmt::format("\t{}: {}", picture::transportName(f.stats.transport),
+                                f.stats.transportReason));
   lines.push_back(fmt::format("\t{}, picture of {}x{}", f.navigation, f.width, f.height));
   for (const std::string& line : workerLines(f.workers)) lines.push_back("\t" + line);
   if (!wrong.empty()) lines.push_back(wrong);

@@ -1,4 +1,4 @@
-// panel.cpp: see panel.h. The only file of vv that includes FreeType and fontconfig.
+// panel.cpp: The only file of vv that includes FreeType and fontconfig.
 #include "window/panel.h"
 
 #include <algorithm>
@@ -22,7 +22,8 @@ std::string findFontFile(const char* family) {
   FcPattern* found = FcFontMatch(nullptr, wanted, &result);
   FcChar8* file = nullptr;
   std::string path;
-  if (found && FcPatternGetString(found, FC_FILE, 0, &file) == FcResultMatch) path = reinterpret_cast<const char*>(file);
+  if (found && FcPatternGetString(found, FC_FILE, 0, &file) == FcResultMatch)
+    path = reinterpret_cast<const char*>(file);
   if (found) FcPatternDestroy(found);
   FcPatternDestroy(wanted);
   return path;
@@ -32,8 +33,14 @@ std::string findFontFile(const char* family) {
 uint32_t nextCharacter(std::string_view& text) {
   const auto byte = [&](size_t i) { return uint32_t(static_cast<unsigned char>(text[i])); };
   const uint32_t first = byte(0);
-  const size_t length = first < 0x80 ? 1 : first >= 0xf0 ? 4 : first >= 0xe0 ? 3 : first >= 0xc0 ? 2 : 0;
-  uint32_t character = length == 1 ? first : length == 0 || length > text.size() ? 0xfffd : first & (0x7fu >> length);
+  const size_t length = first < 0x80    ? 1
+                        : first >= 0xf0 ? 4
+                        : first >= 0xe0 ? 3
+                        : first >= 0xc0 ? 2
+                                        : 0;
+  uint32_t character = length == 1                           ? first
+                       : length == 0 || length > text.size() ? 0xfffd
+                                                             : first & (0x7fu >> length);
   if (character == 0xfffd) {
     text.remove_prefix(1);
     return character;
@@ -78,7 +85,8 @@ struct PanelPainter::Impl {
   static int widthOf(FT_Face face, std::string_view text) {
     FT_Pos pen = 0;
     while (!text.empty())
-      if (FT_Load_Char(face, nextCharacter(text), FT_LOAD_DEFAULT) == 0) pen += face->glyph->advance.x;
+      if (FT_Load_Char(face, nextCharacter(text), FT_LOAD_DEFAULT) == 0)
+        pen += face->glyph->advance.x;
     return int((pen + 63) >> 6);
   }
 
@@ -87,11 +95,13 @@ struct PanelPainter::Impl {
     const bool weak = text.starts_with('\t');
     while (widthOf(face, text) > width) {
       size_t cut = text.npos;
-      for (size_t at = text.find(' ', 1); at != text.npos && widthOf(face, text.substr(0, at)) <= width;
+      for (size_t at = text.find(' ', 1);
+           at != text.npos && widthOf(face, text.substr(0, at)) <= width;
            at = text.find(' ', at + 1))
         cut = at;
       if (cut == text.npos) break;
-      out.emplace_back((weak && !text.starts_with('\t') ? "\t" : "") + std::string(text.substr(0, cut)));
+      out.emplace_back((weak && !text.starts_with('\t') ? "\t" : "") +
+                       std::string(text.substr(0, cut)));
       text.remove_prefix(cut + 1);
     }
     out.emplace_back((weak && !text.starts_with('\t') ? "\t" : "") + std::string(text));
@@ -105,12 +115,14 @@ struct PanelPainter::Impl {
         if (px < 0 || py < 0 || px >= panel.width || py >= panel.height) continue;
         const unsigned cover = bitmap.buffer[int(row) * bitmap.pitch + int(column)];
         uint8_t* to = panel.rgba.data() + 4 * (size_t(py) * size_t(panel.width) + size_t(px));
-        for (int i = 0; i < 3; ++i) to[i] = uint8_t(std::max<unsigned>(to[i], cover * bright / 255));
+        for (int i = 0; i < 3; ++i)
+          to[i] = uint8_t(std::max<unsigned>(to[i], cover * bright / 255));
         to[3] = uint8_t(std::max<unsigned>(to[3], cover));
       }
   }
 
-  static void write(Panel& panel, FT_Face face, std::string_view text, int x, int y, uint8_t bright) {
+  static void write(Panel& panel, FT_Face face, std::string_view text, int x, int y,
+                    uint8_t bright) {
     FT_Pos pen = FT_Pos(x) << 6;
     while (!text.empty()) {
       if (FT_Load_Char(face, nextCharacter(text), FT_LOAD_RENDER) != 0) continue;
@@ -135,10 +147,11 @@ Panel PanelPainter::paint(const std::vector<std::string>& texts, int width, bool
     else
       impl_->wrap(face, text.substr(0, longest), width - impl_->size, lines);
   }
-  const int step = int(face->size->metrics.height >> 6), ascent = int(face->size->metrics.ascender >> 6),
-            margin = impl_->size / 2;
+  const int step = int(face->size->metrics.height >> 6),
+            ascent = int(face->size->metrics.ascender >> 6), margin = impl_->size / 2;
   int wide = 0;
-  for (const std::string& line : lines) wide = std::max(wide, Impl::widthOf(face, std::string_view(line).substr(0, longest)));
+  for (const std::string& line : lines)
+    wide = std::max(wide, Impl::widthOf(face, std::string_view(line).substr(0, longest)));
   panel.width = std::clamp(wide + 2 * margin, 1, std::max(1, width));
   panel.height = step * int(lines.size()) + margin;
   panel.rgba.assign(4 * size_t(panel.width) * size_t(panel.height), 0);
@@ -146,7 +159,8 @@ Panel PanelPainter::paint(const std::vector<std::string>& texts, int width, bool
   int y = margin / 2 + ascent;
   for (const std::string& line : lines) {
     const bool weak = line.starts_with('\t');
-    Impl::write(panel, face, std::string_view(line).substr(weak ? 1 : 0, longest), margin, y, weak ? 190 : 255);
+    Impl::write(panel, face, std::string_view(line).substr(weak ? 1 : 0, longest), margin, y,
+                weak ? 190 : 255);
     y += step;
   }
   return panel;

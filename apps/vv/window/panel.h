@@ -1,5 +1,5 @@
-// panel.h: lines of text as a picture with a dark, translucent ground, for the overlay. FreeType draws them in a font that
-// fontconfig finds. [one thread]
+// panel.h: lines of text as a picture with a dark, translucent ground, for the overlay. FreeType
+// draws them in a font that fontconfig finds. [one thread]
 #pragma once
 
 #include <cstdint>
@@ -19,8 +19,8 @@ class PanelPainter {
   // size: pixels of the em square. Without any font panels are empty.
   explicit PanelPainter(int size);
   ~PanelPainter();
-  // UTF-8; a line beginning with a tab stands apart in a weaker colour. Lines are broken at `width` pixels, and cut. fixed:
-  // columns line up, and lines are cut only.
+  // UTF-8; a line beginning with a tab stands apart in a weaker colour. Lines are broken at `width`
+  // pixels, and cut. fixed: columns line up, and lines are cut only.
   Panel paint(const std::vector<std::string>& lines, int width, bool fixed = false);
 
  private:

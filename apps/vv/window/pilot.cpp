@@ -1,4 +1,3 @@
-// pilot.cpp: see pilot.h.
 #include "window/pilot.h"
 
 #include <algorithm>
@@ -19,7 +18,8 @@ using xvrml::NavigationInput;
 namespace {
 
 constexpr double transition = 0.5; // seconds from one Viewpoint to the next
-constexpr double notch = 0.2;      // of the wheel: the logarithm of the distance; of full speed for a second
+constexpr double notch =
+    0.2; // of the wheel: the logarithm of the distance; of full speed for a second
 
 } // namespace
 
@@ -35,7 +35,8 @@ const char* navigationName(Navigation type) {
 
 namespace {
 
-// Speed from the way that the pointer has gone since it was pressed, as a part of half the picture: slow at first.
+// Speed from the way that the pointer has gone since it was pressed, as a part of half the picture:
+// slow at first.
 double speedOf(double way) {
   constexpr double dead = 0.02;
   const double far = std::max(0.0, std::abs(way) - dead);
@@ -51,7 +52,8 @@ std::vector<xvrml::ViewpointName> described(std::vector<xvrml::ViewpointName> al
 
 } // namespace
 
-Pilot::Pilot(xvrml::Browser& browser, double start, std::optional<double> fov) : browser_(browser), start_(start), fov_(fov) {
+Pilot::Pilot(xvrml::Browser& browser, double start, std::optional<double> fov)
+    : browser_(browser), start_(start), fov_(fov) {
   const xvrml::BoundNodes bound = browser_.bound();
   // A model that says nothing about those who look at it is looked at from all sides.
   if (!bound.viewpoint && !bound.navigationInfo) browser_.setNavigation(Navigation::examine);
@@ -120,7 +122,8 @@ static Button meaning(const InputEvent& pressed) {
   return pressed.shift ? Button::right : pressed.control ? Button::middle : Button::left;
 }
 
-// EXAMINE: the world follows the pointer. The other ways of moving look at the way since it was pressed, in move().
+// EXAMINE: the world follows the pointer. The other ways of moving look at the way since it was
+// pressed, in move().
 void Pilot::drag(double dx, double dy) {
   if (browser_.navigation() != Navigation::examine) return;
   const double size = std::tan(camera().fovy / 2);
@@ -138,7 +141,9 @@ std::string Pilot::hint() const {
   for (const xvrml::NodeRef& node : browser_.sensorsAtPointer()) {
     const auto* anchor = xvrml::nodeCast<xvrml::nodes::Anchor>(node.get());
     if (!anchor) continue;
-    return !anchor->description.empty() ? anchor->description : anchor->url.empty() ? std::string() : anchor->url.front();
+    return !anchor->description.empty() ? anchor->description
+           : anchor->url.empty()        ? std::string()
+                                        : anchor->url.front();
   }
   return {};
 }
@@ -174,7 +179,8 @@ void Pilot::move(double seconds) {
     }
   }
   const auto held = [&](const char* key) { return held_.contains(key) ? 1.0 : 0.0; };
-  const double across = held("Right") - held("Left"), along = held("Up") - held("Down"), speed = shift_ ? 4 : 1;
+  const double across = held("Right") - held("Left"), along = held("Up") - held("Down"),
+               speed = shift_ ? 4 : 1;
   wanted = wanted || across != 0 || along != 0;
   if (alt_) {
     input.right += across * speed;
@@ -209,7 +215,8 @@ std::optional<picture::View> Pilot::beginning(const picture::View& view) const {
   wanted.fit = true;
   if (!wanted.fov && browser_.bound().viewpoint) { // the picture goes on to have the Viewpoint's
     const double vertical = camera().fovy;
-    const double smaller = aspect_ >= 1 ? vertical : 2 * std::atan(std::tan(vertical / 2) * aspect_);
+    const double smaller =
+        aspect_ >= 1 ? vertical : 2 * std::atan(std::tan(vertical / 2) * aspect_);
     if (smaller > 0) wanted.fov = smaller * 180 / std::numbers::pi;
   }
   return wanted;
@@ -237,10 +244,12 @@ void Pilot::putAt(const xvrml::CameraSettings& camera) {
 
 bool Pilot::bindViewpoint(const std::string& name) {
   std::vector<xvrml::ViewpointInfo> list;
-  for (xvrml::ViewpointName& one : browser_.viewpoints()) list.push_back({one.name, one.description, one.node, {}});
+  for (xvrml::ViewpointName& one : browser_.viewpoints())
+    list.push_back({one.name, one.description, one.node, {}});
   const int index = picture::findViewpoint(list, name);
   if (index < 0) return false;
-  if (browser_.bound().viewpoint == list[size_t(index)].node.get()) browser_.key(xvrml::Key::home, true);
+  if (browser_.bound().viewpoint == list[size_t(index)].node.get())
+    browser_.key(xvrml::Key::home, true);
   browser_.set(*list[size_t(index)].node, "set_bind", true);
   falls_ = false;
   return true;
@@ -256,8 +265,9 @@ void Pilot::jumpTo(size_t number) {
 
 void Pilot::choose(Navigation type, const char* name) {
   falls_ = false;
-  message_ =
-      browser_.setNavigation(type) ? name : fmt::format("the world does not allow it: {}", navigationName(browser_.navigation()));
+  message_ = browser_.setNavigation(type) ? name
+                                          : fmt::format("the world does not allow it: {}",
+                                                        navigationName(browser_.navigation()));
 }
 
 bool Pilot::hasHeadlight() const {
@@ -267,7 +277,8 @@ bool Pilot::hasHeadlight() const {
 
 Action Pilot::press(Action action) {
   const xvrml::Node* before = browser_.bound().viewpoint;
-  const bool nowhere = action == Action::firstViewpoint || action == Action::lastViewpoint || action == Action::back;
+  const bool nowhere =
+      action == Action::firstViewpoint || action == Action::lastViewpoint || action == Action::back;
   if (nowhere && browser_.viewpoints().empty()) return Action::beginAgain;
   switch (action) {
   case Action::firstViewpoint: jumpTo(0); break;
@@ -281,7 +292,10 @@ Action Pilot::press(Action action) {
   case Action::still: choose(Navigation::none, "stand still"); break;
   case Action::headlight:
     message_ = hasHeadlight() ? "headlight off" : "headlight on";
-    headlight_ = headlight_ ? std::nullopt : std::optional(!hasHeadlight()); // back to what the world has, or the other way round
+    headlight_ =
+        headlight_
+            ? std::nullopt
+            : std::optional(!hasHeadlight()); // back to what the world has, or the other way round
     break;
   case Action::pause:
     paused_ = !paused_;
@@ -329,7 +343,8 @@ Action Pilot::handle(const InputEvent& event) {
   case Kind::down:
     shift_ = event.shift;
     alt_ = event.alt;
-    if (event.text == "Left" || event.text == "Right" || event.text == "Up" || event.text == "Down") {
+    if (event.text == "Left" || event.text == "Right" || event.text == "Up" ||
+        event.text == "Down") {
       held_.insert(event.text);
       break;
     }
@@ -340,7 +355,8 @@ Action Pilot::handle(const InputEvent& event) {
     held_.erase(event.text);
     break;
   case Kind::viewpoint:
-    if (!bindViewpoint(event.text)) message_ = fmt::format("there is no viewpoint \"{}\"", event.text);
+    if (!bindViewpoint(event.text))
+      message_ = fmt::format("there is no viewpoint \"{}\"", event.text);
     break;
   case Kind::save: return Action::save;
   case Kind::quit: return Action::quit;

@@ -1,5 +1,6 @@
-// pilot.h: what a hand does to a running world: the pointer on its sensors, navigation by mouse and keys, viewpoints, pausing.
-// The same steps and events give the same world, whether a window is there or not. [the browser's thread]
+// pilot.h: what a hand does to a running world: the pointer on its sensors, navigation by mouse and
+// keys, viewpoints, pausing. The same steps and events give the same world, whether a window is
+// there or not. [the browser's thread]
 #pragma once
 
 #include <optional>
@@ -20,19 +21,19 @@ class Pilot {
   // start: the world's time at session time 0. fov: degrees, instead of the viewpoints'.
   Pilot(xvrml::Browser& browser, double start, std::optional<double> fov);
 
-  // The session's time has come to `seconds`, not before the last one: the world's follows unless it is paused, held keys and
-  // drags move the viewer.
+  // The session's time has come to `seconds`, not before the last one: the world's follows unless
+  // it is paused, held keys and drags move the viewer.
   void step(double seconds);
-  // Returns what is the window's business (frameAll and beginAgain among it: they need the world's extent); none: it has been
-  // taken care of.
+  // Returns what is the window's business (frameAll and beginAgain among it: they need the world's
+  // extent); none: it has been taken care of.
   Action handle(const InputEvent& event);
 
   void setAspect(double aspect); // of the picture, width / height
   double aspect() const { return aspect_; }
   // The whole world in view, seen in the direction of now. bounds: of the world as it is.
   void frameAll(const xvrml::Bounds& bounds);
-  // Where the first picture is taken from. True if the whole world is to be framed: a fitted camera is asked for, or there is no
-  // Viewpoint. Throws Failure if there is no such viewpoint.
+  // Where the first picture is taken from. True if the whole world is to be framed: a fitted camera
+  // is asked for, or there is no Viewpoint. Throws Failure if there is no such viewpoint.
   bool begin(const picture::View& view, const std::string& viewpoint);
   // From here on the viewer glides from one Viewpoint to the next.
   void smooth();
@@ -41,7 +42,8 @@ class Pilot {
   void putAt(const xvrml::CameraSettings& camera); // where another session was
   // The view that the world begins with where no Viewpoint says it, and the axis that is up in it.
   void present(const xvrml::CameraSettings& camera, xvrml::Axis up);
-  // What that view is asked for by, from the options' view; nothing where a bound Viewpoint gives the direction: frameAll() then.
+  // What that view is asked for by, from the options' view; nothing where a bound Viewpoint gives
+  // the direction: frameAll() then.
   std::optional<picture::View> beginning(const picture::View& view) const;
 
   xvrml::CameraSettings camera() const;
@@ -66,7 +68,8 @@ class Pilot {
   bool hasHeadlight() const;
 
   xvrml::Browser& browser_;
-  double start_, session_ = 0, lost_ = 0; // lost: seconds of the session in which the world's time stood still
+  double start_, session_ = 0,
+                 lost_ = 0; // lost: seconds of the session in which the world's time stood still
   std::optional<double> fov_;
   double aspect_ = 4.0 / 3;
   bool paused_ = false, touched_ = false;

@@ -1,14 +1,13 @@
-// saving.cpp: see saving.h.
 #include "window/saving.h"
 
 #include <filesystem>
 
 #include <fmt/format.h>
 
-#include "report/messages.h"
-#include "options/names.h"
 #include "libpicture/files/atomic_file.h"
+#include "options/names.h"
 #include "pictures.h"
+#include "report/messages.h"
 
 namespace vv {
 
@@ -29,11 +28,14 @@ std::string freeName(const std::string& world, const std::string& suffix) {
   return fmt::format("{}.{}", stem, suffix);
 }
 
-std::string savePicture(const picture::Picture& picture, const std::string& path, uint32_t channels) {
+std::string savePicture(const picture::Picture& picture, const std::string& path,
+                        uint32_t channels) {
   std::string told;
   try {
     const auto format = picture::formatOf(path);
-    if (!format) throw std::runtime_error(fmt::format("{}: the suffix is none of {}", path, picture::formatNames));
+    if (!format)
+      throw std::runtime_error(
+          fmt::format("{}: the suffix is none of {}", path, picture::formatNames));
     picture::writeFile(path, picture::encode(wantedPart(picture, channels), *format));
     told = "saved as " + path;
     say("vv: " + told);

@@ -14,6 +14,7 @@ int samplesInWindow(const Options& options);
 std::string freeName(const std::string& world, const std::string& suffix);
 
 // Returns what there is to tell: where it is, or why not.
-std::string savePicture(const picture::Picture& picture, const std::string& path, uint32_t channels);
+std::string savePicture(const picture::Picture& picture, const std::string& path,
+                        uint32_t channels);
 
 } // namespace vv

@@ -1,4 +1,5 @@
-// screen.cpp: see screen.h. Without OpenGL, as under Xvfb and far away, SDL scales and draws by itself.
+// screen.cpp: Without OpenGL, as under Xvfb and far away, SDL scales and draws by
+// itself.
 #include "window/screen.h"
 
 #include <algorithm>
@@ -17,7 +18,8 @@ namespace vv {
 namespace {
 
 [[noreturn]] void fail() {
-  throw Failure{exitRender, fmt::format("no window: {}; -o picture.png makes a picture without one", SDL_GetError())};
+  throw Failure{exitRender, fmt::format("no window: {}; -o picture.png makes a picture without one",
+                                        SDL_GetError())};
 }
 
 // Keys that other keyboards have elsewhere come as text, not by their place.
@@ -29,15 +31,19 @@ void setModifiers(InputEvent& event, int modifiers) {
   event.alt = modifiers & KMOD_ALT;
 }
 
-// OpenGL without a graphics processor takes the time that the rays need, and more of it than SDL's own drawing.
+// OpenGL without a graphics processor takes the time that the rays need, and more of it than SDL's
+// own drawing.
 bool isEmulated(SDL_Renderer* renderer) {
   SDL_RendererInfo info;
-  if (SDL_GetRendererInfo(renderer, &info) != 0 || !std::string_view(info.name).starts_with("opengl")) return false;
+  if (SDL_GetRendererInfo(renderer, &info) != 0 ||
+      !std::string_view(info.name).starts_with("opengl"))
+    return false;
   using GetString = const unsigned char* (*)(unsigned);
   const auto get = reinterpret_cast<GetString>(SDL_GL_GetProcAddress("glGetString"));
   const unsigned char* text = get ? get(0x1F01) : nullptr; // GL_RENDERER
   const std::string_view name = text ? reinterpret_cast<const char*>(text) : "";
-  return name.find("llvmpipe") != name.npos || name.find("softpipe") != name.npos || name.find("Software") != name.npos;
+  return name.find("llvmpipe") != name.npos || name.find("softpipe") != name.npos ||
+         name.find("Software") != name.npos;
 }
 
 struct Texture {
@@ -89,7 +95,8 @@ struct Screen::Impl {
     return event;
   }
 
-  static void key(InputEvent::Kind kind, const std::string& name, int modifiers, std::vector<InputEvent>& out) {
+  static void key(InputEvent::Kind kind, const std::string& name, int modifiers,
+                  std::vector<InputEvent>& out) {
     InputEvent event;
     event.kind = kind;
     event.text = name;
@@ -99,8 +106,10 @@ struct Screen::Impl {
 
   void windowEvent(const SDL_WindowEvent& e, std::vector<InputEvent>& out) {
     changed = true;
-    if (e.event == SDL_WINDOWEVENT_LEAVE && !pressed) out.push_back(pointer(InputEvent::Kind::leave, 0, 0));
-    if (e.event == SDL_WINDOWEVENT_FOCUS_LOST) out.push_back(pointer(InputEvent::Kind::leave, 0, 0));
+    if (e.event == SDL_WINDOWEVENT_LEAVE && !pressed)
+      out.push_back(pointer(InputEvent::Kind::leave, 0, 0));
+    if (e.event == SDL_WINDOWEVENT_FOCUS_LOST)
+      out.push_back(pointer(InputEvent::Kind::leave, 0, 0));
   }
 
   void take(const SDL_Event& e, std::vector<InputEvent>& out) {
@@ -124,14 +133,16 @@ struct Screen::Impl {
       int x = 0, y = 0;
       SDL_GetMouseState(&x, &y);
       InputEvent event = pointer(Kind::wheel, x, y);
-      event.amount = double(e.wheel.preciseY) * (e.wheel.direction == SDL_MOUSEWHEEL_FLIPPED ? -1 : 1);
+      event.amount =
+          double(e.wheel.preciseY) * (e.wheel.direction == SDL_MOUSEWHEEL_FLIPPED ? -1 : 1);
       out.push_back(event);
       break;
     }
     case SDL_KEYDOWN:
     case SDL_KEYUP: {
       const std::string name = SDL_GetKeyName(e.key.keysym.sym);
-      if (!e.key.repeat && !isTextKey(name)) key(e.type == SDL_KEYDOWN ? Kind::down : Kind::up, name, e.key.keysym.mod, out);
+      if (!e.key.repeat && !isTextKey(name))
+        key(e.type == SDL_KEYDOWN ? Kind::down : Kind::up, name, e.key.keysym.mod, out);
       break;
     }
     case SDL_TEXTINPUT:
@@ -159,30 +170,35 @@ Screen::Screen(const std::string& title, int width, int height) : impl_(std::mak
   SDL_SetHint(SDL_HINT_RENDER_SCALE_QUALITY, "linear");
   SDL_SetHint(SDL_HINT_VIDEO_X11_NET_WM_BYPASS_COMPOSITOR, "0");
   SDL_SetMainReady();
-  if (!SDL_getenv("DISPLAY") && !SDL_getenv("WAYLAND_DISPLAY") && !SDL_getenv("SDL_VIDEODRIVER")) { // SDL would try everything
+  if (!SDL_getenv("DISPLAY") && !SDL_getenv("WAYLAND_DISPLAY") &&
+      !SDL_getenv("SDL_VIDEODRIVER")) { // SDL would try everything
     SDL_SetError("there is no display");
     fail();
   }
   // Only what was meant: SDL's other drivers would open windows that nobody sees.
   if (!SDL_getenv("SDL_VIDEODRIVER"))
-    SDL_SetHint(SDL_HINT_VIDEODRIVER, !SDL_getenv("DISPLAY") ? "wayland" : SDL_getenv("WAYLAND_DISPLAY") ? "x11,wayland" : "x11");
+    SDL_SetHint(SDL_HINT_VIDEODRIVER, !SDL_getenv("DISPLAY")          ? "wayland"
+                                      : SDL_getenv("WAYLAND_DISPLAY") ? "x11,wayland"
+                                                                      : "x11");
   if (SDL_InitSubSystem(SDL_INIT_VIDEO) != 0) fail();
-  impl_->window = SDL_CreateWindow(title.c_str(), SDL_WINDOWPOS_UNDEFINED, SDL_WINDOWPOS_UNDEFINED, width, height,
-                                   SDL_WINDOW_RESIZABLE | SDL_WINDOW_ALLOW_HIGHDPI);
+  impl_->window = SDL_CreateWindow(title.c_str(), SDL_WINDOWPOS_UNDEFINED, SDL_WINDOWPOS_UNDEFINED,
+                                   width, height, SDL_WINDOW_RESIZABLE | SDL_WINDOW_ALLOW_HIGHDPI);
   if (!impl_->window) fail();
   impl_->renderer = SDL_CreateRenderer(impl_->window, -1, SDL_RENDERER_ACCELERATED);
   if (impl_->renderer && isEmulated(impl_->renderer)) {
     SDL_DestroyRenderer(impl_->renderer);
     impl_->renderer = nullptr;
   }
-  if (!impl_->renderer) impl_->renderer = SDL_CreateRenderer(impl_->window, -1, SDL_RENDERER_SOFTWARE);
+  if (!impl_->renderer)
+    impl_->renderer = SDL_CreateRenderer(impl_->window, -1, SDL_RENDERER_SOFTWARE);
   if (!impl_->renderer) fail();
   impl_->arrow = SDL_CreateSystemCursor(SDL_SYSTEM_CURSOR_ARROW);
   impl_->hand = SDL_CreateSystemCursor(SDL_SYSTEM_CURSOR_HAND);
   SDL_EventState(SDL_DROPFILE, SDL_ENABLE);
   SDL_StartTextInput();
   // The size asked for is that of the picture.
-  if (const double s = scale(); s > 1.01) SDL_SetWindowSize(impl_->window, int(width / s), int(height / s));
+  if (const double s = scale(); s > 1.01)
+    SDL_SetWindowSize(impl_->window, int(width / s), int(height / s));
 }
 
 Screen::~Screen() = default;
@@ -212,14 +228,17 @@ double Screen::scale() const {
   return double(width()) / std::max(1, w);
 }
 
-bool Screen::visible() const { return !(SDL_GetWindowFlags(impl_->window) & (SDL_WINDOW_MINIMIZED | SDL_WINDOW_HIDDEN)); }
+bool Screen::visible() const {
+  return !(SDL_GetWindowFlags(impl_->window) & (SDL_WINDOW_MINIMIZED | SDL_WINDOW_HIDDEN));
+}
 
 void Screen::setPicture(int width, int height, const std::vector<uint8_t>& rgb) {
   // The format that SDL's own renderer can scale linearly.
   if (!impl_->picture.fit(impl_->renderer, SDL_PIXELFORMAT_XRGB8888, width, height)) return;
   impl_->pixels.resize(rgb.size() / 3);
   for (size_t i = 0; i < impl_->pixels.size(); ++i)
-    impl_->pixels[i] = uint32_t(rgb[3 * i]) << 16 | uint32_t(rgb[3 * i + 1]) << 8 | uint32_t(rgb[3 * i + 2]);
+    impl_->pixels[i] =
+        uint32_t(rgb[3 * i]) << 16 | uint32_t(rgb[3 * i + 1]) << 8 | uint32_t(rgb[3 * i + 2]);
   SDL_SetTextureScaleMode(impl_->picture.texture, SDL_ScaleModeLinear);
   SDL_SetTextureBlendMode(impl_->picture.texture, SDL_BLENDMODE_NONE);
   SDL_UpdateTexture(impl_->picture.texture, nullptr, impl_->pixels.data(), width * 4);
@@ -229,7 +248,9 @@ void Screen::setPicture(int width, int height, const std::vector<uint8_t>& rgb) 
 void Screen::setPanel(Place place, const Panel& panel) {
   Texture& texture = impl_->panels[place];
   impl_->changed = true;
-  if (panel.width == 0 || !texture.fit(impl_->renderer, SDL_PIXELFORMAT_RGBA32, panel.width, panel.height)) return texture.drop();
+  if (panel.width == 0 ||
+      !texture.fit(impl_->renderer, SDL_PIXELFORMAT_RGBA32, panel.width, panel.height))
+    return texture.drop();
   SDL_SetTextureBlendMode(texture.texture, SDL_BLENDMODE_BLEND);
   SDL_UpdateTexture(texture.texture, nullptr, panel.rgba.data(), panel.width * 4);
 }
@@ -260,7 +281,9 @@ void Screen::setHand(bool hand) {
   if (SDL_Cursor* cursor = hand ? impl_->hand : impl_->arrow) SDL_SetCursor(cursor);
 }
 
-void Screen::setTitle(const std::string& title) { SDL_SetWindowTitle(impl_->window, printable(title).c_str()); }
+void Screen::setTitle(const std::string& title) {
+  SDL_SetWindowTitle(impl_->window, printable(title).c_str());
+}
 
 void Screen::toggleFullScreen() {
   const bool full = SDL_GetWindowFlags(impl_->window) & SDL_WINDOW_FULLSCREEN_DESKTOP;

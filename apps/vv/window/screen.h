@@ -1,5 +1,5 @@
-// screen.h: the window itself: an SDL window with a picture, panels of text over it, a cursor, and the events of its user.
-// [main thread]
+// screen.h: the window itself: an SDL window with a picture, panels of text over it, a cursor, and
+// the events of its user. [main thread]
 #pragma once
 
 #include <cstdint>

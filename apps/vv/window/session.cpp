@@ -1,4 +1,3 @@
-// session.cpp: see session.h.
 #include "window/session.h"
 
 #include <chrono>
@@ -23,12 +22,14 @@ namespace {
 
 // Seconds since 1970, whole ones: the command of a view names them.
 double realTime() {
-  return double(std::chrono::duration_cast<std::chrono::seconds>(std::chrono::system_clock::now().time_since_epoch()).count());
+  return double(std::chrono::duration_cast<std::chrono::seconds>(
+                    std::chrono::system_clock::now().time_since_epoch())
+                    .count());
 }
 
 bool equal(const xvrml::CameraSettings& a, const xvrml::CameraSettings& b) {
-  return std::memcmp(a.matrix, b.matrix, sizeof a.matrix) == 0 && a.fovy == b.fovy && a.height == b.height &&
-         a.shader == b.shader;
+  return std::memcmp(a.matrix, b.matrix, sizeof a.matrix) == 0 && a.fovy == b.fovy &&
+         a.height == b.height && a.shader == b.shader;
 }
 
 // What a running world needs besides what a picture does.
@@ -40,7 +41,8 @@ Options forWindow(const Options& options, const Session::Calls& calls, const boo
   own.running.scriptPatience = scripted ? 0 : 0.05; // scripted: the same on every machine
   if (!own.epoch && !scripted && !options.time) own.epoch = realTime();
   if (calls.openUrl)
-    own.running.loadUrl = [open = calls.openUrl](const std::vector<std::string>& urls, const std::vector<std::string>&,
+    own.running.loadUrl = [open = calls.openUrl](const std::vector<std::string>& urls,
+                                                 const std::vector<std::string>&,
                                                  const std::string& base) {
       if (!urls.empty() && urls[0].starts_with('#')) return false; // a viewpoint of this world
       open(urls, base);
@@ -51,23 +53,27 @@ Options forWindow(const Options& options, const Session::Calls& calls, const boo
 
 } // namespace
 
-Session::Session(std::unique_ptr<xvrml::World> world, const Options& options, Problems& problems, Calls calls,
-                 const InputScript* script)
-    : options_(forWindow(options, calls, script || !options.recordInput.empty())), problems_(problems), calls_(std::move(calls)),
+Session::Session(std::unique_ptr<xvrml::World> world, const Options& options, Problems& problems,
+                 Calls calls, const InputScript* script)
+    : options_(forWindow(options, calls, script || !options.recordInput.empty())),
+      problems_(problems), calls_(std::move(calls)),
       browser_(startWorld(std::move(world), options_, problems)),
-      pilot_(*browser_, options.time && !script ? *options.time : 0, options.view.fov), renderer_(*browser_, options_.render),
-      channels_(options.render.channels), pacing_(options.fps), stepped_(script || !options.recordInput.empty()) {
+      pilot_(*browser_, options.time && !script ? *options.time : 0, options.view.fov),
+      renderer_(*browser_, options_.render), channels_(options.render.channels),
+      pacing_(options.fps), stepped_(script || !options.recordInput.empty()) {
   if (options.time && !script) WorldClock(*browser_, options.fps).advance(*options.time);
   if (script)
-    replay_ = std::make_unique<Replay>(pilot_, *script, [this](const InputEvent& event, Action action) {
-      if (action == Action::frameAll || action == Action::beginAgain)
-        wantFit(action == Action::beginAgain);
-      else
-        calls_.business(event, action);
-      if (blocked()) replay_->wait();
-    });
+    replay_ =
+        std::make_unique<Replay>(pilot_, *script, [this](const InputEvent& event, Action action) {
+          if (action == Action::frameAll || action == Action::beginAgain)
+            wantFit(action == Action::beginAgain);
+          else
+            calls_.business(event, action);
+          if (blocked()) replay_->wait();
+        });
   forEachNode(browser_->world(), [&](const xvrml::Node& node) {
-    if (node.type().name == "Inline" && !xvrml::inlineScope(node)) inlines_.emplace_back(const_cast<xvrml::Node*>(&node));
+    if (node.type().name == "Inline" && !xvrml::inlineScope(node))
+      inlines_.emplace_back(const_cast<xvrml::Node*>(&node));
   });
   generation_ = browser_->generation();
 }
@@ -76,9 +82,13 @@ Session::~Session() {
   if (preparer_.joinable()) preparer_.join();
 }
 
-void Session::begin(int width, int height, const std::optional<Place>& place, const std::string& fragment) {
+void Session::begin(int width, int height, const std::optional<Place>& place,
+                    const std::string& fragment) {
   resize(width, height);
-  if (pilot_.begin(options_.view, place || !fragment.empty() ? std::string() : options_.viewpoint) && !place) wantFit(true);
+  if (pilot_.begin(options_.view,
+                   place || !fragment.empty() ? std::string() : options_.viewpoint) &&
+      !place)
+    wantFit(true);
   fitAgain_ = fit_ != Fit::none && !inlines_.empty();
   if (place) {
     pilot_.bindViewpoint(place->viewpoint);
@@ -100,7 +110,8 @@ Session::Place Session::place() const {
   if (const xvrml::Node* viewpoint = browser_->bound().viewpoint) {
     size_t number = 0;
     for (const xvrml::ViewpointName& one : browser_->viewpoints()) {
-      if (one.node.get() == viewpoint) place.viewpoint = one.name.empty() ? std::to_string(number) : one.name;
+      if (one.node.get() == viewpoint)
+        place.viewpoint = one.name.empty() ? std::to_string(number) : one.name;
       ++number;
     }
   }
@@ -132,8 +143,8 @@ void Session::advance(double seconds) {
   if (!prepared_ && shownAny_) prepare();
 }
 
-// The first ray through a world costs seconds if there are millions of triangles: the thread that the window waits for does not
-// cast it. Nothing else uses the world meanwhile (resting()).
+// The first ray through a world costs seconds if there are millions of triangles: the thread that
+// the window waits for does not cast it. Nothing else uses the world meanwhile (resting()).
 void Session::prepare() {
   prepared_ = preparing_ = true;
   preparer_ = std::thread([this, camera = pilot_.camera()] {
@@ -191,14 +202,17 @@ void Session::takeEvents() {
 // Inlines come after the first picture, a few at a time.
 void Session::loadSome() {
   if (inlines_.empty() || !shownAny_) return;
-  if (browser_->generation() != generation_) return inlines_.clear(); // of a world that a Script has replaced
+  if (browser_->generation() != generation_)
+    return inlines_.clear(); // of a world that a Script has replaced
   const auto start = std::chrono::steady_clock::now();
-  while (!inlines_.empty() && std::chrono::steady_clock::now() - start < std::chrono::milliseconds(10)) {
+  while (!inlines_.empty() &&
+         std::chrono::steady_clock::now() - start < std::chrono::milliseconds(10)) {
     const xvrml::NodeRef node = std::move(inlines_.front());
     inlines_.pop_front();
     if (xvrml::inlineScope(*node) || !browser_->loadInline(*node)) continue;
     forEachNodeBelow(*node, [&](const xvrml::Node& below) {
-      if (below.type().name == "Inline" && !xvrml::inlineScope(below)) inlines_.emplace_back(const_cast<xvrml::Node*>(&below));
+      if (below.type().name == "Inline" && !xvrml::inlineScope(below))
+        inlines_.emplace_back(const_cast<xvrml::Node*>(&below));
     });
   }
   if (inlines_.empty() && fitAgain_ && !pilot_.touched()) wantFit(true);
@@ -214,9 +228,11 @@ void Session::wantFit(bool asAtFirst) {
 void Session::draw() {
   if (width_ <= 0) return;
   const State state = renderer_.state();
-  const bool dirty = !begun_ || fit_ == Fit::wanted || !equal(pilot_.camera(), shown_) || browser_->hasChanges() ||
-                     pilot_.headlight() != shownHeadlight_ || (!moving_ && (frame_.width != width_ || frame_.height != height_));
-  const bool behind = state == State::ready && moving_; // frames of what moves overlap; a refined one is given up instead
+  const bool dirty = !begun_ || fit_ == Fit::wanted || !equal(pilot_.camera(), shown_) ||
+                     browser_->hasChanges() || pilot_.headlight() != shownHeadlight_ ||
+                     (!moving_ && (frame_.width != width_ || frame_.height != height_));
+  const bool behind = state == State::ready &&
+                      moving_; // frames of what moves overlap; a refined one is given up instead
   if (state == State::rendering || (state == State::ready && !behind)) {
     if (dirty && !moving_ && (shownAny_ || fit_ == Fit::wanted)) renderer_.cancel();
     return;
@@ -247,7 +263,8 @@ void Session::start(bool moving) {
     renderer_.change([&](picture::RenderSettings& s) { s.headlight = wanted; });
   }
   const double now = last_;
-  if (moving && moving_ && now > lastStart_) gap_ = gap_ <= 0 ? now - lastStart_ : .9 * gap_ + .1 * (now - lastStart_);
+  if (moving && moving_ && now > lastStart_)
+    gap_ = gap_ <= 0 ? now - lastStart_ : .9 * gap_ + .1 * (now - lastStart_);
   if (!moving) gap_ = 0;
   lastStart_ = now;
   frame_ = pacing_.next(width_, height_, moving, options_.render.samples);
@@ -267,7 +284,8 @@ bool Session::look(picture::LivePicture& picture) {
   const bool shown = picture.finished || !shownAny_ || !moving_;
   shownAny_ = true;
   if (picture.finished)
-    pacing_.took({picture.width, picture.height, 1}, picture.seconds, picture.alone, picture.overhead, picture.samples);
+    pacing_.took({picture.width, picture.height, 1}, picture.seconds, picture.alone,
+                 picture.overhead, picture.samples);
   const RTstats stats = picture.finished ? picture.stats : facts_.stats;
   const xvrml::MapStats map = picture.finished ? picture.map : facts_.map;
   facts_.width = picture.width;
@@ -281,12 +299,13 @@ bool Session::look(picture::LivePicture& picture) {
 
 std::string Session::save(const std::string& path) {
   picture::Picture picture;
-  return renderer_.copy(picture) ? savePicture(picture, path, channels_) : "there is no picture yet";
+  return renderer_.copy(picture) ? savePicture(picture, path, channels_)
+                                 : "there is no picture yet";
 }
 
 void Session::saveIfFinished() {
-  if (saveTo_.empty() || moving_ || !refined_ || renderer_.state() != State::idle || browser_->hasChanges() ||
-      !equal(pilot_.camera(), shown_))
+  if (saveTo_.empty() || moving_ || !refined_ || renderer_.state() != State::idle ||
+      browser_->hasChanges() || !equal(pilot_.camera(), shown_))
     return;
   message_ = save(std::exchange(saveTo_, {}));
   if (replay_) replay_->resume();
@@ -308,7 +327,8 @@ std::string Session::command(const std::vector<std::string>& arguments) const {
   std::optional<bool> headlight = pilot_.headlight();
   if (!headlight && options_.render.headlight != xvrml::MapOptions::Headlight::automatic)
     headlight = options_.render.headlight == xvrml::MapOptions::Headlight::on;
-  return viewCommand({browser_->world().path, pilot_.camera(), width_, height_, browser_->now(), options_.epoch, headlight},
+  return viewCommand({browser_->world().path, pilot_.camera(), width_, height_, browser_->now(),
+                      options_.epoch, headlight},
                      arguments);
 }
 

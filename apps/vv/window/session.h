@@ -1,5 +1,6 @@
-// session.h: a world that is being looked at: its browser, its pilot, and the renderer that draws it while both go on. It knows
-// no windowing system. Another world is another session. [the browser's thread]
+// session.h: a world that is being looked at: its browser, its pilot, and the renderer that draws
+// it while both go on. It knows no windowing system. Another world is another session. [the
+// browser's thread]
 #pragma once
 
 #include <atomic>
@@ -11,12 +12,12 @@
 #include <thread>
 #include <vector>
 
-#include "options/options.h"
 #include "libpicture/live.h"
+#include "options/options.h"
 #include "report/problems.h"
+#include "window/input/replay.h"
 #include "window/pacing.h"
 #include "window/pilot.h"
-#include "window/input/replay.h"
 
 namespace vv {
 
@@ -43,18 +44,21 @@ class Session {
     std::function<void(const InputEvent&, Action)> business; // what the keys ask of the window
     // Worlds that Anchors and Scripts ask for.
     std::function<void(const std::vector<std::string>& urls, const std::string& base)> openUrl;
-    std::function<void(double time, const InputEvent&)> record; // what the user has done; null: nobody wants to know
+    std::function<void(double time, const InputEvent&)>
+        record; // what the user has done; null: nobody wants to know
   };
   // script: events instead of the user's; null: none. Throws as startWorld does.
-  Session(std::unique_ptr<xvrml::World> world, const Options& options, Problems& problems, Calls calls,
-          const InputScript* script);
+  Session(std::unique_ptr<xvrml::World> world, const Options& options, Problems& problems,
+          Calls calls, const InputScript* script);
   ~Session();
 
-  // Where the first picture is taken from: as the options say, where another session was, or from the fragment of a URL.
+  // Where the first picture is taken from: as the options say, where another session was, or from
+  // the fragment of a URL.
   void begin(int width, int height, const std::optional<Place>& place, const std::string& fragment);
   void resize(int width, int height);
   void handle(const InputEvent& event) { waiting_.push_back(event); }
-  // Time passes: events, the world's clock, what is left to be loaded, and the next frame. seconds: on any clock. Never waits.
+  // Time passes: events, the world's clock, what is left to be loaded, and the next frame. seconds:
+  // on any clock. Never waits.
   void advance(double seconds);
   // A newer picture than the last one; false if there is none.
   bool look(picture::LivePicture& picture);
@@ -69,7 +73,8 @@ class Session {
   // Something that moves, and the next frame has to wait for it.
   bool drawing() const {
     const auto state = renderer_.state();
-    return moving_ && (state == picture::LiveRenderer::State::mapping || state == picture::LiveRenderer::State::rendering);
+    return moving_ && (state == picture::LiveRenderer::State::mapping ||
+                       state == picture::LiveRenderer::State::rendering);
   }
   bool scripted() const { return replay_ != nullptr; }
   double time() const { return time_; } // of the session's clock, at the last step
@@ -111,9 +116,13 @@ class Session {
 
   // The picture.
   int width_ = 0, height_ = 0;
-  enum class Fit : uint8_t { none, wanted, mapping } fit_ = Fit::none; // the whole world in view, once its extent is known
-  bool fitAsAtFirst_ = true;                                           // as the world begins; false: in the direction of now
-  bool fitAgain_ = false;                                              // the picture still shows it all, and more is loaded
+  enum class Fit : uint8_t {
+    none,
+    wanted,
+    mapping
+  } fit_ = Fit::none;        // the whole world in view, once its extent is known
+  bool fitAsAtFirst_ = true; // as the world begins; false: in the direction of now
+  bool fitAgain_ = false;    // the picture still shows it all, and more is loaded
   xvrml::CameraSettings shown_{};
   std::optional<bool> shownHeadlight_;
   bool begun_ = false, moving_ = false, refined_ = false, shownAny_ = false;

@@ -1,5 +1,5 @@
-// window.cpp: the window's loop: what its user does goes to the session, the session's pictures go to the screen; worlds are read
-// meanwhile. See window.h.
+// window.cpp: the window's loop: what its user does goes to the session, the session's pictures go
+// to the screen; worlds are read meanwhile. See window.h.
 #include "window/window.h"
 
 #include <algorithm>
@@ -39,13 +39,16 @@ using Clock = std::chrono::steady_clock;
 class Window {
  public:
   Window(const Options& options, const std::vector<std::string>& arguments)
-      : options_(options), arguments_(arguments), problems_(options_), screen_("vv", options.render.width, options.render.height),
-        speaker_(mixer_) {
+      : options_(options), arguments_(arguments), problems_(options_),
+        screen_("vv", options.render.width, options.render.height), speaker_(mixer_) {
     if (!options_.cameraShader.empty())
-      options_.view.shader = readShader(options_.cameraShader, "--camera-shader", RT_CAMERA, options_.render.shaderPath);
+      options_.view.shader = readShader(options_.cameraShader, "--camera-shader", RT_CAMERA,
+                                        options_.render.shaderPath);
     if (!options_.recordInput.empty()) {
       record_.open(options_.recordInput, std::ios::binary | std::ios::trunc);
-      if (!record_) throw Failure{exitRender, fmt::format("--record-input: cannot write {}", options_.recordInput)};
+      if (!record_)
+        throw Failure{exitRender,
+                      fmt::format("--record-input: cannot write {}", options_.recordInput)};
     }
     painter_ = std::make_unique<PanelPainter>(int(14 * screen_.scale()));
   }
@@ -59,7 +62,8 @@ class Window {
       wait(std::max(0.0, next - now));
       passOn();
       takeWorld();
-      // A picture of what moves that is nearly there is waited for: the next one can begin at once then.
+      // A picture of what moves that is nearly there is waited for: the next one can begin at once
+      // then.
       const double period = 1 / options_.fps, time = seconds();
       if (time >= next + (session_ && session_->drawing() ? period : 0)) {
         goOn();
@@ -98,7 +102,8 @@ class Window {
     const bool first = std::exchange(first_, false);
     if (first && !saveTo_.empty()) message(session_->save(std::exchange(saveTo_, {})), 4);
     if (first && options_.verbose)
-      say(fmt::format("vv: first picture, {}x{}, after {}", picture_.width, picture_.height, duration(seconds() - loadStart_)));
+      say(fmt::format("vv: first picture, {}x{}, after {}", picture_.width, picture_.height,
+                      duration(seconds() - loadStart_)));
   }
 
   void goOn() {
@@ -122,8 +127,8 @@ class Window {
   // --- Worlds ---
   void open(LoadRequest request, bool keepPlace) {
     request.options = options_.load;
-    const bool whole =
-        !options_.shaders.empty() || !options_.definitions.empty() || options_.script || record_.is_open() || options_.strict;
+    const bool whole = !options_.shaders.empty() || !options_.definitions.empty() ||
+                       options_.script || record_.is_open() || options_.strict;
     if (!whole) request.options.loadInlines = false; // they come after the first picture
     keepPlace_ = keepPlace && session_;
     loading_ = request.urls.empty() ? "" : request.urls[0];
@@ -159,9 +164,15 @@ class Window {
     world->options.loadInlines = true;
     Session::Calls calls;
     calls.business = [this](const InputEvent& event, Action action) { business(event, action); };
-    calls.openUrl = [this](const std::vector<std::string>& urls, const std::string& base) { open({urls, base, {}}, false); };
-    if (record_.is_open()) calls.record = [this](double time, const InputEvent& event) { record(inputLine(time, event)); };
-    auto fresh = std::make_unique<Session>(std::move(world), options_, problems_, std::move(calls), options_.script.get());
+    calls.openUrl = [this](const std::vector<std::string>& urls, const std::string& base) {
+      open({urls, base, {}}, false);
+    };
+    if (record_.is_open())
+      calls.record = [this](double time, const InputEvent& event) {
+        record(inputLine(time, event));
+      };
+    auto fresh = std::make_unique<Session>(std::move(world), options_, problems_, std::move(calls),
+                                           options_.script.get());
     width_ = screen_.width();
     height_ = screen_.height();
     fresh->begin(width_, height_, place, fragment);
@@ -172,7 +183,8 @@ class Window {
     message("", 0);
     const std::string& path = session_->browser().world().path;
     screen_.setTitle(path + " - vv");
-    if (options_.watch && path != "-") watched_ = std::make_unique<Watched>(usedFiles(session_->browser().world()));
+    if (options_.watch && path != "-")
+      watched_ = std::make_unique<Watched>(usedFiles(session_->browser().world()));
   }
 
   // After a write that failed nothing more is written: a script with a hole would be played wrong.
@@ -186,7 +198,8 @@ class Window {
 
   void recordingFailed(int reason) {
     const std::string text =
-        fmt::format("--record-input: cannot write {}: {}", options_.recordInput, std::strerror(reason ? reason : EIO));
+        fmt::format("--record-input: cannot write {}: {}", options_.recordInput,
+                    std::strerror(reason ? reason : EIO));
     sayError(text);
     message(text, 1e9);
   }
@@ -232,7 +245,8 @@ class Window {
   void save(const InputEvent& event, const char* suffix) {
     if (!session_) return;
     const bool named = event.kind == InputEvent::Kind::save;
-    const std::string path = named ? event.text : freeName(session_->browser().world().path, suffix);
+    const std::string path =
+        named ? event.text : freeName(session_->browser().world().path, suffix);
     if (session_->scripted())
       session_->saveWhenFinished(path);
     else if (first_)
@@ -250,7 +264,8 @@ class Window {
 
   void showHelp(bool shown) {
     help_ = shown;
-    screen_.setPanel(Screen::middle, shown ? painter_->paint(helpLines(), screen_.width(), true) : Panel());
+    screen_.setPanel(Screen::middle,
+                     shown ? painter_->paint(helpLines(), screen_.width(), true) : Panel());
   }
 
   // --- What is told ---
@@ -266,7 +281,8 @@ class Window {
     if (!session_) return failed_ ? message_ : "drop a file here; F1 lists the keys";
     if (!session_->resting()) return bottom_;
     if (const xvrml::ScriptCounts counts = session_->browser().scripts(); counts.waiting > 0)
-      return fmt::format("starting Scripts: {} of {} ...", counts.scripts - counts.waiting, counts.scripts);
+      return fmt::format("starting Scripts: {} of {} ...", counts.scripts - counts.waiting,
+                         counts.scripts);
     const std::string hint = session_->pilot().hint();
     return hint.empty() ? session_->browser().description() : hint;
   }
@@ -287,7 +303,8 @@ class Window {
     const std::string bottom = bottomLine();
     if (bottom != bottom_ || shownAt_ < 0) {
       bottom_ = bottom;
-      screen_.setPanel(Screen::bottom, bottom.empty() ? Panel() : painter_->paint({bottom}, screen_.width()));
+      screen_.setPanel(Screen::bottom,
+                       bottom.empty() ? Panel() : painter_->paint({bottom}, screen_.width()));
     }
     if (shownAt_ >= 0 && seconds() - shownAt_ < .2) return;
     if (session_ && !session_->resting()) return;
@@ -300,18 +317,23 @@ class Window {
   }
 
   void sound() {
-    const std::vector<xvrml::Heard> heard =
-        session_->pilot().paused() ? std::vector<xvrml::Heard>() : xvrml::heardIn(session_->browser());
+    const std::vector<xvrml::Heard> heard = session_->pilot().paused()
+                                                ? std::vector<xvrml::Heard>()
+                                                : xvrml::heardIn(session_->browser());
     if (!heard.empty() && !speaker_.tried())
-      if (const std::string why = speaker_.open(); !why.empty() && options_.verbose) say("vv: no sound: " + why);
+      if (const std::string why = speaker_.open(); !why.empty() && options_.verbose)
+        say("vv: no sound: " + why);
     if (speaker_.tried()) mixer_.set(heard);
   }
 
-  // A world that is being read, or geometry that is being made, cannot be called back: then the process ends as it is.
+  // A world that is being read, or geometry that is being made, cannot be called back: then the
+  // process ends as it is.
   int end() {
     errno = 0;
     if (record_.is_open() && record_ && (record_.close(), !record_)) recordingFailed(errno);
-    const int code = interrupted() ? exitInterrupted : failed_ == exitDone && !record_ ? exitRender : failed_;
+    const int code = interrupted()                     ? exitInterrupted
+                     : failed_ == exitDone && !record_ ? exitRender
+                                                       : failed_;
     const bool stopped = !session_ || session_->stop(.5);
     if (stopped && !WorldLoader::working()) return code;
     picture::removeTemporary();

@@ -1,4 +1,3 @@
-// world_loader.cpp: see world_loader.h.
 #include "window/world_loader.h"
 
 #include <atomic>
@@ -26,11 +25,11 @@ LoadAnswer load(const LoadRequest& request) {
     }
     try {
       if (why.empty()) answer.world = readWorld(path, request.options);
-    } catch (const xvrml::LoadError& error) { why = error.diagnostic.text(); } catch (const Failure& failure) {
-      why = failure.text;
-    } catch (const std::bad_alloc&) { why = path + ": not enough memory"; } catch (const std::exception& error) {
-      why = path + ": " + error.what();
-    }
+    } catch (const xvrml::LoadError& error) {
+      why = error.diagnostic.text();
+    } catch (const Failure& failure) { why = failure.text; } catch (const std::bad_alloc&) {
+      why = path + ": not enough memory";
+    } catch (const std::exception& error) { why = path + ": " + error.what(); }
     if (answer.world) break;
     if (answer.error.size() < 400) answer.error += (answer.error.empty() ? "" : "; ") + why;
   }

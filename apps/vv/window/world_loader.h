@@ -1,5 +1,5 @@
-// world_loader.h: reads worlds on a thread of its own, while the window goes on with the former one. A read that nobody waits for
-// any more is left to its end. [one thread]
+// world_loader.h: reads worlds on a thread of its own, while the window goes on with the former
+// one. A read that nobody waits for any more is left to its end. [one thread]
 #pragma once
 
 #include <memory>

@@ -1,4 +1,5 @@
-// arrays.cpp: rtVertexPointer and its kin, rtDrawArrays, rtDrawElements: the bulk path into an object. Application thread.
+// arrays.cpp: rtVertexPointer and its kin, rtDrawArrays, rtDrawElements: the bulk path into an
+// object. Application thread.
 #include <limits>
 
 #include "api/guard.h"
@@ -9,12 +10,16 @@ namespace {
 
 constexpr size_t maxStride = size_t(1) << 31;
 
-AttributeSource checkedSource(int size, int least, int most, RTenum type, bool doubles, size_t stride, const void* pointer) {
-  require(size >= least && size <= most, RT_INVALID_VALUE, "this attribute does not have so many components");
+AttributeSource checkedSource(int size, int least, int most, RTenum type, bool doubles,
+                              size_t stride, const void* pointer) {
+  require(size >= least && size <= most, RT_INVALID_VALUE,
+          "this attribute does not have so many components");
   require(type == RT_FLOAT || (doubles && type == RT_DOUBLE), RT_INVALID_ENUM,
           doubles ? "the type must be RT_FLOAT or RT_DOUBLE" : "the type must be RT_FLOAT");
-  const size_t packed = static_cast<size_t>(size) * (type == RT_DOUBLE ? sizeof(double) : sizeof(float));
-  require(stride == 0 || (stride >= packed && stride <= maxStride), RT_INVALID_VALUE, "the stride is smaller than an element");
+  const size_t packed =
+      static_cast<size_t>(size) * (type == RT_DOUBLE ? sizeof(double) : sizeof(float));
+  require(stride == 0 || (stride >= packed && stride <= maxStride), RT_INVALID_VALUE,
+          "the stride is smaller than an element");
   return {static_cast<const std::byte*>(pointer), stride ? stride : packed, size, type};
 }
 
@@ -23,7 +28,8 @@ AttributeSource advanced(AttributeSource source, size_t first) {
   return source;
 }
 
-void draw(Context& c, RTenum mode, size_t first, size_t count, const uint32_t* indices, size_t vertexCount) {
+void draw(Context& c, RTenum mode, size_t first, size_t count, const uint32_t* indices,
+          size_t vertexCount) {
   Definition& definition = c.openDefinition();
   DrawCall call{mode,
                 count,
@@ -39,7 +45,8 @@ void draw(Context& c, RTenum mode, size_t first, size_t count, const uint32_t* i
     for (const ParameterArray& array : c.parameterArrays) {
       if (array.shaderClass != shaderClass) continue;
       call.parameters.push_back(array.from);
-      if (array.from.parameter.perVertex) call.parameters.back().source = advanced(array.from.source, first);
+      if (array.from.parameter.perVertex)
+        call.parameters.back().source = advanced(array.from.source, first);
     }
   }
   definition.builder.draw(call, c.latch(primitiveOf(mode)));
@@ -48,19 +55,27 @@ void draw(Context& c, RTenum mode, size_t first, size_t count, const uint32_t* i
 } // namespace
 
 void rtVertexPointer(int size, RTenum type, size_t stride, const void* pointer) {
-  guarded("rtVertexPointer", [&](Context& c) { c.vertexArray = checkedSource(size, 3, 3, type, true, stride, pointer); });
+  guarded("rtVertexPointer", [&](Context& c) {
+    c.vertexArray = checkedSource(size, 3, 3, type, true, stride, pointer);
+  });
 }
 
 void rtNormalPointer(RTenum type, size_t stride, const void* pointer) {
-  guarded("rtNormalPointer", [&](Context& c) { c.normalArray = checkedSource(3, 3, 3, type, false, stride, pointer); });
+  guarded("rtNormalPointer", [&](Context& c) {
+    c.normalArray = checkedSource(3, 3, 3, type, false, stride, pointer);
+  });
 }
 
 void rtTexCoordPointer(int size, RTenum type, size_t stride, const void* pointer) {
-  guarded("rtTexCoordPointer", [&](Context& c) { c.texCoordArray = checkedSource(size, 2, 2, type, false, stride, pointer); });
+  guarded("rtTexCoordPointer", [&](Context& c) {
+    c.texCoordArray = checkedSource(size, 2, 2, type, false, stride, pointer);
+  });
 }
 
 void rtColorPointer(int size, RTenum type, size_t stride, const void* pointer) {
-  guarded("rtColorPointer", [&](Context& c) { c.colorArray = checkedSource(size, 3, 4, type, false, stride, pointer); });
+  guarded("rtColorPointer", [&](Context& c) {
+    c.colorArray = checkedSource(size, 3, 4, type, false, stride, pointer);
+  });
 }
 
 void rtDrawArrays(RTenum mode, size_t first, size_t count) {

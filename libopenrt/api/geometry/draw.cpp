@@ -1,5 +1,5 @@
-// draw.cpp: rtDrawArrays and rtDrawElements: attributes are copied straight into the arrays that travel to the backend.
-// Everything is checked before anything is kept. Application thread.
+// draw.cpp: rtDrawArrays and rtDrawElements: attributes are copied straight into the arrays that
+// travel to the backend. Everything is checked before anything is kept. Application thread.
 #include <cstring>
 
 #include "api/geometry/object_builder.h"
@@ -12,7 +12,8 @@ namespace {
 constexpr size_t maxVertices = size_t(1) << 31;
 
 bool allFinite(const float* values, size_t count) {
-  // x - x is 0 for finite x and NaN otherwise. Independent sums, so that the loop is not bound by the latency of one.
+  // x - x is 0 for finite x and NaN otherwise. Independent sums, so that the loop is not bound by
+  // the latency of one.
   float sums[8] = {};
   size_t i = 0;
   for (; i + 8 <= count; i += 8)
@@ -28,8 +29,8 @@ void checkIndices(const DrawCall& call) {
   uint32_t largest = 0;
   for (size_t i = 0; i < call.count; i++) largest = std::max(largest, call.indices[i]);
   if (call.count > 0 && largest >= call.vertexCount)
-    fail(RT_INVALID_VALUE,
-         "index " + std::to_string(largest) + " is beyond the " + std::to_string(call.vertexCount) + " vertices");
+    fail(RT_INVALID_VALUE, "index " + std::to_string(largest) + " is beyond the " +
+                               std::to_string(call.vertexCount) + " vertices");
 }
 
 // Which vertices a draw call uses: only they need to be finite.
@@ -57,7 +58,8 @@ void clearUnused(const DrawCall& call, float* values, size_t components, const c
   }
 }
 
-// Copies count elements of from floats each into elements of to floats; what is missing is 1 (alpha).
+// Copies count elements of from floats each into elements of to floats; what is missing is 1
+// (alpha).
 void gather(const AttributeSource& source, size_t count, size_t to, float* out) {
   const size_t from = static_cast<size_t>(source.components);
   if (from == to && source.stride == to * sizeof(float)) {
@@ -70,16 +72,18 @@ void gather(const AttributeSource& source, size_t count, size_t to, float* out) 
   }
 }
 
-ArrayPtr attribute(const DrawCall& call, const AttributeSource& source, size_t components, bool set, const float* current,
-                   const char* complaint) {
+ArrayPtr attribute(const DrawCall& call, const AttributeSource& source, size_t components, bool set,
+                   const float* current, const char* complaint) {
   if (!source.data && !set) return nullptr;
   auto array = std::make_shared<Array>(call.vertexCount * components * sizeof(float));
   float* out = reinterpret_cast<float*>(array->data());
   if (source.data) {
     gather(source, call.vertexCount, components, out);
-    if (!allFinite(out, call.vertexCount * components)) clearUnused(call, out, components, complaint);
+    if (!allFinite(out, call.vertexCount * components))
+      clearUnused(call, out, components, complaint);
   } else {
-    for (size_t i = 0; i < call.vertexCount; i++) std::copy_n(current, components, out + components * i);
+    for (size_t i = 0; i < call.vertexCount; i++)
+      std::copy_n(current, components, out + components * i);
   }
   return array;
 }
@@ -98,7 +102,8 @@ ArrayPtr widePoints(const DrawCall& call, Matrix4d& matrix) {
   for (size_t i = 0; i < call.vertexCount; i++) {
     if (!used[i]) continue;
     const Vec3d p = loadPoint(call.points, i);
-    if (!(std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)}) <= maxCoordinate && p.x == p.x && p.y == p.y && p.z == p.z))
+    if (!(std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)}) <= maxCoordinate &&
+          p.x == p.x && p.y == p.y && p.z == p.z))
       fail(RT_INVALID_VALUE, "a coordinate is not finite or beyond 1e38");
     bounds.add(p);
   }
@@ -116,7 +121,8 @@ ArrayPtr widePoints(const DrawCall& call, Matrix4d& matrix) {
 }
 
 // ordinals: where wanted, the number of each primitive that is kept among all of the call.
-ArrayPtr collectIndices(const DrawCall& call, const float* points, uint64_t& degenerate, std::vector<uint32_t>* ordinals) {
+ArrayPtr collectIndices(const DrawCall& call, const float* points, uint64_t& degenerate,
+                        std::vector<uint32_t>* ordinals) {
   const size_t room = indexCount(call.mode, call.count);
   auto array = std::make_shared<Array>(room * sizeof(uint32_t));
   uint32_t* out = reinterpret_cast<uint32_t*>(array->data());
@@ -126,10 +132,12 @@ ArrayPtr collectIndices(const DrawCall& call, const float* points, uint64_t& deg
   };
   if (call.indices)
     end = writeIndices(
-        call.mode, call.count, points, [&](size_t i) { return call.indices[i]; }, out, degenerate, kept);
+        call.mode, call.count, points, [&](size_t i) { return call.indices[i]; }, out, degenerate,
+        kept);
   else
     end = writeIndices(
-        call.mode, call.count, points, [](size_t i) { return static_cast<uint32_t>(i); }, out, degenerate, kept);
+        call.mode, call.count, points, [](size_t i) { return static_cast<uint32_t>(i); }, out,
+        degenerate, kept);
   const size_t written = static_cast<size_t>(end - out);
   if (written == room) return array;
   auto fitting = std::make_shared<Array>(written * sizeof(uint32_t));
@@ -137,15 +145,18 @@ ArrayPtr collectIndices(const DrawCall& call, const float* points, uint64_t& deg
   return fitting;
 }
 
-// Values of a shader parameter: those that something uses must be such as the parameter takes, the others become its default.
-BuiltParameter ownValues(const DrawCall& call, const ParameterSource& from, const std::vector<uint32_t>& ordinals) {
+// Values of a shader parameter: those that something uses must be such as the parameter takes, the
+// others become its default.
+BuiltParameter ownValues(const DrawCall& call, const ParameterSource& from,
+                         const std::vector<uint32_t>& ordinals) {
   const UsedVertices used(call);
   const bool perVertex = from.parameter.perVertex;
   const size_t count = perVertex ? call.vertexCount : ordinals.size(), n = from.parameter.floats;
   auto array = std::make_shared<Array>(count * n * sizeof(float));
   float* out = reinterpret_cast<float*>(array->data());
   for (size_t i = 0; i < count; i++, out += n) {
-    std::memcpy(out, from.source.data + (perVertex ? i : ordinals[i]) * from.source.stride, n * sizeof(float));
+    std::memcpy(out, from.source.data + (perVertex ? i : ordinals[i]) * from.source.stride,
+                n * sizeof(float));
     const std::string problem = valueProblem(*from.declared, std::span<const float>(out, n));
     if (problem.empty()) continue;
     if (!perVertex || used[i]) fail(RT_INVALID_VALUE, problem);
@@ -156,23 +167,29 @@ BuiltParameter ownValues(const DrawCall& call, const ParameterSource& from, cons
 
 } // namespace
 
-std::optional<BuiltGeometry> buildDraw(const DrawCall& call, const GeometryState& state, const VertexState& current,
-                                       uint64_t& degenerate) {
+std::optional<BuiltGeometry> buildDraw(const DrawCall& call, const GeometryState& state,
+                                       const VertexState& current, uint64_t& degenerate) {
   BuiltGeometry built{.state = state, .primitive = primitiveOf(call.mode)};
-  require(call.points.data != nullptr, RT_INVALID_OPERATION, "no vertex array: call rtVertexPointer first");
-  require(call.vertexCount <= maxVertices && call.count <= maxVertices, RT_INVALID_VALUE, "more than 2^31 vertices");
+  require(call.points.data != nullptr, RT_INVALID_OPERATION,
+          "no vertex array: call rtVertexPointer first");
+  require(call.vertexCount <= maxVertices && call.count <= maxVertices, RT_INVALID_VALUE,
+          "more than 2^31 vertices");
   checkIndices(call);
   if (call.points.type == RT_DOUBLE)
     built.points = widePoints(call, built.state.matrix);
   else
     built.points = attribute(call, call.points, 3, true, nullptr, "a coordinate is not finite");
-  built.normals = attribute(call, call.normals, 3, current.present & HasNormal, current.normal, "a normal is not finite");
-  built.texCoords =
-      attribute(call, call.texCoords, 2, current.present & HasTexCoord, current.texCoord, "a texture coordinate is not finite");
-  built.colors = attribute(call, call.colors, 4, current.present & HasColor, current.color, "a colour is not finite");
+  built.normals = attribute(call, call.normals, 3, current.present & HasNormal, current.normal,
+                            "a normal is not finite");
+  built.texCoords = attribute(call, call.texCoords, 2, current.present & HasTexCoord,
+                              current.texCoord, "a texture coordinate is not finite");
+  built.colors = attribute(call, call.colors, 4, current.present & HasColor, current.color,
+                           "a colour is not finite");
   std::vector<uint32_t> ordinals;
-  built.indices = collectIndices(call, built.points->as<float>(), degenerate, call.parameters.empty() ? nullptr : &ordinals);
-  for (const ParameterSource& parameter : call.parameters) built.parameters.push_back(ownValues(call, parameter, ordinals));
+  built.indices = collectIndices(call, built.points->as<float>(), degenerate,
+                                 call.parameters.empty() ? nullptr : &ordinals);
+  for (const ParameterSource& parameter : call.parameters)
+    built.parameters.push_back(ownValues(call, parameter, ordinals));
   if (built.indices->size() == 0) return std::nullopt;
   return built;
 }

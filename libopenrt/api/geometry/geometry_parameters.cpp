@@ -1,5 +1,5 @@
-// geometry_parameters.cpp: shader parameters by triangle and by vertex: between rtBegin and rtEnd, and from arrays. Application
-// thread.
+// geometry_parameters.cpp: shader parameters by triangle and by vertex: between rtBegin and rtEnd,
+// and from arrays. Application thread.
 #include "api/parameters.h"
 
 #include "api/guard.h"
@@ -9,7 +9,8 @@ namespace openrt {
 namespace {
 
 OwnParameter ownParameter(const RtsClass& table, uint32_t index) {
-  return {index, parameterFloats(table.params[index].type), frequencyOf(table, index) == RT_PER_VERTEX};
+  return {index, parameterFloats(table.params[index].type),
+          frequencyOf(table, index) == RT_PER_VERTEX};
 }
 
 void setPointer(Context& c, int handle, size_t stride, const float* pointer) {
@@ -18,36 +19,42 @@ void setPointer(Context& c, int handle, size_t stride, const float* pointer) {
   c.requireOutsideList();
   const RTid shaderClass = c.scene.shader(c.boundShader).shaderClass;
   const RtsClass& table = *c.scene.shaderClass(shaderClass).table;
-  const RtsParam& param = declaredParameter(table, handle, {RTS_FLOAT, RTS_VEC2, RTS_VEC3, RTS_VEC4, RTS_COLOR, RTS_MATRIX});
+  const RtsParam& param = declaredParameter(
+      table, handle, {RTS_FLOAT, RTS_VEC2, RTS_VEC3, RTS_VEC4, RTS_COLOR, RTS_MATRIX});
   const auto index = static_cast<uint32_t>(handle);
   if (frequencyOf(table, index) == RT_PER_SHADER)
-    fail(RT_INVALID_OPERATION,
-         std::string("parameter ") + param.name + " of the class " + table.name + " is of the whole shader");
+    fail(RT_INVALID_OPERATION, std::string("parameter ") + param.name + " of the class " +
+                                   table.name + " is of the whole shader");
   const OwnParameter own = ownParameter(table, index);
   const size_t packed = own.floats * sizeof(float);
-  require(stride == 0 || (stride >= packed && stride <= maxStride), RT_INVALID_VALUE, "the stride is smaller than an element");
+  require(stride == 0 || (stride >= packed && stride <= maxStride), RT_INVALID_VALUE,
+          "the stride is smaller than an element");
   c.parameterArrays.reserve(c.parameterArrays.size() + 1);
-  std::erase_if(c.parameterArrays,
-                [&](const ParameterArray& a) { return a.shaderClass == shaderClass && a.from.parameter.index == index; });
+  std::erase_if(c.parameterArrays, [&](const ParameterArray& a) {
+    return a.shaderClass == shaderClass && a.from.parameter.index == index;
+  });
   if (!pointer) return;
-  const AttributeSource source{reinterpret_cast<const std::byte*>(pointer), stride ? stride : packed,
-                               static_cast<int>(own.floats), RT_FLOAT};
+  const AttributeSource source{reinterpret_cast<const std::byte*>(pointer),
+                               stride ? stride : packed, static_cast<int>(own.floats), RT_FLOAT};
   c.parameterArrays.push_back({shaderClass, {own, &param, source}});
 }
 
 } // namespace
 
-const RtsParam& declaredParameter(const RtsClass& table, int handle, std::initializer_list<RtsType> types) {
+const RtsParam& declaredParameter(const RtsClass& table, int handle,
+                                  std::initializer_list<RtsType> types) {
   if (handle < 0 || static_cast<uint32_t>(handle) >= table.paramCount)
-    fail(RT_INVALID_PARAMETER,
-         "the class " + std::string(table.name) + " has no parameter with handle " + std::to_string(handle));
+    fail(RT_INVALID_PARAMETER, "the class " + std::string(table.name) +
+                                   " has no parameter with handle " + std::to_string(handle));
   const RtsParam& param = table.params[handle];
   for (RtsType type : types)
     if (param.type == type) return param;
-  fail(RT_INVALID_PARAMETER, std::string("parameter ") + param.name + " of the class " + table.name + " is of another type");
+  fail(RT_INVALID_PARAMETER, std::string("parameter ") + param.name + " of the class " +
+                                 table.name + " is of another type");
 }
 
-bool setOwnValue(Context& c, int handle, std::initializer_list<RtsType> types, std::span<const float> values) {
+bool setOwnValue(Context& c, int handle, std::initializer_list<RtsType> types,
+                 std::span<const float> values) {
   if (!inList(c)) return false;
   const RTid shader = c.definition->builder.listShader();
   require(shader != 0, RT_INVALID_OPERATION, "no shader was bound at rtBegin");
@@ -57,7 +64,8 @@ bool setOwnValue(Context& c, int handle, std::initializer_list<RtsType> types, s
   const auto index = static_cast<uint32_t>(handle);
   const OwnParameter own = ownParameter(table, index);
   if (frequencyOf(table, index) == RT_PER_SHADER || own.floats == 0) return false;
-  if (const std::string problem = valueProblem(param, values); !problem.empty()) fail(RT_INVALID_VALUE, problem);
+  if (const std::string problem = valueProblem(param, values); !problem.empty())
+    fail(RT_INVALID_VALUE, problem);
   const auto set = state.values.find(index);
   const float* before = set != state.values.end() ? set->second.data() : param.defaultValue;
   c.definition->builder.parameter(own, values, {before, own.floats});

@@ -1,4 +1,5 @@
-// immediate.cpp: rtBegin ... rtEnd and the state that vertices and primitives latch. Application thread.
+// immediate.cpp: rtBegin ... rtEnd and the state that vertices and primitives latch. Application
+// thread.
 #include <cmath>
 
 #include "api/guard.h"
@@ -36,7 +37,9 @@ void setColor(Context& c, float r, float g, float b, float a) {
   v.present |= HasColor;
 }
 
-void requirePointer(const void* pointer) { require(pointer != nullptr, RT_INVALID_VALUE, "the pointer is NULL"); }
+void requirePointer(const void* pointer) {
+  require(pointer != nullptr, RT_INVALID_VALUE, "the pointer is NULL");
+}
 
 ObjectBuilder& builder(Context& c) {
   if (!c.definition) [[unlikely]]

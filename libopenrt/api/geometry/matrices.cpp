@@ -1,6 +1,6 @@
 // matrices.cpp: the current matrix: rtPushMatrix ... rtLookAt. Application thread.
-#include "api/guard.h"
 #include "api/geometry/transform.h"
+#include "api/guard.h"
 
 using namespace openrt;
 
@@ -74,6 +74,9 @@ void rtGetMatrixd(double m[16]) {
   });
 }
 
-void rtLookAt(double eyeX, double eyeY, double eyeZ, double atX, double atY, double atZ, double upX, double upY, double upZ) {
-  guarded("rtLookAt", [&](Context& c) { c.matrices.multiply(lookAt({eyeX, eyeY, eyeZ}, {atX, atY, atZ}, {upX, upY, upZ})); });
+void rtLookAt(double eyeX, double eyeY, double eyeZ, double atX, double atY, double atZ, double upX,
+              double upY, double upZ) {
+  guarded("rtLookAt", [&](Context& c) {
+    c.matrices.multiply(lookAt({eyeX, eyeY, eyeZ}, {atX, atY, atZ}, {upX, upY, upZ}));
+  });
 }

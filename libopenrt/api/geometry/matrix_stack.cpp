@@ -4,7 +4,8 @@
 namespace openrt {
 
 void MatrixStack::push() {
-  require(entries_.size() - floor_ < maxStackDepth, RT_STACK_OVERFLOW, "the matrix stack is full (4096 matrices)");
+  require(entries_.size() - floor_ < maxStackDepth, RT_STACK_OVERFLOW,
+          "the matrix stack is full (4096 matrices)");
   entries_.push_back(Matrix4d(entries_.back()));
 }
 
@@ -24,7 +25,8 @@ void MatrixStack::openDefinition() {
 }
 
 void MatrixStack::checkBalanced() const {
-  require(entries_.size() - floor_ == 1, RT_INVALID_OPERATION, "rtPushMatrix without rtPopMatrix in this definition");
+  require(entries_.size() - floor_ == 1, RT_INVALID_OPERATION,
+          "rtPushMatrix without rtPopMatrix in this definition");
 }
 
 void MatrixStack::closeDefinition() {

@@ -1,4 +1,5 @@
-// matrix_stack.h: the current matrix and those below it. An object's definition has a stack of its own. Application thread.
+// matrix_stack.h: the current matrix and those below it. An object's definition has a stack of its
+// own. Application thread.
 #pragma once
 
 #include <vector>
@@ -19,7 +20,8 @@ class MatrixStack {
   void load(const Matrix4d& matrix);
   void multiply(const Matrix4d& matrix) { load(top() * matrix); }
 
-  // Opens a stack of its own that starts at the identity; close throws if a push in it lacks its pop.
+  // Opens a stack of its own that starts at the identity; close throws if a push in it lacks its
+  // pop.
   void openDefinition();
   void checkBalanced() const;
   void closeDefinition();

@@ -1,4 +1,5 @@
-// object_builder.cpp: begin/end: merging of lists, local origins, attributes that appear late. Application thread.
+// object_builder.cpp: begin/end: merging of lists, local origins, attributes that appear late.
+// Application thread.
 #include "api/geometry/object_builder.h"
 
 #include <cstring>
@@ -11,9 +12,11 @@ namespace {
 constexpr size_t maxMergedVertices = size_t(1) << 26; // further lists start another geometry
 constexpr double maxReachInExtents = 64;
 
-// Room for more elements with amortised growth, so that the caller can fill it without a further allocation.
+// Room for more elements with amortised growth, so that the caller can fill it without a further
+// allocation.
 void makeRoom(std::vector<uint32_t>& indices, size_t more) {
-  if (indices.capacity() - indices.size() < more) indices.reserve(std::max(indices.size() + more, 2 * indices.capacity()));
+  if (indices.capacity() - indices.size() < more)
+    indices.reserve(std::max(indices.size() + more, 2 * indices.capacity()));
 }
 
 bool fitsFloat(double v) { return static_cast<double>(static_cast<float>(v)) == v; }
@@ -42,8 +45,11 @@ Vec3d WideBounds::origin() const {
 }
 
 double WideBounds::reach(const Vec3d& from) const {
-  const auto along = [](double a, double b, double f) { return std::max(std::fabs(a - f), std::fabs(b - f)); };
-  return std::max({along(low.x, high.x, from.x), along(low.y, high.y, from.y), along(low.z, high.z, from.z)});
+  const auto along = [](double a, double b, double f) {
+    return std::max(std::fabs(a - f), std::fabs(b - f));
+  };
+  return std::max(
+      {along(low.x, high.x, from.x), along(low.y, high.y, from.y), along(low.z, high.z, from.z)});
 }
 
 void ObjectBuilder::begin(RTenum mode, const GeometryState& state) {
@@ -52,11 +58,14 @@ void ObjectBuilder::begin(RTenum mode, const GeometryState& state) {
   const auto latched = latched_.find(state.shader);
   const bool parameters = latched != latched_.end();
   const size_t floats = parameters ? latched->second.values.size() : 0;
-  const uint8_t present = uint8_t((current.present & ~HasParameters) | (parameters ? HasParameters : 0));
-  const bool joins = open_ && primitive == primitive_ && present == vertices_.attributes() && state == state_ &&
-                     vertices_.parameterFloats() == floats && vertices_.count() < maxMergedVertices;
+  const uint8_t present =
+      uint8_t((current.present & ~HasParameters) | (parameters ? HasParameters : 0));
+  const bool joins = open_ && primitive == primitive_ && present == vertices_.attributes() &&
+                     state == state_ && vertices_.parameterFloats() == floats &&
+                     vertices_.count() < maxMergedVertices;
   if (!joins) {
-    std::vector<OwnParameter> layout = parameters ? latched->second.layout : std::vector<OwnParameter>();
+    std::vector<OwnParameter> layout =
+        parameters ? latched->second.layout : std::vector<OwnParameter>();
     flush(vertices_.count());
     vertices_.restart(present, floats);
     indices_.clear();
@@ -79,13 +88,15 @@ void ObjectBuilder::rejectVertex() const {
   fail(RT_INVALID_VALUE, "a coordinate is not finite");
 }
 
-// An attribute was set for the first time: lists before this one never have it, the vertices of this one get the unset state.
+// An attribute was set for the first time: lists before this one never have it, the vertices of
+// this one get the unset state.
 void ObjectBuilder::adaptAttributes() {
   if (listStart_ > 0) flush(listStart_);
   vertices_.addAttributes(current.present);
 }
 
-void ObjectBuilder::parameter(const OwnParameter& which, std::span<const float> value, std::span<const float> own) {
+void ObjectBuilder::parameter(const OwnParameter& which, std::span<const float> value,
+                              std::span<const float> own) {
   require(inList_, RT_INVALID_OPERATION, "not between rtBegin and rtEnd");
   Latched& latched = latched_[state_.shader];
   size_t at = 0;
@@ -110,7 +121,8 @@ void ObjectBuilder::parameter(const OwnParameter& which, std::span<const float> 
 
 void ObjectBuilder::vertex(double x, double y, double z) {
   if (!inList_) rejectVertex();
-  if (!(std::fabs(x) <= maxCoordinate && std::fabs(y) <= maxCoordinate && std::fabs(z) <= maxCoordinate))
+  if (!(std::fabs(x) <= maxCoordinate && std::fabs(y) <= maxCoordinate &&
+        std::fabs(z) <= maxCoordinate))
     fail(RT_INVALID_VALUE, "a coordinate is not finite or beyond 1e38");
   if (current.present != vertices_.attributes()) adaptAttributes();
   if (!wideList_) widenList();
@@ -129,7 +141,8 @@ void ObjectBuilder::appendWide(double x, double y, double z) {
   wide_.push_back({x, y, z});
 }
 
-// From here on the list is kept in double; what it has so far came in float and may be too large for that.
+// From here on the list is kept in double; what it has so far came in float and may be too large
+// for that.
 void ObjectBuilder::widenList() {
   std::vector<Vec3d> points;
   for (size_t i = listStart_; i < vertices_.count(); i++) {
@@ -156,8 +169,10 @@ void ObjectBuilder::settleOrigin() {
     local_ = false;
     return;
   }
-  const double extent = std::max({bounds.high.x - bounds.low.x, bounds.high.y - bounds.low.y, bounds.high.z - bounds.low.z});
-  const bool joins = listStart_ > 0 && local_ && bounds.reach(origin_) <= maxReachInExtents * extent;
+  const double extent = std::max(
+      {bounds.high.x - bounds.low.x, bounds.high.y - bounds.low.y, bounds.high.z - bounds.low.z});
+  const bool joins =
+      listStart_ > 0 && local_ && bounds.reach(origin_) <= maxReachInExtents * extent;
   if (!joins) {
     if (listStart_ > 0) flush(listStart_);
     local_ = true;
@@ -187,9 +202,12 @@ void ObjectBuilder::end() {
   const uint32_t first = static_cast<uint32_t>(listStart_);
   uint32_t* start = indices_.data() + before;
   const uint32_t* written = writeIndices(
-      mode_, count, vertices_.points(), [first](size_t i) { return first + static_cast<uint32_t>(i); }, start, degenerate_,
+      mode_, count, vertices_.points(),
+      [first](size_t i) { return first + static_cast<uint32_t>(i); }, start, degenerate_,
       [&](size_t ordinal) {
-        if (!layout_.empty()) completing_.push_back(first + static_cast<uint32_t>(completingVertex(mode_, count, ordinal)));
+        if (!layout_.empty())
+          completing_.push_back(first +
+                                static_cast<uint32_t>(completingVertex(mode_, count, ordinal)));
       });
   indices_.resize(before + static_cast<size_t>(written - start));
   if (written == start) vertices_.truncate(listStart_); // nothing of the list is left
@@ -197,7 +215,8 @@ void ObjectBuilder::end() {
   wide_.clear();
 }
 
-// Hands the first vertexCount vertices of the open geometry over, with all indices so far: they are those of closed lists.
+// Hands the first vertexCount vertices of the open geometry over, with all indices so far: they are
+// those of closed lists.
 void ObjectBuilder::flush(size_t vertexCount) {
   if (!indices_.empty()) {
     BuiltGeometry built{.state = state_, .primitive = primitive_};
@@ -221,11 +240,13 @@ void ObjectBuilder::flush(size_t vertexCount) {
 void ObjectBuilder::addParameters(BuiltGeometry& built, size_t vertexCount) const {
   size_t at = 0;
   for (const OwnParameter& parameter : layout_) {
-    const size_t count = parameter.perVertex ? vertexCount : completing_.size(), n = parameter.floats;
+    const size_t count = parameter.perVertex ? vertexCount : completing_.size(),
+                 n = parameter.floats;
     auto values = std::make_shared<Array>(count * n * sizeof(float));
     float* out = reinterpret_cast<float*>(values->data());
     for (size_t i = 0; i < count; i++)
-      std::copy_n(vertices_.parameters(parameter.perVertex ? i : completing_[i]) + at, n, out + n * i);
+      std::copy_n(vertices_.parameters(parameter.perVertex ? i : completing_[i]) + at, n,
+                  out + n * i);
     built.parameters.push_back({parameter.index, parameter.perVertex, std::move(values)});
     at += n;
   }
@@ -245,7 +266,8 @@ void ObjectBuilder::draw(const DrawCall& call, const GeometryState& state) {
 
 void ObjectBuilder::sphere(float radius, const GeometryState& state) {
   require(!inList_, RT_INVALID_OPERATION, "between rtBegin and rtEnd");
-  require(std::isfinite(radius) && radius > 0, RT_INVALID_VALUE, "the radius must be positive and finite");
+  require(std::isfinite(radius) && radius > 0, RT_INVALID_VALUE,
+          "the radius must be positive and finite");
   flush(vertices_.count());
   open_ = false;
   BuiltGeometry built{.state = state, .primitive = edit::Primitive::Sphere};

@@ -1,10 +1,11 @@
-// object_builder.h: the geometry of the object being defined, from begin/end, arrays and analytic shapes. Consecutive
-// begin/end lists with the same state become one geometry. Application thread.
+// object_builder.h: the geometry of the object being defined, from begin/end, arrays and analytic
+// shapes. Consecutive begin/end lists with the same state become one geometry. Application thread.
 //
-// Vertices given in double that float cannot hold are stored relative to a local origin, which goes into the geometry's
-// matrix. The origin is a multiple of the power of two above the extent, so coordinates that are short binary fractions
-// stay exact. A later list joins such a geometry only while its distance from the origin is at most 64 of its own extents:
-// the rounding of float then stays below 2^-18 of the list's size.
+// Vertices given in double that float cannot hold are stored relative to a local origin, which goes
+// into the geometry's matrix. The origin is a multiple of the power of two above the extent, so
+// coordinates that are short binary fractions stay exact. A later list joins such a geometry only
+// while its distance from the origin is at most 64 of its own extents: the rounding of float then
+// stays below 2^-18 of the list's size.
 #pragma once
 
 #include <map>
@@ -28,8 +29,8 @@ struct GeometryState {
   bool cull = false, clockwise = false;
   float width = 1;
   bool operator==(const GeometryState& other) const {
-    return shader == other.shader && name == other.name && cull == other.cull && clockwise == other.clockwise &&
-           width == other.width && matrix.m == other.matrix.m;
+    return shader == other.shader && name == other.name && cull == other.cull &&
+           clockwise == other.clockwise && width == other.width && matrix.m == other.matrix.m;
   }
 };
 
@@ -94,9 +95,11 @@ class ObjectBuilder {
   }
   void vertex(double x, double y, double z);
   void end();
-  // Within a list: the value of a parameter of the latched shader for the vertices or triangles that follow, also those of later
-  // lists with that shader. own: the shader's value, which the list's vertices had until now.
-  void parameter(const OwnParameter& which, std::span<const float> value, std::span<const float> own);
+  // Within a list: the value of a parameter of the latched shader for the vertices or triangles
+  // that follow, also those of later lists with that shader. own: the shader's value, which the
+  // list's vertices had until now.
+  void parameter(const OwnParameter& which, std::span<const float> value,
+                 std::span<const float> own);
   uint32_t listShader() const { return state_.shader; }
 
   void draw(const DrawCall& call, const GeometryState& state);
@@ -124,14 +127,16 @@ class ObjectBuilder {
   Vec3d origin_;
   VertexBuffer vertices_;
   std::vector<uint32_t> indices_;
-  // Values that were set for parameters of a shader since the object began: of each parameter in a row.
+  // Values that were set for parameters of a shader since the object began: of each parameter in a
+  // row.
   struct Latched {
     std::vector<OwnParameter> layout;
     std::vector<float> values;
   };
   std::map<uint32_t, Latched> latched_; // by shader
   std::vector<OwnParameter> layout_;    // of the open geometry
-  std::vector<uint32_t> completing_;    // of the open geometry: vertex that completes each primitive, if layout_ is not empty
+  std::vector<uint32_t> completing_; // of the open geometry: vertex that completes each primitive,
+                                     // if layout_ is not empty
   // The list between begin and end.
   bool inList_ = false, wideList_ = false;
   RTenum mode_ = RT_POINTS;
@@ -145,7 +150,8 @@ struct WideBounds {
   Vec3d low, high;
   bool exact = true, any = false;
   void add(const Vec3d& p);
-  // The origin for points within these bounds, and the largest distance along an axis of any of them from a place.
+  // The origin for points within these bounds, and the largest distance along an axis of any of
+  // them from a place.
   Vec3d origin() const;
   double reach(const Vec3d& from) const;
 };
@@ -154,7 +160,7 @@ struct WideBounds {
 inline constexpr double maxCoordinate = 1e38;
 
 // Geometry of one draw call; no value where every primitive is degenerate. (draw.cpp)
-std::optional<BuiltGeometry> buildDraw(const DrawCall& call, const GeometryState& state, const VertexState& current,
-                                       uint64_t& degenerate);
+std::optional<BuiltGeometry> buildDraw(const DrawCall& call, const GeometryState& state,
+                                       const VertexState& current, uint64_t& degenerate);
 
 } // namespace openrt

@@ -1,6 +1,6 @@
 // objects.cpp: definitions of objects and their instances. Application thread.
-#include "api/guard.h"
 #include "api/geometry/transform.h"
+#include "api/guard.h"
 
 using namespace openrt;
 
@@ -13,9 +13,11 @@ template <class Change> void changeInstance(Context& c, RTid id, const Change& c
   change(state);
 }
 
-// A change of where an instance is, or whether. One that has been committed is dynamic from then on (openrt.h, rtInstanceHint):
-// the flag travels in its edit, so that every backend and every recording builds the same structure.
-template <class T> void placeInstance(Context& c, RTid id, T InstanceState::*member, const T& value) {
+// A change of where an instance is, or whether. One that has been committed is dynamic from then on
+// (openrt.h, rtInstanceHint): the flag travels in its edit, so that every backend and every
+// recording builds the same structure.
+template <class T>
+void placeInstance(Context& c, RTid id, T InstanceState::*member, const T& value) {
   InstanceState& state = c.scene.instance(id);
   if (state.*member == value) return;
   c.scene.instances.touch(id, state);
@@ -24,7 +26,8 @@ template <class T> void placeInstance(Context& c, RTid id, T InstanceState::*mem
 }
 
 bool isDynamic(RTenum hint) {
-  require(hint == RT_STATIC || hint == RT_DYNAMIC, RT_INVALID_ENUM, "the hint is neither RT_STATIC nor RT_DYNAMIC");
+  require(hint == RT_STATIC || hint == RT_DYNAMIC, RT_INVALID_ENUM,
+          "the hint is neither RT_STATIC nor RT_DYNAMIC");
   return hint == RT_DYNAMIC;
 }
 
@@ -57,7 +60,8 @@ RTid instantiate(Context& c, RTid object) {
   state.matrix = c.matrices.top();
   if (!c.definition) return c.scene.newInstance(state);
   std::vector<RTid>& siblings = c.definition->children;
-  require(!c.scene.contains(object, c.definition->object), RT_INVALID_OPERATION, "the object would contain itself");
+  require(!c.scene.contains(object, c.definition->object), RT_INVALID_OPERATION,
+          "the object would contain itself");
   state.parent = c.definition->object;
   state.inDefinition = true;
   state.childSlot = siblings.size();
@@ -88,17 +92,20 @@ void rtEndObject(void) { guarded("rtEndObject", endObject); }
 void rtDeleteObject(RTid object) {
   guarded("rtDeleteObject", [&](Context& c) {
     c.scene.object(object);
-    require(!c.definition || c.definition->object != object, RT_INVALID_OPERATION, "this object is being defined");
+    require(!c.definition || c.definition->object != object, RT_INVALID_OPERATION,
+            "this object is being defined");
     c.scene.deleteObject(object, c.openChildren());
   });
 }
 
 RTid rtInstantiateObject(RTid object) {
-  return guarded("rtInstantiateObject", RTid(0), [&](Context& c) { return instantiate(c, object); });
+  return guarded("rtInstantiateObject", RTid(0),
+                 [&](Context& c) { return instantiate(c, object); });
 }
 
 void rtDeleteInstance(RTid instance) {
-  guarded("rtDeleteInstance", [&](Context& c) { c.scene.deleteInstance(instance, c.openChildren()); });
+  guarded("rtDeleteInstance",
+          [&](Context& c) { c.scene.deleteInstance(instance, c.openChildren()); });
 }
 
 void rtInstanceMatrix(RTid instance, const double m[16]) {
@@ -109,7 +116,8 @@ void rtInstanceMatrix(RTid instance, const double m[16]) {
 }
 
 void rtInstanceVisible(RTid instance, int visible) {
-  guarded("rtInstanceVisible", [&](Context& c) { placeInstance(c, instance, &InstanceState::visible, visible != 0); });
+  guarded("rtInstanceVisible",
+          [&](Context& c) { placeInstance(c, instance, &InstanceState::visible, visible != 0); });
 }
 
 void rtInstanceShader(RTid instance, RTid shader) {
@@ -131,5 +139,7 @@ void rtObjectHint(RTid object, RTenum hint) {
 }
 
 void rtInstanceUserData(RTid instance, uint64_t data) {
-  guarded("rtInstanceUserData", [&](Context& c) { changeInstance(c, instance, [&](InstanceState& s) { s.userData = data; }); });
+  guarded("rtInstanceUserData", [&](Context& c) {
+    changeInstance(c, instance, [&](InstanceState& s) { s.userData = data; });
+  });
 }

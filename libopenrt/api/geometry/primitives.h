@@ -1,4 +1,5 @@
-// primitives.h: GL's vertex modes as triangles, segments and points, and what counts as degenerate. Pure functions.
+// primitives.h: GL's vertex modes as triangles, segments and points, and what counts as degenerate.
+// Pure functions.
 #pragma once
 
 #include <algorithm>
@@ -26,7 +27,8 @@ inline edit::Primitive primitiveOf(RTenum mode) {
   }
 }
 
-// Indices that count vertices of a mode make at most. Vertices that complete no primitive are ignored, as in OpenGL.
+// Indices that count vertices of a mode make at most. Vertices that complete no primitive are
+// ignored, as in OpenGL.
 inline size_t indexCount(RTenum mode, size_t count) {
   switch (mode) {
   case RT_POINTS: return count;
@@ -39,9 +41,12 @@ inline size_t indexCount(RTenum mode, size_t count) {
   }
 }
 
-inline bool samePoint(const float* a, const float* b) { return a[0] == b[0] && a[1] == b[1] && a[2] == b[2]; }
+inline bool samePoint(const float* a, const float* b) {
+  return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
+}
 
-// Vertex of a list of count vertices that completes primitive number `ordinal`: whose value a primitive as a whole has.
+// Vertex of a list of count vertices that completes primitive number `ordinal`: whose value a
+// primitive as a whole has.
 inline size_t completingVertex(RTenum mode, size_t count, size_t ordinal) {
   switch (mode) {
   case RT_POINTS: return ordinal;
@@ -55,17 +60,19 @@ inline size_t completingVertex(RTenum mode, size_t count, size_t ordinal) {
   }
 }
 
-// Writes the indices of the primitives that count vertices of a mode make; vertexOf(i) is the i-th vertex's index into points.
-// Degenerate ones are left out and counted. out has room for indexCount(mode, count). Returns the end of what was written.
-// kept(ordinal) is called for each that is written, with its number among all.
-template <class VertexOf, class Kept> uint32_t* writeIndices(RTenum mode, size_t count, const float* points,
-                                                             const VertexOf& vertexOf, uint32_t* out, uint64_t& degenerate,
-                                                             const Kept& kept) {
+// Writes the indices of the primitives that count vertices of a mode make; vertexOf(i) is the i-th
+// vertex's index into points. Degenerate ones are left out and counted. out has room for
+// indexCount(mode, count). Returns the end of what was written. kept(ordinal) is called for each
+// that is written, with its number among all.
+template <class VertexOf, class Kept>
+uint32_t* writeIndices(RTenum mode, size_t count, const float* points, const VertexOf& vertexOf,
+                       uint32_t* out, uint64_t& degenerate, const Kept& kept) {
   size_t ordinal = 0;
   const auto triangle = [&](size_t i, size_t j, size_t k) {
     const uint32_t a = vertexOf(i), b = vertexOf(j), c = vertexOf(k);
     const size_t number = ordinal++;
-    if (degenerateTriangle(points + 3 * size_t(a), points + 3 * size_t(b), points + 3 * size_t(c))) {
+    if (degenerateTriangle(points + 3 * size_t(a), points + 3 * size_t(b),
+                           points + 3 * size_t(c))) {
       degenerate++;
       return;
     }
@@ -124,8 +131,9 @@ template <class VertexOf, class Kept> uint32_t* writeIndices(RTenum mode, size_t
   return out;
 }
 
-template <class VertexOf> uint32_t* writeIndices(RTenum mode, size_t count, const float* points, const VertexOf& vertexOf,
-                                                 uint32_t* out, uint64_t& degenerate) {
+template <class VertexOf> uint32_t* writeIndices(RTenum mode, size_t count, const float* points,
+                                                 const VertexOf& vertexOf, uint32_t* out,
+                                                 uint64_t& degenerate) {
   return writeIndices(mode, count, points, vertexOf, out, degenerate, [](size_t) {});
 }
 

@@ -1,4 +1,5 @@
-// transform.cpp: translation, scale, rotation and view matrices, composed in double. Application thread.
+// transform.cpp: translation, scale, rotation and view matrices, composed in double. Application
+// thread.
 #include "api/geometry/transform.h"
 
 #include <algorithm>
@@ -39,7 +40,8 @@ bool allFinite(std::initializer_list<double> values) {
 Vec3d unit(const Vec3d& v, const char* complaint) {
   const double largest = std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
   require(largest > 0, RT_INVALID_VALUE, complaint);
-  const Vec3d scaled{v.x / largest, v.y / largest, v.z / largest}; // no overflow or underflow in the squares
+  const Vec3d scaled{v.x / largest, v.y / largest,
+                     v.z / largest}; // no overflow or underflow in the squares
   return scaled * (1 / length(scaled));
 }
 
@@ -81,12 +83,15 @@ Matrix4d rotation(double degrees, double x, double y, double z) {
 }
 
 Matrix4d lookAt(const Vec3d& eye, const Vec3d& at, const Vec3d& up) {
-  require(allFinite({eye.x, eye.y, eye.z, at.x, at.y, at.z, up.x, up.y, up.z}), RT_INVALID_VALUE, "a coordinate is not finite");
+  require(allFinite({eye.x, eye.y, eye.z, at.x, at.y, at.z, up.x, up.y, up.z}), RT_INVALID_VALUE,
+          "a coordinate is not finite");
   const Vec3d back = unit(eye - at, "eye and reference point coincide");
-  const Vec3d right = unit(cross(unit(up, "the up vector is 0 0 0"), back), "the up vector is parallel to the line of sight");
+  const Vec3d right = unit(cross(unit(up, "the up vector is 0 0 0"), back),
+                           "the up vector is parallel to the line of sight");
   const Vec3d above = cross(back, right);
   Matrix4d r;
-  r.m = {right.x, right.y, right.z, 0, above.x, above.y, above.z, 0, back.x, back.y, back.z, 0, eye.x, eye.y, eye.z, 1};
+  r.m = {right.x, right.y, right.z, 0, above.x, above.y, above.z, 0,
+         back.x,  back.y,  back.z,  0, eye.x,   eye.y,   eye.z,   1};
   return r;
 }
 

@@ -1,4 +1,5 @@
-// transform.h: elementary matrices of the API, in double. Pure functions; they throw ApiError for arguments without a meaning.
+// transform.h: elementary matrices of the API, in double. Pure functions; they throw ApiError for
+// arguments without a meaning.
 #pragma once
 
 #include "scene/matrix.h"

@@ -1,4 +1,5 @@
-// vertex_buffer.cpp: growth and change of layout; every function allocates all it needs before it changes anything.
+// vertex_buffer.cpp: growth and change of layout; every function allocates all it needs before it
+// changes anything.
 #include "api/geometry/vertex_buffer.h"
 
 #include <algorithm>
@@ -10,7 +11,8 @@ namespace {
 constexpr size_t maxVertices = size_t(1) << 31; // what 32-bit indices name with room to spare
 }
 
-VertexBuffer::Floats VertexBuffer::grown(const Floats& old, size_t components, size_t capacity) const {
+VertexBuffer::Floats VertexBuffer::grown(const Floats& old, size_t components,
+                                         size_t capacity) const {
   Floats fresh = std::make_unique_for_overwrite<float[]>(components * capacity);
   if (old) std::copy_n(old.get(), components * count_, fresh.get());
   return fresh;
@@ -22,7 +24,8 @@ void VertexBuffer::reserve(size_t capacity) {
   Floats normals = attributes_ & HasNormal ? grown(normals_, 3, capacity) : nullptr;
   Floats texCoords = attributes_ & HasTexCoord ? grown(texCoords_, 2, capacity) : nullptr;
   Floats colors = attributes_ & HasColor ? grown(colors_, 4, capacity) : nullptr;
-  Floats parameters = attributes_ & HasParameters ? grown(parameters_, parameterFloats_, capacity) : nullptr;
+  Floats parameters =
+      attributes_ & HasParameters ? grown(parameters_, parameterFloats_, capacity) : nullptr;
   parameters_ = std::move(parameters);
   points_ = std::move(points);
   normals_ = std::move(normals);
@@ -33,9 +36,12 @@ void VertexBuffer::reserve(size_t capacity) {
 
 void VertexBuffer::addAttributes(uint8_t attributes) {
   const uint8_t added = attributes & static_cast<uint8_t>(~attributes_);
-  Floats normals = added & HasNormal ? std::make_unique_for_overwrite<float[]>(3 * capacity_) : nullptr;
-  Floats texCoords = added & HasTexCoord ? std::make_unique_for_overwrite<float[]>(2 * capacity_) : nullptr;
-  Floats colors = added & HasColor ? std::make_unique_for_overwrite<float[]>(4 * capacity_) : nullptr;
+  Floats normals =
+      added & HasNormal ? std::make_unique_for_overwrite<float[]>(3 * capacity_) : nullptr;
+  Floats texCoords =
+      added & HasTexCoord ? std::make_unique_for_overwrite<float[]>(2 * capacity_) : nullptr;
+  Floats colors =
+      added & HasColor ? std::make_unique_for_overwrite<float[]>(4 * capacity_) : nullptr;
   const VertexState unset;
   if (added & HasNormal) {
     std::fill_n(normals.get(), 3 * count_, unset.normal[0]);
@@ -56,7 +62,9 @@ void VertexBuffer::addParameters(const float* values, size_t count) {
   const size_t wide = parameterFloats_ + count;
   Floats parameters = std::make_unique_for_overwrite<float[]>(wide * capacity_);
   for (size_t i = 0; i < count_; i++) {
-    if (parameterFloats_) std::copy_n(parameters_.get() + parameterFloats_ * i, parameterFloats_, parameters.get() + wide * i);
+    if (parameterFloats_)
+      std::copy_n(parameters_.get() + parameterFloats_ * i, parameterFloats_,
+                  parameters.get() + wide * i);
     std::copy_n(values, count, parameters.get() + wide * i + parameterFloats_);
   }
   parameters_ = std::move(parameters);
@@ -65,7 +73,9 @@ void VertexBuffer::addParameters(const float* values, size_t count) {
 }
 
 void VertexBuffer::restart(uint8_t attributes, size_t parameterFloats) {
-  Floats parameters = parameterFloats ? std::make_unique_for_overwrite<float[]>(parameterFloats * capacity_) : nullptr;
+  Floats parameters = parameterFloats
+                          ? std::make_unique_for_overwrite<float[]>(parameterFloats * capacity_)
+                          : nullptr;
   parameters_ = std::move(parameters);
   parameterFloats_ = parameterFloats;
   count_ = 0;
@@ -79,7 +89,8 @@ void VertexBuffer::restart(uint8_t attributes, size_t parameterFloats) {
 void VertexBuffer::dropFront(size_t n) {
   const size_t rest = count_ - n;
   const auto shift = [n, rest](const Floats& data, size_t components) {
-    if (data) std::memmove(data.get(), data.get() + components * n, components * rest * sizeof(float));
+    if (data)
+      std::memmove(data.get(), data.get() + components * n, components * rest * sizeof(float));
   };
   shift(points_, 3);
   shift(normals_, 3);

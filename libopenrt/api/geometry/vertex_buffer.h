@@ -1,5 +1,5 @@
-// vertex_buffer.h: the growing vertices of begin/end: one capacity for all attributes, so that appending a vertex is one
-// comparison and a few stores. Application thread.
+// vertex_buffer.h: the growing vertices of begin/end: one capacity for all attributes, so that
+// appending a vertex is one comparison and a few stores. Application thread.
 #pragma once
 
 #include <algorithm>
@@ -12,12 +12,14 @@ namespace openrt {
 
 enum Attribute : uint8_t { HasNormal = 1, HasTexCoord = 2, HasColor = 4, HasParameters = 8 };
 
-// The attributes that the next vertex takes along; present: those that the object being defined has set.
+// The attributes that the next vertex takes along; present: those that the object being defined has
+// set.
 struct VertexState {
   float normal[3] = {0, 0, 0}; // 0 0 0: the face's own normal
   float texCoord[2] = {0, 0};
   float color[4] = {1, 1, 1, 1};
-  const float* parameters = nullptr; // of the latched shader, as many as the buffer's vertices have (HasParameters)
+  const float* parameters =
+      nullptr; // of the latched shader, as many as the buffer's vertices have (HasParameters)
   uint8_t present = 0;
 };
 
@@ -28,7 +30,8 @@ class VertexBuffer {
   const float* points() const { return points_.get(); }
   float* points() { return points_.get(); }
 
-  // Appends a vertex; state.present must be attributes(). Throws std::bad_alloc and then changes nothing.
+  // Appends a vertex; state.present must be attributes(). Throws std::bad_alloc and then changes
+  // nothing.
   void append(float x, float y, float z, const VertexState& state) {
     if (count_ == capacity_) [[unlikely]]
       reserve(capacity_ ? 2 * capacity_ : 256);
@@ -42,7 +45,8 @@ class VertexBuffer {
 
   // Gives every vertex so far the state that a vertex has before the attribute is first set.
   void addAttributes(uint8_t attributes);
-  // Widens the floats for shader parameters that every vertex has: the vertices so far get these values behind theirs.
+  // Widens the floats for shader parameters that every vertex has: the vertices so far get these
+  // values behind theirs.
   void addParameters(const float* values, size_t count);
   // Starts anew with these attributes and floats for parameters; keeps the storage.
   void restart(uint8_t attributes, size_t parameterFloats);
@@ -52,11 +56,19 @@ class VertexBuffer {
 
   // Copies of the first n vertices; null where the attribute is absent.
   ArrayPtr copyPoints(size_t n) const { return copy(points_.get(), 3 * n); }
-  ArrayPtr copyNormals(size_t n) const { return attributes_ & HasNormal ? copy(normals_.get(), 3 * n) : nullptr; }
-  ArrayPtr copyTexCoords(size_t n) const { return attributes_ & HasTexCoord ? copy(texCoords_.get(), 2 * n) : nullptr; }
-  ArrayPtr copyColors(size_t n) const { return attributes_ & HasColor ? copy(colors_.get(), 4 * n) : nullptr; }
+  ArrayPtr copyNormals(size_t n) const {
+    return attributes_ & HasNormal ? copy(normals_.get(), 3 * n) : nullptr;
+  }
+  ArrayPtr copyTexCoords(size_t n) const {
+    return attributes_ & HasTexCoord ? copy(texCoords_.get(), 2 * n) : nullptr;
+  }
+  ArrayPtr copyColors(size_t n) const {
+    return attributes_ & HasColor ? copy(colors_.get(), 4 * n) : nullptr;
+  }
   size_t parameterFloats() const { return parameterFloats_; }
-  const float* parameters(size_t vertex) const { return parameters_.get() + parameterFloats_ * vertex; }
+  const float* parameters(size_t vertex) const {
+    return parameters_.get() + parameterFloats_ * vertex;
+  }
 
  private:
   using Floats = std::unique_ptr<float[]>;
@@ -80,7 +92,8 @@ class VertexBuffer {
       c[3] = state.color[3];
     }
     if (attributes_ & HasParameters)
-      std::copy_n(state.parameters, parameterFloats_, parameters_.get() + parameterFloats_ * count_);
+      std::copy_n(state.parameters, parameterFloats_,
+                  parameters_.get() + parameterFloats_ * count_);
   }
   void reserve(size_t capacity);
   Floats grown(const Floats& old, size_t components, size_t capacity) const;

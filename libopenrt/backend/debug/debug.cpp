@@ -1,6 +1,7 @@
-// debug.cpp: the backend of backend=debug:NAME: passes everything on to the backend that renders, keeps a scene of its own
-// beside, and explains misuse through the log callback: what, where, what to do. It costs memory for the tables and time for
-// each commit; pictures are those of the other backend. Application thread; cancel, progress and snapshot from any.
+// debug.cpp: the backend of backend=debug:NAME: passes everything on to the backend that renders,
+// keeps a scene of its own beside, and explains misuse through the log callback: what, where, what
+// to do. It costs memory for the tables and time for each commit; pictures are those of the other
+// backend. Application thread; cancel, progress and snapshot from any.
 #include <set>
 #include <utility>
 
@@ -48,10 +49,16 @@ class DebugBackend final : public Backend, public ForwardedQueries {
   void wait() override { renderer_->wait(); }
   void cancel() override { renderer_->cancel(); }
   float progress() const override { return renderer_->progress(); }
-  bool snapshot(RTenum channel, std::span<float> out) const override { return renderer_->snapshot(channel, out); }
-  bool read(RTenum channel, std::span<float> out) const override { return renderer_->read(channel, out); }
+  bool snapshot(RTenum channel, std::span<float> out) const override {
+    return renderer_->snapshot(channel, out);
+  }
+  bool read(RTenum channel, std::span<float> out) const override {
+    return renderer_->read(channel, out);
+  }
   void stats(RTstats& stats) const override { renderer_->stats(stats); }
-  void castRays(std::span<const RTray> rays, std::span<RThit> hits) override { renderer_->castRays(rays, hits); }
+  void castRays(std::span<const RTray> rays, std::span<RThit> hits) override {
+    renderer_->castRays(rays, hits);
+  }
   void occludedRays(std::span<const RTray> rays, std::span<uint8_t> occluded) override {
     renderer_->occludedRays(rays, occluded);
   }
@@ -71,13 +78,15 @@ class DebugBackend final : public Backend, public ForwardedQueries {
 
   void look() {
     if (!options_.log) return;
-    const Facts facts{scene_, [this](uint32_t shader) { return classOf(shader); }, histories_, memory_};
+    const Facts facts{scene_, [this](uint32_t shader) { return classOf(shader); }, histories_,
+                      memory_};
     for (const auto rules : {sceneRules(), shaderRules()})
       for (const Rule& rule : rules) rule.check(facts, reporter(rule.name));
     for (uint32_t id : std::exchange(fresh_, {})) {
       const auto object = scene_.objects.find(id);
       if (object == scene_.objects.end()) continue;
-      for (const ObjectRule& rule : objectRules()) rule.check(id, object->second, facts, reporter(rule.name));
+      for (const ObjectRule& rule : objectRules())
+        rule.check(id, object->second, facts, reporter(rule.name));
     }
   }
 
@@ -102,7 +111,8 @@ class DebugBackend final : public Backend, public ForwardedQueries {
 
 } // namespace
 
-std::unique_ptr<Backend> makeDebugBackend(const BackendOptions& options, std::unique_ptr<Backend> renderer) {
+std::unique_ptr<Backend> makeDebugBackend(const BackendOptions& options,
+                                          std::unique_ptr<Backend> renderer) {
   return std::make_unique<DebugBackend>(options, std::move(renderer));
 }
 

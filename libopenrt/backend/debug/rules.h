@@ -1,6 +1,6 @@
-// rules.h: the rules of the debug layer: each looks at what was committed and says what is odd about it. A rule is a function in
-// a table (rules_scene.cpp, rules_geometry.cpp); to add one is to add a line there. Called by DebugBackend when a frame starts,
-// on the application's thread.
+// rules.h: the rules of the debug layer: each looks at what was committed and says what is odd
+// about it. A rule is a function in a table (rules_scene.cpp, rules_geometry.cpp); to add one is to
+// add a line there. Called by DebugBackend when a frame starts, on the application's thread.
 #pragma once
 
 #include <cstdint>
@@ -26,12 +26,14 @@ struct Memory { // what was in use in any frame
 
 struct Facts {
   const Scene& scene;
-  std::function<const RtsClass*(uint32_t shader)> classOf; // null: no such shader, or an unknown class
-  const std::map<uint32_t, History>& histories;            // by object
+  std::function<const RtsClass*(uint32_t shader)>
+      classOf;                                  // null: no such shader, or an unknown class
+  const std::map<uint32_t, History>& histories; // by object
   Memory& memory;
 };
 
-// Says something about the thing with this id (0: about the frame); the same rule says it once for each id.
+// Says something about the thing with this id (0: about the frame); the same rule says it once for
+// each id.
 using Report = std::function<void(uint32_t id, const std::string& text)>;
 
 struct Rule {

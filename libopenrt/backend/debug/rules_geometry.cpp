@@ -12,13 +12,14 @@ Vec3d at(const ArrayPtr& array, size_t i) {
   return {p[0], p[1], p[2]};
 }
 
-// Coordinates in float whose steps are coarse beside the object's own size. Positions in double never come here like that: they
-// have an origin of their own.
+// Coordinates in float whose steps are coarse beside the object's own size. Positions in double
+// never come here like that: they have an origin of their own.
 void farFromOrigin(uint32_t id, const Object& object, const Facts&, const Report& report) {
   constexpr double steps = 1 << 14; // of float, over the extent of a geometry
   for (const Geometry& g : object.geometries) {
     if (!g.points || g.points->count<float>() < 6) continue;
-    double low[3] = {1e300, 1e300, 1e300}, high[3] = {-1e300, -1e300, -1e300}, reach = 0, extent = 0;
+    double low[3] = {1e300, 1e300, 1e300}, high[3] = {-1e300, -1e300, -1e300}, reach = 0,
+           extent = 0;
     for (size_t i = 0; i < g.points->count<float>(); i++) {
       const double v = g.points->as<float>()[i];
       low[i % 3] = std::min(low[i % 3], v);
@@ -29,9 +30,12 @@ void farFromOrigin(uint32_t id, const Object& object, const Facts&, const Report
       reach = std::max({reach, std::fabs(low[k]), std::fabs(high[k])});
     }
     if (extent > 0 && reach * 0x1p-23 * steps > extent)
-      report(id, nameOf("object", id) + " is " + std::to_string(extent) + " large and " + std::to_string(reach) +
-                     " away from the origin of its coordinates in float, which are too coarse there: give them in double "
-                     "(rtVertex3d, RT_DOUBLE) or about its own middle, and place it with rtTranslated");
+      report(id,
+             nameOf("object", id) + " is " + std::to_string(extent) + " large and " +
+                 std::to_string(reach) +
+                 " away from the origin of its coordinates in float, which are too coarse there: "
+                 "give them in double "
+                 "(rtVertex3d, RT_DOUBLE) or about its own middle, and place it with rtTranslated");
   }
 }
 
@@ -63,18 +67,22 @@ Sides sidesOf(const Geometry& g) {
 
 void wrongSides(uint32_t id, const Object& object, const Facts&, const Report& report) {
   for (const Geometry& g : object.geometries) {
-    if (g.primitive != edit::Primitive::Triangles || !g.points || !g.indices || g.primitives() == 0) continue;
+    if (g.primitive != edit::Primitive::Triangles || !g.points || !g.indices || g.primitives() == 0)
+      continue;
     const Sides s = sidesOf(g);
     if (2 * s.opposite > s.triangles)
-      report(id, std::to_string(s.opposite) + " of " + std::to_string(s.triangles) + " triangles of " + nameOf("object", id) +
-                     " have normals on the other side than the order of their corners says: turn the normals or the order, or "
+      report(id, std::to_string(s.opposite) + " of " + std::to_string(s.triangles) +
+                     " triangles of " + nameOf("object", id) +
+                     " have normals on the other side than the order of their corners says: turn "
+                     "the normals or the order, or "
                      "rtEnable(RT_CW_FRONT)");
     const bool closed = s.triangles >= 4 && length(s.area) < 1e-3 * s.total;
     if (g.cull && closed && s.volume < 0)
-      report(id, nameOf("object", id) +
-                     " is closed, its faces look inwards and RT_CULL_FACE is on: from outside its near side is "
-                     "not there; turn the order of the corners, or RT_CW_FRONT (mirrored matrices are made up "
-                     "for)");
+      report(id, nameOf("object", id) + " is closed, its faces look inwards and RT_CULL_FACE is "
+                                        "on: from outside its near side is "
+                                        "not there; turn the order of the corners, or RT_CW_FRONT "
+                                        "(mirrored matrices are made up "
+                                        "for)");
   }
 }
 

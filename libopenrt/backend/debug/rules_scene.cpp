@@ -9,30 +9,37 @@ namespace {
 
 void noCamera(const Facts& f, const Report& report) {
   if (f.scene.camera.shader == 0 || !f.scene.shaders.contains(f.scene.camera.shader))
-    report(0, "the frame has no camera and shows nothing: call rtPerspective, rtOrtho or rtUseCamera before rtRender");
+    report(0, "the frame has no camera and shows nothing: call rtPerspective, rtOrtho or "
+              "rtUseCamera before rtRender");
 }
 
 void channels(const Facts& f, const Report& report) {
   const edit::FrameSettingsT& frame = f.scene.frame;
   if ((frame.channels & RT_VARIANCE) && frame.samples == 1)
-    report(RT_VARIANCE, "RT_VARIANCE of one sample a pixel is 0 everywhere: raise RT_SAMPLES_PER_PIXEL or leave the channel out");
+    report(RT_VARIANCE, "RT_VARIANCE of one sample a pixel is 0 everywhere: raise "
+                        "RT_SAMPLES_PER_PIXEL or leave the channel out");
   if ((frame.channels & (RT_ERROR | RT_TRUST)) && frame.samples < 32 && frame.replicates == 0)
-    report(RT_ERROR, "RT_ERROR and RT_TRUST of " + std::to_string(frame.samples) +
-                         " samples a pixel are never trusted: at least 32 are needed (RT_SAMPLES_PER_PIXEL)");
+    report(RT_ERROR,
+           "RT_ERROR and RT_TRUST of " + std::to_string(frame.samples) +
+               " samples a pixel are never trusted: at least 32 are needed (RT_SAMPLES_PER_PIXEL)");
   if ((frame.channels & ~uint32_t(RT_SAMPLES)) == 0)
-    report(RT_SAMPLES, "the frame has no channel but RT_SAMPLES: nothing of the picture can be read; add RT_RGBA");
+    report(
+        RT_SAMPLES,
+        "the frame has no channel but RT_SAMPLES: nothing of the picture can be read; add RT_RGBA");
 }
 
 bool drawable(const Scene& scene, uint32_t id) {
   const auto object = scene.objects.find(id);
-  return (object != scene.objects.end() && !object->second.geometries.empty()) || !scene.childrenOf(id).empty();
+  return (object != scene.objects.end() && !object->second.geometries.empty()) ||
+         !scene.childrenOf(id).empty();
 }
 
 void emptyInstances(const Facts& f, const Report& report) {
   for (const auto& [id, instance] : f.scene.instances)
     if (!drawable(f.scene, instance.object))
       report(id, nameOf("instance", id) + " stands for " + nameOf("object", instance.object) +
-                     ", which is empty: define it between rtBeginObject and rtEndObject; geometry whose primitives are all "
+                     ", which is empty: define it between rtBeginObject and rtEndObject; geometry "
+                     "whose primitives are all "
                      "degenerate is dropped (RTstats.degenerate)");
 }
 
@@ -40,7 +47,8 @@ void flatInstances(const Facts& f, const Report& report) {
   for (const auto& [id, instance] : f.scene.instances)
     if (!instance.matrix.usable())
       report(id, "the matrix of " + nameOf("instance", id) +
-                     " is singular or out of range, so nothing of it is drawn: to hide it use rtInstanceVisible, else check its "
+                     " is singular or out of range, so nothing of it is drawn: to hide it use "
+                     "rtInstanceVisible, else check its "
                      "scale factors");
 }
 
@@ -49,7 +57,8 @@ void neverPlaced(const Facts& f, const Report& report) {
   for (const auto& [id, instance] : f.scene.instances) placed.insert(instance.object);
   for (const auto& [id, object] : f.scene.objects)
     if (!object.geometries.empty() && !placed.contains(id))
-      report(id, nameOf("object", id) + " is defined but nowhere in the scene: place it with rtInstantiateObject, or delete it");
+      report(id, nameOf("object", id) + " is defined but nowhere in the scene: place it with "
+                                        "rtInstantiateObject, or delete it");
 }
 
 void redefined(const Facts& f, const Report& report) {
@@ -57,7 +66,8 @@ void redefined(const Facts& f, const Report& report) {
   for (const auto& [id, history] : f.histories)
     if (history.definitions >= often && !history.hinted)
       report(id, nameOf("object", id) + " was defined " + std::to_string(history.definitions) +
-                     " times: call rtObjectHint(object, RT_DYNAMIC) before its first definition, so that the first redefinition "
+                     " times: call rtObjectHint(object, RT_DYNAMIC) before its first definition, "
+                     "so that the first redefinition "
                      "need not build the scene anew; to move it use rtInstanceMatrix");
 }
 
@@ -74,7 +84,9 @@ constexpr Rule table[] = {
 
 std::span<const Rule> sceneRules() { return table; }
 
-std::string nameOf(const char* kind, uint32_t id) { return std::string(kind) + " " + std::to_string(id); }
+std::string nameOf(const char* kind, uint32_t id) {
+  return std::string(kind) + " " + std::to_string(id);
+}
 
 std::string nameOfShader(const Facts& facts, uint32_t id) {
   const RtsClass* table = facts.classOf(id);

@@ -1,4 +1,5 @@
-// rules_shaders.cpp: rules about shaders, their parameters and textures, and lights. Application thread.
+// rules_shaders.cpp: rules about shaders, their parameters and textures, and lights. Application
+// thread.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -13,7 +14,8 @@ namespace openrt::debug {
 namespace {
 
 void noteUse(const Scene& scene, std::set<uint32_t>& used) {
-  used.insert({scene.camera.shader, scene.environment.shader, scene.defaultShader, scene.transport});
+  used.insert(
+      {scene.camera.shader, scene.environment.shader, scene.defaultShader, scene.transport});
   for (const auto& [id, light] : scene.lights) used.insert(light.shader);
   for (const auto& [id, instance] : scene.instances) used.insert(instance.shader);
   for (const auto& [id, object] : scene.objects)
@@ -27,10 +29,15 @@ void unusedShaders(const Facts& f, const Report& report) {
     const RtsClass* table = f.classOf(id);
     if (!table || used.contains(id)) continue;
     if (table->kind == RTS_SURFACE)
-      report(id, nameOfShader(f, id) + " is on no geometry: call rtBindShader before rtBegin, the arrays or rtSphere (it is "
-                                       "latched there), or rtInstanceShader or rtDefaultShader");
-    if (table->kind == RTS_LIGHT) report(id, nameOfShader(f, id) + " gives no light: turn it on with rtUseLight");
-    if (table->kind == RTS_ENVIRONMENT) report(id, nameOfShader(f, id) + " is not used: call rtUseEnvironment");
+      report(
+          id,
+          nameOfShader(f, id) +
+              " is on no geometry: call rtBindShader before rtBegin, the arrays or rtSphere (it is "
+              "latched there), or rtInstanceShader or rtDefaultShader");
+    if (table->kind == RTS_LIGHT)
+      report(id, nameOfShader(f, id) + " gives no light: turn it on with rtUseLight");
+    if (table->kind == RTS_ENVIRONMENT)
+      report(id, nameOfShader(f, id) + " is not used: call rtUseEnvironment");
   }
 }
 
@@ -48,7 +55,8 @@ void goneParameters(const Facts& f, const Report& report) {
     for (const auto& [index, parameter] : values.parameters)
       if (table && index < table->paramCount && !*table->params[index].name)
         report(id, nameOfShader(f, id) + " has a value for parameter " + std::to_string(index) +
-                       ", which its library has no longer since it was loaded anew: ask rtParameterHandle again");
+                       ", which its library has no longer since it was loaded anew: ask "
+                       "rtParameterHandle again");
   }
 }
 
@@ -61,8 +69,10 @@ void unmappedTextures(const Facts& f, const Report& report) {
       if (values == f.scene.shaders.end()) continue;
       for (const auto& [index, parameter] : values->second.parameters)
         if (parameter.texture != 0 && f.scene.textures.contains(parameter.texture))
-          report(id, nameOfShader(f, g.shader) + " has a texture, but geometry of " + nameOf("object", id) +
-                         " has no texture coordinates: set them with rtTexCoord or rtTexCoordPointer");
+          report(id,
+                 nameOfShader(f, g.shader) + " has a texture, but geometry of " +
+                     nameOf("object", id) +
+                     " has no texture coordinates: set them with rtTexCoord or rtTexCoordPointer");
     }
 }
 
@@ -74,8 +84,8 @@ void overriddenParameters(const Facts& f, const Report& report) {
     if (object == f.scene.objects.end()) continue;
     for (const Geometry& g : object->second.geometries)
       if (!g.parameters.empty() && f.classOf(g.shader) != f.classOf(instance.shader))
-        report(id, nameOf("instance", id) + " draws " + nameOf("object", instance.object) + " with " +
-                       nameOfShader(f, instance.shader) +
+        report(id, nameOf("instance", id) + " draws " + nameOf("object", instance.object) +
+                       " with " + nameOfShader(f, instance.shader) +
                        ", another class than its own: the values that its triangles or "
                        "vertices have for parameters are ignored");
   }
@@ -94,7 +104,8 @@ struct Bounds {
   double distance(const Vec3d& p) const {
     const double c[3] = {p.x, p.y, p.z};
     double square = 0;
-    for (int k = 0; k < 3; k++) square += std::pow(std::max({low[k] - c[k], c[k] - high[k], 0.0}), 2);
+    for (int k = 0; k < 3; k++)
+      square += std::pow(std::max({low[k] - c[k], c[k] - high[k], 0.0}), 2);
     return std::sqrt(square);
   }
 };
@@ -104,11 +115,12 @@ Bounds boundsOf(const Object& object) {
   for (const Geometry& g : object.geometries) {
     if (g.primitive == edit::Primitive::Sphere) {
       for (int corner = 0; corner < 8; corner++)
-        b.add(
-            g.matrix.point({corner & 1 ? g.width : -g.width, corner & 2 ? g.width : -g.width, corner & 4 ? g.width : -g.width}));
+        b.add(g.matrix.point({corner & 1 ? g.width : -g.width, corner & 2 ? g.width : -g.width,
+                              corner & 4 ? g.width : -g.width}));
     } else if (g.points) {
       const float* p = g.points->as<float>();
-      for (size_t i = 0; i + 2 < g.points->count<float>(); i += 3) b.add(g.matrix.point({p[i], p[i + 1], p[i + 2]}));
+      for (size_t i = 0; i + 2 < g.points->count<float>(); i += 3)
+        b.add(g.matrix.point({p[i], p[i + 1], p[i + 2]}));
     }
   }
   return b;
@@ -126,8 +138,9 @@ Bounds boundsOf(const Scene& scene) {
       const Bounds& b = known->second;
       const Matrix4d toWorld = cluster.world * item.matrix;
       for (int corner = 0; corner < 8 && !b.empty(); corner++)
-        world.add(toWorld.point(
-            {corner & 1 ? b.high[0] : b.low[0], corner & 2 ? b.high[1] : b.low[1], corner & 4 ? b.high[2] : b.low[2]}));
+        world.add(
+            toWorld.point({corner & 1 ? b.high[0] : b.low[0], corner & 2 ? b.high[1] : b.low[1],
+                           corner & 4 ? b.high[2] : b.low[2]}));
     }
   }
   return world;
@@ -142,7 +155,8 @@ bool valueOf(const Facts& f, uint32_t shader, const char* name, RtsType type, fl
     const auto& set = f.scene.shaders.at(shader).parameters;
     const auto found = set.find(i);
     for (size_t k = 0; k < parameterFloats(type); k++)
-      out[k] = found != set.end() && k < found->second.floats.size() ? found->second.floats[k] : param.defaultValue[k];
+      out[k] = found != set.end() && k < found->second.floats.size() ? found->second.floats[k]
+                                                                     : param.defaultValue[k];
     return true;
   }
   return false;
@@ -154,26 +168,29 @@ void uselessLights(const Facts& f, const Report& report) {
   for (const auto& [id, light] : f.scene.lights) {
     const std::string name = nameOf("light", id) + " of " + nameOfShader(f, light.shader);
     if (light.scope != 0 && !f.scene.instances.contains(light.scope))
-      report(id,
-             name +
-                 " shines on nothing: the instance of its rtLightScope was deleted; delete the light or give it another scope");
-    if (!light.matrix.usable()) report(id, name + " has a singular matrix and gives no light: check rtLightMatrix");
+      report(id, name + " shines on nothing: the instance of its rtLightScope was deleted; delete "
+                        "the light or give it another scope");
+    if (!light.matrix.usable())
+      report(id, name + " has a singular matrix and gives no light: check rtLightMatrix");
     float intensity[3] = {1, 1, 1}, radius[3] = {}, place[3] = {};
     if (valueOf(f, light.shader, "intensity", RTS_FLOAT, intensity) && intensity[0] == 0)
-      report(id, name + " has the intensity 0: remove it with rtRemoveLight, or give it another one");
-    if (!valueOf(f, light.shader, "radius", RTS_FLOAT, radius) || !valueOf(f, light.shader, "location", RTS_VEC3, place))
+      report(id,
+             name + " has the intensity 0: remove it with rtRemoveLight, or give it another one");
+    if (!valueOf(f, light.shader, "radius", RTS_FLOAT, radius) ||
+        !valueOf(f, light.shader, "location", RTS_VEC3, place))
       continue;
     if (!known) {
       world = boundsOf(f.scene);
       known = true;
     }
     if (world.empty()) continue;
-    const double scale =
-        std::max({length(light.matrix.column(0)), length(light.matrix.column(1)), length(light.matrix.column(2))});
+    const double scale = std::max({length(light.matrix.column(0)), length(light.matrix.column(1)),
+                                   length(light.matrix.column(2))});
     const double distance = world.distance(light.matrix.point({place[0], place[1], place[2]}));
     if (distance > scale * radius[0])
-      report(id, name + " reaches nothing: its radius is " + std::to_string(scale * radius[0]) + ", the nearest geometry is " +
-                     std::to_string(distance) + " away; raise its radius or move it");
+      report(id, name + " reaches nothing: its radius is " + std::to_string(scale * radius[0]) +
+                     ", the nearest geometry is " + std::to_string(distance) +
+                     " away; raise its radius or move it");
   }
 }
 

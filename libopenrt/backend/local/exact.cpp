@@ -1,5 +1,6 @@
-// exact.cpp: see exact.h. Numbers that double precision cannot tell from 0 are worked out again in long double, which has 64 bits
-// of mantissa on x86: products of three differences of floats, of triangles a million times longer than high, met at 1e-7.
+// exact.cpp: Numbers that double precision cannot tell from 0 are worked out again in
+// long double, which has 64 bits of mantissa on x86: products of three differences of floats, of
+// triangles a million times longer than high, met at 1e-7.
 #include "backend/local/exact.h"
 
 #include <algorithm>
@@ -8,18 +9,23 @@
 namespace openrt {
 namespace {
 
-double largest(const Vec3d& v) { return std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)}); }
+double largest(const Vec3d& v) {
+  return std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
+}
 
-// Twice the volume that the direction and the edge from p to q span with the origin; exactly the negative for q and p. On which
-// side of the edge the ray passes (J. Pluecker's coordinates; as S. Woop, C. Benthin, I. Wald: Watertight ray/triangle
-// intersection, JCGT 2(1), 2013, but for any direction).
+// Twice the volume that the direction and the edge from p to q span with the origin; exactly the
+// negative for q and p. On which side of the edge the ray passes (J. Pluecker's coordinates; as S.
+// Woop, C. Benthin, I. Wald: Watertight ray/triangle intersection, JCGT 2(1), 2013, but for any
+// direction).
 template <class T> T side(const Vec3d& p, const Vec3d& q, const Vec3d& d) {
-  const T ex = T(q.x) - p.x, ey = T(q.y) - p.y, ez = T(q.z) - p.z, sx = T(q.x) + p.x, sy = T(q.y) + p.y, sz = T(q.z) + p.z;
+  const T ex = T(q.x) - p.x, ey = T(q.y) - p.y, ez = T(q.z) - p.z, sx = T(q.x) + p.x,
+          sy = T(q.y) + p.y, sz = T(q.z) + p.z;
   return (ey * sz - ez * sy) * d.x + (ez * sx - ex * sz) * d.y + (ex * sy - ey * sx) * d.z;
 }
 
-// The bound of the rounding error depends on the edge alone, so both of its triangles choose the same precision. 2^-20 of the
-// largest value: a weight must be right to about 1e-6 also where the ray grazes.
+// The bound of the rounding error depends on the edge alone, so both of its triangles choose the
+// same precision. 2^-20 of the largest value: a weight must be right to about 1e-6 also where the
+// ray grazes.
 double sideOf(const Vec3d& p, const Vec3d& q, const Vec3d& d) {
   const double rough = side<double>(p, q, d);
   const double doubt = 0x1p-30 * largest(q - p) * (largest(p) + largest(q)) * largest(d);
@@ -30,7 +36,9 @@ struct Sides {
   double ac, ba, cb; // weights of b, c and a, times their sum
 };
 
-Sides sidesOf(const SeenTriangle& s, const Vec3d& d) { return {sideOf(s.a, s.c, d), sideOf(s.b, s.a, d), sideOf(s.c, s.b, d)}; }
+Sides sidesOf(const SeenTriangle& s, const Vec3d& d) {
+  return {sideOf(s.a, s.c, d), sideOf(s.b, s.a, d), sideOf(s.c, s.b, d)};
+}
 
 // The point (1 - s) p + s q of an edge that is next to the line along d through the origin.
 double nextOnEdge(const Vec3d& p, const Vec3d& q, const Vec3d& d, double& s, double& t) {
@@ -48,7 +56,8 @@ double nextOnEdge(const Vec3d& p, const Vec3d& q, const Vec3d& d, double& s, dou
 
 bool meets(const SeenTriangle& s, const Vec3d& d, Meeting& at) {
   const Sides w = sidesOf(s, d);
-  const bool front = w.ac >= 0 && w.ba >= 0 && w.cb >= 0, back = w.ac <= 0 && w.ba <= 0 && w.cb <= 0;
+  const bool front = w.ac >= 0 && w.ba >= 0 && w.cb >= 0,
+             back = w.ac <= 0 && w.ba <= 0 && w.cb <= 0;
   if (!front && !back) return false;
   const double sum = w.ac + w.ba + w.cb;
   if (sum == 0) return false;
@@ -100,8 +109,10 @@ bool foundInSingle(const SeenTriangle& s, const Vec3d& direction, float near, fl
   const auto across = [](const V& p, const V& q) {
     return V{p.y * q.z - p.z * q.y, p.z * q.x - p.x * q.z, p.x * q.y - p.y * q.x};
   };
-  const V d = rounded(direction), a = rounded(s.a), b = rounded(s.b), c = rounded(s.c), e0 = c - a, e1 = a - b, e2 = b - c;
-  const float u = times(across(e0, c + a), d), v = times(across(e1, a + b), d), w = times(across(e2, b + c), d);
+  const V d = rounded(direction), a = rounded(s.a), b = rounded(s.b), c = rounded(s.c), e0 = c - a,
+          e1 = a - b, e2 = b - c;
+  const float u = times(across(e0, c + a), d), v = times(across(e1, a + b), d),
+              w = times(across(e2, b + c), d);
   const float slack = 0x1p-23f * std::fabs(u + v + w);
   if (!(std::min({u, v, w}) >= -slack || std::max({u, v, w}) <= slack)) return false;
   const V n = across(e0, e1);
@@ -109,8 +120,8 @@ bool foundInSingle(const SeenTriangle& s, const Vec3d& direction, float near, fl
   return t >= near && t <= far;
 }
 
-void settle(const Record& r, uint32_t primitive, const Vec3d& origin, const Vec3d& direction, float near, float far, float& t,
-            float& u, float& v) {
+void settle(const Record& r, uint32_t primitive, const Vec3d& origin, const Vec3d& direction,
+            float near, float far, float& t, float& u, float& v) {
   const uint32_t* corner = r.indices + 3 * size_t(primitive);
   const auto place = [&](int k) {
     const float* p = r.vertices + 3 * size_t(corner[k]);

@@ -1,6 +1,7 @@
-// huge_spheres.cpp: spheres and ellipsoids whose surface single precision cannot place (render/huge_spheres.h): the ground as a
-// sphere, of which the eye is a millionth of the radius away. Each is met in double precision in its own frame, as a geometry of
-// our own. Called by render threads.
+// huge_spheres.cpp: spheres and ellipsoids whose surface single precision cannot place
+// (render/huge_spheres.h): the ground as a sphere, of which the eye is a millionth of the radius
+// away. Each is met in double precision in its own frame, as a geometry of our own. Called by
+// render threads.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,14 +12,16 @@
 namespace openrt {
 namespace {
 
-// Where the ray meets the unit sphere, nearest first; false if it does not. The product of both distances comes from how far the
-// origin is from the surface, so that the nearer one keeps its digits.
+// Where the ray meets the unit sphere, nearest first; false if it does not. The product of both
+// distances comes from how far the origin is from the surface, so that the nearer one keeps its
+// digits.
 bool meetsUnitSphere(const Vec3d& o, const Vec3d& d, double t[2]) {
   const double dd = dot(d, d), middle = -dot(o, d) / dd;
   const Vec3d across = o + d * middle;
   const double h = length(across), square = (1 - h) * (1 + h) / dd;
   if (!(square >= 0)) return false;
-  const double half = std::sqrt(square), far = middle + std::copysign(half, middle), distance = length(o);
+  const double half = std::sqrt(square), far = middle + std::copysign(half, middle),
+               distance = length(o);
   const double near = far != 0 ? (distance - 1) * (distance + 1) / dd / far : 0;
   t[0] = std::min(near, far);
   t[1] = std::max(near, far);
@@ -38,13 +41,16 @@ struct SeenSphere {
   }
 };
 
-const Matrix4d& unitOf(const void* part, uint32_t primitive) { return static_cast<const Part*>(part)->spheres[primitive]; }
+const Matrix4d& unitOf(const void* part, uint32_t primitive) {
+  return static_cast<const Part*>(part)->spheres[primitive];
+}
 
 void boundsOf(const RTCBoundsFunctionArguments* a) {
   const Matrix4d& m = unitOf(a->geometryUserPtr, a->primID);
   float low[3], high[3];
   for (size_t k = 0; k < 3; k++) {
-    const double half = std::sqrt(m.m[k] * m.m[k] + m.m[4 + k] * m.m[4 + k] + m.m[8 + k] * m.m[8 + k]) * (1 + 1e-6);
+    const double half =
+        std::sqrt(m.m[k] * m.m[k] + m.m[4 + k] * m.m[4 + k] + m.m[8 + k] * m.m[8 + k]) * (1 + 1e-6);
     const double slack = 1e-6 * std::fabs(m.m[12 + k]);
     low[k] = float(m.m[12 + k] - half - slack);
     high[k] = float(m.m[12 + k] + half + slack);

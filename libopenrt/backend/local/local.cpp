@@ -1,6 +1,6 @@
-// local.cpp: see local.h. What a change costs: parameters, textures, lights and the camera make a new snapshot over the same
-// acceleration structure; moved dynamic instances and redefined dynamic objects change it in place; all else lays it out anew
-// from the parts that did not change.
+// local.cpp: What a change costs: parameters, textures, lights and the camera make a
+// new snapshot over the same acceleration structure; moved dynamic instances and redefined dynamic
+// objects change it in place; all else lays it out anew from the parts that did not change.
 #include "backend/local/local.h"
 #include "backend/local/near_lamps.h"
 #include "shading/running.h"
@@ -18,7 +18,9 @@
 namespace openrt {
 namespace {
 
-double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+double now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 
 } // namespace
 
@@ -35,7 +37,8 @@ void LocalBackend::apply(std::shared_ptr<const Commit> commit) {
 }
 
 Vec3d LocalBackend::eye() const {
-  return scene_.camera.shader && scene_.camera.matrix.usable() ? scene_.camera.matrix.translation() : Vec3d{};
+  return scene_.camera.shader && scene_.camera.matrix.usable() ? scene_.camera.matrix.translation()
+                                                               : Vec3d{};
 }
 
 void LocalBackend::prepare() {
@@ -59,14 +62,17 @@ void LocalBackend::prepare() {
   transportLeavesOut_ = choice.leavesOut;
   transportReason_ = std::move(choice.reason);
   next->emitters.build(*next, snapshot_.get(), samePlaces_);
-  if (!saidNearLamp_ && options_.log && next->emitters.shapes() != (snapshot_ ? snapshot_->emitters.shapes() : nullptr)) {
+  if (!saidNearLamp_ && options_.log &&
+      next->emitters.shapes() != (snapshot_ ? snapshot_->emitters.shapes() : nullptr)) {
     const std::string warning = warnOfNearLamps(*next);
     if (!warning.empty()) options_.log(2, warning.c_str(), options_.logUser);
     saidNearLamp_ = !warning.empty();
   }
   next->manyLights = makeManyLights(*next, snapshot_.get());
-  if (choice.transport == RT_TRANSPORT_LIGHT && next->camera.shader.shaderClass && next->camera.shader.shaderClass->project) {
-    auto sources = std::make_shared<const LightSources>(*next, samePlaces_ ? snapshot_.get() : nullptr);
+  if (choice.transport == RT_TRANSPORT_LIGHT && next->camera.shader.shaderClass &&
+      next->camera.shader.shaderClass->project) {
+    auto sources =
+        std::make_shared<const LightSources>(*next, samePlaces_ ? snapshot_.get() : nullptr);
     if (!sources->empty()) next->lightSources = std::move(sources);
   }
   snapshot_ = std::move(next);
@@ -81,15 +87,16 @@ void LocalBackend::bringUpToDate(RenderScene& next) {
   for (const auto& [id, light] : scene_.lights) scoped |= light.scope != 0;
   bool layOut = !accel_ || c.structure || (c.lights && (scoped || scopedLights_)) ||
                 (next.shaders != snapshot_->shaders && !next.shaders->extends(*snapshot_->shaders));
-  for (size_t i = 0; i < c.redefined.size() && !layOut; i++) layOut = !builder_.survey.retake(scene_, flat_, c.redefined[i]);
+  for (size_t i = 0; i < c.redefined.size() && !layOut; i++)
+    layOut = !builder_.survey.retake(scene_, flat_, c.redefined[i]);
   std::vector<uint32_t> moved;
   if (layOut) {
     flat_ = flatten(scene_);
     builder_.survey.take(scene_, flat_);
     if (flat_.truncated && options_.log)
       options_.log(3,
-                   ("too many placed objects: only the first " + std::to_string(maxPlacements) + " are drawn, or " +
-                    std::to_string(maxClusters) + " that move")
+                   ("too many placed objects: only the first " + std::to_string(maxPlacements) +
+                    " are drawn, or " + std::to_string(maxClusters) + " that move")
                        .c_str(),
                    options_.logUser);
   } else {
@@ -109,7 +116,8 @@ void LocalBackend::bringUpToDate(RenderScene& next) {
   next.origin[2] = origin.z;
   makeCamera(next, origin);
   const PixelFootprint pixel = footprint(next);
-  const BuildInput input{scene_, flat_, *next.shaders, origin, builder_.survey.scale(origin), pixel};
+  const BuildInput input{scene_, flat_, *next.shaders, origin, builder_.survey.scale(origin),
+                         pixel};
   const bool builds = layOut || !AccelBuilder::standsAt(*accel_, origin, input.scale);
   samePlaces_ = !builds && moved.empty() && c.redefined.empty();
   if (builds)
@@ -143,10 +151,13 @@ void LocalBackend::makeShaders(RenderScene& next) const {
     index[id] = number;
     if (!kept) textures.emplace_back(image.description, image.texels);
   }
-  next.textures = kept ? snapshot_->textures : std::make_shared<const std::vector<Texture>>(std::move(textures));
+  next.textures = kept ? snapshot_->textures
+                       : std::make_shared<const std::vector<Texture>>(std::move(textures));
   next.host.textures = next.textures.get();
-  next.shaders = kept ? std::make_shared<const ShaderTable>(*snapshot_->shaders, changes_.parameters, scene_, index, next.host)
-                      : std::make_shared<const ShaderTable>(scene_, *options_.shaders, index, next.host);
+  next.shaders =
+      kept ? std::make_shared<const ShaderTable>(*snapshot_->shaders, changes_.parameters, scene_,
+                                                 index, next.host)
+           : std::make_shared<const ShaderTable>(scene_, *options_.shaders, index, next.host);
 }
 
 void LocalBackend::makeCamera(RenderScene& next, const Vec3d& origin) const {
@@ -170,7 +181,8 @@ void LocalBackend::makeCamera(RenderScene& next, const Vec3d& origin) const {
   }
 }
 
-// How far apart two neighbouring pixels' rays are in the middle of the picture: lines and points are pixels wide.
+// How far apart two neighbouring pixels' rays are in the middle of the picture: lines and points
+// are pixels wide.
 PixelFootprint LocalBackend::footprint(const RenderScene& next) const {
   PixelFootprint result;
   for (int k = 0; k < 3; k++) {
@@ -206,10 +218,13 @@ PixelFootprint LocalBackend::footprint(const RenderScene& next) const {
     camera.shaderClass->generate(&next.host, &batch, camera.params, 2, points, size, &rays);
   }
   // In local space the view axis is -z: compare where the rays are at depth 0 and at depth 1.
-  const auto at = [&](int i, int k, float depth) { return org[k][i] + dir[k][i] * (depth + org[2][i]) / -dir[2][i]; };
+  const auto at = [&](int i, int k, float depth) {
+    return org[k][i] + dir[k][i] * (depth + org[2][i]) / -dir[2][i];
+  };
   result.constant = std::hypot(at(1, 0, 0) - at(0, 0, 0), at(1, 1, 0) - at(0, 1, 0));
   result.slope = std::hypot(at(1, 0, 1) - at(0, 0, 1), at(1, 1, 1) - at(0, 1, 1)) - result.constant;
-  if (!std::isfinite(result.constant) || !std::isfinite(result.slope)) result.constant = result.slope = 0;
+  if (!std::isfinite(result.constant) || !std::isfinite(result.slope))
+    result.constant = result.slope = 0;
   return result;
 }
 
@@ -255,7 +270,8 @@ void LocalBackend::wait() {
     frame_ = nullptr;
   }
   finished_ = std::move(frame);
-  if (!finished_->failure().empty()) throw std::runtime_error("rendering failed: " + finished_->failure());
+  if (!finished_->failure().empty())
+    throw std::runtime_error("rendering failed: " + finished_->failure());
 }
 
 void LocalBackend::cancel() {
@@ -311,7 +327,10 @@ void LocalBackend::stats(RTstats& s) const {
   s.wrongHits = device_->wrongHits;
   s.bvhBytes = uint64_t(std::max<int64_t>(device_->bytes, 0));
   s.threads = threads_;
-  std::snprintf(s.isa, sizeof s.isa, "%s", device_->wide ? "avx512" : __builtin_cpu_supports("avx2") ? "avx2" : "sse");
+  std::snprintf(s.isa, sizeof s.isa, "%s",
+                device_->wide                    ? "avx512"
+                : __builtin_cpu_supports("avx2") ? "avx2"
+                                                 : "sse");
   std::snprintf(s.kernel, sizeof s.kernel, "Embree %s", RTC_VERSION_STRING);
 }
 
@@ -353,6 +372,8 @@ bool LocalBackend::cameraRay(double x, double y, float origin[3], float directio
   return true;
 }
 
-std::unique_ptr<Backend> makeLocalBackend(const BackendOptions& options) { return std::make_unique<LocalBackend>(options); }
+std::unique_ptr<Backend> makeLocalBackend(const BackendOptions& options) {
+  return std::make_unique<LocalBackend>(options);
+}
 
 } // namespace openrt

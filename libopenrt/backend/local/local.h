@@ -1,4 +1,5 @@
-// local.h: the backend that renders in this process: applies commits to its scene, builds what they changed, renders frames.
+// local.h: the backend that renders in this process: applies commits to its scene, builds what they
+// changed, renders frames.
 #pragma once
 
 #include <functional>
@@ -26,11 +27,14 @@ class LocalBackend final : public Backend, public SurfaceQueries {
   void castRays(std::span<const RTray> rays, std::span<RThit> hits) override;
   void occludedRays(std::span<const RTray> rays, std::span<uint8_t> occluded) override;
   void countHits(std::span<const RTray> rays, std::span<uint32_t> counts) override;
-  void listHits(std::span<const RTray> rays, std::span<const size_t> first, std::span<RThit> hits) override;
-  void closestPoints(std::span<const float> points, float radius, std::span<RTclosest> closest) override;
+  void listHits(std::span<const RTray> rays, std::span<const size_t> first,
+                std::span<RThit> hits) override;
+  void closestPoints(std::span<const float> points, float radius,
+                     std::span<RTclosest> closest) override;
   bool pick(double x, double y, RThit& hit) override;
 
-  // The committed scene as threads render it, made if anything changed; it stays as it is until the next apply().
+  // The committed scene as threads render it, made if anything changed; it stays as it is until the
+  // next apply().
   std::shared_ptr<const RenderScene> prepared();
 
  private:
@@ -44,8 +48,10 @@ class LocalBackend final : public Backend, public SurfaceQueries {
   bool cameraRay(double x, double y, float origin[3], float direction[3]) const; // of the snapshot
   RThit hitOf(const RayHits& found, uint32_t i) const;
   // Portions of rays, loaded, on all threads.
-  void forBatches(std::span<const RTray> rays, const std::function<void(size_t first, Arena& arena, Rays& batch)>& use);
-  void forPassed(std::span<const RTray> rays, const std::function<void(size_t ray, std::span<const Accel::Passed>)>& take);
+  void forBatches(std::span<const RTray> rays,
+                  const std::function<void(size_t first, Arena& arena, Rays& batch)>& use);
+  void forPassed(std::span<const RTray> rays,
+                 const std::function<void(size_t ray, std::span<const Accel::Passed>)>& take);
   void loadRays(std::span<const RTray> rays, size_t first, Rays& to) const;
 
   BackendOptions options_;
@@ -58,8 +64,9 @@ class LocalBackend final : public Backend, public SurfaceQueries {
   std::shared_ptr<Accel> accel_;
   Flattened flat_;
   PixelFootprint footprint_;
-  bool scopedLights_ = false, samePlaces_ = false; // samePlaces_: of the records, as in the last snapshot
-  std::string transportReason_;                    // of the snapshot
+  bool scopedLights_ = false,
+       samePlaces_ = false;     // samePlaces_: of the records, as in the last snapshot
+  std::string transportReason_; // of the snapshot
   uint32_t unreachedLights_ = 0, transportLeavesOut_ = 0;
   bool saidNearLamp_ = false;
   mutable std::mutex mutex_; // frame_ as seen by cancel(), progress() and snapshot()

@@ -1,4 +1,3 @@
-// near_lamps.cpp: see near_lamps.h.
 #include "backend/local/near_lamps.h"
 
 #include <algorithm>
@@ -22,13 +21,17 @@ struct Probe {
 };
 
 void addTriangle(const EmissiveShapes::Shape& shape, std::vector<Probe>& out) {
-  const auto corner = [&](int c) { return Vec3d{shape.corner[c][0], shape.corner[c][1], shape.corner[c][2]}; };
-  const Vec3d n = cross(corner(1) - corner(0), corner(2) - corner(0)), m = (corner(0) + corner(1) + corner(2)) * (1 / 3.0);
+  const auto corner = [&](int c) {
+    return Vec3d{shape.corner[c][0], shape.corner[c][1], shape.corner[c][2]};
+  };
+  const Vec3d n = cross(corner(1) - corner(0), corner(2) - corner(0)),
+              m = (corner(0) + corner(1) + corner(2)) * (1 / 3.0);
   const double l = length(n);
   if (!(l > 0)) return;
   for (const int side : {1, 2}) {
     const double s = (side == 1 ? 1 : -1) / l;
-    if (shape.sides & side) out.push_back({{m.x, m.y, m.z}, {n.x * s, n.y * s, n.z * s}, 0, shape.record});
+    if (shape.sides & side)
+      out.push_back({{m.x, m.y, m.z}, {n.x * s, n.y * s, n.z * s}, 0, shape.record});
   }
 }
 
@@ -47,7 +50,8 @@ void addSphere(const EmissiveShapes::Shape& shape, const Record& r, std::vector<
     }
 }
 
-// How far rays step off what was met, about as render/surface/points.cpp works it out; unit: what a float can tell apart there.
+// How far rays step off what was met, about as render/surface/points.cpp works it out; unit: what a
+// float can tell apart there.
 double stepOff(const Record& r, uint32_t primitive, const Probe& p, double t, double& unit) {
   double largest[3] = {}, along = 0, all = 0;
   float corner[3][3];
@@ -98,7 +102,8 @@ std::string warnOfNearLamps(const RenderScene& scene) {
   for (uint32_t i = 0; i < probes.size(); i++) {
     if (hits.record[i] == noHit) continue;
     const Record& r = scene.records[hits.record[i]];
-    if (r.primitive != edit::Primitive::Triangles && r.primitive != edit::Primitive::Sphere) continue;
+    if (r.primitive != edit::Primitive::Triangles && r.primitive != edit::Primitive::Sphere)
+      continue;
     double unit = 0;
     const double off = stepOff(r, hits.primitive[i], probes[i], double(hits.t[i]), unit),
                  distance = double(hits.t[i]) - probes[i].skip;
@@ -111,7 +116,8 @@ std::string warnOfNearLamps(const RenderScene& scene) {
   char text[320];
   std::snprintf(
       text, sizeof text,
-      "a lamp is %.3g away from the surface that it lights, but rays step %.2g off that surface: what it gets from the lamp is "
+      "a lamp is %.3g away from the surface that it lights, but rays step %.2g off that surface: "
+      "what it gets from the lamp is "
       "wrong. Keep lamps of this world %.2g away, or make the surface smaller (docs/accuracy.md)",
       gap, step, wanted * step);
   return text;

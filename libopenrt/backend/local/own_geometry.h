@@ -1,4 +1,5 @@
-// own_geometry.h: what geometries that are met by code of ours, not Embree's, do with a packet of rays. Called by render threads.
+// own_geometry.h: what geometries that are met by code of ours, not Embree's, do with a packet of
+// rays. Called by render threads.
 #pragma once
 
 #include "backend/local/accel/embree.h"
@@ -11,15 +12,16 @@ struct Lane {
   Vec3d origin, direction;
   float near, far;
   Lane(RTCRayN* ray, unsigned n, unsigned i)
-      : origin{RTCRayN_org_x(ray, n, i), RTCRayN_org_y(ray, n, i), RTCRayN_org_z(ray, n, i)}, direction{RTCRayN_dir_x(ray, n, i),
-                                                                                                        RTCRayN_dir_y(ray, n, i),
-                                                                                                        RTCRayN_dir_z(ray, n, i)},
+      : origin{RTCRayN_org_x(ray, n, i), RTCRayN_org_y(ray, n, i), RTCRayN_org_z(ray, n, i)},
+        direction{RTCRayN_dir_x(ray, n, i), RTCRayN_dir_y(ray, n, i), RTCRayN_dir_z(ray, n, i)},
         near(RTCRayN_tnear(ray, n, i)), far(RTCRayN_tfar(ray, n, i)) {}
   bool reaches(double t) const { return float(t) >= near && float(t) <= far; }
 };
 
-// Stores a hit of lane i, unless the filter of the query refuses it, which sees it as of a packet of one ray.
-inline bool takeHit(const RTCIntersectFunctionNArguments* a, unsigned i, double t, double u, double v, const Vec3d& normal) {
+// Stores a hit of lane i, unless the filter of the query refuses it, which sees it as of a packet
+// of one ray.
+inline bool takeHit(const RTCIntersectFunctionNArguments* a, unsigned i, double t, double u,
+                    double v, const Vec3d& normal) {
   RTCRayN* rays = RTCRayHitN_RayN(a->rayhit, a->N);
   RTCHit hit{};
   hit.Ng_x = float(normal.x);
@@ -44,8 +46,12 @@ inline bool takeHit(const RTCIntersectFunctionNArguments* a, unsigned i, double 
     ray.id = RTCRayN_id(rays, a->N, i);
     RTCHit seen = hit;
     int valid = -1;
-    const RTCFilterFunctionNArguments one{
-        &valid, a->geometryUserPtr, a->context, reinterpret_cast<RTCRayN*>(&ray), reinterpret_cast<RTCHitN*>(&seen), 1};
+    const RTCFilterFunctionNArguments one{&valid,
+                                          a->geometryUserPtr,
+                                          a->context,
+                                          reinterpret_cast<RTCRayN*>(&ray),
+                                          reinterpret_cast<RTCHitN*>(&seen),
+                                          1};
     context->takes(&one);
     if (valid != -1) return false;
   }

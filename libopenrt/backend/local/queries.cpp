@@ -14,12 +14,14 @@ namespace {
 
 constexpr size_t block = 4096;
 
-// Outward unit normal in the world: the kernel's, brought out of the instance and turned to the front.
+// Outward unit normal in the world: the kernel's, brought out of the instance and turned to the
+// front.
 void worldNormal(const Record& r, const float k[3], float out[3]) {
   double n[3] = {k[0], k[1], k[2]};
   if (r.instanced)
     for (int j = 0; j < 3; j++)
-      n[j] = double(r.kernelNormal[j][0]) * k[0] + double(r.kernelNormal[j][1]) * k[1] + double(r.kernelNormal[j][2]) * k[2];
+      n[j] = double(r.kernelNormal[j][0]) * k[0] + double(r.kernelNormal[j][1]) * k[1] +
+             double(r.kernelNormal[j][2]) * k[2];
   const double l = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
   const double s = l > 0 ? (r.flip ? -1 : 1) / l : 0;
   for (int j = 0; j < 3; j++) out[j] = float(n[j] * s);
@@ -28,9 +30,11 @@ void worldNormal(const Record& r, const float k[3], float out[3]) {
 template <class F> void parallelBlocks(uint32_t threads, size_t count, const F& f) {
   tbb::task_arena arena{int(threads)};
   arena.execute([&] {
-    tbb::parallel_for(tbb::blocked_range<size_t>(0, (count + block - 1) / block, 1), [&](const auto& range) {
-      for (size_t b = range.begin(); b < range.end(); b++) f(b * block, std::min(block, count - b * block));
-    });
+    tbb::parallel_for(tbb::blocked_range<size_t>(0, (count + block - 1) / block, 1),
+                      [&](const auto& range) {
+                        for (size_t b = range.begin(); b < range.end(); b++)
+                          f(b * block, std::min(block, count - b * block));
+                      });
   });
 }
 
@@ -48,8 +52,9 @@ void LocalBackend::loadRays(std::span<const RTray> rays, size_t first, Rays& to)
   }
 }
 
-void LocalBackend::forBatches(std::span<const RTray> rays,
-                              const std::function<void(size_t first, Arena& arena, Rays& batch)>& use) {
+void LocalBackend::forBatches(
+    std::span<const RTray> rays,
+    const std::function<void(size_t first, Arena& arena, Rays& batch)>& use) {
   prepare();
   parallelBlocks(threads_, rays.size(), [&](size_t first, size_t n) {
     Arena arena;
@@ -86,8 +91,9 @@ RThit LocalBackend::hitOf(const RayHits& found, uint32_t i) const {
   return hit;
 }
 
-void LocalBackend::forPassed(std::span<const RTray> rays,
-                             const std::function<void(size_t ray, std::span<const Accel::Passed>)>& take) {
+void LocalBackend::forPassed(
+    std::span<const RTray> rays,
+    const std::function<void(size_t ray, std::span<const Accel::Passed>)>& take) {
   forBatches(rays, [&](size_t first, Arena&, Rays& batch) {
     std::vector<Accel::Passed> all;
     accel_->passed(batch, all);
@@ -101,10 +107,13 @@ void LocalBackend::forPassed(std::span<const RTray> rays,
 }
 
 void LocalBackend::countHits(std::span<const RTray> rays, std::span<uint32_t> counts) {
-  forPassed(rays, [&](size_t ray, std::span<const Accel::Passed> passed) { counts[ray] = uint32_t(passed.size()); });
+  forPassed(rays, [&](size_t ray, std::span<const Accel::Passed> passed) {
+    counts[ray] = uint32_t(passed.size());
+  });
 }
 
-void LocalBackend::listHits(std::span<const RTray> rays, std::span<const size_t> first, std::span<RThit> hits) {
+void LocalBackend::listHits(std::span<const RTray> rays, std::span<const size_t> first,
+                            std::span<RThit> hits) {
   forPassed(rays, [&](size_t ray, std::span<const Accel::Passed> passed) {
     for (size_t i = first[ray]; i < first[ray + 1]; i++) {
       RThit& hit = hits[i] = {};
@@ -124,7 +133,8 @@ void LocalBackend::listHits(std::span<const RTray> rays, std::span<const size_t>
   });
 }
 
-void LocalBackend::closestPoints(std::span<const float> points, float radius, std::span<RTclosest> closest) {
+void LocalBackend::closestPoints(std::span<const float> points, float radius,
+                                 std::span<RTclosest> closest) {
   prepare();
   const double* origin = snapshot_->origin;
   const std::vector<uint32_t> round = accel_->spheres();
@@ -132,7 +142,8 @@ void LocalBackend::closestPoints(std::span<const float> points, float radius, st
     for (size_t i = first; i < first + n; i++) {
       RTclosest& out = closest[i] = {};
       out.distance = std::numeric_limits<float>::infinity();
-      const double place[3] = {points[3 * i] - origin[0], points[3 * i + 1] - origin[1], points[3 * i + 2] - origin[2]};
+      const double place[3] = {points[3 * i] - origin[0], points[3 * i + 1] - origin[1],
+                               points[3 * i + 2] - origin[2]};
       Accel::Nearest found;
       if (!accel_->nearest(place, radius, round, found)) continue;
       const Record& r = accel_->records[found.record];
@@ -151,7 +162,8 @@ void LocalBackend::closestPoints(std::span<const float> points, float radius, st
   });
 }
 
-// The camera's own ray in render space: what the picture shows, also where the world's coordinates are too large for float.
+// The camera's own ray in render space: what the picture shows, also where the world's coordinates
+// are too large for float.
 bool LocalBackend::pick(double x, double y, RThit& hit) {
   prepare();
   Arena arena;
@@ -168,7 +180,8 @@ bool LocalBackend::pick(double x, double y, RThit& hit) {
   RayHits found;
   found.allocate(arena, 1);
   accel_->intersect(ray, maskAll, Coherence::incoherent, found);
-  if (found.record[0] != noHit && culled(*snapshot_, ray, found, 0)) accel_->intersectFronts(ray, maskAll, found);
+  if (found.record[0] != noHit && culled(*snapshot_, ray, found, 0))
+    accel_->intersectFronts(ray, maskAll, found);
   hit = hitOf(found, 0);
   return true;
 }

@@ -1,4 +1,3 @@
-// sliver_edges.cpp: see sliver_edges.h.
 #include "backend/local/sliver_edges.h"
 
 #include <algorithm>
@@ -13,9 +12,10 @@
 namespace openrt {
 namespace {
 
-// Height over longest edge. Single precision errs about the direction of a triangle's plane by 6e-8 over this, so that a ray from
-// nearer to it than about that share of its length may be told to begin behind it. Of boxes of ratio 200 and 300, three rays in
-// 200,000 left that began more than 7e-6 of the length inside, with a bound of 1/250; with 1/140 none.
+// Height over longest edge. Single precision errs about the direction of a triangle's plane by 6e-8
+// over this, so that a ray from nearer to it than about that share of its length may be told to
+// begin behind it. Of boxes of ratio 200 and 300, three rays in 200,000 left that began more than
+// 7e-6 of the length inside, with a bound of 1/250; with 1/140 none.
 constexpr double sliverRatio = 1.0 / 128;
 // Longest edge: its square times a distance of up to 1e17 must fit in a float.
 constexpr double smallest = 1e-12, largest = 1e10;
@@ -40,29 +40,35 @@ struct PlaceHash {
 // Numbers of the places where corners of some triangles are, and the edges of these between them.
 class Edges {
  public:
-  Edges(const std::vector<float>& vertices, const uint32_t* indices) : vertices_(vertices), indices_(indices) {}
+  Edges(const std::vector<float>& vertices, const uint32_t* indices)
+      : vertices_(vertices), indices_(indices) {}
 
   void add(size_t triangle) {
     uint32_t id[3];
     for (size_t k = 0; k < 3; k++)
-      id[k] = ids_.try_emplace(Place(at(indices_[3 * triangle + k])), uint32_t(ids_.size())).first->second;
+      id[k] = ids_.try_emplace(Place(at(indices_[3 * triangle + k])), uint32_t(ids_.size()))
+                  .first->second;
     for (size_t k = 0; k < 3; k++) edges_.insert(key(id[k], id[(k + 1) % 3]));
     known_.clear();
   }
   // Whether an edge, from corner k to the next, is one of them.
   bool has(size_t triangle, size_t k) {
-    const uint32_t p = idOf(indices_[3 * triangle + k]), q = idOf(indices_[3 * triangle + (k + 1) % 3]);
+    const uint32_t p = idOf(indices_[3 * triangle + k]),
+                   q = idOf(indices_[3 * triangle + (k + 1) % 3]);
     return p != none && q != none && edges_.contains(key(p, q));
   }
 
  private:
   const float* at(uint32_t index) const { return vertices_.data() + 3 * size_t(index); }
-  static uint64_t key(uint32_t p, uint32_t q) { return uint64_t(std::min(p, q)) << 32 | std::max(p, q); }
+  static uint64_t key(uint32_t p, uint32_t q) {
+    return uint64_t(std::min(p, q)) << 32 | std::max(p, q);
+  }
   uint32_t idOf(uint32_t index) {
     if (known_.empty()) know();
     return known_[index];
   }
-  // Asked for once all are added: each vertex is looked up once, most by a table of bits that says no.
+  // Asked for once all are added: each vertex is looked up once, most by a table of bits that says
+  // no.
   void know() {
     known_.assign(vertices_.size() / 3, none);
     std::vector<bool> some(std::bit_ceil(16 * ids_.size() + 1));
@@ -84,12 +90,14 @@ class Edges {
 } // namespace
 
 TriangleShape shapeOf(const float* a, const float* b, const float* c) {
-  const Vec3d p{a[0], a[1], a[2]}, e1 = Vec3d{b[0], b[1], b[2]} - p, e2 = Vec3d{c[0], c[1], c[2]} - p, e3 = e2 - e1;
+  const Vec3d p{a[0], a[1], a[2]}, e1 = Vec3d{b[0], b[1], b[2]} - p,
+                                   e2 = Vec3d{c[0], c[1], c[2]} - p, e3 = e2 - e1;
   const Vec3d n = cross(e1, e2);
   const double area = dot(n, n), longest = std::max({dot(e1, e1), dot(e2, e2), dot(e3, e3)});
   if (!(area > 0) || !std::isfinite(area)) return TriangleShape::degenerate;
   const bool extreme = longest < smallest * smallest || longest > largest * largest;
-  return extreme || area < sliverRatio * sliverRatio * longest * longest ? TriangleShape::sliver : TriangleShape::good;
+  return extreme || area < sliverRatio * sliverRatio * longest * longest ? TriangleShape::sliver
+                                                                         : TriangleShape::good;
 }
 
 std::vector<uint8_t> widenSlivers(const std::vector<float>& vertices, const uint32_t* indices,
@@ -112,7 +120,8 @@ std::vector<uint8_t> widenSlivers(const std::vector<float>& vertices, const uint
   });
   std::vector<uint8_t> open;
   each(TriangleShape::sliver, [&](size_t t) { // exact.h has edges a to c, b to a, c to b
-    open.push_back(uint8_t((good.has(t, 2) ? 1 : 0) | (good.has(t, 0) ? 2 : 0) | (good.has(t, 1) ? 4 : 0)));
+    open.push_back(
+        uint8_t((good.has(t, 2) ? 1 : 0) | (good.has(t, 0) ? 2 : 0) | (good.has(t, 1) ? 4 : 0)));
   });
   return open;
 }

@@ -1,4 +1,3 @@
-// thin.cpp: see thin.h.
 #include "backend/local/thin.h"
 
 #include <cmath>
@@ -7,8 +6,8 @@
 
 namespace openrt {
 
-void addThin(Part& part, const Geometry& g, const Matrix4d& toKernel, uint32_t record, const PixelFootprint& footprint,
-             float scale) {
+void addThin(Part& part, const Geometry& g, const Matrix4d& toKernel, uint32_t record,
+             const PixelFootprint& footprint, float scale) {
   if (!consistent(g) || !toKernel.usable()) return;
   const std::vector<float> points = bakePoints(g, toKernel);
   const uint32_t* index = g.indices->as<uint32_t>();
@@ -17,7 +16,8 @@ void addThin(Part& part, const Geometry& g, const Matrix4d& toKernel, uint32_t r
     const float* p = points.data() + 3 * size_t(i);
     float depth = 0;
     for (int k = 0; k < 3; k++) depth += (p[k] / scale - footprint.eye[k]) * footprint.axis[k];
-    const float radius = 0.5f * g.width * (footprint.constant + footprint.slope * std::fabs(depth)) * scale;
+    const float radius =
+        0.5f * g.width * (footprint.constant + footprint.slope * std::fabs(depth)) * scale;
     part.vertices.insert(part.vertices.end(), {p[0], p[1], p[2], radius});
   };
   for (size_t i = 0; i < g.primitives(); i++) {

@@ -1,5 +1,6 @@
-// thin.h: lines and points: round linear curves and spheres, pixels wide as the camera sees them, in the frame of the top level.
-// They are made anew when they or the camera move. Application thread, between frames.
+// thin.h: lines and points: round linear curves and spheres, pixels wide as the camera sees them,
+// in the frame of the top level. They are made anew when they or the camera move. Application
+// thread, between frames.
 #pragma once
 
 #include <memory>
@@ -14,8 +15,9 @@ struct PixelFootprint { // size of a pixel at a distance along the view axis, re
   bool operator==(const PixelFootprint&) const = default;
 };
 
-// Adds a geometry's lines or points to a part of their kind. scale: render space to the top level's frame.
-void addThin(Part& part, const Geometry& geometry, const Matrix4d& toKernel, uint32_t record, const PixelFootprint& footprint,
-             float scale);
+// Adds a geometry's lines or points to a part of their kind. scale: render space to the top level's
+// frame.
+void addThin(Part& part, const Geometry& geometry, const Matrix4d& toKernel, uint32_t record,
+             const PixelFootprint& footprint, float scale);
 
 } // namespace openrt

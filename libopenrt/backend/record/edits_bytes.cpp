@@ -1,4 +1,3 @@
-// edits_bytes.cpp: see edits_bytes.h.
 #include "backend/record/edits_bytes.h"
 
 #include <cstring>
@@ -7,8 +6,9 @@
 namespace openrt {
 namespace {
 
-// Bytes that the edits take once unpacked, at least. A table may be named from many places in a flatbuffer, so a small file could
-// otherwise grow without bounds; what the writer makes is never larger than its buffer by this count.
+// Bytes that the edits take once unpacked, at least. A table may be named from many places in a
+// flatbuffer, so a small file could otherwise grow without bounds; what the writer makes is never
+// larger than its buffer by this count.
 uint64_t unpackedBytes(const edit::Edits& edits) {
   constexpr uint64_t perTable = 8;
   uint64_t bytes = 0;
@@ -26,7 +26,8 @@ uint64_t unpackedBytes(const edit::Edits& edits) {
       if (!object->geometries()) continue;
       bytes += sizeof(edit::Matrix) * uint64_t(object->geometries()->size());
       for (const edit::Geometry* geometry : *object->geometries())
-        if (geometry && geometry->parameters()) bytes += perTable * uint64_t(geometry->parameters()->size());
+        if (geometry && geometry->parameters())
+          bytes += perTable * uint64_t(geometry->parameters()->size());
     }
   }
   return bytes;
@@ -45,11 +46,14 @@ std::vector<std::byte> packEdits(const edit::EditsT& edits) {
 void unpackEdits(std::span<const std::byte> bytes, edit::EditsT& edits) {
   constexpr flatbuffers::uoffset_t depth = 8, bytesPerTable = 8;
   const auto* buffer = reinterpret_cast<const uint8_t*>(bytes.data());
-  flatbuffers::Verifier verifier(buffer, bytes.size(), depth,
-                                 static_cast<flatbuffers::uoffset_t>(bytes.size() / bytesPerTable + 1));
-  if (!edit::VerifyEditsBuffer(verifier)) throw std::runtime_error("edits that are no valid flatbuffer");
+  flatbuffers::Verifier verifier(
+      buffer, bytes.size(), depth,
+      static_cast<flatbuffers::uoffset_t>(bytes.size() / bytesPerTable + 1));
+  if (!edit::VerifyEditsBuffer(verifier))
+    throw std::runtime_error("edits that are no valid flatbuffer");
   const edit::Edits& packed = *edit::GetEdits(buffer);
-  if (unpackedBytes(packed) > bytes.size()) throw std::runtime_error("edits that share their parts");
+  if (unpackedBytes(packed) > bytes.size())
+    throw std::runtime_error("edits that share their parts");
   packed.UnPackTo(&edits);
 }
 

@@ -1,5 +1,6 @@
-// edits_bytes.h: the edits of a commit as bytes (edits.fbs), for recordings and for workers. Bytes may come from anywhere: what
-// is read is verified; what it means is the validator's to check. Pure functions that throw std::runtime_error. [any]
+// edits_bytes.h: the edits of a commit as bytes (edits.fbs), for recordings and for workers. Bytes
+// may come from anywhere: what is read is verified; what it means is the validator's to check. Pure
+// functions that throw std::runtime_error. [any]
 #pragma once
 
 #include <cstddef>

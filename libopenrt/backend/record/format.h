@@ -1,9 +1,11 @@
-// format.h: the recording: what rtSwapBuffers handed to the backend, commit by commit. Written by record.cpp, read by reader.cpp.
+// format.h: the recording: what rtSwapBuffers handed to the backend, commit by commit. Written by
+// record.cpp, read by reader.cpp.
 //
 //   file    ::= magic version reserved commit*           magic 8 bytes, version and reserved 32-bit
 //   commit  ::= array* edits
 //   array   ::= ChunkHeader(kind Array, id) zstd-frame    the bytes of one array
-//   edits   ::= ChunkHeader(kind Edits) flatbuffer        root openrt.edit.Edits; its `render` marks a frame
+//   edits   ::= ChunkHeader(kind Edits) flatbuffer        root openrt.edit.Edits; its `render`
+//   marks a frame
 // All numbers are little-endian; `hash` is XXH3 (64 bits) of the bytes before compression.
 #pragma once
 
@@ -33,6 +35,7 @@ struct ChunkHeader {
 };
 
 static_assert(sizeof(FileHeader) == 16 && sizeof(ChunkHeader) == 40);
-static_assert(std::endian::native == std::endian::little, "the structures are written as they lie in memory");
+static_assert(std::endian::native == std::endian::little,
+              "the structures are written as they lie in memory");
 
 } // namespace openrt::recording

@@ -1,4 +1,5 @@
-// reader.cpp: chunks of a recording, decompressed and verified. Called by openrt-replay, tests and the fuzz target; one thread.
+// reader.cpp: chunks of a recording, decompressed and verified. Called by openrt-replay, tests and
+// the fuzz target; one thread.
 #include "backend/record/reader.h"
 
 #include <algorithm>
@@ -15,13 +16,15 @@ namespace openrt {
 
 using namespace recording;
 
-RecordingReader::RecordingReader(std::FILE* file, std::string name, const ShaderRegistry* shaders, const RecordingLimits& limits)
+RecordingReader::RecordingReader(std::FILE* file, std::string name, const ShaderRegistry* shaders,
+                                 const RecordingLimits& limits)
     : file_(file), name_(std::move(name)), limits_(limits), validator_(shaders) {
   FileHeader header;
   read(&header, sizeof(header), false);
   if (std::memcmp(header.magic, magic, sizeof(magic)) != 0) fail("not a recording");
   if (header.version != version)
-    fail("a recording of version " + std::to_string(header.version) + "; this program reads version " + std::to_string(version));
+    fail("a recording of version " + std::to_string(header.version) +
+         "; this program reads version " + std::to_string(version));
   if (header.reserved != 0) fail("a reserved field is not 0");
 }
 
@@ -33,14 +36,16 @@ void RecordingReader::fail(const std::string& what) const {
 bool RecordingReader::read(void* out, size_t bytes, bool mayEnd) {
   const size_t got = std::fread(out, 1, bytes, file_.get());
   if (got == 0 && mayEnd && std::feof(file_.get())) return false;
-  if (got != bytes) fail(std::ferror(file_.get()) ? std::strerror(errno) : "the file ends in the middle");
+  if (got != bytes)
+    fail(std::ferror(file_.get()) ? std::strerror(errno) : "the file ends in the middle");
   offset_ += bytes;
   return true;
 }
 
 void RecordingReader::account(uint64_t bytes) {
   total_ += bytes;
-  if (total_ > limits_.totalBytes) fail("more than " + std::to_string(limits_.totalBytes) + " bytes of data");
+  if (total_ > limits_.totalBytes)
+    fail("more than " + std::to_string(limits_.totalBytes) + " bytes of data");
 }
 
 // Piece by piece: a size that the file does not have is noticed before memory is taken for it.
@@ -55,10 +60,13 @@ std::vector<uint8_t> RecordingReader::readPayload(uint64_t bytes) {
   return payload;
 }
 
-void RecordingReader::readArray(uint64_t id, uint64_t bytes, uint64_t stored, uint64_t hash, Commit& commit) {
+void RecordingReader::readArray(uint64_t id, uint64_t bytes, uint64_t stored, uint64_t hash,
+                                Commit& commit) {
   constexpr uint64_t bestRatio = 1 << 16; // zstd makes 4 bytes of a block of 128 KiB at best
-  if (id == 0 || commit.arrays.contains(id)) fail("array " + std::to_string(id) + " twice, or without a number");
-  if (bytes > limits_.arrayBytes || stored > ZSTD_compressBound(bytes) || bytes > bestRatio * stored)
+  if (id == 0 || commit.arrays.contains(id))
+    fail("array " + std::to_string(id) + " twice, or without a number");
+  if (bytes > limits_.arrayBytes || stored > ZSTD_compressBound(bytes) ||
+      bytes > bestRatio * stored)
     fail("an array of " + std::to_string(bytes) + " bytes in " + std::to_string(stored));
   account(bytes);
   const std::vector<uint8_t> packed = readPayload(stored);
@@ -71,7 +79,8 @@ void RecordingReader::readArray(uint64_t id, uint64_t bytes, uint64_t stored, ui
 }
 
 void RecordingReader::readEdits(uint64_t bytes, uint64_t stored, uint64_t hash, Commit& commit) {
-  if (bytes != stored || bytes > limits_.editBytes) fail("edits of " + std::to_string(bytes) + " bytes");
+  if (bytes != stored || bytes > limits_.editBytes)
+    fail("edits of " + std::to_string(bytes) + " bytes");
   account(bytes);
   const std::vector<uint8_t> buffer = readPayload(bytes);
   if (XXH3_64bits(buffer.data(), buffer.size()) != hash) fail("edits with a wrong checksum");
@@ -92,7 +101,8 @@ std::shared_ptr<const Commit> RecordingReader::next() {
       continue;
     }
     if (header.kind != ChunkKind::Edits || header.id != 0) fail("an unknown kind of chunk");
-    if (++commits_ > limits_.commits) fail("more than " + std::to_string(limits_.commits) + " commits");
+    if (++commits_ > limits_.commits)
+      fail("more than " + std::to_string(limits_.commits) + " commits");
     readEdits(header.bytes, header.stored, header.hash, *commit);
     try {
       validator_.check(*commit);
@@ -102,7 +112,8 @@ std::shared_ptr<const Commit> RecordingReader::next() {
   return nullptr;
 }
 
-std::unique_ptr<RecordingReader> openRecording(const std::string& path, const ShaderRegistry* shaders) {
+std::unique_ptr<RecordingReader> openRecording(const std::string& path,
+                                               const ShaderRegistry* shaders) {
   std::FILE* file = std::fopen(path.c_str(), "rbe");
   if (!file) throw BadRecording(path + ": " + std::strerror(errno));
   return std::make_unique<RecordingReader>(file, path, shaders);

@@ -1,5 +1,6 @@
-// reader.h: reads recordings (format.h) back into commits. A file may come from anywhere: every size, hash, reference and
-// number is checked before a backend sees it, and what fails is a BadRecording that says where. One thread.
+// reader.h: reads recordings (format.h) back into commits. A file may come from anywhere: every
+// size, hash, reference and number is checked before a backend sees it, and what fails is a
+// BadRecording that says where. One thread.
 #pragma once
 
 #include <cstdio>
@@ -27,8 +28,10 @@ struct RecordingLimits {
 
 class RecordingReader {
  public:
-  // Takes the file over, which must be readable from its beginning. shaders: to check parameters and kinds; may be null.
-  RecordingReader(std::FILE* file, std::string name, const ShaderRegistry* shaders, const RecordingLimits& limits = {});
+  // Takes the file over, which must be readable from its beginning. shaders: to check parameters
+  // and kinds; may be null.
+  RecordingReader(std::FILE* file, std::string name, const ShaderRegistry* shaders,
+                  const RecordingLimits& limits = {});
 
   // The next commit, or null at the end of the file.
   std::shared_ptr<const Commit> next();
@@ -52,6 +55,7 @@ class RecordingReader {
 };
 
 // Opens a recording; throws BadRecording if it cannot be read.
-std::unique_ptr<RecordingReader> openRecording(const std::string& path, const ShaderRegistry* shaders);
+std::unique_ptr<RecordingReader> openRecording(const std::string& path,
+                                               const ShaderRegistry* shaders);
 
 } // namespace openrt

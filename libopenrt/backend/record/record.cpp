@@ -1,5 +1,5 @@
-// record.cpp: the backend that writes commits to a file, alone or beside one that renders. Application thread; cancel,
-// progress and snapshot from any.
+// record.cpp: the backend that writes commits to a file, alone or beside one that renders.
+// Application thread; cancel, progress and snapshot from any.
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
@@ -25,9 +25,10 @@ namespace {
 
 using namespace recording;
 
-// Writes the file; any failure is a std::system_error that names it. The file is written beside its name and gets that name once
-// a first commit is in it: what was there before stays if the disk is full, and a program that ends by a signal leaves a
-// recording. A device or a pipe is written to directly. After a failure the file ends with the last whole commit.
+// Writes the file; any failure is a std::system_error that names it. The file is written beside its
+// name and gets that name once a first commit is in it: what was there before stays if the disk is
+// full, and a program that ends by a signal leaves a recording. A device or a pipe is written to
+// directly. After a failure the file ends with the last whole commit.
 class RecordingWriter {
  public:
   explicit RecordingWriter(std::string path) : path_(std::move(path)) {
@@ -63,7 +64,8 @@ class RecordingWriter {
 
   // Closes the file under its name. No write may follow.
   void finish() {
-    if (!temporary_.empty() && !name()) failed("cannot be renamed"); // a recording of nothing is one, too
+    if (!temporary_.empty() && !name())
+      failed("cannot be renamed"); // a recording of nothing is one, too
     if (std::fclose(std::exchange(file_, nullptr)) != 0) failed("cannot be written");
   }
 
@@ -71,9 +73,12 @@ class RecordingWriter {
   void writeArray(ArrayId id, const Array& array) {
     constexpr int fastest = 1;
     packed_.resize(ZSTD_compressBound(array.size()));
-    const size_t stored = ZSTD_compress(packed_.data(), packed_.size(), array.data(), array.size(), fastest);
-    if (ZSTD_isError(stored)) throw std::runtime_error(std::string("zstd: ") + ZSTD_getErrorName(stored));
-    const ChunkHeader header{ChunkKind::Array, 0, id, array.size(), stored, XXH3_64bits(array.data(), array.size())};
+    const size_t stored =
+        ZSTD_compress(packed_.data(), packed_.size(), array.data(), array.size(), fastest);
+    if (ZSTD_isError(stored))
+      throw std::runtime_error(std::string("zstd: ") + ZSTD_getErrorName(stored));
+    const ChunkHeader header{ChunkKind::Array, 0,      id,
+                             array.size(),     stored, XXH3_64bits(array.data(), array.size())};
     put(&header, sizeof(header));
     put(packed_.data(), stored);
   }
@@ -81,7 +86,8 @@ class RecordingWriter {
   void writeEdits(const edit::EditsT& edits) {
     const std::vector<std::byte> packed = packEdits(edits);
     const size_t bytes = packed.size();
-    const ChunkHeader header{ChunkKind::Edits, 0, 0, bytes, bytes, XXH3_64bits(packed.data(), bytes)};
+    const ChunkHeader header{
+        ChunkKind::Edits, 0, 0, bytes, bytes, XXH3_64bits(packed.data(), bytes)};
     put(&header, sizeof(header));
     put(packed.data(), bytes);
   }
@@ -103,7 +109,8 @@ class RecordingWriter {
   void end() {
     if (file_) {
       const int descriptor = good_ ? -1 : dup(fileno(file_));
-      std::fclose(std::exchange(file_, nullptr)); // an error was told before, or nobody has called finish()
+      std::fclose(
+          std::exchange(file_, nullptr)); // an error was told before, or nobody has called finish()
       if (descriptor >= 0) {
         (void)!ftruncate(descriptor, whole_); // of no effect on devices
         close(descriptor);
@@ -139,11 +146,14 @@ class RecordBackend final : public Backend, public ForwardedQueries {
         throw;
       }
     } else if (!renderer_) {
-      throw std::system_error(std::make_error_code(std::errc::io_error), "the recording has ended with an error");
+      throw std::system_error(std::make_error_code(std::errc::io_error),
+                              "the recording has ended with an error");
     }
     for (const auto& entry : commit->edits.edits) {
-      if (const auto* frame = entry ? entry->any.AsFrameSettings() : nullptr) channels_ = frame->channels;
-      if (const auto* camera = entry ? entry->any.AsCamera() : nullptr) camera_ = camera->shader != 0;
+      if (const auto* frame = entry ? entry->any.AsFrameSettings() : nullptr)
+        channels_ = frame->channels;
+      if (const auto* camera = entry ? entry->any.AsCamera() : nullptr)
+        camera_ = camera->shader != 0;
     }
     if (renderer_) renderer_->apply(std::move(commit));
   }
@@ -155,7 +165,9 @@ class RecordBackend final : public Backend, public ForwardedQueries {
   }
 
   bool pipelines() const override { return renderer_ && renderer_->pipelines(); }
-  std::vector<RTworker> workers() const override { return renderer_ ? renderer_->workers() : std::vector<RTworker>(); }
+  std::vector<RTworker> workers() const override {
+    return renderer_ ? renderer_->workers() : std::vector<RTworker>();
+  }
   void start() override {
     if (renderer_) renderer_->start();
   }
@@ -166,7 +178,9 @@ class RecordBackend final : public Backend, public ForwardedQueries {
     if (renderer_) renderer_->cancel();
   }
   float progress() const override { return renderer_ ? renderer_->progress() : 1; }
-  bool snapshot(RTenum channel, std::span<float> out) const override { return renderer_ && renderer_->snapshot(channel, out); }
+  bool snapshot(RTenum channel, std::span<float> out) const override {
+    return renderer_ && renderer_->snapshot(channel, out);
+  }
 
   bool read(RTenum channel, std::span<float> out) const override {
     if (renderer_) return renderer_->read(channel, out);
@@ -209,7 +223,8 @@ std::unique_ptr<Backend> makeRecordBackend(const BackendOptions& options) {
   return std::make_unique<RecordBackend>(options, nullptr);
 }
 
-std::unique_ptr<Backend> makeTeeBackend(const BackendOptions& options, std::unique_ptr<Backend> renderer) {
+std::unique_ptr<Backend> makeTeeBackend(const BackendOptions& options,
+                                        std::unique_ptr<Backend> renderer) {
   return std::make_unique<RecordBackend>(options, std::move(renderer));
 }
 

@@ -17,7 +17,8 @@ void demand(bool condition, const char* what) {
 const Array* arriving(const Commit& commit, ArrayId id) {
   if (id == 0) return nullptr;
   const auto found = commit.arrays.find(id);
-  demand(found != commit.arrays.end() && found->second, "an array that did not arrive with its edit");
+  demand(found != commit.arrays.end() && found->second,
+         "an array that did not arrive with its edit");
   return found->second.get();
 }
 
@@ -26,7 +27,8 @@ void checkFinite(const Array& array, const char* what) {
   for (size_t i = 0; i < array.count<float>(); i++) demand(std::isfinite(values[i]), what);
 }
 
-void checkAttribute(const Commit& commit, ArrayId id, size_t vertices, size_t components, const char* what) {
+void checkAttribute(const Commit& commit, ArrayId id, size_t vertices, size_t components,
+                    const char* what) {
   const Array* array = arriving(commit, id);
   if (!array) return;
   demand(array->size() == vertices * components * sizeof(float), what);
@@ -47,7 +49,8 @@ size_t cornersOf(edit::Primitive primitive) {
 
 void checkGeometryArrays(const edit::GeometryT& g, const Commit& commit) {
   if (g.primitive == edit::Primitive::Sphere) {
-    demand(!g.points && !g.indices && !g.normals && !g.texCoords && !g.colors, "a sphere with vertices");
+    demand(!g.points && !g.indices && !g.normals && !g.texCoords && !g.colors,
+           "a sphere with vertices");
     return;
   }
   const size_t corners = cornersOf(g.primitive);
@@ -61,30 +64,36 @@ void checkGeometryArrays(const edit::GeometryT& g, const Commit& commit) {
   for (size_t i = 0; i < indices->count<uint32_t>(); i++)
     demand(indices->as<uint32_t>()[i] < vertices, "an index beyond the points");
   checkAttribute(commit, g.normals, vertices, 3, "normals that are wrong in size or not finite");
-  checkAttribute(commit, g.texCoords, vertices, 2, "texture coordinates that are wrong in size or not finite");
+  checkAttribute(commit, g.texCoords, vertices, 2,
+                 "texture coordinates that are wrong in size or not finite");
   checkAttribute(commit, g.colors, vertices, 4, "colours that are wrong in size or not finite");
 }
 
-void checkParameterValues(const edit::GeometryT& g, const edit::GeometryParameterT& own, const Commit& commit,
-                          const RtsParam* param) {
+void checkParameterValues(const edit::GeometryT& g, const edit::GeometryParameterT& own,
+                          const Commit& commit, const RtsParam* param) {
   demand(g.primitive != edit::Primitive::Sphere, "a sphere with parameters of its own");
   const Array* values = arriving(commit, own.values);
   demand(values != nullptr, "a parameter without values");
   const Array& counted = *arriving(commit, own.perVertex ? g.points : g.indices);
-  const size_t count = own.perVertex ? counted.count<float>() / 3 : counted.count<uint32_t>() / cornersOf(g.primitive);
-  demand(count > 0 && values->size() % (count * sizeof(float)) == 0, "values of a parameter of a wrong size");
+  const size_t count = own.perVertex ? counted.count<float>() / 3
+                                     : counted.count<uint32_t>() / cornersOf(g.primitive);
+  demand(count > 0 && values->size() % (count * sizeof(float)) == 0,
+         "values of a parameter of a wrong size");
   const size_t floats = values->count<float>() / count;
-  demand(param ? floats == parameterFloats(param->type) : floats >= 1 && floats <= 16, "values of a parameter of a wrong size");
+  demand(param ? floats == parameterFloats(param->type) : floats >= 1 && floats <= 16,
+         "values of a parameter of a wrong size");
   checkFinite(*values, "a parameter's value that is not finite");
   for (size_t i = 0; param && i < count; i++) {
-    const std::string problem = valueProblem(*param, std::span<const float>(values->as<float>() + floats * i, floats));
+    const std::string problem =
+        valueProblem(*param, std::span<const float>(values->as<float>() + floats * i, floats));
     if (!problem.empty()) throw std::runtime_error(problem);
   }
 }
 
 void checkTexture(const edit::TextureT& t, const Commit& commit, const edit::TextureT* current) {
   constexpr uint32_t maxSide = 65536;
-  demand(t.components >= 1 && t.components <= 4 && t.width >= 1 && t.height >= 1 && t.width <= maxSide && t.height <= maxSide &&
+  demand(t.components >= 1 && t.components <= 4 && t.width >= 1 && t.height >= 1 &&
+             t.width <= maxSide && t.height <= maxSide &&
              uint64_t(t.width) * t.height <= uint64_t(1) << 28,
          "a texture of an impossible size");
   demand(t.wrapS <= edit::Wrap::MAX && t.wrapT <= edit::Wrap::MAX, "an unknown wrap");
@@ -92,13 +101,14 @@ void checkTexture(const edit::TextureT& t, const Commit& commit, const edit::Tex
   const auto found = commit.arrays.find(t.texels);
   if (found == commit.arrays.end()) {
     demand(current && t.texels == current->texels, "texels that did not arrive with their edit");
-    demand(t.width == current->width && t.height == current->height && t.components == current->components &&
-               t.isFloat == current->isFloat,
+    demand(t.width == current->width && t.height == current->height &&
+               t.components == current->components && t.isFloat == current->isFloat,
            "texels of a wrong size");
     return;
   }
   const uint64_t values = uint64_t(t.width) * t.height * t.components;
-  demand(found->second->size() == values * (t.isFloat ? sizeof(float) : 1), "texels of a wrong size");
+  demand(found->second->size() == values * (t.isFloat ? sizeof(float) : 1),
+         "texels of a wrong size");
   if (t.isFloat) checkFinite(*found->second, "a texel that is not finite");
 }
 

@@ -22,7 +22,8 @@ void checkMatrix(const edit::Matrix* matrix) {
   demand(matrix != nullptr, "a matrix is missing");
   const auto& m = *matrix->m();
   for (int i = 0; i < 16; i++) demand(std::isfinite(m.Get(i)), "a matrix that is not finite");
-  demand(m.Get(3) == 0 && m.Get(7) == 0 && m.Get(11) == 0 && m.Get(15) == 1, "a matrix that is not affine");
+  demand(m.Get(3) == 0 && m.Get(7) == 0 && m.Get(11) == 0 && m.Get(15) == 1,
+         "a matrix that is not affine");
 }
 
 } // namespace
@@ -61,14 +62,16 @@ void CommitValidator::check(const edit::TextureT& texture, const Commit& commit)
 void CommitValidator::check(const edit::ShaderClassT& shaderClass) {
   demand(!live_.contains(shaderClass.id), "a shader class made twice");
   enter(shaderClass.id, Kind::ShaderClass);
-  classes_[shaderClass.id] = shaders_ ? &shaders_->find(shaderClass.name, shaderClass.library) : nullptr;
+  classes_[shaderClass.id] =
+      shaders_ ? &shaders_->find(shaderClass.name, shaderClass.library) : nullptr;
   classNames_[shaderClass.id] = shaderClass;
 }
 
 // Libraries were loaded anew.
 void CommitValidator::findClassesAgain() {
   if (!shaders_) return;
-  for (auto& [id, table] : classes_) table = &shaders_->find(classNames_.at(id).name, classNames_.at(id).library);
+  for (auto& [id, table] : classes_)
+    table = &shaders_->find(classNames_.at(id).name, classNames_.at(id).library);
 }
 
 void CommitValidator::check(const edit::ShaderT& shader) {
@@ -85,9 +88,11 @@ void CommitValidator::check(const edit::ParameterT& parameter) const {
   demand(parameter.index < table->paramCount, "a parameter that its class does not have");
   const RtsParam& param = table->params[parameter.index];
   const bool list = param.type == RTS_FLOATS;
-  demand(list || parameter.floats.size() == parameterFloats(param.type), "a parameter with a wrong number of values");
-  const std::string problem = param.type == RTS_INT ? valueProblem(param, parameter.integer)
-                                                    : valueProblem(param, std::span<const float>(parameter.floats));
+  demand(list || parameter.floats.size() == parameterFloats(param.type),
+         "a parameter with a wrong number of values");
+  const std::string problem = param.type == RTS_INT
+                                  ? valueProblem(param, parameter.integer)
+                                  : valueProblem(param, std::span<const float>(parameter.floats));
   if (!problem.empty()) refuse(problem);
 }
 
@@ -109,7 +114,8 @@ void CommitValidator::checkParameters(const edit::GeometryT& geometry, const Com
     const RtsParam* param = nullptr;
     if (table) {
       demand(own->index < table->paramCount, "a parameter that its class does not have");
-      const uint8_t frequency = table->frequency ? table->frequency[own->index] : uint8_t(RTS_PER_SHADER);
+      const uint8_t frequency =
+          table->frequency ? table->frequency[own->index] : uint8_t(RTS_PER_SHADER);
       demand(frequency == (own->perVertex ? RTS_PER_VERTEX : RTS_PER_TRIANGLE),
              "a parameter that a geometry cannot have like that");
       param = &table->params[own->index];
@@ -136,7 +142,8 @@ void CommitValidator::check(const edit::InstanceT& instance) {
   checkMatrix(instance.matrix.get());
   Placing& placing = instances_[instance.id];
   if (!fresh) {
-    demand(placing.parent == instance.parent && placing.object == instance.object, "an instance that changes its object");
+    demand(placing.parent == instance.parent && placing.object == instance.object,
+           "an instance that changes its object");
     return;
   }
   placing = {instance.parent, instance.object};
@@ -154,23 +161,28 @@ void CommitValidator::check(const edit::LightT& light) {
 
 void CommitValidator::check(const edit::FrameSettingsT& frame) {
   constexpr uint32_t maxSide = 65536;
-  demand(frame.width >= 1 && frame.height >= 1 && frame.width <= maxSide && frame.height <= maxSide &&
-             uint64_t(frame.width) * frame.height <= uint64_t(1) << 28,
+  demand(frame.width >= 1 && frame.height >= 1 && frame.width <= maxSide &&
+             frame.height <= maxSide && uint64_t(frame.width) * frame.height <= uint64_t(1) << 28,
          "a frame of an impossible size");
-  demand(frame.channels != 0 && (frame.channels & ~allChannels) == 0, "a frame with unknown channels");
-  demand(frame.samples >= 1 && frame.samples <= 65536 && frame.depth <= 10000 && frame.transport <= RT_TRANSPORT_LIGHT &&
-             frame.replicates <= maxReplicates && (frame.tile == 0 || (frame.tile >= smallestTile && frame.tile <= largestTile)),
+  demand(frame.channels != 0 && (frame.channels & ~allChannels) == 0,
+         "a frame with unknown channels");
+  demand(frame.samples >= 1 && frame.samples <= 65536 && frame.depth <= 10000 &&
+             frame.transport <= RT_TRANSPORT_LIGHT && frame.replicates <= maxReplicates &&
+             (frame.tile == 0 || (frame.tile >= smallestTile && frame.tile <= largestTile)),
          "a frame of an impossible quality");
-  demand(frame.targetError >= 0 && frame.targetError <= 1 && frame.timeLimit >= 0 && frame.timeLimit <= maxTimeLimit,
+  demand(frame.targetError >= 0 && frame.targetError <= 1 && frame.timeLimit >= 0 &&
+             frame.timeLimit <= maxTimeLimit,
          "a frame of an impossible error or time limit");
-  demand(frame.energyCut >= 0 && frame.energyCut <= 1 && frame.clamp >= 0 && std::isfinite(frame.clamp),
+  demand(frame.energyCut >= 0 && frame.energyCut <= 1 && frame.clamp >= 0 &&
+             std::isfinite(frame.clamp),
          "a frame of an impossible energy cut or clamp");
   hasFrame_ = true;
 }
 
 void CommitValidator::deleteObject(uint32_t id) {
   leave(id, Kind::Object);
-  demand(objects_[id].children == 0 && objects_[id].users == 0, "an object deleted before its instances");
+  demand(objects_[id].children == 0 && objects_[id].users == 0,
+         "an object deleted before its instances");
   objects_.erase(id);
 }
 

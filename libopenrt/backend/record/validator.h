@@ -1,6 +1,6 @@
-// validator.h: whether a commit is one that the front end could have made: the contract of scene_state.h and edits.fbs, checked
-// edit by edit against all commits before. Stands between a recording and a backend, and in tests behind the front end.
-// One thread.
+// validator.h: whether a commit is one that the front end could have made: the contract of
+// scene_state.h and edits.fbs, checked edit by edit against all commits before. Stands between a
+// recording and a backend, and in tests behind the front end. One thread.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,8 @@ class CommitValidator {
   // shaders: to look classes up; without it kinds and parameters pass unchecked.
   explicit CommitValidator(const ShaderRegistry* shaders) : shaders_(shaders) {}
 
-  // Throws std::runtime_error at the first edit that breaks a rule; the validator is of no use afterwards.
+  // Throws std::runtime_error at the first edit that breaks a rule; the validator is of no use
+  // afterwards.
   void check(const Commit& commit);
 
  private:

@@ -1,43 +1,59 @@
-// openrts.hpp: OpenRTS for C++17: a shader as a small class that sees one hit at a time. The header hides the batches, builds
-// the class table and the parameter table, and needs nothing but openrts.h. Where every nanosecond counts, write the batch
-// functions of openrts.h instead.
+// openrts.hpp: OpenRTS for C++17: a shader as a small class that sees one hit at a time. The header
+// hides the batches, builds the class table and the parameter table, and needs nothing but
+// openrts.h. Where every nanosecond counts, write the batch functions of openrts.h instead.
 //
 //   #include <openrt/openrts.hpp>
 //   struct Polished : rts::Surface<Polished> {
-//     rts::Param<rts::Color> reflectance{"reflectance", {0.9f, 0.9f, 0.9f}, "fraction reflected, 0..1"};
-//     void surface(const rts::Hit&, rts::Closures& out) const { out.reflection(reflectance); }
+//     rts::Param<rts::Color> reflectance{"reflectance", {0.9f, 0.9f, 0.9f}, "fraction reflected,
+//     0..1"}; void surface(const rts::Hit&, rts::Closures& out) const {
+//     out.reflection(reflectance); }
 //   };
 //   RTS_PLUGIN(Polished)
 //
-// A class may say `static constexpr const char* text = "what it is";`. Its functions are const, must not throw and are called on
-// many threads at once [render]. Its members are rts::Param, and, for what `prepare` makes of them, plain numbers and pointers,
-// which are zero before `prepare` whatever their initialisers say.
+// A class may say `static constexpr const char* text = "what it is";`. Its functions are const,
+// must not throw and are called on many threads at once [render]. Its members are rts::Param, and,
+// for what `prepare` makes of them, plain numbers and pointers, which are zero before `prepare`
+// whatever their initialisers say.
 //
-//   Surface<T>      void surface(const Hit&, Closures&) const         a sum of lobes that the engine follows
-//                   Shaded shade(const Hit&) const                    instead: radiance; or beside it, for the transports that
-//                                                                     follow no light between surfaces
-//                   Color reflect(const Hit&, const Light&) const     optional, with shade: the answer to one light; without it:
+//   Surface<T>      void surface(const Hit&, Closures&) const         a sum of lobes that the
+//   engine follows
+//                   Shaded shade(const Hit&) const                    instead: radiance; or beside
+//                   it, for the transports that
+//                                                                     follow no light between
+//                                                                     surfaces
+//                   Color reflect(const Hit&, const Light&) const     optional, with shade: the
+//                   answer to one light; without it:
 //                                                                     unlit
-//                   Color transmit(const Hit&) const                  optional: what shadow rays see; without it the surface is
+//                   Color transmit(const Hit&) const                  optional: what shadow rays
+//                   see; without it the surface is
 //                                                                     opaque
-//                   bool emits() const                                optional: emission may be above 0; without it path tracing
-//                                                                     meets the light by chance only
-//                   Medium medium() const                             optional: the inside of the body
-//                   static constexpr uint32_t needs = RTS_GLOSSY;     optional, also as a const function: RTS_SPECULAR,
-//                                                                     RTS_GLOSSY, RTS_GLOBAL, RTS_NO_SCATTER; without it a class
-//                                                                     with `surface` counts as RTS_SPECULAR
-//   LightSource<T>  Illumination illuminate(Vec3 point) const         point and answer in the light's local space
-//                   Extent extent() const                             optional: where it is and how strong
-//                   static constexpr bool directional = true;         optional: toLight has no end point
-//                   static constexpr bool shadows = false;            optional
+//                   bool emits() const                                optional: emission may be
+//                   above 0; without it path tracing
+//                                                                     meets the light by chance
+//                                                                     only
+//                   Medium medium() const                             optional: the inside of the
+//                   body static constexpr uint32_t needs = RTS_GLOSSY;     optional, also as a
+//                   const function: RTS_SPECULAR,
+//                                                                     RTS_GLOSSY, RTS_GLOBAL,
+//                                                                     RTS_NO_SCATTER; without it a
+//                                                                     class with `surface` counts
+//                                                                     as RTS_SPECULAR
+//   LightSource<T>  Illumination illuminate(Vec3 point) const         point and answer in the
+//   light's local space
+//                   Extent extent() const                             optional: where it is and how
+//                   strong static constexpr bool directional = true;         optional: toLight has
+//                   no end point static constexpr bool shadows = false;            optional
 //   Camera<T>       Ray generate(Vec2 pixel, Vec2 size) const         local space
-//                   Projection project(Vec3 point, Vec2 lens, Vec2 size) const     optional: its inverse
-//                   static constexpr bool parallel = true;            optional: all rays have one direction
+//                   Projection project(Vec3 point, Vec2 lens, Vec2 size) const     optional: its
+//                   inverse static constexpr bool parallel = true;            optional: all rays
+//                   have one direction
 //   Environment<T>  Vec4 miss(Vec3 direction) const                   radiance and opacity
 //                   Fog attenuate(Vec3 fromEye) const                 optional
 //   Transport<T>    Vec4 radiance(const CameraRay&) const             radiance and alpha
-//   all             const char* prepare()                             optional, called once for each new set of values: a message
-//                                                                     if they make no sense, else nullptr
+//   all             const char* prepare()                             optional, called once for
+//   each new set of values: a message
+//                                                                     if they make no sense, else
+//                                                                     nullptr
 //                   void release()                                    optional: undoes it
 #ifndef OPENRT_OPENRTS_HPP
 #define OPENRT_OPENRTS_HPP
@@ -61,7 +77,8 @@ struct Asked {
 };
 } // namespace detail
 
-// What functions see and answer -------------------------------------------------------------------------------------------
+// What functions see and answer
+// -------------------------------------------------------------------------------------------
 
 struct Ray {
   Vec3 origin, direction; // unit
@@ -75,8 +92,9 @@ struct Found {
   bool any() const { return distance < infinity; }
 };
 
-// Something in a batch that can send rays, one at a time: a hit, or a camera ray of a transport. The batch functions of
-// RtsHost do the same for many at once and are several times as fast. Hosts before 1.2 find nothing: black, clear.
+// Something in a batch that can send rays, one at a time: a hit, or a camera ray of a transport.
+// The batch functions of RtsHost do the same for many at once and are several times as fast. Hosts
+// before 1.2 find nothing: black, clear.
 class Tracer {
  public:
   const RtsHost* host = nullptr;
@@ -85,15 +103,20 @@ class Tracer {
   uint32_t count = 0; // of the batch
   detail::Asked* asked = nullptr;
 
-  // Light that comes back along a ray (unit direction) from a place, shaded by the engine. Black beyond the depth limit.
+  // Light that comes back along a ray (unit direction) from a place, shaded by the engine. Black
+  // beyond the depth limit.
   Color trace(Vec3 from, Vec3 towards, float length = infinity, float* alpha = nullptr) const {
     return traceFrom(&from, towards, length, alpha);
   }
-  Found findHit(Vec3 from, Vec3 towards, float length = infinity) const { return findFrom(&from, towards, length); }
+  Found findHit(Vec3 from, Vec3 towards, float length = infinity) const {
+    return findFrom(&from, towards, length);
+  }
   // The colour that is let through between a ray's origin and its end: black where it is blocked.
-  Color occluded(Vec3 from, Vec3 towards, float length = infinity) const { return occludedFrom(&from, towards, length); }
-  // A point of the unit square, for each pair < 4 another: well spread over the samples of a pixel. Using one turns the pixel's
-  // value into an estimate.
+  Color occluded(Vec3 from, Vec3 towards, float length = infinity) const {
+    return occludedFrom(&from, towards, length);
+  }
+  // A point of the unit square, for each pair < 4 another: well spread over the samples of a pixel.
+  // Using one turns the pixel's value into an estimate.
   Vec2 random(uint32_t pair) const;
 
  protected:
@@ -125,11 +148,17 @@ struct Hit : Tracer {
   using Tracer::occluded;
   using Tracer::trace;
   // The same from this hit, lifted off the surface to the side of the direction (unit).
-  Color trace(Vec3 towards, float length = infinity) const { return traceFrom(nullptr, towards, length, nullptr); }
-  Found findHit(Vec3 towards, float length = infinity) const { return findFrom(nullptr, towards, length); }
-  Color occluded(Vec3 towards, float length = infinity) const { return occludedFrom(nullptr, towards, length); }
-  // Position and geometric normal (not unit) in the frame of the object: a pattern made from them moves with it. Else render
-  // space.
+  Color trace(Vec3 towards, float length = infinity) const {
+    return traceFrom(nullptr, towards, length, nullptr);
+  }
+  Found findHit(Vec3 towards, float length = infinity) const {
+    return findFrom(nullptr, towards, length);
+  }
+  Color occluded(Vec3 towards, float length = infinity) const {
+    return occludedFrom(nullptr, towards, length);
+  }
+  // Position and geometric normal (not unit) in the frame of the object: a pattern made from them
+  // moves with it. Else render space.
   struct Local {
     Vec3 position, normal;
   };
@@ -146,7 +175,7 @@ struct Hit : Tracer {
   Ids ids() const;
   uint32_t depth() const;   // surfaces that the path met before; else 0
   Color throughput() const; // share of the light from here that reaches the camera; else 1
-  float error() const;      // bound of the position's rounding error along the geometric normal; else 0
+  float error() const; // bound of the position's rounding error along the geometric normal; else 0
 };
 
 // Of a transport: the ray of a sample of the picture.
@@ -180,7 +209,8 @@ struct Fog {
   Color color;
   float fraction = 1; // of the surface's radiance that arrives
 };
-// The inside of a body (RtsMedium): where bodies overlap the one of the highest priority is there. Faces point outwards.
+// The inside of a body (RtsMedium): where bodies overlap the one of the highest priority is there.
+// Faces point outwards.
 struct Medium {
   Color index{1, 1, 1}; // of refraction, by colour
   Color absorption;     // per unit of length in the world
@@ -202,22 +232,27 @@ struct Projection {
   float weight = 0; // pixels covered per unit of area that faces the eye; 0: not in the picture
 };
 
-// A direction that a lobe of one's own chooses: its value divided by the density, and the density; 0: none.
+// A direction that a lobe of one's own chooses: its value divided by the density, and the density;
+// 0: none.
 struct Sample {
   Vec3 direction;
   Color quotient;
   float density = 0;
 };
 
-// The functions of a lobe of a plug-in's own: a trivially copyable class of floats (at most RTS_MAX_LOBE_FLOATS), with
-//   Color evaluate(Vec3 toEye, Vec3 direction, Vec3 normal) const    response per radiance times the cosine at the normal
-//   float density(Vec3 toEye, Vec3 direction, Vec3 normal) const     of sample, by solid angle
-//   Sample sample(Vec3 toEye, Vec2 square, Vec3 normal) const        or the direction alone (Vec3): the rest is then worked out
-//   static constexpr bool transmits = true;                          optional: may answer light from the other side
-// Directions are unit, away from the surface. A lobe must be reciprocal unless it transmits, and reflect at most what it gets.
+// The functions of a lobe of a plug-in's own: a trivially copyable class of floats (at most
+// RTS_MAX_LOBE_FLOATS), with
+//   Color evaluate(Vec3 toEye, Vec3 direction, Vec3 normal) const    response per radiance times
+//   the cosine at the normal float density(Vec3 toEye, Vec3 direction, Vec3 normal) const     of
+//   sample, by solid angle Sample sample(Vec3 toEye, Vec2 square, Vec3 normal) const        or the
+//   direction alone (Vec3): the rest is then worked out static constexpr bool transmits = true;
+//   optional: may answer light from the other side
+// Directions are unit, away from the surface. A lobe must be reciprocal unless it transmits, and
+// reflect at most what it gets.
 template <class L> const RtsLobeFunctions* lobeFunctions();
 
-// The lobes of one hit (RtsLobeKind). Several of a kind add up. Weights 0..1; all of a hit should add up to at most 1.
+// The lobes of one hit (RtsLobeKind). Several of a kind add up. Weights 0..1; all of a hit should
+// add up to at most 1.
 class Closures {
  public:
   // Lambert's law.
@@ -228,11 +263,16 @@ class Closures {
   void dielectric(Color tint, float eta) { add(RTS_LOBE_DIELECTRIC, tint, eta); }
   void transparent(Color transmittance) { add(RTS_LOBE_TRANSPARENT, transmittance); }
   // Microfacets (GGX) of width alpha, 0..1. With eta Fresnel's share of a clear medium multiplies.
-  void glossy(Color reflectance, float alpha, float eta = 0) { add(RTS_LOBE_GLOSSY, reflectance, alpha, eta); }
-  void roughDielectric(Color tint, float eta, float alpha) { add(RTS_LOBE_ROUGH_DIELECTRIC, tint, eta, alpha); }
+  void glossy(Color reflectance, float alpha, float eta = 0) {
+    add(RTS_LOBE_GLOSSY, reflectance, alpha, eta);
+  }
+  void roughDielectric(Color tint, float eta, float alpha) {
+    add(RTS_LOBE_ROUGH_DIELECTRIC, tint, eta, alpha);
+  }
   // A lobe of one's own (see lobeFunctions).
   template <class L> void custom(Color weight, const L& lobe);
-  // The normal of the lobes that follow for this hit; at first the hit's. Unit, on the side of the geometric one.
+  // The normal of the lobes that follow for this hit; at first the hit's. Unit, on the side of the
+  // geometric one.
   void normal(Vec3 unit) {
     normal_ = unit;
     bent_ = true;
@@ -248,7 +288,8 @@ class Closures {
     for (int k = 0; out_->albedo[0] && k < 3; k++) out_->albedo[k][lane_] = c[k];
   }
 
-  Closures(const RtsHost* host, RtsBatch* batch, RtsSurface* out) : host_(host), batch_(batch), out_(out) {}
+  Closures(const RtsHost* host, RtsBatch* batch, RtsSurface* out)
+      : host_(host), batch_(batch), out_(out) {}
   void begin(uint32_t lane) { // the next hit
     lane_ = lane;
     bent_ = false;
@@ -256,8 +297,8 @@ class Closures {
   }
 
  private:
-  RtsLobe* add(RtsLobeKind kind, Color weight, float first = 0, float second = 0, const RtsLobeFunctions* functions = nullptr,
-               uint32_t floats = 0) {
+  RtsLobe* add(RtsLobeKind kind, Color weight, float first = 0, float second = 0,
+               const RtsLobeFunctions* functions = nullptr, uint32_t floats = 0) {
     RtsLobe* lobe = slot(kind, functions, floats);
     if (!lobe) return nullptr;
     const float c[3] = {weight.r, weight.g, weight.b}, n[3] = {normal_.x, normal_.y, normal_.z};
@@ -268,7 +309,8 @@ class Closures {
     lobe->parameter[1][lane_] = second;
     return lobe;
   }
-  // A lobe of this kind that the hit has not used yet. Null beyond RTS_MAX_LOBES and on hosts that do not know the kind.
+  // A lobe of this kind that the hit has not used yet. Null beyond RTS_MAX_LOBES and on hosts that
+  // do not know the kind.
   RtsLobe* slot(RtsLobeKind kind, const RtsLobeFunctions* functions, uint32_t floats) {
     for (uint32_t i = 0; i < count_; i++) {
       if (!free_[i] || lobes_[i]->kind != kind || functions_[i] != functions) continue;
@@ -277,7 +319,9 @@ class Closures {
     }
     if (count_ == RTS_MAX_LOBES) return nullptr;
     const bool own = host_->minor >= 2 && host_->customLobe;
-    RtsLobe* made = !functions ? host_->lobe(batch_, kind) : own ? host_->customLobe(batch_, functions, floats) : nullptr;
+    RtsLobe* made = !functions ? host_->lobe(batch_, kind)
+                    : own      ? host_->customLobe(batch_, functions, floats)
+                               : nullptr;
     if (made) {
       lobes_[count_] = made;
       functions_[count_] = functions;
@@ -309,10 +353,10 @@ template <class T> struct Transport {};
 #include "openrts_glue.hpp"
 
 // Exports the classes, each under its own name. Once a library, outside any namespace.
-#define RTS_PLUGIN(...)                                                                                                          \
-  extern "C" {                                                                                                                   \
-  extern RTS_EXPORT const RtsPlugin rtsPlugin;                                                                                   \
-  const RtsPlugin rtsPlugin = rts::detail::pluginOf<__VA_ARGS__>(#__VA_ARGS__);                                                  \
+#define RTS_PLUGIN(...)                                                                            \
+  extern "C" {                                                                                     \
+  extern RTS_EXPORT const RtsPlugin rtsPlugin;                                                     \
+  const RtsPlugin rtsPlugin = rts::detail::pluginOf<__VA_ARGS__>(#__VA_ARGS__);                    \
   }
 
 #endif

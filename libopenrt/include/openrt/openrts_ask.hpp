@@ -1,5 +1,5 @@
-// openrts_ask.hpp: what the hits of openrts.hpp ask the host: rays, random numbers, textures, facts. Part of openrts.hpp.
-// [render]
+// openrts_ask.hpp: what the hits of openrts.hpp ask the host: rays, random numbers, textures,
+// facts. Part of openrts.hpp. [render]
 #ifndef OPENRT_OPENRTS_ASK_HPP
 #define OPENRT_OPENRTS_ASK_HPP
 
@@ -9,7 +9,9 @@ namespace rts {
 namespace detail {
 
 // A function that hosts have since 1.2, or null.
-template <class F> F since12(const RtsHost* host, F RtsHost::*function) { return host->minor >= 2 ? host->*function : nullptr; }
+template <class F> F since12(const RtsHost* host, F RtsHost::*function) {
+  return host->minor >= 2 ? host->*function : nullptr;
+}
 
 // Whole lanes of one ray: what the host may read of a request of one.
 struct OneRay {
@@ -53,7 +55,8 @@ template <class F> bool askVectors(const Tracer& t, F RtsHost::*member, float* (
 
 } // namespace detail
 
-inline Color Tracer::traceFrom(const Vec3* origin, Vec3 direction, float length, float* alpha) const {
+inline Color Tracer::traceFrom(const Vec3* origin, Vec3 direction, float length,
+                               float* alpha) const {
   const auto function = detail::since12(host, &RtsHost::trace);
   if (alpha) *alpha = 0;
   if (!function) return {};

@@ -1,5 +1,5 @@
-// openrts_glue.hpp: the tables of openrts.h made from the classes of openrts.hpp, and the loops from batches to single hits. Part
-// of openrts.hpp. The loops: [render]
+// openrts_glue.hpp: the tables of openrts.h made from the classes of openrts.hpp, and the loops
+// from batches to single hits. Part of openrts.hpp. The loops: [render]
 #ifndef OPENRT_OPENRTS_GLUE_HPP
 #define OPENRT_OPENRTS_GLUE_HPP
 
@@ -16,13 +16,15 @@ namespace rts {
 namespace detail {
 
 // Which of the optional members a class has.
-#define RTS_DETECT(Name, expression)                                                                                             \
-  template <class T, class = void> struct Name : std::false_type {};                                                             \
+#define RTS_DETECT(Name, expression)                                                               \
+  template <class T, class = void> struct Name : std::false_type {};                               \
   template <class T> struct Name<T, std::void_t<decltype(expression)>> : std::true_type {}
 RTS_DETECT(HasShade, std::declval<const T&>().shade(std::declval<const Hit&>()));
-RTS_DETECT(HasReflect, std::declval<const T&>().reflect(std::declval<const Hit&>(), std::declval<const Light&>()));
+RTS_DETECT(HasReflect, std::declval<const T&>().reflect(std::declval<const Hit&>(),
+                                                        std::declval<const Light&>()));
 RTS_DETECT(HasTransmit, std::declval<const T&>().transmit(std::declval<const Hit&>()));
-RTS_DETECT(HasSurface, std::declval<const T&>().surface(std::declval<const Hit&>(), std::declval<Closures&>()));
+RTS_DETECT(HasSurface,
+           std::declval<const T&>().surface(std::declval<const Hit&>(), std::declval<Closures&>()));
 RTS_DETECT(HasEmits, std::declval<const T&>().emits());
 RTS_DETECT(HasMedium, std::declval<const T&>().medium());
 RTS_DETECT(HasNeeds, T::needs);
@@ -36,13 +38,17 @@ RTS_DETECT(HasText, T::text);
 #undef RTS_DETECT
 
 template <class T, class = void> struct IsDirectional : std::false_type {};
-template <class T> struct IsDirectional<T, std::void_t<decltype(T::directional)>> : std::bool_constant<T::directional> {};
+template <class T> struct IsDirectional<T, std::void_t<decltype(T::directional)>>
+    : std::bool_constant<T::directional> {};
 template <class T, class = void> struct IsParallel : std::false_type {};
-template <class T> struct IsParallel<T, std::void_t<decltype(T::parallel)>> : std::bool_constant<T::parallel> {};
+template <class T> struct IsParallel<T, std::void_t<decltype(T::parallel)>>
+    : std::bool_constant<T::parallel> {};
 template <class T, class = void> struct CastsShadows : std::true_type {};
-template <class T> struct CastsShadows<T, std::void_t<decltype(T::shadows)>> : std::bool_constant<T::shadows> {};
+template <class T> struct CastsShadows<T, std::void_t<decltype(T::shadows)>>
+    : std::bool_constant<T::shadows> {};
 template <class L, class = void> struct Transmits : std::false_type {};
-template <class L> struct Transmits<L, std::void_t<decltype(L::transmits)>> : std::bool_constant<L::transmits> {};
+template <class L> struct Transmits<L, std::void_t<decltype(L::transmits)>>
+    : std::bool_constant<L::transmits> {};
 
 inline Vec3 vec3(const float* const a[3], uint32_t i) { return {a[0][i], a[1][i], a[2][i]}; }
 inline Color color(float* const a[3], uint32_t i) { return {a[0][i], a[1][i], a[2][i]}; }
@@ -54,10 +60,12 @@ inline void put(float* const a[3], uint32_t i, Vec3 v) {
 inline void put(float* const a[3], uint32_t i, Color c) { put(a, i, Vec3{c.r, c.g, c.b}); }
 inline void add(float* const a[3], uint32_t i, Color c) { put(a, i, color(a, i) + c); }
 
-// Surfaces ----------------------------------------------------------------------------------------------------------------
+// Surfaces
+// -------------------------------------------------------------------------------------------------
 
 // shadowRay: only what openrts.h promises to `transmit` is read.
-inline Hit hitAt(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, uint32_t i, Asked& asked, bool shadowRay) {
+inline Hit hitAt(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, uint32_t i,
+                 Asked& asked, bool shadowRay) {
   Hit h;
   h.position = vec3(hits->position, i);
   h.direction = vec3(hits->direction, i);
@@ -78,9 +86,12 @@ inline Hit hitAt(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, uint
   return h;
 }
 
-template <class T> const T& shaderAt(const RtsHits* hits, uint32_t i) { return *static_cast<const T*>(hits->params[i]); }
+template <class T> const T& shaderAt(const RtsHits* hits, uint32_t i) {
+  return *static_cast<const T*>(hits->params[i]);
+}
 
-template <class T> void addLights(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, Asked& asked, RtsShading* out) {
+template <class T> void addLights(const RtsHost* host, RtsBatch* batch, const RtsHits* hits,
+                                  Asked& asked, RtsShading* out) {
   const uint32_t count = host->lights(batch);
   uint8_t* wanted = reinterpret_cast<uint8_t*>(host->scratch(batch, hits->count));
   std::memset(wanted, 1, hits->count);
@@ -90,12 +101,14 @@ template <class T> void addLights(const RtsHost* host, RtsBatch* batch, const Rt
     host->shadow(batch, k, hits, wanted, &light);
     for (uint32_t i = 0; i < hits->count; i++) {
       const Light at{vec3(light.toLight, i), color(light.color, i), color(light.ambient, i)};
-      add(out->radiance, i, shaderAt<T>(hits, i).reflect(hitAt(host, batch, hits, i, asked, false), at));
+      add(out->radiance, i,
+          shaderAt<T>(hits, i).reflect(hitAt(host, batch, hits, i, asked, false), at));
     }
   }
 }
 
-template <class T> void shade(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, RtsShading* out) {
+template <class T>
+void shade(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, RtsShading* out) {
   Asked asked;
   for (uint32_t i = 0; i < hits->count; i++) {
     const Shaded s = shaderAt<T>(hits, i).shade(hitAt(host, batch, hits, i, asked, false));
@@ -106,7 +119,8 @@ template <class T> void shade(const RtsHost* host, RtsBatch* batch, const RtsHit
   if constexpr (HasReflect<T>::value) addLights<T>(host, batch, hits, asked, out);
 }
 
-template <class T> void surface(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, RtsSurface* out) {
+template <class T>
+void surface(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, RtsSurface* out) {
   Asked asked;
   Closures closures(host, batch, out);
   for (uint32_t i = 0; i < hits->count; i++) {
@@ -115,7 +129,8 @@ template <class T> void surface(const RtsHost* host, RtsBatch* batch, const RtsH
   }
 }
 
-template <class T> void transmit(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, float* const transmission[3]) {
+template <class T> void transmit(const RtsHost* host, RtsBatch* batch, const RtsHits* hits,
+                                 float* const transmission[3]) {
   Asked asked;
   for (uint32_t i = 0; i < hits->count; i++)
     put(transmission, i, shaderAt<T>(hits, i).transmit(hitAt(host, batch, hits, i, asked, true)));
@@ -123,7 +138,8 @@ template <class T> void transmit(const RtsHost* host, RtsBatch* batch, const Rts
 
 template <class T> int medium(const RtsHost*, const void* params, RtsMedium* out) {
   const Medium m = static_cast<const T*>(params)->medium();
-  const float index[3] = {m.index.r, m.index.g, m.index.b}, absorption[3] = {m.absorption.r, m.absorption.g, m.absorption.b};
+  const float index[3] = {m.index.r, m.index.g, m.index.b},
+              absorption[3] = {m.absorption.r, m.absorption.g, m.absorption.b};
   for (int k = 0; k < 3; k++) {
     out->index[k] = index[k];
     out->absorption[k] = absorption[k];
@@ -132,12 +148,16 @@ template <class T> int medium(const RtsHost*, const void* params, RtsMedium* out
   return m.present;
 }
 
-// Lobes -------------------------------------------------------------------------------------------------------------------
+// Lobes
+// -------------------------------------------------------------------------------------------------
 
 template <class L> struct LobeLoops {
-  static_assert(std::is_trivially_copyable_v<L> && alignof(L) <= alignof(float), "a lobe is made of floats");
+  static_assert(std::is_trivially_copyable_v<L> && alignof(L) <= alignof(float),
+                "a lobe is made of floats");
   static constexpr uint32_t floats = std::is_empty_v<L> ? 0 : sizeof(L) / sizeof(float);
-  static_assert(floats <= RTS_MAX_LOBE_FLOATS && (std::is_empty_v<L> || sizeof(L) % sizeof(float) == 0), "too many floats");
+  static_assert(floats <= RTS_MAX_LOBE_FLOATS &&
+                    (std::is_empty_v<L> || sizeof(L) % sizeof(float) == 0),
+                "too many floats");
 
   static L load(const RtsLobe* lobe, uint32_t i) {
     float data[RTS_MAX_LOBE_FLOATS] = {};
@@ -146,23 +166,27 @@ template <class L> struct LobeLoops {
     if constexpr (floats > 0) std::memcpy(static_cast<void*>(&l), data, sizeof l);
     return l;
   }
-  static void evaluate(const RtsLobe* lobe, const RtsHits* hits, uint32_t n, const uint32_t* hit, const float* const direction[3],
-                       float* const value[3], float* density) {
+  static void evaluate(const RtsLobe* lobe, const RtsHits* hits, uint32_t n, const uint32_t* hit,
+                       const float* const direction[3], float* const value[3], float* density) {
     for (uint32_t j = 0; j < n; j++) {
       const uint32_t i = hit[j];
       const L l = load(lobe, i);
-      const Vec3 toEye = -vec3(hits->direction, i), normal{lobe->normal[0][i], lobe->normal[1][i], lobe->normal[2][i]};
+      const Vec3 toEye = -vec3(hits->direction, i),
+                 normal{lobe->normal[0][i], lobe->normal[1][i], lobe->normal[2][i]};
       put(value, j, l.evaluate(toEye, vec3(direction, j), normal));
       density[j] = l.density(toEye, vec3(direction, j), normal);
     }
   }
-  static void sample(const RtsLobe* lobe, const RtsHits* hits, uint32_t n, const uint32_t* hit, const float* const square[2],
-                     float* const direction[3], float* const quotient[3], float* density) {
+  static void sample(const RtsLobe* lobe, const RtsHits* hits, uint32_t n, const uint32_t* hit,
+                     const float* const square[2], float* const direction[3],
+                     float* const quotient[3], float* density) {
     for (uint32_t j = 0; j < n; j++) {
       const uint32_t i = hit[j];
       const L l = load(lobe, i);
-      const Vec3 toEye = -vec3(hits->direction, i), normal{lobe->normal[0][i], lobe->normal[1][i], lobe->normal[2][i]};
-      const Sample s = complete(l, l.sample(toEye, Vec2{square[0][j], square[1][j]}, normal), toEye, normal);
+      const Vec3 toEye = -vec3(hits->direction, i),
+                 normal{lobe->normal[0][i], lobe->normal[1][i], lobe->normal[2][i]};
+      const Sample s =
+          complete(l, l.sample(toEye, Vec2{square[0][j], square[1][j]}, normal), toEye, normal);
       put(direction, j, s.direction);
       put(quotient, j, s.quotient);
       density[j] = s.density;
@@ -178,10 +202,11 @@ template <class L> struct LobeLoops {
   }
 };
 
-// Lights, cameras, environments, transports ---------------------------------------------------------------------------------
+// Lights, cameras, environments, transports
+// ---------------------------------------------------------------------------------
 
-template <class T>
-void illuminate(const RtsHost*, RtsBatch*, const void* params, uint32_t n, const float* const local[3], RtsIllumination* out) {
+template <class T> void illuminate(const RtsHost*, RtsBatch*, const void* params, uint32_t n,
+                                   const float* const local[3], RtsIllumination* out) {
   for (uint32_t i = 0; i < n; i++) {
     const Illumination l = static_cast<const T*>(params)->illuminate(vec3(local, i));
     put(out->toLight, i, l.toLight);
@@ -206,20 +231,23 @@ template <class T> int extent(const RtsHost*, const void* params, RtsExtent* out
   return e.known;
 }
 
-template <class T> void generate(const RtsHost*, RtsBatch*, const void* params, uint32_t n, const float* const xy[2],
-                                 const float size[2], RtsRays* out) {
+template <class T> void generate(const RtsHost*, RtsBatch*, const void* params, uint32_t n,
+                                 const float* const xy[2], const float size[2], RtsRays* out) {
   for (uint32_t i = 0; i < n; i++) {
-    const Ray ray = static_cast<const T*>(params)->generate(Vec2{xy[0][i], xy[1][i]}, Vec2{size[0], size[1]});
+    const Ray ray =
+        static_cast<const T*>(params)->generate(Vec2{xy[0][i], xy[1][i]}, Vec2{size[0], size[1]});
     put(out->origin, i, ray.origin);
     put(out->direction, i, ray.direction);
   }
 }
 
-template <class T> void project(const RtsHost*, RtsBatch*, const void* params, uint32_t n, const float* const local[3],
-                                const float* const lens[2], const float size[2], RtsProjection* out) {
+template <class T> void project(const RtsHost*, RtsBatch*, const void* params, uint32_t n,
+                                const float* const local[3], const float* const lens[2],
+                                const float size[2], RtsProjection* out) {
   for (uint32_t i = 0; i < n; i++) {
     const Vec2 place = lens && lens[0] ? Vec2{lens[0][i], lens[1][i]} : Vec2{0.5f, 0.5f};
-    const Projection p = static_cast<const T*>(params)->project(vec3(local, i), place, Vec2{size[0], size[1]});
+    const Projection p =
+        static_cast<const T*>(params)->project(vec3(local, i), place, Vec2{size[0], size[1]});
     out->xy[0][i] = p.pixel.x;
     out->xy[1][i] = p.pixel.y;
     put(out->toEye, i, p.toEye);
@@ -228,8 +256,8 @@ template <class T> void project(const RtsHost*, RtsBatch*, const void* params, u
   out->parallel = IsParallel<T>::value;
 }
 
-template <class T>
-void miss(const RtsHost*, RtsBatch*, const void* params, uint32_t n, const float* const direction[3], float* const rgba[4]) {
+template <class T> void miss(const RtsHost*, RtsBatch*, const void* params, uint32_t n,
+                             const float* const direction[3], float* const rgba[4]) {
   for (uint32_t i = 0; i < n; i++) {
     const Vec4 c = static_cast<const T*>(params)->miss(vec3(direction, i));
     put(rgba, i, Vec3{c.x, c.y, c.z});
@@ -237,8 +265,9 @@ void miss(const RtsHost*, RtsBatch*, const void* params, uint32_t n, const float
   }
 }
 
-template <class T> void attenuate(const RtsHost*, RtsBatch*, const void* params, uint32_t n, const float* const fromEye[3],
-                                  float* const color[3], float* fraction) {
+template <class T> void attenuate(const RtsHost*, RtsBatch*, const void* params, uint32_t n,
+                                  const float* const fromEye[3], float* const color[3],
+                                  float* fraction) {
   for (uint32_t i = 0; i < n; i++) {
     const Fog fog = static_cast<const T*>(params)->attenuate(vec3(fromEye, i));
     put(color, i, fog.color);
@@ -246,8 +275,8 @@ template <class T> void attenuate(const RtsHost*, RtsBatch*, const void* params,
   }
 }
 
-template <class T>
-void radiance(const RtsHost* host, RtsBatch* batch, const void* params, const RtsRequest* rays, float* const rgba[4]) {
+template <class T> void radiance(const RtsHost* host, RtsBatch* batch, const void* params,
+                                 const RtsRequest* rays, float* const rgba[4]) {
   Asked asked;
   CameraRay ray;
   ray.host = host;
@@ -265,7 +294,8 @@ void radiance(const RtsHost* host, RtsBatch* batch, const void* params, const Rt
   }
 }
 
-// Tables ------------------------------------------------------------------------------------------------------------------
+// Tables
+// -------------------------------------------------------------------------------------------------
 
 template <class T> uint32_t surfaceTraits(const void* params) {
   uint32_t t = HasTransmit<T>::value ? uint32_t(RTS_TRANSPARENT) : 0u;
@@ -290,11 +320,16 @@ template <class T> uint32_t traits(const RtsHost*, const void* params) {
     return CastsShadows<T>::value ? 0u : uint32_t(RTS_NO_SHADOW);
 }
 
-template <class T> const char* prepare(const RtsHost*, void* params) { return static_cast<T*>(params)->prepare(); }
-template <class T> void release(const RtsHost*, void* params) { static_cast<T*>(params)->release(); }
+template <class T> const char* prepare(const RtsHost*, void* params) {
+  return static_cast<T*>(params)->prepare();
+}
+template <class T> void release(const RtsHost*, void* params) {
+  static_cast<T*>(params)->release();
+}
 
 template <class T> void fillSurface(RtsClass& c) {
-  static_assert(HasShade<T>::value || HasSurface<T>::value, "a surface has `surface` or `shade`, both const");
+  static_assert(HasShade<T>::value || HasSurface<T>::value,
+                "a surface has `surface` or `shade`, both const");
   c.kind = RTS_SURFACE;
   c.traits = traits<T>;
   if constexpr (HasSurface<T>::value) c.surface = surface<T>;
@@ -331,7 +366,8 @@ template <class T> void fillFunctions(RtsClass& c) {
 
 // The tables of one class; they live as long as the plug-in.
 template <class T> const RtsClass* classOf(std::string name) {
-  static_assert(std::is_trivially_destructible_v<T> && !std::is_polymorphic_v<T>, "a shader holds rts::Param and plain values");
+  static_assert(std::is_trivially_destructible_v<T> && !std::is_polymorphic_v<T>,
+                "a shader holds rts::Param and plain values");
   static Declaration params;
   static std::string ownName;
   static RtsClass table{};
@@ -348,7 +384,8 @@ template <class T> const RtsClass* classOf(std::string name) {
     table.text = T::text;
   else
     table.text = "";
-  table.paramSize = static_cast<uint32_t>(sizeof(T)); // never 0: functions are called on what lies there
+  table.paramSize =
+      static_cast<uint32_t>(sizeof(T)); // never 0: functions are called on what lies there
   table.paramCount = static_cast<uint32_t>(params.params.size());
   table.params = params.params.data();
   table.frequency = params.frequency.data();
@@ -368,7 +405,8 @@ inline std::string nextName(const char*& list) {
 }
 
 template <class... T> RtsPlugin pluginOf(const char* names) {
-  static const RtsClass* const classes[] = {classOf<T>(nextName(names))...}; // braces: from left to right
+  static const RtsClass* const classes[] = {
+      classOf<T>(nextName(names))...}; // braces: from left to right
   return {RTS_MAGIC, RTS_ABI_MAJOR, RTS_ABI_MINOR, sizeof(RtsPlugin), sizeof...(T), classes};
 }
 
@@ -376,7 +414,8 @@ template <class... T> RtsPlugin pluginOf(const char* names) {
 
 template <class L> const RtsLobeFunctions* lobeFunctions() {
   using Loops = detail::LobeLoops<L>;
-  static const RtsLobeFunctions table = {sizeof(RtsLobeFunctions), detail::Transmits<L>::value, Loops::evaluate, Loops::sample};
+  static const RtsLobeFunctions table = {sizeof(RtsLobeFunctions), detail::Transmits<L>::value,
+                                         Loops::evaluate, Loops::sample};
   return &table;
 }
 

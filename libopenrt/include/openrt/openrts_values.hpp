@@ -1,4 +1,5 @@
-// openrts_values.hpp: the vectors, colours and parameters of openrts.hpp, which includes it, and some optics. Pure functions.
+// openrts_values.hpp: the vectors, colours and parameters of openrts.hpp, which includes it, and
+// some optics. Pure functions.
 #ifndef OPENRT_OPENRTS_VALUES_HPP
 #define OPENRT_OPENRTS_VALUES_HPP
 
@@ -12,7 +13,8 @@
 
 namespace rts {
 
-// Values ------------------------------------------------------------------------------------------------------------------
+// Values
+// -------------------------------------------------------------------------------------------------
 
 struct Vec2 {
   float x = 0, y = 0;
@@ -41,7 +43,9 @@ inline Vec3 operator-(Vec3 a) { return {-a.x, -a.y, -a.z}; }
 inline Vec3 operator*(Vec3 a, float s) { return {a.x * s, a.y * s, a.z * s}; }
 inline Vec3 operator*(float s, Vec3 a) { return a * s; }
 inline float dot(Vec3 a, Vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-inline Vec3 cross(Vec3 a, Vec3 b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
+inline Vec3 cross(Vec3 a, Vec3 b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
 inline float length(Vec3 a) { return std::sqrt(dot(a, a)); }
 inline Vec3 normalize(Vec3 a) { // the zero vector stays
   const float l = length(a);
@@ -57,13 +61,15 @@ inline Color operator/(Color a, float s) { return a * (1 / s); }
 inline float largest(Color c) { return std::fmax(c.r, std::fmax(c.g, c.b)); }
 inline constexpr float pi = 3.14159265358979f;
 
-// Three unit vectors at right angles of which the third is given: local coordinates with z along a normal. The frame is a fixed
-// one, reflected at the plane between its third axis and -normal. It is continuous but in one direction, along which hardly
-// anything is built: where a frame jumps, pictures have more noise.
+// Three unit vectors at right angles of which the third is given: local coordinates with z along a
+// normal. The frame is a fixed one, reflected at the plane between its third axis and -normal. It
+// is continuous but in one direction, along which hardly anything is built: where a frame jumps,
+// pictures have more noise.
 struct Frame {
   explicit Frame(Vec3 normal) : n(normal) {
     constexpr Vec3 pole{-0.664998269f, -0.11246118f, 0.738329049f};
-    constexpr Vec3 first{0.745604724f, -0.0430220561f, 0.664998269f}, second{-0.0430220561f, 0.992724325f, 0.11246118f};
+    constexpr Vec3 first{0.745604724f, -0.0430220561f, 0.664998269f},
+        second{-0.0430220561f, 0.992724325f, 0.11246118f};
     const Vec3 v = n + pole;
     const float square = dot(v, v), scale = square > 0 ? 2 / square : 0;
     s = first - scale * dot(n, first) * v;
@@ -79,25 +85,32 @@ struct Frame {
 };
 
 // Mirror image of a direction towards a surface.
-inline Vec3 reflect(Vec3 direction, Vec3 normal) { return direction - 2 * dot(direction, normal) * normal; }
+inline Vec3 reflect(Vec3 direction, Vec3 normal) {
+  return direction - 2 * dot(direction, normal) * normal;
+}
 
-// Fresnel reflectance of unpolarised light at the boundary of a clear medium. cosine: of the angle of incidence, 0..1; eta: index
-// of refraction on the ray's side over that behind; cosineBehind gets the refracted angle's, 0 where all is reflected. In double:
-// near the critical angle the root loses half of the digits. M. Born, E. Wolf, "Principles of Optics", 1.5.2.
+// Fresnel reflectance of unpolarised light at the boundary of a clear medium. cosine: of the angle
+// of incidence, 0..1; eta: index of refraction on the ray's side over that behind; cosineBehind
+// gets the refracted angle's, 0 where all is reflected. In double: near the critical angle the root
+// loses half of the digits. M. Born, E. Wolf, "Principles of Optics", 1.5.2.
 inline double fresnel(double cosine, double eta, double* cosineBehind = nullptr) {
-  const double sine2 = eta * eta * std::fmax(0.0, 1 - cosine * cosine), behind = sine2 < 1 ? std::sqrt(1 - sine2) : 0;
+  const double sine2 = eta * eta * std::fmax(0.0, 1 - cosine * cosine),
+               behind = sine2 < 1 ? std::sqrt(1 - sine2) : 0;
   if (cosineBehind) *cosineBehind = behind;
   if (!(sine2 < 1)) return 1;
-  const double s = (eta * cosine - behind) / (eta * cosine + behind), p = (cosine - eta * behind) / (cosine + eta * behind);
+  const double s = (eta * cosine - behind) / (eta * cosine + behind),
+               p = (cosine - eta * behind) / (cosine + eta * behind);
   return (s * s + p * p) / 2;
 }
 
-// Parameters -----------------------------------------------------------------------------------------------------------------
+// Parameters
+// -------------------------------------------------------------------------------------------------
 
-// What may set a parameter's value: calls for the whole shader, or also the triangle or the vertices (interpolated) that a hit
-// lies on. Numbers other than int32_t only.
+// What may set a parameter's value: calls for the whole shader, or also the triangle or the
+// vertices (interpolated) that a hit lies on. Numbers other than int32_t only.
 enum class Frequency : uint8_t {};
-inline constexpr Frequency PerShader{RTS_PER_SHADER}, PerTriangle{RTS_PER_TRIANGLE}, PerVertex{RTS_PER_VERTEX};
+inline constexpr Frequency PerShader{RTS_PER_SHADER}, PerTriangle{RTS_PER_TRIANGLE},
+    PerVertex{RTS_PER_VERTEX};
 
 namespace detail {
 
@@ -124,8 +137,9 @@ inline Declaration*& declaration() {
   return current;
 }
 
-inline void declare(const char* name, RtsType type, const void* place, const void* value, size_t bytes, const char* text,
-                    float minimum, float maximum, Frequency frequency) {
+inline void declare(const char* name, RtsType type, const void* place, const void* value,
+                    size_t bytes, const char* text, float minimum, float maximum,
+                    Frequency frequency) {
   Declaration* d = declaration();
   if (!d) return;
   RtsParam p{};
@@ -148,15 +162,18 @@ inline void declare(const char* name, RtsType type, const void* place, const voi
 
 } // namespace detail
 
-// A parameter with its name, default value, meaning and, where given, its range and frequency. Reads as its value. Lists, strings
-// and textures start empty.
+// A parameter with its name, default value, meaning and, where given, its range and frequency.
+// Reads as its value. Lists, strings and textures start empty.
 template <class T> class Param {
  public:
-  Param(const char* name, T value, const char* text, float minimum = 0, float maximum = 0, Frequency frequency = PerShader)
+  Param(const char* name, T value, const char* text, float minimum = 0, float maximum = 0,
+        Frequency frequency = PerShader)
       : value_(value) {
-    detail::declare(name, detail::ParamType<T>::type, &value_, &value_, sizeof value_, text, minimum, maximum, frequency);
+    detail::declare(name, detail::ParamType<T>::type, &value_, &value_, sizeof value_, text,
+                    minimum, maximum, frequency);
   }
-  Param(const char* name, T value, const char* text, Frequency frequency) : Param(name, value, text, 0, 0, frequency) {}
+  Param(const char* name, T value, const char* text, Frequency frequency)
+      : Param(name, value, text, 0, 0, frequency) {}
   Param(const char* name, const char* text) : Param(name, T(), text) {}
   operator const T&() const { return value_; }
   const T& operator*() const { return value_; }

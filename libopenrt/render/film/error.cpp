@@ -1,13 +1,16 @@
 // error.cpp: see error.h.
 //
-// Replicated randomised quasi-Monte Carlo: A. B. Owen, "Monte Carlo theory, methods and examples", 17.3 (error estimation from
-// independent randomisations); Student's interval over the means of the replicates.
-//   A pixel's own estimate of that variance is not enough. Samples of light are skewed, and a pixel that has missed what is rare
-// has both too small a mean and too small a variance: of such intervals 89 % held instead of 95 % (scene `room` of the audit).
-// The variance of the 5x5 pixels around does not know what this pixel has missed, and with it 95 % hold. How much each of the two
-// is worth is estimated too: what the variances of the window differ by beyond what chance makes of them is real (H. Bühlmann, E.
-// Straub, "Glaubwürdigkeit für Schadensätze", 1970; for intervals G. K. Smyth, "Linear models and empirical Bayes methods",
-// 2004).
+// Replicated randomised quasi-Monte Carlo: A. B. Owen, "Monte Carlo theory, methods and
+// examples", 17.3 (error estimation from independent randomisations); Student's interval over the
+// means of the replicates.
+//   A pixel's own estimate of that variance is not enough. Samples of light are skewed, and a pixel
+//   that has missed what is rare
+// has both too small a mean and too small a variance: of such intervals 89 % held instead of 95 %
+// (scene `room` of the audit). The variance of the 5x5 pixels around does not know what this pixel
+// has missed, and with it 95 % hold. How much each of the two is worth is estimated too: what the
+// variances of the window differ by beyond what chance makes of them is real (H. Bühlmann, E.
+// Straub, "Glaubwürdigkeit für Schadensätze", 1970; for intervals G. K. Smyth, "Linear models and
+// empirical Bayes methods", 2004).
 #include "render/film/error.h"
 
 #include <algorithm>
@@ -24,7 +27,8 @@ constexpr uint32_t fewestSamples = 32, fewestReplicates = 16; // of frames whose
 constexpr uint32_t trustedReplicates = 8;
 constexpr uint32_t reach = 2; // the window: so many pixels to each side, within the tile
 constexpr uint32_t windowPixels = (2 * reach + 1) * (2 * reach + 1);
-// Replicates' means that carry the variance of a window, at least; hits by what is rare and bright, in a window, at least.
+// Replicates' means that carry the variance of a window, at least; hits by what is rare and bright,
+// in a window, at least.
 constexpr double fewestMeans = 2.5, fewestHits = 4;
 constexpr double negligible = .25; // of a half-width
 constexpr double fewestPaths = 16; // from lamps, in a window
@@ -42,16 +46,19 @@ Spread spreadOf(const PixelSums& s, int k, double size) {
   const double r = s.replicates, m = s.closed[k] / r;
   const double second = s.closed2[k] - s.closed[k] * m;
   if (!(second > 1e-13 * s.closed2[k])) return out; // of the subtraction
-  const double fourth = s.closed4[k] - 4 * m * s.closed3[k] + 6 * m * m * s.closed2[k] - 3 * r * m * m * m * m;
+  const double fourth =
+      s.closed4[k] - 4 * m * s.closed3[k] + 6 * m * m * s.closed2[k] - 3 * r * m * m * m * m;
   const double third = s.closed3[k] - 3 * m * s.closed2[k] + 2 * r * m * m * m;
   const double scale = 1 / (size * size);
   const double squares = second * scale;
   out.fourth = std::max(fourth, 0.0) * scale * scale;
   out.variance = squares / (r - 1);
-  // Fisher's fourth k-statistic; Var(k2) = k4 / r + 2 k2^2 / (r - 1) with k2^2 corrected for its own bias.
+  // Fisher's fourth k-statistic; Var(k2) = k4 / r + 2 k2^2 / (r - 1) with k2^2 corrected for its
+  // own bias.
   if (r > 3) {
     out.k3 = r * third * scale / size / ((r - 1) * (r - 2));
-    out.k4 = r * ((r + 1) * out.fourth - 3 * (r - 1) / r * squares * squares) / ((r - 1) * (r - 2) * (r - 3));
+    out.k4 = r * ((r + 1) * out.fourth - 3 * (r - 1) / r * squares * squares) /
+             ((r - 1) * (r - 2) * (r - 3));
   }
   out.uncertainty = out.k4 / r + 2 / (r + 1) * (out.variance * out.variance - out.k4 / r);
   return out;
@@ -75,7 +82,8 @@ struct Cell {
   }
 };
 
-// Sums over windows, in two passes; each window is summed anew, so that no cell knows of numbers that lie outside of it.
+// Sums over windows, in two passes; each window is summed anew, so that no cell knows of numbers
+// that lie outside of it.
 void sumWindows(std::vector<Cell>& cells, uint32_t width, uint32_t height) {
   std::vector<Cell> rows(cells.size());
   const auto pass = [&](const std::vector<Cell>& from, std::vector<Cell>& to, bool across) {
@@ -93,12 +101,14 @@ void sumWindows(std::vector<Cell>& cells, uint32_t width, uint32_t height) {
 
 // What a window tells of the variance of a pixel's replicates.
 struct Pool {
-  double mean = 0, chance = 0, real = 0; // of the window's variances; variance of these by chance, and beyond it
+  double mean = 0, chance = 0,
+         real = 0; // of the window's variances; variance of these by chance, and beyond it
   explicit Pool(const Cell& window) {
     const double n = window.count;
     mean = window.variance / n;
     chance = std::max(window.uncertainty / n, 0.0);
-    const double between = n > 1 ? std::max(0.0, window.variance2 / n - mean * mean) * n / (n - 1) : 0;
+    const double between =
+        n > 1 ? std::max(0.0, window.variance2 / n - mean * mean) * n / (n - 1) : 0;
     real = std::max(0.0, between - chance);
   }
   double differing() const { return mean > 0 ? real / (mean * mean) : 0; }
@@ -110,9 +120,11 @@ struct Pool {
   }
 };
 
-// What is rare and bright in a tile, from the samples' grey: how often pixels that it matters to have met it.
+// What is rare and bright in a tile, from the samples' grey: how often pixels that it matters to
+// have met it.
 struct Rare {
-  double square2 = 0, fourth = 0, variance = 0; // sums over the pixels; square2: of (sum of squares)^2 / samples
+  double square2 = 0, fourth = 0,
+         variance = 0; // sums over the pixels; square2: of (sum of squares)^2 / samples
   uint32_t pixels = 0;
   float largest[3] = {};
 
@@ -136,8 +148,11 @@ struct Rare {
   double mean(double samples) const { return std::sqrt(variance / pixels * hits(samples)); }
 };
 
-// Mean of |x| of a normal x of estimated variance v, with the bias of the root of a variance taken out (the factor known as c4).
-double meanError(double v, double freedom) { return std::sqrt(2 / M_PI * v) * (4 * freedom + 1) / (4 * freedom); }
+// Mean of |x| of a normal x of estimated variance v, with the bias of the root of a variance taken
+// out (the factor known as c4).
+double meanError(double v, double freedom) {
+  return std::sqrt(2 / M_PI * v) * (4 * freedom + 1) / (4 * freedom);
+}
 
 void finish(PixelError& e) {
   double half = 0;
@@ -146,14 +161,17 @@ void finish(PixelError& e) {
 }
 
 // What errors are relative to.
-float scaleOf(const float mean[3]) { return darkest + std::fabs(mean[0]) + std::fabs(mean[1]) + std::fabs(mean[2]); }
+float scaleOf(const float mean[3]) {
+  return darkest + std::fabs(mean[0]) + std::fabs(mean[1]) + std::fabs(mean[2]);
+}
 
 // The pixels of a tile, colour by colour.
 class TileErrors {
  public:
-  TileErrors(uint32_t width, std::span<const PixelSums> pixels, const Replicates& replicates, std::span<PixelError> out)
-      : width_(width), height_(uint32_t(pixels.size()) / width), pixels_(pixels), replicates_(replicates), out_(out),
-        pooled_(pixels.size()) {}
+  TileErrors(uint32_t width, std::span<const PixelSums> pixels, const Replicates& replicates,
+             std::span<PixelError> out)
+      : width_(width), height_(uint32_t(pixels.size()) / width), pixels_(pixels),
+        replicates_(replicates), out_(out), pooled_(pixels.size()) {}
 
   void make() {
     for (size_t i = 0; i < pixels_.size(); i++) {
@@ -181,9 +199,10 @@ class TileErrors {
     bool few = false;  // few replicates carry the window's variance
   };
 
-  // Random pixels and others are kept apart: those have nothing to say of each other. Nor have those that are exact. Noise may be
-  // as strong everywhere, or as strong as the light: the variances, or those relative to the brightness of the 3x3 pixels around,
-  // are pooled, whichever differ less.
+  // Random pixels and others are kept apart: those have nothing to say of each other. Nor have
+  // those that are exact. Noise may be as strong everywhere, or as strong as the light: the
+  // variances, or those relative to the brightness of the 3x3 pixels around, are pooled, whichever
+  // differ less.
   void pool(bool random, int k) {
     std::vector<Cell> cells(pixels_.size()), relative;
     const std::vector<double> bright = brightness(random, k);
@@ -200,13 +219,16 @@ class TileErrors {
     for (size_t i = 0; i < pixels_.size(); i++) {
       if (own[i].count == 0) continue;
       Pooled& p = pooled_[i];
-      const double r = pixels_[i].replicates, parts = pixels_[i].samples / double(replicates_.size());
+      const double r = pixels_[i].replicates,
+                   parts = pixels_[i].samples / double(replicates_.size());
       const Pool plain(cells[i]), scaled(relative[i]);
       const bool byLight = scaled.differing() < plain.differing();
       const double unit = byLight ? bright[i] * bright[i] : 1;
       const Cell& window = byLight ? relative[i] : cells[i];
       const double n = window.count;
-      p.variance[k] = unit * (byLight ? scaled : plain).combined(own[i].variance / unit, n, r, p.freedom[k]) / parts;
+      p.variance[k] =
+          unit * (byLight ? scaled : plain).combined(own[i].variance / unit, n, r, p.freedom[k]) /
+          parts;
       p.window = n;
       const double squares = window.variance * (r - 1);
       p.few |= random && window.fourth * fewestMeans > squares * squares;
@@ -242,7 +264,8 @@ class TileErrors {
   }
 
   void judge(const PixelSums& s, const Pooled& p, bool enough, PixelError& e) const {
-    const bool dark = s.random && !(p.variance[0] + p.variance[1] + p.variance[2] > 0); // all the same, here and around
+    const bool dark = s.random && !(p.variance[0] + p.variance[1] + p.variance[2] >
+                                    0); // all the same, here and around
     double half = 0;
     for (int k = 0; k < 3; k++) {
       double h = student95(p.freedom[k]) * std::sqrt(p.variance[k]);
@@ -254,9 +277,11 @@ class TileErrors {
     }
     finish(e);
     e.trusted = enough && !dark && !p.few;
-    // What is so rare that most windows have missed it: its mean is missing there, and no variance tells.
+    // What is so rare that most windows have missed it: its mean is missing there, and no variance
+    // tells.
     const double hits = rare_.hits(s.samples) * std::min(windowPixels, rare_.pixels);
-    if (s.random && hits < fewestHits && rare_.mean(s.samples) > negligible * half) e.trusted = false;
+    if (s.random && hits < fewestHits && rare_.mean(s.samples) > negligible * half)
+      e.trusted = false;
   }
 
   uint32_t width_, height_;
@@ -270,7 +295,8 @@ class TileErrors {
 } // namespace
 
 double student95(double v) {
-  static constexpr double table[] = {0, 12.7062, 4.30265, 3.18245, 2.77645, 2.57058, 2.44691, 2.36462, 2.30600, 2.26216};
+  static constexpr double table[] = {0,       12.7062, 4.30265, 3.18245, 2.77645,
+                                     2.57058, 2.44691, 2.36462, 2.30600, 2.26216};
   if (v < std::size(table)) return table[std::max(1, int(v))];
   // M. Abramowitz, I. Stegun, "Handbook of Mathematical Functions", 26.7.5
   const double z = 1.959963985, z3 = z * z * z, z5 = z3 * z * z;
@@ -298,7 +324,8 @@ PixelError independentError(const PixelSums& s) {
   for (int k = 0; k < 3; k++) {
     const double squares = std::max(0.0, s.delta2[k] - s.delta[k] * s.delta[k] / n);
     varies |= squares > 1e-12 * s.delta2[k];
-    const double v = s.samples > 1 ? squares / (n - 1) / n : std::numeric_limits<double>::infinity();
+    const double v =
+        s.samples > 1 ? squares / (n - 1) / n : std::numeric_limits<double>::infinity();
     e.halfWidth[k] = s.samples > 1 ? float(student95(n - 1) * std::sqrt(v)) : float(v);
     e.mean[k] = float(s.rgba[k] / n);
     e.noise.own += float(s.samples > 1 ? meanError(v, n - 1) : v);
@@ -313,7 +340,8 @@ PixelError independentError(const PixelSums& s) {
   return e;
 }
 
-void tileErrors(uint32_t width, std::span<const PixelSums> pixels, const Replicates& replicates, std::span<PixelError> out) {
+void tileErrors(uint32_t width, std::span<const PixelSums> pixels, const Replicates& replicates,
+                std::span<PixelError> out) {
   TileErrors(width, pixels, replicates, out).make();
 }
 
@@ -338,7 +366,8 @@ void addLight(const LightSums& light, PixelError& e) {
     e.constant = false;
     e.noise.random = true;
   }
-  if (lamps > negligible * half && light.hits < fewestPaths) e.trusted = false; // few paths have met the pixel
+  if (lamps > negligible * half && light.hits < fewestPaths)
+    e.trusted = false; // few paths have met the pixel
   e.relative = relativeError(half, e.mean);
 }
 

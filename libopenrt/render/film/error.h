@@ -1,5 +1,6 @@
-// error.h: how far the pixels of a tile may be off: intervals from independent replicates, whether they can be trusted; how many
-// samples make them small enough. Pure functions of sums of samples. [render]
+// error.h: how far the pixels of a tile may be off: intervals from independent replicates, whether
+// they can be trusted; how many samples make them small enough. Pure functions of sums of samples.
+// [render]
 #pragma once
 
 #include <cstdint>
@@ -23,8 +24,10 @@ Replicates replicatesOf(const edit::FrameSettingsT& frame, uint32_t samples, uin
 // What independent samples would have: for frames without replicates. Never trusted.
 PixelError independentError(const PixelSums& sums);
 
-// Of a tile: its pixels' sums row by row, as many errors. All that its pixels know of each other is used (error.cpp).
-void tileErrors(uint32_t width, std::span<const PixelSums> pixels, const Replicates& replicates, std::span<PixelError> out);
+// Of a tile: its pixels' sums row by row, as many errors. All that its pixels know of each other is
+// used (error.cpp).
+void tileErrors(uint32_t width, std::span<const PixelSums> pixels, const Replicates& replicates,
+                std::span<PixelError> out);
 
 // What paths from lamps add to a pixel.
 void addLight(const LightSums& light, PixelError& error);

@@ -1,4 +1,3 @@
-// error_map.cpp: see error_map.h.
 #include "render/film/error_map.h"
 
 #include <algorithm>
@@ -9,8 +8,9 @@
 
 namespace openrt {
 
-// Most pixels in doubt are what they seem. Of an edge across pixels, 64 samples: a tenth of the bound is what they are off by.
-// The corner that no sample meets has an area of 1 / n, the edges that cut so little off are as many as sqrt(1 / n) of all.
+// Most pixels in doubt are what they seem. Of an edge across pixels, 64 samples: a tenth of the
+// bound is what they are off by. The corner that no sample meets has an area of 1 / n, the edges
+// that cut so little off are as many as sqrt(1 / n) of all.
 double expectedOfBound(double samples) { return std::min(1.0, .8 / std::sqrt(samples)); }
 
 // How far apart nineteen in twenty of them are; they are put in another order.
@@ -76,10 +76,12 @@ void ErrorMap::range(uint32_t x, uint32_t y, float out[3]) const {
   for (int k = 0; k < 3; k++) out[k] = high[k] - low[k];
 }
 
-void ErrorMap::doubtConstants(const std::function<void(size_t pixel, const float halfWidth[3])>& changed) {
+void ErrorMap::doubtConstants(
+    const std::function<void(size_t pixel, const float halfWidth[3])>& changed) {
   if (seen_.empty()) return;
-  // At the border of the picture the other side may lie outside: it has any colour of nineteen in twenty of the pixels. One that
-  // a bright path has met, or a lamp, tells nothing of what is there.
+  // At the border of the picture the other side may lie outside: it has any colour of nineteen in
+  // twenty of the pixels. One that a bright path has met, or a lamp, tells nothing of what is
+  // there.
   bool uniform = true;
   std::vector<float> values;
   values.reserve(seen_.size());
@@ -89,7 +91,8 @@ void ErrorMap::doubtConstants(const std::function<void(size_t pixel, const float
       if (s.samples > 0 && std::isfinite(s.mean[k])) values.push_back(s.mean[k]);
     if (values.empty()) continue;
     range_[k] = middleRange(values);
-    uniform &= *std::min_element(values.begin(), values.end()) == *std::max_element(values.begin(), values.end());
+    uniform &= *std::min_element(values.begin(), values.end()) ==
+               *std::max_element(values.begin(), values.end());
   }
   for (uint32_t y = 0; y < height_; y++)
     for (uint32_t x = 0; x < width_; x++) {
@@ -107,7 +110,8 @@ void ErrorMap::doubtConstants(const std::function<void(size_t pixel, const float
       }
       const float edge = relativeError(behind, here.mean);
       doubted_[pixel] = relativeError(expectedOfBound(here.samples) * behind, here.mean);
-      if (!noise_.empty()) noise_[pixel].own = edge; // picture_error.cpp: what it is off by if there is an edge
+      if (!noise_.empty())
+        noise_[pixel].own = edge; // picture_error.cpp: what it is off by if there is an edge
       relative_[pixel] = -relativeError(sum, here.mean);
       changed(pixel, half);
     }
@@ -140,7 +144,8 @@ ErrorSummary ErrorMap::summary(double missed) const {
   for (size_t i = 0; i < noise_.size() && missed > 0; i++)
     if (noise_[i].finished) missing += std::min(1.0, missed / double(noise_[i].scale)) / n;
   s.mean = whole.mean;
-  s.meanInterval = std::min(std::hypot(whole.interval, missing), std::max(s.mean, 1 - s.mean)); // the error is from 0 to 1
+  s.meanInterval = std::min(std::hypot(whole.interval, missing),
+                            std::max(s.mean, 1 - s.mean)); // the error is from 0 to 1
   const auto at = halves.begin() + std::ptrdiff_t(double(halves.size() - 1) * 0.99);
   std::nth_element(halves.begin(), at, halves.end());
   s.p99 = *at;

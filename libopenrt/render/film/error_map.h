@@ -1,5 +1,6 @@
-// error_map.h: the errors of a picture's pixels, for what only the neighbours know of a pixel and for the picture as a whole.
-// store(): [render] each pixel by one thread; the rest by one thread when the picture is finished.
+// error_map.h: the errors of a picture's pixels, for what only the neighbours know of a pixel and
+// for the picture as a whole. store(): [render] each pixel by one thread; the rest by one thread
+// when the picture is finished.
 #pragma once
 
 #include <cstddef>
@@ -11,8 +12,9 @@
 
 namespace openrt {
 
-inline constexpr float darkest = 0.03f;       // colours summed: errors of what is darker are not blown up
-inline constexpr double ruleOfThree = 2.9957; // -ln 0.05: n misses in a row bound a probability by this / n
+inline constexpr float darkest = 0.03f; // colours summed: errors of what is darker are not blown up
+inline constexpr double ruleOfThree =
+    2.9957; // -ln 0.05: n misses in a row bound a probability by this / n
 
 struct PixelError {
   float mean[3] = {};
@@ -21,7 +23,8 @@ struct PixelError {
   PixelNoise noise;
   uint32_t samples = 0;
   bool trusted = false;
-  bool constant = false; // nothing random, all samples equal: exact, unless an edge passes through a corner
+  bool constant =
+      false; // nothing random, all samples equal: exact, unless an edge passes through a corner
 };
 
 // A sum over the colours of errors, over the sum of the colours and `darkest`. At most 1.
@@ -40,12 +43,13 @@ class ErrorMap {
   ErrorMap(uint32_t width, uint32_t height, Kind kind);
   bool empty() const { return relative_.empty(); }
   void store(size_t pixel, const PixelError& e);
-  // A constant pixel beside pixels that differ from it is not known to be exact: the edge may cut a corner of it that no sample
-  // met. Its interval gets what the rule of three allows for, and it is not trusted. The same at the border of a picture that is
-  // not of one colour. changed is called for each.
+  // A constant pixel beside pixels that differ from it is not known to be exact: the edge may cut a
+  // corner of it that no sample met. Its interval gets what the rule of three allows for, and it is
+  // not trusted. The same at the border of a picture that is not of one colour. changed is called
+  // for each.
   void doubtConstants(const std::function<void(size_t pixel, const float halfWidth[3])>& changed);
-  // Takes the trust of a pixel with random samples, and returns true, if it may lack more than its interval. missed: radiance
-  // that no sample tells of (ledger.h), colours summed.
+  // Takes the trust of a pixel with random samples, and returns true, if it may lack more than its
+  // interval. missed: radiance that no sample tells of (ledger.h), colours summed.
   bool distrust(size_t pixel, double missed);
   // missed: the same of the whole picture.
   ErrorSummary summary(double missed = 0) const;
@@ -56,12 +60,15 @@ class ErrorMap {
     uint32_t samples; // 0: not finished
     bool constant;
   };
-  bool border(uint32_t x, uint32_t y) const { return x == 0 || y == 0 || x + 1 == width_ || y + 1 == height_; }
+  bool border(uint32_t x, uint32_t y) const {
+    return x == 0 || y == 0 || x + 1 == width_ || y + 1 == height_;
+  }
   bool beside(uint32_t x, uint32_t y) const;
   void range(uint32_t x, uint32_t y, float out[3]) const;
   uint32_t width_ = 0, height_ = 0;
   std::vector<float> relative_; // NaN: not finished; negative: not trusted
-  std::vector<float> doubted_;  // what a constant pixel in doubt is expected to be off by, relative; NaN: it is not in doubt
+  std::vector<float> doubted_; // what a constant pixel in doubt is expected to be off by, relative;
+                               // NaN: it is not in doubt
   std::vector<PixelNoise> noise_;
   std::vector<Seen> seen_;
   float range_[3] = {}; // of all pixels' colours; doubtConstants()

@@ -10,35 +10,44 @@ namespace openrt {
 Film::Film(uint32_t width, uint32_t height, uint32_t channels, ErrorMap::Kind errors)
     : width_(width), height_(height), channels_(channels), errors_(width, height, errors) {
   for (uint32_t bit = 0; bit < channelBits; bit++)
-    if (channels & (1u << bit)) planes_[bit].assign(size_t(width) * height * channelComponents(1u << bit), 0.0f);
-  if (has(RT_DEPTH)) std::fill(plane(RT_DEPTH).begin(), plane(RT_DEPTH).end(), std::numeric_limits<float>::infinity());
+    if (channels & (1u << bit))
+      planes_[bit].assign(size_t(width) * height * channelComponents(1u << bit), 0.0f);
+  if (has(RT_DEPTH))
+    std::fill(plane(RT_DEPTH).begin(), plane(RT_DEPTH).end(),
+              std::numeric_limits<float>::infinity());
 }
 
 namespace {
-size_t planeOf(uint32_t channel) { return std::min(size_t(std::countr_zero(channel)), size_t(channelBits - 1)); }
+size_t planeOf(uint32_t channel) {
+  return std::min(size_t(std::countr_zero(channel)), size_t(channelBits - 1));
+}
 } // namespace
 
 std::vector<float>& Film::plane(uint32_t channel) { return planes_[planeOf(channel)]; }
 
-void Film::store(uint32_t x, uint32_t y, const PixelSums& s, const LightSums* light, const PixelError* error) {
+void Film::store(uint32_t x, uint32_t y, const PixelSums& s, const LightSums* light,
+                 const PixelError* error) {
   const size_t pixel = size_t(y) * width_ + x;
   const double n = s.samples ? s.samples : 1;
   if (has(RT_RGBA))
-    for (int k = 0; k < 4; k++) plane(RT_RGBA)[4 * pixel + k] = float(s.rgba[k] / n + (light && k < 3 ? light->mean[k] : 0));
+    for (int k = 0; k < 4; k++)
+      plane(RT_RGBA)[4 * pixel + k] = float(s.rgba[k] / n + (light && k < 3 ? light->mean[k] : 0));
   for (int k = 0; k < 3; k++) {
     if (has(RT_NORMAL)) plane(RT_NORMAL)[3 * pixel + k] = float(s.normal[k] / n);
     if (has(RT_ALBEDO)) plane(RT_ALBEDO)[3 * pixel + k] = float(s.albedo[k] / n);
     if (has(RT_POSITION)) plane(RT_POSITION)[3 * pixel + k] = s.position[k];
     if (has(RT_VARIANCE)) {
       const double sum2 = s.delta2[k] - s.delta[k] * s.delta[k] / n;
-      plane(RT_VARIANCE)[3 * pixel + k] = s.samples > 1 ? float(std::max(sum2, 0.0) / (n - 1)) : 0.0f;
+      plane(RT_VARIANCE)[3 * pixel + k] =
+          s.samples > 1 ? float(std::max(sum2, 0.0) / (n - 1)) : 0.0f;
     }
   }
   if (has(RT_DEPTH)) plane(RT_DEPTH)[pixel] = s.depth;
   if (has(RT_NAME)) plane(RT_NAME)[pixel] = s.name;
   if (has(RT_ERROR))
     for (int k = 0; k < 3; k++)
-      plane(RT_ERROR)[3 * pixel + k] = error ? error->halfWidth[k] : std::numeric_limits<float>::infinity();
+      plane(RT_ERROR)[3 * pixel + k] =
+          error ? error->halfWidth[k] : std::numeric_limits<float>::infinity();
   if (has(RT_TRUST)) plane(RT_TRUST)[pixel] = error && error->trusted ? 1.0f : 0.0f;
   if (error) errors_.store(pixel, *error);
   if (has(RT_SAMPLES)) plane(RT_SAMPLES)[pixel] = float(s.samples);
@@ -46,7 +55,8 @@ void Film::store(uint32_t x, uint32_t y, const PixelSums& s, const LightSums* li
 
 void Film::finishErrors() {
   errors_.doubtConstants([this](size_t pixel, const float halfWidth[3]) {
-    if (has(RT_ERROR)) std::copy_n(halfWidth, 3, plane(RT_ERROR).begin() + std::ptrdiff_t(3 * pixel));
+    if (has(RT_ERROR))
+      std::copy_n(halfWidth, 3, plane(RT_ERROR).begin() + std::ptrdiff_t(3 * pixel));
     if (has(RT_TRUST)) plane(RT_TRUST)[pixel] = 0;
   });
 }
@@ -54,7 +64,8 @@ void Film::finishErrors() {
 void Film::distrust(const Tile& tile, double missed) {
   for (uint32_t y = tile.y0; y < tile.y1; y++)
     for (uint32_t x = tile.x0; x < tile.x1; x++)
-      if (const size_t pixel = size_t(y) * width_ + x; errors_.distrust(pixel, missed) && has(RT_TRUST))
+      if (const size_t pixel = size_t(y) * width_ + x;
+          errors_.distrust(pixel, missed) && has(RT_TRUST))
         plane(RT_TRUST)[pixel] = 0;
 }
 
@@ -70,7 +81,8 @@ bool Film::clear(uint32_t channel, std::span<float> out) const {
   if (!std::has_single_bit(channel) || !has(channel)) return false;
   const size_t size = size_t(width_) * height_ * channelComponents(channel);
   if (out.size() < size) return false;
-  std::fill_n(out.begin(), size, channel == RT_DEPTH ? std::numeric_limits<float>::infinity() : 0.0f);
+  std::fill_n(out.begin(), size,
+              channel == RT_DEPTH ? std::numeric_limits<float>::infinity() : 0.0f);
   return true;
 }
 
@@ -79,7 +91,8 @@ void Film::copy(uint32_t channel, const Tile& tile, std::span<float> out) const 
   const size_t components = channelComponents(channel);
   for (uint32_t y = tile.y0; y < tile.y1; y++) {
     const size_t first = (size_t(y) * width_ + tile.x0) * components;
-    std::copy_n(source.begin() + std::ptrdiff_t(first), (tile.x1 - tile.x0) * components, out.begin() + std::ptrdiff_t(first));
+    std::copy_n(source.begin() + std::ptrdiff_t(first), (tile.x1 - tile.x0) * components,
+                out.begin() + std::ptrdiff_t(first));
   }
 }
 

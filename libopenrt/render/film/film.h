@@ -1,5 +1,5 @@
-// film.h: the picture being made: channels as floats, rows from the top. Whoever writes takes a tile of its own. Statistics of a
-// pixel are gathered in double (sums.h) and rounded once.
+// film.h: the picture being made: channels as floats, rows from the top. Whoever writes takes a
+// tile of its own. Statistics of a pixel are gathered in double (sums.h) and rounded once.
 #pragma once
 
 #include <cstdint>
@@ -23,20 +23,23 @@ struct LightSums {
 class Film {
  public:
   Film() = default;
-  Film(uint32_t width, uint32_t height, uint32_t channels, ErrorMap::Kind errors = ErrorMap::Kind::none);
+  Film(uint32_t width, uint32_t height, uint32_t channels,
+       ErrorMap::Kind errors = ErrorMap::Kind::none);
   uint32_t width() const { return width_; }
   uint32_t height() const { return height_; }
   bool has(uint32_t channel) const { return channels_ & channel; }
-  // [render] each pixel by one thread; light, error: null where there is none, where nothing is known of it
-  void store(uint32_t x, uint32_t y, const PixelSums& sums, const LightSums* light = nullptr, const PixelError* error = nullptr);
+  // [render] each pixel by one thread; light, error: null where there is none, where nothing is
+  // known of it
+  void store(uint32_t x, uint32_t y, const PixelSums& sums, const LightSums* light = nullptr,
+             const PixelError* error = nullptr);
   // After the last store(): looks at the neighbours of constant pixels. One thread.
   void finishErrors();
   // Then, of each tile: what its pixels may lack that no sample tells of (ErrorMap).
   void distrust(const Tile& tile, double missed);
   const ErrorMap& errors() const { return errors_; }
   bool read(uint32_t channel, std::span<float> out) const;
-  // Of a picture that is still being made: nothing everywhere, then tile by tile those that are finished. false: no such
-  // channel, or no room for it.
+  // Of a picture that is still being made: nothing everywhere, then tile by tile those that are
+  // finished. false: no such channel, or no room for it.
   bool clear(uint32_t channel, std::span<float> out) const;
   void copy(uint32_t channel, const Tile& tile, std::span<float> out) const;
 

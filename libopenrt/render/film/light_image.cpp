@@ -1,4 +1,3 @@
-// light_image.cpp: see light_image.h.
 #include "render/film/light_image.h"
 
 #include <algorithm>
@@ -37,8 +36,9 @@ double LightImage::variance(const Pixel& pixel, int k) const {
   return n > 1 ? pixel.squares[k] / (n * (n - 1)) : std::numeric_limits<double>::infinity();
 }
 
-// A pixel that few paths have met knows too little of itself (error.cpp): its variance is its own, at least the mean of those of
-// the 5x5 pixels around. hits: as many equal paths have met these, in the colour with the fewest.
+// A pixel that few paths have met knows too little of itself (error.cpp): its variance is its own,
+// at least the mean of those of the 5x5 pixels around. hits: as many equal paths have met these, in
+// the colour with the fewest.
 LightSums LightImage::at(uint32_t x, uint32_t y) const {
   constexpr uint32_t reach = 2;
   const Pixel& pixel = pixels_[size_t(y) * width_ + x];

@@ -1,6 +1,7 @@
-// light_image.h: the part of a picture that paths from lamps make. They may fall on any pixel, so the picture is made in a fixed
-// number of parts, each a whole picture by one thread; their mean and its variance are kept. Parts are added in their order,
-// those that come too early wait: the sums do not depend on threads. [any]
+// light_image.h: the part of a picture that paths from lamps make. They may fall on any pixel, so
+// the picture is made in a fixed number of parts, each a whole picture by one thread; their mean
+// and its variance are kept. Parts are added in their order, those that come too early wait: the
+// sums do not depend on threads. [any]
 #pragma once
 
 #include <atomic>
@@ -23,7 +24,8 @@ class LightImage {
   void add(uint32_t number, std::vector<float>&& part);
   uint32_t added() const { return added_.load(std::memory_order_acquire); }
   bool complete() const { return added() == all_; }
-  // Of a tile, row by row, from the parts that are in; their variance is infinite if these are fewer than two.
+  // Of a tile, row by row, from the parts that are in; their variance is infinite if these are
+  // fewer than two.
   void look(const Tile& tile, std::vector<LightSums>& out) const;
 
  private:

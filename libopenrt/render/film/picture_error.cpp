@@ -1,14 +1,18 @@
 // picture_error.cpp: see picture_error.h.
 //
-// A pixel's own variance tells too little where light is rare: pixels that have missed it have too small a variance, and the mean
-// of roots is less than the root of the mean. And these pixels are off, too: by what they miss, relative to their darkness. So:
-//   * Third cumulants, pooled over pixels around, give the share of rare jumps in the variance and how many of them a
-//     pixel meets on average (method of moments for a normal plus a Poisson variable). How much E|error| differs from what own
-//     variances say follows in closed sums.
-//   * Errors sum to zero: what pixels with jumps have too much the others have too little. The latter half is distributed over
-//   the
-//     pixels around, each relative to its own colours. The pixels around: so many that some jumps are among them.
-//   * The interval is one of prediction: how far the errors of one picture scatter about their expectation, and how well that is
+// A pixel's own variance tells too little where light is rare: pixels that have missed it have too
+// small a variance, and the mean of roots is less than the root of the mean. And these pixels are
+// off, too: by what they miss, relative to their darkness. So:
+//   * Third cumulants, pooled over pixels around, give the share of rare jumps in the variance and
+//   how many of them a
+//     pixel meets on average (method of moments for a normal plus a Poisson variable). How much
+//     E|error| differs from what own variances say follows in closed sums.
+//   * Errors sum to zero: what pixels with jumps have too much the others have too little. The
+//   latter half is distributed over the
+//     pixels around, each relative to its own colours. The pixels around: so many that some jumps
+//     are among them.
+//   * The interval is one of prediction: how far the errors of one picture scatter about their
+//   expectation, and how well that is
 //     known from so many jumps. Pixels are independent.
 #include "render/film/picture_error.h"
 
@@ -23,15 +27,16 @@
 namespace openrt {
 namespace {
 
-constexpr double meanOfNormal = 0.797884560802865;       // E|z|
-constexpr double varianceOfNormal = 1 - 2 / M_PI + .033; // of |z|, and of what 16 replicates know of its scale, over E z^2
-constexpr double fewestJumps = 8;                        // in the pixels around
-constexpr double negligibleExcess = .1;                  // fourth over squared second cumulant
-constexpr double lowerHalf = .72;                        // mean of the lower half of variances with 15 degrees of freedom
-constexpr double unsureShape = .3;                       // of the correction by tailShape()
-constexpr double unsureScale = .6;                       // of the errors of random pixels: neighbours err together
-constexpr double mostJumps = 24;                         // where a Poisson variable is as good as normal
-constexpr std::array<uint32_t, 2> reaches{2, 5};         // of the pixels around, to each side
+constexpr double meanOfNormal = 0.797884560802865; // E|z|
+constexpr double varianceOfNormal =
+    1 - 2 / M_PI + .033;          // of |z|, and of what 16 replicates know of its scale, over E z^2
+constexpr double fewestJumps = 8; // in the pixels around
+constexpr double negligibleExcess = .1; // fourth over squared second cumulant
+constexpr double lowerHalf = .72;  // mean of the lower half of variances with 15 degrees of freedom
+constexpr double unsureShape = .3; // of the correction by tailShape()
+constexpr double unsureScale = .6; // of the errors of random pixels: neighbours err together
+constexpr double mostJumps = 24;   // where a Poisson variable is as good as normal
+constexpr std::array<uint32_t, 2> reaches{2, 5}; // of the pixels around, to each side
 
 double normalDensity(double x) { return 0.398942280401433 * std::exp(-.5 * x * x); }
 double normalBelow(double x) { return .5 * std::erfc(-x * 0.707106781186548); }
@@ -64,9 +69,13 @@ struct Cumulants { // summed over pixels, relative
     if (!(second > 0)) return 0;
     return fourth > 0 ? second * second / fourth : std::numeric_limits<double>::infinity();
   }
-  // Else errors are as good as normal. Squares are summed pixel by pixel: that some have more noise than others is no tail.
-  bool tailed() const { return second > 0 && third > 0 && fourth > negligibleExcess * std::max(square, 0.0); }
-  // seconds: of the pixels, in any order; they are put in another. met: second cumulant of a pixel that has met a jump, at least.
+  // Else errors are as good as normal. Squares are summed pixel by pixel: that some have more noise
+  // than others is no tail.
+  bool tailed() const {
+    return second > 0 && third > 0 && fourth > negligibleExcess * std::max(square, 0.0);
+  }
+  // seconds: of the pixels, in any order; they are put in another. met: second cumulant of a pixel
+  // that has met a jump, at least.
   TailShape shape(std::vector<double>& seconds, double& met) const {
     if (!tailed()) return {};
     const double k2 = second / pixels, k3 = third / pixels;
@@ -80,7 +89,8 @@ struct Cumulants { // summed over pixels, relative
     const double rest = k2 - normal;
     if (!(rest > 0)) return {};
     // The former where all pixels are alike, the latter where some have many jumps and others none.
-    const double alike = rest * rest * rest / (k3 * k3), apart = square * (rest / k2) * (rest / k2) / fourth;
+    const double alike = rest * rest * rest / (k3 * k3),
+                 apart = square * (rest / k2) * (rest / k2) / fourth;
     const double jumps = std::min(std::max(alike, apart), mostJumps);
     met = normal + .5 * rest / jumps;
     return tailShape(normal / rest, jumps);
@@ -90,8 +100,9 @@ struct Cumulants { // summed over pixels, relative
 class Whole {
  public:
   Whole(uint32_t width, std::span<const PixelNoise> pixels, std::span<const float> doubted)
-      : width_(width), height_(uint32_t(pixels.size()) / width), pixels_(pixels), doubted_(doubted), stay_(pixels.size()),
-        spread_(pixels.size()), missing_(pixels.size()), part_(pixels.size()), met_(pixels.size()), reach_(pixels.size()) {}
+      : width_(width), height_(uint32_t(pixels.size()) / width), pixels_(pixels), doubted_(doubted),
+        stay_(pixels.size()), spread_(pixels.size()), missing_(pixels.size()), part_(pixels.size()),
+        met_(pixels.size()), reach_(pixels.size()) {}
 
   PictureError make() {
     gather();
@@ -109,7 +120,9 @@ class Whole {
         if (const size_t at = size_t(v) * width_ + u; random(at)) f(at);
   }
   // What a pixel gets of what is missing: as the light, if it has not met a jump.
-  double lacking(size_t i, double met) const { return random(i) && own_[i].second < met ? double(pixels_[i].scale) : 0; }
+  double lacking(size_t i, double met) const {
+    return random(i) && own_[i].second < met ? double(pixels_[i].scale) : 0;
+  }
   bool random(size_t i) const { return pixels_[i].finished && pixels_[i].random; }
 
   void gather() {
@@ -128,8 +141,9 @@ class Whole {
       if (!std::isfinite(p.second) || !std::isfinite(p.fourth)) continue;
       const double s2 = scale * scale;
       // So that three equal colours count as one would.
-      own_[i] = {1, double(p.second) / s2 / std::sqrt(3.0), double(p.third) / (s2 * scale) / std::pow(3.0, .25),
-                 double(p.fourth) / (s2 * s2), double(p.square) / (s2 * s2)};
+      own_[i] = {1, double(p.second) / s2 / std::sqrt(3.0),
+                 double(p.third) / (s2 * scale) / std::pow(3.0, .25), double(p.fourth) / (s2 * s2),
+                 double(p.square) / (s2 * s2)};
       all_.add(own_[i]);
     }
     if (all_.tailed())
@@ -165,14 +179,19 @@ class Whole {
         without += lacking(at, met);
         lack += lacking(at, met) > 0 ? 1 : 0;
       });
-    const double alike = std::max(1.0, all - lack) * shape.without; // so many of those that lack are of the kind that meets jumps
+    const double alike =
+        std::max(1.0, all - lack) *
+        shape.without; // so many of those that lack are of the kind that meets jumps
     const double expected = double(p.own) * shape.factor;
     corrected_ += std::fabs(expected - double(p.own)) / double(p.scale);
     missing_[i] = without > 0 ? shape.missing : 0;
     spread_[i] = missing_[i] * expected;
     stay_[i] = expected - spread_[i];
-    // None of these lacks a larger part of its light than what is wrong with the pixel that tells of it.
-    if (without > 0) part_[i] = std::min(spread_[i] / without, std::min(1.0, alike / lack) * expected / double(p.scale));
+    // None of these lacks a larger part of its light than what is wrong with the pixel that tells
+    // of it.
+    if (without > 0)
+      part_[i] =
+          std::min(spread_[i] / without, std::min(1.0, alike / lack) * expected / double(p.scale));
     reach_[i] = reach;
     met_[i] = met;
   }
@@ -190,7 +209,8 @@ class Whole {
     double n = 0, unseen = 0, unknown = 0, doubts = 0;
     const bool nothing = all_.pixels > 0 && !(largest_ > 0);
     // Where next to nothing has been met at all it may be the largest sample that was missed.
-    const double bound = all_.pixels > 0 && !(all_.jumps() > ruleOfThree) ? ruleOfThree * largest_ / all_.pixels : 0;
+    const double bound =
+        all_.pixels > 0 && !(all_.jumps() > ruleOfThree) ? ruleOfThree * largest_ / all_.pixels : 0;
     std::vector<double> kept(pixels_.size()), slopes(pixels_.size());
     for (size_t i = 0; i < pixels_.size(); i++) {
       const PixelNoise& p = pixels_[i];
@@ -206,7 +226,8 @@ class Whole {
         unknown++;
         continue;
       }
-      const double scale = double(p.scale), stay = stay_[i] / scale, lack = lack_[i] / scale, rare = 2 * missing_[i];
+      const double scale = double(p.scale), stay = stay_[i] / scale, lack = lack_[i] / scale,
+                   rare = 2 * missing_[i];
       kept[i] = (1 - rare) * cappedMean(stay) + rare * std::min(1.0, stay);
       const double expected = std::min(1.0, kept[i] + lack);
       out.mean += expected;
@@ -227,21 +248,25 @@ class Whole {
       const double k = kept[i] / meanOfNormal;
       double v = varianceOfNormal * (1 - 2 * missing_[i]) * k * k + scattered * scattered;
       if (!std::isnan(doubted_[i]))
-        v = kept[i] * std::max(0.0, double(pixels_[i].own) - kept[i]); // own: its error if there is an edge
+        v = kept[i] *
+            std::max(0.0, double(pixels_[i].own) - kept[i]); // own: its error if there is an edge
       variance += v;
       fourth += v * v;
     }
     const double freedom = fourth > 0 ? variance * variance / fourth : 1;
-    const double chance = student95(std::max(1.0, freedom - 1)) * std::sqrt(variance), unsure = unsureShape * corrected_;
+    const double chance = student95(std::max(1.0, freedom - 1)) * std::sqrt(variance),
+                 unsure = unsureShape * corrected_;
     const double common = unsureScale * (out.mean - doubts);
     // How many of the pixels in doubt hold an edge is the scene's: from none to twice as many.
-    out.interval = std::sqrt(chance * chance + unsure * unsure + common * common + unseen * unseen + doubts * doubts);
+    out.interval = std::sqrt(chance * chance + unsure * unsure + common * common + unseen * unseen +
+                             doubts * doubts);
     // Where nothing at all has been met it may be anything.
     out.mean += .5 * unknown;
     out.interval += .5 * unknown;
     out.mean /= n;
     out.interval /= n;
-    out.interval = std::min(out.interval, std::max(out.mean, 1 - out.mean)); // it is between 0 and 1
+    out.interval =
+        std::min(out.interval, std::max(out.mean, 1 - out.mean)); // it is between 0 and 1
     return out;
   }
 
@@ -253,9 +278,10 @@ class Whole {
   TailShape allShape_;
   double largest_ = 0, corrected_ = 0, allMet_ = 0;
   std::vector<double> stay_, spread_, missing_, lack_;
-  std::vector<double> part_, met_; // of what those around lack: the pixel's part, relative; how they are told
-  std::vector<double> seconds_;    // room
-  std::vector<uint32_t> reach_;    // of the pixels around
+  std::vector<double> part_,
+      met_; // of what those around lack: the pixel's part, relative; how they are told
+  std::vector<double> seconds_; // room
+  std::vector<uint32_t> reach_; // of the pixels around
 };
 
 } // namespace
@@ -268,7 +294,8 @@ TailShape tailShape(double variance, double jumps) {
   const auto most = uint32_t(jumps + 6 * std::sqrt(jumps) + 6);
   double probability = std::exp(-jumps), error = 0, told = 0;
   for (uint32_t k = 0; k <= most; k++, probability *= jumps / k) {
-    const double e = foldedMean(k - jumps, normal), own = meanOfNormal * std::sqrt(normal * normal + k);
+    const double e = foldedMean(k - jumps, normal),
+                 own = meanOfNormal * std::sqrt(normal * normal + k);
     if (k == 0) out.missing = probability * std::max(0.0, e - own);
     error += probability * e;
     told += probability * own;
@@ -280,7 +307,8 @@ TailShape tailShape(double variance, double jumps) {
   return out;
 }
 
-PictureError pictureError(uint32_t width, std::span<const PixelNoise> pixels, std::span<const float> doubted) {
+PictureError pictureError(uint32_t width, std::span<const PixelNoise> pixels,
+                          std::span<const float> doubted) {
   if (pixels.empty()) return {};
   return Whole(width, pixels, doubted).make();
 }

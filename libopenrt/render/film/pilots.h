@@ -1,6 +1,7 @@
-// pilots.h: how many samples each tile of a frame with a target error takes. Pilots decide it: samples that are thrown away, so
-// that those which make the picture know nothing of the decision (docs/decisions/0037). Called by FrameWork; a pure function of
-// the pilots' samples, whoever takes them and in whatever order they come.
+// pilots.h: how many samples each tile of a frame with a target error takes. Pilots decide it:
+// samples that are thrown away, so that those which make the picture know nothing of the decision
+// (docs/decisions/0037). Called by FrameWork; a pure function of the pilots' samples, whoever takes
+// them and in whatever order they come.
 #pragma once
 
 #include <cstdint>
@@ -46,10 +47,14 @@ class Pilots {
  private:
   struct Opinion {
     uint32_t wanted = 0;
-    double unknown = 0; // relative half-width that the tile's pixels have by what they do not trust, then
+    double unknown =
+        0; // relative half-width that the tile's pixels have by what they do not trust, then
   };
-  float doubtOf(const PilotPixel& pixel, size_t at) const { return pixel.constant && !doubt_.empty() ? doubt_[at] : 0; }
-  double expected(const Tile& tile, std::span<const PilotPixel> pixels, double samples, double wanted) const;
+  float doubtOf(const PilotPixel& pixel, size_t at) const {
+    return pixel.constant && !doubt_.empty() ? doubt_[at] : 0;
+  }
+  double expected(const Tile& tile, std::span<const PilotPixel> pixels, double samples,
+                  double wanted) const;
   Opinion opinion(const Tile& tile, std::span<const PilotPixel> pixels, uint32_t samples) const;
   Verdict verdict(const Opinion& opinion, double unknown, uint32_t samples) const;
   std::vector<PilotPixel> pixelsOf(const Tile& tile) const;
@@ -59,7 +64,8 @@ class Pilots {
   const double target_;
   const bool timed_;
   const std::vector<uint32_t> ladder_; // numbers of samples that tiles may take
-  // Row by row, of the first pilot. The half-width that constant pixels beside an edge have: neighbours of other tiles tell.
+  // Row by row, of the first pilot. The half-width that constant pixels beside an edge have:
+  // neighbours of other tiles tell.
   ErrorMap map_;
   std::vector<PilotPixel> first_;
   std::vector<float> scale_, doubt_;

@@ -1,4 +1,4 @@
-// sums.cpp: see sums.h. Moments about another point: (x + c)^m by the binomial theorem.
+// sums.cpp: Moments about another point: (x + c)^m by the binomial theorem.
 #include "render/film/sums.h"
 
 #include <algorithm>
@@ -12,9 +12,11 @@
 namespace openrt {
 namespace {
 
-static_assert(std::is_trivially_copyable_v<PixelSums> && std::is_standard_layout_v<PixelSums>); // kept as bytes
+static_assert(std::is_trivially_copyable_v<PixelSums> &&
+              std::is_standard_layout_v<PixelSums>); // kept as bytes
 
-// Of each pixel's sums only the part that is gathered is kept: there may be one for each pixel of the picture.
+// Of each pixel's sums only the part that is gathered is kept: there may be one for each pixel of
+// the picture.
 size_t keptBytes(const Gathering& g) {
   if (g.error) return sizeof(PixelSums);
   if (g.surface) return offsetof(PixelSums, closed);
@@ -23,7 +25,8 @@ size_t keptBytes(const Gathering& g) {
 
 // What errors are told by: change: of the differences of l.
 void mergeTails(PixelSums& s, const PixelSums& l, const double change[3], double size) {
-  const double c = change[0] + change[1] + change[2], n = l.samples, grey1 = l.delta[0] + l.delta[1] + l.delta[2];
+  const double c = change[0] + change[1] + change[2], n = l.samples,
+               grey1 = l.delta[0] + l.delta[1] + l.delta[2];
   s.grey[0] += l.grey[0] + c * (2 * grey1 + n * c);
   s.grey[1] += l.grey[1] + c * (3 * l.grey[0] + c * (3 * grey1 + n * c));
   s.grey[2] += l.grey[2] + c * (4 * l.grey[1] + c * (6 * l.grey[0] + c * (4 * grey1 + n * c)));
@@ -32,7 +35,8 @@ void mergeTails(PixelSums& s, const PixelSums& l, const double change[3], double
   if (l.replicates == 0) return;
   const double r = l.replicates;
   for (int k = 0; k < 3; k++) {
-    const double d = size * change[k], s1 = l.closed[k], s2 = l.closed2[k], s3 = l.closed3[k]; // d: of a replicate's sum
+    const double d = size * change[k], s1 = l.closed[k], s2 = l.closed2[k],
+                 s3 = l.closed3[k]; // d: of a replicate's sum
     s.closed[k] += s1 + r * d;
     s.closed2[k] += s2 + d * (2 * s1 + r * d);
     s.closed3[k] += s3 + d * (3 * s2 + d * (3 * s1 + r * d));
@@ -86,10 +90,12 @@ void PixelSums::merge(const PixelSums& l, const Gathering& gathering, const Repl
   samples += l.samples;
   replicates += l.replicates;
   // Larger than its leaves: none of it is closed yet.
-  if (gathering.error && parts.many() && replicates == 0 && samples == parts.size()) closeReplicate();
+  if (gathering.error && parts.many() && replicates == 0 && samples == parts.size())
+    closeReplicate();
 }
 
-void SumBlock::append(const SumBlock& later, const Gathering& gathering, const Replicates& replicates) {
+void SumBlock::append(const SumBlock& later, const Gathering& gathering,
+                      const Replicates& replicates) {
   for (size_t i = 0; i < sums.size(); i++) sums[i].merge(later.sums[i], gathering, replicates);
   ledger.add(later.ledger);
   count += later.count;
@@ -116,14 +122,16 @@ void TileSums::unpack(const Kept& from, SumBlock& to, const Gathering& gathering
   to.count = from.count;
   to.ledger = from.ledger;
   to.sums.resize(from.bytes.size() / bytes);
-  for (size_t i = 0; i < to.sums.size(); i++) std::memcpy(static_cast<void*>(&to.sums[i]), &from.bytes[i * bytes], bytes);
+  for (size_t i = 0; i < to.sums.size(); i++)
+    std::memcpy(static_cast<void*>(&to.sums[i]), &from.bytes[i * bytes], bytes);
 }
 
 void TileSums::join(SumBlock& block, const Gathering& gathering, const Replicates& replicates) {
   SumBlock other;
   for (;;) {
     const auto sibling = std::find_if(kept_.begin(), kept_.end(), [&](const Kept& k) {
-      return siblings(k.first, k.count, block.first, block.count) || siblings(block.first, block.count, k.first, k.count);
+      return siblings(k.first, k.count, block.first, block.count) ||
+             siblings(block.first, block.count, k.first, k.count);
     });
     if (sibling == kept_.end()) return;
     unpack(*sibling, other, gathering);
@@ -135,9 +143,12 @@ void TileSums::join(SumBlock& block, const Gathering& gathering, const Replicate
 
 void TileSums::keep(const SumBlock& block, const Gathering& gathering) {
   const size_t bytes = keptBytes(gathering);
-  Kept kept{block.first, block.count, block.ledger, std::vector<std::byte>(block.sums.size() * bytes)};
-  for (size_t i = 0; i < block.sums.size(); i++) std::memcpy(&kept.bytes[i * bytes], &block.sums[i], bytes);
-  const auto place = std::find_if(kept_.begin(), kept_.end(), [&](const Kept& k) { return k.first > block.first; });
+  Kept kept{block.first, block.count, block.ledger,
+            std::vector<std::byte>(block.sums.size() * bytes)};
+  for (size_t i = 0; i < block.sums.size(); i++)
+    std::memcpy(&kept.bytes[i * bytes], &block.sums[i], bytes);
+  const auto place = std::find_if(kept_.begin(), kept_.end(),
+                                  [&](const Kept& k) { return k.first > block.first; });
   kept_.insert(place, std::move(kept));
 }
 
@@ -152,7 +163,8 @@ uint32_t TileSums::reach(const SumBlock* block) const {
 
 const SumBlock* TileSums::fold(const SumBlock* block, SumBlock& out, const Gathering& gathering,
                                const Replicates& replicates) const {
-  if (block && block->first == 0 && (kept_.empty() || kept_.front().first != block->count)) return block;
+  if (block && block->first == 0 && (kept_.empty() || kept_.front().first != block->count))
+    return block;
   uint32_t at = 0;
   SumBlock next;
   const auto take = [&](const SumBlock& b) {

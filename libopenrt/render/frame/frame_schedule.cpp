@@ -1,5 +1,5 @@
-// frame_schedule.cpp: see frame_schedule.h. Which samples a picture is made of depends on the settings and on pilots alone, with
-// a time limit also on the time; never on who does what.
+// frame_schedule.cpp: Which samples a picture is made of depends on the
+// settings and on pilots alone, with a time limit also on the time; never on who does what.
 #include "render/frame/frame_schedule.h"
 
 #include <algorithm>
@@ -12,30 +12,37 @@
 namespace openrt {
 namespace {
 
-constexpr uint32_t mostOfRound = 32; // progressive: so that the picture goes on becoming better everywhere
-constexpr uint32_t pilotSeed = 0x70696c6f, furtherSeed = 0x66757274, lightSeed = 0x6c616d70, earlySeed = 0x6561726c;
+constexpr uint32_t mostOfRound =
+    32; // progressive: so that the picture goes on becoming better everywhere
+constexpr uint32_t pilotSeed = 0x70696c6f, furtherSeed = 0x66757274, lightSeed = 0x6c616d70,
+                   earlySeed = 0x6561726c;
 constexpr double bytesAhead = 64 << 20; // of sums that wait for light
 
 bool makesRounds(const edit::FrameSettingsT& frame) {
-  return frame.timeLimit > 0 ? frame.samples > 1 : frame.progressive && frame.samples >= fewestOfLeaves;
+  return frame.timeLimit > 0 ? frame.samples > 1
+                             : frame.progressive && frame.samples >= fewestOfLeaves;
 }
 
-// As many paths from lamps as from the camera; where the number of these is open, at most a few for each pixel.
+// As many paths from lamps as from the camera; where the number of these is open, at most a few for
+// each pixel.
 uint32_t lightPathsOf(const edit::FrameSettingsT& frame) {
   constexpr uint32_t mostOfOpen = 64;
   const bool open = frame.targetError > 0 || frame.timeLimit > 0;
-  const double paths = double(frame.width) * frame.height * (open ? std::min(frame.samples, mostOfOpen) : frame.samples);
+  const double paths = double(frame.width) * frame.height *
+                       (open ? std::min(frame.samples, mostOfOpen) : frame.samples);
   return uint32_t(std::min(paths, 4e9));
 }
 
 } // namespace
 
-FrameSchedule::FrameSchedule(const edit::FrameSettingsT& frame, const FrameFacts& facts, const TileGrid& grid, uint32_t crew,
-                             double now)
-    : frame_(frame), grid_(grid), tiles_(facts.camera ? grid.count() : 0), lamps_(facts.lamps && tiles_ > 0),
-      timed_(frame.timeLimit > 0 && makesRounds(frame)), rounds_(makesRounds(frame)), pilotSamples_(firstPilotOf(frame, timed_)),
+FrameSchedule::FrameSchedule(const edit::FrameSettingsT& frame, const FrameFacts& facts,
+                             const TileGrid& grid, uint32_t crew, double now)
+    : frame_(frame), grid_(grid), tiles_(facts.camera ? grid.count() : 0),
+      lamps_(facts.lamps && tiles_ > 0), timed_(frame.timeLimit > 0 && makesRounds(frame)),
+      rounds_(makesRounds(frame)), pilotSamples_(firstPilotOf(frame, timed_)),
       wanted_(tiles_, frame.samples), started_(now), began_(now),
-      earlyParts_(std::clamp(crew + 1, 2u, LightImage::parts)) { // of one part nobody knows the variance
+      earlyParts_(
+          std::clamp(crew + 1, 2u, LightImage::parts)) { // of one part nobody knows the variance
   pilot_ = pilotSamples_ > 0;
   undecided_ = unpiloted_ = pilot_ ? tiles_ : 0;
   most_ = frame.samples;
@@ -45,7 +52,8 @@ FrameSchedule::FrameSchedule(const edit::FrameSettingsT& frame, const FrameFacts
   all_ = double(frame.width) * frame.height * (double(frame.samples) + pilotSamples_);
   if (lamps_) {
     partPaths_ = lightPathsOf(frame) / LightImage::parts + 1;
-    earlyPaths_ = frame.width * frame.height / 2 / earlyParts_ + 1; // altogether half as many as a sample of the camera
+    earlyPaths_ = frame.width * frame.height / 2 / earlyParts_ +
+                  1; // altogether half as many as a sample of the camera
     all_ += double(LightImage::parts) * partPaths_;
   }
   undone_ = all_;
@@ -54,7 +62,8 @@ FrameSchedule::FrameSchedule(const edit::FrameSettingsT& frame, const FrameFacts
 }
 
 double FrameSchedule::costOf(const TileGrid& grid, const Job& job) {
-  return job.kind == Job::Kind::light ? job.count : double(job.count) * double(grid.at(job.number).pixels());
+  return job.kind == Job::Kind::light ? job.count
+                                      : double(job.count) * double(grid.at(job.number).pixels());
 }
 
 void FrameSchedule::give(const Out& out, Job& job, double now) {
@@ -115,14 +124,16 @@ bool FrameSchedule::nextLight(Job& job, double now) {
 }
 
 // The next block of a tile's samples, from there to the end of its round; from is moved on.
-void FrameSchedule::giveBlock(Job& job, Out out, uint32_t tile, uint32_t& from, uint32_t end, uint32_t largest, double now) {
+void FrameSchedule::giveBlock(Job& job, Out out, uint32_t tile, uint32_t& from, uint32_t end,
+                              uint32_t largest, double now) {
   const bool pilot = out.stage == Stage::pilot;
   out.job.number = tile;
   out.job.first = from;
   out.job.count = blockFrom(from, end, largest);
   out.job.centred = out.until == 1 && (pilot || !rounds_);
   if (pilot)
-    out.job.replicates = replicatesOf(frame_, out.until, hash(frame_.seed, out.further ? furtherSeed + out.until : pilotSeed));
+    out.job.replicates = replicatesOf(
+        frame_, out.until, hash(frame_.seed, out.further ? furtherSeed + out.until : pilotSeed));
   else
     out.job.replicates = timed_ ? replicates_ : replicatesOf(frame_, out.until, frame_.seed);
   from += out.job.count;
@@ -203,18 +214,22 @@ void FrameSchedule::pilotAgain(uint32_t tile, uint32_t samples) {
 
 bool FrameSchedule::over() const {
   const bool given = rounds_ ? ended_ : nextTile_ >= tiles_ && ready_.empty() && undecided_ == 0;
-  return given && out_.empty() && outNow_ + outBefore_ == 0 && (!lamps_ || (nextPart_ == partsUntil_ && lit_));
+  return given && out_.empty() && outNow_ + outBefore_ == 0 &&
+         (!lamps_ || (nextPart_ == partsUntil_ && lit_));
 }
 
 // False: there is no further round, or it must wait.
 bool FrameSchedule::endRound(double now) {
   if (!rounds_ || ended_ || nextTile_ < tiles_) return false;
   const bool decides = pilot_ && first_ + samples_ >= pilotSamples_;
-  // At most the next round's jobs are out beside those of one: the picture becomes better everywhere.
-  if (outBefore_ > 0 || ((timed_ || decides) && outNow_ > 0) || (decides && undecided_ > 0)) return false;
+  // At most the next round's jobs are out beside those of one: the picture becomes better
+  // everywhere.
+  if (outBefore_ > 0 || ((timed_ || decides) && outNow_ > 0) || (decides && undecided_ > 0))
+    return false;
   ended_ = !(timed_ ? endTimed(now) : endProgressive());
   if (ended_) return false;
-  if (earlyUntil_ == 0 && partsUntil_ == 0) earlyUntil_ = lamps_ ? earlyParts_ : 0; // the first round has gone without
+  if (earlyUntil_ == 0 && partsUntil_ == 0)
+    earlyUntil_ = lamps_ ? earlyParts_ : 0; // the first round has gone without
   wantLight();
   outBefore_ = outNow_;
   outNow_ = 0;
@@ -225,7 +240,8 @@ bool FrameSchedule::endRound(double now) {
   return true;
 }
 
-// Whether there is a further round depends on the time alone and on the pilot, which is no part of the picture.
+// Whether there is a further round depends on the time alone and on the pilot, which is no part of
+// the picture.
 bool FrameSchedule::endTimed(double now) {
   const double took = now - began_, left = double(frame_.timeLimit) - (now - started_);
   bool more = true;
@@ -233,12 +249,14 @@ bool FrameSchedule::endTimed(double now) {
     // About sixteen rounds fill the time that is left.
     const double samples = left / 16 / std::max(took, 1e-9) * samples_;
     const uint32_t most = std::max(frame_.samples / 16, 1u);
-    replicates_ = {frame_.seed, uint32_t(std::bit_width(uint32_t(std::clamp(samples, 1.0, double(most))))) - 1};
+    replicates_ = {frame_.seed,
+                   uint32_t(std::bit_width(uint32_t(std::clamp(samples, 1.0, double(most))))) - 1};
     most_ = *std::max_element(wanted_.begin(), wanted_.end());
     pilot_ = false;
   } else {
     first_ += samples_;
-    more = left >= took / 2; // else the next one would end farther beyond the limit than this one has ended before it
+    more = left >= took / 2; // else the next one would end farther beyond the limit than this one
+                             // has ended before it
   }
   samples_ = std::min(replicates_.size(), frame_.samples - std::min(first_, frame_.samples));
   begun_ = false;
@@ -260,8 +278,8 @@ bool FrameSchedule::endProgressive() {
   return first_ < most_;
 }
 
-// In progressive frames light comes by and by, as samples do. What of it is shown early does not matter for the finished picture,
-// which has all parts, nor for what a pilot finds.
+// In progressive frames light comes by and by, as samples do. What of it is shown early does not
+// matter for the finished picture, which has all parts, nor for what a pilot finds.
 void FrameSchedule::wantLight() {
   if (!lamps_) return;
   const uint32_t all = pilot_ ? pilotSamples_ : most_;
@@ -272,7 +290,8 @@ void FrameSchedule::wantLight() {
 
 float FrameSchedule::progress(double now) const {
   if (over()) return 1;
-  const double part = timed_ ? (now - started_) / double(frame_.timeLimit) : done_ / std::max(all_, 1.0);
+  const double part =
+      timed_ ? (now - started_) / double(frame_.timeLimit) : done_ / std::max(all_, 1.0);
   return std::min(float(part), 0.99f);
 }
 

@@ -1,5 +1,6 @@
-// frame_work.cpp: see frame_work.h. Locks: `mutex` for what is to be done and what is out; one for each tile's sums and its place
-// in the film, so that tiles are merged and stored by all who bring results at once. A tile's lock is never taken under `mutex`.
+// frame_work.cpp: Locks: `mutex` for what is to be done and what is out; one for
+// each tile's sums and its place in the film, so that tiles are merged and stored by all who bring
+// results at once. A tile's lock is never taken under `mutex`.
 #include "render/frame/frame_work.h"
 
 #include <algorithm>
@@ -20,11 +21,14 @@ namespace {
 
 using Stage = FrameSchedule::Stage;
 
-double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+double now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 
 ErrorMap::Kind errorsOf(const edit::FrameSettingsT& frame) {
   if (wantsError(frame)) return ErrorMap::Kind::full;
-  return frame.samples > 1 && (frame.channels & RT_VARIANCE) ? ErrorMap::Kind::summary : ErrorMap::Kind::none;
+  return frame.samples > 1 && (frame.channels & RT_VARIANCE) ? ErrorMap::Kind::summary
+                                                             : ErrorMap::Kind::none;
 }
 
 struct TileState {
@@ -38,13 +42,16 @@ struct TileState {
 
 struct FrameWork::Impl {
   Impl(const edit::FrameSettingsT& f, const FrameFacts& facts, uint32_t crew)
-      : frame(f), grid(frame), count(facts.camera ? grid.count() : 0), gathering(gatheringOf(frame)),
-        film(frame.width, frame.height, frame.channels, errorsOf(frame)), tiles(std::make_unique<TileState[]>(count)),
-        schedule(frame, facts, grid, crew, now()) {
-    if (frame.targetError > 0 && count > 0) pilots = std::make_unique<Pilots>(frame, grid, schedule.timed());
+      : frame(f), grid(frame), count(facts.camera ? grid.count() : 0),
+        gathering(gatheringOf(frame)),
+        film(frame.width, frame.height, frame.channels, errorsOf(frame)),
+        tiles(std::make_unique<TileState[]>(count)), schedule(frame, facts, grid, crew, now()) {
+    if (frame.targetError > 0 && count > 0)
+      pilots = std::make_unique<Pilots>(frame, grid, schedule.timed());
     if (!facts.lamps || count == 0) return;
     light = std::make_unique<LightImage>(frame.width, frame.height);
-    if (schedule.rounds()) early = std::make_unique<LightImage>(frame.width, frame.height, schedule.earlyParts());
+    if (schedule.rounds())
+      early = std::make_unique<LightImage>(frame.width, frame.height, schedule.earlyParts());
   }
 
   bool lit() const { return !light || light->complete(); }
@@ -52,11 +59,14 @@ struct FrameWork::Impl {
   void addSamples(const FrameSchedule::Out& out, JobResult& result);
   void addLight(const FrameSchedule::Out& out, JobResult& result);
   void finish(const FrameSchedule::Out& out, const SumBlock& all, TileState& state);
-  void store(const Tile& tile, const std::vector<PixelSums>& sums, const Replicates& replicates, bool show,
-             const FrameSchedule::Out* pilot = nullptr);
-  void judge(const FrameSchedule::Out& pilot, const std::vector<PilotPixel>& pixels, const std::vector<PixelError>& errors);
+  void store(const Tile& tile, const std::vector<PixelSums>& sums, const Replicates& replicates,
+             bool show, const FrameSchedule::Out* pilot = nullptr);
+  void judge(const FrameSchedule::Out& pilot, const std::vector<PilotPixel>& pixels,
+             const std::vector<PixelError>& errors);
   void follow(uint32_t tile, const Pilots::Verdict& verdict);
-  double pathsOf(uint32_t tile) const { return double(tiles[tile].ledger.samples) * double(grid.at(tile).pixels()); }
+  double pathsOf(uint32_t tile) const {
+    return double(tiles[tile].ledger.samples) * double(grid.at(tile).pixels());
+  }
   Ledger wholeLedger() const {
     Ledger all;
     for (uint32_t i = 0; i < count; i++) all.add(tiles[i].ledger);
@@ -86,13 +96,15 @@ struct FrameWork::Impl {
 };
 
 bool FrameWork::Impl::fits(const Job& job, const JobResult& result) const {
-  if (job.kind == Job::Kind::light) return result.light.size() == size_t(frame.width) * frame.height * 3;
+  if (job.kind == Job::Kind::light)
+    return result.light.size() == size_t(frame.width) * frame.height * 3;
   return job.number < count && result.sums.size() == grid.at(job.number).pixels();
 }
 
-// What is there of the tile, with what is there of the light, into the film if it is to be shown. pilot: that is complete, and is
-// asked how many samples are needed.
-void FrameWork::Impl::store(const Tile& tile, const std::vector<PixelSums>& sums, const Replicates& replicates, bool show,
+// What is there of the tile, with what is there of the light, into the film if it is to be shown.
+// pilot: that is complete, and is asked how many samples are needed.
+void FrameWork::Impl::store(const Tile& tile, const std::vector<PixelSums>& sums,
+                            const Replicates& replicates, bool show,
                             const FrameSchedule::Out* pilot) {
   std::vector<LightSums> lights;
   if (light && light->added() > 1)
@@ -137,7 +149,8 @@ void FrameWork::Impl::judge(const FrameSchedule::Out& pilot, const std::vector<P
     std::lock_guard lock(mutex);
     if (!schedule.firstPilotDone()) return;
   }
-  const std::vector<Pilots::Verdict> verdicts = pilots->judgeAll(); // no other thread has anything of it
+  const std::vector<Pilots::Verdict> verdicts =
+      pilots->judgeAll(); // no other thread has anything of it
   std::lock_guard lock(mutex);
   for (uint32_t i = 0; i < count; i++) follow(i, verdicts[i]);
 }
@@ -152,7 +165,8 @@ void FrameWork::Impl::follow(uint32_t tile, const Pilots::Verdict& verdict) {
 
 // All samples of this stage are there, and all of the light. Under the tile's lock.
 void FrameWork::Impl::finish(const FrameSchedule::Out& out, const SumBlock& all, TileState& state) {
-  const bool pilot = out.stage == Stage::pilot, show = !pilot || (schedule.rounds() && !out.further);
+  const bool pilot = out.stage == Stage::pilot,
+             show = !pilot || (schedule.rounds() && !out.further);
   const bool asks = pilot && pilots;
   store(grid.at(out.job.number), all.sums, out.job.replicates, show, asks ? &out : nullptr);
   state.shown |= show;
@@ -171,7 +185,8 @@ void FrameWork::Impl::addSamples(const FrameSchedule::Out& out, JobResult& resul
   const uint32_t reach = state.sums.reach(&block);
   const bool complete = reach == out.until;
   const bool showsParts = schedule.rounds() && !out.further;
-  const SumBlock* all = complete || showsParts ? state.sums.fold(&block, room, gathering, job.replicates) : nullptr;
+  const SumBlock* all =
+      complete || showsParts ? state.sums.fold(&block, room, gathering, job.replicates) : nullptr;
   if (complete && lit()) {
     finish(out, *all, state);
     state.sums.clear();
@@ -234,7 +249,8 @@ void FrameWork::Impl::settle() {
       std::unique_lock alone(ending);
       film.finishErrors();
       const Ledger whole = wholeLedger();
-      for (uint32_t i = 0; i < count; i++) film.distrust(grid.at(i), tiles[i].ledger.missedByChance(whole, pathsOf(i)));
+      for (uint32_t i = 0; i < count; i++)
+        film.distrust(grid.at(i), tiles[i].ledger.missedByChance(whole, pathsOf(i)));
     }
     std::lock_guard lock(mutex);
     over = true;
@@ -354,7 +370,8 @@ float FrameWork::progress() const {
 bool FrameWork::snapshot(uint32_t channel, std::span<float> out) const {
   std::shared_lock notEnding(impl_->ending);
   if (!impl_->film.clear(channel, out)) return false;
-  for (uint32_t i = 0; i < impl_->count; i++) { // who merges the next one's samples does not wait for long
+  for (uint32_t i = 0; i < impl_->count;
+       i++) { // who merges the next one's samples does not wait for long
     std::lock_guard lock(impl_->tiles[i].mutex);
     if (impl_->tiles[i].shown) impl_->film.copy(channel, tile(i), out);
   }
@@ -383,8 +400,10 @@ void FrameWork::describeError(RTstats& stats) const {
   stats.errorP99 = s.p99;
   stats.errorPixels = s.pixels;
   stats.errorTrusted = s.trusted;
-  const bool many = impl_->schedule.timed() || replicatesOf(impl_->frame, impl_->frame.samples, 0).many();
-  std::snprintf(stats.errorMethod, sizeof stats.errorMethod, "%s", many ? "replicated nets, Student's t" : "sample variance");
+  const bool many =
+      impl_->schedule.timed() || replicatesOf(impl_->frame, impl_->frame.samples, 0).many();
+  std::snprintf(stats.errorMethod, sizeof stats.errorMethod, "%s",
+                many ? "replicated nets, Student's t" : "sample variance");
 }
 
 void FrameWork::describeLedger(RTstats& stats) const {

@@ -1,6 +1,7 @@
-// frame_work.h: what of a frame is to be done, and the picture that comes of it. Gives jobs out in an order that shows something
-// soon, takes what they have made in any order, and merges it in a fixed one: the picture is the same bytes whoever did what.
-// Knows nothing of threads, machines and time (but for frames with a time limit). All functions [any].
+// frame_work.h: what of a frame is to be done, and the picture that comes of it. Gives jobs out in
+// an order that shows something soon, takes what they have made in any order, and merges it in a
+// fixed one: the picture is the same bytes whoever did what. Knows nothing of threads, machines and
+// time (but for frames with a time limit). All functions [any].
 #pragma once
 
 #include <cstdint>
@@ -15,7 +16,8 @@
 
 namespace openrt {
 
-// What the work depends on beside the settings of the frame. The same wherever the scene is prepared.
+// What the work depends on beside the settings of the frame. The same wherever the scene is
+// prepared.
 struct FrameFacts {
   bool camera = false; // something can be seen
   bool lamps = false;  // paths from lamps are followed, too
@@ -23,7 +25,8 @@ struct FrameFacts {
 
 class FrameWork {
  public:
-  // settings: with the transport that was chosen. crew: threads that work on it, about; it decides nothing of the picture.
+  // settings: with the transport that was chosen. crew: threads that work on it, about; it decides
+  // nothing of the picture.
   FrameWork(const edit::FrameSettingsT& settings, const FrameFacts& facts, uint32_t crew);
   ~FrameWork();
 
@@ -32,22 +35,24 @@ class FrameWork {
     wait, // for jobs that are out
     over
   };
-  // The next job that nobody has. largest: samples of a pixel that it should have at most; a tile's samples are given out in
-  // aligned blocks of powers of two then, at least 32.
+  // The next job that nobody has. largest: samples of a pixel that it should have at most; a tile's
+  // samples are given out in aligned blocks of powers of two then, at least 32.
   Next next(Job& job, uint32_t largest = ~0u);
-  // All tiles' numbers, in the order in which they are to be given out. Before the first job; a frame that shows something early
-  // keeps its own order.
+  // All tiles' numbers, in the order in which they are to be given out. Before the first job; a
+  // frame that shows something early keeps its own order.
   void order(std::vector<uint32_t> tiles);
-  uint32_t upcoming() const; // the tile whose samples next() gives out, if it gives any; tiles(): that is open
+  uint32_t upcoming()
+      const; // the tile whose samples next() gives out, if it gives any; tiles(): that is open
   // A job that comes back undone; it is given out again, before others.
   void giveBack(const Job& job);
-  // What has become of a job that was given out. True the first time; what comes a second time is dropped.
+  // What has become of a job that was given out. True the first time; what comes a second time is
+  // dropped.
   bool take(const Job& job, JobResult&& result);
   // No more jobs, those that are out do not count: the picture holds what is finished.
   void cancel();
   bool over() const; // all has been taken, or cancelled
-  // Called (by whoever gives or takes) after there may be something new for those who got `wait`, who then ask again: once for
-  // all that have waited.
+  // Called (by whoever gives or takes) after there may be something new for those who got `wait`,
+  // who then ask again: once for all that have waited.
   void onChange(std::function<void()> changed);
 
   uint32_t tiles() const; // of the picture

@@ -1,17 +1,17 @@
-// job.h: a piece of a frame's work, and what has become of it. What a job makes is a pure function of the committed scene and of
-// the numbers in it: who does it, when, and how often does not matter. A FrameWork gives jobs out, a JobRunner does them, here or
-// on another machine.
+// job.h: a piece of a frame's work, and what has become of it. What a job makes is a pure function
+// of the committed scene and of the numbers in it: who does it, when, and how often does not
+// matter. A FrameWork gives jobs out, a JobRunner does them, here or on another machine.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
-#include "render/surface/batch.h"
 #include "render/film/ledger.h"
-#include "render/path/sampler.h"
 #include "render/film/sums.h"
 #include "render/frame/tiles.h"
+#include "render/path/sampler.h"
+#include "render/surface/batch.h"
 
 namespace openrt {
 
@@ -30,8 +30,9 @@ struct Job {
 };
 
 struct JobResult {
-  std::vector<PixelSums> sums; // of a tile, row by row; what the frame does not gather (Gathering) means nothing
-  std::vector<float> light;    // rgb of the whole picture, row by row
+  std::vector<PixelSums>
+      sums; // of a tile, row by row; what the frame does not gather (Gathering) means nothing
+  std::vector<float> light; // rgb of the whole picture, row by row
   Ledger ledger;
   RayCounters counters;
   double seconds = 0; // it took, on one thread

@@ -1,4 +1,5 @@
-// job_runner.cpp: see job_runner.h. A job's samples are gathered leaf by leaf and merged as if each leaf were a job (sums.h).
+// job_runner.cpp: A job's samples are gathered leaf by leaf and merged as if each
+// leaf were a job (sums.h).
 #include "render/frame/job_runner.h"
 
 #include <algorithm>
@@ -15,17 +16,21 @@
 namespace openrt {
 namespace {
 
-double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+double now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 
 } // namespace
 
 FrameFacts factsOf(const RenderScene& scene) {
-  return {.camera = scene.camera.shader.shaderClass != nullptr, .lamps = scene.lightSources != nullptr};
+  return {.camera = scene.camera.shader.shaderClass != nullptr,
+          .lamps = scene.lightSources != nullptr};
 }
 
 struct JobRunner::Impl {
   explicit Impl(std::shared_ptr<const RenderScene> s)
-      : scene(std::move(s)), grid(scene->frame), gathering(gatheringOf(scene->frame)), tiles(*scene) {}
+      : scene(std::move(s)), grid(scene->frame), gathering(gatheringOf(scene->frame)),
+        tiles(*scene) {}
 
   // Jobs may come from another machine.
   void check(const Job& job) const {
@@ -33,8 +38,8 @@ struct JobRunner::Impl {
     const FrameFacts facts = factsOf(*scene);
     const uint32_t most = std::max(scene->frame.samples, fewestOfLeaves);
     if (job.count == 0 || !facts.camera || (light && !facts.lamps) ||
-        (!light &&
-         (job.number >= grid.count() || job.first >= most || job.count > most - job.first || job.replicates.shift > 31)))
+        (!light && (job.number >= grid.count() || job.first >= most ||
+                    job.count > most - job.first || job.replicates.shift > 31)))
       throw std::runtime_error("a job that this frame does not have");
   }
 
@@ -60,16 +65,21 @@ bool JobRunner::Impl::samples(const Job& job, const std::atomic<bool>& stop, Job
     spare.push_back(std::move(later.sums));
   };
   for (uint32_t at = job.first, end = job.first + job.count; at < end;) {
-    SumBlock leaf{.first = at, .count = leafEnd(at, end, scene->frame.samples) - at, .sums = {}, .ledger = {}};
+    SumBlock leaf{.first = at,
+                  .count = leafEnd(at, end, scene->frame.samples) - at,
+                  .sums = {},
+                  .ledger = {}};
     if (!spare.empty()) {
       leaf.sums = std::move(spare.back());
       spare.pop_back();
     }
     startSums(leaf.sums, tile.pixels(), gathering);
-    if (!tiles.render(tile, job.replicates, job.centred, leaf.first, leaf.count, leaf.sums, stop)) return false;
+    if (!tiles.render(tile, job.replicates, job.centred, leaf.first, leaf.count, leaf.sums, stop))
+      return false;
     leaf.ledger = tiles.ledger();
     at += leaf.count;
-    while (!stack.empty() && siblings(stack.back().first, stack.back().count, leaf.first, leaf.count)) {
+    while (!stack.empty() &&
+           siblings(stack.back().first, stack.back().count, leaf.first, leaf.count)) {
       append(stack.back(), leaf);
       leaf = std::move(stack.back());
       stack.pop_back();
@@ -91,7 +101,8 @@ bool JobRunner::Impl::light(const Job& job, const std::atomic<bool>& stop, JobRe
   return done;
 }
 
-JobRunner::JobRunner(std::shared_ptr<const RenderScene> scene) : impl_(std::make_unique<Impl>(std::move(scene))) {}
+JobRunner::JobRunner(std::shared_ptr<const RenderScene> scene)
+    : impl_(std::make_unique<Impl>(std::move(scene))) {}
 JobRunner::~JobRunner() = default;
 
 bool JobRunner::run(const Job& job, const std::atomic<bool>& stop, JobResult& result) {

@@ -1,4 +1,5 @@
-// renderer.cpp: see renderer.h. The picture does not depend on which thread does what (frame_work.h).
+// renderer.cpp: The picture does not depend on which thread does what
+// (frame_work.h).
 #include "render/frame/renderer.h"
 
 #include <algorithm>
@@ -11,13 +12,16 @@
 namespace openrt {
 namespace {
 
-double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+double now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 
 // Samples of a job at most: a picture of few tiles has work for all threads, too, until its end.
 uint32_t largestJob(const edit::FrameSettingsT& frame, uint32_t tiles, uint32_t threads) {
   constexpr uint32_t jobsOfThread = 8;
   if (threads < 2 || tiles >= jobsOfThread * threads) return ~0u;
-  return std::max(uint32_t(uint64_t(frame.samples) * tiles / (jobsOfThread * threads)), fewestOfLeaves);
+  return std::max(uint32_t(uint64_t(frame.samples) * tiles / (jobsOfThread * threads)),
+                  fewestOfLeaves);
 }
 
 } // namespace
@@ -31,9 +35,12 @@ Frame::Frame(std::shared_ptr<const RenderScene> scene, uint32_t threads)
     }
     changed_.notify_all();
   });
-  const uint32_t tiles = std::max(work_.tiles(), 1u), largest = largestJob(scene_->frame, tiles, threads);
-  const uint64_t jobs = uint64_t(tiles) * std::max(scene_->frame.samples / std::max(largest, 1u), 1u);
-  for (uint64_t i = 0; i < std::min<uint64_t>(threads, jobs); i++) threads_.emplace_back([this, largest] { work(largest); });
+  const uint32_t tiles = std::max(work_.tiles(), 1u),
+                 largest = largestJob(scene_->frame, tiles, threads);
+  const uint64_t jobs =
+      uint64_t(tiles) * std::max(scene_->frame.samples / std::max(largest, 1u), 1u);
+  for (uint64_t i = 0; i < std::min<uint64_t>(threads, jobs); i++)
+    threads_.emplace_back([this, largest] { work(largest); });
 }
 
 Frame::~Frame() {

@@ -1,4 +1,5 @@
-// renderer.h: a frame in flight on threads of this process, which take jobs until none is left or the frame is cancelled.
+// renderer.h: a frame in flight on threads of this process, which take jobs until none is left or
+// the frame is cancelled.
 #pragma once
 
 #include <atomic>
@@ -11,8 +12,8 @@
 #include <vector>
 
 #include "render/frame/frame_work.h"
-#include "render/render_scene.h"
 #include "render/frame/threads.h"
+#include "render/render_scene.h"
 
 namespace openrt {
 

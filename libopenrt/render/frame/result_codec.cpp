@@ -1,4 +1,3 @@
-// result_codec.cpp: see result_codec.h.
 #include "render/frame/result_codec.h"
 
 #include <bit>
@@ -17,8 +16,10 @@ enum class Form : uint8_t { one, floats, all };
 struct Field { // of PixelSums
   size_t offset, bytes, count;
 };
-#define FIELD(name)                                                                                                              \
-  Field { offsetof(PixelSums, name), sizeof(*elements(&PixelSums::name)), countOf(&PixelSums::name) }
+#define FIELD(name)                                                                                \
+  Field {                                                                                          \
+    offsetof(PixelSums, name), sizeof(*elements(&PixelSums::name)), countOf(&PixelSums::name)      \
+  }
 template <class T, size_t n> T* elements(T (PixelSums::*)[n]);
 template <class T> T* elements(T PixelSums::*);
 template <class T, size_t n> constexpr size_t countOf(T (PixelSums::*)[n]) { return n; }
@@ -34,8 +35,8 @@ std::vector<Field> fieldsOf(const edit::FrameSettingsT& frame) {
   if (frame.channels & RT_NORMAL) fields.push_back(FIELD(normal));
   if (frame.channels & RT_ALBEDO) fields.push_back(FIELD(albedo));
   if (gathering.error)
-    fields.insert(fields.end(),
-                  {FIELD(closed), FIELD(closed2), FIELD(closed3), FIELD(closed4), FIELD(grey), FIELD(largest), FIELD(random)});
+    fields.insert(fields.end(), {FIELD(closed), FIELD(closed2), FIELD(closed3), FIELD(closed4),
+                                 FIELD(grey), FIELD(largest), FIELD(random)});
   return fields;
 }
 #undef FIELD
@@ -54,7 +55,8 @@ bool fits(double x, float& f) {
   return std::bit_cast<uint64_t>(double(f)) == std::bit_cast<uint64_t>(x);
 }
 
-void putField(std::vector<std::byte>& out, const std::vector<PixelSums>& sums, size_t offset, size_t bytes) {
+void putField(std::vector<std::byte>& out, const std::vector<PixelSums>& sums, size_t offset,
+              size_t bytes) {
   const auto at = [&](size_t i) { return reinterpret_cast<const std::byte*>(&sums[i]) + offset; };
   bool same = true, floats = bytes == sizeof(double);
   for (size_t i = 0; i < sums.size() && (same || floats); i++) {
@@ -113,10 +115,14 @@ bool getLedger(Source& source, Ledger& ledger) {
 }
 
 // sums: null: only looked at.
-bool getField(Source& source, std::vector<PixelSums>* sums, size_t pixels, size_t offset, size_t bytes, bool flag) {
+bool getField(Source& source, std::vector<PixelSums>* sums, size_t pixels, size_t offset,
+              size_t bytes, bool flag) {
   uint8_t form = 0;
-  if (!source.get(&form, 1) || form > uint8_t(Form::all) || (Form(form) == Form::floats && bytes != sizeof(double))) return false;
-  const size_t each = Form(form) == Form::floats ? sizeof(float) : bytes, count = Form(form) == Form::one ? 1 : pixels;
+  if (!source.get(&form, 1) || form > uint8_t(Form::all) ||
+      (Form(form) == Form::floats && bytes != sizeof(double)))
+    return false;
+  const size_t each = Form(form) == Form::floats ? sizeof(float) : bytes,
+               count = Form(form) == Form::one ? 1 : pixels;
   const std::byte* from = source.skip(each * count);
   if (!from) return false;
   for (size_t i = 0; flag && i < count; i++)
@@ -136,7 +142,8 @@ bool getField(Source& source, std::vector<PixelSums>* sums, size_t pixels, size_
   return true;
 }
 
-bool getTile(const edit::FrameSettingsT& frame, Source source, std::vector<PixelSums>* sums, size_t pixels) {
+bool getTile(const edit::FrameSettingsT& frame, Source source, std::vector<PixelSums>* sums,
+             size_t pixels) {
   for (const Field& field : fieldsOf(frame))
     for (size_t k = 0; k < field.count; k++)
       if (!getField(source, sums, pixels, field.offset + k * field.bytes, field.bytes,
@@ -167,7 +174,9 @@ void putLight(std::vector<std::byte>& out, const std::vector<float>& light) {
 bool getLight(Source source, size_t size, float* light) {
   for (size_t at = 0; !source.empty();) {
     uint32_t run[2];
-    if (!source.get(run, sizeof run) || run[1] == 0 || run[0] > size - at || run[1] > size - at - run[0]) return false;
+    if (!source.get(run, sizeof run) || run[1] == 0 || run[0] > size - at ||
+        run[1] > size - at - run[0])
+      return false;
     const std::byte* from = source.skip(run[1] * sizeof(float));
     if (!from) return false;
     at += run[0];
@@ -179,23 +188,26 @@ bool getLight(Source source, size_t size, float* light) {
 
 } // namespace
 
-std::vector<std::byte> encodeResult(const edit::FrameSettingsT& frame, const Job& job, const JobResult& result) {
+std::vector<std::byte> encodeResult(const edit::FrameSettingsT& frame, const Job& job,
+                                    const JobResult& result) {
   std::vector<std::byte> out;
   const Ledger& l = result.ledger;
-  const double ledger[9] = {l.cutByDepth, l.cutByEnergy,     l.clipped,        l.chance.light, l.chance.rays,
-                            l.chance.met, l.chanceSky.light, l.chanceSky.rays, l.chanceSky.met};
+  const double ledger[9] = {l.cutByDepth,      l.cutByEnergy,    l.clipped,
+                            l.chance.light,    l.chance.rays,    l.chance.met,
+                            l.chanceSky.light, l.chanceSky.rays, l.chanceSky.met};
   put(out, ledger, sizeof ledger);
   if (job.kind == Job::Kind::light) {
     putLight(out, result.light);
     return out;
   }
   for (const Field& field : fieldsOf(frame))
-    for (size_t k = 0; k < field.count; k++) putField(out, result.sums, field.offset + k * field.bytes, field.bytes);
+    for (size_t k = 0; k < field.count; k++)
+      putField(out, result.sums, field.offset + k * field.bytes, field.bytes);
   return out;
 }
 
-bool decodeResult(const edit::FrameSettingsT& frame, const Job& job, const Tile& tile, std::span<const std::byte> bytes,
-                  JobResult& result) {
+bool decodeResult(const edit::FrameSettingsT& frame, const Job& job, const Tile& tile,
+                  std::span<const std::byte> bytes, JobResult& result) {
   Source source(bytes);
   result.ledger = {};
   if (!getLedger(source, result.ledger)) return false;

@@ -1,4 +1,3 @@
-// threads.cpp: see threads.h.
 #include "render/frame/threads.h"
 
 #include <algorithm>
@@ -28,7 +27,8 @@ double number(std::string_view text) {
   const std::string_view digits = word(text);
   int64_t value = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  return error == std::errc() && end == digits.data() + digits.size() && value > 0 ? double(value) : 0;
+  return error == std::errc() && end == digits.data() + digits.size() && value > 0 ? double(value)
+                                                                                   : 0;
 }
 
 std::string contents(const std::string& path) {
@@ -41,8 +41,10 @@ template <class Wanted> std::string_view pathOf(std::string_view text, const Wan
   while (!text.empty()) {
     const std::string_view line = text.substr(0, text.find('\n'));
     text.remove_prefix(std::min(text.size(), line.size() + 1));
-    const size_t first = line.find(':'), second = first == line.npos ? first : line.find(':', first + 1);
-    if (second != line.npos && wanted(line.substr(0, first), line.substr(first + 1, second - first - 1)))
+    const size_t first = line.find(':'),
+                 second = first == line.npos ? first : line.find(':', first + 1);
+    if (second != line.npos &&
+        wanted(line.substr(0, first), line.substr(first + 1, second - first - 1)))
       return line.substr(second + 1);
   }
   return {};
@@ -51,7 +53,8 @@ template <class Wanted> std::string_view pathOf(std::string_view text, const Wan
 double smaller(double a, double b) { return a == 0 ? b : b == 0 ? a : std::min(a, b); }
 
 // The group and all above it: the tightest one holds. In a container the root is the group itself.
-template <class Quota> double tightest(const std::string& root, std::string path, const Quota& quota) {
+template <class Quota>
+double tightest(const std::string& root, std::string path, const Quota& quota) {
   double result = 0;
   for (int levels = 0; levels < 64; levels++) {
     result = smaller(result, quota(root + path));
@@ -64,13 +67,17 @@ template <class Quota> double tightest(const std::string& root, std::string path
 
 double quotaOfGroups() {
   const std::string groups = contents("/proc/self/cgroup");
-  const double two = tightest("/sys/fs/cgroup", std::string(groupPath2(groups)),
-                              [](const std::string& folder) { return groupQuota2(contents(folder + "/cpu.max")); });
+  const double two =
+      tightest("/sys/fs/cgroup", std::string(groupPath2(groups)), [](const std::string& folder) {
+        return groupQuota2(contents(folder + "/cpu.max"));
+      });
   const auto one = [](const std::string& folder) {
-    return groupQuota1(contents(folder + "/cpu.cfs_quota_us"), contents(folder + "/cpu.cfs_period_us"));
+    return groupQuota1(contents(folder + "/cpu.cfs_quota_us"),
+                       contents(folder + "/cpu.cfs_period_us"));
   };
   const std::string path(groupPath1(groups));
-  return smaller(two, smaller(tightest("/sys/fs/cgroup/cpu", path, one), tightest("/sys/fs/cgroup/cpu,cpuacct", path, one)));
+  return smaller(two, smaller(tightest("/sys/fs/cgroup/cpu", path, one),
+                              tightest("/sys/fs/cgroup/cpu,cpuacct", path, one)));
 }
 
 } // namespace
@@ -97,8 +104,9 @@ std::string_view groupPath1(std::string_view procSelfCgroup) {
 }
 
 std::string_view groupPath2(std::string_view procSelfCgroup) {
-  return pathOf(procSelfCgroup,
-                [](std::string_view id, std::string_view controllers) { return id == "0" && controllers.empty(); });
+  return pathOf(procSelfCgroup, [](std::string_view id, std::string_view controllers) {
+    return id == "0" && controllers.empty();
+  });
 }
 
 uint32_t slurmThreads(const char* cpusPerTask) {
@@ -116,8 +124,9 @@ uint32_t fewest(uint32_t allowed, double quota, uint32_t batch) {
 uint32_t availableThreads() {
   cpu_set_t set;
   CPU_ZERO(&set);
-  const uint32_t allowed =
-      sched_getaffinity(0, sizeof set, &set) == 0 ? uint32_t(CPU_COUNT(&set)) : std::thread::hardware_concurrency();
+  const uint32_t allowed = sched_getaffinity(0, sizeof set, &set) == 0
+                               ? uint32_t(CPU_COUNT(&set))
+                               : std::thread::hardware_concurrency();
   return fewest(allowed, quotaOfGroups(), slurmThreads(std::getenv("SLURM_CPUS_PER_TASK")));
 }
 

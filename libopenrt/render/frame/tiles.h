@@ -1,4 +1,5 @@
-// tiles.h: the tiles that a picture is made in: squares, cut off at its right and lower border, numbered row by row. [any]
+// tiles.h: the tiles that a picture is made in: squares, cut off at its right and lower border,
+// numbered row by row. [any]
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,5 @@
-// emissive_shapes.cpp: see emissive_shapes.h. What a shape sends out is asked of its shader, head on, at a few places.
+// emissive_shapes.cpp: What a shape sends out is asked of its shader, head
+// on, at a few places.
 #include "render/lights/emissive_shapes.h"
 
 #include <algorithm>
@@ -23,7 +24,8 @@ double areaOf(const float p[3][3], float normal[3]) {
     a[k] = double(p[1][k]) - p[0][k];
     b[k] = double(p[2][k]) - p[0][k];
   }
-  const double n[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+  const double n[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
+                       a[0] * b[1] - a[1] * b[0]};
   const double length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
   for (int k = 0; k < 3; k++) normal[k] = float(length > 0 ? n[k] / length : 0);
   return length / 2;
@@ -44,7 +46,8 @@ struct Looks {
     hits.allocate(arena, capacity);
     order = arena.take<uint32_t>(padded(capacity));
   }
-  void add(const float place[3], const float towards[3]) { // towards: where the ray comes from, unit
+  void add(const float place[3],
+           const float towards[3]) { // towards: where the ray comes from, unit
     for (int k = 0; k < 3; k++) {
       rays.org[k][count] = place[k] + towards[k];
       rays.dir[k][count] = -towards[k];
@@ -83,19 +86,23 @@ void ask(const RenderScene& scene, uint32_t record, const Looks& looks, Arena& a
   }
 }
 
-// As the kernel gives it: of an instance in its own frame, up to its length the inverse transpose of kernelNormal's map.
+// As the kernel gives it: of an instance in its own frame, up to its length the inverse transpose
+// of kernelNormal's map.
 void kernelNormal(const Record& r, const float normal[3], float out[3]) {
   for (int k = 0; k < 3; k++) out[k] = normal[k];
   if (!r.instanced) return;
   for (int k = 0; k < 3; k++)
-    out[k] = r.toRender.r[0][k] * normal[0] + r.toRender.r[1][k] * normal[1] + r.toRender.r[2][k] * normal[2];
+    out[k] = r.toRender.r[0][k] * normal[0] + r.toRender.r[1][k] * normal[1] +
+             r.toRender.r[2][k] * normal[2];
 }
 
 // Mean emission of triangles, of either side. Where colours or pictures may vary, of four places.
-void askTriangles(const RenderScene& scene, uint32_t record, std::span<const EmissiveShapes::Shape> shapes, bool otherSide,
-                  Arena& arena, double* out) {
+void askTriangles(const RenderScene& scene, uint32_t record,
+                  std::span<const EmissiveShapes::Shape> shapes, bool otherSide, Arena& arena,
+                  double* out) {
   const Record& r = scene.records[record];
-  static constexpr float at[4][2] = {{1.0f / 3, 1.0f / 3}, {1.0f / 6, 1.0f / 6}, {2.0f / 3, 1.0f / 6}, {1.0f / 6, 2.0f / 3}};
+  static constexpr float at[4][2] = {
+      {1.0f / 3, 1.0f / 3}, {1.0f / 6, 1.0f / 6}, {2.0f / 3, 1.0f / 6}, {1.0f / 6, 2.0f / 3}};
   const bool mirrored = mirrors(r);
   const uint32_t places = r.texCoords || r.colors || r.parameterCount ? 4 : 1;
   ArenaScope scope(arena);
@@ -207,11 +214,13 @@ void EmissiveShapes::add(const RenderScene& scene, uint32_t id, std::vector<Ligh
   if (!(shader.traits & RTS_EMISSIVE) || !shader.shaderClass->surface) return;
   Arena arena;
   if (r.primitive == edit::Primitive::Sphere) {
-    const double outside = askSphere(scene, id, arena); // inside, a surface's own directions meet it
+    const double outside =
+        askSphere(scene, id, arena); // inside, a surface's own directions meet it
     firstOf_[id] = uint32_t(shapes_.size());
     brightest_ = std::max(brightest_, outside);
     bounds.push_back(sphereBounds(r, outside));
-    shapes_.push_back({id, 0, uint8_t(outside > 0 ? 1 : 0), true, {}, false, 4 * bounds.back().intensity});
+    shapes_.push_back(
+        {id, 0, uint8_t(outside > 0 ? 1 : 0), true, {}, false, 4 * bounds.back().intensity});
     return;
   }
   if (r.primitive != edit::Primitive::Triangles || !r.vertices) return;
@@ -236,20 +245,24 @@ void EmissiveShapes::add(const RenderScene& scene, uint32_t id, std::vector<Ligh
       Shape& s = shapes_[begin + i];
       brightest_ = std::max({brightest_, front[i], back[i]});
       bounds.push_back(triangleBounds(s, front[i], back[i]));
-      if (bounds.back().intensity > 0) s.sides = uint8_t((front[i] > 0 ? 1 : 0) | (back[i] > 0 ? 2 : 0));
+      if (bounds.back().intensity > 0)
+        s.sides = uint8_t((front[i] > 0 ? 1 : 0) | (back[i] > 0 ? 2 : 0));
       s.power = bounds.back().intensity * (s.sides == 3 ? 2.0f : 1.0f);
     }
   }
 }
 
-EmissiveShapes::Place EmissiveShapes::place(const RenderScene& scene, uint32_t number, float u, float v) const {
+EmissiveShapes::Place EmissiveShapes::place(const RenderScene& scene, uint32_t number, float u,
+                                            float v) const {
   const Shape& s = shapes_[number];
   Place p{};
   if (!s.sphere) {
     const float root = std::sqrt(u); // uniform on the triangle
     p.u = root * (1 - v);
     p.v = root * v;
-    for (int k = 0; k < 3; k++) p.position[k] = (1 - p.u - p.v) * s.corner[0][k] + p.u * s.corner[1][k] + p.v * s.corner[2][k];
+    for (int k = 0; k < 3; k++)
+      p.position[k] =
+          (1 - p.u - p.v) * s.corner[0][k] + p.u * s.corner[1][k] + p.v * s.corner[2][k];
     p.area = areaOf(s.corner, p.normal);
     return p;
   }
@@ -260,17 +273,19 @@ EmissiveShapes::Place EmissiveShapes::place(const RenderScene& scene, uint32_t n
   const auto& m = r.toRender.r;
   for (int k = 0; k < 3; k++) {
     p.position[k] = float(m[k][0] * l[0] + m[k][1] * l[1] + m[k][2] * l[2] + m[k][3]);
-    n[k] = r.fromRender.r[0][k] * l[0] + r.fromRender.r[1][k] * l[1] + r.fromRender.r[2][k] * l[2]; // by the inverse transpose
+    n[k] = r.fromRender.r[0][k] * l[0] + r.fromRender.r[1][k] * l[1] +
+           r.fromRender.r[2][k] * l[2]; // by the inverse transpose
     length += n[k] * n[k];
   }
   length = std::sqrt(length);
   for (int k = 0; k < 3; k++) p.normal[k] = float(n[k] / length);
-  p.area = 4 * M_PI * std::fabs(determinantOf(r.toRender)) * length; // an element of area grows by |det M| |M^-T n|
+  p.area = 4 * M_PI * std::fabs(determinantOf(r.toRender)) *
+           length; // an element of area grows by |det M| |M^-T n|
   return p;
 }
 
-void EmissiveShapes::radiance(const RenderScene& scene, uint32_t number, const Place& place, const float towards[3], Arena& arena,
-                              float out[3]) const {
+void EmissiveShapes::radiance(const RenderScene& scene, uint32_t number, const Place& place,
+                              const float towards[3], Arena& arena, float out[3]) const {
   const Shape& s = shapes_[number];
   ArenaScope scope(arena);
   Looks looks(arena, 1);
@@ -287,7 +302,9 @@ void EmissiveShapes::radiance(const RenderScene& scene, uint32_t number, const P
   looks.add(place.position, towards);
   const RtsSurface surface = answer(scene, s.record, looks, arena);
   for (int k = 0; k < 3; k++)
-    out[k] = surface.emission[k][0] > 0 && std::isfinite(surface.emission[k][0]) ? surface.emission[k][0] : 0;
+    out[k] = surface.emission[k][0] > 0 && std::isfinite(surface.emission[k][0])
+                 ? surface.emission[k][0]
+                 : 0;
 }
 
 } // namespace openrt

@@ -1,5 +1,5 @@
-// emissive_shapes.h: triangles and spheres whose surface emits, with a light tree over them. Made between frames when places,
-// shaders or textures have changed, read by all render threads.
+// emissive_shapes.h: triangles and spheres whose surface emits, with a light tree over them. Made
+// between frames when places, shaders or textures have changed, read by all render threads.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,8 @@ class EmissiveShapes {
  public:
   struct Shape {
     uint32_t record, primitive;
-    uint8_t sides; // 1: the side that the corners turn to (of a sphere: outside) emits, 2: the other
+    uint8_t
+        sides; // 1: the side that the corners turn to (of a sphere: outside) emits, 2: the other
     bool sphere;
     float corner[3][3]; // triangle: render space, turning as the kernel's normal tells
     bool swapped;       // corner 1 and 2 are the record's 2 and 1
@@ -30,15 +31,16 @@ class EmissiveShapes {
   double brightest() const { return brightest_; } // mean luminance of a shape's side
   const Shape& operator[](uint32_t number) const { return shapes_[number]; }
   const LightTree& tree() const { return tree_; }
-  // A place on a shape. u, v: even numbers of the unit square; area: of the whole shape, or what makes up for uneven places.
+  // A place on a shape. u, v: even numbers of the unit square; area: of the whole shape, or what
+  // makes up for uneven places.
   struct Place {
     float position[3], normal[3], u, v;
     double area;
   };
   Place place(const RenderScene& scene, uint32_t number, float u, float v) const;
   // What the place sends out in a direction.
-  void radiance(const RenderScene& scene, uint32_t number, const Place& place, const float towards[3], Arena& arena,
-                float out[3]) const;
+  void radiance(const RenderScene& scene, uint32_t number, const Place& place,
+                const float towards[3], Arena& arena, float out[3]) const;
   // The number of a shape, none if it is not among them.
   uint32_t find(uint32_t record, uint32_t primitive) const {
     const uint32_t first = firstOf_[record];

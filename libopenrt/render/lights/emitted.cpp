@@ -1,5 +1,6 @@
-// emitted.cpp: light of emitters and of the sky at surfaces that scatter: for each hit one place is chosen, looked at by a ray,
-// and weighed against the directions that the surface chooses itself. Part of TileRenderer.
+// emitted.cpp: light of emitters and of the sky at surfaces that scatter: for each hit one place is
+// chosen, looked at by a ray, and weighed against the directions that the surface chooses itself.
+// Part of TileRenderer.
 #include <algorithm>
 #include <cmath>
 
@@ -23,10 +24,11 @@ Receiver TileRenderer::receiverOf(const Points& points, uint32_t i, bool through
   return from;
 }
 
-// What the hits answer to light from the sights: by the balance heuristic the share that belongs to places chosen on emitters.
-// Sights that no lobe answers to go; how many are left.
-uint32_t TileRenderer::weigh(const RtsBatch& batch, const RtsHits& hits, float* const chance[], Rays& rays, Sight* sights,
-                             uint32_t* hitOf, uint32_t n, float* response[3]) {
+// What the hits answer to light from the sights: by the balance heuristic the share that belongs to
+// places chosen on emitters. Sights that no lobe answers to go; how many are left.
+uint32_t TileRenderer::weigh(const RtsBatch& batch, const RtsHits& hits, float* const chance[],
+                             Rays& rays, Sight* sights, uint32_t* hitOf, uint32_t n,
+                             float* response[3]) {
   for (int k = 0; k < 3; k++) response[k] = arena_.takeZero<float>(padded(n));
   ArenaScope scope(arena_);
   LobeAnswers answers(arena_, n, &batch);
@@ -57,8 +59,9 @@ uint32_t TileRenderer::weigh(const RtsBatch& batch, const RtsHits& hits, float* 
   return left;
 }
 
-void TileRenderer::addEmitters(const RtsBatch& batch, const Points& points, const uint32_t* order, const Paths& paths,
-                               const Random& random, float* const chance[], const Crossing* crossing, float* const radiance[3]) {
+void TileRenderer::addEmitters(const RtsBatch& batch, const Points& points, const uint32_t* order,
+                               const Paths& paths, const Random& random, float* const chance[],
+                               const Crossing* crossing, float* const radiance[3]) {
   ArenaScope scope(arena_);
   const RtsHits& hits = points.hits;
   const Emitters& emitters = scene_.emitters;
@@ -75,7 +78,8 @@ void TileRenderer::addEmitters(const RtsBatch& batch, const Points& points, cons
     for (uint32_t l = 0; l < batch.lobeCount; l++) wanted |= chance[l] && chance[l][i] > 0;
     if (!wanted) continue;
     const Receiver from = receiverOf(points, i, transmitsAt(batch, i));
-    const Sight sight = emitters.choose(from, double(pick[0][i]) + double(pick[1][i]) * 0x1p-24, place[0][i], place[1][i]);
+    const Sight sight = emitters.choose(from, double(pick[0][i]) + double(pick[1][i]) * 0x1p-24,
+                                        place[0][i], place[1][i]);
     if (!(sight.density > 0)) continue;
     float origin[3];
     liftPoint(points, i, sight.direction, origin);
@@ -104,8 +108,10 @@ void TileRenderer::addEmitters(const RtsBatch& batch, const Points& points, cons
     if (!scene_.shaders->media().empty()) { // of light on its way through the body between
       float towards = 0;
       for (int k = 0; k < 3; k++) towards += hits.geometric[k][i] * rays.dir[k][ray];
-      const MediaStack& media = towards < 0 && crossing ? crossing[i].behind : paths.state[order[i]].media;
-      absorb(mediumOf(media, scene_.shaders->media()), std::min(found.t[ray], 1e30f), scene_.shaders->media(), left);
+      const MediaStack& media =
+          towards < 0 && crossing ? crossing[i].behind : paths.state[order[i]].media;
+      absorb(mediumOf(media, scene_.shaders->media()), std::min(found.t[ray], 1e30f),
+             scene_.shaders->media(), left);
     }
     for (int k = 0; k < 3; k++)
       if (std::isfinite(left[k])) radiance[k][i] += response[k][ray] * left[k];
@@ -124,7 +130,9 @@ void TileRenderer::addEmitters(const RtsBatch& batch, const Points& points, cons
     }
   }
   for (uint32_t r = 0; r < n; r++)
-    if (found.record[r] != noHit && emitters.sees(sights[r], found.record[r], found.primitive[r], found.t[r])) lanes[lit++] = r;
+    if (found.record[r] != noHit &&
+        emitters.sees(sights[r], found.record[r], found.primitive[r], found.t[r]))
+      lanes[lit++] = r;
   if (lit == 0) return;
   auto* travelled = arena_.takeZero<float>(padded(n));
   std::vector<uint32_t> counts;
@@ -145,7 +153,8 @@ void TileRenderer::addEmitters(const RtsBatch& batch, const Points& points, cons
       shaderClass.surface(&scene_.host, &inner, &seen.hits, &surface);
     }
     for (uint32_t i = 0; i < m; i++) {
-      const float light[3] = {surface.emission[0][i], surface.emission[1][i], surface.emission[2][i]};
+      const float light[3] = {surface.emission[0][i], surface.emission[1][i],
+                              surface.emission[2][i]};
       add(sorted[range.begin + i], light);
     }
   }

@@ -1,4 +1,3 @@
-// emitters.cpp: see emitters.h.
 #include "render/lights/emitters.h"
 
 #include <algorithm>
@@ -33,7 +32,8 @@ void Emitters::build(const RenderScene& scene, const RenderScene* before, bool s
   scene_ = &scene;
   const bool sameTextures = before && before->textures == scene.textures;
   const ShaderSlot& environment = scene.environment.shader;
-  if (sameTextures && before->emitters.sky_ && before->environment.shader.params == environment.params &&
+  if (sameTextures && before->emitters.sky_ &&
+      before->environment.shader.params == environment.params &&
       before->environment.shader.shaderClass == environment.shaderClass)
     sky_ = before->emitters.sky_;
   else
@@ -43,26 +43,29 @@ void Emitters::build(const RenderScene& scene, const RenderScene* before, bool s
   else
     shapes_ = std::make_shared<const EmissiveShapes>(scene);
   const auto& m = scene.environment.toLocal.r;
-  determinant_ = std::fabs(m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+  determinant_ = std::fabs(m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
+                           m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
                            m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]));
   const bool sky = sky_->usable() && determinant_ > 0 && std::isfinite(determinant_);
   share_ = shapes_->empty() ? (sky ? 1.0f : -1.0f) : sky ? 0.5f : 0.0f;
 }
 
-// Solid angle in render space over that in the environment's space: a linear map M takes it to |det M| / |M d|^3 of itself.
+// Solid angle in render space over that in the environment's space: a linear map M takes it to |det
+// M| / |M d|^3 of itself.
 float Emitters::skyStretch(const float local[3]) const {
   const auto& m = scene_->environment.fromLocal.r;
   double square = 0;
   for (int k = 0; k < 3; k++) {
-    const double x = double(m[k][0]) * local[0] + double(m[k][1]) * local[1] + double(m[k][2]) * local[2];
+    const double x =
+        double(m[k][0]) * local[0] + double(m[k][1]) * local[1] + double(m[k][2]) * local[2];
     square += x * x;
   }
   return float(square * std::sqrt(square) * determinant_);
 }
 
 // A direction to a place on the shape, and its density if the shape is the only one; 0: none.
-double Emitters::densityOf(const EmissiveShapes::Shape& shape, const Receiver& from, double u, double v, double direction[3],
-                           double& distance, bool& rim) const {
+double Emitters::densityOf(const EmissiveShapes::Shape& shape, const Receiver& from, double u,
+                           double v, double direction[3], double& distance, bool& rim) const {
   if (shape.sphere) {
     const Record& r = scene_->records[shape.record];
     const SphericalEllipsoid seen(r.fromRender.r, r.toRender.r, from.position);
@@ -93,7 +96,8 @@ Sight Emitters::choose(const Receiver& from, double pick, float u, float v) cons
   } else {
     const float* normal = sideOf(from);
     const double left = (pick - double(share_)) / (1 - double(share_));
-    const LightTree::Choice choice = shapes_->tree().choose(from.position, normal, std::min(left, 1 - 0x1p-53));
+    const LightTree::Choice choice =
+        shapes_->tree().choose(from.position, normal, std::min(left, 1 - 0x1p-53));
     if (!(choice.probability > 0)) return {};
     const EmissiveShapes::Shape& shape = (*shapes_)[choice.light];
     sight.record = shape.record;
@@ -105,17 +109,21 @@ Sight Emitters::choose(const Receiver& from, double pick, float u, float v) cons
     for (int k = 0; k < 3; k++) sight.direction[k] = float(way[k]);
   }
   const float* normal = sideOf(from);
-  if (!(sight.density > 0) || !std::isfinite(sight.density) || (normal && !(dot3(sight.direction, normal) > 0))) return {};
+  if (!(sight.density > 0) || !std::isfinite(sight.density) ||
+      (normal && !(dot3(sight.direction, normal) > 0)))
+    return {};
   return sight;
 }
 
 // At an edge it may be a neighbour of the same surface, at the same distance.
 bool Emitters::sees(const Sight& sight, uint32_t record, uint32_t primitive, float distance) const {
   if (sight.record != record) return false;
-  return primitive == sight.primitive || (sight.rim && std::fabs(distance - sight.distance) <= 0x1p-10f * sight.distance);
+  return primitive == sight.primitive ||
+         (sight.rim && std::fabs(distance - sight.distance) <= 0x1p-10f * sight.distance);
 }
 
-float Emitters::density(const Receiver& from, uint32_t record, uint32_t primitive, const float direction[3], float) const {
+float Emitters::density(const Receiver& from, uint32_t record, uint32_t primitive,
+                        const float direction[3], float) const {
   if (!any() || share_ >= 1) return 0;
   const uint32_t number = shapes_->find(record, primitive);
   if (number == EmissiveShapes::none) return 0;
@@ -133,7 +141,8 @@ float Emitters::density(const Receiver& from, uint32_t record, uint32_t primitiv
     if (shape.sides & (seen.front() ? 1 : 2)) alone = seen.density(way);
   }
   if (!(alone > 0)) return 0;
-  return float((1 - double(share_)) * double(shapes_->tree().probability(from.position, normal, number)) * alone);
+  return float((1 - double(share_)) *
+               double(shapes_->tree().probability(from.position, normal, number)) * alone);
 }
 
 float Emitters::skyDensity(const Receiver&, const float local[3]) const {
@@ -141,7 +150,9 @@ float Emitters::skyDensity(const Receiver&, const float local[3]) const {
 }
 
 double Emitters::brightestSky() const { return share_ > 0 ? sky_->brightest() : 0; }
-double Emitters::brightest() const { return any() ? std::max(brightestSky(), shapes_->brightest()) : 0; }
+double Emitters::brightest() const {
+  return any() ? std::max(brightestSky(), shapes_->brightest()) : 0;
+}
 
 bool Emitters::sends(uint32_t record, uint32_t primitive, const float direction[3]) const {
   const uint32_t number = shapes_ ? shapes_->find(record, primitive) : EmissiveShapes::none;

@@ -1,4 +1,3 @@
-// illumination.cpp: see illumination.h.
 #include "render/lights/illumination.h"
 
 #include <algorithm>
@@ -54,9 +53,10 @@ void directionsToRender(const Affine& m, uint32_t n, float* const v[3], float* r
   }
 }
 
-// One light at places, up to whole groups of lanes. The arrays of out are written; whether it is parallel.
-bool ask(RtsBatch& batch, const LightSlot& light, uint32_t count, const float* const position[3], float* const local[3],
-         RtsIllumination& out, float* reach) {
+// One light at places, up to whole groups of lanes. The arrays of out are written; whether it is
+// parallel.
+bool ask(RtsBatch& batch, const LightSlot& light, uint32_t count, const float* const position[3],
+         float* const local[3], RtsIllumination& out, float* reach) {
   const uint32_t n = padded(count);
   pointsToLocal(light.toLocal, n, position, local);
   for (float* a : out.ambient) std::fill_n(a, n, 0.0f);
@@ -64,11 +64,12 @@ bool ask(RtsBatch& batch, const LightSlot& light, uint32_t count, const float* c
   const float* places[3] = {local[0], local[1], local[2]};
   {
     const RunningShader running(*light.shader.shaderClass);
-    light.shader.shaderClass->illuminate(&batch.scene->host, &batch, light.shader.params, n, places, &out);
+    light.shader.shaderClass->illuminate(&batch.scene->host, &batch, light.shader.params, n, places,
+                                         &out);
   }
   checkAnswer(*light.shader.shaderClass, batch, count,
-              {out.toLight[0], out.toLight[1], out.toLight[2], out.color[0], out.color[1], out.color[2], out.ambient[0],
-               out.ambient[1], out.ambient[2]});
+              {out.toLight[0], out.toLight[1], out.toLight[2], out.color[0], out.color[1],
+               out.color[2], out.ambient[0], out.ambient[1], out.ambient[2]});
   directionsToRender(light.fromLocal, n, out.toLight, reach);
   return out.directional != 0;
 }
@@ -90,7 +91,8 @@ void askChosen(RtsBatch& batch, const ManyLights& many, const RtsHits& hits, Rts
   for (uint32_t i = 0; i < n; i++) {
     const float place[3] = {hits.position[0][i], hits.position[1][i], hits.position[2][i]};
     const float normal[3] = {hits.normal[0][i], hits.normal[1][i], hits.normal[2][i]};
-    const ManyLights::Choice c = many.choose(place, normal, double(square[0][i]) + double(square[1][i]) * 0x1p-24);
+    const ManyLights::Choice c =
+        many.choose(place, normal, double(square[0][i]) + double(square[1][i]) * 0x1p-24);
     batch.chosen[i] = c.probability > 0 ? c.light : none;
     probability[i] = c.probability;
     if (c.probability > 0) order[lit++] = i;
@@ -111,7 +113,8 @@ void askChosen(RtsBatch& batch, const ManyLights& many, const RtsHits& hits, Rts
       part.toLight[k] = arena.take<float>(size);
       part.color[k] = arena.take<float>(size);
       part.ambient[k] = arena.take<float>(size);
-      for (uint32_t i = 0; i < size; i++) position[k][i] = hits.position[k][order[begin + std::min(i, m - 1)]];
+      for (uint32_t i = 0; i < size; i++)
+        position[k][i] = hits.position[k][order[begin + std::min(i, m - 1)]];
     }
     auto* reach = arena.take<float>(size);
     const float* const places[3] = {position[0], position[1], position[2]};
@@ -152,10 +155,12 @@ void illuminateHits(RtsBatch& batch, uint32_t i, const RtsHits& hits, RtsIllumin
     batch.directional = false;
     return;
   }
-  batch.directional = ask(batch, lightOf(batch, i), hits.count, hits.position, batch.local, out, batch.reach);
+  batch.directional =
+      ask(batch, lightOf(batch, i), hits.count, hits.position, batch.local, out, batch.reach);
 }
 
-void shadowHits(RtsBatch& batch, uint32_t i, const RtsHits& hits, const uint8_t* wanted, RtsIllumination& light) {
+void shadowHits(RtsBatch& batch, uint32_t i, const RtsHits& hits, const uint8_t* wanted,
+                RtsIllumination& light) {
   if (!batch.scene->frame.shadows || batch.current != i || &hits != &batch.points->hits) return;
   if (!batch.chosen) {
     if (!(lightOf(batch, i).shader.traits & RTS_NO_SHADOW)) castShadows(batch, wanted, light);
@@ -164,7 +169,10 @@ void shadowHits(RtsBatch& batch, uint32_t i, const RtsHits& hits, const uint8_t*
   ArenaScope scope(*batch.arena);
   auto* casts = batch.arena->take<uint8_t>(padded(hits.count));
   for (uint32_t h = 0; h < hits.count; h++)
-    casts[h] = batch.chosen[h] == none || (batch.scene->lights[batch.chosen[h]].shader.traits & RTS_NO_SHADOW) ? 0 : wanted[h];
+    casts[h] = batch.chosen[h] == none ||
+                       (batch.scene->lights[batch.chosen[h]].shader.traits & RTS_NO_SHADOW)
+                   ? 0
+                   : wanted[h];
   castShadows(batch, casts, light);
 }
 

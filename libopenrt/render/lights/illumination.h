@@ -1,5 +1,6 @@
-// illumination.h: the lights of a batch, one after the other (RtsHost.lights, illuminate, shadow). In path tracing the last one
-// may be a different one at each hit, chosen among many (render/lights/many_lights.h). [render]
+// illumination.h: the lights of a batch, one after the other (RtsHost.lights, illuminate, shadow).
+// In path tracing the last one may be a different one at each hit, chosen among many
+// (render/lights/many_lights.h). [render]
 #pragma once
 
 #include "render/surface/batch.h"
@@ -8,6 +9,7 @@ namespace openrt {
 
 uint32_t lightCount(RtsBatch& batch);
 void illuminateHits(RtsBatch& batch, uint32_t i, const RtsHits& hits, RtsIllumination& out);
-void shadowHits(RtsBatch& batch, uint32_t i, const RtsHits& hits, const uint8_t* wanted, RtsIllumination& light);
+void shadowHits(RtsBatch& batch, uint32_t i, const RtsHits& hits, const uint8_t* wanted,
+                RtsIllumination& light);
 
 } // namespace openrt

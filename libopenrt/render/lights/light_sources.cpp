@@ -1,4 +1,3 @@
-// light_sources.cpp: see light_sources.h.
 #include "render/lights/light_sources.h"
 
 #include <algorithm>
@@ -13,10 +12,12 @@ namespace {
 
 // A direction in a cone about an axis, evenly by solid angle.
 void inCone(const float axis[3], double cosine, float u, float v, float out[3]) {
-  const double z = 1 - (1 - cosine) * u, round = std::sqrt(std::max(0.0, 1 - z * z)), phi = 2 * M_PI * v;
+  const double z = 1 - (1 - cosine) * u, round = std::sqrt(std::max(0.0, 1 - z * z)),
+               phi = 2 * M_PI * v;
   float s[3], t[3];
   basisOf(axis, s, t);
-  for (int k = 0; k < 3; k++) out[k] = float(round * std::cos(phi) * s[k] + round * std::sin(phi) * t[k] + z * axis[k]);
+  for (int k = 0; k < 3; k++)
+    out[k] = float(round * std::cos(phi) * s[k] + round * std::sin(phi) * t[k] + z * axis[k]);
 }
 
 // From the light's space into render space; false if nothing is known of the light.
@@ -28,8 +29,10 @@ bool extentOf(const RenderScene& scene, const LightSlot& light, RtsExtent& out) 
   const auto& m = light.fromLocal.r;
   double length = 0;
   for (int k = 0; k < 3; k++) {
-    out.position[k] = m[k][0] * local.position[0] + m[k][1] * local.position[1] + m[k][2] * local.position[2] + m[k][3];
-    out.direction[k] = m[k][0] * local.direction[0] + m[k][1] * local.direction[1] + m[k][2] * local.direction[2];
+    out.position[k] = m[k][0] * local.position[0] + m[k][1] * local.position[1] +
+                      m[k][2] * local.position[2] + m[k][3];
+    out.direction[k] =
+        m[k][0] * local.direction[0] + m[k][1] * local.direction[1] + m[k][2] * local.direction[2];
     length += double(out.direction[k]) * out.direction[k];
   }
   if (!(length > 0) && local.parallel) return false;
@@ -106,9 +109,11 @@ LightSources::LightSources(const RenderScene& scene, const RenderScene* before) 
     cumulative_.push_back(total += power);
   };
   const EmissiveShapes* shapes = scene.emitters.shapes();
-  for (uint32_t i = 0; shapes && i < shapes->size(); i++) add({none, i, {}}, (*shapes)[i].power * M_PI);
+  for (uint32_t i = 0; shapes && i < shapes->size(); i++)
+    add({none, i, {}}, (*shapes)[i].power * M_PI);
   for (uint32_t i = 0; i < scene.lights.size(); i++) {
-    // Without shadows a light shines straight through glass: what a path brought besides would count twice.
+    // Without shadows a light shines straight through glass: what a path brought besides would
+    // count twice.
     if (!scene.frame.shadows || (scene.lights[i].shader.traits & RTS_NO_SHADOW)) continue;
     Source source{i, none, {}};
     if (extentOf(scene, scene.lights[i], source.extent))
@@ -121,7 +126,8 @@ double LightSources::coneTo(const float from[3], float axis[3]) const {
   double square = 0;
   for (int k = 0; k < 3; k++) square += std::pow(double(centre_[k]) - from[k], 2);
   const double distance = std::sqrt(square);
-  for (int k = 0; k < 3; k++) axis[k] = distance > 0 ? float((centre_[k] - from[k]) / distance) : k == 2 ? 1.0f : 0.0f;
+  for (int k = 0; k < 3; k++)
+    axis[k] = distance > 0 ? float((centre_[k] - from[k]) / distance) : k == 2 ? 1.0f : 0.0f;
   const double sine = radius_ / distance;
   return sine < 1 ? std::sqrt(1 - sine * sine) : -1;
 }
@@ -129,8 +135,9 @@ double LightSources::coneTo(const float from[3], float axis[3]) const {
 LightSources::Start LightSources::begin(const RenderScene& scene, double pick, const float place[2],
                                         const float direction[2]) const {
   const double at = pick * cumulative_.back();
-  const size_t i = size_t(std::min(std::upper_bound(cumulative_.begin(), cumulative_.end(), at) - cumulative_.begin(),
-                                   ptrdiff_t(cumulative_.size()) - 1));
+  const size_t i = size_t(
+      std::min(std::upper_bound(cumulative_.begin(), cumulative_.end(), at) - cumulative_.begin(),
+               ptrdiff_t(cumulative_.size()) - 1));
   const Source& source = sources_[i];
   const double probability = (cumulative_[i] - (i ? cumulative_[i - 1] : 0)) / cumulative_.back();
   Start start;
@@ -152,7 +159,8 @@ LightSources::Start LightSources::begin(const RenderScene& scene, double pick, c
     basisOf(e.direction, s, t);
     const float r = radius_ * std::sqrt(place[0]), phi = float(2 * M_PI) * place[1];
     for (int k = 0; k < 3; k++) {
-      start.origin[k] = centre_[k] + r * (std::cos(phi) * s[k] + std::sin(phi) * t[k]) - far_ * e.direction[k];
+      start.origin[k] =
+          centre_[k] + r * (std::cos(phi) * s[k] + std::sin(phi) * t[k]) - far_ * e.direction[k];
       start.direction[k] = e.direction[k];
     }
     start.weight = M_PI * radius_ * radius_ / probability;
@@ -166,7 +174,8 @@ LightSources::Start LightSources::begin(const RenderScene& scene, double pick, c
   const float towards = dot3(start.place.normal, start.direction);
   if (!(shapes[source.shape].sides & (towards > 0 ? 1 : 2)) || towards == 0) return start;
   start.weight = start.place.area * std::fabs(towards) * solidAngle / probability;
-  // Off the surface, to the side that the direction leads to; the place is a sum of three products or so, each rounded.
+  // Off the surface, to the side that the direction leads to; the place is a sum of three products
+  // or so, each rounded.
   float n[3], origin[3], bound = 0;
   for (int k = 0; k < 3; k++) {
     n[k] = towards > 0 ? start.place.normal[k] : -start.place.normal[k];

@@ -1,5 +1,6 @@
-// light_sources.h: where paths from lamps begin: on shapes that emit and at lights whose class says where they are. Only what
-// may meet a mirror or a lens first is wanted, so directions are aimed at these. Made between frames, read by all render threads.
+// light_sources.h: where paths from lamps begin: on shapes that emit and at lights whose class says
+// where they are. Only what may meet a mirror or a lens first is wanted, so directions are aimed at
+// these. Made between frames, read by all render threads.
 #pragma once
 
 #include <cstdint>
@@ -12,15 +13,15 @@ namespace openrt {
 
 class LightSources {
  public:
-  // Empty where nothing sends out light, or nothing mirrors or refracts it. before: a scene with everything in the same
-  // places, or null.
+  // Empty where nothing sends out light, or nothing mirrors or refracts it. before: a scene with
+  // everything in the same places, or null.
   LightSources(const RenderScene& scene, const RenderScene* before);
   bool empty() const { return cumulative_.empty(); }
 
   struct Start {
     float origin[3], direction[3];
-    // Of a shape: flux over radiance. Of a light: flux over (irradiance times the square of the way to what is met), or, where it
-    // is parallel, over irradiance.
+    // Of a shape: flux over radiance. Of a light: flux over (irradiance times the square of the way
+    // to what is met), or, where it is parallel, over irradiance.
     double weight = 0; // 0: nothing starts
     uint32_t light = none, shape = none;
     EmissiveShapes::Place place; // of a shape
@@ -29,7 +30,8 @@ class LightSources {
   };
   static constexpr uint32_t none = ~0u;
   // Numbers of [0, 1): which, the place on it, the direction.
-  Start begin(const RenderScene& scene, double pick, const float place[2], const float direction[2]) const;
+  Start begin(const RenderScene& scene, double pick, const float place[2],
+              const float direction[2]) const;
 
  private:
   struct Source {

@@ -1,4 +1,3 @@
-// light_tree.cpp: see light_tree.h.
 #include "render/lights/light_tree.h"
 
 #include <algorithm>
@@ -13,16 +12,20 @@ constexpr uint32_t bins = 12;
 constexpr uint32_t none = ~0u;
 constexpr uint32_t balanceFrom = 28; // deeper nodes are halved: bounds the depth
 
-double dot(const float a[3], const float b[3]) { return double(a[0]) * b[0] + double(a[1]) * b[1] + double(a[2]) * b[2]; }
+double dot(const float a[3], const float b[3]) {
+  return double(a[0]) * b[0] + double(a[1]) * b[1] + double(a[2]) * b[2];
+}
 
-// The smallest cone about both (S. Glassner's construction, as in PBR 3.8.4), a little wider for its own rounding.
+// The smallest cone about both (S. Glassner's construction, as in PBR 3.8.4), a little wider for
+// its own rounding.
 void uniteCones(LightBounds& a, const LightBounds& b) {
   if (a.cosineNormals <= -1 || b.cosineNormals <= -1) {
     a.cosineNormals = -1;
     return;
   }
   const double along = dot(a.axis, b.axis);
-  if (b.cosineNormals >= 1 && along >= a.cosineNormals) return; // most often: one normal more within the cone
+  if (b.cosineNormals >= 1 && along >= a.cosineNormals)
+    return; // most often: one normal more within the cone
   const double first = std::acos(std::clamp(double(a.cosineNormals), -1.0, 1.0));
   const double second = std::acos(std::clamp(double(b.cosineNormals), -1.0, 1.0));
   const double between = std::acos(std::clamp(along, -1.0, 1.0));
@@ -59,33 +62,40 @@ void unite(LightBounds& a, const LightBounds& b) {
   a.reach = std::max(a.reach, b.reach);
 }
 
-// Of a split: strength times the directions lit times the surface of the box. Flat boxes get a little depth.
+// Of a split: strength times the directions lit times the surface of the box. Flat boxes get a
+// little depth.
 double cost(const LightBounds& b, const double size[3]) {
   const double normals = std::acos(std::clamp(double(b.cosineNormals), -1.0, 1.0));
-  const double all = std::min(normals + std::acos(std::clamp(double(b.cosineBeyond), -1.0, 1.0)), M_PI);
-  const double directions = 2 * M_PI * (1 - std::cos(normals)) + M_PI / 2 *
-                                                                     (2 * all * std::sin(normals) - std::cos(normals - 2 * all) -
-                                                                      2 * normals * std::sin(normals) + std::cos(normals));
+  const double all =
+      std::min(normals + std::acos(std::clamp(double(b.cosineBeyond), -1.0, 1.0)), M_PI);
+  const double directions = 2 * M_PI * (1 - std::cos(normals)) +
+                            M_PI / 2 *
+                                (2 * all * std::sin(normals) - std::cos(normals - 2 * all) -
+                                 2 * normals * std::sin(normals) + std::cos(normals));
   double d[3];
   const double least = 1e-3 * std::max({size[0], size[1], size[2]});
   for (int k = 0; k < 3; k++) d[k] = std::max(double(b.high[k]) - b.low[k], least);
-  return (double(b.intensity) + b.irradiance) * directions * (d[0] * d[1] + d[1] * d[2] + d[2] * d[0]);
+  return (double(b.intensity) + b.irradiance) * directions *
+         (d[0] * d[1] + d[1] * d[2] + d[2] * d[0]);
 }
 
 struct Range {
-  uint32_t begin, end, parent, steps; // parent: its second child is this one; none: a first child, or the root
+  uint32_t begin, end, parent,
+      steps; // parent: its second child is this one; none: a first child, or the root
 };
 
 // A binary tree first.
 struct Twig {
   LightBounds bounds;
-  uint32_t next, steps; // the second child (the first one follows the twig), or the light; from the root
+  uint32_t next,
+      steps; // the second child (the first one follows the twig), or the light; from the root
   bool leaf;
 };
 
 class Builder {
  public:
-  Builder(std::span<const LightBounds> lights, std::vector<uint32_t>& order) : lights_(lights), order_(order) {}
+  Builder(std::span<const LightBounds> lights, std::vector<uint32_t>& order)
+      : lights_(lights), order_(order) {}
   // Where the range is cut in two, its lights in order before and after.
   uint32_t split(const Range& range, const LightBounds& whole) {
     const uint32_t middle = (range.begin + range.end) / 2;
@@ -106,11 +116,13 @@ class Builder {
     uint32_t cut = 0;
     const bool all = range.end - range.begin <= 1u << 14; // of many only the widest extent is tried
     for (int k = 0; k < 3 && range.steps < balanceFrom; k++)
-      if ((all || k == widest) && high[k] > low[k]) tryCuts(range, whole, k, low[k], high[k], best, dimension, cut);
+      if ((all || k == widest) && high[k] > low[k])
+        tryCuts(range, whole, k, low[k], high[k], best, dimension, cut);
     const auto first = order_.begin() + range.begin, last = order_.begin() + range.end;
     if (dimension >= 0) {
-      const auto found = std::stable_partition(
-          first, last, [&](uint32_t i) { return bin(i, dimension, low[dimension], high[dimension]) <= cut; });
+      const auto found = std::stable_partition(first, last, [&](uint32_t i) {
+        return bin(i, dimension, low[dimension], high[dimension]) <= cut;
+      });
       if (found != first && found != last) return uint32_t(found - order_.begin());
     }
     std::nth_element(first, order_.begin() + middle, last, [&](uint32_t a, uint32_t b) {
@@ -125,8 +137,8 @@ class Builder {
   uint32_t bin(uint32_t i, int k, float low, float high) const {
     return std::min(uint32_t((double(centre(i, k)) - low) / (double(high) - low) * bins), bins - 1);
   }
-  void tryCuts(const Range& range, const LightBounds& whole, int k, float low, float high, double& best, int& dimension,
-               uint32_t& cut) const {
+  void tryCuts(const Range& range, const LightBounds& whole, int k, float low, float high,
+               double& best, int& dimension, uint32_t& cut) const {
     LightBounds in[bins];
     bool used[bins] = {};
     for (uint32_t i = range.begin; i < range.end; i++) {
@@ -140,7 +152,8 @@ class Builder {
     }
     double size[3];
     for (int j = 0; j < 3; j++) size[j] = double(whole.high[j]) - whole.low[j];
-    const double longest = std::max({size[0], size[1], size[2]}), factor = longest / std::max(size[k], 1e-3 * longest);
+    const double longest = std::max({size[0], size[1], size[2]}),
+                 factor = longest / std::max(size[k], 1e-3 * longest);
     const auto add = [](LightBounds& sum, bool& any, const LightBounds& more) {
       if (any)
         unite(sum, more);
@@ -182,7 +195,8 @@ std::vector<Twig> makeTwigs(std::span<const LightBounds> lights, std::vector<uin
     left.pop_back();
     const auto number = uint32_t(twigs.size());
     if (range.parent != none) twigs[range.parent].next = number;
-    Twig twig{lights[order[range.begin]], order[range.begin], range.steps, range.end - range.begin == 1};
+    Twig twig{lights[order[range.begin]], order[range.begin], range.steps,
+              range.end - range.begin == 1};
     for (uint32_t i = range.begin + 1; i < range.end; i++) unite(twig.bounds, lights[order[i]]);
     twigs.push_back(twig);
     if (twig.leaf) continue;
@@ -255,13 +269,15 @@ void LightTree::fill(uint32_t number, uint32_t i, const LightBounds& b) {
   double diagonal = 0;
   for (int k = 0; k < 3; k++) {
     node.centre[k][i] = b.low[k] / 2 + b.high[k] / 2;
-    const double half = std::max(double(b.high[k]) - node.centre[k][i], double(node.centre[k][i]) - b.low[k]);
+    const double half =
+        std::max(double(b.high[k]) - node.centre[k][i], double(node.centre[k][i]) - b.low[k]);
     diagonal += half * half;
     node.axis[k][i] = b.axis[k];
   }
   node.radius2[i] = float(std::min(diagonal * (1 + 1e-6), 3e38));
   const double far = double(b.reach) * (1 + 1e-5) + std::sqrt(diagonal);
-  node.reach2[i] = far < 1e19 ? float(far * far * (1 + 1e-6)) : std::numeric_limits<float>::infinity();
+  node.reach2[i] =
+      far < 1e19 ? float(far * far * (1 + 1e-6)) : std::numeric_limits<float>::infinity();
   node.cosine[i] = b.cosineNormals;
   node.sine[i] = float(std::sqrt(std::max(0.0, 1 - double(b.cosineNormals) * b.cosineNormals)));
   node.beyond[i] = b.cosineBeyond;
@@ -273,8 +289,9 @@ void LightTree::fill(uint32_t number, uint32_t i, const LightBounds& b) {
 
 struct LightTree::Query {
   float place[3], normal[3];
-  float facing;     // added to the cosine at the receiver: 2 where its side does not matter
-  float cut, least; // of that cosine: below the one nothing arrives, and it counts as the other at least
+  float facing; // added to the cosine at the receiver: 2 where its side does not matter
+  float cut,
+      least; // of that cosine: below the one nothing arrives, and it counts as the other at least
   Query(const float from[3], const float* side, Side meaning) {
     for (int k = 0; k < 3; k++) {
       place[k] = from[k];
@@ -286,19 +303,21 @@ struct LightTree::Query {
   }
 };
 
-// A bound of the irradiance of each child at a place that faces where the light comes from, up to the nearness of the box. One
-// loop without calls or branches: it goes into vector lanes.
+// A bound of the irradiance of each child at a place that faces where the light comes from, up to
+// the nearness of the box. One loop without calls or branches: it goes into vector lanes.
 void LightTree::measure(const Node& node, const Query& q, float* __restrict out) {
   const auto larger = [](float a, float b) { return a > b ? a : b; };
   for (uint32_t i = 0; i < width; i++) {
-    const float x = q.place[0] - node.centre[0][i], y = q.place[1] - node.centre[1][i], z = q.place[2] - node.centre[2][i];
+    const float x = q.place[0] - node.centre[0][i], y = q.place[1] - node.centre[1][i],
+                z = q.place[2] - node.centre[2][i];
     const float square = x * x + y * y + z * z, radius2 = node.radius2[i];
     const bool within = square <= radius2 * (1 + 1e-5f);
     const float inverse = 1 / std::sqrt(within ? 1.0f : square);
     // The cone about the box as seen from the place.
     const float cosBox = std::sqrt(larger(1 - radius2 * inverse * inverse, 0)) - slack;
     const float sinBox = std::sqrt(larger(1 - cosBox * cosBox, 0));
-    // Of all directions that leave the box towards the place the one nearest to the cone of normals.
+    // Of all directions that leave the box towards the place the one nearest to the cone of
+    // normals.
     const float along = (x * node.axis[0][i] + y * node.axis[1][i] + z * node.axis[2][i]) * inverse;
     const float axial = larger(along, -along * node.both[i] - (1 - node.both[i]) * 2);
     const float across = std::sqrt(larger(1 - axial * axial, 0));
@@ -306,22 +325,26 @@ void LightTree::measure(const Node& node, const Query& q, float* __restrict out)
     const float cosLess = axial * cosine + across * sine, sinLess = across * cosine - axial * sine;
     const float cosX = axial > cosine ? 1.0f : cosLess, sinX = axial > cosine ? 0.0f : sinLess;
     const float leavesBeside = cosX * cosBox + sinX * sinBox;
-    const float leaves = ((cosX > cosBox) | within) ? 1.0f : leavesBeside, atLeast = larger(leaves, slack);
+    const float leaves = ((cosX > cosBox) | within) ? 1.0f : leavesBeside,
+                atLeast = larger(leaves, slack);
     const float leaving = leaves < node.beyond[i] - slack ? 0.0f : atLeast;
     // And of all that arrive the one nearest to the receiver's normal.
     const float facing = q.facing - (x * q.normal[0] + y * q.normal[1] + z * q.normal[2]) * inverse;
     const float aside = std::sqrt(larger(1 - facing * facing, 0));
     const float arrivesBeside = facing * cosBox + aside * sinBox;
-    const float arrives = ((facing > cosBox) | within) ? 1.0f : arrivesBeside, enough = larger(arrives, q.least);
+    const float arrives = ((facing > cosBox) | within) ? 1.0f : arrivesBeside,
+                enough = larger(arrives, q.least);
     const float arriving = arrives < q.cut ? 0.0f : enough;
     const float falling = node.intensity[i] / larger(larger(square, radius2), 1e-37f);
-    const float sum = larger(falling + node.irradiance[i], 1e-30f), strength = sum < 1e30f ? sum : 1e30f;
+    const float sum = larger(falling + node.irradiance[i], 1e-30f),
+                strength = sum < 1e30f ? sum : 1e30f;
     const float used = node.used[i], lit = square <= node.reach2[i] ? used : 0.0f;
     out[i] = lit * leaving * arriving * strength;
   }
 }
 
-LightTree::Choice LightTree::choose(const float place[3], const float* normal, double pick, Side side) const {
+LightTree::Choice LightTree::choose(const float place[3], const float* normal, double pick,
+                                    Side side) const {
   if (nodes_.empty()) return {};
   const Query query(place, normal, side);
   double probability = 1;

@@ -1,4 +1,5 @@
-// many_lights.cpp: see many_lights.h. How a light's strength falls is measured: its extent does not tell.
+// many_lights.cpp: How a light's strength falls is measured: its extent does not
+// tell.
 #include "render/lights/many_lights.h"
 
 #include <algorithm>
@@ -34,7 +35,8 @@ bool place(const RenderScene& scene, uint32_t number, Placed& out) {
     const RunningShader running(c);
     if (!c.extent(&scene.host, slot.shader.params, &e) || e.parallel) return false;
   }
-  if (!finite(e.position, 3) || !finite(e.direction, 3) || !(e.power >= 0) || !(e.radius >= 0) || std::isnan(e.cosine))
+  if (!finite(e.position, 3) || !finite(e.direction, 3) || !(e.power >= 0) || !(e.radius >= 0) ||
+      std::isnan(e.cosine))
     return false;
   out.light = number;
   double gram[3][3] = {}, length = 0;
@@ -53,14 +55,17 @@ bool place(const RenderScene& scene, uint32_t number, Placed& out) {
   }
   out.similar = length > 0;
   for (int k = 0; k < 3; k++)
-    for (int j = 0; j < 3; j++) out.similar &= std::fabs(gram[k][j] - (k == j ? gram[0][0] : 0)) < 1e-4 * gram[0][0];
-  out.stretch = out.similar ? std::sqrt(gram[0][0]) : std::sqrt(out.stretch); // at most so long becomes a unit
+    for (int j = 0; j < 3; j++)
+      out.similar &= std::fabs(gram[k][j] - (k == j ? gram[0][0] : 0)) < 1e-4 * gram[0][0];
+  out.stretch = out.similar ? std::sqrt(gram[0][0])
+                            : std::sqrt(out.stretch); // at most so long becomes a unit
   for (float& a : out.axis) a = length > 0 ? float(a / std::sqrt(length)) : 0;
   return finite(out.position, 3) && finite(out.axis, 3);
 }
 
 // Mean colour of a light at two distances along its axis.
-void measure(const RenderScene& scene, const Placed& p, float distance, Arena& arena, double out[2]) {
+void measure(const RenderScene& scene, const Placed& p, float distance, Arena& arena,
+             double out[2]) {
   ArenaScope scope(arena);
   const LightSlot& slot = scene.lights[p.light];
   float* local[3];
@@ -73,7 +78,8 @@ void measure(const RenderScene& scene, const Placed& p, float distance, Arena& a
     for (uint32_t i = 0; i < lanes; i++) {
       const auto& m = slot.toLocal.r[k];
       local[k][i] = m[3];
-      for (int j = 0; j < 3; j++) local[k][i] += m[j] * (p.position[j] + p.axis[j] * distance * (i == 0 ? 1.0f : 2.0f));
+      for (int j = 0; j < 3; j++)
+        local[k][i] += m[j] * (p.position[j] + p.axis[j] * distance * (i == 0 ? 1.0f : 2.0f));
     }
   }
   const float* const places[3] = {local[0], local[1], local[2]};
@@ -89,7 +95,8 @@ void measure(const RenderScene& scene, const Placed& p, float distance, Arena& a
   for (int i = 0; i < 2; i++) {
     out[i] = 0;
     for (int k = 0; k < 3; k++)
-      if (light.color[k][i] > 0 && std::isfinite(light.color[k][i])) out[i] += double(light.color[k][i]) / 3;
+      if (light.color[k][i] > 0 && std::isfinite(light.color[k][i]))
+        out[i] += double(light.color[k][i]) / 3;
   }
 }
 
@@ -106,11 +113,12 @@ LightBounds boundsOf(const RenderScene& scene, const Placed& p, float distance, 
   const float near = reach > 0 ? std::min(distance, float(reach / 4)) : distance;
   double seen[2];
   measure(scene, p, near, arena, seen);
-  // I / d^2 + E through both; the colour of a light is that of a white surface, a pi-th of what arrives.
+  // I / d^2 + E through both; the colour of a light is that of a white surface, a pi-th of what
+  // arrives.
   const double flat = std::max(0.0, (4 * seen[1] - seen[0]) / 3);
   const double solidAngle = 2 * M_PI * (1 - std::clamp(double(p.extent.cosine), -1.0, 1.0 - 1e-6));
-  const double mean =
-      double(p.extent.power) / solidAngle / M_PI * p.stretch * p.stretch; // intensity in units of the light's space
+  const double mean = double(p.extent.power) / solidAngle / M_PI * p.stretch *
+                      p.stretch; // intensity in units of the light's space
   const double falling = std::max((seen[0] - flat) * near * near, flat > 0 ? 0 : mean);
   b.intensity = float(std::min(falling, 1e30));
   b.irradiance = float(std::min(flat, 1e30));
@@ -118,8 +126,10 @@ LightBounds boundsOf(const RenderScene& scene, const Placed& p, float distance, 
 }
 
 bool sameLights(const RenderScene& a, const RenderScene& b) {
-  if (a.lightSets != b.lightSets || a.lights.size() != b.lights.size() || a.textures != b.textures) return false;
-  for (size_t i = 0; i < a.lights.size(); i++) { // an unchanged shader has kept its block of parameters
+  if (a.lightSets != b.lightSets || a.lights.size() != b.lights.size() || a.textures != b.textures)
+    return false;
+  for (size_t i = 0; i < a.lights.size();
+       i++) { // an unchanged shader has kept its block of parameters
     const LightSlot &x = a.lights[i], &y = b.lights[i];
     if (x.shader.shaderClass != y.shader.shaderClass || x.shader.params != y.shader.params ||
         std::memcmp(&x.toLocal, &y.toLocal, sizeof x.toLocal) != 0)
@@ -148,7 +158,8 @@ ManyLights::ManyLights(const RenderScene& scene, const std::vector<uint32_t>& se
   if (placed.empty()) return;
   double square = 0;
   for (int k = 0; k < 3; k++) square += (double(high[k]) - low[k]) * (double(high[k]) - low[k]);
-  const auto distance = float(square > 0 ? std::min(std::sqrt(square) / 4, 1e15) : 1); // at which strengths are compared
+  const auto distance = float(square > 0 ? std::min(std::sqrt(square) / 4, 1e15)
+                                         : 1); // at which strengths are compared
   Arena arena;
   std::vector<LightBounds> bounds;
   for (const Placed& p : placed) {
@@ -163,15 +174,17 @@ ManyLights::ManyLights(const RenderScene& scene, const std::vector<uint32_t>& se
   tree_.build(bounds);
 }
 
-ManyLights::Choice ManyLights::choose(const float place[3], const float normal[3], double pick) const {
+ManyLights::Choice ManyLights::choose(const float place[3], const float normal[3],
+                                      double pick) const {
   const LightTree::Choice c = tree_.choose(place, normal, pick, LightTree::Side::likely);
   return {c.probability > 0 ? chosen_[c.light] : 0, c.probability};
 }
 
-std::shared_ptr<const std::vector<ManyLights>> makeManyLights(const RenderScene& scene, const RenderScene* before) {
-  const bool many =
-      scene.frame.transport >= RT_TRANSPORT_PATH &&
-      std::any_of(scene.lightSets.begin(), scene.lightSets.end(), [](const auto& s) { return s.size() > ManyLights::few; });
+std::shared_ptr<const std::vector<ManyLights>> makeManyLights(const RenderScene& scene,
+                                                              const RenderScene* before) {
+  const bool many = scene.frame.transport >= RT_TRANSPORT_PATH &&
+                    std::any_of(scene.lightSets.begin(), scene.lightSets.end(),
+                                [](const auto& s) { return s.size() > ManyLights::few; });
   if (!many) return nullptr;
   if (before && before->manyLights && sameLights(scene, *before)) return before->manyLights;
   auto sets = std::make_shared<std::vector<ManyLights>>();

@@ -1,6 +1,7 @@
-// many_lights.h: the lights of a set, for path tracing: a few are all asked; of many, one is chosen for each place through a
-// light tree (render/lights/light_tree.h) and stands for all of them, its colour over its probability. Lights without extent, and those
-// that shine everywhere the same, are always asked. Made between frames while lights change, read by all render threads.
+// many_lights.h: the lights of a set, for path tracing: a few are all asked; of many, one is chosen
+// for each place through a light tree (render/lights/light_tree.h) and stands for all of them, its
+// colour over its probability. Lights without extent, and those that shine everywhere the same, are
+// always asked. Made between frames while lights change, read by all render threads.
 #pragma once
 
 #include <cstdint>
@@ -34,6 +35,7 @@ class ManyLights {
 };
 
 // By light set; null where no set has many. before: the last snapshot, or null.
-std::shared_ptr<const std::vector<ManyLights>> makeManyLights(const RenderScene& scene, const RenderScene* before);
+std::shared_ptr<const std::vector<ManyLights>> makeManyLights(const RenderScene& scene,
+                                                              const RenderScene* before);
 
 } // namespace openrt

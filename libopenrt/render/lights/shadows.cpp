@@ -1,5 +1,6 @@
-// shadows.cpp: shadow rays of a batch, compacted: first against all that is opaque, then, for the rays that got through and
-// only if the scene has anything transparent, through the transparent surfaces one after the other.
+// shadows.cpp: shadow rays of a batch, compacted: first against all that is opaque, then, for the
+// rays that got through and only if the scene has anything transparent, through the transparent
+// surfaces one after the other.
 #include "render/lights/shadows.h"
 #include "shading/running.h"
 
@@ -22,8 +23,8 @@ ShadowRays makeRays(RtsBatch& batch, const uint8_t* wanted, const RtsIlluminatio
     const float l[3] = {light.toLight[0][i], light.toLight[1][i], light.toLight[2][i]};
     float g[3] = {hits.geometric[0][i], hits.geometric[1][i], hits.geometric[2][i]};
     float p[3] = {hits.position[0][i], hits.position[1][i], hits.position[2][i]}, origin[3];
-    // The facet faces away, the smooth surface does not: the ray starts on the smooth surface, or behind where it is flat.
-    // Light that comes through the surface (2) arrives from behind.
+    // The facet faces away, the smooth surface does not: the ray starts on the smooth surface, or
+    // behind where it is flat. Light that comes through the surface (2) arrives from behind.
     const bool away = g[0] * l[0] + g[1] * l[1] + g[2] * l[2] < 0;
     if (away && (wanted[i] == 2 || !liftToSmooth(*batch.scene, *batch.points, i, p))) {
       g[0] = -g[0];
@@ -36,7 +37,8 @@ ShadowRays makeRays(RtsBatch& batch, const uint8_t* wanted, const RtsIlluminatio
       s.rays.dir[k][n] = l[k];
     }
     s.rays.tnear[n] = 0;
-    s.rays.tfar[n] = batch.directional ? std::numeric_limits<float>::infinity() : batch.reach[i] * (1 - 0x1p-20f);
+    s.rays.tfar[n] = batch.directional ? std::numeric_limits<float>::infinity()
+                                       : batch.reach[i] * (1 - 0x1p-20f);
     s.lane[n++] = i;
   }
   s.rays.count = n;
@@ -66,7 +68,8 @@ void compact(ShadowRays& s, const uint8_t* drop) {
 }
 
 // One transparent surface further along every ray; rays that meet none are done.
-void passSurface(const RtsBatch& batch, ShadowRays& s, RayHits& found, uint8_t* done, float* const color[3]) {
+void passSurface(const RtsBatch& batch, ShadowRays& s, RayHits& found, uint8_t* done,
+                 float* const color[3]) {
   const RenderScene& scene = *batch.scene;
   Arena& arena = *batch.arena;
   ArenaScope scope(arena);
@@ -85,7 +88,8 @@ void passSurface(const RtsBatch& batch, ShadowRays& s, RayHits& found, uint8_t* 
   sortByBucket(scene, found, met, n, order, counts, ranges);
   for (const BucketRange& range : ranges) {
     const uint32_t m = range.end - range.begin;
-    const Points points = makePoints(scene, s.rays, found, order + range.begin, m, travelled, arena);
+    const Points points =
+        makePoints(scene, s.rays, found, order + range.begin, m, travelled, arena);
     float* through[3];
     for (auto& a : through) a = arena.takeZero<float>(padded(m));
     const RtsClass& shaderClass = *scene.buckets[range.bucket].shaderClass;
@@ -93,21 +97,25 @@ void passSurface(const RtsBatch& batch, ShadowRays& s, RayHits& found, uint8_t* 
     inner.tracer = nullptr;
     inner.points = &points;
     // What mirrors and glass do with light is not guessed where it is followed.
-    if (shaderClass.transmit && !(scene.lightSources && shaderClass.surface && shaderClass.medium)) {
+    if (shaderClass.transmit &&
+        !(scene.lightSources && shaderClass.surface && shaderClass.medium)) {
       const RunningShader running(shaderClass);
       shaderClass.transmit(&scene.host, &inner, &points.hits, through);
     }
     for (uint32_t i = 0; i < m; i++) {
       const uint32_t ray = order[range.begin + i];
       float t[3];
-      for (int k = 0; k < 3; k++) t[k] = through[k][i] > 0 ? std::fmin(through[k][i], 1.0f) : 0.0f; // NaN: opaque
+      for (int k = 0; k < 3; k++)
+        t[k] = through[k][i] > 0 ? std::fmin(through[k][i], 1.0f) : 0.0f; // NaN: opaque
       scaleColor(color, s.lane[ray], t[0], t[1], t[2]);
       if (t[0] + t[1] + t[2] < 1e-6f) {
         done[ray] = 1;
         continue;
       }
-      const float p[3] = {points.hits.position[0][i], points.hits.position[1][i], points.hits.position[2][i]};
-      const float g[3] = {-points.hits.geometric[0][i], -points.hits.geometric[1][i], -points.hits.geometric[2][i]};
+      const float p[3] = {points.hits.position[0][i], points.hits.position[1][i],
+                          points.hits.position[2][i]};
+      const float g[3] = {-points.hits.geometric[0][i], -points.hits.geometric[1][i],
+                          -points.hits.geometric[2][i]};
       float origin[3];
       offsetPoint(p, g, points.error[i], origin);
       for (int k = 0; k < 3; k++) s.rays.org[k][ray] = origin[k];
@@ -136,7 +144,8 @@ void passShadows(const RtsBatch& batch, ShadowRays& s, float* const color[3]) {
     passSurface(batch, s, found, blocked, color);
     compact(s, blocked);
   }
-  for (uint32_t i = 0; i < s.rays.count; i++) scaleColor(color, s.lane[i], 0, 0, 0); // beyond the depth: dark, as documented
+  for (uint32_t i = 0; i < s.rays.count; i++)
+    scaleColor(color, s.lane[i], 0, 0, 0); // beyond the depth: dark, as documented
 }
 
 void castShadows(RtsBatch& batch, const uint8_t* wanted, RtsIllumination& light) {

@@ -5,10 +5,12 @@
 
 namespace openrt {
 
-// Storage for what a light sends to the points of a batch. It goes with the block of the arena that is open when the first light
-// is asked, so whoever asks for several within blocks of his own calls this before.
+// Storage for what a light sends to the points of a batch. It goes with the block of the arena that
+// is open when the first light is asked, so whoever asks for several within blocks of his own calls
+// this before.
 void makeRoomForLight(RtsBatch& batch, uint32_t n);
-// Multiplies light.color by what is let through between the points and the light last looked at, where wanted.
+// Multiplies light.color by what is let through between the points and the light last looked at,
+// where wanted.
 void castShadows(RtsBatch& batch, const uint8_t* wanted, RtsIllumination& light);
 
 // Rays towards light, with the place in `color` that each belongs to.

@@ -1,4 +1,3 @@
-// sky_sampler.cpp: see sky_sampler.h.
 #include "render/lights/sky_sampler.h"
 
 #include <algorithm>
@@ -19,7 +18,8 @@ double luminance(const float c[3]) {
   return std::isfinite(l) && l > 0 ? std::min(l, 1e30) : 0;
 }
 
-// As many columns as the widest picture has texels around: a single one goes around, one of several covers a quarter.
+// As many columns as the widest picture has texels around: a single one goes around, one of several
+// covers a quarter.
 uint32_t columnsFor(const RenderScene& scene) {
   const ShaderSlot& environment = scene.environment.shader;
   uint32_t widest = 0, pictures = 0;
@@ -27,12 +27,14 @@ uint32_t columnsFor(const RenderScene& scene) {
     const RtsParam& param = environment.shaderClass->params[i];
     if (param.type != RTS_TEXTURE) continue;
     RtsTexture number;
-    std::memcpy(&number, static_cast<const char*>(environment.params) + param.offset, sizeof number);
+    std::memcpy(&number, static_cast<const char*>(environment.params) + param.offset,
+                sizeof number);
     if (number == 0 || number >= scene.textures->size()) continue;
     widest = std::max(widest, (*scene.textures)[number].width());
     pictures++;
   }
-  return std::bit_ceil(std::clamp((pictures > 1 ? 4 : 1) * std::min(widest, finest), coarsest, finest));
+  return std::bit_ceil(
+      std::clamp((pictures > 1 ? 4 : 1) * std::min(widest, finest), coarsest, finest));
 }
 
 } // namespace
@@ -63,7 +65,8 @@ void SkySampler::measure(const RenderScene& scene, std::vector<float>& cells) co
     batch.arena = &arena;
     batch.counters = &counters;
     const double theta[2] = {M_PI * (row + 0.25) / rows_, M_PI * (row + 0.75) / rows_};
-    const double sine[2] = {std::sin(theta[0]), std::sin(theta[1])}, cosine[2] = {std::cos(theta[0]), std::cos(theta[1])};
+    const double sine[2] = {std::sin(theta[0]), std::sin(theta[1])},
+                 cosine[2] = {std::cos(theta[0]), std::cos(theta[1])};
     for (uint32_t i = 0; i < n; i++) {
       d[0][i] = float(sine[i % 2] * turn[2 * i]);
       d[1][i] = float(cosine[i % 2]);
@@ -120,9 +123,11 @@ SkySampler::SkySampler(const RenderScene& scene) {
   for (uint32_t row = 0; row < rows_; row++) {
     double sum = 0;
     for (uint32_t column = 0; column < columns_; column++)
-      mass[column] = sum += std::max(double(cells[size_t(row) * columns_ + column]), double(beside(row, column)) / 16);
+      mass[column] = sum += std::max(double(cells[size_t(row) * columns_ + column]),
+                                     double(beside(row, column)) / 16);
     float* shares = inRow_.data() + size_t(row) * columns_;
-    for (uint32_t column = 0; column < columns_; column++) shares[column] = sum > 0 ? float(mass[column] / sum) : 0;
+    for (uint32_t column = 0; column < columns_; column++)
+      shares[column] = sum > 0 ? float(mass[column] / sum) : 0;
     byRow_[row] = total_ += sum * solidAngle(row);
   }
   for (double& share : byRow_) share /= total_ > 0 ? total_ : 1;
@@ -134,12 +139,15 @@ float SkySampler::cellDensity(uint32_t row, uint32_t column) const {
   return float((byRow_[row] - (row ? byRow_[row - 1] : 0.0)) * inRow / solidAngle(row));
 }
 
-// What is left of u and v after they have chosen row and column places the direction within the cell.
+// What is left of u and v after they have chosen row and column places the direction within the
+// cell.
 float SkySampler::sample(double u, double v, float direction[3]) const {
   if (!usable()) return 0;
-  const auto row = uint32_t(std::min(std::upper_bound(byRow_.begin(), byRow_.end(), v) - byRow_.begin(), ptrdiff_t(rows_) - 1));
+  const auto row = uint32_t(std::min(
+      std::upper_bound(byRow_.begin(), byRow_.end(), v) - byRow_.begin(), ptrdiff_t(rows_) - 1));
   const float* shares = inRow_.data() + size_t(row) * columns_;
-  const auto column = uint32_t(std::min(std::upper_bound(shares, shares + columns_, u) - shares, ptrdiff_t(columns_) - 1));
+  const auto column = uint32_t(
+      std::min(std::upper_bound(shares, shares + columns_, u) - shares, ptrdiff_t(columns_) - 1));
   const double before = row ? byRow_[row - 1] : 0, left = column ? shares[column - 1] : 0;
   const double down = std::clamp((v - before) / (byRow_[row] - before), 0.0, 1.0);
   const double along = std::clamp((u - left) / (shares[column] - left), 0.0, 1.0);

@@ -1,7 +1,8 @@
-// sky_sampler.h: directions of the environment in proportion to its radiance: a table of cells of equal latitude and longitude in
-// its local space, as fine as its pictures, at least fine enough for a sun of half a degree. M. Pharr, W. Jakob, G. Humphreys,
-// "Physically Based Rendering", 4th ed., 12.5 (without its compensation, so that the choice serves alone where need be). Made
-// between frames when the environment or its pictures change, read by all render threads.
+// sky_sampler.h: directions of the environment in proportion to its radiance: a table of cells of
+// equal latitude and longitude in its local space, as fine as its pictures, at least fine enough
+// for a sun of half a degree. M. Pharr, W. Jakob, G. Humphreys, "Physically Based Rendering", 4th
+// ed., 12.5 (without its compensation, so that the choice serves alone where need be). Made between
+// frames when the environment or its pictures change, read by all render threads.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +20,8 @@ class SkySampler {
   double brightest() const { return brightest_; } // mean luminance of a cell
   // Whether some of 2048 directions of the scene's environment, which has `miss`, has light.
   static bool shines(const RenderScene& scene);
-  // A local unit direction and its density by solid angle, from a point of the unit square. 0: none.
+  // A local unit direction and its density by solid angle, from a point of the unit square. 0:
+  // none.
   float sample(double u, double v, float direction[3]) const;
   float density(const float direction[3]) const;
   uint32_t columns() const { return columns_; }

@@ -1,4 +1,3 @@
-// spherical.cpp: see spherical.h.
 #include "render/lights/spherical.h"
 
 #include <algorithm>
@@ -46,8 +45,10 @@ SphericalTriangle::SphericalTriangle(const float corner[3][3], const float eye[3
   height_ = dot(corner_[0], normal_);
   const double c[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
   const double longest = std::max({dot(a, a), dot(b, b), dot(c, c)});
-  const double square[3] = {dot(corner_[0], corner_[0]), dot(corner_[1], corner_[1]), dot(corner_[2], corner_[2])};
-  const double nearest = std::min({square[0], square[1], square[2]}), farthest = std::max({square[0], square[1], square[2]});
+  const double square[3] = {dot(corner_[0], corner_[0]), dot(corner_[1], corner_[1]),
+                            dot(corner_[2], corner_[2])};
+  const double nearest = std::min({square[0], square[1], square[2]}),
+               farthest = std::max({square[0], square[1], square[2]});
   far_ = nearest > 4 * longest && farthest < 2 * nearest;
   if (!std::isfinite(height_)) height_ = 0;
   if (!far_) look();
@@ -75,19 +76,22 @@ double SphericalTriangle::solidAngle() const {
   return near.solidAngle_;
 }
 
-double SphericalTriangle::distanceAlong(const double d[3]) const { return height_ / dot(normal_, d); }
+double SphericalTriangle::distanceAlong(const double d[3]) const {
+  return height_ / dot(normal_, d);
+}
 
 bool SphericalTriangle::sample(double u, double v, double direction[3], double& distance) const {
   if (far_) {
     if (height_ == 0) return false;
     const double root = std::sqrt(u), w[3] = {1 - root, root * (1 - v), root * v};
-    for (int k = 0; k < 3; k++) direction[k] = w[0] * corner_[0][k] + w[1] * corner_[1][k] + w[2] * corner_[2][k];
+    for (int k = 0; k < 3; k++)
+      direction[k] = w[0] * corner_[0][k] + w[1] * corner_[1][k] + w[2] * corner_[2][k];
     distance = std::sqrt(dot(direction, direction));
     return normalize(direction);
   }
   if (!(solidAngle_ > 0)) return false;
-  // A place on the arc from the first corner to the last that cuts off the share u of the solid angle, then a place on the arc
-  // from the second corner to there.
+  // A place on the arc from the first corner to the last that cuts off the share u of the solid
+  // angle, then a place on the arc from the second corner to there.
   const double half = u * solidAngle_ / 2, c = std::cos(half), s = std::sin(half);
   const double x = volume_ * c - others_ * s, y = first_ * s;
   double r[3], end[3];
@@ -111,11 +115,12 @@ bool SphericalTriangle::sample(double u, double v, double direction[3], double& 
 double SphericalTriangle::density(const double direction[3]) const {
   if (!far_) return solidAngle_ > 0 ? 1 / solidAngle_ : 0;
   const double along = std::fabs(dot(normal_, direction)), distance = distanceAlong(direction);
-  return height_ != 0 ? 2 * distance * distance / along : 0; // square of the distance over the projected area
+  return height_ != 0 ? 2 * distance * distance / along
+                      : 0; // square of the distance over the projected area
 }
 
-// Barycentric coordinates against the rounding of a float direction and of the kernel's corners, as far as they move the place
-// where the plane is met.
+// Barycentric coordinates against the rounding of a float direction and of the kernel's corners, as
+// far as they move the place where the plane is met.
 bool SphericalTriangle::atRim(const double direction[3], double distance) const {
   constexpr double rounding = 0x1p-20;
   const double along = dot(normal_, direction), square = dot(normal_, normal_);
@@ -129,15 +134,16 @@ bool SphericalTriangle::atRim(const double direction[3], double distance) const 
       way[k] = place[k] - from[k];
     }
     cross(edge, way, turn);
-    // dot(turn, normal) / |normal| is the distance from the edge times its length; a turn of the ray moves the place by more the
-    // flatter it meets the plane.
+    // dot(turn, normal) / |normal| is the distance from the edge times its length; a turn of the
+    // ray moves the place by more the flatter it meets the plane.
     const double inside = std::fabs(dot(turn, normal_)) * std::fabs(along);
     if (inside <= rounding * distance * std::sqrt(dot(edge, edge)) * square) return true;
   }
   return false;
 }
 
-SphericalEllipsoid::SphericalEllipsoid(const float toLocal[3][4], const float toRender[3][4], const float eye[3]) {
+SphericalEllipsoid::SphericalEllipsoid(const float toLocal[3][4], const float toRender[3][4],
+                                       const float eye[3]) {
   for (int i = 0; i < 3; i++) {
     eye_[i] = toLocal[i][3];
     for (int k = 0; k < 3; k++) {
@@ -154,10 +160,12 @@ SphericalEllipsoid::SphericalEllipsoid(const float toLocal[3][4], const float to
   if (!inside_) cap_ = 1 / (square * (1 + std::sqrt(1 - 1 / square)));
 }
 
-// With the density of directions in the sphere's frame: a linear map M takes solid angle there to its |det M| / |M d|^3 here.
+// With the density of directions in the sphere's frame: a linear map M takes solid angle there to
+// its |det M| / |M d|^3 here.
 bool SphericalEllipsoid::sample(double u, double v, double direction[3], double& distance) const {
   if (inside_) return false;
-  const double length = std::sqrt(dot(eye_, eye_)), axis[3] = {-eye_[0] / length, -eye_[1] / length, -eye_[2] / length};
+  const double length = std::sqrt(dot(eye_, eye_)),
+               axis[3] = {-eye_[0] / length, -eye_[1] / length, -eye_[2] / length};
   double local[3];
   aboutAxis(axis, u * cap_, v, local);
   for (int i = 0; i < 3; i++) direction[i] = dot(toRender_[i], local);
@@ -166,7 +174,8 @@ bool SphericalEllipsoid::sample(double u, double v, double direction[3], double&
   for (double& l : local) l /= scale;
   // Of the two places along the line the nearer one.
   const double a = dot(local, local), b = dot(eye_, local), c = dot(eye_, eye_) - 1;
-  double offset[3]; // from the centre to the line: keeps its digits where the sphere is small and far
+  double
+      offset[3]; // from the centre to the line: keeps its digits where the sphere is small and far
   for (int k = 0; k < 3; k++) offset[k] = eye_[k] - b / a * local[k];
   const double root = std::sqrt(std::max(0.0, (1 - dot(offset, offset)) * a));
   distance = c / (root - b);

@@ -1,4 +1,3 @@
-// light_tracer.cpp: see light_tracer.h.
 #include "render/path/light_tracer.h"
 
 #include <algorithm>
@@ -14,10 +13,17 @@ namespace openrt {
 namespace {
 
 constexpr uint32_t pathsInFlight = 4096, rouletteFrom = 4;
-enum Pair : uint32_t { which, place, aim, first, perLevel = 4 }; // of random numbers: at the lamp, then by level
+enum Pair : uint32_t {
+  which,
+  place,
+  aim,
+  first,
+  perLevel = 4
+}; // of random numbers: at the lamp, then by level
 enum Use : uint32_t { direction, choice, lens };
 
-// Flux meets a surface by its true cosines, lobes count those at their normals: E. Veach, 1997, 5.3.
+// Flux meets a surface by its true cosines, lobes count those at their normals: E. Veach,
+// 1997, 5.3.
 float tilt(const RtsLobe& lobe, const RtsHits& hits, uint32_t i, const float out[3]) {
   const float n[3] = {lobe.normal[0][i], lobe.normal[1][i], lobe.normal[2][i]};
   const float g[3] = {hits.geometric[0][i], hits.geometric[1][i], hits.geometric[2][i]};
@@ -73,7 +79,8 @@ void LightTracer::begin(uint32_t firstPath, uint32_t n) {
     std::copy_n(start.direction, 3, ray.direction);
     ray.state = state;
   }
-  while (!queue_.empty() && level_ < scene_.frame.depth) { // the surface that the camera sees is one more
+  while (!queue_.empty() &&
+         level_ < scene_.frame.depth) { // the surface that the camera sees is one more
     next_.clear();
     load(uint32_t(queue_.size()));
     counters_.secondary += queue_.size();
@@ -110,7 +117,8 @@ void LightTracer::step(uint32_t n) {
   for (uint32_t i = 0; i < n; i++) {
     if (hits.record[i] == noHit) continue;
     const uint32_t traits = (*scene_.shaders)[scene_.records[hits.record[i]].shader].traits;
-    if (states_[i].course == Course::straight && !(traits & (RTS_SPECULAR | RTS_TRANSPARENT))) continue;
+    if (states_[i].course == Course::straight && !(traits & (RTS_SPECULAR | RTS_TRANSPARENT)))
+      continue;
     departures_[states_[i].path].way += double(hits.t[i]);
     met[mets++] = i;
   }
@@ -119,7 +127,8 @@ void LightTracer::step(uint32_t n) {
   for (const BucketRange& range : ranges) {
     ArenaScope inner(arena_);
     const uint32_t* lanes = order + range.begin;
-    const Points points = makePoints(scene_, rays_, hits, lanes, range.end - range.begin, travelled, arena_);
+    const Points points =
+        makePoints(scene_, rays_, hits, lanes, range.end - range.begin, travelled, arena_);
     const RtsClass& shaderClass = *scene_.buckets[range.bucket].shaderClass;
     if (shaderClass.surface)
       scatter(points, lanes, shaderClass);
@@ -149,14 +158,17 @@ void LightTracer::pass(const Points& points, const uint32_t* order, const RtsCla
   }
   for (uint32_t i = 0; i < n; i++) {
     RayState state = states_[order[i]];
-    const float d[3] = {points.hits.direction[0][i], points.hits.direction[1][i], points.hits.direction[2][i]};
-    for (int k = 0; k < 3; k++) state.throughput[k] *= through[k][i] > 0 ? std::min(through[k][i], 1.0f) : 0.0f;
+    const float d[3] = {points.hits.direction[0][i], points.hits.direction[1][i],
+                        points.hits.direction[2][i]};
+    for (int k = 0; k < 3; k++)
+      state.throughput[k] *= through[k][i] > 0 ? std::min(through[k][i], 1.0f) : 0.0f;
     if (largest(state.throughput) > 0) push(points, i, state, d);
   }
 }
 
 // The flux that a light without extent sends on a straight way to a place.
-void LightTracer::lampFlux(const Points& points, const LightSources::Start& start, const float at[3], float flux[3]) {
+void LightTracer::lampFlux(const Points& points, const LightSources::Start& start,
+                           const float at[3], float flux[3]) {
   const LightSlot& light = scene_.lights[start.light];
   ArenaScope scope(arena_);
   float* local[3];
@@ -175,7 +187,8 @@ void LightTracer::lampFlux(const Points& points, const LightSources::Start& star
   light.shader.shaderClass->illuminate(&scene_.host, &batch, light.shader.params, 1, places, &out);
   double way = 0;
   for (int k = 0; k < 3; k++) way += std::pow(double(at[k]) - start.origin[k], 2);
-  const double scale = M_PI * start.weight * (start.parallel ? 1 : way); // a colour is the radiance of white paper
+  const double scale =
+      M_PI * start.weight * (start.parallel ? 1 : way); // a colour is the radiance of white paper
   for (int k = 0; k < 3; k++) {
     flux[k] = float(out.color[k][0] * scale);
     if (!(flux[k] > 0) || !std::isfinite(flux[k])) flux[k] = 0;
@@ -188,20 +201,24 @@ bool LightTracer::leaveLamp(const Points& points, uint32_t i, RayState& state) {
   Departure& departure = departures_[state.path];
   float flux[3] = {0, 0, 0};
   if (start.shape != LightSources::none) {
-    scene_.emitters.shapes()->radiance(scene_, start.shape, start.place, start.direction, arena_, flux);
+    scene_.emitters.shapes()->radiance(scene_, start.shape, start.place, start.direction, arena_,
+                                       flux);
     for (float& x : flux) x = float(x * start.weight);
   } else {
-    const float at[3] = {points.hits.position[0][i], points.hits.position[1][i], points.hits.position[2][i]};
+    const float at[3] = {points.hits.position[0][i], points.hits.position[1][i],
+                         points.hits.position[2][i]};
     lampFlux(points, start, at, flux);
     std::copy_n(flux, 3, departure.flux);
     departure.settled = start.parallel;
   }
-  for (int k = 0; k < 3; k++) state.throughput[k] *= flux[k] > 0 && std::isfinite(flux[k]) ? flux[k] : 0.0f;
+  for (int k = 0; k < 3; k++)
+    state.throughput[k] *= flux[k] > 0 && std::isfinite(flux[k]) ? flux[k] : 0.0f;
   return largest(state.throughput) > 0;
 }
 
-// Asks the light at the end of the unfolded way, in the direction that the path has left it in. A light that falls with the
-// square of the distance has the same flux everywhere: what differs there is rounding.
+// Asks the light at the end of the unfolded way, in the direction that the path has left it in. A
+// light that falls with the square of the distance has the same flux everywhere: what differs there
+// is rounding.
 void LightTracer::attenuate(const Points& points, uint32_t path) {
   const LightSources::Start& start = starts_[path];
   Departure& departure = departures_[path];
@@ -215,7 +232,8 @@ void LightTracer::attenuate(const Points& points, uint32_t path) {
   }
 }
 
-void LightTracer::scatter(const Points& points, const uint32_t* order, const RtsClass& shaderClass) {
+void LightTracer::scatter(const Points& points, const uint32_t* order,
+                          const RtsClass& shaderClass) {
   const RtsHits& hits = points.hits;
   const uint32_t n = hits.count;
   RtsSurface surface{};
@@ -230,7 +248,8 @@ void LightTracer::scatter(const Points& points, const uint32_t* order, const Rts
   Boundaries boundaries{nullptr, nullptr};
   if (shaderClass.medium) meetBoundaries(batch, states_, boundaries);
   bool scatters = false;
-  for (uint32_t l = 0; l < batch.lobeCount; l++) scatters |= scatteringOf(batch.lobes[l]) != nullptr;
+  for (uint32_t l = 0; l < batch.lobeCount; l++)
+    scatters |= scatteringOf(batch.lobes[l]) != nullptr;
   const uint32_t* all = arena_.takeNumbers(n);
   auto* connected = arena_.take<uint32_t>(n);
   uint32_t count = 0;
@@ -246,7 +265,10 @@ void LightTracer::scatter(const Points& points, const uint32_t* order, const Rts
     float* square[2] = {arena_.take<float>(n), arena_.take<float>(n)};
     for (uint32_t i = 0; i < n; i++) {
       float uv[2];
-      sampleAt(states_[order[i]], Pair::first + Pair::perLevel * level_ + Use::direction + (l ? hash(l, 0x6c6f6265u) : 0), uv);
+      sampleAt(states_[order[i]],
+               Pair::first + Pair::perLevel * level_ + Use::direction +
+                   (l ? hash(l, 0x6c6f6265u) : 0),
+               uv);
       square[0][i] = uv[0];
       square[1][i] = uv[1];
     }
@@ -268,13 +290,15 @@ void LightTracer::scatter(const Points& points, const uint32_t* order, const Rts
 }
 
 // One of the ways on, in proportion to what they carry. From the lamp only bent ones count.
-void LightTracer::goOn(const RtsBatch& batch, uint32_t i, const LobeSamples* const samples[], const Boundaries& boundaries) {
+void LightTracer::goOn(const RtsBatch& batch, uint32_t i, const LobeSamples* const samples[],
+                       const Boundaries& boundaries) {
   const Points& points = *batch.points;
   RayState state = states_[batch.order[i]];
   const bool first = state.course == Course::straight;
   Ways ways(points.hits, i, boundaries.eta ? boundaries.eta[i] : nullptr, state.channel, true);
   for (uint32_t l = 0; l < batch.lobeCount; l++)
-    if (!first || !scatteringOf(batch.lobes[l])) ways.add(l, batch.lobes[l], first ? nullptr : samples[l]);
+    if (!first || !scatteringOf(batch.lobes[l]))
+      ways.add(l, batch.lobes[l], first ? nullptr : samples[l]);
   float carried[Ways::maximum], sum = 0;
   for (uint32_t w = 0; w < ways.count; w++) sum += carried[w] = largest(ways.list[w].share);
   if (!(sum > 0)) return;
@@ -289,7 +313,8 @@ void LightTracer::goOn(const RtsBatch& batch, uint32_t i, const LobeSamples* con
     if (uv[1] >= stay) return;
     kept *= stay;
   }
-  if (Departure& departure = departures_[state.path]; scatteringOf(batch.lobes[way.lobe]) && !departure.settled) {
+  if (Departure& departure = departures_[state.path];
+      scatteringOf(batch.lobes[way.lobe]) && !departure.settled) {
     for (int k = 0; k < 3; k++) state.throughput[k] *= departure.attenuation[k];
     departure = {};
   }
@@ -306,7 +331,8 @@ void LightTracer::goOn(const RtsBatch& batch, uint32_t i, const LobeSamples* con
   push(points, i, state, way.direction);
 }
 
-void LightTracer::push(const Points& points, uint32_t i, const RayState& state, const float way[3]) {
+void LightTracer::push(const Points& points, uint32_t i, const RayState& state,
+                       const float way[3]) {
   if (!(largest(state.throughput) > 0) || !std::isfinite(largest(state.throughput))) return;
   QueuedRay& ray = next_.emplace_back();
   liftPoint(points, i, way, ray.origin);
@@ -330,7 +356,8 @@ void LightTracer::connect(const RtsBatch& batch, const uint32_t* hitNumbers, uin
     const float* m = scene_.camera.toLocal.r[k];
     for (uint32_t i = 0; i < size; i++) {
       const uint32_t h = hitNumbers[std::min(i, n - 1)];
-      local[k][i] = m[0] * hits.position[0][h] + m[1] * hits.position[1][h] + m[2] * hits.position[2][h] + m[3];
+      local[k][i] = m[0] * hits.position[0][h] + m[1] * hits.position[1][h] +
+                    m[2] * hits.position[2][h] + m[3];
     }
   }
   for (int k = 0; k < 2; k++) {
@@ -339,7 +366,8 @@ void LightTracer::connect(const RtsBatch& batch, const uint32_t* hitNumbers, uin
   }
   for (uint32_t i = 0; i < size; i++) {
     float at[2];
-    sampleAt(states_[batch.order[hitNumbers[std::min(i, n - 1)]]], Pair::first + Pair::perLevel * level_ + Use::lens, at);
+    sampleAt(states_[batch.order[hitNumbers[std::min(i, n - 1)]]],
+             Pair::first + Pair::perLevel * level_ + Use::lens, at);
     uv[0][i] = at[0];
     uv[1][i] = at[1];
   }
@@ -349,13 +377,15 @@ void LightTracer::connect(const RtsBatch& batch, const uint32_t* hitNumbers, uin
   RtsBatch asking = batch;
   {
     const RunningShader running(*camera.shaderClass);
-    camera.shaderClass->project(&scene_.host, &asking, camera.params, n, place, square, extent, &seen);
+    camera.shaderClass->project(&scene_.host, &asking, camera.params, n, place, square, extent,
+                                &seen);
   }
   float* distance = arena_.take<float>(size);
   const auto& m = scene_.camera.fromLocal.r;
   for (uint32_t i = 0; i < n; i++) {
     float v[3];
-    for (int k = 0; k < 3; k++) v[k] = m[k][0] * seen.toEye[0][i] + m[k][1] * seen.toEye[1][i] + m[k][2] * seen.toEye[2][i];
+    for (int k = 0; k < 3; k++)
+      v[k] = m[k][0] * seen.toEye[0][i] + m[k][1] * seen.toEye[1][i] + m[k][2] * seen.toEye[2][i];
     distance[i] = std::sqrt(dot3(v, v));
     for (int k = 0; k < 3; k++) towards[k][i] = v[k] / distance[i];
   }
@@ -371,12 +401,14 @@ void LightTracer::connect(const RtsBatch& batch, const uint32_t* hitNumbers, uin
       const float out[3] = {towards[0][i], towards[1][i], towards[2][i]};
       const float g[3] = {hits.geometric[0][h], hits.geometric[1][h], hits.geometric[2][h]};
       float w[3];
-      if (!weightAt(lobe, h, w) || (!scatteringOf(lobe)->transmits && !(dot3(g, out) > 0))) continue;
+      if (!weightAt(lobe, h, w) || (!scatteringOf(lobe)->transmits && !(dot3(g, out) > 0)))
+        continue;
       const float factor = tilt(lobe, hits, h, out) * seen.weight[i];
       for (int k = 0; k < 3; k++) sent[k][i] += w[k] * answers.value[k][i] * factor;
     }
   }
-  // Of rough boundaries radiance in the denser medium is meant, of which flux knows nothing: eyes are in the open.
+  // Of rough boundaries radiance in the denser medium is meant, of which flux knows nothing: eyes
+  // are in the open.
   ShadowRays rays;
   rays.rays.allocate(arena_, n);
   rays.lane = arena_.take<uint32_t>(n);
@@ -404,7 +436,8 @@ void LightTracer::connect(const RtsBatch& batch, const uint32_t* hitNumbers, uin
     const float* attenuation = departures_[state.path].attenuation;
     float* pixel = &picture_[3 * (size_t(y) * width_ + size_t(x))];
     for (int k = 0; k < 3; k++) {
-      const double light = double(state.throughput[k]) * attenuation[k] * sent[k][i] * cameraArea_ * scale_;
+      const double light =
+          double(state.throughput[k]) * attenuation[k] * sent[k][i] * cameraArea_ * scale_;
       if (std::isfinite(light)) pixel[k] += float(light);
     }
   }

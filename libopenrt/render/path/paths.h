@@ -1,9 +1,9 @@
-// paths.h: the samples of a tile that are under way: the rays of the wave being traced by lane, what has been gathered by path.
-// Shared by the two halves of TileRenderer. [render]
+// paths.h: the samples of a tile that are under way: the rays of the wave being traced by lane,
+// what has been gathered by path. Shared by the two halves of TileRenderer. [render]
 #pragma once
 
-#include "render/rays.h"
 #include "render/path/tile.h"
+#include "render/rays.h"
 
 namespace openrt {
 

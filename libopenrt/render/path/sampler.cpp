@@ -1,10 +1,11 @@
-// sampler.cpp: see sampler.h. Integers alone, so that the machine's widest vectors give the same numbers as any others.
+// sampler.cpp: Integers alone, so that the machine's widest vectors give the same
+// numbers as any others.
 #include "render/path/sampler.h"
 
 namespace openrt {
 
 // Sanitizers cannot run in the resolver that chooses among the clones.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && defined(__OPTIMIZE__) &&                                  \
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && defined(__OPTIMIZE__) &&    \
     !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 __attribute__((target_clones("avx512f", "avx2", "default")))
 #endif
@@ -12,7 +13,8 @@ void samplePairs(uint32_t n, const uint32_t* __restrict key, const uint32_t* __r
                  const uint32_t* __restrict index, float* __restrict x, float* __restrict y) {
   for (uint32_t i = 0; i < n; i++) {
     const uint32_t k = hash(key[i], pair[i] + draw);
-    const uint32_t order = hash(k, 0x68bc21ebu), kx = hash(k, 0x02e5be93u), ky = hash(k, 0x967a889bu);
+    const uint32_t order = hash(k, 0x68bc21ebu), kx = hash(k, 0x02e5be93u),
+                   ky = hash(k, 0x967a889bu);
     const uint32_t shuffled = reverseBits(scrambleReversed(reverseBits(index[i]), order));
     x[i] = toUnit(reverseBits(scrambleReversed(shuffled, kx)));
     y[i] = toUnit(reverseBits(scrambleReversed(sobol1Reversed(shuffled), ky)));

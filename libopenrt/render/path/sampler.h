@@ -1,6 +1,7 @@
-// sampler.h: the points of a pixel's samples: a pure function of (pixel, sample, pair of dimensions, seed, size of a replicate).
-// A pair is a (0,2)-sequence in base 2: Sobol's first two dimensions, Owen-scrambled by hashing as in B. Burley, "Practical
-// Hash-based Owen Scrambling", JCGT 9(4), 2020 (hash constants: N. Vegdahl's search).
+// sampler.h: the points of a pixel's samples: a pure function of (pixel, sample, pair of
+// dimensions, seed, size of a replicate). A pair is a (0,2)-sequence in base 2: Sobol's first two
+// dimensions, Owen-scrambled by hashing as in B. Burley, "Practical Hash-based Owen Scrambling",
+// JCGT 9(4), 2020 (hash constants: N. Vegdahl's search).
 #pragma once
 
 #include <cstdint>
@@ -26,7 +27,8 @@ namespace openrt {
   return hash(a ^ (hash(b) + 0x9e3779b9u + (a << 6) + (a >> 2)));
 }
 
-// Owen scrambling of a number in reversed bit order: every bit is flipped by a hash of the bits below it.
+// Owen scrambling of a number in reversed bit order: every bit is flipped by a hash of the bits
+// below it.
 [[gnu::always_inline]] inline uint32_t scrambleReversed(uint32_t x, uint32_t seed) {
   x ^= x * 0x3d20adeau;
   x += seed;
@@ -36,8 +38,9 @@ namespace openrt {
   return x;
 }
 
-// Second Sobol dimension of an index, in reversed bit order. Its direction numbers, reversed, are the polynomials (1+x)^i
-// over GF(2): the sum over the index's bits is the index as a polynomial taken at 1+x, half by half.
+// Second Sobol dimension of an index, in reversed bit order. Its direction numbers, reversed, are
+// the polynomials (1+x)^i over GF(2): the sum over the index's bits is the index as a polynomial
+// taken at 1+x, half by half.
 [[gnu::always_inline]] inline uint32_t sobol1Reversed(uint32_t x) {
   x ^= x >> 16;
   x ^= (x & 0xff00ff00u) >> 8;
@@ -47,18 +50,23 @@ namespace openrt {
   return x;
 }
 
-// Which point a sample is. The samples of a pixel are consecutive replicates of 2^shift samples, each a net of its own with a
-// seed of its own: independent of the others, so that their means tell their error. The first one has the frame's own seed.
+// Which point a sample is. The samples of a pixel are consecutive replicates of 2^shift samples,
+// each a net of its own with a seed of its own: independent of the others, so that their means tell
+// their error. The first one has the frame's own seed.
 struct Replicates {
   uint32_t seed = 0, shift = 31; // 31: one net
   bool operator==(const Replicates&) const = default;
   bool many() const { return shift < 31; }
   uint32_t size() const { return 1u << shift; }
   uint32_t indexOf(uint32_t sample) const { return sample & (size() - 1); }
-  uint32_t seedOf(uint32_t sample) const { return sample >> shift ? hash(seed, sample >> shift) : seed; }
+  uint32_t seedOf(uint32_t sample) const {
+    return sample >> shift ? hash(seed, sample >> shift) : seed;
+  }
 };
 
-[[gnu::always_inline]] inline float toUnit(uint32_t x) { return float(x >> 8) * 0x1p-24f; } // [0, 1)
+[[gnu::always_inline]] inline float toUnit(uint32_t x) {
+  return float(x >> 8) * 0x1p-24f;
+} // [0, 1)
 
 // The samples of one pair of dimensions in one pixel. Any first 2^k of them are a (0,k,2)-net.
 class PairSampler {
@@ -70,7 +78,8 @@ class PairSampler {
     y_ = hash(key, 0x967a889bu);
   }
   void operator()(uint32_t index, float& x, float& y) const {
-    const uint32_t shuffled = reverseBits(scrambleReversed(reverseBits(index), order_)); // decorrelates the pairs of a pixel
+    const uint32_t shuffled = reverseBits(
+        scrambleReversed(reverseBits(index), order_)); // decorrelates the pairs of a pixel
     x = toUnit(reverseBits(scrambleReversed(shuffled, x_)));
     y = toUnit(reverseBits(scrambleReversed(sobol1Reversed(shuffled), y_)));
   }
@@ -79,7 +88,9 @@ class PairSampler {
   uint32_t order_, x_, y_;
 };
 
-// The same for many at once, vectorised: point number index[i] of pair[i] + draw, where key[i] is hash(pixel, seed).
-void samplePairs(uint32_t n, const uint32_t* key, const uint32_t* pair, uint32_t draw, const uint32_t* index, float* x, float* y);
+// The same for many at once, vectorised: point number index[i] of pair[i] + draw, where key[i] is
+// hash(pixel, seed).
+void samplePairs(uint32_t n, const uint32_t* key, const uint32_t* pair, uint32_t draw,
+                 const uint32_t* index, float* x, float* y);
 
 } // namespace openrt

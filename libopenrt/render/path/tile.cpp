@@ -1,4 +1,5 @@
-// tile.cpp: see tile.h. Every sum has a fixed order, so a tile's pixels do not depend on who renders it.
+// tile.cpp: Every sum has a fixed order, so a tile's pixels do not depend on who
+// renders it.
 #include "render/path/tile.h"
 
 #include <algorithm>
@@ -18,8 +19,8 @@ constexpr uint32_t pathsInFlight = 4096;
 } // namespace
 
 TileRenderer::TileRenderer(const RenderScene& scene)
-    : scene_(scene), width_(scene.frame.width), gathering_(gatheringOf(scene.frame)), brightest_(scene.emitters.brightest()),
-      brightestSky_(scene.emitters.brightestSky()) {}
+    : scene_(scene), width_(scene.frame.width), gathering_(gatheringOf(scene.frame)),
+      brightest_(scene.emitters.brightest()), brightestSky_(scene.emitters.brightestSky()) {}
 
 void TileRenderer::begin(const Tile& tile) {
   if (tile == tile_) return;
@@ -35,9 +36,11 @@ void TileRenderer::begin(const Tile& tile) {
         }
 }
 
-// What a path meets may depend on those beside it, where faces coincide: a leaf's waves are always the same.
-bool TileRenderer::render(const Tile& tile, const Replicates& replicates, bool centred, uint32_t first, uint32_t samples,
-                          std::span<PixelSums> sums, const std::atomic<bool>& stop) {
+// What a path meets may depend on those beside it, where faces coincide: a leaf's waves are always
+// the same.
+bool TileRenderer::render(const Tile& tile, const Replicates& replicates, bool centred,
+                          uint32_t first, uint32_t samples, std::span<PixelSums> sums,
+                          const std::atomic<bool>& stop) {
   begin(tile);
   ledger_ = {};
   replicates_ = replicates;
@@ -46,7 +49,8 @@ bool TileRenderer::render(const Tile& tile, const Replicates& replicates, bool c
   sums_ = sums;
   stop_ = &stop;
   ledger_.samples += samples;
-  const uint32_t most = std::clamp(std::bit_floor(pathsInFlight / uint32_t(pixels_.size())), 1u, largestWave);
+  const uint32_t most =
+      std::clamp(std::bit_floor(pathsInFlight / uint32_t(pixels_.size())), 1u, largestWave);
   for (uint32_t s = first, end = first + samples; s < end;) {
     if (stopped()) return false;
     const uint32_t n = std::min(most, end - s);
@@ -61,7 +65,9 @@ void TileRenderer::allocate(Paths& paths, uint32_t n, bool film) {
   const uint32_t size = padded(n);
   paths.state = arena_.take<RayState>(size);
   paths.travelled = arena_.takeZero<float>(size);
-  const auto optional = [&](uint32_t channel) { return film && has(channel) ? arena_.takeZero<float>(size) : nullptr; };
+  const auto optional = [&](uint32_t channel) {
+    return film && has(channel) ? arena_.takeZero<float>(size) : nullptr;
+  };
   for (int k = 0; k < 3; k++) {
     paths.radiance[k] = arena_.takeZero<float>(size);
     paths.normal[k] = optional(RT_NORMAL);
@@ -99,8 +105,8 @@ void TileRenderer::wave(uint32_t firstSample, uint32_t samples) {
   addToPixels(paths, firstSample, samples);
 }
 
-// The rays that are loaded, then bounce by bounce what becomes of them, in portions of at most n, so that a path's sums have one
-// order.
+// The rays that are loaded, then bounce by bounce what becomes of them, in portions of at most n,
+// so that a path's sums have one order.
 void TileRenderer::follow(Paths& paths, uint32_t n) {
   traceWave(paths);
   for (level_++; !next_.empty() && level_ <= scene_.frame.depth; level_++) {
@@ -143,7 +149,8 @@ void TileRenderer::traceWave(Paths& paths) {
   sortByBucket(scene_, paths.hits, paths.met, mets, paths.order, counts_, ranges_);
   std::vector<BucketRange> ranges;
   ranges.swap(ranges_); // shaders may trace in their turn
-  for (const BucketRange& range : ranges) shadeRange(paths, paths.hits, range, paths.order + range.begin);
+  for (const BucketRange& range : ranges)
+    shadeRange(paths, paths.hits, range, paths.order + range.begin);
   ranges.swap(ranges_);
 }
 
@@ -181,7 +188,8 @@ void TileRenderer::makeCameraRays(Paths& paths, uint32_t firstSample) {
     for (uint32_t sample = firstSample; sample < firstSample + samples; sample++, lane++) {
       float dx = 0.5f, dy = 0.5f; // centred
       const uint32_t index = replicates_.indexOf(sample);
-      if (index == 0 && sample > firstSample) sampler = PairSampler(pixel, 0, replicates_.seedOf(sample));
+      if (index == 0 && sample > firstSample)
+        sampler = PairSampler(pixel, 0, replicates_.seedOf(sample));
       if (!centred_) sampler(index, dx, dy);
       xy[0][lane] = x + dx;
       xy[1][lane] = y + dy;
@@ -219,7 +227,8 @@ void TileRenderer::makeCameraRays(Paths& paths, uint32_t firstSample) {
 }
 
 // What the environment shows in the directions of rays: local unit directions and rgba, padded.
-void TileRenderer::skyAt(const Rays& rays, const uint32_t* lanes, uint32_t n, float* direction[3], float* rgba[4]) {
+void TileRenderer::skyAt(const Rays& rays, const uint32_t* lanes, uint32_t n, float* direction[3],
+                         float* rgba[4]) {
   const uint32_t size = padded(n);
   for (int k = 0; k < 3; k++) direction[k] = arena_.take<float>(size);
   for (int k = 0; k < 4; k++) rgba[k] = arena_.takeZero<float>(size);
@@ -258,15 +267,18 @@ void TileRenderer::background(Paths& paths, const uint32_t* missed, uint32_t n) 
       chanceOf(ray).meet(light, brightestFor(ray));
     }
     for (int k = 0; k < 3; k++) {
-      if (std::isfinite(rgba[k][i])) paths.radiance[k][ray.path] += ray.throughput[k] * share * rgba[k][i];
+      if (std::isfinite(rgba[k][i]))
+        paths.radiance[k][ray.path] += ray.throughput[k] * share * rgba[k][i];
       weight += ray.throughput[k];
     }
     if (!ray.bent) paths.alpha[ray.path] += weight / 3 * rgba[3][i];
   }
 }
 
-// Along mirror images and through lenses the length of the path counts, as seen in the ray's direction.
-void TileRenderer::attenuate(const Points& points, const Paths& paths, const uint32_t* order, float* fog[4]) {
+// Along mirror images and through lenses the length of the path counts, as seen in the ray's
+// direction.
+void TileRenderer::attenuate(const Points& points, const Paths& paths, const uint32_t* order,
+                             float* fog[4]) {
   const ShaderSlot& environment = scene_.environment.shader;
   fog[3] = nullptr;
   if (!environment.shaderClass || !environment.shaderClass->attenuate) return;
@@ -278,23 +290,28 @@ void TileRenderer::attenuate(const Points& points, const Paths& paths, const uin
   for (uint32_t i = 0; i < size; i++) {
     const bool bent = paths.state[order[std::min(i, n - 1)]].bent;
     float way[3];
-    for (int j = 0; j < 3; j++) way[j] = bent ? h.direction[j][i] * h.distance[i] : h.position[j][i] - scene_.eye[j];
-    for (int k = 0; k < 3; k++) fromEye[k][i] = m.r[k][0] * way[0] + m.r[k][1] * way[1] + m.r[k][2] * way[2];
+    for (int j = 0; j < 3; j++)
+      way[j] = bent ? h.direction[j][i] * h.distance[i] : h.position[j][i] - scene_.eye[j];
+    for (int k = 0; k < 3; k++)
+      fromEye[k][i] = m.r[k][0] * way[0] + m.r[k][1] * way[1] + m.r[k][2] * way[2];
   }
   for (int k = 0; k < 4; k++) fog[k] = arena_.takeZero<float>(size);
   RtsBatch batch = makeBatch();
   const float* vectors[3] = {fromEye[0], fromEye[1], fromEye[2]};
   const RunningShader running(*environment.shaderClass);
-  environment.shaderClass->attenuate(&scene_.host, &batch, environment.params, n, vectors, fog, fog[3]);
+  environment.shaderClass->attenuate(&scene_.host, &batch, environment.params, n, vectors, fog,
+                                     fog[3]);
 }
 
-void TileRenderer::shadeRange(Paths& paths, const RayHits& hits, const BucketRange& range, const uint32_t* order) {
+void TileRenderer::shadeRange(Paths& paths, const RayHits& hits, const BucketRange& range,
+                              const uint32_t* order) {
   ArenaScope scope(arena_);
   const uint32_t n = range.end - range.begin, size = padded(n);
   const Points points = makePoints(scene_, paths.rays, hits, order, n, paths.travelled, arena_);
   const Bucket& bucket = scene_.buckets[range.bucket];
   // Of a class that answers both ways path tracing asks for lobes.
-  if (bucket.shaderClass->surface && (!bucket.shaderClass->shade || scene_.frame.transport >= RT_TRANSPORT_PATH))
+  if (bucket.shaderClass->surface &&
+      (!bucket.shaderClass->shade || scene_.frame.transport >= RT_TRANSPORT_PATH))
     return scatterRange(paths, points, bucket, order);
   RtsShading shaded;
   for (int k = 0; k < 3; k++) {
@@ -317,8 +334,8 @@ void TileRenderer::shadeRange(Paths& paths, const RayHits& hits, const BucketRan
 }
 
 // Adds what was shaded to the paths and sends on those that something lets through.
-void TileRenderer::gather(const Points& points, const RtsShading& shaded, const uint32_t* order, Paths& paths,
-                          const float* fog[4]) {
+void TileRenderer::gather(const Points& points, const RtsShading& shaded, const uint32_t* order,
+                          Paths& paths, const float* fog[4]) {
   for (uint32_t i = 0; i < points.hits.count; i++) {
     const RayState& ray = paths.state[order[i]];
     float transmission[3], covered = 0, through = 0;
@@ -326,7 +343,8 @@ void TileRenderer::gather(const Points& points, const RtsShading& shaded, const 
       const float t = shaded.transmission[k][i];
       transmission[k] = t > 0 ? std::min(t, 1.0f) : 0.0f;
       float radiance = std::isfinite(shaded.radiance[k][i]) ? shaded.radiance[k][i] : 0.0f;
-      if (fog[3]) radiance = fog[3][i] * radiance + (1 - fog[3][i]) * fog[k][i] * (1 - transmission[k]);
+      if (fog[3])
+        radiance = fog[3][i] * radiance + (1 - fog[3][i]) * fog[k][i] * (1 - transmission[k]);
       paths.radiance[k][ray.path] += ray.throughput[k] * radiance;
       covered += ray.throughput[k] * (1 - transmission[k]);
       through += ray.throughput[k] * transmission[k];
@@ -353,7 +371,8 @@ void TileRenderer::gather(const Points& points, const RtsShading& shaded, const 
 }
 
 // The auxiliary channels show the first surface.
-void TileRenderer::noteFirst(const Points& points, uint32_t i, uint32_t path, float* const albedo[3], Paths& paths) {
+void TileRenderer::noteFirst(const Points& points, uint32_t i, uint32_t path,
+                             float* const albedo[3], Paths& paths) {
   const RtsHits& h = points.hits;
   paths.first[path] = 0;
   paths.name[path] = scene_.records[points.record[i]].name;
@@ -368,7 +387,8 @@ void TileRenderer::noteFirst(const Points& points, uint32_t i, uint32_t path, fl
 }
 
 // Another ray of the path, from the side of the surface that its direction leads to.
-void TileRenderer::push(const Points& points, uint32_t i, uint32_t lane, const Step& step, Paths& paths) {
+void TileRenderer::push(const Points& points, uint32_t i, uint32_t lane, const Step& step,
+                        Paths& paths) {
   const RtsHits& h = points.hits;
   const RayState& from = paths.state[lane];
   QueuedRay& ray = next_.emplace_back();
@@ -416,8 +436,11 @@ void TileRenderer::addToPixels(const Paths& paths, uint32_t firstSample, uint32_
       if (gathering_.error) {
         sums.addTails(radiance);
         sums.random |= random_[i] != 0;
-        const uint32_t next = firstSample + s + 1; // replicates larger than the leaf are closed where leaves merge
-        if (replicates_.many() && replicates_.indexOf(next) == 0 && next - leaf_ >= replicates_.size()) sums.closeReplicate();
+        const uint32_t next =
+            firstSample + s + 1; // replicates larger than the leaf are closed where leaves merge
+        if (replicates_.many() && replicates_.indexOf(next) == 0 &&
+            next - leaf_ >= replicates_.size())
+          sums.closeReplicate();
       }
       for (int k = 0; k < 3; k++) {
         if (paths.normal[k]) sums.normal[k] += paths.normal[k][i];

@@ -1,5 +1,6 @@
-// trace.cpp: what shaders and transports ask of the renderer itself: random points, light along rays, what rays meet, what lies
-// between. Part of TileRenderer; the host's functions (host.cpp) come here. [render]
+// trace.cpp: what shaders and transports ask of the renderer itself: random points, light along
+// rays, what rays meet, what lies between. Part of TileRenderer; the host's functions (host.cpp)
+// come here. [render]
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -17,7 +18,9 @@ constexpr uint32_t maxNesting = 64;
 constexpr uint32_t shaderPairs = 0x73686164; // apart from the pairs that transports use
 constexpr float infinite = std::numeric_limits<float>::infinity();
 
-uint32_t pointsOf(const RtsBatch& batch) { return batch.points ? batch.points->hits.count : batch.rays; }
+uint32_t pointsOf(const RtsBatch& batch) {
+  return batch.points ? batch.points->hits.count : batch.rays;
+}
 
 // Rays of a request that belong to a point of the batch; to: number of the request, by ray.
 Rays raysOf(const RtsBatch& batch, const RtsRequest& request, uint32_t* to) {
@@ -64,7 +67,8 @@ void TileRenderer::trace(RtsBatch& batch, const RtsRequest& request, float* cons
   for (int k = 0; k < 4; k++)
     if (rgba[k]) std::fill_n(rgba[k], request.count, 0.0f);
   if (request.count == 0 || nesting_ == maxNesting || level_ >= scene_.frame.depth) return;
-  if (!batch.requests) batch.requests = arena_.takeZero<uint32_t>(pointsOf(batch)); // it lives as long as the batch
+  if (!batch.requests)
+    batch.requests = arena_.takeZero<uint32_t>(pointsOf(batch)); // it lives as long as the batch
   ArenaScope scope(arena_);
   auto* to = arena_.take<uint32_t>(request.count);
   Paths paths;
@@ -136,7 +140,8 @@ void TileRenderer::findHit(const RtsBatch& batch, const RtsRequest& request, Rts
   }
 }
 
-void TileRenderer::occluded(const RtsBatch& batch, const RtsRequest& request, float* const transmission[3]) {
+void TileRenderer::occluded(const RtsBatch& batch, const RtsRequest& request,
+                            float* const transmission[3]) {
   for (int k = 0; k < 3; k++) std::fill_n(transmission[k], request.count, 1.0f);
   if (request.count == 0) return;
   ArenaScope scope(arena_);
@@ -163,7 +168,8 @@ void TileRenderer::askTransport(Paths& paths) {
   batch.rays = n;
   {
     const RunningShader running(*scene_.transport.shaderClass);
-    scene_.transport.shaderClass->radiance(&scene_.host, &batch, scene_.transport.params, &request, rgba);
+    scene_.transport.shaderClass->radiance(&scene_.host, &batch, scene_.transport.params, &request,
+                                           rgba);
   }
   checkAnswer(*scene_.transport.shaderClass, batch, n, {rgba[0], rgba[1], rgba[2], rgba[3]});
   for (uint32_t i = 0; i < n; i++) {

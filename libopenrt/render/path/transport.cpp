@@ -1,4 +1,3 @@
-// transport.cpp: see transport.h.
 #include "render/path/transport.h"
 
 #include <cstring>
@@ -10,25 +9,36 @@ namespace {
 
 constexpr uint32_t light = hasLamps | hasEmitters | hasGlow | hasSky;
 
-// The choice. Rows are tried from the top; a row whose `from` is the transport chosen so far replaces it. A transport is chosen
-// only where it leaves out nothing that surfaces of lobes do with light. Surfaces that answer by themselves are drawn as their
-// own rule says (VRML97's lighting model) until something that is meant as light shines on them.
+// The choice. Rows are tried from the top; a row whose `from` is the transport chosen so far
+// replaces it. A transport is chosen only where it leaves out nothing that surfaces of lobes do
+// with light. Surfaces that answer by themselves are drawn as their own rule says (VRML97's
+// lighting model) until something that is meant as light shines on them.
 struct Choice {
   RTenum from;
-  uint32_t all, any; // bits that must all be there; of which at least one must be there (0: no such condition)
+  uint32_t all, any; // bits that must all be there; of which at least one must be there (0: no such
+                     // condition)
   RTenum to;
   const char* reason; // {}: class that set the first bit of `all`, [] : of `any`
 };
 constexpr Choice choices[] = {
-    {RT_TRANSPORT_AUTO, asksForAll, 0, RT_TRANSPORT_PATH, "{} asks for the light of other surfaces"},
-    {RT_TRANSPORT_AUTO, hasScattering, hasEmitters | hasGlow, RT_TRANSPORT_PATH, "{} scatters the light that [] sends out"},
-    {RT_TRANSPORT_AUTO, hasScattering, hasSky, RT_TRANSPORT_PATH, "{} scatters the light of the sky"},
-    {RT_TRANSPORT_AUTO, hasScattering, hasLamps, RT_TRANSPORT_PATH, "{} scatters light of lamps from surface to surface"},
-    {RT_TRANSPORT_AUTO, hasShading, hasEmitters, RT_TRANSPORT_PATH, "{} is lit by [], which sends out light"},
-    {RT_TRANSPORT_AUTO, hasShading, hasSkyLight, RT_TRANSPORT_PATH, "{} is lit by the environment []"},
-    {RT_TRANSPORT_PATH, hasMirrors | hasStarts | hasProjection, 0, RT_TRANSPORT_LIGHT, ", and {} mirrors or refracts"},
-    {RT_TRANSPORT_AUTO, hasMirrors, 0, RT_TRANSPORT_WHITTED, "{} mirrors or refracts; nothing asks for light between surfaces"},
-    {RT_TRANSPORT_AUTO, hasLobes, 0, RT_TRANSPORT_WHITTED, "{} answers in lobes; nothing asks for light between surfaces"},
+    {RT_TRANSPORT_AUTO, asksForAll, 0, RT_TRANSPORT_PATH,
+     "{} asks for the light of other surfaces"},
+    {RT_TRANSPORT_AUTO, hasScattering, hasEmitters | hasGlow, RT_TRANSPORT_PATH,
+     "{} scatters the light that [] sends out"},
+    {RT_TRANSPORT_AUTO, hasScattering, hasSky, RT_TRANSPORT_PATH,
+     "{} scatters the light of the sky"},
+    {RT_TRANSPORT_AUTO, hasScattering, hasLamps, RT_TRANSPORT_PATH,
+     "{} scatters light of lamps from surface to surface"},
+    {RT_TRANSPORT_AUTO, hasShading, hasEmitters, RT_TRANSPORT_PATH,
+     "{} is lit by [], which sends out light"},
+    {RT_TRANSPORT_AUTO, hasShading, hasSkyLight, RT_TRANSPORT_PATH,
+     "{} is lit by the environment []"},
+    {RT_TRANSPORT_PATH, hasMirrors | hasStarts | hasProjection, 0, RT_TRANSPORT_LIGHT,
+     ", and {} mirrors or refracts"},
+    {RT_TRANSPORT_AUTO, hasMirrors, 0, RT_TRANSPORT_WHITTED,
+     "{} mirrors or refracts; nothing asks for light between surfaces"},
+    {RT_TRANSPORT_AUTO, hasLobes, 0, RT_TRANSPORT_WHITTED,
+     "{} answers in lobes; nothing asks for light between surfaces"},
     {RT_TRANSPORT_AUTO, 0, 0, RT_TRANSPORT_DIRECT, "no surface asks for more than the lights"},
 };
 
@@ -38,8 +48,8 @@ struct Omission {
   uint32_t all, any;
   uint32_t leaves; // RT_LEAVES_*
 };
-constexpr uint32_t direct = 1u << RT_TRANSPORT_DIRECT, whitted = 1u << RT_TRANSPORT_WHITTED, path = 1u << RT_TRANSPORT_PATH,
-                   lightPaths = 1u << RT_TRANSPORT_LIGHT;
+constexpr uint32_t direct = 1u << RT_TRANSPORT_DIRECT, whitted = 1u << RT_TRANSPORT_WHITTED,
+                   path = 1u << RT_TRANSPORT_PATH, lightPaths = 1u << RT_TRANSPORT_LIGHT;
 constexpr Omission omissions[] = {
     {direct, hasMirrors, 0, RT_LEAVES_IMAGES},
     {direct | whitted, hasScattering, light, RT_LEAVES_BETWEEN},
@@ -52,7 +62,9 @@ constexpr Omission omissions[] = {
     {path | lightPaths, hasMirrors | hasLamps | hasShading, 0, RT_LEAVES_CAUSTICS},
 };
 
-bool holds(uint32_t bits, uint32_t all, uint32_t any) { return (bits & all) == all && (any == 0 || (bits & any)); }
+bool holds(uint32_t bits, uint32_t all, uint32_t any) {
+  return (bits & all) == all && (any == 0 || (bits & any));
+}
 
 const char* firstOf(const SceneContents& contents, uint32_t bits) {
   for (uint32_t b = 0; b < contentsBits; b++)
@@ -71,7 +83,8 @@ std::string reasonOf(const Choice& row, const SceneContents& contents) {
   return text;
 }
 
-// The environment is asked on a coarse grid; one that looks black there is measured, as a lamp may lie between the places.
+// The environment is asked on a coarse grid; one that looks black there is measured, as a lamp may
+// lie between the places.
 bool shines(const RenderScene& scene, const RenderScene* before) {
   const ShaderSlot& environment = scene.environment.shader;
   if (!environment.shaderClass || !environment.shaderClass->miss) return false;
@@ -112,12 +125,14 @@ SceneContents contentsOf(RenderScene& scene, const RenderScene* before) {
     set(bits, shaderClass.name);
   }
   for (const LightSlot& lamp : scene.lights)
-    set(hasLamps | (lamp.shader.shaderClass->extent ? hasStarts : 0u), lamp.shader.shaderClass->name);
+    set(hasLamps | (lamp.shader.shaderClass->extent ? hasStarts : 0u),
+        lamp.shader.shaderClass->name);
   const RtsClass* camera = scene.camera.shader.shaderClass;
   if (camera && camera->project) set(hasProjection, camera->name);
   const ShaderSlot& environment = scene.environment.shader;
   const bool backdrop = environment.traits & RTS_BACKDROP;
-  scene.skyKnown = environment.shaderClass && ((c.bits & hasScattering) || ((c.bits & hasShading) && !backdrop));
+  scene.skyKnown =
+      environment.shaderClass && ((c.bits & hasScattering) || ((c.bits & hasShading) && !backdrop));
   scene.skyShines = scene.skyKnown && shines(scene, before);
   if (scene.skyShines) set(hasSky | (backdrop ? 0u : hasSkyLight), environment.shaderClass->name);
   return c;
@@ -142,10 +157,12 @@ TransportChoice chooseTransport(RenderScene& scene, const RenderScene* before) {
     }
   }
   for (const Omission& row : omissions)
-    if ((row.transports & (1u << choice.transport)) && holds(contents.bits, row.all, row.any)) choice.leavesOut |= row.leaves;
+    if ((row.transports & (1u << choice.transport)) && holds(contents.bits, row.all, row.any))
+      choice.leavesOut |= row.leaves;
   if (choice.leavesOut & RT_LEAVES_CAUSTICS) {
     const bool followed = choice.transport == RT_TRANSPORT_LIGHT && (contents.bits & hasProjection);
-    for (const LightSlot& lamp : scene.lights) choice.unreached += !followed || !lamp.shader.shaderClass->extent;
+    for (const LightSlot& lamp : scene.lights)
+      choice.unreached += !followed || !lamp.shader.shaderClass->extent;
   }
   return choice;
 }

@@ -1,9 +1,10 @@
-// batch.h: the host's side of one batch of shading points: what the functions of RtsHost work on. [render]
+// batch.h: the host's side of one batch of shading points: what the functions of RtsHost work on.
+// [render]
 #pragma once
 
+#include "render/path/ray_queue.h"
 #include "render/surface/faults.h"
 #include "render/surface/points.h"
-#include "render/path/ray_queue.h"
 
 namespace openrt {
 
@@ -30,8 +31,10 @@ struct RtsBatch {
   float* reach = nullptr; // distance to the light; 0 where there is no direction
   uint32_t current = ~0u; // index into the batch's lights
   bool directional = false;
-  uint32_t* chosen = nullptr; // by hit: the light of the scene that stands for many; null: one light for all hits
-  // Who renders: null where shaders are asked outside of a picture. There nothing is traced, and random points are the middle.
+  uint32_t* chosen =
+      nullptr; // by hit: the light of the scene that stands for many; null: one light for all hits
+  // Who renders: null where shaders are asked outside of a picture. There nothing is traced, and
+  // random points are the middle.
   openrt::TileRenderer* tracer = nullptr;
   const openrt::RayState* states = nullptr; // rays of the wave, by lane
   const uint32_t* order = nullptr;          // lanes of the hits; null: the camera's rays, in order

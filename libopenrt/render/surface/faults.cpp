@@ -1,4 +1,3 @@
-// faults.cpp: see faults.h.
 #include "render/surface/faults.h"
 
 #include <algorithm>
@@ -17,15 +16,20 @@ namespace {
 const char* textOf(Fault fault) {
   switch (fault) {
   case Fault::notFinite:
-    return "answered with NaN or infinity; taken as 0. Look for divisions by 0 and roots of negative numbers";
+    return "answered with NaN or infinity; taken as 0. Look for divisions by 0 and roots of "
+           "negative numbers";
   case Fault::undeclaredGlossy:
-    return "has glossy lobes, but its traits lack RTS_GLOSSY: the automatic transport does not know that they scatter";
+    return "has glossy lobes, but its traits lack RTS_GLOSSY: the automatic transport does not "
+           "know that they scatter";
   case Fault::undeclaredEmission:
-    return "has emission, but its traits lack RTS_EMISSIVE: nobody looks for its light, so the picture is noisier than it need "
+    return "has emission, but its traits lack RTS_EMISSIVE: nobody looks for its light, so the "
+           "picture is noisier than it need "
            "be";
-  case Fault::undeclaredTransparency: return "lets light through, but its traits lack RTS_TRANSPARENT: its shadows are opaque";
+  case Fault::undeclaredTransparency:
+    return "lets light through, but its traits lack RTS_TRANSPARENT: its shadows are opaque";
   case Fault::undeclaredScattering:
-    return "has lobes that scatter, but its traits have RTS_NO_SCATTER: the automatic transport may leave out light";
+    return "has lobes that scatter, but its traits have RTS_NO_SCATTER: the automatic transport "
+           "may leave out light";
   }
   return "";
 }
@@ -34,7 +38,8 @@ const char* textOf(Fault fault) {
 bool allFinite(const float* values, uint32_t n) {
   constexpr uint32_t exponent = 0x7f800000;
   uint32_t bad = 0;
-  for (uint32_t i = 0; i < n; i++) bad |= uint32_t((std::bit_cast<uint32_t>(values[i]) & exponent) == exponent);
+  for (uint32_t i = 0; i < n; i++)
+    bad |= uint32_t((std::bit_cast<uint32_t>(values[i]) & exponent) == exponent);
   return bad == 0;
 }
 
@@ -44,39 +49,52 @@ uint32_t traitsAt(const RtsBatch& batch, uint32_t i) {
 }
 
 // Hits at which something is above 0 that the class does not announce.
-template <class Above> void demandTrait(const RtsClass& c, RtsBatch& batch, uint32_t trait, Fault fault, const Above& above) {
+template <class Above> void demandTrait(const RtsClass& c, RtsBatch& batch, uint32_t trait,
+                                        Fault fault, const Above& above) {
   uint64_t hits = 0;
-  for (uint32_t i = 0; i < batch.points->hits.count; i++) hits += !(traitsAt(batch, i) & trait) && above(i);
+  for (uint32_t i = 0; i < batch.points->hits.count; i++)
+    hits += !(traitsAt(batch, i) & trait) && above(i);
   if (hits) batch.counters->faults.add(c, fault, hits);
 }
 
-bool anyAbove(float* const group[3], uint32_t i) { return group[0][i] > 0 || group[1][i] > 0 || group[2][i] > 0; }
+bool anyAbove(float* const group[3], uint32_t i) {
+  return group[0][i] > 0 || group[1][i] > 0 || group[2][i] > 0;
+}
 
-// The opposite: hits at which something is above 0 that the class excludes. Values of a geometry are not known to traits.
-template <class Above> void excludeTrait(const RtsClass& c, RtsBatch& batch, uint32_t trait, Fault fault, const Above& above) {
+// The opposite: hits at which something is above 0 that the class excludes. Values of a geometry
+// are not known to traits.
+template <class Above> void excludeTrait(const RtsClass& c, RtsBatch& batch, uint32_t trait,
+                                         Fault fault, const Above& above) {
   uint64_t hits = 0;
   for (uint32_t i = 0; i < batch.points->hits.count; i++)
-    hits += (traitsAt(batch, i) & trait) && !batch.scene->records[batch.points->record[i]].parameterCount && above(i);
+    hits += (traitsAt(batch, i) & trait) &&
+            !batch.scene->records[batch.points->record[i]].parameterCount && above(i);
   if (hits) batch.counters->faults.add(c, fault, hits);
 }
 
 void diagnose(const RtsClass& c, RtsBatch& batch, const RtsSurface& out) {
-  demandTrait(c, batch, RTS_EMISSIVE, Fault::undeclaredEmission, [&](uint32_t i) { return anyAbove(out.emission, i); });
+  demandTrait(c, batch, RTS_EMISSIVE, Fault::undeclaredEmission,
+              [&](uint32_t i) { return anyAbove(out.emission, i); });
   for (uint32_t l = 0; l < batch.lobeCount; l++) {
     const RtsLobe& lobe = batch.lobes[l];
     if (lobe.kind == RTS_LOBE_TRANSPARENT)
-      demandTrait(c, batch, RTS_TRANSPARENT, Fault::undeclaredTransparency, [&](uint32_t i) { return anyAbove(lobe.weight, i); });
+      demandTrait(c, batch, RTS_TRANSPARENT, Fault::undeclaredTransparency,
+                  [&](uint32_t i) { return anyAbove(lobe.weight, i); });
     if (scatteringOf(lobe))
-      excludeTrait(c, batch, RTS_NO_SCATTER, Fault::undeclaredScattering, [&](uint32_t i) { return anyAbove(lobe.weight, i); });
-    if (lobe.kind == RTS_LOBE_GLOSSY || lobe.kind == RTS_LOBE_ROUGH_DIELECTRIC || lobe.kind == RTS_LOBE_CUSTOM)
-      demandTrait(c, batch, RTS_GLOSSY, Fault::undeclaredGlossy, [&](uint32_t i) { return anyAbove(lobe.weight, i); });
+      excludeTrait(c, batch, RTS_NO_SCATTER, Fault::undeclaredScattering,
+                   [&](uint32_t i) { return anyAbove(lobe.weight, i); });
+    if (lobe.kind == RTS_LOBE_GLOSSY || lobe.kind == RTS_LOBE_ROUGH_DIELECTRIC ||
+        lobe.kind == RTS_LOBE_CUSTOM)
+      demandTrait(c, batch, RTS_GLOSSY, Fault::undeclaredGlossy,
+                  [&](uint32_t i) { return anyAbove(lobe.weight, i); });
   }
 }
 
 // Takes the weight of a lobe at hits where any of its numbers is not finite; bad[i] is set there.
 void checkLobe(RtsLobe& lobe, const RtsHits& hits, uint8_t* bad) {
-  float* all[8 + RTS_MAX_LOBE_FLOATS] = {lobe.weight[0], lobe.weight[1], lobe.weight[2],    lobe.normal[0],
-                                         lobe.normal[1], lobe.normal[2], lobe.parameter[0], lobe.parameter[1]};
+  float* all[8 + RTS_MAX_LOBE_FLOATS] = {lobe.weight[0],    lobe.weight[1],   lobe.weight[2],
+                                         lobe.normal[0],    lobe.normal[1],   lobe.normal[2],
+                                         lobe.parameter[0], lobe.parameter[1]};
   std::copy(std::begin(lobe.data), std::end(lobe.data), all + 8);
   for (float* values : all) {
     if (!values || allFinite(values, hits.count)) continue;
@@ -137,13 +155,15 @@ void ShaderFaults::report(RTlogCallback callback, void* user) const {
     return order != 0 ? order < 0 : a.fault < b.fault;
   });
   for (const Entry& e : sorted) {
-    const std::string text = "shader " + std::string(labelOf(*e.shaderClass)) + " " + textOf(e.fault) + " (" +
-                             std::to_string(e.hits) + (e.hits == 1 ? " point)" : " points)");
+    const std::string text = "shader " + std::string(labelOf(*e.shaderClass)) + " " +
+                             textOf(e.fault) + " (" + std::to_string(e.hits) +
+                             (e.hits == 1 ? " point)" : " points)");
     callback(2, text.c_str(), user);
   }
 }
 
-void checkAnswer(const RtsClass& shaderClass, RtsBatch& batch, uint32_t n, std::initializer_list<float*> arrays) {
+void checkAnswer(const RtsClass& shaderClass, RtsBatch& batch, uint32_t n,
+                 std::initializer_list<float*> arrays) {
   ArenaScope scope(*batch.arena);
   auto* bad = batch.arena->takeZero<uint8_t>(n);
   clear(arrays, n, bad);
@@ -154,7 +174,9 @@ void checkAnswer(const RtsClass& shaderClass, RtsBatch& batch, const RtsSurface&
   ArenaScope scope(*batch.arena);
   const RtsHits& hits = batch.points->hits;
   auto* bad = batch.arena->takeZero<uint8_t>(hits.count);
-  clear({out.emission[0], out.emission[1], out.emission[2], out.albedo[0], out.albedo[1], out.albedo[2]}, hits.count, bad);
+  clear({out.emission[0], out.emission[1], out.emission[2], out.albedo[0], out.albedo[1],
+         out.albedo[2]},
+        hits.count, bad);
   for (uint32_t l = 0; l < batch.lobeCount; l++) checkLobe(batch.lobes[l], hits, bad);
   countBad(shaderClass, batch, bad, hits.count);
   if (batch.scene->host.diagnose) diagnose(shaderClass, batch, out);
@@ -163,8 +185,9 @@ void checkAnswer(const RtsClass& shaderClass, RtsBatch& batch, const RtsSurface&
 void checkAnswer(const RtsClass& shaderClass, RtsBatch& batch, const RtsShading& out) {
   const uint32_t n = batch.points->hits.count;
   checkAnswer(shaderClass, batch, n,
-              {out.radiance[0], out.radiance[1], out.radiance[2], out.transmission[0], out.transmission[1], out.transmission[2],
-               out.albedo[0], out.albedo[1], out.albedo[2]});
+              {out.radiance[0], out.radiance[1], out.radiance[2], out.transmission[0],
+               out.transmission[1], out.transmission[2], out.albedo[0], out.albedo[1],
+               out.albedo[2]});
   if (batch.scene->host.diagnose)
     demandTrait(shaderClass, batch, RTS_TRANSPARENT, Fault::undeclaredTransparency,
                 [&](uint32_t i) { return anyAbove(out.transmission, i); });

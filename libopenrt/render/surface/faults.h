@@ -1,6 +1,6 @@
-// faults.h: answers of shaders that cannot be right: numbers that are not finite, and, where somebody asks for a diagnosis, lobes
-// that the class's traits do not announce. They are made harmless at once and counted by class; a frame says it once, at its end.
-// [render]
+// faults.h: answers of shaders that cannot be right: numbers that are not finite, and, where
+// somebody asks for a diagnosis, lobes that the class's traits do not announce. They are made
+// harmless at once and counted by class; a frame says it once, at its end. [render]
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,13 @@
 
 namespace openrt {
 
-enum class Fault : uint8_t { notFinite, undeclaredGlossy, undeclaredEmission, undeclaredTransparency, undeclaredScattering };
+enum class Fault : uint8_t {
+  notFinite,
+  undeclaredGlossy,
+  undeclaredEmission,
+  undeclaredTransparency,
+  undeclaredScattering
+};
 
 class ShaderFaults { // of one thread, or of a frame
  public:
@@ -32,8 +38,10 @@ class ShaderFaults { // of one thread, or of a frame
   std::vector<Entry> entries_;
 };
 
-// Replaces numbers of an answer that are not finite by 0. arrays: of n floats; null ones are left out.
-void checkAnswer(const RtsClass& shaderClass, RtsBatch& batch, uint32_t n, std::initializer_list<float*> arrays);
+// Replaces numbers of an answer that are not finite by 0. arrays: of n floats; null ones are left
+// out.
+void checkAnswer(const RtsClass& shaderClass, RtsBatch& batch, uint32_t n,
+                 std::initializer_list<float*> arrays);
 // The same of a surface that answers in lobes: one that is not finite has no weight.
 void checkAnswer(const RtsClass& shaderClass, RtsBatch& batch, const RtsSurface& out);
 // The same of a surface that shades by itself.

@@ -1,4 +1,5 @@
-// hit_info.cpp: what a shader may ask of its hits beyond RtsHits: made only when asked for. Called by host.cpp. [render]
+// hit_info.cpp: what a shader may ask of its hits beyond RtsHits: made only when asked for. Called
+// by host.cpp. [render]
 #include "render/surface/hit_info.h"
 
 #include <algorithm>
@@ -9,13 +10,17 @@
 namespace openrt {
 namespace {
 
-const Record& recordAt(const RtsBatch& batch, uint32_t i) { return batch.scene->records[batch.points->record[i]]; }
-
-void applyLinear(const Affine& m, const double v[3], float* const out[3], uint32_t i) {
-  for (int k = 0; k < 3; k++) out[k][i] = float(m.r[k][0] * v[0] + m.r[k][1] * v[1] + m.r[k][2] * v[2]);
+const Record& recordAt(const RtsBatch& batch, uint32_t i) {
+  return batch.scene->records[batch.points->record[i]];
 }
 
-void triangleDerivatives(const RtsBatch& batch, uint32_t i, float* const alongS[3], float* const alongT[3]) {
+void applyLinear(const Affine& m, const double v[3], float* const out[3], uint32_t i) {
+  for (int k = 0; k < 3; k++)
+    out[k][i] = float(m.r[k][0] * v[0] + m.r[k][1] * v[1] + m.r[k][2] * v[2]);
+}
+
+void triangleDerivatives(const RtsBatch& batch, uint32_t i, float* const alongS[3],
+                         float* const alongT[3]) {
   const Record& r = recordAt(batch, i);
   if (!r.texCoords) return;
   const uint32_t primitive = batch.points->rayHits->primitive[batch.points->order[i]];
@@ -24,7 +29,8 @@ void triangleDerivatives(const RtsBatch& batch, uint32_t i, float* const alongS[
   const uint32_t* corner = r.indices + 3 * size_t(primitive);
   const float *a = r.texCoords + 2 * size_t(corner[0]), *b = r.texCoords + 2 * size_t(corner[1]),
               *c = r.texCoords + 2 * size_t(corner[2]);
-  const double s1 = double(b[0]) - a[0], t1 = double(b[1]) - a[1], s2 = double(c[0]) - a[0], t2 = double(c[1]) - a[1];
+  const double s1 = double(b[0]) - a[0], t1 = double(b[1]) - a[1], s2 = double(c[0]) - a[0],
+               t2 = double(c[1]) - a[1];
   const double area = s1 * t2 - s2 * t1;
   if (area == 0) return;
   for (int k = 0; k < 3; k++) {
@@ -35,19 +41,22 @@ void triangleDerivatives(const RtsBatch& batch, uint32_t i, float* const alongS[
 }
 
 // The texture coordinates of rtSphere.
-void sphereDerivatives(const RtsBatch& batch, uint32_t i, float* const alongS[3], float* const alongT[3]) {
+void sphereDerivatives(const RtsBatch& batch, uint32_t i, float* const alongS[3],
+                       float* const alongT[3]) {
   const Record& r = recordAt(batch, i);
   double l[3], length = 0;
   for (int k = 0; k < 3; k++) {
     l[k] = r.fromRender.r[k][3];
-    for (int j = 0; j < 3; j++) l[k] += double(r.fromRender.r[k][j]) * batch.points->hits.position[j][i];
+    for (int j = 0; j < 3; j++)
+      l[k] += double(r.fromRender.r[k][j]) * batch.points->hits.position[j][i];
     length += l[k] * l[k];
   }
   length = std::sqrt(length);
   if (!(length > 0)) return;
   for (double& x : l) x /= length;
   const double round = std::hypot(l[0], l[2]), s[3] = {2 * M_PI * l[2], 0, -2 * M_PI * l[0]};
-  const double slope = round > 0 ? -l[1] / round : 0, t[3] = {M_PI * slope * l[0], M_PI * round, M_PI * slope * l[2]};
+  const double slope = round > 0 ? -l[1] / round : 0,
+               t[3] = {M_PI * slope * l[0], M_PI * round, M_PI * slope * l[2]};
   applyLinear(r.toRender, s, alongS, i);
   applyLinear(r.toRender, t, alongT, i);
 }
@@ -61,12 +70,13 @@ void localOf(const RtsBatch& batch, float* const position[3], float* const norma
     const Affine& m = recordAt(batch, i).toObject;
     const float p[3] = {hits.position[0][i], hits.position[1][i], hits.position[2][i]};
     if (position)
-      for (int k = 0; k < 3; k++) position[k][i] = m.r[k][0] * p[0] + m.r[k][1] * p[1] + m.r[k][2] * p[2] + m.r[k][3];
+      for (int k = 0; k < 3; k++)
+        position[k][i] = m.r[k][0] * p[0] + m.r[k][1] * p[1] + m.r[k][2] * p[2] + m.r[k][3];
     if (!normal) continue;
     const Affine back = inverseOf(m); // normals go by the transpose of the inverse
     for (int k = 0; k < 3; k++)
-      normal[k][i] =
-          back.r[0][k] * hits.geometric[0][i] + back.r[1][k] * hits.geometric[1][i] + back.r[2][k] * hits.geometric[2][i];
+      normal[k][i] = back.r[0][k] * hits.geometric[0][i] + back.r[1][k] * hits.geometric[1][i] +
+                     back.r[2][k] * hits.geometric[2][i];
   }
 }
 
@@ -94,7 +104,8 @@ void pathsOf(const RtsBatch& batch, uint32_t level, uint32_t* depth, float* cons
   if (!batch.points) return;
   for (uint32_t i = 0; i < batch.points->hits.count; i++) {
     if (depth) depth[i] = level;
-    for (int k = 0; throughput && k < 3; k++) throughput[k][i] = batch.order ? batch.states[batch.order[i]].throughput[k] : 1.0f;
+    for (int k = 0; throughput && k < 3; k++)
+      throughput[k][i] = batch.order ? batch.states[batch.order[i]].throughput[k] : 1.0f;
   }
 }
 

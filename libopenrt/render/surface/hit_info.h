@@ -1,4 +1,5 @@
-// hit_info.h: what a shader may ask of its hits beyond RtsHits (openrts.h says what each is). [render]
+// hit_info.h: what a shader may ask of its hits beyond RtsHits (openrts.h says what each is).
+// [render]
 #pragma once
 
 #include <cstdint>

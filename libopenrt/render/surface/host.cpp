@@ -3,10 +3,10 @@
 #include <cmath>
 #include <limits>
 
-#include "render/surface/batch.h"
-#include "render/surface/hit_info.h"
 #include "render/lights/illumination.h"
 #include "render/path/tile.h"
+#include "render/surface/batch.h"
+#include "render/surface/hit_info.h"
 #include "shading/running.h"
 
 namespace openrt {
@@ -25,11 +25,13 @@ uint32_t lights(RtsBatch* batch) { return lightCount(*batch); }
 void illuminate(RtsBatch* batch, uint32_t i, const RtsHits* hits, RtsIllumination* out) {
   illuminateHits(*batch, i, *hits, *out);
 }
-void shadow(RtsBatch* batch, uint32_t i, const RtsHits* hits, const uint8_t* wanted, RtsIllumination* light) {
+void shadow(RtsBatch* batch, uint32_t i, const RtsHits* hits, const uint8_t* wanted,
+            RtsIllumination* light) {
   shadowHits(*batch, i, *hits, wanted, *light);
 }
 
-void sample(RtsBatch* batch, RtsTexture texture, uint32_t n, const float* const uv[2], float* const rgba[4]) {
+void sample(RtsBatch* batch, RtsTexture texture, uint32_t n, const float* const uv[2],
+            float* const rgba[4]) {
   const auto& textures = *batch->scene->textures;
   textures[texture < textures.size() ? texture : 0].sample(padded(n), uv, rgba);
 }
@@ -42,7 +44,8 @@ uint32_t components(const RtsHost* host, RtsTexture texture) {
 float* scratch(RtsBatch* batch, uint32_t n) { return batch->arena->take<float>(padded(n)); }
 
 RtsLobe* lobe(RtsBatch* batch, RtsLobeKind kind) {
-  if (batch->lobeCount == RTS_MAX_LOBES || kind < RTS_LOBE_DIFFUSE || kind >= RTS_LOBE_CUSTOM) return nullptr;
+  if (batch->lobeCount == RTS_MAX_LOBES || kind < RTS_LOBE_DIFFUSE || kind >= RTS_LOBE_CUSTOM)
+    return nullptr;
   const RtsHits& hits = batch->points->hits;
   const uint32_t size = padded(hits.count);
   RtsLobe& lobe = batch->lobes[batch->lobeCount++];
@@ -59,14 +62,15 @@ RtsLobe* lobe(RtsBatch* batch, RtsLobeKind kind) {
 }
 
 RtsLobe* customLobe(RtsBatch* batch, const RtsLobeFunctions* functions, uint32_t floats) {
-  if (!functions || functions->size < sizeof(RtsLobeFunctions) || !functions->evaluate || !functions->sample ||
-      floats > RTS_MAX_LOBE_FLOATS)
+  if (!functions || functions->size < sizeof(RtsLobeFunctions) || !functions->evaluate ||
+      !functions->sample || floats > RTS_MAX_LOBE_FLOATS)
     return nullptr;
   RtsLobe* made = lobe(batch, RTS_LOBE_DIFFUSE);
   if (!made) return nullptr;
   made->kind = RTS_LOBE_CUSTOM;
   made->functions = functions;
-  for (uint32_t i = 0; i < floats; i++) made->data[i] = batch->arena->takeZero<float>(padded(batch->points->hits.count));
+  for (uint32_t i = 0; i < floats; i++)
+    made->data[i] = batch->arena->takeZero<float>(padded(batch->points->hits.count));
   return made;
 }
 
@@ -84,7 +88,8 @@ void trace(RtsBatch* batch, const RtsRequest* rays, float* const rgba[4]) {
 
 void findHit(RtsBatch* batch, const RtsRequest* rays, RtsFound* out) {
   if (batch->tracer) return batch->tracer->findHit(*batch, *rays, *out);
-  if (out->distance) std::fill_n(out->distance, rays->count, std::numeric_limits<float>::infinity());
+  if (out->distance)
+    std::fill_n(out->distance, rays->count, std::numeric_limits<float>::infinity());
 }
 
 void occluded(RtsBatch* batch, const RtsRequest* rays, float* const transmission[3]) {
@@ -92,9 +97,15 @@ void occluded(RtsBatch* batch, const RtsRequest* rays, float* const transmission
   for (int k = 0; k < 3; k++) std::fill_n(transmission[k], rays->count, 1.0f);
 }
 
-void local(RtsBatch* batch, float* const position[3], float* const normal[3]) { localOf(*batch, position, normal); }
-void derivatives(RtsBatch* batch, float* const alongS[3], float* const alongT[3]) { derivativesOf(*batch, alongS, alongT); }
-void ids(RtsBatch* batch, uint32_t* name, uint32_t* instance, uint32_t* primitive) { idsOf(*batch, name, instance, primitive); }
+void local(RtsBatch* batch, float* const position[3], float* const normal[3]) {
+  localOf(*batch, position, normal);
+}
+void derivatives(RtsBatch* batch, float* const alongS[3], float* const alongT[3]) {
+  derivativesOf(*batch, alongS, alongT);
+}
+void ids(RtsBatch* batch, uint32_t* name, uint32_t* instance, uint32_t* primitive) {
+  idsOf(*batch, name, instance, primitive);
+}
 void path(RtsBatch* batch, uint32_t* depth, float* const throughput[3]) {
   pathsOf(*batch, batch->tracer ? batch->tracer->level() : 0, depth, throughput);
 }

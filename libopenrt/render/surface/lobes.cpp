@@ -1,7 +1,8 @@
-// lobes.cpp: see lobes.h. Microfacets: B. Walter et al., "Microfacet Models for Refraction through Rough Surfaces", EGSR 2007
-// (the GGX distribution); height-correlated shadowing: E. Heitz, "Understanding the Masking-Shadowing Function", JCGT 3(2), 2014;
-// visible normals chosen as in J. Dupuy, A. Benyoub, "Sampling Visible GGX Normals with Spherical Caps", HPG 2023.
-// In double: a lobe of width 1e-4 has densities of 1e8, and loses its digits near its axis in float.
+// lobes.cpp: Microfacets: B. Walter et al., "Microfacet Models for Refraction through
+// Rough Surfaces", EGSR 2007 (the GGX distribution); height-correlated shadowing: E. Heitz,
+// "Understanding the Masking-Shadowing Function", JCGT 3(2), 2014; visible normals chosen as in J.
+// Dupuy, A. Benyoub, "Sampling Visible GGX Normals with Spherical Caps", HPG 2023. In double: a
+// lobe of width 1e-4 has densities of 1e8, and loses its digits near its axis in float.
 #include "render/surface/lobes.h"
 
 #include <cmath>
@@ -34,7 +35,8 @@ class Frame {
     basisOf(n_, s_, t_);
   }
   Vec toLocal(double x, double y, double z) const {
-    return {x * s_[0] + y * s_[1] + z * s_[2], x * t_[0] + y * t_[1] + z * t_[2], x * n_[0] + y * n_[1] + z * n_[2]};
+    return {x * s_[0] + y * s_[1] + z * s_[2], x * t_[0] + y * t_[1] + z * t_[2],
+            x * n_[0] + y * n_[1] + z * n_[2]};
   }
   void toWorld(const Vec& v, float* const out[3], uint32_t i) const {
     for (int k = 0; k < 3; k++) out[k][i] = float(v.x * s_[k] + v.y * t_[k] + v.z * n_[k]);
@@ -45,7 +47,8 @@ class Frame {
 };
 
 Vec toEye(const Frame& frame, const RtsHits& hits, uint32_t hit) {
-  return unit(frame.toLocal(-double(hits.direction[0][hit]), -double(hits.direction[1][hit]), -double(hits.direction[2][hit])));
+  return unit(frame.toLocal(-double(hits.direction[0][hit]), -double(hits.direction[1][hit]),
+                            -double(hits.direction[2][hit])));
 }
 Vec towards(const Frame& frame, const float* const direction[3], uint32_t i) {
   return unit(frame.toLocal(direction[0][i], direction[1][i], direction[2][i]));
@@ -55,23 +58,27 @@ void put(float* const value[3], uint32_t i, double v) {
   for (int k = 0; k < 3; k++) value[k][i] = float(v);
 }
 
-// Lambert ---------------------------------------------------------------------------------------------------------------------
+// Lambert
+// -------------------------------------------------------------------------------------------------
 
-void evaluateDiffuse(const RtsLobe* lobe, const RtsHits*, uint32_t n, const uint32_t* hit, const float* const direction[3],
-                     float* const value[3], float* density) {
+void evaluateDiffuse(const RtsLobe* lobe, const RtsHits*, uint32_t n, const uint32_t* hit,
+                     const float* const direction[3], float* const value[3], float* density) {
   for (uint32_t i = 0; i < n; i++) {
     const uint32_t h = hit[i];
-    const float cosine =
-        lobe->normal[0][h] * direction[0][i] + lobe->normal[1][h] * direction[1][i] + lobe->normal[2][h] * direction[2][i];
+    const float cosine = lobe->normal[0][h] * direction[0][i] +
+                         lobe->normal[1][h] * direction[1][i] +
+                         lobe->normal[2][h] * direction[2][i];
     density[i] = std::max(cosine, 0.0f) * float(M_1_PI);
     for (int k = 0; k < 3; k++) value[k][i] = density[i];
   }
 }
 
-void sampleDiffuse(const RtsLobe* lobe, const RtsHits*, uint32_t n, const uint32_t* hit, const float* const square[2],
-                   float* const direction[3], float* const quotient[3], float* density) {
+void sampleDiffuse(const RtsLobe* lobe, const RtsHits*, uint32_t n, const uint32_t* hit,
+                   const float* const square[2], float* const direction[3],
+                   float* const quotient[3], float* density) {
   for (uint32_t i = 0; i < n; i++) {
-    const float normal[3] = {lobe->normal[0][hit[i]], lobe->normal[1][hit[i]], lobe->normal[2][hit[i]]};
+    const float normal[3] = {lobe->normal[0][hit[i]], lobe->normal[1][hit[i]],
+                             lobe->normal[2][hit[i]]};
     float out[3];
     cosineDirection(normal, square[0][i], square[1][i], out);
     for (int k = 0; k < 3; k++) direction[k][i] = out[k];
@@ -80,7 +87,8 @@ void sampleDiffuse(const RtsLobe* lobe, const RtsHits*, uint32_t n, const uint32
   }
 }
 
-// Microfacets -------------------------------------------------------------------------------------------------------------------
+// Microfacets
+// -------------------------------------------------------------------------------------------------
 
 class Facets {
  public:
@@ -122,12 +130,13 @@ double fresnelAt(double cosine, double eta) {
 struct Glossy {
   Facets facets;
   double eta; // 0: no Fresnel
-  Glossy(const RtsLobe& lobe, uint32_t hit) : facets(lobe.parameter[0][hit]), eta(lobe.parameter[1][hit]) {}
+  Glossy(const RtsLobe& lobe, uint32_t hit)
+      : facets(lobe.parameter[0][hit]), eta(lobe.parameter[1][hit]) {}
   double reflectance(double cosine) const { return eta > 0 ? fresnelAt(cosine, eta) : 1; }
 };
 
-void evaluateGlossy(const RtsLobe* lobe, const RtsHits* hits, uint32_t n, const uint32_t* hit, const float* const direction[3],
-                    float* const value[3], float* density) {
+void evaluateGlossy(const RtsLobe* lobe, const RtsHits* hits, uint32_t n, const uint32_t* hit,
+                    const float* const direction[3], float* const value[3], float* density) {
   for (uint32_t i = 0; i < n; i++) {
     const Frame frame(*lobe, hit[i]);
     const Vec v = toEye(frame, *hits, hit[i]), w = towards(frame, direction, i);
@@ -142,8 +151,9 @@ void evaluateGlossy(const RtsLobe* lobe, const RtsHits* hits, uint32_t n, const 
   }
 }
 
-void sampleGlossy(const RtsLobe* lobe, const RtsHits* hits, uint32_t n, const uint32_t* hit, const float* const square[2],
-                  float* const direction[3], float* const quotient[3], float* density) {
+void sampleGlossy(const RtsLobe* lobe, const RtsHits* hits, uint32_t n, const uint32_t* hit,
+                  const float* const square[2], float* const direction[3], float* const quotient[3],
+                  float* density) {
   for (uint32_t i = 0; i < n; i++) {
     const Frame frame(*lobe, hit[i]);
     const Vec v = toEye(frame, *hits, hit[i]);
@@ -161,12 +171,14 @@ void sampleGlossy(const RtsLobe* lobe, const RtsHits* hits, uint32_t n, const ui
   }
 }
 
-// Both sides of a rough boundary. eta: index on the eye's side over that behind. A part of the last digits of the second number
-// chooses between reflection and refraction: they are spread as evenly as the first ones.
+// Both sides of a rough boundary. eta: index on the eye's side over that behind. A part of the last
+// digits of the second number chooses between reflection and refraction: they are spread as evenly
+// as the first ones.
 struct Boundary {
   Facets facets;
   double eta;
-  Boundary(const RtsLobe& lobe, uint32_t hit) : facets(lobe.parameter[1][hit]), eta(lobe.parameter[0][hit]) {
+  Boundary(const RtsLobe& lobe, uint32_t hit)
+      : facets(lobe.parameter[1][hit]), eta(lobe.parameter[0][hit]) {
     if (!(eta > 0) || !std::isfinite(eta)) eta = 1;
   }
   // Value and density of light from w; half: normal of the facet that leads it to v, on v's side.
@@ -174,7 +186,9 @@ struct Boundary {
     value = density = 0;
     if (!(v.z > 0) || w.z == 0) return;
     const bool reflected = w.z > 0;
-    Vec h = reflected ? unit(v + w) : unit(eta * v + w); // Walter's equations 13 and 16, scaled by the index behind
+    Vec h = reflected
+                ? unit(v + w)
+                : unit(eta * v + w); // Walter's equations 13 and 16, scaled by the index behind
     if (h.z < 0) h = -1 * h;
     const double vh = dot(v, h), wh = dot(w, h);
     if (!(vh > 0) || (reflected ? wh <= 0 : wh >= 0)) return;
@@ -184,7 +198,8 @@ struct Boundary {
       density = f * facets.masking(v) * d / (4 * v.z);
       return;
     }
-    const double root = eta * vh + wh; // with radiance compressed by eta^2, as at the smooth boundary
+    const double root =
+        eta * vh + wh; // with radiance compressed by eta^2, as at the smooth boundary
     if (root == 0) return;
     const double spread = std::fabs(wh) / (root * root);
     density = (1 - f) * facets.visibleDensity(v, h) * spread;
@@ -192,8 +207,8 @@ struct Boundary {
   }
 };
 
-void evaluateBoundary(const RtsLobe* lobe, const RtsHits* hits, uint32_t n, const uint32_t* hit, const float* const direction[3],
-                      float* const value[3], float* density) {
+void evaluateBoundary(const RtsLobe* lobe, const RtsHits* hits, uint32_t n, const uint32_t* hit,
+                      const float* const direction[3], float* const value[3], float* density) {
   for (uint32_t i = 0; i < n; i++) {
     const Frame frame(*lobe, hit[i]);
     double f, p;
@@ -203,8 +218,9 @@ void evaluateBoundary(const RtsLobe* lobe, const RtsHits* hits, uint32_t n, cons
   }
 }
 
-void sampleBoundary(const RtsLobe* lobe, const RtsHits* hits, uint32_t n, const uint32_t* hit, const float* const square[2],
-                    float* const direction[3], float* const quotient[3], float* density) {
+void sampleBoundary(const RtsLobe* lobe, const RtsHits* hits, uint32_t n, const uint32_t* hit,
+                    const float* const square[2], float* const direction[3],
+                    float* const quotient[3], float* density) {
   for (uint32_t i = 0; i < n; i++) {
     const Frame frame(*lobe, hit[i]);
     const Vec v = toEye(frame, *hits, hit[i]);
@@ -214,18 +230,21 @@ void sampleBoundary(const RtsLobe* lobe, const RtsHits* hits, uint32_t n, const 
     if (!(v.z > 0)) continue;
     const Boundary b(*lobe, hit[i]);
     const Vec h = b.facets.visible(v, square[0][i], square[1][i]);
-    const double choice = square[1][i] * 4096.0 - std::floor(square[1][i] * 4096.0), cosine = std::min(1.0, dot(v, h));
+    const double choice = square[1][i] * 4096.0 - std::floor(square[1][i] * 4096.0),
+                 cosine = std::min(1.0, dot(v, h));
     if (!(cosine > 0)) continue;
     double behind;
     const double f = fresnel(cosine, b.eta, behind);
     const bool reflected = choice < f;
-    const Vec w = unit(reflected ? 2 * cosine * h + -1 * v : (b.eta * cosine - behind) * h + -b.eta * v);
+    const Vec w =
+        unit(reflected ? 2 * cosine * h + -1 * v : (b.eta * cosine - behind) * h + -b.eta * v);
     if (reflected ? !(w.z > 0) : !(w.z < 0)) continue;
     double value, p;
     b.answer(v, w, value, p);
     if (!(p > 0)) continue;
     frame.toWorld(w, direction, i);
-    put(quotient, i, (reflected ? 1 : b.eta * b.eta) * b.facets.shadowing(v, w) / b.facets.masking(v));
+    put(quotient, i,
+        (reflected ? 1 : b.eta * b.eta) * b.facets.shadowing(v, w) / b.facets.masking(v));
     density[i] = float(p);
   }
 }
@@ -267,7 +286,8 @@ namespace {
 // The class whose lobes a batch has; null: unknown.
 const RtsClass* classOf(const RtsBatch* batch) {
   if (!batch || !batch->points) return nullptr;
-  return (*batch->scene->shaders)[batch->scene->records[batch->points->record[0]].shader].shaderClass;
+  return (*batch->scene->shaders)[batch->scene->records[batch->points->record[0]].shader]
+      .shaderClass;
 }
 
 // Calls a function of a plug-in's lobe under the name of its class.
@@ -296,21 +316,27 @@ LobeAnswers::LobeAnswers(Arena& arena, uint32_t n, const RtsBatch* batch) : batc
   density = arena.take<float>(padded(n));
 }
 
-void LobeAnswers::evaluate(const RtsLobe& lobe, const RtsHits& hits, uint32_t n, const uint32_t* hit,
-                           const float* const directions[3]) {
-  if (lobe.kind != RTS_LOBE_CUSTOM) return scatteringOf(lobe)->evaluate(&lobe, &hits, n, hit, directions, value, density);
-  callCustom(batch_, [&] { lobe.functions->evaluate(&lobe, &hits, n, hit, directions, value, density); });
+void LobeAnswers::evaluate(const RtsLobe& lobe, const RtsHits& hits, uint32_t n,
+                           const uint32_t* hit, const float* const directions[3]) {
+  if (lobe.kind != RTS_LOBE_CUSTOM)
+    return scatteringOf(lobe)->evaluate(&lobe, &hits, n, hit, directions, value, density);
+  callCustom(batch_,
+             [&] { lobe.functions->evaluate(&lobe, &hits, n, hit, directions, value, density); });
   checkCustom(batch_, {value[0], value[1], value[2], density}, n);
 }
 
-LobeSamples::LobeSamples(Arena& arena, uint32_t n, const RtsBatch* batch) : LobeAnswers(arena, n, batch) {
+LobeSamples::LobeSamples(Arena& arena, uint32_t n, const RtsBatch* batch)
+    : LobeAnswers(arena, n, batch) {
   for (auto& a : direction) a = arena.take<float>(padded(n));
 }
 
 void LobeSamples::sample(const RtsLobe& lobe, const RtsHits& hits, uint32_t n, const uint32_t* hit,
                          const float* const square[2]) {
-  if (lobe.kind != RTS_LOBE_CUSTOM) return scatteringOf(lobe)->sample(&lobe, &hits, n, hit, square, direction, value, density);
-  callCustom(batch_, [&] { lobe.functions->sample(&lobe, &hits, n, hit, square, direction, value, density); });
+  if (lobe.kind != RTS_LOBE_CUSTOM)
+    return scatteringOf(lobe)->sample(&lobe, &hits, n, hit, square, direction, value, density);
+  callCustom(batch_, [&] {
+    lobe.functions->sample(&lobe, &hits, n, hit, square, direction, value, density);
+  });
   checkCustom(batch_, {value[0], value[1], value[2], density}, n);
   for (uint32_t i = 0; i < n; i++) { // what is no direction leads nowhere
     const float d[3] = {direction[0][i], direction[1][i], direction[2][i]};

@@ -1,4 +1,3 @@
-// media.cpp: see media.h.
 #include "render/surface/media.h"
 
 #include <algorithm>
@@ -13,7 +12,8 @@ uint16_t mediumOf(const MediaStack& stack, std::span<const RtsMedium> media) {
   return top;
 }
 
-Crossing cross(const MediaStack& stack, uint16_t medium, bool back, std::span<const RtsMedium> media) {
+Crossing cross(const MediaStack& stack, uint16_t medium, bool back,
+               std::span<const RtsMedium> media) {
   Crossing c{stack, mediumOf(stack, media), 0, true, false};
   if (back) {
     const auto last = std::find(c.behind.rbegin(), c.behind.rend(), medium);
@@ -28,7 +28,9 @@ Crossing cross(const MediaStack& stack, uint16_t medium, bool back, std::span<co
     return c;
   }
   c.seen = !c.from || media[c.from - 1].priority <= media[medium - 1].priority;
-  if (const auto free = std::find(c.behind.begin(), c.behind.end(), uint16_t(0)); free != c.behind.end()) *free = medium;
+  if (const auto free = std::find(c.behind.begin(), c.behind.end(), uint16_t(0));
+      free != c.behind.end())
+    *free = medium;
   c.to = medium;
   return c;
 }

@@ -1,5 +1,6 @@
-// media.h: the bodies that a ray is inside of, and what it meets at their boundaries. Bodies may overlap: the one of the highest
-// priority is there (C. Schmidt, B. Budge, "Simple Nested Dielectrics in Ray Traced Images", JGT 7(2), 2002). Pure functions.
+// media.h: the bodies that a ray is inside of, and what it meets at their boundaries. Bodies may
+// overlap: the one of the highest priority is there (C. Schmidt, B. Budge, "Simple Nested
+// Dielectrics in Ray Traced Images", JGT 7(2), 2002). Pure functions.
 #pragma once
 
 #include <array>
@@ -10,7 +11,8 @@
 
 namespace openrt {
 
-// Numbers from 1 into a scene's media, in the order they were entered; 0: none. A fifth body inside four others is not noticed.
+// Numbers from 1 into a scene's media, in the order they were entered; 0: none. A fifth body inside
+// four others is not noticed.
 using MediaStack = std::array<uint16_t, 4>;
 
 // The medium a ray of this stack is in, 0: none. Of equal priorities the one entered last.
@@ -23,7 +25,8 @@ struct Crossing {
   bool unknown;      // the ray came from inside a body that it never entered: there the eye is
 };
 // A ray meets the boundary of a medium; back: from inside.
-Crossing cross(const MediaStack& stack, uint16_t medium, bool back, std::span<const RtsMedium> media);
+Crossing cross(const MediaStack& stack, uint16_t medium, bool back,
+               std::span<const RtsMedium> media);
 
 // Index of refraction of a medium (0: nothing, 1) by colour.
 inline float indexOf(uint16_t medium, int colour, std::span<const RtsMedium> media) {

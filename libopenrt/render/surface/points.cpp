@@ -1,5 +1,5 @@
-// points.cpp: position with its error bound, normals, texture coordinates and colour of hits. Bounds follow pbrt's running
-// error analysis: gamma(n) = n e / (1 - n e), e = 2^-24.
+// points.cpp: position with its error bound, normals, texture coordinates and colour of hits.
+// Bounds follow pbrt's running error analysis: gamma(n) = n e / (1 - n e), e = 2^-24.
 #include "render/surface/points.h"
 
 #include <algorithm>
@@ -15,7 +15,8 @@ namespace {
 constexpr float gammaOf(int n) { return n * 0x1p-24f / (1 - n * 0x1p-24f); }
 
 struct Out { // arrays being filled for one lane
-  float *position[3], *direction[3], *geometric[3], *normal[3], *uv[2], *color[4], *distance, *segment, *error;
+  float *position[3], *direction[3], *geometric[3], *normal[3], *uv[2], *color[4], *distance,
+      *segment, *error;
   uint32_t *flags, *record;
   const void** params;
 };
@@ -31,7 +32,8 @@ void applyBound(const Affine& m, const float p[3], const float e[3], float out[3
     const float x = r[0] * p[0], y = r[1] * p[1], z = r[2] * p[2];
     out[i] = x + y + z + r[3];
     const float magnitude = std::fabs(x) + std::fabs(y) + std::fabs(z) + std::fabs(r[3]);
-    bound[i] = std::fabs(r[0]) * e[0] + std::fabs(r[1]) * e[1] + std::fabs(r[2]) * e[2] + 2 * gammaOf(4) * magnitude;
+    bound[i] = std::fabs(r[0]) * e[0] + std::fabs(r[1]) * e[1] + std::fabs(r[2]) * e[2] +
+               2 * gammaOf(4) * magnitude;
   }
 }
 
@@ -47,8 +49,11 @@ bool normalize(float v[3]) {
   return true;
 }
 
-template <int N> void mix(const float* values, const uint32_t i[3], const float w[3], float out[N]) {
-  for (int k = 0; k < N; k++) out[k] = w[0] * values[N * i[0] + k] + w[1] * values[N * i[1] + k] + w[2] * values[N * i[2] + k];
+template <int N>
+void mix(const float* values, const uint32_t i[3], const float w[3], float out[N]) {
+  for (int k = 0; k < N; k++)
+    out[k] =
+        w[0] * values[N * i[0] + k] + w[1] * values[N * i[1] + k] + w[2] * values[N * i[2] + k];
 }
 
 struct Local { // one hit being worked out
@@ -62,7 +67,8 @@ void triangle(const Record& r, const RayHits& hits, uint32_t lane, Local& h) {
   const uint32_t i[3] = {corner[0], corner[1], corner[2]};
   const float u = hits.u[lane], v = hits.v[lane];
   const float w[3] = {1 - u - v, u, v};
-  const float *a = r.vertices + 3 * size_t(i[0]), *b = r.vertices + 3 * size_t(i[1]), *c = r.vertices + 3 * size_t(i[2]);
+  const float *a = r.vertices + 3 * size_t(i[0]), *b = r.vertices + 3 * size_t(i[1]),
+              *c = r.vertices + 3 * size_t(i[2]);
   float p[3], e[3];
   for (int k = 0; k < 3; k++) {
     const float x = w[0] * a[k], y = w[1] * b[k], z = w[2] * c[k];
@@ -104,7 +110,8 @@ void sphere(const Record& r, const Rays& rays, const RayHits& hits, uint32_t lan
     l[2] = 1;
   }
   const float e[3] = {gammaOf(5), gammaOf(5), gammaOf(5)};
-  if (metInDouble(r)) // t is right to its last bit: near to the ray's origin the place is known far better than the radius
+  if (metInDouble(r)) // t is right to its last bit: near to the ray's origin the place is known far
+                      // better than the radius
     for (int k = 0; k < 3; k++) {
       h.p[k] = p[k];
       h.bound[k] = bound[k];
@@ -112,7 +119,8 @@ void sphere(const Record& r, const Rays& rays, const RayHits& hits, uint32_t lan
   else
     applyBound(r.toRender, l, e, h.p, h.bound);
   apply(r.normalMatrix, l, h.ng);
-  // Clause 6.43: s runs counter-clockwise seen from above, from the back; t from the bottom to the top.
+  // Clause 6.43: s runs counter-clockwise seen from above, from the back; t from the bottom to the
+  // top.
   const float turn = std::atan2(-l[0], -l[2]) * float(0.5 / M_PI);
   h.uv[0] = turn < 0 ? turn + 1 : turn;
   h.uv[1] = 0.5f + std::asin(std::clamp(l[1], -1.0f, 1.0f)) * float(1 / M_PI);
@@ -138,14 +146,19 @@ void thin(const Record& r, const Rays& rays, const RayHits& hits, uint32_t lane,
   h.flags |= RTS_HIT_COLOR;
 }
 
-// The shader's parameters with the hit's values in place of those that the geometry has of its own: a private copy.
-const void* ownParameters(const RenderScene& scene, const Record& r, const RayHits& hits, uint32_t lane, Arena& arena) {
+// The shader's parameters with the hit's values in place of those that the geometry has of its own:
+// a private copy.
+const void* ownParameters(const RenderScene& scene, const Record& r, const RayHits& hits,
+                          uint32_t lane, Arena& arena) {
   const ShaderSlot& shader = (*scene.shaders)[r.shader];
   auto* block = arena.take<std::byte>(shader.shaderClass->paramSize);
   std::memcpy(block, shader.params, shader.shaderClass->paramSize);
   const size_t primitive = hits.primitive[lane];
-  const size_t corners = r.primitive == edit::Primitive::Triangles ? 3 : r.primitive == edit::Primitive::Lines ? 2 : 1;
-  const float u = corners == 2 ? std::clamp(hits.u[lane], 0.0f, 1.0f) : hits.u[lane], v = corners == 3 ? hits.v[lane] : 0;
+  const size_t corners = r.primitive == edit::Primitive::Triangles ? 3
+                         : r.primitive == edit::Primitive::Lines   ? 2
+                                                                   : 1;
+  const float u = corners == 2 ? std::clamp(hits.u[lane], 0.0f, 1.0f) : hits.u[lane],
+              v = corners == 3 ? hits.v[lane] : 0;
   const float w[3] = {1 - u - v, u, v};
   for (uint32_t p = 0; p < r.parameterCount; p++) {
     const GeometryParameter& own = r.parameters[p];
@@ -159,7 +172,8 @@ const void* ownParameters(const RenderScene& scene, const Record& r, const RayHi
         for (size_t k = 0; k < n; k++) mixed[k] += w[c] * at[k];
       }
     } else {
-      std::copy_n(values + n * (own.perVertex ? size_t(r.indices[primitive]) : primitive), n, mixed);
+      std::copy_n(values + n * (own.perVertex ? size_t(r.indices[primitive]) : primitive), n,
+                  mixed);
     }
     if (param.minimum != 0 || param.maximum != 0) // weights may be below 0 by a rounding error
       for (size_t k = 0; k < n; k++) mixed[k] = std::clamp(mixed[k], param.minimum, param.maximum);
@@ -168,7 +182,8 @@ const void* ownParameters(const RenderScene& scene, const Record& r, const RayHi
   return block;
 }
 
-void store(const Record& r, const Rays& rays, uint32_t lane, Local& h, const Out& out, uint32_t to) {
+void store(const Record& r, const Rays& rays, uint32_t lane, Local& h, const Out& out,
+           uint32_t to) {
   const float d[3] = {rays.dir[0][lane], rays.dir[1][lane], rays.dir[2][lane]};
   if (!normalize(h.ng))
     for (int k = 0; k < 3; k++) h.ng[k] = -d[k];
@@ -178,7 +193,8 @@ void store(const Record& r, const Rays& rays, uint32_t lane, Local& h, const Out
   if (!thinHit && away != r.flip) h.flags |= RTS_HIT_BACK;
   const float sign = away ? -1.0f : 1.0f;
   if (h.smooth && !normalize(h.ns)) h.smooth = false;
-  // A given normal is used as given; seen from the back it is turned with the face (accuracy: two-sided lighting).
+  // A given normal is used as given; seen from the back it is turned with the face (accuracy:
+  // two-sided lighting).
   const float smoothSign = (h.flags & RTS_HIT_BACK) ? -1.0f : 1.0f;
   float error = 0;
   for (int k = 0; k < 3; k++) {
@@ -192,15 +208,17 @@ void store(const Record& r, const Rays& rays, uint32_t lane, Local& h, const Out
   out.color[3][to] = h.color[3];
   out.uv[0][to] = h.uv[0];
   out.uv[1][to] = h.uv[1];
-  // A face within a plane through the origin of an axis has no error along it; the step off it must still be one.
+  // A face within a plane through the origin of an axis has no error along it; the step off it must
+  // still be one.
   out.error[to] = std::max(error, 0x1p-6f * std::max({h.bound[0], h.bound[1], h.bound[2]}));
   out.flags[to] = h.flags;
 }
 
 } // namespace
 
-void sortByBucket(const RenderScene& scene, const RayHits& hits, const uint32_t* rayLanes, uint32_t n, uint32_t* order,
-                  std::vector<uint32_t>& counts, std::vector<BucketRange>& ranges) {
+void sortByBucket(const RenderScene& scene, const RayHits& hits, const uint32_t* rayLanes,
+                  uint32_t n, uint32_t* order, std::vector<uint32_t>& counts,
+                  std::vector<BucketRange>& ranges) {
   ranges.clear();
   if (scene.buckets.size() == 1) {
     std::copy(rayLanes, rayLanes + n, order);
@@ -216,11 +234,12 @@ void sortByBucket(const RenderScene& scene, const RayHits& hits, const uint32_t*
     counts[b] = begin;
     begin += c;
   }
-  for (uint32_t i = 0; i < n; i++) order[counts[scene.records[hits.record[rayLanes[i]]].bucket]++] = rayLanes[i];
+  for (uint32_t i = 0; i < n; i++)
+    order[counts[scene.records[hits.record[rayLanes[i]]].bucket]++] = rayLanes[i];
 }
 
-Points makePoints(const RenderScene& scene, const Rays& rays, const RayHits& hits, const uint32_t* order, uint32_t n,
-                  const float* travelled, Arena& arena) {
+Points makePoints(const RenderScene& scene, const Rays& rays, const RayHits& hits,
+                  const uint32_t* order, uint32_t n, const float* travelled, Arena& arena) {
   const uint32_t size = padded(n);
   Out out;
   const auto floats = [&] { return arena.take<float>(size); };
@@ -247,7 +266,8 @@ Points makePoints(const RenderScene& scene, const Rays& rays, const RayHits& hit
     out.distance[i] = travelled[lane] + hits.t[lane];
     out.segment[i] = hits.t[lane];
     out.record[i] = hits.record[lane];
-    out.params[i] = r.parameterCount ? ownParameters(scene, r, hits, lane, arena) : (*scene.shaders)[r.shader].params;
+    out.params[i] = r.parameterCount ? ownParameters(scene, r, hits, lane, arena)
+                                     : (*scene.shaders)[r.shader].params;
   }
   Points points;
   RtsHits& to = points.hits;

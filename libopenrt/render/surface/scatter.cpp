@@ -1,9 +1,11 @@
-// scatter.cpp: surfaces described by lobes: light from the lights, then the rays that go on. The other half of TileRenderer.
+// scatter.cpp: surfaces described by lobes: light from the lights, then the rays that go on. The
+// other half of TileRenderer.
 //
-// Transports. Direct: lights alone. Whitted: every mirror image and refraction is followed, deterministically, until a branch
-// carries less than the frame's energy cut of the camera ray. Path: also a direction from each lobe that scatters; where a path
-// has split already one way is chosen with a probability in proportion to what it carries, and from the fourth surface on Russian
-// roulette ends paths.
+// Transports. Direct: lights alone. Whitted: every mirror image and refraction is followed,
+// deterministically, until a branch carries less than the frame's energy cut of the camera ray.
+// Path: also a direction from each lobe that scatters; where a path has split already one way is
+// chosen with a probability in proportion to what it carries, and from the fourth surface on
+// Russian roulette ends paths.
 #include "render/surface/scatter.h"
 
 #include <algorithm>
@@ -22,10 +24,12 @@ constexpr uint32_t rouletteFrom = 3;
 
 } // namespace
 
-// A light's colour is the radiance of a white Lambert surface that faces it (openrts.h), so pi of it arrive.
+// A light's colour is the radiance of a white Lambert surface that faces it (openrts.h), so pi of
+// it arrive.
 void TileRenderer::addLights(RtsBatch& batch, const RtsHits& hits, float* const radiance[3]) {
   uint32_t scattering = 0;
-  for (uint32_t l = 0; l < batch.lobeCount; l++) scattering += scatteringOf(batch.lobes[l]) != nullptr;
+  for (uint32_t l = 0; l < batch.lobeCount; l++)
+    scattering += scatteringOf(batch.lobes[l]) != nullptr;
   const uint32_t lights = scattering ? scene_.host.lights(&batch) : 0, n = hits.count;
   if (lights == 0) return;
   makeRoomForLight(batch, n);
@@ -64,7 +68,8 @@ void TileRenderer::addLights(RtsBatch& batch, const RtsHits& hits, float* const 
   }
 }
 
-void TileRenderer::scatterRange(Paths& paths, const Points& points, const Bucket& bucket, const uint32_t* order) {
+void TileRenderer::scatterRange(Paths& paths, const Points& points, const Bucket& bucket,
+                                const uint32_t* order) {
   const RtsHits& hits = points.hits;
   const uint32_t size = padded(hits.count);
   RtsSurface surface;
@@ -83,7 +88,9 @@ void TileRenderer::scatterRange(Paths& paths, const Points& points, const Bucket
   Boundaries boundaries{nullptr, nullptr};
   if (bucket.shaderClass->medium) meetBoundaries(batch, paths.state, boundaries);
   for (uint32_t i = 0; i < hits.count; i++) {
-    const float share = boundaries.crossing && !boundaries.crossing[i].seen ? 0 : chanceMet(paths.state[order[i]], points, i);
+    const float share = boundaries.crossing && !boundaries.crossing[i].seen
+                            ? 0
+                            : chanceMet(paths.state[order[i]], points, i);
     for (int k = 0; k < 3; k++) radiance[k][i] *= share;
     if (const RayState& ray = paths.state[order[i]]; share > 0 && ray.byChance) {
       const float light[3] = {radiance[0][i], radiance[1][i], radiance[2][i]};
@@ -112,12 +119,14 @@ void TileRenderer::scatterRange(Paths& paths, const Points& points, const Bucket
     else
       sendOn(batch, points, i, order[i], paths, samples, boundaries, choices, chance);
   }
-  if (emitters) addEmitters(batch, points, order, paths, random, chance, boundaries.crossing, radiance);
+  if (emitters)
+    addEmitters(batch, points, order, paths, random, chance, boundaries.crossing, radiance);
   float* fog[4];
   attenuate(points, paths, order, fog);
   for (uint32_t i = 0; i < hits.count; i++) {
     const RayState& ray = paths.state[order[i]];
-    float clear[3] = {0, 0, 0}, seen[3] = {0, 0, 0}, covered = 0; // straight behind; there, in mirrors and through lenses
+    float clear[3] = {0, 0, 0}, seen[3] = {0, 0, 0},
+          covered = 0; // straight behind; there, in mirrors and through lenses
     const bool unseen = boundaries.crossing && !boundaries.crossing[i].seen;
     for (uint32_t l = 0; l < batch.lobeCount; l++) {
       float w[3];
@@ -130,8 +139,10 @@ void TileRenderer::scatterRange(Paths& paths, const Points& points, const Bucket
     for (int k = 0; k < 3; k++) {
       if (unseen) seen[k] = clear[k] = 1;
       float light = std::isfinite(radiance[k][i]) ? radiance[k][i] : 0.0f;
-      // Fog counts the whole length of a path: what is seen beyond brings the air's light of the way to here with it.
-      if (fog[3]) light = fog[3][i] * light + (1 - fog[3][i]) * fog[k][i] * (1 - std::min(seen[k], 1.0f));
+      // Fog counts the whole length of a path: what is seen beyond brings the air's light of the
+      // way to here with it.
+      if (fog[3])
+        light = fog[3][i] * light + (1 - fog[3][i]) * fog[k][i] * (1 - std::min(seen[k], 1.0f));
       paths.radiance[k][ray.path] += ray.throughput[k] * light;
       covered += ray.throughput[k] * (1 - std::min(clear[k], 1.0f));
     }
@@ -140,28 +151,35 @@ void TileRenderer::scatterRange(Paths& paths, const Points& points, const Bucket
   }
 }
 
-// The share of a surface's own light that belongs to the ray: the rest comes from those who choose places on emitters.
+// The share of a surface's own light that belongs to the ray: the rest comes from those who choose
+// places on emitters.
 float TileRenderer::chanceMet(const RayState& ray, const Points& points, uint32_t i) const {
-  const uint32_t lane = points.order[i], record = points.rayHits->record[lane], primitive = points.rayHits->primitive[lane];
+  const uint32_t lane = points.order[i], record = points.rayHits->record[lane],
+                 primitive = points.rayHits->primitive[lane];
   const RtsHits& h = points.hits;
   const float direction[3] = {h.direction[0][i], h.direction[1][i], h.direction[2][i]};
-  if (scene_.lightSources && ray.course == Course::through && scene_.emitters.sends(record, primitive, direction)) return 0;
+  if (scene_.lightSources && ray.course == Course::through &&
+      scene_.emitters.sends(record, primitive, direction))
+    return 0;
   if (!(ray.density > 0)) return 1;
-  const float chosen = scene_.emitters.density(ray.from, record, primitive, direction, h.segment[i]);
+  const float chosen =
+      scene_.emitters.density(ray.from, record, primitive, direction, h.segment[i]);
   return std::isfinite(chosen) ? ray.density / (ray.density + chosen) : 0.0f;
 }
 
 void TileRenderer::sampleAt(uint32_t path, uint32_t pair, float& u, float& v) const {
   if (root_) path = root_[path];
   const uint32_t sample = firstSample_ + path % samples_;
-  PairSampler(pixels_[path / samples_], pair, replicates_.seedOf(sample))(replicates_.indexOf(sample), u, v);
+  PairSampler(pixels_[path / samples_], pair,
+              replicates_.seedOf(sample))(replicates_.indexOf(sample), u, v);
 }
 
 TileRenderer::Random TileRenderer::randomOf(const Paths& paths, const uint32_t* order, uint32_t n) {
   Random random{n, arena_.take<uint32_t>(n), arena_.take<uint32_t>(n), arena_.take<uint32_t>(n)};
   for (uint32_t i = 0; i < n; i++) {
     const RayState& ray = paths.state[order[i]];
-    const uint32_t path = root_ ? root_[ray.path] : ray.path, sample = firstSample_ + path % samples_;
+    const uint32_t path = root_ ? root_[ray.path] : ray.path,
+                   sample = firstSample_ + path % samples_;
     random.key[i] = hash(pixels_[path / samples_], replicates_.seedOf(sample));
     random.index[i] = replicates_.indexOf(sample);
     random.pair[i] = pairOf(ray, Draw::direction);
@@ -171,12 +189,14 @@ TileRenderer::Random TileRenderer::randomOf(const Paths& paths, const uint32_t* 
 
 void TileRenderer::draw(const Random& random, Draw what, uint32_t apart, float* square[2]) {
   for (int k = 0; k < 2; k++) square[k] = arena_.take<float>(random.count);
-  samplePairs(random.count, random.key, random.pair, uint32_t(what) - uint32_t(Draw::direction) + apart, random.index, square[0],
+  samplePairs(random.count, random.key, random.pair,
+              uint32_t(what) - uint32_t(Draw::direction) + apart, random.index, square[0],
               square[1]);
 }
 
 // A direction for every hit from a lobe that scatters.
-const LobeSamples* TileRenderer::sampleLobe(const RtsBatch& batch, uint32_t l, const RtsHits& hits, const Random& random) {
+const LobeSamples* TileRenderer::sampleLobe(const RtsBatch& batch, uint32_t l, const RtsHits& hits,
+                                            const Random& random) {
   auto* samples = new (arena_.take<LobeSamples>(1)) LobeSamples(arena_, hits.count, &batch);
   ArenaScope scope(arena_);
   const uint32_t* all = arena_.takeNumbers(hits.count);
@@ -187,7 +207,8 @@ const LobeSamples* TileRenderer::sampleLobe(const RtsBatch& batch, uint32_t l, c
 }
 
 // Straight through a boundary that is not there for light.
-void TileRenderer::passOn(const Points& points, uint32_t i, uint32_t lane, const Crossing& crossing, Paths& paths) {
+void TileRenderer::passOn(const Points& points, uint32_t i, uint32_t lane, const Crossing& crossing,
+                          Paths& paths) {
   const RayState& ray = paths.state[lane];
   Step step{.weight = {1, 1, 1},
             .density = 0,
@@ -201,13 +222,16 @@ void TileRenderer::passOn(const Points& points, uint32_t i, uint32_t lane, const
   push(points, i, lane, step, paths);
 }
 
-// The rays that go on from hit i: all of them, or one of them chosen. chance: of each lobe's direction to be followed; it must
-// not depend on the directions themselves, which light from emitters is weighed against.
-void TileRenderer::sendOn(const RtsBatch& batch, const Points& points, uint32_t i, uint32_t lane, Paths& paths,
-                          const LobeSamples* const samples[], const Boundaries& boundaries, float* const choices[2],
+// The rays that go on from hit i: all of them, or one of them chosen. chance: of each lobe's
+// direction to be followed; it must not depend on the directions themselves, which light from
+// emitters is weighed against.
+void TileRenderer::sendOn(const RtsBatch& batch, const Points& points, uint32_t i, uint32_t lane,
+                          Paths& paths, const LobeSamples* const samples[],
+                          const Boundaries& boundaries, float* const choices[2],
                           float* const chance[]) {
   const RayState ray = paths.state[lane];
-  const bool path = scene_.frame.transport >= RT_TRANSPORT_PATH, direct = scene_.frame.transport == RT_TRANSPORT_DIRECT;
+  const bool path = scene_.frame.transport >= RT_TRANSPORT_PATH,
+             direct = scene_.frame.transport == RT_TRANSPORT_DIRECT;
   Ways ways(points.hits, i, boundaries.eta ? boundaries.eta[i] : nullptr, ray.channel);
   for (uint32_t l = 0; l < batch.lobeCount; l++) {
     if (direct && batch.lobes[l].kind != RTS_LOBE_TRANSPARENT) continue;
@@ -217,7 +241,8 @@ void TileRenderer::sendOn(const RtsBatch& batch, const Points& points, uint32_t 
   float carried[Ways::maximum], sum = 0;
   for (uint32_t w = 0; w < ways.count; w++) {
     const Way& way = ways.list[w];
-    const float left[3] = {way.share[0] * ray.throughput[0], way.share[1] * ray.throughput[1], way.share[2] * ray.throughput[2]};
+    const float left[3] = {way.share[0] * ray.throughput[0], way.share[1] * ray.throughput[1],
+                           way.share[2] * ray.throughput[2]};
     sum += carried[w] = largest(left);
   }
   if (!(sum > 0)) return;
@@ -235,7 +260,8 @@ void TileRenderer::sendOn(const RtsBatch& batch, const Points& points, uint32_t 
       if (survival >= stay) return;
       kept *= stay;
     } else if (!path && carried[w] < scene_.frame.energyCut) {
-      for (int k = 0; k < 3; k++) ledger_.cutByEnergy += double(way.share[k]) * double(ray.throughput[k]);
+      for (int k = 0; k < 3; k++)
+        ledger_.cutByEnergy += double(way.share[k]) * double(ray.throughput[k]);
       return;
     }
     Step step{.density = way.density * probability,

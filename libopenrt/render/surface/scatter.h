@@ -1,4 +1,5 @@
-// scatter.h: where light comes from that leaves a surface described by lobes: directions, Fresnel's equations. Pure functions.
+// scatter.h: where light comes from that leaves a surface described by lobes: directions, Fresnel's
+// equations. Pure functions.
 #pragma once
 
 #include <algorithm>
@@ -8,7 +9,9 @@
 
 namespace openrt {
 
-inline float dot3(const float a[3], const float b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+inline float dot3(const float a[3], const float b[3]) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
 
 inline float largest(const float v[3]) { return std::max({v[0], v[1], v[2]}); }
 
@@ -18,9 +21,10 @@ inline void reflectAt(const float d[3], const float n[3], float out[3]) {
   for (int k = 0; k < 3; k++) out[k] = d[k] - twice * n[k];
 }
 
-// Fresnel reflectance of unpolarised light at a smooth dielectric boundary. cosine: of the angle of incidence, 0..1; eta: index
-// on the ray's side over that behind; cosineBehind gets the refracted angle's, 0 under total reflection. In double: near the
-// critical angle the root loses half of the digits. M. Born, E. Wolf, "Principles of Optics", 1.5.2.
+// Fresnel reflectance of unpolarised light at a smooth dielectric boundary. cosine: of the angle of
+// incidence, 0..1; eta: index on the ray's side over that behind; cosineBehind gets the refracted
+// angle's, 0 under total reflection. In double: near the critical angle the root loses half of the
+// digits. M. Born, E. Wolf, "Principles of Optics", 1.5.2.
 inline double fresnel(double cosine, double eta, double& cosineBehind) {
   const double sineBehind2 = eta * eta * std::max(0.0, 1 - cosine * cosine);
   if (sineBehind2 >= 1) {
@@ -34,13 +38,15 @@ inline double fresnel(double cosine, double eta, double& cosineBehind) {
 }
 
 // Snell's law in vectors; d towards the surface, n against it.
-inline void refractAt(const float d[3], const float n[3], double eta, double cosine, double cosineBehind, float out[3]) {
+inline void refractAt(const float d[3], const float n[3], double eta, double cosine,
+                      double cosineBehind, float out[3]) {
   double length = 0, r[3];
   for (int k = 0; k < 3; k++) {
     r[k] = eta * d[k] + (eta * cosine - cosineBehind) * n[k];
     length += r[k] * r[k];
   }
-  const double s = length > 0 ? 1 / std::sqrt(length) : 0; // unit again: errors of a long chain must not grow
+  const double s =
+      length > 0 ? 1 / std::sqrt(length) : 0; // unit again: errors of a long chain must not grow
   for (int k = 0; k < 3; k++) out[k] = float(r[k] * s);
 }
 
@@ -51,17 +57,20 @@ inline float sineSmall(float x) {
 }
 inline float cosineSmall(float x) {
   const float s = x * x;
-  return 1 + s * (-0.5f + s * (1.0f / 24 + s * (-1.0f / 720 + s * (1.0f / 40320 + s * (-1.0f / 3628800)))));
+  return 1 + s * (-0.5f +
+                  s * (1.0f / 24 + s * (-1.0f / 720 + s * (1.0f / 40320 + s * (-1.0f / 3628800)))));
 }
 
-// A direction about n with density cosine / pi from a point of the unit square: the disc of P. Shirley, K. Chiu (1997), lifted
-// to the hemisphere.
+// A direction about n with density cosine / pi from a point of the unit square: the disc of P.
+// Shirley, K. Chiu (1997), lifted to the hemisphere.
 inline void cosineDirection(const float n[3], float u, float v, float out[3]) {
   const float a = 2 * u - 1, b = 2 * v - 1;
   const bool wide = std::fabs(a) > std::fabs(b); // within an eighth of a turn of the x axis
-  const float r = wide ? a : b, other = wide ? b : a, angle = float(M_PI / 4) * (r != 0 ? other / r : 0.0f);
+  const float r = wide ? a : b, other = wide ? b : a,
+              angle = float(M_PI / 4) * (r != 0 ? other / r : 0.0f);
   const float along = r * cosineSmall(angle), across = r * sineSmall(angle);
-  const float x = wide ? along : across, y = wide ? across : along, z = std::sqrt(std::max(0.0f, 1 - x * x - y * y));
+  const float x = wide ? along : across, y = wide ? across : along,
+              z = std::sqrt(std::max(0.0f, 1 - x * x - y * y));
   float s[3], t[3];
   basisOf(n, s, t);
   for (int k = 0; k < 3; k++) out[k] = x * s[k] + y * t[k] + z * n[k];

@@ -11,7 +11,8 @@
 namespace openrt {
 namespace {
 
-// For `release`, which may come when no picture is made any more: everything is there, nothing is behind it.
+// For `release`, which may come when no picture is made any more: everything is there, nothing is
+// behind it.
 const RtsHost& idleHost() {
   static const RenderHost host = [] {
     RenderHost h;
@@ -29,8 +30,8 @@ ShaderTable::Block::~Block() {
   prepared->release(&idleHost(), bytes.get());
 }
 
-ShaderTable::ShaderTable(const Scene& scene, const ShaderRegistry& registry, const std::map<uint32_t, uint32_t>& textureIndex,
-                         const RtsHost& host) {
+ShaderTable::ShaderTable(const Scene& scene, const ShaderRegistry& registry,
+                         const std::map<uint32_t, uint32_t>& textureIndex, const RtsHost& host) {
   slots_.resize(1 + scene.shaders.size());
   blocks_.resize(slots_.size());
   classes_.resize(slots_.size());
@@ -51,7 +52,8 @@ ShaderTable::ShaderTable(const Scene& scene, const ShaderRegistry& registry, con
     const auto name = scene.classes.find(values.shaderClass);
     if (name == scene.classes.end()) continue;
     slots->emplace_hint(slots->end(), id, slot);
-    make(slot++, registry.find(name->second.name, name->second.library), &values, textureIndex, host);
+    make(slot++, registry.find(name->second.name, name->second.library), &values, textureIndex,
+         host);
   }
   slots_.resize(slot);
   blocks_.resize(slot);
@@ -59,10 +61,11 @@ ShaderTable::ShaderTable(const Scene& scene, const ShaderRegistry& registry, con
   slotOf_ = std::move(slots);
 }
 
-ShaderTable::ShaderTable(const ShaderTable& before, const std::vector<uint32_t>& changed, const Scene& scene,
-                         const std::map<uint32_t, uint32_t>& textureIndex, const RtsHost& host)
-    : slots_(before.slots_), blocks_(before.blocks_), classes_(before.classes_), media_(before.media_), slotOf_(before.slotOf_),
-      defaultShader_(before.defaultShader_) {
+ShaderTable::ShaderTable(const ShaderTable& before, const std::vector<uint32_t>& changed,
+                         const Scene& scene, const std::map<uint32_t, uint32_t>& textureIndex,
+                         const RtsHost& host)
+    : slots_(before.slots_), blocks_(before.blocks_), classes_(before.classes_),
+      media_(before.media_), slotOf_(before.slotOf_), defaultShader_(before.defaultShader_) {
   for (uint32_t id : changed) {
     const auto slot = slotOf_->find(id);
     const auto values = scene.shaders.find(id);
@@ -74,7 +77,9 @@ ShaderTable::ShaderTable(const ShaderTable& before, const std::vector<uint32_t>&
 
 uint32_t ShaderTable::slotOf(uint32_t shaderId) const {
   const auto found = slotOf_->find(shaderId);
-  return found != slotOf_->end() && slots_[found->second].shaderClass->kind == RTS_SURFACE ? found->second : 0;
+  return found != slotOf_->end() && slots_[found->second].shaderClass->kind == RTS_SURFACE
+             ? found->second
+             : 0;
 }
 
 ShaderSlot ShaderTable::role(uint32_t shaderId, RtsKind kind) const {
@@ -87,15 +92,18 @@ bool ShaderTable::extends(const ShaderTable& other) const {
   const auto same = [](const ShaderSlot& a, const ShaderSlot& b) {
     return a.shaderClass == b.shaderClass && a.traits == b.traits;
   };
-  if (slotOf_ == other.slotOf_) return std::equal(slots_.begin(), slots_.end(), other.slots_.begin(), same);
-  return same(slots_[0], other.slots_[0]) && std::all_of(other.slotOf_->begin(), other.slotOf_->end(), [&](const auto& entry) {
+  if (slotOf_ == other.slotOf_)
+    return std::equal(slots_.begin(), slots_.end(), other.slots_.begin(), same);
+  return same(slots_[0], other.slots_[0]) &&
+         std::all_of(other.slotOf_->begin(), other.slotOf_->end(), [&](const auto& entry) {
            const auto found = slotOf_->find(entry.first);
            return found != slotOf_->end() && found->second == entry.second &&
                   same(slots_[entry.second], other.slots_[entry.second]);
          });
 }
 
-// False where the class cannot make sense of the values: the default shader then stands for a surface, and nothing for others.
+// False where the class cannot make sense of the values: the default shader then stands for a
+// surface, and nothing for others.
 bool ShaderTable::make(uint32_t number, const RtsClass& shaderClass, const ShaderValues* values,
                        const std::map<uint32_t, uint32_t>& textureIndex, const RtsHost& host) {
   const auto made = std::make_shared<Block>();
@@ -106,7 +114,8 @@ bool ShaderTable::make(uint32_t number, const RtsClass& shaderClass, const Shade
     std::byte* at = block.bytes.get() + param.offset;
     const edit::ParameterT* value = nullptr;
     if (values)
-      if (auto found = values->parameters.find(i); found != values->parameters.end()) value = &found->second;
+      if (auto found = values->parameters.find(i); found != values->parameters.end())
+        value = &found->second;
     if (const size_t n = parameterFloats(param.type)) {
       float numbers[16];
       std::memcpy(numbers, param.defaultValue, sizeof numbers);
@@ -127,7 +136,8 @@ bool ShaderTable::make(uint32_t number, const RtsClass& shaderClass, const Shade
     } else if (param.type == RTS_TEXTURE) {
       RtsTexture texture = 0;
       if (value)
-        if (auto found = textureIndex.find(value->texture); found != textureIndex.end()) texture = found->second;
+        if (auto found = textureIndex.find(value->texture); found != textureIndex.end())
+          texture = found->second;
       std::memcpy(at, &texture, sizeof texture);
     }
   }
@@ -138,7 +148,8 @@ bool ShaderTable::make(uint32_t number, const RtsClass& shaderClass, const Shade
     if (shaderClass.prepare) {
       block.prepared = &shaderClass;
       if (const char* message = shaderClass.prepare(&host, block.bytes.get())) {
-        if (host.log) host.log(&host, 3, (std::string("shader ") + shaderClass.name + ": " + message).c_str());
+        if (host.log)
+          host.log(&host, 3, (std::string("shader ") + shaderClass.name + ": " + message).c_str());
         if (number != 0) {
           slots_[number] = slots_[0];
           blocks_[number] = blocks_[0];
@@ -149,7 +160,8 @@ bool ShaderTable::make(uint32_t number, const RtsClass& shaderClass, const Shade
     if (shaderClass.traits) slot.traits = shaderClass.traits(&host, slot.params);
     if (shaderClass.medium) setMedium(slot, host);
   }
-  if (shaderClass.surface && minorOf(shaderClass) < 2) slot.traits |= RTS_SPECULAR; // openrts.h, RTS_SPECULAR
+  if (shaderClass.surface && minorOf(shaderClass) < 2)
+    slot.traits |= RTS_SPECULAR; // openrts.h, RTS_SPECULAR
   slots_[number] = slot;
   blocks_[number] = made;
   return true;
@@ -160,7 +172,8 @@ void ShaderTable::setMedium(ShaderSlot& slot, const RtsHost& host) {
   RtsMedium medium{};
   bool good = slot.shaderClass->medium(&host, slot.params, &medium) != 0;
   for (int k = 0; k < 3; k++)
-    good = good && medium.index[k] > 0 && std::isfinite(medium.index[k]) && std::isfinite(medium.absorption[k]);
+    good = good && medium.index[k] > 0 && std::isfinite(medium.index[k]) &&
+           std::isfinite(medium.absorption[k]);
   if (!good) {
     slot.medium = 0;
   } else if (slot.medium) {

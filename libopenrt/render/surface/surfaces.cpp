@@ -1,4 +1,3 @@
-// surfaces.cpp: see surfaces.h.
 #include "render/surface/surfaces.h"
 
 #include <algorithm>
@@ -6,7 +5,8 @@
 
 namespace openrt {
 
-void lookThroughBacks(const RenderScene& scene, Arena& arena, RayCounters& counters, const Rays& rays, RayHits& hits) {
+void lookThroughBacks(const RenderScene& scene, Arena& arena, RayCounters& counters,
+                      const Rays& rays, RayHits& hits) {
   ArenaScope scope(arena);
   auto* lanes = arena.take<uint32_t>(rays.count);
   uint32_t n = 0;
@@ -41,10 +41,12 @@ void lookThroughBacks(const RenderScene& scene, Arena& arena, RayCounters& count
 
 namespace {
 
-uint16_t mediumAt(const RenderScene& scene, uint32_t record) { return (*scene.shaders)[scene.records[record].shader].medium; }
+uint16_t mediumAt(const RenderScene& scene, uint32_t record) {
+  return (*scene.shaders)[scene.records[record].shader].medium;
+}
 
-// Where two bodies share a face a ray meets one of the two, and is then led beyond the other: both are crossed at once. A ray
-// looks for the other's face within the bounds of the errors.
+// Where two bodies share a face a ray meets one of the two, and is then led beyond the other: both
+// are crossed at once. A ray looks for the other's face within the bounds of the errors.
 void crossSharedFaces(const RtsBatch& batch, Crossing* crossings) {
   const RenderScene& scene = *batch.scene;
   const Points& points = *batch.points;
@@ -59,7 +61,8 @@ void crossSharedFaces(const RtsBatch& batch, Crossing* crossings) {
     if (!mediumAt(scene, points.record[i])) continue;
     float cosine = 0;
     for (int k = 0; k < 3; k++) cosine -= hits.geometric[k][i] * hits.direction[k][i];
-    const float reach = 2 * points.error[i] / std::max(cosine, 1e-3f); // two bounds along the normal
+    const float reach =
+        2 * points.error[i] / std::max(cosine, 1e-3f); // two bounds along the normal
     for (int k = 0; k < 3; k++) {
       rays.org[k][n] = hits.position[k][i] - reach * hits.direction[k][i];
       rays.dir[k][n] = hits.direction[k][i];
@@ -75,11 +78,13 @@ void crossSharedFaces(const RtsBatch& batch, Crossing* crossings) {
   found.allocate(arena, n);
   scene.kernel->intersectOthers(rays, own, found);
   for (uint32_t r = 0; r < n; r++) {
-    const uint16_t medium = found.record[r] == noHit ? uint16_t(0) : mediumAt(scene, found.record[r]);
+    const uint16_t medium =
+        found.record[r] == noHit ? uint16_t(0) : mediumAt(scene, found.record[r]);
     if (!medium) continue;
     const uint32_t i = hit[r];
     Crossing& c = crossings[i];
-    const Crossing other = cross(c.behind, medium, metFromBehind(scene, rays, found, r), scene.shaders->media());
+    const Crossing other =
+        cross(c.behind, medium, metFromBehind(scene, rays, found, r), scene.shaders->media());
     c.behind = other.behind;
     c.to = mediumOf(c.behind, scene.shaders->media());
     c.seen = c.from != c.to;
@@ -117,11 +122,14 @@ void meetBoundaries(RtsBatch& batch, RayState* states, Boundaries& out) {
   }
 }
 
-void absorbOnTheWay(const RenderScene& scene, const Rays& rays, const RayHits& hits, RayState* states) {
+void absorbOnTheWay(const RenderScene& scene, const Rays& rays, const RayHits& hits,
+                    RayState* states) {
   const std::span<const RtsMedium> media = scene.shaders->media();
   if (media.empty()) return;
-  for (uint32_t i = 0; i < rays.count; i++) // nothing is left of light that comes from infinity through what absorbs
-    absorb(mediumOf(states[i].media, media), std::min(hits.t[i], 1e30f), media, states[i].throughput);
+  for (uint32_t i = 0; i < rays.count;
+       i++) // nothing is left of light that comes from infinity through what absorbs
+    absorb(mediumOf(states[i].media, media), std::min(hits.t[i], 1e30f), media,
+           states[i].throughput);
 }
 
 } // namespace openrt

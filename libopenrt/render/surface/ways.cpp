@@ -1,4 +1,3 @@
-// ways.cpp: see ways.h.
 #include "render/surface/ways.h"
 
 #include <cmath>
@@ -24,7 +23,8 @@ void Ways::add(uint32_t number, const RtsLobe& lobe, const LobeSamples* samples)
   case RTS_LOBE_REFLECTION: mirror(n, w, 1); break;
   case RTS_LOBE_TRANSPARENT: put(d_, w, 1).bent = false; break;
   case RTS_LOBE_DIELECTRIC:
-    if (eta_ && channel_ == 0 && (eta_[0] != eta_[1] || eta_[0] != eta_[2])) { // every colour goes its own way
+    if (eta_ && channel_ == 0 &&
+        (eta_[0] != eta_[1] || eta_[0] != eta_[2])) { // every colour goes its own way
       for (int k = 0; k < 3; k++) {
         float only[3] = {0, 0, 0};
         only[k] = w[k];
@@ -56,11 +56,13 @@ Way& Ways::put(const float direction[3], const float w[3], float factor) {
 }
 
 void Ways::scatter(const RtsLobe& lobe, const LobeSamples& samples, const float w[3]) {
-  const float out[3] = {samples.direction[0][hit_], samples.direction[1][hit_], samples.direction[2][hit_]};
+  const float out[3] = {samples.direction[0][hit_], samples.direction[1][hit_],
+                        samples.direction[2][hit_]};
   const float n[3] = {lobe.normal[0][hit_], lobe.normal[1][hit_], lobe.normal[2][hit_]};
   double behind, share = 1;
   if (lobe.kind == RTS_LOBE_GLOSSY && lobe.parameter[1][hit_] > 0)
-    share = fresnel(std::min(1.0, std::max(0.0, -double(dot3(d_, n)))), lobe.parameter[1][hit_], behind);
+    share = fresnel(std::min(1.0, std::max(0.0, -double(dot3(d_, n)))), lobe.parameter[1][hit_],
+                    behind);
   Way& way = put(out, w, float(share));
   for (int k = 0; k < 3; k++) way.weight[k] = w[k] * samples.value[k][hit_];
   way.density = samples.density[hit_];
@@ -70,7 +72,8 @@ void Ways::scatter(const RtsLobe& lobe, const LobeSamples& samples, const float 
     const float eta = lobe.parameter[0][hit_];
     for (float& weight : way.weight) weight /= eta * eta;
   }
-  way.lost = dot3(out, n) > 0 ? !(dot3(out, g_) > 0) : !scatteringOf(lobe)->transmits || !(dot3(out, g_) < 0);
+  way.lost = dot3(out, n) > 0 ? !(dot3(out, g_) > 0)
+                              : !scatteringOf(lobe)->transmits || !(dot3(out, g_) < 0);
 }
 
 // A bent normal may lead below the facet: then the facet's own is used.
@@ -81,8 +84,9 @@ void Ways::mirror(const float n[3], const float w[3], float factor) {
   put(out, w, factor);
 }
 
-// Radiance is compressed by the square of the index where it enters a denser medium (R. Siegel, J. Howell, "Thermal Radiation
-// Heat Transfer", on n^2): a ray that goes on behind carries eta^2 of it back.
+// Radiance is compressed by the square of the index where it enters a denser medium (R. Siegel, J.
+// Howell, "Thermal Radiation Heat Transfer", on n^2): a ray that goes on behind carries eta^2 of it
+// back.
 void Ways::dielectric(const float n[3], const float w[3], float eta) {
   if (!(eta > 0) || !std::isfinite(eta)) eta = 1;
   const double cosine = std::min(1.0, std::max(0.0, -double(dot3(d_, n))));

@@ -1,5 +1,5 @@
-// ways.h: the directions in which a path may go on from one hit, with what each carries: one for every lobe, two at a smooth
-// boundary. [render]
+// ways.h: the directions in which a path may go on from one hit, with what each carries: one for
+// every lobe, two at a smooth boundary. [render]
 #pragma once
 
 #include "render/surface/lobes.h"
@@ -7,7 +7,8 @@
 
 namespace openrt {
 
-// A direction in which a path may go on. density: by solid angle, of a lobe that scatters; 0: it could not be another.
+// A direction in which a path may go on. density: by solid angle, of a lobe that scatters; 0: it
+// could not be another.
 struct Way {
   float direction[3], weight[3], density;
   float share[3]; // about what it carries, whatever direction was chosen: ways are chosen by this
@@ -26,9 +27,9 @@ inline uint32_t chooseAmong(const float* shares, uint32_t count, float at) {
 class Ways {
  public:
   static constexpr uint32_t maximum = 6 * RTS_MAX_LOBES;
-  // eta: index of refraction on the ray's side over that behind, by colour, where the engine knows it, else null. channel: as in
-  // Way, of the ray.
-  // fromLamp: the path comes from a lamp: what it carries is flux, which boundaries do not compress.
+  // eta: index of refraction on the ray's side over that behind, by colour, where the engine knows
+  // it, else null. channel: as in Way, of the ray. fromLamp: the path comes from a lamp: what it
+  // carries is flux, which boundaries do not compress.
   Ways(const RtsHits& hits, uint32_t hit, const float* eta, uint8_t channel, bool fromLamp = false);
   // samples: null for lobes that do not scatter; those that do are then left out.
   void add(uint32_t number, const RtsLobe& lobe, const LobeSamples* samples);

@@ -1,4 +1,4 @@
-// binding.cpp: see binding.h. The rules are numbered as in clause 4.6.10 and, for Viewpoints, 6.53.
+// binding.cpp: The rules are numbered as in clause 4.6.10 and, for Viewpoints, 6.53.
 #include "behaviour/viewer/binding.h"
 
 #include <algorithm>
@@ -7,8 +7,8 @@
 #include "behaviour/builtin.h"
 #include "behaviour/viewer/interaction.h"
 #include "event/hierarchy.h"
-#include "nodes/viewpoint.h"
 #include "graph/field_access.h"
+#include "nodes/viewpoint.h"
 
 namespace xvrml {
 
@@ -71,7 +71,9 @@ void Binding::set(Node& node, bool bound) {
 bool Binding::dropAbsent() {
   bool dropped = false;
   for (size_t type = 0; type < types; ++type) {
-    for (size_t i = 0; i < stacks_[type].size();) { // from below: a node that is gone must not be bound in between
+    for (size_t i = 0;
+         i <
+         stacks_[type].size();) { // from below: a node that is gone must not be bound in between
       Entry& entry = stacks_[type][i];
       const bool there = isInScene(*entry.node);
       if (!there && entry.inScene) {
@@ -88,7 +90,8 @@ bool Binding::dropAbsent() {
 
 namespace {
 
-// Calls visit for each node of a scope in the order of the file; where it returns false what is below is left out.
+// Calls visit for each node of a scope in the order of the file; where it returns false what is
+// below is left out.
 template <class Visit> void walkScope(const Scope& scope, Visit&& visit) {
   std::unordered_set<const Node*> seen;
   std::vector<Node*> open, below;

@@ -1,4 +1,3 @@
-// descend.cpp: see descend.h.
 #include "behaviour/viewer/descend.h"
 
 #include <algorithm>
@@ -10,16 +9,19 @@ namespace xvrml {
 bool innerMatrix(const Node& node, const Matrix& toWorld, const Matrix& view, Matrix& inner) {
   if (node.type().index == nodes::Transform::typeIndex) {
     const auto& t = static_cast<const nodes::Transform&>(node);
-    inner = compose(toWorld, transformMatrix({t.center, t.translation, t.scale, t.rotation, t.scaleOrientation}));
+    inner = compose(toWorld, transformMatrix({t.center, t.translation, t.scale, t.rotation,
+                                              t.scaleOrientation}));
     return determinant(inner) != 0;
   }
   inner = toWorld;
   if (node.type().index == nodes::Billboard::typeIndex) {
     Matrix toLocal;
     if (!invert(toWorld, toLocal)) return false;
-    const Vector eye(view.x[3][0], view.x[3][1], view.x[3][2]), up(view.x[1][0], view.x[1][1], view.x[1][2]);
+    const Vector eye(view.x[3][0], view.x[3][1], view.x[3][2]),
+        up(view.x[1][0], view.x[1][1], view.x[1][2]);
     const Vector axis = vector(static_cast<const nodes::Billboard&>(node).axisOfRotation);
-    inner = compose(toWorld, billboardMatrix(axis, transformPoint(toLocal, eye), transformDirection(toLocal, up)));
+    inner = compose(toWorld, billboardMatrix(axis, transformPoint(toLocal, eye),
+                                             transformDirection(toLocal, up)));
   }
   return true;
 }
@@ -27,7 +29,9 @@ bool innerMatrix(const Node& node, const Matrix& toWorld, const Matrix& view, Ma
 size_t levelFor(const nodes::LOD& lod, const Matrix& toWorld, const Matrix& view) {
   Matrix toLocal;
   if (!invert(toWorld, toLocal)) return 0;
-  const double distance = (transformPoint(toLocal, {view.x[3][0], view.x[3][1], view.x[3][2]}) - vector(lod.center)).length();
+  const double distance =
+      (transformPoint(toLocal, {view.x[3][0], view.x[3][1], view.x[3][2]}) - vector(lod.center))
+          .length();
   size_t level = 0;
   while (level < lod.range.size() && distance >= lod.range[level]) ++level;
   return std::min(level, lod.level.size() - 1);

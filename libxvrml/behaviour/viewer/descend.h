@@ -1,5 +1,5 @@
-// descend.h: where the children of a node stand and which of them a viewer sees: for walks from the roots of a world down. Pure
-// functions.
+// descend.h: where the children of a node stand and which of them a viewer sees: for walks from the
+// roots of a world down. Pure functions.
 #pragma once
 
 #include "geometry/matrix.h"
@@ -8,8 +8,8 @@
 
 namespace xvrml {
 
-// Where children stand, seen from where the node stands. view: the viewer's, to whom Billboards turn. False if nothing of them
-// can be seen.
+// Where children stand, seen from where the node stands. view: the viewer's, to whom Billboards
+// turn. False if nothing of them can be seen.
 bool innerMatrix(const Node& node, const Matrix& toWorld, const Matrix& view, Matrix& inner);
 
 // The level that is shown (clause 6.26); without ranges the first one. The node has levels.

@@ -1,5 +1,6 @@
-// drag.cpp: see drag.h. Rays that miss the sensor's surface are taken at the nearest point of it, so that a drag over the edge
-// of a sphere or cylinder goes on without a leap; rays along a plane say nothing.
+// drag.cpp: Rays that miss the sensor's surface are taken at the nearest point of it,
+// so that a drag over the edge of a sphere or cylinder goes on without a leap; rays along a plane
+// say nothing.
 #include "behaviour/viewer/drag.h"
 
 #include <algorithm>
@@ -16,11 +17,15 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-bool usable(const Vector& v) { return std::abs(v.x) < 1e30 && std::abs(v.y) < 1e30 && std::abs(v.z) < 1e30; } // false for NaN
+bool usable(const Vector& v) {
+  return std::abs(v.x) < 1e30 && std::abs(v.y) < 1e30 && std::abs(v.z) < 1e30;
+} // false for NaN
 Vec3f narrow(const Vector& v) { return {float(v.x), float(v.y), float(v.z)}; }
 
 // A limit holds if the smallest value is not above the largest (6.15, 6.34).
-double limited(double v, double lowest, double highest) { return lowest <= highest ? std::clamp(v, lowest, highest) : v; }
+double limited(double v, double lowest, double highest) {
+  return lowest <= highest ? std::clamp(v, lowest, highest) : v;
+}
 
 // Where the ray meets the plane through `point` with this normal. False if it does not.
 bool onPlane(const PickRay& ray, const Vector& point, const Vector& normal, Vector& out) {
@@ -31,7 +36,8 @@ bool onPlane(const PickRay& ray, const Vector& point, const Vector& normal, Vect
   return usable(out);
 }
 
-// Along origin + t direction, the t of distance `radius` from 0: the nearer or the farther one, or the t that comes nearest.
+// Along origin + t direction, the t of distance `radius` from 0: the nearer or the farther one, or
+// the t that comes nearest.
 double onRound(const Vector& origin, const Vector& direction, double radius, bool farther) {
   const double a = direction.dot(direction);
   const double middle = -origin.dot(direction) / a;
@@ -46,7 +52,8 @@ bool isFar(const PickRay& ray, const Vector& fromAxis) { return ray.direction.do
 
 class PlaneDrag final : public Drag {
  public:
-  PlaneDrag(nodes::PlaneSensor& sensor, const Vector& point) : sensor_(sensor), start_(point), offset_(vector(sensor.offset)) {}
+  PlaneDrag(nodes::PlaneSensor& sensor, const Vector& point)
+      : sensor_(sensor), start_(point), offset_(vector(sensor.offset)) {}
 
   void move(Events& events, const PickRay& ray) override {
     Vector p;
@@ -62,7 +69,8 @@ class PlaneDrag final : public Drag {
   }
 
   void end(Events& events) override {
-    if (has_ && sensor_.autoOffset) events.post(sensor_, fieldOf<nodes::PlaneSensor>("offset"), last_);
+    if (has_ && sensor_.autoOffset)
+      events.post(sensor_, fieldOf<nodes::PlaneSensor>("offset"), last_);
   }
 
  private:
@@ -75,7 +83,8 @@ class PlaneDrag final : public Drag {
 // The turn that brings direction a to direction b on the shortest way.
 Matrix turn(const Vector& a, const Vector& b) {
   Vector axis = a.cross(b);
-  if (!(axis.length() > 0)) axis = a.cross(std::abs(a.y) < 0.9 * a.length() ? Vector(0, 1, 0) : Vector(1, 0, 0));
+  if (!(axis.length() > 0))
+    axis = a.cross(std::abs(a.y) < 0.9 * a.length() ? Vector(0, 1, 0) : Vector(1, 0, 0));
   return rotation(axis, std::atan2(a.cross(b).length(), a.dot(b)));
 }
 
@@ -106,7 +115,8 @@ class SphereDrag final : public Drag {
   }
 
   void end(Events& events) override {
-    if (has_ && sensor_.autoOffset) events.post(sensor_, fieldOf<nodes::SphereSensor>("offset"), last_);
+    if (has_ && sensor_.autoOffset)
+      events.post(sensor_, fieldOf<nodes::SphereSensor>("offset"), last_);
   }
 
  private:
@@ -141,7 +151,8 @@ class CylinderDrag final : public Drag {
   }
 
   void end(Events& events) override {
-    if (has_ && sensor_.autoOffset) events.post(sensor_, fieldOf<nodes::CylinderSensor>("offset"), last_);
+    if (has_ && sensor_.autoOffset)
+      events.post(sensor_, fieldOf<nodes::CylinderSensor>("offset"), last_);
   }
 
  private:
@@ -154,7 +165,8 @@ class CylinderDrag final : public Drag {
   }
 
   bool onCylinder(const PickRay& ray, Vector& p) const {
-    const Vector origin(ray.origin.x, 0, ray.origin.z), direction(ray.direction.x, 0, ray.direction.z);
+    const Vector origin(ray.origin.x, 0, ray.origin.z),
+        direction(ray.direction.x, 0, ray.direction.z);
     const double radius = std::hypot(start_.x, start_.z);
     if (!(radius > 0) || !(direction.length() > 0)) return false;
     p = ray.at(onRound(origin, direction, radius, far_));
@@ -176,9 +188,12 @@ class CylinderDrag final : public Drag {
 } // namespace
 
 std::unique_ptr<Drag> beginDrag(Node& sensor, const PickRay& ray, const Vector& point) {
-  if (auto* plane = nodeCast<nodes::PlaneSensor>(&sensor)) return std::make_unique<PlaneDrag>(*plane, point);
-  if (auto* sphere = nodeCast<nodes::SphereSensor>(&sensor)) return std::make_unique<SphereDrag>(*sphere, ray, point);
-  if (auto* cylinder = nodeCast<nodes::CylinderSensor>(&sensor)) return std::make_unique<CylinderDrag>(*cylinder, ray, point);
+  if (auto* plane = nodeCast<nodes::PlaneSensor>(&sensor))
+    return std::make_unique<PlaneDrag>(*plane, point);
+  if (auto* sphere = nodeCast<nodes::SphereSensor>(&sensor))
+    return std::make_unique<SphereDrag>(*sphere, ray, point);
+  if (auto* cylinder = nodeCast<nodes::CylinderSensor>(&sensor))
+    return std::make_unique<CylinderDrag>(*cylinder, ray, point);
   return nullptr;
 }
 

@@ -1,6 +1,7 @@
-// drag.h: what PlaneSensor, SphereSensor and CylinderSensor make of a pointer that is dragged (clauses 6.34, 6.44, 6.15). A Drag
-// lives from the press of the button to its release; everything is in the sensor's coordinate system as it was at the press.
-// Used by the pointer. [the browser's thread]
+// drag.h: what PlaneSensor, SphereSensor and CylinderSensor make of a pointer that is dragged
+// (clauses 6.34, 6.44, 6.15). A Drag lives from the press of the button to its release; everything
+// is in the sensor's coordinate system as it was at the press. Used by the pointer. [the browser's
+// thread]
 #pragma once
 
 #include <memory>

@@ -1,5 +1,5 @@
-// hearing.cpp: what the viewer of a running world hears: its Sounds (clause 6.42), where they stand. See xvrml/media.h.
-// [the browser's thread]
+// hearing.cpp: what the viewer of a running world hears: its Sounds (clause 6.42), where they
+// stand. See xvrml/media.h. [the browser's thread]
 #include <unordered_set>
 
 #include "behaviour/viewer/interaction.h"
@@ -52,7 +52,8 @@ std::vector<Heard> heardIn(Browser& browser) {
       Matrix toLocal;
       if (!isChosen(path) || !invert(toWorld, toLocal)) continue;
       const Vector eye = transformPoint(toLocal, transformPoint(view, Vector(0)));
-      const Vector place = transformPoint(toViewer, transformPoint(toWorld, vector(sound.location)));
+      const Vector place =
+          transformPoint(toViewer, transformPoint(toWorld, vector(sound.location)));
       heard.push_back({node, playing, soundLevels(sound, narrow(eye), narrow(place))});
     }
   }

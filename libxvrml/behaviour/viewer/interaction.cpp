@@ -1,9 +1,12 @@
-// interaction.cpp: what happens in the world, handed to those who keep something of it. See interaction.h.
+// interaction.cpp: what happens in the world, handed to those who keep something of it. See
+// interaction.h.
 #include "behaviour/viewer/interaction.h"
 
 namespace xvrml {
 
-std::unique_ptr<EngineObserver> makeInteraction(Engine& engine) { return std::make_unique<Interaction>(engine); }
+std::unique_ptr<EngineObserver> makeInteraction(Engine& engine) {
+  return std::make_unique<Interaction>(engine);
+}
 
 void Interaction::began(const Scope& scope) {
   this->scope = &scope;
@@ -18,7 +21,8 @@ void Interaction::changed(Node& node, const FieldInfo& field) {
   case Change::children: picker.changed(node); break;
   default: break;
   }
-  moved_ |= field.change == Change::transform || field.change == Change::view || field.change == Change::children;
+  moved_ |= field.change == Change::transform || field.change == Change::view ||
+            field.change == Change::children;
 }
 
 void Interaction::forgotten(const Node& node) {

@@ -1,5 +1,6 @@
-// interaction.h: the viewer's part of a running world: what is bound, where the viewer is, what the pointer is over. One per
-// engine, which owns it; behaviours reach it through their Events. [the browser's thread]
+// interaction.h: the viewer's part of a running world: what is bound, where the viewer is, what the
+// pointer is over. One per engine, which owns it; behaviours reach it through their Events. [the
+// browser's thread]
 #pragma once
 
 #include "behaviour/viewer/binding.h"
@@ -14,7 +15,8 @@ namespace xvrml {
 class Interaction final : public EngineObserver {
  public:
   explicit Interaction(Engine& engine)
-      : engine(engine), viewer(engine, binding), binding(engine, viewer), picker(engine), pointer(*this), navigation(*this) {}
+      : engine(engine), viewer(engine, binding), binding(engine, viewer), picker(engine),
+        pointer(*this), navigation(*this) {}
 
   void began(const Scope& scope) override;
   void changed(Node& node, const FieldInfo& field) override;
@@ -40,6 +42,8 @@ class Interaction final : public EngineObserver {
 };
 
 std::unique_ptr<EngineObserver> makeInteraction(Engine& engine);
-inline Interaction& interactionOf(Events& events) { return static_cast<Interaction&>(*static_cast<Engine&>(events).observer); }
+inline Interaction& interactionOf(Events& events) {
+  return static_cast<Interaction&>(*static_cast<Engine&>(events).observer);
+}
 
 } // namespace xvrml

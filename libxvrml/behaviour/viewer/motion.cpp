@@ -1,5 +1,6 @@
-// motion.cpp: WALK, FLY and EXAMINE as pure functions (clause 6.29). See navigation.h. Time is cut into steps of a thirtieth of
-// a second at most, so that a long frame does not carry anybody through a wall.
+// motion.cpp: WALK, FLY and EXAMINE as pure functions (clause 6.29). See navigation.h. Time is cut
+// into steps of a thirtieth of a second at most, so that a long frame does not carry anybody
+// through a wall.
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
@@ -22,13 +23,16 @@ void setEye(Matrix& m, const Vector& eye) {
 }
 
 Matrix turned(const Matrix& view, const Vector& about, const Vector& point, double angle) {
-  return compose(compose(translation(point), rotation(about, angle)), compose(translation(-point), view));
+  return compose(compose(translation(point), rotation(about, angle)),
+                 compose(translation(-point), view));
 }
 
 // Tilts as far as the view stays upright: round `point`, about the view's own x axis.
-Matrix tilted(const Matrix& view, const Vector& point, double angle, const Vector& up, double limit) {
+Matrix tilted(const Matrix& view, const Vector& point, double angle, const Vector& up,
+              double limit) {
   const double height = std::asin(std::clamp(-axis(view, 2).dot(up), -1.0, 1.0));
-  const double wanted = std::clamp(height + angle, std::min(height, -limit), std::max(height, limit));
+  const double wanted =
+      std::clamp(height + angle, std::min(height, -limit), std::max(height, limit));
   return turned(view, axis(view, 0), point, wanted - height);
 }
 
@@ -36,13 +40,15 @@ int stepsFor(double seconds) { return int(std::clamp(std::ceil(seconds * 30), 1.
 
 double usable(double v) { return std::isfinite(v) ? v : 0; }
 NavigationInput usable(const NavigationInput& in) {
-  return {usable(in.ahead), usable(in.right), usable(in.up), usable(in.turn), usable(in.tilt), usable(in.roll)};
+  return {usable(in.ahead), usable(in.right), usable(in.up),
+          usable(in.turn),  usable(in.tilt),  usable(in.roll)};
 }
 
-// The way from `eye` along `wish` as far as nothing comes nearer than `distance`, and on along the walls that are met. offsets:
-// the parts of the body that meet walls. level: not null if walls only turn the way about this axis.
-Vector slide(const Vector& eye, Vector wish, std::initializer_list<Vector> offsets, double distance, const Vector* level,
-             const Obstacle& obstacle) {
+// The way from `eye` along `wish` as far as nothing comes nearer than `distance`, and on along the
+// walls that are met. offsets: the parts of the body that meet walls. level: not null if walls only
+// turn the way about this axis.
+Vector slide(const Vector& eye, Vector wish, std::initializer_list<Vector> offsets, double distance,
+             const Vector* level, const Obstacle& obstacle) {
   Vector moved(0);
   for (int wall = 0; wall < 3; ++wall) {
     const double length = wish.length();
@@ -84,19 +90,24 @@ Vector headingOf(const Matrix& view, const Vector& up) {
 }
 
 // Gravity and steps: where the eye ends that has moved from `eye` by `moved`.
-Vector settle(const Vector& eye, const Vector& moved, double seconds, const Avatar& a, const Obstacle& obstacle, double& fall) {
-  const auto floorUnder = [&](const Vector& from, double& gap) { // gap: from the feet down to the floor, negative below it
-    double t;
-    Vector n;
-    if (!obstacle({from, -a.up, 0, std::numeric_limits<double>::infinity()}, false, t, n)) return false;
-    gap = t - a.height;
-    return true;
-  };
+Vector settle(const Vector& eye, const Vector& moved, double seconds, const Avatar& a,
+              const Obstacle& obstacle, double& fall) {
+  const auto floorUnder =
+      [&](const Vector& from,
+          double& gap) { // gap: from the feet down to the floor, negative below it
+        double t;
+        Vector n;
+        if (!obstacle({from, -a.up, 0, std::numeric_limits<double>::infinity()}, false, t, n))
+          return false;
+        gap = t - a.height;
+        return true;
+      };
   double before = 0, after = 0;
   const bool stood = floorUnder(eye, before);
   Vector to = eye + moved;
   bool stands = floorUnder(to, after);
-  if (stands && after < 0 && std::min(stood ? before : 0, 0.0) - after > a.step) { // higher than a step: a wall
+  if (stands && after < 0 &&
+      std::min(stood ? before : 0, 0.0) - after > a.step) { // higher than a step: a wall
     to = eye;
     after = before;
     stands = stood;
@@ -117,7 +128,8 @@ Vector settle(const Vector& eye, const Vector& moved, double seconds, const Avat
 
 } // namespace
 
-Motion walk(const Motion& from, const NavigationInput& raw, double seconds, const Avatar& a, const Obstacle& obstacle) {
+Motion walk(const Motion& from, const NavigationInput& raw, double seconds, const Avatar& a,
+            const Obstacle& obstacle) {
   Motion m = from;
   if (!(seconds > 0) || !std::isfinite(seconds)) return m;
   const NavigationInput in = usable(raw);
@@ -136,7 +148,8 @@ Motion walk(const Motion& from, const NavigationInput& raw, double seconds, cons
   return m;
 }
 
-Motion fly(const Motion& from, const NavigationInput& raw, double seconds, const Avatar& a, const Obstacle& obstacle) {
+Motion fly(const Motion& from, const NavigationInput& raw, double seconds, const Avatar& a,
+           const Obstacle& obstacle) {
   Motion m = from;
   m.fall = 0;
   if (!(seconds > 0) || !std::isfinite(seconds)) return m;
@@ -148,7 +161,9 @@ Motion fly(const Motion& from, const NavigationInput& raw, double seconds, const
     m.view = turned(m.view, a.up, eye, in.turn * quarter * s);
     m.view = turned(m.view, axis(m.view, 0), eye, in.tilt * quarter * s);
     m.view = turned(m.view, axis(m.view, 2), eye, -in.roll * quarter * s);
-    const Vector wish = (axis(m.view, 0) * in.right + axis(m.view, 1) * in.up - axis(m.view, 2) * in.ahead) * (a.speed * s);
+    const Vector wish =
+        (axis(m.view, 0) * in.right + axis(m.view, 1) * in.up - axis(m.view, 2) * in.ahead) *
+        (a.speed * s);
     setEye(m.view, eye + slide(eye, wish, {Vector(0)}, a.distance, nullptr, obstacle));
   }
   return m;
@@ -162,7 +177,8 @@ Motion examine(const Motion& from, const NavigationInput& raw, double seconds, c
   m.view = turned(m.view, a.up, m.center, in.turn * quarter * seconds);
   m.view = tilted(m.view, m.center, in.tilt * quarter * seconds, a.up, 89 * std::numbers::pi / 180);
   const Vector away = eyeOf(m.view) - m.center;
-  const Vector pan = (axis(m.view, 0) * in.right + axis(m.view, 1) * in.up) * (away.length() * seconds);
+  const Vector pan =
+      (axis(m.view, 0) * in.right + axis(m.view, 1) * in.up) * (away.length() * seconds);
   m.center += pan;
   setEye(m.view, m.center + away * std::exp(std::clamp(-in.ahead * seconds, -20.0, 20.0)));
   return m;

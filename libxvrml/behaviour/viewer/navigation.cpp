@@ -1,4 +1,5 @@
-// navigation.cpp: the viewer of a running world on the move: what NavigationInfo says, what he runs into, keys. See navigation.h.
+// navigation.cpp: the viewer of a running world on the move: what NavigationInfo says, what he runs
+// into, keys. See navigation.h.
 #include "behaviour/viewer/navigation.h"
 
 #include <algorithm>
@@ -9,7 +10,8 @@
 
 namespace xvrml {
 
-// Lengths are those of the coordinate system that the bound Viewpoint stands in (6.29), up is its y axis (6.53).
+// Lengths are those of the coordinate system that the bound Viewpoint stands in (6.29), up is its y
+// axis (6.53).
 Avatar Navigator::avatar() const {
   Avatar a;
   const auto* info = nodeCast<nodes::NavigationInfo>(interaction_.binding.bound().navigationInfo);
@@ -17,7 +19,8 @@ Avatar Navigator::avatar() const {
   const double scale = std::cbrt(std::abs(determinant(outside)));
   if (info) {
     const auto length = [&](size_t i, double otherwise) {
-      return i < info->avatarSize.size() && info->avatarSize[i] >= 0 ? double(info->avatarSize[i]) : otherwise;
+      return i < info->avatarSize.size() && info->avatarSize[i] >= 0 ? double(info->avatarSize[i])
+                                                                     : otherwise;
     };
     a.distance = length(0, a.distance);
     a.height = length(1, a.height);
@@ -34,8 +37,8 @@ Avatar Navigator::avatar() const {
 
 bool Navigator::meet(const PickRay& ray, bool touch, double& t, Vector& normal) {
   Hit hit;
-  if (!interaction_.picker.pick(ray, {.collision = true, .bothSides = true}, interaction_.viewer.view(),
-                                interaction_.scope->roots, hit))
+  if (!interaction_.picker.pick(ray, {.collision = true, .bothSides = true},
+                                interaction_.viewer.view(), interaction_.scope->roots, hit))
     return false;
   t = hit.t;
   normal = hit.normal;
@@ -46,11 +49,13 @@ bool Navigator::meet(const PickRay& ray, bool touch, double& t, Vector& normal) 
   return true;
 }
 
-// What EXAMINE goes round: a place in the middle of the picture, so that what is looked at stays in view, as far away as the
-// middle of the Shape that is seen there, or else of the world. Of a world that does not lie ahead its middle.
+// What EXAMINE goes round: a place in the middle of the picture, so that what is looked at stays in
+// view, as far away as the middle of the Shape that is seen there, or else of the world. Of a world
+// that does not lie ahead its middle.
 Vector Navigator::centerOf(const Matrix& view) {
   Picker& picker = interaction_.picker;
-  const Vector eye(view.x[3][0], view.x[3][1], view.x[3][2]), back(view.x[2][0], view.x[2][1], view.x[2][2]);
+  const Vector eye(view.x[3][0], view.x[3][1], view.x[3][2]),
+      back(view.x[2][0], view.x[2][1], view.x[2][2]);
   const auto& roots = interaction_.scope->roots;
   PickBox box = picker.bounds(roots);
   if (box.empty()) return eye - back * 10;
@@ -92,8 +97,10 @@ struct Known {
   std::string_view name;
   Navigation type;
 };
-constexpr Known known[] = {
-    {"NONE", Navigation::none}, {"WALK", Navigation::walk}, {"FLY", Navigation::fly}, {"EXAMINE", Navigation::examine}};
+constexpr Known known[] = {{"NONE", Navigation::none},
+                           {"WALK", Navigation::walk},
+                           {"FLY", Navigation::fly},
+                           {"EXAMINE", Navigation::examine}};
 
 } // namespace
 
@@ -101,7 +108,9 @@ Navigation Navigator::type() const {
   const auto* info = nodeCast<nodes::NavigationInfo>(interaction_.binding.bound().navigationInfo);
   const MFString standard{"WALK", "ANY"};
   const MFString& list = info ? info->type : standard;
-  const auto lists = [&](std::string_view name) { return std::find(list.begin(), list.end(), name) != list.end(); };
+  const auto lists = [&](std::string_view name) {
+    return std::find(list.begin(), list.end(), name) != list.end();
+  };
   if (hasChosen_)
     for (const Known& k : known)
       if (k.type == chosen_ && (lists(k.name) || lists("ANY"))) return chosen_;
@@ -138,7 +147,8 @@ void Navigator::key(Key key, bool pressed) {
   if (list.empty()) return;
   const auto at = std::find(list.begin(), list.end(), interaction_.binding.bound().viewpoint);
   const size_t count = list.size(), i = size_t(at - list.begin());
-  const size_t next = key == Key::pageDown ? (at == list.end() ? 0 : (i + 1) % count) : (i + count - 1) % count;
+  const size_t next =
+      key == Key::pageDown ? (at == list.end() ? 0 : (i + 1) % count) : (i + count - 1) % count;
   interaction_.binding.set(*list[at == list.end() && key == Key::pageUp ? count - 1 : next], true);
 }
 

@@ -1,5 +1,6 @@
-// navigation.h: how the viewer moves: WALK, FLY and EXAMINE as functions of where he is, what he wants and for how long; and the
-// part that asks the world for floors and walls and tells Collision nodes. [the browser's thread]
+// navigation.h: how the viewer moves: WALK, FLY and EXAMINE as functions of where he is, what he
+// wants and for how long; and the part that asks the world for floors and walls and tells Collision
+// nodes. [the browser's thread]
 #pragma once
 
 #include <functional>
@@ -15,9 +16,10 @@ class Interaction;
 
 // Lengths in the world's units.
 struct Avatar {
-  double distance = 0.25, height = 1.6, step = 0.75; // avatarSize: to walls, of the eye above ground, that can be climbed
-  double speed = 1;                                  // a second
-  double gravity = 9.81;                             // a second squared
+  double distance = 0.25, height = 1.6,
+         step = 0.75;    // avatarSize: to walls, of the eye above ground, that can be climbed
+  double speed = 1;      // a second
+  double gravity = 9.81; // a second squared
   Vector up{0, 1, 0};
 };
 
@@ -27,13 +29,16 @@ struct Motion {
   Vector center{0}; // that EXAMINE goes round
 };
 
-// The nearest thing along a ray that the viewer cannot pass: how far, in lengths of the direction, and its unit normal. What was
-// met counts as touched if `touch`.
+// The nearest thing along a ray that the viewer cannot pass: how far, in lengths of the direction,
+// and its unit normal. What was met counts as touched if `touch`.
 using Obstacle = std::function<bool(const PickRay& ray, bool touch, double& t, Vector& normal)>;
 
-Motion walk(const Motion& from, const NavigationInput& input, double seconds, const Avatar& avatar, const Obstacle& obstacle);
-Motion fly(const Motion& from, const NavigationInput& input, double seconds, const Avatar& avatar, const Obstacle& obstacle);
-Motion examine(const Motion& from, const NavigationInput& input, double seconds, const Avatar& avatar);
+Motion walk(const Motion& from, const NavigationInput& input, double seconds, const Avatar& avatar,
+            const Obstacle& obstacle);
+Motion fly(const Motion& from, const NavigationInput& input, double seconds, const Avatar& avatar,
+           const Obstacle& obstacle);
+Motion examine(const Motion& from, const NavigationInput& input, double seconds,
+               const Avatar& avatar);
 
 class Navigator {
  public:

@@ -1,4 +1,4 @@
-// pick.cpp: see pick.h. The walk has a stack of its own: nesting costs no C++ stack.
+// pick.cpp: The walk has a stack of its own: nesting costs no C++ stack.
 #include "behaviour/viewer/pick.h"
 
 #include <algorithm>
@@ -12,7 +12,8 @@
 namespace xvrml {
 namespace {
 
-constexpr size_t maximumSteps = 4'000'000; // nodes one ray may visit: what events have built has no limit of its own
+constexpr size_t maximumSteps =
+    4'000'000; // nodes one ray may visit: what events have built has no limit of its own
 
 // What may be seen below a node, whatever the viewer does (LODs: all levels), and proxies.
 void partsOf(Node& node, std::vector<Node*>& parts) {
@@ -26,7 +27,8 @@ void partsOf(Node& node, std::vector<Node*>& parts) {
 }
 
 // What is met below a node by a ray of these rules.
-void metBelow(Node& node, const PickRules& rules, const Matrix& toWorld, const Matrix& view, std::vector<Node*>& parts) {
+void metBelow(Node& node, const PickRules& rules, const Matrix& toWorld, const Matrix& view,
+              std::vector<Node*>& parts) {
   if (const auto* lod = nodeCast<nodes::LOD>(&node)) {
     if (!lod->level.empty()) parts.push_back(lod->level[levelFor(*lod, toWorld, view)].get());
   } else if (auto* collision = nodeCast<nodes::Collision>(&node)) {
@@ -50,7 +52,8 @@ void Picker::changed(Node& first) {
     // Nothing is known above a group or Shape that nothing is known of.
     if (found != entries_.end())
       entries_.erase(found);
-    else if (node != &first && (node->type().index == nodes::Shape::typeIndex || node->type().is("grouping")))
+    else if (node != &first &&
+             (node->type().index == nodes::Shape::typeIndex || node->type().is("grouping")))
       continue;
     if (!node->live) continue;
     for (Node* parent : liveOf(*node)->parents) open.push_back(parent);
@@ -63,7 +66,8 @@ const PickMesh* Picker::meshOf(Node& node) {
   if (!geometry) return nullptr;
   Entry& entry = entries_[geometry];
   if (!entry.mesh)
-    entry.mesh = std::make_unique<PickMesh>(*geometry, engine_.browser() ? &engine_.browser()->world().options.limits : nullptr);
+    entry.mesh = std::make_unique<PickMesh>(
+        *geometry, engine_.browser() ? &engine_.browser()->world().options.limits : nullptr);
   return entry.mesh.get();
 }
 
@@ -81,7 +85,8 @@ PickBox Picker::boundsFromParts(Node& node, const std::vector<Node*>& parts) {
     Matrix inner;
     if (innerMatrix(node, Matrix(), Matrix(), inner)) outer.extend(box, inner);
   } else if (node.type().index == nodes::Billboard::typeIndex) { // however it is turned
-    const Vector far(std::max(std::abs(box.low.x), std::abs(box.high.x)), std::max(std::abs(box.low.y), std::abs(box.high.y)),
+    const Vector far(std::max(std::abs(box.low.x), std::abs(box.high.x)),
+                     std::max(std::abs(box.low.y), std::abs(box.high.y)),
                      std::max(std::abs(box.low.z), std::abs(box.high.z)));
     outer.extend(Vector(far.length()));
     outer.extend(Vector(-far.length()));
@@ -93,7 +98,8 @@ PickBox Picker::boundsFromParts(Node& node, const std::vector<Node*>& parts) {
 }
 
 const PickBox& Picker::boundsOf(Node& first) {
-  if (const auto found = entries_.find(&first); found != entries_.end() && found->second.known) return found->second.bounds;
+  if (const auto found = entries_.find(&first); found != entries_.end() && found->second.known)
+    return found->second.bounds;
   std::vector<Node*> open{&first}, parts;
   while (!open.empty()) {
     Node* node = open.back();
@@ -126,7 +132,8 @@ PickBox Picker::bounds(const std::vector<NodeRef>& roots) {
   return box;
 }
 
-bool Picker::pick(const PickRay& whole, const PickRules& rules, const Matrix& view, const std::vector<NodeRef>& roots, Hit& hit) {
+bool Picker::pick(const PickRay& whole, const PickRules& rules, const Matrix& view,
+                  const std::vector<NodeRef>& roots, Hit& hit) {
   const double probe = whole.origin.dot(whole.origin) + whole.direction.dot(whole.direction);
   if (!std::isfinite(probe) || !(whole.direction.length() > 0)) return false;
   constexpr uint32_t none = ~0u, stale = none - 1;
@@ -154,8 +161,8 @@ bool Picker::pick(const PickRay& whole, const PickRules& rules, const Matrix& vi
     if (visit.parent != movedFor) {
       Matrix toLocal;
       movable = invert(outside, toLocal);
-      moved = {transformPoint(toLocal, whole.origin), transformDirection(toLocal, whole.direction), whole.nearest,
-               whole.farthest};
+      moved = {transformPoint(toLocal, whole.origin), transformDirection(toLocal, whole.direction),
+               whole.nearest, whole.farthest};
       movedFor = visit.parent;
     }
     if (!movable) continue;
@@ -164,7 +171,9 @@ bool Picker::pick(const PickRay& whole, const PickRules& rules, const Matrix& vi
     if (visit.node->type().index == nodes::Shape::typeIndex) {
       MeshHit meshHit;
       const PickMesh* mesh = meshOf(*visit.node);
-      if (!mesh || !mesh->intersect(moved, rules.bothSides, meshHit) || (found && meshHit.t >= best.t)) continue;
+      if (!mesh || !mesh->intersect(moved, rules.bothSides, meshHit) ||
+          (found && meshHit.t >= best.t))
+        continue;
       best = meshHit;
       ray.farthest = best.t;
       found = true;

@@ -1,5 +1,6 @@
-// pick.h: what a ray meets in a running world. Bounding boxes and meshes are kept for each node and dropped when something
-// below changes. Asked by pointer, navigation and programs. [the browser's thread]
+// pick.h: what a ray meets in a running world. Bounding boxes and meshes are kept for each node and
+// dropped when something below changes. Asked by pointer, navigation and programs. [the browser's
+// thread]
 #pragma once
 
 #include <memory>
@@ -11,7 +12,8 @@
 namespace xvrml {
 
 struct PickRules {
-  bool collision = false; // what the viewer collides with: proxies for children, nothing below collide FALSE (clause 6.8)
+  bool collision = false; // what the viewer collides with: proxies for children, nothing below
+                          // collide FALSE (clause 6.8)
   bool bothSides = false; // back faces of solid geometry count
 };
 
@@ -29,8 +31,10 @@ struct Hit {
 class Picker {
  public:
   explicit Picker(const Engine& engine) : engine_(engine) {}
-  // The nearest hit. view: the camera, which decides on levels of detail and turns Billboards. False if there is none.
-  bool pick(const PickRay& ray, const PickRules& rules, const Matrix& view, const std::vector<NodeRef>& roots, Hit& hit);
+  // The nearest hit. view: the camera, which decides on levels of detail and turns Billboards.
+  // False if there is none.
+  bool pick(const PickRay& ray, const PickRules& rules, const Matrix& view,
+            const std::vector<NodeRef>& roots, Hit& hit);
   PickBox bounds(const std::vector<NodeRef>& roots);
 
   void changed(Node& node);

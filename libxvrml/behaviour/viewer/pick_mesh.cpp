@@ -24,14 +24,14 @@ void PickBox::extend(const PickBox& b) {
 void PickBox::extend(const PickBox& b, const Matrix& m) {
   if (b.empty()) return;
   for (int corner = 0; corner < 8; ++corner)
-    extend(
-        transformPoint(m, {corner & 1 ? b.high.x : b.low.x, corner & 2 ? b.high.y : b.low.y, corner & 4 ? b.high.z : b.low.z}));
+    extend(transformPoint(m, {corner & 1 ? b.high.x : b.low.x, corner & 2 ? b.high.y : b.low.y,
+                              corner & 4 ? b.high.z : b.low.z}));
 }
 
 void PickBox::pad() {
   if (empty()) return;
-  const double size =
-      std::max({std::abs(low.x), std::abs(low.y), std::abs(low.z), std::abs(high.x), std::abs(high.y), std::abs(high.z)});
+  const double size = std::max({std::abs(low.x), std::abs(low.y), std::abs(low.z), std::abs(high.x),
+                                std::abs(high.y), std::abs(high.z)});
   const double margin = 1e-9 * size + 1e-30;
   low -= Vector(margin);
   high += Vector(margin);
@@ -45,7 +45,8 @@ bool PickRay::meets(const PickBox& box) const {
       if (!(origin[i] >= box.low[i] && origin[i] <= box.high[i])) return false;
       continue;
     }
-    double a = (box.low[i] - origin[i]) / direction[i], b = (box.high[i] - origin[i]) / direction[i];
+    double a = (box.low[i] - origin[i]) / direction[i],
+           b = (box.high[i] - origin[i]) / direction[i];
     if (a > b) std::swap(a, b);
     enter = std::max(enter, a);
     leave = std::min(leave, b);
@@ -55,7 +56,8 @@ bool PickRay::meets(const PickBox& box) const {
 }
 
 PickMesh::PickMesh(Node& geometry, const Limits* limits)
-    : mesh_(buildMesh(geometry, {.needTexCoords = true, .limits = limits, .diagnostics = nullptr})) {
+    : mesh_(
+          buildMesh(geometry, {.needTexCoords = true, .limits = limits, .diagnostics = nullptr})) {
   if (mesh_.kind == Mesh::Kind::sphere) {
     bounds_.extend(Vector(mesh_.radius));
     bounds_.extend(Vector(-double(mesh_.radius)));
@@ -78,7 +80,8 @@ Vector PickMesh::corner(uint32_t triangle, int k) const {
   return vector(mesh_.points[mesh_.indices[size_t(triangle) * 3 + size_t(k)]]);
 }
 
-// Halves of equal numbers along the longest side: as deep as the logarithm of the number of triangles.
+// Halves of equal numbers along the longest side: as deep as the logarithm of the number of
+// triangles.
 void PickMesh::split() {
   order_.resize(mesh_.indices.size() / 3);
   std::iota(order_.begin(), order_.end(), 0u);
@@ -100,7 +103,8 @@ void PickMesh::split() {
         const double v = corner(t, 0)[axis] + corner(t, 1)[axis] + corner(t, 2)[axis];
         return std::isfinite(v) ? v : 0;
       };
-      std::nth_element(begin, begin + half, begin + knot.count, [&](uint32_t a, uint32_t b) { return key(a) < key(b); });
+      std::nth_element(begin, begin + half, begin + knot.count,
+                       [&](uint32_t a, uint32_t b) { return key(a) < key(b); });
       knot.next = uint32_t(knots_.size());
       knots_.push_back({{}, knot.first, half, 0});
       knots_.push_back({{}, knot.first + half, knot.count - half, 0});
@@ -115,7 +119,8 @@ bool PickMesh::sphere(const PickRay& ray, bool bothSides, MeshHit& hit) const {
   const double radius = mesh_.radius, a = ray.direction.dot(ray.direction);
   if (!(a > 0)) return false;
   const double nearest = -ray.origin.dot(ray.direction) / a;
-  const Vector foot = ray.at(nearest); // the root's argument is small beside the terms of the usual formula
+  const Vector foot =
+      ray.at(nearest); // the root's argument is small beside the terms of the usual formula
   const double rest = radius * radius - foot.dot(foot);
   if (!(rest >= 0)) return false;
   const double half = std::sqrt(rest / a);
@@ -154,12 +159,15 @@ bool PickMesh::triangle(uint32_t index, PickRay& ray, bool bothSides, MeshHit& h
   const double w = 1 - u - v;
   Vector normal(0);
   if (!mesh_.normals.empty())
-    normal = vector(mesh_.normals[i[0]]) * w + vector(mesh_.normals[i[1]]) * u + vector(mesh_.normals[i[2]]) * v;
-  if (!(normal.length() > 0) || !std::isfinite(normal.length())) normal = ab.cross(ac) * (mesh_.ccw ? 1 : -1);
+    normal = vector(mesh_.normals[i[0]]) * w + vector(mesh_.normals[i[1]]) * u +
+             vector(mesh_.normals[i[2]]) * v;
+  if (!(normal.length() > 0) || !std::isfinite(normal.length()))
+    normal = ab.cross(ac) * (mesh_.ccw ? 1 : -1);
   hit.normal = normal.normalized();
   hit.texCoord = {};
   if (!mesh_.texCoords.empty()) {
-    const Vec2f &ta = mesh_.texCoords[i[0]], &tb = mesh_.texCoords[i[1]], &tc = mesh_.texCoords[i[2]];
+    const Vec2f &ta = mesh_.texCoords[i[0]], &tb = mesh_.texCoords[i[1]],
+                &tc = mesh_.texCoords[i[2]];
     hit.texCoord = {float(ta.x * w + tb.x * u + tc.x * v), float(ta.y * w + tb.y * u + tc.y * v)};
   }
   return true;
@@ -171,7 +179,8 @@ bool PickMesh::intersect(const PickRay& whole, bool bothSides, MeshHit& hit) con
   PickRay ray = whole;
   bool found = false;
   if (knots_.empty()) {
-    for (uint32_t i = 0; i < mesh_.indices.size() / 3; ++i) found |= triangle(i, ray, bothSides, hit);
+    for (uint32_t i = 0; i < mesh_.indices.size() / 3; ++i)
+      found |= triangle(i, ray, bothSides, hit);
     return found;
   }
   std::vector<uint32_t> open{0};
@@ -183,7 +192,8 @@ bool PickMesh::intersect(const PickRay& whole, bool bothSides, MeshHit& hit) con
       open.push_back(knot.next + 1);
       open.push_back(knot.next);
     }
-    for (uint32_t i = 0; i < knot.count; ++i) found |= triangle(order_[knot.first + i], ray, bothSides, hit);
+    for (uint32_t i = 0; i < knot.count; ++i)
+      found |= triangle(order_[knot.first + i], ray, bothSides, hit);
   }
   return found;
 }

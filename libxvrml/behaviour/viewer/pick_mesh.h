@@ -1,5 +1,5 @@
-// pick_mesh.h: what one ray meets of one geometry node, in the node's own coordinate system. Large meshes are searched through
-// a tree of boxes. Made and asked by the picker. [the browser's thread]
+// pick_mesh.h: what one ray meets of one geometry node, in the node's own coordinate system. Large
+// meshes are searched through a tree of boxes. Made and asked by the picker. [the browser's thread]
 #pragma once
 
 #include <limits>
@@ -10,7 +10,8 @@
 namespace xvrml {
 
 struct PickBox {
-  Vector low = Vector(std::numeric_limits<double>::infinity()), high = Vector(-std::numeric_limits<double>::infinity());
+  Vector low = Vector(std::numeric_limits<double>::infinity()),
+         high = Vector(-std::numeric_limits<double>::infinity());
   bool empty() const { return !(low.x <= high.x); }
   void extend(const Vector& p);
   void extend(const PickBox& b);
@@ -19,8 +20,8 @@ struct PickBox {
   void pad();
 };
 
-// origin + t direction, t in [nearest, farthest]. The direction's length is free and stays: t means the same in every
-// coordinate system.
+// origin + t direction, t in [nearest, farthest]. The direction's length is free and stays: t means
+// the same in every coordinate system.
 struct PickRay {
   Vector origin, direction;
   double nearest = 0, farthest = std::numeric_limits<double>::infinity();
@@ -39,7 +40,8 @@ class PickMesh {
  public:
   PickMesh(Node& geometry, const Limits* limits);
   const PickBox& bounds() const { return bounds_; }
-  // The nearest hit; back faces of solid geometry are passed unless bothSides. False if there is none.
+  // The nearest hit; back faces of solid geometry are passed unless bothSides. False if there is
+  // none.
   bool intersect(const PickRay& ray, bool bothSides, MeshHit& hit) const;
 
  private:

@@ -1,4 +1,3 @@
-// pointer.cpp: see pointer.h.
 #include "behaviour/viewer/pointer.h"
 
 #include <algorithm>
@@ -26,7 +25,9 @@ const std::vector<NodeRef>* childrenOf(Node& node) {
   if (const Scope* content = inlineScope(node)) return &content->roots;
   if (node.type().index < 0 || !node.type().is("parent")) return nullptr;
   const FieldInfo* children = node.type().find("children");
-  return children && children->type == FieldType::MFNode ? static_cast<MFNode*>(node.storage(*children)) : nullptr;
+  return children && children->type == FieldType::MFNode
+             ? static_cast<MFNode*>(node.storage(*children))
+             : nullptr;
 }
 
 bool holds(const std::vector<NodeRef>& list, const Node& node) {
@@ -37,12 +38,14 @@ Vec3f narrow(const Vector& v) { return {float(v.x), float(v.y), float(v.z)}; }
 
 } // namespace
 
-// The lowest group above the geometry that has an enabled sensor among its children wins; all its sensors do (4.6.7.3).
+// The lowest group above the geometry that has an enabled sensor among its children wins; all its
+// sensors do (4.6.7.3).
 std::vector<Pointer::Candidate> Pointer::candidatesOf(const Hit& hit) const {
   std::vector<Candidate> found;
   const auto look = [&](const std::vector<NodeRef>& siblings, const Matrix& toWorld) {
     for (const NodeRef& sibling : siblings)
-      if (Node* node = renderedNode(sibling.get()); node && isEnabledSensor(*node)) found.push_back({NodeRef(node), toWorld});
+      if (Node* node = renderedNode(sibling.get()); node && isEnabledSensor(*node))
+        found.push_back({NodeRef(node), toWorld});
   };
   for (size_t i = hit.path.size(); i-- > 0 && found.empty();) {
     const Hit::Step& step = hit.path[i];
@@ -59,11 +62,13 @@ bool Pointer::isOver(const Node& sensor) const { return holds(over_, sensor); }
 // While something has grabbed the pointer no other sensor makes events (4.6.7.3).
 void Pointer::setOver(const std::vector<Candidate>& candidates) {
   const auto mayChange = [&](const Node& sensor) {
-    return active_.empty() ||
-           std::any_of(active_.begin(), active_.end(), [&](const Active& a) { return a.sensor.get() == &sensor; });
+    return active_.empty() || std::any_of(active_.begin(), active_.end(), [&](const Active& a) {
+             return a.sensor.get() == &sensor;
+           });
   };
   const auto under = [&](const Node& sensor) {
-    return std::any_of(candidates.begin(), candidates.end(), [&](const Candidate& c) { return c.sensor.get() == &sensor; });
+    return std::any_of(candidates.begin(), candidates.end(),
+                       [&](const Candidate& c) { return c.sensor.get() == &sensor; });
   };
   std::erase_if(over_, [&](const NodeRef& sensor) {
     if (!mayChange(*sensor) || under(*sensor)) return false;
@@ -77,7 +82,8 @@ void Pointer::setOver(const std::vector<Candidate>& candidates) {
   }
 }
 
-// In the sensor's coordinate system; normals move by the transpose of what moves points the other way (6.51).
+// In the sensor's coordinate system; normals move by the transpose of what moves points the other
+// way (6.51).
 void Pointer::touch(const Candidate& candidate, const Hit& hit) {
   Matrix toLocal;
   if (!invert(candidate.toWorld, toLocal)) return;
@@ -92,8 +98,10 @@ void Pointer::press(const std::vector<Candidate>& candidates, const PickRay& ray
   for (const Candidate& c : candidates) {
     Matrix toLocal;
     if (!invert(c.toWorld, toLocal)) continue;
-    const PickRay local{transformPoint(toLocal, ray.origin), transformDirection(toLocal, ray.direction)};
-    active_.push_back({c.sensor, toLocal, beginDrag(*c.sensor, local, transformPoint(toLocal, hit.point))});
+    const PickRay local{transformPoint(toLocal, ray.origin),
+                        transformDirection(toLocal, ray.direction)};
+    active_.push_back(
+        {c.sensor, toLocal, beginDrag(*c.sensor, local, transformPoint(toLocal, hit.point))});
     interaction_.engine.send(*c.sensor, "isActive", true); // an Anchor has none
   }
 }
@@ -113,7 +121,8 @@ void Pointer::point(const PickRay& ray, bool button) {
   Engine& engine = interaction_.engine;
   if (engine.settling() || !interaction_.scope) return; // a listener must not move the pointer
   Hit hit;
-  const bool hits = interaction_.picker.pick(ray, {}, interaction_.viewer.view(), interaction_.scope->roots, hit);
+  const bool hits =
+      interaction_.picker.pick(ray, {}, interaction_.viewer.view(), interaction_.scope->roots, hit);
   const std::vector<Candidate> candidates = hits ? candidatesOf(hit) : std::vector<Candidate>();
   const bool moved = !pointed_ || ray.origin != last_.origin || ray.direction != last_.direction;
   engine.beginCascade(engine.now());
@@ -122,7 +131,9 @@ void Pointer::point(const PickRay& ray, bool button) {
     for (const Candidate& c : candidates)
       if (isTouch(*c.sensor) && isOver(*c.sensor)) touch(c, hit);
     for (const Active& a : active_)
-      if (a.drag) a.drag->move(engine, {transformPoint(a.toLocal, ray.origin), transformDirection(a.toLocal, ray.direction)});
+      if (a.drag)
+        a.drag->move(engine, {transformPoint(a.toLocal, ray.origin),
+                              transformDirection(a.toLocal, ray.direction)});
   }
   if (button && !button_) {
     setOver(candidates); // what has moved under a pointer at rest counts when it is pressed
@@ -149,7 +160,8 @@ void Pointer::leave() {
   engine.settle();
 }
 
-// A sensor that is disabled lets go at once (4.6.7.3); one that is enabled waits for the pointer to move.
+// A sensor that is disabled lets go at once (4.6.7.3); one that is enabled waits for the pointer to
+// move.
 void Pointer::enabledChanged(Node& sensor) {
   Engine& engine = interaction_.engine;
   if (isEnabledSensor(sensor)) return;

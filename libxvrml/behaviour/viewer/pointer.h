@@ -1,5 +1,5 @@
-// pointer.h: the pointing device (clause 4.6.7.3): which sensors a ray is over, which of them have grabbed it, and their events.
-// Anchors take part as TouchSensors. [the browser's thread]
+// pointer.h: the pointing device (clause 4.6.7.3): which sensors a ray is over, which of them have
+// grabbed it, and their events. Anchors take part as TouchSensors. [the browser's thread]
 #pragma once
 
 #include "behaviour/viewer/drag.h"
@@ -15,7 +15,8 @@ class Pointer {
 
   // The pointer points along a ray in world coordinates; button: it is pressed. One cascade.
   void point(const PickRay& ray, bool button);
-  // The pointer is nowhere, its button released: nothing is over any more, what is active ends without a click.
+  // The pointer is nowhere, its button released: nothing is over any more, what is active ends
+  // without a click.
   void leave();
   // A sensor's enabled has changed.
   void enabledChanged(Node& sensor);
@@ -43,7 +44,8 @@ class Pointer {
   void release(bool click);
 
   Interaction& interaction_;
-  std::vector<NodeRef> over_;  // TouchSensors whose isOver is TRUE, drag sensors and Anchors under the pointer
+  std::vector<NodeRef>
+      over_; // TouchSensors whose isOver is TRUE, drag sensors and Anchors under the pointer
   std::vector<Active> active_; // those that have grabbed the pointer
   std::vector<NodeRef> clicked_;
   PickRay last_{};

@@ -1,4 +1,3 @@
-// viewer.cpp: see viewer.h.
 #include "behaviour/viewer/viewer.h"
 
 #include <algorithm>
@@ -19,7 +18,8 @@ using Quaternion = Imath::Quatd;
 
 Vector place(const Matrix& m) { return {m.x[3][0], m.x[3][1], m.x[3][2]}; }
 
-// Between two views: the eye on a straight line, the turn about one axis at constant speed; s in [0,1].
+// Between two views: the eye on a straight line, the turn about one axis at constant speed; s in
+// [0,1].
 Matrix between(const Matrix& a, const Matrix& b, double s) {
   const Quaternion p = Imath::extractQuat(a), q = Imath::extractQuat(b);
   Matrix m = Imath::slerpShortestArc(p, q, s).toMatrix44();
@@ -44,11 +44,13 @@ Node* Viewer::bound() const { return binding_.bound().viewpoint; }
 
 Matrix Viewer::surroundings() const { return above(bound()); }
 
-// A world that squashes its Viewpoint has no way back from the world to it: the view is then kept in a rigid system.
+// A world that squashes its Viewpoint has no way back from the world to it: the view is then kept
+// in a rigid system.
 Matrix Viewer::placeOf(const Node* viewpoint) const {
   const auto fields = viewpointFields(viewpoint);
   if (!fields) return translation({0, 0, 10}); // the default Viewpoint of 6.53
-  const Matrix m = compose(above(viewpoint), compose(translation(vector(fields->position)), rotation(fields->orientation)));
+  const Matrix m = compose(above(viewpoint), compose(translation(vector(fields->position)),
+                                                     rotation(fields->orientation)));
   Matrix inverse;
   return invert(m, inverse) ? m : rigid(m);
 }
@@ -74,7 +76,8 @@ CameraSettings Viewer::camera(double aspect) const {
   return camera;
 }
 
-// With scale above the Viewpoint the offset is no rotation and translation alone, but what leads back to the very same view.
+// With scale above the Viewpoint the offset is no rotation and translation alone, but what leads
+// back to the very same view.
 void Viewer::keep(const Matrix& view, const Node* viewpoint) {
   Matrix inverse;
   offset_ = invert(placeOf(viewpoint), inverse) ? compose(inverse, view) : Matrix();
@@ -117,7 +120,8 @@ void Viewer::bind(Node* from, Node* to) {
   }
 }
 
-// Rule c: back to where the viewer was, as seen from the next Viewpoint; if the one that leaves has jump FALSE, no jump.
+// Rule c: back to where the viewer was, as seen from the next Viewpoint; if the one that leaves has
+// jump FALSE, no jump.
 void Viewer::unbind(Node& from, Node* to) {
   const Matrix seen = shown(rigid(compose(leavingPlace(&from), offset_)));
   const auto saved = saved_.find(to);

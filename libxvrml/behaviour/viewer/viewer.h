@@ -1,5 +1,6 @@
-// viewer.h: where the viewer is. The view hangs below the bound Viewpoint, moved by an offset of its own (clause 6.53): what
-// moves the Viewpoint or the nodes above it carries the viewer along. [the browser's thread]
+// viewer.h: where the viewer is. The view hangs below the bound Viewpoint, moved by an offset of
+// its own (clause 6.53): what moves the Viewpoint or the nodes above it carries the viewer along.
+// [the browser's thread]
 #pragma once
 
 #include <unordered_map>
@@ -19,16 +20,19 @@ class Viewer {
   // Camera to world: rotation and translation only; looks along -z, +y up.
   Matrix view() const;
   CameraSettings camera(double aspect) const;
-  // The coordinate system the bound Viewpoint stands in, scale included: what NavigationInfo's lengths are in, and whose y axis
-  // is up (6.29, 6.53).
+  // The coordinate system the bound Viewpoint stands in, scale included: what NavigationInfo's
+  // lengths are in, and whose y axis is up (6.29, 6.53).
   Matrix surroundings() const;
   // Moves the viewer to a place in the world, as navigation does; a transition ends.
   void moveTo(const Matrix& view);
   // Back to where the bound Viewpoint is.
   void reset();
-  void restart();                 // a world that has no Viewpoint bound begins
-  void begin() { begun_ = true; } // the file's first Viewpoint, if there is one, is bound: somebody looks from now on
-  // The bound Viewpoint becomes another; null: the standard's default. Called before the events of the binding.
+  void restart(); // a world that has no Viewpoint bound begins
+  void begin() {
+    begun_ = true;
+  } // the file's first Viewpoint, if there is one, is bound: somebody looks from now on
+  // The bound Viewpoint becomes another; null: the standard's default. Called before the events of
+  // the binding.
   void bind(Node* from, Node* to);
   void unbind(Node& from, Node* to);
   void forget(const Node& viewpoint); // it has left the stack
@@ -37,9 +41,12 @@ class Viewer {
 
   bool inTransition() const { return moving_.running; }
   void ticked();
-  void settled();                                           // the cascade is over; something has moved
-  bool takeJump() { return std::exchange(jumped_, false); } // since the last call the viewer has jumped
-  // Metres per second in the coordinate system of the bound Viewpoint, between the last two ticks (4.12.10.3).
+  void settled(); // the cascade is over; something has moved
+  bool takeJump() {
+    return std::exchange(jumped_, false);
+  } // since the last call the viewer has jumped
+  // Metres per second in the coordinate system of the bound Viewpoint, between the last two ticks
+  // (4.12.10.3).
   double speed() const { return speed_; }
 
  private:
@@ -53,9 +60,11 @@ class Viewer {
 
   Engine& engine_;
   const Binding& binding_;
-  Matrix lastPlace_; // of the bound Viewpoint when it was last seen in the scene: it may be taken out
-  Matrix offset_;    // Viewpoint to viewer
-  std::unordered_map<const Node*, Matrix> saved_; // of Viewpoints in the stack below its top; null: the default's
+  Matrix
+      lastPlace_; // of the bound Viewpoint when it was last seen in the scene: it may be taken out
+  Matrix offset_; // Viewpoint to viewer
+  std::unordered_map<const Node*, Matrix>
+      saved_; // of Viewpoints in the stack below its top; null: the default's
   double transition_ = 0;
   struct {
     bool running = false;

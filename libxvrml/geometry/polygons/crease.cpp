@@ -1,7 +1,8 @@
-// crease.cpp: normals for creaseAngle (clause 4.6.3.5). Around each point every face takes the mean of the normals of those
-// faces there that differ from its own by less than the crease angle, weighted by their angle at the point (G. Thürmer,
-// C. A. Wüthrich, "Computing Vertex Normals from Polygonal Facets", Journal of Graphics Tools 3(1), 1998), so that the result
-// does not depend on how faces are cut into triangles. Linear in the number of corners, whatever the mesh.
+// crease.cpp: normals for creaseAngle (clause 4.6.3.5). Around each point every face takes the mean
+// of the normals of those faces there that differ from its own by less than the crease angle,
+// weighted by their angle at the point (G. Thürmer, C. A. Wüthrich, "Computing Vertex Normals from
+// Polygonal Facets", Journal of Graphics Tools 3(1), 1998), so that the result does not depend on
+// how faces are cut into triangles. Linear in the number of corners, whatever the mesh.
 #include <algorithm>
 #include <numbers>
 
@@ -10,14 +11,16 @@
 namespace xvrml {
 namespace {
 
-// Angle of a face at a corner, good to 1e-4: it is only a weight. y = |cross|, x = dot of the two edges.
+// Angle of a face at a corner, good to 1e-4: it is only a weight. y = |cross|, x = dot of the two
+// edges.
 float roughAngle(float y, float x) {
   float ax = std::abs(x), ay = std::abs(y);
   float low = std::min(ax, ay), high = std::max(ax, ay);
   if (!(high > 0)) return 0;
   float t = low / high, t2 = t * t;
   // Minimax polynomial of atan on [0, 1] (M. Abramowitz, I. Stegun, 4.4.49, first terms).
-  float angle = t * (0.9998660f + t2 * (-0.3302995f + t2 * (0.1801410f + t2 * (-0.0851330f + t2 * 0.0208351f))));
+  float angle = t * (0.9998660f +
+                     t2 * (-0.3302995f + t2 * (0.1801410f + t2 * (-0.0851330f + t2 * 0.0208351f))));
   if (ay > ax) angle = float(std::numbers::pi / 2) - angle;
   return x < 0 ? float(std::numbers::pi) - angle : angle;
 }
@@ -27,14 +30,17 @@ std::vector<float> cornerAngles(const FaceSet& set) {
   for (uint32_t face = 0; face < set.faceCount(); face++) {
     uint32_t first = set.faceStart[face], last = set.faceStart[face + 1];
     if (last - first < 3) continue;
-    V3f previous = toV3f(set.points[set.corners[last - 1]]), current = toV3f(set.points[set.corners[first]]);
+    V3f previous = toV3f(set.points[set.corners[last - 1]]),
+        current = toV3f(set.points[set.corners[first]]);
     for (uint32_t corner = first; corner < last; corner++) {
       V3f next = toV3f(set.points[set.corners[corner + 1 < last ? corner + 1 : first]]);
       V3f a = previous - current, b = next - current;
       V3f product = a.cross(b);
       float square = product.dot(product), dot = a.dot(b);
-      // Squares of squares leave the range of floats for very small or large faces; those count as if equal.
-      angles[corner] = square > 1e-30f && std::isfinite(square) ? roughAngle(std::sqrt(square), dot) : 1.0f;
+      // Squares of squares leave the range of floats for very small or large faces; those count as
+      // if equal.
+      angles[corner] =
+          square > 1e-30f && std::isfinite(square) ? roughAngle(std::sqrt(square), dot) : 1.0f;
       previous = current;
       current = next;
     }
@@ -66,9 +72,12 @@ class PointCrease {
     float length = std::sqrt(total.dot(total));
     if (length > 1e-6f) mean /= length;
     bool together = everything_;
-    if (!together && length > 1e-6f) { // all within half the angle of the mean: all within the angle of each other
+    if (!together &&
+        length >
+            1e-6f) { // all within half the angle of the mean: all within the angle of each other
       together = true;
-      for (const Member& m : members) together = together && (m.normal - mean).dot(m.normal - mean) < closeLimit_;
+      for (const Member& m : members)
+        together = together && (m.normal - mean).dot(m.normal - mean) < closeLimit_;
     }
     if (together)
       assignAll(members, mean, length);
@@ -79,12 +88,16 @@ class PointCrease {
   }
 
  private:
-  // The length of a chord between unit vectors tells angles apart even where their cosine is almost 1.
-  bool smooth(const V3f& a, const V3f& b) const { return everything_ || (a - b).dot(a - b) < limit_; }
+  // The length of a chord between unit vectors tells angles apart even where their cosine is
+  // almost 1.
+  bool smooth(const V3f& a, const V3f& b) const {
+    return everything_ || (a - b).dot(a - b) < limit_;
+  }
 
   uint32_t emit(const V3f& sum, const V3f& fallback) {
     V3d normal = unit(V3d(sum.x, sum.y, sum.z));
-    if (std::sqrt(sum.dot(sum)) < 1e-6f) normal = V3d(fallback.x, fallback.y, fallback.z); // opposite faces cancel
+    if (std::sqrt(sum.dot(sum)) < 1e-6f)
+      normal = V3d(fallback.x, fallback.y, fallback.z); // opposite faces cancel
     if (!set_.ccw) normal = -normal;
     set_.normals.own.push_back(toVec3f(normal));
     return uint32_t(set_.normals.own.size() - 1);
@@ -113,12 +126,14 @@ class PointCrease {
       for (size_t k = 0; k < members.size(); k++)
         if (sets[i] >> k & 1) sum += members[k].normal * members[k].weight;
       bool cancels = std::sqrt(sum.dot(sum)) < 1e-6f;
-      set_.normals.index[members[i].corner] =
-          same < i && !cancels ? set_.normals.index[members[same].corner] : emit(sum, members[i].normal);
+      set_.normals.index[members[i].corner] = same < i && !cancels
+                                                  ? set_.normals.index[members[same].corner]
+                                                  : emit(sum, members[i].normal);
     }
   }
 
-  // Very many faces at one point: directions in cells of a cube map stand for them, so that the cost stays linear.
+  // Very many faces at one point: directions in cells of a cube map stand for them, so that the
+  // cost stays linear.
   void binned(const std::vector<Member>& members) {
     constexpr int resolution = 8, cells = 6 * resolution * resolution;
     struct Cell {
@@ -131,9 +146,11 @@ class PointCrease {
       float size[3] = {std::abs(n.x), std::abs(n.y), std::abs(n.z)};
       int axis = int(std::max_element(size, size + 3) - size);
       auto place = [&](float v) {
-        return std::clamp(int((v / std::max(size[axis], 1e-6f) + 1) / 2 * resolution), 0, resolution - 1);
+        return std::clamp(int((v / std::max(size[axis], 1e-6f) + 1) / 2 * resolution), 0,
+                          resolution - 1);
       };
-      return ((axis * 2 + (n[axis] < 0)) * resolution + place(n[(axis + 1) % 3])) * resolution + place(n[(axis + 2) % 3]);
+      return ((axis * 2 + (n[axis] < 0)) * resolution + place(n[(axis + 1) % 3])) * resolution +
+             place(n[(axis + 2) % 3]);
     };
     for (const Member& m : members) {
       Cell& cell = table[cellOf(m.normal)];
@@ -149,7 +166,8 @@ class PointCrease {
       if (own.normal == noValue) {
         V3f sum = own.sum;
         for (Cell& other : table)
-          if (&other != &own && other.used && smooth(own.direction, other.direction)) sum += other.sum;
+          if (&other != &own && other.used && smooth(own.direction, other.direction))
+            sum += other.sum;
         own.normal = emit(sum, m.normal);
       }
       set_.normals.index[m.corner] = own.normal;
@@ -179,7 +197,8 @@ void creaseNormals(FaceSet& set, std::span<const Vec3f> faceNormals) {
     members.clear();
     for (; i < order.size() && set.corners[order[i]] == point; i++) {
       const Vec3f& normal = faceNormals[faceOf[order[i]]];
-      if (normal.x != 0 || normal.y != 0 || normal.z != 0) members.push_back({toV3f(normal), angles[order[i]], order[i]});
+      if (normal.x != 0 || normal.y != 0 || normal.z != 0)
+        members.push_back({toV3f(normal), angles[order[i]], order[i]});
     }
     if (!members.empty()) crease.process(members);
   }

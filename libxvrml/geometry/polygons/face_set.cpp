@@ -9,7 +9,8 @@ std::vector<uint32_t> FaceSet::facesOfCorners() const {
   std::vector<uint32_t> faces(corners.size());
   for (uint32_t face = 0; face < faceCount(); face++)
     std::fill(faces.begin() + faceStart[face], faces.begin() + faceStart[face + 1], face);
-  if (faceCount()) std::copy(extraFaces.begin(), extraFaces.end(), faces.begin() + faceStart.back());
+  if (faceCount())
+    std::copy(extraFaces.begin(), extraFaces.end(), faces.begin() + faceStart.back());
   return faces;
 }
 
@@ -19,11 +20,13 @@ static bool faceIsFinite(const FaceSet& set, uint32_t face) {
   return true;
 }
 
-// Newell's normal of a figure of eight is zero though it has area: take the largest corner triangle's then.
+// Newell's normal of a figure of eight is zero though it has area: take the largest corner
+// triangle's then.
 static V3d anyNormal(const FaceSet& set, uint32_t first, uint32_t last) {
   V3d origin = toV3d(set.points[set.corners[first]]), best(0, 0, 0);
   for (uint32_t corner = first + 1; corner + 1 < last; corner++) {
-    V3d normal = (toV3d(set.points[set.corners[corner]]) - origin).cross(toV3d(set.points[set.corners[corner + 1]]) - origin);
+    V3d normal = (toV3d(set.points[set.corners[corner]]) - origin)
+                     .cross(toV3d(set.points[set.corners[corner + 1]]) - origin);
     if (normal.dot(normal) > best.dot(best)) best = normal;
   }
   return best;
@@ -39,7 +42,8 @@ std::vector<Vec3f> faceNormals(const FaceSet& set, Faults& faults) {
       faults.add(Fault::notFinite, set.name(face));
       continue;
     }
-    // Newell's sum of the cross products of successive corners, relative to the first one so that nothing cancels far out.
+    // Newell's sum of the cross products of successive corners, relative to the first one so that
+    // nothing cancels far out.
     V3d origin = toV3d(set.points[set.corners[first]]), sum(0, 0, 0), previous(0, 0, 0);
     double largest = 0;
     for (uint32_t corner = first + 1; corner < last; corner++) {
@@ -49,10 +53,12 @@ std::vector<Vec3f> faceNormals(const FaceSet& set, Faults& faults) {
       largest = std::max({largest, std::abs(part.x), std::abs(part.y), std::abs(part.z)});
       previous = current;
     }
-    if (last - first > 3 && std::sqrt(sum.dot(sum)) <= 1e-10 * largest) sum = anyNormal(set, first, last);
+    if (last - first > 3 && std::sqrt(sum.dot(sum)) <= 1e-10 * largest)
+      sum = anyNormal(set, first, last);
     V3d normal = unit(sum);
     normals[face] = toVec3f(normal);
-    if (normal.x == 0 && normal.y == 0 && normal.z == 0 && !set.quietNoArea) faults.add(Fault::noArea, set.name(face));
+    if (normal.x == 0 && normal.y == 0 && normal.z == 0 && !set.quietNoArea)
+      faults.add(Fault::noArea, set.name(face));
   }
   return normals;
 }
@@ -68,11 +74,13 @@ void repairNormals(FaceSet& set, std::span<const Vec3f> faceNormals, Faults& fau
   bool allUsable = normals.per != Per::point || normals.values.size() >= set.points.size();
   for (size_t i = 0; allUsable && i < normals.values.size(); i++) allUsable = usable(uint32_t(i));
   if (normals.per != Per::point)
-    for (size_t i = 0; allUsable && i < normals.index.size(); i++) allUsable = normals.index[i] != noValue;
+    for (size_t i = 0; allUsable && i < normals.index.size(); i++)
+      allUsable = normals.index[i] != noValue;
 
   // Unit length once, in the values, so that interpolation weighs corners equally.
   bool unitLength = true;
-  for (const Vec3f& n : normals.values) unitLength = unitLength && std::abs(n.x * n.x + n.y * n.y + n.z * n.z - 1) < 1e-4f;
+  for (const Vec3f& n : normals.values)
+    unitLength = unitLength && std::abs(n.x * n.x + n.y * n.y + n.z * n.z - 1) < 1e-4f;
   if (!unitLength) {
     for (Vec3f& n : normals.grow()) n = toVec3f(unit(toV3d(n)));
     normals.values = normals.own;
@@ -107,10 +115,12 @@ std::vector<uint32_t> orderByPoint(std::span<const uint32_t> corners, size_t poi
     std::vector<uint32_t> start(pointCount + 1, 0);
     for (uint32_t point : corners) start[point + 1]++;
     for (size_t i = 0; i < pointCount; i++) start[i + 1] += start[i];
-    for (uint32_t corner = 0; corner < corners.size(); corner++) order[start[corners[corner]]++] = corner;
+    for (uint32_t corner = 0; corner < corners.size(); corner++)
+      order[start[corners[corner]]++] = corner;
   } else { // few corners of a large, shared Coordinate
     for (uint32_t corner = 0; corner < corners.size(); corner++) order[corner] = corner;
-    std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return corners[a] < corners[b]; });
+    std::stable_sort(order.begin(), order.end(),
+                     [&](uint32_t a, uint32_t b) { return corners[a] < corners[b]; });
   }
   return order;
 }

@@ -1,4 +1,5 @@
-// flat_triangles.cpp: edge flips until no triangle without area has a neighbour at its longest edge. See flat_triangles.h.
+// flat_triangles.cpp: edge flips until no triangle without area has a neighbour at its longest
+// edge. See flat_triangles.h.
 #include "geometry/polygons/flat_triangles.h"
 
 #include <algorithm>
@@ -10,30 +11,40 @@ namespace {
 
 class Flips {
  public:
-  Flips(const std::function<V3d(uint32_t)>& position, const std::function<bool(uint32_t, uint32_t, uint32_t)>& hasArea)
+  Flips(const std::function<V3d(uint32_t)>& position,
+        const std::function<bool(uint32_t, uint32_t, uint32_t)>& hasArea)
       : position_(position), hasArea_(hasArea) {}
 
   void run(std::vector<uint32_t>& triangles) {
-    for (size_t i = 0; i + 2 < triangles.size(); i += 3) insert({triangles[i], triangles[i + 1], triangles[i + 2]});
+    for (size_t i = 0; i + 2 < triangles.size(); i += 3)
+      insert({triangles[i], triangles[i + 1], triangles[i + 2]});
     if (open_.empty()) return;
-    // Each flip makes one triangle less without area, or a shorter edge between two of them, after a walk along flat neighbours.
-    // The number is a guard against rounding and against faces made to take long.
+    // Each flip makes one triangle less without area, or a shorter edge between two of them, after
+    // a walk along flat neighbours. The number is a guard against rounding and against faces made
+    // to take long.
     const uint64_t n = all_.size();
-    for (uint64_t left = 64 + 16 * n + std::min<uint64_t>(n * n, 2'000'000); !open_.empty() && left > 0; --left) flip();
+    for (uint64_t left = 64 + 16 * n + std::min<uint64_t>(n * n, 2'000'000);
+         !open_.empty() && left > 0; --left)
+      flip();
     triangles.clear();
     for (size_t i = 0; i < all_.size(); ++i)
-      if (alive_[i] && hasArea(i)) triangles.insert(triangles.end(), all_[i].begin(), all_[i].end());
+      if (alive_[i] && hasArea(i))
+        triangles.insert(triangles.end(), all_[i].begin(), all_[i].end());
   }
 
  private:
   using Triangle = std::array<uint32_t, 3>;
   static uint64_t key(uint32_t from, uint32_t to) { return uint64_t(from) << 32 | to; }
-  bool hasArea(size_t number) const { return hasArea_(all_[number][0], all_[number][1], all_[number][2]); }
-  // So thin that rounding may have made it: corners in one line are seldom exactly so. The flips leave the outline as it is.
+  bool hasArea(size_t number) const {
+    return hasArea_(all_[number][0], all_[number][1], all_[number][2]);
+  }
+  // So thin that rounding may have made it: corners in one line are seldom exactly so. The flips
+  // leave the outline as it is.
   bool isFlat(size_t number) const {
     const auto [a, b, c] = turned(all_[number]);
     const double longest = length(a, c);
-    return (position_(b) - position_(a)).cross(position_(c) - position_(a)).length() <= 1e-5 * longest * longest;
+    return (position_(b) - position_(a)).cross(position_(c) - position_(a)).length() <=
+           1e-5 * longest * longest;
   }
   double length(uint32_t a, uint32_t b) const { return (position_(a) - position_(b)).length(); }
 
@@ -69,14 +80,16 @@ class Flips {
     return {t[best], t[(best + 1) % 3], t[(best + 2) % 3]};
   }
 
-  // The last open triangle (a, b, c): b lies between a and c. With (a, c, d) behind its edge it becomes (a, b, d) and (b, c, d).
+  // The last open triangle (a, b, c): b lies between a and c. With (a, c, d) behind its edge it
+  // becomes (a, b, d) and (b, c, d).
   void flip() {
     const uint32_t number = open_.back();
     open_.pop_back();
     if (!alive_[number] || final_[number]) return;
     const auto [a, b, c] = turned(all_[number]);
     const auto found = edges_.find(key(a, c));
-    const bool apart = length(a, b) > 0 && length(b, c) > 0;          // of two vertices in one place either will do
+    const bool apart =
+        length(a, b) > 0 && length(b, c) > 0; // of two vertices in one place either will do
     if (!apart || found == edges_.end() || found->second == number) { // on the outline
       final_[number] = true;
       if (!hasArea(number)) remove(number);
@@ -113,7 +126,8 @@ class Flips {
 
 } // namespace
 
-void removeFlatTriangles(std::vector<uint32_t>& triangles, const std::function<V3d(uint32_t)>& position,
+void removeFlatTriangles(std::vector<uint32_t>& triangles,
+                         const std::function<V3d(uint32_t)>& position,
                          const std::function<bool(uint32_t, uint32_t, uint32_t)>& hasArea) {
   Flips(position, hasArea).run(triangles);
 }

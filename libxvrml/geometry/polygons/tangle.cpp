@@ -1,5 +1,6 @@
-// tangle.cpp: what a polygon will cost the tessellator, found before it starts. Crossings are counted up to a budget by halving
-// the plane until few edges are left, so that a polygon made to have a billion of them is refused.
+// tangle.cpp: what a polygon will cost the tessellator, found before it starts. Crossings are
+// counted up to a budget by halving the plane until few edges are left, so that a polygon made to
+// have a billion of them is refused.
 #include <algorithm>
 
 #include "geometry/polygons/tessellator.h"
@@ -11,10 +12,13 @@ struct Edge {
   V2d a, b;
 };
 
-double side(const V2d& a, const V2d& b, const V2d& p) { return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x); }
+double side(const V2d& a, const V2d& b, const V2d& p) {
+  return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x);
+}
 
 bool cross(const Edge& e, const Edge& f) {
-  return side(e.a, e.b, f.a) * side(e.a, e.b, f.b) < 0 && side(f.a, f.b, e.a) * side(f.a, f.b, e.b) < 0;
+  return side(e.a, e.b, f.a) * side(e.a, e.b, f.b) < 0 &&
+         side(f.a, f.b, e.a) * side(f.a, f.b, e.b) < 0;
 }
 
 bool touches(const Edge& e, const V2d& low, const V2d& high) {
@@ -38,7 +42,8 @@ struct Counter {
     if (list.size() <= 12 || depth == 40) {
       for (size_t i = 0; i < list.size() && !exhausted(); i++) {
         work += list.size() - i;
-        for (size_t k = i + 1; k < list.size(); k++) crossings += cross(edges[list[i]], edges[list[k]]);
+        for (size_t k = i + 1; k < list.size(); k++)
+          crossings += cross(edges[list[i]], edges[list[k]]);
       }
       return;
     }
@@ -82,7 +87,8 @@ uint64_t sweepWork(std::span<const V3d> flatPolygon, int axis) {
   for (size_t i = 0; i < n; i++) events[i] = flatPolygon[i][axis];
   std::sort(events.begin(), events.end());
   auto rank = [&](size_t i) {
-    return uint64_t(std::lower_bound(events.begin(), events.end(), flatPolygon[i][axis]) - events.begin());
+    return uint64_t(std::lower_bound(events.begin(), events.end(), flatPolygon[i][axis]) -
+                    events.begin());
   };
   uint64_t work = 0, previous = rank(n - 1);
   for (size_t i = 0; i < n; i++) { // an edge is looked at in each event between its ends

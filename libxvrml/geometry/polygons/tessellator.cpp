@@ -52,7 +52,8 @@ void Tessellator::begin(const V3d& normal, Winding winding) {
   crossings_.clear();
   vertices_ = 0;
   failed_ = false;
-  gluTessProperty(tess_, GLU_TESS_WINDING_RULE, winding == Winding::odd ? GLU_TESS_WINDING_ODD : GLU_TESS_WINDING_NONZERO);
+  gluTessProperty(tess_, GLU_TESS_WINDING_RULE,
+                  winding == Winding::odd ? GLU_TESS_WINDING_ODD : GLU_TESS_WINDING_NONZERO);
   gluTessNormal(tess_, normal.x, normal.y, normal.z);
   gluTessBeginPolygon(tess_, this);
 }

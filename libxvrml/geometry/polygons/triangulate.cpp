@@ -1,5 +1,6 @@
-// triangulate.cpp: faces to triangles of corners. Triangles, convex faces and quadrilaterals are cut directly; everything else,
-// also faces that break the promise of `convex TRUE`, goes through the tessellator.
+// triangulate.cpp: faces to triangles of corners. Triangles, convex faces and quadrilaterals are
+// cut directly; everything else, also faces that break the promise of `convex TRUE`, goes through
+// the tessellator.
 #include <algorithm>
 #include <optional>
 
@@ -12,12 +13,15 @@ namespace {
 
 class Triangulation {
  public:
-  Triangulation(FaceSet& set, std::span<const Vec3f> normals, const MeshOptions& options, Faults& faults)
-      : set_(set), normals_(normals), faults_(faults), limit_(options.limits ? options.limits->triangles : Limits().triangles) {}
+  Triangulation(FaceSet& set, std::span<const Vec3f> normals, const MeshOptions& options,
+                Faults& faults)
+      : set_(set), normals_(normals), faults_(faults),
+        limit_(options.limits ? options.limits->triangles : Limits().triangles) {}
 
   std::vector<uint32_t> run() {
-    triangles_.reserve(
-        set_.corners.size() > 2 * size_t(set_.faceCount()) ? 3 * (set_.corners.size() - 2 * size_t(set_.faceCount())) : 0);
+    triangles_.reserve(set_.corners.size() > 2 * size_t(set_.faceCount())
+                           ? 3 * (set_.corners.size() - 2 * size_t(set_.faceCount()))
+                           : 0);
     crossingBudget_ = set_.corners.size() / 4 + 200'000;
     for (uint32_t face = 0; face < set_.faceCount(); face++) {
       const Vec3f& n = normals_[face];
@@ -35,7 +39,8 @@ class Triangulation {
   V3d point(uint32_t corner) const { return toV3d(set_.points[set_.corners[corner]]); }
 
   bool isKept(uint32_t a, uint32_t b, uint32_t c) const {
-    return hasArea(set_.points[set_.corners[a]], set_.points[set_.corners[b]], set_.points[set_.corners[c]]);
+    return hasArea(set_.points[set_.corners[a]], set_.points[set_.corners[b]],
+                   set_.points[set_.corners[c]]);
   }
 
   void add(uint32_t a, uint32_t b, uint32_t c) {
@@ -77,19 +82,22 @@ class Triangulation {
       }
       if (bent > 1) return false; // crosses itself
     }
-    uint32_t a = first + apex, b = first + (apex + 1) % 4, c = first + (apex + 2) % 4, d = first + (apex + 3) % 4;
+    uint32_t a = first + apex, b = first + (apex + 1) % 4, c = first + (apex + 2) % 4,
+             d = first + (apex + 3) % 4;
     add(a, b, c);
     add(a, c, d);
     return true;
   }
 
-  // Strictly convex and wound once: every corner turns left, and the edges change direction only twice along an axis.
+  // Strictly convex and wound once: every corner turns left, and the edges change direction only
+  // twice along an axis.
   bool isConvex(uint32_t first, uint32_t count, const V3d& normal) const {
     if (!set_.convex && count > 64) return false; // declared concave: do not look for long
     V3d axis = unit(point(first + 1) - point(first));
     int changes = 0, direction = 0, firstDirection = 0;
     for (uint32_t i = 0; i < count; i++) {
-      uint32_t corner = first + i, next = first + (i + 1) % count, previous = first + (i + count - 1) % count;
+      uint32_t corner = first + i, next = first + (i + 1) % count,
+               previous = first + (i + count - 1) % count;
       if (!(turn(normal, previous, corner, next) > 1e-9)) return false;
       double along = (point(next) - point(corner)).dot(axis);
       int now = along > 0 ? 1 : along < 0 ? -1 : direction;
@@ -119,24 +127,31 @@ class Triangulation {
     }
     size_t crossings = tessellator_->crossings().size();
     crossingBudget_ -= std::min<uint64_t>(crossingBudget_, crossings);
-    // Vertices in the tessellator's numbering: the face's corners, then the crossings, made corners here.
+    // Vertices in the tessellator's numbering: the face's corners, then the crossings, made corners
+    // here.
     uint32_t added = uint32_t(set_.corners.size());
     for (const auto& crossing : tessellator_->crossings())
       addCorner(face, first, count, added, axes.outOf(crossing.point) + origin, crossing);
-    auto corner = [&](uint32_t vertex) { return vertex < count ? first + vertex : added + (vertex - count); };
+    auto corner = [&](uint32_t vertex) {
+      return vertex < count ? first + vertex : added + (vertex - count);
+    };
     std::vector<uint32_t> t;
     t.reserve(tessellator_->triangles().size());
     for (const uint32_t vertex : tessellator_->triangles()) t.push_back(corner(vertex));
     removeFlatTriangles(
-        t, [&](uint32_t a) { return point(a); }, [&](uint32_t a, uint32_t b, uint32_t c) { return isKept(a, b, c); });
+        t, [&](uint32_t a) { return point(a); },
+        [&](uint32_t a, uint32_t b, uint32_t c) { return isKept(a, b, c); });
     triangles_.insert(triangles_.end(), t.begin(), t.end());
   }
 
-  // Large polygons are looked at first: the tessellator takes time by the square of some of them. Turns the plane if that helps.
+  // Large polygons are looked at first: the tessellator takes time by the square of some of them.
+  // Turns the plane if that helps.
   bool affordable(PlaneAxes& axes, uint32_t count) {
     if (count < 200) return crossingBudget_ > 0; // quick even if every edge crosses every other
-    uint64_t alongX = sweepWork(contour_, 0), alongY = sweepWork(contour_, 1), work = std::min(alongX, alongY);
-    if (work > sweepBudget_ || isTangled(contour_, std::min<uint64_t>(crossingBudget_, 4 * uint64_t(count) + 20'000)))
+    uint64_t alongX = sweepWork(contour_, 0), alongY = sweepWork(contour_, 1),
+             work = std::min(alongX, alongY);
+    if (work > sweepBudget_ ||
+        isTangled(contour_, std::min<uint64_t>(crossingBudget_, 4 * uint64_t(count) + 20'000)))
       return false;
     sweepBudget_ -= work;
     if (alongY < alongX) {
@@ -149,7 +164,8 @@ class Triangulation {
   void addCorner(uint32_t face, uint32_t first, uint32_t count, uint32_t added, const V3d& place,
                  const Tessellator::Crossing& c) {
     uint32_t from[4];
-    for (uint32_t i = 0; i < c.count; i++) from[i] = c.from[i] < count ? first + c.from[i] : added + (c.from[i] - count);
+    for (uint32_t i = 0; i < c.count; i++)
+      from[i] = c.from[i] < count ? first + c.from[i] : added + (c.from[i] - count);
     auto mean = [&](auto& attribute, auto valueOf, auto finish) {
       using Per = typename std::remove_reference_t<decltype(attribute)>::Per;
       if (attribute.per != Per::point && attribute.per != Per::corner) return;
@@ -195,7 +211,8 @@ class Triangulation {
         [](const V3d& sum) {
           return Color{float(sum.x), float(sum.y), float(sum.z)};
         });
-    if (set_.points.data() != set_.ownPoints.data()) set_.ownPoints.assign(set_.points.begin(), set_.points.end());
+    if (set_.points.data() != set_.ownPoints.data())
+      set_.ownPoints.assign(set_.points.begin(), set_.points.end());
     set_.ownPoints.push_back(toVec3f(place));
     set_.points = set_.ownPoints;
     set_.corners.push_back(uint32_t(set_.points.size() - 1));
@@ -205,7 +222,8 @@ class Triangulation {
   template <class T> void perCorner(Attribute<T>& attribute) {
     attribute.index.resize(set_.corners.size());
     for (size_t corner = 0; corner < set_.corners.size(); corner++)
-      attribute.index[corner] = set_.corners[corner] < attribute.values.size() ? set_.corners[corner] : noValue;
+      attribute.index[corner] =
+          set_.corners[corner] < attribute.values.size() ? set_.corners[corner] : noValue;
     attribute.per = Attribute<T>::Per::corner;
   }
 
@@ -220,7 +238,8 @@ class Triangulation {
 
 } // namespace
 
-std::vector<uint32_t> triangulate(FaceSet& set, std::span<const Vec3f> normals, const MeshOptions& options, Faults& faults) {
+std::vector<uint32_t> triangulate(FaceSet& set, std::span<const Vec3f> normals,
+                                  const MeshOptions& options, Faults& faults) {
   return Triangulation(set, normals, options, faults).run();
 }
 

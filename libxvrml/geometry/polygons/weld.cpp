@@ -1,5 +1,6 @@
-// weld.cpp: corners to vertices. A mesh has one index a vertex, so a point is doubled where normals, colours or texture
-// coordinates differ between the corners that meet there, and only there.
+// weld.cpp: corners to vertices. A mesh has one index a vertex, so a point is doubled where
+// normals, colours or texture coordinates differ between the corners that meet there, and only
+// there.
 #include <algorithm>
 #include <array>
 
@@ -18,11 +19,12 @@ template <class T> bool onePerPoint(const Attribute<T>& attribute, size_t points
 // Arrays can be used as they are: nothing to double, and nothing in them that must not be seen.
 bool usableInPlace(const FaceSet& set, size_t usedCorners) {
   size_t n = set.points.size();
-  return onePerPoint(set.normals, n) && onePerPoint(set.texCoords, n) && onePerPoint(set.colors, n) && n / 4 <= usedCorners &&
-         allFinite(set.points);
+  return onePerPoint(set.normals, n) && onePerPoint(set.texCoords, n) &&
+         onePerPoint(set.colors, n) && n / 4 <= usedCorners && allFinite(set.points);
 }
 
-template <class T> void takeAttribute(Attribute<T>& from, size_t points, std::span<const T>& view, std::vector<T>& own) {
+template <class T> void takeAttribute(Attribute<T>& from, size_t points, std::span<const T>& view,
+                                      std::vector<T>& own) {
   if (from.per == Attribute<T>::Per::none) return;
   if (from.values.data() == from.own.data()) {
     own = std::move(from.own);
@@ -79,16 +81,19 @@ class Welder {
  private:
   Key keyOf(uint32_t corner) const {
     uint32_t face = faceOf_[corner], point = set_.corners[corner];
-    return {set_.normals.at(corner, face, point), set_.texCoords.at(corner, face, point), set_.colors.at(corner, face, point)};
+    return {set_.normals.at(corner, face, point), set_.texCoords.at(corner, face, point),
+            set_.colors.at(corner, face, point)};
   }
   void addPoint(std::span<const uint32_t> corners) {
     keys_.clear();
     for (uint32_t corner : corners) keys_.push_back({keyOf(corner), corner});
-    if (keys_.size() > 16) { // equal keys side by side; few keys are quicker compared with each other
+    if (keys_.size() >
+        16) { // equal keys side by side; few keys are quicker compared with each other
       std::sort(keys_.begin(), keys_.end());
       uint32_t vertex = 0;
       for (size_t i = 0; i < keys_.size(); i++) {
-        if (i == 0 || keys_[i].first != keys_[i - 1].first) vertex = addVertex(set_.corners[corners[0]], keys_[i].first);
+        if (i == 0 || keys_[i].first != keys_[i - 1].first)
+          vertex = addVertex(set_.corners[corners[0]], keys_[i].first);
         vertexOf_[keys_[i].second] = vertex;
       }
       return;
@@ -96,19 +101,25 @@ class Welder {
     for (size_t i = 0; i < keys_.size(); i++) {
       size_t same = 0;
       while (keys_[same].first != keys_[i].first) same++;
-      vertexOf_[keys_[i].second] = same < i ? vertexOf_[keys_[same].second] : addVertex(set_.corners[corners[0]], keys_[i].first);
+      vertexOf_[keys_[i].second] = same < i ? vertexOf_[keys_[same].second]
+                                            : addVertex(set_.corners[corners[0]], keys_[i].first);
     }
   }
 
   uint32_t addVertex(uint32_t point, const Key& key) {
     mesh_.ownPoints.push_back(set_.points[point]);
-    if (has(set_.normals)) mesh_.ownNormals.push_back(key[0] == noValue ? Vec3f{0, 0, 1} : set_.normals.values[key[0]]);
-    if (has(set_.texCoords)) mesh_.ownTexCoords.push_back(key[1] == noValue ? Vec2f{0, 0} : set_.texCoords.values[key[1]]);
-    if (has(set_.colors)) mesh_.ownColors.push_back(key[2] == noValue ? Color{1, 1, 1} : set_.colors.values[key[2]]);
+    if (has(set_.normals))
+      mesh_.ownNormals.push_back(key[0] == noValue ? Vec3f{0, 0, 1} : set_.normals.values[key[0]]);
+    if (has(set_.texCoords))
+      mesh_.ownTexCoords.push_back(key[1] == noValue ? Vec2f{0, 0} : set_.texCoords.values[key[1]]);
+    if (has(set_.colors))
+      mesh_.ownColors.push_back(key[2] == noValue ? Color{1, 1, 1} : set_.colors.values[key[2]]);
     return uint32_t(mesh_.ownPoints.size() - 1);
   }
 
-  template <class T> static bool has(const Attribute<T>& attribute) { return attribute.per != Attribute<T>::Per::none; }
+  template <class T> static bool has(const Attribute<T>& attribute) {
+    return attribute.per != Attribute<T>::Per::none;
+  }
 
   const FaceSet& set_;
   std::vector<uint32_t> faceOf_, vertexOf_;
@@ -121,7 +132,8 @@ class Welder {
 Mesh weld(FaceSet&& set, std::span<const uint32_t> triangles) {
   if (triangles.empty()) return {};
   bool solid = set.solid, ccw = set.ccw;
-  Mesh mesh = usableInPlace(set, triangles.size()) ? inPlace(std::move(set), triangles) : Welder(set).run(triangles);
+  Mesh mesh = usableInPlace(set, triangles.size()) ? inPlace(std::move(set), triangles)
+                                                   : Welder(set).run(triangles);
   mesh.kind = Mesh::Kind::triangles;
   mesh.solid = solid;
   mesh.ccw = ccw;

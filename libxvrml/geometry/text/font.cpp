@@ -1,4 +1,5 @@
-// font.cpp: one font: layout by HarfBuzz, outlines by FreeType, triangles by the tessellator, kept a glyph.
+// font.cpp: one font: layout by HarfBuzz, outlines by FreeType, triangles by the tessellator, kept
+// a glyph.
 #include <ft2build.h>
 #include FT_FREETYPE_H
 #include FT_OUTLINE_H
@@ -9,8 +10,8 @@
 #include <stdexcept>
 #include <unordered_map>
 
-#include "geometry/text/fonts.h"
 #include "geometry/polygons/tessellator.h"
+#include "geometry/text/fonts.h"
 
 namespace xvrml {
 namespace {
@@ -24,18 +25,23 @@ FT_Library freeType() {
   return library;
 }
 
-// Contours of an outline as polygons; curves in as many pieces as keep them within a thousandth of an em.
+// Contours of an outline as polygons; curves in as many pieces as keep them within a thousandth of
+// an em.
 struct Flattener {
   double scale, slant;
   std::vector<std::vector<V3d>> contours;
   V2d pen{0, 0};
 
-  V2d at(const FT_Vector* v) const { return {(double(v->x) + slant * double(v->y)) * scale, double(v->y) * scale}; }
+  V2d at(const FT_Vector* v) const {
+    return {(double(v->x) + slant * double(v->y)) * scale, double(v->y) * scale};
+  }
   void add(const V2d& p) {
     contours.back().push_back({p.x, p.y, 0});
     pen = p;
   }
-  static int pieces(double deviation) { return std::clamp(int(std::ceil(std::sqrt(deviation / 0.001))), 1, 24); }
+  static int pieces(double deviation) {
+    return std::clamp(int(std::ceil(std::sqrt(deviation / 0.001))), 1, 24);
+  }
 
   static int moveTo(const FT_Vector* to, void* self) {
     auto* f = static_cast<Flattener*>(self);
@@ -61,7 +67,8 @@ struct Flattener {
     }
     return 0;
   }
-  static int cubicTo(const FT_Vector* control1, const FT_Vector* control2, const FT_Vector* to, void* self) {
+  static int cubicTo(const FT_Vector* control1, const FT_Vector* control2, const FT_Vector* to,
+                     void* self) {
     auto* f = static_cast<Flattener*>(self);
     if (f->contours.empty()) f->contours.emplace_back();
     V2d a = f->pen, b = f->at(control1), c = f->at(control2), d = f->at(to);
@@ -85,7 +92,8 @@ GlyphMesh tessellate(Flattener& flat) {
     for (const V3d& p : contour) mesh.points.push_back({float(p.x), float(p.y)});
   }
   if (!tessellator.end()) return {};
-  for (const auto& crossing : tessellator.crossings()) mesh.points.push_back({float(crossing.point.x), float(crossing.point.y)});
+  for (const auto& crossing : tessellator.crossings())
+    mesh.points.push_back({float(crossing.point.x), float(crossing.point.y)});
   const auto& t = tessellator.triangles();
   auto point = [&](uint32_t i) { return Vec3f{mesh.points[i].x, mesh.points[i].y, 0}; };
   for (size_t i = 0; i + 2 < t.size(); i += 3)
@@ -109,9 +117,12 @@ struct Font::Impl {
   }
 };
 
-Font::Font(const std::string& file, int faceIndex, bool slant, bool embolden) : impl_(std::make_unique<Impl>()) {
-  if (FT_New_Face(freeType(), file.c_str(), faceIndex, &impl_->face)) throw std::runtime_error("cannot read font " + file);
-  if (!FT_IS_SCALABLE(impl_->face) || impl_->face->units_per_EM == 0) throw std::runtime_error("no outlines in font " + file);
+Font::Font(const std::string& file, int faceIndex, bool slant, bool embolden)
+    : impl_(std::make_unique<Impl>()) {
+  if (FT_New_Face(freeType(), file.c_str(), faceIndex, &impl_->face))
+    throw std::runtime_error("cannot read font " + file);
+  if (!FT_IS_SCALABLE(impl_->face) || impl_->face->units_per_EM == 0)
+    throw std::runtime_error("no outlines in font " + file);
   impl_->scale = 1.0 / impl_->face->units_per_EM;
   impl_->slant = slant;
   impl_->embolden = embolden;
@@ -127,16 +138,21 @@ Font::~Font() = default;
 double Font::ascender() const { return impl_->face->ascender * impl_->scale; }
 double Font::descender() const { return impl_->face->descender * impl_->scale; }
 
-ShapedLine Font::shape(const std::string& utf8, TextDirection direction, const std::string& language) {
-  static constexpr hb_direction_t directions[] = {HB_DIRECTION_LTR, HB_DIRECTION_RTL, HB_DIRECTION_TTB, HB_DIRECTION_BTT};
+ShapedLine Font::shape(const std::string& utf8, TextDirection direction,
+                       const std::string& language) {
+  static constexpr hb_direction_t directions[] = {HB_DIRECTION_LTR, HB_DIRECTION_RTL,
+                                                  HB_DIRECTION_TTB, HB_DIRECTION_BTT};
   std::string text = utf8;
   for (char& c : text)
     if ((unsigned char)c < 0x20 || c == 0x7f) c = ' '; // line ends and tabs have no glyph
-  std::unique_ptr<hb_buffer_t, void (*)(hb_buffer_t*)> buffer(hb_buffer_create(), hb_buffer_destroy);
+  std::unique_ptr<hb_buffer_t, void (*)(hb_buffer_t*)> buffer(hb_buffer_create(),
+                                                              hb_buffer_destroy);
   hb_buffer_add_utf8(buffer.get(), text.data(), int(text.size()), 0, int(text.size()));
   hb_buffer_guess_segment_properties(buffer.get());
   hb_buffer_set_direction(buffer.get(), directions[size_t(direction)]);
-  if (!language.empty()) hb_buffer_set_language(buffer.get(), hb_language_from_string(language.c_str(), int(language.size())));
+  if (!language.empty())
+    hb_buffer_set_language(buffer.get(),
+                           hb_language_from_string(language.c_str(), int(language.size())));
   hb_shape(impl_->font, buffer.get(), nullptr, 0);
   unsigned count = 0;
   const hb_glyph_info_t* infos = hb_buffer_get_glyph_infos(buffer.get(), &count);
@@ -162,7 +178,8 @@ const GlyphMesh& Font::glyph(uint32_t id) {
     FT_Outline& outline = impl_->face->glyph->outline;
     if (impl_->embolden) FT_Outline_Embolden(&outline, impl_->face->units_per_EM / 24);
     Flattener flat{impl_->scale, impl_->slant ? 0.2 : 0, {}, {0, 0}};
-    FT_Outline_Funcs functions{Flattener::moveTo, Flattener::lineTo, Flattener::conicTo, Flattener::cubicTo, 0, 0};
+    FT_Outline_Funcs functions{
+        Flattener::moveTo, Flattener::lineTo, Flattener::conicTo, Flattener::cubicTo, 0, 0};
     if (!FT_Outline_Decompose(&outline, &functions, &flat)) mesh = tessellate(flat);
   }
   return impl_->glyphs.emplace(id, std::move(mesh)).first->second;

@@ -18,18 +18,20 @@ using Pattern = std::unique_ptr<FcPattern, Destroyer<FcPattern, FcPatternDestroy
 
 const FcChar8* fc(const char* s) { return reinterpret_cast<const FcChar8*>(s); }
 
-// A tree that brings fonts, as a wheel does, has them in share/xvrml/fonts beside lib; they serve where the system has none.
-// There is a configuration among them for a system without fontconfig's own, of which fontconfig would complain on standard
-// error.
+// A tree that brings fonts, as a wheel does, has them in share/xvrml/fonts beside lib; they serve
+// where the system has none. There is a configuration among them for a system without fontconfig's
+// own, of which fontconfig would complain on standard error.
 void addBundledFonts() {
   namespace fs = std::filesystem;
   static const char here = 0;
   std::error_code error;
   Dl_info info{};
   if (dladdr(&here, &info) == 0 || !info.dli_fname) return;
-  const fs::path folder = fs::canonical(fs::path(info.dli_fname).parent_path() / "../share/xvrml/fonts", error);
+  const fs::path folder =
+      fs::canonical(fs::path(info.dli_fname).parent_path() / "../share/xvrml/fonts", error);
   if (error) return;
-  FcConfig* own = FcConfigCreate(); // to ask it: without one fontconfig would load its own, and complain
+  FcConfig* own =
+      FcConfigCreate(); // to ask it: without one fontconfig would load its own, and complain
   if (!own) return;
   if (FcChar8* installed = FcConfigGetFilename(own, nullptr)) {
     FcStrFree(installed);
@@ -55,7 +57,8 @@ struct Match {
   bool slant = false, embolden = false; // what the file lacks of the style asked for
 };
 
-bool match(const std::string& name, bool bold, bool italic, const std::string& language, Match& result) {
+bool match(const std::string& name, bool bold, bool italic, const std::string& language,
+           Match& result) {
   static const bool prepared = (addBundledFonts(), true);
   (void)prepared;
   Pattern pattern(FcPatternCreate());
@@ -74,7 +77,8 @@ bool match(const std::string& name, bool bold, bool italic, const std::string& l
   FcChar8 *file = nullptr, *family = nullptr;
   FcBool outline = FcFalse;
   if (FcPatternGetString(found.get(), FC_FILE, 0, &file) != FcResultMatch) return false;
-  if (FcPatternGetBool(found.get(), FC_OUTLINE, 0, &outline) != FcResultMatch || !outline) return false;
+  if (FcPatternGetBool(found.get(), FC_OUTLINE, 0, &outline) != FcResultMatch || !outline)
+    return false;
   result.file = reinterpret_cast<const char*>(file);
   if (FcPatternGetString(found.get(), FC_FAMILY, 0, &family) == FcResultMatch)
     result.family = reinterpret_cast<const char*>(family);
@@ -91,7 +95,8 @@ bool sameFamily(const std::string& wanted, const std::string& found) {
   return FcStrCmpIgnoreCase(fc(wanted.c_str()), fc(found.c_str())) == 0;
 }
 
-// Fonts by file and style, and what was asked for before. A hostile world may ask for many names: forget them in time.
+// Fonts by file and style, and what was asked for before. A hostile world may ask for many names:
+// forget them in time.
 struct FontTable {
   std::map<std::string, std::shared_ptr<Font>> byFile;
   std::map<std::string, Font*> byRequest;
@@ -102,7 +107,8 @@ FontTable& table() {
 }
 
 Font* open(const Match& m) {
-  std::string key = m.file + '\n' + std::to_string(m.index) + (m.slant ? "s" : "") + (m.embolden ? "e" : "");
+  std::string key =
+      m.file + '\n' + std::to_string(m.index) + (m.slant ? "s" : "") + (m.embolden ? "e" : "");
   auto& fonts = table().byFile;
   auto found = fonts.find(key);
   if (found != fonts.end()) return found->second.get();
@@ -121,7 +127,8 @@ std::mutex& fontsMutex() {
   return mutex;
 }
 
-Font* findFont(std::span<const std::string> families, bool bold, bool italic, const std::string& language) {
+Font* findFont(std::span<const std::string> families, bool bold, bool italic,
+               const std::string& language) {
   std::string request = language + (bold ? "\nb" : "\n") + (italic ? "i" : "");
   for (const std::string& family : families) request += '\n' + family;
   auto& requests = table().byRequest;
@@ -134,7 +141,8 @@ Font* findFont(std::span<const std::string> families, bool bold, bool italic, co
     bool generic = name == "serif" || name == "sans-serif" || name == "monospace";
     Match m;
     // fontconfig always answers with something: take it if it is what was asked for.
-    if (match(name, bold, italic, language, m) && (generic || sameFamily(name, m.family))) font = open(m);
+    if (match(name, bold, italic, language, m) && (generic || sameFamily(name, m.family)))
+      font = open(m);
   }
   Match m;
   if (!font && match("serif", bold, italic, language, m)) font = open(m);

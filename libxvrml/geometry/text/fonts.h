@@ -1,5 +1,6 @@
-// fonts.h: fonts found by fontconfig, read by FreeType, laid out by HarfBuzz, with glyphs kept as triangles. Fonts live as long
-// as the process; every call holds fontsMutex() (FreeType faces are not shared between threads).
+// fonts.h: fonts found by fontconfig, read by FreeType, laid out by HarfBuzz, with glyphs kept as
+// triangles. Fonts live as long as the process; every call holds fontsMutex() (FreeType faces are
+// not shared between threads).
 #pragma once
 
 #include <cstdint>
@@ -54,8 +55,9 @@ class Font {
 
 std::mutex& fontsMutex();
 
-// The font for FontStyle's family and style (clause 6.20.2): the first family that is there; SERIF, SANS and TYPEWRITER always
-// are as long as any font is installed. Null if none is.
-Font* findFont(std::span<const std::string> families, bool bold, bool italic, const std::string& language);
+// The font for FontStyle's family and style (clause 6.20.2): the first family that is there; SERIF,
+// SANS and TYPEWRITER always are as long as any font is installed. Null if none is.
+Font* findFont(std::span<const std::string> families, bool bold, bool italic,
+               const std::string& language);
 
 } // namespace xvrml

@@ -55,7 +55,8 @@ struct Style {
   }
 };
 
-// A line with its glyphs between 0 and `length` along the line's axis (whichever way they advance) and its stretch.
+// A line with its glyphs between 0 and `length` along the line's axis (whichever way they advance)
+// and its stretch.
 struct Line {
   ShapedLine shaped;
   double length = 0; // em, along the axis, before stretching
@@ -65,7 +66,8 @@ struct Line {
 
 class Layout {
  public:
-  Layout(const nodes::Text& node, const Style& style, Font& font, const MeshOptions& options, Faults& faults)
+  Layout(const nodes::Text& node, const Style& style, Font& font, const MeshOptions& options,
+         Faults& faults)
       : node_(node), style_(style), font_(font), limit_(triangleLimit(options)), faults_(faults) {}
 
   Mesh run() {
@@ -84,7 +86,8 @@ class Layout {
   void shapeLines() {
     for (const std::string& string : node_.string) {
       Line line;
-      if (string.size() < (1u << 30)) line.shaped = font_.shape(string, style_.direction(), style_.language);
+      if (string.size() < (1u << 30))
+        line.shaped = font_.shape(string, style_.direction(), style_.language);
       line.length = std::abs(style_.horizontal ? line.shaped.advanceX : line.shaped.advanceY);
       lines_.push_back(std::move(line));
     }
@@ -95,7 +98,8 @@ class Layout {
     double longest = 0;
     for (size_t i = 0; i < lines_.size(); i++) {
       double wanted = i < node_.length.size() ? node_.length[i] / style_.size : 0;
-      if (wanted > 0 && std::isfinite(wanted) && lines_[i].length > 0) lines_[i].stretch = wanted / lines_[i].length;
+      if (wanted > 0 && std::isfinite(wanted) && lines_[i].length > 0)
+        lines_[i].stretch = wanted / lines_[i].length;
       longest = std::max(longest, lines_[i].length * lines_[i].stretch);
     }
     double most = node_.maxExtent / style_.size;
@@ -116,13 +120,15 @@ class Layout {
     }
   }
 
-  // Minor alignment, the whole block: `offset_` is where the first line's baseline (horizontal) or left edge (vertical) lies.
+  // Minor alignment, the whole block: `offset_` is where the first line's baseline (horizontal) or
+  // left edge (vertical) lies.
   void placeAcross() {
     double extra = double(lines_.size() - 1) * style_.spacing;
     if (style_.horizontal) {
       step_ = style_.topToBottom ? -style_.spacing : style_.spacing;
       double top = font_.ascender(), bottom = font_.descender(); // of a line, from its baseline
-      double high = style_.topToBottom ? top : top + extra, low = style_.topToBottom ? bottom - extra : bottom;
+      double high = style_.topToBottom ? top : top + extra,
+             low = style_.topToBottom ? bottom - extra : bottom;
       switch (style_.minor) {
       case Justify::first: offset_ = 0; break;
       case Justify::begin: offset_ = style_.topToBottom ? -high : -low; break;
@@ -132,7 +138,8 @@ class Layout {
       return;
     }
     step_ = style_.leftToRight ? style_.spacing : -style_.spacing;
-    double left = style_.leftToRight ? 0 : -extra, right = style_.leftToRight ? 1 + extra : 1; // columns are one em wide
+    double left = style_.leftToRight ? 0 : -extra,
+           right = style_.leftToRight ? 1 + extra : 1; // columns are one em wide
     switch (style_.minor) {
     case Justify::middle: offset_ = -(left + right) / 2; break;
     case Justify::end: offset_ = style_.leftToRight ? -right : -left; break;
@@ -140,7 +147,8 @@ class Layout {
     }
   }
 
-  // Glyph origins in em: along the line stretched, across it from the baseline (vertical: the column's middle).
+  // Glyph origins in em: along the line stretched, across it from the baseline (vertical: the
+  // column's middle).
   V2d place(const Line& line, size_t index, const V2d& p) const {
     double across = offset_ + double(index) * step_;
     if (style_.horizontal) return {line.start + p.x * line.stretch, across + p.y};
@@ -166,7 +174,8 @@ class Layout {
         mesh_.ownPoints.push_back({float(at.x * style_.size), float(at.y * style_.size), 0});
         mesh_.ownTexCoords.push_back({float(at.x - origin.x), float(at.y - origin.y)});
       }
-      for (size_t i = 0; i + 2 < glyph.indices.size(); i += 3) addTriangle(first, &glyph.indices[i]);
+      for (size_t i = 0; i + 2 < glyph.indices.size(); i += 3)
+        addTriangle(first, &glyph.indices[i]);
     }
   }
 
@@ -174,7 +183,8 @@ class Layout {
   void addTriangle(uint32_t first, const uint32_t* at) {
     const auto& p = mesh_.ownPoints;
     if (hasArea(p[first + at[0]], p[first + at[1]], p[first + at[2]]))
-      mesh_.ownIndices.insert(mesh_.ownIndices.end(), {first + at[0], first + at[1], first + at[2]});
+      mesh_.ownIndices.insert(mesh_.ownIndices.end(),
+                              {first + at[0], first + at[1], first + at[2]});
   }
 
   const nodes::Text& node_;

@@ -1,5 +1,5 @@
-// build.h: worlds and programs that make them or take them apart: nodes outside of any world, and what of a world is drawn as
-// plain arrays. [the thread that has the world]
+// build.h: worlds and programs that make them or take them apart: nodes outside of any world, and
+// what of a world is drawn as plain arrays. [the thread that has the world]
 #pragma once
 
 #include <memory>
@@ -9,7 +9,8 @@
 
 namespace xvrml {
 
-// A node with default fields, in no world yet; null for types whose nodes a program cannot make (Script).
+// A node with default fields, in no world yet; null for types whose nodes a program cannot make
+// (Script).
 NodeRef makeNode(const NodeType& type);
 
 // A Shape where it stands.
@@ -18,11 +19,13 @@ struct PlacedShape {
   NodeRef geometry;  // what is rendered for its geometry
   double matrix[16]; // its coordinates to the world's, column-major
 };
-// The Shapes with a geometry that are drawn for a viewer (camera to world, column-major; null: at the origin), in the order of
-// the file. A Shape that is used n times is n of them. Throws std::length_error beyond 4 million visits to nodes.
+// The Shapes with a geometry that are drawn for a viewer (camera to world, column-major; null: at
+// the origin), in the order of the file. A Shape that is used n times is n of them. Throws
+// std::length_error beyond 4 million visits to nodes.
 std::vector<PlacedShape> placedShapes(const World& world, const double* view = nullptr);
 
-// What a geometry node looks like. One entry per vertex; normals, texCoords and colors are empty or as long as points.
+// What a geometry node looks like. One entry per vertex; normals, texCoords and colors are empty or
+// as long as points.
 struct GeometryArrays {
   enum class Kind : uint8_t { empty, triangles, lines, points, sphere };
   Kind kind = Kind::empty;
@@ -34,7 +37,8 @@ struct GeometryArrays {
   bool solid = true, ccw = true;
   float radius = 0; // sphere: about the origin
 };
-// sphereSteps: a Sphere is cut into so many parts from pole to pole, and twice as many around; 0: it stays a sphere.
+// sphereSteps: a Sphere is cut into so many parts from pole to pole, and twice as many around; 0:
+// it stays a sphere.
 GeometryArrays geometryArrays(Node& geometry, int sphereSteps, const Limits& limits = {});
 
 } // namespace xvrml

@@ -17,7 +17,8 @@ struct Diagnostic {
   uint32_t line = 0, column = 0; // in characters, from 1; 0: the whole file
   std::string message;
   std::string sourceLine; // the line it speaks of, cut to a readable length; empty if unknown
-  uint32_t caret = 0;     // the place as a column of sourceLine, where that is a part of a long line; 0: as column
+  uint32_t caret =
+      0; // the place as a column of sourceLine, where that is a part of a long line; 0: as column
   // "file:line:column: error: message", then the source line and a caret.
   std::string text() const;
 };

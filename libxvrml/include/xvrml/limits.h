@@ -1,4 +1,5 @@
-// limits.h: what a hostile file may cost. Every limit has a name (used in messages and by `vv --limit NAME=VALUE`).
+// limits.h: what a hostile file may cost. Every limit has a name (used in messages and by `vv
+// --limit NAME=VALUE`).
 #pragma once
 
 #include <cstdint>
@@ -13,7 +14,8 @@ struct Limits {
   uint64_t inlineDepth = 32;           // files within files
   uint64_t expandedNodes = 10'000'000; // nodes after all prototypes and USEs are expanded
   union {
-    uint64_t worldBytes = 0; // memory of everything made from a world's files (estimated); 0: an eighth of the machine's
+    uint64_t worldBytes = 0; // memory of everything made from a world's files (estimated); 0: an
+                             // eighth of the machine's
     uint64_t copyBytes;      // its former name, when it bounded copies alone
   };
   uint64_t interfaceFields = 10'000; // declarations of one PROTO, EXTERNPROTO or Script

@@ -1,4 +1,5 @@
-// node_table.h: the constant tables that nodegen writes, and what the library makes of them. Included by generated sources.
+// node_table.h: the constant tables that nodegen writes, and what the library makes of them.
+// Included by generated sources.
 #pragma once
 
 #include <limits>
@@ -34,7 +35,8 @@ struct NodeRow {
 // A node as `create` makes it.
 template <class T> Node* createNode(const NodeType& type) { return new T(type); }
 
-// The description of a row's nodes at position `index` of the registry; defaults are read from a new node.  [any thread]
+// The description of a row's nodes at position `index` of the registry; defaults are read from a
+// new node.  [any thread]
 NodeType makeNodeType(const NodeRow& row, int index);
 
 } // namespace xvrml

@@ -20,7 +20,10 @@ class NodeRef {
   explicit NodeRef(Node* node);
   NodeRef(const NodeRef& other);
   NodeRef(NodeRef&& other) noexcept : node_(other.node_) { other.node_ = nullptr; }
-  NodeRef& operator=(NodeRef other) noexcept { std::swap(node_, other.node_); return *this; }
+  NodeRef& operator=(NodeRef other) noexcept {
+    std::swap(node_, other.node_);
+    return *this;
+  }
   ~NodeRef();
   Node* get() const { return node_; }
   Node* operator->() const { return node_; }
@@ -32,10 +35,22 @@ class NodeRef {
   Node* node_ = nullptr;
 };
 
-struct Vec2f { float x = 0, y = 0; bool operator==(const Vec2f&) const = default; };
-struct Vec3f { float x = 0, y = 0, z = 0; bool operator==(const Vec3f&) const = default; };
-struct Color { float r = 0, g = 0, b = 0; bool operator==(const Color&) const = default; };
-struct Rotation { float x = 0, y = 0, z = 1, angle = 0; bool operator==(const Rotation&) const = default; }; // radians
+struct Vec2f {
+  float x = 0, y = 0;
+  bool operator==(const Vec2f&) const = default;
+};
+struct Vec3f {
+  float x = 0, y = 0, z = 0;
+  bool operator==(const Vec3f&) const = default;
+};
+struct Color {
+  float r = 0, g = 0, b = 0;
+  bool operator==(const Color&) const = default;
+};
+struct Rotation {
+  float x = 0, y = 0, z = 1, angle = 0;
+  bool operator==(const Rotation&) const = default;
+}; // radians
 // Pixels row by row from the bottom left, `components` bytes each (0: no image).
 struct Image {
   int32_t width = 0, height = 0, components = 0;
@@ -66,15 +81,34 @@ using MFVec3f = std::vector<Vec3f>;
 
 // Index equals the alternative's index in Value.
 enum class FieldType : uint8_t {
-  SFBool, SFColor, SFFloat, SFImage, SFInt32, SFNode, SFRotation, SFString, SFTime, SFVec2f, SFVec3f,
-  MFColor, MFFloat, MFInt32, MFNode, MFRotation, MFString, MFTime, MFVec2f, MFVec3f
+  SFBool,
+  SFColor,
+  SFFloat,
+  SFImage,
+  SFInt32,
+  SFNode,
+  SFRotation,
+  SFString,
+  SFTime,
+  SFVec2f,
+  SFVec3f,
+  MFColor,
+  MFFloat,
+  MFInt32,
+  MFNode,
+  MFRotation,
+  MFString,
+  MFTime,
+  MFVec2f,
+  MFVec3f
 };
 inline constexpr int fieldTypeCount = 20;
 
-using Value = std::variant<SFBool, SFColor, SFFloat, SFImage, SFInt32, SFNode, SFRotation, SFString, SFTime, SFVec2f, SFVec3f,
-                           MFColor, MFFloat, MFInt32, MFNode, MFRotation, MFString, MFTime, MFVec2f, MFVec3f>;
+using Value = std::variant<SFBool, SFColor, SFFloat, SFImage, SFInt32, SFNode, SFRotation, SFString,
+                           SFTime, SFVec2f, SFVec3f, MFColor, MFFloat, MFInt32, MFNode, MFRotation,
+                           MFString, MFTime, MFVec2f, MFVec3f>;
 
-std::string_view fieldTypeName(FieldType type);            // "SFBool" ...
+std::string_view fieldTypeName(FieldType type); // "SFBool" ...
 bool fieldTypeFromName(std::string_view name, FieldType& type);
 inline bool isMultiple(FieldType type) { return type >= FieldType::MFColor; }
 Value defaultValue(FieldType type); // FALSE, zeros, empty; SFRotation 0 0 1 0 (clause 5)

@@ -1,4 +1,5 @@
-/* xscript_types.h: what the 20 types of xscript.h are made of, for script engines (C99; links against nothing). [any thread] */
+/* xscript_types.h: what the 20 types of xscript.h are made of, for script engines (C99; links
+ * against nothing). [any thread] */
 #ifndef XVRML_XSCRIPT_TYPES_H
 #define XVRML_XSCRIPT_TYPES_H
 
@@ -7,7 +8,8 @@
 typedef struct XsTypeInfo {
   const char* name;   /* "MFVec3f" */
   XsType element;     /* what an MF type holds many of; an SF type itself */
-  int32_t components; /* numbers of an element, 1 to 4; 0: it is no number (SFImage, SFNode, SFString) */
+  int32_t components; /* numbers of an element, 1 to 4; 0: it is no number (SFImage, SFNode,
+                         SFString) */
   uint32_t bytes;     /* of an element in XsValue's array */
 } XsTypeInfo;
 

@@ -1,5 +1,5 @@
-// graph.cpp: builds the render graph and keeps it: one item a node, planned from a list of what is to be planned; then an
-// order for the passes by a walk with a stack of its own.
+// graph.cpp: builds the render graph and keeps it: one item a node, planned from a list of what is
+// to be planned; then an order for the passes by a walk with a stack of its own.
 #include "mapper/graph/graph.h"
 
 #include <algorithm>
@@ -43,7 +43,8 @@ bool Graph::readMatrix(ItemId id) {
   Item& item = items[id];
   auto* t = nodeCast<nodes::Transform>(item.node);
   if (!t) return false;
-  const Matrix matrix = transformMatrix({t->center, t->translation, t->scale, t->rotation, t->scaleOrientation});
+  const Matrix matrix =
+      transformMatrix({t->center, t->translation, t->scale, t->rotation, t->scaleOrientation});
   if (item.matrix)
     *item.matrix = matrix;
   else
@@ -94,7 +95,8 @@ void Graph::planItem(ItemId id) {
   std::vector<ItemId> children;
   children.reserve(plan.children.size());
   for (Node* written : plan.children)
-    if (const ItemId child = itemFor(written); child != 0 || plan.keepEmpty) children.push_back(child); // items may move
+    if (const ItemId child = itemFor(written); child != 0 || plan.keepEmpty)
+      children.push_back(child); // items may move
   Item& item = items[id];
   item.planned = true;
   item.kind = plan.kind;
@@ -128,8 +130,8 @@ void Graph::settle() {
   std::erase_if(replanned_, [&](ItemId id) { return !items[id].planned; });
 }
 
-// A walk from the root, children in their order. An edge back to an item that is being walked would close a circle: it is
-// taken out.
+// A walk from the root, children in their order. An edge back to an item that is being walked would
+// close a circle: it is taken out.
 void Graph::sortItems() {
   enum : uint8_t { unseen, open, done };
   struct Open {
@@ -158,7 +160,8 @@ void Graph::sortItems() {
       continue;
     }
     const Node& node = *items[child].node;
-    context_.world.diagnostics.warn(node.source, "a " + node.type().name + " node that contains itself is drawn once");
+    context_.world.diagnostics.warn(node.source, "a " + node.type().name +
+                                                     " node that contains itself is drawn once");
     child = 0;
   }
   for (ItemId id = root + 1; id < items.size(); ++id)
@@ -201,7 +204,8 @@ void Graph::linkParents() {
       if (child != 0) parents[items[child].firstParent + items[child].parentCount++] = id;
 }
 
-// A shape keeps its number as long as it is there. New ones are numbered in the order of the file, and take free numbers first.
+// A shape keeps its number as long as it is there. New ones are numbered in the order of the file,
+// and take free numbers first.
 void Graph::numberShapes() {
   std::sort(freeNumbers_.begin(), freeNumbers_.end(), std::greater<>());
   for (const ItemId id : order) {
@@ -228,7 +232,8 @@ std::vector<std::string> Graph::shapeNames() const {
   }
   std::vector<std::string> out(shapes.size());
   for (size_t number = 1; number < shapes.size(); ++number)
-    if (shapes[number] != 0) out[number] = nearest[shapes[number]] != 0 ? names[nearest[shapes[number]]] : "Shape";
+    if (shapes[number] != 0)
+      out[number] = nearest[shapes[number]] != 0 ? names[nearest[shapes[number]]] : "Shape";
   return out;
 }
 

@@ -1,6 +1,8 @@
-// objects.cpp: the order in which objects are written. An object must exist before another instantiates it and definitions do
-// not nest: places are written from the last to the first (children behind parents), items in the graph's postorder. The same
-// order makes redefinition safe: what an object is about to hold has its new content already, so no object ever holds itself.
+// objects.cpp: the order in which objects are written. An object must exist before another
+// instantiates it and definitions do not nest: places are written from the last to the first
+// (children behind parents), items in the graph's postorder. The same order makes redefinition
+// safe: what an object is about to hold has its new content already, so no object ever holds
+// itself.
 #include "mapper/graph/objects.h"
 
 #include <algorithm>
@@ -21,7 +23,8 @@ void Objects::follow() {
     else if (place.part == none || parts_[size_t(place.part)].dirty)
       definePlace(i);
     if (kind == Kind::billboard && place.instance != 0) {
-      const Matrix matrix = compose(graph_.below(place.base, graph_.items[place.item]), places_.turns[i]);
+      const Matrix matrix =
+          compose(graph_.below(place.base, graph_.items[place.item]), places_.turns[i]);
       if (!finite(matrix)) continue;
       rtInstanceMatrix(place.instance, data(matrix));
       report(world_.diagnostics, graph_.items[place.item].node->source, "Billboard");
@@ -37,7 +40,8 @@ void Objects::follow() {
   }
 }
 
-// Objects of items and meshes that were there before and are to be written again; those of places follow with their places.
+// Objects of items and meshes that were there before and are to be written again; those of places
+// follow with their places.
 void Objects::defineDirty() {
   std::vector<int32_t> items;
   for (const int32_t id : std::exchange(dirty_, {})) {
@@ -47,7 +51,8 @@ void Objects::defineDirty() {
     if (part.of == Part::Of::item) items.push_back(id);
   }
   std::sort(items.begin(), items.end(), [&](int32_t a, int32_t b) {
-    return graph_.items[parts_[size_t(a)].item].position < graph_.items[parts_[size_t(b)].item].position;
+    return graph_.items[parts_[size_t(a)].item].position <
+           graph_.items[parts_[size_t(b)].item].position;
   });
   for (const int32_t id : items) {
     const ItemId item = parts_[size_t(id)].item;
@@ -74,8 +79,9 @@ void Objects::chooseLevel(size_t index) {
   Place& lod = places_.all[index];
   if (!parts_[size_t(part)].dirty && lod.drawn == lod.chosen) return;
   const auto levelAt = [&](int32_t level) -> Place* {
-    const int32_t at =
-        level == none || uint32_t(level) >= lod.childCount ? none : places_.children[lod.firstChild + size_t(level)];
+    const int32_t at = level == none || uint32_t(level) >= lod.childCount
+                           ? none
+                           : places_.children[lod.firstChild + size_t(level)];
     return at == none ? nullptr : &places_.all[size_t(at)];
   };
   if (Place* before = levelAt(lod.drawn)) before->instance = 0; // it goes with the old content
@@ -85,12 +91,14 @@ void Objects::chooseLevel(size_t index) {
   if (Place* level = levelAt(lod.chosen)) {
     const Matrix& turn = places_.turns[size_t(level - places_.all.data())];
     level->base = Matrix();
-    level->instance = instantiate(level->part, compose(graph_.matrixOf(graph_.items[level->item]), turn), 0, live_);
+    level->instance = instantiate(
+        level->part, compose(graph_.matrixOf(graph_.items[level->item]), turn), 0, live_);
   }
   close();
 }
 
-// Objects of items and geometry that an item's content needs, however deep, and that are not written yet.
+// Objects of items and geometry that an item's content needs, however deep, and that are not
+// written yet.
 void Objects::defineBelow(ItemId first, int32_t place) {
   struct Visit {
     ItemId item;
@@ -103,18 +111,23 @@ void Objects::defineBelow(ItemId first, int32_t place) {
     const Visit visit = open.back();
     open.pop_back();
     const Item& item = graph_.items[visit.item];
-    if (visit.place == none && visit.item != first) { // the first is being written: only what is below is meant
+    if (visit.place == none &&
+        visit.item != first) { // the first is being written: only what is below is meant
       if (std::exchange(met_[visit.item], 1)) continue;
       if (item.own != Own::none) items.push_back(visit.item);
     }
     if (item.viaMesh) meshes.push_back(graph_.meshes.equal(item.mesh));
     for (size_t c = 0; c < item.children.size(); ++c) {
-      const int32_t at = visit.place == none ? none : places_.children[places_.all[size_t(visit.place)].firstChild + c];
+      const int32_t at = visit.place == none
+                             ? none
+                             : places_.children[places_.all[size_t(visit.place)].firstChild + c];
       if (at == none || !places_.all[size_t(at)].split) open.push_back({item.children[c], at});
     }
   }
   for (const int32_t mesh : meshes) defineMesh(mesh);
-  std::sort(items.begin(), items.end(), [&](ItemId a, ItemId b) { return graph_.items[a].position < graph_.items[b].position; });
+  std::sort(items.begin(), items.end(), [&](ItemId a, ItemId b) {
+    return graph_.items[a].position < graph_.items[b].position;
+  });
   for (const ItemId item : items) defineItem(item);
 }
 
@@ -136,7 +149,8 @@ void Objects::defineMesh(int32_t mesh) {
   rtLoadIdentity();
   if (draw(mesh, Surface(), true)) parts_[size_t(part)].reach = graph_.meshes.extent(mesh).reach;
   close();
-  report(world_.diagnostics, graph_.meshes.geometry(mesh).source, graph_.meshes.geometry(mesh).type().name);
+  report(world_.diagnostics, graph_.meshes.geometry(mesh).source,
+         graph_.meshes.geometry(mesh).type().name);
 }
 
 void Objects::open(int32_t id, bool dynamic) {
@@ -150,11 +164,13 @@ void Objects::open(int32_t id, bool dynamic) {
   rtBeginObject(part.object);
 }
 
-// Redefining makes an object dynamic by itself; how it is kept must not depend on what it was before.
+// Redefining makes an object dynamic by itself; how it is kept must not depend on what it was
+// before.
 void Objects::close() {
   rtEndObject();
   Part& part = parts_[size_t(writing_)];
-  if (part.dynamic || part.defined) rtObjectHint(part.object, part.dynamic ? RT_DYNAMIC : RT_STATIC);
+  if (part.dynamic || part.defined)
+    rtObjectHint(part.object, part.dynamic ? RT_DYNAMIC : RT_STATIC);
   part.defined = true;
   part.dirty = false;
   writing_ = none;

@@ -1,15 +1,16 @@
-// objects.h: shapes as OpenRT objects and instances. A part is one object: the world, each split place, each item with an object
-// of its own, each geometry that several shapes instantiate. A part is written when it is first needed and again when what it
-// holds is grouped or looks otherwise; moving what it instantiates writes nothing. On the mapper's thread.
+// objects.h: shapes as OpenRT objects and instances. A part is one object: the world, each split
+// place, each item with an object of its own, each geometry that several shapes instantiate. A part
+// is written when it is first needed and again when what it holds is grouped or looks otherwise;
+// moving what it instantiates writes nothing. On the mapper's thread.
 #pragma once
 
 #include <string>
 #include <unordered_map>
 #include <vector>
 
-#include "mapper/shading/appearance.h"
 #include "mapper/graph/places.h"
 #include "mapper/ration.h"
+#include "mapper/shading/appearance.h"
 
 namespace xvrml::mapper {
 
@@ -20,11 +21,12 @@ struct Part {
   int32_t level = none; // place: of an LOD
   RTid object = 0;
   bool defined = false, dirty = true;
-  bool dynamic = false;                                              // as RT_DYNAMIC says
-  uint64_t instances = 0;                                            // of it, in the parts that are defined
+  bool dynamic = false;   // as RT_DYNAMIC says
+  uint64_t instances = 0; // of it, in the parts that are defined
   uint64_t shapes = 0, triangles = 0, primitives = 0, drawCalls = 0; // written into it
-  uint64_t bytes = 0;                                                // taken from the world's budget for what it holds
-  uint64_t flat = 0;          // instances that one of it comes to, once what it instantiates is flattened (decision 2)
+  uint64_t bytes = 0; // taken from the world's budget for what it holds
+  uint64_t flat =
+      0; // instances that one of it comes to, once what it instantiates is flattened (decision 2)
   double reach = 0;           // largest coordinate of what it holds
   std::vector<int32_t> uses;  // parts it instantiates, once for each time
   std::vector<ItemId> moving; // items of which it holds instances that are kept (Objects::placed_)
@@ -34,14 +36,15 @@ class Objects {
  public:
   Objects(World& world, bool linearColor, Graph& graph, Places& places, Surfaces& surfaces);
 
-  // Writes what is active and not yet there or not as it should be, moves what follows the camera. Places::follow must have
-  // run.
+  // Writes what is active and not yet there or not as it should be, moves what follows the camera.
+  // Places::follow must have run.
   void follow();
 
-  // After the world was grouped anew: parts that are not needed any more go, with what was in the places that are gone.
+  // After the world was grouped anew: parts that are not needed any more go, with what was in the
+  // places that are gone.
   void regrouped(const std::vector<Place>& gone);
-  // What these items hold is another: the objects that it is written into are to be written again. placing: they are placed
-  // otherwise; the same for the objects that they stand in.
+  // What these items hold is another: the objects that it is written into are to be written again.
+  // placing: they are placed otherwise; the same for the objects that they stand in.
   void contentChanged(const std::vector<ItemId>& items);
   void placingChanged(const std::vector<ItemId>& items);
   // The mesh of a geometry's own object. False if it has none.
@@ -90,14 +93,16 @@ class Objects {
   void open(int32_t part, bool dynamic);
   void close();
 
-  // Writes what a step leads to into the open object; the stack holds what is still to come: shapes.cpp.
+  // Writes what a step leads to into the open object; the stack holds what is still to come:
+  // shapes.cpp.
   void enter(ItemId item, int32_t place, const Matrix& matrix);
   void expand(const Step& step);
   void drain();
   void writeShape(ItemId item, const Matrix& matrix);
   bool draw(int32_t mesh, const Surface& surface, bool textured);
   void drawArrays(const Mesh& mesh, const Surface& surface, bool textured);
-  bool tooFar(const Matrix& matrix, double reach, const SourcePosition& where, const std::string& what);
+  bool tooFar(const Matrix& matrix, double reach, const SourcePosition& where,
+              const std::string& what);
   // number: of the shape that the instance is; 0: shapes below have their own.
   RTid instantiate(int32_t part, const Matrix& matrix, uint32_t number, bool dynamic);
   void keep(ItemId item, RTid instance, const Matrix& base);

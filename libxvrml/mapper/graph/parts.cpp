@@ -1,5 +1,5 @@
-// parts.cpp: which OpenRT objects there are, which of them a change makes dirty, and the instances that events move. The
-// bookkeeping of Objects.
+// parts.cpp: which OpenRT objects there are, which of them a change makes dirty, and the instances
+// that events move. The bookkeeping of Objects.
 #include <algorithm>
 
 #include "mapper/graph/objects.h"
@@ -8,7 +8,8 @@
 namespace xvrml::mapper {
 
 Objects::Objects(World& world, bool linearColor, Graph& graph, Places& places, Surfaces& surfaces)
-    : world_(world), linear_(linearColor), graph_(graph), places_(places), surfaces_(surfaces), ration_(world, "shapes") {
+    : world_(world), linear_(linearColor), graph_(graph), places_(places), surfaces_(surfaces),
+      ration_(world, "shapes") {
   for (const NodeRef& root : world.scope.roots) live_ |= root && root->live;
   met_.assign(graph.items.size(), 0);
 }
@@ -102,8 +103,9 @@ void Objects::touch(int32_t id) {
 // Reached other than as a level of an LOD, which is a place.
 bool Objects::instantiated(const Item& item) const {
   const auto first = graph_.parents.begin() + item.firstParent;
-  return std::any_of(first, first + item.parentCount,
-                     [&](ItemId parent) { return graph_.items[parent].kind != Kind::lod || !graph_.items[parent].placed; });
+  return std::any_of(first, first + item.parentCount, [&](ItemId parent) {
+    return graph_.items[parent].kind != Kind::lod || !graph_.items[parent].placed;
+  });
 }
 
 void Objects::regrouped(const std::vector<Place>& gone) {
@@ -124,9 +126,11 @@ void Objects::regrouped(const std::vector<Place>& gone) {
   std::vector<uint8_t> needed(meshParts_.size());
   for (const ItemId id : graph_.order) {
     Item& item = graph_.items[id];
-    if (item.part != none && (item.own == Own::none || item.placed || !instantiated(item))) removePart(item.part);
+    if (item.part != none && (item.own == Own::none || item.placed || !instantiated(item)))
+      removePart(item.part);
     if (!item.viaMesh) continue;
-    if (const auto mesh = size_t(graph_.meshes.equal(item.mesh)); mesh < needed.size()) needed[mesh] = 1;
+    if (const auto mesh = size_t(graph_.meshes.equal(item.mesh)); mesh < needed.size())
+      needed[mesh] = 1;
   }
   for (size_t mesh = 0; mesh < needed.size(); ++mesh)
     if (!needed[mesh]) removePart(meshParts_[mesh]);
@@ -151,7 +155,8 @@ void Objects::contentChanged(const std::vector<ItemId>& items) {
     }
     for (uint32_t p = 0; p < item.parentCount; ++p) {
       const ItemId parent = graph_.parents[item.firstParent + p];
-      if (graph_.items[parent].kind != Kind::lod || !graph_.items[parent].placed) open.push_back(parent);
+      if (graph_.items[parent].kind != Kind::lod || !graph_.items[parent].placed)
+        open.push_back(parent);
     }
   }
 }
@@ -183,7 +188,8 @@ bool Objects::moved(ItemId id) {
     for (const Placed& p : found->second) move(p.instance, graph_.below(p.base, item));
   places_.each(id, [&](int32_t index) {
     const Place& place = places_.all[size_t(index)];
-    if (place.split) move(place.instance, compose(graph_.below(place.base, item), places_.turns[size_t(index)]));
+    if (place.split)
+      move(place.instance, compose(graph_.below(place.base, item), places_.turns[size_t(index)]));
   });
   return true;
 }

@@ -1,4 +1,4 @@
-// places.cpp: see places.h. The walk has a stack of its own: nesting costs no C++ stack.
+// places.cpp: The walk has a stack of its own: nesting costs no C++ stack.
 #include "mapper/graph/places.h"
 
 #include <algorithm>
@@ -33,8 +33,8 @@ void Places::expand(const Graph& graph) {
     place.parent = parent;
     place.level = level;
     place.inlined = item.isInline || (parent != none && all[size_t(parent)].inlined);
-    place.split = parent == none || level != none || item.kind == Kind::billboard || item.kind == Kind::lod || item.scopesLight ||
-                  isSplit(item.own);
+    place.split = parent == none || level != none || item.kind == Kind::billboard ||
+                  item.kind == Kind::lod || item.scopesLight || isSplit(item.own);
     place.firstChild = uint32_t(children.size());
     place.childCount = uint32_t(item.children.size());
     children.resize(children.size() + item.children.size(), none);
@@ -61,8 +61,10 @@ void Places::expand(const Graph& graph) {
   }
 }
 
-// The places before and now side by side, from the root: a place goes on where its parent does and its item is still there.
-void Places::inherit(std::vector<Place>& before, const std::vector<int32_t>& childrenBefore, std::vector<Place>& gone) {
+// The places before and now side by side, from the root: a place goes on where its parent does and
+// its item is still there.
+void Places::inherit(std::vector<Place>& before, const std::vector<int32_t>& childrenBefore,
+                     std::vector<Place>& gone) {
   std::vector<int32_t> match(all.size(), none); // by place: what it was
   std::vector<uint8_t> goesOn(before.size());
   const auto take = [&](size_t now, int32_t then) {
@@ -128,13 +130,15 @@ size_t levelOfDetail(const MFFloat& range, double distance, size_t count) {
 
 void Places::follow(const Graph& graph, const CameraSettings& camera) {
   const Matrix view = fromArray(camera.matrix);
-  const Vector eye(view.x[3][0], view.x[3][1], view.x[3][2]), up(view.x[1][0], view.x[1][1], view.x[1][2]);
+  const Vector eye(view.x[3][0], view.x[3][1], view.x[3][2]),
+      up(view.x[1][0], view.x[1][1], view.x[1][2]);
   for (size_t i = 0; i < all.size(); ++i) {
     Place& place = all[i];
     const Item& item = graph.items[place.item];
     const Matrix outside = place.parent == none ? Matrix() : all[size_t(place.parent)].world;
     place.active = place.parent == none || all[size_t(place.parent)].active;
-    if (place.active && place.level != none) place.active = all[size_t(place.parent)].chosen == place.level;
+    if (place.active && place.level != none)
+      place.active = all[size_t(place.parent)].chosen == place.level;
     place.world = graph.below(outside, item);
     if (item.kind != Kind::billboard && item.kind != Kind::lod) continue;
     Matrix toLocal;
@@ -142,13 +146,17 @@ void Places::follow(const Graph& graph, const CameraSettings& camera) {
     if (item.kind == Kind::billboard) {
       auto& billboard = static_cast<nodes::Billboard&>(*item.node);
       turns[i] =
-          local ? billboardMatrix(vector(billboard.axisOfRotation), transformPoint(toLocal, eye), transformDirection(toLocal, up))
+          local ? billboardMatrix(vector(billboard.axisOfRotation), transformPoint(toLocal, eye),
+                                  transformDirection(toLocal, up))
                 : Matrix();
       place.world = compose(place.world, turns[i]);
     } else {
       auto& lod = static_cast<nodes::LOD&>(*item.node);
-      const double distance = local ? (transformPoint(toLocal, eye) - vector(lod.center)).length() : 0;
-      place.chosen = item.children.empty() ? none : int32_t(levelOfDetail(lod.range, distance, item.children.size()));
+      const double distance =
+          local ? (transformPoint(toLocal, eye) - vector(lod.center)).length() : 0;
+      place.chosen = item.children.empty()
+                         ? none
+                         : int32_t(levelOfDetail(lod.range, distance, item.children.size()));
     }
   }
 }

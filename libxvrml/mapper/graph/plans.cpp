@@ -1,5 +1,5 @@
-// plans.cpp: what each node type means for the picture: the dispatch table by type index, one small function a type. Called
-// while the render graph is built, on the mapper's thread.
+// plans.cpp: what each node type means for the picture: the dispatch table by type index, one small
+// function a type. Called while the render graph is built, on the mapper's thread.
 #include <algorithm>
 #include <span>
 
@@ -14,10 +14,16 @@ void group(Plan& plan, const MFNode& children) {
   plan.add(children);
 }
 
-void planGroup(PlanContext&, Node& node, Plan& plan) { group(plan, static_cast<nodes::Group&>(node).children); }
-void planAnchor(PlanContext&, Node& node, Plan& plan) { group(plan, static_cast<nodes::Anchor&>(node).children); }
+void planGroup(PlanContext&, Node& node, Plan& plan) {
+  group(plan, static_cast<nodes::Group&>(node).children);
+}
+void planAnchor(PlanContext&, Node& node, Plan& plan) {
+  group(plan, static_cast<nodes::Anchor&>(node).children);
+}
 // The proxy is for collision detection only (clause 6.8).
-void planCollision(PlanContext&, Node& node, Plan& plan) { group(plan, static_cast<nodes::Collision&>(node).children); }
+void planCollision(PlanContext&, Node& node, Plan& plan) {
+  group(plan, static_cast<nodes::Collision&>(node).children);
+}
 
 void planTransform(PlanContext&, Node& node, Plan& plan) {
   auto& t = static_cast<nodes::Transform&>(node);
@@ -44,12 +50,14 @@ void planBillboard(PlanContext&, Node& node, Plan& plan) {
   plan.add(static_cast<nodes::Billboard&>(node).children);
 }
 
-// Content that comes later (Browser::loadInline) gets an object of its own, so that nothing else is made anew then.
+// Content that comes later (Browser::loadInline) gets an object of its own, so that nothing else is
+// made anew then.
 void planInline(PlanContext& context, Node& node, Plan& plan) {
   plan.kind = Kind::group;
   plan.isInline = true;
   const Scope* scope = inlineScope(node);
-  plan.awaited = !scope && !context.world.options.loadInlines && !static_cast<nodes::Inline&>(node).url.empty();
+  plan.awaited = !scope && !context.world.options.loadInlines &&
+                 !static_cast<nodes::Inline&>(node).url.empty();
   if (scope) plan.add(scope->roots);
 }
 
@@ -66,7 +74,8 @@ void planShape(PlanContext&, Node& node, Plan& plan) {
   if (renderedNode(static_cast<nodes::Shape&>(node).geometry.get())) plan.kind = Kind::shape;
 }
 
-// A light that is off lights nothing (clause 4.6.6); it is not there unless events may turn it on (summary.cpp).
+// A light that is off lights nothing (clause 4.6.6); it is not there unless events may turn it on
+// (summary.cpp).
 template <class Light> void planLight(Node& node, Kind kind, Plan& plan) {
   plan.kind = kind;
   plan.on = static_cast<Light&>(node).on;
@@ -74,10 +83,16 @@ template <class Light> void planLight(Node& node, Kind kind, Plan& plan) {
 void planDirectionalLight(PlanContext&, Node& node, Plan& plan) {
   planLight<nodes::DirectionalLight>(node, Kind::directionalLight, plan);
 }
-void planPointLight(PlanContext&, Node& node, Plan& plan) { planLight<nodes::PointLight>(node, Kind::localLight, plan); }
-void planSpotLight(PlanContext&, Node& node, Plan& plan) { planLight<nodes::SpotLight>(node, Kind::localLight, plan); }
+void planPointLight(PlanContext&, Node& node, Plan& plan) {
+  planLight<nodes::PointLight>(node, Kind::localLight, plan);
+}
+void planSpotLight(PlanContext&, Node& node, Plan& plan) {
+  planLight<nodes::SpotLight>(node, Kind::localLight, plan);
+}
 
-void planOrtLight(PlanContext&, Node& node, Plan& plan) { planLight<nodes::ORTLight>(node, Kind::localLight, plan); }
+void planOrtLight(PlanContext&, Node& node, Plan& plan) {
+  planLight<nodes::ORTLight>(node, Kind::localLight, plan);
+}
 
 void planViewpoint(PlanContext&, Node&, Plan& plan) { plan.kind = Kind::viewpoint; }
 void planBackground(PlanContext&, Node&, Plan& plan) { plan.kind = Kind::background; }

@@ -1,4 +1,5 @@
-// appearance.cpp: see appearance.h. The lighting model is that of clause 4.14; the parameters are those of the class VRML97.
+// appearance.cpp: The lighting model is that of clause 4.14; the parameters are
+// those of the class VRML97.
 #include "mapper/shading/appearance.h"
 
 #include <optional>
@@ -19,7 +20,8 @@ struct Parts {
 template <class T> void surfaceParts(const T& appearance, Parts& parts) {
   parts.material = nodeCast<nodes::Material>(renderedNode(appearance.material.get()));
   parts.texture = renderedNode(appearance.texture.get());
-  parts.textureTransform = nodeCast<nodes::TextureTransform>(renderedNode(appearance.textureTransform.get()));
+  parts.textureTransform =
+      nodeCast<nodes::TextureTransform>(renderedNode(appearance.textureTransform.get()));
 }
 
 Parts partsOf(Node* appearance) {
@@ -79,15 +81,17 @@ Surface Surfaces::makeLines(Node* appearance) {
   shader.integer("lit", 0);
   if (const nodes::Material* material = partsOf(appearance).material)
     surface.lineColor = convert(material->emissiveColor, linear_);
-  report(world_.diagnostics, appearance ? appearance->source : SourcePosition(), "appearance of lines or points");
+  report(world_.diagnostics, appearance ? appearance->source : SourcePosition(),
+         "appearance of lines or points");
   return surface;
 }
 
-// The shader of an ORTAppearance. Where the class has parameters that the appearance has fields for, as VRML97 has, it gets
-// their values: texture and textureTransform, those of a Material.
+// The shader of an ORTAppearance. Where the class has parameters that the appearance has fields
+// for, as VRML97 has, it gets their values: texture and textureTransform, those of a Material.
 RTid Surfaces::customSurface(Node& appearance, nodes::ORTShader& node) {
   const Parts parts = partsOf(&appearance);
-  if (!parts.texture && !parts.textureTransform && !parts.material) return custom_.of(node, RT_SURFACE);
+  if (!parts.texture && !parts.textureTransform && !parts.material)
+    return custom_.of(node, RT_SURFACE);
   const RTid texture = textures_.ofNode(parts.texture);
   const CustomShaders::Preset preset = [&](ShaderSetup& shader, const ShaderClass& shaderClass) {
     const auto takes = [&](const char* name, RTenum type) {
@@ -98,9 +102,12 @@ RTid Surfaces::customSurface(Node& appearance, nodes::ORTShader& node) {
       shader.texture("texture", texture);
     else if (parts.texture && shader.fresh())
       world_.diagnostics.warn(parts.texture->source,
-                              "the shader " + node.name + " has no parameter texture: the picture is not used");
-    if (const nodes::TextureTransform* t = parts.textureTransform; takes("textureTransform", RT_PARAM_MATRIX))
-      shader.matrix("textureTransform", t ? textureMatrix(t->center, t->rotation, t->scale, t->translation) : Matrix());
+                              "the shader " + node.name +
+                                  " has no parameter texture: the picture is not used");
+    if (const nodes::TextureTransform* t = parts.textureTransform;
+        takes("textureTransform", RT_PARAM_MATRIX))
+      shader.matrix("textureTransform",
+                    t ? textureMatrix(t->center, t->rotation, t->scale, t->translation) : Matrix());
     if (const nodes::Material* m = parts.material) {
       const auto color = [&](const char* name, const Color& value) {
         if (takes(name, RT_PARAM_COLOR)) shader.color(name, convert(value, linear_));
@@ -108,7 +115,8 @@ RTid Surfaces::customSurface(Node& appearance, nodes::ORTShader& node) {
       const auto number = [&](const char* name, float value) {
         if (takes(name, RT_PARAM_FLOAT)) shader.number(name, value, 0, 1);
       };
-      color(takes("diffuseColor", RT_PARAM_COLOR) ? "diffuseColor" : "color", m->diffuseColor); // of Plastic, CarPaint
+      color(takes("diffuseColor", RT_PARAM_COLOR) ? "diffuseColor" : "color",
+            m->diffuseColor); // of Plastic, CarPaint
       color("emissiveColor", m->emissiveColor);
       color("specularColor", m->specularColor);
       number("ambientIntensity", m->ambientIntensity);
@@ -137,15 +145,18 @@ void Surfaces::makeSurface(Entry& entry) {
   ShaderSetup& shader = *setup;
   entry.own = entry.surface.shader = shader.id();
   const nodes::Material standard(*findNodeType("Material"));
-  const bool fallback = parts.shader != nullptr; // a shader that could not be had: shaded as a default Material
+  const bool fallback =
+      parts.shader != nullptr; // a shader that could not be had: shaded as a default Material
   setMaterial(shader, parts.material ? parts.material : fallback ? &standard : nullptr, linear_);
   if (texture != 0 || !shader.fresh()) shader.texture("texture", texture);
   if (multiplyTextures && shader.fresh()) shader.integer("multiplyTexture", 1);
   if (const nodes::TextureTransform* t = parts.textureTransform; t && texture != 0)
-    shader.matrix("textureTransform", textureMatrix(t->center, t->rotation, t->scale, t->translation));
+    shader.matrix("textureTransform",
+                  textureMatrix(t->center, t->rotation, t->scale, t->translation));
   else if (!shader.fresh())
     shader.matrix("textureTransform", Matrix());
-  report(world_.diagnostics, entry.appearance ? entry.appearance->source : SourcePosition(), "appearance");
+  report(world_.diagnostics, entry.appearance ? entry.appearance->source : SourcePosition(),
+         "appearance");
 }
 
 Surfaces::Effect Surfaces::update(Node& appearance) {

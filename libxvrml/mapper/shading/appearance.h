@@ -1,17 +1,19 @@
-// appearance.h: appearance nodes as surface shaders: one shader per appearance node. Made by the mapper's thread when first used.
+// appearance.h: appearance nodes as surface shaders: one shader per appearance node. Made by the
+// mapper's thread when first used.
 #pragma once
 
 #include <unordered_map>
 
-#include "mapper/shading/custom_shaders.h"
 #include "mapper/ration.h"
 #include "mapper/rt.h"
+#include "mapper/shading/custom_shaders.h"
 #include "mapper/shading/textures.h"
 #include "xvrml/world.h"
 
 namespace xvrml::mapper {
 
-// True if shapes of this appearance need texture coordinates: a texture, or a shader that may want them.
+// True if shapes of this appearance need texture coordinates: a texture, or a shader that may want
+// them.
 bool isTextured(Node* appearance);
 
 struct Surface {
@@ -21,12 +23,13 @@ struct Surface {
 
 class Surfaces {
  public:
-  Surfaces(World& world, bool linearColor, ShaderClasses& classes, Textures& textures, CustomShaders& custom)
-      : world_(world), linear_(linearColor), classes_(classes), textures_(textures), custom_(custom),
-        ration_(world, "appearances") {}
+  Surfaces(World& world, bool linearColor, ShaderClasses& classes, Textures& textures,
+           CustomShaders& custom)
+      : world_(world), linear_(linearColor), classes_(classes), textures_(textures),
+        custom_(custom), ration_(world, "appearances") {}
 
-  // Of a Shape's appearance (may be null or a prototype instance). lines: for IndexedLineSet and PointSet, which are neither
-  // lit nor textured (clauses 6.24, 6.36).
+  // Of a Shape's appearance (may be null or a prototype instance). lines: for IndexedLineSet and
+  // PointSet, which are neither lit nor textured (clauses 6.24, 6.36).
   Surface of(Node* appearance, bool lines);
 
   // What a change of an appearance node, or of a node it holds, means for shapes that use it.

@@ -1,4 +1,3 @@
-// custom_shaders.cpp: see custom_shaders.h.
 #include "mapper/shading/custom_shaders.h"
 
 #include <algorithm>
@@ -25,7 +24,8 @@ std::string readText(const std::string& path, uint64_t limit, std::string& text)
     const RegularFile file(path);
     if (file.size() > limit) return path + " is longer than " + std::to_string(limit) + " bytes";
     text.resize(size_t(file.size()));
-    if (file.read(0, text.data(), text.size()) != text.size()) return path + " became shorter while it was read";
+    if (file.read(0, text.data(), text.size()) != text.size())
+      return path + " became shorter while it was read";
   } catch (const std::exception& failure) { return path + ": " + failure.what(); }
   return text.find('\0') == text.npos ? "" : path + " is not a text";
 }
@@ -40,10 +40,12 @@ bool CustomShaders::take(Made& made, uint64_t bytes) {
 
 std::vector<ShaderOption> CustomShaders::optionsOf(Made& made, std::vector<std::string>& errors) {
   ration_.give(std::exchange(made.bytes, 0));
-  std::vector<ShaderOption> options = parseShaderOptions(static_cast<const nodes::ORTShader&>(*made.node).options, errors);
+  std::vector<ShaderOption> options =
+      parseShaderOptions(static_cast<const nodes::ORTShader&>(*made.node).options, errors);
   uint64_t bytes = 0;
   for (const ShaderOption& option : options)
-    bytes += bytesOfOption + option.name.size() + copiesOfOption * (option.text.size() + option.numbers.size() * sizeof(float));
+    bytes += bytesOfOption + option.name.size() +
+             copiesOfOption * (option.text.size() + option.numbers.size() * sizeof(float));
   if (!take(made, bytes)) options.clear();
   return options;
 }
@@ -56,9 +58,11 @@ void CustomShaders::setOption(const ShaderOption& option, Made& made, RTenum rol
   case ShaderOption::Type::integer:
   case ShaderOption::Type::boolean: return rtParameter1i(handle, option.integer);
   case ShaderOption::Type::text: return rtParameterString(handle, option.text.c_str());
-  case ShaderOption::Type::texture: { // the zenith of a picture all around must not blend with its nadir
+  case ShaderOption::Type::texture: { // the zenith of a picture all around must not blend with its
+                                      // nadir
     const RTid texture = textures_.ofUrls({option.text}, node, true, role != RT_ENVIRONMENT);
-    return rtParameterTexture(handle, texture == 0 && role == RT_ENVIRONMENT ? textures_.black() : texture);
+    return rtParameterTexture(handle,
+                              texture == 0 && role == RT_ENVIRONMENT ? textures_.black() : texture);
   }
   case ShaderOption::Type::list: return rtParameterfv(handle, n.size(), n.data());
   case ShaderOption::Type::file: {
@@ -66,8 +70,10 @@ void CustomShaders::setOption(const ShaderOption& option, Made& made, RTenum rol
     const std::string& base = node.source.file ? *node.source.file : world_.path;
     const ResolvedUrl resolved = resolveUrl(option.text, base, world_.options);
     std::string text, why = resolved.error;
-    if (why.empty()) why = readText(resolved.path, std::min(longest, world_.options.limits.fileBytes), text);
-    if (!why.empty()) return world_.diagnostics.error(node.source, "ORTShader: option " + option.name + ": " + why);
+    if (why.empty())
+      why = readText(resolved.path, std::min(longest, world_.options.limits.fileBytes), text);
+    if (!why.empty())
+      return world_.diagnostics.error(node.source, "ORTShader: option " + option.name + ": " + why);
     if (take(made, copiesOfOption * text.size())) rtParameterString(handle, text.c_str());
     return;
   }
@@ -83,7 +89,8 @@ void CustomShaders::setOption(const ShaderOption& option, Made& made, RTenum rol
   }
 }
 
-RTid CustomShaders::of(nodes::ORTShader& node, RTenum role, const Node* user, const Preset& preset) {
+RTid CustomShaders::of(nodes::ORTShader& node, RTenum role, const Node* user,
+                       const Preset& preset) {
   const auto [it, fresh] = made_.try_emplace({&node, user});
   Made& made = it->second;
   if (fresh) {
@@ -113,7 +120,8 @@ void CustomShaders::make(Made& made, RTenum role, const Preset& preset) {
   std::vector<std::string> errors;
   const std::vector<ShaderOption> options = optionsOf(made, errors);
   if (told_.insert(&node).second)
-    for (const std::string& error : errors) world_.diagnostics.error(node.source, "ORTShader " + node.name + ": " + error);
+    for (const std::string& error : errors)
+      world_.diagnostics.error(node.source, "ORTShader " + node.name + ": " + error);
   ShaderSetup shader(shaderClass.id);
   made.shader = shader.id();
   if (preset) preset(shader, shaderClass);
@@ -131,7 +139,8 @@ void CustomShaders::refresh(Made& made, RTenum role, const Preset& preset) {
   std::vector<std::string> errors, names;
   const std::vector<ShaderOption> options = optionsOf(made, errors);
   for (const ShaderOption& option : options) names.push_back(option.name);
-  if (made.shader == 0 || made.name != node.name || made.file != node.file || names != made.options || !errors.empty()) {
+  if (made.shader == 0 || made.name != node.name || made.file != node.file ||
+      names != made.options || !errors.empty()) {
     const RTid before = made.shader;
     make(made, role, preset);
     if (before != 0) replaced_.push_back(before);
@@ -149,7 +158,8 @@ void CustomShaders::refresh(Made& made, RTenum role, const Preset& preset) {
 
 void CustomShaders::changed(const Node& node) {
   told_.erase(&node);
-  for (auto it = made_.lower_bound({&node, nullptr}); it != made_.end() && it->first.first == &node; ++it)
+  for (auto it = made_.lower_bound({&node, nullptr}); it != made_.end() && it->first.first == &node;
+       ++it)
     it->second.stale = true;
 }
 

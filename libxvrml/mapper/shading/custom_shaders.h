@@ -1,5 +1,5 @@
-// custom_shaders.h: ORTShader nodes as OpenRT shaders, whatever they are used for: surfaces, lights, cameras, environments. Made
-// by the mapper's thread when first used.
+// custom_shaders.h: ORTShader nodes as OpenRT shaders, whatever they are used for: surfaces,
+// lights, cameras, environments. Made by the mapper's thread when first used.
 #pragma once
 
 #include <functional>
@@ -21,18 +21,23 @@ namespace xvrml::mapper {
 class CustomShaders {
  public:
   CustomShaders(World& world, ShaderClasses& classes, Textures& textures)
-      : world_(world), classes_(classes), textures_(textures), ration_(world, "options of shaders") {}
+      : world_(world), classes_(classes), textures_(textures),
+        ration_(world, "options of shaders") {}
 
-  // Sets parameters that the world gives by other means than the options, which come after it and so have the last word.
+  // Sets parameters that the world gives by other means than the options, which come after it and
+  // so have the last word.
   using Preset = std::function<void(ShaderSetup& shader, const ShaderClass& shaderClass)>;
-  // Of an ORTShader node (rendered) for a role, RT_SURFACE ...; 0: there is no such class, or it is for another role (said). A
-  // user whose preset differs from that of others has a shader of its own; null: one for all that have none.
-  RTid of(nodes::ORTShader& node, RTenum role, const Node* user = nullptr, const Preset& preset = {});
+  // Of an ORTShader node (rendered) for a role, RT_SURFACE ...; 0: there is no such class, or it is
+  // for another role (said). A user whose preset differs from that of others has a shader of its
+  // own; null: one for all that have none.
+  RTid of(nodes::ORTShader& node, RTenum role, const Node* user = nullptr,
+          const Preset& preset = {});
   // The fields of the node are others; who uses it has to ask again.
   void changed(const Node& node);
   // Deletes what was made for this user.
   void forget(const Node& user);
-  // Deletes shaders that others have taken the place of; when nothing in the scene uses them any more.
+  // Deletes shaders that others have taken the place of; when nothing in the scene uses them any
+  // more.
   void sweep();
   void clear(); // deletes everything
   uint64_t parametersSet() const { return sets_; }
@@ -48,8 +53,8 @@ class CustomShaders {
   };
   void make(Made& made, RTenum role, const Preset& preset);
   void refresh(Made& made, RTenum role, const Preset& preset);
-  // The options that the node has now, counted as this shader's; none, after a message, if the world's budget does not allow
-  // them.
+  // The options that the node has now, counted as this shader's; none, after a message, if the
+  // world's budget does not allow them.
   std::vector<ShaderOption> optionsOf(Made& made, std::vector<std::string>& errors);
   bool take(Made& made, uint64_t bytes);
   void setOption(const ShaderOption& option, Made& made, RTenum role);

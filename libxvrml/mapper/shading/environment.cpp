@@ -1,4 +1,5 @@
-// environment.cpp: Background and Fog as the class VRML97Environment. Clauses 6.5 and 6.19. See views.h.
+// environment.cpp: Background and Fog as the class VRML97Environment. Clauses 6.5 and 6.19. See
+// views.h.
 #include "mapper/views.h"
 
 #include "xvrml/nodes.h"
@@ -21,14 +22,18 @@ struct Picture {
   const MFString nodes::Background::*urls;
 };
 constexpr Picture pictures[] = {
-    {"frontTexture", &nodes::Background::frontUrl}, {"backTexture", &nodes::Background::backUrl},
-    {"leftTexture", &nodes::Background::leftUrl},   {"rightTexture", &nodes::Background::rightUrl},
-    {"topTexture", &nodes::Background::topUrl},     {"bottomTexture", &nodes::Background::bottomUrl},
+    {"frontTexture", &nodes::Background::frontUrl},
+    {"backTexture", &nodes::Background::backUrl},
+    {"leftTexture", &nodes::Background::leftUrl},
+    {"rightTexture", &nodes::Background::rightUrl},
+    {"topTexture", &nodes::Background::topUrl},
+    {"bottomTexture", &nodes::Background::bottomUrl},
 };
 
 } // namespace
 
-void Environment::setBackground(ShaderSetup& shader, const nodes::Background& node, const RTid (&textures)[6]) {
+void Environment::setBackground(ShaderSetup& shader, const nodes::Background& node,
+                                const RTid (&textures)[6]) {
   setColors(shader, "skyColor", node.skyColor, linear_);
   shader.floats("skyAngle", node.skyAngle);
   setColors(shader, "groundColor", node.groundColor, linear_);
@@ -47,7 +52,8 @@ void Environment::setFog(ShaderSetup& shader) {
   }
   const bool exponential = fog.fogType == "EXPONENTIAL";
   if (!exponential && fog.fogType != "LINEAR")
-    world_.diagnostics.warn(fog.source, "Fog: fogType \"" + fog.fogType + "\" is neither LINEAR nor EXPONENTIAL; LINEAR is used");
+    world_.diagnostics.warn(fog.source, "Fog: fogType \"" + fog.fogType +
+                                            "\" is neither LINEAR nor EXPONENTIAL; LINEAR is used");
   shader.integer("fogType", exponential ? 2 : 1);
   shader.color("fogColor", convert(fog.color, linear_));
   shader.number("fogRange", fog.visibilityRange);
@@ -55,7 +61,8 @@ void Environment::setFog(ShaderSetup& shader) {
 }
 
 void Environment::setAll(ShaderSetup& shader, const RTid (&images)[6]) {
-  if (background_) setBackground(shader, static_cast<const nodes::Background&>(*background_), images);
+  if (background_)
+    setBackground(shader, static_cast<const nodes::Background&>(*background_), images);
   if (fog_) setFog(shader);
 }
 
@@ -74,10 +81,13 @@ void Environment::useCustom(nodes::ORTBackground& node) {
 }
 
 void Environment::follow(const Places& places, const Bound& bound) {
-  const auto worldOf = [&](int32_t place) { return place == none ? Matrix() : places.all[size_t(place)].world; };
+  const auto worldOf = [&](int32_t place) {
+    return place == none ? Matrix() : places.all[size_t(place)].world;
+  };
   const Matrix matrix = bound.background ? rotationOnly(worldOf(bound.backgroundPlace)) : Matrix();
   const Matrix fogMatrix = bound.fog ? worldOf(bound.fogPlace) : Matrix();
-  const bool others = bound.background != background_ || bound.fog != fog_, turned = matrix != matrix_;
+  const bool others = bound.background != background_ || bound.fog != fog_,
+             turned = matrix != matrix_;
   if (!others && !stale_ && !turned && fogMatrix == fogMatrix_) return;
   background_ = bound.background;
   fog_ = bound.fog;

@@ -1,4 +1,4 @@
-// lights.cpp: see lights.h. Clauses 4.6.6 (lights and their scope), 6.16, 6.35 and 6.45.
+// lights.cpp: Clauses 4.6.6 (lights and their scope), 6.16, 6.35 and 6.45.
 #include "mapper/shading/lights.h"
 
 #include <algorithm>
@@ -9,7 +9,9 @@
 
 namespace xvrml::mapper {
 namespace {
-Vec3f notNegative(Vec3f v) { return {std::max(v.x, 0.0f), std::max(v.y, 0.0f), std::max(v.z, 0.0f)}; }
+Vec3f notNegative(Vec3f v) {
+  return {std::max(v.x, 0.0f), std::max(v.y, 0.0f), std::max(v.z, 0.0f)};
+}
 
 void set(ShaderSetup& s, const nodes::DirectionalLight& light, bool linear) {
   s.color("color", convert(light.color, linear));
@@ -30,7 +32,8 @@ template <class PlacedLight> void setPlaced(ShaderSetup& s, const PlacedLight& l
 void set(ShaderSetup& s, const Node& node, bool linear) {
   if (node.type().index == nodes::DirectionalLight::typeIndex)
     return set(s, static_cast<const nodes::DirectionalLight&>(node), linear);
-  if (node.type().index == nodes::PointLight::typeIndex) return setPlaced(s, static_cast<const nodes::PointLight&>(node), linear);
+  if (node.type().index == nodes::PointLight::typeIndex)
+    return setPlaced(s, static_cast<const nodes::PointLight&>(node), linear);
   auto& spot = static_cast<const nodes::SpotLight&>(node);
   setPlaced(s, spot, linear);
   s.vector("direction", spot.direction);
@@ -42,14 +45,16 @@ bool isCustom(const Node& light) { return light.type().index == nodes::ORTLight:
 
 const char* classOf(const Node& light) {
   if (light.type().index == nodes::DirectionalLight::typeIndex) return "VRML97DirectionalLight";
-  return light.type().index == nodes::PointLight::typeIndex ? "VRML97PointLight" : "VRML97SpotLight";
+  return light.type().index == nodes::PointLight::typeIndex ? "VRML97PointLight"
+                                                            : "VRML97SpotLight";
 }
 } // namespace
 
 RTid Lights::shaderOf(Node& light) {
   const auto [it, fresh] = shaders_.try_emplace(&light);
   if (fresh && isCustom(light)) {
-    auto* shader = nodeCast<nodes::ORTShader>(renderedNode(static_cast<nodes::ORTLight&>(light).shader.get()));
+    auto* shader =
+        nodeCast<nodes::ORTShader>(renderedNode(static_cast<nodes::ORTLight&>(light).shader.get()));
     it->second = {shader ? custom_.of(*shader, RT_LIGHT) : 0, false};
   } else if (fresh) {
     if (!ration_.take(bytesOfLightShader, light.source)) {
@@ -111,8 +116,8 @@ void Lights::forget(const Graph& graph) {
   });
 }
 
-// The order in which lights are made is that in which they are summed up: it has to be the order of the places, whatever was
-// there before. Lights behind a new one are made again.
+// The order in which lights are made is that in which they are summed up: it has to be the order of
+// the places, whatever was there before. Lights behind a new one are made again.
 void Lights::follow(const Graph& graph, Places& places) {
   count_ = 0;
   bool behindNew = false;
@@ -127,9 +132,10 @@ void Lights::follow(const Graph& graph, Places& places) {
     if (behindNew || remade_.contains(item.node.get())) takeAway(place.light);
     behindNew |= place.light == 0;
     makeOrMove(place, item);
-    // A DirectionalLight shines on the descendants of its parent group only. The group's object holds nothing else: see
-    // Places. At the top level of the file that is everything.
-    if (item.kind == Kind::directionalLight && place.light != 0 && place.parent != 0) scope(place, places);
+    // A DirectionalLight shines on the descendants of its parent group only. The group's object
+    // holds nothing else: see Places. At the top level of the file that is everything.
+    if (item.kind == Kind::directionalLight && place.light != 0 && place.parent != 0)
+      scope(place, places);
   }
   remade_.clear();
   if (behindNew) takeFromCamera();
@@ -139,7 +145,8 @@ void Lights::makeOrMove(Place& place, const Item& item) {
   if (place.light != 0 && place.lightMatrix == place.world) return;
   if (place.light == 0) {
     const bool allowed = ration_.take(bytesOfLight, item.node->source);
-    const RTid shader = allowed ? shaderOf(*item.node) : 0; // a light that is left out takes no shader either
+    const RTid shader =
+        allowed ? shaderOf(*item.node) : 0; // a light that is left out takes no shader either
     if (shader == 0) {
       if (allowed) ration_.give(bytesOfLight);
       --count_;
@@ -159,7 +166,9 @@ void Lights::makeOrMove(Place& place, const Item& item) {
 
 void Lights::scope(Place& place, const Places& places) {
   const RTid scope = places.all[places.splitAbove(place.parent)].instance;
-  if (scope == 0) return takeAway(place.light); // the group itself could not be placed: nothing is there to shine on
+  if (scope == 0)
+    return takeAway(
+        place.light); // the group itself could not be placed: nothing is there to shine on
   if (scope == place.lightScope) return;
   rtLightScope(place.light, scope);
   place.lightScope = scope;
@@ -177,8 +186,10 @@ void Lights::atCamera(CameraLight light, const CameraSettings& camera) {
   atCamera_ = light;
   if (light == CameraLight::none) return;
   const bool head = light == CameraLight::head;
-  const std::span<const Lamp> lamps = head ? std::span<const Lamp>(headlamp) : std::span<const Lamp>(modelLamps);
-  const std::span<AtCamera> used = head ? std::span<AtCamera>(&headlight_, 1) : std::span<AtCamera>(modelLights_);
+  const std::span<const Lamp> lamps =
+      head ? std::span<const Lamp>(headlamp) : std::span<const Lamp>(modelLamps);
+  const std::span<AtCamera> used =
+      head ? std::span<AtCamera>(&headlight_, 1) : std::span<AtCamera>(modelLights_);
   const Matrix view = rigid(fromArray(camera.matrix));
   for (size_t i = 0; i < used.size(); ++i) {
     AtCamera& one = used[i];

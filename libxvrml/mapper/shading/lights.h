@@ -1,13 +1,14 @@
-// lights.h: light nodes and the headlight as OpenRT lights. Called by the mapper for every camera, on its thread.
+// lights.h: light nodes and the headlight as OpenRT lights. Called by the mapper for every camera,
+// on its thread.
 #pragma once
 
 #include <unordered_map>
 #include <unordered_set>
 
-#include "mapper/shading/custom_shaders.h"
 #include "mapper/graph/places.h"
 #include "mapper/ration.h"
 #include "mapper/rt.h"
+#include "mapper/shading/custom_shaders.h"
 
 namespace xvrml::mapper {
 
@@ -16,9 +17,11 @@ enum class CameraLight : uint8_t { none, head, model };
 class Lights {
  public:
   Lights(World& world, bool linearColor, ShaderClasses& classes, CustomShaders& custom)
-      : world_(world), linear_(linearColor), classes_(classes), custom_(custom), ration_(world, "lights") {}
+      : world_(world), linear_(linearColor), classes_(classes), custom_(custom),
+        ration_(world, "lights") {}
 
-  // Makes, moves or removes the lights of all places. Objects and instances of the places must be there: scopes name them.
+  // Makes, moves or removes the lights of all places. Objects and instances of the places must be
+  // there: scopes name them.
   void follow(const Graph& graph, Places& places);
   // The fields of a light node have changed.
   void changed(Node& light);
@@ -26,7 +29,8 @@ class Lights {
   void remove(const std::vector<Place>& gone);
   void forget(const Graph& graph);
   void clear(Places& places); // takes everything away
-  // Directional lights that go with the camera and cast no shadows: the headlight, or the three of model.h.
+  // Directional lights that go with the camera and cast no shadows: the headlight, or the three of
+  // model.h.
   void atCamera(CameraLight light, const CameraSettings& camera);
   uint64_t count() const { return count_; }
   uint64_t changes() const { return changes_; }
@@ -35,7 +39,8 @@ class Lights {
  private:
   void makeOrMove(Place& place, const Item& item);
   void scope(Place& place, const Places& places);
-  // Removes a light; bytes: what of the world's budget it gives back (those at the camera took nothing).
+  // Removes a light; bytes: what of the world's budget it gives back (those at the camera took
+  // nothing).
   void takeAway(RTid& light, uint64_t bytes = bytesOfLight);
   RTid shaderOf(Node& light);
 

@@ -19,7 +19,9 @@ class Words {
     rest_.remove_prefix(start);
     const bool quoted = rest_.front() == '\'';
     const size_t end = quoted ? rest_.find('\'', 1) : rest_.find_first_of(" \t\r\n,");
-    const std::string_view word = rest_.substr(quoted ? 1 : 0, end == std::string_view::npos ? end : quoted ? end - 1 : end);
+    const std::string_view word = rest_.substr(quoted ? 1 : 0, end == std::string_view::npos ? end
+                                                               : quoted ? end - 1
+                                                                        : end);
     rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : quoted ? end + 1 : end);
     return word;
   }
@@ -41,7 +43,9 @@ int floatsOf(std::string_view type) {
 
 // Reads the values of one option; the error, or empty.
 std::string readValues(Words& words, std::string_view type, ShaderOption& option) {
-  const auto missing = [&] { return "option " + option.name + ": too few values for " + std::string(type); };
+  const auto missing = [&] {
+    return "option " + option.name + ": too few values for " + std::string(type);
+  };
   if (const int count = floatsOf(type)) {
     option.type = type == "color" ? ShaderOption::Type::color : ShaderOption::Type::floats;
     for (int i = 0; i < count; ++i) {
@@ -57,7 +61,8 @@ std::string readValues(Words& words, std::string_view type, ShaderOption& option
   if (type == "floats") {
     option.type = ShaderOption::Type::list;
     float value = 0;
-    for (auto word = words.peek(); word && number(*word, value) && std::isfinite(value); word = words.peek()) {
+    for (auto word = words.peek(); word && number(*word, value) && std::isfinite(value);
+         word = words.peek()) {
       option.numbers.push_back(value);
       words.next();
     }
@@ -67,13 +72,17 @@ std::string readValues(Words& words, std::string_view type, ShaderOption& option
   if (!word) return missing();
   if (type == "1i") {
     option.type = ShaderOption::Type::integer;
-    return number(*word, option.integer) ? "" : "option " + option.name + ": '" + std::string(*word) + "' is not an integer";
+    return number(*word, option.integer)
+               ? ""
+               : "option " + option.name + ": '" + std::string(*word) + "' is not an integer";
   }
   if (type == "bool") {
     option.type = ShaderOption::Type::boolean;
     option.integer = *word == "true" || *word == "TRUE" || *word == "1";
     const bool known = option.integer || *word == "false" || *word == "FALSE" || *word == "0";
-    return known ? "" : "option " + option.name + ": '" + std::string(*word) + "' is neither true nor false";
+    return known ? ""
+                 : "option " + option.name + ": '" + std::string(*word) +
+                       "' is neither true nor false";
   }
   option.type = type == "string" ? ShaderOption::Type::text
                 : type == "file" ? ShaderOption::Type::file
@@ -83,26 +92,29 @@ std::string readValues(Words& words, std::string_view type, ShaderOption& option
 }
 
 bool knownType(std::string_view type) {
-  return floatsOf(type) > 0 || type == "1i" || type == "bool" || type == "string" || type == "texture" || type == "file" ||
-         type == "floats";
+  return floatsOf(type) > 0 || type == "1i" || type == "bool" || type == "string" ||
+         type == "texture" || type == "file" || type == "floats";
 }
 
 } // namespace
 
-std::vector<ShaderOption> parseShaderOptions(const MFString& options, std::vector<std::string>& errors) {
+std::vector<ShaderOption> parseShaderOptions(const MFString& options,
+                                             std::vector<std::string>& errors) {
   std::vector<ShaderOption> result;
   for (const std::string& text : options) {
     Words words(text);
     while (const auto type = words.next()) {
       const auto name = words.next();
       if (!knownType(*type) || !name) {
-        errors.push_back(name ? "option type '" + std::string(*type) +
-                                    "': expected 1i 1f 2f 3f 4f 16f bool color string texture file or floats"
-                              : "option '" + std::string(*type) + "' has no name");
+        errors.push_back(
+            name ? "option type '" + std::string(*type) +
+                       "': expected 1i 1f 2f 3f 4f 16f bool color string texture file or floats"
+                 : "option '" + std::string(*type) + "' has no name");
         break; // the rest of this string cannot be made sense of
       }
       if (result.size() == maximumShaderOptions) {
-        errors.push_back("more than " + std::to_string(maximumShaderOptions) + " options; the rest is left out");
+        errors.push_back("more than " + std::to_string(maximumShaderOptions) +
+                         " options; the rest is left out");
         return result;
       }
       ShaderOption option;

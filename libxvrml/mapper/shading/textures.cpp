@@ -1,4 +1,3 @@
-// textures.cpp: see textures.h.
 #include "mapper/shading/textures.h"
 
 #include <algorithm>
@@ -14,8 +13,10 @@ namespace xvrml::mapper {
 namespace {
 
 bool usable(const Image& image) {
-  if (image.width <= 0 || image.height <= 0 || image.components < 1 || image.components > 4) return false;
-  return image.pixels.size() >= size_t(image.width) * size_t(image.height) * size_t(image.components);
+  if (image.width <= 0 || image.height <= 0 || image.components < 1 || image.components > 4)
+    return false;
+  return image.pixels.size() >=
+         size_t(image.width) * size_t(image.height) * size_t(image.components);
 }
 
 bool usable(const RadianceImage& image) { return image.width > 0 && image.height > 0; }
@@ -27,7 +28,8 @@ struct OwnImage {
 };
 bool ownImage(Node& node, OwnImage& own) {
   if (auto* pixels = nodeCast<nodes::PixelTexture>(&node)) {
-    own = {pixels->image.components > 0 ? &pixels->image : nullptr, pixels->repeatS, pixels->repeatT};
+    own = {pixels->image.components > 0 ? &pixels->image : nullptr, pixels->repeatS,
+           pixels->repeatT};
     return true;
   }
   if (auto* movie = nodeCast<nodes::MovieTexture>(&node)) {
@@ -49,7 +51,8 @@ RTid Textures::ofNode(Node* texture) {
 }
 
 RTid Textures::makeNode(Node& node) {
-  if (auto* image = nodeCast<nodes::ImageTexture>(&node)) return ofUrls(image->url, node, image->repeatS, image->repeatT);
+  if (auto* image = nodeCast<nodes::ImageTexture>(&node))
+    return ofUrls(image->url, node, image->repeatS, image->repeatT);
   RTid id = 0;
   if (OwnImage own; ownImage(node, own)) {
     try {
@@ -58,7 +61,9 @@ RTid Textures::makeNode(Node& node) {
       world_.diagnostics.error(node.source, node.type().name + ": no picture: " + failure.what());
     }
     if (!node.live && nodeCast<nodes::MovieTexture>(&node))
-      world_.diagnostics.warn(node.source, "MovieTexture: films play in a running world; the surface is drawn without it");
+      world_.diagnostics.warn(
+          node.source,
+          "MovieTexture: films play in a running world; the surface is drawn without it");
     report(world_.diagnostics, node.source, node.type().name);
   } else {
     world_.diagnostics.warn(node.source, node.type().name + " is not a texture that can be drawn");
@@ -164,8 +169,8 @@ void Textures::remove(RTid texture) {
 void Textures::take(RTid texture, uint64_t wanted) {
   uint64_t& bytes = bytes_[texture];
   if (wanted > bytes && !share_.take(wanted - bytes))
-    throw std::runtime_error("with all that the world holds " + std::to_string(wanted) + " bytes are more than " +
-                             share_.budget()->name());
+    throw std::runtime_error("with all that the world holds " + std::to_string(wanted) +
+                             " bytes are more than " + share_.budget()->name());
   if (wanted < bytes) share_.give(bytes - wanted);
   bytes = wanted;
 }

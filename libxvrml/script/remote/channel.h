@@ -1,5 +1,5 @@
-// channel.h: whole messages over one end of a socket pair. Used by the browser, which never waits longer than it wants to, and by
-// xvrml-script-host, which waits for ever. [one thread]
+// channel.h: whole messages over one end of a socket pair. Used by the browser, which never waits
+// longer than it wants to, and by xvrml-script-host, which waits for ever. [one thread]
 #pragma once
 
 #include <chrono>
@@ -14,12 +14,14 @@ constexpr Clock::time_point never = Clock::time_point::max();
 class Channel {
  public:
   // patience: how long send() waits while the other end takes nothing.
-  explicit Channel(int socket, Clock::duration patience = std::chrono::seconds(1)) : socket_(socket), patience_(patience) {}
+  explicit Channel(int socket, Clock::duration patience = std::chrono::seconds(1))
+      : socket_(socket), patience_(patience) {}
   ~Channel();
   Channel(const Channel&) = delete;
   Channel& operator=(const Channel&) = delete;
 
-  // False if the other end is gone, or has taken nothing for the time of `patience`. Never raises SIGPIPE.
+  // False if the other end is gone, or has taken nothing for the time of `patience`. Never raises
+  // SIGPIPE.
   bool send(std::string_view message);
 
   enum class Got { message, nothing, closed, bad };

@@ -1,4 +1,3 @@
-// child.cpp: see child.h.
 #include "script/remote/child.h"
 
 #include <array>
@@ -27,17 +26,19 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* programName = "xvrml-script-host";
-// What engines may need of the environment while they are prepared; it is empty when a program of a Script runs. No
-// LD_LIBRARY_PATH: whoever sets it for another program, perhaps with an empty element for the current folder, would choose this
-// one's libraries.
+// What engines may need of the environment while they are prepared; it is empty when a program of a
+// Script runs. No LD_LIBRARY_PATH: whoever sets it for another program, perhaps with an empty
+// element for the current folder, would choose this one's libraries.
 constexpr std::array passedOn = {"TCL_LIBRARY", "ASAN_OPTIONS", "UBSAN_OPTIONS", "TSAN_OPTIONS"};
 
 bool usable(const fs::path& program, std::string& why) {
   if (access(program.c_str(), X_OK) != 0)
     why = fmt::format("{}: {}", program.string(), std::strerror(errno));
   else if (!plugin_files::trusted(program.parent_path().string()))
-    why = fmt::format("{}: its folder is refused: {}", program.string(), plugin_files::objection(program.parent_path().string()));
-  else if (const std::string objection = plugin_files::objection(program.string()); !objection.empty())
+    why = fmt::format("{}: its folder is refused: {}", program.string(),
+                      plugin_files::objection(program.parent_path().string()));
+  else if (const std::string objection = plugin_files::objection(program.string());
+           !objection.empty())
     why = fmt::format("{} is refused: {}", program.string(), objection);
   else
     return true;
@@ -68,7 +69,8 @@ std::string findScriptHostProgram(std::string& why) {
   std::error_code error;
   Dl_info info{};
   std::vector<fs::path> places;
-  if (dladdr(&here, &info) != 0 && info.dli_fname) places.push_back(fs::canonical(info.dli_fname, error).parent_path());
+  if (dladdr(&here, &info) != 0 && info.dli_fname)
+    places.push_back(fs::canonical(info.dli_fname, error).parent_path());
   places.push_back(fs::read_symlink("/proc/self/exe", error).parent_path());
   for (const fs::path& place : places)
     for (const char* folder : {"../libexec/xvrml", "../../libexec/xvrml", "../bin", "."}) {
@@ -99,19 +101,22 @@ int Child::start(const std::string& program, std::string& why) {
   sigset_t none, all;
   sigemptyset(&none);
   sigfillset(&all);
-  posix_spawnattr_setflags(&actions.attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSID); // no Ctrl-C
+  posix_spawnattr_setflags(&actions.attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF |
+                                                    POSIX_SPAWN_SETSID); // no Ctrl-C
   posix_spawnattr_setsigmask(&actions.attributes, &none);
   posix_spawnattr_setsigdefault(&actions.attributes, &all);
   std::string name = program, parent = std::to_string(getpid());
   char* arguments[] = {name.data(), parent.data(), nullptr};
   std::vector<std::string> variables;
   for (const char* variable : passedOn)
-    if (const char* value = std::getenv(variable); value && *value) variables.push_back(fmt::format("{}={}", variable, value));
+    if (const char* value = std::getenv(variable); value && *value)
+      variables.push_back(fmt::format("{}={}", variable, value));
   std::vector<char*> environment;
   for (std::string& variable : variables) environment.push_back(variable.data());
   environment.push_back(nullptr);
   // Not fork: that would copy the page tables of a browser with gigabytes of geometry.
-  const int error = posix_spawn(&pid_, program.c_str(), &actions.files, &actions.attributes, arguments, environment.data());
+  const int error = posix_spawn(&pid_, program.c_str(), &actions.files, &actions.attributes,
+                                arguments, environment.data());
   close(ends[1]);
   if (error != 0) {
     pid_ = 0;
@@ -134,7 +139,9 @@ void Child::limitMemory(uint64_t bytes) {
 double Child::processorSeconds() const {
   clockid_t clock{};
   timespec time{};
-  if (pid_ <= 0 || ended_ || clock_getcpuclockid(pid_, &clock) != 0 || clock_gettime(clock, &time) != 0) return 0;
+  if (pid_ <= 0 || ended_ || clock_getcpuclockid(pid_, &clock) != 0 ||
+      clock_gettime(clock, &time) != 0)
+    return 0;
   return double(time.tv_sec) + 1e-9 * double(time.tv_nsec);
 }
 
@@ -145,7 +152,8 @@ bool Child::computes() const {
   if (!file) return false;
   const size_t got = std::fread(line, 1, sizeof line - 1, file);
   std::fclose(file);
-  const size_t name = std::string_view(line, got).rfind(") "); // the state follows on the program's name
+  const size_t name =
+      std::string_view(line, got).rfind(") "); // the state follows on the program's name
   return name != std::string_view::npos && name + 2 < got && line[name + 2] == 'R';
 }
 
@@ -184,7 +192,8 @@ std::string Child::ending() {
   if (WIFEXITED(status_)) return fmt::format("ended with code {}", WEXITSTATUS(status_));
   const int signal = WTERMSIG(status_);
   constexpr long much = 64 * 1024; // kB, more than any language needs for itself
-  return fmt::format("ended by signal {} ({})", signal, sigdescr_np(signal) ? sigdescr_np(signal) : "?") +
+  return fmt::format("ended by signal {} ({})", signal,
+                     sigdescr_np(signal) ? sigdescr_np(signal) : "?") +
          (peak_ > much ? fmt::format(", having used {} MB", peak_ / 1024) : "");
 }
 

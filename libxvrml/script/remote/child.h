@@ -1,6 +1,7 @@
-// child.h: a process of the program xvrml-script-host: where the program is, starting it at one end of a socket pair, its memory
-// limit, its end. Everything of Linux that the browser's side needs is in child.cpp. Other children of the program that uses the
-// library are left alone: only own processes are waited for. [the browser's thread]
+// child.h: a process of the program xvrml-script-host: where the program is, starting it at one end
+// of a socket pair, its memory limit, its end. Everything of Linux that the browser's side needs is
+// in child.cpp. Other children of the program that uses the library are left alone: only own
+// processes are waited for. [the browser's thread]
 #pragma once
 
 #include <cstdint>
@@ -10,7 +11,8 @@
 
 namespace xvrml {
 
-// $XVRML_SCRIPT_HOST, or the program that is installed (or built) with the library; "" if it is not there, and why.
+// $XVRML_SCRIPT_HOST, or the program that is installed (or built) with the library; "" if it is not
+// there, and why.
 std::string findScriptHostProgram(std::string& why);
 
 class Child {
@@ -20,8 +22,9 @@ class Child {
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
 
-  // Starts the program; its end of the socket pair is file descriptor 3, all others but the standard ones are closed, and these
-  // lead nowhere. It ends with this process. Returns the own end, or -1 and why.
+  // Starts the program; its end of the socket pair is file descriptor 3, all others but the
+  // standard ones are closed, and these lead nowhere. It ends with this process. Returns the own
+  // end, or -1 and why.
   int start(const std::string& program, std::string& why);
   void limitMemory(uint64_t bytes); // of address space
   void kill() noexcept;

@@ -1,7 +1,9 @@
-// host_functions.h: the functions of XsHost that go through a process's socket, in the order of their numbers there, and how each
-// is served in the browser: arguments read, the host's own function called, its answer written. Coded by the C types of the
-// arguments alone: nothing here knows what a function does. The helper's side is in tools/script_host/forward.h. Functions that
-// the helper answers itself (now, shouldStop, lastError) and those of trusted worlds (object, number) are not among them.
+// host_functions.h: the functions of XsHost that go through a process's socket, in the order of
+// their numbers there, and how each is served in the browser: arguments read, the host's own
+// function called, its answer written. Coded by the C types of the arguments alone: nothing here
+// knows what a function does. The helper's side is in tools/script_host/forward.h. Functions that
+// the helper answers itself (now, shouldStop, lastError) and those of trusted worlds (object,
+// number) are not among them.
 #pragma once
 
 #include <cstring>
@@ -13,16 +15,20 @@
 
 namespace xvrml::wire {
 
-template <auto... Members> struct FunctionList { static constexpr size_t size = sizeof...(Members); };
-using HostFunctions = FunctionList<&XsHost::send, &XsHost::write, &XsHost::read, &XsHost::post, &XsHost::describe, &XsHost::field,
-                                   &XsHost::findField, &XsHost::retain, &XsHost::release, &XsHost::getName, &XsHost::getVersion,
-                                   &XsHost::getCurrentSpeed, &XsHost::getCurrentFrameRate, &XsHost::getWorldUrl,
-                                   &XsHost::setDescription, &XsHost::replaceWorld, &XsHost::loadUrl, &XsHost::createVrmlFromUrl,
-                                   &XsHost::createVrmlFromString, &XsHost::addRoute, &XsHost::deleteRoute, &XsHost::log>;
+template <auto... Members> struct FunctionList {
+  static constexpr size_t size = sizeof...(Members);
+};
+using HostFunctions = FunctionList<
+    &XsHost::send, &XsHost::write, &XsHost::read, &XsHost::post, &XsHost::describe, &XsHost::field,
+    &XsHost::findField, &XsHost::retain, &XsHost::release, &XsHost::getName, &XsHost::getVersion,
+    &XsHost::getCurrentSpeed, &XsHost::getCurrentFrameRate, &XsHost::getWorldUrl,
+    &XsHost::setDescription, &XsHost::replaceWorld, &XsHost::loadUrl, &XsHost::createVrmlFromUrl,
+    &XsHost::createVrmlFromString, &XsHost::addRoute, &XsHost::deleteRoute, &XsHost::log>;
 
 // Places for what a function gives out.
 template <class T> constexpr bool isOut =
-    std::is_same_v<T, XsValue*> || std::is_same_v<T, XsString*> || std::is_same_v<T, XsField*> || std::is_same_v<T, XsNodeInfo*>;
+    std::is_same_v<T, XsValue*> || std::is_same_v<T, XsString*> || std::is_same_v<T, XsField*> ||
+    std::is_same_v<T, XsNodeInfo*>;
 
 // One argument while a function is served.
 template <class T> struct Argument {
@@ -43,12 +49,16 @@ struct Argument<T> {
 };
 
 // False if the message is none that this function can have. out: the answer, begun.
-template <class R, class... A>
-bool serveOne(R (*XsHost::*function)(const XsHost*, XsNode, A...), const XsHost& host, XsNode self, Reader& in, Writer& out) {
+template <class R, class... A> bool serveOne(R (*XsHost::*function)(const XsHost*, XsNode, A...),
+                                             const XsHost& host, XsNode self, Reader& in,
+                                             Writer& out) {
   std::tuple<Argument<A>...> arguments;
   std::apply([&](auto&... a) { (a.read(in), ...); }, arguments);
   if (!in.complete()) return false;
-  const auto call = [&] { return std::apply([&](auto&... a) { return (host.*function)(&host, self, a.pass()...); }, arguments); };
+  const auto call = [&] {
+    return std::apply([&](auto&... a) { return (host.*function)(&host, self, a.pass()...); },
+                      arguments);
+  };
   if constexpr (std::is_void_v<R>) {
     call();
   } else if constexpr (std::is_same_v<R, double>) {
@@ -67,7 +77,9 @@ bool serveOne(R (*XsHost::*function)(const XsHost*, XsNode, A...), const XsHost&
   return true;
 }
 
-template <class R, class... A> constexpr bool answers(R (*XsHost::*)(const XsHost*, XsNode, A...)) { return !std::is_void_v<R>; }
+template <class R, class... A> constexpr bool answers(R (*XsHost::*)(const XsHost*, XsNode, A...)) {
+  return !std::is_void_v<R>;
+}
 
 struct Served {
   bool good;    // false: not a message of this protocol
@@ -75,10 +87,12 @@ struct Served {
 };
 
 // One message of a helper.
-template <auto... Members> Served serve(FunctionList<Members...>, const XsHost& host, const Message& message, Writer& out) {
+template <auto... Members>
+Served serve(FunctionList<Members...>, const XsHost& host, const Message& message, Writer& out) {
   using Serve = bool (*)(const XsHost&, XsNode, Reader&, Writer&);
-  static constexpr Serve table[] = {
-      [](const XsHost& h, XsNode self, Reader& in, Writer& answer) { return serveOne(Members, h, self, in, answer); }...};
+  static constexpr Serve table[] = {[](const XsHost& h, XsNode self, Reader& in, Writer& answer) {
+    return serveOne(Members, h, self, in, answer);
+  }...};
   static constexpr bool answered[] = {answers(Members)...};
   const size_t index = size_t(message.header.op) - size_t(Op::host);
   if (message.header.op < uint16_t(Op::host) || index >= std::size(table)) return {false, false};

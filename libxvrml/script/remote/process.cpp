@@ -1,4 +1,3 @@
-// process.cpp: see process.h.
 #include "script/remote/process.h"
 
 #include <algorithm>
@@ -19,12 +18,14 @@ constexpr uint64_t slack = 64 << 20; // messages, and what a library takes when 
 
 double seconds(Clock::duration d) { return std::chrono::duration<double>(d).count(); }
 Clock::duration duration(double s) {
-  return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(std::clamp(s, 0.0, 1e6)));
+  return std::chrono::duration_cast<Clock::duration>(
+      std::chrono::duration<double>(std::clamp(s, 0.0, 1e6)));
 }
 
 } // namespace
 
-ScriptProcess::ScriptProcess(const std::string& program, ProcessSettings settings, const XsHost& host)
+ScriptProcess::ScriptProcess(const std::string& program, ProcessSettings settings,
+                             const XsHost& host)
     : settings_(std::move(settings)), host_(host) {
   const int socket = child_.start(program, death_);
   if (socket < 0) return;
@@ -40,7 +41,8 @@ ScriptProcess::ScriptProcess(const std::string& program, ProcessSettings setting
 }
 
 ScriptProcess::ScriptProcess(int socket, ProcessSettings settings, const XsHost& host)
-    : settings_(std::move(settings)), host_(host), channel_(std::make_unique<Channel>(socket)), ready_(true) {}
+    : settings_(std::move(settings)), host_(host), channel_(std::make_unique<Channel>(socket)),
+      ready_(true) {}
 
 bool ScriptProcess::ready() {
   if (ready_ || dead()) return !dead();
@@ -89,7 +91,8 @@ bool ScriptProcess::begin(Writer& call) {
     return false;
   }
   busy_ = true;
-  follows_ = call.header().op == uint16_t(Op::create) && (call.header().flags & Flags::thenInitialize);
+  follows_ =
+      call.header().op == uint16_t(Op::create) && (call.header().flags & Flags::thenInitialize);
   callBegins();
   return true;
 }
@@ -113,9 +116,10 @@ double ScriptProcess::missing(double limit) {
   return given;
 }
 
-// The time on the wall counts, but not what the host's functions take, nor the time in which the program waited for a processor,
-// and little of what an application does between two ticks.
-ScriptProcess::State ScriptProcess::serve(double first, double next, Clock::time_point until, double time) {
+// The time on the wall counts, but not what the host's functions take, nor the time in which the
+// program waited for a processor, and little of what an application does between two ticks.
+ScriptProcess::State ScriptProcess::serve(double first, double next, Clock::time_point until,
+                                          double time) {
   constexpr double mostBetween = 0.1;
   const double limit = settings_.seconds + grace;
   used_ += std::min(seconds(Clock::now() - left_), mostBetween);
@@ -128,7 +132,8 @@ ScriptProcess::State ScriptProcess::serve(double first, double next, Clock::time
   for (double patience = first;; patience = next) {
     const auto now = Clock::now();
     const auto hard = start + duration(limit - used_);
-    const Channel::Got got = channel_->receive(message_, std::max(now, std::min({until, hard, now + duration(patience)})));
+    const Channel::Got got = channel_->receive(
+        message_, std::max(now, std::min({until, hard, now + duration(patience)})));
     if (got == Channel::Got::nothing && Clock::now() >= hard) {
       const double more = missing(limit);
       if (more <= 0) return lost(State::tooLong, "took too long");

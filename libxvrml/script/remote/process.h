@@ -1,6 +1,7 @@
-// process.h: the browser's end of one xvrml-script-host: calls of an engine's functions there, one at a time, and the functions
-// of the host that they call meanwhile. Nothing that comes from it is believed; whatever is wrong ends it. A call can be left
-// running and looked after later. [the browser's thread]
+// process.h: the browser's end of one xvrml-script-host: calls of an engine's functions there, one
+// at a time, and the functions of the host that they call meanwhile. Nothing that comes from it is
+// believed; whatever is wrong ends it. A call can be left running and looked after later. [the
+// browser's thread]
 #pragma once
 
 #include <memory>
@@ -28,7 +29,9 @@ class ScriptProcess {
   // Waits until it is ready. False: it is dead.
   bool ready();
   bool dead() const { return !channel_; }
-  const std::string& death() const { return death_; } // why: "its process ended by signal 9 (Killed)"
+  const std::string& death() const {
+    return death_;
+  } // why: "its process ended by signal 9 (Killed)"
   pid_t number() const { return child_.number(); }
 
   // Interpreters in it.
@@ -36,33 +39,37 @@ class ScriptProcess {
   void remove() { --scripts_; }
   uint32_t scripts() const { return scripts_; }
 
-  // Begins a call; only while none is under way. False: it is dead, or, if it is not, the message is too long.
-  // The flag thenInitialize of a create call stands for two calls: busy() is still true when the first has succeeded.
+  // Begins a call; only while none is under way. False: it is dead, or, if it is not, the message
+  // is too long. The flag thenInitialize of a create call stands for two calls: busy() is still
+  // true when the first has succeeded.
   bool begin(wire::Writer& call);
   bool busy() const { return busy_; }
   enum class State { returned, running, tooLong, died };
-  // Serves the call that is under way. first: seconds to wait for a message if there is none; next: for further ones; not beyond
-  // `until`. time: the timestamp that programs see.
+  // Serves the call that is under way. first: seconds to wait for a message if there is none; next:
+  // for further ones; not beyond `until`. time: the timestamp that programs see.
   State serve(double first, double next, wire::Clock::time_point until, double time);
   // Of the call that has returned.
   XsResult result() const { return result_; }
   bool stopped() const { return stopped_; }
   void kill(std::string why);
-  // Returns the processor time that its programs have used since the last call of this, in seconds; 0 if it is dead.
+  // Returns the processor time that its programs have used since the last call of this, in seconds;
+  // 0 if it is dead.
   double takeProcessorTime();
 
   bool orphaned = false;           // nobody waits for the call that is under way
   std::vector<uint32_t> discarded; // interpreters to be destroyed when it is not busy
 
   static constexpr double grace = 0.25; // seconds beyond the limit, which the helper keeps itself
-  // A program that computes has its seconds of processor time, but waits for a processor at most so many times as long.
+  // A program that computes has its seconds of processor time, but waits for a processor at most so
+  // many times as long.
   static constexpr double mostShared = 16;
 
  private:
   State lost(State state, std::string why);
   bool answer(const wire::Message& message, double time); // false: it has been lost
   void callBegins();
-  double missing(double limit); // seconds of its time that the program could not use: others had the processors
+  double missing(double limit); // seconds of its time that the program could not use: others had
+                                // the processors
 
   const ProcessSettings settings_;
   const XsHost& host_;
@@ -73,10 +80,10 @@ class ScriptProcess {
   uint32_t scripts_ = 0;
   uint64_t base_ = 0; // bytes of address space that it had when it was ready; 0: cannot be limited
   XsResult result_ = XS_OK;
-  double used_ = 0;              // seconds of the call
-  double processor_ = 0;         // processor time of the process when the call began
-  double taken_ = 0;             // processor time that takeProcessorTime() has told
-  double shared_ = 0;            // seconds that were given to the call because it had waited for a processor
+  double used_ = 0;      // seconds of the call
+  double processor_ = 0; // processor time of the process when the call began
+  double taken_ = 0;     // processor time that takeProcessorTime() has told
+  double shared_ = 0; // seconds that were given to the call because it had waited for a processor
   wire::Clock::time_point left_; // when it was last looked after
   wire::Message message_;
   wire::Writer answer_;

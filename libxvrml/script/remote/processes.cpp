@@ -1,4 +1,3 @@
-// processes.cpp: see processes.h.
 #include "script/remote/processes.h"
 
 #include <algorithm>
@@ -7,7 +6,8 @@
 namespace xvrml {
 
 ScriptProcesses::~ScriptProcesses() {
-  for (const ProcessRef& process : all_) process->kill("is not needed any more"); // all at once, then each is waited for
+  for (const ProcessRef& process : all_)
+    process->kill("is not needed any more"); // all at once, then each is waited for
 }
 
 bool ScriptProcesses::start(const ProcessSettings& settings) {
@@ -17,7 +17,8 @@ bool ScriptProcesses::start(const ProcessSettings& settings) {
   return true;
 }
 
-ProcessRef ScriptProcesses::choose(const ProcessSettings& settings, size_t coming, std::string& why) {
+ProcessRef ScriptProcesses::choose(const ProcessSettings& settings, size_t coming,
+                                   std::string& why) {
   const std::string key = settings.library + ":" + settings.engine;
   if (const auto known = unusable_.find(key); known != unusable_.end()) {
     why = known->second;
@@ -31,7 +32,8 @@ ProcessRef ScriptProcesses::choose(const ProcessSettings& settings, size_t comin
   const auto fits = [&](const ProcessRef& p) {
     return p->settings().library == settings.library && p->settings().engine == settings.engine;
   };
-  const auto empty = size_t(std::count_if(all_.begin(), all_.end(), [&](const auto& p) { return fits(p) && p->scripts() == 0; }));
+  const auto empty = size_t(std::count_if(
+      all_.begin(), all_.end(), [&](const auto& p) { return fits(p) && p->scripts() == 0; }));
   for (size_t i = empty; i < coming + 1 && all_.size() < most; ++i)
     if (!start(settings)) break;
   if (std::none_of(all_.begin(), all_.end(), fits)) start(settings);
@@ -51,8 +53,9 @@ ProcessRef ScriptProcesses::choose(const ProcessSettings& settings, size_t comin
 
 void ScriptProcesses::trim() {
   bool kept = false;
-  std::erase_if(all_,
-                [&](const ProcessRef& p) { return p->scripts() == 0 && (p->dead() || p->busy() || std::exchange(kept, true)); });
+  std::erase_if(all_, [&](const ProcessRef& p) {
+    return p->scripts() == 0 && (p->dead() || p->busy() || std::exchange(kept, true));
+  });
 }
 
 void ScriptProcesses::remove(const ScriptProcess& process) {

@@ -1,5 +1,5 @@
-// processes.h: the processes of a world's Scripts. Each Script has one of its own up to a number, then they share; those whose
-// Scripts have ended are used again. [the browser's thread]
+// processes.h: the processes of a world's Scripts. Each Script has one of its own up to a number,
+// then they share; those whose Scripts have ended are used again. [the browser's thread]
 #pragma once
 
 #include <map>
@@ -12,15 +12,16 @@ using ProcessRef = std::shared_ptr<ScriptProcess>;
 
 class ScriptProcesses {
  public:
-  static constexpr size_t most = 16;       // of a world; an engine always gets one
-  static constexpr size_t mostEnded = 100; // by programs: starting ever more of them takes time, too
+  static constexpr size_t most = 16; // of a world; an engine always gets one
+  static constexpr size_t mostEnded =
+      100; // by programs: starting ever more of them takes time, too
   explicit ScriptProcesses(const XsHost& host) : host_(host) {}
   ~ScriptProcesses();
   ScriptProcesses(const ScriptProcesses&) = delete;
   ScriptProcesses& operator=(const ScriptProcesses&) = delete;
 
-  // The process for another interpreter: ready, perhaps busy. coming: how many more will be asked for soon; they start side by
-  // side. Null if none can be started, and why.
+  // The process for another interpreter: ready, perhaps busy. coming: how many more will be asked
+  // for soon; they start side by side. Null if none can be started, and why.
   ProcessRef choose(const ProcessSettings& settings, size_t coming, std::string& why);
   void trim(); // of those that nobody is in, one is kept for the next Script
   void programEnded() { ++ended_; }

@@ -1,4 +1,4 @@
-// wire.cpp: see wire.h. Part of the library and of xvrml-script-host.
+// wire.cpp: Part of the library and of xvrml-script-host.
 #include "script/remote/wire.h"
 
 #include <cstring>
@@ -25,7 +25,8 @@ Element elementOf(XsType type) {
 }
 
 const char* functionName(Op op) {
-  constexpr const char* names[] = {"create", "initialize", "event", "eventsProcessed", "shutdown", "tick", "destroy"};
+  constexpr const char* names[] = {"create",   "initialize", "event",  "eventsProcessed",
+                                   "shutdown", "tick",       "destroy"};
   const size_t index = size_t(op) - size_t(Op::create);
   return index < std::size(names) ? names[index] : "";
 }
@@ -42,7 +43,8 @@ void Writer::begin(Op op, uint32_t script, double time) {
 }
 
 void Writer::raw(const void* data, uint64_t size) {
-  tooLong_ = tooLong_ || size > maximumMessage - word || bytes_.size() + size + padding(size) > maximumMessage;
+  tooLong_ = tooLong_ || size > maximumMessage - word ||
+             bytes_.size() + size + padding(size) > maximumMessage;
   if (tooLong_) return;
   const size_t at = bytes_.size();
   bytes_.resize(at + size + padding(size));
@@ -77,15 +79,18 @@ void Writer::put(const XsValue* value) {
   put(uint64_t(value->count));
   put(uint64_t(data));
   if (!data) return;
-  if (element.kind == Kind::plain) return raw(value->of.data, uint64_t(value->count) * element.bytes);
+  if (element.kind == Kind::plain)
+    return raw(value->of.data, uint64_t(value->count) * element.bytes);
   for (uint32_t i = 0; i < value->count && !tooLong_; ++i) {
     if (element.kind == Kind::texts) {
       put(value->of.strings[i]);
       continue;
     }
     const XsImage& image = value->of.images[i];
-    const bool size = image.width >= 0 && image.height >= 0 && image.components >= 0 && image.components <= 4;
-    const uint64_t pixels = size ? uint64_t(image.width) * uint64_t(image.height) * uint64_t(image.components) : 0;
+    const bool size =
+        image.width >= 0 && image.height >= 0 && image.components >= 0 && image.components <= 4;
+    const uint64_t pixels =
+        size ? uint64_t(image.width) * uint64_t(image.height) * uint64_t(image.components) : 0;
     for (const int32_t number : {image.width, image.height, image.components}) put(number);
     put(image.pixels ? pixels : absent);
     if (image.pixels) raw(image.pixels, pixels);
@@ -154,7 +159,9 @@ void Reader::get(XsString& text) {
   text = {};
   const auto size = take<uint64_t>();
   if (size == absent) return get(text.bytes);
-  const char* data = good_ && size < maximumMessage ? raw(size + 1) : nullptr; // its zero is in the padding, or the next word
+  const char* data = good_ && size < maximumMessage
+                         ? raw(size + 1)
+                         : nullptr; // its zero is in the padding, or the next word
   good_ = data && data[size] == 0;
   if (good_) text = {data, size};
 }
@@ -194,8 +201,10 @@ void Reader::get(const XsValue*& value) {
       for (int32_t* number : {&image.width, &image.height, &image.components}) get(*number);
       const auto size = take<uint64_t>();
       if (size == absent) continue;
-      const bool sizes = image.width >= 0 && image.height >= 0 && image.components >= 0 && image.components <= 4;
-      const uint64_t pixels = sizes ? uint64_t(image.width) * uint64_t(image.height) : 0; // below 2^62
+      const bool sizes =
+          image.width >= 0 && image.height >= 0 && image.components >= 0 && image.components <= 4;
+      const uint64_t pixels =
+          sizes ? uint64_t(image.width) * uint64_t(image.height) : 0; // below 2^62
       good_ = good_ && size == pixels * uint64_t(sizes ? image.components : 0);
       image.pixels = reinterpret_cast<const uint8_t*>(raw(size));
     }
@@ -214,8 +223,8 @@ void Reader::get(XsField& field) {
   field.name = take<const char*>();
   field.type = XsType(take<uint32_t>() & 0x7fffffffu);
   field.access = XsAccess(take<uint32_t>() & 0x7fffffffu);
-  good_ = good_ && field.name && elementOf(field.type).kind != Kind::unknown && field.access >= XS_FIELD &&
-          field.access <= XS_EVENT_OUT;
+  good_ = good_ && field.name && elementOf(field.type).kind != Kind::unknown &&
+          field.access >= XS_FIELD && field.access <= XS_EVENT_OUT;
 }
 
 void Reader::get(XsNodeInfo& info) {
@@ -228,7 +237,8 @@ void Reader::get(XsNodeInfo& info) {
 void Reader::get(const XsNode*& nodes) {
   nodes = nullptr;
   const uint32_t count = count_;
-  if (take<uint64_t>() != 0) nodes = reinterpret_cast<const XsNode*>(raw(uint64_t(count) * sizeof(XsNode)));
+  if (take<uint64_t>() != 0)
+    nodes = reinterpret_cast<const XsNode*>(raw(uint64_t(count) * sizeof(XsNode)));
 }
 
 void Reader::get(const XsString*& texts) {

@@ -1,6 +1,7 @@
-// wire.h: the messages between a browser and xvrml-script-host, coded once for both: a header, then words of 8 bytes. What goes
-// across is what the functions of xscript.h take and give: numbers, texts, typed arrays. A Reader believes nothing: sizes, counts
-// and texts are checked against what has arrived. [one thread each]
+// wire.h: the messages between a browser and xvrml-script-host, coded once for both: a header, then
+// words of 8 bytes. What goes across is what the functions of xscript.h take and give: numbers,
+// texts, typed arrays. A Reader believes nothing: sizes, counts and texts are checked against what
+// has arrived. [one thread each]
 #pragma once
 
 #include <cstdint>
@@ -16,7 +17,8 @@ constexpr uint32_t version = 2;
 constexpr uint32_t maximumMessage = 256u << 20; // bytes of one message
 
 enum class Op : uint16_t {
-  // to the helper: what the browser says before anything else, then calls of an engine's functions, one at a time
+  // to the helper: what the browser says before anything else, then calls of an engine's functions,
+  // one at a time
   setup = 1,
   create,
   initialize,
@@ -30,14 +32,15 @@ enum class Op : uint16_t {
   ready = 20, // after setup
   failed,     // it cannot serve; why
   done,       // the function that was called has returned
-  host = 40   // and upwards: a function of the host, by its place in HostFunctions (host_functions.h)
+  host = 40 // and upwards: a function of the host, by its place in HostFunctions (host_functions.h)
 };
 
 const char* functionName(Op op); // "event"
 
 enum Flags : uint16_t {
   stopped = 1,        // of done: the program has used up its steps or its time
-  thenInitialize = 2, // of create: the helper goes on with initialize if create succeeds, and answers each with a `done`
+  thenInitialize = 2, // of create: the helper goes on with initialize if create succeeds, and
+                      // answers each with a `done`
 };
 
 struct Header {
@@ -97,7 +100,8 @@ struct Message {
 // Takes it apart. What it gives points into the message and into the reader.
 class Reader {
  public:
-  explicit Reader(const Message& message) : at_(message.bytes.data()), end_(at_ + message.bytes.size()) {}
+  explicit Reader(const Message& message)
+      : at_(message.bytes.data()), end_(at_ + message.bytes.size()) {}
 
   void get(uint64_t& word);
   void get(uint32_t& number);

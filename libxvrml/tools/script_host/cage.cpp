@@ -1,4 +1,3 @@
-// cage.cpp: see cage.h.
 #include "cage.h"
 
 #include <cerrno>
@@ -19,8 +18,9 @@
 namespace xvrml {
 namespace {
 
-// Core dumps hold what the program had in memory, and fill disks. Processor time: a day, so that no process stays whatever
-// happens. A new file descriptor would get the lowest free number, which is the limit: there is none.
+// Core dumps hold what the program had in memory, and fill disks. Processor time: a day, so that no
+// process stays whatever happens. A new file descriptor would get the lowest free number, which is
+// the limit: there is none.
 bool limitResources(std::string& why) {
   const int lowestFree = dup(0);
   if (lowestFree >= 0) close(lowestFree);
@@ -44,7 +44,8 @@ bool limitResources(std::string& why) {
 }
 
 #ifdef XVRML_WITH_SECCOMP
-// Memory, the time, what is open already, waiting, own signals (abort), the end. Everything else fails with EPERM.
+// Memory, the time, what is open already, waiting, own signals (abort), the end. Everything else
+// fails with EPERM.
 constexpr int allowed[] = {SCMP_SYS(brk),
                            SCMP_SYS(mmap),
                            SCMP_SYS(munmap),
@@ -101,12 +102,15 @@ bool filterCalls(std::string& why) {
     why = "no filter of system calls";
     return false;
   }
-  int error = seccomp_attr_set(filter, SCMP_FLTATR_CTL_TSYNC, 1); // threads that an engine has made in prepare(), too
+  int error = seccomp_attr_set(filter, SCMP_FLTATR_CTL_TSYNC,
+                               1); // threads that an engine has made in prepare(), too
   seccomp_attr_set(filter, SCMP_FLTATR_CTL_OPTIMIZE, 2);
   for (const int call : allowed)
     if (error == 0) error = seccomp_rule_add(filter, SCMP_ACT_ALLOW, call, 0);
   // Signals to this process only: abort().
-  if (error == 0) error = seccomp_rule_add(filter, SCMP_ACT_ALLOW, SCMP_SYS(tgkill), 1, SCMP_A0(SCMP_CMP_EQ, uint64_t(getpid())));
+  if (error == 0)
+    error = seccomp_rule_add(filter, SCMP_ACT_ALLOW, SCMP_SYS(tgkill), 1,
+                             SCMP_A0(SCMP_CMP_EQ, uint64_t(getpid())));
   if (error == 0) error = seccomp_load(filter);
   seccomp_release(filter);
   if (error != 0) why = std::string("no filter of system calls: ") + std::strerror(-error);
@@ -118,7 +122,8 @@ bool filterCalls(std::string&) { return true; }
 
 } // namespace
 
-// The kernel tells the end of the thread that started this process. As long as the other end of the socket is open, others go on.
+// The kernel tells the end of the thread that started this process. As long as the other end of the
+// socket is open, others go on.
 bool bindToParent(long parent, int socket) {
   static int other;
   other = socket;

@@ -1,4 +1,3 @@
-// forward.cpp: see forward.h.
 #include "forward.h"
 
 #include <algorithm>
@@ -15,7 +14,8 @@ namespace {
 
 constexpr uint64_t stepsOfCall = 100; // as the browser counts
 
-template <size_t I, auto First, auto... Others> constexpr auto memberAt(FunctionList<First, Others...>) {
+template <size_t I, auto First, auto... Others>
+constexpr auto memberAt(FunctionList<First, Others...>) {
   if constexpr (I == 0)
     return First;
   else
@@ -36,7 +36,8 @@ template <auto Member, auto... All> constexpr uint16_t numberIn(FunctionList<All
 }
 
 Clock::duration duration(double seconds) {
-  return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(std::min(seconds, 1e6)));
+  return std::chrono::duration_cast<Clock::duration>(
+      std::chrono::duration<double>(std::min(seconds, 1e6)));
 }
 
 double processorSeconds() {
@@ -63,7 +64,8 @@ template <class T> bool takeOut(Reader& in, const T& argument) {
 
 } // namespace
 
-template <class R, class... A, R (*XsHost::*Member)(const XsHost*, XsNode, A...)> struct Forward::Function<Member> {
+template <class R, class... A, R (*XsHost::*Member)(const XsHost*, XsNode, A...)>
+struct Forward::Function<Member> {
   static constexpr bool counted = std::is_same_v<R, XsResult> && !same(Member, &XsHost::release);
 
   static R call(const XsHost* host, XsNode self, A... arguments) noexcept {
@@ -136,7 +138,9 @@ Forward::Forward(Channel& channel, uint64_t steps, double seconds)
   size = sizeof(XsHost);
   major = XS_ABI_MAJOR;
   minor = XS_ABI_MINOR;
-  [&]<auto... Members>(FunctionList<Members...>) { ((this->*Members = Function<Members>::call), ...); }
+  [&]<auto... Members>(FunctionList<Members...>) {
+    ((this->*Members = Function<Members>::call), ...);
+  }
   (HostFunctions{});
   now = [](const XsHost* host, XsNode) { return of(host).now_; };
   shouldStop = [](const XsHost* host, XsNode self, uint64_t steps) -> int32_t {
@@ -158,8 +162,8 @@ void Forward::enter(double time) {
   end_ = Clock::now() + duration(seconds_);
 }
 
-// A process that has to share the processors with others is slower, and its program is not to blame: the seconds are those of
-// the processor. A program that sleeps is ended by the browser.
+// A process that has to share the processors with others is slower, and its program is not to
+// blame: the seconds are those of the processor. A program that sleeps is ended by the browser.
 bool Forward::late() {
   const auto now = Clock::now();
   if (now <= end_) return false;

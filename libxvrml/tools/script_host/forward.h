@@ -1,5 +1,6 @@
-// forward.h: the table of functions that an engine gets in this process: each goes to the browser as a message and waits for the
-// answer. What needs no browser is answered here: time, budget, why something was refused. [one thread]
+// forward.h: the table of functions that an engine gets in this process: each goes to the browser
+// as a message and waits for the answer. What needs no browser is answered here: time, budget, why
+// something was refused. [one thread]
 #pragma once
 
 #include <string>
@@ -38,7 +39,9 @@ class Forward : public XsHost {
 
  private:
   template <auto Member> struct Function;
-  static Forward& of(const XsHost* host) { return *const_cast<Forward*>(static_cast<const Forward*>(host)); }
+  static Forward& of(const XsHost* host) {
+    return *const_cast<Forward*>(static_cast<const Forward*>(host));
+  }
   bool spend(uint64_t steps);
   bool late();
   wire::Message ask();

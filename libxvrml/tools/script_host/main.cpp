@@ -1,6 +1,7 @@
-// main.cpp: xvrml-script-host: runs programs of Scripts for a browser that does not trust them. The browser starts it with one
-// end of a socket pair as file descriptor 3; it loads one engine, gives up all it may do, and serves calls until the socket
-// closes. See script/remote/wire.h for the messages, docs/scripts.md for people.
+// main.cpp: xvrml-script-host: runs programs of Scripts for a browser that does not trust them. The
+// browser starts it with one end of a socket pair as file descriptor 3; it loads one engine, gives
+// up all it may do, and serves calls until the socket closes. See script/remote/wire.h for the
+// messages, docs/scripts.md for people.
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -111,24 +112,30 @@ class Server {
   bool lastGood_ = false; // the last call has succeeded
 };
 
-const XsEngine& engineNamed(const std::vector<XsEngine>& engines, std::string_view name, const char* library) {
+const XsEngine& engineNamed(const std::vector<XsEngine>& engines, std::string_view name,
+                            const char* library) {
   for (const XsEngine& engine : engines)
     if (name == engine.name) return engine;
-  throw std::runtime_error(std::string("script library ") + library + ": no engine " + std::string(name));
+  throw std::runtime_error(std::string("script library ") + library + ": no engine " +
+                           std::string(name));
 }
 
 void serve(Channel& channel) {
   Message setup;
-  if (channel.receive(setup, never) != Channel::Got::message || setup.header.op != uint16_t(Op::setup)) return;
+  if (channel.receive(setup, never) != Channel::Got::message ||
+      setup.header.op != uint16_t(Op::setup))
+    return;
   Writer answer;
   try {
     Reader in(setup);
-    if (in.take<uint32_t>() != wire::version) throw std::runtime_error("is of another version than the library");
+    if (in.take<uint32_t>() != wire::version)
+      throw std::runtime_error("is of another version than the library");
     const auto* library = in.take<const char*>();
     const auto* name = in.take<const char*>();
     const auto steps = in.take<uint64_t>();
     const auto seconds = in.take<double>();
-    if (!in.complete() || !library || !name) throw std::runtime_error("did not understand the library");
+    if (!in.complete() || !library || !name)
+      throw std::runtime_error("did not understand the library");
     static const std::vector<XsEngine> engines = loadScriptLibrary(library);
     const XsEngine& engine = engineNamed(engines, name, library);
     if (engine.prepare && engine.prepare() != XS_OK)
@@ -154,12 +161,15 @@ void serve(Channel& channel) {
 int main(int argc, char** argv) {
   struct stat info {};
   if (argc != 2 || fstat(xvrml::socketNumber, &info) != 0 || !S_ISSOCK(info.st_mode)) {
-    std::fputs("xvrml-script-host runs the Scripts of worlds for the XVRML library, which starts it.\n", stderr);
+    std::fputs(
+        "xvrml-script-host runs the Scripts of worlds for the XVRML library, which starts it.\n",
+        stderr);
     return 2;
   }
   if (!xvrml::bindToParent(std::atol(argv[1]), xvrml::socketNumber)) return 0;
   {
-    // The browser may look after others for long before it reads; that it has ended is told by the socket and by the kernel.
+    // The browser may look after others for long before it reads; that it has ended is told by the
+    // socket and by the kernel.
     xvrml::wire::Channel channel(xvrml::socketNumber, std::chrono::hours(10000));
     xvrml::serve(channel);
   }

@@ -1,6 +1,7 @@
-// assignments.cpp: see assignments.h. `v = field` must copy, `field.x = 1` must change the field (C.6.2): ECMAScript's getter
-// cannot tell one from the other, the program's text can. The text is taken apart into tokens; where a plain chain of names and
-// indices is all that is assigned, it is put into a call that gives a value of its own. What is not understood stays as it is.
+// assignments.cpp: `v = field` must copy, `field.x = 1` must change the field
+// (C.6.2): ECMAScript's getter cannot tell one from the other, the program's text can. The text is
+// taken apart into tokens; where a plain chain of names and indices is all that is assigned, it is
+// put into a call that gives a value of its own. What is not understood stays as it is.
 #include "assignments.h"
 
 #include <algorithm>
@@ -16,14 +17,17 @@ struct Token {
   bool line; // a line ends before it
 };
 
-bool isNameStart(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || c == '$' || (c & 0x80); }
+bool isNameStart(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || c == '$' || (c & 0x80);
+}
 bool isNamePart(char c) { return isNameStart(c) || (c >= '0' && c <= '9'); }
 
 bool isKeyword(std::string_view word) {
   static constexpr std::string_view words[] = {
-      "break",    "case", "catch", "continue",   "default", "delete", "do",     "else", "finally", "for",
-      "function", "if",   "in",    "instanceof", "new",     "return", "switch", "this", "throw",   "try",
-      "typeof",   "var",  "void",  "while",      "with",    "true",   "false",  "null", "const"};
+      "break",   "case", "catch",    "continue", "default", "delete",     "do",   "else",
+      "finally", "for",  "function", "if",       "in",      "instanceof", "new",  "return",
+      "switch",  "this", "throw",    "try",      "typeof",  "var",        "void", "while",
+      "with",    "true", "false",    "null",     "const"};
   return std::find(std::begin(words), std::end(words), word) != std::end(words);
 }
 
@@ -41,7 +45,9 @@ class Tokens {
   }
 
  private:
-  char peek(size_t ahead = 0) const { return at_ + ahead < text_.size() ? text_[at_ + ahead] : '\0'; }
+  char peek(size_t ahead = 0) const {
+    return at_ + ahead < text_.size() ? text_[at_ + ahead] : '\0';
+  }
   bool begins(std::string_view what) const { return text_.substr(at_).starts_with(what); }
 
   // Blanks and comments; false at the end.
@@ -51,7 +57,9 @@ class Tokens {
         at_ = std::min(text_.find_first_of("\r\n", at_), text_.size());
       } else if (begins("/*")) {
         const size_t end = text_.find("*/", at_ + 2);
-        line_ = line_ || text_.substr(at_, end == text_.npos ? end : end - at_).find_first_of("\r\n") != text_.npos;
+        line_ =
+            line_ || text_.substr(at_, end == text_.npos ? end : end - at_).find_first_of("\r\n") !=
+                         text_.npos;
         at_ = end == text_.npos ? text_.size() : end + 2;
       } else if (peek() == '\n' || peek() == '\r') {
         line_ = true;
@@ -73,7 +81,9 @@ class Tokens {
       return isKeyword(text_.substr(start, at_ - start)) ? Token::Kind::keyword : Token::Kind::name;
     }
     if ((c >= '0' && c <= '9') || (c == '.' && peek(1) >= '0' && peek(1) <= '9')) {
-      while (isNamePart(peek()) || peek() == '.' || ((peek() == '+' || peek() == '-') && (text_[at_ - 1] | 0x20) == 'e')) ++at_;
+      while (isNamePart(peek()) || peek() == '.' ||
+             ((peek() == '+' || peek() == '-') && (text_[at_ - 1] | 0x20) == 'e'))
+        ++at_;
       return Token::Kind::literal;
     }
     if (c == '"' || c == '\'') {
@@ -84,8 +94,9 @@ class Tokens {
       pattern();
       return Token::Kind::literal;
     }
-    static constexpr std::string_view signs[] = {">>>=", "===", "!==", ">>>", "<<=", ">>=", "==", "!=", "<=", ">=", "&&", "||",
-                                                 "++",   "--",  "+=",  "-=",  "*=",  "/=",  "%=", "&=", "|=", "^=", "=>"};
+    static constexpr std::string_view signs[] = {
+        ">>>=", "===", "!==", ">>>", "<<=", ">>=", "==", "!=", "<=", ">=", "&&", "||",
+        "++",   "--",  "+=",  "-=",  "*=",  "/=",  "%=", "&=", "|=", "^=", "=>"};
     for (const std::string_view sign : signs)
       if (begins(sign)) {
         at_ += sign.size();
@@ -105,7 +116,8 @@ class Tokens {
   bool patternMayStand() const {
     if (list_.empty()) return true;
     const Token& last = list_.back();
-    if (last.kind == Token::Kind::keyword) return text_.substr(last.start, last.end - last.start) != "this";
+    if (last.kind == Token::Kind::keyword)
+      return text_.substr(last.start, last.end - last.start) != "this";
     if (last.kind != Token::Kind::sign) return false;
     const char c = text_[last.start];
     return c != ')' && c != ']' && c != '}';
@@ -132,12 +144,15 @@ struct Rewriter {
   const std::unordered_set<std::string_view>& objects;
   std::vector<Token> tokens;
 
-  std::string_view word(size_t i) const { return text.substr(tokens[i].start, tokens[i].end - tokens[i].start); }
+  std::string_view word(size_t i) const {
+    return text.substr(tokens[i].start, tokens[i].end - tokens[i].start);
+  }
   bool is(size_t i, std::string_view what) const { return i < tokens.size() && word(i) == what; }
 
   // Behind the ] that belongs to the [ at i; 0 if there is none.
   size_t behindIndex(size_t i) const {
-    constexpr size_t longest = 200; // tokens of an index: a text of many open ones must not be read again and again
+    constexpr size_t longest =
+        200; // tokens of an index: a text of many open ones must not be read again and again
     size_t depth = 0;
     for (const size_t last = std::min(tokens.size(), i + longest); i < last; ++i) {
       if (tokens[i].kind != Token::Kind::sign) continue;
@@ -151,7 +166,8 @@ struct Rewriter {
 
   // Components and other numbers are no objects.
   static bool isNumber(std::string_view property) {
-    static constexpr std::string_view names[] = {"x", "y", "z", "r", "g", "b", "angle", "length", "comp"};
+    static constexpr std::string_view names[] = {"x", "y",     "z",      "r",   "g",
+                                                 "b", "angle", "length", "comp"};
     return std::find(std::begin(names), std::end(names), property) != std::end(names);
   }
 
@@ -180,7 +196,8 @@ struct Rewriter {
     const std::string_view next = word(i);
     if (next == ";" || next == "," || next == ")" || next == "}" || next == "]") return true;
     const bool beginsStatement =
-        tokens[i].kind == Token::Kind::name || (tokens[i].kind == Token::Kind::keyword && next != "in" && next != "instanceof");
+        tokens[i].kind == Token::Kind::name ||
+        (tokens[i].kind == Token::Kind::keyword && next != "in" && next != "instanceof");
     return tokens[i].line && beginsStatement;
   }
 
@@ -189,8 +206,8 @@ struct Rewriter {
     size_t copied = 0;
     for (size_t i = 0; i < tokens.size(); ++i) {
       const bool assigns = is(i, "=") && tokens[i].kind == Token::Kind::sign;
-      const bool returns =
-          is(i, "return") && tokens[i].kind == Token::Kind::keyword && i + 1 < tokens.size() && !tokens[i + 1].line;
+      const bool returns = is(i, "return") && tokens[i].kind == Token::Kind::keyword &&
+                           i + 1 < tokens.size() && !tokens[i + 1].line;
       const size_t end = assigns || returns ? chain(i + 1) : 0;
       if (end == 0) continue;
       out.append(text, copied, tokens[i + 1].start - copied);
@@ -206,7 +223,8 @@ struct Rewriter {
 
 } // namespace
 
-std::string copyAssigned(std::string_view program, const std::unordered_set<std::string_view>& objects) {
+std::string copyAssigned(std::string_view program,
+                         const std::unordered_set<std::string_view>& objects) {
   return Rewriter{program, objects, Tokens(program).all()}.rewritten();
 }
 

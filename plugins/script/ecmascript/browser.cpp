@@ -26,8 +26,12 @@ duk_ret_t giveText(duk_context* ctx, GetText function, const char* name) {
 }
 
 duk_ret_t getName(duk_context* ctx) { return giveText(ctx, &XsHost::getName, "Browser.getName"); }
-duk_ret_t getVersion(duk_context* ctx) { return giveText(ctx, &XsHost::getVersion, "Browser.getVersion"); }
-duk_ret_t getWorldUrl(duk_context* ctx) { return giveText(ctx, &XsHost::getWorldUrl, "Browser.getWorldURL"); }
+duk_ret_t getVersion(duk_context* ctx) {
+  return giveText(ctx, &XsHost::getVersion, "Browser.getVersion");
+}
+duk_ret_t getWorldUrl(duk_context* ctx) {
+  return giveText(ctx, &XsHost::getWorldUrl, "Browser.getWorldURL");
+}
 duk_ret_t getCurrentSpeed(duk_context* ctx) {
   Interpreter& self = begin(ctx);
   duk_push_number(ctx, self.host->getCurrentSpeed(self.host, self.self));
@@ -47,7 +51,8 @@ void check(duk_context* ctx, Interpreter& self, XsResult result, const char* nam
 duk_ret_t setDescription(duk_context* ctx) {
   Interpreter& self = begin(ctx);
   pushText(ctx, 0, "Browser.setDescription");
-  check(ctx, self, self.host->setDescription(self.host, self.self, textForHost(ctx, self, -1)), "Browser.setDescription");
+  check(ctx, self, self.host->setDescription(self.host, self.self, textForHost(ctx, self, -1)),
+        "Browser.setDescription");
   return 0;
 }
 
@@ -55,7 +60,8 @@ duk_ret_t replaceWorld(duk_context* ctx) {
   Interpreter& self = begin(ctx);
   nodesForHost(ctx, self, 0, "Browser.replaceWorld");
   const uint32_t count = mfData(ctx, 0)->count;
-  check(ctx, self, self.host->replaceWorld(self.host, self.self, count, self.handles.data()), "Browser.replaceWorld");
+  check(ctx, self, self.host->replaceWorld(self.host, self.self, count, self.handles.data()),
+        "Browser.replaceWorld");
   return 0;
 }
 
@@ -68,11 +74,13 @@ duk_ret_t loadUrl(duk_context* ctx) { // urls, parameters
   textsForHost(ctx, self, 1, "Browser.loadURL");
   const auto parameterCount = uint32_t(self.strings.size());
   const size_t bytes = parameterCount * sizeof(XsString);
-  auto* parameters = static_cast<XsString*>(duk_push_fixed_buffer(ctx, bytes + 1)); // the interpreter's list is needed again
+  auto* parameters = static_cast<XsString*>(
+      duk_push_fixed_buffer(ctx, bytes + 1)); // the interpreter's list is needed again
   if (bytes > 0) std::memcpy(parameters, self.strings.data(), bytes);
   textsForHost(ctx, self, 0, "Browser.loadURL");
   check(ctx, self,
-        self.host->loadUrl(self.host, self.self, uint32_t(self.strings.size()), self.strings.data(), parameterCount, parameters),
+        self.host->loadUrl(self.host, self.self, uint32_t(self.strings.size()), self.strings.data(),
+                           parameterCount, parameters),
         "Browser.loadURL");
   return 0;
 }
@@ -81,7 +89,8 @@ duk_ret_t createVrmlFromString(duk_context* ctx) {
   Interpreter& self = begin(ctx);
   pushText(ctx, 0, "Browser.createVrmlFromString");
   XsValue made{};
-  const XsResult result = self.host->createVrmlFromString(self.host, self.self, textForHost(ctx, self, -1), &made);
+  const XsResult result =
+      self.host->createVrmlFromString(self.host, self.self, textForHost(ctx, self, -1), &made);
   if (result != XS_OK) throwHost(ctx, self, result, "Browser.createVrmlFromString");
   pushValue(ctx, self, made);
   return 1;
@@ -95,25 +104,32 @@ duk_ret_t createVrmlFromUrl(duk_context* ctx) { // urls, node, event
   textsForHost(ctx, self, 0, name);
   const char* event = duk_get_string(ctx, -1);
   check(ctx, self,
-        self.host->createVrmlFromUrl(self.host, self.self, uint32_t(self.strings.size()), self.strings.data(), node, event),
+        self.host->createVrmlFromUrl(self.host, self.self, uint32_t(self.strings.size()),
+                                     self.strings.data(), node, event),
         name);
   return 0;
 }
 
-using ChangeRoute = XsResult (*XsHost::*)(const XsHost*, XsNode, XsNode, const char*, XsNode, const char*);
+using ChangeRoute = XsResult (*XsHost::*)(const XsHost*, XsNode, XsNode, const char*, XsNode,
+                                          const char*);
 
-duk_ret_t changeRoute(duk_context* ctx, ChangeRoute function, const char* name) { // node, eventOut, node, eventIn
+duk_ret_t changeRoute(duk_context* ctx, ChangeRoute function,
+                      const char* name) { // node, eventOut, node, eventIn
   Interpreter& self = begin(ctx);
   const XsNode from = nodeOf(ctx, self, 0, name), to = nodeOf(ctx, self, 2, name);
   pushText(ctx, 1, name);
   pushText(ctx, 3, name);
-  const XsResult result =
-      (self.host->*function)(self.host, self.self, from, duk_get_string(ctx, -2), to, duk_get_string(ctx, -1));
+  const XsResult result = (self.host->*function)(
+      self.host, self.self, from, duk_get_string(ctx, -2), to, duk_get_string(ctx, -1));
   if (result != XS_FAILED) check(ctx, self, result, name); // else it is there, or gone, already
   return 0;
 }
-duk_ret_t addRoute(duk_context* ctx) { return changeRoute(ctx, &XsHost::addRoute, "Browser.addRoute"); }
-duk_ret_t deleteRoute(duk_context* ctx) { return changeRoute(ctx, &XsHost::deleteRoute, "Browser.deleteRoute"); }
+duk_ret_t addRoute(duk_context* ctx) {
+  return changeRoute(ctx, &XsHost::addRoute, "Browser.addRoute");
+}
+duk_ret_t deleteRoute(duk_context* ctx) {
+  return changeRoute(ctx, &XsHost::deleteRoute, "Browser.deleteRoute");
+}
 
 // C.6.2: what a field, an eventOut or an element holds, as a value of its own. See assignments.h.
 duk_ret_t copyOf(duk_context* ctx) {
@@ -173,9 +189,9 @@ void registerBrowser(duk_context* ctx, Interpreter&) {
                                        {"print", print, DUK_VARARGS},
                                        {"println", print, DUK_VARARGS}};
   // Names of other browsers, which worlds use.
-  static constexpr Method globals[] = {{"print", print, DUK_VARARGS},   {"println", print, DUK_VARARGS},
-                                       {"trace", print, DUK_VARARGS},   {"addRoute", addRoute, 4},
-                                       {"deleteRoute", deleteRoute, 4}, {"__xvrmlCopy", copyOf, 1}};
+  static constexpr Method globals[] = {
+      {"print", print, DUK_VARARGS}, {"println", print, DUK_VARARGS}, {"trace", print, DUK_VARARGS},
+      {"addRoute", addRoute, 4},     {"deleteRoute", deleteRoute, 4}, {"__xvrmlCopy", copyOf, 1}};
   duk_push_object(ctx);
   putMethods(ctx, methods, std::size(methods));
   duk_put_global_string(ctx, "Browser");

@@ -1,5 +1,5 @@
-// engine.cpp: the plug-in: engine "ecmascript" for javascript:, vrmlscript:, ecmascript: and .js files (ISO/IEC 14772-1 Annex C),
-// on Duktape. See docs/scripts.md. [the browser's thread]
+// engine.cpp: the plug-in: engine "ecmascript" for javascript:, vrmlscript:, ecmascript: and .js
+// files (ISO/IEC 14772-1 Annex C), on Duktape. See docs/scripts.md. [the browser's thread]
 #include <ctime>
 
 #include "interpreter.h"
@@ -8,7 +8,9 @@ namespace {
 
 using ecma::Interpreter;
 
-Interpreter& of(XsInterpreter interpreter) { return *reinterpret_cast<Interpreter*>(uintptr_t(interpreter)); }
+Interpreter& of(XsInterpreter interpreter) {
+  return *reinterpret_cast<Interpreter*>(uintptr_t(interpreter));
+}
 
 XsResult create(const XsHost* host, const XsScriptInfo* info, XsInterpreter* made) {
   XsResult result = XS_FAILED;
@@ -16,7 +18,9 @@ XsResult create(const XsHost* host, const XsScriptInfo* info, XsInterpreter* mad
   return result;
 }
 void destroy(XsInterpreter interpreter) { ecma::destroyInterpreter(&of(interpreter)); }
-XsResult initialize(XsInterpreter interpreter, double time) { return callFunction(of(interpreter), "initialize", nullptr, time); }
+XsResult initialize(XsInterpreter interpreter, double time) {
+  return callFunction(of(interpreter), "initialize", nullptr, time);
+}
 XsResult event(XsInterpreter interpreter, const XsEvent* event) {
   return callFunction(of(interpreter), event->name, &event->value, event->time);
 }
@@ -35,17 +39,29 @@ XsResult prepare() {
 
 const char* const schemes[] = {"javascript", "vrmlscript", "ecmascript", nullptr};
 // RFC 9239 lists what has been used; C.3.3 asks for application/x-javascript.
-const char* const mimeTypes[] = {"application/javascript",   "application/x-javascript", "text/javascript", "text/x-javascript",
-                                 "application/ecmascript",   "application/x-ecmascript", "text/ecmascript", "text/x-ecmascript",
-                                 "application/x-vrmlscript", "application/vrmlscript",   "text/vrmlscript", nullptr};
+const char* const mimeTypes[] = {
+    "application/javascript",   "application/x-javascript", "text/javascript", "text/x-javascript",
+    "application/ecmascript",   "application/x-ecmascript", "text/ecmascript", "text/x-ecmascript",
+    "application/x-vrmlscript", "application/vrmlscript",   "text/vrmlscript", nullptr};
 const char* const suffixes[] = {".js", ".vs", nullptr};
-const XsEngine engine = {
-    sizeof(XsEngine), 0,          "ecmascript", "ECMAScript 5.1 with the objects of ISO/IEC 14772-1 Annex C, on Duktape 2",
-    schemes,          mimeTypes,  suffixes,     create,
-    destroy,          initialize, event,        eventsProcessed,
-    shutdown,         nullptr,    prepare};
+const XsEngine engine = {sizeof(XsEngine),
+                         0,
+                         "ecmascript",
+                         "ECMAScript 5.1 with the objects of ISO/IEC 14772-1 Annex C, on Duktape 2",
+                         schemes,
+                         mimeTypes,
+                         suffixes,
+                         create,
+                         destroy,
+                         initialize,
+                         event,
+                         eventsProcessed,
+                         shutdown,
+                         nullptr,
+                         prepare};
 const XsEngine* const engines[] = {&engine};
 
 } // namespace
 
-extern "C" XS_EXPORT const XsPlugin xsPlugin = {XS_MAGIC, XS_ABI_MAJOR, XS_ABI_MINOR, sizeof(XsPlugin), 1, engines};
+extern "C" XS_EXPORT const XsPlugin xsPlugin = {
+    XS_MAGIC, XS_ABI_MAJOR, XS_ABI_MINOR, sizeof(XsPlugin), 1, engines};

@@ -13,7 +13,8 @@ void logText(Interpreter& self, int severity, uint32_t line, const char* text, s
   self.host->log(self.host, self.self, severity, line, message);
 }
 
-// Duktape's trace has a line "at NAME (FILE:LINE) ..." for each function; the first one of the program's own file counts.
+// Duktape's trace has a line "at NAME (FILE:LINE) ..." for each function; the first one of the
+// program's own file counts.
 void reportError(Interpreter& self, const char* during) {
   duk_context* ctx = self.ctx;
   const duk_idx_t error = duk_get_top_index(ctx);
@@ -28,14 +29,17 @@ void reportError(Interpreter& self, const char* during) {
       const char* name = place;
       while (name > stack && name[-1] != ' ') --name;
       const auto length = size_t(place - name);
-      if (length < sizeof function && *name != '[' && std::strncmp(name, "global ", 7) != 0) std::memcpy(function, name, length);
+      if (length < sizeof function && *name != '[' && std::strncmp(name, "global ", 7) != 0)
+        std::memcpy(function, name, length);
     }
     duk_pop(ctx);
   }
   duk_dup(ctx, error);
   duk_safe_to_string(ctx, -1);
   duk_push_string(ctx, *function || std::strcmp(during, "running the program") != 0 ? " (in " : "");
-  duk_push_string(ctx, *function ? function : std::strcmp(during, "running the program") != 0 ? during : "");
+  duk_push_string(ctx, *function                                         ? function
+                       : std::strcmp(during, "running the program") != 0 ? during
+                                                                         : "");
   duk_push_string(ctx, *function || std::strcmp(during, "running the program") != 0 ? ")" : "");
   duk_concat(ctx, 4);
   const XsString text = textForHost(ctx, self, -1);

@@ -7,7 +7,8 @@ namespace ecma {
 namespace {
 
 void pushString(duk_context* ctx, const XsString& text) {
-  // UTF-8 of the border; ECMAScript's strings are UTF-16: characters beyond its 16 bits are two (CESU-8 within Duktape).
+  // UTF-8 of the border; ECMAScript's strings are UTF-16: characters beyond its 16 bits are two
+  // (CESU-8 within Duktape).
   const auto* bytes = reinterpret_cast<const unsigned char*>(text.data);
   uint64_t beyond = 0;
   for (uint64_t i = 0; i < text.bytes; ++i) beyond += bytes[i] >= 0xf0;
@@ -27,8 +28,9 @@ void pushString(duk_context* ctx, const XsString& text) {
       out[length++] = bytes[i];
       continue;
     }
-    const unsigned code =
-        ((bytes[i] & 7u) << 18 | (bytes[i + 1] & 0x3fu) << 12 | (bytes[i + 2] & 0x3fu) << 6 | (bytes[i + 3] & 0x3fu)) - 0x10000;
+    const unsigned code = ((bytes[i] & 7u) << 18 | (bytes[i + 1] & 0x3fu) << 12 |
+                           (bytes[i + 2] & 0x3fu) << 6 | (bytes[i + 3] & 0x3fu)) -
+                          0x10000;
     put(0xd800 + (code >> 10));
     put(0xdc00 + (code & 0x3ff));
     i += 3;
@@ -46,11 +48,13 @@ void pushTuple(duk_context* ctx, Interpreter& self, const XsValue& value) {
 // Pixels of 0 to 4 bytes as numbers 0xRRGGBBAA, as VRML writes them (5.5).
 void pushPixels(duk_context* ctx, Interpreter& self, const XsImage& image, Place place) {
   const uint64_t count = image.components > 0 ? uint64_t(image.width) * uint64_t(image.height) : 0;
-  if (count > mostElements) throwRange(ctx, "an image of %d x %d", int(image.width), int(image.height));
+  if (count > mostElements)
+    throwRange(ctx, "an image of %d x %d", int(image.width), int(image.height));
   MfData* mf = pushMf(ctx, self, XS_MFINT32, uint32_t(count), place);
   for (uint64_t i = 0; i < count; ++i) {
     uint32_t pixel = 0;
-    for (int k = 0; k < image.components; ++k) pixel = pixel << 8 | image.pixels[i * uint64_t(image.components) + uint64_t(k)];
+    for (int k = 0; k < image.components; ++k)
+      pixel = pixel << 8 | image.pixels[i * uint64_t(image.components) + uint64_t(k)];
     intsOf(mf)[i] = int32_t(pixel);
   }
 }
@@ -104,7 +108,8 @@ void pushValue(duk_context* ctx, Interpreter& self, const XsValue& value, Place 
   }
   if (value.count > mostElements) throwRange(ctx, "more than %u elements", mostElements);
   MfData* mf = pushMf(ctx, self, value.type, value.count, place);
-  if (value.count > 0) std::memcpy(static_cast<void*>(mf + 1), value.of.data, elementBytes(value.type) * value.count);
+  if (value.count > 0)
+    std::memcpy(static_cast<void*>(mf + 1), value.of.data, elementBytes(value.type) * value.count);
 }
 
 } // namespace ecma

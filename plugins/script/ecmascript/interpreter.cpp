@@ -1,5 +1,6 @@
-// interpreter.cpp: makes the heap of a Script, runs its program, calls its functions; see interpreter.h. Every entry is
-// protected: an error of the program, want of memory and even Duktape's giving up end in a message and XS_FAILED.
+// interpreter.cpp: makes the heap of a Script, runs its program, calls its functions; see
+// interpreter.h. Every entry is protected: an error of the program, want of memory and even
+// Duktape's giving up end in a message and XS_FAILED.
 #include "interpreter.h"
 
 #include <cstdlib>
@@ -11,7 +12,8 @@
 
 namespace ecma {
 
-// A piece of the heap's memory. Each is in a list, by which a heap is freed that Duktape has given up.
+// A piece of the heap's memory. Each is in a list, by which a heap is freed that Duktape has given
+// up.
 struct alignas(16) Block { // what follows has malloc's alignment
   Block *before, *after;
   duk_size_t bytes;
@@ -79,7 +81,8 @@ void freeHeap(Interpreter& self) {
 void giveUp(void* account, const char* message) {
   Interpreter& self = *static_cast<Interpreter*>(account);
   self.dead = true;
-  logText(self, 3, 0, message ? message : "Duktape has given up", message ? std::strlen(message) : 20);
+  logText(self, 3, 0, message ? message : "Duktape has given up",
+          message ? std::strlen(message) : 20);
   if (self.fatalSet) std::longjmp(self.fatal, 1);
   for (;;) {} // never: nothing is called outside of an entry
 }
@@ -98,13 +101,15 @@ bool guarded(Interpreter& self, duk_safe_call_function function, void* data, con
       reportError(Interpreter::of(c), static_cast<const char*>(text));
       return 0;
     };
-    if (duk_safe_call(ctx, report, const_cast<char*>(during), 1, 1) != DUK_EXEC_SUCCESS) logText(self, 3, 0, "out of memory", 13);
+    if (duk_safe_call(ctx, report, const_cast<char*>(during), 1, 1) != DUK_EXEC_SUCCESS)
+      logText(self, 3, 0, "out of memory", 13);
   }
   duk_pop(ctx);
   return false;
 }
 
-XsResult enter(Interpreter& self, duk_safe_call_function function, void* data, const char* during, bool flush) {
+XsResult enter(Interpreter& self, duk_safe_call_function function, void* data, const char* during,
+               bool flush) {
   if (self.dead) return XS_FAILED;
   if (self.stopped) return XS_OK; // nothing of the program runs any more, neither does shutdown
   ++self.call;
@@ -150,8 +155,8 @@ duk_ret_t setUp(duk_context* ctx, void* data) {
   return 0;
 }
 
-// The text with copies where C.6.2 wants them. If that is no program, then only because the text is none, or was not understood.
-// Returns false where there is no memory for it.
+// The text with copies where C.6.2 wants them. If that is no program, then only because the text is
+// none, or was not understood. Returns false where there is no memory for it.
 bool prepareProgram(Interpreter& self) noexcept {
   try {
     const XsString text = self.info->text;
@@ -160,7 +165,8 @@ bool prepareProgram(Interpreter& self) noexcept {
     std::unordered_set<std::string_view> objects;
     for (uint32_t i = 0; i < self.info->fieldCount; ++i) {
       const XsField& field = self.info->fields[i];
-      const bool object = isMf(field.type) || field.type == XS_SFIMAGE || components(field.type) > 1;
+      const bool object =
+          isMf(field.type) || field.type == XS_SFIMAGE || components(field.type) > 1;
       if (field.access != XS_EVENT_IN && object) objects.insert(field.name);
     }
     self.program = copyAssigned(program, objects);
@@ -230,7 +236,8 @@ void* keep(duk_context* ctx) {
 
 Interpreter* createInterpreter(const XsHost* host, const XsScriptInfo* info, XsResult& result) {
   result = XS_FAILED;
-  Interpreter* const self = new (std::nothrow) Interpreter; // const: it is known after a longjmp, too
+  Interpreter* const self =
+      new (std::nothrow) Interpreter; // const: it is known after a longjmp, too
   if (!self) return nullptr;
   self->host = host;
   self->info = info;
@@ -273,7 +280,8 @@ void destroyInterpreter(Interpreter* self) {
   delete self;
 }
 
-XsResult callFunction(Interpreter& self, const char* name, const XsValue* value, double time, bool shutdown) {
+XsResult callFunction(Interpreter& self, const char* name, const XsValue* value, double time,
+                      bool shutdown) {
   Call call{self, name, value, time};
   return enter(self, runCall, &call, name, !shutdown);
 }
@@ -281,7 +289,8 @@ XsResult callFunction(Interpreter& self, const char* name, const XsValue* value,
 void step(Interpreter& self) {
   constexpr uint32_t often = 256;
   if (++self.natives >= often || self.stopped) {
-    if (!self.stopped && self.host->shouldStop(self.host, self.self, self.natives)) self.stopped = true;
+    if (!self.stopped && self.host->shouldStop(self.host, self.self, self.natives))
+      self.stopped = true;
     self.natives = 0;
     if (self.stopped) throwRange(self.ctx, "the Script is stopped");
   }

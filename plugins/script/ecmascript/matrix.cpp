@@ -1,4 +1,5 @@
-// matrix.cpp: VrmlMatrix (C.6.19): 4 x 4, m[row][column], translation in the last row. See values.h.
+// matrix.cpp: VrmlMatrix (C.6.19): 4 x 4, m[row][column], translation in the last row. See
+// values.h.
 #include <cmath>
 #include <cstring>
 
@@ -57,7 +58,8 @@ Matrix translation(const double* t, double sign) {
 Matrix rotation(const double* r, double sign) {
   const double length = std::sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]);
   if (!(length > 0)) return identity;
-  const double x = r[0] / length, y = r[1] / length, z = r[2] / length, s = std::sin(sign * r[3]), c = std::cos(r[3]), t = 1 - c;
+  const double x = r[0] / length, y = r[1] / length, z = r[2] / length, s = std::sin(sign * r[3]),
+               c = std::cos(r[3]), t = 1 - c;
   return {{{t * x * x + c, t * x * y + s * z, t * x * z - s * y, 0},
            {t * x * y - s * z, t * y * y + c, t * y * z + s * x, 0},
            {t * x * z + s * y, t * y * z - s * x, t * z * z + c, 0},
@@ -178,7 +180,8 @@ void give(duk_context* ctx, duk_idx_t index, XsType type, const double* v) {
   if (duk_is_null_or_undefined(ctx, index)) return;
   SfData* sf = sfData(ctx, index);
   if (!sf || sf->type != type)
-    throwType(ctx, "VrmlMatrix.getTransform: expected %s, got %s", typeName(type), describe(ctx, index));
+    throwType(ctx, "VrmlMatrix.getTransform: expected %s, got %s", typeName(type),
+              describe(ctx, index));
   std::memcpy(sf->v, v, size_t(components(type)) * sizeof *v);
   writeBack(ctx, Interpreter::of(ctx), index, sf, 0, components(type));
 }
@@ -189,7 +192,8 @@ duk_ret_t getTransform(duk_context* ctx) { // translation, rotation, scale: obje
   for (int i = 0; i < 3; ++i) linear.m[i][3] = linear.m[3][i] = 0;
   linear.m[3][3] = 1;
   const Matrix q = nearestRotation(linear), stretch = product(linear, transposed(q));
-  const double t[4] = {m.m[3][0], m.m[3][1], m.m[3][2], 0}, s[4] = {stretch.m[0][0], stretch.m[1][1], stretch.m[2][2], 0};
+  const double t[4] = {m.m[3][0], m.m[3][1], m.m[3][2], 0},
+               s[4] = {stretch.m[0][0], stretch.m[1][1], stretch.m[2][2], 0};
   double r[4];
   axisOf(q, r);
   give(ctx, 0, XS_SFVEC3F, t);
@@ -211,7 +215,9 @@ const Matrix& argument(duk_context* ctx) {
   return *other;
 }
 duk_ret_t multLeft(duk_context* ctx) { return answer(ctx, product(argument(ctx), *receiver(ctx))); }
-duk_ret_t multRight(duk_context* ctx) { return answer(ctx, product(*receiver(ctx), argument(ctx))); }
+duk_ret_t multRight(duk_context* ctx) {
+  return answer(ctx, product(*receiver(ctx), argument(ctx)));
+}
 
 duk_ret_t multiplied(duk_context* ctx, const Matrix& m) {
   double v[4], out[4] = {};
@@ -223,8 +229,12 @@ duk_ret_t multiplied(duk_context* ctx, const Matrix& m) {
   pushSf(ctx, Interpreter::of(ctx), XS_SFVEC3F, out);
   return 1;
 }
-duk_ret_t multVecMatrix(duk_context* ctx) { return multiplied(ctx, *receiver(ctx)); }             // row times matrix
-duk_ret_t multMatrixVec(duk_context* ctx) { return multiplied(ctx, transposed(*receiver(ctx))); } // matrix times column
+duk_ret_t multVecMatrix(duk_context* ctx) {
+  return multiplied(ctx, *receiver(ctx));
+} // row times matrix
+duk_ret_t multMatrixVec(duk_context* ctx) {
+  return multiplied(ctx, transposed(*receiver(ctx)));
+} // matrix times column
 
 duk_ret_t toText(duk_context* ctx) {
   const Matrix& m = *receiver(ctx);
@@ -287,7 +297,8 @@ duk_ret_t construct(duk_context* ctx) { // 16 numbers row by row, another matrix
   Matrix m = identity;
   const duk_idx_t given = duk_get_top(ctx);
   if (given == 1) return answer(ctx, argument(ctx));
-  if (given > 0 && given != 16) throwType(ctx, "VrmlMatrix: expected 16 numbers, got %d", int(given));
+  if (given > 0 && given != 16)
+    throwType(ctx, "VrmlMatrix: expected 16 numbers, got %d", int(given));
   for (int i = 0; i < given; ++i) m.m[i / 4][i % 4] = toNumber(ctx, i, XS_SFFLOAT, "VrmlMatrix");
   return answer(ctx, m);
 }
@@ -295,10 +306,15 @@ duk_ret_t construct(duk_context* ctx) { // 16 numbers row by row, another matrix
 } // namespace
 
 void registerMatrix(duk_context* ctx, Interpreter& self) {
-  static constexpr Method methods[] = {
-      {"setTransform", setTransform, 5},   {"getTransform", getTransform, 3},   {"inverse", inverse, 0},
-      {"transpose", transpose, 0},         {"multLeft", multLeft, 1},           {"multRight", multRight, 1},
-      {"multVecMatrix", multVecMatrix, 1}, {"multMatrixVec", multMatrixVec, 1}, {"toString", toText, 0}};
+  static constexpr Method methods[] = {{"setTransform", setTransform, 5},
+                                       {"getTransform", getTransform, 3},
+                                       {"inverse", inverse, 0},
+                                       {"transpose", transpose, 0},
+                                       {"multLeft", multLeft, 1},
+                                       {"multRight", multRight, 1},
+                                       {"multVecMatrix", multVecMatrix, 1},
+                                       {"multMatrixVec", multMatrixVec, 1},
+                                       {"toString", toText, 0}};
   static const char* const indices[] = {"0", "1", "2", "3"};
   duk_push_bare_object(ctx);
   for (int i = 0; i < 4; ++i) putAccessor(ctx, indices[i], getElement, setElementOf, i);

@@ -1,4 +1,5 @@
-// mf_objects.cpp: the arrays of VRML (C.6.10 to C.6.18): storage, elements, constructors. See values.h; indexing is mf_traps.cpp.
+// mf_objects.cpp: the arrays of VRML (C.6.10 to C.6.18): storage, elements, constructors. See
+// values.h; indexing is mf_traps.cpp.
 #include <cstring>
 
 #include "slots.h"
@@ -7,7 +8,8 @@ namespace ecma {
 namespace {
 
 // Elements [from, to) as they are before anybody sets them.
-void clearElements(duk_context* ctx, Interpreter& self, duk_idx_t index, MfData* mf, uint32_t from, uint32_t to) {
+void clearElements(duk_context* ctx, Interpreter& self, duk_idx_t index, MfData* mf, uint32_t from,
+                   uint32_t to) {
   if (const size_t bytes = elementBytes(mf->type)) {
     std::memset(reinterpret_cast<char*>(mf + 1) + bytes * from, 0, bytes * (to - from));
     for (uint32_t i = from; mf->type == XS_MFROTATION && i < to; ++i) floatsOf(mf)[4 * i + 2] = 1;
@@ -35,14 +37,16 @@ duk_ret_t construct(duk_context* ctx) {
     return 1;
   }
   pushMf(ctx, self, type, uint32_t(given));
-  for (duk_idx_t i = 0; i < given; ++i) setElement(ctx, self, given, uint32_t(i), i, typeName(type));
+  for (duk_idx_t i = 0; i < given; ++i)
+    setElement(ctx, self, given, uint32_t(i), i, typeName(type));
   return 1;
 }
 
 } // namespace
 
 MfData* pushMf(duk_context* ctx, Interpreter& self, XsType type, uint32_t count, Place place) {
-  if (count > mostElements) throwRange(ctx, "%s: more than %u elements", typeName(type), unsigned(mostElements));
+  if (count > mostElements)
+    throwRange(ctx, "%s: more than %u elements", typeName(type), unsigned(mostElements));
   const size_t bytes = elementBytes(type);
   duk_push_bare_object(ctx); // what the proxy stands before
   duk_push_heapptr(ctx, self.prototypes[type]);
@@ -63,14 +67,17 @@ MfData* pushMf(duk_context* ctx, Interpreter& self, XsType type, uint32_t count,
 MfData* resizeMf(duk_context* ctx, Interpreter& self, duk_idx_t index, uint32_t count) {
   index = duk_normalize_index(ctx, index);
   MfData* mf = mfData(ctx, index);
-  if (count > mostElements) throwRange(ctx, "%s: more than %u elements", typeName(mf->type), unsigned(mostElements));
+  if (count > mostElements)
+    throwRange(ctx, "%s: more than %u elements", typeName(mf->type), unsigned(mostElements));
   const uint32_t before = mf->count;
   if (const size_t bytes = elementBytes(mf->type)) {
     duk_get_prop_heapptr(ctx, index, self.keyMf);
     duk_size_t size = 0;
     duk_get_buffer(ctx, -1, &size);
     const size_t wanted = sizeof(MfData) + bytes * count;
-    if (wanted > size) mf = static_cast<MfData*>(duk_resize_buffer(ctx, -1, count > before + 1 ? wanted : wanted + wanted / 2));
+    if (wanted > size)
+      mf = static_cast<MfData*>(
+          duk_resize_buffer(ctx, -1, count > before + 1 ? wanted : wanted + wanted / 2));
     duk_pop(ctx);
   } else if (count < before) {
     duk_get_prop_heapptr(ctx, index, self.keyList);
@@ -86,7 +93,8 @@ void pushElement(duk_context* ctx, Interpreter& self, duk_idx_t index, uint32_t 
   index = duk_normalize_index(ctx, index);
   MfData* mf = mfData(ctx, index);
   const bool beyond = i >= mf->count;
-  if (beyond && (elementBytes(mf->type) == 0 || components(elementType(mf->type)) == 1)) return duk_push_undefined(ctx);
+  if (beyond && (elementBytes(mf->type) == 0 || components(elementType(mf->type)) == 1))
+    return duk_push_undefined(ctx);
   switch (mf->type) {
   case XS_MFFLOAT: return duk_push_number(ctx, widen(floatsOf(mf)[i]));
   case XS_MFINT32: return duk_push_int(ctx, intsOf(mf)[i]);
@@ -101,8 +109,10 @@ void pushElement(duk_context* ctx, Interpreter& self, duk_idx_t index, uint32_t 
   const XsType element = elementType(mf->type);
   const int n = components(element);
   double v[4] = {0, 0, element == XS_SFROTATION ? 1.0 : 0.0, 0};
-  for (int k = 0; k < n && !beyond; ++k) v[k] = widen(floatsOf(mf)[size_t(i) * size_t(n) + size_t(k)]);
-  // A value of its own; what is written to it is written here, beyond the end too: mf[mf.length].x = 1 makes it longer.
+  for (int k = 0; k < n && !beyond; ++k)
+    v[k] = widen(floatsOf(mf)[size_t(i) * size_t(n) + size_t(k)]);
+  // A value of its own; what is written to it is written here, beyond the end too: mf[mf.length].x
+  // = 1 makes it longer.
   SfData* sf = pushSf(ctx, self, element, v);
   sf->hasParent = 1;
   sf->index = i;
@@ -110,7 +120,8 @@ void pushElement(duk_context* ctx, Interpreter& self, duk_idx_t index, uint32_t 
   duk_put_prop_heapptr(ctx, -2, self.keyParent);
 }
 
-void setElement(duk_context* ctx, Interpreter& self, duk_idx_t index, uint32_t i, duk_idx_t value, const char* what) {
+void setElement(duk_context* ctx, Interpreter& self, duk_idx_t index, uint32_t i, duk_idx_t value,
+                const char* what) {
   index = duk_normalize_index(ctx, index);
   value = duk_normalize_index(ctx, value);
   const XsType type = mfData(ctx, index)->type, element = elementType(type);
@@ -139,7 +150,8 @@ void setElement(duk_context* ctx, Interpreter& self, duk_idx_t index, uint32_t i
   duk_pop_2(ctx);
 }
 
-void pushMfFrom(duk_context* ctx, Interpreter& self, duk_idx_t index, XsType type, const char* what) {
+void pushMfFrom(duk_context* ctx, Interpreter& self, duk_idx_t index, XsType type,
+                const char* what) {
   index = duk_normalize_index(ctx, index);
   const MfData* from = mfData(ctx, index);
   if (from && from->type == type && elementBytes(type) > 0) {
@@ -154,7 +166,8 @@ void pushMfFrom(duk_context* ctx, Interpreter& self, duk_idx_t index, XsType typ
                        : list                                         ? duk_get_length(ctx, index)
                        : type == XS_MFNODE && duk_is_null(ctx, index) ? 0
                                                                       : 1;
-  if (count > mostElements) throwRange(ctx, "%s: more than %u elements", what, unsigned(mostElements));
+  if (count > mostElements)
+    throwRange(ctx, "%s: more than %u elements", what, unsigned(mostElements));
   pushMf(ctx, self, type, uint32_t(count));
   const duk_idx_t made = duk_get_top_index(ctx);
   for (uint32_t i = 0; i < count; ++i) {

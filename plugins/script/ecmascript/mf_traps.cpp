@@ -1,7 +1,9 @@
-// mf_traps.cpp: what happens at mf[i], mf.length and their assignment: traps of the proxies that MF objects are. See values.h.
+// mf_traps.cpp: what happens at mf[i], mf.length and their assignment: traps of the proxies that MF
+// objects are. See values.h.
 //
-// Within the elements an index gives the element, beyond them undefined, or a tuple that is not there yet: assigning beyond them,
-// or to a component of such a tuple, makes the array longer (C.6.10).
+// Within the elements an index gives the element, beyond them undefined, or a tuple that is not
+// there yet: assigning beyond them, or to a component of such a tuple, makes the array longer
+// (C.6.10).
 #include <cmath>
 #include <cstring>
 
@@ -54,7 +56,8 @@ duk_ret_t set(duk_context* ctx) { // target, key, value, receiver
   uint32_t index = 0;
   switch (keyOf(ctx, index)) {
   case Key::element:
-    if (index >= mostElements) throwRange(ctx, "%s: more than %u elements", name, unsigned(mostElements));
+    if (index >= mostElements)
+      throwRange(ctx, "%s: more than %u elements", name, unsigned(mostElements));
     setElement(ctx, self, 0, index, 2, name);
     touchMf(ctx, self, 0);
     break;
@@ -89,7 +92,8 @@ duk_ret_t has(duk_context* ctx) { // target, key
   return 1;
 }
 
-duk_ret_t remove(duk_context* ctx) { // target, key: an element is there or not; only the program's own properties go
+duk_ret_t remove(duk_context* ctx) { // target, key: an element is there or not; only the program's
+                                     // own properties go
   uint32_t index = 0;
   if (keyOf(ctx, index) == Key::other) {
     duk_dup(ctx, 1);
@@ -102,7 +106,8 @@ duk_ret_t remove(duk_context* ctx) { // target, key: an element is there or not;
 } // namespace
 
 void registerMfTraps(duk_context* ctx, Interpreter& self) {
-  static constexpr Method traps[] = {{"get", get, 3}, {"set", set, 4}, {"has", has, 2}, {"deleteProperty", remove, 2}};
+  static constexpr Method traps[] = {
+      {"get", get, 3}, {"set", set, 4}, {"has", has, 2}, {"deleteProperty", remove, 2}};
   duk_push_bare_object(ctx);
   putMethods(ctx, traps, std::size(traps));
   self.mfHandler = keep(ctx);

@@ -1,5 +1,6 @@
-// nodes.cpp: SFNode (C.6.6): one wrapper for each node that the program holds, so that == tells whether two are one; fields and
-// events are accessors of a prototype for each type of node (C.5.2). See values.h.
+// nodes.cpp: SFNode (C.6.6): one wrapper for each node that the program holds, so that == tells
+// whether two are one; fields and events are accessors of a prototype for each type of node
+// (C.5.2). See values.h.
 #include <cstring>
 #include <new>
 
@@ -31,7 +32,8 @@ bool remember(NodeRecord& record, int name, int slot) noexcept {
   } catch (const std::bad_alloc&) { return false; }
 }
 
-// The slot of a field by any of its names: exposedField x, set_x and x_changed are one. -1: there is none.
+// The slot of a field by any of its names: exposedField x, set_x and x_changed are one. -1: there
+// is none.
 int slotFor(duk_context* ctx, Interpreter& self, NodeRecord& record, int name) {
   for (const auto& [known, slot] : record.slots)
     if (known == name) return slot;
@@ -41,14 +43,17 @@ int slotFor(duk_context* ctx, Interpreter& self, NodeRecord& record, int name) {
   if (result == XS_NO_FIELD) return -1;
   if (result != XS_OK) throwHost(ctx, self, result, text);
   if (field.access == XS_FIELD && record.node != self.self) {
-    // coordIndex of an IndexedFaceSet is a field that only set_coordIndex changes; programs name it as if it were exposed.
+    // coordIndex of an IndexedFaceSet is a field that only set_coordIndex changes; programs name it
+    // as if it were exposed.
     duk_push_sprintf(ctx, "set_%s", text);
     XsField in{};
-    if (self.host->findField(self.host, self.self, record.node, duk_get_string(ctx, -1), &in) == XS_OK &&
+    if (self.host->findField(self.host, self.self, record.node, duk_get_string(ctx, -1), &in) ==
+            XS_OK &&
         in.access == XS_EVENT_IN)
       field = in;
     else
-      self.host->findField(self.host, self.self, record.node, text, &field); // what was lent is gone
+      self.host->findField(self.host, self.self, record.node, text,
+                           &field); // what was lent is gone
     duk_pop(ctx);
   }
   int slot = -1;
@@ -57,7 +62,8 @@ int slotFor(duk_context* ctx, Interpreter& self, NodeRecord& record, int name) {
     if (slot < 0 && self.slots[size_t(other)].name == field.name) slot = other;
   if (slot < 0) {
     const bool exposed = field.access == XS_EXPOSED_FIELD;
-    slot = makeSlot(self, record.node, field, exposed || field.access == XS_EVENT_OUT, exposed || field.access == XS_EVENT_IN);
+    slot = makeSlot(self, record.node, field, exposed || field.access == XS_EVENT_OUT,
+                    exposed || field.access == XS_EVENT_IN);
   }
   if (slot < 0 || !remember(record, name, slot)) throwRange(ctx, "out of memory");
   return slot;
@@ -81,7 +87,8 @@ duk_ret_t setField(duk_context* ctx) {
   NodeRecord* record = recordOf(ctx, self, -1);
   if (!record) throwType(ctx, "not an SFNode");
   const int slot = slotFor(ctx, self, *record, duk_get_current_magic(ctx));
-  if (slot < 0) throwType(ctx, "the node has no '%s'", self.names[size_t(duk_get_current_magic(ctx))].c_str());
+  if (slot < 0)
+    throwType(ctx, "the node has no '%s'", self.names[size_t(duk_get_current_magic(ctx))].c_str());
   assignSlot(ctx, self, slot, 0);
   return 0;
 }
@@ -105,8 +112,8 @@ void putField(duk_context* ctx, Interpreter& self, const char* name) {
   if (number >= 0) putAccessor(ctx, name, getField, setField, number);
 }
 
-// Pushes the prototype of a node's type, made when the type is first met. Types that look alike from outside are one: which field
-// a name means is asked for each node.
+// Pushes the prototype of a node's type, made when the type is first met. Types that look alike
+// from outside are one: which field a name means is asked for each node.
 void pushType(duk_context* ctx, Interpreter& self, XsNode node) {
   XsNodeInfo info{sizeof(XsNodeInfo), 0, nullptr, nullptr};
   XsResult result = self.host->describe(self.host, self.self, node, &info);
@@ -117,7 +124,8 @@ void pushType(duk_context* ctx, Interpreter& self, XsNode node) {
   duk_push_string(ctx, info.typeName);
   for (const uint32_t at : {0u, info.fieldCount - 1}) {
     duk_push_string(ctx, " ");
-    result = info.fieldCount > 0 ? self.host->field(self.host, self.self, node, at, &field) : XS_NO_FIELD;
+    result = info.fieldCount > 0 ? self.host->field(self.host, self.self, node, at, &field)
+                                 : XS_NO_FIELD;
     duk_push_string(ctx, result == XS_OK ? field.name : "");
   }
   duk_concat(ctx, 6);
@@ -194,7 +202,8 @@ duk_ret_t construct(duk_context* ctx) {
     return 1;
   }
   XsValue made{};
-  const XsResult result = self.host->createVrmlFromString(self.host, self.self, textForHost(ctx, self, 0), &made);
+  const XsResult result =
+      self.host->createVrmlFromString(self.host, self.self, textForHost(ctx, self, 0), &made);
   if (result != XS_OK) throwHost(ctx, self, result, "SFNode");
   pushValue(ctx, self, made);
   pushElement(ctx, self, -1, 0);
@@ -225,7 +234,9 @@ void pushNode(duk_context* ctx, Interpreter& self, XsNode node) {
   duk_set_prototype(ctx, -2); // from here on the finalizer is its own
 }
 
-bool isNode(duk_context* ctx, Interpreter& self, duk_idx_t index) { return recordOf(ctx, self, index) != nullptr; }
+bool isNode(duk_context* ctx, Interpreter& self, duk_idx_t index) {
+  return recordOf(ctx, self, index) != nullptr;
+}
 
 // What `new SFNode()` gives, as nothing can give null.
 bool isNull(duk_context* ctx, Interpreter& self, duk_idx_t index) {
@@ -240,7 +251,8 @@ XsNode nodeOf(duk_context* ctx, Interpreter& self, duk_idx_t index, const char* 
   if (isNull(ctx, self, index)) return 0;
   if (const NodeRecord* record = recordOf(ctx, self, index)) return record->node;
   index = duk_normalize_index(ctx, index);
-  if (const MfData* mf = mfData(ctx, index); mf && mf->type == XS_MFNODE && mf->count > 0) { // createVrmlFromString's answer
+  if (const MfData* mf = mfData(ctx, index);
+      mf && mf->type == XS_MFNODE && mf->count > 0) { // createVrmlFromString's answer
     pushElement(ctx, self, index, 0);
     const NodeRecord* record = recordOf(ctx, self, -1);
     duk_pop(ctx);

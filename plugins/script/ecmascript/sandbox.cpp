@@ -1,11 +1,13 @@
-// sandbox.cpp: takes from the global object what is not ECMAScript and could reach Duktape's inside; dates and random numbers
-// follow the world's time and text, so that a world that is played again does the same. See interpreter.h.
+// sandbox.cpp: takes from the global object what is not ECMAScript and could reach Duktape's
+// inside; dates and random numbers follow the world's time and text, so that a world that is played
+// again does the same. See interpreter.h.
 #include "slots.h"
 
 namespace ecma {
 namespace {
 
-// xorshift64* (S. Vigna, "An experimental exploration of Marsaglia's xorshift generators, scrambled", 2016).
+// xorshift64* (S. Vigna, "An experimental exploration of Marsaglia's xorshift generators,
+// scrambled", 2016).
 duk_ret_t random(duk_context* ctx) {
   uint64_t& x = Interpreter::of(ctx).random;
   x ^= x >> 12;
@@ -22,13 +24,14 @@ duk_ret_t now(duk_context* ctx) {
 }
 
 // Date without arguments is the world's time. (The original is reached by nobody else.)
-const char* const dates = "(function(D,now){function Date(y,m,d,h,i,s,n){"
-                          "if(!(this instanceof Date))return new D(now()).toString();"
-                          "switch(arguments.length){case 0:return new D(now());case 1:return new D(y);"
-                          "default:return new D(y,m,d===undefined?1:d,h||0,i||0,s||0,n||0)}}"
-                          "Date.prototype=D.prototype;Date.parse=D.parse;Date.UTC=D.UTC;Date.now=now;"
-                          "Object.defineProperty(D.prototype,'constructor',{value:Date,writable:true,configurable:true});"
-                          "return Date})";
+const char* const dates =
+    "(function(D,now){function Date(y,m,d,h,i,s,n){"
+    "if(!(this instanceof Date))return new D(now()).toString();"
+    "switch(arguments.length){case 0:return new D(now());case 1:return new D(y);"
+    "default:return new D(y,m,d===undefined?1:d,h||0,i||0,s||0,n||0)}}"
+    "Date.prototype=D.prototype;Date.parse=D.parse;Date.UTC=D.UTC;Date.now=now;"
+    "Object.defineProperty(D.prototype,'constructor',{value:Date,writable:true,configurable:true});"
+    "return Date})";
 
 void removeProperty(duk_context* ctx, const char* object, const char* name) {
   duk_push_global_object(ctx);

@@ -1,4 +1,5 @@
-// sf_methods.cpp: methods of SFColor, SFRotation, SFVec2f, SFVec3f (C.6.4, C.6.7 to C.6.9). See values.h.
+// sf_methods.cpp: methods of SFColor, SFRotation, SFVec2f, SFVec3f (C.6.4, C.6.7 to C.6.9). See
+// values.h.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -13,11 +14,14 @@ SfData* receiver(duk_context* ctx, XsType type, const char* method) {
   step(Interpreter::of(ctx));
   duk_push_this(ctx);
   SfData* data = sfData(ctx, -1);
-  if (!data || data->type != type) throwType(ctx, "%s.%s: not called on an %s", typeName(type), method, typeName(type));
+  if (!data || data->type != type)
+    throwType(ctx, "%s.%s: not called on an %s", typeName(type), method, typeName(type));
   return data;
 }
 
-void argument(duk_context* ctx, XsType type, double* out, const char* what) { toPlain(ctx, 0, type, out, what); }
+void argument(duk_context* ctx, XsType type, double* out, const char* what) {
+  toPlain(ctx, 0, type, out, what);
+}
 
 duk_ret_t answer(duk_context* ctx, XsType type, const double* v) {
   pushSf(ctx, Interpreter::of(ctx), type, v);
@@ -90,7 +94,8 @@ duk_ret_t cross(duk_context* ctx) {
   const SfData* a = receiver(ctx, XS_SFVEC3F, "cross");
   double b[4];
   argument(ctx, XS_SFVEC3F, b, "cross");
-  const double v[4] = {a->v[1] * b[2] - a->v[2] * b[1], a->v[2] * b[0] - a->v[0] * b[2], a->v[0] * b[1] - a->v[1] * b[0], 0};
+  const double v[4] = {a->v[1] * b[2] - a->v[2] * b[1], a->v[2] * b[0] - a->v[0] * b[2],
+                       a->v[0] * b[1] - a->v[1] * b[0], 0};
   return answer(ctx, XS_SFVEC3F, v);
 }
 
@@ -98,10 +103,13 @@ duk_ret_t cross(duk_context* ctx) {
 
 duk_ret_t setHsv(duk_context* ctx) {
   SfData* c = receiver(ctx, XS_SFCOLOR, "setHSV");
-  const double h = toNumber(ctx, 0, XS_SFFLOAT, "setHSV"), s = toNumber(ctx, 1, XS_SFFLOAT, "setHSV"),
+  const double h = toNumber(ctx, 0, XS_SFFLOAT, "setHSV"),
+               s = toNumber(ctx, 1, XS_SFFLOAT, "setHSV"),
                v = toNumber(ctx, 2, XS_SFFLOAT, "setHSV");
-  const double turned = std::isfinite(h) ? h - 360 * std::floor(h / 360) : 0, sector = std::floor(turned / 60);
-  const double f = turned / 60 - sector, p = v * (1 - s), q = v * (1 - s * f), t = v * (1 - s * (1 - f));
+  const double turned = std::isfinite(h) ? h - 360 * std::floor(h / 360) : 0,
+               sector = std::floor(turned / 60);
+  const double f = turned / 60 - sector, p = v * (1 - s), q = v * (1 - s * f),
+               t = v * (1 - s * (1 - f));
   const double table[6][3] = {{v, t, p}, {q, v, p}, {p, v, t}, {p, q, v}, {t, p, v}, {v, p, q}};
   std::memcpy(c->v, table[std::clamp(int(sector), 0, 5)], 3 * sizeof *c->v);
   writeBack(ctx, Interpreter::of(ctx), -1, c, 0, 3);
@@ -113,7 +121,9 @@ duk_ret_t getHsv(duk_context* ctx) {
   const double most = std::max({c[0], c[1], c[2]}), delta = most - std::min({c[0], c[1], c[2]});
   double h = 0;
   if (delta > 0) {
-    h = most == c[0] ? (c[1] - c[2]) / delta : most == c[1] ? 2 + (c[2] - c[0]) / delta : 4 + (c[0] - c[1]) / delta;
+    h = most == c[0]   ? (c[1] - c[2]) / delta
+        : most == c[1] ? 2 + (c[2] - c[0]) / delta
+                       : 4 + (c[0] - c[1]) / delta;
     h = h < 0 ? h * 60 + 360 : h * 60;
   }
   const double hsv[] = {h, most > 0 ? delta / most : 0, most};
@@ -132,7 +142,8 @@ struct Quaternion {
 };
 
 Quaternion quaternionOf(const double* r) {
-  const double length = std::sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]), s = length > 0 ? std::sin(r[3] / 2) / length : 0;
+  const double length = std::sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]),
+               s = length > 0 ? std::sin(r[3] / 2) / length : 0;
   return {r[0] * s, r[1] * s, r[2] * s, length > 0 ? std::cos(r[3] / 2) : 1};
 }
 
@@ -170,8 +181,10 @@ duk_ret_t multiplyRotation(duk_context* ctx) {
   double other[4], v[4];
   argument(ctx, XS_SFROTATION, other, "multiply");
   const Quaternion b = quaternionOf(other);
-  rotationOf({a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y, a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x,
-              a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w, a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z},
+  rotationOf({a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
+              a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x,
+              a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w,
+              a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z},
              v);
   return answer(ctx, XS_SFROTATION, v);
 }
@@ -181,8 +194,10 @@ duk_ret_t multVec(duk_context* ctx) {
   double p[4];
   argument(ctx, XS_SFVEC3F, p, "multVec");
   // p + 2 w (u x p) + 2 u x (u x p), u the vector part
-  const double cx = q.y * p[2] - q.z * p[1], cy = q.z * p[0] - q.x * p[2], cz = q.x * p[1] - q.y * p[0];
-  const double v[4] = {p[0] + 2 * (q.w * cx + q.y * cz - q.z * cy), p[1] + 2 * (q.w * cy + q.z * cx - q.x * cz),
+  const double cx = q.y * p[2] - q.z * p[1], cy = q.z * p[0] - q.x * p[2],
+               cz = q.x * p[1] - q.y * p[0];
+  const double v[4] = {p[0] + 2 * (q.w * cx + q.y * cz - q.z * cy),
+                       p[1] + 2 * (q.w * cy + q.z * cx - q.x * cz),
                        p[2] + 2 * (q.w * cz + q.x * cy - q.y * cx), 0};
   return answer(ctx, XS_SFVEC3F, v);
 }
@@ -203,22 +218,28 @@ duk_ret_t slerp(duk_context* ctx) {
   }
   const double angle = std::acos(std::min(cosine, 1.0)), sine = std::sin(angle);
   const bool near = sine < 1e-6;
-  const double wa = near ? 1 - t : std::sin((1 - t) * angle) / sine, wb = near ? t : std::sin(t * angle) / sine;
-  rotationOf({wa * a.x + wb * b.x, wa * a.y + wb * b.y, wa * a.z + wb * b.z, wa * a.w + wb * b.w}, v);
+  const double wa = near ? 1 - t : std::sin((1 - t) * angle) / sine,
+               wb = near ? t : std::sin(t * angle) / sine;
+  rotationOf({wa * a.x + wb * b.x, wa * a.y + wb * b.y, wa * a.z + wb * b.z, wa * a.w + wb * b.w},
+             v);
   return answer(ctx, XS_SFROTATION, v);
 }
 
-constexpr Method vectorMethods[] = {{"add", add, 1},       {"subtract", subtract, 1},   {"multiply", multiply, 1},
-                                    {"divide", divide, 1}, {"negate", negate, 0},       {"dot", dot, 1},
-                                    {"length", length, 0}, {"normalize", normalize, 0}, {"toString", notationMethod, 0}};
+constexpr Method vectorMethods[] = {
+    {"add", add, 1},       {"subtract", subtract, 1},   {"multiply", multiply, 1},
+    {"divide", divide, 1}, {"negate", negate, 0},       {"dot", dot, 1},
+    {"length", length, 0}, {"normalize", normalize, 0}, {"toString", notationMethod, 0}};
 constexpr Method vector3Methods[] = {{"cross", cross, 1}};
-constexpr Method colorMethods[] = {{"setHSV", setHsv, 3}, {"getHSV", getHsv, 0}, {"toString", notationMethod, 0}};
-constexpr Method rotationMethods[] = {{"getAxis", getAxis, 0},        {"setAxis", setAxis, 1}, {"inverse", inverse, 0},
-                                      {"multVec", multVec, 1},        {"slerp", slerp, 2},     {"multiply", multiplyRotation, 1},
-                                      {"toString", notationMethod, 0}};
+constexpr Method colorMethods[] = {
+    {"setHSV", setHsv, 3}, {"getHSV", getHsv, 0}, {"toString", notationMethod, 0}};
+constexpr Method rotationMethods[] = {
+    {"getAxis", getAxis, 0},        {"setAxis", setAxis, 1}, {"inverse", inverse, 0},
+    {"multVec", multVec, 1},        {"slerp", slerp, 2},     {"multiply", multiplyRotation, 1},
+    {"toString", notationMethod, 0}};
 constexpr Method imageMethods[] = {{"toString", notationMethod, 0}};
 
-template <size_t n> void put(duk_context* ctx, Interpreter& self, XsType type, const Method (&methods)[n]) {
+template <size_t n>
+void put(duk_context* ctx, Interpreter& self, XsType type, const Method (&methods)[n]) {
   duk_push_heapptr(ctx, self.prototypes[type]);
   putMethods(ctx, methods, n, type);
   duk_pop(ctx);

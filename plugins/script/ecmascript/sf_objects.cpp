@@ -1,4 +1,5 @@
-// sf_objects.cpp: SFColor, SFRotation, SFVec2f, SFVec3f, SFImage (C.6.4 to C.6.9): constructors and components. See values.h.
+// sf_objects.cpp: SFColor, SFRotation, SFVec2f, SFVec3f, SFImage (C.6.4 to C.6.9): constructors and
+// components. See values.h.
 #include <cmath>
 #include <cstring>
 
@@ -51,9 +52,12 @@ duk_ret_t setPixels(duk_context* ctx) {
 
 // The shortest rotation from one direction to another (C.6.7).
 void rotationBetween(const double* a, const double* b, double* out) {
-  const double la = std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]), lb = std::sqrt(b[0] * b[0] + b[1] * b[1] + b[2] * b[2]);
-  double x = a[1] * b[2] - a[2] * b[1], y = a[2] * b[0] - a[0] * b[2], z = a[0] * b[1] - a[1] * b[0];
-  const double dot = a[0] * b[0] + a[1] * b[1] + a[2] * b[2], sine = std::sqrt(x * x + y * y + z * z);
+  const double la = std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]),
+               lb = std::sqrt(b[0] * b[0] + b[1] * b[1] + b[2] * b[2]);
+  double x = a[1] * b[2] - a[2] * b[1], y = a[2] * b[0] - a[0] * b[2],
+         z = a[0] * b[1] - a[1] * b[0];
+  const double dot = a[0] * b[0] + a[1] * b[1] + a[2] * b[2],
+               sine = std::sqrt(x * x + y * y + z * z);
   if (!(sine > 1e-12 * la * lb)) { // in line: any axis square to them
     const bool alongX = std::fabs(a[0]) > 0.9 * la;
     x = alongX ? a[2] : 0;
@@ -107,7 +111,8 @@ duk_ret_t constructImage(duk_context* ctx) {
     std::memcpy(v, other->v, sizeof v);
     duk_get_prop_heapptr(ctx, 0, self.keyList);
   } else {
-    for (int i = 0; i < 3 && i < given; ++i) v[i] = std::trunc(toNumber(ctx, i, XS_SFFLOAT, "SFImage"));
+    for (int i = 0; i < 3 && i < given; ++i)
+      v[i] = std::trunc(toNumber(ctx, i, XS_SFFLOAT, "SFImage"));
     if (given > 3)
       pushMfFrom(ctx, self, 3, XS_MFINT32, "SFImage.array");
     else
@@ -127,7 +132,8 @@ void putComponent(duk_context* ctx, Interpreter& self, const char* name, int ind
   duk_push_string(ctx, name);
   duk_push_heapptr(ctx, self.componentGet[index]);
   duk_push_heapptr(ctx, self.componentSet[index]);
-  duk_def_prop(ctx, -4, DUK_DEFPROP_HAVE_GETTER | DUK_DEFPROP_HAVE_SETTER | DUK_DEFPROP_SET_ENUMERABLE);
+  duk_def_prop(ctx, -4,
+               DUK_DEFPROP_HAVE_GETTER | DUK_DEFPROP_HAVE_SETTER | DUK_DEFPROP_SET_ENUMERABLE);
 }
 
 } // namespace
@@ -152,7 +158,8 @@ void pushImage(duk_context* ctx, Interpreter& self, const double* v, Place place
   duk_remove(ctx, -2);
 }
 
-void writeBack(duk_context* ctx, Interpreter& self, duk_idx_t index, SfData* data, int first, int count) {
+void writeBack(duk_context* ctx, Interpreter& self, duk_idx_t index, SfData* data, int first,
+               int count) {
   index = duk_normalize_index(ctx, index);
   if (data->hasParent) {
     duk_get_prop_heapptr(ctx, index, self.keyParent);
@@ -169,7 +176,8 @@ void writeBack(duk_context* ctx, Interpreter& self, duk_idx_t index, SfData* dat
   const int slot = data->place.slot;
   if (data->type == XS_SFIMAGE) return markDirty(ctx, self, slot);
   loadSlot(ctx, self, slot);
-  for (int i = first; i < first + count; ++i) self.slots[size_t(slot)].plain[i] = widen(float(data->v[i]));
+  for (int i = first; i < first + count; ++i)
+    self.slots[size_t(slot)].plain[i] = widen(float(data->v[i]));
   markDirty(ctx, self, slot);
 }
 

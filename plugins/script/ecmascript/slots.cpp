@@ -1,4 +1,5 @@
-// slots.cpp: see slots.h: reading, assigning and handing out; the Script's own fields as accessors of the global object (C.5.1).
+// slots.cpp: see slots.h: reading, assigning and handing out; the Script's own fields as accessors
+// of the global object (C.5.1).
 #include "slots.h"
 
 #include <cstring>
@@ -23,7 +24,8 @@ void keepValue(duk_context* ctx, Interpreter& self, int slot) {
   duk_pop_2(ctx);
 }
 
-// The object that stood for the slot's value keeps that value; what is done to it no longer concerns the field.
+// The object that stood for the slot's value keeps that value; what is done to it no longer
+// concerns the field.
 void detachKept(duk_context* ctx, Interpreter& self, int slot) {
   pushKept(ctx, self, slot);
   if (MfData* mf = mfData(ctx, -1)) mf->place = {};
@@ -42,12 +44,15 @@ bool refresh(duk_context* ctx, Interpreter& self, int slot, const XsValue& value
   MfData* mf = mfData(ctx, -1);
   const size_t bytes = isMf(value.type) ? elementBytes(value.type) : 0;
   const bool same = mf && bytes > 0 && mf->type == value.type && mf->count == value.count;
-  if (same && value.count > 0) std::memcpy(static_cast<void*>(mf + 1), value.of.data, bytes * value.count);
+  if (same && value.count > 0)
+    std::memcpy(static_cast<void*>(mf + 1), value.of.data, bytes * value.count);
   duk_pop(ctx);
   return same;
 }
 
-bool isLoaded(const Interpreter& self, const Slot& slot) { return slot.call == (slot.node ? self.call : 1); }
+bool isLoaded(const Interpreter& self, const Slot& slot) {
+  return slot.call == (slot.node ? self.call : 1);
+}
 
 duk_ret_t getOwn(duk_context* ctx) {
   Interpreter& self = Interpreter::of(ctx);
@@ -64,7 +69,8 @@ duk_ret_t setOwn(duk_context* ctx) {
 
 } // namespace
 
-int makeSlot(Interpreter& self, XsNode node, const XsField& field, bool readable, bool writable) noexcept {
+int makeSlot(Interpreter& self, XsNode node, const XsField& field, bool readable,
+             bool writable) noexcept {
   try {
     Slot slot;
     slot.node = node;
@@ -85,7 +91,8 @@ int makeSlot(Interpreter& self, XsNode node, const XsField& field, bool readable
   } catch (const std::bad_alloc&) { return -1; }
 }
 
-// From a finalizer: nothing of the heap is touched. What the slot kept is replaced when it is used again.
+// From a finalizer: nothing of the heap is touched. What the slot kept is replaced when it is used
+// again.
 void freeSlot(Interpreter& self, int slot) noexcept {
   try {
     self.slots[size_t(slot)] = Slot{};
@@ -130,7 +137,8 @@ void loadSlot(duk_context* ctx, Interpreter& self, int slot) {
   holdNode(ctx, self, slot);
   if (!it->readable) throwType(ctx, "%s cannot be read", it->name.c_str());
   XsValue value{};
-  const XsResult result = self.host->read(self.host, self.self, it->node ? it->node : self.self, it->name.c_str(), &value);
+  const XsResult result = self.host->read(self.host, self.self, it->node ? it->node : self.self,
+                                          it->name.c_str(), &value);
   if (result != XS_OK) throwHost(ctx, self, result, it->name.c_str());
   if (isPlain(it->type)) {
     pushValue(ctx, self, value);
@@ -169,7 +177,8 @@ void assignSlot(duk_context* ctx, Interpreter& self, int slot, duk_idx_t value) 
   if (!self.slots[size_t(slot)].writable) throwType(ctx, "%s cannot be written", name);
   if (isPlain(type)) {
     toPlain(ctx, value, type, plain, name);
-    for (int i = 0; i < components(type) && components(type) > 1; ++i) plain[i] = widen(float(plain[i]));
+    for (int i = 0; i < components(type) && components(type) > 1; ++i)
+      plain[i] = widen(float(plain[i]));
     std::memcpy(self.slots[size_t(slot)].plain, plain, sizeof plain);
     return markDirty(ctx, self, slot);
   }
@@ -183,7 +192,8 @@ void assignSlot(duk_context* ctx, Interpreter& self, int slot, duk_idx_t value) 
     pushNode(ctx, self, nodeOf(ctx, self, value, name));
   } else {
     const SfData* image = sfData(ctx, value);
-    if (!image || image->type != XS_SFIMAGE) throwType(ctx, "%s: expected SFImage, got %s", name, describe(ctx, value));
+    if (!image || image->type != XS_SFIMAGE)
+      throwType(ctx, "%s: expected SFImage, got %s", name, describe(ctx, value));
     duk_get_prop_heapptr(ctx, value, self.keyList);
     pushImage(ctx, self, image->v, place);
   }
@@ -203,11 +213,13 @@ duk_ret_t flushSlots(duk_context* ctx, void* data) {
     slotValue(ctx, self, slot, value);
     const XsHost& host = *self.host;
     const char* name = it.name.c_str();
-    const XsResult result = it.node                     ? host.post(&host, self.self, it.node, name, &value)
-                            : it.access == XS_EVENT_OUT ? host.send(&host, self.self, name, &value)
-                                                        : host.write(&host, self.self, name, &value);
+    const XsResult result = it.node ? host.post(&host, self.self, it.node, name, &value)
+                            : it.access == XS_EVENT_OUT
+                                ? host.send(&host, self.self, name, &value)
+                                : host.write(&host, self.self, name, &value);
     if (result == XS_STOPPED) self.stopped = true;
-    if (result == XS_OK || result == XS_STOPPED || result == XS_NOT_ALLOWED) continue; // the host has told of the last
+    if (result == XS_OK || result == XS_STOPPED || result == XS_NOT_ALLOWED)
+      continue; // the host has told of the last
     XsString why{"", 0};
     host.lastError(&host, self.self, &why);
     duk_push_lstring(ctx, why.data, why.bytes);

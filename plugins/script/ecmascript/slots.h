@@ -1,5 +1,5 @@
-// slots.h: fields and events as the program sees them: read once a call, assigned with conversion, handed to the host when the
-// function has returned. [the browser's thread]
+// slots.h: fields and events as the program sees them: read once a call, assigned with conversion,
+// handed to the host when the function has returned. [the browser's thread]
 #pragma once
 
 #include "values.h"
@@ -7,7 +7,8 @@
 namespace ecma {
 
 // A new slot; -1 without memory.
-int makeSlot(Interpreter& self, XsNode node, const XsField& field, bool readable, bool writable) noexcept;
+int makeSlot(Interpreter& self, XsNode node, const XsField& field, bool readable,
+             bool writable) noexcept;
 void freeSlot(Interpreter& self, int slot) noexcept;
 Place placeOf(const Interpreter& self, int slot);
 // Pushes the node whose field it is, so that it stays, or undefined.
@@ -25,7 +26,8 @@ void registerFields(duk_context* ctx, Interpreter& self);
 
 // from_host.cpp: pushes the program's form of a value.
 void pushValue(duk_context* ctx, Interpreter& self, const XsValue& value, Place place = {});
-// to_host.cpp: the value of the object on top, or of a slot's plain numbers, for the host; good until the next call.
+// to_host.cpp: the value of the object on top, or of a slot's plain numbers, for the host; good
+// until the next call.
 void slotValue(duk_context* ctx, Interpreter& self, int slot, XsValue& out);
 XsString textForHost(duk_context* ctx, Interpreter& self, duk_idx_t index); // index: a string
 // An MFString or one text at `index`, as a list.

@@ -1,4 +1,5 @@
-// text.cpp: values in VRML's notation (toString, C.6): numbers as short as a float allows. See values.h.
+// text.cpp: values in VRML's notation (toString, C.6): numbers as short as a float allows. See
+// values.h.
 #include <charconv>
 #include <cmath>
 #include <cstdio>
@@ -96,7 +97,8 @@ size_t printFloat(char* out, size_t size, double value) {
   if (std::isnan(f)) return size_t(std::snprintf(out, size, "NaN"));
   if (std::isinf(f)) return size_t(std::snprintf(out, size, f < 0 ? "-Infinity" : "Infinity"));
   if (f == 0) return size_t(std::snprintf(out, size, "0"));
-  const auto format = magnitude >= 1e-5f && magnitude < 1e15f ? std::chars_format::fixed : std::chars_format::scientific;
+  const auto format = magnitude >= 1e-5f && magnitude < 1e15f ? std::chars_format::fixed
+                                                              : std::chars_format::scientific;
   return size_t(std::to_chars(out, out + size, f, format).ptr - out);
 }
 
@@ -113,7 +115,8 @@ void pushNotation(duk_context* ctx, Interpreter& self, duk_idx_t index) {
       Pieces pixels{ctx};
       for (uint32_t i = 0; i < count; ++i) {
         char text[16];
-        const int length = std::snprintf(text, sizeof text, " 0x%X", unsigned(intsOf(mfData(ctx, array))[i]));
+        const int length =
+            std::snprintf(text, sizeof text, " 0x%X", unsigned(intsOf(mfData(ctx, array))[i]));
         pixels.add(text, size_t(length));
       }
       pixels.finish();
@@ -124,10 +127,12 @@ void pushNotation(duk_context* ctx, Interpreter& self, duk_idx_t index) {
   }
   if (isNode(ctx, self, index)) {
     XsNodeInfo info{sizeof(XsNodeInfo), 0, nullptr, nullptr};
-    const XsResult result = self.host->describe(self.host, self.self, nodeOf(ctx, self, index, "toString"), &info);
+    const XsResult result =
+        self.host->describe(self.host, self.self, nodeOf(ctx, self, index, "toString"), &info);
     if (result != XS_OK) throwHost(ctx, self, result, "toString");
     const bool named = info.defName && *info.defName;
-    duk_push_sprintf(ctx, "%s%s%s%s", named ? "DEF " : "", named ? info.defName : "", named ? " " : "", info.typeName);
+    duk_push_sprintf(ctx, "%s%s%s%s", named ? "DEF " : "", named ? info.defName : "",
+                     named ? " " : "", info.typeName);
     duk_push_string(ctx, " { }");
     duk_concat(ctx, 2);
     return;

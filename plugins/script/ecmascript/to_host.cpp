@@ -1,5 +1,5 @@
-// to_host.cpp: values of the program as the host takes them; see slots.h. What they point to lies in the Duktape heap or in the
-// interpreter's own arrays.
+// to_host.cpp: values of the program as the host takes them; see slots.h. What they point to lies
+// in the Duktape heap or in the interpreter's own arrays.
 #include <cstring>
 #include <new>
 
@@ -17,7 +17,9 @@ template <class Work> void guardMemory(duk_context* ctx, Work&& work) {
   if (full) throwRange(ctx, "out of memory");
 }
 
-bool isSurrogate(const unsigned char* at, const unsigned char* end) { return end - at >= 3 && at[0] == 0xed && at[1] >= 0xa0; }
+bool isSurrogate(const unsigned char* at, const unsigned char* end) {
+  return end - at >= 3 && at[0] == 0xed && at[1] >= 0xa0;
+}
 
 // Pairs of surrogates become one character; single ones, which no UTF-8 has, U+FFFD.
 void convertText(const unsigned char* at, const unsigned char* end, std::string& out) {
@@ -32,8 +34,8 @@ void convertText(const unsigned char* at, const unsigned char* end, std::string&
       const unsigned low = unsigned(at[1] & 0x3f) << 6 | unsigned(at[2] & 0x3f);
       const unsigned code = 0x10000 + ((high & 0x3ff) << 10 | (low & 0x3ff));
       at += 3;
-      for (const unsigned byte :
-           {0xf0 | code >> 18, 0x80 | ((code >> 12) & 0x3f), 0x80 | ((code >> 6) & 0x3f), 0x80 | (code & 0x3f)})
+      for (const unsigned byte : {0xf0 | code >> 18, 0x80 | ((code >> 12) & 0x3f),
+                                  0x80 | ((code >> 6) & 0x3f), 0x80 | (code & 0x3f)})
         out += char(byte);
     } else {
       out += "\xef\xbf\xbd";
@@ -42,8 +44,10 @@ void convertText(const unsigned char* at, const unsigned char* end, std::string&
 }
 
 bool needsConversion(const char* text, size_t bytes) {
-  for (const char* at = text; (at = static_cast<const char*>(std::memchr(at, 0xed, bytes - size_t(at - text)))); ++at)
-    if (isSurrogate(reinterpret_cast<const unsigned char*>(at), reinterpret_cast<const unsigned char*>(text + bytes)))
+  for (const char* at = text;
+       (at = static_cast<const char*>(std::memchr(at, 0xed, bytes - size_t(at - text)))); ++at)
+    if (isSurrogate(reinterpret_cast<const unsigned char*>(at),
+                    reinterpret_cast<const unsigned char*>(text + bytes)))
       return true;
   return false;
 }
@@ -65,11 +69,13 @@ void imageValue(duk_context* ctx, Interpreter& self, XsImage& image, const char*
   const size_t count = size_t(image.width) * size_t(image.height), bytes = size_t(image.components);
   guardMemory(ctx, [&] { self.pixels.assign(count * bytes + 1, 0); });
   for (size_t i = 0; i < count && i < mf->count; ++i) // missing pixels are 0
-    for (size_t k = 0; k < bytes; ++k) self.pixels[i * bytes + k] = uint8_t(uint32_t(intsOf(mf)[i]) >> (8 * (bytes - 1 - k)));
+    for (size_t k = 0; k < bytes; ++k)
+      self.pixels[i * bytes + k] = uint8_t(uint32_t(intsOf(mf)[i]) >> (8 * (bytes - 1 - k)));
   image.pixels = self.pixels.data();
 }
 
-void pushListOf(duk_context* ctx, Interpreter& self, duk_idx_t index, XsType type, const char* what) {
+void pushListOf(duk_context* ctx, Interpreter& self, duk_idx_t index, XsType type,
+                const char* what) {
   const MfData* mf = mfData(ctx, index);
   if (mf && mf->type == type)
     duk_dup(ctx, index);
@@ -102,8 +108,8 @@ XsString textForHost(duk_context* ctx, Interpreter& self, duk_idx_t index) {
   if (!needsConversion(text, bytes)) return {text, bytes};
   guardMemory(ctx, [&] {
     self.texts.emplace_back();
-    convertText(reinterpret_cast<const unsigned char*>(text), reinterpret_cast<const unsigned char*>(text + bytes),
-                self.texts.back());
+    convertText(reinterpret_cast<const unsigned char*>(text),
+                reinterpret_cast<const unsigned char*>(text + bytes), self.texts.back());
   });
   return {self.texts.back().data(), self.texts.back().size()};
 }

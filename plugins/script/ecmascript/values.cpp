@@ -76,8 +76,10 @@ const char* describe(duk_context* ctx, duk_idx_t index) {
   if (const SfData* sf = sfData(ctx, index)) return typeName(sf->type);
   if (const MfData* mf = mfData(ctx, index)) return typeName(mf->type);
   if (isNode(ctx, Interpreter::of(ctx), index)) return "SFNode";
-  if (duk_is_string(ctx, index)) return duk_push_sprintf(ctx, "text '%.40s'", duk_get_string(ctx, index));
-  if (duk_is_number(ctx, index)) return duk_push_sprintf(ctx, "number %g", duk_get_number(ctx, index));
+  if (duk_is_string(ctx, index))
+    return duk_push_sprintf(ctx, "text '%.40s'", duk_get_string(ctx, index));
+  if (duk_is_number(ctx, index))
+    return duk_push_sprintf(ctx, "number %g", duk_get_number(ctx, index));
   if (duk_is_null(ctx, index)) return "null";
   if (duk_is_undefined(ctx, index)) return "undefined";
   if (duk_is_boolean(ctx, index)) return "a boolean";
@@ -88,7 +90,8 @@ const char* describe(duk_context* ctx, duk_idx_t index) {
 double toNumber(duk_context* ctx, duk_idx_t index, XsType type, const char* what) {
   if (duk_is_number(ctx, index)) return duk_get_number(ctx, index);
   if (duk_is_boolean(ctx, index)) return duk_get_boolean(ctx, index) ? 1 : 0;
-  const bool number = !duk_is_null_or_undefined(ctx, index) && !sfData(ctx, index) && !mfData(ctx, index);
+  const bool number =
+      !duk_is_null_or_undefined(ctx, index) && !sfData(ctx, index) && !mfData(ctx, index);
   if (number) {
     pushPrimitive(ctx, index);
     const bool wasNumber = duk_is_number(ctx, -1);
@@ -138,7 +141,8 @@ void toPlain(duk_context* ctx, duk_idx_t index, XsType type, double* out, const 
     }
     return;
   }
-  if (MfData* mf = mfData(ctx, index); mf && mf->type == XS_MFFLOAT && mf->count == uint32_t(count)) {
+  if (MfData* mf = mfData(ctx, index);
+      mf && mf->type == XS_MFFLOAT && mf->count == uint32_t(count)) {
     for (int i = 0; i < count; ++i) out[i] = widen(floatsOf(mf)[i]);
     return;
   }
@@ -147,7 +151,8 @@ void toPlain(duk_context* ctx, duk_idx_t index, XsType type, double* out, const 
 }
 
 void pushText(duk_context* ctx, duk_idx_t index, const char* what) {
-  if (duk_is_null_or_undefined(ctx, index)) throwType(ctx, "%s: expected SFString, got %s", what, describe(ctx, index));
+  if (duk_is_null_or_undefined(ctx, index))
+    throwType(ctx, "%s: expected SFString, got %s", what, describe(ctx, index));
   duk_dup(ctx, index);
   duk_to_string(ctx, -1);
 }
@@ -155,13 +160,15 @@ void pushText(duk_context* ctx, duk_idx_t index, const char* what) {
 void putMethods(duk_context* ctx, const Method* methods, size_t count, int magic) {
   for (size_t i = 0; i < count; ++i) {
     const Method& m = methods[i];
-    duk_push_c_function(ctx, m.function, m.arguments); // no light function: its text shows an address
+    duk_push_c_function(ctx, m.function,
+                        m.arguments); // no light function: its text shows an address
     duk_set_magic(ctx, -1, magic);
     duk_put_prop_string(ctx, -2, m.name);
   }
 }
 
-void putConstructor(duk_context* ctx, const char* name, duk_c_function function, int magic, const char* alias) {
+void putConstructor(duk_context* ctx, const char* name, duk_c_function function, int magic,
+                    const char* alias) {
   duk_push_c_function(ctx, function, DUK_VARARGS);
   duk_set_magic(ctx, -1, magic);
   duk_push_string(ctx, "name");
@@ -171,7 +178,8 @@ void putConstructor(duk_context* ctx, const char* name, duk_c_function function,
   duk_put_prop_string(ctx, -2, "prototype");
   duk_push_string(ctx, "constructor");
   duk_dup(ctx, -2);
-  duk_def_prop(ctx, -4, DUK_DEFPROP_HAVE_VALUE | DUK_DEFPROP_SET_WRITABLE | DUK_DEFPROP_SET_CONFIGURABLE);
+  duk_def_prop(ctx, -4,
+               DUK_DEFPROP_HAVE_VALUE | DUK_DEFPROP_SET_WRITABLE | DUK_DEFPROP_SET_CONFIGURABLE);
   if (alias) {
     duk_dup(ctx, -1);
     duk_put_global_string(ctx, alias);
@@ -180,14 +188,16 @@ void putConstructor(duk_context* ctx, const char* name, duk_c_function function,
   duk_pop(ctx);
 }
 
-void putAccessor(duk_context* ctx, const char* name, duk_c_function get, duk_c_function set, int magic) {
+void putAccessor(duk_context* ctx, const char* name, duk_c_function get, duk_c_function set,
+                 int magic) {
   duk_push_string(ctx, name);
   duk_push_c_function(ctx, get, 0);
   duk_set_magic(ctx, -1, magic);
   duk_push_c_function(ctx, set, 1);
   duk_set_magic(ctx, -1, magic);
   duk_def_prop(ctx, -4,
-               DUK_DEFPROP_HAVE_GETTER | DUK_DEFPROP_HAVE_SETTER | DUK_DEFPROP_SET_CONFIGURABLE | DUK_DEFPROP_SET_ENUMERABLE);
+               DUK_DEFPROP_HAVE_GETTER | DUK_DEFPROP_HAVE_SETTER | DUK_DEFPROP_SET_CONFIGURABLE |
+                   DUK_DEFPROP_SET_ENUMERABLE);
 }
 
 } // namespace ecma

@@ -1,4 +1,3 @@
-// call.cpp: see call.h.
 #include "call.h"
 
 #include <algorithm>
@@ -40,10 +39,14 @@ Number usual(XsType type) {
   }
 }
 
-bool isUnsigned(Number n) { return n == Number::u8 || n == Number::u16 || n == Number::u32 || n == Number::u64; }
+bool isUnsigned(Number n) {
+  return n == Number::u8 || n == Number::u16 || n == Number::u32 || n == Number::u64;
+}
 
 // A number in a range that its type has.
-double bounded(double v, double low, double high) { return v >= low && v <= high ? v : v > high ? high : v < low ? low : 0; }
+double bounded(double v, double low, double high) {
+  return v >= low && v <= high ? v : v > high ? high : v < low ? low : 0;
+}
 
 // A cell holds a number of `number` at its first bytes, as C does (little end first).
 static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__);
@@ -87,7 +90,9 @@ void setNumber(Slot& slot, double v) {
   case XS_SFFLOAT: *static_cast<float*>(slot.data()) = float(v); break;
   case XS_SFTIME: *static_cast<double*>(slot.data()) = v; break;
   case XS_SFBOOL: *static_cast<int32_t*>(slot.data()) = v != 0; break;
-  default: *static_cast<int32_t*>(slot.data()) = int32_t(bounded(v, -2147483648.0, 2147483647.0)); break;
+  default:
+    *static_cast<int32_t*>(slot.data()) = int32_t(bounded(v, -2147483648.0, 2147483647.0));
+    break;
   }
 }
 
@@ -119,8 +124,10 @@ void PreparedCall::add(const Argument& a) {
   if (a.kind == Argument::Kind::integer || a.kind == Argument::Kind::real)
     return push(typeOf(a.number), [a](const World&, Cell& cell) { put(cell, a.number, a.value); });
   if (a.kind == Argument::Kind::host)
-    return push(&ffi_type_pointer, [](const World& w, Cell& cell) { cell.p = const_cast<XsHost*>(w.host); });
-  if (a.kind == Argument::Kind::self) return push(&ffi_type_uint64, [](const World& w, Cell& cell) { cell.u = w.self; });
+    return push(&ffi_type_pointer,
+                [](const World& w, Cell& cell) { cell.p = const_cast<XsHost*>(w.host); });
+  if (a.kind == Argument::Kind::self)
+    return push(&ffi_type_uint64, [](const World& w, Cell& cell) { cell.u = w.self; });
   if (a.kind == Argument::Kind::time) {
     const Number type = a.number != Number::none ? a.number : Number::f64;
     return push(typeOf(type), [type](const World& w, Cell& cell) { put(cell, type, w.time); });
@@ -132,7 +139,8 @@ void PreparedCall::add(const Argument& a) {
     Place& written = place(a);
     if (data)
       push(&ffi_type_pointer, [&written](const World&, Cell& cell) {
-        cell.p = written.number != Number::none ? static_cast<void*>(&written.cell) : written.slot.data();
+        cell.p = written.number != Number::none ? static_cast<void*>(&written.cell)
+                                                : written.slot.data();
       });
     if (many && (count || (a.part == Argument::Part::whole && !a.room))) {
       written.fixed = false;
@@ -153,7 +161,9 @@ void PreparedCall::add(const Argument& a) {
         put(cell, asked, numberIn(slot));
     });
   }
-  if (data) push(&ffi_type_pointer, [a](const World& w, Cell& cell) { cell.p = pointerTo(w.input(a.field)); });
+  if (data)
+    push(&ffi_type_pointer,
+         [a](const World& w, Cell& cell) { cell.p = pointerTo(w.input(a.field)); });
   if (count || (many && a.part == Argument::Part::whole))
     push(&ffi_type_uint32, [a, type](const World& w, Cell& cell) {
       Slot& slot = w.input(a.field);
@@ -173,7 +183,8 @@ PreparedCall::PreparedCall(const Call& call, void* function, const XsScriptInfo&
     result = &ffi_type_sint32;
   }
   cells_.resize(types_.size());
-  if (ffi_prep_cif(&frame_, FFI_DEFAULT_ABI, unsigned(types_.size()), result, types_.data()) != FFI_OK)
+  if (ffi_prep_cif(&frame_, FFI_DEFAULT_ABI, unsigned(types_.size()), result, types_.data()) !=
+      FFI_OK)
     throw ProgramError(call.line, "libffi cannot make this call");
 }
 
@@ -186,10 +197,12 @@ XsResult PreparedCall::run(const World& world) {
     written.cell.u = 0;
     if (!state) continue;
     Slot& now = world.input(written.field); // the function finds what the field holds
-    const size_t bytes = written.slot.type() == XS_SFSTRING
-                             ? std::min<size_t>(std::strlen(now.text()), written.room)
-                             : elementBytes(now.type()) * std::min(now.count(), written.slot.count());
-    if (bytes > 0) std::memcpy(written.slot.data(), now.type() == XS_SFSTRING ? now.text() : now.data(), bytes);
+    const size_t bytes =
+        written.slot.type() == XS_SFSTRING
+            ? std::min<size_t>(std::strlen(now.text()), written.room)
+            : elementBytes(now.type()) * std::min(now.count(), written.slot.count());
+    if (bytes > 0)
+      std::memcpy(written.slot.data(), now.type() == XS_SFSTRING ? now.text() : now.data(), bytes);
     if (written.number != Number::none) put(written.cell, written.number, numberIn(now));
   }
   std::vector<void*> addresses(cells_.size());
@@ -200,7 +213,9 @@ XsResult PreparedCall::run(const World& world) {
   Cell result{};
   ffi_call(&frame_, function_, &result, addresses.data());
   const bool yes = int32_t(result.returned) != 0;
-  if (call_.sends != Call::Sends::always && !call_.result && yes != (call_.sends == Call::Sends::ifTrue)) return XS_OK;
+  if (call_.sends != Call::Sends::always && !call_.result &&
+      yes != (call_.sends == Call::Sends::ifTrue))
+    return XS_OK;
   return giveAll(world, result);
 }
 
@@ -224,24 +239,30 @@ XsResult PreparedCall::giveAll(const World& world, const Cell& result) {
       setNumber(slot, get(result, call_.target.number));
     }
     const bool nothing = slot.type() == XS_SFSTRING && !result.p;
-    if (const XsResult answer = nothing ? XS_OK : give(world, call_.target.field, slot.value(1)); answer != XS_OK) return answer;
+    if (const XsResult answer = nothing ? XS_OK : give(world, call_.target.field, slot.value(1));
+        answer != XS_OK)
+      return answer;
   }
   for (Place& written : places_) {
     Slot& slot = written.slot;
     const std::string name = info_.fields[written.field].name;
     if (slot.type() >= XS_MFCOLOR && written.count > written.room) {
       world.log(3, call_.line,
-                call_.function + " says that it wrote " + std::to_string(written.count) + " elements to " + name +
-                    ", which has room for " + std::to_string(written.room));
+                call_.function + " says that it wrote " + std::to_string(written.count) +
+                    " elements to " + name + ", which has room for " +
+                    std::to_string(written.room));
       return XS_FAILED;
     }
     if (written.number != Number::none) setNumber(slot, get(written.cell, written.number));
     if (slot.type() == XS_SFBOOL) setNumber(slot, numberIn(slot));
     if (slot.type() == XS_SFSTRING) {
-      const std::string text(static_cast<const char*>(slot.data()), strnlen(static_cast<const char*>(slot.data()), written.room));
+      const std::string text(static_cast<const char*>(slot.data()),
+                             strnlen(static_cast<const char*>(slot.data()), written.room));
       slot.setText(text.c_str());
     }
-    if (const XsResult answer = give(world, written.field, slot.value(written.count)); answer != XS_OK) return answer;
+    if (const XsResult answer = give(world, written.field, slot.value(written.count));
+        answer != XS_OK)
+      return answer;
   }
   return XS_OK;
 }

@@ -1,4 +1,5 @@
-// call.h: one C function, called with values of VRML's types: its frame by libffi, made once; its memory. [the browser's thread]
+// call.h: one C function, called with values of VRML's types: its frame by libffi, made once; its
+// memory. [the browser's thread]
 #pragma once
 
 #include <deque>
@@ -30,13 +31,15 @@ class PreparedCall {
     const XsHost* host;
     XsNode self;
     double time;
-    std::function<Slot&(uint32_t field)> input;                         // its value now
-    std::function<XsResult(uint32_t field, const XsValue& value)> give; // sends an eventOut, writes a field
+    std::function<Slot&(uint32_t field)> input; // its value now
+    std::function<XsResult(uint32_t field, const XsValue& value)>
+        give; // sends an eventOut, writes a field
     std::function<void(int32_t severity, uint32_t line, std::string what)> log;
   };
 
   PreparedCall(const Call& call, void* function, const XsScriptInfo& info); // throws ProgramError
-  // Calls it. XS_FAILED (after logging): it wrote more than there is room for, or the host refused a value.
+  // Calls it. XS_FAILED (after logging): it wrote more than there is room for, or the host refused
+  // a value.
   XsResult run(const World& world);
   const Call& call() const { return call_; }
 

@@ -1,4 +1,3 @@
-// library.cpp: see library.h.
 #include "library.h"
 
 #include <map>
@@ -14,11 +13,13 @@ namespace fs = std::filesystem;
 std::vector<std::string> searchedFolders() {
   static const char here = 0;
   std::vector<std::string> folders;
-  if (const char* configured = secure_getenv("XVRML_NATIVE_PATH")) plugin_files::appendList(folders, configured);
+  if (const char* configured = secure_getenv("XVRML_NATIVE_PATH"))
+    plugin_files::appendList(folders, configured);
   Dl_info info{};
   std::error_code error;
   if (dladdr(&here, &info) != 0 && info.dli_fname) {
-    const fs::path installed = fs::canonical(fs::path(info.dli_fname).parent_path() / "../native", error);
+    const fs::path installed =
+        fs::canonical(fs::path(info.dli_fname).parent_path() / "../native", error);
     if (!error) folders.push_back(installed.string());
   }
   return folders;
@@ -44,8 +45,8 @@ void* loadLibrary(const std::string& name) {
   const std::string path = find(name, folders);
   if (path.empty())
     throw std::runtime_error("there is no library \"" + name +
-                             "\" in the folders of $XVRML_NATIVE_PATH and of the installation (" + plugin_files::listed(folders) +
-                             ")");
+                             "\" in the folders of $XVRML_NATIVE_PATH and of the installation (" +
+                             plugin_files::listed(folders) + ")");
   plugin_files::checkFile(path, "native library");
   static std::mutex mutex;
   static auto& known = *new std::map<std::string, void*>();

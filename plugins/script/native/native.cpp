@@ -1,5 +1,6 @@
-// native.cpp: the script engine `native`: C functions of shared libraries, called with VRML's values (docs/scripts.md, "Native
-// functions"). What such a function does cannot be bounded, so only trusted worlds may name one. [the browser's thread]
+// native.cpp: the script engine `native`: C functions of shared libraries, called with VRML's
+// values (docs/scripts.md, "Native functions"). What such a function does cannot be bounded, so
+// only trusted worlds may name one. [the browser's thread]
 #include <algorithm>
 #include <memory>
 #include <new>
@@ -18,7 +19,8 @@ namespace {
 
 class Interpreter {
  public:
-  Interpreter(const XsHost* host, const XsScriptInfo* info) : host_(host), info_(*info), inputs_(info->fieldCount) {
+  Interpreter(const XsHost* host, const XsScriptInfo* info)
+      : host_(host), info_(*info), inputs_(info->fieldCount) {
     for (uint32_t i = 0; i < info_.fieldCount; ++i) inputs_[i] = Slot(info_.fields[i].type);
   }
   ~Interpreter() {
@@ -33,17 +35,19 @@ class Interpreter {
       const std::string_view text(info_.text.data, info_.text.bytes);
       void* library = loadLibrary(libraryName(text));
       const Program program = readProgram(
-          text, info_, [&](const std::string& name) { return dlsym(library, name.c_str()) != nullptr; },
+          text, info_,
+          [&](const std::string& name) { return dlsym(library, name.c_str()) != nullptr; },
           [&](const std::string& name) { return isOwn(library, name); });
       for (const Call& call : program.calls) {
         line = call.line;
-        calls_.push_back(std::make_unique<PreparedCall>(call, dlsym(library, call.function.c_str()), info_));
+        calls_.push_back(
+            std::make_unique<PreparedCall>(call, dlsym(library, call.function.c_str()), info_));
       }
       warnUnused(program);
       return XS_OK;
-    } catch (const ProgramError& error) { log(3, error.line, error.what()); } catch (const std::exception& error) {
-      log(3, line, error.what());
-    }
+    } catch (const ProgramError& error) {
+      log(3, error.line, error.what());
+    } catch (const std::exception& error) { log(3, line, error.what()); }
     return XS_FAILED;
   }
 
@@ -51,9 +55,12 @@ class Interpreter {
     letGo(event.index);
     inputs_[event.index].copy(event.value);
     if (elementType(event.value.type) == XS_SFNODE)
-      for (uint32_t i = 0; i < event.value.count; ++i) host_->retain(host_, info_.self, event.value.of.nodes[i]);
+      for (uint32_t i = 0; i < event.value.count; ++i)
+        host_->retain(host_, info_.self, event.value.of.nodes[i]);
     arrived_ = true;
-    return run(event.time, [&](const Call& call) { return call.when == Call::When::event && call.event == event.index; });
+    return run(event.time, [&](const Call& call) {
+      return call.when == Call::When::event && call.event == event.index;
+    });
   }
   // Functions of several inputs are called once they are all there.
   XsResult eventsProcessed(double time) {
@@ -70,7 +77,8 @@ class Interpreter {
     link_map* map = nullptr;
     Dl_info info{};
     void* function = dlsym(library, name.c_str());
-    return function && dlinfo(library, RTLD_DI_LINKMAP, &map) == 0 && dladdr(function, &info) != 0 &&
+    return function && dlinfo(library, RTLD_DI_LINKMAP, &map) == 0 &&
+           dladdr(function, &info) != 0 &&
            reinterpret_cast<uintptr_t>(info.dli_fbase) == uintptr_t(map->l_addr);
   }
 
@@ -83,7 +91,9 @@ class Interpreter {
           time,
           [this](uint32_t field) -> Slot& { return input(field); },
           [this](uint32_t field, const XsValue& value) { return give(field, value); },
-          [this](int32_t severity, uint32_t line, const std::string& what) { log(severity, line, what); }};
+          [this](int32_t severity, uint32_t line, const std::string& what) {
+            log(severity, line, what);
+          }};
       for (const auto& call : calls_)
         if (wanted(call->call()) && answer == XS_OK) answer = call->run(world);
     } catch (const std::exception& error) {
@@ -96,16 +106,21 @@ class Interpreter {
   Slot& input(uint32_t field) {
     XsValue value;
     const bool own = info_.fields[field].access == XS_FIELD;
-    if (own && host_->read(host_, info_.self, info_.self, info_.fields[field].name, &value) == XS_OK) inputs_[field].copy(value);
+    if (own &&
+        host_->read(host_, info_.self, info_.self, info_.fields[field].name, &value) == XS_OK)
+      inputs_[field].copy(value);
     return inputs_[field];
   }
   XsResult give(uint32_t field, const XsValue& value) {
     const XsField& to = info_.fields[field];
-    return (to.access == XS_EVENT_OUT ? host_->send : host_->write)(host_, info_.self, to.name, &value);
+    return (to.access == XS_EVENT_OUT ? host_->send : host_->write)(host_, info_.self, to.name,
+                                                                    &value);
   }
   // The numbers of nodes in an eventIn's value are retained: a later function uses them.
   void letGo(uint32_t field) {
-    if (info_.fields[field].access != XS_EVENT_IN || elementType(inputs_[field].type()) != XS_SFNODE) return;
+    if (info_.fields[field].access != XS_EVENT_IN ||
+        elementType(inputs_[field].type()) != XS_SFNODE)
+      return;
     const auto* nodes = static_cast<const XsNode*>(inputs_[field].data());
     for (uint32_t i = 0; i < inputs_[field].count(); ++i)
       if (nodes[i]) host_->release(host_, info_.self, nodes[i]);
@@ -130,7 +145,8 @@ class Interpreter {
     for (uint32_t i = 0; i < info_.fieldCount; ++i)
       if (info_.fields[i].access != XS_FIELD && !used.contains(i))
         log(2, 0,
-            std::string("native: no function ") + (info_.fields[i].access == XS_EVENT_IN ? "takes " : "gives ") +
+            std::string("native: no function ") +
+                (info_.fields[i].access == XS_EVENT_IN ? "takes " : "gives ") +
                 info_.fields[i].name);
   }
 
@@ -141,7 +157,9 @@ class Interpreter {
   bool arrived_ = false;
 };
 
-Interpreter& of(XsInterpreter interpreter) { return *reinterpret_cast<Interpreter*>(uintptr_t(interpreter)); }
+Interpreter& of(XsInterpreter interpreter) {
+  return *reinterpret_cast<Interpreter*>(uintptr_t(interpreter));
+}
 
 XsResult create(const XsHost* host, const XsScriptInfo* info, XsInterpreter* made) {
   try {
@@ -159,10 +177,11 @@ XsResult shutdown(XsInterpreter i, double time) { return of(i).at(Call::When::sh
 XsResult tick(XsInterpreter i, double time) { return of(i).at(Call::When::poll, time); }
 
 const char* const schemes[] = {"native", nullptr};
-const XsEngine engine = {sizeof(XsEngine), XS_NEEDS_TRUST, "native", "C functions of shared libraries, through libffi",
-                         schemes,          nullptr,        nullptr,  create,
-                         destroy,          initialize,     event,    eventsProcessed,
-                         shutdown,         tick,           nullptr};
+const XsEngine engine = {
+    sizeof(XsEngine), XS_NEEDS_TRUST, "native", "C functions of shared libraries, through libffi",
+    schemes,          nullptr,        nullptr,  create,
+    destroy,          initialize,     event,    eventsProcessed,
+    shutdown,         tick,           nullptr};
 const XsEngine* const engines[] = {&engine};
 
 } // namespace

@@ -1,7 +1,8 @@
 // program.cpp: see program.h. The grammar is that of docs/scripts.md, "Native functions":
 //   program = library [ "#" call { (newline | ";") call } ]
-//   call    = [ when ":" ] [ "if" | "unless" | [type] name "=" ] function [ "(" [ argument { "," argument } ] ")" ]
-//   argument = number | [type] [ "&" ] name [ ".data" | ".count" | "[" number "]" ]
+//   call    = [ when ":" ] [ "if" | "unless" | [type] name "=" ] function [ "(" [ argument { ","
+//   argument } ] ")" ] argument = number | [type] [ "&" ] name [ ".data" | ".count" | "[" number
+//   "]" ]
 #include "program.h"
 
 #include <algorithm>
@@ -19,20 +20,24 @@ struct Word {
   const char* name;
   Number number;
 };
-constexpr Word words[] = {{"float", Number::f32},    {"double", Number::f64},  {"int", Number::i32},
-                          {"unsigned", Number::u32}, {"long", Number::i64},    {"short", Number::i16},
-                          {"char", Number::i8},      {"bool", Number::u8},     {"size_t", Number::u64},
-                          {"int8_t", Number::i8},    {"uint8_t", Number::u8},  {"int16_t", Number::i16},
-                          {"uint16_t", Number::u16}, {"int32_t", Number::i32}, {"uint32_t", Number::u32},
-                          {"int64_t", Number::i64},  {"uint64_t", Number::u64}};
+constexpr Word words[] = {
+    {"float", Number::f32},    {"double", Number::f64},  {"int", Number::i32},
+    {"unsigned", Number::u32}, {"long", Number::i64},    {"short", Number::i16},
+    {"char", Number::i8},      {"bool", Number::u8},     {"size_t", Number::u64},
+    {"int8_t", Number::i8},    {"uint8_t", Number::u8},  {"int16_t", Number::i16},
+    {"uint16_t", Number::u16}, {"int32_t", Number::i32}, {"uint32_t", Number::u32},
+    {"int64_t", Number::i64},  {"uint64_t", Number::u64}};
 static_assert(sizeof(long) == 8 && sizeof(size_t) == 8);
 
-bool isScalar(XsType type) { return type == XS_SFBOOL || type == XS_SFFLOAT || type == XS_SFINT32 || type == XS_SFTIME; }
+bool isScalar(XsType type) {
+  return type == XS_SFBOOL || type == XS_SFFLOAT || type == XS_SFINT32 || type == XS_SFTIME;
+}
 bool isLetter(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
 
 class Reader {
  public:
-  Reader(std::string_view text, uint32_t line, const XsScriptInfo& info) : text_(text), line_(line), info_(info) {}
+  Reader(std::string_view text, uint32_t line, const XsScriptInfo& info)
+      : text_(text), line_(line), info_(info) {}
 
   Call call() {
     Call call;
@@ -77,15 +82,17 @@ class Reader {
       Argument argument;
       argument.field = i;
       const XsAccess access = info_.fields[i].access;
-      const bool event = call.when == Call::When::events || (call.when == Call::When::event && call.event == i);
-      if (access == XS_FIELD || (access == XS_EVENT_IN && event)) call.arguments.push_back(argument);
+      const bool event =
+          call.when == Call::When::events || (call.when == Call::When::event && call.event == i);
+      if (access == XS_FIELD || (access == XS_EVENT_IN && event))
+        call.arguments.push_back(argument);
       argument.write = true;
       if (access == XS_EVENT_OUT && !quiet) outs.push_back(argument);
     }
     if (call.when == Call::When::poll) {
       if (call.sends == Call::Sends::always && !call.result) call.sends = Call::Sends::ifTrue;
-    } else if (outs.size() == 1 && isScalar(info_.fields[outs[0].field].type) && call.sends == Call::Sends::always &&
-               !call.result) {
+    } else if (outs.size() == 1 && isScalar(info_.fields[outs[0].field].type) &&
+               call.sends == Call::Sends::always && !call.result) {
       call.result = true;
       call.target = outs[0];
     }
@@ -116,8 +123,9 @@ class Reader {
   }
 
   void when(Call& call, const std::string& word) const {
-    constexpr std::pair<const char*, Call::When> fixed[] = {
-        {"initialize", Call::When::initialize}, {"poll", Call::When::poll}, {"shutdown", Call::When::shutdown}};
+    constexpr std::pair<const char*, Call::When> fixed[] = {{"initialize", Call::When::initialize},
+                                                            {"poll", Call::When::poll},
+                                                            {"shutdown", Call::When::shutdown}};
     for (uint32_t i = 0; i < info_.fieldCount; ++i)
       if (info_.fields[i].access == XS_EVENT_IN && word == info_.fields[i].name) {
         call.when = Call::When::event;
@@ -140,28 +148,34 @@ class Reader {
         argument.field = i;
         argument.write = info_.fields[i].access == XS_EVENT_OUT;
         if (number != Number::none && !isScalar(info_.fields[i].type))
-          fail("'" + word + "': only SFBool, SFFloat, SFInt32 and SFTime can have another type in C");
+          fail("'" + word +
+               "': only SFBool, SFFloat, SFInt32 and SFTime can have another type in C");
         return argument;
       }
     if (word == "host" || word == "self" || word == "time") {
-      argument.kind = word == "host" ? Argument::Kind::host : word == "self" ? Argument::Kind::self : Argument::Kind::time;
+      argument.kind = word == "host"   ? Argument::Kind::host
+                      : word == "self" ? Argument::Kind::self
+                                       : Argument::Kind::time;
       return argument;
     }
     fail("'" + word + "' is no field or event of the Script");
   }
 
   void checkResult(const Argument& target) const {
-    const XsField* field = target.kind == Argument::Kind::field ? &info_.fields[target.field] : nullptr;
+    const XsField* field =
+        target.kind == Argument::Kind::field ? &info_.fields[target.field] : nullptr;
     if (!field || field->access == XS_EVENT_IN) fail("a result goes to an eventOut or a field");
     if (!isScalar(field->type) && field->type != XS_SFSTRING && field->type != XS_SFNODE)
-      fail(std::string("'") + field->name +
-           "': a function returns SFBool, SFFloat, SFInt32, SFTime, SFString or SFNode; other types "
-           "are arguments that it writes to");
+      fail(
+          std::string("'") + field->name +
+          "': a function returns SFBool, SFFloat, SFInt32, SFTime, SFString or SFNode; other types "
+          "are arguments that it writes to");
   }
 
   double number() {
     double value = 0;
-    const auto [end, error] = std::from_chars(text_.data() + at_, text_.data() + text_.size(), value);
+    const auto [end, error] =
+        std::from_chars(text_.data() + at_, text_.data() + text_.size(), value);
     if (error != std::errc() || end == text_.data() + at_) fail("a number was expected");
     at_ = size_t(end - text_.data());
     return value;
@@ -175,8 +189,10 @@ class Reader {
     const bool real = written.find_first_of(".eE") != written.npos;
     argument.kind = real ? Argument::Kind::real : Argument::Kind::integer;
     argument.number = type != Number::none ? type : real ? Number::f64 : Number::i32;
-    const double most = argument.number == Number::i32 ? 2147483647.0 : 9.0e15; // whole numbers of a double
-    if (!real && !(argument.value >= -most - 1 && argument.value <= most)) fail("a number that is too large");
+    const double most =
+        argument.number == Number::i32 ? 2147483647.0 : 9.0e15; // whole numbers of a double
+    if (!real && !(argument.value >= -most - 1 && argument.value <= most))
+      fail("a number that is too large");
     return argument;
   }
 
@@ -199,7 +215,8 @@ class Reader {
     if (argument.kind != Argument::Kind::field) return argument;
     const XsField& field = info_.fields[argument.field];
     if (address) {
-      if (field.access == XS_EVENT_IN) fail(std::string("'&") + field.name + "': an eventIn is not written to");
+      if (field.access == XS_EVENT_IN)
+        fail(std::string("'&") + field.name + "': an eventIn is not written to");
       argument.write = true;
     }
     if (take('.')) {
@@ -209,15 +226,16 @@ class Reader {
     } else if (take('[')) {
       if (!more()) fail("a number was expected");
       const double room = number();
-      if (!argument.write || (field.type < XS_MFCOLOR && field.type != XS_SFSTRING) || !(room >= 1 && room <= mostRoom) ||
-          room != double(uint32_t(room)))
+      if (!argument.write || (field.type < XS_MFCOLOR && field.type != XS_SFSTRING) ||
+          !(room >= 1 && room <= mostRoom) || room != double(uint32_t(room)))
         fail(std::string("'") + field.name +
              "[...]': a number of elements that the function writes to an MF type or an SFString");
       argument.room = uint32_t(room);
       if (!take(']')) fail("']' was expected");
     }
     if (argument.write && (field.type == XS_SFIMAGE || field.type == XS_MFSTRING))
-      fail(std::string("'") + field.name + "': a function cannot write an SFImage or MFString; give it host and self");
+      fail(std::string("'") + field.name +
+           "': a function cannot write an SFImage or MFString; give it host and self");
     return argument;
   }
 
@@ -228,8 +246,10 @@ class Reader {
 };
 
 std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && std::isspace(static_cast<unsigned char>(text.front()))) text.remove_prefix(1);
-  while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back()))) text.remove_suffix(1);
+  while (!text.empty() && std::isspace(static_cast<unsigned char>(text.front())))
+    text.remove_prefix(1);
+  while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back())))
+    text.remove_suffix(1);
   return text;
 }
 
@@ -245,18 +265,23 @@ void callsByName(Program& program, const XsScriptInfo& info, const Lookup& own) 
     looked += (looked.empty() ? "" : ", ") + name;
     if (own(name)) program.calls.push_back(Reader(name + ":" + name, 1, info).call());
   }
-  if (program.calls.empty()) throw ProgramError(1, program.library + " has none of the functions " + looked);
+  if (program.calls.empty())
+    throw ProgramError(1, program.library + " has none of the functions " + looked);
 }
 
 } // namespace
 
-std::string libraryName(std::string_view text) { return std::string(trimmed(text.substr(0, text.find('#')))); }
+std::string libraryName(std::string_view text) {
+  return std::string(trimmed(text.substr(0, text.find('#'))));
+}
 
-Program readProgram(std::string_view text, const XsScriptInfo& info, const Lookup& exports, const Lookup& own) {
+Program readProgram(std::string_view text, const XsScriptInfo& info, const Lookup& exports,
+                    const Lookup& own) {
   Program program;
   program.library = libraryName(text);
   const size_t hash = text.find('#');
-  uint32_t line = 1 + uint32_t(std::count(text.begin(), text.begin() + long(std::min(hash, text.size())), '\n'));
+  uint32_t line = 1 + uint32_t(std::count(text.begin(),
+                                          text.begin() + long(std::min(hash, text.size())), '\n'));
   for (size_t at = hash == text.npos ? text.size() : hash + 1; at < text.size();) {
     const size_t end = std::min(text.find_first_of("\n;", at), text.size());
     const std::string_view one = trimmed(text.substr(at, end - at));
@@ -264,7 +289,8 @@ Program readProgram(std::string_view text, const XsScriptInfo& info, const Looku
       if (program.calls.size() >= mostCalls) throw ProgramError(line, "too many calls");
       program.calls.push_back(Reader(one, line, info).call());
       const std::string& function = program.calls.back().function;
-      if (!exports(function)) throw ProgramError(line, program.library + " has no function '" + function + "'");
+      if (!exports(function))
+        throw ProgramError(line, program.library + " has no function '" + function + "'");
     }
     if (end < text.size() && text[end] == '\n') ++line;
     at = end + 1;

@@ -1,4 +1,3 @@
-// slots.cpp: see slots.h.
 #include "slots.h"
 
 #include <cstring>
@@ -32,7 +31,8 @@ void Slot::copy(const XsValue& from) {
   const size_t bytes = elementBytes(type_) * from.count;
   if (bytes > 0) std::memcpy(words_.data(), from.of.data, bytes);
   if (elementType(type_) == XS_SFSTRING)
-    for (uint32_t i = 0; i < from.count; ++i) texts_[i].assign(from.of.strings[i].data, from.of.strings[i].bytes);
+    for (uint32_t i = 0; i < from.count; ++i)
+      texts_[i].assign(from.of.strings[i].data, from.of.strings[i].bytes);
   if (type_ == XS_SFIMAGE) {
     image_ = *from.of.images;
     const size_t size = size_t(image_.width) * size_t(image_.height) * size_t(image_.components);
@@ -56,7 +56,9 @@ void Slot::setText(const char* text) {
   point();
 }
 
-void* Slot::data() { return type_ == XS_MFSTRING ? static_cast<void*>(pointers_.data()) : words_.data(); }
+void* Slot::data() {
+  return type_ == XS_MFSTRING ? static_cast<void*>(pointers_.data()) : words_.data();
+}
 const char* Slot::text() { return texts_.empty() ? "" : texts_[0].c_str(); }
 const XsImage* Slot::image() { return &image_; }
 

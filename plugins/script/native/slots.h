@@ -1,4 +1,5 @@
-// slots.h: the memory that C functions read and write: one slot for each field and event of a Script. [the browser's thread]
+// slots.h: the memory that C functions read and write: one slot for each field and event of a
+// Script. [the browser's thread]
 #pragma once
 
 #include <string>
@@ -21,7 +22,8 @@ class Slot {
   void copy(const XsValue& from);
   // Room for this many elements (characters of an SFString), all zero.
   void makeRoom(uint32_t elements);
-  // What the function wrote, as a value; good until the slot changes. count: elements of an MF type.
+  // What the function wrote, as a value; good until the slot changes. count: elements of an MF
+  // type.
   XsValue value(uint32_t count);
   void setText(const char* text);
 

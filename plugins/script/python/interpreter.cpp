@@ -1,4 +1,3 @@
-// interpreter.cpp: see interpreter.h.
 #include "interpreter.h"
 
 #include <algorithm>
@@ -16,16 +15,19 @@ std::map<uintptr_t, int>& scriptsOf() {
   return counts;
 }
 
-// An assignment to a node's attribute: of the Script that is running on this thread, if it is of the same world.
+// An assignment to a node's attribute: of the Script that is running on this thread, if it is of
+// the same world.
 bool assign(uintptr_t browser, uintptr_t node, const std::string& field, const py::object& value) {
   Interpreter* const script = Interpreter::running();
   if (!script || script->browser() != browser) return false;
-  const XsNode number = script->host()->number(script->host(), script->self(), reinterpret_cast<void*>(node));
+  const XsNode number =
+      script->host()->number(script->host(), script->self(), reinterpret_cast<void*>(node));
   script->post(number, field, value);
   return true;
 }
 
-// In a world's file a program is indented as its surroundings are. Its first line stands behind "python:".
+// In a world's file a program is indented as its surroundings are. Its first line stands behind
+// "python:".
 py::object dedented(const py::object& text) {
   const py::tuple parts = text.attr("partition")("\n");
   const py::object rest = py::module_::import("textwrap").attr("dedent")(parts[2]);
@@ -37,7 +39,8 @@ py::tuple fitting(const py::object& function, const py::tuple& arguments) {
   if (!PyFunction_Check(function.ptr())) return arguments;
   const py::object code = function.attr("__code__");
   const bool any = code.attr("co_flags").cast<int>() & CO_VARARGS;
-  const size_t takes = any ? arguments.size() : std::min(arguments.size(), code.attr("co_argcount").cast<size_t>());
+  const size_t takes =
+      any ? arguments.size() : std::min(arguments.size(), code.attr("co_argcount").cast<size_t>());
   py::tuple fit(takes);
   for (size_t i = 0; i < takes; ++i) fit[i] = arguments[i];
   return fit;
@@ -54,10 +57,13 @@ std::string textOf(const py::handle& object) {
 Interpreter* Interpreter::running() { return current; }
 
 Interpreter::Interpreter(const XsHost* host, const XsScriptInfo* info)
-    : host_(host), info_(*info), file_(*info->scheme == 0), link_(std::make_shared<Interpreter*>(this)) {
-  if (info_.size >= sizeof(XsScriptInfo) && info_.memory > 0) memory_.most = int64_t(std::min<uint64_t>(info_.memory, INT64_MAX));
+    : host_(host), info_(*info), file_(*info->scheme == 0),
+      link_(std::make_shared<Interpreter*>(this)) {
+  if (info_.size >= sizeof(XsScriptInfo) && info_.memory > 0)
+    memory_.most = int64_t(std::min<uint64_t>(info_.memory, INT64_MAX));
   for (uint32_t i = 0; i < info_.fieldCount; ++i) fields_[info_.fields[i].name] = &info_.fields[i];
-  nodes_ = {[this](XsNode number) { return nodeOf(number); }, [this](const py::handle& node) { return numberOf(node); }};
+  nodes_ = {[this](XsNode number) { return nodeOf(number); },
+            [this](const py::handle& node) { return numberOf(node); }};
 }
 
 Interpreter::~Interpreter() {
@@ -129,22 +135,28 @@ XsResult Interpreter::failed(py::error_already_set& error, bool stopped) {
 // "ZeroDivisionError: division by zero", and the last line of the program that led there.
 std::string Interpreter::describe(py::error_already_set& error, uint32_t& line) const {
   std::string text = textOf(error.type().attr("__name__"));
-  if (const std::string value = error.value() ? textOf(error.value()) : ""; !value.empty()) text += ": " + value;
+  if (const std::string value = error.value() ? textOf(error.value()) : ""; !value.empty())
+    text += ": " + value;
   if (error.matches(PyExc_MemoryError))
-    text += memory_.most == INT64_MAX ? "" : " (a Script may use " + std::to_string(memory_.most >> 20) + " MiB)";
+    text += memory_.most == INT64_MAX
+                ? ""
+                : " (a Script may use " + std::to_string(memory_.most >> 20) + " MiB)";
   try {
-    if (error.matches(PyExc_SyntaxError) && error.value() && textOf(error.value().attr("filename")) == info_.origin) {
+    if (error.matches(PyExc_SyntaxError) && error.value() &&
+        textOf(error.value().attr("filename")) == info_.origin) {
       line = error.value().attr("lineno").cast<uint32_t>();
       return textOf(error.type().attr("__name__")) + ": " + textOf(error.value().attr("msg"));
     }
     std::string elsewhere;
-    for (py::object at = error.trace() ? error.trace() : py::object(py::none()); !at.is_none(); at = at.attr("tb_next")) {
+    for (py::object at = error.trace() ? error.trace() : py::object(py::none()); !at.is_none();
+         at = at.attr("tb_next")) {
       const py::object frame = at.attr("tb_frame");
       if (frame.attr("f_globals").ptr() == globals_.ptr()) {
         line = at.attr("tb_lineno").cast<uint32_t>();
         elsewhere.clear();
       } else {
-        elsewhere = " (in " + textOf(frame.attr("f_code").attr("co_filename")) + ":" + textOf(at.attr("tb_lineno")) + ")";
+        elsewhere = " (in " + textOf(frame.attr("f_code").attr("co_filename")) + ":" +
+                    textOf(at.attr("tb_lineno")) + ")";
       }
     }
     return text + elsewhere;
@@ -192,7 +204,8 @@ XsResult Interpreter::load() {
   return run([&] {
     py::object text = toText(info_.text);
     if (!file_) text = dedented(text);
-    const py::object code = py::module_::import("builtins").attr("compile")(text, info_.origin, "exec");
+    const py::object code =
+        py::module_::import("builtins").attr("compile")(text, info_.origin, "exec");
     if (!PyEval_EvalCode(code.ptr(), globals_.ptr(), globals_.ptr())) throw py::error_already_set();
   });
 }
@@ -200,7 +213,9 @@ XsResult Interpreter::load() {
 XsResult Interpreter::event(const XsEvent& event) {
   const py::object function = globals_.attr("get")(event.name);
   if (function.is_none()) return XS_OK;
-  return run([&] { function(*fitting(function, py::make_tuple(toPython(event.value, nodes_), event.time))); });
+  return run([&] {
+    function(*fitting(function, py::make_tuple(toPython(event.value, nodes_), event.time)));
+  });
 }
 
 XsResult Interpreter::call(const char* name) {
@@ -216,7 +231,8 @@ const XsField* Interpreter::find(const std::string& name) const {
 py::object Interpreter::get(const std::string& name) {
   const XsField* field = find(name);
   if (!field) throw py::attribute_error("the Script has no field or eventOut " + name);
-  if (field->access == XS_EVENT_IN) throw py::attribute_error(name + " is an eventIn; its value comes to the function " + name);
+  if (field->access == XS_EVENT_IN)
+    throw py::attribute_error(name + " is an eventIn; its value comes to the function " + name);
   XsValue value;
   check(host_->read(host_, info_.self, info_.self, name.c_str(), &value));
   return toPython(value, nodes_);
@@ -225,7 +241,8 @@ py::object Interpreter::get(const std::string& name) {
 void Interpreter::set(const std::string& name, const py::handle& object) {
   const XsField* field = find(name);
   if (!field) throw py::attribute_error("the Script has no field or eventOut " + name);
-  if (field->access == XS_EVENT_IN) throw py::attribute_error(name + " is an eventIn: events come from there");
+  if (field->access == XS_EVENT_IN)
+    throw py::attribute_error(name + " is an eventIn: events come from there");
   const Owned owned(object, field->type, name, nodes_);
   const auto give = field->access == XS_EVENT_OUT ? host_->send : host_->write;
   check(give(host_, info_.self, name.c_str(), &owned.value()));
@@ -263,7 +280,8 @@ void Interpreter::check(XsResult result) const {
 
 py::object Interpreter::nodeOf(XsNode number) const {
   if (number == 0) return py::none();
-  return binding_.attr("_script_node")(browser_, reinterpret_cast<uintptr_t>(host_->object(host_, info_.self, number)));
+  return binding_.attr("_script_node")(
+      browser_, reinterpret_cast<uintptr_t>(host_->object(host_, info_.self, number)));
 }
 
 // None, a Node, or `script`, which stands for the Script's own node.
@@ -272,7 +290,8 @@ XsNode Interpreter::numberOf(const py::handle& object) const {
   if (const Interpreter* script = scriptOf(object); script && script->browser() == browser_)
     return script == this ? info_.self : 0;
   if (!py::isinstance(object, binding_.attr("Node")))
-    throw py::type_error("a Node or None expected, not " + textOf(py::type::handle_of(object).attr("__name__")));
+    throw py::type_error("a Node or None expected, not " +
+                         textOf(py::type::handle_of(object).attr("__name__")));
   const auto address = binding_.attr("_script_address")(object, browser_).cast<uintptr_t>();
   return host_->number(host_, info_.self, reinterpret_cast<void*>(address));
 }
@@ -283,10 +302,12 @@ void Interpreter::print(const py::args& values, const py::kwargs& options) {
     return;
   }
   const auto option = [&](const char* name, const char* usual) {
-    return options.contains(name) && !options[name].is_none() ? textOf(options[name]) : std::string(usual);
+    return options.contains(name) && !options[name].is_none() ? textOf(options[name])
+                                                              : std::string(usual);
   };
   const std::string between = option("sep", " ");
-  for (size_t i = 0; i < values.size(); ++i) printed_ += (i > 0 ? between : "") + fromText(py::str(values[i]));
+  for (size_t i = 0; i < values.size(); ++i)
+    printed_ += (i > 0 ? between : "") + fromText(py::str(values[i]));
   printed_ += option("end", "\n");
   for (size_t end = 0; (end = printed_.find('\n')) != printed_.npos; printed_.erase(0, end + 1))
     log(0, 0, printed_.substr(0, end));

@@ -1,5 +1,5 @@
-// interpreter.h: a Script in Python: its module, what its functions find there, and what becomes of their exceptions. All members
-// with Python's lock. [the browser's thread]
+// interpreter.h: a Script in Python: its module, what its functions find there, and what becomes of
+// their exceptions. All members with Python's lock. [the browser's thread]
 #pragma once
 
 #include <memory>

@@ -1,5 +1,6 @@
-// memory.cpp: see memory.h. Small objects come from arenas of Python's own allocator, all others from the raw one: these two are
-// wrapped. The context stays that of the wrapped functions, so that a thread that allocates while they change finds a good pair.
+// memory.cpp: Small objects come from arenas of Python's own allocator, all others
+// from the raw one: these two are wrapped. The context stays that of the wrapped functions, so that
+// a thread that allocates while they change finds a good pair.
 #include "memory.h"
 
 #include <cstdlib>
@@ -15,13 +16,18 @@ thread_local Account* account = nullptr;
 PyMemAllocatorEx raw;
 PyObjectArenaAllocator arenas;
 
-bool mayTake(size_t bytes) { return !account || (bytes <= size_t(INT64_MAX) && account->used + int64_t(bytes) <= account->most); }
+bool mayTake(size_t bytes) {
+  return !account ||
+         (bytes <= size_t(INT64_MAX) && account->used + int64_t(bytes) <= account->most);
+}
 void* taken(void* memory) {
   if (memory && account) account->used += int64_t(malloc_usable_size(memory));
   return memory;
 }
 
-void* rawMalloc(void* context, size_t bytes) { return mayTake(bytes) ? taken(raw.malloc(context, bytes)) : nullptr; }
+void* rawMalloc(void* context, size_t bytes) {
+  return mayTake(bytes) ? taken(raw.malloc(context, bytes)) : nullptr;
+}
 void* rawCalloc(void* context, size_t count, size_t bytes) {
   if (bytes > 0 && count > size_t(INT64_MAX) / bytes) return nullptr;
   return mayTake(count * bytes) ? taken(raw.calloc(context, count, bytes)) : nullptr;
@@ -54,7 +60,9 @@ bool checksItself() {
 #ifdef Py_DEBUG
   return true;
 #else
-  if (std::getenv("PYTHONMALLOC") || std::getenv("PYTHONDEVMODE") || std::getenv("PYTHONTRACEMALLOC")) return true;
+  if (std::getenv("PYTHONMALLOC") || std::getenv("PYTHONDEVMODE") ||
+      std::getenv("PYTHONTRACEMALLOC"))
+    return true;
   if (!Py_IsInitialized()) return false;
   PyObject* flags = PySys_GetObject("flags"); // borrowed
   PyObject* mode = flags ? PyObject_GetAttrString(flags, "dev_mode") : nullptr;

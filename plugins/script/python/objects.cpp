@@ -1,4 +1,5 @@
-// objects.cpp: the objects `script` and `browser` of a Script in Python. With Python's lock. [the browser's thread]
+// objects.cpp: the objects `script` and `browser` of a Script in Python. With Python's lock. [the
+// browser's thread]
 #include <pybind11/pybind11.h>
 
 #include "interpreter.h"
@@ -11,7 +12,8 @@ struct Linked {
   // Of the Script whose function is running: the host knows no other.
   Interpreter& script() const {
     if (!*link) throw py::value_error("the Script has ended");
-    if (Interpreter::running() != *link) throw py::value_error("no function of this Script is running");
+    if (Interpreter::running() != *link)
+      throw py::value_error("no function of this Script is running");
     return **link;
   }
 };
@@ -53,18 +55,19 @@ py::object createFromString(const BrowserObject& self, const py::str& vrml) {
   return toPython(made, s.nodes());
 }
 
-void createFromUrl(const BrowserObject& self, const py::object& urls, const py::object& node, const std::string& event) {
+void createFromUrl(const BrowserObject& self, const py::object& urls, const py::object& node,
+                   const std::string& event) {
   Interpreter& s = self.script();
   const Texts list(urls, "urls");
-  s.check(s.host()->createVrmlFromUrl(s.host(), s.self(), uint32_t(list.strings.size()), list.strings.data(), s.numberOf(node),
-                                      event.c_str()));
+  s.check(s.host()->createVrmlFromUrl(s.host(), s.self(), uint32_t(list.strings.size()),
+                                      list.strings.data(), s.numberOf(node), event.c_str()));
 }
 
 void loadUrl(const BrowserObject& self, const py::object& urls, const py::object& parameters) {
   Interpreter& s = self.script();
   const Texts list(urls, "urls"), more(parameters, "parameters");
-  s.check(s.host()->loadUrl(s.host(), s.self(), uint32_t(list.strings.size()), list.strings.data(), uint32_t(more.strings.size()),
-                            more.strings.data()));
+  s.check(s.host()->loadUrl(s.host(), s.self(), uint32_t(list.strings.size()), list.strings.data(),
+                            uint32_t(more.strings.size()), more.strings.data()));
 }
 
 void replaceWorld(const BrowserObject& self, const py::object& nodes) {
@@ -73,9 +76,11 @@ void replaceWorld(const BrowserObject& self, const py::object& nodes) {
   s.check(s.host()->replaceWorld(s.host(), s.self(), owned.value().count, owned.value().of.nodes));
 }
 
-using Router = XsResult (*XsHost::*)(const XsHost*, XsNode, XsNode, const char*, XsNode, const char*);
-template <Router change> void route(const BrowserObject& self, const py::object& from, const std::string& out,
-                                    const py::object& to, const std::string& in) {
+using Router = XsResult (*XsHost::*)(const XsHost*, XsNode, XsNode, const char*, XsNode,
+                                     const char*);
+template <Router change> void route(const BrowserObject& self, const py::object& from,
+                                    const std::string& out, const py::object& to,
+                                    const std::string& in) {
   Interpreter& s = self.script();
   const XsNode source = s.numberOf(from), target = s.numberOf(to);
   s.check((s.host()->*change)(s.host(), s.self(), source, out.c_str(), target, in.c_str()));
@@ -87,13 +92,16 @@ void defineTypes() {
   defined = true;
   const py::module_ home = py::module_::import("types").attr("ModuleType")("xvrml.script");
   home.inc_ref(); // the types live as long as the interpreter
-  py::class_<ScriptObject>(home, "Script", py::module_local(),
-                           "The Script: its fields and eventOuts are attributes; assigning to an eventOut sends.")
-      .def("__getattr__", [](const ScriptObject& self, const std::string& name) { return self.script().get(name); })
-      .def("__setattr__",
-           [](const ScriptObject& self, const std::string& name, const py::object& value) { self.script().set(name, value); })
+  py::class_<ScriptObject>(
+      home, "Script", py::module_local(),
+      "The Script: its fields and eventOuts are attributes; assigning to an eventOut sends.")
+      .def("__getattr__", [](const ScriptObject& self,
+                             const std::string& name) { return self.script().get(name); })
+      .def("__setattr__", [](const ScriptObject& self, const std::string& name,
+                             const py::object& value) { self.script().set(name, value); })
       .def("__dir__", [](const ScriptObject& self) { return self.script().names(); });
-  py::class_<BrowserObject>(home, "Browser", py::module_local(), "The Browser object (4.12.10), named as in the Python binding.")
+  py::class_<BrowserObject>(home, "Browser", py::module_local(),
+                            "The Browser object (4.12.10), named as in the Python binding.")
       .def_property_readonly("name", text<&XsHost::getName>)
       .def_property_readonly("version", text<&XsHost::getVersion>)
       .def_property_readonly("world_url", text<&XsHost::getWorldUrl>)
@@ -102,11 +110,14 @@ void defineTypes() {
       .def_property_readonly("now", number<&XsHost::now>)
       .def("set_description", setDescription, py::arg("text"))
       .def("create_vrml_from_string", createFromString, py::arg("text"))
-      .def("create_vrml_from_url", createFromUrl, py::arg("urls"), py::arg("node"), py::arg("event"))
+      .def("create_vrml_from_url", createFromUrl, py::arg("urls"), py::arg("node"),
+           py::arg("event"))
       .def("load_url", loadUrl, py::arg("urls"), py::arg("parameters") = py::tuple())
       .def("replace_world", replaceWorld, py::arg("nodes"))
-      .def("add_route", route<&XsHost::addRoute>, py::arg("from_node"), py::arg("out"), py::arg("to_node"), py::arg("in_"))
-      .def("delete_route", route<&XsHost::deleteRoute>, py::arg("from_node"), py::arg("out"), py::arg("to_node"), py::arg("in_"));
+      .def("add_route", route<&XsHost::addRoute>, py::arg("from_node"), py::arg("out"),
+           py::arg("to_node"), py::arg("in_"))
+      .def("delete_route", route<&XsHost::deleteRoute>, py::arg("from_node"), py::arg("out"),
+           py::arg("to_node"), py::arg("in_"));
 }
 
 } // namespace

@@ -1,5 +1,5 @@
-// python.cpp: the script engine `python`: Python in trusted worlds (docs/scripts.md, "Python"). Its programs can do whatever the
-// user can. [the browser's thread]
+// python.cpp: the script engine `python`: Python in trusted worlds (docs/scripts.md, "Python"). Its
+// programs can do whatever the user can. [the browser's thread]
 #include <new>
 
 #include "interpreter.h"
@@ -8,7 +8,9 @@ using namespace python;
 
 namespace {
 
-Interpreter& of(XsInterpreter interpreter) { return *reinterpret_cast<Interpreter*>(uintptr_t(interpreter)); }
+Interpreter& of(XsInterpreter interpreter) {
+  return *reinterpret_cast<Interpreter*>(uintptr_t(interpreter));
+}
 
 XsResult create(const XsHost* host, const XsScriptInfo* info, XsInterpreter* made) {
   try {
@@ -55,8 +57,10 @@ XsResult shutdown(XsInterpreter i, double) {
 const char* const schemes[] = {"python", nullptr};
 const char* const mimeTypes[] = {"text/x-python", "application/x-python-code", nullptr};
 const char* const suffixes[] = {".py", nullptr};
-const XsEngine engine = {sizeof(XsEngine), XS_NEEDS_TRUST, "python", "Python " PY_VERSION, schemes,  mimeTypes, suffixes, create,
-                         destroy,          initialize,     event,    eventsProcessed,      shutdown, nullptr,   nullptr};
+const XsEngine engine = {sizeof(XsEngine), XS_NEEDS_TRUST, "python", "Python " PY_VERSION,
+                         schemes,          mimeTypes,      suffixes, create,
+                         destroy,          initialize,     event,    eventsProcessed,
+                         shutdown,         nullptr,        nullptr};
 const XsEngine* const engines[] = {&engine};
 
 } // namespace

@@ -1,4 +1,3 @@
-// runtime.cpp: see runtime.h.
 #include "runtime.h"
 
 #include <cstdlib>
@@ -24,11 +23,12 @@ void shareSymbols() {
     dlopen(info.dli_fname, RTLD_NOW | RTLD_GLOBAL | RTLD_NOLOAD);
 }
 
-// The program that Python takes itself for, and finds its library by: that of an activated environment of the same version, else
-// the one that this was built with.
+// The program that Python takes itself for, and finds its library by: that of an activated
+// environment of the same version, else the one that this was built with.
 std::string programName() {
   const char* environment = std::getenv("VIRTUAL_ENV");
-  const std::string version = std::to_string(PY_MAJOR_VERSION) + "." + std::to_string(PY_MINOR_VERSION);
+  const std::string version =
+      std::to_string(PY_MAJOR_VERSION) + "." + std::to_string(PY_MINOR_VERSION);
   if (environment && fs::exists(fs::path(environment) / "lib" / ("python" + version)))
     return (fs::path(environment) / "bin/python3").string();
   return fs::exists(PYTHON_PROGRAM) ? PYTHON_PROGRAM : "python3";
@@ -36,7 +36,8 @@ std::string programName() {
 
 void check(const PyStatus& status) {
   if (PyStatus_Exception(status))
-    throw StartError(std::string("Python cannot start: ") + (status.err_msg ? status.err_msg : "exit"));
+    throw StartError(std::string("Python cannot start: ") +
+                     (status.err_msg ? status.err_msg : "exit"));
 }
 
 struct Config {
@@ -58,7 +59,8 @@ void initialize() {
   c.config.install_signal_handlers = 0;
   c.config.parse_argv = 0;
   c.config.configure_c_stdio = 0;
-  if (!std::getenv("PYTHONHASHSEED")) { // the same order of sets, and with it the same pictures, in every run
+  if (!std::getenv("PYTHONHASHSEED")) { // the same order of sets, and with it the same pictures, in
+                                        // every run
     c.config.use_hash_seed = 1;
     c.config.hash_seed = 0;
   }
@@ -66,7 +68,8 @@ void initialize() {
   check(Py_InitializeFromConfig(&c.config));
   // Standard output may be a picture: what is not printed by a Script goes where messages go.
   if (PyObject* errors = PySys_GetObject("stderr")) PySys_SetObject("stdout", errors);
-  if (PyRun_SimpleString("import random\nrandom.seed(0)") != 0) throw StartError("Python cannot start: no module random");
+  if (PyRun_SimpleString("import random\nrandom.seed(0)") != 0)
+    throw StartError("Python cannot start: no module random");
   mainThread = PyThread_get_thread_ident();
   startedHere = true;
   PyEval_SaveThread(); // whoever needs the lock takes it
@@ -90,7 +93,8 @@ std::vector<std::string> packageFolders() {
 py::module_ importBinding() {
   py::list path = py::module_::import("sys").attr("path");
   const std::vector<std::string> folders = packageFolders();
-  // First the package that was built with the host's own library; it stays first only while it is imported.
+  // First the package that was built with the host's own library; it stays first only while it is
+  // imported.
   for (auto i = folders.rbegin(); i != folders.rend(); ++i) path.insert(0, *i);
   py::object module;
   std::string why;
@@ -98,9 +102,12 @@ py::module_ importBinding() {
     module = py::module_::import("xvrml._xvrml");
   } catch (py::error_already_set& error) { why = py::str(error.value()); }
   for (const std::string& folder : folders) path.attr("remove")(folder);
-  if (!module) throw StartError("the Python package xvrml, whose nodes Scripts in Python use, cannot be imported: " + why);
+  if (!module)
+    throw StartError(
+        "the Python package xvrml, whose nodes Scripts in Python use, cannot be imported: " + why);
   if (!py::hasattr(module, "_script_node"))
-    throw StartError("the Python package xvrml is another version's: " + std::string(py::str(module.attr("__file__"))));
+    throw StartError("the Python package xvrml is another version's: " +
+                     std::string(py::str(module.attr("__file__"))));
   return module;
 }
 
@@ -116,7 +123,8 @@ void startPython() {
     if (!Py_IsInitialized()) return initialize();
     const Gil gil;
     countMemory();
-    mainThread = py::module_::import("threading").attr("main_thread")().attr("ident").cast<unsigned long>();
+    mainThread =
+        py::module_::import("threading").attr("main_thread")().attr("ident").cast<unsigned long>();
   } catch (const std::exception& error) {
     failure = error.what();
     throw StartError(failure);

@@ -1,5 +1,6 @@
-// runtime.h: the one Python interpreter of a process: that of the program, where the host is a Python program; else one that is
-// started here, without handlers of signals. [the browser's thread]
+// runtime.h: the one Python interpreter of a process: that of the program, where the host is a
+// Python program; else one that is started here, without handlers of signals. [the browser's
+// thread]
 #pragma once
 
 #include <stdexcept>
@@ -29,8 +30,8 @@ struct StartError : std::runtime_error {
 
 // Starts Python if it does not run. Without the lock. Throws StartError.
 void startPython();
-// The functions of the binding's module, from its package beside the engine or on Python's path. With the lock. Throws
-// StartError.
+// The functions of the binding's module, from its package beside the engine or on Python's path.
+// With the lock. Throws StartError.
 py::module_ binding();
 bool isProgram();    // it is a Python program that runs worlds
 bool isMainThread(); // of Python: the one that runs what others ask for (Py_AddPendingCall)

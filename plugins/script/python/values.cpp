@@ -1,4 +1,3 @@
-// values.cpp: see values.h.
 #include "values.h"
 
 #include <cmath>
@@ -40,11 +39,16 @@ struct Target {
   XsType type;
   const std::string& name;
 
-  std::string text() const { return name + " (" + typeName(type) + "): " + expected(type) + " expected"; }
-  [[noreturn]] void wrongType(const py::handle& got) const {
-    throw py::type_error(text() + ", not " + std::string(py::str(py::type::handle_of(got).attr("__name__"))));
+  std::string text() const {
+    return name + " (" + typeName(type) + "): " + expected(type) + " expected";
   }
-  [[noreturn]] void wrongValue(const std::string& why) const { throw py::value_error(text() + ", " + why); }
+  [[noreturn]] void wrongType(const py::handle& got) const {
+    throw py::type_error(text() + ", not " +
+                         std::string(py::str(py::type::handle_of(got).attr("__name__"))));
+  }
+  [[noreturn]] void wrongValue(const std::string& why) const {
+    throw py::value_error(text() + ", " + why);
+  }
 };
 
 bool hasNumpy() {
@@ -86,16 +90,20 @@ py::object vectorOf(const float* numbers, size_t width) {
 py::object imageOf(const XsImage& image) {
   const size_t row = size_t(image.width) * size_t(image.components), height = size_t(image.height);
   std::string turned;
-  for (size_t y = height; y-- > 0 && row > 0;) turned.append(reinterpret_cast<const char*>(image.pixels) + y * row, row);
+  for (size_t y = height; y-- > 0 && row > 0;)
+    turned.append(reinterpret_cast<const char*>(image.pixels) + y * row, row);
   const py::tuple shape = py::make_tuple(image.height, image.width, image.components);
   if (!hasNumpy()) return py::make_tuple(py::bytes(turned), shape);
-  return py::module_::import("numpy").attr("frombuffer")(py::bytes(turned), "uint8").attr("reshape")(shape);
+  return py::module_::import("numpy")
+      .attr("frombuffer")(py::bytes(turned), "uint8")
+      .attr("reshape")(shape);
 }
 
 // --- From Python ---
 
 double numberOf(const py::handle& object, const Target& target) {
-  if (PyBool_Check(object.ptr()) || !PyNumber_Check(object.ptr()) || PyComplex_Check(object.ptr())) target.wrongType(object);
+  if (PyBool_Check(object.ptr()) || !PyNumber_Check(object.ptr()) || PyComplex_Check(object.ptr()))
+    target.wrongType(object);
   const double v = PyFloat_AsDouble(object.ptr());
   if (v == -1 && PyErr_Occurred()) {
     PyErr_Clear();
@@ -114,7 +122,8 @@ int32_t wholeOf(const py::handle& object, const Target& target) {
   }
   int overflow = 0;
   const long long v = PyLong_AsLongLongAndOverflow(number.ptr(), &overflow);
-  if (overflow || v < std::numeric_limits<int32_t>::min() || v > std::numeric_limits<int32_t>::max())
+  if (overflow || v < std::numeric_limits<int32_t>::min() ||
+      v > std::numeric_limits<int32_t>::max())
     target.wrongValue("not " + std::string(py::str(number)));
   return int32_t(v);
 }
@@ -125,7 +134,8 @@ float singleOf(double v, const Target& target) {
 }
 
 py::object sequenceOf(const py::handle& object, const Target& target) {
-  if (py::isinstance<py::str>(object) || py::isinstance<py::bytes>(object) || !PySequence_Check(object.ptr()))
+  if (py::isinstance<py::str>(object) || py::isinstance<py::bytes>(object) ||
+      !PySequence_Check(object.ptr()))
     target.wrongType(object);
   auto fast = py::reinterpret_steal<py::object>(PySequence_Fast(object.ptr(), ""));
   if (!fast) {
@@ -135,25 +145,33 @@ py::object sequenceOf(const py::handle& object, const Target& target) {
   return fast;
 }
 size_t sizeOf(const py::object& fast) { return size_t(PySequence_Fast_GET_SIZE(fast.ptr())); }
-py::handle itemOf(const py::object& fast, size_t i) { return PySequence_Fast_GET_ITEM(fast.ptr(), py::ssize_t(i)); }
+py::handle itemOf(const py::object& fast, size_t i) {
+  return PySequence_Fast_GET_ITEM(fast.ptr(), py::ssize_t(i));
+}
 
-// Numbers of an array, of any dense or sparse layout: rows of `width`, or of an SF type a single row.
-template <class T> bool fromArray(const py::handle& object, size_t width, bool many, const Target& target, std::vector<T>& out) {
-  if (!PyObject_CheckBuffer(object.ptr()) || py::isinstance<py::bytes>(object) || !hasNumpy()) return false;
+// Numbers of an array, of any dense or sparse layout: rows of `width`, or of an SF type a single
+// row.
+template <class T> bool fromArray(const py::handle& object, size_t width, bool many,
+                                  const Target& target, std::vector<T>& out) {
+  if (!PyObject_CheckBuffer(object.ptr()) || py::isinstance<py::bytes>(object) || !hasNumpy())
+    return false;
   const py::array any = py::array(py::module_::import("numpy").attr("asarray")(object));
   const char kind = any.dtype().kind();
   if (any.size() > 0 && !std::strchr(std::is_integral_v<T> ? "iu" : "fiu", kind))
     throw py::type_error(target.text() + ", not an array of " + std::string(py::str(any.dtype())));
-  const bool fits = many ? any.size() == 0 || (width == 1 ? any.ndim() == 1 : any.ndim() == 2 && size_t(any.shape(1)) == width)
-                         : any.ndim() == 1 && size_t(any.size()) == width;
+  const bool fits =
+      many ? any.size() == 0 ||
+                 (width == 1 ? any.ndim() == 1 : any.ndim() == 2 && size_t(any.shape(1)) == width)
+           : any.ndim() == 1 && size_t(any.size()) == width;
   if (!fits) target.wrongValue("not of shape " + std::string(py::str(any.attr("shape"))));
   const py::array_t<T, py::array::c_style | py::array::forcecast> dense(any);
   out.assign(dense.data(), dense.data() + dense.size());
   return true;
 }
 
-template <class T, class Read>
-void flatten(const py::handle& object, size_t width, bool many, const Target& target, std::vector<T>& out, Read&& read) {
+template <class T, class Read> void flatten(const py::handle& object, size_t width, bool many,
+                                            const Target& target, std::vector<T>& out,
+                                            Read&& read) {
   const auto row = [&](const py::handle& one) {
     if (width == 1) return out.push_back(read(one));
     const py::object fast = sequenceOf(one, target);
@@ -168,14 +186,16 @@ void flatten(const py::handle& object, size_t width, bool many, const Target& ta
   }
 }
 
-std::vector<double> numbersOf(const py::handle& object, size_t width, bool many, const Target& target) {
+std::vector<double> numbersOf(const py::handle& object, size_t width, bool many,
+                              const Target& target) {
   std::vector<double> numbers;
   if ((many || width > 1) && fromArray(object, width, many, target, numbers)) {
     for (const double v : numbers)
       if (!std::isfinite(v)) target.wrongValue("not infinity or NaN");
     return numbers;
   }
-  flatten(object, width, many, target, numbers, [&](const py::handle& one) { return numberOf(one, target); });
+  flatten(object, width, many, target, numbers,
+          [&](const py::handle& one) { return numberOf(one, target); });
   return numbers;
 }
 
@@ -189,13 +209,15 @@ std::vector<int32_t> wholesOf(const py::handle& object, bool many, const Target&
     }
     return numbers;
   }
-  flatten(object, 1, many, target, numbers, [&](const py::handle& one) { return wholeOf(one, target); });
+  flatten(object, 1, many, target, numbers,
+          [&](const py::handle& one) { return wholeOf(one, target); });
   return numbers;
 }
 
 int32_t boolOf(const py::handle& object, const Target& target) {
   if (PyBool_Check(object.ptr())) return object.ptr() == Py_True;
-  if (std::string(py::str(py::type::handle_of(object).attr("__name__"))) == "bool_") return PyObject_IsTrue(object.ptr()) == 1;
+  if (std::string(py::str(py::type::handle_of(object).attr("__name__"))) == "bool_")
+    return PyObject_IsTrue(object.ptr()) == 1;
   target.wrongType(object);
 }
 
@@ -215,7 +237,8 @@ py::str toText(const XsString& bytes) {
 }
 
 std::string fromText(const py::handle& text) {
-  const auto bytes = py::reinterpret_steal<py::bytes>(PyUnicode_AsEncodedString(text.ptr(), "utf-8", "surrogateescape"));
+  const auto bytes = py::reinterpret_steal<py::bytes>(
+      PyUnicode_AsEncodedString(text.ptr(), "utf-8", "surrogateescape"));
   if (!bytes) throw py::error_already_set();
   return std::string(bytes);
 }
@@ -311,11 +334,13 @@ Owned::Owned(const py::handle& object, XsType type, const std::string& name, con
     if (!hasNumpy()) throw py::type_error(target.text() + ", which needs numpy");
     const py::array any = py::array(py::module_::import("numpy").attr("asarray")(object));
     const py::ssize_t components = any.ndim() == 3 ? any.shape(2) : 1;
-    if (any.size() > 0 && any.dtype().kind() != 'i' && any.dtype().kind() != 'u') target.wrongType(object);
-    if (any.size() > 0 && ((any.ndim() != 2 && any.ndim() != 3) || components < 1 || components > 4 || any.shape(0) > 65536 ||
-                           any.shape(1) > 65536))
+    if (any.size() > 0 && any.dtype().kind() != 'i' && any.dtype().kind() != 'u')
+      target.wrongType(object);
+    if (any.size() > 0 && ((any.ndim() != 2 && any.ndim() != 3) || components < 1 ||
+                           components > 4 || any.shape(0) > 65536 || any.shape(1) > 65536))
       target.wrongValue("not of shape " + std::string(py::str(any.attr("shape"))));
-    if (any.size() > 0) image_ = {int32_t(any.shape(1)), int32_t(any.shape(0)), int32_t(components), 0, nullptr};
+    if (any.size() > 0)
+      image_ = {int32_t(any.shape(1)), int32_t(any.shape(0)), int32_t(components), 0, nullptr};
     const py::array_t<int64_t, py::array::c_style | py::array::forcecast> dense(any);
     const size_t row = size_t(image_.width) * size_t(image_.components);
     for (size_t y = size_t(image_.height); y-- > 0;) // rows run from the bottom in VRML
@@ -329,7 +354,8 @@ Owned::Owned(const py::handle& object, XsType type, const std::string& name, con
     break;
   }
   default:
-    for (const double v : numbersOf(object, size_t(info.components), many, target)) floats_.push_back(singleOf(v, target));
+    for (const double v : numbersOf(object, size_t(info.components), many, target))
+      floats_.push_back(singleOf(v, target));
     value_.count = uint32_t(floats_.size() / size_t(info.components));
     value_.of.floats = floats_.data();
     break;

@@ -1,5 +1,5 @@
-// values.h: VRML's values as Python objects and back, in the shapes of the Python binding. With Python's lock. [the browser's
-// thread]
+// values.h: VRML's values as Python objects and back, in the shapes of the Python binding. With
+// Python's lock. [the browser's thread]
 #pragma once
 
 #include <functional>
@@ -20,8 +20,8 @@ struct Nodes {
   std::function<XsNode(const py::handle&)> toHost; // raises TypeError, ValueError
 };
 
-// Numbers, tuples, str, Node; MF types of numbers are read-only arrays, tuples where there is no numpy; images arrays of
-// (height, width, components), rows from the top.
+// Numbers, tuples, str, Node; MF types of numbers are read-only arrays, tuples where there is no
+// numpy; images arrays of (height, width, components), rows from the top.
 py::object toPython(const XsValue& value, const Nodes& nodes);
 
 // A value that owns its memory.
@@ -49,6 +49,7 @@ const char* typeName(XsType type);
 // Text may be anything; Python's own way to keep bytes that are not UTF-8.
 py::str toText(const XsString& bytes);
 std::string fromText(const py::handle& text);
-std::vector<std::string> textsOf(const py::handle& object, const char* what); // a str or a sequence of them
+std::vector<std::string> textsOf(const py::handle& object,
+                                 const char* what); // a str or a sequence of them
 
 } // namespace python

@@ -1,4 +1,3 @@
-// watchdog.cpp: see watchdog.h.
 #include "watchdog.h"
 
 #include <atomic>
@@ -17,7 +16,8 @@ constexpr uint32_t linesBetween = 1000;
 
 thread_local Watch* running = nullptr;
 
-// Orders a call on Python's main thread again and again while a function runs there. Never ends: it sleeps when none does.
+// Orders a call on Python's main thread again and again while a function runs there. Never ends: it
+// sleeps when none does.
 class Timer {
  public:
   static Timer& get() {
@@ -47,7 +47,8 @@ class Timer {
       if (active_ == 0 || ordered_.exchange(true)) continue;
       lock.unlock(); // who ends a function holds Python's lock
       if (Py_AddPendingCall(&Timer::called, nullptr) != 0) ordered_ = false;
-      // Up to Python 3.11 the main thread looks for such calls only when it is asked to hand its lock over.
+      // Up to Python 3.11 the main thread looks for such calls only when it is asked to hand its
+      // lock over.
       if (Py_IsInitialized()) PyGILState_Release(PyGILState_Ensure());
       lock.lock();
     }
@@ -67,12 +68,14 @@ class Timer {
 
 PyObject* stoppedType() {
   static PyObject* const type =
-      PyErr_NewExceptionWithDoc("xvrml.ScriptStopped", "The time of a Script's function is up.", PyExc_BaseException, nullptr);
+      PyErr_NewExceptionWithDoc("xvrml.ScriptStopped", "The time of a Script's function is up.",
+                                PyExc_BaseException, nullptr);
   return type;
 }
 
 Watch::Watch(const XsHost* host, XsNode self) : host_(host), self_(self), outer_(running) {
-  stoppedType(); // made here, where there is room for it: a program may be stopped in the depth of a recursion
+  stoppedType(); // made here, where there is room for it: a program may be stopped in the depth of
+                 // a recursion
   running = this;
   if (isMainThread()) {
     Timer::get().begin();

@@ -1,7 +1,8 @@
-// watchdog.h: stops functions of Scripts whose time is up. Python cannot be interrupted from outside; what runs too long is made
-// to ask the host by itself: on Python's main thread by calls that a timer's thread orders (Py_AddPendingCall), on others by a
-// trace function, which is slower. What may not run on gets an exception at each of its lines, which it cannot catch for long.
-// [the thread that holds Python's lock]
+// watchdog.h: stops functions of Scripts whose time is up. Python cannot be interrupted from
+// outside; what runs too long is made to ask the host by itself: on Python's main thread by calls
+// that a timer's thread orders (Py_AddPendingCall), on others by a trace function, which is slower.
+// What may not run on gets an exception at each of its lines, which it cannot catch for long. [the
+// thread that holds Python's lock]
 #pragma once
 
 #include <pybind11/pybind11.h>

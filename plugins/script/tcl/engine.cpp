@@ -1,4 +1,5 @@
-// engine.cpp: the plug-in: Tcl as a script engine. See docs/scripts.md "Tcl/Tk". [the browser's thread]
+// engine.cpp: the plug-in: Tcl as a script engine. See docs/scripts.md "Tcl/Tk". [the browser's
+// thread]
 #include <clocale>
 #include <csignal>
 #include <new>
@@ -14,7 +15,9 @@ namespace {
 
 using tclscript::Interpreter;
 
-Interpreter& of(XsInterpreter interpreter) { return *reinterpret_cast<Interpreter*>(uintptr_t(interpreter)); }
+Interpreter& of(XsInterpreter interpreter) {
+  return *reinterpret_cast<Interpreter*>(uintptr_t(interpreter));
+}
 
 // Nothing is thrown across the border.
 template <class Body> XsResult guarded(Body&& body) {
@@ -29,12 +32,13 @@ void begin() {
   sigaction(SIGPIPE, nullptr, &pipe);
   const char* current = std::setlocale(LC_ALL, nullptr);
   const std::string locale = current ? current : "C";
-  // A program with Tk windows of its own, as Python's tkinter makes them, has begun to use Tcl: it goes on as it began.
+  // A program with Tk windows of its own, as Python's tkinter makes them, has begun to use Tcl: it
+  // goes on as it began.
   if (void* tk = dlopen("libtk" TCL_VERSION ".so", RTLD_LAZY | RTLD_NOLOAD))
     dlclose(tk);
   else
     tclscript::setNotifier();
-  Tcl_FindExecutable(nullptr);            // finds nothing, so that no program can ask where the host is
+  Tcl_FindExecutable(nullptr); // finds nothing, so that no program can ask where the host is
   Tcl_Interp* first = Tcl_CreateInterp(); // tables that the first one makes
   Tcl_Eval(first, "expr {1 + 1.5}; string is alpha x; regexp {a+} aa; clock seconds; lsort {b a}");
   Tcl_DeleteInterp(first);
@@ -63,10 +67,16 @@ XsResult create(const XsHost* host, const XsScriptInfo* info, XsInterpreter* mad
 void destroy(XsInterpreter interpreter) { delete &of(interpreter); }
 
 XsResult call(XsInterpreter interpreter, const char* procedure, double time) {
-  return guarded([&] { return of(interpreter).callProcedure(procedure, {tclscript::Object(Tcl_NewDoubleObj(time))}); });
+  return guarded([&] {
+    return of(interpreter).callProcedure(procedure, {tclscript::Object(Tcl_NewDoubleObj(time))});
+  });
 }
-XsResult initialize(XsInterpreter interpreter, double time) { return call(interpreter, "initialize", time); }
-XsResult eventsProcessed(XsInterpreter interpreter, double time) { return call(interpreter, "eventsProcessed", time); }
+XsResult initialize(XsInterpreter interpreter, double time) {
+  return call(interpreter, "initialize", time);
+}
+XsResult eventsProcessed(XsInterpreter interpreter, double time) {
+  return call(interpreter, "eventsProcessed", time);
+}
 XsResult shutdown(XsInterpreter interpreter, double time) {
   const XsResult result = call(interpreter, "shutdown", time);
   return result == XS_STOPPED ? XS_OK : result; // it has been told of before
@@ -101,5 +111,6 @@ const XsEngine* const engines[] = {&engine};
 } // namespace
 
 extern "C" {
-XS_EXPORT extern const XsPlugin xsPlugin = {XS_MAGIC, XS_ABI_MAJOR, XS_ABI_MINOR, sizeof(XsPlugin), 1, engines};
+XS_EXPORT extern const XsPlugin xsPlugin = {XS_MAGIC, XS_ABI_MAJOR, XS_ABI_MINOR, sizeof(XsPlugin),
+                                            1,        engines};
 }

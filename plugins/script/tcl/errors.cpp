@@ -1,5 +1,6 @@
-// errors.cpp: where in a program an error happened. Tcl counts lines within the body of a procedure; its trace names the
-// procedures that were under way, innermost first. See interpreter.h. [the browser's thread]
+// errors.cpp: where in a program an error happened. Tcl counts lines within the body of a
+// procedure; its trace names the procedures that were under way, innermost first. See
+// interpreter.h. [the browser's thread]
 #include <algorithm>
 #include <charconv>
 #include <cstring>
@@ -20,12 +21,16 @@ std::string_view tail(std::string_view name) {
   return colons == name.npos ? name : name.substr(colons + 2);
 }
 
-// The line on which the body of a procedure begins: `proc NAME ARGUMENTS BODY`, wherever it stands in the program; 0: nowhere.
+// The line on which the body of a procedure begins: `proc NAME ARGUMENTS BODY`, wherever it stands
+// in the program; 0: nowhere.
 uint32_t bodyLine(std::string_view program, std::string_view name) {
   constexpr int mostCandidates = 200;
   int candidates = 0;
-  for (size_t at = program.find("proc"); at != program.npos && candidates < mostCandidates; at = program.find("proc", at + 4)) {
-    if ((at > 0 && !isWordBreak(program[at - 1])) || at + 4 >= program.size() || !std::strchr(" \t", program[at + 4])) continue;
+  for (size_t at = program.find("proc"); at != program.npos && candidates < mostCandidates;
+       at = program.find("proc", at + 4)) {
+    if ((at > 0 && !isWordBreak(program[at - 1])) || at + 4 >= program.size() ||
+        !std::strchr(" \t", program[at + 4]))
+      continue;
     const size_t word = program.find_first_not_of(" \t", at + 4);
     if (word == program.npos) break;
     size_t end = word;
@@ -33,7 +38,9 @@ uint32_t bodyLine(std::string_view program, std::string_view name) {
     if (tail(program.substr(word, end - word)) != tail(name)) continue;
     ++candidates;
     Tcl_Parse parse;
-    if (Tcl_ParseCommand(nullptr, program.data() + at, int(program.size() - at), 0, &parse) != TCL_OK) continue;
+    if (Tcl_ParseCommand(nullptr, program.data() + at, int(program.size() - at), 0, &parse) !=
+        TCL_OK)
+      continue;
     uint32_t line = 0;
     if (parse.numWords == 4) {
       const Tcl_Token* token = parse.tokenPtr;
@@ -48,7 +55,8 @@ uint32_t bodyLine(std::string_view program, std::string_view name) {
 
 } // namespace
 
-ErrorPlace errorPlace(std::string_view program, std::string_view trace, std::string_view script, int errorLine) {
+ErrorPlace errorPlace(std::string_view program, std::string_view trace, std::string_view script,
+                      int errorLine) {
   constexpr std::string_view opening = "(procedure \"", middle = "\" line ";
   for (size_t at = trace.find(opening); at != trace.npos; at = trace.find(opening, at + 1)) {
     const size_t name = at + opening.size(), end = trace.find(middle, name);

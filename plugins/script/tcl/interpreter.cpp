@@ -1,4 +1,3 @@
-// interpreter.cpp: see interpreter.h.
 #include "interpreter.h"
 
 #include <cstring>
@@ -22,11 +21,13 @@ thread_local Interpreter* Interpreter::running_ = nullptr;
 
 // While a function of the engine runs for a Script.
 struct Call {
-  explicit Call(Interpreter& interpreter) : outer(std::exchange(Interpreter::running_, &interpreter)), interpreter(interpreter) {
+  explicit Call(Interpreter& interpreter)
+      : outer(std::exchange(Interpreter::running_, &interpreter)), interpreter(interpreter) {
     Tcl_Preserve(interpreter.tcl_);
     interpreter.startClock();
     for (const Interpreter::Late& late : std::exchange(interpreter.late_, {}))
-      if (setField(interpreter, late.node, late.name, late.value.get()) != TCL_OK) interpreter.report(TCL_ERROR);
+      if (setField(interpreter, late.node, late.name, late.value.get()) != TCL_OK)
+        interpreter.report(TCL_ERROR);
   }
   ~Call() {
     Tcl_LimitTypeReset(interpreter.tcl_, TCL_LIMIT_TIME);
@@ -40,7 +41,8 @@ struct Call {
   Interpreter& interpreter;
 };
 
-Interpreter::Interpreter(const XsHost* host, const XsScriptInfo* info) : host_(host), info_(info), tcl_(Tcl_CreateInterp()) {
+Interpreter::Interpreter(const XsHost* host, const XsScriptInfo* info)
+    : host_(host), info_(info), tcl_(Tcl_CreateInterp()) {
   Tcl_SetRecursionLimit(tcl_, deepest);
 }
 
@@ -56,7 +58,8 @@ XsResult Interpreter::create() {
   const Call call(*this);
   Tcl_LimitTypeReset(tcl_, TCL_LIMIT_TIME); // what follows is ours, and must not be broken off
   Tcl_CmdInfo found;                        // what the commands that `proc` makes have in common
-  if (Tcl_Eval(tcl_, "proc ::xvrml_procedure {} {}") == TCL_OK && Tcl_GetCommandInfo(tcl_, "::xvrml_procedure", &found))
+  if (Tcl_Eval(tcl_, "proc ::xvrml_procedure {} {}") == TCL_OK &&
+      Tcl_GetCommandInfo(tcl_, "::xvrml_procedure", &found))
     procedure_ = found.objProc;
   Tcl_DeleteCommand(tcl_, "::xvrml_procedure");
   Tcl_Eval(tcl_, "expr {srand(1)}"); // the same world at each start
@@ -101,12 +104,14 @@ void Interpreter::startClock() {
   Tcl_LimitTypeSet(tcl_, TCL_LIMIT_TIME);
 }
 
-// Commands or time are used up: the host says whether there are more. If not, Tcl unwinds the program; `catch` does not hold it.
+// Commands or time are used up: the host says whether there are more. If not, Tcl unwinds the
+// program; `catch` does not hold it.
 void Interpreter::onLimit(ClientData data, Tcl_Interp* tcl) {
   Interpreter& interpreter = *static_cast<Interpreter*>(data);
   Interpreter& payer = running_ ? *running_ : interpreter; // whose tick serves an event of this one
   const bool commands = Tcl_LimitTypeExceeded(tcl, TCL_LIMIT_COMMANDS);
-  if (payer.stopped_ || payer.host_->shouldStop(payer.host_, payer.self(), commands ? stepsAtOnce : 0)) {
+  if (payer.stopped_ ||
+      payer.host_->shouldStop(payer.host_, payer.self(), commands ? stepsAtOnce : 0)) {
     payer.stopped_ = interpreter.stopped_ = true;
     return;
   }
@@ -114,7 +119,9 @@ void Interpreter::onLimit(ClientData data, Tcl_Interp* tcl) {
   interpreter.startClock();
 }
 
-void Interpreter::endProgram(const char* why) { Tcl_CancelEval(tcl_, Tcl_NewStringObj(why, -1), nullptr, TCL_CANCEL_UNWIND); }
+void Interpreter::endProgram(const char* why) {
+  Tcl_CancelEval(tcl_, Tcl_NewStringObj(why, -1), nullptr, TCL_CANCEL_UNWIND);
+}
 
 void Interpreter::exit() {
   exited_ = true;
@@ -134,7 +141,8 @@ void Interpreter::destroyWindows() {
   Tcl_Obj* objects[] = {words[0].get(), words[1].get()};
   info.objProc(info.objClientData, tcl_, 2, objects);
   constexpr int rounds = 20; // so that the display hears of it: no tick comes any more
-  for (int i = 0; i < rounds && Tcl_DoOneEvent(TCL_WINDOW_EVENTS | TCL_IDLE_EVENTS | TCL_DONT_WAIT); ++i) {}
+  for (int i = 0; i < rounds && Tcl_DoOneEvent(TCL_WINDOW_EVENTS | TCL_IDLE_EVENTS | TCL_DONT_WAIT);
+       ++i) {}
 }
 
 // --- Calls ---
@@ -170,7 +178,8 @@ XsResult Interpreter::callProcedure(const char* name, const std::vector<Object>&
   if (Tcl_EvalObjv(tcl_, 2, asked, TCL_EVAL_GLOBAL) == TCL_OK) {
     Tcl_Obj** names;
     int count;
-    if (Tcl_ListObjGetElements(nullptr, Tcl_GetObjResult(tcl_), &count, &names) == TCL_OK && size_t(count) < taken &&
+    if (Tcl_ListObjGetElements(nullptr, Tcl_GetObjResult(tcl_), &count, &names) == TCL_OK &&
+        size_t(count) < taken &&
         (count == 0 || std::strcmp(Tcl_GetString(names[count - 1]), "args") != 0))
       taken = size_t(count);
   }
@@ -244,8 +253,8 @@ void Interpreter::report(int code, std::string_view script) {
   Tcl_Obj* line = option("-errorline");
   int errorLine = 0;
   if (line) Tcl_GetIntFromObj(nullptr, line, &errorLine);
-  const ErrorPlace place =
-      errorPlace({info_->text.data, size_t(info_->text.bytes)}, trace ? hostText(trace) : "", script, errorLine);
+  const ErrorPlace place = errorPlace({info_->text.data, size_t(info_->text.bytes)},
+                                      trace ? hostText(trace) : "", script, errorLine);
   std::string message = hostText(result.get());
   if (code == TCL_BREAK || code == TCL_CONTINUE) message = "break or continue outside of a loop";
   if (message.empty()) message = "error";

@@ -1,4 +1,5 @@
-// linked.h: a field or eventOut of a Script and its Tcl variable; see variables.cpp. [the browser's thread]
+// linked.h: a field or eventOut of a Script and its Tcl variable; see variables.cpp. [the browser's
+// thread]
 #pragma once
 
 #include "interpreter.h"

@@ -1,4 +1,4 @@
-// nodes.cpp: see nodes.h. A node's command keeps its number good, until it is deleted.
+// nodes.cpp: A node's command keeps its number good, until it is deleted.
 #include "nodes.h"
 
 #include <cstring>
@@ -14,21 +14,24 @@ struct NodeCommand {
 int get(Interpreter& interpreter, XsNode node, Tcl_Obj* const* words) {
   XsValue value{};
   const char* field = Tcl_GetString(words[2]);
-  const XsResult result = interpreter.host()->read(interpreter.host(), interpreter.self(), node, field, &value);
+  const XsResult result =
+      interpreter.host()->read(interpreter.host(), interpreter.self(), node, field, &value);
   if (result != XS_OK) return interpreter.answer(result);
   Tcl_SetObjResult(interpreter.tcl(), toTcl(interpreter, value).get());
   return TCL_OK;
 }
 
 int set(Interpreter& interpreter, XsNode node, Tcl_Obj* const* words) {
-  if (interpreter.isRunning()) return setField(interpreter, node, Tcl_GetString(words[2]), words[3]);
+  if (interpreter.isRunning())
+    return setField(interpreter, node, Tcl_GetString(words[2]), words[3]);
   interpreter.later(node, Tcl_GetString(words[2]), words[3]);
   return TCL_OK;
 }
 
 bool describe(Interpreter& interpreter, XsNode node, XsNodeInfo& info, int& code) {
   info = {sizeof(XsNodeInfo), 0, nullptr, nullptr};
-  code = interpreter.answer(interpreter.host()->describe(interpreter.host(), interpreter.self(), node, &info));
+  code = interpreter.answer(
+      interpreter.host()->describe(interpreter.host(), interpreter.self(), node, &info));
   return code == TCL_OK;
 }
 
@@ -40,10 +43,12 @@ int fields(Interpreter& interpreter, XsNode node, Tcl_Obj* const*) {
   const Object all = Tcl_NewListObj(0, nullptr);
   for (uint32_t i = 0; i < info.fieldCount; ++i) {
     XsField field{};
-    const XsResult result = interpreter.host()->field(interpreter.host(), interpreter.self(), node, i, &field);
+    const XsResult result =
+        interpreter.host()->field(interpreter.host(), interpreter.self(), node, i, &field);
     if (result != XS_OK) return interpreter.answer(result);
     const bool known = field.access >= XS_FIELD && field.access <= XS_EVENT_OUT;
-    Tcl_Obj* parts[] = {Tcl_NewStringObj(known ? access[field.access] : "", -1), Tcl_NewStringObj(typeName(field.type), -1),
+    Tcl_Obj* parts[] = {Tcl_NewStringObj(known ? access[field.access] : "", -1),
+                        Tcl_NewStringObj(typeName(field.type), -1),
                         Tcl_NewStringObj(field.name, -1)};
     Tcl_ListObjAppendElement(nullptr, all.get(), Tcl_NewListObj(3, parts));
   }
@@ -54,20 +59,23 @@ int fields(Interpreter& interpreter, XsNode node, Tcl_Obj* const*) {
 int type(Interpreter& interpreter, XsNode node, Tcl_Obj* const*) {
   XsNodeInfo info;
   int code;
-  if (describe(interpreter, node, info, code)) Tcl_SetObjResult(interpreter.tcl(), Tcl_NewStringObj(info.typeName, -1));
+  if (describe(interpreter, node, info, code))
+    Tcl_SetObjResult(interpreter.tcl(), Tcl_NewStringObj(info.typeName, -1));
   return code;
 }
 
 int name(Interpreter& interpreter, XsNode node, Tcl_Obj* const*) {
   XsNodeInfo info;
   int code;
-  if (describe(interpreter, node, info, code)) Tcl_SetObjResult(interpreter.tcl(), Tcl_NewStringObj(info.defName, -1));
+  if (describe(interpreter, node, info, code))
+    Tcl_SetObjResult(interpreter.tcl(), Tcl_NewStringObj(info.defName, -1));
   return code;
 }
 
 int release(Interpreter& interpreter, XsNode node, Tcl_Obj* const*) {
   const auto known = interpreter.nodes.find(node);
-  if (known != interpreter.nodes.end()) Tcl_DeleteCommandFromToken(interpreter.tcl(), known->second);
+  if (known != interpreter.nodes.end())
+    Tcl_DeleteCommandFromToken(interpreter.tcl(), known->second);
   return TCL_OK;
 }
 
@@ -77,8 +85,9 @@ struct Subcommand {
   const char* usage;
   int (*run)(Interpreter&, XsNode, Tcl_Obj* const*);
 };
-const Subcommand subcommands[] = {{"get", 1, "field", get},      {"set", 2, "field value", set}, {"fields", 0, nullptr, fields},
-                                  {"type", 0, nullptr, type},    {"name", 0, nullptr, name},     {"release", 0, nullptr, release},
+const Subcommand subcommands[] = {{"get", 1, "field", get},       {"set", 2, "field value", set},
+                                  {"fields", 0, nullptr, fields}, {"type", 0, nullptr, type},
+                                  {"name", 0, nullptr, name},     {"release", 0, nullptr, release},
                                   {nullptr, 0, nullptr, nullptr}};
 
 int nodeCommand(ClientData data, Tcl_Interp* tcl, int count, Tcl_Obj* const words[]) {
@@ -88,7 +97,8 @@ int nodeCommand(ClientData data, Tcl_Interp* tcl, int count, Tcl_Obj* const word
     Tcl_WrongNumArgs(tcl, 1, words, "option ?arg ...?");
     return TCL_ERROR;
   }
-  if (Tcl_GetIndexFromObjStruct(tcl, words[1], subcommands, sizeof(Subcommand), "option", TCL_EXACT, &index) != TCL_OK)
+  if (Tcl_GetIndexFromObjStruct(tcl, words[1], subcommands, sizeof(Subcommand), "option", TCL_EXACT,
+                                &index) != TCL_OK)
     return TCL_ERROR;
   const Subcommand& sub = subcommands[index];
   if (count != 2 + sub.arguments) {
@@ -119,14 +129,16 @@ Object Interpreter::nodeName(XsNode node) {
   }
   const std::string name = "node" + std::to_string(node);
   host_->retain(host_, self(), node);
-  const Tcl_Command token = Tcl_CreateObjCommand(tcl_, ("::" + name).c_str(), nodeCommand, new NodeCommand{this, node}, nodeGone);
+  const Tcl_Command token = Tcl_CreateObjCommand(tcl_, ("::" + name).c_str(), nodeCommand,
+                                                 new NodeCommand{this, node}, nodeGone);
   nodes[node] = token;
   return tclText(name);
 }
 
 int setField(Interpreter& interpreter, XsNode node, const std::string& name, Tcl_Obj* object) {
   XsField field{};
-  const XsResult found = interpreter.host()->findField(interpreter.host(), interpreter.self(), node, name.c_str(), &field);
+  const XsResult found = interpreter.host()->findField(interpreter.host(), interpreter.self(), node,
+                                                       name.c_str(), &field);
   if (found != XS_OK) return interpreter.answer(found);
   const XsType type = field.type; // the name is good until the next call only
   const XsAccess access = field.access;
@@ -134,7 +146,9 @@ int setField(Interpreter& interpreter, XsNode node, const std::string& name, Tcl
   if (fromTcl(interpreter, object, type, value) != TCL_OK) return TCL_ERROR;
   using Output = Interpreter::Output;
   const bool own = node == interpreter.self();
-  const Output kind = own && access == XS_EVENT_OUT ? Output::send : own && access == XS_FIELD ? Output::write : Output::post;
+  const Output kind = own && access == XS_EVENT_OUT ? Output::send
+                      : own && access == XS_FIELD   ? Output::write
+                                                    : Output::post;
   return interpreter.answer(interpreter.give(kind, node, name.c_str(), std::move(value)));
 }
 
@@ -143,7 +157,8 @@ bool nodeOf(Interpreter& interpreter, Tcl_Obj* object, XsNode& node) {
   node = 0;
   if (*name == 0 || std::strcmp(name, "NULL") == 0) return true;
   Tcl_CmdInfo info;
-  if (!Tcl_GetCommandInfo(interpreter.tcl(), name, &info) || info.objProc != nodeCommand) return false;
+  if (!Tcl_GetCommandInfo(interpreter.tcl(), name, &info) || info.objProc != nodeCommand)
+    return false;
   node = static_cast<NodeCommand*>(info.objClientData)->node;
   return true;
 }

@@ -1,4 +1,4 @@
-// notifier.cpp: see notifier.h. poll(2) over the files of this thread.
+// notifier.cpp: poll(2) over the files of this thread.
 #include "notifier.h"
 
 #include <algorithm>
@@ -26,7 +26,8 @@ struct FileEvent {
 };
 
 Watched* find(int file) {
-  const auto found = std::find_if(watched.begin(), watched.end(), [&](const Watched& w) { return w.file == file; });
+  const auto found = std::find_if(watched.begin(), watched.end(),
+                                  [&](const Watched& w) { return w.file == file; });
   return found == watched.end() ? nullptr : &*found;
 }
 
@@ -51,7 +52,9 @@ void createFileHandler(int file, int mask, Tcl_FileProc* call, ClientData data) 
     watched.push_back({file, mask, 0, call, data});
 }
 void deleteFileHandler(int file) {
-  watched.erase(std::remove_if(watched.begin(), watched.end(), [&](const Watched& w) { return w.file == file; }), watched.end());
+  watched.erase(std::remove_if(watched.begin(), watched.end(),
+                               [&](const Watched& w) { return w.file == file; }),
+                watched.end());
 }
 
 // Other threads want this one to wake: it waits for a moment at most.
@@ -62,17 +65,21 @@ void alert(ClientData) {}
 int waitForEvent(CONST86 Tcl_Time* longest) {
   std::vector<pollfd> files;
   for (const Watched& w : watched) {
-    const int events =
-        (w.mask & TCL_READABLE ? POLLIN : 0) | (w.mask & TCL_WRITABLE ? POLLOUT : 0) | (w.mask & TCL_EXCEPTION ? POLLPRI : 0);
+    const int events = (w.mask & TCL_READABLE ? POLLIN : 0) |
+                       (w.mask & TCL_WRITABLE ? POLLOUT : 0) |
+                       (w.mask & TCL_EXCEPTION ? POLLPRI : 0);
     files.push_back({w.file, short(events), 0});
   }
   // Never for ever: what calls Tcl is a frame of the host.
   constexpr int mostMilliseconds = 20;
   const int milliseconds =
-      longest ? int(std::min<long long>(longest->sec * 1000LL + longest->usec / 1000, mostMilliseconds)) : mostMilliseconds;
+      longest
+          ? int(std::min<long long>(longest->sec * 1000LL + longest->usec / 1000, mostMilliseconds))
+          : mostMilliseconds;
   if (poll(files.data(), nfds_t(files.size()), milliseconds) <= 0) return 0;
   for (const pollfd& p : files) {
-    const int mask = (p.revents & (POLLIN | POLLHUP | POLLERR) ? TCL_READABLE : 0) | (p.revents & POLLOUT ? TCL_WRITABLE : 0) |
+    const int mask = (p.revents & (POLLIN | POLLHUP | POLLERR) ? TCL_READABLE : 0) |
+                     (p.revents & POLLOUT ? TCL_WRITABLE : 0) |
                      (p.revents & POLLPRI ? TCL_EXCEPTION : 0);
     Watched* w = find(p.fd);
     if (!w || !(mask & w->mask)) continue;
@@ -90,8 +97,9 @@ int waitForEvent(CONST86 Tcl_Time* longest) {
 } // namespace
 
 void setNotifier() {
-  static Tcl_NotifierProcs procs = {setTimer, waitForEvent, createFileHandler, deleteFileHandler, initialize,
-                                    finalize, alert,        serviceMode};
+  static Tcl_NotifierProcs procs = {
+      setTimer, waitForEvent, createFileHandler, deleteFileHandler, initialize,
+      finalize, alert,        serviceMode};
   Tcl_SetNotifier(&procs);
 }
 

@@ -1,4 +1,5 @@
-// output.cpp: `puts`, which writes to the host's log, and `exit`, which ends the Script and nothing else. [the browser's thread]
+// output.cpp: `puts`, which writes to the host's log, and `exit`, which ends the Script and nothing
+// else. [the browser's thread]
 #include <cstring>
 
 #include "interpreter.h"

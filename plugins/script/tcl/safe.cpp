@@ -1,7 +1,8 @@
-// safe.cpp: the interpreter of a world that is not trusted. What is not named here is not there: commands that reach files,
-// sockets, processes, channels, other interpreters, the environment or the queue of events are replaced by ones that say so, all
-// others are deleted. What is left only computes; its memory, and single commands that take long, are bounded by the process that
-// it runs in. [the browser's thread]
+// safe.cpp: the interpreter of a world that is not trusted. What is not named here is not there:
+// commands that reach files, sockets, processes, channels, other interpreters, the environment or
+// the queue of events are replaced by ones that say so, all others are deleted. What is left only
+// computes; its memory, and single commands that take long, are bounded by the process that it runs
+// in. [the browser's thread]
 #include <algorithm>
 #include <cstring>
 #include <iterator>
@@ -14,31 +15,36 @@ namespace {
 
 // Commands of the global namespace that stay.
 constexpr const char* allowed[] = {
-    "after",     "append",   "apply",   "array",   "binary",   "break",     "case",    "catch",    "clock",  "concat", "continue",
-    "coroutine", "dict",     "error",   "eval",    "expr",     "for",       "foreach", "format",   "global", "if",     "incr",
-    "info",      "join",     "lappend", "lassign", "lindex",   "linsert",   "list",    "llength",  "lmap",   "lrange", "lrepeat",
-    "lreplace",  "lreverse", "lsearch", "lset",    "lsort",    "namespace", "proc",    "puts",     "regexp", "regsub", "rename",
-    "return",    "scan",     "set",     "split",   "string",   "subst",     "switch",  "tailcall", "throw",  "time",   "trace",
-    "try",       "unset",    "uplevel", "upvar",   "variable", "while",     "yield",   "yieldto"};
+    "after",   "append",   "apply",    "array",     "binary", "break",   "case",      "catch",
+    "clock",   "concat",   "continue", "coroutine", "dict",   "error",   "eval",      "expr",
+    "for",     "foreach",  "format",   "global",    "if",     "incr",    "info",      "join",
+    "lappend", "lassign",  "lindex",   "linsert",   "list",   "llength", "lmap",      "lrange",
+    "lrepeat", "lreplace", "lreverse", "lsearch",   "lset",   "lsort",   "namespace", "proc",
+    "puts",    "regexp",   "regsub",   "rename",    "return", "scan",    "set",       "split",
+    "string",  "subst",    "switch",   "tailcall",  "throw",  "time",    "trace",     "try",
+    "unset",   "uplevel",  "upvar",    "variable",  "while",  "yield",   "yieldto"};
 // Those that are missed are told why.
-constexpr const char* refused[] = {"cd",         "chan",   "close",  "encoding",  "eof",           "exec",  "fblocked",
-                                   "fconfigure", "fcopy",  "file",   "fileevent", "flush",         "gets",  "glob",
-                                   "interp",     "load",   "open",   "pid",       "pwd",           "read",  "seek",
-                                   "socket",     "source", "tell",   "unload",    "update",        "vwait", "auto_load",
-                                   "tk",         "bind",   "button", "toplevel",  "thread::create"};
-constexpr const char* namespacesThatGo[] = {"::tcl::chan", "::tcl::file",    "::tcl::encoding", "::tcl::unsupported",
-                                            "::tcl::zlib", "::tcl::process", "::zlib",          "::oo"};
+constexpr const char* refused[] = {
+    "cd",         "chan",   "close",  "encoding",  "eof",           "exec",  "fblocked",
+    "fconfigure", "fcopy",  "file",   "fileevent", "flush",         "gets",  "glob",
+    "interp",     "load",   "open",   "pid",       "pwd",           "read",  "seek",
+    "socket",     "source", "tell",   "unload",    "update",        "vwait", "auto_load",
+    "tk",         "bind",   "button", "toplevel",  "thread::create"};
+constexpr const char* namespacesThatGo[] = {
+    "::tcl::chan", "::tcl::file",    "::tcl::encoding", "::tcl::unsupported",
+    "::tcl::zlib", "::tcl::process", "::zlib",          "::oo"};
 // Subcommands of an ensemble that stay; the commands behind the others are deleted.
 struct Ensemble {
   const char* name;
   const char* space;
   const char* keep; // a Tcl list
 };
-constexpr Ensemble ensembles[] = {{"::info", "::tcl::info",
-                                   "args body cmdcount commands complete coroutine default errorstack exists frame functions "
-                                   "globals level locals patchlevel procs "
-                                   "tclversion vars"},
-                                  {"::clock", "::tcl::clock", "clicks microseconds milliseconds seconds"}};
+constexpr Ensemble ensembles[] = {
+    {"::info", "::tcl::info",
+     "args body cmdcount commands complete coroutine default errorstack exists frame functions "
+     "globals level locals patchlevel procs "
+     "tclversion vars"},
+    {"::clock", "::tcl::clock", "clicks microseconds milliseconds seconds"}};
 
 // What init.tcl would bring, from a file.
 constexpr const char functions[] = R"tcl(
@@ -49,7 +55,8 @@ namespace eval ::tcl::mathfunc {
 )tcl";
 
 int refuse(ClientData data, Tcl_Interp* tcl, int, Tcl_Obj* const[]) {
-  Tcl_SetObjResult(tcl, Tcl_ObjPrintf("%s: only in a world that is trusted", static_cast<const char*>(data)));
+  Tcl_SetObjResult(
+      tcl, Tcl_ObjPrintf("%s: only in a world that is trusted", static_cast<const char*>(data)));
   Tcl_SetErrorCode(tcl, "XVRML", "TRUST", nullptr);
   return TCL_ERROR;
 }
@@ -62,7 +69,8 @@ int package(ClientData data, Tcl_Interp* tcl, int count, Tcl_Obj* const words[])
     return TCL_OK;
   }
   if (!wanted) return refuse(data, tcl, count, words);
-  Tcl_SetObjResult(tcl, Tcl_ObjPrintf("package %s: only in a world that is trusted", Tcl_GetString(words[2])));
+  Tcl_SetObjResult(
+      tcl, Tcl_ObjPrintf("package %s: only in a world that is trusted", Tcl_GetString(words[2])));
   Tcl_SetErrorCode(tcl, "XVRML", "TRUST", nullptr);
   return TCL_ERROR;
 }
@@ -89,9 +97,12 @@ template <size_t n> bool isOneOf(const char* const (&list)[n], const std::string
 
 void keepOnly(Tcl_Interp* tcl, const Ensemble& ensemble) {
   const std::string quoted = std::string("{") + ensemble.keep + "}";
-  run(tcl, std::string("set ::xvrml_map {}; foreach name ") + quoted + " {lappend ::xvrml_map $name " + ensemble.space +
-               "::$name}; namespace ensemble configure " + ensemble.name + " -map $::xvrml_map; unset ::xvrml_map name");
-  for (const std::string& command : listOf(tcl, std::string("info commands ") + ensemble.space + "::*")) {
+  run(tcl, std::string("set ::xvrml_map {}; foreach name ") + quoted +
+               " {lappend ::xvrml_map $name " + ensemble.space +
+               "::$name}; namespace ensemble configure " + ensemble.name +
+               " -map $::xvrml_map; unset ::xvrml_map name");
+  for (const std::string& command :
+       listOf(tcl, std::string("info commands ") + ensemble.space + "::*")) {
     const std::string tail = command.substr(std::strlen(ensemble.space) + 2);
     if ((" " + std::string(ensemble.keep) + " ").find(" " + tail + " ") == std::string::npos)
       Tcl_DeleteCommand(tcl, command.c_str());
@@ -100,21 +111,27 @@ void keepOnly(Tcl_Interp* tcl, const Ensemble& ensemble) {
 
 void strip(Tcl_Interp* tcl) {
   if (Tcl_MakeSafe(tcl) != TCL_OK) throw std::runtime_error(Tcl_GetStringResult(tcl));
-  for (const std::string& hidden : listOf(tcl, "interp hidden")) { // so that nothing is left to be brought back
+  for (const std::string& hidden :
+       listOf(tcl, "interp hidden")) { // so that nothing is left to be brought back
     const std::string token = "xvrml_hidden";
-    if (Tcl_ExposeCommand(tcl, hidden.c_str(), token.c_str()) != TCL_OK) throw std::runtime_error(Tcl_GetStringResult(tcl));
+    if (Tcl_ExposeCommand(tcl, hidden.c_str(), token.c_str()) != TCL_OK)
+      throw std::runtime_error(Tcl_GetStringResult(tcl));
     Tcl_DeleteCommand(tcl, token.c_str());
   }
   for (const Ensemble& ensemble : ensembles) keepOnly(tcl, ensemble);
   for (const char* space : namespacesThatGo)
-    if (Tcl_FindNamespace(tcl, space, nullptr, 0)) run(tcl, std::string("namespace delete ") + space);
-  for (const char* command : {"::tcl::pkgconfig", "::tcl::Bgerror"}) Tcl_DeleteCommand(tcl, command);
+    if (Tcl_FindNamespace(tcl, space, nullptr, 0))
+      run(tcl, std::string("namespace delete ") + space);
+  for (const char* command : {"::tcl::pkgconfig", "::tcl::Bgerror"})
+    Tcl_DeleteCommand(tcl, command);
   for (const std::string& command : listOf(tcl, "info commands ::*"))
     if (!isOneOf(allowed, command.substr(2))) Tcl_DeleteCommand(tcl, command.c_str());
   for (const char* name : refused)
-    Tcl_CreateObjCommand(tcl, (std::string("::") + name).c_str(), refuse, const_cast<char*>(name), nullptr);
+    Tcl_CreateObjCommand(tcl, (std::string("::") + name).c_str(), refuse, const_cast<char*>(name),
+                         nullptr);
   Tcl_CreateObjCommand(tcl, "::package", package, const_cast<char*>("package"), nullptr);
-  for (const char* variable : {"env", "tcl_library", "tcl_pkgPath", "auto_path", "tcl_interactive", "argv", "argv0", "argc"})
+  for (const char* variable : {"env", "tcl_library", "tcl_pkgPath", "auto_path", "tcl_interactive",
+                               "argv", "argv0", "argc"})
     Tcl_UnsetVar(tcl, variable, TCL_GLOBAL_ONLY);
   run(tcl, functions);
   Tcl_ResetResult(tcl);

@@ -1,5 +1,6 @@
-// timers.cpp: `after`, by the world's clock, so that a world at a time is the same however it is drawn; where Tk is in use by the
-// clock on the wall, as its widgets want it. Served by the engine's tick. [the browser's thread]
+// timers.cpp: `after`, by the world's clock, so that a world at a time is the same however it is
+// drawn; where Tk is in use by the clock on the wall, as its widgets want it. Served by the
+// engine's tick. [the browser's thread]
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -14,11 +15,15 @@ constexpr size_t mostTimers = 10'000;
 constexpr int mostAtOnce = 1000;
 constexpr Tcl_WideInt longestSleep = 200; // milliseconds, of Tk's own procedures
 
-double wallClock() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+double wallClock() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 
 std::string idOf(const Timer& timer) { return "after#" + std::to_string(timer.id); }
 
-Tcl_Obj* scriptOf(int count, Tcl_Obj* const* words) { return count == 1 ? words[0] : Tcl_ConcatObj(count, words); }
+Tcl_Obj* scriptOf(int count, Tcl_Obj* const* words) {
+  return count == 1 ? words[0] : Tcl_ConcatObj(count, words);
+}
 
 int add(Interpreter& interpreter, double seconds, int count, Tcl_Obj* const* words) {
   Tcl_Interp* tcl = interpreter.tcl();
@@ -27,8 +32,10 @@ int add(Interpreter& interpreter, double seconds, int count, Tcl_Obj* const* wor
     return TCL_ERROR;
   }
   const bool wall = interpreter.trusted() && interpreter.hasTk();
-  const double now = wall ? wallClock() : interpreter.host()->now(interpreter.host(), interpreter.self());
-  interpreter.timers.push_back({now + seconds, wall, ++interpreter.lastTimer, scriptOf(count, words)});
+  const double now =
+      wall ? wallClock() : interpreter.host()->now(interpreter.host(), interpreter.self());
+  interpreter.timers.push_back(
+      {now + seconds, wall, ++interpreter.lastTimer, scriptOf(count, words)});
   Tcl_SetObjResult(tcl, Tcl_NewStringObj(idOf(interpreter.timers.back()).c_str(), -1));
   return TCL_OK;
 }
@@ -37,9 +44,11 @@ int cancel(Interpreter& interpreter, int count, Tcl_Obj* const* words) {
   const Object wanted = scriptOf(count, words);
   const std::string text = Tcl_GetString(wanted.get());
   auto& timers = interpreter.timers;
-  auto found = std::find_if(timers.begin(), timers.end(), [&](const Timer& t) { return idOf(t) == text; });
+  auto found =
+      std::find_if(timers.begin(), timers.end(), [&](const Timer& t) { return idOf(t) == text; });
   if (found == timers.end())
-    found = std::find_if(timers.begin(), timers.end(), [&](const Timer& t) { return text == Tcl_GetString(t.script.get()); });
+    found = std::find_if(timers.begin(), timers.end(),
+                         [&](const Timer& t) { return text == Tcl_GetString(t.script.get()); });
   if (found != timers.end()) timers.erase(found);
   return TCL_OK;
 }
@@ -55,7 +64,8 @@ int info(Interpreter& interpreter, int count, Tcl_Obj* const* words) {
     Tcl_ListObjAppendElement(nullptr, all.get(), Tcl_NewStringObj(idOf(timer).c_str(), -1));
   }
   if (count == 1) {
-    Tcl_SetObjResult(interpreter.tcl(), Tcl_ObjPrintf("event \"%s\" doesn't exist", Tcl_GetString(words[0])));
+    Tcl_SetObjResult(interpreter.tcl(),
+                     Tcl_ObjPrintf("event \"%s\" doesn't exist", Tcl_GetString(words[0])));
     return TCL_ERROR;
   }
   Tcl_SetObjResult(interpreter.tcl(), all.get());
@@ -69,12 +79,17 @@ int afterCommand(ClientData data, Tcl_Interp* tcl, int count, Tcl_Obj* const wor
     return TCL_ERROR;
   }
   const char* option = Tcl_GetString(words[1]);
-  if (std::strcmp(option, "cancel") == 0 && count > 2) return cancel(interpreter, count - 2, words + 2);
-  if (std::strcmp(option, "idle") == 0 && count > 2) return add(interpreter, 0, count - 2, words + 2);
-  if (std::strcmp(option, "info") == 0 && count <= 3) return info(interpreter, count - 2, words + 2);
+  if (std::strcmp(option, "cancel") == 0 && count > 2)
+    return cancel(interpreter, count - 2, words + 2);
+  if (std::strcmp(option, "idle") == 0 && count > 2)
+    return add(interpreter, 0, count - 2, words + 2);
+  if (std::strcmp(option, "info") == 0 && count <= 3)
+    return info(interpreter, count - 2, words + 2);
   Tcl_WideInt milliseconds;
   if (Tcl_GetWideIntFromObj(nullptr, words[1], &milliseconds) != TCL_OK) {
-    Tcl_SetObjResult(tcl, Tcl_ObjPrintf("bad argument \"%s\": must be cancel, idle, info, or an integer", option));
+    Tcl_SetObjResult(
+        tcl,
+        Tcl_ObjPrintf("bad argument \"%s\": must be cancel, idle, info, or an integer", option));
     return TCL_ERROR;
   }
   milliseconds = std::max<Tcl_WideInt>(milliseconds, 0);

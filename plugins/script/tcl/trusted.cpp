@@ -1,5 +1,6 @@
-// trusted.cpp: the interpreter of a trusted world: all of Tcl, Tk if the program asks for it. What would hold the host up is done
-// differently: `vwait` and `tkwait` wait within a coroutine, while the world goes on. [the browser's thread]
+// trusted.cpp: the interpreter of a trusted world: all of Tcl, Tk if the program asks for it. What
+// would hold the host up is done differently: `vwait` and `tkwait` wait within a coroutine, while
+// the world goes on. [the browser's thread]
 #include <filesystem>
 
 #include <dlfcn.h>
@@ -9,16 +10,19 @@
 namespace tclscript {
 namespace {
 
-// A tree that brings Tcl's own library, as a wheel does, has it beside the folder of script engines; it fits the libtcl that came
-// with it, which an installed one need not. Empty if there is none.
+// A tree that brings Tcl's own library, as a wheel does, has it beside the folder of script
+// engines; it fits the libtcl that came with it, which an installed one need not. Empty if there is
+// none.
 std::filesystem::path bundledLibrary() {
   static const char here = 0;
   std::error_code error;
   Dl_info info{};
   if (dladdr(&here, &info) == 0 || !info.dli_fname) return {};
-  const std::filesystem::path folder = std::filesystem::path(info.dli_fname).parent_path() / "../tcl" TCL_VERSION;
-  return std::filesystem::exists(folder / "init.tcl", error) ? std::filesystem::canonical(folder, error)
-                                                             : std::filesystem::path();
+  const std::filesystem::path folder =
+      std::filesystem::path(info.dli_fname).parent_path() / "../tcl" TCL_VERSION;
+  return std::filesystem::exists(folder / "init.tcl", error)
+             ? std::filesystem::canonical(folder, error)
+             : std::filesystem::path();
 }
 
 // Tcl's own procedures, found by Tcl itself unless they came with this.
@@ -30,10 +34,13 @@ int initialize(Tcl_Interp* tcl) {
   Tcl_ListObjAppendElement(nullptr, encodings.get(), tclText((library / "encoding").c_str()).get());
   Tcl_SetEncodingSearchPath(encodings.get());
   // Debian's Tcl knows the folder of its modules (msgcat, which `clock` needs) by an absolute path.
-  return Tcl_Init(tcl) == TCL_OK ? Tcl_Eval(tcl, "::tcl::tm::path add [file join $tcl_library tcl8]") : TCL_ERROR;
+  return Tcl_Init(tcl) == TCL_OK
+             ? Tcl_Eval(tcl, "::tcl::tm::path add [file join $tcl_library tcl8]")
+             : TCL_ERROR;
 }
 
-// The prelude. vwait's trace starts the coroutine again in the event loop, not from within the assignment.
+// The prelude. vwait's trace starts the coroutine again in the event loop, not from within the
+// assignment.
 constexpr const char prelude[] = R"tcl(
 namespace eval ::xvrml {
   variable tk 0
@@ -130,7 +137,8 @@ int makeTrusted(Interpreter& interpreter) {
   for (const char* name : {"argv0", "argv"})
     Tcl_SetVar2Ex(tcl, name, nullptr, tclText(name[4] ? info.origin : "").get(), TCL_GLOBAL_ONLY);
   Tcl_SetVar2Ex(tcl, "argc", nullptr, Tcl_NewIntObj(0), TCL_GLOBAL_ONLY);
-  const Object script[] = {Tcl_NewStringObj("info", -1), Tcl_NewStringObj("script", -1), tclText(info.origin)};
+  const Object script[] = {Tcl_NewStringObj("info", -1), Tcl_NewStringObj("script", -1),
+                           tclText(info.origin)};
   Tcl_Obj* words[] = {script[0].get(), script[1].get(), script[2].get()};
   if (Tcl_EvalObjv(tcl, 3, words, TCL_EVAL_GLOBAL) != TCL_OK) return TCL_ERROR;
   if (Tcl_Eval(tcl, "interp bgerror {} ::xvrml::backgroundError") != TCL_OK) return TCL_ERROR;

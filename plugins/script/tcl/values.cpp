@@ -1,4 +1,3 @@
-// values.cpp: see values.h.
 #include "values.h"
 
 #include <charconv>
@@ -46,14 +45,18 @@ Tcl_Obj* element(Interpreter& interpreter, const XsTypeInfo& kind, const XsValue
   case XS_SFIMAGE: {
     const XsImage& image = value.of.images[i];
     Tcl_Obj* bytes = Tcl_NewListObj(0, nullptr);
-    const size_t count = image.pixels ? size_t(image.width) * size_t(image.height) * size_t(image.components) : 0;
-    for (size_t k = 0; k < count; ++k) Tcl_ListObjAppendElement(nullptr, bytes, Tcl_NewIntObj(image.pixels[k]));
-    Tcl_Obj* parts[] = {Tcl_NewIntObj(image.width), Tcl_NewIntObj(image.height), Tcl_NewIntObj(image.components), bytes};
+    const size_t count =
+        image.pixels ? size_t(image.width) * size_t(image.height) * size_t(image.components) : 0;
+    for (size_t k = 0; k < count; ++k)
+      Tcl_ListObjAppendElement(nullptr, bytes, Tcl_NewIntObj(image.pixels[k]));
+    Tcl_Obj* parts[] = {Tcl_NewIntObj(image.width), Tcl_NewIntObj(image.height),
+                        Tcl_NewIntObj(image.components), bytes};
     return Tcl_NewListObj(4, parts);
   }
   default: {
     Tcl_Obj* parts[4];
-    for (int k = 0; k < kind.components; ++k) parts[k] = number(value.of.floats[i * size_t(kind.components) + size_t(k)]);
+    for (int k = 0; k < kind.components; ++k)
+      parts[k] = number(value.of.floats[i * size_t(kind.components) + size_t(k)]);
     return Tcl_NewListObj(kind.components, parts);
   }
   }
@@ -70,25 +73,29 @@ struct Reader {
   int wrong(const char* expected, Tcl_Obj* got) const {
     std::string text = hostText(got);
     if (text.size() > 60) text = text.substr(0, 57) + "...";
-    const std::string message = std::string("expected ") + type + ", " + expected + ", but got \"" + text + "\"";
+    const std::string message =
+        std::string("expected ") + type + ", " + expected + ", but got \"" + text + "\"";
     Tcl_SetObjResult(tcl(), tclText(message).get());
     Tcl_SetErrorCode(tcl(), "XVRML", "TYPE", type, nullptr);
     return TCL_ERROR;
   }
   int one(Tcl_Obj* object, double& d) const {
-    if (Tcl_GetDoubleFromObj(nullptr, object, &d) != TCL_OK || !std::isfinite(d)) return wrong("a number", object);
+    if (Tcl_GetDoubleFromObj(nullptr, object, &d) != TCL_OK || !std::isfinite(d))
+      return wrong("a number", object);
     return TCL_OK;
   }
   int one(Tcl_Obj* object, float& f) const {
     double d = 0;
     if (one(object, d) != TCL_OK) return TCL_ERROR;
-    if (std::fabs(d) > double(std::numeric_limits<float>::max())) return wrong("a number of single precision", object);
+    if (std::fabs(d) > double(std::numeric_limits<float>::max()))
+      return wrong("a number of single precision", object);
     f = float(d);
     return TCL_OK;
   }
   int integer(Tcl_Obj* object, int32_t& i) const {
     Tcl_WideInt wide;
-    if (Tcl_GetWideIntFromObj(nullptr, object, &wide) != TCL_OK || wide < INT32_MIN || wide > INT32_MAX)
+    if (Tcl_GetWideIntFromObj(nullptr, object, &wide) != TCL_OK || wide < INT32_MIN ||
+        wide > INT32_MAX)
       return wrong("an integer of 32 bits", object);
     i = int32_t(wide);
     return TCL_OK;
@@ -107,9 +114,10 @@ struct Reader {
       return TCL_ERROR;
     bytes = 0;
     pixels = nullptr;
-    if (count == 4 && Tcl_ListObjGetElements(nullptr, parts[3], &bytes, &pixels) != TCL_OK) return wrong(expected, object);
-    const bool sane = image.width >= 0 && image.height >= 0 && image.components >= 0 && image.components <= 4 &&
-                      image.width <= 1 << 20 && image.height <= 1 << 20;
+    if (count == 4 && Tcl_ListObjGetElements(nullptr, parts[3], &bytes, &pixels) != TCL_OK)
+      return wrong(expected, object);
+    const bool sane = image.width >= 0 && image.height >= 0 && image.components >= 0 &&
+                      image.components <= 4 && image.width <= 1 << 20 && image.height <= 1 << 20;
     if (!sane || int64_t(image.width) * image.height * image.components != bytes)
       return wrong("as many bytes as width * height * components", object);
     for (int k = 0; k < bytes; ++k) {
@@ -160,7 +168,8 @@ struct Reader {
       static constexpr const char* expected[] = {"", "", "2 numbers", "3 numbers", "4 numbers"};
       Tcl_Obj** parts;
       int count;
-      if (Tcl_ListObjGetElements(nullptr, object, &count, &parts) != TCL_OK || count != kind.components)
+      if (Tcl_ListObjGetElements(nullptr, object, &count, &parts) != TCL_OK ||
+          count != kind.components)
         return wrong(expected[kind.components], object);
       return tuple(parts);
     }
@@ -171,7 +180,8 @@ struct Reader {
   int many(Tcl_Obj* object, uint32_t& count) const {
     Tcl_Obj** parts;
     int length, first;
-    if (Tcl_ListObjGetElements(nullptr, object, &length, &parts) != TCL_OK) return wrong("a list", object);
+    if (Tcl_ListObjGetElements(nullptr, object, &length, &parts) != TCL_OK)
+      return wrong("a list", object);
     const bool flat = kind.components > 1 && length > 0 && length % kind.components == 0 &&
                       Tcl_ListObjLength(nullptr, parts[0], &first) == TCL_OK && first == 1;
     const int step = flat ? kind.components : 1;
@@ -208,9 +218,11 @@ const char* typeName(XsType type) {
 Object toTcl(Interpreter& interpreter, const XsValue& value) {
   const XsTypeInfo* kind = xsTypeInfo(value.type);
   if (!kind || (value.count > 0 && !value.of.data)) return Tcl_NewObj();
-  if (!xsIsMany(value.type)) return value.count == 1 ? element(interpreter, *kind, value, 0) : Tcl_NewObj();
+  if (!xsIsMany(value.type))
+    return value.count == 1 ? element(interpreter, *kind, value, 0) : Tcl_NewObj();
   const Object all = Tcl_NewListObj(0, nullptr);
-  for (size_t i = 0; i < value.count; ++i) Tcl_ListObjAppendElement(nullptr, all.get(), element(interpreter, *kind, value, i));
+  for (size_t i = 0; i < value.count; ++i)
+    Tcl_ListObjAppendElement(nullptr, all.get(), element(interpreter, *kind, value, i));
   return all;
 }
 
@@ -233,7 +245,8 @@ int fromTcl(Interpreter& interpreter, Tcl_Obj* object, XsType type, Converted& o
 namespace {
 
 unsigned unit(const char* at) {
-  return (unsigned(at[0]) & 0xfu) << 12 | (unsigned(at[1]) & 0x3fu) << 6 | (unsigned(at[2]) & 0x3fu);
+  return (unsigned(at[0]) & 0xfu) << 12 | (unsigned(at[1]) & 0x3fu) << 6 |
+         (unsigned(at[2]) & 0x3fu);
 }
 bool isThree(const char* at, size_t left) {
   return left >= 3 && (unsigned(at[0]) & 0xf0u) == 0xe0u && (unsigned(at[1]) & 0xc0u) == 0x80u &&
@@ -262,7 +275,8 @@ std::string hostText(Tcl_Obj* object) {
       out += '\0';
       i += 2;
     } else if (isThree(at, left) && unit(at) >= 0xd800 && unit(at) < 0xe000) {
-      const bool pair = unit(at) < 0xdc00 && isThree(at + 3, left - 3) && unit(at + 3) >= 0xdc00 && unit(at + 3) < 0xe000;
+      const bool pair = unit(at) < 0xdc00 && isThree(at + 3, left - 3) && unit(at + 3) >= 0xdc00 &&
+                        unit(at + 3) < 0xe000;
       if (pair)
         append(out, 0x10000 + ((unit(at) - 0xd800) << 10) + (unit(at + 3) - 0xdc00));
       else

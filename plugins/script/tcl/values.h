@@ -1,5 +1,5 @@
-// values.h: VRML's values and Tcl's: lists of numbers, booleans, strings, names of nodes. See docs/scripts.md "Tcl/Tk".
-// [the browser's thread]
+// values.h: VRML's values and Tcl's: lists of numbers, booleans, strings, names of nodes. See
+// docs/scripts.md "Tcl/Tk". [the browser's thread]
 #pragma once
 
 #include <cstdint>
@@ -64,7 +64,8 @@ Object toTcl(Interpreter& interpreter, const XsValue& value);
 // TCL_ERROR, with a message in the interpreter's result, if the object is no such value.
 int fromTcl(Interpreter& interpreter, Tcl_Obj* object, XsType type, Converted& out);
 
-// Tcl writes U+0000 in two bytes, and what is beyond U+FFFF as two surrogates of three bytes, at times; the host does not.
+// Tcl writes U+0000 in two bytes, and what is beyond U+FFFF as two surrogates of three bytes, at
+// times; the host does not.
 std::string hostText(Tcl_Obj* object);
 Object tclText(std::string_view text);
 

@@ -1,12 +1,14 @@
-// variables.cpp: the fields and eventOuts of a Script as global Tcl variables. Writing one writes the field or sends the event; a
-// value that it cannot have is a Tcl error, and the variable keeps the one before. [the browser's thread]
+// variables.cpp: the fields and eventOuts of a Script as global Tcl variables. Writing one writes
+// the field or sends the event; a value that it cannot have is a Tcl error, and the variable keeps
+// the one before. [the browser's thread]
 #include "interpreter.h"
 #include "linked.h"
 
 namespace tclscript {
 namespace {
 
-constexpr int traced = TCL_GLOBAL_ONLY | TCL_TRACE_WRITES | TCL_TRACE_UNSETS | TCL_TRACE_RESULT_OBJECT;
+constexpr int traced =
+    TCL_GLOBAL_ONLY | TCL_TRACE_WRITES | TCL_TRACE_UNSETS | TCL_TRACE_RESULT_OBJECT;
 
 char* onChange(ClientData data, Tcl_Interp* tcl, const char*, const char*, int flags);
 
@@ -39,7 +41,8 @@ char* onChange(ClientData data, Tcl_Interp* tcl, const char*, const char*, int f
   if (code == TCL_OK && !interpreter.isRunning())
     interpreter.later(interpreter.self(), linked.variable, now);
   else if (code == TCL_OK)
-    code = interpreter.answer(interpreter.give(linked.output, interpreter.self(), linked.variable.c_str(), std::move(value)));
+    code = interpreter.answer(interpreter.give(linked.output, interpreter.self(),
+                                               linked.variable.c_str(), std::move(value)));
   char* message = code == TCL_OK ? nullptr : refused(tcl);
   Tcl_RestoreInterpState(tcl, state);
   if (code == TCL_OK)
@@ -53,18 +56,21 @@ char* onChange(ClientData data, Tcl_Interp* tcl, const char*, const char*, int f
 
 void addVariables(Interpreter& interpreter, std::vector<std::unique_ptr<Linked>>& linked) {
   const XsScriptInfo& info = interpreter.info();
-  Tcl_SetVar2Ex(interpreter.tcl(), "self", nullptr, interpreter.nodeName(info.self).get(), TCL_GLOBAL_ONLY);
+  Tcl_SetVar2Ex(interpreter.tcl(), "self", nullptr, interpreter.nodeName(info.self).get(),
+                TCL_GLOBAL_ONLY);
   for (uint32_t i = 0; i < info.fieldCount; ++i) {
     const XsField& field = info.fields[i];
     if (field.access == XS_EVENT_IN) continue;
     XsValue value{};
-    const bool known = interpreter.host()->read(interpreter.host(), info.self, info.self, field.name, &value) == XS_OK;
+    const bool known = interpreter.host()->read(interpreter.host(), info.self, info.self,
+                                                field.name, &value) == XS_OK;
     linked.push_back(std::make_unique<Linked>());
     Linked& made = *linked.back();
     made.interpreter = &interpreter;
     made.variable = field.name;
     made.type = field.type;
-    made.output = field.access == XS_EVENT_OUT ? Interpreter::Output::send : Interpreter::Output::write;
+    made.output =
+        field.access == XS_EVENT_OUT ? Interpreter::Output::send : Interpreter::Output::write;
     made.last = known ? toTcl(interpreter, value) : Object(Tcl_NewObj());
     link(made);
   }

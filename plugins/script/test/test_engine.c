@@ -1,8 +1,10 @@
-/* test_engine.c: a script engine for tests, and an example of one: scheme "test:". It calls every function of the script ABI.
+/* test_engine.c: a script engine for tests, and an example of one: scheme "test:". It calls every
+ * function of the script ABI.
  *
- * A program is lines "WHEN: COMMAND ARGUMENT...". WHEN is the name of an eventIn, or one of create, initialize, eventsProcessed,
- * shutdown, tick. NODE is a field of the Script of type SFNode, `self`, `kept` (see keep), or `value`: the event's node.
- * Everything that the host refuses is printed. See xvrml/xscript.h; called on the browser's thread.
+ * A program is lines "WHEN: COMMAND ARGUMENT...". WHEN is the name of an eventIn, or one of create,
+ * initialize, eventsProcessed, shutdown, tick. NODE is a field of the Script of type SFNode,
+ * `self`, `kept` (see keep), or `value`: the event's node. Everything that the host refuses is
+ * printed. See xvrml/xscript.h; called on the browser's thread.
  */
 #include <xvrml/xscript.h>
 
@@ -52,11 +54,13 @@ static XsNode nodeOf(Call* call, const char* name) {
   if (strcmp(name, "self") == 0) return self->info->self;
   if (strcmp(name, "kept") == 0) return self->kept;
   if (strcmp(name, "value") == 0)
-    return call->event && (call->event->value.type == XS_SFNODE || call->event->value.type == XS_MFNODE) &&
+    return call->event &&
+                   (call->event->value.type == XS_SFNODE || call->event->value.type == XS_MFNODE) &&
                    call->event->value.count > 0
                ? call->event->value.of.nodes[0]
                : 0;
-  if (self->host->read(self->host, self->info->self, self->info->self, name, &value) != XS_OK || value.type != XS_SFNODE)
+  if (self->host->read(self->host, self->info->self, self->info->self, name, &value) != XS_OK ||
+      value.type != XS_SFNODE)
     return 0;
   return value.of.nodes[0];
 }
@@ -71,7 +75,8 @@ static XsValue strings(const XsString* list, uint32_t count, XsType type) {
 
 static XsResult echo(Call* c) { /* OUT */
   if (!c->event) return XS_FAILED;
-  return answer(c, c->self->host->send(c->self->host, c->self->info->self, c->words[1], &c->event->value));
+  return answer(
+      c, c->self->host->send(c->self->host, c->self->info->self, c->words[1], &c->event->value));
 }
 
 static XsResult sendText(Call* c) { /* OUT TEXT: an SFString */
@@ -95,26 +100,31 @@ static XsResult add(Call* c) { /* FIELD OUT: adds the SFInt32 event to the field
 
 static XsResult after(Call* c) { /* N OUT: the Nth event is sent on, others are not */
   return ++c->self->count == atoi(c->words[1])
-             ? answer(c, c->self->host->send(c->self->host, c->self->info->self, c->words[2], &c->event->value))
+             ? answer(c, c->self->host->send(c->self->host, c->self->info->self, c->words[2],
+                                             &c->event->value))
              : XS_OK;
 }
 
 static XsResult readNode(Call* c) { /* NODE FIELD OUT */
   const XsHost* host = c->self->host;
   XsValue value;
-  const XsResult result = host->read(host, c->self->info->self, nodeOf(c, c->words[1]), c->words[2], &value);
-  return answer(c, result == XS_OK ? host->send(host, c->self->info->self, c->words[3], &value) : result);
+  const XsResult result =
+      host->read(host, c->self->info->self, nodeOf(c, c->words[1]), c->words[2], &value);
+  return answer(c, result == XS_OK ? host->send(host, c->self->info->self, c->words[3], &value)
+                                   : result);
 }
 
 static XsResult writeField(Call* c) { /* FIELD: the event's value into an own field */
-  return answer(c, c->self->host->write(c->self->host, c->self->info->self, c->words[1], &c->event->value));
+  return answer(
+      c, c->self->host->write(c->self->host, c->self->info->self, c->words[1], &c->event->value));
 }
 
 static XsResult post(Call* c) { /* NODE EVENTIN: the event's value; without an event TRUE */
   const int32_t yes = 1;
   XsValue value = {XS_SFBOOL, 1, {&yes}};
   if (c->event) value = c->event->value;
-  return answer(c, c->self->host->post(c->self->host, c->self->info->self, nodeOf(c, c->words[1]), c->words[2], &value));
+  return answer(c, c->self->host->post(c->self->host, c->self->info->self, nodeOf(c, c->words[1]),
+                                       c->words[2], &value));
 }
 
 static XsResult describe(Call* c) { /* NODE: prints its type, name and fields */
@@ -139,8 +149,8 @@ static XsResult describe(Call* c) { /* NODE: prints its type, name and fields */
 static XsResult find(Call* c) { /* NODE NAME: prints the field that is meant */
   XsField field;
   char line[300];
-  const XsResult result =
-      c->self->host->findField(c->self->host, c->self->info->self, nodeOf(c, c->words[1]), c->words[2], &field);
+  const XsResult result = c->self->host->findField(c->self->host, c->self->info->self,
+                                                   nodeOf(c, c->words[1]), c->words[2], &field);
   if (result != XS_OK) return answer(c, result);
   snprintf(line, sizeof line, "%s is %d %s", c->words[2], (int)field.type, field.name);
   say(c->self, 0, 0, line);
@@ -158,7 +168,9 @@ static XsResult borrow(Call* c) { /* `kept`, but not retained: no good later on 
   return XS_OK;
 }
 
-static XsResult drop(Call* c) { return answer(c, c->self->host->release(c->self->host, c->self->info->self, c->self->kept)); }
+static XsResult drop(Call* c) {
+  return answer(c, c->self->host->release(c->self->host, c->self->info->self, c->self->kept));
+}
 
 /* --- The Browser object --- */
 
@@ -186,31 +198,35 @@ static XsResult browser(Call* c) { /* OUT: an MFString of what it knows */
 }
 
 static XsResult description(Call* c) { /* TEXT */
-  return answer(c, c->self->host->setDescription(c->self->host, c->self->info->self, text(c->rest)));
+  return answer(c,
+                c->self->host->setDescription(c->self->host, c->self->info->self, text(c->rest)));
 }
 
 static XsResult create(Call* c) { /* OUT VRML: sends what it makes */
   const XsHost* host = c->self->host;
   XsValue nodes;
-  const XsResult result = host->createVrmlFromString(host, c->self->info->self, text(c->rest + strlen(c->words[1])), &nodes);
-  return answer(c, result == XS_OK ? host->send(host, c->self->info->self, c->words[1], &nodes) : result);
+  const XsResult result = host->createVrmlFromString(host, c->self->info->self,
+                                                     text(c->rest + strlen(c->words[1])), &nodes);
+  return answer(c, result == XS_OK ? host->send(host, c->self->info->self, c->words[1], &nodes)
+                                   : result);
 }
 
 static XsResult fromUrl(Call* c) { /* NODE EVENTIN URL */
   const XsString url = text(c->words[3]);
-  return answer(
-      c, c->self->host->createVrmlFromUrl(c->self->host, c->self->info->self, 1, &url, nodeOf(c, c->words[1]), c->words[2]));
+  return answer(c, c->self->host->createVrmlFromUrl(c->self->host, c->self->info->self, 1, &url,
+                                                    nodeOf(c, c->words[1]), c->words[2]));
 }
 
 static XsResult load(Call* c) { /* URL PARAMETER */
   const XsString url = text(c->words[1]), parameter = text(c->words[2]);
-  return answer(c, c->self->host->loadUrl(c->self->host, c->self->info->self, 1, &url, *c->words[2] ? 1 : 0, &parameter));
+  return answer(c, c->self->host->loadUrl(c->self->host, c->self->info->self, 1, &url,
+                                          *c->words[2] ? 1 : 0, &parameter));
 }
 
 static XsResult replace(Call* c) { /* the event's nodes are the world */
   if (!c->event || c->event->value.type != XS_MFNODE) return XS_FAILED;
-  return answer(c,
-                c->self->host->replaceWorld(c->self->host, c->self->info->self, c->event->value.count, c->event->value.of.nodes));
+  return answer(c, c->self->host->replaceWorld(c->self->host, c->self->info->self,
+                                               c->event->value.count, c->event->value.of.nodes));
 }
 
 static XsResult addRoute(Call* c) { /* NODE OUT NODE IN */
@@ -222,7 +238,8 @@ static XsResult addRoute(Call* c) { /* NODE OUT NODE IN */
 static XsResult deleteRoute(Call* c) {
   const XsHost* host = c->self->host;
   const XsNode from = nodeOf(c, c->words[1]), to = nodeOf(c, c->words[3]);
-  return answer(c, host->deleteRoute(host, c->self->info->self, from, c->words[2], to, c->words[4]));
+  return answer(c,
+                host->deleteRoute(host, c->self->info->self, from, c->words[2], to, c->words[4]));
 }
 
 /* --- Time, messages, misbehaviour --- */
@@ -250,7 +267,8 @@ static XsResult loop(Call* c) { /* for ever */
   return XS_STOPPED;
 }
 
-static XsResult wrong(Call* c) { /* OUT: everything that the host must refuse of a value, OUT being an MFString */
+static XsResult
+wrong(Call* c) { /* OUT: everything that the host must refuse of a value, OUT being an MFString */
   const XsHost* host = c->self->host;
   const XsNode self = c->self->info->self;
   const int32_t number = 1;
@@ -328,7 +346,8 @@ static XsResult run(XsInterpreter interpreter, const char* when, const XsEvent* 
   return XS_OK;
 }
 
-static XsResult createInterpreter(const XsHost* host, const XsScriptInfo* info, XsInterpreter* made) {
+static XsResult createInterpreter(const XsHost* host, const XsScriptInfo* info,
+                                  XsInterpreter* made) {
   Interpreter* self = calloc(1, sizeof *self);
   if (!self) return XS_FAILED;
   self->host = host;
@@ -345,7 +364,9 @@ static XsResult initialize(XsInterpreter interpreter, double time) {
   (void)time;
   return run(interpreter, "initialize", NULL);
 }
-static XsResult event(XsInterpreter interpreter, const XsEvent* event) { return run(interpreter, event->name, event); }
+static XsResult event(XsInterpreter interpreter, const XsEvent* event) {
+  return run(interpreter, event->name, event);
+}
 static XsResult processed(XsInterpreter interpreter, double time) {
   (void)time;
   return run(interpreter, "eventsProcessed", NULL);
@@ -378,9 +399,11 @@ static const XsEngine engine = {sizeof(XsEngine),
                                 shutdown,
                                 tick,
                                 NULL};
-static const XsEngine trusted = {sizeof(XsEngine),   XS_NEEDS_TRUST, "trusted", "the same for trusted worlds",
-                                 trustedSchemes,     NULL,           NULL,      createInterpreter,
-                                 destroyInterpreter, initialize,     event,     processed,
-                                 shutdown,           NULL,           NULL};
+static const XsEngine trusted = {
+    sizeof(XsEngine),   XS_NEEDS_TRUST, "trusted", "the same for trusted worlds",
+    trustedSchemes,     NULL,           NULL,      createInterpreter,
+    destroyInterpreter, initialize,     event,     processed,
+    shutdown,           NULL,           NULL};
 static const XsEngine* const engines[] = {&engine, &trusted};
-XS_EXPORT const XsPlugin xsPlugin = {XS_MAGIC, XS_ABI_MAJOR, XS_ABI_MINOR, sizeof(XsPlugin), 2, engines};
+XS_EXPORT const XsPlugin xsPlugin = {XS_MAGIC, XS_ABI_MAJOR, XS_ABI_MINOR, sizeof(XsPlugin),
+                                     2,        engines};

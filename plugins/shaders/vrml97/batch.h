@@ -1,8 +1,10 @@
-// batch.h: what the loops of the VRML97 plug-in share: clones for several instruction sets, and elementary functions that
-// the compiler can put into vector lanes. Thread tag [render]; everything here is a pure function of its arguments.
+// batch.h: what the loops of the VRML97 plug-in share: clones for several instruction sets, and
+// elementary functions that the compiler can put into vector lanes. Thread tag [render]; everything
+// here is a pure function of its arguments.
 //
-// Loops run over n rounded up to whole lanes (the ABI allows it), so none has a remainder. Contraction is off and no function
-// of libm is called per lane, so every clone gives the same bytes.
+// Loops run over n rounded up to whole lanes (the ABI allows it), so none has a remainder.
+// Contraction is off and no function of libm is called per lane, so every clone gives the same
+// bytes.
 #pragma once
 
 #include <cstdint>
@@ -10,9 +12,9 @@
 
 #include "openrt/openrts.h"
 
-// One function, compiled for several instruction sets, chosen when the plug-in is loaded. Sanitizers cannot run in the
-// resolver that makes the choice, and other compilers get plain code.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && defined(__OPTIMIZE__) &&                                  \
+// One function, compiled for several instruction sets, chosen when the plug-in is loaded.
+// Sanitizers cannot run in the resolver that makes the choice, and other compilers get plain code.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && defined(__OPTIMIZE__) &&    \
     !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #define VRML97_CLONES __attribute__((target_clones("avx512f", "avx2", "default")))
 #else
@@ -23,7 +25,9 @@
 
 namespace vrml97 {
 
-VRML97_INLINE uint32_t wholeLanes(uint32_t n) { return (n + RTS_LANES - 1) / RTS_LANES * RTS_LANES; }
+VRML97_INLINE uint32_t wholeLanes(uint32_t n) {
+  return (n + RTS_LANES - 1) / RTS_LANES * RTS_LANES;
+}
 
 VRML97_INLINE float larger(float a, float b) { return a > b ? a : b; }  // b where a is NaN
 VRML97_INLINE float smaller(float a, float b) { return a < b ? a : b; } // b where a is NaN
@@ -33,8 +37,8 @@ VRML97_INLINE float floatOf(uint32_t bits) { return __builtin_bit_cast(float, bi
 
 VRML97_INLINE float squareRoot(float x) { return __builtin_sqrtf(x); }
 
-// Natural logarithm of 1 - s for 0 <= s < 1, to about 1e-7 of its value: for small s the difference is never formed.
-// Polynomial of Cephes' logf (Moshier) on [sqrt(1/2), sqrt(2)].
+// Natural logarithm of 1 - s for 0 <= s < 1, to about 1e-7 of its value: for small s the difference
+// is never formed. Polynomial of Cephes' logf (Moshier) on [sqrt(1/2), sqrt(2)].
 VRML97_INLINE float logOneMinus(float s) {
   const float y = larger(1.0f - s, 1e-37f);
   const uint32_t shifted = bitsOf(y) - 0x3f3504f3u; // exponent steps at sqrt(1/2)
@@ -55,16 +59,17 @@ VRML97_INLINE float logOneMinus(float s) {
   return (p * x * z - 0.5f * z + e * -2.12194440e-4f) + x + e * 0.693359375f;
 }
 
-// expNegative of this and of anything below is 0. Choose among exponents, not results: a choice among results becomes a
-// branch around the work, and the loop stays scalar.
+// expNegative of this and of anything below is 0. Choose among exponents, not results: a choice
+// among results becomes a branch around the work, and the loop stays scalar.
 inline constexpr float vanishing = -88.0f;
 
-// e to the power x for x <= 0; 0 where that is below the smallest normal number, and for NaN: the power of two is then all
-// zero bits. Polynomial of Cephes' expf (Moshier).
+// e to the power x for x <= 0; 0 where that is below the smallest normal number, and for NaN: the
+// power of two is then all zero bits. Polynomial of Cephes' expf (Moshier).
 VRML97_INLINE float expNegative(float x) {
   const float safe = larger(x, vanishing);
   const float k = safe * 1.44269504088896341f - 0.5f;
-  const int32_t whole = static_cast<int32_t>(k); // towards zero: rounds the value before the subtraction, as it is negative
+  const int32_t whole = static_cast<int32_t>(
+      k); // towards zero: rounds the value before the subtraction, as it is negative
   const float e = static_cast<float>(whole);
   const float r = (safe - e * 0.693359375f) + e * 2.12194440e-4f;
   float p = 1.9875691500e-4f;
@@ -78,7 +83,8 @@ VRML97_INLINE float expNegative(float x) {
   return m * power;
 }
 
-// Angle 0..pi of the vector (x, y) with y >= 0 to the x axis; 0 for the zero vector. Polynomial of Cephes' atanf (Moshier).
+// Angle 0..pi of the vector (x, y) with y >= 0 to the x axis; 0 for the zero vector. Polynomial of
+// Cephes' atanf (Moshier).
 VRML97_INLINE float angleOf(float x, float y) {
   const float ax = x < 0.0f ? -x : x;
   const bool steep = y > ax;

@@ -1,5 +1,6 @@
-// environment.cpp: Background (ISO/IEC 14772-1 clause 6.5) and Fog (clause 6.19). Local space is the background's: directions
-// only, as a background ignores translation; the fog has a matrix of its own. Thread tag [render].
+// environment.cpp: Background (ISO/IEC 14772-1 clause 6.5) and Fog (clause 6.19). Local space is
+// the background's: directions only, as a background ignores translation; the fog has a matrix of
+// its own. Thread tag [render].
 #include <algorithm>
 #include <iterator>
 
@@ -21,8 +22,11 @@ struct EnvironmentParams {
   float fogMatrix[16];
 };
 
-#define VRML97_PANORAMA(name, index, text)                                                                                       \
-  { name, RTS_TEXTURE, offsetof(EnvironmentParams, panorama) + (index) * sizeof(RtsTexture), {}, 0.0f, 0.0f, text }
+#define VRML97_PANORAMA(name, index, text)                                                         \
+  {                                                                                                \
+    name, RTS_TEXTURE, offsetof(EnvironmentParams, panorama) + (index) * sizeof(RtsTexture), {},   \
+        0.0f, 0.0f, text                                                                           \
+  }
 
 const RtsParam environmentParams[] = {
     {"skyColor",
@@ -52,15 +56,28 @@ const RtsParam environmentParams[] = {
      {},
      0.0f,
      0.0f,
-     "angles from the nadir of the second and later ground colours, radians; the ground ends at the last"},
+     "angles from the nadir of the second and later ground colours, radians; the ground ends at "
+     "the last"},
     VRML97_PANORAMA("frontTexture", 0, "picture seen along -z"),
     VRML97_PANORAMA("backTexture", 1, "picture seen along +z"),
     VRML97_PANORAMA("leftTexture", 2, "picture seen along -x"),
     VRML97_PANORAMA("rightTexture", 3, "picture seen along +x"),
     VRML97_PANORAMA("topTexture", 4, "picture seen along +y, its upper edge towards +z"),
     VRML97_PANORAMA("bottomTexture", 5, "picture seen along -y, its upper edge towards -z"),
-    {"fogType", RTS_INT, offsetof(EnvironmentParams, fogType), {0.0f}, 0.0f, 2.0f, "0: clear air, 1: linear, 2: exponential"},
-    {"fogColor", RTS_COLOR, offsetof(EnvironmentParams, fogColor), {1.0f, 1.0f, 1.0f}, 0.0f, 0.0f, "colour of the fog"},
+    {"fogType",
+     RTS_INT,
+     offsetof(EnvironmentParams, fogType),
+     {0.0f},
+     0.0f,
+     2.0f,
+     "0: clear air, 1: linear, 2: exponential"},
+    {"fogColor",
+     RTS_COLOR,
+     offsetof(EnvironmentParams, fogColor),
+     {1.0f, 1.0f, 1.0f},
+     0.0f,
+     0.0f,
+     "colour of the fog"},
     {"fogRange",
      RTS_FLOAT,
      offsetof(EnvironmentParams, fogRange),
@@ -77,38 +94,43 @@ const RtsParam environmentParams[] = {
      "from local vectors to the fog's space; only its 3x3 part counts"},
 };
 
-// Colours at angles from a pole. Angles count from 0 for the first colour and are made increasing, within 0..limit.
+// Colours at angles from a pole. Angles count from 0 for the first colour and are made increasing,
+// within 0..limit.
 struct Gradient {
   const float* color; // 3 a stop
   float* angle;       // of each stop
   uint32_t stops;
 };
 
-Gradient gradientOf(const RtsHost* host, RtsBatch* batch, const RtsFloats& color, const RtsFloats& angle, float limit) {
+Gradient gradientOf(const RtsHost* host, RtsBatch* batch, const RtsFloats& color,
+                    const RtsFloats& angle, float limit) {
   Gradient g{color.data, nullptr, std::min(color.count / 3, angle.count + 1)};
   if (g.stops == 0) return g;
   g.angle = host->scratch(batch, wholeLanes(g.stops));
   g.angle[0] = 0.0f;
-  for (uint32_t i = 1; i < g.stops; i++) g.angle[i] = std::max(g.angle[i - 1], smaller(larger(angle.data[i - 1], 0.0f), limit));
+  for (uint32_t i = 1; i < g.stops; i++)
+    g.angle[i] = std::max(g.angle[i - 1], smaller(larger(angle.data[i - 1], 0.0f), limit));
   return g;
 }
 
 // Beyond the last angle the last colour goes on.
 void lookUp(const Gradient& g, float angle, float rgb[3]) {
-  const auto above = static_cast<uint32_t>(std::upper_bound(g.angle, g.angle + g.stops, angle) - g.angle);
+  const auto above =
+      static_cast<uint32_t>(std::upper_bound(g.angle, g.angle + g.stops, angle) - g.angle);
   const uint32_t last = above > 0 ? above - 1 : 0;
   const float* a = g.color + 3 * size_t(last);
   if (above == g.stops) {
     for (int c = 0; c < 3; c++) rgb[c] = a[c];
     return;
   }
-  const float t = (angle - g.angle[last]) / (g.angle[above] - g.angle[last]); // upper_bound: the stops differ
+  const float t =
+      (angle - g.angle[last]) / (g.angle[above] - g.angle[last]); // upper_bound: the stops differ
   const float* b = g.color + 3 * size_t(above);
   for (int c = 0; c < 3; c++) rgb[c] = a[c] + t * (b[c] - a[c]);
 }
 
-VRML97_CLONES void zenithAngles(uint32_t n, const float* __restrict x, const float* __restrict y, const float* __restrict z,
-                                float* __restrict angle) {
+VRML97_CLONES void zenithAngles(uint32_t n, const float* __restrict x, const float* __restrict y,
+                                const float* __restrict z, float* __restrict angle) {
   for (uint32_t i = 0; i < n; i++) angle[i] = angleOf(y[i], squareRoot(x[i] * x[i] + z[i] * z[i]));
 }
 
@@ -117,13 +139,14 @@ VRML97_CLONES void constant(float value, uint32_t n, float* __restrict out) {
 }
 
 // The colours behind the pictures. Without any, nothing is seen and the opacity is 0.
-void sky(const RtsHost* host, RtsBatch* batch, const EnvironmentParams& p, uint32_t n, const float* const d[3],
-         float* const rgba[4]) {
+void sky(const RtsHost* host, RtsBatch* batch, const EnvironmentParams& p, uint32_t n,
+         const float* const d[3], float* const rgba[4]) {
   constexpr float pi = 3.14159265358979f;
   const Gradient sky = gradientOf(host, batch, p.skyColor, p.skyAngle, pi);
   const Gradient ground = gradientOf(host, batch, p.groundColor, p.groundAngle, pi / 2);
   const uint32_t lanes = wholeLanes(n);
-  if (sky.stops <= 1 && ground.stops <= 1) { // one colour all around: ground of one colour ends where it begins
+  if (sky.stops <= 1 &&
+      ground.stops <= 1) { // one colour all around: ground of one colour ends where it begins
     for (int c = 0; c < 3; c++) constant(sky.stops ? sky.color[c] : 0.0f, lanes, rgba[c]);
     constant(sky.stops ? 1.0f : 0.0f, lanes, rgba[3]);
     return;
@@ -148,8 +171,8 @@ struct Look {
   float s, t;
 };
 
-// Which of the six pictures a direction meets and where: each is seen upright from inside when the head turns from the front
-// to it, 90 degrees left, right, up or down.
+// Which of the six pictures a direction meets and where: each is seen upright from inside when the
+// head turns from the front to it, 90 degrees left, right, up or down.
 Look lookOf(float x, float y, float z) {
   const float ax = larger(x, -x), ay = larger(y, -y), az = larger(z, -z);
   const auto place = [](uint32_t face, float right, float up, float depth) {
@@ -162,8 +185,8 @@ Look lookOf(float x, float y, float z) {
 }
 
 // Lays the pictures over the colours, by their alpha.
-void panorama(const RtsHost* host, RtsBatch* batch, const EnvironmentParams& p, uint32_t n, const float* const d[3],
-              float* const rgba[4]) {
+void panorama(const RtsHost* host, RtsBatch* batch, const EnvironmentParams& p, uint32_t n,
+              const float* const d[3], float* const rgba[4]) {
   const uint32_t lanes = wholeLanes(n);
   float *s = host->scratch(batch, lanes), *t = host->scratch(batch, lanes);
   auto* texture = reinterpret_cast<RtsTexture*>(host->scratch(batch, lanes));
@@ -186,17 +209,19 @@ void panorama(const RtsHost* host, RtsBatch* batch, const EnvironmentParams& p, 
   }
 }
 
-void miss(const RtsHost* host, RtsBatch* batch, const void* params, uint32_t n, const float* const direction[3],
-          float* const rgba[4]) {
+void miss(const RtsHost* host, RtsBatch* batch, const void* params, uint32_t n,
+          const float* const direction[3], float* const rgba[4]) {
   if (n == 0) return;
   const auto& p = *static_cast<const EnvironmentParams*>(params);
   sky(host, batch, p, n, direction, rgba);
-  if (std::any_of(std::begin(p.panorama), std::end(p.panorama), [](RtsTexture t) { return t != 0; }))
+  if (std::any_of(std::begin(p.panorama), std::end(p.panorama),
+                  [](RtsTexture t) { return t != 0; }))
     panorama(host, batch, p, n, direction, rgba);
 }
 
-VRML97_CLONES void fogDistances(const float* __restrict m, uint32_t n, const float* __restrict x, const float* __restrict y,
-                                const float* __restrict z, float* __restrict distance) {
+VRML97_CLONES void fogDistances(const float* __restrict m, uint32_t n, const float* __restrict x,
+                                const float* __restrict y, const float* __restrict z,
+                                float* __restrict distance) {
   for (uint32_t i = 0; i < n; i++) {
     const float fx = m[0] * x[i] + m[4] * y[i] + m[8] * z[i];
     const float fy = m[1] * x[i] + m[5] * y[i] + m[9] * z[i];
@@ -206,7 +231,8 @@ VRML97_CLONES void fogDistances(const float* __restrict m, uint32_t n, const flo
 }
 
 // Clause 4.14.4: (v - d) / v within the range, 0 beyond.
-VRML97_CLONES void linearFraction(float range, uint32_t n, const float* __restrict distance, float* __restrict fraction) {
+VRML97_CLONES void linearFraction(float range, uint32_t n, const float* __restrict distance,
+                                  float* __restrict fraction) {
   for (uint32_t i = 0; i < n; i++) {
     const float f = (range - distance[i]) / range;
     fraction[i] = larger(f, 0.0f);
@@ -214,7 +240,8 @@ VRML97_CLONES void linearFraction(float range, uint32_t n, const float* __restri
 }
 
 // Clause 4.14.4: exp(-d / (v - d)) within the range, 0 beyond.
-VRML97_CLONES void exponentialFraction(float range, uint32_t n, const float* __restrict distance, float* __restrict fraction) {
+VRML97_CLONES void exponentialFraction(float range, uint32_t n, const float* __restrict distance,
+                                       float* __restrict fraction) {
   for (uint32_t i = 0; i < n; i++) {
     const float left = range - distance[i];
     const float power = -distance[i] / larger(left, 1e-37f);
@@ -222,15 +249,16 @@ VRML97_CLONES void exponentialFraction(float range, uint32_t n, const float* __r
   }
 }
 
-void attenuate(const RtsHost* host, RtsBatch* batch, const void* params, uint32_t n, const float* const fromEye[3],
-               float* const color[3], float* fraction) {
+void attenuate(const RtsHost* host, RtsBatch* batch, const void* params, uint32_t n,
+               const float* const fromEye[3], float* const color[3], float* fraction) {
   const auto& p = *static_cast<const EnvironmentParams*>(params);
   const uint32_t lanes = wholeLanes(n);
   for (int c = 0; c < 3; c++) constant(p.fogColor[c], lanes, color[c]);
   if (p.fogType == noFog || !(p.fogRange > 0.0f)) return constant(1.0f, lanes, fraction);
   float* distance = host->scratch(batch, lanes);
   fogDistances(p.fogMatrix, lanes, fromEye[0], fromEye[1], fromEye[2], distance);
-  (p.fogType == exponentialFog ? exponentialFraction : linearFraction)(p.fogRange, lanes, distance, fraction);
+  (p.fogType == exponentialFog ? exponentialFraction : linearFraction)(p.fogRange, lanes, distance,
+                                                                       fraction);
 }
 
 // Clause 6.5: a Background is seen and lights nothing.

@@ -5,10 +5,14 @@
 
 namespace vrml97 {
 
-// A point at the pixel coordinates x, y; weight 0 where that is not in the picture, or is no number.
-inline void place(RtsProjection* out, uint32_t i, const float size[2], double x, double y, double weight) {
-  const float px = static_cast<float>(x), py = static_cast<float>(y), w = static_cast<float>(weight);
-  const bool seen = px >= 0 && px < size[0] && py >= 0 && py < size[1] && w > 0 && w <= 3.402823e38f;
+// A point at the pixel coordinates x, y; weight 0 where that is not in the picture, or is no
+// number.
+inline void place(RtsProjection* out, uint32_t i, const float size[2], double x, double y,
+                  double weight) {
+  const float px = static_cast<float>(x), py = static_cast<float>(y),
+              w = static_cast<float>(weight);
+  const bool seen =
+      px >= 0 && px < size[0] && py >= 0 && py < size[1] && w > 0 && w <= 3.402823e38f;
   out->xy[0][i] = seen ? px : 0.0f;
   out->xy[1][i] = seen ? py : 0.0f;
   out->weight[i] = seen ? w : 0.0f;
@@ -16,7 +20,8 @@ inline void place(RtsProjection* out, uint32_t i, const float size[2], double x,
 
 template <class Params, uint32_t count>
 constexpr RtsClass cameraClass(const char* name, const char* text, const RtsParam (&params)[count],
-                               decltype(RtsClass::generate) generate, decltype(RtsClass::project) project) {
+                               decltype(RtsClass::generate) generate,
+                               decltype(RtsClass::project) project) {
   RtsClass c{};
   c.size = sizeof(RtsClass);
   c.kind = RTS_CAMERA;

@@ -1,9 +1,11 @@
-// global.cpp: a VRML97 surface as a sum of lobes: what path tracing asks of VRML97, and all of GlobalIllumination, which is the
-// same under a name that asks for path tracing. Thread tag [render].
+// global.cpp: a VRML97 surface as a sum of lobes: what path tracing asks of VRML97, and all of
+// GlobalIllumination, which is the same under a name that asks for path tracing. Thread tag
+// [render].
 //
-// The lighting equation (ISO/IEC 14772-1 clause 4.14) reflects more light than there is, and not the same both ways. Its twin
-// here is Lambert's law for the diffuse part, and for highlights OS (N.H)^e (N.L): as bright at the brightest point, reciprocal;
-// where both together would reflect more than all light they are scaled. The ambient terms stand for the light of other surfaces,
+// The lighting equation (ISO/IEC 14772-1 clause 4.14) reflects more light than there is, and not
+// the same both ways. Its twin here is Lambert's law for the diffuse part, and for highlights OS
+// (N.H)^e (N.L): as bright at the brightest point, reciprocal; where both together would reflect
+// more than all light they are scaled. The ambient terms stand for the light of other surfaces,
 // which now comes by itself: they are left out.
 #include "vrml97/global.h"
 
@@ -24,10 +26,12 @@ float atLeast0(float x) { return larger(x, 0.0f); }
 
 void fill(const RtsHits* hits, const Terms& t, const Lobes& lobes) {
   for (uint32_t i = 0; i < hits->count; i++) {
-    const float alpha = smaller(atLeast0(t.alpha[i]), 1.0f), exponent = smaller(atLeast0(t.exponent[i]), blinn_phong::sharpest);
+    const float alpha = smaller(atLeast0(t.alpha[i]), 1.0f),
+                exponent = smaller(atLeast0(t.exponent[i]), blinn_phong::sharpest);
     const float share = lobes.highlight ? blinn_phong::reflectance(exponent) : 0.0f;
     for (int c = 0; c < 3; c++) {
-      const float diffuse = atLeast0(t.diffuse[c][i]), highlight = share * atLeast0(t.specular[c][i]), both = diffuse + highlight;
+      const float diffuse = atLeast0(t.diffuse[c][i]),
+                  highlight = share * atLeast0(t.specular[c][i]), both = diffuse + highlight;
       const float scale = alpha * (both > 1.0f ? 1.0f / both : 1.0f);
       if (lobes.diffuse) lobes.diffuse->weight[c][i] = scale * diffuse;
       if (lobes.highlight) lobes.highlight->weight[c][i] = scale * highlight;
@@ -61,7 +65,8 @@ RtsClass makeGlobalIlluminationClass() {
 
 uint32_t scatterTraits(const SurfaceParams& p) {
   const auto any = [](const float c[3]) { return c[0] > 0.0f || c[1] > 0.0f || c[2] > 0.0f; };
-  return (p.lit ? 0u : uint32_t(RTS_NO_SCATTER)) | (p.lit && any(p.specularColor) ? uint32_t(RTS_GLOSSY) : 0u) |
+  return (p.lit ? 0u : uint32_t(RTS_NO_SCATTER)) |
+         (p.lit && any(p.specularColor) ? uint32_t(RTS_GLOSSY) : 0u) |
          (!p.lit || any(p.emissiveColor) ? uint32_t(RTS_EMISSIVE) : 0u);
 }
 
@@ -77,7 +82,8 @@ void scatter(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, RtsSurfa
   }
   Lobes lobes{};
   if (summary.lit) lobes.diffuse = host->lobe(batch, RTS_LOBE_DIFFUSE);
-  if (summary.specular) lobes.highlight = host->customLobe(batch, rts::lobeFunctions<blinn_phong::Lobe>(), 1);
+  if (summary.specular)
+    lobes.highlight = host->customLobe(batch, rts::lobeFunctions<blinn_phong::Lobe>(), 1);
   if (clear) lobes.behind = host->lobe(batch, RTS_LOBE_TRANSPARENT);
   fill(hits, t, lobes);
 }

@@ -1,5 +1,6 @@
-// lenses.cpp: stock cameras beyond the standard: a thin lens with depth of field, and a panorama of everything around. Local
-// frame as of the others: looking down -z, +y up; pixel (0, 0) is the top left corner. Thread tag [render].
+// lenses.cpp: stock cameras beyond the standard: a thin lens with depth of field, and a panorama of
+// everything around. Local frame as of the others: looking down -z, +y up; pixel (0, 0) is the top
+// left corner. Thread tag [render].
 #include <cmath>
 
 #include "vrml97/classes.h"
@@ -10,7 +11,8 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
-// Thin lens ------------------------------------------------------------------------------------------------------------------
+// Thin lens
+// -------------------------------------------------------------------------------------------------
 
 struct ThinLensParams {
   float fovy, radius, focus;
@@ -18,9 +20,27 @@ struct ThinLensParams {
 };
 
 const RtsParam thinLensParams[] = {
-    {"fovy", RTS_FLOAT, offsetof(ThinLensParams, fovy), {45.0f}, 0.0f, 180.0f, "vertical field of view, degrees"},
-    {"radius", RTS_FLOAT, offsetof(ThinLensParams, radius), {0.0f}, 0.0f, noLimit, "of the lens; 0: everything is in focus"},
-    {"focus", RTS_FLOAT, offsetof(ThinLensParams, focus), {10.0f}, 1e-6f, noLimit, "distance of the plane that is in focus"},
+    {"fovy",
+     RTS_FLOAT,
+     offsetof(ThinLensParams, fovy),
+     {45.0f},
+     0.0f,
+     180.0f,
+     "vertical field of view, degrees"},
+    {"radius",
+     RTS_FLOAT,
+     offsetof(ThinLensParams, radius),
+     {0.0f},
+     0.0f,
+     noLimit,
+     "of the lens; 0: everything is in focus"},
+    {"focus",
+     RTS_FLOAT,
+     offsetof(ThinLensParams, focus),
+     {10.0f},
+     1e-6f,
+     noLimit,
+     "distance of the plane that is in focus"},
     {"blades",
      RTS_INT,
      offsetof(ThinLensParams, blades),
@@ -33,8 +53,9 @@ struct Place {
   double x, y;
 };
 
-// A point of the unit square to one of the unit disk, areas kept in proportion, the middle to the middle (P. Shirley, K. Chiu,
-// "A Low Distortion Map Between Disk and Square", JGT 2(3), 1997); then, sector by sector, to the regular polygon in it.
+// A point of the unit square to one of the unit disk, areas kept in proportion, the middle to the
+// middle (P. Shirley, K. Chiu, "A Low Distortion Map Between Disk and Square", JGT 2(3), 1997);
+// then, sector by sector, to the regular polygon in it.
 Place onLens(float u, float v, int32_t blades) {
   const double a = 2.0 * static_cast<double>(u) - 1.0, b = 2.0 * static_cast<double>(v) - 1.0;
   if (a == 0 && b == 0) return {0, 0};
@@ -43,7 +64,8 @@ Place onLens(float u, float v, int32_t blades) {
   const double angle = wide ? pi / 4 * (b / a) : pi / 2 - pi / 4 * (a / b);
   if (blades < 3) return {radius * std::cos(angle), radius * std::sin(angle)};
   const double turn = (radius < 0 ? angle + pi : angle) / (2 * pi), r = std::fabs(radius);
-  const double sectors = (turn - std::floor(turn)) * blades, sector = std::floor(sectors), part = sectors - sector;
+  const double sectors = (turn - std::floor(turn)) * blades, sector = std::floor(sectors),
+               part = sectors - sector;
   const double first = 2 * pi * sector / blades, second = 2 * pi * (sector + 1) / blades;
   return {r * ((1 - part) * std::cos(first) + part * std::cos(second)),
           r * ((1 - part) * std::sin(first) + part * std::sin(second))};
@@ -52,8 +74,8 @@ Place onLens(float u, float v, int32_t blades) {
 double planeHeight(float fovy) { return 2.0 * std::tan(static_cast<double>(fovy) * (pi / 360.0)); }
 
 // Rays start at a place on the lens and meet where the pinhole's ray meets the plane in focus.
-void generateThinLens(const RtsHost* host, RtsBatch* batch, const void* params, uint32_t n, const float* const xy[2],
-                      const float size[2], RtsRays* out) {
+void generateThinLens(const RtsHost* host, RtsBatch* batch, const void* params, uint32_t n,
+                      const float* const xy[2], const float size[2], RtsRays* out) {
   const auto& p = *static_cast<const ThinLensParams*>(params);
   const double step = planeHeight(p.fovy) / static_cast<double>(size[1]), focus = p.focus;
   const bool open = p.radius > 0 && host->minor >= 2 && host->random;
@@ -64,9 +86,12 @@ void generateThinLens(const RtsHost* host, RtsBatch* batch, const void* params, 
   }
   for (uint32_t i = 0; i < n; i++) {
     const Place unit = open ? onLens(square[0][i], square[1][i], p.blades) : Place{0, 0};
-    const double lx = unit.x * static_cast<double>(p.radius), ly = unit.y * static_cast<double>(p.radius);
-    const double x = (static_cast<double>(xy[0][i]) - 0.5 * static_cast<double>(size[0])) * step * focus - lx;
-    const double y = (0.5 * static_cast<double>(size[1]) - static_cast<double>(xy[1][i])) * step * focus - ly;
+    const double lx = unit.x * static_cast<double>(p.radius),
+                 ly = unit.y * static_cast<double>(p.radius);
+    const double x =
+        (static_cast<double>(xy[0][i]) - 0.5 * static_cast<double>(size[0])) * step * focus - lx;
+    const double y =
+        (0.5 * static_cast<double>(size[1]) - static_cast<double>(xy[1][i])) * step * focus - ly;
     const double scale = 1.0 / std::sqrt(x * x + y * y + focus * focus);
     out->origin[0][i] = static_cast<float>(lx);
     out->origin[1][i] = static_cast<float>(ly);
@@ -77,15 +102,20 @@ void generateThinLens(const RtsHost* host, RtsBatch* batch, const void* params, 
   }
 }
 
-// Through the place on the lens and the point to the plane in focus: that is the pixel. Weight as of the perspective camera.
-void projectThinLens(const RtsHost*, RtsBatch*, const void* params, uint32_t n, const float* const local[3],
-                     const float* const lens[2], const float size[2], RtsProjection* out) {
+// Through the place on the lens and the point to the plane in focus: that is the pixel. Weight as
+// of the perspective camera.
+void projectThinLens(const RtsHost*, RtsBatch*, const void* params, uint32_t n,
+                     const float* const local[3], const float* const lens[2], const float size[2],
+                     RtsProjection* out) {
   const auto& p = *static_cast<const ThinLensParams*>(params);
-  const double pixels = static_cast<double>(size[1]) / planeHeight(p.fovy), focus = p.focus; // of a unit of the plane z = -1
+  const double pixels = static_cast<double>(size[1]) / planeHeight(p.fovy),
+               focus = p.focus; // of a unit of the plane z = -1
   for (uint32_t i = 0; i < n; i++) {
     const Place unit = p.radius > 0 ? onLens(lens[0][i], lens[1][i], p.blades) : Place{0, 0};
-    const double lx = unit.x * static_cast<double>(p.radius), ly = unit.y * static_cast<double>(p.radius);
-    const double x = static_cast<double>(local[0][i]) - lx, y = static_cast<double>(local[1][i]) - ly;
+    const double lx = unit.x * static_cast<double>(p.radius),
+                 ly = unit.y * static_cast<double>(p.radius);
+    const double x = static_cast<double>(local[0][i]) - lx,
+                 y = static_cast<double>(local[1][i]) - ly;
     const double depth = -static_cast<double>(local[2][i]);
     const double away = std::sqrt(x * x + y * y + depth * depth);
     place(out, i, size, 0.5 * static_cast<double>(size[0]) + (lx / focus + x / depth) * pixels,
@@ -98,7 +128,8 @@ void projectThinLens(const RtsHost*, RtsBatch*, const void* params, uint32_t n, 
   out->parallel = 0;
 }
 
-// Panorama -------------------------------------------------------------------------------------------------------------------
+// Panorama
+// -------------------------------------------------------------------------------------------------
 
 struct PanoramaParams {
   float horizontal, vertical;
@@ -120,14 +151,17 @@ const RtsParam panoramaParams[] = {{"horizontal",
                                     "angle from the lower to the upper edge, degrees"}};
 
 // Equirectangular: longitude and latitude grow evenly with the pixels; the middle looks down -z.
-void generatePanorama(const RtsHost*, RtsBatch*, const void* params, uint32_t n, const float* const xy[2], const float size[2],
-                      RtsRays* out) {
+void generatePanorama(const RtsHost*, RtsBatch*, const void* params, uint32_t n,
+                      const float* const xy[2], const float size[2], RtsRays* out) {
   const auto& p = *static_cast<const PanoramaParams*>(params);
-  const double across = static_cast<double>(p.horizontal) * (pi / 180) / static_cast<double>(size[0]);
+  const double across =
+      static_cast<double>(p.horizontal) * (pi / 180) / static_cast<double>(size[0]);
   const double up = static_cast<double>(p.vertical) * (pi / 180) / static_cast<double>(size[1]);
   for (uint32_t i = 0; i < n; i++) {
-    const double longitude = (static_cast<double>(xy[0][i]) - 0.5 * static_cast<double>(size[0])) * across;
-    const double latitude = (0.5 * static_cast<double>(size[1]) - static_cast<double>(xy[1][i])) * up;
+    const double longitude =
+        (static_cast<double>(xy[0][i]) - 0.5 * static_cast<double>(size[0])) * across;
+    const double latitude =
+        (0.5 * static_cast<double>(size[1]) - static_cast<double>(xy[1][i])) * up;
     out->origin[0][i] = out->origin[1][i] = out->origin[2][i] = 0.0f;
     out->direction[0][i] = static_cast<float>(std::cos(latitude) * std::sin(longitude));
     out->direction[1][i] = static_cast<float>(std::sin(latitude));
@@ -136,16 +170,19 @@ void generatePanorama(const RtsHost*, RtsBatch*, const void* params, uint32_t n,
 }
 
 // A row of pixels is as long at any latitude, its circle shrinks with the cosine.
-void projectPanorama(const RtsHost*, RtsBatch*, const void* params, uint32_t n, const float* const local[3], const float* const*,
-                     const float size[2], RtsProjection* out) {
+void projectPanorama(const RtsHost*, RtsBatch*, const void* params, uint32_t n,
+                     const float* const local[3], const float* const*, const float size[2],
+                     RtsProjection* out) {
   const auto& p = *static_cast<const PanoramaParams*>(params);
-  const double across = static_cast<double>(size[0]) / (static_cast<double>(p.horizontal) * (pi / 180));
+  const double across =
+      static_cast<double>(size[0]) / (static_cast<double>(p.horizontal) * (pi / 180));
   const double up = static_cast<double>(size[1]) / (static_cast<double>(p.vertical) * (pi / 180));
   for (uint32_t i = 0; i < n; i++) {
     const double x = local[0][i], y = local[1][i], z = local[2][i];
     const double level = std::sqrt(x * x + z * z), away2 = level * level + y * y;
     place(out, i, size, 0.5 * static_cast<double>(size[0]) + std::atan2(x, -z) * across,
-          0.5 * static_cast<double>(size[1]) - std::atan2(y, level) * up, across * up / (std::sqrt(away2) * level));
+          0.5 * static_cast<double>(size[1]) - std::atan2(y, level) * up,
+          across * up / (std::sqrt(away2) * level));
     out->toEye[0][i] = -local[0][i];
     out->toEye[1][i] = -local[1][i];
     out->toEye[2][i] = -local[2][i];
@@ -155,9 +192,11 @@ void projectPanorama(const RtsHost*, RtsBatch*, const void* params, uint32_t n, 
 
 } // namespace
 
-const RtsClass thinLensClass = cameraClass<ThinLensParams>("ThinLens", "a lens: what is not at the distance of focus is blurred",
-                                                           thinLensParams, generateThinLens, projectThinLens);
-const RtsClass panoramaClass = cameraClass<PanoramaParams>("Panorama", "everything around, longitude and latitude",
-                                                           panoramaParams, generatePanorama, projectPanorama);
+const RtsClass thinLensClass = cameraClass<ThinLensParams>(
+    "ThinLens", "a lens: what is not at the distance of focus is blurred", thinLensParams,
+    generateThinLens, projectThinLens);
+const RtsClass panoramaClass =
+    cameraClass<PanoramaParams>("Panorama", "everything around, longitude and latitude",
+                                panoramaParams, generatePanorama, projectPanorama);
 
 } // namespace vrml97

@@ -1,5 +1,6 @@
-// lights.cpp: the lights of ISO/IEC 14772-1 clauses 6.16 (DirectionalLight), 6.35 (PointLight) and 6.45 (SpotLight).
-// Distances, angles and the radius are measured in the light's local space, as the standard asks. Thread tag [render].
+// lights.cpp: the lights of ISO/IEC 14772-1 clauses 6.16 (DirectionalLight), 6.35 (PointLight)
+// and 6.45 (SpotLight). Distances, angles and the radius are measured in the light's local space,
+// as the standard asks. Thread tag [render].
 #include <cmath>
 
 #include "vrml97/batch.h"
@@ -34,34 +35,46 @@ struct SpotParams {
   float direction[3];
 };
 
-#define VRML97_LIGHT_PARAMS                                                                                                      \
-  {                                                                                                                              \
-      "ambientIntensity",                                                                                                        \
-      RTS_FLOAT,                                                                                                                 \
-      offsetof(LightParams, ambientIntensity),                                                                                   \
-      {0.0f},                                                                                                                    \
-      0.0f,                                                                                                                      \
-      noLimit,                                                                                                                   \
-      "strength of the ambient part"},                                                                                           \
-      {"color", RTS_COLOR, offsetof(LightParams, color), {1.0f, 1.0f, 1.0f}, 0.0f, 0.0f, "colour of the light"},                 \
-      {"intensity", RTS_FLOAT, offsetof(LightParams, intensity), {1.0f}, 0.0f, noLimit, "strength of the direct part"}, {        \
-    "shadows", RTS_INT, offsetof(LightParams, shadows), {1.0f}, 0.0f, 1.0f, "1: casts shadows, 0: shines through everything"     \
+#define VRML97_LIGHT_PARAMS                                                                        \
+  {"ambientIntensity",                                                                             \
+   RTS_FLOAT,                                                                                      \
+   offsetof(LightParams, ambientIntensity),                                                        \
+   {0.0f},                                                                                         \
+   0.0f,                                                                                           \
+   noLimit,                                                                                        \
+   "strength of the ambient part"},                                                                \
+      {"color", RTS_COLOR, offsetof(LightParams, color), {1.0f, 1.0f, 1.0f},                       \
+       0.0f,    0.0f,      "colour of the light"},                                                 \
+      {"intensity", RTS_FLOAT, offsetof(LightParams, intensity), {1.0f},                           \
+       0.0f,        noLimit,   "strength of the direct part"},                                     \
+  {                                                                                                \
+    "shadows", RTS_INT, offsetof(LightParams, shadows), {1.0f}, 0.0f, 1.0f,                        \
+        "1: casts shadows, 0: shines through everything"                                           \
   }
-#define VRML97_POINT_PARAMS                                                                                                      \
-  {"attenuation",                                                                                                                \
-   RTS_VEC3,                                                                                                                     \
-   offsetof(PointParams, attenuation),                                                                                           \
-   {1.0f, 0.0f, 0.0f},                                                                                                           \
-   0.0f,                                                                                                                         \
-   noLimit,                                                                                                                      \
-   "a b c of 1 / max(a + b d + c d^2, 1) at distance d"},                                                                        \
-      {"location", RTS_VEC3, offsetof(PointParams, location), {0.0f, 0.0f, 0.0f}, 0.0f, 0.0f, "place of the light"}, {           \
-    "radius", RTS_FLOAT, offsetof(PointParams, radius), {100.0f}, 0.0f, noLimit, "nothing farther away is lit"                   \
+#define VRML97_POINT_PARAMS                                                                        \
+  {"attenuation",                                                                                  \
+   RTS_VEC3,                                                                                       \
+   offsetof(PointParams, attenuation),                                                             \
+   {1.0f, 0.0f, 0.0f},                                                                             \
+   0.0f,                                                                                           \
+   noLimit,                                                                                        \
+   "a b c of 1 / max(a + b d + c d^2, 1) at distance d"},                                          \
+      {"location",          RTS_VEC3, offsetof(PointParams, location),                             \
+       {0.0f, 0.0f, 0.0f},  0.0f,     0.0f,                                                        \
+       "place of the light"},                                                                      \
+  {                                                                                                \
+    "radius", RTS_FLOAT, offsetof(PointParams, radius), {100.0f}, 0.0f, noLimit,                   \
+        "nothing farther away is lit"                                                              \
   }
 
-const RtsParam directionalParams[] = {
-    VRML97_LIGHT_PARAMS,
-    {"direction", RTS_VEC3, offsetof(DirectionalParams, direction), {0.0f, 0.0f, -1.0f}, 0.0f, 0.0f, "where the light goes"}};
+const RtsParam directionalParams[] = {VRML97_LIGHT_PARAMS,
+                                      {"direction",
+                                       RTS_VEC3,
+                                       offsetof(DirectionalParams, direction),
+                                       {0.0f, 0.0f, -1.0f},
+                                       0.0f,
+                                       0.0f,
+                                       "where the light goes"}};
 const RtsParam pointParams[] = {VRML97_LIGHT_PARAMS, VRML97_POINT_PARAMS};
 const RtsParam spotParams[] = {
     VRML97_LIGHT_PARAMS,
@@ -80,7 +93,13 @@ const RtsParam spotParams[] = {
      0.0f,
      3.1415927f,
      "angle from the axis at which the light ends, radians"},
-    {"direction", RTS_VEC3, offsetof(SpotParams, direction), {0.0f, 0.0f, -1.0f}, 0.0f, 0.0f, "axis of the cone"},
+    {"direction",
+     RTS_VEC3,
+     offsetof(SpotParams, direction),
+     {0.0f, 0.0f, -1.0f},
+     0.0f,
+     0.0f,
+     "axis of the cone"},
 };
 
 uint32_t lightTraits(const RtsHost*, const void* params) {
@@ -104,8 +123,8 @@ VRML97_CLONES void fill(float value, uint32_t n, float* __restrict out) {
   for (uint32_t i = 0; i < n; i++) out[i] = value;
 }
 
-void illuminateDirectional(const RtsHost*, RtsBatch*, const void* params, uint32_t n, const float* const[3],
-                           RtsIllumination* out) {
+void illuminateDirectional(const RtsHost*, RtsBatch*, const void* params, uint32_t n,
+                           const float* const[3], RtsIllumination* out) {
   const auto& p = *static_cast<const DirectionalParams*>(params);
   const Outgoing o = outgoing(p.light);
   for (int c = 0; c < 3; c++) {
@@ -117,13 +136,15 @@ void illuminateDirectional(const RtsHost*, RtsBatch*, const void* params, uint32
 }
 
 // toLight, and in factor the attenuation, 0 beyond the radius.
-VRML97_CLONES void attenuation(const PointParams p, uint32_t n, const float* __restrict px, const float* __restrict py,
-                               const float* __restrict pz, float* __restrict tx, float* __restrict ty, float* __restrict tz,
+VRML97_CLONES void attenuation(const PointParams p, uint32_t n, const float* __restrict px,
+                               const float* __restrict py, const float* __restrict pz,
+                               float* __restrict tx, float* __restrict ty, float* __restrict tz,
                                float* __restrict factor) {
   for (uint32_t i = 0; i < n; i++) {
     const float x = p.location[0] - px[i], y = p.location[1] - py[i], z = p.location[2] - pz[i];
     const float d = squareRoot(x * x + y * y + z * z);
-    const float f = 1.0f / larger(p.attenuation[0] + d * (p.attenuation[1] + d * p.attenuation[2]), 1.0f);
+    const float f =
+        1.0f / larger(p.attenuation[0] + d * (p.attenuation[1] + d * p.attenuation[2]), 1.0f);
     tx[i] = x;
     ty[i] = y;
     tz[i] = z;
@@ -131,7 +152,8 @@ VRML97_CLONES void attenuation(const PointParams p, uint32_t n, const float* __r
   }
 }
 
-VRML97_CLONES void scaled(float value, uint32_t n, const float* __restrict factor, float* __restrict out) {
+VRML97_CLONES void scaled(float value, uint32_t n, const float* __restrict factor,
+                          float* __restrict out) {
   for (uint32_t i = 0; i < n; i++) out[i] = value * factor[i];
 }
 
@@ -144,11 +166,12 @@ void colour(const LightParams& light, uint32_t n, const float* factor, RtsIllumi
   out->directional = 0;
 }
 
-void illuminatePoint(const RtsHost* host, RtsBatch* batch, const void* params, uint32_t n, const float* const local[3],
-                     RtsIllumination* out) {
+void illuminatePoint(const RtsHost* host, RtsBatch* batch, const void* params, uint32_t n,
+                     const float* const local[3], RtsIllumination* out) {
   const auto& p = *static_cast<const PointParams*>(params);
   float* factor = host->scratch(batch, wholeLanes(n));
-  attenuation(p, wholeLanes(n), local[0], local[1], local[2], out->toLight[0], out->toLight[1], out->toLight[2], factor);
+  attenuation(p, wholeLanes(n), local[0], local[1], local[2], out->toLight[0], out->toLight[1],
+              out->toLight[2], factor);
   colour(p.light, wholeLanes(n), factor, out);
 }
 
@@ -164,15 +187,17 @@ Cone coneOf(const SpotParams& p) {
   const double length = std::sqrt(double(d[0]) * d[0] + double(d[1]) * d[1] + double(d[2]) * d[2]);
   for (int c = 0; c < 3 && length > 0; c++) cone.axis[c] = static_cast<float>(d[c] / length);
   cone.cut = p.cutOffAngle;
-  const float beam = smaller(p.beamWidth, p.cutOffAngle); // clause 6.45: a wider beam gives a uniform cone
+  const float beam =
+      smaller(p.beamWidth, p.cutOffAngle); // clause 6.45: a wider beam gives a uniform cone
   cone.slope = beam < cone.cut ? 1.0f / (cone.cut - beam) : 0.0f;
   cone.cosCut = static_cast<float>(std::cos(double(cone.cut)));
   return cone;
 }
 
 // A uniform cone needs no angle.
-VRML97_CLONES void hardCone(const Cone cone, uint32_t n, const float* __restrict tx, const float* __restrict ty,
-                            const float* __restrict tz, float* __restrict factor) {
+VRML97_CLONES void hardCone(const Cone cone, uint32_t n, const float* __restrict tx,
+                            const float* __restrict ty, const float* __restrict tz,
+                            float* __restrict factor) {
   for (uint32_t i = 0; i < n; i++) {
     const float along = -(tx[i] * cone.axis[0] + ty[i] * cone.axis[1] + tz[i] * cone.axis[2]);
     const float length = squareRoot(tx[i] * tx[i] + ty[i] * ty[i] + tz[i] * tz[i]);
@@ -181,8 +206,9 @@ VRML97_CLONES void hardCone(const Cone cone, uint32_t n, const float* __restrict
 }
 
 // The angle comes from both products, since the cosine alone loses half the digits near the axis.
-VRML97_CLONES void softCone(const Cone cone, uint32_t n, const float* __restrict tx, const float* __restrict ty,
-                            const float* __restrict tz, float* __restrict factor) {
+VRML97_CLONES void softCone(const Cone cone, uint32_t n, const float* __restrict tx,
+                            const float* __restrict ty, const float* __restrict tz,
+                            float* __restrict factor) {
   for (uint32_t i = 0; i < n; i++) {
     const float x = tx[i], y = ty[i], z = tz[i];
     const float along = -(x * cone.axis[0] + y * cone.axis[1] + z * cone.axis[2]);
@@ -195,17 +221,21 @@ VRML97_CLONES void softCone(const Cone cone, uint32_t n, const float* __restrict
   }
 }
 
-void illuminateSpot(const RtsHost* host, RtsBatch* batch, const void* params, uint32_t n, const float* const local[3],
-                    RtsIllumination* out) {
+void illuminateSpot(const RtsHost* host, RtsBatch* batch, const void* params, uint32_t n,
+                    const float* const local[3], RtsIllumination* out) {
   const auto& p = *static_cast<const SpotParams*>(params);
   float* factor = host->scratch(batch, wholeLanes(n));
-  attenuation(p.point, wholeLanes(n), local[0], local[1], local[2], out->toLight[0], out->toLight[1], out->toLight[2], factor);
+  attenuation(p.point, wholeLanes(n), local[0], local[1], local[2], out->toLight[0],
+              out->toLight[1], out->toLight[2], factor);
   const Cone cone = coneOf(p);
-  (cone.slope > 0 ? softCone : hardCone)(cone, wholeLanes(n), out->toLight[0], out->toLight[1], out->toLight[2], factor);
+  (cone.slope > 0 ? softCone : hardCone)(cone, wholeLanes(n), out->toLight[0], out->toLight[1],
+                                         out->toLight[2], factor);
   colour(p.point.light, wholeLanes(n), factor, out);
 }
 
-float mean(const LightParams& light) { return light.intensity * (light.color[0] + light.color[1] + light.color[2]) / 3.0f; }
+float mean(const LightParams& light) {
+  return light.intensity * (light.color[0] + light.color[1] + light.color[2]) / 3.0f;
+}
 
 void putVector(const float from[3], float to[3]) {
   for (int c = 0; c < 3; c++) to[c] = from[c];
@@ -225,10 +255,12 @@ int directionalExtent(const RtsHost*, const void* params, RtsExtent* out) {
   return 1;
 }
 
-// The flux at a distance where the attenuation has begun: of light that falls with the square of the distance, all of it.
+// The flux at a distance where the attenuation has begun: of light that falls with the square of
+// the distance, all of it.
 float flux(const PointParams& p, float solidAngle) {
   const float* a = p.attenuation;
-  const double d = std::fmin(10.0, double(p.radius)), f = std::fmax(a[0] + d * (a[1] + d * a[2]), 1.0);
+  const double d = std::fmin(10.0, double(p.radius)),
+               f = std::fmax(a[0] + d * (a[1] + d * a[2]), 1.0);
   return static_cast<float>(double(pi) * double(mean(p.light)) * d * d / f * double(solidAngle));
 }
 
@@ -255,7 +287,8 @@ int spotExtent(const RtsHost* host, const void* params, RtsExtent* out) {
 
 template <class Params, uint32_t count>
 constexpr RtsClass lightClass(const char* name, const char* text, const RtsParam (&params)[count],
-                              decltype(RtsClass::illuminate) illuminate, decltype(RtsClass::extent) extent) {
+                              decltype(RtsClass::illuminate) illuminate,
+                              decltype(RtsClass::extent) extent) {
   RtsClass c{};
   c.size = sizeof(RtsClass);
   c.kind = RTS_LIGHT;
@@ -272,12 +305,13 @@ constexpr RtsClass lightClass(const char* name, const char* text, const RtsParam
 
 } // namespace
 
-const RtsClass directionalLightClass =
-    lightClass<DirectionalParams>("VRML97DirectionalLight", "parallel light from infinitely far away", directionalParams,
-                                  illuminateDirectional, directionalExtent);
-const RtsClass pointLightClass = lightClass<PointParams>("VRML97PointLight", "light from one point into all directions",
-                                                         pointParams, illuminatePoint, pointExtent);
-const RtsClass spotLightClass =
-    lightClass<SpotParams>("VRML97SpotLight", "light from one point into a cone", spotParams, illuminateSpot, spotExtent);
+const RtsClass directionalLightClass = lightClass<DirectionalParams>(
+    "VRML97DirectionalLight", "parallel light from infinitely far away", directionalParams,
+    illuminateDirectional, directionalExtent);
+const RtsClass pointLightClass =
+    lightClass<PointParams>("VRML97PointLight", "light from one point into all directions",
+                            pointParams, illuminatePoint, pointExtent);
+const RtsClass spotLightClass = lightClass<SpotParams>(
+    "VRML97SpotLight", "light from one point into a cone", spotParams, illuminateSpot, spotExtent);
 
 } // namespace vrml97

@@ -1,4 +1,4 @@
-// material.cpp: see material.h. Thread tag [render].
+// material.cpp: Thread tag [render].
 //
 // Where the standard is silent: a colour's alpha is no part of VRML97.
 #include "vrml97/material.h"
@@ -20,8 +20,20 @@ const RtsParam surfaceParams[] = {
      0.0f,
      0.0f,
      "share of the light that is scattered evenly"},
-    {"emissiveColor", RTS_COLOR, offsetof(SurfaceParams, emissiveColor), {0.0f, 0.0f, 0.0f}, 0.0f, 0.0f, "radiance of its own"},
-    {"specularColor", RTS_COLOR, offsetof(SurfaceParams, specularColor), {0.0f, 0.0f, 0.0f}, 0.0f, 0.0f, "colour of highlights"},
+    {"emissiveColor",
+     RTS_COLOR,
+     offsetof(SurfaceParams, emissiveColor),
+     {0.0f, 0.0f, 0.0f},
+     0.0f,
+     0.0f,
+     "radiance of its own"},
+    {"specularColor",
+     RTS_COLOR,
+     offsetof(SurfaceParams, specularColor),
+     {0.0f, 0.0f, 0.0f},
+     0.0f,
+     0.0f,
+     "colour of highlights"},
     {"ambientIntensity",
      RTS_FLOAT,
      offsetof(SurfaceParams, ambientIntensity),
@@ -29,7 +41,13 @@ const RtsParam surfaceParams[] = {
      0.0f,
      noLimit,
      "share of the lights' ambient part"},
-    {"shininess", RTS_FLOAT, offsetof(SurfaceParams, shininess), {0.2f}, 0.0f, noLimit, "exponent of highlights over 128"},
+    {"shininess",
+     RTS_FLOAT,
+     offsetof(SurfaceParams, shininess),
+     {0.2f},
+     0.0f,
+     noLimit,
+     "exponent of highlights over 128"},
     {"transparency",
      RTS_FLOAT,
      offsetof(SurfaceParams, transparency),
@@ -44,7 +62,13 @@ const RtsParam surfaceParams[] = {
      0.0f,
      1.0f,
      "0: no material, the surface has its own colour in any light"},
-    {"texture", RTS_TEXTURE, offsetof(SurfaceParams, texture), {}, 0.0f, 0.0f, "picture on the surface"},
+    {"texture",
+     RTS_TEXTURE,
+     offsetof(SurfaceParams, texture),
+     {},
+     0.0f,
+     0.0f,
+     "picture on the surface"},
     {"textureTransform",
      RTS_MATRIX,
      offsetof(SurfaceParams, textureTransform),
@@ -63,7 +87,8 @@ const RtsParam surfaceParams[] = {
 const uint32_t surfaceParamCount = sizeof(surfaceParams) / sizeof(surfaceParams[0]);
 
 bool isTransparent(const RtsHost* host, const SurfaceParams& p) {
-  return (p.lit && p.transparency > 0.0f) || (p.texture != 0 && hasAlpha(host->components(host, p.texture)));
+  return (p.lit && p.transparency > 0.0f) ||
+         (p.texture != 0 && hasAlpha(host->components(host, p.texture)));
 }
 
 namespace {
@@ -94,7 +119,8 @@ struct Texels {
 };
 
 // Parameters of one lane, or the same ones of a block of lanes.
-template <uint32_t count> VRML97_INLINE void spread(const SurfaceParams& p, uint32_t first, const Terms& t, Summary& summary) {
+template <uint32_t count> VRML97_INLINE void spread(const SurfaceParams& p, uint32_t first,
+                                                    const Terms& t, Summary& summary) {
   const auto fill = [first](float* array, float value) {
     for (uint32_t k = 0; k < count; k++) array[first + k] = value;
   };
@@ -127,14 +153,17 @@ Summary materials(const RtsHits* hits, uint32_t lanes, const Terms& t) {
     if (same)
       spread<RTS_LANES>(paramsOf(hits, first), first, t, summary);
     else
-      for (uint32_t k = 0; k < RTS_LANES; k++) spread<1>(paramsOf(hits, first + std::min(k, used - 1)), first + k, t, summary);
+      for (uint32_t k = 0; k < RTS_LANES; k++)
+        spread<1>(paramsOf(hits, first + std::min(k, used - 1)), first + k, t, summary);
   }
   summary.special = summary.textured || (flags & (RTS_HIT_COLOR | RTS_HIT_LINE)) != 0;
   return summary;
 }
 
-// The texture of each lane, or 0, and its transformed coordinates. Lines and points are never textured.
-TexturePlaces texturePlaces(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, uint32_t lanes) {
+// The texture of each lane, or 0, and its transformed coordinates. Lines and points are never
+// textured.
+TexturePlaces texturePlaces(const RtsHost* host, RtsBatch* batch, const RtsHits* hits,
+                            uint32_t lanes) {
   float *s = host->scratch(batch, lanes), *t = host->scratch(batch, lanes);
   auto* texture = reinterpret_cast<RtsTexture*>(host->scratch(batch, lanes));
   for (uint32_t i = 0; i < lanes; i++) {
@@ -154,11 +183,13 @@ Texels fetch(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, uint32_t
   for (float*& c : texels.rgba) c = host->scratch(batch, lanes);
   texels.components = reinterpret_cast<uint32_t*>(host->scratch(batch, lanes));
   std::fill_n(texels.components, lanes, 0u);
-  sampleGroups(host, batch, texturePlaces(host, batch, hits, lanes), texels.rgba, texels.components);
+  sampleGroups(host, batch, texturePlaces(host, batch, hits, lanes), texels.rgba,
+               texels.components);
   return texels;
 }
 
-// Clauses 4.14.2 and 4.14.3, tables 4.5 (unlit) and 4.6 (lit), and the colours of lines and points (clauses 6.24, 6.36).
+// Clauses 4.14.2 and 4.14.3, tables 4.5 (unlit) and 4.6 (lit), and the colours of lines and points
+// (clauses 6.24, 6.36).
 void colours(const RtsHits* hits, const Summary& summary, const Texels& texels, const Terms& t) {
   for (uint32_t i = 0; i < hits->count; i++) {
     const bool lit = paramsOf(hits, i).lit != 0, own = (hits->flags[i] & RTS_HIT_COLOR) != 0;
@@ -174,7 +205,9 @@ void colours(const RtsHits* hits, const Summary& summary, const Texels& texels, 
     float* const* base = lit ? t.diffuse : t.glow;
     for (int c = 0; c < 3; c++) {
       const float plain = own ? hits->color[c][i] : base[c][i];
-      base[c][i] = components == 0 ? plain : multiplies ? plain * texels.rgba[c][i] : texels.rgba[c][i];
+      base[c][i] = components == 0 ? plain
+                   : multiplies    ? plain * texels.rgba[c][i]
+                                   : texels.rgba[c][i];
     }
     if (hasAlpha(components)) t.alpha[i] = texels.rgba[3][i];
   }
@@ -186,7 +219,8 @@ Summary makeTerms(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, Ter
   const uint32_t n = wholeLanes(hits->count);
   t = allocate(host, batch, n);
   const Summary summary = materials(hits, n, t);
-  if (summary.special) colours(hits, summary, summary.textured ? fetch(host, batch, hits, n) : Texels{}, t);
+  if (summary.special)
+    colours(hits, summary, summary.textured ? fetch(host, batch, hits, n) : Texels{}, t);
   return summary;
 }
 
@@ -197,16 +231,19 @@ void albedo(const RtsHits* hits, const Terms& t, float* const* out) {
   }
 }
 
-void transmit(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, float* const transmission[3]) {
+void transmit(const RtsHost* host, RtsBatch* batch, const RtsHits* hits,
+              float* const transmission[3]) {
   if (hits->count == 0) return;
   const uint32_t lanes = wholeLanes(hits->count);
   const TexturePlaces places = texturePlaces(host, batch, hits, lanes);
-  const bool textured = std::any_of(places.texture, places.texture + hits->count, [](RtsTexture t) { return t != 0; });
+  const bool textured = std::any_of(places.texture, places.texture + hits->count,
+                                    [](RtsTexture t) { return t != 0; });
   const Texels texels = textured ? fetch(host, batch, hits, lanes) : Texels{};
   for (uint32_t i = 0; i < hits->count; i++) {
     const SurfaceParams& p = paramsOf(hits, i);
     const float untextured = p.lit ? p.transparency : 0.0f;
-    const float through = textured && hasAlpha(texels.components[i]) ? 1.0f - texels.rgba[3][i] : untextured;
+    const float through =
+        textured && hasAlpha(texels.components[i]) ? 1.0f - texels.rgba[3][i] : untextured;
     for (int c = 0; c < 3; c++) transmission[c][i] = through;
   }
 }

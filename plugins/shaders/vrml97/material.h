@@ -1,5 +1,6 @@
-// material.h: the first stages of a batch of hits of a VRML97 surface: parameters by lane, textures and colours (ISO/IEC 14772-1
-// clause 4.14). What light does there is in surface.cpp (the lighting equation) and global.cpp (lobes). Thread tag [render].
+// material.h: the first stages of a batch of hits of a VRML97 surface: parameters by lane, textures
+// and colours (ISO/IEC 14772-1 clause 4.14). What light does there is in surface.cpp (the lighting
+// equation) and global.cpp (lobes). Thread tag [render].
 #pragma once
 
 #include <cstdint>
@@ -30,8 +31,8 @@ inline const SurfaceParams& paramsOf(const RtsHits* hits, uint32_t lane) {
 inline bool hasAlpha(uint32_t components) { return components == 2 || components == 4; }
 bool isTransparent(const RtsHost* host, const SurfaceParams& params);
 
-// The terms of the equation by lane: I = glow + sum over lights of (direct * diffuse * N.L + ...). Unlit lanes have no
-// diffuse and specular colour and glow in their own.
+// The terms of the equation by lane: I = glow + sum over lights of (direct * diffuse * N.L + ...).
+// Unlit lanes have no diffuse and specular colour and glow in their own.
 struct Terms {
   float* glow[3];     // OE, or the colour of an unlit lane
   float* diffuse[3];  // OD
@@ -53,6 +54,7 @@ Summary makeTerms(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, Ter
 void albedo(const RtsHits* hits, const Terms& t, float* const* out);
 
 // Shadow rays: only 1 - A. A function of RtsClass.
-void transmit(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, float* const transmission[3]);
+void transmit(const RtsHost* host, RtsBatch* batch, const RtsHits* hits,
+              float* const transmission[3]);
 
 } // namespace vrml97

@@ -1,5 +1,6 @@
-// texture_groups.cpp: see texture_groups.h. Most batches have one texture and are sampled in place; others are sorted by
-// texture, in scratch memory, so that the cost does not grow with the number of textures.
+// texture_groups.cpp: Most batches have one texture and are sampled in place;
+// others are sorted by texture, in scratch memory, so that the cost does not grow with the number
+// of textures.
 #include "vrml97/texture_groups.h"
 
 #include <algorithm>
@@ -26,7 +27,8 @@ uint32_t sortedKeys(const TexturePlaces& places, uint64_t* keys) {
 
 } // namespace
 
-void sampleGroups(const RtsHost* host, RtsBatch* batch, const TexturePlaces& places, float* const rgba[4], uint32_t* components) {
+void sampleGroups(const RtsHost* host, RtsBatch* batch, const TexturePlaces& places,
+                  float* const rgba[4], uint32_t* components) {
   if (places.count == 0) return;
   if (sameEverywhere(places.texture, places.count)) {
     if (places.texture[0] == 0) return;

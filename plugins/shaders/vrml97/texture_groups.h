@@ -1,5 +1,5 @@
-// texture_groups.h: samples a batch whose lanes may have different textures with one host call a texture.
-// Called by the surface and the environment. Thread tag [render].
+// texture_groups.h: samples a batch whose lanes may have different textures with one host call a
+// texture. Called by the surface and the environment. Thread tag [render].
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,9 @@ struct TexturePlaces {
   const float* uv[2];
 };
 
-// Writes rgba and the number of components of the lanes that have a texture; other lanes keep what they hold.
-void sampleGroups(const RtsHost* host, RtsBatch* batch, const TexturePlaces& places, float* const rgba[4], uint32_t* components);
+// Writes rgba and the number of components of the lanes that have a texture; other lanes keep what
+// they hold.
+void sampleGroups(const RtsHost* host, RtsBatch* batch, const TexturePlaces& places,
+                  float* const rgba[4], uint32_t* components);
 
 } // namespace vrml97

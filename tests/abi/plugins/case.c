@@ -1,5 +1,6 @@
-/* case.c: one plug-in per macro CASE_...: each differs from a good one in a single point. CASE_older_class is a good one too: its
- * class structure ends where an older header would have ended it; so are CASE_minor_0, CASE_minor_1 and CASE_class_truncated. */
+/* case.c: one plug-in per macro CASE_...: each differs from a good one in a single point.
+ * CASE_older_class is a good one too: its class structure ends where an older header would have
+ * ended it; so are CASE_minor_0, CASE_minor_1 and CASE_class_truncated. */
 #include <openrt/openrts.h>
 
 #include <math.h>
@@ -16,41 +17,42 @@ typedef struct Parameters {
 } Parameters;
 
 #if defined(CASE_parameter_outside)
-#define SECOND                                                                                                                   \
+#define SECOND                                                                                     \
   { "b", RTS_VEC3, offsetof(Parameters, b), {0}, 0, 0, "" }
 #elif defined(CASE_parameter_far_outside)
-#define SECOND                                                                                                                   \
+#define SECOND                                                                                     \
   { "b", RTS_FLOAT, 0xfffffffcu, {0}, 0, 0, "" }
 #elif defined(CASE_parameter_twice)
-#define SECOND                                                                                                                   \
+#define SECOND                                                                                     \
   { "a", RTS_FLOAT, offsetof(Parameters, b), {0}, 0, 0, "" }
 #elif defined(CASE_parameter_overlap)
-#define SECOND                                                                                                                   \
+#define SECOND                                                                                     \
   { "b", RTS_FLOAT, offsetof(Parameters, a), {0}, 0, 0, "" }
 #elif defined(CASE_parameter_unaligned)
-#define SECOND                                                                                                                   \
+#define SECOND                                                                                     \
   { "b", RTS_FLOAT, offsetof(Parameters, b) - 2, {0}, 0, 0, "" }
 #elif defined(CASE_frequency_type)
-#define SECOND                                                                                                                   \
+#define SECOND                                                                                     \
   { "b", RTS_INT, offsetof(Parameters, b), {0}, 0, 0, "" }
 #elif defined(CASE_parameter_type)
-#define SECOND                                                                                                                   \
+#define SECOND                                                                                     \
   { "b", (RtsType)99, offsetof(Parameters, b), {0}, 0, 0, "" }
 #elif defined(CASE_parameter_unnamed)
-#define SECOND                                                                                                                   \
+#define SECOND                                                                                     \
   { "", RTS_FLOAT, offsetof(Parameters, b), {0}, 0, 0, "" }
 #elif defined(CASE_parameter_default)
-#define SECOND                                                                                                                   \
+#define SECOND                                                                                     \
   { "b", RTS_FLOAT, offsetof(Parameters, b), {HUGE_VALF}, 0, 0, "" }
 #elif defined(CASE_parameter_range)
-#define SECOND                                                                                                                   \
+#define SECOND                                                                                     \
   { "b", RTS_FLOAT, offsetof(Parameters, b), {0}, 2, 1, "" }
 #else
-#define SECOND                                                                                                                   \
+#define SECOND                                                                                     \
   { "b", RTS_FLOAT, offsetof(Parameters, b), {0}, 0, 0, "" }
 #endif
 #if !defined(CASE_parameter_table)
-static const RtsParam parameters[] = {{"a", RTS_FLOAT, offsetof(Parameters, a), {0}, 0, 0, ""}, SECOND};
+static const RtsParam parameters[] = {{"a", RTS_FLOAT, offsetof(Parameters, a), {0}, 0, 0, ""},
+                                      SECOND};
 #endif
 
 #if !defined(CASE_class_without_shade)
@@ -76,7 +78,8 @@ static uint32_t traits(const RtsHost* host, const void* params) {
   (void)params;
   return 0;
 }
-static void transmit(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, float* const transmission[3]) {
+static void transmit(const RtsHost* host, RtsBatch* batch, const RtsHits* hits,
+                     float* const transmission[3]) {
   (void)host;
   (void)batch;
   (void)hits;

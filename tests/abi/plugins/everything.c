@@ -1,4 +1,5 @@
-/* everything.c: a shader plug-in for tests: a class of each kind, and one parameter of each type. */
+/* everything.c: a shader plug-in for tests: a class of each kind, and one parameter of each type.
+ */
 #include <openrt/openrts.h>
 
 #include <stddef.h>
@@ -23,7 +24,13 @@ static const RtsParam parameters[] = {
     {"triple", RTS_VEC3, offsetof(Parameters, triple), {1, 2, 3}, 0, 0, "three numbers"},
     {"quad", RTS_VEC4, offsetof(Parameters, quad), {1, 2, 3, 4}, 0, 0, "four numbers"},
     {"color", RTS_COLOR, offsetof(Parameters, color), {0.1f, 0.2f, 0.3f}, 0, 1, "a colour"},
-    {"matrix", RTS_MATRIX, offsetof(Parameters, matrix), {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}, 0, 0, "a matrix"},
+    {"matrix",
+     RTS_MATRIX,
+     offsetof(Parameters, matrix),
+     {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1},
+     0,
+     0,
+     "a matrix"},
     {"list", RTS_FLOATS, offsetof(Parameters, list), {0}, -1, 1, "any number of numbers"},
     {"text", RTS_STRING, offsetof(Parameters, text), {0}, 0, 0, NULL},
     {"texture", RTS_TEXTURE, offsetof(Parameters, texture), {0}, 0, 0, "a texture"},
@@ -38,8 +45,8 @@ static void shade(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, Rts
   }
 }
 
-static void illuminate(const RtsHost* host, RtsBatch* batch, const void* params, uint32_t n, const float* const local[3],
-                       RtsIllumination* out) {
+static void illuminate(const RtsHost* host, RtsBatch* batch, const void* params, uint32_t n,
+                       const float* const local[3], RtsIllumination* out) {
   (void)host;
   (void)batch;
   (void)params;
@@ -52,8 +59,8 @@ static void illuminate(const RtsHost* host, RtsBatch* batch, const void* params,
   out->directional = 0;
 }
 
-static void generate(const RtsHost* host, RtsBatch* batch, const void* params, uint32_t n, const float* const xy[2],
-                     const float size[2], RtsRays* out) {
+static void generate(const RtsHost* host, RtsBatch* batch, const void* params, uint32_t n,
+                     const float* const xy[2], const float size[2], RtsRays* out) {
   (void)host;
   (void)batch;
   (void)params;
@@ -75,10 +82,14 @@ static const RtsClass surface = {.size = sizeof(RtsClass),
                                  .paramCount = sizeof(parameters) / sizeof(*parameters),
                                  .params = parameters,
                                  .shade = shade};
-static const RtsClass plain = {.size = sizeof(RtsClass), .kind = RTS_SURFACE, .name = "Plain", .shade = shade};
-static const RtsClass lamp = {.size = sizeof(RtsClass), .kind = RTS_LIGHT, .name = "Lamp", .illuminate = illuminate};
-static const RtsClass eye = {.size = sizeof(RtsClass), .kind = RTS_CAMERA, .name = "Eye", .generate = generate};
+static const RtsClass plain = {
+    .size = sizeof(RtsClass), .kind = RTS_SURFACE, .name = "Plain", .shade = shade};
+static const RtsClass lamp = {
+    .size = sizeof(RtsClass), .kind = RTS_LIGHT, .name = "Lamp", .illuminate = illuminate};
+static const RtsClass eye = {
+    .size = sizeof(RtsClass), .kind = RTS_CAMERA, .name = "Eye", .generate = generate};
 static const RtsClass sky = {.size = sizeof(RtsClass), .kind = RTS_ENVIRONMENT, .name = "Sky"};
 
 static const RtsClass* const classes[] = {&surface, &plain, &lamp, &eye, &sky};
-RTS_EXPORT const RtsPlugin rtsPlugin = {RTS_MAGIC, RTS_ABI_MAJOR, RTS_ABI_MINOR, sizeof(RtsPlugin), 5, classes};
+RTS_EXPORT const RtsPlugin rtsPlugin = {RTS_MAGIC, RTS_ABI_MAJOR, RTS_ABI_MINOR, sizeof(RtsPlugin),
+                                        5,         classes};

@@ -1,5 +1,5 @@
-/* faulty.c: shaders that go wrong: one that crashes, one with NaN in its radiance, one with NaN in a lobe, and some whose traits
- * keep silent about what they do. */
+/* faulty.c: shaders that go wrong: one that crashes, one with NaN in its radiance, one with NaN in
+ * a lobe, and some whose traits keep silent about what they do. */
 #include <openrt/openrts.h>
 
 #include <math.h>
@@ -81,8 +81,9 @@ static void badEvaluate(const RtsLobe* lobe, const RtsHits* hits, uint32_t n, co
     density[i] = 1;
   }
 }
-static void badSample(const RtsLobe* lobe, const RtsHits* hits, uint32_t n, const uint32_t* hit, const float* const square[2],
-                      float* const direction[3], float* const quotient[3], float* density) {
+static void badSample(const RtsLobe* lobe, const RtsHits* hits, uint32_t n, const uint32_t* hit,
+                      const float* const square[2], float* const direction[3],
+                      float* const quotient[3], float* density) {
   volatile uintptr_t place = 16;
   (void)lobe;
   (void)hits;
@@ -120,7 +121,10 @@ static const RtsClass nanLobes = {SURFACE, .name = "NanLobe", .surface = nanLobe
 static const RtsClass lamps = {SURFACE, .name = "SilentLamp", .surface = emission};
 static const RtsClass veils = {SURFACE, .name = "SilentVeil", .surface = veil};
 static const RtsClass glosses = {SURFACE, .name = "SilentGloss", .surface = gloss};
-static const RtsClass scatters = {SURFACE, .name = "SilentScatter", .traits = nothingScatters, .surface = scatter};
+static const RtsClass scatters = {SURFACE, .name = "SilentScatter", .traits = nothingScatters,
+                                  .surface = scatter};
 static const RtsClass badLobes = {SURFACE, .name = "BadLobe", .surface = badLobe};
-static const RtsClass* const classes[] = {&crashes, &hangs, &nans, &nanLobes, &lamps, &veils, &glosses, &badLobes, &scatters};
-RTS_EXPORT const RtsPlugin rtsPlugin = {RTS_MAGIC, RTS_ABI_MAJOR, RTS_ABI_MINOR, sizeof(RtsPlugin), 9, classes};
+static const RtsClass* const classes[] = {&crashes, &hangs,   &nans,     &nanLobes, &lamps,
+                                          &veils,   &glosses, &badLobes, &scatters};
+RTS_EXPORT const RtsPlugin rtsPlugin = {RTS_MAGIC, RTS_ABI_MAJOR, RTS_ABI_MINOR, sizeof(RtsPlugin),
+                                        9,         classes};

@@ -10,7 +10,10 @@ static void surface(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, R
     for (int k = 0; k < 3; k++) lobe->weight[k][i] = 1;
 }
 
-static const RtsClass mirror = {
-    .size = offsetof(RtsClass, frequency), .kind = RTS_SURFACE, .name = "Mirror11", .text = "", .surface = surface};
+static const RtsClass mirror = {.size = offsetof(RtsClass, frequency),
+                                .kind = RTS_SURFACE,
+                                .name = "Mirror11",
+                                .text = "",
+                                .surface = surface};
 static const RtsClass* const classes[] = {&mirror};
 RTS_EXPORT const RtsPlugin rtsPlugin = {RTS_MAGIC, 1, 1, sizeof(RtsPlugin), 1, classes};

@@ -1,15 +1,17 @@
-/* stock_cameras.c: becomes the stock library of a test folder: the two camera classes that rtPerspective and rtOrtho use. */
+/* stock_cameras.c: becomes the stock library of a test folder: the two camera classes that
+ * rtPerspective and rtOrtho use. */
 #include <openrt/openrts.h>
 
 typedef struct Parameters {
   float size;
 } Parameters;
 
-static const RtsParam fovy[] = {{"fovy", RTS_FLOAT, 0, {45}, 0, 180, "vertical field of view in degrees"}};
+static const RtsParam fovy[] = {
+    {"fovy", RTS_FLOAT, 0, {45}, 0, 180, "vertical field of view in degrees"}};
 static const RtsParam height[] = {{"height", RTS_FLOAT, 0, {2}, 0, 1e30f, "height of the view"}};
 
-static void generate(const RtsHost* host, RtsBatch* batch, const void* params, uint32_t n, const float* const xy[2],
-                     const float size[2], RtsRays* out) {
+static void generate(const RtsHost* host, RtsBatch* batch, const void* params, uint32_t n,
+                     const float* const xy[2], const float size[2], RtsRays* out) {
   (void)host;
   (void)batch;
   (void)params;
@@ -37,4 +39,5 @@ static const RtsClass orthographic = {.size = sizeof(RtsClass),
                                       .params = height,
                                       .generate = generate};
 static const RtsClass* const classes[] = {&perspective, &orthographic};
-RTS_EXPORT const RtsPlugin rtsPlugin = {RTS_MAGIC, RTS_ABI_MAJOR, RTS_ABI_MINOR, sizeof(RtsPlugin), 2, classes};
+RTS_EXPORT const RtsPlugin rtsPlugin = {RTS_MAGIC, RTS_ABI_MAJOR, RTS_ABI_MINOR, sizeof(RtsPlugin),
+                                        2,         classes};

@@ -1,4 +1,5 @@
-/* varying.c: a surface whose parameters may change by vertex and by triangle, one of each type that may; it shows one of them. */
+/* varying.c: a surface whose parameters may change by vertex and by triangle, one of each type that
+ * may; it shows one of them. */
 #include <openrt/openrts.h>
 
 #include <stddef.h>
@@ -22,10 +23,17 @@ static const RtsParam parameters[] = {
     {"pair", RTS_VEC2, offsetof(Parameters, pair), {1, 2}, 0, 0, "by triangle"},
     {"triple", RTS_VEC3, offsetof(Parameters, triple), {1, 2, 3}, 0, 0, "by triangle"},
     {"quad", RTS_VEC4, offsetof(Parameters, quad), {1, 2, 3, 4}, 0, 0, "by vertex"},
-    {"matrix", RTS_MATRIX, offsetof(Parameters, matrix), {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}, 0, 0, "by triangle"},
+    {"matrix",
+     RTS_MATRIX,
+     offsetof(Parameters, matrix),
+     {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1},
+     0,
+     0,
+     "by triangle"},
 };
-static const uint8_t frequency[] = {RTS_PER_SHADER,   RTS_PER_SHADER,   RTS_PER_VERTEX, RTS_PER_VERTEX,
-                                    RTS_PER_TRIANGLE, RTS_PER_TRIANGLE, RTS_PER_VERTEX, RTS_PER_TRIANGLE};
+static const uint8_t frequency[] = {RTS_PER_SHADER, RTS_PER_SHADER,   RTS_PER_VERTEX,
+                                    RTS_PER_VERTEX, RTS_PER_TRIANGLE, RTS_PER_TRIANGLE,
+                                    RTS_PER_VERTEX, RTS_PER_TRIANGLE};
 
 static void shade(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, RtsShading* out) {
   (void)host;
@@ -48,4 +56,5 @@ static const RtsClass varying = {.size = sizeof(RtsClass),
                                  .shade = shade,
                                  .frequency = frequency};
 static const RtsClass* const classes[] = {&varying};
-RTS_EXPORT const RtsPlugin rtsPlugin = {RTS_MAGIC, RTS_ABI_MAJOR, RTS_ABI_MINOR, sizeof(RtsPlugin), 1, classes};
+RTS_EXPORT const RtsPlugin rtsPlugin = {RTS_MAGIC, RTS_ABI_MAJOR, RTS_ABI_MINOR, sizeof(RtsPlugin),
+                                        1,         classes};

@@ -1,5 +1,6 @@
-/* version.c: the same library in three versions, for tests that load it anew. The second moves `color`, has another parameter
- * before it, one that changed its type and one that is gone; the third lost the class. */
+/* version.c: the same library in three versions, for tests that load it anew. The second moves
+ * `color`, has another parameter before it, one that changed its type and one that is gone; the
+ * third lost the class. */
 #include <openrt/openrts.h>
 
 #include <stddef.h>
@@ -55,4 +56,5 @@ static const RtsClass versioned = {.size = sizeof(RtsClass),
                                    .shade = shade,
                                    .frequency = frequency};
 static const RtsClass* const classes[] = {&versioned};
-RTS_EXPORT const RtsPlugin rtsPlugin = {RTS_MAGIC, RTS_ABI_MAJOR, RTS_ABI_MINOR, sizeof(RtsPlugin), 1, classes};
+RTS_EXPORT const RtsPlugin rtsPlugin = {RTS_MAGIC, RTS_ABI_MAJOR, RTS_ABI_MINOR, sizeof(RtsPlugin),
+                                        1,         classes};

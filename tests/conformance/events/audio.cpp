@@ -14,12 +14,14 @@ struct Clips {
     folder.write("clip.wav", wav(std::vector<int16_t>(200, 8192), 1, 100));
     folder.write("mono.wav", wav({0, 16384, -32768, 32767}, 1, 4));
     folder.write("song.mid", std::string("MThd\0\0\0\6\0\0\0\1\0\1", 14));
-    browser = std::make_unique<Browser>(folder.world("Sound { source DEF A AudioClip { url [ " + url + " ] " + fields + " } }"),
-                                        BrowserOptions(), 0, RunOptions{.epoch = 0});
+    browser = std::make_unique<Browser>(
+        folder.world("Sound { source DEF A AudioClip { url [ " + url + " ] " + fields + " } }"),
+        BrowserOptions(), 0, RunOptions{.epoch = 0});
     for (const char* out : {"isActive", "duration_changed"})
-      browser->listen(*browser->node("A"), out, [this, out](Node&, const FieldInfo&, const Value& value) {
-        events.push_back(fmt::format("{:g} {} {}", browser->now(), out, textOf(value)));
-      });
+      browser->listen(
+          *browser->node("A"), out, [this, out](Node&, const FieldInfo&, const Value& value) {
+            events.push_back(fmt::format("{:g} {} {}", browser->now(), out, textOf(value)));
+          });
   }
   Node& clip() { return *browser->node("A"); }
   void ticks(std::initializer_list<double> times) {
@@ -89,7 +91,8 @@ TEST(AudioClip, TakesTheFirstUrlThatIsThere) {
 }
 
 TEST(AudioClip, ThatCannotBeHadHasDurationMinusOneAndSaysWhy) {
-  for (const char* url : {"none.wav", "song.mid", "world.wrl", "http://a/b.wav", "../../../../etc/passwd", "/etc/passwd"}) {
+  for (const char* url : {"none.wav", "song.mid", "world.wrl", "http://a/b.wav",
+                          "../../../../etc/passwd", "/etc/passwd"}) {
     Clips c("startTime 1", std::string("\"") + url + "\"");
     EXPECT_EQ(textOf(c.browser->get(c.clip(), "duration_changed")), "-1") << url;
     EXPECT_EQ(c.browser->world().diagnostics.warnings(), 1u) << url;
@@ -122,16 +125,19 @@ TEST(Wav, ReadsEightSixteenTwentyFourAndThirtyTwoBitsAndFloats) {
   const Folder folder;
   const auto make = [](int format, int bits, const std::string& data) {
     const uint32_t frame = uint32_t(bits / 8);
-    return "RIFF" + little(0, 4) + "WAVEodd " + little(3, 4) + "abc" + little(0, 1) + "fmt " + little(16, 4) +
-           little(uint32_t(format), 2) + little(1, 2) + little(8, 4) + little(8 * frame, 4) + little(frame, 2) +
-           little(uint32_t(bits), 2) + "data" + little(uint32_t(data.size()), 4) + data;
+    return "RIFF" + little(0, 4) + "WAVEodd " + little(3, 4) + "abc" + little(0, 1) + "fmt " +
+           little(16, 4) + little(uint32_t(format), 2) + little(1, 2) + little(8, 4) +
+           little(8 * frame, 4) + little(frame, 2) + little(uint32_t(bits), 2) + "data" +
+           little(uint32_t(data.size()), 4) + data;
   };
   const float half = 0.5f;
   folder.write("8.wav", make(1, 8, little(192, 1) + little(64, 1)));
   folder.write("16.wav", make(1, 16, little(0x4000, 2) + little(0xc000, 2)));
   folder.write("24.wav", make(1, 24, little(0x400000, 3) + little(0xc00000, 3)));
   folder.write("32.wav", make(1, 32, little(0x40000000, 4) + little(0xc0000000, 4)));
-  folder.write("f.wav", make(3, 32, std::string(reinterpret_cast<const char*>(&half), 4) + little(0xbf000000, 4)));
+  folder.write(
+      "f.wav",
+      make(3, 32, std::string(reinterpret_cast<const char*>(&half), 4) + little(0xbf000000, 4)));
   for (const char* name : {"8.wav", "16.wav", "24.wav", "32.wav", "f.wav"}) {
     EXPECT_EQ(readWav(folder / name).samples, (std::vector<float>{0.5f, -0.5f})) << name;
     EXPECT_EQ(readWavInfo(folder / name).duration, 0.25) << name;
@@ -166,7 +172,8 @@ TEST(Sound, IsAtFullIntensityWithinTheInnerEllipsoid) {
   s->maxFront = 20;
   s->maxBack = 5;
   s->intensity = 0.5f;
-  for (const Vec3f at : {Vec3f{0, 0, 0}, Vec3f{0, 0, 3.99f}, Vec3f{0, 0, -0.99f}}) EXPECT_EQ(soundGain(*s, at), 0.5);
+  for (const Vec3f at : {Vec3f{0, 0, 0}, Vec3f{0, 0, 3.99f}, Vec3f{0, 0, -0.99f}})
+    EXPECT_EQ(soundGain(*s, at), 0.5);
   EXPECT_LT(soundGain(*s, {0, 0, 4.01f}), 0.5);
   EXPECT_LT(soundGain(*s, {0, 0, -1.01f}), 0.5);
 }
@@ -219,7 +226,8 @@ TEST(Sound, OddEllipsoidsGiveNumbers) {
     for (const float maximum : {0.0f, 1.0f, 1e30f}) {
       s->minFront = s->maxBack = minimum;
       s->maxFront = s->minBack = maximum;
-      for (const Vec3f at : {Vec3f{0, 0, 0}, Vec3f{0, 0, 1}, Vec3f{1e30f, 0, 0}, Vec3f{NAN, 0, 0}}) {
+      for (const Vec3f at :
+           {Vec3f{0, 0, 0}, Vec3f{0, 0, 1}, Vec3f{1e30f, 0, 0}, Vec3f{NAN, 0, 0}}) {
         const double gain = soundGain(*s, at);
         EXPECT_TRUE(gain >= 0 && gain <= 1) << minimum << " " << maximum;
       }
@@ -230,14 +238,16 @@ TEST(Sound, IsHeardFromItsSideWithTheSamePowerEverywhere) {
   auto s = std::make_unique<nodes::Sound>();
   const Vec3f viewer{0, 0, 5}; // outside the inner ellipsoid
   const double gain = soundGain(*s, viewer);
-  const SoundLevels ahead = soundLevels(*s, viewer, {0, 0, -5}), right = soundLevels(*s, viewer, {5, 0, 0}),
+  const SoundLevels ahead = soundLevels(*s, viewer, {0, 0, -5}),
+                    right = soundLevels(*s, viewer, {5, 0, 0}),
                     left = soundLevels(*s, viewer, {-5, 0, 0});
   EXPECT_NEAR(ahead.left, gain, 1e-9);
   EXPECT_NEAR(ahead.right, gain, 1e-9);
   EXPECT_NEAR(right.left, 0, 1e-9);
   EXPECT_NEAR(left.right, 0, 1e-9);
   for (double angle = 0; angle < 6.28; angle += 0.1) {
-    const SoundLevels l = soundLevels(*s, viewer, {float(5 * std::sin(angle)), 0, float(5 * std::cos(angle))});
+    const SoundLevels l =
+        soundLevels(*s, viewer, {float(5 * std::sin(angle)), 0, float(5 * std::cos(angle))});
     EXPECT_NEAR(l.left * l.left + l.right * l.right, 2 * gain * gain, 1e-9);
   }
 }
@@ -254,7 +264,8 @@ TEST(Sound, MixingAddsWithLevelsPitchAndLoop) {
   auto clip = std::make_shared<Clip>(Clip{1, 4, {0, 1, 0, -1}});
   std::vector<float> out(16, 0.5f);
   mix({clip, 0, 1, false}, {1, 0.5}, 8, out); // twice the rate: between samples half way
-  const std::vector<float> expected{0.5f, 0.5f, 1, 0.75f, 1.5f, 1, 1, 0.75f, 0.5f, 0.5f, 0, 0.25f, -0.5f, 0, 0, 0.25f};
+  const std::vector<float> expected{0.5f, 0.5f, 1, 0.75f, 1.5f,  1, 1, 0.75f,
+                                    0.5f, 0.5f, 0, 0.25f, -0.5f, 0, 0, 0.25f};
   EXPECT_EQ(out, expected);
   std::vector<float> loop(8, 0);
   mix({clip, 0.75, 2, true}, {1, 1}, 4, loop); // every second sample from the fourth on

@@ -7,10 +7,10 @@ namespace {
 std::string view(Running& r) { return nameOf(r.browser.bound().viewpoint); }
 
 TEST(Binding, TheFirstOfEachTypeIsBoundAtTheStart) {
-  Running r(
-      "Group { children [ DEF V1 Viewpoint {} DEF V2 Viewpoint {} ] } DEF B1 Background {} DEF F1 Fog {} DEF B2 Background {}"
-      "DEF N1 NavigationInfo {} DEF N2 NavigationInfo {} DEF F2 Fog {}",
-      5);
+  Running r("Group { children [ DEF V1 Viewpoint {} DEF V2 Viewpoint {} ] } DEF B1 Background {} "
+            "DEF F1 Fog {} DEF B2 Background {}"
+            "DEF N1 NavigationInfo {} DEF N2 NavigationInfo {} DEF F2 Fog {}",
+            5);
   EXPECT_EQ(view(r), "V1");
   EXPECT_EQ(nameOf(r.browser.bound().background), "B1");
   EXPECT_EQ(nameOf(r.browser.bound().fog), "F1");
@@ -35,15 +35,16 @@ TEST(Binding, WithoutAnyTheStandardsDefaultsHold) {
 }
 
 TEST(Binding, TheFirstInAPrototypeCounts) {
-  Running r("PROTO P [] { Group { children DEF INNER Viewpoint { position 0 0 5 } } } P {} DEF V Viewpoint {}");
+  Running r("PROTO P [] { Group { children DEF INNER Viewpoint { position 0 0 5 } } } P {} DEF V "
+            "Viewpoint {}");
   EXPECT_EQ(view(r), "INNER");
   EXPECT_EQ(eyeOf(r.browser), "0 0 5");
 }
 
 TEST(Binding, TheOrderIsThatOfTheFileEvenWhereAPrototypesFieldsAreConnected) {
-  Running r(
-      "PROTO P [ exposedField SFVec3f at 0 0 1 ] { Group { children [ DEF A Viewpoint {} DEF B Viewpoint { position IS at } ] } }"
-      "P {}");
+  Running r("PROTO P [ exposedField SFVec3f at 0 0 1 ] { Group { children [ DEF A Viewpoint {} DEF "
+            "B Viewpoint { position IS at } ] } }"
+            "P {}");
   EXPECT_EQ(view(r), "A");
 }
 
@@ -55,7 +56,8 @@ TEST(Binding, BothEventsOfASwapHaveOneTimeAndTheOldNodesComesFirst) {
   }
   r.browser.tick(3);
   r.set("B", "set_bind", true);
-  EXPECT_EQ(r.take(), (Log{"3 A.isBound FALSE", "3 A.bindTime 3", "3 B.isBound TRUE", "3 B.bindTime 3"}));
+  EXPECT_EQ(r.take(),
+            (Log{"3 A.isBound FALSE", "3 A.bindTime 3", "3 B.isBound TRUE", "3 B.bindTime 3"}));
   EXPECT_EQ(view(r), "B");
 }
 
@@ -111,7 +113,8 @@ TEST(Binding, BindingANodeInTheStackMovesItToTheTop) {
 }
 
 TEST(Binding, ANodeThatLeavesTheSceneIsUnbound) {
-  Running r("DEF A Viewpoint { position 1 0 0 } DEF G Group { children DEF T Transform { children DEF B Viewpoint {} } }");
+  Running r("DEF A Viewpoint { position 1 0 0 } DEF G Group { children DEF T Transform { children "
+            "DEF B Viewpoint {} } }");
   r.set("B", "set_bind", true);
   r.log("A", "isBound");
   r.log("B", "isBound");
@@ -121,7 +124,8 @@ TEST(Binding, ANodeThatLeavesTheSceneIsUnbound) {
 }
 
 TEST(Binding, NodesThatLeaveTogetherAreNotBoundInBetween) {
-  Running r("DEF A Viewpoint {} DEF G Group { children [ DEF B Viewpoint {} DEF C Viewpoint {} ] }");
+  Running r(
+      "DEF A Viewpoint {} DEF G Group { children [ DEF B Viewpoint {} DEF C Viewpoint {} ] }");
   r.set("B", "set_bind", true);
   r.set("C", "set_bind", true);
   for (const char* name : {"A", "B", "C"}) r.log(name, "isBound");
@@ -165,7 +169,8 @@ TEST(Binding, NodesFromAStringAreNotBoundByThemselvesAndCanBe) {
 TEST(Binding, OfAWorldThatReplacesAnotherTheFirstAreBound) {
   Running r("DEF A Viewpoint { position 1 0 0 } DEF F Fog {}");
   r.browser.navigate({.ahead = 1}, 1);
-  const MFNode made = r.browser.createVrmlFromString("DEF S Viewpoint { jump FALSE position 0 0 1 } DEF U Viewpoint {}");
+  const MFNode made = r.browser.createVrmlFromString(
+      "DEF S Viewpoint { jump FALSE position 0 0 1 } DEF U Viewpoint {}");
   r.browser.replaceWorld(made);
   EXPECT_EQ(view(r), "S");
   EXPECT_EQ(r.browser.bound().fog, nullptr);
@@ -190,7 +195,8 @@ TEST(Viewpoints, JumpTrueMovesTheViewer) {
 }
 
 TEST(Viewpoints, JumpFalseLeavesTheViewWhereItIsAndCarriesItFromThenOn) {
-  Running r("DEF A Viewpoint { position 0 0 4 } DEF T Transform { translation 3 0 0 rotation 0 1 0 1 scale 2 3 4"
+  Running r("DEF A Viewpoint { position 0 0 4 } DEF T Transform { translation 3 0 0 rotation 0 1 0 "
+            "1 scale 2 3 4"
             " children DEF B Viewpoint { jump FALSE position 7 0 0 } }");
   r.set("B", "set_bind", true);
   EXPECT_EQ(eyeOf(r.browser), "0 0 4");
@@ -200,7 +206,8 @@ TEST(Viewpoints, JumpFalseLeavesTheViewWhereItIsAndCarriesItFromThenOn) {
 }
 
 TEST(Viewpoints, PoppingAViewpointThatDidNotJumpLeavesTheView) {
-  Running r("DEF A Viewpoint { position 0 0 4 } DEF T Transform { children DEF B Viewpoint { jump FALSE } }");
+  Running r("DEF A Viewpoint { position 0 0 4 } DEF T Transform { children DEF B Viewpoint { jump "
+            "FALSE } }");
   r.set("B", "set_bind", true);
   r.set("T", "translation", Vec3f{1, 0, 0});
   r.set("B", "set_bind", false);
@@ -209,7 +216,8 @@ TEST(Viewpoints, PoppingAViewpointThatDidNotJumpLeavesTheView) {
 }
 
 TEST(Viewpoints, PoppingAViewpointThatIsGoneStillLeavesTheView) {
-  Running r("DEF A Viewpoint {} DEF T Transform { translation 1 0 0 children DEF B Viewpoint { jump FALSE } }");
+  Running r("DEF A Viewpoint {} DEF T Transform { translation 1 0 0 children DEF B Viewpoint { "
+            "jump FALSE } }");
   r.set("B", "set_bind", true);
   r.set("T", "translation", Vec3f{3, 0, 0});
   r.set("T", "children", MFNode{});
@@ -217,7 +225,8 @@ TEST(Viewpoints, PoppingAViewpointThatIsGoneStillLeavesTheView) {
 }
 
 TEST(Viewpoints, TransformationsAboveCarryTheViewer) {
-  Running r("DEF T Transform { children Transform { translation 0 1 0 children DEF A Viewpoint {} } }");
+  Running r(
+      "DEF T Transform { children Transform { translation 0 1 0 children DEF A Viewpoint {} } }");
   r.set("T", "rotation", Rotation{0, 1, 0, 1.5707963f});
   EXPECT_EQ(eyeOf(r.browser), "10 1 0");
   EXPECT_EQ(lookOf(r.browser), "-1 0 0");
@@ -226,11 +235,13 @@ TEST(Viewpoints, TransformationsAboveCarryTheViewer) {
 }
 
 TEST(Viewpoints, ScaleDoesNotDistortTheView) {
-  Running r("Transform { scale 2 1 5 children Viewpoint { position 1 1 1 orientation 0 1 0 0.5 } }");
+  Running r(
+      "Transform { scale 2 1 5 children Viewpoint { position 1 1 1 orientation 0 1 0 0.5 } }");
   const CameraSettings c = r.browser.camera(1);
   EXPECT_EQ(eyeOf(r.browser), "2 1 5");
   for (int axis = 0; axis < 3; ++axis)
-    EXPECT_NEAR(std::hypot(c.matrix[4 * axis], c.matrix[4 * axis + 1], c.matrix[4 * axis + 2]), 1, 1e-12);
+    EXPECT_NEAR(std::hypot(c.matrix[4 * axis], c.matrix[4 * axis + 1], c.matrix[4 * axis + 2]), 1,
+                1e-12);
 }
 
 TEST(Viewpoints, TheFieldOfViewIsThatOfTheSmallerSide) {
@@ -240,7 +251,8 @@ TEST(Viewpoints, TheFieldOfViewIsThatOfTheSmallerSide) {
 }
 
 TEST(Viewpoints, ATransitionMovesTheEyeOverTimeAndEndsExactly) {
-  Running r("DEF A Viewpoint { position 0 0 0 } DEF B Viewpoint { position 8 0 0 orientation 0 1 0 1.5707963 }");
+  Running r("DEF A Viewpoint { position 0 0 0 } DEF B Viewpoint { position 8 0 0 orientation 0 1 0 "
+            "1.5707963 }");
   r.browser.setTransition(2);
   r.browser.tick(10);
   r.set("B", "set_bind", true);
@@ -253,7 +265,8 @@ TEST(Viewpoints, ATransitionMovesTheEyeOverTimeAndEndsExactly) {
 }
 
 TEST(Viewpoints, ASquashedViewpointStillHasAView) {
-  Running r("DEF A Viewpoint {} DEF T Transform { scale 1 1 0.00001 children DEF B Viewpoint { jump FALSE } }");
+  Running r("DEF A Viewpoint {} DEF T Transform { scale 1 1 0.00001 children DEF B Viewpoint { "
+            "jump FALSE } }");
   r.set("T", "scale", Vec3f{0, 0, 0});
   r.set("B", "set_bind", true);
   EXPECT_EQ(eyeOf(r.browser), "0 0 10");

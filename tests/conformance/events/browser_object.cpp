@@ -10,10 +10,12 @@ class BrowserObject : public ScriptsSomewhere {};
 XVRML_SCRIPTS_SOMEWHERE(BrowserObject);
 
 TEST_P(BrowserObject, TellsWhatItKnows) {
-  Scripted r("DEF S Script { eventIn SFBool in eventOut MFString out url \"test:in: browser out\" }");
+  Scripted r(
+      "DEF S Script { eventIn SFBool in eventOut MFString out url \"test:in: browser out\" }");
   r.browser.setFrameRate(25);
   r.set("S", "in", true);
-  EXPECT_EQ(r.get("S", "out"), fmt::format("[{}, {}, test.wrl, 0, 25]", r.browser.name(), r.browser.version()));
+  EXPECT_EQ(r.get("S", "out"),
+            fmt::format("[{}, {}, test.wrl, 0, 25]", r.browser.name(), r.browser.version()));
   EXPECT_FALSE(r.browser.name().empty());
 }
 
@@ -23,9 +25,9 @@ TEST_P(BrowserObject, TakesADescription) {
 }
 
 TEST_P(BrowserObject, MakesNodesOfAString) {
-  Scripted r(
-      "DEF G Group {} DEF S Script { eventIn SFBool in eventOut MFNode out url \"test:in: create out DEF A Transform {} DEF B "
-      "Transform {} ROUTE A.translation TO B.translation\" } ROUTE S.out TO G.children");
+  Scripted r("DEF G Group {} DEF S Script { eventIn SFBool in eventOut MFNode out url \"test:in: "
+             "create out DEF A Transform {} DEF B "
+             "Transform {} ROUTE A.translation TO B.translation\" } ROUTE S.out TO G.children");
   r.set("S", "in", true);
   EXPECT_EQ(r.get("G", "children"), "[A, B]");
   EXPECT_EQ(r.browser.node("A"), NodeRef()); // names of its own
@@ -36,15 +38,18 @@ TEST_P(BrowserObject, MakesNodesOfAString) {
 
 TEST_P(BrowserObject, PrototypesAndBehaviourOfAStringAreAlive) {
   Running r("DEF G Group {}");
-  const MFNode nodes =
-      r.browser.createVrmlFromString("PROTO P [ exposedField SFVec3f at 0 0 0 eventOut SFTime beat ] { Transform { translation "
-                                     "IS at } DEF C TimeSensor { loop TRUE "
-                                     "time IS beat } } DEF I P { at 5 0 0 } DEF T Transform {} ROUTE I.at TO T.translation");
+  const MFNode nodes = r.browser.createVrmlFromString(
+      "PROTO P [ exposedField SFVec3f at 0 0 0 eventOut SFTime beat ] { Transform { translation "
+      "IS at } DEF C TimeSensor { loop TRUE "
+      "time IS beat } } DEF I P { at 5 0 0 } DEF T Transform {} ROUTE I.at TO T.translation");
   ASSERT_EQ(nodes.size(), 2u);
-  EXPECT_EQ(textOf(renderedNode(nodes[0].get())->get(*renderedNode(nodes[0].get())->type().find("translation"))), "5 0 0");
+  EXPECT_EQ(textOf(renderedNode(nodes[0].get())
+                       ->get(*renderedNode(nodes[0].get())->type().find("translation"))),
+            "5 0 0");
   std::vector<double> beats;
-  r.browser.listen(*nodes[0], "beat",
-                   [&](Node&, const FieldInfo&, const Value& value) { beats.push_back(std::get<double>(value)); });
+  r.browser.listen(*nodes[0], "beat", [&](Node&, const FieldInfo&, const Value& value) {
+    beats.push_back(std::get<double>(value));
+  });
   r.browser.tick(3);
   EXPECT_EQ(beats, std::vector<double>{3});
   r.browser.set(*nodes[0], "set_at", Vec3f{7, 0, 0});
@@ -64,10 +69,11 @@ TEST_P(BrowserObject, AStringThatIsWrongIsToldWithItsPlace) {
 
 TEST_P(BrowserObject, NodesOfAStringGoWhenNobodyHoldsThem) {
   Scripted r("DEF G Group {}");
-  const std::string text =
-      "PROTO P [ eventOut SFTime beat ] { TimeSensor { loop TRUE time IS beat } Script { url \"test:shutdown: print "
-      "gone\" } } DEF I P {} DEF S Script { eventIn SFTime in url \"test:in: print beat\nshutdown: print end\" } "
-      "ROUTE I.beat TO S.in";
+  const std::string text = "PROTO P [ eventOut SFTime beat ] { TimeSensor { loop TRUE time IS beat "
+                           "} Script { url \"test:shutdown: print "
+                           "gone\" } } DEF I P {} DEF S Script { eventIn SFTime in url \"test:in: "
+                           "print beat\nshutdown: print end\" } "
+                           "ROUTE I.beat TO S.in";
   r.set("G", "children", r.browser.createVrmlFromString(text));
   r.browser.tick(1);
   EXPECT_EQ(r.printed(), Log{"beat"});
@@ -100,7 +106,8 @@ TEST_P(BrowserObject, ALongChainOfRoutesEndsWithoutRecursion) {
 }
 
 TEST_P(BrowserObject, ReadsNodesFromAFile) {
-  Scripted r("DEF G Group {} DEF S Script { field SFNode to USE G eventIn SFBool in url \"test:in: fromUrl to set_children "
+  Scripted r("DEF G Group {} DEF S Script { field SFNode to USE G eventIn SFBool in url \"test:in: "
+             "fromUrl to set_children "
              "tests/conformance/good/def-use.wrl\" }");
   r.log("G", "children");
   r.set("S", "in", true);
@@ -111,9 +118,9 @@ TEST_P(BrowserObject, ReadsNodesFromAFile) {
 }
 
 TEST_P(BrowserObject, AnotherWorldTakesThePlaceOfThisOne) {
-  Scripted r(
-      "DEF V Viewpoint {} Script { url \"test:shutdown: print old\" } DEF S Script { eventIn SFBool in url \"test:in: load "
-      "tests/conformance/good/def-use.wrl\" }");
+  Scripted r("DEF V Viewpoint {} Script { url \"test:shutdown: print old\" } DEF S Script { "
+             "eventIn SFBool in url \"test:in: load "
+             "tests/conformance/good/def-use.wrl\" }");
   const uint64_t generation = r.browser.generation();
   r.set("S", "in", true);
   EXPECT_EQ(r.browser.generation(), generation + 1);
@@ -128,8 +135,8 @@ TEST_P(BrowserObject, AnotherWorldTakesThePlaceOfThisOne) {
 TEST_P(BrowserObject, AnApplicationMayLoadItself) {
   BrowserOptions options;
   std::vector<std::string> asked;
-  options.loadUrl = [&](const std::vector<std::string>& urls, const std::vector<std::string>& parameters,
-                        const std::string& base) {
+  options.loadUrl = [&](const std::vector<std::string>& urls,
+                        const std::vector<std::string>& parameters, const std::string& base) {
     EXPECT_EQ(base, "test.wrl");
     asked = urls;
     asked.insert(asked.end(), parameters.begin(), parameters.end());
@@ -159,9 +166,10 @@ TEST_P(BrowserObject, AWorldThatCannotBeReadChangesNothing) {
 
 TEST_P(BrowserObject, ReplaceWorldKeepsNodesTheirRoutesAndTheirScripts) {
   Scripted r("DEF S Script { url \"test:shutdown: print old\" eventIn MFNode in }");
-  const MFNode nodes = r.browser.createVrmlFromString("DEF V Viewpoint {} DEF A Transform {} DEF B Transform {} Script { url "
-                                                      "\"test:initialize: print new\nshutdown: print no\" } ROUTE "
-                                                      "A.translation TO B.translation");
+  const MFNode nodes = r.browser.createVrmlFromString(
+      "DEF V Viewpoint {} DEF A Transform {} DEF B Transform {} Script { url "
+      "\"test:initialize: print new\nshutdown: print no\" } ROUTE "
+      "A.translation TO B.translation");
   EXPECT_EQ(r.printed(), Log{"new"});
   r.browser.replaceWorld(nodes);
   EXPECT_EQ(r.printed(), Log{"old"});
@@ -179,7 +187,8 @@ TEST_P(BrowserObject, AScriptReplacesTheWorldItIsIn) {
 }
 
 TEST_P(BrowserObject, AWorldThatReplacesItselfForEverDoesNotHang) {
-  Scripted r("Script { url \"test:initialize: load tests/conformance/good/script-loads-itself.wrl\" }");
+  Scripted r(
+      "Script { url \"test:initialize: load tests/conformance/good/script-loads-itself.wrl\" }");
   const uint64_t generation = r.browser.generation();
   r.browser.tick(1);
   EXPECT_LE(r.browser.generation(), generation + 2);

@@ -1,4 +1,5 @@
-// The world's clock: seconds since 1970 (4.11.2), which begin at one fixed number so that pictures are reproducible.
+// The world's clock: seconds since 1970 (4.11.2), which begin at one fixed number so that pictures
+// are reproducible.
 #include "conformance/events/support.h"
 
 namespace xvrml {
@@ -10,7 +11,9 @@ struct Loaded : Running {
   void ticks(std::initializer_list<double> times) {
     for (const double time : times) browser.tick(time);
   }
-  float fraction(std::string_view name) { return std::get<SFFloat>(browser.get(node(name), "fraction_changed")); }
+  float fraction(std::string_view name) {
+    return std::get<SFFloat>(browser.get(node(name), "fraction_changed"));
+  }
 };
 
 TEST(Clock, LoopWithStopTimeOneIsOffWhenTheWorldIsLoaded) {
@@ -52,11 +55,12 @@ TEST(Clock, TheProgramReadsTheTimeThatItHasGiven) { // epoch + 0.1 is rounded
   EXPECT_EQ(w.browser.now(), 0.1); // it does not go back
 }
 
-// Cycles that divide the epoch begin at the loading, so that sequences of a looping world begin with its beginning; those that
-// are no doubles (.1, .7, 3.3) too.
+// Cycles that divide the epoch begin at the loading, so that sequences of a looping world begin
+// with its beginning; those that are no doubles (.1, .7, 3.3) too.
 TEST(Clock, CyclesBeginAtTheLoading) {
-  for (const char* cycle : {"0.1", "0.25", "0.7", "1",  "1.5", "2.2", "3",  "3.3", "4",   "5",   "6",
-                            "7",   "8",    "9",   "10", "12",  "30",  "60", "100", "360", "3600"}) {
+  for (const char* cycle :
+       {"0.1", "0.25", "0.7", "1",  "1.5", "2.2", "3",  "3.3", "4",   "5",   "6",
+        "7",   "8",    "9",   "10", "12",  "30",  "60", "100", "360", "3600"}) {
     Loaded w(fmt::format("DEF T TimeSensor {{ loop TRUE cycleInterval {} }}", cycle));
     w.log("T", "cycleTime");
     w.ticks({0});
@@ -65,7 +69,8 @@ TEST(Clock, CyclesBeginAtTheLoading) {
     w.ticks({std::stod(cycle) / 2});
     EXPECT_NEAR(w.fraction("T"), 0.5, 1e-5) << cycle;
     w.ticks({std::stod(cycle)});
-    EXPECT_EQ(w.fraction("T"), 1) << cycle; // 6.50: the end of a cycle, not the beginning of the next
+    EXPECT_EQ(w.fraction("T"), 1)
+        << cycle; // 6.50: the end of a cycle, not the beginning of the next
   }
 }
 

@@ -1,4 +1,5 @@
-// PlaneSensor, SphereSensor and CylinderSensor: clauses 6.34, 6.44, 6.15 and 4.6.7.4. Values are those of closed forms.
+// PlaneSensor, SphereSensor and CylinderSensor: clauses 6.34, 6.44, 6.15 and 4.6.7.4. Values are
+// those of closed forms.
 #include <numbers>
 
 #include "conformance/events/viewing.h"
@@ -14,12 +15,15 @@ void to(Running& r, double x, double y, bool button = true) {
   r.browser.pointerRay(origin, direction, button);
 }
 
-void ray(Running& r, double ox, double oy, double oz, double dx, double dy, double dz, bool button = true) {
+void ray(Running& r, double ox, double oy, double oz, double dx, double dy, double dz,
+         bool button = true) {
   const double origin[3] = {ox, oy, oz}, direction[3] = {dx, dy, dz};
   r.browser.pointerRay(origin, direction, button);
 }
 
-Rotation turn(Running& r, const char* out = "rotation_changed") { return std::get<Rotation>(r.browser.get(r.node("S"), out)); }
+Rotation turn(Running& r, const char* out = "rotation_changed") {
+  return std::get<Rotation>(r.browser.get(r.node("S"), out));
+}
 
 void expectTurn(const Rotation& r, double x, double y, double z, double angle) {
   EXPECT_NEAR(r.angle, angle, 1e-5);
@@ -28,7 +32,8 @@ void expectTurn(const Rotation& r, double x, double y, double z, double angle) {
   EXPECT_NEAR(r.z, z, 1e-5);
 }
 
-std::string with(const std::string& sensor, const std::string& shape = "Shape { geometry Box { size 20 20 2 } }") {
+std::string with(const std::string& sensor,
+                 const std::string& shape = "Shape { geometry Box { size 20 20 2 } }") {
   return "DEF G Group { children [ DEF S " + sensor + " " + shape + " ] }";
 }
 
@@ -89,7 +94,8 @@ TEST(PlaneSensor, ALowerLimitAboveTheUpperIsNone) {
 }
 
 TEST(PlaneSensor, WorksInItsOwnCoordinates) {
-  Running r("Transform { translation 3 0 0 rotation 0 0 1 1.5707963 scale 2 2 2 children [ DEF S PlaneSensor {}"
+  Running r("Transform { translation 3 0 0 rotation 0 0 1 1.5707963 scale 2 2 2 children [ DEF S "
+            "PlaneSensor {}"
             " Shape { geometry Box { size 20 20 2 } } ] }");
   to(r, 3, 0);
   to(r, 5, 0);
@@ -99,7 +105,8 @@ TEST(PlaneSensor, WorksInItsOwnCoordinates) {
 }
 
 TEST(PlaneSensor, MovingItsOwnGroupDoesNotFeedBack) {
-  Running r("DEF T Transform { children [ DEF S PlaneSensor {} Shape { geometry Box { size 20 20 2 } } ] } ROUTE "
+  Running r("DEF T Transform { children [ DEF S PlaneSensor {} Shape { geometry Box { size 20 20 2 "
+            "} } ] } ROUTE "
             "S.translation_changed TO "
             "T.translation");
   to(r, 0, 0);
@@ -169,7 +176,8 @@ TEST(SphereSensor, TheRadiusIsThatOfThePointPressed) {
 }
 
 TEST(SphereSensor, OffsetComesFirstAndIsSetWhenTheDragEnds) {
-  Running r(with("SphereSensor { offset 1 0 0 1.5707963 }", "Shape { geometry Sphere { radius 1 } }"));
+  Running r(
+      with("SphereSensor { offset 1 0 0 1.5707963 }", "Shape { geometry Sphere { radius 1 } }"));
   r.log("S", "offset_changed");
   to(r, 0, 0);
   to(r, std::sin(0.5), 0);
@@ -195,7 +203,8 @@ TEST(SphereSensor, BesideTheSphereTheDragGoesOnAtItsEdge) {
 }
 
 TEST(SphereSensor, APressAtItsOriginIsStable) {
-  Running r(with("SphereSensor {}", "Transform { translation 0 0 -1 children Shape { geometry Box {} } }"));
+  Running r(with("SphereSensor {}",
+                 "Transform { translation 0 0 -1 children Shape { geometry Box {} } }"));
   r.log("S", "rotation_changed");
   to(r, 0, 0);
   to(r, 1, 0);
@@ -247,7 +256,8 @@ TEST(CylinderSensor, DiskAngleDecidesWhichOfTheTwo) {
 }
 
 TEST(CylinderSensor, OffsetAndLimitsAreAngles) {
-  Running r(with("CylinderSensor { offset 0.5 minAngle 0 maxAngle 1 }", "Shape { geometry Box { size 20 2 20 } }"));
+  Running r(with("CylinderSensor { offset 0.5 minAngle 0 maxAngle 1 }",
+                 "Shape { geometry Box { size 20 2 20 } }"));
   r.log("S", "offset_changed");
   ray(r, 0, 10, 5, 0, -1, 0);
   ray(r, 5 * std::sin(0.25), 10, 5 * std::cos(0.25), 0, -1, 0);
@@ -262,7 +272,8 @@ TEST(CylinderSensor, OffsetAndLimitsAreAngles) {
 }
 
 TEST(CylinderSensor, WithoutAutoOffsetTheOffsetStays) {
-  Running r(with("CylinderSensor { offset 0.5 autoOffset FALSE }", "Shape { geometry Box { size 20 2 20 } }"));
+  Running r(with("CylinderSensor { offset 0.5 autoOffset FALSE }",
+                 "Shape { geometry Box { size 20 2 20 } }"));
   ray(r, 0, 10, 5, 0, -1, 0);
   ray(r, 5, 10, 0, 0, -1, 0);
   ray(r, 5, 10, 0, 0, -1, 0, false);
@@ -278,15 +289,18 @@ TEST(CylinderSensor, RaysAlongItsAxisDuringACylinderDragSayNothing) {
 }
 
 TEST(DragSensors, TwoSiblingsDragAtOnce) {
-  Running r("Group { children [ DEF S SphereSensor {} DEF P PlaneSensor {} Shape { geometry Sphere { radius 2 } } ] }");
+  Running r("Group { children [ DEF S SphereSensor {} DEF P PlaneSensor {} Shape { geometry Sphere "
+            "{ radius 2 } } ] }");
   to(r, 0, 0);
   to(r, 2 * std::sin(0.5), 0);
   expectTurn(turn(r), 0, 1, 0, 0.5);
-  EXPECT_NEAR(std::get<Vec3f>(r.browser.get(r.node("P"), "translation_changed")).x, 2 * std::sin(0.5), 1e-6);
+  EXPECT_NEAR(std::get<Vec3f>(r.browser.get(r.node("P"), "translation_changed")).x,
+              2 * std::sin(0.5), 1e-6);
 }
 
 TEST(DragSensors, OfNestedOnesTheLowestDrags) {
-  Running r("Group { children [ DEF S SphereSensor {} Group { children [ DEF P PlaneSensor {} Shape { geometry Sphere { radius 2 "
+  Running r("Group { children [ DEF S SphereSensor {} Group { children [ DEF P PlaneSensor {} "
+            "Shape { geometry Sphere { radius 2 "
             "} } ] } ] }");
   to(r, 0, 0);
   to(r, 1, 0);
@@ -296,7 +310,8 @@ TEST(DragSensors, OfNestedOnesTheLowestDrags) {
 
 TEST(DragSensors, ADragGoesOnBesideItsGeometryAndOverOther) {
   Running r(with("PlaneSensor {}", "Shape { geometry Box {} }") +
-            "Group { children [ DEF O TouchSensor {} Transform { translation 5 0 3 children Shape { geometry Box {} } } ] }");
+            "Group { children [ DEF O TouchSensor {} Transform { translation 5 0 3 children Shape "
+            "{ geometry Box {} } } ] }");
   to(r, 0, 0);
   to(r, 5, 0);
   EXPECT_EQ(r.get("S", "translation_changed"), "5 0 0");

@@ -1,5 +1,6 @@
-// ecmascript_freewrl.cpp: FreeWRL's worlds for its script's field types (freewrl/tests/Javascript_tests in the corpus; skipped
-// where that is absent). They show by shapes and colours that all is well; the same is read from the nodes here.
+// ecmascript_freewrl.cpp: FreeWRL's worlds for its script's field types
+// (freewrl/tests/Javascript_tests in the corpus; skipped where that is absent). They show by shapes
+// and colours that all is well; the same is read from the nodes here.
 #include <cstdlib>
 #include <fstream>
 
@@ -16,15 +17,20 @@ class FreeWrl : public testing::Test {
   }
   static std::string folder() {
     const char* corpus = std::getenv("OPENRT_CORPUS");
-    return std::string(corpus ? corpus : "../shared/corpus") + "/freewrl-tests/freewrl/tests/Javascript_tests/";
+    return std::string(corpus ? corpus : "../shared/corpus") +
+           "/freewrl-tests/freewrl/tests/Javascript_tests/";
   }
   Browser& open(const char* file) { return run(loadWorld(folder() + file)); }
   Browser& read(const std::string& text) { return run(loadWorldFromMemory(text, "test.wrl")); }
-  std::string get(const char* node, const char* field) { return textOf(browser_->get(*browser_->node(node), field)); }
+  std::string get(const char* node, const char* field) {
+    return textOf(browser_->get(*browser_->node(node), field));
+  }
   template <class T> T value(const char* node, const char* field) {
     return std::get<T>(browser_->get(*browser_->node(node), field));
   }
-  void set(const char* node, const char* field, Value value) { browser_->set(*browser_->node(node), field, std::move(value)); }
+  void set(const char* node, const char* field, Value value) {
+    browser_->set(*browser_->node(node), field, std::move(value));
+  }
   // Messages of Scripts.
   std::string failures() {
     std::string out;
@@ -85,7 +91,8 @@ TEST_F(FreeWrl, SFImage) {
   EXPECT_EQ(value<Image>("BOX_TEXTURE", "image").pixels, first.pixels);
   for (int i = 1; i <= 60; ++i) browser.tick(i * 0.1);
   EXPECT_NE(value<Image>("CONE_TEXTURE", "image").pixels, first.pixels);
-  EXPECT_EQ(value<Image>("BOX_TEXTURE", "image").pixels, value<Image>("CONE_TEXTURE", "image").pixels);
+  EXPECT_EQ(value<Image>("BOX_TEXTURE", "image").pixels,
+            value<Image>("CONE_TEXTURE", "image").pixels);
   EXPECT_EQ(failures(), "");
 }
 

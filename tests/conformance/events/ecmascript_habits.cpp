@@ -1,4 +1,5 @@
-// ecmascript_habits.cpp: what programs in real worlds take for granted beyond Annex C, as VRML files write them.
+// ecmascript_habits.cpp: what programs in real worlds take for granted beyond Annex C, as VRML
+// files write them.
 #include "conformance/events/ecmascript_world.h"
 
 namespace xvrml {
@@ -20,14 +21,15 @@ function declared(n) { if (n == 0) return 0
   return n + declared(n - 1) }
 // -->
 " })");
-  EXPECT_EQ(r.told(), "a\tbAquotedit's\nconstants\n6\nx1.5true 12 1500 3.142 true a%20b\ntwo\n2\n0,1,1");
+  EXPECT_EQ(r.told(),
+            "a\tbAquotedit's\nconstants\n6\nx1.5true 12 1500 3.142 true a%20b\ntwo\n2\n0,1,1");
 }
 
 TEST_F(EcmaScript, LinesEndInAnyWay) {
   for (const char* end : {"\n", "\r\n", "\r"}) {
     const std::string e = end;
-    EcmaWorld r("Script { url \"javascript:" + e + "// comment" + e + "function initialize() {" + e + "  print('a')" + e +
-                "  print('b')" + e + "} // = x" + e + "\" }");
+    EcmaWorld r("Script { url \"javascript:" + e + "// comment" + e + "function initialize() {" +
+                e + "  print('a')" + e + "  print('b')" + e + "} // = x" + e + "\" }");
     EXPECT_EQ(r.told(), "a\nb");
   }
 }
@@ -37,8 +39,10 @@ TEST_F(EcmaScript, AProcessMakesNoDifference) {
   const std::string world =
       "DEF T Transform { children [ Group { } ] } " +
       EcmaWorld::script(
-          "directOutput TRUE field SFNode t USE T field MFVec3f m [1 2 3] eventIn SFTime in eventOut SFVec3f out",
-          "function initialize() { print(t, t.children, m, Math.random(), new Date().getTime(), Browser.getName()); "
+          "directOutput TRUE field SFNode t USE T field MFVec3f m [1 2 3] eventIn SFTime in "
+          "eventOut SFVec3f out",
+          "function initialize() { print(t, t.children, m, Math.random(), new Date().getTime(), "
+          "Browser.getName()); "
           "t.translation.x = 5; m[1] = t.translation; out = m[1]; new SFNode('Shape { }') }"
           "function shutdown() { print(out, m) }");
   const auto play = [&](BrowserOptions::Isolation where) {

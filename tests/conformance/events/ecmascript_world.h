@@ -1,5 +1,5 @@
-// ecmascript_world.h: a small world whose Script S is ECMAScript, in this process; rows of programs and what they print. Tests
-// are skipped where the engine is not built.
+// ecmascript_world.h: a small world whose Script S is ECMAScript, in this process; rows of programs
+// and what they print. Tests are skipped where the engine is not built.
 #pragma once
 
 #include "conformance/events/tcl_world.h"
@@ -9,7 +9,8 @@ namespace xvrml {
 class EcmaWorld : public TclWorld {
  public:
   using TclWorld::TclWorld;
-  static std::string script(const std::string& declared, const std::string& program, const std::string& rest = "") {
+  static std::string script(const std::string& declared, const std::string& program,
+                            const std::string& rest = "") {
     std::string text = TclWorld::script(declared, program, rest);
     return text.replace(text.find("\"tcl:") + 1, 4, "javascript:");
   }

@@ -1,4 +1,5 @@
-// A running world that changes: nodes and routes that come and go, also within a cascade; random routes. Clauses 4.7, 4.10.
+// A running world that changes: nodes and routes that come and go, also within a cascade; random
+// routes. Clauses 4.7, 4.10.
 #include <random>
 
 #include "conformance/events/scripted.h"
@@ -8,7 +9,8 @@ namespace {
 
 TEST(Editing, ANodeMayEndDuringItsOwnEvent) {
   Running r("DEF G Group { children DEF A Transform {} } DEF B Transform {}");
-  MFNode made = r.browser.createVrmlFromString("DEF X Transform {} DEF Y Transform {} ROUTE X.translation TO Y.translation");
+  MFNode made = r.browser.createVrmlFromString(
+      "DEF X Transform {} DEF Y Transform {} ROUTE X.translation TO Y.translation");
   NodeRef x = made[0];
   r.set("G", "children", std::move(made));
   r.browser.listen(*x, "translation", [&](Node&, const FieldInfo&, const Value&) {
@@ -22,8 +24,9 @@ TEST(Editing, ANodeMayEndDuringItsOwnEvent) {
 
 TEST(Editing, AnInstanceMayEndDuringAnEventOfItsBody) {
   Running r("DEF G Group {}");
-  MFNode made = r.browser.createVrmlFromString("PROTO P [ eventOut SFVec3f out eventIn SFVec3f in ] { DEF T Transform { "
-                                               "set_translation IS in translation_changed IS out } } P {}");
+  MFNode made = r.browser.createVrmlFromString(
+      "PROTO P [ eventOut SFVec3f out eventIn SFVec3f in ] { DEF T Transform { "
+      "set_translation IS in translation_changed IS out } } P {}");
   NodeRef instance = made[0];
   const NodeRef body(renderedNode(instance.get()));
   r.set("G", "children", std::move(made));
@@ -40,7 +43,8 @@ TEST(Editing, AnInstanceMayEndDuringAnEventOfItsBody) {
 }
 
 TEST(Editing, RoutesMadeWithinACascadeDoNotCarryItsEvent) {
-  Running r("DEF A Transform {} DEF B Transform {} DEF C Transform {} ROUTE A.translation TO B.translation");
+  Running r("DEF A Transform {} DEF B Transform {} DEF C Transform {} ROUTE A.translation TO "
+            "B.translation");
   r.browser.listen(r.node("B"), "translation", [&](Node&, const FieldInfo&, const Value&) {
     r.browser.addRoute(r.node("A"), "translation", r.node("C"), "translation");
     r.browser.deleteRoute(r.node("A"), "translation", r.node("B"), "translation");
@@ -53,7 +57,8 @@ TEST(Editing, RoutesMadeWithinACascadeDoNotCarryItsEvent) {
 }
 
 TEST(Editing, EventInsReplaceTheFieldsTheyAreNamedFor) {
-  Running r("Shape { geometry DEF F IndexedFaceSet {} } Shape { geometry DEF E ElevationGrid { height [ 0 0 0 0 ] } } DEF K "
+  Running r("Shape { geometry DEF F IndexedFaceSet {} } Shape { geometry DEF E ElevationGrid { "
+            "height [ 0 0 0 0 ] } } DEF K "
             "PositionInterpolator { key [ 0 1 ] }");
   r.set("F", "set_coordIndex", MFInt32{0, 1, 2, -1});
   r.set("E", "set_height", MFFloat{1, 2, 3, 4});
@@ -71,18 +76,23 @@ TEST(Editing, AWideFanOutReachesEverybody) {
   for (int i = 0; i < n; ++i) text += fmt::format("ROUTE A.translation TO T{}.translation\n", i);
   Running r(text);
   r.set("A", "translation", Vec3f{1, 0, 0});
-  for (const int i : {0, n / 2, n - 1}) EXPECT_EQ(r.get(fmt::format("T{}", i), "translation"), "1 0 0");
+  for (const int i : {0, n / 2, n - 1})
+    EXPECT_EQ(r.get(fmt::format("T{}", i), "translation"), "1 0 0");
   EXPECT_EQ(r.browser.world().diagnostics.warnings(), 0u);
 }
 
-// Random routes among nodes of one type, loops and all, and events into them while routes come and go.
+// Random routes among nodes of one type, loops and all, and events into them while routes come and
+// go.
 Log randomRun(unsigned seed, uint64_t& warnings) {
   std::mt19937 random(seed);
   const auto pick = [&](int below) { return int(random() % unsigned(below)); };
   const int nodes = 2 + pick(30), routes = pick(90);
-  std::string text = "PROTO P [ exposedField SFVec3f translation 0 0 0 ] { Transform { translation IS translation } }";
-  for (int i = 0; i < nodes; ++i) text += fmt::format(" DEF N{} {} {{}}", i, pick(4) ? "Transform" : "P");
-  for (int i = 0; i < routes; ++i) text += fmt::format(" ROUTE N{}.translation TO N{}.translation", pick(nodes), pick(nodes));
+  std::string text = "PROTO P [ exposedField SFVec3f translation 0 0 0 ] { Transform { translation "
+                     "IS translation } }";
+  for (int i = 0; i < nodes; ++i)
+    text += fmt::format(" DEF N{} {} {{}}", i, pick(4) ? "Transform" : "P");
+  for (int i = 0; i < routes; ++i)
+    text += fmt::format(" ROUTE N{}.translation TO N{}.translation", pick(nodes), pick(nodes));
   Running r(text);
   for (int i = 0; i < nodes; ++i) r.log(fmt::format("N{}", i), "translation");
   for (int step = 0; step < 30; ++step) {

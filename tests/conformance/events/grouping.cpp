@@ -1,12 +1,14 @@
-// Lists of children while a world runs: addChildren, removeChildren and children_changed (4.6.5), through the borders of
-// prototypes (4.8.2), and what is written afterwards.
+// Lists of children while a world runs: addChildren, removeChildren and children_changed (4.6.5),
+// through the borders of prototypes (4.8.2), and what is written afterwards.
 #include "conformance/events/support.h"
 
 namespace xvrml {
 namespace {
 
 // The world as it would be written now, loaded again.
-std::unique_ptr<World> again(Running& r) { return loadWorldFromMemory(writeWorld(r.browser.world()), "again.wrl"); }
+std::unique_ptr<World> again(Running& r) {
+  return loadWorldFromMemory(writeWorld(r.browser.world()), "again.wrl");
+}
 
 // The children of what a node stands for.
 std::string childrenOf(const NodeRef& node, const char* field = "children") {
@@ -37,13 +39,15 @@ TEST(Grouping, WhatChangesNothingIsNotTold) {
 }
 
 TEST(Grouping, ChildrenChangedGoesAlongRoutes) {
-  Running r("DEF G Group {} DEF H Group {} DEF B Group {} ROUTE G.children_changed TO H.set_children");
+  Running r(
+      "DEF G Group {} DEF H Group {} DEF B Group {} ROUTE G.children_changed TO H.set_children");
   r.set("G", "addChildren", MFNode{r.browser.node("B")});
   EXPECT_EQ(r.get("H", "children"), "[B]");
 }
 
-const std::string interface = "PROTO P [ exposedField MFNode c [] eventIn MFNode add eventIn MFNode rem ] "
-                              "{ Group { children IS c addChildren IS add removeChildren IS rem } } ";
+const std::string interface =
+    "PROTO P [ exposedField MFNode c [] eventIn MFNode add eventIn MFNode rem ] "
+    "{ Group { children IS c addChildren IS add removeChildren IS rem } } ";
 
 TEST(Grouping, AnInstanceHasTheChildrenOfTheNodeThatIsThem) {
   Running r(interface + "DEF A P { c DEF X Group {} } DEF Y Group {}");
@@ -64,15 +68,18 @@ TEST(Grouping, WhatAnInstanceWasGivenIsWritten) {
 }
 
 TEST(Grouping, InstancesOfInstancesHaveThemToo) {
-  Running r(interface + "PROTO Q [ exposedField MFNode d [] eventIn MFNode more ] { P { c IS d add IS more } } "
-                        "DEF A Q { d DEF X Group {} } DEF Y Group {}");
+  Running r(interface +
+            "PROTO Q [ exposedField MFNode d [] eventIn MFNode more ] { P { c IS d add IS more } } "
+            "DEF A Q { d DEF X Group {} } DEF Y Group {}");
   r.set("A", "more", MFNode{r.browser.node("Y")});
   EXPECT_EQ(r.get("A", "d"), "[X, Y]");
   EXPECT_EQ(childrenOf(again(r)->scope.names.at("A")), "[X, Y]");
 }
 
-TEST(Grouping, SeveralChangesAtOneTimeAreAllKept) { // though children_changed tells the first alone (4.10.3)
-  Running r(interface + "DEF A P {} DEF X Group {} DEF N Group {} ROUTE N.children TO A.add ROUTE N.children TO A.rem");
+TEST(Grouping,
+     SeveralChangesAtOneTimeAreAllKept) { // though children_changed tells the first alone (4.10.3)
+  Running r(interface + "DEF A P {} DEF X Group {} DEF N Group {} ROUTE N.children TO A.add ROUTE "
+                        "N.children TO A.rem");
   r.log("A", "c");
   r.set("N", "children", MFNode{r.browser.node("X")});
   EXPECT_EQ(r.take(), Log{"0 A.c [X]"});
@@ -81,8 +88,10 @@ TEST(Grouping, SeveralChangesAtOneTimeAreAllKept) { // though children_changed t
 }
 
 TEST(Grouping, AFieldOfAnInstanceIsWrittenAsItsNodeHasIt) { // not only an exposedField
-  Running r("PROTO P [ field MFNode c [] field SFVec3f at 0 0 0 eventIn MFNode add eventIn SFVec3f move ] "
-            "{ Transform { children IS c addChildren IS add translation IS at set_translation IS move } } "
+  Running r("PROTO P [ field MFNode c [] field SFVec3f at 0 0 0 eventIn MFNode add eventIn SFVec3f "
+            "move ] "
+            "{ Transform { children IS c addChildren IS add translation IS at set_translation IS "
+            "move } } "
             "DEF A P { c DEF X Group {} } DEF Y Group {}");
   r.set("A", "add", MFNode{r.browser.node("Y")});
   r.set("A", "move", Vec3f{1, 2, 3});
@@ -93,16 +102,18 @@ TEST(Grouping, AFieldOfAnInstanceIsWrittenAsItsNodeHasIt) { // not only an expos
 }
 
 TEST(Grouping, AFieldThatTwoNodesShareIsWrittenAsItWasGiven) { // it cannot have the values of both
-  Running r(
-      "PROTO P [ field SFVec3f at 5 0 0 eventIn SFVec3f move ] { Transform { translation IS at set_translation IS move children "
-      "DEF I Transform { translation IS at } } } DEF A P {}");
+  Running r("PROTO P [ field SFVec3f at 5 0 0 eventIn SFVec3f move ] { Transform { translation IS "
+            "at set_translation IS move children "
+            "DEF I Transform { translation IS at } } } DEF A P {}");
   r.set("A", "move", Vec3f{1, 2, 3});
   EXPECT_EQ(childrenOf(again(r)->scope.names.at("A"), "translation"), "5 0 0");
 }
 
 TEST(Grouping, OtherListsOfNodesCrossTheBorderToo) {
-  Running r("PROTO S [ exposedField MFNode c [] exposedField SFInt32 which 0 ] { Switch { choice IS c whichChoice IS which } } "
-            "PROTO L [ exposedField MFNode c [] ] { LOD { level IS c } } DEF A S {} DEF B L {} DEF X Group {} DEF Y Group {} "
+  Running r("PROTO S [ exposedField MFNode c [] exposedField SFInt32 which 0 ] { Switch { choice "
+            "IS c whichChoice IS which } } "
+            "PROTO L [ exposedField MFNode c [] ] { LOD { level IS c } } DEF A S {} DEF B L {} DEF "
+            "X Group {} DEF Y Group {} "
             "DEF C S {} ROUTE A.c_changed TO C.set_c ROUTE A.which_changed TO C.set_which");
   const MFNode both{r.browser.node("X"), NodeRef(), r.browser.node("Y")};
   r.set("A", "c", both);
@@ -110,14 +121,15 @@ TEST(Grouping, OtherListsOfNodesCrossTheBorderToo) {
   r.set("A", "which", 2);
   for (const char* name : {"A", "B", "C"}) EXPECT_EQ(r.get(name, "c"), "[X, NULL, Y]") << name;
   const auto world = again(r);
-  for (const char* name : {"A", "C"}) EXPECT_EQ(childrenOf(world->scope.names.at(name), "choice"), "[X, NULL, Y]") << name;
+  for (const char* name : {"A", "C"})
+    EXPECT_EQ(childrenOf(world->scope.names.at(name), "choice"), "[X, NULL, Y]") << name;
   EXPECT_EQ(childrenOf(world->scope.names.at("B"), "level"), "[X, NULL, Y]");
   EXPECT_EQ(childrenOf(world->scope.names.at("C"), "whichChoice"), "2");
 }
 
 TEST(Grouping, AnExposedFieldThatReachesEventInsAloneKeepsAndTellsItsValue) {
-  Running r(
-      "PROTO P [ exposedField SFVec3f at 0 0 0 ] { Group { children DEF T Transform { set_translation IS at } } } DEF A P {}");
+  Running r("PROTO P [ exposedField SFVec3f at 0 0 0 ] { Group { children DEF T Transform { "
+            "set_translation IS at } } } DEF A P {}");
   EXPECT_EQ(r.browser.world().diagnostics.errors(), 1u); // table 4.4
   r.log("A", "at");
   r.set("A", "at", Vec3f{1, 2, 3});

@@ -10,7 +10,8 @@ const std::string clip = "source DEF A AudioClip { url \"clip.wav\" loop TRUE } 
 struct Hearing {
   explicit Hearing(const std::string& text) {
     folder.write("clip.wav", wav(std::vector<int16_t>(200, 8192), 1, 100));
-    browser = std::make_unique<Browser>(folder.world(text), BrowserOptions(), 0, RunOptions{.epoch = 0});
+    browser =
+        std::make_unique<Browser>(folder.world(text), BrowserOptions(), 0, RunOptions{.epoch = 0});
     browser->tick(0);
   }
   std::vector<Heard> now() { return heardIn(*browser); }
@@ -19,22 +20,24 @@ struct Hearing {
 };
 
 TEST(Hearing, StandsWhereTheSoundDoes) {
-  Hearing h(
-      "Viewpoint { position 0 0 0 } Transform { translation 3 0 0 children Sound { minFront 50 minBack 50 maxFront 60 maxBack 60 "
-      "location 2 0 0 " +
-      clip + "} }");
+  Hearing h("Viewpoint { position 0 0 0 } Transform { translation 3 0 0 children Sound { minFront "
+            "50 minBack 50 maxFront 60 maxBack 60 "
+            "location 2 0 0 " +
+            clip + "} }");
   const std::vector<Heard> heard = h.now();
   ASSERT_EQ(heard.size(), 1u);
   EXPECT_TRUE(heard[0].playing.clip);
   EXPECT_GT(heard[0].levels.right, heard[0].levels.left);
-  double behind[16] = {-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1}; // turned round: the other ear
+  double behind[16] = {-1, 0, 0,  0, 0, 1, 0, 0,
+                       0,  0, -1, 0, 0, 0, 0, 1}; // turned round: the other ear
   h.browser->placeViewer(behind);
   EXPECT_NEAR(h.now()[0].levels.left, heard[0].levels.right, 1e-6);
 }
 
 TEST(Hearing, EveryPlaceOfASoundCounts) {
   Hearing h("DEF S Sound { " + clip +
-            "} Transform { translation 1 0 0 children USE S } Transform { translation 2 0 0 children USE S }");
+            "} Transform { translation 1 0 0 children USE S } Transform { translation 2 0 0 "
+            "children USE S }");
   EXPECT_EQ(h.now().size(), 3u);
 }
 

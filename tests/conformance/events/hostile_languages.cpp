@@ -1,6 +1,7 @@
-// The same misdeeds in every language that untrusted worlds may use: a program that does not end, takes all memory, recurses, or
-// reaches for files, the network, processes or the environment is stopped or refused with a message that names file, line and
-// node, and the world goes on frame by frame. Languages whose engines are not built here are skipped.
+// The same misdeeds in every language that untrusted worlds may use: a program that does not end,
+// takes all memory, recurses, or reaches for files, the network, processes or the environment is
+// stopped or refused with a message that names file, line and node, and the world goes on frame by
+// frame. Languages whose engines are not built here are skipped.
 #include <unistd.h>
 
 #include "conformance/events/scripted.h"
@@ -9,8 +10,9 @@
 namespace xvrml {
 namespace {
 
-// Stopped, or an error of the language: either way there is a message with a place. Refused: there is a message, or the program
-// says "refused"; it never says "reached". Computes: neither; the program prints "done", or is stopped.
+// Stopped, or an error of the language: either way there is a message with a place. Refused: there
+// is a message, or the program says "refused"; it never says "reached". Computes: neither; the
+// program prints "done", or is stopped.
 enum class End { stopped, refused, computes };
 
 struct Case {
@@ -28,8 +30,10 @@ constexpr Case cases[] = {
     {"tcl", "EndlessLoopThatCatches", End::stopped, "while 1 {catch {while 1 {set x 1}}}"},
     {"tcl", "EndlessLoopInFinally", End::stopped, "try {while 1 {}} finally {while 1 {}}"},
     {"tcl", "EndlessLoopThatLiftsItsLimits", End::stopped,
-     "while 1 {catch {interp limit {} time -seconds {}}; catch {interp limit {} commands -value {}}}"},
-    {"tcl", "OneLongBignumCommand", End::stopped, "while 1 {string length [expr {7**30000000 % 3**20000000}]}"},
+     "while 1 {catch {interp limit {} time -seconds {}}; catch {interp limit {} commands -value "
+     "{}}}"},
+    {"tcl", "OneLongBignumCommand", End::stopped,
+     "while 1 {string length [expr {7**30000000 % 3**20000000}]}"},
     {"tcl", "BacktrackingRegularExpression", End::stopped,
      "regexp {^(.*)(.*)(.*)(.*)(.*)\\1\\2\\3\\4\\5$} [string repeat a 2001]"},
     {"tcl", "LongSort", End::stopped,
@@ -44,38 +48,51 @@ constexpr Case cases[] = {
     {"tcl", "HugeFormat", End::stopped, "string length [format %2000000000s x]"},
     {"tcl", "Recursion", End::stopped, "proc f {} {f; f}; f"},
     {"tcl", "RecursionThatCatches", End::stopped, "proc f {} {catch f; f}; while 1 {catch f}"},
-    {"tcl", "EndlessTimers", End::stopped, "proc again {} {after 0 again; while 1 {}}; after 0 again"},
+    {"tcl", "EndlessTimers", End::stopped,
+     "proc again {} {after 0 again; while 1 {}}; after 0 again"},
     {"tcl", "Vwait", End::refused, "vwait forever; puts reached"},
     {"tcl", "File", End::refused, "puts reached[open /etc/passwd]"},
     {"tcl", "HiddenFile", End::refused, "puts reached[interp invokehidden {} open /etc/passwd]"},
-    {"tcl", "FileOfAChild", End::refused, "interp create child; puts reached[interp eval child {open /etc/passwd}]"},
+    {"tcl", "FileOfAChild", End::refused,
+     "interp create child; puts reached[interp eval child {open /etc/passwd}]"},
     {"tcl", "Source", End::refused, "source /etc/passwd; puts reached"},
     {"tcl", "Library", End::refused, "load /usr/lib/libtcl8.6.so; puts reached"},
     {"tcl", "Socket", End::refused, "puts reached[socket localhost 80]"},
     {"tcl", "Process", End::refused, "puts reached[exec true]"},
     {"tcl", "Pipe", End::refused, "puts reached[open |true]"},
-    {"tcl", "Environment", End::refused, "if {[info exists ::env(PATH)]} {puts reached} else {puts refused}"},
+    {"tcl", "Environment", End::refused,
+     "if {[info exists ::env(PATH)]} {puts reached} else {puts refused}"},
     {"tcl", "EndOfTheProgram", End::computes, "exit 0"},
 
     // --- ECMAScript ---
     {"javascript", "EndlessLoop", End::stopped, "while (1);"},
-    {"javascript", "EndlessLoopThatCatches", End::stopped, "while (1) { try { while (1); } catch (e) {} }"},
-    {"javascript", "EndlessLoopInFinally", End::stopped, "try { while (1); } finally { while (1); }"},
+    {"javascript", "EndlessLoopThatCatches", End::stopped,
+     "while (1) { try { while (1); } catch (e) {} }"},
+    {"javascript", "EndlessLoopInFinally", End::stopped,
+     "try { while (1); } finally { while (1); }"},
     {"javascript", "EndlessLoopOfAnotherText", End::stopped, "new Function('while (1);')();"},
-    {"javascript", "EndlessValueOf", End::stopped, "var o = { valueOf: function() { while (1); } }; o + 1;"},
+    {"javascript", "EndlessValueOf", End::stopped,
+     "var o = { valueOf: function() { while (1); } }; o + 1;"},
     {"javascript", "BacktrackingRegularExpression", End::stopped,
-     "var s = ''; for (var i = 0; i < 40; i++) s += 'a'; while (1) { try { /^(a*)*b$/.test(s); } catch (e) {} }"},
+     "var s = ''; for (var i = 0; i < 40; i++) s += 'a'; while (1) { try { /^(a*)*b$/.test(s); } "
+     "catch (e) {} }"},
     {"javascript", "LongSort", End::stopped,
-     "var l = []; for (var i = 0; i < 10000; i++) l.push(i); while (1) l.sort(function(a, b) { return b - a; });"},
-    {"javascript", "LongText", End::stopped, "while (1) { try { var s = 'x'; while (1) s = s + s; } catch (e) {} }"},
-    {"javascript", "EndlessCallsOfTheHost", End::stopped, "while (1) { try { Browser.getName(); } catch (e) {} }"},
+     "var l = []; for (var i = 0; i < 10000; i++) l.push(i); while (1) l.sort(function(a, b) { "
+     "return b - a; });"},
+    {"javascript", "LongText", End::stopped,
+     "while (1) { try { var s = 'x'; while (1) s = s + s; } catch (e) {} }"},
+    {"javascript", "EndlessCallsOfTheHost", End::stopped,
+     "while (1) { try { Browser.getName(); } catch (e) {} }"},
     {"javascript", "EndlessMessages", End::stopped, "while (1) print('x');"},
-    {"javascript", "MemoryBomb", End::stopped, "var a = []; while (1) a.push(new Array(1000).join('xyz') + a.length);"},
-    {"javascript", "HugeString", End::stopped, "var s = new Array(1000000000).join('x'); while (1);"},
+    {"javascript", "MemoryBomb", End::stopped,
+     "var a = []; while (1) a.push(new Array(1000).join('xyz') + a.length);"},
+    {"javascript", "HugeString", End::stopped,
+     "var s = new Array(1000000000).join('x'); while (1);"},
     {"javascript", "Recursion", End::stopped, "function f() { f(); f(); } f();"},
     {"javascript", "RecursionThatCatches", End::stopped,
      "function f() { try { f(); } catch (e) { f(); } } while (1) { try { f(); } catch (e) {} }"},
-    {"javascript", "DeepText", End::stopped, "var s = ''; for (var i = 0; i < 1000000; i++) s += '['; eval(s);"},
+    {"javascript", "DeepText", End::stopped,
+     "var s = ''; for (var i = 0; i < 1000000; i++) s += '['; eval(s);"},
     {"javascript", "Module", End::refused, "require('fs'); print('reached');"},
     {"javascript", "Network", End::refused, "new XMLHttpRequest(); print('reached');"},
     {"javascript", "Process", End::refused, "process.exit(0); print('reached');"},
@@ -83,7 +100,9 @@ constexpr Case cases[] = {
     {"javascript", "File", End::refused, "print('reached' + readFile('/etc/passwd'));"},
 };
 
-std::string nameOf(const testing::TestParamInfo<Case>& info) { return std::string(info.param.language) + "_" + info.param.name; }
+std::string nameOf(const testing::TestParamInfo<Case>& info) {
+  return std::string(info.param.language) + "_" + info.param.name;
+}
 
 std::string quoted(const std::string& text) {
   std::string result = "\"";
@@ -97,7 +116,8 @@ std::string quoted(const std::string& text) {
 // A whole program of a Script with the eventIn `go`.
 std::string programOf(const Case& c) {
   const bool tcl = std::string_view(c.language) == "tcl";
-  return fmt::format(fmt::runtime(tcl ? "tcl:proc go {{args}} {{\n{}\n}}" : "javascript:function go(value) {{\n{}\n}}"),
+  return fmt::format(fmt::runtime(tcl ? "tcl:proc go {{args}} {{\n{}\n}}"
+                                      : "javascript:function go(value) {{\n{}\n}}"),
                      c.program);
 }
 
@@ -112,11 +132,11 @@ TEST_P(HostileLanguages, AProgramCannotHoldTheWorldUp) {
   options.scriptSeconds = 0.15;
   options.scriptMemory = 32 << 20;
   options.scriptPatience = 0.02;
-  Scripted r(
-      "DEF S Script { eventIn SFBool go url\n" + quoted(programOf(c)) +
-          " }\nDEF C TimeSensor { loop TRUE } DEF T Script { eventIn SFTime in eventOut SFTime out url \"test:in: echo out\" "
-          "} ROUTE C.time TO T.in",
-      options);
+  Scripted r("DEF S Script { eventIn SFBool go url\n" + quoted(programOf(c)) +
+                 " }\nDEF C TimeSensor { loop TRUE } DEF T Script { eventIn SFTime in eventOut "
+                 "SFTime out url \"test:in: echo out\" "
+                 "} ROUTE C.time TO T.in",
+             options);
   ASSERT_EQ(r.messages(), Log{});
   r.log("T", "out");
   r.set("S", "go", true);
@@ -151,13 +171,17 @@ TEST(HostileLanguages, SomeLanguagesAreForTrustedWorldsOnly) {
     if (!hasScriptEngine(language, XVRML_SCRIPTS)) continue;
     BrowserOptions options;
     options.scriptPath = XVRML_SCRIPTS;
-    for (const auto isolation : {BrowserOptions::Isolation::automatic, BrowserOptions::Isolation::always}) {
+    for (const auto isolation :
+         {BrowserOptions::Isolation::automatic, BrowserOptions::Isolation::always}) {
       options.scriptIsolation = isolation;
-      Scripted r(fmt::format("DEF S Script {{ eventIn SFBool go url \"{}:print('reached')\" }}", language), options);
+      Scripted r(
+          fmt::format("DEF S Script {{ eventIn SFBool go url \"{}:print('reached')\" }}", language),
+          options);
       r.set("S", "go", true);
       const Log messages = r.messages();
       ASSERT_EQ(messages.size(), 1u) << language;
-      EXPECT_NE(messages[0].find("only in worlds that are trusted"), std::string::npos) << messages[0];
+      EXPECT_NE(messages[0].find("only in worlds that are trusted"), std::string::npos)
+          << messages[0];
       EXPECT_EQ(r.printed(), Log{});
     }
   }

@@ -13,7 +13,8 @@ namespace {
 struct Folder {
   Folder()
       : path(std::filesystem::temp_directory_path() /
-             fmt::format("xvrml_inlines_{}_{}", ::getpid(), testing::UnitTest::GetInstance()->current_test_info()->name())) {
+             fmt::format("xvrml_inlines_{}_{}", ::getpid(),
+                         testing::UnitTest::GetInstance()->current_test_info()->name())) {
     std::filesystem::create_directories(path);
   }
   ~Folder() { std::filesystem::remove_all(path); }
@@ -27,9 +28,9 @@ struct Folder {
 TEST(Inlines, BindablesInThemAreNotTheFirst) {
   const Folder f;
   f.file("in.wrl", "DEF INNER Viewpoint { position 1 0 0 } Background {}");
-  Browser browser(loadWorld(
-      f.file("a.wrl",
-             "Inline { url \"in.wrl\" } Transform { translation 5 0 0 children Inline { url \"in.wrl\" } } DEF V Viewpoint {}")));
+  Browser browser(
+      loadWorld(f.file("a.wrl", "Inline { url \"in.wrl\" } Transform { translation 5 0 0 children "
+                                "Inline { url \"in.wrl\" } } DEF V Viewpoint {}")));
   EXPECT_EQ(nameOf(browser.bound().viewpoint), "V");
   EXPECT_EQ(browser.bound().background, nullptr);
 }
@@ -37,8 +38,9 @@ TEST(Inlines, BindablesInThemAreNotTheFirst) {
 TEST(Inlines, BindablesInThemCanBeBoundAndAreListed) {
   const Folder f;
   f.file("in.wrl", "DEF INNER Viewpoint { position 1 0 0 description \"inside\" }");
-  Browser browser(
-      loadWorld(f.file("a.wrl", "DEF V Viewpoint {} Transform { translation 5 0 0 children Inline { url \"in.wrl\" } }")));
+  Browser browser(loadWorld(f.file(
+      "a.wrl",
+      "DEF V Viewpoint {} Transform { translation 5 0 0 children Inline { url \"in.wrl\" } }")));
   ASSERT_EQ(browser.viewpoints().size(), 2u);
   EXPECT_EQ(browser.viewpoints()[1].description, "inside");
   EXPECT_TRUE(browser.bindViewpoint("inside"));
@@ -47,10 +49,12 @@ TEST(Inlines, BindablesInThemCanBeBoundAndAreListed) {
 
 TEST(Inlines, SetUrlLoadsOtherContentAndTheOldLeaves) {
   const Folder f;
-  f.file("one.wrl", "DEF INNER Viewpoint { position 1 0 0 } DEF T TimeSensor { loop TRUE } DEF P PositionInterpolator {}"
+  f.file("one.wrl", "DEF INNER Viewpoint { position 1 0 0 } DEF T TimeSensor { loop TRUE } DEF P "
+                    "PositionInterpolator {}"
                     "ROUTE T.fraction_changed TO P.set_fraction");
   f.file("two.wrl", "Shape { geometry Box {} }");
-  Browser browser(loadWorld(f.file("a.wrl", "DEF V Viewpoint { position 0 0 7 } DEF I Inline { url \"one.wrl\" }")));
+  Browser browser(loadWorld(
+      f.file("a.wrl", "DEF V Viewpoint { position 0 0 7 } DEF I Inline { url \"one.wrl\" }")));
   ASSERT_EQ(browser.viewpoints().size(), 2u);
   EXPECT_TRUE(browser.set(*browser.viewpoints()[1].node, "set_bind", true));
   EXPECT_EQ(eyeOf(browser), "1 0 0");
@@ -63,14 +67,16 @@ TEST(Inlines, SetUrlLoadsOtherContentAndTheOldLeaves) {
   EXPECT_EQ(eyeOf(browser), "0 0 7");
   EXPECT_TRUE(browser.pick(origin, direction, {}, hit));
   bool told = false;
-  for (const FieldChange& change : browser.takeChanges()) told |= change.field && change.field->name == "url";
+  for (const FieldChange& change : browser.takeChanges())
+    told |= change.field && change.field->name == "url";
   EXPECT_TRUE(told);
   browser.tick(1);
 }
 
 TEST(Inlines, RoutesAndSensorsOfLateContentRun) {
   const Folder f;
-  f.file("in.wrl", "DEF S ProximitySensor { size 99 99 99 } DEF T Transform { children Shape { geometry Box {} } } ROUTE "
+  f.file("in.wrl", "DEF S ProximitySensor { size 99 99 99 } DEF T Transform { children Shape { "
+                   "geometry Box {} } } ROUTE "
                    "S.position_changed TO T.translation");
   Browser browser(loadWorld(f.file("a.wrl", "DEF I Inline {}")));
   browser.tick(1);
@@ -97,7 +103,9 @@ TEST(Inlines, OnDemandTheyAreLoadedWhenAsked) {
   f.file("in.wrl", "Group { children Inline { url \"inner.wrl\" } }");
   LoadOptions options;
   options.loadInlines = false;
-  Browser browser(loadWorld(f.file("a.wrl", "DEF I Inline { url \"in.wrl\" } Inline { url \"inner.wrl\" } Inline {}"), options));
+  Browser browser(loadWorld(
+      f.file("a.wrl", "DEF I Inline { url \"in.wrl\" } Inline { url \"inner.wrl\" } Inline {}"),
+      options));
   EXPECT_EQ(inlineScope(*browser.node("I")), nullptr);
   EXPECT_TRUE(browser.loadInline(*browser.node("I")));
   EXPECT_EQ(browser.viewpoints().size(), 0u);
@@ -132,9 +140,11 @@ TEST(OtherFiles, BindablesOfCreateVrmlFromUrlAreNotBoundByThemselves) {
 
 TEST(OtherFiles, AClickOnAnAnchorLoadsItsWorldAndBindsTheViewpointNamed) {
   const Folder f;
-  f.file("b.wrl", "DEF FIRST Viewpoint { position 0 0 3 } DEF SECOND Viewpoint { position 0 0 4 } Shape { geometry Sphere {} }");
-  Browser browser(
-      loadWorld(f.file("a.wrl", "DEF V Viewpoint {} Anchor { url \"b.wrl#SECOND\" children Shape { geometry Box {} } }")));
+  f.file("b.wrl", "DEF FIRST Viewpoint { position 0 0 3 } DEF SECOND Viewpoint { position 0 0 4 } "
+                  "Shape { geometry Sphere {} }");
+  Browser browser(loadWorld(f.file(
+      "a.wrl",
+      "DEF V Viewpoint {} Anchor { url \"b.wrl#SECOND\" children Shape { geometry Box {} } }")));
   const uint64_t generation = browser.generation();
   browser.pointer(0, 0, true);
   browser.pointer(0, 0, false);

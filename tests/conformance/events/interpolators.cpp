@@ -1,5 +1,6 @@
-// The six interpolators: clauses 4.6.8, 6.10, 6.13, 6.31, 6.32, 6.37, 6.39. Five situations of each, as in the NIST VRML test
-// suite: simple, equal keys, 1,000 keys, a value only after set_fraction, in hierarchies.
+// The six interpolators: clauses 4.6.8, 6.10, 6.13, 6.31, 6.32, 6.37, 6.39. Five situations of
+// each, as in the NIST VRML test suite: simple, equal keys, 1,000 keys, a value only after
+// set_fraction, in hierarchies.
 #include <cmath>
 
 #include "conformance/events/support.h"
@@ -24,7 +25,8 @@ class Interpolator : public testing::TestWithParam<Case> {
   static std::string at(Running& r, float fraction) {
     std::string left = "nothing";
     const uint64_t number =
-        r.browser.listen(r.node("I"), "value_changed", [&](Node&, const FieldInfo&, const Value& v) { left = textOf(v); });
+        r.browser.listen(r.node("I"), "value_changed",
+                         [&](Node&, const FieldInfo&, const Value& v) { left = textOf(v); });
     r.set("I", "set_fraction", fraction);
     r.browser.unlisten(r.node("I"), number);
     return left;
@@ -89,20 +91,26 @@ TEST_P(Interpolator, ReadBeforeItHasSentItIsTheFirstValue) {
   EXPECT_EQ(at(r, 1), c.atA);
   r.set("I", "set_keyValue", r.browser.get(r.node("I"), "keyValue"));
   EXPECT_EQ(r.get("I", "value_changed"), c.atA);
-  EXPECT_EQ(none.get("I", "value_changed"), textOf(defaultValue(r.node("I").type().find("value_changed")->type)));
+  EXPECT_EQ(none.get("I", "value_changed"),
+            textOf(defaultValue(r.node("I").type().find("value_changed")->type)));
 }
 
-TEST_P(Interpolator, InHierarchies) { // where it stands has no effect (4.6.8): below a Switch that shows nothing, in a PROTO
+TEST_P(Interpolator, InHierarchies) { // where it stands has no effect (4.6.8): below a Switch that
+                                      // shows nothing, in a PROTO
   const Case& c = GetParam();
-  const std::string type = c.type == "CoordinateInterpolator" || c.type == "NormalInterpolator" ? "MFVec3f"
-                           : c.type == "ColorInterpolator"                                      ? "SFColor"
-                           : c.type == "OrientationInterpolator"                                ? "SFRotation"
-                           : c.type == "PositionInterpolator"                                   ? "SFVec3f"
-                                                                                                : "SFFloat";
-  Running r("PROTO Q [ eventIn SFFloat f eventOut " + type + " v ] { Transform { translation 9 9 9 children Switch { choice " +
-            c.type + " { set_fraction IS f value_changed IS v key [ 0 1 ] keyValue [ " + c.a + ", " + c.b + " ] } } } }" +
-            "PROTO P [ eventIn SFFloat f eventOut " + type + " v ] { Group { children Q { f IS f v IS v } } }" +
-            "Transform { children DEF I P {} } DEF S ScalarInterpolator { key [ 0 10 ] keyValue [ 0 10 ] } ROUTE S.value_changed "
+  const std::string type = c.type == "CoordinateInterpolator" || c.type == "NormalInterpolator"
+                               ? "MFVec3f"
+                           : c.type == "ColorInterpolator"       ? "SFColor"
+                           : c.type == "OrientationInterpolator" ? "SFRotation"
+                           : c.type == "PositionInterpolator"    ? "SFVec3f"
+                                                                 : "SFFloat";
+  Running r("PROTO Q [ eventIn SFFloat f eventOut " + type +
+            " v ] { Transform { translation 9 9 9 children Switch { choice " + c.type +
+            " { set_fraction IS f value_changed IS v key [ 0 1 ] keyValue [ " + c.a + ", " + c.b +
+            " ] } } } }" + "PROTO P [ eventIn SFFloat f eventOut " + type +
+            " v ] { Group { children Q { f IS f v IS v } } }" +
+            "Transform { children DEF I P {} } DEF S ScalarInterpolator { key [ 0 10 ] keyValue [ "
+            "0 10 ] } ROUTE S.value_changed "
             "TO I.f");
   r.log("I", "v");
   r.set("S", "set_fraction", 0.5f);
@@ -133,19 +141,22 @@ TEST_P(Interpolator, TooFewOrTooManyValuesAreSaidOnceAndNeverReadBeyond) {
 TEST_P(Interpolator, UnorderedKeysAndOddFractionsAreHarmless) {
   const Case& c = GetParam();
   Running r(node("1 0 0.5 -1e38 3e38", c.a + ", " + c.b + ", " + c.a + ", " + c.b + ", " + c.a));
-  for (float f : {-3e38f, -1.0f, 0.0f, 0.3f, 0.7f, 1.0f, 3e38f, INFINITY, -INFINITY}) EXPECT_NE(at(r, f), "nothing") << f;
+  for (float f : {-3e38f, -1.0f, 0.0f, 0.3f, 0.7f, 1.0f, 3e38f, INFINITY, -INFINITY})
+    EXPECT_NE(at(r, f), "nothing") << f;
   EXPECT_EQ(at(r, NAN), "nothing");
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Interpolator,
-                         testing::Values(Case{"ScalarInterpolator", "1", "3", "1", "2", "3"},
-                                         Case{"PositionInterpolator", "0 0 0", "2 4 -6", "0 0 0", "1 2 -3", "2 4 -6"},
-                                         Case{"ColorInterpolator", "1 0 0", "1 1 0", "1 0 0", "1 0.5 0", "1 1 0"},
-                                         Case{"OrientationInterpolator", "0 1 0 0", "0 1 0 1", "0 1 0 0", "0 1 0 0.5", "0 1 0 1"},
-                                         Case{"CoordinateInterpolator", "0 0 0", "2 4 -6", "[0 0 0]", "[1 2 -3]", "[2 4 -6]"},
-                                         Case{"NormalInterpolator", "1 0 0", "0 1 0", "[1 0 0]", "[0.707107 0.707107 0]",
-                                              "[0 1 0]"}),
-                         [](const auto& info) { return info.param.type; });
+INSTANTIATE_TEST_SUITE_P(
+    All, Interpolator,
+    testing::Values(
+        Case{"ScalarInterpolator", "1", "3", "1", "2", "3"},
+        Case{"PositionInterpolator", "0 0 0", "2 4 -6", "0 0 0", "1 2 -3", "2 4 -6"},
+        Case{"ColorInterpolator", "1 0 0", "1 1 0", "1 0 0", "1 0.5 0", "1 1 0"},
+        Case{"OrientationInterpolator", "0 1 0 0", "0 1 0 1", "0 1 0 0", "0 1 0 0.5", "0 1 0 1"},
+        Case{"CoordinateInterpolator", "0 0 0", "2 4 -6", "[0 0 0]", "[1 2 -3]", "[2 4 -6]"},
+        Case{"NormalInterpolator", "1 0 0", "0 1 0", "[1 0 0]", "[0.707107 0.707107 0]",
+             "[0 1 0]"}),
+    [](const auto& info) { return info.param.type; });
 
 std::string valueAt(const std::string& node, float fraction) {
   Running r("DEF I " + node);
@@ -163,19 +174,26 @@ TEST(ScalarInterpolator, ATinyDistanceFromAKeyIsNoStep) {
 }
 
 TEST(ColorInterpolator, TakesTheShortWayRoundTheHues) {
-  EXPECT_EQ(valueAt("ColorInterpolator { key [ 0 1 ] keyValue [ 1 0 0, 0 0 1 ] }", 0.5f), "1 0 1"); // through magenta
-  EXPECT_EQ(valueAt("ColorInterpolator { key [ 0 1 ] keyValue [ 1 0 0, 0 1 0 ] }", 0.5f), "1 1 0"); // through yellow
-  EXPECT_EQ(valueAt("ColorInterpolator { key [ 0 1 ] keyValue [ 0 0 1, 1 0 0 ] }", 0.25f), "0.5 0 1");
+  EXPECT_EQ(valueAt("ColorInterpolator { key [ 0 1 ] keyValue [ 1 0 0, 0 0 1 ] }", 0.5f),
+            "1 0 1"); // through magenta
+  EXPECT_EQ(valueAt("ColorInterpolator { key [ 0 1 ] keyValue [ 1 0 0, 0 1 0 ] }", 0.5f),
+            "1 1 0"); // through yellow
+  EXPECT_EQ(valueAt("ColorInterpolator { key [ 0 1 ] keyValue [ 0 0 1, 1 0 0 ] }", 0.25f),
+            "0.5 0 1");
 }
 
 TEST(ColorInterpolator, AGreyHasTheHueOfTheOther) {
-  EXPECT_EQ(valueAt("ColorInterpolator { key [ 0 1 ] keyValue [ 1 1 1, 0 0 1 ] }", 0.5f), "0.5 0.5 1");
-  EXPECT_EQ(valueAt("ColorInterpolator { key [ 0 1 ] keyValue [ 0 1 0, 1 1 1 ] }", 0.5f), "0.5 1 0.5");
-  EXPECT_EQ(valueAt("ColorInterpolator { key [ 0 1 ] keyValue [ 0 0 0, 1 1 1 ] }", 0.5f), "0.5 0.5 0.5");
+  EXPECT_EQ(valueAt("ColorInterpolator { key [ 0 1 ] keyValue [ 1 1 1, 0 0 1 ] }", 0.5f),
+            "0.5 0.5 1");
+  EXPECT_EQ(valueAt("ColorInterpolator { key [ 0 1 ] keyValue [ 0 1 0, 1 1 1 ] }", 0.5f),
+            "0.5 1 0.5");
+  EXPECT_EQ(valueAt("ColorInterpolator { key [ 0 1 ] keyValue [ 0 0 0, 1 1 1 ] }", 0.5f),
+            "0.5 0.5 0.5");
 }
 
 TEST(OrientationInterpolator, TakesTheShorterWay) {
-  Running r("DEF I OrientationInterpolator { key [ 0 1 ] keyValue [ 0 1 0 0.5, 0 1 0 5.7831853 ] }"); // 0.5 and -0.5
+  Running r("DEF I OrientationInterpolator { key [ 0 1 ] keyValue [ 0 1 0 0.5, 0 1 0 5.7831853 ] "
+            "}"); // 0.5 and -0.5
   r.set("I", "set_fraction", 0.25f);
   const auto quarter = std::get<Rotation>(r.browser.get(r.node("I"), "value_changed"));
   EXPECT_NEAR(quarter.y * quarter.angle, 0.25f, 1e-5);
@@ -189,8 +207,9 @@ TEST(OrientationInterpolator, OppositeAxesOfOneTurnMeetAtNoTurn) {
 
 TEST(OrientationInterpolator, HalfTurnsWrittenInSequenceMakeAWholeTurn) {
   for (const char* pi : {"3.14159", "3.1416", "3.14"}) {
-    Running r(fmt::format("DEF I OrientationInterpolator {{ key [ 0 0.5 1 ] keyValue [ 0 1 0 0, 0 1 0 {}, 0 1 0 {} ] }}", pi,
-                          2 * std::stod(pi)));
+    Running r(fmt::format("DEF I OrientationInterpolator {{ key [ 0 0.5 1 ] keyValue [ 0 1 0 0, 0 "
+                          "1 0 {}, 0 1 0 {} ] }}",
+                          pi, 2 * std::stod(pi)));
     for (float f : {0.25f, 0.75f}) {
       r.set("I", "set_fraction", f);
       const auto v = std::get<Rotation>(r.browser.get(r.node("I"), "value_changed"));
@@ -216,11 +235,14 @@ TEST(OrientationInterpolator, TheAngleIsAtMostHalfATurn) {
 }
 
 TEST(NormalInterpolator, AZeroVectorHasTheOthersDirection) {
-  EXPECT_EQ(valueAt("NormalInterpolator { key [ 0 1 ] keyValue [ 0 0 0, 0 2 0, 0 3 0, 0 0 0 ] }", 0.5f), "[0 1 0, 0 1 0]");
+  EXPECT_EQ(
+      valueAt("NormalInterpolator { key [ 0 1 ] keyValue [ 0 0 0, 0 2 0, 0 3 0, 0 0 0 ] }", 0.5f),
+      "[0 1 0, 0 1 0]");
 }
 
 TEST(NormalInterpolator, StaysOnTheUnitSphereAtEqualSpeed) {
-  Running r("DEF I NormalInterpolator { key [ 0 1 ] keyValue [ 0 0 1, 0 0 1, 0 0 1, 1 0 0, 0 0 1, 0 0 -1 ] }");
+  Running r("DEF I NormalInterpolator { key [ 0 1 ] keyValue [ 0 0 1, 0 0 1, 0 0 1, 1 0 0, 0 0 1, "
+            "0 0 -1 ] }");
   for (float t : {0.1f, 0.5f, 0.9f}) {
     r.set("I", "set_fraction", t);
     const auto n = std::get<MFVec3f>(r.browser.get(r.node("I"), "value_changed"));
@@ -233,7 +255,9 @@ TEST(NormalInterpolator, StaysOnTheUnitSphereAtEqualSpeed) {
 }
 
 TEST(CoordinateInterpolator, HasAListOfPointsForEachKey) {
-  EXPECT_EQ(valueAt("CoordinateInterpolator { key [ 0 1 2 ] keyValue [ 0 0 0, 1 1 1,  2 0 0, 3 1 1,  4 0 0, 5 1 1 ] }", 1.5f),
+  EXPECT_EQ(valueAt("CoordinateInterpolator { key [ 0 1 2 ] keyValue [ 0 0 0, 1 1 1,  2 0 0, 3 1 "
+                    "1,  4 0 0, 5 1 1 ] }",
+                    1.5f),
             "[3 0 0, 4 1 1]");
 }
 

@@ -1,4 +1,5 @@
-// media_files.h: sounds and films made by the tests that play them, in a folder of their own; worlds beside them.
+// media_files.h: sounds and films made by the tests that play them, in a folder of their own;
+// worlds beside them.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +17,9 @@ namespace xvrml {
 // A folder that is gone with the object.
 class Folder {
  public:
-  Folder() : path_(std::filesystem::path(testing::TempDir()) / fmt::format("xvrml_media_{}_{}", getpid(), ++count())) {
+  Folder()
+      : path_(std::filesystem::path(testing::TempDir()) /
+              fmt::format("xvrml_media_{}_{}", getpid(), ++count())) {
     std::filesystem::create_directories(path_);
   }
   ~Folder() {
@@ -27,7 +30,8 @@ class Folder {
   Folder& operator=(const Folder&) = delete;
   std::string operator/(const std::string& name) const { return (path_ / name).string(); }
   void write(const std::string& name, const std::string& bytes) const {
-    std::ofstream(path_ / name, std::ios::binary).write(bytes.data(), std::streamsize(bytes.size()));
+    std::ofstream(path_ / name, std::ios::binary)
+        .write(bytes.data(), std::streamsize(bytes.size()));
   }
   std::unique_ptr<World> world(const std::string& vrml) const {
     return loadWorldFromMemory("#VRML V2.0 utf8\n" + vrml, *this / "world.wrl");
@@ -52,9 +56,11 @@ inline std::string wav(const std::vector<int16_t>& samples, int channels, int ra
   std::string data;
   for (const int16_t s : samples) data += little(uint16_t(s), 2);
   const uint32_t frameBytes = uint32_t(channels) * 2;
-  const std::string format = little(1, 2) + little(uint32_t(channels), 2) + little(uint32_t(rate), 4) +
-                             little(uint32_t(rate) * frameBytes, 4) + little(frameBytes, 2) + little(16, 2);
-  const std::string body = "WAVEfmt " + little(16, 4) + format + "data" + little(uint32_t(data.size()), 4) + data;
+  const std::string format = little(1, 2) + little(uint32_t(channels), 2) +
+                             little(uint32_t(rate), 4) + little(uint32_t(rate) * frameBytes, 4) +
+                             little(frameBytes, 2) + little(16, 2);
+  const std::string body =
+      "WAVEfmt " + little(16, 4) + format + "data" + little(uint32_t(data.size()), 4) + data;
   return "RIFF" + little(uint32_t(body.size()), 4) + body;
 }
 

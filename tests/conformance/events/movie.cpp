@@ -1,4 +1,5 @@
-// MovieTexture: clauses 6.28 and 4.6.9. The films are made here: picture i of a film is of one grey that tells i.
+// MovieTexture: clauses 6.28 and 4.6.9. The films are made here: picture i of a film is of one grey
+// that tells i.
 #include <cmath>
 
 #include "conformance/events/media_files.h"
@@ -16,19 +17,23 @@ namespace xvrml {
 namespace {
 
 std::string inShape(const std::string& fields) {
-  return "Shape { appearance Appearance { texture DEF M MovieTexture { " + fields + " } } geometry Box {} }";
+  return "Shape { appearance Appearance { texture DEF M MovieTexture { " + fields +
+         " } } geometry Box {} }";
 }
 
 TEST(MovieTexture, ThatCannotBeHadHasDurationMinusOneAndItsEventsGoOn) {
   const Folder folder;
   folder.write("text.mpg", "no film at all");
-  for (const char* url : {"none.mpg", "text.mpg", "http://a/b.mpg", "/dev/zero", "concat:a|b", "."}) {
-    Browser browser(folder.world(inShape(std::string("startTime 1 url \"") + url + "\"")), BrowserOptions(), 0, RunOptions{.epoch = 0});
+  for (const char* url :
+       {"none.mpg", "text.mpg", "http://a/b.mpg", "/dev/zero", "concat:a|b", "."}) {
+    Browser browser(folder.world(inShape(std::string("startTime 1 url \"") + url + "\"")),
+                    BrowserOptions(), 0, RunOptions{.epoch = 0});
     Node& movie = *browser.node("M");
     EXPECT_EQ(textOf(browser.get(movie, "duration_changed")), "-1") << url;
     EXPECT_EQ(browser.world().diagnostics.warnings(), 1u) << url;
     Log events;
-    browser.listen(movie, "isActive", [&](Node&, const FieldInfo&, const Value& v) { events.push_back(textOf(v)); });
+    browser.listen(movie, "isActive",
+                   [&](Node&, const FieldInfo&, const Value& v) { events.push_back(textOf(v)); });
     for (double t : {0.0, 1.0, 2.0}) browser.tick(t);
     EXPECT_EQ(events, (Log{"TRUE", "FALSE"})) << url;
     EXPECT_EQ(currentImage(movie), nullptr) << url;
@@ -47,7 +52,8 @@ TEST(MovieTexture, WithoutUrlIsSilent) {
 
 constexpr int pictures = 30, rate = 25, step = 6; // luma of picture i: 16 + 6 i
 
-// A film of 1.2 seconds, 64 x 48; groups of 9 pictures with up to 2 B pictures between others where the codec has them.
+// A film of 1.2 seconds, 64 x 48; groups of 9 pictures with up to 2 B pictures between others where
+// the codec has them.
 void makeFilm(const std::string& path, const char* muxer, AVCodecID codecId) {
   AVFormatContext* format = nullptr;
   ASSERT_GE(avformat_alloc_output_context2(&format, nullptr, muxer, path.c_str()), 0) << muxer;
@@ -59,7 +65,9 @@ void makeFilm(const std::string& path, const char* muxer, AVCodecID codecId) {
   encoder->height = 48;
   encoder->time_base = {1, rate};
   encoder->framerate = {rate, 1};
-  encoder->pix_fmt = gif ? AV_PIX_FMT_GRAY8 : codecId == AV_CODEC_ID_MJPEG ? AV_PIX_FMT_YUVJ420P : AV_PIX_FMT_YUV420P;
+  encoder->pix_fmt = gif                            ? AV_PIX_FMT_GRAY8
+                     : codecId == AV_CODEC_ID_MJPEG ? AV_PIX_FMT_YUVJ420P
+                                                    : AV_PIX_FMT_YUV420P;
   encoder->gop_size = 9;
   encoder->max_b_frames = codecId == AV_CODEC_ID_MPEG1VIDEO ? 2 : 0;
   encoder->bit_rate = 4'000'000;
@@ -151,7 +159,8 @@ TEST_P(Film, CutOffOrDamagedIsRefusedOrShownAsFarAsItGoes) {
   const std::string whole((std::istreambuf_iterator<char>(in)), {});
   for (size_t n = 0; n < 40; ++n) {
     std::string bad = n % 2 ? whole.substr(0, whole.size() * n / 40) : whole;
-    for (size_t i = 0; n % 2 == 0 && i < 20; ++i) bad[(n * 7919 + i * 104729) % bad.size()] ^= char(1 << i % 8);
+    for (size_t i = 0; n % 2 == 0 && i < 20; ++i)
+      bad[(n * 7919 + i * 104729) % bad.size()] ^= char(1 << i % 8);
     folder.write("bad", bad);
     Image image;
     try {
@@ -163,12 +172,13 @@ TEST_P(Film, CutOffOrDamagedIsRefusedOrShownAsFarAsItGoes) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, Film,
-                         testing::Values(mpeg, Kind{"film.m1v", "mpeg1video", AV_CODEC_ID_MPEG1VIDEO, true},
-                                         Kind{"film.avi", "avi", AV_CODEC_ID_MPEG4, true},
-                                         Kind{"film.mov", "mov", AV_CODEC_ID_MJPEG, false},
-                                         Kind{"film.gif", "gif", AV_CODEC_ID_GIF, false}),
-                         [](const auto& info) { return std::string(info.param.name).substr(5); });
+INSTANTIATE_TEST_SUITE_P(
+    Kinds, Film,
+    testing::Values(mpeg, Kind{"film.m1v", "mpeg1video", AV_CODEC_ID_MPEG1VIDEO, true},
+                    Kind{"film.avi", "avi", AV_CODEC_ID_MPEG4, true},
+                    Kind{"film.mov", "mov", AV_CODEC_ID_MJPEG, false},
+                    Kind{"film.gif", "gif", AV_CODEC_ID_GIF, false}),
+    [](const auto& info) { return std::string(info.param.name).substr(5); });
 
 TEST(FilmLimits, PicturesBeyondTheLimitAreRefused) {
   const Folder folder;
@@ -182,7 +192,8 @@ TEST(FilmLimits, PicturesBeyondTheLimitAreRefused) {
 struct Movie {
   explicit Movie(const std::string& fields) {
     makeFilm(folder / "film.mpg", "mpeg", AV_CODEC_ID_MPEG1VIDEO);
-    browser = std::make_unique<Browser>(folder.world(inShape("url \"film.mpg\" " + fields)), BrowserOptions(), 0, RunOptions{.epoch = 0});
+    browser = std::make_unique<Browser>(folder.world(inShape("url \"film.mpg\" " + fields)),
+                                        BrowserOptions(), 0, RunOptions{.epoch = 0});
     browser->listen(node(), "isActive", [this](Node&, const FieldInfo&, const Value& value) {
       events.push_back(fmt::format("{:g} {}", browser->now(), textOf(value)));
     });
@@ -232,7 +243,8 @@ TEST(MovieTexture, LoopsWithTheFirstPictureAgainAtTheExactEnd) {
 }
 
 TEST(MovieTexture, PlaysFasterBackwardsOrNotAtAllBySpeed) {
-  Movie fast("startTime 1 speed 2"), back("startTime 1 speed -1"), still("startTime 1 speed 0 stopTime 9");
+  Movie fast("startTime 1 speed 2"), back("startTime 1 speed -1"),
+      still("startTime 1 speed 0 stopTime 9");
   EXPECT_EQ(fast.at(1.25), 12);
   EXPECT_EQ(fast.at(1.6), 29);
   EXPECT_EQ(fast.events, (Log{"1.25 TRUE", "1.6 FALSE"}));

@@ -5,7 +5,8 @@
 namespace xvrml {
 namespace {
 
-const std::string floor20 = "Transform { translation 0 -0.5 0 children Shape { geometry Box { size 40 1 40 } } } ";
+const std::string floor20 =
+    "Transform { translation 0 -0.5 0 children Shape { geometry Box { size 40 1 40 } } } ";
 const std::string walks = "NavigationInfo { type \"WALK\" avatarSize [ 0.25 1.6 0.75 ] speed 2 } ";
 
 double eye(Running& r, int i) { return r.browser.camera(1).matrix[12 + i]; }
@@ -67,9 +68,10 @@ TEST(Walk, AlongAWallTheViewerSlides) {
 }
 
 TEST(Walk, TheBackOfAWallIsAWall) {
-  Running r(walks + "Viewpoint { position 0 1.6 -3 orientation 0 1 0 3.1415927 } " + floor20 +
-            "Shape { geometry IndexedFaceSet {"
-            " coord Coordinate { point [ -9 0 0, 9 0 0, 9 9 0, -9 9 0 ] } coordIndex [ 0 1 2 3 ] } }");
+  Running r(
+      walks + "Viewpoint { position 0 1.6 -3 orientation 0 1 0 3.1415927 } " + floor20 +
+      "Shape { geometry IndexedFaceSet {"
+      " coord Coordinate { point [ -9 0 0, 9 0 0, 9 9 0, -9 9 0 ] } coordIndex [ 0 1 2 3 ] } }");
   r.browser.navigate({.ahead = 1}, 20);
   EXPECT_NEAR(eye(r, 2), -0.25, 1e-6);
 }
@@ -77,8 +79,9 @@ TEST(Walk, TheBackOfAWallIsAWall) {
 TEST(Walk, AStepIsClimbedAndAHigherOneIsAWall) {
   for (const double height : {0.7, 0.8}) {
     Running r(walks + "Viewpoint { position 0 1.6 10 } " + floor20 +
-              fmt::format("Transform {{ translation 0 {} 0 children Shape {{ geometry Box {{ size 40 {} 8 }} }} }}", height / 2,
-                          height));
+              fmt::format("Transform {{ translation 0 {} 0 children Shape {{ geometry Box {{ size "
+                          "40 {} 8 }} }} }}",
+                          height / 2, height));
     r.browser.navigate({.ahead = 1}, 4);
     if (height < 0.75) {
       EXPECT_NEAR(eye(r, 2), 2, 1e-6);
@@ -102,9 +105,9 @@ TEST(Walk, DownAStepTheGroundIsFollowedAndOverAnEdgeOneFalls) {
 }
 
 TEST(Walk, ARampIsFollowed) {
-  Running r(walks +
-            "Viewpoint { position 0 1.6 10 } Shape { geometry IndexedFaceSet { coord Coordinate { point [ -9 0 10, 9 0 10, 9 5 0,"
-            " -9 5 0 ] } coordIndex [ 0 1 2 3 ] } }");
+  Running r(walks + "Viewpoint { position 0 1.6 10 } Shape { geometry IndexedFaceSet { coord "
+                    "Coordinate { point [ -9 0 10, 9 0 10, 9 5 0,"
+                    " -9 5 0 ] } coordIndex [ 0 1 2 3 ] } }");
   r.browser.navigate({.ahead = 1}, 2);
   EXPECT_NEAR(eye(r, 2), 6, 1e-6);
   EXPECT_NEAR(eye(r, 1), 3.6, 1e-4);
@@ -118,21 +121,25 @@ TEST(Walk, ATunnelLowerThanTheEyeIsAWall) {
 }
 
 TEST(Walk, LengthsAreThoseOfTheViewpointsCoordinates) {
-  Running r(walks + "Transform { scale 0.1 0.1 0.1 children Viewpoint { position 0 1.6 10 } } " + floor20);
+  Running r(walks + "Transform { scale 0.1 0.1 0.1 children Viewpoint { position 0 1.6 10 } } " +
+            floor20);
   EXPECT_EQ(eyeOf(r.browser), "0 0.16 1");
   r.browser.navigate({.ahead = 1}, 1);
   EXPECT_EQ(eyeOf(r.browser), "0 0.16 0.8");
 }
 
 TEST(Walk, DownIsMinusYOfTheViewpointsCoordinates) {
-  Running r(walks + "Transform { rotation 0 0 1 1.5707963 children [ Viewpoint { position 0 3 10 orientation 0 0 1 0.3 } " +
+  Running r(walks +
+            "Transform { rotation 0 0 1 1.5707963 children [ Viewpoint { position 0 3 10 "
+            "orientation 0 0 1 0.3 } " +
             floor20 + "] }");
   r.browser.navigate({}, 4);
   EXPECT_NEAR(eye(r, 0), -1.6, 1e-5);
 }
 
 TEST(Walk, ManySmallStepsAreAsGoodAsOneLongOne) {
-  Running one(walks + "Viewpoint { position 0 1.6 10 } " + floor20), many(walks + "Viewpoint { position 0 1.6 10 } " + floor20);
+  Running one(walks + "Viewpoint { position 0 1.6 10 } " + floor20),
+      many(walks + "Viewpoint { position 0 1.6 10 } " + floor20);
   one.browser.navigate({.ahead = 1, .turn = 0.5}, 2);
   for (int i = 0; i < 60; ++i) many.browser.navigate({.ahead = 1, .turn = 0.5}, 1.0 / 30);
   for (int i = 0; i < 3; ++i) EXPECT_NEAR(eye(one, i), eye(many, i), 1e-6);
@@ -147,7 +154,9 @@ TEST(Walk, NonsenseMovesNobody) {
 }
 
 TEST(Fly, GoesWhereTheViewPointsAndDoesNotFall) {
-  Running r("NavigationInfo { type \"FLY\" } Viewpoint { position 0 5 10 orientation 1 0 0 1.5707963 } " + floor20);
+  Running r(
+      "NavigationInfo { type \"FLY\" } Viewpoint { position 0 5 10 orientation 1 0 0 1.5707963 } " +
+      floor20);
   r.browser.navigate({.ahead = 1}, 3);
   EXPECT_EQ(eyeOf(r.browser), "0 8 10");
   r.browser.navigate({.ahead = -1}, 30);
@@ -155,7 +164,8 @@ TEST(Fly, GoesWhereTheViewPointsAndDoesNotFall) {
 }
 
 TEST(Examine, GoesRoundTheMiddleOfTheWorld) {
-  Running r("NavigationInfo { type \"EXAMINE\" } Viewpoint { position 3 0 10 } Transform { translation 3 0 0 children Shape { "
+  Running r("NavigationInfo { type \"EXAMINE\" } Viewpoint { position 3 0 10 } Transform { "
+            "translation 3 0 0 children Shape { "
             "geometry Box {} } }");
   r.browser.navigate({.turn = 1}, 1);
   EXPECT_EQ(eyeOf(r.browser), "13 0 0");
@@ -167,8 +177,9 @@ TEST(Examine, GoesRoundTheMiddleOfTheWorld) {
 }
 
 TEST(Examine, KeepsInTheMiddleWhatIsSeenThere) {
-  Running r("NavigationInfo { type \"EXAMINE\" } Viewpoint { position 0 0 10 } Shape { geometry Box {} } "
-            "Transform { translation 50 0 -80 children Shape { geometry Box { size 4 4 4 } } }");
+  Running r(
+      "NavigationInfo { type \"EXAMINE\" } Viewpoint { position 0 0 10 } Shape { geometry Box {} } "
+      "Transform { translation 50 0 -80 children Shape { geometry Box { size 4 4 4 } } }");
   r.browser.navigate({.turn = 1}, 1);
   EXPECT_EQ(eyeOf(r.browser), "10 0 0");
   EXPECT_EQ(lookOf(r.browser), "-1 0 0");
@@ -196,7 +207,9 @@ TEST(Navigation, TheFirstKnownTypeHoldsAndOthersCanBeChosenIfListed) {
 }
 
 TEST(Navigation, TheOffsetStaysWithTheViewpointAndComesBackWithIt) {
-  Running r(walks + "DEF T Transform { children DEF A Viewpoint { position 0 1.6 10 } } DEF B Viewpoint { position 9 9 9 } " +
+  Running r(walks +
+            "DEF T Transform { children DEF A Viewpoint { position 0 1.6 10 } } DEF B Viewpoint { "
+            "position 9 9 9 } " +
             floor20);
   r.browser.navigate({.ahead = 1}, 1);
   r.set("T", "translation", Vec3f{5, 0, 0});
@@ -212,7 +225,8 @@ TEST(Navigation, TheOffsetStaysWithTheViewpointAndComesBackWithIt) {
 
 // Clause 4.12.10.3: in the coordinate system of the bound Viewpoint.
 TEST(Navigation, TheCurrentSpeedIsThatSinceTheLastTick) {
-  Running r("NavigationInfo { type \"FLY\" speed 3 } Transform { scale 10 10 10 children DEF V Viewpoint {} }");
+  Running r("NavigationInfo { type \"FLY\" speed 3 } Transform { scale 10 10 10 children DEF V "
+            "Viewpoint {} }");
   const Viewer& viewer = interactionOf(r.browser.events()).viewer;
   r.browser.tick(1);
   EXPECT_EQ(viewer.speed(), 0);
@@ -232,7 +246,8 @@ TEST(Navigation, TheCurrentSpeedIsThatSinceTheLastTick) {
 
 TEST(Collision, SendsCollideTimeWhenItsChildrenStopTheViewer) {
   Running r(walks + "Viewpoint { position 0 1.6 10 } " + floor20 +
-            "DEF C Collision { children Transform { translation 0 2 0 children Shape { geometry Box { size 40 4 2 } } } }");
+            "DEF C Collision { children Transform { translation 0 2 0 children Shape { geometry "
+            "Box { size 40 4 2 } } } }");
   r.log("C", "collideTime");
   r.browser.tick(7);
   r.browser.navigate({.ahead = 1}, 1);
@@ -244,7 +259,8 @@ TEST(Collision, SendsCollideTimeWhenItsChildrenStopTheViewer) {
 
 TEST(Collision, WithCollideFalseTheViewerPasses) {
   Running r(walks + "Viewpoint { position 0 1.6 10 } " + floor20 +
-            "DEF C Collision { collide FALSE children Transform { translation 0 2 0 children Shape { geometry Box { size 40 4 2 "
+            "DEF C Collision { collide FALSE children Transform { translation 0 2 0 children Shape "
+            "{ geometry Box { size 40 4 2 "
             "} } } }");
   r.log("C", "collideTime");
   r.browser.navigate({.ahead = 1}, 10);
@@ -257,8 +273,10 @@ TEST(Collision, WithCollideFalseTheViewerPasses) {
 
 TEST(Collision, AProxyStandsForTheChildrenAndIsNotSeen) {
   Running r(walks + "Viewpoint { position 0 1.6 10 } " + floor20 +
-            "DEF C Collision { proxy Transform { translation 0 2 4 children Shape { geometry Box { size 40 4 2 } } }"
-            " children Transform { translation 0 2 8 children DEF CHILD Shape { geometry Box { size 40 4 0.1 } } } }");
+            "DEF C Collision { proxy Transform { translation 0 2 4 children Shape { geometry Box { "
+            "size 40 4 2 } } }"
+            " children Transform { translation 0 2 8 children DEF CHILD Shape { geometry Box { "
+            "size 40 4 0.1 } } } }");
   r.log("C", "collideTime");
   r.browser.navigate({.ahead = 1}, 10);
   EXPECT_NEAR(eye(r, 2), 5.25, 1e-6);
@@ -271,7 +289,8 @@ TEST(Collision, AProxyStandsForTheChildrenAndIsNotSeen) {
 
 TEST(Collision, AnEmptyOneWithAProxyIsAnInvisibleWall) {
   Running r(walks + "Viewpoint { position 0 1.6 10 } " + floor20 +
-            "Collision { proxy Transform { translation 0 2 0 children Shape { geometry Box { size 40 4 2 } } } }");
+            "Collision { proxy Transform { translation 0 2 0 children Shape { geometry Box { size "
+            "40 4 2 } } } }");
   r.browser.navigate({.ahead = 1}, 20);
   EXPECT_NEAR(eye(r, 2), 1.25, 1e-6);
 }
@@ -293,7 +312,8 @@ TEST(Keys, HeldArrowsWalkAndTurnAsTimeGoesBy) {
 }
 
 TEST(Keys, PagesLeadThroughTheViewpointsWithADescriptionAndHomeBack) {
-  Running r(walks + "DEF A Viewpoint { description \"a\" } DEF X Viewpoint {} Group { children DEF B Viewpoint { description "
+  Running r(walks + "DEF A Viewpoint { description \"a\" } DEF X Viewpoint {} Group { children DEF "
+                    "B Viewpoint { description "
                     "\"b\" position 0 3 0 } }");
   r.browser.key(Key::pageDown, true);
   EXPECT_EQ(nameOf(r.browser.bound().viewpoint), "B");
@@ -312,7 +332,8 @@ TEST(Keys, PagesLeadThroughTheViewpointsWithADescriptionAndHomeBack) {
 }
 
 TEST(Viewer, AProgramMayPutItAnywhere) {
-  Running r("DEF V Viewpoint { position 0 0 10 } DEF W Viewpoint { position 1 0 0 } DEF T Transform { translation 0 2 0 }");
+  Running r("DEF V Viewpoint { position 0 0 10 } DEF W Viewpoint { position 1 0 0 } DEF T "
+            "Transform { translation 0 2 0 }");
   double place[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 3, 4, 5, 1};
   r.browser.placeViewer(place);
   EXPECT_EQ(eyeOf(r.browser), "3 4 5");

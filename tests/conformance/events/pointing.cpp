@@ -18,12 +18,15 @@ bool pickAt(Running& r, double x, double y, PickHit& hit, PickOptions options = 
   return r.browser.pick(origin, direction, options, hit);
 }
 
-std::string text(const std::array<double, 3>& v) { return fmt::format("{:g} {:g} {:g}", tidy(v[0]), tidy(v[1]), tidy(v[2])); }
+std::string text(const std::array<double, 3>& v) {
+  return fmt::format("{:g} {:g} {:g}", tidy(v[0]), tidy(v[1]), tidy(v[2]));
+}
 
 const std::string box = "Shape { geometry Box {} } ";
 
 TEST(Picking, FindsTheNearestShapeWithItsPathAndPlaces) {
-  Running r("DEF T Transform { translation 1 0 0 scale 2 2 2 children [ DEF S Shape { geometry Box {} } ] }"
+  Running r("DEF T Transform { translation 1 0 0 scale 2 2 2 children [ DEF S Shape { geometry Box "
+            "{} } ] }"
             "Transform { translation 0 0 -5 children Shape { geometry Box { size 100 100 1 } } }");
   PickHit hit;
   ASSERT_TRUE(pickAt(r, 1.5, 0.5, hit));
@@ -53,7 +56,8 @@ TEST(Picking, SpheresAreExactAndTexturesBeginAtTheirBack) {
 }
 
 TEST(Picking, BacksOfSolidGeometryAreNotThere) {
-  const std::string points = "coord Coordinate { point [ -1 -1 0, 1 -1 0, 1 1 0, -1 1 0 ] } coordIndex [ 0 1 2 3 ] ";
+  const std::string points =
+      "coord Coordinate { point [ -1 -1 0, 1 -1 0, 1 1 0, -1 1 0 ] } coordIndex [ 0 1 2 3 ] ";
   PickHit hit;
   Running front("Shape { geometry IndexedFaceSet { " + points + "} }"),
       turned("Shape { geometry IndexedFaceSet { ccw FALSE " + points + "} }"),
@@ -69,7 +73,8 @@ TEST(Picking, BacksOfSolidGeometryAreNotThere) {
 }
 
 TEST(Picking, OnlyTheChosenChildOfASwitchIsThere) {
-  Running r("DEF W Switch { choice [ Transform { translation 5 0 0 children " + box + "} " + box + "] }");
+  Running r("DEF W Switch { choice [ Transform { translation 5 0 0 children " + box + "} " + box +
+            "] }");
   PickHit hit;
   EXPECT_FALSE(pickAt(r, 0, 0, hit));
   r.set("W", "whichChoice", 1);
@@ -80,7 +85,8 @@ TEST(Picking, OnlyTheChosenChildOfASwitchIsThere) {
 }
 
 TEST(Picking, TheLevelOfDetailIsThatForTheViewer) {
-  Running r("DEF V Viewpoint { position 0 0 4 } LOD { range 8 level [ DEF NEAR Shape { geometry Box {} } DEF FAR Shape { "
+  Running r("DEF V Viewpoint { position 0 0 4 } LOD { range 8 level [ DEF NEAR Shape { geometry "
+            "Box {} } DEF FAR Shape { "
             "geometry Box {} } ] }");
   PickHit hit;
   ASSERT_TRUE(pickAt(r, 0, 0, hit));
@@ -91,7 +97,8 @@ TEST(Picking, TheLevelOfDetailIsThatForTheViewer) {
 }
 
 TEST(Picking, BillboardsFaceTheViewer) {
-  Running r("DEF V Viewpoint { position 10 0 0 orientation 0 1 0 1.5707963 } Billboard { children Shape { geometry Box { size 2 "
+  Running r("DEF V Viewpoint { position 10 0 0 orientation 0 1 0 1.5707963 } Billboard { children "
+            "Shape { geometry Box { size 2 "
             "2 0.2 } } }");
   const double origin[3] = {10, 0, -0.9}, direction[3] = {-1, 0, 0};
   PickHit hit;
@@ -102,7 +109,8 @@ TEST(Picking, BillboardsFaceTheViewer) {
 }
 
 TEST(Picking, FollowsWhatMovesAndWhatIsRedefined) {
-  Running r("DEF T Transform { children Group { children Shape { geometry IndexedFaceSet { coord DEF C Coordinate {"
+  Running r("DEF T Transform { children Group { children Shape { geometry IndexedFaceSet { coord "
+            "DEF C Coordinate {"
             " point [ -1 -1 0, 1 -1 0, 0 1 0 ] } coordIndex [ 0 1 2 ] } } } } DEF G Group {}");
   PickHit hit;
   EXPECT_TRUE(pickAt(r, 0, 0, hit));
@@ -122,7 +130,8 @@ TEST(Picking, FollowsWhatMovesAndWhatIsRedefined) {
 TEST(Picking, LargeMeshesGiveWhatSmallOnesDo) {
   std::string heights;
   for (int i = 0; i < 60 * 60; ++i) heights += fmt::format("{} ", (i * 7919 % 13) * 0.1);
-  Running r("Transform { rotation 1 0 0 1.5707963 children Shape { geometry ElevationGrid { solid FALSE xDimension 60 zDimension "
+  Running r("Transform { rotation 1 0 0 1.5707963 children Shape { geometry ElevationGrid { solid "
+            "FALSE xDimension 60 zDimension "
             "60 height [ " +
             heights + " ] } } }");
   PickHit hit;
@@ -133,7 +142,8 @@ TEST(Picking, LargeMeshesGiveWhatSmallOnesDo) {
 }
 
 TEST(Picking, SingularAndInfiniteThingsAreSkipped) {
-  Running r("DEF T Transform { children " + box + "} Transform { scale 1 1 0.000000000000000000000000001 children " + box + "}");
+  Running r("DEF T Transform { children " + box +
+            "} Transform { scale 1 1 0.000000000000000000000000001 children " + box + "}");
   r.set("T", "scale", Vec3f{0, 1, 1});
   PickHit hit;
   pickAt(r, 0, 0, hit);
@@ -144,7 +154,8 @@ TEST(Picking, SingularAndInfiniteThingsAreSkipped) {
 }
 
 TEST(Picking, NormalsOfStretchedShapesStayAtRightAngles) {
-  Running r("Transform { scale 3 1 1 rotation 0 1 0 0.7853982 children Shape { geometry Box {} } }");
+  Running r(
+      "Transform { scale 3 1 1 rotation 0 1 0 0.7853982 children Shape { geometry Box {} } }");
   PickHit hit;
   ASSERT_TRUE(pickAt(r, 1, 0, hit));
   EXPECT_NEAR(std::hypot(hit.normal[0], hit.normal[1], hit.normal[2]), 1, 1e-12);
@@ -169,7 +180,8 @@ TEST(TouchSensor, SendsIsOverWhenThePointerComesAndGoes) {
 }
 
 TEST(TouchSensor, PointNormalAndTextureCoordinateAreInItsOwnCoordinates) {
-  Running r("Transform { translation 1 0 0 scale 2 2 2 rotation 0 1 0 1.5707963 children [ DEF S TouchSensor {}"
+  Running r("Transform { translation 1 0 0 scale 2 2 2 rotation 0 1 0 1.5707963 children [ DEF S "
+            "TouchSensor {}"
             " Transform { translation 0 0 1 children Shape { geometry Box {} } } ] }");
   at(r, 2.5, 0.5);
   EXPECT_EQ(r.get("S", "isOver"), "TRUE");
@@ -208,7 +220,8 @@ TEST(TouchSensor, AReleaseElsewhereIsNoTouch) {
   at(r, 0, 0, true);
   at(r, 5, 0, true);
   at(r, 5, 0, false);
-  EXPECT_EQ(r.take(), (Log{"0 S.isOver TRUE", "0 S.isActive TRUE", "0 S.isOver FALSE", "0 S.isActive FALSE"}));
+  EXPECT_EQ(r.take(), (Log{"0 S.isOver TRUE", "0 S.isActive TRUE", "0 S.isOver FALSE",
+                           "0 S.isActive FALSE"}));
 }
 
 TEST(TouchSensor, OffAndBackOverBeforeTheReleaseIsATouch) {
@@ -266,8 +279,9 @@ TEST(TouchSensor, OneThatLeavesTheSceneLetsGo) {
 }
 
 TEST(PointingSensors, TheLowestGroupWithAnEnabledOneWins) {
-  Running r("Group { children [ DEF HIGH TouchSensor {} Group { children [ DEF LOW TouchSensor {} Group { children " + box +
-            "} ] } ] }");
+  Running r("Group { children [ DEF HIGH TouchSensor {} Group { children [ DEF LOW TouchSensor {} "
+            "Group { children " +
+            box + "} ] } ] }");
   at(r, 0, 0);
   EXPECT_EQ(r.get("LOW", "isOver"), "TRUE");
   EXPECT_EQ(r.get("HIGH", "isOver"), "FALSE");
@@ -278,7 +292,8 @@ TEST(PointingSensors, TheLowestGroupWithAnEnabledOneWins) {
 }
 
 TEST(PointingSensors, AllSiblingsGetThePointer) {
-  Running r("Group { children [ DEF A TouchSensor {} " + box + "DEF B TouchSensor {} DEF P PlaneSensor {} ] }");
+  Running r("Group { children [ DEF A TouchSensor {} " + box +
+            "DEF B TouchSensor {} DEF P PlaneSensor {} ] }");
   at(r, 0, 0, true);
   for (const char* name : {"A", "B", "P"}) EXPECT_EQ(r.get(name, "isActive"), "TRUE") << name;
   EXPECT_EQ(r.browser.sensorsAtPointer().size(), 3u);
@@ -291,20 +306,24 @@ TEST(PointingSensors, AtTheTopOfTheFileTheySenseTheWholeWorld) {
 }
 
 TEST(PointingSensors, APrototypeMayStandForOne) {
-  Running r("PROTO P [ eventOut SFBool over ] { TouchSensor { isOver IS over } } Group { children [ DEF I P {} " + box + "] }");
+  Running r("PROTO P [ eventOut SFBool over ] { TouchSensor { isOver IS over } } Group { children "
+            "[ DEF I P {} " +
+            box + "] }");
   r.log("I", "over");
   at(r, 0, 0);
   EXPECT_EQ(r.take(), Log{"0 I.over TRUE"});
 }
 
 TEST(PointingSensors, GeometryInFrontHidesThoseBehind) {
-  Running r("Group { children [ DEF S TouchSensor {} " + box + "] } Transform { translation 0 0 5 children " + box + "}");
+  Running r("Group { children [ DEF S TouchSensor {} " + box +
+            "] } Transform { translation 0 0 5 children " + box + "}");
   at(r, 0, 0);
   EXPECT_EQ(r.get("S", "isOver"), "FALSE");
 }
 
 TEST(PointingSensors, ThePictureIsFromMinusOneToOne) {
-  Running r("Viewpoint { position 0 0 10 fieldOfView 1.5707963 } Transform { translation 0 9 0 children [ DEF S TouchSensor {}"
+  Running r("Viewpoint { position 0 0 10 fieldOfView 1.5707963 } Transform { translation 0 9 0 "
+            "children [ DEF S TouchSensor {}"
             " Shape { geometry Box { size 1 1 0.0001 } } ] }");
   r.browser.setAspect(2);
   r.browser.pointer(0, 0.9, false);
@@ -326,7 +345,9 @@ TEST(PointingSensors, APointerThatLeavesIsOverNothing) {
 }
 
 TEST(Anchor, AClickOnAChildBindsTheViewpointItNames) {
-  Running r("DEF A Viewpoint {} DEF B Viewpoint { position 3 0 0 } Anchor { url \"#B\" children Group { children " + box + "} }");
+  Running r("DEF A Viewpoint {} DEF B Viewpoint { position 3 0 0 } Anchor { url \"#B\" children "
+            "Group { children " +
+            box + "} }");
   at(r, 0, 0, true);
   EXPECT_EQ(nameOf(r.browser.bound().viewpoint), "A");
   at(r, 0, 0, false);
@@ -347,7 +368,8 @@ TEST(Anchor, OtherPlacesAreHandedOn) {
 }
 
 TEST(Anchor, ALowerSensorTakesTheClick) {
-  Running r("DEF A Anchor { url \"other.wrl\" children Group { children [ DEF S TouchSensor {} " + box + "] } }");
+  Running r("DEF A Anchor { url \"other.wrl\" children Group { children [ DEF S TouchSensor {} " +
+            box + "] } }");
   std::string asked;
   r.browser.onAnchor([&](Node& anchor) { asked += anchor.defName; });
   at(r, 0, 0, true);

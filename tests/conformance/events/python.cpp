@@ -1,5 +1,6 @@
-// The script engine `python` (plugins/script/python) within a program that is none of Python's: values of all types, nodes,
-// errors with their lines, programs that do not end. Skipped where Python cannot be embedded.
+// The script engine `python` (plugins/script/python) within a program that is none of Python's:
+// values of all types, nodes, errors with their lines, programs that do not end. Skipped where
+// Python cannot be embedded.
 #include <filesystem>
 #include <fstream>
 
@@ -23,21 +24,25 @@ class Python : public testing::Test {
 };
 
 // What a Script sends on `out` for a value on `in`; or its first message.
-std::string echo(const std::string& type, const std::string& program, Value value, const BrowserOptions& options,
-                 const std::string& outType = "") {
-  Scripted r("DEF S Script { eventIn " + type + " in_ eventOut " + (outType.empty() ? type : outType) +
-                 " out\n url \"python:" + program + "\" }",
+std::string echo(const std::string& type, const std::string& program, Value value,
+                 const BrowserOptions& options, const std::string& outType = "") {
+  Scripted r("DEF S Script { eventIn " + type + " in_ eventOut " +
+                 (outType.empty() ? type : outType) + " out\n url \"python:" + program + "\" }",
              options);
   r.log("S", "out");
   r.set("S", "in_", std::move(value));
   const Log sent = r.take(), messages = r.messages();
-  return !messages.empty() ? messages[0] : sent.empty() ? "nothing" : sent[0].substr(std::string("0 S.out ").size());
+  return !messages.empty() ? messages[0]
+         : sent.empty()    ? "nothing"
+                           : sent[0].substr(std::string("0 S.out ").size());
 }
 
 const std::string assigns = "\ndef in_(value, timestamp):\n    script.out = value";
 
 TEST_F(Python, EveryTypeGoesInAndComesOut) {
-  const auto same = [](const char* type, Value value) { return echo(type, assigns, std::move(value), trusting()); };
+  const auto same = [](const char* type, Value value) {
+    return echo(type, assigns, std::move(value), trusting());
+  };
   EXPECT_EQ(same("SFBool", true), "TRUE");
   EXPECT_EQ(same("SFFloat", 0.5f), "0.5");
   EXPECT_EQ(same("SFInt32", int32_t(-7)), "-7");
@@ -61,49 +66,64 @@ TEST_F(Python, EveryTypeGoesInAndComesOut) {
 
 TEST_F(Python, ListsTuplesAndArraysAreTaken) {
   const auto gives = [](const char* type, const char* what) {
-    return echo("SFBool", std::string("\ndef in_(value): script.out = ") + what, true, trusting(), type);
+    return echo("SFBool", std::string("\ndef in_(value): script.out = ") + what, true, trusting(),
+                type);
   };
   EXPECT_EQ(gives("SFVec3f", "[1, 2, 3.5]"), "1 2 3.5");
   EXPECT_EQ(gives("MFVec3f", "[(1, 2, 3), [4, 5, 6]]"), "[1 2 3, 4 5 6]");
   EXPECT_EQ(gives("MFInt32", "range(3)"), "[0, 1, 2]");
   EXPECT_EQ(gives("MFFloat", "[i / 2 for i in range(3)]"), "[0, 0.5, 1]");
   EXPECT_EQ(gives("MFString", "('a', 'b')"), gives("MFString", "['a', 'b']"));
-  EXPECT_EQ(gives("SFVec3f", "(1, 2)"), "4: Script S: ValueError: out (SFVec3f): 3 numbers expected, not 2");
-  EXPECT_EQ(gives("SFVec3f", "'no'"), "4: Script S: TypeError: out (SFVec3f): 3 numbers expected, not str");
-  EXPECT_EQ(gives("SFFloat", "True"), "4: Script S: TypeError: out (SFFloat): a number expected, not bool");
-  EXPECT_EQ(gives("SFFloat", "float('nan')"), "4: Script S: ValueError: out (SFFloat): a number expected, not infinity or NaN");
-  EXPECT_EQ(gives("SFFloat", "1e300"),
-            "4: Script S: ValueError: out (SFFloat): a number expected, within the range of 32 bit floats");
-  EXPECT_EQ(gives("SFInt32", "2**31"),
-            "4: Script S: ValueError: out (SFInt32): a whole number of 32 bits expected, not 2147483648");
-  EXPECT_EQ(gives("SFInt32", "1.0"), "4: Script S: TypeError: out (SFInt32): a whole number of 32 bits expected, not float");
-  EXPECT_EQ(gives("SFBool", "1"), "4: Script S: TypeError: out (SFBool): True or False expected, not int");
-  EXPECT_EQ(gives("MFString", "'text'"), "4: Script S: TypeError: out (MFString): a sequence of str expected, not str");
+  EXPECT_EQ(gives("SFVec3f", "(1, 2)"),
+            "4: Script S: ValueError: out (SFVec3f): 3 numbers expected, not 2");
+  EXPECT_EQ(gives("SFVec3f", "'no'"),
+            "4: Script S: TypeError: out (SFVec3f): 3 numbers expected, not str");
+  EXPECT_EQ(gives("SFFloat", "True"),
+            "4: Script S: TypeError: out (SFFloat): a number expected, not bool");
+  EXPECT_EQ(gives("SFFloat", "float('nan')"),
+            "4: Script S: ValueError: out (SFFloat): a number expected, not infinity or NaN");
+  EXPECT_EQ(gives("SFFloat", "1e300"), "4: Script S: ValueError: out (SFFloat): a number expected, "
+                                       "within the range of 32 bit floats");
+  EXPECT_EQ(
+      gives("SFInt32", "2**31"),
+      "4: Script S: ValueError: out (SFInt32): a whole number of 32 bits expected, not 2147483648");
+  EXPECT_EQ(gives("SFInt32", "1.0"),
+            "4: Script S: TypeError: out (SFInt32): a whole number of 32 bits expected, not float");
+  EXPECT_EQ(gives("SFBool", "1"),
+            "4: Script S: TypeError: out (SFBool): True or False expected, not int");
+  EXPECT_EQ(gives("MFString", "'text'"),
+            "4: Script S: TypeError: out (MFString): a sequence of str expected, not str");
   EXPECT_EQ(gives("SFNode", "3"), "4: Script S: TypeError: a Node or None expected, not int");
 }
 
 TEST_F(Python, WithNumpyListsOfNumbersAreReadOnlyArrays) {
-  const std::string program = "\ndef in_(value):\n    try:\n        import numpy\n    except ImportError:\n"
-                              "        script.out = 'no numpy'\n        return\n"
-                              "    script.out = '%s %s %s' % (value.shape, value.dtype, value.flags.writeable)";
+  const std::string program =
+      "\ndef in_(value):\n    try:\n        import numpy\n    except ImportError:\n"
+      "        script.out = 'no numpy'\n        return\n"
+      "    script.out = '%s %s %s' % (value.shape, value.dtype, value.flags.writeable)";
   const std::string got = echo("MFVec3f", program, MFVec3f{{1, 2, 3}}, trusting(), "SFString");
   if (got == "no numpy") GTEST_SKIP() << got;
   EXPECT_EQ(got, "(1, 3) float32 False");
   EXPECT_EQ(echo("MFInt32", program, MFInt32{1, 2}, trusting(), "SFString"), "(2,) int32 False");
   EXPECT_EQ(echo("MFTime", program, MFTime{1, 2}, trusting(), "SFString"), "(2,) float64 False");
-  EXPECT_EQ(echo("MFVec3f", "\ndef in_(value): script.out = value * 2 + 1", MFVec3f{{1, 2, 3}}, trusting()), "[3 5 7]");
-  EXPECT_EQ(echo("MFFloat", "\nimport numpy\ndef in_(value): script.out = numpy.arange(6)[::2]", MFFloat{}, trusting()),
+  EXPECT_EQ(echo("MFVec3f", "\ndef in_(value): script.out = value * 2 + 1", MFVec3f{{1, 2, 3}},
+                 trusting()),
+            "[3 5 7]");
+  EXPECT_EQ(echo("MFFloat", "\nimport numpy\ndef in_(value): script.out = numpy.arange(6)[::2]",
+                 MFFloat{}, trusting()),
             "[0, 2, 4]");
-  Scripted r(
-      "DEF S Script { eventIn SFImage in_ eventOut SFImage out url \"python:\ndef in_(value): script.out = value[::-1]\" }",
-      trusting());
+  Scripted r("DEF S Script { eventIn SFImage in_ eventOut SFImage out url \"python:\ndef "
+             "in_(value): script.out = value[::-1]\" }",
+             trusting());
   r.set("S", "in_", Image{1, 2, 2, {1, 2, 3, 4}});
-  EXPECT_EQ(std::get<Image>(r.browser.get(r.node("S"), "out")).pixels, (std::vector<uint8_t>{3, 4, 1, 2}));
+  EXPECT_EQ(std::get<Image>(r.browser.get(r.node("S"), "out")).pixels,
+            (std::vector<uint8_t>{3, 4, 1, 2}));
   EXPECT_EQ(r.messages(), Log{});
 }
 
 TEST_F(Python, FieldsAreAttributes) {
-  Scripted r("DEF S Script { eventIn SFInt32 add field SFInt32 sum 10 eventOut SFInt32 out field MFString words [ \"a\" \"b\" ]\n"
+  Scripted r("DEF S Script { eventIn SFInt32 add field SFInt32 sum 10 eventOut SFInt32 out field "
+             "MFString words [ \"a\" \"b\" ]\n"
              "url \"python:\n"
              "    def add(value):\n"
              "        script.sum += value\n"
@@ -115,16 +135,19 @@ TEST_F(Python, FieldsAreAttributes) {
   r.set("S", "add", int32_t(4));
   EXPECT_EQ(r.get("S", "sum"), "17");
   EXPECT_EQ(r.get("S", "out"), "17");
-  EXPECT_EQ(r.printed(), (Log{"('a', 'b');13;['out', 'sum', 'words']", "('a', 'b');17;['out', 'sum', 'words']"}));
+  EXPECT_EQ(r.printed(), (Log{"('a', 'b');13;['out', 'sum', 'words']",
+                              "('a', 'b');17;['out', 'sum', 'words']"}));
   EXPECT_EQ(r.messages(), Log{});
 }
 
 TEST_F(Python, FunctionsAreCalledAsTheStandardSays) {
-  Scripted r(
-      "DEF C TimeSensor { loop TRUE } DEF S Script { eventIn SFTime tick eventOut SFTime out url \"python:print('module')\n"
-      "def initialize(): print('initialize')\ndef tick(value, timestamp): print('tick', value == timestamp)\n"
-      "def eventsProcessed(): print('processed')\ndef shutdown(): print('shutdown')\" } ROUTE C.time TO S.tick",
-      trusting());
+  Scripted r("DEF C TimeSensor { loop TRUE } DEF S Script { eventIn SFTime tick eventOut SFTime "
+             "out url \"python:print('module')\n"
+             "def initialize(): print('initialize')\ndef tick(value, timestamp): print('tick', "
+             "value == timestamp)\n"
+             "def eventsProcessed(): print('processed')\ndef shutdown(): print('shutdown')\" } "
+             "ROUTE C.time TO S.tick",
+             trusting());
   EXPECT_EQ(r.printed(), (Log{"module", "initialize"}));
   r.browser.tick(1);
   EXPECT_EQ(r.printed(), (Log{"tick True", "processed"}));
@@ -134,13 +157,16 @@ TEST_F(Python, FunctionsAreCalledAsTheStandardSays) {
 }
 
 TEST_F(Python, NodesAreThoseOfTheBinding) {
-  Scripted r("DEF T Transform { translation 1 2 3 children DEF G Shape { } } DEF S Script { directOutput TRUE eventIn SFNode in_ "
-             "field SFNode t USE T eventOut SFNode out eventOut MFNode all eventOut SFBool same eventOut SFVec3f was\n"
+  Scripted r("DEF T Transform { translation 1 2 3 children DEF G Shape { } } DEF S Script { "
+             "directOutput TRUE eventIn SFNode in_ "
+             "field SFNode t USE T eventOut SFNode out eventOut MFNode all eventOut SFBool same "
+             "eventOut SFVec3f was\n"
              "url \"python:\n"
              "import xvrml\n"
              "def in_(node):\n"
              "    assert isinstance(node, xvrml.Node)\n"
-             "    script.same = node == script.t and hash(node) == hash(script.t) and node != node.children[0]\n"
+             "    script.same = node == script.t and hash(node) == hash(script.t) and node != "
+             "node.children[0]\n"
              "    script.out = node.children[0]\n"
              "    script.all = [node, script.t.children[0], script]\n"
              "    node.translation = (4, 5, 6)\n"
@@ -161,14 +187,19 @@ TEST_F(Python, NodesAreThoseOfTheBinding) {
 }
 
 TEST_F(Python, ThreadsOfAScriptCannotChangeNodes) {
-  Scripted r("DEF T Transform { } DEF S Script { directOutput TRUE eventIn SFBool go field SFNode t USE T\n"
-             "url \"python:\nimport threading\ndef go(v):\n    t, said = script.t, []\n    def work():\n"
-             "        for f in (lambda: setattr(t, 'scale', (2, 2, 2)), lambda: script.t):\n            try: f()\n"
-             "            except ValueError as e: said.append(str(e))\n"
-             "    thread = threading.Thread(target=work)\n    thread.start()\n    thread.join()\n    print(*said, sep='; ')\" }",
-             trusting());
+  Scripted r(
+      "DEF T Transform { } DEF S Script { directOutput TRUE eventIn SFBool go field SFNode t USE "
+      "T\n"
+      "url \"python:\nimport threading\ndef go(v):\n    t, said = script.t, []\n    def work():\n"
+      "        for f in (lambda: setattr(t, 'scale', (2, 2, 2)), lambda: script.t):\n            "
+      "try: f()\n"
+      "            except ValueError as e: said.append(str(e))\n"
+      "    thread = threading.Thread(target=work)\n    thread.start()\n    thread.join()\n    "
+      "print(*said, sep='; ')\" }",
+      trusting());
   r.set("S", "go", true);
-  EXPECT_EQ(r.printed(), Log{"only the functions of a Script can change nodes here, on the thread on which they are called; no "
+  EXPECT_EQ(r.printed(), Log{"only the functions of a Script can change nodes here, on the thread "
+                             "on which they are called; no "
                              "function of this Script is running"});
   EXPECT_EQ(r.get("T", "scale"), "1 1 1");
 }
@@ -181,15 +212,18 @@ TEST_F(Python, EventsToOtherNodesNeedDirectOutput) {
   EXPECT_EQ(r.get("T", "translation"), "0 0 0");
   const Log messages = r.messages();
   ASSERT_EQ(messages.size(), 2u);
-  EXPECT_EQ(messages[1], "5: Script S: PermissionError: an event to another node needs directOutput TRUE");
+  EXPECT_EQ(messages[1],
+            "5: Script S: PermissionError: an event to another node needs directOutput TRUE");
 }
 
 TEST_F(Python, TheBrowserObject) {
-  Scripted r("DEF T Transform { } DEF B Transform { } DEF S Script { directOutput TRUE eventIn SFBool go field SFNode t USE T "
+  Scripted r("DEF T Transform { } DEF B Transform { } DEF S Script { directOutput TRUE eventIn "
+             "SFBool go field SFNode t USE T "
              "field SFNode b USE B eventIn MFNode made eventOut SFVec3f out\n"
              "url \"python:\n"
              "def go(v):\n"
-             "    print(browser.name, browser.world_url, browser.now, browser.current_speed, browser.current_frame_rate)\n"
+             "    print(browser.name, browser.world_url, browser.now, browser.current_speed, "
+             "browser.current_frame_rate)\n"
              "    browser.set_description('hello')\n"
              "    browser.add_route(script.t, 'translation_changed', script.b, 'set_translation')\n"
              "    nodes = browser.create_vrml_from_string('DEF New Transform { scale 2 2 2 }')\n"
@@ -219,16 +253,21 @@ TEST_F(Python, ErrorsHaveTheWorldsLine) {
   };
   EXPECT_EQ(message("\n\nx ="), "4: Script S: SyntaxError: invalid syntax");
   EXPECT_EQ(message("\nx = 1 / 0"), "3: Script S: ZeroDivisionError: division by zero");
-  EXPECT_EQ(message("\ndef f():\n    raise KeyError('k')\ndef go(v):\n    f()"), "4: Script S: KeyError: 'k'");
+  EXPECT_EQ(message("\ndef f():\n    raise KeyError('k')\ndef go(v):\n    f()"),
+            "4: Script S: KeyError: 'k'");
   EXPECT_EQ(message("\ndef go(v):\n    script.nothing = 3"),
             "4: Script S: AttributeError: the Script has no field or eventOut nothing");
-  EXPECT_EQ(message("\nimport json\ndef go(v):\n    json.loads('{')").substr(0, 40), "5: Script S: JSONDecodeError: Expecting ");
-  EXPECT_EQ(message("import no_such_module_at_all"), "2: Script S: ModuleNotFoundError: No module named 'no_such_module_at_all'");
-  EXPECT_EQ(message("\ndef go(v):\n  def f(): f()\n  f()").substr(0, 30), "4: Script S: RecursionError: m");
+  EXPECT_EQ(message("\nimport json\ndef go(v):\n    json.loads('{')").substr(0, 40),
+            "5: Script S: JSONDecodeError: Expecting ");
+  EXPECT_EQ(message("import no_such_module_at_all"),
+            "2: Script S: ModuleNotFoundError: No module named 'no_such_module_at_all'");
+  EXPECT_EQ(message("\ndef go(v):\n  def f(): f()\n  f()").substr(0, 30),
+            "4: Script S: RecursionError: m");
 }
 
 TEST_F(Python, AScriptThatFailsGoesOn) {
-  Scripted r("DEF S Script { eventIn SFInt32 in_ eventOut SFInt32 out url \"python:\ndef in_(v): script.out = 10 // v\" }",
+  Scripted r("DEF S Script { eventIn SFInt32 in_ eventOut SFInt32 out url \"python:\ndef in_(v): "
+             "script.out = 10 // v\" }",
              trusting());
   r.set("S", "in_", int32_t(0));
   r.set("S", "in_", int32_t(5));
@@ -238,14 +277,19 @@ TEST_F(Python, AScriptThatFailsGoesOn) {
 TEST_F(Python, AnEndlessLoopIsStoppedWhateverItCatches) {
   BrowserOptions options = trusting();
   options.scriptSeconds = 0.2;
-  for (const char* loop : {"while True: pass", "while True:\n        try:\n            x = 1\n        except Exception: pass",
-                           "while True:\n        try:\n            while True:\n                x = 1\n        except: pass",
-                           "while True:\n        try: x = 1\n        except BaseException: pass\n        finally: y = 2",
-                           "def f():\n        try: f()\n        except: f()\n    f()"}) {
+  for (const char* loop :
+       {"while True: pass",
+        "while True:\n        try:\n            x = 1\n        except Exception: pass",
+        "while True:\n        try:\n            while True:\n                x = 1\n        "
+        "except: pass",
+        "while True:\n        try: x = 1\n        except BaseException: pass\n        finally: y = "
+        "2",
+        "def f():\n        try: f()\n        except: f()\n    f()"}) {
     Scripted r("DEF S Script { eventIn SFBool go eventOut SFBool out\n"
                "url \"python:\ndef go(v):\n    script.out = v\n    " +
                    std::string(loop) +
-                   "\" } DEF T Script { eventIn SFBool go eventOut SFBool out url \"python:def go(v): script.out = v\" }",
+                   "\" } DEF T Script { eventIn SFBool go eventOut SFBool out url \"python:def "
+                   "go(v): script.out = v\" }",
                options);
     r.set("S", "go", true);
     const Log messages = r.messages();
@@ -267,20 +311,23 @@ TEST_F(Python, MemoryIsLimited) {
   options.scriptSeconds = 60;
   for (const char* bomb : {"x = 'a' * 10**9", "x = []\n    while True: x.append(bytearray(10**6))",
                            "x = [0]\n    while True: x = [x, x]", "x = [0] * 10**12"}) {
-    Scripted r("DEF S Script { eventIn SFBool go eventIn SFBool again eventOut SFBool out url \"python:\ndef go(v):\n    " +
+    Scripted r("DEF S Script { eventIn SFBool go eventIn SFBool again eventOut SFBool out url "
+               "\"python:\ndef go(v):\n    " +
                    std::string(bomb) + "\ndef again(v):\n    script.out = v\" }",
                options);
     r.set("S", "go", true);
     const Log messages = r.messages();
     ASSERT_EQ(messages.size(), 1u) << bomb;
-    EXPECT_NE(messages[0].find("MemoryError (a Script may use 64 MiB)"), std::string::npos) << messages[0];
+    EXPECT_NE(messages[0].find("MemoryError (a Script may use 64 MiB)"), std::string::npos)
+        << messages[0];
     r.set("S", "again", true);
     EXPECT_EQ(r.get("S", "out"), "TRUE");
   }
 }
 
 TEST_F(Python, SysExitEndsTheScriptAlone) {
-  Scripted r("DEF S Script { eventIn SFBool go eventOut SFBool out url \"python:\nimport sys\ndef go(v):\n    script.out = v\n"
+  Scripted r("DEF S Script { eventIn SFBool go eventOut SFBool out url \"python:\nimport sys\ndef "
+             "go(v):\n    script.out = v\n"
              "    sys.exit('done')\" }",
              trusting());
   r.log("S", "out");
@@ -294,13 +341,16 @@ TEST_F(Python, ProgramsOfFilesHaveTheirOwnLinesAndModules) {
   namespace fs = std::filesystem;
   const fs::path folder = fs::path(testing::TempDir()) / "xvrml_python_files";
   fs::create_directories(folder);
-  std::ofstream(folder / "own.py")
-      << "import xvrml_test_helper\ndef go(v):\n    script.out = xvrml_test_helper.answer\n    nothing\n";
-  std::ofstream(folder / "xvrml_test_helper.py") << "answer = open(__file__).read().count('a')\n"; // files may be read
+  std::ofstream(folder / "own.py") << "import xvrml_test_helper\ndef go(v):\n    script.out = "
+                                      "xvrml_test_helper.answer\n    nothing\n";
+  std::ofstream(folder / "xvrml_test_helper.py")
+      << "answer = open(__file__).read().count('a')\n"; // files may be read
   BrowserOptions options = trusting();
-  Browser browser(loadWorldFromMemory("#VRML V2.0 utf8\nDEF S Script { eventIn SFBool go eventOut SFInt32 out url \"own.py\" }",
-                                      (folder / "world.wrl").string()),
-                  options);
+  Browser browser(
+      loadWorldFromMemory(
+          "#VRML V2.0 utf8\nDEF S Script { eventIn SFBool go eventOut SFInt32 out url \"own.py\" }",
+          (folder / "world.wrl").string()),
+      options);
   browser.set(*browser.node("S"), "go", true);
   EXPECT_EQ(textOf(browser.get(*browser.node("S"), "out")), "3");
   const auto& list = browser.world().diagnostics.list();
@@ -322,7 +372,8 @@ TEST_F(Python, OnlyInTrustedWorlds) {
 }
 
 TEST_F(Python, ObjectsOfAScriptThatHasEndedSaySo) {
-  Scripted r("DEF S Script { eventIn SFBool go url \"python:import builtins\nbuiltins.kept_script = script\" } "
+  Scripted r("DEF S Script { eventIn SFBool go url \"python:import builtins\nbuiltins.kept_script "
+             "= script\" } "
              "DEF T Script { eventIn SFBool go url \"python:\ndef go(v):\n    try: kept_script.x\n"
              "    except ValueError as e: print(e)\" }",
              trusting());

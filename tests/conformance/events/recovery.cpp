@@ -1,4 +1,5 @@
-// What is meant by a world that breaks a rule: as much of it as can be is kept, and one message says so.
+// What is meant by a world that breaks a rule: as much of it as can be is kept, and one message
+// says so.
 #include <sstream>
 
 #include "conformance/events/scripted.h"
@@ -8,12 +9,15 @@ namespace xvrml {
 namespace {
 
 Node& drawn(Running& r, std::string_view name) { return *renderedNode(r.browser.node(name).get()); }
-std::string fieldOf(Node& node, const char* field) { return textOf(node.get(*node.type().find(field))); }
+std::string fieldOf(Node& node, const char* field) {
+  return textOf(node.get(*node.type().find(field)));
+}
 uint64_t errors(Running& r) { return r.browser.world().diagnostics.errors(); }
 
 TEST(Recovery, ANodeMayBeUsedWithinAFieldOfItsOwnThatIsNotDrawn) { // key frames of Cosmo Worlds
-  const std::string text = "PROTO Keys [ field MFNode actors [] ] { Group {} } "
-                           "DEF K Keys { actors [ DEF T Transform { children [ Group {} USE K ] } ] } USE T";
+  const std::string text =
+      "PROTO Keys [ field MFNode actors [] ] { Group {} } "
+      "DEF K Keys { actors [ DEF T Transform { children [ Group {} USE K ] } ] } USE T";
   Running r(text);
   EXPECT_EQ(r.browser.world().diagnostics.list().size(), 0u);
   EXPECT_EQ(r.get("T", "children"), "[Group, K]");
@@ -25,16 +29,19 @@ TEST(Recovery, ANodeMayBeUsedWithinAFieldOfItsOwnThatIsNotDrawn) { // key frames
 
 TEST(Recovery, InACopyOfAPrototypesBodyToo) {
   Running r("PROTO Keys [ field MFNode actors [] ] { Group {} } "
-            "PROTO Film [] { Group { children DEF K Keys { actors DEF T Transform { children USE K } } } } DEF A Film {} DEF B "
+            "PROTO Film [] { Group { children DEF K Keys { actors DEF T Transform { children USE K "
+            "} } } } DEF A Film {} DEF B "
             "Film {}");
   EXPECT_EQ(r.browser.world().diagnostics.list().size(), 0u);
 }
 
 TEST(Recovery, WhatAPrototypeDrawsCannotHoldIt) {
   const std::string p = "PROTO P [ field MFNode c [] ] { Group { children IS c } } ";
-  for (const char* world : {"DEF K P { c [ USE K ] }", "DEF K P { c [ Group { children [ Group {} USE K ] } ] }",
-                            "DEF K P { c DEF T Transform { children P { c USE K } } }", "DEF K Group { children P { c USE K } }",
-                            "DEF K Group { children P { c Group { children USE K } } }"}) {
+  for (const char* world :
+       {"DEF K P { c [ USE K ] }", "DEF K P { c [ Group { children [ Group {} USE K ] } ] }",
+        "DEF K P { c DEF T Transform { children P { c USE K } } }",
+        "DEF K Group { children P { c USE K } }",
+        "DEF K Group { children P { c Group { children USE K } } }"}) {
     Running r(p + world);
     EXPECT_EQ(errors(r), 1u) << world;
     r.browser.tick(1);
@@ -59,7 +66,8 @@ TEST(Recovery, AFieldThatIsAnExposedFieldTakesTheGivenValue) {
 }
 
 TEST(Recovery, AnEventOutThatIsAnExposedFieldSends) {
-  Running r("PROTO P [ exposedField SFTime beat 0 ] { TimeSensor { loop TRUE time IS beat } } DEF A P {}");
+  Running r("PROTO P [ exposedField SFTime beat 0 ] { TimeSensor { loop TRUE time IS beat } } DEF "
+            "A P {}");
   EXPECT_EQ(errors(r), 1u);
   r.log("A", "beat");
   r.browser.tick(2);
@@ -67,7 +75,8 @@ TEST(Recovery, AnEventOutThatIsAnExposedFieldSends) {
 }
 
 TEST(Recovery, AScriptWithAnExposedFieldRunsAndHasItAsAField) {
-  Scripted r("DEF T TimeSensor {} DEF S Script { exposedField SFInt32 n 20 eventIn SFInt32 a eventOut SFInt32 b url \"test:a: "
+  Scripted r("DEF T TimeSensor {} DEF S Script { exposedField SFInt32 n 20 eventIn SFInt32 a "
+             "eventOut SFInt32 b url \"test:a: "
              "add n b\" } "
              "DEF W Switch {} ROUTE S.b TO W.whichChoice");
   EXPECT_EQ(errors(r), 1u);
@@ -77,7 +86,8 @@ TEST(Recovery, AScriptWithAnExposedFieldRunsAndHasItAsAField) {
 
 TEST(Recovery, AScriptWithADeclarationOfAnUnknownTypeRunsWithoutIt) {
   Scripted r(
-      "DEF S Script { field SFVec4f v 1 2 3 4 field MFDouble d [ 1 2 ] eventOut SFDouble o field SFInt32 n 20 eventIn SFInt32 a "
+      "DEF S Script { field SFVec4f v 1 2 3 4 field MFDouble d [ 1 2 ] eventOut SFDouble o field "
+      "SFInt32 n 20 eventIn SFInt32 a "
       "eventOut SFInt32 b url \"test:a: add n b\" } DEF W Switch {} ROUTE S.b TO W.whichChoice");
   EXPECT_EQ(errors(r), 3u);
   r.set("S", "a", 2);
@@ -85,7 +95,8 @@ TEST(Recovery, AScriptWithADeclarationOfAnUnknownTypeRunsWithoutIt) {
 }
 
 TEST(Recovery, AMisplacedNodeKeepsItsName) {
-  Running r("DEF RED Material { diffuseColor 1 0 0 } DEF S Shape { appearance DEF A Appearance { material USE RED } "
+  Running r("DEF RED Material { diffuseColor 1 0 0 } DEF S Shape { appearance DEF A Appearance { "
+            "material USE RED } "
             "geometry Group { children DEF IN Group {} } } Group { children USE IN }");
   EXPECT_EQ(errors(r), 2u); // the Material at the root, the Group as geometry
   EXPECT_EQ(r.browser.world().diagnostics.warnings(), 0u);
@@ -97,7 +108,8 @@ TEST(Recovery, AMisplacedNodeKeepsItsName) {
 }
 
 TEST(Recovery, ScriptsSendToNodesWhereOldWorldsMay) {
-  const std::string world = "DEF S Script { field SFNode g USE G eventIn SFInt32 go url \"test:go: post g set_whichChoice\" }";
+  const std::string world = "DEF S Script { field SFNode g USE G eventIn SFInt32 go url \"test:go: "
+                            "post g set_whichChoice\" }";
   for (const bool old : {false, true}) {
     Scripted r("DEF G Switch {} " + world, {}, {.epoch = 0, .directOutputAlways = old});
     r.set("S", "go", 3);
@@ -112,10 +124,13 @@ size_t count(const World& world, std::string_view type) {
   for (const NodeRef& root : world.scope.roots) roots.push_back(root.get());
   std::unordered_map<const Node*, uint32_t> index;
   collectNodes(roots, nodes, index);
-  return std::count_if(nodes.begin(), nodes.end(), [&](const Node* node) { return node && node->type().name == type; });
+  return std::count_if(nodes.begin(), nodes.end(),
+                       [&](const Node* node) { return node && node->type().name == type; });
 }
 
-std::unique_ptr<World> read(const std::string& text) { return loadWorldFromMemory("#VRML V2.0 utf8\n" + text, "damaged.wrl"); }
+std::unique_ptr<World> read(const std::string& text) {
+  return loadWorldFromMemory("#VRML V2.0 utf8\n" + text, "damaged.wrl");
+}
 
 std::string messages(const World& world) {
   std::string text;
@@ -123,24 +138,29 @@ std::string messages(const World& world) {
   return text;
 }
 
-// Any one token of a file may be lost or doubled: what stands around its statement is there, and few words say why.
+// Any one token of a file may be lost or doubled: what stands around its statement is there, and
+// few words say why.
 TEST(Recovery, OneTokenCostsAtMostOneStatement) {
   std::vector<std::string> tokens;
   std::istringstream in("Transform { translation 1 0 0 children [ Shape { geometry Box { } } ] }");
   for (std::string token; in >> token;) tokens.push_back(token);
   std::string rest = "\n";
   constexpr size_t more = 20;
-  for (size_t i = 0; i < more; ++i) rest += "Transform { children [ Shape { geometry Sphere { } } ] }\n";
+  for (size_t i = 0; i < more; ++i)
+    rest += "Transform { children [ Shape { geometry Sphere { } } ] }\n";
   for (const bool twice : {false, true}) {
     for (size_t at = 0; at < tokens.size(); ++at) {
       std::string first;
       for (size_t i = 0; i < tokens.size(); ++i)
-        for (size_t times = i == at ? (twice ? 2 : 0) : 1; times > 0; --times) first += tokens[i] + ' ';
-      for (const std::string& before : {std::string(), std::string("Group { children [ Group { } ] } ")}) {
+        for (size_t times = i == at ? (twice ? 2 : 0) : 1; times > 0; --times)
+          first += tokens[i] + ' ';
+      for (const std::string& before :
+           {std::string(), std::string("Group { children [ Group { } ] } ")}) {
         const auto world = read(before + first + rest);
         EXPECT_EQ(count(*world, "Sphere"), more) << first << messages(*world);
         EXPECT_EQ(world->diagnostics.errors(), 1u) << first << messages(*world);
-        const bool brace = tokens[at] == "{" || tokens[at] == "}" || (tokens[at] == "]") || (tokens[at] == "[" && twice);
+        const bool brace = tokens[at] == "{" || tokens[at] == "}" || (tokens[at] == "]") ||
+                           (tokens[at] == "[" && twice);
         EXPECT_GE(count(*world, "Box"), brace ? 1u : 0u) << first << messages(*world);
       }
     }
@@ -148,25 +168,28 @@ TEST(Recovery, OneTokenCostsAtMostOneStatement) {
 }
 
 TEST(Recovery, WhatIsReadBehindAMissingBraceStandsWhereItBelongs) {
-  const auto roots =
-      read("Transform { children [ Shape { geometry Box { } } ] Transform { } DEF A Transform { } USE A Group { }");
+  const auto roots = read("Transform { children [ Shape { geometry Box { } } ] Transform { } DEF A "
+                          "Transform { } USE A Group { }");
   EXPECT_EQ(roots->diagnostics.errors(), 1u) << messages(*roots);
   EXPECT_EQ(roots->scope.roots.size(), 5u);
-  const auto list = read("DEF G Group { children [ Shape { geometry Box { } Group { } Group { } ] } Group { }");
+  const auto list =
+      read("DEF G Group { children [ Shape { geometry Box { } Group { } Group { } ] } Group { }");
   EXPECT_EQ(list->diagnostics.errors(), 1u) << messages(*list);
   EXPECT_EQ(list->scope.roots.size(), 2u);
   Node& group = *list->scope.names.at("G");
   EXPECT_EQ(static_cast<MFNode*>(group.storage(*group.type().find("children")))->size(), 3u);
-  const auto body = read("PROTO P [ ] { Group { children [ Shape { geometry Box { } ] } } P { } Group { }");
+  const auto body =
+      read("PROTO P [ ] { Group { children [ Shape { geometry Box { } ] } } P { } Group { }");
   EXPECT_EQ(body->diagnostics.errors(), 1u) << messages(*body);
   EXPECT_EQ(body->scope.roots.size(), 2u);
-  const auto value =
-      read("PROTO P [ field SFNode n Shape { geometry Box { } field SFInt32 i 0 ] { Group { } } P { i 1 } Group { }");
+  const auto value = read("PROTO P [ field SFNode n Shape { geometry Box { } field SFInt32 i 0 ] { "
+                          "Group { } } P { i 1 } Group { }");
   EXPECT_EQ(value->scope.roots.size(), 2u) << messages(*value);
 }
 
 TEST(Recovery, ValuesOfAListWithoutItsBracketAreKept) {
-  Running r("Shape { geometry DEF F IndexedFaceSet { coord DEF C Coordinate { point [ 0 0 0, 1 0 0, 0 1 0 } "
+  Running r("Shape { geometry DEF F IndexedFaceSet { coord DEF C Coordinate { point [ 0 0 0, 1 0 "
+            "0, 0 1 0 } "
             "coordIndex [ 0 1 2 -1 ccw FALSE } } Group { }");
   EXPECT_EQ(errors(r), 2u);
   EXPECT_EQ(r.get("C", "point"), "[0 0 0, 1 0 0, 0 1 0]");
@@ -177,10 +200,12 @@ TEST(Recovery, ValuesOfAListWithoutItsBracketAreKept) {
 
 TEST(Recovery, WhatIsLeftOutEndsWhereANodeShowsThatItsBraceIsMissing) {
   for (const char* first :
-       {"Foo { bar Bar { x 1 ", "LOD { range wide level [ Shape { geometry Box { } ] ", "Foo { a [ Bar { x 1 ] b 2 ",
-        "Group { foo [ 1 2 ] ", "PROTO P [ field SFFoo x 1 ] ", "PROTO P [ ] ",
-        "PROTO P [ field SFFoo x 1 ] { Group { } Transform { } } ", "PROTO { } [ ] { Group { } Transform { } } "}) {
-    const auto world = read(std::string(first) + "Transform { } DEF T Transform { } Group { children USE T }");
+       {"Foo { bar Bar { x 1 ", "LOD { range wide level [ Shape { geometry Box { } ] ",
+        "Foo { a [ Bar { x 1 ] b 2 ", "Group { foo [ 1 2 ] ", "PROTO P [ field SFFoo x 1 ] ",
+        "PROTO P [ ] ", "PROTO P [ field SFFoo x 1 ] { Group { } Transform { } } ",
+        "PROTO { } [ ] { Group { } Transform { } } "}) {
+    const auto world =
+        read(std::string(first) + "Transform { } DEF T Transform { } Group { children USE T }");
     EXPECT_EQ(count(*world, "Transform"), 2u) << first << messages(*world);
     EXPECT_LE(world->diagnostics.errors(), 2u) << messages(*world);
   }
@@ -220,7 +245,8 @@ TEST(Recovery, DamageOfAnySizeIsReadInLinearTime) {
   }
   const std::string deep = "Foo " + repeated("{ ", many) + repeated("1 Box { } ", many);
   EXPECT_GT(read(deep)->diagnostics.errors(), 0u);
-  const std::string nested = repeated("Group { children Group { children [ ", 400) + repeated("Shape { Box { } } ", many);
+  const std::string nested =
+      repeated("Group { children Group { children [ ", 400) + repeated("Shape { Box { } } ", many);
   EXPECT_GT(read(nested + repeated("] ", 400))->diagnostics.errors(), 0u);
 }
 

@@ -12,7 +12,8 @@ struct Region : Running {
 };
 
 TEST(ProximitySensor, SendsWhenTheViewerEntersAndLeaves) {
-  Region r("DEF V Viewpoint { position 0 0 20 } DEF S ProximitySensor { size 10 10 10 center 0 0 2 }");
+  Region r(
+      "DEF V Viewpoint { position 0 0 20 } DEF S ProximitySensor { size 10 10 10 center 0 0 2 }");
   r.browser.tick(1);
   EXPECT_EQ(r.take(), Log{});
   r.viewer(1, 0, 6);
@@ -34,7 +35,8 @@ TEST(ProximitySensor, AViewerWhoIsInsideFromTheStartEntersAtTheFirstTick) {
 }
 
 TEST(ProximitySensor, PlaceAndOrientationAreInItsOwnCoordinatesAndComeWhenTheyChange) {
-  Running r("DEF V Viewpoint { position 5 0 0 } Transform { translation 5 0 0 rotation 0 1 0 1.5707963 scale 2 2 2 children"
+  Running r("DEF V Viewpoint { position 5 0 0 } Transform { translation 5 0 0 rotation 0 1 0 "
+            "1.5707963 scale 2 2 2 children"
             " DEF S ProximitySensor { size 10 10 10 } }");
   r.log("S", "position_changed");
   r.log("S", "orientation_changed");
@@ -91,9 +93,9 @@ TEST(ProximitySensor, DisabledItLeavesAtOnceAndSensesNothing) {
 }
 
 TEST(ProximitySensor, OfOneThatIsUsedSeveralTimesTheBoxesAreOne) {
-  Region r(
-      "DEF V Viewpoint { position 0 0 0 } DEF S ProximitySensor { size 2 2 2 } Transform { translation 1.5 0 0 children USE S }"
-      "Transform { translation 9 0 0 children USE S }");
+  Region r("DEF V Viewpoint { position 0 0 0 } DEF S ProximitySensor { size 2 2 2 } Transform { "
+           "translation 1.5 0 0 children USE S }"
+           "Transform { translation 9 0 0 children USE S }");
   r.browser.tick(1);
   EXPECT_EQ(r.take(), (Log{"1 S.isActive TRUE", "1 S.enterTime 1"}));
   r.viewer(2, 0, 0); // in the second box
@@ -109,7 +111,8 @@ TEST(ProximitySensor, OfOneThatIsUsedSeveralTimesTheBoxesAreOne) {
 }
 
 TEST(ProximitySensor, AJumpLeavesAndEntersAtTheTimeOfTheBinding) {
-  Region r("DEF A Viewpoint {} DEF B Viewpoint { position 50 0 0 } DEF S ProximitySensor { center 50 0 0 size 2 2 2 }"
+  Region r("DEF A Viewpoint {} DEF B Viewpoint { position 50 0 0 } DEF S ProximitySensor { center "
+           "50 0 0 size 2 2 2 }"
            "DEF O ProximitySensor { center 0 0 10 size 2 2 2 }");
   r.log("O", "exitTime");
   r.browser.tick(1);
@@ -119,15 +122,18 @@ TEST(ProximitySensor, AJumpLeavesAndEntersAtTheTimeOfTheBinding) {
 }
 
 TEST(ProximitySensor, WhatItSendsIsRoutedInTheSameTick) {
-  Running r("DEF S ProximitySensor { size 30 30 30 } DEF HUD Transform {} ROUTE S.position_changed TO HUD.translation"
+  Running r("DEF S ProximitySensor { size 30 30 30 } DEF HUD Transform {} ROUTE S.position_changed "
+            "TO HUD.translation"
             " ROUTE S.orientation_changed TO HUD.rotation");
   r.browser.tick(1);
   EXPECT_EQ(r.get("HUD", "translation"), "0 0 10");
 }
 
 TEST(ProximitySensor, TwoInstancesOfAPrototypeSenseByThemselves) {
-  Running r("PROTO P [ exposedField SFVec3f at 0 0 0 eventOut SFBool in ] { Transform { translation IS at children"
-            " ProximitySensor { size 4 4 4 isActive IS in } } } DEF A P { at 0 0 10 } DEF B P { at 9 0 0 }");
+  Running r("PROTO P [ exposedField SFVec3f at 0 0 0 eventOut SFBool in ] { Transform { "
+            "translation IS at children"
+            " ProximitySensor { size 4 4 4 isActive IS in } } } DEF A P { at 0 0 10 } DEF B P { at "
+            "9 0 0 }");
   r.log("A", "in");
   r.log("B", "in");
   r.browser.tick(1);
@@ -144,8 +150,10 @@ TEST(VisibilitySensor, SendsWhenItsBoxComesIntoViewAndLeavesIt) {
 }
 
 TEST(VisibilitySensor, ThePictureEndsAtItsEdges) {
-  // Half a picture is 10 tan(fieldOfView / 2) = 5 high at the origin and, by the aspect of 2, 10 wide.
-  Region r("Viewpoint { fieldOfView 0.9272952 } DEF T Transform { children DEF S VisibilitySensor { size 2 2 0.0001 } }");
+  // Half a picture is 10 tan(fieldOfView / 2) = 5 high at the origin and, by the aspect of 2, 10
+  // wide.
+  Region r("Viewpoint { fieldOfView 0.9272952 } DEF T Transform { children DEF S VisibilitySensor "
+           "{ size 2 2 0.0001 } }");
   r.browser.setAspect(2);
   const auto seen = [&](float x, float y) {
     r.set("T", "translation", Vec3f{x, y, 0});
@@ -172,8 +180,10 @@ TEST(VisibilitySensor, ABoxBeyondAllEdgesAndOneAroundTheEyeAreSeen) {
 }
 
 TEST(VisibilitySensor, ABoxThatNoCornerPutsBesideThePictureIsNotSeenFromOutside) {
-  // A long thin box beside the picture: its corners are before and behind the viewer, none beyond one edge alone.
-  Region r("Viewpoint { position 0 0 0 } Transform { translation 9 0 0 rotation 0 1 0 -0.7853982 children"
+  // A long thin box beside the picture: its corners are before and behind the viewer, none beyond
+  // one edge alone.
+  Region r("Viewpoint { position 0 0 0 } Transform { translation 9 0 0 rotation 0 1 0 -0.7853982 "
+           "children"
            " DEF S VisibilitySensor { size 0.1 0.1 60 } }");
   r.browser.tick(1);
   EXPECT_EQ(r.get("S", "isActive"), "FALSE");

@@ -1,4 +1,5 @@
-// Axes of rotations are normalised (5.8) wherever a node gets one: files, events, prototypes, programs. The direction is kept.
+// Axes of rotations are normalised (5.8) wherever a node gets one: files, events, prototypes,
+// programs. The direction is kept.
 #include <cmath>
 
 #include "conformance/events/support.h"
@@ -23,15 +24,18 @@ TEST(Rotations, InListsAreNormalisedOneByOne) {
 }
 
 TEST(Rotations, OneMessageSaysHowManyAndWhich) {
-  Running r("DEF O OrientationInterpolator { key [ 0 1 2 ] keyValue [ 0 1 1 0, 0 3 4 1, 2 0 0 1 ] }");
+  Running r(
+      "DEF O OrientationInterpolator { key [ 0 1 2 ] keyValue [ 0 1 1 0, 0 3 4 1, 2 0 0 1 ] }");
   const auto& list = r.browser.world().diagnostics.list();
   ASSERT_EQ(list.size(), 1u);
-  EXPECT_EQ(list[0].message,
-            "OrientationInterpolator.keyValue: the axis 0 3 4 has length 5, not 1; it and 1 more are normalised");
+  EXPECT_EQ(list[0].message, "OrientationInterpolator.keyValue: the axis 0 3 4 has length 5, not "
+                             "1; it and 1 more are normalised");
 }
 
-TEST(Rotations, ComponentsUpToOneAreNoWordWorth) { // 0 1 1 is how many files write "between y and z"
-  Running r("DEF T Transform { rotation 0 1 1 1 } DEF U Transform { rotation 0.577 0.577 0.577 1 } DEF V Transform { rotation 0 "
+TEST(Rotations,
+     ComponentsUpToOneAreNoWordWorth) { // 0 1 1 is how many files write "between y and z"
+  Running r("DEF T Transform { rotation 0 1 1 1 } DEF U Transform { rotation 0.577 0.577 0.577 1 } "
+            "DEF V Transform { rotation 0 "
             "0 0 1 }");
   EXPECT_TRUE(r.browser.world().diagnostics.list().empty());
   EXPECT_EQ(r.get("T", "rotation"), "0 0.707107 0.707107 1");
@@ -49,7 +53,8 @@ TEST(Rotations, OfEventsAreNormalisedAndSentSo) {
 }
 
 TEST(Rotations, ThroughPrototypesAreNormalisedWhereANodeTakesThem) {
-  Running r("PROTO P [ exposedField SFRotation turn 0 0 2 1 ] { Transform { rotation IS turn } } DEF A P {} DEF B P { turn 0 "
+  Running r("PROTO P [ exposedField SFRotation turn 0 0 2 1 ] { Transform { rotation IS turn } } "
+            "DEF A P {} DEF B P { turn 0 "
             "1.618034 1 "
             "1.25 }");
   const auto inside = [&](const char* name) {
@@ -70,7 +75,8 @@ TEST(Rotations, OfProgramsAreNormalisedAndWrittenSo) {
   const NodeRef node(type.create(type));
   node->set(*type.find("rotation"), wild);
   EXPECT_EQ(textOf(node->get(*type.find("rotation"))), golden);
-  *static_cast<SFRotation*>(node->storage(*type.find("scaleOrientation"))) = {0, 2, 0, 1}; // past all checks
+  *static_cast<SFRotation*>(node->storage(*type.find("scaleOrientation"))) = {0, 2, 0,
+                                                                              1}; // past all checks
   World world;
   world.scope.roots.push_back(node);
   const auto again = loadWorldFromMemory(writeWorld(world), "again.wrl");

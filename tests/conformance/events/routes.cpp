@@ -5,7 +5,8 @@ namespace xvrml {
 namespace {
 
 TEST(Routes, ExposedFieldSendsWhatItWasSetTo) {
-  Running r("DEF A Transform {} DEF B Transform {} ROUTE A.translation_changed TO B.set_translation");
+  Running r(
+      "DEF A Transform {} DEF B Transform {} ROUTE A.translation_changed TO B.set_translation");
   r.log("B", "translation_changed");
   r.set("A", "set_translation", Vec3f{1, 2, 3});
   EXPECT_EQ(r.take(), Log{"0 B.translation_changed 1 2 3"});
@@ -13,7 +14,8 @@ TEST(Routes, ExposedFieldSendsWhatItWasSetTo) {
 }
 
 TEST(Routes, ALoopEndsBecauseAnEventOutSendsOncePerTimestamp) {
-  Running r("DEF A Transform {} DEF B Transform {} ROUTE A.translation TO B.translation ROUTE B.translation TO A.translation");
+  Running r("DEF A Transform {} DEF B Transform {} ROUTE A.translation TO B.translation ROUTE "
+            "B.translation TO A.translation");
   r.log("A", "translation");
   r.log("B", "translation");
   r.set("A", "translation", Vec3f{1, 0, 0});
@@ -23,7 +25,8 @@ TEST(Routes, ALoopEndsBecauseAnEventOutSendsOncePerTimestamp) {
 }
 
 TEST(Routes, FanOutReachesAllInTheOrderOfTheRoutes) {
-  Running r("DEF A Transform {} DEF B Transform {} DEF C Transform {} ROUTE A.translation TO C.translation ROUTE A.translation "
+  Running r("DEF A Transform {} DEF B Transform {} DEF C Transform {} ROUTE A.translation TO "
+            "C.translation ROUTE A.translation "
             "TO B.translation");
   r.log("B", "translation");
   r.log("C", "translation");
@@ -32,16 +35,19 @@ TEST(Routes, FanOutReachesAllInTheOrderOfTheRoutes) {
 }
 
 TEST(Routes, FanInDeliversAllAndSendsOne) {
-  Running r("DEF A Transform {} DEF B Transform { scale 2 2 2 } DEF C Transform {} DEF D Transform {}"
-            "ROUTE A.translation TO B.translation ROUTE A.translation TO C.translation ROUTE B.translation TO D.translation "
-            "ROUTE C.translation TO D.translation");
+  Running r(
+      "DEF A Transform {} DEF B Transform { scale 2 2 2 } DEF C Transform {} DEF D Transform {}"
+      "ROUTE A.translation TO B.translation ROUTE A.translation TO C.translation ROUTE "
+      "B.translation TO D.translation "
+      "ROUTE C.translation TO D.translation");
   r.log("D", "translation");
   r.set("A", "translation", Vec3f{1, 0, 0});
   EXPECT_EQ(r.take().size(), 1u);
 }
 
 TEST(Routes, DuplicateRoutesCountOnce) {
-  Running r("DEF A Transform {} DEF B Transform {} ROUTE A.translation TO B.translation ROUTE A.translation_changed TO "
+  Running r("DEF A Transform {} DEF B Transform {} ROUTE A.translation TO B.translation ROUTE "
+            "A.translation_changed TO "
             "B.set_translation");
   EXPECT_FALSE(r.browser.deleteRoute(r.node("B"), "translation", r.node("A"), "translation"));
   EXPECT_TRUE(r.browser.deleteRoute(r.node("A"), "translation", r.node("B"), "translation"));
@@ -51,7 +57,8 @@ TEST(Routes, DuplicateRoutesCountOnce) {
 
 TEST(Routes, AWideFanOutCountsDuplicatesOnceAndForgetsDeletedOnes) {
   std::string world = "DEF A Transform {}";
-  for (int i = 0; i < 200; ++i) world += fmt::format("DEF B{} Transform {{}} ROUTE A.translation TO B{}.translation ", i, i);
+  for (int i = 0; i < 200; ++i)
+    world += fmt::format("DEF B{} Transform {{}} ROUTE A.translation TO B{}.translation ", i, i);
   Running r(world + "ROUTE A.translation TO B7.translation");
   EXPECT_TRUE(r.browser.deleteRoute(r.node("A"), "translation", r.node("B7"), "translation"));
   EXPECT_FALSE(r.browser.deleteRoute(r.node("A"), "translation", r.node("B7"), "translation"));
@@ -63,16 +70,17 @@ TEST(Routes, AWideFanOutCountsDuplicatesOnceAndForgetsDeletedOnes) {
 }
 
 TEST(Routes, EventsCrossTheBordersOfPrototypes) {
-  Running r(
-      "PROTO P [ eventIn SFVec3f in eventOut SFVec3f out ] { DEF T Transform { translation IS in translation_changed IS out } }"
-      "DEF I P {} DEF A Transform {} DEF B Transform {}"
-      "ROUTE A.translation TO I.in ROUTE I.out TO B.translation");
+  Running r("PROTO P [ eventIn SFVec3f in eventOut SFVec3f out ] { DEF T Transform { translation "
+            "IS in translation_changed IS out } }"
+            "DEF I P {} DEF A Transform {} DEF B Transform {}"
+            "ROUTE A.translation TO I.in ROUTE I.out TO B.translation");
   r.set("A", "translation", Vec3f{1, 2, 3});
   EXPECT_EQ(r.get("B", "translation"), "1 2 3");
 }
 
 TEST(Routes, AnExposedFieldOfAPrototypeFollowsTheNodeInItsBody) {
-  Running r("PROTO P [ exposedField SFVec3f at 1 1 1 ] { DEF T Transform { translation IS at } DEF U Transform {} ROUTE "
+  Running r("PROTO P [ exposedField SFVec3f at 1 1 1 ] { DEF T Transform { translation IS at } DEF "
+            "U Transform {} ROUTE "
             "T.translation TO U.translation }"
             "DEF I P { at 5 5 5 } DEF B Transform {} ROUTE I.at_changed TO B.translation");
   EXPECT_EQ(r.get("I", "at"), "5 5 5");
@@ -111,10 +119,12 @@ TEST(Changes, EachFieldIsReportedOnceBetweenTwoReadings) {
 }
 
 TEST(Changes, RoutesTellWhatTheyCanReach) {
-  Running r("PROTO P [ eventIn SFVec3f in ] { DEF T Transform { translation IS in } } DEF I P {} DEF A Transform {} DEF B "
+  Running r("PROTO P [ eventIn SFVec3f in ] { DEF T Transform { translation IS in } } DEF I P {} "
+            "DEF A Transform {} DEF B "
             "Transform {} ROUTE A.translation TO I.in");
   EXPECT_TRUE(reaches(*renderedNode(&r.node("I")), Change::transform));
-  EXPECT_EQ(reachReason(*renderedNode(&r.node("I")), Change::transform), "ROUTE from A.translation");
+  EXPECT_EQ(reachReason(*renderedNode(&r.node("I")), Change::transform),
+            "ROUTE from A.translation");
   EXPECT_FALSE(reaches(r.node("B"), Change::transform));
 }
 

@@ -1,5 +1,5 @@
-// Scripts in processes of their own: what a program there cannot do, and what becomes of it, of the others and of the world when
-// it tries. Programs are those of tests/script/hostile_engine.c.
+// Scripts in processes of their own: what a program there cannot do, and what becomes of it, of the
+// others and of the world when it tries. Programs are those of tests/script/hostile_engine.c.
 #include <algorithm>
 #include <csignal>
 #include <filesystem>
@@ -30,18 +30,21 @@ BrowserOptions limits(double patience = 0, double seconds = 5) {
   return options;
 }
 
-// Script S does what `program` says when `go` arrives; E is a well-behaved one, of the test engine, in a process, too.
+// Script S does what `program` says when `go` arrives; E is a well-behaved one, of the test engine,
+// in a process, too.
 std::string world(const std::string& program) {
   return "DEF S Script { eventIn SFBool go eventOut SFInt32 out\n url \"hostile:" + program +
          "\" }\nDEF E Script { eventIn SFInt32 in eventOut SFInt32 out url \"test:in: echo out\" }";
 }
 
 struct Hostile : Scripted {
-  explicit Hostile(const std::string& program, BrowserOptions options = limits()) : Scripted(world(program), options) {}
+  explicit Hostile(const std::string& program, BrowserOptions options = limits())
+      : Scripted(world(program), options) {}
   bool lives() { // the world does
     static int32_t number = 0;
     set("E", "in", ++number);
-    for (int i = 0; i < 2000 && get("E", "out") != std::to_string(number); ++i) { // with patience, on a machine that is busy
+    for (int i = 0; i < 2000 && get("E", "out") != std::to_string(number);
+         ++i) { // with patience, on a machine that is busy
       browser.tick(browser.now() + 1.0 / 60);
       usleep(1000);
     }
@@ -89,11 +92,13 @@ constexpr Misdeed misdeeds[] = {
     {"Exit", "go: exit 0", "its process ended with code 0"},
     {"BytesForMessages", "go: speak 0123456789abcdef0123456789abcdef", "its process"},
 };
-INSTANTIATE_TEST_SUITE_P(All, ScriptMisdeeds, testing::ValuesIn(misdeeds), [](const auto& info) { return info.param.name; });
+INSTANTIATE_TEST_SUITE_P(All, ScriptMisdeeds, testing::ValuesIn(misdeeds),
+                         [](const auto& info) { return info.param.name; });
 
 // With the default of isolation.
 TEST_P(ScriptMisdeeds, StopTheScriptAndNothingElse) {
-  if (sanitized && GetParam().name == std::string_view("MemoryBomb")) GTEST_SKIP() << "memory has no limit with sanitizers";
+  if (sanitized && GetParam().name == std::string_view("MemoryBomb"))
+    GTEST_SKIP() << "memory has no limit with sanitizers";
   for (const double patience : {0.0, 0.02}) {
     // What ends by itself may take its time: a busy machine is slow.
     const bool endless = GetParam().message == std::string_view("took too long");
@@ -118,7 +123,8 @@ TEST_P(ScriptMisdeeds, StopTheScriptAndNothingElse) {
     r.set("S", "url", MFString{"hostile:go: print again"});
     r.set("S", "go", true);
     Log printed = r.printed();
-    for (int i = 0; i < 10'000 && std::count(printed.begin(), printed.end(), "again") == 0; ++i) r.ticksUntilTold(printed);
+    for (int i = 0; i < 10'000 && std::count(printed.begin(), printed.end(), "again") == 0; ++i)
+      r.ticksUntilTold(printed);
     EXPECT_EQ(std::count(printed.begin(), printed.end(), "again"), 1);
   }
 }
@@ -156,7 +162,8 @@ TEST_F(ScriptProcess, ReachesNothing) {
 }
 
 TEST_F(ScriptProcess, EveryFunctionHasItsBudget) {
-  for (const char* when : {"create", "initialize", "eventsProcessed", "tick", "shutdown", "destroy"}) {
+  for (const char* when :
+       {"create", "initialize", "eventsProcessed", "tick", "shutdown", "destroy"}) {
     Log told;
     {
       Hostile r(std::string(when) + ": spin\ngo: print went", limits(0, 0.3));
@@ -191,7 +198,9 @@ TEST_F(ScriptProcess, OneThatIsKilledWhileNothingRunsIsStartedAnew) {
   EXPECT_EQ(r.printed(), Log{"begins"});
   const Log messages = r.messages();
   ASSERT_EQ(messages.size(), 1u);
-  EXPECT_EQ(messages[0].find("3: Script S: the process that it runs in ended by signal 9 (Killed)"), 0u) << messages[0];
+  EXPECT_EQ(messages[0].find("3: Script S: the process that it runs in ended by signal 9 (Killed)"),
+            0u)
+      << messages[0];
 }
 
 TEST_F(ScriptProcess, OneThatIsAlwaysKilledIsStopped) {
@@ -213,9 +222,10 @@ TEST_F(ScriptProcess, ManyScriptsShareProcessesAndOneThatEndsItsProcessEndsAlone
   std::string text;
   constexpr int scripts = 40;
   for (int i = 0; i < scripts; ++i)
-    text += fmt::format("DEF S{} Script {{ eventIn SFBool go eventIn SFBool die eventOut SFInt32 out url \"hostile:"
-                        "go: process out\ndie: crash\" }}\n",
-                        i);
+    text += fmt::format(
+        "DEF S{} Script {{ eventIn SFBool go eventIn SFBool die eventOut SFInt32 out url \"hostile:"
+        "go: process out\ndie: crash\" }}\n",
+        i);
   Scripted r(text, limits());
   const auto processes = [&](int script) {
     r.set(fmt::format("S{}", script), "go", true);
@@ -233,9 +243,12 @@ TEST_F(ScriptProcess, ManyScriptsShareProcessesAndOneThatEndsItsProcessEndsAlone
   r.set("S3", "die", true);
   Log messages = r.messages();
   ASSERT_EQ(long(messages.size()), mates);
-  EXPECT_NE(messages[0].find("Script S3: event: its process ended"), std::string::npos) << messages[0];
-  for (long i = 1; i < mates; ++i) EXPECT_NE(messages[size_t(i)].find("it is started anew"), std::string::npos);
-  for (int i = 0; i < scripts; ++i) EXPECT_TRUE(i == 3 || (of[size_t(i)] == of[3]) == (processes(i) != of[size_t(i)])) << i;
+  EXPECT_NE(messages[0].find("Script S3: event: its process ended"), std::string::npos)
+      << messages[0];
+  for (long i = 1; i < mates; ++i)
+    EXPECT_NE(messages[size_t(i)].find("it is started anew"), std::string::npos);
+  for (int i = 0; i < scripts; ++i)
+    EXPECT_TRUE(i == 3 || (of[size_t(i)] == of[3]) == (processes(i) != of[size_t(i)])) << i;
   EXPECT_EQ(r.messages(), Log{});
 }
 
@@ -246,8 +259,10 @@ TEST_F(ScriptProcess, WithoutTheProgramScriptsDoNothing) {
     unsetenv("XVRML_SCRIPT_HOST");
     const Log messages = r.messages();
     ASSERT_EQ(messages.size(), 2u); // of each engine
-    EXPECT_EQ(messages[0].find("2: Script S: no process for programs of engine hostile: "), 0u) << messages[0];
-    EXPECT_NE(messages[0].find("; Scripts of this engine do nothing"), std::string::npos) << messages[0];
+    EXPECT_EQ(messages[0].find("2: Script S: no process for programs of engine hostile: "), 0u)
+        << messages[0];
+    EXPECT_NE(messages[0].find("; Scripts of this engine do nothing"), std::string::npos)
+        << messages[0];
     EXPECT_TRUE(r.set("S", "go", true));
     r.browser.tick(1);
     EXPECT_EQ(r.printed(), Log{});
@@ -256,7 +271,8 @@ TEST_F(ScriptProcess, WithoutTheProgramScriptsDoNothing) {
 }
 
 TEST_F(ScriptProcess, AWorldCannotEndProcessesForEver) {
-  Scripted r(world("go: exit 3") + "DEF N Script { eventIn SFBool go url \"hostile:go: print x\" }", limits());
+  Scripted r(world("go: exit 3") + "DEF N Script { eventIn SFBool go url \"hostile:go: print x\" }",
+             limits());
   for (int i = 0; i < 100; ++i) {
     r.set("S", "url", MFString{fmt::format("hostile:go: exit {}", i)});
     r.set("S", "go", true);
@@ -269,7 +285,8 @@ TEST_F(ScriptProcess, AWorldCannotEndProcessesForEver) {
   EXPECT_EQ(r.printed(), Log{});
   const Log messages = r.messages();
   ASSERT_EQ(messages.size(), 1u);
-  EXPECT_NE(messages[0].find("100 processes have been ended by programs of this world; Scripts of this engine do nothing"),
+  EXPECT_NE(messages[0].find("100 processes have been ended by programs of this world; Scripts of "
+                             "this engine do nothing"),
             std::string::npos)
       << messages[0];
 }
@@ -310,7 +327,8 @@ TEST_F(ScriptProcess, TheWorldGoesOnWhileAScriptTakesItsTime) {
 
 TEST_F(ScriptProcess, FramesGoOnWhileAScriptLoops) {
   for (const char* program : {"go: spin", "go: calls out", "go: chatter x"}) {
-    Scripted r(world(program) + " DEF C TimeSensor { loop TRUE } DEF T Script { eventIn SFTime in eventOut SFTime out url "
+    Scripted r(world(program) + " DEF C TimeSensor { loop TRUE } DEF T Script { eventIn SFTime in "
+                                "eventOut SFTime out url "
                                 "\"test:in: echo out\" } ROUTE C.time TO T.in",
                limits(0.05, 0.6));
     r.log("T", "out");
@@ -327,14 +345,17 @@ TEST_F(ScriptProcess, FramesGoOnWhileAScriptLoops) {
       r.browser.tick(r.browser.now() + 1.0 / 60);
       usleep(2000);
     }
-    EXPECT_GE(int(r.take().size()), frames / 2) << program; // the other Script; in each of them, where nothing else runs
+    EXPECT_GE(int(r.take().size()), frames / 2)
+        << program; // the other Script; in each of them, where nothing else runs
   }
 }
 
 TEST_F(ScriptProcess, ManyLoopsCostOnePatience) {
   std::string text = "DEF G Group {} DEF T Transform {}";
   for (int i = 0; i < 100; ++i)
-    text += fmt::format("DEF S{} Script {{ eventIn SFVec3f go url \"hostile:go: spin\" }} ROUTE T.translation TO S{}.go\n", i, i);
+    text += fmt::format("DEF S{} Script {{ eventIn SFVec3f go url \"hostile:go: spin\" }} ROUTE "
+                        "T.translation TO S{}.go\n",
+                        i, i);
   Scripted r(text, limits(0.05, 60));
   const auto start = std::chrono::steady_clock::now();
   r.set("T", "translation", Vec3f{1, 2, 3});
@@ -347,15 +368,18 @@ TEST_F(ScriptProcess, ManyLoopsCostOnePatience) {
 TEST_F(ScriptProcess, WithHardlyAnyPatienceScriptsBeginByAndBy) {
   std::string text = "DEF T Transform {}";
   for (int i = 0; i < 100; ++i)
-    text +=
-        fmt::format("DEF S{} Script {{ eventIn SFVec3f in url \"hostile:initialize: slow 1\ninitialize: print begins\nin: print "
-                    "event\" }} ROUTE T.translation TO S{}.in\n",
-                    i, i);
+    text += fmt::format("DEF S{} Script {{ eventIn SFVec3f in url \"hostile:initialize: slow "
+                        "1\ninitialize: print begins\nin: print "
+                        "event\" }} ROUTE T.translation TO S{}.in\n",
+                        i, i);
   Scripted r(text, limits(1e-6, 10));
   r.set("T", "translation", Vec3f{1, 2, 3}); // waits for those that have not begun
   Log printed = r.printed();
-  const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(2); // a busy machine is in no hurry
-  for (int i = 0; std::chrono::steady_clock::now() < end && std::count(printed.begin(), printed.end(), "event") < 100; ++i) {
+  const auto end =
+      std::chrono::steady_clock::now() + std::chrono::minutes(2); // a busy machine is in no hurry
+  for (int i = 0; std::chrono::steady_clock::now() < end &&
+                  std::count(printed.begin(), printed.end(), "event") < 100;
+       ++i) {
     r.browser.tick(i);
     for (std::string& line : r.printed())
       if (line != "slept") printed.push_back(std::move(line));
@@ -371,7 +395,9 @@ TEST_F(ScriptProcess, WithHardlyAnyPatienceScriptsBeginByAndBy) {
 TEST_F(ScriptProcess, EventsThatWaitAreBounded) {
   Hostile r("go: slow 300\ngo: print went", limits(0.01, 10));
   for (int i = 0; i < 1500; ++i) r.set("S", "go", true);
-  EXPECT_EQ(r.messages(), Log{"2: Script S: is still busy: the oldest of the events that wait for it are dropped"});
+  EXPECT_EQ(
+      r.messages(),
+      Log{"2: Script S: is still busy: the oldest of the events that wait for it are dropped"});
   EXPECT_TRUE(r.lives());
 }
 
@@ -394,7 +420,8 @@ TEST_F(ScriptProcess, NobodyWaitsForAProgramThatIsStuck) {
 
 size_t openFiles() {
   size_t count = 0;
-  for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) ++count;
+  for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator("/proc/self/fd"))
+    ++count;
   return count;
 }
 

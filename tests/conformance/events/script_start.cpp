@@ -1,5 +1,5 @@
-// Many Scripts start side by side in their processes: the world sees no difference but the time that it takes. And what all Scripts
-// of a world may take together.
+// Many Scripts start side by side in their processes: the world sees no difference but the time
+// that it takes. And what all Scripts of a world may take together.
 #include <algorithm>
 #include <chrono>
 
@@ -20,17 +20,21 @@ BrowserOptions settings(Isolation isolation) {
   return options;
 }
 
-// Each prints, sends an event, reads another node and writes a field of its own while it starts. Some have a first URL that cannot
-// be run, some a program that fails.
+// Each prints, sends an event, reads another node and writes a field of its own while it starts.
+// Some have a first URL that cannot be run, some a program that fails.
 std::string manyScripts(int count) {
   std::string text = "DEF T Transform { translation 1 2 3 }\n";
   for (int i = 0; i < count; ++i)
-    text += fmt::format("DEF S{0} Script {{ field SFNode node USE T eventOut SFVec3f out eventOut SFTime time url [ {1} \"test:"
-                        "create: print create {0}\ninitialize: now time\ninitialize: read node translation out\n"
-                        "initialize: {2} initialize {0}\" ] }}\n",
-                        i, i % 7 == 3 ? "\"nothing:\"" : "", i % 5 == 2 ? "error 1" : "print");
+    text += fmt::format(
+        "DEF S{0} Script {{ field SFNode node USE T eventOut SFVec3f out eventOut SFTime time url "
+        "[ {1} \"test:"
+        "create: print create {0}\ninitialize: now time\ninitialize: read node translation out\n"
+        "initialize: {2} initialize {0}\" ] }}\n",
+        i, i % 7 == 3 ? "\"nothing:\"" : "", i % 5 == 2 ? "error 1" : "print");
   for (int i = 0; i + 1 < count; ++i)
-    text += fmt::format("DEF R{0} Script {{ eventIn SFVec3f in url \"test:in: print event of {0}\" }} ROUTE S{0}.out TO R{0}.in\n", i);
+    text += fmt::format("DEF R{0} Script {{ eventIn SFVec3f in url \"test:in: print event of {0}\" "
+                        "}} ROUTE S{0}.out TO R{0}.in\n",
+                        i);
   return text;
 }
 
@@ -42,12 +46,14 @@ TEST(ScriptStart, ManyAtOnceLookLikeOneAfterTheOther) {
   EXPECT_GE(expected.size(), 150u);
   EXPECT_EQ(there.printed(), expected);
   EXPECT_EQ(there.messages(), here.messages());
-  for (int i = 0; i < 60; ++i) EXPECT_EQ(there.get(fmt::format("S{}", i), "out"), here.get(fmt::format("S{}", i), "out")) << i;
+  for (int i = 0; i < 60; ++i)
+    EXPECT_EQ(there.get(fmt::format("S{}", i), "out"), here.get(fmt::format("S{}", i), "out")) << i;
 }
 
 TEST(ScriptStart, ProcessesWorkSideBySide) {
   std::string text;
-  for (int i = 0; i < 12; ++i) text += "Script { url \"hostile:initialize: slow 600\" }\n"; // sleeps: needs no processor
+  for (int i = 0; i < 12; ++i)
+    text += "Script { url \"hostile:initialize: slow 600\" }\n"; // sleeps: needs no processor
   const auto start = std::chrono::steady_clock::now();
   Scripted r(text, settings(Isolation::always));
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
@@ -59,14 +65,20 @@ TEST(ScriptStart, OneThatEndsItsProcessHoldsNobodyUp) {
   std::string text;
   for (int i = 0; i < 40; ++i)
     text += fmt::format("DEF S{0} Script {{ url \"hostile:initialize: {1}\" }}\n", i,
-                        i == 5 ? "crash" : i == 20 ? "exit 3" : fmt::format("print begins {}", i));
+                        i == 5    ? "crash"
+                        : i == 20 ? "exit 3"
+                                  : fmt::format("print begins {}", i));
   Scripted r(text, settings(Isolation::always));
   const Log messages = r.messages();
-  const auto stopped = [](const std::string& line) { return line.find("the Script is stopped") != std::string::npos; };
-  EXPECT_EQ(std::count_if(messages.begin(), messages.end(), stopped), 2) << testing::PrintToString(messages);
+  const auto stopped = [](const std::string& line) {
+    return line.find("the Script is stopped") != std::string::npos;
+  };
+  EXPECT_EQ(std::count_if(messages.begin(), messages.end(), stopped), 2)
+      << testing::PrintToString(messages);
   Log printed = r.printed();
   std::sort(printed.begin(), printed.end());
-  printed.erase(std::unique(printed.begin(), printed.end()), printed.end()); // those of the same processes begin again
+  printed.erase(std::unique(printed.begin(), printed.end()),
+                printed.end()); // those of the same processes begin again
   EXPECT_EQ(printed.size(), 38u);
 }
 
@@ -124,8 +136,10 @@ TEST(ScriptTime, OfAWorldIsBounded) {
     EXPECT_EQ(r.printed(), Log{});
     const Log messages = r.messages();
     ASSERT_FALSE(messages.empty());
-    EXPECT_NE(messages.back().find("limit worldScriptSeconds=0.5"), std::string::npos) << messages.back();
-    EXPECT_NE(messages.back().find("of 51 Scripts are stopped"), std::string::npos) << messages.back();
+    EXPECT_NE(messages.back().find("limit worldScriptSeconds=0.5"), std::string::npos)
+        << messages.back();
+    EXPECT_NE(messages.back().find("of 51 Scripts are stopped"), std::string::npos)
+        << messages.back();
     r.browser.tick(1);
     r.browser.tick(2);
     EXPECT_EQ(r.messages(), Log{});
@@ -136,7 +150,8 @@ TEST(ScriptTime, GrowsWithTheTimeOfTheWorld) {
   for (const bool moves : {true, false}) {
     RunOptions run{.epoch = 0};
     run.worldScriptSeconds = 0.02; // 0.2 s of sleep
-    Scripted r("DEF S Script { eventIn SFBool go url \"hostile:go: slow 30\" }", settings(Isolation::always), run);
+    Scripted r("DEF S Script { eventIn SFBool go url \"hostile:go: slow 30\" }",
+               settings(Isolation::always), run);
     for (int i = 0; i < 12; ++i) {
       r.browser.tick(moves ? i : 0);
       r.set("S", "go", true);

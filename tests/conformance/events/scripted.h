@@ -1,5 +1,6 @@
-// scripted.h: a small world whose Scripts are run by the test engine (plugins/script/test); what they print is kept. Tests of a
-// fixture that derives from ScriptsSomewhere run twice: Scripts in this process, and in processes of their own.
+// scripted.h: a small world whose Scripts are run by the test engine (plugins/script/test); what
+// they print is kept. Tests of a fixture that derives from ScriptsSomewhere run twice: Scripts in
+// this process, and in processes of their own.
 #pragma once
 
 #include <cstdlib>
@@ -9,7 +10,8 @@
 
 namespace xvrml {
 
-// Where the Scripts of the present test run. ctest runs the tests of languages a second time with $XVRML_TEST_ISOLATION=always.
+// Where the Scripts of the present test run. ctest runs the tests of languages a second time with
+// $XVRML_TEST_ISOLATION=always.
 inline const bool everythingInProcesses = std::getenv("XVRML_TEST_ISOLATION") != nullptr;
 inline BrowserOptions::Isolation isolationOfTest = BrowserOptions::Isolation::automatic;
 
@@ -21,13 +23,16 @@ class ScriptsSomewhere : public testing::TestWithParam<BrowserOptions::Isolation
 inline std::string whereName(const testing::TestParamInfo<BrowserOptions::Isolation>& info) {
   return info.param == BrowserOptions::Isolation::always ? "process" : "here";
 }
-#define XVRML_SCRIPTS_SOMEWHERE(fixture)                                                                                         \
-  INSTANTIATE_TEST_SUITE_P(Where, fixture, testing::Values(BrowserOptions::Isolation::never, BrowserOptions::Isolation::always), \
-                           whereName)
+#define XVRML_SCRIPTS_SOMEWHERE(fixture)                                                           \
+  INSTANTIATE_TEST_SUITE_P(                                                                        \
+      Where, fixture,                                                                              \
+      testing::Values(BrowserOptions::Isolation::never, BrowserOptions::Isolation::always),        \
+      whereName)
 
 inline BrowserOptions scriptOptions(BrowserOptions options = {}) {
   if (options.scriptPath.empty()) options.scriptPath = XVRML_TEST_SCRIPTS;
-  if (options.scriptIsolation == BrowserOptions::Isolation::automatic) options.scriptIsolation = isolationOfTest;
+  if (options.scriptIsolation == BrowserOptions::Isolation::automatic)
+    options.scriptIsolation = isolationOfTest;
   return options;
 }
 
@@ -37,7 +42,8 @@ struct Printed {
 
 class Scripted : private Printed, public Running {
  public:
-  explicit Scripted(const std::string& vrml, BrowserOptions options = {}, const RunOptions& run = {.epoch = 0})
+  explicit Scripted(const std::string& vrml, BrowserOptions options = {},
+                    const RunOptions& run = {.epoch = 0})
       : Running(vrml, 0, with(std::move(options), lines), run) {}
 
   // Lines since the last call.
@@ -46,7 +52,8 @@ class Scripted : private Printed, public Running {
   Log messages() {
     Log result;
     const auto& list = browser.world().diagnostics.list();
-    for (; told_ < list.size(); ++told_) result.push_back(fmt::format("{}: {}", list[told_].line, list[told_].message));
+    for (; told_ < list.size(); ++told_)
+      result.push_back(fmt::format("{}: {}", list[told_].line, list[told_].message));
     return result;
   }
 

@@ -11,7 +11,8 @@ XVRML_SCRIPTS_SOMEWHERE(Scripts);
 
 TEST_P(Scripts, EventsGoInAndComeOut) {
   Scripted r("DEF S Script { eventIn SFInt32 in eventOut SFInt32 out url \"test:in: echo out\" } "
-             "DEF T Script { eventIn SFInt32 in field SFInt32 sum 10 eventOut SFInt32 out url \"test:in: add sum out\" } "
+             "DEF T Script { eventIn SFInt32 in field SFInt32 sum 10 eventOut SFInt32 out url "
+             "\"test:in: add sum out\" } "
              "ROUTE S.out TO T.in");
   r.log("S", "out");
   r.log("T", "out");
@@ -26,7 +27,8 @@ TEST_P(Scripts, EventsGoInAndComeOut) {
 
 TEST_P(Scripts, InitializeComesBeforeTheFirstEvent) {
   Scripted r("DEF C TimeSensor { loop TRUE } DEF S Script { eventIn SFTime in eventOut SFTime out "
-             "url \"test:create: print create\ninitialize: print initialize\ninitialize: now out\nin: print event\" } "
+             "url \"test:create: print create\ninitialize: print initialize\ninitialize: now "
+             "out\nin: print event\" } "
              "ROUTE C.time TO S.in");
   EXPECT_EQ(r.printed(), (Log{"create", "initialize"}));
   EXPECT_EQ(r.get("S", "out"), "0");
@@ -36,18 +38,20 @@ TEST_P(Scripts, InitializeComesBeforeTheFirstEvent) {
 
 TEST_P(Scripts, AnEventOfInitializeReachesItsRoutes) {
   Scripted r("DEF S Script { eventOut SFString out url \"test:initialize: text out hello\" } "
-             "DEF T Script { eventIn SFString in eventOut SFString out url \"test:initialize: print T\nin: echo out\" } "
+             "DEF T Script { eventIn SFString in eventOut SFString out url \"test:initialize: "
+             "print T\nin: echo out\" } "
              "ROUTE S.out TO T.in");
   EXPECT_EQ(r.printed(), Log{"T"});
   EXPECT_EQ(r.get("T", "out"), "hello");
 }
 
 TEST_P(Scripts, EventsProcessedFollowsTheEventsOfACascade) {
-  const std::string program = "url \"test:a: print a\nb: print b\neventsProcessed: print processed\"";
+  const std::string program =
+      "url \"test:a: print a\nb: print b\neventsProcessed: print processed\"";
   const std::string declared = "eventIn SFBool a eventIn SFBool b ";
   for (const char* must : {"TRUE", "FALSE"}) {
-    Scripted r("DEF V Viewpoint {} DEF S Script { mustEvaluate " + std::string(must) + " " + declared + program +
-               " } ROUTE V.isBound TO S.a ROUTE V.isBound TO S.b");
+    Scripted r("DEF V Viewpoint {} DEF S Script { mustEvaluate " + std::string(must) + " " +
+               declared + program + " } ROUTE V.isBound TO S.a ROUTE V.isBound TO S.b");
     r.printed();
     r.set("V", "set_bind", false);
     EXPECT_EQ(r.printed(), (Log{"a", "b", "processed"})) << must;
@@ -56,10 +60,11 @@ TEST_P(Scripts, EventsProcessedFollowsTheEventsOfACascade) {
 
 TEST_P(Scripts, WithoutMustEvaluateEventsWaitForTheEndOfTheCascade) {
   const auto order = [](const char* must) {
-    Scripted r(fmt::format("DEF A Script {{ eventIn SFBool in url \"test:in: print A\" mustEvaluate {} }} "
-                           "DEF B Script {{ eventIn SFBool in url \"test:in: print B\" mustEvaluate TRUE }} "
-                           "DEF V Viewpoint {{}} ROUTE V.isBound TO A.in ROUTE V.isBound TO B.in",
-                           must));
+    Scripted r(fmt::format(
+        "DEF A Script {{ eventIn SFBool in url \"test:in: print A\" mustEvaluate {} }} "
+        "DEF B Script {{ eventIn SFBool in url \"test:in: print B\" mustEvaluate TRUE }} "
+        "DEF V Viewpoint {{}} ROUTE V.isBound TO A.in ROUTE V.isBound TO B.in",
+        must));
     r.printed();
     r.set("V", "set_bind", false);
     return r.printed();
@@ -72,7 +77,8 @@ TEST_P(Scripts, AnEventOutSendsOnceInACascade) {
   Scripted r(
       "DEF S Script { mustEvaluate TRUE eventIn SFInt32 a eventIn SFInt32 b eventOut SFInt32 out "
       "url \"test:a: echo out\nb: echo out\" } "
-      "DEF T Script { eventIn SFInt32 in eventOut SFInt32 out url \"test:in: echo out\" } ROUTE T.out TO S.a ROUTE T.out TO "
+      "DEF T Script { eventIn SFInt32 in eventOut SFInt32 out url \"test:in: echo out\" } ROUTE "
+      "T.out TO S.a ROUTE T.out TO "
       "S.b");
   r.log("S", "out");
   r.set("T", "in", 1);
@@ -80,7 +86,8 @@ TEST_P(Scripts, AnEventOutSendsOnceInACascade) {
 }
 
 TEST_P(Scripts, OfSeveralValuesInOneFunctionTheLastOneIsSent) {
-  Scripted r("DEF S Script { eventIn SFBool in eventOut SFString out url \"test:in: text out one\nin: text out two\" }");
+  Scripted r("DEF S Script { eventIn SFBool in eventOut SFString out url \"test:in: text out "
+             "one\nin: text out two\" }");
   r.log("S", "out");
   r.set("S", "in", true);
   EXPECT_EQ(r.take(), Log{"0 S.out two"});
@@ -88,7 +95,8 @@ TEST_P(Scripts, OfSeveralValuesInOneFunctionTheLastOneIsSent) {
 
 TEST_P(Scripts, EventsToOtherNodesNeedDirectOutput) {
   const auto world = [](const char* direct) {
-    return fmt::format("DEF T Transform {{}} DEF S Script {{ directOutput {} field SFNode to USE T eventIn SFVec3f in "
+    return fmt::format("DEF T Transform {{}} DEF S Script {{ directOutput {} field SFNode to USE T "
+                       "eventIn SFVec3f in "
                        "url \"test:in: post to set_translation\" }}",
                        direct);
   };
@@ -96,8 +104,8 @@ TEST_P(Scripts, EventsToOtherNodesNeedDirectOutput) {
   refused.set("S", "in", Vec3f{1, 2, 3});
   EXPECT_EQ(refused.get("T", "translation"), "0 0 0");
   EXPECT_EQ(refused.printed(), Log{"post: 4 an event to another node needs directOutput TRUE"});
-  EXPECT_EQ(refused.messages(),
-            Log{"2: Script S: an event to another node needs directOutput TRUE (6.40); ignored, --compat scripts allows it"});
+  EXPECT_EQ(refused.messages(), Log{"2: Script S: an event to another node needs directOutput TRUE "
+                                    "(6.40); ignored, --compat scripts allows it"});
   refused.set("S", "in", Vec3f{1, 2, 3});
   EXPECT_EQ(refused.messages(), Log{}); // said once
   Scripted allowed(world("TRUE"));
@@ -110,11 +118,12 @@ TEST_P(Scripts, EventsToOtherNodesNeedDirectOutput) {
 }
 
 TEST_P(Scripts, ReadsTheFieldsOfNodesItKnows) {
-  Scripted r(
-      "DEF T Transform { translation 1 2 3 } DEF S Script { field SFNode to USE T eventIn SFBool a eventIn SFBool b eventIn "
-      "SFBool c eventOut SFVec3f out eventOut SFBool no "
-      "url \"test:a: read to translation out\na: read to translation_changed out\nb: read to bboxCenter out\n"
-      "c: read self directOutput no\nc: read to out out\" }");
+  Scripted r("DEF T Transform { translation 1 2 3 } DEF S Script { field SFNode to USE T eventIn "
+             "SFBool a eventIn SFBool b eventIn "
+             "SFBool c eventOut SFVec3f out eventOut SFBool no "
+             "url \"test:a: read to translation out\na: read to translation_changed out\nb: read "
+             "to bboxCenter out\n"
+             "c: read self directOutput no\nc: read to out out\" }");
   r.set("S", "a", true);
   EXPECT_EQ(r.get("S", "out"), "1 2 3");
   r.set("S", "b", true);
@@ -128,15 +137,17 @@ TEST_P(Scripts, NodesAreDescribed) {
   Scripted r("DEF T Group {} DEF S Script { field SFNode to USE T eventIn SFBool in "
              "url \"test:in: describe to\nin: find to set_children\nin: find to nothing\" }");
   r.set("S", "in", true);
-  EXPECT_EQ(r.printed(), (Log{"Group 'T'", "eventIn 15 addChildren", "eventIn 15 removeChildren", "exposedField 15 children",
-                              "field 11 bboxCenter", "field 11 bboxSize", "set_children is 15 children",
-                              "find: 2 Group has no field or event 'nothing'"}));
+  EXPECT_EQ(r.printed(),
+            (Log{"Group 'T'", "eventIn 15 addChildren", "eventIn 15 removeChildren",
+                 "exposedField 15 children", "field 11 bboxCenter", "field 11 bboxSize",
+                 "set_children is 15 children", "find: 2 Group has no field or event 'nothing'"}));
 }
 
 TEST_P(Scripts, HandlesEndWithTheCallUnlessRetained) {
-  Scripted r(
-      "DEF T Transform {} DEF S Script { directOutput TRUE eventIn SFNode keep eventIn SFNode borrow eventIn SFBool drop eventIn "
-      "SFVec3f in url \"test:keep: keep\nborrow: borrow\ndrop: drop\nin: post kept set_translation\" }");
+  Scripted r("DEF T Transform {} DEF S Script { directOutput TRUE eventIn SFNode keep eventIn "
+             "SFNode borrow eventIn SFBool drop eventIn "
+             "SFVec3f in url \"test:keep: keep\nborrow: borrow\ndrop: drop\nin: post kept "
+             "set_translation\" }");
   r.set("S", "borrow", r.browser.node("T"));
   r.set("S", "in", Vec3f{1, 0, 0});
   EXPECT_EQ(r.get("T", "translation"), "0 0 0");
@@ -158,17 +169,21 @@ TEST_P(Scripts, WrongValuesAreRefused) {
   r.log("S", "out");
   r.set("S", "in", true);
   EXPECT_EQ(r.take(), Log{});
-  EXPECT_EQ(r.printed(),
-            (Log{"wrong: 3 out: expected MFString, got SFInt32", "wrong: 3 out: no value", "wrong: 3 out: a value without data",
-                 "wrong: 3 out: a text that is no UTF-8", "wrong: 3 out: a text without characters",
-                 "wrong: 2 Script has no eventOut 'noSuchEvent'", "wrong: 2 Script has no eventOut ''",
-                 "wrong: 1 the Script does not know a node 123456789", "wrong: 1 the Script does not know a node 123456789"}));
+  EXPECT_EQ(
+      r.printed(),
+      (Log{"wrong: 3 out: expected MFString, got SFInt32", "wrong: 3 out: no value",
+           "wrong: 3 out: a value without data", "wrong: 3 out: a text that is no UTF-8",
+           "wrong: 3 out: a text without characters",
+           "wrong: 2 Script has no eventOut 'noSuchEvent'", "wrong: 2 Script has no eventOut ''",
+           "wrong: 1 the Script does not know a node 123456789",
+           "wrong: 1 the Script does not know a node 123456789"}));
 }
 
 TEST_P(Scripts, AProgramThatDoesNotEndIsStopped) {
   BrowserOptions options;
   options.scriptSteps = 100'000;
-  Scripted r("DEF S Script { eventIn SFBool in eventIn SFInt32 other eventOut SFInt32 out url \"test:in: loop\nother: echo "
+  Scripted r("DEF S Script { eventIn SFBool in eventIn SFInt32 other eventOut SFInt32 out url "
+             "\"test:in: loop\nother: echo "
              "out\nshutdown: "
              "print bye\" }",
              options);
@@ -184,7 +199,8 @@ TEST_P(Scripts, AProgramThatDoesNotEndIsStopped) {
 }
 
 TEST_P(Scripts, ErrorsSayFileAndLine) {
-  Scripted r("\nDEF S Script {\n eventIn SFBool in eventIn SFBool plain\n url [ \"none:\"\n\n  \"test:\nin: error 2 "
+  Scripted r("\nDEF S Script {\n eventIn SFBool in eventIn SFBool plain\n url [ \"none:\"\n\n  "
+             "\"test:\nin: error 2 "
              "went\\\\wrong\nplain: "
              "fail\" ]\n}");
   r.messages();
@@ -196,11 +212,15 @@ TEST_P(Scripts, ErrorsSayFileAndLine) {
 }
 
 TEST_P(Scripts, AMissingEngineIsToldOnceForEachProtocol) {
-  Scripted r("Script { url \"lisp:a\" } Script { url \"Lisp:b\" } DEF S Script { eventIn SFBool in url [ \"x.class\" "
-             "\"prolog:c\" ] } Script { url [ \"prolog:d\" \"test:initialize: print d\" ] } Script {}");
+  Scripted r(
+      "Script { url \"lisp:a\" } Script { url \"Lisp:b\" } DEF S Script { eventIn SFBool in url [ "
+      "\"x.class\" "
+      "\"prolog:c\" ] } Script { url [ \"prolog:d\" \"test:initialize: print d\" ] } Script {}");
   const Log messages = r.messages();
   ASSERT_EQ(messages.size(), 3u) << messages[0];
-  EXPECT_EQ(messages[0].find("2: Script: no script engine for 'lisp:' is installed (looked in: "), 0u) << messages[0];
+  EXPECT_EQ(messages[0].find("2: Script: no script engine for 'lisp:' is installed (looked in: "),
+            0u)
+      << messages[0];
   EXPECT_NE(messages[1].find("'.class'"), std::string::npos);
   EXPECT_NE(messages[2].find("'prolog:'"), std::string::npos);
   EXPECT_EQ(r.printed(), Log{"d"}); // an alternative that can be run
@@ -220,32 +240,38 @@ TEST_P(Scripts, AnEngineThatNeedsTrustRunsInTrustedWorldsOnly) {
 
 TEST_P(Scripts, ShutdownComesWhenANodeIsGone) {
   Scripted r("DEF G Group {}");
-  r.set(
-      "G", "children",
-      r.browser.createVrmlFromString("Script { field SFString a \"x\" eventOut SFString b eventOut SFString c url "
-                                     "\"test:initialize: print begins\nshutdown: print ends\nshutdown: read self a c\nshutdown: "
-                                     "text b more\" }"));
+  r.set("G", "children",
+        r.browser.createVrmlFromString(
+            "Script { field SFString a \"x\" eventOut SFString b eventOut SFString c url "
+            "\"test:initialize: print begins\nshutdown: print ends\nshutdown: read self a "
+            "c\nshutdown: "
+            "text b more\" }"));
   EXPECT_EQ(r.printed(), Log{"begins"});
   EXPECT_EQ(r.get("G", "children"), "[Script]");
   r.set("G", "children", MFNode{});
-  EXPECT_EQ(r.printed(), (Log{"ends", "read: 4 the Script is being shut down", "text: 4 the Script is being shut down"}));
+  EXPECT_EQ(r.printed(), (Log{"ends", "read: 4 the Script is being shut down",
+                              "text: 4 the Script is being shut down"}));
 }
 
 TEST_P(Scripts, ShutdownComesAtTheEndOfTheWorld) {
   auto lines = std::make_shared<Log>();
   BrowserOptions options = scriptOptions();
   options.print = [lines](const std::string& text) { lines->push_back(text); };
-  { Running r("Script { url \"test:shutdown: print a\" } Script { url \"test:shutdown: print b\" }", 0, options); }
+  {
+    Running r("Script { url \"test:shutdown: print a\" } Script { url \"test:shutdown: print b\" }",
+              0, options);
+  }
   EXPECT_EQ(*lines, (Log{"a", "b"}));
 }
 
 TEST_P(Scripts, RoutesAreAddedAndDeleted) {
   const auto world = [](const char* direct) {
-    return fmt::format(
-        "DEF A Transform {{}} DEF B Transform {{}} DEF S Script {{ directOutput {} field SFNode a USE A field SFNode b "
-        "USE B eventIn SFBool add eventIn SFBool delete "
-        "url \"test:add: addRoute a translation b translation\ndelete: deleteRoute a translation b translation\" }}",
-        direct);
+    return fmt::format("DEF A Transform {{}} DEF B Transform {{}} DEF S Script {{ directOutput {} "
+                       "field SFNode a USE A field SFNode b "
+                       "USE B eventIn SFBool add eventIn SFBool delete "
+                       "url \"test:add: addRoute a translation b translation\ndelete: deleteRoute "
+                       "a translation b translation\" }}",
+                       direct);
   };
   Scripted r(world("TRUE"));
   r.set("S", "add", true);
@@ -269,9 +295,9 @@ TEST_P(Scripts, TickComesWithTime) {
 
 // No interpreter is called while another one runs.
 TEST_P(Scripts, WhatTickMakesBeginsAfterIt) {
-  Scripted r(
-      "DEF S Script { eventOut MFNode out url \"test:tick: create out Script { url \\\"test:initialize: print child\\\" }\n"
-      "tick: print made\" }");
+  Scripted r("DEF S Script { eventOut MFNode out url \"test:tick: create out Script { url "
+             "\\\"test:initialize: print child\\\" }\n"
+             "tick: print made\" }");
   r.browser.tick(1);
   EXPECT_EQ(r.printed(), (Log{"made", "child"}));
 }
@@ -279,7 +305,8 @@ TEST_P(Scripts, WhatTickMakesBeginsAfterIt) {
 TEST_P(Scripts, RunawayPostsEndWithAMessage) {
   BrowserOptions options;
   options.maximumEvents = 1000;
-  Scripted r("DEF S Script { mustEvaluate TRUE eventIn SFBool in url \"test:in: post self in\" }", options);
+  Scripted r("DEF S Script { mustEvaluate TRUE eventIn SFBool in url \"test:in: post self in\" }",
+             options);
   r.set("S", "in", true);
   EXPECT_EQ(r.messages(), Log{"0: more than 1000 events at time 0: the rest is dropped"});
   r.set("S", "in", true);
@@ -308,7 +335,8 @@ TEST_P(Scripts, BadPluginsAreRefusedWithTheReason) {
 
 TEST_P(Scripts, AProgramComesFromADataUrl) {
   Scripted r("Script { url \"data:text/x-test,initialize:%20print%20plain\" } Script { url "
-             "\"data:Text/X-Test;base64,aW5pdGlhbGl6ZTogcHJpbnQgYmFzZTY0\" } Script { url [ \"data:text/x-other,x\" "
+             "\"data:Text/X-Test;base64,aW5pdGlhbGl6ZTogcHJpbnQgYmFzZTY0\" } Script { url [ "
+             "\"data:text/x-other,x\" "
              "\"data:;base64,*\" ] }");
   EXPECT_EQ(r.printed(), (Log{"plain", "base64"}));
   const Log messages = r.messages();

@@ -19,7 +19,8 @@ class Running {
   // The clock's own numbers: epoch 0, so that tests can speak of times 0, 1, 2.
   explicit Running(const std::string& vrml, double start = 0, BrowserOptions options = {},
                    const RunOptions& run = {.epoch = 0})
-      : browser(loadWorldFromMemory("#VRML V2.0 utf8\n" + vrml, "test.wrl"), std::move(options), start, run) {}
+      : browser(loadWorldFromMemory("#VRML V2.0 utf8\n" + vrml, "test.wrl"), std::move(options),
+                start, run) {}
 
   Node& node(std::string_view name) { return *browser.node(name); }
   // From now on every event of name.out is appended to log as "time name.out value".
@@ -27,7 +28,8 @@ class Running {
     const std::string prefix = std::string(name) + "." + std::string(out);
     ASSERT_NE(browser.listen(node(name), out,
                              [this, prefix](Node&, const FieldInfo&, const Value& value) {
-                               events.push_back(fmt::format("{:g} {} {}", browser.now(), prefix, textOf(value)));
+                               events.push_back(
+                                   fmt::format("{:g} {} {}", browser.now(), prefix, textOf(value)));
                              }),
               0u)
         << prefix;
@@ -35,7 +37,9 @@ class Running {
   bool set(std::string_view name, std::string_view field, Value value) {
     return browser.set(node(name), field, std::move(value));
   }
-  std::string get(std::string_view name, std::string_view field) { return textOf(browser.get(node(name), field)); }
+  std::string get(std::string_view name, std::string_view field) {
+    return textOf(browser.get(node(name), field));
+  }
   std::vector<std::string> take() { return std::exchange(events, {}); }
 
   std::vector<std::string> events; // before the browser: listeners write here to its end

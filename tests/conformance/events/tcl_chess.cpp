@@ -1,4 +1,5 @@
-// The chess set of examples/scenes, moved by its Tcl Script: what stands where agrees with the position that it sends.
+// The chess set of examples/scenes, moved by its Tcl Script: what stands where agrees with the
+// position that it sends.
 #include <cmath>
 #include <map>
 
@@ -12,14 +13,18 @@ class TclChess : public Tcl {
   static std::unique_ptr<Browser> start(bool ownProcess = false) {
     BrowserOptions options;
     options.scriptPath = XVRML_SCRIPTS;
-    options.scriptIsolation = ownProcess ? BrowserOptions::Isolation::automatic : BrowserOptions::Isolation::never;
+    options.scriptIsolation =
+        ownProcess ? BrowserOptions::Isolation::automatic : BrowserOptions::Isolation::never;
     return std::make_unique<Browser>(loadWorld("examples/scenes/chess.wrl"), options);
   }
   static void run(Browser& browser, double until, double step) {
-    for (int64_t i = int64_t(browser.now() / step) + 1; double(i) * step < until; ++i) browser.tick(double(i) * step);
+    for (int64_t i = int64_t(browser.now() / step) + 1; double(i) * step < until; ++i)
+      browser.tick(double(i) * step);
     browser.tick(until);
   }
-  static std::string text(Browser& browser, const char* out) { return textOf(browser.get(*browser.node("Chess"), out)); }
+  static std::string text(Browser& browser, const char* out) {
+    return textOf(browser.get(*browser.node("Chess"), out));
+  }
 
   // Kinds of pieces by the names of their nodes.
   static std::map<std::string, char> set() {
@@ -74,7 +79,9 @@ class TclChess : public Tcl {
     const std::string fen = text(browser, "position");
     return fen.substr(0, fen.find(' '));
   }
-  static void play(Browser& browser, const char* move) { browser.set(*browser.node("Chess"), "play", std::string(move)); }
+  static void play(Browser& browser, const char* move) {
+    browser.set(*browser.node("Chess"), "play", std::string(move));
+  }
   // Moves, and waits until they have been made.
   static void playAll(Browser& browser, std::initializer_list<const char*> moves) {
     for (const char* move : moves) {
@@ -88,10 +95,13 @@ class TclChess : public Tcl {
 TEST_F(TclChess, PlaysItsGameByTheClockOfTheWorld) {
   for (const bool ownProcess : {false, true}) {
     const auto browser = start(ownProcess);
-    EXPECT_EQ(text(*browser, "position"), "rnbqkbnr/pppppppp/8/8/8/8/PPPPPPPP/RNBQKBNR w KQkq - 0 1");
+    EXPECT_EQ(text(*browser, "position"),
+              "rnbqkbnr/pppppppp/8/8/8/8/PPPPPPPP/RNBQKBNR w KQkq - 0 1");
     EXPECT_EQ(placement(*browser), stated(*browser));
     run(*browser, 12, 1 / 30.);
-    EXPECT_EQ(text(*browser, "position"), "rn1qkbnr/ppp2ppp/3p4/4P3/4P3/5Q2/PPP2PPP/RNB1KB1R b KQkq - 0 5") << ownProcess;
+    EXPECT_EQ(text(*browser, "position"),
+              "rn1qkbnr/ppp2ppp/3p4/4P3/4P3/5Q2/PPP2PPP/RNB1KB1R b KQkq - 0 5")
+        << ownProcess;
     run(*browser, 60, 0.5);
     EXPECT_EQ(text(*browser, "position"), "1n1Rkb1r/p4ppp/4q3/4p1B1/4P3/8/PPP2PPP/2K5 b k - 1 17");
     EXPECT_EQ(text(*browser, "status"), "Checkmate: White wins");
@@ -116,19 +126,21 @@ TEST_F(TclChess, APictureAtATimeIsTheSameHoweverTimeWentOn) {
 TEST_F(TclChess, PlaysMovesThatAreSentToIt) {
   const auto browser = start();
   playAll(*browser, {"e4", "e7e5", "Nf3", "Nc6", "Bc4", "Nf6", "O-O"});
-  EXPECT_EQ(text(*browser, "position"), "r1bqkb1r/pppp1ppp/2n2n2/4p3/2B1P3/5N2/PPPP1PPP/RNBQ1RK1 b kq - 5 4");
+  EXPECT_EQ(text(*browser, "position"),
+            "r1bqkb1r/pppp1ppp/2n2n2/4p3/2B1P3/5N2/PPPP1PPP/RNBQ1RK1 b kq - 5 4");
   EXPECT_EQ(text(*browser, "status"), "Black to move");
   playAll(*browser, {"Qxd2"});
   EXPECT_EQ(text(*browser, "status"), "illegal move: Qxd2");
   playAll(*browser, {"hello"});
   EXPECT_EQ(text(*browser, "status"), "no move: hello");
-  EXPECT_EQ(text(*browser, "position"), "r1bqkb1r/pppp1ppp/2n2n2/4p3/2B1P3/5N2/PPPP1PPP/RNBQ1RK1 b kq - 5 4");
+  EXPECT_EQ(text(*browser, "position"),
+            "r1bqkb1r/pppp1ppp/2n2n2/4p3/2B1P3/5N2/PPPP1PPP/RNBQ1RK1 b kq - 5 4");
 }
 
 TEST_F(TclChess, CapturesEnPassantAndPromotionsMoveTheRightPieces) {
   const auto browser = start();
-  playAll(*browser,
-          {"e4", "a6", "e5", "d5", "exd6", "a5", "dxc7", "a4", "cxb8=Q", "a3", "Qxa8", "axb2", "Nf3", "bxc1=N", "Qxc1"});
+  playAll(*browser, {"e4", "a6", "e5", "d5", "exd6", "a5", "dxc7", "a4", "cxb8=Q", "a3", "Qxa8",
+                     "axb2", "Nf3", "bxc1=N", "Qxc1"});
   EXPECT_EQ(stated(*browser), "Q1bqkbnr/1p2pppp/8/8/8/5N2/P1PP1PPP/RNQ1KB1R");
   EXPECT_FALSE(place(*browser, "Spare_wq") == (Vec3f{-6.2f, 0, 3.5f}));
   EXPECT_EQ(place(*browser, "Piece_e2"), (Vec3f{-6.2f, 0, 3.5f})); // in its stead

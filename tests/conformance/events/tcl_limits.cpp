@@ -1,5 +1,5 @@
-// What Tcl Scripts of worlds that are not trusted cannot do, and how those that do not end are stopped. In this process: the
-// process that they usually run in has tests of its own.
+// What Tcl Scripts of worlds that are not trusted cannot do, and how those that do not end are
+// stopped. In this process: the process that they usually run in has tests of its own.
 #include <clocale>
 #include <csignal>
 
@@ -87,7 +87,8 @@ TEST_F(TclLimits, WhatReachesOutIsRefusedByName) {
                                    "after 10"};
   std::string program = "proc go {} {\n";
   for (const char* command : forbidden)
-    program += std::string("if {![catch {uplevel #0 {") + command + "}} why]} {puts {LET THROUGH: " + command + "}}\n";
+    program += std::string("if {![catch {uplevel #0 {") + command +
+               "}} why]} {puts {LET THROUGH: " + command + "}}\n";
   program += "puts done}";
   W r(W::script("eventIn SFBool go", program));
   r.set("S", "go", true);
@@ -96,48 +97,55 @@ TEST_F(TclLimits, WhatReachesOutIsRefusedByName) {
 }
 
 TEST_F(TclLimits, RefusalsSayWhy) {
-  W r(W::script("", "foreach c {{open x} {exec ls} {socket a 1} {vwait x} {package require Tk}} {catch $c why; puts $why}"));
-  EXPECT_EQ(r.printed(), (Log{"open: only in a world that is trusted", "exec: only in a world that is trusted",
-                              "socket: only in a world that is trusted", "vwait: only in a world that is trusted",
-                              "package Tk: only in a world that is trusted"}));
+  W r(W::script("", "foreach c {{open x} {exec ls} {socket a 1} {vwait x} {package require Tk}} "
+                    "{catch $c why; puts $why}"));
+  EXPECT_EQ(
+      r.printed(),
+      (Log{"open: only in a world that is trusted", "exec: only in a world that is trusted",
+           "socket: only in a world that is trusted", "vwait: only in a world that is trusted",
+           "package Tk: only in a world that is trusted"}));
 }
 
 TEST_F(TclLimits, WhatComputesIsThere) {
-  W r(W::script(
-      "",
-      "package require Tcl 8.6\nputs [lsort -integer {3 1 2}][dict get {a b} a][string toupper x][format %03d 7][expr {2**10}]"
-      "[regsub a bab c][clock seconds]\nnamespace eval n {variable v 1}\ncoroutine c apply {{} {yield 1; yield 2}}; puts [c]\n"
-      "puts [binary encode hex ab][llength [info commands]][apply {x {incr x}} 1][expr {max(1, 3.5, 2) + min(4, 2)}]\nputs [try "
-      "{error a} on error m {set m}]"));
+  W r(W::script("", "package require Tcl 8.6\nputs [lsort -integer {3 1 2}][dict get {a b} "
+                    "a][string toupper x][format %03d 7][expr {2**10}]"
+                    "[regsub a bab c][clock seconds]\nnamespace eval n {variable v 1}\ncoroutine c "
+                    "apply {{} {yield 1; yield 2}}; puts [c]\n"
+                    "puts [binary encode hex ab][llength [info commands]][apply {x {incr x}} "
+                    "1][expr {max(1, 3.5, 2) + min(4, 2)}]\nputs [try "
+                    "{error a} on error m {set m}]"));
   EXPECT_EQ(r.printed().size(), 4u);
   EXPECT_EQ(r.messages(), Log{});
 }
 
 // Each of these would run for ever.
 TEST_F(TclLimits, ProgramsThatDoNotEndAreStopped) {
-  const char* const programs[] = {"while 1 {set x 1}",
-                                  "while 1 {}",
-                                  "for {} 1 {} {}",
-                                  "while 1 {catch {while 1 {}}}",
-                                  "proc f {} {catch f; f}\nwhile 1 {catch f}",
-                                  "while 1 {try {while 1 {set x 1}} finally {while 1 {}}}",
-                                  "while 1 {catch {error x}}",
-                                  "coroutine c apply {{} {while 1 {yield}}}\nwhile 1 c",
-                                  "set l {}\nwhile 1 {lappend l 1; set l {}}",
-                                  "proc unwind {} {while 1 {catch {unwind2} m o}}\nproc unwind2 {} {while 1 {set x 1}}\nunwind",
-                                  "trace add variable x write {apply {args {while 1 {set y 1}}}}\nset x 1",
-                                  "while 1 {catch {$::self get url}}",
-                                  "proc ever {} {tailcall ever}\never"};
+  const char* const programs[] = {
+      "while 1 {set x 1}",
+      "while 1 {}",
+      "for {} 1 {} {}",
+      "while 1 {catch {while 1 {}}}",
+      "proc f {} {catch f; f}\nwhile 1 {catch f}",
+      "while 1 {try {while 1 {set x 1}} finally {while 1 {}}}",
+      "while 1 {catch {error x}}",
+      "coroutine c apply {{} {while 1 {yield}}}\nwhile 1 c",
+      "set l {}\nwhile 1 {lappend l 1; set l {}}",
+      "proc unwind {} {while 1 {catch {unwind2} m o}}\nproc unwind2 {} {while 1 {set x 1}}\nunwind",
+      "trace add variable x write {apply {args {while 1 {set y 1}}}}\nset x 1",
+      "while 1 {catch {$::self get url}}",
+      "proc ever {} {tailcall ever}\never"};
   for (const char* program : programs) {
     BrowserOptions options;
     options.scriptSteps = 300'000;
     options.scriptSeconds = 0.3;
     W r(W::script("eventIn SFBool go eventIn SFBool again eventOut SFInt32 out",
-                  "proc go {} {" + std::string(program) + "}\nproc again {} {puts alive}\nproc shutdown {} {puts bye}",
+                  "proc go {} {" + std::string(program) +
+                      "}\nproc again {} {puts alive}\nproc shutdown {} {puts bye}",
                   "DEF T Script { eventIn SFBool go url \"tcl:proc go {} {puts other}\" }"),
         options);
     r.set("S", "go", true);
-    EXPECT_EQ(r.messages(), Log{"2: Script S: event took too long: the Script is stopped"}) << program;
+    EXPECT_EQ(r.messages(), Log{"2: Script S: event took too long: the Script is stopped"})
+        << program;
     r.set("S", "again", true);
     r.browser.tick(1);
     EXPECT_EQ(r.printed(), Log{}) << program;
@@ -157,7 +165,8 @@ TEST_F(TclLimits, StepsAreTheSameOnAnyMachine) {
   const auto until = [] {
     BrowserOptions options;
     options.scriptSteps = 100'000;
-    W r(W::script("eventIn SFBool go field SFInt32 n 0", "proc go {} {while 1 {incr ::n}}"), options);
+    W r(W::script("eventIn SFBool go field SFInt32 n 0", "proc go {} {while 1 {incr ::n}}"),
+        options);
     r.set("S", "go", true);
     return r.get("S", "n");
   };
@@ -166,20 +175,25 @@ TEST_F(TclLimits, StepsAreTheSameOnAnyMachine) {
 
 TEST_F(TclLimits, RecursionIsAnError) {
   W r(W::script("eventIn SFBool go eventIn SFBool again",
-                "proc f n {f [expr {$n + 1}]}\nproc go {} {f 0}\nproc again {} {catch {f 0} why; puts $why}"));
+                "proc f n {f [expr {$n + 1}]}\nproc go {} {f 0}\nproc again {} {catch {f 0} why; "
+                "puts $why}"));
   r.set("S", "go", true);
   const Log messages = r.messages();
   ASSERT_EQ(messages.size(), 1u);
-  EXPECT_EQ(messages[0], "2: Script S: too many nested evaluations (infinite loop?) (in procedure f)");
+  EXPECT_EQ(messages[0],
+            "2: Script S: too many nested evaluations (infinite loop?) (in procedure f)");
   r.set("S", "again", true);
   EXPECT_EQ(r.printed(), Log{"too many nested evaluations (infinite loop?)"});
 }
 
-// Brackets in brackets are another matter: Tcl's own stack ends, and with it the process of the scripts.
+// Brackets in brackets are another matter: Tcl's own stack ends, and with it the process of the
+// scripts.
 TEST_F(TclLimits, TextsNestedDeeplyDoNotOverflow) {
-  W r(W::script("eventIn SFBool go", "proc go {} {\n catch {eval [string repeat {[set x } 1000][string repeat \\] 1000]}\n"
-                                     " catch {expr [string repeat ( 30000]}\n catch {expr [string repeat - 30000]1}\n set l x\n"
-                                     " for {set i 0} {$i < 30000} {incr i} {set l [list $l]}\n unset l\n puts done\n}"));
+  W r(W::script(
+      "eventIn SFBool go",
+      "proc go {} {\n catch {eval [string repeat {[set x } 1000][string repeat \\] 1000]}\n"
+      " catch {expr [string repeat ( 30000]}\n catch {expr [string repeat - 30000]1}\n set l x\n"
+      " for {set i 0} {$i < 30000} {incr i} {set l [list $l]}\n unset l\n puts done\n}"));
   r.set("S", "go", true);
   EXPECT_EQ(r.printed(), Log{"done"});
 }

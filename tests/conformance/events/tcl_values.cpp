@@ -14,33 +14,37 @@ struct Case {
   const char* reason; // part of the message
 };
 
-const Case cases[] = {{"SFBool", "TRUE", "1", "perhaps", "a boolean"},
-                      {"SFColor", "0.1 0.2 1", "0.1 0.2 1.0", "1 2", "3 numbers"},
-                      {"SFFloat", "0.1", "0.1", "one", "a number"},
-                      {"SFImage", "2 1 3 0xff0000 0x0102ff", "2 1 3 {255 0 0 1 2 255}", "2 2 3 {1 2 3}", "as many bytes"},
-                      {"SFInt32", "-2147483648", "-2147483648", "2147483648", "an integer of 32 bits"},
-                      {"SFNode", "Group {}", "node2", "no node", "the name of a node"},
-                      {"SFRotation", "0 1 0 1.5", "0.0 1.0 0.0 1.5", "0 1 0 x", "a number"},
-                      {"SFString", "\"a \\\"b\\\" {\"", "a \"b\" {", nullptr, nullptr},
-                      {"SFTime", "12345678.25", "12345678.25", "now", "a number"},
-                      {"SFVec2f", "1 2", "1.0 2.0", "1 2 3", "2 numbers"},
-                      {"SFVec3f", "1 2 3e-7", "1.0 2.0 3e-7", "{1 2 3} 4", "3 numbers"},
-                      {"MFColor", "[1 0 0, 0 1 0]", "{1.0 0.0 0.0} {0.0 1.0 0.0}", "{1 0}", "3 numbers"},
-                      {"MFFloat", "[1 2.5]", "1.0 2.5", "1 x", "a number"},
-                      {"MFInt32", "[1 -2]", "1 -2", "1 2.5", "an integer"},
-                      {"MFNode", "[Group {} Shape {}]", "node2 node3", "node2 node99", "the name of a node"},
-                      {"MFRotation", "[0 0 1 1]", "{0.0 0.0 1.0 1.0}", "{0 0 1}", "4 numbers"},
-                      {"MFString", "[\"a b\" \"\"]", "{a b} {}", "{", "a list"},
-                      {"MFTime", "[1 2]", "1.0 2.0", "1 {2 3}", "a number"},
-                      {"MFVec2f", "[1 2 3 4]", "{1.0 2.0} {3.0 4.0}", "1 2 3", "2 numbers"},
-                      {"MFVec3f", "[1 2 3]", "{1.0 2.0 3.0}", "1 2", "3 numbers"}};
+const Case cases[] = {
+    {"SFBool", "TRUE", "1", "perhaps", "a boolean"},
+    {"SFColor", "0.1 0.2 1", "0.1 0.2 1.0", "1 2", "3 numbers"},
+    {"SFFloat", "0.1", "0.1", "one", "a number"},
+    {"SFImage", "2 1 3 0xff0000 0x0102ff", "2 1 3 {255 0 0 1 2 255}", "2 2 3 {1 2 3}",
+     "as many bytes"},
+    {"SFInt32", "-2147483648", "-2147483648", "2147483648", "an integer of 32 bits"},
+    {"SFNode", "Group {}", "node2", "no node", "the name of a node"},
+    {"SFRotation", "0 1 0 1.5", "0.0 1.0 0.0 1.5", "0 1 0 x", "a number"},
+    {"SFString", "\"a \\\"b\\\" {\"", "a \"b\" {", nullptr, nullptr},
+    {"SFTime", "12345678.25", "12345678.25", "now", "a number"},
+    {"SFVec2f", "1 2", "1.0 2.0", "1 2 3", "2 numbers"},
+    {"SFVec3f", "1 2 3e-7", "1.0 2.0 3e-7", "{1 2 3} 4", "3 numbers"},
+    {"MFColor", "[1 0 0, 0 1 0]", "{1.0 0.0 0.0} {0.0 1.0 0.0}", "{1 0}", "3 numbers"},
+    {"MFFloat", "[1 2.5]", "1.0 2.5", "1 x", "a number"},
+    {"MFInt32", "[1 -2]", "1 -2", "1 2.5", "an integer"},
+    {"MFNode", "[Group {} Shape {}]", "node2 node3", "node2 node99", "the name of a node"},
+    {"MFRotation", "[0 0 1 1]", "{0.0 0.0 1.0 1.0}", "{0 0 1}", "4 numbers"},
+    {"MFString", "[\"a b\" \"\"]", "{a b} {}", "{", "a list"},
+    {"MFTime", "[1 2]", "1.0 2.0", "1 {2 3}", "a number"},
+    {"MFVec2f", "[1 2 3 4]", "{1.0 2.0} {3.0 4.0}", "1 2 3", "2 numbers"},
+    {"MFVec3f", "[1 2 3]", "{1.0 2.0 3.0}", "1 2", "3 numbers"}};
 
 TEST_F(TclValues, GoBothWays) {
   for (const Case& c : cases) {
     const std::string type = c.type;
-    TclWorld r(TclWorld::script("field " + type + " f " + c.vrml + " eventOut " + type + " out eventOut " + type +
-                                    " again eventIn SFBool go eventIn " + type + " in",
-                                "proc go v {puts $::f; set ::out $::f; set ::f $::f}\nproc in {v t} {puts $v; set ::again $v}"));
+    TclWorld r(TclWorld::script("field " + type + " f " + c.vrml + " eventOut " + type +
+                                    " out eventOut " + type + " again eventIn SFBool go eventIn " +
+                                    type + " in",
+                                "proc go v {puts $::f; set ::out $::f; set ::f $::f}\nproc in {v "
+                                "t} {puts $v; set ::again $v}"));
     const std::string before = r.get("S", "f");
     r.set("S", "go", true);
     EXPECT_EQ(r.printed(), Log{c.tcl}) << c.type;
@@ -56,10 +60,12 @@ TEST_F(TclValues, GoBothWays) {
 TEST_F(TclValues, AreRefusedAtTheLineThatWritesThem) {
   for (const Case& c : cases) {
     if (!c.wrong) continue;
-    TclWorld r(
-        TclWorld::script(std::string("field ") + c.type + " f " + c.vrml + " eventOut " + c.type + " out eventIn SFBool go",
-                         std::string("proc go v {\n  set was $::f\n  if {[catch {set ::f {") + c.wrong +
-                             "}} why]} {puts $why}\n  puts [expr {$::f eq $was}]\n  set ::out {" + c.wrong + "}\n}"));
+    TclWorld r(TclWorld::script(
+        std::string("field ") + c.type + " f " + c.vrml + " eventOut " + c.type +
+            " out eventIn SFBool go",
+        std::string("proc go v {\n  set was $::f\n  if {[catch {set ::f {") + c.wrong +
+            "}} why]} {puts $why}\n  puts [expr {$::f eq $was}]\n  set ::out {" + c.wrong +
+            "}\n}"));
     const std::string before = r.get("S", "f");
     r.set("S", "go", true);
     const Log printed = r.printed();
@@ -87,9 +93,11 @@ TEST_F(TclValues, ListsOfTuplesMayBeFlat) {
 }
 
 TEST_F(TclValues, NumbersAreShortAndExact) {
-  TclWorld r(TclWorld::script("field MFFloat f [0.1 3.4028235e38 1.17549435e-38 16777217 1e-45 -0] eventIn SFBool go",
-                              "proc go {} {puts $::f; catch {set ::f 1e39} why; puts $why; catch {set ::f Inf} why; puts $why; "
-                              "catch {set ::f NaN} why; puts $why}"));
+  TclWorld r(TclWorld::script(
+      "field MFFloat f [0.1 3.4028235e38 1.17549435e-38 16777217 1e-45 -0] eventIn SFBool go",
+      "proc go {} {puts $::f; catch {set ::f 1e39} why; puts $why; catch {set ::f Inf} why; puts "
+      "$why; "
+      "catch {set ::f NaN} why; puts $why}"));
   r.set("S", "go", true);
   const Log printed = r.printed();
   ASSERT_EQ(printed.size(), 4u);
@@ -100,10 +108,11 @@ TEST_F(TclValues, NumbersAreShortAndExact) {
 }
 
 TEST_F(TclValues, TextsAreUtf8) {
-  TclWorld r(
-      TclWorld::script("field SFString s \"\xc3\xa4 \xe2\x82\xac \xf0\x9f\x98\x80\" eventOut SFString out eventOut SFString half "
-                       "eventOut SFString zero",
-                       "puts $s\nset out [string reverse [string reverse $s]]\nset half \\ud83d\nset zero a\\u0000b"));
+  TclWorld r(TclWorld::script("field SFString s \"\xc3\xa4 \xe2\x82\xac \xf0\x9f\x98\x80\" "
+                              "eventOut SFString out eventOut SFString half "
+                              "eventOut SFString zero",
+                              "puts $s\nset out [string reverse [string reverse $s]]\nset half "
+                              "\\ud83d\nset zero a\\u0000b"));
   EXPECT_EQ(r.printed(), Log{"\xc3\xa4 \xe2\x82\xac \xf0\x9f\x98\x80"});
   EXPECT_EQ(r.get("S", "out"), "\xc3\xa4 \xe2\x82\xac \xf0\x9f\x98\x80");
   EXPECT_EQ(r.get("S", "half"), "\xef\xbf\xbd");
@@ -112,7 +121,8 @@ TEST_F(TclValues, TextsAreUtf8) {
 }
 
 TEST_F(TclValues, AVariableOfAFieldCannotBeUnset) {
-  TclWorld r(TclWorld::script("field SFInt32 f 3 eventIn SFBool go", "proc go {} {unset ::f; puts $::f; incr ::f; puts $::f}"));
+  TclWorld r(TclWorld::script("field SFInt32 f 3 eventIn SFBool go",
+                              "proc go {} {unset ::f; puts $::f; incr ::f; puts $::f}"));
   r.set("S", "go", true);
   EXPECT_EQ(r.printed(), (Log{"3", "4"}));
   EXPECT_EQ(r.get("S", "f"), "4");
@@ -120,7 +130,8 @@ TEST_F(TclValues, AVariableOfAFieldCannotBeUnset) {
 
 TEST_F(TclValues, WhatUpvarAndListCommandsWriteIsSentToo) {
   TclWorld r(TclWorld::script("eventOut MFInt32 out field MFString f [] eventIn SFBool go",
-                              "proc add name {upvar 1 $name v; lappend v 5}\nproc go {} {global out f; add out; lappend f x y}"));
+                              "proc add name {upvar 1 $name v; lappend v 5}\nproc go {} {global "
+                              "out f; add out; lappend f x y}"));
   r.log("S", "out");
   r.set("S", "go", true);
   EXPECT_EQ(r.take(), Log{"0 S.out [5]"});

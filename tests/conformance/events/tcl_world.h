@@ -1,5 +1,5 @@
-// tcl_world.h: a small world whose Scripts are Tcl, in this process (see scripted.h). Tests are skipped where the engine is not
-// built.
+// tcl_world.h: a small world whose Scripts are Tcl, in this process (see scripted.h). Tests are
+// skipped where the engine is not built.
 #pragma once
 
 #include <filesystem>
@@ -10,10 +10,12 @@ namespace xvrml {
 
 class TclWorld : public Scripted {
  public:
-  explicit TclWorld(const std::string& vrml, BrowserOptions options = {}) : Scripted(vrml, with(std::move(options))) {}
+  explicit TclWorld(const std::string& vrml, BrowserOptions options = {})
+      : Scripted(vrml, with(std::move(options))) {}
 
   // A world with one Script S of these declarations and this program, which is quoted for VRML.
-  static std::string script(const std::string& declared, const std::string& program, const std::string& rest = "") {
+  static std::string script(const std::string& declared, const std::string& program,
+                            const std::string& rest = "") {
     std::string quoted;
     for (const char c : program) {
       if (c == '"' || c == '\\') quoted += '\\';
@@ -25,8 +27,9 @@ class TclWorld : public Scripted {
  private:
   static BrowserOptions with(BrowserOptions options) {
     options.scriptPath = XVRML_SCRIPTS;
-    options.scriptIsolation =
-        everythingInProcesses && !options.trustScripts ? BrowserOptions::Isolation::always : BrowserOptions::Isolation::never;
+    options.scriptIsolation = everythingInProcesses && !options.trustScripts
+                                  ? BrowserOptions::Isolation::always
+                                  : BrowserOptions::Isolation::never;
     return options;
   }
 };
@@ -34,7 +37,8 @@ class TclWorld : public Scripted {
 class Tcl : public testing::Test {
  protected:
   void SetUp() override {
-    if (!std::filesystem::exists(XVRML_SCRIPTS "/tcl.so")) GTEST_SKIP() << "the Tcl engine is not built";
+    if (!std::filesystem::exists(XVRML_SCRIPTS "/tcl.so"))
+      GTEST_SKIP() << "the Tcl engine is not built";
   }
 };
 

@@ -1,4 +1,5 @@
-// TimeSensor: clauses 4.6.9 and 6.50. One rule a test; the groups are those of the NIST VRML test suite.
+// TimeSensor: clauses 4.6.9 and 6.50. One rule a test; the groups are those of the NIST VRML test
+// suite.
 #include <cmath>
 
 #include "conformance/events/support.h"
@@ -8,7 +9,8 @@ namespace {
 
 // A world with one sensor T whose isActive is logged.
 struct Sensor : Running {
-  explicit Sensor(const std::string& fields, double start = 0) : Running("DEF T TimeSensor { " + fields + " }", start) {
+  explicit Sensor(const std::string& fields, double start = 0)
+      : Running("DEF T TimeSensor { " + fields + " }", start) {
     log("T", "isActive");
   }
   void tick(double time) { browser.tick(time); }
@@ -17,7 +19,8 @@ struct Sensor : Running {
   }
   double number(std::string_view out) {
     const Value value = browser.get(node("T"), out);
-    return value.index() == size_t(FieldType::SFTime) ? std::get<SFTime>(value) : double(std::get<SFFloat>(value));
+    return value.index() == size_t(FieldType::SFTime) ? std::get<SFTime>(value)
+                                                      : double(std::get<SFFloat>(value));
   }
 };
 
@@ -81,7 +84,8 @@ TEST(TimeSensor, StopTimeDuringACycleEndsItThereWithTheFractionOfThatTime) {
   s.log("T", "fraction_changed");
   s.log("T", "time");
   s.tick(3);
-  EXPECT_EQ(s.take(), (Log{"1 T.isActive TRUE", "3 T.fraction_changed 0.375", "3 T.time 2.5", "3 T.isActive FALSE"}));
+  EXPECT_EQ(s.take(), (Log{"1 T.isActive TRUE", "3 T.fraction_changed 0.375", "3 T.time 2.5",
+                           "3 T.isActive FALSE"}));
 }
 
 TEST(TimeSensor, StopTimeAfterTheOnlyCycleHasNoEffect) {
@@ -106,23 +110,26 @@ TEST(TimeSensor, EventsOfTheFirstTickAreInOrder) {
   Sensor s("startTime 1 cycleInterval 2");
   for (const char* out : {"cycleTime", "fraction_changed", "time"}) s.log("T", out);
   s.tick(1);
-  EXPECT_EQ(s.take(), (Log{"1 T.isActive TRUE", "1 T.cycleTime 1", "1 T.fraction_changed 0", "1 T.time 1"}));
+  EXPECT_EQ(s.take(),
+            (Log{"1 T.isActive TRUE", "1 T.cycleTime 1", "1 T.fraction_changed 0", "1 T.time 1"}));
 }
 
 TEST(TimeSensor, TheFractionGrowsThroughEachCycleAndIsOneNeverZeroAtItsEnd) {
   Sensor s("loop TRUE startTime 1 cycleInterval 2");
   s.log("T", "fraction_changed");
   s.ticks({1, 1.5, 2.5, 3, 3.5, 5, 6});
-  EXPECT_EQ(s.take(),
-            (Log{"1 T.isActive TRUE", "1 T.fraction_changed 0", "1.5 T.fraction_changed 0.25", "2.5 T.fraction_changed 0.75",
-                 "3 T.fraction_changed 1", "3.5 T.fraction_changed 0.25", "5 T.fraction_changed 1", "6 T.fraction_changed 0.5"}));
+  EXPECT_EQ(s.take(), (Log{"1 T.isActive TRUE", "1 T.fraction_changed 0",
+                           "1.5 T.fraction_changed 0.25", "2.5 T.fraction_changed 0.75",
+                           "3 T.fraction_changed 1", "3.5 T.fraction_changed 0.25",
+                           "5 T.fraction_changed 1", "6 T.fraction_changed 0.5"}));
 }
 
 TEST(TimeSensor, CycleTimeIsSentAtTheStartOfEachCycleWithItsTime) {
   Sensor s("loop TRUE startTime 1 cycleInterval 2");
   s.log("T", "cycleTime");
   s.ticks({1, 2, 2.9, 3, 4, 5.5, 6});
-  EXPECT_EQ(s.take(), (Log{"1 T.isActive TRUE", "1 T.cycleTime 1", "3 T.cycleTime 3", "5.5 T.cycleTime 5"}));
+  EXPECT_EQ(s.take(),
+            (Log{"1 T.isActive TRUE", "1 T.cycleTime 1", "3 T.cycleTime 3", "5.5 T.cycleTime 5"}));
 }
 
 TEST(TimeSensor, ATickOverSeveralCyclesSendsTheLastCycleTimeOnly) {
@@ -136,21 +143,24 @@ TEST(TimeSensor, TheTickThatBeginsARunLateTellsTheCyclesOwnStart) {
   Sensor s("startTime 1 cycleInterval 4");
   for (const char* out : {"cycleTime", "fraction_changed", "time"}) s.log("T", out);
   s.ticks({0, 2});
-  EXPECT_EQ(s.take(), (Log{"2 T.isActive TRUE", "2 T.cycleTime 1", "2 T.fraction_changed 0.25", "2 T.time 2"}));
+  EXPECT_EQ(s.take(), (Log{"2 T.isActive TRUE", "2 T.cycleTime 1", "2 T.fraction_changed 0.25",
+                           "2 T.time 2"}));
 }
 
 TEST(TimeSensor, ARunBetweenTwoTicksIsNotLost) {
   Sensor s("startTime 1 cycleInterval 0.5");
   s.log("T", "fraction_changed");
   s.ticks({0, 10, 20, 30});
-  EXPECT_EQ(s.take(), (Log{"10 T.isActive TRUE", "10 T.fraction_changed 1", "20 T.fraction_changed 1", "20 T.isActive FALSE"}));
+  EXPECT_EQ(s.take(), (Log{"10 T.isActive TRUE", "10 T.fraction_changed 1",
+                           "20 T.fraction_changed 1", "20 T.isActive FALSE"}));
 }
 
 TEST(TimeSensor, TimeIsSentAtEachTickWhileActiveOnly) {
   Sensor s("startTime 1 cycleInterval 2");
   s.log("T", "time");
   s.ticks({0, 1, 1.5, 3, 4});
-  EXPECT_EQ(s.take(), (Log{"1 T.isActive TRUE", "1 T.time 1", "1.5 T.time 1.5", "3 T.time 3", "3 T.isActive FALSE"}));
+  EXPECT_EQ(s.take(), (Log{"1 T.isActive TRUE", "1 T.time 1", "1.5 T.time 1.5", "3 T.time 3",
+                           "3 T.isActive FALSE"}));
 }
 
 TEST(TimeSensor, IgnoresSetStartTimeWhileActive) {
@@ -216,9 +226,11 @@ TEST(TimeSensor, SetStopTimeAndThenSetStartTimeOfNowRestartIt) {
   EXPECT_FLOAT_EQ(s.number("fraction_changed"), 0.1f);
 }
 
-TEST(TimeSensor, RestartedWithinOneCascadeItIsActiveAgainAtTheNextTick) { // isActive sends once per timestamp
-  Running r("DEF A TimeSensor { startTime 6 } DEF T TimeSensor { loop TRUE startTime 1 cycleInterval 10 }"
-            "ROUTE A.cycleTime TO T.set_stopTime ROUTE A.cycleTime TO T.set_startTime");
+TEST(TimeSensor,
+     RestartedWithinOneCascadeItIsActiveAgainAtTheNextTick) { // isActive sends once per timestamp
+  Running r(
+      "DEF A TimeSensor { startTime 6 } DEF T TimeSensor { loop TRUE startTime 1 cycleInterval 10 }"
+      "ROUTE A.cycleTime TO T.set_stopTime ROUTE A.cycleTime TO T.set_startTime");
   r.log("T", "isActive");
   for (double t : {1.0, 5.0, 6.0, 7.0}) r.browser.tick(t);
   EXPECT_EQ(r.take(), (Log{"1 T.isActive TRUE", "6 T.isActive FALSE", "7 T.isActive TRUE"}));
@@ -260,7 +272,8 @@ TEST(TimeSensor, EnabledSetFalseWhileActiveSendsTheLastEventsAndIsActiveFalse) {
   s.log("T", "enabled_changed");
   s.take();
   s.set("T", "set_enabled", false);
-  EXPECT_EQ(s.take(), (Log{"2 T.enabled_changed FALSE", "2 T.fraction_changed 0.25", "2 T.isActive FALSE"}));
+  EXPECT_EQ(s.take(),
+            (Log{"2 T.enabled_changed FALSE", "2 T.fraction_changed 0.25", "2 T.isActive FALSE"}));
   s.ticks({3, 4});
   EXPECT_EQ(s.take(), Log{});
 }
@@ -290,19 +303,21 @@ TEST(TimeSensor, ASetStartTimeLongAgoWithoutLoopDoesNotRun) {
 }
 
 TEST(TimeSensor, ASetStartTimeOfNowStartsInTheSameCascade) {
-  Running r(
-      "DEF A TimeSensor { startTime 3 cycleInterval 1 } DEF T TimeSensor { cycleInterval 2 } ROUTE A.cycleTime TO T.startTime");
+  Running r("DEF A TimeSensor { startTime 3 cycleInterval 1 } DEF T TimeSensor { cycleInterval 2 } "
+            "ROUTE A.cycleTime TO T.startTime");
   r.log("T", "isActive");
   r.log("T", "fraction_changed");
   for (double t : {0.0, 3.0, 4.0, 5.0, 6.0}) r.browser.tick(t);
-  EXPECT_EQ(r.take(), (Log{"3 T.isActive TRUE", "3 T.fraction_changed 0", "4 T.fraction_changed 0.5", "5 T.fraction_changed 1",
-                           "5 T.isActive FALSE"}));
+  EXPECT_EQ(r.take(),
+            (Log{"3 T.isActive TRUE", "3 T.fraction_changed 0", "4 T.fraction_changed 0.5",
+                 "5 T.fraction_changed 1", "5 T.isActive FALSE"}));
 }
 
-TEST(TimeSensor, OneEndsAndStartsTheNext) { // the idiom of sequences: through isActive of the first and time
-  Running r(
-      "DEF A TimeSensor { startTime 1 cycleInterval 2 } DEF B TimeSensor { cycleInterval 2 } DEF C TimeSensor { cycleInterval 2 }"
-      "ROUTE A.cycleTime TO B.startTime ROUTE B.cycleTime TO C.startTime");
+TEST(TimeSensor,
+     OneEndsAndStartsTheNext) { // the idiom of sequences: through isActive of the first and time
+  Running r("DEF A TimeSensor { startTime 1 cycleInterval 2 } DEF B TimeSensor { cycleInterval 2 } "
+            "DEF C TimeSensor { cycleInterval 2 }"
+            "ROUTE A.cycleTime TO B.startTime ROUTE B.cycleTime TO C.startTime");
   r.log("C", "isActive");
   for (double t : {0.0, 1.0, 2.0, 3.0}) r.browser.tick(t);
   EXPECT_EQ(r.take(), (Log{"1 C.isActive TRUE", "3 C.isActive FALSE"}));
@@ -313,7 +328,8 @@ TEST(TimeSensor, ItRunsAgainWhenSetToStartAgain) {
   s.ticks({1, 2});
   s.set("T", "set_startTime", 3.0);
   s.ticks({3, 4, 5});
-  EXPECT_EQ(s.take(), (Log{"1 T.isActive TRUE", "2 T.isActive FALSE", "3 T.isActive TRUE", "4 T.isActive FALSE"}));
+  EXPECT_EQ(s.take(), (Log{"1 T.isActive TRUE", "2 T.isActive FALSE", "3 T.isActive TRUE",
+                           "4 T.isActive FALSE"}));
 }
 
 TEST(TimeSensor, ALongerCycleIntervalDoesNotReviveARunThatIsOver) {
@@ -341,7 +357,8 @@ TEST(TimeSensor, WaitingItDoesNotRunForAStartTimeLongAgo) {
 }
 
 TEST(TimeSensor, StartedAndDisabledInOneCascadeItEndsAtTheNextTick) {
-  Running r("DEF A TimeSensor { startTime 3 } DEF B TimeSensor { startTime 2 } DEF T TimeSensor { cycleInterval 9 }"
+  Running r("DEF A TimeSensor { startTime 3 } DEF B TimeSensor { startTime 2 } DEF T TimeSensor { "
+            "cycleInterval 9 }"
             "ROUTE A.cycleTime TO T.startTime ROUTE B.isActive TO T.enabled");
   r.log("T", "isActive");
   for (double t : {0.0, 2.0, 3.0, 4.0, 5.0}) r.browser.tick(t);
@@ -355,7 +372,8 @@ TEST(TimeSensor, DisabledAndEnabledAgainWithinItsCycleItRunsTheRest) {
   s.tick(3);
   s.set("T", "set_enabled", true);
   s.ticks({4, 5});
-  EXPECT_EQ(s.take(), (Log{"1 T.isActive TRUE", "2 T.isActive FALSE", "3 T.isActive TRUE", "5 T.isActive FALSE"}));
+  EXPECT_EQ(s.take(), (Log{"1 T.isActive TRUE", "2 T.isActive FALSE", "3 T.isActive TRUE",
+                           "5 T.isActive FALSE"}));
 }
 
 TEST(TimeSensor, ReadDuringItsCycleItIsNotLostIfTheFirstTickComesLate) {
@@ -365,7 +383,8 @@ TEST(TimeSensor, ReadDuringItsCycleItIsNotLostIfTheFirstTickComesLate) {
 }
 
 TEST(TimeSensor, ATickBeyondStopTimeTellsOfACycleThatBeganBefore) {
-  Sensor s("loop TRUE startTime 1 stopTime 5.5 cycleInterval 2"), exact("loop TRUE startTime 1 stopTime 5 cycleInterval 2");
+  Sensor s("loop TRUE startTime 1 stopTime 5.5 cycleInterval 2"),
+      exact("loop TRUE startTime 1 stopTime 5 cycleInterval 2");
   for (Sensor* sensor : {&s, &exact}) {
     sensor->log("T", "cycleTime");
     sensor->ticks({1, 3});
@@ -376,14 +395,16 @@ TEST(TimeSensor, ATickBeyondStopTimeTellsOfACycleThatBeganBefore) {
   EXPECT_EQ(exact.take(), Log{"7 T.isActive FALSE"}); // at 5 none began
 }
 
-TEST(TimeSensor, TheLastFractionIsOneThoughTheEndIsRounded) { // 1.7e9 + 0.1 - 1.7e9 is less than 0.1
+TEST(TimeSensor,
+     TheLastFractionIsOneThoughTheEndIsRounded) { // 1.7e9 + 0.1 - 1.7e9 is less than 0.1
   Sensor s("startTime 1700000000 cycleInterval 0.1", 1.6e9);
   s.ticks({1.7e9, 1.7e9 + 1});
   EXPECT_EQ(s.number("fraction_changed"), 1);
 }
 
 TEST(TimeSensor, InAPrototypeItRunsAsOutside) {
-  Running r("PROTO P [ exposedField SFTime start 0 eventOut SFFloat f ] { TimeSensor { startTime IS start cycleInterval 4 "
+  Running r("PROTO P [ exposedField SFTime start 0 eventOut SFFloat f ] { TimeSensor { startTime "
+            "IS start cycleInterval 4 "
             "fraction_changed IS f } }"
             "DEF I P { start 1 }");
   r.log("I", "f");
@@ -408,7 +429,8 @@ TEST(TimeSensor, FractionsAreExactOverMillionsOfShortCycles) {
     const double now = 1.7e9 + 1e6 + 0.25 + i / 1024.0;
     s.tick(now);
     const double part = std::fmod(i / 1024.0, 0.125) / 0.125;
-    ASSERT_EQ(s.number("fraction_changed"), part == 0 && i > 0 ? 1 : part) << i; // joined, a cycle begins
+    ASSERT_EQ(s.number("fraction_changed"), part == 0 && i > 0 ? 1 : part)
+        << i; // joined, a cycle begins
   }
 }
 
@@ -421,7 +443,8 @@ TEST(TimeSensor, TheEndOfACycleIsFoundThoughTicksAreNotExact) { // 0.3 - 3 * 0.1
 }
 
 TEST(TimeSensor, OddTimesMakeNumbersAndNoHang) {
-  for (const char* fields : {"startTime -1e308 cycleInterval 1e-300", "startTime -1e308 stopTime 1e308 cycleInterval 1e308",
+  for (const char* fields : {"startTime -1e308 cycleInterval 1e-300",
+                             "startTime -1e308 stopTime 1e308 cycleInterval 1e308",
                              "cycleInterval 1e-300", "startTime 1e308", "stopTime 1e-300"}) {
     Sensor s(std::string("loop TRUE ") + fields, 1.7e9);
     s.log("T", "fraction_changed");

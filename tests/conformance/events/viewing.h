@@ -1,4 +1,5 @@
-// viewing.h: what tests of the viewer ask for: where the camera is, as text, and the names of bound nodes.
+// viewing.h: what tests of the viewer ask for: where the camera is, as text, and the names of bound
+// nodes.
 #pragma once
 
 #include <cmath>

@@ -1,5 +1,5 @@
-// input.h: what a hand does to the window, without any windowing system: made from SDL's events (window.cpp) or from a script
-// (input_script.h), understood by Pilot and Window. [plain data]
+// input.h: what a hand does to the window, without any windowing system: made from SDL's events
+// (window.cpp) or from a script (input_script.h), understood by Pilot and Window. [plain data]
 #pragma once
 
 #include <cstdint>

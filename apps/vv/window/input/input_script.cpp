@@ -1,4 +1,3 @@
-// input_script.cpp: see input_script.h.
 #include "window/input/input_script.h"
 
 #include <cmath>
@@ -21,10 +20,11 @@ struct Word {
   const char* name;
   Kind kind;
 };
-constexpr Word words[] = {{"move", Kind::move},   {"press", Kind::press}, {"release", Kind::release},
-                          {"leave", Kind::leave}, {"wheel", Kind::wheel}, {"down", Kind::down},
-                          {"up", Kind::up},       {"key", Kind::down},    {"viewpoint", Kind::viewpoint},
-                          {"save", Kind::save},   {"quit", Kind::quit}};
+constexpr Word words[] = {
+    {"move", Kind::move},   {"press", Kind::press}, {"release", Kind::release},
+    {"leave", Kind::leave}, {"wheel", Kind::wheel}, {"down", Kind::down},
+    {"up", Kind::up},       {"key", Kind::down},    {"viewpoint", Kind::viewpoint},
+    {"save", Kind::save},   {"quit", Kind::quit}};
 
 const char* wordOf(Kind kind) {
   for (const Word& word : words)
@@ -79,7 +79,9 @@ InputEvent readEvent(const std::string& name, Line& line, double& x, double& y) 
     const std::string button = line.next("a button");
     if (button != "left" && button != "middle" && button != "right")
       throw UsageError(fmt::format("left, middle or right was expected, not \"{}\"", button));
-    event.button = button == "left" ? Button::left : button == "middle" ? Button::middle : Button::right;
+    event.button = button == "left"     ? Button::left
+                   : button == "middle" ? Button::middle
+                                        : Button::right;
     const auto at = line.rest.tellg();
     std::string word;
     if (line.rest >> word && word != "shift" && word != "ctrl" && word != "alt") {
@@ -133,7 +135,9 @@ InputScript parseInputScript(std::string_view text, const std::string& name) {
       if (event != "key") continue;
       script.events.push_back(script.events.back());
       script.events.back().event.kind = Kind::up;
-    } catch (const UsageError& error) { throw UsageError(fmt::format("{}:{}: {}", name, number, error.what())); }
+    } catch (const UsageError& error) {
+      throw UsageError(fmt::format("{}:{}: {}", name, number, error.what()));
+    }
   }
   return script;
 }
@@ -141,7 +145,8 @@ InputScript parseInputScript(std::string_view text, const std::string& name) {
 InputScript readInputScript(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   std::ostringstream text;
-  if (!file || !(text << file.rdbuf())) throw Failure{exitInput, fmt::format("--input: cannot read {}", path)};
+  if (!file || !(text << file.rdbuf()))
+    throw Failure{exitInput, fmt::format("--input: cannot read {}", path)};
   return parseInputScript(text.str(), path);
 }
 
@@ -150,7 +155,9 @@ std::string inputLine(double time, const InputEvent& event) {
   switch (event.kind) {
   case Kind::move: line += fmt::format(" {} {}", event.x, event.y); break;
   case Kind::press:
-  case Kind::release: line += fmt::format(" {} {} {}", buttons[int(event.button)], event.x, event.y); break;
+  case Kind::release:
+    line += fmt::format(" {} {} {}", buttons[int(event.button)], event.x, event.y);
+    break;
   case Kind::wheel: line += fmt::format(" {}", event.amount); break;
   case Kind::down:
   case Kind::up:
@@ -160,9 +167,11 @@ std::string inputLine(double time, const InputEvent& event) {
   case Kind::leave:
   case Kind::quit: break;
   }
-  const bool modified =
-      event.kind == Kind::press || event.kind == Kind::release || event.kind == Kind::down || event.kind == Kind::up;
-  if (modified) line += fmt::format("{}{}{}", event.shift ? " shift" : "", event.control ? " ctrl" : "", event.alt ? " alt" : "");
+  const bool modified = event.kind == Kind::press || event.kind == Kind::release ||
+                        event.kind == Kind::down || event.kind == Kind::up;
+  if (modified)
+    line += fmt::format("{}{}{}", event.shift ? " shift" : "", event.control ? " ctrl" : "",
+                        event.alt ? " alt" : "");
   return line + "\n";
 }
 

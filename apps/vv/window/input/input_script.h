@@ -1,7 +1,9 @@
-// input_script.h: what a hand did, as a text: --input plays it, --record-input writes it down. One event a line, in the order of
-// their times: `SECONDS EVENT ...`, # begins a comment. An event happens at the first step of the clock that is not before it.
-//   move X Y; press|release left|middle|right [X Y] [shift] [ctrl] [alt]; leave; wheel NOTCHES; key|down|up NAME [shift ...]
-//   (key: down and up); viewpoint NAME; save FILE; quit; end (nothing: the script is that long)
+// input_script.h: what a hand did, as a text: --input plays it, --record-input writes it down. One
+// event a line, in the order of their times: `SECONDS EVENT ...`, # begins a comment. An event
+// happens at the first step of the clock that is not before it.
+//   move X Y; press|release left|middle|right [X Y] [shift] [ctrl] [alt]; leave; wheel NOTCHES;
+//   key|down|up NAME [shift ...] (key: down and up); viewpoint NAME; save FILE; quit; end (nothing:
+//   the script is that long)
 // X, Y: from -1 at the left and bottom to 1 at the right and top of the picture.
 #pragma once
 

@@ -1,4 +1,3 @@
-// keys.cpp: see keys.h.
 #include "window/input/keys.h"
 
 #include <algorithm>
@@ -70,7 +69,8 @@ std::string listKeys() {
   std::string out;
   for (const KeyInfo& info : keys) {
     std::string names;
-    for (const char* at = info.keys; *at; ++at) names += *at == ' ' ? std::string(", ") : std::string(1, *at);
+    for (const char* at = info.keys; *at; ++at)
+      names += *at == ' ' ? std::string(", ") : std::string(1, *at);
     out += fmt::format("{:<24}{}\n", names, info.text);
   }
   for (const MouseInfo& info : mouse) out += fmt::format("{:<24}{}\n", info.what, info.text);

@@ -1,5 +1,5 @@
-// keys.h: the window's keys: one table that Pilot and Window obey, and that F1, vv --list-keys and docs/window.md show.
-// [any thread]
+// keys.h: the window's keys: one table that Pilot and Window obey, and that F1, vv --list-keys and
+// docs/window.md show. [any thread]
 #pragma once
 
 #include <cstdint>

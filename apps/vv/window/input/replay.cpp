@@ -1,4 +1,3 @@
-// replay.cpp: see replay.h.
 #include "window/input/replay.h"
 
 namespace vv {
@@ -9,7 +8,8 @@ bool Replay::step(double time) {
   stepped_ = time;
   while (!finished() && script_.events[next_].time <= time) {
     const InputEvent& event = script_.events[next_++].event;
-    if (const Action action = pilot_.handle(event); action != Action::none) business_(event, action);
+    if (const Action action = pilot_.handle(event); action != Action::none)
+      business_(event, action);
     if (waiting_) return false;
   }
   return true;

@@ -1,4 +1,3 @@
-// view_command.cpp: see view_command.h.
 #include "window/input/view_command.h"
 
 #include <cmath>
@@ -13,7 +12,8 @@ namespace vv {
 namespace {
 
 std::string quoted(const std::string& word) {
-  constexpr std::string_view plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_=+,.:/@%";
+  constexpr std::string_view plain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_=+,.:/@%";
   if (!word.empty() && word.find_first_not_of(plain) == word.npos) return word;
   std::string out = "'";
   for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
@@ -30,16 +30,22 @@ const OptionInfo* optionOf(std::string_view name) {
 // Groups of options that a picture of the same view is made with.
 bool isKept(const OptionInfo& option) {
   const std::string_view group = option.group, names = option.names;
-  if (names == "--colour,--color" || names == "--camera-shader" || names == "--background") return true;
+  if (names == "--colour,--color" || names == "--camera-shader" || names == "--background")
+    return true;
   return group == "Change" || group == "Quality" || group == "Trust";
 }
 
 // Position, target, up. 17 digits: the numbers themselves.
 std::string placeOf(const xvrml::CameraSettings& camera) {
   const double* m = camera.matrix;
-  const auto number = [](double v) { return std::abs(v) < 1e-15 ? std::string("0") : fmt::format("{}", v); };
-  const auto triple = [&](double x, double y, double z) { return number(x) + "," + number(y) + "," + number(z); };
-  return triple(m[12], m[13], m[14]) + ":" + triple(m[12] - m[8], m[13] - m[9], m[14] - m[10]) + ":" + triple(m[4], m[5], m[6]);
+  const auto number = [](double v) {
+    return std::abs(v) < 1e-15 ? std::string("0") : fmt::format("{}", v);
+  };
+  const auto triple = [&](double x, double y, double z) {
+    return number(x) + "," + number(y) + "," + number(z);
+  };
+  return triple(m[12], m[13], m[14]) + ":" + triple(m[12] - m[8], m[13] - m[9], m[14] - m[10]) +
+         ":" + triple(m[4], m[5], m[6]);
 }
 
 } // namespace
@@ -49,7 +55,8 @@ std::string viewCommand(const ShownView& view, const std::vector<std::string>& a
   line += fmt::format(" --size {}x{} --camera={}", view.width, view.height, placeOf(view.camera));
   if (view.camera.fovy > 0) {
     const double aspect = double(view.width) / view.height;
-    const double smaller = aspect >= 1 ? view.camera.fovy : 2 * std::atan(std::tan(view.camera.fovy / 2) * aspect);
+    const double smaller =
+        aspect >= 1 ? view.camera.fovy : 2 * std::atan(std::tan(view.camera.fovy / 2) * aspect);
     line += fmt::format(" --fov {}", smaller * 180 / std::numbers::pi);
   }
   if (view.headlight) line += *view.headlight ? " --headlight on" : " --headlight off";
@@ -58,11 +65,14 @@ std::string viewCommand(const ShownView& view, const std::vector<std::string>& a
   for (size_t i = 0; i < arguments.size(); ++i) {
     const std::string& word = arguments[i];
     const size_t equals = word.find('=');
-    const OptionInfo* option = optionOf(word.substr(0, word.starts_with("--") ? equals : word.npos));
+    const OptionInfo* option =
+        optionOf(word.substr(0, word.starts_with("--") ? equals : word.npos));
     if (!option) continue;
-    const bool takesNext = *option->argument && option->argument[0] != '[' && !(word.starts_with("--") && equals != word.npos);
+    const bool takesNext = *option->argument && option->argument[0] != '[' &&
+                           !(word.starts_with("--") && equals != word.npos);
     if (isKept(*option))
-      line += " " + quoted(word) + (takesNext && i + 1 < arguments.size() ? " " + quoted(arguments[i + 1]) : "");
+      line += " " + quoted(word) +
+              (takesNext && i + 1 < arguments.size() ? " " + quoted(arguments[i + 1]) : "");
     if (takesNext) ++i;
   }
   return line + " -o view.png";

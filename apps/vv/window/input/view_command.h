@@ -18,7 +18,8 @@ struct ShownView {
   std::optional<bool> headlight;
 };
 
-// A line for a shell. arguments: of this run; what they say about the quality, the world's changes and whom to trust is kept.
+// A line for a shell. arguments: of this run; what they say about the quality, the world's changes
+// and whom to trust is kept.
 std::string viewCommand(const ShownView& view, const std::vector<std::string>& arguments);
 
 } // namespace vv

@@ -1,4 +1,3 @@
-// mixer.cpp: see mixer.h.
 #include "window/sound/mixer.h"
 
 #include <algorithm>
@@ -10,7 +9,8 @@ void Mixer::set(const std::vector<xvrml::Heard>& heard) {
   std::vector<Voice> fresh;
   fresh.reserve(heard.size());
   for (const xvrml::Heard& one : heard) {
-    const int place = !fresh.empty() && fresh.back().sound == one.sound ? fresh.back().place + 1 : 0;
+    const int place =
+        !fresh.empty() && fresh.back().sound == one.sound ? fresh.back().place + 1 : 0;
     fresh.push_back({one.sound, place, one.playing, {}, one.levels, true});
   }
   const std::lock_guard lock(mutex_);
@@ -33,9 +33,13 @@ void Mixer::follow(std::vector<Voice>& fresh) {
       continue;
     }
     double off = std::abs(found->playing.position - one.playing.position);
-    const double length = one.playing.clip->rate > 0 ? double(one.playing.clip->frames()) / one.playing.clip->rate : 0;
+    const double length = one.playing.clip->rate > 0
+                              ? double(one.playing.clip->frames()) / one.playing.clip->rate
+                              : 0;
     if (one.playing.loop) off = std::min(off, std::abs(length - off));
-    const double position = off > farOff * std::max(1.0, one.playing.pitch) ? one.playing.position : found->playing.position;
+    const double position = off > farOff * std::max(1.0, one.playing.pitch)
+                                ? one.playing.position
+                                : found->playing.position;
     found->playing = one.playing;
     found->playing.position = position;
     found->next = one.next;

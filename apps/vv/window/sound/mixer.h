@@ -1,5 +1,5 @@
-// mixer.h: the Sounds of a running world as samples. The browser's thread says after each tick what is heard; the device's thread
-// asks for samples and goes on by itself in between.
+// mixer.h: the Sounds of a running world as samples. The browser's thread says after each tick what
+// is heard; the device's thread asks for samples and goes on by itself in between.
 #pragma once
 
 #include <mutex>
@@ -15,13 +15,15 @@ class Mixer {
  public:
   // What is heard from now on. [browser's thread]
   void set(const std::vector<xvrml::Heard>& heard);
-  // Pairs of left and right samples in [-1,1], `rate` pairs a second; without memory of its own being asked for a block. What is
-  // new fades in, what has ended fades out, within the block. [device's thread]
+  // Pairs of left and right samples in [-1,1], `rate` pairs a second; without memory of its own
+  // being asked for a block. What is new fades in, what has ended fades out, within the block.
+  // [device's thread]
   void fill(std::span<float> stereo, double rate);
 
  private:
   struct Voice {
-    const void* sound = nullptr; // with `place` and the clip what tells voices apart; never looked at
+    const void* sound =
+        nullptr; // with `place` and the clip what tells voices apart; never looked at
     int place = 0;
     xvrml::Playing playing;
     xvrml::SoundLevels now, next;

@@ -1,4 +1,3 @@
-// speaker.cpp: see speaker.h.
 #include "window/sound/speaker.h"
 
 #include <SDL.h>
@@ -9,7 +8,8 @@ namespace {
 
 void fill(void* user, Uint8* bytes, int count) {
   constexpr double rate = 48000;
-  static_cast<Mixer*>(user)->fill({reinterpret_cast<float*>(bytes), size_t(count) / sizeof(float)}, rate);
+  static_cast<Mixer*>(user)->fill({reinterpret_cast<float*>(bytes), size_t(count) / sizeof(float)},
+                                  rate);
 }
 
 } // namespace
@@ -24,7 +24,8 @@ std::string Speaker::open() {
   wanted.samples = 1024;
   wanted.callback = fill;
   wanted.userdata = &mixer_;
-  device_ = SDL_OpenAudioDevice(nullptr, 0, &wanted, nullptr, 0); // SDL converts to what the device wants
+  device_ =
+      SDL_OpenAudioDevice(nullptr, 0, &wanted, nullptr, 0); // SDL converts to what the device wants
   if (device_ == 0) return SDL_GetError();
   SDL_PauseAudioDevice(device_, 0);
   return "";

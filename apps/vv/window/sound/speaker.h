@@ -1,4 +1,5 @@
-// speaker.h: the sound device, which plays what a Mixer has. [main thread; the device's own thread asks the mixer]
+// speaker.h: the sound device, which plays what a Mixer has. [main thread; the device's own thread
+// asks the mixer]
 #pragma once
 
 #include <memory>

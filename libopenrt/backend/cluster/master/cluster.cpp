@@ -1,6 +1,6 @@
-// cluster.cpp: the backend that renders with the help of other machines. One thread speaks with them (Wire, Master); the worker
-// in this process has threads of its own (WorkerCore). Whoever calls hands that thread a function, and waits if there is an
-// answer.
+// cluster.cpp: the backend that renders with the help of other machines. One thread speaks with
+// them (Wire, Master); the worker in this process has threads of its own (WorkerCore). Whoever
+// calls hands that thread a function, and waits if there is an answer.
 #include <algorithm>
 #include <chrono>
 #include <condition_variable>
@@ -27,7 +27,9 @@ using namespace cluster;
 
 SurfaceQueries& surfaces(Backend& local) { return dynamic_cast<SurfaceQueries&>(local); }
 
-double clockNow() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+double clockNow() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 
 Split splitOf(const std::string& word) {
   if (word == "tiles") return Split::tiles;
@@ -82,19 +84,22 @@ class Background {
   std::vector<std::thread> threads_;
 };
 
-// Of the threads here, those that merge what comes from elsewhere while one speaks with the network.
+// Of the threads here, those that merge what comes from elsewhere while one speaks with the
+// network.
 uint32_t mergersOf(uint32_t threads) { return std::clamp(threads / 2, 1u, 8u); }
 
 class ClusterBackend final : public Backend, public SurfaceQueries, private WorkerSink {
  public:
-  ClusterBackend(const BackendOptions& options, const ClusterOptions& cluster) : log_(options.log), logUser_(options.logUser) {
+  ClusterBackend(const BackendOptions& options, const ClusterOptions& cluster)
+      : log_(options.log), logUser_(options.logUser) {
     WireOptions wire;
     wire.connect = readHosts(cluster.workers);
     wire.listen = cluster.listen;
     if (!cluster.keyFile.empty())
       wire.keys = readKeys(cluster.keyFile, cluster.allowFile);
     else if (!cluster.allowFile.empty())
-      throw ClusterError("a list of keys that are let in (allow=" + cluster.allowFile + ") is of no use without key=FILE");
+      throw ClusterError("a list of keys that are let in (allow=" + cluster.allowFile +
+                         ") is of no use without key=FILE");
     wire_ = std::make_unique<Wire>(wire);
     BackendOptions local = options;
     if (cluster.local.value_or(0) > 0) local.threads = *cluster.local;
@@ -119,7 +124,8 @@ class ClusterBackend final : public Backend, public SurfaceQueries, private Work
       results_.push_back(later(std::move(heavy), std::move(then)));
     };
     master_ = std::make_unique<Master>(
-        master, [this](Peer peer, Frames&& frames) { return wire_->send(peer, std::move(frames)); }, core_.get());
+        master, [this](Peer peer, Frames&& frames) { return wire_->send(peer, std::move(frames)); },
+        core_.get());
     thread_ = std::thread([this] { run(); });
   }
 
@@ -203,7 +209,8 @@ class ClusterBackend final : public Backend, public SurfaceQueries, private Work
       s = state.prepared.stats; // of the scene
       s.size = size;
       s.degenerate += degenerate;
-      for (char* text : {s.isa + sizeof s.isa, s.kernel + sizeof s.kernel, s.transportReason + sizeof s.transportReason})
+      for (char* text : {s.isa + sizeof s.isa, s.kernel + sizeof s.kernel,
+                         s.transportReason + sizeof s.transportReason})
         text[-1] = '\0'; // a worker may have said it
       const RayCounters counters = state.work->counters();
       s.cameraRays = counters.camera;
@@ -252,10 +259,12 @@ class ClusterBackend final : public Backend, public SurfaceQueries, private Work
   void countHits(std::span<const RTray> rays, std::span<uint32_t> counts) override {
     ask([&](Backend& backend) { surfaces(backend).countHits(rays, counts); });
   }
-  void listHits(std::span<const RTray> rays, std::span<const size_t> first, std::span<RThit> hits) override {
+  void listHits(std::span<const RTray> rays, std::span<const size_t> first,
+                std::span<RThit> hits) override {
     ask([&](Backend& backend) { surfaces(backend).listHits(rays, first, hits); });
   }
-  void closestPoints(std::span<const float> points, float radius, std::span<RTclosest> closest) override {
+  void closestPoints(std::span<const float> points, float radius,
+                     std::span<RTclosest> closest) override {
     ask([&](Backend& backend) { surfaces(backend).closestPoints(points, radius, closest); });
   }
 
@@ -270,9 +279,8 @@ class ClusterBackend final : public Backend, public SurfaceQueries, private Work
   void hand(bool frame) {
     while (!unsent_.empty()) {
       const bool last = unsent_.size() == 1;
-      post([this, epoch = ++epoch_, commit = std::move(unsent_.front()), render = frame && last](double now) {
-        master_->commit(epoch, commit, render, now);
-      });
+      post([this, epoch = ++epoch_, commit = std::move(unsent_.front()),
+            render = frame && last](double now) { master_->commit(epoch, commit, render, now); });
       unsent_.pop_front();
     }
   }
@@ -375,8 +383,9 @@ class ClusterBackend final : public Backend, public SurfaceQueries, private Work
 
   // What has come, and what comes at once behind it.
   void listen(double seconds) {
-    constexpr int most = 256;       // messages before anything is handed out
-    constexpr size_t together = 16; // results for those who merge: waking somebody for each would take longer
+    constexpr int most = 256; // messages before anything is handed out
+    constexpr size_t together =
+        16; // results for those who merge: waking somebody for each would take longer
     for (int i = 0; i < most; i++) {
       if (results_.size() >= together) mergers_.add(results_);
       const double asked = clockNow();
@@ -445,7 +454,7 @@ class ClusterBackend final : public Backend, public SurfaceQueries, private Work
 
   // Of the network's thread.
   bool stop_ = false;
-  double waited_ = clockNow();            // since when it has been busy, without the time in which it waited
+  double waited_ = clockNow(); // since when it has been busy, without the time in which it waited
   std::vector<Background::Task> results_; // for those who merge
   std::unique_ptr<Wire> wire_;
   std::unique_ptr<WorkerCore> core_;
@@ -456,7 +465,8 @@ class ClusterBackend final : public Backend, public SurfaceQueries, private Work
 
 } // namespace
 
-std::unique_ptr<Backend> makeClusterBackend(const BackendOptions& options, const ClusterOptions& cluster) {
+std::unique_ptr<Backend> makeClusterBackend(const BackendOptions& options,
+                                            const ClusterOptions& cluster) {
   try {
     return std::make_unique<ClusterBackend>(options, cluster);
   } catch (const std::bad_alloc&) { throw; } catch (const ClusterError&) {

@@ -1,5 +1,6 @@
-// frame_source.h: a frame's work as the scheduler asks for it. For whoever tells the scheduler of frames; apart from scheduler.h
-// so that the scheduler itself can be linked without anything that renders. One thread's.
+// frame_source.h: a frame's work as the scheduler asks for it. For whoever tells the scheduler of
+// frames; apart from scheduler.h so that the scheduler itself can be linked without anything that
+// renders. One thread's.
 #pragma once
 
 #include <utility>

@@ -1,4 +1,3 @@
-// hosts.cpp: see hosts.h.
 #include "backend/cluster/master/hosts.h"
 
 #include <algorithm>
@@ -32,7 +31,8 @@ std::vector<std::string> readHosts(const std::vector<std::string>& entries) {
     errno = 0;
     std::ifstream file(entry.substr(1));
     if (!file)
-      throw ClusterError(entry.substr(1) + ": the list of workers cannot be read: " + std::strerror(errno ? errno : EIO));
+      throw ClusterError(entry.substr(1) + ": the list of workers cannot be read: " +
+                         std::strerror(errno ? errno : EIO));
     const size_t before = hosts.size();
     size_t number = 1; // of the line
     for (std::string line; hosts.size() < most && std::getline(file, line); ++number) {
@@ -45,7 +45,8 @@ std::vector<std::string> readHosts(const std::vector<std::string>& entries) {
       }
       hosts.push_back(std::move(host));
     }
-    if (hosts.size() == before) throw ClusterError(entry.substr(1) + ": the list of workers names nobody");
+    if (hosts.size() == before)
+      throw ClusterError(entry.substr(1) + ": the list of workers names nobody");
   }
   return hosts;
 }

@@ -1,5 +1,5 @@
-// job_costs.cpp: see job_costs.h. The median comes from a histogram of logarithms, eight bins an octave: exact to 5 %, which is
-// far less than jobs differ by, and of constant size.
+// job_costs.cpp: The median comes from a histogram of logarithms, eight bins an
+// octave: exact to 5 %, which is far less than jobs differ by, and of constant size.
 #include "backend/cluster/master/job_costs.h"
 
 #include <algorithm>
@@ -8,7 +8,8 @@
 namespace openrt::cluster {
 
 namespace {
-constexpr double priorJobs = 8; // as many jobs of this frame count as much as all of the frame before
+constexpr double priorJobs =
+    8; // as many jobs of this frame count as much as all of the frame before
 }
 
 JobCosts JobCosts::ofNextFrame() const {

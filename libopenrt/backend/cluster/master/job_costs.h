@@ -1,5 +1,6 @@
-// job_costs.h: what jobs of a frame cost: seconds of one thread for a pixel's sample (of light: for a path), their mean and
-// median. Until a frame knows better, that of the frame before counts. Of the scheduler. [any, one at a time]
+// job_costs.h: what jobs of a frame cost: seconds of one thread for a pixel's sample (of light: for
+// a path), their mean and median. Until a frame knows better, that of the frame before counts. Of
+// the scheduler. [any, one at a time]
 #pragma once
 
 #include <array>
@@ -12,7 +13,9 @@ class JobCosts {
   JobCosts ofNextFrame() const;
   void add(double units, double seconds);
   bool known() const { return mean() > 0; }
-  double mean() const { return units_ + priorUnits_ > 0 ? (seconds_ + priorSeconds_) / (units_ + priorUnits_) : 0; }
+  double mean() const {
+    return units_ + priorUnits_ > 0 ? (seconds_ + priorSeconds_) / (units_ + priorUnits_) : 0;
+  }
   double median() const { return median_; } // of the jobs' means; 0: nothing is known
   double dear() const { return dear_; }     // what one in fifty jobs costs at least
   double seconds() const { return seconds_; }

@@ -11,14 +11,16 @@ namespace {
 
 uint64_t largestResultOf(const edit::FrameSettingsT& frame) {
   constexpr uint64_t tile = uint64_t(largestTile) * largestTile * sizeof(PixelSums), beside = 4096;
-  const uint64_t light = uint64_t(frame.width) * frame.height * 3 * sizeof(float); // runs of zeros are shorter than these
+  const uint64_t light = uint64_t(frame.width) * frame.height * 3 *
+                         sizeof(float); // runs of zeros are shorter than these
   return std::max(tile, light) + beside;
 }
 
 } // namespace
 
 Master::Impl::Impl(const MasterOptions& o, Send s, WorkerCore* h)
-    : options(o), send(std::move(s)), core(h), scheduler(o.schedule), scenes(o.local.shaders), nextSession(o.session) {
+    : options(o), send(std::move(s)), core(h), scheduler(o.schedule), scenes(o.local.shaders),
+      nextSession(o.session) {
   here.threads = h ? h->threads() : 0;
   here.host = "here";
 }
@@ -44,13 +46,17 @@ void Master::left(Peer peer, const std::string& why, double now) {
 
 void Master::message(Peer peer, Frames&& frames, double now) {
   const auto found = impl_->remotes.find(peer);
-  if (found == impl_->remotes.end()) return; // it has left: whatever this was, somebody else does it
+  if (found == impl_->remotes.end())
+    return; // it has left: whatever this was, somebody else does it
   Remote& remote = found->second;
   remote.bytesReceived += bytesOf(frames);
   Message message;
-  if (const std::string wrong = decodePacked(std::move(frames), message, impl_->largestResult); !wrong.empty())
-    return impl_->refuse(peer, "a message that cannot be read: " + wrong, now); // nobody knows what it should have been
-  if (auto* hello = std::get_if<message::Hello>(&message.body)) return impl_->hello(remote, std::move(*hello), now);
+  if (const std::string wrong = decodePacked(std::move(frames), message, impl_->largestResult);
+      !wrong.empty())
+    return impl_->refuse(peer, "a message that cannot be read: " + wrong,
+                         now); // nobody knows what it should have been
+  if (auto* hello = std::get_if<message::Hello>(&message.body))
+    return impl_->hello(remote, std::move(*hello), now);
   if (!remote.welcome || message.session != remote.session) return; // of a session that has ended
   struct {
     Impl& m;
@@ -58,10 +64,13 @@ void Master::message(Peer peer, Frames&& frames, double now) {
     double now;
     void operator()(message::Need& need) const { m.need(remote, need, now); }
     void operator()(message::Ready& ready) const {
-      if (ready.epoch > remote.furthest || ready.transport == RT_TRANSPORT_AUTO || ready.transport > RT_TRANSPORT_LIGHT)
+      if (ready.epoch > remote.furthest || ready.transport == RT_TRANSPORT_AUTO ||
+          ready.transport > RT_TRANSPORT_LIGHT)
         return m.strike(remote, "a scene that it cannot have prepared", now);
-      remote.offered.erase(remote.offered.begin(), remote.offered.upper_bound(ready.epoch)); // it has all of that
-      m.ready(remote.id, remote.name(), ready.epoch, ready.facts, ready.transport, ready.stats, now);
+      remote.offered.erase(remote.offered.begin(),
+                           remote.offered.upper_bound(ready.epoch)); // it has all of that
+      m.ready(remote.id, remote.name(), ready.epoch, ready.facts, ready.transport, ready.stats,
+              now);
     }
     void operator()(message::Failed& failed) const {
       m.logOnce(2, "worker " + remote.name() + ": " + failed.why);
@@ -73,7 +82,8 @@ void Master::message(Peer peer, Frames&& frames, double now) {
     }
     void operator()(message::Result& result) const { m.result(remote, std::move(result), now); }
     void operator()(message::Log& log) const {
-      if (remote.logged++ < limits::logLines) m.log(log.level, "worker " + remote.name() + ": " + log.text);
+      if (remote.logged++ < limits::logLines)
+        m.log(log.level, "worker " + remote.name() + ": " + log.text);
     }
     void operator()(message::Beat&) const {}
     void operator()(message::Bye&) const {}
@@ -91,7 +101,8 @@ void Master::message(Peer peer, Frames&& frames, double now) {
 }
 
 void Master::readyHere(Epoch epoch, const Prepared& prepared, double now) {
-  impl_->ready(hereId, "here", epoch, prepared.facts, prepared.frame.transport, prepared.stats, now);
+  impl_->ready(hereId, "here", epoch, prepared.facts, prepared.frame.transport, prepared.stats,
+               now);
 }
 
 // What cannot be made here could not be made without the others either.
@@ -143,8 +154,10 @@ void Master::cancel(Epoch epoch, double) {
     if (number > epoch || entry.state.over) continue;
     if (!entry.state.work) { // a picture in which nothing is finished
       entry.state.prepared.frame = entry.settings;
-      if (entry.settings.transport == RT_TRANSPORT_AUTO) entry.state.prepared.frame.transport = RT_TRANSPORT_DIRECT;
-      entry.state.work = std::make_shared<FrameWork>(entry.state.prepared.frame, FrameFacts{true, false}, 1);
+      if (entry.settings.transport == RT_TRANSPORT_AUTO)
+        entry.state.prepared.frame.transport = RT_TRANSPORT_DIRECT;
+      entry.state.work =
+          std::make_shared<FrameWork>(entry.state.prepared.frame, FrameFacts{true, false}, 1);
     }
     entry.state.work->cancel();
     m.end(number);
@@ -175,7 +188,8 @@ double Master::advance(double now) {
     if (remote.outbox.overfull()) m.refuse(peer, "it does not read what it is sent", now);
   }
   if (!m.waiting.empty()) next = std::min(next, now + 0.001); // a queue has room again
-  if (!m.hereJoined && m.core && std::isfinite(m.firstCommit)) next = std::min(next, m.firstCommit + m.options.grace);
+  if (!m.hereJoined && m.core && std::isfinite(m.firstCommit))
+    next = std::min(next, m.firstCommit + m.options.grace);
   return std::max(next, now);
 }
 
@@ -207,7 +221,8 @@ Master::FrameState Master::frame(Epoch epoch) const {
 }
 
 void Master::forget(Epoch epoch) {
-  if (const auto found = impl_->frames.find(epoch); found != impl_->frames.end() && found->second.state.over)
+  if (const auto found = impl_->frames.find(epoch);
+      found != impl_->frames.end() && found->second.state.over)
     impl_->frames.erase(found);
 }
 

@@ -1,4 +1,5 @@
-// master_frames.cpp: who prepares what, how jobs go out and results come home, and how a frame ends.
+// master_frames.cpp: who prepares what, how jobs go out and results come home, and how a frame
+// ends.
 #include <algorithm>
 #include <utility>
 
@@ -9,17 +10,22 @@
 namespace openrt::cluster {
 namespace {
 
-std::string plural(uint32_t n, const char* what) { return std::to_string(n) + " " + what + (n == 1 ? "" : "s"); }
+std::string plural(uint32_t n, const char* what) {
+  return std::to_string(n) + " " + what + (n == 1 ? "" : "s");
+}
 
 std::string whatOf(const Prepared& p) {
-  return plural(uint32_t(p.stats.triangles), "triangle") + ", transport " + std::to_string(p.frame.transport) +
-         (p.facts.camera ? "" : ", no camera") + (p.facts.lamps ? ", paths from lamps" : "");
+  return plural(uint32_t(p.stats.triangles), "triangle") + ", transport " +
+         std::to_string(p.frame.transport) + (p.facts.camera ? "" : ", no camera") +
+         (p.facts.lamps ? ", paths from lamps" : "");
 }
 
 bool same(const Prepared& a, const Prepared& b) {
-  return a.facts.camera == b.facts.camera && a.facts.lamps == b.facts.lamps && a.frame.transport == b.frame.transport &&
-         a.stats.triangles == b.stats.triangles && a.stats.uniqueTriangles == b.stats.uniqueTriangles &&
-         a.stats.rejectedInstances == b.stats.rejectedInstances && a.stats.unreachedLights == b.stats.unreachedLights &&
+  return a.facts.camera == b.facts.camera && a.facts.lamps == b.facts.lamps &&
+         a.frame.transport == b.frame.transport && a.stats.triangles == b.stats.triangles &&
+         a.stats.uniqueTriangles == b.stats.uniqueTriangles &&
+         a.stats.rejectedInstances == b.stats.rejectedInstances &&
+         a.stats.unreachedLights == b.stats.unreachedLights &&
          a.stats.transportLeavesOut == b.stats.transportLeavesOut;
 }
 
@@ -67,8 +73,9 @@ void Master::Impl::bring(WorkerId worker, Epoch epoch) {
   remote->furthest = std::max(remote->furthest, epoch);
 }
 
-void Master::Impl::ready(WorkerId worker, const std::string& who, Epoch epoch, const FrameFacts& facts, uint32_t transport,
-                         const RTstats& stats, double now) {
+void Master::Impl::ready(WorkerId worker, const std::string& who, Epoch epoch,
+                         const FrameFacts& facts, uint32_t transport, const RTstats& stats,
+                         double now) {
   FrameEntry* entry = unfinished(epoch);
   if (!entry) return scheduler.ready(worker, epoch, now);
   Prepared prepared;
@@ -89,16 +96,20 @@ void Master::Impl::ready(WorkerId worker, const std::string& who, Epoch epoch, c
   taken(epoch); // there may be nothing to do
 }
 
-// Everybody must have found the same in the scene. Who differs goes; it is the others if this process is the one that differs.
-bool Master::Impl::agree(FrameEntry& entry, WorkerId worker, const std::string& who, const Prepared& prepared, double now) {
+// Everybody must have found the same in the scene. Who differs goes; it is the others if this
+// process is the one that differs.
+bool Master::Impl::agree(FrameEntry& entry, WorkerId worker, const std::string& who,
+                         const Prepared& prepared, double now) {
   if (same(entry.state.prepared, prepared)) return true;
-  const std::string both = who + " has found " + whatOf(prepared) + ", " + entry.who + " " + whatOf(entry.state.prepared);
+  const std::string both = who + " has found " + whatOf(prepared) + ", " + entry.who + " " +
+                           whatOf(entry.state.prepared);
   if (worker != hereId) {
     refuse(peers.at(worker), "another scene: " + both, now);
     return false;
   }
   for (WorkerId other : std::set<WorkerId>(entry.all))
-    if (const auto found = peers.find(other); found != peers.end()) refuse(found->second, "another scene: " + both, now);
+    if (const auto found = peers.find(other); found != peers.end())
+      refuse(found->second, "another scene: " + both, now);
   for (auto& [epoch, candidate] : frames) {
     if (&candidate != &entry) continue;
     scheduler.end(epoch);
@@ -110,7 +121,8 @@ bool Master::Impl::agree(FrameEntry& entry, WorkerId worker, const std::string& 
 }
 
 void Master::Impl::result(Remote& remote, message::Result&& message, double now) {
-  if (auto out = remote.out.find(message.epoch); out != remote.out.end() && out->second > 0) out->second--;
+  if (auto out = remote.out.find(message.epoch); out != remote.out.end() && out->second > 0)
+    out->second--;
   const Job* job = scheduler.find(remote.id, message.epoch, message.lease);
   FrameEntry* entry = unfinished(message.epoch);
   if (!job || !entry || !entry->state.work) { // too late
@@ -125,7 +137,8 @@ void Master::Impl::result(Remote& remote, message::Result&& message, double now)
   arrival->result.counters.camera = message.camera;
   arrival->result.counters.shadow = message.shadow;
   arrival->result.counters.secondary = message.secondary;
-  if (options.local.shaders) arrival->result.counters.faults = faultsFrom(message.faults, *options.local.shaders);
+  if (options.local.shaders)
+    arrival->result.counters.faults = faultsFrom(message.faults, *options.local.shaders);
   arrival->result.seconds = message.seconds;
   arrival->message = std::move(message);
   arrive(*entry, arrival, now);
@@ -168,7 +181,8 @@ void Master::Impl::arrived(const Arrival& a, double now) {
   if (!a.fits) {
     if (a.unreadable.empty()) scheduler.failed(a.worker, a.epoch, a.job.lease, now);
     if (remote && a.unreadable.empty()) strike(*remote, "a result that is none of its job", now);
-    if (remote && !a.unreadable.empty()) refuse(remote->peer, "a message that cannot be read: " + a.unreadable, now);
+    if (remote && !a.unreadable.empty())
+      refuse(remote->peer, "a message that cannot be read: " + a.unreadable, now);
     return taken(a.epoch);
   }
   scheduler.done(a.worker, a.epoch, a.job.lease, a.result.seconds, now);
@@ -187,15 +201,16 @@ void Master::Impl::taken(Epoch epoch) {
   settle();
 }
 
-// Jobs of it that are still out are of no use. They are taken back together with those of all earlier frames, once these are
-// over.
+// Jobs of it that are still out are of no use. They are taken back together with those of all
+// earlier frames, once these are over.
 void Master::Impl::end(Epoch epoch) {
   frames.at(epoch).state.over = true;
   scheduler.end(epoch);
   const Epoch first = oldest(), until = first ? first - 1 : std::max(epoch, scenes.last());
   const auto takeBack = [until](Remote& remote) {
     bool any = false;
-    for (auto out = remote.out.begin(); out != remote.out.end() && out->first <= until; out = remote.out.erase(out))
+    for (auto out = remote.out.begin(); out != remote.out.end() && out->first <= until;
+         out = remote.out.erase(out))
       any |= out->second > 0;
     return any;
   };
@@ -249,10 +264,11 @@ bool Master::Impl::enough(double now) {
   }
   fewSince = std::min(fewSince, now);
   if (now < fewSince + options.patience) return false;
-  const std::string why = plural(options.require, "worker") + (options.require == 1 ? " is" : " are") + " needed, " +
-                          (alive() == 1 ? "there is 1" : "there are " + std::to_string(alive())) +
-                          (can == alive() ? "" : " (" + std::to_string(can) + " that can make this picture)") +
-                          (lastRefusal.empty() ? "" : "; refused was " + lastRefusal);
+  const std::string why =
+      plural(options.require, "worker") + (options.require == 1 ? " is" : " are") + " needed, " +
+      (alive() == 1 ? "there is 1" : "there are " + std::to_string(alive())) +
+      (can == alive() ? "" : " (" + std::to_string(can) + " that can make this picture)") +
+      (lastRefusal.empty() ? "" : "; refused was " + lastRefusal);
   while (const Epoch epoch = oldest()) fail(epoch, why, true);
   fewSince = std::numeric_limits<double>::infinity();
   return false;
@@ -273,13 +289,15 @@ void Master::Impl::handOut(double now) {
   while (handSomeOut(now)) {}
 }
 
-// Few messages, each with all that one worker gets; but they leave before the last of thousands of threads has its job.
+// Few messages, each with all that one worker gets; but they leave before the last of thousands of
+// threads has its job.
 bool Master::Impl::handSomeOut(double now) {
   constexpr size_t most = 512;
   std::map<std::pair<WorkerId, Epoch>, std::vector<LeasedJob>> jobs;
   Handout out;
   size_t count = 0;
-  for (; count < most && scheduler.next(now, out); count++) jobs[{out.worker, out.epoch}].push_back(out.job);
+  for (; count < most && scheduler.next(now, out); count++)
+    jobs[{out.worker, out.epoch}].push_back(out.job);
   for (auto& [to, list] : jobs) {
     Remote* remote = remoteOf(to.first);
     if (!remote) continue;

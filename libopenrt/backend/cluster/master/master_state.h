@@ -1,4 +1,5 @@
-// master_state.h: what the master knows of workers and frames. Only master.cpp and its parts include it.
+// master_state.h: what the master knows of workers and frames. Only master.cpp and its parts
+// include it.
 #pragma once
 
 #include <deque>
@@ -30,11 +31,14 @@ struct Remote {
   Epoch sent = 0;       // it has the scene up to here, or will; 0: none
   Epoch furthest = 0;   // that it was sent
   Outbox outbox;
-  std::map<Epoch, std::vector<OfferPtr>> offered; // arrays of scenes for which it has not said yet what it lacks
-  std::map<Epoch, uint32_t> out;                  // jobs it has, by frame
-  std::unordered_set<Lease> arriving;             // of results that are being merged
+  std::map<Epoch, std::vector<OfferPtr>>
+      offered;                   // arrays of scenes for which it has not said yet what it lacks
+  std::map<Epoch, uint32_t> out; // jobs it has, by frame
+  std::unordered_set<Lease> arriving; // of results that are being merged
   uint64_t bytesSent = 0, bytesReceived = 0, rays = 0;
-  std::string name() const { return host.empty() ? address : address.empty() ? host : host + " (" + address + ")"; }
+  std::string name() const {
+    return host.empty() ? address : address.empty() ? host : host + " (" + address + ")";
+  }
 };
 
 struct FrameEntry {
@@ -84,9 +88,10 @@ struct Master::Impl {
 
   // Frames (master_frames.cpp).
   void bring(WorkerId worker, Epoch epoch);
-  void ready(WorkerId worker, const std::string& who, Epoch epoch, const FrameFacts& facts, uint32_t transport,
-             const RTstats& stats, double now);
-  bool agree(FrameEntry& entry, WorkerId worker, const std::string& who, const Prepared& prepared, double now);
+  void ready(WorkerId worker, const std::string& who, Epoch epoch, const FrameFacts& facts,
+             uint32_t transport, const RTstats& stats, double now);
+  bool agree(FrameEntry& entry, WorkerId worker, const std::string& who, const Prepared& prepared,
+             double now);
   void result(Remote& remote, message::Result&& result, double now);
   void arrive(FrameEntry& entry, const std::shared_ptr<Arrival>& arrival, double now);
   void arrived(const Arrival& arrival, double now);
@@ -116,13 +121,15 @@ struct Master::Impl {
   std::set<Peer> waiting; // whose outbox is not empty
   WorkerId nextWorker = 1;
   uint64_t nextSession;
-  double busySeconds = 5e-3, busyJobs = 500, jobsSince = 0; // of this thread, of late; jobs since it was told
+  double busySeconds = 5e-3, busyJobs = 500,
+         jobsSince = 0; // of this thread, of late; jobs since it was told
   uint64_t jobsHere = 0, jobsRemote = 0, goneSent = 0, goneReceived = 0;
   double firstCommit = std::numeric_limits<double>::infinity();
   double fewSince = std::numeric_limits<double>::infinity(); // fewer workers than required
   bool everJoined = false, saidAlone = false, reloaded = false;
-  uint64_t largestResult = 0; // bytes of a job's, of any frame so far: nothing small is unpacked to something huge
-  std::string lastRefusal;    // for who waits for workers in vain
+  uint64_t largestResult =
+      0; // bytes of a job's, of any frame so far: nothing small is unpacked to something huge
+  std::string lastRefusal; // for who waits for workers in vain
 };
 
 } // namespace openrt::cluster

@@ -11,11 +11,13 @@ constexpr uint32_t mostStrikes = 3;    // messages that are nonsense
 constexpr uint32_t mostThreads = 4096; // of a worker
 constexpr size_t mostGone = 256;       // workers that have left and are remembered
 constexpr size_t mostSaid = 1000;
-constexpr const char* reloadedWhy = "the master has loaded shader libraries anew, and renders alone from there on";
+constexpr const char* reloadedWhy =
+    "the master has loaded shader libraries anew, and renders alone from there on";
 } // namespace
 
 void Master::Impl::log(int level, const std::string& text) const {
-  if (options.local.log) options.local.log(level, ("cluster: " + text).c_str(), options.local.logUser);
+  if (options.local.log)
+    options.local.log(level, ("cluster: " + text).c_str(), options.local.logUser);
 }
 
 void Master::Impl::logOnce(int level, const std::string& text) {
@@ -33,16 +35,19 @@ void Master::Impl::joinHere(double now) {
   if (hereJoined || !core) return;
   const bool reserve = options.localThreads == 0;
   if (reserve && !everJoined && now < firstCommit + options.grace) return;
-  if (reserve && !everJoined && options.require == 0) log(2, "no worker has answered yet: this process goes on alone");
+  if (reserve && !everJoined && options.require == 0)
+    log(2, "no worker has answered yet: this process goes on alone");
   scheduler.join(hereId, core->threads(), true, now, reserve);
   hereJoined = true;
 }
 
-// Shader libraries that are loaded anew keep the numbers of their parameters from one version to the next; a worker that has not
-// seen all versions would take them for others, and one that has does not load its own anew.
+// Shader libraries that are loaded anew keep the numbers of their parameters from one version to
+// the next; a worker that has not seen all versions would take them for others, and one that has
+// does not load its own anew.
 void Master::Impl::leaveWorkersOut(double now) {
   reloaded = true;
-  for (const auto& [id, peer] : std::unordered_map<WorkerId, Peer>(peers)) refuse(peer, reloadedWhy, now);
+  for (const auto& [id, peer] : std::unordered_map<WorkerId, Peer>(peers))
+    refuse(peer, reloadedWhy, now);
 }
 
 void Master::Impl::hello(Remote& remote, message::Hello&& hello, double now) {
@@ -56,7 +61,8 @@ void Master::Impl::hello(Remote& remote, message::Hello&& hello, double now) {
   if (hello.threads < 1 || hello.threads > mostThreads)
     return refuse(remote.peer, "a worker with " + std::to_string(hello.threads) + " threads", now);
   if (reloaded) return refuse(remote.peer, reloadedWhy, now);
-  if (const std::string differing = difference(hello, options.self, options.tolerant); !differing.empty())
+  if (const std::string differing = difference(hello, options.self, options.tolerant);
+      !differing.empty())
     return refuse(remote.peer, differing, now);
   remote.welcome = true;
   remote.threads = hello.threads;
@@ -120,19 +126,22 @@ bool Master::Impl::deliver(Remote& remote, Frames&& frames) {
 }
 
 void Master::Impl::flush(Remote& remote) {
-  const bool idle = remote.outbox.flush(remote.session, [&](Frames&& frames) { return deliver(remote, std::move(frames)); });
+  const bool idle = remote.outbox.flush(
+      remote.session, [&](Frames&& frames) { return deliver(remote, std::move(frames)); });
   if (idle) waiting.erase(remote.peer); // what is being packed comes back by itself
 }
 
 void Master::Impl::need(Remote& remote, const message::Need& need, double now) {
   const auto offered = remote.offered.find(need.epoch);
-  if (offered == remote.offered.end()) return strike(remote, "it needs arrays of a scene that it was not sent", now);
+  if (offered == remote.offered.end())
+    return strike(remote, "it needs arrays of a scene that it was not sent", now);
   std::map<Hash, OfferPtr> offers;
   for (OfferPtr& offer : offered->second) offers.emplace(offer->hash, std::move(offer));
   remote.offered.erase(offered);
   for (const Hash& hash : need.arrays) {
     const auto found = offers.find(hash);
-    if (found == offers.end()) return strike(remote, "it needs an array that it was not offered", now);
+    if (found == offers.end())
+      return strike(remote, "it needs an array that it was not offered", now);
     const OfferPtr offer = std::move(found->second);
     offers.erase(found); // once
     remote.outbox.add(offer);

@@ -1,4 +1,3 @@
-// outbox.cpp: see outbox.h.
 #include "backend/cluster/master/outbox.h"
 
 namespace openrt::cluster {
@@ -22,7 +21,8 @@ bool Outbox::flush(uint64_t session, const Send& send) {
   while (!arrays_.empty() && arrays_.front().array->ready) {
     Travelling& next = arrays_.front();
     const Offer& offer = *next.array;
-    Frames frames = encode(session, pieceOf(offer.hash, offer.array->size(), offer.packed, next.offset));
+    Frames frames =
+        encode(session, pieceOf(offer.hash, offer.array->size(), offer.packed, next.offset));
     next.offset += pieceBytes;
     if (next.offset >= offer.packed.size()) arrays_.pop_front();
     if (!send(std::move(frames))) {

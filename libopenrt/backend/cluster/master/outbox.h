@@ -1,5 +1,5 @@
-// outbox.h: what is to be sent to one worker: messages in their order, and arrays piece by piece behind them, as fast as its
-// queue takes them. A piece is made when it is sent. One thread's.
+// outbox.h: what is to be sent to one worker: messages in their order, and arrays piece by piece
+// behind them, as fast as its queue takes them. A piece is made when it is sent. One thread's.
 #pragma once
 
 #include <deque>
@@ -18,7 +18,9 @@ class Outbox {
   // True: nothing waits that could go. Arrays that are not packed yet are left for later.
   bool flush(uint64_t session, const Send& send);
   bool empty() const { return piece_.empty() && messages_.empty() && arrays_.empty(); }
-  bool overfull() const { return messages_.size() > limits::outboxMessages || bytes_ > limits::outboxBytes; }
+  bool overfull() const {
+    return messages_.size() > limits::outboxMessages || bytes_ > limits::outboxBytes;
+  }
   void clear() {
     piece_.clear();
     messages_.clear();

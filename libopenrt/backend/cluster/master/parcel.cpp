@@ -1,4 +1,3 @@
-// parcel.cpp: see parcel.h.
 #include "backend/cluster/master/parcel.h"
 
 #include <algorithm>
@@ -27,7 +26,8 @@ OfferPtr Packer::offer(const ArrayPtr& array) {
   return offer;
 }
 
-// Of classes that the commit names for the first time; who cannot say where a class is from lets the worker find out.
+// Of classes that the commit names for the first time; who cannot say where a class is from lets
+// the worker find out.
 void Packer::addLibraries(const Commit& commit, Parcel& parcel) {
   if (!shaders_) return;
   for (const auto& entry : commit.edits.edits) {
@@ -38,7 +38,8 @@ void Packer::addLibraries(const Commit& commit, Parcel& parcel) {
       name = shaders_->libraryOf(made->name, made->library);
       path = shaders_->locate(name);
     } catch (const std::exception&) { continue; }
-    if (path.empty() || std::any_of(parcel.libraries.begin(), parcel.libraries.end(), [&](auto& l) { return l.name == name; }))
+    if (path.empty() || std::any_of(parcel.libraries.begin(), parcel.libraries.end(),
+                                    [&](auto& l) { return l.name == name; }))
       continue;
     parcel.libraries.push_back({name, files_.of(path)});
   }
@@ -54,7 +55,8 @@ ParcelPtr Packer::pack(std::shared_ptr<const Commit> commit) {
   parcel->edits = packEdits(commit->edits);
   parcel->bytes = parcel->edits.size();
   std::map<Hash, OfferPtr> distinct;
-  for (const auto& [id, array] : std::map<ArrayId, ArrayPtr>(commit->arrays.begin(), commit->arrays.end())) {
+  for (const auto& [id, array] :
+       std::map<ArrayId, ArrayPtr>(commit->arrays.begin(), commit->arrays.end())) {
     if (!array) continue;
     const OfferPtr offer = this->offer(array);
     parcel->arrays.push_back({id, array->size(), offer->hash});

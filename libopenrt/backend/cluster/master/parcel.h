@@ -1,5 +1,6 @@
-// parcel.h: commits made ready to travel: the edits as bytes, the arrays by what is in them, the shader libraries by name and
-// hash. Made once, sent to many. Arrays are packed once, when a worker turns out to need them. One thread's, but for Offer::pack.
+// parcel.h: commits made ready to travel: the edits as bytes, the arrays by what is in them, the
+// shader libraries by name and hash. Made once, sent to many. Arrays are packed once, when a worker
+// turns out to need them. One thread's, but for Offer::pack.
 #pragma once
 
 #include <map>
@@ -49,7 +50,8 @@ class Packer {
 
   const ShaderRegistry* shaders_;
   std::map<Hash, std::weak_ptr<Offer>> offers_;
-  std::unordered_map<const Array*, std::pair<std::weak_ptr<const Array>, Hash>> hashes_; // of arrays that were seen
+  std::unordered_map<const Array*, std::pair<std::weak_ptr<const Array>, Hash>>
+      hashes_; // of arrays that were seen
   size_t sweepAt_ = 64;
   FileHashes files_; // of shader libraries
 };

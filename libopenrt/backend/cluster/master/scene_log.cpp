@@ -1,4 +1,3 @@
-// scene_log.cpp: see scene_log.h.
 #include "backend/cluster/master/scene_log.h"
 
 #include "scene/whole_scene.h"
@@ -25,7 +24,9 @@ void SceneLog::settle(Epoch epoch) {
     base_ = entry.epoch;
     whole_.reset();
   }
-  while (!log_.empty() && log_.front().epoch <= base_ && (log_.size() > mostCommits || bytes_ > mostBytes)) dropFirst();
+  while (!log_.empty() && log_.front().epoch <= base_ &&
+         (log_.size() > mostCommits || bytes_ > mostBytes))
+    dropFirst();
 }
 
 void SceneLog::trim(Epoch epoch) {
@@ -36,13 +37,15 @@ std::vector<SceneLog::Step> SceneLog::steps(Epoch has, Epoch wanted) {
   std::vector<Step> result;
   const bool fresh = has == 0;
   if (has < gone_ || (fresh && base_ > 0)) {
-    const bool onlyOne = gone_ == 0 && !log_.empty() && log_.front().epoch == base_; // which is the whole scene itself
+    const bool onlyOne = gone_ == 0 && !log_.empty() &&
+                         log_.front().epoch == base_; // which is the whole scene itself
     if (!whole_) whole_ = onlyOne ? log_.front().parcel : packer_.pack(wholeScene(scene_));
     result.push_back({base_, whole_, true});
     has = base_;
   }
   for (const Entry& entry : log_)
-    if (entry.epoch > has && entry.epoch <= wanted) result.push_back({entry.epoch, entry.parcel, fresh && result.empty()});
+    if (entry.epoch > has && entry.epoch <= wanted)
+      result.push_back({entry.epoch, entry.parcel, fresh && result.empty()});
   return result;
 }
 

@@ -1,5 +1,5 @@
-// scene_log.h: the commits that workers may still need, and the scene as it was at the oldest of them, so that one who joins in
-// the middle of a frame gets the scene of that frame. One thread's.
+// scene_log.h: the commits that workers may still need, and the scene as it was at the oldest of
+// them, so that one who joins in the middle of a frame gets the scene of that frame. One thread's.
 #pragma once
 
 #include <deque>
@@ -25,13 +25,15 @@ class SceneLog {
     ParcelPtr parcel;
     bool whole = false;
   };
-  // What brings somebody who has the scene of epoch `has` (0: none) to that of `wanted`, in order. wanted: not settled.
+  // What brings somebody who has the scene of epoch `has` (0: none) to that of `wanted`, in order.
+  // wanted: not settled.
   std::vector<Step> steps(Epoch has, Epoch wanted);
   Epoch last() const { return log_.empty() ? base_ : log_.back().epoch; }
   const edit::FrameSettingsT& frame() const { return frame_; } // of the last commit
 
  private:
-  static constexpr size_t mostCommits = 256, mostBytes = size_t(64) << 20; // kept for those who lag behind
+  static constexpr size_t mostCommits = 256, mostBytes = size_t(64)
+                                                         << 20; // kept for those who lag behind
   struct Entry {
     Epoch epoch = 0;
     ParcelPtr parcel;

@@ -1,4 +1,5 @@
-// scheduler.cpp: see scheduler.h. Leases: who has which job, and what becomes of it when that worker is done, fails or is lost.
+// scheduler.cpp: Leases: who has which job, and what becomes of it when that
+// worker is done, fails or is lost.
 #include "backend/cluster/master/scheduler.h"
 
 #include <algorithm>
@@ -78,7 +79,8 @@ void Scheduler::Impl::end(Frame& f) {
   }
   const Epoch epoch = f.epoch;
   frames.erase(epoch);
-  if (const auto g = groups.find(epoch); g != groups.end() && g->second.members.empty()) groups.erase(g);
+  if (const auto g = groups.find(epoch); g != groups.end() && g->second.members.empty())
+    groups.erase(g);
   moves = true;
 }
 
@@ -89,7 +91,8 @@ bool Scheduler::Impl::done(Frame& f, Lease lease, double seconds, double now) {
   Worker& w = *worker(held.worker);
   w.leases.erase({f.epoch, lease});
   w.tally.out = uint32_t(w.leases.size());
-  if (now > held.since) seconds = std::min(seconds, now - held.since); // who says more has not told the truth
+  if (now > held.since)
+    seconds = std::min(seconds, now - held.since); // who says more has not told the truth
   w.tally.busy += std::max(seconds, 0.0);
   w.heard = now;
   if (w.slips > 0) w.slips--;
@@ -112,7 +115,8 @@ bool Scheduler::Impl::done(Frame& f, Lease lease, double seconds, double now) {
   const Job& job = flight->second.job;
   f.costsOf(job).add(flight->second.units, seconds);
   if (job.kind == Job::Kind::samples && job.number < f.places.size() && seconds > 0)
-    f.places[job.number] = float(std::min(seconds, 1e6) / flight->second.units); // finite, whatever a worker says
+    f.places[job.number] =
+        float(std::min(seconds, 1e6) / flight->second.units); // finite, whatever a worker says
   for (const Lease other : flight->second.holders)
     if (other != lease) f.leases.at(other).flight = 0;
   unschedule(f, held.flight, flight->second);
@@ -171,7 +175,8 @@ void Scheduler::frame(Epoch epoch, std::shared_ptr<JobSource> work, double now) 
   f.maybe = true;
   f.progressed = now;
   f.tilePixels = f.work->tiles() > 0 ? std::max(f.work->pixels(0), 1u) : 1;
-  f.perPixel = std::max(f.work->undone() / (double(f.tilePixels) * std::max(f.work->tiles(), 1u)), 1.0);
+  f.perPixel =
+      std::max(f.work->undone() / (double(f.tilePixels) * std::max(f.work->tiles(), 1u)), 1.0);
   if (impl_->places.size() == f.work->tiles()) f.places = impl_->places; // costs lie where they lay
   f.places.resize(f.work->tiles());
   impl_->plan(f);
@@ -186,7 +191,9 @@ void Scheduler::end(Epoch epoch) {
   if (Frame* f = impl_->frame(epoch)) impl_->end(*f);
 }
 
-bool Scheduler::move(double now, WorkerId& worker, Epoch& epoch) { return impl_->move(now, worker, epoch); }
+bool Scheduler::move(double now, WorkerId& worker, Epoch& epoch) {
+  return impl_->move(now, worker, epoch);
+}
 
 void Scheduler::ready(WorkerId worker, Epoch epoch, double now) {
   Worker* w = impl_->worker(worker);
@@ -219,7 +226,8 @@ bool Scheduler::done(WorkerId worker, Epoch epoch, Lease lease, double seconds, 
   Frame* f = impl_->frame(epoch);
   if (!f) return false;
   const auto held = f->leases.find(lease);
-  return held != f->leases.end() && held->second.worker == worker && impl_->done(*f, lease, seconds, now);
+  return held != f->leases.end() && held->second.worker == worker &&
+         impl_->done(*f, lease, seconds, now);
 }
 
 void Scheduler::failed(WorkerId worker, Epoch epoch, Lease lease, double) {
@@ -237,30 +245,36 @@ const Job* Scheduler::find(WorkerId worker, Epoch epoch, Lease lease) const {
   const Frame* f = impl_->frame(epoch);
   if (!f) return nullptr;
   const auto held = f->leases.find(lease);
-  if (held == f->leases.end() || held->second.worker != worker || !held->second.flight) return nullptr;
+  if (held == f->leases.end() || held->second.worker != worker || !held->second.flight)
+    return nullptr;
   return &f->flights.at(held->second.flight).job;
 }
 
 uint32_t Scheduler::able(Epoch epoch) const {
   uint32_t count = 0;
-  for (const auto& [id, w] : impl_->workers) count += !w.tally.blocked && (w.epoch < epoch || (w.epoch == epoch && !w.unable));
+  for (const auto& [id, w] : impl_->workers)
+    count += !w.tally.blocked && (w.epoch < epoch || (w.epoch == epoch && !w.unable));
   return count;
 }
 
 void Scheduler::pace(double secondsOfJob) { impl_->pace = std::clamp(secondsOfJob, 0.0, 1e-4); }
 
 double Scheduler::wake(double now) const {
-  constexpr double breath = 0.005; // a late job that nobody can take yet is looked at again after this
+  constexpr double breath =
+      0.005; // a late job that nobody can take yet is looked at again after this
   double when = impl_->stuckAt();
   for (const auto& [epoch, f] : impl_->frames) {
     const auto g = impl_->groups.find(epoch);
     if (g == impl_->groups.end()) continue;
     const bool rescue = !f.rescue && impl_->rescuers > 0 && g->second.tied.empty();
     const auto& tied = g->second.tied;
-    const bool here = std::any_of(tied.begin(), tied.end(), [&](WorkerId id) { return impl_->workers.at(id).idleKey < never; });
+    const bool here = std::any_of(tied.begin(), tied.end(), [&](WorkerId id) {
+      return impl_->workers.at(id).idleKey < never;
+    });
     if (!f.deadlines.empty() && (rescue || !g->second.idle.empty()))
       when = std::min(when, std::max(f.deadlines.begin()->first, now + breath));
-    if (!f.spent.empty() && (rescue || here)) when = std::min(when, std::max(f.spent.begin()->first, now + breath));
+    if (!f.spent.empty() && (rescue || here))
+      when = std::min(when, std::max(f.spent.begin()->first, now + breath));
   }
   return when;
 }
@@ -300,7 +314,10 @@ uint64_t Scheduler::duplicates() const { return impl_->duplicates; }
 Split Scheduler::split(Epoch epoch) const {
   const Frame* f = impl_->frame(epoch);
   if (!f) return impl_->options.split;
-  return f->split == Split::frames ? Split::frames : f->spread ? Split::samples : f->wholeTiles ? Split::tiles : Split::automatic;
+  return f->split == Split::frames ? Split::frames
+         : f->spread               ? Split::samples
+         : f->wholeTiles           ? Split::tiles
+                                   : Split::automatic;
 }
 
 } // namespace openrt::cluster

@@ -1,6 +1,7 @@
-// scheduler_handout.cpp: which job goes to whom, how large it is, and when it is late. Jobs are large as long as much is left and
-// small towards the end (factoring: S. Hummel, E. Schonberg, L. Flynn, "Factoring: a method for scheduling parallel loops", CACM
-// 35(8), 1992); late ones are given to idle threads as well, as in J. Dean, S. Ghemawat, "MapReduce", OSDI 2004, 3.6.
+// scheduler_handout.cpp: which job goes to whom, how large it is, and when it is late. Jobs are
+// large as long as much is left and small towards the end (factoring: S. Hummel, E. Schonberg, L.
+// Flynn, "Factoring: a method for scheduling parallel loops", CACM 35(8), 1992); late ones are
+// given to idle threads as well, as in J. Dean, S. Ghemawat, "MapReduce", OSDI 2004, 3.6.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -13,8 +14,10 @@ namespace {
 constexpr uint32_t fewest = 32;    // samples: a tile's are not divided further (frame_work.h)
 constexpr double mostInFlight = 4; // jobs for a thread, or bundles of them
 constexpr double largestBundle = 64;
-constexpr double spare = 1.75;        // of the master's time for a job: it is busy for at most so many times less
-constexpr double turnaround = 8e-3;   // for which a worker has something to do when it has told of a job, but for its link
+constexpr double spare =
+    1.75; // of the master's time for a job: it is busy for at most so many times less
+constexpr double turnaround =
+    8e-3; // for which a worker has something to do when it has told of a job, but for its link
 constexpr double leastWaiting = 0.25; // jobs for a thread behind that which it does
 constexpr double mixedUntil = 0.7;    // of a frame's work
 constexpr double unequal = 32;        // of so many tiles one may cost as much as all
@@ -36,10 +39,13 @@ void Scheduler::Impl::plan(Frame& f) {
   const double samples = f.work->undone() / std::max(f.aheadUnits, 1.0);
   f.aheadUnits *= samples;
   f.aheadSeconds *= samples;
-  std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return cost[a] > cost[b]; });
-  // Those that take less time than a job should are no use at the end, where the master would be asked for too many of them.
+  std::stable_sort(order.begin(), order.end(),
+                   [&](uint32_t a, uint32_t b) { return cost[a] > cost[b]; });
+  // Those that take less time than a job should are no use at the end, where the master would be
+  // asked for too many of them.
   const double least = std::max(options.shortest, spare * pace * threads) / samples;
-  const auto cheap = std::find_if(order.begin(), order.end(), [&](uint32_t tile) { return cost[tile] < least; });
+  const auto cheap =
+      std::find_if(order.begin(), order.end(), [&](uint32_t tile) { return cost[tile] < least; });
   const size_t dear = size_t(cheap - order.begin());
   std::vector<uint32_t> mixed;
   mixed.reserve(tiles);
@@ -57,7 +63,8 @@ void Scheduler::Impl::plan(Frame& f) {
 
 double Scheduler::Impl::secondsOf(const Frame& f) const {
   if (f.lastSeconds > 0) return f.lastSeconds;
-  const double units = f.lastUnits > 0 ? f.lastUnits : f.tilePixels * std::min(f.perPixel, double(fewest));
+  const double units =
+      f.lastUnits > 0 ? f.lastUnits : f.tilePixels * std::min(f.perPixel, double(fewest));
   return f.costs.mean() * units;
 }
 
@@ -71,17 +78,22 @@ double Scheduler::Impl::threadsFor(Epoch epoch) const {
   const Frame& f = frames.at(epoch);
   uint32_t all = own == groups.end() ? 0 : own->second.threads;
   if (f.split != Split::frames) // those of earlier epochs are still to come
-    for (auto g = groups.begin(); g != groups.end() && g->first < epoch; ++g) all += g->second.threads;
+    for (auto g = groups.begin(); g != groups.end() && g->first < epoch; ++g)
+      all += g->second.threads;
   return std::max(all, 1u);
 }
 
 double Scheduler::Impl::level(const Frame& f) const {
   const double together = bundle(f);
-  const double left = (f.lastSeconds > 0 ? f.left() / f.lastSeconds
-                                         : f.work->undone() / (f.lastUnits > 0 ? f.lastUnits : f.tilePixels * f.perPixel)) /
-                      threadsFor(f.epoch); // jobs for a thread
+  const double left =
+      (f.lastSeconds > 0
+           ? f.left() / f.lastSeconds
+           : f.work->undone() / (f.lastUnits > 0 ? f.lastUnits : f.tilePixels * f.perPixel)) /
+      threadsFor(f.epoch); // jobs for a thread
   double most = std::clamp(options.inFlight, 1u, uint32_t(mostInFlight));
-  if (f.lastSeconds > 0) most = std::min(most, 1 + std::max(leastWaiting, turnaround / f.lastSeconds)); // others begin sooner
+  if (f.lastSeconds > 0)
+    most = std::min(most,
+                    1 + std::max(leastWaiting, turnaround / f.lastSeconds)); // others begin sooner
   return std::clamp(std::ceil(left / together), 1.0, most) * together;
 }
 
@@ -93,14 +105,17 @@ uint32_t Scheduler::Impl::largest(const Frame& f, const Worker& w) const {
   } else if (f.costs.known()) {
     const double left = f.left() / threadsFor(f.epoch);
     // A slow link is worth larger jobs: no more of them are in flight.
-    const double least = std::max({options.shortest, w.tally.latency / (mostInFlight - 1), spare * pace * threadsFor(f.epoch)});
+    const double least = std::max({options.shortest, w.tally.latency / (mostInFlight - 1),
+                                   spare * pace * threadsFor(f.epoch)});
     const double seconds = std::clamp(left / parts, least, std::max(options.longest, least));
     const double place = f.place(f.work->upcoming());
     if (place > 0)
       samples = seconds / place / f.tilePixels;
-    else // nobody knows what the next tile costs: one of the dear ones must not take longer than half of what is left, nor much
-         // longer than the frame if all of its work lies in a few of the tiles
-      samples = std::min({seconds / f.costs.mean() / f.tilePixels, std::max(left / 2, least) / f.costs.dear() / f.tilePixels,
+    else // nobody knows what the next tile costs: one of the dear ones must not take longer than
+         // half of what is left, nor much longer than the frame if all of its work lies in a few of
+         // the tiles
+      samples = std::min({seconds / f.costs.mean() / f.tilePixels,
+                          std::max(left / 2, least) / f.costs.dear() / f.tilePixels,
                           f.perPixel * f.work->tiles() / (unequal * threadsFor(f.epoch))});
   }
   if (samples >= f.perPixel) return ~0u;
@@ -145,7 +160,8 @@ double Scheduler::Impl::span(Frame& f, const Flight& flight) {
 void Scheduler::Impl::rekey(Frame& f, uint64_t id, Flight& flight) {
   unschedule(f, id, flight);
   flight.deadline = flight.since + span(f, flight);
-  if (flight.deadline < never) (flight.again < options.mostAgain ? f.deadlines : f.spent).insert({flight.deadline, id});
+  if (flight.deadline < never)
+    (flight.again < options.mostAgain ? f.deadlines : f.spent).insert({flight.deadline, id});
 }
 
 bool Scheduler::Impl::reissue(Frame& f, Group& g, double now, Handout& out) {
@@ -156,11 +172,13 @@ bool Scheduler::Impl::reissue(Frame& f, Group& g, double now, Handout& out) {
     rekey(f, id, flight);
     if (flight.deadline > now) continue;
     const auto has = [&](WorkerId w) {
-      return std::any_of(flight.holders.begin(), flight.holders.end(), [&](Lease l) { return f.leases.at(l).worker == w; });
+      return std::any_of(flight.holders.begin(), flight.holders.end(),
+                         [&](Lease l) { return f.leases.at(l).worker == w; });
     };
-    const auto idle = std::find_if(g.idle.begin(), g.idle.end(), [&](const auto& entry) { // at most four are passed over
-      return !has(entry.second) && !waits(f, g, workers.at(entry.second));
-    });
+    const auto idle = std::find_if(
+        g.idle.begin(), g.idle.end(), [&](const auto& entry) { // at most four are passed over
+          return !has(entry.second) && !waits(f, g, workers.at(entry.second));
+        });
     if (idle == g.idle.end()) return false;
     for (const Lease l : flight.holders) // one that has not even been heard of since gets less
       if (Worker& w = workers.at(f.leases.at(l).worker); w.heard < flight.since) {
@@ -175,8 +193,9 @@ bool Scheduler::Impl::reissue(Frame& f, Group& g, double now, Handout& out) {
   return false;
 }
 
-// Gives the worker here, which cannot be lost, a job that many workers have had and none has answered; in a frame that is stuck
-// any job that others have, however long they were expected to take.
+// Gives the worker here, which cannot be lost, a job that many workers have had and none has
+// answered; in a frame that is stuck any job that others have, however long they were expected to
+// take.
 bool Scheduler::Impl::reissueHere(Frame& f, Group& g, double now, Handout& out) {
   for (const WorkerId id : g.tied) {
     Worker& w = workers.at(id);
@@ -184,7 +203,8 @@ bool Scheduler::Impl::reissueHere(Frame& f, Group& g, double now, Handout& out) 
     const auto takes = [&](const auto& late) {
       const auto& holders = f.flights.at(late.second).holders;
       return (f.stuck || late.first <= now) &&
-             std::none_of(holders.begin(), holders.end(), [&](Lease l) { return f.leases.at(l).worker == id; });
+             std::none_of(holders.begin(), holders.end(),
+                          [&](Lease l) { return f.leases.at(l).worker == id; });
     };
     auto found = std::find_if(f.spent.begin(), f.spent.end(), takes);
     if (found == f.spent.end()) {
@@ -230,7 +250,8 @@ bool Scheduler::Impl::next(double now, Handout& out) {
       moves = true;
     }
     if (reissue(f, g, now, out) || reissueHere(f, g, now, out)) return true;
-    if (!f.rescue && rescuers > 0 && g.tied.empty() && f.firstLate() <= now) f.rescue = moves = true; // once, by who is here
+    if (!f.rescue && rescuers > 0 && g.tied.empty() && f.firstLate() <= now)
+      f.rescue = moves = true; // once, by who is here
   }
   return false;
 }

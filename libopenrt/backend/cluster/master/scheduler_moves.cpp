@@ -1,7 +1,8 @@
-// scheduler_moves.cpp: which worker prepares which scene. Workers stand in groups, by the epoch that they have or prepare; a
-// group moves on when its frame has nothing more to give, one worker at a time. Those in the master's process are tied to the
-// oldest unfinished frame; without any of them the last one of a group stays until its frame is over: somebody must be able to do
-// what is lost.
+// scheduler_moves.cpp: which worker prepares which scene. Workers stand in groups, by the epoch
+// that they have or prepare; a group moves on when its frame has nothing more to give, one worker
+// at a time. Those in the master's process are tied to the oldest unfinished frame; without any of
+// them the last one of a group stays until its frame is over: somebody must be able to do what is
+// lost.
 #include <algorithm>
 #include <utility>
 
@@ -61,7 +62,8 @@ void Scheduler::Impl::sort(Worker& w) {
   if (!f || !w.ready || !w.usable()) return;
   const double share = w.tally.out / w.hands(), usual = secondsOf(*f);
   // What is on its way while a thread would wait for it.
-  const double hidden = usual > 0 ? std::min(std::round(w.tally.latency / usual), 3 * bundle(*f)) : 0;
+  const double hidden =
+      usual > 0 ? std::min(std::round(w.tally.latency / usual), 3 * bundle(*f)) : 0;
   w.roomKey = share - hidden;
   g.room.insert({w.roomKey, w.id});
   if (share < 1) {
@@ -82,9 +84,12 @@ bool Scheduler::Impl::waits(const Frame& f, const Group& g, const Worker& w) con
 Split Scheduler::Impl::splitOf() const {
   if (options.split == Split::frames) return Split::frames;
   const double inFlight = double(frames.size()), n = usable;
-  if (options.split != Split::automatic || inFlight < 3 || n < 2 || prepare <= 0 || frameSeconds <= 0) return Split::tiles;
+  if (options.split != Split::automatic || inFlight < 3 || n < 2 || prepare <= 0 ||
+      frameSeconds <= 0)
+    return Split::tiles;
   const double alone = frameSeconds * n / threads; // of one worker for a frame
-  return (prepare + alone) / std::min(n, inFlight) < 0.9 * (prepare + alone / n) ? Split::frames : Split::tiles;
+  return (prepare + alone) / std::min(n, inFlight) < 0.9 * (prepare + alone / n) ? Split::frames
+                                                                                 : Split::tiles;
 }
 
 bool Scheduler::Impl::worthHelping(const Frame& f) const {
@@ -114,7 +119,8 @@ Epoch Scheduler::Impl::targetOfTied(const Worker& w) {
   if (f.epoch <= w.epoch) return 0;
   if (f.stuck) return f.epoch;
   uint32_t others = 0; // that can do it
-  for (auto g = groups.begin(); g != groups.end() && g->first <= f.epoch; ++g) others += g->second.threads;
+  for (auto g = groups.begin(); g != groups.end() && g->first <= f.epoch; ++g)
+    others += g->second.threads;
   if (others > 0 && w.here && !w.reserve) others -= w.unable ? 0 : w.threads;
   if (others == 0) return w.reserve && f.exhausted() && !f.rescue ? 0 : f.epoch;
   if (w.reserve) return 0;

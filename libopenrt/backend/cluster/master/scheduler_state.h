@@ -1,5 +1,5 @@
-// scheduler_state.h: what the scheduler knows: workers, frames, the jobs that are out and who has them. Only its own files
-// include this. One thread's, as Scheduler.
+// scheduler_state.h: what the scheduler knows: workers, frames, the jobs that are out and who has
+// them. Only its own files include this. One thread's, as Scheduler.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,8 @@
 namespace openrt::cluster {
 
 inline constexpr double never = std::numeric_limits<double>::infinity();
-using Ranked = std::set<std::pair<double, WorkerId>>; // best first; equal ones by their number, so that all is repeatable
+using Ranked = std::set<std::pair<double, WorkerId>>; // best first; equal ones by their number, so
+                                                      // that all is repeatable
 
 namespace scheduling { // not to be taken for the sessions of the same names
 
@@ -45,9 +46,10 @@ struct Flight { // a job that is out
   double seconds = 0;      // it should take, by what its place cost before; 0: unknown
   double deadline = never; // late then, by what was known when it was last looked at
   double since = 0;        // handed out, last time
-  double turns = 1;        // jobs one after the other until this one is done, with those that its worker had before
-  double link = 0;         // of its last worker
-  uint32_t again = 0;      // times it was handed out again
+  double turns =
+      1; // jobs one after the other until this one is done, with those that its worker had before
+  double link = 0;    // of its last worker
+  uint32_t again = 0; // times it was handed out again
   std::set<Lease> holders;
 };
 
@@ -65,30 +67,39 @@ struct Frame {
   std::shared_ptr<JobSource> work; // null: nobody has prepared it yet
   bool maybe = false;              // there may be something to hand out
   uint32_t tilePixels = 1;
-  double perPixel = 1;                     // samples, about
-  double lastUnits = 0;                    // of the job that was handed out last
-  double lastSeconds = 0;                  // it should take; 0: unknown
-  double aheadUnits = 0, aheadSeconds = 0; // of what nobody has yet, by what places cost before; 0: unknown
+  double perPixel = 1;    // samples, about
+  double lastUnits = 0;   // of the job that was handed out last
+  double lastSeconds = 0; // it should take; 0: unknown
+  double aheadUnits = 0,
+         aheadSeconds = 0; // of what nobody has yet, by what places cost before; 0: unknown
   JobCosts costs, light;
-  std::vector<float> places; // by tile: seconds of a pixel's sample, here or in the frame before; 0: unknown
+  std::vector<float>
+      places; // by tile: seconds of a pixel's sample, here or in the frame before; 0: unknown
   std::map<uint64_t, Flight> flights;
   std::unordered_map<Lease, Held> leases;
-  std::set<std::pair<double, uint64_t>> deadlines; // of flights that may be handed out again, to anybody
-  std::set<std::pair<double, uint64_t>> spent;     // of those that were so often enough: only the worker here takes them
-  double progressed = 0;                           // when it was announced, was first prepared, became the oldest, got a result
-  bool rescue = false;                             // something is late, and nobody at it is idle
-  bool stuck = false;                              // it has not progressed for too long: the worker here helps
-  uint32_t rekeyAt = 1;                            // jobs done with which all deadlines are found anew
+  std::set<std::pair<double, uint64_t>>
+      deadlines; // of flights that may be handed out again, to anybody
+  std::set<std::pair<double, uint64_t>>
+      spent; // of those that were so often enough: only the worker here takes them
+  double progressed =
+      0;               // when it was announced, was first prepared, became the oldest, got a result
+  bool rescue = false; // something is late, and nobody at it is idle
+  bool stuck = false;  // it has not progressed for too long: the worker here helps
+  uint32_t rekeyAt = 1; // jobs done with which all deadlines are found anew
 
   double place(uint32_t tile) const { return tile < places.size() ? double(places[tile]) : 0; }
   // Seconds of one thread for what nobody has yet, about.
   double left() const {
-    return work->undone() * (aheadUnits >= 1 && aheadSeconds > 0 ? aheadSeconds / aheadUnits : costs.mean());
+    return work->undone() *
+           (aheadUnits >= 1 && aheadSeconds > 0 ? aheadSeconds / aheadUnits : costs.mean());
   }
-  bool exhausted() const { return work && work->undone() < 0.5; } // nobody is to do more of it, as yet
+  bool exhausted() const {
+    return work && work->undone() < 0.5;
+  } // nobody is to do more of it, as yet
   // When the first job that is out is late; never: none can be.
   double firstLate() const {
-    return std::min(deadlines.empty() ? never : deadlines.begin()->first, spent.empty() ? never : spent.begin()->first);
+    return std::min(deadlines.empty() ? never : deadlines.begin()->first,
+                    spent.empty() ? never : spent.begin()->first);
   }
   JobCosts& costsOf(const Job& job) { return job.kind == Job::Kind::light ? light : costs; }
 };
@@ -115,13 +126,14 @@ struct Scheduler::Impl {
   std::map<Epoch, Group> groups;
   Lease lastLease = 0;
   uint64_t lastFlight = 0, reissued = 0, duplicates = 0;
-  JobCosts costs, light;                          // of the frame that ended last
-  std::vector<float> places;                      // of the frame that ended last
-  double frameSeconds = 0;                        // it took on one thread
-  double pace = 1e-5;                             // seconds that whoever asks takes for a job
-  double prepare = 0;                             // seconds that preparing a scene takes, smoothed; 0: unknown
-  uint32_t usable = 0, threads = 0, rescuers = 0; // workers that are no reserve, and their threads; those here and in reserve;
-                                                  // none that are blocked
+  JobCosts costs, light;     // of the frame that ended last
+  std::vector<float> places; // of the frame that ended last
+  double frameSeconds = 0;   // it took on one thread
+  double pace = 1e-5;        // seconds that whoever asks takes for a job
+  double prepare = 0;        // seconds that preparing a scene takes, smoothed; 0: unknown
+  uint32_t usable = 0, threads = 0,
+           rescuers = 0; // workers that are no reserve, and their threads; those here and in
+                         // reserve; none that are blocked
   uint32_t reserves = 0;
   bool moves = false;    // there may be something to move
   Epoch watched = 0;     // the oldest frame, when it was looked at last
@@ -149,8 +161,10 @@ struct Scheduler::Impl {
   Epoch target(Epoch epoch);
   Epoch targetOfTied(const Worker& w);
   void sortTied(Epoch epoch);
-  bool waits(const Frame& f, const Group& g, const Worker& w) const; // a reserve, as long as others get on
-  double stuckAt() const; // when the worker here is to help with the oldest frame; never: it does, or there is none
+  bool waits(const Frame& f, const Group& g,
+             const Worker& w) const; // a reserve, as long as others get on
+  double stuckAt() const; // when the worker here is to help with the oldest frame; never: it does,
+                          // or there is none
   void watch(double now); // whether the oldest frame progresses
   bool move(double now, WorkerId& worker, Epoch& epoch);
 

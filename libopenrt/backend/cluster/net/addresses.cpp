@@ -1,4 +1,3 @@
-// addresses.cpp: see addresses.h.
 #include "backend/cluster/net/addresses.h"
 
 #include <charconv>
@@ -20,9 +19,12 @@ constexpr size_t keyLength = 40;
   throw std::runtime_error("address \"" + std::string(text.substr(0, 200)) + "\": " + why);
 }
 
-bool v4(const std::string& host, in_addr& out) { return inet_pton(AF_INET, host.c_str(), &out) == 1; }
+bool v4(const std::string& host, in_addr& out) {
+  return inet_pton(AF_INET, host.c_str(), &out) == 1;
+}
 bool v6(const std::string& host, in6_addr& out) {
-  return inet_pton(AF_INET6, host.substr(0, host.find('%')).c_str(), &out) == 1; // the rest names an interface
+  return inet_pton(AF_INET6, host.substr(0, host.find('%')).c_str(), &out) ==
+         1; // the rest names an interface
 }
 
 } // namespace
@@ -32,11 +34,13 @@ Address Address::parse(std::string_view text) {
   Address a;
   if (const size_t mark = text.find('='); mark != text.npos) {
     a.key = text.substr(mark + 1);
-    if (a.key.size() != keyLength) failed(whole, "what follows = must be a public key of 40 characters");
+    if (a.key.size() != keyLength)
+      failed(whole, "what follows = must be a public key of 40 characters");
     text = text.substr(0, mark);
   }
   for (char c : text)
-    if (static_cast<unsigned char>(c) <= ' ' || c == 0x7f) failed(whole, "blanks, or characters that nobody sees");
+    if (static_cast<unsigned char>(c) <= ' ' || c == 0x7f)
+      failed(whole, "blanks, or characters that nobody sees");
   if (text.starts_with(ipcScheme)) {
     a.ipc = true;
     a.host = text.substr(ipcScheme.size());
@@ -63,7 +67,8 @@ Address Address::parse(std::string_view text) {
   if (!port.empty()) {
     port.remove_prefix(1);
     const auto [end, error] = std::from_chars(port.data(), port.data() + port.size(), a.port);
-    if (error != std::errc() || end != port.data() + port.size()) failed(whole, "a port is a number from 0 to 65535");
+    if (error != std::errc() || end != port.data() + port.size())
+      failed(whole, "a port is a number from 0 to 65535");
   }
   return a;
 }
@@ -105,7 +110,8 @@ std::string shownEndpoint(std::string_view endpoint) {
   if (!rest.starts_with(mapped) || rest.find('.') == rest.npos) return std::string(endpoint);
   rest.remove_prefix(mapped.size());
   const size_t end = brackets ? rest.find(']') : rest.npos;
-  return std::string(rest.substr(0, end)) + (end == rest.npos ? "" : std::string(rest.substr(end + 1)));
+  return std::string(rest.substr(0, end)) +
+         (end == rest.npos ? "" : std::string(rest.substr(end + 1)));
 }
 
 // In the form that getaddrinfo_a writes to until it is done.
@@ -126,11 +132,13 @@ Lookup::Lookup(const Address& address) : request_(std::make_unique<Request>()), 
 }
 
 Lookup::~Lookup() {
-  if (gai_error(&request_->block) == EAI_INPROGRESS && gai_cancel(&request_->block) == EAI_NOTCANCELED) {
+  if (gai_error(&request_->block) == EAI_INPROGRESS &&
+      gai_cancel(&request_->block) == EAI_NOTCANCELED) {
     static_cast<void>(request_.release()); // somebody is writing to it
     return;
   }
-  if (gai_error(&request_->block) == 0 && request_->block.ar_result) freeaddrinfo(request_->block.ar_result);
+  if (gai_error(&request_->block) == 0 && request_->block.ar_result)
+    freeaddrinfo(request_->block.ar_result);
 }
 
 bool Lookup::ready() const { return gai_error(&request_->block) != EAI_INPROGRESS; }
@@ -140,7 +148,8 @@ std::optional<Address> Lookup::result(std::string& why) const {
   char digits[NI_MAXHOST];
   const addrinfo* found = request_->block.ar_result;
   if (error != 0 || !found ||
-      getnameinfo(found->ai_addr, found->ai_addrlen, digits, sizeof digits, nullptr, 0, NI_NUMERICHOST) != 0) {
+      getnameinfo(found->ai_addr, found->ai_addrlen, digits, sizeof digits, nullptr, 0,
+                  NI_NUMERICHOST) != 0) {
     why = error == 0 ? "unknown" : gai_strerror(error);
     return std::nullopt;
   }

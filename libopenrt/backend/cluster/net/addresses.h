@@ -1,5 +1,5 @@
-// addresses.h: where a wire calls or listens: HOST[:PORT], a public key with it if the other side has one of its own; names
-// looked up without waiting. Used by the Wire, on its thread.
+// addresses.h: where a wire calls or listens: HOST[:PORT], a public key with it if the other side
+// has one of its own; names looked up without waiting. Used by the Wire, on its thread.
 #pragma once
 
 #include <memory>
@@ -15,7 +15,8 @@ struct Address {
   std::string key; // Z85; empty: one's own
   bool ipc = false;
 
-  // HOST, HOST:PORT, [V6]:PORT, :PORT (loopback), ipc://PATH; followed by =KEY if there is one. Throws std::runtime_error.
+  // HOST, HOST:PORT, [V6]:PORT, :PORT (loopback), ipc://PATH; followed by =KEY if there is one.
+  // Throws std::runtime_error.
   static Address parse(std::string_view text);
   std::string shown() const; // HOST:PORT
   // On this machine beyond doubt: 127.0.0.0/8, ::1, localhost, ipc.
@@ -24,7 +25,8 @@ struct Address {
   std::string endpoint() const; // of ZeroMQ; numeric ones
 };
 
-// An address as ZeroMQ writes it, for people: without the scheme, and IPv4 as itself where a socket of IPv6 carries it.
+// An address as ZeroMQ writes it, for people: without the scheme, and IPv4 as itself where a socket
+// of IPv6 carries it.
 std::string shownEndpoint(std::string_view endpoint);
 
 // Looks a name up in the background.

@@ -28,7 +28,8 @@ bool plausible(uint64_t bytes, uint64_t stored) {
 std::vector<std::byte> packArray(std::span<const std::byte> array) {
   constexpr int fastest = 1;
   std::vector<std::byte> packed(ZSTD_compressBound(array.size()));
-  const size_t stored = ZSTD_compress(packed.data(), packed.size(), array.data(), array.size(), fastest);
+  const size_t stored =
+      ZSTD_compress(packed.data(), packed.size(), array.data(), array.size(), fastest);
   if (ZSTD_isError(stored)) throw std::bad_alloc(); // it has room enough, so nothing else is left
   packed.resize(stored);
   packed.shrink_to_fit();
@@ -43,7 +44,8 @@ ArrayPtr unpackArray(std::span<const std::byte> packed, uint64_t bytes, const Ha
   return array;
 }
 
-message::Piece pieceOf(const Hash& hash, uint64_t bytes, std::span<const std::byte> packed, uint64_t offset) {
+message::Piece pieceOf(const Hash& hash, uint64_t bytes, std::span<const std::byte> packed,
+                       uint64_t offset) {
   const auto part = packed.subspan(offset, std::min<size_t>(pieceBytes, packed.size() - offset));
   return {hash, bytes, packed.size(), offset, {part.begin(), part.end()}};
 }

@@ -1,4 +1,3 @@
-// flow.cpp: see flow.h.
 #include "backend/cluster/net/flow.h"
 
 #include <cstddef>
@@ -16,7 +15,9 @@ constexpr double least = 8192; // bytes a second; ten beats and their answers ha
 uint64_t received(int fd) {
   tcp_info info{};
   socklen_t size = sizeof info;
-  if (fd < 0 || getsockopt(fd, IPPROTO_TCP, TCP_INFO, &info, &size) != 0 || size < offsetof(tcp_info, tcpi_segs_out)) return 0;
+  if (fd < 0 || getsockopt(fd, IPPROTO_TCP, TCP_INFO, &info, &size) != 0 ||
+      size < offsetof(tcp_info, tcpi_segs_out))
+    return 0;
   return info.tcpi_bytes_received;
 }
 

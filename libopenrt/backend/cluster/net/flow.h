@@ -1,4 +1,5 @@
-// flow.h: whether a connection carries a message that has not come whole: a large one on a slow line. [wire]
+// flow.h: whether a connection carries a message that has not come whole: a large one on a slow
+// line. [wire]
 #pragma once
 
 #include <cstdint>
@@ -9,8 +10,8 @@ class Flow {
  public:
   // To be called often; looks at the file of a connection once in `window` seconds.
   void look(int fd, double now, double window);
-  // Much more came in the last window than beats: these also come where a damaged length has the connection wait for a frame that
-  // never ends.
+  // Much more came in the last window than beats: these also come where a damaged length has the
+  // connection wait for a frame that never ends.
   bool flowing() const { return flowing_; }
 
  private:

@@ -1,4 +1,3 @@
-// greeting.cpp: see greeting.h.
 #include "backend/cluster/net/greeting.h"
 
 #include <unistd.h>
@@ -47,10 +46,12 @@ std::string difference(const message::Hello& worker, const message::Hello& maste
   std::string differing;
   const auto compare = [&](const char* what, const std::string& theirs, const std::string& ours) {
     if (theirs != ours)
-      differing += (differing.empty() ? "" : "; ") + std::string(what) + ": the worker has " + theirs + ", the master " + ours;
+      differing += (differing.empty() ? "" : "; ") + std::string(what) + ": the worker has " +
+                   theirs + ", the master " + ours;
   };
   compare("protocol", std::to_string(worker.protocol), std::to_string(master.protocol));
-  compare("interface of shaders", std::to_string(worker.shaderAbi >> 16) + "." + std::to_string(worker.shaderAbi & 0xffff),
+  compare("interface of shaders",
+          std::to_string(worker.shaderAbi >> 16) + "." + std::to_string(worker.shaderAbi & 0xffff),
           std::to_string(master.shaderAbi >> 16) + "." + std::to_string(master.shaderAbi & 0xffff));
   if (!differing.empty() || tolerant) return differing;
   compare("version", worker.library, master.library);

@@ -1,4 +1,3 @@
-// libraries.cpp: see libraries.h.
 #include "backend/cluster/net/libraries.h"
 
 #include <filesystem>
@@ -35,7 +34,8 @@ std::string LibraryCheck::problem(std::span<const message::Library> wanted) {
     }
     const Hash& hash = files_.of(path);
     if (hash != library.hash)
-      add(library, " is another file here (" + path + " has hash " + hex(hash) + ", the master's " + hex(library.hash) + ")");
+      add(library, " is another file here (" + path + " has hash " + hex(hash) + ", the master's " +
+                       hex(library.hash) + ")");
   }
   return text;
 }

@@ -1,5 +1,6 @@
-// libraries.h: shader libraries that a scene needs against those that this machine has: found by bare name in the folders that
-// are configured here, compared by what is in the file. Nothing executable travels. One thread's.
+// libraries.h: shader libraries that a scene needs against those that this machine has: found by
+// bare name in the folders that are configured here, compared by what is in the file. Nothing
+// executable travels. One thread's.
 #pragma once
 
 #include <map>

@@ -37,8 +37,9 @@ void append(Frames& frames, std::vector<std::byte>&& bytes, size_t most) {
 std::vector<std::byte> squeeze(std::span<const std::byte> bytes) {
   const size_t most = bytes.size() - bytes.size() / 10;
   std::vector<std::byte> packed(most);
-  const int size = LZ4_compress_default(reinterpret_cast<const char*>(bytes.data()), reinterpret_cast<char*>(packed.data()),
-                                        int(bytes.size()), int(most));
+  const int size =
+      LZ4_compress_default(reinterpret_cast<const char*>(bytes.data()),
+                           reinterpret_cast<char*>(packed.data()), int(bytes.size()), int(most));
   packed.resize(size > 0 ? size_t(size) : 0);
   return packed;
 }
@@ -106,7 +107,8 @@ struct Encoder {
     t.hash = XXH3_64bits(m.bytes.data(), m.bytes.size());
     Frames packed;
     for (size_t at = 0; at < m.bytes.size(); at += limits::chunkBytes) {
-      packed.push_back(squeeze(std::span(m.bytes).subspan(at, std::min(limits::chunkBytes, m.bytes.size() - at))));
+      packed.push_back(squeeze(
+          std::span(m.bytes).subspan(at, std::min(limits::chunkBytes, m.bytes.size() - at))));
       if (packed.back().empty()) break; // all or none
     }
     t.packed = !packed.empty() && !packed.back().empty();
@@ -132,7 +134,8 @@ struct Encoder {
     t.epoch = m.epoch;
     t.whole = m.whole;
     t.prepare = m.prepare;
-    for (const message::ArrayName& name : m.arrays) t.arrays.emplace_back(name.id, name.bytes, to(name.hash));
+    for (const message::ArrayName& name : m.arrays)
+      t.arrays.emplace_back(name.id, name.bytes, to(name.hash));
     for (message::Library& library : m.libraries) {
       auto& l = *t.libraries.emplace_back(std::make_unique<wire::LibraryT>());
       l.name = cut(std::move(library.name));
@@ -155,8 +158,8 @@ struct Encoder {
     t.epoch = m.epoch;
     for (const LeasedJob& l : m.jobs) {
       const openrt::Job& j = l.job;
-      t.jobs.emplace_back(l.lease, j.replicates.seed, j.number, j.first, j.count, uint8_t(j.kind), j.centred,
-                          uint8_t(j.replicates.shift));
+      t.jobs.emplace_back(l.lease, j.replicates.seed, j.number, j.first, j.count, uint8_t(j.kind),
+                          j.centred, uint8_t(j.replicates.shift));
     }
   }
   void operator()(message::Drop&& m) { make<wire::DropT>().epoch = m.epoch; }
@@ -192,7 +195,8 @@ std::vector<message::Fault> faultsOf(const ShaderFaults& faults) {
   for (const auto& entry : faults.entries()) {
     const std::string label = labelOf(*entry.shaderClass); // "CLASS of LIBRARY"
     const size_t at = label.rfind(" of ");
-    result.push_back({entry.shaderClass->name, at == label.npos ? "" : label.substr(at + 4), uint8_t(entry.fault), entry.hits});
+    result.push_back({entry.shaderClass->name, at == label.npos ? "" : label.substr(at + 4),
+                      uint8_t(entry.fault), entry.hits});
   }
   return result;
 }

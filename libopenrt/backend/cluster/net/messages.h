@@ -1,6 +1,7 @@
-// messages.h: every message of the protocol (docs/protocol.md), made and read in one place: structs on this side, a header
-// (messages.fbs) and bulk frames on the other. Reading believes nothing: what does not verify, exceeds a limit or contradicts
-// itself is refused with a reason, before memory is taken for it. Pure functions. [any]
+// messages.h: every message of the protocol (docs/protocol.md), made and read in one place: structs
+// on this side, a header (messages.fbs) and bulk frames on the other. Reading believes nothing:
+// what does not verify, exceeds a limit or contradicts itself is refused with a reason, before
+// memory is taken for it. Pure functions. [any]
 #pragma once
 
 #include <compare>
@@ -24,20 +25,21 @@ namespace limits {
 inline constexpr size_t headerBytes = size_t(64) << 20; // of a Scene: two million arrays
 inline constexpr size_t frames = 130;                   // of a message, the header included
 inline constexpr size_t editBytes = size_t(1) << 30;    // of the edits of one commit
-inline constexpr size_t textBytes = 4096;               // of a text in a header; longer ones are cut when sent
-inline constexpr size_t libraries = 1000;               // of a scene
-inline constexpr size_t jobs = 4096;                    // of a message
-inline constexpr uint64_t epochs = uint64_t(1) << 40;   // of a session
+inline constexpr size_t textBytes = 4096; // of a text in a header; longer ones are cut when sent
+inline constexpr size_t libraries = 1000; // of a scene
+inline constexpr size_t jobs = 4096;      // of a message
+inline constexpr uint64_t epochs = uint64_t(1) << 40; // of a session
 inline constexpr uint64_t arrayBytes = uint64_t(1) << 34;
 inline constexpr uint64_t sceneBytes = uint64_t(1) << 36; // of all arrays of one commit
 inline constexpr size_t arraysAtOnce = 16;                // that are in the middle of their pieces
-inline constexpr size_t scenesAtOnce = 1024;              // that a worker has been sent and has not made yet
+inline constexpr size_t scenesAtOnce = 1024; // that a worker has been sent and has not made yet
 inline constexpr size_t scenesBytes = 2 * editBytes;      // of the edits of these
 inline constexpr size_t outboxMessages = size_t(1) << 16; // that a worker has not read
 inline constexpr size_t outboxBytes = size_t(1) << 32;    // of these
 inline constexpr uint64_t logLines = 1000;                // of a connection
 inline constexpr uint64_t resultBytes = uint64_t(1) << 32;
-inline constexpr size_t chunkBytes = size_t(32) << 20; // of a result that a frame holds, before it is packed
+inline constexpr size_t chunkBytes = size_t(32)
+                                     << 20; // of a result that a frame holds, before it is packed
 } // namespace limits
 
 struct Hash {
@@ -145,8 +147,8 @@ struct Bye {
   std::string why;
 };
 
-using Body =
-    std::variant<Unknown, Hello, Need, Ready, Failed, Result, Log, Welcome, Scene, Piece, Prepare, Jobs, Drop, Beat, Bye>;
+using Body = std::variant<Unknown, Hello, Need, Ready, Failed, Result, Log, Welcome, Scene, Piece,
+                          Prepare, Jobs, Drop, Beat, Bye>;
 
 } // namespace message
 
@@ -159,9 +161,11 @@ Frames encode(uint64_t session, message::Body&& body);
 // Empty, or what is wrong with it. What frames hold is taken from them.
 std::string decode(Frames&& frames, Message& out, uint64_t largestResult = limits::resultBytes);
 // As decode(), but a Result stays packed: what costs time is left to unpack(), on another thread.
-std::string decodePacked(Frames&& frames, Message& out, uint64_t largestResult = limits::resultBytes);
+std::string decodePacked(Frames&& frames, Message& out,
+                         uint64_t largestResult = limits::resultBytes);
 std::string unpack(message::Result& result);
-// Whether a frame is a Header whose tables lie within it; empty, or what is wrong. kind: number of its member of the union.
+// Whether a frame is a Header whose tables lie within it; empty, or what is wrong. kind: number of
+// its member of the union.
 std::string verifyHeader(std::span<const std::byte> frame, uint8_t& kind);
 
 // How an array travels: packed by zstd, level 1, then piece by piece.
@@ -171,9 +175,11 @@ ArrayPtr unpackArray(std::span<const std::byte> packed, uint64_t bytes, const Ha
 // Whether an array of so many bytes can have become so few.
 bool plausible(uint64_t bytes, uint64_t stored);
 // One piece of a packed array; offset: a multiple of pieceBytes, smaller than packed.size().
-message::Piece pieceOf(const Hash& hash, uint64_t bytes, std::span<const std::byte> packed, uint64_t offset);
+message::Piece pieceOf(const Hash& hash, uint64_t bytes, std::span<const std::byte> packed,
+                       uint64_t offset);
 
-// Faults by the names of their classes, and back; those of classes that are not loaded are left out.
+// Faults by the names of their classes, and back; those of classes that are not loaded are left
+// out.
 std::vector<message::Fault> faultsOf(const ShaderFaults& faults);
 ShaderFaults faultsFrom(std::span<const message::Fault> faults, const ShaderRegistry& shaders);
 

@@ -1,5 +1,5 @@
-// messages_read.cpp: frames to messages. What comes may be anybody's: the flatbuffer is verified, then sizes and counts, and only
-// then is anything copied. [any]
+// messages_read.cpp: frames to messages. What comes may be anybody's: the flatbuffer is verified,
+// then sizes and counts, and only then is anything copied. [any]
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -29,22 +29,32 @@ Hash from(const wire::Hash* hash) {
 
 // Bytes of the UTF-8 character at the beginning (RFC 3629); 0: it is none.
 size_t characterAt(std::string_view text) {
-  const auto byte = [&](size_t i) { return i < text.size() ? static_cast<uint8_t>(text[i]) : uint8_t(0); };
+  const auto byte = [&](size_t i) {
+    return i < text.size() ? static_cast<uint8_t>(text[i]) : uint8_t(0);
+  };
   const uint8_t first = byte(0), second = byte(1);
-  const size_t length = first < 0x80 ? 1 : first < 0xc2 ? 0 : first < 0xe0 ? 2 : first < 0xf0 ? 3 : first < 0xf5 ? 4 : 0;
+  const size_t length = first < 0x80   ? 1
+                        : first < 0xc2 ? 0
+                        : first < 0xe0 ? 2
+                        : first < 0xf0 ? 3
+                        : first < 0xf5 ? 4
+                                       : 0;
   for (size_t i = 1; i < length; i++)
     if ((byte(i) & 0xc0) != 0x80) return 0;
-  const bool outside = (first == 0xe0 && second < 0xa0) || (first == 0xed && second >= 0xa0) ||
-                       (first == 0xf0 && second < 0x90) ||
-                       (first == 0xf4 && second >= 0x90); // overlong, halves of pairs, beyond Unicode
+  const bool outside =
+      (first == 0xe0 && second < 0xa0) || (first == 0xed && second >= 0xa0) ||
+      (first == 0xf0 && second < 0x90) ||
+      (first == 0xf4 && second >= 0x90); // overlong, halves of pairs, beyond Unicode
   return outside ? 0 : length;
 }
 
-// Texts are shown to people: no characters that move a terminal's cursor (C0, DEL, C1), and nothing but UTF-8.
+// Texts are shown to people: no characters that move a terminal's cursor (C0, DEL, C1), and nothing
+// but UTF-8.
 void clean(std::span<char> text) {
   for (size_t i = 0; i < text.size();) {
     const size_t length = characterAt({text.data() + i, text.size() - i});
-    const auto first = static_cast<uint8_t>(text[i]), second = length == 2 ? static_cast<uint8_t>(text[i + 1]) : uint8_t(0);
+    const auto first = static_cast<uint8_t>(text[i]),
+               second = length == 2 ? static_cast<uint8_t>(text[i + 1]) : uint8_t(0);
     if (first < ' ' || first == 0x7f || (first == 0xc2 && length == 2 && second < 0xa0))
       std::fill_n(&text[i], length, ' ');
     else if (length == 0)
@@ -71,7 +81,8 @@ std::vector<std::byte> joined(Frames& frames) {
   if (frames.size() == 2) return std::move(frames[1]);
   std::vector<std::byte> bytes;
   bytes.reserve(bulkBytes(frames));
-  for (size_t i = 1; i < frames.size(); i++) bytes.insert(bytes.end(), frames[i].begin(), frames[i].end());
+  for (size_t i = 1; i < frames.size(); i++)
+    bytes.insert(bytes.end(), frames[i].begin(), frames[i].end());
   return bytes;
 }
 
@@ -107,7 +118,8 @@ void read(const wire::Ready& t, Frames&, message::Ready& m) {
   m.facts.lamps = t.lamps();
   m.transport = t.transport();
   demand(m.transport <= RT_TRANSPORT_LIGHT, "an unknown transport");
-  if (t.stats()) std::memcpy(&m.stats, t.stats()->data(), std::min<size_t>(t.stats()->size(), sizeof m.stats));
+  if (t.stats())
+    std::memcpy(&m.stats, t.stats()->data(), std::min<size_t>(t.stats()->size(), sizeof m.stats));
   m.stats.size = sizeof m.stats;
   terminate(m.stats.isa);
   terminate(m.stats.kernel);
@@ -123,16 +135,21 @@ void read(const wire::Failed& t, Frames&, message::Failed& m) {
 // Frames of chunks; sizes follow from that of the whole.
 std::vector<std::byte> unpackResult(const Frames& frames, uint64_t bytes) {
   constexpr uint64_t bestRatio = 255; // of lz4
-  const auto chunkOf = [&](size_t i) { return size_t(std::min<uint64_t>(limits::chunkBytes, bytes - i * limits::chunkBytes)); };
-  demand((bytes + limits::chunkBytes - 1) / limits::chunkBytes == frames.size() - 1, "a result in a wrong number of frames");
+  const auto chunkOf = [&](size_t i) {
+    return size_t(std::min<uint64_t>(limits::chunkBytes, bytes - i * limits::chunkBytes));
+  };
+  demand((bytes + limits::chunkBytes - 1) / limits::chunkBytes == frames.size() - 1,
+         "a result in a wrong number of frames");
   for (size_t i = 0; i + 1 < frames.size(); i++)
-    demand(chunkOf(i) <= bestRatio * frames[i + 1].size(), "a result that is larger than its bytes can be");
+    demand(chunkOf(i) <= bestRatio * frames[i + 1].size(),
+           "a result that is larger than its bytes can be");
   std::vector<std::byte> result(bytes);
   for (size_t i = 0; i + 1 < frames.size(); i++) {
     const auto& packed = frames[i + 1];
     const int size =
         LZ4_decompress_safe(reinterpret_cast<const char*>(packed.data()),
-                            reinterpret_cast<char*>(result.data() + i * limits::chunkBytes), int(packed.size()), int(chunkOf(i)));
+                            reinterpret_cast<char*>(result.data() + i * limits::chunkBytes),
+                            int(packed.size()), int(chunkOf(i)));
     demand(size >= 0 && size_t(size) == chunkOf(i), "a result that is not packed as it should be");
   }
   return result;
@@ -150,7 +167,8 @@ void read(const wire::Result& t, Frames& frames, message::Result& m) {
   if (t.faults()) {
     demand(t.faults()->size() <= limits::libraries, "too many faults");
     for (const wire::Fault* fault : *t.faults())
-      m.faults.push_back({text(fault->name()), text(fault->library()), fault->kind(), fault->hits()});
+      m.faults.push_back(
+          {text(fault->name()), text(fault->library()), fault->kind(), fault->hits()});
   }
   m.packed.bytes = t.bytes();
   m.packed.hash = t.hash();
@@ -166,7 +184,8 @@ void unpackBytes(message::Result& m) {
     demand(bulkBytes(frames) == m.packed.bytes, "a result of another size than it says");
     m.bytes = joined(frames);
   }
-  demand(XXH3_64bits(m.bytes.data(), m.bytes.size()) == m.packed.hash, "a result with a wrong checksum");
+  demand(XXH3_64bits(m.bytes.data(), m.bytes.size()) == m.packed.hash,
+         "a result with a wrong checksum");
 }
 
 void read(const wire::Log& t, Frames&, message::Log& m) {
@@ -179,7 +198,8 @@ void read(const wire::Welcome& t, Frames&, message::Welcome& m) {
   m.session = t.session();
   m.heartbeat = t.heartbeat();
   m.silence = t.silence();
-  demand(m.heartbeat >= 0.01f && m.heartbeat <= 60 && m.silence >= 0.02f && m.silence <= 600 && m.heartbeat < m.silence,
+  demand(m.heartbeat >= 0.01f && m.heartbeat <= 60 && m.silence >= 0.02f && m.silence <= 600 &&
+             m.heartbeat < m.silence,
          "impossible heartbeats");
 }
 
@@ -187,13 +207,15 @@ void read(const wire::Scene& t, Frames& frames, message::Scene& m) {
   m.epoch = t.epoch();
   m.whole = t.whole();
   m.prepare = t.prepare();
-  demand(m.epoch != 0 && m.epoch <= limits::epochs, "a scene without a number, or with too large a one");
+  demand(m.epoch != 0 && m.epoch <= limits::epochs,
+         "a scene without a number, or with too large a one");
   demand(bulkBytes(frames) <= limits::editBytes, "too many edits");
   uint64_t sum = 0;
   if (t.arrays()) {
     m.arrays.reserve(t.arrays()->size());
     for (const wire::ArrayName* name : *t.arrays()) {
-      demand(name->id() != 0 && name->bytes() <= limits::arrayBytes, "an array without a number, or too large");
+      demand(name->id() != 0 && name->bytes() <= limits::arrayBytes,
+             "an array without a number, or too large");
       sum += name->bytes();
       demand(sum <= limits::sceneBytes, "arrays that are too large together");
       m.arrays.push_back({name->id(), name->bytes(), {name->hash().low(), name->hash().high()}});
@@ -201,7 +223,8 @@ void read(const wire::Scene& t, Frames& frames, message::Scene& m) {
   }
   if (t.libraries()) {
     demand(t.libraries()->size() <= limits::libraries, "too many libraries");
-    for (const wire::Library* library : *t.libraries()) m.libraries.push_back({text(library->name()), from(library->hash())});
+    for (const wire::Library* library : *t.libraries())
+      m.libraries.push_back({text(library->name()), from(library->hash())});
   }
   m.edits = joined(frames);
   demand(XXH3_64bits(m.edits.data(), m.edits.size()) == t.hash(), "edits with a wrong checksum");
@@ -213,8 +236,10 @@ void read(const wire::Piece& t, Frames& frames, message::Piece& m) {
   m.stored = t.stored();
   m.offset = t.offset();
   const size_t here = frames[1].size();
-  demand(m.bytes <= limits::arrayBytes && plausible(m.bytes, m.stored), "an array of an impossible size");
-  demand(m.offset < m.stored && m.offset % pieceBytes == 0 && here == std::min<uint64_t>(pieceBytes, m.stored - m.offset),
+  demand(m.bytes <= limits::arrayBytes && plausible(m.bytes, m.stored),
+         "an array of an impossible size");
+  demand(m.offset < m.stored && m.offset % pieceBytes == 0 &&
+             here == std::min<uint64_t>(pieceBytes, m.stored - m.offset),
          "a piece that does not fit");
   m.data = std::move(frames[1]);
 }
@@ -228,10 +253,13 @@ void read(const wire::Jobs& t, Frames&, message::Jobs& m) {
   for (const wire::Job* j : *t.jobs()) {
     using Kind = openrt::Job::Kind;
     demand(j->kind() <= uint8_t(Kind::light), "an unknown kind of job");
-    demand(j->count() >= 1 && j->shift() <= 31 && uint64_t(j->first()) + j->count() <= uint64_t(1) << 32, "an impossible job");
+    demand(j->count() >= 1 && j->shift() <= 31 &&
+               uint64_t(j->first()) + j->count() <= uint64_t(1) << 32,
+           "an impossible job");
     LeasedJob& job = m.jobs.emplace_back();
     job.lease = j->lease();
-    job.job = {Kind(j->kind()), j->centred(), j->number(), j->first(), j->count(), {j->seed(), j->shift()}};
+    job.job = {Kind(j->kind()), j->centred(), j->number(),
+               j->first(),      j->count(),   {j->seed(), j->shift()}};
   }
 }
 
@@ -285,8 +313,12 @@ void readBody(const wire::Header& header, Frames& frames, message::Body& body) {
 } // namespace
 
 std::string verifyHeader(std::span<const std::byte> frame, uint8_t& kind) {
-  constexpr flatbuffers::uoffset_t depth = 4, tables = 2 + 2 * limits::libraries; // the header, its content, libraries
-  if (frame.size() > limits::headerBytes) return "a header of " + std::to_string(frame.size()) + " bytes";
+  constexpr flatbuffers::uoffset_t depth = 4,
+                                   tables =
+                                       2 +
+                                       2 * limits::libraries; // the header, its content, libraries
+  if (frame.size() > limits::headerBytes)
+    return "a header of " + std::to_string(frame.size()) + " bytes";
   const auto* bytes = reinterpret_cast<const uint8_t*>(frame.data());
   flatbuffers::Verifier verifier(bytes, frame.size(), depth, tables);
   if (!wire::VerifyHeaderBuffer(verifier)) return "no valid header";
@@ -304,28 +336,34 @@ std::string unpack(message::Result& result) {
 }
 
 std::string decode(Frames&& frames, Message& out, uint64_t largestResult) {
-  if (std::string why = decodePacked(std::move(frames), out, largestResult); !why.empty()) return why;
+  if (std::string why = decodePacked(std::move(frames), out, largestResult); !why.empty())
+    return why;
   auto* result = std::get_if<message::Result>(&out.body);
   return result ? unpack(*result) : std::string();
 }
 
 std::string decodePacked(Frames&& frames, Message& out, uint64_t largestResult) {
-  if (frames.empty() || frames.size() > limits::frames) return "a message of " + std::to_string(frames.size()) + " frames";
+  if (frames.empty() || frames.size() > limits::frames)
+    return "a message of " + std::to_string(frames.size()) + " frames";
   uint8_t kind = 0;
   if (std::string why = verifyHeader(frames[0], kind); !why.empty()) return why;
   const wire::Header& header = *wire::GetHeader(frames[0].data());
   const Kind expected = framesOf(header.any_type());
   const bool known = header.any_type() <= wire::Any::MAX;
   if (known && (frames.size() - 1 < expected.least || frames.size() - 1 > expected.most))
-    return std::string("a ") + wire::EnumNameAny(header.any_type()) + " of " + std::to_string(frames.size()) + " frames";
-  if (const wire::Result* result = header.any_as_Result(); result && result->bytes() > largestResult)
+    return std::string("a ") + wire::EnumNameAny(header.any_type()) + " of " +
+           std::to_string(frames.size()) + " frames";
+  if (const wire::Result* result = header.any_as_Result();
+      result && result->bytes() > largestResult)
     return "a result of " + std::to_string(result->bytes()) + " bytes, which no job makes";
   out.session = header.session();
   try {
     readBody(header, frames, out.body);
   } catch (const Bad& bad) {
     return std::string(wire::EnumNameAny(header.any_type())) + ": " + bad.why;
-  } catch (const std::bad_alloc&) { return std::string(wire::EnumNameAny(header.any_type())) + ": no memory for it"; }
+  } catch (const std::bad_alloc&) {
+    return std::string(wire::EnumNameAny(header.any_type())) + ": no memory for it";
+  }
   return {};
 }
 

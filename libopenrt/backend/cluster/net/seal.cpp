@@ -1,5 +1,5 @@
-// seal.cpp: see seal.h. Bulk frames count by their sizes alone: what is in them has a checksum of its own in the header, that is
-// looked at where there is time. [any]
+// seal.cpp: Bulk frames count by their sizes alone: what is in them has a checksum of
+// its own in the header, that is looked at where there is time. [any]
 #include "backend/cluster/net/seal.h"
 
 #include <array>

@@ -1,5 +1,5 @@
-// sockets.cpp: see sockets.h. What ZeroMQ does by itself: no heartbeats, messages of any size, waiting for ever at the end,
-// 1000 messages of any size in each queue.
+// sockets.cpp: What ZeroMQ does by itself: no heartbeats, messages of any size,
+// waiting for ever at the end, 1000 messages of any size in each queue.
 #include "backend/cluster/net/sockets.h"
 
 #include <algorithm>
@@ -20,13 +20,18 @@ std::string_view textOf(const zmq::message_t& m) { return {m.data<char>(), m.siz
 
 // Why a handshake failed. After a close in mid-handshake ZeroMQ has no more to say than that.
 std::string failureText(uint16_t event, int value, bool withKeys) {
-  if (event == ZMQ_EVENT_HANDSHAKE_FAILED_AUTH) return "our key is not on its list of keys that are let in";
-  if (event == ZMQ_EVENT_HANDSHAKE_FAILED_PROTOCOL && value == ZMQ_PROTOCOL_ERROR_ZMTP_MECHANISM_MISMATCH)
+  if (event == ZMQ_EVENT_HANDSHAKE_FAILED_AUTH)
+    return "our key is not on its list of keys that are let in";
+  if (event == ZMQ_EVENT_HANDSHAKE_FAILED_PROTOCOL &&
+      value == ZMQ_PROTOCOL_ERROR_ZMTP_MECHANISM_MISMATCH)
     return withKeys ? "it uses no key, this side does: give --key FILE there, too"
                     : "it uses a key, this side none: give --key FILE";
-  if (event == ZMQ_EVENT_HANDSHAKE_FAILED_PROTOCOL && value == ZMQ_PROTOCOL_ERROR_ZMTP_CRYPTOGRAPHIC) return "it has another key";
+  if (event == ZMQ_EVENT_HANDSHAKE_FAILED_PROTOCOL &&
+      value == ZMQ_PROTOCOL_ERROR_ZMTP_CRYPTOGRAPHIC)
+    return "it has another key";
   if (event == ZMQ_EVENT_HANDSHAKE_FAILED_PROTOCOL) return "it does not speak this protocol";
-  return withKeys ? "it closed the connection: it has another key or none, most likely (--key FILE there, too)"
+  return withKeys ? "it closed the connection: it has another key or none, most likely (--key FILE "
+                    "there, too)"
                   : "it closed the connection: it expects a key, most likely (give --key FILE)";
 }
 
@@ -40,7 +45,8 @@ zmq::context_t makeContext() {
   return context;
 }
 
-zmq::socket_t makeSocket(zmq::context_t& context, zmq::socket_type type, const KeyRing& keys, const std::string& serverKey) {
+zmq::socket_t makeSocket(zmq::context_t& context, zmq::socket_type type, const KeyRing& keys,
+                         const std::string& serverKey) {
   namespace opt = zmq::sockopt;
   constexpr int milliseconds = 1000, queued = 64, backlog = 1024;
   zmq::socket_t s(context, type);
@@ -54,8 +60,8 @@ zmq::socket_t makeSocket(zmq::context_t& context, zmq::socket_type type, const K
   s.set(opt::connect_timeout, 4 * milliseconds);
   s.set(opt::handshake_ivl, 5 * milliseconds);
   s.set(opt::reconnect_ivl, -1); // the Wire makes a new socket: nothing old is in its queue
-  // Only for connections that nobody hears of any more: the wire's own beats (Beat) notice much sooner. A message of 64 MiB may
-  // be on the way meanwhile.
+  // Only for connections that nobody hears of any more: the wire's own beats (Beat) notice much
+  // sooner. A message of 64 MiB may be on the way meanwhile.
   s.set(opt::heartbeat_ivl, 5 * milliseconds);
   s.set(opt::heartbeat_timeout, 120 * milliseconds);
   s.set(opt::heartbeat_ttl, 120 * milliseconds);
@@ -83,8 +89,9 @@ Monitor::Monitor(zmq::context_t& context, zmq::socket_t& socket, bool withKeys)
   static std::atomic<uint64_t> number{0};
   const std::string place = "inproc://openrt-monitor-" + std::to_string(++number);
   constexpr int events = ZMQ_EVENT_CONNECTED | ZMQ_EVENT_ACCEPTED | ZMQ_EVENT_HANDSHAKE_SUCCEEDED |
-                         ZMQ_EVENT_HANDSHAKE_FAILED_NO_DETAIL | ZMQ_EVENT_HANDSHAKE_FAILED_PROTOCOL |
-                         ZMQ_EVENT_HANDSHAKE_FAILED_AUTH | ZMQ_EVENT_CLOSED | ZMQ_EVENT_DISCONNECTED;
+                         ZMQ_EVENT_HANDSHAKE_FAILED_NO_DETAIL |
+                         ZMQ_EVENT_HANDSHAKE_FAILED_PROTOCOL | ZMQ_EVENT_HANDSHAKE_FAILED_AUTH |
+                         ZMQ_EVENT_CLOSED | ZMQ_EVENT_DISCONNECTED;
   if (zmq_socket_monitor(watched_.handle(), place.c_str(), events) != 0) throw zmq::error_t();
   pair_.set(zmq::sockopt::linger, 0);
   pair_.connect(place);
@@ -114,12 +121,14 @@ std::optional<Happening> Monitor::next() {
   }
 }
 
-Gate::Gate(zmq::context_t& context, const KeyRing& keys) : socket_(context, zmq::socket_type::rep), keys_(keys) {
+Gate::Gate(zmq::context_t& context, const KeyRing& keys)
+    : socket_(context, zmq::socket_type::rep), keys_(keys) {
   socket_.set(zmq::sockopt::linger, 0);
   socket_.bind("inproc://zeromq.zap.01");
 }
 
-// Request: version, number, domain, address, identity, mechanism, credentials. Answer: version, number, status, text, user, data.
+// Request: version, number, domain, address, identity, mechanism, credentials. Answer: version,
+// number, status, text, user, data.
 bool Gate::answer(const std::function<void(const std::string&)>& refused) {
   constexpr size_t fields = 7;
   std::string request[fields];
@@ -132,16 +141,23 @@ bool Gate::answer(const std::function<void(const std::string&)>& refused) {
   }
   const auto& [version, number, domain, address, identity, mechanism, credentials] = request;
   std::string key;
-  if (count == fields && domain == zapDomain && mechanism == "CURVE" && credentials.size() == curveBytes) {
+  if (count == fields && domain == zapDomain && mechanism == "CURVE" &&
+      credentials.size() == curveBytes) {
     char text[41];
-    if (zmq_z85_encode(text, reinterpret_cast<const uint8_t*>(credentials.data()), curveBytes)) key = text;
+    if (zmq_z85_encode(text, reinterpret_cast<const uint8_t*>(credentials.data()), curveBytes))
+      key = text;
   }
   const bool in = !key.empty() &&
-                  (key == keys_.publicKey || std::find(keys_.allowed.begin(), keys_.allowed.end(), key) != keys_.allowed.end());
-  if (!in) refused(shownEndpoint(address) + ": its key " + key + " is not on the list of those that are let in");
-  const std::string reply[] = {"1.0", number, in ? "200" : "400", in ? "OK" : "this key is not let in", in ? key : "", ""};
+                  (key == keys_.publicKey || std::find(keys_.allowed.begin(), keys_.allowed.end(),
+                                                       key) != keys_.allowed.end());
+  if (!in)
+    refused(shownEndpoint(address) + ": its key " + key +
+            " is not on the list of those that are let in");
+  const std::string reply[] = {
+      "1.0", number, in ? "200" : "400", in ? "OK" : "this key is not let in", in ? key : "", ""};
   for (size_t i = 0; i < std::size(reply); i++)
-    socket_.send(zmq::buffer(reply[i]), i + 1 < std::size(reply) ? zmq::send_flags::sndmore : zmq::send_flags::none);
+    socket_.send(zmq::buffer(reply[i]),
+                 i + 1 < std::size(reply) ? zmq::send_flags::sndmore : zmq::send_flags::none);
   return true;
 }
 

@@ -1,5 +1,6 @@
-// sockets.h: ZeroMQ sockets as the wire wants them: every default that is unsafe is set, keys are put in, what happens to their
-// connections is told, and who is let in is decided. Used by the Wire, on its thread.
+// sockets.h: ZeroMQ sockets as the wire wants them: every default that is unsafe is set, keys are
+// put in, what happens to their connections is told, and who is let in is decided. Used by the
+// Wire, on its thread.
 #pragma once
 
 #include <chrono>
@@ -15,15 +16,25 @@
 
 namespace openrt::cluster {
 
-inline double steadyNow() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+inline double steadyNow() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 
 zmq::context_t makeContext();
 // serverKey: of the side to call; empty where one listens.
-zmq::socket_t makeSocket(zmq::context_t& context, zmq::socket_type type, const KeyRing& keys, const std::string& serverKey);
+zmq::socket_t makeSocket(zmq::context_t& context, zmq::socket_type type, const KeyRing& keys,
+                         const std::string& serverKey);
 
 // What happens to the connections of a socket.
 struct Happening {
-  enum class Kind : uint8_t { connected, accepted, opened, failed, closed, disconnected } kind = Kind::closed;
+  enum class Kind : uint8_t {
+    connected,
+    accepted,
+    opened,
+    failed,
+    closed,
+    disconnected
+  } kind = Kind::closed;
   int fd = -1;     // connected, accepted, disconnected
   std::string why; // failed: of the handshake, for people
 };

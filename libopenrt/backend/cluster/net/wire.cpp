@@ -1,5 +1,6 @@
-// wire.cpp: the loop of the Wire: waits, lets the calls (wire_calls.cpp) and the peers (wire_peers.cpp) do their part, and hands
-// out what has happened. The owner's thread; wake() from any.
+// wire.cpp: the loop of the Wire: waits, lets the calls (wire_calls.cpp) and the peers
+// (wire_peers.cpp) do their part, and hands out what has happened. The owner's thread; wake() from
+// any.
 #include "backend/cluster/net/wire.h"
 
 #include <algorithm>
@@ -18,25 +19,29 @@ namespace {
 constexpr int byeMilliseconds = 500; // that a last word may take
 
 std::string remedy(const std::string& what) {
-  return what +
-         " is not this machine's loopback, so keys are needed: make one with \"openrt-worker --new-key FILE\", copy it to all "
-         "machines, and give --key FILE (key=FILE) on both sides";
+  return what + " is not this machine's loopback, so keys are needed: make one with "
+                "\"openrt-worker --new-key FILE\", copy it to all "
+                "machines, and give --key FILE (key=FILE) on both sides";
 }
 
 void checkAddress(const Address& address, const KeyRing& keys) {
   if (keys.empty() && !address.loopback()) throw std::runtime_error(remedy(address.shown()));
   if (keys.empty() && !address.key.empty())
-    throw std::runtime_error(address.shown() + ": a public key of the other side is of no use without a key of one's own");
+    throw std::runtime_error(
+        address.shown() +
+        ": a public key of the other side is of no use without a key of one's own");
 }
 
 } // namespace
 
 Wire::Impl::Impl(const WireOptions& options)
-    : keys(options.keys), heartbeat(options.heartbeat), silence(options.silence), context(makeContext()) {
+    : keys(options.keys), heartbeat(options.heartbeat), silence(options.silence),
+      context(makeContext()) {
   for (const std::string& text : options.connect) {
     Address address = Address::parse(text);
     checkAddress(address, keys);
-    if (address.port == 0 && !address.ipc) throw std::runtime_error(address.shown() + ": a port to call cannot be 0");
+    if (address.port == 0 && !address.ipc)
+      throw std::runtime_error(address.shown() + ": a port to call cannot be 0");
     calls.emplace_back().address = std::move(address);
   }
   if (!keys.empty() && !options.listen.empty()) gate.emplace(context, keys);
@@ -74,7 +79,8 @@ void Wire::Impl::refused(const std::string& text) {
   constexpr size_t crowd = 100;
   const double now = steadyNow();
   std::erase_if(refusals, [&](const auto& entry) { return now - entry.second > again; });
-  if (refusals.size() < crowd && refusals.emplace(text, now).second) push(Event::Kind::refused, 0, text);
+  if (refusals.size() < crowd && refusals.emplace(text, now).second)
+    push(Event::Kind::refused, 0, text);
 }
 
 // What time brings: calls, beats, silence.
@@ -102,7 +108,9 @@ void Wire::Impl::poll(double seconds) {
     atCalls.emplace_back(&call, add(call.socket->handle()));
     add(call.monitor->socket().handle());
   }
-  if (zmq_poll(items.data(), int(items.size()), long(std::ceil(std::max(0.0, seconds) * 1000))) <= 0) return; // also a signal
+  if (zmq_poll(items.data(), int(items.size()), long(std::ceil(std::max(0.0, seconds) * 1000))) <=
+      0)
+    return; // also a signal
   const double now = steadyNow();
   if (items[0].revents) {
     uint64_t count = 0;
@@ -143,7 +151,8 @@ Event Wire::receive(double seconds) { return impl_->receive(seconds); }
 
 bool Wire::send(Peer peer, Frames&& frames) {
   Impl::PeerState* state = impl_->find(peer);
-  return state && !state->gone && !frames.empty() && impl_->sendTo(*state, std::move(frames), steadyNow());
+  return state && !state->gone && !frames.empty() &&
+         impl_->sendTo(*state, std::move(frames), steadyNow());
 }
 
 void Wire::close(Peer peer, const std::string& why) {
@@ -161,7 +170,8 @@ void Wire::close(Peer peer, const std::string& why) {
 }
 
 void Wire::bad(Peer peer, const std::string& why) {
-  if (Impl::PeerState* state = impl_->find(peer); state && !state->gone) impl_->countBad(*state, why, steadyNow());
+  if (Impl::PeerState* state = impl_->find(peer); state && !state->gone)
+    impl_->countBad(*state, why, steadyNow());
 }
 
 void Wire::pace(double heartbeat, double silence) {
@@ -176,7 +186,8 @@ std::string Wire::address() const {
 
 void Wire::wake() {
   const uint64_t one = 1;
-  static_cast<void>(write(impl_->wakeFd, &one, sizeof one) == sizeof one); // full: it wakes up anyway
+  static_cast<void>(write(impl_->wakeFd, &one, sizeof one) ==
+                    sizeof one); // full: it wakes up anyway
 }
 
 Wire::Traffic Wire::traffic(Peer peer) const {

@@ -1,5 +1,5 @@
-// wire.h: messages between a master and its workers over ZeroMQ, with CURVE where they leave the machine. A message is a header
-// (messages.fbs) and bulk frames. One thread's, but for Waker.
+// wire.h: messages between a master and its workers over ZeroMQ, with CURVE where they leave the
+// machine. A message is a header (messages.fbs) and bulk frames. One thread's, but for Waker.
 #pragma once
 
 #include <cstddef>
@@ -36,7 +36,8 @@ struct WireOptions {
 };
 
 struct Event {
-  // refused: a call that nobody took, or somebody who called and was not let in; said once, the wire goes on trying.
+  // refused: a call that nobody took, or somebody who called and was not let in; said once, the
+  // wire goes on trying.
   enum class Kind : uint8_t { nothing, joined, message, left, refused, woken } kind = Kind::nothing;
   Peer peer = 0;    // 0 if refused
   Frames frames;    // message: the header verifies (messages.h); neither a Beat nor a Bye
@@ -45,17 +46,19 @@ struct Event {
 
 class Wire {
  public:
-  // Throws std::runtime_error with a message for people: no key for an address that is not loopback (and the remedy), an address
-  // that cannot be bound, a key file that others may read.
+  // Throws std::runtime_error with a message for people: no key for an address that is not loopback
+  // (and the remedy), an address that cannot be bound, a key file that others may read.
   explicit Wire(const WireOptions& options);
   ~Wire();
-  // Waits at most so long. Heartbeats are sent and watched in here: a peer that was silent for `silence` seconds has left. To be
-  // called at least every `heartbeat` seconds, about. Those that are called are called again whenever they have left.
+  // Waits at most so long. Heartbeats are sent and watched in here: a peer that was silent for
+  // `silence` seconds has left. To be called at least every `heartbeat` seconds, about. Those that
+  // are called are called again whenever they have left.
   Event receive(double seconds);
   // Does not wait. False: the peer's queue is full, or it has left; the frames are as they were.
   bool send(Peer peer, Frames&& frames);
   void close(Peer peer, const std::string& why); // says Bye; no `left` follows
-  // A message that was none for the one who read it: the third one closes the peer, and `left` follows.
+  // A message that was none for the one who read it: the third one closes the peer, and `left`
+  // follows.
   void bad(Peer peer, const std::string& why);
   void pace(double heartbeat, double silence); // as the other side asks
   std::string address() const;                 // where it listens, with the port; empty: nowhere

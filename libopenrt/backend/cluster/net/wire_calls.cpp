@@ -1,5 +1,5 @@
-// wire_calls.cpp: those whom the Wire calls: from the name to a connection that speaks, and again after every loss. Each attempt
-// has a socket of its own. [wire]
+// wire_calls.cpp: those whom the Wire calls: from the name to a connection that speaks, and again
+// after every loss. Each attempt has a socket of its own. [wire]
 #include <algorithm>
 
 #include "backend/cluster/net/wire_impl.h"
@@ -10,7 +10,9 @@ namespace {
 constexpr double attempt = 8;                        // seconds until one has failed
 constexpr double firstPause = 0.1, longestPause = 2; // between them
 constexpr int byeMilliseconds = 500;
-constexpr size_t mostAtOnce = 64, bytesAtOnce = size_t(64) << 20; // messages of one peer before it is another one's turn
+constexpr size_t mostAtOnce = 64,
+                 bytesAtOnce = size_t(64)
+                               << 20; // messages of one peer before it is another one's turn
 
 } // namespace
 
@@ -101,7 +103,8 @@ void Wire::Impl::hangUp(Call& call, double delay, bool sayBye) {
 }
 
 void Wire::Impl::failCall(Call& call, const std::string& why, double) {
-  const double pause = std::min(longestPause, firstPause * double(uint64_t(1) << std::min(call.failures, 10u)));
+  const double pause =
+      std::min(longestPause, firstPause * double(uint64_t(1) << std::min(call.failures, 10u)));
   call.failures++;
   hangUp(call, pause, false);
   if (call.told == why) return;

@@ -1,5 +1,6 @@
-// wire_impl.h: what the Wire is made of: those it calls (a socket each, so that nothing old waits in a queue after a loss), those
-// who call (one socket for all), and the peers that come of both. For wire.cpp, wire_calls.cpp and wire_peers.cpp alone.
+// wire_impl.h: what the Wire is made of: those it calls (a socket each, so that nothing old waits
+// in a queue after a loss), those who call (one socket for all), and the peers that come of both.
+// For wire.cpp, wire_calls.cpp and wire_peers.cpp alone.
 #pragma once
 
 #include <deque>
@@ -23,8 +24,8 @@ struct Wire::Impl {
     std::optional<Monitor> monitor; // of it, so it is closed first
     double next = 0, deadline = 0;  // when to try; when an attempt has failed
     uint32_t failures = 0;          // in a row
-    uint32_t byes = 0;              // connections in a row that the other side has soon ended by a Bye
-    double joined = 0;              // when the connection stood
+    uint32_t byes = 0; // connections in a row that the other side has soon ended by a Bye
+    double joined = 0; // when the connection stood
     int fd = -1;
     Peer peer = 0; // once it has answered
     std::string told;
@@ -70,7 +71,8 @@ struct Wire::Impl {
   void watchCallers();
   void readCallers(double now);
   PeerState& caller(const std::string& route, int fd, const std::string& address, double now);
-  bool readFrames(zmq::socket_t& socket, Frames& frames, int& fd, std::string& address, bool& tooMany);
+  bool readFrames(zmq::socket_t& socket, Frames& frames, int& fd, std::string& address,
+                  bool& tooMany);
   void take(PeerState& peer, Frames&& frames, bool tooMany, double now);
   void countBad(PeerState& peer, const std::string& why, double now);
   void shutOut(PeerState& peer, const std::string& why, double now);
@@ -91,7 +93,8 @@ struct Wire::Impl {
   std::map<Peer, PeerState> peers;
   std::unordered_map<std::string, Peer> routes;
   std::map<int, Peer> callersByFd;
-  std::vector<Peer> closing; // callers whose connection is closed; what they have sent before counts
+  std::vector<Peer>
+      closing; // callers whose connection is closed; what they have sent before counts
   std::map<Peer, Traffic> former;
   Peer lastPeer = 0;
   std::deque<Event> events;

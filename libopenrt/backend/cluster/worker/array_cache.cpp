@@ -1,4 +1,3 @@
-// array_cache.cpp: see array_cache.h.
 #include "backend/cluster/worker/array_cache.h"
 
 #include <xxhash.h>
@@ -39,9 +38,11 @@ struct ArrayStream::Impl {
     void operator()(XXH3_state_t* s) const { XXH3_freeState(s); }
   };
   Hash hash;
-  std::shared_ptr<Array> array; // none before the first piece, which says how many bytes there are of it
+  std::shared_ptr<Array>
+      array; // none before the first piece, which says how many bytes there are of it
   uint64_t bytes = 0, written = 0, stored = 0, received = 0;
-  std::unique_ptr<ZSTD_DStream, Free> zstd; // a hundred thousand bytes, so they are made for those that come only
+  std::unique_ptr<ZSTD_DStream, Free>
+      zstd; // a hundred thousand bytes, so they are made for those that come only
   std::unique_ptr<XXH3_state_t, Free> state;
   bool ended = false;
 
@@ -84,7 +85,9 @@ std::string ArrayStream::put(const message::Piece& piece) {
 }
 
 bool ArrayStream::begun() const { return impl_->stored != 0; }
-bool ArrayStream::complete() const { return impl_->stored != 0 && impl_->received == impl_->stored; }
+bool ArrayStream::complete() const {
+  return impl_->stored != 0 && impl_->received == impl_->stored;
+}
 
 ArrayPtr ArrayStream::take() {
   Impl& s = *impl_;

@@ -1,5 +1,6 @@
-// array_cache.h: a worker's arrays by what they hold, and how they come piece by piece. One that the scene uses is never thrown
-// away; of the others, those that were of no use for longest go first. One thread's.
+// array_cache.h: a worker's arrays by what they hold, and how they come piece by piece. One that
+// the scene uses is never thrown away; of the others, those that were of no use for longest go
+// first. One thread's.
 #pragma once
 
 #include <list>

@@ -1,4 +1,4 @@
-// serve.cpp: see serve.h. Tasks for the session wait in one queue, what it has to say in another.
+// serve.cpp: Tasks for the session wait in one queue, what it has to say in another.
 #include "backend/cluster/worker/serve.h"
 
 #include <atomic>
@@ -16,9 +16,11 @@
 namespace openrt::cluster {
 namespace {
 
-constexpr size_t mostWaiting = size_t(512) << 20; // bytes that the session has not read; then the wire waits
-constexpr size_t overhead = 512;                  // about, of a message that waits
-constexpr double idle = 0.05, hurry = 0.001;      // seconds to wait for messages; while something could not be sent
+constexpr size_t mostWaiting = size_t(512)
+                               << 20; // bytes that the session has not read; then the wire waits
+constexpr size_t overhead = 512;      // about, of a message that waits
+constexpr double idle = 0.05,
+                 hurry = 0.001; // seconds to wait for messages; while something could not be sent
 
 } // namespace
 
@@ -30,7 +32,9 @@ struct WorkerService::Impl final : WorkerSink, Machine {
   };
 
   explicit Impl(const ServeOptions& o) : options(o), wire(o.wire) {
-    options.backend.log = [](int level, const char* text, void* user) { static_cast<Impl*>(user)->backendSays(level, text); };
+    options.backend.log = [](int level, const char* text, void* user) {
+      static_cast<Impl*>(user)->backendSays(level, text);
+    };
     options.backend.logUser = this;
     core = std::make_unique<WorkerCore>(options.backend, *this);
     RTstats stats{};
@@ -47,7 +51,9 @@ struct WorkerService::Impl final : WorkerSink, Machine {
   ~Impl() override { core.reset(); } // nothing is told any more
 
   WorkerLink link() {
-    const auto does = [this](Peer peer, std::function<void(Wire&)> act) { say({peer, {}, std::move(act)}); };
+    const auto does = [this](Peer peer, std::function<void(Wire&)> act) {
+      say({peer, {}, std::move(act)});
+    };
     return {[this](Peer peer, Frames&& frames) {
               say({peer, std::move(frames), {}});
             },
@@ -57,7 +63,9 @@ struct WorkerService::Impl final : WorkerSink, Machine {
                 alive.erase(peer);
               });
             },
-            [does](Peer peer, const std::string& why) { does(peer, [=](Wire& w) { w.bad(peer, why); }); },
+            [does](Peer peer, const std::string& why) {
+              does(peer, [=](Wire& w) { w.bad(peer, why); });
+            },
             [this, does](double heartbeat, double silence) {
               const double h = heartbeat > 0 ? heartbeat : options.wire.heartbeat,
                            s = silence > 0 ? silence : options.wire.silence;
@@ -154,7 +162,8 @@ struct WorkerService::Impl final : WorkerSink, Machine {
     switch (event.kind) {
     case Event::Kind::joined:
       alive.insert(peer);
-      return post([=, address = std::move(event.text)](Worker& w) { w.joined(peer, address, now); });
+      return post(
+          [=, address = std::move(event.text)](Worker& w) { w.joined(peer, address, now); });
     case Event::Kind::left: {
       const std::lock_guard lock(mutex);
       std::erase_if(sayings, [&](const Saying& s) { return s.peer == peer; });
@@ -220,7 +229,8 @@ struct WorkerService::Impl final : WorkerSink, Machine {
   std::unique_ptr<WorkerCore> core;
 };
 
-WorkerService::WorkerService(const ServeOptions& options) : impl_(std::make_unique<Impl>(options)) {}
+WorkerService::WorkerService(const ServeOptions& options)
+    : impl_(std::make_unique<Impl>(options)) {}
 WorkerService::~WorkerService() = default;
 
 std::string WorkerService::address() const { return impl_->wire.address(); }

@@ -1,6 +1,6 @@
-// serve.h: a worker, whole: the wire, the session and the machine that does the jobs, put together. In openrt-worker, and in
-// tests. Three kinds of threads: run() is on its caller's, which does nothing but move messages, so that heartbeats never wait;
-// the session has one; jobs have theirs.
+// serve.h: a worker, whole: the wire, the session and the machine that does the jobs, put together.
+// In openrt-worker, and in tests. Three kinds of threads: run() is on its caller's, which does
+// nothing but move messages, so that heartbeats never wait; the session has one; jobs have theirs.
 #pragma once
 
 #include <functional>

@@ -17,7 +17,8 @@ constexpr size_t mostFrames = 256;   // that are prepared and not dropped
 } // namespace
 
 Worker::Worker(const WorkerOptions& options, WorkerLink link, Machine& machine)
-    : options_(options), link_(std::move(link)), machine_(machine), cache_(options.cacheBytes), libraries_(options.shaders) {}
+    : options_(options), link_(std::move(link)), machine_(machine), cache_(options.cacheBytes),
+      libraries_(options.shaders) {}
 
 Worker::~Worker() = default;
 
@@ -37,8 +38,12 @@ void Worker::joined(Peer peer, const std::string& address, double now) {
 
 void Worker::left(Peer peer, const std::string& why, double) {
   if (peer != peer_) return;
-  const std::string text = "master " + address_ + (serving() ? " has left: " : " has not taken us: ") + why;
-  tell(serving() ? 1 : text == told_ ? 0 : 2, text); // one that asks again and again is heard of once
+  const std::string text =
+      "master " + address_ + (serving() ? " has left: " : " has not taken us: ") + why;
+  tell(serving()       ? 1
+       : text == told_ ? 0
+                       : 2,
+       text); // one that asks again and again is heard of once
   told_ = text;
   endSession();
 }
@@ -84,7 +89,8 @@ void Worker::bad(const std::string& why) {
 void Worker::message(Peer peer, Frames&& frames, double) {
   if (peer != peer_) return;
   Message m;
-  if (const std::string why = decode(std::move(frames), m); !why.empty()) { // nobody knows what it should have been
+  if (const std::string why = decode(std::move(frames), m);
+      !why.empty()) { // nobody knows what it should have been
     const std::string text = "a message that cannot be read: " + why;
     tell(2, "master " + address_ + " has sent " + text);
     link_.close(peer_, text);
@@ -120,8 +126,8 @@ void Worker::message(Peer peer, Frames&& frames, double) {
 
 void Worker::welcome(const message::Welcome& m) {
   if (m.protocol != protocolVersion)
-    return giveUp("protocol " + std::to_string(m.protocol) + " of the master, " + std::to_string(protocolVersion) +
-                  " of the worker: they must be the same");
+    return giveUp("protocol " + std::to_string(m.protocol) + " of the master, " +
+                  std::to_string(protocolVersion) + " of the worker: they must be the same");
   session_ = m.session;
   masters_++;
   broken_ = "no scene has come yet";

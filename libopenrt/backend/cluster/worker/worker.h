@@ -1,5 +1,6 @@
-// worker.h: the worker's side of the protocol (docs/protocol.md): what the master's messages mean, and what to say. One master at
-// a time; when it is lost the arrays are kept for the next one. Pure events: no sockets, no threads, no clock. One thread's.
+// worker.h: the worker's side of the protocol (docs/protocol.md): what the master's messages mean,
+// and what to say. One master at a time; when it is lost the arrays are kept for the next one. Pure
+// events: no sockets, no threads, no clock. One thread's.
 #pragma once
 
 #include <deque>
@@ -9,9 +10,9 @@
 #include <set>
 #include <string>
 
-#include "backend/cluster/worker/array_cache.h"
 #include "backend/cluster/net/libraries.h"
 #include "backend/cluster/net/messages.h"
+#include "backend/cluster/worker/array_cache.h"
 
 namespace openrt {
 class CommitValidator;
@@ -23,7 +24,8 @@ namespace openrt::cluster {
 class Machine {
  public:
   virtual ~Machine() = default;
-  virtual void scene(Epoch epoch, std::shared_ptr<const Commit> commit, bool whole, bool prepare) = 0;
+  virtual void scene(Epoch epoch, std::shared_ptr<const Commit> commit, bool whole,
+                     bool prepare) = 0;
   virtual void prepare(Epoch epoch) = 0;
   virtual void work(Epoch epoch, std::span<const LeasedJob> jobs) = 0;
   virtual void drop(Epoch epoch) = 0;
@@ -40,7 +42,7 @@ struct WorkerOptions {
 struct WorkerLink {
   std::function<void(Peer, Frames&&)> send;
   std::function<void(Peer, const std::string& why)> close;
-  std::function<void(Peer, const std::string& why)> bad; // a message that is none
+  std::function<void(Peer, const std::string& why)> bad;      // a message that is none
   std::function<void(double heartbeat, double silence)> pace; // 0: as before any Welcome
 };
 
@@ -97,13 +99,15 @@ class Worker {
   std::string address_, told_;
   double asked_ = 0; // when Hello was said
   uint64_t session_ = 0, masters_ = 0;
-  // The machine's epochs go on where those of the former master ended, so that what comes late is seen to be late.
+  // The machine's epochs go on where those of the former master ended, so that what comes late is
+  // seen to be late.
   Epoch base_ = 0, newest_ = 0;
   std::string broken_; // why nothing can be made until a whole scene comes
   std::deque<Coming> coming_;
   std::map<Hash, ArrayStream> streams_;
-  size_t begun_ = 0;                                // of these
-  std::deque<std::pair<Epoch, size_t>> unanswered_; // scenes of which the machine has not spoken yet, bytes of their edits
+  size_t begun_ = 0; // of these
+  std::deque<std::pair<Epoch, size_t>>
+      unanswered_; // scenes of which the machine has not spoken yet, bytes of their edits
   size_t unansweredBytes_ = 0;
   std::map<Epoch, edit::FrameSettingsT> frames_; // of what is prepared; the machine's epochs
   std::map<Epoch, std::set<Lease>> leases_;      // of jobs that are out

@@ -1,6 +1,6 @@
-// worker_core.cpp: see worker_core.h. What is asked stands in one queue. Threads take jobs from its front as long as there are
-// any; what changes the scene, and questions, are done by the control thread alone once they have come to the front and no job
-// runs any more.
+// worker_core.cpp: What is asked stands in one queue. Threads take jobs from its
+// front as long as there are any; what changes the scene, and questions, are done by the control
+// thread alone once they have come to the front and no job runs any more.
 #include "backend/cluster/worker/worker_core.h"
 
 #include <algorithm>
@@ -32,7 +32,8 @@ struct Command {
 } // namespace
 
 struct WorkerCore::Impl {
-  Impl(const BackendOptions& o, WorkerSink& s) : options(o), sink(s), count(o.threads ? o.threads : availableThreads()) {
+  Impl(const BackendOptions& o, WorkerSink& s)
+      : options(o), sink(s), count(o.threads ? o.threads : availableThreads()) {
     options.threads = count;
     backend = std::make_unique<LocalBackend>(options);
     running = std::make_unique<Running[]>(count);
@@ -48,8 +49,12 @@ struct WorkerCore::Impl {
   void applyCommit(const Command& command);
   void makeReady(Epoch epoch);
   void tellFailed(Epoch epoch, const std::string& why);
-  bool jobInFront() const { return !alone && !queue.empty() && queue.front().kind == Command::Kind::job; }
-  bool controlInFront() const { return busy == 0 && !queue.empty() && queue.front().kind != Command::Kind::job; }
+  bool jobInFront() const {
+    return !alone && !queue.empty() && queue.front().kind == Command::Kind::job;
+  }
+  bool controlInFront() const {
+    return busy == 0 && !queue.empty() && queue.front().kind != Command::Kind::job;
+  }
 
   BackendOptions options;
   WorkerSink& sink;
@@ -61,7 +66,8 @@ struct WorkerCore::Impl {
     std::atomic<bool> stop{false};
     std::unique_ptr<JobRunner> runner; // of the scene that is prepared; null: none yet
   };
-  std::unique_ptr<Running[]> running; // by thread; runners: the thread's, the control thread's when it is alone
+  std::unique_ptr<Running[]>
+      running; // by thread; runners: the thread's, the control thread's when it is alone
 
   // The control thread's; read by others only while it is not alone.
   std::unique_ptr<LocalBackend> backend;
@@ -182,7 +188,8 @@ void WorkerCore::Impl::applyCommit(const Command& command) {
   for (uint32_t i = 0; i < count; i++) running[i].runner = nullptr;
   scene = nullptr;
   applied = command.epoch;
-  if (!command.whole && !intact) throw std::runtime_error("an earlier change of the scene could not be made");
+  if (!command.whole && !intact)
+    throw std::runtime_error("an earlier change of the scene could not be made");
   intact = false;
   if (command.whole) {
     backend = nullptr; // its memory first
@@ -202,12 +209,14 @@ void WorkerCore::Impl::makeReady(Epoch epoch) {
   sink.ready(epoch, prepared);
 }
 
-WorkerCore::WorkerCore(const BackendOptions& options, WorkerSink& sink) : impl_(std::make_unique<Impl>(options, sink)) {}
+WorkerCore::WorkerCore(const BackendOptions& options, WorkerSink& sink)
+    : impl_(std::make_unique<Impl>(options, sink)) {}
 WorkerCore::~WorkerCore() = default;
 
 uint32_t WorkerCore::threads() const { return impl_->count; }
 
-void WorkerCore::scene(Epoch epoch, std::shared_ptr<const Commit> commit, bool whole, bool prepare) {
+void WorkerCore::scene(Epoch epoch, std::shared_ptr<const Commit> commit, bool whole,
+                       bool prepare) {
   Command command;
   command.kind = Command::Kind::scene;
   command.epoch = epoch;
@@ -238,9 +247,11 @@ void WorkerCore::work(Epoch epoch, std::span<const LeasedJob> jobs) {
 
 void WorkerCore::drop(Epoch epoch) {
   std::lock_guard lock(impl_->mutex);
-  std::erase_if(impl_->queue, [&](const Command& c) { return c.kind == Command::Kind::job && c.epoch <= epoch; });
+  std::erase_if(impl_->queue,
+                [&](const Command& c) { return c.kind == Command::Kind::job && c.epoch <= epoch; });
   for (uint32_t i = 0; i < impl_->count; i++)
-    if (impl_->running[i].epoch != 0 && impl_->running[i].epoch <= epoch) impl_->running[i].stop = true;
+    if (impl_->running[i].epoch != 0 && impl_->running[i].epoch <= epoch)
+      impl_->running[i].stop = true;
   impl_->jobsCame.notify_all();
   impl_->controlCame.notify_one();
 }

@@ -1,5 +1,5 @@
-// worker_scenes.cpp: scenes of a worker's session: which arrays are here, which must come, and the commit that becomes of it.
-// What comes is checked as a recording is. [worker]
+// worker_scenes.cpp: scenes of a worker's session: which arrays are here, which must come, and the
+// commit that becomes of it. What comes is checked as a recording is. [worker]
 #include <algorithm>
 #include <stdexcept>
 
@@ -21,7 +21,8 @@ void Worker::refuse(Epoch epoch, const std::string& why) {
 
 void Worker::scene(message::Scene&& m) {
   if (base_ + m.epoch <= newest_) return bad("a scene that is older than the last");
-  if (unanswered_.size() >= limits::scenesAtOnce || unansweredBytes_ + m.edits.size() > limits::scenesBytes)
+  if (unanswered_.size() >= limits::scenesAtOnce ||
+      unansweredBytes_ + m.edits.size() > limits::scenesBytes)
     return giveUp("it sends more scenes than can be made");
   newest_ = base_ + m.epoch;
   unanswered_.emplace_back(newest_, m.edits.size());
@@ -36,7 +37,8 @@ void Worker::scene(message::Scene&& m) {
       continue;
     }
     coming.missing.insert(name.hash);
-    if (streams_.try_emplace(name.hash, name.hash, name.bytes).second) need.arrays.push_back(name.hash);
+    if (streams_.try_emplace(name.hash, name.hash, name.bytes).second)
+      need.arrays.push_back(name.hash);
   }
   say(std::move(need));
   applyComing();
@@ -45,12 +47,15 @@ void Worker::scene(message::Scene&& m) {
 void Worker::piece(const message::Piece& m) {
   const auto stream = streams_.find(m.hash);
   if (stream == streams_.end()) return bad("a piece of an array that nobody asked for");
-  if (!stream->second.begun() && begun_ >= limits::arraysAtOnce) return bad("pieces of too many arrays at once");
+  if (!stream->second.begun() && begun_ >= limits::arraysAtOnce)
+    return bad("pieces of too many arrays at once");
   begun_ += stream->second.begun() ? 0 : 1;
   std::string why;
   try {
     why = stream->second.put(m);
-  } catch (const std::bad_alloc&) { why = "no memory for an array of " + std::to_string(m.bytes) + " bytes"; }
+  } catch (const std::bad_alloc&) {
+    why = "no memory for an array of " + std::to_string(m.bytes) + " bytes";
+  }
   if (why.empty() && !stream->second.complete()) return;
   const ArrayPtr array = why.empty() ? stream->second.take() : nullptr;
   if (why.empty() && !array) why = "an array with a wrong checksum";
@@ -69,12 +74,14 @@ void Worker::piece(const message::Piece& m) {
 }
 
 void Worker::prepare(const message::Prepare& m) {
-  if (m.epoch == 0 || m.epoch > newest_ - base_) return bad("a scene that has not come is to be prepared");
+  if (m.epoch == 0 || m.epoch > newest_ - base_)
+    return bad("a scene that has not come is to be prepared");
   if (coming_.empty()) {
     if (!broken_.empty()) return say(message::Failed{m.epoch, broken_});
     return machine_.prepare(base_ + m.epoch);
   }
-  if (coming_.size() >= 2 * limits::scenesAtOnce) return giveUp("it asks for more scenes than can be made");
+  if (coming_.size() >= 2 * limits::scenesAtOnce)
+    return giveUp("it asks for more scenes than can be made");
   Coming& coming = coming_.emplace_back();
   coming.scene.epoch = m.epoch;
   coming.prepareOnly = true;
@@ -86,9 +93,9 @@ void Worker::applyComing() {
     coming_.pop_front();
     try {
       apply(next);
-    } catch (const std::bad_alloc&) { refuse(next.scene.epoch, "out of memory"); } catch (const std::exception& e) {
-      refuse(next.scene.epoch, e.what());
-    }
+    } catch (const std::bad_alloc&) {
+      refuse(next.scene.epoch, "out of memory");
+    } catch (const std::exception& e) { refuse(next.scene.epoch, e.what()); }
   }
   if (coming_.empty()) cache_.trim();
 }
@@ -104,7 +111,8 @@ void Worker::apply(Coming& coming) {
     validator_ = std::make_unique<CommitValidator>(options_.shaders);
   }
   if (!broken_.empty()) return refuse(m.epoch, broken_);
-  if (const std::string problem = libraries_.problem(m.libraries); !problem.empty()) throw std::runtime_error(problem);
+  if (const std::string problem = libraries_.problem(m.libraries); !problem.empty())
+    throw std::runtime_error(problem);
   auto commit = std::make_shared<Commit>();
   for (const message::ArrayName& name : m.arrays) {
     const ArrayPtr& array = coming.arrays.at(name.hash);

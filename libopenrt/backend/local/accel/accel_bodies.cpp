@@ -1,5 +1,6 @@
-// accel_bodies.cpp: the Embree scenes of parts and objects, made once for each signature. Objects placed once, or small ones, are
-// baked into the scene of their part; those with many copies have one of their own, which the copies are instances of.
+// accel_bodies.cpp: the Embree scenes of parts and objects, made once for each signature. Objects
+// placed once, or small ones, are baked into the scene of their part; those with many copies have
+// one of their own, which the copies are instances of.
 #include <algorithm>
 
 #include <xxhash.h>
@@ -37,7 +38,8 @@ class Hash {
 } // namespace
 
 uint32_t AccelBuilder::maskOf(uint32_t shader) const {
-  return in_->shaders[in_->shaders.slotOf(shader)].traits & RTS_TRANSPARENT ? maskTransparent : maskOpaque;
+  return in_->shaders[in_->shaders.slotOf(shader)].traits & RTS_TRANSPARENT ? maskTransparent
+                                                                            : maskOpaque;
 }
 
 uint32_t AccelBuilder::maskOf(const Item& item, const Geometry& g, uint32_t override) const {
@@ -45,8 +47,8 @@ uint32_t AccelBuilder::maskOf(const Item& item, const Geometry& g, uint32_t over
 }
 
 // The signature is worked out once a build or update.
-template <class Sign, class Make>
-std::shared_ptr<const Body> AccelBuilder::cached(const Key& key, const Sign& sign, const Make& make) {
+template <class Sign, class Make> std::shared_ptr<const Body>
+AccelBuilder::cached(const Key& key, const Sign& sign, const Make& make) {
   Cached& entry = bodies_[key];
   if (entry.checked == number_ && entry.body) return entry.body;
   entry.checked = number_;
@@ -58,11 +60,13 @@ std::shared_ptr<const Body> AccelBuilder::cached(const Key& key, const Sign& sig
   return entry.body;
 }
 
-// Bodies that the last build did not ask for and whose object is gone; those of parts out of sight stay.
+// Bodies that the last build did not ask for and whose object is gone; those of parts out of sight
+// stay.
 void AccelBuilder::sweep() {
   std::erase_if(bodies_, [&](const auto& entry) {
     const Key& key = entry.first;
-    const bool kept = entry.second.checked == number_ || (key.part && survey.partOf(key.object) != ~0u);
+    const bool kept =
+        entry.second.checked == number_ || (key.part && survey.partOf(key.object) != ~0u);
     return !kept;
   });
 }
@@ -84,7 +88,8 @@ std::shared_ptr<const Body> AccelBuilder::objectBody(uint32_t object, uint32_t o
     const Matrix4d fromKernel = kernelFrame(box.low, box.high), toKernel = inverse(fromKernel);
     BodyBuilder builder(*device_, spheres_, source.geometries.size());
     for (uint32_t g = 0; g < source.geometries.size(); g++)
-      builder.add(source.geometries[g], toKernel * source.geometries[g].matrix, g, maskOf(item, source.geometries[g], override));
+      builder.add(source.geometries[g], toKernel * source.geometries[g].matrix, g,
+                  maskOf(item, source.geometries[g], override));
     const std::shared_ptr<Body> body = builder.finish();
     body->fromKernel = fromKernel;
     return body;
@@ -106,8 +111,9 @@ std::shared_ptr<const Body> AccelBuilder::partBody(uint32_t part, uint32_t overr
   };
   if (override) {
     bool differs = false;
-    forEachBaked(
-        [&](const Item& item, const Object&, const Geometry& g, uint32_t) { differs |= maskOf(item, g, 0) != override; });
+    forEachBaked([&](const Item& item, const Object&, const Geometry& g, uint32_t) {
+      differs |= maskOf(item, g, 0) != override;
+    });
     if (!differs) override = 0;
   }
   const auto sign = [&] {
@@ -133,7 +139,8 @@ std::shared_ptr<const Body> AccelBuilder::partBody(uint32_t part, uint32_t overr
   });
 }
 
-// Everything static, relative to the render origin, with instances of what is there many times. Its entries are records.
+// Everything static, relative to the render origin, with instances of what is there many times. Its
+// entries are records.
 std::shared_ptr<const Body> AccelBuilder::staticBody() {
   const ScenePart& source = in_->flat.parts[0];
   const PartInfo& info = survey.parts()[0];
@@ -163,7 +170,8 @@ std::shared_ptr<const Body> AccelBuilder::staticBody() {
   }
   for (size_t k = 0; k < heavy.size(); k++) {
     const uint32_t i = info.heavyItems[k];
-    builder.addInstance(heavy[k], toKernel * source.items[i].matrix * heavy[k]->fromKernel, info.firstEntry[i]);
+    builder.addInstance(heavy[k], toKernel * source.items[i].matrix * heavy[k]->fromKernel,
+                        info.firstEntry[i]);
   }
   static_ = {signature, builder.finish(), number_};
   if (!source.items.empty()) objectBuilds++;

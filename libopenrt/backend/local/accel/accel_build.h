@@ -1,7 +1,8 @@
-// accel_build.h: keeps an Accel in step with the scene. What Embree scenes hold is cached under a signature of everything that
-// goes into them: after any edit those whose signature is unchanged are used again. Moves of clusters and redefinitions of
-// dynamic objects change the Accel in place; everything else makes a new one out of cached bodies. Either way the result is what
-// a first build of the same scene gives. Application thread, between frames.
+// accel_build.h: keeps an Accel in step with the scene. What Embree scenes hold is cached under a
+// signature of everything that goes into them: after any edit those whose signature is unchanged
+// are used again. Moves of clusters and redefinitions of dynamic objects change the Accel in place;
+// everything else makes a new one out of cached bodies. Either way the result is what a first build
+// of the same scene gives. Application thread, between frames.
 #pragma once
 
 #include <map>
@@ -25,15 +26,16 @@ struct BuildInput {
 
 class AccelBuilder {
  public:
-  explicit AccelBuilder(std::shared_ptr<EmbreeDevice> device) : device_(std::move(device)), spheres_(*device_) {}
+  explicit AccelBuilder(std::shared_ptr<EmbreeDevice> device)
+      : device_(std::move(device)), spheres_(*device_) {}
 
   Survey survey; // of the scene as of the last build or update
 
   std::shared_ptr<Accel> build(const BuildInput& input);
-  // clusters: those that were placed anew, ascending; objects: redefined ones, which the survey has taken. thin: the camera's
-  // pixels changed.
-  void update(Accel& accel, const BuildInput& input, const std::vector<uint32_t>& clusters, const std::vector<uint32_t>& objects,
-              bool thin);
+  // clusters: those that were placed anew, ascending; objects: redefined ones, which the survey has
+  // taken. thin: the camera's pixels changed.
+  void update(Accel& accel, const BuildInput& input, const std::vector<uint32_t>& clusters,
+              const std::vector<uint32_t>& objects, bool thin);
   // Whether an Accel stands at this origin and scale.
   static bool standsAt(const Accel& accel, const Vec3d& origin, double scale);
 
@@ -53,7 +55,8 @@ class AccelBuilder {
     std::shared_ptr<const Body> body;
     uint64_t checked = 0; // the build or update that last asked for it
   };
-  struct Key { // of a body: its object, whether it is the part rooted there or the object alone, and the mask of an override
+  struct Key { // of a body: its object, whether it is the part rooted there or the object alone,
+               // and the mask of an override
     uint32_t object = 0;
     bool part = false;
     uint32_t mask = 0;
@@ -67,7 +70,8 @@ class AccelBuilder {
   std::shared_ptr<const Body> staticBody();
   std::shared_ptr<const Body> partBody(uint32_t part, uint32_t override);
   std::shared_ptr<const Body> objectBody(uint32_t object, uint32_t override);
-  template <class Sign, class Make> std::shared_ptr<const Body> cached(const Key& key, const Sign& signature, const Make& make);
+  template <class Sign, class Make>
+  std::shared_ptr<const Body> cached(const Key& key, const Sign& signature, const Make& make);
   void sweep();
 
   // Clusters. (accel_clusters.cpp)
@@ -75,7 +79,8 @@ class AccelBuilder {
   void layOut();
   void place(uint32_t cluster);
   void placeInstances(uint32_t cluster);
-  bool placeInstance(uint32_t slot, std::shared_ptr<const Body> body, uint32_t record, const Matrix4d& toRender);
+  bool placeInstance(uint32_t slot, std::shared_ptr<const Body> body, uint32_t record,
+                     const Matrix4d& toRender);
   void placeThin(uint32_t cluster);
   void hide(uint32_t cluster);
   void finish();

@@ -1,5 +1,6 @@
-// accel_clusters.cpp: the top level: which slots (Embree geometry ids) a cluster has, and what stands in them. Slots follow from
-// the scene alone, never from the order of edits. A cluster that was never seen costs no acceleration structure.
+// accel_clusters.cpp: the top level: which slots (Embree geometry ids) a cluster has, and what
+// stands in them. Slots follow from the scene alone, never from the order of edits. A cluster that
+// was never seen costs no acceleration structure.
 #include <algorithm>
 
 #include "backend/local/accel/accel_build.h"
@@ -7,7 +8,8 @@
 namespace openrt {
 namespace {
 
-// In this order: what is baked, heavy items, ellipsoids, lines, points. The static scene has the first three elsewhere.
+// In this order: what is baked, heavy items, ellipsoids, lines, points. The static scene has the
+// first three elsewhere.
 struct Slots {
   uint32_t heavy, ellipsoids, lines, points, end; // where they begin
   Slots(const PartInfo& part, bool root) {
@@ -31,8 +33,8 @@ void AccelBuilder::begin(Accel& accel, const BuildInput& input) {
 }
 
 bool AccelBuilder::standsAt(const Accel& accel, const Vec3d& origin, double scale) {
-  return accel.origin_.x == origin.x && accel.origin_.y == origin.y && accel.origin_.z == origin.z &&
-         accel.scale_ == float(scale);
+  return accel.origin_.x == origin.x && accel.origin_.y == origin.y &&
+         accel.origin_.z == origin.z && accel.scale_ == float(scale);
 }
 
 std::shared_ptr<Accel> AccelBuilder::build(const BuildInput& input) {
@@ -44,7 +46,8 @@ std::shared_ptr<Accel> AccelBuilder::build(const BuildInput& input) {
   buckets_.clear();
   layOut();
   accel->static_ = staticBody();
-  accel->staticLevel_ = {accel->static_.get(), accel->static_->parts.empty() ? 0u : maskOpaque | maskTransparent,
+  accel->staticLevel_ = {accel->static_.get(),
+                         accel->static_->parts.empty() ? 0u : maskOpaque | maskTransparent,
                          accel->static_->instances};
   for (uint32_t c = 0; c < input.flat.clusters.size(); c++) place(c);
   if (accel->buckets.empty()) accel->buckets.push_back({input.shaders[0].shaderClass, 0});
@@ -54,7 +57,8 @@ std::shared_ptr<Accel> AccelBuilder::build(const BuildInput& input) {
   return accel;
 }
 
-void AccelBuilder::update(Accel& accel, const BuildInput& input, const std::vector<uint32_t>& clusters,
+void AccelBuilder::update(Accel& accel, const BuildInput& input,
+                          const std::vector<uint32_t>& clusters,
                           const std::vector<uint32_t>& objects, bool thin) {
   begin(accel, input);
   std::vector<uint32_t> all = clusters;
@@ -108,7 +112,8 @@ void AccelBuilder::hide(uint32_t c) {
   const PartInfo& part = survey.parts()[in_->flat.clusters[c].part];
   const Slots slots(part, in_->flat.clusters[c].part == 0);
   for (uint32_t s = 0; s < slots.lines; s++)
-    if (accel_->top_.parts[placed.firstSlot + s]) setEnabled(accel_->top_, placed.firstSlot + s, false);
+    if (accel_->top_.parts[placed.firstSlot + s])
+      setEnabled(accel_->top_, placed.firstSlot + s, false);
   for (uint32_t s = slots.lines; s < slots.end; s++) detach(accel_->top_, placed.firstSlot + s);
   placed.shown = placed.instances = placed.transparent = false;
   placed.rejected = 0;
@@ -132,20 +137,22 @@ void AccelBuilder::placeInstances(uint32_t c) {
   for (uint32_t i : info.heavyItems) {
     const Item& item = part.items[i];
     const auto body = objectBody(item.object, override ? override : overrideMask(item.path.shader));
-    any |= placeInstance(slot++, body, placed.firstRecord + info.firstEntry[i], partToRender * item.matrix * body->fromKernel);
+    any |= placeInstance(slot++, body, placed.firstRecord + info.firstEntry[i],
+                         partToRender * item.matrix * body->fromKernel);
   }
   for (const auto& [i, k] : info.ellipsoids) {
     const Item& item = part.items[i];
     const Geometry& g = in_->scene.objects.at(item.object).geometries[k];
-    any |=
-        placeInstance(slot++, consistent(g) ? spheres_.get(maskOf(item, g, override)) : nullptr,
-                      placed.firstRecord + info.firstEntry[i] + k, partToRender * item.matrix * g.matrix * uniformScale(g.width));
+    any |= placeInstance(slot++, consistent(g) ? spheres_.get(maskOf(item, g, override)) : nullptr,
+                         placed.firstRecord + info.firstEntry[i] + k,
+                         partToRender * item.matrix * g.matrix * uniformScale(g.width));
   }
   placed.instances = any;
 }
 
 // Whether it can be seen.
-bool AccelBuilder::placeInstance(uint32_t slot, std::shared_ptr<const Body> body, uint32_t record, const Matrix4d& toRender) {
+bool AccelBuilder::placeInstance(uint32_t slot, std::shared_ptr<const Body> body, uint32_t record,
+                                 const Matrix4d& toRender) {
   PartScene& top = accel_->top_;
   const Matrix4d toRoot = uniformScale(in_->scale) * toRender;
   changed_ = true;
@@ -179,8 +186,8 @@ void AccelBuilder::placeThin(uint32_t c) {
     for (uint32_t k = 0; k < geometries.size(); k++)
       if (info.drawn[info.firstEntry[i] + k] == DrawnAs::thin)
         addThin(geometries[k].primitive == edit::Primitive::Lines ? *lines : *points, geometries[k],
-                toKernel * part.items[i].matrix * geometries[k].matrix, placed.firstRecord + info.firstEntry[i] + k,
-                in_->footprint, accel_->scale_);
+                toKernel * part.items[i].matrix * geometries[k].matrix,
+                placed.firstRecord + info.firstEntry[i] + k, in_->footprint, accel_->scale_);
   }
   const auto put = [&](std::unique_ptr<Part> made, uint32_t slot, RTCGeometryType type) {
     if (made->vertices.empty())
@@ -188,8 +195,10 @@ void AccelBuilder::placeThin(uint32_t c) {
     else
       attachRound(accel_->top_, *device_, std::move(made), maskThin, type, slot);
   };
-  if (info.lines) put(std::move(lines), placed.firstSlot + slots.lines, RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE);
-  if (info.points) put(std::move(points), placed.firstSlot + slots.points, RTC_GEOMETRY_TYPE_SPHERE_POINT);
+  if (info.lines)
+    put(std::move(lines), placed.firstSlot + slots.lines, RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE);
+  if (info.points)
+    put(std::move(points), placed.firstSlot + slots.points, RTC_GEOMETRY_TYPE_SPHERE_POINT);
   changed_ = true;
 }
 
@@ -229,7 +238,8 @@ AccelBuilder::Counts AccelBuilder::count(const Accel& accel, const Flattened& fl
     counts.rejectedInstances += accel.placed_[c].rejected;
   }
   counts.degenerate = static_.body ? static_.body->degenerate : 0;
-  for (const auto& [key, entry] : bodies_) counts.degenerate += entry.body ? entry.body->degenerate : 0;
+  for (const auto& [key, entry] : bodies_)
+    counts.degenerate += entry.body ? entry.body->degenerate : 0;
   return counts;
 }
 

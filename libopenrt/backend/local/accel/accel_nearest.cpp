@@ -1,5 +1,6 @@
-// accel_nearest.cpp: the surface point next to a place: Embree finds the primitives whose boxes are near enough, each is measured
-// here in double precision, in render space. Called by the threads of a query.
+// accel_nearest.cpp: the surface point next to a place: Embree finds the primitives whose boxes are
+// near enough, each is measured here in double precision, in render space. Called by the threads of
+// a query.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,7 +14,8 @@ namespace {
 
 using Weights = std::array<double, 3>;
 
-// C. Ericson: Real-Time Collision Detection (2005), 5.1.5: weights of the corners at the triangle's point next to p.
+// C. Ericson: Real-Time Collision Detection (2005), 5.1.5: weights of the corners at the triangle's
+// point next to p.
 Weights closestOnTriangle(const Vec3d& p, const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   const Vec3d ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
   const double d1 = dot(ab, ap), d2 = dot(ac, ap);
@@ -45,7 +47,8 @@ void eigen(double a[3][3], double v[3][3]) {
       for (int q = p + 1; q < 3; q++) {
         if (a[p][q] == 0) continue;
         const double theta = (a[q][q] - a[p][p]) / (2 * a[p][q]);
-        const double t = std::copysign(1, theta) / (std::fabs(theta) + std::sqrt(theta * theta + 1));
+        const double t =
+            std::copysign(1, theta) / (std::fabs(theta) + std::sqrt(theta * theta + 1));
         const double c = 1 / std::sqrt(t * t + 1), s = t * c;
         for (int k = 0; k < 3; k++) {
           const double x = a[k][p], y = a[k][q];
@@ -65,8 +68,9 @@ void eigen(double a[3][3], double v[3][3]) {
       }
 }
 
-// The unit vector s that brings m s (m: the linear part of an ellipsoid's map) next to p: (G + l) s = b with G = m'm, b = m'p and
-// the one l for which |s| = 1 and G + l is positive (J. More, D. Sorensen: Computing a trust region step, 1983).
+// The unit vector s that brings m s (m: the linear part of an ellipsoid's map) next to p: (G + l) s
+// = b with G = m'm, b = m'p and the one l for which |s| = 1 and G + l is positive (J. More, D.
+// Sorensen: Computing a trust region step, 1983).
 Vec3d closestOnEllipsoid(const Affine& map, const double p[3]) {
   double g[3][3], v[3][3], b[3], y[3];
   for (int i = 0; i < 3; i++)
@@ -113,7 +117,8 @@ Vec3d closestOnEllipsoid(const Affine& map, const double p[3]) {
 Vec3d moved(const Affine& m, const Vec3d& p) {
   const double v[3] = {p.x, p.y, p.z};
   double out[3];
-  for (int i = 0; i < 3; i++) out[i] = m.r[i][0] * v[0] + m.r[i][1] * v[1] + m.r[i][2] * v[2] + m.r[i][3];
+  for (int i = 0; i < 3; i++)
+    out[i] = m.r[i][0] * v[0] + m.r[i][1] * v[1] + m.r[i][2] * v[2] + m.r[i][3];
   return {out[0], out[1], out[2]};
 }
 
@@ -128,8 +133,10 @@ struct Accel::PointSearch {
 
 bool Accel::visitNear(RTCPointQueryFunctionArguments* a) {
   const PointSearch& search = *static_cast<const PointSearch*>(a->userPtr);
-  const uint32_t instance = a->context->instStackSize > 0 ? a->context->instID[0] : RTC_INVALID_GEOMETRY_ID;
-  if (!search.accel->measure(find(*search.level->scene, instance, a->geomID, a->primID), search.place, *search.best))
+  const uint32_t instance =
+      a->context->instStackSize > 0 ? a->context->instID[0] : RTC_INVALID_GEOMETRY_ID;
+  if (!search.accel->measure(find(*search.level->scene, instance, a->geomID, a->primID),
+                             search.place, *search.best))
     return false;
   const double reach = search.best->distance * search.accel->scale_ * (1 + 1e-6);
   if (!(reach < a->query->radius)) return false;
@@ -143,7 +150,8 @@ bool Accel::measure(const Found& found, const Vec3d& p, Nearest& best) const {
   Vec3d at, normal;
   double u = 0, v = 0;
   if (r.primitive == edit::Primitive::Sphere) {
-    const double from[3] = {p.x - r.toRender.r[0][3], p.y - r.toRender.r[1][3], p.z - r.toRender.r[2][3]};
+    const double from[3] = {p.x - r.toRender.r[0][3], p.y - r.toRender.r[1][3],
+                            p.z - r.toRender.r[2][3]};
     const Vec3d s = closestOnEllipsoid(r.toRender, from);
     at = moved(r.toRender, s);
     const double n[3] = {s.x, s.y, s.z};
@@ -154,7 +162,8 @@ bool Accel::measure(const Found& found, const Vec3d& p, Nearest& best) const {
   } else if (r.primitive == edit::Primitive::Triangles) {
     Vec3d corner[3];
     for (int k = 0; k < 3; k++) {
-      const float* vertex = r.vertices + 3 * size_t(r.indices[3 * size_t(found.primitive) + size_t(k)]);
+      const float* vertex =
+          r.vertices + 3 * size_t(r.indices[3 * size_t(found.primitive) + size_t(k)]);
       corner[k] = {vertex[0], vertex[1], vertex[2]};
     }
     normal = cross(corner[1] - corner[0], corner[2] - corner[0]); // of the kernel's frame
@@ -175,11 +184,18 @@ bool Accel::measure(const Found& found, const Vec3d& p, Nearest& best) const {
   }
   const double distance = length(at - p);
   if (!(distance <= best.distance)) return false;
-  if (distance == best.distance && std::tuple(found.record, found.primitive) >= std::tuple(best.record, best.primitive))
+  if (distance == best.distance &&
+      std::tuple(found.record, found.primitive) >= std::tuple(best.record, best.primitive))
     return false;
   const double l = length(normal);
   normal = l > 0 ? normal * (1 / l) : Vec3d{};
-  best = {found.record, found.primitive, distance, {at.x, at.y, at.z}, {normal.x, normal.y, normal.z}, u, v};
+  best = {found.record,
+          found.primitive,
+          distance,
+          {at.x, at.y, at.z},
+          {normal.x, normal.y, normal.z},
+          u,
+          v};
   return true;
 }
 
@@ -194,7 +210,8 @@ std::vector<uint32_t> Accel::spheres() const {
   return out;
 }
 
-bool Accel::nearest(const double place[3], double distance, std::span<const uint32_t> round, Nearest& out) const {
+bool Accel::nearest(const double place[3], double distance, std::span<const uint32_t> round,
+                    Nearest& out) const {
   const float p[3] = {float(place[0] * scale_), float(place[1] * scale_), float(place[2] * scale_)};
   for (const float c : p)
     if (!(std::fabs(c) <= 1e18f)) return false;
@@ -209,12 +226,14 @@ bool Accel::nearest(const double place[3], double distance, std::span<const uint
     query.y = p[1];
     query.z = p[2];
     query.time = 0;
-    query.radius = float(std::min(out.distance * scale_ * (1 + 1e-6), double(std::numeric_limits<float>::infinity())));
+    query.radius = float(std::min(out.distance * scale_ * (1 + 1e-6),
+                                  double(std::numeric_limits<float>::infinity())));
     RTCPointQueryContext context;
     rtcInitPointQueryContext(&context);
     rtcPointQuery(level->scene->scene, &query, &context, visitNear, &search);
   }
-  for (const uint32_t record : round) measure({record, 0}, {place[0], place[1], place[2]}, out); // Embree has no queries for them
+  for (const uint32_t record : round)
+    measure({record, 0}, {place[0], place[1], place[2]}, out); // Embree has no queries for them
   return out.record != noHit;
 }
 

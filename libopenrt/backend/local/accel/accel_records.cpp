@@ -1,4 +1,5 @@
-// accel_records.cpp: records of clusters: what shading needs to know of each geometry where it stands.
+// accel_records.cpp: records of clusters: what shading needs to know of each geometry where it
+// stands.
 #include <algorithm>
 #include <cmath>
 
@@ -14,7 +15,8 @@ void normalMatrixOf(const Matrix4d& m, float out[3][3]) {
   const Vec3d a = m.column(0), b = m.column(1), c = m.column(2);
   const Vec3d r[3] = {cross(b, c), cross(c, a), cross(a, b)}; // columns of the cofactor matrix
   double largest = 0;
-  for (const Vec3d& v : r) largest = std::max({largest, std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
+  for (const Vec3d& v : r)
+    largest = std::max({largest, std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
   const double s = (m.determinant() < 0 ? -1 : 1) / (largest > 0 ? largest : 1);
   for (int j = 0; j < 3; j++) {
     out[0][j] = float(r[j].x * s);
@@ -30,7 +32,8 @@ void setInstance(Record& r, const Matrix4d& kernelToRender) {
 }
 
 bool flipped(const Geometry& g, const Matrix4d& asTheKernelSeesIt) {
-  return g.primitive == edit::Primitive::Triangles && g.clockwise != (asTheKernelSeesIt.determinant() < 0);
+  return g.primitive == edit::Primitive::Triangles &&
+         g.clockwise != (asTheKernelSeesIt.determinant() < 0);
 }
 
 } // namespace
@@ -42,14 +45,19 @@ uint32_t AccelBuilder::bucketOf(uint32_t slot, uint32_t lightSet) {
   return found->second;
 }
 
-// Whether the values that a geometry has for parameters hold where it is drawn: with a shader of the class that they are of.
+// Whether the values that a geometry has for parameters hold where it is drawn: with a shader of
+// the class that they are of.
 bool AccelBuilder::carriesParameters(const Geometry& g, uint32_t slot) const {
   const uint32_t own = in_->shaders.slotOf(g.shader);
-  if (g.parameters.empty() || own == 0 || in_->shaders[own].shaderClass != in_->shaders[slot].shaderClass) return false;
+  if (g.parameters.empty() || own == 0 ||
+      in_->shaders[own].shaderClass != in_->shaders[slot].shaderClass)
+    return false;
   const RtsClass& table = *in_->shaders[own].shaderClass;
   return std::all_of(g.parameters.begin(), g.parameters.end(), [&](const GeometryParameter& p) {
-    const size_t count = p.perVertex ? (g.points ? g.points->count<float>() / 3 : 0) : g.primitives();
-    const size_t floats = p.index < table.paramCount ? parameterFloats(table.params[p.index].type) : 0;
+    const size_t count =
+        p.perVertex ? (g.points ? g.points->count<float>() / 3 : 0) : g.primitives();
+    const size_t floats =
+        p.index < table.paramCount ? parameterFloats(table.params[p.index].type) : 0;
     return floats > 0 && p.values && p.values->count<float>() >= count * floats;
   });
 }
@@ -86,7 +94,8 @@ void AccelBuilder::writeRecords(uint32_t c) {
   Accel::Placed& placed = accel_->placed_[c];
   const bool root = cluster.part == 0;
   const Matrix4d partToRender = worldToRender_ * cluster.world;
-  const std::shared_ptr<const Body> body = root ? accel_->static_ : partBody(cluster.part, overrideMask(cluster.path.shader));
+  const std::shared_ptr<const Body> body =
+      root ? accel_->static_ : partBody(cluster.part, overrideMask(cluster.path.shader));
   placed.transparent = false;
   placed.rejected = 0;
   for (uint32_t i = 0; i < part.items.size(); i++) {
@@ -96,7 +105,8 @@ void AccelBuilder::writeRecords(uint32_t c) {
     const Matrix4d itemToRender = partToRender * item.matrix;
     placed.rejected += !itemToRender.usable();
     std::shared_ptr<const Body> heavy;
-    if (info.drawn[info.firstEntry[i]] == DrawnAs::heavy) heavy = objectBody(item.object, overrideMask(path.shader));
+    if (info.drawn[info.firstEntry[i]] == DrawnAs::heavy)
+      heavy = objectBody(item.object, overrideMask(path.shader));
     for (uint32_t k = 0; k < geometries.size(); k++) {
       const Geometry& g = geometries[k];
       const uint32_t entry = info.firstEntry[i] + k;
@@ -109,7 +119,8 @@ void AccelBuilder::writeRecords(uint32_t c) {
       case DrawnAs::baked:
         if (!root)
           setInstance(r, partToRender * body->fromKernel);
-        else if (sphere && !similarity(uniformScale(in_->scale) * toRender) && !isHugeSphere(uniformScale(in_->scale) * unit))
+        else if (sphere && !similarity(uniformScale(in_->scale) * toRender) &&
+                 !isHugeSphere(uniformScale(in_->scale) * unit))
           setInstance(r, unit); // it is an instance even so
         r.flip = flipped(g, root ? toRender : item.matrix * g.matrix);
         r.vertices = body->vertices[entry];

@@ -1,5 +1,5 @@
-// accel_trace.cpp: rays in, hits out. Every ray is checked before Embree sees it: a build with assertions would end the
-// process on one that is not finite.
+// accel_trace.cpp: rays in, hits out. Every ray is checked before Embree sees it: a build with
+// assertions would end the process on one that is not finite.
 #include <cmath>
 #include <limits>
 
@@ -34,14 +34,14 @@ void settleGrazing(const Record& r, const Rays& rays, float far, RayHits& hits, 
     normalToRender(r, k, n);
   }
   if (!grazes(n, d)) return;
-  settle(r, hits.primitive[lane], {rays.org[0][lane], rays.org[1][lane], rays.org[2][lane]}, {d[0], d[1], d[2]}, rays.tnear[lane],
-         far, hits.t[lane], hits.u[lane], hits.v[lane]);
+  settle(r, hits.primitive[lane], {rays.org[0][lane], rays.org[1][lane], rays.org[2][lane]},
+         {d[0], d[1], d[2]}, rays.tnear[lane], far, hits.t[lane], hits.u[lane], hits.v[lane]);
 }
 
-// Fills a packet from lane `first` on; returns how many of its rays were refused. Refused and absent rays are made harmless.
-// ends: where the rays end, from that lane on.
-template <uint32_t W, class Ray>
-uint32_t load(const Rays& rays, const float* ends, uint32_t first, float scale, uint32_t mask, int* valid, Ray& to) {
+// Fills a packet from lane `first` on; returns how many of its rays were refused. Refused and
+// absent rays are made harmless. ends: where the rays end, from that lane on.
+template <uint32_t W, class Ray> uint32_t load(const Rays& rays, const float* ends, uint32_t first,
+                                               float scale, uint32_t mask, int* valid, Ray& to) {
   const float limit = 1e18f / scale;
   uint32_t refused = 0;
   for (uint32_t i = 0; i < W; i++) {
@@ -49,10 +49,11 @@ uint32_t load(const Rays& rays, const float* ends, uint32_t first, float scale, 
     const float ox = rays.org[0][lane], oy = rays.org[1][lane], oz = rays.org[2][lane];
     const float dx = rays.dir[0][lane], dy = rays.dir[1][lane], dz = rays.dir[2][lane];
     const float near = rays.tnear[lane], far = ends[i];
-    const float ax = std::fabs(ox), ay = std::fabs(oy), az = std::fabs(oz), d = std::fabs(dx) + std::fabs(dy) + std::fabs(dz);
+    const float ax = std::fabs(ox), ay = std::fabs(oy), az = std::fabs(oz),
+                d = std::fabs(dx) + std::fabs(dy) + std::fabs(dz);
     // Comparisons are false for NaN: whatever is not a number is refused.
-    const bool good = (ax <= limit) & (ay <= limit) & (az <= limit) & (d > 0) & (d <= 1e18f) & (near >= 0) & (near <= far) &
-                      (near < std::numeric_limits<float>::infinity());
+    const bool good = (ax <= limit) & (ay <= limit) & (az <= limit) & (d > 0) & (d <= 1e18f) &
+                      (near >= 0) & (near <= far) & (near < std::numeric_limits<float>::infinity());
     const bool present = lane < rays.count;
     refused += present & !good;
     valid[i] = (present & good) ? -1 : 0;
@@ -74,7 +75,8 @@ uint32_t load(const Rays& rays, const float* ends, uint32_t first, float scale, 
 
 } // namespace
 
-Accel::Found Accel::find(const PartScene& root, uint32_t instance, uint32_t geometry, uint32_t primitive) {
+Accel::Found Accel::find(const PartScene& root, uint32_t instance, uint32_t geometry,
+                         uint32_t primitive) {
   uint32_t base = 0;
   const PartScene* scene = &root;
   if (instance != RTC_INVALID_GEOMETRY_ID) {
@@ -88,14 +90,17 @@ Accel::Found Accel::find(const PartScene& root, uint32_t instance, uint32_t geom
 }
 
 Accel::Found Accel::foundBy(const RTCFilterFunctionNArguments* a, unsigned i) {
-  const Filtered& self = *static_cast<const Filtered*>(static_cast<const QueryContext*>(a->context)->user);
-  return find(*self.level->scene, RTCHitN_instID(a->hit, a->N, i, 0), RTCHitN_geomID(a->hit, a->N, i),
-              RTCHitN_primID(a->hit, a->N, i));
+  const Filtered& self =
+      *static_cast<const Filtered*>(static_cast<const QueryContext*>(a->context)->user);
+  return find(*self.level->scene, RTCHitN_instID(a->hit, a->N, i, 0),
+              RTCHitN_geomID(a->hit, a->N, i), RTCHitN_primID(a->hit, a->N, i));
 }
 
-// Ray and normal are both in the frame of the instance that is being met, if any: the sign of their product is the same in all.
+// Ray and normal are both in the frame of the instance that is being met, if any: the sign of their
+// product is the same in all.
 void Accel::rejectBacks(const RTCFilterFunctionNArguments* a) {
-  const Filtered& self = *static_cast<const Filtered*>(static_cast<const QueryContext*>(a->context)->user);
+  const Filtered& self =
+      *static_cast<const Filtered*>(static_cast<const QueryContext*>(a->context)->user);
   for (unsigned i = 0; i < a->N; i++) {
     if (a->valid[i] != -1) continue;
     const Record& r = self.accel->records[foundBy(a, i).record];
@@ -108,14 +113,17 @@ void Accel::rejectBacks(const RTCFilterFunctionNArguments* a) {
 }
 
 void Accel::rejectRecord(const RTCFilterFunctionNArguments* a) {
-  const Filtered& self = *static_cast<const Filtered*>(static_cast<const QueryContext*>(a->context)->user);
+  const Filtered& self =
+      *static_cast<const Filtered*>(static_cast<const QueryContext*>(a->context)->user);
   for (unsigned i = 0; i < a->N; i++)
-    if (a->valid[i] == -1 && foundBy(a, i).record == self.record[RTCRayN_id(a->ray, a->N, i)]) a->valid[i] = 0;
+    if (a->valid[i] == -1 && foundBy(a, i).record == self.record[RTCRayN_id(a->ray, a->N, i)])
+      a->valid[i] = 0;
 }
 
 // first: the hits are written; else they hold what the other level found, which ends the rays.
-template <class Packet> void Accel::intersectPackets(const Level& level, const Rays& rays, uint32_t mask,
-                                                     const QueryOptions& options, bool first, RayHits& hits) const {
+template <class Packet> void Accel::intersectPackets(const Level& level, const Rays& rays,
+                                                     uint32_t mask, const QueryOptions& options,
+                                                     bool first, RayHits& hits) const {
   constexpr uint32_t W = Packet::width;
   alignas(64) int valid[W];
   alignas(64) typename Packet::RayHit packet;
@@ -126,9 +134,11 @@ template <class Packet> void Accel::intersectPackets(const Level& level, const R
     const uint32_t n = std::min(W, rays.count - begin);
     if (!first)
       for (uint32_t i = 0; i < n; i++) ends[i] = std::min(rays.tfar[begin + i], hits.t[begin + i]);
-    const uint32_t bad = load<W>(rays, first ? rays.tfar + begin : ends, begin, scale_, mask, valid, packet.ray);
+    const uint32_t bad =
+        load<W>(rays, first ? rays.tfar + begin : ends, begin, scale_, mask, valid, packet.ray);
     if (first) refused += bad;
-    for (uint32_t i = 0; i < W; i++) packet.hit.geomID[i] = packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+    for (uint32_t i = 0; i < W; i++)
+      packet.hit.geomID[i] = packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
     Query query(options);
     Packet::intersect(level.scene->scene, valid, packet, query);
     for (uint32_t i = 0; i < n; i++) {
@@ -139,7 +149,8 @@ template <class Packet> void Accel::intersectPackets(const Level& level, const R
         hits.t[lane] = std::numeric_limits<float>::infinity();
         continue;
       }
-      const Found found = find(*level.scene, packet.hit.instID[0][i], packet.hit.geomID[i], packet.hit.primID[i]);
+      const Found found =
+          find(*level.scene, packet.hit.instID[0][i], packet.hit.geomID[i], packet.hit.primID[i]);
       hits.record[lane] = found.record;
       hits.primitive[lane] = found.primitive;
       hits.t[lane] = packet.ray.tfar[i] * unscale;
@@ -154,8 +165,9 @@ template <class Packet> void Accel::intersectPackets(const Level& level, const R
   if (refused) rejectedRays += refused;
 }
 
-template <class Packet> void Accel::occludedPackets(const Level& level, const Rays& rays, uint32_t mask, bool coherent,
-                                                    bool first, uint8_t* blocked) const {
+template <class Packet> void Accel::occludedPackets(const Level& level, const Rays& rays,
+                                                    uint32_t mask, bool coherent, bool first,
+                                                    uint8_t* blocked) const {
   constexpr uint32_t W = Packet::width;
   alignas(64) int valid[W];
   alignas(64) typename Packet::Ray packet;
@@ -176,15 +188,16 @@ template <class Packet> void Accel::occludedPackets(const Level& level, const Ra
   if (refused) rejectedRays += refused;
 }
 
-void Accel::intersectLevel(const Level& level, const Rays& rays, uint32_t mask, bool coherent, bool first, RayHits& hits) const {
+void Accel::intersectLevel(const Level& level, const Rays& rays, uint32_t mask, bool coherent,
+                           bool first, RayHits& hits) const {
   if (device_->wide && !level.instances)
     intersectPackets<Packet16>(level, rays, mask, {coherent}, first, hits);
   else
     intersectPackets<Packet8>(level, rays, mask, {coherent && !level.instances}, first, hits);
 }
 
-void Accel::occludedLevel(const Level& level, const Rays& rays, uint32_t mask, bool coherent, bool first,
-                          uint8_t* blocked) const {
+void Accel::occludedLevel(const Level& level, const Rays& rays, uint32_t mask, bool coherent,
+                          bool first, uint8_t* blocked) const {
   if (device_->wide && !level.instances)
     occludedPackets<Packet16>(level, rays, mask, coherent, first, blocked);
   else
@@ -198,7 +211,8 @@ void Accel::intersect(const Rays& rays, uint32_t mask, Coherence coherence, RayH
   if (top) intersectLevel(topLevel_, rays, mask, coherent, !first, hits);
 }
 
-void Accel::intersectFiltered(const Rays& rays, uint32_t mask, RTCFilterFunctionN filter, const uint32_t* record, RayHits& hits,
+void Accel::intersectFiltered(const Rays& rays, uint32_t mask, RTCFilterFunctionN filter,
+                              const uint32_t* record, RayHits& hits,
                               std::vector<Passed>* all) const {
   bool first = true;
   for (const Level* level : {&staticLevel_, &topLevel_}) {

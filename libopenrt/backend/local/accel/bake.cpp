@@ -1,4 +1,5 @@
-// bake.cpp: see bake.h. Large arrays are worked on in parallel; every element is independent, so the result is the same.
+// bake.cpp: Large arrays are worked on in parallel; every element is independent, so
+// the result is the same.
 #include "backend/local/accel/bake.h"
 
 #include <tbb/blocked_range.h>
@@ -20,8 +21,8 @@ void Box::add(const Vec3d& p) {
 void Box::add(const Box& box, const Matrix4d& matrix) {
   if (box.empty()) return;
   for (int corner = 0; corner < 8; corner++)
-    add(matrix.point(
-        {corner & 1 ? box.high.x : box.low.x, corner & 2 ? box.high.y : box.low.y, corner & 4 ? box.high.z : box.low.z}));
+    add(matrix.point({corner & 1 ? box.high.x : box.low.x, corner & 2 ? box.high.y : box.low.y,
+                      corner & 4 ? box.high.z : box.low.z}));
 }
 
 Box boundsOf(const Geometry& geometry) {
@@ -52,7 +53,8 @@ bool consistent(const Geometry& g) {
   if (g.primitive == edit::Primitive::Sphere) return g.width > 0 && std::isfinite(g.width);
   if (!g.points || !g.indices) return false;
   const size_t n = g.points->count<float>() / 3;
-  if ((g.normals && g.normals->count<float>() < 3 * n) || (g.texCoords && g.texCoords->count<float>() < 2 * n) ||
+  if ((g.normals && g.normals->count<float>() < 3 * n) ||
+      (g.texCoords && g.texCoords->count<float>() < 2 * n) ||
       (g.colors && g.colors->count<float>() < 4 * n))
     return false;
   const uint32_t* index = g.indices->as<uint32_t>();
@@ -69,7 +71,8 @@ std::vector<float> bakePoints(const Geometry& geometry, const Matrix4d& m) {
   tbb::parallel_for(tbb::blocked_range<size_t>(0, n, 16384), [&](const auto& range) {
     for (size_t i = range.begin(); i < range.end(); i++) {
       const double x = p[3 * i], y = p[3 * i + 1], z = p[3 * i + 2];
-      for (int k = 0; k < 3; k++) out[3 * i + k] = float(m.m[k] * x + m.m[4 + k] * y + m.m[8 + k] * z + m.m[12 + k]);
+      for (int k = 0; k < 3; k++)
+        out[3 * i + k] = float(m.m[k] * x + m.m[4 + k] * y + m.m[8 + k] * z + m.m[12 + k]);
     }
   });
   return out;
@@ -82,7 +85,8 @@ BakedTriangles bakeTriangles(const Geometry& geometry, const Matrix4d& toKernel)
   const size_t count = geometry.primitives();
   const auto shape = [&](size_t t) {
     const float* v = out.vertices.data();
-    return shapeOf(v + 3 * size_t(index[3 * t]), v + 3 * size_t(index[3 * t + 1]), v + 3 * size_t(index[3 * t + 2]));
+    return shapeOf(v + 3 * size_t(index[3 * t]), v + 3 * size_t(index[3 * t + 1]),
+                   v + 3 * size_t(index[3 * t + 2]));
   };
   std::atomic<bool> clean{true};
   tbb::parallel_for(tbb::blocked_range<size_t>(0, count, 16384), [&](const auto& range) {

@@ -1,6 +1,6 @@
-// bake.h: one placed geometry as the vertex and index arrays that Embree reads: transformed in double, rounded once; checked
-// for what must not reach the kernels (indices out of range, degenerate triangles) and for slivers, which are met in double
-// precision.
+// bake.h: one placed geometry as the vertex and index arrays that Embree reads: transformed in
+// double, rounded once; checked for what must not reach the kernels (indices out of range,
+// degenerate triangles) and for slivers, which are met in double precision.
 #pragma once
 
 #include <vector>
@@ -11,7 +11,8 @@ namespace openrt {
 
 struct BakedTriangles {
   std::vector<float> vertices;    // stride 3
-  std::vector<uint32_t> indices;  // 3 a triangle that is kept in the main list; empty: the geometry's own indices serve
+  std::vector<uint32_t> indices;  // 3 a triangle that is kept in the main list; empty: the
+                                  // geometry's own indices serve
   std::vector<uint32_t> kept;     // original triangle of each kept one, when indices is not empty
   std::vector<uint32_t> slivers;  // original triangles to be met in double precision
   std::vector<uint8_t> openEdges; // of each of these: sliver_edges.h

@@ -1,4 +1,5 @@
-// body.cpp: see body.h. Small geometries share one Embree geometry, large ones have their own; slivers are met in double.
+// body.cpp: Small geometries share one Embree geometry, large ones have their own;
+// slivers are met in double.
 #include "backend/local/accel/body.h"
 
 #include <algorithm>
@@ -11,7 +12,8 @@
 namespace openrt {
 namespace {
 
-constexpr size_t mergeBelow = 4096; // triangles of a geometry that shares an Embree geometry with others
+constexpr size_t mergeBelow =
+    4096; // triangles of a geometry that shares an Embree geometry with others
 constexpr size_t mergedVertices = 8 << 20;
 
 } // namespace
@@ -40,7 +42,8 @@ void BodyBuilder::add(const Geometry& g, const Matrix4d& toKernel, uint32_t entr
   if (g.primitive == edit::Primitive::Sphere) addSphere(g, toKernel, entry, mask);
 }
 
-void BodyBuilder::addInstance(std::shared_ptr<const Body> body, const Matrix4d& toKernel, uint32_t entry) {
+void BodyBuilder::addInstance(std::shared_ptr<const Body> body, const Matrix4d& toKernel,
+                              uint32_t entry) {
   if (!toKernel.usable() || body->parts.empty()) return;
   auto part = std::make_unique<Part>();
   part->record = entry;
@@ -49,7 +52,8 @@ void BodyBuilder::addInstance(std::shared_ptr<const Body> body, const Matrix4d& 
   attachInstance(*body_, device_, std::move(part), toKernel);
 }
 
-void BodyBuilder::addTriangles(const Geometry& g, const Matrix4d& toKernel, uint32_t entry, uint32_t mask) {
+void BodyBuilder::addTriangles(const Geometry& g, const Matrix4d& toKernel, uint32_t entry,
+                               uint32_t mask) {
   BakedTriangles baked = bakeTriangles(g, toKernel);
   body_->degenerate += baked.degenerate;
   const bool whole = baked.indices.empty() && baked.slivers.empty() && baked.degenerate == 0;
@@ -78,10 +82,12 @@ void BodyBuilder::addTriangles(const Geometry& g, const Matrix4d& toKernel, uint
 }
 
 // Triangles of `which` (null: the first count) join the merged geometry of their kind.
-Part& BodyBuilder::merge(const std::vector<float>& vertices, const uint32_t* index, const std::vector<uint32_t>* which,
-                         size_t count, uint32_t entry, uint32_t mask, bool slivers) {
+Part& BodyBuilder::merge(const std::vector<float>& vertices, const uint32_t* index,
+                         const std::vector<uint32_t>* which, size_t count, uint32_t entry,
+                         uint32_t mask, bool slivers) {
   auto& part = merged_[{mask, slivers}];
-  if (part && part->vertices.size() / 3 > mergedVertices) attachTriangles(*body_, device_, std::move(part), mask, slivers);
+  if (part && part->vertices.size() / 3 > mergedVertices)
+    attachTriangles(*body_, device_, std::move(part), mask, slivers);
   if (!part) part = std::make_unique<Part>();
   const uint32_t base = uint32_t(part->vertices.size() / 3);
   part->vertices.insert(part->vertices.end(), vertices.begin(), vertices.end());
@@ -96,7 +102,8 @@ Part& BodyBuilder::merge(const std::vector<float>& vertices, const uint32_t* ind
   return *part;
 }
 
-void BodyBuilder::addSphere(const Geometry& g, const Matrix4d& toKernel, uint32_t entry, uint32_t mask) {
+void BodyBuilder::addSphere(const Geometry& g, const Matrix4d& toKernel, uint32_t entry,
+                            uint32_t mask) {
   const Matrix4d unit = toKernel * uniformScale(g.width);
   if (isHugeSphere(unit)) {
     auto& part = hugeSpheres_[mask];
@@ -135,7 +142,8 @@ std::shared_ptr<Body> BodyBuilder::finish() {
 Matrix4d kernelFrame(const Vec3d& low, const Vec3d& high) {
   const Vec3d half = (high - low) * 0.5;
   const double size = std::max({half.x, half.y, half.z});
-  Matrix4d m = uniformScale(size > 0 && std::isfinite(size) ? std::exp2(std::ceil(std::log2(size))) : 1.0);
+  Matrix4d m =
+      uniformScale(size > 0 && std::isfinite(size) ? std::exp2(std::ceil(std::log2(size))) : 1.0);
   if (size >= 0 && std::isfinite(size)) m.translate((low + high) * 0.5);
   return m;
 }

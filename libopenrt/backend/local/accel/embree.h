@@ -1,7 +1,9 @@
-// embree.h: the only place that knows which Embree this is. Packets of 16 rays; contexts and arguments of both major versions.
+// embree.h: the only place that knows which Embree this is. Packets of 16 rays; contexts and
+// arguments of both major versions.
 #pragma once
 
-// The library's build says which; what else includes this (tests) finds the same, in the order of cmake/Dependencies.cmake.
+// The library's build says which; what else includes this (tests) finds the same, in the order of
+// cmake/Dependencies.cmake.
 #ifndef OPENRT_EMBREE_MAJOR
 #if __has_include(<embree3/rtcore.h>)
 #define OPENRT_EMBREE_MAJOR 3
@@ -18,7 +20,8 @@
 
 namespace openrt {
 
-// What an intersection query may ask for: `filter` is called for every candidate hit, with `user` in its context.
+// What an intersection query may ask for: `filter` is called for every candidate hit, with `user`
+// in its context.
 struct QueryOptions {
   bool coherent = false;
   RTCFilterFunctionN filter = nullptr;
@@ -26,7 +29,8 @@ struct QueryOptions {
 };
 
 #if OPENRT_EMBREE_MAJOR >= 4
-inline const RTCSceneFlags sceneFlags = RTCSceneFlags(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENTS);
+inline const RTCSceneFlags sceneFlags =
+    RTCSceneFlags(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENTS);
 struct QueryContext : RTCRayQueryContext {
   const void* user;
   RTCFilterFunctionN takes; // the query's filter, for geometries of our own
@@ -41,8 +45,9 @@ struct Query {
     rtcInitIntersectArguments(&arguments);
     arguments.context = &context;
     arguments.filter = options.filter;
-    arguments.flags = RTCRayQueryFlags((options.coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT) |
-                                       (options.filter ? RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER : 0));
+    arguments.flags = RTCRayQueryFlags(
+        (options.coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT) |
+        (options.filter ? RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER : 0));
   }
 };
 inline RTCOccludedArguments occludedArguments(bool coherent) {
@@ -66,7 +71,8 @@ inline void occluded8(RTCScene scene, const int* valid, RTCRay8& rays, bool cohe
   rtcOccluded8(valid, scene, &rays, &a);
 }
 #else
-inline const RTCSceneFlags sceneFlags = RTCSceneFlags(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
+inline const RTCSceneFlags sceneFlags =
+    RTCSceneFlags(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
 struct QueryContext : RTCIntersectContext {
   const void* user;
   RTCFilterFunctionN takes; // the query's filter, for geometries of our own
@@ -78,7 +84,8 @@ struct Query {
     context.user = options.user;
     context.takes = options.filter;
     context.filter = options.filter;
-    context.flags = options.coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+    context.flags = options.coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT
+                                     : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
   }
 };
 inline void intersect16(RTCScene scene, const int* valid, RTCRayHit16& rays, Query& query) {

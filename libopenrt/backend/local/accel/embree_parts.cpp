@@ -1,4 +1,3 @@
-// embree_parts.cpp: see embree_parts.h.
 #include "backend/local/accel/body.h"
 #include "render/rays.h"
 
@@ -8,7 +7,8 @@
 namespace openrt {
 namespace {
 
-void attach(PartScene& to, RTCGeometry geometry, std::unique_ptr<Part> part, uint32_t mask, uint32_t slot = nextSlot) {
+void attach(PartScene& to, RTCGeometry geometry, std::unique_ptr<Part> part, uint32_t mask,
+            uint32_t slot = nextSlot) {
   rtcSetGeometryMask(geometry, mask);
   rtcCommitGeometry(geometry);
   if (slot == nextSlot) {
@@ -34,7 +34,8 @@ EmbreeDevice::EmbreeDevice(uint32_t threads) {
   const std::string config = "threads=" + std::to_string(threads);
   device = rtcNewDevice(config.c_str());
   if (!device)
-    throw std::runtime_error("the ray kernels (Embree) do not start: error " + std::to_string(rtcGetDeviceError(nullptr)));
+    throw std::runtime_error("the ray kernels (Embree) do not start: error " +
+                             std::to_string(rtcGetDeviceError(nullptr)));
   rtcSetDeviceMemoryMonitorFunction(
       device,
       [](void* counter, ssize_t change, bool) {
@@ -52,7 +53,8 @@ RTCScene newScene(const EmbreeDevice& device) {
   return scene;
 }
 
-void attachTriangles(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part, uint32_t mask, bool slivers) {
+void attachTriangles(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part,
+                     uint32_t mask, bool slivers) {
   if (slivers) {
     RTCGeometry geometry = newSlivers(device, *part);
     attach(to, geometry, std::move(part), mask);
@@ -62,31 +64,36 @@ void attachTriangles(PartScene& to, const EmbreeDevice& device, std::unique_ptr<
   const size_t points = part->vertices.size() / 3;
   part->vertices.resize(part->vertices.size() + 4); // kernels read past the end
   part->indices.reserve(part->indices.size() + 4);
-  const size_t corners = part->sharedIndices ? part->sharedIndices->count<uint32_t>() : part->indices.size();
-  const uint32_t* indices = part->sharedIndices ? part->sharedIndices->as<uint32_t>() : part->indices.data();
-  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, part->vertices.data(), 0, 12, points);
-  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, indices, 0, 12, corners / 3);
+  const size_t corners =
+      part->sharedIndices ? part->sharedIndices->count<uint32_t>() : part->indices.size();
+  const uint32_t* indices =
+      part->sharedIndices ? part->sharedIndices->as<uint32_t>() : part->indices.data();
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                             part->vertices.data(), 0, 12, points);
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, indices, 0, 12,
+                             corners / 3);
   attach(to, geometry, std::move(part), mask);
 }
 
-void attachHugeSpheres(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part, uint32_t mask) {
+void attachHugeSpheres(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part,
+                       uint32_t mask) {
   RTCGeometry geometry = newHugeSpheres(device, *part);
   attach(to, geometry, std::move(part), mask);
 }
 
-void attachRound(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part, uint32_t mask, RTCGeometryType type,
-                 uint32_t slot) {
+void attachRound(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part,
+                 uint32_t mask, RTCGeometryType type, uint32_t slot) {
   RTCGeometry geometry = rtcNewGeometry(device.device, type);
-  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, part->vertices.data(), 0, 16,
-                             part->vertices.size() / 4);
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4,
+                             part->vertices.data(), 0, 16, part->vertices.size() / 4);
   if (type == RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE)
-    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT, part->indices.data(), 0, 4,
-                               part->indices.size());
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT,
+                               part->indices.data(), 0, 4, part->indices.size());
   attach(to, geometry, std::move(part), mask, slot);
 }
 
-void attachInstance(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part, const Matrix4d& matrix,
-                    uint32_t slot) {
+void attachInstance(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part,
+                    const Matrix4d& matrix, uint32_t slot) {
   RTCGeometry geometry = rtcNewGeometry(device.device, RTC_GEOMETRY_TYPE_INSTANCE);
   rtcSetGeometryInstancedScene(geometry, part->object->scene);
   transform(geometry, matrix);

@@ -1,5 +1,5 @@
-// embree_parts.h: Embree geometries made from parts. Each attaches a part under the geometry id that is its index in
-// PartScene::parts and keeps it alive there.
+// embree_parts.h: Embree geometries made from parts. Each attaches a part under the geometry id
+// that is its index in PartScene::parts and keeps it alive there.
 #pragma once
 
 #include <atomic>
@@ -33,8 +33,9 @@ struct Part {
   std::vector<float> vertices; // as Embree reads them
   std::vector<uint32_t> indices;
   ArrayPtr sharedIndices;
-  std::vector<uint8_t> openEdges;             // of slivers, a triangle each: bits of edges that it shares with what is none
-  std::vector<Matrix4d> spheres;              // huge ones: the unit sphere's frame to that of the geometry
+  std::vector<uint8_t>
+      openEdges; // of slivers, a triangle each: bits of edges that it shares with what is none
+  std::vector<Matrix4d> spheres; // huge ones: the unit sphere's frame to that of the geometry
   std::atomic<uint64_t>* wrongHits = nullptr; // of slivers: the device's, which outlives it
   std::shared_ptr<const Body> object;         // an instance of it; record is the first of the place
 };
@@ -55,18 +56,21 @@ inline constexpr uint32_t nextSlot = ~0u; // behind the parts there are
 
 RTCScene newScene(const EmbreeDevice& device); // robust mode
 // slivers: they are met in double precision.
-void attachTriangles(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part, uint32_t mask, bool slivers);
+void attachTriangles(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part,
+                     uint32_t mask, bool slivers);
 // The geometry of slivers, not yet attached; the part stays where it is.
 RTCGeometry newSlivers(const EmbreeDevice& device, Part& part);
 // Huge spheres and ellipsoids (render/huge_spheres.h): part.spheres, met in double precision.
-void attachHugeSpheres(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part, uint32_t mask);
+void attachHugeSpheres(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part,
+                       uint32_t mask);
 RTCGeometry newHugeSpheres(const EmbreeDevice& device, Part& part); // not yet attached
-// Spheres or round linear curves; part.vertices have stride 4: centre and radius. slot: the geometry id, of those in parts.
-void attachRound(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part, uint32_t mask, RTCGeometryType type,
-                 uint32_t slot = nextSlot);
+// Spheres or round linear curves; part.vertices have stride 4: centre and radius. slot: the
+// geometry id, of those in parts.
+void attachRound(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part,
+                 uint32_t mask, RTCGeometryType type, uint32_t slot = nextSlot);
 // An instance of part->object.
-void attachInstance(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part, const Matrix4d& matrix,
-                    uint32_t slot = nextSlot);
+void attachInstance(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part,
+                    const Matrix4d& matrix, uint32_t slot = nextSlot);
 void detach(PartScene& from, uint32_t slot); // nothing if the slot is empty
 // Of the instance in a slot: places it, or takes it out of sight.
 void setTransform(PartScene& in, uint32_t slot, const Matrix4d& matrix);

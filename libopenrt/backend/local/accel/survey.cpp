@@ -1,4 +1,3 @@
-// survey.cpp: see survey.h.
 #include "backend/local/accel/survey.h"
 
 #include <algorithm>
@@ -14,7 +13,9 @@ int exponent(double length) { return std::ilogb(std::clamp(length, 1e-30, 1e30))
 
 double halfDiagonal(const Box& box) { return box.empty() ? 0 : length(box.high - box.low) / 2; }
 
-double largestColumn(const Matrix4d& m) { return std::max({length(m.column(0)), length(m.column(1)), length(m.column(2))}); }
+double largestColumn(const Matrix4d& m) {
+  return std::max({length(m.column(0)), length(m.column(1)), length(m.column(2))});
+}
 
 } // namespace
 
@@ -27,8 +28,8 @@ Matrix4d uniformScale(double s) {
 bool similarity(const Matrix4d& m) {
   const Vec3d a = m.column(0), b = m.column(1), c = m.column(2);
   const double l = dot(a, a), e = 1e-6 * l;
-  return std::fabs(dot(b, b) - l) <= e && std::fabs(dot(c, c) - l) <= e && std::fabs(dot(a, b)) <= e &&
-         std::fabs(dot(a, c)) <= e && std::fabs(dot(b, c)) <= e;
+  return std::fabs(dot(b, b) - l) <= e && std::fabs(dot(c, c) - l) <= e &&
+         std::fabs(dot(a, b)) <= e && std::fabs(dot(a, c)) <= e && std::fabs(dot(b, c)) <= e;
 }
 
 void Survey::measure(const Scene& scene, uint32_t id) {
@@ -41,7 +42,8 @@ void Survey::measure(const Scene& scene, uint32_t id) {
     info.boxes.push_back(boundsOf(g));
     info.bounds.add(info.boxes.back(), Matrix4d());
     if (g.primitive == edit::Primitive::Triangles) info.triangles += g.primitives();
-    if (g.primitive == edit::Primitive::Lines || g.primitive == edit::Primitive::Points) info.bakeOnly = true;
+    if (g.primitive == edit::Primitive::Lines || g.primitive == edit::Primitive::Points)
+      info.bakeOnly = true;
     if (g.primitive == edit::Primitive::Sphere && !similarity(g.matrix)) info.bakeOnly = true;
   }
 }
@@ -75,7 +77,8 @@ PartInfo Survey::weigh(const Scene& scene, const ScenePart& part, bool root) con
         drawn = DrawnAs::thin;
         break;
       case edit::Primitive::Sphere:
-        if (!heavy && !root && !similarity(item.matrix * geometries[g].matrix)) drawn = DrawnAs::ellipsoid;
+        if (!heavy && !root && !similarity(item.matrix * geometries[g].matrix))
+          drawn = DrawnAs::ellipsoid;
         break;
       case edit::Primitive::Triangles: break;
       }
@@ -101,7 +104,8 @@ void Survey::take(const Scene& scene, const Flattened& flat) {
     parts_.push_back(weigh(scene, flat.parts[p], p == 0));
   }
   boxes_.assign(flat.clusters.size(), {});
-  for (uint32_t c = 0; c < flat.clusters.size(); c++) parts_[flat.clusters[c].part].clusters.push_back(c);
+  for (uint32_t c = 0; c < flat.clusters.size(); c++)
+    parts_[flat.clusters[c].part].clusters.push_back(c);
   std::vector<uint32_t> all(flat.clusters.size());
   for (uint32_t c = 0; c < all.size(); c++) all[c] = c;
   place(flat, all);
@@ -129,12 +133,14 @@ void Survey::take(const Scene& scene, const Flattened& flat) {
 
 bool Survey::retake(const Scene& scene, const Flattened& flat, uint32_t object) {
   const uint32_t p = partOf(object);
-  if (p == ~0u || flat.parts[p].items.empty() || flat.parts[p].items[0].object != object) return false;
+  if (p == ~0u || flat.parts[p].items.empty() || flat.parts[p].items[0].object != object)
+    return false;
   if (scene.objects.at(object).geometries.empty()) return false;
   measure(scene, object);
   PartInfo fresh = weigh(scene, flat.parts[p], false);
   fresh.clusters = std::move(parts_[p].clusters);
-  const bool same = fresh.drawn == parts_[p].drawn && fresh.lines == parts_[p].lines && fresh.points == parts_[p].points;
+  const bool same = fresh.drawn == parts_[p].drawn && fresh.lines == parts_[p].lines &&
+                    fresh.points == parts_[p].points;
   parts_[p] = std::move(fresh);
   place(flat, parts_[p].clusters);
   return same;
@@ -186,16 +192,19 @@ double Survey::scale(const Vec3d& origin) const {
   const Box world = bounds();
   if (world.empty()) return 1;
   const Vec3d a = world.low - origin, b = world.high - origin;
-  const double far = std::max({std::fabs(a.x), std::fabs(a.y), std::fabs(a.z), std::fabs(b.x), std::fabs(b.y), std::fabs(b.z)});
+  const double far = std::max({std::fabs(a.x), std::fabs(a.y), std::fabs(a.z), std::fabs(b.x),
+                               std::fabs(b.y), std::fabs(b.z)});
   if (!(far > 0)) return 1;
   const auto powerOfTwo = [](double x) { return std::exp2(std::floor(std::log2(x))); };
   if (far < 1e-4) return powerOfTwo(1 / far); // small scenes grow to about 1
-  // Large ones shrink to the upper end of what the kernels do well (sizes of 1e-10 to 1e12), but no further than what most of the
-  // scene is made of stays above 1e-3: one thing put out of sight must not change everything else. Distances of 1e17 are the
-  // kernels' limit. Beyond 1e20 things are not drawn at all.
+  // Large ones shrink to the upper end of what the kernels do well (sizes of 1e-10 to 1e12), but no
+  // further than what most of the scene is made of stays above 1e-3: one thing put out of sight
+  // must not change everything else. Distances of 1e17 are the kernels' limit. Beyond 1e20 things
+  // are not drawn at all.
   const double reach = std::min(far, 1e20), comfortable = 1e10 / reach;
   if (comfortable >= 1) return 1;
-  return powerOfTwo(std::max(comfortable, std::min({1.0, std::ldexp(1e-3, -detail_), 1e17 / reach})));
+  return powerOfTwo(
+      std::max(comfortable, std::min({1.0, std::ldexp(1e-3, -detail_), 1e17 / reach})));
 }
 
 } // namespace openrt

@@ -1,6 +1,7 @@
-// survey.h: what the parts of a flattened scene weigh: bounds, triangles, which objects are drawn as instances of their own, how
-// each geometry is drawn; and from that the origin and the scale of render space. All of it is a function of the committed scene
-// and the camera alone: nothing depends on what was rendered before. Kept by the builder; application thread, between frames.
+// survey.h: what the parts of a flattened scene weigh: bounds, triangles, which objects are drawn
+// as instances of their own, how each geometry is drawn; and from that the origin and the scale of
+// render space. All of it is a function of the committed scene and the camera alone: nothing
+// depends on what was rendered before. Kept by the builder; application thread, between frames.
 #pragma once
 
 #include <map>
@@ -42,7 +43,8 @@ struct PartInfo {
 class Survey {
  public:
   void take(const Scene& scene, const Flattened& flat);
-  // After an object, dynamic before and after, was redefined. False if more follows from it than a new Embree scene.
+  // After an object, dynamic before and after, was redefined. False if more follows from it than a
+  // new Embree scene.
   bool retake(const Scene& scene, const Flattened& flat, uint32_t object);
   // After these clusters have moved.
   void place(const Flattened& flat, const std::vector<uint32_t>& clusters);
@@ -52,8 +54,9 @@ class Survey {
   uint32_t partOf(uint32_t object) const; // ~0: it is the root of no part
   uint64_t uniqueTriangles() const;
 
-  // Of render space, for an eye. The eye's place on a grid: what is near it keeps its digits, and few moves of the camera round
-  // the scene anew. The cell is a power of two, as large as the scene; smaller where most of what is there is far smaller.
+  // Of render space, for an eye. The eye's place on a grid: what is near it keeps its digits, and
+  // few moves of the camera round the scene anew. The cell is a power of two, as large as the
+  // scene; smaller where most of what is there is far smaller.
   Vec3d origin(const Vec3d& eye) const;
   // Render space x scale = the kernels' space; a power of two, 1 for all but extreme sizes.
   double scale(const Vec3d& origin) const;
