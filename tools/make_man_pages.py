@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Manual pages of section 3 from the comments of a C header: one page for each of its parts, and a link for every function.
+"""Makes manual pages of section 3 from the comments of C headers: one page for each part, and a link for every function.
 
-make_man_pages.py HEADER FOLDER VERSION
+make_man_pages.py FOLDER VERSION HEADER...
 
-A part begins with a comment of one line that ends in dashes. What a comment stands above, up to the next comment or blank line, it
+The first comment of the first header introduces the library. A part begins with a comment of one line that ends in dashes. What a comment stands above, up to the next comment or blank line, it
 is about. Lines that are indented within a comment stay as they are; those that begin with a dash are items of a list.
 """
 import pathlib
@@ -12,11 +12,12 @@ import sys
 
 NAMES = {"errors": "errors", "life": "contexts", "primitives": "primitives", "arrays": "arrays", "matrices": "matrices",
          "objects": "objects", "shaders": "shaders", "roles": "roles", "textures": "textures", "frames": "frames",
-         "queries": "queries"}
+         "queries": "queries", "workers": "workers"}
 TITLES = {"errors": "errors and messages", "contexts": "contexts and their configuration", "primitives": "primitives of an object",
           "arrays": "primitives from arrays", "matrices": "the matrix stack", "objects": "objects and instances",
           "shaders": "shaders and their parameters", "roles": "lights, camera, environment, transport", "textures": "textures",
-          "frames": "frames, quality, pixels, statistics", "queries": "ray queries and picking"}
+          "frames": "frames, quality, pixels, statistics", "queries": "ray queries and picking",
+          "workers": "the workers of a cluster"}
 
 
 def escape(text):
@@ -163,18 +164,21 @@ def page(name, title, version, names, synopsis, body, others):
 
 
 def main():
-    header, folder, version = pathlib.Path(sys.argv[1]).read_text(), pathlib.Path(sys.argv[2]), sys.argv[3]
+    folder, version = pathlib.Path(sys.argv[1]), sys.argv[2]
+    headers = [pathlib.Path(name).read_text() for name in sys.argv[3:]]
     folder.mkdir(parents=True, exist_ok=True)
     for old in folder.glob("*.3"):
         old.unlink()
-    header = header[:header.rindex("#ifdef __cplusplus")]
-    pieces = re.split(r"^/\* ([A-Z][^\n]*?) ?-{4,} \*/$", header, flags=re.M)
-    intro = comment_text(re.match(r"/\*.*?\*/", pieces[0], re.S).group(0))
+    intro = comment_text(re.match(r"/\*.*?\*/", headers[0], re.S).group(0))
     parts = []
-    for title, text in zip(pieces[1::2], pieces[2::2]):
-        name = NAMES[re.match(r"\w+", title).group(0).lower()]
-        body, functions = describe(text)
-        parts.append((name, body, functions))
+    for header in headers:
+        if "#ifdef __cplusplus" in header:
+            header = header[:header.rindex("#ifdef __cplusplus")]
+        pieces = re.split(r"^/\* ([A-Z][^\n]*?) ?-{4,} \*/$", header, flags=re.M)
+        for title, text in zip(pieces[1::2], pieces[2::2]):
+            name = NAMES[re.match(r"\w+", title).group(0).lower()]
+            body, functions = describe(text)
+            parts.append((name, body, functions))
     all_pages = ["openrt"] + ["openrt_" + name for name, _, _ in parts]
     for name, body, functions in parts:
         names = [function_name(f) for f in functions]

@@ -27,7 +27,8 @@ def part(name, prefixes, purpose, includes=""):
 
 # From the ground up: public headers first, then each library, then what is built on them.
 TABLE = [
-    part("api-h", "libopenrt/include/openrt/openrt.h libopenrt/include/openrt/queries.h", "the application API, C99"),
+    part("api-h", " ".join(f"libopenrt/include/openrt/{name}.h" for name in
+                           ("openrt", "context", "geometry", "shader", "frame", "query", "worker", "queries")), "the application API, C99"),
     part("shader-sdk", "libopenrt/include/openrt/", "what a shader plug-in sees, C99 and C++"),
     part("xvrml-h", "libxvrml/include/xvrml/", "worlds, nodes, events: the public C++ headers"),
     part("script-sdk", "libxvrml/include/xvrml/xscript.h libxvrml/include/xvrml/xscript_types.h", "what a script engine sees, C99"),

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Every function that openrt.h declares is exported by the library and has a manual page that says something about it.
+"""Every function that the headers declare is exported by the library, says on which thread it may be called, and has a manual page
+that says something about it.
 
-man_pages.py HEADER LIBRARY FOLDER
+man_pages.py LIBRARY FOLDER HEADER...
 """
 import ctypes
 import pathlib
@@ -10,11 +11,15 @@ import shutil
 import subprocess
 import sys
 
-header, library, folder = pathlib.Path(sys.argv[1]).read_text(), ctypes.CDLL(sys.argv[2]), pathlib.Path(sys.argv[3])
+library, folder = ctypes.CDLL(sys.argv[1]), pathlib.Path(sys.argv[2])
+header = "\n".join(pathlib.Path(name).read_text() for name in sys.argv[3:])
 complaints = []
 declared = re.findall(r"^RT_API [^;(]*?\b(rt\w+)\(", header, re.M)
 if len(declared) < 100 or len(set(declared)) != len(declared):
     complaints.append(f"{len(declared)} functions found in the header, {len(set(declared))} different ones")
+for run in re.findall(r"^(/\*(?:[^*]|\*(?!/))*\*/\n)?((?:RT_API [^;]*;\n)+)", header, re.M):
+    if len(re.findall(r"\[(?:context|any)-thread\]", re.sub(r"\s*\n \* ", " ", run[0]))) != 1:
+        complaints.append(f"no thread tag in the comment of: {run[1].splitlines()[0]}")
 for function in declared:
     if not hasattr(library, function):
         complaints.append(f"{function} is declared, but not exported")
@@ -30,7 +35,7 @@ for function in declared:
     name, description = text.split(".SH NAME\n")[1].split("\n")[0], text.split(".SH DESCRIPTION\n")[1]
     if not re.search(rf"\b{function}\b", name) or f" {function}(" not in description:
         complaints.append(f"{link.group(1)} does not describe {function}")
-exported = {line.split()[-1] for line in subprocess.run(["nm", "-D", "--defined-only", sys.argv[2]], capture_output=True,
+exported = {line.split()[-1] for line in subprocess.run(["nm", "-D", "--defined-only", sys.argv[1]], capture_output=True,
                                                         text=True).stdout.splitlines()} if shutil.which("nm") else set()
 for symbol in sorted(s for s in exported if re.fullmatch(r"rt[A-Z]\w*", s) and s not in declared):
     complaints.append(f"{symbol} is exported, but not declared")

@@ -27,10 +27,10 @@ def build():
 
 
 def structure(name):
-    """A structure of openrt.h, read from there."""
+    """Reads a structure from the headers of the C API."""
     kinds = {"size_t": ctypes.c_size_t, "uint64_t": ctypes.c_uint64, "uint32_t": ctypes.c_uint32, "RTenum": ctypes.c_uint32,
              "int": ctypes.c_int, "double": ctypes.c_double, "char": ctypes.c_char}
-    text = re.sub(r"/\*.*?\*/", "", (ROOT / "libopenrt/include/openrt/openrt.h").read_text(), flags=re.S)
+    text = re.sub(r"/\*.*?\*/", "", "".join(h.read_text() for h in (ROOT / "libopenrt/include/openrt").glob("*.h")), flags=re.S)
     body = re.search(r"typedef struct %s \{(.*?)\}" % name, text, re.S)[1]
     fields = []
     for declaration in filter(str.strip, body.split(";")):

@@ -13,14 +13,14 @@ import xml.etree.ElementTree as ElementTree
 HERE = pathlib.Path(__file__).resolve().parent
 # page, title, domain, headers
 PAGES = [
-    ("openrt", "OpenRT: the C API", "c", ["libopenrt/include/openrt/openrt.h"]),
+    ("openrt", "OpenRT: the C API", "c", [f"libopenrt/include/openrt/{name}.h" for name in ("openrt", "context", "geometry", "shader", "frame", "query", "worker")]),
     ("openrts", "OpenRTS: the shader SDK in C", "c", ["libopenrt/include/openrt/openrts.h"]),
     ("openrts-cpp", "OpenRTS: the shader SDK in C++", "cpp",
      ["libopenrt/include/openrt/openrts.hpp", "libopenrt/include/openrt/openrts_values.hpp"]),
     ("xscript", "The SDK of script engines", "c", ["libxvrml/include/xvrml/xscript.h"]),
     ("xvrml", "XVRML: the scene graph in C++", "cpp",
      [f"libxvrml/include/xvrml/{name}.h" for name in
-      ("world", "browser", "openrt", "node", "types", "diagnostics", "limits", "camera", "viewer", "media", "change",
+      ("world", "browser", "mapper", "node", "types", "diagnostics", "limits", "camera", "viewer", "media", "change",
        "behaviour", "node_plugin", "node_table", "script_engines", "value_text")]),
 ]
 DOXYFILE = """

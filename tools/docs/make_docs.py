@@ -150,7 +150,7 @@ class Site:
         self.source.mkdir(parents=True)
         self.generate()
         self.copy_pages()
-        version = ".".join(re.findall(r"OPENRT_VERSION_\w+ (\d+)", (self.root / "libopenrt/include/openrt/openrt.h").read_text())[:3])
+        version = ".".join(re.findall(r"OPENRT_VERSION_\w+ (\d+)", (self.root / "libopenrt/include/openrt/context.h").read_text())[:3])
         env = {**os.environ, "OPENRT_DOCS_TOOLS": str(HERE), "OPENRT_VERSION": version, "PYTHONDONTWRITEBYTECODE": "1"}
         options = ["-W", "--keep-going"] if strict else []
         command = [sys.executable, "-m", "sphinx", "-q", "-E", "-j", "2", "-b", "html", *options, "-d", self.out.parent / "docs-doctrees",

@@ -1,0 +1,190 @@
+/* frame.h: frames, quality settings, pixels, error bars, statistics (OpenRT, C99). openrt.h states
+ * the conventions. docs/error-bars.md explains how errors are estimated.
+ */
+#ifndef OPENRT_FRAME_H
+#define OPENRT_FRAME_H
+
+#include "openrt/context.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Frames --------------------------------------------------------------------------------------- */
+
+/* Channels of a frame, to be or'ed. The number in front is that of floats per pixel. "First sample"
+ * is the first of the pixel's samples. */
+enum {
+  RT_RGBA = 1,       /* 4: mean radiance; alpha, which is 1 where the environment shows or a surface
+                           is opaque */
+  RT_DEPTH = 2,      /* 1: distance along the view axis, first sample; infinite if nothing is hit */
+  RT_NORMAL = 4,     /* 3: mean shading normal in world space, towards the camera; 0 0 0 if nothing
+                           is hit */
+  RT_ALBEDO = 8,     /* 3: mean surface colour as the shader reports it */
+  RT_POSITION = 16,  /* 3: world-space position of the hit, first sample */
+  RT_NAME = 32,      /* 1: name (rtLoadName) of the hit, first sample; 0 if nothing is hit */
+  RT_SAMPLES = 64,   /* 1: number of samples taken */
+  RT_VARIANCE = 128, /* 3: sample variance of radiance; divided by the number of samples it is the
+                           variance of the mean */
+  RT_ERROR = 256,    /* 3: half-width of the 95 % confidence interval of each colour; infinite if
+                           nothing is known */
+  RT_TRUST = 512     /* 1: 1 if that interval can be trusted, else 0 */
+};
+
+/* Settings of rtQuality and rtQualityf. */
+enum {
+  RT_SAMPLES_PER_PIXEL = 1, /* 1 .. 65536, default 16 */
+  RT_MAX_DEPTH = 2,         /* number of surfaces a path may meet, 0 .. 10000, default 25 */
+  RT_SEED = 3,              /* default 0 */
+  RT_SHADOWS = 4,           /* 1 (default) or 0 */
+  RT_TRANSPORT = 5,         /* one of RT_TRANSPORT_* below, default RT_TRANSPORT_AUTO */
+  /* Independent replicates of a pixel's samples, 1 .. 1024. 0 (default): 16 to 31 if RT_ERROR,
+   * RT_TRUST, a target error or a time limit is asked for and there are at least 32 samples, else
+   * one. */
+  RT_REPLICATES = 6,
+  /* rtQualityf: 0 .. 1; 0 (default): none. Each part of the picture is sampled until the mean over
+   * its pixels of (RT_ERROR summed over the colours) / (colours summed + 0.03), at most 1 a pixel,
+   * is about this value, or RT_SAMPLES_PER_PIXEL samples have been taken. */
+  RT_TARGET_ERROR = 7,
+  /* rtQualityf: seconds, 0 .. 1e6; 0 (default): none. The picture is made in rounds until so many
+   * seconds have passed since the frame was started. It depends on the speed of the machine. */
+  RT_TIME_LIMIT = 8,
+  /* rtQualityf: 0 .. 1, default 1/4096. The transport whitted ends branches that carry less than
+   * this fraction of the camera ray. */
+  RT_ENERGY_CUT = 9,
+  /* rtQualityf: upper bound of a sample's radiance in each colour; 0 (default): none. It biases the
+   * picture; RTstats.clipped tells by how much. */
+  RT_CLAMP = 10,
+  /* 0 (default) or 1: the whole picture is made early and then improved, for callers of rtSnapshot.
+   * The finished picture has the same bytes. It takes a few per cent longer. */
+  RT_PROGRESSIVE = 11,
+  /* backend=cluster: number of frames that rtSwapBuffers leaves unfinished, 1 (default) .. 64. It
+   * takes effect at once and does not change pictures. */
+  RT_FRAMES_IN_FLIGHT = 12,
+  /* Edge of tiles in pixels, 4 .. 128; 0 (default): chosen by picture size and samples. Errors are
+   * judged tile by tile. */
+  RT_TILE_SIZE = 13
+};
+
+/* Light transports: how light is followed from surfaces whose shaders answer in lobes (openrts.h).
+ */
+enum {
+  /* The cheapest transport that leaves out nothing which the scene's lobes do with light.
+   * RTstats.transport tells which one that is. */
+  RT_TRANSPORT_AUTO = 0,
+  /* Light that comes straight from lights. No mirror images, nothing behind glass. */
+  RT_TRANSPORT_DIRECT = 1,
+  /* Direct light and the whole tree of reflections and refractions, without random decisions
+   * (T. Whitted, "An Improved Illumination Model for Shaded Display", CACM 23(6), 1980). */
+  RT_TRANSPORT_WHITTED = 2,
+  /* Path tracing: also light between diffuse surfaces. Unbiased, with noise. */
+  RT_TRANSPORT_PATH = 3,
+  /* Path tracing, and light tracing for caustics: light of lamps that mirrors or lenses send to
+   * surfaces which the camera sees directly, also of lights without extent. */
+  RT_TRANSPORT_LIGHT = 4
+};
+/* Bits of RTstats.transportLeavesOut: light of the scene that the transport does not follow. Images
+ * in mirrors and glass; light between surfaces; surfaces that emit; light of the environment; light
+ * of lamps that mirrors or lenses send. */
+enum {
+  RT_LEAVES_IMAGES = 1,
+  RT_LEAVES_BETWEEN = 2,
+  RT_LEAVES_EMITTERS = 4,
+  RT_LEAVES_SKY = 8,
+  RT_LEAVES_CAUSTICS = 16
+};
+
+/* Sets size (1 .. 65536 pixels each way, at most 2^28 in all) and channels of the frames that
+ * follow. [context-thread] */
+RT_API void rtFrameBuffer(int width, int height, uint32_t channels);
+/* Set a quality setting of the frames that follow. [context-thread] */
+RT_API void rtQuality(RTenum name, int value);
+RT_API void rtQualityf(RTenum name, double value);
+/* Commits the edits, waits for the frame in flight, makes it the one that rtReadPixels reads, and
+ * starts the next one. Needs a frame buffer and no open definition (else RT_INVALID_OPERATION).
+ * With backend=cluster the next frame starts first, and the call waits for the oldest one only
+ * while more than RT_FRAMES_IN_FLIGHT are unfinished; RTstats.frame tells which one was finished
+ * last. [context-thread] */
+RT_API void rtSwapBuffers(void);
+/* Waits for the oldest frame in flight and makes it the one that rtReadPixels reads. Returns 1, or
+ * 0 if none is in flight. [context-thread] */
+RT_API int rtFinishFrame(void);
+/* Commits the edits, renders and waits. rtReadPixels then reads this frame. Needs what
+ * rtSwapBuffers needs. [context-thread] */
+RT_API void rtRender(void);
+/* Ends the frames in flight early. Their pictures hold the tiles that are finished. [any-thread] */
+RT_API void rtCancel(RTcontext context);
+/* Returns which fraction of the oldest frame in flight is done, 0 to 1. [any-thread] */
+RT_API float rtProgress(RTcontext context);
+/* Copies one channel of the oldest frame in flight, as far as it is finished, laid out as by
+ * rtReadPixels. Unfinished tiles are 0 (RT_DEPTH: infinite); tiles of a frame in rounds have what
+ * has been made so far. count is the number of floats that out has room for. Returns 1, or 0 if no
+ * frame with this channel and at most count floats is in flight. [any-thread] */
+RT_API int rtSnapshot(RTcontext context, RTenum channel, float* out, size_t count);
+/* Copies one channel of the finished frame: width * height * components floats, first row at the
+ * top. count is the number of floats that out has room for. [context-thread] */
+RT_API void rtReadPixels(RTenum channel, float* out, size_t count);
+
+/* Statistics of the scene and of the last frame. */
+typedef struct RTstats {
+  size_t size; /* Set it to sizeof(RTstats) before the call. */
+  uint64_t triangles, uniqueTriangles, objects, instances, lights, textures;
+  uint64_t degenerate;        /* primitives that were dropped */
+  uint64_t rejectedRays;      /* rays that were not finite */
+  uint64_t rejectedInstances; /* instances whose matrix is singular or out of range */
+  uint64_t cameraRays, shadowRays, secondaryRays;
+  double commitSeconds, buildSeconds, renderSeconds;
+  uint64_t bvhBytes;
+  uint64_t objectBuilds;   /* acceleration structures built for objects (or for merged static ones)
+                              since the context was made */
+  uint64_t topLevelBuilds; /* times the top level above them was built or refitted */
+  uint32_t threads;
+  char isa[16];
+  char kernel[32]; /* for example "Embree 3.13.5" */
+
+  /* The error of the picture as a whole. The error of a pixel is (errors of the colours summed) /
+   * (colours summed + 0.03), at most 1. */
+  double errorMean;         /* estimate of the mean over the pixels of their true error */
+  double errorMeanInterval; /* With 95 % probability that mean lies in errorMean +- this. */
+  double errorHalfWidth; /* mean over the pixels of RT_ERROR; RT_TARGET_ERROR is compared to it */
+  double errorP99;       /* RT_ERROR that 99 % of the pixels stay below */
+  double errorLevel;     /* 0.95 */
+  uint64_t errorPixels;  /* finished pixels, which these numbers are about; 0 without RT_VARIANCE
+                            or RT_ERROR */
+  uint64_t errorTrusted; /* number of them with RT_TRUST 1 */
+  char errorMethod[48];  /* "replicated nets, Student's t", "sample variance" or "" */
+  RTenum transport;      /* RT_TRANSPORT_* that made the last frame */
+  char transportReason[96]; /* the reason for people */
+
+  /* Light that is left out, as a mean over the pixels of the sum over the colours. No error bar
+   * covers it. */
+  double cutByDepth;  /* throughput of paths that RT_MAX_DEPTH ended; times the radiance beyond
+                         it is the loss */
+  double cutByEnergy; /* the same of branches that RT_ENERGY_CUT ended */
+  double clipped;     /* radiance that RT_CLAMP took away */
+  uint64_t unreachedLights; /* lights without extent that can be reached only through mirrors or
+                               glass; RT_TRANSPORT_LIGHT alone follows these, and has 0 here */
+  uint64_t shaderFaults; /* hits at which a shader returned NaN or infinity, which counts as 0; the
+                            log names the class */
+  uint64_t wrongHits;    /* hits of slivers that single precision reported and double precision
+                            refuted (docs/decisions/0041) */
+  uint64_t frame;        /* number of the finished frame, counted from 1; 0 if there is none */
+
+  /* backend=cluster, since the context was made; else 0. A tile here is a job, which may be a part
+   * of a tile. */
+  uint32_t workers;                 /* connected workers, without this process */
+  uint64_t tilesRemote, tilesLocal; /* done by workers; done by this process */
+  uint64_t reissued;                /* jobs given out again because they were late or lost */
+  uint64_t duplicates;              /* results that came after the job had been done */
+  uint64_t bytesSent, bytesReceived;
+  uint32_t transportLeavesOut; /* RT_LEAVES_* bits */
+  double errorUnmet;           /* radiance that may be missing, with 95 %: paths meet it by chance
+                                  alone, and few have met it */
+} RTstats;
+/* Writes the statistics of the last commit and of the last finished frame. [context-thread] */
+RT_API void rtGetStats(RTstats* stats);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

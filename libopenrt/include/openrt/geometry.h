@@ -1,0 +1,156 @@
+/* geometry.h: primitives, arrays, matrices, objects and instances (OpenRT, C99). openrt.h states
+ * the conventions.
+ */
+#ifndef OPENRT_GEOMETRY_H
+#define OPENRT_GEOMETRY_H
+
+#include "openrt/context.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Primitives: inside rtBeginObject ... rtEndObject --------------------------------------------- */
+
+/* The modes have OpenGL's numbers. An RT_POLYGON is convex. */
+enum {
+  RT_POINTS = 0x0000,
+  RT_LINES = 0x0001,
+  RT_LINE_STRIP = 0x0003,
+  RT_TRIANGLES = 0x0004,
+  RT_TRIANGLE_STRIP = 0x0005,
+  RT_TRIANGLE_FAN = 0x0006,
+  RT_QUADS = 0x0007,
+  RT_QUAD_STRIP = 0x0008,
+  RT_POLYGON = 0x0009
+};
+
+/* rtBegin opens a list of vertices of one mode, rtEnd closes it. rtBegin latches the bound shader,
+ * the name and the current matrix. Each vertex latches normal, texture coordinate and colour. An
+ * object begins without normals, texture coordinates and colours: its vertices have those that were
+ * set since rtBeginObject. A normal of 0 0 0 stands for the normal of the face. Positions given in
+ * double keep their precision wherever they lie (up to 1e38). Degenerate primitives are dropped and
+ * counted (RTstats.degenerate). [context-thread] */
+RT_API void rtBegin(RTenum mode);
+RT_API void rtEnd(void);
+RT_API void rtVertex2f(float x, float y);
+RT_API void rtVertex3f(float x, float y, float z);
+RT_API void rtVertex3fv(const float* v);
+RT_API void rtVertex3d(double x, double y, double z);
+RT_API void rtVertex3dv(const double* v);
+RT_API void rtNormal3f(float x, float y, float z);
+RT_API void rtNormal3fv(const float* v);
+RT_API void rtTexCoord2f(float s, float t);
+RT_API void rtTexCoord2fv(const float* v);
+RT_API void rtColor3f(float r, float g, float b);
+RT_API void rtColor3fv(const float* v);
+RT_API void rtColor4f(float r, float g, float b, float a);
+RT_API void rtColor4fv(const float* v);
+
+/* Set the width of lines and the diameter of points, in pixels as seen by the camera (default 1,
+ * range > 0). rtBegin latches them. [context-thread] */
+RT_API void rtLineWidth(float pixels);
+RT_API void rtPointSize(float pixels);
+
+/* RT_CULL_FACE: back faces do not exist, for rays of any kind but shadow rays (default off).
+ * RT_CW_FRONT: vertices that are clockwise for the viewer make a front face (default off:
+ * counter-clockwise ones do). */
+enum { RT_CULL_FACE = 0x0B44, RT_CW_FRONT = 0x0B46 };
+/* Turn a capability on or off. rtBegin, arrays and analytic shapes latch it. [context-thread] */
+RT_API void rtEnable(RTenum capability);
+RT_API void rtDisable(RTenum capability);
+
+/* Sets the name of the primitives that follow, which the name channel and ray queries report (as
+ * OpenGL's selection names). Default 0. Instances latch it, too: a primitive whose own name is 0
+ * has the name of the innermost instance that has one. [context-thread] */
+RT_API void rtLoadName(uint32_t name);
+
+/* Adds an exact sphere of the given radius (> 0) about the current origin. Its texture coordinates
+ * run as on VRML's Sphere (ISO/IEC 14772-1 6.43): s from the back (-z) counter-clockwise seen from
+ * above, t from the bottom to the top. [context-thread] */
+RT_API void rtSphere(float radius);
+
+/* Arrays: the bulk path ------------------------------------------------------------------------ */
+
+enum { RT_FLOAT = 0x1406, RT_DOUBLE = 0x140A, RT_UNSIGNED_BYTE = 0x1401, RT_UNSIGNED_INT = 0x1405 };
+
+/* Set the source of an attribute for rtDrawArrays and rtDrawElements. [context-thread]
+ *  - size: components of an element (vertex 3, normal 3, texture 2, colour 3 or 4).
+ *  - type: RT_FLOAT; for vertices also RT_DOUBLE.
+ *  - stride: bytes from one element to the next; 0 means tightly packed.
+ *  - pointer: NULL turns the array off. The draw calls read it, so it must stay valid until the
+ * last of them has returned. */
+RT_API void rtVertexPointer(int size, RTenum type, size_t stride, const void* pointer);
+RT_API void rtNormalPointer(RTenum type, size_t stride, const void* pointer);
+RT_API void rtTexCoordPointer(int size, RTenum type, size_t stride, const void* pointer);
+RT_API void rtColorPointer(int size, RTenum type, size_t stride, const void* pointer);
+/* Draws count vertices, beginning with element first. [context-thread] */
+RT_API void rtDrawArrays(RTenum mode, size_t first, size_t count);
+/* Draws the vertices that count 32-bit indices name. vertexCount is the number of elements in the
+ * arrays; an index beyond it is RT_INVALID_VALUE. [context-thread] */
+RT_API void rtDrawElements(RTenum mode, size_t count, const uint32_t* indices, size_t vertexCount);
+
+/* Matrices: composed in double ----------------------------------------------------------------- */
+
+/* The matrix stack holds 4096 matrices. An object's definition has a stack of its own. Matrices are
+ * affine: their bottom row is 0 0 0 1. rtRotate* turns by an angle in degrees about an axis, which
+ * need not have unit length. rtGetMatrixd writes the current matrix. [context-thread] */
+RT_API void rtPushMatrix(void);
+RT_API void rtPopMatrix(void);
+RT_API void rtLoadIdentity(void);
+RT_API void rtLoadMatrixf(const float m[16]);
+RT_API void rtLoadMatrixd(const double m[16]);
+RT_API void rtMultMatrixf(const float m[16]);
+RT_API void rtMultMatrixd(const double m[16]);
+RT_API void rtTranslatef(float x, float y, float z);
+RT_API void rtTranslated(double x, double y, double z);
+RT_API void rtRotatef(float degrees, float x, float y, float z);
+RT_API void rtRotated(double degrees, double x, double y, double z);
+RT_API void rtScalef(float x, float y, float z);
+RT_API void rtScaled(double x, double y, double z);
+RT_API void rtGetMatrixd(double m[16]);
+
+/* Objects and instances ------------------------------------------------------------------------ */
+
+/* Makes count empty objects and writes their ids. [context-thread] */
+RT_API void rtGenObjects(size_t count, RTid* ids);
+/* Opens the definition of an object and returns its id; an id of 0 makes a new object. The matrix
+ * stack starts at the identity. A new definition replaces the old one in every instance.
+ * Definitions do not nest; objects instantiate each other. [context-thread] */
+RT_API RTid rtBeginObject(RTid id);
+RT_API void rtEndObject(void);
+/* Deletes an object and all of its instances. [context-thread] */
+RT_API void rtDeleteObject(RTid object);
+
+/* Places an object under the current matrix, in the scene or in the object that is being defined.
+ * Returns the instance's id. An object that would contain itself is RT_INVALID_OPERATION. A
+ * singular matrix is allowed and draws nothing. [context-thread] */
+RT_API RTid rtInstantiateObject(RTid object);
+/* Delete an instance, move it, and show or hide it. [context-thread] */
+RT_API void rtDeleteInstance(RTid instance);
+RT_API void rtInstanceMatrix(RTid instance, const double m[16]);
+RT_API void rtInstanceVisible(RTid instance, int visible);
+/* Overrides the shaders of everything below this instance; 0 removes the override.
+ * [context-thread] */
+RT_API void rtInstanceShader(RTid instance, RTid shader);
+
+/* Hints tell how often an instance's matrix and visibility, or an object's definition, will change.
+ * Pictures differ between the two hints in the last bits alone.
+ *  - RT_STATIC (default): it stays as it is. A change may cost as much as building the scene.
+ *  - RT_DYNAMIC: it changes often. A change costs that instance or object and the top level of the
+ *    acceleration structure; rays cost a little more.
+ * The first rtInstanceMatrix, rtInstanceVisible or new definition of something that has been
+ * rendered makes it dynamic without a hint. */
+enum { RT_STATIC = 0x88E4, RT_DYNAMIC = 0x88E8 };
+/* Sets the hint of an instance. [context-thread] */
+RT_API void rtInstanceHint(RTid instance, RTenum hint);
+/* Sets the hint of an object, which holds from its next definition on. [context-thread] */
+RT_API void rtObjectHint(RTid object, RTenum hint);
+/* Sets a number that ray queries report for hits below this instance. The innermost instance that
+ * has one counts. Default 0. [context-thread] */
+RT_API void rtInstanceUserData(RTid instance, uint64_t data);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
